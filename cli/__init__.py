@@ -1,0 +1,7 @@
+"""Command line: one file per command group, assembled in `app`."""
+
+from __future__ import annotations
+
+from .app import run
+
+__all__ = ["run"]

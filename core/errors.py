@@ -1,0 +1,106 @@
+"""What a user did wrong, told in one line, and how a computation ended, told as a value.
+
+`InputError` is for a mistake in what the user gave: the command line prints its single line and
+ends with exit code 2. `Outcome` is what a solve, an integration or a fit returns instead of
+raising: a computation that did not get there is a result with a reason, never a silent NaN.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from enum import Enum
+
+EXIT_INPUT_ERROR = 2
+"""Exit code of the command line for a mistake in the input."""
+
+EXIT_NOT_CONVERGED = 3
+"""Exit code of the command line for a computation that did not reach its end."""
+
+
+class InputError(ValueError):
+    """A mistake in the user's input: file, key, value and what is allowed, in one line.
+
+    Parameters
+    ----------
+    message
+        What is wrong, including the value found.
+    source
+        The file (or `"command line"`) the value came from.
+    key
+        The key, column or option within `source`.
+    allowed
+        What would have been accepted.
+
+    Examples
+    --------
+    >>> str(InputError("-2e11 is negative", source="pair.toml", key="sphere.E_Pa",
+    ...                allowed="a number above 0"))
+    'pair.toml: sphere.E_Pa: -2e11 is negative (allowed: a number above 0)'
+    """
+
+    def __init__(
+        self,
+        message: str,
+        *,
+        source: str = "",
+        key: str = "",
+        allowed: str = "",
+    ) -> None:
+        self.message = message
+        self.source = source
+        self.key = key
+        self.allowed = allowed
+        head = ": ".join(part for part in (source, key, message) if part)
+        super().__init__(f"{head} (allowed: {allowed})" if allowed else head)
+
+
+class InputErrors(InputError):
+    """Several mistakes found in one reading, one line each."""
+
+    def __init__(self, errors: tuple[InputError, ...]) -> None:
+        self.errors = errors
+        ValueError.__init__(self, "\n".join(str(error) for error in errors))
+        self.message, self.source, self.key, self.allowed = str(self), "", "", ""
+
+
+class Ending(Enum):
+    """How a computation ended; the value is the stored code."""
+
+    COMPLETED = "completed"
+    NOT_CONVERGED = "not-converged"
+    MESH_DISTORTED = "mesh-distorted"
+    OUT_OF_RANGE = "out-of-range"
+    TIME_LIMIT = "time-limit"
+    STEP_LIMIT = "step-limit"
+    WORKER_LOST = "worker-lost"
+    CRASHED = "crashed"
+
+
+@dataclass(frozen=True, slots=True)
+class Outcome:
+    """How a computation ended, how far it got, and what to try.
+
+    Parameters
+    ----------
+    ending
+        The kind of end.
+    message
+        One sentence: what happened and how far it got.
+    advice
+        One sentence: what to try next; empty when completed.
+    """
+
+    ending: Ending
+    message: str = ""
+    advice: str = ""
+
+    @property
+    def completed(self) -> bool:
+        """Whether the computation reached the end it was asked for."""
+        return self.ending is Ending.COMPLETED
+
+    def __str__(self) -> str:
+        return " ".join(part for part in (f"{self.ending.value}:", self.message, self.advice) if part)
+
+
+COMPLETED = Outcome(Ending.COMPLETED)

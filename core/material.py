@@ -1,0 +1,134 @@
+"""The two materials and the radius of a contact pair, in SI units.
+
+Every law, every finite-element case and every impact takes its numbers from a `Pair`; a contact
+law itself owns no material number.
+"""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass, replace
+from typing import Any
+
+from .errors import InputError
+
+
+@dataclass(frozen=True, slots=True)
+class Material:
+    """An isotropic, elastic-perfectly-plastic body (or an elastic, or a rigid one).
+
+    Parameters
+    ----------
+    E
+        Young's modulus [Pa].
+    nu
+        Poisson's ratio [-], 0 <= nu < 0.5.
+    Sy
+        Uniaxial yield strength, a true (Cauchy) stress [Pa]; `inf` for a purely elastic body.
+    rigid
+        A body that does not deform at all; `E` and `Sy` are then ignored.
+    density
+        Mass density [kg/m^3]; only dynamics needs it.
+    name
+        Text for tables and pictures.
+
+    Raises
+    ------
+    InputError
+        A number outside its range; the key is the field's name in input files.
+    """
+
+    E: float
+    nu: float
+    Sy: float = math.inf
+    rigid: bool = False
+    density: float = math.nan
+    name: str = ""
+
+    def __post_init__(self) -> None:
+        if self.rigid:
+            return
+        if not (self.E > 0.0 and math.isfinite(self.E)):
+            raise InputError(f"{self.E:g} is no modulus", key="E_Pa", allowed="a number above 0")
+        if not 0.0 <= self.nu < 0.5:
+            raise InputError(f"{self.nu:g} is no Poisson ratio", key="nu", allowed="0 <= nu < 0.5")
+        if not self.Sy > 0.0:
+            raise InputError(
+                f"{self.Sy:g} is no yield strength",
+                key="Sy_Pa",
+                allowed="a number above 0, or left out for a purely elastic body",
+            )
+
+    @property
+    def plane_strain_modulus(self) -> float:
+        """E / (1 - nu^2) [Pa]; infinite for a rigid body."""
+        return math.inf if self.rigid else self.E / (1.0 - self.nu**2)
+
+    @property
+    def strength(self) -> float:
+        """Yield strength [Pa]; infinite for an elastic or a rigid body."""
+        return math.inf if self.rigid else self.Sy
+
+    def with_(self, **changes: Any) -> Material:
+        """Return a copy with some fields replaced."""
+        return replace(self, **changes)
+
+
+@dataclass(frozen=True, slots=True)
+class Pair:
+    """A sphere (or the round end of a rod) and the flat that it touches.
+
+    Parameters
+    ----------
+    sphere, flat
+        The two bodies.
+    R
+        Radius of the undeformed sphere [m].
+
+    Notes
+    -----
+    Field symbols: E' is the reduced modulus (1.7), Sy* the ratio of the sphere's strength to the
+    flat's (2.1), `Sy_min` the strength of the weaker body.
+    """
+
+    sphere: Material
+    flat: Material
+    R: float
+
+    def __post_init__(self) -> None:
+        if not (self.R > 0.0 and math.isfinite(self.R)):
+            raise InputError(f"{self.R:g} is no radius", key="radius_m", allowed="a number above 0")
+        if self.sphere.rigid and self.flat.rigid:
+            raise InputError("both bodies are rigid", key="rigid", allowed="at most one rigid body")
+
+    @property
+    def E_reduced(self) -> float:
+        """Reduced modulus E' [Pa], 1/E' = (1-nu_s^2)/E_s + (1-nu_f^2)/E_f (Eq. 1.7)."""
+        return 1.0 / (
+            1.0 / self.sphere.plane_strain_modulus + 1.0 / self.flat.plane_strain_modulus
+        )
+
+    @property
+    def Sy_min(self) -> float:
+        """Yield strength of the weaker body [Pa]; infinite if neither yields."""
+        return min(self.sphere.strength, self.flat.strength)
+
+    @property
+    def Sy_ratio(self) -> float:
+        """Sy* = S_ys / S_yf (Eq. 2.1); nan if neither body yields."""
+        s, f = self.sphere.strength, self.flat.strength
+        if math.isinf(s) and math.isinf(f):
+            return math.nan
+        if math.isinf(f):
+            return 0.0
+        return math.inf if math.isinf(s) else s / f
+
+    @property
+    def weaker(self) -> Material:
+        """The body of smaller strength; the sphere when they are equal."""
+        return self.sphere if self.sphere.strength <= self.flat.strength else self.flat
+
+    @property
+    def elastic_share(self) -> float:
+        """Sphere's share of the approach in the elastic limit, E'(1-nu_s^2)/E_s (Eq. 2.3)."""
+        return self.E_reduced / self.sphere.plane_strain_modulus

@@ -1,0 +1,1 @@
+"""dentscope.fitting"""
