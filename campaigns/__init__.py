@@ -1,1 +1,1 @@
-"""dentscope.campaigns"""
+"""Stage campaigns: hundreds of finite-element cases into one HDF5 file."""

@@ -1,4 +1,4 @@
-"""Ground floor of dentscope: materials, input errors, outcomes, provenance, reading of input files."""
+"""Ground floor of dentscope: materials, input errors, outcomes, provenance, input files."""
 
 from __future__ import annotations
 

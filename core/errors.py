@@ -100,7 +100,9 @@ class Outcome:
         return self.ending is Ending.COMPLETED
 
     def __str__(self) -> str:
-        return " ".join(part for part in (f"{self.ending.value}:", self.message, self.advice) if part)
+        return " ".join(
+            part for part in (f"{self.ending.value}:", self.message, self.advice) if part
+        )
 
 
 COMPLETED = Outcome(Ending.COMPLETED)

@@ -104,9 +104,7 @@ class Pair:
     @property
     def E_reduced(self) -> float:
         """Reduced modulus E' [Pa], 1/E' = (1-nu_s^2)/E_s + (1-nu_f^2)/E_f (Eq. 1.7)."""
-        return 1.0 / (
-            1.0 / self.sphere.plane_strain_modulus + 1.0 / self.flat.plane_strain_modulus
-        )
+        return 1.0 / (1.0 / self.sphere.plane_strain_modulus + 1.0 / self.flat.plane_strain_modulus)
 
     @property
     def Sy_min(self) -> float:

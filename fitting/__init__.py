@@ -1,1 +1,1 @@
-"""dentscope.fitting"""
+"""Stage fitting: closed forms fitted to a campaign."""

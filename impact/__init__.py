@@ -1,1 +1,1 @@
-"""dentscope.impact"""
+"""Stage impact: a sphere or a round-ended rod striking a flat."""

@@ -1,1 +1,1 @@
-"""dentscope.models"""
+"""Stage models: closed-form contact laws behind one contract."""

@@ -1,1 +1,1 @@
-"""dentscope.recordings"""
+"""Stage recordings: measured impacts, reduced and checked."""

@@ -1,0 +1,119 @@
+"""Reading TOML files that a person wrote: every mistake found at once, a line each."""
+
+from __future__ import annotations
+
+import tomllib
+from pathlib import Path
+from typing import Any, TypeVar
+
+from pydantic import BaseModel, ConfigDict, Field, ValidationError
+
+from .errors import InputError, InputErrors
+from .material import Material
+
+Model = TypeVar("Model", bound=BaseModel)
+
+
+class InputTable(BaseModel):
+    """Base of the tables of an input file: unknown keys and non-finite numbers are mistakes."""
+
+    model_config = ConfigDict(extra="forbid", frozen=True, allow_inf_nan=False)
+
+
+class MaterialTable(InputTable):
+    """The keys of a body in every input file: `E_Pa`, `nu`, `Sy_Pa`, `rigid`, `density_kg_m3`.
+
+    `Sy_Pa` left out means purely elastic; `rigid = true` needs no other key.
+    """
+
+    E_Pa: float | None = Field(default=None, gt=0.0)
+    nu: float | None = Field(default=None, ge=0.0, lt=0.5)
+    Sy_Pa: float | None = Field(default=None, gt=0.0)
+    rigid: bool = False
+    density_kg_m3: float | None = Field(default=None, gt=0.0)
+    material: str = ""
+
+    def to_material(self, *, source: str, key: str) -> Material:
+        """Return the `Material`; `source` and `key` name the table in an error."""
+        if self.rigid:
+            return Material(E=float("nan"), nu=float("nan"), rigid=True, name=self.material)
+        for name in ("E_Pa", "nu"):
+            if getattr(self, name) is None:
+                raise InputError(
+                    "missing",
+                    source=source,
+                    key=f"{key}.{name}",
+                    allowed="a number (or rigid = true)",
+                )
+        assert self.E_Pa is not None
+        assert self.nu is not None
+        return Material(
+            E=self.E_Pa,
+            nu=self.nu,
+            Sy=float("inf") if self.Sy_Pa is None else self.Sy_Pa,
+            density=float("nan") if self.density_kg_m3 is None else self.density_kg_m3,
+            name=self.material,
+        )
+
+
+def read_toml(path: Path) -> dict[str, Any]:
+    """Return the content of a TOML file.
+
+    Raises
+    ------
+    InputError
+        The file is missing, unreadable or not TOML.
+    """
+    try:
+        with path.open("rb") as stream:
+            return tomllib.load(stream)
+    except FileNotFoundError:
+        raise InputError(
+            "no such file", source=str(path), allowed="an existing TOML file"
+        ) from None
+    except (OSError, UnicodeDecodeError) as error:
+        raise InputError(f"cannot be read ({error})", source=str(path)) from None
+    except tomllib.TOMLDecodeError as error:
+        raise InputError(f"not valid TOML ({error})", source=str(path)) from None
+
+
+def read_model(path: Path, model: type[Model]) -> Model:
+    """Read a TOML file into a pydantic model; all mistakes come at once.
+
+    Raises
+    ------
+    InputErrors
+        One line for each mistake: file, key, value, what is allowed.
+    """
+    return parse_model(read_toml(path), model, source=str(path))
+
+
+def parse_model(content: dict[str, Any], model: type[Model], *, source: str) -> Model:
+    """Validate `content` against a pydantic model; `source` names the file in errors."""
+    try:
+        return model.model_validate(content)
+    except ValidationError as failure:
+        raise InputErrors(
+            tuple(_as_input_error(item, model, source) for item in failure.errors())
+        ) from None
+
+
+def _as_input_error(item: Any, model: type[BaseModel], source: str) -> InputError:
+    location = tuple(item["loc"])
+    key = ".".join(str(part) for part in location)
+    if item["type"] == "missing":
+        return InputError("missing", source=source, key=key, allowed="this key is needed")
+    if item["type"] == "extra_forbidden":
+        known = ", ".join(_known_keys(model, location[:-1]))
+        return InputError("unknown key", source=source, key=key, allowed=known)
+    message = item["msg"].removeprefix("Input should be ").removeprefix("Value error, ")
+    return InputError(f"{item['input']!r}", source=source, key=key, allowed=message)
+
+
+def _known_keys(model: type[BaseModel], path: tuple[Any, ...]) -> list[str]:
+    for part in path:
+        field = model.model_fields.get(str(part))
+        inner = field.annotation if field is not None else None
+        if isinstance(inner, type) and issubclass(inner, BaseModel):
+            model = inner
+    return list(model.model_fields)
