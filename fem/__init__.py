@@ -1,1 +1,27 @@
 """Stage fem: mesh and finite-strain contact solve of a sphere and a flat."""
+
+from __future__ import annotations
+
+from .problem import (
+    NUMERICS_VERSION,
+    Accuracy,
+    ContactProblem,
+    critical_depth,
+    geometric_depths,
+)
+from .solution import Counters, Curve, Snapshot, Solution, Unloading
+from .solve import solve
+
+__all__ = [
+    "NUMERICS_VERSION",
+    "Accuracy",
+    "ContactProblem",
+    "Counters",
+    "Curve",
+    "Snapshot",
+    "Solution",
+    "Unloading",
+    "critical_depth",
+    "geometric_depths",
+    "solve",
+]

@@ -1,0 +1,172 @@
+"""From a contact problem and accuracy settings to everything a solve needs, with R = 1 and E' = 1."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+
+import numpy as np
+import numpy.typing as npt
+import skfem
+
+from ..core.material import Material
+from .assemble import Elements
+from .contact import Surfaces
+from .geometry import RingDesign, graded_rings, outer_rings
+from .mesh import Mesh, contact_mesh
+from .problem import Accuracy, ContactProblem, critical_depth
+
+Integers = npt.NDArray[np.int64]
+
+_GRADE = 1.15  # largest change of ring width from ring to ring
+_GAUSS = 0.5 / math.sqrt(3.0)
+
+
+@dataclass(frozen=True)
+class Discretisation:
+    """Mesh, elements, surfaces and boundary conditions of one solve.
+
+    Parameters
+    ----------
+    mesh
+        Nodes and quadrilaterals.
+    elements
+        Constants of the elements that deform (a rigid body has none).
+    element_index
+        Their numbers in the mesh.
+    surfaces
+        The two surfaces.
+    driven, held
+        Degrees of freedom that move by -Delta, and those that stay.
+    reaction
+        Driven degrees of freedom whose internal forces add up to the reaction; empty if the sphere
+        is rigid.
+    stress_unit
+        E' [Pa].
+    """
+
+    mesh: Mesh
+    elements: Elements
+    element_index: Integers
+    surfaces: Surfaces
+    driven: Integers
+    held: Integers
+    reaction: Integers
+    stress_unit: float
+
+    @property
+    def n_dofs(self) -> int:
+        """Degrees of freedom, driven and held ones included."""
+        return 2 * len(self.mesh.points)
+
+    @property
+    def free(self) -> Integers:
+        """Degrees of freedom that are solved for, in increasing order."""
+        mask = np.ones(self.n_dofs, dtype=bool)
+        mask[self.driven] = False
+        mask[self.held] = False
+        return np.flatnonzero(mask)
+
+
+def discretise(problem: ContactProblem, accuracy: Accuracy) -> Discretisation:
+    """Mesh the problem and set up its elements, surfaces and boundary conditions."""
+    mesh = _mesh(problem, accuracy)
+    pair = problem.pair
+    r, z = mesh.points.T
+    n = mesh.n_sphere_points
+    node = np.arange(len(r))
+    sphere = node < n
+    axis = np.flatnonzero(r == 0.0)
+    held = [2 * axis, 2 * mesh.far, 2 * mesh.far + 1]
+    driven = [2 * mesh.top + 1]
+    deforms = np.ones(len(mesh.quads), dtype=bool)
+    if pair.sphere.rigid:
+        deforms[: mesh.n_sphere_quads] = False
+        held.append(2 * node[sphere])
+        driven = [2 * node[sphere] + 1]
+    if pair.flat.rigid:
+        deforms[mesh.n_sphere_quads :] = False
+        held += [2 * node[~sphere], 2 * node[~sphere] + 1]
+    index = np.flatnonzero(deforms)
+    return Discretisation(
+        mesh=mesh,
+        elements=_elements(mesh, index, pair.sphere, pair.flat, pair.E_reduced),
+        element_index=index,
+        surfaces=Surfaces.build(
+            mesh.points, slave=mesh.slave, master=mesh.master, penalty=accuracy.penalty
+        ),
+        driven=np.unique(np.concatenate(driven)),
+        held=np.unique(np.concatenate(held)),
+        reaction=np.empty(0, np.int64) if pair.sphere.rigid else 2 * mesh.top + 1,
+        stress_unit=pair.E_reduced,
+    )
+
+
+def _mesh(problem: ContactProblem, accuracy: Accuracy) -> Mesh:
+    onset = critical_depth(problem.pair)
+    deepest = max(problem.depths[-1], 0.5 * problem.radius_at_least**2)
+    first = problem.depths[0]
+    # radii of the contact at first yield (or, if nothing yields, nowhere) and at the deepest point
+    a_first = math.sqrt(min(first, onset))
+    a_yield = math.sqrt(min(onset, deepest))
+    a_last = min(1.45 * math.sqrt(deepest) + 0.02, 0.9)
+    a_last = max(a_last, 4.0 * a_yield if a_yield < 0.1 else a_last)
+    if problem.radius_at_least:
+        a_last = max(a_last, 1.08 * problem.radius_at_least)
+    design = RingDesign(
+        core=0.12 * a_first,
+        fine_from=0.7 * a_yield,
+        fine_to=a_last,
+    )
+    rings = graded_rings(design, coarse=accuracy.coarse, fine=accuracy.fine, grade=_GRADE)
+    sphere = rings
+    if a_last < 0.6:
+        beyond = outer_rings(a_last, 0.65, fine=accuracy.fine, coarse=accuracy.coarse, grade=_GRADE)
+        sphere = np.concatenate([rings, beyond[1:]])
+    far = outer_rings(
+        sphere[-1], accuracy.flat_radius, fine=accuracy.coarse, coarse=0.3, grade=_GRADE
+    )
+    return contact_mesh(
+        sphere_rings=sphere,
+        flat_rings=np.concatenate([sphere, far[1:]]),
+        divisions=accuracy.divisions,
+        surface_to=a_last,
+    )
+
+
+def _elements(
+    mesh: Mesh, index: Integers, sphere: Material, flat: Material, unit: float
+) -> Elements:
+    grid = skfem.MeshQuad(mesh.points.T.copy(), mesh.quads[index].T.copy())
+    low, high = 0.5 - _GAUSS, 0.5 + _GAUSS
+    points = np.array([[low, high, high, low], [low, low, high, high]])
+    basis = skfem.CellBasis(grid, skfem.ElementQuad1(), quadrature=(points, np.full(4, 0.25)))
+    grad = np.stack([np.moveaxis(basis.basis[a][0].grad, 0, -1) for a in range(4)], axis=2)
+    value = np.stack(
+        [np.broadcast_to(basis.basis[a][0].value, (len(index), 4))[0] for a in range(4)]
+    )
+    r = np.asarray(basis.global_coordinates().value[0])
+    dV = 2.0 * math.pi * r * basis.dx
+    return Elements(
+        conn=np.ascontiguousarray(basis.element_dofs.T.astype(np.int64)),
+        grad=np.ascontiguousarray(grad),
+        value=np.ascontiguousarray(value.T),
+        r=np.ascontiguousarray(r),
+        dV=np.ascontiguousarray(dV),
+        volume=dV.sum(axis=1),
+        **_constants(index < mesh.n_sphere_quads, sphere, flat, unit),
+    )
+
+
+def _constants(
+    is_sphere: npt.NDArray[np.bool_], sphere: Material, flat: Material, unit: float
+) -> dict[str, npt.NDArray[np.float64]]:
+    G, K, radius = (np.empty(len(is_sphere)) for _ in range(3))
+    for mask, body in ((is_sphere, sphere), (~is_sphere, flat)):
+        if not mask.any():
+            continue
+        shear = body.E / (2.0 * (1.0 + body.nu))
+        G[mask] = shear / unit
+        K[mask] = body.E / (3.0 * (1.0 - 2.0 * body.nu)) / unit
+        radius[mask] = math.sqrt(2.0 / 3.0) * body.strength / (2.0 * shear)
+    return {"G": G, "K": K, "radius": radius}

@@ -1,0 +1,165 @@
+"""The sparse linear system of a Newton step: a pattern that is reused, and its factorisation.
+
+The pattern holds the element couplings and, near the contact, more couplings between the two
+surfaces than are active at the moment, so that the points may slide without a new pattern. The
+unknowns are numbered once a pattern by a fill-reducing order; every later factorisation takes that
+order as it is, which saves the search for it.
+"""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+import numpy.typing as npt
+import scipy.sparse as sparse
+import scipy.sparse.linalg as sparse_linalg
+from numba import njit
+
+from .contact import ContactState, Surfaces, Triplets
+
+Floats = npt.NDArray[np.float64]
+Integers = npt.NDArray[np.int64]
+
+_REACH = 3  # master nodes beyond the segments in use that the pattern already couples
+
+
+@njit(cache=True)
+def _scatter(data, position, tangent):
+    for k in range(position.shape[0]):
+        if position[k] >= 0:
+            data[position[k]] += tangent[k]
+
+
+@njit(cache=True)
+def _scatter_triplets(data, indptr, indices, number, row, col, value, n):
+    for k in range(n):
+        i = number[row[k]]
+        j = number[col[k]]
+        if i < 0 or j < 0:
+            continue
+        low = indptr[j]
+        high = indptr[j + 1]
+        while low < high:
+            middle = (low + high) // 2
+            if indices[middle] < i:
+                low = middle + 1
+            else:
+                high = middle
+        if low >= indptr[j + 1] or indices[low] != i:
+            return False
+        data[low] += value[k]
+    return True
+
+
+class LinearSystem:
+    """Tangent matrix of the free degrees of freedom.
+
+    Parameters
+    ----------
+    element_dofs
+        Degrees of freedom of the elements, shape (n_elements, 8).
+    free
+        Free degrees of freedom, in increasing order.
+    n_dofs
+        All degrees of freedom.
+    """
+
+    def __init__(self, element_dofs: Integers, *, free: Integers, n_dofs: int) -> None:
+        self.free = free
+        self.n = len(free)
+        self.n_patterns = 0
+        self._element_dofs = element_dofs
+        self._plain = np.full(n_dofs, -1, dtype=np.int64)
+        self._plain[free] = np.arange(self.n)
+        self._element_keys = self._keys(
+            np.repeat(element_dofs, 8, axis=1).ravel(), np.tile(element_dofs, (1, 8)).ravel()
+        )
+        self._number = self._plain
+        self._matrix: sparse.csc_matrix | None = None
+
+    def _keys(self, rows: Integers, cols: Integers) -> Integers:
+        i, j = self._plain[rows], self._plain[cols]
+        inside = (i >= 0) & (j >= 0)
+        return np.unique(j[inside] * self.n + i[inside])
+
+    def fill(
+        self,
+        tangent: Floats,
+        *,
+        triplets: Triplets,
+        n_triplets: int,
+        surfaces: Surfaces,
+        contact: ContactState,
+    ) -> None:
+        """Set the matrix from the element tangents (n_elements, 8, 8) and the contact triplets."""
+        if self._matrix is None or not self._fill(tangent, triplets, n_triplets):
+            self._new_pattern(surfaces, contact)
+            if not self._fill(tangent, triplets, n_triplets):
+                raise AssertionError("contact couplings outside a fresh pattern")
+
+    def _fill(self, tangent: Floats, triplets: Triplets, n: int) -> bool:
+        assert self._matrix is not None
+        m = self._matrix
+        m.data[:] = 0.0
+        _scatter(m.data, self._position, tangent.ravel())
+        return bool(
+            _scatter_triplets(
+                m.data, m.indptr, m.indices, self._number,
+                triplets.row, triplets.col, triplets.value, n,
+            )
+        )  # fmt: skip
+
+    def _new_pattern(self, surfaces: Surfaces, contact: ContactState) -> None:
+        self.n_patterns += 1
+        keys = np.union1d(self._element_keys, self._contact_keys(surfaces, contact))
+        cols, rows = np.divmod(keys, self.n)
+        pattern = sparse.csc_matrix((np.ones(len(keys)), (rows, cols)), shape=(self.n, self.n))
+        # a diagonally dominant stand-in with this pattern, factorised only for its order
+        stand_in = pattern + sparse.eye(self.n, format="csc") * (4.0 * pattern.sum(axis=0).max())
+        order = sparse_linalg.splu(
+            stand_in, permc_spec="MMD_AT_PLUS_A", options={"SymmetricMode": True}
+        ).perm_c.astype(np.int64)
+        self._order = order
+        self._number = np.where(self._plain >= 0, order[self._plain], -1)
+        rows, cols = order[rows], order[cols]
+        matrix = sparse.csc_matrix((np.zeros(len(keys)), (rows, cols)), shape=(self.n, self.n))
+        matrix.sort_indices()
+        self._matrix = matrix
+        sorted_keys = np.repeat(np.arange(self.n), np.diff(matrix.indptr)) * self.n + matrix.indices
+        d = self._element_dofs
+        i = self._number[np.repeat(d, 8, axis=1).ravel()]
+        j = self._number[np.tile(d, (1, 8)).ravel()]
+        place = np.searchsorted(sorted_keys, j * self.n + i)
+        self._position = np.where((i >= 0) & (j >= 0), place, -1)
+
+    def _contact_keys(self, surfaces: Surfaces, contact: ContactState) -> Integers:
+        active = np.flatnonzero(contact.pressure > 0.0)
+        last = min(int(1.3 * (active[-1] if len(active) else 0)) + 10, len(surfaces.slave) - 1)
+        rows, cols = [], []
+        for a in range(last + 1):
+            edges = contact.segment[max(a - 1, 0) : a + 1]
+            low = max(int(edges.min()) - 1 - _REACH, 0)
+            high = int(edges.max()) + 3 + _REACH
+            nodes = np.concatenate(
+                [surfaces.slave[max(a - 1, 0) : a + 2], surfaces.master[low:high]]
+            )
+            dofs = np.concatenate([2 * nodes, 2 * nodes + 1])
+            rows.append(np.repeat(dofs, len(dofs)))
+            cols.append(np.tile(dofs, len(dofs)))
+        return self._keys(np.concatenate(rows), np.concatenate(cols))
+
+    def factorise(self) -> Any:
+        """LU factors of the matrix as it stands, with a `solve` method."""
+        return sparse_linalg.splu(
+            self._matrix,
+            permc_spec="NATURAL",
+            diag_pivot_thresh=0.01,
+            options={"SymmetricMode": True},
+        )
+
+    def solve(self, factors: Any, rhs: Floats) -> Floats:
+        """Solution of K x = rhs over the free degrees of freedom, in their own order."""
+        permuted = np.empty(self.n)
+        permuted[self._order] = rhs
+        return np.asarray(factors.solve(permuted)[self._order])

@@ -1,0 +1,107 @@
+"""Force, contact radius and shares of the approach, read off a converged state.
+
+The thesis's definitions (section 2.1): F is the reaction at the driven face, delta_s the
+displacement of the sphere's pole relative to that face, delta_f the displacement of the flat's
+surface on the axis, a the radius of the last node in contact. The contact radius that we use is
+finer than the mesh: the opening gap beside the contact is fitted by
+g = alpha s + beta s^(3/2), s = r - a, alpha, beta >= 0, which is the elastic (3/2) and the plastic
+(kinked) shape in one, and a is its zero.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+import numpy.typing as npt
+
+from .contact import ContactState
+from .discretise import Discretisation
+from .newton import Equilibrium
+
+Floats = npt.NDArray[np.float64]
+
+_EDGES = 5  # open surface elements that the fit of the gap looks at
+_CANDIDATES = 161
+
+
+@dataclass(frozen=True)
+class Reading:
+    """One state's results with R = 1 and E' = 1."""
+
+    delta: float
+    force: float
+    radius: float
+    radius_last_node: float
+    sphere: float
+    flat: float
+    force_defect: float
+
+
+def read(grid: Discretisation, state: Equilibrium, delta: float) -> Reading:
+    """Measure a converged state at approach `delta`."""
+    x = grid.mesh.points + state.u.reshape(-1, 2)
+    active = np.flatnonzero(state.contact.pressure > 0.0)
+    last = float(x[grid.surfaces.slave[active[-1]], 0]) if len(active) else 0.0
+    return Reading(
+        delta=delta,
+        force=state.reaction,
+        radius=edge_of_contact(state.contact, x[grid.surfaces.slave, 0]),
+        radius_last_node=last,
+        sphere=delta + float(state.u[2 * grid.surfaces.slave[0] + 1]),
+        flat=-float(state.u[2 * grid.surfaces.master[0] + 1]),
+        force_defect=(state.contact.force - state.reaction) / state.reaction
+        if state.reaction
+        else 0.0,
+    )
+
+
+def edge_of_contact(contact: ContactState, slave_r: Floats) -> float:
+    """Radius at which the gap opens, from the shape of the gap just outside the contact.
+
+    Parameters
+    ----------
+    contact
+        Contact state.
+    slave_r
+        Current radii of the slave nodes, shape (n_slave,) [R].
+    """
+    active = np.flatnonzero(contact.pressure > 0.0)
+    if len(active) == 0:
+        return 0.0
+    k = int(active[-1])
+    # the element beyond the last active node is partly closed: the fit starts at the next one
+    first = min(k + 1, len(contact.gap) - 1)
+    r = contact.r[first : first + _EDGES].ravel()
+    g = contact.gap[first : first + _EDGES].ravel()
+    if len(r) < 6:
+        return float(slave_r[k])
+    h = float(slave_r[min(k + 1, len(slave_r) - 1)] - slave_r[max(k - 1, 0)]) * 0.5
+    edges = slave_r[k] + h * np.linspace(-1.0, 1.4, _CANDIDATES)
+    misfit = np.array([_misfit(edge, r, g) for edge in edges])
+    best = int(misfit.argmin())
+    if 0 < best < _CANDIDATES - 1:
+        left, mid, right = misfit[best - 1 : best + 2]
+        curvature = left - 2.0 * mid + right
+        shift = 0.5 * (left - right) / curvature if curvature > 0.0 else 0.0
+        return float(edges[best] + shift * (edges[1] - edges[0]))
+    return float(edges[best])
+
+
+def _misfit(edge: float, r: Floats, g: Floats) -> float:
+    s = np.maximum(r - edge, 0.0)
+    basis = np.stack([s, s**1.5])
+    # relative weights: the nearest points say most about where the gap opens
+    weight = 1.0 / (s + s.max() * 0.1)
+    B = basis * weight
+    y = g * weight
+    gram = B @ B.T
+    rhs = B @ y
+    det = gram[0, 0] * gram[1, 1] - gram[0, 1] ** 2
+    alpha = (gram[1, 1] * rhs[0] - gram[0, 1] * rhs[1]) / det
+    beta = (gram[0, 0] * rhs[1] - gram[0, 1] * rhs[0]) / det
+    if alpha < 0.0:
+        alpha, beta = 0.0, rhs[1] / gram[1, 1]
+    elif beta < 0.0:
+        alpha, beta = rhs[0] / gram[0, 0], 0.0
+    return float(((alpha * B[0] + beta * B[1] - y) ** 2).sum())

@@ -1,0 +1,280 @@
+"""Axisymmetric meshes of the hemisphere and the half-space, made by gmsh.
+
+Both bodies are meshed by the same log-polar scheme about the first contact point: an inner block of
+three transfinite patches, then sectors of rings, each between two radii with ring widths in constant
+ratio. The hemisphere ends in one block up to its flat top face, the half-space in rings that grow
+out to its far boundary.
+"""
+
+from __future__ import annotations
+
+import hashlib
+import math
+from collections.abc import Iterator
+from contextlib import contextmanager
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+import numpy.typing as npt
+
+from ..core.errors import InputError
+
+Floats = npt.NDArray[np.float64]
+Integers = npt.NDArray[np.int64]
+
+_AXIS = 1e-13  # coordinates below this are on the axis [R]
+_INNER_RINGS = 3
+
+
+@dataclass(frozen=True)
+class Mesh:
+    """Quadrilaterals of the two bodies in one numbering; the sphere's nodes come first.
+
+    Parameters
+    ----------
+    points
+        Coordinates (r, z), shape (n_nodes, 2) [R]. The flat is z <= 0, the sphere's pole the origin.
+    quads
+        Node numbers, counter-clockwise, shape (n_elements, 4).
+    n_sphere_points, n_sphere_quads
+        How many nodes and elements belong to the sphere.
+    slave, master
+        Surface nodes of the sphere and of the flat, from the axis outwards.
+    top, far
+        Nodes of the hemisphere's flat top face and of the half-space's far boundary.
+    """
+
+    points: Floats
+    quads: Integers
+    n_sphere_points: int
+    n_sphere_quads: int
+    slave: Integers
+    master: Integers
+    top: Integers
+    far: Integers
+
+    @property
+    def digest(self) -> str:
+        """SHA-256 of the mesh, its coordinates rounded to 12 digits."""
+        text = hashlib.sha256(np.round(self.points, 12).tobytes())
+        text.update(self.quads.tobytes())
+        return text.hexdigest()
+
+
+def contact_mesh(
+    *, sphere_rings: Floats, flat_rings: Floats, divisions: int, surface_to: float
+) -> Mesh:
+    """Mesh both bodies.
+
+    Parameters
+    ----------
+    sphere_rings, flat_rings
+        Ring radii (chord distance from the first contact point) [R].
+    divisions
+        Elements over the quarter arc, even.
+    surface_to
+        Radius up to which the two surfaces can touch [R].
+    """
+    p_s, q_s = _body(sphere_rings, divisions, sphere=True)
+    p_f, q_f = _body(flat_rings, divisions, sphere=False)
+    n = len(p_s)
+    r, z = np.vstack([p_s, p_f]).T
+    chord = np.hypot(r, z)
+    node = np.arange(len(r))
+    ball = (node < n) & (np.abs(np.hypot(r, z - 1.0) - 1.0) < 1e-9) & (z < 0.999)
+    plane = (node >= n) & (np.abs(z) < 1e-12)
+    slave = np.flatnonzero(ball & (chord < surface_to * (1.0 + 1e-9)))
+    master = np.flatnonzero(plane & (r < 2.0 * surface_to))
+    return Mesh(
+        points=np.column_stack([r, z]),
+        quads=np.vstack([q_s, q_f + n]),
+        n_sphere_points=n,
+        n_sphere_quads=len(q_s),
+        slave=slave[np.argsort(r[slave])],
+        master=master[np.argsort(r[master])],
+        top=np.flatnonzero((node < n) & (z > 1.0 - 1e-9)),
+        far=np.flatnonzero((node >= n) & (chord > flat_rings[-1] * (1.0 - 1e-9))),
+    )
+
+
+@contextmanager
+def _session() -> Iterator[Any]:
+    try:
+        import gmsh
+    except OSError as missing:
+        raise InputError(
+            f"gmsh cannot start: {missing}",
+            source="system libraries",
+            allowed="run `make install`, which names the missing packages",
+        ) from None
+    started = not gmsh.isInitialized()
+    if started:
+        # interruptible=False: gmsh would otherwise take over the signal handler, which only the
+        # main thread may do
+        gmsh.initialize(interruptible=False)
+    gmsh.option.setNumber("General.Terminal", 0)
+    gmsh.model.add("body")
+    try:
+        yield gmsh
+    finally:
+        gmsh.model.remove()
+        if started:
+            gmsh.finalize()
+
+
+class _Sketch:
+    """Points, curves and transfinite patches of one body, each made once."""
+
+    def __init__(self, gmsh: Any, sphere: bool) -> None:
+        self.geo = gmsh.model.geo
+        self.sphere = sphere
+        self.sign = 1.0 if sphere else -1.0
+        self.points: dict[tuple[float, float], int] = {}
+        self.centre = self.point(0.0, 1.0) if sphere else 0
+        self.origin = self.point(0.0, 0.0)
+
+    def point(self, r: float, z: float) -> int:
+        key = (round(r, 14), round(z, 14))
+        if key not in self.points:
+            self.points[key] = self.geo.addPoint(r, z, 0.0)
+        return self.points[key]
+
+    def on_surface(self, rho: float) -> int:
+        if not self.sphere:
+            return self.point(rho, 0.0)
+        angle = 2.0 * math.asin(rho / 2.0)
+        return self.point(math.sin(angle), 1.0 - math.cos(angle))
+
+    def on_axis(self, rho: float) -> int:
+        return self.point(0.0, self.sign * rho)
+
+    def line(self, a: int, b: int, n: int, ratio: float = 1.0) -> int:
+        tag = int(self.geo.addLine(a, b))
+        self.geo.mesh.setTransfiniteCurve(tag, n + 1, "Progression", ratio)
+        return tag
+
+    def arc(self, a: int, centre: int, b: int, n: int, ratio: float = 1.0) -> int:
+        tag = int(self.geo.addCircleArc(a, centre, b))
+        self.geo.mesh.setTransfiniteCurve(tag, n + 1, "Progression", ratio)
+        return tag
+
+    def surface(self, a: int, b: int, n: int, ratio: float = 1.0) -> int:
+        if self.sphere:
+            return self.arc(a, self.centre, b, n, ratio)
+        return self.line(a, b, n, ratio)
+
+    def patch(self, curves: list[int], corners: list[int]) -> None:
+        tag = self.geo.addPlaneSurface([self.geo.addCurveLoop(curves)])
+        self.geo.mesh.setTransfiniteSurface(tag, "Left", corners)
+        self.geo.mesh.setRecombine(2, tag)
+
+
+def _body(radii: Floats, divisions: int, *, sphere: bool) -> tuple[Floats, Integers]:
+    with _session() as gmsh:
+        sketch = _Sketch(gmsh, sphere)
+        edge = _inner_block(sketch, radii[0], divisions)
+        for first, last, ratio in _constant_ratio_groups(radii):
+            edge = _sector(sketch, edge, radii[last], last - first, ratio, divisions)
+        if sphere:
+            _top_block(sketch, edge, radii, divisions)
+        sketch.geo.synchronize()
+        gmsh.model.mesh.generate(2)
+        return _points_and_quads(gmsh)
+
+
+@dataclass(frozen=True)
+class _Edge:
+    """Outer boundary of what is meshed so far: its two ends and its curves from surface to axis."""
+
+    surface: int
+    axis: int
+    curves: list[int]
+
+
+def _inner_block(k: _Sketch, r0: float, divisions: int) -> _Edge:
+    half = divisions // 2
+    start = math.asin(r0 / 2.0) if k.sphere else 0.0
+    middle = k.sign * 0.5 * (start + math.pi / 2.0)
+    b, c = k.on_surface(0.5 * r0), k.on_axis(0.5 * r0)
+    m = k.point(0.62 * r0 * math.cos(middle), 0.62 * r0 * math.sin(middle))
+    b2, c2 = k.on_surface(r0), k.on_axis(r0)
+    m2 = k.point(r0 * math.cos(middle), r0 * math.sin(middle))
+    ob, bm = k.surface(k.origin, b, half), k.line(b, m, half)
+    mc, co = k.line(m, c, half), k.line(c, k.origin, half)
+    k.patch([ob, bm, mc, co], [k.origin, b, m, c])
+    bb, outer1 = k.surface(b, b2, _INNER_RINGS), k.arc(b2, k.origin, m2, half)
+    mm = k.line(m, m2, _INNER_RINGS)
+    k.patch([bb, outer1, -mm, -bm], [b, b2, m2, m])
+    outer2, cc = k.arc(m2, k.origin, c2, half), k.line(c, c2, _INNER_RINGS)
+    k.patch([mm, outer2, -cc, -mc], [m, m2, c2, c])
+    return _Edge(b2, c2, [outer1, outer2])
+
+
+def _sector(k: _Sketch, edge: _Edge, r: float, n: int, ratio: float, divisions: int) -> _Edge:
+    b, c = k.on_surface(r), k.on_axis(r)
+    side, outer = k.surface(edge.surface, b, n, ratio), k.arc(b, k.origin, c, divisions)
+    axis = k.line(edge.axis, c, n, ratio)
+    k.patch(
+        [side, outer, -axis, *(-x for x in reversed(edge.curves))], [edge.surface, b, c, edge.axis]
+    )
+    return _Edge(b, c, [outer])
+
+
+def _top_block(k: _Sketch, edge: _Edge, radii: Floats, divisions: int) -> None:
+    length = 1.0 - radii[-1]
+    width = radii[-1] - radii[-2]
+    # as many layers as keep the growth from the last ring's width below a quarter a layer
+    n = max(4, math.ceil(math.log1p(0.25 * length / width) / math.log(1.25)))
+    ratio = _growth(length / width, n)
+    corner, top = k.point(1.0, 1.0), k.point(0.0, 1.0)
+    side = k.surface(edge.surface, corner, n, ratio)
+    face = k.line(corner, top, divisions)
+    axis = k.line(edge.axis, top, n, ratio)
+    k.patch(
+        [side, face, -axis, *(-x for x in reversed(edge.curves))],
+        [edge.surface, corner, top, edge.axis],
+    )
+
+
+def _growth(total: float, n: int) -> float:
+    """Ratio q >= 1 with 1 + q + ... + q^(n-1) = total (1 when n exceeds total)."""
+    low, high = 1.0, 2.0
+    if total <= n:
+        return 1.0
+    for _ in range(60):
+        q = 0.5 * (low + high)
+        low, high = (q, high) if (q**n - 1.0) / (q - 1.0) < total else (low, q)
+    return 0.5 * (low + high)
+
+
+def _constant_ratio_groups(radii: Floats) -> Iterator[tuple[int, int, float]]:
+    width = np.diff(radii)
+    first = 0
+    while first < len(width):
+        last = first + 1
+        ratio = width[last] / width[first] if last < len(width) else 1.0
+        while last < len(width) and abs(width[last] / width[last - 1] / ratio - 1.0) < 1e-9:
+            last += 1
+        yield first, last, float(ratio) if last - first > 1 else 1.0
+        first = last
+
+
+def _points_and_quads(gmsh: Any) -> tuple[Floats, Integers]:
+    tags, xyz, _ = gmsh.model.mesh.getNodes()
+    kinds, _, nodes = gmsh.model.mesh.getElements(2)
+    if list(kinds) != [3]:
+        raise InputError(f"gmsh made elements of kinds {list(kinds)}", key="mesh", allowed="quads")
+    used = np.unique(nodes[0].astype(np.int64))
+    place = np.full(int(tags.max()) + 1, -1)
+    place[tags.astype(np.int64)] = np.arange(len(tags))
+    points = xyz.reshape(-1, 3)[place[used], :2].copy()
+    points[np.abs(points) < _AXIS] = 0.0
+    number = np.full(int(tags.max()) + 1, -1)
+    number[used] = np.arange(len(used))
+    quads = number[nodes[0].astype(np.int64)].reshape(-1, 4)
+    x = points[quads]
+    a, b = x[:, 2] - x[:, 0], x[:, 3] - x[:, 1]
+    clockwise = a[:, 0] * b[:, 1] - a[:, 1] * b[:, 0] < 0.0
+    quads[clockwise] = quads[clockwise][:, ::-1]
+    return points, quads

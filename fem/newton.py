@@ -1,0 +1,171 @@
+"""Newton's method for the equilibrium of the two bodies in contact at a given approach.
+
+The line search looks for a zero of the work of the residual along the Newton direction,
+s(alpha) = x . R(u + alpha x): in plasticity the norm of the residual misleads, the energy does not.
+"""
+
+from __future__ import annotations
+
+import time
+from dataclasses import dataclass, field
+
+import numpy as np
+import numpy.typing as npt
+
+from .assemble import DISTORTED, State, bulk_forces
+from .contact import ContactState, Triplets, contact_forces
+from .discretise import Discretisation
+from .linear import LinearSystem
+
+Floats = npt.NDArray[np.float64]
+
+TOLERANCE = 1e-7
+"""Accepted sum of residual forces over the contact force."""
+
+_STILL = 1e-9  # accepted largest correction over the approach, where round-off rules the residual
+_MOST_ITERATIONS = 18
+_BACKTRACKS = 5
+_SECANTS = 3
+
+
+@dataclass
+class Timers:
+    """Processor seconds and counts, added up over a solve."""
+
+    assembly: float = 0.0
+    contact: float = 0.0
+    linear: float = 0.0
+    iterations: int = 0
+    factorisations: int = 0
+
+
+@dataclass(frozen=True)
+class Equilibrium:
+    """A converged state: displacements, contact and reaction."""
+
+    u: Floats
+    contact: ContactState
+    reaction: float
+    iterations: int
+
+
+@dataclass
+class Evaluation:
+    """Residual at one displacement."""
+
+    residual: Floats
+    bulk: Floats
+    contact: ContactState
+    n_triplets: int
+
+
+@dataclass
+class Solver:
+    """Newton's method on one discretisation; holds working arrays, no state of the material."""
+
+    grid: Discretisation
+    rule: int
+    timers: Timers = field(default_factory=Timers)
+
+    def __post_init__(self) -> None:
+        self.elements = self.grid.elements
+        n = len(self.grid.elements.conn)
+        dofs = np.empty((n, 8), dtype=np.int64)
+        dofs[:, 0::2] = 2 * self.grid.elements.conn
+        dofs[:, 1::2] = dofs[:, 0::2] + 1
+        self.free = self.grid.free
+        self.system = LinearSystem(dofs, free=self.free, n_dofs=self.grid.n_dofs)
+        self._tangent = np.empty((n, 8, 8))
+        self._triplets = Triplets.for_surfaces(self.grid.surfaces)
+
+    def equilibrium(self, guess: Floats, *, state: State, delta: float) -> Equilibrium | None:
+        """Equilibrium at approach `delta`, starting from the displacements `guess`; none: failed."""
+        u = guess.copy()
+        u[self.grid.driven] = -delta
+        now = self._evaluate(u, state)
+        moved = np.inf
+        for iteration in range(_MOST_ITERATIONS):
+            if now is None:
+                return None
+            if iteration and self._converged(now, moved, delta):
+                return Equilibrium(u, now.contact, self._reaction(now), iteration)
+            direction = self._direction(now)
+            u, now, alpha = self._search(u, now, direction, state)
+            moved = alpha * float(np.abs(direction).max())
+        return None
+
+    def _evaluate(self, u: Floats, state: State) -> Evaluation | None:
+        start = time.process_time()
+        force = np.zeros(self.grid.n_dofs)
+        code = bulk_forces(
+            self.elements, u, state=state, rule=self.rule, force=force, tangent=self._tangent
+        )
+        middle = time.process_time()
+        self.timers.assembly += middle - start
+        if code == DISTORTED:
+            return None
+        bulk = force.copy()
+        x = self.grid.mesh.points + u.reshape(-1, 2)
+        contact, n = contact_forces(self.grid.surfaces, x, force=force, tangent=self._triplets)
+        self.timers.contact += time.process_time() - middle
+        if contact is None:
+            return None
+        return Evaluation(force, bulk, contact, n)
+
+    def _reaction(self, now: Evaluation) -> float:
+        if len(self.grid.reaction) == 0:
+            return now.contact.force
+        return -float(now.bulk[self.grid.reaction].sum())
+
+    def _converged(self, now: Evaluation, moved: float, delta: float) -> bool:
+        force = max(abs(now.contact.force), 1e-300)
+        unbalanced = float(np.abs(now.residual[self.free]).sum())
+        return unbalanced < TOLERANCE * force or moved < _STILL * delta
+
+    def _direction(self, now: Evaluation) -> Floats:
+        start = time.process_time()
+        self.system.fill(
+            self._tangent,
+            triplets=self._triplets,
+            n_triplets=now.n_triplets,
+            surfaces=self.grid.surfaces,
+            contact=now.contact,
+        )
+        factors = self.system.factorise()
+        direction = np.zeros(self.grid.n_dofs)
+        direction[self.free] = self.system.solve(factors, -now.residual[self.free])
+        self.timers.linear += time.process_time() - start
+        self.timers.iterations += 1
+        self.timers.factorisations += 1
+        return direction
+
+    def _search(
+        self, u: Floats, now: Evaluation, direction: Floats, state: State
+    ) -> tuple[Floats, Evaluation | None, float]:
+        alpha = 1.0
+        new = self._evaluate(u + direction, state)
+        for _ in range(_BACKTRACKS):
+            if new is not None:
+                break
+            alpha *= 0.5
+            new = self._evaluate(u + alpha * direction, state)
+        if new is None:
+            return u, None, alpha
+        s0 = float(direction @ now.residual)
+        s = float(direction @ new.residual)
+        low, s_low, high, s_high = 0.0, s0, alpha, s
+        for _ in range(_SECANTS):
+            if abs(s_high) < 0.7 * abs(s0) or s_low * s_high > 0.0:
+                break
+            alpha = high - s_high * (high - low) / (s_high - s_low)
+            trial = self._evaluate(u + alpha * direction, state)
+            if trial is None:
+                return u, None, alpha
+            new = trial
+            s = float(direction @ new.residual)
+            if s * s_high < 0.0:
+                low, s_low = high, s_high
+            else:
+                s_low *= 0.5  # Illinois: keeps both ends moving
+            high, s_high = alpha, s
+        return u + alpha * direction, new, alpha

@@ -1,0 +1,141 @@
+"""What is to be solved and how finely: the contact problem and the accuracy settings."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import asdict, dataclass, replace
+from typing import Any
+
+from ..core.errors import InputError
+from ..core.material import Pair
+
+NUMERICS_VERSION = 1
+"""Raised only when results change; stored with every case."""
+
+DEEPEST = 0.5
+"""Largest Delta/R that can be asked for."""
+
+
+@dataclass(frozen=True)
+class Accuracy:
+    """Numerical settings; every number here influences results.
+
+    Parameters
+    ----------
+    level
+        Name of the settings, for tables.
+    divisions
+        Elements over the quarter arc.
+    coarse, fine
+        Ring width over radius away from the plastic contact edge and along its path.
+    step_ratio, elastic_step_ratio
+        Largest ratio of successive approaches after and before first yield.
+    penalty
+        Contact stiffness in E' over the edge length.
+    flat_radius
+        Radius of the meshed half-space [R]; the truncation error of the force is 0.55 a/L.
+    """
+
+    level: str
+    divisions: int
+    coarse: float
+    fine: float
+    step_ratio: float
+    elastic_step_ratio: float = 1.3
+    penalty: float = 20.0
+    flat_radius: float = 200.0
+
+    @classmethod
+    def production(cls) -> Accuracy:
+        """Settings of published results."""
+        return cls(level="production", divisions=16, coarse=0.1, fine=0.025, step_ratio=1.035)
+
+    @classmethod
+    def quick(cls) -> Accuracy:
+        """About three times faster than production; ripple of F about 0.5 %."""
+        return cls(level="quick", divisions=16, coarse=0.1, fine=0.05, step_ratio=1.05)
+
+    @classmethod
+    def smoke(cls) -> Accuracy:
+        """For a first look: ripple of F about 2 %."""
+        return cls(level="smoke", divisions=12, coarse=0.13, fine=0.1, step_ratio=1.07)
+
+    def with_(self, **changes: Any) -> Accuracy:
+        """Return a copy with some settings replaced."""
+        return replace(self, **changes)
+
+    def as_dict(self) -> dict[str, Any]:
+        """Return the settings as a plain dictionary."""
+        return asdict(self)
+
+
+@dataclass(frozen=True)
+class ContactProblem:
+    """A sphere pressed into a flat, and at which depths to look.
+
+    The top face of the hemisphere moves down by Delta, free to move radially; yield is a true
+    (Cauchy) stress.
+
+    Parameters
+    ----------
+    pair
+        The two bodies and the radius.
+    depths
+        Increasing Delta/R at which results are recorded.
+    unload_from
+        Delta/R from which the contact is also unloaded to zero force.
+    radius_at_least
+        Go on past the last depth until the contact radius a/R reaches this (0: stop there).
+    snapshots
+        Delta/R at which fields, pressures and surface profiles are kept.
+
+    Raises
+    ------
+    InputError
+        Depths that are not increasing or out of range.
+    """
+
+    pair: Pair
+    depths: tuple[float, ...]
+    unload_from: tuple[float, ...] = ()
+    radius_at_least: float = 0.0
+    snapshots: tuple[float, ...] = ()
+
+    def __post_init__(self) -> None:
+        if not self.depths:
+            raise InputError("no depth given", key="depths", allowed="at least one Delta/R")
+        previous = 0.0
+        for depth in self.depths:
+            if not previous < depth <= DEEPEST:
+                raise InputError(
+                    f"{depth:g}", key="depths", allowed=f"increasing Delta/R in (0, {DEEPEST:g}]"
+                )
+            previous = depth
+        for name in ("unload_from", "snapshots"):
+            for depth in getattr(self, name):
+                if not 0.0 < depth <= DEEPEST:
+                    raise InputError(f"{depth:g}", key=name, allowed=f"Delta/R in (0, {DEEPEST:g}]")
+        if not 0.0 <= self.radius_at_least <= 0.8:
+            raise InputError(f"{self.radius_at_least:g}", key="radius_at_least", allowed="0 to 0.8")
+
+
+def critical_depth(pair: Pair) -> float:
+    """Approach at first yield over R, (pi C Sy/(2 E'))^2 (Eq. 1.16); infinite if none yields.
+
+    The smaller of the two bodies' values, C = 1.295 exp(0.736 nu) (Eq. 1.17 in the corrected form).
+    """
+    return min(_critical(pair, body.strength, body.nu) for body in (pair.sphere, pair.flat))
+
+
+def _critical(pair: Pair, strength: float, nu: float) -> float:
+    if math.isinf(strength):
+        return math.inf
+    return (math.pi * 1.295 * math.exp(0.736 * nu) * strength / (2.0 * pair.E_reduced)) ** 2
+
+
+def geometric_depths(first: float, last: float, n: int) -> tuple[float, ...]:
+    """`n` depths in constant ratio from `first` to `last`, both included."""
+    if n < 2 or not 0.0 < first < last:
+        raise InputError(f"{n} depths from {first:g} to {last:g}", key="depths", allowed="n >= 2")
+    ratio = (last / first) ** (1.0 / (n - 1))
+    return (*(first * ratio**k for k in range(n - 1)), last)

@@ -1,0 +1,72 @@
+"""The full fields of one converged state, in SI units."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from ..core.material import Pair
+from .assemble import State, cauchy_stress
+from .discretise import Discretisation
+from .newton import Equilibrium
+from .solution import Snapshot
+
+
+def take_snapshot(
+    grid: Discretisation, found: Equilibrium, state: State, *, depth: float, pair: Pair
+) -> Snapshot:
+    """Collect stresses, strains, displacements and the two surfaces of a state.
+
+    Parameters
+    ----------
+    grid
+        The discretisation.
+    found, state
+        Converged equilibrium and the material state there.
+    depth
+        Delta/R.
+    pair
+        For the units.
+    """
+    R, unit = pair.R, grid.stress_unit
+    mesh, index = grid.mesh, grid.element_index
+    n = len(mesh.quads)
+    deviator, mean = cauchy_stress(grid.elements, state)
+    mises = np.sqrt(
+        1.5 * ((deviator[..., [0, 1, 3]] ** 2).sum(axis=-1) + 2.0 * deviator[..., 2] ** 2)
+    )
+    stress = deviator.mean(axis=1)
+    stress[:, [0, 1, 3]] += mean[:, None]
+    x = mesh.points + found.u.reshape(-1, 2)
+    slave = grid.surfaces.slave
+    return Snapshot(
+        depth=depth,
+        points=mesh.points * R,
+        quads=mesh.quads,
+        n_sphere_quads=mesh.n_sphere_quads,
+        displacement=found.u.reshape(-1, 2) * R,
+        von_mises=_everywhere(mises.mean(axis=1) * unit, index, n),
+        plastic_strain=_everywhere(state.peeq.mean(axis=1), index, n),
+        mean_stress=_everywhere(mean * unit, index, n),
+        stress=_everywhere(stress * unit, index, n),
+        pressure_r=x[slave, 0] * R,
+        pressure=_current_pressure(grid, found) * unit,
+        sphere_surface=x[slave] * R,
+        flat_surface=x[grid.surfaces.master] * R,
+    )
+
+
+def _everywhere(values: np.ndarray, index: np.ndarray, n: int) -> np.ndarray:
+    """Values on all elements; zero in a rigid body."""
+    out = np.zeros((n, *values.shape[1:]))
+    out[index] = values
+    return out
+
+
+def _current_pressure(grid: Discretisation, found: Equilibrium) -> np.ndarray:
+    """Nodal pressure on the current horizontal area 2 pi r dr instead of the reference one."""
+    surfaces = grid.surfaces
+    r0 = grid.mesh.points[surfaces.slave, 0]
+    r = r0 + found.u[2 * surfaces.slave]
+    edge0, edge = np.diff(r0**2), np.diff(r**2)
+    area0, area = (np.append(e, 0.0) + np.insert(e, 0, 0.0) for e in (edge0, edge))
+    return np.asarray(found.contact.pressure * area0 / area)

@@ -1,0 +1,194 @@
+"""What a solve returns: curves in SI units, unloadings, snapshots, counters, how it ended."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+
+import numpy as np
+import numpy.typing as npt
+
+from ..core.errors import Outcome
+from .problem import Accuracy, ContactProblem
+
+Floats = npt.NDArray[np.float64]
+
+
+@dataclass(frozen=True)
+class Curve:
+    """Results along a loading or unloading branch; every array has shape (n,).
+
+    Parameters
+    ----------
+    delta
+        Approach Delta [m].
+    force
+        Normal force F, the reaction at the driven face [N].
+    radius
+        Contact radius a, from the opening gap beside the contact [m].
+    radius_last_node
+        Radius of the last node in contact, as the thesis reads it [m].
+    sphere, flat
+        Displacement of the pole relative to the sphere's top, and of the flat's surface below it,
+        towards the body [m].
+    hardness
+        Mean pressure F/(pi a^2) [Pa].
+    force_defect
+        (contact force - reaction)/reaction [-].
+    energy_defect
+        (external work - stored - dissipated)/external work [-]; nan on unloading.
+    dissipated
+        Plastic work so far [J].
+    """
+
+    delta: Floats
+    force: Floats
+    radius: Floats
+    radius_last_node: Floats
+    sphere: Floats
+    flat: Floats
+    hardness: Floats
+    force_defect: Floats
+    energy_defect: Floats
+    dissipated: Floats
+
+    @property
+    def sphere_share(self) -> Floats:
+        """delta_s* = delta_s/(delta_s + delta_f) (Eq. 2.2) [-]."""
+        return np.asarray(self.sphere / (self.sphere + self.flat))
+
+
+@dataclass(frozen=True)
+class Unloading:
+    """One unloading to zero force.
+
+    Parameters
+    ----------
+    depth
+        Delta/R at which it starts.
+    curve
+        From the turning point to the last state in contact.
+    residual_sphere, residual_flat
+        Permanent displacement of the pole and of the flat below it, force-free [m].
+    crater_r, crater_z
+        Force-free surface of the flat, shape (n,) [m].
+    tip_r, tip_z
+        Force-free surface of the sphere, its top at rest, shape (n,) [m].
+    steps
+        Steps taken.
+    outcome
+        How it ended.
+    """
+
+    depth: float
+    curve: Curve
+    residual_sphere: float
+    residual_flat: float
+    crater_r: Floats
+    crater_z: Floats
+    tip_r: Floats
+    tip_z: Floats
+    steps: int
+    outcome: Outcome
+
+    @property
+    def residual(self) -> float:
+        """Permanent approach, both bodies together [m]."""
+        return self.residual_sphere + self.residual_flat
+
+
+@dataclass(frozen=True)
+class Snapshot:
+    """Fields of one state.
+
+    Parameters
+    ----------
+    depth
+        Delta/R.
+    points, quads
+        Reference coordinates (r, z), shape (n_nodes, 2) [m], and elements, shape (n_elements, 4).
+    n_sphere_quads
+        The sphere's elements come first; this many.
+    displacement
+        Shape (n_nodes, 2) [m].
+    von_mises
+        Cauchy von Mises stress at the element centres (mean of the points), shape (n_elements,)
+        [Pa].
+    plastic_strain
+        Equivalent plastic strain, likewise [-].
+    mean_stress
+        Mean Cauchy stress (negative in compression), likewise [Pa].
+    stress
+        Cauchy stress (rr, zz, rz, tt), mean of the points, shape (n_elements, 4) [Pa].
+    pressure_r, pressure
+        Current radius of the sphere's surface nodes and contact pressure on the current area,
+        shape (n_slave,) [m], [Pa].
+    sphere_surface, flat_surface
+        Current coordinates of the surface nodes, shape (n, 2) [m].
+    """
+
+    depth: float
+    points: Floats
+    quads: npt.NDArray[np.int64]
+    n_sphere_quads: int
+    displacement: Floats
+    von_mises: Floats
+    plastic_strain: Floats
+    mean_stress: Floats
+    stress: Floats
+    pressure_r: Floats
+    pressure: Floats
+    sphere_surface: Floats
+    flat_surface: Floats
+
+
+@dataclass(frozen=True)
+class Counters:
+    """Work that a solve took; times are processor seconds."""
+
+    dofs: int
+    steps: int
+    iterations: int
+    factorisations: int
+    failed_steps: int
+    patterns: int
+    cpu_s: float
+    cpu_assembly_s: float
+    cpu_contact_s: float
+    cpu_linear_s: float
+    peak_memory_mb: float
+
+
+@dataclass(frozen=True)
+class Solution:
+    """Everything a solve gives.
+
+    Parameters
+    ----------
+    problem, accuracy
+        What was asked.
+    outcome
+        How it ended.
+    loading
+        Results at the recorded depths.
+    unloadings
+        One for each depth of `problem.unload_from` that was reached.
+    snapshots
+        One for each depth of `problem.snapshots` that was reached.
+    counters
+        Steps, iterations, processor time.
+    mesh_digest
+        SHA-256 of the mesh.
+    boundary, yield_measure
+        What is driven and which stress yields, in words.
+    """
+
+    problem: ContactProblem
+    accuracy: Accuracy
+    outcome: Outcome
+    loading: Curve
+    unloadings: tuple[Unloading, ...]
+    snapshots: tuple[Snapshot, ...]
+    counters: Counters
+    mesh_digest: str
+    boundary: str = field(default="top face moves by -Delta, free radially")
+    yield_measure: str = field(default="Cauchy")
