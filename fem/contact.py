@@ -3,8 +3,8 @@
 The sphere's surface is the slave side, piecewise linear; the flat's surface is the master side,
 smoothed to a C1 curve by uniform Catmull-Rom segments through its nodes, with the mirror image of
 the first node beyond the axis. The gap at a slave point is vertical, g = z_sphere(r) - z_flat(r) at
-equal current r; because the point slides along the master curve as it moves, the contact force comes
-out normal to that curve all the same.
+equal current r; because the point slides along the master curve as it moves, the contact force
+comes out normal to that curve all the same.
 
 The gap of slave node A is the mean G_A = int N_A g dA / int N_A dA over the reference area
 2 pi R dR, its pressure p_A = max(0, -eps_A G_A). The forces are the derivative of

@@ -1,4 +1,4 @@
-"""From a contact problem and accuracy settings to everything a solve needs, with R = 1 and E' = 1."""
+"""From a contact problem and accuracy settings to the discrete model, with R = 1 and E' = 1."""
 
 from __future__ import annotations
 
@@ -72,7 +72,7 @@ def discretise(problem: ContactProblem, accuracy: Accuracy) -> Discretisation:
     """Mesh the problem and set up its elements, surfaces and boundary conditions."""
     mesh = _mesh(problem, accuracy)
     pair = problem.pair
-    r, z = mesh.points.T
+    r = mesh.points[:, 0]
     n = mesh.n_sphere_points
     node = np.arange(len(r))
     sphere = node < n

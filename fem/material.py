@@ -57,7 +57,7 @@ def log_strain(brr, bzz, brz, btt):
 
 @njit(cache=True)
 def exponential(err, ezz, erz, ett):
-    """b = exp(2 e), components (rr, zz, rz, tt)."""
+    """Return b = exp(2 e), components (rr, zz, rz, tt)."""
     e1, e2, c, s = spectral(err, ezz, erz)
     b1 = math.exp(2.0 * e1)
     b2 = math.exp(2.0 * e2)

@@ -1,9 +1,9 @@
 """Axisymmetric meshes of the hemisphere and the half-space, made by gmsh.
 
 Both bodies are meshed by the same log-polar scheme about the first contact point: an inner block of
-three transfinite patches, then sectors of rings, each between two radii with ring widths in constant
-ratio. The hemisphere ends in one block up to its flat top face, the half-space in rings that grow
-out to its far boundary.
+three transfinite patches, then sectors of rings, each between two radii with ring widths in
+constant ratio. The hemisphere ends in one block up to its flat top face, the half-space in rings
+that grow out to its far boundary.
 """
 
 from __future__ import annotations
@@ -34,7 +34,7 @@ class Mesh:
     Parameters
     ----------
     points
-        Coordinates (r, z), shape (n_nodes, 2) [R]. The flat is z <= 0, the sphere's pole the origin.
+        Coordinates (r, z), shape (n_nodes, 2) [R]. The flat is z <= 0, the pole is the origin.
     quads
         Node numbers, counter-clockwise, shape (n_elements, 4).
     n_sphere_points, n_sphere_quads

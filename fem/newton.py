@@ -79,7 +79,7 @@ class Solver:
         self._triplets = Triplets.for_surfaces(self.grid.surfaces)
 
     def equilibrium(self, guess: Floats, *, state: State, delta: float) -> Equilibrium | None:
-        """Equilibrium at approach `delta`, starting from the displacements `guess`; none: failed."""
+        """Equilibrium at approach `delta`, starting from displacements `guess`; none: failed."""
         u = guess.copy()
         u[self.grid.driven] = -delta
         now = self._evaluate(u, state)
