@@ -69,6 +69,7 @@ class Solver:
 
     def __post_init__(self) -> None:
         self.elements = self.grid.elements
+        self.surfaces = self.grid.surfaces
         n = len(self.grid.elements.conn)
         dofs = np.empty((n, 8), dtype=np.int64)
         dofs[:, 0::2] = 2 * self.grid.elements.conn
@@ -106,7 +107,7 @@ class Solver:
             return None
         bulk = force.copy()
         x = self.grid.mesh.points + u.reshape(-1, 2)
-        contact, n = contact_forces(self.grid.surfaces, x, force=force, tangent=self._triplets)
+        contact, n = contact_forces(self.surfaces, x, force=force, tangent=self._triplets)
         self.timers.contact += time.process_time() - middle
         if contact is None:
             return None
@@ -160,7 +161,7 @@ class Solver:
             alpha = high - s_high * (high - low) / (s_high - s_low)
             trial = self._evaluate(u + alpha * direction, state)
             if trial is None:
-                return u, None, alpha
+                break
             new = trial
             s = float(direction @ new.residual)
             if s * s_high < 0.0:

@@ -32,6 +32,7 @@ _MOST_CUTS = 7
 _STRETCH = 2.5  # largest factor by which the last increment is extrapolated
 _BELOW_YIELD = 0.8  # elastic step ratio up to this fraction of the critical depth
 _MOST_UNLOADING_STEPS = 60
+_SOFT_START = (1e-3, 1e-2, 1e-1, 1.0)  # contact stiffness on the way to the first equilibrium
 
 
 @dataclass(frozen=True)
@@ -197,11 +198,18 @@ def _first_contact(grid: Discretisation, solver: Solver, delta: float) -> Point 
     guess = np.zeros(grid.n_dofs)
     guess[1 : 2 * grid.mesh.n_sphere_points : 2] = -delta
     virgin = State.virgin(len(grid.elements.conn))
-    # well below first yield: without the yield condition Newton's way there cannot leave the
-    # elastic range, which the rigid push as a start would
+    # Well below first yield: the yield condition is left out, because Newton's way from the rigid
+    # push could leave the elastic range; and the contact starts soft, because the whole push as
+    # an overlap under the full stiffness would crush the innermost elements.
     solver.elements = replace(grid.elements, radius=np.full_like(grid.elements.radius, np.inf))
-    found = solver.equilibrium(guess, state=virgin, delta=delta)
-    solver.elements = grid.elements
+    found = None
+    for softness in _SOFT_START:
+        solver.surfaces = replace(grid.surfaces, stiffness=grid.surfaces.stiffness * softness)
+        found = solver.equilibrium(guess, state=virgin, delta=delta)
+        if found is None:
+            break
+        guess = found.u
+    solver.elements, solver.surfaces = grid.elements, grid.surfaces
     if found is None:
         return None
     state, stored = advance(grid.elements, found.u, state=virgin, rule=solver.rule)
