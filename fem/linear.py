@@ -21,6 +21,8 @@ from .contact import ContactState, Surfaces, Triplets
 Floats = npt.NDArray[np.float64]
 Integers = npt.NDArray[np.int64]
 
+_FORCING = 1e-3  # relative residual that a direction needs
+_KRYLOV = 16  # GMRES steps before a new factorisation is cheaper
 _REACH = 3  # master nodes beyond the segments in use that the pattern already couples
 
 
@@ -69,6 +71,8 @@ class LinearSystem:
         self.free = free
         self.n = len(free)
         self.n_patterns = 0
+        self.n_factorisations = 0
+        self._factors: Any = None
         self._element_dofs = element_dofs
         self._plain = np.full(n_dofs, -1, dtype=np.int64)
         self._plain[free] = np.arange(self.n)
@@ -112,6 +116,7 @@ class LinearSystem:
 
     def _new_pattern(self, surfaces: Surfaces, contact: ContactState) -> None:
         self.n_patterns += 1
+        self._factors = None
         keys = np.union1d(self._element_keys, self._contact_keys(surfaces, contact))
         cols, rows = np.divmod(keys, self.n)
         pattern = sparse.csc_matrix((np.ones(len(keys)), (rows, cols)), shape=(self.n, self.n))
@@ -149,8 +154,7 @@ class LinearSystem:
             cols.append(np.tile(dofs, len(dofs)))
         return self._keys(np.concatenate(rows), np.concatenate(cols))
 
-    def factorise(self) -> Any:
-        """LU factors of the matrix as it stands, with a `solve` method."""
+    def _factorise(self) -> Any:
         return sparse_linalg.splu(
             self._matrix,
             permc_spec="NATURAL",
@@ -158,8 +162,26 @@ class LinearSystem:
             options={"SymmetricMode": True},
         )
 
-    def solve(self, factors: Any, rhs: Floats) -> Floats:
-        """Solution of K x = rhs over the free degrees of freedom, in their own order."""
+    def solve(self, rhs: Floats) -> Floats:
+        """Solution of K x = rhs over the free degrees of freedom, in their own order.
+
+        The factors of an earlier matrix of the same pattern precondition a few GMRES steps; only
+        when these do not reach `_FORCING` is the matrix factorised anew. A Newton step needs no
+        more digits than the next one keeps, and a solve costs a fifteenth of a factorisation.
+        """
         permuted = np.empty(self.n)
         permuted[self._order] = rhs
-        return np.asarray(factors.solve(permuted)[self._order])
+        if self._factors is not None:
+            x, failed = sparse_linalg.gmres(
+                self._matrix,
+                permuted,
+                M=sparse_linalg.LinearOperator((self.n, self.n), self._factors.solve),
+                rtol=_FORCING,
+                restart=_KRYLOV,
+                maxiter=1,
+            )
+            if not failed:
+                return np.asarray(x[self._order])
+        self._factors = self._factorise()
+        self.n_factorisations += 1
+        return np.asarray(self._factors.solve(permuted)[self._order])

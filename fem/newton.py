@@ -19,8 +19,9 @@ from .linear import LinearSystem
 
 Floats = npt.NDArray[np.float64]
 
-TOLERANCE = 1e-7
-"""Accepted sum of residual forces over the contact force."""
+TOLERANCE = 2e-6
+"""Accepted sum of residual forces over the contact force; round-off in the largest elements, far
+from the contact, keeps it above 5e-7."""
 
 _STILL = 1e-9  # accepted largest correction over the approach, where round-off rules the residual
 _MOST_ITERATIONS = 18
@@ -36,7 +37,6 @@ class Timers:
     contact: float = 0.0
     linear: float = 0.0
     iterations: int = 0
-    factorisations: int = 0
 
 
 @dataclass(frozen=True)
@@ -132,12 +132,10 @@ class Solver:
             surfaces=self.grid.surfaces,
             contact=now.contact,
         )
-        factors = self.system.factorise()
         direction = np.zeros(self.grid.n_dofs)
-        direction[self.free] = self.system.solve(factors, -now.residual[self.free])
+        direction[self.free] = self.system.solve(-now.residual[self.free])
         self.timers.linear += time.process_time() - start
         self.timers.iterations += 1
-        self.timers.factorisations += 1
         return direction
 
     def _search(

@@ -374,7 +374,7 @@ def _counters(solver: Solver, grid: Discretisation, tally: Tally) -> Counters:
         dofs=len(solver.free),
         steps=tally.steps,
         iterations=timers.iterations,
-        factorisations=timers.factorisations,
+        factorisations=solver.system.n_factorisations,
         failed_steps=tally.failed,
         patterns=solver.system.n_patterns,
         cpu_s=time.process_time() - tally.started,
