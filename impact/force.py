@@ -1,0 +1,175 @@
+"""The static normal force of a scene: the law, a worn or finite tip, and the force transform.
+
+Scalar kernels shared by the reference integrator and the compiled one. All neutral settings leave
+the law's own numbers untouched, bit for bit.
+"""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+from numba import float64, njit, types
+
+from ..models.base import BRANCH_SIGNATURE, LOADING_SIGNATURE, RESIDUAL_SIGNATURE, VECTOR
+
+LOADING = types.FunctionType(LOADING_SIGNATURE)
+BRANCH = types.FunctionType(BRANCH_SIGNATURE)
+SPLIT = types.FunctionType(RESIDUAL_SIGNATURE)
+
+# Places in the vector that describes the modified force.
+RADIUS, MODULUS, FLAT, EDGE, EDGE_DEPTH, EDGE_LIMIT, RECOVERY, DAMPING, RADIATION = range(9)
+N_FORCE = 9
+
+# Nodes of the loading factors: ln(depth / R), equally spaced.
+LOG_DEPTH_FIRST, LOG_DEPTH_LAST = math.log(1e-6), 0.0
+
+PUNCH_PRESSURE = 5.69 / math.sqrt(3.0)
+"""Mean pressure over yield strength under a rigid circular punch (Eq. 1.10 at a -> 0)."""
+
+
+@njit(float64(VECTOR, float64), cache=True)
+def _factor(factors, x):  # type: ignore[no-untyped-def]
+    last = len(factors) - 1
+    place = (math.log(max(x, 1e-300)) - LOG_DEPTH_FIRST) / (LOG_DEPTH_LAST - LOG_DEPTH_FIRST)
+    place = min(max(place * last, 0.0), float(last))
+    i = min(int(place), last - 1)
+    return factors[i] + (place - i) * (factors[i + 1] - factors[i])
+
+
+@njit(float64(LOADING, VECTOR, VECTOR, VECTOR, float64), cache=True)
+def static_loading(loading, par, force, factors, depth):  # type: ignore[no-untyped-def]
+    """Loading force [N] at `depth` [m], measured from first touch.
+
+    A flat of radius b on the tip: the lesser of the elastic truncated sphere (Ejike 1969,
+    F = 2E'/(3R) (2a^2 + b^2) sqrt(a^2 - b^2), delta = a sqrt(a^2 - b^2) / R) and the law at the
+    depth shifted by the missing cap. At the edge of a finite tip the contact radius stops and the
+    force goes on as under a flat punch, up to that punch's plastic limit.
+    """
+    if depth <= 0.0:
+        return 0.0
+    b = force[FLAT]
+    x = min(depth, force[EDGE_DEPTH])
+    if b > 0.0:
+        f = loading(par, x + b * b / (2.0 * force[RADIUS]))
+        dr = x * force[RADIUS]
+        root = math.sqrt(b**4 + 4.0 * dr * dr)
+        a2 = 0.5 * (b * b + root)
+        gap = 2.0 * dr * dr / (b * b + root)
+        f = min(f, 2.0 * force[MODULUS] / (3.0 * force[RADIUS]) * (2.0 * a2 + b * b) * gap**0.5)
+    else:
+        f = loading(par, x)
+    if depth > force[EDGE_DEPTH]:
+        further = 2.0 * force[MODULUS] * force[EDGE] * (depth - force[EDGE_DEPTH])
+        f = min(f + further, max(f, force[EDGE_LIMIT]))
+    if len(factors) > 1:
+        f *= _factor(factors, depth / force[RADIUS])
+    return f
+
+
+@njit(
+    types.void(LOADING, SPLIT, VECTOR, VECTOR, VECTOR, float64, VECTOR),
+    cache=True,
+)
+def set_peak(loading, residual, par, force, factors, peak, branch):  # type: ignore[no-untyped-def]
+    """Write into `branch` what the unloading from `peak` needs.
+
+    Entries: peak, residual depth of sphere and flat, force scale, law's peak and residual depth,
+    depth scale.
+    """
+    shift = force[FLAT] * force[FLAT] / (2.0 * force[RADIUS])
+    law_peak = peak + shift
+    sphere, flat = residual(par, law_peak)
+    law_rest = sphere + flat
+    rest = max(law_rest - shift, 0.0)
+    if force[RECOVERY] != 1.0:
+        rest = max(peak - force[RECOVERY] * (peak - rest), 0.0)
+    share = 0.0 if law_rest == 0.0 else sphere / law_rest
+    branch[0] = peak
+    branch[1] = share * rest
+    branch[2] = rest - share * rest
+    branch[3] = 1.0
+    branch[4] = law_peak
+    branch[5] = law_rest
+    branch[6] = 1.0
+    if shift > 0.0 or force[RECOVERY] != 1.0 or len(factors) > 1 or peak > force[EDGE_DEPTH]:
+        law_force = loading(par, law_peak)
+        if law_force > 0.0:
+            branch[3] = static_loading(loading, par, force, factors, peak) / law_force
+        if peak > rest:
+            branch[6] = (law_peak - law_rest) / (peak - rest)
+
+
+@njit(float64(BRANCH, VECTOR, VECTOR, float64), cache=True)
+def static_unloading(unloading, par, branch, depth):  # type: ignore[no-untyped-def]
+    """Force [N] at `depth` [m] on the branch that `set_peak` prepared."""
+    if depth <= branch[1] + branch[2]:
+        return 0.0
+    if branch[3] == 1.0 and branch[6] == 1.0 and branch[4] == branch[0]:
+        return unloading(par, depth, branch[0])
+    x = branch[4] - (branch[0] - depth) * branch[6]
+    return branch[3] * unloading(par, x, branch[4])
+
+
+@njit(float64[::1](LOADING, VECTOR, VECTOR, VECTOR), cache=True)
+def find_jumps(loading, par, force, factors):  # type: ignore[no-untyped-def]
+    """Depths at which the loading force jumps, rising; published fits do at their borders.
+
+    A logarithmic scan for uneven slopes, each then halved down to rounding. An integrator that
+    knows these depths can end a step on them.
+    """
+    n = 240
+    first, last = math.log(1e-9 * force[RADIUS]), math.log(force[RADIUS])
+    step = (last - first) / n
+    level = np.empty(n + 1)
+    for i in range(n + 1):
+        d = math.exp(first + i * step)
+        level[i] = math.log(max(static_loading(loading, par, force, factors, d), 1e-300))
+    found = np.empty(32)
+    count = 0
+    for i in range(1, n - 1):
+        rise = level[i + 1] - level[i]
+        around = 0.5 * (level[i] - level[i - 1] + level[i + 2] - level[i + 1])
+        if abs(rise - around) < 2e-4 or count == len(found):
+            continue
+        low, high, f_low, f_high = first + i * step, first + (i + 1) * step, level[i], level[i + 1]
+        for _ in range(60):
+            x = 0.5 * (low + high)
+            f = math.log(max(static_loading(loading, par, force, factors, math.exp(x)), 1e-300))
+            if abs(f - f_low) > abs(f_high - f):
+                high, f_high = x, f
+            else:
+                low, f_low = x, f
+            if high - low < 3e-15 * abs(x):
+                break
+        if abs(f_high - f_low) > 1e-9:
+            found[count] = math.exp(high)
+            count += 1
+    return found[:count].copy()
+
+
+def edge_depth(radius_kernel, par, force, limit):  # type: ignore[no-untyped-def]
+    """Depth [m] at which the contact radius reaches `limit`; infinite when it never does."""
+    if not math.isfinite(limit):
+        return math.inf
+    low, high = 0.0, 2.0 * float(force[RADIUS])
+    if radius_kernel(par, high, high) < limit:
+        return math.inf
+    for _ in range(200):
+        middle = 0.5 * (low + high)
+        if radius_kernel(par, middle, middle) < limit:
+            low = middle
+        else:
+            high = middle
+        if high - low <= 1e-15 * high:
+            break
+    return 0.5 * (low + high)
+
+
+def neutral_force(radius: float, modulus: float) -> np.ndarray:
+    """Return the force vector of an unmodified law."""
+    force = np.zeros(N_FORCE)
+    force[RADIUS], force[MODULUS] = radius, modulus
+    force[EDGE] = force[EDGE_DEPTH] = force[EDGE_LIMIT] = math.inf
+    force[RECOVERY] = 1.0
+    return force

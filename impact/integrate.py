@@ -1,0 +1,175 @@
+"""From scenes to impacts through the compiled integrator, one at a time or in batches."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ..models.base import ContactLaw
+from . import compiled as c
+from . import force as fo
+from .result import Impact, impact_of
+from .scene import Scene, Spot
+
+Array = NDArray[np.float64]
+
+
+@dataclass(frozen=True, slots=True)
+class Settings:
+    """Accuracy and budgets of an integration.
+
+    Parameters
+    ----------
+    tolerance
+        Local error over the scale of the impact (speed, depth).
+    max_steps, max_contacts
+        Budgets; reaching one is an `Outcome`, not an error.
+    flight
+        How long after a separation the tip is followed for a re-contact [s]; nan picks three
+        periods of the slowest vibration of striker and support (0 when neither vibrates).
+    """
+
+    tolerance: float = 2e-9
+    max_steps: int = 20_000
+    max_contacts: int = 50
+    flight: float = math.nan
+
+
+@dataclass(frozen=True, slots=True)
+class Arrays:
+    """The vectors of one scene, as the integrators take them."""
+
+    par: Array
+    force: Array
+    factors: Array
+    jumps: Array
+    body: Array
+    spot: Array
+    omega: Array
+    psi: Array
+
+
+def arrays_of(scene: Scene, settings: Settings = Settings()) -> Arrays:
+    """Return the vectors of a scene; the flow-stress seam is applied here."""
+    law, striker, approach = scene.law, scene.striker, scene.approach
+    pair = scene.flow.strengthened(scene)
+    par = np.ascontiguousarray(law.parameters(pair), dtype=float)
+    force = fo.neutral_force(pair.R, pair.E_reduced)
+    force[fo.FLAT] = striker.tip_flat_radius
+    force[fo.RECOVERY] = scene.force.recovery
+    force[fo.DAMPING], force[fo.RADIATION] = scene.force.damping, scene.force.radiation
+    if math.isfinite(scene.force.edge):
+        force[fo.EDGE] = scene.force.edge
+        force[fo.EDGE_DEPTH] = fo.edge_depth(law.kernels.radius, par, force, scene.force.edge)
+        strength = min(fo.PUNCH_PRESSURE * pair.Sy_min, pair.sphere.strength)
+        force[fo.EDGE_LIMIT] = strength * math.pi * scene.force.edge**2
+    omega = np.asarray(scene.modes.frequencies, dtype=float)
+    psi = np.ascontiguousarray(scene.modes.at_contact(approach.angle, striker.tip_radius))
+    upright = math.isclose(approach.angle, math.pi / 2.0, abs_tol=1e-12)
+    body = np.zeros(c.N_BODY)
+    half = 0.5 * striker.length
+    body[c.MASS], body[c.INERTIA], body[c.TIP] = striker.mass, striker.inertia, striker.tip_radius
+    body[c.HALF_COS] = 0.0 if upright else half * math.cos(approach.angle)
+    body[c.HALF_SIN] = half * math.sin(approach.angle)
+    body[c.GRAVITY] = scene.gravity
+    body[c.MU], body[c.MU_STATIC] = scene.friction.mu, scene.friction.mu_static
+    body[c.MU_SPEED], body[c.PLOUGH] = scene.friction.speed, scene.friction.ploughing
+    body[c.S_MASS], body[c.S_STIFF] = scene.support.mass, scene.support.stiffness
+    body[c.S_DAMP], body[c.S_PLATE] = scene.support.damping, scene.support.plate_mobility
+    body[c.V_X], body[c.V_SPIN] = approach.tangential, approach.spin
+    # The stated speed is the contact point's: v_T = v_C - omega c.
+    body[c.V_Y] = -approach.speed + approach.spin * body[c.HALF_COS]
+    body[c.FLIGHT] = _flight(scene) if math.isnan(settings.flight) else settings.flight
+    body[c.LOSS] = scene.modes.loss_factor
+    body[c.TOLERANCE] = settings.tolerance
+    body[c.MAX_STEPS], body[c.MAX_CONTACTS] = settings.max_steps, settings.max_contacts
+    factors = np.asarray(scene.force.factors, dtype=float)
+    jumps = _jumps(law, par, force, factors)
+    return Arrays(par, force, factors, jumps, body, spot_row(scene.spot), omega, psi)
+
+
+def spot_row(spot: Spot) -> Array:
+    """Return the vector of a spot."""
+    row = np.zeros(c.N_SPOT)
+    row[c.SPOT_PEAK], row[c.SPOT_FLAT], row[c.SPOT_TIP] = spot.peak, spot.flat, spot.tip
+    row[c.SPOT_CENTRE], row[c.SPOT_RADIUS] = spot.centre, spot.radius
+    return row
+
+
+def strike(scene: Scene, settings: Settings = Settings()) -> Impact:
+    """Integrate one impact."""
+    return strike_many([scene], settings)[0]
+
+
+def strike_many(scenes: Sequence[Scene], settings: Settings = Settings()) -> list[Impact]:
+    """Integrate scenes that may differ in everything; each gives what `strike` gives."""
+    found = []
+    for scene in scenes:
+        a = arrays_of(scene, settings)
+        out = np.zeros(c.N_OUT)
+        c.one_impact(
+            *kernels_of(scene.law),
+            a.par,
+            a.force,
+            a.factors,
+            a.jumps,
+            a.body,
+            a.spot,
+            a.omega,
+            a.psi,
+            out,
+        )
+        found.append(impact_of(out, a.spot))
+    return found
+
+
+def strike_rows(scene: Scene, body: Array, settings: Settings = Settings()) -> Array:
+    """Integrate impacts that share law, pair and modes: rows of the body vector in, rows out.
+
+    The fast path of inference: `body` starts from `arrays_of(scene).body` repeated, with the
+    columns of `compiled` (MASS, MU, V_Y, ...) overwritten.
+
+    Returns
+    -------
+    (n, N_OUT) the columns `compiled.OBSERVABLES + compiled.COUNTS`.
+    """
+    a = arrays_of(scene, settings)
+    rows = np.ascontiguousarray(body, dtype=float)
+    out = np.zeros((len(rows), c.N_OUT))
+    spot = np.tile(a.spot, (len(rows), 1))
+    c.many_impacts(
+        *kernels_of(scene.law), a.par[None], a.force[None], a.factors, a.jumps, rows, spot,
+        a.omega[None], a.psi[None], out,
+    )  # fmt: skip
+    return out
+
+
+def kernels_of(law: ContactLaw) -> tuple[Any, Any, Any, Any]:
+    """Return (loading, radius, unloading, residual) of a law."""
+    k = law.kernels
+    return k.loading, k.radius, k.unloading, k.residual
+
+
+_JUMPS: dict[tuple[str, bytes, bytes, bytes], Array] = {}
+
+
+def _jumps(law: ContactLaw, par: Array, force: Array, factors: Array) -> Array:
+    """Return the depths at which this loading curve jumps; the latest answers are kept."""
+    key = (law.name, par.tobytes(), force.tobytes(), factors.tobytes())
+    if key not in _JUMPS:
+        if len(_JUMPS) > 1000:
+            _JUMPS.clear()
+        _JUMPS[key] = fo.find_jumps(law.kernels.loading, par, force, factors)
+    return _JUMPS[key]
+
+
+def _flight(scene: Scene) -> float:
+    slow = [float(w) for w in scene.modes.frequencies[:1]]
+    if math.isfinite(scene.support.mass) and scene.support.stiffness > 0.0:
+        slow.append(math.sqrt(scene.support.stiffness / scene.support.mass))
+    return 3.0 * 2.0 * math.pi / min(slow) if slow else 0.0

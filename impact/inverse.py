@@ -1,0 +1,192 @@
+"""Chapter 5's inverse: duration and mean force of an oblique impact from what it left behind.
+
+The printed equations 5.5-5.12 are damaged; these are the exact rigid-body relations (see
+docs/impact.md). They hold for one contact, during which the tip slides to -x throughout under a
+constant friction coefficient, at an angle that does not change.
+"""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ..core.errors import InputError
+from .scene import Striker
+
+Array = NDArray[np.float64]
+
+
+@dataclass(frozen=True, slots=True)
+class Mobility:
+    """Inverse effective masses of the contact point [1/kg].
+
+    v_T = v_i + M P with M_xx = 1/m + s^2/I, M_xy = -c s/I, M_yy = 1/m + c^2/I.
+    """
+
+    xx: float
+    xy: float
+    yy: float
+
+    @property
+    def stick_friction(self) -> float:
+        """Friction coefficient from which the tip sticks, c s / (I/m + s^2)."""
+        return -self.xy / self.xx
+
+    def tangential(self, mu: float) -> float:
+        """A of v_Tx = A P_y with the tip sliding to -x; negative while it does [1/kg]."""
+        return mu * self.xx + self.xy
+
+    def normal(self, mu: float) -> float:
+        """B of v_Ty = v_i + B P_y with the tip sliding to -x [1/kg]."""
+        return self.yy + mu * self.xy
+
+
+def mobility(striker: Striker, angle: float) -> Mobility:
+    """Return the contact point's mobility for a rod at `angle` [rad] to the flat (5.1-5.8)."""
+    c, s = striker.arm(angle)
+    m, inertia = striker.mass, striker.inertia
+    return Mobility(1.0 / m + s * s / inertia, -c * s / inertia, 1.0 / m + c * c / inertia)
+
+
+def alpha(striker: Striker, angle: float, *, mu: float) -> float:
+    """Sliding per normal travel, alpha = A / B (corrected 5.12); positive means the tip sticks.
+
+    Examples
+    --------
+    >>> rod = Striker(mass=0.4607, tip_radius=0.0088, length=0.3048, inertia=0.4607*0.3048**2/12)
+    >>> round(alpha(rod, math.radians(45), mu=0.13), 4)
+    -0.5523
+    """
+    found = mobility(striker, angle)
+    return found.tangential(mu) / found.normal(mu)
+
+
+def alpha_curve(striker: Striker, angles: Array, *, mu: float) -> Array:
+    """Return alpha over `angles` [rad] (Figure 5.3)."""
+    return np.array([alpha(striker, float(angle), mu=mu) for angle in angles])
+
+
+@dataclass(frozen=True, slots=True)
+class Measured:
+    """What an oblique impact left behind; depth, sliding length and speeds positive, SI."""
+
+    angle: float
+    speed: float
+    mu: float
+    restitution: float
+    depth: float
+    sliding: float
+    rebound: float = math.nan
+
+    def __post_init__(self) -> None:
+        if not 0.0 < self.angle < math.pi / 2.0:
+            raise InputError(
+                f"{math.degrees(self.angle):g}", key="angle_deg", allowed="above 0, below 90"
+            )
+        for key in ("speed", "depth", "sliding"):
+            if not (getattr(self, key) > 0.0 and math.isfinite(getattr(self, key))):
+                raise InputError(f"{getattr(self, key):g}", key=key, allowed="a number above 0")
+        if not self.mu >= 0.0:
+            raise InputError(f"{self.mu:g}", key="friction", allowed="0 or more")
+
+
+@dataclass(frozen=True, slots=True)
+class Inferred:
+    """Duration and mean force at both end instants, and what speaks against them.
+
+    `duration` ends with the tip at depth delta_p (last separation); `return_duration` when it is
+    back at the undisturbed surface.
+    """
+
+    alpha: float
+    impulse: float
+    duration: float
+    mean_force: float
+    return_duration: float
+    return_force: float
+    objections: tuple[str, ...]
+
+
+def infer(striker: Striker, measured: Measured) -> Inferred:
+    """Mean force and duration from depth, sliding length and restitution (corrected 5.11, 5.14).
+
+    x_T(T) = alpha (delta_p - v_i T) with x_T = -L_s gives T; P_y = (1 + e) abs(v_i) / B and
+    F T = P_y give the mean force (gravity's share of the impulse is left out, as in 5.14).
+
+    Raises
+    ------
+    InputError
+        The tip would stick at this friction coefficient, so that it cannot have slid.
+    """
+    found = mobility(striker, measured.angle)
+    a, b = found.tangential(measured.mu), found.normal(measured.mu)
+    if a >= 0.0:
+        raise InputError(
+            f"{measured.mu:g} makes the tip stick, and no sliding length follows",
+            key="friction",
+            allowed=f"below {found.stick_friction:.3g} at {math.degrees(measured.angle):g} degrees",
+        )
+    if b <= 0.0:
+        raise InputError(f"{measured.mu:g} jams the rod", key="friction", allowed="a lower value")
+    ratio = a / b
+    impulse = (1.0 + measured.restitution) * measured.speed / b
+    slid = measured.sliding / -ratio
+    duration = (slid + measured.depth) / measured.speed
+    back = slid / measured.speed
+    if duration <= 0.0:
+        raise InputError("no positive duration follows", key="sliding")
+    return Inferred(
+        ratio, impulse, duration, impulse / duration, back, impulse / back,
+        _objections(striker, measured, duration, impulse),
+    )  # fmt: skip
+
+
+def _objections(
+    striker: Striker, measured: Measured, duration: float, impulse: float
+) -> tuple[str, ...]:
+    """Check the assumptions against the inputs; each failure is one line with its number."""
+    found = []
+    if math.isfinite(measured.rebound):
+        implied = measured.rebound / measured.speed
+        if abs(implied - measured.restitution) > 0.01:
+            found.append(
+                f"restitution {measured.restitution:g} is not rebound over approach ({implied:.3f})"
+            )
+    mean = 0.5 * measured.speed * (1.0 - measured.restitution)
+    travel = abs(mean) * duration
+    longest = 6.0 * measured.depth / (measured.speed * (1.0 + measured.restitution))
+    if duration > 10.0 * longest:
+        found.append(
+            f"{duration * 1e3:.3g} ms is {duration / longest:.0f} times what one contact over "
+            f"three dent depths takes ({longest * 1e3:.2g} ms): more than one contact, or none that "
+            "is rigid"
+        )
+    elif travel > 3.0 * measured.depth:
+        found.append(
+            f"mean velocity {mean:.2g} m/s over {duration * 1e3:.3g} ms moves the tip by "
+            f"{travel * 1e6:.0f} um, {travel / measured.depth:.1f} times the dent"
+        )
+    if striker.length > 0.0:
+        period = _bending_period(striker)
+        if math.isfinite(period) and duration < 3.0 * period:
+            found.append(
+                f"the first bending period of such a steel rod is {period * 1e3:.2g} ms: not "
+                f"short against {duration * 1e3:.3g} ms, the rod is not rigid"
+            )
+    turned = impulse * striker.arm(measured.angle)[0] / striker.inertia * duration
+    if turned > math.radians(1.0):
+        found.append(
+            f"the rod turns by {math.degrees(turned):.1f} degrees meanwhile: the angle is not "
+            "constant"
+        )
+    return tuple(found)
+
+
+def _bending_period(striker: Striker) -> float:
+    """First free-free bending period of a slender steel rod [s] (c = 5060 m/s)."""
+    if not striker.radius < 0.25 * striker.length:
+        return math.nan
+    return 2.0 * math.pi * striker.length**2 / (22.373 * 5060.0 * 0.5 * striker.radius)

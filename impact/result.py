@@ -1,0 +1,139 @@
+"""What an impact ends in: observables, balances, and how the computation ended."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass, fields
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ..core.errors import COMPLETED, Ending, Outcome
+from .compiled import (
+    CONTACT_BUDGET,
+    COUNTS,
+    DONE,
+    OBSERVABLES,
+    SPOT_CENTRE,
+    SPOT_FLAT,
+    SPOT_PEAK,
+    SPOT_RADIUS,
+    SPOT_TIP,
+    STEP_BUDGET,
+)
+from .scene import Spot
+
+_ENDINGS = {
+    DONE: COMPLETED,
+    STEP_BUDGET: Outcome(
+        Ending.STEP_LIMIT,
+        "the impact did not end within the step budget.",
+        "Raise max_steps, or look for a contact that never opens (no rebound under gravity).",
+    ),
+    CONTACT_BUDGET: Outcome(
+        Ending.STEP_LIMIT,
+        "the tip was still re-contacting after the allowed number of contacts.",
+        "Raise max_contacts or lower flight_s.",
+    ),
+}
+_NOT_FINITE = Outcome(
+    Ending.NOT_CONVERGED,
+    "the step size fell to nothing.",
+    "Check the inputs; the law may jump or be undefined at this depth.",
+)
+
+
+@dataclass(frozen=True, slots=True)
+class Impact:
+    """Observables of one impact; SI units, named in each field.
+
+    Depths are positive. `restitution` is kinematic: rebound over approach normal velocity of the
+    contact point, of the rigid-body motion. `kinetic_restitution` is P_r / P_c,
+    `energetic_restitution` sqrt(W_r / W_c), `tangential_restitution` the ratio of tangential
+    velocities (nan without any at touch). `sliding_length_m` follows the material point that
+    touches (Eq. 5.9), `scar_travel_m` the place of contact on the flat; both are largest minus
+    smallest while in contact. `contact_time_s` runs from first touch to last separation,
+    `touching_time_s` leaves out the flights between. `contact_work_J` is what the contact kept,
+    `support_energy_J` what the support took up. `energy_residual` is the unbalanced energy over
+    the kinetic energy of the approach, `momentum_residual` the unbalanced momentum over m v.
+    """
+
+    restitution: float
+    kinetic_restitution: float
+    energetic_restitution: float
+    tangential_restitution: float
+    residual_sphere_m: float
+    residual_flat_m: float
+    peak_depth_m: float
+    contact_time_s: float
+    touching_time_s: float
+    loading_time_s: float
+    peak_force_N: float
+    rebound_spin_rad_s: float
+    sliding_length_m: float
+    scar_travel_m: float
+    friction_impulse_ratio: float
+    normal_impulse_Ns: float
+    tangential_impulse_Ns: float
+    contact_work_J: float
+    friction_work_J: float
+    modal_energy_J: float
+    support_energy_J: float
+    rebound_speed_m_s: float
+    tangential_rebound_m_s: float
+    energy_residual: float
+    momentum_residual: float
+    tip_rebound_m_s: float
+    contacts: int
+    sticking: bool
+    spot: Spot
+    outcome: Outcome
+
+    @property
+    def residual_m(self) -> float:
+        """Residual depth of both bodies together [m]."""
+        return self.residual_sphere_m + self.residual_flat_m
+
+    @property
+    def mean_force_N(self) -> float:
+        """Normal impulse over the time in contact [N]."""
+        return self.normal_impulse_Ns / self.touching_time_s
+
+    @property
+    def return_time_s(self) -> float:
+        """Time until the tip is back at the undisturbed surface: contact + residual / rebound [s].
+
+        The instant that the thesis's simulated durations belong to (Tables 5.2-5.4).
+        """
+        return self.contact_time_s + self.residual_m / self.tip_rebound_m_s
+
+    @property
+    def observables(self) -> dict[str, float]:
+        """All numeric observables by name."""
+        return {name: float(getattr(self, name)) for name in OBSERVABLES}
+
+
+def impact_of(row: NDArray[np.float64], spot: NDArray[np.float64]) -> Impact:
+    """Return the `Impact` of one output row and spot of the compiled integrator."""
+    values = dict(zip(OBSERVABLES + COUNTS, (float(x) for x in row), strict=True))
+    ending = values.pop("ending")
+    outcome = _NOT_FINITE if math.isnan(ending) else _ENDINGS.get(int(ending), _NOT_FINITE)
+    kept = {f.name for f in fields(Impact)} & set(OBSERVABLES)
+    return Impact(
+        **{name: values[name] for name in kept},
+        contacts=int(values["contacts"]),
+        sticking=values["last_mode"] == 0.0,
+        spot=spot_of(spot),
+        outcome=outcome,
+    )
+
+
+def spot_of(row: NDArray[np.float64]) -> Spot:
+    """Return the `Spot` of a spot vector."""
+    return Spot(
+        peak=float(row[SPOT_PEAK]),
+        flat=float(row[SPOT_FLAT]),
+        tip=float(row[SPOT_TIP]),
+        centre=float(row[SPOT_CENTRE]),
+        radius=float(row[SPOT_RADIUS]),
+    )

@@ -1,0 +1,275 @@
+"""What strikes what: a frozen description of one impact, with a named seam for each assumption.
+
+The baseline fills every seam with the thesis's choice: flow stress free of rate, an unmodified
+normal force, Coulomb friction, a rigid striker, a rigid base, the stated approach, a perfect
+instrument. A mechanism replaces one seam by `Scene.with_`; nothing is ever written in place.
+"""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass, field, replace
+from typing import Any, Protocol
+
+from ..core.errors import InputError
+from ..core.material import Material, Pair
+from ..models.base import ContactLaw
+from .beam import Modes
+
+STANDARD_GRAVITY = 9.81
+
+
+@dataclass(frozen=True, slots=True)
+class Striker:
+    """A sphere, or a rod with two spherical tips, as a rigid body.
+
+    Parameters
+    ----------
+    mass
+        [kg].
+    tip_radius
+        Radius of the striking tip sphere [m].
+    length
+        Distance between the centres of the two tip spheres [m]; 0 for a sphere.
+    radius
+        Radius of the shank [m]; a sphere's own radius.
+    inertia
+        About the centre of mass, across the axis [kg m^2]; by default m (L^2/12 + r^2/4) for a
+        rod and 2/5 m r^2 for a sphere.
+    tip_flat_radius
+        Radius of a flat worn or cut on the tip [m].
+    """
+
+    mass: float
+    tip_radius: float
+    length: float = 0.0
+    radius: float = math.nan
+    inertia: float = math.nan
+    tip_flat_radius: float = 0.0
+    name: str = ""
+
+    def __post_init__(self) -> None:
+        for key, value in (("mass_kg", self.mass), ("tip_radius_m", self.tip_radius)):
+            if not (value > 0.0 and math.isfinite(value)):
+                raise InputError(f"{value:g}", key=key, allowed="a number above 0")
+        if math.isnan(self.radius):
+            object.__setattr__(self, "radius", self.tip_radius)
+        if math.isnan(self.inertia):
+            object.__setattr__(self, "inertia", self._solid_inertia())
+
+    def _solid_inertia(self) -> float:
+        if self.length == 0.0:
+            return 0.4 * self.mass * self.radius**2
+        return self.mass * (self.length**2 / 12.0 + self.radius**2 / 4.0)
+
+    def arm(self, angle: float) -> tuple[float, float]:
+        """Return (c, s): how far the centre of mass lies beside and above the contact point [m].
+
+        c = (L/2) cos(theta), s = (L/2) sin(theta) + R (Eq. 5.1).
+        """
+        return (
+            0.5 * self.length * math.cos(angle),
+            0.5 * self.length * math.sin(angle) + self.tip_radius,
+        )
+
+
+class FlowStress(Protocol):
+    """Seam: the strength of the metal at the conditions of this impact."""
+
+    def strengthened(self, scene: Scene) -> Pair:
+        """Return the pair with the strengths that hold during the impact."""
+
+
+@dataclass(frozen=True, slots=True)
+class RateFree:
+    """The yield strength is the static one."""
+
+    def strengthened(self, scene: Scene) -> Pair:
+        """Return the pair as stated."""
+        return scene.pair
+
+
+@dataclass(frozen=True, slots=True)
+class ForceTransform:
+    """Seam: what is done to the law's normal force; neutral by default.
+
+    Parameters
+    ----------
+    damping
+        chi of F (1 + chi d'), Hunt and Crossley's form [s/m].
+    radiation
+        kappa [m s/N]: waves sent into a half-space take F up by kappa (2 E' a)^2 d'.
+    factors
+        Multiply the loading force, piecewise linear in ln(depth / R) at equally spaced
+        nodes from `force.LOG_DEPTH_FIRST` to `force.LOG_DEPTH_LAST`; empty for none.
+    recovery
+        Multiplies the elastic recovery (peak depth minus residual depth).
+    edge
+        Radius at which the tip ends [m]: beyond it a flat punch with its plastic limit.
+    """
+
+    damping: float = 0.0
+    radiation: float = 0.0
+    factors: tuple[float, ...] = ()
+    recovery: float = 1.0
+    edge: float = math.inf
+
+
+@dataclass(frozen=True, slots=True)
+class Friction:
+    """Seam: the tangential law; Coulomb friction with stick by default.
+
+    Parameters
+    ----------
+    mu
+        Coefficient of friction at speed [-].
+    mu_static
+        Coefficient at rest [-]; by default equal to `mu`.
+    speed
+        Sliding speed over which `mu_static` decays to `mu` [m/s].
+    ploughing
+        Multiplies the ploughing term (4 / 3 pi) a / R that is added to `mu` [-].
+    """
+
+    mu: float = 0.0
+    mu_static: float = math.nan
+    speed: float = 1.0
+    ploughing: float = 0.0
+
+    def __post_init__(self) -> None:
+        if not self.mu >= 0.0:
+            raise InputError(f"{self.mu:g}", key="friction.coefficient", allowed="0 or more")
+        if math.isnan(self.mu_static):
+            object.__setattr__(self, "mu_static", self.mu)
+
+
+@dataclass(frozen=True, slots=True)
+class Support:
+    """Seam: how the flat is held; rigid by default.
+
+    Parameters
+    ----------
+    mass, stiffness, damping
+        A flat of this mass [kg] on a spring [N/m] with a dashpot [N s/m].
+    plate_mobility
+        Zener's plate: the surface moves at this speed per force [m/(N s)],
+        1 / (8 sqrt(rho h D)).
+    """
+
+    mass: float = math.inf
+    stiffness: float = 0.0
+    damping: float = 0.0
+    plate_mobility: float = 0.0
+
+
+@dataclass(frozen=True, slots=True)
+class Approach:
+    """Seam: the motion at first touch.
+
+    Parameters
+    ----------
+    speed
+        Normal approach speed [m/s], positive.
+    angle
+        Between the rod's axis and the flat [rad]; pi/2 when upright.
+    tangential
+        Speed of the centre of mass along +x [m/s].
+    spin
+        Angular velocity, counter-clockwise positive [rad/s].
+    """
+
+    speed: float
+    angle: float = math.pi / 2.0
+    tangential: float = 0.0
+    spin: float = 0.0
+
+    def __post_init__(self) -> None:
+        if not (self.speed > 0.0 and math.isfinite(self.speed)):
+            raise InputError(f"{self.speed:g}", key="impact_speed_m_s", allowed="a number above 0")
+        if not 0.0 <= self.angle <= math.pi / 2.0 + 1e-12:
+            raise InputError(f"{math.degrees(self.angle):g}", key="angle_deg", allowed="0 to 90")
+
+    @classmethod
+    def dropped(cls, height: float, **others: float) -> Approach:
+        """Return the approach after a free fall over `height` [m]: v = sqrt(2 g H)."""
+        if not (height > 0.0 and math.isfinite(height)):
+            raise InputError(f"{height:g}", key="drop_height_m", allowed="a number above 0")
+        return cls(speed=math.sqrt(2.0 * STANDARD_GRAVITY * height), **others)
+
+
+@dataclass(frozen=True, slots=True)
+class Instrument:
+    """Seam: from the true observable to the recorded one; `gain * true + offset` by name."""
+
+    gain: dict[str, float] = field(default_factory=dict)
+    offset: dict[str, float] = field(default_factory=dict)
+
+    def reading(self, name: str, value: float) -> float:
+        """Return what the instrument shows for the observable `name`."""
+        return self.gain.get(name, 1.0) * value + self.offset.get(name, 0.0)
+
+
+@dataclass(frozen=True, slots=True)
+class Spot:
+    """The state of one place on the flat and of the tip that meets it; fresh by default.
+
+    Parameters
+    ----------
+    peak
+        Largest depth that the weaker body's metal has met here [m].
+    flat, tip
+        Permanent depth of the crater and permanent flattening of the tip [m].
+    centre
+        Tangential position of the crater [m].
+    radius
+        Contact radius at the peak [m]; a touch closer than this to `centre` meets the crater.
+    """
+
+    peak: float = 0.0
+    flat: float = 0.0
+    tip: float = 0.0
+    centre: float = 0.0
+    radius: float = 0.0
+
+
+@dataclass(frozen=True, slots=True)
+class Scene:
+    """One impact: law, pair, striker, approach, and the seams."""
+
+    law: ContactLaw
+    pair: Pair
+    striker: Striker
+    approach: Approach
+    gravity: float = STANDARD_GRAVITY
+    flow: FlowStress = RateFree()
+    force: ForceTransform = ForceTransform()
+    friction: Friction = Friction()
+    modes: Modes = Modes()
+    support: Support = Support()
+    instrument: Instrument = field(default_factory=Instrument)
+    spot: Spot = Spot()
+
+    def __post_init__(self) -> None:
+        if not math.isclose(self.pair.R, self.striker.tip_radius, rel_tol=1e-12):
+            raise InputError(
+                f"the pair's radius {self.pair.R:g} is not the tip radius "
+                f"{self.striker.tip_radius:g}",
+                key="tip_radius_m",
+            )
+
+    def with_(self, **changes: Any) -> Scene:
+        """Return a copy with some seams replaced."""
+        return replace(self, **changes)
+
+
+def scene_of(
+    law: ContactLaw,
+    *,
+    sphere: Material,
+    flat: Material,
+    striker: Striker,
+    approach: Approach,
+    **seams: Any,
+) -> Scene:
+    """Return a scene; the pair's radius is the striker's tip radius."""
+    return Scene(law, Pair(sphere, flat, striker.tip_radius), striker, approach, **seams)
