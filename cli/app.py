@@ -11,6 +11,7 @@ import sys
 import typer
 
 from ..core.errors import EXIT_INPUT_ERROR, InputError
+from . import campaign
 
 app = typer.Typer(
     name="dentscope",
@@ -22,7 +23,10 @@ app = typer.Typer(
 
 # typer ships its own copy of click in newer versions and uses the installed one in older ones;
 # the base class of its usage errors is reached through a name that both export.
-_UsageError = typer.BadParameter.__mro__[1]
+_UsageError: type[Exception] = typer.BadParameter.__mro__[1]
+
+
+app.add_typer(campaign.app, name="campaign")
 
 
 @app.callback()

@@ -1,0 +1,52 @@
+# Every target first makes the environment in .venv; see `make help`.
+PYTHON ?= python3
+VENV := .venv
+BIN := $(VENV)/bin
+STAMP := $(VENV)/.installed
+DESIGN ?= smoke
+WORKERS ?=
+LOCKS := $(wildcard requirements/*.txt)
+# the solver runs one case a core: more threads inside a case only disturb the others
+export OMP_NUM_THREADS ?= 1
+export OPENBLAS_NUM_THREADS ?= 1
+
+.DEFAULT_GOAL := help
+.PHONY: help install campaign fit impact test check bench lock clean
+
+help: ## list the targets
+	@grep -hE '^[a-z]+:.*## ' $(MAKEFILE_LIST) | sed -E 's/^([a-z]+):.*## /\1\t/' | expand -t 12
+
+install: $(STAMP) ## make .venv with the pinned packages and the command dentscope, and check it
+
+$(STAMP): pyproject.toml $(LOCKS) scripts/install.sh
+	@PYTHON="$(PYTHON)" bash scripts/install.sh
+
+campaign: $(STAMP) ## solve the finite-element cases of DESIGN into build/campaign; goes on where it stopped
+	@$(BIN)/dentscope campaign run --design "$(DESIGN)" $(if $(WORKERS),--workers $(WORKERS))
+
+fit: $(STAMP) ## fit the closed forms to the campaign: coefficients, standard errors, report in build/fit
+	@$(BIN)/dentscope fit
+
+impact: $(STAMP) ## chapter 3 of the thesis: restitution and dent against drop height, every law
+	@$(BIN)/dentscope impact
+
+test: $(STAMP) ## run the tests
+	@$(BIN)/python -m pytest -n auto --dist worksteal
+
+check: $(STAMP) ## lint, formatting, types, import order
+	@$(BIN)/ruff check .
+	@$(BIN)/ruff format --check .
+	@$(BIN)/mypy -p dentscope
+	@$(BIN)/lint-imports
+
+bench: $(STAMP) ## speed as ratios within one run
+	@$(BIN)/python -m pytest benchmarks --benchmark-only -q
+
+lock: $(STAMP) ## pin all packages anew for every supported Python
+	@for minor in 11 12 13 14; do \
+	  $(BIN)/uv pip compile -q pyproject.toml --extra dev --extra cluster --generate-hashes \
+	    --python-version 3.$$minor --no-emit-index-url --no-header --no-annotate --upgrade \
+	    -o requirements/py3$$minor.txt; done
+
+clean: ## remove what was built; the environment and data/ stay
+	@rm -rf build .pytest_cache .mypy_cache .ruff_cache .hypothesis .benchmarks

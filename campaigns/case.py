@@ -1,0 +1,174 @@
+"""One finite-element case: a frozen specification and the identity that follows from it.
+
+The problem is scale-free: length enters only through Delta/R and stress only through ratios. A case
+is therefore identified by the six groups E_s/E', nu_s, nu_f, Sy_s/E', Sy_f/E' and which body is
+rigid, (E_f/E' follows from the others), together with the depths and the numerical settings. Two
+specifications with equal groups are one case, whatever their units.
+"""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+from typing import Any
+
+from .. import fem
+from ..core.errors import InputError
+from ..core.material import Material, Pair
+from ..core.provenance import content_id
+
+_DIGITS = 12  # groups are rounded to this many digits, so that round-off makes no new case
+
+
+@dataclass(frozen=True)
+class Case:
+    """What one solve is asked to do.
+
+    Parameters
+    ----------
+    name
+        Short readable name, unique within a design.
+    pair
+        The two bodies and the radius [SI].
+    depths, unload_from, radius_at_least
+        As in `fem.ContactProblem`.
+    accuracy
+        Numerical settings.
+    """
+
+    name: str
+    pair: Pair
+    depths: tuple[float, ...]
+    unload_from: tuple[float, ...]
+    radius_at_least: float
+    accuracy: fem.Accuracy
+
+    @property
+    def groups(self) -> dict[str, Any]:
+        """The dimensionless groups that identify the physics."""
+        unit = self.pair.E_reduced
+        return {
+            "sphere": _body(self.pair.sphere, unit),
+            "flat": _body(self.pair.flat, unit),
+        }
+
+    @property
+    def id(self) -> str:
+        """SHA-256 of the groups, the depths, the settings and the numerics version."""
+        return content_id(
+            {
+                "groups": self.groups,
+                "depths": [_rounded(d) for d in self.depths],
+                "unload_from": [_rounded(d) for d in self.unload_from],
+                "radius_at_least": self.radius_at_least,
+                "accuracy": {k: v for k, v in self.accuracy.as_dict().items() if k != "level"},
+                "numerics_version": fem.NUMERICS_VERSION,
+            }
+        )
+
+    def problem(self) -> fem.ContactProblem:
+        """Return the solver's input."""
+        return fem.ContactProblem(
+            pair=self.pair,
+            depths=self.depths,
+            unload_from=self.unload_from,
+            radius_at_least=self.radius_at_least,
+        )
+
+    def specification(self) -> dict[str, Any]:
+        """Return everything that `from_specification` needs, as plain values."""
+        return {
+            "name": self.name,
+            "R_m": self.pair.R,
+            "sphere": _plain(self.pair.sphere),
+            "flat": _plain(self.pair.flat),
+            "depths": list(self.depths),
+            "unload_from": list(self.unload_from),
+            "radius_at_least": self.radius_at_least,
+            "accuracy": self.accuracy.as_dict(),
+        }
+
+    @classmethod
+    def from_specification(cls, spec: dict[str, Any]) -> Case:
+        """Rebuild a case from `specification()`."""
+        return cls(
+            name=spec["name"],
+            pair=Pair(_material(spec["sphere"]), _material(spec["flat"]), spec["R_m"]),
+            depths=tuple(spec["depths"]),
+            unload_from=tuple(spec["unload_from"]),
+            radius_at_least=spec["radius_at_least"],
+            accuracy=fem.Accuracy(**spec["accuracy"]),
+        )
+
+
+def standard_case(
+    name: str,
+    pair: Pair,
+    *,
+    deepest: float,
+    n_depths: int,
+    unload_w: tuple[float, ...] = (),
+    unload_depths: tuple[float, ...] = (),
+    radius_at_least: float = 0.0,
+    accuracy: fem.Accuracy,
+) -> Case:
+    """Make a case with geometric depths from below first yield.
+
+    Parameters
+    ----------
+    name, pair, radius_at_least, accuracy
+        As in `Case`.
+    deepest
+        Largest Delta/R.
+    n_depths
+        Number of recorded depths.
+    unload_w
+        Depths to unload from, in units of the critical depth.
+    unload_depths
+        Depths to unload from, as Delta/R.
+    """
+    onset = fem.critical_depth(pair)
+    if not math.isfinite(onset):
+        onset = 1e-4 * deepest
+    first = 0.3 * onset
+    if first >= deepest:
+        raise InputError(
+            f"first yield at Delta/R = {onset:.3g}", key=name, allowed=f"below {deepest:g}"
+        )
+    unload = sorted(
+        d for d in {*(w * onset for w in unload_w), *unload_depths} if first < d <= deepest
+    )
+    return Case(
+        name=name,
+        pair=pair,
+        depths=fem.geometric_depths(first, deepest, n_depths),
+        unload_from=tuple(unload),
+        radius_at_least=radius_at_least,
+        accuracy=accuracy,
+    )
+
+
+def _body(body: Material, unit: float) -> Any:
+    if body.rigid:
+        return "rigid"
+    strength = None if math.isinf(body.Sy) else _rounded(body.Sy / unit)
+    return {"E": _rounded(body.E / unit), "nu": _rounded(body.nu), "Sy": strength}
+
+
+def _rounded(x: float) -> float:
+    return float(f"{x:.{_DIGITS}g}")
+
+
+def _plain(body: Material) -> dict[str, Any]:
+    if body.rigid:
+        return {"rigid": True}
+    out: dict[str, Any] = {"E_Pa": body.E, "nu": body.nu}
+    if math.isfinite(body.Sy):
+        out["Sy_Pa"] = body.Sy
+    return out
+
+
+def _material(spec: dict[str, Any]) -> Material:
+    if spec.get("rigid"):
+        return Material(E=math.nan, nu=math.nan, rigid=True)
+    return Material(E=spec["E_Pa"], nu=spec["nu"], Sy=spec.get("Sy_Pa", math.inf))

@@ -1,0 +1,176 @@
+"""Where cases are computed: processes of this machine, or a dask cluster, behind one seam.
+
+An executor takes specifications and gives back (case id, solution or reason) in the order in which
+they end. A worker that dies costs its case one more try, never the run.
+"""
+
+from __future__ import annotations
+
+import multiprocessing
+import os
+from collections.abc import Iterator, Mapping
+from concurrent.futures import FIRST_COMPLETED, wait
+from dataclasses import dataclass
+from typing import Any, Protocol
+
+from ..core.errors import InputError
+from ..fem import Solution, solve
+from .case import Case
+
+_THREADS = ("OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS", "MKL_NUM_THREADS", "NUMBA_NUM_THREADS")
+_TRIES = 2
+
+
+@dataclass(frozen=True)
+class Ended:
+    """One case that ended: its solution, or why there is none."""
+
+    id: str
+    solution: Solution | None
+    message: str = ""
+
+
+class Executor(Protocol):
+    """What the campaign needs of a place to compute."""
+
+    workers: int
+
+    def run(self, cases: Mapping[str, Case], *, time_limit_s: float) -> Iterator[Ended]:
+        """Compute the cases; give each as it ends."""
+
+
+def solve_specification(spec: dict[str, Any], time_limit_s: float) -> Solution:
+    """Solve one case from its specification; the function that workers run."""
+    case = Case.from_specification(spec)
+    return solve(case.problem(), accuracy=case.accuracy, time_limit_s=time_limit_s)
+
+
+@dataclass(frozen=True)
+class LocalExecutor:
+    """Worker processes on this machine, one thread each."""
+
+    workers: int
+
+    def run(self, cases: Mapping[str, Case], *, time_limit_s: float) -> Iterator[Ended]:
+        """Compute the cases; give each as it ends."""
+        from pebble import ProcessPool
+
+        # workers are spawned: the variables act before their numpy loads
+        for name in _THREADS:
+            os.environ[name] = "1"
+        pool = ProcessPool(max_workers=self.workers, context=multiprocessing.get_context("spawn"))
+        try:
+            tries = dict.fromkeys(cases, 0)
+            waiting = {self._submit(pool, cases[key], time_limit_s): key for key in cases}
+            while waiting:
+                ended, _ = wait(waiting, return_when=FIRST_COMPLETED)
+                for future in ended:
+                    key = waiting.pop(future)
+                    answer = _answer(key, future)
+                    tries[key] += 1
+                    if answer is None and tries[key] < _TRIES:
+                        waiting[self._submit(pool, cases[key], time_limit_s)] = key
+                        continue
+                    yield answer or Ended(key, None, f"the worker died {_TRIES} times")
+        finally:
+            pool.stop()
+            pool.join()
+
+    @staticmethod
+    def _submit(pool: Any, case: Case, time_limit_s: float) -> Any:
+        # the solver keeps the limit itself; the pool's is for one that hangs
+        return pool.schedule(
+            solve_specification,
+            args=[case.specification(), time_limit_s],
+            timeout=1.5 * time_limit_s + 60.0,
+        )
+
+
+@dataclass(frozen=True)
+class DaskExecutor:
+    """Workers of a dask cluster.
+
+    Parameters
+    ----------
+    address
+        The scheduler's address, `tcp://HOST:PORT`.
+    workers
+        Workers known when the connection was made.
+    client
+        The connection.
+    """
+
+    address: str
+    workers: int
+    client: Any
+
+    @classmethod
+    def connect(cls, address: str, *, timeout_s: float = 10.0) -> DaskExecutor:
+        """Connect to a scheduler.
+
+        Raises
+        ------
+        InputError
+            dask is not installed, or nobody answers at the address.
+        """
+        try:
+            from distributed import Client
+        except ImportError:
+            raise InputError(
+                "dask.distributed is not installed",
+                key="scheduler",
+                allowed="pip install 'dentscope[cluster]'",
+            ) from None
+        try:
+            client = Client(address, timeout=timeout_s)
+        except (OSError, ValueError, TimeoutError) as error:
+            raise InputError(
+                f"no dask scheduler at {address} ({error})",
+                key="scheduler",
+                allowed="tcp://HOST:PORT",
+            ) from None
+        return cls(address, max(1, len(client.scheduler_info()["workers"])), client)
+
+    def run(self, cases: Mapping[str, Case], *, time_limit_s: float) -> Iterator[Ended]:
+        """Compute the cases in a sliding window of four per worker; give each as it ends."""
+        from distributed import as_completed
+
+        todo = iter(cases.items())
+        running = as_completed()
+        keys: dict[str, str] = {}
+
+        def submit() -> bool:
+            for key, case in todo:
+                future = self.client.submit(
+                    solve_specification, case.specification(), time_limit_s, key=f"case-{key}"
+                )
+                keys[future.key] = key
+                running.add(future)
+                return True
+            return False
+
+        for _ in range(4 * self.workers):
+            if not submit():
+                break
+        for future in running:
+            key = keys.pop(future.key)
+            error = future.exception()
+            if error is None:
+                yield Ended(key, future.result())
+            else:
+                yield Ended(key, None, f"{type(error).__name__}: {error}")
+            submit()
+
+
+def _answer(key: str, future: Any) -> Ended | None:
+    """Return the outcome of a pool's future; none when its worker died."""
+    from pebble import ProcessExpired
+
+    try:
+        return Ended(key, future.result())
+    except ProcessExpired:
+        return None
+    except TimeoutError:
+        return Ended(key, None, "the case hung beyond its time limit")
+    except Exception as error:  # a bug in one case must not take the campaign with it
+        return Ended(key, None, f"{type(error).__name__}: {error}")

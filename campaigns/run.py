@@ -1,0 +1,99 @@
+"""Running a design: what is missing is computed, what ends is stored at once."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass
+from pathlib import Path
+
+from .case import Case
+from .designs import Design, distinct_cases
+from .executor import Executor
+from .store import Store
+
+
+@dataclass(frozen=True)
+class Status:
+    """Counts of a design's cases in a store; done + failed + missing = designed."""
+
+    designed: int
+    done: int
+    failed: int
+
+    @property
+    def missing(self) -> int:
+        """Cases that have not ended."""
+        return self.designed - self.done - self.failed
+
+
+@dataclass(frozen=True)
+class Step:
+    """One case that ended, for whoever shows the progress."""
+
+    case: Case
+    done: bool
+    message: str
+    cpu_s: float
+    status: Status
+
+
+def status_of(design: Design, store: Store) -> Status:
+    """Count a design's cases in a store."""
+    stored = store.statuses()
+    found = [stored[key] for key in distinct_cases(design) if key in stored]
+    return Status(len(distinct_cases(design)), found.count("done"), found.count("failed"))
+
+
+def run_design(
+    design: Design,
+    path: Path,
+    *,
+    executor: Executor,
+    time_limit_s: float,
+    again: frozenset[str] = frozenset(),
+    report: Callable[[Step], None] | None = None,
+) -> Status:
+    """Compute what a design lacks in the file at `path`.
+
+    Parameters
+    ----------
+    design
+        The sweep.
+    path
+        Campaign file, made if needed; cases it already holds are not computed again.
+    executor
+        Where to compute.
+    time_limit_s
+        Wall-clock limit of one case.
+    again
+        Statuses that are computed again, for example `{"failed"}`.
+    report
+        Called after each case.
+
+    Returns
+    -------
+    Status
+        The counts at the end.
+
+    Raises
+    ------
+    InputError
+        Another run writes the same file, or it is damaged.
+    """
+    store = Store(path)
+    cases = distinct_cases(design)
+    with store.writing():
+        stored = store.statuses()
+        todo = {
+            key: case for key, case in cases.items() if key not in stored or stored[key] in again
+        }
+        for ended in executor.run(todo, time_limit_s=time_limit_s):
+            case = cases[ended.id]
+            store.put(case, ended.solution, message=ended.message)
+            if report is not None:
+                solution = ended.solution
+                good = solution is not None and solution.outcome.completed
+                text = ended.message if solution is None else str(solution.outcome)
+                cpu = solution.counters.cpu_s if solution else 0.0
+                report(Step(case, good, "" if good else text, cpu, status_of(design, store)))
+    return status_of(design, store)

@@ -1,0 +1,45 @@
+"""Every dataset of a campaign file: its unit, axes and meaning.
+
+A file holds one group a case under `/cases/ID`. A case that ended has the attributes `status`
+(`done` or `failed`), `specification` and `environment` (JSON) and the datasets below; unloadings
+lie under `unload-1`, `unload-2`, ... in the order of their depth.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+FORMAT = "dentscope-campaign/1"
+
+
+@dataclass(frozen=True)
+class Dataset:
+    """Unit, axes and meaning of one dataset."""
+
+    unit: str
+    axes: tuple[str, ...]
+    meaning: str
+
+
+CURVE: dict[str, Dataset] = {
+    "delta": Dataset("m", ("depth",), "approach of the driven face, Delta"),
+    "force": Dataset("N", ("depth",), "normal force F, reaction at the driven face"),
+    "radius": Dataset("m", ("depth",), "contact radius a, from the opening gap"),
+    "radius_last_node": Dataset("m", ("depth",), "radius of the last node in contact"),
+    "sphere": Dataset("m", ("depth",), "displacement of the pole in the sphere, delta_s"),
+    "flat": Dataset("m", ("depth",), "displacement of the flat below the pole, delta_f"),
+    "hardness": Dataset("Pa", ("depth",), "mean pressure F/(pi a^2)"),
+    "force_defect": Dataset("1", ("depth",), "(contact force - reaction)/reaction"),
+    "energy_defect": Dataset("1", ("depth",), "(work - stored - dissipated)/work"),
+    "dissipated": Dataset("J", ("depth",), "plastic work so far"),
+}
+
+UNLOADING_PROFILES: dict[str, Dataset] = {
+    "crater_r": Dataset("m", ("node",), "radius of the flat's surface nodes, force-free"),
+    "crater_z": Dataset("m", ("node",), "height of the flat's surface, force-free"),
+    "tip_r": Dataset("m", ("node",), "radius of the sphere's surface nodes, force-free"),
+    "tip_z": Dataset("m", ("node",), "height of the sphere's surface, its top at rest"),
+}
+
+UNLOADING_ATTRIBUTES = ("depth", "residual_sphere_m", "residual_flat_m", "steps", "outcome")
+CASE_ATTRIBUTES = ("status", "outcome", "message", "specification", "environment", "mesh")

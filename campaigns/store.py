@@ -1,0 +1,322 @@
+"""The campaign file: one writer, opened, appended and closed for each case.
+
+Closed after every case, the file is readable at any moment and survives the death of its writer;
+what a kill costs is at most the case in flight. A second writer is refused through a lock file that
+names its process.
+"""
+
+from __future__ import annotations
+
+import json
+import os
+from collections.abc import Iterator
+from contextlib import contextmanager
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+import h5py
+import numpy as np
+import numpy.typing as npt
+
+from ..core.errors import InputError
+from ..core.provenance import environment
+from ..fem import Curve, Solution
+from .case import Case
+from .schema import CURVE, FORMAT, UNLOADING_PROFILES, Dataset
+
+Floats = npt.NDArray[np.float64]
+
+
+@dataclass(frozen=True)
+class UnloadingRecord:
+    """One stored unloading; see `campaigns.schema` for units."""
+
+    depth: float
+    curve: dict[str, Floats]
+    residual_sphere: float
+    residual_flat: float
+    profiles: dict[str, Floats]
+
+
+@dataclass(frozen=True)
+class CaseRecord:
+    """One stored case.
+
+    Parameters
+    ----------
+    id
+        Case id.
+    case
+        Its specification.
+    status
+        `done` or `failed`.
+    message
+        Why it failed; empty when done.
+    curve
+        Loading results by name, shape (n,), SI (see `campaigns.schema.CURVE`).
+    unloadings
+        In the order of their depth.
+    counters
+        Work that the solve took.
+    """
+
+    id: str
+    case: Case
+    status: str
+    message: str
+    curve: dict[str, Floats]
+    unloadings: tuple[UnloadingRecord, ...]
+    counters: dict[str, float]
+
+
+class Store:
+    """A campaign file.
+
+    Parameters
+    ----------
+    path
+        The HDF5 file; it need not exist yet.
+    """
+
+    def __init__(self, path: Path) -> None:
+        self.path = path
+
+    @contextmanager
+    def writing(self) -> Iterator[None]:
+        """Hold the lock of this file, so that nobody else writes it.
+
+        Raises
+        ------
+        InputError
+            Another living process holds it.
+        """
+        lock = self.path.with_suffix(".lock")
+        self.path.parent.mkdir(parents=True, exist_ok=True)
+        while True:
+            try:
+                handle = os.open(lock, os.O_CREAT | os.O_EXCL | os.O_WRONLY)
+                break
+            except FileExistsError:
+                owner = _lock_owner(lock)
+                if owner is not None and _alive(owner):
+                    raise InputError(
+                        f"process {owner} is writing this campaign",
+                        source=str(self.path),
+                        allowed="one run at a time; wait for it or stop it",
+                    ) from None
+                lock.unlink(missing_ok=True)
+        try:
+            os.write(handle, str(os.getpid()).encode())
+            os.close(handle)
+            yield
+        finally:
+            lock.unlink(missing_ok=True)
+
+    def statuses(self) -> dict[str, str]:
+        """Status of every stored case by id."""
+        if not self.path.exists():
+            return {}
+        with _reading(self.path) as file:
+            return {
+                key: str(group.attrs["status"])
+                for key, group in file["cases"].items()
+                if "status" in group.attrs
+            }
+
+    def put(self, case: Case, solution: Solution | None, *, message: str = "") -> None:
+        """Append one ended case.
+
+        Parameters
+        ----------
+        case
+            The case.
+        solution
+            What the solver gave; none when the worker gave nothing.
+        message
+            Why there is no solution.
+        """
+        with self._appending() as cases:
+            if case.id in cases:
+                del cases[case.id]
+            group = cases.create_group(case.id)
+            done = solution is not None and solution.outcome.completed
+            group.attrs["specification"] = json.dumps(case.specification())
+            group.attrs["environment"] = json.dumps(environment())
+            group.attrs["outcome"] = solution.outcome.ending.value if solution else "worker-lost"
+            group.attrs["message"] = "" if done else (message or str(solution and solution.outcome))
+            if solution is not None:
+                _put_solution(group, solution)
+            # last: a group without a status is one whose writing was cut short
+            group.attrs["status"] = "done" if done else "failed"
+
+    def _appending(self) -> Any:
+        return _appending(self.path)
+
+    def read(self, case_id: str) -> CaseRecord:
+        """Read one case, named by its id or the beginning of it."""
+        with _reading(self.path) as file:
+            found = [key for key in file["cases"] if key.startswith(case_id)]
+            if len(found) != 1:
+                raise InputError(
+                    f"{len(found)} cases begin with {case_id!r}",
+                    source=str(self.path),
+                    key="case",
+                    allowed="an id from `campaign status`, or an unambiguous beginning",
+                )
+            return _read_case(found[0], file["cases"][found[0]], self.path)
+
+    def read_all(self) -> list[CaseRecord]:
+        """Read every case, in the order of their ids."""
+        with _reading(self.path) as file:
+            return [
+                _read_case(key, group, self.path)
+                for key, group in file["cases"].items()
+                if "status" in group.attrs
+            ]
+
+
+def read_curves(path: Path) -> list[CaseRecord]:
+    """Read all completed cases of a campaign file.
+
+    Raises
+    ------
+    InputError
+        The file is missing, is no campaign file, or is damaged.
+    """
+    return [record for record in Store(path).read_all() if record.status == "done"]
+
+
+@contextmanager
+def _appending(path: Path) -> Iterator[h5py.Group]:
+    if path.exists():
+        with _reading(path):
+            pass  # a damaged file is reported, never written to
+    try:
+        with h5py.File(path, "a") as file:
+            if "cases" not in file:
+                file.attrs["format"] = FORMAT
+                file.create_group("cases")
+            yield file["cases"]
+    except OSError as error:
+        raise InputError(f"cannot be written ({error})", source=str(path)) from None
+
+
+@contextmanager
+def _reading(path: Path) -> Iterator[h5py.File]:
+    if not path.exists():
+        raise InputError("no such file", source=str(path), allowed="a campaign file (.h5)")
+    try:
+        file = h5py.File(path, "r")
+    except OSError as error:
+        reason = str(error).split("(", 1)[-1].rstrip(")")
+        raise InputError(
+            f"not a readable HDF5 file ({reason})",
+            source=str(path),
+            allowed="a campaign file; move this one away to start again",
+        ) from None
+    with file:
+        if file.attrs.get("format") != FORMAT or "cases" not in file:
+            raise InputError(
+                f"format {file.attrs.get('format')!r}", source=str(path), allowed=FORMAT
+            )
+        try:
+            yield file
+        except (KeyError, OSError, RuntimeError) as error:
+            raise InputError(f"damaged ({error})", source=str(path)) from None
+
+
+def _put_solution(group: h5py.Group, solution: Solution) -> None:
+    group.attrs["mesh"] = solution.mesh_digest
+    group.attrs["boundary"] = solution.boundary
+    group.attrs["yield_measure"] = solution.yield_measure
+    counters = solution.counters
+    for name in counters.__dataclass_fields__:
+        group.attrs[f"counter_{name}"] = float(getattr(counters, name))
+    _put_curve(group.create_group("loading"), solution.loading)
+    for number, unloading in enumerate(solution.unloadings, start=1):
+        part = group.create_group(f"unload-{number}")
+        part.attrs["depth"] = unloading.depth
+        part.attrs["residual_sphere_m"] = unloading.residual_sphere
+        part.attrs["residual_flat_m"] = unloading.residual_flat
+        part.attrs["steps"] = unloading.steps
+        part.attrs["outcome"] = unloading.outcome.ending.value
+        _put_curve(part, unloading.curve)
+        for name, about in UNLOADING_PROFILES.items():
+            _put_array(part, name, getattr(unloading, name), about)
+
+
+def _put_curve(group: h5py.Group, curve: Curve) -> None:
+    for name, about in CURVE.items():
+        _put_array(group, name, getattr(curve, name), about)
+
+
+def _put_array(group: h5py.Group, name: str, values: Floats, about: Dataset) -> None:
+    data = group.create_dataset(
+        name, data=np.asarray(values, dtype=np.float64), compression="gzip", shuffle=True
+    )
+    data.attrs["unit"] = about.unit
+    data.attrs["axes"] = ",".join(about.axes)
+    data.attrs["meaning"] = about.meaning
+
+
+def _read_case(key: str, group: h5py.Group, path: Path) -> CaseRecord:
+    unloadings = []
+    for name in sorted((n for n in group if n.startswith("unload-")), key=lambda n: int(n[7:])):
+        part = group[name]
+        unloadings.append(
+            UnloadingRecord(
+                depth=float(part.attrs["depth"]),
+                curve=_read_arrays(part, CURVE, path),
+                residual_sphere=float(part.attrs["residual_sphere_m"]),
+                residual_flat=float(part.attrs["residual_flat_m"]),
+                profiles=_read_arrays(part, UNLOADING_PROFILES, path),
+            )
+        )
+    prefix = "counter_"
+    return CaseRecord(
+        id=key,
+        case=Case.from_specification(json.loads(group.attrs["specification"])),
+        status=str(group.attrs["status"]),
+        message=str(group.attrs["message"]),
+        curve=_read_arrays(group["loading"], CURVE, path) if "loading" in group else {},
+        unloadings=tuple(unloadings),
+        counters={
+            name[len(prefix) :]: float(value)
+            for name, value in group.attrs.items()
+            if name.startswith(prefix)
+        },
+    )
+
+
+def _read_arrays(group: h5py.Group, schema: dict[str, Dataset], path: Path) -> dict[str, Floats]:
+    out = {}
+    for name, about in schema.items():
+        if name not in group:
+            raise InputError("missing", source=str(path), key=f"{group.name}/{name}")
+        if group[name].attrs.get("unit") != about.unit:
+            raise InputError(
+                f"unit {group[name].attrs.get('unit')!r}",
+                source=str(path),
+                key=f"{group.name}/{name}",
+                allowed=about.unit,
+            )
+        out[name] = np.asarray(group[name][()], dtype=float)
+    return out
+
+
+def _lock_owner(lock: Path) -> int | None:
+    try:
+        return int(lock.read_text())
+    except (OSError, ValueError):
+        return None
+
+
+def _alive(pid: int) -> bool:
+    try:
+        os.kill(pid, 0)
+    except ProcessLookupError:
+        return False
+    except PermissionError:
+        return True
+    return pid != os.getpid()

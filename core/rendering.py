@@ -1,0 +1,38 @@
+"""Whether pyvista can render off-screen here.
+
+Without its graphics libraries VTK ends the whole process, which no exception handler sees; the
+question is therefore put to a process of its own, once.
+"""
+
+from __future__ import annotations
+
+import subprocess
+import sys
+from functools import cache
+
+
+@cache
+def offscreen_available() -> bool:
+    """Return whether a picture can be rendered in this environment."""
+    answer = subprocess.run(
+        [sys.executable, "-m", "dentscope.core.rendering"],
+        capture_output=True,
+        timeout=120,
+        check=False,
+    )
+    return answer.returncode == 0
+
+
+def _probe() -> None:
+    import pyvista
+
+    plotter = pyvista.Plotter(off_screen=True, window_size=(64, 64))
+    plotter.add_mesh(pyvista.Sphere())
+    image = plotter.screenshot(return_img=True)
+    plotter.close()
+    if image is None or image.max() == image.min():
+        raise SystemExit(1)
+
+
+if __name__ == "__main__":
+    _probe()
