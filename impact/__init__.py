@@ -1,1 +1,49 @@
 """Stage impact: a sphere or a round-ended rod striking a flat."""
+
+from __future__ import annotations
+
+from .beam import Modes, rod_modes
+from .integrate import Settings, arrays_of, strike, strike_many, strike_rows
+from .inverse import Inferred, Measured, infer
+from .reference import Trace, reference_impact
+from .result import Impact
+from .scene import (
+    Approach,
+    FlowStress,
+    ForceTransform,
+    Friction,
+    Instrument,
+    RateFree,
+    Scene,
+    Spot,
+    Striker,
+    Support,
+    scene_of,
+)
+
+__all__ = [
+    "Approach",
+    "FlowStress",
+    "ForceTransform",
+    "Friction",
+    "Impact",
+    "Inferred",
+    "Instrument",
+    "Measured",
+    "Modes",
+    "RateFree",
+    "Scene",
+    "Settings",
+    "Spot",
+    "Striker",
+    "Support",
+    "Trace",
+    "arrays_of",
+    "infer",
+    "reference_impact",
+    "rod_modes",
+    "scene_of",
+    "strike",
+    "strike_many",
+    "strike_rows",
+]

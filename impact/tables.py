@@ -1,0 +1,75 @@
+"""Results as rows: what the commands print, and CSV and HDF5 files with units in every name."""
+
+from __future__ import annotations
+
+import csv
+from collections.abc import Mapping, Sequence
+from pathlib import Path
+from typing import Any
+
+import h5py
+import numpy as np
+
+from ..core.provenance import environment
+from .reference import HISTORY, Trace
+from .result import Impact
+
+SHOWN = (
+    ("kinematic restitution", "restitution", 1.0, "-"),
+    ("kinetic restitution", "kinetic_restitution", 1.0, "-"),
+    ("energetic restitution", "energetic_restitution", 1.0, "-"),
+    ("tangential restitution", "tangential_restitution", 1.0, "-"),
+    ("residual depth, flat", "residual_flat_m", 1e6, "um"),
+    ("residual depth, tip", "residual_sphere_m", 1e6, "um"),
+    ("largest depth", "peak_depth_m", 1e6, "um"),
+    ("contact time", "contact_time_s", 1e3, "ms"),
+    ("compression time", "loading_time_s", 1e3, "ms"),
+    ("peak force", "peak_force_N", 1e-3, "kN"),
+    ("mean force", "mean_force_N", 1e-3, "kN"),
+    ("rebound spin", "rebound_spin_rad_s", 1.0, "rad/s"),
+    ("sliding length", "sliding_length_m", 1e6, "um"),
+    ("travel on the flat", "scar_travel_m", 1e6, "um"),
+    ("impulse ratio", "friction_impulse_ratio", 1.0, "-"),
+    ("normal impulse", "normal_impulse_Ns", 1.0, "N s"),
+    ("kept by the contact", "contact_work_J", 1e3, "mJ"),
+    ("lost to friction", "friction_work_J", 1e3, "mJ"),
+    ("in vibration", "modal_energy_J", 1e3, "mJ"),
+    ("given to the support", "support_energy_J", 1e3, "mJ"),
+    ("contacts", "contacts", 1.0, "-"),
+    ("energy balance", "energy_residual", 1.0, "-"),
+    ("momentum balance", "momentum_residual", 1.0, "-"),
+)
+
+
+def write_csv(path: Path, rows: Sequence[Mapping[str, Any]]) -> None:
+    """Write rows that share their keys; floats with all digits."""
+    path.parent.mkdir(parents=True, exist_ok=True)
+    with path.open("w", newline="", encoding="utf-8") as stream:
+        writer = csv.DictWriter(stream, fieldnames=list(rows[0]))
+        writer.writeheader()
+        writer.writerows(rows)
+
+
+def impact_row(impact: Impact) -> dict[str, Any]:
+    """Return one impact as a row: its observables, counts and ending."""
+    return {
+        **impact.observables,
+        "mean_force_N": impact.mean_force_N,
+        "contacts": impact.contacts,
+        "sticking": impact.sticking,
+        "outcome": impact.outcome.ending.value,
+    }
+
+
+def write_hdf5(path: Path, traces: Mapping[str, Trace]) -> None:
+    """Write histories and observables, one group for each law; units are in the names."""
+    path.parent.mkdir(parents=True, exist_ok=True)
+    with h5py.File(path, "w") as store:
+        for key, value in environment().items():
+            store.attrs[key] = value
+        for law, trace in traces.items():
+            group = store.create_group(law)
+            for i, name in enumerate(HISTORY):
+                group.create_dataset(name, data=np.ascontiguousarray(trace.history[:, i]))
+            for name, value in impact_row(trace.impact).items():
+                group.attrs[name] = value
