@@ -12,6 +12,7 @@ import typer
 
 from ..core.errors import EXIT_INPUT_ERROR, InputError
 from . import campaign
+from .fit import fit
 
 app = typer.Typer(
     name="dentscope",
@@ -27,6 +28,7 @@ _UsageError: type[Exception] = typer.BadParameter.__mro__[1]
 
 
 app.add_typer(campaign.app, name="campaign")
+app.command()(fit)
 
 
 @app.callback()

@@ -12,11 +12,15 @@ from .base import (
     critical_force,
     yield_constant,
 )
+from .fitted import shipped_law
 from .ghaednia import GHAEDNIA
 from .hertz import HERTZ
 from .jackson_green import JACKSON_GREEN
 
-LAWS: dict[str, ContactLaw] = {law.name: law for law in (HERTZ, JACKSON_GREEN, GHAEDNIA)}
+_FITTED = shipped_law()
+LAWS: dict[str, ContactLaw] = {
+    law.name: law for law in (HERTZ, JACKSON_GREEN, GHAEDNIA, *((_FITTED,) if _FITTED else ()))
+}
 """Every law by name, in reading order: from the simplest assumption to the fullest."""
 
 
