@@ -13,6 +13,8 @@ import typer
 from ..core.errors import EXIT_INPUT_ERROR, InputError
 from . import campaign
 from .fit import fit
+from .impact import impact
+from .inverse import inverse
 
 app = typer.Typer(
     name="dentscope",
@@ -29,6 +31,8 @@ _UsageError: type[Exception] = typer.BadParameter.__mro__[1]
 
 app.add_typer(campaign.app, name="campaign")
 app.command()(fit)
+app.command()(impact)
+app.command()(inverse)
 
 
 @app.callback()
