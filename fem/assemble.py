@@ -19,10 +19,9 @@ from numba import njit
 
 from .material import (
     deviatoric_pk1,
+    deviatoric_tangent,
     elastic_deviator,
-    elastic_tangent,
     exponential,
-    tangent_by_difference,
 )
 
 Floats = npt.NDArray[np.float64]
@@ -131,10 +130,7 @@ def _assemble(
     F = np.empty((4, 5))
     P = np.empty(5)
     A = np.empty((5, 5))
-    S = np.empty((5, 5))
-    M = np.empty((5, 5))
-    work_F = np.empty(5)
-    work_P = np.empty(5)
+    work = np.empty((6, 4))
     row0 = np.empty(5)
     row1 = np.empty(5)
     g = np.empty(8)
@@ -179,12 +175,7 @@ def _assemble(
                 fe[2 * a + 1] += P[2] * gr + P[3] * gz + p * v1
             if not with_tangent:
                 continue
-            if plastic:
-                tangent_by_difference(
-                    Fq, Fn[e, q], bn[e, q], G[e], radius[e], rule, P, work_F, work_P, A
-                )
-            else:
-                elastic_tangent(Fq, Fn[e, q], bn[e, q], G[e], S, M, A)
+            deviatoric_tangent(Fq, Fn[e, q], bn[e, q], G[e], radius[e], rule, P, work, A)
             # second derivative of J, times the pressure
             A[0, 3] += p * Fq[4]
             A[3, 0] += p * Fq[4]

@@ -106,9 +106,10 @@ def _mesh(problem: ContactProblem, accuracy: Accuracy) -> Mesh:
     onset = critical_depth(problem.pair)
     deepest = max(problem.depths[-1], 0.5 * problem.radius_at_least**2)
     first = problem.depths[0]
-    # radii of the contact at first yield (or, if nothing yields, nowhere) and at the deepest point
+    # radii of the contact at the first depth, at first yield (if nothing yields, the fine range
+    # starts with the first depth) and at the deepest point
     a_first = math.sqrt(min(first, onset))
-    a_yield = math.sqrt(min(onset, deepest))
+    a_yield = a_first if math.isinf(onset) else math.sqrt(min(onset, deepest))
     a_last = min(1.45 * math.sqrt(deepest) + 0.02, 0.9)
     a_last = max(a_last, 4.0 * a_yield if a_yield < 0.1 else a_last)
     if problem.radius_at_least:
@@ -143,9 +144,9 @@ def _elements(
     basis = skfem.CellBasis(grid, skfem.ElementQuad1(), quadrature=(points, np.full(4, 0.25)))
     grad = np.stack([np.moveaxis(basis.basis[a][0].grad, 0, -1) for a in range(4)], axis=2)
     value = np.stack(
-        [np.broadcast_to(basis.basis[a][0].value, (len(index), 4))[0] for a in range(4)]
+        [np.broadcast_to(np.asarray(basis.basis[a][0]), (len(index), 4))[0] for a in range(4)]
     )
-    r = np.asarray(basis.global_coordinates().value[0])
+    r = np.asarray(basis.global_coordinates())[0]
     dV = 2.0 * math.pi * r * basis.dx
     return Elements(
         conn=np.ascontiguousarray(basis.element_dofs.T.astype(np.int64)),

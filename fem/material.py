@@ -29,8 +29,6 @@ RADIAL = 0
 EXACT = 1
 """Exact integration along a constant strain-rate direction."""
 
-_DIFFERENCE = 1e-7  # step of the tangent's difference quotient in F; round-off stays near 1e-9
-
 
 @njit(cache=True)
 def spectral(a, b, c):
@@ -176,31 +174,91 @@ def deviatoric_pk1(F, Fn, bn, G, radius0, rule, P):
 
 
 @njit(cache=True)
-def tangent_by_difference(F, Fn, bn, G, radius0, rule, P, work_F, work_P, A):
-    """Write dP/dF (5, 5) of the deviatoric part into `A` by forward differences.
-
-    Only plastic points need it: the exact update has no short closed tangent, and the quotient's
-    error of 1e-7 leaves Newton's method quadratic down to its tolerance.
-    """
-    for i in range(5):
-        work_F[i] = F[i]
-    for j in range(5):
-        work_F[j] = F[j] + _DIFFERENCE
-        deviatoric_pk1(work_F, Fn, bn, G, radius0, rule, work_P)
-        for i in range(5):
-            A[i, j] = (work_P[i] - P[i]) / _DIFFERENCE
-        work_F[j] = F[j]
+def _dot(a, b):
+    return a[0] * b[0] + a[1] * b[1] + a[3] * b[3] + 2.0 * a[2] * b[2]
 
 
 @njit(cache=True)
-def elastic_tangent(F, Fn, bn, G, S, M, A):
-    """Write dP/dF (5, 5) of the deviatoric part of an elastic point into `A`, in closed form.
+def _linear_slide(r, d, radius, dr, dd, dradius, dq):
+    """Write the change of the exactly updated point into `dq` (4,).
 
-    `S` and `M` (5, 5) are working space. The spatial moduli of the logarithmic law are
-    c_AABB = 2 G (delta_AB - 1/3) - 2 tau_A delta_AB and, for the shear of the two in-plane axes,
-    (tau_1 l_2 - tau_2 l_1)/(l_1 - l_2) with l = lambda^2; dP/dF is their pull-back with the
-    initial-stress term added.
+    Parameters
+    ----------
+    r, d
+        Rotated old point and strain increment, shape (4,).
+    radius
+        Radius of the yield circle.
+    dr, dd, dradius
+        Their changes.
     """
+    length2 = _dot(d, d)
+    along = _dot(r, d)
+    root = math.sqrt(max(along * along - length2 * (_dot(r, r) - radius * radius), 0.0))
+    elastic = (root - along) / length2
+    delastic = 0.0
+    if 0.0 < elastic < 1.0:
+        slope = along + elastic * length2
+        change = _dot(r, dr) + elastic * (_dot(r, dd) + _dot(d, dr))
+        change += elastic * elastic * _dot(d, dd) - radius * dradius
+        delastic = -change / slope if slope != 0.0 else 0.0
+    else:
+        elastic = min(max(elastic, 0.0), 1.0)
+    rest = 1.0 - elastic
+    n2 = 0.0
+    l2 = 0.0
+    xd = 0.0
+    dn = 0.0
+    dl = 0.0
+    dc = 0.0
+    for i in range(4):
+        k = 2.0 if i == 2 else 1.0
+        x = r[i] + elastic * d[i]
+        D = rest * d[i]
+        dx = dr[i] + elastic * dd[i] + delastic * d[i]
+        dD = rest * dd[i] - delastic * d[i]
+        n2 += k * x * x
+        l2 += k * D * D
+        xd += k * x * D
+        dn += k * x * dx
+        dl += k * D * dD
+        dc += k * (dx * D + x * dD)
+    n = math.sqrt(n2)
+    length = math.sqrt(l2)
+    if length == 0.0:
+        for i in range(4):
+            dq[i] = dr[i] + dd[i]
+        return
+    dn /= n
+    dl /= length
+    c = xd / (n * length)
+    dc = dc / (n * length) - c * (dn / n + dl / length)
+    a = math.exp(-length / radius)
+    da = -a * (dl / radius - length * dradius / (radius * radius))
+    den = 1.0 + a * a + (1.0 - a * a) * c
+    dden = 2.0 * a * da * (1.0 - c) + (1.0 - a * a) * dc
+    top = 1.0 - a * a + (1.0 - a) ** 2 * c
+    dtop = -2.0 * a * da - 2.0 * (1.0 - a) * da * c + (1.0 - a) ** 2 * dc
+    kx = radius * 2.0 * a / (den * n)
+    dkx = kx * (dradius / radius - dden / den - dn / n) + 2.0 * radius * da / (den * n)
+    kd = radius * top / (den * length)
+    dkd = kd * (dradius / radius - dden / den - dl / length) + radius * dtop / (den * length)
+    for i in range(4):
+        x = r[i] + elastic * d[i]
+        D = rest * d[i]
+        dx = dr[i] + elastic * dd[i] + delastic * d[i]
+        dD = rest * dd[i] - delastic * d[i]
+        dq[i] = kx * dx + x * dkx + kd * dD + D * dkd
+
+
+@njit(cache=True)
+def deviatoric_tangent(F, Fn, bn, G, radius0, rule, P, work, A):
+    """Write dP/dF (5, 5) of the deviatoric part into `A`; `P` is its stress, `work` (6, 4) room.
+
+    Column by column: the change of F turns into that of the trial strain (through the principal
+    axes of the trial b), of the mean strain and of the rotation, these into that of the updated
+    point, and that into the change of P = tau F^-T.
+    """
+    trial, old, step, dtrial, dold, dpoint = work
     det = Fn[0] * Fn[3] - Fn[1] * Fn[2]
     i00 = Fn[3] / det
     i01 = -Fn[1] / det
@@ -220,63 +278,81 @@ def elastic_tangent(F, Fn, bn, G, S, M, A):
     h2 = 0.5 * math.log(l2)
     h3 = 0.5 * math.log(ftt * ftt * bn[3])
     m = (h1 + h2 + h3) / 3.0
-    t1 = 2.0 * G * (h1 - m)
-    t2 = 2.0 * G * (h2 - m)
-    t3 = 2.0 * G * (h3 - m)
-    if abs(l1 - l2) > 1e-6 * l1:
-        shear = (t1 * l2 - t2 * l1) / (l1 - l2)
-    else:
-        shear = G - 0.5 * (t1 + t2)
-    k = -2.0 * G / 3.0
-    n = 4.0 * G / 3.0
-    # tensor in the principal frame acting on the displacement gradient (11, 12, 21, 22, 33)
-    for i in range(5):
-        for j in range(5):
-            S[i, j] = 0.0
-    S[0, 0] = n - t1
-    S[3, 3] = n - t2
-    S[4, 4] = n - t3
-    S[0, 3] = S[3, 0] = S[0, 4] = S[4, 0] = S[3, 4] = S[4, 3] = k
-    S[1, 1] = shear + t2
-    S[2, 2] = shear + t1
-    S[1, 2] = S[2, 1] = shear
-    # columns of the pull-back: l = dF F^-1, rotated to the principal frame
+    mixed = (h1 - h2) / (l1 - l2) if abs(l1 - l2) > 1e-7 * l1 else 1.0 / (l1 + l2)
+    trial[0] = (h1 - m) * c * c + (h2 - m) * s * s
+    trial[1] = (h1 - m) * s * s + (h2 - m) * c * c
+    trial[2] = (h1 - h2) * c * s
+    trial[3] = h3 - m
+    radius = radius0 * math.exp(3.0 * m)
+    size = math.sqrt(_dot(trial, trial))
+    plastic = size > radius * (1.0 + 1e-10)
+    x = f00 + f11
+    y = f10 - f01
+    turn2 = x * x + y * y
+    if plastic and rule == EXACT:
+        o0, o1, o2, o3, _ = log_strain(bn[0], bn[1], bn[2], bn[3])
+        ca = x / math.sqrt(turn2)
+        sa = y / math.sqrt(turn2)
+        old[0] = ca * ca * o0 - 2.0 * ca * sa * o2 + sa * sa * o1
+        old[1] = sa * sa * o0 + 2.0 * ca * sa * o2 + ca * ca * o1
+        old[2] = ca * sa * (o0 - o1) + (ca * ca - sa * sa) * o2
+        old[3] = o3
+        for i in range(4):
+            step[i] = trial[i] - old[i]
     detF = F[0] * F[3] - F[1] * F[2]
     g00 = F[3] / detF
     g01 = -F[1] / detF
     g10 = -F[2] / detF
     g11 = F[0] / detF
-    # M[i, j]: principal displacement gradient i caused by dF_j, built from u = Q^T dF (F^-1 Q)
-    p00 = g00 * c + g01 * s
-    p01 = -g00 * s + g01 * c
-    p10 = g10 * c + g11 * s
-    p11 = -g10 * s + g11 * c
-    for i in range(5):
-        for j in range(5):
-            M[i, j] = 0.0
-    M[0, 0] = c * p00
-    M[0, 1] = c * p10
-    M[0, 2] = s * p00
-    M[0, 3] = s * p10
-    M[1, 0] = c * p01
-    M[1, 1] = c * p11
-    M[1, 2] = s * p01
-    M[1, 3] = s * p11
-    M[2, 0] = -s * p00
-    M[2, 1] = -s * p10
-    M[2, 2] = c * p00
-    M[2, 3] = c * p10
-    M[3, 0] = -s * p01
-    M[3, 1] = -s * p11
-    M[3, 2] = c * p01
-    M[3, 3] = c * p11
-    M[4, 4] = 1.0 / F[4]
-    for i in range(5):
-        for j in range(i, 5):
-            value = 0.0
-            for a in range(5):
-                if M[a, i] != 0.0:
-                    for b in range(5):
-                        value += M[a, i] * S[a, b] * M[b, j]
-            A[i, j] = value
-            A[j, i] = value
+    for j in range(5):
+        # displacement gradient l = dF F^-1 of a unit change of F_j
+        l00 = g00 if j == 0 else (g10 if j == 1 else 0.0)
+        l01 = g01 if j == 0 else (g11 if j == 1 else 0.0)
+        l10 = g00 if j == 2 else (g10 if j == 3 else 0.0)
+        l11 = g01 if j == 2 else (g11 if j == 3 else 0.0)
+        ltt = 1.0 / F[4] if j == 4 else 0.0
+        dm = (l00 + l11 + ltt) / 3.0
+        p00 = c * (l00 * c + l01 * s) + s * (l10 * c + l11 * s)
+        p01 = c * (-l00 * s + l01 * c) + s * (-l10 * s + l11 * c)
+        p10 = -s * (l00 * c + l01 * s) + c * (l10 * c + l11 * s)
+        p11 = -s * (-l00 * s + l01 * c) + c * (-l10 * s + l11 * c)
+        e11 = p00 - dm
+        e22 = p11 - dm
+        e12 = mixed * (l2 * p01 + l1 * p10)
+        dtrial[0] = e11 * c * c + e22 * s * s - 2.0 * e12 * c * s
+        dtrial[1] = e11 * s * s + e22 * c * c + 2.0 * e12 * c * s
+        dtrial[2] = (e11 - e22) * c * s + e12 * (c * c - s * s)
+        dtrial[3] = ltt - dm
+        if not plastic:
+            for i in range(4):
+                dpoint[i] = dtrial[i]
+        elif rule == RADIAL:
+            along = _dot(trial, dtrial) / (size * size)
+            for i in range(4):
+                dpoint[i] = radius / size * (dtrial[i] + (3.0 * dm - along) * trial[i])
+        else:
+            df00 = l00 * f00 + l01 * f10
+            df01 = l00 * f01 + l01 * f11
+            df10 = l10 * f00 + l11 * f10
+            df11 = l10 * f01 + l11 * f11
+            dangle = (x * (df10 - df01) - y * (df00 + df11)) / turn2
+            dold[0] = -2.0 * old[2] * dangle
+            dold[1] = 2.0 * old[2] * dangle
+            dold[2] = (old[0] - old[1]) * dangle
+            dold[3] = 0.0
+            for i in range(4):
+                dtrial[i] -= dold[i]
+            _linear_slide(old, step, radius, dold, dtrial, 3.0 * radius * dm, dpoint)
+        t0 = 2.0 * G * dpoint[0]
+        t1 = 2.0 * G * dpoint[1]
+        t2 = 2.0 * G * dpoint[2]
+        # d(tau F^-T) = dtau F^-T - P (F^-1 dF)^T
+        w00 = g00 if j == 0 else (g01 if j == 2 else 0.0)
+        w01 = g00 if j == 1 else (g01 if j == 3 else 0.0)
+        w10 = g10 if j == 0 else (g11 if j == 2 else 0.0)
+        w11 = g10 if j == 1 else (g11 if j == 3 else 0.0)
+        A[0, j] = t0 * g00 + t2 * g01 - (P[0] * w00 + P[1] * w01)
+        A[1, j] = t0 * g10 + t2 * g11 - (P[0] * w10 + P[1] * w11)
+        A[2, j] = t2 * g00 + t1 * g01 - (P[2] * w00 + P[3] * w01)
+        A[3, j] = t2 * g10 + t1 * g11 - (P[2] * w10 + P[3] * w11)
+        A[4, j] = 2.0 * G * dpoint[3] / F[4] - (P[4] / F[4] if j == 4 else 0.0)

@@ -1,0 +1,131 @@
+"""Whole solves against exact solutions, and the balances that every solve must keep."""
+
+import dataclasses
+
+import numpy as np
+import pytest
+from dentscope import fem
+from dentscope.core import InputError, Material, Pair
+
+pytestmark = pytest.mark.fe
+
+STEEL = Material(E=200e9, nu=0.3)
+ALUMINIUM = Material(E=71.7e9, nu=0.33)
+RIGID = Material(E=np.nan, nu=np.nan, rigid=True)
+
+
+def hertz(pair, delta):
+    """F and a of Hertz (Johnson, Contact Mechanics, Eqs. 4.22-4.24)."""
+    return 4.0 / 3.0 * pair.E_reduced * np.sqrt(pair.R) * delta**1.5, np.sqrt(pair.R * delta)
+
+
+@pytest.mark.parametrize(
+    ("sphere", "flat"),
+    [(STEEL, STEEL), (ALUMINIUM, STEEL), (STEEL, RIGID), (RIGID, STEEL)],
+    ids=["equal", "unequal", "rigid flat", "rigid sphere"],
+)
+def test_elastic_contact_follows_hertz(sphere, flat):
+    pair = Pair(sphere=sphere, flat=flat, R=5e-3)
+    # a rigid partner doubles the finite sphere's part: the limit of 1 % is then reached earlier
+    deepest = 2e-4 if flat.rigid or sphere.rigid else 4e-4
+    depths = fem.geometric_depths(1e-5, deepest, 8)
+    solution = fem.solve(fem.ContactProblem(pair, depths), accuracy=fem.Accuracy.quick())
+    assert solution.outcome.completed
+    c = solution.loading
+    force, radius = hertz(pair, c.delta)
+    assert radius.max() / pair.R <= 0.02
+    assert c.force == pytest.approx(force, rel=0.01)
+    assert c.radius == pytest.approx(radius, rel=0.01)
+    # Eq. 2.3: the elastic share is E'(1 - nu_s^2)/E_s
+    if not flat.rigid:
+        expected = pair.elastic_share
+        assert c.sphere_share == pytest.approx(np.full(8, expected), abs=0.01)
+
+
+def plastic_pair(scale=1.0, radius=1e-3):
+    return Pair(
+        sphere=Material(E=200e9 * scale, nu=0.3, Sy=503e6 * scale),
+        flat=Material(E=200e9 * scale, nu=0.3, Sy=503e6 * scale),
+        R=radius,
+    )
+
+
+@pytest.fixture(scope="module")
+def equal_strengths():
+    depths = fem.geometric_depths(4e-5, 0.01, 24)
+    problem = fem.ContactProblem(plastic_pair(), depths, unload_from=(depths[12], 0.01))
+    return fem.solve(problem, accuracy=fem.Accuracy.smoke())
+
+
+def test_identical_bodies_share_the_approach_equally_before_yield(equal_strengths):
+    c = equal_strengths.loading
+    elastic = c.delta / 1e-3 < fem.critical_depth(plastic_pair())
+    assert elastic.sum() >= 3
+    assert c.sphere_share[elastic] == pytest.approx(np.full(elastic.sum(), 0.5), abs=0.002)
+
+
+def test_balances(equal_strengths):
+    c = equal_strengths.loading
+    assert equal_strengths.outcome.completed
+    assert np.abs(c.energy_defect).max() < 0.01
+    assert np.abs(c.force_defect[c.delta / 1e-3 >= 1e-3]).max() < 1e-6
+    assert np.all(np.diff(c.dissipated) >= 0.0)
+    assert np.all(np.diff(c.force) > 0.0)
+
+
+def test_unloading_ends_force_free_in_few_steps(equal_strengths):
+    first, second = equal_strengths.unloadings
+    for unloading in (first, second):
+        assert unloading.outcome.completed
+        assert unloading.steps <= 40
+        assert unloading.curve.force[-1] < 0.005 * unloading.curve.force[0]
+        assert 0.0 < unloading.residual < unloading.depth * 1e-3
+        # what is recovered lies between a flat punch's F/(2 E' a) and Hertz's 3/2 of it
+        start = unloading.curve
+        punch = start.force[0] / (2.0 * plastic_pair().E_reduced * start.radius[0])
+        recovered = unloading.depth * 1e-3 - unloading.residual
+        assert punch < recovered < 1.5 * punch
+    assert second.residual > first.residual
+
+
+def test_mean_pressure_lies_where_slip_line_theory_and_indentation_tests_put_it(equal_strengths):
+    """Tabor's and Ishlinskii's range for full plasticity is 2.6 to 2.9 Sy; ripple 3 %."""
+    c = equal_strengths.loading
+    assert 2.4 < c.hardness[-1] / 503e6 < 3.2
+
+
+def test_units_do_not_matter(equal_strengths):
+    depths = tuple(equal_strengths.loading.delta[:6] / 1e-3)
+    other = fem.solve(
+        fem.ContactProblem(plastic_pair(scale=1e-3, radius=7.0), depths),
+        accuracy=fem.Accuracy.smoke(),
+    ).loading
+    plain = equal_strengths.loading
+    assert other.force / (1e-3 * 7000.0**2) == pytest.approx(plain.force[:6], rel=2e-3)
+    assert other.sphere_share == pytest.approx(plain.sphere_share[:6], abs=1e-4)
+
+
+def test_what_cannot_converge_is_a_result_with_a_reason():
+    accuracy = dataclasses.replace(fem.Accuracy.smoke(), penalty=1e9)
+    solution = fem.solve(
+        fem.ContactProblem(plastic_pair(), (1e-4, 2e-4), unload_from=()), accuracy=accuracy
+    )
+    assert not solution.outcome.completed
+    assert "no equilibrium" in solution.outcome.message
+    assert solution.outcome.advice
+
+
+def test_time_limit_keeps_what_was_reached():
+    solution = fem.solve(
+        fem.ContactProblem(plastic_pair(), (1e-5, 2e-5, 0.04)),
+        accuracy=fem.Accuracy.smoke(),
+        time_limit_s=0.0,
+    )
+    assert solution.outcome.ending.value == "time-limit"
+    assert len(solution.loading.delta) >= 1
+
+
+@pytest.mark.parametrize("depths", [(), (0.02, 0.01), (0.1, 0.6), (-1.0,)])
+def test_impossible_depths_are_refused(depths):
+    with pytest.raises(InputError, match="depths"):
+        fem.ContactProblem(plastic_pair(), depths)
