@@ -42,13 +42,13 @@ class Modes:
     loss_factor: float = 0.0
 
     def at_contact(self, angle: float, tip_radius: float) -> Array:
-        """Return (n, 2): the contact point's displacement per modal coordinate, along x and y."""
+        """Return (2, n): the contact point's displacement per modal coordinate, along x and y."""
         along = np.asarray(self.axial, dtype=float)
         across = np.asarray(self.transverse, dtype=float)
         turn = np.asarray(self.rotation, dtype=float)
         x = along * math.cos(angle) - across * math.sin(angle) + turn * tip_radius
         y = along * math.sin(angle) + across * math.cos(angle)
-        return np.stack([x, y], axis=-1)
+        return np.stack([x, y])
 
 
 def axial_frequencies(length: float, material: Material, *, count: int) -> Array:

@@ -11,8 +11,8 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from ..core.toml_input import read_toml
 from ..core.material import Material
+from ..core.toml_input import read_toml
 from ..models.base import ContactLaw
 from .integrate import strike
 from .result import Impact

@@ -18,7 +18,10 @@ from .force import (
     DAMPING,
     LOADING,
     MODULUS,
+    N_BRANCH,
     RADIATION,
+    SEGMENT_HIGH,
+    SEGMENT_LOW,
     SPLIT,
     set_peak,
     static_loading,
@@ -57,14 +60,11 @@ OBSERVABLES = (
 (O_E, O_KINETIC, O_ENERGETIC, O_TANGENTIAL, O_RES_S, O_RES_F, O_PEAK, O_TIME, O_TOUCHING, O_LOADING,
  O_FORCE, O_SPIN, O_SLIDING, O_SCAR, O_RATIO, O_PN, O_PT, O_WORK, O_FRICTION, O_MODAL, O_SUPPORT,
  O_VY, O_VX, O_ENERGY, O_MOMENTUM, O_TIP) = range(26)  # fmt: skip
-COUNTS = ("ending", "contacts", "steps", "evaluations", "last_mode")
+COUNTS = ("ending", "contacts", "steps", "evaluations", "stuck")
 N_OUT = len(OBSERVABLES) + len(COUNTS)
 FIRST_COUNT = len(OBSERVABLES)
 
-# The branch vector: what `set_peak` writes, then the smooth stretch of the loading curve.
-SEGMENT_LOW, SEGMENT_HIGH = 7, 8
-N_BRANCH = 9
-_JUMP_GAP = 1e-13
+_BREAK_GAP = 1e-13
 
 DONE, STEP_BUDGET, CONTACT_BUDGET, NOT_FINITE = range(4)
 LOAD, UNLOAD, FLY = range(3)
@@ -74,15 +74,21 @@ LOAD, UNLOAD, FLY = range(3)
 BY_TIME, BY_ROOT_TIME, BY_ROOT_DEPTH = range(3)
 
 _STAGES = int(DOP853.n_stages)
-_A = np.ascontiguousarray(DOP853.A[:_STAGES, :_STAGES])
-_B = np.ascontiguousarray(DOP853.B)
-_C = np.ascontiguousarray(DOP853.C[:_STAGES])
+# Row i gives the state of stage i; the last row is the step's own result.
+_A = np.ascontiguousarray(np.vstack([DOP853.A[:_STAGES, :_STAGES], DOP853.B]))
+_C = np.ascontiguousarray(np.append(DOP853.C[:_STAGES], 1.0))
 _E3 = np.ascontiguousarray(DOP853.E3[: _STAGES + 1])
 _E5 = np.ascontiguousarray(DOP853.E5[: _STAGES + 1])
 _BITES = 40
+_FAST = {"reassoc", "contract"}  # the loops over the modes may be summed in vectors
 
 
-@njit(types.void(VECTOR, VECTOR, MATRIX, int64, VECTOR), cache=True, error_model="numpy")
+@njit(
+    types.void(VECTOR, VECTOR, MATRIX, int64, VECTOR),
+    cache=True,
+    error_model="numpy",
+    fastmath=_FAST,
+)
 def _kinematics(body, z, psi, n_modes, seen):  # type: ignore[no-untyped-def]
     """Write penetration (without crater offset), its rate and the sliding speed into `seen`."""
     sine, cosine = math.sin(0.5 * z[PHI]), math.cos(0.5 * z[PHI])
@@ -95,21 +101,19 @@ def _kinematics(body, z, psi, n_modes, seen):  # type: ignore[no-untyped-def]
     rate = -z[VY] + z[SPIN] * c - z[W_RATE]
     sliding = z[VX] + z[SPIN] * (rise + body[TIP])
     seen[ARM], seen[RISE] = c, rise
-    for k in range(n_modes):
-        depth -= psi[k, 1] * z[N_RIGID + k]
-        rate -= psi[k, 1] * z[N_RIGID + n_modes + k]
-        sliding += psi[k, 0] * z[N_RIGID + n_modes + k]
+    if n_modes > 0:
+        across, along = psi[0], psi[1]
+        q, p = z[N_RIGID : N_RIGID + n_modes], z[N_RIGID + n_modes :]
+        for k in range(n_modes):
+            depth -= along[k] * q[k]
+            rate -= along[k] * p[k]
+            sliding += across[k] * p[k]
     seen[DEPTH] = depth
     seen[RATE] = rate
     seen[SLIDING] = sliding
 
 
-@njit(
-    types.void(LOADING, BRANCH, BRANCH, VECTOR, VECTOR, VECTOR, VECTOR, VECTOR, MATRIX, VECTOR,
-               VECTOR, int64, float64, float64, int64, float64, VECTOR, VECTOR, VECTOR),
-    cache=True, error_model="numpy",
-)  # fmt: skip
-def _derivative(loading, radius, unloading, par, force, factors, body, omega, psi, shape, branch,
+def _derivative_of(loading, radius, unloading, par, force, factors, body, omega, psi, shape, branch,
                 phase, mode, offset, variable, place, z, dz, seen):  # type: ignore[no-untyped-def]  # fmt: skip
     """Write the state's derivative and what is seen of the contact.
 
@@ -145,9 +149,12 @@ def _derivative(loading, radius, unloading, par, force, factors, body, omega, ps
     mtt = 1.0 / m + s * s / inertia + shape[0]
     mtn = -c * s / inertia + shape[1]
     bt = spin * spin * c
-    for k in range(n):
-        drag = omega[k] * (omega[k] * z[N_RIGID + k] + body[LOSS] * z[N_RIGID + n + k])
-        bt -= psi[k, 0] * drag
+    loss = body[LOSS]
+    if n > 0:
+        across, along = psi[0], psi[1]
+        q, p = z[N_RIGID : N_RIGID + n], z[N_RIGID + n :]
+        for k in range(n):
+            bt -= across[k] * omega[k] * (omega[k] * q[k] + loss * p[k])
     sliding = seen[SLIDING]
     rest = body[MU_STATIC] + ploughing
     need = -(mtn * f + bt) / mtt
@@ -180,13 +187,16 @@ def _derivative(loading, radius, unloading, par, force, factors, body, omega, ps
     dz[WORK_N] = f * seen[RATE]
     dz[WORK_T] = -ft * sliding
     lost = 0.0
-    for k in range(n):
-        q, p = z[N_RIGID + k], z[N_RIGID + n + k]
-        dz[N_RIGID + k] = p
-        dz[N_RIGID + n + k] = (
-            psi[k, 0] * ft + psi[k, 1] * f - omega[k] * (omega[k] * q + body[LOSS] * p)
-        )
-        lost += body[LOSS] * omega[k] * p * p
+    if n > 0:
+        across, along = psi[0], psi[1]
+        q, p = z[N_RIGID : N_RIGID + n], z[N_RIGID + n :]
+        dq, dp = dz[N_RIGID : N_RIGID + n], dz[N_RIGID + n :]
+        for k in range(n):
+            dq[k] = p[k]
+            dp[k] = across[k] * ft + along[k] * f - omega[k] * (omega[k] * q[k] + loss * p[k])
+        if loss > 0.0:
+            for k in range(n):
+                lost += loss * omega[k] * p[k] * p[k]
     dz[WORK_D] = lost
     dz[TIME] = 1.0
     if variable != BY_TIME:
@@ -195,11 +205,18 @@ def _derivative(loading, radius, unloading, par, force, factors, body, omega, ps
             dz[j] *= pace
 
 
+_DERIVATIVE = types.void(LOADING, BRANCH, BRANCH, VECTOR, VECTOR, VECTOR, VECTOR, VECTOR, MATRIX,
+                         VECTOR, VECTOR, int64, float64, float64, int64, float64, VECTOR, VECTOR,
+                         VECTOR)  # fmt: skip
+_derivative_inlined = njit(inline="always", error_model="numpy", fastmath=_FAST)(_derivative_of)
+_derivative = njit(_DERIVATIVE, cache=True, error_model="numpy", fastmath=_FAST)(_derivative_of)
+
+
 @njit(
     float64(LOADING, BRANCH, BRANCH, VECTOR, VECTOR, VECTOR, VECTOR, VECTOR, MATRIX, VECTOR,
             VECTOR, int64, float64, float64, int64, float64, float64, VECTOR, MATRIX, VECTOR, VECTOR, VECTOR,
             VECTOR, VECTOR),
-    cache=True, error_model="numpy",
+    cache=True, error_model="numpy", fastmath=_FAST,
 )  # fmt: skip
 def _step(loading, radius, unloading, par, force, factors, body, omega, psi, shape, branch, phase,
           mode, offset, variable, place, h, z, stages, z_new, work, z_err, scale, seen):  # type: ignore[no-untyped-def]  # fmt: skip
@@ -208,30 +225,19 @@ def _step(loading, radius, unloading, par, force, factors, body, omega, psi, sha
     The last row of `stages` holds the derivative at the new state, `seen` what is seen there.
     """
     size = len(z)
-    for i in range(1, _STAGES):
+    for i in range(1, _STAGES + 1):
         for j in range(size):
-            work[j] = 0.0
+            z_new[j] = 0.0
         for k in range(i):
             a = _A[i, k]
             if a != 0.0:
                 for j in range(size):
-                    work[j] += a * stages[k, j]
+                    z_new[j] += a * stages[k, j]
         for j in range(size):
-            work[j] = z[j] + h * work[j]
-        _derivative(loading, radius, unloading, par, force, factors, body, omega, psi, shape,
-                    branch, phase, mode, offset, variable, place + _C[i] * h, work, stages[i],
-                    seen)  # fmt: skip
-    for j in range(size):
-        work[j] = 0.0
-    for k in range(_STAGES):
-        b = _B[k]
-        if b != 0.0:
-            for j in range(size):
-                work[j] += b * stages[k, j]
-    for j in range(size):
-        z_new[j] = z[j] + h * work[j]
-    _derivative(loading, radius, unloading, par, force, factors, body, omega, psi, shape,
-                branch, phase, mode, offset, variable, place + h, z_new, stages[_STAGES], seen)  # fmt: skip
+            z_new[j] = z[j] + h * z_new[j]
+        _derivative_inlined(loading, radius, unloading, par, force, factors, body, omega, psi,
+                            shape, branch, phase, mode, offset, variable, place + _C[i] * h,
+                            z_new, stages[i], seen)  # fmt: skip
     # Row by row, so that the inner loops run over the state without a chain of sums.
     for j in range(size):
         work[j] = 0.0
@@ -322,11 +328,11 @@ def _event_slope(event, body, z, dz, psi, n, seen, mode, pace):  # type: ignore[
     if event == 4:
         pull = dz[VX] + dz[SPIN] * (rise + body[TIP]) + z[SPIN] ** 2 * c * pace
         for k in range(n):
-            pull += psi[k, 0] * dz[N_RIGID + n + k]
+            pull += psi[0, k] * dz[N_RIGID + n + k]
         return mode * pull
     push = -dz[VY] + dz[SPIN] * c - z[SPIN] ** 2 * rise * pace - dz[W_RATE]
     for k in range(n):
-        push -= psi[k, 1] * dz[N_RIGID + n + k]
+        push -= psi[1, k] * dz[N_RIGID + n + k]
     return push if event == 0 else -push
 
 
@@ -336,7 +342,7 @@ def _tip_x(body, z, psi, n):  # type: ignore[no-untyped-def]
     sine, cosine = math.sin(0.5 * z[PHI]), math.cos(0.5 * z[PHI])
     x = z[X] + 2.0 * sine * (body[HALF_SIN] * cosine + body[HALF_COS] * sine)
     for k in range(n):
-        x += psi[k, 0] * z[N_RIGID + k]
+        x += psi[0, k] * z[N_RIGID + k]
     return x
 
 
@@ -350,10 +356,12 @@ def _crater(spot, x):  # type: ignore[no-untyped-def]
 
 
 @njit(
-    types.UniTuple(float64, 3)(LOADING, SPLIT, VECTOR, VECTOR, VECTOR, VECTOR, float64, VECTOR),
+    types.UniTuple(float64, 3)(
+        LOADING, BRANCH, SPLIT, VECTOR, VECTOR, VECTOR, VECTOR, float64, VECTOR
+    ),
     cache=True,
 )
-def _meet(loading, residual, par, force, factors, spot, x, branch):  # type: ignore[no-untyped-def]
+def _meet(loading, unloading, residual, par, force, factors, spot, x, branch):  # type: ignore[no-untyped-def]
     """Begin a contact at x: return (phase, offset of the law's depth, crater depth here).
 
     The hardened crater is met within half its radius, and the flattened tip everywhere when the
@@ -363,7 +371,7 @@ def _meet(loading, residual, par, force, factors, spot, x, branch):  # type: ign
     offset = local + spot[SPOT_TIP]
     if spot[SPOT_PEAK] <= 0.0:
         return float(LOAD), offset, local
-    set_peak(loading, residual, par, force, factors, spot[SPOT_PEAK], branch)
+    set_peak(loading, unloading, residual, par, force, factors, spot[SPOT_PEAK], branch)
     same = abs(x - spot[SPOT_CENTRE]) <= 0.5 * spot[SPOT_RADIUS]
     if same or branch[1] > branch[2]:
         return float(UNLOAD), offset - branch[1] - branch[2], local
@@ -372,15 +380,137 @@ def _meet(loading, residual, par, force, factors, spot, x, branch):  # type: ign
     return float(LOAD), offset, local
 
 
+@njit(types.void(VECTOR, VECTOR, VECTOR, float64, VECTOR), cache=True, error_model="numpy")
+def _coast(body, z, omega, t, z_new):  # type: ignore[no-untyped-def]
+    """Write the state after a flight of duration t: ballistic motion, free damped vibration."""
+    n = len(omega)
+    for j in range(len(z)):
+        z_new[j] = z[j]
+    z_new[X] += z[VX] * t
+    z_new[Y] += z[VY] * t - 0.5 * body[GRAVITY] * t * t
+    z_new[VY] -= body[GRAVITY] * t
+    z_new[PHI] += z[SPIN] * t
+    z_new[TIME] += t
+    zeta = 0.5 * body[LOSS]
+    root = math.sqrt(1.0 - zeta * zeta)
+    for k in range(n):
+        q, p, w = z[N_RIGID + k], z[N_RIGID + n + k], omega[k]
+        fade = math.exp(-zeta * w * t)
+        cosine, sine = math.cos(w * root * t), math.sin(w * root * t) / root
+        z_new[N_RIGID + k] = fade * (q * (cosine + zeta * sine) + p / w * sine)
+        z_new[N_RIGID + n + k] = fade * (p * (cosine - zeta * sine) - q * w * sine)
+        energy = p * p + w * w * q * q
+        left = z_new[N_RIGID + n + k] ** 2 + (w * z_new[N_RIGID + k]) ** 2
+        z_new[WORK_D] += 0.5 * (energy - left)
+
+
+@njit(float64(VECTOR, VECTOR, VECTOR, float64, MATRIX, VECTOR), cache=True, error_model="numpy")
+def _clearance(body, spot, z, centre, psi, seen):  # type: ignore[no-untyped-def]
+    """How far the tip is from meeting the flat below it [m]; negative when it would be inside."""
+    n = psi.shape[1]
+    _kinematics(body, z, psi, n, seen)
+    return spot[SPOT_TIP] + _crater(spot, centre + _tip_x(body, z, psi, n)) - seen[DEPTH]
+
+
+@njit(
+    boolean(VECTOR, VECTOR, VECTOR, MATRIX, float64, VECTOR, VECTOR, VECTOR, VECTOR, VECTOR),
+    cache=True, error_model="numpy",
+)  # fmt: skip
+def _fly(body, spot, omega, psi, centre, z, z_new, z_now, z_far, seen):  # type: ignore[no-untyped-def]
+    """Follow a free flight to the next touch; write it into `z_new` and return whether there is one.
+
+    The vibration is known in closed form: the tip is looked at sixteen times in each period of
+    the fastest mode, and no longer once no vibration can bring it back.
+    """
+    n = len(omega)
+    step = 2.0 * math.pi / (16.0 * omega[n - 1])
+    reach = 0.0
+    for k in range(n):
+        q, p = z[N_RIGID + k], z[N_RIGID + n + k] / omega[k]
+        reach += abs(psi[1, k]) * math.sqrt(q * q + p * p)
+    for j in range(N_RIGID):
+        z_far[j] = z[j]
+    for j in range(N_RIGID, len(z)):
+        z_far[j] = 0.0
+    # Rotation of each mode over one step, so that a look costs no sine.
+    turn = np.empty((n, 4))
+    zeta = 0.5 * body[LOSS]
+    root = math.sqrt(1.0 - zeta * zeta)
+    for k in range(n):
+        w = omega[k]
+        fade = math.exp(-zeta * w * step)
+        cosine, sine = math.cos(w * root * step), math.sin(w * root * step) / root
+        turn[k, 0], turn[k, 1] = fade * (cosine + zeta * sine), fade * sine / w
+        turn[k, 2], turn[k, 3] = -fade * w * sine, fade * (cosine - zeta * sine)
+    for j in range(len(z)):
+        z_now[j] = z[j]
+    start, end = z[TIME], z[TIME] + body[FLIGHT]
+    # The rim of the crater just left is no obstacle: the tip must first have come clear of it.
+    clear = _clearance(body, spot, z, centre, psi, seen) >= 0.0
+    while z_now[TIME] < end:
+        t = z_now[TIME] + step - start
+        z_new[X] = z[X] + z[VX] * t
+        z_new[Y] = z[Y] + z[VY] * t - 0.5 * body[GRAVITY] * t * t
+        z_new[PHI] = z[PHI] + z[SPIN] * t
+        z_new[VX], z_new[SPIN], z_new[W], z_new[W_RATE] = z[VX], z[SPIN], z[W], z[W_RATE]
+        z_new[VY] = z[VY] - body[GRAVITY] * t
+        for k in range(n):
+            q, p = z_now[N_RIGID + k], z_now[N_RIGID + n + k]
+            z_new[N_RIGID + k] = turn[k, 0] * q + turn[k, 1] * p
+            z_new[N_RIGID + n + k] = turn[k, 2] * q + turn[k, 3] * p
+        g = _clearance(body, spot, z_new, centre, psi, seen)
+        if g < 0.0 and clear:
+            break
+        clear = clear or g >= 0.0
+        for j in range(len(z)):
+            z_now[j] = z_new[j]
+        z_now[TIME] = start + t
+        z_far[X], z_far[Y], z_far[PHI] = z_now[X], z_now[Y], z_now[PHI]
+        z_far[VY] = z_now[VY]
+        _kinematics(body, z_far, psi, n, seen)
+        left = end - z_now[TIME]
+        if seen[DEPTH] + reach + 0.5 * body[GRAVITY] * left * left < spot[SPOT_TIP]:
+            if seen[RATE] < 0.0:
+                return False
+    if z_now[TIME] >= end:
+        return False
+    # The touch lies in (t - step, t]: false position on the exact motion.
+    low, high = z_now[TIME] - start, z_now[TIME] - start + step
+    _coast(body, z, omega, low, z_new)
+    g_low = max(_clearance(body, spot, z_new, centre, psi, seen), 1e-300)
+    _coast(body, z, omega, high, z_new)
+    g_high = _clearance(body, spot, z_new, centre, psi, seen)
+    side = 0
+    for _ in range(100):
+        t = (low * g_high - high * g_low) / (g_high - g_low)
+        if not low < t < high:
+            t = 0.5 * (low + high)
+        _coast(body, z, omega, t, z_new)
+        g = _clearance(body, spot, z_new, centre, psi, seen)
+        if g < 0.0:
+            high, g_high = t, g
+            if side == -1:
+                g_low *= 0.5
+            side = -1
+        else:
+            low, g_low = t, max(g, 1e-300)
+            if side == 1:
+                g_high *= 0.5
+            side = 1
+        if high - low <= 1e-15 * (start + high) or g == 0.0:
+            break
+    return True
+
+
 @njit(types.void(VECTOR, float64, VECTOR), cache=True)
-def _set_segment(jumps, depth, branch):  # type: ignore[no-untyped-def]
+def _set_segment(breaks, depth, branch):  # type: ignore[no-untyped-def]
     """Bound the loading curve to its smooth stretch around `depth`."""
     branch[SEGMENT_LOW], branch[SEGMENT_HIGH] = 0.0, math.inf
-    for jump in jumps:
-        if jump <= depth * (1.0 + 2.0 * _JUMP_GAP):
-            branch[SEGMENT_LOW] = jump
+    for border in breaks:
+        if border <= depth * (1.0 + 2.0 * _BREAK_GAP):
+            branch[SEGMENT_LOW] = border
         else:
-            branch[SEGMENT_HIGH] = jump * (1.0 - _JUMP_GAP)
+            branch[SEGMENT_HIGH] = border * (1.0 - _BREAK_GAP)
             break
 
 
@@ -402,7 +532,7 @@ def _reference_depth(loading, par, force, factors, energy, R):  # type: ignore[n
                VECTOR, MATRIX, VECTOR),
     cache=True, error_model="numpy",
 )  # fmt: skip
-def one_impact(loading, radius, unloading, residual, par, force, factors, jumps, body, spot, omega,
+def one_impact(loading, radius, unloading, residual, par, force, factors, breaks, body, spot, omega,
                psi, out):  # type: ignore[no-untyped-def]  # fmt: skip
     """Integrate one impact; fill `out` with OBSERVABLES and COUNTS and update `spot`.
 
@@ -416,18 +546,18 @@ def one_impact(loading, radius, unloading, residual, par, force, factors, jumps,
     stages, branch, shape = np.zeros((_STAGES + 1, size)), np.zeros(N_BRANCH), np.zeros(3)
     values, values_new = np.zeros(8), np.zeros(8)
     for k in range(n):
-        shape[0] += psi[k, 0] ** 2
-        shape[1] += psi[k, 0] * psi[k, 1]
-        shape[2] += psi[k, 1] ** 2
+        shape[0] += psi[0, k] ** 2
+        shape[1] += psi[0, k] * psi[1, k]
+        shape[2] += psi[1, k] ** 2
     out[:] = np.nan
     m, inertia = body[MASS], body[INERTIA]
     rubbing = body[MU_STATIC] > 0.0 or body[MU] > 0.0 or body[PLOUGH] > 0.0
     phase_f, offset, local = _meet(
-        loading, residual, par, force, factors, spot, spot[SPOT_CENTRE] if spot[SPOT_PEAK] > 0.0
+        loading, unloading, residual, par, force, factors, spot, spot[SPOT_CENTRE] if spot[SPOT_PEAK] > 0.0
         else 0.0, branch)  # fmt: skip
     centre0 = spot[SPOT_CENTRE] if spot[SPOT_PEAK] > 0.0 else 0.0
     phase = int(phase_f)
-    _set_segment(jumps, 0.0, branch)
+    _set_segment(breaks, 0.0, branch)
     z[Y] = -(offset + (branch[1] + branch[2] if phase == UNLOAD else 0.0))
     y_start = z[Y]
     z[VX], z[VY], z[SPIN] = body[V_X], body[V_Y], body[V_SPIN]
@@ -468,7 +598,10 @@ def one_impact(loading, radius, unloading, residual, par, force, factors, jumps,
     # The state at the latest separation is the outcome; a flight that meets nothing is dropped.
     kept = z.copy()
     simple = n == 0
-    variable, place = BY_ROOT_TIME, 0.0
+    sprung = body[S_MASS] < math.inf
+    # A force that depends on the rate may be largest between events.
+    rated = force[DAMPING] != 0.0 or force[RADIATION] != 0.0
+    stuck, variable, place = 0.0, BY_ROOT_TIME, 0.0
     h = 0.15 * math.sqrt(t_ref)
     fresh = True
     while True:
@@ -484,14 +617,39 @@ def one_impact(loading, radius, unloading, residual, par, force, factors, jumps,
                         branch, phase, mode, offset, variable, place, z, stages[0], seen)  # fmt: skip
             evaluations += 2
             fresh = False
+            if phase == LOAD:
+                peak_force = max(peak_force, seen[FORCE])
             for event in range(8):
                 values[event] = _event_value(event, seen, mode, branch)
             if phase == FLY:
                 values[6] = spot[SPOT_TIP] + _crater(spot, centre0 + _tip_x(body, z, psi, n))
                 values[6] -= seen[DEPTH]
+        if mode == 0.0 and rubbing and phase != FLY:
+            stuck = 1.0
         if steps >= body[MAX_STEPS]:
             ending = STEP_BUDGET
             break
+        if phase == FLY and n > 0 and not sprung:
+            if not _fly(body, spot, omega, psi, centre0, z, z_new, work, z_err, seen):
+                break
+            for j in range(size):
+                z[j] = z_new[j]
+            if contacts >= body[MAX_CONTACTS]:
+                ending = CONTACT_BUDGET
+                break
+            contacts += 1
+            t_touch = z[TIME]
+            approaching, fresh = True, True
+            phase_f, offset, local = _meet(
+                loading, unloading, residual, par, force, factors, spot,
+                centre0 + _tip_x(body, z, psi, n), branch)  # fmt: skip
+            phase = int(phase_f)
+            _set_segment(breaks, 0.0, branch)
+            variable, place, h = BY_ROOT_TIME, 0.0, 0.15 * math.sqrt(t_ref)
+            _derivative(loading, radius, unloading, par, force, factors, body, omega, psi, shape,
+                        branch, phase, 1.0, offset, BY_TIME, place, z, stages[0], seen)  # fmt: skip
+            mode = _first_mode(seen, body[MU_STATIC], small_force, rubbing, v_n)
+            continue
         if phase == FLY:
             left = t_last + body[FLIGHT] - z[TIME]
             if left <= 1e-12 * body[FLIGHT]:
@@ -600,7 +758,7 @@ def one_impact(loading, radius, unloading, residual, par, force, factors, jumps,
         place += taken
         for j in range(size):
             z[j] = z_new[j]
-        if phase != FLY and seen_new[FORCE] > peak_force:
+        if phase != FLY and (chosen >= 0 or rated) and seen_new[FORCE] > peak_force:
             peak_force = seen_new[FORCE]
         if chosen < 0:
             h = grown
@@ -643,7 +801,7 @@ def one_impact(loading, radius, unloading, residual, par, force, factors, jumps,
                 # Metal that was met before stays gone: the residual grows by the difference.
                 deepest_s -= branch[1]
                 local -= branch[2]
-                set_peak(loading, residual, par, force, factors, depth, branch)
+                set_peak(loading, unloading, residual, par, force, factors, depth, branch)
                 deepest_s += branch[1]
                 local += branch[2]
                 deepest_f = max(deepest_f, local)
@@ -666,9 +824,9 @@ def one_impact(loading, radius, unloading, residual, par, force, factors, jumps,
             approaching = True
         elif chosen == 3:
             phase, variable, h = LOAD, BY_TIME, 0.02 * t_ref
-            _set_segment(jumps, branch[0], branch)
+            _set_segment(breaks, branch[0], branch)
         elif chosen == 7:
-            _set_segment(jumps, branch[SEGMENT_HIGH], branch)
+            _set_segment(breaks, branch[SEGMENT_HIGH], branch)
         elif chosen == 4:
             _derivative(loading, radius, unloading, par, force, factors, body, omega, psi, shape,
                         branch, phase, mode, offset, BY_TIME, place, z, stages[0], seen)  # fmt: skip
@@ -689,9 +847,9 @@ def one_impact(loading, radius, unloading, residual, par, force, factors, jumps,
             t_touch = z[TIME]
             approaching = True
             phase_f, offset, local = _meet(
-                loading, residual, par, force, factors, spot, x_tip, branch)  # fmt: skip
+                loading, unloading, residual, par, force, factors, spot, x_tip, branch)  # fmt: skip
             phase = int(phase_f)
-            _set_segment(jumps, 0.0, branch)
+            _set_segment(breaks, 0.0, branch)
             slip_base += z[SLIP] - kept[SLIP]
             variable, place, h = BY_ROOT_TIME, 0.0, 0.25 * math.sqrt(t_ref)
             _derivative(loading, radius, unloading, par, force, factors, body, omega, psi, shape,
@@ -732,7 +890,7 @@ def one_impact(loading, radius, unloading, residual, par, force, factors, jumps,
     drift_x = m * (kept[VX] - body[V_X]) - kept[P_T]
     out[O_MOMENTUM] = math.hypot(drift_x, drift_y) / (m * v_n)
     out[FIRST_COUNT], out[FIRST_COUNT + 1], out[FIRST_COUNT + 2] = ending, contacts, steps
-    out[FIRST_COUNT + 3], out[FIRST_COUNT + 4] = evaluations, mode
+    out[FIRST_COUNT + 3], out[FIRST_COUNT + 4] = evaluations, stuck
 
 
 @njit(
@@ -741,10 +899,10 @@ def one_impact(loading, radius, unloading, residual, par, force, factors, jumps,
                types.Array(types.float64, 3, "C"), MATRIX),
     cache=True,
 )  # fmt: skip
-def many_impacts(loading, radius, unloading, residual, par, force, factors, jumps, body, spot,
+def many_impacts(loading, radius, unloading, residual, par, force, factors, breaks, body, spot,
                  omega, psi, out):  # type: ignore[no-untyped-def]  # fmt: skip
     """Integrate row after row; `par`, `force`, `omega`, `psi` hold one row or one per impact."""
     for i in range(len(body)):
         one_impact(loading, radius, unloading, residual, par[min(i, len(par) - 1)],
-                   force[min(i, len(force) - 1)], factors, jumps, body[i], spot[i],
+                   force[min(i, len(force) - 1)], factors, breaks, body[i], spot[i],
                    omega[min(i, len(omega) - 1)], psi[min(i, len(psi) - 1)], out[i])  # fmt: skip

@@ -21,6 +21,10 @@ SPLIT = types.FunctionType(RESIDUAL_SIGNATURE)
 RADIUS, MODULUS, FLAT, EDGE, EDGE_DEPTH, EDGE_LIMIT, RECOVERY, DAMPING, RADIATION = range(9)
 N_FORCE = 9
 
+# The branch vector: what `set_peak` writes, and the smooth stretch of the loading curve.
+SEGMENT_LOW, SEGMENT_HIGH, PEAK_FORCE, POWER = 7, 8, 9, 10
+N_BRANCH = 11
+
 # Nodes of the loading factors: ln(depth / R), equally spaced.
 LOG_DEPTH_FIRST, LOG_DEPTH_LAST = math.log(1e-6), 0.0
 
@@ -67,15 +71,40 @@ def static_loading(loading, par, force, factors, depth):  # type: ignore[no-unty
     return f
 
 
+@njit(types.void(BRANCH, VECTOR, VECTOR), cache=True)
+def _fit_power(unloading, par, branch):  # type: ignore[no-untyped-def]
+    """Recognise a recovery F_m x^n, x from 0 at the residual depth to 1 at the peak.
+
+    Nearly every law recovers so; then a step need not ask the law for its peak force again. The
+    power is trusted only if it gives three other points to rounding; else it is 0.
+    """
+    peak, rest = branch[4], branch[5]
+    branch[POWER] = 0.0
+    branch[PEAK_FORCE] = unloading(par, peak, peak)
+    if branch[PEAK_FORCE] <= 0.0 or peak <= rest:
+        return
+    sample = unloading(par, rest + 0.25 * (peak - rest), peak)
+    if sample <= 0.0:
+        return
+    n = math.log(sample / branch[PEAK_FORCE]) / math.log(0.25)
+    if abs(n - 1.5) < 1e-12:
+        n = 1.5
+    for x in (0.02, 0.5, 0.9):
+        there = unloading(par, rest + x * (peak - rest), peak)
+        if abs(there - branch[PEAK_FORCE] * x**n) > 1e-12 * branch[PEAK_FORCE]:
+            return
+    branch[POWER] = n
+
+
 @njit(
-    types.void(LOADING, SPLIT, VECTOR, VECTOR, VECTOR, float64, VECTOR),
+    types.void(LOADING, BRANCH, SPLIT, VECTOR, VECTOR, VECTOR, float64, VECTOR),
     cache=True,
 )
-def set_peak(loading, residual, par, force, factors, peak, branch):  # type: ignore[no-untyped-def]
+def set_peak(loading, unloading, residual, par, force, factors, peak, branch):  # type: ignore[no-untyped-def]
     """Write into `branch` what the unloading from `peak` needs.
 
     Entries: peak, residual depth of sphere and flat, force scale, law's peak and residual depth,
-    depth scale.
+    depth scale, (two of the caller), the force at the peak and the power of the law's recovery.
     """
     shift = force[FLAT] * force[FLAT] / (2.0 * force[RADIUS])
     law_peak = peak + shift
@@ -98,6 +127,7 @@ def set_peak(loading, residual, par, force, factors, peak, branch):  # type: ign
             branch[3] = static_loading(loading, par, force, factors, peak) / law_force
         if peak > rest:
             branch[6] = (law_peak - law_rest) / (peak - rest)
+    _fit_power(unloading, par, branch)
 
 
 @njit(float64(BRANCH, VECTOR, VECTOR, float64), cache=True)
@@ -105,45 +135,92 @@ def static_unloading(unloading, par, branch, depth):  # type: ignore[no-untyped-
     """Force [N] at `depth` [m] on the branch that `set_peak` prepared."""
     if depth <= branch[1] + branch[2]:
         return 0.0
+    if branch[POWER] > 0.0:
+        x = min((depth - branch[1] - branch[2]) / (branch[0] - branch[1] - branch[2]), 1.0)
+        fade = x * math.sqrt(x) if branch[POWER] == 1.5 else x ** branch[POWER]
+        return branch[3] * branch[PEAK_FORCE] * fade
     if branch[3] == 1.0 and branch[6] == 1.0 and branch[4] == branch[0]:
         return unloading(par, depth, branch[0])
     x = branch[4] - (branch[0] - depth) * branch[6]
     return branch[3] * unloading(par, x, branch[4])
 
 
-@njit(float64[::1](LOADING, VECTOR, VECTOR, VECTOR), cache=True)
-def find_jumps(loading, par, force, factors):  # type: ignore[no-untyped-def]
-    """Depths at which the loading force jumps, rising; published fits do at their borders.
+@njit(float64(LOADING, VECTOR, VECTOR, VECTOR, float64), cache=True)
+def _log_force(loading, par, force, factors, x):  # type: ignore[no-untyped-def]
+    return math.log(max(static_loading(loading, par, force, factors, math.exp(x)), 1e-300))
 
-    A logarithmic scan for uneven slopes, each then halved down to rounding. An integrator that
-    knows these depths can end a step on them.
+
+@njit(float64(LOADING, VECTOR, VECTOR, VECTOR, float64, float64), cache=True)
+def _jump_between(loading, par, force, factors, low, high):  # type: ignore[no-untyped-def]
+    """Logarithm of the depth just above a jump between two others; nan without one."""
+    f_low = _log_force(loading, par, force, factors, low)
+    f_high = _log_force(loading, par, force, factors, high)
+    for _ in range(60):
+        x = 0.5 * (low + high)
+        f = _log_force(loading, par, force, factors, x)
+        if abs(f - f_low) > abs(f_high - f):
+            high, f_high = x, f
+        else:
+            low, f_low = x, f
+        if high - low < 3e-15 * abs(x):
+            break
+    return high if abs(f_high - f_low) > 1e-9 else math.nan
+
+
+@njit(float64(LOADING, VECTOR, VECTOR, VECTOR, float64, float64), cache=True)
+def _kink_between(loading, par, force, factors, low, high):  # type: ignore[no-untyped-def]
+    """Logarithm of the depth of a kink (a jump of the slope); nan without one.
+
+    To about 1e-6 for a finite jump, to rounding for a slope that is infinite on one side.
+    """
+    while high - low > 4e-15 * abs(low):
+        h = 0.25 * (high - low)
+        best, place = -1.0, 0
+        for k in range(1, 4):
+            x = low + k * h
+            bend = _log_force(loading, par, force, factors, x - h)
+            bend += _log_force(loading, par, force, factors, x + h)
+            bend = abs(bend - 2.0 * _log_force(loading, par, force, factors, x))
+            if bend > best:
+                best, place = bend, k
+        if best < 1e-12:
+            break
+        low, high = low + (place - 1) * h, low + (place + 1) * h
+    x, h = 0.5 * (low + high), 1e-4
+    middle = 2e-6
+    left = _log_force(loading, par, force, factors, x - middle)
+    left -= _log_force(loading, par, force, factors, x - h)
+    right = _log_force(loading, par, force, factors, x + h)
+    right -= _log_force(loading, par, force, factors, x + middle)
+    return x if abs(right - left) > 2e-3 * h else math.nan
+
+
+@njit(float64[::1](LOADING, VECTOR, VECTOR, VECTOR), cache=True)
+def find_breaks(loading, par, force, factors):  # type: ignore[no-untyped-def]
+    """Depths at which the loading force or its slope jumps, rising.
+
+    Published fits do so at the borders of their ranges. A logarithmic scan for uneven slopes, each
+    then located; an integrator that knows these depths can end a step on them.
     """
     n = 240
     first, last = math.log(1e-9 * force[RADIUS]), math.log(force[RADIUS])
     step = (last - first) / n
     level = np.empty(n + 1)
     for i in range(n + 1):
-        d = math.exp(first + i * step)
-        level[i] = math.log(max(static_loading(loading, par, force, factors, d), 1e-300))
+        level[i] = _log_force(loading, par, force, factors, first + i * step)
     found = np.empty(32)
     count = 0
     for i in range(1, n - 1):
         rise = level[i + 1] - level[i]
         around = 0.5 * (level[i] - level[i - 1] + level[i + 2] - level[i + 1])
-        if abs(rise - around) < 2e-4 or count == len(found):
+        if abs(rise - around) < 1e-4 or count == len(found):
             continue
-        low, high, f_low, f_high = first + i * step, first + (i + 1) * step, level[i], level[i + 1]
-        for _ in range(60):
-            x = 0.5 * (low + high)
-            f = math.log(max(static_loading(loading, par, force, factors, math.exp(x)), 1e-300))
-            if abs(f - f_low) > abs(f_high - f):
-                high, f_high = x, f
-            else:
-                low, f_low = x, f
-            if high - low < 3e-15 * abs(x):
-                break
-        if abs(f_high - f_low) > 1e-9:
-            found[count] = math.exp(high)
+        low = first + i * step
+        x = _jump_between(loading, par, force, factors, low, low + step)
+        if math.isnan(x):
+            x = _kink_between(loading, par, force, factors, low, low + step)
+        if not math.isnan(x) and (count == 0 or math.exp(x) > found[count - 1] * (1.0 + 1e-5)):
+            found[count] = math.exp(x)
             count += 1
     return found[:count].copy()
 

@@ -47,7 +47,7 @@ class Arrays:
     par: Array
     force: Array
     factors: Array
-    jumps: Array
+    breaks: Array
     body: Array
     spot: Array
     omega: Array
@@ -69,7 +69,7 @@ def arrays_of(scene: Scene, settings: Settings = Settings()) -> Arrays:
         strength = min(fo.PUNCH_PRESSURE * pair.Sy_min, pair.sphere.strength)
         force[fo.EDGE_LIMIT] = strength * math.pi * scene.force.edge**2
     omega = np.asarray(scene.modes.frequencies, dtype=float)
-    psi = np.ascontiguousarray(scene.modes.at_contact(approach.angle, striker.tip_radius))
+    psi = scene.modes.at_contact(approach.angle, striker.tip_radius)
     upright = math.isclose(approach.angle, math.pi / 2.0, abs_tol=1e-12)
     body = np.zeros(c.N_BODY)
     half = 0.5 * striker.length
@@ -89,8 +89,8 @@ def arrays_of(scene: Scene, settings: Settings = Settings()) -> Arrays:
     body[c.TOLERANCE] = settings.tolerance
     body[c.MAX_STEPS], body[c.MAX_CONTACTS] = settings.max_steps, settings.max_contacts
     factors = np.asarray(scene.force.factors, dtype=float)
-    jumps = _jumps(law, par, force, factors)
-    return Arrays(par, force, factors, jumps, body, spot_row(scene.spot), omega, psi)
+    breaks = _breaks(law, par, force, factors)
+    return Arrays(par, force, factors, breaks, body, spot_row(scene.spot), omega, psi)
 
 
 def spot_row(spot: Spot) -> Array:
@@ -117,7 +117,7 @@ def strike_many(scenes: Sequence[Scene], settings: Settings = Settings()) -> lis
             a.par,
             a.force,
             a.factors,
-            a.jumps,
+            a.breaks,
             a.body,
             a.spot,
             a.omega,
@@ -143,7 +143,7 @@ def strike_rows(scene: Scene, body: Array, settings: Settings = Settings()) -> A
     out = np.zeros((len(rows), c.N_OUT))
     spot = np.tile(a.spot, (len(rows), 1))
     c.many_impacts(
-        *kernels_of(scene.law), a.par[None], a.force[None], a.factors, a.jumps, rows, spot,
+        *kernels_of(scene.law), a.par[None], a.force[None], a.factors, a.breaks, rows, spot,
         a.omega[None], a.psi[None], out,
     )  # fmt: skip
     return out
@@ -155,17 +155,17 @@ def kernels_of(law: ContactLaw) -> tuple[Any, Any, Any, Any]:
     return k.loading, k.radius, k.unloading, k.residual
 
 
-_JUMPS: dict[tuple[str, bytes, bytes, bytes], Array] = {}
+_BREAKS: dict[tuple[str, bytes, bytes, bytes], Array] = {}
 
 
-def _jumps(law: ContactLaw, par: Array, force: Array, factors: Array) -> Array:
-    """Return the depths at which this loading curve jumps; the latest answers are kept."""
+def _breaks(law: ContactLaw, par: Array, force: Array, factors: Array) -> Array:
+    """Return the depths at which this loading curve breaks; the latest answers are kept."""
     key = (law.name, par.tobytes(), force.tobytes(), factors.tobytes())
-    if key not in _JUMPS:
-        if len(_JUMPS) > 1000:
-            _JUMPS.clear()
-        _JUMPS[key] = fo.find_jumps(law.kernels.loading, par, force, factors)
-    return _JUMPS[key]
+    if key not in _BREAKS:
+        if len(_BREAKS) > 1000:
+            _BREAKS.clear()
+        _BREAKS[key] = fo.find_breaks(law.kernels.loading, par, force, factors)
+    return _BREAKS[key]
 
 
 def _flight(scene: Scene) -> float:

@@ -56,15 +56,15 @@ class _Contact:
     sign: float
     offset: float
     local: float
-    branch: Array = field(default_factory=lambda: np.zeros(7))
+    branch: Array = field(default_factory=lambda: np.zeros(fo.N_BRANCH))
     approaching: bool = True
     low: float = 0.0
     high: float = math.inf
 
-    def stretch(self, jumps: Array, depth: float) -> None:
+    def stretch(self, breaks: Array, depth: float) -> None:
         """Bound the loading curve to its smooth stretch around `depth`."""
-        above = jumps[jumps > depth * (1.0 + 2e-13)]
-        below = jumps[jumps <= depth * (1.0 + 2e-13)]
+        above = breaks[breaks > depth * (1.0 + 2e-13)]
+        below = breaks[breaks <= depth * (1.0 + 2e-13)]
         self.low = float(below[-1]) if len(below) else 0.0
         self.high = float(above[0]) * (1.0 - 1e-13) if len(above) else math.inf
 
@@ -97,15 +97,15 @@ class _Motion:
         vx, vy = z[_VX] - z[_OM] * ry, z[_VY] + z[_OM] * rx
         if self.n:
             q, p = z[_Q : _Q + self.n], z[_Q + self.n :]
-            height += float(self.a.psi[:, 1] @ q)
-            vx += float(self.a.psi[:, 0] @ p)
-            vy += float(self.a.psi[:, 1] @ p)
+            height += float(self.a.psi[1] @ q)
+            vx += float(self.a.psi[0] @ p)
+            vy += float(self.a.psi[1] @ p)
         return -height - z[_W], -vy - z[_WR], vx
 
     def place(self, z: Array) -> float:
         """Tangential position of the contact on the flat, from first touch."""
         rx, _ = self.lever(z)
-        modal = float(self.a.psi[:, 0] @ z[_Q : _Q + self.n]) if self.n else 0.0
+        modal = float(self.a.psi[0] @ z[_Q : _Q + self.n]) if self.n else 0.0
         return float(z[_X] + rx + self.cos0 + modal)
 
     def normal(self, z: Array, k: _Contact) -> tuple[float, float, float]:
@@ -132,12 +132,12 @@ class _Motion:
         """Force that would hold the contact point, and both parts of its free acceleration."""
         rx, ry = self.lever(z)
         psi, omega = self.a.psi, self.a.omega
-        tt = 1.0 / self.m + ry * ry / self.inertia + float(psi[:, 0] @ psi[:, 0])
-        tn = rx * (-ry) / self.inertia + float(psi[:, 0] @ psi[:, 1])
+        tt = 1.0 / self.m + ry * ry / self.inertia + float(psi[0] @ psi[0])
+        tn = rx * (-ry) / self.inertia + float(psi[0] @ psi[1])
         free = -(z[_OM] ** 2) * rx
         if self.n:
             q, p = z[_Q : _Q + self.n], z[_Q + self.n :]
-            free -= float(psi[:, 0] @ (omega**2 * q + self.a.body[c.LOSS] * omega * p))
+            free -= float(psi[0] @ (omega**2 * q + self.a.body[c.LOSS] * omega * p))
         return -(tn * f + free) / tt, tn * f + free, tt
 
     def forces(self, z: Array, k: _Contact) -> tuple[float, float, float]:
@@ -174,7 +174,7 @@ class _Motion:
             q, p = z[_Q : _Q + self.n], z[_Q + self.n :]
             omega, psi = self.a.omega, self.a.psi
             d[_Q : _Q + self.n] = p
-            d[_Q + self.n :] = psi[:, 0] * ft + psi[:, 1] * f - omega * (omega * q + b[c.LOSS] * p)
+            d[_Q + self.n :] = psi[0] * ft + psi[1] * f - omega * (omega * q + b[c.LOSS] * p)
             d[_WD] = b[c.LOSS] * float(omega @ p**2)
         return d
 
@@ -242,12 +242,21 @@ class _Walk:
         k = _Contact(LOADING, 1.0, local + s[c.SPOT_TIP], local)
         if s[c.SPOT_PEAK] > 0.0:
             mo, a = self.motion, self.a
-            branch = np.zeros(7)
-            fo.set_peak(mo.loading, mo.residual, a.par, a.force, a.factors, s[c.SPOT_PEAK], branch)
+            branch = np.zeros(fo.N_BRANCH)
+            fo.set_peak(
+                mo.loading,
+                mo.unloading,
+                mo.residual,
+                a.par,
+                a.force,
+                a.factors,
+                s[c.SPOT_PEAK],
+                branch,
+            )
             if abs(r) <= 0.5 or branch[1] > branch[2]:
                 k.phase, k.branch = UNLOADING, branch
                 k.offset -= branch[1] + branch[2]
-        k.stretch(self.a.jumps, 0.0)
+        k.stretch(self.a.breaks, 0.0)
         return k
 
     def surface(self, z: Array) -> float:
@@ -296,12 +305,14 @@ class _Walk:
         self.contacts, self.touching, self.first, self.last = 1, 0.0, math.nan, 0.0
         self.p_in = self.p_out = self.w_in = self.w_out = 0.0
         self.force = self.depth = 0.0
+        self.stuck = False
         self.flat = float(self.spot[c.SPOT_FLAT])
         self.low = self.high = self.x_low = self.x_high = 0.0
         self.ending, kept, base = c.DONE, z.copy(), 0.0
         p_mark = w_mark = 0.0
         scale = self.scales(z)
         for _ in range(int(self.settings.max_contacts) * 100):
+            self.stuck |= k.sign == 0.0 and self.rubbing and k.phase != FLIGHT
             active = self.events(k)
             for _, function in active:
                 function.__dict__.update(terminal=True, direction=-1.0)
@@ -353,9 +364,10 @@ class _Walk:
                 k.approaching = True
             elif name == "reload":
                 k.phase = LOADING
-                k.stretch(self.a.jumps, k.branch[0])
+                k.stretch(self.a.breaks, k.branch[0])
             elif name == "jump":
-                k.stretch(self.a.jumps, k.high)
+                k.stretch(self.a.breaks, k.high)
+                self.force = max(self.force, mo.normal(z, k)[0])
             elif name == "rest":
                 k.sign = mo.sign_from_rest(z, k, self.small) if self.rubbing else -k.sign
             elif name == "slip":
@@ -379,8 +391,10 @@ class _Walk:
         depth = mo.motion(z)[0] - k.offset
         tip = self.tip_flat - k.branch[1]
         local = k.local - k.branch[2]
-        k.branch = np.zeros(7)
-        fo.set_peak(mo.loading, mo.residual, a.par, a.force, a.factors, depth, k.branch)
+        k.branch = np.zeros(fo.N_BRANCH)
+        fo.set_peak(
+            mo.loading, mo.unloading, mo.residual, a.par, a.force, a.factors, depth, k.branch
+        )
         k.phase, k.local = UNLOADING, local + k.branch[2]
         self.tip_flat = tip + k.branch[1]
         self.flat = max(self.flat, k.local)
@@ -470,7 +484,7 @@ class _Walk:
         }
         for i, name in enumerate(c.OBSERVABLES):
             out[i] = values[name]
-        out[c.FIRST_COUNT :] = (self.ending, self.contacts, 0, 0, 1.0)
+        out[c.FIRST_COUNT :] = (self.ending, self.contacts, 0, 0, float(self.stuck))
 
 
 def fo_reference(walk: _Walk, reduced: float) -> float:

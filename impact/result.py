@@ -55,7 +55,8 @@ class Impact:
     smallest while in contact. `contact_time_s` runs from first touch to last separation,
     `touching_time_s` leaves out the flights between. `contact_work_J` is what the contact kept,
     `support_energy_J` what the support took up. `energy_residual` is the unbalanced energy over
-    the kinetic energy of the approach, `momentum_residual` the unbalanced momentum over m v.
+    the kinetic energy of the approach, `momentum_residual` the unbalanced momentum over m v. `stuck` says whether
+    friction held the tip for some time.
     """
 
     restitution: float
@@ -85,7 +86,7 @@ class Impact:
     momentum_residual: float
     tip_rebound_m_s: float
     contacts: int
-    sticking: bool
+    stuck: bool
     spot: Spot
     outcome: Outcome
 
@@ -122,7 +123,7 @@ def impact_of(row: NDArray[np.float64], spot: NDArray[np.float64]) -> Impact:
     return Impact(
         **{name: values[name] for name in kept},
         contacts=int(values["contacts"]),
-        sticking=values["last_mode"] == 0.0,
+        stuck=values["stuck"] > 0.0,
         spot=spot_of(spot),
         outcome=outcome,
     )

@@ -56,7 +56,7 @@ def impact_row(impact: Impact) -> dict[str, Any]:
         **impact.observables,
         "mean_force_N": impact.mean_force_N,
         "contacts": impact.contacts,
-        "sticking": impact.sticking,
+        "stuck": impact.stuck,
         "outcome": impact.outcome.ending.value,
     }
 

@@ -1,0 +1,202 @@
+"""The compiled integrator against the library's, and what every scene must keep."""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+import pytest
+from dentscope.core import Ending, Material
+from dentscope.impact import (
+    Approach,
+    ForceTransform,
+    Friction,
+    Scene,
+    Settings,
+    Striker,
+    Support,
+    arrays_of,
+    reference_impact,
+    rod_modes,
+    scene_of,
+    strike,
+    strike_many,
+    strike_rows,
+)
+from dentscope.impact import compiled as c
+from dentscope.models.ghaednia import GHAEDNIA
+from dentscope.models.hertz import HERTZ
+from dentscope.models.jackson_green import JACKSON_GREEN
+
+LAWS = (HERTZ, JACKSON_GREEN, GHAEDNIA)
+STEEL = Material(E=200e9, nu=0.3, Sy=760e6, density=7800.0)
+IRON = Material(E=200e9, nu=0.3, Sy=305e6, density=7870.0)
+BALANCES = ("energy_residual", "momentum_residual")
+
+
+def random_scene(rng: np.random.Generator, number: int) -> Scene:
+    """A rod or ball with any angle, spin, friction; one in five on a spring."""
+    is_rod = rng.random() < 0.7
+    R = 10.0 ** rng.uniform(-3.0, -1.5)
+    striker = Striker(
+        mass=10.0 ** rng.uniform(-2.0, 0.0), tip_radius=R, radius=R,
+        length=rng.uniform(10.0, 40.0) * R if is_rod else 0.0,
+    )  # fmt: skip
+    approach = Approach(
+        10.0 ** rng.uniform(-1.0, 0.7),
+        rng.uniform(0.2, math.pi / 2.0) if is_rod else math.pi / 2.0,
+        tangential=float(rng.choice([0.0, rng.normal()])),
+        spin=float(rng.choice([0.0, 20.0 * rng.normal()])),
+    )
+    sprung = Support(mass=1.0, stiffness=1e8)
+    return scene_of(
+        LAWS[number % 3], sphere=STEEL, flat=IRON, striker=striker, approach=approach,
+        friction=Friction(float(rng.choice([0.0, 0.1, 0.3, 0.8]))),
+        support=sprung if rng.random() < 0.2 else Support(),
+    )  # fmt: skip
+
+
+def scales(scene: Scene, peak: float) -> dict[str, float]:
+    """What each observable is small against: errors count relative to the larger of the two."""
+    v, m = scene.approach.speed, scene.striker.mass
+    v_t = max(v, abs(scene.approach.tangential))
+    arm = math.sqrt(scene.striker.inertia / m)
+    ratio = dict.fromkeys(
+        ("restitution", "kinetic_restitution", "energetic_restitution", "tangential_restitution",
+         "friction_impulse_ratio"), 1.0,
+    )  # fmt: skip
+    speed = dict.fromkeys(("rebound_speed_m_s", "tangential_rebound_m_s", "tip_rebound_m_s"), v_t)
+    energy = dict.fromkeys(
+        ("contact_work_J", "friction_work_J", "modal_energy_J", "support_energy_J"),
+        0.5 * m * v_t**2,
+    )
+    impulse = dict.fromkeys(("normal_impulse_Ns", "tangential_impulse_Ns"), m * v_t)
+    length = dict.fromkeys(
+        ("sliding_length_m", "scar_travel_m", "residual_sphere_m", "residual_flat_m"), peak
+    )
+    return {**ratio, **speed, **energy, **impulse, **length, "rebound_spin_rad_s": v / arm}
+
+
+def assert_agree(scene: Scene, tolerance: float, *, settings: Settings) -> None:
+    ours, theirs = strike(scene, settings), reference_impact(scene).impact
+    assert ours.outcome.completed
+    assert theirs.outcome.completed
+    assert ours.contacts == theirs.contacts
+    small = scales(scene, ours.peak_depth_m)
+    for name, value in ours.observables.items():
+        other = theirs.observables[name]
+        if name in BALANCES or (math.isnan(value) and math.isnan(other)):
+            continue
+        # A tangential restitution near a vanishing approach velocity has no scale of its own.
+        bound = tolerance * max(abs(value), abs(other), small.get(name, 0.0))
+        assert abs(value - other) <= bound, (name, value, other, scene)
+    assert abs(ours.energy_residual) < 1e-6
+    assert abs(theirs.energy_residual) < 1e-6
+    assert ours.momentum_residual < 1e-9
+
+
+def test_compiled_and_library_integrator_agree() -> None:
+    """1e-8 in every observable, events included; benchmarks/bench_impact.py runs 1,000."""
+    rng = np.random.default_rng(7)
+    for number in range(60):
+        assert_agree(random_scene(rng, number), 1e-8, settings=Settings(tolerance=1e-11))
+
+
+def test_integrators_agree_on_a_vibrating_rod_with_several_contacts() -> None:
+    rod = Striker(mass=0.4607, tip_radius=0.0088, length=0.3048, radius=0.0088)
+    modes = rod_modes(0.3048, 0.0088, STEEL, mass=0.4607, count=3)
+    for angle in (45.0, 70.0):
+        scene = scene_of(
+            HERTZ, sphere=STEEL, flat=IRON, striker=rod, friction=Friction(0.15),
+            approach=Approach(1.0, math.radians(angle)), modes=modes,
+        )  # fmt: skip
+        assert_agree(scene, 2e-7, settings=Settings(tolerance=1e-10))
+
+
+def test_batch_gives_what_single_calls_give() -> None:
+    rng = np.random.default_rng(3)
+    scenes = [random_scene(rng, n) for n in range(6)]
+    assert strike_many(scenes) == [strike(s) for s in scenes] or all(
+        np.array_equal(list(a.observables.values()), list(b.observables.values()), equal_nan=True)
+        for a, b in zip(strike_many(scenes), [strike(s) for s in scenes], strict=True)
+    )
+    scene = scenes[1]
+    body = np.tile(arrays_of(scene).body, (4, 1))
+    body[:, c.V_Y] *= [0.5, 1.0, 2.0, 3.0]
+    rows = strike_rows(scene, body)
+    alone = np.array([strike_rows(scene, body[i : i + 1])[0] for i in range(4)])
+    np.testing.assert_array_equal(rows, alone)
+    np.testing.assert_array_equal(
+        rows[1, : len(c.OBSERVABLES)], list(strike(scene).observables.values())
+    )
+
+
+def test_neutral_transforms_leave_every_bit() -> None:
+    rng = np.random.default_rng(5)
+    for number in range(3):
+        scene = random_scene(rng, number)
+        neutral = scene.with_(
+            force=ForceTransform(damping=0.0, radiation=0.0, recovery=1.0), support=Support(),
+            friction=Friction(scene.friction.mu, mu_static=scene.friction.mu, speed=0.3),
+        )  # fmt: skip
+        plain = scene.with_(support=Support())
+        np.testing.assert_array_equal(
+            list(strike(neutral).observables.values()), list(strike(plain).observables.values())
+        )
+
+
+def test_transforms_move_restitution_as_declared() -> None:
+    scene = random_scene(np.random.default_rng(5), 1).with_(
+        support=Support(), friction=Friction(0.0), approach=Approach(1.0), gravity=0.0
+    )
+    e = strike(scene).restitution
+    assert strike(scene.with_(force=ForceTransform(damping=0.1))).restitution < e
+    assert strike(scene.with_(force=ForceTransform(recovery=0.8))).restitution < e
+    harder = ForceTransform(factors=(1.2,) * 13, recovery=1.2 ** (2.0 / 3.0))
+    assert strike(scene.with_(force=harder)).residual_m < strike(scene).residual_m
+    soft = scene.with_(support=Support(mass=1.0, stiffness=1e6))
+    assert strike(soft).support_energy_J > 0.0
+
+
+def test_budget_ends_in_an_outcome() -> None:
+    scene = random_scene(np.random.default_rng(11), 1)
+    assert strike(scene, Settings(max_steps=5)).outcome.ending is Ending.STEP_LIMIT
+
+
+@pytest.mark.parametrize("law", LAWS, ids=lambda law: law.name)
+def test_second_blow_on_the_same_spot_meets_the_hardened_crater(law: object) -> None:
+    ball = Striker(mass=0.03, tip_radius=0.01)
+    scene = scene_of(
+        law, sphere=STEEL, flat=IRON, striker=ball, approach=Approach(1.0), gravity=0.0
+    )
+    first = strike(scene)
+    again = strike(scene.with_(spot=first.spot))
+    if law is HERTZ:
+        assert again.restitution == pytest.approx(first.restitution, abs=1e-8)
+        return
+    # The crater gives back the elastic energy of the first blow and then loads on: together both
+    # blows end where one of speed v sqrt(2 - e^2) ends, and rebound with that one's energy.
+    total = math.sqrt(2.0 - first.restitution**2)
+    single = strike(scene.with_(approach=Approach(total)))
+    assert again.residual_flat_m == pytest.approx(single.residual_flat_m, rel=1e-6)
+    assert again.restitution == pytest.approx(single.restitution * total, rel=1e-6)
+    # Elsewhere the metal is fresh: the first blow again.
+    elsewhere = strike(scene.with_(spot=type(first.spot)()))
+    assert elsewhere.residual_flat_m == first.residual_flat_m
+
+
+def test_flattened_tip_counts_in_the_next_trial() -> None:
+    """The weaker body is the sphere: its flat stays with it wherever it strikes next."""
+    ball = Striker(mass=0.03, tip_radius=0.01)
+    scene = scene_of(
+        JACKSON_GREEN, sphere=IRON, flat=STEEL, striker=ball, approach=Approach(1.0), gravity=0.0
+    )
+    first = strike(scene)
+    assert first.residual_sphere_m > 0.0
+    assert first.residual_flat_m == 0.0
+    moved = type(first.spot)(peak=first.spot.peak, tip=first.spot.tip)
+    total = math.sqrt(2.0 - first.restitution**2)
+    single = strike(scene.with_(approach=Approach(total)))
+    again = strike(scene.with_(spot=moved))
+    assert again.residual_sphere_m == pytest.approx(single.residual_sphere_m, rel=1e-6)
+    assert again.restitution == pytest.approx(single.restitution * total, rel=1e-6)
