@@ -61,7 +61,7 @@ def axial_frequencies(length: float, material: Material, *, count: int) -> Array
     0.1204
     """
     c = math.sqrt(material.E / material.density)
-    return np.arange(1, count + 1) * math.pi * c / length
+    return np.arange(1.0, count + 1.0) * (math.pi * c / length)
 
 
 def shear_coefficient(nu: float) -> float:
@@ -97,9 +97,9 @@ def bending_modes(
     n = degree + 1
     area, second = math.pi * radius**2, math.pi * radius**4 / 4.0
     shear = shear_coefficient(material.nu) * material.E / (2.0 * (1.0 + material.nu)) * area
-    point, weight = legendre.leggauss(degree + 2)
-    value = legendre.legvander(point, degree)
-    slope = np.stack(
+    point, weight = (np.asarray(x, dtype=float) for x in legendre.leggauss(degree + 2))
+    value: Array = np.asarray(legendre.legvander(point, degree), dtype=float)
+    slope: Array = np.stack(
         [legendre.legval(point, legendre.legder(np.eye(n)[k])) for k in range(n)], axis=1
     ) * (2.0 / length)
     w = weight * length / 2.0

@@ -140,11 +140,11 @@ def contradictions(found: Bench) -> list[str]:
                 if row["observable"] == "residual_depth"
             )
         ),
-        f"edge: the contact radius at {thesis['peak_depth_m'] * 1e6:.0f} um is {reach * 1e3:.2f} mm "
-        f"by Hertz, the rod's own radius {rod.radius * 1e3:g} mm (the cap is {edge * 1e6:.0f} um "
-        "high there)",
-        f"tip radius: {rod.tip_radius * 1e3:g} mm was read from a sag of 22 um on a photograph with "
-        "24.7 um per pixel",
+        f"edge: the contact radius at {thesis['peak_depth_m'] * 1e6:.0f} um is "
+        f"{reach * 1e3:.2f} mm by Hertz, the rod's own radius "
+        f"{rod.radius * 1e3:g} mm (the cap is {edge * 1e6:.0f} um high there)",
+        f"tip radius: {rod.tip_radius * 1e3:g} mm was read from a sag of 22 um on a photograph "
+        "with 24.7 um per pixel",
         f"force: {thesis['peak_force_N'] / 1e3:.1f} kN is {thesis['peak_force_N'] / strength:.1f} "
         f"times the rod's yield force and {thesis['peak_force_N'] / wave:.1f} times what a wave in "
         f"it can carry, rho c v A = {wave / 1e3:.1f} kN",

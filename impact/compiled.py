@@ -28,6 +28,8 @@ from .force import (
     static_unloading,
 )
 
+# The kernels take their state as plain vectors; the calls stay on few lines.
+# fmt: off
 MATRIX = types.Array(types.float64, 2, "C", readonly=False)
 
 # The state vector: rise of the centre of mass, rotation, their rates, the support's sinking and
@@ -36,8 +38,9 @@ X, Y, PHI, VX, VY, SPIN, W, W_RATE, SLIP, P_N, P_T, WORK_N, WORK_T, WORK_S, WORK
 N_RIGID = 16
 
 # The body vector.
-(MASS, INERTIA, HALF_COS, HALF_SIN, TIP, GRAVITY, MU, MU_STATIC, MU_SPEED, PLOUGH, S_MASS, S_STIFF, S_DAMP,
- S_PLATE, V_X, V_Y, V_SPIN, FLIGHT, LOSS, TOLERANCE, MAX_STEPS, MAX_CONTACTS) = range(22)  # fmt: skip
+(MASS, INERTIA, HALF_COS, HALF_SIN, TIP, GRAVITY, MU, MU_STATIC, MU_SPEED, PLOUGH, S_MASS, S_STIFF,
+ S_DAMP, S_PLATE, V_X, V_Y, V_SPIN, FLIGHT, LOSS, TOLERANCE, MAX_STEPS,
+ MAX_CONTACTS) = range(22)
 N_BODY = 22
 
 # The spot vector: memory of crater and tip.
@@ -56,10 +59,10 @@ OBSERVABLES = (
     "friction_work_J", "modal_energy_J", "support_energy_J", "rebound_speed_m_s",
     "tangential_rebound_m_s", "energy_residual", "momentum_residual",
     "tip_rebound_m_s",
-)  # fmt: skip
+)
 (O_E, O_KINETIC, O_ENERGETIC, O_TANGENTIAL, O_RES_S, O_RES_F, O_PEAK, O_TIME, O_TOUCHING, O_LOADING,
  O_FORCE, O_SPIN, O_SLIDING, O_SCAR, O_RATIO, O_PN, O_PT, O_WORK, O_FRICTION, O_MODAL, O_SUPPORT,
- O_VY, O_VX, O_ENERGY, O_MOMENTUM, O_TIP) = range(26)  # fmt: skip
+ O_VY, O_VX, O_ENERGY, O_MOMENTUM, O_TIP) = range(26)
 COUNTS = ("ending", "contacts", "steps", "evaluations", "stuck")
 N_OUT = len(OBSERVABLES) + len(COUNTS)
 FIRST_COUNT = len(OBSERVABLES)
@@ -89,7 +92,7 @@ _FAST = {"reassoc", "contract"}  # the loops over the modes may be summed in vec
     error_model="numpy",
     fastmath=_FAST,
 )
-def _kinematics(body, z, psi, n_modes, seen):  # type: ignore[no-untyped-def]
+def _kinematics(body, z, psi, n_modes, seen):
     """Write penetration (without crater offset), its rate and the sliding speed into `seen`."""
     sine, cosine = math.sin(0.5 * z[PHI]), math.cos(0.5 * z[PHI])
     c0, s0 = body[HALF_COS], body[HALF_SIN]
@@ -114,7 +117,7 @@ def _kinematics(body, z, psi, n_modes, seen):  # type: ignore[no-untyped-def]
 
 
 def _derivative_of(loading, radius, unloading, par, force, factors, body, omega, psi, shape, branch,
-                phase, mode, offset, variable, place, z, dz, seen):  # type: ignore[no-untyped-def]  # fmt: skip
+                phase, mode, offset, variable, place, z, dz, seen):
     """Write the state's derivative and what is seen of the contact.
 
     `mode` is the sign of sliding, 0 for stick; `place` is the value of the independent variable.
@@ -207,19 +210,19 @@ def _derivative_of(loading, radius, unloading, par, force, factors, body, omega,
 
 _DERIVATIVE = types.void(LOADING, BRANCH, BRANCH, VECTOR, VECTOR, VECTOR, VECTOR, VECTOR, MATRIX,
                          VECTOR, VECTOR, int64, float64, float64, int64, float64, VECTOR, VECTOR,
-                         VECTOR)  # fmt: skip
+                         VECTOR)
 _derivative_inlined = njit(inline="always", error_model="numpy", fastmath=_FAST)(_derivative_of)
 _derivative = njit(_DERIVATIVE, cache=True, error_model="numpy", fastmath=_FAST)(_derivative_of)
 
 
 @njit(
     float64(LOADING, BRANCH, BRANCH, VECTOR, VECTOR, VECTOR, VECTOR, VECTOR, MATRIX, VECTOR,
-            VECTOR, int64, float64, float64, int64, float64, float64, VECTOR, MATRIX, VECTOR, VECTOR, VECTOR,
-            VECTOR, VECTOR),
+            VECTOR, int64, float64, float64, int64, float64, float64, VECTOR, MATRIX, VECTOR,
+            VECTOR, VECTOR, VECTOR, VECTOR),
     cache=True, error_model="numpy", fastmath=_FAST,
-)  # fmt: skip
+)
 def _step(loading, radius, unloading, par, force, factors, body, omega, psi, shape, branch, phase,
-          mode, offset, variable, place, h, z, stages, z_new, work, z_err, scale, seen):  # type: ignore[no-untyped-def]  # fmt: skip
+          mode, offset, variable, place, h, z, stages, z_new, work, z_err, scale, seen):
     """Take one DOP853 step from `z` (derivative in stages[0]); return the error in tolerances.
 
     The last row of `stages` holds the derivative at the new state, `seen` what is seen there.
@@ -237,7 +240,7 @@ def _step(loading, radius, unloading, par, force, factors, body, omega, psi, sha
             z_new[j] = z[j] + h * z_new[j]
         _derivative_inlined(loading, radius, unloading, par, force, factors, body, omega, psi,
                             shape, branch, phase, mode, offset, variable, place + _C[i] * h,
-                            z_new, stages[i], seen)  # fmt: skip
+                            z_new, stages[i], seen)
     # Row by row, so that the inner loops run over the state without a chain of sums.
     for j in range(size):
         work[j] = 0.0
@@ -258,7 +261,7 @@ def _step(loading, radius, unloading, par, force, factors, body, omega, psi, sha
 
 
 @njit(float64(VECTOR, float64, float64), cache=True)
-def _sliding_mode(seen, rest_friction, small_force):  # type: ignore[no-untyped-def]
+def _sliding_mode(seen, rest_friction, small_force):
     """Sign of sliding that follows rest: 0 when friction can hold the contact point.
 
     `small_force` stands for the force at a touch, where both sides of the question vanish.
@@ -271,7 +274,7 @@ def _sliding_mode(seen, rest_friction, small_force):  # type: ignore[no-untyped-
 
 
 @njit(float64(VECTOR, float64, float64, boolean, float64), cache=True)
-def _first_mode(seen, rest_friction, small_force, rubbing, speed):  # type: ignore[no-untyped-def]
+def _first_mode(seen, rest_friction, small_force, rubbing, speed):
     """Sign of sliding at a touch; 0 when the point rests and nothing moves it."""
     if abs(seen[SLIDING]) > 1e-14 * speed:
         return 1.0 if seen[SLIDING] > 0.0 else -1.0
@@ -279,7 +282,7 @@ def _first_mode(seen, rest_friction, small_force, rubbing, speed):  # type: igno
 
 
 @njit(float64(float64, float64, float64, float64, float64), cache=True)
-def _hermite_root(g0, d0, g1, d1, h):  # type: ignore[no-untyped-def]
+def _hermite_root(g0, d0, g1, d1, h):
     """Return the fraction in (0, 1) at which the cubic through both ends vanishes."""
     low, high = 0.0, 1.0
     for _ in range(30):
@@ -295,7 +298,7 @@ def _hermite_root(g0, d0, g1, d1, h):  # type: ignore[no-untyped-def]
 
 
 @njit(float64(int64, VECTOR, float64, VECTOR), cache=True)
-def _event_value(event, seen, mode, branch):  # type: ignore[no-untyped-def]
+def _event_value(event, seen, mode, branch):
     """Event functions: each falls through zero when its event happens."""
     if event == 0:
         return seen[RATE]
@@ -315,8 +318,8 @@ def _event_value(event, seen, mode, branch):  # type: ignore[no-untyped-def]
 
 
 @njit(float64(int64, VECTOR, VECTOR, VECTOR, MATRIX, int64, VECTOR, float64, float64), cache=True,
-      error_model="numpy")  # fmt: skip
-def _event_slope(event, body, z, dz, psi, n, seen, mode, pace):  # type: ignore[no-untyped-def]
+      error_model="numpy")
+def _event_slope(event, body, z, dz, psi, n, seen, mode, pace):
     """Derivative of an event function where `pace` is dt per independent variable; 0: no form."""
     if event == 1:
         return seen[RATE] * pace
@@ -337,7 +340,7 @@ def _event_slope(event, body, z, dz, psi, n, seen, mode, pace):  # type: ignore[
 
 
 @njit(float64(VECTOR, VECTOR, MATRIX, int64), cache=True)
-def _tip_x(body, z, psi, n):  # type: ignore[no-untyped-def]
+def _tip_x(body, z, psi, n):
     """Tangential position of the contact point on the flat [m], 0 at first touch."""
     sine, cosine = math.sin(0.5 * z[PHI]), math.cos(0.5 * z[PHI])
     x = z[X] + 2.0 * sine * (body[HALF_SIN] * cosine + body[HALF_COS] * sine)
@@ -347,7 +350,7 @@ def _tip_x(body, z, psi, n):  # type: ignore[no-untyped-def]
 
 
 @njit(float64(VECTOR, float64), cache=True)
-def _crater(spot, x):  # type: ignore[no-untyped-def]
+def _crater(spot, x):
     """Depth of the crater at the tangential position x [m], a parabola about its centre."""
     if spot[SPOT_RADIUS] <= 0.0:
         return 0.0
@@ -361,7 +364,7 @@ def _crater(spot, x):  # type: ignore[no-untyped-def]
     ),
     cache=True,
 )
-def _meet(loading, unloading, residual, par, force, factors, spot, x, branch):  # type: ignore[no-untyped-def]
+def _meet(loading, unloading, residual, par, force, factors, spot, x, branch):
     """Begin a contact at x: return (phase, offset of the law's depth, crater depth here).
 
     The hardened crater is met within half its radius, and the flattened tip everywhere when the
@@ -381,7 +384,7 @@ def _meet(loading, unloading, residual, par, force, factors, spot, x, branch):  
 
 
 @njit(types.void(VECTOR, VECTOR, VECTOR, float64, VECTOR), cache=True, error_model="numpy")
-def _coast(body, z, omega, t, z_new):  # type: ignore[no-untyped-def]
+def _coast(body, z, omega, t, z_new):
     """Write the state after a flight of duration t: ballistic motion, free damped vibration."""
     n = len(omega)
     for j in range(len(z)):
@@ -405,7 +408,7 @@ def _coast(body, z, omega, t, z_new):  # type: ignore[no-untyped-def]
 
 
 @njit(float64(VECTOR, VECTOR, VECTOR, float64, MATRIX, VECTOR), cache=True, error_model="numpy")
-def _clearance(body, spot, z, centre, psi, seen):  # type: ignore[no-untyped-def]
+def _clearance(body, spot, z, centre, psi, seen):
     """How far the tip is from meeting the flat below it [m]; negative when it would be inside."""
     n = psi.shape[1]
     _kinematics(body, z, psi, n, seen)
@@ -415,8 +418,8 @@ def _clearance(body, spot, z, centre, psi, seen):  # type: ignore[no-untyped-def
 @njit(
     boolean(VECTOR, VECTOR, VECTOR, MATRIX, float64, VECTOR, VECTOR, VECTOR, VECTOR, VECTOR),
     cache=True, error_model="numpy",
-)  # fmt: skip
-def _fly(body, spot, omega, psi, centre, z, z_new, z_now, z_far, seen):  # type: ignore[no-untyped-def]
+)
+def _fly(body, spot, omega, psi, centre, z, z_new, z_now, z_far, seen):
     """Follow a free flight to the next touch; write it into `z_new` and return whether there is one.
 
     The vibration is known in closed form: the tip is looked at sixteen times in each period of
@@ -503,7 +506,7 @@ def _fly(body, spot, omega, psi, centre, z, z_new, z_now, z_far, seen):  # type:
 
 
 @njit(types.void(VECTOR, float64, VECTOR), cache=True)
-def _set_segment(breaks, depth, branch):  # type: ignore[no-untyped-def]
+def _set_segment(breaks, depth, branch):
     """Bound the loading curve to its smooth stretch around `depth`."""
     branch[SEGMENT_LOW], branch[SEGMENT_HIGH] = 0.0, math.inf
     for border in breaks:
@@ -515,7 +518,7 @@ def _set_segment(breaks, depth, branch):  # type: ignore[no-untyped-def]
 
 
 @njit(float64(LOADING, VECTOR, VECTOR, VECTOR, float64, float64), cache=True)
-def _reference_depth(loading, par, force, factors, energy, R):  # type: ignore[no-untyped-def]
+def _reference_depth(loading, par, force, factors, energy, R):
     """Depth [m] at which about `energy` [J] has been taken up; the scale of the tolerances."""
     d = 1e-12 * R
     taken, last = 0.0, 0.0
@@ -531,9 +534,9 @@ def _reference_depth(loading, par, force, factors, energy, R):  # type: ignore[n
     types.void(LOADING, BRANCH, BRANCH, SPLIT, VECTOR, VECTOR, VECTOR, VECTOR, VECTOR, VECTOR,
                VECTOR, MATRIX, VECTOR),
     cache=True, error_model="numpy",
-)  # fmt: skip
+)
 def one_impact(loading, radius, unloading, residual, par, force, factors, breaks, body, spot, omega,
-               psi, out):  # type: ignore[no-untyped-def]  # fmt: skip
+               psi, out):
     """Integrate one impact; fill `out` with OBSERVABLES and COUNTS and update `spot`.
 
     Follows the contact through loading, unloading, flight and re-contact, and the contact point
@@ -554,7 +557,7 @@ def one_impact(loading, radius, unloading, residual, par, force, factors, breaks
     rubbing = body[MU_STATIC] > 0.0 or body[MU] > 0.0 or body[PLOUGH] > 0.0
     phase_f, offset, local = _meet(
         loading, unloading, residual, par, force, factors, spot, spot[SPOT_CENTRE] if spot[SPOT_PEAK] > 0.0
-        else 0.0, branch)  # fmt: skip
+        else 0.0, branch)
     centre0 = spot[SPOT_CENTRE] if spot[SPOT_PEAK] > 0.0 else 0.0
     phase = int(phase_f)
     _set_segment(breaks, 0.0, branch)
@@ -587,7 +590,7 @@ def one_impact(loading, radius, unloading, residual, par, force, factors, breaks
         scale[N_RIGID + n + k] = tolerance * v_n * root_mass
 
     _derivative(loading, radius, unloading, par, force, factors, body, omega, psi, shape, branch,
-                phase, 1.0, offset, BY_TIME, 0.0, z, stages[0], seen)  # fmt: skip
+                phase, 1.0, offset, BY_TIME, 0.0, z, stages[0], seen)
     mode = _first_mode(seen, body[MU_STATIC], small_force, rubbing, v_n)
     approaching = True
     t_touch, touching, first_turn, t_last = 0.0, 0.0, np.nan, 0.0
@@ -607,14 +610,14 @@ def one_impact(loading, radius, unloading, residual, par, force, factors, breaks
     while True:
         if fresh:
             _derivative(loading, radius, unloading, par, force, factors, body, omega, psi, shape,
-                        branch, phase, mode, offset, BY_TIME, place, z, stages[0], seen)  # fmt: skip
+                        branch, phase, mode, offset, BY_TIME, place, z, stages[0], seen)
             rest = branch[1] + branch[2]
             if (phase == UNLOAD and simple and not approaching
-                    and seen[DEPTH] - rest < 0.6 * (branch[0] - rest)):  # fmt: skip
+                    and seen[DEPTH] - rest < 0.6 * (branch[0] - rest)):
                 variable, place = BY_ROOT_DEPTH, math.sqrt(max(seen[DEPTH] - rest, 0.0))
                 h = -0.15 * place if h > 0.0 else h
             _derivative(loading, radius, unloading, par, force, factors, body, omega, psi, shape,
-                        branch, phase, mode, offset, variable, place, z, stages[0], seen)  # fmt: skip
+                        branch, phase, mode, offset, variable, place, z, stages[0], seen)
             evaluations += 2
             fresh = False
             if phase == LOAD:
@@ -642,12 +645,12 @@ def one_impact(loading, radius, unloading, residual, par, force, factors, breaks
             approaching, fresh = True, True
             phase_f, offset, local = _meet(
                 loading, unloading, residual, par, force, factors, spot,
-                centre0 + _tip_x(body, z, psi, n), branch)  # fmt: skip
+                centre0 + _tip_x(body, z, psi, n), branch)
             phase = int(phase_f)
             _set_segment(breaks, 0.0, branch)
             variable, place, h = BY_ROOT_TIME, 0.0, 0.15 * math.sqrt(t_ref)
             _derivative(loading, radius, unloading, par, force, factors, body, omega, psi, shape,
-                        branch, phase, 1.0, offset, BY_TIME, place, z, stages[0], seen)  # fmt: skip
+                        branch, phase, 1.0, offset, BY_TIME, place, z, stages[0], seen)
             mode = _first_mode(seen, body[MU_STATIC], small_force, rubbing, v_n)
             continue
         if phase == FLY:
@@ -660,7 +663,7 @@ def one_impact(loading, radius, unloading, residual, par, force, factors, breaks
             h = -place
         error = _step(loading, radius, unloading, par, force, factors, body, omega, psi, shape,
                       branch, phase, mode, offset, variable, place, h, z, stages, z_new, work,
-                      z_err, scale, seen_new)  # fmt: skip
+                      z_err, scale, seen_new)
         evaluations += _STAGES
         steps += 1
         if not error <= 1.0:
@@ -703,7 +706,7 @@ def one_impact(loading, radius, unloading, residual, par, force, factors, breaks
             if active and values[event] >= 0.0 and values_new[event] < 0.0:
                 d0 = _event_slope(event, body, z, stages[0], psi, n, seen, mode, pace)
                 d1 = _event_slope(event, body, z_new, stages[_STAGES], psi, n, seen_new, mode,
-                                  pace_new)  # fmt: skip
+                                  pace_new)
                 if event == 5:
                     d0 = d1 = (values_new[5] - values[5]) / h
                 part = _hermite_root(values[event], d0, values_new[event], d1, h)
@@ -717,7 +720,7 @@ def one_impact(loading, radius, unloading, residual, par, force, factors, breaks
                 x = part * h
                 error = _step(loading, radius, unloading, par, force, factors, body, omega, psi, shape,
                       branch, phase, mode, offset, variable, place, x, z, stages, z_new, work,
-                      z_err, scale, seen_new)  # fmt: skip
+                      z_err, scale, seen_new)
                 evaluations += _STAGES
                 g = _event_value(chosen, seen_new, mode, branch)
                 if chosen == 6:
@@ -733,7 +736,7 @@ def one_impact(loading, radius, unloading, residual, par, force, factors, breaks
                 elif variable == BY_ROOT_DEPTH:
                     pace_new = 2.0 * (place + x) / seen_new[RATE]
                 slope = h * _event_slope(chosen, body, z_new, stages[_STAGES], psi, n, seen_new,
-                                         mode, pace_new)  # fmt: skip
+                                         mode, pace_new)
                 if chosen == 5 or (chosen != 1 and body[S_PLATE] > 0.0 and chosen != 4):
                     slope = (g_high - g_low) / (high - low)
                 move = -g / slope if slope < 0.0 else 0.5 * (low + high) - part
@@ -829,14 +832,14 @@ def one_impact(loading, radius, unloading, residual, par, force, factors, breaks
             _set_segment(breaks, branch[SEGMENT_HIGH], branch)
         elif chosen == 4:
             _derivative(loading, radius, unloading, par, force, factors, body, omega, psi, shape,
-                        branch, phase, mode, offset, BY_TIME, place, z, stages[0], seen)  # fmt: skip
+                        branch, phase, mode, offset, BY_TIME, place, z, stages[0], seen)
             if rubbing:
                 mode = _sliding_mode(seen, body[MU_STATIC], small_force)
             else:
                 mode = -mode
         elif chosen == 5:
             _derivative(loading, radius, unloading, par, force, factors, body, omega, psi, shape,
-                        branch, phase, mode, offset, BY_TIME, place, z, stages[0], seen)  # fmt: skip
+                        branch, phase, mode, offset, BY_TIME, place, z, stages[0], seen)
             pull = seen[M_TN] * seen[FORCE] + seen[B_T]
             mode = 1.0 if pull > 0.0 else -1.0
         else:
@@ -847,13 +850,13 @@ def one_impact(loading, radius, unloading, residual, par, force, factors, breaks
             t_touch = z[TIME]
             approaching = True
             phase_f, offset, local = _meet(
-                loading, unloading, residual, par, force, factors, spot, x_tip, branch)  # fmt: skip
+                loading, unloading, residual, par, force, factors, spot, x_tip, branch)
             phase = int(phase_f)
             _set_segment(breaks, 0.0, branch)
             slip_base += z[SLIP] - kept[SLIP]
             variable, place, h = BY_ROOT_TIME, 0.0, 0.25 * math.sqrt(t_ref)
             _derivative(loading, radius, unloading, par, force, factors, body, omega, psi, shape,
-                        branch, phase, 1.0, offset, BY_TIME, place, z, stages[0], seen)  # fmt: skip
+                        branch, phase, 1.0, offset, BY_TIME, place, z, stages[0], seen)
             mode = _first_mode(seen, body[MU_STATIC], small_force, rubbing, v_n)
 
     if ending == STEP_BUDGET or ending == NOT_FINITE:
@@ -898,11 +901,11 @@ def one_impact(loading, radius, unloading, residual, par, force, factors, breaks
                MATRIX,
                types.Array(types.float64, 3, "C"), MATRIX),
     cache=True,
-)  # fmt: skip
+)
 def many_impacts(loading, radius, unloading, residual, par, force, factors, breaks, body, spot,
-                 omega, psi, out):  # type: ignore[no-untyped-def]  # fmt: skip
+                 omega, psi, out):
     """Integrate row after row; `par`, `force`, `omega`, `psi` hold one row or one per impact."""
     for i in range(len(body)):
         one_impact(loading, radius, unloading, residual, par[min(i, len(par) - 1)],
                    force[min(i, len(force) - 1)], factors, breaks, body[i], spot[i],
-                   omega[min(i, len(omega) - 1)], psi[min(i, len(psi) - 1)], out[i])  # fmt: skip
+                   omega[min(i, len(omega) - 1)], psi[min(i, len(psi) - 1)], out[i])

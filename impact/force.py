@@ -33,7 +33,7 @@ PUNCH_PRESSURE = 5.69 / math.sqrt(3.0)
 
 
 @njit(float64(VECTOR, float64), cache=True)
-def _factor(factors, x):  # type: ignore[no-untyped-def]
+def _factor(factors, x):
     last = len(factors) - 1
     place = (math.log(max(x, 1e-300)) - LOG_DEPTH_FIRST) / (LOG_DEPTH_LAST - LOG_DEPTH_FIRST)
     place = min(max(place * last, 0.0), float(last))
@@ -42,7 +42,7 @@ def _factor(factors, x):  # type: ignore[no-untyped-def]
 
 
 @njit(float64(LOADING, VECTOR, VECTOR, VECTOR, float64), cache=True)
-def static_loading(loading, par, force, factors, depth):  # type: ignore[no-untyped-def]
+def static_loading(loading, par, force, factors, depth):
     """Loading force [N] at `depth` [m], measured from first touch.
 
     A flat of radius b on the tip: the lesser of the elastic truncated sphere (Ejike 1969,
@@ -72,7 +72,7 @@ def static_loading(loading, par, force, factors, depth):  # type: ignore[no-unty
 
 
 @njit(types.void(BRANCH, VECTOR, VECTOR), cache=True)
-def _fit_power(unloading, par, branch):  # type: ignore[no-untyped-def]
+def _fit_power(unloading, par, branch):
     """Recognise a recovery F_m x^n, x from 0 at the residual depth to 1 at the peak.
 
     Nearly every law recovers so; then a step need not ask the law for its peak force again. The
@@ -100,7 +100,7 @@ def _fit_power(unloading, par, branch):  # type: ignore[no-untyped-def]
     types.void(LOADING, BRANCH, SPLIT, VECTOR, VECTOR, VECTOR, float64, VECTOR),
     cache=True,
 )
-def set_peak(loading, unloading, residual, par, force, factors, peak, branch):  # type: ignore[no-untyped-def]
+def set_peak(loading, unloading, residual, par, force, factors, peak, branch):
     """Write into `branch` what the unloading from `peak` needs.
 
     Entries: peak, residual depth of sphere and flat, force scale, law's peak and residual depth,
@@ -131,7 +131,7 @@ def set_peak(loading, unloading, residual, par, force, factors, peak, branch):  
 
 
 @njit(float64(BRANCH, VECTOR, VECTOR, float64), cache=True)
-def static_unloading(unloading, par, branch, depth):  # type: ignore[no-untyped-def]
+def static_unloading(unloading, par, branch, depth):
     """Force [N] at `depth` [m] on the branch that `set_peak` prepared."""
     if depth <= branch[1] + branch[2]:
         return 0.0
@@ -146,12 +146,12 @@ def static_unloading(unloading, par, branch, depth):  # type: ignore[no-untyped-
 
 
 @njit(float64(LOADING, VECTOR, VECTOR, VECTOR, float64), cache=True)
-def _log_force(loading, par, force, factors, x):  # type: ignore[no-untyped-def]
+def _log_force(loading, par, force, factors, x):
     return math.log(max(static_loading(loading, par, force, factors, math.exp(x)), 1e-300))
 
 
 @njit(float64(LOADING, VECTOR, VECTOR, VECTOR, float64, float64), cache=True)
-def _jump_between(loading, par, force, factors, low, high):  # type: ignore[no-untyped-def]
+def _jump_between(loading, par, force, factors, low, high):
     """Logarithm of the depth just above a jump between two others; nan without one."""
     f_low = _log_force(loading, par, force, factors, low)
     f_high = _log_force(loading, par, force, factors, high)
@@ -168,7 +168,7 @@ def _jump_between(loading, par, force, factors, low, high):  # type: ignore[no-u
 
 
 @njit(float64(LOADING, VECTOR, VECTOR, VECTOR, float64, float64), cache=True)
-def _kink_between(loading, par, force, factors, low, high):  # type: ignore[no-untyped-def]
+def _kink_between(loading, par, force, factors, low, high):
     """Logarithm of the depth of a kink (a jump of the slope); nan without one.
 
     To about 1e-6 for a finite jump, to rounding for a slope that is infinite on one side.
@@ -196,7 +196,7 @@ def _kink_between(loading, par, force, factors, low, high):  # type: ignore[no-u
 
 
 @njit(float64[::1](LOADING, VECTOR, VECTOR, VECTOR), cache=True)
-def find_breaks(loading, par, force, factors):  # type: ignore[no-untyped-def]
+def find_breaks(loading, par, force, factors):
     """Depths at which the loading force or its slope jumps, rising.
 
     Published fits do so at the borders of their ranges. A logarithmic scan for uneven slopes, each
@@ -225,7 +225,7 @@ def find_breaks(loading, par, force, factors):  # type: ignore[no-untyped-def]
     return found[:count].copy()
 
 
-def edge_depth(radius_kernel, par, force, limit):  # type: ignore[no-untyped-def]
+def edge_depth(radius_kernel, par, force, limit):
     """Depth [m] at which the contact radius reaches `limit`; infinite when it never does."""
     if not math.isfinite(limit):
         return math.inf

@@ -161,8 +161,8 @@ def _objections(
     if duration > 10.0 * longest:
         found.append(
             f"{duration * 1e3:.3g} ms is {duration / longest:.0f} times what one contact over "
-            f"three dent depths takes ({longest * 1e3:.2g} ms): more than one contact, or none that "
-            "is rigid"
+            f"three dent depths takes ({longest * 1e3:.2g} ms): more than one contact, or a "
+            "rod that is not rigid"
         )
     elif travel > 3.0 * measured.depth:
         found.append(

@@ -55,8 +55,8 @@ class Impact:
     smallest while in contact. `contact_time_s` runs from first touch to last separation,
     `touching_time_s` leaves out the flights between. `contact_work_J` is what the contact kept,
     `support_energy_J` what the support took up. `energy_residual` is the unbalanced energy over
-    the kinetic energy of the approach, `momentum_residual` the unbalanced momentum over m v. `stuck` says whether
-    friction held the tip for some time.
+    the kinetic energy of the approach, `momentum_residual` the unbalanced momentum over m v.
+    `stuck` says whether friction held the tip for some time.
     """
 
     restitution: float

@@ -232,6 +232,9 @@ class Spot:
     radius: float = 0.0
 
 
+_RIGID = Modes()
+
+
 @dataclass(frozen=True, slots=True)
 class Scene:
     """One impact: law, pair, striker, approach, and the seams."""
@@ -244,7 +247,7 @@ class Scene:
     flow: FlowStress = RateFree()
     force: ForceTransform = ForceTransform()
     friction: Friction = Friction()
-    modes: Modes = Modes()
+    modes: Modes = _RIGID
     support: Support = Support()
     instrument: Instrument = field(default_factory=Instrument)
     spot: Spot = Spot()

@@ -81,7 +81,7 @@ class ImpactTable(InputTable):
     drop_height_m: Positive | None = None
     approach_tangential_m_s: Quantity | None = None
     approach_spin_rad_s: Quantity = 0.0
-    laws: list[str] = ["ghaednia"]
+    laws: tuple[str, ...] = ("ghaednia",)
     modes: int = Field(default=0, ge=0, le=60)
     loss_factor: float = Field(default=0.0, ge=0.0, lt=1.0)
     support: Literal["rigid", "sprung", "plate", "half-space"] = "rigid"
@@ -91,7 +91,7 @@ class ImpactTable(InputTable):
     flight_s: float | None = Field(default=None, ge=0.0)
     max_steps: int = Field(default=20_000, ge=10)
     max_contacts: int = Field(default=50, ge=1)
-    sweep_m_s: list[Positive] = []
+    sweep_m_s: tuple[Positive, ...] = ()
 
 
 class SetupFile(BaseModel):
@@ -108,8 +108,8 @@ class SetupFile(BaseModel):
     target: TargetTable
     strikers: dict[str, StrikerTable]
     friction: FrictionTable = FrictionTable()
-    environment: dict[str, Any] = {}
-    noise: dict[str, Any] = {}
+    environment: dict[str, Any] = Field(default_factory=dict)
+    noise: dict[str, Any] = Field(default_factory=dict)
     impact: ImpactTable
 
 

@@ -1,0 +1,116 @@
+"""Speed of the compiled impact integrator, and its agreement with the library's on many impacts.
+
+python benchmarks/bench_impact.py            impacts a second, on one core
+python benchmarks/bench_impact.py agree 1000 largest difference to the reference integrator
+"""
+
+from __future__ import annotations
+
+import math
+import sys
+import time
+
+import numpy as np
+from dentscope.core import Material
+from dentscope.impact import (
+    Approach,
+    Friction,
+    Scene,
+    Settings,
+    Striker,
+    Support,
+    arrays_of,
+    reference_impact,
+    rod_modes,
+    scene_of,
+    strike,
+    strike_rows,
+)
+from dentscope.impact import compiled as c
+from dentscope.models import LAWS
+
+STEEL = Material(E=200e9, nu=0.3, Sy=760e6, density=7800.0)
+IRON = Material(E=200e9, nu=0.3, Sy=305e6, density=7870.0)
+ROD = Striker(mass=0.4607, tip_radius=0.0088, length=0.3048, radius=0.0088)
+FAST = Settings(tolerance=1e-7)
+
+
+def thesis_scene(law: str, angle: float, *, modes: int) -> Scene:
+    return scene_of(
+        LAWS[law], sphere=STEEL, flat=IRON, striker=ROD, friction=Friction(0.13),
+        approach=Approach(1.0, math.radians(angle)),
+        modes=rod_modes(ROD.length, ROD.radius, STEEL, mass=ROD.mass, count=modes),
+    )  # fmt: skip
+
+
+def speed() -> None:
+    print("law, angle, modes: impacts a second (processor time), 0.5-4 m/s, tolerance 1e-7 / 1e-6")
+    for law in LAWS:
+        for angle in (90.0, 45.0):
+            for modes, count in ((0, 4000), (20, 200)):
+                scene = thesis_scene(law, angle, modes=modes)
+                settings = FAST if modes == 0 else Settings(tolerance=1e-6)
+                body = np.tile(arrays_of(scene, settings).body, (count, 1))
+                body[:, c.V_Y] = -np.linspace(0.5, 4.0, count)
+                strike_rows(scene, body[:2], settings)
+                start = time.process_time()
+                rows = strike_rows(scene, body, settings)
+                rate = count / (time.process_time() - start)
+                contacts = rows[:, c.FIRST_COUNT + 1].mean()
+                print(
+                    f"  {law:15s} {angle:3.0f} {modes:3d}: {rate:8.0f}  (contacts {contacts:.1f})"
+                )
+
+
+def random_scene(rng: np.random.Generator, number: int) -> Scene:
+    is_rod = rng.random() < 0.7
+    R = 10.0 ** rng.uniform(-3.0, -1.5)
+    striker = Striker(
+        mass=10.0 ** rng.uniform(-2.0, 0.0), tip_radius=R, radius=R,
+        length=rng.uniform(10.0, 40.0) * R if is_rod else 0.0,
+    )  # fmt: skip
+    approach = Approach(
+        10.0 ** rng.uniform(-1.0, 0.7),
+        rng.uniform(0.2, math.pi / 2.0) if is_rod else math.pi / 2.0,
+        tangential=float(rng.choice([0.0, rng.normal()])),
+        spin=float(rng.choice([0.0, 20.0 * rng.normal()])),
+    )
+    return scene_of(
+        list(LAWS.values())[number % len(LAWS)], sphere=STEEL, flat=IRON, striker=striker,
+        approach=approach, friction=Friction(float(rng.choice([0.0, 0.1, 0.3, 0.8]))),
+        support=Support(mass=1.0, stiffness=1e8) if rng.random() < 0.2 else Support(),
+    )  # fmt: skip
+
+
+def agree(count: int) -> None:
+    """Differences relative to the observable, or to the impact's own scale if that is larger."""
+    rng = np.random.default_rng(2024)
+    worst: dict[str, float] = {}
+    for number in range(count):
+        scene = random_scene(rng, number)
+        ours = strike(scene, Settings(tolerance=1e-11))
+        theirs = reference_impact(scene).impact
+        assert ours.contacts == theirs.contacts, (number, scene)
+        m, v = scene.striker.mass, max(scene.approach.speed, abs(scene.approach.tangential))
+        for name, value in ours.observables.items():
+            other = theirs.observables[name]
+            if name.endswith("residual") or (math.isnan(value) and math.isnan(other)):
+                continue
+            scale = {"J": 0.5 * m * v * v, "Ns": m * v, "m": ours.peak_depth_m}.get(
+                name.rsplit("_", 1)[-1], 1.0 if "restitution" in name or "ratio" in name else 0.0
+            )
+            scale = v if name.endswith("m_s") else scale
+            if name == "rebound_spin_rad_s":
+                scale = v * math.sqrt(m / scene.striker.inertia)
+            off = abs(value - other) / max(abs(value), abs(other), scale, 1e-300)
+            worst[name] = max(worst.get(name, 0.0), off)
+    print(f"{count} random impacts, largest difference of the two integrators:")
+    for name, off in sorted(worst.items(), key=lambda item: -item[1]):
+        print(f"  {name:28s} {off:.1e}")
+
+
+if __name__ == "__main__":
+    if sys.argv[1:2] == ["agree"]:
+        agree(int(sys.argv[2]))
+    else:
+        speed()

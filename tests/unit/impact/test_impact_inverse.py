@@ -1,0 +1,88 @@
+"""Chapter 5's inverse against the thesis's printed durations and the audit's exact alpha."""
+
+from __future__ import annotations
+
+import math
+from pathlib import Path
+
+import pytest
+from dentscope.cli import run
+from dentscope.core import InputError
+from dentscope.impact.chapter5 import read_inverse, thesis_rod, thesis_rows
+from dentscope.impact.inverse import Measured, alpha, infer, mobility
+
+
+def test_durations_of_the_measured_rows() -> None:
+    """4.11, 1.38, 0.146 ms from the exact alpha; the thesis printed 4.30, 1.40, 0.10."""
+    rows = thesis_rows()[1]
+    for row, exact, printed in zip(rows, (4.11, 1.38, 0.146), (4.30, 1.40, 0.10), strict=True):
+        assert row.inferred.duration * 1e3 == pytest.approx(exact, rel=0.01)
+        assert row.printed_duration * 1e3 == pytest.approx(printed)
+        assert row.inferred.objections
+
+
+def test_alpha_of_the_audit() -> None:
+    rod = thesis_rod()
+    for angle, mu, expected in ((20, 0.20, -0.2427), (45, 0.13, -0.5523), (70, 0.10, -0.5005)):
+        assert alpha(rod, math.radians(angle), mu=mu) == pytest.approx(expected, abs=1e-4)
+    # No sliding at either end of the angles for mu = 0.5 (7.3 and 52 degrees), never for mu = 1.
+    for angle in (7.3, 52.0):
+        assert alpha(rod, math.radians(angle), mu=0.5) == pytest.approx(0.0, abs=0.01)
+    steepest = max(mobility(rod, math.radians(a)).stick_friction for a in range(1, 90))
+    assert steepest == pytest.approx(0.77, abs=0.01)
+
+
+def test_mean_force_with_the_impulse() -> None:
+    """0.285, 0.656, 1.343 N s of a rigid rod (thesis-data, m = 0.4607 kg)."""
+    for row, impulse in zip(thesis_rows()[1], (0.285, 0.656, 1.343), strict=True):
+        assert row.inferred.impulse == pytest.approx(impulse, rel=5e-3)
+        assert row.inferred.mean_force * row.inferred.duration == pytest.approx(
+            row.inferred.impulse
+        )
+        assert row.inferred.return_duration < row.inferred.duration
+
+
+def test_friction_that_sticks_is_a_mistake() -> None:
+    with pytest.raises(InputError, match="stick"):
+        infer(thesis_rod(), Measured(math.radians(70), 3.0, 0.5, 0.4, 1e-4, 2e-4))
+
+
+FILE = """
+[striker]
+tip_radius_m = 0.0088
+mass_kg = 0.4607
+length_m = 0.3048
+[[trial]]
+angle_deg = 45
+impact_speed_m_s = 2.18
+friction_impulse_ratio = 0.13
+restitution = 0.49
+permanent_depth_m = 26e-6
+sliding_length_m = 1650e-6
+"""
+
+
+def test_file_and_command(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    file = tmp_path / "trials.toml"
+    file.write_text(FILE)
+    row = read_inverse(file)[1][0]
+    assert row.inferred.duration == pytest.approx(1.38e-3, rel=0.01)
+    assert run(["inverse", str(file), "--out", str(tmp_path)]) == 0
+    assert (tmp_path / "trials-inverse-alpha.png").exists()
+    file.write_text(FILE.replace("0.13", "0.9"))
+    assert run(["inverse", str(file), "--out", str(tmp_path)]) == 2
+    assert "trial 1.friction: 0.9 makes the tip stick" in capsys.readouterr().err
+
+
+def test_thesis_tables_are_printed(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    assert run(["inverse", "--out", str(tmp_path)]) == 0
+    printed = capsys.readouterr().out
+    assert "0.567 kg" in printed
+    assert "table 5.4" in printed
+
+
+def test_chapter_3_command(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    assert run(["impact", "--law", "hertz", "--law", "ghaednia", "--out", str(tmp_path)]) == 0
+    printed = capsys.readouterr().out
+    assert "0.151 kg" in printed
+    assert (tmp_path / "chapter3.png").stat().st_size > 1000

@@ -1,0 +1,134 @@
+"""Set-up files: what they mean, and one line for each mistake."""
+
+from __future__ import annotations
+
+import math
+from pathlib import Path
+
+import pytest
+from dentscope.cli import run
+from dentscope.core import InputErrors
+from dentscope.impact.setup import read_setup
+from dentscope.models.hertz import HERTZ
+
+SETUP = """
+name = "rod"
+[target]
+shape = "flat"
+E_Pa = { value = 2.0e11, std = 4e9 }
+nu = 0.3
+Sy_Pa = 305e6
+density_kg_m3 = 7870
+thickness_m = 0.03
+[strikers.rod]
+shape = "rod"
+tip_radius_m = 0.0088
+radius_m = 0.0088
+length_m = 0.3048
+mass_kg = 0.4607
+E_Pa = 200e9
+nu = 0.3
+Sy_Pa = 760e6
+density_kg_m3 = 7800
+[friction]
+coefficient = 0.13
+[noise]
+restitution = 0.01
+[impact]
+angle_deg = 45
+impact_speed_m_s = 1.0
+laws = ["hertz", "jackson-green"]
+"""
+
+
+def write(path: Path, text: str) -> Path:
+    file = path / "setup.toml"
+    file.write_text(text)
+    return file
+
+
+def test_keys_reach_the_scene(tmp_path: Path) -> None:
+    text = SETUP.replace("angle_deg", 'support = "plate"\nmodes = 4\nangle_deg')
+    scene = read_setup(write(tmp_path, text)).scene(HERTZ)
+    assert scene.pair.flat.E == 2.0e11
+    assert scene.striker.inertia == pytest.approx(0.4607 * (0.3048**2 / 12 + 0.0088**2 / 4))
+    assert scene.approach.angle == pytest.approx(math.pi / 4)
+    assert scene.friction.mu == 0.13
+    assert len(scene.modes.frequencies) == 4
+    # 1 / (8 sqrt(236.1 kg/m2 * 494.5 kN m)), by hand
+    assert scene.support.plate_mobility == pytest.approx(1.1568e-5, rel=1e-4)
+
+
+def test_a_spheres_angle_is_that_of_its_velocity(tmp_path: Path) -> None:
+    text = SETUP.replace('shape = "rod"', 'shape = "sphere"').replace(
+        "impact_speed_m_s = 1.0", "drop_height_m = 0.2"
+    )
+    text = text.replace("angle_deg = 45", "angle_deg = 30")
+    approach = read_setup(write(tmp_path, text)).scene(HERTZ).approach
+    speed = math.sqrt(2 * 9.81 * 0.2)
+    assert approach.speed == pytest.approx(0.5 * speed)
+    assert approach.tangential == pytest.approx(-speed * math.cos(math.pi / 6))
+
+
+@pytest.mark.parametrize(
+    ("old", "new", "line"),
+    [
+        ("nu = 0.3", "nu = 0.7", "target.nu: 0.7"),
+        ("E_Pa = 200e9", "E_Pa = -1", "strikers.rod.E_Pa: -1"),
+        ("mass_kg = 0.4607", "", "strikers.rod.mass_kg: missing"),
+        ("length_m = 0.3048", "", "strikers.rod: a rod without size"),
+        ("angle_deg = 45", "angle_deg = 95", "impact.angle_deg: 95"),
+        ("angle_deg = 45", "angel_deg = 45", "impact.angel_deg: unknown key"),
+        ("impact_speed_m_s = 1.0", "", "impact.impact_speed_m_s: give one"),
+        ("impact_speed_m_s = 1.0", "impact_speed_m_s = 1\ndrop_height_m = 1", "give one"),
+        ("angle_deg = 45", 'striker = "ball"', "impact.striker: no striker 'ball'"),
+        ("angle_deg = 45", 'support = "sprung"', "target.support_mass_kg: missing"),
+        ("coefficient = 0.13", "coefficient = -0.1", "friction.coefficient: -0.1"),
+        ('shape = "rod"', 'shape = "cube"', "strikers.rod.shape: 'cube'"),
+        ("angle_deg = 45", "modes = 100", "impact.modes: 100"),
+    ],
+)
+def test_each_mistake_is_one_line(tmp_path: Path, old: str, new: str, line: str) -> None:
+    with pytest.raises(InputErrors) as caught:
+        read_setup(write(tmp_path, SETUP.replace(old, new, 1)))
+    assert line in str(caught.value)
+    assert all(row.count("\n") == 0 for row in str(caught.value).splitlines())
+
+
+def test_command_line_from_file(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    file = write(tmp_path, SETUP.replace("angle_deg", "sweep_m_s = [0.5, 2]\nangle_deg"))
+    assert run(["impact", str(file), "--out", str(tmp_path / "out")]) == 0
+    printed = capsys.readouterr().out
+    assert "kinematic restitution" in printed
+    for name in ("setup.csv", "setup.h5", "setup.png", "setup-sweep.png"):
+        assert (tmp_path / "out" / name).stat().st_size > 100
+    # By hand from the CSV: the energetic restitution of Hertz's law is 1.
+    header, row = (tmp_path / "out/setup.csv").read_text().splitlines()[:2]
+    values = dict(zip(header.split(","), row.split(","), strict=True))
+    assert values["law"] == "hertz"
+    assert float(values["energetic_restitution"]) == pytest.approx(1.0, abs=1e-6)
+    assert float(values["friction_impulse_ratio"]) == pytest.approx(0.13, rel=1e-6)
+
+
+@pytest.mark.parametrize(
+    ("arguments", "message"),
+    [
+        (["impact", "nowhere.toml"], "nowhere.toml: no such file"),
+        (["impact", "--law", "newton"], "command line: --law: no law 'newton'"),
+        (["inverse", "nowhere.toml"], "nowhere.toml: no such file"),
+    ],
+)
+def test_mistakes_end_with_code_2(
+    arguments: list[str], message: str, capsys: pytest.CaptureFixture[str]
+) -> None:
+    assert run(arguments) == 2
+    assert message in capsys.readouterr().err
+
+
+def test_a_budget_that_runs_out_ends_with_code_3(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    text = SETUP.replace("angle_deg", "modes = 2\nmax_contacts = 1\nangle_deg")
+    text = text.replace('laws = ["hertz", "jackson-green"]', 'laws = ["hertz"]')
+    assert run(["impact", str(write(tmp_path, text)), "--out", str(tmp_path)]) == 3
+    assert "max_contacts" in capsys.readouterr().err
