@@ -215,6 +215,7 @@ def _first_contact(grid: Discretisation, solver: Solver, delta: float) -> Point 
     state, stored = advance(grid.elements, found.u, state=virgin, rule=solver.rule)
     reading = read(grid, found, delta)
     # below first yield F ~ Delta^(3/2), so the work so far is 2/5 F Delta
+    stored += found.contact.energy
     record = Record(reading, 0.4 * reading.force * delta, stored, state.dissipated)
     return Point(delta, found, state, record)
 
@@ -258,6 +259,7 @@ def _accept(
     last = point.record
     # F ~ Delta^n between two points: exact for a power law, where the trapezoidal rule is not
     work = last.work + _work_between(last.reading, reading)
+    stored += found.contact.energy
     return Point(delta, found, state, Record(reading, work, stored, state.dissipated))
 
 

@@ -1,0 +1,221 @@
+"""The campaign file: identity of cases, resuming, damage, and death of workers and coordinator."""
+
+import os
+import signal
+import subprocess
+import sys
+import time
+from dataclasses import replace
+
+import h5py
+import numpy as np
+import pytest
+from dentscope import fem
+from dentscope.campaigns import (
+    DESIGNS,
+    Design,
+    Store,
+    distinct_cases,
+    read_curves,
+    run_design,
+    standard_case,
+    status_of,
+)
+from dentscope.campaigns.executor import Ended
+from dentscope.core import COMPLETED, Ending, InputError, Material, Outcome, Pair
+from dentscope.fem import Counters, Curve, Solution
+
+
+def pair(scale=1.0, R=1e-3, Sy=5e8):
+    return Pair(
+        sphere=Material(E=200e9 * scale, nu=0.3, Sy=Sy * scale),
+        flat=Material(E=100e9 * scale, nu=0.3, Sy=3e8 * scale),
+        R=R,
+    )
+
+
+def case(name="one", **changes):
+    return standard_case(
+        name, pair(**changes), deepest=0.01, n_depths=4, accuracy=fem.Accuracy.smoke()
+    )
+
+
+def solution(of, outcome=COMPLETED):
+    n = len(of.depths)
+    line = np.linspace(1.0, 2.0, n)
+    curve = Curve(**dict.fromkeys(Curve.__dataclass_fields__, line))
+    counters = Counters(**dict.fromkeys(Counters.__dataclass_fields__, 1))
+    return Solution(of.problem(), of.accuracy, outcome, curve, (), (), counters, "mesh")
+
+
+class FakeExecutor:
+    """Gives a made-up solution for each case, and counts."""
+
+    workers = 1
+
+    def __init__(self, outcome=COMPLETED):
+        self.computed = []
+        self.outcome = outcome
+
+    def run(self, cases, *, time_limit_s):
+        for key, item in cases.items():
+            self.computed.append(key)
+            yield Ended(key, solution(item, self.outcome))
+
+
+def design(n=5):
+    made = tuple(case(f"case-{i}", Sy=4e8 + 1e7 * i) for i in range(n))
+    return Design("test", "", lambda: made)
+
+
+def test_a_case_is_its_dimensionless_groups():
+    assert case().id == case(scale=7.0, R=3.0).id
+    assert case().id != case(Sy=5.001e8).id
+    finer = replace(case(), accuracy=fem.Accuracy.quick())
+    assert finer.id != case().id
+
+
+def test_the_smoke_design_has_twelve_distinct_cases_of_three_pairs():
+    cases = distinct_cases(DESIGNS["smoke"])
+    assert len(cases) == 12
+    ratios = sorted({round(c.pair.Sy_ratio, 6) for c in cases.values()})
+    assert ratios == [0.1, 1.0, 1.5, 10.0]
+    assert len({round(c.pair.E_reduced / c.pair.Sy_min) for c in cases.values()}) == 3
+    assert min(c.depths[-1] for c in cases.values()) >= 0.04
+
+
+def test_a_second_run_computes_nothing(tmp_path):
+    path, first, second = tmp_path / "c.h5", FakeExecutor(), FakeExecutor()
+    status = run_design(design(), path, executor=first, time_limit_s=1.0)
+    assert (status.designed, status.done, status.failed, status.missing) == (5, 5, 0, 0)
+    run_design(design(), path, executor=second, time_limit_s=1.0)
+    assert (len(first.computed), second.computed) == (5, [])
+    record = read_curves(path)[0]
+    assert record.curve["force"] == pytest.approx(np.linspace(1.0, 2.0, 4))
+    assert record.case.id == record.id
+
+
+def test_a_failed_case_is_stored_with_its_reason_and_retried_on_demand(tmp_path):
+    path = tmp_path / "c.h5"
+    failing = FakeExecutor(Outcome(Ending.NOT_CONVERGED, "stuck at 0.003.", "Refine."))
+    status = run_design(design(2), path, executor=failing, time_limit_s=1.0)
+    assert (status.done, status.failed) == (0, 2)
+    assert "stuck at 0.003" in Store(path).read_all()[0].message
+    again = FakeExecutor()
+    run_design(design(2), path, executor=again, time_limit_s=1.0, again=frozenset({"failed"}))
+    assert len(again.computed) == 2
+    assert status_of(design(2), Store(path)).done == 2
+
+
+def test_two_coordinators_do_not_write_one_file(tmp_path):
+    store = Store(tmp_path / "c.h5")
+    sleeper = subprocess.Popen([sys.executable, "-c", "import time; time.sleep(60)"])
+    try:
+        store.path.with_suffix(".lock").write_text(str(sleeper.pid))
+        with pytest.raises(InputError, match=f"process {sleeper.pid} is writing"):
+            run_design(design(1), store.path, executor=FakeExecutor(), time_limit_s=1.0)
+    finally:
+        sleeper.kill()
+        sleeper.wait()
+    # the lock of a dead process is no obstacle
+    assert run_design(design(1), store.path, executor=FakeExecutor(), time_limit_s=1.0).done == 1
+
+
+@pytest.mark.parametrize("damage", ["truncated", "text", "other"])
+def test_a_damaged_file_is_reported_and_left_alone(tmp_path, damage):
+    path = tmp_path / "c.h5"
+    run_design(design(2), path, executor=FakeExecutor(), time_limit_s=1.0)
+    if damage == "truncated":
+        path.write_bytes(path.read_bytes()[:900])
+    elif damage == "text":
+        path.write_text("nothing")
+    else:
+        path.unlink()
+        with h5py.File(path, "w") as file:
+            file.attrs["format"] = "something else"
+    before = path.read_bytes()
+    with pytest.raises(InputError, match=r"c\.h5"):
+        run_design(design(2), path, executor=FakeExecutor(), time_limit_s=1.0)
+    assert path.read_bytes() == before
+
+
+def test_a_missing_dataset_names_itself(tmp_path):
+    path = tmp_path / "c.h5"
+    run_design(design(1), path, executor=FakeExecutor(), time_limit_s=1.0)
+    with h5py.File(path, "a") as file:
+        del next(iter(file["cases"].values()))["loading"]["force"]
+    with pytest.raises(InputError, match="loading/force"):
+        read_curves(path)
+
+
+SCRIPT = """
+import sys
+from pathlib import Path
+from dentscope import fem
+from dentscope.campaigns import Design, run_design, standard_case
+from dentscope.campaigns.executor import LocalExecutor
+from dentscope.core import Material, Pair
+
+def made():
+    out = []
+    for i in range(6):
+        body = Material(E=200e9, nu=0.3, Sy=(4e8 + 1e7 * i))
+        p = Pair(sphere=body, flat=Material(E=200e9, nu=0.3, Sy=3e8), R=1e-3)
+        smoke = fem.Accuracy.smoke()
+        out.append(standard_case(f"c{i}", p, deepest=3e-4, n_depths=4, accuracy=smoke))
+    return tuple(out)
+
+if __name__ == "__main__":
+    run_design(Design("kill", "", made), Path(sys.argv[1]), executor=LocalExecutor(workers=2),
+               time_limit_s=60.0, report=lambda s: print("COMPUTED", s.case.name, flush=True))
+"""
+
+
+@pytest.mark.fe
+def test_kill_9_loses_nothing_and_computes_nothing_twice(tmp_path):
+    script, path = tmp_path / "run.py", tmp_path / "c.h5"
+    script.write_text(SCRIPT)
+    computed = []
+    for stop_after in (1, 3, None):
+        process = subprocess.Popen(
+            [sys.executable, str(script), str(path)],
+            stdout=subprocess.PIPE,
+            text=True,
+            start_new_session=True,
+        )
+        for line in process.stdout:
+            computed.append(line.split()[1])
+            if stop_after is not None and len(computed) >= stop_after:
+                break
+        if stop_after is not None:
+            time.sleep(0.05)
+            os.killpg(process.pid, signal.SIGKILL)
+        process.wait(timeout=60)
+        process.stdout.close()
+    stored = [record.case.name for record in read_curves(path)]
+    assert sorted(stored) == [f"c{i}" for i in range(6)]
+    # what was reported as computed was stored, and nothing was computed a second time
+    assert len(computed) == len(set(computed))
+    assert set(computed) <= set(stored)
+
+
+@pytest.mark.fe
+def test_a_dying_worker_costs_no_case(tmp_path):
+    from dentscope.campaigns.executor import LocalExecutor
+
+    cases = distinct_cases(design(3))
+    killed = []
+    ended = []
+    for item in LocalExecutor(workers=2).run(cases, time_limit_s=60.0):
+        if not killed:
+            children = subprocess.run(
+                ["ps", "--ppid", str(os.getpid()), "-o", "pid=,args="],
+                capture_output=True, text=True, check=True,
+            ).stdout.splitlines()  # fmt: skip
+            workers = [int(c.split()[0]) for c in children if "spawn_main" in c]
+            if workers:
+                os.kill(workers[0], signal.SIGKILL)
+                killed.append(workers[0])
+        ended.append(item.id)
+        assert item.solution is not None, item.message
+    assert sorted(ended) == sorted(cases)
