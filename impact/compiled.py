@@ -48,8 +48,8 @@ SPOT_PEAK, SPOT_FLAT, SPOT_TIP, SPOT_CENTRE, SPOT_RADIUS = range(5)
 N_SPOT = 5
 
 # What a contact evaluation tells besides the derivative.
-DEPTH, RATE, FORCE, TANGENTIAL, SLIDING, MARGIN, M_TT, M_TN, B_T, ARM, RISE = range(11)
-N_SEEN = 11
+DEPTH, RATE, FORCE, TANGENTIAL, SLIDING, MARGIN, M_TT, M_TN, B_T, ARM, RISE, ACCELERATION = range(12)
+N_SEEN = 12
 
 OBSERVABLES = (
     "restitution", "kinetic_restitution", "energetic_restitution", "tangential_restitution",
@@ -73,8 +73,9 @@ DONE, STEP_BUDGET, CONTACT_BUDGET, NOT_FINITE = range(4)
 LOAD, UNLOAD, FLY = range(3)
 
 # The independent variable of a step: time; the square root of the time since touch, in which the
-# force grows smoothly; the square root of the depth left to separation, in which it fades so.
-BY_TIME, BY_ROOT_TIME, BY_ROOT_DEPTH = range(3)
+# force grows smoothly; the square root of the depth left to separation, in which it fades so; the
+# rate of penetration, which ends on the turning point.
+BY_TIME, BY_ROOT_TIME, BY_ROOT_DEPTH, BY_RATE = range(4)
 
 _STAGES = int(DOP853.n_stages)
 # Row i gives the state of stage i; the last row is the step's own result.
@@ -114,6 +115,18 @@ def _kinematics(body, z, psi, n_modes, seen):
     seen[DEPTH] = depth
     seen[RATE] = rate
     seen[SLIDING] = sliding
+
+
+@njit(float64(int64, float64, VECTOR), cache=True, error_model="numpy")
+def _pace(variable, place, seen):
+    """Time per unit of the independent variable, dt / d(place)."""
+    if variable == BY_TIME:
+        return 1.0
+    if variable == BY_ROOT_TIME:
+        return 2.0 * place
+    if variable == BY_ROOT_DEPTH:
+        return 2.0 * place / seen[RATE]
+    return 1.0 / seen[ACCELERATION]
 
 
 def _derivative_of(loading, radius, unloading, par, force, factors, body, omega, psi, shape, branch,
@@ -202,8 +215,10 @@ def _derivative_of(loading, radius, unloading, par, force, factors, body, omega,
                 lost += loss * omega[k] * p[k] * p[k]
     dz[WORK_D] = lost
     dz[TIME] = 1.0
+    # Only used for a body without modes.
+    seen[ACCELERATION] = -dz[VY] + dz[SPIN] * c - spin * spin * seen[RISE] - dz[W_RATE]
     if variable != BY_TIME:
-        pace = 2.0 * place if variable == BY_ROOT_TIME else 2.0 * place / seen[RATE]
+        pace = _pace(variable, place, seen)
         for j in range(len(z)):
             dz[j] *= pace
 
@@ -420,7 +435,7 @@ def _clearance(body, spot, z, centre, psi, seen):
     cache=True, error_model="numpy",
 )
 def _fly(body, spot, omega, psi, centre, z, z_new, z_now, z_far, seen):
-    """Follow a free flight to the next touch; write it into `z_new` and return whether there is one.
+    """Follow a free flight to the next touch; write it into `z_new`; return whether there is one.
 
     The vibration is known in closed form: the tip is looked at sixteen times in each period of
     the fastest mode, and no longer once no vibration can bring it back.
@@ -555,10 +570,9 @@ def one_impact(loading, radius, unloading, residual, par, force, factors, breaks
     out[:] = np.nan
     m, inertia = body[MASS], body[INERTIA]
     rubbing = body[MU_STATIC] > 0.0 or body[MU] > 0.0 or body[PLOUGH] > 0.0
-    phase_f, offset, local = _meet(
-        loading, unloading, residual, par, force, factors, spot, spot[SPOT_CENTRE] if spot[SPOT_PEAK] > 0.0
-        else 0.0, branch)
     centre0 = spot[SPOT_CENTRE] if spot[SPOT_PEAK] > 0.0 else 0.0
+    phase_f, offset, local = _meet(
+        loading, unloading, residual, par, force, factors, spot, centre0, branch)
     phase = int(phase_f)
     _set_segment(breaks, 0.0, branch)
     z[Y] = -(offset + (branch[1] + branch[2] if phase == UNLOAD else 0.0))
@@ -573,6 +587,8 @@ def one_impact(loading, radius, unloading, residual, par, force, factors, breaks
     small_force = 1e-7 * reduced * v_n / t_ref
     arm = math.sqrt(inertia / m)
     tolerance = body[TOLERANCE]
+    # The last move to an event is linear in time; its error is the square of its share of a step.
+    bite = 0.1 * math.sqrt(tolerance)
     scale[X] = tolerance * (d_ref + abs(body[V_X]) * t_ref)
     scale[SLIP] = tolerance * (d_ref + abs(v_t) * t_ref)
     scale[Y] = scale[W] = tolerance * d_ref
@@ -601,6 +617,7 @@ def one_impact(loading, radius, unloading, residual, par, force, factors, breaks
     # The state at the latest separation is the outcome; a flight that meets nothing is dropped.
     kept = z.copy()
     simple = n == 0
+    turning, to_rate = n == 0 and body[S_PLATE] == 0.0, False
     sprung = body[S_MASS] < math.inf
     # A force that depends on the rate may be largest between events.
     rated = force[DAMPING] != 0.0 or force[RADIATION] != 0.0
@@ -615,7 +632,12 @@ def one_impact(loading, radius, unloading, residual, par, force, factors, breaks
             if (phase == UNLOAD and simple and not approaching
                     and seen[DEPTH] - rest < 0.6 * (branch[0] - rest)):
                 variable, place = BY_ROOT_DEPTH, math.sqrt(max(seen[DEPTH] - rest, 0.0))
-                h = -0.15 * place if h > 0.0 else h
+                h = -0.4 * place if h > 0.0 else h
+            if to_rate or variable == BY_RATE:
+                variable, place, to_rate = BY_RATE, seen[RATE], False
+                h = -place
+                if not seen[ACCELERATION] < 0.0:
+                    variable, turning, h = BY_TIME, False, 1e-3 * t_ref
             _derivative(loading, radius, unloading, par, force, factors, body, omega, psi, shape,
                         branch, phase, mode, offset, variable, place, z, stages[0], seen)
             evaluations += 2
@@ -657,8 +679,8 @@ def one_impact(loading, radius, unloading, residual, par, force, factors, breaks
             left = t_last + body[FLIGHT] - z[TIME]
             if left <= 1e-12 * body[FLIGHT]:
                 break
-            h = min(h, left)
-        landing = variable == BY_ROOT_DEPTH and place + h <= 0.02 * place
+            h = min(h, left, body[FLIGHT] / 60.0)
+        landing = variable >= BY_ROOT_DEPTH and place + h <= 0.02 * place
         if landing:
             h = -place
         error = _step(loading, radius, unloading, par, force, factors, body, omega, psi, shape,
@@ -668,10 +690,12 @@ def one_impact(loading, radius, unloading, residual, par, force, factors, breaks
         steps += 1
         if not error <= 1.0:
             h *= max(0.2, 0.9 * error**-0.125) if math.isfinite(error) else 0.1
-            if variable == BY_ROOT_DEPTH and -h < 1e-5 * place:
+            if variable == BY_RATE and -h < 1e-4 * place:
+                variable, turning, fresh, h = BY_TIME, False, True, 1e-3 * t_ref
+            elif variable == BY_ROOT_DEPTH and -h < 1e-5 * place:
                 # The tip no longer leaves: depth cannot carry the motion any further.
                 variable, simple, fresh, h = BY_TIME, False, True, 1e-3 * t_ref
-            elif variable != BY_ROOT_DEPTH and h < 1e-14 * t_ref:
+            elif variable < BY_ROOT_DEPTH and h < 1e-14 * t_ref:
                 ending = NOT_FINITE
                 break
             continue
@@ -683,16 +707,12 @@ def one_impact(loading, radius, unloading, residual, par, force, factors, breaks
             values_new[6] = spot[SPOT_TIP] + _crater(spot, centre0 + _tip_x(body, z_new, psi, n))
             values_new[6] -= seen_new[DEPTH]
         chosen, where = -1, 2.0
-        pace, pace_new = 1.0, 1.0
-        if variable != BY_TIME:
-            pace, pace_new = 2.0 * place, 2.0 * (place + h)
-            if variable == BY_ROOT_DEPTH:
-                pace, pace_new = pace / seen[RATE], pace_new / seen_new[RATE]
+        pace, pace_new = _pace(variable, place, seen), _pace(variable, place + h, seen_new)
         for event in range(8):
             if phase == FLY:
                 active = event == 6
             elif event == 0:
-                active = approaching
+                active = approaching and variable != BY_RATE
             elif event == 1 or event == 2:
                 active = phase == UNLOAD and not approaching and variable != BY_ROOT_DEPTH
             elif event == 3:
@@ -718,8 +738,8 @@ def one_impact(loading, radius, unloading, residual, par, force, factors, breaks
             part = where
             for _ in range(_BITES):
                 x = part * h
-                error = _step(loading, radius, unloading, par, force, factors, body, omega, psi, shape,
-                      branch, phase, mode, offset, variable, place, x, z, stages, z_new, work,
+                error = _step(loading, radius, unloading, par, force, factors, body, omega, psi,
+                      shape, branch, phase, mode, offset, variable, place, x, z, stages, z_new, work,
                       z_err, scale, seen_new)
                 evaluations += _STAGES
                 g = _event_value(chosen, seen_new, mode, branch)
@@ -731,10 +751,7 @@ def one_impact(loading, radius, unloading, residual, par, force, factors, breaks
                     high, g_high = part, g
                 else:
                     low, g_low = part, g
-                if variable == BY_ROOT_TIME:
-                    pace_new = 2.0 * (place + x)
-                elif variable == BY_ROOT_DEPTH:
-                    pace_new = 2.0 * (place + x) / seen_new[RATE]
+                pace_new = _pace(variable, place + x, seen_new)
                 slope = h * _event_slope(chosen, body, z_new, stages[_STAGES], psi, n, seen_new,
                                          mode, pace_new)
                 if chosen == 5 or (chosen != 1 and body[S_PLATE] > 0.0 and chosen != 4):
@@ -744,7 +761,7 @@ def one_impact(loading, radius, unloading, residual, par, force, factors, breaks
                 if not low < target < high:
                     target = 0.5 * (low + high)
                     move = target - part
-                if abs(move) <= 1e-7 and slope < 0.0:
+                if abs(move) <= bite and slope < 0.0:
                     for j in range(size):
                         z_new[j] += move * h * stages[_STAGES, j]
                     taken = x + move * h
@@ -757,7 +774,7 @@ def one_impact(loading, radius, unloading, residual, par, force, factors, breaks
                 h = 0.5 * where * h
                 continue
         elif landing:
-            chosen = 1
+            chosen = 1 if variable == BY_ROOT_DEPTH else 0
         place += taken
         for j in range(size):
             z[j] = z_new[j]
@@ -771,13 +788,17 @@ def one_impact(loading, radius, unloading, residual, par, force, factors, breaks
                 seen[j] = seen_new[j]
             for event in range(8):
                 values[event] = values_new[event]
-            if phase == UNLOAD and simple and variable == BY_TIME:
+            if phase == UNLOAD and simple and variable == BY_TIME and not approaching:
                 fresh = True
+            if turning and approaching and variable < BY_ROOT_DEPTH and phase != FLY:
+                span = grown if variable == BY_TIME else grown * (2.0 * place + grown)
+                fresh = seen[RATE] < min(0.45 * v_n, -1.2 * seen[ACCELERATION] * span)
+                to_rate = fresh
             continue
 
         # An event: close the interval that ends here, then change phase or mode.
         fresh = True
-        if variable != BY_ROOT_DEPTH:
+        if variable < BY_ROOT_DEPTH:
             h = min(grown, max(0.5 * taken, 0.05 * h))
         _kinematics(body, z, psi, n, seen)
         depth = seen[DEPTH] - offset
@@ -798,7 +819,7 @@ def one_impact(loading, radius, unloading, residual, par, force, factors, breaks
             approaching = False
             if math.isnan(first_turn):
                 first_turn = z[TIME]
-            variable, h = BY_TIME, 0.1 * t_ref
+            variable, h = BY_TIME, 0.15 * t_ref
             if phase == LOAD:
                 phase = UNLOAD
                 # Metal that was met before stays gone: the residual grows by the difference.

@@ -321,8 +321,7 @@ class _Walk:
                 lambda _t, y, k=k: mo.derivative(y, k),
                 (t, end), z, method="DOP853", rtol=1e-11, atol=1e-12 * scale,
                 events=[function for _, function in active], dense_output=self.points > 0,
-                first_step=min(1e-4 * self.t_ref, 0.5 * (end - t)), max_step=0.2 * self.t_ref
-                if mo.n == 0 and k.phase != FLIGHT else np.inf,
+                first_step=min(1e-4 * self.t_ref, 0.5 * (end - t)), max_step=self.longest(k),
             )  # fmt: skip
             if self.points:
                 self.record(sol, k)
@@ -384,6 +383,12 @@ class _Walk:
             del before
         self.ending, self.last = c.STEP_BUDGET, t
         return z
+
+    def longest(self, k: _Contact) -> float:
+        """Longest step: short against the contact, against a vibration in flight."""
+        if k.phase == FLIGHT:
+            return float(self.a.body[c.FLIGHT]) / 100.0
+        return 0.2 * self.t_ref if self.motion.n == 0 else math.inf
 
     def turn(self, z: Array, k: _Contact) -> None:
         """Loading ends: the branch to unload on, and what the metal will remember."""
