@@ -29,6 +29,8 @@ RADIAL = 0
 EXACT = 1
 """Exact integration along a constant strain-rate direction."""
 
+_STILL = 1e-24  # a smaller increment (squared, over the radius) has no direction: radial return
+
 
 @njit(cache=True)
 def spectral(a, b, c):
@@ -140,6 +142,9 @@ def elastic_deviator(F, Fn, bn, radius0, rule):
     d2 = a2 - r2
     d3 = a3 - o3
     dd = d0 * d0 + d1 * d1 + d3 * d3 + 2.0 * d2 * d2
+    if dd <= _STILL * radius * radius:
+        k = radius / trial
+        return k * a0, k * a1, k * a2, k * a3, m, 1, trial - radius
     od = r0 * d0 + r1 * d1 + o3 * d3 + 2.0 * r2 * d2
     oo = r0 * r0 + r1 * r1 + o3 * o3 + 2.0 * r2 * r2
     elastic = (-od + math.sqrt(max(od * od - dd * (oo - radius * radius), 0.0))) / dd
@@ -289,6 +294,8 @@ def deviatoric_tangent(F, Fn, bn, G, radius0, rule, P, work, A):
     x = f00 + f11
     y = f10 - f01
     turn2 = x * x + y * y
+    for i in range(4):
+        step[i] = 0.0
     if plastic and rule == EXACT:
         o0, o1, o2, o3, _ = log_strain(bn[0], bn[1], bn[2], bn[3])
         ca = x / math.sqrt(turn2)
@@ -299,6 +306,7 @@ def deviatoric_tangent(F, Fn, bn, G, radius0, rule, P, work, A):
         old[3] = o3
         for i in range(4):
             step[i] = trial[i] - old[i]
+    directed = rule == EXACT and plastic and _dot(step, step) > _STILL * radius * radius
     detF = F[0] * F[3] - F[1] * F[2]
     g00 = F[3] / detF
     g01 = -F[1] / detF
@@ -326,7 +334,7 @@ def deviatoric_tangent(F, Fn, bn, G, radius0, rule, P, work, A):
         if not plastic:
             for i in range(4):
                 dpoint[i] = dtrial[i]
-        elif rule == RADIAL:
+        elif not directed:
             along = _dot(trial, dtrial) / (size * size)
             for i in range(4):
                 dpoint[i] = radius / size * (dtrial[i] + (3.0 * dm - along) * trial[i])

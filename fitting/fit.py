@@ -1,8 +1,8 @@
 """Regression of our closed form on a campaign, with honest errors.
 
-Rows of one material combination are not independent: the standard errors are the sandwich of the
-least-squares problem clustered by combination, and the error that a user should expect is that of
-combinations left out of the fit (cross-validation over whole combinations).
+Rows of one material combination are not independent: the standard errors allow for that (clustered
+by combination), and the error that a user should expect is that of combinations left out of the fit
+(cross-validation over whole combinations).
 """
 
 from __future__ import annotations
@@ -57,7 +57,7 @@ class Fit:
     values, standard_errors
         By the order of `models.fitted.NAMES`, shape (n,).
     covariance
-        Clustered by combination, shape (n, n).
+        Allowing for rows of one combination that move together, shape (n, n).
     errors, held_out
         Errors on the fitted rows, and on combinations left out one by one.
     outcome
@@ -87,7 +87,7 @@ def fit_tables(table: Table, residuals: ResidualTable) -> Fit:
     """
     values, jacobian, misfit, ok = _regress(table, residuals)
     clusters = np.concatenate([np.tile(table.case, 3), np.tile(residuals.case, 2)])
-    covariance = _sandwich(jacobian, misfit, clusters)
+    covariance = _covariance(jacobian, misfit, clusters)
     outcome = (
         COMPLETED
         if ok
@@ -156,14 +156,24 @@ def _misfit(values: Floats, table: Table, residuals: ResidualTable) -> Floats:
     )
 
 
-def _sandwich(jacobian: Floats, misfit: Floats, clusters: npt.NDArray[np.int64]) -> Floats:
+def _covariance(jacobian: Floats, misfit: Floats, clusters: npt.NDArray[np.int64]) -> Floats:
+    """Covariance with the larger of two standard errors for each coefficient.
+
+    The sandwich clustered by combination allows for rows that move together, but is too small when
+    combinations are few; the plain one is the opposite. Correlations are those of the plain one.
+    """
     bread = np.linalg.pinv(jacobian.T @ jacobian)
-    n = len(np.unique(clusters))
+    rows, n = jacobian.shape
+    plain = bread * float(misfit @ misfit) / max(rows - n, 1)
+    groups = np.unique(clusters)
     meat = np.zeros_like(bread)
-    for cluster in np.unique(clusters):
-        score = jacobian[clusters == cluster].T @ misfit[clusters == cluster]
+    for group in groups:
+        score = jacobian[clusters == group].T @ misfit[clusters == group]
         meat += np.outer(score, score)
-    return np.asarray(bread @ meat @ bread * (n / max(n - 1, 1)))
+    robust = bread @ meat @ bread * (len(groups) / max(len(groups) - 1, 1))
+    ratio = np.diag(robust) / np.maximum(np.diag(plain), 1e-300)
+    scale = np.sqrt(np.maximum(ratio, 1.0))
+    return np.asarray(plain * np.outer(scale, scale))
 
 
 def _cross_validate(table: Table, residuals: ResidualTable, start: Floats) -> Errors:

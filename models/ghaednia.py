@@ -6,8 +6,8 @@ Sy* <= 1.07 and the flat above; its share of the approach gives its own deformat
 body's share the updated radius R' (2.18).
 
 As it stands the model steps up by 29 to 43 % where Hertz ends, at Delta = 1.9 delta_y, and is
-meant for delta_n of 5 and more; between 1.9 and 6 delta_y the two are blended here, smoothly in
-ln Delta, which is our choice.
+meant for delta_n of 5 and more; between delta_n = 1.9 and 6 the two are blended here, smoothly in
+ln delta_n, which is our choice.
 """
 
 from __future__ import annotations
@@ -136,13 +136,15 @@ def _model_force(par, depth):
 
 @njit(float64(VECTOR, float64), cache=True)
 def _weight(par, depth):
-    """0 where Hertz holds, 1 where the model does, smooth between."""
-    w = depth / onset(par, 0.0)
-    if w <= _ELASTIC:
+    """0 where Hertz holds, 1 where the model does, smooth between, by the weak body's delta_n."""
+    if depth <= _ELASTIC * onset(par, 0.0):
         return 0.0
-    if w >= _BLENDED:
+    _, _, n = _weak_body(par, depth)
+    if n <= _ELASTIC:
+        return 0.0
+    if n >= _BLENDED:
         return 1.0
-    x = math.log(w / _ELASTIC) / math.log(_BLENDED / _ELASTIC)
+    x = math.log(n / _ELASTIC) / math.log(_BLENDED / _ELASTIC)
     return x * x * (3.0 - 2.0 * x)
 
 
