@@ -80,7 +80,7 @@ def _chapter3(names: list[str], out: Path) -> None:
         table = Table(title=f"mass {mass:g} kg ({label})", title_justify="left")
         table.add_column("law", no_wrap=True)
         for row in found.measured:
-            unit = "e" if row["observable"] == "restitution" else "depth [um]"
+            unit = "e" if row["observable"] == "restitution" else "depth, um,"
             table.add_column(f"{unit}\nat {row['drop_height_m']:.2f} m", justify="right")
         table.add_row("measured", *(_shown(row, row["value"]) for row in found.measured))
         for curve in (c for c in curves if c.mass == mass):

@@ -48,7 +48,8 @@ SPOT_PEAK, SPOT_FLAT, SPOT_TIP, SPOT_CENTRE, SPOT_RADIUS = range(5)
 N_SPOT = 5
 
 # What a contact evaluation tells besides the derivative.
-DEPTH, RATE, FORCE, TANGENTIAL, SLIDING, MARGIN, M_TT, M_TN, B_T, ARM, RISE, ACCELERATION = range(12)
+(DEPTH, RATE, FORCE, TANGENTIAL, SLIDING, MARGIN, M_TT, M_TN, B_T, ARM, RISE,
+ ACCELERATION) = range(12)
 N_SEEN = 12
 
 OBSERVABLES = (
@@ -437,11 +438,11 @@ def _clearance(body, spot, z, centre, psi, seen):
 def _fly(body, spot, omega, psi, centre, z, z_new, z_now, z_far, seen):
     """Follow a free flight to the next touch; write it into `z_new`; return whether there is one.
 
-    The vibration is known in closed form: the tip is looked at sixteen times in each period of
+    The vibration is known in closed form: the tip is looked at twelve times in each period of
     the fastest mode, and no longer once no vibration can bring it back.
     """
     n = len(omega)
-    step = 2.0 * math.pi / (16.0 * omega[n - 1])
+    step = 2.0 * math.pi / (12.0 * omega[n - 1])
     reach = 0.0
     for k in range(n):
         q, p = z[N_RIGID + k], z[N_RIGID + n + k] / omega[k]
@@ -451,49 +452,48 @@ def _fly(body, spot, omega, psi, centre, z, z_new, z_now, z_far, seen):
     for j in range(N_RIGID, len(z)):
         z_far[j] = 0.0
     # Rotation of each mode over one step, so that a look costs no sine.
-    turn = np.empty((n, 4))
+    turn = np.empty((4, n))
     zeta = 0.5 * body[LOSS]
     root = math.sqrt(1.0 - zeta * zeta)
     for k in range(n):
         w = omega[k]
         fade = math.exp(-zeta * w * step)
         cosine, sine = math.cos(w * root * step), math.sin(w * root * step) / root
-        turn[k, 0], turn[k, 1] = fade * (cosine + zeta * sine), fade * sine / w
-        turn[k, 2], turn[k, 3] = -fade * w * sine, fade * (cosine - zeta * sine)
+        turn[0, k], turn[1, k] = fade * (cosine + zeta * sine), fade * sine / w
+        turn[2, k], turn[3, k] = -fade * w * sine, fade * (cosine - zeta * sine)
     for j in range(len(z)):
         z_now[j] = z[j]
     start, end = z[TIME], z[TIME] + body[FLIGHT]
     # The rim of the crater just left is no obstacle: the tip must first have come clear of it.
     clear = _clearance(body, spot, z, centre, psi, seen) >= 0.0
-    while z_now[TIME] < end:
-        t = z_now[TIME] + step - start
-        z_new[X] = z[X] + z[VX] * t
-        z_new[Y] = z[Y] + z[VY] * t - 0.5 * body[GRAVITY] * t * t
-        z_new[PHI] = z[PHI] + z[SPIN] * t
-        z_new[VX], z_new[SPIN], z_new[W], z_new[W_RATE] = z[VX], z[SPIN], z[W], z[W_RATE]
-        z_new[VY] = z[VY] - body[GRAVITY] * t
-        for k in range(n):
-            q, p = z_now[N_RIGID + k], z_now[N_RIGID + n + k]
-            z_new[N_RIGID + k] = turn[k, 0] * q + turn[k, 1] * p
-            z_new[N_RIGID + n + k] = turn[k, 2] * q + turn[k, 3] * p
-        g = _clearance(body, spot, z_new, centre, psi, seen)
-        if g < 0.0 and clear:
-            break
-        clear = clear or g >= 0.0
-        for j in range(len(z)):
-            z_now[j] = z_new[j]
+    q, p = z_now[N_RIGID : N_RIGID + n], z_now[N_RIGID + n :]
+    look, touched = 0, False
+    while z_now[TIME] < end and not touched:
+        look += 1
+        t = look * step
         z_now[TIME] = start + t
-        z_far[X], z_far[Y], z_far[PHI] = z_now[X], z_now[Y], z_now[PHI]
-        z_far[VY] = z_now[VY]
-        _kinematics(body, z_far, psi, n, seen)
-        left = end - z_now[TIME]
-        if seen[DEPTH] + reach + 0.5 * body[GRAVITY] * left * left < spot[SPOT_TIP]:
-            if seen[RATE] < 0.0:
+        z_now[X] = z[X] + z[VX] * t
+        z_now[Y] = z[Y] + z[VY] * t - 0.5 * body[GRAVITY] * t * t
+        z_now[PHI] = z[PHI] + z[SPIN] * t
+        for k in range(n):
+            q0 = q[k]
+            q[k] = turn[0, k] * q0 + turn[1, k] * p[k]
+            p[k] = turn[2, k] * q0 + turn[3, k] * p[k]
+        g = _clearance(body, spot, z_now, centre, psi, seen)
+        touched = g < 0.0 and clear and seen[RATE] > 0.0
+        clear = g >= 0.0 or (clear and touched)
+        if look % 16 == 0 and not touched:
+            z_far[X], z_far[Y], z_far[PHI] = z_now[X], z_now[Y], z_now[PHI]
+            z_far[VY] = z[VY] - body[GRAVITY] * t
+            _kinematics(body, z_far, psi, n, seen)
+            left = end - z_now[TIME]
+            far = seen[DEPTH] + reach + 0.5 * body[GRAVITY] * left * left < spot[SPOT_TIP]
+            if far and seen[RATE] < 0.0:
                 return False
-    if z_now[TIME] >= end:
+    if not touched:
         return False
     # The touch lies in (t - step, t]: false position on the exact motion.
-    low, high = z_now[TIME] - start, z_now[TIME] - start + step
+    low, high = (look - 1) * step, look * step
     _coast(body, z, omega, low, z_new)
     g_low = max(_clearance(body, spot, z_new, centre, psi, seen), 1e-300)
     _coast(body, z, omega, high, z_new)
@@ -623,7 +623,7 @@ def one_impact(loading, radius, unloading, residual, par, force, factors, breaks
     rated = force[DAMPING] != 0.0 or force[RADIATION] != 0.0
     stuck, variable, place = 0.0, BY_ROOT_TIME, 0.0
     h = 0.15 * math.sqrt(t_ref)
-    fresh = True
+    fresh, clear = True, True
     while True:
         if fresh:
             _derivative(loading, radius, unloading, par, force, factors, body, omega, psi, shape,
@@ -710,7 +710,7 @@ def one_impact(loading, radius, unloading, residual, par, force, factors, breaks
         pace, pace_new = _pace(variable, place, seen), _pace(variable, place + h, seen_new)
         for event in range(8):
             if phase == FLY:
-                active = event == 6
+                active = event == 6 and clear
             elif event == 0:
                 active = approaching and variable != BY_RATE
             elif event == 1 or event == 2:
@@ -739,8 +739,8 @@ def one_impact(loading, radius, unloading, residual, par, force, factors, breaks
             for _ in range(_BITES):
                 x = part * h
                 error = _step(loading, radius, unloading, par, force, factors, body, omega, psi,
-                      shape, branch, phase, mode, offset, variable, place, x, z, stages, z_new, work,
-                      z_err, scale, seen_new)
+                      shape, branch, phase, mode, offset, variable, place, x, z, stages, z_new,
+                      work, z_err, scale, seen_new)
                 evaluations += _STAGES
                 g = _event_value(chosen, seen_new, mode, branch)
                 if chosen == 6:
@@ -780,6 +780,11 @@ def one_impact(loading, radius, unloading, residual, par, force, factors, breaks
             z[j] = z_new[j]
         if phase != FLY and (chosen >= 0 or rated) and seen_new[FORCE] > peak_force:
             peak_force = seen_new[FORCE]
+        if chosen == 6 and seen_new[RATE] <= 0.0:
+            # The tip brushes the crater's rim on its way out: no contact.
+            chosen, clear, fresh = -1, False, True
+        elif phase == FLY and chosen < 0:
+            clear = clear or values_new[6] >= 0.0
         if chosen < 0:
             h = grown
             for j in range(size):
@@ -840,7 +845,7 @@ def one_impact(loading, radius, unloading, residual, par, force, factors, breaks
             for j in range(size):
                 kept[j] = z[j]
             offset = 0.0
-            mode = 1.0
+            mode, clear = 1.0, True
             variable, h = BY_TIME, 0.02 * body[FLIGHT]
             if body[FLIGHT] <= 0.0:
                 break

@@ -277,7 +277,14 @@ class _Walk:
             return mo.motion(z)[0] - k.offset
 
         if k.phase == FLIGHT:
-            return [("touch", lambda t, z: self.surface(z) - mo.motion(z)[0])]
+            armed = [self.clear]
+
+            def touch(t: float, z: Array) -> float:
+                gap = self.surface(z) - mo.motion(z)[0]
+                armed[0] = armed[0] or gap > 1e-9 * self.d_ref
+                return gap if armed[0] else -1.0
+
+            return [("touch", touch)]
         found: list[tuple[str, Any]] = []
         if k.approaching:
             found.append(("turn", lambda t, z: mo.normal(z, k)[2]))
@@ -305,7 +312,7 @@ class _Walk:
         self.contacts, self.touching, self.first, self.last = 1, 0.0, math.nan, 0.0
         self.p_in = self.p_out = self.w_in = self.w_out = 0.0
         self.force = self.depth = 0.0
-        self.stuck = False
+        self.stuck, self.clear = False, True
         self.flat = float(self.spot[c.SPOT_FLAT])
         self.low = self.high = self.x_low = self.x_high = 0.0
         self.ending, kept, base = c.DONE, z.copy(), 0.0
@@ -341,6 +348,9 @@ class _Walk:
             if k.phase != FLIGHT:
                 self.extremes(z, base)
             self.force = max(self.force, mo.normal(z, k)[0])
+            self.clear = name != "touch" or mo.motion(z)[1] > 0.0
+            if not self.clear:
+                continue  # the tip brushes the crater's rim on its way out: no contact
             if name in ("turn", "part", "return"):
                 gain_p, gain_w = z[_PN] - p_mark, z[_WN] - w_mark
                 p_mark, w_mark = z[_PN], z[_WN]
