@@ -12,6 +12,7 @@ import typer
 
 from ..core.errors import EXIT_INPUT_ERROR, InputError
 from . import campaign
+from .case import case
 from .fit import fit
 from .impact import impact
 from .inverse import inverse
@@ -30,6 +31,7 @@ _UsageError: type[Exception] = typer.BadParameter.__mro__[1]
 
 
 app.add_typer(campaign.app, name="campaign")
+app.command()(case)
 app.command()(fit)
 app.command()(impact)
 app.command()(inverse)

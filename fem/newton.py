@@ -23,7 +23,9 @@ TOLERANCE = 2e-6
 """Accepted sum of residual forces over the contact force; round-off in the largest elements, far
 from the contact, keeps it above 5e-7."""
 
-_STILL = 1e-9  # accepted largest correction over the approach, where round-off rules the residual
+# accepted largest correction, over the approach and absolute [R]: where round-off rules the residual
+_STILL = 1e-8
+_ROUND_OFF = 2e-14
 _MOST_ITERATIONS = 18
 _BACKTRACKS = 5
 _SECANTS = 3
@@ -121,7 +123,7 @@ class Solver:
     def _converged(self, now: Evaluation, moved: float, delta: float) -> bool:
         force = max(abs(now.contact.force), 1e-300)
         unbalanced = float(np.abs(now.residual[self.free]).sum())
-        return unbalanced < TOLERANCE * force or moved < _STILL * delta
+        return unbalanced < TOLERANCE * force or moved < max(_STILL * delta, _ROUND_OFF)
 
     def _direction(self, now: Evaluation) -> Floats:
         start = time.process_time()
