@@ -23,7 +23,7 @@ TOLERANCE = 2e-6
 """Accepted sum of residual forces over the contact force; round-off in the largest elements, far
 from the contact, keeps it above 5e-7."""
 
-# accepted largest correction, over the approach and absolute [R]: where round-off rules the residual
+# largest accepted correction, over the approach and in R, where round-off rules the residual
 _STILL = 1e-8
 _ROUND_OFF = 2e-14
 _MOST_ITERATIONS = 18
