@@ -589,6 +589,8 @@ def one_impact(loading, radius, unloading, residual, par, force, factors, breaks
     tolerance = body[TOLERANCE]
     # The last move to an event is linear in time; its error is the square of its share of a step.
     bite = 0.1 * math.sqrt(tolerance)
+    # Yield begins within the first step: the finer the tolerance, the less may be skipped.
+    first_step = 0.15 * math.sqrt(t_ref) * min(1.0, (tolerance / 1e-7) ** 0.25)
     scale[X] = tolerance * (d_ref + abs(body[V_X]) * t_ref)
     scale[SLIP] = tolerance * (d_ref + abs(v_t) * t_ref)
     scale[Y] = scale[W] = tolerance * d_ref
@@ -622,7 +624,7 @@ def one_impact(loading, radius, unloading, residual, par, force, factors, breaks
     # A force that depends on the rate may be largest between events.
     rated = force[DAMPING] != 0.0 or force[RADIATION] != 0.0
     stuck, variable, place = 0.0, BY_ROOT_TIME, 0.0
-    h = 0.15 * math.sqrt(t_ref)
+    h = first_step
     fresh, clear = True, True
     while True:
         if fresh:
@@ -670,7 +672,7 @@ def one_impact(loading, radius, unloading, residual, par, force, factors, breaks
                 centre0 + _tip_x(body, z, psi, n), branch)
             phase = int(phase_f)
             _set_segment(breaks, 0.0, branch)
-            variable, place, h = BY_ROOT_TIME, 0.0, 0.15 * math.sqrt(t_ref)
+            variable, place, h = BY_ROOT_TIME, 0.0, first_step
             _derivative(loading, radius, unloading, par, force, factors, body, omega, psi, shape,
                         branch, phase, 1.0, offset, BY_TIME, place, z, stages[0], seen)
             mode = _first_mode(seen, body[MU_STATIC], small_force, rubbing, v_n)
