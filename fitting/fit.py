@@ -20,9 +20,10 @@ from .table import ResidualTable, Table
 
 Floats = npt.NDArray[np.float64]
 
-_START_BLENDED = {"w1": 4.0, "p": 1.2, "q": 0.35, "h": 0.5, "w2": 4.0, "s": 1.2, "t": 0.15}
+_START_BLENDED = {"w1": 4.0, "q": 0.35, "h": 0.5}
 _START_SINGLE = {
-    "n": 6.0, "k1": 0.11, "k2": 5.0, "r1": 0.15, "r2": 5.0, "g0": 8.0, "g1": 8.0, "g2": 1.0,
+    "n": 6.0, "p": 1.2, "w2": 4.0, "s": 1.5, "t": 0.15, "k1": 0.11, "k2": 5.0, "r1": 0.15,
+    "r2": 5.0, "g0": 8.0, "g1": 1.0, "g2": 1.0, "g3": 0.1,
 }  # fmt: skip
 START: dict[str, float] = {
     **{f"{name}_{end}": value for name, value in _START_BLENDED.items() for end in ENDS},
@@ -32,8 +33,9 @@ START: dict[str, float] = {
 
 _BOUNDS: dict[str, tuple[float, float]] = {
     "w1": (0.5, 50.0), "p": (0.4, 4.0), "q": (0.05, 0.8), "h": (-3.0, 6.0), "w2": (0.5, 50.0),
-    "s": (0.4, 4.0), "t": (0.02, 0.6), "n": (1.0, 30.0), "k1": (0.0, 0.4), "k2": (0.1, 200.0),
+    "s": (0.4, 12.0), "t": (0.02, 0.6), "n": (1.0, 30.0), "k1": (0.0, 0.4), "k2": (0.1, 200.0),
     "r1": (0.0, 0.4), "r2": (0.1, 200.0), "g0": (1.0, 60.0), "g1": (-20.0, 60.0), "g2": (-1.0, 4.0),
+    "g3": (1e-3, 5.0),
 }  # fmt: skip
 _UNIT = 0.01  # a residual of one: 1 % in F and a, 0.01 in the shares
 
@@ -147,8 +149,8 @@ def _misfit(values: Floats, table: Table, residuals: ResidualTable) -> Floats:
             total[k], sphere[k] = (s + f) / peak, s / peak
     return np.concatenate(
         [
-            np.log(force / table.force),
-            np.log(radius / table.radius),
+            np.where(table.edge_seen, np.log(force / table.force), 0.0),
+            np.where(table.edge_seen, np.log(radius / table.radius), 0.0),
             share - table.share,
             total - residuals.total,
             sphere - residuals.sphere_part * residuals.total,
@@ -196,14 +198,15 @@ def _without(residuals: ResidualTable, mask: npt.NDArray[np.bool_]) -> ResidualT
 def _errors(misfit: Floats, table: Table, residuals: ResidualTable) -> Errors:
     n, k = len(table.D), len(residuals.D)
     yielding = table.w >= 1.0
+    seen = yielding & table.edge_seen
 
     def of(part: Floats) -> tuple[float, float]:
         part = np.abs(part)
         return float(part.mean()), float(part.max())
 
     return Errors(
-        force=of(np.expm1(misfit[:n][yielding])),
-        radius=of(np.expm1(misfit[n : 2 * n][yielding])),
+        force=of(np.expm1(misfit[:n][seen])),
+        radius=of(np.expm1(misfit[n : 2 * n][seen])),
         share=of(misfit[2 * n : 3 * n][yielding]),
         residual=of(misfit[3 * n : 3 * n + k]) if k else (0.0, 0.0),
     )

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, fields
 from pathlib import Path
 
 import numpy as np
@@ -40,6 +40,10 @@ class Table:
         a/R.
     share
         delta_s*.
+    edge_seen
+        Whether the opening gap beside the contact was wide enough to be fitted. Where it was not,
+        the radius is that of a node, up to an element too small, and the surface that can touch
+        ends close by: force and radius of such a row are not fitted.
     pairs
         Pair of each case, shape (n_cases,).
     """
@@ -53,12 +57,13 @@ class Table:
     force: Floats
     radius: Floats
     share: Floats
+    edge_seen: npt.NDArray[np.bool_]
     pairs: tuple[Pair, ...]
 
     def rows(self, mask: npt.NDArray[np.bool_]) -> Table:
         """Return the rows of `mask`."""
-        names = ("case", "ratio", "modulus", "elastic_share", "D", "w", "force", "radius", "share")
-        return Table(**{name: getattr(self, name)[mask] for name in names}, pairs=self.pairs)
+        columns = {f.name: getattr(self, f.name) for f in fields(self) if f.name != "pairs"}
+        return Table(**{name: c[mask] for name, c in columns.items()}, pairs=self.pairs)
 
 
 @dataclass(frozen=True)
@@ -101,7 +106,7 @@ def read_tables(path: Path) -> tuple[Table, ResidualTable]:
 
 
 def _loading(records: list[CaseRecord]) -> Table:
-    columns: list[list[Floats]] = [[] for _ in range(9)]
+    columns: list[list[Floats]] = [[] for _ in range(10)]
     for number, record in enumerate(records):
         p, c = record.case.pair, record.curve
         n = len(c["delta"])
@@ -116,10 +121,11 @@ def _loading(records: list[CaseRecord]) -> Table:
             c["force"] / (p.E_reduced * p.R**2),
             c["radius"] / p.R,
             c["sphere"] / (c["sphere"] + c["flat"]),
+            c["radius"] != c["radius_last_node"],
         )
         for column, value in zip(columns, values, strict=True):
             column.append(value)
-    case, ratio, modulus, elastic, D, w, force, radius, share = map(np.concatenate, columns)
+    case, ratio, modulus, elastic, D, w, force, radius, share, seen = map(np.concatenate, columns)
     return Table(
         case=case.astype(np.int64),
         ratio=ratio,
@@ -130,6 +136,7 @@ def _loading(records: list[CaseRecord]) -> Table:
         force=force,
         radius=radius,
         share=share,
+        edge_seen=seen.astype(bool),
         pairs=tuple(r.case.pair for r in records),
     )
 

@@ -1,16 +1,18 @@
 """Our closed form: one smooth expression over all strength ratios, fitted to our finite elements.
 
-With D = Delta/R, w = Delta/delta_c, F_H Hertz's force and m = Sy*^n:
+With D = Delta/R, w = Delta/delta_c, X = D E'/Sy_min, F_H Hertz's force and m = Sy*^n:
 
     F/F_H      = [1 + (w/w_1)^p]^(-q/p) exp(-h D^(1/2) w/(w + w_1))
     a^2/(R D)  = [1 + (w/w_2)^s]^(t/s)
     delta_s*   = (1 - eps) phi + kappa F/(E_s* a Delta),  eps = kappa F/(E' a Delta)
     residual   = 1 - psi F/(E' a Delta), of which the sphere keeps phi
     kappa      = 3/4 - k_1 w/(w + k_2),   psi = 3/4 - r_1 w/(w + r_2)
-    logit phi  = -g_0 ln Sy* + g_1 D^(1/2) + g_2 logit(elastic share)
+    logit phi  = -g_0 ln Sy* + g_2 logit(elastic share) + 4m/(1+m)^2 g_1 ln(1 + g_3 X)
 
-w_1, p, q, h, w_2, s, t run from their flattening value (Sy* = 0) through one for equal strengths to
-the indentation value (Sy* = infinity) with the weights of m: 1/(1+m)^2, 2m/(1+m)^2, m^2/(1+m)^2.
+w_1, q, h run from their flattening value (Sy* = 0) through one for equal strengths to the
+indentation value (Sy* = infinity) with the weights of m: 1/(1+m)^2, 2m/(1+m)^2, m^2/(1+m)^2.
+Between bodies of like strength the sphere, which can spread, takes ever more of the plastic part
+as the contact deepens; how far that has gone follows X, and not D or w alone.
 
 Why this form: 3/4 F/(E_i* a) is exactly a body's elastic displacement under Hertz's pressure, and
 (2/pi) F/(E_i* a) that under a uniform one, so kappa hardly moves and the stronger body's elastic
@@ -52,18 +54,20 @@ from .base import (
 
 Floats = npt.NDArray[np.float64]
 
-BLENDED = ("w1", "p", "q", "h", "w2", "s", "t")
+BLENDED = ("w1", "q", "h")
 """Coefficients with a value each for flattening, equal strengths and indentation."""
 
 ENDS = ("flattening", "equal", "indentation")
-SINGLE = ("n", "k1", "k2", "r1", "r2", "g0", "g1", "g2")
+SINGLE = ("n", "p", "w2", "s", "t", "k1", "k2", "r1", "r2", "g0", "g1", "g2", "g3")
 NAMES = (*(f"{name}_{end}" for name in BLENDED for end in ENDS), *SINGLE)
 """Every coefficient, in the order of the coefficients file."""
 
 _FILE = "fitted.json"
 
 # places of the pair's own numbers behind the common ones
-(_W1, _P, _Q, _H, _W2, _S, _T, _K1, _K2, _R1, _R2, _PHI, _G1) = range(N_COMMON, N_COMMON + 13)
+(_W1, _Q, _H, _P, _W2, _S, _T, _K1, _K2, _R1, _R2, _PHI, _SHIFT, _GROW) = range(
+    N_COMMON, N_COMMON + 14
+)
 
 
 @njit(float64(VECTOR, float64), cache=True)
@@ -100,7 +104,8 @@ def _elastic_part(par, depth):
 @njit(float64(VECTOR, float64), cache=True)
 def _phi(par, depth):
     """Sphere's part of what is not elastic."""
-    return 1.0 / (1.0 + math.exp(-(par[_PHI] + par[_G1] * math.sqrt(depth / par[R]))))
+    logit = par[_PHI] + par[_SHIFT] * math.log1p(par[_GROW] * depth / par[R])
+    return 1.0 / (1.0 + math.exp(-logit))
 
 
 @loading_kernel
@@ -149,7 +154,7 @@ class Fitted(ContactLaw):
         return _KERNELS
 
     def parameters(self, pair: Pair) -> Floats:
-        """Common numbers and this pair's blended coefficients, shape (21,)."""
+        """Common numbers and this pair's blended coefficients, shape (22,)."""
         k = self.coefficients
         common = common_parameters(pair)
         ratio = pair.Sy_ratio
@@ -159,7 +164,11 @@ class Fitted(ContactLaw):
         own = [float(weights @ [k[f"{name}_{end}"] for end in ENDS]) for name in BLENDED]
         elastic = min(max(pair.elastic_share, 1e-9), 1.0 - 1e-9)
         phi = -k["g0"] * math.log(ratio) + k["g2"] * math.log(elastic / (1.0 - elastic))
-        return np.concatenate([common, own, [k["k1"], k["k2"], k["r1"], k["r2"], phi, k["g1"]]])
+        shift = 4.0 * m / (1.0 + m) ** 2 * k["g1"]
+        # without a yield strength there is no plastic part to share out
+        grow = k["g3"] * pair.E_reduced / pair.Sy_min if math.isfinite(pair.E_reduced) else 0.0
+        single = [k[name] for name in ("p", "w2", "s", "t", "k1", "k2", "r1", "r2")]
+        return np.concatenate([common, own, single, [phi, shift, grow]])
 
     def share(self, pair: Pair, depth: npt.ArrayLike) -> Floats:
         """delta_s*, shape (...); the elastic share where the contact is open."""

@@ -1,6 +1,7 @@
 """The closed form's limits and smoothness, and recovery of coefficients that were planted."""
 
 import math
+from dataclasses import replace
 
 import numpy as np
 import pytest
@@ -72,7 +73,7 @@ def test_force_rises_everywhere_in_the_domain(law):
 
 def planted():
     """Tables made by the law itself with known coefficients and 0.3 % of noise."""
-    truth = START | {"w1_indentation": 6.0, "q_flattening": 0.30, "t_equal": 0.12, "g1": 5.0}
+    truth = START | {"w1_indentation": 6.0, "q_flattening": 0.30, "t": 0.12, "g1": 1.5}
     law = fitted_law(truth, domain=Domain())
     random = np.random.default_rng(3)
     pairs, loading, unloading = [], [], []
@@ -99,7 +100,12 @@ def planted():
         )  # fmt: skip
     columns = [np.concatenate(c) for c in zip(*loading, strict=True)]
     rest = [np.concatenate(c) for c in zip(*unloading, strict=True)]
-    table = Table(columns[0].astype(np.int64), *columns[1:], pairs=tuple(pairs))
+    table = Table(
+        columns[0].astype(np.int64),
+        *columns[1:],
+        edge_seen=np.ones(columns[0].size, dtype=bool),
+        pairs=tuple(pairs),
+    )
     return truth, table, ResidualTable(rest[0].astype(np.int64), *rest[1:])
 
 
@@ -118,6 +124,20 @@ def test_planted_coefficients_come_back_within_their_errors(monkeypatch):
         for name, value, error in zip(NAMES, found.values, found.standard_errors, strict=True)
     ]
     assert np.mean(np.abs(off) < 3.0) >= 0.9
+
+
+def test_rows_whose_contact_edge_was_not_seen_do_not_move_the_fit(monkeypatch):
+    from dentscope.fitting import fit
+
+    monkeypatch.setattr(fit, "_cross_validate", lambda *_: None)
+    _, table, residuals = planted()
+    hidden = np.zeros(table.D.size, dtype=bool)
+    hidden[29::30] = True  # the deepest row of each case
+    wrong = replace(table, radius=np.where(hidden, 0.9, 1.0) * table.radius, edge_seen=~hidden)
+    right = replace(table, edge_seen=~hidden)
+    assert fit_tables(wrong, residuals).values == pytest.approx(
+        fit_tables(right, residuals).values, rel=1e-9
+    )
 
 
 def test_shipped_coefficients_say_where_they_come_from():
