@@ -10,16 +10,24 @@ import subprocess
 import sys
 from functools import cache
 
+_TIME_LIMIT_S = 120.0
+
 
 @cache
 def offscreen_available() -> bool:
-    """Return whether a picture can be rendered in this environment."""
-    answer = subprocess.run(
-        [sys.executable, "-m", "dentscope.core.rendering"],
-        capture_output=True,
-        timeout=120,
-        check=False,
-    )
+    """Return whether a picture can be rendered in this environment.
+
+    The answer holds for the life of the process; a probe that hangs counts as a no.
+    """
+    try:
+        answer = subprocess.run(
+            [sys.executable, "-m", "dentscope.core.rendering"],
+            capture_output=True,
+            timeout=_TIME_LIMIT_S,
+            check=False,
+        )
+    except (OSError, subprocess.TimeoutExpired):
+        return False
     return answer.returncode == 0
 
 

@@ -25,28 +25,37 @@ apt_install() { # what it is for, then the packages
   fi
 }
 
+minor_of() { "$1" -c 'import sys; print("%d%d" % sys.version_info[:2])' 2>/dev/null; }
+
+if ! command -v "$python" >/dev/null; then
+  say "there is no $python: install python3, or name one with PYTHON=..."
+  exit 2
+fi
 if ! "$python" -c 'import sys; raise SystemExit(sys.version_info < (3, 11))'; then
   say "$("$python" --version 2>&1) is too old: Python 3.11 or newer is needed (PYTHON=... picks one)"
   exit 2
 fi
-minor=$("$python" -c 'import sys; print("%d%d" % sys.version_info[:2])')
+minor=$(minor_of "$python")
 lock=requirements/py$minor.txt
 if [ ! -f "$lock" ]; then
   say "no pinned packages for this Python; there are: $(cd requirements && echo py*.txt)"
   exit 2
 fi
 
-if [ ! -x .venv/bin/python ]; then
+# an environment of another Python, or one whose making was broken off, is made again
+if [ "$(minor_of .venv/bin/python)" != "$minor" ] || ! .venv/bin/python -m pip --version >/dev/null 2>&1; then
   if ! "$python" -c 'import ensurepip, venv' 2>/dev/null; then
     apt_install "making an environment" python3-venv || exit 2
   fi
   say "making .venv with $("$python" --version)"
-  "$python" -m venv .venv
+  "$python" -m venv --clear .venv
 fi
-say "installing the pinned packages of $lock (about 1.6 GB in .venv)"
-.venv/bin/python -m pip install -q --disable-pip-version-check "uv==$(sed -n 's/^uv==\([^ ]*\).*/\1/p' "$lock")"
+say "installing the pinned packages of $lock (1.4 GB in .venv)"
+awk '/^[^ ]/ { wanted = /^uv==/ } wanted' "$lock" >.venv/uv.txt
+.venv/bin/python -m pip install -q --disable-pip-version-check --require-hashes -r .venv/uv.txt
 .venv/bin/uv pip install -q --python .venv/bin/python --require-hashes -r "$lock"
-.venv/bin/uv pip install -q --python .venv/bin/python --no-deps -e .
+# the build tool is pinned too: nothing outside the lock is fetched
+.venv/bin/uv pip install -q --python .venv/bin/python --no-deps --no-build-isolation -e .
 # mypy and editors find the package by its name through this link, whatever the clone is called
 mkdir -p .typing && ln -sfn .. .typing/dentscope
 

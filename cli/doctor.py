@@ -1,0 +1,97 @@
+"""`dentscope doctor`: what this environment has, and what to do about what it lacks."""
+
+from __future__ import annotations
+
+import os
+import subprocess
+import sys
+from dataclasses import dataclass
+
+import typer
+
+_SYSTEM_PACKAGES = (
+    "libgl1 libglu1-mesa libxrender1 libxcursor1 libxft2 libxinerama1 libgomp1 libegl1"
+)
+_REMEDY = f"sudo apt-get install --no-install-recommends {_SYSTEM_PACKAGES}"
+EXIT_ENVIRONMENT = 1
+"""Exit code for an environment in which the solver cannot run."""
+
+
+@dataclass(frozen=True, slots=True)
+class Finding:
+    """One thing looked at.
+
+    Parameters
+    ----------
+    name, state
+        What was looked at and what was found.
+    fine
+        Whether it works.
+    needed
+        Whether the solver cannot run without it.
+    remedy
+        What to do when it does not work.
+    """
+
+    name: str
+    state: str
+    fine: bool = True
+    needed: bool = False
+    remedy: str = ""
+
+
+def doctor() -> int:
+    """Check gmsh, rendering and compiled code; name what to install."""
+    findings = examine()
+    for finding in findings:
+        mark = "ok" if finding.fine else ("MISSING" if finding.needed else "absent")
+        typer.echo(f"{mark:8} {finding.name:20} {finding.state}")
+        if not finding.fine:
+            typer.echo(f"{'':8} {'':20} -> {finding.remedy}")
+    if any(finding.needed and not finding.fine for finding in findings):
+        return EXIT_ENVIRONMENT
+    return 0
+
+
+def examine() -> tuple[Finding, ...]:
+    """Look at everything that can be missing, each in the order in which a run meets it."""
+    from ..core.provenance import environment
+    from ..core.rendering import offscreen_available
+
+    versions = environment()
+    shown = ", ".join(f"{name} {version}" for name, version in versions.items())
+    renders = offscreen_available()
+    return (
+        Finding("versions", shown),
+        Finding("processors", str(os.cpu_count() or 1)),
+        _gmsh(),
+        Finding(
+            "off-screen pictures",
+            "pyvista renders" if renders else "matplotlib draws the fields instead",
+            fine=renders,
+            remedy=_REMEDY,
+        ),
+        _compiled_code(),
+    )
+
+
+def _gmsh() -> Finding:
+    # asked in a process of its own: a half-loaded library would stay in this one
+    answer = subprocess.run(
+        [sys.executable, "-c", "import gmsh"], capture_output=True, text=True, check=False
+    )
+    if answer.returncode == 0:
+        return Finding("gmsh", "loads", needed=True)
+    last = (answer.stderr.strip().splitlines() or ["ended without a message"])[-1]
+    return Finding("gmsh", last, fine=False, needed=True, remedy=_REMEDY)
+
+
+def _compiled_code() -> Finding:
+    """Say where numba keeps compiled code: beside the source, or in the user's cache folder."""
+    remedy = "name a writable folder in the environment variable NUMBA_CACHE_DIR"
+    try:
+        from ..fem import assemble
+    except RuntimeError as error:  # numba found no folder that it may write to
+        return Finding("compiled code", str(error), fine=False, needed=True, remedy=remedy)
+    kernels = (value for value in vars(assemble).values() if hasattr(value, "stats"))
+    return Finding("compiled code", f"kept in {next(kernels).stats.cache_path}")
