@@ -9,7 +9,7 @@ specifications with equal groups are one case, whatever their units.
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Any
 
 from .. import fem
@@ -74,6 +74,17 @@ class Case:
             unload_from=self.unload_from,
             radius_at_least=self.radius_at_least,
         )
+
+    def refined(self) -> Case:
+        """Return the same case with smaller steps and elements, for another try."""
+        a = self.accuracy
+        finer = a.with_(
+            level=f"{a.level}, finer",
+            coarse=0.8 * a.coarse,
+            fine=0.8 * a.fine,
+            step_ratio=a.step_ratio**0.5,
+        )
+        return replace(self, accuracy=finer)
 
     def specification(self) -> dict[str, Any]:
         """Return everything that `from_specification` needs, as plain values."""

@@ -1,13 +1,18 @@
 """The sweeps, a few lines each.
 
 A design is a name and a function that gives its cases. Strengths follow the thesis: Sy_min is held
-and Sy* = S_ys/S_yf sets the stronger body.
+and Sy* = S_ys/S_yf sets the stronger body. All but `smoke` go to Delta/R = 0.1 or a/R = 0.5,
+whichever comes later, in 48 depths from below first yield, and unload from five of them.
 """
 
 from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import dataclass
+from functools import cache
+from itertools import product
+
+import numpy as np
 
 from .. import fem
 from ..core.errors import InputError
@@ -67,9 +72,125 @@ def _smoke() -> tuple[Case, ...]:
     return tuple(cases)
 
 
+# Sy* of the thesis's sweeps; its steep part, 0.9 to 1.7, in steps of 0.05 and at its dip, 1.07
+RATIOS = (
+    *(0.1, 0.14, 0.2, 0.28, 0.4, 0.5, 0.6, 0.7, 0.8),
+    *(round(0.9 + 0.05 * k, 2) for k in range(17)),
+    *(1.07, 1.85, 2.0, 2.5, 3.5, 5.0, 7.0, 10.0),
+)
+
+
+def _deep_case(name: str, pair: Pair, *, deepest: float = 0.1) -> Case:
+    """Case of the published data: three unloadings below 20 critical depths, two beyond."""
+    onset = fem.critical_depth(pair)
+    last_light = min(18.0 * onset, 0.5 * deepest)
+    light = fem.geometric_depths(1.5 * onset, last_light, 3)
+    return standard_case(
+        name,
+        pair,
+        deepest=deepest,
+        n_depths=48,
+        unload_depths=(*light, (last_light * deepest) ** 0.5, deepest),
+        radius_at_least=0.5,
+        accuracy=fem.Accuracy.production(),
+    )
+
+
+@cache
+def _thesis() -> tuple[Case, ...]:
+    """Table 2.1 over Sy*, 27 sets of materials, the figures' cases, the pairs of chapters 3-5.
+
+    The thesis does not print its 27 sets; ours are E_s, E_f from 50, 122, 300 GPa and Sy_min from
+    50, 235, 1100 MPa.
+    """
+    named: list[tuple[str, Pair]] = []
+    for (number, (E_s, E_f, Sy, nu_s, nu_f)), ratio in product(TABLE_2_1.items(), RATIOS):
+        pair = pair_of(E_s=E_s, E_f=E_f, Sy_min=Sy, ratio=ratio, nu_s=nu_s, nu_f=nu_f)
+        named.append((f"table-2.1-case-{number}-Sy*-{ratio:g}", pair))
+    moduli, strengths = (50.0, 122.0, 300.0), (50.0, 235.0, 1100.0)
+    for E_s, E_f, Sy, ratio in product(moduli, moduli, strengths, (0.1, 1.0, 10.0)):
+        pair = pair_of(E_s=E_s, E_f=E_f, Sy_min=Sy, ratio=ratio)
+        named.append((f"set-{E_s:g}-{E_f:g}-{Sy:g}-Sy*-{ratio:g}", pair))
+    for figure, ratio in (("2.2", 0.1), ("2.3", 1.0), ("2.4", 10.0)):
+        pair = pair_of(E_s=200.0, E_f=200.0, Sy_min=503.0, ratio=ratio)
+        named.append((f"figure-{figure}", pair))
+    for ratio in (0.1, 0.5, 0.9, 1.0, 1.1, 1.3, 2.0, 10.0):
+        pair = pair_of(E_s=71.7, E_f=200.0, Sy_min=300.0, ratio=ratio)
+        named.append((f"figure-2.16-Sy*-{ratio:g}", pair))
+    named.append(("figure-2.17", pair_of(E_s=300.0, E_f=300.0, Sy_min=100.0, ratio=10.0)))
+    # the thesis states no Poisson ratio for chapter 3; 0.3 as in chapters 4 and 5
+    named.append(("chapter-4-5", pair_of(E_s=200.0, E_f=200.0, Sy_min=305.0, ratio=760 / 305)))
+    rod = pair_of(E_s=212.0, E_f=200.0, Sy_min=298.0, ratio=750.0 / 298.0)
+    rod_depth = 2500.0 * fem.critical_depth(rod)
+    return (
+        *(_deep_case(name, pair) for name, pair in named),
+        _deep_case("chapter-3", rod, deepest=rod_depth),
+    )
+
+
+@cache
+def _space() -> tuple[Case, ...]:
+    """256 scrambled Sobol points; in every fourth the two moduli are equal."""
+    from scipy.stats import qmc
+
+    points = qmc.Sobol(6, scramble=True, rng=np.random.default_rng(20141)).random_base2(8)
+    return tuple(
+        _deep_case(f"space-{k:03}", _drawn_pair(u, equal_moduli=k % 4 == 0))
+        for k, u in enumerate(points)
+    )
+
+
+@cache
+def _validation() -> tuple[Case, ...]:
+    """48 pairs kept out of every fit: 24 anywhere, 16 at the steep part, 8 of soft, strong bodies.
+
+    The last have E'/Sy_min below 60, where first yield lies deepest.
+    """
+    draw = np.random.default_rng(77003).random((48, 6))
+    pairs = [_drawn_pair(u) for u in draw[:24]]
+    pairs += [_drawn_pair(u, ratios=(0.85, 1.7)) for u in draw[24:40]]
+    pairs += [_drawn_pair(u, moduli=(50.0, 95.0), strengths=(950.0, 1100.0)) for u in draw[40:]]
+    return tuple(_deep_case(f"validation-{k:02}", pair) for k, pair in enumerate(pairs))
+
+
+def _drawn_pair(
+    u: np.ndarray[tuple[int], np.dtype[np.float64]],
+    *,
+    moduli: tuple[float, float] = (50.0, 300.0),
+    strengths: tuple[float, float] = (50.0, 1100.0),
+    ratios: tuple[float, float] = (0.1, 10.0),
+    equal_moduli: bool = False,
+) -> Pair:
+    """Pair from six numbers in [0, 1): moduli [GPa] linear, strength [MPa] and Sy* logarithmic."""
+    E_s, E_f = (_digits(moduli[0] + (moduli[1] - moduli[0]) * x) for x in u[:2])
+    Sy, ratio = (
+        _digits(a * (b / a) ** x) for (a, b), x in zip((strengths, ratios), u[2:4], strict=True)
+    )
+    nu_s, nu_f = (round(float(0.2 + 0.25 * x), 3) for x in u[4:])
+    return pair_of(
+        E_s=E_s, E_f=E_s if equal_moduli else E_f, Sy_min=Sy, ratio=ratio, nu_s=nu_s, nu_f=nu_f
+    )
+
+
+def _digits(x: float) -> float:
+    return float(f"{x:.4g}")
+
+
+def _full() -> tuple[Case, ...]:
+    return (*_thesis(), *_space(), *_validation())
+
+
 DESIGNS: dict[str, Design] = {
     design.name: design
-    for design in (Design("smoke", "12 cases at low resolution to Delta/R = 0.04", _smoke),)
+    for design in (
+        Design("smoke", "12 cases at low resolution to Delta/R = 0.04", _smoke),
+        Design(
+            "thesis", "Table 2.1 over Sy*, 27 sets of materials, figures, chapters 3-5", _thesis
+        ),
+        Design("space", "256 Sobol points over moduli, Poisson ratios, strengths", _space),
+        Design("validation", "48 pairs that no fit may use", _validation),
+        Design("full", "thesis, space and validation", _full),
+    )
 }
 """Every design by name."""
 

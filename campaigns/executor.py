@@ -8,6 +8,8 @@ from __future__ import annotations
 
 import multiprocessing
 import os
+import threading
+import time
 from collections.abc import Iterator, Mapping
 from concurrent.futures import FIRST_COMPLETED, wait
 from dataclasses import dataclass
@@ -58,7 +60,12 @@ class LocalExecutor:
         # workers are spawned: the variables act before their numpy loads
         for name in _THREADS:
             os.environ[name] = "1"
-        pool = ProcessPool(max_workers=self.workers, context=multiprocessing.get_context("spawn"))
+        pool = ProcessPool(
+            max_workers=self.workers,
+            context=multiprocessing.get_context("spawn"),
+            initializer=_die_with,
+            initargs=[os.getpid()],
+        )
         try:
             tries = dict.fromkeys(cases, 0)
             waiting = {self._submit(pool, cases[key], time_limit_s): key for key in cases}
@@ -160,6 +167,17 @@ class DaskExecutor:
             else:
                 yield Ended(key, None, f"{type(error).__name__}: {error}")
             submit()
+
+
+def _die_with(coordinator: int) -> None:
+    """End this worker when its coordinator is gone, so that a killed run leaves nothing behind."""
+
+    def watch() -> None:
+        while os.getppid() == coordinator:
+            time.sleep(1.0)
+        os._exit(1)
+
+    threading.Thread(target=watch, daemon=True).start()
 
 
 def _answer(key: str, future: Any) -> Ended | None:

@@ -66,7 +66,7 @@ def run_design(
     time_limit_s
         Wall-clock limit of one case.
     again
-        Statuses that are computed again, for example `{"failed"}`.
+        Statuses that are computed again, more finely, for example `{"failed"}`.
     report
         Called after each case.
 
@@ -87,6 +87,8 @@ def run_design(
         todo = {
             key: case for key, case in cases.items() if key not in stored or stored[key] in again
         }
+        # a case that failed is tried with smaller steps and elements; its identity stays
+        todo = {key: case.refined() if key in stored else case for key, case in todo.items()}
         for ended in executor.run(todo, time_limit_s=time_limit_s):
             case = cases[ended.id]
             store.put(case, ended.solution, message=ended.message)

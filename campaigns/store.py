@@ -7,8 +7,12 @@ names its process.
 
 from __future__ import annotations
 
+import errno
+import fcntl
 import json
 import os
+import shutil
+import time
 from collections.abc import Iterator
 from contextlib import contextmanager
 from dataclasses import dataclass
@@ -26,6 +30,10 @@ from .case import Case
 from .schema import CURVE, FORMAT, UNLOADING_PROFILES, Dataset
 
 Floats = npt.NDArray[np.float64]
+
+_ROOM = 4 << 20  # bytes that must be free before a case is written: several times the largest case
+_PATIENCE_S = 30.0  # how long to wait for another process that has the file open for a moment
+_WORTH_COMPRESSING = 512  # values; below it a chunk's index takes more room than it saves
 
 
 @dataclass(frozen=True)
@@ -59,6 +67,8 @@ class CaseRecord:
         In the order of their depth.
     counters
         Work that the solve took.
+    accuracy
+        Settings that it was solved with: finer than the specification's after a retry.
     """
 
     id: str
@@ -68,6 +78,7 @@ class CaseRecord:
     curve: dict[str, Floats]
     unloadings: tuple[UnloadingRecord, ...]
     counters: dict[str, float]
+    accuracy: dict[str, Any]
 
 
 class Store:
@@ -93,25 +104,21 @@ class Store:
         """
         lock = self.path.with_suffix(".lock")
         self.path.parent.mkdir(parents=True, exist_ok=True)
-        while True:
+        # the system drops a flock with its process, however that ended; the number is for people
+        with lock.open("a+") as handle:
             try:
-                handle = os.open(lock, os.O_CREAT | os.O_EXCL | os.O_WRONLY)
-                break
-            except FileExistsError:
-                owner = _lock_owner(lock)
-                if owner is not None and _alive(owner):
-                    raise InputError(
-                        f"process {owner} is writing this campaign",
-                        source=str(self.path),
-                        allowed="one run at a time; wait for it or stop it",
-                    ) from None
-                lock.unlink(missing_ok=True)
-        try:
-            os.write(handle, str(os.getpid()).encode())
-            os.close(handle)
+                fcntl.flock(handle, fcntl.LOCK_EX | fcntl.LOCK_NB)
+            except BlockingIOError:
+                handle.seek(0)
+                raise InputError(
+                    f"process {handle.read().strip() or '(unknown)'} is writing this campaign",
+                    source=str(self.path),
+                    allowed="one run at a time; wait for it or stop it",
+                ) from None
+            handle.truncate(0)
+            handle.write(str(os.getpid()))
+            handle.flush()
             yield
-        finally:
-            lock.unlink(missing_ok=True)
 
     def statuses(self) -> dict[str, str]:
         """Status of every stored case by id."""
@@ -192,8 +199,16 @@ def _appending(path: Path) -> Iterator[h5py.Group]:
     if path.exists():
         with _reading(path):
             pass  # a damaged file is reported, never written to
+    free = shutil.disk_usage(path.parent).free
+    if free < _ROOM:
+        # a full disk in the middle of a write would damage the file
+        raise InputError(
+            f"the disk is full ({free / 1e6:.1f} MB left); all completed cases are kept",
+            source=str(path),
+            allowed=f"{_ROOM / 1e6:.0f} MB free; make room and run again",
+        )
     try:
-        with h5py.File(path, "a") as file:
+        with _opened(path, "a") as file:
             if "cases" not in file:
                 file.attrs["format"] = FORMAT
                 file.create_group("cases")
@@ -207,13 +222,13 @@ def _reading(path: Path) -> Iterator[h5py.File]:
     if not path.exists():
         raise InputError("no such file", source=str(path), allowed="a campaign file (.h5)")
     try:
-        file = h5py.File(path, "r")
+        file = _opened(path, "r")
     except OSError as error:
         reason = str(error).split("(", 1)[-1].rstrip(")")
         raise InputError(
             f"not a readable HDF5 file ({reason})",
             source=str(path),
-            allowed="a campaign file; move this one away to start again",
+            allowed=f"a campaign file; move this one to {path.name}.damaged to start again",
         ) from None
     with file:
         if file.attrs.get("format") != FORMAT or "cases" not in file:
@@ -222,11 +237,28 @@ def _reading(path: Path) -> Iterator[h5py.File]:
             )
         try:
             yield file
-        except (KeyError, OSError, RuntimeError) as error:
+        except InputError:
+            raise
+        except (KeyError, OSError, RuntimeError, ValueError) as error:
             raise InputError(f"damaged ({error})", source=str(path)) from None
 
 
+def _opened(path: Path, mode: str) -> h5py.File:
+    """Open a file, waiting while another process has it open for a moment."""
+    until = time.monotonic() + _PATIENCE_S
+    while True:
+        try:
+            return h5py.File(path, mode)
+        except OSError as error:
+            busy = error.errno in (errno.EAGAIN, errno.EACCES) and os.access(path, os.R_OK)
+            if not busy or time.monotonic() > until:
+                raise
+            time.sleep(0.02)
+
+
 def _put_solution(group: h5py.Group, solution: Solution) -> None:
+    # a retried case may have been solved more finely than its specification asks
+    group.attrs["accuracy"] = json.dumps(solution.accuracy.as_dict())
     group.attrs["mesh"] = solution.mesh_digest
     group.attrs["boundary"] = solution.boundary
     group.attrs["yield_measure"] = solution.yield_measure
@@ -252,9 +284,8 @@ def _put_curve(group: h5py.Group, curve: Curve) -> None:
 
 
 def _put_array(group: h5py.Group, name: str, values: Floats, about: Dataset) -> None:
-    data = group.create_dataset(
-        name, data=np.asarray(values, dtype=np.float64), compression="gzip", shuffle=True
-    )
+    packed = {"compression": "gzip", "shuffle": True} if values.size > _WORTH_COMPRESSING else {}
+    data = group.create_dataset(name, data=np.asarray(values, dtype=np.float64), **packed)
     data.attrs["unit"] = about.unit
     data.attrs["axes"] = ",".join(about.axes)
     data.attrs["meaning"] = about.meaning
@@ -286,6 +317,7 @@ def _read_case(key: str, group: h5py.Group, path: Path) -> CaseRecord:
             for name, value in group.attrs.items()
             if name.startswith(prefix)
         },
+        accuracy=json.loads(group.attrs.get("accuracy", "{}")),
     )
 
 
@@ -303,20 +335,3 @@ def _read_arrays(group: h5py.Group, schema: dict[str, Dataset], path: Path) -> d
             )
         out[name] = np.asarray(group[name][()], dtype=float)
     return out
-
-
-def _lock_owner(lock: Path) -> int | None:
-    try:
-        return int(lock.read_text())
-    except (OSError, ValueError):
-        return None
-
-
-def _alive(pid: int) -> bool:
-    try:
-        os.kill(pid, 0)
-    except ProcessLookupError:
-        return False
-    except PermissionError:
-        return True
-    return pid != os.getpid()

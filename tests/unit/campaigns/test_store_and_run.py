@@ -105,20 +105,37 @@ def test_a_failed_case_is_stored_with_its_reason_and_retried_on_demand(tmp_path)
     run_design(design(2), path, executor=again, time_limit_s=1.0, again=frozenset({"failed"}))
     assert len(again.computed) == 2
     assert status_of(design(2), Store(path)).done == 2
+    # the second try was finer, and the case is still the one that was designed
+    record = read_curves(path)[0]
+    assert record.id == record.case.id
+    assert record.accuracy["step_ratio"] < record.case.accuracy.step_ratio
+
+
+HOLDER = """
+import sys, time
+from pathlib import Path
+from dentscope.campaigns import Store
+with Store(Path(sys.argv[1])).writing():
+    print("holding", flush=True)
+    time.sleep(60)
+"""
 
 
 def test_two_coordinators_do_not_write_one_file(tmp_path):
-    store = Store(tmp_path / "c.h5")
-    sleeper = subprocess.Popen([sys.executable, "-c", "import time; time.sleep(60)"])
+    path = tmp_path / "c.h5"
+    holder = subprocess.Popen(
+        [sys.executable, "-c", HOLDER, str(path)], stdout=subprocess.PIPE, text=True
+    )
     try:
-        store.path.with_suffix(".lock").write_text(str(sleeper.pid))
-        with pytest.raises(InputError, match=f"process {sleeper.pid} is writing"):
-            run_design(design(1), store.path, executor=FakeExecutor(), time_limit_s=1.0)
+        assert holder.stdout.readline() == "holding\n"
+        with pytest.raises(InputError, match=f"process {holder.pid} is writing"):
+            run_design(design(1), path, executor=FakeExecutor(), time_limit_s=1.0)
     finally:
-        sleeper.kill()
-        sleeper.wait()
+        holder.kill()
+        holder.wait()
+        holder.stdout.close()
     # the lock of a dead process is no obstacle
-    assert run_design(design(1), store.path, executor=FakeExecutor(), time_limit_s=1.0).done == 1
+    assert run_design(design(1), path, executor=FakeExecutor(), time_limit_s=1.0).done == 1
 
 
 @pytest.mark.parametrize("damage", ["truncated", "text", "other"])

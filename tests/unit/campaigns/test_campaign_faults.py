@@ -1,0 +1,123 @@
+"""Faults that a long run meets: kills at random moments, a full disk, readers, damaged data."""
+
+import os
+import random
+import shutil
+import signal
+import subprocess
+import sys
+import time
+
+import h5py
+import pytest
+from dentscope.campaigns import Store, read_curves
+from dentscope.core import InputError
+
+# the product's store and main path with a solver that takes no time: writing is what is tested
+WRITER = """
+import sys, time
+from pathlib import Path
+import numpy as np
+from dentscope import fem
+from dentscope.campaigns import Design, run_design, standard_case
+from dentscope.campaigns.executor import Ended
+from dentscope.core import COMPLETED, Material, Pair
+from dentscope.fem import Counters, Curve, Solution
+
+def made():
+    flat = Material(E=1e11, nu=0.3, Sy=3e8)
+    pairs = [Pair(Material(E=2e11, nu=0.3, Sy=4e8 + 1e5 * i), flat, 1e-3)
+             for i in range(int(sys.argv[2]))]
+    return tuple(standard_case(f"c{i}", p, deepest=0.01, n_depths=48,
+                               accuracy=fem.Accuracy.smoke()) for i, p in enumerate(pairs))
+
+class Quick:
+    workers = 1
+    def run(self, cases, *, time_limit_s):
+        for key, case in cases.items():
+            line = np.random.default_rng(0).random(int(sys.argv[3]))
+            curve = Curve(**dict.fromkeys(Curve.__dataclass_fields__, line))
+            counters = Counters(**dict.fromkeys(Counters.__dataclass_fields__, 1))
+            yield Ended(key, Solution(case.problem(), case.accuracy, COMPLETED, curve, (), (),
+                                      counters, "mesh"))
+
+try:
+    run_design(Design("d", "", made), Path(sys.argv[1]), executor=Quick(), time_limit_s=1.0,
+               report=lambda step: print("STORED", step.case.name, flush=True))
+except Exception as error:
+    print(type(error).__name__, error, flush=True)
+    sys.exit(2)
+"""
+
+
+def start(path, n=200, values=48):
+    return subprocess.Popen(
+        [sys.executable, "-c", WRITER, str(path), str(n), str(values)],
+        stdout=subprocess.PIPE,
+        text=True,
+    )
+
+
+def test_kills_at_random_moments_lose_no_stored_case(tmp_path):
+    path, stored, waits = tmp_path / "c.h5", [], random.Random(5)
+    for _ in range(6):
+        process = start(path)
+        for line in process.stdout:
+            stored.append(line.split()[1])
+            if waits.random() < 0.1:
+                break
+        time.sleep(waits.random() * 0.02)
+        process.send_signal(signal.SIGKILL)
+        stored += [line.split()[1] for line in process.stdout if line.endswith("\n")]
+        process.wait()
+        process.stdout.close()
+        assert set(stored) <= {record.case.name for record in read_curves(path)}
+    assert len(stored) == len(set(stored)) > 6
+
+
+def test_readers_and_the_writer_wait_for_each_other(tmp_path):
+    path = tmp_path / "c.h5"
+    process = start(path, n=40)
+    seen = [0]
+    while process.poll() is None:
+        if path.exists():
+            seen.append(len(Store(path).statuses()))
+    process.stdout.close()
+    assert process.returncode == 0
+    assert seen == sorted(seen)
+    assert len(Store(path).statuses()) == 40
+
+
+@pytest.mark.skipif(
+    os.geteuid() != 0 or shutil.which("mount") is None, reason="a small disk needs root"
+)
+def test_a_full_disk_keeps_what_is_there(tmp_path):
+    disk = tmp_path / "disk"
+    disk.mkdir()
+    mount = ["mount", "-t", "tmpfs", "-o", "size=6m", "none", str(disk)]
+    if subprocess.run(mount, check=False, capture_output=True).returncode:
+        pytest.skip("mounting is not allowed here")
+    try:
+        process = start(disk / "c.h5", n=200, values=5000)
+        *lines, last = process.communicate()[0].splitlines()
+        assert process.returncode == 2
+        assert last.startswith("InputError")
+        assert "the disk is full" in last
+        assert len(lines) > 1
+        assert len(read_curves(disk / "c.h5")) == len(lines)
+    finally:
+        subprocess.run(["umount", str(disk)], check=True)
+
+
+def test_a_corrupt_dataset_is_named_in_one_line(tmp_path):
+    path = tmp_path / "c.h5"
+    start(path, n=1, values=4000).communicate()
+    with h5py.File(path, "r") as file:
+        force = next(iter(file["cases"].values()))["loading/force"]
+        offset = force.id.get_chunk_info(0).byte_offset
+    with path.open("r+b") as stream:
+        stream.seek(offset)
+        stream.write(b"\xff" * 64)
+    with pytest.raises(InputError, match="damaged") as caught:
+        read_curves(path)
+    assert "\n" not in str(caught.value)

@@ -1,0 +1,75 @@
+"""What the designs promise: counts, ranges, depths, unloadings, and that no pair is shared."""
+
+import pytest
+from dentscope import fem
+from dentscope.campaigns import DESIGNS, design_named, distinct_cases
+from dentscope.campaigns.designs import RATIOS
+from dentscope.core import InputError
+
+
+@pytest.fixture(scope="module")
+def cases():
+    return {name: distinct_cases(DESIGNS[name]) for name in DESIGNS}
+
+
+def groups(cases):
+    return {str(case.groups) for case in cases.values()}
+
+
+def test_the_full_design_has_more_combinations_than_the_thesis(cases):
+    assert len(groups(cases["full"])) == len(cases["full"]) >= 432
+    assert len(cases["space"]) >= 256
+    # the thesis: at least 30 ratios of five cases, three of 27 sets
+    assert len(set(RATIOS)) >= 30
+    assert sum(0.9 <= r <= 1.7 for r in RATIOS) >= 15
+    assert len(cases["thesis"]) >= 5 * 30 + 27 * 3 - 6
+
+
+def test_validation_shares_no_pair_and_covers_the_hard_parts(cases):
+    others = groups(cases["thesis"]) | groups(cases["space"])
+    assert not groups(cases["validation"]) & others
+    pairs = [case.pair for case in cases["validation"].values()]
+    assert len(pairs) >= 48
+    assert sum(0.85 <= p.Sy_ratio <= 1.7 for p in pairs) >= 16
+    assert sum(p.E_reduced / p.Sy_min < 60 for p in pairs) >= 8
+
+
+@pytest.mark.parametrize("name", ["thesis", "space", "validation"])
+def test_depths_and_unloadings_of_every_case(cases, name):
+    for case in cases[name].values():
+        onset = fem.critical_depth(case.pair)
+        assert len(case.depths) >= 40
+        assert case.depths[0] < onset
+        assert case.depths[-1] >= 0.1
+        assert case.radius_at_least == 0.5
+        assert len(case.unload_from) >= 5
+        assert sum(depth < 20 * onset for depth in case.unload_from) >= 3
+
+
+def test_the_space_is_covered_to_its_borders(cases):
+    pairs = [case.pair for case in cases["space"].values()]
+    for values, low, high in (
+        ([p.sphere.E / 1e9 for p in pairs], 50, 300),
+        ([p.Sy_min / 1e6 for p in pairs], 50, 1100),
+        ([p.Sy_ratio for p in pairs], 0.1, 10),
+        ([p.flat.nu for p in pairs], 0.2, 0.45),
+    ):
+        assert low <= min(values) < low * 1.1
+        assert high * 0.9 < max(values) <= high * 1.001
+    equal = sum(p.sphere.E == p.flat.E for p in pairs)
+    assert 60 <= equal <= 70
+
+
+def test_drawn_pairs_do_not_move_with_the_version_of_a_library():
+    # a published part names its pairs by these draws: another stream would be another data set
+    space = DESIGNS["space"].make()[1].pair
+    assert (space.sphere.E, space.flat.E, space.Sy_min) == pytest.approx(
+        (69.15e9, 249.5e9, 111.8e6)
+    )
+    held_out = DESIGNS["validation"].make()[1].pair
+    assert (held_out.sphere.E, held_out.flat.E) == pytest.approx((91.84e9, 155.7e9))
+
+
+def test_an_unknown_design_names_the_known_ones():
+    with pytest.raises(InputError, match="smoke, thesis, space, validation, full"):
+        design_named("everything")
