@@ -30,8 +30,9 @@ fit: $(STAMP) ## fit the closed forms to the campaign: coefficients, standard er
 impact: $(STAMP) ## chapter 3 of the thesis: restitution and dent against drop height, every law
 	@$(BIN)/dentscope impact
 
-test: $(STAMP) ## run the tests
-	@$(BIN)/python -m pytest -n auto --dist worksteal
+test: $(STAMP) ## run the tests, docstring examples included
+	@echo "tests: they may take 16 minutes on two cores, half of it for finite elements"
+	@$(BIN)/python -m pytest -n auto --dist worksteal --durations=5
 
 check: $(STAMP) ## lint, formatting, types, import order
 	@$(BIN)/ruff check .
