@@ -10,7 +10,7 @@ import multiprocessing
 import os
 import threading
 import time
-from collections.abc import Iterator, Mapping
+from collections.abc import Generator, Mapping
 from concurrent.futures import FIRST_COMPLETED, wait
 from dataclasses import dataclass
 from typing import Any, Protocol
@@ -37,7 +37,7 @@ class Executor(Protocol):
 
     workers: int
 
-    def run(self, cases: Mapping[str, Case], *, time_limit_s: float) -> Iterator[Ended]:
+    def run(self, cases: Mapping[str, Case], *, time_limit_s: float) -> Generator[Ended]:
         """Compute the cases; give each as it ends."""
 
 
@@ -53,7 +53,7 @@ class LocalExecutor:
 
     workers: int
 
-    def run(self, cases: Mapping[str, Case], *, time_limit_s: float) -> Iterator[Ended]:
+    def run(self, cases: Mapping[str, Case], *, time_limit_s: float) -> Generator[Ended]:
         """Compute the cases; give each as it ends."""
         from pebble import ProcessPool
 
@@ -138,7 +138,7 @@ class DaskExecutor:
             ) from None
         return cls(address, max(1, len(client.scheduler_info()["workers"])), client)
 
-    def run(self, cases: Mapping[str, Case], *, time_limit_s: float) -> Iterator[Ended]:
+    def run(self, cases: Mapping[str, Case], *, time_limit_s: float) -> Generator[Ended]:
         """Compute the cases in a sliding window of four per worker; give each as it ends."""
         from distributed import as_completed
 

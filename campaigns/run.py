@@ -2,7 +2,10 @@
 
 from __future__ import annotations
 
+import math
+import time
 from collections.abc import Callable
+from contextlib import closing
 from dataclasses import dataclass
 from pathlib import Path
 
@@ -51,6 +54,7 @@ def run_design(
     executor: Executor,
     time_limit_s: float,
     again: frozenset[str] = frozenset(),
+    until: float = math.inf,
     report: Callable[[Step], None] | None = None,
 ) -> Status:
     """Compute what a design lacks in the file at `path`.
@@ -67,6 +71,8 @@ def run_design(
         Wall-clock limit of one case.
     again
         Statuses that are computed again, more finely, for example `{"failed"}`.
+    until
+        Value of `time.monotonic()` after which no further result is waited for.
     report
         Called after each case.
 
@@ -89,13 +95,16 @@ def run_design(
         }
         # a case that failed is tried with smaller steps and elements; its identity stays
         todo = {key: case.refined() if key in stored else case for key, case in todo.items()}
-        for ended in executor.run(todo, time_limit_s=time_limit_s):
-            case = cases[ended.id]
-            store.put(case, ended.solution, message=ended.message)
-            if report is not None:
-                solution = ended.solution
-                good = solution is not None and solution.outcome.completed
-                text = ended.message if solution is None else str(solution.outcome)
-                cpu = solution.counters.cpu_s if solution else 0.0
-                report(Step(case, good, "" if good else text, cpu, status_of(design, store)))
+        with closing(executor.run(todo, time_limit_s=time_limit_s)) as endings:
+            for ended in endings:
+                case = cases[ended.id]
+                store.put(case, ended.solution, message=ended.message)
+                if report is not None:
+                    solution = ended.solution
+                    good = solution is not None and solution.outcome.completed
+                    text = ended.message if solution is None else str(solution.outcome)
+                    cpu = solution.counters.cpu_s if solution else 0.0
+                    report(Step(case, good, "" if good else text, cpu, status_of(design, store)))
+                if time.monotonic() > until:
+                    break
     return status_of(design, store)

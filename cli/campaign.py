@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import csv
 import json
+import math
 import os
 import time
 from pathlib import Path
@@ -16,7 +17,9 @@ from ..core.errors import EXIT_NOT_CONVERGED, InputError
 app = typer.Typer(help="Sweeps of finite-element cases.", no_args_is_help=True)
 
 _FILE = "campaign.h5"
-_TYPICAL_CPU_S = {"smoke": 25.0}  # processor seconds a case on a common laptop core
+_TYPICAL_CPU_S = {"smoke": 31.0}  # mean processor seconds a case, measured (docs/performance.md)
+_DEEP_CPU_S = 312.0  # the same at production accuracy
+_PUBLISHED = Path(__file__).parents[1] / "data" / "campaign"
 
 Out = Annotated[Path, typer.Option(help="Folder of the run.")]
 DesignName = Annotated[str, typer.Option(help="Which sweep; see `campaign designs`.")]
@@ -38,7 +41,12 @@ def run(
     workers: Annotated[int, typer.Option(min=1, help="Worker processes.")] = os.cpu_count() or 1,
     scheduler: Annotated[str, typer.Option(help="Address of a dask scheduler.")] = "",
     case_minutes: Annotated[float, typer.Option(min=0.01, help="Time limit of a case.")] = 60.0,
-    retry: Annotated[str, typer.Option(help="`failed`: compute failed cases again.")] = "",
+    retry: Annotated[
+        str, typer.Option(help="`failed`: compute failed cases again, more finely.")
+    ] = "",
+    limit_minutes: Annotated[
+        float, typer.Option(min=0.0, help="Stop at the first case that ends after this; 0: never.")
+    ] = 0.0,
 ) -> int:
     """Compute what the sweep lacks; stop it at any time and run it again to go on."""
     from ..campaigns import Store, design_named, run_design, status_of
@@ -52,22 +60,33 @@ def run(
     before = status_of(chosen, store)
     executor: Any = DaskExecutor.connect(scheduler) if scheduler else LocalExecutor(workers=workers)
     todo = before.missing + (before.failed if retry else 0)
-    guess = todo * _TYPICAL_CPU_S.get(design, 40.0) / executor.workers / 60.0
+    guess = todo * _TYPICAL_CPU_S.get(design, _DEEP_CPU_S) / executor.workers / 60.0
+    long = f"{guess:.0f} min" if guess < 120.0 else f"{guess / 60.0:.0f} h"
     typer.echo(
         f"design {design}: {before.designed} cases, {before.done} done, {before.failed} failed, "
-        f"{before.missing} to compute on {executor.workers} workers; about {guess:.0f} min. "
+        f"{before.missing} to compute on {executor.workers} workers; about {long}. "
         f"Results go to {path}."
     )
     started = time.monotonic()
-    with _Progress(todo) as progress:
-        after = run_design(
-            chosen,
-            path,
-            executor=executor,
-            time_limit_s=60.0 * case_minutes,
-            again=frozenset({retry} - {""}),
-            report=progress.step,
+    until = started + 60.0 * limit_minutes if limit_minutes else math.inf
+    try:
+        with _Progress(todo) as progress:
+            after = run_design(
+                chosen,
+                path,
+                executor=executor,
+                time_limit_s=60.0 * case_minutes,
+                again=frozenset({retry} - {""}),
+                until=until,
+                report=progress.step,
+            )
+    except KeyboardInterrupt:
+        now = status_of(chosen, store)
+        typer.echo(
+            f"stopped: {now.done} done, {now.failed} failed, {now.missing} missing; "
+            "the same command goes on from here"
         )
+        return 130
     _summary(store, out, after, time.monotonic() - started, progress.cpu_s)
     return 0 if after.done == after.designed else EXIT_NOT_CONVERGED
 
@@ -79,7 +98,7 @@ def status(
     as_json: Annotated[bool, typer.Option("--json", help="For programs.")] = False,
 ) -> None:
     """Count done, failed and missing cases; works while the sweep runs."""
-    from ..campaigns import Store, design_named, status_of
+    from ..campaigns import Store, design_named, read_published, status_of
 
     path = out / _FILE
     counts = status_of(design_named(design), Store(path))
@@ -97,6 +116,7 @@ def status(
     typer.echo("  ".join(f"{key} {value}" for key, value in content.items()))
     if not path.exists():
         typer.echo("No run here yet: `dentscope campaign run` starts one.")
+        typer.echo(f"Published: {len(read_published(_PUBLISHED))} cases in {_PUBLISHED}.")
         return
     for record in Store(path).read_all():
         share = "" if record.status == "done" else f"  {record.message}"
@@ -164,6 +184,20 @@ def export(
     typer.echo(f"{len(records)} cases -> {to}")
 
 
+@app.command()
+def publish(
+    design: DesignName = "full",
+    out: Out = Path("build/campaign"),
+    to: Annotated[Path, typer.Option(help="Folder of the data set.")] = Path("data/campaign"),
+) -> None:
+    """Make immutable parts below 10 MB from a complete run."""
+    from ..campaigns import design_named
+    from ..campaigns import publish as write_parts
+
+    for part in write_parts(design_named(design), out / _FILE, to):
+        typer.echo(f"{part}: {part.stat().st_size / 1e6:.1f} MB")
+
+
 class _Progress:
     """A bar on a terminal, a line a case in a log."""
 
@@ -217,6 +251,7 @@ class _Progress:
 
 
 def _summary(store: Any, out: Path, after: Any, wall_s: float, cpu_s: float) -> None:
+    from ..campaigns import largest_difference, read_published
     from ..campaigns.pictures import draw_campaign
 
     typer.echo(
@@ -229,5 +264,8 @@ def _summary(store: Any, out: Path, after: Any, wall_s: float, cpu_s: float) -> 
     worst = max(float(abs(r.curve["energy_defect"]).max()) for r in records)
     deepest = min(float(r.curve["delta"][-1] / r.case.pair.R) for r in records)
     typer.echo(f"every case reaches Delta/R = {deepest:.3g}; largest energy defect {worst:.2%}")
+    common, difference = largest_difference(records, read_published(_PUBLISHED))
+    if common:
+        typer.echo(f"largest difference of F from {common} published cases: {difference:.2%}")
     for picture in draw_campaign(records, out / "pictures"):
         typer.echo(f"picture: {picture}")

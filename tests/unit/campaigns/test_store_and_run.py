@@ -1,5 +1,6 @@
 """The campaign file: identity of cases, resuming, damage, and death of workers and coordinator."""
 
+import multiprocessing
 import os
 import signal
 import subprocess
@@ -225,11 +226,7 @@ def test_a_dying_worker_costs_no_case(tmp_path):
     ended = []
     for item in LocalExecutor(workers=2).run(cases, time_limit_s=60.0):
         if not killed:
-            children = subprocess.run(
-                ["ps", "--ppid", str(os.getpid()), "-o", "pid=,args="],
-                capture_output=True, text=True, check=True,
-            ).stdout.splitlines()  # fmt: skip
-            workers = [int(c.split()[0]) for c in children if "spawn_main" in c]
+            workers = [child.pid for child in multiprocessing.active_children()]
             if workers:
                 os.kill(workers[0], signal.SIGKILL)
                 killed.append(workers[0])
