@@ -12,4 +12,8 @@ The stages, in the order in which a result passes through them:
     discrepancy  what physics the simulation of a recording left out
 """
 
+from .core.compiled import keep_compiled_code
+
 __version__ = "0.1.0"
+
+keep_compiled_code()

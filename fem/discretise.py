@@ -110,10 +110,9 @@ def _mesh(problem: ContactProblem, accuracy: Accuracy) -> Mesh:
     # starts with the first depth) and at the deepest point
     a_first = math.sqrt(min(first, onset))
     a_yield = a_first if math.isinf(onset) else math.sqrt(min(onset, deepest))
-    a_last = min(1.45 * math.sqrt(deepest) + 0.02, 0.9)
-    a_last = max(a_last, 4.0 * a_yield if a_yield < 0.1 else a_last)
-    if problem.radius_at_least:
-        a_last = max(a_last, 1.08 * problem.radius_at_least)
+    # a^2/(R Delta) tends to 2.6 in full plasticity, so the edge stays inside 1.7 sqrt(R Delta)
+    a_last = 1.7 * math.sqrt(deepest) + 0.02
+    a_last = min(max(a_last, 1.08 * problem.radius_at_least, min(4.0 * a_yield, 0.4)), 0.9)
     design = RingDesign(
         core=0.12 * a_first,
         fine_from=0.7 * a_yield,
@@ -131,7 +130,8 @@ def _mesh(problem: ContactProblem, accuracy: Accuracy) -> Mesh:
         sphere_rings=sphere,
         flat_rings=np.concatenate([sphere, far[1:]]),
         divisions=accuracy.divisions,
-        surface_to=a_last,
+        # the gap beside the contact is read over some elements beyond its edge
+        surface_to=min(1.5 * a_last, float(sphere[-1])),
     )
 
 

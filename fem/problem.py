@@ -9,7 +9,7 @@ from typing import Any
 from ..core.errors import InputError
 from ..core.material import Pair
 
-NUMERICS_VERSION = 1
+NUMERICS_VERSION = 2
 """Raised only when results change; stored with every case."""
 
 DEEPEST = 0.5

@@ -179,6 +179,13 @@ def _load(
                 "Try a finer or coarser accuracy level; the results up to there hold.",
             )
             return
+        if np.isnan(found.record.reading.radius):
+            yield Outcome(
+                Ending.OUT_OF_RANGE,
+                f"the contact grew out of the meshed surface at Delta/R = {found.delta:.4g}.",
+                "Ask for a larger radius_at_least: it widens the mesh.",
+            )
+            return
         before, point = point, found
         tally.steps += 1
         if point.delta >= goal * (1.0 - 1e-12):
