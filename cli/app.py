@@ -13,6 +13,7 @@ import typer
 from ..core.errors import EXIT_INPUT_ERROR, InputError
 from . import campaign
 from .case import case
+from .doctor import doctor
 from .fit import fit
 from .impact import impact
 from .inverse import inverse
@@ -35,6 +36,7 @@ app.command()(case)
 app.command()(fit)
 app.command()(impact)
 app.command()(inverse)
+app.command()(doctor)
 
 
 @app.callback()

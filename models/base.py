@@ -174,7 +174,7 @@ class ContactLaw(ABC):
         if math.isfinite(self.domain.w_max):
             pairs = [pair] if isinstance(pair, Pair) else list(pair)
             onset = min(critical_depth(p) for p in pairs)
-            w = float(np.max(depth, initial=0.0)) / onset
+            w = float(np.max(np.asarray(depth, float), initial=0.0)) / onset
             if w > self.domain.w_max:
                 warnings.warn(
                     f"{self.name}: delta/delta_c = {w:.3g} is beyond {self.domain.w_max:g}",

@@ -232,4 +232,5 @@ def test_a_dying_worker_costs_no_case(tmp_path):
                 killed.append(workers[0])
         ended.append(item.id)
         assert item.solution is not None, item.message
+    assert killed
     assert sorted(ended) == sorted(cases)
