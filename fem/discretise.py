@@ -131,7 +131,7 @@ def _mesh(problem: ContactProblem, accuracy: Accuracy) -> Mesh:
         flat_rings=np.concatenate([sphere, far[1:]]),
         divisions=accuracy.divisions,
         # the gap beside the contact is read over some elements beyond its edge
-        surface_to=min(1.5 * a_last, float(sphere[-1])),
+        surface_to=float(sphere[-1]),
     )
 
 

@@ -74,7 +74,7 @@ def edge_of_contact(contact: ContactState, slave_r: Floats) -> float:
     first = min(k + 1, len(contact.gap) - 1)
     r = contact.r[first : first + _EDGES].ravel()
     g = contact.gap[first : first + _EDGES].ravel()
-    if len(r) < 3 * _EDGES:
+    if len(r) < 6:
         return float("nan")  # the contact has grown out of the surface that was meshed to touch
     h = float(slave_r[min(k + 1, len(slave_r) - 1)] - slave_r[max(k - 1, 0)]) * 0.5
     edges = slave_r[k] + h * np.linspace(-1.0, 1.4, _CANDIDATES)
