@@ -70,6 +70,29 @@ def _norm(rr, zz, rz, tt):
 
 
 @njit(cache=True)
+def _trial(F, Fn, bn):
+    """In-plane f = F Fn^-1 (rr, rz, zr, zz) and the trial b = f bn f^T (rr, zz, rz, tt)."""
+    det = Fn[0] * Fn[3] - Fn[1] * Fn[2]
+    i00 = Fn[3] / det
+    i01 = -Fn[1] / det
+    i10 = -Fn[2] / det
+    i11 = Fn[0] / det
+    f00 = F[0] * i00 + F[1] * i10
+    f01 = F[0] * i01 + F[1] * i11
+    f10 = F[2] * i00 + F[3] * i10
+    f11 = F[2] * i01 + F[3] * i11
+    ftt = F[4] / Fn[4]
+    t00 = f00 * bn[0] + f01 * bn[2]
+    t01 = f00 * bn[2] + f01 * bn[1]
+    t10 = f10 * bn[0] + f11 * bn[2]
+    t11 = f10 * bn[2] + f11 * bn[1]
+    return (
+        (f00, f01, f10, f11),
+        (t00 * f00 + t01 * f01, t10 * f10 + t11 * f11, t00 * f10 + t01 * f11, ftt * ftt * bn[3]),
+    )
+
+
+@njit(cache=True)
 def _slide(x0, x1, x2, x3, d0, d1, d2, d3, radius):
     """Slide from the point x of the yield circle along the strain increment d; new point."""
     length = _norm(d0, d1, d2, d3)
@@ -105,23 +128,8 @@ def elastic_deviator(F, Fn, bn, radius0, rule):
         dev e (rr, zz, rz, tt), mean of e, 1 if plastic else 0, length of the plastic increment
         |dev e_trial - dev e|.
     """
-    det = Fn[0] * Fn[3] - Fn[1] * Fn[2]
-    i00 = Fn[3] / det
-    i01 = -Fn[1] / det
-    i10 = -Fn[2] / det
-    i11 = Fn[0] / det
-    f00 = F[0] * i00 + F[1] * i10
-    f01 = F[0] * i01 + F[1] * i11
-    f10 = F[2] * i00 + F[3] * i10
-    f11 = F[2] * i01 + F[3] * i11
-    ftt = F[4] / Fn[4]
-    t00 = f00 * bn[0] + f01 * bn[2]
-    t01 = f00 * bn[2] + f01 * bn[1]
-    t10 = f10 * bn[0] + f11 * bn[2]
-    t11 = f10 * bn[2] + f11 * bn[1]
-    a0, a1, a2, a3, m = log_strain(
-        t00 * f00 + t01 * f01, t10 * f10 + t11 * f11, t00 * f10 + t01 * f11, ftt * ftt * bn[3]
-    )
+    (f00, f01, f10, f11), (b0, b1, b2, b3) = _trial(F, Fn, bn)
+    a0, a1, a2, a3, m = log_strain(b0, b1, b2, b3)
     trial = _norm(a0, a1, a2, a3)
     radius = radius0 * math.exp(3.0 * m)
     # the margin keeps round-off from calling converged plastic points plastic again on unloading
@@ -264,24 +272,11 @@ def deviatoric_tangent(F, Fn, bn, G, radius0, rule, P, work, A):
     point, and that into the change of P = tau F^-T.
     """
     trial, old, step, dtrial, dold, dpoint = work
-    det = Fn[0] * Fn[3] - Fn[1] * Fn[2]
-    i00 = Fn[3] / det
-    i01 = -Fn[1] / det
-    i10 = -Fn[2] / det
-    i11 = Fn[0] / det
-    f00 = F[0] * i00 + F[1] * i10
-    f01 = F[0] * i01 + F[1] * i11
-    f10 = F[2] * i00 + F[3] * i10
-    f11 = F[2] * i01 + F[3] * i11
-    ftt = F[4] / Fn[4]
-    t00 = f00 * bn[0] + f01 * bn[2]
-    t01 = f00 * bn[2] + f01 * bn[1]
-    t10 = f10 * bn[0] + f11 * bn[2]
-    t11 = f10 * bn[2] + f11 * bn[1]
-    l1, l2, c, s = spectral(t00 * f00 + t01 * f01, t10 * f10 + t11 * f11, t00 * f10 + t01 * f11)
+    (f00, f01, f10, f11), (b0, b1, b2, b3) = _trial(F, Fn, bn)
+    l1, l2, c, s = spectral(b0, b1, b2)
     h1 = 0.5 * math.log(l1)
     h2 = 0.5 * math.log(l2)
-    h3 = 0.5 * math.log(ftt * ftt * bn[3])
+    h3 = 0.5 * math.log(b3)
     m = (h1 + h2 + h3) / 3.0
     mixed = (h1 - h2) / (l1 - l2) if abs(l1 - l2) > 1e-7 * l1 else 1.0 / (l1 + l2)
     trial[0] = (h1 - m) * c * c + (h2 - m) * s * s
