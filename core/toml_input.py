@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import tomllib
 from pathlib import Path
-from typing import Any, TypeVar
+from typing import Any, TypeVar, cast, get_args
 
 from pydantic import BaseModel, ConfigDict, Field, ValidationError
 
@@ -111,9 +111,20 @@ def _as_input_error(item: Any, model: type[BaseModel], source: str) -> InputErro
 
 
 def _known_keys(model: type[BaseModel], path: tuple[Any, ...]) -> list[str]:
+    found: Any = model
     for part in path:
-        field = model.model_fields.get(str(part))
-        inner = field.annotation if field is not None else None
-        if isinstance(inner, type) and issubclass(inner, BaseModel):
-            model = inner
-    return list(model.model_fields)
+        if _is_table(found) and str(part) in found.model_fields:
+            found = _table_in(found.model_fields[str(part)].annotation) or found
+    return list(found.model_fields)
+
+
+def _is_table(annotation: Any) -> bool:
+    return isinstance(annotation, type) and issubclass(annotation, BaseModel)
+
+
+def _table_in(annotation: Any) -> type[BaseModel] | None:
+    """The table that an annotation such as `dict[str, Table]` or `Table | None` holds."""
+    if _is_table(annotation):
+        return cast("type[BaseModel]", annotation)
+    inner = (_table_in(part) for part in get_args(annotation))
+    return next((table for table in inner if table is not None), None)

@@ -1,0 +1,112 @@
+"""The columns that trials.csv, traces and profiles may have: kind, range and meaning of each."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+from typing import Literal
+
+Kind = Literal["text", "condition", "observable", "std"]
+
+
+@dataclass(frozen=True, slots=True)
+class Column:
+    """One column: what it holds and which numbers it accepts.
+
+    Parameters
+    ----------
+    kind
+        `text`, a number that sets the trial's condition, a measured observable, or the standard
+        deviation of another column.
+    meaning
+        One sentence for the documentation and the template.
+    low, high
+        Range of the numbers, in the unit of the column's name.
+    low_allowed
+        Whether `low` itself is accepted.
+    """
+
+    kind: Kind
+    meaning: str
+    low: float = -math.inf
+    high: float = math.inf
+    low_allowed: bool = True
+
+    def accepts(self, value: float) -> bool:
+        """Whether a number lies in the column's range."""
+        above = value >= self.low if self.low_allowed else value > self.low
+        return above and value <= self.high
+
+    @property
+    def allowed(self) -> str:
+        """The range in words."""
+        if self.high < math.inf:
+            return f"a number above {self.low:g} and up to {self.high:g}"
+        if self.low == -math.inf:
+            return "a number"
+        return f"a number not below {self.low:g}" if self.low_allowed else "a number above 0"
+
+
+def _positive(kind: Kind, meaning: str) -> Column:
+    return Column(kind, meaning, low=0.0, low_allowed=False)
+
+
+def _not_negative(kind: Kind, meaning: str) -> Column:
+    return Column(kind, meaning, low=0.0)
+
+
+CONDITIONS: dict[str, Column] = {
+    "trial": Column("text", "name of the trial"),
+    "striker": Column("text", "a name from set.toml"),
+    "angle_deg": Column(
+        "condition", "90 for a normal impact", low=0.0, high=90.0, low_allowed=False
+    ),
+    "impact_speed_m_s": _positive("condition", "normal approach speed"),
+    "drop_height_m": _positive("condition", "height of fall"),
+    "angle_deg_std": _not_negative("std", "standard deviation of the angle"),
+    "impact_speed_m_s_std": _not_negative("std", "standard deviation of the speed"),
+    "temperature_K": _positive("condition", "temperature of the bodies"),
+    "order": Column("condition", "place in the order of testing"),
+    "spot": Column("text", "same text: same place on the flat"),
+    "approach_tangential_m_s": Column("condition", "tangential speed of the centre before"),
+    "approach_spin_rad_s": Column("condition", "angular velocity before, counter-clockwise"),
+}
+"""Columns that describe a trial, in the order in which they are written."""
+
+OBSERVABLES: dict[str, Column] = {
+    "restitution": _not_negative("observable", "rebound over approach normal tip velocity"),
+    "permanent_depth_m": _not_negative("observable", "depth of the crater in the flat"),
+    "contact_time_s": _positive("observable", "first touch to last separation"),
+    "peak_force_N": _positive("observable", "largest normal force"),
+    "rebound_spin_rad_s": Column("observable", "angular velocity after, counter-clockwise"),
+    "friction_impulse_ratio": _not_negative("observable", "tangential over normal impulse"),
+    "sliding_length_m": _not_negative("observable", "range of the contact point's travel"),
+    "rebound_speed_m_s": Column("observable", "velocity of the centre of mass after, along +y"),
+    "tangential_rebound_m_s": Column("observable", "the same along +x"),
+}
+"""Measured columns, in the order of the format's table."""
+
+STD_SUFFIX = "_std"
+RELATIVE_SUFFIX = "_relative"
+
+TRIAL_COLUMNS: dict[str, Column] = (
+    CONDITIONS
+    | OBSERVABLES
+    | {name + STD_SUFFIX: _positive("std", f"of {name}") for name in OBSERVABLES}
+    | {"note": Column("text", "free text, not used")}
+)
+"""Every column that trials.csv may have."""
+
+TRACE_COLUMNS: tuple[str, ...] = ("time_s", "tip_height_m", "force_N", "tip_x_m", "angle_rad")
+PROFILE_COLUMNS: tuple[str, ...] = ("x_m", "z_m")
+
+NOISE_KEYS: tuple[str, ...] = (
+    *OBSERVABLES,
+    *(name + RELATIVE_SUFFIX for name in OBSERVABLES),
+    "tip_height_m",
+    "force_N",
+    "force_N" + RELATIVE_SUFFIX,
+    "impact_speed" + RELATIVE_SUFFIX,
+    "frame_rate_hz",
+)
+"""Every key that `[noise]` may have."""

@@ -1,0 +1,160 @@
+"""Comma-separated tables that a person may have typed: every mistake with its row and column."""
+
+from __future__ import annotations
+
+import csv
+import io
+import math
+from collections.abc import Iterable, Mapping, Sequence
+from dataclasses import dataclass, field
+from difflib import get_close_matches
+from pathlib import Path
+
+import numpy as np
+import numpy.typing as npt
+
+from ..core.errors import InputError
+
+Array = npt.NDArray[np.float64]
+
+
+@dataclass(slots=True)
+class Problems:
+    """The mistakes found so far in one file."""
+
+    source: str
+    found: list[InputError] = field(default_factory=list)
+
+    def add(self, message: str, *, row: int = 0, column: str = "", allowed: str = "") -> None:
+        """Note a mistake; rows count from 1, the header's, as a spreadsheet shows them."""
+        parts = (f"row {row}" if row else "", f"column {column}" if column else "")
+        key = ", ".join(part for part in parts if part)
+        self.found.append(InputError(message, source=self.source, key=key, allowed=allowed))
+
+
+@dataclass(frozen=True, slots=True)
+class TextTable:
+    """The cells of a file as text.
+
+    Parameters
+    ----------
+    columns
+        Column names, in the file's order.
+    rows
+        Number of each row in the file (the header is row 1), shape (n,).
+    cells
+        The text of each column, n entries each.
+    """
+
+    columns: tuple[str, ...]
+    rows: tuple[int, ...]
+    cells: Mapping[str, tuple[str, ...]]
+
+
+def read_text_table(path: Path, known: Iterable[str], problems: Problems) -> TextTable | None:
+    """Read a table as text; `None` if there is nothing to go on with.
+
+    Parameters
+    ----------
+    path
+        The file: UTF-8, commas, one header line.
+    known
+        Names that a column may have.
+    problems
+        Where mistakes go.
+    """
+    try:
+        text = path.read_text(encoding="utf-8-sig")
+    except FileNotFoundError:
+        problems.add("no such file", allowed="a table of comma-separated values")
+        return None
+    except UnicodeDecodeError as error:
+        problems.add(f"not UTF-8 text (byte {error.start})", allowed="UTF-8")
+        return None
+    except OSError as error:
+        problems.add(f"cannot be read ({error.strerror})", allowed="a file")
+        return None
+    try:
+        lines = list(csv.reader(io.StringIO(text), strict=True))
+    except csv.Error as error:
+        problems.add(f"not comma-separated values ({error})", allowed="quotes closed, no NUL")
+        return None
+    numbered = [(n, [c.strip() for c in line]) for n, line in enumerate(lines, 1) if any(line)]
+    numbered = [(n, line) for n, line in numbered if any(line)]
+    if not numbered:
+        problems.add("empty", allowed="a header line and rows")
+        return None
+    header_row, header = numbered[0]
+    names = tuple(known)
+    if not _header_is_sound(header, header_row, names, problems):
+        return None
+    return _body(header, numbered[1:], names, problems)
+
+
+def _header_is_sound(
+    header: Sequence[str], row: int, known: tuple[str, ...], problems: Problems
+) -> bool:
+    if len(header) == 1 and (";" in header[0] or "\t" in header[0]):
+        problems.add("columns are not separated by commas", row=row, allowed="commas")
+        return False
+    before = len(problems.found)
+    for place, name in enumerate(header):
+        if not name:
+            problems.add(f"column {place + 1} has no name", row=row, allowed="a name")
+        elif name not in known:
+            close = get_close_matches(name, known, n=1)
+            hint = f"did you mean {close[0]}?" if close else ", ".join(known)
+            problems.add("unknown column", row=row, column=name, allowed=hint)
+        elif name in header[:place]:
+            problems.add("given twice", row=row, column=name, allowed="each column once")
+    return len(problems.found) == before or len(set(header) & set(known)) > 0
+
+
+def _body(
+    header: Sequence[str],
+    body: Sequence[tuple[int, list[str]]],
+    known: Iterable[str],
+    problems: Problems,
+) -> TextTable:
+    whole = []
+    for row, line in body:
+        extra = [cell for cell in line[len(header) :] if cell]
+        if extra:
+            problems.add(
+                f"{len(line)} cells under {len(header)} columns", row=row,
+                allowed="as many cells as columns; a decimal point, not a comma",
+            )  # fmt: skip
+        whole.append((line + [""] * len(header))[: len(header)])
+    first = {name: header.index(name) for name in header if name in known}
+    cells = {name: tuple(line[place] for line in whole) for name, place in first.items()}
+    return TextTable(tuple(first), tuple(row for row, _ in body), cells)
+
+
+def number(cell: str) -> float:
+    """Return the number in a cell, or NaN for text, infinities and NaN."""
+    try:
+        value = float(cell)
+    except ValueError:
+        return math.nan
+    # float() takes "1_000"; a spreadsheet would not
+    return value if math.isfinite(value) and "_" not in cell else math.nan
+
+
+def numbers(table: TextTable, column: str, problems: Problems) -> Array:
+    """Return a column as numbers, NaN for empty cells; other cells are noted as mistakes."""
+    values = np.full(len(table.rows), np.nan)
+    for i, cell in enumerate(table.cells[column]):
+        if cell:
+            values[i] = number(cell)
+            if math.isnan(values[i]):
+                problems.add(
+                    f"{shown(cell)}", row=table.rows[i], column=column,
+                    allowed="a finite number with a decimal point, or empty for 'not measured'",
+                )  # fmt: skip
+    return values
+
+
+def shown(text: str, limit: int = 40) -> str:
+    """Return a text in quotes, control characters escaped, shortened to `limit`."""
+    whole = repr(text)
+    return whole if len(whole) <= limit else f"{whole[: limit - 4]}...{whole[-1]}"

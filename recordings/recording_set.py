@@ -1,0 +1,345 @@
+"""A recording set: the folder in which measured impacts reach the program.
+
+`read` returns a frozen `RecordingSet` or raises one error that holds every mistake of the folder;
+`write` makes the same folder again. The format is described in docs/recording-set.md.
+"""
+
+from __future__ import annotations
+
+import shutil
+from collections.abc import Mapping
+from dataclasses import dataclass, field, replace
+from functools import cached_property
+from pathlib import Path
+
+import numpy as np
+import numpy.typing as npt
+
+from ..core.errors import InputError, InputErrors
+from ..core.toml_input import parse_model, read_toml
+from . import noise
+from .columns import NOISE_KEYS, OBSERVABLES, RELATIVE_SUFFIX
+from .csv_table import Array, Problems
+from .noise import Noise
+from .series import read_profile, read_trace, series_in
+from .setup_file import Setup, Striker
+from .toml_text import setup_text
+from .trials import Trials, read_trials, write_trials
+
+_NOT_COLUMNS = ("impact_speed" + RELATIVE_SUFFIX, "frame_rate_hz")
+_TRACE_NOISE = ("tip_height_m", "force_N", "force_N" + RELATIVE_SUFFIX)
+_SPEED_BIN = 0.02
+_ANGLE_BIN = 1.0
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Approach:
+    """The motion just before touch, each array of shape (n,).
+
+    Parameters
+    ----------
+    normal, normal_std
+        Normal approach speed and its standard deviation [m/s]; the second is NaN where the set
+        says nothing.
+    angle
+        Between axis and flat for a rod, pi/2 for a sphere [rad].
+    tangential
+        Velocity of the centre of mass along +x [m/s].
+    spin
+        Angular velocity, counter-clockwise [rad/s].
+    """
+
+    normal: Array
+    normal_std: Array
+    angle: Array
+    tangential: Array
+    spin: Array
+
+
+@dataclass(frozen=True, eq=False)
+class RecordingSet:
+    """A recording set in memory.
+
+    Parameters
+    ----------
+    setup
+        Everything in set.toml; attributes carry the names of its keys.
+    trials
+        The rows of trials.csv as arrays of shape (n,).
+    traces, profiles
+        Files by name of the trial; `trace(NAME)` and `profile(NAME)` read them.
+    folder
+        Where the set was read from; `None` for one made in memory.
+    notes
+        Remarks of the reader that are no mistakes.
+    """
+
+    setup: Setup
+    trials: Trials
+    traces: Mapping[str, Path] = field(default_factory=dict)
+    profiles: Mapping[str, Path] = field(default_factory=dict)
+    folder: Path | None = None
+    notes: tuple[str, ...] = ()
+
+    @property
+    def name(self) -> str:
+        """The set's name, or that of its folder."""
+        return self.setup.name or (self.folder.name if self.folder else "")
+
+    @property
+    def observed(self) -> tuple[str, ...]:
+        """Observables with at least one value, in the order of the format."""
+        found = self.trials.observables
+        return tuple(k for k in OBSERVABLES if k in found and not np.isnan(found[k]).all())
+
+    def strikers(self) -> tuple[Striker, ...]:
+        """The striker of each trial, n of them."""
+        return tuple(self.setup.strikers[name] for name in self.trials.striker)
+
+    def values(self, name: str) -> Array:
+        """Return an observable, shape (n,), SI, NaN where not measured."""
+        return self.trials.observables[name]
+
+    def std(self, name: str) -> Array:
+        """Return the standard deviation of an observable, shape (n,), NaN where not measured."""
+        return self.noise(name).std
+
+    def noise(self, name: str) -> Noise:
+        """Return the standard deviation of an observable and where it comes from."""
+        return noise.noise_of(
+            name, self.values(name), self.trials.observables_std.get(name),
+            self.setup.noise, self.conditions,
+        )  # fmt: skip
+
+    @cached_property
+    def conditions(self) -> npt.NDArray[np.intp]:
+        """Number of each trial's condition, shape (n,): repeats share a number.
+
+        Same striker, angle within 1 degree, approach speed within 2 percent, same tangential speed
+        and spin within 2 percent of the approach; a spot that is struck again is its own condition.
+        """
+        approach, trials = self.approach, self.trials
+        struck: dict[str, int] = {}
+        blow = []
+        for spot in trials.spot:
+            struck[spot] = struck.get(spot, -1) + 1
+            blow.append(struck[spot] if spot else 0)
+        sizes = np.array([s.length / 2.0 or s.body_radius for s in self.strikers()])
+        return noise.numbered(
+            trials.striker,
+            list(noise.bins(np.asarray(trials.angle_deg), width=_ANGLE_BIN)),
+            list(noise.bins(np.log(approach.normal), width=_SPEED_BIN)),
+            list(noise.bins(approach.tangential / approach.normal, width=_SPEED_BIN)),
+            list(noise.bins(approach.spin * sizes / approach.normal, width=_SPEED_BIN)),
+            list(noise.bins(trials.temperature_K, width=_ANGLE_BIN)),
+            blow,
+        )
+
+    @cached_property
+    def approach(self) -> Approach:
+        """The motion just before touch, from speed or height of fall, angle, and the columns."""
+        trials, g = self.trials, self.setup.gravity_m_s2
+        rod = np.array([s.shape == "rod" for s in self.strikers()], dtype=bool)
+        angle = np.radians(trials.angle_deg)
+        fall = np.sqrt(2.0 * g.value * trials.drop_height_m) * np.where(rod, 1.0, np.sin(angle))
+        timed = ~np.isnan(trials.impact_speed_m_s)
+        normal = np.where(timed, trials.impact_speed_m_s, fall)
+        fraction = self.setup.noise.get("impact_speed" + RELATIVE_SUFFIX, np.nan)
+        std = np.where(
+            np.isnan(trials.impact_speed_m_s_std), fraction * normal, trials.impact_speed_m_s_std
+        )
+        along = np.where(rod | (trials.angle_deg == 90.0), 0.0, -normal / np.tan(angle))
+        given = trials.approach_tangential_m_s
+        return Approach(
+            normal=normal,
+            normal_std=std,
+            angle=np.where(rod, angle, np.pi / 2.0),
+            tangential=np.where(np.isnan(given), along, given),
+            spin=np.nan_to_num(trials.approach_spin_rad_s, nan=0.0),
+        )
+
+    def trace(self, trial: str) -> Mapping[str, Array]:
+        """Return the columns of a trial's trace, each of shape (k,)."""
+        return read_trace(self.traces[trial])
+
+    def profile(self, trial: str) -> Mapping[str, Array]:
+        """Return the columns of a trial's crater profile, each of shape (k,)."""
+        return read_profile(self.profiles[trial])
+
+    def take(self, rows: npt.ArrayLike) -> RecordingSet:
+        """Return the set with some of its trials: indices or a mask."""
+        return self.with_trials(self.trials.take(rows))
+
+    def with_trials(self, trials: Trials) -> RecordingSet:
+        """Return the set with other trials; curves of trials that are gone are left out."""
+        kept = set(trials.trial)
+        return replace(
+            self,
+            trials=trials,
+            traces={k: v for k, v in self.traces.items() if k in kept},
+            profiles={k: v for k, v in self.profiles.items() if k in kept},
+        )
+
+
+def read(folder: Path | str) -> RecordingSet:
+    """Read a recording set.
+
+    Parameters
+    ----------
+    folder
+        The folder that holds set.toml and trials.csv.
+
+    Raises
+    ------
+    InputErrors
+        Every mistake found in all files of the folder, one line each: file, row, column or key,
+        what was found, what is allowed.
+    """
+    folder = Path(folder)
+    if not folder.is_dir():
+        raise InputError("no such folder", source=str(folder), allowed="a folder with set.toml")
+    mistakes: list[InputError] = []
+    setup, strikers = _read_setup(folder / "set.toml", mistakes)
+    problems = Problems(str(folder / "trials.csv"))
+    trials = read_trials(folder / "trials.csv", strikers, problems)
+    names = trials.trial if trials is not None else ()
+    mistakes += problems.found
+    traces = _checked_series(folder / "traces", names, mistakes)
+    profiles = _checked_series(folder / "profiles", names, mistakes)
+    if setup is None or trials is None or mistakes:
+        raise InputErrors(tuple(mistakes))
+    found = RecordingSet(setup, trials, traces, profiles, folder)
+    mistakes += _without_noise(found)
+    if mistakes:
+        raise InputErrors(tuple(mistakes))
+    return replace(found, notes=tuple(_notes(found)))
+
+
+def _read_setup(path: Path, mistakes: list[InputError]) -> tuple[Setup | None, frozenset[str]]:
+    """Return the set-up, and the names of its strikers even when something else is wrong."""
+    content: dict[str, object] = {}
+    setup = None
+    try:
+        content = read_toml(path)
+        setup = parse_model(content, Setup, source=str(path))
+    except InputErrors as several:
+        mistakes += several.errors
+    except InputError as error:
+        mistakes.append(error)
+    tables, noises = content.get("strikers"), content.get("noise")
+    mistakes += _unsound_strikers(tables if isinstance(tables, dict) else {}, str(path))
+    for key in noises if isinstance(noises, dict) else ():
+        if key not in NOISE_KEYS:
+            mistakes.append(
+                InputError(
+                    "unknown key",
+                    source=str(path),
+                    key=f"noise.{key}",
+                    allowed=", ".join(NOISE_KEYS),
+                )
+            )
+    return setup, frozenset(tables) if isinstance(tables, dict) else frozenset()
+
+
+def _unsound_strikers(tables: Mapping[str, object], source: str) -> list[InputError]:
+    """What the single keys of a striker cannot show, found even when one of them is wrong."""
+    mistakes = []
+    for name, table in tables.items():
+        if not isinstance(table, dict):
+            continue
+        for key in ("radius_m", "length_m"):
+            if table.get("shape") == "rod" and key not in table:
+                mistakes.append(
+                    InputError(
+                        "missing",
+                        source=source,
+                        key=f"strikers.{name}.{key}",
+                        allowed="this key is needed for a rod",
+                    )
+                )
+        tip, flat = (_plain(table.get(k)) for k in ("tip_radius_m", "tip_flat_radius_m"))
+        if flat >= tip:
+            mistakes.append(
+                InputError(
+                    f"{flat:g}",
+                    source=source,
+                    key=f"strikers.{name}.tip_flat_radius_m",
+                    allowed=f"below tip_radius_m = {tip:g}",
+                )
+            )
+    return mistakes
+
+
+def _plain(given: object) -> float:
+    value = given.get("value") if isinstance(given, dict) else given
+    return float(value) if isinstance(value, int | float) else float("nan")
+
+
+def _checked_series(
+    folder: Path, trials: tuple[str, ...], mistakes: list[InputError]
+) -> dict[str, Path]:
+    problems = Problems(str(folder))
+    found = series_in(folder, trials, problems)
+    mistakes += problems.found
+    reader = read_trace if folder.name == "traces" else read_profile
+    for path in found.values():
+        try:
+            reader(path)
+        except InputErrors as several:
+            mistakes += several.errors
+    return found
+
+
+def _without_noise(found: RecordingSet) -> list[InputError]:
+    source = str((found.folder or Path()) / "set.toml")
+    return [
+        InputError(
+            f"{name} has no standard deviation and fewer than {noise.MIN_REPEATS} repeats",
+            source=source, key=f"noise.{name}",
+            allowed=f"{name} or {name}{RELATIVE_SUFFIX} in [noise], or a column {name}_std",
+        )
+        for name in found.observed
+        if np.isnan(found.std(name)[~np.isnan(found.values(name))]).any()
+    ]  # fmt: skip
+
+
+def _notes(found: RecordingSet) -> list[str]:
+    notes = []
+    for key in found.setup.noise:
+        column = key.removesuffix(RELATIVE_SUFFIX)
+        used = column in found.observed or (key in _TRACE_NOISE and bool(found.traces))
+        if not used and key not in _NOT_COLUMNS:
+            notes.append(f"noise.{key} is not used: the set has no values of {column}")
+    columns = found.trials.observables.values()
+    empty = (
+        np.all([np.isnan(c) for c in columns], axis=0) if columns else np.ones(len(found.trials))
+    )
+    bare = [
+        name for name, none in zip(found.trials.trial, empty, strict=True)
+        if none and name not in found.traces
+    ]  # fmt: skip
+    if bare:
+        notes.append(f"nothing measured in {len(bare)} trials: {', '.join(bare[:5])}")
+    return notes
+
+
+def write(found: RecordingSet, folder: Path | str) -> None:
+    """Write a recording set; its traces and profiles are copied into the folder.
+
+    Parameters
+    ----------
+    found
+        The set.
+    folder
+        Made if it does not exist; set.toml and trials.csv in it are replaced.
+    """
+    folder = Path(folder)
+    folder.mkdir(parents=True, exist_ok=True)
+    (folder / "set.toml").write_text(setup_text(found.setup), encoding="utf-8")
+    write_trials(found.trials, folder / "trials.csv")
+    for kind, files in (("traces", found.traces), ("profiles", found.profiles)):
+        for trial, path in files.items():
+            place = folder / kind / f"{trial}.csv"
+            place.parent.mkdir(exist_ok=True)
+            if not (place.exists() and place.samefile(path)):
+                shutil.copyfile(path, place)

@@ -1,0 +1,222 @@
+"""The rows of trials.csv: conditions and observables as arrays, read, checked and written."""
+
+from __future__ import annotations
+
+import csv
+from collections.abc import Mapping
+from dataclasses import dataclass, field, fields, replace
+from pathlib import Path
+
+import numpy as np
+import numpy.typing as npt
+
+from .columns import CONDITIONS, OBSERVABLES, STD_SUFFIX, TRIAL_COLUMNS
+from .csv_table import Array, Problems, TextTable, numbers, read_text_table, shown
+
+_TEXTS = tuple(name for name, column in TRIAL_COLUMNS.items() if column.kind == "text")
+_NUMBERS = tuple(name for name, column in CONDITIONS.items() if column.kind != "text")
+_STDS = {name + STD_SUFFIX: name for name in OBSERVABLES}
+
+
+@dataclass(frozen=True, eq=False)
+class Trials:
+    """The rows of trials.csv, n of them; the attributes carry the names of the columns.
+
+    Every array has shape (n,), is read-only, and holds NaN where the table has an empty cell.
+
+    Parameters
+    ----------
+    trial, striker
+        Name of the trial; name of its striker in set.toml.
+    angle_deg
+        Angle [deg]: rod, between axis and flat; sphere, between velocity and flat.
+    impact_speed_m_s, drop_height_m
+        As the table gives them: normal approach speed [m/s], height of fall [m]; at least one.
+    angle_deg_std, impact_speed_m_s_std
+        Standard deviations [deg, m/s].
+    temperature_K, order
+        Temperature [K]; place in the order of testing.
+    approach_tangential_m_s, approach_spin_rad_s
+        Tangential speed of the centre [m/s] and angular velocity [rad/s] before.
+    spot, note
+        Same text: same place on the flat; free text.
+    observables
+        Measured columns by name.
+    observables_std
+        Standard deviations that the table gives (`NAME_std`), by the observable's name.
+    """
+
+    trial: tuple[str, ...]
+    striker: tuple[str, ...]
+    angle_deg: Array
+    impact_speed_m_s: Array = field(default_factory=lambda: np.empty(0))
+    drop_height_m: Array = field(default_factory=lambda: np.empty(0))
+    angle_deg_std: Array = field(default_factory=lambda: np.empty(0))
+    impact_speed_m_s_std: Array = field(default_factory=lambda: np.empty(0))
+    temperature_K: Array = field(default_factory=lambda: np.empty(0))
+    order: Array = field(default_factory=lambda: np.empty(0))
+    approach_tangential_m_s: Array = field(default_factory=lambda: np.empty(0))
+    approach_spin_rad_s: Array = field(default_factory=lambda: np.empty(0))
+    spot: tuple[str, ...] = ()
+    note: tuple[str, ...] = ()
+    observables: Mapping[str, Array] = field(default_factory=dict)
+    observables_std: Mapping[str, Array] = field(default_factory=dict)
+
+    def __post_init__(self) -> None:
+        n = len(self.trial)
+        for name in ("spot", "note"):
+            object.__setattr__(self, name, tuple(getattr(self, name)) or ("",) * n)
+        for name in _NUMBERS:
+            object.__setattr__(self, name, _column(getattr(self, name), n, name))
+        for name in ("observables", "observables_std"):
+            columns = {k: _column(v, n, k) for k, v in getattr(self, name).items()}
+            object.__setattr__(self, name, columns)
+
+    def __len__(self) -> int:
+        return len(self.trial)
+
+    def take(self, rows: npt.ArrayLike) -> Trials:
+        """Return some of the rows: indices or a mask."""
+        index = np.arange(len(self))[np.asarray(rows)]
+        changes: dict[str, object] = {}
+        for item in fields(self):
+            value = getattr(self, item.name)
+            if isinstance(value, tuple):
+                changes[item.name] = tuple(value[i] for i in index)
+            elif isinstance(value, np.ndarray):
+                changes[item.name] = value[index]
+            else:
+                changes[item.name] = {k: v[index] for k, v in value.items()}
+        return replace(self, **changes)  # type: ignore[arg-type]
+
+    def measuring(
+        self, observables: Mapping[str, Array], observables_std: Mapping[str, Array] | None = None
+    ) -> Trials:
+        """Return the same trials with other observables, for example simulated ones."""
+        return replace(self, observables=observables, observables_std=observables_std or {})
+
+
+def _column(values: npt.ArrayLike, n: int, name: str) -> Array:
+    given = np.array(values, dtype=float)
+    if given.size == 0 and n > 0:
+        given = np.full(n, np.nan)
+    if given.shape != (n,):
+        raise ValueError(f"{name} has shape {given.shape}, not ({n},)")
+    given.flags.writeable = False
+    return given
+
+
+def read_trials(path: Path, strikers: frozenset[str], problems: Problems) -> Trials | None:
+    """Read trials.csv; mistakes go to `problems`, and `None` comes back if there is no table.
+
+    Parameters
+    ----------
+    path
+        The file.
+    strikers
+        Names that the column `striker` may hold.
+    problems
+        Where mistakes go.
+    """
+    table = read_text_table(path, TRIAL_COLUMNS, problems)
+    if table is None:
+        return None
+    missing = [name for name in ("trial", "striker", "angle_deg") if name not in table.columns]
+    for name in missing:
+        problems.add("missing", row=1, column=name, allowed="this column is needed")
+    if not {"impact_speed_m_s", "drop_height_m"} & set(table.columns):
+        problems.add("no approach", row=1, allowed="a column impact_speed_m_s or drop_height_m")
+    if not table.rows:
+        problems.add("no trial", allowed="at least one row below the header")
+    values = {name: numbers(table, name, problems) for name in table.columns if name not in _TEXTS}
+    _check_ranges(table, values, problems)
+    _check_texts(table, strikers, problems)
+    _check_approach(table, values, problems)
+    if missing:
+        return None
+    return _as_trials(table, values)
+
+
+def _as_trials(table: TextTable, values: Mapping[str, Array]) -> Trials:
+    texts = {name: table.cells[name] for name in _TEXTS if name in table.columns}
+    return Trials(
+        **texts,  # type: ignore[arg-type]
+        **{name: values[name] for name in _NUMBERS if name in values},  # type: ignore[arg-type]
+        observables={name: values[name] for name in OBSERVABLES if name in values},
+        observables_std={_STDS[name]: values[name] for name in _STDS if name in values},
+    )
+
+
+def _check_ranges(table: TextTable, values: Mapping[str, Array], problems: Problems) -> None:
+    for name, column in values.items():
+        rule = TRIAL_COLUMNS[name]
+        for i in map(int, np.flatnonzero(~np.isnan(column))):
+            if not rule.accepts(float(column[i])):
+                problems.add(f"{column[i]:g}", row=table.rows[i], column=name, allowed=rule.allowed)
+    for name, of in _STDS.items():
+        if name in values and of not in values:
+            problems.add(f"there is no column {of}", row=1, column=name, allowed=f"a column {of}")
+
+
+def _check_texts(table: TextTable, strikers: frozenset[str], problems: Problems) -> None:
+    seen: dict[str, int] = {}
+    for row, name in zip(table.rows, table.cells.get("trial", ()), strict=False):
+        if not name:
+            problems.add("empty", row=row, column="trial", allowed="a name")
+        elif name in seen:
+            problems.add(
+                f"{shown(name)} is also in row {seen[name]}", row=row, column="trial",
+                allowed="each name once",
+            )  # fmt: skip
+        elif any(c in '/\\:*?"<>|' or not c.isprintable() for c in name) or name in (".", ".."):
+            problems.add(
+                f"{shown(name)}", row=row, column="trial", allowed="text that can name a file"
+            )
+        seen.setdefault(name, row)
+    for row, name in zip(table.rows, table.cells.get("striker", ()), strict=False):
+        if name not in strikers:
+            known = ", ".join(sorted(strikers)) or "a table [strikers.NAME] in set.toml"
+            problems.add(f"no striker {shown(name)}", row=row, column="striker", allowed=known)
+
+
+def _check_approach(table: TextTable, values: Mapping[str, Array], problems: Problems) -> None:
+    cells = table.cells
+    for i, row in enumerate(table.rows):
+        if "angle_deg" in cells and not cells["angle_deg"][i]:
+            problems.add("empty", row=row, column="angle_deg", allowed="90 for a normal impact")
+        given = [cells[k][i] for k in ("impact_speed_m_s", "drop_height_m") if k in cells]
+        if given and not any(given):
+            problems.add("no approach", row=row, allowed="impact_speed_m_s or drop_height_m")
+    for name, of in _STDS.items():
+        if name in values and of in values:
+            for i in map(int, np.flatnonzero(~np.isnan(values[name]) & np.isnan(values[of]))):
+                if not cells[of][i]:
+                    problems.add(
+                        f"{of} is empty", row=table.rows[i], column=name,
+                        allowed="a standard deviation only where there is a value",
+                    )  # fmt: skip
+
+
+def write_trials(trials: Trials, path: Path) -> None:
+    """Write trials.csv; columns without any entry are left out, numbers keep every digit."""
+    columns: dict[str, list[str]] = {}
+    for name in CONDITIONS:
+        value = getattr(trials, name)
+        cells = list(value) if name in _TEXTS else _cells(value)
+        if any(cells) or name in ("trial", "striker", "angle_deg"):
+            columns[name] = cells
+    for name in OBSERVABLES:
+        if name in trials.observables:
+            columns[name] = _cells(trials.observables[name])
+        if name in trials.observables_std:
+            columns[name + STD_SUFFIX] = _cells(trials.observables_std[name])
+    if any(trials.note):
+        columns["note"] = list(trials.note)
+    with path.open("w", newline="", encoding="utf-8") as stream:
+        writer = csv.writer(stream, lineterminator="\n")
+        writer.writerow(columns)
+        writer.writerows(zip(*columns.values(), strict=True))
+
+
+def _cells(values: Array) -> list[str]:
+    return ["" if np.isnan(v) else repr(float(v)) for v in values]
