@@ -18,7 +18,7 @@ from __future__ import annotations
 import math
 import warnings
 from abc import ABC, abstractmethod
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
 from typing import Any
 
@@ -39,12 +39,18 @@ BRANCH_SIGNATURE = float64(VECTOR, float64, float64)
 RESIDUAL_SIGNATURE = types.UniTuple(float64, 2)(VECTOR, float64)
 
 # Places in every law's parameter vector; a law's own numbers follow from N_COMMON on.
-R, E, S, RATIO, SHARE, E_WEAK, NU_WEAK, C = range(8)
-N_COMMON = 8
+R, E, S, RATIO, SHARE, E_WEAK, NU_WEAK, C, ONSET, CRITICAL, K_HERTZ = range(11)
+N_COMMON = 11
 
-loading_kernel = njit(LOADING_SIGNATURE, cache=True)
-branch_kernel = njit(BRANCH_SIGNATURE, cache=True)
-residual_kernel = njit(RESIDUAL_SIGNATURE, cache=True)
+# error_model: no check for a division by zero, which costs as much as the division
+loading_kernel = njit(LOADING_SIGNATURE, cache=True, error_model="numpy")
+branch_kernel = njit(BRANCH_SIGNATURE, cache=True, error_model="numpy")
+residual_kernel = njit(RESIDUAL_SIGNATURE, cache=True, error_model="numpy")
+
+
+CLAUSES = ("force falls", "force jumps", "radius jumps", "residual jumps", "not Hertz")
+"""What a declared breach of the contract can begin with: the force falls as the depth grows; force,
+radius or residual depth jump up; the law without a yield strength is not exactly Hertz's."""
 
 
 class DomainWarning(UserWarning):
@@ -89,7 +95,12 @@ class ContactLaw(ABC):
     domain
         Range of validity.
     breaks
-        Clauses of the contract that the published form breaks, with the size in percent.
+        Clauses of the contract that the published form breaks, with the size in percent; each
+        begins with one of `CLAUSES`.
+    regime
+        Which body the law lets deform: "flattening", "indentation" or "either".
+    read
+        Where its equations were read.
     """
 
     name: str
@@ -99,6 +110,8 @@ class ContactLaw(ABC):
     verified: bool
     domain: Domain
     breaks: tuple[tuple[str, float], ...] = ()
+    regime: str = "either"
+    read: str = ""
 
     @property
     @abstractmethod
@@ -108,6 +121,11 @@ class ContactLaw(ABC):
     def parameters(self, pair: Pair) -> Floats:
         """Return the numbers that the kernels take, shape (n,)."""
         return common_parameters(pair)
+
+    def allowance(self, clause: str) -> float:
+        """Largest declared breach of `clause` (one of `CLAUSES`), as a fraction."""
+        sizes = (size for text, size in self.breaks if text.startswith(clause))
+        return max(sizes, default=0.0) / 100.0
 
     def loading(self, pair: Pairs, depth: Depths) -> Floats:
         """Force on first loading.
@@ -151,7 +169,7 @@ class ContactLaw(ABC):
         return np.divide(force, area, out=np.zeros_like(force), where=area > 0.0)
 
     def with_unloading(self, other: ContactLaw) -> ContactLaw:
-        """Return this law's loading with the residual depth of `other` and Hertz's recovery."""
+        """Return this law's loading with the residual depth and the recovery of `other`."""
         return CombinedLaw(
             name=f"{self.name}+{other.name}",
             title=f"{self.title}, residual depth of {other.title}",
@@ -159,6 +177,8 @@ class ContactLaw(ABC):
             equations=f"{self.equations}; {other.equations}",
             verified=self.verified and other.verified,
             domain=self.domain,
+            breaks=(*self.breaks, *(b for b in other.breaks if b[0].startswith("residual"))),
+            regime=self.regime,
             first=self,
             second=other,
         )
@@ -184,9 +204,39 @@ class ContactLaw(ABC):
         return out
 
 
+def _no_numbers(common: Floats) -> Sequence[float]:
+    return ()
+
+
+@dataclass(frozen=True, kw_only=True)
+class PublishedLaw(ContactLaw):
+    """A law given by its four kernels and, where they need some, numbers of its own.
+
+    Parameters
+    ----------
+    own
+        The kernels.
+    numbers
+        The law's own numbers from the pair's common ones, placed behind these.
+    """
+
+    own: Kernels
+    numbers: Callable[[Floats], Sequence[float]] = _no_numbers
+
+    @property
+    def kernels(self) -> Kernels:
+        """The compiled functions."""
+        return self.own
+
+    def parameters(self, pair: Pair) -> Floats:
+        """Common numbers and the law's own, shape (n,)."""
+        common = common_parameters(pair)
+        return np.concatenate([common, np.asarray(self.numbers(common), dtype=float)])
+
+
 @dataclass(frozen=True)
 class CombinedLaw(ContactLaw):
-    """The loading of one law with the residual depth of another."""
+    """The loading of one law with the residual depth and the recovery of another."""
 
     first: ContactLaw | None = None
     second: ContactLaw | None = None
@@ -213,7 +263,7 @@ def _combined_kernels(first: ContactLaw, second: ContactLaw) -> Kernels:
     key = (first.name, second.name)
     if key not in _COMBINED:
         loading, radius = first.kernels.loading, first.kernels.radius
-        residual_of = second.kernels.residual
+        residual_of, unloading_of = second.kernels.residual, second.kernels.unloading
 
         @njit(LOADING_SIGNATURE)
         def combined_loading(par, depth):
@@ -229,8 +279,12 @@ def _combined_kernels(first: ContactLaw, second: ContactLaw) -> Kernels:
 
         @njit(BRANCH_SIGNATURE)
         def combined_unloading(par, depth, peak):
-            s, f = combined_residual(par, peak)
-            return hertz_recovery(combined_loading(par, peak), depth, peak, s + f)
+            # the second law gives the shape of the recovery, the first its height
+            theirs = par[int(par[-1]) : len(par) - 1]
+            height = unloading_of(theirs, peak, peak)
+            if height <= 0.0:
+                return 0.0
+            return combined_loading(par, peak) * (unloading_of(theirs, depth, peak) / height)
 
         _COMBINED[key] = Kernels(
             combined_loading, combined_radius, combined_unloading, combined_residual
@@ -239,19 +293,28 @@ def _combined_kernels(first: ContactLaw, second: ContactLaw) -> Kernels:
 
 
 def common_parameters(pair: Pair) -> Floats:
-    """R, E', Sy_min, Sy*, elastic share, plane-strain modulus, nu and C of the weaker body."""
+    """Numbers that every law starts from, shape (11,).
+
+    R, E', Sy_min, Sy*, elastic share, plane-strain modulus, nu and C of the weaker body, the
+    critical approach (1.16) and force (1.19, corrected), and Hertz's (4/3) E' sqrt(R).
+    """
     weak = pair.weaker
     nu = 0.0 if weak.rigid else weak.nu
+    modulus, strength, C = pair.E_reduced, pair.Sy_min, yield_constant(nu)
+    slope = math.pi * C * strength / (2.0 * modulus)
     return np.array(
         [
             pair.R,
-            pair.E_reduced,
-            pair.Sy_min,
+            modulus,
+            strength,
             pair.Sy_ratio,
             pair.elastic_share,
             weak.plane_strain_modulus,
             nu,
-            yield_constant(nu),
+            C,
+            slope * slope * pair.R,
+            4.0 / 3.0 * modulus * pair.R**2 * slope**3 if slope < math.inf else math.inf,
+            4.0 / 3.0 * modulus * math.sqrt(pair.R),
         ]
     )
 
@@ -269,27 +332,24 @@ def yield_constant(nu: float) -> float:
 
 def critical_depth(pair: Pair) -> float:
     """Approach at first yield of the weaker body, delta_c = (pi C Sy/(2 E'))^2 R [m] (Eq. 1.16)."""
-    par = common_parameters(pair)
-    return float((math.pi * par[C] * par[S] / (2.0 * par[E])) ** 2 * par[R])
+    return float(common_parameters(pair)[ONSET])
 
 
 def critical_force(pair: Pair) -> float:
     """F_c = (4/3) (R/E')^2 (pi C Sy/2)^3 [N] (Eq. 1.19, corrected)."""
-    par = common_parameters(pair)
-    return float(4.0 / 3.0 * (par[R] / par[E]) ** 2 * (math.pi * par[C] * par[S] / 2.0) ** 3)
+    return float(common_parameters(pair)[CRITICAL])
 
 
 @loading_kernel
 def hertz_force(par, depth):
     """F = (4/3) E' sqrt(R) delta^(3/2) (Eqs. 1.3-1.6)."""
-    return 4.0 / 3.0 * par[E] * math.sqrt(par[R]) * depth * math.sqrt(depth)
+    return par[K_HERTZ] * depth * math.sqrt(depth)
 
 
 @loading_kernel
 def onset(par, _depth):
     """Critical approach delta_c [m] (Eq. 1.16); infinite without yield."""
-    x = math.pi * par[C] * par[S] / (2.0 * par[E])
-    return x * x * par[R]
+    return par[ONSET]
 
 
 @njit(float64(float64, float64, float64, float64), cache=True)
@@ -301,19 +361,6 @@ def hertz_recovery(force_peak, depth, peak, residual):
         return force_peak
     x = (depth - residual) / (peak - residual)
     return force_peak * x * math.sqrt(x)
-
-
-@njit(types.UniTuple(float64, 2)(VECTOR, float64), cache=True)
-def to_weaker(par, total):
-    """Split a residual depth: the weaker body takes it, equal strengths take halves.
-
-    For laws whose source does not say which body keeps the dent.
-    """
-    if par[RATIO] < 1.0:
-        return total, 0.0
-    if par[RATIO] > 1.0:
-        return 0.0, total
-    return 0.5 * total, 0.5 * total
 
 
 @njit(

@@ -1,202 +1,270 @@
 """The thesis's own model: sphere and flat both deform and yield (Eqs. 2.1-2.43), and 3.5-3.7.
 
 The printed equations carry misprints; this is the reading in which the text, the limits and the
-figures of chapters 2 to 5 agree (equation audit; docs/errata.md). The weak body w is the sphere for
-Sy* <= 1.07 and the flat above; its share of the approach gives its own deformation, and the other
-body's share the updated radius R' (2.18).
+figures of chapters 2 to 5 agree (docs/errata.md; as printed: `as_printed`). The weak body w is the
+sphere for Sy* <= 1.07 and the flat above; its share of the approach gives its own deformation, and
+the other body's share the updated radius R' (2.18).
 
-As it stands the model steps up by 29 to 43 % where Hertz ends, at Delta = 1.9 delta_y, and is
-meant for delta_n of 5 and more; between delta_n = 1.9 and 6 the two are blended here, smoothly in
-ln delta_n, which is our choice.
+As it stands the model steps up by 29 to 43 % where Hertz ends, at Delta = 1.9 delta_y, steps up by
+another 22 % at delta_n = 3.7, and is meant for delta_n of 5 and more. Between delta_n = 1.9 and 8
+the two are blended here, smoothly in ln delta_n, and the radius follows 2.21 and 2.28 all the way
+instead of beginning with 2.20 and 2.27. At delta_n = 408 the printed factors fall by 0.4 to 0.9 %,
+and beyond with an infinite slope; the hand-over is stretched to 612, where the radius differs by
+up to 1.5 % from the printed one. Both are our choice and make the law smooth.
+
+What depends on the pair alone is computed once, and every power comes from a logarithm.
 """
 
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass
 
+import numpy as np
+import numpy.typing as npt
 from numba import float64, njit, types
 
+from . import residual
 from .base import (
     E_WEAK,
+    N_COMMON,
+    ONSET,
     RATIO,
     SHARE,
     VECTOR,
-    C,
-    ContactLaw,
     Domain,
     E,
     Kernels,
+    PublishedLaw,
     R,
     S,
     branch_kernel,
     hertz_force,
-    hertz_recovery,
     loading_kernel,
-    onset,
     residual_kernel,
-    to_weaker,
 )
-from .hardness import jackson_green_2007, slip_line
+from .hardness import slip_line_pressure
+from .jackson_green import growth_exponent
 
 _ELASTIC = 1.9  # end of Hertz, and of the elastic weight's argument
-_BLENDED = 6.0  # from here on the model alone
-_LOW = 3.7  # end of a = sqrt(R' delta)
+_BLENDED = 8.0  # from here on the model alone
+_LOG_ELASTIC = math.log(_ELASTIC)
+_LOG_BLENDED = math.log(_BLENDED)
 _HIGH = 408.0  # border of the two correction factors
-_BORDER = 1.07  # Sy* at which the weak body changes
+_HIGHER = 612.0  # where the second one stands alone
+BORDER = 1.07  # Sy* at which the weak body changes
+_FLATTENING_ONLY = 0.06  # Sy* below which 2.34 has no real value
+
+# ratios beyond these have long reached their limits, and their powers would overflow
+_RATIO_MAX, _EXPONENT_MAX = 1e6, 1e3
+
+# places of the pair's own numbers
+(_SCALE, _PHASE, _STEEP, _LOG_LOG, _LOG_RATIO, _POWER_6, _WEIGHT, _B, _SLOPE_2, _BRANCH) = range(
+    N_COMMON, N_COMMON + 10
+)
+_SPHERE, _MIDDLE, _FLAT = 0.0, 1.0, 2.0
 
 
-@njit(float64(float64, float64, float64, float64), cache=True)
-def share_of_sphere(D, q, ratio, border):
-    """delta_s* from D = Delta/R, q = E'/Sy_min and Sy* (2.13-2.16, 2.14 with 1.035 pi).
+def share_numbers(q: float, ratio: float, border: float) -> tuple[float, float, float, float]:
+    """Return what 2.13-2.16 need of q = E'/Sy_min and Sy*: scale, phase, exponent, ln ln Sy*.
 
     `border` is the Sy* at which 2.13 hands over to 2.14: 1 for figure 2.5, 1.07 for the force.
     """
     if ratio <= border:
-        first = math.sin(5.592 * D**1.37 + math.pi / 2.37)
-        return 1.115 * D**0.0528 * first * math.sin(0.625 * ratio**2 + math.pi / 2.16)
+        return 1.115 * math.sin(0.625 * ratio**2 + math.pi / 2.16), 0.0, 0.0, 0.0
     if ratio <= 1.53:
-        first = math.sin(45.63 * D**1.75 + 0.094 * math.pi * ratio**4.01)
-        return -22.49 * q**-0.7 * first * math.sin(1.546 * ratio**-9.22 + 1.035 * math.pi)
-    # the exponential underflows D^(0.46 Sy*) to zero long before Sy* is infinite
-    exponent = 2.307 * D ** (0.46 * min(ratio, 1e3)) - 0.7
-    angle = math.atan(0.142 * math.log(min(ratio, 1e6)) ** (1.06 * D) + 3.22)
-    return 0.852 * q**-0.7 * D**-0.41 * min(ratio, 1e6) ** 0.031 * angle * math.exp(exponent)
+        scale = -22.49 * q**-0.7 * math.sin(1.546 * ratio**-9.22 + 1.035 * math.pi)
+        return scale, 0.094 * math.pi * ratio**4.01, 0.0, 0.0
+    held = min(ratio, _RATIO_MAX)
+    scale = 0.852 * q**-0.7 * held**0.031
+    return scale, 0.0, 0.46 * min(ratio, _EXPONENT_MAX), math.log(math.log(held))
 
 
-@njit(types.UniTuple(float64, 3)(VECTOR, float64), cache=True)
+@njit(
+    float64(float64, float64, float64, float64, float64, float64), cache=True, error_model="numpy"
+)
+def _share(D, branch, scale, phase, steep, log_log):
+    """delta_s* of 2.13, 2.14 (with 1.035 pi) and 2.15-2.16."""
+    log_D = math.log(D)
+    if branch == _SPHERE:
+        angle = 5.592 * math.exp(1.37 * log_D) + math.pi / 2.37
+        return scale * math.exp(0.0528 * log_D) * math.sin(angle)
+    if branch == _MIDDLE:
+        return scale * math.sin(45.63 * math.exp(1.75 * log_D) + phase)
+    exponent = 2.307 * math.exp(steep * log_D) - 0.7
+    angle = math.atan(0.142 * math.exp(1.06 * D * log_log) + 3.22)
+    return scale * angle * math.exp(exponent - 0.41 * log_D)
+
+
+def _branch(ratio: float, border: float) -> float:
+    if ratio <= border:
+        return _SPHERE
+    return _MIDDLE if ratio <= 1.53 else _FLAT
+
+
+def share_of_sphere(D: float, q: float, ratio: float, border: float) -> float:
+    """delta_s* from D = Delta/R, q = E'/Sy_min and Sy* (2.13-2.16, 2.14 with 1.035 pi)."""
+    return float(_share(D, _branch(ratio, border), *share_numbers(q, ratio, border)))
+
+
+def indentation_weight(ratio: float) -> float:
+    """Weight of the indentation hardness, 0 for flattening and 1 for indentation (2.34).
+
+    The logarithm is the natural one; below Sy* = 0.06 it has no real value and the weight is 0.
+    """
+    if ratio <= _FLATTENING_ONLY:
+        return 0.0
+    return math.atan(300.0 * math.log(ratio - _FLATTENING_ONLY)) / math.pi + 0.5
+
+
+def _numbers(common: npt.NDArray[np.float64]) -> tuple[float, ...]:
+    ratio = float(common[RATIO])
+    if math.isnan(ratio):  # nothing yields: the kernels never get beyond Hertz
+        return (0.0,) * 10
+    held = min(ratio, _RATIO_MAX)
+    return (
+        *share_numbers(float(common[E] / common[S]), ratio, BORDER),
+        math.log(max(held, 1e-300)),
+        held**6 if ratio <= BORDER else 0.0,
+        indentation_weight(ratio),
+        growth_exponent(common[S], common[E]),
+        float(common[ONSET] / common[R]),
+        _branch(ratio, BORDER),
+    )
+
+
+@njit(types.UniTuple(float64, 3)(VECTOR, float64), cache=True, error_model="numpy")
 def _weak_body(par, depth):
-    """Deformation of the weak body, updated radius R' and delta_n."""
+    """Deformation of the weak body, updated radius R' (2.18) and delta_n (2.19, 2.26)."""
     D = depth / par[R]
-    q = par[E] / par[S]
-    share = share_of_sphere(D, q, par[RATIO], _BORDER)
-    if par[RATIO] > _BORDER:
-        # 2.15 grows without bound at small load; the elastic share is its ceiling
-        share = min(share, par[SHARE])
-        x = share
-        delta = (1.0 - share) * depth
-    else:
+    share = _share(D, par[_BRANCH], par[_SCALE], par[_PHASE], par[_STEEP], par[_LOG_LOG])
+    if par[_BRANCH] == _SPHERE:
         x = 1.0 - share
-        delta = share * depth
+    else:
+        # 2.15 grows without bound at small load; the elastic share is its ceiling
+        x = min(share, par[SHARE])
+    delta = (1.0 - x) * depth
     updated = par[R] * (1.0 + x - D * x)
-    slope = math.pi * par[C] * par[S] / (2.0 * par[E])
-    return delta, updated, delta / (slope * slope * updated)
+    return delta, updated, delta / (par[_SLOPE_2] * updated)
+
+
+@njit(float64(float64, float64, float64), cache=True, error_model="numpy")
+def _smooth_step(value, low, high):
+    """Rise from 0 at `low` to 1 at `high`; three derivatives vanish at either end."""
+    x = (value - low) / (high - low)
+    return x**4 * (35.0 + x * (-84.0 + x * (70.0 - 20.0 * x)))
+
+
+@njit(float64(VECTOR, float64, float64), cache=True, error_model="numpy")
+def _correction_low(par, n, log_n):
+    """The factors chi of 2.23 and 2.29-2.30 (with an exponent)."""
+    power = par[_POWER_6]
+    if par[_BRANCH] != _SPHERE:
+        power = math.exp(-0.091 * math.exp(-0.008 * n) * par[_LOG_RATIO])
+    return 0.4 + 0.55 * math.exp(0.022 * log_n) + 0.283 / math.sqrt(n) * power
+
+
+@njit(float64(VECTOR, float64), cache=True, error_model="numpy")
+def _correction_high(par, n):
+    """The factors chi of 2.25 and 2.32-2.33 (with an exponent)."""
+    beyond = n - _HIGH
+    power = par[_POWER_6]
+    if par[_BRANCH] != _SPHERE:
+        power = 1.0  # below 409 the power of 2.33 has no real value
+        if beyond > 1.0:
+            power = math.exp(-0.0091 * math.log(beyond) ** 3.53 * par[_LOG_RATIO])
+    return 1.024 - 0.004 * beyond**0.3814 + (0.013 + 2.2e-5 * beyond) * power
+
+
+@njit(float64(VECTOR, float64, float64), cache=True, error_model="numpy")
+def _correction(par, n, log_n):
+    """The correction chi of the contact radius."""
+    if n <= _HIGH:
+        return _correction_low(par, n, log_n)
+    if n >= _HIGHER:
+        return _correction_high(par, n)
+    k = _smooth_step(n, _HIGH, _HIGHER)
+    return (1.0 - k) * _correction_low(par, n, log_n) + k * _correction_high(par, n)
+
+
+@njit(float64(VECTOR, float64, float64, float64, float64), cache=True, error_model="numpy")
+def _model_radius(par, delta, updated, n, log_n):
+    """a = chi sqrt(R' delta (delta_n/1.9)^B) (2.21, 2.24, 2.28, 2.31, with the root)."""
+    grown = updated * delta * math.exp(par[_B] * (log_n - _LOG_ELASTIC))
+    return _correction(par, n, log_n) * math.sqrt(grown)
 
 
 @njit(float64(float64, float64), cache=True)
-def _correction(n, ratio):
-    """The factors chi of 2.23, 2.25, 2.29-2.30 and 2.32-2.33 (with exponents)."""
-    if ratio <= _BORDER:
-        power = ratio**6
-    elif n <= _HIGH:
-        power = ratio ** (-0.091 * math.exp(-0.008 * n))
-    elif n < _HIGH + 1.0:
-        power = 1.0
-    else:
-        power = ratio ** (-0.0091 * math.log(n - _HIGH) ** 3.53)
-    if n <= _HIGH:
-        return 0.4 + 0.55 * n**0.022 + 0.283 / math.sqrt(n) * power
-    return 1.024 - 0.004 * (n - _HIGH) ** 0.3814 + (0.013 + 2.2e-5 * (n - _HIGH)) * power
-
-
-@njit(float64(VECTOR, float64), cache=True)
-def _model_radius(par, depth):
-    delta, updated, n = _weak_body(par, depth)
-    if n <= _LOW:
-        return math.sqrt(updated * delta)
-    B = 0.14 * math.exp(23.0 * par[S] / par[E])
-    chi = _correction(n, min(par[RATIO], 1e6))
-    return chi * math.sqrt(updated * delta * (n / _ELASTIC) ** B)
-
-
-@njit(float64(VECTOR, float64), cache=True)
-def model_hardness(par, a_over_R):
+def model_hardness(weight, a_over_R):
     """H/Sy_min between flattening (2.35) and indentation (2.36 with the sign of 1.13), by 2.34."""
-    flattening = jackson_green_2007(a_over_R)
-    if par[RATIO] <= 0.06:
+    x = min(a_over_R, 1.0)
+    flattening = 1.92 + 0.92 * math.cos(math.pi * x)
+    if weight == 0.0:
         return flattening
-    indentation = slip_line(a_over_R)
-    weight = math.atan(300.0 * math.log(par[RATIO] - 0.06)) / math.pi + 0.5
-    return (indentation - flattening) * weight + flattening
+    return flattening + weight * (slip_line_pressure(x) - flattening)
 
 
-@njit(float64(VECTOR, float64), cache=True)
-def _model_force(par, depth):
-    delta, updated, n = _weak_body(par, depth)
-    a = _model_radius(par, depth)
-    plastic = math.pi * a * a * model_hardness(par, a / par[R]) * par[S]
-    elastic = 4.0 / 3.0 * math.sqrt(updated) * par[E_WEAK] * delta * math.sqrt(delta)
-    x = max(n - _ELASTIC, 0.0)
-    if par[RATIO] <= _BORDER:
-        we, wp = math.exp(-1.6 * x**0.16), 0.95 - math.exp(-0.58 * n**0.3)
+@njit(float64(VECTOR, float64, float64, float64, float64), cache=True, error_model="numpy")
+def _model_force(par, delta, updated, n, log_n):
+    """F = W_e F_e + W_p pi a^2 H Sy_min (2.37-2.43)."""
+    a = _model_radius(par, delta, updated, n, log_n)
+    plastic = math.pi * a * a * model_hardness(par[_WEIGHT], a / par[R]) * par[S]
+    elastic = 4.0 / 3.0 * par[E_WEAK] * math.sqrt(updated * delta) * delta
+    log_x = math.log(n - _ELASTIC)
+    if par[_BRANCH] == _SPHERE:
+        we = math.exp(-1.6 * math.exp(0.16 * log_x))
+        wp = 0.95 - math.exp(-0.58 * math.exp(0.3 * log_n))
     else:
-        we, wp = math.exp(-1.7 * x**0.26), 1.0 - math.exp(-0.465 * n**0.45)
+        we = math.exp(-1.7 * math.exp(0.26 * log_x))
+        wp = 1.0 - math.exp(-0.465 * math.exp(0.45 * log_n))
     return we * elastic + wp * plastic
-
-
-@njit(float64(VECTOR, float64), cache=True)
-def _weight(par, depth):
-    """0 where Hertz holds, 1 where the model does, smooth between, by the weak body's delta_n."""
-    if depth <= _ELASTIC * onset(par, 0.0):
-        return 0.0
-    _, _, n = _weak_body(par, depth)
-    if n <= _ELASTIC:
-        return 0.0
-    if n >= _BLENDED:
-        return 1.0
-    x = math.log(n / _ELASTIC) / math.log(_BLENDED / _ELASTIC)
-    return x * x * (3.0 - 2.0 * x)
 
 
 @loading_kernel
 def _loading(par, depth):
-    k = _weight(par, depth)
-    if k == 0.0:
+    if depth <= _ELASTIC * par[ONSET]:
         return hertz_force(par, depth)
-    return (1.0 - k) * hertz_force(par, depth) + k * _model_force(par, depth)
+    delta, updated, n = _weak_body(par, depth)
+    if n <= _ELASTIC:
+        return hertz_force(par, depth)
+    log_n = math.log(n)
+    force = _model_force(par, delta, updated, n, log_n)
+    if n >= _BLENDED:
+        return force
+    k = _smooth_step(log_n, _LOG_ELASTIC, _LOG_BLENDED)
+    return (1.0 - k) * hertz_force(par, depth) + k * force
 
 
 @branch_kernel
 def _radius(par, depth, peak):
-    k = _weight(par, depth)
-    if k == 0.0:
+    if depth <= _ELASTIC * par[ONSET]:
         return math.sqrt(par[R] * depth)
-    return (1.0 - k) * math.sqrt(par[R] * depth) + k * _model_radius(par, depth)
+    delta, updated, n = _weak_body(par, depth)
+    if n <= _ELASTIC:
+        return math.sqrt(par[R] * depth)
+    log_n = math.log(n)
+    k = _smooth_step(log_n, _LOG_ELASTIC, _LOG_BLENDED) if n < _BLENDED else 1.0
+    own = _model_radius(par, delta, updated, n, log_n)
+    return (1.0 - k) * math.sqrt(par[R] * depth) + k * own
 
 
 @residual_kernel
 def _residual(par, peak):
-    w = peak / onset(par, 0.0)
-    if w <= 1.0:
-        return 0.0, 0.0
-    return to_weaker(par, 0.8 * (1.0 - ((w + 5.5) / 6.5) ** -2.0) * peak)
+    return residual.to_weaker(par, residual.ghaednia(peak / par[ONSET]) * peak)
 
 
 @branch_kernel
 def _unloading(par, depth, peak):
-    s, f = _residual(par, peak)
-    return hertz_recovery(_loading(par, peak), depth, peak, s + f)
+    return residual.recover(_loading, _residual, par, depth, peak)
 
 
-_KERNELS = Kernels(_loading, _radius, _unloading, _residual)
-
-
-@dataclass(frozen=True)
-class Ghaednia(ContactLaw):
-    """F = W_e F_e + W_p pi a^2 H, from the weak body's own deformation and an updated radius."""
-
-    @property
-    def kernels(self) -> Kernels:
-        """The compiled functions."""
-        return _KERNELS
-
-
-GHAEDNIA = Ghaednia(
+GHAEDNIA = PublishedLaw(
     name="ghaednia",
     title="Ghaednia et al., corrected reading",
     source="Ghaednia, PhD thesis, Auburn University, chapters 2 and 3",
     equations="2.13-2.43, 3.5-3.7",
     verified=True,
     domain=Domain(a_over_R_max=0.5, note="delta_n above about 5, a/R up to 0.5"),
-    breaks=(("jump of the force at delta_n = 3.7", 25.0),),
+    read="the thesis itself",
+    own=Kernels(_loading, _radius, _unloading, _residual),
+    numbers=_numbers,
 )

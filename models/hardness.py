@@ -7,9 +7,10 @@ from __future__ import annotations
 
 import math
 
-from numba import float64, vectorize
+from numba import float64, njit, vectorize
 
 scalar = vectorize([float64(float64)], cache=True)
+_PRANDTL = (2.0 + math.pi) / math.sqrt(3.0)
 
 
 @scalar
@@ -30,20 +31,21 @@ def alcala(a_over_R):
     return 3.044 - 1.885 * a_over_R
 
 
+@njit(float64(float64), cache=True, error_model="numpy")
+def slip_line_pressure(x):
+    """p/S of 1.13 at x = a/R, for use inside compiled laws."""
+    if x < 1e-4:  # the series replaces the difference of two equal terms
+        return _PRANDTL - 4.0 * math.sqrt(3.0) / 9.0 * x
+    rest = max(1.0 - x * x, 0.0)
+    arc = (1.0 + math.acos(min(x, 1.0))) * rest * math.sqrt(rest)
+    bracket = x * x * x / 3.0 - arc - x + 0.5 * math.pi + 1.0
+    return 4.0 / (3.0 * math.sqrt(3.0)) / (x * x) * bracket
+
+
 @scalar
 def slip_line(a_over_R):
     """Slip-line hardness of Jackson, Ghaednia and Pope (Eq. 1.13); (2 + pi)/sqrt 3 at a/R = 0."""
-    x = a_over_R
-    if x < 1e-4:  # the series replaces the difference of two equal terms
-        return (2.0 + math.pi) / math.sqrt(3.0) - 4.0 * math.sqrt(3.0) / 9.0 * x
-    bracket = (
-        x**3 / 3.0
-        - (1.0 + math.acos(min(x, 1.0))) * max(1.0 - x * x, 0.0) ** 1.5
-        - x
-        + 0.5 * math.pi
-        + 1.0
-    )
-    return 4.0 / (3.0 * math.sqrt(3.0)) / (x * x) * bracket
+    return slip_line_pressure(a_over_R)
 
 
 @scalar

@@ -1,86 +1,121 @@
 """Jackson and Green 2005: elastic-plastic contact of a sphere and a flat.
 
-Loading by Eqs. 1.16-1.22 (4.9-4.11 in the corrected form), residual depth by Eq. 4.12, recovery by
-Eqs. 4.13-4.14. The hardness falls with the contact radius (Eq. 1.14).
+Loading by Eqs. 1.16-1.22 (4.9-4.11 in the corrected form), with the hardness of their paper (1.14)
+or the later one (1.15), which the thesis uses; residual depth by Eq. 4.12, recovery by Eqs.
+4.13-4.14. The hardness falls with the contact radius.
+
+All powers of w come from its logarithm, which makes the law cheap.
 """
 
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass
+
+import numpy as np
+import numpy.typing as npt
+from numba import float64, njit, types
 
 from .base import (
+    CRITICAL,
+    N_COMMON,
+    ONSET,
+    VECTOR,
     C,
-    ContactLaw,
     Domain,
     E,
     Kernels,
+    PublishedLaw,
     R,
     S,
     branch_kernel,
     hertz_force,
-    hertz_recovery,
     loading_kernel,
-    onset,
     residual_kernel,
-    to_weaker,
 )
-from .hardness import jackson_green as hardness
+from .residual import jackson, recover, to_weaker
 
 _PLASTIC = 1.9  # w below which the contact is taken as elastic
+_LOG_PLASTIC = math.log(_PLASTIC)
+
+# places of the pair's own numbers
+_B, _LOG_ONSET = N_COMMON, N_COMMON + 1
+
+
+def growth_exponent(strength: float, modulus: float) -> float:
+    """B = 0.14 exp(23 S/E') (1.22, 2.22); held where the exponential would overflow."""
+    return 0.14 * math.exp(min(23.0 * strength / modulus, 100.0))
+
+
+def _numbers(common: npt.NDArray[np.float64]) -> tuple[float, float]:
+    with np.errstate(divide="ignore"):
+        shallow = float(np.log(common[ONSET] / common[R]))
+    return growth_exponent(common[S], common[E]), shallow
 
 
 @branch_kernel
 def _radius(par, depth, peak):
-    w = depth / onset(par, 0.0)
+    w = depth / par[ONSET]
     if w <= _PLASTIC:
         return math.sqrt(par[R] * depth)
-    B = 0.14 * math.exp(23.0 * par[S] / par[E])
-    return math.sqrt(par[R] * depth * (w / _PLASTIC) ** B)
+    return math.sqrt(par[R] * depth * math.exp(par[_B] * (math.log(w) - _LOG_PLASTIC)))
+
+
+@njit(types.UniTuple(float64, 2)(VECTOR, float64), cache=True, error_model="numpy")
+def _logarithms(par, w):
+    """ln w and ln (a/R)^2 beyond w = 1.9 (1.21)."""
+    log_w = math.log(w)
+    return log_w, log_w + par[_LOG_ONSET] + par[_B] * (log_w - _LOG_PLASTIC)
+
+
+@njit(float64(VECTOR, float64, float64, float64), cache=True, error_model="numpy")
+def _force(par, w, log_w, H):
+    """F of 1.20 (4.10, corrected) with the hardness H in units of the yield strength."""
+    elastic = math.exp(-0.25 * math.exp(5.0 / 12.0 * log_w)) * math.sqrt(w)
+    plastic = 4.0 * H / par[C] * (1.0 - math.exp(-0.04 * math.exp(5.0 / 9.0 * log_w)))
+    return par[CRITICAL] * w * (elastic + plastic)
 
 
 @loading_kernel
 def _loading(par, depth):
-    w = depth / onset(par, 0.0)
+    w = depth / par[ONSET]
     if w <= _PLASTIC:
         return hertz_force(par, depth)
-    H = hardness(_radius(par, depth, depth) / par[R])
-    critical = hertz_force(par, onset(par, 0.0))
-    elastic = math.exp(-0.25 * w ** (5.0 / 12.0)) * w * math.sqrt(w)
-    plastic = 4.0 * H / par[C] * (1.0 - math.exp(-0.04 * w ** (5.0 / 9.0))) * w
-    return critical * (elastic + plastic)
+    log_w, log_area = _logarithms(par, w)
+    return _force(par, w, log_w, 2.84 * (1.0 - math.exp(-0.82 * math.exp(-0.35 * log_area))))
+
+
+@loading_kernel
+def _loading_2007(par, depth):
+    w = depth / par[ONSET]
+    if w <= _PLASTIC:
+        return hertz_force(par, depth)
+    log_w, log_area = _logarithms(par, w)
+    x = min(math.exp(0.5 * log_area), 1.0)
+    return _force(par, w, log_w, 2.84 - 0.92 * (1.0 - math.cos(math.pi * x)))
 
 
 @residual_kernel
 def _residual(par, peak):
-    w = peak / onset(par, 0.0)
-    if w <= 1.0:
-        return 0.0, 0.0
-    left = 1.02 * (1.0 - ((w + 5.9) / 6.9) ** -0.54)
-    # the fit passes 1 beyond w = 10017; nothing can be left that was not pressed in
-    return to_weaker(par, min(left, 0.999) * peak)
+    return to_weaker(par, jackson(peak / par[ONSET]) * peak)
 
 
 @branch_kernel
 def _unloading(par, depth, peak):
-    s, f = _residual(par, peak)
-    return hertz_recovery(_loading(par, peak), depth, peak, s + f)
+    return recover(_loading, _residual, par, depth, peak)
 
 
-_KERNELS = Kernels(_loading, _radius, _unloading, _residual)
+@branch_kernel
+def _unloading_2007(par, depth, peak):
+    return recover(_loading_2007, _residual, par, depth, peak)
 
 
-@dataclass(frozen=True)
-class JacksonGreen(ContactLaw):
-    """F = F_c [exp(-w^(5/12)/4) w^(3/2) + 4 H/(C S) (1 - exp(-w^(5/9)/25)) w] beyond w = 1.9."""
+_READ = (
+    "the thesis; the loading, the radius and the residual depth agree with the public code of the "
+    "group that extended the model (tmd-lab/microslip-rough-contact), in which the exponents 5/12 "
+    "and 5/9, the cube in F_c and 0.736 stand; the paper itself was not readable"
+)
 
-    @property
-    def kernels(self) -> Kernels:
-        """The compiled functions."""
-        return _KERNELS
-
-
-JACKSON_GREEN = JacksonGreen(
+JACKSON_GREEN = PublishedLaw(
     name="jackson-green",
     title="Jackson and Green 2005",
     source="J. Tribol. 127 (2005) 343; residual depth: Jackson, Chusoipin, Green, "
@@ -88,5 +123,23 @@ JACKSON_GREEN = JacksonGreen(
     equations="1.14, 1.16-1.22, 4.9-4.14",
     verified=False,
     domain=Domain(a_over_R_max=0.41, note="flattening of the sphere, a/R up to 0.41"),
-    breaks=(("jump of the force at w = 1.9", 0.5),),
+    breaks=(("force jumps at w = 1.9", 0.7),),
+    regime="flattening",
+    read=_READ,
+    own=Kernels(_loading, _radius, _unloading, _residual),
+    numbers=_numbers,
+)
+
+JACKSON_GREEN_2007 = PublishedLaw(
+    name="jackson-green-2007",
+    title="Jackson and Green with the later hardness",
+    source="as jackson-green, with the hardness that the thesis takes for it",
+    equations="1.15-1.22, 4.9-4.14",
+    verified=False,
+    domain=Domain(a_over_R_max=1.0, note="flattening of the sphere; hardness down to S at a/R = 1"),
+    breaks=(("force jumps at w = 1.9", 0.7),),
+    regime="flattening",
+    read=_READ,
+    own=Kernels(_loading_2007, _radius, _unloading_2007, _residual),
+    numbers=_numbers,
 )
