@@ -1,0 +1,1 @@
+"""Reductions: from raw files of an instrument to trials with uncertainties."""

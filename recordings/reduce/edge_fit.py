@@ -1,0 +1,277 @@
+"""Fits of a body's blurred edge to grey values: the sub-pixel position of a rod's tip or a ball.
+
+The picture of a bright body is I = dark + bright Φ(d/σ), with d the distance into the body and σ
+the blur. Blurring a disc of radius R moves its half-level edge inwards by σ²/(2R) (the curvature
+flow of the heat equation), which the models take along; light that changes along the body is a
+parameter, because it would pull the edge as well.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass
+
+import numpy as np
+import numpy.typing as npt
+from scipy.special import ndtr
+
+from .measured import Array
+from .regression import robust_std
+
+_ROUNDS = 10
+_SETTLED, _LAST_MOVE = 1e-4, 0.02
+_HUBER = 2.5
+_INNER = 0.75
+"""Part of the half-width from which the cap is read; the corner beyond it is left out."""
+
+Picture = Callable[[Array], tuple[Array, Array, npt.NDArray[np.bool_]]]
+"""Parameters to model grey values, their derivatives (p, ...) and the pixels that count."""
+
+
+@dataclass(frozen=True)
+class RodShape:
+    """What all frames share, in pixels: half the width, curvature of the tip, blur."""
+
+    half_width: float
+    curvature: float
+    blur: float
+
+    @property
+    def tip_radius(self) -> float:
+        """Radius of the tip [pixel]."""
+        return 1.0 / self.curvature
+
+    @property
+    def cap_height(self) -> float:
+        """Distance from the tip to where the sides begin [pixel]."""
+        reach = min(self.half_width * self.curvature, 1.0)
+        return (1.0 - float(np.sqrt(1.0 - reach**2))) / self.curvature
+
+
+@dataclass(frozen=True)
+class RodPose:
+    """Tip of the rod on its axis (column, row), lean to the right [rad], and what was fitted.
+
+    `covariance` is that of (x, y, lean, half width, curvature), the last two 0 if they were given.
+    """
+
+    x: float
+    y: float
+    lean: float
+    covariance: Array
+    shape: RodShape
+
+
+@dataclass(frozen=True)
+class Ball:
+    """Centre of a ball (column, row), its radius [pixel], standard deviation of the row."""
+
+    x: float
+    y: float
+    radius: float
+    row_std: float
+
+
+def fit_rod(
+    frame: Array,
+    shape: RodShape,
+    pose: tuple[float, float, float],
+    *,
+    levels: tuple[float, float],
+    free: str = "pose",
+) -> RodPose | None:
+    """Fit pose, or pose and shape, to the grey values around the tip.
+
+    Parameters
+    ----------
+    frame
+        (rows, columns), grey values, the rod bright.
+    shape, pose
+        Start; `pose` is column and row of the tip on the axis, and lean.
+    levels
+        Grey values of background and rod.
+    free
+        `"pose"`, or `"shape"` for half-width and curvature as well.
+
+    Returns
+    -------
+    RodPose or None
+        None where the tip is not wholly in the frame or the fit does not settle.
+    """
+    window = _rod_window(frame.shape, shape, pose)
+    if window is None:
+        return None
+    rows, columns = np.mgrid[window].astype(np.float64)
+    contrast = levels[1] - levels[0]
+    start = np.array(
+        [*pose, levels[0], contrast, shape.blur, 0.0, shape.half_width, shape.curvature]
+    )
+    limits = np.array(
+        [2.0, 2.0, 0.05, np.inf, np.inf, 0.5, np.inf, 0.1 * shape.half_width, 0.3 * shape.curvature]
+    )
+    low = np.array([*[-np.inf] * 5, 0.25, -np.inf, 1.0, 1e-5 / shape.half_width])
+    high = np.array([*[np.inf] * 7, 2.0 * shape.half_width, 1.0 / shape.half_width])
+    settled = _settle(
+        lambda p: _rod_picture(rows, columns, p), frame[window], start,
+        free=9 if free == "shape" else 7, limits=limits, low=low, high=high,
+    )  # fmt: skip
+    if settled is None:
+        return None
+    p, covariance = settled
+    if not (0.3 * contrast < p[4] < 2.0 * contrast and p[5] < 0.5 * p[7] > 1.0):
+        return None
+    chosen = [0, 1, 2, 7, 8]
+    return RodPose(
+        float(p[0]), float(p[1]), float(p[2]), covariance[np.ix_(chosen, chosen)],
+        RodShape(float(p[7]), float(p[8]), float(p[5])),
+    )  # fmt: skip
+
+
+def fit_ball(
+    frame: Array, start: tuple[float, float, float], *, levels: tuple[float, float]
+) -> Ball | None:
+    """Fit centre and radius of a bright disc whose light may fall off linearly.
+
+    Parameters
+    ----------
+    frame
+        (rows, columns), grey values.
+    start
+        Column, row, radius [pixel].
+    levels
+        Grey values of background and ball.
+    """
+    x, y, radius = start
+    reach = int(radius + 8.0)
+    top, left = max(int(y) - reach, 0), max(int(x) - reach, 0)
+    window = (
+        slice(top, min(int(y) + reach + 2, frame.shape[0])),
+        slice(left, min(int(x) + reach + 2, frame.shape[1])),
+    )
+    rows, columns = np.mgrid[window].astype(np.float64)
+    contrast = levels[1] - levels[0]
+    p0 = np.array([x, y, radius, levels[0], contrast, 1.0, 0.0, 0.0])
+    limits = np.array([2.0, 2.0, 1.0, np.inf, np.inf, 0.5, np.inf, np.inf])
+    low = np.array([-np.inf, -np.inf, 1.5, -np.inf, -np.inf, 0.25, -np.inf, -np.inf])
+    settled = _settle(
+        lambda p: _ball_picture(rows, columns, p), frame[window], p0,
+        free=8, limits=limits, low=low, high=np.full(8, np.inf),
+    )  # fmt: skip
+    if settled is None:
+        return None
+    p, covariance = settled
+    if not (0.3 * contrast < p[4] < 2.0 * contrast and p[5] < 0.3 * p[2]):
+        return None
+    return Ball(float(p[0]), float(p[1]), float(p[2]), float(np.sqrt(covariance[1, 1])))
+
+
+def _settle(
+    picture: Picture,
+    values: Array,
+    start: Array,
+    *,
+    free: int,
+    limits: Array,
+    low: Array,
+    high: Array,
+) -> tuple[Array, Array] | None:
+    """Weighted Gauss-Newton with Huber weights; parameters and covariance (p, p), or None."""
+    p = start.copy()
+    covariance = np.zeros((p.size, p.size))
+    move = np.full(free, np.inf)
+    for _ in range(_ROUNDS):
+        model, jacobian, zone = picture(p)
+        residual = (values - model)[zone]
+        if residual.size <= free + 4:
+            return None
+        # quantisation alone leaves 0.3 grey levels
+        spread = max(robust_std(residual), 0.3)
+        weight = np.minimum(1.0, _HUBER * spread / np.maximum(np.abs(residual), 1e-12))
+        active = jacobian[:free, zone]
+        normal = (active * weight) @ active.T
+        try:
+            inverse = np.linalg.inv(normal)
+        except np.linalg.LinAlgError:
+            return None
+        move = inverse @ (active @ (weight * residual))
+        if not np.all(np.isfinite(move)):
+            return None
+        p[:free] += np.clip(move, -limits[:free], limits[:free])
+        p = np.clip(p, low, high)
+        if np.abs(move[:2]).max() < _SETTLED:
+            break
+    if np.abs(move[:2]).max() > _LAST_MOVE:
+        return None
+    variance = float(np.sum(weight * residual**2) / max(weight.sum() - free, 1.0))
+    covariance[:free, :free] = variance * inverse
+    return p, covariance
+
+
+def _rod_picture(
+    rows: Array, columns: Array, p: Array
+) -> tuple[Array, Array, npt.NDArray[np.bool_]]:
+    x, y, lean, dark, contrast, blur, fall, half, curvature = p
+    sin, cos = np.sin(lean), np.cos(lean)
+    radius = 1.0 / curvature
+    across = (columns - x) * cos + (rows - y) * sin
+    up = (columns - x) * sin - (rows - y) * cos
+    below = np.minimum(up - radius, 0.0)
+    reach = np.hypot(across, below)
+    cap = radius - 0.5 * blur**2 * curvature - reach
+    side = half - np.abs(across)
+    on_cap = (cap < side) & (up < radius)
+    safe = np.maximum(reach, 1e-9)
+    d_across = np.where(on_cap, -across / safe, -np.sign(across))
+    d_up = np.where(on_cap, -below / safe, 0.0)
+    z = np.where(on_cap, cap, side) / blur
+    step = ndtr(z)
+    light = contrast + fall * up
+    edge = light * np.exp(-0.5 * z**2) / (np.sqrt(2.0 * np.pi) * blur)
+    # moving the rod is moving each pixel the other way in the rod's own axes
+    jacobian = np.stack([
+        edge * (-cos * d_across - sin * d_up),
+        edge * (-sin * d_across + cos * d_up),
+        edge * (-up * d_across + across * d_up),
+        np.ones_like(z),
+        step,
+        -edge * z,
+        up * step,
+        edge * ~on_cap,
+        edge * on_cap * -(radius**2) * (1.0 + below / safe),
+    ])  # fmt: skip
+    cap_height = radius - np.sqrt(max(radius**2 - half**2, 0.0))
+    zone = (np.abs(across) < half + 4.0 * blur + 2.0) & (up > -(4.0 * blur + 2.0))
+    zone &= (np.abs(across) < _INNER * half) | (up > cap_height + 4.0 * blur + 1.0)
+    return dark + light * step, jacobian, zone
+
+
+def _ball_picture(
+    rows: Array, columns: Array, p: Array
+) -> tuple[Array, Array, npt.NDArray[np.bool_]]:
+    x, y, radius, dark, contrast, blur, fall_x, fall_y = p
+    dx, dy = columns - x, rows - y
+    reach = np.maximum(np.hypot(dx, dy), 1e-9)
+    z = (radius - 0.5 * blur**2 / radius - reach) / blur
+    step = ndtr(z)
+    light = contrast + fall_x * dx + fall_y * dy
+    edge = light * np.exp(-0.5 * z**2) / (np.sqrt(2.0 * np.pi) * blur)
+    jacobian = np.stack([
+        edge * dx / reach, edge * dy / reach, edge, np.ones_like(z), step, -edge * z,
+        dx * step, dy * step,
+    ])  # fmt: skip
+    return dark + light * step, jacobian, reach < radius + 4.0 * blur + 2.0
+
+
+def _rod_window(
+    size: tuple[int, ...], shape: RodShape, pose: tuple[float, float, float]
+) -> tuple[slice, slice] | None:
+    x, y, lean = pose
+    side = shape.half_width + 5.0 * shape.blur + 3.0
+    height = shape.cap_height + 2.5 * shape.half_width
+    lean_shift = abs(height * np.sin(lean))
+    top, bottom = max(int(y - height), 0), int(y + 5.0 * shape.blur + 4.0) + 1
+    left, right = max(int(x - side - lean_shift), 0), int(x + side + lean_shift) + 1
+    enough = y - top > shape.cap_height + 4.0 * shape.blur + 4.0
+    if not enough or bottom > size[0] or x < 0 or x > size[1]:
+        return None
+    return slice(top, bottom), slice(left, min(right, size[1]))

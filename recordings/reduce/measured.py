@@ -1,0 +1,87 @@
+"""What a reduction hands on: values with standard deviations, and the rows they make."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+from types import MappingProxyType
+
+import numpy as np
+import numpy.typing as npt
+
+Array = npt.NDArray[np.float64]
+
+
+@dataclass(frozen=True, slots=True)
+class Measured:
+    """A value and its standard deviation, in the unit that its name ends in.
+
+    Examples
+    --------
+    >>> str(Measured(0.51234, 0.0031))
+    '0.5123 ± 0.0031'
+    """
+
+    value: float
+    std: float
+
+    def __str__(self) -> str:
+        if not (math.isfinite(self.std) and self.std > 0.0):
+            return f"{self.value:.6g}"
+        decimals = 1 - math.floor(math.log10(self.std))
+        if 0 <= decimals <= 9:
+            return f"{self.value:.{decimals}f} ± {self.std:.{decimals}f}"
+        return f"{self.value:.{max(2, _digits(self.value, self.std))}g} ± {self.std:.2g}"
+
+    def scaled(self, factor: float) -> Measured:
+        """Return the value times an exact factor."""
+        return Measured(self.value * factor, self.std * abs(factor))
+
+    def times(self, other: Measured) -> Measured:
+        """Return the product with an independent value."""
+        return Measured(
+            self.value * other.value, math.hypot(self.std * other.value, self.value * other.std)
+        )
+
+    def over(self, other: Measured) -> Measured:
+        """Return the quotient by an independent value."""
+        ratio = self.value / other.value
+        return Measured(ratio, math.hypot(self.std, ratio * other.std) / abs(other.value))
+
+    def minus(self, other: Measured) -> Measured:
+        """Return the difference to an independent value."""
+        return Measured(self.value - other.value, math.hypot(self.std, other.std))
+
+
+def _digits(value: float, std: float) -> int:
+    if value == 0.0:
+        return 2
+    return 2 + math.floor(math.log10(abs(value))) - math.floor(math.log10(std))
+
+
+@dataclass(frozen=True)
+class Trial:
+    """One row of trials.csv, and the curves that belong to it.
+
+    Parameters
+    ----------
+    observables
+        Column of trials.csv and its value; the standard deviation fills the column `NAME_std`.
+    notes
+        What the reader should know about how the numbers came about, a sentence each.
+    trace, profile
+        Columns of traces/TRIAL.csv and profiles/TRIAL.csv, each (n,).
+    label
+        Part of the trial's name that tells several trials of one file apart.
+    """
+
+    observables: Mapping[str, Measured]
+    notes: tuple[str, ...] = ()
+    trace: Mapping[str, Array] = field(default_factory=dict)
+    profile: Mapping[str, Array] = field(default_factory=dict)
+    label: str = ""
+
+    def __post_init__(self) -> None:
+        for name in ("observables", "trace", "profile"):
+            object.__setattr__(self, name, MappingProxyType(dict(getattr(self, name))))

@@ -1,0 +1,105 @@
+"""Robust linear regression with an honest covariance."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+import numpy.typing as npt
+from scipy.optimize import least_squares
+
+from .measured import Array
+
+_REJECT = 4.0
+"""Residuals beyond this many robust standard deviations are left out of the final fit."""
+
+_MAD_TO_STD = 1.4826
+
+
+@dataclass(frozen=True)
+class Regression:
+    """Coefficients (p,), covariance (p, p), residual std, and which of the n points were used."""
+
+    coefficients: Array
+    covariance: Array
+    sigma: float
+    used: npt.NDArray[np.bool_]
+
+    def predict(self, design: Array) -> Array:
+        """Return the fitted values for a design matrix (m, p)."""
+        return np.asarray(design @ self.coefficients)
+
+    def prediction_std(self, design: Array) -> Array:
+        """Return the standard deviation of the fitted values, without the noise of a point."""
+        return np.asarray(np.sqrt(np.einsum("ij,jk,ik->i", design, self.covariance, design)))
+
+
+def robust_regression(design: Array, observed: Array, *, floor: float = 0.0) -> Regression:
+    """Fit `observed = design @ coefficients` with outliers left out.
+
+    A soft-L1 fit finds the bulk, points beyond four robust standard deviations are left out, and
+    ordinary least squares on the rest gives coefficients and covariance. Neighbouring residuals
+    that hang together (lag-one correlation r of the points in their order) carry less information:
+    the covariance is multiplied by (1 + r)/(1 - r) for r > 0.
+
+    Parameters
+    ----------
+    design, observed
+        (n, p) and (n,), n > p, in the order of time.
+    floor
+        Smallest residual standard deviation that is believed, in the unit of `observed`.
+
+    Returns
+    -------
+    Regression
+    """
+    n, p = design.shape
+    scale = np.linalg.norm(design, axis=0)
+    scale[scale == 0.0] = 1.0
+    scaled = design / scale
+    start = np.linalg.lstsq(scaled, observed, rcond=None)[0]
+    spread = max(robust_std(observed - scaled @ start), floor, _tiny(observed))
+    bulk = least_squares(
+        lambda c: (scaled @ c - observed) / spread, start, jac=lambda _c: scaled / spread,
+        loss="soft_l1", method="trf",
+    ).x  # fmt: skip
+    residual = observed - scaled @ bulk
+    limit = _REJECT * max(robust_std(residual, lost=p), floor, _tiny(observed))
+    used = np.abs(residual) <= limit
+    if used.sum() <= p:
+        used = np.ones(n, dtype=np.bool_)
+    coefficients = np.linalg.lstsq(scaled[used], observed[used], rcond=None)[0]
+    residual = observed[used] - scaled[used] @ coefficients
+    freedom = max(int(used.sum()) - p, 1)
+    sigma = max(float(np.sqrt(residual @ residual / freedom)), floor)
+    information = scaled[used].T @ scaled[used]
+    covariance = sigma**2 * np.linalg.pinv(information) * _correlation_factor(residual)
+    return Regression(coefficients / scale, covariance / np.outer(scale, scale), sigma, used)
+
+
+def robust_std(values: Array, *, lost: int = 0) -> float:
+    """Return the standard deviation of the bulk from the median absolute deviation.
+
+    `lost` is the number of degrees of freedom that a fit has taken.
+    """
+    n = values.size
+    if n == 0:
+        return 0.0
+    deviation = float(np.median(np.abs(values - np.median(values))))
+    return _MAD_TO_STD * deviation * float(np.sqrt(n / max(n - lost, 1)))
+
+
+def _tiny(observed: Array) -> float:
+    return float(1e-12 * (np.ptp(observed) + np.abs(observed).max()) + 1e-300)
+
+
+def _correlation_factor(residual: Array) -> float:
+    total = float(residual @ residual)
+    if residual.size < 8 or total == 0.0:
+        return 1.0
+    # residuals of a fit are slightly anticorrelated; only a clear positive correlation counts
+    lag_one = float(residual[1:] @ residual[:-1]) / total
+    if lag_one < 2.0 / np.sqrt(residual.size):
+        return 1.0
+    lag_one = min(lag_one, 0.95)
+    return (1.0 + lag_one) / (1.0 - lag_one)

@@ -1,0 +1,1 @@
+"""Raw files rendered with a known truth, to prove a reduction or to plan a measurement."""
