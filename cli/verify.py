@@ -1,0 +1,58 @@
+"""`dentscope verify`: measure the solver against what is known, and write docs/verification.md."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import Annotated
+
+import typer
+
+EXIT_MISSED = 1
+"""Exit code when a mark is missed."""
+
+
+def verify(
+    only: Annotated[
+        list[str] | None, typer.Option(help="Name of a check; can be given more than once.")
+    ] = None,
+    quick: Annotated[
+        bool, typer.Option("--quick", help="Solve the long checks at the coarse levels only.")
+    ] = False,
+    afresh: Annotated[
+        bool, typer.Option("--afresh", help="Measure again what is already measured.")
+    ] = False,
+    known: Annotated[bool, typer.Option("--list", help="List the checks and stop.")] = False,
+    folder: Annotated[Path, typer.Option(help="Where measurements are kept.")] = Path(
+        "build/verification"
+    ),
+    report: Annotated[Path, typer.Option(help="The report to write.")] = Path(
+        "docs/verification.md"
+    ),
+) -> int:
+    """Run the checks that are not measured yet and write the report with all that are.
+
+    It can be stopped and started again: every solve and every check is kept. Exit code 1 means
+    that a mark is missed.
+    """
+    from rich.console import Console
+
+    from ..verification import CHECKS, Bench, Effort, check_named, run_checks, write_report
+
+    console = Console(highlight=False, soft_wrap=True)
+    if known:
+        for check in CHECKS:
+            console.print(f"{check.name:22} {check.title}")
+        return 0
+    chosen = [check_named(name) for name in only] if only else list(CHECKS)
+    bench = Bench(
+        folder=folder,
+        pictures=report.parent / report.stem,
+        effort=Effort.QUICK if quick else Effort.PRODUCTION,
+        say=lambda line: console.print(line, markup=False),
+    )
+    results = run_checks(chosen, bench=bench, afresh=afresh)
+    missed = [(r.name, m) for r in results for m in r.missed]
+    for name, m in missed:
+        console.print(f"missed: {name}: {m.what}: {m.value:.4g} {m.unit} ({m.mark})", markup=False)
+    console.print(f"written: {write_report(report, folder=folder)}")
+    return EXIT_MISSED if missed else 0

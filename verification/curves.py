@@ -1,0 +1,31 @@
+"""Smoothing of curves over depth, which separates the ripple of the mesh from its bias."""
+
+from __future__ import annotations
+
+import numpy as np
+import numpy.typing as npt
+
+Floats = npt.NDArray[np.float64]
+
+_WINDOW = 0.45  # half width of the local fit in ln Delta: several surface elements
+
+
+def smoothed(delta: Floats, values: Floats) -> Floats:
+    """Local quadratic in ln Delta over +-0.45, shape (n,); a positive quantity is best given as ln.
+
+    Parameters
+    ----------
+    delta, values
+        Shape (n,).
+    """
+    x = np.log(delta)
+    out = np.empty_like(values)
+    for k in range(len(x)):
+        near = np.abs(x - x[k]) < _WINDOW
+        out[k] = np.polyval(np.polyfit(x[near], values[near], 2), x[k])
+    return out
+
+
+def ripple(delta: Floats, values: Floats) -> float:
+    """Rms deviation from the local quadratic."""
+    return float(np.sqrt(np.mean((values - smoothed(delta, values)) ** 2)))

@@ -1,0 +1,130 @@
+"""The same cases in CalculiX, an independent code."""
+
+from __future__ import annotations
+
+import shutil
+
+import numpy as np
+import numpy.typing as npt
+
+from .. import fem
+from ..campaigns.case import Case
+from ..campaigns.designs import pair_of
+from .bench import Bench, Solved
+from .calculix import Deck, Reference, load_reference, run_deck
+from .result import Measurement, Result, Table
+
+Floats = npt.NDArray[np.float64]
+
+_DEEPEST = 0.01
+_N = 36
+# file name, Sy*, element of CalculiX
+_CASES = (
+    ("equal-strengths-4-nodes", 1.0, "CAX4"),
+    ("strong-sphere-4-nodes", 10.0, "CAX4"),
+    ("equal-strengths-8-nodes", 1.0, "CAX8R"),
+)
+
+
+def run(bench: Bench) -> Result:
+    """Compare F, a and delta_s* on the same mesh; CalculiX runs where its results are not kept."""
+    measurements: list[Measurement] = []
+    tables, rows = [], []
+    for name, ratio, element in _CASES:
+        case = _case(ratio)
+        theirs = load_reference(name)
+        if theirs is None:
+            if shutil.which("ccx") is None:
+                bench.say(f"  {name}: no results kept and CalculiX is not installed")
+                continue
+            bench.say(f"  {name}: running CalculiX")
+            deck = Deck(case.problem(), case.accuracy, element=element)
+            theirs = run_deck(deck, name=name)
+        ours = bench.solve(case)
+        found, table = _compared(name, ours, theirs)
+        measurements += found
+        tables.append(table)
+        rows.append(
+            (name, f"CalculiX {theirs.version}, {element}", theirs.unknowns, len(theirs.delta),
+             f"{theirs.cpu_s:.0f}", f"{ours.counters['cpu_s']:.0f}",
+             f"{theirs.cpu_s / ours.counters['cpu_s']:.1f}")
+        )  # fmt: skip
+    return Result(
+        name="independent-code",
+        title="An independent code: CalculiX",
+        about=(
+            "E = 200 GPa, nu = 0.3, weaker body 503 MPa; our mesh of the `smoke` level (elements "
+            "of 0.1 a at the contact edge, ripple of F about 2 %) written out as a deck: four-node "
+            "elements with full integration (CAX4) and eight-node ones with reduced integration "
+            "(CAX8R), face-to-face penalty contact without smoothing, isotropic plasticity, "
+            "automatic sub-steps. Contact radius and shares are measured from the printed "
+            "displacements in the same way as ours. Decks (`*.inp.gz`) and results are in "
+            "verification/calculix."
+        ),
+        measurements=tuple(measurements),
+        tables=(
+            *tables,
+            Table(
+                "Cost, processor seconds",
+                ("case", "code", "unknowns", "depths", "CalculiX", "ours", "ratio"),
+                tuple(rows),
+            ),
+        ),
+        notes=(
+            "Both codes ripple with the period of an element at this size; rms differences are "
+            "over all depths beyond first yield. `ccx` of the Debian package solves with Spooles.",
+        ),
+    )
+
+
+def _case(ratio: float) -> Case:
+    pair = pair_of(E_s=200.0, E_f=200.0, Sy_min=503.0, ratio=ratio)
+    return Case(
+        name=f"independent-Sy*-{ratio:g}",
+        pair=pair,
+        depths=fem.geometric_depths(0.3 * fem.critical_depth(pair), _DEEPEST, _N),
+        unload_from=(),
+        radius_at_least=0.0,
+        accuracy=fem.Accuracy.smoke(),
+    )
+
+
+def _compared(name: str, ours: Solved, theirs: Reference) -> tuple[tuple[Measurement, ...], Table]:
+    n = min(len(theirs.delta), len(ours["delta"]))
+    R = ours.pair.R
+    depth = np.array(theirs.delta[:n])
+    force = np.array(theirs.force[:n]) * 1e6 * R**2
+    off_f = ours["force"][:n] / force - 1.0
+    off_a = ours["radius"][:n] / R / np.array(theirs.radius[:n]) - 1.0
+    off_s = ours.share[:n] - np.array(theirs.share[:n])
+    plastic = depth > fem.critical_depth(ours.pair)
+    rows = tuple(
+        (f"{depth[k]:.3e}", f"{ours['force'][k]:.4g}", f"{force[k]:.4g}",
+         f"{100.0 * off_f[k]:+.2f} %", f"{ours['radius'][k] / R:.4f}", f"{theirs.radius[k]:.4f}",
+         f"{100.0 * off_a[k]:+.2f} %", f"{ours.share[k]:.4f}", f"{theirs.share[k]:.4f}")
+        for k in range(0, n, max(1, n // 9))
+    )  # fmt: skip
+    source = f"CalculiX {theirs.version}, {theirs.element}"
+    measurements = (
+        Measurement(f"{name}: F, mean difference", 100.0 * float(off_f[plastic].mean()), "%", -1.0,
+                    1.0, source),
+        Measurement(f"{name}: F, rms difference", 100.0 * _rms(off_f[plastic]), "%", None, 1.0,
+                    source),
+        Measurement(f"{name}: a, rms difference", 100.0 * _rms(off_a[plastic]), "%", None, 1.0,
+                    source),
+        Measurement(f"{name}: delta_s*, rms difference", _rms(off_s[plastic]), "", None, 0.005,
+                    source),
+        Measurement(f"{name}: processor time of CalculiX over ours",
+                    theirs.cpu_s / ours.counters["cpu_s"], "", 5.0, None, "requirement"),
+    )  # fmt: skip
+    table = Table(
+        f"{name}, ours against CalculiX {theirs.element}",
+        ("Delta/R", "F [N]", "CalculiX", "difference", "a/R", "CalculiX", "difference",
+         "delta_s*", "CalculiX"),
+        rows,
+    )  # fmt: skip
+    return measurements, table
+
+
+def _rms(x: Floats) -> float:
+    return float(np.sqrt(np.mean(x**2)))

@@ -1,0 +1,101 @@
+"""docs/verification.md from what has been measured."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from pathlib import Path
+
+from .. import fem
+from ..core.provenance import environment
+from .checks import CHECKS
+from .result import Measurement, Result, Table
+from .runner import kept_result
+
+
+def write_report(path: Path, *, folder: Path) -> Path:
+    """Write the report from the measurements kept in `folder`; return its path."""
+    known = {check.name: kept_result(check, folder=folder) for check in CHECKS}
+    found = [result for result in known.values() if result is not None]
+    lines = [*_head(), *_summary(found, [name for name, r in known.items() if r is None])]
+    for result in found:
+        lines += _section(result, path)
+    path.parent.mkdir(parents=True, exist_ok=True)
+    path.write_text("\n".join(lines).rstrip() + "\n", encoding="utf-8")
+    return path
+
+
+def _head() -> Iterator[str]:
+    versions = environment()
+    packages = ", ".join(f"{k} {v}" for k, v in versions.items() if k != "commit")
+    yield "# What the solver was checked against"
+    yield ""
+    yield (
+        "Made by `dentscope verify`; `dentscope verify --list` names the checks, `--only NAME` "
+        "runs one. It can be stopped and goes on where it was. Marks are those that were set "
+        "before measuring; a missed one stands as missed. Processor seconds are of one thread on "
+        "a shared two-core machine."
+    )
+    yield ""
+    yield f"Numerics version {fem.NUMERICS_VERSION}; {packages}."
+    yield ""
+
+
+def _summary(results: list[Result], absent: list[str]) -> Iterator[str]:
+    yield "| check | numbers with a mark | met | missed | effort | processor s |"
+    yield "| --- | --- | --- | --- | --- | --- |"
+    for r in results:
+        marked = [m for m in r.measurements if m.met is not None]
+        missed = ", ".join(m.what for m in r.missed)
+        yield (
+            f"| [{r.title}](#{_anchor(r.title)}) | {len(marked)} | {len(marked) - len(r.missed)} | "
+            f"{missed or 'none'} | {r.effort} | {r.cpu_s:.0f} |"
+        )
+    yield ""
+    if absent:
+        yield f"Not measured with this numerics version: {', '.join(absent)}."
+        yield ""
+
+
+def _section(result: Result, path: Path) -> Iterator[str]:
+    yield f"## {result.title}"
+    yield ""
+    yield result.about
+    yield ""
+    if result.measurements:
+        yield "| measured | value | mark | | reference |"
+        yield "| --- | --- | --- | --- | --- |"
+        for m in result.measurements:
+            yield _measurement(m)
+        yield ""
+    for table in result.tables:
+        yield from _table(table)
+    for name, caption in result.pictures:
+        yield f"![{caption}]({path.stem}/{name})"
+        yield ""
+        yield caption
+        yield ""
+    for note in result.notes:
+        yield note
+        yield ""
+
+
+def _measurement(m: Measurement) -> str:
+    state = {True: "met", False: "**missed**", None: ""}[m.met]
+    value = f"{m.value:.3g} {m.unit}".rstrip()
+    return f"| {m.what} | {value} | {m.mark} | {state} | {m.source} |"
+
+
+def _table(table: Table) -> Iterator[str]:
+    yield f"{table.title}:"
+    yield ""
+    yield "| " + " | ".join(table.columns) + " |"
+    yield "| " + " | ".join("---" for _ in table.columns) + " |"
+    for row in table.rows:
+        cells = (f"{x:.4g}" if isinstance(x, float) else str(x) for x in row)
+        yield "| " + " | ".join(cells) + " |"
+    yield ""
+
+
+def _anchor(title: str) -> str:
+    kept = "".join(c for c in title.lower() if c.isalnum() or c in " -_")
+    return kept.replace(" ", "-")

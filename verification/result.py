@@ -1,0 +1,126 @@
+"""What a check returns: numbers with marks and sources, tables, pictures; as JSON and back."""
+
+from __future__ import annotations
+
+import json
+import math
+from dataclasses import asdict, dataclass
+from pathlib import Path
+from typing import Any
+
+Cell = str | float | int
+
+
+@dataclass(frozen=True)
+class Measurement:
+    """One measured number and the range it should lie in.
+
+    Parameters
+    ----------
+    what
+        Name of the number.
+    value
+        The number; nan if it could not be measured, which never meets a mark.
+    unit
+        Its unit, `"%"` for percent.
+    low, high
+        Mark: the range to be kept; none: open on that side, both none: reported only.
+    source
+        Where the reference or the mark comes from.
+    """
+
+    what: str
+    value: float
+    unit: str = ""
+    low: float | None = None
+    high: float | None = None
+    source: str = ""
+
+    @property
+    def met(self) -> bool | None:
+        """Whether the mark is met; none if there is no mark."""
+        if self.low is None and self.high is None:
+            return None
+        above = self.low is None or self.value >= self.low
+        below = self.high is None or self.value <= self.high
+        return math.isfinite(self.value) and above and below
+
+    @property
+    def mark(self) -> str:
+        """The mark in words."""
+        if self.low is not None and self.high is not None:
+            return f"{self.low:g} to {self.high:g}"
+        if self.high is not None:
+            return f"at most {self.high:g}"
+        return "" if self.low is None else f"at least {self.low:g}"
+
+
+@dataclass(frozen=True)
+class Table:
+    """A table of the report; numbers are shown with four digits."""
+
+    title: str
+    columns: tuple[str, ...]
+    rows: tuple[tuple[Cell, ...], ...]
+
+
+@dataclass(frozen=True)
+class Result:
+    """What one check found.
+
+    Parameters
+    ----------
+    name, title
+        Of the check.
+    about
+        How it was done, a sentence or two.
+    measurements, tables
+        The numbers.
+    pictures
+        File names in docs/verification, each with a caption.
+    notes
+        What a reader must know to judge the numbers.
+    effort
+        At which effort it was run.
+    numerics_version
+        Of the solver that gave the numbers.
+    cpu_s
+        Processor time of the check in seconds, solves from earlier checks included.
+    """
+
+    name: str
+    title: str
+    about: str
+    measurements: tuple[Measurement, ...] = ()
+    tables: tuple[Table, ...] = ()
+    pictures: tuple[tuple[str, str], ...] = ()
+    notes: tuple[str, ...] = ()
+    effort: str = ""
+    numerics_version: int = 0
+    cpu_s: float = 0.0
+
+    @property
+    def missed(self) -> tuple[Measurement, ...]:
+        """The measurements that miss their marks."""
+        return tuple(m for m in self.measurements if m.met is False)
+
+
+def write_result(result: Result, path: Path) -> None:
+    """Write a result as JSON, by way of a second file, so that a kill leaves no half of it."""
+    path.parent.mkdir(parents=True, exist_ok=True)
+    part = path.with_suffix(".part")
+    part.write_text(json.dumps(asdict(result), indent=1) + "\n", encoding="utf-8")
+    part.replace(path)
+
+
+def read_result(path: Path) -> Result:
+    """Read what `write_result` wrote."""
+    raw: dict[str, Any] = json.loads(path.read_text(encoding="utf-8"))
+    raw["measurements"] = tuple(Measurement(**m) for m in raw["measurements"])
+    raw["tables"] = tuple(
+        Table(t["title"], tuple(t["columns"]), tuple(tuple(row) for row in t["rows"]))
+        for t in raw["tables"]
+    )
+    raw["pictures"] = tuple((name, caption) for name, caption in raw["pictures"])
+    raw["notes"] = tuple(raw["notes"])
+    return Result(**raw)
