@@ -48,9 +48,11 @@ branch_kernel = njit(BRANCH_SIGNATURE, cache=True, error_model="numpy")
 residual_kernel = njit(RESIDUAL_SIGNATURE, cache=True, error_model="numpy")
 
 
-CLAUSES = ("force falls", "force jumps", "radius jumps", "residual jumps", "not Hertz")
-"""What a declared breach of the contract can begin with: the force falls as the depth grows; force,
-radius or residual depth jump up; the law without a yield strength is not exactly Hertz's."""
+CLAUSES = (
+    "force falls", "force jumps", "radius falls", "radius jumps", "residual jumps", "not Hertz",
+)  # fmt: skip
+"""What a declared breach of the contract can begin with: force or radius fall as the depth grows;
+force, radius or residual depth jump up; the law without a yield strength is not exactly Hertz's."""
 
 
 class DomainWarning(UserWarning):

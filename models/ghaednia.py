@@ -188,7 +188,7 @@ def _correction(par, n, log_n):
 
 @njit(float64(VECTOR, float64, float64, float64, float64), cache=True, error_model="numpy")
 def _model_radius(par, delta, updated, n, log_n):
-    """a = chi sqrt(R' delta (delta_n/1.9)^B) (2.21, 2.24, 2.28, 2.31, with the root)."""
+    """Contact radius chi sqrt(R' delta (delta_n/1.9)^B) (2.21, 2.24, 2.28, 2.31, with the root)."""
     grown = updated * delta * math.exp(par[_B] * (log_n - _LOG_ELASTIC))
     return _correction(par, n, log_n) * math.sqrt(grown)
 

@@ -62,7 +62,7 @@ def _radius(par, depth, peak):
 
 @njit(types.UniTuple(float64, 2)(VECTOR, float64), cache=True, error_model="numpy")
 def _logarithms(par, w):
-    """ln w and ln (a/R)^2 beyond w = 1.9 (1.21)."""
+    """Logarithms of w and (a/R)^2 beyond w = 1.9 (1.21)."""
     log_w = math.log(w)
     return log_w, log_w + par[_LOG_ONSET] + par[_B] * (log_w - _LOG_PLASTIC)
 
@@ -109,6 +109,11 @@ def _unloading_2007(par, depth, peak):
     return recover(_loading_2007, _residual, par, depth, peak)
 
 
+_BREAKS = (
+    ("force jumps at w = 1.9 for nu = 0.3", 0.5),
+    ("force falls at w = 1.9 for nu = 0.33", 0.17),
+)
+
 _READ = (
     "the thesis; the loading, the radius and the residual depth agree with the public code of the "
     "group that extended the model (tmd-lab/microslip-rough-contact), in which the exponents 5/12 "
@@ -123,7 +128,7 @@ JACKSON_GREEN = PublishedLaw(
     equations="1.14, 1.16-1.22, 4.9-4.14",
     verified=False,
     domain=Domain(a_over_R_max=0.41, note="flattening of the sphere, a/R up to 0.41"),
-    breaks=(("force jumps at w = 1.9", 0.7),),
+    breaks=_BREAKS,
     regime="flattening",
     read=_READ,
     own=Kernels(_loading, _radius, _unloading, _residual),
@@ -137,7 +142,7 @@ JACKSON_GREEN_2007 = PublishedLaw(
     equations="1.15-1.22, 4.9-4.14",
     verified=False,
     domain=Domain(a_over_R_max=1.0, note="flattening of the sphere; hardness down to S at a/R = 1"),
-    breaks=(("force jumps at w = 1.9", 0.7),),
+    breaks=_BREAKS,
     regime="flattening",
     read=_READ,
     own=Kernels(_loading_2007, _radius, _unloading_2007, _residual),

@@ -1,0 +1,50 @@
+"""Every published law in reading order, and those that cannot be offered.
+
+First the elastic law and the simplest plastic ones, then flattening, impact, indentation, and last
+the model in which both bodies deform.
+"""
+
+from __future__ import annotations
+
+from .base import ContactLaw
+from .brake import BRAKE_2012, BRAKE_2015
+from .ceb import CEB
+from .ghaednia import GHAEDNIA
+from .hertz import HERTZ
+from .jackson_green import JACKSON_GREEN, JACKSON_GREEN_2007
+from .johnson import JOHNSON
+from .kogut_etsion import KOGUT_ETSION
+from .kogut_komvopoulos import KOGUT_KOMVOPOULOS
+from .sinclair_follansbee import SINCLAIR_FOLLANSBEE
+from .stronge import STRONGE
+from .thornton import THORNTON, THORNTON_NING
+from .ye_komvopoulos import YE_KOMVOPOULOS
+
+PUBLISHED: tuple[ContactLaw, ...] = (
+    HERTZ,
+    JOHNSON,
+    CEB,
+    KOGUT_ETSION,
+    JACKSON_GREEN,
+    JACKSON_GREEN_2007,
+    THORNTON,
+    THORNTON_NING,
+    STRONGE,
+    BRAKE_2012,
+    BRAKE_2015,
+    SINCLAIR_FOLLANSBEE,
+    YE_KOMVOPOULOS,
+    KOGUT_KOMVOPOULOS,
+    GHAEDNIA,
+)
+
+UNAVAILABLE: dict[str, str] = {
+    "wang": "Wang's correction of Kogut and Etsion: named in section 1.3.2 without an equation, "
+    "and its paper was not readable",
+    "li-thornton": "Li, Wu and Thornton 2002: named in section 1.3.2 without an equation, and its "
+    "paper was not readable; thornton is the model that it corrects",
+    "wadwalkar": "Wadwalkar, Jackson and Kogut 2010 (large deformation): named in section 1.2 "
+    "without an equation, and its paper was not readable; jackson-green-2007 has a hardness that "
+    "holds up to a/R = 1",
+}
+"""Laws that the thesis names and that are not offered, with the reason."""
