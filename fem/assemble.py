@@ -11,7 +11,6 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass
-from typing import Any
 
 import numpy as np
 import numpy.typing as npt
@@ -78,6 +77,8 @@ class State:
         Deformation gradient (rr, rz, zr, zz, tt), shape (n_elements, 4, 5).
     b
         Elastic left Cauchy-Green tensor (rr, zz, rz, tt), shape (n_elements, 4, 4).
+    strain
+        Deviator of the elastic logarithmic strain 1/2 ln b, shape (n_elements, 4, 4).
     peeq
         Equivalent plastic strain, shape (n_elements, 4).
     dissipated
@@ -86,6 +87,7 @@ class State:
 
     F: Floats
     b: Floats
+    strain: Floats
     peeq: Floats
     dissipated: float
 
@@ -96,7 +98,13 @@ class State:
         F[..., [0, 3, 4]] = 1.0
         b = np.zeros((n_elements, 4, 4))
         b[..., [0, 1, 3]] = 1.0
-        return cls(F=F, b=b, peeq=np.zeros((n_elements, 4)), dissipated=0.0)
+        return cls(
+            F=F,
+            b=b,
+            strain=np.zeros_like(b),
+            peeq=np.zeros((n_elements, 4)),
+            dissipated=0.0,
+        )
 
 
 @njit(cache=True)
@@ -125,8 +133,9 @@ def _gradient(conn, grad, value, r, u, e, q, F):
 
 @njit(cache=True)
 def _assemble(
-    conn, grad, value, r, dV, volume, G, K, radius, u, Fn, bn, rule, with_tangent, force, tangent
-):
+    conn, grad, value, r, dV, volume, G, K, radius, u, Fn, bn, en, rule,
+    with_tangent, force, tangent,
+):  # fmt: skip
     F = np.empty((4, 5))
     P = np.empty(5)
     A = np.empty((5, 5))
@@ -155,8 +164,11 @@ def _assemble(
                     tangent[e, i, j] = 0.0
         for q in range(4):
             Fq = F[q]
-            plastic = deviatoric_pk1(Fq, Fn[e, q], bn[e, q], G[e], radius[e], rule, P)
-            n_plastic += plastic
+            point = (Fq, Fn[e, q], bn[e, q], en[e, q], G[e], radius[e], rule, P)
+            if with_tangent:
+                n_plastic += deviatoric_tangent(*point, work, A)
+            else:
+                n_plastic += deviatoric_pk1(*point)
             c0 = Fq[3] * Fq[4]
             c1 = -Fq[2] * Fq[4]
             c2 = -Fq[1] * Fq[4]
@@ -175,7 +187,6 @@ def _assemble(
                 fe[2 * a + 1] += P[2] * gr + P[3] * gz + p * v1
             if not with_tangent:
                 continue
-            deviatoric_tangent(Fq, Fn[e, q], bn[e, q], G[e], radius[e], rule, P, work, A)
             # second derivative of J, times the pressure
             A[0, 3] += p * Fq[4]
             A[3, 0] += p * Fq[4]
@@ -217,7 +228,10 @@ def _assemble(
 
 
 @njit(cache=True)
-def _advance(conn, grad, value, r, dV, volume, G, K, radius, u, Fn, bn, peeq, rule, F, b, peeq_new):
+def _advance(
+    conn, grad, value, r, dV, volume, G, K, radius, u, Fn, bn, en, peeq, rule,
+    F, b, strain, peeq_new,
+):  # fmt: skip
     dissipated = 0.0
     stored = 0.0
     for e in range(conn.shape[0]):
@@ -227,12 +241,18 @@ def _advance(conn, grad, value, r, dV, volume, G, K, radius, u, Fn, bn, peeq, ru
             Fq = F[e, q]
             J = (Fq[0] * Fq[3] - Fq[1] * Fq[2]) * Fq[4]
             J_sum += J * dV[e, q]
-            e0, e1, e2, e3, m, _, slip = elastic_deviator(Fq, Fn[e, q], bn[e, q], radius[e], rule)
+            e0, e1, e2, e3, m, _, slip = elastic_deviator(
+                Fq, Fn[e, q], bn[e, q], en[e, q], radius[e], rule
+            )
             b0, b1, b2, b3 = exponential(e0 + m, e1 + m, e2, e3 + m)
             b[e, q, 0] = b0
             b[e, q, 1] = b1
             b[e, q, 2] = b2
             b[e, q, 3] = b3
+            strain[e, q, 0] = e0
+            strain[e, q, 1] = e1
+            strain[e, q, 2] = e2
+            strain[e, q, 3] = e3
             peeq_new[e, q] = peeq[e, q] + math.sqrt(2.0 / 3.0) * slip
             norm = math.sqrt(e0 * e0 + e1 * e1 + e3 * e3 + 2.0 * e2 * e2)
             dissipated += 2.0 * G[e] * norm * slip * dV[e, q]
@@ -279,7 +299,7 @@ def bulk_forces(
     return int(
         _assemble(
             x.conn, x.grad, x.value, x.r, x.dV, x.volume, x.G, x.K, x.radius,
-            u, state.F, state.b, rule, with_tangent, force, room,
+            u, state.F, state.b, state.strain, rule, with_tangent, force, room,
         )
     )  # fmt: skip
 
@@ -288,11 +308,13 @@ def advance(elements: Elements, u: Floats, *, state: State, rule: int) -> tuple[
     """Return the material state at the converged displacement `u`, and the stored energy."""
     x = elements
     F, b, peeq = np.empty_like(state.F), np.empty_like(state.b), np.empty_like(state.peeq)
+    strain = np.empty_like(state.strain)
     dissipated, stored = _advance(
         x.conn, x.grad, x.value, x.r, x.dV, x.volume, x.G, x.K, x.radius,
-        u, state.F, state.b, state.peeq, rule, F, b, peeq,
+        u, state.F, state.b, state.strain, state.peeq, rule, F, b, strain, peeq,
     )  # fmt: skip
-    return State(F=F, b=b, peeq=peeq, dissipated=state.dissipated + dissipated), float(stored)
+    new = State(F=F, b=b, strain=strain, peeq=peeq, dissipated=state.dissipated + dissipated)
+    return new, float(stored)
 
 
 def cauchy_stress(elements: Elements, state: State) -> tuple[Floats, Floats]:
@@ -306,23 +328,4 @@ def cauchy_stress(elements: Elements, state: State) -> tuple[Floats, Floats]:
     J = (state.F[..., 0] * state.F[..., 3] - state.F[..., 1] * state.F[..., 2]) * state.F[..., 4]
     theta = (J * elements.dV).sum(axis=1) / elements.volume
     mean = elements.K * np.log(theta) / theta
-    strain = _deviators(state.b)
-    return 2.0 * elements.G[:, None, None] * strain / J[..., None], mean
-
-
-def _deviators(b: Floats) -> Floats:
-    m = 0.5 * (b[..., 0] + b[..., 1])
-    h = 0.5 * (b[..., 0] - b[..., 1])
-    radius = np.hypot(h, b[..., 2])
-    angle = 0.5 * np.arctan2(b[..., 2], h)
-    e1, e2, e3 = (0.5 * np.log(x) for x in (m + radius, m - radius, b[..., 3]))
-    mean = (e1 + e2 + e3) / 3.0
-    c, s = np.cos(angle), np.sin(angle)
-    e1, e2 = e1 - mean, e2 - mean
-    parts: list[Any] = [
-        e1 * c * c + e2 * s * s,
-        e1 * s * s + e2 * c * c,
-        (e1 - e2) * c * s,
-        e3 - mean,
-    ]
-    return np.stack(parts, axis=-1)
+    return 2.0 * elements.G[:, None, None] * state.strain / J[..., None], mean

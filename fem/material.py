@@ -29,6 +29,8 @@ RADIAL = 0
 EXACT = 1
 """Exact integration along a constant strain-rate direction."""
 
+# keeps round-off from calling converged plastic points plastic again on unloading
+_MARGIN = 1.0 + 1e-10
 _STILL = 1e-24  # a smaller increment (squared, over the radius) has no direction: radial return
 
 
@@ -38,8 +40,16 @@ def spectral(a, b, c):
     mean = 0.5 * (a + b)
     half = 0.5 * (a - b)
     radius = math.sqrt(half * half + c * c)
-    angle = 0.5 * math.atan2(c, half) if radius > 0.0 else 0.0
-    return mean + radius, mean - radius, math.cos(angle), math.sin(angle)
+    if radius == 0.0:
+        return mean, mean, 1.0, 0.0
+    # half-angle formulas, each in the form that subtracts nothing
+    if half >= 0.0:
+        cosine = math.sqrt(0.5 * (1.0 + half / radius))
+        sine = 0.5 * c / (radius * cosine)
+    else:
+        sine = math.copysign(math.sqrt(0.5 * (1.0 - half / radius)), c)
+        cosine = 0.5 * c / (radius * sine)
+    return mean + radius, mean - radius, cosine, sine
 
 
 @njit(cache=True)
@@ -108,15 +118,65 @@ def _slide(x0, x1, x2, x3, d0, d1, d2, d3, radius):
 
 
 @njit(cache=True)
-def elastic_deviator(F, Fn, bn, radius0, rule):
+def _turned(cosine, sine, en):
+    """Old elastic strain deviator turned by the increment's in-plane rotation."""
+    cc = cosine * cosine
+    ss = sine * sine
+    cs = cosine * sine
+    return (
+        cc * en[0] - 2.0 * cs * en[2] + ss * en[1],
+        ss * en[0] + 2.0 * cs * en[2] + cc * en[1],
+        cs * (en[0] - en[1]) + (cc - ss) * en[2],
+        en[3],
+    )
+
+
+@njit(cache=True)
+def _return(f, a0, a1, a2, a3, trial, radius, en, rule):
+    """Updated point from the trial point `a` outside the yield circle."""
+    k = radius / trial
+    if rule == RADIAL:
+        return k * a0, k * a1, k * a2, k * a3
+    x = f[0] + f[3]
+    y = f[2] - f[1]
+    turn = math.sqrt(x * x + y * y)
+    r0, r1, r2, r3 = _turned(x / turn, y / turn, en)
+    d0 = a0 - r0
+    d1 = a1 - r1
+    d2 = a2 - r2
+    d3 = a3 - r3
+    dd = d0 * d0 + d1 * d1 + d3 * d3 + 2.0 * d2 * d2
+    if dd <= _STILL * radius * radius:
+        return k * a0, k * a1, k * a2, k * a3
+    od = r0 * d0 + r1 * d1 + r3 * d3 + 2.0 * r2 * d2
+    oo = r0 * r0 + r1 * r1 + r3 * r3 + 2.0 * r2 * r2
+    elastic = (-od + math.sqrt(max(od * od - dd * (oo - radius * radius), 0.0))) / dd
+    elastic = min(max(elastic, 0.0), 1.0)
+    rest = 1.0 - elastic
+    return _slide(
+        r0 + elastic * d0,
+        r1 + elastic * d1,
+        r2 + elastic * d2,
+        r3 + elastic * d3,
+        rest * d0,
+        rest * d1,
+        rest * d2,
+        rest * d3,
+        radius,
+    )
+
+
+@njit(cache=True)
+def elastic_deviator(F, Fn, bn, en, radius0, rule):
     """Elastic deviatoric strain after the update.
 
     Parameters
     ----------
     F, Fn
         Deformation gradient now and at the last accepted step, shape (5,) [-].
-    bn
-        Elastic left Cauchy-Green tensor at the last accepted step, shape (4,) [-].
+    bn, en
+        Elastic left Cauchy-Green tensor at the last accepted step, and the deviator of its
+        logarithmic strain, shape (4,) [-].
     radius0
         sqrt(2/3) Sy / (2 G), radius of the yield circle at J = 1 [-]; `inf` if elastic.
     rule
@@ -128,61 +188,32 @@ def elastic_deviator(F, Fn, bn, radius0, rule):
         dev e (rr, zz, rz, tt), mean of e, 1 if plastic else 0, length of the plastic increment
         |dev e_trial - dev e|.
     """
-    (f00, f01, f10, f11), (b0, b1, b2, b3) = _trial(F, Fn, bn)
+    f, (b0, b1, b2, b3) = _trial(F, Fn, bn)
     a0, a1, a2, a3, m = log_strain(b0, b1, b2, b3)
     trial = _norm(a0, a1, a2, a3)
     radius = radius0 * math.exp(3.0 * m)
-    # the margin keeps round-off from calling converged plastic points plastic again on unloading
-    if trial <= radius * (1.0 + 1e-10):
+    if trial <= radius * _MARGIN:
         return a0, a1, a2, a3, m, 0, 0.0
-    if rule == RADIAL:
-        k = radius / trial
-        return k * a0, k * a1, k * a2, k * a3, m, 1, trial - radius
-    o0, o1, o2, o3, _ = log_strain(bn[0], bn[1], bn[2], bn[3])
-    angle = math.atan2(f10 - f01, f00 + f11)
-    c = math.cos(angle)
-    s = math.sin(angle)
-    r0 = c * c * o0 - 2.0 * c * s * o2 + s * s * o1
-    r1 = s * s * o0 + 2.0 * c * s * o2 + c * c * o1
-    r2 = c * s * (o0 - o1) + (c * c - s * s) * o2
-    d0 = a0 - r0
-    d1 = a1 - r1
-    d2 = a2 - r2
-    d3 = a3 - o3
-    dd = d0 * d0 + d1 * d1 + d3 * d3 + 2.0 * d2 * d2
-    if dd <= _STILL * radius * radius:
-        k = radius / trial
-        return k * a0, k * a1, k * a2, k * a3, m, 1, trial - radius
-    od = r0 * d0 + r1 * d1 + o3 * d3 + 2.0 * r2 * d2
-    oo = r0 * r0 + r1 * r1 + o3 * o3 + 2.0 * r2 * r2
-    elastic = (-od + math.sqrt(max(od * od - dd * (oo - radius * radius), 0.0))) / dd
-    elastic = min(max(elastic, 0.0), 1.0)
-    rest = 1.0 - elastic
-    q0, q1, q2, q3 = _slide(
-        r0 + elastic * d0,
-        r1 + elastic * d1,
-        r2 + elastic * d2,
-        o3 + elastic * d3,
-        rest * d0,
-        rest * d1,
-        rest * d2,
-        rest * d3,
-        radius,
-    )
+    q0, q1, q2, q3 = _return(f, a0, a1, a2, a3, trial, radius, en, rule)
     return q0, q1, q2, q3, m, 1, _norm(a0 - q0, a1 - q1, a2 - q2, a3 - q3)
 
 
 @njit(cache=True)
-def deviatoric_pk1(F, Fn, bn, G, radius0, rule, P):
-    """Write the deviatoric first Piola-Kirchhoff stress into `P` (5,); return 1 if plastic."""
-    e0, e1, e2, e3, _, plastic, _ = elastic_deviator(F, Fn, bn, radius0, rule)
-    det = F[0] * F[3] - F[1] * F[2]
-    g = 2.0 * G / det
+def _stress(F, G, e0, e1, e2, e3, P):
+    """Write P = 2 G dev e F^-T into `P` (5,)."""
+    g = 2.0 * G / (F[0] * F[3] - F[1] * F[2])
     P[0] = g * (e0 * F[3] - e2 * F[1])
     P[1] = g * (e2 * F[0] - e0 * F[2])
     P[2] = g * (e2 * F[3] - e1 * F[1])
     P[3] = g * (e1 * F[0] - e2 * F[2])
     P[4] = 2.0 * G * e3 / F[4]
+
+
+@njit(cache=True)
+def deviatoric_pk1(F, Fn, bn, en, G, radius0, rule, P):
+    """Write the deviatoric first Piola-Kirchhoff stress into `P` (5,); return 1 if plastic."""
+    e0, e1, e2, e3, _, plastic, _ = elastic_deviator(F, Fn, bn, en, radius0, rule)
+    _stress(F, G, e0, e1, e2, e3, P)
     return plastic
 
 
@@ -192,7 +223,31 @@ def _dot(a, b):
 
 
 @njit(cache=True)
-def _linear_slide(r, d, radius, dr, dd, dradius, dq):
+def _slide_terms(r, d, radius):
+    """What `_linear_slide` needs of the old point `r`, the increment `d` and the radius."""
+    length2 = _dot(d, d)
+    along = _dot(r, d)
+    root = math.sqrt(max(along * along - length2 * (_dot(r, r) - radius * radius), 0.0))
+    elastic = (root - along) / length2
+    slope = along + elastic * length2 if 0.0 < elastic < 1.0 else 0.0
+    elastic = min(max(elastic, 0.0), 1.0)
+    rest = 1.0 - elastic
+    n2 = 0.0
+    xd = 0.0
+    for i in range(4):
+        k = 2.0 if i == 2 else 1.0
+        x = r[i] + elastic * d[i]
+        n2 += k * x * x
+        xd += k * x * rest * d[i]
+    n = math.sqrt(n2)
+    length = rest * math.sqrt(length2)
+    c = xd / (n * length) if length > 0.0 else 0.0
+    a = math.exp(-length / radius)
+    return elastic, slope, n, length, c, a
+
+
+@njit(cache=True)
+def _linear_slide(r, d, radius, terms, dr, dd, dradius, dq):
     """Write the change of the exactly updated point into `dq` (4,).
 
     Parameters
@@ -201,25 +256,22 @@ def _linear_slide(r, d, radius, dr, dd, dradius, dq):
         Rotated old point and strain increment, shape (4,).
     radius
         Radius of the yield circle.
+    terms
+        Their `_slide_terms`.
     dr, dd, dradius
         Their changes.
     """
-    length2 = _dot(d, d)
-    along = _dot(r, d)
-    root = math.sqrt(max(along * along - length2 * (_dot(r, r) - radius * radius), 0.0))
-    elastic = (root - along) / length2
+    elastic, slope, n, length, c, a = terms
+    if length == 0.0:
+        for i in range(4):
+            dq[i] = dr[i] + dd[i]
+        return
     delastic = 0.0
-    if 0.0 < elastic < 1.0:
-        slope = along + elastic * length2
+    if slope != 0.0:
         change = _dot(r, dr) + elastic * (_dot(r, dd) + _dot(d, dr))
         change += elastic * elastic * _dot(d, dd) - radius * dradius
-        delastic = -change / slope if slope != 0.0 else 0.0
-    else:
-        elastic = min(max(elastic, 0.0), 1.0)
+        delastic = -change / slope
     rest = 1.0 - elastic
-    n2 = 0.0
-    l2 = 0.0
-    xd = 0.0
     dn = 0.0
     dl = 0.0
     dc = 0.0
@@ -229,23 +281,12 @@ def _linear_slide(r, d, radius, dr, dd, dradius, dq):
         D = rest * d[i]
         dx = dr[i] + elastic * dd[i] + delastic * d[i]
         dD = rest * dd[i] - delastic * d[i]
-        n2 += k * x * x
-        l2 += k * D * D
-        xd += k * x * D
         dn += k * x * dx
         dl += k * D * dD
         dc += k * (dx * D + x * dD)
-    n = math.sqrt(n2)
-    length = math.sqrt(l2)
-    if length == 0.0:
-        for i in range(4):
-            dq[i] = dr[i] + dd[i]
-        return
     dn /= n
     dl /= length
-    c = xd / (n * length)
     dc = dc / (n * length) - c * (dn / n + dl / length)
-    a = math.exp(-length / radius)
     da = -a * (dl / radius - length * dradius / (radius * radius))
     den = 1.0 + a * a + (1.0 - a * a) * c
     dden = 2.0 * a * da * (1.0 - c) + (1.0 - a * a) * dc
@@ -264,15 +305,18 @@ def _linear_slide(r, d, radius, dr, dd, dradius, dq):
 
 
 @njit(cache=True)
-def deviatoric_tangent(F, Fn, bn, G, radius0, rule, P, work, A):
-    """Write dP/dF (5, 5) of the deviatoric part into `A`; `P` is its stress, `work` (6, 4) room.
+def deviatoric_tangent(F, Fn, bn, en, G, radius0, rule, P, work, A):
+    """Write the deviatoric stress into `P` (5,) and its dP/dF (5, 5) into `A`; 1 if plastic.
+
+    The stress is that of `deviatoric_pk1`; `work` (6, 4) is room.
 
     Column by column: the change of F turns into that of the trial strain (through the principal
     axes of the trial b), of the mean strain and of the rotation, these into that of the updated
     point, and that into the change of P = tau F^-T.
     """
     trial, old, step, dtrial, dold, dpoint = work
-    (f00, f01, f10, f11), (b0, b1, b2, b3) = _trial(F, Fn, bn)
+    f, (b0, b1, b2, b3) = _trial(F, Fn, bn)
+    f00, f01, f10, f11 = f
     l1, l2, c, s = spectral(b0, b1, b2)
     h1 = 0.5 * math.log(l1)
     h2 = 0.5 * math.log(l2)
@@ -285,23 +329,25 @@ def deviatoric_tangent(F, Fn, bn, G, radius0, rule, P, work, A):
     trial[3] = h3 - m
     radius = radius0 * math.exp(3.0 * m)
     size = math.sqrt(_dot(trial, trial))
-    plastic = size > radius * (1.0 + 1e-10)
+    plastic = size > radius * _MARGIN
     x = f00 + f11
     y = f10 - f01
     turn2 = x * x + y * y
-    for i in range(4):
-        step[i] = 0.0
-    if plastic and rule == EXACT:
-        o0, o1, o2, o3, _ = log_strain(bn[0], bn[1], bn[2], bn[3])
-        ca = x / math.sqrt(turn2)
-        sa = y / math.sqrt(turn2)
-        old[0] = ca * ca * o0 - 2.0 * ca * sa * o2 + sa * sa * o1
-        old[1] = sa * sa * o0 + 2.0 * ca * sa * o2 + ca * ca * o1
-        old[2] = ca * sa * (o0 - o1) + (ca * ca - sa * sa) * o2
-        old[3] = o3
-        for i in range(4):
-            step[i] = trial[i] - old[i]
-    directed = rule == EXACT and plastic and _dot(step, step) > _STILL * radius * radius
+    directed = False
+    if not plastic:
+        _stress(F, G, trial[0], trial[1], trial[2], trial[3], P)
+    else:
+        q0, q1, q2, q3 = _return(f, trial[0], trial[1], trial[2], trial[3], size, radius, en, rule)
+        _stress(F, G, q0, q1, q2, q3, P)
+        if rule == EXACT:
+            turn = math.sqrt(turn2)
+            old[0], old[1], old[2], old[3] = _turned(x / turn, y / turn, en)
+            for i in range(4):
+                step[i] = trial[i] - old[i]
+            directed = _dot(step, step) > _STILL * radius * radius
+    terms = (0.0, 0.0, 0.0, 0.0, 0.0, 0.0)
+    if directed:
+        terms = _slide_terms(old, step, radius)
     detF = F[0] * F[3] - F[1] * F[2]
     g00 = F[3] / detF
     g01 = -F[1] / detF
@@ -345,7 +391,7 @@ def deviatoric_tangent(F, Fn, bn, G, radius0, rule, P, work, A):
             dold[3] = 0.0
             for i in range(4):
                 dtrial[i] -= dold[i]
-            _linear_slide(old, step, radius, dold, dtrial, 3.0 * radius * dm, dpoint)
+            _linear_slide(old, step, radius, terms, dold, dtrial, 3.0 * radius * dm, dpoint)
         t0 = 2.0 * G * dpoint[0]
         t1 = 2.0 * G * dpoint[1]
         t2 = 2.0 * G * dpoint[2]
@@ -359,3 +405,4 @@ def deviatoric_tangent(F, Fn, bn, G, radius0, rule, P, work, A):
         A[2, j] = t2 * g00 + t1 * g01 - (P[2] * w00 + P[3] * w01)
         A[3, j] = t2 * g10 + t1 * g11 - (P[2] * w10 + P[3] * w11)
         A[4, j] = 2.0 * G * dpoint[3] / F[4] - (P[4] / F[4] if j == 4 else 0.0)
+    return 1 if plastic else 0

@@ -23,9 +23,12 @@ TOLERANCE = 2e-6
 """Accepted sum of residual forces over the contact force; round-off in the largest elements, far
 from the contact, keeps it above 5e-7."""
 
-# largest accepted correction, over the approach and in R, where round-off rules the residual
+# Where round-off rules the residual, the corrections decide: largest accepted next one over the
+# approach, the next one estimated by the last two in geometric progression (Newton's are faster);
+# and largest accepted one in R. The residual must then be near its floor all the same.
 _STILL = 1e-8
 _ROUND_OFF = 2e-14
+_FLOOR = 50.0 * TOLERANCE
 _MOST_ITERATIONS = 18
 _BACKTRACKS = 5
 _SECANTS = 3
@@ -86,15 +89,16 @@ class Solver:
         u = guess.copy()
         u[self.grid.driven] = -delta
         now = self._evaluate(u, state)
-        moved = np.inf
+        moved, next_move = np.inf, np.inf
         for iteration in range(_MOST_ITERATIONS):
             if now is None:
                 return None
-            if iteration and self._converged(now, moved, delta):
+            if iteration and self._converged(now, moved, next_move, delta):
                 return Equilibrium(u, now.contact, self._reaction(now), iteration)
             direction = self._direction(now)
             u, now, alpha = self._search(u, now, direction, state)
-            moved = alpha * float(np.abs(direction).max())
+            before, moved = moved, alpha * float(np.abs(direction).max())
+            next_move = moved * min(moved / before, 1.0) if np.isfinite(before) else moved
         return None
 
     def _evaluate(self, u: Floats, state: State) -> Evaluation | None:
@@ -120,10 +124,12 @@ class Solver:
             return now.contact.force
         return -float(now.bulk[self.grid.reaction].sum())
 
-    def _converged(self, now: Evaluation, moved: float, delta: float) -> bool:
+    def _converged(self, now: Evaluation, moved: float, next_move: float, delta: float) -> bool:
         force = max(abs(now.contact.force), 1e-300)
-        unbalanced = float(np.abs(now.residual[self.free]).sum())
-        return unbalanced < TOLERANCE * force or moved < max(_STILL * delta, _ROUND_OFF)
+        unbalanced = float(np.abs(now.residual[self.free]).sum()) / force
+        if unbalanced < TOLERANCE or moved < max(_STILL * delta, _ROUND_OFF):
+            return True
+        return unbalanced < _FLOOR and next_move < _STILL * delta
 
     def _direction(self, now: Evaluation) -> Floats:
         start = time.process_time()

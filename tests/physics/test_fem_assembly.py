@@ -9,7 +9,6 @@ from dentscope.fem.assemble import Elements, State, advance, bulk_forces
 from dentscope.fem.material import (
     EXACT,
     RADIAL,
-    deviatoric_pk1,
     deviatoric_tangent,
     elastic_deviator,
 )
@@ -118,7 +117,7 @@ def plain_scikit_fem(mesh, u, state, radius, rule):
         for q in range(4):
             f = F[e, q]
             s0, s1, s2, s3, _, _, _ = elastic_deviator(
-                f, state.F[e, q], state.b[e, q], radius, rule
+                f, state.F[e, q], state.b[e, q], state.strain[e, q], radius, rule
             )
             tau = 2.0 * G * np.array([[s0, s2], [s2, s1]])
             P[e, q, :4] = (tau @ np.linalg.inv(f[:4].reshape(2, 2)).T).ravel()
@@ -175,8 +174,8 @@ def point_tangents(F, state, radius, rule):
     A, P, work = np.empty((*F.shape[:2], 5, 5)), np.empty(5), np.empty((6, 4))
     for e in range(F.shape[0]):
         for q in range(4):
-            point = (F[e, q], state.F[e, q], state.b[e, q], G, radius, rule)
-            deviatoric_pk1(*point, P)
+            strain = state.strain[e, q]
+            point = (F[e, q], state.F[e, q], state.b[e, q], strain, G, radius, rule)
             deviatoric_tangent(*point, P, work, A[e, q])
     return A
 
