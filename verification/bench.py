@@ -16,6 +16,7 @@ import numpy.typing as npt
 from .. import fem
 from ..campaigns.case import Case
 from ..core.material import Pair
+from .result import Result
 
 Floats = npt.NDArray[np.float64]
 
@@ -87,12 +88,15 @@ class Bench:
         How finely to solve.
     say
         Called with a line of progress.
+    publish
+        Called by a long check with what it has so far.
     """
 
     folder: Path
     pictures: Path
     effort: Effort = Effort.PRODUCTION
     say: Callable[[str], None] = lambda line: None
+    publish: Callable[[Result], None] = lambda result: None
     reused_cpu_s: float = field(default=0.0, init=False)
 
     def solve(self, case: Case) -> Solved:

@@ -11,6 +11,8 @@ from dataclasses import dataclass
 
 from ..core.errors import InputError
 from . import (
+    balances,
+    convergence,
     first_yield,
     flattening,
     hertz,
@@ -20,9 +22,11 @@ from . import (
     objectivity,
     patch,
     penalty,
+    plastic_zones,
     rates,
     role_swap,
     scale_invariance,
+    top_face,
     truncation,
 )
 from .bench import Bench
@@ -49,8 +53,16 @@ CHECKS: tuple[Check, ...] = (
     Check("scale", "scale invariance in R and in the unit of stress", scale_invariance.run),
     Check("penalty", "independence of the contact stiffness", penalty.run),
     Check("role-swap", "exchange of the bodies where the problem is symmetric", role_swap.run),
+    Check("top-face", "the hemisphere's top face held radially", top_face.run),
+    Check(
+        "plastic-zones",
+        "pictures of figures 2.2 to 2.4 and what is said of them",
+        plastic_zones.run,
+    ),
     Check("indentation", "slip-line hardness and published indentation", indentation.run),
     Check("flattening", "Jackson and Green, Kogut and Etsion", flattening.run),
+    Check("convergence", "mesh and step over Table 2.1 at Sy* = 0.1, 1, 10", convergence.run),
+    Check("balances", "energy, force, unloading", balances.run),
     Check("independent-code", "the same cases in CalculiX", independent_code.run),
 )
 """In the order of the report."""

@@ -11,6 +11,18 @@ from .checks import CHECKS
 from .result import Measurement, Result, Table
 from .runner import kept_result
 
+_TESTS = (
+    ("residual and tangent of the assembly", "plain scikit-fem forms on the same mesh and state",
+     "1e-10, elastic and plastic", "`tests/physics/test_fem_assembly.py`"),
+    ("tangent", "Taylor remainder", "slope 2 within 0.1", "same, `tests/unit/fem/test_material.py`"),
+    ("path error of the stress update", "its own limit", "order 2 (radial return 1) within 0.1",
+     "`tests/unit/fem/test_material.py`"),
+    ("stress update", "yield surface, rotation, pure volume change", "1e-10", "same"),
+    ("elastic F, a and share, unequal and rigid bodies", "Hertz, Eq. 2.3", "1 %",
+     "`tests/physics/test_fem_solve.py`"),
+    ("six whole curves", "their last release", "see there", "`tests/golden`"),
+)  # fmt: skip
+
 
 def write_report(path: Path, *, folder: Path) -> Path:
     """Write the report from the measurements kept in `folder`; return its path."""
@@ -19,6 +31,7 @@ def write_report(path: Path, *, folder: Path) -> Path:
     lines = [*_head(), *_summary(found, [name for name, r in known.items() if r is None])]
     for result in found:
         lines += _section(result, path)
+    lines += _tests()
     path.parent.mkdir(parents=True, exist_ok=True)
     path.write_text("\n".join(lines).rstrip() + "\n", encoding="utf-8")
     return path
@@ -37,6 +50,16 @@ def _head() -> Iterator[str]:
     )
     yield ""
     yield f"Numerics version {fem.NUMERICS_VERSION}; {packages}."
+    yield ""
+
+
+def _tests() -> Iterator[str]:
+    yield "## Kept by the tests"
+    yield ""
+    yield "| check | reference | kept to | test |"
+    yield "| --- | --- | --- | --- |"
+    for row in _TESTS:
+        yield "| " + " | ".join(row) + " |"
     yield ""
 
 

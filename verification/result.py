@@ -86,6 +86,8 @@ class Result:
         Of the solver that gave the numbers.
     cpu_s
         Processor time of the check in seconds, solves from earlier checks included.
+    complete
+        Whether all of it is measured; if not, the next run goes on.
     """
 
     name: str
@@ -98,6 +100,7 @@ class Result:
     effort: str = ""
     numerics_version: int = 0
     cpu_s: float = 0.0
+    complete: bool = True
 
     @property
     def missed(self) -> tuple[Measurement, ...]:

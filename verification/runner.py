@@ -28,7 +28,7 @@ def run_checks(checks: Iterable[Check], *, bench: Bench, afresh: bool = False) -
     results = []
     for check in checks:
         known = kept_result(check, folder=bench.folder)
-        if known is not None and not afresh and _covers(known, bench.effort):
+        if known is not None and not afresh and known.complete and _covers(known, bench.effort):
             bench.say(f"{check.name}: measured before")
             results.append(known)
             continue
@@ -38,26 +38,33 @@ def run_checks(checks: Iterable[Check], *, bench: Bench, afresh: bool = False) -
 
 
 def kept_result(check: Check, *, folder: Path) -> Result | None:
-    """Return what was measured with the present numerics at the higher effort, if anything."""
+    """Return what was measured with the present numerics: complete before partial, then finer."""
+    found = []
     for effort in (Effort.PRODUCTION, Effort.QUICK):
         path = _file(check, folder, effort)
         if path.exists():
             result = read_result(path)
             if result.numerics_version == fem.NUMERICS_VERSION:
-                return result
-    return None
+                found.append(result)
+    best = [result for result in found if result.complete] or found
+    return best[0] if best else None
 
 
 def _measured(check: Check, bench: Bench) -> Result:
     started, bench.reused_cpu_s = time.process_time(), 0.0
-    found = check.run(bench)
-    result = replace(
-        found,
-        effort=bench.effort.value,
-        numerics_version=fem.NUMERICS_VERSION,
-        cpu_s=time.process_time() - started + bench.reused_cpu_s,
-    )
-    write_result(result, _file(check, bench.folder, bench.effort))
+    path = _file(check, bench.folder, bench.effort)
+
+    def stamped(found: Result) -> Result:
+        return replace(
+            found,
+            effort=bench.effort.value,
+            numerics_version=fem.NUMERICS_VERSION,
+            cpu_s=time.process_time() - started + bench.reused_cpu_s,
+        )
+
+    bench.publish = lambda found: write_result(stamped(found), path)
+    result = stamped(check.run(bench))
+    write_result(result, path)
     for m in result.measurements:
         state = {True: "met", False: "MISSED", None: ""}[m.met]
         bench.say(f"  {m.what}: {m.value:.4g} {m.unit} {m.mark} {state}".rstrip())

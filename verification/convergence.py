@@ -1,0 +1,188 @@
+"""Error of mesh and step, and ripple, for Table 2.1 of the thesis at three strength ratios."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+import numpy.typing as npt
+
+from .. import fem
+from ..campaigns.case import Case
+from ..campaigns.designs import TABLE_2_1, pair_of
+from ..core.material import Pair
+from .bench import Bench, Effort, Solved
+from .curves import ripple, smoothed
+from .result import Cell, Measurement, Result, Table
+
+Floats = npt.NDArray[np.float64]
+
+_RATIOS = (0.1, 1.0, 10.0)
+_N = 60
+# F [%], a [%], delta_s*, H [%]
+_NAMES = ("F", "a", "delta_s*", "H")
+_MARKS = (0.5, 1.0, 0.005, 1.5)
+_RIPPLE_MARKS = {"F": 0.3, "a": 0.5}
+
+
+@dataclass(frozen=True)
+class Plan:
+    """A level of accuracy and what it is compared with.
+
+    Parameters
+    ----------
+    base
+        The level whose error is estimated.
+    coarser
+        The same steps on elements twice as large.
+    bolder
+        The same elements with steps twice as large (in ln Delta).
+    deepest
+        Largest Delta/R.
+    unload_from
+        Depths that the base is unloaded from.
+    """
+
+    base: fem.Accuracy
+    coarser: fem.Accuracy
+    bolder: fem.Accuracy
+    deepest: float
+    unload_from: tuple[float, ...]
+
+
+def plan_of(effort: Effort) -> Plan:
+    """Return what is solved at an effort."""
+    if effort is Effort.QUICK:
+        base, deepest = fem.Accuracy.smoke().with_(level="smoke, h/2", fine=0.05), 0.01
+    else:
+        base, deepest = fem.Accuracy.production(), 0.1
+    return Plan(
+        base=base,
+        coarser=base.with_(level=f"{base.level}, 2 h", fine=2.0 * base.fine),
+        bolder=base.with_(level=f"{base.level}, 2 steps", step_ratio=base.step_ratio**2),
+        deepest=deepest,
+        unload_from=(0.3 * deepest, deepest),
+    )
+
+
+def ordered_cases() -> list[tuple[int, float]]:
+    """Case of Table 2.1 and Sy*, those that say most first."""
+    first = [(1, 1.0), (5, 10.0), (3, 0.1)]
+    return first + [
+        (number, ratio) for number in TABLE_2_1 for ratio in _RATIOS if (number, ratio) not in first
+    ]
+
+
+def case_of(number: int, ratio: float, *, plan: Plan, accuracy: fem.Accuracy) -> Case:
+    """Return a case of Table 2.1; the base is also unloaded."""
+    pair = _pair(number, ratio)
+    return Case(
+        name=f"table-2.1-case-{number}-Sy*-{ratio:g}",
+        pair=pair,
+        depths=fem.geometric_depths(0.3 * fem.critical_depth(pair), plan.deepest, _N),
+        unload_from=plan.unload_from if accuracy == plan.base else (),
+        radius_at_least=0.0,
+        accuracy=accuracy,
+    )
+
+
+def run(bench: Bench) -> Result:
+    """Solve every case on two meshes and with two steps; what is done is kept case by case."""
+    plan = plan_of(bench.effort)
+    rows: list[tuple[Cell, ...]] = []
+    total = np.empty((0, 4))
+    ripples = np.empty((0, 4))
+    cases = ordered_cases()
+    for k, (number, ratio) in enumerate(cases, start=1):
+        base, coarser, bolder = (
+            bench.solve(case_of(number, ratio, plan=plan, accuracy=accuracy))
+            for accuracy in (plan.base, plan.coarser, plan.bolder)
+        )
+        mesh, wave = difference(coarser, base)
+        step, _ = difference(bolder, base)
+        # first order in the element: what halving changed is what is left; second in the step
+        error = np.hypot(mesh, step / 3.0)
+        total, ripples = np.vstack([total, error]), np.vstack([ripples, wave])
+        rows.append(
+            (f"{number}, {ratio:g}", *(_pair_of_numbers(i, mesh, step / 3.0) for i in range(4)),
+             f"{wave[0]:.2f} / {wave[1]:.2f} / {wave[3]:.2f}",
+             f"{base.counters['cpu_s']:.0f}", "" if base.completed else base.message)
+        )  # fmt: skip
+        found = _result(plan, rows, total, ripples, k, len(cases))
+        bench.publish(found)
+    return found
+
+
+def difference(other: Solved, base: Solved) -> tuple[Floats, Floats]:
+    """Largest smoothed differences of F, a, delta_s*, H (in %, share absolute), and base's ripple.
+
+    Depths that both reached, from 0.3 of the critical one.
+    """
+    n = min(len(other["delta"]), len(base["delta"]))
+    delta = base["delta"][:n]
+    curves = []
+    for solved in (other, base):
+        F, a = np.log(solved["force"][:n]), np.log(solved["radius"][:n])
+        curves.append((100.0 * F, 100.0 * a, solved.share[:n], 100.0 * (F - 2.0 * a)))
+    off = [
+        float(np.abs(smoothed(delta, x) - smoothed(delta, y)).max())
+        for x, y in zip(*curves, strict=True)
+    ]
+    return np.array(off), np.array([ripple(delta, y) for y in curves[1]])
+
+
+def _result(
+    plan: Plan, rows: list[tuple[Cell, ...]], total: Floats, ripples: Floats, done: int, of: int
+) -> Result:
+    worst = total.max(axis=0)
+    waves = ripples.max(axis=0)
+    base = plan.base
+    settings = f"{base.divisions} divisions, edge {base.fine:g} a, steps of {base.step_ratio:g}"
+    return Result(
+        name="convergence",
+        title="Error of mesh and step",
+        about=(
+            f"Table 2.1 of the thesis at Sy* = 0.1, 1, 10, to Delta/R = {plan.deepest:g}, level "
+            f"`{base.level}` ({settings}): against elements twice as large at the edge and "
+            "against steps twice as large (in ln Delta), ripple smoothed out. The error of the "
+            "mesh is taken as the whole difference (first order), that of the step as a third of "
+            "it (second order); both together in the square. Ripple: rms deviation from a local "
+            "quadratic in ln Delta over the whole range."
+        ),
+        measurements=(
+            *(
+                Measurement(f"error of {name}, largest over cases and depths", float(value),
+                            "" if name == "delta_s*" else "%", None, mark, "own estimate")
+                for name, value, mark in zip(_NAMES, worst, _MARKS, strict=True)
+            ),
+            *(
+                Measurement(f"ripple of {name}, rms, worst case", float(waves[_NAMES.index(name)]),
+                            "%", None, mark, "own")
+                for name, mark in _RIPPLE_MARKS.items()
+            ),
+        ),
+        tables=(
+            Table(
+                "Largest differences, mesh + step",
+                ("case, Sy*", "F [%]", "a [%]", "delta_s*", "H [%]", "ripple F / a / H [%]",
+                 "processor s", "ended"),
+                tuple(rows),
+            ),
+        ),
+        notes=(
+            *((f"{done} of {of} cases measured so far.",) if done < of else ()),
+            *(("The marks are those of the production level, to Delta/R = 0.1; this is a coarser "
+               "level.",) if base.level != "production" else ()),
+        ),
+        complete=done == of,
+    )  # fmt: skip
+
+
+def _pair_of_numbers(i: int, mesh: Floats, step: Floats) -> str:
+    digits = 4 if _NAMES[i] == "delta_s*" else 2
+    return f"{mesh[i]:.{digits}f} + {step[i]:.{digits}f}"
+
+
+def _pair(number: int, ratio: float) -> Pair:
+    E_s, E_f, Sy, nu_s, nu_f = TABLE_2_1[number]
+    return pair_of(E_s=E_s, E_f=E_f, Sy_min=Sy, ratio=ratio, nu_s=nu_s, nu_f=nu_f)
