@@ -1,59 +1,134 @@
-"""`dentscope fit`: the coefficients of the closed form from a campaign."""
+"""`dentscope fit`: coefficients of the closed form from a campaign, and the law as source."""
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from pathlib import Path
-from typing import Annotated
+from typing import TYPE_CHECKING, Annotated
 
 import typer
 
-from ..core.errors import EXIT_NOT_CONVERGED
+from ..core.errors import EXIT_NOT_CONVERGED, InputError
+
+if TYPE_CHECKING:
+    from rich.console import Console
+
+_PUBLISHED = Path("data/campaign")
+_OWN = Path("build/campaign/campaign.h5")
+_PLACE = Path(__file__).resolve().parents[1] / "data" / "coefficients" / "fitted.json"
 
 
 def fit(
-    campaign: Annotated[Path, typer.Argument(help="Campaign file.")] = Path(
-        "build/campaign/campaign.h5"
-    ),
+    campaigns: Annotated[
+        list[Path] | None,
+        typer.Argument(
+            help="Campaign files or folders of parts; the published data set if there is one, "
+            "else build/campaign/campaign.h5."
+        ),
+    ] = None,
     out: Annotated[Path, typer.Option(help="Folder for the report.")] = Path("build/fit"),
     publish: Annotated[
         bool, typer.Option("--publish", help="Also replace the coefficients that the law uses.")
     ] = False,
+    compare: Annotated[
+        bool,
+        typer.Option("--compare/--no-compare", help="Also fit simpler forms and the thesis's own."),
+    ] = True,
+    export: Annotated[
+        Path | None,
+        typer.Option(
+            help="Only write the law that is in use into this folder, as Python, C, Fortran and "
+            "MATLAB source, with a table for discrete-element codes."
+        ),
+    ] = None,
 ) -> int:
-    """Fit the closed form; write coefficients with standard errors, and a picture of the errors."""
+    """Fit the closed form; write coefficients with standard errors, and a report with pictures."""
     from rich.console import Console
-    from rich.table import Table as RichTable
-
-    from ..fitting import coefficients_content, fit_tables, read_tables, write_coefficients
-    from ..fitting.report import draw_fit
 
     console = Console()
-    table, residuals = read_tables(campaign)
+    if export is not None:
+        return _export(export, console)
+    from ..fitting import fit_tables, read_tables
+    from ..fitting.coefficients import coefficients_content, write_coefficients
+    from ..fitting.report import coefficient_rows, error_rows, write_report
+
+    files = _files(campaigns)
+    table, turns = read_tables(files)
     console.print(
-        f"{campaign}: {len(table.pairs)} combinations, {len(table.D)} depths, "
-        f"{len(residuals.D)} unloadings; fitting, then leaving each combination out once ..."
+        f"{', '.join(map(str, files))}: {len(table.pairs)} combinations, {len(table.D)} depths, "
+        f"{len(turns.D)} unloadings; fitting, then leaving combinations out ..."
     )
-    result = fit_tables(table, residuals)
-    content = coefficients_content(result, table, campaign)
+    result = fit_tables(table, turns)
+    content = coefficients_content(result, table, files)
     write_coefficients(content, out / "fitted.json")
-    shown = RichTable("coefficient", "value", "standard error")
-    for name, entry in content["coefficients"].items():
-        shown.add_row(name, f"{entry['value']:.4f}", f"{entry['standard_error']:.4f}")
-    console.print(shown)
-    errors = RichTable(
-        "beyond first yield", "mean", "largest", "mean, left out", "largest, left out"
+    _show(console, coefficient_rows(content))
+    validation = _validation(files, result)
+    columns = [
+        ("fitted", result.errors),
+        ("left out", result.held_out),
+        ("validation", validation),
+    ]
+    _show(console, error_rows(columns))
+    choices, thesis = (), ""
+    if compare:
+        from ..fitting.select import compare_forms
+
+        console.print("fitting simpler forms ...")
+        start = {k: v["value"] for k, v in content["coefficients"].items()}
+        choices = tuple(compare_forms(table, turns, start=start))
+    page = write_report(
+        result, content, table, turns, out, validation=validation, choices=choices, thesis=thesis
     )
-    for name, unit in (("force", "%"), ("radius", "%"), ("share", ""), ("residual", "")):
-        scale = 100.0 if unit else 1.0
-        a, b = getattr(result.errors, name), getattr(result.held_out, name)
-        errors.add_row(name, *(f"{scale * x:.3g}{unit}" for x in (*a, *b)))
-    console.print(errors)
-    console.print(f"domain: {content['domain']['note']}")
-    console.print(f"coefficients: {out / 'fitted.json'}; picture: {draw_fit(result, table, out)}")
+    console.print(f"coefficients: {out / 'fitted.json'}; report: {page}")
     if publish:
-        place = Path(__file__).resolve().parents[1] / "data" / "coefficients" / "fitted.json"
-        write_coefficients(content, place)
+        write_coefficients(content, _PLACE)
         console.print("the fitted law now uses these coefficients")
     if not result.outcome.completed:
         console.print(str(result.outcome))
         return EXIT_NOT_CONVERGED
+    return 0
+
+
+def _files(campaigns: Sequence[Path] | None) -> list[Path]:
+    if not campaigns:
+        return sorted(_PUBLISHED.glob("*.h5")) or [_OWN]
+    files: list[Path] = []
+    for path in campaigns:
+        found = sorted(path.glob("*.h5")) if path.is_dir() else [path]
+        if not found:
+            raise InputError("no campaign file", source=str(path), allowed="a folder of *.h5 parts")
+        files += found
+    return files
+
+
+def _validation(files, result):  # type: ignore[no-untyped-def]
+    """Errors on the cases that no fit reads; none if the campaign holds none."""
+    from ..fitting.fit import errors_of, predict
+    from ..fitting.table import read_tables
+
+    try:
+        table, turns = read_tables(files, held_out=True)
+    except InputError:
+        return None
+    return errors_of(predict(result.values, table, turns), table, turns)
+
+
+def _show(console: Console, rows: Sequence[Sequence[str]]) -> None:
+    from rich.table import Table as RichTable
+
+    shown = RichTable(*rows[0])
+    for row in rows[1:]:
+        shown.add_row(*row)
+    console.print(shown)
+
+
+def _export(folder: Path, console: Console) -> int:
+    from ..models import law_named
+    from ..models.export import write_sources
+    from ..models.fitted import Fitted
+
+    law = law_named("fitted")
+    assert isinstance(law, Fitted)
+    for path in write_sources(law, folder):
+        console.print(str(path))
     return 0

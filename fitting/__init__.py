@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from .coefficients import coefficients_content, write_coefficients
 from .fit import Errors, Fit, fit_tables
 from .table import ResidualTable, Table, read_tables
 
@@ -11,8 +10,6 @@ __all__ = [
     "Fit",
     "ResidualTable",
     "Table",
-    "coefficients_content",
     "fit_tables",
     "read_tables",
-    "write_coefficients",
 ]

@@ -6,59 +6,91 @@
 from __future__ import annotations
 
 import json
+import re
+from collections.abc import Sequence
 from dataclasses import asdict
 from pathlib import Path
 from typing import Any
 
+import numpy as np
+
+from ..campaigns import read_curves
 from ..core.provenance import environment, file_digest
 from ..fem import NUMERICS_VERSION
-from ..models.fitted import NAMES
+from ..models.closed_form import COEFFICIENTS
+from ..models.fitted import FORMAT
 from .fit import Fit
 from .table import Table
 
-FORMAT = "dentscope-coefficients/1"
 
+def coefficients_content(fit: Fit, table: Table, campaigns: Sequence[Path]) -> dict[str, Any]:
+    """Return the content of the coefficients file.
 
-def coefficients_content(fit: Fit, table: Table, campaign: Path) -> dict[str, Any]:
-    """Return the content of the coefficients file."""
-    ratios, moduli = table.ratio, table.modulus
+    Parameters
+    ----------
+    fit
+        The regression's result.
+    table
+        The rows that it was made from.
+    campaigns
+        The files that these were read from.
+    """
     return {
         "format": FORMAT,
         "form": "docs/closed-form.md",
         "coefficients": {
             name: {"value": value, "standard_error": error}
             for name, value, error in zip(
-                NAMES, fit.values.tolist(), fit.standard_errors.tolist(), strict=True
+                COEFFICIENTS, fit.values.tolist(), fit.standard_errors.tolist(), strict=True
             )
         },
-        "covariance": fit.covariance.tolist(),
-        "errors": {"fitted": asdict(fit.errors), "held_out": asdict(fit.held_out)},
-        "domain": {
-            "Sy_ratio": [float(ratios.min()), float(ratios.max())],
-            "E_reduced_over_Sy_min": [float(moduli.min()), float(moduli.max())],
-            "Delta_over_R_max": float(table.D.max()),
-            "combinations": len(table.pairs),
-            "note": f"Sy* {ratios.min():.3g} to {ratios.max():.3g}, E'/Sy_min {moduli.min():.0f} "
-            f"to {moduli.max():.0f}, Delta/R up to {table.D.max():.3g}",
+        "covariance": [[float(f"{x:.6g}") for x in row] for row in fit.covariance],
+        "errors": {
+            "fitted": asdict(fit.errors),
+            "left_out": asdict(fit.held_out) if fit.held_out else None,
         },
+        "domain": {"limits": limits_of(table), "combinations": len(table.pairs)},
         "provenance": {
-            "campaign_sha256": file_digest(campaign),
+            "campaigns": [
+                {"sha256": file_digest(path), "accuracy": _levels(path)} for path in campaigns
+            ],
             "numerics_version": NUMERICS_VERSION,
-            "accuracy": sorted({record for record in _levels(campaign)}),
             "environment": environment(),
         },
     }
+
+
+def limits_of(table: Table) -> dict[str, list[float]]:
+    """Smallest and largest value of what the domain is stated in, over the fitted rows."""
+    nus = [b.nu for p in table.pairs for b in (p.sphere, p.flat) if not b.rigid]
+    columns = {
+        "Sy_ratio": [p.Sy_ratio for p in table.pairs],
+        "E_reduced_over_Sy_min": [p.E_reduced / p.Sy_min for p in table.pairs],
+        "nu": nus,
+        "elastic_share": [p.elastic_share for p in table.pairs],
+        "Delta_over_R": [0.0, float(table.D.max())],
+        "a_over_R": [0.0, float(table.radius.max())],
+    }
+    return {k: [float(np.min(v)), float(np.max(v))] for k, v in columns.items()}
 
 
 def write_coefficients(content: dict[str, Any], path: Path) -> None:
     """Write the file as a whole or not at all."""
     path.parent.mkdir(parents=True, exist_ok=True)
     draft = path.with_suffix(".tmp")
-    draft.write_text(json.dumps(content, indent=1) + "\n", encoding="utf-8")
+    text = json.dumps(content, indent=1)
+    draft.write_text(_rows_on_one_line(text) + "\n", encoding="utf-8")
     draft.replace(path)
 
 
-def _levels(campaign: Path) -> list[str]:
-    from ..campaigns import read_curves
+def _rows_on_one_line(text: str) -> str:
+    """Put each innermost list of numbers on a line of its own."""
+    return re.sub(
+        r"\[\s+([-+0-9.eE,\s]+?)\s+\]",
+        lambda m: "[" + ", ".join(m.group(1).replace(",", " ").split()) + "]",
+        text,
+    )
 
-    return [record.case.accuracy.level for record in read_curves(campaign)]
+
+def _levels(campaign: Path) -> list[str]:
+    return sorted({record.case.accuracy.level for record in read_curves(campaign)})

@@ -2,52 +2,60 @@
 
 Rows of one material combination are not independent: the standard errors allow for that (clustered
 by combination), and the error that a user should expect is that of combinations left out of the fit
-(cross-validation over whole combinations).
+(cross-validation over whole combinations). The derivatives are exact: the closed form is evaluated
+on complex numbers.
 """
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass, field
+from typing import Any
 
 import numpy as np
 import numpy.typing as npt
 from scipy.optimize import least_squares
 
 from ..core.errors import COMPLETED, Ending, Outcome
-from ..models import Domain
-from ..models.fitted import ENDS, NAMES, Fitted, fitted_law
+from ..models.closed_form import COEFFICIENTS, contact
+from ..models.fitted import Fitted, contact_numbers, fitted_law
+from .form import LIMITS, START
 from .table import ResidualTable, Table
 
 Floats = npt.NDArray[np.float64]
 
-_START_BLENDED = {"w1": 4.0, "q": 0.35, "h": 0.5}
-_START_SINGLE = {
-    "n": 6.0, "p": 1.2, "w2": 4.0, "s": 1.5, "t": 0.15, "k1": 0.11, "k2": 5.0, "r1": 0.15,
-    "r2": 5.0, "g0": 8.0, "g1": 1.0, "g2": 1.0, "g3": 0.1,
-}  # fmt: skip
-START: dict[str, float] = {
-    **{f"{name}_{end}": value for name, value in _START_BLENDED.items() for end in ENDS},
-    **_START_SINGLE,
-}
-"""Where the regression starts: the same for flattening, equal strengths and indentation."""
-
-_BOUNDS: dict[str, tuple[float, float]] = {
-    "w1": (0.5, 50.0), "p": (0.4, 4.0), "q": (0.05, 0.8), "h": (-3.0, 6.0), "w2": (0.5, 50.0),
-    "s": (0.4, 12.0), "t": (0.02, 0.6), "n": (1.0, 30.0), "k1": (0.0, 0.4), "k2": (0.1, 200.0),
-    "r1": (0.0, 0.4), "r2": (0.1, 200.0), "g0": (1.0, 60.0), "g1": (-20.0, 60.0), "g2": (-1.0, 4.0),
-    "g3": (1e-3, 5.0),
-}  # fmt: skip
 _UNIT = 0.01  # a residual of one: 1 % in F and a, 0.01 in the shares
+_UNIT_EXPONENT = 0.03  # of N; 0.03 is about 1 % of F_m in the force on unloading
+_FOLDS = 12
+_DEEP = 5.0  # delta_m/delta_c from which residual depths are judged relatively
 
 
 @dataclass(frozen=True)
 class Errors:
-    """Mean and largest error of each quantity; F and a relative, the others absolute."""
+    """(mean, largest) error beyond first yield.
+
+    Parameters
+    ----------
+    force, radius, hardness
+        Relative.
+    share
+        Absolute.
+    left_sphere, left_flat
+        Residual depth of the body over Delta_m, absolute, all turning points.
+    left
+        Whole residual depth, relative, turning points beyond five critical depths.
+    exponent
+        Of the unloading curve, absolute.
+    """
 
     force: tuple[float, float]
     radius: tuple[float, float]
+    hardness: tuple[float, float]
     share: tuple[float, float]
-    residual: tuple[float, float]
+    left_sphere: tuple[float, float]
+    left_flat: tuple[float, float]
+    left: tuple[float, float]
+    exponent: tuple[float, float]
 
 
 @dataclass(frozen=True)
@@ -57,11 +65,15 @@ class Fit:
     Parameters
     ----------
     values, standard_errors
-        By the order of `models.fitted.NAMES`, shape (n,).
+        By the order of `COEFFICIENTS`, shape (n,).
     covariance
         Allowing for rows of one combination that move together, shape (n, n).
     errors, held_out
-        Errors on the fitted rows, and on combinations left out one by one.
+        Errors on the fitted rows, and on combinations left out of the fit in turn.
+    predicted
+        Every row as predicted by fits that did not see its combination.
+    held
+        Coefficients that were held at their start.
     outcome
         How the regression ended.
     """
@@ -70,92 +82,147 @@ class Fit:
     standard_errors: Floats
     covariance: Floats
     errors: Errors
-    held_out: Errors
+    held_out: Errors | None
+    predicted: Prediction | None
     outcome: Outcome
+    held: Mapping[str, float] = field(default_factory=dict)
 
     @property
     def law(self) -> Fitted:
         """The law with these coefficients."""
-        return _law(self.values)
+        return fitted_law(dict(zip(COEFFICIENTS, self.values.tolist(), strict=True)))
 
 
-def fit_tables(table: Table, residuals: ResidualTable) -> Fit:
+@dataclass(frozen=True)
+class Prediction:
+    """The closed form on the rows of both tables; arrays as in `Table` and `ResidualTable`."""
+
+    force: Any
+    radius: Any
+    share: Any
+    total: Any
+    sphere: Any
+    exponent: Any
+
+    def mix(self, other: Prediction, rows: Any, turns: Any) -> Prediction:
+        """Return this with the rows and turning points of the masks taken from `other`."""
+        loading = {
+            k: np.where(rows, getattr(other, k), getattr(self, k))
+            for k in ("force", "radius", "share")
+        }
+        unloading = {
+            k: np.where(turns, getattr(other, k), getattr(self, k))
+            for k in ("total", "sphere", "exponent")
+        }
+        return Prediction(**loading, **unloading)
+
+
+def predict(values: Any, table: Table, turns: ResidualTable) -> Prediction:
+    """Evaluate the closed form on every row; complex coefficients give complex rows."""
+    coefficients = dict(zip(COEFFICIENTS, values, strict=True))
+    columns = contact_numbers(coefficients, table.bodies).T
+    force, radius, share, _, _, _ = contact(table.D, *columns[:, table.case])
+    _, _, _, total, phi, exponent = contact(turns.D, *columns[:, turns.case])
+    return Prediction(force, radius, share, total, phi * total, exponent)
+
+
+def fit_tables(
+    table: Table,
+    turns: ResidualTable,
+    *,
+    held: Mapping[str, float] | None = None,
+    start: Mapping[str, float] | None = None,
+    folds: int = _FOLDS,
+) -> Fit:
     """Fit the closed form to a campaign.
 
     Parameters
     ----------
-    table, residuals
+    table, turns
         Rows of the campaign, from `read_tables`.
+    held
+        Coefficients that keep the given value, for comparing simpler forms.
+    start
+        Where to start; `form.START` if not given.
+    folds
+        Groups of combinations that are left out in turn; 0 leaves the cross-validation out.
     """
-    values, jacobian, misfit, ok = _regress(table, residuals)
-    clusters = np.concatenate([np.tile(table.case, 3), np.tile(residuals.case, 2)])
-    covariance = _covariance(jacobian, misfit, clusters)
-    outcome = (
-        COMPLETED
-        if ok
-        else Outcome(Ending.NOT_CONVERGED, "the regression ran out of steps.", "Look at the data.")
-    )
+    held = dict(held or {})
+    first = np.array([{**START, **(start or {}), **held}[name] for name in COEFFICIENTS])
+    free = np.array([name not in held for name in COEFFICIENTS])
+    values, jacobian, misfit, ok = _regress(table, turns, first, free)
+    clusters = np.concatenate([np.tile(table.case, 3), np.tile(turns.case, 3)])
+    covariance = np.zeros((len(values), len(values)))
+    covariance[np.ix_(free, free)] = _covariance(jacobian, misfit, clusters)
+    found = predict(values, table, turns)
+    crossed = _cross_validate(table, turns, values, free, folds) if folds else None
     return Fit(
         values=values,
         standard_errors=np.sqrt(np.maximum(np.diag(covariance), 0.0)),
         covariance=covariance,
-        errors=_errors(_misfit(values, table, residuals), table, residuals),
-        held_out=_cross_validate(table, residuals, values),
-        outcome=outcome,
+        errors=errors_of(found, table, turns),
+        held_out=errors_of(crossed, table, turns) if crossed else None,
+        predicted=crossed,
+        held=held,
+        outcome=COMPLETED
+        if ok
+        else Outcome(Ending.NOT_CONVERGED, "the regression ran out of steps.", "Look at the data."),
     )
-
-
-def _law(values: Floats) -> Fitted:
-    return fitted_law(dict(zip(NAMES, values.tolist(), strict=True)), domain=Domain())
-
-
-def _bounds() -> tuple[list[float], list[float]]:
-    pairs = [_BOUNDS[name.split("_")[0]] for name in NAMES]
-    return [low for low, _ in pairs], [high for _, high in pairs]
 
 
 def _regress(
-    table: Table, residuals: ResidualTable, start: Floats | None = None
+    table: Table, turns: ResidualTable, first: Floats, free: npt.NDArray[np.bool_]
 ) -> tuple[Floats, Floats, Floats, bool]:
-    x0 = np.array([START[name] for name in NAMES]) if start is None else start
+    low, high = np.array([LIMITS[name] for name in COEFFICIENTS]).T
+    inside = np.clip(first, low + 1e-9 * np.abs(low), high - 1e-9 * np.abs(high))
+    residual = _misfit_of(table, turns, first, free)
     found = least_squares(
-        lambda x: _misfit(x, table, residuals) / _UNIT,
-        x0,
-        bounds=_bounds(),
+        residual,
+        inside[free],
+        jac=lambda x: _complex_step(residual, x),
+        bounds=(low[free], high[free]),
         x_scale="jac",
         loss="soft_l1",
-        max_nfev=200,
+        max_nfev=300,
     )
-    plain = _misfit(found.x, table, residuals) / _UNIT
-    return found.x, np.asarray(found.jac), plain, bool(found.success)
+    values = first.copy()
+    values[free] = found.x
+    plain = residual(found.x)
+    return values, _complex_step(residual, found.x), plain, bool(found.success)
 
 
-def _misfit(values: Floats, table: Table, residuals: ResidualTable) -> Floats:
-    """Ln F, ln a, share, residual depth, sphere's residual: law minus data."""
-    law = _law(values)
-    force, radius, share = (np.empty(len(table.D)) for _ in range(3))
-    total, sphere = np.empty(len(residuals.D)), np.empty(len(residuals.D))
-    for number, pair in enumerate(table.pairs):
-        m = table.case == number
-        if m.any():
-            depth = table.D[m] * pair.R
-            force[m] = law.loading(pair, depth) / (pair.E_reduced * pair.R**2)
-            radius[m] = law.contact_radius(pair, depth) / pair.R
-            share[m] = law.share(pair, depth)
-        k = residuals.case == number
-        if k.any():
-            peak = residuals.D[k] * pair.R
-            s, f = law.residual(pair, peak)
-            total[k], sphere[k] = (s + f) / peak, s / peak
-    return np.concatenate(
-        [
-            np.where(table.edge_seen, np.log(force / table.force), 0.0),
-            np.where(table.edge_seen, np.log(radius / table.radius), 0.0),
-            share - table.share,
-            total - residuals.total,
-            sphere - residuals.sphere_part * residuals.total,
-        ]
-    )
+def _misfit_of(
+    table: Table, turns: ResidualTable, first: Floats, free: npt.NDArray[np.bool_]
+) -> Callable[[Any], Any]:
+    """Weighted ln F, ln a, share, residual depth, sphere's residual, exponent: form minus data."""
+    known = np.isfinite(turns.exponent)
+    exponent = np.where(known, turns.exponent, 0.0)
+
+    def misfit(x: Any) -> Any:
+        values = first.astype(np.result_type(x, float))
+        values[free] = x
+        p = predict(values, table, turns)
+        return np.concatenate(
+            [
+                np.where(table.edge_seen, np.log(p.force / table.force), 0.0) / _UNIT,
+                np.where(table.edge_seen, np.log(p.radius / table.radius), 0.0) / _UNIT,
+                (p.share - table.share) / _UNIT,
+                (p.total - turns.total) / _UNIT,
+                (p.sphere - turns.sphere_part * turns.total) / _UNIT,
+                np.where(known, p.exponent - exponent, 0.0) / _UNIT_EXPONENT,
+            ]
+        )
+
+    return misfit
+
+
+def _complex_step(function: Callable[[Any], Any], x: Floats) -> Floats:
+    columns = []
+    for k, value in enumerate(x):
+        moved = x.astype(complex)
+        moved[k] = value + 1e-30j
+        columns.append(np.imag(function(moved)) / 1e-30)
+    return np.stack(columns, axis=1)
 
 
 def _covariance(jacobian: Floats, misfit: Floats, clusters: npt.NDArray[np.int64]) -> Floats:
@@ -178,35 +245,45 @@ def _covariance(jacobian: Floats, misfit: Floats, clusters: npt.NDArray[np.int64
     return np.asarray(plain * np.outer(scale, scale))
 
 
-def _cross_validate(table: Table, residuals: ResidualTable, start: Floats) -> Errors:
-    n, k = len(table.D), len(residuals.D)
-    collected = np.zeros(3 * n + 2 * k)
-    for number in range(len(table.pairs)):
-        out, out_r = table.case == number, residuals.case == number
-        values, _, _, _ = _regress(table.rows(~out), _without(residuals, ~out_r), start)
-        misfit = _misfit(values, table, residuals)
-        mask = np.concatenate([np.tile(out, 3), np.tile(out_r, 2)])
-        collected[mask] = misfit[mask]
-    return _errors(collected, table, residuals)
+def _cross_validate(
+    table: Table,
+    turns: ResidualTable,
+    values: Floats,
+    free: npt.NDArray[np.bool_],
+    folds: int,
+) -> Prediction:
+    """Predict every combination by a fit that did not see it."""
+    count = len(table.pairs)
+    # a fixed shuffle: neighbours of a design do not leave together, and a rerun gives the same
+    fold = np.random.default_rng(1).permutation(count) % min(folds, count)
+    collected = predict(values, table, turns)
+    for number in range(min(folds, count)):
+        out, out_turns = fold[table.case] == number, fold[turns.case] == number
+        found, _, _, _ = _regress(table.rows(~out), turns.rows(~out_turns), values, free)
+        collected = collected.mix(predict(found, table, turns), out, out_turns)
+    return collected
 
 
-def _without(residuals: ResidualTable, mask: npt.NDArray[np.bool_]) -> ResidualTable:
-    names = ("case", "ratio", "modulus", "D", "w", "total", "sphere_part")
-    return ResidualTable(*(getattr(residuals, name)[mask] for name in names))
-
-
-def _errors(misfit: Floats, table: Table, residuals: ResidualTable) -> Errors:
-    n, k = len(table.D), len(residuals.D)
+def errors_of(p: Prediction, table: Table, turns: ResidualTable) -> Errors:
+    """Mean and largest error beyond first yield."""
     yielding = table.w >= 1.0
     seen = yielding & table.edge_seen
-
-    def of(part: Floats) -> tuple[float, float]:
-        part = np.abs(part)
-        return float(part.mean()), float(part.max())
-
+    F, a = p.force / table.force, p.radius / table.radius
+    deep = turns.w >= _DEEP
+    known = np.isfinite(turns.exponent)
+    sphere = p.sphere - turns.sphere_part * turns.total
     return Errors(
-        force=of(np.expm1(misfit[:n][seen])),
-        radius=of(np.expm1(misfit[n : 2 * n][seen])),
-        share=of(misfit[2 * n : 3 * n][yielding]),
-        residual=of(misfit[3 * n : 3 * n + k]) if k else (0.0, 0.0),
+        force=_size((F - 1.0)[seen]),
+        radius=_size((a - 1.0)[seen]),
+        hardness=_size((F / a**2 - 1.0)[seen]),
+        share=_size((p.share - table.share)[yielding]),
+        left_sphere=_size(sphere),
+        left_flat=_size(p.total - turns.total - sphere),
+        left=_size((p.total / turns.total - 1.0)[deep]),
+        exponent=_size((p.exponent - turns.exponent)[known]),
     )
+
+
+def _size(part: Floats) -> tuple[float, float]:
+    part = np.abs(part)
+    return (float(part.mean()), float(part.max())) if part.size else (0.0, 0.0)

@@ -1,42 +1,177 @@
-"""What a reviewer wants to see of a fit: the errors as a picture, by quantity and depth."""
+"""The report of a fit: what a reviewer needs to check it, as one page of tables and pictures."""
 
 from __future__ import annotations
 
+from collections.abc import Sequence
+from dataclasses import fields
 from pathlib import Path
+from typing import Any
 
 import numpy as np
+import numpy.typing as npt
 
-from .fit import Fit
-from .table import Table
+from .fit import Errors, Fit, Prediction
+from .select import Choice
+from .table import ResidualTable, Table
+
+MARKS: dict[str, tuple[str, float, tuple[float, float] | None]] = {
+    "force": ("F [%]", 100.0, (1.0, 3.0)),
+    "radius": ("a [%]", 100.0, (1.0, 3.0)),
+    "hardness": ("H [%]", 100.0, (1.5, 4.0)),
+    "share": ("delta_s*", 1.0, (0.01, 0.03)),
+    "left": ("residual depth, delta_m >= 5 delta_c [%]", 100.0, (2.0, 5.0)),
+    "left_sphere": ("sphere's residual depth / Delta_m", 1.0, None),
+    "left_flat": ("flat's residual depth / Delta_m", 1.0, None),
+    "exponent": ("exponent of the unloading", 1.0, None),
+}
+"""Each quantity's name in tables, its scale, and the mean and largest error that we aim at."""
 
 
-def draw_fit(fit: Fit, table: Table, folder: Path) -> Path:
-    """Draw law against finite elements, a panel a quantity, into `folder`."""
-    import matplotlib as mpl
+def error_rows(columns: Sequence[tuple[str, Errors | None]]) -> list[list[str]]:
+    """Rows of the table of errors, its head first: mean and largest of each column."""
+    used = [(title, errors) for title, errors in columns if errors is not None]
+    rows = [["beyond first yield", *(f"{title}: mean, largest" for title, _ in used), "aim"]]
+    for field in fields(Errors):
+        name, scale, aim = MARKS[field.name]
+        cells = [
+            ", ".join(f"{scale * x:.3g}" for x in getattr(errors, field.name)) for _, errors in used
+        ]
+        rows.append([name, *cells, ", ".join(f"{x:g}" for x in aim) if aim else ""])
+    return rows
 
-    mpl.use("Agg")
-    from matplotlib.figure import Figure
+
+def coefficient_rows(content: dict[str, Any]) -> list[list[str]]:
+    """Rows of the table of coefficients, its head first."""
+    rows = [["coefficient", "value", "standard error"]]
+    for name, entry in content["coefficients"].items():
+        rows.append([name, f"{entry['value']:.5g}", f"{entry['standard_error']:.2g}"])
+    return rows
+
+
+def markdown(rows: Sequence[Sequence[str]]) -> str:
+    """Return rows, the head first, as a markdown table."""
+    head, *rest = rows
+    lines = [head, ["---"] * len(head), *rest]
+    return "\n".join("| " + " | ".join(line) + " |" for line in lines) + "\n"
+
+
+def worst_rows(p: Prediction, table: Table, *, most: int = 12) -> list[list[str]]:
+    """Rows of the table of the combinations with the largest errors of F, its head first."""
+    seen = (table.w >= 1.0) & table.edge_seen
+    force = np.abs(p.force / table.force - 1.0)
+    radius = np.abs(p.radius / table.radius - 1.0)
+    share = np.abs(p.share - table.share)
+    lines = []
+    for number, (name, pair) in enumerate(zip(table.names, table.pairs, strict=True)):
+        m = seen & (table.case == number)
+        if m.any():
+            lines.append(
+                (
+                    float(force[m].mean()),
+                    [
+                        name,
+                        f"{pair.Sy_ratio:.3g}",
+                        f"{pair.E_reduced / pair.Sy_min:.0f}",
+                        f"{pair.elastic_share:.2f}",
+                        *(
+                            f"{100 * x[m].mean():.2f}, {100 * x[m].max():.2f}"
+                            for x in (force, radius)
+                        ),
+                        f"{share[m].mean():.3f}, {share[m].max():.3f}",
+                    ],
+                )
+            )
+    lines.sort(key=lambda line: -line[0])
+    head = ["combination", "Sy*", "E'/Sy_min", "x_s", "F [%]", "a [%]", "delta_s*"]
+    return [head, *(cells for _, cells in lines[:most])]
+
+
+def _pair(error: npt.NDArray[np.float64], pattern: str) -> str:
+    return pattern % (error.mean(), error.max())
+
+
+def write_report(
+    fit: Fit,
+    content: dict[str, Any],
+    table: Table,
+    turns: ResidualTable,
+    folder: Path,
+    *,
+    validation: Errors | None = None,
+    choices: Sequence[Choice] = (),
+    thesis: str = "",
+) -> Path:
+    """Write the page and its pictures into `folder`.
+
+    Parameters
+    ----------
+    fit, content, table, turns
+        The fit, the coefficients file's content, and the rows.
+    folder
+        Where the report goes.
+    validation
+        Errors on cases that no fit reads, if the campaign holds any.
+    choices
+        Candidates of `compare_forms`.
+    thesis
+        Section on the thesis's own forms, markdown.
+    """
+    from .pictures import draw_choice, draw_curves, draw_errors, draw_maps
 
     folder.mkdir(parents=True, exist_ok=True)
-    figure = Figure(figsize=(12, 4), layout="constrained")
-    axes = figure.subplots(1, 3)
-    colours = mpl.colormaps["coolwarm"]
-    law = fit.law
-    for number, pair in enumerate(table.pairs):
-        m = table.case == number
-        depth = table.D[m] * pair.R
-        colour = colours(0.5 + 0.5 * float(np.clip(np.log10(pair.Sy_ratio), -1.0, 1.0)))
-        force = law.loading(pair, depth) / (pair.E_reduced * pair.R**2)
-        radius = law.contact_radius(pair, depth) / pair.R
-        axes[0].semilogx(table.w[m], 100.0 * (force / table.force[m] - 1.0), color=colour)
-        axes[1].semilogx(table.w[m], 100.0 * (radius / table.radius[m] - 1.0), color=colour)
-        axes[2].semilogx(table.w[m], law.share(pair, depth) - table.share[m], color=colour)
-    for axis, title in zip(
-        axes, ("error of F [%]", "error of a [%]", r"error of $\delta_s^*$"), strict=True
-    ):
-        axis.set_xlabel(r"$\delta/\delta_c$")
-        axis.set_title(title)
-        axis.grid(alpha=0.3)
-    path = folder / "errors.png"
-    figure.savefig(path, dpi=120)
-    return path
+    shown = fit.predicted
+    assert shown is not None
+    draw_errors(shown, table, turns, folder / "errors.png")
+    draw_maps(shown, table, folder / "maps.png")
+    draw_curves(shown, table, folder / "curves.png")
+    limits = content["domain"]["limits"].items()
+    columns = [("fitted", fit.errors), ("left out", fit.held_out), ("validation", validation)]
+    parts = [
+        "# The fitted law\n",
+        f"{len(table.pairs)} combinations, {len(table.D)} depths, {len(turns.D)} unloadings; "
+        f"{len(fit.values)} coefficients. Left out: each combination predicted by a fit that did "
+        "not see it.\n",
+        "Accuracy of the data: "
+        + "; ".join(", ".join(c["accuracy"]) for c in content["provenance"]["campaigns"])
+        + ". The forces of a coarse mesh ripple with the period of a surface element (about 2 % "
+        "rms at `smoke`), and no smooth law can follow that.\n",
+        "## Errors\n",
+        markdown(error_rows(columns)),
+        "![errors](errors.png)\n\n![maps](maps.png)\n\n![curves](curves.png)\n",
+        "## Combinations that fit worst\n\nMean and largest.\n",
+        markdown(worst_rows(shown, table)),
+        "## Domain\n",
+        markdown(
+            [
+                ["quantity", "from", "to"],
+                *([k, f"{a:.4g}", f"{b:.4g}"] for k, (a, b) in limits.items()),
+            ]
+        ),
+        "## Coefficients\n",
+        markdown(coefficient_rows(content)),
+    ]
+    if choices:
+        draw_choice(choices, folder / "choice.png")
+        head = ["form", "coefficients", "rms fitted", "rms left out", "F, a [%], delta_s* left out"]
+        rows = [
+            [
+                c.name,
+                str(c.free),
+                f"{c.fitted:.3f}",
+                f"{c.left_out:.3f}",
+                f"{100 * c.errors.force[0]:.2f}, {100 * c.errors.radius[0]:.2f}, "
+                f"{c.errors.share[0]:.4f}",
+            ]
+            for c in choices
+        ]
+        parts += [
+            "## What each term is worth\n\nRms of the misfit in units of 1 % (F, a) and 0.01 "
+            "(shares).\n",
+            markdown([head, *rows]),
+            "![choice](choice.png)\n",
+        ]
+    if thesis:
+        parts.append(thesis)
+    page = folder / "report.md"
+    page.write_text("\n".join(parts), encoding="utf-8")
+    return page

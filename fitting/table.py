@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterable, Sequence
 from dataclasses import dataclass, fields
 from pathlib import Path
 
@@ -12,8 +13,15 @@ from ..campaigns import CaseRecord, read_curves
 from ..core.errors import InputError
 from ..core.material import Pair
 from ..models import critical_depth
+from ..models.fitted import bodies_of
 
 Floats = npt.NDArray[np.float64]
+
+HELD_OUT = "validation"
+"""Cases whose name begins so are for judging a finished fit; no fit reads them."""
+
+_DEEPEST_RADIUS = 0.55  # a/R up to which the form is meant, with some margin
+_UNLOADED = (0.05, 0.98)  # part of F_m over which the exponent of the unloading is taken
 
 
 @dataclass(frozen=True)
@@ -24,12 +32,6 @@ class Table:
     ----------
     case
         Number of the material combination that the row belongs to.
-    ratio
-        Sy* = S_ys/S_yf.
-    modulus
-        E'/Sy_min.
-    elastic_share
-        E'(1 - nu_s^2)/E_s (2.3).
     D
         Delta/R.
     w
@@ -44,14 +46,11 @@ class Table:
         Whether the opening gap beside the contact was wide enough to be fitted. Where it was not,
         the radius is that of a node, up to an element too small, and the surface that can touch
         ends close by: force and radius of such a row are not fitted.
-    pairs
-        Pair of each case, shape (n_cases,).
+    pairs, names
+        Pair and name of each case, length n_cases.
     """
 
     case: npt.NDArray[np.int64]
-    ratio: Floats
-    modulus: Floats
-    elastic_share: Floats
     D: Floats
     w: Floats
     force: Floats
@@ -59,11 +58,22 @@ class Table:
     share: Floats
     edge_seen: npt.NDArray[np.bool_]
     pairs: tuple[Pair, ...]
+    names: tuple[str, ...]
+
+    @property
+    def bodies(self) -> Floats:
+        """What the closed form needs of each case's bodies, shape (n_cases, 6)."""
+        return bodies_of(self.pairs)
+
+    @property
+    def hardness(self) -> Floats:
+        """Mean pressure over Sy_min."""
+        modulus = np.array([p.E_reduced / p.Sy_min for p in self.pairs])
+        return np.asarray(self.force / (np.pi * self.radius**2) * modulus[self.case])
 
     def rows(self, mask: npt.NDArray[np.bool_]) -> Table:
-        """Return the rows of `mask`."""
-        columns = {f.name: getattr(self, f.name) for f in fields(self) if f.name != "pairs"}
-        return Table(**{name: c[mask] for name, c in columns.items()}, pairs=self.pairs)
+        """Return the rows of `mask`; the cases keep their numbers."""
+        return _masked(self, mask)
 
 
 @dataclass(frozen=True)
@@ -72,73 +82,117 @@ class ResidualTable:
 
     Parameters
     ----------
-    case, ratio, modulus, D, w
+    case, D, w
         As in `Table`, at the turning point.
     total
         Permanent approach over the largest one.
     sphere_part
         The sphere's part of the permanent approach.
+    exponent
+        N of F/F_m = ((Delta - Delta_r)/(Delta_m - Delta_r))^N, by regression over the unloading.
+    pairs, names
+        As in `Table`.
     """
 
     case: npt.NDArray[np.int64]
-    ratio: Floats
-    modulus: Floats
     D: Floats
     w: Floats
     total: Floats
     sphere_part: Floats
+    exponent: Floats
+    pairs: tuple[Pair, ...]
+    names: tuple[str, ...]
+
+    @property
+    def bodies(self) -> Floats:
+        """What the closed form needs of each case's bodies, shape (n_cases, 6)."""
+        return bodies_of(self.pairs)
+
+    def rows(self, mask: npt.NDArray[np.bool_]) -> ResidualTable:
+        """Return the rows of `mask`; the cases keep their numbers."""
+        return _masked(self, mask)
 
 
-def read_tables(path: Path) -> tuple[Table, ResidualTable]:
-    """Read a campaign file into the two tables.
+def _masked(table: Table | ResidualTable, mask: npt.NDArray[np.bool_]):  # type: ignore[no-untyped-def]
+    columns = {f.name: getattr(table, f.name) for f in fields(table)}
+    picked = {k: v[mask] if isinstance(v, np.ndarray) else v for k, v in columns.items()}
+    return type(table)(**picked)
+
+
+def read_tables(
+    paths: Path | Sequence[Path], *, held_out: bool = False
+) -> tuple[Table, ResidualTable]:
+    """Read campaign files into the two tables.
+
+    Parameters
+    ----------
+    paths
+        One campaign file or several; a combination in two of them counts once, the later wins.
+    held_out
+        Read the cases that are kept out of every fit, and only those, instead of the others.
 
     Raises
     ------
     InputError
-        The file is missing, damaged, or holds no completed elastic-plastic case.
+        A file is missing or damaged, or they hold no completed elastic-plastic case.
     """
-    records = [r for r in read_curves(path) if np.isfinite(r.case.pair.Sy_min)]
-    if not records:
+    paths = [paths] if isinstance(paths, Path) else list(paths)
+    chosen: dict[object, CaseRecord] = {}
+    for path in paths:
+        for record in read_curves(path):
+            pair = record.case.pair
+            if np.isfinite(pair.Sy_min) and record.case.name.startswith(HELD_OUT) == held_out:
+                chosen[tuple(np.round(_key(pair), 9))] = record
+    if not chosen:
         raise InputError(
-            "no completed elastic-plastic case", source=str(path), allowed="a finished campaign"
+            "no completed elastic-plastic case" + (f" named {HELD_OUT}-..." if held_out else ""),
+            source=", ".join(map(str, paths)),
+            allowed="a finished campaign",
         )
+    records = list(chosen.values())
     return _loading(records), _residuals(records)
 
 
+def _key(pair: Pair) -> Floats:
+    E = pair.E_reduced
+    k_s, k_f, nu_s, nu_f, q_s, q_f = bodies_of([pair])[0]
+    return np.array([k_s * E, nu_s, nu_f, q_s * E, q_f * E, k_f * E])
+
+
 def _loading(records: list[CaseRecord]) -> Table:
-    columns: list[list[Floats]] = [[] for _ in range(10)]
+    columns: list[list[Floats]] = [[] for _ in range(7)]
     for number, record in enumerate(records):
         p, c = record.case.pair, record.curve
-        n = len(c["delta"])
-        D = c["delta"] / p.R
+        usable = c["radius"] <= _DEEPEST_RADIUS * p.R
         values = (
-            np.full(n, number),
-            np.full(n, p.Sy_ratio),
-            np.full(n, p.E_reduced / p.Sy_min),
-            np.full(n, p.elastic_share),
-            D,
+            np.full(len(c["delta"]), float(number)),
+            c["delta"] / p.R,
             c["delta"] / critical_depth(p),
             c["force"] / (p.E_reduced * p.R**2),
             c["radius"] / p.R,
             c["sphere"] / (c["sphere"] + c["flat"]),
-            c["radius"] != c["radius_last_node"],
+            (c["radius"] != c["radius_last_node"]).astype(float),
         )
         for column, value in zip(columns, values, strict=True):
-            column.append(value)
-    case, ratio, modulus, elastic, D, w, force, radius, share, seen = map(np.concatenate, columns)
+            column.append(value[usable])
+    case, D, w, force, radius, share, seen = map(np.concatenate, columns)
     return Table(
         case=case.astype(np.int64),
-        ratio=ratio,
-        modulus=modulus,
-        elastic_share=elastic,
         D=D,
         w=w,
         force=force,
         radius=radius,
         share=share,
         edge_seen=seen.astype(bool),
-        pairs=tuple(r.case.pair for r in records),
+        **_who(records),
     )
+
+
+def _who(records: Iterable[CaseRecord]) -> dict[str, tuple]:  # type: ignore[type-arg]
+    return {
+        "pairs": tuple(r.case.pair for r in records),
+        "names": tuple(r.case.name for r in records),
+    }
 
 
 def _residuals(records: list[CaseRecord]) -> ResidualTable:
@@ -147,19 +201,29 @@ def _residuals(records: list[CaseRecord]) -> ResidualTable:
         p = record.case.pair
         for u in record.unloadings:
             total = u.residual_sphere + u.residual_flat
-            if total <= 0.0:
-                continue
             depth = u.depth * p.R
+            if not 0.0 < total < depth or u.curve["radius"][0] > _DEEPEST_RADIUS * p.R:
+                continue
+            exponent = _exponent(u.curve["delta"], u.curve["force"], total)
             rows.append(
                 (
                     number,
-                    p.Sy_ratio,
-                    p.E_reduced / p.Sy_min,
                     u.depth,
                     depth / critical_depth(p),
                     total / depth,
                     u.residual_sphere / total,
+                    exponent,
                 )
             )
-    columns = np.array(rows).reshape(-1, 7).T
-    return ResidualTable(columns[0].astype(np.int64), *columns[1:])
+    columns = np.array(rows).reshape(-1, 6).T
+    return ResidualTable(columns[0].astype(np.int64), *columns[1:], **_who(records))
+
+
+def _exponent(depth: Floats, force: Floats, residual: float) -> float:
+    """Slope of ln F over ln (Delta - Delta_r), both from the peak."""
+    x, y = (depth - residual) / (depth[0] - residual), force / force[0]
+    m = (y > _UNLOADED[0]) & (y < _UNLOADED[1]) & (x > 0.0)
+    if m.sum() < 3:
+        return float("nan")
+    x, y = np.log(x[m]), np.log(y[m])
+    return float((x @ y) / (x @ x))

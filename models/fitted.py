@@ -1,139 +1,123 @@
-"""Our closed form: one smooth expression over all strength ratios, fitted to our finite elements.
+"""Our closed form as a contact law: one smooth expression over all strength ratios.
 
-With D = Delta/R, w = Delta/delta_c, X = D E'/Sy_min, F_H Hertz's force and m = Sy*^n:
-
-    F/F_H      = [1 + (w/w_1)^p]^(-q/p) exp(-h D^(1/2) w/(w + w_1))
-    a^2/(R D)  = [1 + (w/w_2)^s]^(t/s)
-    delta_s*   = (1 - eps) phi + kappa F/(E_s* a Delta),  eps = kappa F/(E' a Delta)
-    residual   = 1 - psi F/(E' a Delta), of which the sphere keeps phi
-    kappa      = 3/4 - k_1 w/(w + k_2),   psi = 3/4 - r_1 w/(w + r_2)
-    logit phi  = -g_0 ln Sy* + g_2 logit(elastic share) + 4m/(1+m)^2 g_1 ln(1 + g_3 X)
-
-w_1, q, h run from their flattening value (Sy* = 0) through one for equal strengths to the
-indentation value (Sy* = infinity) with the weights of m: 1/(1+m)^2, 2m/(1+m)^2, m^2/(1+m)^2.
-Between bodies of like strength the sphere, which can spread, takes ever more of the plastic part
-as the contact deepens; how far that has gone follows X, and not D or w alone.
-
-Why this form: 3/4 F/(E_i* a) is exactly a body's elastic displacement under Hertz's pressure, and
-(2/pi) F/(E_i* a) that under a uniform one, so kappa hardly moves and the stronger body's elastic
-part comes out right at every load; the limits at small load are Hertz's law, his contact radius and
-the elastic share (2.3), and nothing is left behind.
+The arithmetic is in `closed_form`, the coefficients in data/coefficients/fitted.json, which
+`dentscope fit` writes; formulas and reasons are in docs/closed-form.md.
 """
 
 from __future__ import annotations
 
 import json
 import math
-from collections.abc import Mapping
+import warnings
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
 from importlib import resources
 from typing import Any
 
 import numpy as np
 import numpy.typing as npt
-from numba import float64, njit
+from numba import float64, njit, types
 
-from ..core.material import Pair
+from ..core.errors import InputError
+from ..core.material import Material, Pair
 from .base import (
     N_COMMON,
-    SHARE,
     VECTOR,
     ContactLaw,
+    Depths,
     Domain,
+    DomainWarning,
     E,
     Kernels,
+    Pairs,
     R,
     branch_kernel,
     common_parameters,
-    hertz_force,
-    hertz_recovery,
     loading_kernel,
-    onset,
     residual_kernel,
+)
+from .closed_form import (
+    COEFFICIENTS,
+    PAIR_NUMBERS,
+    arguments_of,
+    contact,
+    force_at,
+    of_pair,
+    plastic_depth,
+    radius_at,
 )
 
 Floats = npt.NDArray[np.float64]
 
-BLENDED = ("w1", "q", "h")
-"""Coefficients with a value each for flattening, equal strengths and indentation."""
-
-ENDS = ("flattening", "equal", "indentation")
-SINGLE = ("n", "p", "w2", "s", "t", "k1", "k2", "r1", "r2", "g0", "g1", "g2", "g3")
-NAMES = (*(f"{name}_{end}" for name in BLENDED for end in ENDS), *SINGLE)
-"""Every coefficient, in the order of the coefficients file."""
+FORMAT = "dentscope-coefficients/2"
+BOUNDS = ("Sy_ratio", "E_reduced_over_Sy_min", "nu", "elastic_share", "Delta_over_R", "a_over_R")
+"""What the domain of validity is stated in; each has a smallest and a largest value."""
 
 _FILE = "fitted.json"
+_FINITE = 0.01  # Delta/R at which the law says how far finite elastic strain takes it from Hertz
+_OF_BODIES = ("k_s", "k_f", "nu_s", "nu_f", "q_s", "q_f")
+_OF_PAIR = arguments_of(of_pair)[len(_OF_BODIES) :]
+_CONTACT = arguments_of(contact)[1:]
 
-# places of the pair's own numbers behind the common ones
-(_W1, _Q, _H, _P, _W2, _S, _T, _K1, _K2, _R1, _R2, _PHI, _SHIFT, _GROW) = range(
-    N_COMMON, N_COMMON + 14
+# places in the parameter vector: the common numbers, then the arguments of `contact`
+_AT = {name: N_COMMON + k for k, name in enumerate(_CONTACT)}
+_W, _ALPHA, _BETA, _ETA = (_AT[k] for k in ("W", "alpha", "beta", "eta"))
+_ZETA, _GAMMA = _AT["zeta"], _AT["gamma"]
+_WY, _M, _E0, _POWER_F, _Y0, _SINK, _POWER_A = (
+    _AT[k] for k in ("wy", "m", "e0", "r", "y0", "c", "t")
 )
-
-
-@njit(float64(VECTOR, float64), cache=True)
-def _force(par, depth):
-    w = depth / onset(par, 0.0)
-    D = depth / par[R]
-    soft = math.exp(-par[_Q] / par[_P] * math.log1p((w / par[_W1]) ** par[_P]))
-    return hertz_force(par, depth) * soft * math.exp(-par[_H] * math.sqrt(D) * w / (w + par[_W1]))
+_ALL = types.UniTuple(float64, 6)(VECTOR, float64)
+assert len(_CONTACT) == 30
 
 
 @loading_kernel
 def _loading(par, depth):
-    return _force(par, depth)
-
-
-@njit(float64(VECTOR, float64), cache=True)
-def _contact_radius(par, depth):
-    w = depth / onset(par, 0.0)
-    grow = math.exp(par[_T] / par[_S] * math.log1p((w / par[_W2]) ** par[_S]))
-    return math.sqrt(par[R] * depth * grow)
+    D = depth / par[R]
+    y = plastic_depth(D, par[_W], par[_WY], par[_M])
+    F = force_at(D, y, par[_ALPHA], par[_BETA], par[_ETA], par[_E0], par[_POWER_F], par[_Y0])
+    return F * par[E] * par[R] * par[R]
 
 
 @branch_kernel
-def _radius(par, depth, peak):
-    return _contact_radius(par, depth)
+def _radius(par, depth, _peak):
+    D = depth / par[R]
+    y = plastic_depth(D, par[_W], par[_WY], par[_M])
+    return par[R] * radius_at(D, y, par[_ZETA], par[_GAMMA], par[_Y0], par[_SINK], par[_POWER_A])
 
 
-@njit(float64(VECTOR, float64), cache=True)
-def _elastic_part(par, depth):
-    """F/(E' a Delta): 4/3 under Hertz's pressure."""
-    return _force(par, depth) / (par[E] * _contact_radius(par, depth) * depth)
-
-
-@njit(float64(VECTOR, float64), cache=True)
-def _phi(par, depth):
-    """Sphere's part of what is not elastic."""
-    logit = par[_PHI] + par[_SHIFT] * math.log1p(par[_GROW] * depth / par[R])
-    return 1.0 / (1.0 + math.exp(-logit))
-
-
-@loading_kernel
-def share(par, depth):
-    """delta_s*, the sphere's share of the approach."""
-    w = depth / onset(par, 0.0)
-    kappa = 0.75 - par[_K1] * w / (w + par[_K2])
-    elastic = min(kappa * _elastic_part(par, depth), 1.0)
-    return (1.0 - elastic) * _phi(par, depth) + elastic * par[SHARE]
+@njit(_ALL, cache=True)
+def everything(par, depth):
+    """All that `closed_form.contact` returns, from a parameter vector."""
+    p = par[N_COMMON:]
+    return contact(
+        depth / par[R],
+        p[0], p[1], p[2], p[3], p[4], p[5], p[6], p[7], p[8], p[9], p[10], p[11],
+        p[12], p[13], p[14], p[15], p[16], p[17], p[18], p[19], p[20], p[21], p[22], p[23],
+        p[24], p[25], p[26], p[27], p[28], p[29],
+    )  # fmt: skip
 
 
 @residual_kernel
 def _residual(par, peak):
-    w = peak / onset(par, 0.0)
-    psi = 0.75 - par[_R1] * w / (w + par[_R2])
-    total = max(1.0 - psi * _elastic_part(par, peak), 0.0) * peak
-    phi = _phi(par, peak)
-    return phi * total, (1.0 - phi) * total
+    _, _, _, left, phi, _ = everything(par, peak)
+    left = max(left, 0.0) * peak  # round-off before first yield
+    return phi * left, (1.0 - phi) * left
 
 
 @branch_kernel
 def _unloading(par, depth, peak):
-    s, f = _residual(par, peak)
-    return hertz_recovery(_force(par, peak), depth, peak, s + f)
+    F, _, _, left, phi, N = everything(par, peak)
+    force = F * par[E] * par[R] * par[R]
+    left = max(left, 0.0) * peak
+    residual = phi * left + (1.0 - phi) * left  # to the last bit what `_residual` answers
+    if depth <= residual or peak <= residual:
+        return 0.0
+    if depth >= peak:
+        return force
+    return force * ((depth - residual) / (peak - residual)) ** N
 
 
 _KERNELS = Kernels(_loading, _radius, _unloading, _residual)
-_TINY_RATIO, _HUGE_RATIO = 1e-3, 1e3  # beyond these the weights have long reached their ends
 
 
 @dataclass(frozen=True)
@@ -143,10 +127,13 @@ class Fitted(ContactLaw):
     Parameters
     ----------
     coefficients
-        Value of every name in `NAMES`.
+        Value of every name in `closed_form.COEFFICIENTS`.
+    limits
+        Smallest and largest value of each of `BOUNDS` in the data behind the coefficients.
     """
 
     coefficients: Mapping[str, float] = field(default_factory=dict)
+    limits: Mapping[str, tuple[float, float]] = field(default_factory=dict)
 
     @property
     def kernels(self) -> Kernels:
@@ -154,42 +141,145 @@ class Fitted(ContactLaw):
         return _KERNELS
 
     def parameters(self, pair: Pair) -> Floats:
-        """Common numbers and this pair's blended coefficients, shape (22,)."""
-        k = self.coefficients
-        common = common_parameters(pair)
-        ratio = pair.Sy_ratio
-        ratio = 1.0 if math.isnan(ratio) else min(max(ratio, _TINY_RATIO), _HUGE_RATIO)
-        m = ratio ** k["n"]
-        weights = np.array([1.0, 2.0 * m, m * m]) / (1.0 + m) ** 2
-        own = [float(weights @ [k[f"{name}_{end}"] for end in ENDS]) for name in BLENDED]
-        elastic = min(max(pair.elastic_share, 1e-9), 1.0 - 1e-9)
-        phi = -k["g0"] * math.log(ratio) + k["g2"] * math.log(elastic / (1.0 - elastic))
-        shift = 4.0 * m / (1.0 + m) ** 2 * k["g1"]
-        # without a yield strength there is no plastic part to share out
-        grow = k["g3"] * pair.E_reduced / pair.Sy_min if math.isfinite(pair.E_reduced) else 0.0
-        single = [k[name] for name in ("p", "w2", "s", "t", "k1", "k2", "r1", "r2")]
-        return np.concatenate([common, own, single, [phi, shift, grow]])
+        """Common numbers, then what `closed_form.contact` takes behind D, shape (n,)."""
+        own = contact_numbers(self.coefficients, bodies_of([pair]))[0]
+        return np.concatenate([common_parameters(pair), own])
 
-    def share(self, pair: Pair, depth: npt.ArrayLike) -> Floats:
+    def share(self, pair: Pair, depth: Depths) -> Floats:
         """delta_s*, shape (...); the elastic share where the contact is open."""
-        par = self.parameters(pair)
+        return self._each(pair, depth, 2, pair.elastic_share)
+
+    def unloading_exponent(self, pair: Pair, peak: Depths) -> Floats:
+        """Exponent N of F/F_m = ((Delta - Delta_r)/(Delta_m - Delta_r))^N, shape (...)."""
+        return self._each(pair, peak, 5, 1.5)
+
+    def gradient(self, pair: Pair, depth: Depths) -> dict[str, Floats]:
+        """Derivatives of the loading force, exact to round-off (complex steps).
+
+        Parameters
+        ----------
+        pair
+            Two bodies, none of them rigid.
+        depth
+            Approach, shape (...) [m]; above zero.
+
+        Returns
+        -------
+        dict
+            dF/d(depth) [N/m], dF/d(E_s), dF/d(E_f), dF/d(Sy_s), dF/d(Sy_f) [N/Pa], dF/d(nu_s),
+            dF/d(nu_f) [N] and dF/d(R) [N/m], each of shape (...).
+
+        Raises
+        ------
+        InputError
+            A rigid body, or a depth of zero or less.
+        """
         d = np.asarray(depth, dtype=float)
-        return np.array([share(par, x) if x > 0.0 else par[SHARE] for x in d.ravel()]).reshape(
-            d.shape
-        )
+        if pair.sphere.rigid or pair.flat.rigid:
+            raise InputError("a rigid body has no modulus", key="rigid", allowed="two that deform")
+        if not np.all(d > 0.0):
+            raise InputError("no contact", key="depth", allowed="depths above 0")
+        s, f = pair.sphere, pair.flat
+        values = {
+            "depth": d, "E_s": s.E, "E_f": f.E, "nu_s": s.nu, "nu_f": f.nu,
+            "Sy_s": s.Sy, "Sy_f": f.Sy, "R": pair.R,
+        }  # fmt: skip
+        result = {}
+        for name, value in values.items():
+            step = 1e-30 * np.max(np.abs(value)) if np.all(np.isfinite(value)) else 0.0
+            if step == 0.0:
+                result[name] = np.zeros_like(d)
+                continue
+            moved: dict[str, Any] = {**values, name: value + 1j * step}
+            result[name] = np.asarray(np.imag(self._force_of(**moved)) / step)
+        return result
+
+    def _force_of(
+        self, *, depth: Any, E_s: Any, E_f: Any, nu_s: Any, nu_f: Any, Sy_s: Any, Sy_f: Any, R: Any
+    ) -> Any:
+        k_s, k_f = (1.0 - nu_s**2) / E_s, (1.0 - nu_f**2) / E_f
+        own = [self.coefficients[name] for name in _OF_PAIR]
+        numbers = of_pair(k_s, k_f, nu_s, nu_f, 1.0 / Sy_s, 1.0 / Sy_f, *own)
+        given = {**self.coefficients, **dict(zip(PAIR_NUMBERS, numbers, strict=True))}
+        D = depth / R
+        return contact(D, *(given[name] for name in _CONTACT))[0] * R**2 / (k_s + k_f)
+
+    def _each(self, pair: Pair, depth: Depths, which: int, open_value: float) -> Floats:
+        par, d = self.parameters(pair), np.asarray(depth, dtype=float)
+        out = np.full(d.shape, open_value)
+        closed = d > 0.0
+        out[closed] = [everything(par, x)[which] for x in d[closed]]
+        return out
+
+    def _checked(self, out: Floats, pair: Pairs, depth: Depths) -> Floats:
+        beyond = self._beyond(pair, depth) if self.limits else ""
+        if beyond:
+            warnings.warn(f"{self.name}: {beyond}", DomainWarning, stacklevel=3)
+        return out
+
+    def _beyond(self, pair: Pairs, depth: Depths) -> str:
+        """Name the first bound that is left; empty inside."""
+        pairs = [pair] if isinstance(pair, Pair) else list(pair)
+        d = np.asarray(depth, dtype=float)
+        each = len(pairs) > 1 and d.ndim > 0 and d.shape[0] == len(pairs)
+        for number, p in enumerate(pairs):
+            deepest = float(np.max(d[number] if each else d, initial=0.0))
+            if math.isinf(p.Sy_min):
+                continue  # elastic: Hertz
+            found = {
+                "Sy_ratio": (p.Sy_ratio,),
+                "E_reduced_over_Sy_min": (p.E_reduced / p.Sy_min,),
+                "nu": tuple(b.nu for b in (p.sphere, p.flat) if not b.rigid),
+                "elastic_share": (p.elastic_share,),
+                "Delta_over_R": (deepest / p.R,),
+            }
+            for key, values in found.items():
+                low, high = self.limits.get(key, (-math.inf, math.inf))
+                for value in values:
+                    if not low * (1.0 - 1e-9) <= value <= high * (1.0 + 1e-9):
+                        return f"{key} = {value:.4g} is outside {low:.4g} to {high:.4g}"
+        return ""
 
 
-def fitted_law(coefficients: Mapping[str, float], *, domain: Domain) -> Fitted:
+def bodies_of(pairs: Sequence[Pair]) -> Floats:
+    """k_s, k_f, nu_s, nu_f, q_s, q_f of each pair, shape (n_pairs, 6)."""
+    return np.array([(*_body(p.sphere), *_body(p.flat)) for p in pairs])[:, [0, 3, 1, 4, 2, 5]]
+
+
+def _body(body: Material) -> tuple[float, float, float]:
+    if body.rigid:
+        return 0.0, 0.0, 0.0
+    return 1.0 / body.plane_strain_modulus, body.nu, 1.0 / body.Sy
+
+
+def contact_numbers(coefficients: Mapping[str, float], bodies: Floats) -> Floats:
+    """What `closed_form.contact` takes behind D for each pair, shape (n_pairs, 30)."""
+    numbers = of_pair(*bodies.T, *(coefficients[name] for name in _OF_PAIR))
+    given = {**coefficients, **dict(zip(PAIR_NUMBERS, numbers, strict=True))}
+    columns = [np.broadcast_to(given[name], len(bodies)) for name in _CONTACT]
+    return np.ascontiguousarray(np.stack(columns, axis=1))
+
+
+def fitted_law(
+    coefficients: Mapping[str, float], *, limits: Mapping[str, tuple[float, float]] | None = None
+) -> Fitted:
     """Return the law with the given coefficients."""
+    finite = 100.0001 * math.expm1(coefficients["e0"] * math.sqrt(_FINITE))
     return Fitted(
         name="fitted",
         title="dentscope, fitted to finite elements",
         source="data/coefficients/fitted.json",
         equations="docs/closed-form.md",
         verified=True,
-        domain=domain,
+        domain=Domain(note=_note(limits or {})),
+        breaks=((f"not Hertz: finite elastic strain, at Delta/R = {_FINITE:g}", finite),),
         coefficients=dict(coefficients),
+        limits=dict(limits or {}),
     )
+
+
+def _note(limits: Mapping[str, tuple[float, float]]) -> str:
+    return ", ".join(f"{key} {low:.3g} to {high:.3g}" for key, (low, high) in limits.items())
 
 
 def read_coefficients() -> dict[str, Any] | None:
@@ -198,14 +288,35 @@ def read_coefficients() -> dict[str, Any] | None:
     return json.loads(place.read_text("utf-8")) if place.is_file() else None
 
 
+def law_from(content: Mapping[str, Any], *, source: str) -> Fitted:
+    """Return the law of a coefficients file's content.
+
+    Raises
+    ------
+    InputError
+        The file belongs to another form, or lacks a coefficient.
+    """
+    found = content.get("format")
+    if found != FORMAT:
+        raise InputError(
+            f"format {found!r}", source=source, key="format",
+            allowed=f"{FORMAT}; make the file anew with `dentscope fit --publish`",
+        )  # fmt: skip
+    missing = sorted(set(COEFFICIENTS) - set(content["coefficients"]))
+    if missing:
+        raise InputError(
+            f"no {', '.join(missing)}", source=source, key="coefficients",
+            allowed="every coefficient of the form; make the file anew with `dentscope fit`",
+        )  # fmt: skip
+    values = {name: float(content["coefficients"][name]["value"]) for name in COEFFICIENTS}
+    limits = {k: (float(v[0]), float(v[1])) for k, v in content["domain"]["limits"].items()}
+    return fitted_law(values, limits=limits)
+
+
 def shipped_law() -> Fitted | None:
     """The law with the shipped coefficients; none if they were never fitted."""
     content = read_coefficients()
-    if content is None:
-        return None
-    values = {name: entry["value"] for name, entry in content["coefficients"].items()}
-    domain = Domain(note=content["domain"]["note"])
-    return fitted_law(values, domain=domain)
+    return None if content is None else law_from(content, source=f"data/coefficients/{_FILE}")
 
 
-__all__ = ["BLENDED", "ENDS", "NAMES", "SINGLE", "Fitted", "fitted_law", "shipped_law"]
+__all__ = ["BOUNDS", "FORMAT", "Fitted", "fitted_law", "law_from", "shipped_law"]

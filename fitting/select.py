@@ -1,0 +1,90 @@
+"""Choice of form: what each term of the closed form is worth on combinations that it did not see.
+
+Each candidate holds some coefficients at a value that takes their term away. It is judged by the
+misfit of combinations left out, never by single points and never on the validation design.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+
+import numpy as np
+
+from ..models.closed_form import COEFFICIENTS
+from .fit import Errors, Prediction, fit_tables, predict
+from .table import ResidualTable, Table
+
+CANDIDATES: dict[str, Mapping[str, float]] = {
+    "full form": {},
+    "radius without finite deformation": {"c_s": 0.0, "c_e": 0.0, "c_f": 0.0, "t": 1.0},
+    "radius blind to the elastic body": {"b1": 0.0},
+    "force blind to the elastic body": {"a1": 0.0},
+    "force without finite elastic strain": {"e0": 0.0},
+    "force without finite plastic strain": {"h_s": 0.0, "h_e": 0.0, "h_f": 0.0, "r": 1.0},
+    "powers of D all 1": {"r": 1.0, "t": 1.0, "g5": 1.0},
+    "share without drift towards the sphere": {"g1": 0.0, "g5": 1.0},
+    "share of constant sharpness": {"g3": 1000.0, "g4": 0.0},
+    "share blind to Poisson's ratio": {"g2": 1.0},
+    "Hertz's recovery": {"u1": 0.0, "u2": 1.0, "u3": 100.0},
+}
+"""What is compared: name of the candidate and the coefficients that it holds."""
+
+
+@dataclass(frozen=True)
+class Choice:
+    """One candidate.
+
+    Parameters
+    ----------
+    name
+        Key of `CANDIDATES`.
+    free
+        Number of coefficients that it fits.
+    fitted, left_out
+        Rms of the weighted misfit (1 is 1 % of F or a, 0.01 of a share) on the fitted rows and on
+        combinations left out.
+    errors
+        Of combinations left out.
+    """
+
+    name: str
+    free: int
+    fitted: float
+    left_out: float
+    errors: Errors
+
+
+def compare_forms(
+    table: Table, turns: ResidualTable, *, start: Mapping[str, float], folds: int = 6
+) -> list[Choice]:
+    """Fit every candidate with whole combinations left out in turn."""
+    choices = []
+    for name, held in CANDIDATES.items():
+        fit = fit_tables(table, turns, held=held, start=start, folds=folds)
+        assert fit.predicted is not None
+        assert fit.held_out is not None
+        choices.append(
+            Choice(
+                name=name,
+                free=len(COEFFICIENTS) - len(held),
+                fitted=_rms(predict(fit.values, table, turns), table, turns),
+                left_out=_rms(fit.predicted, table, turns),
+                errors=fit.held_out,
+            )
+        )
+    return choices
+
+
+def _rms(p: Prediction, table: Table, turns: ResidualTable) -> float:
+    seen = table.edge_seen
+    known = np.isfinite(turns.exponent)
+    parts = (
+        100.0 * np.log(p.force / table.force)[seen],
+        100.0 * np.log(p.radius / table.radius)[seen],
+        100.0 * (p.share - table.share),
+        100.0 * (p.total - turns.total),
+        100.0 * (p.sphere - turns.sphere_part * turns.total),
+        100.0 / 3.0 * (p.exponent - turns.exponent)[known],
+    )
+    return float(np.sqrt(np.mean(np.concatenate(parts) ** 2)))
