@@ -1,0 +1,156 @@
+"""A bench: what is dropped on what, how well each value is known, what is recorded how well.
+
+`stated` values go into set.toml; the impacts use the true ones, `stated (1 + tolerance z)`.
+"""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass, field
+
+import numpy as np
+from numpy.typing import NDArray
+
+from . import parameters as at
+
+Array = NDArray[np.float64]
+
+COLUMNS = {
+    "restitution": at.RESTITUTION,
+    "permanent_depth_m": at.DEPTH,
+    "contact_time_s": at.TIME,
+    "peak_force_N": at.PEAK_FORCE,
+    "rebound_spin_rad_s": at.REBOUND_SPIN,
+    "friction_impulse_ratio": at.IMPULSE_RATIO,
+    "sliding_length_m": at.SLIDING,
+    "tangential_rebound_m_s": at.TANGENTIAL_REBOUND,
+}
+"""Columns of trials.csv that a bench may record, and the result that each one shows."""
+
+NUISANCES = ("strength", "modulus", "radius", "mass", "friction", "speed", "angle")
+"""What may differ from its stated value; each in units of its stated standard deviation."""
+
+
+@dataclass(frozen=True)
+class Metal:
+    """A material as stated, SI."""
+
+    name: str
+    E: float
+    nu: float
+    Sy: float
+    density: float
+    cp: float = 500.0
+    melting: float = 1700.0
+
+
+@dataclass(frozen=True)
+class Striker:
+    """A rod (length above 0) or a ball; SI."""
+
+    name: str
+    metal: Metal
+    tip_radius: float
+    radius: float
+    length: float = 0.0
+
+    @property
+    def mass(self) -> float:
+        """Of a rod with two round ends, or of a ball [kg]."""
+        if self.length == 0.0:
+            return self.metal.density * 4.0 / 3.0 * math.pi * self.radius**3
+        return self.metal.density * math.pi * self.radius**2 * self.length
+
+    @property
+    def inertia(self) -> float:
+        """About the centre, across the axis [kg m^2]."""
+        if self.length == 0.0:
+            return 0.4 * self.mass * self.radius**2
+        return self.mass * (self.length**2 / 12.0 + self.radius**2 / 4.0)
+
+
+@dataclass(frozen=True)
+class Rig:
+    """A bench with its list of trials.
+
+    Parameters
+    ----------
+    bench
+        Kind of bench.
+    target
+        The flat.
+    strikers
+        All strikers.
+    which, angle, speed, tangential, temperature
+        (n,) striker's number, stated angle [rad], nominal normal speed [m/s], tangential speed of
+        the centre [m/s], temperature [K].
+    mu
+        Stated coefficient of friction.
+    tolerance
+        Standard deviation of each nuisance: a fraction, or radians for the angle.
+    noise
+        Column to (number, fraction): standard deviation of the instrument.
+    drop
+        Whether the sheet states the height instead of the speed.
+    law
+        Key `law` of the flat.
+    extra
+        Further keys of [target] and [environment].
+    """
+
+    bench: str
+    target: Metal
+    strikers: tuple[Striker, ...]
+    which: NDArray[np.intp]
+    angle: Array
+    speed: Array
+    tangential: Array
+    temperature: Array
+    mu: float
+    tolerance: dict[str, float]
+    noise: dict[str, tuple[float, float]]
+    drop: bool = False
+    law: str = "elastic-plastic"
+    extra: dict[str, dict[str, object]] = field(default_factory=dict)
+
+    def __len__(self) -> int:
+        return len(self.which)
+
+    def rows(self, family: float, z: dict[str, float], *, steps: int = 1200) -> Array:
+        """Parameters of every impact, without any mechanism, shape (n, N_PARAMETERS).
+
+        Parameters
+        ----------
+        family
+            `CAVITY` or `FOUNDATION`.
+        z
+            Nuisances in standard deviations; those left out are 0.
+        steps
+            Time steps per depth over speed.
+        """
+        factor = {name: 1.0 + self.tolerance[name] * z.get(name, 0.0) for name in NUISANCES[:-1]}
+        p = np.zeros((len(self), at.N_PARAMETERS))
+        flat = self.target.E / (1.0 - self.target.nu**2)
+        for i, number in enumerate(self.which):
+            body = self.strikers[number]
+            other = body.metal.E / (1.0 - body.metal.nu**2)
+            row = p[i]
+            row[at.MASS] = body.mass * factor["mass"]
+            row[at.INERTIA] = body.inertia * factor["mass"]
+            row[at.LENGTH] = body.length
+            row[at.TIP] = body.tip_radius * factor["radius"]
+            row[at.MODULUS] = factor["modulus"] / (1.0 / flat + 1.0 / other)
+            if body.length > 0.0:
+                row[at.THETA] = self.angle[i] + self.tolerance["angle"] * z.get("angle", 0.0)
+            else:
+                row[at.THETA] = 0.5 * math.pi
+        p[:, at.NORMAL_SPEED] = self.speed * factor["speed"]
+        p[:, at.TANGENTIAL_SPEED] = self.tangential * factor["speed"]
+        p[:, at.STRENGTH] = self.target.Sy * factor["strength"]
+        p[:, at.POISSON] = self.target.nu
+        p[:, at.MU] = self.mu * factor["friction"]
+        p[:, at.GRAVITY] = 9.81
+        p[:, at.LAW] = family
+        p[:, at.STEPS] = steps
+        p[:, at.FOLLOW] = 1e-6
+        return p

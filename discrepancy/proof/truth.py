@@ -1,0 +1,200 @@
+"""What a set conceals: drawn from a seed, never shown to the diagnosing process."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from .benches import BENCHES
+from .effects import EFFECTS, OUTSIDE, Effect, Kind
+from .parameters import CAVITY, FOUNDATION
+from .rig import NUISANCES, Rig
+from .simulate import size_of
+
+NULL_BENCHES = (
+    "rods-normal", "rods-oblique", "balls-normal", "balls-oblique", "balls-small", "balls-elastic",
+)  # fmt: skip
+
+SEEN, ENORMOUS = 4.0, 80.0
+"""Sizes between which a drawn effect is kept at once; else the nearest of several draws is taken."""
+
+_DRAWS = 8
+_SAME_SEAM = ({"half-space-waves", "support-compliance"}, {"work-hardening", "hardened-layer"})
+
+
+@dataclass(frozen=True)
+class Instrument:
+    """Shape of the noise, share of outliers and of missing cells, seed."""
+
+    shape: str
+    outliers: float
+    missing: float
+    seed: int
+
+
+@dataclass(frozen=True)
+class Truth:
+    """One concealed case.
+
+    Parameters
+    ----------
+    kind
+        `null`, `single`, `pair` or `outside`.
+    rig
+        The bench.
+    effects
+        What acts; empty for a null.
+    sizes
+        Size of each effect, given the others.
+    family
+        Base law: `cavity`, `foundation` or `explicit`.
+    z
+        Nuisances in stated standard deviations.
+    instrument
+        The instrument.
+    more
+        Further facts for the record.
+    """
+
+    kind: str
+    rig: Rig
+    effects: tuple[Effect, ...]
+    sizes: tuple[float, ...]
+    family: str
+    z: dict[str, float]
+    instrument: Instrument
+    more: dict[str, Any] = field(default_factory=dict)
+
+    @property
+    def mechanisms(self) -> tuple[str, ...]:
+        """Names that a right verdict has; empty for a null and outside the library."""
+        return tuple(e.name for e in self.effects if e.name in EFFECTS)
+
+    def record(self) -> dict[str, Any]:
+        """As plain values for the truth file."""
+        return {
+            "kind": self.kind,
+            "mechanisms": list(self.mechanisms),
+            "effects": [
+                {"name": e.name, "form": e.form, "textbook": e.textbook, "numbers": e.numbers}
+                for e in self.effects
+            ],
+            "sizes": list(self.sizes),
+            "bench": self.rig.bench,
+            "family": self.family,
+            "nuisances": self.z,
+            "instrument": {
+                "shape": self.instrument.shape,
+                "outliers": self.instrument.outliers,
+                "missing": self.instrument.missing,
+                "seed": self.instrument.seed,
+            },
+            **self.more,
+        }
+
+
+FAMILIES = {"cavity": CAVITY, "foundation": FOUNDATION}
+"""The two fast families and the value of their base law."""
+
+
+def draw(rng: np.random.Generator, kind: str, *, name: str = "", off: bool | None = None) -> Truth:
+    """Draw one case of a fast family.
+
+    Parameters
+    ----------
+    rng
+        Source of everything that is drawn.
+    kind
+        `null`, `single`, `pair` or `outside`.
+    name
+        The mechanism of a single, or the effect outside the library; drawn if empty.
+    off
+        Whether materials and geometry differ from what is stated; drawn if left out.
+    """
+    family = str(rng.choice(list(FAMILIES)))
+    z = _nuisances(rng) if (rng.random() < 0.5 if off is None else off) else {}
+    instrument = Instrument(
+        shape=str(rng.choice(["gaussian", "skewed", "heavy"], p=[0.4, 0.35, 0.25])),
+        outliers=float(rng.choice([0.0, 0.01, 0.02])),
+        missing=float(rng.choice([0.0, 0.03])),
+        seed=int(rng.integers(2**31)),
+    )
+    if kind == "null":
+        rig = BENCHES[str(rng.choice(NULL_BENCHES))](rng)
+        return Truth(kind, rig, (), (), family, z, instrument)
+    if kind == "pair":
+        rig, effects, sizes = _pair(rng, family, z)
+        return Truth(kind, rig, effects, sizes, family, z, instrument)
+    table = EFFECTS if kind == "single" else OUTSIDE
+    name = name or str(rng.choice(list(table)))
+    rig, effect, size = _single(rng, name, table[name], family, z)
+    return Truth(kind, rig, (effect,), (size,), family, z, instrument)
+
+
+def _nuisances(rng: np.random.Generator) -> dict[str, float]:
+    return {name: float(np.clip(rng.normal(), -2.0, 2.0)) for name in NUISANCES}
+
+
+def _prepared(rng: np.random.Generator, bench: str, names: tuple[str, ...]) -> Rig:
+    """The bench with what a user would write down when such an effect is possible there."""
+    from dataclasses import replace
+
+    rig = BENCHES[bench](rng)
+    if "impact-speed-loss" in names:
+        rig = replace(rig, drop=True)
+    return rig
+
+
+def _single(
+    rng: np.random.Generator, name: str, kind: Kind, family: str, z: dict[str, float]
+) -> tuple[Rig, Effect, float]:
+    tried: list[tuple[float, Rig, Effect, float]] = []
+    for _ in range(_DRAWS):
+        rig = _prepared(rng, str(rng.choice(kind.benches)), (name,))
+        effect = kind.draw(rng, rig, FAMILIES[family])
+        size = size_of(rig, [effect], family=FAMILIES[family], z=z)
+        away = max(np.log(SEEN / max(size, 1e-3)), np.log(size / ENORMOUS + 1e-12), 0.0)
+        tried.append((float(away), rig, effect, size))
+        if away == 0.0:
+            break
+    _, rig, effect, size = min(tried, key=lambda item: item[0])
+    return rig, effect, size
+
+
+def _pair(
+    rng: np.random.Generator, family: str, z: dict[str, float]
+) -> tuple[Rig, tuple[Effect, ...], tuple[float, ...]]:
+    law = FAMILIES[family]
+    tried: list[tuple[float, Rig, tuple[Effect, ...], tuple[float, ...]]] = []
+    while len(tried) < _DRAWS:
+        bench = str(rng.choice(["rods-normal", "balls-normal", "rods-oblique", "balls-oblique"]))
+        able = [n for n, kind in EFFECTS.items() if bench in kind.benches]
+        chosen = tuple(str(n) for n in rng.choice(able, 2, replace=False))
+        if any(set(chosen) == seam for seam in _SAME_SEAM):
+            continue
+        rig = _prepared(rng, bench, chosen)
+        effects = tuple(EFFECTS[n].draw(rng, rig, law) for n in chosen)
+        sizes = tuple(
+            size_of(rig, [e], family=law, z=z, keep=[o for o in effects if o is not e])
+            for e in effects
+        )
+        low, high = min(sizes), max(sizes)
+        away = max(np.log(2.0 * SEEN / max(low, 1e-3)), np.log(high / ENORMOUS), 0.0)
+        tried.append((float(away), rig, effects, sizes))
+        if away == 0.0:
+            break
+    _, rig, effects, sizes = min(tried, key=lambda item: item[0])
+    return rig, effects, sizes
+
+
+def readings_noise(rng: np.random.Generator, shape: str, count: int) -> NDArray[np.float64]:
+    """Noise of unit variance and zero mean, shape (count,): gaussian, skewed or heavy-tailed."""
+    if shape == "skewed":
+        k = 3.0
+        return np.asarray((rng.gamma(k, size=count) - k) / np.sqrt(k))
+    if shape == "heavy":
+        return np.asarray(rng.standard_t(5, size=count) * np.sqrt(3.0 / 5.0))
+    return np.asarray(rng.normal(size=count))
