@@ -1,0 +1,215 @@
+"""`dentscope laws`: the published contact laws listed, shown and compared on a user's own pair."""
+
+from __future__ import annotations
+
+import csv
+import warnings
+from pathlib import Path
+from typing import TYPE_CHECKING, Annotated, Any
+
+import typer
+
+from ..core.errors import InputError
+
+if TYPE_CHECKING:
+    from ..core.material import Pair
+    from ..models.base import ContactLaw
+
+app = typer.Typer(help="Published contact laws: list, show, compare.", no_args_is_help=True)
+
+COLUMNS = (
+    "law",
+    "delta_over_R",
+    "delta_m",
+    "force_N",
+    "contact_radius_m",
+    "mean_pressure_over_Symin",
+    "residual_sphere_m",
+    "residual_flat_m",
+)
+_POINTS = 120
+
+
+@app.command("list")
+def list_laws() -> None:
+    """Every law: what it is for, and whether its own paper was read."""
+    from rich.console import Console
+    from rich.table import Column, Table
+
+    from ..models import LAWS, UNAVAILABLE
+
+    table = Table(Column("law", no_wrap=True), "authors", "made for", "equations")
+    for law in LAWS.values():
+        table.add_row(law.name, law.title, law.regime, "verified" if law.verified else "unverified")
+    console = Console()
+    console.print(table)
+    console.print(
+        "unverified: its own paper could not be read; the equations rest on the thesis, on limits "
+        "and continuity, and on public code (dentscope laws show LAW)."
+    )
+    console.print("Any two can be joined: LOADING+UNLOADING, for example kogut-etsion+ghaednia.")
+    for name, reason in UNAVAILABLE.items():
+        console.print(f"not offered: [bold]{name}[/bold]: {reason}", highlight=False)
+
+
+@app.command()
+def show(law: Annotated[str, typer.Argument(help="A name of `dentscope laws list`.")]) -> None:
+    """One law: source, equations, range, what was read, and what it breaks."""
+    from ..models import law_named
+
+    chosen = law_named(law)
+    lines = {
+        "law": chosen.name,
+        "authors": chosen.title,
+        "source": chosen.source,
+        "equations": chosen.equations,
+        "made for": chosen.regime,
+        "range": chosen.domain.note or "not stated",
+        "standing": "verified" if chosen.verified else "unverified",
+        "read": chosen.read,
+        "described in": _described_in(chosen),
+    }
+    for key, text in lines.items():
+        if text:
+            typer.echo(f"{key:>12}  {text}")
+    for clause, size in chosen.breaks:
+        typer.echo(f"{'breaks':>12}  {clause}: {size:g} %")
+
+
+@app.command()
+def compare(
+    file: Annotated[Path, typer.Argument(help="CASE.toml, as for `dentscope case`.")],
+    law: Annotated[
+        list[str] | None, typer.Option(help="A law; may be repeated. Default: all.")
+    ] = None,
+    out: Annotated[Path, typer.Option(help="Folder for table and picture.")] = Path("build/laws"),
+) -> None:
+    """Curves of the laws for one pair, and which of them to use."""
+    from rich.console import Console
+    from rich.table import Column, Table
+
+    from ..models import LAWS, law_named
+    from ..models.choose import demand, objection, recommended
+
+    pair, last = read_pair(file)
+    laws = [law_named(name) for name in law] if law else list(LAWS.values())
+    rows = curves(pair, laws, last=last)
+    out.mkdir(parents=True, exist_ok=True)
+    table_file, picture = out / "curves.csv", out / "curves.png"
+    with table_file.open("w", newline="", encoding="utf-8") as stream:
+        writer = csv.writer(stream)
+        writer.writerow(COLUMNS)
+        writer.writerows(rows)
+    draw(pair, laws, rows, picture)
+
+    need = demand(pair, last * pair.R)
+    console = Console()
+    table = Table(
+        Column("law", no_wrap=True), "F [N]", "a [mm]", "p/Sy_min", "left [um]", "may be used"
+    )
+    for one in laws:
+        row = [r for r in rows if r[0] == one.name][-1]
+        table.add_row(
+            one.name, f"{row[3]:.4g}", f"{row[4] * 1e3:.4g}", f"{row[5]:.3f}",
+            f"{(row[6] + row[7]) * 1e6:.4g}", objection(one, need) or "yes",
+        )  # fmt: skip
+    console.print(table)
+    console.print(
+        f"at Delta/R = {last:g}: w = delta/delta_c = {need.w:.4g}, regime: {need.regime}",
+        highlight=False,
+    )
+    best = ", ".join(recommended(LAWS, need)) or "none of these laws holds here"
+    console.print(f"use: {best}", highlight=False)
+    console.print(f"written: {table_file}\nwritten: {picture}", highlight=False)
+
+
+def _described_in(law: ContactLaw) -> str:
+    import sys
+
+    kernels = getattr(law, "own", None)
+    if kernels is None:
+        return type(law).__module__.split(".", 1)[-1]
+    place = sys.modules[kernels.residual.py_func.__module__]
+    return str(place.__name__).split(".", 1)[-1]
+
+
+def read_pair(file: Path) -> tuple[Pair, float]:
+    """Return the pair of CASE.toml and its largest Delta/R.
+
+    Raises
+    ------
+    InputError
+        Every mistake, a line each.
+    """
+    from ..core.material import Pair
+    from ..core.toml_input import read_model
+    from .case import CaseFile
+
+    content = read_model(file, CaseFile)
+    source = str(file)
+    sphere = content.sphere.to_material(source=source, key="sphere")
+    flat = content.flat.to_material(source=source, key="flat")
+    return Pair(sphere, flat, content.radius_m), content.load.max_delta_over_R
+
+
+def curves(pair: Pair, laws: list[ContactLaw], *, last: float) -> list[tuple[Any, ...]]:
+    """Rows of `COLUMNS` for every law, from below first yield to Delta/R = `last`."""
+    import numpy as np
+
+    from ..models import critical_depth
+
+    deepest = last * pair.R
+    depth = np.geomspace(min(0.3 * critical_depth(pair), 1e-2 * deepest), deepest, _POINTS)
+    scale = pair.Sy_min if pair.Sy_min < float("inf") else pair.E_reduced
+    rows: list[tuple[Any, ...]] = []
+    for law in laws:
+        with warnings.catch_warnings():
+            warnings.simplefilter("ignore")  # the table says what is out of range
+            force, a = law.loading(pair, depth), law.contact_radius(pair, depth)
+            pressure = law.hardness(pair, depth) / scale
+            sphere, flat = law.residual(pair, depth)
+        if not np.all(np.isfinite(force)):
+            raise InputError(f"{law.name} has no finite force for this pair", key="law")
+        columns = (depth / pair.R, depth, force, a, pressure, sphere, flat)
+        rows += [(law.name, *map(float, row)) for row in zip(*columns, strict=True)]
+    return rows
+
+
+def draw(pair: Pair, laws: list[ContactLaw], rows: list[tuple[Any, ...]], picture: Path) -> Path:
+    """Draw force over Hertz's, mean pressure, contact radius and residual depth over Delta/R."""
+    import matplotlib
+
+    matplotlib.use("Agg")
+    import matplotlib.pyplot as plt
+    import numpy as np
+
+    figure, axes = plt.subplots(2, 2, figsize=(11, 8), layout="constrained")
+    colours = plt.get_cmap("turbo")(np.linspace(0.05, 0.95, len(laws)))
+    styles = ("-", "--", "-.", ":")
+    stiffness = 4.0 / 3.0 * pair.E_reduced * np.sqrt(pair.R)
+    for k, law in enumerate(laws):
+        x, d, force, a, p, s, f = np.array([r[1:] for r in rows if r[0] == law.name]).T
+        look = {"color": colours[k], "linestyle": styles[k % 4], "linewidth": 1.4}
+        axes[0, 0].semilogx(x, force / (stiffness * d**1.5), label=law.name, **look)
+        axes[0, 1].semilogx(x, p, **look)
+        axes[1, 0].loglog(x, a / pair.R, **look)
+        axes[1, 1].semilogx(x, (s + f) / d, **look)
+    for axis, label in zip(
+        axes.flat,
+        (
+            "force / Hertz's force",
+            "mean pressure / Sy_min",
+            "contact radius / R",
+            "residual / largest depth",
+        ),
+        strict=True,
+    ):
+        axis.set_xlabel("Delta / R")
+        axis.set_ylabel(label)
+        axis.grid(alpha=0.3)
+    axes[0, 0].set_ylim(0.0, 2.0)
+    axes[0, 1].set_ylim(0.0, 5.0)
+    figure.legend(loc="outside right center", fontsize=8)
+    figure.savefig(picture, dpi=130)
+    plt.close(figure)
+    return picture

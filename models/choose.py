@@ -1,0 +1,92 @@
+"""Which law to use when: what a pair and a depth ask of a law, and what each law can give.
+
+The borders come from the thesis's finite elements: the sphere's share of the approach and the
+contact radius no longer change below Sy* = 0.6 and above 1.7 (chapter 2), yield sets in at
+delta_c and shows from 1.9 delta_c on (1.3.2), and delta_n = 110 is full plasticity (2.3.2).
+"""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+
+from ..core.material import Pair
+from .base import ContactLaw, critical_depth
+
+FLATTENING_BELOW, INDENTATION_ABOVE = 0.6, 1.7
+_ELASTIC = 1.9
+
+
+@dataclass(frozen=True, slots=True)
+class Demand:
+    """What a pair asks of a law at its largest depth.
+
+    Parameters
+    ----------
+    regime
+        "elastic", "flattening", "both bodies" or "indentation".
+    w
+        Largest approach over the critical one; 0 if nothing yields.
+    a_over_R
+        Contact radius over R, without pile-up or sink-in.
+    """
+
+    regime: str
+    w: float
+    a_over_R: float
+
+
+def demand(pair: Pair, depth: float) -> Demand:
+    """Return what `pair` asks of a law at an approach of `depth` [m].
+
+    Examples
+    --------
+    >>> from dentscope.core import Material, Pair
+    >>> soft, hard = Material(E=200e9, nu=0.3, Sy=300e6), Material(E=200e9, nu=0.3, Sy=3e9)
+    >>> demand(Pair(soft, hard, 1e-3), 1e-5).regime
+    'flattening'
+    """
+    onset = critical_depth(pair)
+    w = depth / onset if math.isfinite(onset) else 0.0
+    ratio = pair.Sy_ratio
+    if w <= 1.0:
+        regime = "elastic"
+    elif ratio < FLATTENING_BELOW:
+        regime = "flattening"
+    elif ratio > INDENTATION_ABOVE:
+        regime = "indentation"
+    else:
+        regime = "both bodies"
+    return Demand(regime, w, math.sqrt(2.0 * depth / pair.R))
+
+
+def objection(law: ContactLaw, need: Demand) -> str:
+    """Why `law` should not be used for `need`; empty if it may."""
+    if need.regime == "elastic":
+        return ""
+    if law.name == "hertz":
+        return "" if need.w <= _ELASTIC else "elastic only"
+    other = {"flattening": "indentation", "indentation": "flattening"}.get(need.regime)
+    if law.regime == other:
+        return f"made for {law.regime}"
+    if need.regime == "both bodies" and law.regime != "either":
+        return f"made for {law.regime}, while both bodies yield here"
+    if need.w > law.domain.w_max:
+        return f"w = {need.w:.3g} is beyond {law.domain.w_max:g}"
+    if need.a_over_R > law.domain.a_over_R_max:
+        return f"a/R of about {need.a_over_R:.2g} is beyond {law.domain.a_over_R_max:g}"
+    return ""
+
+
+_PREFERRED = {
+    "elastic": ("hertz",),
+    "flattening": ("fitted", "jackson-green", "jackson-green-2007", "ghaednia"),
+    "both bodies": ("fitted", "ghaednia"),
+    "indentation": ("fitted", "ghaednia", "ye-komvopoulos", "kogut-komvopoulos"),
+}
+
+
+def recommended(laws: dict[str, ContactLaw], need: Demand) -> tuple[str, ...]:
+    """Names of the laws to use, best first, by our finite elements and the thesis's."""
+    names = (name for name in _PREFERRED[need.regime] if name in laws)
+    return tuple(name for name in names if not objection(laws[name], need))

@@ -1,0 +1,63 @@
+"""`dentscope laws`: list, show, compare."""
+
+import csv
+from pathlib import Path
+
+import pytest
+from dentscope.cli.laws import COLUMNS, app
+from dentscope.core import InputError
+from dentscope.models import LAWS, UNAVAILABLE
+
+CASE = Path(__file__).parents[3] / "examples" / "case_steel.toml"
+
+
+def run(*arguments):
+    return app(args=list(arguments), standalone_mode=False)
+
+
+def test_list_names_every_law_and_marks_the_unverified(capsys):
+    run("list")
+    text = capsys.readouterr().out
+    assert all(name in text for name in (*LAWS, *UNAVAILABLE))
+    assert text.count("│ unverified") == sum(not law.verified for law in LAWS.values())
+
+
+def test_show_tells_source_standing_and_breaches(capsys):
+    run("show", "kogut-etsion")
+    text = capsys.readouterr().out
+    assert "657" in text
+    assert "unverified" in text
+    assert "force jumps at w = 1: 3 %" in text
+    assert "models.kogut_etsion" in text
+    run("show", "jackson-green+ghaednia")
+    assert "jackson-green+ghaednia" in capsys.readouterr().out
+
+
+def test_an_unknown_law_is_one_line():
+    with pytest.raises(InputError, match="hertz, johnson"):
+        run("show", "nonsense")
+    with pytest.raises(InputError, match="not offered"):
+        run("show", "wadwalkar")
+
+
+def test_compare_writes_table_and_picture_for_the_users_pair(tmp_path, capsys):
+    run("compare", str(CASE), "--law", "hertz", "--law", "ghaednia", "--out", str(tmp_path))
+    with (tmp_path / "curves.csv").open() as stream:
+        rows = list(csv.DictReader(stream))
+    assert tuple(rows[0]) == COLUMNS
+    assert {row["law"] for row in rows} == {"hertz", "ghaednia"}
+    last = rows[119]
+    # (4/3) E' R^2 (Delta/R)^1.5 with 1/E' = (1 - 0.09)(1/210e9 + 1/200e9), R = 10 mm, 0.01
+    assert float(last["force_N"]) == pytest.approx(15010.0, rel=1e-3)
+    assert (tmp_path / "curves.png").stat().st_size > 20_000
+    text = capsys.readouterr().out
+    assert "regime: indentation" in text
+    assert "elastic only" in text
+    assert "use: " in text
+
+
+def test_compare_reports_a_mistake_in_the_file(tmp_path):
+    file = tmp_path / "case.toml"
+    file.write_text(CASE.read_text().replace("radius_m = 0.010", "radius_m = -1.0"))
+    with pytest.raises(InputError, match="radius_m"):
+        run("compare", str(file))

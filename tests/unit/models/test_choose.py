@@ -1,0 +1,45 @@
+"""Which law to use when."""
+
+import math
+
+import pytest
+from dentscope.core import Material, Pair
+from dentscope.models import LAWS
+from dentscope.models.choose import demand, objection, recommended
+
+HARD, SOFT = Material(E=200e9, nu=0.3, Sy=2e9), Material(E=200e9, nu=0.3, Sy=300e6)
+PAIRS = {
+    "flattening": Pair(SOFT, HARD, 1e-2),
+    "indentation": Pair(HARD, SOFT, 1e-2),
+    "both bodies": Pair(SOFT, SOFT, 1e-2),
+}
+
+
+@pytest.mark.parametrize("regime", PAIRS)
+def test_regime_follows_the_strengths(regime):
+    need = demand(PAIRS[regime], 1e-4)
+    assert need.regime == regime
+    best = recommended(LAWS, need)
+    assert best
+    assert not any(objection(LAWS[name], need) for name in best)
+
+
+def test_below_yield_everything_is_hertz():
+    need = demand(PAIRS["flattening"], 1e-8)
+    assert need.regime == "elastic"
+    assert recommended(LAWS, need) == ("hertz",)
+    elastic = Pair(Material(E=1e11, nu=0.3), Material(E=1e11, nu=0.3), 1e-3)
+    assert demand(elastic, 1e-4).w == 0.0
+
+
+def test_a_law_for_the_other_body_is_objected_to():
+    assert "indentation" in objection(LAWS["kogut-komvopoulos"], demand(PAIRS["flattening"], 1e-4))
+    assert "flattening" in objection(LAWS["jackson-green"], demand(PAIRS["indentation"], 1e-4))
+    assert "both" in objection(LAWS["jackson-green"], demand(PAIRS["both bodies"], 1e-4))
+
+
+def test_a_law_beyond_its_contact_radius_is_objected_to():
+    need = demand(PAIRS["flattening"], 1.5e-3)  # a/R about sqrt(0.3) = 0.55
+    assert need.a_over_R == pytest.approx(math.sqrt(0.3))
+    assert "0.41" in objection(LAWS["jackson-green"], need)
+    assert "jackson-green-2007" in recommended(LAWS, need)

@@ -1,0 +1,314 @@
+"""Anchors of every published law: numbers worked by hand from its own equations.
+
+S, E' and R are chosen so that lengths come out in units of (S/E')^2 R and forces in S^3 R^2/E'^2.
+"""
+
+import math
+
+import numpy as np
+import pytest
+from dentscope.core import InputError, Material, Pair
+from dentscope.models import LAWS, UNAVAILABLE, critical_depth, law_named
+from dentscope.models.base import common_parameters
+from dentscope.models.brake import brake_2015, effective_hardness, stress_factor
+from dentscope.models.thornton import restitution
+
+RIGID = Material(E=math.nan, nu=math.nan, rigid=True)
+NU = 0.3
+
+
+def unit_pair(modulus_ratio=400.0, *, soft="flat"):
+    """E'/S = modulus_ratio with S = 1, R = 1 and the other body rigid."""
+    body = Material(E=modulus_ratio * (1.0 - NU**2), nu=NU, Sy=1.0)
+    return Pair(RIGID, body, 1.0) if soft == "flat" else Pair(body, RIGID, 1.0)
+
+
+def force(name, pair, depth):
+    return float(LAWS[name].loading(pair, depth))
+
+
+def radius(name, pair, depth):
+    return float(LAWS[name].contact_radius(pair, depth))
+
+
+def left(name, pair, peak):
+    return float(sum(LAWS[name].residual(pair, peak)))
+
+
+def hertz(pair, depth):
+    return 4.0 / 3.0 * pair.E_reduced * math.sqrt(pair.R) * depth**1.5
+
+
+def recovered_energy(law, pair, peak):
+    """Work of the recovery, by quadrature in x^(1/2), which the 3/2 power wants."""
+    rest = float(sum(law.residual(pair, peak)))
+    y = np.linspace(0.0, 1.0, 20001)
+    d = rest + (peak - rest) * y**2
+    return float(np.trapezoid(law.unloading(pair, d, peak), d))
+
+
+def test_johnson_meets_hertz_at_delta_p_and_presses_with_2_8():
+    pair = unit_pair()
+    meeting = (3.0 * math.pi * 2.8 / 2.0) ** 2 / 400.0**2
+    assert force("johnson", pair, meeting * 1.000001) == pytest.approx(
+        hertz(pair, meeting), rel=1e-5
+    )
+    d = 10.0 * meeting
+    assert force("johnson", pair, d) == pytest.approx(2.0 * math.pi * 2.8 * d, rel=1e-12)
+    assert radius("johnson", pair, d) ** 2 == pytest.approx(2.0 * d, rel=1e-12)
+
+
+def test_johnson_gives_back_the_energy_of_a_crater_of_constant_radius():
+    """W' = 3 P^2/(10 a E*), Johnson (1985), section 11.5."""
+    pair, law = unit_pair(), LAWS["johnson"]
+    peak = 0.02
+    P, a = force("johnson", pair, peak), radius("johnson", pair, peak)
+    expected = 3.0 * P**2 / (10.0 * a * pair.E_reduced)
+    assert recovered_energy(law, pair, peak) == pytest.approx(expected, rel=1e-6)
+
+
+def test_ceb_steps_up_by_one_half_at_yield_and_spreads_to_two_R_delta():
+    pair = unit_pair(soft="sphere")
+    KH = (0.454 + 0.41 * NU) * 2.8
+    onset = (math.pi * KH / 800.0) ** 2
+    assert hertz(pair, onset) == pytest.approx(2.0 / 3.0 * KH * math.pi * onset, rel=1e-12)
+    assert force("ceb", pair, onset * (1 + 1e-12)) == pytest.approx(1.5 * hertz(pair, onset))
+    d = 50.0 * onset
+    assert math.pi * radius("ceb", pair, d) ** 2 == pytest.approx(math.pi * (2 * d - onset))
+    assert force("ceb", pair, d) == pytest.approx(KH * math.pi * (2 * d - onset), rel=1e-12)
+
+
+@pytest.mark.parametrize(("w", "pressure"), [(3.0, 1.19 * 3.0**0.289), (40.0, 1.61 * 40.0**0.117)])
+def test_kogut_etsion_has_the_mean_pressure_of_its_paper(w, pressure):
+    """p/Y = 1.19 w^0.289 and 1.61 w^0.117, Kogut and Etsion (2002), known from citing work."""
+    pair = unit_pair(soft="sphere")
+    onset = (math.pi * (0.454 + 0.41 * NU) * 2.8 / 800.0) ** 2
+    mean = force("kogut-etsion", pair, w * onset)
+    mean /= math.pi * radius("kogut-etsion", pair, w * onset) ** 2
+    assert mean == pytest.approx(pressure, rel=0.01)
+
+
+def test_kogut_etsion_force_and_unloading_worked_by_hand():
+    pair, law = unit_pair(soft="sphere"), LAWS["kogut-etsion"]
+    onset = (math.pi * (0.454 + 0.41 * NU) * 2.8 / 800.0) ** 2
+    # 1.40 * 10^1.263 = 25.653
+    assert force("kogut-etsion", pair, 10 * onset) / hertz(pair, onset) == pytest.approx(
+        25.653, rel=1e-4
+    )
+    peak = 100.0 * onset
+    # (1 - 100^-0.28)(1 - 100^-0.69) = 0.72458 * 0.95831
+    assert left("kogut-etsion", pair, peak) / peak == pytest.approx(0.72458 * 0.95831, rel=2e-4)
+    # half way back: 0.5^(1.5 * 100^-0.0331) = 0.5^1.28793
+    rest = left("kogut-etsion", pair, peak)
+    half = float(law.unloading(pair, rest + 0.5 * (peak - rest), peak))
+    assert half / force("kogut-etsion", pair, peak) == pytest.approx(0.5**1.28793, rel=1e-4)
+
+
+def test_jackson_residual_worked_by_hand():
+    """1.02 [1 - (105.9/6.9)^-0.54] = 0.78646 at w = 100 (4.12)."""
+    pair = unit_pair(soft="sphere")
+    peak = 100.0 * critical_depth(pair)
+    for name in ("jackson-green", "jackson-green-2007", "ye-komvopoulos"):
+        expected = 1.02 * (1.0 - (105.9 / 6.9) ** -0.54)
+        assert expected == pytest.approx(0.7864, abs=2e-4)
+        assert left(name, pair, peak) / peak == pytest.approx(expected, rel=1e-9)
+
+
+def test_jackson_green_with_the_later_hardness():
+    """Same contact radius; forces differ by the ratio of 1.15 to 1.14 deep in plasticity."""
+    pair = unit_pair(soft="sphere")
+    d = 0.02
+    a = radius("jackson-green-2007", pair, d)
+    assert a == radius("jackson-green", pair, d)
+    ratio = force("jackson-green-2007", pair, d) / force("jackson-green", pair, d)
+    later = 2.84 - 0.92 * (1 - math.cos(math.pi * a))
+    first = 2.84 * (1 - math.exp(-0.82 * a**-0.7))
+    assert ratio == pytest.approx(later / first, rel=5e-3)
+
+
+def test_thornton_force_is_linear_and_recovers_with_his_radius():
+    """R_p = (4 E'/(3 F_m)) ((2 F_m + F_y)/(2 pi p_y))^(3/2) of the thesis's reference [109]."""
+    pair, law = unit_pair(), LAWS["thornton"]
+    onset = (math.pi * 1.6 / 800.0) ** 2
+    d = 30.0 * onset
+    F_y, F_m = hertz(pair, onset), force("thornton", pair, d)
+    assert F_m == pytest.approx(F_y + math.pi * 1.6 * (d - onset), rel=1e-12)
+    R_p = 4.0 * 400.0 / (3.0 * F_m) * ((2.0 * F_m + F_y) / (2.0 * math.pi * 1.6)) ** 1.5
+    recovery = (3.0 * F_m / (4.0 * 400.0 * math.sqrt(R_p))) ** (2.0 / 3.0)
+    assert d - float(sum(law.residual(pair, d))) == pytest.approx(recovery, rel=1e-9)
+
+
+@pytest.mark.parametrize("name", ["thornton", "thornton-ning"])
+@pytest.mark.parametrize("over", [2.0, 10.0, 100.0])
+def test_thornton_restitution_has_his_closed_form(name, over):
+    """e from the energies of loading and recovery against the closed form in V/V_y."""
+    pair, law = unit_pair(), LAWS[name]
+    p = {"thornton": 1.6, "thornton-ning": 2.84}[name]
+    onset = (math.pi * p / 800.0) ** 2
+    F_y, slope = hertz(pair, onset), math.pi * p
+    first = 0.4 * F_y * onset
+    # first + F_y x + slope x^2 / 2 = over^2 first
+    x = (-F_y + math.sqrt(F_y**2 + 2.0 * slope * (over**2 - 1.0) * first)) / slope
+    e = math.sqrt(recovered_energy(law, pair, onset + x) / (over**2 * first))
+    assert e == pytest.approx(float(restitution(over)), rel=1e-4)
+
+
+def test_thornton_constants():
+    """V_y = 1.56 (p_y^5/(E'^4 rho))^(1/2) and e -> 1.18 (V_y/V)^(1/4), Thornton and Ning (1998)."""
+    onset, F_y = (math.pi / 2.0) ** 2, 4.0 / 3.0 * (math.pi / 2.0) ** 3  # p_y = E' = R = 1
+    V_y = math.sqrt(0.8 * F_y * onset / (4.0 / 3.0 * math.pi))
+    assert V_y == pytest.approx(1.56, abs=0.005)
+    assert float(restitution(1e4)) * 10.0 == pytest.approx(1.18, abs=0.006)
+
+
+def test_stronge_is_continuous_at_both_borders():
+    pair = unit_pair()
+    onset = (0.75 * math.pi * 1.1 / 400.0) ** 2
+    for w, tolerance in ((1.0, 1e-6), (84.0, 3e-3)):
+        low, high = (force("stronge", pair, w * onset * f) for f in (1 - 1e-8, 1 + 1e-8))
+        assert high == pytest.approx(low, rel=tolerance)
+    # (2*10 - 1)(1 + ln(19)/3.3) = 35.953
+    assert force("stronge", pair, 10 * onset) / hertz(pair, onset) == pytest.approx(
+        35.953, rel=1e-4
+    )
+
+
+def test_stronge_reaches_2_8_and_its_radius():
+    pair = unit_pair()
+    onset = (0.75 * math.pi * 1.1 / 400.0) ** 2
+    d = 200.0 * onset
+    a2 = radius("stronge", pair, d) ** 2
+    assert a2 == pytest.approx(2.0 * d - onset, rel=1e-12)
+    assert force("stronge", pair, d) / (math.pi * a2) == pytest.approx(2.8, rel=1e-9)
+
+
+def test_sinclair_follansbee_between_its_two_ends():
+    """p = 1.1 S where Hertz's mean pressure is, 2.8 S from a E'/(R S) = 50 (thesis 1.3.1)."""
+    pair = unit_pair()
+    onset = (0.75 * math.pi * 1.1 / 400.0) ** 2
+    pressure = float(LAWS["sinclair-follansbee"].hardness(pair, onset))
+    assert pressure == pytest.approx(1.1, rel=1e-9)
+    full = 0.5 * ((50.0 / 400.0) ** 2 + onset)
+    assert float(LAWS["sinclair-follansbee"].hardness(pair, full)) == pytest.approx(2.8, rel=1e-9)
+    # half way in the logarithm of the radius: (1.1 + 2.8)/2
+    a2 = math.sqrt((50.0 / 400.0) ** 2 * onset)
+    middle = float(LAWS["sinclair-follansbee"].hardness(pair, 0.5 * (a2 + onset)))
+    assert middle == pytest.approx(1.95, rel=1e-9)
+
+
+def test_kogut_komvopoulos_worked_by_hand():
+    """The chapter 3 pair at 148 um: Q = 8.8, 60.6 kN, equation and data audit."""
+    pair = Pair(Material(E=212e9, nu=0.3, Sy=750e6), Material(E=200e9, nu=0.3, Sy=298e6), 0.1365)
+    assert force("kogut-komvopoulos", pair, 148e-6) == pytest.approx(60.6e3, rel=1e-3)
+    q = pair.E_reduced / 298e6
+    expected = 1.0 - 0.591 * q**-0.156
+    assert left("kogut-komvopoulos", pair, 148e-6) / 148e-6 == pytest.approx(expected, rel=1e-12)
+
+
+def test_kogut_komvopoulos_stops_at_the_hardness_of_its_paper():
+    """No mean pressure above 0.201 ln(E'/S) + 1.685 (1.9), at any depth."""
+    for q in (100.0, 360.0, 1000.0):
+        pair = unit_pair(q)
+        d = np.geomspace(1e-6, 0.5, 500)
+        top = 0.201 * math.log(q) + 1.685
+        pressure = LAWS["kogut-komvopoulos"].hardness(pair, d)
+        assert float(pressure.max()) == pytest.approx(top, rel=1e-6)
+
+
+@pytest.mark.parametrize(
+    ("Q", "pressure", "ratio"),
+    [(1.0, 0.6002, 2.0), (10.0, 2.2718, 1.3626), (100.0, 2.9, 0.8453), (900.0, 2.9, 0.71)],
+)
+def test_ye_komvopoulos_worked_by_hand(Q, pressure, ratio):
+    """0.7 ln Q + 0.66, and 0.05 (ln Q)^2 - 0.57 ln Q + 2.41, with natural logarithms."""
+    pair = unit_pair(2000.0)
+    t2 = (Q / 2000.0) ** 2
+    d = 2.0 * t2 / (1.0 + t2)  # delta/r' = t with r'^2 = delta (2 - delta)
+    area = math.pi * radius("ye-komvopoulos", pair, d) ** 2
+    assert math.pi * d * (2.0 - d) / area == pytest.approx(ratio, abs=2e-4)
+    assert force("ye-komvopoulos", pair, d) / area == pytest.approx(pressure, rel=2e-4)
+
+
+def test_brake_onset_is_the_exact_one():
+    """1/F(0.3) = 1.6128, 1/F(0.25) = 1.5543, 1/F(0.4) = 1.7385 from Hertz's axis stresses."""
+    for nu, value in ((0.25, 1.5543), (0.3, 1.6128), (0.4, 1.7385)):
+        assert 1.0 / stress_factor(nu) == pytest.approx(value, abs=1e-4)
+
+
+def test_brake_2012_joins_both_ends_with_their_slopes():
+    pair = unit_pair()
+    onset = (math.pi / 800.0 / stress_factor(NU)) ** 2
+    full = 0.5 * (40.0 / 400.0) ** 2
+    h = 1e-7
+    for d in (onset, full):
+        below = force("brake-2012", pair, d) - force("brake-2012", pair, d * (1 - h))
+        above = force("brake-2012", pair, d * (1 + h)) - force("brake-2012", pair, d)
+        assert above == pytest.approx(below, rel=1e-4)
+    assert force("brake-2012", pair, 2 * full) == pytest.approx(2 * math.pi * 2.8 * 2 * full)
+
+
+def test_brake_2015_ends_in_hertz_and_in_its_hardness():
+    pair = unit_pair()
+    onset = (math.pi / 800.0 / stress_factor(NU)) ** 2
+    meeting = (3.0 * math.pi * 2.8 / 800.0) ** 2
+    assert force("brake-2015", pair, onset) == pytest.approx(hertz(pair, onset), rel=1e-9)
+    # at delta_p Hertz and the plastic force are equal, so any blend of n = 2 is that force
+    assert force("brake-2015", pair, meeting) == pytest.approx(hertz(pair, meeting), rel=1e-9)
+    d = 30.0 * meeting
+    assert force("brake-2015", pair, d) == pytest.approx(2 * math.pi * 2.8 * d, rel=1e-6)
+    assert left("brake-2015", pair, d) / d == pytest.approx(
+        1 - force("brake-2015", pair, d) / hertz(pair, d)
+    )
+
+
+def test_brake_2015_with_measured_hardness_and_meyer_exponent():
+    """Chapters 4 and 5: H_eff = 53 kgf/mm^2, n = 2.1 give a plateau of 520 MPa, a^2.1."""
+    rod, flat = Material(E=200e9, nu=0.3, Sy=760e6), Material(E=200e9, nu=0.3, Sy=305e6)
+    pair, law = Pair(rod, flat, 0.0088), brake_2015(meyer=2.1, hardness=53 * 9.80665e6)
+    deep = np.array([2e-3, 4e-3])
+    F = law.loading(pair, deep)
+    # deep down the force grows as a^n with a^2 = 2 R delta
+    assert math.log2(F[1] / F[0]) == pytest.approx(2.1 / 2.0, abs=1e-3)
+    assert effective_hardness(common_parameters(pair)) == pytest.approx(
+        2.8 / (1 / 760e6 + 1 / 305e6), rel=1e-12
+    )
+    with pytest.raises(InputError, match="meyer"):
+        brake_2015(meyer=1.5)
+    with pytest.raises(InputError, match="pressure at first yield"):
+        brake_2015(hardness=1e6).loading(pair, 1e-5)
+
+
+def test_ghaednia_residual_of_figure_3_10():
+    """0.8 [1 - (29.8/6.5)^-2] at w = 24.3: 0.762 (equation audit), where the figure says 0.723."""
+    pair = unit_pair()
+    peak = 24.3 * critical_depth(pair)
+    assert left("ghaednia", pair, peak) / peak == pytest.approx(0.762, abs=5e-4)
+
+
+def test_updated_models_of_chapter_3_take_the_new_residual_depth():
+    pair = Pair(Material(E=212e9, nu=0.3, Sy=750e6), Material(E=200e9, nu=0.3, Sy=298e6), 0.1365)
+    for name in ("jackson-green", "kogut-etsion", "kogut-komvopoulos"):
+        updated = law_named(f"{name}+ghaednia")
+        assert float(updated.loading(pair, 148e-6)) == force(name, pair, 148e-6)
+        assert float(sum(updated.residual(pair, 148e-6))) == pytest.approx(112.8e-6, rel=1e-3)
+
+
+def test_a_combination_recovers_as_its_second_law():
+    """Etsion's exponent, 1.5 w^-0.0331, with Jackson and Green's peak force."""
+    pair = unit_pair(soft="sphere")
+    joined, peak = law_named("jackson-green+kogut-etsion"), 0.005
+    rest = float(sum(joined.residual(pair, peak)))
+    half = rest + 0.5 * (peak - rest)
+    theirs = LAWS["kogut-etsion"]
+    expected = theirs.unloading(pair, half, peak) / theirs.loading(pair, peak)
+    assert float(joined.unloading(pair, half, peak) / joined.loading(pair, peak)) == pytest.approx(
+        float(expected), rel=1e-12
+    )
+
+
+def test_every_law_says_what_was_read_and_what_is_missing():
+    assert all(law.read or law.name == "fitted" for law in LAWS.values())
+    for name, reason in UNAVAILABLE.items():
+        with pytest.raises(InputError, match="not offered"):
+            law_named(name)
+        assert "paper" in reason
