@@ -13,6 +13,8 @@ from ..core.errors import EXIT_NOT_CONVERGED, InputError
 if TYPE_CHECKING:
     from rich.console import Console
 
+    from ..fitting import Errors, Fit
+
 _PUBLISHED = Path("data/campaign")
 _OWN = Path("build/campaign/campaign.h5")
 _PLACE = Path(__file__).resolve().parents[1] / "data" / "coefficients" / "fitted.json"
@@ -101,7 +103,7 @@ def _files(campaigns: Sequence[Path] | None) -> list[Path]:
     return files
 
 
-def _validation(files, result):  # type: ignore[no-untyped-def]
+def _validation(files: Sequence[Path], result: Fit) -> Errors | None:
     """Errors on the cases that no fit reads; none if the campaign holds none."""
     from ..fitting.fit import errors_of, predict
     from ..fitting.table import read_tables

@@ -3,8 +3,9 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Sequence
-from dataclasses import dataclass, fields
+from dataclasses import dataclass, fields, replace
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 import numpy.typing as npt
@@ -73,7 +74,7 @@ class Table:
 
     def rows(self, mask: npt.NDArray[np.bool_]) -> Table:
         """Return the rows of `mask`; the cases keep their numbers."""
-        return _masked(self, mask)
+        return replace(self, **_masked(self, mask))
 
 
 @dataclass(frozen=True)
@@ -110,13 +111,12 @@ class ResidualTable:
 
     def rows(self, mask: npt.NDArray[np.bool_]) -> ResidualTable:
         """Return the rows of `mask`; the cases keep their numbers."""
-        return _masked(self, mask)
+        return replace(self, **_masked(self, mask))
 
 
-def _masked(table: Table | ResidualTable, mask: npt.NDArray[np.bool_]):  # type: ignore[no-untyped-def]
+def _masked(table: Any, mask: npt.NDArray[np.bool_]) -> dict[str, Any]:
     columns = {f.name: getattr(table, f.name) for f in fields(table)}
-    picked = {k: v[mask] if isinstance(v, np.ndarray) else v for k, v in columns.items()}
-    return type(table)(**picked)
+    return {k: v[mask] for k, v in columns.items() if isinstance(v, np.ndarray)}
 
 
 def read_tables(
@@ -188,7 +188,7 @@ def _loading(records: list[CaseRecord]) -> Table:
     )
 
 
-def _who(records: Iterable[CaseRecord]) -> dict[str, tuple]:  # type: ignore[type-arg]
+def _who(records: Iterable[CaseRecord]) -> dict[str, Any]:
     return {
         "pairs": tuple(r.case.pair for r in records),
         "names": tuple(r.case.name for r in records),

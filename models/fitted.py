@@ -180,7 +180,7 @@ class Fitted(ContactLaw):
         if not np.all(d > 0.0):
             raise InputError("no contact", key="depth", allowed="depths above 0")
         s, f = pair.sphere, pair.flat
-        values = {
+        values: dict[str, Any] = {
             "depth": d, "E_s": s.E, "E_f": f.E, "nu_s": s.nu, "nu_f": f.nu,
             "Sy_s": s.Sy, "Sy_f": f.Sy, "R": pair.R,
         }  # fmt: skip
@@ -190,7 +190,7 @@ class Fitted(ContactLaw):
             if step == 0.0:
                 result[name] = np.zeros_like(d)
                 continue
-            moved: dict[str, Any] = {**values, name: value + 1j * step}
+            moved = {**values, name: value + 1j * step}
             result[name] = np.asarray(np.imag(self._force_of(**moved)) / step)
         return result
 
