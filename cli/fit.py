@@ -14,6 +14,7 @@ if TYPE_CHECKING:
     from rich.console import Console
 
     from ..fitting import Errors, Fit
+    from ..fitting.select import Choice
 
 _PUBLISHED = Path("data/campaign")
 _OWN = Path("build/campaign/campaign.h5")
@@ -71,13 +72,16 @@ def fit(
         ("validation", validation),
     ]
     _show(console, error_rows(columns))
-    choices, thesis = (), ""
+    choices: Sequence[Choice] = ()
+    thesis = ""
     if compare:
         from ..fitting.select import compare_forms
+        from ..fitting.thesis_forms import refit_all, thesis_section
 
-        console.print("fitting simpler forms ...")
+        console.print("fitting simpler forms and the thesis's own ...")
         start = {k: v["value"] for k, v in content["coefficients"].items()}
-        choices = tuple(compare_forms(table, turns, start=start))
+        choices = compare_forms(table, turns, start=start)
+        thesis = thesis_section(refit_all(table, turns))
     page = write_report(
         result, content, table, turns, out, validation=validation, choices=choices, thesis=thesis
     )

@@ -153,7 +153,7 @@ def fit_tables(
     values, jacobian, misfit, ok = _regress(table, turns, first, free)
     clusters = np.concatenate([np.tile(table.case, 3), np.tile(turns.case, 3)])
     covariance = np.zeros((len(values), len(values)))
-    covariance[np.ix_(free, free)] = _covariance(jacobian, misfit, clusters)
+    covariance[np.ix_(free, free)] = covariance_of(jacobian, misfit, clusters)
     found = predict(values, table, turns)
     crossed = _cross_validate(table, turns, values, free, folds) if folds else None
     return Fit(
@@ -225,7 +225,7 @@ def _complex_step(function: Callable[[Any], Any], x: Floats) -> Floats:
     return np.stack(columns, axis=1)
 
 
-def _covariance(jacobian: Floats, misfit: Floats, clusters: npt.NDArray[np.int64]) -> Floats:
+def covariance_of(jacobian: Floats, misfit: Floats, clusters: npt.NDArray[np.int64]) -> Floats:
     """Covariance with the larger of two standard errors for each coefficient.
 
     The sandwich clustered by combination allows for rows that move together, but is too small when
