@@ -12,7 +12,7 @@ from ..campaigns.case import Case
 from ..campaigns.designs import TABLE_2_1, pair_of
 from ..core.material import Pair
 from .bench import Bench, Effort, Solved
-from .curves import ripple, smoothed
+from .curves import inner, ripple, smoothed
 from .result import Cell, Measurement, Result, Table
 
 Floats = npt.NDArray[np.float64]
@@ -116,7 +116,7 @@ def run(bench: Bench) -> Result:
 def difference(other: Solved, base: Solved) -> tuple[Floats, Floats]:
     """Largest smoothed differences of F, a, delta_s*, H (in %, share absolute), and base's ripple.
 
-    Depths that both reached, from 0.3 of the critical one.
+    Depths that both reached, but for the ends, where smoothing is one-sided.
     """
     n = min(len(other["delta"]), len(base["delta"]))
     delta = base["delta"][:n]
@@ -125,7 +125,7 @@ def difference(other: Solved, base: Solved) -> tuple[Floats, Floats]:
         F, a = np.log(solved["force"][:n]), np.log(solved["radius"][:n])
         curves.append((100.0 * F, 100.0 * a, solved.share[:n], 100.0 * (F - 2.0 * a)))
     off = [
-        float(np.abs(smoothed(delta, x) - smoothed(delta, y)).max())
+        float(np.abs(smoothed(delta, x) - smoothed(delta, y))[inner(delta)].max())
         for x, y in zip(*curves, strict=True)
     ]
     return np.array(off), np.array([ripple(delta, y) for y in curves[1]])

@@ -29,3 +29,9 @@ def smoothed(delta: Floats, values: Floats) -> Floats:
 def ripple(delta: Floats, values: Floats) -> float:
     """Rms deviation from the local quadratic."""
     return float(np.sqrt(np.mean((values - smoothed(delta, values)) ** 2)))
+
+
+def inner(delta: Floats) -> npt.NDArray[np.bool_]:
+    """Points at least half a window from the ends, where the local fit is one-sided and noisy."""
+    x = np.log(delta)
+    return np.asarray((x - x[0] > 0.5 * _WINDOW) & (x[-1] - x > 0.5 * _WINDOW))

@@ -8,7 +8,7 @@ from .. import fem
 from ..campaigns.case import Case
 from ..campaigns.designs import pair_of
 from .bench import Bench
-from .curves import smoothed
+from .curves import inner, smoothed
 from .result import Cell, Measurement, Result, Table
 
 _STIFFNESSES = (5.0, 10.0, 20.0, 40.0, 80.0)
@@ -25,9 +25,10 @@ def run(bench: Bench) -> Result:
             level=f"smoke, penalty {stiffness:g}", penalty=stiffness
         )
         s = bench.solve(Case("penalty", pair, depths, (), 0.0, accuracy))
+        kept = inner(s["delta"])
         curves.append(
-            [smoothed(s["delta"], np.log(s["force"])), smoothed(s["delta"], np.log(s["radius"])),
-             smoothed(s["delta"], s.share)]
+            [smoothed(s["delta"], y)[kept] for y in (np.log(s["force"]), np.log(s["radius"]),
+                                                     s.share)]
         )  # fmt: skip
     stiffest = curves[-1]
     rows: list[tuple[Cell, ...]] = []

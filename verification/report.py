@@ -14,7 +14,8 @@ from .runner import kept_result
 _TESTS = (
     ("residual and tangent of the assembly", "plain scikit-fem forms on the same mesh and state",
      "1e-10, elastic and plastic", "`tests/physics/test_fem_assembly.py`"),
-    ("tangent", "Taylor remainder", "slope 2 within 0.1", "same, `tests/unit/fem/test_material.py`"),
+    ("tangent", "Taylor remainder", "slope 2 within 0.1",
+     "same, and `tests/unit/fem/test_material.py`"),
     ("path error of the stress update", "its own limit", "order 2 (radial return 1) within 0.1",
      "`tests/unit/fem/test_material.py`"),
     ("stress update", "yield surface, rotation, pure volume change", "1e-10", "same"),

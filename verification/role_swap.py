@@ -9,7 +9,7 @@ from ..campaigns.case import Case
 from ..campaigns.designs import pair_of
 from ..core.material import Material, Pair
 from .bench import Bench, Effort, Solved
-from .curves import smoothed
+from .curves import inner, smoothed
 from .pairs import R
 from .result import Cell, Measurement, Result, Table
 
@@ -47,6 +47,8 @@ def run(bench: Bench) -> Result:
                             "symmetry of the half-spaces")
             )  # fmt: skip
         depth = pairs[0]["delta"] / R
+        if len(off[0]) < len(depth):
+            depth = depth[inner(depth)]
         for k in range(0, len(depth), max(1, len(depth) // 5)):
             rows.append(
                 (name, f"{depth[k]:.2e}", f"{off[0][k]:+.3f}", f"{off[1][k]:+.3f}",
@@ -82,4 +84,5 @@ def _differences(one: Solved, other: Solved) -> tuple[np.ndarray, np.ndarray, np
         parts = [np.log(solved["force"]), np.log(solved["radius"]), solved.share]
         curves.append(parts if plain else [smoothed(delta, p) for p in parts])
     (f1, a1, s1), (f2, a2, s2) = curves
-    return 100.0 * (f1 - f2), 100.0 * (a1 - a2), s1 + s2 - 1.0
+    kept = slice(None) if plain else inner(delta)
+    return 100.0 * (f1 - f2)[kept], 100.0 * (a1 - a2)[kept], (s1 + s2 - 1.0)[kept]

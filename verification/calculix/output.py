@@ -9,14 +9,15 @@ import resource
 import shutil
 import subprocess
 import tempfile
-from dataclasses import asdict, dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
 
 import numpy as np
 import numpy.typing as npt
 
 from ...core.errors import InputError
-from ...fem.contact import contact_forces
+from ...fem.contact import POINTS, ContactState, contact_forces
+from ...fem.discretise import Discretisation
 from ...fem.measure import edge_of_contact
 from .deck import Deck, write_deck
 
@@ -41,21 +42,21 @@ class Reference:
     unknowns
         Twice the number of nodes in the meridian plane.
     delta, force, radius, share
-        Results.
+        Results, shape (n,).
     """
 
     element: str
     version: str
     cpu_s: float
     unknowns: int
-    delta: list[float]
-    force: list[float]
-    radius: list[float]
-    share: list[float]
+    delta: Floats
+    force: Floats
+    radius: Floats
+    share: Floats
 
 
 def run_deck(deck: Deck, *, name: str, command: str = "ccx") -> Reference:
-    """Write the deck to this folder (compressed), run it, keep and return what it gave.
+    """Run the deck; deck and printed output are kept, compressed, in this folder.
 
     Raises
     ------
@@ -69,8 +70,6 @@ def run_deck(deck: Deck, *, name: str, command: str = "ccx") -> Reference:
             allowed="install the Debian package calculix-ccx",
         )
     text = write_deck(deck)
-    with gzip.GzipFile(FOLDER / f"{name}.inp.gz", "wb", mtime=0) as stream:
-        stream.write(text.encode())
     with tempfile.TemporaryDirectory() as folder:
         (Path(folder) / "case.inp").write_text(text)
         before = resource.getrusage(resource.RUSAGE_CHILDREN)
@@ -84,22 +83,34 @@ def run_deck(deck: Deck, *, name: str, command: str = "ccx") -> Reference:
         after = resource.getrusage(resource.RUSAGE_CHILDREN)
         printed = (Path(folder) / "case.dat").read_text()
     cpu = (after.ru_utime + after.ru_stime) - (before.ru_utime + before.ru_stime)
-    found = measure(deck, printed, cpu_s=cpu, version=_version(command))
-    (FOLDER / f"{name}.json").write_text(json.dumps(asdict(found), indent=1) + "\n")
-    return found
+    for ending, content in (("inp", text), ("dat", printed)):
+        with gzip.GzipFile(FOLDER / f"{name}.{ending}.gz", "wb", mtime=0) as stream:
+            stream.write(content.encode())
+    release = _version(command)
+    about = {"element": deck.element, "version": release, "cpu_s": round(cpu, 1)}
+    (FOLDER / f"{name}.json").write_text(json.dumps(about, indent=1) + "\n")
+    return measure(deck, printed, cpu_s=cpu, version=release)
 
 
-def load_reference(name: str) -> Reference | None:
-    """Return what an earlier run gave, if there is one."""
+def load_reference(deck: Deck, *, name: str) -> Reference | None:
+    """Return what an earlier run of this deck gave, if there is one."""
     path = FOLDER / f"{name}.json"
-    return Reference(**json.loads(path.read_text())) if path.exists() else None
+    if not path.exists():
+        return None
+    with gzip.open(FOLDER / f"{name}.inp.gz", "rt") as stream:
+        if stream.read() != write_deck(deck):
+            return None  # our mesh or the case has changed since
+    with gzip.open(FOLDER / f"{name}.dat.gz", "rt") as stream:
+        printed = stream.read()
+    about = json.loads(path.read_text())
+    return measure(deck, printed, cpu_s=about["cpu_s"], version=about["version"])
 
 
 def measure(deck: Deck, printed: str, *, cpu_s: float = 0.0, version: str = "") -> Reference:
     """Read the printed reactions and displacements and measure F, a and delta_s*."""
     grid = deck.grid
     slave, master = grid.surfaces.slave, grid.surfaces.master
-    depths, force, radius, share = [], [], [], []
+    found: list[tuple[float, float, float, float]] = []
     for depth, (reaction, moved) in zip(deck.problem.depths, _blocks(printed), strict=False):
         x = grid.mesh.points.copy()
         for node, u in moved.items():
@@ -109,13 +120,31 @@ def measure(deck: Deck, printed: str, *, cpu_s: float = 0.0, version: str = "") 
             break
         sphere = depth + moved[int(slave[0])][1]
         flat = -moved[int(master[0])][1]
-        depths.append(depth)
-        force.append(_WEDGE * abs(reaction))
-        radius.append(edge_of_contact(contact, x[slave, 0]))
-        share.append(float(sphere / (sphere + flat)))
+        a = edge_of_contact(_touching(grid, contact, x), x[slave, 0])
+        found.append((depth, _WEDGE * abs(reaction), a, float(sphere / (sphere + flat))))
     corners = len(grid.mesh.points)
     nodes = corners if deck.element == "CAX4" else 4 * corners - 1
-    return Reference(deck.element, version, cpu_s, 2 * nodes, depths, force, radius, share)
+    columns = np.array(found).reshape(-1, 4).T
+    return Reference(deck.element, version, cpu_s, 2 * nodes, *columns)
+
+
+def _touching(grid: Discretisation, contact: ContactState, x: Floats) -> ContactState:
+    """Contact state whose active nodes are those from the axis on that touch within the mesh.
+
+    Two surfaces of straight edges that touch everywhere are up to h^2/(8 R) apart between their
+    nodes; just outside of the contact the gap is ten times that.
+    """
+    s = grid.surfaces
+    part = 0.5 * (1.0 + POINTS)
+    gap = np.zeros(len(s.slave))
+    gap[:-1] += (s.weight * contact.gap * (1.0 - part)).sum(axis=1)
+    gap[1:] += (s.weight * contact.gap * part).sum(axis=1)
+    gap /= s.mass
+    r = x[s.slave, 0]
+    width = np.diff(r, append=2.0 * r[-1] - r[-2])
+    apart = np.flatnonzero(gap > 0.15 * width**2)
+    last = int(apart[0]) if len(apart) else len(gap)
+    return replace(contact, pressure=(np.arange(len(gap)) < last).astype(float))
 
 
 def _blocks(printed: str) -> list[tuple[float, dict[int, Floats]]]:
