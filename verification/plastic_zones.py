@@ -150,7 +150,7 @@ def _draw(states: list[Drawn], path: Path) -> None:
             corners = points[s.quads[near]] * np.array([side, 1.0])
             cells = PolyCollection(list(corners), array=s.von_mises[near] / strength, cmap="turbo",
                                    edgecolors="face", linewidths=0.2)  # fmt: skip
-            cells.set_clim(0.0, 1.0)
+            cells.set_clim(0.0, 1.5)
             axis.add_collection(cells)
             lines = LineCollection(_edge(s, points, near, side), colors="white", linewidths=1.2)
             axis.add_collection(lines)
