@@ -57,6 +57,7 @@ def run(bench: Bench) -> Result:
             Measurement("delta_s*, production's stiffness", share, "", None, 0.0025, source),
         ),
         tables=(
-            Table("Largest difference", ("stiffness [E'/h]", "F [%]", "a [%]", "delta_s*"), tuple(rows)),
+            Table("Largest difference",
+                  ("stiffness [E'/h]", "F [%]", "a [%]", "delta_s*"), tuple(rows)),
         ),
     )  # fmt: skip
