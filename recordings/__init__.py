@@ -1,6 +1,8 @@
 """Stage recordings: measured impacts, reduced and checked."""
 
+from .audit import Audit, audit
 from .columns import CONDITIONS, OBSERVABLES
+from .findings import Finding, Severity
 from .noise import Noise
 from .recording_set import Approach, RecordingSet, read, write
 from .setup_file import FORMAT, Environment, Friction, Quantity, Setup, Striker, Target
@@ -11,15 +13,19 @@ __all__ = [
     "FORMAT",
     "OBSERVABLES",
     "Approach",
+    "Audit",
     "Environment",
+    "Finding",
     "Friction",
     "Noise",
     "Quantity",
     "RecordingSet",
     "Setup",
+    "Severity",
     "Striker",
     "Target",
     "Trials",
+    "audit",
     "read",
     "write",
 ]

@@ -1,0 +1,193 @@
+"""Checks of what moved: mass, speed, momentum, friction, impulse."""
+
+from __future__ import annotations
+
+import numpy as np
+from scipy.optimize import minimize_scalar
+from scipy.stats import chi2
+
+from . import limits, rigid
+from .findings import (
+    FALSE_ALARMS_MASS,
+    FALSE_ALARMS_OTHER,
+    Finding,
+    Severity,
+    critical_interval,
+    gathered,
+    judged,
+    two_sided,
+)
+from .recording_set import RecordingSet
+from .setup_file import Striker
+from .trial_view import combined, views
+
+PULSE = (0.25, 1.0)
+"""Impulse over peak force times duration: a rectangular pulse has 1, a ringing one may have 0.3."""
+
+_MOMENTUM_SHARE = FALSE_ALARMS_OTHER / 2.0
+_BEYOND = 4.0
+
+
+def check_mass(found: RecordingSet) -> list[Finding]:
+    """Stated mass against density and volume.
+
+    How much of the round ends a rod has beyond its length is left open, from plain ends to two
+    whole caps, but all rods of a set are taken to have ends of one kind.
+    """
+    strikers = found.setup.strikers
+    allowed = {name: limits.geometric_mass(striker) for name, striker in strikers.items()}
+    known = {name: mass for name, mass in allowed.items() if mass is not None}
+    part = _part_of_the_ends([(strikers[name], mass) for name, mass in known.items()])
+    findings = [
+        Finding(f"mass of {name}", Severity.UNCHECKED, "no density is stated")
+        for name in strikers
+        if name not in known
+    ]
+    rods = sum(mass.high > mass.low for mass in known.values())
+    for name, mass in known.items():
+        stated, relative = strikers[name].mass_kg.value, _mass_relative(strikers[name], mass)
+        expected = mass.low + part * (mass.high - mass.low)
+        z = abs(stated / expected - 1.0) / relative
+        width = (mass.high / mass.low - 1.0) / relative if rods == 1 else 0.0
+        critical = critical_interval(width, FALSE_ALARMS_MASS / len(known))
+        span = f"{mass.low:.4g}" + (f" to {mass.high:.4g}" if mass.high > mass.low else "")
+        findings.append(
+            Finding(
+                f"mass of {name}",
+                Severity.CONTRADICTION if z > critical else Severity.CONSISTENT,
+                f"{stated:.4g} kg stated, {span} kg from density and size "
+                f"({stated / expected - 1.0:+.1%})",
+                stated,
+                expected,
+                z,
+            )
+        )
+    return findings
+
+
+def _mass_relative(striker: Striker, mass: limits.Range) -> float:
+    return combined(striker.mass_kg.relative, mass.relative) or limits.ROUNDING
+
+
+def _part_of_the_ends(rods: list[tuple[Striker, limits.Range]]) -> float:
+    """Return the part of the end caps, 0 to 1, with which all stated masses agree best."""
+
+    def misfit(part: float) -> float:
+        return sum(
+            ((striker.mass_kg.value / (m.low + part * (m.high - m.low)) - 1.0)
+             / _mass_relative(striker, m)) ** 2
+            for striker, m in rods
+        )  # fmt: skip
+
+    if not any(m.high > m.low for _, m in rods):
+        return 0.0
+    inside = float(minimize_scalar(misfit, bounds=(0.0, 1.0), method="bounded").x)
+    return min((0.0, inside, 1.0), key=misfit)
+
+
+def check_speed(found: RecordingSet) -> list[Finding]:
+    """Impact speed against the height of fall, where a trial gives both."""
+    trials, g = found.trials, found.setup.gravity_m_s2.value
+    both = ~np.isnan(trials.impact_speed_m_s) & ~np.isnan(trials.drop_height_m)
+    if not both.any():
+        return []
+    speed = trials.impact_speed_m_s[both]
+    rod = np.array([s.shape == "rod" for s in found.strikers()])[both]
+    share = np.where(rod, 1.0, np.sin(np.radians(trials.angle_deg[both])))
+    fall = np.sqrt(2.0 * g * trials.drop_height_m[both]) * share
+    std = np.array([v.speed.std for v in views(found)])[both]
+    z = (speed - fall) / np.where(std > 0.0, std, limits.ROUNDING * speed)
+    p = float(chi2.sf(np.sum(z**2), z.size))
+    worst = int(np.argmax(np.abs(z)))
+    mean = float(np.mean(speed / fall))
+    return [
+        Finding(
+            "speed against height of fall",
+            judged(p, FALSE_ALARMS_OTHER - _MOMENTUM_SHARE),
+            f"on average {mean - 1.0:+.1%} of sqrt(2 g H), at most {speed[worst]:.4g} against "
+            f"{fall[worst]:.4g} m/s, {z.size} trials",
+            mean,
+            1.0,
+            two_sided(p),
+        )
+    ]
+
+
+def check_momentum(found: RecordingSet) -> list[Finding]:
+    """One impulse must explain every velocity, spin and impulse ratio of a trial."""
+    total, degrees, worst, most = 0.0, 0, "", 0.0
+    for view in views(found):
+        measured = {n: view.measured(n) for n in rigid.FIXED_BY_MOMENTUM}
+        known = {n: quantity for n, quantity in measured.items() if quantity is not None}
+        misfit, extra = rigid.momentum_misfit(
+            view.striker, view.touch, view.angle, view.speed, known
+        )
+        total, degrees = total + misfit, degrees + extra
+        if extra and misfit / extra > most:
+            worst, most = view.name, misfit / extra
+    if degrees == 0:
+        return []
+    p = float(chi2.sf(total, degrees))
+    return [
+        Finding(
+            "momentum",
+            judged(p, _MOMENTUM_SHARE),
+            f"one impulse a trial leaves chi squared {total:.1f} on {degrees} degrees of freedom"
+            + (f", most in {worst}" if worst else ""),
+            total,
+            float(degrees),
+            two_sided(p),
+        )
+    ]
+
+
+def check_friction(found: RecordingSet) -> list[Finding]:
+    """Impulse ratio against the ratio at which a rigid tip would stick."""
+    findings = []
+    for view in views(found):
+        ratio, touch = view.measured("friction_impulse_ratio"), view.touch
+        if ratio is None or touch.c == 0.0 or touch.vx or touch.spin:
+            continue
+        z = (ratio.value - touch.stick_ratio) / ratio.std
+        stuck = z > _BEYOND
+        findings.append(
+            Finding(
+                f"friction of {view.name}",
+                Severity.CAUTION if stuck else Severity.CONSISTENT,
+                f"impulse ratio {ratio.value:.3g}, a rigid tip sticks at {touch.stick_ratio:.3g}",
+                ratio.value,
+                touch.stick_ratio,
+                max(z, 0.0),
+            )
+        )
+    return gathered(findings)
+
+
+def check_impulse(found: RecordingSet) -> list[Finding]:
+    """Impulse that reverses the motion against peak force times duration."""
+    findings = []
+    for view in views(found):
+        e, mu = view.measured("restitution"), view.measured("friction_impulse_ratio")
+        force, time = view.measured("peak_force_N"), view.measured("contact_time_s")
+        if e is None or force is None or time is None:
+            continue
+        impulse = float(view.touch.impulse(e.value, mu.value if mu else 0.0)[1])
+        pulse = force.value * time.value
+        ratio = impulse / pulse
+        relative = combined(
+            force.relative, time.relative, view.speed.relative, view.striker.mass_kg.relative
+        )
+        z = (ratio - PULSE[1]) / (max(relative, limits.ROUNDING) * ratio)
+        severity = Severity.CONSISTENT if ratio > PULSE[0] else Severity.CAUTION
+        findings.append(
+            Finding(
+                f"impulse of {view.name}",
+                Severity.CONTRADICTION if z > _BEYOND else severity,
+                f"{impulse:.4g} N s from the motion, {pulse:.4g} N s peak force times duration "
+                f"(ratio {ratio:.2g}, at most 1)",
+                impulse,
+                pulse,
+                max(z, 0.0),
+            )
+        )
+    return gathered(findings)
