@@ -64,13 +64,13 @@ def run(bench: Bench) -> Result:
             "Etsion's definition (H = 2.8 Sy, K = 0.454 + 0.41 nu). Ripple smoothed out."
         ),
         measurements=(
-            _measured("F against Jackson and Green, mean |difference|", force / jg_force, jg, 4.0,
+            _measured("F against Jackson and Green, mean absolute difference", force / jg_force, jg, 4.0,
                       "J. Tribol. 127 (2005) 343, Eqs. 1.20-1.22; the fit is stated to 3.5 %"),
-            _measured("a against Jackson and Green, mean |difference|", a / jg_a, jg, 4.0,
+            _measured("a against Jackson and Green, mean absolute difference", a / jg_a, jg, 4.0,
                       "the same"),
-            _measured("F against Kogut and Etsion, mean |difference|", force / ke_force, ke, 5.0,
+            _measured("F against Kogut and Etsion, mean absolute difference", force / ke_force, ke, 5.0,
                       "J. Appl. Mech. 69 (2002) 657"),
-            _measured("a against Kogut and Etsion, mean |difference|", a / ke_a, ke, 5.0,
+            _measured("a against Kogut and Etsion, mean absolute difference", a / ke_a, ke, 5.0,
                       "the same"),
             Measurement("H against Jackson's later finite elements (1.15), a/R above 0.1, mean",
                         100.0 * later, "%", None, 5.0, "Eq. 1.15, Proc. IMechE J 223 (2009)"),
