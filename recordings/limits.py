@@ -56,7 +56,7 @@ def _end_volume(R: float, r: float) -> float:
     """Volume of a cylinder of radius r inside a sphere of radius R beyond its centre [m^3]."""
     if r >= R:
         return 2.0 / 3.0 * math.pi * R**3
-    common = 2.0 / 3.0 * math.pi * (R**3 - (R**2 - r**2) ** 1.5)
+    common = 2.0 / 3.0 * math.pi * (R**3 - math.sqrt(R**2 - r**2) ** 3)
     return min(common, math.pi * r**3)
 
 

@@ -2,8 +2,8 @@
 
 The sets come from the impact integrator with laws that the audit does not know; a wrong mass is a
 mass that was written down 5 % off after the impacts happened with the true one. The rods are
-slender (round ends are at most 2 % of the mass): of a single rod with heavier ends the audit cannot tell a
-wrong mass from a length that was measured over all. Sets of several rods are checked below.
+slender (round ends are at most 2 % of the mass): of a single rod with heavier ends the audit cannot
+tell a wrong mass from a length that was measured over all. Sets of several rods are checked below.
 """
 
 from functools import cache

@@ -1,0 +1,105 @@
+"""`dentscope recordings`: check, audit, begin and fetch recording sets."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import Annotated
+
+import typer
+
+app = typer.Typer(
+    name="recordings",
+    help="Recording sets: measured impacts, checked and audited.",
+    no_args_is_help=True,
+)
+
+SetFolder = Annotated[Path, typer.Argument(metavar="SET", help="Folder of the recording set.")]
+
+
+@app.command()
+def check(folder: SetFolder) -> None:
+    """List every mistake of a set, or say what it holds."""
+    from ..recordings import read
+
+    found = read(folder)
+    strikers = ", ".join(found.setup.strikers)
+    typer.echo(f"{folder}: sound; {len(found.trials)} trials of {strikers}")
+    for name in found.observed:
+        noise = found.noise(name)
+        count = int((found.values(name) == found.values(name)).sum())
+        typer.echo(f"  {name}: {count} values, noise from {noise.origin}")
+    for kind, files in (("traces", found.traces), ("profiles", found.profiles)):
+        if files:
+            typer.echo(f"  {kind}: {len(files)}")
+    for note in found.notes:
+        typer.echo(f"  note: {note}")
+
+
+@app.command("audit")
+def audit_command(
+    folder: SetFolder,
+    everything: Annotated[
+        bool, typer.Option("--all", help="Also print the checks that were passed.")
+    ] = False,
+) -> None:
+    """Compare a set's numbers with each other: mass, speed, momentum, energy, forces, durations."""
+    from ..recordings import Severity, audit, read
+
+    found = audit(read(folder))
+    shown = (Severity.CONTRADICTION, Severity.CAUTION)
+    for finding in found.findings:
+        if everything or finding.severity in shown:
+            typer.echo(str(finding))
+    counts = ", ".join(f"{len(found.of(s))} {s.value}" for s in Severity if found.of(s))
+    typer.echo(f"{found.name}: {counts or 'nothing to check'}")
+
+
+@app.command()
+def new(
+    folder: SetFolder,
+    sphere: Annotated[
+        bool, typer.Option("--sphere", help="The striker is a sphere, not a rod.")
+    ] = False,
+) -> None:
+    """Write a template to fill in: set.toml and trials.csv with one example row."""
+    from ..recordings.template import write_template
+
+    write_template(folder, shape="sphere" if sphere else "rod")
+    typer.echo(f"{folder}: fill in set.toml and trials.csv, then: dentscope recordings check")
+
+
+@app.command("list")
+def list_sets(
+    folder: Annotated[Path, typer.Argument(help="Folder that holds sets.")] = Path(
+        "data/recordings"
+    ),
+) -> None:
+    """List the sets in a folder, a line each."""
+    from ..core.errors import InputError
+    from ..recordings import read
+
+    if not folder.is_dir():
+        raise InputError("no such folder", source=str(folder), allowed="a folder with sets")
+    for path in sorted(folder.glob("*/set.toml")):
+        found = read(path.parent)
+        observed = ", ".join(found.observed)
+        typer.echo(f"{path.parent.name}: {len(found.trials)} trials; {observed}")
+
+
+@app.command()
+def fetch(
+    names: Annotated[
+        list[str] | None, typer.Argument(metavar="NAME...", help="Which; all without a name.")
+    ] = None,
+    catalogue: Annotated[Path, typer.Option(help="List of addresses and checksums.")] = Path(
+        "data/recordings/fetch.toml"
+    ),
+    out: Annotated[Path, typer.Option(help="Folder to fetch into.")] = Path("build/recordings"),
+) -> None:
+    """Fetch raw files that may not be shipped, by pinned address and checksum."""
+    from ..recordings.fetch import fetch_sources, read_catalogue
+
+    for got in fetch_sources(read_catalogue(catalogue), out, names or []):
+        typer.echo(f"{got.name}: {len(got.files)} files in {got.folder}")
+        if got.recipe:
+            typer.echo(f"  next: {got.recipe}")

@@ -1,0 +1,120 @@
+"""Raw recordings that may not be shipped: fetched by pinned address and checksum."""
+
+from __future__ import annotations
+
+import logging
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass
+from pathlib import Path, PurePosixPath
+from typing import Annotated
+from urllib.parse import quote
+
+import pooch  # type: ignore[import-untyped]
+from pydantic import AfterValidator, Field
+from requests.exceptions import RequestException
+
+from ..core.errors import InputError
+from ..core.toml_input import InputTable, read_model
+
+_SHA256 = r"[0-9a-f]{64}"
+
+
+def _inside(path: str) -> str:
+    parts = PurePosixPath(path).parts
+    if not parts or path.startswith("/") or ".." in parts or "\\" in path:
+        raise ValueError("a path inside the source's folder")
+    return path
+
+
+class SourceFile(InputTable):
+    """`[[source.files]]`: where a file is below the source's address, and what it must be."""
+
+    path: str = Field(min_length=1)
+    to: Annotated[str, AfterValidator(_inside)]
+    sha256: str = Field(pattern=_SHA256)
+
+
+class Source(InputTable):
+    """`[[source]]`: raw files of one origin, pinned to one version."""
+
+    name: Annotated[str, AfterValidator(_inside)]
+    title: str = ""
+    licence: str
+    base: str = Field(pattern="^https?://.*/$")
+    recipe: str = ""
+    files: tuple[SourceFile, ...] = Field(min_length=1)
+
+
+class Catalogue(InputTable):
+    """The whole list."""
+
+    source: tuple[Source, ...]
+
+
+@dataclass(frozen=True, slots=True)
+class Fetched:
+    """One source on this machine: its files, each with the right checksum."""
+
+    name: str
+    folder: Path
+    files: tuple[Path, ...]
+    recipe: str
+
+
+def read_catalogue(path: Path) -> Catalogue:
+    """Read a list of sources.
+
+    Raises
+    ------
+    InputErrors
+        One line for each mistake.
+    """
+    return read_model(path, Catalogue)
+
+
+def fetch_sources(catalogue: Catalogue, out: Path, names: Sequence[str]) -> Iterator[Fetched]:
+    """Fetch sources one after the other; files that are already there and right are kept.
+
+    Parameters
+    ----------
+    catalogue
+        What there is.
+    out
+        Each source gets the folder `out/NAME/raw`.
+    names
+        Which to fetch; all when empty.
+
+    Raises
+    ------
+    InputError
+        An unknown name, an address that does not answer, or a file with another checksum.
+    """
+    known = {source.name: source for source in catalogue.source}
+    for name in names:
+        if name not in known:
+            raise InputError(f"no source {name!r}", source="fetch", allowed=", ".join(known))
+    pooch.get_logger().setLevel(logging.WARNING)
+    for name in names or known:
+        source, folder = known[name], out / name / "raw"
+        files = tuple(_file(source, item, folder) for item in source.files)
+        yield Fetched(name, folder, files, source.recipe)
+
+
+def _file(source: Source, item: SourceFile, folder: Path) -> Path:
+    place = folder / item.to
+    url = source.base + quote(item.path)
+    try:
+        pooch.retrieve(url, known_hash=f"sha256:{item.sha256}", fname=place.name, path=place.parent)
+    except RequestException as error:
+        reason = type(error).__name__
+        raise InputError(
+            f"cannot be fetched ({reason})", source=url, allowed="a network that reaches it"
+        ) from None
+    except ValueError:
+        raise InputError(
+            "the file behind this address has another checksum", source=url,
+            allowed=f"sha256 {item.sha256}",
+        ) from None  # fmt: skip
+    except OSError as error:
+        raise InputError(f"cannot be written ({error.strerror})", source=str(place)) from None
+    return place
