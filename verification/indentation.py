@@ -84,8 +84,8 @@ def run(bench: Bench) -> Result:
             ),
         ),
         notes=(
-            f"Kogut and Komvopoulos give one value for E'/Sy, here {kk:.3f}; their fit goes on growing "
-            "with the logarithm of E'/Sy, past every rigid-plastic solution. Yu and Blanchard's "
-            "and Alcala's curves are fits of their finite elements over a/R.",
+            f"Kogut and Komvopoulos give one value for E'/Sy, here {kk:.3f}; their fit goes on "
+            "growing with the logarithm of E'/Sy, past every rigid-plastic solution. Yu and "
+            "Blanchard's and Alcala's curves are fits of their finite elements over a/R.",
         ),
     )  # fmt: skip

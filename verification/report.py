@@ -9,7 +9,7 @@ from .. import fem
 from ..core.provenance import environment
 from .checks import CHECKS
 from .result import Measurement, Result, Table
-from .runner import kept_result
+from .runner import best_result, publish
 
 _TESTS = (
     ("residual and tangent of the assembly", "plain scikit-fem forms on the same mesh and state",
@@ -26,9 +26,16 @@ _TESTS = (
 
 
 def write_report(path: Path, *, folder: Path) -> Path:
-    """Write the report from the measurements kept in `folder`; return its path."""
-    known = {check.name: kept_result(check, folder=folder) for check in CHECKS}
+    """Write the report from the measurements kept in `folder`; return its path.
+
+    What is not measured there is taken from the results beside the report, where all that it shows
+    is kept; so a report can be renewed check by check.
+    """
+    beside = path.parent / path.stem
+    known = {check.name: best_result(check, folders=(folder, beside)) for check in CHECKS}
     found = [result for result in known.values() if result is not None]
+    for result in found:
+        publish(result, folder=beside)
     lines = [*_head(), *_summary(found, [name for name, r in known.items() if r is None])]
     for result in found:
         lines += _section(result, path)
@@ -46,11 +53,12 @@ def _head() -> Iterator[str]:
     yield (
         "Made by `dentscope verify`; `dentscope verify --list` names the checks, `--only NAME` "
         "runs one. It can be stopped and goes on where it was. Marks are those that were set "
-        "before measuring; a missed one stands as missed. Processor seconds are of one thread on "
-        "a shared two-core machine."
+        "before measuring; a missed one stands as missed. Effort `quick` solves at coarse levels, "
+        "`production` (the default) at those of published results. Processor seconds are of one "
+        "thread on a shared two-core machine."
     )
     yield ""
-    yield f"Numerics version {fem.NUMERICS_VERSION}; {packages}."
+    yield f"Present numerics version of the solver {fem.NUMERICS_VERSION}; {packages}."
     yield ""
 
 
@@ -65,18 +73,18 @@ def _tests() -> Iterator[str]:
 
 
 def _summary(results: list[Result], absent: list[str]) -> Iterator[str]:
-    yield "| check | numbers with a mark | met | missed | effort | processor s |"
-    yield "| --- | --- | --- | --- | --- | --- |"
+    yield "| check | numbers with a mark | met | missed | effort | numerics | processor s |"
+    yield "| --- | --- | --- | --- | --- | --- | --- |"
     for r in results:
         marked = [m for m in r.measurements if m.met is not None]
         missed = ", ".join(m.what for m in r.missed)
         yield (
             f"| [{r.title}](#{_anchor(r.title)}) | {len(marked)} | {len(marked) - len(r.missed)} | "
-            f"{missed or 'none'} | {r.effort} | {r.cpu_s:.0f} |"
+            f"{missed or 'none'} | {r.effort} | {r.numerics_version} | {r.cpu_s:.0f} |"
         )
     yield ""
     if absent:
-        yield f"Not measured with this numerics version: {', '.join(absent)}."
+        yield f"Not measured yet: {', '.join(absent)}."
         yield ""
 
 

@@ -39,20 +39,35 @@ def run_checks(checks: Iterable[Check], *, bench: Bench, afresh: bool = False) -
 
 def kept_result(check: Check, *, folder: Path) -> Result | None:
     """Return what was measured with the present numerics: complete before partial, then finer."""
-    found = []
-    for effort in (Effort.PRODUCTION, Effort.QUICK):
-        path = _file(check, folder, effort)
-        if path.exists():
-            result = read_result(path)
-            if result.numerics_version == fem.NUMERICS_VERSION:
-                found.append(result)
-    best = [result for result in found if result.complete] or found
-    return best[0] if best else None
+    found = [r for r in _results(check, folder) if r.numerics_version == fem.NUMERICS_VERSION]
+    return max(found, key=_worth, default=None)
+
+
+def best_result(check: Check, *, folders: Iterable[Path]) -> Result | None:
+    """Return the newest, then most complete, then finest result of several folders."""
+    found = [result for folder in folders for result in _results(check, folder)]
+    return max(found, key=lambda r: (r.numerics_version, *_worth(r)), default=None)
+
+
+def publish(result: Result, *, folder: Path) -> None:
+    """Keep a result in another folder, from which a report can be written again."""
+    path = _file(result.name, folder, Effort(result.effort))
+    if not path.exists() or read_result(path) != result:
+        write_result(result, path)
+
+
+def _results(check: Check, folder: Path) -> list[Result]:
+    paths = [_file(check.name, folder, effort) for effort in Effort]
+    return [read_result(path) for path in paths if path.exists()]
+
+
+def _worth(result: Result) -> tuple[bool, bool]:
+    return result.complete, result.effort == Effort.PRODUCTION.value
 
 
 def _measured(check: Check, bench: Bench) -> Result:
     started, bench.reused_cpu_s = time.process_time(), 0.0
-    path = _file(check, bench.folder, bench.effort)
+    path = _file(check.name, bench.folder, bench.effort)
 
     def stamped(found: Result) -> Result:
         return replace(
@@ -75,5 +90,5 @@ def _covers(result: Result, effort: Effort) -> bool:
     return result.effort == Effort.PRODUCTION.value or effort is Effort.QUICK
 
 
-def _file(check: Check, folder: Path, effort: Effort) -> Path:
-    return folder / "results" / f"{check.name}-{effort.value}.json"
+def _file(name: str, folder: Path, effort: Effort) -> Path:
+    return folder / "results" / f"{name}-{effort.value}.json"

@@ -78,8 +78,19 @@ def test_the_report_shows_what_is_missed_and_what_is_absent(tmp_path):
     assert "| x | 0.7 % | at most 0.3 | **missed** | a paper |" in text
     assert "| 1 | 2 |" in text
     assert "![a picture](verification/p.png)" in text
-    assert "Not measured with this numerics version: " in text
-    assert "hertz" in text.split("Not measured")[1]
+    assert "hertz" in text.split("Not measured yet: ")[1].splitlines()[0]
+
+
+def test_a_report_is_renewed_check_by_check(tmp_path):
+    check = Check("patch", "t", lambda bench: result(value=0.7))
+    report = tmp_path / "docs" / "verification.md"
+    run_checks([check], bench=Bench(tmp_path / "a", tmp_path, Effort.QUICK))
+    write_report(report, folder=tmp_path / "a")
+    hertz = Check("hertz", "t", lambda bench: result("hertz", 0.1))
+    run_checks([hertz], bench=Bench(tmp_path / "b", tmp_path, Effort.QUICK))
+    text = write_report(report, folder=tmp_path / "b").read_text()
+    assert "| x | 0.7 % |" in text  # measured elsewhere, kept beside the report
+    assert "| x | 0.1 % |" in text
 
 
 def test_an_unknown_check_is_answered_with_the_known_ones():
