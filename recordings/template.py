@@ -101,8 +101,8 @@ def write_template(folder: Path, *, shape: Literal["rod", "sphere"]) -> None:
         ) from None
     striker = _STRIKER[shape].format(mass=_MASS[shape])
     (folder / "set.toml").write_text(_HEAD + striker + _TAIL, encoding="utf-8")
-    name = "rod" if shape == "rod" else "ball"
+    name, depth = ("rod", "95e-6") if shape == "rod" else ("ball", "19e-6")
     columns = ["trial", "striker", "angle_deg", "drop_height_m", *list(OBSERVABLES)[:2], "note"]
-    rows = [columns, ["T01", name, "90", "0.05", "0.5", "95e-6", "an example row: replace it"]]
+    rows = [columns, ["T01", name, "90", "0.05", "0.5", depth, "an example row: replace it"]]
     text = "\n".join(",".join(row) for row in rows) + "\n"
     (folder / "trials.csv").write_text(text, encoding="utf-8")

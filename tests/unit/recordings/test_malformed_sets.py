@@ -1,0 +1,229 @@
+"""Malformed recording sets: each kind gives its line with file and place, never a traceback."""
+
+import re
+from pathlib import Path
+
+import pytest
+from dentscope.core.errors import InputError
+from dentscope.recordings import RecordingSet, read
+from hypothesis import given, settings
+from hypothesis import strategies as st
+
+SET = """format = "recording-set/1"
+name = "rod"
+gravity_m_s2 = 9.81
+[target]
+E_Pa = { value = 2.0e11, std = 4.0e9 }
+nu = 0.3
+[strikers.rod]
+shape = "rod"
+tip_radius_m = 0.01
+mass_kg = 0.5
+radius_m = 0.01
+length_m = 0.3
+[noise]
+restitution = 0.01
+"""
+TRIALS = """trial,striker,angle_deg,impact_speed_m_s,restitution,restitution_std
+a,rod,90,1.0,0.5,0.01
+b,rod,45,2.0,0.4,
+"""
+TRACE = "time_s,tip_height_m\n0,1e-3\n1e-3,0\n"
+PROFILE = "x_m,z_m\n0,0\n1e-6,-1e-6\n"
+
+
+def write(folder, *, toml=SET, trials=TRIALS, trace=TRACE, profile=PROFILE):
+    for name, content in (
+        ("set.toml", toml), ("trials.csv", trials), ("traces/a.csv", trace),
+        ("profiles/a.csv", profile),
+    ):  # fmt: skip
+        if content is not None:
+            (folder / name).parent.mkdir(parents=True, exist_ok=True)
+            data = content if isinstance(content, bytes) else content.encode()
+            (folder / name).write_bytes(data)
+    return folder
+
+
+def toml(old, new):
+    assert old in SET
+    return {"toml": SET.replace(old, new)}
+
+
+def trials(old, new):
+    assert old in TRIALS
+    return {"trials": TRIALS.replace(old, new)}
+
+
+CASES = {
+    # set.toml
+    "no set.toml": ({"toml": None}, r"set\.toml: no such file"),
+    "not TOML": ({"toml": "format = \n"}, r"set\.toml: not valid TOML"),
+    "empty TOML": ({"toml": ""}, r"set\.toml: format: missing"),
+    "binary": ({"toml": b"\xff\xfe\x00"}, r"set\.toml: cannot be read"),
+    "other format": (toml("set/1", "set/2"), r"format: 'recording-set/2' .*recording-set/1"),
+    "format left out": (toml('format = "recording-set/1"\n', ""), r"format: missing"),
+    "unknown key": (toml("name =", "nmae ="), r"nmae: unknown key .*name"),
+    "number as text": (toml("nu = 0.3", 'nu = "0.3"'), r"target\.nu: '0\.3' .*a number"),
+    "true as number": (toml("nu = 0.3", "nu = true"), r"target\.nu: True"),
+    "nu too large": (toml("nu = 0.3", "nu = 0.5"), r"target\.nu: 0\.5 .*< 0\.5"),
+    "negative modulus": (toml("value = 2.0e11", "value = -1.0"), r"target\.E_Pa: .*above 0"),
+    "negative std": (toml("std = 4.0e9", "std = -1.0"), r"target\.E_Pa\.std: -1\.0"),
+    "infinite": (toml("mass_kg = 0.5", "mass_kg = inf"), r"mass_kg\.value: inf .*finite"),
+    "nan": (toml("mass_kg = 0.5", "mass_kg = nan"), r"mass_kg\.value: nan .*finite"),
+    "quantity without value": (toml("value = 2.0e11, ", ""), r"target\.E_Pa\.value: missing"),
+    "quantity with other key": (toml("std = 4", "sd = 4"), r"E_Pa\.sd: unknown key .*value, std"),
+    "list as quantity": (toml("nu = 0.3", "nu = [0.3]"), r"target\.nu: \[0\.3\]"),
+    "unknown key of the target": (toml("nu =", "mu ="), r"target\.mu: unknown key .*nu"),
+    "no target": (toml("[target]", "[targets]"), r"target: missing"),
+    "other shape of target": (
+        toml("[target]", '[target]\nshape = "ball"'), r"target\.shape: 'ball'"
+    ),
+    "other law": (toml("[target]", '[target]\nlaw = "plastic"'), r"target\.law: 'plastic'"),
+    "no striker": (
+        {"toml": SET.split("[strikers")[0]}, r"strikers: missing"
+    ),
+    "other shape": (toml('shape = "rod"', 'shape = "cube"'), r"strikers\.rod\.shape: 'cube'"),
+    "shape left out": (toml('shape = "rod"\n', ""), r"strikers\.rod\.shape: missing"),
+    "mass left out": (toml("mass_kg = 0.5\n", ""), r"strikers\.rod\.mass_kg: missing"),
+    "mass 0": (toml("mass_kg = 0.5", "mass_kg = 0"), r"mass_kg: 0 .*above 0"),
+    "rod without length": (toml("length_m = 0.3\n", ""), r"rod\.length_m: missing .*rod"),
+    "rod without radius": (toml("radius_m = 0.01\nl", "l"), r"rod\.radius_m: missing .*rod"),
+    "flat wider than tip": (
+        toml("length_m", "tip_flat_radius_m = 0.02\nlength_m"), r"tip_flat_radius_m: 0\.02 .*0\.01"
+    ),
+    "unknown noise": (toml("restitution =", "restituton ="), r"noise\.restituton: unknown key"),
+    "noise 0": (toml("restitution = 0.01", "restitution = 0"), r"noise\.restitution: 0 "),
+    "noise as text": (toml("restitution = 0.01", 'restitution = "1 %"'), r"noise\.restitution"),
+    "noise is no table": (
+        {"toml": "noise = 3\n" + SET.replace("[noise]\nrestitution = 0.01", "")},
+        r"noise: 3",
+    ),
+    "no noise at all": (
+        {"toml": SET.replace("restitution = 0.01", "")},
+        r"noise\.restitution: .*fewer than 3 repeats",
+    ),
+    "negative friction": (
+        {"toml": SET + "[friction]\ncoefficient = -0.1\n"}, r"friction\.coefficient: -0\.1"
+    ),
+    "viscosity as text": (
+        {"toml": SET + '[environment]\nviscosity_Pa_s = "oil"\n'}, r"environment\.viscosity_Pa_s"
+    ),
+    # trials.csv
+    "no trials.csv": ({"trials": None}, r"trials\.csv: no such file"),
+    "empty trials": ({"trials": ""}, r"trials\.csv: empty"),
+    "only a header": ({"trials": TRIALS.split("\n")[0]}, r"trials\.csv: no trial"),
+    "not UTF-8": ({"trials": TRIALS.encode() + b"\xe9,rod"}, r"trials\.csv: not UTF-8"),
+    "NUL byte": ({"trials": TRIALS + "c\0,rod,90,1,,\n"}, r"trials\.csv: "),
+    "open quote": ({"trials": TRIALS + 'c,"rod,90,1,,\n'}, r"trials\.csv: not comma"),
+    "semicolons": ({"trials": TRIALS.replace(",", ";")}, r"row 1: columns are not separated"),
+    "tabs": ({"trials": TRIALS.replace(",", "\t")}, r"row 1: columns are not separated"),
+    "unknown column": (trials("restitution,", "restituion,"), r"restituion: unknown column .*mean"),
+    "column twice": (trials("restitution_std", "restitution"), r"column restitution: given twice"),
+    "column without name": (trials("restitution_std", ""), r"row 1: column 6 has no name"),
+    "no trial column": (trials("trial,", "note,"), r"row 1, column trial: missing"),
+    "no striker column": (trials("striker,", "spot,"), r"row 1, column striker: missing"),
+    "no angle column": (trials("angle_deg,", "order,"), r"row 1, column angle_deg: missing"),
+    "no approach": (trials("impact_speed_m_s", "order"), r"row 1: no approach"),
+    "approach empty": (trials("90,1.0", "90,"), r"row 2: no approach"),
+    "angle empty": (trials("rod,90,", "rod,,"), r"row 2, column angle_deg: empty"),
+    "angle 0": (trials("rod,45", "rod,0"), r"row 3, column angle_deg: 0 .*up to 90"),
+    "angle above 90": (trials("rod,45", "rod,135"), r"row 3, column angle_deg: 135"),
+    "number with unit": (
+        trials("2.0,0.4", "2 m/s,0.4"), r"row 3, column impact_speed_m_s: '2 m/s'"
+    ),
+    "negative speed": (trials("2.0,0.4", "-2.0,0.4"), r"column impact_speed_m_s: -2 .*above"),
+    "decimal comma": (trials("2.0,0.4", '"2,0",0.4'), r"row 3, column impact_speed_m_s: '2,0'"),
+    "nan cell": (trials("2.0,0.4", "2.0,nan"), r"row 3, column restitution: 'nan'"),
+    "infinite cell": (trials("2.0,0.4", "2.0,inf"), r"row 3, column restitution: 'inf'"),
+    "negative restitution": (trials("2.0,0.4", "2.0,-0.4"), r"row 3, column restitution: -0\.4"),
+    "std 0": (trials("0.5,0.01", "0.5,0"), r"row 2, column restitution_std: 0 .*above 0"),
+    "std without value": (trials("0.5,0.01", ",0.01"), r"restitution_std: restitution is empty"),
+    "std without column": (
+        trials("restitution_std", "peak_force_N_std"), r"peak_force_N_std: there is no column"
+    ),
+    "too many cells": (trials("0.4,", "0.4,,7"), r"row 3: 7 cells under 6 columns"),
+    "trial twice": (trials("b,rod", "a,rod"), r"row 3, column trial: 'a' is also in row 2"),
+    "trial empty": (trials("b,rod", ",rod"), r"row 3, column trial: empty"),
+    "trial is a path": (trials("b,rod", "../b,rod"), r"row 3, column trial: '\.\./b'"),
+    "other striker": (trials("b,rod", "b,ball"), r"row 3, column striker: no striker 'ball' .*rod"),
+    # traces and profiles
+    "trace without time": ({"trace": "tip_height_m\n0\n1\n"}, r"a\.csv: row 1, column time_s"),
+    "trace without curve": ({"trace": "time_s\n0\n1\n"}, r"traces/a\.csv: row 1: no curve"),
+    "trace goes back": (
+        {"trace": "time_s,force_N\n0,1\n2,1\n1,1\n"}, r"row 4, column time_s: 1 after 2"
+    ),
+    "trace of one point": ({"trace": "time_s,force_N\n0,1\n"}, r"traces/a\.csv: 1 points"),
+    "trace with text": ({"trace": TRACE + "2e-3,up\n"}, r"row 4, column tip_height_m: 'up'"),
+    "empty trace": ({"trace": ""}, r"traces/a\.csv: empty"),
+    "profile with gap": ({"profile": "x_m,z_m\n0,0\n1e-6,\n"}, r"row 3, column z_m: empty"),
+    "profile with other column": (
+        {"profile": "x_m,y_m\n0,0\n1,1\n"}, r"profiles/a\.csv: row 1, column y_m: unknown"
+    ),
+}  # fmt: skip
+
+
+@pytest.mark.parametrize("kind", CASES)
+def test_each_kind_of_mistake_gives_its_line(kind, tmp_path):
+    changes, line = CASES[kind]
+    with pytest.raises(InputError) as caught:
+        read(write(tmp_path, **changes))
+    lines = str(caught.value).splitlines()
+    assert any(re.search(line, text) for text in lines), lines
+    assert all(text.startswith(str(tmp_path)) for text in lines)
+
+
+def test_there_are_more_than_50_kinds():
+    assert len(CASES) >= 50
+
+
+def test_trace_of_no_trial_and_missing_folder(tmp_path):
+    write(tmp_path)
+    (tmp_path / "traces" / "z.csv").write_text(TRACE)
+    with pytest.raises(InputError, match=r"traces/z\.csv: there is no trial 'z'"):
+        read(tmp_path)
+    with pytest.raises(InputError, match="no such folder"):
+        read(tmp_path / "nothing")
+
+
+def test_all_mistakes_come_at_once(tmp_path):
+    write(
+        tmp_path, **toml("nu = 0.3", "nu = 0.7") | trials("b,rod,45", "b,ball,145"),
+        trace="time_s,force_N\n0,x\n",
+    )  # fmt: skip
+    with pytest.raises(InputError) as caught:
+        read(tmp_path)
+    lines = str(caught.value).splitlines()
+    assert len(lines) == 5
+    assert [Path(text.split(": ")[0]).name for text in lines] == [
+        "set.toml", "trials.csv", "trials.csv", "a.csv", "a.csv",
+    ]  # fmt: skip
+
+
+def outcome(folder):
+    """The set, or the lines with which it is refused; anything else is a failure."""
+    try:
+        return read(folder)
+    except InputError as error:
+        return str(error)
+
+
+@settings(max_examples=60, deadline=None)
+@given(data=st.data())
+def test_any_damage_is_read_or_refused_in_lines(data, tmp_path_factory):
+    files = {"toml": SET.encode(), "trials": TRIALS.encode(), "trace": TRACE.encode()}
+    name = data.draw(st.sampled_from(sorted(files)))
+    content = files[name]
+    start = data.draw(st.integers(0, len(content)))
+    stop = data.draw(st.integers(start, min(len(content), start + 12)))
+    patch = data.draw(st.binary(max_size=8) | st.text(max_size=6).map(str.encode))
+    files[name] = content[:start] + patch + content[stop:]
+    found = outcome(write(tmp_path_factory.mktemp("set"), **files))
+    assert isinstance(found, RecordingSet) or 1 <= len(found.splitlines()) < 30
+
+
+@settings(max_examples=40, deadline=None)
+@given(cells=st.lists(st.text(max_size=8), min_size=6, max_size=6))
+def test_any_row_is_read_or_refused_in_lines(cells, tmp_path_factory):
+    folder = write(tmp_path_factory.mktemp("set"), trials=TRIALS + ",".join(cells) + "\n")
+    found = outcome(folder)
+    assert isinstance(found, RecordingSet) or 1 <= len(found.splitlines()) < 30

@@ -1,0 +1,107 @@
+"""Commands of recording sets, and sets made in memory that survive the way through files."""
+
+from pathlib import Path
+
+import numpy as np
+import pytest
+from dentscope.cli.recordings import app
+from dentscope.core.errors import InputError
+from dentscope.recordings import (
+    OBSERVABLES,
+    Quantity,
+    RecordingSet,
+    Setup,
+    Striker,
+    Target,
+    Trials,
+    audit,
+    read,
+    write,
+)
+from hypothesis import given, settings
+from hypothesis import strategies as st
+from typer.testing import CliRunner
+
+DATA = Path(__file__).parents[3] / "data" / "recordings"
+
+
+def run(*arguments):
+    result = CliRunner().invoke(app, [str(a) for a in arguments])
+    return result.output, result.exception
+
+
+@pytest.mark.parametrize("option", [[], ["--sphere"]])
+def test_template_is_a_sound_set_without_contradiction(tmp_path, option):
+    _, failure = run("new", tmp_path / "set", *option)
+    assert failure is None
+    text, failure = run("check", tmp_path / "set")
+    assert failure is None
+    assert "sound; 1 trials" in text
+    assert not audit(read(tmp_path / "set")).flagged
+    _, failure = run("new", tmp_path / "set")
+    assert isinstance(failure, InputError)
+    assert "there is one already" in str(failure)
+
+
+def test_audit_prints_contradictions_and_all_checks_on_request():
+    text, _ = run("audit", DATA / "thesis-chapter-5")
+    assert "contradiction: mass of rod: 0.4607 kg stated" in text
+    assert "friction" not in text
+    text, _ = run("audit", DATA / "thesis-chapter-5", "--all")
+    assert "consistent: friction of A20" in text
+
+
+def test_list_names_every_set():
+    text, _ = run("list", DATA)
+    assert len(text.splitlines()) == len(list(DATA.glob("*/set.toml")))
+    assert "thesis-chapter-3: 3 trials; restitution, permanent_depth_m" in text
+
+
+numbers = st.floats(1e-9, 1e12, allow_nan=False)
+words = st.text(st.characters(exclude_categories=["Cs"]), max_size=20)
+names = st.text("abcdefgh 0123456789-_.", min_size=1, max_size=8).filter(
+    lambda s: s == s.strip() and s not in (".", "..")
+)
+
+
+@settings(max_examples=40, deadline=None)
+@given(data=st.data())
+def test_any_sound_set_comes_back_from_its_files(data, tmp_path_factory):
+    quantity = st.builds(Quantity, value=numbers, std=st.just(0.0) | numbers)
+    rod = Striker(
+        shape="rod",
+        material=data.draw(words),
+        tip_radius_m=data.draw(quantity),
+        mass_kg=data.draw(quantity),
+        radius_m=data.draw(quantity),
+        length_m=data.draw(quantity),
+        E_Pa=data.draw(st.none() | quantity),
+    )
+    observable = data.draw(st.sampled_from(sorted(OBSERVABLES)))
+    striker = data.draw(names)
+    setup = Setup(
+        format="recording-set/1",
+        description=data.draw(words),
+        target=Target(E_Pa=data.draw(st.none() | quantity), law=data.draw(st.sampled_from(
+            ["elastic-plastic", "elastic", "measured-restitution"]))),
+        strikers={striker: rod},
+        noise={observable: data.draw(numbers)},
+    )  # fmt: skip
+    trial = data.draw(st.lists(names, min_size=1, max_size=4, unique=True))
+    n = len(trial)
+    values = data.draw(st.lists(numbers | st.just(np.nan), min_size=n, max_size=n))
+    trials = Trials(
+        trial=tuple(trial),
+        striker=(striker,) * n,
+        angle_deg=np.array(data.draw(st.lists(st.floats(0.1, 90), min_size=n, max_size=n))),
+        drop_height_m=np.array(data.draw(st.lists(numbers, min_size=n, max_size=n))),
+        observables={observable: np.array(values)},
+    )
+    folder = tmp_path_factory.mktemp("set")
+    write(RecordingSet(setup, trials), folder)
+    found = read(folder)
+    assert found.setup == setup
+    assert found.trials.trial == trials.trial
+    np.testing.assert_array_equal(found.trials.angle_deg, trials.angle_deg)
+    np.testing.assert_array_equal(found.trials.drop_height_m, trials.drop_height_m)
+    np.testing.assert_array_equal(found.values(observable), trials.observables[observable])
