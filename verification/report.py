@@ -77,7 +77,7 @@ def _summary(results: list[Result], absent: list[str]) -> Iterator[str]:
     yield "| --- | --- | --- | --- | --- | --- | --- |"
     for r in results:
         marked = [m for m in r.measurements if m.met is not None]
-        missed = ", ".join(m.what for m in r.missed)
+        missed = _cell(", ".join(m.what for m in r.missed))
         yield (
             f"| [{r.title}](#{_anchor(r.title)}) | {len(marked)} | {len(marked) - len(r.missed)} | "
             f"{missed or 'none'} | {r.effort} | {r.numerics_version} | {r.cpu_s:.0f} |"
@@ -114,7 +114,7 @@ def _section(result: Result, path: Path) -> Iterator[str]:
 def _measurement(m: Measurement) -> str:
     state = {True: "met", False: "**missed**", None: ""}[m.met]
     value = f"{m.value:.3g} {m.unit}".rstrip()
-    return f"| {m.what} | {value} | {m.mark} | {state} | {m.source} |"
+    return f"| {_cell(m.what)} | {value} | {m.mark} | {state} | {_cell(m.source)} |"
 
 
 def _table(table: Table) -> Iterator[str]:
@@ -123,9 +123,13 @@ def _table(table: Table) -> Iterator[str]:
     yield "| " + " | ".join(table.columns) + " |"
     yield "| " + " | ".join("---" for _ in table.columns) + " |"
     for row in table.rows:
-        cells = (f"{x:.4g}" if isinstance(x, float) else str(x) for x in row)
+        cells = (f"{x:.4g}" if isinstance(x, float) else _cell(str(x)) for x in row)
         yield "| " + " | ".join(cells) + " |"
     yield ""
+
+
+def _cell(text: str) -> str:
+    return text.replace("|", "\\|")
 
 
 def _anchor(title: str) -> str:
