@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from .beam import Modes, rod_modes
-from .integrate import Settings, arrays_of, strike, strike_many, strike_rows
+from .integrate import Settings, arrays_of, strike, strike_batch, strike_many, strike_rows
 from .inverse import Inferred, Measured, infer
 from .reference import Trace, reference_impact
 from .result import Impact
@@ -13,6 +13,7 @@ from .scene import (
     ForceTransform,
     Friction,
     Instrument,
+    Profiles,
     RateFree,
     Scene,
     Spot,
@@ -31,6 +32,7 @@ __all__ = [
     "Instrument",
     "Measured",
     "Modes",
+    "Profiles",
     "RateFree",
     "Scene",
     "Settings",
@@ -44,6 +46,7 @@ __all__ = [
     "rod_modes",
     "scene_of",
     "strike",
+    "strike_batch",
     "strike_many",
     "strike_rows",
 ]

@@ -925,15 +925,16 @@ def one_impact(loading, radius, unloading, residual, par, force, factors, breaks
 
 
 @njit(
-    types.void(LOADING, BRANCH, BRANCH, SPLIT, MATRIX, MATRIX, VECTOR, VECTOR, MATRIX, MATRIX,
+    types.void(LOADING, BRANCH, BRANCH, SPLIT, MATRIX, MATRIX, MATRIX, VECTOR, MATRIX, MATRIX,
                MATRIX,
                types.Array(types.float64, 3, "C"), MATRIX),
-    cache=True,
+    cache=True, nogil=True,
 )
 def many_impacts(loading, radius, unloading, residual, par, force, factors, breaks, body, spot,
                  omega, psi, out):
-    """Integrate row after row; `par`, `force`, `omega`, `psi` hold one row or one per impact."""
+    """Integrate row after row; all but `breaks` and `body` hold one row or one per impact."""
     for i in range(len(body)):
         one_impact(loading, radius, unloading, residual, par[min(i, len(par) - 1)],
-                   force[min(i, len(force) - 1)], factors, breaks, body[i], spot[i],
+                   force[min(i, len(force) - 1)], factors[min(i, len(factors) - 1)], breaks,
+                   body[i], spot[i],
                    omega[min(i, len(omega) - 1)], psi[min(i, len(psi) - 1)], out[i])

@@ -9,7 +9,7 @@ from __future__ import annotations
 import math
 
 import numpy as np
-from numba import float64, njit, types
+from numba import float64, int64, njit, types
 
 from ..models.base import BRANCH_SIGNATURE, LOADING_SIGNATURE, RESIDUAL_SIGNATURE, VECTOR
 
@@ -18,27 +18,38 @@ BRANCH = types.FunctionType(BRANCH_SIGNATURE)
 SPLIT = types.FunctionType(RESIDUAL_SIGNATURE)
 
 # Places in the vector that describes the modified force.
-RADIUS, MODULUS, FLAT, EDGE, EDGE_DEPTH, EDGE_LIMIT, RECOVERY, DAMPING, RADIATION = range(9)
-N_FORCE = 9
+(
+    RADIUS, MODULUS, FLAT, EDGE, EDGE_DEPTH, EDGE_LIMIT, RECOVERY, DAMPING, RADIATION, SHAPE, RETURN,
+) = range(11)  # fmt: skip
+N_FORCE = 11
 
 # The branch vector: what `set_peak` writes, and the smooth stretch of the loading curve.
 SEGMENT_LOW, SEGMENT_HIGH, PEAK_FORCE, POWER = 7, 8, 9, 10
 N_BRANCH = 11
 
-# Nodes of the loading factors: ln(depth / R), equally spaced.
+# Nodes of the factors: ln(depth / R), equally spaced; first those of the loading force, then as
+# many of the elastic recovery.
 LOG_DEPTH_FIRST, LOG_DEPTH_LAST = math.log(1e-6), 0.0
 
 PUNCH_PRESSURE = 5.69 / math.sqrt(3.0)
 """Mean pressure over yield strength under a rigid circular punch (Eq. 1.10 at a -> 0)."""
 
 
-@njit(float64(VECTOR, float64), cache=True)
-def _factor(factors, x):
-    last = len(factors) - 1
+@njit(float64(VECTOR, int64, float64), cache=True, error_model="numpy")
+def _factor(factors, half, x):
+    """Interpolate one half of the table, smooth to the first derivative (Catmull and Rom)."""
+    n = len(factors) // 2
+    first, last = half * n, n - 1
     place = (math.log(max(x, 1e-300)) - LOG_DEPTH_FIRST) / (LOG_DEPTH_LAST - LOG_DEPTH_FIRST)
     place = min(max(place * last, 0.0), float(last))
     i = min(int(place), last - 1)
-    return factors[i] + (place - i) * (factors[i + 1] - factors[i])
+    t = place - i
+    here, there = factors[first + i], factors[first + i + 1]
+    before = factors[first + i - 1] if i > 0 else 2.0 * here - there
+    after = factors[first + i + 2] if i + 2 <= last else 2.0 * there - here
+    m0, m1 = 0.5 * (there - before), 0.5 * (after - here)
+    rise = there - here
+    return here + t * (m0 + t * (3.0 * rise - 2.0 * m0 - m1 + t * (m0 + m1 - 2.0 * rise)))
 
 
 @njit(float64(LOADING, VECTOR, VECTOR, VECTOR, float64), cache=True)
@@ -67,7 +78,7 @@ def static_loading(loading, par, force, factors, depth):
         further = 2.0 * force[MODULUS] * force[EDGE] * (depth - force[EDGE_DEPTH])
         f = min(f + further, max(f, force[EDGE_LIMIT]))
     if len(factors) > 1:
-        f *= _factor(factors, depth / force[RADIUS])
+        f *= _factor(factors, 0, depth / force[RADIUS])
     return f
 
 
@@ -111,23 +122,28 @@ def set_peak(loading, unloading, residual, par, force, factors, peak, branch):
     sphere, flat = residual(par, law_peak)
     law_rest = sphere + flat
     rest = max(law_rest - shift, 0.0)
-    if force[RECOVERY] != 1.0:
-        rest = max(peak - force[RECOVERY] * (peak - rest), 0.0)
+    recovery = force[RECOVERY]
+    if len(factors) > 1:
+        recovery *= _factor(factors, 1, peak / force[RADIUS])
+    if recovery != 1.0:
+        rest = max(peak - recovery * (peak - rest), 0.0)
     share = 0.0 if law_rest == 0.0 else sphere / law_rest
     branch[0] = peak
     branch[1] = share * rest
     branch[2] = rest - share * rest
-    branch[3] = 1.0
+    branch[3] = force[RETURN]
     branch[4] = law_peak
     branch[5] = law_rest
     branch[6] = 1.0
-    if shift > 0.0 or force[RECOVERY] != 1.0 or len(factors) > 1 or peak > force[EDGE_DEPTH]:
+    if shift > 0.0 or recovery != 1.0 or len(factors) > 1 or peak > force[EDGE_DEPTH]:
         law_force = loading(par, law_peak)
         if law_force > 0.0:
-            branch[3] = static_loading(loading, par, force, factors, peak) / law_force
+            branch[3] *= static_loading(loading, par, force, factors, peak) / law_force
         if peak > rest:
             branch[6] = (law_peak - law_rest) / (peak - rest)
     _fit_power(unloading, par, branch)
+    if force[SHAPE] != 0.0 and branch[POWER] > 0.0:
+        branch[POWER] += force[SHAPE]
 
 
 @njit(float64(BRANCH, VECTOR, VECTOR, float64), cache=True)
@@ -248,5 +264,5 @@ def neutral_force(radius: float, modulus: float) -> np.ndarray:
     force = np.zeros(N_FORCE)
     force[RADIUS], force[MODULUS] = radius, modulus
     force[EDGE] = force[EDGE_DEPTH] = force[EDGE_LIMIT] = math.inf
-    force[RECOVERY] = 1.0
+    force[RECOVERY] = force[RETURN] = 1.0
     return force

@@ -10,11 +10,13 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from ..core.material import Pair
 from ..models.base import ContactLaw
 from . import compiled as c
 from . import force as fo
 from .result import Impact, impact_of
-from .scene import Scene, Spot
+from .scene import RateFree, Scene, Spot
+from .strength import NODES, strength_table
 
 Array = NDArray[np.float64]
 
@@ -54,14 +56,20 @@ class Arrays:
     psi: Array
 
 
-def arrays_of(scene: Scene, settings: Settings = Settings()) -> Arrays:
-    """Return the vectors of a scene; the flow-stress seam is applied here."""
+def arrays_of(
+    scene: Scene, settings: Settings = Settings(), *, breaks: Array | None = None
+) -> Arrays:
+    """Return the vectors of a scene; the flow-stress seam is applied here.
+
+    `breaks` are the depths at which the loading curve breaks, found by a scan when left out.
+    """
     law, striker, approach = scene.law, scene.striker, scene.approach
     pair = scene.flow.strengthened(scene)
     par = np.ascontiguousarray(law.parameters(pair), dtype=float)
     force = fo.neutral_force(pair.R, pair.E_reduced)
     force[fo.FLAT] = striker.tip_flat_radius
-    force[fo.RECOVERY] = scene.force.recovery
+    force[fo.RECOVERY], force[fo.SHAPE] = scene.force.recovery, scene.force.shape
+    force[fo.RETURN] = scene.force.given_back
     force[fo.DAMPING], force[fo.RADIATION] = scene.force.damping, scene.force.radiation
     if math.isfinite(scene.force.edge):
         force[fo.EDGE] = scene.force.edge
@@ -88,9 +96,30 @@ def arrays_of(scene: Scene, settings: Settings = Settings()) -> Arrays:
     body[c.LOSS] = scene.modes.loss_factor
     body[c.TOLERANCE] = settings.tolerance
     body[c.MAX_STEPS], body[c.MAX_CONTACTS] = settings.max_steps, settings.max_contacts
-    factors = np.asarray(scene.force.factors, dtype=float)
-    breaks = _breaks(law, par, force, factors)
+    factors = _factors(scene, pair)
+    if breaks is None:
+        breaks = _breaks(law, par, force, factors)
     return Arrays(par, force, factors, breaks, body, spot_row(scene.spot), omega, psi)
+
+
+def _factors(scene: Scene, pair: Pair) -> Array:
+    """Return the table of factors on force and recovery; empty when both are the law's own."""
+    loading = np.asarray(scene.force.factors, dtype=float)
+    recovery = np.asarray(scene.force.recovery_factors, dtype=float)
+    profile = None
+    if not isinstance(scene.flow, RateFree):
+        table = strength_table(scene.law, pair)
+        profile = scene.flow.profile(scene, table)
+    if profile is None and len(loading) == len(recovery) == 0:
+        return loading
+    n = max(len(loading), len(recovery)) if profile is None else NODES
+    both = np.ones((2, n))
+    for row, given in zip(both, (loading, recovery), strict=True):
+        if len(given) > 0:
+            row *= np.interp(np.linspace(0.0, 1.0, n), np.linspace(0.0, 1.0, len(given)), given)
+    if profile is not None:
+        both *= table.factors(profile)
+    return both.ravel()
 
 
 def spot_row(spot: Spot) -> Array:
@@ -143,9 +172,42 @@ def strike_rows(scene: Scene, body: Array, settings: Settings = Settings()) -> A
     out = np.zeros((len(rows), c.N_OUT))
     spot = np.tile(a.spot, (len(rows), 1))
     c.many_impacts(
-        *kernels_of(scene.law), a.par[None], a.force[None], a.factors, a.breaks, rows, spot,
+        *kernels_of(scene.law), a.par[None], a.force[None], a.factors[None], a.breaks, rows, spot,
         a.omega[None], a.psi[None], out,
     )  # fmt: skip
+    return out
+
+
+_SMOOTH = np.empty(0)
+
+
+def strike_batch(scenes: Sequence[Scene], settings: Settings = Settings()) -> Array:
+    """Integrate scenes of one law that may differ in all else; the fast path of a comparison.
+
+    Borders of a published fit are not located: a step that crosses one is repeated smaller, so
+    the law should be a smooth one.
+
+    Returns
+    -------
+    (n, N_OUT) the columns `compiled.OBSERVABLES + compiled.COUNTS`.
+    """
+    out = np.full((len(scenes), c.N_OUT), np.nan)
+    rows = [arrays_of(scene, settings, breaks=_SMOOTH) for scene in scenes]
+    groups: dict[tuple[int, int], list[int]] = {}
+    for i, a in enumerate(rows):
+        groups.setdefault((len(a.factors), len(a.omega)), []).append(i)
+    for members in groups.values():
+        part = [rows[i] for i in members]
+        found = np.zeros((len(part), c.N_OUT))
+        c.many_impacts(
+            *kernels_of(scenes[0].law),
+            *(np.stack([getattr(a, key) for a in part]) for key in ("par", "force", "factors")),
+            _SMOOTH,
+            *(np.stack([getattr(a, key) for a in part]) for key in ("body", "spot")),
+            *(np.stack([getattr(a, key) for a in part]) for key in ("omega", "psi")),
+            found,
+        )
+        out[members] = found
     return out
 
 

@@ -11,10 +11,13 @@ import math
 from dataclasses import dataclass, field, replace
 from typing import Any, Protocol
 
+import numpy as np
+
 from ..core.errors import InputError
 from ..core.material import Material, Pair
 from ..models.base import ContactLaw
 from .beam import Modes
+from .strength import Array, StrengthTable
 
 STANDARD_GRAVITY = 9.81
 
@@ -79,6 +82,9 @@ class FlowStress(Protocol):
     def strengthened(self, scene: Scene) -> Pair:
         """Return the pair with the strengths that hold during the impact."""
 
+    def profile(self, scene: Scene, table: StrengthTable) -> Array | None:
+        """Return relative strengths at the depths of `table`; none when depth does not matter."""
+
 
 @dataclass(frozen=True, slots=True)
 class RateFree:
@@ -87,6 +93,29 @@ class RateFree:
     def strengthened(self, scene: Scene) -> Pair:
         """Return the pair as stated."""
         return scene.pair
+
+    def profile(self, scene: Scene, table: StrengthTable) -> Array | None:
+        """Depth does not matter."""
+        return None
+
+
+@dataclass(frozen=True, slots=True)
+class Profiles:
+    """Several flow-stress seams at once: strengths multiply."""
+
+    parts: tuple[FlowStress, ...]
+
+    def strengthened(self, scene: Scene) -> Pair:
+        """Apply one after the other."""
+        for part in self.parts:
+            scene = scene.with_(pair=part.strengthened(scene))
+        return scene.pair
+
+    def profile(self, scene: Scene, table: StrengthTable) -> Array | None:
+        """Return the product of the profiles."""
+        found = [part.profile(scene, table) for part in self.parts]
+        known = [x for x in found if x is not None]
+        return np.asarray(np.prod(known, axis=0)) if known else None
 
 
 @dataclass(frozen=True, slots=True)
@@ -100,10 +129,16 @@ class ForceTransform:
     radiation
         kappa [m s/N]: waves sent into a half-space take F up by kappa (2 E' a)^2 d'.
     factors
-        Multiply the loading force, piecewise linear in ln(depth / R) at equally spaced
+        Multiply the loading force, interpolated in ln(depth / R) between equally spaced
         nodes from `force.LOG_DEPTH_FIRST` to `force.LOG_DEPTH_LAST`; empty for none.
     recovery
         Multiplies the elastic recovery (peak depth minus residual depth).
+    recovery_factors
+        The same as a function of the peak depth, at the nodes of `factors`.
+    shape
+        Added to the exponent of the recovery (3/2 for Hertz's).
+    given_back
+        Multiplies the force of the recovery: the share of the elastic work that comes back.
     edge
         Radius at which the tip ends [m]: beyond it a flat punch with its plastic limit.
     """
@@ -113,6 +148,9 @@ class ForceTransform:
     factors: tuple[float, ...] = ()
     recovery: float = 1.0
     edge: float = math.inf
+    recovery_factors: tuple[float, ...] = ()
+    shape: float = 0.0
+    given_back: float = 1.0
 
 
 @dataclass(frozen=True, slots=True)
@@ -129,12 +167,16 @@ class Friction:
         Sliding speed over which `mu_static` decays to `mu` [m/s].
     ploughing
         Multiplies the ploughing term (4 / 3 pi) a / R that is added to `mu` [-].
+    stiffness
+        Tangential over normal stiffness of the contact, 2 E' a; infinite for one that slides or
+        sticks without giving way [-].
     """
 
     mu: float = 0.0
     mu_static: float = math.nan
     speed: float = 1.0
     ploughing: float = 0.0
+    stiffness: float = math.inf
 
     def __post_init__(self) -> None:
         if not self.mu >= 0.0:

@@ -1,0 +1,151 @@
+"""The algebra of a comparison that is linear in the nuisances and exact in the mechanism.
+
+With r the residual at the prior mean, J the cells' derivatives by the standardised unknowns and N
+the covariance of the measurements, Sigma = N + J J^T; then ln N(r - D(u); 0, Sigma) is the
+likelihood of the mechanism's parameters u with nuisances and law error integrated out, where D(u)
+is the mechanism's simulated effect. The evidence is its mean over the prior of u.
+"""
+
+from __future__ import annotations
+
+import itertools
+import math
+from collections.abc import Sequence
+from dataclasses import dataclass
+from functools import cached_property
+
+import numpy as np
+from numpy.typing import NDArray
+from scipy.interpolate import CubicSpline
+from scipy.linalg import cho_solve, solve_triangular
+from scipy.special import logsumexp
+
+from .mechanisms.base import Parameter
+
+Array = NDArray[np.float64]
+
+FINE = {1: 241, 2: 49, 3: 17, 4: 11}
+"""Points per parameter of the refined grid, by the number of parameters."""
+
+
+@dataclass(frozen=True, eq=False)
+class Linear:
+    """Sigma and J at one expansion point.
+
+    Parameters
+    ----------
+    noise
+        (m, m) covariance of the cells.
+    J
+        (m, n_z) derivatives by the standardised unknowns.
+    """
+
+    noise: Array
+    J: Array
+
+    @cached_property
+    def lower(self) -> Array:
+        """Cholesky factor of Sigma."""
+        return np.asarray(np.linalg.cholesky(self.noise + self.J @ self.J.T))
+
+    @cached_property
+    def log_det(self) -> float:
+        """ln det(2 pi Sigma)."""
+        m = len(self.noise)
+        return float(2.0 * np.sum(np.log(np.diag(self.lower))) + m * math.log(2.0 * math.pi))
+
+    def white(self, r: Array) -> Array:
+        """Return L^-1 r for residuals in the last axis, shape (..., m)."""
+        flat = np.asarray(r).reshape(-1, r.shape[-1]).T
+        return np.asarray(solve_triangular(self.lower, flat, lower=True).T.reshape(r.shape))
+
+    def log_likelihood(self, r: Array) -> Array:
+        """Return ln N(r; 0, Sigma), shape (...)."""
+        return np.asarray(-0.5 * (np.sum(self.white(r) ** 2, axis=-1) + self.log_det))
+
+    def unknowns(self, r: Array) -> tuple[Array, Array]:
+        """Return posterior mean (n_z,) and covariance (n_z, n_z) of the unknowns given r."""
+        half = solve_triangular(self.lower, self.J, lower=True)
+        mean = half.T @ self.white(r)
+        return np.asarray(mean), np.eye(self.J.shape[1]) - half.T @ half
+
+    def solve(self, b: Array) -> Array:
+        """Return Sigma^-1 b."""
+        return np.asarray(cho_solve((self.lower, True), b))
+
+
+@dataclass(frozen=True, eq=False)
+class Grid:
+    """A tensor grid over the mechanisms' parameters, and how to refine it.
+
+    Parameters
+    ----------
+    parameters
+        In the order of the axes.
+    """
+
+    parameters: tuple[Parameter, ...]
+
+    @cached_property
+    def coarse(self) -> list[Array]:
+        """Places in (0, 1) of the nodes of each axis."""
+        return [np.linspace(0.0, 1.0, p.nodes) for p in self.parameters]
+
+    @cached_property
+    def fine(self) -> list[Array]:
+        """Places of the refined grid: middles of equal shares of the prior."""
+        n = FINE.get(len(self.parameters), 9)
+        return [(np.arange(n) + 0.5) / n for _ in self.parameters]
+
+    def values(self, places: Sequence[float]) -> dict[str, float]:
+        """Return the parameters at places in (0, 1)."""
+        return {p.name: float(p.value(x)) for p, x in zip(self.parameters, places, strict=True)}
+
+    def nodes(self) -> list[dict[str, float]]:
+        """Return the parameters at every node, the last axis fastest."""
+        return [self.values(places) for places in itertools.product(*self.coarse)]
+
+    def places(self) -> Array:
+        """Return the refined grid's places, shape (k, axes)."""
+        return np.stack([g.ravel() for g in np.meshgrid(*self.fine, indexing="ij")], axis=-1)
+
+    def refine(self, responses: Array) -> Array:
+        """Interpolate responses (nodes, m) to the refined grid (k, m), by cubic splines."""
+        m = responses.shape[-1]
+        table = responses.reshape(*[len(c) for c in self.coarse], m)
+        for axis, (coarse, fine) in enumerate(zip(self.coarse, self.fine, strict=True)):
+            table = _along(coarse, fine, table, axis)
+        return np.asarray(table.reshape(-1, m))
+
+    def at(self, responses: Array, place: Array) -> Array:
+        """Interpolate responses (nodes, m) to one place (axes,), shape (m,)."""
+        table = responses.reshape(*[len(c) for c in self.coarse], responses.shape[-1])
+        for coarse, x in zip(self.coarse, place, strict=True):
+            table = _along(coarse, np.array([x]), table, 0)[0]
+        return np.asarray(table)
+
+
+def _along(coarse: Array, fine: Array, table: Array, axis: int) -> Array:
+    if len(coarse) < 4:
+        order = np.polynomial.polynomial.polyvander(fine, len(coarse) - 1)
+        inverse = np.linalg.inv(np.polynomial.polynomial.polyvander(coarse, len(coarse) - 1))
+        return np.asarray(np.moveaxis(np.tensordot(order @ inverse, table, (1, axis)), 0, axis))
+    return np.asarray(CubicSpline(coarse, table, axis=axis)(fine))
+
+
+def posterior(log_likelihood: Array) -> tuple[float, Array]:
+    """Return ln evidence and weights (k,) of a flat prior over a refined grid."""
+    total = float(logsumexp(log_likelihood))
+    return total - math.log(len(log_likelihood)), np.exp(log_likelihood - total)
+
+
+def interval(value: Array, weight: Array, level: float = 0.90) -> tuple[float, float, float]:
+    """Return median and bounds of the central interval of a weighted sample."""
+    order = np.argsort(value)
+    x, w = value[order], weight[order]
+    reach = np.cumsum(w) - 0.5 * w
+    low, middle, high = np.interp([0.5 - level / 2, 0.5, 0.5 + level / 2], reach, x)
+    return float(middle), float(low), float(high)
+
+
+__all__ = ["Grid", "Linear", "interval", "posterior"]

@@ -1,0 +1,218 @@
+"""Fit one explanation: a tuple of mechanisms, none for the baseline.
+
+Gauss-Newton in the nuisances and the law's error, a simulated grid in the mechanisms' parameters;
+the derivatives are taken with a step of 0.3 prior standard deviations, on which the slight
+roughness of an event-driven simulation does not matter.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+
+import numpy as np
+from numpy.typing import NDArray
+
+from .evidence import Grid, Linear, posterior
+from .forward import Point, Simulator
+from .mechanisms.base import Mechanism
+from .problem import Problem
+
+Array = NDArray[np.float64]
+
+STEP = 0.3
+_SPEED_STEP, _ANGLE_STEP = 0.01, 0.01
+_ROUNDS, _SETTLED = 4, 0.15
+_FARTHEST = 2.0  # of the unknowns within one round
+
+
+@dataclass(frozen=True, eq=False)
+class Fit:
+    """A fitted explanation.
+
+    Parameters
+    ----------
+    mechanisms
+        Its mechanisms; empty for the baseline.
+    grid, weight
+        Refined grid of their parameters and posterior weights (k,).
+    place
+        Most probable place (axes,).
+    values
+        Parameters there.
+    z, covariance
+        Posterior mean (n_z,) and covariance of the unknowns there.
+    prediction
+        (m,) cells at `place` and `z`.
+    log_evidence
+        ln of the mean likelihood over the priors.
+    chi2
+        r^T Sigma^-1 r at `place`.
+    linear
+        Algebra at the expansion point.
+    residual
+        (m,) data minus prediction at the prior mean, with the mechanism at `place`.
+    responses
+        (nodes, m) predictions over the grid at z.
+    log_likelihood
+        (k,) over the refined grid.
+    residuals
+        (k, m) as `residual`, over the refined grid.
+    expanded
+        (n_z,) unknowns at the expansion point.
+    """
+
+    mechanisms: tuple[Mechanism, ...]
+    grid: Grid
+    weight: Array
+    place: Array
+    values: dict[str, float]
+    z: Array
+    covariance: Array
+    prediction: Array
+    log_evidence: float
+    chi2: float
+    linear: Linear
+    residual: Array
+    responses: Array
+    log_likelihood: Array
+    residuals: Array
+    expanded: Array
+
+    @property
+    def name(self) -> str:
+        """Names of the mechanisms joined by "+"."""
+        return label(self.mechanisms)
+
+
+def label(mechanisms: Sequence[Mechanism]) -> str:
+    """Return an explanation's name."""
+    return "+".join(m.name for m in mechanisms) or "baseline"
+
+
+def measured_covariance(problem: Problem, by_speed: Array, by_angle: Array) -> Array:
+    """Noise of the cells, with what the scatter of speed and angle adds, shape (m, m).
+
+    Parameters
+    ----------
+    problem
+        Cells and conditions.
+    by_speed, by_angle
+        (m,) derivative of each cell by its condition's relative speed and angle.
+    """
+    k = problem.cells.condition
+    same = k[:, None] == k[None, :]
+    speed = np.array([c.speed_spread for c in problem.conditions])[k]
+    angle = np.array([c.angle_spread for c in problem.conditions])[k]
+    total = np.diag(problem.cells.std**2)
+    for derivative, spread in ((by_speed, speed), (by_angle, angle)):
+        column = derivative * spread
+        total = total + np.where(same, column[:, None] * column[None, :], 0.0)
+    return np.asarray(total)
+
+
+def derivatives(
+    simulator: Simulator, mechanisms: Sequence[Mechanism], values: dict[str, float], z: Array
+) -> tuple[Array, Linear]:
+    """Return prediction (m,) at z, and the algebra there."""
+    problem = simulator.problem
+    leaning = any(c.angle_spread > 0.0 for c in problem.conditions)
+    points = [Point(z, values), Point(z, values, faster=_SPEED_STEP)]
+    if leaning:
+        points.append(Point(z, values, steeper=-_ANGLE_STEP))
+    first = len(points)
+    # away from the bounds of the priors the sign of the step does not matter
+    sign = np.where(z > 0.0, -1.0, 1.0)
+    for i in range(len(z)):
+        moved = z.copy()
+        moved[i] += STEP * sign[i]
+        points.append(Point(moved, values))
+    found = simulator.predict(mechanisms, points)
+    here = found[0]
+    by_speed = (found[1] - here) / _SPEED_STEP
+    by_angle = (found[2] - here) / -_ANGLE_STEP if leaning else np.zeros_like(here)
+    J = ((found[first:] - here) / (STEP * sign[:, None])).T
+    return here, Linear(measured_covariance(problem, by_speed, by_angle), J)
+
+
+def fit(
+    simulator: Simulator,
+    mechanisms: tuple[Mechanism, ...],
+    *,
+    start: Fit | None = None,
+    place: Array | None = None,
+    rounds: int = _ROUNDS,
+) -> Fit:
+    """Fit an explanation.
+
+    Parameters
+    ----------
+    simulator
+        The problem.
+    mechanisms
+        The explanation.
+    start
+        A fit whose unknowns to start from.
+    place
+        Where in the mechanisms' priors to start.
+    rounds
+        Largest number of Gauss-Newton rounds.
+    """
+    problem = simulator.problem
+    grid = grid_of(problem, mechanisms)
+    z = np.zeros(problem.n_z) if start is None else start.z.copy()
+    if place is None:
+        place = np.full(len(grid.parameters), 0.5)
+    for _ in range(max(rounds, 1)):
+        found = _expand(simulator, mechanisms, grid, z, place)
+        moved = found.z - z
+        shift = np.max(np.abs(moved), initial=0.0)
+        turned = np.max(np.abs(found.place - place), initial=0.0)
+        z = z + moved * min(1.0, _FARTHEST / shift) if shift > 0.0 else z
+        place = found.place
+        if shift < _SETTLED and turned < 0.08:
+            break
+    return replace(found, z=z, values=grid.values(place))
+
+
+def grid_of(problem: Problem, mechanisms: Sequence[Mechanism]) -> Grid:
+    """Return the grid of an explanation's parameters, with this rig's ranges."""
+    situations = baseline_situations(problem)
+    parameters = [p for m in mechanisms for p in m.ranges(situations)]
+    if len(parameters) > 2:
+        parameters = [replace(p, nodes=max(min(p.nodes, 5) - (len(parameters) > 3), 3))
+                      for p in parameters]  # fmt: skip
+    return Grid(tuple(parameters))
+
+
+def baseline_situations(problem: Problem):  # type: ignore[no-untyped-def]
+    """Return every condition's stated scene and surroundings."""
+    scenes = problem.scenes(np.zeros(problem.n_z))
+    return [(s, c.around) for s, c in zip(scenes, problem.conditions, strict=True)]
+
+
+def responses_at(
+    simulator: Simulator, mechanisms: Sequence[Mechanism], grid: Grid, z: Array
+) -> Array:
+    """Return predictions at every node of the grid, shape (nodes, m)."""
+    return simulator.predict(mechanisms, [Point(z, values) for values in grid.nodes()])
+
+
+def _expand(
+    simulator: Simulator, mechanisms: tuple[Mechanism, ...], grid: Grid, z: Array, place: Array
+) -> Fit:
+    cells = simulator.problem.cells
+    here, linear = derivatives(simulator, mechanisms, grid.values(place), z)
+    responses = responses_at(simulator, mechanisms, grid, z) if mechanisms else here[None]
+    fine = grid.refine(responses) if mechanisms else here[None]
+    r = cells.value - fine + linear.J @ z
+    log_likelihood = linear.log_likelihood(r)
+    log_evidence, weight = posterior(log_likelihood)
+    best = int(np.argmax(log_likelihood))
+    at = grid.places()[best] if mechanisms else place
+    mean, cov = linear.unknowns(r[best])
+    prediction = fine[best] + linear.J @ (mean - z)
+    return Fit(
+        mechanisms, grid, weight, at, grid.values(at), mean, cov, prediction, log_evidence,
+        float(np.sum(linear.white(r[best]) ** 2)), linear, r[best], responses, log_likelihood, r, z,
+    )  # fmt: skip

@@ -1,0 +1,134 @@
+"""Predictions: unknowns and mechanisms in, one number for every cell out, in batches."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, field, replace
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ..impact import Settings, strike_batch
+from ..impact import compiled as c
+from .mechanisms.base import Mechanism, Situation
+from .problem import Problem
+
+Array = NDArray[np.float64]
+
+SIMULATED = {
+    "restitution": "restitution",
+    "permanent_depth_m": "residual_flat_m",
+    "contact_time_s": "contact_time_s",
+    "peak_force_N": "peak_force_N",
+    "rebound_spin_rad_s": "rebound_spin_rad_s",
+    "friction_impulse_ratio": "friction_impulse_ratio",
+    "sliding_length_m": "sliding_length_m",
+    "rebound_speed_m_s": "rebound_speed_m_s",
+    "tangential_rebound_m_s": "tangential_rebound_m_s",
+}
+"""Column of trials.csv to observable of the impact."""
+
+_COLUMN = {name: i for i, name in enumerate(c.OBSERVABLES)}
+ACCURACY = Settings(tolerance=1e-6, max_steps=4000, max_contacts=30)
+_BATCH = 4000
+
+
+@dataclass(frozen=True, slots=True)
+class Point:
+    """Where to predict.
+
+    Parameters
+    ----------
+    z
+        (n_z,) standardised nuisances and law errors.
+    values
+        Value of every parameter of the mechanisms.
+    faster
+        Relative change of every condition's speed.
+    steeper
+        Change of every condition's angle [rad].
+    """
+
+    z: Array
+    values: Mapping[str, float] = field(default_factory=dict)
+    faster: float = 0.0
+    steeper: float = 0.0
+
+
+@dataclass(eq=False)
+class Simulator:
+    """Predicts the cells of a problem; counts the impacts it took."""
+
+    problem: Problem
+    impacts: int = 0
+
+    def predict(self, mechanisms: Sequence[Mechanism], points: Sequence[Point]) -> Array:
+        """Return the cells' predictions, shape (points, cells)."""
+        seen = self.observe(mechanisms, points)
+        cells = self.problem.cells
+        out = np.empty((len(points), len(cells)))
+        for name in set(cells.observable):
+            here = np.array([o == name for o in cells.observable])
+            values = seen[name][:, cells.condition[here]]
+            if np.any(cells.is_log[here]):
+                values = np.log(np.maximum(values, 1e-12))
+            out[:, here] = values
+        return out
+
+    def observe(
+        self, mechanisms: Sequence[Mechanism], points: Sequence[Point]
+    ) -> dict[str, Array]:
+        """Return every observable of every condition, each of shape (points, conditions)."""
+        n = len(self.problem.conditions)
+        per = max(_BATCH // n, 1)
+        parts = [
+            self._batch(mechanisms, points[i : i + per]) for i in range(0, len(points), per)
+        ]
+        return {k: np.concatenate([p[k] for p in parts]) for k in parts[0]}
+
+    def _batch(self, mechanisms: Sequence[Mechanism], points: Sequence[Point]) -> dict[str, Array]:
+        problem = self.problem
+        situations: list[Situation] = []
+        plain: list[Situation] = []
+        for point in points:
+            for condition, scene in zip(problem.conditions, problem.scenes(point.z), strict=True):
+                if point.faster or point.steeper:
+                    a = scene.approach
+                    up = 1.0 + point.faster
+                    angle = min(a.angle + point.steeper, np.pi / 2.0)
+                    if scene.striker.length == 0.0:
+                        angle = a.angle
+                    a = replace(
+                        a, speed=a.speed * up, tangential=a.tangential * up, angle=angle
+                    )
+                    scene = scene.with_(approach=a)
+                plain.append((scene, condition.around))
+                for mechanism in mechanisms:
+                    scene = mechanism.attach(scene, point.values, condition.around)
+                situations.append((scene, condition.around))
+        rows = strike_batch([s for s, _ in situations], ACCURACY)
+        self.impacts += len(rows)
+        shape = (len(points), len(problem.conditions))
+        seen = {k: rows[:, _COLUMN[v]].copy() for k, v in SIMULATED.items()}
+        seen["peak_depth_m"] = rows[:, _COLUMN["peak_depth_m"]].copy()
+        self._crater(points, situations, seen)
+        # undone in the order of attachment: the last change of the approach was the innermost
+        for i, point in enumerate(points):
+            part = slice(i * shape[1], (i + 1) * shape[1])
+            here = {k: v[part] for k, v in seen.items()}
+            for mechanism in reversed(list(mechanisms)):
+                mechanism.after(plain[part], point.values, here)
+            for k, v in here.items():
+                seen[k][part] = v
+        return {k: v.reshape(shape) for k, v in seen.items()}
+
+    def _crater(
+        self, points: Sequence[Point], situations: Sequence[Situation], seen: dict[str, Array]
+    ) -> None:
+        n = len(self.problem.conditions)
+        for i, point in enumerate(points):
+            part = slice(i * n, (i + 1) * n)
+            b = point.z[self.problem.n_nuisances :]
+            R = np.array([s.pair.R for s, _ in situations[part]])
+            change = self.problem.error.crater(b, seen["peak_depth_m"][part] / R)
+            seen["permanent_depth_m"][part] *= np.exp(change)

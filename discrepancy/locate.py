@@ -1,0 +1,127 @@
+"""Where the baseline misses: observable by covariate, with a family-wise threshold.
+
+For each observable and each condition that varies, a contrast over the cells of that observable is
+tested: a constant, or a slope along the condition. Its score divides what the residual has along
+the contrast by what noise, nuisances and the law's error leave it. The largest score of all is
+compared with that of the null residuals.
+"""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from .fit import Fit
+from .problem import PHASES, Problem
+from .thresholds import Nulls
+
+Array = NDArray[np.float64]
+
+
+@dataclass(frozen=True, slots=True)
+class Miss:
+    """One place where the baseline misses.
+
+    Parameters
+    ----------
+    observable, phase, covariate
+        What, in which phase of the impact, along which condition.
+    trend
+        In words: how recording over simulation goes.
+    z
+        Score; the family-wise threshold is in `Located`.
+    """
+
+    observable: str
+    phase: str
+    covariate: str
+    trend: str
+    z: float
+
+
+@dataclass(frozen=True, slots=True)
+class Located:
+    """All scores above the family-wise threshold, worst first, and the threshold."""
+
+    misses: tuple[Miss, ...]
+    threshold: float
+    all: tuple[Miss, ...]
+
+
+def covariates(problem: Problem) -> dict[str, Array]:
+    """Return what varies over the conditions, standardised, each of shape (conditions,)."""
+    c = problem.conditions
+    raw = {
+        "impact speed": np.log([x.speed for x in c]),
+        "rod length": np.array([problem.strikers[x.striker].length for x in c]),
+        "tip radius": np.log([problem.strikers[x.striker].tip_radius_m.value for x in c]),
+        "striker mass": np.log([problem.strikers[x.striker].mass_kg.value for x in c]),
+        "angle": np.array([x.angle for x in c]),
+        "tangential speed": np.array([x.tangential for x in c]),
+        "temperature": np.array([x.around.temperature for x in c]),
+    }
+    found = {}
+    for name, value in raw.items():
+        spread = float(np.std(value))
+        if spread > 1e-6 * max(1.0, float(np.max(np.abs(value)))):
+            found[name] = (value - value.mean()) / spread
+    return found
+
+
+def locate(problem: Problem, base: Fit, nulls: Nulls, *, level: float = 0.95) -> Located:
+    """Test every cell of observable by covariate.
+
+    Parameters
+    ----------
+    problem
+        What was compared.
+    base
+        Fit of the baseline.
+    nulls
+        Null residuals, for the threshold.
+    level
+        Family-wise.
+    """
+    names, contrasts = _contrasts(problem)
+    linear = base.linear
+    solved = linear.solve(contrasts.T)
+    size = np.sqrt(np.einsum("ij,ji->i", contrasts, solved))
+    score = base.residual @ solved / size
+    null = np.abs(nulls.residual @ solved / size)
+    threshold = float(np.quantile(null.max(axis=1), level))
+    spread = np.maximum(null.std(axis=0) / math.sqrt(1.0 - 2.0 / math.pi), 1.0)
+    found = []
+    for (observable, covariate), z in zip(names, score / spread, strict=True):
+        found.append(
+            Miss(observable, PHASES[observable], covariate, _trend(covariate, z), float(z))
+        )
+    null_max = float(np.quantile((null / spread).max(axis=1), level))
+    found.sort(key=lambda m: -abs(m.z))
+    misses = tuple(m for m in found if abs(m.z) > null_max)
+    return Located(misses, min(threshold, null_max), tuple(found))
+
+
+def _contrasts(problem: Problem) -> tuple[list[tuple[str, str]], Array]:
+    cells = problem.cells
+    names, rows = [], []
+    for observable in dict.fromkeys(cells.observable):
+        here = np.array([o == observable for o in cells.observable])
+        names.append((observable, "overall"))
+        rows.append(here.astype(float))
+        for covariate, value in covariates(problem).items():
+            slope = np.where(here, value[cells.condition], 0.0)
+            slope = np.where(here, slope - slope[here].mean(), 0.0)
+            if np.linalg.norm(slope) > 1e-9:
+                names.append((observable, covariate))
+                rows.append(slope)
+    return names, np.stack(rows)
+
+
+def _trend(covariate: str, z: float) -> str:
+    if covariate == "overall":
+        return "recordings lie above the simulation" if z > 0 else "recordings lie below it"
+    direction = "rises" if z > 0 else "falls"
+    return f"recording over simulation {direction} with {covariate}"

@@ -1,0 +1,105 @@
+"""Mechanisms before touch: a drop that loses speed, and a striker that leans."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+from dataclasses import replace
+
+import numpy as np
+
+from ...impact import Scene
+from .base import Array, Mechanism, Parameter, Situation, Surroundings, Values, is_oblique
+from .contact import slower
+
+
+class ImpactSpeedLoss(Mechanism):
+    """Release, guide or air take speed before the touch; only where it was not measured."""
+
+    name = "impact-speed-loss"
+    title = "the striker arrives slower than its height of fall says"
+    equations = "v = sqrt(2 g H) [1 - zeta (H/H_max)^p]"
+    parameters = (
+        Parameter(
+            "speed_loss", "-", 0.01, 0.3, "log", 0.0,
+            "guides and releases take 1-30 %", nodes=6,
+        ),
+        Parameter(
+            "loss_growth", "-", -0.5, 1.0, "linear", 0.0,
+            "0 for a guide, 1 for air drag, -1/2 for a release that takes a fixed speed", nodes=4,
+        ),
+    )  # fmt: skip
+    direction = {"permanent_depth_m": -1, "peak_force_N": -1}
+
+    def applies(self, situations: Sequence[Situation]) -> str:
+        """Needs speeds computed from heights."""
+        if not any(around.from_height for _, around in situations):
+            return "the impact speed was measured, so losses before it do not matter"
+        return ""
+
+    def attach(self, scene: Scene, values: Values, around: Surroundings) -> Scene:
+        """Replace the approach."""
+        share = _kept(values, around)
+        if share == 1.0:
+            return scene
+        old = scene.approach
+        return scene.with_(
+            approach=replace(old, speed=share * old.speed, tangential=share * old.tangential)
+        )
+
+    def after(
+        self, situations: Sequence[Situation], values: Values, seen: dict[str, Array]
+    ) -> None:
+        """Refer the rebound to the speed that the height of fall promises."""
+        share = np.array([_kept(values, around) for _, around in situations])
+        rebound = seen["rebound_speed_m_s"]
+        slower(seen, seen["restitution"] * share)
+        # the centre's rebound is a speed already, not a ratio
+        seen["rebound_speed_m_s"] = rebound
+
+
+def _kept(values: Values, around: Surroundings) -> float:
+    if not around.from_height:
+        return 1.0
+    growth = around.height_share ** values["loss_growth"]
+    return max(1.0 - values["speed_loss"] * growth, 0.3)
+
+
+class Tilt(Mechanism):
+    """The striker is not at the stated angle."""
+
+    name = "tilt"
+    title = "the striker leans more or less than stated"
+    equations = "theta + d_theta"
+    parameters = (
+        Parameter("tilt_deg", "deg", -8.0, 8.0, "linear", 0.0, "thesis: +-5 degrees", nodes=9),
+    )
+    direction = {}
+
+    def applies(self, situations: Sequence[Situation]) -> str:
+        """Needs a rod, or a tangential motion."""
+        if not any(s.striker.length > 0.0 or is_oblique(s) for s, _ in situations):
+            return "a sphere without tangential motion has no angle"
+        return ""
+
+    def ranges(self, situations: Sequence[Situation]) -> tuple[Parameter, ...]:
+        """Upright rods lean either way alike."""
+        if any(is_oblique(s) for s, _ in situations):
+            return self.parameters
+        return (replace(self.parameters[0], low=0.5),)
+
+    def attach(self, scene: Scene, values: Values, around: Surroundings) -> Scene:
+        """Replace the approach."""
+        turn = math.radians(values["tilt_deg"])
+        old = scene.approach
+        if turn == 0.0:
+            return scene
+        if scene.striker.length > 0.0:
+            angle = 0.5 * math.pi - abs(0.5 * math.pi - old.angle - turn)
+            return scene.with_(approach=replace(old, angle=max(angle, 0.02)))
+        if old.tangential == 0.0:
+            return scene
+        cosine, sine = math.cos(turn), math.sin(turn)
+        speed = old.speed * cosine - old.tangential * sine
+        along = old.tangential * cosine + old.speed * sine
+        return scene.with_(approach=replace(old, speed=max(speed, 1e-3), tangential=along))

@@ -1,0 +1,67 @@
+"""Discrepancies of null laws from the baseline, over a rig's conditions, and null noise."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from .laws import Reference, curve, draw
+from .motion import Bodies, collide
+
+Array = NDArray[np.float64]
+
+
+@dataclass(frozen=True, eq=False)
+class Rig:
+    """Conditions in plain numbers.
+
+    Parameters
+    ----------
+    bodies
+        Strikers before touch, one a condition.
+    references
+        The baseline's curve of each condition.
+    low, high
+        Depths that the conditions reach, with a margin [m].
+    """
+
+    bodies: Bodies
+    references: Sequence[Reference]
+    low: float
+    high: float
+
+
+def discrepancies(
+    rig: Rig, count: int, rng: np.random.Generator, size: dict[str, float]
+) -> dict[str, Array]:
+    """Return observables of `count` null laws, each of shape (count, conditions).
+
+    Parameters
+    ----------
+    rig
+        What strikes what.
+    count
+        Number of laws drawn.
+    rng
+        Source of the draws.
+    size
+        Standard deviations of the levels of force and recovery.
+    """
+    n = len(rig.references)
+    contacts = list(dict.fromkeys(rig.references))
+    curves = []
+    for _ in range(count):
+        law = draw(rng, size)
+        table = {r: curve(r, law, rig.low, rig.high) for r in contacts}
+        curves += [table[r] for r in rig.references]
+    many = Bodies(*(np.tile(getattr(rig.bodies, k), count) for k in Bodies.__dataclass_fields__))
+    seen = collide(many, curves)
+    return {k: v.reshape(count, n) for k, v in seen.items()}
+
+
+def scatter(rng: np.random.Generator, shape: tuple[int, ...]) -> Array:
+    """Noise of unit standard deviation with the tails of a logistic distribution."""
+    return np.asarray(rng.logistic(0.0, np.sqrt(3.0) / np.pi, shape))

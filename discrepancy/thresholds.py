@@ -1,0 +1,149 @@
+"""What the comparison answers when nothing is missing: thresholds for one rig, by simulation.
+
+The null generators give, for this rig's own conditions, noise and nuisances, discrepancies of laws
+that the baseline does not know. Each is put through the same algebra as the data, with the stored
+derivatives and responses of the data's own fits.
+"""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ..impact import Scene
+from ..impact.strength import strength_table
+from .evidence import Linear
+from .fit import Fit
+from .forward import Point, Simulator
+from .mechanisms.base import effective_mass
+from .nulls import Rig, discrepancies, scatter
+from .nulls.laws import Reference
+from .nulls.motion import Bodies
+from .problem import LOGARITHMIC, Problem
+
+Array = NDArray[np.float64]
+
+LEVELS = {"force": 0.03, "force slope": 0.01, "recovery": 0.05, "recovery slope": 0.02}
+"""Spread of the null laws' levels about the baseline's, as the published laws have it."""
+
+
+@dataclass(frozen=True, eq=False)
+class Nulls:
+    """Null residuals of one rig.
+
+    Parameters
+    ----------
+    law
+        (n, m) discrepancy of null laws from the baseline, without noise.
+    residual
+        (n, m) with noise and nuisances: residuals at the prior mean.
+    """
+
+    law: Array
+    residual: Array
+
+
+def null_residuals(
+    simulator: Simulator, base: Fit, count: int, rng: np.random.Generator
+) -> Nulls:
+    """Draw residuals that a complete baseline would leave in this rig.
+
+    Parameters
+    ----------
+    simulator
+        The problem.
+    base
+        Fit of the baseline: where the null laws are levelled.
+    count
+        Number of null laws.
+    rng
+        Source of the draws.
+    """
+    problem = simulator.problem
+    z = base.z.copy()
+    z[problem.n_nuisances :] = 0.0
+    here = simulator.predict((), [Point(z)])[0]
+    seen = discrepancies(rig_of(problem, z), count, rng, LEVELS)
+    cells = problem.cells
+    law = np.empty((count, len(cells)))
+    for j, name in enumerate(cells.observable):
+        value = seen[name][:, cells.condition[j]]
+        law[:, j] = np.log(np.maximum(value, 1e-12)) if name in LOGARITHMIC else value
+    law -= here
+    noise = scatter(rng, law.shape) * np.sqrt(np.diag(base.linear.noise))
+    k = problem.n_nuisances
+    unknown = rng.standard_normal((count, k)) @ base.linear.J[:, :k].T
+    return Nulls(law, law + noise + unknown)
+
+
+def rig_of(problem: Problem, z: Array) -> Rig:
+    """Return the rig at the unknowns z, as plain numbers for the null generators."""
+    scenes = problem.scenes(z)
+    known: dict[tuple[float, ...], Reference] = {}
+    references = [_reference(scene, known) for scene in scenes]
+    arms = [s.striker.arm(s.approach.angle) for s in scenes]
+    upright = [abs(s.approach.angle - math.pi / 2.0) < 1e-9 for s in scenes]
+    bodies = Bodies(
+        np.array([s.striker.mass for s in scenes]),
+        np.array([s.striker.inertia for s in scenes]),
+        np.array([0.0 if up else a[0] for a, up in zip(arms, upright, strict=True)]),
+        np.array([a[1] for a in arms]),
+        np.array([s.approach.speed for s in scenes]),
+        np.array([s.approach.tangential for s in scenes]),
+        np.array([s.approach.spin for s in scenes]),
+        np.array([s.friction.mu for s in scenes]),
+        np.array([r.given_back for r in references]),
+    )
+    depth = [
+        strength_table(s.law, s.pair).peak(0.5 * effective_mass(s) * s.approach.speed**2)
+        for s in scenes
+    ]
+    return Rig(bodies, references, 0.5 * min(depth), 1.5 * max(depth))
+
+
+def _reference(scene: Scene, known: dict[tuple[float, ...], Reference]) -> Reference:
+    pair, law = scene.pair, scene.law
+    key = (pair.R, pair.E_reduced, pair.Sy_min, pair.Sy_ratio, pair.elastic_share)
+    key = tuple(-1.0 if math.isnan(x) else x for x in key)
+    if key not in known:
+        table = strength_table(law, pair)
+        depth = table.depth
+        _, flat = law.residual(pair, depth)
+        unit = len(table.log_force) // 2
+        known[key] = Reference(
+            pair.R, pair.E_reduced, pair.Sy_min, depth, np.exp(table.log_force[unit]),
+            np.exp(table.log_recovery[unit]), flat, scene.force.given_back,
+        )  # fmt: skip
+    return known[key]
+
+
+def null_bayes_factors(nulls: Nulls, base: Fit, responses: list[Array]) -> Array:
+    """Return ln B of every mechanism for every null, shape (n, mechanisms).
+
+    Parameters
+    ----------
+    nulls
+        Null residuals.
+    base
+        Fit of the baseline, whose derivatives are used for all.
+    responses
+        For each mechanism, its effect on the cells over its refined grid, shape (k, m).
+    """
+    linear = base.linear
+    white = linear.white(nulls.residual)
+    plain = np.sum(white**2, axis=1)
+    out = np.empty((len(white), len(responses)))
+    for j, effect in enumerate(responses):
+        out[:, j] = gain(white, plain, linear, effect)
+    return out
+
+
+def gain(white: Array, plain: Array, linear: Linear, effect: Array) -> Array:
+    """Return ln of the mean likelihood ratio over a grid of effects (k, m), shape (n,)."""
+    e = linear.white(effect)
+    ratio = white @ e.T - 0.5 * np.sum(e**2, axis=1)
+    top = ratio.max(axis=1)
+    return np.asarray(top + np.log(np.mean(np.exp(ratio - top[:, None]), axis=1)))
