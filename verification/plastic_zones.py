@@ -65,9 +65,10 @@ def run(bench: Bench) -> Result:
             ),
         ),
         notes=(
-            "Just after first yield both zones are closed and lie below the surface, as Hertz's "
-            "solution has it; they break through at the edge of the contact first. At Sy* = 1 the "
-            "stress of both bodies reaches the strength over the whole contact, which is the "
+            "At Delta/R = 0.001, seven times the depth of first yield, the zones have reached the "
+            "surface near the edge of the contact and leave an elastic core at the surface in the "
+            "middle. At Delta/R = 0.01 and Sy* = 1 both bodies are at their strength over the "
+            "whole contact, which is the "
             "thesis's statement to figure 2.3. At Sy* = 10 the flat yields beside the contact and "
             "piles up; at Sy* = 0.1 the flat stays elastic and its largest stress on the surface "
             "sits at the last point of contact.",

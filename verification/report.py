@@ -102,7 +102,7 @@ def _section(result: Result, path: Path) -> Iterator[str]:
     for table in result.tables:
         yield from _table(table)
     for name, caption in result.pictures:
-        yield f"![{caption}]({path.stem}/{name})"
+        yield f"![{result.title}]({path.stem}/{name})"
         yield ""
         yield caption
         yield ""

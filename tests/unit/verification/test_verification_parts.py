@@ -77,7 +77,7 @@ def test_the_report_shows_what_is_missed_and_what_is_absent(tmp_path):
     text = write_report(tmp_path / "verification.md", folder=tmp_path).read_text()
     assert "| x | 0.7 % | at most 0.3 | **missed** | a paper |" in text
     assert "| 1 | 2 |" in text
-    assert "![a picture](verification/p.png)" in text
+    assert "![A title](verification/p.png)\n\na picture" in text
     assert "hertz" in text.split("Not measured yet: ")[1].splitlines()[0]
 
 
