@@ -26,6 +26,7 @@ PULSE = (0.25, 1.0)
 
 _MOMENTUM_SHARE = FALSE_ALARMS_OTHER / 2.0
 _BEYOND = 4.0
+_ANGLES = 2.0
 
 
 def check_mass(found: RecordingSet) -> list[Finding]:
@@ -148,15 +149,17 @@ def check_friction(found: RecordingSet) -> list[Finding]:
         ratio, touch = view.measured("friction_impulse_ratio"), view.touch
         if ratio is None or touch.c == 0.0 or touch.vx or touch.spin:
             continue
-        z = (ratio.value - touch.stick_ratio) / ratio.std
+        leaning = max(view.angle.value - _ANGLES * view.angle.std, 0.0)
+        limit = max(touch.stick_ratio, view.touch_at(leaning).stick_ratio)
+        z = (ratio.value - limit) / ratio.std
         stuck = z > _BEYOND
         findings.append(
             Finding(
                 f"friction of {view.name}",
                 Severity.CAUTION if stuck else Severity.CONSISTENT,
-                f"impulse ratio {ratio.value:.3g}, a rigid tip sticks at {touch.stick_ratio:.3g}",
+                f"impulse ratio {ratio.value:.3g}, a rigid tip sticks at {limit:.3g}",
                 ratio.value,
-                touch.stick_ratio,
+                limit,
                 max(z, 0.0),
             )
         )

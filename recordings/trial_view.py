@@ -51,10 +51,14 @@ class TrialView:
     @property
     def touch(self) -> rigid.Touch:
         """The rigid body just before touch."""
+        return self.touch_at(self.angle.value)
+
+    def touch_at(self, angle: float) -> rigid.Touch:
+        """Return the same with the axis at another angle [rad]."""
         approach = self.found.approach
         return rigid.touch(
             self.striker,
-            angle=self.angle.value,
+            angle=angle,
             normal=self.speed.value,
             tangential=float(approach.tangential[self.i]),
             spin=float(approach.spin[self.i]),

@@ -1,5 +1,6 @@
 """Commands of recording sets, and sets made in memory that survive the way through files."""
 
+import re
 from pathlib import Path
 
 import numpy as np
@@ -7,6 +8,7 @@ import pytest
 from dentscope.cli.recordings import app
 from dentscope.core.errors import InputError
 from dentscope.recordings import (
+    CONDITIONS,
     OBSERVABLES,
     Quantity,
     RecordingSet,
@@ -105,3 +107,14 @@ def test_any_sound_set_comes_back_from_its_files(data, tmp_path_factory):
     np.testing.assert_array_equal(found.trials.angle_deg, trials.angle_deg)
     np.testing.assert_array_equal(found.trials.drop_height_m, trials.drop_height_m)
     np.testing.assert_array_equal(found.values(observable), trials.observables[observable])
+
+
+def test_the_documentation_names_every_key_and_column_and_its_block_runs(monkeypatch):
+    text = (DATA.parents[1] / "docs" / "recording-set.md").read_text(encoding="utf-8")
+    for name in (*CONDITIONS, *OBSERVABLES, *Target.model_fields, *Striker.model_fields):
+        assert f"`{name}`" in text or f"`{name} =" in text, name
+    (block,) = re.findall(r"```python\n(.*?)```", text, flags=re.DOTALL)
+    monkeypatch.chdir(DATA.parents[1])
+    names = {}
+    exec(compile(block, "recording-set.md", "exec"), names)
+    assert names["found"].setup.strikers["rod"].mass_kg.value == 0.4607
