@@ -43,6 +43,9 @@ class Discretisation:
         is rigid.
     stress_unit
         E' [Pa].
+    round_off
+        Sum of nodal forces that round-off in the deformation gradient makes [E' R^2]; the large
+        elements far from the contact rule it.
     """
 
     mesh: Mesh
@@ -53,6 +56,7 @@ class Discretisation:
     held: Integers
     reaction: Integers
     stress_unit: float
+    round_off: float
 
     @property
     def n_dofs(self) -> int:
@@ -88,9 +92,11 @@ def discretise(problem: ContactProblem, accuracy: Accuracy) -> Discretisation:
         deforms[mesh.n_sphere_quads :] = False
         held += [2 * node[~sphere], 2 * node[~sphere] + 1]
     index = np.flatnonzero(deforms)
+    elements = _elements(mesh, index, pair.sphere, pair.flat, pair.E_reduced)
+    slope = np.abs(elements.grad).sum(axis=(2, 3))
     return Discretisation(
         mesh=mesh,
-        elements=_elements(mesh, index, pair.sphere, pair.flat, pair.E_reduced),
+        elements=elements,
         element_index=index,
         surfaces=Surfaces.build(
             mesh.points, slave=mesh.slave, master=mesh.master, penalty=accuracy.penalty
@@ -99,6 +105,7 @@ def discretise(problem: ContactProblem, accuracy: Accuracy) -> Discretisation:
         held=np.unique(np.concatenate(held)),
         reaction=np.empty(0, np.int64) if pair.sphere.rigid else 2 * mesh.top + 1,
         stress_unit=pair.E_reduced,
+        round_off=float(np.finfo(float).eps * (elements.K[:, None] * elements.dV * slope).sum()),
     )
 
 

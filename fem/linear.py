@@ -5,15 +5,15 @@ surfaces than are active at the moment, so that the points may slide without a n
 unknowns are numbered once a pattern by a fill-reducing order; every later factorisation takes that
 order as it is, which saves the search for it.
 
-SuperLU factorises; with the extra `fast` installed PARDISO does, at half its cost, and SuperLU
-only where PARDISO's residual is not small.
+The factors of an earlier tangent precondition a few GMRES steps; only when these become many is the
+present one factorised. A Newton direction needs no more digits than the next one keeps, and a solve
+costs a fifteenth of a factorisation.
 """
 
 from __future__ import annotations
 
-import contextlib
 from collections.abc import Callable
-from typing import Any
+from typing import Any, cast
 
 import numpy as np
 import numpy.typing as npt
@@ -25,14 +25,17 @@ from .contact import ContactState, Surfaces, Triplets
 
 Floats = npt.NDArray[np.float64]
 Integers = npt.NDArray[np.int64]
-Backend = Callable[[sparse.csc_matrix, Floats], Floats]
+Solve = Callable[[Floats], Floats]
 
-_RESIDUAL = 1e-8  # largest residual over the right-hand side that PARDISO may leave
+_FORCING = 0.005  # relative correction that a direction may lack
+_RESIDUAL = 0.2  # relative residual that it may leave
+_KRYLOV = 12  # most GMRES steps
+_PATIENCE = 7  # after so many, the next matrix is factorised anew
 _REACH = 3  # master nodes beyond the segments in use that the pattern already couples
 
 
-def superlu(matrix: sparse.csc_matrix, rhs: Floats) -> Floats:
-    """Solve with scipy's SuperLU; the unknowns are already in a fill-reducing order."""
+def superlu(matrix: sparse.csc_matrix) -> Solve:
+    """Factorise with scipy's SuperLU; the unknowns are already in a fill-reducing order."""
     factors = sparse_linalg.splu(
         matrix,
         permc_spec="NATURAL",
@@ -41,40 +44,7 @@ def superlu(matrix: sparse.csc_matrix, rhs: Floats) -> Floats:
         panel_size=1,
         options={"SymmetricMode": True},
     )
-    return np.asarray(factors.solve(rhs))
-
-
-class Pardiso:
-    """MKL PARDISO, type 11 (the tangent of the exact stress update is not symmetric)."""
-
-    def __init__(self, solver: Any) -> None:
-        self._solver = solver
-        self._pattern: Any = None
-
-    def __call__(self, matrix: sparse.csc_matrix, rhs: Floats) -> Floats:
-        """Solve; the analysis of a pattern is kept, and a bad residual goes to SuperLU."""
-        s = self._solver
-        right = np.asfortranarray(rhs[:, None])
-        if self._pattern is not matrix.indices:
-            s.free_memory(everything=True)
-            s._check_A(matrix)
-            s.set_phase(11)
-            s._call_pardiso(matrix, right)
-            self._pattern = matrix.indices
-        s.set_phase(23)
-        x = np.asarray(s._call_pardiso(matrix, right))[:, 0]
-        if np.abs(matrix @ x - rhs).max() <= _RESIDUAL * np.abs(rhs).max():
-            return x
-        return superlu(matrix, rhs)
-
-
-def pardiso() -> Pardiso | None:
-    """PARDISO where the extra `fast` is installed; none otherwise."""
-    with contextlib.suppress(ImportError):
-        from pypardiso import PyPardisoSolver
-
-        return Pardiso(PyPardisoSolver(mtype=11))
-    return None
+    return cast(Solve, factors.solve)
 
 
 @njit(cache=True)
@@ -123,7 +93,8 @@ class LinearSystem:
         self.n = len(free)
         self.n_patterns = 0
         self.n_factorisations = 0
-        self._backend: Backend = pardiso() or superlu
+        self._factors: Any = None
+        self._n_last = _KRYLOV  # as if GMRES had been slow: there are no factors yet
         self._element_dofs = element_dofs
         self._plain = np.full(n_dofs, -1, dtype=np.int64)
         self._plain[free] = np.arange(self.n)
@@ -167,6 +138,7 @@ class LinearSystem:
 
     def _new_pattern(self, surfaces: Surfaces, contact: ContactState) -> None:
         self.n_patterns += 1
+        self._n_last = _KRYLOV
         keys = np.union1d(self._element_keys, self._contact_keys(surfaces, contact))
         cols, rows = np.divmod(keys, self.n)
         pattern = sparse.csc_matrix((np.ones(len(keys)), (rows, cols)), shape=(self.n, self.n))
@@ -209,5 +181,35 @@ class LinearSystem:
         assert self._matrix is not None
         permuted = np.empty(self.n)
         permuted[self._order] = rhs
-        self.n_factorisations += 1
-        return np.asarray(self._backend(self._matrix, permuted)[self._order])
+        x = self._iterate(permuted) if self._n_last <= _PATIENCE else None
+        if x is None:
+            self._factors = superlu(self._matrix)
+            self.n_factorisations += 1
+            self._n_last = 0
+            x = self._factors(permuted)
+        return np.asarray(x[self._order])
+
+    def _iterate(self, rhs: Floats) -> Floats | None:
+        """Solve with the factors of an earlier matrix as preconditioner; none: not good enough.
+
+        The preconditioner stands on the left, so that the criterion is one on the correction
+        itself; a residual would be ruled by the stiff contact. Factors that have become wrong
+        can make that criterion blind, so the residual must have fallen too.
+        """
+        matrix = self._matrix
+        assert matrix is not None
+        self._n_last = 0
+
+        def preconditioned(v: Floats) -> Floats:
+            self._n_last += 1
+            return np.asarray(self._factors(matrix @ v))
+
+        x, failed = sparse_linalg.gmres(
+            sparse_linalg.LinearOperator((self.n, self.n), preconditioned, dtype=float),
+            self._factors(rhs),
+            rtol=_FORCING,
+            restart=_KRYLOV,
+            maxiter=1,
+        )
+        left = np.abs(matrix @ x - rhs).sum()
+        return None if failed or left > _RESIDUAL * np.abs(rhs).sum() else np.asarray(x)

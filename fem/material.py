@@ -223,85 +223,79 @@ def _dot(a, b):
 
 
 @njit(cache=True)
-def _slide_terms(r, d, radius):
-    """What `_linear_slide` needs of the old point `r`, the increment `d` and the radius."""
-    length2 = _dot(d, d)
+def _slide_terms(r, d, radius, x):
+    """What `_linear_slide` needs; the point where the circle is reached goes to `x` (4,).
+
+    Returns
+    -------
+    tuple
+        Elastic fraction t of the increment, derivative of |r + t d|^2/2 by t (0: not crossed),
+        |x|, length of the rest of the increment, cosine between x and d, decay exp(-length/radius),
+        x . d and d . d.
+    """
+    dd = _dot(d, d)
     along = _dot(r, d)
-    root = math.sqrt(max(along * along - length2 * (_dot(r, r) - radius * radius), 0.0))
-    elastic = (root - along) / length2
-    slope = along + elastic * length2 if 0.0 < elastic < 1.0 else 0.0
-    elastic = min(max(elastic, 0.0), 1.0)
-    rest = 1.0 - elastic
-    n2 = 0.0
-    xd = 0.0
+    root = math.sqrt(max(along * along - dd * (_dot(r, r) - radius * radius), 0.0))
+    t = (root - along) / dd
+    slope = along + t * dd if 0.0 < t < 1.0 else 0.0
+    t = min(max(t, 0.0), 1.0)
     for i in range(4):
-        k = 2.0 if i == 2 else 1.0
-        x = r[i] + elastic * d[i]
-        n2 += k * x * x
-        xd += k * x * rest * d[i]
-    n = math.sqrt(n2)
-    length = rest * math.sqrt(length2)
-    c = xd / (n * length) if length > 0.0 else 0.0
-    a = math.exp(-length / radius)
-    return elastic, slope, n, length, c, a
+        x[i] = r[i] + t * d[i]
+    n = math.sqrt(_dot(x, x))
+    xd = _dot(x, d)
+    length = (1.0 - t) * math.sqrt(dd)
+    cosine = xd / (n * math.sqrt(dd))
+    return t, slope, n, length, cosine, math.exp(-length / radius), xd, dd
 
 
 @njit(cache=True)
-def _linear_slide(r, d, radius, terms, dr, dd, dradius, dq):
+def _linear_slide(x, d, radius, terms, turn, dangle, dtrial, dradius, dq):
     """Write the change of the exactly updated point into `dq` (4,).
 
     Parameters
     ----------
-    r, d
-        Rotated old point and strain increment, shape (4,).
-    radius
-        Radius of the yield circle.
-    terms
-        Their `_slide_terms`.
-    dr, dd, dradius
-        Their changes.
+    x, d, radius, terms
+        The point where the circle is reached, the increment, the circle's radius and their
+        `_slide_terms`.
+    turn, dangle
+        Change of the rotated old point with the angle, shape (4,), and of the angle.
+    dtrial, dradius
+        Changes of the trial point and of the radius.
     """
-    elastic, slope, n, length, c, a = terms
+    t, slope, n, length, c, a, xd, dd = terms
     if length == 0.0:
         for i in range(4):
-            dq[i] = dr[i] + dd[i]
+            dq[i] = dtrial[i]
         return
-    delastic = 0.0
+    rest = 1.0 - t
+    # changes of the old point, dangle turn, and of the increment, dtrial - dangle turn
+    x_turn = dangle * _dot(x, turn)
+    d_turn = dangle * _dot(d, turn)
+    x_inc = _dot(x, dtrial) - x_turn
+    d_inc = _dot(d, dtrial) - d_turn
+    dt = 0.0
     if slope != 0.0:
-        change = _dot(r, dr) + elastic * (_dot(r, dd) + _dot(d, dr))
-        change += elastic * elastic * _dot(d, dd) - radius * dradius
-        delastic = -change / slope
-    rest = 1.0 - elastic
-    dn = 0.0
-    dl = 0.0
-    dc = 0.0
-    for i in range(4):
-        k = 2.0 if i == 2 else 1.0
-        x = r[i] + elastic * d[i]
-        D = rest * d[i]
-        dx = dr[i] + elastic * dd[i] + delastic * d[i]
-        dD = rest * dd[i] - delastic * d[i]
-        dn += k * x * dx
-        dl += k * D * dD
-        dc += k * (dx * D + x * dD)
-    dn /= n
-    dl /= length
-    dc = dc / (n * length) - c * (dn / n + dl / length)
-    da = -a * (dl / radius - length * dradius / (radius * radius))
+        dt = (radius * dradius - x_turn - t * x_inc) / slope
+    dn = (x_turn + t * x_inc + dt * xd) / n
+    dl = rest * (rest * d_inc - dt * dd) / length
+    dc = (rest * (d_turn + t * d_inc + dt * dd + x_inc) - dt * xd) / (n * length)
+    dc -= c * (dn / n + dl / length)
+    da = -a * (dl - length * dradius / radius) / radius
     den = 1.0 + a * a + (1.0 - a * a) * c
-    dden = 2.0 * a * da * (1.0 - c) + (1.0 - a * a) * dc
+    dden = (2.0 * a * da * (1.0 - c) + (1.0 - a * a) * dc) / den
     top = 1.0 - a * a + (1.0 - a) ** 2 * c
-    dtop = -2.0 * a * da - 2.0 * (1.0 - a) * da * c + (1.0 - a) ** 2 * dc
-    kx = radius * 2.0 * a / (den * n)
-    dkx = kx * (dradius / radius - dden / den - dn / n) + 2.0 * radius * da / (den * n)
-    kd = radius * top / (den * length)
-    dkd = kd * (dradius / radius - dden / den - dl / length) + radius * dtop / (den * length)
+    dtop = (1.0 - a) ** 2 * dc - 2.0 * da * (a + (1.0 - a) * c)
+    scale = radius / den
+    kx = 2.0 * a * scale / n
+    kd = top * scale / length
+    grow = dradius / radius - dden
+    dkx = kx * (grow - dn / n) + 2.0 * da * scale / n
+    dkd = kd * (grow - dl / length) + dtop * scale / length
+    inc = kx * t + kd * rest
+    old = (kx - inc) * dangle
+    along = dt * (kx - kd) + rest * dkd
     for i in range(4):
-        x = r[i] + elastic * d[i]
-        D = rest * d[i]
-        dx = dr[i] + elastic * dd[i] + delastic * d[i]
-        dD = rest * dd[i] - delastic * d[i]
-        dq[i] = kx * dx + x * dkx + kd * dD + D * dkd
+        dq[i] = old * turn[i] + inc * dtrial[i] + dkx * x[i] + along * d[i]
 
 
 @njit(cache=True)
@@ -314,7 +308,7 @@ def deviatoric_tangent(F, Fn, bn, en, G, radius0, rule, P, work, A):
     axes of the trial b), of the mean strain and of the rotation, these into that of the updated
     point, and that into the change of P = tau F^-T.
     """
-    trial, old, step, dtrial, dold, dpoint = work
+    trial, reached, step, dtrial, turning, dpoint = work
     f, (b0, b1, b2, b3) = _trial(F, Fn, bn)
     f00, f01, f10, f11 = f
     l1, l2, c, s = spectral(b0, b1, b2)
@@ -334,6 +328,7 @@ def deviatoric_tangent(F, Fn, bn, en, G, radius0, rule, P, work, A):
     y = f10 - f01
     turn2 = x * x + y * y
     directed = False
+    terms = (0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0)
     if not plastic:
         _stress(F, G, trial[0], trial[1], trial[2], trial[3], P)
     else:
@@ -341,13 +336,19 @@ def deviatoric_tangent(F, Fn, bn, en, G, radius0, rule, P, work, A):
         _stress(F, G, q0, q1, q2, q3, P)
         if rule == EXACT:
             turn = math.sqrt(turn2)
-            old[0], old[1], old[2], old[3] = _turned(x / turn, y / turn, en)
-            for i in range(4):
-                step[i] = trial[i] - old[i]
+            r0, r1, r2, r3 = _turned(x / turn, y / turn, en)
+            step[0] = trial[0] - r0
+            step[1] = trial[1] - r1
+            step[2] = trial[2] - r2
+            step[3] = trial[3] - r3
             directed = _dot(step, step) > _STILL * radius * radius
-    terms = (0.0, 0.0, 0.0, 0.0, 0.0, 0.0)
-    if directed:
-        terms = _slide_terms(old, step, radius)
+            if directed:
+                turning[0] = -2.0 * r2
+                turning[1] = 2.0 * r2
+                turning[2] = r0 - r1
+                turning[3] = 0.0
+                old = (r0, r1, r2, r3)
+                terms = _slide_terms(old, step, radius, reached)
     detF = F[0] * F[3] - F[1] * F[2]
     g00 = F[3] / detF
     g01 = -F[1] / detF
@@ -385,13 +386,9 @@ def deviatoric_tangent(F, Fn, bn, en, G, radius0, rule, P, work, A):
             df10 = l10 * f00 + l11 * f10
             df11 = l10 * f01 + l11 * f11
             dangle = (x * (df10 - df01) - y * (df00 + df11)) / turn2
-            dold[0] = -2.0 * old[2] * dangle
-            dold[1] = 2.0 * old[2] * dangle
-            dold[2] = (old[0] - old[1]) * dangle
-            dold[3] = 0.0
-            for i in range(4):
-                dtrial[i] -= dold[i]
-            _linear_slide(old, step, radius, terms, dold, dtrial, 3.0 * radius * dm, dpoint)
+            _linear_slide(
+                reached, step, radius, terms, turning, dangle, dtrial, 3.0 * radius * dm, dpoint
+            )
         t0 = 2.0 * G * dpoint[0]
         t1 = 2.0 * G * dpoint[1]
         t2 = 2.0 * G * dpoint[2]

@@ -20,16 +20,16 @@ from .linear import LinearSystem
 Floats = npt.NDArray[np.float64]
 
 TOLERANCE = 2e-6
-"""Accepted sum of residual forces over the contact force; round-off in the largest elements, far
-from the contact, keeps it above 5e-7."""
+"""Accepted sum of residual forces over the contact force."""
 
-# Where round-off rules the residual, the corrections decide: largest accepted next one over the
-# approach, the next one estimated by the last two in geometric progression (Newton's are faster);
-# and largest accepted one in R. The residual must then be near its floor all the same.
+# Where the residual is small, or down at the round-off of the largest elements far from the
+# contact, the corrections may decide instead: largest accepted next one over the approach, the next
+# one estimated from the last two in geometric progression (Newton's are faster).
 _STILL = 1e-8
-_ROUND_OFF = 2e-14
-_FLOOR = 50.0 * TOLERANCE
+_SMALL = 50.0 * TOLERANCE
+_ROUND_OFF = 0.05  # of the grid's bound; a fifth of this was seen
 _MOST_ITERATIONS = 18
+_HOPELESS = 8  # after so many, a residual that has not halved will not converge
 _BACKTRACKS = 5
 _SECANTS = 3
 
@@ -89,12 +89,16 @@ class Solver:
         u = guess.copy()
         u[self.grid.driven] = -delta
         now = self._evaluate(u, state)
-        moved, next_move = np.inf, np.inf
+        moved, next_move, first = np.inf, np.inf, np.inf
         for iteration in range(_MOST_ITERATIONS):
             if now is None:
                 return None
-            if iteration and self._converged(now, moved, next_move, delta):
+            if iteration and self._converged(now, next_move, delta):
                 return Equilibrium(u, now.contact, self._reaction(now), iteration)
+            if iteration == 0:
+                first = self._unbalanced(now)
+            elif iteration == _HOPELESS and self._unbalanced(now) > 0.5 * first:
+                return None
             direction = self._direction(now)
             u, now, alpha = self._search(u, now, direction, state)
             before, moved = moved, alpha * float(np.abs(direction).max())
@@ -124,12 +128,15 @@ class Solver:
             return now.contact.force
         return -float(now.bulk[self.grid.reaction].sum())
 
-    def _converged(self, now: Evaluation, moved: float, next_move: float, delta: float) -> bool:
-        force = max(abs(now.contact.force), 1e-300)
-        unbalanced = float(np.abs(now.residual[self.free]).sum()) / force
-        if unbalanced < TOLERANCE or moved < max(_STILL * delta, _ROUND_OFF):
+    def _unbalanced(self, now: Evaluation) -> float:
+        return float(np.abs(now.residual[self.free]).sum())
+
+    def _converged(self, now: Evaluation, next_move: float, delta: float) -> bool:
+        force = abs(now.contact.force)
+        unbalanced = self._unbalanced(now)
+        if unbalanced < TOLERANCE * force:
             return True
-        return unbalanced < _FLOOR and next_move < _STILL * delta
+        return next_move < _STILL * delta and unbalanced < max(_SMALL * force, self.grid.round_off)
 
     def _direction(self, now: Evaluation) -> Floats:
         start = time.process_time()
