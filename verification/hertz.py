@@ -91,9 +91,9 @@ def _peak(pair: Pair) -> tuple[float, float]:
 
 def _pressure_error(snapshot: fem.Snapshot, pair: Pair) -> float:
     a, p0 = _peak(pair)
-    x = snapshot.pressure_r / a
+    x = snapshot.profile.sphere_r / a
     inside = (x > 0.2) & (x < 0.9)
-    error = snapshot.pressure[inside] / p0 - np.sqrt(1.0 - x[inside] ** 2)
+    error = snapshot.profile.pressure[inside] / p0 - np.sqrt(1.0 - x[inside] ** 2)
     return float(np.sqrt(np.mean(error**2)))
 
 

@@ -136,6 +136,7 @@ def _plastic_share(drawn: Drawn, *, sphere: bool) -> float:
 def _draw(states: list[Drawn], path: Path) -> None:
     from matplotlib.collections import LineCollection, PolyCollection
     from matplotlib.figure import Figure
+    from PIL import Image
 
     figure = Figure(figsize=(12, 7.5), layout="constrained")
     axes = figure.subplots(len(_DEPTHS), len(_RATIOS))
@@ -164,7 +165,8 @@ def _draw(states: list[Drawn], path: Path) -> None:
             fontsize=9,
         )
     figure.colorbar(cells, ax=axes, label="von Mises stress / 503 MPa", shrink=0.8)
-    figure.savefig(path, dpi=110)
+    figure.savefig(path, dpi=90)
+    Image.open(path).convert("RGB").quantize(96).save(path, optimize=True)
 
 
 def _edge(
