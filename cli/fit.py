@@ -18,7 +18,9 @@ if TYPE_CHECKING:
 
 _PUBLISHED = Path("data/campaign")
 _OWN = Path("build/campaign/campaign.h5")
-_PLACE = Path(__file__).resolve().parents[1] / "data" / "coefficients" / "fitted.json"
+_ROOT = Path(__file__).resolve().parents[1]
+_PLACE = _ROOT / "data" / "coefficients" / "fitted.json"
+_PAGE = _ROOT / "docs" / "closed-form.md"
 
 
 def fit(
@@ -53,7 +55,7 @@ def fit(
         return _export(export, console)
     from ..fitting import fit_tables, read_tables
     from ..fitting.coefficients import coefficients_content, write_coefficients
-    from ..fitting.report import coefficient_rows, error_rows, write_report
+    from ..fitting.report import coefficient_rows, error_rows, update_page, write_report
 
     files = _files(campaigns)
     table, turns = read_tables(files)
@@ -72,6 +74,11 @@ def fit(
         ("validation", validation),
     ]
     _show(console, error_rows(columns))
+    if publish:
+        write_coefficients(content, _PLACE)
+        if _PAGE.is_file():
+            update_page(_PAGE, content)
+        console.print("the fitted law now uses these coefficients")
     choices: Sequence[Choice] = ()
     thesis = ""
     if compare:
@@ -86,9 +93,6 @@ def fit(
         result, content, table, turns, out, validation=validation, choices=choices, thesis=thesis
     )
     console.print(f"coefficients: {out / 'fitted.json'}; report: {page}")
-    if publish:
-        write_coefficients(content, _PLACE)
-        console.print("the fitted law now uses these coefficients")
     if not result.outcome.completed:
         console.print(str(result.outcome))
         return EXIT_NOT_CONVERGED

@@ -144,7 +144,7 @@ def write_report(
         markdown(
             [
                 ["quantity", "from", "to"],
-                *([k, f"{a:.4g}", f"{b:.4g}"] for k, (a, b) in limits.items()),
+                *([k, f"{a:.4g}", f"{b:.4g}"] for k, (a, b) in limits),
             ]
         ),
         "## Coefficients\n",
@@ -175,3 +175,41 @@ def write_report(
     page = folder / "report.md"
     page.write_text("\n".join(parts), encoding="utf-8")
     return page
+
+
+BEGIN = "<!-- coefficients: begin, written by dentscope fit --publish -->"
+END = "<!-- coefficients: end -->"
+
+
+def published_section(content: dict[str, Any]) -> str:
+    """Return the part of docs/closed-form.md that follows from a coefficients file."""
+    errors = content["errors"]
+    rows = [["beyond first yield", "fitted: mean, largest", "left out: mean, largest"]]
+    for name, (title, scale, _) in MARKS.items():
+        cells = [
+            ", ".join(f"{scale * x:.3g}" for x in errors[kind][name])
+            for kind in ("fitted", "left_out")
+        ]
+        rows.append([title, *cells])
+    levels = sorted({x for c in content["provenance"]["campaigns"] for x in c["accuracy"]})
+    domain = [
+        [key, *(f"{x:.4g}" for x in bounds)] for key, bounds in content["domain"]["limits"].items()
+    ]
+    return "\n".join(
+        [
+            BEGIN,
+            f"{content['domain']['combinations']} combinations; accuracy of the finite elements: "
+            f"{', '.join(levels)}.\n",
+            markdown(coefficient_rows(content)),
+            markdown(rows),
+            markdown([["domain", "from", "to"], *domain]) + END,
+        ]
+    )
+
+
+def update_page(page: Path, content: dict[str, Any]) -> None:
+    """Put the coefficients into the page, between its two marks."""
+    text = page.read_text(encoding="utf-8")
+    before, _, rest = text.partition(BEGIN)
+    _, _, after = rest.partition(END)
+    page.write_text(before + published_section(content) + after, encoding="utf-8")

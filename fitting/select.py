@@ -17,11 +17,11 @@ from .table import ResidualTable, Table
 
 CANDIDATES: dict[str, Mapping[str, float]] = {
     "full form": {},
-    "radius without finite deformation": {"c_s": 0.0, "c_e": 0.0, "c_f": 0.0, "t": 1.0},
+    "radius without finite deformation": {"c_s": 0.0, "c_f": 0.0, "t": 1.0, "y1": 10.0},
     "radius blind to the elastic body": {"b1": 0.0},
     "force blind to the elastic body": {"a1": 0.0},
-    "force without finite elastic strain": {"e0": 0.0},
-    "force without finite plastic strain": {"h_s": 0.0, "h_e": 0.0, "h_f": 0.0, "r": 1.0},
+    "force without finite elastic strain": {"e_s": 0.0, "e_f": 0.0},
+    "force without finite plastic strain": {"h_s": 0.0, "h_f": 0.0, "r": 1.0, "y0": 10.0},
     "powers of D all 1": {"r": 1.0, "t": 1.0, "g5": 1.0},
     "share without drift towards the sphere": {"g1": 0.0, "g5": 1.0},
     "share of constant sharpness": {"g3": 1000.0, "g4": 0.0},

@@ -131,6 +131,10 @@ def read_tables(
     held_out
         Read the cases that are kept out of every fit, and only those, instead of the others.
 
+    Notes
+    -----
+    A case that the present solver made wins over one that an earlier version of it made.
+
     Raises
     ------
     InputError
@@ -138,11 +142,13 @@ def read_tables(
     """
     paths = [paths] if isinstance(paths, Path) else list(paths)
     chosen: dict[object, CaseRecord] = {}
-    for path in paths:
-        for record in read_curves(path):
-            pair = record.case.pair
-            if np.isfinite(pair.Sy_min) and record.case.name.startswith(HELD_OUT) == held_out:
-                chosen[tuple(np.round(_key(pair), 9))] = record
+    for record in (r for path in paths for r in read_curves(path)):
+        pair = record.case.pair
+        if not np.isfinite(pair.Sy_min) or record.case.name.startswith(HELD_OUT) != held_out:
+            continue
+        key = tuple(np.round(_key(pair), 9))
+        if key not in chosen or is_current(record) or not is_current(chosen[key]):
+            chosen[key] = record
     if not chosen:
         raise InputError(
             "no completed elastic-plastic case" + (f" named {HELD_OUT}-..." if held_out else ""),
@@ -151,6 +157,11 @@ def read_tables(
         )
     records = list(chosen.values())
     return _loading(records), _residuals(records)
+
+
+def is_current(record: CaseRecord) -> bool:
+    """Whether the present version of the solver made this case: it is part of a case's identity."""
+    return record.id == record.case.id
 
 
 def _key(pair: Pair) -> Floats:

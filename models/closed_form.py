@@ -21,13 +21,13 @@ PI = 3.141592653589793
 TINY = 1e-9  # keeps the weights of the two bodies defined when neither yields
 
 PAIR_NUMBERS = (
-    "x_s", "W", "alpha", "beta", "eta", "zeta", "gamma", "r_s", "r_f", "C_r",
+    "x_s", "W", "alpha", "beta", "gamma", "e0", "r_s", "r_f", "C_r",
 )  # fmt: skip
 """What `of_pair` returns, in this order."""
 
 COEFFICIENTS = (
-    "n", "wy", "m", "A", "a0", "a1", "e0", "h_s", "h_e", "h_f", "r", "y0",
-    "c", "b0", "b1", "c_s", "c_e", "c_f", "t",
+    "n", "wy", "m", "A", "a0", "a1", "e_s", "e_f", "h_s", "h_f", "r", "y0",
+    "c", "b0", "b1", "c_s", "c_f", "t", "y1",
     "g0", "g1", "g2", "g3", "g4", "g5", "k1", "k2", "r1", "r2", "u1", "u2", "u3",
 )  # fmt: skip
 """Every coefficient, in the order of the coefficients file."""
@@ -35,7 +35,7 @@ COEFFICIENTS = (
 
 def of_pair(
     k_s, k_f, nu_s, nu_f, q_s, q_f,
-    n, wy, A, a0, a1, h_s, h_e, h_f, b0, b1, c_s, c_e, c_f,
+    n, wy, A, a0, a1, e_s, e_f, b0, b1,
 ):  # fmt: skip
     """Numbers of a pair that do not change with the depth.
 
@@ -43,8 +43,8 @@ def of_pair(
     -------
     tuple
         `PAIR_NUMBERS`: elastic share of the sphere (2.3); W = w/D; alpha, beta: transition of the
-        force; eta, zeta: finite deformation in force and radius; gamma: transition of the radius;
-        r_s, r_f: share of the other body's strength in the sum of both; C_r = C_f/C_s.
+        force; gamma: transition of the radius; e0: finite elastic strain in the force; r_s, r_f:
+        1/S of each body over the sum of both; C_r = C_f/C_s.
     """
     stiff = 1.0 / (k_s + k_f)
     x_s = k_s * stiff
@@ -65,15 +65,14 @@ def of_pair(
     alpha = a0 + a1 * elastic
     slope = A * (v_s * C_s + v_f * C_f) / alpha
     beta = wy * slope * slope
-    eta = h_s * v_s * v_s + h_e * 2.0 * v_s * v_f + h_f * v_f * v_f
-    zeta = c_s * v_s * v_s + c_e * 2.0 * v_s * v_f + c_f * v_f * v_f
     gamma = wy / b0 * exp(-b1 * elastic)
+    e0 = e_s * x_s + e_f * x_f
     j_s = stiff * q_s + TINY
     j_f = stiff * q_f + TINY
     r_s = j_s / (j_s + j_f)
     r_f = j_f / (j_s + j_f)
     C_r = C_f / C_s
-    return x_s, W, alpha, beta, eta, zeta, gamma, r_s, r_f, C_r
+    return x_s, W, alpha, beta, gamma, e0, r_s, r_f, C_r
 
 
 @register_jitable
@@ -84,21 +83,6 @@ def plastic_depth(D, W, wy, m):
 
 
 @register_jitable
-def force_at(D, y, alpha, beta, eta, e0, r, y0):
-    """F/(E' R^2)."""
-    soft = 1.0 + alpha * (sqrt(1.0 + beta * y) - 1.0)
-    large = exp(e0 * sqrt(D) - eta * D**r * y / (y + y0))
-    return 4.0 / 3.0 * D * sqrt(D) * large / soft
-
-
-@register_jitable
-def radius_at(D, y, zeta, gamma, y0, c, t):
-    """a/R."""
-    sink = 1.0 / c + (1.0 - 1.0 / c) / sqrt(1.0 + gamma * y)
-    return sqrt(D / sink * exp(zeta * D**t * y / (y + y0)))
-
-
-@register_jitable
 def plastic_part_at(D, W, x_s, r_s, r_f, C_r, g0, g1, g2, g3, g4, g5):
     """Sphere's part of what is not elastic."""
     w = W * D
@@ -106,6 +90,23 @@ def plastic_part_at(D, W, x_s, r_s, r_f, C_r, g0, g1, g2, g3, g4, g5):
     p_s = x_s * r_s**G * exp(G * g1 * D**g5) * C_r ** (g0 / (1.0 + w / g2))
     p_f = (1.0 - x_s) * r_f**G
     return p_s / (p_s + p_f)
+
+
+@register_jitable
+def force_at(D, y, phi, alpha, beta, e0, h_s, h_f, r, y0):
+    """F/(E' R^2)."""
+    eta = h_f + (h_s - h_f) * phi
+    soft = 1.0 + alpha * (sqrt(1.0 + beta * y) - 1.0)
+    large = exp(e0 * sqrt(D) - eta * D**r * y / (y + y0))
+    return 4.0 / 3.0 * D * sqrt(D) * large / soft
+
+
+@register_jitable
+def radius_at(D, y, phi, gamma, c, c_s, c_f, t, y1):
+    """a/R."""
+    zeta = c_f + (c_s - c_f) * phi
+    sink = 1.0 / c + (1.0 - 1.0 / c) / sqrt(1.0 + gamma * y)
+    return sqrt(D / sink * exp(zeta * D**t * y / (y + y1)))
 
 
 @register_jitable
@@ -130,8 +131,9 @@ def exponent_at(y, u1, u2, u3):
 @register_jitable
 def contact(
     D,
-    x_s, W, alpha, beta, eta, zeta, gamma, r_s, r_f, C_r,
-    wy, m, e0, r, y0, c, t, g0, g1, g2, g3, g4, g5, k1, k2, r1, r2, u1, u2, u3,
+    x_s, W, alpha, beta, gamma, e0, r_s, r_f, C_r,
+    wy, m, h_s, h_f, r, y0, c, c_s, c_f, t, y1,
+    g0, g1, g2, g3, g4, g5, k1, k2, r1, r2, u1, u2, u3,
 ):  # fmt: skip
     """Everything at a depth D = Delta/R of first loading.
 
@@ -142,9 +144,9 @@ def contact(
         exponent of the unloading curve.
     """
     y = plastic_depth(D, W, wy, m)
-    F = force_at(D, y, alpha, beta, eta, e0, r, y0)
-    a = radius_at(D, y, zeta, gamma, y0, c, t)
     phi = plastic_part_at(D, W, x_s, r_s, r_f, C_r, g0, g1, g2, g3, g4, g5)
+    F = force_at(D, y, phi, alpha, beta, e0, h_s, h_f, r, y0)
+    a = radius_at(D, y, phi, gamma, c, c_s, c_f, t, y1)
     share = share_at(D, y, F, a, phi, x_s, k1, k2)
     left = permanent_at(D, y, F, a, e0, r1, r2)
     N = exponent_at(y, u1, u2, u3)

@@ -44,12 +44,13 @@ from .closed_form import (
     force_at,
     of_pair,
     plastic_depth,
+    plastic_part_at,
     radius_at,
 )
 
 Floats = npt.NDArray[np.float64]
 
-FORMAT = "dentscope-coefficients/2"
+FORMAT = "dentscope-coefficients/3"
 BOUNDS = ("Sy_ratio", "E_reduced_over_Sy_min", "nu", "elastic_share", "Delta_over_R", "a_over_R")
 """What the domain of validity is stated in; each has a smallest and a largest value."""
 
@@ -59,22 +60,35 @@ _OF_BODIES = ("k_s", "k_f", "nu_s", "nu_f", "q_s", "q_f")
 _OF_PAIR = arguments_of(of_pair)[len(_OF_BODIES) :]
 _CONTACT = arguments_of(contact)[1:]
 
-# places in the parameter vector: the common numbers, then the arguments of `contact`
-_AT = {name: N_COMMON + k for k, name in enumerate(_CONTACT)}
-_W, _ALPHA, _BETA, _ETA = (_AT[k] for k in ("W", "alpha", "beta", "eta"))
-_ZETA, _GAMMA = _AT["zeta"], _AT["gamma"]
-_WY, _M, _E0, _POWER_F, _Y0, _SINK, _POWER_A = (
-    _AT[k] for k in ("wy", "m", "e0", "r", "y0", "c", "t")
-)
 _ALL = types.UniTuple(float64, 6)(VECTOR, float64)
-assert len(_CONTACT) == 30
+_AT = {name: N_COMMON + k for k, name in enumerate(_CONTACT)}
+assert len(_CONTACT) == 33
+# places in the parameter vector, for the kernels that need only some of the numbers
+_X_S, _W, _ALPHA, _BETA, _GAMMA, _FINITE_E = (
+    _AT[k] for k in ("x_s", "W", "alpha", "beta", "gamma", "e0")
+)
+_R_S, _R_F, _C_R, _WY, _M = (_AT[k] for k in ("r_s", "r_f", "C_r", "wy", "m"))
+_H_S, _H_F, _R_POWER, _Y0 = (_AT[k] for k in ("h_s", "h_f", "r", "y0"))
+_SINK, _C_S, _C_F, _T, _Y1 = (_AT[k] for k in ("c", "c_s", "c_f", "t", "y1"))
+_G0, _G1, _G2, _G3, _G4, _G5 = (_AT[k] for k in ("g0", "g1", "g2", "g3", "g4", "g5"))
+
+
+@njit(float64(VECTOR, float64), cache=True)
+def _phi(par, D):
+    return plastic_part_at(
+        D, par[_W], par[_X_S], par[_R_S], par[_R_F], par[_C_R],
+        par[_G0], par[_G1], par[_G2], par[_G3], par[_G4], par[_G5],
+    )  # fmt: skip
 
 
 @loading_kernel
 def _loading(par, depth):
     D = depth / par[R]
     y = plastic_depth(D, par[_W], par[_WY], par[_M])
-    F = force_at(D, y, par[_ALPHA], par[_BETA], par[_ETA], par[_E0], par[_POWER_F], par[_Y0])
+    F = force_at(
+        D, y, _phi(par, D), par[_ALPHA], par[_BETA], par[_FINITE_E],
+        par[_H_S], par[_H_F], par[_R_POWER], par[_Y0],
+    )  # fmt: skip
     return F * par[E] * par[R] * par[R]
 
 
@@ -82,7 +96,9 @@ def _loading(par, depth):
 def _radius(par, depth, _peak):
     D = depth / par[R]
     y = plastic_depth(D, par[_W], par[_WY], par[_M])
-    return par[R] * radius_at(D, y, par[_ZETA], par[_GAMMA], par[_Y0], par[_SINK], par[_POWER_A])
+    return par[R] * radius_at(
+        D, y, _phi(par, D), par[_GAMMA], par[_SINK], par[_C_S], par[_C_F], par[_T], par[_Y1]
+    )
 
 
 @njit(_ALL, cache=True)
@@ -93,7 +109,7 @@ def everything(par, depth):
         depth / par[R],
         p[0], p[1], p[2], p[3], p[4], p[5], p[6], p[7], p[8], p[9], p[10], p[11],
         p[12], p[13], p[14], p[15], p[16], p[17], p[18], p[19], p[20], p[21], p[22], p[23],
-        p[24], p[25], p[26], p[27], p[28], p[29],
+        p[24], p[25], p[26], p[27], p[28], p[29], p[30], p[31], p[32],
     )  # fmt: skip
 
 
@@ -253,7 +269,7 @@ def _body(body: Material) -> tuple[float, float, float]:
 
 
 def contact_numbers(coefficients: Mapping[str, float], bodies: Floats) -> Floats:
-    """What `closed_form.contact` takes behind D for each pair, shape (n_pairs, 30)."""
+    """What `closed_form.contact` takes behind D for each pair, shape (n_pairs, 33)."""
     numbers = of_pair(*bodies.T, *(coefficients[name] for name in _OF_PAIR))
     given = {**coefficients, **dict(zip(PAIR_NUMBERS, numbers, strict=True))}
     columns = [np.broadcast_to(given[name], len(bodies)) for name in _CONTACT]
@@ -264,7 +280,8 @@ def fitted_law(
     coefficients: Mapping[str, float], *, limits: Mapping[str, tuple[float, float]] | None = None
 ) -> Fitted:
     """Return the law with the given coefficients."""
-    finite = 100.0001 * math.expm1(coefficients["e0"] * math.sqrt(_FINITE))
+    most = max(coefficients["e_s"], coefficients["e_f"])
+    finite = 100.0001 * math.expm1(most * math.sqrt(_FINITE))
     return Fitted(
         name="fitted",
         title="dentscope, fitted to finite elements",
