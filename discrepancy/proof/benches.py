@@ -136,8 +136,8 @@ def balls_elastic(rng: np.random.Generator) -> Rig:
     grid = _grid(2, [0.5 * math.pi], speeds, 3)
     target = GLASS if rng.random() < 0.5 else HARD
     return _rig(
-        rng, "balls-elastic", target, tuple(Striker(f"ball-{2e3 * r:g}", HARD, r, r) for r in radii),
-        grid, noise, law="elastic",
+        rng, "balls-elastic", target,
+        tuple(Striker(f"ball-{2e3 * r:g}", HARD, r, r) for r in radii), grid, noise, law="elastic",
     )  # fmt: skip
 
 

@@ -21,9 +21,9 @@ from .normal import EDGE, FREED, LAST, LAYER_MOST, N_MEMORY, PEAK, RADIUS_NOW, n
 @njit(cache=True)
 def _scales(p):
     """Depth [m] and time step [s] from the energy of the blow."""
-    m, I, R = p[at.MASS], p[at.INERTIA], p[at.TIP]
+    m, inertia, R = p[at.MASS], p[at.INERTIA], p[at.TIP]
     c = 0.5 * p[at.LENGTH] * math.cos(p[at.THETA])
-    heavy = 1.0 / (1.0 / m + c * c / I)
+    heavy = 1.0 / (1.0 / m + c * c / inertia)
     v = abs(p[at.NORMAL_SPEED])
     elastic = (15.0 * heavy * v * v / (16.0 * math.sqrt(R) * p[at.MODULUS])) ** 0.4
     plastic = 0.0
@@ -105,7 +105,7 @@ def impact(p, result, trace):
         (k, 4) of time, height of the tip, normal force, tangential place; every step while room is
         left, thinned by two whenever it is full. Its first row is (number of rows, 0, 0, 0).
     """
-    m, I, R = p[at.MASS], p[at.INERTIA], p[at.TIP]
+    m, inertia, R = p[at.MASS], p[at.INERTIA], p[at.TIP]
     g = p[at.GRAVITY]
     half = 0.5 * p[at.LENGTH]
     theta = p[at.THETA]
@@ -121,7 +121,7 @@ def impact(p, result, trace):
     vy = -p[at.NORMAL_SPEED] + w0 * c
     x0, y0 = c, s
     x, y, turn = x0, y0, 0.0
-    e_in = 0.5 * m * (vx * vx + vy * vy) + 0.5 * I * w0 * w0
+    e_in = 0.5 * m * (vx * vx + vy * vy) + 0.5 * inertia * w0 * w0
     tip_in = vy - w0 * c
     size = max(n, 1)
     u, w, f = np.zeros(size), np.zeros(size), np.zeros(size)
@@ -131,6 +131,7 @@ def impact(p, result, trace):
     mass = np.ones(size)
     rotary = 1.0
     element = 1.0
+    stable = math.inf
     if n:
         element = p[at.LENGTH] / (n - 1)
         for i in range(n):
@@ -143,8 +144,10 @@ def impact(p, result, trace):
             df[i] = w0
         rotary = p[at.BEAM_ROTARY] * element
         wave = element / math.sqrt(p[at.BEAM_EA] * (n - 1) * element / m)
-        dt = min(dt, 0.4 * wave)
-    mobility = 1.0 / mass[0] + R * R / rotary if n else 1.0 / m + s * s / I
+        # stable step of the chain: axial waves, and the fastest rotation of a section
+        stable = 0.5 * min(wave, math.sqrt(p[at.BEAM_ROTARY] / p[at.BEAM_GA]))
+        dt = min(dt, stable)
+    mobility = 1.0 / mass[0] + R * R / rotary if n else 1.0 / m + s * s / inertia
     approach, tip_x = 0.0, 0.0
     if p[at.FILM_VISCOSITY] > 0.0:
         approach = -p[at.FILM_THICKNESS]
@@ -165,7 +168,7 @@ def impact(p, result, trace):
         budget -= 1
         step = dt
         if contacts > 0 and not touching and approach < memory[PEAK] - 0.2 * scale:
-            step = 4.0 * dt
+            step = min(4.0 * dt, stable)
         # speeds of the contact point
         if n:
             tvx = du[0] * ct - dw[0] * st + R * df[0]
@@ -217,8 +220,8 @@ def impact(p, result, trace):
             for i in range(n):
                 du[i] += step * (fu[i] / mass[i] - g * st)
                 dw[i] += step * (fw[i] / mass[i] - g * ct)
-                inertia = rotary * (0.5 if i == 0 or i == n - 1 else 1.0)
-                df[i] += step * ff[i] / inertia
+                turning = rotary * (0.5 if i == 0 or i == n - 1 else 1.0)
+                df[i] += step * ff[i] / turning
                 u[i] += step * du[i]
                 w[i] += step * dw[i]
                 f[i] += step * df[i]
@@ -227,7 +230,7 @@ def impact(p, result, trace):
         else:
             vx += step * Ft / m
             vy += step * (Fn / m - g)
-            w0 += step * (Ft * s - Fn * c) / I
+            w0 += step * (Ft * s - Fn * c) / inertia
             x += step * vx
             y += step * vy
             turn += step * w0
@@ -262,14 +265,14 @@ def impact(p, result, trace):
         total = 0.0
         for i in range(n):
             arm = i * element - half
-            inertia = rotary * (0.5 if i == 0 or i == n - 1 else 1.0)
+            turning = rotary * (0.5 if i == 0 or i == n - 1 else 1.0)
             vx += mass[i] / m * (du[i] * ct - dw[i] * st)
             vy += mass[i] / m * (du[i] * st + dw[i] * ct)
-            w0 += mass[i] * arm * dw[i] + inertia * df[i]
-            total += mass[i] * arm * arm + inertia
+            w0 += mass[i] * arm * dw[i] + turning * df[i]
+            total += mass[i] * arm * arm + turning
         w0 /= total
         c, s = half * ct, half * st + R
-        I = total
+        inertia = total
     else:
         c, s = half * math.cos(theta), half * math.sin(theta) + R
     vy += g * (t - last)
@@ -285,7 +288,7 @@ def impact(p, result, trace):
     result[at.TANGENTIAL_IMPULSE] = Pt
     result[at.WORK] = work
     result[at.ENERGY_IN] = e_in
-    result[at.ENERGY_OUT] = 0.5 * m * (vx * vx + vy * vy) + 0.5 * I * w0 * w0
+    result[at.ENERGY_OUT] = 0.5 * m * (vx * vx + vy * vy) + 0.5 * inertia * w0 * w0
     result[at.CONTACTS] = contacts
     result[at.PEAK_DEPTH] = memory[PEAK]
     result[at.DEPTH] = memory[FREED] + memory[LAYER_MOST] * p[at.ROUGH_LOSS]

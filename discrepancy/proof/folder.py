@@ -9,7 +9,6 @@ from pathlib import Path
 import numpy as np
 from numpy.typing import NDArray
 
-from . import parameters as at
 from .effects import order_of
 from .rig import Metal, Rig, Striker
 from .simulate import noise_std, observables, rows_of
@@ -164,13 +163,13 @@ def _metal_lines(metal: Metal, tolerance: dict[str, float], *, strong: bool) -> 
     return lines
 
 
-def _striker_lines(body: Striker, tolerance: dict[str, float]) -> list[str]:
+def _striker_lines(body: Striker, tolerance: dict[str, float], weighed: float) -> list[str]:
     rod = body.length > 0.0
     lines = [
         f"[strikers.{body.name}]" if "." not in body.name else f'[strikers."{body.name}"]',
         f'shape = "{"rod" if rod else "sphere"}"',
         f"tip_radius_m = {_quantity(body.tip_radius, tolerance['radius'])}",
-        f"mass_kg = {_quantity(body.mass, tolerance['mass'])}",
+        f"mass_kg = {_quantity(body.mass * weighed, tolerance['mass'])}",
     ]
     if rod:
         lines += [f"radius_m = {body.radius:.6g}", f"length_m = {body.length:.6g}"]
@@ -194,11 +193,15 @@ def _setup_text(truth: Truth, name: str) -> str:
         if effect.form == "thin-plate":
             # a caliper's reading: what the sheet says about the flat
             lines.append(f"thickness_m = {_quantity(effect.numbers['thickness'], 0.01)}")
+    if not truth.effects and truth.instrument.seed % 2 == 0 and rig.law == "elastic-plastic":
+        lines.append("thickness_m = 0.15")
     lines.append("")
     for body in rig.strikers:
-        lines += _striker_lines(body, tolerance)
+        lines += _striker_lines(body, tolerance, truth.more.get("mass_factor", 1.0))
     lines += ["[friction]", f"coefficient = {_quantity(rig.mu, tolerance['friction'])}", ""]
     film = [e for e in truth.effects if e.name == "squeeze-film"]
+    if not film and truth.instrument.seed % 3 == 0:
+        lines += ["[environment]", 'fluid = "air"', "viscosity_Pa_s = 1.8e-5", ""]
     if film:
         viscosity = film[0].numbers["viscosity"]
         lines += ["[environment]", 'fluid = "oil"', f"viscosity_Pa_s = {viscosity:.3g}", ""]
@@ -210,8 +213,3 @@ def _setup_text(truth: Truth, name: str) -> str:
     speed = math.hypot(tolerance["speed"], _SPEED_READING)
     lines.append(f"impact_speed_relative = {speed:.4g}")
     return "\n".join(lines) + "\n"
-
-
-def frozen_speed(p: Array) -> Array:
-    """Normal speed of each impact as it happens [m/s], shape (n,)."""
-    return p[:, at.NORMAL_SPEED].copy()

@@ -54,8 +54,8 @@ def press(depth, peak, edge, E, R, Y, c, place, plastic, force):
     c
         Coefficients.
     place, plastic, force
-        (n,) place over `edge`, ((i + 1/2)/n)^2; plastic shortening [m]; force per length [N/m]; the last two are
-        written.
+        (n,) place over `edge`, ((i + 1/2)/n)^2; plastic shortening [m]; force per length [N/m].
+        The last two are written.
     """
     W = peak / R * (E / Y) ** 2
     wide = spread(W, c) * R

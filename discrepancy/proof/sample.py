@@ -1,6 +1,6 @@
 """Write sample sets with their truths beside them, to look at or to try a diagnosis on.
 
-`python -m dentscope.discrepancy.proof.sample OUT --count 8 [--kind single] [--name tilt] [--seed 1]`
+`python -m dentscope.discrepancy.proof.sample OUT --count 8 --kind single --name tilt --seed 1`
 writes OUT/sets/NAME/ (recording sets) and OUT/truths/NAME.json. The proof itself never uses these
 seeds.
 """
@@ -43,7 +43,7 @@ def sample(
     names = list(EFFECTS if kind == "single" else OUTSIDE)
     for number in range(count):
         rng = np.random.default_rng([seed, number])
-        this = kind or KINDS[number % len(KINDS)]
+        this = kind or _kind_of(name) or KINDS[number % len(KINDS)]
         effect = name or (names[number % len(names)] if kind in ("single", "outside") else "")
         truth = draw(rng, this, name=effect)
         label = f"sample-{seed}-{number:03d}"
@@ -51,6 +51,10 @@ def sample(
         record = truth.record()
         (out / "truths" / f"{label}.json").write_text(json.dumps(record, indent=1) + "\n")
         yield label, record
+
+
+def _kind_of(name: str) -> str:
+    return "single" if name in EFFECTS else ("outside" if name in OUTSIDE else "")
 
 
 def main() -> None:

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from typing import Any
 
 import numpy as np
@@ -19,7 +19,10 @@ NULL_BENCHES = (
 )  # fmt: skip
 
 SEEN, ENORMOUS = 4.0, 80.0
-"""Sizes between which a drawn effect is kept at once; else the nearest of several draws is taken."""
+"""Sizes between which a drawn effect is kept at once; else the nearest of several draws."""
+
+PLANTED = ("mass-error", "strength-error")
+"""Kinds of case in which a stated value is wrong by more than its tolerance allows."""
 
 _DRAWS = 8
 _SAME_SEAM = ({"half-space-waves", "support-compliance"}, {"work-hardening", "hardened-layer"})
@@ -115,15 +118,14 @@ def draw(rng: np.random.Generator, kind: str, *, name: str = "", off: bool | Non
         Whether materials and geometry differ from what is stated; drawn if left out.
     """
     family = str(rng.choice(list(FAMILIES)))
-    z = _nuisances(rng) if (rng.random() < 0.5 if off is None else off) else {}
-    instrument = Instrument(
-        shape=str(rng.choice(["gaussian", "skewed", "heavy"], p=[0.4, 0.35, 0.25])),
-        outliers=float(rng.choice([0.0, 0.01, 0.02])),
-        missing=float(rng.choice([0.0, 0.03])),
-        seed=int(rng.integers(2**31)),
-    )
+    z = draw_nuisances(rng) if (rng.random() < 0.5 if off is None else off) else {}
+    instrument = draw_instrument(rng)
+    if kind in PLANTED:
+        return _planted(rng, kind, family, instrument)
     if kind == "null":
         rig = BENCHES[str(rng.choice(NULL_BENCHES))](rng)
+        if rig.law == "elastic-plastic" and "oblique" not in rig.bench and rng.random() < 0.3:
+            rig = replace(rig, drop=True)
         return Truth(kind, rig, (), (), family, z, instrument)
     if kind == "pair":
         rig, effects, sizes = _pair(rng, family, z)
@@ -134,14 +136,34 @@ def draw(rng: np.random.Generator, kind: str, *, name: str = "", off: bool | Non
     return Truth(kind, rig, (effect,), (size,), family, z, instrument)
 
 
-def _nuisances(rng: np.random.Generator) -> dict[str, float]:
+def _planted(rng: np.random.Generator, kind: str, family: str, instrument: Instrument) -> Truth:
+    """Nothing is missing, but a mass is stated 5 % off or the strength 14 %."""
+    rig = BENCHES[str(rng.choice(["rods-normal", "balls-normal"]))](rng)
+    sign = float(rng.choice([-1.0, 1.0]))
+    if kind == "mass-error":
+        more = {"mass_factor": 1.0 + 0.05 * sign}
+        return Truth(kind, rig, (), (), family, {}, instrument, more)
+    rig = replace(rig, tolerance=rig.tolerance | {"strength": 0.05})
+    return Truth(kind, rig, (), (), family, {"strength": 2.8 * sign}, instrument)
+
+
+def draw_instrument(rng: np.random.Generator) -> Instrument:
+    """Draw the shape of the noise, outliers and missing cells."""
+    return Instrument(
+        shape=str(rng.choice(["gaussian", "skewed", "heavy"], p=[0.4, 0.35, 0.25])),
+        outliers=float(rng.choice([0.0, 0.01, 0.02])),
+        missing=float(rng.choice([0.0, 0.03])),
+        seed=int(rng.integers(2**31)),
+    )
+
+
+def draw_nuisances(rng: np.random.Generator) -> dict[str, float]:
+    """Draw what differs from its stated value, in standard deviations within two."""
     return {name: float(np.clip(rng.normal(), -2.0, 2.0)) for name in NUISANCES}
 
 
 def _prepared(rng: np.random.Generator, bench: str, names: tuple[str, ...]) -> Rig:
     """The bench with what a user would write down when such an effect is possible there."""
-    from dataclasses import replace
-
     rig = BENCHES[bench](rng)
     if "impact-speed-loss" in names:
         rig = replace(rig, drop=True)

@@ -1,0 +1,125 @@
+"""`dentscope proof`: concealed impacts, sealed; the diagnosis runs; truths opened and scored."""
+
+from __future__ import annotations
+
+from datetime import UTC, datetime
+from pathlib import Path
+from typing import Annotated
+
+import typer
+
+app = typer.Typer(help="Blind proof of the diagnosis on concealed impacts.", no_args_is_help=True)
+
+_BASE = Path("build/proof")
+_Base = Annotated[Path, typer.Option("--out", help="Folder of the runs.")]
+_Which = Annotated[str, typer.Option("--list", help="full or small.")]
+
+
+def _checked(which: str) -> str:
+    from ..core.errors import InputError
+    from ..discrepancy.proof.lists import LISTS
+
+    if which not in LISTS:
+        raise InputError(f"no list {which!r}", source="command line", key="--list",
+                         allowed=", ".join(LISTS))  # fmt: skip
+    return which
+
+
+@app.command()
+def run(
+    which: _Which = "full",
+    out: _Base = _BASE,
+    hours: Annotated[float, typer.Option(help="Stop after so many hours.")] = 1e9,
+    most: Annotated[int, typer.Option(help="Stop after so many sets.")] = 10**9,
+    limit: Annotated[float, typer.Option(help="Longest time of one diagnosis [s].")] = 300.0,
+) -> None:
+    """Go on with the run of this source tree: draw, seal, diagnose, seal. Stop it at any time."""
+    from ..discrepancy.proof.lists import LISTS
+    from ..discrepancy.proof.run import carry_on, run_folder
+
+    folder = run_folder(out, _checked(which))
+    total = len(LISTS[which]())
+    typer.echo(f"{folder}: {total} sets")
+    for name, event in carry_on(folder, which, hours=hours, most=most, limit_s=limit):
+        state = "sealed" if event["verdict"] else f"no verdict ({event['exit']})"
+        typer.echo(f"  {name}  {state}  {event['wall_s']:.0f} s")
+
+
+@app.command()
+def score(which: _Which = "full", out: _Base = _BASE) -> None:
+    """Open the truths of the sets that have a sealed verdict, score, and rewrite docs/proof.md."""
+    from ..core.errors import InputError
+    from ..discrepancy.proof import page as pages
+    from ..discrepancy.proof.lists import LISTS
+    from ..discrepancy.proof.run import ROOT, run_folder
+    from ..discrepancy.proof.score import open_run
+    from ..discrepancy.proof.seal import SealBroken, tree_hash
+
+    folder = run_folder(out, _checked(which))
+    if not (folder / "ledger.jsonl").exists():
+        raise InputError("no run of this source tree", source=str(folder),
+                         allowed="dentscope proof run")  # fmt: skip
+    try:
+        cases = open_run(folder)
+    except SealBroken as broken:
+        raise InputError(str(broken), source=str(folder), allowed="unbroken seals") from broken
+    entry = pages.summary(
+        cases, which=which, tree=tree_hash(ROOT), date=datetime.now(UTC).date().isoformat(),
+        total=len(LISTS[which]()),
+    )  # fmt: skip
+    _write_page(pages.keep(entry))
+    for s in entry["scores"]:
+        value = f"{s['value']:.3g}" if not s["of"] else f"{s['hits']} of {s['of']}"
+        typer.echo(f"{s['name']:<42} {value:>12}  {s['mark']:<18} {s['state']}")
+
+
+@app.command()
+def page() -> None:
+    """Rewrite docs/proof.md from the runs that were scored."""
+    import json
+
+    from ..discrepancy.proof.page import RUNS
+
+    _write_page(json.loads(RUNS.read_text()) if RUNS.exists() else [])
+
+
+def _write_page(runs: list[dict[str, object]]) -> None:
+    from ..discrepancy.proof import page as pages
+    from ..discrepancy.proof.explicit_library import stored
+    from ..discrepancy.proof.run import ROOT
+
+    (ROOT / "docs" / "proof.md").write_text(pages.page(runs, impacts=stored()))
+
+
+@app.command()
+def sample(
+    out: Annotated[Path, typer.Argument(help="Folder for sets/ and truths/.")],
+    count: Annotated[int, typer.Option(help="Number of sets.")] = 4,
+    kind: Annotated[
+        str, typer.Option(help="null, single, pair or outside; in turn if empty.")
+    ] = "",
+    name: Annotated[str, typer.Option(help="Effect; every one in turn if empty.")] = "",
+    seed: Annotated[int, typer.Option(help="Seed of the draw.")] = 1,
+) -> None:
+    """Write sample sets with their truths beside them."""
+    from ..core.errors import InputError
+    from ..discrepancy.proof.effects import EFFECTS, OUTSIDE
+    from ..discrepancy.proof.sample import KINDS
+    from ..discrepancy.proof.sample import sample as samples
+
+    if kind and kind not in KINDS:
+        raise InputError(repr(kind), source="command line", key="--kind", allowed=", ".join(KINDS))
+    known = EFFECTS | OUTSIDE if not kind else (EFFECTS if kind == "single" else OUTSIDE)
+    if name and name not in known:
+        raise InputError(repr(name), source="command line", key="--name", allowed=", ".join(known))
+    for label, record in samples(out, count=count, kind=kind, name=name, seed=seed):
+        typer.echo(f"{label}  {record['kind']}")
+
+
+@app.command()
+def library() -> None:
+    """Compute the finite-element impacts that the library lacks."""
+    from ..discrepancy.proof.explicit_library import fill
+
+    for line in fill():
+        typer.echo(line)
