@@ -12,11 +12,14 @@ import math
 from dataclasses import dataclass, replace
 from typing import Any
 
+import numpy as np
+
 from .. import fem
 from ..core.errors import InputError
 from ..core.material import Material, Pair
 from ..core.provenance import content_id
 
+_PROFILES = 10  # depths at which pressure and surfaces are kept
 _DIGITS = 12  # groups are rounded to this many digits, so that round-off makes no new case
 
 
@@ -30,7 +33,7 @@ class Case:
         Short readable name, unique within a design.
     pair
         The two bodies and the radius [SI].
-    depths, unload_from, radius_at_least
+    depths, unload_from, radius_at_least, profiles
         As in `fem.ContactProblem`.
     accuracy
         Numerical settings.
@@ -42,6 +45,7 @@ class Case:
     unload_from: tuple[float, ...]
     radius_at_least: float
     accuracy: fem.Accuracy
+    profiles: tuple[float, ...] = ()
 
     @property
     def groups(self) -> dict[str, Any]:
@@ -61,6 +65,7 @@ class Case:
                 "depths": [_rounded(d) for d in self.depths],
                 "unload_from": [_rounded(d) for d in self.unload_from],
                 "radius_at_least": self.radius_at_least,
+                "profiles": [_rounded(d) for d in self.profiles],
                 "accuracy": {k: v for k, v in self.accuracy.as_dict().items() if k != "level"},
                 "numerics_version": fem.NUMERICS_VERSION,
             }
@@ -73,6 +78,7 @@ class Case:
             depths=self.depths,
             unload_from=self.unload_from,
             radius_at_least=self.radius_at_least,
+            profiles=self.profiles,
         )
 
     def refined(self) -> Case:
@@ -96,6 +102,7 @@ class Case:
             "depths": list(self.depths),
             "unload_from": list(self.unload_from),
             "radius_at_least": self.radius_at_least,
+            "profiles": list(self.profiles),
             "accuracy": self.accuracy.as_dict(),
         }
 
@@ -108,6 +115,7 @@ class Case:
             depths=tuple(spec["depths"]),
             unload_from=tuple(spec["unload_from"]),
             radius_at_least=spec["radius_at_least"],
+            profiles=tuple(spec.get("profiles", ())),
             accuracy=fem.Accuracy(**spec["accuracy"]),
         )
 
@@ -149,12 +157,15 @@ def standard_case(
     unload = sorted(
         d for d in {*(w * onset for w in unload_w), *unload_depths} if first < d <= deepest
     )
+    depths = fem.geometric_depths(first, deepest, n_depths)
+    kept = np.unique(np.linspace(0, n_depths - 1, _PROFILES).round().astype(int))
     return Case(
         name=name,
         pair=pair,
-        depths=fem.geometric_depths(first, deepest, n_depths),
+        depths=depths,
         unload_from=tuple(unload),
         radius_at_least=radius_at_least,
+        profiles=tuple(depths[k] for k in kept),
         accuracy=accuracy,
     )
 

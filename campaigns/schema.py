@@ -2,7 +2,8 @@
 
 A file holds one group a case under `/cases/ID`. A case that ended has the attributes `status`
 (`done` or `failed`), `specification` and `environment` (JSON) and the datasets below; unloadings
-lie under `unload-1`, `unload-2`, ... in the order of their depth.
+lie under `unload-1`, `unload-2`, ... in the order of their depth; contact pressure and surfaces at
+ten depths under `profiles`, in single precision and out to twice the contact radius.
 """
 
 from __future__ import annotations
@@ -39,6 +40,15 @@ UNLOADING_PROFILES: dict[str, Dataset] = {
     "crater_z": Dataset("m", ("node",), "height of the flat's surface, force-free"),
     "tip_r": Dataset("m", ("node",), "radius of the sphere's surface nodes, force-free"),
     "tip_z": Dataset("m", ("node",), "height of the sphere's surface, its top at rest"),
+}
+
+PROFILES: dict[str, Dataset] = {
+    "depth": Dataset("1", ("profile",), "Delta/R"),
+    "sphere_r": Dataset("m", ("profile", "node"), "radius of the sphere's surface nodes"),
+    "sphere_z": Dataset("m", ("profile", "node"), "height of the sphere's surface"),
+    "pressure": Dataset("Pa", ("profile", "node"), "contact pressure on the current area"),
+    "flat_r": Dataset("m", ("profile", "node"), "radius of the flat's surface nodes"),
+    "flat_z": Dataset("m", ("profile", "node"), "height of the flat's surface"),
 }
 
 UNLOADING_ATTRIBUTES = ("depth", "residual_sphere_m", "residual_flat_m", "steps", "outcome")

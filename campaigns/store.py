@@ -27,12 +27,13 @@ from ..core.errors import InputError
 from ..core.provenance import environment
 from ..fem import Curve, Solution
 from .case import Case
-from .schema import CURVE, FORMAT, UNLOADING_PROFILES, Dataset
+from .schema import CURVE, FORMAT, PROFILES, UNLOADING_PROFILES, Dataset
 
 Floats = npt.NDArray[np.float64]
 
 _ROOM = 4 << 20  # bytes that must be free before a case is written: several times the largest case
 _PATIENCE_S = 30.0  # how long to wait for another process that has the file open for a moment
+_PROFILE_REACH = 2.0  # profiles are kept out to this many contact radii
 _WORTH_COMPRESSING = 512  # values; below it a chunk's index takes more room than it saves
 
 
@@ -65,6 +66,8 @@ class CaseRecord:
         Loading results by name, shape (n,), SI (see `campaigns.schema.CURVE`).
     unloadings
         In the order of their depth.
+    profiles
+        Contact pressure and surfaces by name (see `campaigns.schema.PROFILES`).
     counters
         Work that the solve took.
     accuracy
@@ -77,6 +80,7 @@ class CaseRecord:
     message: str
     curve: dict[str, Floats]
     unloadings: tuple[UnloadingRecord, ...]
+    profiles: dict[str, Floats]
     counters: dict[str, float]
     accuracy: dict[str, Any]
 
@@ -186,12 +190,16 @@ class Store:
 def read_curves(path: Path) -> list[CaseRecord]:
     """Read all completed cases of a campaign file.
 
+    Where a file holds cases of several numerics versions, only those of the present one are given:
+    the same pair would otherwise come twice.
+
     Raises
     ------
     InputError
         The file is missing, is no campaign file, or is damaged.
     """
-    return [record for record in Store(path).read_all() if record.status == "done"]
+    done = [record for record in Store(path).read_all() if record.status == "done"]
+    return [record for record in done if record.id == record.case.id] or done
 
 
 @contextmanager
@@ -276,6 +284,19 @@ def _put_solution(group: h5py.Group, solution: Solution) -> None:
         _put_curve(part, unloading.curve)
         for name, about in UNLOADING_PROFILES.items():
             _put_array(part, name, getattr(unloading, name), about)
+    if solution.profiles:
+        _put_profiles(group.create_group("profiles"), solution)
+
+
+def _put_profiles(group: h5py.Group, solution: Solution) -> None:
+    reach = _PROFILE_REACH * np.nanmax(solution.loading.radius)
+    columns = {name: np.array([getattr(p, name) for p in solution.profiles]) for name in PROFILES}
+    for name, about in PROFILES.items():
+        values = columns[name]
+        if about.axes[-1] == "node":
+            r = columns["flat_r" if name.startswith("flat") else "sphere_r"][-1]
+            values = values[:, : int(np.searchsorted(r, reach)) + 1]
+        _put_array(group, name, values.astype(np.float32), about)
 
 
 def _put_curve(group: h5py.Group, curve: Curve) -> None:
@@ -285,7 +306,7 @@ def _put_curve(group: h5py.Group, curve: Curve) -> None:
 
 def _put_array(group: h5py.Group, name: str, values: Floats, about: Dataset) -> None:
     packed = {"compression": "gzip", "shuffle": True} if values.size > _WORTH_COMPRESSING else {}
-    data = group.create_dataset(name, data=np.asarray(values, dtype=np.float64), **packed)
+    data = group.create_dataset(name, data=values, **packed)
     data.attrs["unit"] = about.unit
     data.attrs["axes"] = ",".join(about.axes)
     data.attrs["meaning"] = about.meaning
@@ -312,6 +333,7 @@ def _read_case(key: str, group: h5py.Group, path: Path) -> CaseRecord:
         message=str(group.attrs["message"]),
         curve=_read_arrays(group["loading"], CURVE, path) if "loading" in group else {},
         unloadings=tuple(unloadings),
+        profiles=_read_arrays(group["profiles"], PROFILES, path) if "profiles" in group else {},
         counters={
             name[len(prefix) :]: float(value)
             for name, value in group.attrs.items()

@@ -9,7 +9,7 @@ from .problem import (
     critical_depth,
     geometric_depths,
 )
-from .solution import Counters, Curve, Snapshot, Solution, Unloading
+from .solution import Counters, Curve, Profile, Snapshot, Solution, Unloading
 from .solve import solve
 
 __all__ = [
@@ -18,6 +18,7 @@ __all__ = [
     "ContactProblem",
     "Counters",
     "Curve",
+    "Profile",
     "Snapshot",
     "Solution",
     "Unloading",

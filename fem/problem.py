@@ -87,7 +87,9 @@ class ContactProblem:
     radius_at_least
         Go on past the last depth until the contact radius a/R reaches this (0: stop there).
     snapshots
-        Delta/R at which fields, pressures and surface profiles are kept.
+        Delta/R at which the full fields are kept.
+    profiles
+        Delta/R at which contact pressure and surface profiles are kept.
 
     Raises
     ------
@@ -100,6 +102,7 @@ class ContactProblem:
     unload_from: tuple[float, ...] = ()
     radius_at_least: float = 0.0
     snapshots: tuple[float, ...] = ()
+    profiles: tuple[float, ...] = ()
 
     def __post_init__(self) -> None:
         if not self.depths:
@@ -111,7 +114,7 @@ class ContactProblem:
                     f"{depth:g}", key="depths", allowed=f"increasing Delta/R in (0, {DEEPEST:g}]"
                 )
             previous = depth
-        for name in ("unload_from", "snapshots"):
+        for name in ("unload_from", "snapshots", "profiles"):
             for depth in getattr(self, name):
                 if not 0.0 < depth <= DEEPEST:
                     raise InputError(f"{depth:g}", key=name, allowed=f"Delta/R in (0, {DEEPEST:g}]")

@@ -8,7 +8,7 @@ from ..core.material import Pair
 from .assemble import State, cauchy_stress
 from .discretise import Discretisation
 from .newton import Equilibrium
-from .solution import Snapshot
+from .solution import Profile, Snapshot
 
 
 def take_snapshot(
@@ -36,8 +36,6 @@ def take_snapshot(
     )
     stress = deviator.mean(axis=1)
     stress[:, [0, 1, 3]] += mean[:, None]
-    x = mesh.points + found.u.reshape(-1, 2)
-    slave = grid.surfaces.slave
     return Snapshot(
         depth=depth,
         points=mesh.points * R,
@@ -48,10 +46,21 @@ def take_snapshot(
         plastic_strain=_everywhere(state.peeq.mean(axis=1), index, n),
         mean_stress=_everywhere(mean * unit, index, n),
         stress=_everywhere(stress * unit, index, n),
-        pressure_r=x[slave, 0] * R,
-        pressure=_current_pressure(grid, found) * unit,
-        sphere_surface=x[slave] * R,
-        flat_surface=x[grid.surfaces.master] * R,
+        profile=take_profile(grid, found, depth=depth, pair=pair),
+    )
+
+
+def take_profile(grid: Discretisation, found: Equilibrium, *, depth: float, pair: Pair) -> Profile:
+    """Collect the contact pressure and the shapes of the two surfaces."""
+    x = (grid.mesh.points + found.u.reshape(-1, 2)) * pair.R
+    slave, master = grid.surfaces.slave, grid.surfaces.master
+    return Profile(
+        depth=depth,
+        sphere_r=x[slave, 0],
+        sphere_z=x[slave, 1],
+        pressure=_current_pressure(grid, found) * grid.stress_unit,
+        flat_r=x[master, 0],
+        flat_z=x[master, 1],
     )
 
 

@@ -97,6 +97,30 @@ class Unloading:
 
 
 @dataclass(frozen=True)
+class Profile:
+    """Contact pressure and shape of the two surfaces at one depth.
+
+    Parameters
+    ----------
+    depth
+        Delta/R.
+    sphere_r, sphere_z
+        Current coordinates of the sphere's surface nodes, shape (n_slave,) [m].
+    pressure
+        Contact pressure there, on the current area, shape (n_slave,) [Pa].
+    flat_r, flat_z
+        Current coordinates of the flat's surface nodes, shape (n_master,) [m].
+    """
+
+    depth: float
+    sphere_r: Floats
+    sphere_z: Floats
+    pressure: Floats
+    flat_r: Floats
+    flat_z: Floats
+
+
+@dataclass(frozen=True)
 class Snapshot:
     """Fields of one state.
 
@@ -119,11 +143,8 @@ class Snapshot:
         Mean Cauchy stress (negative in compression), likewise [Pa].
     stress
         Cauchy stress (rr, zz, rz, tt), mean of the points, shape (n_elements, 4) [Pa].
-    pressure_r, pressure
-        Current radius of the sphere's surface nodes and contact pressure on the current area,
-        shape (n_slave,) [m], [Pa].
-    sphere_surface, flat_surface
-        Current coordinates of the surface nodes, shape (n, 2) [m].
+    profile
+        The two surfaces and the contact pressure.
     """
 
     depth: float
@@ -135,10 +156,7 @@ class Snapshot:
     plastic_strain: Floats
     mean_stress: Floats
     stress: Floats
-    pressure_r: Floats
-    pressure: Floats
-    sphere_surface: Floats
-    flat_surface: Floats
+    profile: Profile
 
 
 @dataclass(frozen=True)
@@ -178,6 +196,8 @@ class Solution:
         Steps, iterations, processor time.
     mesh_digest
         SHA-256 of the mesh.
+    profiles
+        One for each depth of `problem.profiles` that was reached.
     boundary, yield_measure
         What is driven and which stress yields, in words.
     """
@@ -190,5 +210,6 @@ class Solution:
     snapshots: tuple[Snapshot, ...]
     counters: Counters
     mesh_digest: str
+    profiles: tuple[Profile, ...] = ()
     boundary: str = field(default="top face moves by -Delta, free radially")
     yield_measure: str = field(default="Cauchy")

@@ -21,8 +21,8 @@ from .material import EXACT
 from .measure import Reading, read
 from .newton import Equilibrium, Solver
 from .problem import DEEPEST, Accuracy, ContactProblem, critical_depth
-from .snapshot import take_snapshot
-from .solution import Counters, Curve, Snapshot, Solution, Unloading
+from .snapshot import take_profile, take_snapshot
+from .solution import Counters, Curve, Profile, Snapshot, Solution, Unloading
 
 Floats = npt.NDArray[np.float64]
 
@@ -97,6 +97,7 @@ def solve(
     loading: list[Record] = []
     unloadings: list[Unloading] = []
     snapshots: list[Snapshot] = []
+    profiles: list[Profile] = []
     outcome = COMPLETED
     for item in _load(problem, accuracy, grid=grid, solver=solver, tally=tally):
         if isinstance(item, Outcome):
@@ -111,6 +112,10 @@ def solve(
                 take_snapshot(
                     grid, item.equilibrium, item.state, depth=item.delta, pair=problem.pair
                 )
+            )
+        if _among(item.delta, problem.profiles):
+            profiles.append(
+                take_profile(grid, item.equilibrium, depth=item.delta, pair=problem.pair)
             )
         if progress is not None:
             progress(_fraction(item, problem))
@@ -128,6 +133,7 @@ def solve(
         loading=_curve(loading, grid.stress_unit, problem.pair.R, energy=True),
         unloadings=tuple(unloadings),
         snapshots=tuple(snapshots),
+        profiles=tuple(profiles),
         counters=_counters(solver, grid, tally),
         mesh_digest=grid.mesh.digest,
     )
@@ -195,7 +201,7 @@ def _load(
 
 def _stops(problem: ContactProblem, accuracy: Accuracy, onset: float) -> list[float]:
     """Depths that are hit exactly, and one well below first yield to start from."""
-    depths = {*problem.depths, *problem.unload_from, *problem.snapshots}
+    depths = {*problem.depths, *problem.unload_from, *problem.snapshots, *problem.profiles}
     start = min(min(depths), 0.3 * onset)
     return sorted({start, *depths})
 

@@ -24,7 +24,7 @@ from dentscope.campaigns import (
 )
 from dentscope.campaigns.executor import Ended
 from dentscope.core import COMPLETED, Ending, InputError, Material, Outcome, Pair
-from dentscope.fem import Counters, Curve, Solution
+from dentscope.fem import Counters, Curve, Profile, Solution
 
 
 def pair(scale=1.0, R=1e-3, Sy=5e8):
@@ -110,6 +110,33 @@ def test_a_failed_case_is_stored_with_its_reason_and_retried_on_demand(tmp_path)
     record = read_curves(path)[0]
     assert record.id == record.case.id
     assert record.accuracy["step_ratio"] < record.case.accuracy.step_ratio
+
+
+def test_profiles_are_kept_out_to_twice_the_contact_radius(tmp_path):
+    one = case()
+    assert len(one.profiles) == 4
+    assert set(one.profiles) <= set(one.depths)
+    r = np.linspace(0.0, 9.0, 19)
+    made = tuple(Profile(d, r, r - d, 2.0 * r, r[:10], -r[:10]) for d in one.profiles)
+    Store(tmp_path / "c.h5").put(one, replace(solution(one), profiles=made))
+    kept = read_curves(tmp_path / "c.h5")[0].profiles
+    # the stand-in's largest contact radius is 2, so that the surface ends with the node at 4
+    assert kept["depth"] == pytest.approx(one.profiles, rel=1e-6)
+    assert kept["sphere_z"] == pytest.approx(
+        np.array([r[:9] - d for d in one.profiles]), rel=1e-6, abs=1e-6
+    )
+    assert kept["flat_z"].shape == (4, 9)
+
+
+def test_results_of_another_numerics_version_do_not_come_twice(tmp_path, monkeypatch):
+    path = tmp_path / "c.h5"
+    monkeypatch.setattr(fem, "NUMERICS_VERSION", -1)
+    run_design(design(3), path, executor=FakeExecutor(), time_limit_s=1.0)
+    old = {record.id for record in read_curves(path)}
+    monkeypatch.undo()
+    assert {record.id for record in read_curves(path)} == old
+    run_design(design(2), path, executor=FakeExecutor(), time_limit_s=1.0)
+    assert {record.id for record in read_curves(path)} == set(distinct_cases(design(2)))
 
 
 HOLDER = """
