@@ -68,4 +68,4 @@ def thawed():
 
 if __name__ == "__main__":
     PLACE.write_text(json.dumps(content([Path(p) for p in sys.argv[1:]])) + "\n")
-    print(PLACE)
+    sys.stdout.write(f"{PLACE}\n")

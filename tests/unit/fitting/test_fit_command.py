@@ -1,0 +1,79 @@
+"""`dentscope fit` as a user meets it: sources, page and coefficients in step, wrong input."""
+
+from pathlib import Path
+
+import numpy as np
+import pytest
+from dentscope.cli.app import run
+from dentscope.fitting.report import BEGIN, END, markdown, published_section, update_page
+from dentscope.fitting.table import read_tables
+from dentscope.models.fitted import read_coefficients
+
+PAGE = Path(__file__).resolve().parents[3] / "docs" / "closed-form.md"
+
+
+def test_export_writes_every_language(tmp_path, capsys):
+    assert run(["fit", "--export", str(tmp_path / "law")]) == 0
+    found = {path.suffix for path in (tmp_path / "law").iterdir()}
+    assert found == {".py", ".c", ".h", ".f90", ".m", ".csv"}
+    assert "dentscope_contact.f90" in capsys.readouterr().out.replace("\n", "")
+
+
+@pytest.mark.parametrize("name", ["none.h5", "text.h5", "folder"])
+def test_what_is_no_campaign_is_one_line_and_exit_code_2(tmp_path, capsys, name):
+    path = tmp_path / name
+    if name == "text.h5":
+        path.write_text("no data")
+    elif name == "folder":
+        path.mkdir()
+    assert run(["fit", str(path), "--out", str(tmp_path / "out")]) == 2
+    message = capsys.readouterr().err
+    assert len(message.strip().splitlines()) == 1
+    assert name in message
+
+
+def test_page_shows_the_coefficients_in_use():
+    content = read_coefficients()
+    text = PAGE.read_text(encoding="utf-8")
+    shown = text[text.index(BEGIN) : text.index(END) + len(END)]
+    assert shown == published_section(content)
+
+
+def test_page_keeps_what_stands_around_the_coefficients(tmp_path):
+    page = tmp_path / "page.md"
+    page.write_text(f"before\n{BEGIN}\nold\n{END}\nafter\n")
+    content = read_coefficients()
+    update_page(page, content)
+    update_page(page, content)
+    text = page.read_text()
+    assert text.startswith("before\n")
+    assert text.endswith("\nafter\n")
+    assert "old" not in text
+    assert text.count(BEGIN) == 1
+
+
+def test_markdown_table():
+    assert markdown([["a", "b"], ["1", "2"]]) == "| a | b |\n| --- | --- |\n| 1 | 2 |\n"
+
+
+def test_held_out_cases_are_not_fitted(tmp_path, monkeypatch):
+    """A case of the validation design never reaches a fit, whatever file it lies in."""
+    from dentscope.campaigns.designs import design_named
+    from dentscope.fitting import table as module
+
+    cases = (*design_named("validation").make()[:2], *design_named("smoke").make()[:3])
+
+    class Record:
+        def __init__(self, case):
+            n = 5
+            self.case, self.id, self.unloadings = case, case.id, ()
+            one = np.linspace(1.0, 2.0, n) * 1e-5
+            self.curve = {k: one for k in ("delta", "force", "radius", "sphere", "flat")}
+            self.curve["radius_last_node"] = one + 1e-7
+
+    monkeypatch.setattr(module, "read_curves", lambda _: [Record(case) for case in cases])
+    fitted, _ = read_tables(tmp_path)
+    judged, _ = read_tables(tmp_path, held_out=True)
+    assert len(fitted.pairs) == 3
+    assert len(judged.pairs) == 2
+    assert not any(name.startswith("validation") for name in fitted.names)
