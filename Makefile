@@ -11,7 +11,7 @@ export OMP_NUM_THREADS ?= 1
 export OPENBLAS_NUM_THREADS ?= 1
 
 .DEFAULT_GOAL := help
-.PHONY: help install campaign fit impact test check bench lock clean
+.PHONY: help install campaign fit impact recordings proof verify test check bench lock clean
 
 help: ## list the targets
 	@grep -hE '^[a-z]+:.*## ' $(MAKEFILE_LIST) | sed -E 's/^([a-z]+):.*## /\1\t/' | expand -t 12
@@ -30,6 +30,15 @@ fit: $(STAMP) ## fit the closed forms to the campaign: coefficients, standard er
 impact: $(STAMP) ## chapter 3 of the thesis: restitution and dent against drop height, every law
 	@$(BIN)/dentscope impact
 
+recordings: $(STAMP) ## fetch the raw recordings that may not be shipped, by address and checksum
+	@$(BIN)/dentscope recordings fetch
+
+proof: $(STAMP) ## conceal effects in made-up recordings, diagnose them blindly, score: hours, resumable
+	@$(BIN)/dentscope proof run
+
+verify: $(STAMP) ## verify the solver anew where needed and write docs/verification.md: hours, resumable
+	@$(BIN)/dentscope verify
+
 test: $(STAMP) ## run the tests, docstring examples included
 	@echo "tests: they may take 16 minutes on two cores, half of it for finite elements"
 	@$(BIN)/python -m pytest -n auto --dist worksteal --durations=5
@@ -45,7 +54,8 @@ bench: $(STAMP) ## measure the speed of solver and impact, as ratios within one 
 
 lock: $(STAMP) ## pin all packages anew for every supported Python
 	@for minor in 11 12 13 14; do \
-	  $(BIN)/uv pip compile -q pyproject.toml --extra dev --extra cluster --generate-hashes \
+	  $(BIN)/uv pip compile -q pyproject.toml --extra dev --extra cluster --extra video --extra mocap --extra surface \
+	    --extra tables --extra bayes --generate-hashes \
 	    --python-version 3.$$minor --no-emit-index-url --no-header --no-annotate --upgrade \
 	    -o requirements/py3$$minor.txt; done
 

@@ -11,12 +11,13 @@ import sys
 import typer
 
 from ..core.errors import EXIT_INPUT_ERROR, InputError
-from . import campaign
+from . import campaign, laws, proof, recordings
 from .case import case
 from .doctor import doctor
 from .fit import fit
 from .impact import impact
 from .inverse import inverse
+from .verify import verify
 
 app = typer.Typer(
     name="dentscope",
@@ -32,10 +33,14 @@ _UsageError: type[Exception] = typer.BadParameter.__mro__[1]
 
 
 app.add_typer(campaign.app, name="campaign")
+app.add_typer(laws.app, name="laws")
+app.add_typer(recordings.app, name="recordings")
+app.add_typer(proof.app, name="proof")
 app.command()(case)
 app.command()(fit)
 app.command()(impact)
 app.command()(inverse)
+app.command()(verify)
 app.command()(doctor)
 
 
