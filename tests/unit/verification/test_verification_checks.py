@@ -75,3 +75,21 @@ def test_kogut_and_etsion_meet_hertz_at_first_yield_and_their_own_branches():
     assert F[0] == pytest.approx(1.03 * hertz)
     assert F[2] == pytest.approx(F[1], rel=0.03)
     assert a[2] == pytest.approx(a[1], rel=0.03)
+
+
+def test_the_command_measures_writes_and_answers_with_its_exit_code(tmp_path, capsys):
+    from dentscope.cli.verify import EXIT_MISSED, verify
+    from dentscope.verification import Measurement, Result
+    from dentscope.verification.result import write_result
+
+    folder, report = tmp_path / "build", tmp_path / "docs" / "verification.md"
+    assert verify(["objectivity"], True, False, False, folder, report) == 0
+    assert "Objectivity" in report.read_text()
+    missed = Result(
+        name="objectivity", title="t", about="a", effort="quick",
+        numerics_version=fem.NUMERICS_VERSION,
+        measurements=(Measurement("x", 2.0, "", None, 1.0),),
+    )  # fmt: skip
+    write_result(missed, folder / "results" / "objectivity-quick.json")
+    assert verify(["objectivity"], True, False, False, folder, report) == EXIT_MISSED
+    assert "missed: objectivity: x: 2" in capsys.readouterr().out
