@@ -2,7 +2,8 @@
 
 A design is a name and a function that gives its cases. Strengths follow the thesis: Sy_min is held
 and Sy* = S_ys/S_yf sets the stronger body. All but `smoke` go to Delta/R = 0.1 or a/R = 0.5,
-whichever comes later, in 48 depths from below first yield, and unload from five of them.
+whichever comes later, in 48 depths from below first yield, and unload from five of them; `survey`
+does so at medium resolution, the others at that of published data.
 """
 
 from __future__ import annotations
@@ -80,8 +81,14 @@ RATIOS = (
 )
 
 
-def _deep_case(name: str, pair: Pair, *, deepest: float = 0.1) -> Case:
-    """Case of the published data: three unloadings below 20 critical depths, two beyond."""
+def _deep_case(
+    name: str,
+    pair: Pair,
+    *,
+    deepest: float = 0.1,
+    accuracy: fem.Accuracy = fem.Accuracy.production(),  # noqa: B008 (frozen)
+) -> Case:
+    """Case to a/R = 0.5: three unloadings below 20 critical depths, two beyond."""
     onset = fem.critical_depth(pair)
     last_light = min(18.0 * onset, 0.5 * deepest)
     light = fem.geometric_depths(1.5 * onset, last_light, 3)
@@ -92,7 +99,19 @@ def _deep_case(name: str, pair: Pair, *, deepest: float = 0.1) -> Case:
         n_depths=48,
         unload_depths=(*light, (last_light * deepest) ** 0.5, deepest),
         radius_at_least=0.5,
-        accuracy=fem.Accuracy.production(),
+        accuracy=accuracy,
+    )
+
+
+@cache
+def _survey() -> tuple[Case, ...]:
+    """64 scrambled Sobol points over the ranges of `space`, at twice its element size."""
+    from scipy.stats import qmc
+
+    points = qmc.Sobol(6, scramble=True, rng=np.random.default_rng(64)).random_base2(6)
+    return tuple(
+        _deep_case(f"survey-{k:02}", _drawn_pair(u), accuracy=fem.Accuracy.quick())
+        for k, u in enumerate(points)
     )
 
 
@@ -184,6 +203,7 @@ DESIGNS: dict[str, Design] = {
     design.name: design
     for design in (
         Design("smoke", "12 cases at low resolution to Delta/R = 0.04", _smoke),
+        Design("survey", "64 Sobol points at medium resolution, enough for a first fit", _survey),
         Design(
             "thesis", "Table 2.1 over Sy*, 27 sets of materials, figures, chapters 3-5", _thesis
         ),
