@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import csv
+from dataclasses import replace
 from pathlib import Path
 from typing import Annotated, Any, Literal
 
@@ -34,8 +35,6 @@ class CaseFile(InputTable):
 
 
 _COLUMNS = (
-    "phase",
-    "delta_over_R",
     "force_N",
     "contact_radius_m",
     "contact_radius_last_node_m",
@@ -59,18 +58,29 @@ def case(
     problem, accuracy = read_case(file)
     pair = problem.pair
     console = Console()
+    second = fem.coarser(accuracy)
     with Progress(console=console, disable=not console.is_terminal) as bar:
         task = bar.add_task(f"solving at level {accuracy.level}", total=1.0)
         solution = fem.solve(
             problem, accuracy=accuracy, progress=lambda done: bar.update(task, completed=done)
         )
+        task = bar.add_task("again with larger elements, for the uncertainty", total=1.0)
+        rough = fem.solve(
+            replace(problem, unload_from=(), snapshots=(), profiles=()),
+            accuracy=second,
+            progress=lambda done: bar.update(task, completed=done),
+        )
     if len(solution.loading.delta) == 0:
         console.print(str(solution.outcome), highlight=False)
         return EXIT_NOT_CONVERGED
     out.mkdir(parents=True, exist_ok=True)
-    table = _write_curves(solution, out / "curve.csv")
-    _show(console, solution)
-    console.print(f"written: {table}", highlight=False)
+    uncertainty = fem.discretisation_uncertainty(solution.loading, rough.loading)
+    _show(console, solution, uncertainty)
+    for path in (
+        _write_curves(solution, uncertainty, out / "curve.csv"),
+        _write_result(file.stem, solution, uncertainty, out / "result.h5"),
+    ):
+        console.print(f"written: {path}", highlight=False)
     for snapshot in solution.snapshots:
         name = f"fields-{snapshot.depth:.4g}"
         console.print(f"written: {write_vtu(snapshot, out / f'{name}.vtu')}", highlight=False)
@@ -114,11 +124,13 @@ def read_case(file: Path) -> tuple[Any, Any]:
                 key="load.unload_from",
                 allowed=f"Delta/R above {first:.3g} and up to max_delta_over_R = {last:g}",
             )
+    depths = fem.geometric_depths(first, last, 60)
     problem = fem.ContactProblem(
         pair=pair,
-        depths=fem.geometric_depths(first, last, 60),
+        depths=depths,
         unload_from=unload,
         snapshots=(last,),
+        profiles=tuple(depths[k] for k in range(5, 60, 6)),
     )
     levels = {
         "production": fem.Accuracy.production,
@@ -128,36 +140,95 @@ def read_case(file: Path) -> tuple[Any, Any]:
     return problem, levels[content.accuracy.level]()
 
 
-def _write_curves(solution: Any, path: Path) -> Path:
+def _write_curves(solution: Any, uncertainty: Any, path: Path) -> Path:
     pair = solution.problem.pair
     phases = [("load", solution.loading)]
     phases += [(f"unload-{i}", u.curve) for i, u in enumerate(solution.unloadings, start=1)]
     with path.open("w", newline="", encoding="utf-8") as stream:
         writer = csv.writer(stream)
-        writer.writerow(_COLUMNS)
+        named = [name for column in _COLUMNS for name in (column, f"{column}_uncertainty")]
+        writer.writerow(["phase", "delta_over_R", *named])
         for phase, c in phases:
-            share = c.sphere_share
+            values = _columns(c, pair.Sy_min)
+            # the second solve follows the loading only
+            errors = _columns(uncertainty, pair.Sy_min) if phase == "load" else None
             for i in range(len(c.delta)):
-                writer.writerow(
-                    [phase, c.delta[i] / pair.R, c.force[i], c.radius[i], c.radius_last_node[i],
-                     share[i], c.hardness[i] / pair.Sy_min]
-                )  # fmt: skip
+                row = [phase, c.delta[i] / pair.R]
+                for k, column in enumerate(values):
+                    row += [column[i], errors[k][i] if errors else ""]
+                writer.writerow(row)
     return path
 
 
-def _show(console: Any, solution: Any) -> None:
+def _columns(of: Any, Sy_min: float) -> tuple[Any, ...]:
+    """The columns of `_COLUMNS`, from a curve or from its uncertainty."""
+    return (of.force, of.radius, of.radius_last_node, of.sphere_share, of.hardness / Sy_min)
+
+
+def _write_result(name: str, solution: Any, uncertainty: Any, path: Path) -> Path:
+    """Write everything into one file: a campaign file with uncertainties and fields added."""
+    import h5py
+
+    from ..campaigns import Case, Store
+
+    problem = solution.problem
+    case = Case(
+        name=name,
+        pair=problem.pair,
+        depths=problem.depths,
+        unload_from=problem.unload_from,
+        radius_at_least=problem.radius_at_least,
+        accuracy=solution.accuracy,
+        profiles=problem.profiles,
+    )
+    path.unlink(missing_ok=True)
+    Store(path).put(case, solution)
+    with h5py.File(path, "a") as file:
+        group = file["cases"][case.id]
+        for key, unit in (
+            ("force", "N"), ("radius", "m"), ("radius_last_node", "m"),
+            ("sphere_share", "1"), ("hardness", "Pa"),
+        ):  # fmt: skip
+            data = group.create_dataset(
+                f"loading/{key}_uncertainty", data=getattr(uncertainty, key)
+            )
+            data.attrs["unit"] = unit
+        for snapshot in solution.snapshots:
+            part = group.create_group(f"fields-{snapshot.depth:.6g}")
+            part.attrs["depth"] = snapshot.depth
+            part.attrs["n_sphere_quads"] = snapshot.n_sphere_quads
+            for key, unit in _FIELDS.items():
+                values = getattr(snapshot, key)
+                data = part.create_dataset(key, data=values, compression="gzip", shuffle=True)
+                data.attrs["unit"] = unit
+    return path
+
+
+_FIELDS = {
+    "points": "m",
+    "quads": "1",
+    "displacement": "m",
+    "von_mises": "Pa",
+    "plastic_strain": "1",
+    "mean_stress": "Pa",
+    "stress": "Pa",
+}
+
+
+def _show(console: Any, solution: Any, uncertainty: Any) -> None:
     from rich.table import Table
 
     pair, c = solution.problem.pair, solution.loading
     table = Table("Delta/R", "F [N]", "a [mm]", "sphere's share", "H/Sy_min")
     share = c.sphere_share
+    u = uncertainty
     for i in range(0, len(c.delta), max(1, len(c.delta) // 12)):
         table.add_row(
             f"{c.delta[i] / pair.R:.4g}",
-            f"{c.force[i]:.5g}",
-            f"{c.radius[i] * 1e3:.4g}",
-            f"{share[i]:.4f}",
-            f"{c.hardness[i] / pair.Sy_min:.3f}",
+            f"{c.force[i]:.5g} ± {u.force[i]:.1g}",
+            f"{c.radius[i] * 1e3:.4g} ± {u.radius[i] * 1e3:.1g}",
+            f"{share[i]:.4f} ± {u.sphere_share[i]:.1g}",
+            f"{c.hardness[i] / pair.Sy_min:.3f} ± {u.hardness[i] / pair.Sy_min:.1g}",
         )
     console.print(table)
     for u in solution.unloadings:

@@ -11,6 +11,7 @@ from .problem import (
 )
 from .solution import Counters, Curve, Profile, Snapshot, Solution, Unloading
 from .solve import solve
+from .uncertainty import Uncertainty, coarser, discretisation_uncertainty
 
 __all__ = [
     "NUMERICS_VERSION",
@@ -21,8 +22,11 @@ __all__ = [
     "Profile",
     "Snapshot",
     "Solution",
+    "Uncertainty",
     "Unloading",
+    "coarser",
     "critical_depth",
+    "discretisation_uncertainty",
     "geometric_depths",
     "solve",
 ]

@@ -5,6 +5,7 @@ import csv
 import meshio
 import numpy as np
 import pytest
+from dentscope.campaigns import read_curves
 from dentscope.cli import run
 
 GOOD = """
@@ -39,6 +40,15 @@ def test_a_case_writes_its_curve_and_fields(tmp_path):
     d = float(load[0]["delta_over_R"]) * 0.002
     hertz = 4.0 / 3.0 * (200e9 / 0.91 / 2.0) * np.sqrt(0.002) * d**1.5
     assert float(load[0]["force_N"]) == pytest.approx(hertz, rel=0.01)
+    # the two solves differ, by no more than their coarse meshes explain
+    for name in ("force_N", "contact_radius_m", "sphere_share", "hardness_over_Symin"):
+        relative = [float(r[f"{name}_uncertainty"]) / float(r[name]) for r in load]
+        assert 1e-5 < max(relative) < 0.15
+    assert all(r["force_N_uncertainty"] == "" for r in rows if r["phase"] == "unload-1")
+    (stored,) = read_curves(tmp_path / "out" / "result.h5")
+    assert stored.curve["force"] == pytest.approx([float(r["force_N"]) for r in load], rel=1e-12)
+    assert len(stored.unloadings) == 1
+    assert stored.profiles["pressure"].shape[0] == 10
     fields = meshio.read(tmp_path / "out" / "fields-0.0003.vtu")
     flat = np.concatenate(fields.cell_data["body"]) == 1.0
     mises = np.concatenate(fields.cell_data["von_mises_Pa"])
