@@ -35,7 +35,7 @@ from .base import (
     residual_kernel,
 )
 from .johnson import HARDNESS
-from .residual import brake, elastic_recovery, recover, to_weaker
+from .residual import bounded, brake, elastic_recovery, recover, to_weaker
 
 Floats = npt.NDArray[np.float64]
 
@@ -176,7 +176,8 @@ def _radius_2015(par, depth, peak):
 def _residual_2015(par, peak):
     if peak <= par[_DEPTH]:
         return 0.0, 0.0
-    return to_weaker(par, brake(par, _loading_2015(par, peak), peak) * peak)
+    left = brake(par, _loading_2015(par, peak), peak)
+    return to_weaker(par, bounded(_loading_2015, par, par[_DEPTH], peak, 1.5, left) * peak)
 
 
 @branch_kernel

@@ -26,7 +26,7 @@ from .base import (
     loading_kernel,
     residual_kernel,
 )
-from .residual import elastic_recovery, recover, to_weaker
+from .residual import bounded, elastic_recovery, recover, to_weaker
 
 _DEPTH, _PRESSURE = N_COMMON, N_COMMON + 1
 
@@ -65,7 +65,8 @@ def _residual(par, peak):
     if peak <= par[_DEPTH]:
         return 0.0, 0.0
     a = _radius(par, peak, peak)
-    return to_weaker(par, elastic_recovery(par, _loading(par, peak), a, peak) * peak)
+    left = elastic_recovery(par, _loading(par, peak), a, peak)
+    return to_weaker(par, bounded(_loading, par, par[_DEPTH], peak, 1.5, left) * peak)
 
 
 @branch_kernel
@@ -80,7 +81,7 @@ CEB = PublishedLaw(
     equations="thesis 1.3 (in words), 4.15",
     verified=False,
     domain=Domain(note="flattening; kept for its discontinuity"),
-    breaks=(("force jumps at delta_c", 50.0),),
+    breaks=(("force jumps at delta_c", 50.0), ("residual jumps at delta_c", 33.4)),
     regime="flattening",
     read="the thesis's words; K from public code (tmd-lab/microslip-rough-contact)",
     own=Kernels(_loading, _radius, _unloading, _residual),

@@ -49,6 +49,7 @@ _ELASTIC = 1.9  # end of Hertz, and of the elastic weight's argument
 _BLENDED = 8.0  # from here on the model alone
 _LOG_ELASTIC = math.log(_ELASTIC)
 _LOG_BLENDED = math.log(_BLENDED)
+_GROWN = 4.0  # the same for the contact radius
 _HIGH = 408.0  # border of the two correction factors
 _HIGHER = 612.0  # where the second one stands alone
 BORDER = 1.07  # Sy* at which the weak body changes
@@ -242,7 +243,8 @@ def _radius(par, depth, peak):
     if n <= _ELASTIC:
         return math.sqrt(par[R] * depth)
     log_n = math.log(n)
-    k = _smooth_step(log_n, _LOG_ELASTIC, _LOG_BLENDED) if n < _BLENDED else 1.0
+    # the radius leaves Hertz's sooner than the force does
+    k = _smooth_step(n, _ELASTIC, _GROWN) if n < _GROWN else 1.0
     own = _model_radius(par, delta, updated, n, log_n)
     return (1.0 - k) * math.sqrt(par[R] * depth) + k * own
 

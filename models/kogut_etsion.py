@@ -26,7 +26,7 @@ from .base import (
     residual_kernel,
 )
 from .ceb import yield_depth
-from .residual import etsion, to_weaker
+from .residual import bounded, etsion, to_weaker
 
 _FIRST, _SECOND, _LAST = 1.0, 6.0, 110.0
 _DEPTH, _FORCE, _FULL = N_COMMON, N_COMMON + 1, N_COMMON + 2
@@ -69,23 +69,27 @@ def _radius(par, depth, peak):
     return math.sqrt(par[R] * par[_DEPTH] * _area(par, w))
 
 
+@loading_kernel
+def _exponent(par, peak):
+    """Exponent of the recovery, 1.5 w_m^-0.0331 (4.19, corrected)."""
+    w = peak / par[_DEPTH]
+    return 1.5 * math.exp(-0.0331 * math.log(w)) if w > _FIRST else 1.5
+
+
 @residual_kernel
 def _residual(par, peak):
-    return to_weaker(par, etsion(peak / par[_DEPTH]) * peak)
+    if peak <= par[_DEPTH]:
+        return 0.0, 0.0
+    left = etsion(peak / par[_DEPTH])
+    n = _exponent(par, peak)
+    return to_weaker(par, bounded(_loading, par, par[_DEPTH], peak, n, left) * peak)
 
 
 @branch_kernel
 def _unloading(par, depth, peak):
-    """Return F_m x^n with n = 1.5 w_m^-0.0331 as an exponent (4.19, corrected)."""
     s, f = _residual(par, peak)
     x = (depth - s - f) / (peak - s - f)
-    if x <= 0.0:
-        return 0.0
-    n = 1.5
-    w = peak / par[_DEPTH]
-    if w > _FIRST:
-        n *= math.exp(-0.0331 * math.log(w))
-    return _loading(par, peak) * x**n
+    return _loading(par, peak) * x ** _exponent(par, peak) if x > 0.0 else 0.0
 
 
 KOGUT_ETSION = PublishedLaw(
@@ -99,6 +103,7 @@ KOGUT_ETSION = PublishedLaw(
         ("force jumps at w = 1", 3.0),
         ("force jumps at w = 6", 1.7),
         ("force falls at w = 110 for nu = 0.33, and jumps by 0.7 for 0.3", 1.45),
+        ("residual jumps at w = 1", 3.0),
         ("radius falls at w = 1", 3.6),
         ("radius jumps at w = 6", 1.5),
     ),

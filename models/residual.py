@@ -10,11 +10,13 @@ from __future__ import annotations
 
 import math
 
+import numpy as np
 from numba import float64, njit, types
 
-from .base import K_HERTZ, RATIO, VECTOR, E, hertz_recovery
+from .base import K_HERTZ, RATIO, VECTOR, E, hertz_force, hertz_recovery
 
 _MOST = 0.999  # nothing can be left that was not pressed in
+_NODES, _WEIGHTS = np.polynomial.legendre.leggauss(16)
 
 
 @njit(inline="always")
@@ -22,6 +24,24 @@ def recover(loading, residual, par, depth, peak):
     """Unloading of a law with the given kernels, by Hertz's recovery (3.5-3.6, 4.13-4.14)."""
     s, f = residual(par, peak)
     return hertz_recovery(loading(par, peak), depth, peak, s + f)
+
+
+@njit(inline="always")
+def bounded(loading, par, onset, peak, exponent, fraction):
+    """Raise a residual fraction until the recovery gives back no more than was spent.
+
+    Laws whose force exceeds Hertz's just beyond yield, and whose sources give a recovery from the
+    peak's force and radius alone, would otherwise return up to half as much again. The recovery is
+    F_m x^exponent; the work of loading is Hertz's up to `onset` and a quadrature in ln(depth)
+    beyond.
+    """
+    work = 0.4 * hertz_force(par, onset) * onset
+    half = 0.5 * math.log(peak / onset)
+    for k in range(16):
+        depth = onset * math.exp(half * (1.0 + _NODES[k]))
+        work += half * _WEIGHTS[k] * depth * loading(par, depth)
+    most = (exponent + 1.0) * work / (loading(par, peak) * peak)
+    return max(fraction, 1.0 - most)
 
 
 @njit(float64(float64), cache=True)

@@ -26,7 +26,7 @@ from .base import (
     loading_kernel,
     residual_kernel,
 )
-from .residual import elastic_recovery, recover, to_weaker
+from .residual import bounded, elastic_recovery, recover, to_weaker
 
 _FIRST, _FULL = 1.1, 2.8  # mean pressure at the elastic limit and in full plasticity, over S
 _LAST = 84.0
@@ -61,7 +61,8 @@ def _residual(par, peak):
     if peak <= par[_DEPTH]:
         return 0.0, 0.0
     a = _radius(par, peak, peak)
-    return to_weaker(par, elastic_recovery(par, _loading(par, peak), a, peak) * peak)
+    left = elastic_recovery(par, _loading(par, peak), a, peak)
+    return to_weaker(par, bounded(_loading, par, par[_DEPTH], peak, 1.5, left) * peak)
 
 
 @branch_kernel

