@@ -83,6 +83,8 @@ def discretise(problem: ContactProblem, accuracy: Accuracy) -> Discretisation:
     axis = np.flatnonzero(r == 0.0)
     held = [2 * axis, 2 * mesh.far, 2 * mesh.far + 1]
     driven = [2 * mesh.top + 1]
+    if problem.top == "held":
+        held.append(2 * mesh.top)
     deforms = np.ones(len(mesh.quads), dtype=bool)
     if pair.sphere.rigid:
         deforms[: mesh.n_sphere_quads] = False

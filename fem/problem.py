@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 from dataclasses import asdict, dataclass, replace
-from typing import Any
+from typing import Any, Literal
 
 from ..core.errors import InputError
 from ..core.material import Pair
@@ -73,8 +73,7 @@ class Accuracy:
 class ContactProblem:
     """A sphere pressed into a flat, and at which depths to look.
 
-    The top face of the hemisphere moves down by Delta, free to move radially; yield is a true
-    (Cauchy) stress.
+    The top face of the hemisphere moves down by Delta; yield is a true (Cauchy) stress.
 
     Parameters
     ----------
@@ -84,12 +83,16 @@ class ContactProblem:
         Increasing Delta/R at which results are recorded.
     unload_from
         Delta/R from which the contact is also unloaded to zero force.
+    reload
+        Also load again after each unloading, up to where it began.
     radius_at_least
         Go on past the last depth until the contact radius a/R reaches this (0: stop there).
     snapshots
         Delta/R at which the full fields are kept.
     profiles
         Delta/R at which contact pressure and surface profiles are kept.
+    top
+        Whether the driven face is `free` to move radially or `held`.
 
     Raises
     ------
@@ -103,6 +106,8 @@ class ContactProblem:
     radius_at_least: float = 0.0
     snapshots: tuple[float, ...] = ()
     profiles: tuple[float, ...] = ()
+    reload: bool = False
+    top: Literal["free", "held"] = "free"
 
     def __post_init__(self) -> None:
         if not self.depths:

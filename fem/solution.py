@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, field
+from dataclasses import dataclass
 
 import numpy as np
 import numpy.typing as npt
@@ -77,6 +77,8 @@ class Unloading:
         Steps taken.
     outcome
         How it ended.
+    reload
+        From the last state in contact up to the turning point again, if it was asked for.
     """
 
     depth: float
@@ -89,6 +91,7 @@ class Unloading:
     tip_z: Floats
     steps: int
     outcome: Outcome
+    reload: Curve | None = None
 
     @property
     def residual(self) -> float:
@@ -211,5 +214,5 @@ class Solution:
     counters: Counters
     mesh_digest: str
     profiles: tuple[Profile, ...] = ()
-    boundary: str = field(default="top face moves by -Delta, free radially")
-    yield_measure: str = field(default="Cauchy")
+    boundary: str = "top face moves by -Delta, free radially"
+    yield_measure: str = "Cauchy"

@@ -106,7 +106,7 @@ def solve(
         if _among(item.delta, problem.depths) or item.delta > problem.depths[-1]:
             loading.append(item.record)
         if _among(item.delta, problem.unload_from):
-            unloadings.append(_unload(item, grid=grid, solver=solver, pair_R=problem.pair.R))
+            unloadings.append(_unload(item, problem=problem, grid=grid, solver=solver))
         if _among(item.delta, problem.snapshots):
             snapshots.append(
                 take_snapshot(
@@ -136,6 +136,7 @@ def solve(
         profiles=tuple(profiles),
         counters=_counters(solver, grid, tally),
         mesh_digest=grid.mesh.digest,
+        boundary=f"top face moves by -Delta, {problem.top} radially",
     )
 
 
@@ -283,9 +284,12 @@ def _work_between(a: Reading, b: Reading) -> float:
     return float((b.force * b.delta - a.force * a.delta) / (n + 1.0))
 
 
-def _unload(point: Point, *, grid: Discretisation, solver: Solver, pair_R: float) -> Unloading:
+def _unload(
+    point: Point, *, problem: ContactProblem, grid: Discretisation, solver: Solver
+) -> Unloading:
     """Follow the contact back to zero force, then lift the sphere off and read what is left."""
     start = point.record.reading
+    pair_R = problem.pair.R
     records = [point.record]
     here = point
     behind: Point | None = None
@@ -329,6 +333,10 @@ def _unload(point: Point, *, grid: Discretisation, solver: Solver, pair_R: float
             )
     else:
         lift = -free[grid.driven[0]]
+    again = None
+    if problem.reload:
+        back = [record.reading.delta for record in reversed(records[:-1])]
+        again = _reload(here, back, grid=grid, solver=solver, pair_R=pair_R)
     slave, master = grid.surfaces.slave, grid.surfaces.master
     x = grid.mesh.points + free.reshape(-1, 2)
     return Unloading(
@@ -342,7 +350,24 @@ def _unload(point: Point, *, grid: Discretisation, solver: Solver, pair_R: float
         tip_z=(x[slave, 1] + lift) * pair_R,
         steps=steps,
         outcome=outcome,
+        reload=again,
     )
+
+
+def _reload(
+    here: Point, depths: list[float], *, grid: Discretisation, solver: Solver, pair_R: float
+) -> Curve:
+    """Load again through `depths`; the curve ends early where no equilibrium is found."""
+    records = [here.record]
+    behind: Point | None = None
+    for delta in depths:
+        guess = here.equilibrium.u if behind is None else _extrapolate(here, behind, delta)
+        found = solver.equilibrium(guess, state=here.state, delta=delta)
+        if found is None:
+            break
+        behind, here = here, _accept(here, found, delta, solver=solver, grid=grid)
+        records.append(here.record)
+    return _curve(records, grid.stress_unit, pair_R, energy=False)
 
 
 def _lift(here: Point, *, solver: Solver, grid: Discretisation) -> Floats | None:

@@ -53,7 +53,9 @@ def plastic_pair(scale=1.0, radius=1e-3):
 @pytest.fixture(scope="module")
 def equal_strengths():
     depths = fem.geometric_depths(4e-5, 0.01, 24)
-    problem = fem.ContactProblem(plastic_pair(), depths, unload_from=(depths[12], 0.01))
+    problem = fem.ContactProblem(
+        plastic_pair(), depths, unload_from=(depths[12], 0.01), reload=True
+    )
     return fem.solve(problem, accuracy=fem.Accuracy.smoke())
 
 
@@ -86,6 +88,26 @@ def test_unloading_ends_force_free_in_few_steps(equal_strengths):
         recovered = unloading.depth * 1e-3 - unloading.residual
         assert punch < recovered < 1.5 * punch
     assert second.residual > first.residual
+
+
+def test_a_reload_meets_the_loading_curve(equal_strengths):
+    for unloading in equal_strengths.unloadings:
+        again, start = unloading.reload, unloading.curve
+        assert again.delta[-1] == pytest.approx(start.delta[0], rel=1e-12)
+        assert again.force[-1] == pytest.approx(start.force[0], rel=5e-3)
+        assert np.all(np.diff(again.force) > 0.0)
+
+
+def test_holding_the_top_face_changes_little():
+    """Saint-Venant: the face is one radius away from a contact of a/R = 0.03."""
+    depths = (2e-4, 1e-3)
+    force = [
+        fem.solve(
+            fem.ContactProblem(plastic_pair(), depths, top=top), accuracy=fem.Accuracy.smoke()
+        ).loading.force[-1]
+        for top in ("free", "held")
+    ]
+    assert force[0] < force[1] < 1.005 * force[0]
 
 
 def test_mean_pressure_lies_where_slip_line_theory_and_indentation_tests_put_it(equal_strengths):
