@@ -50,7 +50,7 @@ class Linear:
 
     @cached_property
     def log_det(self) -> float:
-        """ln det(2 pi Sigma)."""
+        """Ln det(2 pi Sigma)."""
         m = len(self.noise)
         return float(2.0 * np.sum(np.log(np.diag(self.lower))) + m * math.log(2.0 * math.pi))
 

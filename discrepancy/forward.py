@@ -75,15 +75,11 @@ class Simulator:
             out[:, here] = values
         return out
 
-    def observe(
-        self, mechanisms: Sequence[Mechanism], points: Sequence[Point]
-    ) -> dict[str, Array]:
+    def observe(self, mechanisms: Sequence[Mechanism], points: Sequence[Point]) -> dict[str, Array]:
         """Return every observable of every condition, each of shape (points, conditions)."""
         n = len(self.problem.conditions)
         per = max(_BATCH // n, 1)
-        parts = [
-            self._batch(mechanisms, points[i : i + per]) for i in range(0, len(points), per)
-        ]
+        parts = [self._batch(mechanisms, points[i : i + per]) for i in range(0, len(points), per)]
         return {k: np.concatenate([p[k] for p in parts]) for k in parts[0]}
 
     def _batch(self, mechanisms: Sequence[Mechanism], points: Sequence[Point]) -> dict[str, Array]:
@@ -98,9 +94,7 @@ class Simulator:
                     angle = min(a.angle + point.steeper, np.pi / 2.0)
                     if scene.striker.length == 0.0:
                         angle = a.angle
-                    a = replace(
-                        a, speed=a.speed * up, tangential=a.tangential * up, angle=angle
-                    )
+                    a = replace(a, speed=a.speed * up, tangential=a.tangential * up, angle=angle)
                     scene = scene.with_(approach=a)
                 plain.append((scene, condition.around))
                 for mechanism in mechanisms:

@@ -83,9 +83,7 @@ def held_out(problem: Problem, fitted: Fit) -> HeldOut:
     if not squares:
         return HeldOut(math.nan, math.nan, math.nan, 0)
     mean = float(np.mean(np.concatenate(squares)))
-    return HeldOut(
-        math.sqrt(max(mean - 1.0, _FLOOR**2)), math.sqrt(mean), density, count
-    )
+    return HeldOut(math.sqrt(max(mean - 1.0, _FLOOR**2)), math.sqrt(mean), density, count)
 
 
 def _predict(

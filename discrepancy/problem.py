@@ -374,9 +374,7 @@ def _stated(quantity: Quantity | None, name: str, unit: str) -> list[Nuisance]:
     return [Nuisance(name, unit, quantity.value, quantity.std / abs(quantity.value))]
 
 
-def _cells(
-    recordings: RecordingSet, conditions: Sequence[Condition], notes: list[str]
-) -> Cells:
+def _cells(recordings: RecordingSet, conditions: Sequence[Condition], notes: list[str]) -> Cells:
     rows: list[tuple[int, str, float, float, int]] = []
     approach = recordings.approach
     dropped = 0
@@ -430,7 +428,7 @@ def _size(name: str, rows: Sequence[tuple[int, str, float, float, int]]) -> floa
 
 
 def _power(name: str, y: Array, log: bool) -> Array:
-    """d y / d ln v of a fully plastic contact; good enough between repeats."""
+    """D y / d ln v of a fully plastic contact; good enough between repeats."""
     power = {
         "restitution": -0.25, "permanent_depth_m": 1.0, "contact_time_s": 0.0, "peak_force_N": 1.0,
         "rebound_spin_rad_s": 1.0, "friction_impulse_ratio": 0.0, "sliding_length_m": 1.0,

@@ -1,10 +1,10 @@
-"""Rank the explanations: every mechanism alone, then pairs of the leading ones."""
+"""Rank the explanations: every mechanism alone, then, if one is needed, pairs of the leading."""
 
 from __future__ import annotations
 
 import itertools
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 from numpy.typing import NDArray
@@ -18,9 +18,9 @@ from .thresholds import gain
 Array = NDArray[np.float64]
 Progress = Callable[[str], None]
 
-FULL, NEAR = 7, 12.0
+FULL, NEAR = 4, 12.0
 """Mechanisms that are fitted in full: at least the first few, and all within some nats of them."""
-PAIRED = 5
+PAIRED = 4
 """Leading mechanisms whose pairs are fitted."""
 _INVISIBLE = 1.0
 
@@ -76,7 +76,7 @@ def rank(
     mechanisms: Sequence[Mechanism] = MECHANISMS,
     progress: Progress = lambda _: None,
 ) -> Ranking:
-    """Fit the baseline, every mechanism that is not excluded, and pairs.
+    """Fit the baseline and every mechanism that is not excluded, by itself.
 
     Parameters
     ----------
@@ -103,33 +103,36 @@ def rank(
             reason = f"its largest plausible effect is {size:.1g} standard errors over all cells"
         excluded[mechanism.name] = reason
     order = sorted(screened, key=lambda s: -s.log_bayes)
-    chosen = [
-        s for i, s in enumerate(order) if i < FULL or s.log_bayes > order[0].log_bayes - NEAR
-    ]
+    chosen = [s for i, s in enumerate(order) if i < FULL or s.log_bayes > order[0].log_bayes - NEAR]
     singles = []
     for found in chosen:
         progress(f"fitting {found.mechanism.name}")
-        singles.append(fit(simulator, (found.mechanism,), start=base, place=found.place))
+        singles.append(fit(simulator, (found.mechanism,), start=base, place=found.place, rounds=3))
     singles.sort(key=lambda f: -f.log_evidence)
+    return Ranking(base, tuple(screened), tuple(singles), (), excluded)
+
+
+def with_pairs(
+    simulator: Simulator,
+    ranking: Ranking,
+    *,
+    mechanisms: Sequence[Mechanism] = MECHANISMS,
+    progress: Progress = lambda _: None,
+) -> Ranking:
+    """Fit the pairs of the leading single mechanisms."""
     pairs = []
-    for one, two in itertools.combinations(singles[:PAIRED], 2):
+    for one, two in itertools.combinations(ranking.singles[:PAIRED], 2):
         both = _in_order(one, two, mechanisms)
         progress(f"fitting {both[0].name} with {both[1].name}")
         better = max((one, two), key=lambda f: f.log_evidence)
-        places = {m.name: p for f in (one, two) for m, p in ((f.mechanisms[0], f.place),)}
-        pairs.append(
-            fit(
-                simulator, both, start=better, rounds=2,
-                place=np.concatenate([places[m.name] for m in both]),
-            )
-        )  # fmt: skip
+        places = {f.mechanisms[0].name: f.place for f in (one, two)}
+        start = np.concatenate([places[m.name] for m in both])
+        pairs.append(fit(simulator, both, start=better, rounds=1, place=start))
     pairs.sort(key=lambda f: -f.log_evidence)
-    return Ranking(base, tuple(screened), tuple(singles), tuple(pairs), excluded)
+    return replace(ranking, pairs=tuple(pairs))
 
 
-def _in_order(
-    one: Fit, two: Fit, mechanisms: Sequence[Mechanism]
-) -> tuple[Mechanism, Mechanism]:
+def _in_order(one: Fit, two: Fit, mechanisms: Sequence[Mechanism]) -> tuple[Mechanism, Mechanism]:
     names = [m.name for m in mechanisms]
     first, second = sorted(
         (one.mechanisms[0], two.mechanisms[0]), key=lambda m: names.index(m.name)
@@ -153,4 +156,3 @@ def visible(found: Screened, base: Fit) -> float:
     """Largest effect in units of the measurements' standard errors, over all cells."""
     noise = np.sqrt(np.diag(base.linear.noise))
     return float(np.max(np.linalg.norm(found.effect / noise, axis=1)))
-

@@ -46,9 +46,7 @@ class Nulls:
     residual: Array
 
 
-def null_residuals(
-    simulator: Simulator, base: Fit, count: int, rng: np.random.Generator
-) -> Nulls:
+def null_residuals(simulator: Simulator, base: Fit, count: int, rng: np.random.Generator) -> Nulls:
     """Draw residuals that a complete baseline would leave in this rig.
 
     Parameters

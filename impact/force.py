@@ -18,9 +18,8 @@ BRANCH = types.FunctionType(BRANCH_SIGNATURE)
 SPLIT = types.FunctionType(RESIDUAL_SIGNATURE)
 
 # Places in the vector that describes the modified force.
-(
-    RADIUS, MODULUS, FLAT, EDGE, EDGE_DEPTH, EDGE_LIMIT, RECOVERY, DAMPING, RADIATION, SHAPE, RETURN,
-) = range(11)  # fmt: skip
+RADIUS, MODULUS, FLAT, EDGE, EDGE_DEPTH, EDGE_LIMIT = range(6)
+RECOVERY, DAMPING, RADIATION, SHAPE, RETURN = range(6, 11)
 N_FORCE = 11
 
 # The branch vector: what `set_peak` writes, and the smooth stretch of the loading curve.

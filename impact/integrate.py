@@ -20,6 +20,8 @@ from .strength import NODES, strength_table
 
 Array = NDArray[np.float64]
 
+_SMOOTH, _STILL = np.empty(0), np.empty((2, 0))
+
 
 @dataclass(frozen=True, slots=True)
 class Settings:
@@ -77,7 +79,9 @@ def arrays_of(
         strength = min(fo.PUNCH_PRESSURE * pair.Sy_min, pair.sphere.strength)
         force[fo.EDGE_LIMIT] = strength * math.pi * scene.force.edge**2
     omega = np.asarray(scene.modes.frequencies, dtype=float)
-    psi = scene.modes.at_contact(approach.angle, striker.tip_radius)
+    psi = _STILL
+    if len(omega) > 0:
+        psi = scene.modes.at_contact(approach.angle, striker.tip_radius)
     upright = math.isclose(approach.angle, math.pi / 2.0, abs_tol=1e-12)
     body = np.zeros(c.N_BODY)
     half = 0.5 * striker.length
@@ -113,13 +117,16 @@ def _factors(scene: Scene, pair: Pair) -> Array:
     if profile is None and len(loading) == len(recovery) == 0:
         return loading
     n = max(len(loading), len(recovery)) if profile is None else NODES
-    both = np.ones((2, n))
-    for row, given in zip(both, (loading, recovery), strict=True):
-        if len(given) > 0:
-            row *= np.interp(np.linspace(0.0, 1.0, n), np.linspace(0.0, 1.0, len(given)), given)
+    both = np.ones(2 * n)
+    for first, given in ((0, loading), (n, recovery)):
+        if len(given) == n:
+            both[first : first + n] = given
+        elif len(given) > 0:
+            grid = np.linspace(0.0, 1.0, n)
+            both[first : first + n] = np.interp(grid, np.linspace(0.0, 1.0, len(given)), given)
     if profile is not None:
         both *= table.factors(profile)
-    return both.ravel()
+    return both
 
 
 def spot_row(spot: Spot) -> Array:
@@ -176,9 +183,6 @@ def strike_rows(scene: Scene, body: Array, settings: Settings = Settings()) -> A
         a.omega[None], a.psi[None], out,
     )  # fmt: skip
     return out
-
-
-_SMOOTH = np.empty(0)
 
 
 def strike_batch(scenes: Sequence[Scene], settings: Settings = Settings()) -> Array:

@@ -12,6 +12,7 @@ import warnings
 from dataclasses import dataclass, replace
 
 import numpy as np
+from numba import njit
 from numpy.typing import NDArray
 
 from ..core.material import Pair
@@ -25,6 +26,23 @@ NODES = 41
 
 _LEVELS = np.log(np.array([0.1, 0.25, 0.5, 1.0, 2.0, 4.0, 10.0]))
 _UNIT = int(np.searchsorted(_LEVELS, -1e-9))
+
+
+@njit(cache=True)
+def _factors(strength, log_force, log_recovery):  # type: ignore[no-untyped-def]
+    n = len(strength)
+    out = np.empty(2 * n)
+    last = len(_LEVELS) - 2
+    for k in range(n):
+        level = min(max(math.log(max(strength[k], 1e-9)), _LEVELS[0]), _LEVELS[-1])
+        i = 0
+        while i < last and level > _LEVELS[i + 1]:
+            i += 1
+        t = (level - _LEVELS[i]) / (_LEVELS[i + 1] - _LEVELS[i])
+        for half, table in enumerate((log_force, log_recovery)):
+            here = (1.0 - t) * table[i, k] + t * table[i + 1, k]
+            out[half * n + k] = math.exp(here - table[_UNIT, k])
+    return out
 
 
 @dataclass(frozen=True, eq=False)
@@ -47,18 +65,9 @@ class StrengthTable:
     log_recovery: Array
     work: Array
 
-    def factors(self, strength: Array) -> tuple[Array, Array]:
-        """Return factors (NODES,) on loading force and on recovery for relative strengths."""
-        level = np.log(np.clip(strength, 0.1, 10.0))
-        i = np.clip(np.searchsorted(_LEVELS, level, side="right") - 1, 0, len(_LEVELS) - 2)
-        t = (level - _LEVELS[i]) / (_LEVELS[i + 1] - _LEVELS[i])
-        k = np.arange(NODES)
-
-        def at(table: Array) -> Array:
-            here = (1.0 - t) * table[i, k] + t * table[i + 1, k]
-            return np.asarray(np.exp(here - table[_UNIT]))
-
-        return at(self.log_force), at(self.log_recovery)
+    def factors(self, strength: Array) -> Array:
+        """Return factors on loading force, then on recovery, (2 NODES,), for relative strengths."""
+        return np.asarray(_factors(strength, self.log_force, self.log_recovery))
 
     def peak(self, energy: float) -> float:
         """Depth [m] at which the loading has taken up `energy` [J]."""

@@ -197,9 +197,7 @@ class Roughness(Mechanism):
         if sigma == 0.0:
             return scene
         factors = Series(sigma).factors(strength_table(scene.law, scene.pair), scene.pair)
-        return scene.with_(
-            force=replace(scene.force, factors=times(scene.force.factors, factors))
-        )
+        return scene.with_(force=replace(scene.force, factors=times(scene.force.factors, factors)))
 
 
 def times(present: tuple[float, ...], factors: Array) -> tuple[float, ...]:

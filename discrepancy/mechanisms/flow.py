@@ -23,7 +23,6 @@ from .base import (
     Situation,
     Surroundings,
     Values,
-    effective_mass,
     energy,
     with_flow,
 )

@@ -58,7 +58,9 @@ class RodLongitudinalWaves(Mechanism):
 
     name = "rod-longitudinal-waves"
     title = "the rod rings along its axis"
-    equations = "q_k'' + eta w_k q_k' + w_k^2 q_k = sqrt(2/m) F sin(theta), w_k = k pi sqrt(E/rho)/L"
+    equations = (
+        "q_k'' + eta w_k q_k' + w_k^2 q_k = sqrt(2/m) F sin(theta), w_k = k pi sqrt(E/rho)/L"
+    )
     parameters = (_PARTICIPATION,)
     direction = {"restitution": -1}
 

@@ -147,9 +147,7 @@ def _shape(reference: Reference, law: Draw, d: Array) -> tuple[Array, float, Arr
     at_first = 4.0 / 3.0 * E * math.sqrt(R) * first**1.5
     grown = 1.0 + (0.3 + 0.6 * law.b) * d / (d + 25.0 * first)
     if law.kind == "cut-off":
-        force = np.where(
-            d <= first, hertz, at_first + math.pi * R * pressure * (d - first)
-        )
+        force = np.where(d <= first, hertz, at_first + math.pi * R * pressure * (d - first))
         power, give = 1.5, 0.75
     elif law.kind == "logarithmic":
         x = np.maximum(2.0 * d / first - 1.0, 1.0)

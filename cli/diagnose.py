@@ -1,0 +1,48 @@
+"""`dentscope diagnose`: what physics is missing in a recording set."""
+
+from __future__ import annotations
+
+import json
+from pathlib import Path
+from typing import Annotated
+
+import typer
+
+
+def diagnose(
+    folder: Annotated[Path, typer.Argument(help="Recording set (a folder with set.toml).")],
+    out: Annotated[Path, typer.Option(help="Folder for verdict.json and report.html.")] = Path(
+        "build/diagnose"
+    ),
+    seed: Annotated[int, typer.Option(help="Same seed, same answer.")] = 0,
+    confirm: Annotated[
+        bool, typer.Option("--confirm", help="Sampled evidence and the full null ensemble.")
+    ] = False,
+    quiet: Annotated[bool, typer.Option("--quiet", help="No progress line.")] = False,
+) -> None:
+    """Compare recordings with the simulation and say what physics is missing, if any.
+
+    Writes verdict.json (for programs) and report.html (for people) into OUT and prints the
+    finding.
+    """
+    from ..discrepancy import diagnose as run
+    from ..discrepancy.report import write_report
+    from ..discrepancy.text import lines
+    from ..recordings import read
+
+    recordings = read(folder)
+
+    def show(step: str) -> None:
+        if not quiet:
+            typer.echo(f"\r\x1b[K{step} ...", nl=False, err=True)
+
+    verdict = run(recordings, seed=seed, confirm=confirm, progress=show)
+    if not quiet:
+        typer.echo("\r\x1b[K", nl=False, err=True)
+    out.mkdir(parents=True, exist_ok=True)
+    text = json.dumps(verdict.to_dict(), indent=1, allow_nan=False)
+    (out / "verdict.json").write_text(text + "\n", encoding="utf-8")
+    write_report(verdict, out / "report.html")
+    for line in lines(verdict):
+        typer.echo(line)
+    typer.echo(f"\n{out / 'verdict.json'}, {out / 'report.html'}")

@@ -1,0 +1,142 @@
+"""Thresholds of one set, from its null residuals: single, pair, fit, width of the reported set."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+
+import numpy as np
+from numpy.typing import NDArray
+
+from .fit import Fit
+from .rank import Ranking
+from .thresholds import Nulls, gain, null_bayes_factors
+
+Array = NDArray[np.float64]
+
+_THIN = 400
+
+
+@dataclass(frozen=True, eq=False)
+class Calibration:
+    """What nulls of this set give.
+
+    Mechanisms that can imitate an error of the contact law gain evidence from it. So every gain is
+    counted from what nulls give that mechanism in one of twenty, its offset.
+
+    Parameters
+    ----------
+    offset
+        Mechanism to the 95 % point of its ln B over the nulls, at least 0.
+    single
+        95 % point of the largest ln B minus offset over the library, at least 1.
+    best
+        (n,) that largest value of each null.
+    chi2
+        (n,) misfit of the baseline.
+    """
+
+    offset: dict[str, float]
+    single: float
+    best: Array
+    chi2: Array
+
+    def excess(self, fitted: Fit, base: Fit) -> float:
+        """Ln B of a fit over the baseline, less its mechanisms' offset."""
+        return fitted.log_evidence - base.log_evidence - self._offset(fitted)
+
+    def needed(self, fitted: Fit) -> float:
+        """Return the ln B that a single mechanism must pass."""
+        return self.single + self._offset(fitted)
+
+    def _offset(self, fitted: Fit) -> float:
+        return max((self.offset.get(m.name, 0.0) for m in fitted.mechanisms), default=0.0)
+
+    def p_single(self, excess: float) -> float:
+        """Share of nulls with at least this excess, at least one in n + 1."""
+        return float((np.sum(self.best >= excess) + 1) / (len(self.best) + 1))
+
+    def p_baseline(self, chi2: float) -> float:
+        """Share of nulls that fit the baseline no better."""
+        return float((np.sum(self.chi2 >= chi2) + 1) / (len(self.chi2) + 1))
+
+    def sorted(self, ranking: Ranking) -> Ranking:
+        """Return the ranking with the explanations in the order of their excess."""
+        order = lambda f: -self.excess(f, ranking.base)  # noqa: E731
+        return replace(
+            ranking,
+            singles=tuple(sorted(ranking.singles, key=order)),
+            pairs=tuple(sorted(ranking.pairs, key=order)),
+        )
+
+
+def calibrate(ranking: Ranking, nulls: Nulls) -> Calibration:
+    """Put the nulls through the screening."""
+    base = ranking.base
+    chi2 = np.sum(base.linear.white(nulls.residual) ** 2, axis=1)
+    if not ranking.screened:
+        return Calibration({}, 1.0, np.full(len(chi2), -np.inf), chi2)
+    factors = null_bayes_factors(nulls, base, [s.effect for s in ranking.screened])
+    offset = np.maximum(np.quantile(factors, 0.95, axis=0), 0.0)
+    best = (factors - offset).max(axis=1)
+    names = [s.mechanism.name for s in ranking.screened]
+    return Calibration(
+        dict(zip(names, (float(x) for x in offset), strict=True)),
+        max(float(np.quantile(best, 0.95)), 1.0), best, chi2,
+    )  # fmt: skip
+
+
+def p_fit(fitted: Fit, nulls: Nulls) -> float:
+    """Share of data sets made by this explanation that fit it no better than the data do.
+
+    They are made of its prediction and the null residuals; the mechanism's parameters are fitted
+    to each.
+    """
+    white = fitted.linear.white(nulls.residual)
+    plain = np.sum(white**2, axis=1)
+    if fitted.mechanisms:
+        e = fitted.linear.white(_moves(fitted))
+        plain = plain - np.maximum(np.max(2.0 * white @ e.T - np.sum(e**2, axis=1), axis=1), 0.0)
+    return float((np.sum(plain >= fitted.chi2) + 1) / (len(plain) + 1))
+
+
+def extra_threshold(fitted: Fit, ranking: Ranking, nulls: Nulls, level: float = 0.95) -> float:
+    """Gain of ln evidence by a second mechanism when there is only the fitted one."""
+    white = fitted.linear.white(nulls.residual)
+    own = gain(white, np.zeros(len(white)), fitted.linear, _moves(fitted))
+    inside = {m.name for m in fitted.mechanisms}
+    most = np.full(len(white), -np.inf)
+    moves = _thinned(_moves(fitted), 12)
+    for s in ranking.screened:
+        if s.mechanism.name in inside:
+            continue
+        effect = _thinned(s.effect, 36)
+        both = (moves[:, None, :] + effect[None, :, :]).reshape(-1, effect.shape[1])
+        most = np.maximum(most, gain(white, np.zeros(len(white)), fitted.linear, both) - own)
+    return max(float(np.quantile(most, level)), 2.0) if np.isfinite(most).all() else np.inf
+
+
+def set_width(fitted: Fit, ranking: Ranking, nulls: Nulls, level: float = 0.95) -> float:
+    """How far below a rival the truth may come out, in nats: how wide the reported set must be."""
+    white = fitted.linear.white(nulls.residual)
+    own = gain(white, np.zeros(len(white)), fitted.linear, _moves(fitted))
+    size = len(fitted.mechanisms)
+    behind = np.zeros(len(white))
+    for rival in (*ranking.singles, *ranking.pairs):
+        if rival.name == fitted.name or len(rival.mechanisms) != size:
+            continue
+        # the rival's predictions, seen from the fitted explanation's
+        effect = -rival.residuals + fitted.residual
+        effect = _thinned(effect, _THIN)
+        theirs = gain(white, np.zeros(len(white)), fitted.linear, effect)
+        behind = np.maximum(behind, theirs - own)
+    return float(np.clip(np.quantile(behind, level), 2.0, 5.0))
+
+
+def _moves(fitted: Fit) -> Array:
+    """Effect of other parameter values than the best, (k, m)."""
+    return _thinned(fitted.residual - fitted.residuals, _THIN)
+
+
+def _thinned(effect: Array, most: int) -> Array:
+    step = max(len(effect) // most, 1)
+    return effect[::step]

@@ -1,0 +1,95 @@
+"""When nothing known repairs the baseline: where in depth the force law would have to change.
+
+The law's error is widened until it is free, component by component; what the data then make of it
+is a correction without physics in it, with its band: the lead that a person can follow.
+"""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ..impact.force import LOG_DEPTH_FIRST, LOG_DEPTH_LAST
+from ..impact.strength import NODES
+from .evidence import Linear
+from .fit import Fit
+from .problem import Problem
+
+Array = NDArray[np.float64]
+
+WIDER = 8.0
+"""How much wider than the law's known error the correction may be."""
+
+_SHOWN = 12
+
+
+@dataclass(frozen=True, eq=False)
+class Correction:
+    """Factors on the force law over the depth.
+
+    Parameters
+    ----------
+    phase
+        `loading` or `unloading`.
+    depth_over_R
+        (k,) indentation over the tip's radius.
+    factor, low, high
+        (k,) and the 90 % band.
+    """
+
+    phase: str
+    depth_over_R: Array
+    factor: Array
+    low: Array
+    high: Array
+
+
+def widened(problem: Problem, base: Fit) -> tuple[float, Array, Array]:
+    """Return ln evidence, posterior mean (n_b,) and covariance of the widened law error."""
+    k = problem.n_nuisances
+    J = base.linear.J.copy()
+    J[:, k:] *= WIDER
+    linear = Linear(base.linear.noise, J)
+    # the expansion's offset by the law's own coefficients is part of the residual already
+    mean, cov = linear.unknowns(base.residual)
+    evidence = float(linear.log_likelihood(base.residual))
+    return evidence, mean[k:] * WIDER, cov[k:, k:] * WIDER**2
+
+
+def correct(problem: Problem, base: Fit, reached: tuple[float, float]) -> list[Correction]:
+    """Return the corrections of loading and unloading over the depths that the set reaches.
+
+    Parameters
+    ----------
+    problem
+        What was compared.
+    base
+        Fit of the baseline.
+    reached
+        Smallest and largest peak depth over radius of the set.
+    """
+    _, mean, cov = widened(problem, base)
+    error = problem.error
+    n, m = len(error.force), len(error.recovery)
+    grid = np.linspace(LOG_DEPTH_FIRST, LOG_DEPTH_LAST, NODES)
+    at = np.linspace(math.log(0.3 * reached[0]), math.log(reached[1]), _SHOWN)
+    found = []
+    for phase, rows, basis in (
+        ("loading", slice(0, n), error.force),
+        ("unloading", slice(n, n + m), error.recovery),
+    ):
+        if len(basis) == 0:
+            continue
+        curves = np.stack([np.interp(at, grid, row) for row in basis])
+        middle = mean[rows] @ curves
+        spread = np.sqrt(np.einsum("ij,ik,kj->j", curves, cov[rows, rows], curves))
+        found.append(
+            Correction(
+                phase, np.exp(at), np.exp(middle), np.exp(middle - 1.645 * spread),
+                np.exp(middle + 1.645 * spread),
+            )
+        )  # fmt: skip
+    return found

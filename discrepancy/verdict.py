@@ -1,0 +1,385 @@
+"""The main path: a recording set in, a verdict out.
+
+audit -> calibrate the nuisances -> locate the mismatch -> rank the explanations -> decide ->
+held-out conditions -> next experiment. `Verdict.to_dict` gives verdict.json, version 1.
+"""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass, field
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+from scipy.special import logsumexp
+
+from .. import __version__
+from ..recordings import RecordingSet, Severity, audit
+from .calibration import Calibration, calibrate, extra_threshold, p_fit, set_width
+from .correction import Correction, correct, widened
+from .evidence import interval
+from .fit import Fit
+from .forward import Point, Simulator
+from .heldout import HeldOut, held_out
+from .locate import Located, locate
+from .next_experiment import Proposal, propose
+from .problem import Problem, problem_of
+from .rank import Progress, Ranking, rank, with_pairs
+from .thresholds import Nulls, null_residuals
+
+Array = NDArray[np.float64]
+
+NULLS = 300
+"""Null data sets that set the thresholds of a screening."""
+CONFIRMED_NULLS = 2000
+"""Null data sets with `confirm`."""
+P_FIT = 0.01
+"""An explanation that fits worse than this share of its own data sets is rejected."""
+_FEWEST = 6
+_PULLED = 2.0
+OUTSIDE = "outside-library"
+
+
+@dataclass(frozen=True, eq=False)
+class Verdict:
+    """What a diagnosis says; the fields are those of verdict.json, and what the report draws.
+
+    Parameters
+    ----------
+    verdict
+        `adequate`, `missing-physics`, `indistinguishable`, `outside-library`, `undetermined`.
+    mechanisms
+        Names of the best explanation's mechanisms.
+    alternatives
+        Other explanations that the data cannot tell from the best.
+    best
+        Its fit; the baseline's when none is named.
+    """
+
+    name: str
+    seed: int
+    verdict: str
+    mechanisms: tuple[str, ...]
+    alternatives: tuple[tuple[str, ...], ...]
+    audit: tuple[dict[str, Any], ...]
+    probabilities: dict[str, float]
+    scores: dict[str, dict[str, float]]
+    located: Located
+    parameters: dict[str, dict[str, Any]]
+    nuisance_pulls: dict[str, float]
+    excluded: dict[str, str]
+    limits: dict[str, float]
+    improvement: dict[str, float]
+    corrections: tuple[Correction, ...]
+    proposals: tuple[Proposal, ...]
+    notes: tuple[str, ...]
+    problem: Problem
+    ranking: Ranking
+    best: Fit
+    calibration: Calibration
+    reasons: tuple[str, ...] = ()
+    impacts: int = 0
+    confirmed: dict[str, float] = field(default_factory=dict)
+
+    def to_dict(self) -> dict[str, Any]:
+        """Return the content of verdict.json."""
+        return {
+            "format": "verdict/1",
+            "set": self.name,
+            "seed": self.seed,
+            "version": __version__,
+            "audit": list(self.audit),
+            "verdict": self.verdict,
+            "mechanisms": list(self.mechanisms),
+            "alternatives": [list(names) for names in self.alternatives],
+            "probabilities": self.probabilities,
+            "scores": self.scores,
+            "located": [
+                {
+                    "observable": m.observable, "phase": m.phase, "covariate": m.covariate,
+                    "trend": m.trend, "z": round(m.z, 3),
+                }
+                for m in self.located.misses
+            ],
+            "parameters": self.parameters,
+            "nuisance_pulls": self.nuisance_pulls,
+            "excluded": [{"mechanism": k, "reason": v} for k, v in self.excluded.items()],
+            "limits": self.limits,
+            "improvement": self.improvement,
+            "correction": [
+                {
+                    "phase": c.phase, "indentation_over_R": c.depth_over_R.tolist(),
+                    "factor": c.factor.tolist(), "low": c.low.tolist(), "high": c.high.tolist(),
+                }
+                for c in self.corrections
+            ],
+            "next_experiment": {
+                "change": self.proposals[0].change if self.proposals else "",
+                "expected_discrimination": (
+                    self.proposals[0].expected_discrimination if self.proposals else 0.0
+                ),
+            },
+            "notes": [*self.reasons, *self.notes],
+        }  # fmt: skip
+
+
+def diagnose(
+    recordings: RecordingSet,
+    *,
+    seed: int = 0,
+    confirm: bool = False,
+    progress: Progress = lambda _: None,
+) -> Verdict:
+    """Say what physics is missing in the simulation of a recording set.
+
+    Parameters
+    ----------
+    recordings
+        From `recordings.read`.
+    seed
+        Of every draw; the same seed gives the same verdict.
+    confirm
+        Also sample the leading explanations' evidence and use the full null ensemble.
+    progress
+        Called with a line before each step.
+
+    Raises
+    ------
+    InputError
+        The set holds nothing that can be compared.
+    """
+    rng = np.random.default_rng(seed)
+    progress("auditing the inputs")
+    findings = _audit(recordings)
+    problem = problem_of(recordings)
+    simulator = Simulator(problem)
+    ranking = rank(simulator, progress=progress)
+    progress("simulating sets in which nothing is missing")
+    nulls = null_residuals(simulator, ranking.base, CONFIRMED_NULLS if confirm else NULLS, rng)
+    calibration = calibrate(ranking, nulls)
+    ranking = calibration.sorted(ranking)
+    if needs_more(ranking, calibration):
+        ranking = calibration.sorted(with_pairs(simulator, ranking, progress=progress))
+    located = locate(problem, ranking.base, nulls)
+    progress("deciding")
+    choice = decide(problem, ranking, nulls, calibration)
+    confirmed: dict[str, float] = {}
+    if confirm:
+        from .confirm import confirm_evidence
+
+        leading = [ranking.base, *choice.members[:4]]
+        confirmed = confirm_evidence(simulator, leading, rng, progress)
+    progress("predicting conditions that were left out")
+    best = choice.members[0] if choice.members else ranking.base
+    scores = {
+        f.name: held_out(problem, f) for f in {f.name: f for f in _scored(ranking, choice)}.values()
+    }
+    progress("looking for the next experiment")
+    rivals = list(choice.members[:4])
+    if len(rivals) < 2:
+        others = [f for f in (*ranking.singles, ranking.base) if f.name != best.name]
+        rivals = [best, *others[:1]]
+    proposals = propose(simulator, rivals, rng)
+    corrections = (
+        tuple(correct(problem, ranking.base, _reached(simulator, ranking.base)))
+        if choice.verdict == OUTSIDE
+        else ()
+    )
+    return Verdict(
+        name=recordings.name, seed=seed, verdict=choice.verdict,
+        mechanisms=tuple(m.name for m in best.mechanisms),
+        alternatives=tuple(
+            tuple(m.name for m in f.mechanisms) for f in choice.members[1:]
+        ),
+        audit=findings, probabilities=_probabilities(problem, ranking),
+        scores=_scores(ranking, nulls, scores), located=located,
+        parameters=parameters_of(problem, best), nuisance_pulls=_pulls(problem, best),
+        excluded=ranking.excluded, limits=_limits(ranking, calibration),
+        improvement=_improvement(scores[ranking.base.name], scores[best.name]),
+        corrections=corrections, proposals=tuple(proposals[:5]), notes=_notes(problem, best),
+        problem=problem, ranking=ranking, best=best, calibration=calibration,
+        reasons=choice.reasons, impacts=simulator.impacts, confirmed=confirmed,
+    )  # fmt: skip
+
+
+@dataclass(frozen=True, eq=False)
+class Choice:
+    """A verdict, the explanations that it holds (best first), and why."""
+
+    verdict: str
+    members: tuple[Fit, ...]
+    reasons: tuple[str, ...]
+
+
+def decide(problem: Problem, ranking: Ranking, nulls: Nulls, calibration: Calibration) -> Choice:
+    """Decide by thresholds that come from nulls of the same set."""
+    base = ranking.base
+    cells = len(problem.cells)
+    if cells < _FEWEST:
+        return Choice("undetermined", (), (f"only {cells} numbers to compare",))
+    p_base = calibration.p_baseline(base.chi2)
+    reasons = [
+        f"the baseline's misfit is {base.chi2:.0f} over {cells} cells; "
+        f"{100 * p_base:.2g} % of sets with nothing missing fit no better"
+    ]
+    if not ranking.singles:
+        verdict = "adequate" if p_base >= P_FIT else OUTSIDE
+        return Choice(verdict, (), tuple(reasons))
+    lead = ranking.singles[0]
+    gain = calibration.excess(lead, base)
+    reasons.append(
+        f"the best single mechanism, {lead.name}, gains {lead.log_evidence - base.log_evidence:.1f}"
+        f" nats; with nothing missing one set in twenty would give it, or an equally rare gain to "
+        f"another, {calibration.needed(lead):.1f}"
+    )
+    if gain <= calibration.single and p_base >= P_FIT:
+        return Choice("adequate", (), tuple(reasons))
+    fits = {f.name: p_fit(f, nulls) for f in (*ranking.singles, *ranking.pairs)}
+    pairs = [f for f in ranking.pairs if fits[f.name] >= P_FIT]
+    singles = [f for f in ranking.singles if fits[f.name] >= P_FIT]
+    needed = extra_threshold(lead, ranking, nulls)
+    more = pairs[0].log_evidence - lead.log_evidence if pairs else -math.inf
+    if pairs and (more > needed or not singles):
+        reasons.append(
+            f"{pairs[0].name} gains {more:.1f} nats more; one mechanism too many would gain "
+            f"{needed:.1f} in one of twenty"
+        )
+        return _set_of(pairs, pairs[0], ranking, nulls, reasons)
+    if singles and calibration.excess(singles[0], base) > calibration.single:
+        return _set_of(singles, singles[0], ranking, nulls, reasons)
+    reasons.append(
+        f"no mechanism or pair fits: of the sets that {lead.name} would make, "
+        f"{100 * fits[lead.name]:.2g} % fit it no better"
+    )
+    return Choice(OUTSIDE, (), tuple(reasons))
+
+
+def _set_of(
+    fits: list[Fit], best: Fit, ranking: Ranking, nulls: Nulls, reasons: list[str]
+) -> Choice:
+    width = set_width(best, ranking, nulls)
+    members = [f for f in fits if f.log_evidence > best.log_evidence - width]
+    if len(members) > 1:
+        reasons.append(f"{len(members)} explanations lie within {width:.1f} nats of each other")
+        return Choice("indistinguishable", tuple(members), tuple(reasons))
+    return Choice("missing-physics", (best,), tuple(reasons))
+
+
+def _audit(recordings: RecordingSet) -> tuple[dict[str, Any], ...]:
+    """Contradictions and cautions, the contradictions first."""
+    found = audit(recordings)
+    rows = (*found.of(Severity.CONTRADICTION), *found.of(Severity.CAUTION))
+    return tuple(
+        {
+            "check": f.check, "value": _finite(f.value), "expected": _finite(f.expected),
+            "message": f"{f.severity.value}: {f.check}: {f.message}",
+        }
+        for f in rows
+    )  # fmt: skip
+
+
+def _finite(x: float) -> float | None:
+    return float(x) if math.isfinite(x) else None
+
+
+def _probabilities(problem: Problem, ranking: Ranking) -> dict[str, float]:
+    """Posterior probabilities; half the prior on the baseline, a tenth outside the library."""
+    outside, _, _ = widened(problem, ranking.base)
+    names = ["baseline", OUTSIDE]
+    logs = [ranking.base.log_evidence + math.log(0.5), outside + math.log(0.05)]
+    for share, fits in ((0.3, ranking.singles), (0.15, ranking.pairs)):
+        for f in fits:
+            names.append(f.name)
+            logs.append(f.log_evidence + math.log(share / len(fits)))
+    total = logsumexp(logs)
+    found = {n: float(np.exp(x - total)) for n, x in zip(names, logs, strict=True)}
+    return dict(sorted(found.items(), key=lambda item: -item[1]))
+
+
+def _scores(
+    ranking: Ranking, nulls: Nulls, scores: dict[str, HeldOut]
+) -> dict[str, dict[str, float]]:
+    found = {}
+    for f in (ranking.base, *ranking.singles, *ranking.pairs):
+        if f.name in scores:
+            found[f.name] = {
+                "evidence": f.log_evidence - ranking.base.log_evidence,
+                "held_out": scores[f.name].score,
+                "p_value": p_fit(f, nulls),
+            }
+    return found
+
+
+def parameters_of(problem: Problem, fitted: Fit, level: float = 0.90) -> dict[str, dict[str, Any]]:
+    """Return value and interval of every parameter, the nuisances included."""
+    found: dict[str, dict[str, Any]] = {}
+    if fitted.mechanisms:
+        places = fitted.grid.places()
+        for axis, p in enumerate(fitted.grid.parameters):
+            middle, low, high = interval(places[:, axis], fitted.weight, level)
+            found[p.name] = {
+                "value": float(p.value(middle)), "low": float(p.value(low)),
+                "high": float(p.value(high)), "level": level, "unit": p.unit,
+            }  # fmt: skip
+    spread = 1.645 * np.sqrt(np.maximum(np.diag(fitted.covariance), 0.0))
+    for i, n in enumerate(problem.nuisances):
+        z = float(fitted.z[i])
+        found[n.name] = {
+            "value": n.at(z), "low": n.at(z - spread[i]), "high": n.at(z + spread[i]),
+            "level": level, "unit": n.unit,
+        }  # fmt: skip
+    return found
+
+
+def _pulls(problem: Problem, fitted: Fit) -> dict[str, float]:
+    return {n.name: float(fitted.z[i]) for i, n in enumerate(problem.nuisances)}
+
+
+def _notes(problem: Problem, best: Fit) -> tuple[str, ...]:
+    notes = []
+    for i, n in enumerate(problem.nuisances):
+        z = float(best.z[i])
+        if abs(z) > _PULLED:
+            notes.append(
+                f"{n.name} wants to be {n.at(z):.4g} {n.unit}, {abs(z):.1f} standard deviations "
+                f"{'above' if z > 0 else 'below'} the stated {n.value:.4g}"
+            )
+    sizes = ", ".join(f"{k} {100 * v:.2g} %" for k, v in problem.error.sizes.items())
+    notes.append(f"the contact law '{problem.law.name}' is taken to be uncertain by: {sizes}")
+    return (*notes, *problem.notes)
+
+
+def _limits(ranking: Ranking, calibration: Calibration) -> dict[str, float]:
+    """Smallest value of each first parameter whose effect would have been seen."""
+    base = ranking.base
+    found = {}
+    for s in ranking.screened:
+        seen_at = calibration.single + calibration.offset.get(s.mechanism.name, 0.0)
+        needed = math.sqrt(2.0 * (max(seen_at, 1.0) + 3.0))
+        p = s.mechanism.parameters[0]
+        size = np.linalg.norm(base.linear.white(s.effect), axis=1)
+        n = round(len(size) ** (1.0 / len(s.mechanism.parameters)))
+        # over the other parameters the typical size
+        along = np.median(size.reshape(n, -1), axis=1)
+        seen = np.flatnonzero(along > needed)
+        if seen.size:
+            spot = seen[0] if abs(p.neutral) < math.inf else seen[-1]
+            found[s.mechanism.name] = float(p.value((spot + 0.5) / n))
+    return found
+
+
+def _improvement(base: HeldOut, best: HeldOut) -> dict[str, float]:
+    return {
+        "held_out_baseline": base.score, "held_out_extended": best.score,
+        "raw_baseline": base.raw, "raw_extended": best.raw, "trials": base.trials,
+    }  # fmt: skip
+
+
+def _reached(simulator: Simulator, base: Fit) -> tuple[float, float]:
+    seen = simulator.observe((), [Point(base.z)])["peak_depth_m"][0]
+    R = np.array([s.pair.R for s in simulator.problem.scenes(base.z)])
+    return float(np.min(seen / R)), float(np.max(seen / R))
+
+
+__all__ = ["Choice", "Verdict", "decide", "diagnose", "parameters_of"]
