@@ -172,9 +172,8 @@ def diagnose(
         confirmed = confirm_evidence(simulator, leading, rng, progress)
     progress("predicting conditions that were left out")
     best = choice.members[0] if choice.members else ranking.base
-    scores = {
-        f.name: held_out(problem, f) for f in {f.name: f for f in _scored(ranking, choice)}.values()
-    }
+    scored = {f.name: f for f in (ranking.base, *ranking.singles, *ranking.pairs)}
+    scores = {name: held_out(problem, f) for name, f in scored.items()}
     progress("looking for the next experiment")
     rivals = list(choice.members[:4])
     if len(rivals) < 2:
@@ -210,6 +209,15 @@ class Choice:
     verdict: str
     members: tuple[Fit, ...]
     reasons: tuple[str, ...]
+
+
+def needs_more(ranking: Ranking, calibration: Calibration) -> bool:
+    """Whether the baseline is in doubt, so that pairs are worth fitting."""
+    base = ranking.base
+    if not ranking.singles:
+        return False
+    gain = calibration.excess(ranking.singles[0], base)
+    return gain > calibration.single or calibration.p_baseline(base.chi2) < P_FIT
 
 
 def decide(problem: Problem, ranking: Ranking, nulls: Nulls, calibration: Calibration) -> Choice:

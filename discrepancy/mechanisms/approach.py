@@ -3,8 +3,9 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import replace
+from typing import ClassVar
 
 import numpy as np
 
@@ -29,7 +30,7 @@ class ImpactSpeedLoss(Mechanism):
             "0 for a guide, 1 for air drag, -1/2 for a release that takes a fixed speed", nodes=4,
         ),
     )  # fmt: skip
-    direction = {"permanent_depth_m": -1, "peak_force_N": -1}
+    direction: ClassVar[Mapping[str, int]] = {"permanent_depth_m": -1, "peak_force_N": -1}
 
     def applies(self, situations: Sequence[Situation]) -> str:
         """Needs speeds computed from heights."""
@@ -74,7 +75,7 @@ class Tilt(Mechanism):
     parameters = (
         Parameter("tilt_deg", "deg", -8.0, 8.0, "linear", 0.0, "thesis: +-5 degrees", nodes=9),
     )
-    direction = {}
+    direction: ClassVar[Mapping[str, int]] = {}
 
     def applies(self, situations: Sequence[Situation]) -> str:
         """Needs a rod, or a tangential motion."""

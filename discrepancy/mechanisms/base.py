@@ -11,7 +11,7 @@ import math
 from abc import ABC, abstractmethod
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
-from typing import Literal
+from typing import ClassVar, Literal
 
 import numpy as np
 from numpy.typing import NDArray
@@ -125,7 +125,7 @@ class Mechanism(ABC):
     title: str
     equations: str
     parameters: tuple[Parameter, ...]
-    direction: Mapping[str, int] = {}
+    direction: ClassVar[Mapping[str, int]] = {}
 
     def applies(self, situations: Sequence[Situation]) -> str:
         """Return why arithmetic rules the mechanism out for these conditions, or ""."""
@@ -143,6 +143,7 @@ class Mechanism(ABC):
         self, situations: Sequence[Situation], values: Values, seen: dict[str, Array]
     ) -> None:
         """Change observables, arrays over the situations, that no seam of the motion carries."""
+        return
 
 
 def with_flow(scene: Scene, flow: FlowStress) -> Scene:

@@ -3,8 +3,9 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
+from typing import ClassVar
 
 import numpy as np
 
@@ -35,7 +36,7 @@ class ContactDamping(Mechanism):
             "Hunt and Crossley 1975 (e = 1 - alpha v, alpha 0.08-0.32 s/m for metals)",
         ),
     )  # fmt: skip
-    direction = {"restitution": -1, "permanent_depth_m": -1}
+    direction: ClassVar[Mapping[str, int]] = {"restitution": -1, "permanent_depth_m": -1}
 
     def attach(self, scene: Scene, values: Values, around: Surroundings) -> Scene:
         """Replace the transform of the normal force."""
@@ -55,7 +56,7 @@ class Adhesion(Mechanism):
             "Thornton and Ning, Powder Technol. 99 (1998) 154; clean metals up to 2 J/m^2",
         ),
     )  # fmt: skip
-    direction = {"restitution": -1}
+    direction: ClassVar[Mapping[str, int]] = {"restitution": -1}
 
     def applies(self, situations: Sequence[Situation]) -> str:
         """Compare the work of parting with the energy of the slowest impact."""
@@ -99,7 +100,7 @@ class SqueezeFilm(Mechanism):
             "viscosity times ln(h_0/h_1) of 3 to 8: water 1e-3, oils 0.01-1 Pa s",
         ),
     )  # fmt: skip
-    direction = {"restitution": -1, "permanent_depth_m": -1}
+    direction: ClassVar[Mapping[str, int]] = {"restitution": -1, "permanent_depth_m": -1}
 
     def applies(self, situations: Sequence[Situation]) -> str:
         """Air and vacuum are too thin."""
@@ -181,7 +182,7 @@ class Roughness(Mechanism):
             "Greenwood and Williamson 1966; ground 0.4 um, turned 1-5 um",
         ),
     )  # fmt: skip
-    direction = {"contact_time_s": 1, "peak_force_N": -1}
+    direction: ClassVar[Mapping[str, int]] = {"contact_time_s": 1, "peak_force_N": -1}
 
     def ranges(self, situations: Sequence[Situation]) -> tuple[Parameter, ...]:
         """A stated roughness narrows the range."""
@@ -221,7 +222,11 @@ class TruncatedTip(Mechanism):
             "0.05-1 mm on tips of 9 mm: handling wear to a turned-off centre",
         ),
     )  # fmt: skip
-    direction = {"contact_time_s": -1, "permanent_depth_m": -1, "peak_force_N": 1}
+    direction: ClassVar[Mapping[str, int]] = {
+        "contact_time_s": -1,
+        "permanent_depth_m": -1,
+        "peak_force_N": 1,
+    }
 
     def attach(self, scene: Scene, values: Values, around: Surroundings) -> Scene:
         """Replace the tip."""

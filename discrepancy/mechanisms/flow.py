@@ -8,8 +8,9 @@ taken as 0.4 v/a and its representative strain as 0.2 a/R (Tabor, The Hardness o
 from __future__ import annotations
 
 import math
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
+from typing import ClassVar
 
 import numpy as np
 
@@ -75,7 +76,12 @@ class StrainRateHardening(Mechanism):
             "Cowper-Symonds 1/q 0.1-0.25; a logarithm looks like C/A", nodes=3,
         ),
     )  # fmt: skip
-    direction = {"restitution": 1, "permanent_depth_m": -1, "contact_time_s": -1, "peak_force_N": 1}
+    direction: ClassVar[Mapping[str, int]] = {
+        "restitution": 1,
+        "permanent_depth_m": -1,
+        "contact_time_s": -1,
+        "peak_force_N": 1,
+    }
 
     def applies(self, situations: Sequence[Situation]) -> str:
         """Needs a metal that yields."""
@@ -117,7 +123,12 @@ class WorkHardening(Mechanism):
             "0.26 (4340) to 0.36 (1006); 1 for linear hardening", nodes=3,
         ),
     )  # fmt: skip
-    direction = {"restitution": 1, "permanent_depth_m": -1, "contact_time_s": -1, "peak_force_N": 1}
+    direction: ClassVar[Mapping[str, int]] = {
+        "restitution": 1,
+        "permanent_depth_m": -1,
+        "contact_time_s": -1,
+        "peak_force_N": 1,
+    }
 
     def applies(self, situations: Sequence[Situation]) -> str:
         """Needs a metal that yields."""
@@ -161,7 +172,7 @@ class ThermalSoftening(Mechanism):
             "Johnson and Cook 1983: 1.03 (4340), 1.00 (1006), 1.09 (OFHC copper), 1.70 (7039)",
         ),
     )  # fmt: skip
-    direction = {"restitution": -1, "permanent_depth_m": 1}
+    direction: ClassVar[Mapping[str, int]] = {"restitution": -1, "permanent_depth_m": 1}
 
     def applies(self, situations: Sequence[Situation]) -> str:
         """Compare the heat of deformation with the way to melting."""
@@ -237,7 +248,7 @@ class HardenedLayer(Mechanism):
             "polished 5-50 um, machined 0.1-0.3 mm, carburised 0.5-2 mm", nodes=5,
         ),
     )  # fmt: skip
-    direction = {"restitution": 1, "permanent_depth_m": -1}
+    direction: ClassVar[Mapping[str, int]] = {"restitution": 1, "permanent_depth_m": -1}
 
     def applies(self, situations: Sequence[Situation]) -> str:
         """Needs a metal that yields."""
@@ -285,7 +296,7 @@ class SizeEffect(Mechanism):
             "Swadener, George and Pharr, J. Mech. Phys. Solids 50 (2002) 681",
         ),
     )  # fmt: skip
-    direction = {"restitution": 1, "permanent_depth_m": -1}
+    direction: ClassVar[Mapping[str, int]] = {"restitution": 1, "permanent_depth_m": -1}
 
     def applies(self, situations: Sequence[Situation]) -> str:
         """Needs a metal that yields, and tips of different radius."""

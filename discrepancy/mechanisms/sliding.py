@@ -2,8 +2,9 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import replace
+from typing import ClassVar
 
 from ...impact import Scene
 from .base import Mechanism, Parameter, Situation, Surroundings, Values, is_oblique
@@ -31,7 +32,7 @@ class VelocityDependentFriction(Mechanism):
             "0.01-1 m/s in collections of friction laws; wider for what an impact can see", nodes=4,
         ),
     )  # fmt: skip
-    direction = {"friction_impulse_ratio": 1}
+    direction: ClassVar[Mapping[str, int]] = {"friction_impulse_ratio": 1}
 
     def applies(self, situations: Sequence[Situation]) -> str:
         """Needs sliding."""
@@ -59,7 +60,7 @@ class PloughingFriction(Mechanism):
             "1 is the front of a rigid sphere (Bowden and Tabor); pile-up raises it",
         ),
     )  # fmt: skip
-    direction = {"friction_impulse_ratio": 1, "sliding_length_m": -1}
+    direction: ClassVar[Mapping[str, int]] = {"friction_impulse_ratio": 1, "sliding_length_m": -1}
 
     def applies(self, situations: Sequence[Situation]) -> str:
         """Needs sliding."""
@@ -83,7 +84,7 @@ class TangentialCompliance(Mechanism):
             "2 (1 - nu)/(2 - nu) = 0.82 (Mindlin 1949); plastic contacts +-50 %", nodes=5,
         ),
     )  # fmt: skip
-    direction = {}
+    direction: ClassVar[Mapping[str, int]] = {}
 
     def applies(self, situations: Sequence[Situation]) -> str:
         """Needs sliding."""

@@ -3,9 +3,10 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import replace
 from functools import lru_cache
+from typing import ClassVar
 
 import numpy as np
 
@@ -62,7 +63,7 @@ class RodLongitudinalWaves(Mechanism):
         "q_k'' + eta w_k q_k' + w_k^2 q_k = sqrt(2/m) F sin(theta), w_k = k pi sqrt(E/rho)/L"
     )
     parameters = (_PARTICIPATION,)
-    direction = {"restitution": -1}
+    direction: ClassVar[Mapping[str, int]] = {"restitution": -1}
 
     def applies(self, situations: Sequence[Situation]) -> str:
         """Needs a rod."""
@@ -85,7 +86,7 @@ class RodFlexuralVibration(Mechanism):
     title = "the leaning rod bends and rings"
     equations = "free-free Timoshenko beam and axial modes; re-contact while the tip returns"
     parameters = (_PARTICIPATION,)
-    direction = {}
+    direction: ClassVar[Mapping[str, int]] = {}
 
     def applies(self, situations: Sequence[Situation]) -> str:
         """Needs a rod that leans."""
@@ -128,7 +129,7 @@ class HalfSpaceWaves(Mechanism):
             "1 is the theory (Hunter 1957, Zener 1941); edges and finite contacts move it",
         ),
     )  # fmt: skip
-    direction = {"restitution": -1}
+    direction: ClassVar[Mapping[str, int]] = {"restitution": -1}
 
     def attach(self, scene: Scene, values: Values, around: Surroundings) -> Scene:
         """Replace the rigid half-space."""
@@ -173,7 +174,7 @@ class SupportCompliance(Mechanism):
             "from the flat alone to the bench with it", nodes=5,
         ),
     )  # fmt: skip
-    direction = {"restitution": -1, "permanent_depth_m": -1}
+    direction: ClassVar[Mapping[str, int]] = {"restitution": -1, "permanent_depth_m": -1}
 
     def ranges(self, situations: Sequence[Situation]) -> tuple[Parameter, ...]:
         """Stated values narrow the ranges; the flat on one striker's mass bounds the mass."""
