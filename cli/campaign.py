@@ -7,6 +7,7 @@ import json
 import math
 import os
 import time
+from collections.abc import Iterator
 from pathlib import Path
 from typing import Annotated, Any
 
@@ -17,7 +18,10 @@ from ..core.errors import EXIT_NOT_CONVERGED, InputError
 app = typer.Typer(help="Sweeps of finite-element cases.", no_args_is_help=True)
 
 _FILE = "campaign.h5"
-_TYPICAL_CPU_S = {"smoke": 17.0, "survey": 45.0}  # mean processor seconds a case, measured (docs/performance.md)
+_TYPICAL_CPU_S = {
+    "smoke": 17.0,
+    "survey": 45.0,
+}  # mean processor seconds a case, measured (docs/performance.md)
 _DEEP_CPU_S = 312.0  # the same at production accuracy
 _PUBLISHED = Path(__file__).parents[1] / "data" / "campaign"
 
@@ -163,25 +167,45 @@ def export(
     out: Out = Path("build/campaign"),
     to: Annotated[Path, typer.Option(help="File to write.")] = Path("build/campaign/curves.csv"),
 ) -> None:
-    """Write all loading curves as one CSV table."""
+    """Write all loading curves as one table: CSV, or Parquet where the name ends so."""
     from ..campaigns import read_curves
 
     records = read_curves(out / _FILE)
     if not records:
         raise InputError("no completed case", source=str(out / _FILE))
     names = list(records[0].curve)
+    if to.suffix not in (".csv", ".parquet"):
+        raise InputError(
+            repr(to.suffix), key="--to", allowed="a name that ends in .csv or .parquet"
+        )
+    head = ["case", "E_s_Pa", "nu_s", "Sy_s_Pa", "E_f_Pa", "nu_f", "Sy_f_Pa", "R_m", *names]
     to.parent.mkdir(parents=True, exist_ok=True)
-    with to.open("w", newline="", encoding="utf-8") as stream:
-        writer = csv.writer(stream)
-        head = ["case", "E_s_Pa", "nu_s", "Sy_s_Pa", "E_f_Pa", "nu_f", "Sy_f_Pa", "R_m"]
-        writer.writerow([*head, *names])
-        for record in records:
-            p = record.case.pair
-            start = [record.case.name, p.sphere.E, p.sphere.nu, p.sphere.Sy]
-            start += [p.flat.E, p.flat.nu, p.flat.Sy, p.R]
-            for row in zip(*(record.curve[name] for name in names), strict=True):
-                writer.writerow([*start, *row])
+    if to.suffix == ".parquet":
+        try:
+            import pandas
+            import pyarrow  # noqa: F401 (pandas writes Parquet through it)
+        except ImportError as missing:
+            raise InputError(
+                f"{missing.name} is not installed",
+                key="--to",
+                allowed="pip install dentscope[tables]",
+            ) from None
+        pandas.DataFrame(list(_rows(records, names)), columns=head).to_parquet(to, index=False)
+    else:
+        with to.open("w", newline="", encoding="utf-8") as stream:
+            writer = csv.writer(stream)
+            writer.writerow(head)
+            writer.writerows(_rows(records, names))
     typer.echo(f"{len(records)} cases -> {to}")
+
+
+def _rows(records: list[Any], names: list[str]) -> Iterator[list[Any]]:
+    for record in records:
+        p = record.case.pair
+        start = [record.case.name, p.sphere.E, p.sphere.nu, p.sphere.Sy]
+        start += [p.flat.E, p.flat.nu, p.flat.Sy, p.R]
+        for row in zip(*(record.curve[name] for name in names), strict=True):
+            yield [*start, *row]
 
 
 @app.command()

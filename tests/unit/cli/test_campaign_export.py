@@ -1,0 +1,44 @@
+"""`dentscope campaign export`: one table, the same numbers in both formats."""
+
+import pandas
+import pytest
+from dentscope import fem
+from dentscope.campaigns import Store, standard_case
+from dentscope.cli import run
+from dentscope.core import COMPLETED, Material, Pair
+from dentscope.fem import Counters, Curve, Solution
+
+
+@pytest.fixture
+def stored(tmp_path):
+    steel = Material(E=200e9, nu=0.3, Sy=5e8)
+    case = standard_case(
+        "one", Pair(steel, steel, 1e-3), deepest=0.01, n_depths=4, accuracy=fem.Accuracy.smoke()
+    )
+    columns = {
+        name: [1.0 / (k + 3) * (i + 1) for i in range(4)]
+        for k, name in enumerate(Curve.__dataclass_fields__)
+    }
+    counters = Counters(**dict.fromkeys(Counters.__dataclass_fields__, 1))
+    curve = Curve(**{name: pandas.Series(column).to_numpy() for name, column in columns.items()})
+    Store(tmp_path / "campaign.h5").put(
+        case, Solution(case.problem(), case.accuracy, COMPLETED, curve, (), (), counters, "mesh")
+    )
+    return tmp_path, columns
+
+
+@pytest.mark.parametrize("suffix", ["csv", "parquet"])
+def test_the_table_holds_every_value(stored, suffix):
+    folder, columns = stored
+    path = folder / f"t.{suffix}"
+    assert run(["campaign", "export", "--out", str(folder), "--to", str(path)]) == 0
+    table = pandas.read_csv(path) if suffix == "csv" else pandas.read_parquet(path)
+    assert list(table["case"]) == ["one"] * 4
+    for name, values in columns.items():
+        assert list(table[name]) == pytest.approx(values, rel=1e-12)
+
+
+def test_another_format_is_refused(stored, capsys):
+    folder, _ = stored
+    assert run(["campaign", "export", "--out", str(folder), "--to", str(folder / "t.xls")]) == 2
+    assert "'.xls'" in capsys.readouterr().err
