@@ -4,6 +4,7 @@ VENV := .venv
 BIN := $(VENV)/bin
 STAMP := $(VENV)/.installed
 DESIGN ?= smoke
+SET ?= data/recordings/thesis-chapter-5
 WORKERS ?=
 LOCKS := $(wildcard requirements/*.txt)
 # the solver runs one case a core: more threads inside a case only disturb the others
@@ -11,7 +12,7 @@ export OMP_NUM_THREADS ?= 1
 export OPENBLAS_NUM_THREADS ?= 1
 
 .DEFAULT_GOAL := help
-.PHONY: help install campaign fit impact recordings proof verify test check bench lock clean
+.PHONY: help install campaign fit impact diagnose recordings proof verify test check bench lock clean
 
 help: ## list the targets
 	@grep -hE '^[a-z]+:.*## ' $(MAKEFILE_LIST) | sed -E 's/^([a-z]+):.*## /\1\t/' | expand -t 12
@@ -29,6 +30,9 @@ fit: $(STAMP) ## fit the closed forms to the campaign: coefficients, standard er
 
 impact: $(STAMP) ## chapter 3 of the thesis: restitution and dent against drop height, every law
 	@$(BIN)/dentscope impact
+
+diagnose: $(STAMP) ## say what physics is missing in SET (the thesis's oblique impacts), report in build/diagnose
+	@$(BIN)/dentscope diagnose "$(SET)"
 
 recordings: $(STAMP) ## fetch the raw recordings that may not be shipped, by address and checksum
 	@$(BIN)/dentscope recordings fetch

@@ -13,6 +13,7 @@ import typer
 from ..core.errors import EXIT_INPUT_ERROR, InputError
 from . import campaign, laws, proof, recordings
 from .case import case
+from .diagnose import diagnose
 from .doctor import doctor
 from .fit import fit
 from .impact import impact
@@ -40,6 +41,7 @@ app.command()(case)
 app.command()(fit)
 app.command()(impact)
 app.command()(inverse)
+app.command()(diagnose)
 app.command()(verify)
 app.command()(doctor)
 
