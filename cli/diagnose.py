@@ -8,9 +8,13 @@ from typing import Annotated
 
 import typer
 
+from ..core.errors import InputError
+
 
 def diagnose(
-    folder: Annotated[Path, typer.Argument(help="Recording set (a folder with set.toml).")],
+    folder: Annotated[
+        Path | None, typer.Argument(help="Recording set (a folder with set.toml).")
+    ] = None,
     out: Annotated[Path, typer.Option(help="Folder for verdict.json and report.html.")] = Path(
         "build/diagnose"
     ),
@@ -19,12 +23,25 @@ def diagnose(
         bool, typer.Option("--confirm", help="Sampled evidence and the full null ensemble.")
     ] = False,
     quiet: Annotated[bool, typer.Option("--quiet", help="No progress line.")] = False,
+    chapter5: Annotated[
+        bool, typer.Option("--chapter5", help="The thesis's oblique drops, nothing fitted.")
+    ] = False,
 ) -> None:
     """Compare recordings with the simulation and say what physics is missing, if any.
 
     Writes verdict.json (for programs) and report.html (for people) into OUT and prints the
     finding.
     """
+    if chapter5:
+        _chapter5(out)
+        return
+    if folder is None:
+        raise InputError(
+            "no recording set",
+            source="command line",
+            key="FOLDER",
+            allowed="a folder, or --chapter5",
+        )
     from ..discrepancy import diagnose as run
     from ..discrepancy.report import write_report
     from ..discrepancy.text import lines
@@ -46,3 +63,13 @@ def diagnose(
     for line in lines(verdict):
         typer.echo(line)
     typer.echo(f"\n{out / 'verdict.json'}, {out / 'report.html'}")
+
+
+def _chapter5(out: Path) -> None:
+    from ..discrepancy.chapter5 import demonstrate, draw, table
+
+    found = demonstrate()
+    for line in table(found):
+        typer.echo(line)
+    draw(found, out / "chapter5.png")
+    typer.echo(f"\n{out / 'chapter5.png'}")

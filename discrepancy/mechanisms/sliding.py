@@ -87,8 +87,10 @@ class TangentialCompliance(Mechanism):
     direction: ClassVar[Mapping[str, int]] = {}
 
     def applies(self, situations: Sequence[Situation]) -> str:
-        """Needs sliding."""
-        return _needs_sliding(situations)
+        """Needs sliding, and a tangential spring that the integrator does not have yet."""
+        return _needs_sliding(situations) or (
+            "not simulated in this version: the integrator has no tangential spring"
+        )
 
     def attach(self, scene: Scene, values: Values, around: Surroundings) -> Scene:
         """Replace the friction law."""

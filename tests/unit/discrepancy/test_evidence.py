@@ -1,0 +1,51 @@
+"""The linear algebra of the evidence, against scipy and closed forms."""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+import pytest
+from dentscope.discrepancy.evidence import Grid, Linear, interval, posterior
+from dentscope.discrepancy.mechanisms import Parameter
+from scipy.stats import multivariate_normal, norm
+
+
+def test_likelihood_is_scipys_multivariate_normal() -> None:
+    rng = np.random.default_rng(1)
+    J, r = rng.normal(size=(6, 3)), rng.normal(size=(4, 6))
+    noise = np.diag(rng.uniform(0.5, 2.0, 6))
+    expected = multivariate_normal(np.zeros(6), noise + J @ J.T).logpdf(r)
+    assert Linear(noise, J).log_likelihood(r) == pytest.approx(expected, rel=1e-12)
+
+
+def test_unknowns_are_those_of_ridge_regression() -> None:
+    rng = np.random.default_rng(2)
+    J, r = rng.normal(size=(8, 3)), rng.normal(size=8)
+    mean, cov = Linear(np.eye(8), J).unknowns(r)
+    normal = J.T @ J + np.eye(3)
+    assert mean == pytest.approx(np.linalg.solve(normal, J.T @ r), rel=1e-10)
+    assert cov == pytest.approx(np.linalg.inv(normal), rel=1e-9)
+
+
+def test_grid_is_exact_for_cubics() -> None:
+    one = Parameter("a", "-", 1.0, 10.0, "log", 0.0, "", nodes=5)
+    two = Parameter("b", "-", -1.0, 1.0, "linear", 0.0, "", nodes=3)
+    grid = Grid((one, two))
+    x, y = np.meshgrid(*grid.coarse, indexing="ij")
+    table = (x**3 - x + 2.0 * y**2 * x).reshape(-1, 1)
+    u, v = grid.places().T
+    assert grid.refine(table)[:, 0] == pytest.approx(u**3 - u + 2.0 * v**2 * u, abs=1e-12)
+    assert grid.nodes()[0] == {"a": 1.0, "b": -1.0}
+
+
+def test_interval_of_a_normal_sample() -> None:
+    x = np.linspace(-6.0, 6.0, 4001)
+    weight = norm.pdf(x) / norm.pdf(x).sum()
+    assert interval(x, weight) == pytest.approx((0.0, norm.ppf(0.05), norm.ppf(0.95)), abs=2e-3)
+
+
+def test_evidence_of_a_flat_likelihood_is_its_height() -> None:
+    evidence, weight = posterior(np.full(50, -3.0))
+    assert evidence == pytest.approx(-3.0)
+    assert math.isclose(weight.sum(), 1.0)

@@ -1,0 +1,68 @@
+"""The null generators against exact impacts."""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+import pytest
+from dentscope.discrepancy.nulls.ensemble import scatter
+from dentscope.discrepancy.nulls.laws import KINDS, Draw, Reference, curve
+from dentscope.discrepancy.nulls.motion import Bodies, collide
+
+R, E = 0.01, 1e11
+
+
+def reference(Y: float) -> Reference:
+    depth = np.geomspace(1e-9, 1e-2, 60)
+    force = 4.0 / 3.0 * E * math.sqrt(R) * depth**1.5
+    if math.isfinite(Y):
+        force = (force**-2 + (2.0 * math.pi * R * 3.0 * Y * depth) ** -2) ** -0.5
+    recovery = np.minimum(0.75 * force / (E * np.sqrt(1.5 * R * depth)), depth)
+    return Reference(R, E, Y, depth, force, recovery, depth - recovery)
+
+
+def bodies(n: int, speed: float, *, beside: float = 0.0, mu: float = 0.0) -> Bodies:
+    one = np.ones(n)
+    return Bodies(
+        0.1 * one, 1e-4 * one, beside * one, 0.02 * one, speed * one, 0 * one, 0 * one, mu * one,
+        one,
+    )  # fmt: skip
+
+
+def test_elastic_impact_is_hertzs() -> None:
+    plain = Draw("cut-off", 0.5, 0.5, 0.5, (0.0, 0.0), (0.0, 0.0), 0.0)
+    ref = reference(math.inf)
+    elastic = Reference(R, E, math.inf, ref.depth, ref.force, ref.depth, 0.0 * ref.depth)
+    seen = collide(bodies(1, 1.0), [curve(elastic, plain, 1e-6, 1e-3)])
+    k = 4.0 / 3.0 * E * math.sqrt(R)
+    depth = (5.0 * 0.1 / (4.0 * k)) ** 0.4
+    # Johnson, Contact Mechanics, Eq. 11.24: 2.94 depth/v
+    assert seen["contact_time_s"][0] == pytest.approx(2.943 * depth, rel=5e-3)
+    assert seen["restitution"][0] == pytest.approx(1.0, abs=3e-3)
+    assert seen["peak_force_N"][0] == pytest.approx(k * depth**1.5, rel=3e-3)
+
+
+@pytest.mark.parametrize("kind", KINDS)
+def test_null_laws_stay_within_some_per_cent_of_what_they_are_levelled_to(kind: str) -> None:
+    ref = reference(3e8)
+    law = Draw(kind, 0.5, 0.5, 0.5, (0.0, 0.0), (0.0, 0.0), 0.0)
+    found = curve(ref, law, 5e-6, 3e-4)
+    d = np.geomspace(5e-6, 3e-4, 40)
+    base = np.interp(np.log(d), np.log(ref.depth), np.log(ref.force))
+    off = np.interp(np.log(d), found.log_depth, found.log_force) - base
+    assert np.abs(off).max() < 0.12
+    assert abs(off.mean()) < 0.02
+    assert off.std() > 1e-3
+
+
+def test_oblique_impulse_ratio_is_the_friction_coefficient_while_sliding() -> None:
+    law = Draw("series", 0.5, 0.5, 0.5, (0.0, 0.0), (0.0, 0.0), 0.0)
+    seen = collide(bodies(1, 1.0, beside=0.05, mu=0.1), [curve(reference(3e8), law, 1e-6, 1e-3)])
+    assert seen["friction_impulse_ratio"][0] == pytest.approx(0.1, rel=0.02)
+
+
+def test_scatter_has_unit_deviation() -> None:
+    x = scatter(np.random.default_rng(3), (200_000,))
+    assert x.std() == pytest.approx(1.0, rel=0.01)
+    assert np.mean(x**4) == pytest.approx(4.2, rel=0.06)  # logistic kurtosis
