@@ -15,7 +15,7 @@ import numpy.typing as npt
 
 from .. import fem
 from ..campaigns.case import Case
-from ..core.material import Pair
+from ..core.material import Material, Pair
 from .result import Result
 
 Floats = npt.NDArray[np.float64]
@@ -98,6 +98,7 @@ class Bench:
     say: Callable[[str], None] = lambda line: None
     publish: Callable[[Result], None] = lambda result: None
     reused_cpu_s: float = field(default=0.0, init=False)
+    _warm: bool = field(default=False, init=False)
 
     def solve(self, case: Case) -> Solved:
         """Solve a case, or read it if the same numerics have solved it before."""
@@ -106,6 +107,7 @@ class Bench:
             raw = json.loads(path.read_text(encoding="utf-8"))
             self.reused_cpu_s += raw["counters"]["cpu_s"]
             return _solved(case.pair, raw)
+        self._warm_up()
         self.say(f"  solving {case.name} at level {case.accuracy.level}")
         started = time.perf_counter()
         raw = _kept(fem.solve(case.problem(), accuracy=case.accuracy))
@@ -119,6 +121,14 @@ class Bench:
             f"{time.perf_counter() - started:.0f} s"
         )
         return _solved(case.pair, raw)
+
+    def _warm_up(self) -> None:
+        """Let the compiled code be loaded, so that no timed solve pays for it."""
+        if not self._warm:
+            body = Material(E=200e9, nu=0.3, Sy=200e6)
+            problem = fem.ContactProblem(Pair(body, body, 1e-3), (1e-5, 3e-5), unload_from=(3e-5,))
+            fem.solve(problem, accuracy=fem.Accuracy.smoke())
+            self._warm = True
 
 
 def _kept(solution: fem.Solution) -> dict[str, Any]:

@@ -5,15 +5,16 @@ from __future__ import annotations
 from dataclasses import replace
 
 import numpy as np
+import numpy.typing as npt
 
 from .. import fem
 from ..campaigns.designs import pair_of
 from ..core.material import Pair
-from ..fem.discretise import Discretisation, discretise
 from .bench import Bench
 from .pairs import elastic_pair
-from .paths import press
 from .result import Cell, Measurement, Result, Table
+
+Floats = npt.NDArray[np.float64]
 
 _AT = (0.001, 0.003, 0.01)
 
@@ -55,19 +56,17 @@ def run(bench: Bench) -> Result:
     )  # fmt: skip
 
 
-def _both(pair: Pair) -> tuple[dict[str, np.ndarray], dict[str, np.ndarray]]:
-    first = min(0.3 * fem.critical_depth(pair), 4e-5)
-    depths = fem.geometric_depths(first, _AT[-1], 100)
-    grid = discretise(fem.ContactProblem(pair, depths), fem.Accuracy.smoke())
-    held = replace(grid, held=np.unique(np.concatenate([grid.held, 2 * grid.mesh.top])))
-    return _curves(grid, depths), _curves(held, depths)
+def _both(pair: Pair) -> tuple[dict[str, Floats], dict[str, Floats]]:
+    depths = fem.geometric_depths(min(_AT) / 2.0, max(_AT), 24)
+    free = fem.ContactProblem(pair, depths)
+    return _curves(free), _curves(replace(free, top="held"))
 
 
-def _curves(grid: Discretisation, depths: tuple[float, ...]) -> dict[str, np.ndarray]:
-    readings = press(grid, depths=depths)
+def _curves(problem: fem.ContactProblem) -> dict[str, Floats]:
+    c = fem.solve(problem, accuracy=fem.Accuracy.smoke()).loading
     return {
-        "delta": np.array([r.delta for r in readings]),
-        "F": 100.0 * np.log([r.force for r in readings]),
-        "a": 100.0 * np.log([r.radius for r in readings]),
-        "share": np.array([r.sphere / (r.sphere + r.flat) for r in readings]),
+        "delta": c.delta / problem.pair.R,
+        "F": 100.0 * np.log(c.force),
+        "a": 100.0 * np.log(c.radius),
+        "share": c.sphere_share,
     }
