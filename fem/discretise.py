@@ -124,8 +124,9 @@ def _mesh(problem: ContactProblem, accuracy: Accuracy) -> Mesh:
     a_last = min(max(a_last, 1.08 * problem.radius_at_least, min(4.0 * a_yield, 0.4)), 0.9)
     design = RingDesign(
         core=0.12 * a_first,
-        # an elastic edge, where the pressure ends gently, does not need the fine rings
-        fine_from=1.5 * a_yield,
+        # where plastic flow is to come, the elastic edge, at which the pressure ends gently, can do
+        # without the fine rings
+        fine_from=0.2 * a_first if math.isinf(onset) else 1.5 * a_yield,
         fine_to=a_last,
     )
     rings = graded_rings(design, coarse=accuracy.coarse, fine=accuracy.fine, grade=_GRADE)

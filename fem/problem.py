@@ -48,7 +48,9 @@ class Accuracy:
     @classmethod
     def production(cls) -> Accuracy:
         """Settings of published results."""
-        return cls(level="production", divisions=16, coarse=0.1, fine=0.025, step_ratio=1.035)
+        return cls(
+            level="production", divisions=16, coarse=0.1, fine=0.025, step_ratio=1.035, penalty=20.0
+        )
 
     @classmethod
     def quick(cls) -> Accuracy:
