@@ -274,7 +274,7 @@ def strike(x, quads, body, tip, top, held, materials, base, speed, most, settle,
         if bar[i]:
             v[i, 1] = -speed
             bar_mass += mass[i]
-    dt = 1.1 * _forces(x, v, quads, body, materials, 1e-12, stress, peeq, hour, base, force)
+    dt = 0.9 * _forces(x, v, quads, body, materials, 1e-12, stress, peeq, hour, base, force)
     stress[:] = 0.0
     hour[:] = 0.0
     t, first, last = 0.0, -1.0, 0.0
@@ -323,10 +323,10 @@ def strike(x, quads, body, tip, top, held, materials, base, speed, most, settle,
             history[kept, 1] = total
             history[kept, 2] = center / bar_mass
             kept += 1
+        if not math.isfinite(total) or not math.isfinite(up):
+            break
         if first >= 0.0 and quiet > settle and up > 0.0:
             done = 1.0
-            break
-        if steps % 64 == 0 and not math.isfinite(up):
             break
     up, square = 0.0, 0.0
     for i in range(n):

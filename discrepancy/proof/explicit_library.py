@@ -78,25 +78,23 @@ _SLOW = (0.3, 0.6, 1.2, 2.4)
 SERIES: tuple[Series, ...] = (
     Series("null-steel", MILD_STEEL, _SLUGS, _V, "null"),
     Series("null-aluminium", ALUMINIUM, _MORE, _V, "null"),
-    Series("null-brass", BRASS, _WIDE, _SLOW, "null"),
     Series(
         "rate-steel", MILD_STEEL, _SLUGS, _V, "single",
         {"strain-rate-hardening": {"C": 0.025, "reference": 1.0}},
     ),
-    Series(
-        "rate-copper", COPPER, _MORE, _V, "single",
-        {"strain-rate-hardening": {"C": 0.05, "reference": 1.0}},
-    ),
+    Series("bars-steel", MILD_STEEL, _BARS, _V, "single", {"rod-longitudinal-waves": {}}),
     Series(
         "voce-steel", MILD_STEEL, _SLUGS, _V, "single",
         {"work-hardening": {"rise": 0.8, "strain": 0.04}},
     ),
     Series(
-        "voce-copper", COPPER, _MORE, _V, "single",
-        {"work-hardening": {"rise": 1.5, "strain": 0.08}},
+        "softening-steel", MILD_STEEL, _SLUGS, _V, "outside",
+        {"strain-softening": {"rise": -0.45, "strain": 0.02}},
     ),
-    Series("bars-steel", MILD_STEEL, _BARS, _V, "single", {"rod-longitudinal-waves": {}}),
-    Series("bars-aluminium", ALUMINIUM, _BARS, _V, "single", {"rod-longitudinal-waves": {}}),
+    Series(
+        "layer-steel", MILD_STEEL, _SLUGS, _V, "single",
+        {"hardened-layer": {"rise": 1.2, "thickness": 0.15e-3}},
+    ),
     Series(
         "plate-aluminium", ALUMINIUM, _WIDE, _SLOW, "single",
         {"half-space-waves": {"thickness": 0.008}}, block=(0.06, 0.008), hold="rim",
@@ -106,26 +104,28 @@ SERIES: tuple[Series, ...] = (
         {"support-compliance": {"pad": 0.004, "pad_E": 2e8}}, block=(0.022, 0.022),
     ),
     Series(
-        "layer-steel", MILD_STEEL, _SLUGS, _V, "single",
-        {"hardened-layer": {"rise": 1.2, "thickness": 0.15e-3}},
+        "cut-steel", MILD_STEEL, _WIDE, _SLOW, "single", {"truncated-tip": {"radius": 0.45e-3}}
     ),
     Series(
-        "cut-steel", MILD_STEEL, _WIDE, _SLOW, "single", {"truncated-tip": {"radius": 0.45e-3}}
+        "crushed-aluminium", ALUMINIUM, _MORE, _V, "outside",
+        {"crushed-layer": {"rise": -0.6, "thickness": 0.12e-3}},
     ),
     Series(
         "bars-rate-steel", MILD_STEEL, _BARS, _V, "pair",
         {"rod-longitudinal-waves": {}, "strain-rate-hardening": {"C": 0.04, "reference": 1.0}},
     ),
     Series(
-        "softening-steel", MILD_STEEL, _SLUGS, _V, "outside",
-        {"strain-softening": {"rise": -0.45, "strain": 0.02}},
+        "rate-copper", COPPER, _MORE, _V, "single",
+        {"strain-rate-hardening": {"C": 0.05, "reference": 1.0}},
     ),
+    Series("bars-aluminium", ALUMINIUM, _BARS, _V, "single", {"rod-longitudinal-waves": {}}),
     Series(
-        "crushed-aluminium", ALUMINIUM, _MORE, _V, "outside",
-        {"crushed-layer": {"rise": -0.6, "thickness": 0.12e-3}},
+        "voce-copper", COPPER, _MORE, _V, "single",
+        {"work-hardening": {"rise": 1.5, "strain": 0.08}},
     ),
+    Series("null-brass", BRASS, _WIDE, _SLOW, "null"),
 )  # fmt: skip
-"""All series; each impact is a striker at a speed."""
+"""All series, in the order in which they are computed; each impact is a striker at a speed."""
 
 DIVISIONS = 9
 """Elements over the contact radius that is expected."""
@@ -192,7 +192,7 @@ def compute(
         materials[1, explicit.RISE], materials[1, explicit.STRAIN] = voce["rise"], voce["strain"]
     base = np.full(len(mesh.quads), 1e30)
     block = mesh.body == 1
-    base[block] = metal.Sy
+    base[block] = min(metal.Sy, 1e30)
     layer = effects.get("hardened-layer") or effects.get("crushed-layer")
     if layer:
         depth = -mesh.x[mesh.quads[block], 1].mean(axis=1)
