@@ -1,0 +1,139 @@
+"""What all figures share: the picture with its line, colours, finite elements beside."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import numpy.typing as npt
+from matplotlib.backends.backend_agg import FigureCanvasAgg
+from matplotlib.figure import Figure
+
+from ..campaigns.store import CaseRecord
+from ..core.material import Material, Pair
+from ..models import LAWS
+from ..models.base import ContactLaw
+
+Floats = npt.NDArray[np.float64]
+
+COLOURS = {
+    "hertz": "0.6", "jackson-green": "C0", "kogut-etsion": "C1", "kogut-komvopoulos": "C2",
+    "ye-komvopoulos": "C4", "brake-2015": "C5", "brake-2012": "C6", "stronge": "C8",
+    "thornton": "C9", "thornton-ning": "C9", "ghaednia": "C3", "fitted": "k",
+}  # fmt: skip
+"""Colour of a law in every figure."""
+
+
+@dataclass(frozen=True, slots=True)
+class Picture:
+    """One redrawn figure.
+
+    Parameters
+    ----------
+    number
+        The thesis's figure number, or a name of our own.
+    title
+        What it shows.
+    made
+        The figure.
+    note
+        One or two sentences: agrees, differs by how much, why.
+    """
+
+    number: str
+    title: str
+    made: Figure
+    note: str
+
+    @property
+    def file(self) -> str:
+        """Name of the PNG file."""
+        return f"figure-{self.number.replace('.', '-').replace(' ', '')}.png"
+
+    def save(self, folder: Path) -> Path:
+        """Write the PNG into `folder`."""
+        folder.mkdir(parents=True, exist_ok=True)
+        path = folder / self.file
+        self.made.savefig(path, dpi=110, metadata={"Software": None})
+        return path
+
+
+def sheet(columns: int = 1, *, size: tuple[float, float] = (6.4, 4.6)) -> tuple[Figure, list[Any]]:
+    """Return an off-screen figure and its axes in one row."""
+    made = Figure(figsize=(size[0] * columns, size[1]), layout="constrained")
+    FigureCanvasAgg(made)
+    return made, list(made.subplots(1, columns, squeeze=False)[0])
+
+
+def finish(axis: Any, *, x: str, y: str, legend: str = "") -> None:
+    """Label an axis; `legend` is the title of its legend."""
+    axis.set_xlabel(x)
+    axis.set_ylabel(y)
+    axis.grid(alpha=0.3)
+    handles, _ = axis.get_legend_handles_labels()
+    if handles:
+        axis.legend(fontsize=7, title=legend or None, title_fontsize=7)
+
+
+def laws(*names: str) -> list[ContactLaw]:
+    """Return the laws of these names that there are."""
+    return [LAWS[name] for name in names if name in LAWS]
+
+
+def look(law: ContactLaw) -> dict[str, Any]:
+    """Colour, width and label of a law's curve."""
+    name = law.name.split("+")[0]
+    wide = name in ("ghaednia", "fitted")
+    return {"color": COLOURS.get(name, "0.4"), "lw": 2.0 if wide else 1.3, "label": law.name}
+
+
+TABLE_2_1 = {
+    1: (200e9, 200e9, 200e6, 0.30), 2: (200e9, 200e9, 300e6, 0.33), 3: (71.7e9, 200e9, 300e6, 0.33),
+    4: (71.7e9, 200e9, 503e6, 0.30), 5: (200e9, 200e9, 503e6, 0.33),
+}  # fmt: skip
+"""E_s, E_f, Sy_min and nu_s of the thesis's five cases; nu_f = 0.3 and R = 1 mm."""
+
+
+def table_2_1(number: int, ratio: float) -> Pair:
+    """Pair `number` of table 2.1 at the strength ratio Sy* = `ratio`."""
+    E_s, E_f, S, nu = TABLE_2_1[number]
+    s, f = (S, S / ratio) if ratio < 1.0 else (S * ratio, S)
+    return Pair(Material(E=E_s, nu=nu, Sy=s), Material(E=E_f, nu=0.3, Sy=f), 1e-3)
+
+
+def same(record: CaseRecord, pair: Pair, *, within: float = 0.02) -> bool:
+    """Whether a stored case is this pair up to scale (nu within 0.01)."""
+    mine, theirs = (_groups(p) for p in (pair, record.case.pair))
+    return bool(np.allclose(mine[:3], theirs[:3], rtol=within) and np.allclose(
+        mine[3:], theirs[3:], atol=0.011
+    ))  # fmt: skip
+
+
+def _groups(pair: Pair) -> list[float]:
+    s, f = pair.sphere, pair.flat
+    stiff = [1e9 if b.rigid else b.E / pair.Sy_min for b in (s, f)]
+    nus = [0.0 if b.rigid else b.nu for b in (s, f)]
+    return [*stiff, min(max(pair.Sy_ratio, 1e-3), 1e3), *nus]
+
+
+def at_depth(record: CaseRecord, D: float) -> dict[str, float]:
+    """A stored curve at Delta/R = `D`: force, radius, sphere share, hardness; nan beyond it."""
+    R = record.case.pair.R
+    x = record.curve["delta"] / R
+    if not x[0] <= D <= x[-1]:
+        return {}
+    names = ("force", "radius", "sphere", "hardness")
+    return {n: float(np.interp(D, x, record.curve[n])) for n in names}
+
+
+def solved(records: Sequence[CaseRecord]) -> str:
+    """Return what the finite elements of a figure rest on."""
+    return f"{len(records)} solved cases" if records else "no campaign was found beside it"
+
+
+def percent(value: float) -> str:
+    """Deviation for a note, with sign."""
+    return f"{value:+.1%}"
