@@ -93,10 +93,22 @@ def fit(
         result, content, table, turns, out, validation=validation, choices=choices, thesis=thesis
     )
     console.print(f"coefficients: {out / 'fitted.json'}; report: {page}")
+    if publish and _PAGE.is_file():
+        _show_in_docs(out)
     if not result.outcome.completed:
         console.print(str(result.outcome))
         return EXIT_NOT_CONVERGED
     return 0
+
+
+def _show_in_docs(out: Path) -> None:
+    """Put the pictures that docs/closed-form.md shows beside it."""
+    import shutil
+
+    folder = _PAGE.parent / "pictures"
+    folder.mkdir(exist_ok=True)
+    for name in ("errors", "maps"):
+        shutil.copyfile(out / f"{name}.png", folder / f"fitted-{name}.png")
 
 
 def _files(campaigns: Sequence[Path] | None) -> list[Path]:

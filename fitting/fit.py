@@ -20,6 +20,7 @@ from ..core.errors import COMPLETED, Ending, Outcome
 from ..models.closed_form import COEFFICIENTS, contact
 from ..models.fitted import Fitted, contact_numbers, fitted_law
 from .form import LIMITS, START
+from .ripple import ripple_of
 from .table import ResidualTable, Table
 
 Floats = npt.NDArray[np.float64]
@@ -197,6 +198,8 @@ def _misfit_of(
     """Weighted ln F, ln a, share, residual depth, sphere's residual, exponent: form minus data."""
     known = np.isfinite(turns.exponent)
     exponent = np.where(known, turns.exponent, 0.0)
+    # a case whose mesh ripples says less about the curve than one that does not
+    unit_F, unit_a = (np.hypot(_UNIT, ripple) for ripple in ripple_of(table))
 
     def misfit(x: Any) -> Any:
         values = first.astype(np.result_type(x, float))
@@ -204,8 +207,8 @@ def _misfit_of(
         p = predict(values, table, turns)
         return np.concatenate(
             [
-                np.where(table.edge_seen, np.log(p.force / table.force), 0.0) / _UNIT,
-                np.where(table.edge_seen, np.log(p.radius / table.radius), 0.0) / _UNIT,
+                np.where(table.edge_seen, np.log(p.force / table.force), 0.0) / unit_F,
+                np.where(table.edge_seen, np.log(p.radius / table.radius), 0.0) / unit_a,
                 (p.share - table.share) / _UNIT,
                 (p.total - turns.total) / _UNIT,
                 (p.sphere - turns.sphere_part * turns.total) / _UNIT,

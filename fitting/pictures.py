@@ -119,24 +119,17 @@ def draw_curves(p: Prediction, table: Table, path: Path, *, most: int = 9) -> Pa
 
 
 def draw_choice(choices: Sequence[Choice], path: Path) -> Path:
-    """Draw the cross-validated misfit over the number of coefficients."""
-    figure, axes = _figure(1, 1, (8, 5))
+    """Draw the misfit of every candidate, the full form first, with its number of coefficients."""
+    figure, axes = _figure(1, 1, (9, 4.5))
     axis = axes[0]
-    for number, choice in enumerate(choices):
-        axis.plot(choice.free, choice.left_out, "o", color="tab:blue")
-        axis.plot(choice.free, choice.fitted, "o", mfc="none", color="grey")
-        axis.annotate(
-            choice.name,
-            (choice.free, choice.left_out),
-            fontsize=7,
-            xytext=(5, -4 + 5 * (number % 3)),
-            textcoords="offset points",
-        )
-    axis.set(
-        xlabel="number of coefficients",
-        ylabel="rms of the weighted misfit",
-        title="filled: combinations left out; open: fitted",
-    )
-    axis.grid(alpha=0.3)
+    places = np.arange(len(choices))
+    axis.barh(places, [c.left_out for c in choices], color="tab:blue", label="left out")
+    axis.barh(places, [c.fitted for c in choices], color="lightgrey", height=0.4, label="fitted")
+    axis.set_yticks(places, [f"{c.name} ({c.free})" for c in choices], fontsize=8)
+    axis.axvline(choices[0].left_out, color="black", lw=0.8, ls="--")
+    axis.invert_yaxis()
+    axis.set_xlabel("rms of the weighted misfit (1: 1 % of F and a, 0.01 of a share)")
+    axis.set_title("what each term is worth; number of coefficients in brackets", fontsize=10)
+    axis.legend(fontsize=8)
     figure.savefig(path, dpi=110)
     return path

@@ -10,7 +10,8 @@ from typing import Any
 import numpy as np
 import numpy.typing as npt
 
-from .fit import Errors, Fit, Prediction
+from .fit import Errors, Fit, Prediction, errors_of
+from .ripple import ripple_of, without_ripple
 from .select import Choice
 from .table import ResidualTable, Table
 
@@ -125,7 +126,13 @@ def write_report(
     draw_maps(shown, table, folder / "maps.png")
     draw_curves(shown, table, folder / "curves.png")
     limits = content["domain"]["limits"].items()
-    columns = [("fitted", fit.errors), ("left out", fit.held_out), ("validation", validation)]
+    columns = [
+        ("fitted", fit.errors),
+        ("left out", fit.held_out),
+        ("left out, ripple smoothed", errors_of(shown, without_ripple(table), turns)),
+        ("validation", validation),
+    ]
+    ripple_F, ripple_a = (100.0 * float(np.median(r)) for r in ripple_of(table))
     parts = [
         "# The fitted law\n",
         f"{len(table.pairs)} combinations, {len(table.D)} depths, {len(turns.D)} unloadings; "
@@ -133,8 +140,9 @@ def write_report(
         "not see it.\n",
         "Accuracy of the data: "
         + "; ".join(", ".join(c["accuracy"]) for c in content["provenance"]["campaigns"])
-        + ". The forces of a coarse mesh ripple with the period of a surface element (about 2 % "
-        "rms at `smoke`), and no smooth law can follow that.\n",
+        + ". F and a of a mesh ripple with the period of a surface element; no smooth law can "
+        f"follow: here {ripple_F:.2g} % and {ripple_a:.2g} % (median over the cases of the rms "
+        "deviation from a local cubic).\n",
         "## Errors\n",
         markdown(error_rows(columns)),
         "![errors](errors.png)\n\n![maps](maps.png)\n\n![curves](curves.png)\n",

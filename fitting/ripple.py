@@ -1,0 +1,58 @@
+"""The ripple of finite-element forces and radii, which no smooth law can follow.
+
+With an imposed approach, F and a of a mesh ripple with the period of a surface element once the
+contact is plastic. A local cubic in ln Delta over the neighbouring depths shows how much.
+"""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import numpy as np
+import numpy.typing as npt
+
+from .table import Table
+
+Floats = npt.NDArray[np.float64]
+
+_REACH = 1.0  # half-width of the neighbourhood in ln Delta: several periods of a coarse mesh
+_FEWEST = 6
+
+
+def without_ripple(table: Table) -> Table:
+    """Return the rows with ln F and ln a replaced by local cubics in ln Delta."""
+    return replace(
+        table,
+        force=np.exp(_smoothed(table, np.log(table.force))),
+        radius=np.exp(_smoothed(table, np.log(table.radius))),
+    )
+
+
+def ripple_of(table: Table) -> tuple[Floats, Floats]:
+    """Rms ripple of ln F and ln a of each row's case beyond first yield, shape (n,) each."""
+    smooth = without_ripple(table)
+    yielding = (table.w >= 1.0) & table.edge_seen
+
+    def of(off: Floats) -> Floats:
+        rms = np.zeros(len(table.pairs))
+        for number in range(len(table.pairs)):
+            m = yielding & (table.case == number)
+            rms[number] = np.sqrt(np.mean(off[m] ** 2)) if m.any() else 0.0
+        return rms[table.case]
+
+    return (
+        of(np.log(table.force / smooth.force)),
+        of(np.log(table.radius / smooth.radius)),
+    )
+
+
+def _smoothed(table: Table, value: Floats) -> Floats:
+    out = value.copy()
+    x = np.log(table.D)
+    for number in range(len(table.pairs)):
+        rows = np.flatnonzero((table.case == number) & table.edge_seen)
+        for k in rows:
+            near = rows[np.abs(x[rows] - x[k]) <= _REACH]
+            if len(near) >= _FEWEST:
+                out[k] = np.polyfit(x[near] - x[k], value[near], 3)[-1]
+    return out
