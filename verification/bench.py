@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import json
 import time
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
 from dataclasses import dataclass, field
 from enum import Enum
 from pathlib import Path
@@ -121,6 +121,14 @@ class Bench:
             f"{time.perf_counter() - started:.0f} s"
         )
         return _solved(case.pair, raw)
+
+    def kept_solves(self) -> Iterator[tuple[Case, Solved]]:
+        """Every solve of the present numerics that is kept."""
+        for path in sorted((self.folder / "solves").glob("*.json")):
+            raw = json.loads(path.read_text(encoding="utf-8"))
+            case = Case.from_specification(raw["case"])
+            if path.stem == case.id[:24]:
+                yield case, _solved(case.pair, raw)
 
     def _warm_up(self) -> None:
         """Let the compiled code be loaded, so that no timed solve pays for it."""
