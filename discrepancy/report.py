@@ -11,6 +11,7 @@ from pathlib import Path
 import numpy as np
 from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.figure import Figure
+from matplotlib.ticker import FuncFormatter, NullFormatter
 
 from .fit import Fit
 from .text import headline, number, observable, own_parameters
@@ -206,6 +207,10 @@ def figure_misfit(v: Verdict) -> Figure:
             )  # fmt: skip
         axis.axhline(0.0, color="#444", lw=0.8)
         axis.set_xscale("log")
+        axis.xaxis.set_major_formatter(FuncFormatter(lambda x, _: f"{x:g}"))
+        axis.xaxis.set_minor_formatter(NullFormatter())
+        ticks = sorted({float(f"{x:.2g}") for x in speed})
+        axis.set_xticks(ticks if len(ticks) < 7 else ticks[:: len(ticks) // 5])
         axis.set_title(observable(name), fontsize=10)
         axis.set_xlabel("approach speed [m/s]", fontsize=9)
         axis.set_ylabel("recording off simulation" + (" [%]" if log else ""), fontsize=9)

@@ -192,7 +192,7 @@ def diagnose(
             tuple(m.name for m in f.mechanisms) for f in choice.members[1:]
         ),
         audit=findings, probabilities=_probabilities(problem, ranking),
-        scores=_scores(ranking, nulls, scores), located=located,
+        scores=_scores(ranking, nulls, scores, confirmed), located=located,
         parameters=parameters_of(problem, best), nuisance_pulls=_pulls(problem, best),
         excluded=ranking.excluded, limits=_limits(ranking, calibration),
         improvement=_improvement(scores[ranking.base.name], scores[best.name]),
@@ -306,13 +306,13 @@ def _probabilities(problem: Problem, ranking: Ranking) -> dict[str, float]:
 
 
 def _scores(
-    ranking: Ranking, nulls: Nulls, scores: dict[str, HeldOut]
+    ranking: Ranking, nulls: Nulls, scores: dict[str, HeldOut], confirmed: dict[str, float]
 ) -> dict[str, dict[str, float]]:
     found = {}
     for f in (ranking.base, *ranking.singles, *ranking.pairs):
         if f.name in scores:
             found[f.name] = {
-                "evidence": f.log_evidence - ranking.base.log_evidence,
+                "evidence": confirmed.get(f.name, f.log_evidence - ranking.base.log_evidence),
                 "held_out": scores[f.name].score,
                 "p_value": p_fit(f, nulls),
             }
