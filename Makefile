@@ -12,7 +12,7 @@ export OMP_NUM_THREADS ?= 1
 export OPENBLAS_NUM_THREADS ?= 1
 
 .DEFAULT_GOAL := help
-.PHONY: help install campaign fit impact diagnose recordings proof verify test check bench lock clean
+.PHONY: help install campaign fit impact diagnose figures recordings proof verify test check bench lock clean
 
 help: ## list the targets
 	@grep -hE '^[a-z]+:.*## ' $(MAKEFILE_LIST) | sed -E 's/^([a-z]+):.*## /\1\t/' | expand -t 12
@@ -33,6 +33,9 @@ impact: $(STAMP) ## chapter 3 of the thesis: restitution and dent against drop h
 
 diagnose: $(STAMP) ## say what physics is missing in SET (the thesis's oblique impacts), report in build/diagnose
 	@$(BIN)/dentscope diagnose "$(SET)"
+
+figures: $(STAMP) ## redraw the thesis's figures from our own numbers into docs/gallery
+	@$(BIN)/dentscope figures
 
 recordings: $(STAMP) ## fetch the raw recordings that may not be shipped, by address and checksum
 	@$(BIN)/dentscope recordings fetch

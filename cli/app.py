@@ -15,6 +15,7 @@ from . import campaign, laws, proof, recordings
 from .case import case
 from .diagnose import diagnose
 from .doctor import doctor
+from .figures import figures
 from .fit import fit
 from .impact import impact
 from .inverse import inverse
@@ -42,6 +43,7 @@ app.command()(fit)
 app.command()(impact)
 app.command()(inverse)
 app.command()(diagnose)
+app.command()(figures)
 app.command()(verify)
 app.command()(doctor)
 
