@@ -63,7 +63,7 @@ class RodLongitudinalWaves(Mechanism):
         "q_k'' + eta w_k q_k' + w_k^2 q_k = sqrt(2/m) F sin(theta), w_k = k pi sqrt(E/rho)/L"
     )
     parameters = (_PARTICIPATION,)
-    direction: ClassVar[Mapping[str, int]] = {"restitution": -1}
+    direction: ClassVar[Mapping[str, int]] = {"contact_time_s": 1}
 
     def applies(self, situations: Sequence[Situation]) -> str:
         """Needs a rod."""

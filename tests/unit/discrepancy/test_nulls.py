@@ -51,7 +51,7 @@ def test_null_laws_stay_within_some_per_cent_of_what_they_are_levelled_to(kind: 
     d = np.geomspace(5e-6, 3e-4, 40)
     base = np.interp(np.log(d), np.log(ref.depth), np.log(ref.force))
     off = np.interp(np.log(d), found.log_depth, found.log_force) - base
-    assert np.abs(off).max() < 0.12
+    assert np.abs(off).max() < 0.15
     assert abs(off.mean()) < 0.02
     assert off.std() > 1e-3
 
