@@ -7,10 +7,10 @@ the other body's share the updated radius R' (2.18).
 
 As it stands the model steps up by 29 to 43 % where Hertz ends, at Delta = 1.9 delta_y, steps up by
 another 22 % at delta_n = 3.7, and is meant for delta_n of 5 and more. Between delta_n = 1.9 and 8
-the two are blended here, smoothly in ln delta_n, and the radius follows 2.21 and 2.28 all the way
-instead of beginning with 2.20 and 2.27. At delta_n = 408 the printed factors fall by 0.4 to 0.9 %,
-and beyond with an infinite slope; the hand-over is stretched to 612, where the radius differs by
-up to 1.5 % from the printed one. Both are our choice and make the law smooth.
+the two are blended here, smoothly in ln delta_n, and the radius goes from Jackson and Green's
+(1.21) to 2.21 and 2.28 without 2.20 and 2.27. At delta_n = 408 the printed factors fall by 0.4 to
+0.9 %, and beyond with an infinite slope; the hand-over is stretched to 480, where the radius
+differs by up to 2.3 % from the printed one. Both are our choice and make the law smooth.
 
 What depends on the pair alone is computed once, and every power comes from a logarithm.
 """
@@ -49,9 +49,8 @@ _ELASTIC = 1.9  # end of Hertz, and of the elastic weight's argument
 _BLENDED = 8.0  # from here on the model alone
 _LOG_ELASTIC = math.log(_ELASTIC)
 _LOG_BLENDED = math.log(_BLENDED)
-_GROWN = 4.0  # the same for the contact radius
 _HIGH = 408.0  # border of the two correction factors
-_HIGHER = 612.0  # where the second one stands alone
+_HIGHER = 480.0  # where the second one stands alone
 BORDER = 1.07  # Sy* at which the weak body changes
 _FLATTENING_ONLY = 0.06  # Sy* below which 2.34 has no real value
 
@@ -237,16 +236,17 @@ def _loading(par, depth):
 
 @branch_kernel
 def _radius(par, depth, peak):
-    if depth <= _ELASTIC * par[ONSET]:
+    w = depth / par[ONSET]
+    if w <= _ELASTIC:
         return math.sqrt(par[R] * depth)
+    # until the model takes over the contact spreads as Jackson and Green's does (1.21)
+    start = math.sqrt(par[R] * depth * math.exp(par[_B] * (math.log(w) - _LOG_ELASTIC)))
     delta, updated, n = _weak_body(par, depth)
     if n <= _ELASTIC:
-        return math.sqrt(par[R] * depth)
+        return start
     log_n = math.log(n)
-    # the radius leaves Hertz's sooner than the force does
-    k = _smooth_step(n, _ELASTIC, _GROWN) if n < _GROWN else 1.0
-    own = _model_radius(par, delta, updated, n, log_n)
-    return (1.0 - k) * math.sqrt(par[R] * depth) + k * own
+    k = _smooth_step(log_n, _LOG_ELASTIC, _LOG_BLENDED) if n < _BLENDED else 1.0
+    return (1.0 - k) * start + k * _model_radius(par, delta, updated, n, log_n)
 
 
 @residual_kernel

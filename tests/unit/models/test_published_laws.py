@@ -312,3 +312,20 @@ def test_every_law_says_what_was_read_and_what_is_missing():
         with pytest.raises(InputError, match="not offered"):
             law_named(name)
         assert "paper" in reason
+
+
+@pytest.mark.parametrize("ratio", [0.1, 1.0, 10.0])
+def test_stretched_hand_over_of_the_thesis_model_stays_near_the_printed_factors(ratio):
+    """Between delta_n = 408 and 480 chi differs by at most 2.3 % from 2.25 and 2.32."""
+    from dentscope.models import ghaednia
+
+    s, f = (3e8, 3e8 / ratio) if ratio < 1.0 else (3e8 * ratio, 3e8)
+    pair = Pair(Material(E=2e11, nu=NU, Sy=s), Material(E=2e11, nu=NU, Sy=f), 1e-3)
+    par = LAWS["ghaednia"].parameters(pair)
+    n = np.linspace(409.5, 700.0, 500)
+    used = np.array([ghaednia._correction(par, x, math.log(x)) for x in n])
+    power = ratio**6 if ratio <= 1.07 else ratio ** (-0.0091 * np.log(n - 408.0) ** 3.53)
+    printed = 1.024 - 0.004 * (n - 408.0) ** 0.3814 + (0.013 + 2.2e-5 * (n - 408.0)) * power
+    off = np.abs(used / printed - 1.0)
+    assert 0.01 < off.max() < 0.023
+    assert off[n > 480.0].max() < 1e-12
