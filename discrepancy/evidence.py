@@ -97,7 +97,7 @@ class Grid:
         n = FINE.get(len(self.parameters), 9)
         return [(np.arange(n) + 0.5) / n for _ in self.parameters]
 
-    def values(self, places: Sequence[float]) -> dict[str, float]:
+    def values(self, places: Sequence[float] | Array) -> dict[str, float]:
         """Return the parameters at places in (0, 1)."""
         return {p.name: float(p.value(x)) for p, x in zip(self.parameters, places, strict=True)}
 

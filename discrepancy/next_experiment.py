@@ -15,12 +15,13 @@ from dataclasses import dataclass, replace
 import numpy as np
 from numpy.typing import NDArray
 
-from ..recordings.setup_file import Quantity
+from ..recordings import Quantity, Striker
 from .fit import Fit
 from .forward import Point, Simulator
 from .problem import LOGARITHMIC, Condition, Problem
 
 Array = NDArray[np.float64]
+_Candidate = tuple[str, Condition, Striker | None]
 
 _SAMPLES = 6
 _USUAL = {
@@ -122,9 +123,9 @@ def _noise(name: str, seen: Sequence[dict[str, Array]], problem: Problem) -> flo
     return _USUAL[name] * (1.0 if name in LOGARITHMIC else max(size, 1e-12))
 
 
-def _candidates(problem: Problem) -> list[tuple[str, Condition, object]]:
+def _candidates(problem: Problem) -> list[_Candidate]:
     """Conditions near those of the set: other speeds, lengths, radii and angles."""
-    found: list[tuple[str, Condition, object]] = []
+    found: list[_Candidate] = []
     heard = set()
     for c in problem.conditions:
         if c.striker in heard:

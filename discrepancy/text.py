@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from typing import Any
 
 from .verdict import OUTSIDE, Verdict
 
@@ -98,13 +99,13 @@ def lines(v: Verdict) -> list[str]:
     return out
 
 
-def own_parameters(v: Verdict) -> dict[str, dict[str, float]]:
+def own_parameters(v: Verdict) -> dict[str, dict[str, Any]]:
     """Return the parameters of the best explanation's mechanisms only."""
     names = [q.name for q in v.best.grid.parameters]
     return {n: v.parameters[n] for n in names}
 
 
-def number(q: dict[str, float]) -> str:
+def number(q: dict[str, Any]) -> str:
     """Return a value with its unit."""
     unit = "" if q["unit"] == "-" else f" {q['unit']}"
     return f"{q['value']:.3g}{unit}"

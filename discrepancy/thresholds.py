@@ -104,7 +104,14 @@ def rig_of(problem: Problem, z: Array) -> Rig:
 
 def _reference(scene: Scene, known: dict[tuple[float, ...], Reference]) -> Reference:
     pair, law = scene.pair, scene.law
-    key = (pair.R, pair.E_reduced, pair.Sy_min, pair.Sy_ratio, pair.elastic_share)
+    key: tuple[float, ...] = (
+        pair.R,
+        pair.E_reduced,
+        pair.Sy_min,
+        pair.Sy_ratio,
+        pair.elastic_share,
+    )
+    # a pair without yield has no ratio of strengths
     key = tuple(-1.0 if math.isnan(x) else x for x in key)
     if key not in known:
         table = strength_table(law, pair)

@@ -63,7 +63,7 @@ def _kept(values: Values, around: Surroundings) -> float:
     if not around.from_height:
         return 1.0
     growth = around.height_share ** values["loss_growth"]
-    return max(1.0 - values["speed_loss"] * growth, 0.3)
+    return float(max(1.0 - values["speed_loss"] * growth, 0.3))
 
 
 class Tilt(Mechanism):

@@ -85,7 +85,7 @@ class Adhesion(Mechanism):
 
     @staticmethod
     def _work(scene: Scene, W: float) -> float:
-        return 7.09 * (W**5 * scene.pair.R**4 / scene.pair.E_reduced**2) ** (1.0 / 3.0)
+        return float(7.09 * (W**5 * scene.pair.R**4 / scene.pair.E_reduced**2) ** (1.0 / 3.0))
 
 
 class SqueezeFilm(Mechanism):

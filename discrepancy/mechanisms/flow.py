@@ -218,7 +218,7 @@ def _heat(scene: Scene, around: Surroundings) -> float:
 def _edge(scene: Scene) -> float:
     """Largest a/R, from the volume of a dent that takes up the energy at 2.8 S_y."""
     volume = energy(scene) / (2.8 * scene.pair.Sy_min)
-    return min((4.0 * volume * scene.pair.R / math.pi) ** 0.25 / scene.pair.R, 1.0)
+    return float(min((4.0 * volume * scene.pair.R / math.pi) ** 0.25 / scene.pair.R, 1.0))
 
 
 @dataclass(frozen=True, slots=True)
