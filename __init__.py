@@ -12,7 +12,8 @@ The stages, in the order in which a result passes through them:
     discrepancy  what physics the simulation of a recording left out
 """
 
-from .core.compiled import keep_compiled_code
+# absolute: pytest imports this file under another name where the checkout's is no identifier
+from dentscope.core.compiled import keep_compiled_code
 
 __version__ = "0.1.0"
 
