@@ -26,6 +26,7 @@ CANDIDATES: dict[str, Mapping[str, float]] = {
     "share without drift towards the sphere": {"g1": 0.0, "g5": 1.0},
     "share of constant sharpness": {"g3": 1000.0, "g4": 0.0},
     "share blind to Poisson's ratio": {"g2": 1.0},
+    "elastic displacements blind to the elastic body": {"d1": 0.0},
     "Hertz's recovery": {"u1": 0.0, "u2": 1.0, "u3": 100.0},
 }
 """What is compared: name of the candidate and the coefficients that it holds."""

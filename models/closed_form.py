@@ -21,21 +21,21 @@ PI = 3.141592653589793
 TINY = 1e-9  # keeps the weights of the two bodies defined when neither yields
 
 PAIR_NUMBERS = (
-    "x_s", "W", "alpha", "beta", "gamma", "e0", "r_s", "r_f", "C_r",
+    "x_s", "W", "alpha", "beta", "gamma", "e0", "lag", "r_s", "r_f", "C_r",
 )  # fmt: skip
 """What `of_pair` returns, in this order."""
 
 COEFFICIENTS = (
     "n", "wy", "m", "A", "a0", "a1", "e_s", "e_f", "h_s", "h_f", "r", "y0",
     "c", "b0", "b1", "c_s", "c_f", "t", "y1",
-    "g0", "g1", "g2", "g3", "g4", "g5", "k1", "k2", "r1", "r2", "u1", "u2", "u3",
+    "g0", "g1", "g2", "g3", "g4", "g5", "k1", "k2", "r1", "r2", "d1", "u1", "u2", "u3",
 )  # fmt: skip
 """Every coefficient, in the order of the coefficients file."""
 
 
 def of_pair(
     k_s, k_f, nu_s, nu_f, q_s, q_f,
-    n, wy, A, a0, a1, e_s, e_f, b0, b1,
+    n, wy, A, a0, a1, e_s, e_f, b0, b1, d1,
 ):  # fmt: skip
     """Numbers of a pair that do not change with the depth.
 
@@ -43,8 +43,9 @@ def of_pair(
     -------
     tuple
         `PAIR_NUMBERS`: elastic share of the sphere (2.3); W = w/D; alpha, beta: transition of the
-        force; gamma: transition of the radius; e0: finite elastic strain in the force; r_s, r_f:
-        1/S of each body over the sum of both; C_r = C_f/C_s.
+        force; gamma: transition of the radius; e0: finite elastic strain in the force; lag: of the
+        pressure's change behind first yield; r_s, r_f: 1/S of each body over the sum of both;
+        C_r = C_f/C_s.
     """
     stiff = 1.0 / (k_s + k_f)
     x_s = k_s * stiff
@@ -67,12 +68,13 @@ def of_pair(
     beta = wy * slope * slope
     gamma = wy / b0 * exp(-b1 * elastic)
     e0 = e_s * x_s + e_f * x_f
+    lag = exp(d1 * elastic)
     j_s = stiff * q_s + TINY
     j_f = stiff * q_f + TINY
     r_s = j_s / (j_s + j_f)
     r_f = j_f / (j_s + j_f)
     C_r = C_f / C_s
-    return x_s, W, alpha, beta, gamma, e0, r_s, r_f, C_r
+    return x_s, W, alpha, beta, gamma, e0, lag, r_s, r_f, C_r
 
 
 @register_jitable
@@ -110,16 +112,16 @@ def radius_at(D, y, phi, gamma, c, c_s, c_f, t, y1):
 
 
 @register_jitable
-def share_at(D, y, F, a, phi, x_s, k1, k2):
+def share_at(D, y, F, a, phi, x_s, lag, k1, k2):
     """delta_s*, the sphere's share of the approach."""
-    elastic = (0.75 - k1 * y / (y + k2)) * F / (a * D)
+    elastic = (0.75 - k1 * y / (y + k2 * lag)) * F / (a * D)
     return phi + elastic * (x_s - phi)
 
 
 @register_jitable
-def permanent_at(D, y, F, a, e0, r1, r2):
+def permanent_at(D, y, F, a, e0, lag, r1, r2):
     """Permanent approach over the largest one."""
-    return 1.0 - (0.75 - r1 * y / (y + r2)) * F * exp(-e0 * sqrt(D)) / (a * D)
+    return 1.0 - (0.75 - r1 * y / (y + r2 * lag)) * F * exp(-e0 * sqrt(D)) / (a * D)
 
 
 @register_jitable
@@ -131,7 +133,7 @@ def exponent_at(y, u1, u2, u3):
 @register_jitable
 def contact(
     D,
-    x_s, W, alpha, beta, gamma, e0, r_s, r_f, C_r,
+    x_s, W, alpha, beta, gamma, e0, lag, r_s, r_f, C_r,
     wy, m, h_s, h_f, r, y0, c, c_s, c_f, t, y1,
     g0, g1, g2, g3, g4, g5, k1, k2, r1, r2, u1, u2, u3,
 ):  # fmt: skip
@@ -147,8 +149,8 @@ def contact(
     phi = plastic_part_at(D, W, x_s, r_s, r_f, C_r, g0, g1, g2, g3, g4, g5)
     F = force_at(D, y, phi, alpha, beta, e0, h_s, h_f, r, y0)
     a = radius_at(D, y, phi, gamma, c, c_s, c_f, t, y1)
-    share = share_at(D, y, F, a, phi, x_s, k1, k2)
-    left = permanent_at(D, y, F, a, e0, r1, r2)
+    share = share_at(D, y, F, a, phi, x_s, lag, k1, k2)
+    left = permanent_at(D, y, F, a, e0, lag, r1, r2)
     N = exponent_at(y, u1, u2, u3)
     return F, a, share, left, phi, N
 

@@ -50,7 +50,7 @@ from .closed_form import (
 
 Floats = npt.NDArray[np.float64]
 
-FORMAT = "dentscope-coefficients/3"
+FORMAT = "dentscope-coefficients/4"
 BOUNDS = ("Sy_ratio", "E_reduced_over_Sy_min", "nu", "elastic_share", "Delta_over_R", "a_over_R")
 """What the domain of validity is stated in; each has a smallest and a largest value."""
 
@@ -62,7 +62,7 @@ _CONTACT = arguments_of(contact)[1:]
 
 _ALL = types.UniTuple(float64, 6)(VECTOR, float64)
 _AT = {name: N_COMMON + k for k, name in enumerate(_CONTACT)}
-assert len(_CONTACT) == 33
+assert len(_CONTACT) == 34
 # places in the parameter vector, for the kernels that need only some of the numbers
 _X_S, _W, _ALPHA, _BETA, _GAMMA, _FINITE_E = (
     _AT[k] for k in ("x_s", "W", "alpha", "beta", "gamma", "e0")
@@ -109,7 +109,7 @@ def everything(par, depth):
         depth / par[R],
         p[0], p[1], p[2], p[3], p[4], p[5], p[6], p[7], p[8], p[9], p[10], p[11],
         p[12], p[13], p[14], p[15], p[16], p[17], p[18], p[19], p[20], p[21], p[22], p[23],
-        p[24], p[25], p[26], p[27], p[28], p[29], p[30], p[31], p[32],
+        p[24], p[25], p[26], p[27], p[28], p[29], p[30], p[31], p[32], p[33],
     )  # fmt: skip
 
 
@@ -269,7 +269,7 @@ def _body(body: Material) -> tuple[float, float, float]:
 
 
 def contact_numbers(coefficients: Mapping[str, float], bodies: Floats) -> Floats:
-    """What `closed_form.contact` takes behind D for each pair, shape (n_pairs, 33)."""
+    """What `closed_form.contact` takes behind D for each pair, shape (n_pairs, 34)."""
     numbers = of_pair(*bodies.T, *(coefficients[name] for name in _OF_PAIR))
     given = {**coefficients, **dict(zip(PAIR_NUMBERS, numbers, strict=True))}
     columns = [np.broadcast_to(given[name], len(bodies)) for name in _CONTACT]
