@@ -31,7 +31,7 @@ def run(
     out: _Base = _BASE,
     hours: Annotated[float, typer.Option(help="Stop after so many hours.")] = 1e9,
     most: Annotated[int, typer.Option(help="Stop after so many sets.")] = 10**9,
-    limit: Annotated[float, typer.Option(help="Longest time of one diagnosis [s].")] = 300.0,
+    limit: Annotated[float, typer.Option(help="Longest time of one diagnosis [s].")] = 900.0,
 ) -> None:
     """Go on with the run of this source tree: draw, seal, diagnose, seal. Stop it at any time."""
     from ..discrepancy.proof.lists import LISTS

@@ -9,8 +9,8 @@ stiffness 2 E' a at the peak. With W = (depth/R) (E'/Sy)^2:
     residual = d - m F/(2 E' a),   m = 3/2 - (3/2 - m_inf) W/(W + w3)
 
 The coefficients were fitted to quasi-static finite-element curves of a hard sphere on a softer flat
-(eight pairs, E'/Sy from 170 to 2200, depth up to 0.06 R): force within 2.5 % rms, residual depth
-within 5 %. K. L. Johnson, Contact Mechanics (1985), section 6.3 for the cavity picture.
+(eight pairs, E'/Sy from 170 to 2200, depth up to 0.06 R): force within 3 % rms, residual depth
+within 5 % of the depth. K. L. Johnson, Contact Mechanics (1985), section 6.3 for the cavity picture.
 """
 
 from __future__ import annotations

@@ -111,7 +111,7 @@ def _children_cpu() -> float:
 
 
 def carry_on(
-    run: Path, which: str, *, hours: float = float("inf"), most: int = 10**9, limit_s: float = 300.0
+    run: Path, which: str, *, hours: float = float("inf"), most: int = 10**9, limit_s: float = 900.0
 ) -> Iterator[tuple[str, dict[str, Any]]]:
     """Go on with a run where it stopped; yield each set's name and its verdict event.
 
