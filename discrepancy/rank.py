@@ -13,6 +13,7 @@ from .fit import Fit, baseline_situations, fit, grid_of, responses_at
 from .forward import Simulator
 from .mechanisms import MECHANISMS
 from .mechanisms.base import Mechanism
+from .outliers import outlying, without_weight
 from .thresholds import gain
 
 Array = NDArray[np.float64]
@@ -102,6 +103,7 @@ def rank(
                 continue
             reason = f"its largest plausible effect is {size:.1g} standard errors over all cells"
         excluded[mechanism.name] = reason
+    base, screened = _cleared(simulator, base, screened)
     order = sorted(screened, key=lambda s: -s.log_bayes)
     chosen = [s for i, s in enumerate(order) if i < FULL or s.log_bayes > order[0].log_bayes - NEAR]
     singles = []
@@ -110,6 +112,27 @@ def rank(
         singles.append(fit(simulator, (found.mechanism,), start=base, place=found.place, rounds=3))
     singles.sort(key=lambda f: -f.log_evidence)
     return Ranking(base, tuple(screened), tuple(singles), (), excluded)
+
+
+def _cleared(
+    simulator: Simulator, base: Fit, screened: list[Screened]
+) -> tuple[Fit, list[Screened]]:
+    """Take the weight from outliers, and fit and screen again what that changes."""
+    residual = base.residual
+    lead = max(screened, key=lambda s: s.log_bayes, default=None)
+    if lead is not None and lead.log_bayes > 0.0:
+        misfit = np.sum(base.linear.white(residual - lead.effect) ** 2, axis=1)
+        residual = residual - lead.effect[int(np.argmin(misfit))]
+    outliers = outlying(base, residual)
+    if not outliers.any():
+        return base, screened
+    simulator.problem = without_weight(simulator.problem, outliers)
+    again = fit(simulator, (), start=base, rounds=2)
+    white = again.linear.white(again.residual)[None, :]
+    return again, [
+        replace(s, log_bayes=float(gain(white, np.zeros(1), again.linear, s.effect)[0]))
+        for s in screened
+    ]
 
 
 def with_pairs(

@@ -155,6 +155,7 @@ def diagnose(
     problem = problem_of(recordings)
     simulator = Simulator(problem)
     ranking = rank(simulator, progress=progress)
+    problem = simulator.problem
     progress("simulating sets in which nothing is missing")
     nulls = null_residuals(simulator, ranking.base, CONFIRMED_NULLS if confirm else NULLS, rng)
     calibration = calibrate(ranking, nulls)
