@@ -137,6 +137,7 @@ def _result(
     worst = total.max(axis=0)
     waves = ripples.max(axis=0)
     base = plan.base
+    marked = base.level == "production"
     settings = f"{base.divisions} divisions, edge {base.fine:g} a, steps of {base.step_ratio:g}"
     return Result(
         name="convergence",
@@ -152,12 +153,13 @@ def _result(
         measurements=(
             *(
                 Measurement(f"error of {name}, largest over cases and depths", float(value),
-                            "" if name == "delta_s*" else "%", None, mark, "own estimate")
+                            "" if name == "delta_s*" else "%", None, mark if marked else None,
+                            "own estimate")
                 for name, value, mark in zip(_NAMES, worst, _MARKS, strict=True)
             ),
             *(
                 Measurement(f"ripple of {name}, rms, worst case", float(waves[_NAMES.index(name)]),
-                            "%", None, mark, "own")
+                            "%", None, mark if marked else None, "own")
                 for name, mark in _RIPPLE_MARKS.items()
             ),
         ),
@@ -171,8 +173,8 @@ def _result(
         ),
         notes=(
             *((f"{done} of {of} cases measured so far.",) if done < of else ()),
-            *(("The marks are those of the production level, to Delta/R = 0.1; this is a coarser "
-               "level.",) if base.level != "production" else ()),
+            *(("The marks hold for the production level and Delta/R = 0.1; this is a coarser level, "
+               "to show how the error is measured.",) if base.level != "production" else ()),
         ),
         complete=done == of,
     )  # fmt: skip
