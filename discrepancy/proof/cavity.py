@@ -10,7 +10,7 @@ stiffness 2 E' a at the peak. With W = (depth/R) (E'/Sy)^2:
 
 The coefficients were fitted to quasi-static finite-element curves of a hard sphere on a softer flat
 (eight pairs, E'/Sy from 170 to 2200, depth up to 0.06 R): force within 3 % rms, residual depth
-within 5 % of the depth. K. L. Johnson, Contact Mechanics (1985), section 6.3 for the cavity picture.
+within 5 % of the depth. For the cavity picture: K. L. Johnson, Contact Mechanics (1985), 6.3.
 """
 
 from __future__ import annotations

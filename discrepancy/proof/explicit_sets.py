@@ -165,10 +165,10 @@ def _sizes(series: Series, rig: Rig) -> tuple[float, ...]:
         columns.append((faster - without[name]) / 0.01 / std)
     e = np.concatenate(changes)
     slope = np.concatenate(columns)
-    # dimensional analysis at fixed moduli: strength acts like speed to the power -5/4 at most
-    J = np.stack([slope * rig.tolerance["speed"], slope * rig.tolerance["strength"]], axis=1)
+    # an estimate: a plastic dent goes with v / sqrt(Sy), so strength acts as half as much speed
+    J = np.stack([slope * rig.tolerance["speed"], 0.5 * slope * rig.tolerance["strength"]], axis=1)
     inner = np.linalg.solve(np.eye(2) + J.T @ J, J.T @ e)
-    return (float(np.sqrt(max(e @ e - (J.T @ e) @ inner, 0.0))),)
+    return (math.sqrt(max(float(e @ e - (J.T @ e) @ inner), 0.0)),)
 
 
 assert all(set(s.effects) <= set(EFFECTS) or s.kind == "outside" for s in SERIES)
