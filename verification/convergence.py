@@ -173,8 +173,8 @@ def _result(
         ),
         notes=(
             *((f"{done} of {of} cases measured so far.",) if done < of else ()),
-            *(("The marks hold for the production level and Delta/R = 0.1; this is a coarser level, "
-               "to show how the error is measured.",) if base.level != "production" else ()),
+            *(("The marks hold for the production level and Delta/R = 0.1; this is a coarser "
+               "level, to show how the error is measured.",) if base.level != "production" else ()),
         ),
         complete=done == of,
     )  # fmt: skip
