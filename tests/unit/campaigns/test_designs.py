@@ -71,5 +71,5 @@ def test_drawn_pairs_do_not_move_with_the_version_of_a_library():
 
 
 def test_an_unknown_design_names_the_known_ones():
-    with pytest.raises(InputError, match="smoke, thesis, space, validation, full"):
+    with pytest.raises(InputError, match="smoke, survey, thesis, space, validation, full"):
         design_named("everything")
