@@ -41,7 +41,7 @@ recordings: $(STAMP) ## fetch the raw recordings that may not be shipped, by add
 	@$(BIN)/dentscope recordings fetch
 
 proof: $(STAMP) ## conceal effects in made-up recordings, diagnose them blindly, score: hours, resumable
-	@$(BIN)/dentscope proof run
+	@$(BIN)/dentscope proof run && $(BIN)/dentscope proof score
 
 verify: $(STAMP) ## verify the solver anew where needed and write docs/verification.md: hours, resumable
 	@$(BIN)/dentscope verify

@@ -11,7 +11,7 @@ import hashlib
 import os
 from pathlib import Path
 
-_STAGES = ("core", "fem", "models", "impact")
+_STAGES = ("core", "fem", "models", "impact", "discrepancy")
 _VARIABLE = "NUMBA_CACHE_DIR"
 
 
@@ -19,7 +19,7 @@ def source_digest(root: Path) -> str:
     """First 16 hexadecimal digits of the SHA-256 of all compiled stages' sources under `root`."""
     text = hashlib.sha256()
     for stage in _STAGES:
-        for path in sorted((root / stage).glob("*.py")):
+        for path in sorted((root / stage).rglob("*.py")):
             text.update(path.read_bytes())
     return text.hexdigest()[:16]
 
