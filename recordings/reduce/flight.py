@@ -11,11 +11,14 @@ from collections.abc import Callable
 from dataclasses import dataclass
 
 import numpy as np
+import numpy.typing as npt
 from scipy.ndimage import median_filter
 from scipy.signal import find_peaks
 
 from .measured import Array, Measured
 from .regression import Regression, robust_regression, robust_std
+
+Indices = npt.NDArray[np.int_]
 
 _CORE_FROM, _CORE_TO = 0.10, 0.45
 """Share of a flight's samples, counted from the contact, with which its fit begins."""
@@ -168,7 +171,7 @@ def fit_flight(
     return _fit(track, order[near:far], acceleration)
 
 
-def _grow_far(track: Track, flight: Flight, order: Array, far: int) -> int:
+def _grow_far(track: Track, flight: Flight, order: Indices, far: int) -> int:
     """Take in the next block away from the contact while it lies on the parabola."""
     block = order[far : far + max(2, (far * 15) // 100)]
     if block.size == 0:
@@ -179,7 +182,7 @@ def _grow_far(track: Track, flight: Flight, order: Array, far: int) -> int:
     return far + block.size if abs(float(np.median(z))) < limit else far
 
 
-def _grow_near(track: Track, flight: Flight, order: Array, near: int) -> int:
+def _grow_near(track: Track, flight: Flight, order: Indices, near: int) -> int:
     """Take in samples towards the contact until one deviates; keep a margin to that one."""
     if near == 0:
         return 0
@@ -190,7 +193,7 @@ def _grow_near(track: Track, flight: Flight, order: Array, near: int) -> int:
     return min(int(contact[-1]) + 1 + _MARGIN, near) if contact else 0
 
 
-def _deviation(track: Track, flight: Flight, index: Array) -> Array:
+def _deviation(track: Track, flight: Flight, index: Indices) -> Array:
     tau = track.time[index] - flight.reference
     design = _design(tau, flight.acceleration)
     spread = np.hypot(flight.height.sigma, flight.height.prediction_std(design))
@@ -198,7 +201,7 @@ def _deviation(track: Track, flight: Flight, index: Array) -> Array:
     return np.asarray((track.height[index] - flight.heights(track.time[index])) / spread)
 
 
-def _fit(track: Track, index: Array, acceleration: float | None) -> Flight:
+def _fit(track: Track, index: Indices, acceleration: float | None) -> Flight:
     index = np.sort(index)
     time = track.time[index]
     reference = float(time.mean())
@@ -219,7 +222,7 @@ def _design(tau: Array, acceleration: float | None) -> Array:
     return np.stack(columns, axis=1)
 
 
-def _height(c: Array, tau: Array, acceleration: float | None) -> Array:
+def _height(c: Array, tau: Array | float, acceleration: float | None) -> Array:
     a = c[2] if acceleration is None else acceleration
     return np.asarray(c[0] + c[1] * tau - 0.5 * a * tau**2)
 
@@ -272,11 +275,11 @@ def _contact(
     time = guess
     for _ in range(8):
         tb, ta = time - before.reference, time - after.reference
-        gap = _height(cb, tb, before.acceleration) - _height(ca, ta, after.acceleration)
+        gap = float(_height(cb, tb, before.acceleration) - _height(ca, ta, after.acceleration))
         rate = _rate(cb, tb, before.acceleration) - _rate(ca, ta, after.acceleration)
         if rate == 0.0:
             break
-        time -= float(gap / rate)
+        time -= gap / rate
     start, end = (time, time) if ends is None else (min(ends[0], time), max(ends[1], time))
     down = -_rate(cb, start - before.reference, before.acceleration)
     up = _rate(ca, end - after.reference, after.acceleration)

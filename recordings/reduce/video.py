@@ -10,6 +10,7 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass, replace
+from typing import Any
 
 import numpy as np
 import numpy.typing as npt
@@ -227,7 +228,7 @@ def _levels(frames: npt.NDArray[np.uint8], source: str) -> tuple[float, float]:
 
 def _track_rod(
     frames: npt.NDArray[np.uint8], critical: int, levels: tuple[float, float], source: str
-) -> tuple[dict[str, Array], RodShape]:
+) -> tuple[dict[str, Any], RodShape]:
     shape = _rod_shape(frames, critical, levels)
     if shape is None:
         raise InputError(
@@ -280,7 +281,7 @@ def _rod_shape(
 
 def _track_ball(
     frames: npt.NDArray[np.uint8], levels: tuple[float, float], source: str
-) -> dict[str, Array]:
+) -> dict[str, Any]:
     seen = [(n, ball_by_light(f.astype(np.float64), levels=levels)) for n, f in enumerate(frames)]
     light = [(n, b) for n, b in seen if b is not None]
     if light:
