@@ -49,8 +49,9 @@ def main(count: int, shape: str) -> None:
     for name in errors:
         e, z = np.array(errors[name]), np.array(scores[name])
         print(
-            f"{name}: rms error {100 * np.sqrt(np.mean(e**2)):.3f} %, worst {100 * abs(e).max():.3f} %"
-            f", mean {100 * e.mean():+.4f} %; within 2 std {np.mean(abs(z) < 2.0):.1%}, "
+            f"{name}: rms error {100 * np.sqrt(np.mean(e**2)):.3f} %, "
+            f"worst {100 * abs(e).max():.3f} %, mean {100 * e.mean():+.4f} %; "
+            f"within 2 std {np.mean(abs(z) < 2.0):.1%}, "
             f"z {z.mean():+.2f} ± {z.std():.2f}"
         )
 
