@@ -20,6 +20,7 @@ from ..fem import Solution, solve
 from .case import Case
 
 _THREADS = ("OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS", "MKL_NUM_THREADS", "NUMBA_NUM_THREADS")
+_MOST_POOLS = 20  # that a run makes when workers die between cases
 _TRIES = 2
 
 
@@ -60,28 +61,51 @@ class LocalExecutor:
         # workers are spawned: the variables act before their numpy loads
         for name in _THREADS:
             os.environ[name] = "1"
-        pool = ProcessPool(
-            max_workers=self.workers,
-            context=multiprocessing.get_context("spawn"),
-            initializer=_die_with,
-            initargs=[os.getpid()],
-        )
+
+        def new_pool() -> Any:
+            return ProcessPool(
+                max_workers=self.workers,
+                context=multiprocessing.get_context("spawn"),
+                initializer=_die_with,
+                initargs=[os.getpid()],
+            )
+
+        pools = [new_pool()]
+
+        def submit(key: str) -> None:
+            try:
+                future = self._submit(pools[-1], cases[key], time_limit_s)
+            except RuntimeError:  # the pool broke a moment ago
+                pools.append(new_pool())
+                future = self._submit(pools[-1], cases[key], time_limit_s)
+            waiting[future] = (key, len(pools))
+
         try:
             tries = dict.fromkeys(cases, 0)
-            waiting = {self._submit(pool, cases[key], time_limit_s): key for key in cases}
+            waiting: dict[Any, tuple[str, int]] = {}
+            for key in cases:
+                submit(key)
             while waiting:
                 ended, _ = wait(waiting, return_when=FIRST_COMPLETED)
                 for future in ended:
-                    key = waiting.pop(future)
+                    key, number = waiting.pop(future)
+                    if _pool_broke(future) and len(pools) < _MOST_POOLS:
+                        # a worker that dies between two cases takes pebble's whole pool with it,
+                        # which is no fault of the cases that waited there
+                        if number == len(pools):
+                            pools.append(new_pool())
+                        submit(key)
+                        continue
                     answer = _answer(key, future)
                     tries[key] += 1
                     if answer is None and tries[key] < _TRIES:
-                        waiting[self._submit(pool, cases[key], time_limit_s)] = key
+                        submit(key)
                         continue
                     yield answer or Ended(key, None, f"the worker died {_TRIES} times")
         finally:
-            pool.stop()
-            pool.join()
+            for pool in pools:
+                pool.stop()
+                pool.join()
 
     @staticmethod
     def _submit(pool: Any, case: Case, time_limit_s: float) -> Any:
@@ -178,6 +202,12 @@ def _die_with(coordinator: int) -> None:
         os._exit(1)
 
     threading.Thread(target=watch, daemon=True).start()
+
+
+def _pool_broke(future: Any) -> bool:
+    from concurrent.futures.process import BrokenProcessPool
+
+    return not future.cancelled() and isinstance(future.exception(), BrokenProcessPool)
 
 
 def _answer(key: str, future: Any) -> Ended | None:

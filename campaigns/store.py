@@ -132,7 +132,7 @@ class Store:
             return {
                 key: str(group.attrs["status"])
                 for key, group in file["cases"].items()
-                if "status" in group.attrs
+                if _ended(group)
             }
 
     def put(self, case: Case, solution: Solution | None, *, message: str = "") -> None:
@@ -148,7 +148,7 @@ class Store:
             Why there is no solution.
         """
         with self._appending() as cases:
-            if case.id in cases:
+            if cases.get(case.id, getlink=True) is not None:
                 del cases[case.id]
             group = cases.create_group(case.id)
             done = solution is not None and solution.outcome.completed
@@ -183,8 +183,13 @@ class Store:
             return [
                 _read_case(key, group, self.path)
                 for key, group in file["cases"].items()
-                if "status" in group.attrs
+                if _ended(group)
             ]
+
+
+def _ended(group: h5py.Group | None) -> bool:
+    """Whether a case was written to its end; one that a kill cut short may not even open."""
+    return group is not None and "status" in group.attrs
 
 
 def read_curves(path: Path) -> list[CaseRecord]:
