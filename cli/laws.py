@@ -40,12 +40,13 @@ def list_laws() -> None:
 
     table = Table(Column("law", no_wrap=True), "authors", "made for", "equations")
     for law in LAWS.values():
-        table.add_row(law.name, law.title, law.regime, "verified" if law.verified else "unverified")
+        table.add_row(law.name, law.title, law.regime, law.standing.told)
     console = Console()
     console.print(table)
     console.print(
-        "unverified: its own paper could not be read; the equations rest on the thesis, on limits "
-        "and continuity, and on public code (dentscope laws show LAW)."
+        "verified second hand: the equations were found in a text or code, other than the thesis, "
+        "that names the paper; the paper itself could not be read. unverified: they rest on the "
+        "thesis, on limits and continuity. What was read: dentscope laws show LAW."
     )
     console.print("Any two can be joined: LOADING+UNLOADING, for example kogut-etsion+ghaednia.")
     for name, reason in UNAVAILABLE.items():
@@ -65,7 +66,7 @@ def show(law: Annotated[str, typer.Argument(help="A name of `dentscope laws list
         "equations": chosen.equations,
         "made for": chosen.regime,
         "range": chosen.domain.note or "not stated",
-        "standing": "verified" if chosen.verified else "unverified",
+        "standing": chosen.standing.told,
         "read": chosen.read,
         "described in": _described_in(chosen),
     }

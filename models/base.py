@@ -20,6 +20,7 @@ import warnings
 from abc import ABC, abstractmethod
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
+from enum import IntEnum
 from typing import Any
 
 import numpy as np
@@ -78,6 +79,35 @@ class Domain:
     note: str = ""
 
 
+class Standing(IntEnum):
+    """Where a law's equations were read, from nowhere to its own source.
+
+    `PARTLY` means: one branch in a text or code that names the paper, the other in the thesis only.
+    """
+
+    OUR_READING = 0
+    THESIS = 1
+    PARTLY = 2
+    SECOND_HAND = 3
+    OWN_SOURCE = 4
+
+    @property
+    def verified(self) -> bool:
+        """Whether the whole law was found outside the thesis."""
+        return self >= Standing.SECOND_HAND
+
+    @property
+    def told(self) -> str:
+        """The standing in words, beginning with "verified" or "unverified"."""
+        return {
+            Standing.OUR_READING: "unverified, words only",
+            Standing.THESIS: "unverified, thesis only",
+            Standing.PARTLY: "unverified in part",
+            Standing.SECOND_HAND: "verified second hand",
+            Standing.OWN_SOURCE: "verified, own source",
+        }[self]
+
+
 @dataclass(frozen=True)
 class ContactLaw(ABC):
     """A contact law; concrete laws fill in the kernels and say where they come from.
@@ -92,8 +122,8 @@ class ContactLaw(ABC):
         Publication.
     equations
         Equation numbers in the thesis, and in the source where it was read.
-    verified
-        Whether a source was read; otherwise the law rests on the thesis alone.
+    standing
+        Where the equations were read.
     domain
         Range of validity.
     breaks
@@ -102,14 +132,14 @@ class ContactLaw(ABC):
     regime
         Which body the law lets deform: "flattening", "indentation" or "either".
     read
-        Where its equations were read.
+        The sources read, and for which equations.
     """
 
     name: str
     title: str
     source: str
     equations: str
-    verified: bool
+    standing: Standing
     domain: Domain
     breaks: tuple[tuple[str, float], ...] = ()
     regime: str = "either"
@@ -119,6 +149,11 @@ class ContactLaw(ABC):
     @abstractmethod
     def kernels(self) -> Kernels:
         """The compiled functions."""
+
+    @property
+    def verified(self) -> bool:
+        """Whether a source other than the thesis was read for the whole law."""
+        return self.standing.verified
 
     def parameters(self, pair: Pair) -> Floats:
         """Return the numbers that the kernels take, shape (n,)."""
@@ -177,7 +212,7 @@ class ContactLaw(ABC):
             title=f"{self.title}, residual depth of {other.title}",
             source=f"{self.source}; {other.source}",
             equations=f"{self.equations}; {other.equations}",
-            verified=self.verified and other.verified,
+            standing=min(self.standing, other.standing),
             domain=self.domain,
             breaks=(*self.breaks, *(b for b in other.breaks if b[0].startswith("residual"))),
             regime=self.regime,

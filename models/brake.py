@@ -29,6 +29,7 @@ from .base import (
     PublishedLaw,
     R,
     S,
+    Standing,
     branch_kernel,
     hertz_force,
     loading_kernel,
@@ -190,7 +191,7 @@ BRAKE_2012 = PublishedLaw(
     title="Brake 2012",
     source="Int. J. Solids Struct. 49 (2012) 3129",
     equations="thesis 1.3.1 (in words), 4.28",
-    verified=False,
+    standing=Standing.OUR_READING,
     domain=Domain(
         note="normal impact of round bodies; where full plasticity begins is our reading"
     ),
@@ -224,10 +225,10 @@ def brake_2015(*, meyer: float = 2.0, hardness: float | None = None) -> Publishe
         title="Brake 2015",
         source="Int. J. Solids Struct. 62 (2015) 104",
         equations="4.28-4.31",
-        verified=False,
+        standing=Standing.PARTLY,
         domain=Domain(note="normal impact; wants the pair's own hardness and Meyer exponent"),
-        read="the thesis; 4.31 in the public code of the author's group "
-        "(tmd-lab/microslip-rough-contact); the blend of 4.29 from the thesis only",
+        read="residual depth and recovery in tmd-lab/microslip-rough-contact, named there after "
+        "the paper; the loading 4.29-4.30 in the thesis only",
         own=Kernels(_loading_2015, _radius_2015, _unloading_2015, _residual_2015),
         numbers=functools.partial(_numbers_2015, meyer=meyer, hardness=hardness),
     )

@@ -21,6 +21,7 @@ from .base import (
     PublishedLaw,
     R,
     S,
+    Standing,
     branch_kernel,
     hertz_force,
     loading_kernel,
@@ -79,11 +80,12 @@ CEB = PublishedLaw(
     title="Chang, Etsion and Bogy 1987",
     source="J. Tribol. 109 (1987) 257",
     equations="thesis 1.3 (in words), 4.15",
-    verified=False,
+    standing=Standing.OUR_READING,
     domain=Domain(note="flattening; kept for its discontinuity"),
     breaks=(("force jumps at delta_c", 50.0), ("residual jumps at delta_c", 33.4)),
     regime="flattening",
-    read="the thesis's words; K from public code (tmd-lab/microslip-rough-contact)",
+    read="the thesis's words; K = 0.454 + 0.41 nu in tmd-lab/microslip-rough-contact (CEB_MU); the "
+    "area after yield is the known consequence of constant volume, read nowhere",
     own=Kernels(_loading, _radius, _unloading, _residual),
     numbers=_numbers,
 )

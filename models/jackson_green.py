@@ -27,6 +27,7 @@ from .base import (
     PublishedLaw,
     R,
     S,
+    Standing,
     branch_kernel,
     hertz_force,
     loading_kernel,
@@ -114,10 +115,9 @@ _BREAKS = (
     ("force falls at w = 1.9 for nu = 0.33", 0.17),
 )
 
-_READ = (
-    "the thesis; the loading, the radius and the residual depth agree with the public code of the "
-    "group that extended the model (tmd-lab/microslip-rough-contact), in which the exponents 5/12 "
-    "and 5/9, the cube in F_c and 0.736 stand; the paper itself was not readable"
+_RESIDUAL = (
+    "residual depth and recovery of Jackson, Chusoipin and Green in the public code "
+    "tmd-lab/microslip-rough-contact; the papers themselves could not be read"
 )
 
 JACKSON_GREEN = PublishedLaw(
@@ -126,11 +126,12 @@ JACKSON_GREEN = PublishedLaw(
     source="J. Tribol. 127 (2005) 343; residual depth: Jackson, Chusoipin, Green, "
     "J. Tribol. 127 (2005) 484",
     equations="1.14, 1.16-1.22, 4.9-4.14",
-    verified=False,
+    standing=Standing.SECOND_HAND,
     domain=Domain(a_over_R_max=0.41, note="flattening of the sphere, a/R up to 0.41"),
     breaks=_BREAKS,
     regime="flattening",
-    read=_READ,
+    read="C, F_c, B, the exponents 5/12 and 5/9 and the hardness 1.14 in a public code of rough "
+    "contact (function JG), the radius in tmd-lab/tmdsimpy; " + _RESIDUAL,
     own=Kernels(_loading, _radius, _unloading, _residual),
     numbers=_numbers,
 )
@@ -140,11 +141,12 @@ JACKSON_GREEN_2007 = PublishedLaw(
     title="Jackson and Green with the later hardness",
     source="as jackson-green, with the hardness that the thesis takes for it",
     equations="1.15-1.22, 4.9-4.14",
-    verified=False,
+    standing=Standing.SECOND_HAND,
     domain=Domain(a_over_R_max=1.0, note="flattening of the sphere; hardness down to S at a/R = 1"),
     breaks=_BREAKS,
     regime="flattening",
-    read=_READ,
+    read="equations 3, 5, 6, 23, 24 and 27-29 of Ghaednia, Brake, Berryhill and Jackson, J. "
+    "Tribol. (2019), restated in tmd-lab/microslip-rough-contact; " + _RESIDUAL,
     own=Kernels(_loading_2007, _radius, _unloading_2007, _residual),
     numbers=_numbers,
 )

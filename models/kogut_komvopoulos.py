@@ -23,6 +23,7 @@ from .base import (
     PublishedLaw,
     R,
     S,
+    Standing,
     branch_kernel,
     loading_kernel,
     residual_kernel,
@@ -100,7 +101,7 @@ KOGUT_KOMVOPOULOS = PublishedLaw(
     title="Kogut and Komvopoulos 2004",
     source="J. Mater. Res. 19 (2004) 3641",
     equations="1.9, 4.20-4.22",
-    verified=False,
+    standing=Standing.THESIS,
     domain=Domain(note="indentation by a rigid sphere, up to p/S of 1.9"),
     breaks=(
         ("force jumps at E' delta/(S r') = 1.78", 11.6),

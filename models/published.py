@@ -39,12 +39,17 @@ PUBLISHED: tuple[ContactLaw, ...] = (
 )
 
 UNAVAILABLE: dict[str, str] = {
-    "wang": "Wang's correction of Kogut and Etsion: named in section 1.3.2 without an equation, "
-    "and its paper was not readable",
-    "li-thornton": "Li, Wu and Thornton 2002: named in section 1.3.2 without an equation, and its "
-    "paper was not readable; thornton is the model that it corrects",
-    "wadwalkar": "Wadwalkar, Jackson and Kogut 2010 (large deformation): named in section 1.2 "
-    "without an equation, and its paper was not readable; jackson-green-2007 has a hardness that "
-    "holds up to a/R = 1",
+    "wang": "Wang's correction of the unloading of Kogut and Etsion: section 1.3.2 gives no "
+    "equation, the text of the thesis at hand ends before its list of references, and no public "
+    "text or code that quotes the paper was found; kogut-etsion+jackson-green and "
+    "kogut-etsion+ghaednia give that loading another recovery",
+    "li-thornton": "Li, Wu and Thornton 2002: section 1.3.2 gives no equation; the force follows "
+    "from a pressure distribution fitted to their finite elements, whose constants stand in the "
+    "paper only, and no public text or code that quotes them was found; thornton is the model that "
+    "it corrects",
+    "wadwalkar": "Wadwalkar, Jackson and Kogut 2010 (large deformation): section 1.2 gives no "
+    "equation, and the paper's fits were found in no public text or code; up to a/R = 1 "
+    "jackson-green-2007 has a hardness that falls to S, as theirs, but its force is a fit up to "
+    "a/R = 0.41",
 }
 """Laws that the thesis names and that are not offered, with the reason."""

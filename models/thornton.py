@@ -25,6 +25,7 @@ from .base import (
     PublishedLaw,
     R,
     S,
+    Standing,
     branch_kernel,
     hertz_force,
     loading_kernel,
@@ -98,10 +99,11 @@ THORNTON = PublishedLaw(
     title="Thornton 1997",
     source="J. Appl. Mech. 64 (1997) 383",
     equations="thesis 1.4, 3.3 and 4.2 (in words)",
-    verified=False,
+    standing=Standing.SECOND_HAND,
     domain=Domain(note="impact of spheres; p_y = 1.6 S, the pressure at first yield"),
-    read="not readable; force, recovery and closed-form restitution agree to 4 digits, and give "
-    "the constants 1.56 and 1.18 known from it",
+    read="equations 1-5 of arXiv:2104.00344 and the closed-form restitution, equation 2 of "
+    "Jackson, Green and Marghitu, Nonlinear Dyn. 60 (2010) 217, both as the public code "
+    "ranssist/chiton-helmet-sim restates them; force, recovery and closed form agree to 4 digits",
     own=Kernels(_loading, _radius, _unloading, _residual),
     numbers=_numbers_at(1.6),
 )
@@ -111,6 +113,9 @@ THORNTON_NING = replace(
     name="thornton-ning",
     title="Thornton and Ning 1998, without adhesion",
     source="Powder Technol. 99 (1998) 154",
-    domain=Domain(note="impact of spheres; p_y = 2.84 S, a limiting pressure"),
+    domain=Domain(note="impact of spheres; p_y = 2.84 S, a limiting pressure, is our choice"),
+    read="yield radius (equation 65), linear force, R_p = 4 E' a^3/(3 F_m) and V_y = "
+    "1.56 (p_y^5/(E'^4 rho))^(1/2) in the public code PyGran, class ThorntonNing, where p_y is the "
+    "user's; its adhesion is left out",
     numbers=_numbers_at(2.84),
 )

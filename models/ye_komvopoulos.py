@@ -19,6 +19,7 @@ from .base import (
     Kernels,
     PublishedLaw,
     S,
+    Standing,
     branch_kernel,
     loading_kernel,
     residual_kernel,
@@ -77,7 +78,7 @@ YE_KOMVOPOULOS = PublishedLaw(
     title="Ye and Komvopoulos 2003, residual depth of Jackson et al.",
     source="J. Tribol. 125 (2003) 685; residual depth as for Jackson and Green",
     equations="4.12, 4.14, 4.23-4.27",
-    verified=False,
+    standing=Standing.THESIS,
     domain=Domain(note="indentation by a rigid sphere"),
     breaks=(
         ("force falls at Q = 1.78", 5.2),

@@ -20,6 +20,7 @@ def test_list_names_every_law_and_marks_the_unverified(capsys):
     text = capsys.readouterr().out
     assert all(name in text for name in (*LAWS, *UNAVAILABLE))
     assert text.count("│ unverified") == sum(not law.verified for law in LAWS.values())
+    assert text.count("│ verified") == sum(law.verified for law in LAWS.values())
 
 
 def test_show_tells_source_standing_and_breaches(capsys):
