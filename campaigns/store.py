@@ -1,8 +1,8 @@
 """The campaign file: one writer, opened, appended and closed for each case.
 
-Closed after every case, the file is readable at any moment and survives the death of its writer;
-what a kill costs is at most the case in flight. A second writer is refused through a lock file that
-names its process.
+A case is appended whole or not at all (see `campaigns.journal`), so that the file is readable at
+any moment and survives the death of its writer and a full disk; what a kill costs is at most the
+cases in flight. A second writer is refused through a lock file that names its process.
 """
 
 from __future__ import annotations
@@ -11,10 +11,9 @@ import errno
 import fcntl
 import json
 import os
-import shutil
 import time
 from collections.abc import Iterator
-from contextlib import contextmanager
+from contextlib import contextmanager, suppress
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
@@ -27,12 +26,11 @@ from ..core.errors import InputError
 from ..core.provenance import environment
 from ..fem import Curve, Solution
 from .case import Case
+from .journal import PATIENCE_S, changing, journal_of, recover
 from .schema import CURVE, FORMAT, PROFILES, UNLOADING_PROFILES, Dataset
 
 Floats = npt.NDArray[np.float64]
 
-_ROOM = 4 << 20  # bytes that must be free before a case is written: several times the largest case
-_PATIENCE_S = 30.0  # how long to wait for another process that has the file open for a moment
 _PROFILE_REACH = 2.0  # profiles are kept out to this many contact radii
 _WORTH_COMPRESSING = 512  # values; below it a chunk's index takes more room than it saves
 
@@ -126,7 +124,7 @@ class Store:
 
     def statuses(self) -> dict[str, str]:
         """Status of every stored case by id."""
-        if not self.path.exists():
+        if not (self.path.exists() or journal_of(self.path).exists()):
             return {}
         with _reading(self.path) as file:
             return {
@@ -209,33 +207,37 @@ def read_curves(path: Path) -> list[CaseRecord]:
 
 @contextmanager
 def _appending(path: Path) -> Iterator[h5py.Group]:
-    if path.exists():
+    if path.exists() or journal_of(path).exists():
         with _reading(path):
             pass  # a damaged file is reported, never written to
-    free = shutil.disk_usage(path.parent).free
-    if free < _ROOM:
-        # a full disk in the middle of a write would damage the file
-        raise InputError(
-            f"the disk is full ({free / 1e6:.1f} MB left); all completed cases are kept",
-            source=str(path),
-            allowed=f"{_ROOM / 1e6:.0f} MB free; make room and run again",
-        )
     try:
-        with _opened(path, "a") as file:
+        with changing(path) as file:
             if "cases" not in file:
                 file.attrs["format"] = FORMAT
                 file.create_group("cases")
             yield file["cases"]
     except OSError as error:
-        raise InputError(f"cannot be written ({error})", source=str(path)) from None
+        reasons = {
+            errno.ENOSPC: "the disk is full",
+            errno.EDQUOT: "the disk quota is used up",
+            errno.EFBIG: "a file may not be larger here",
+        }
+        reason = reasons.get(error.errno or 0, f"cannot be written ({error})")
+        raise InputError(
+            f"{reason}; all completed cases are kept",
+            source=str(path),
+            allowed="make room and run again" if error.errno in reasons else "",
+        ) from None
 
 
 @contextmanager
 def _reading(path: Path) -> Iterator[h5py.File]:
+    with suppress(OSError):
+        recover(path)  # where it cannot be finished the file is still as it was
     if not path.exists():
         raise InputError("no such file", source=str(path), allowed="a campaign file (.h5)")
     try:
-        file = _opened(path, "r")
+        file = _opened(path)
     except OSError as error:
         reason = str(error).split("(", 1)[-1].rstrip(")")
         raise InputError(
@@ -256,12 +258,12 @@ def _reading(path: Path) -> Iterator[h5py.File]:
             raise InputError(f"damaged ({error})", source=str(path)) from None
 
 
-def _opened(path: Path, mode: str) -> h5py.File:
-    """Open a file, waiting while another process has it open for a moment."""
-    until = time.monotonic() + _PATIENCE_S
+def _opened(path: Path) -> h5py.File:
+    """Open a file for reading, waiting while another process has it open for a moment."""
+    until = time.monotonic() + PATIENCE_S
     while True:
         try:
-            return h5py.File(path, mode)
+            return h5py.File(path, "r")
         except OSError as error:
             busy = error.errno in (errno.EAGAIN, errno.EACCES) and os.access(path, os.R_OK)
             if not busy or time.monotonic() > until:

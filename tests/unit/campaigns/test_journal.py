@@ -1,0 +1,144 @@
+"""A change of an HDF5 file is whole or not there, wherever its writer stops."""
+
+import os
+import signal
+import subprocess
+import sys
+
+import h5py
+import numpy as np
+import pytest
+from dentscope.campaigns import journal
+
+
+def write(path, name, value):
+    with journal.changing(path) as file:
+        file[name] = np.full(3000, value)
+
+
+def read(path):
+    with h5py.File(path, "r") as file:
+        return {name: float(file[name][0]) for name in file}
+
+
+def test_changes_add_up_and_leave_an_ordinary_file(tmp_path):
+    path = tmp_path / "a.h5"
+    for k in range(5):
+        write(path, f"x{k}", k)
+    with journal.changing(path) as file:
+        del file["x3"]
+    assert read(path) == {"x0": 0, "x1": 1, "x2": 2, "x4": 4}
+    assert [p.name for p in tmp_path.iterdir()] == ["a.h5"]
+
+
+def test_a_change_that_fails_leaves_every_byte(tmp_path):
+    path = tmp_path / "a.h5"
+    write(path, "x", 1)
+    before = path.read_bytes()
+
+    def fail():
+        with journal.changing(path) as file:
+            file["y"] = np.ones(5000)
+            raise ZeroDivisionError
+
+    with pytest.raises(ZeroDivisionError):
+        fail()
+    assert path.read_bytes() == before
+
+
+@pytest.mark.parametrize("torn", [0, 1, 3, 1000])
+def test_a_writer_that_dies_while_writing_is_finished_by_the_next(tmp_path, monkeypatch, torn):
+    path = tmp_path / "a.h5"
+    write(path, "x", 1)
+    with monkeypatch.context() as patch:
+        patch.setattr(journal, "recover", lambda path: None)  # dies when the journal is there
+        write(path, "y", 2)
+    before = path.stat().st_size
+    size, pages = journal._read_journal(journal.journal_of(path))
+    with path.open("r+b") as file:  # and had written some of the pages
+        for offset, page in pages[:torn]:
+            file.seek(offset)
+            file.write(page)
+    assert size > before
+    journal.recover(path)
+    assert read(path) == {"x": 1, "y": 2}
+    assert path.stat().st_size == size
+    assert not journal.journal_of(path).exists()
+
+
+def test_a_damaged_journal_is_named_and_changes_nothing(tmp_path, monkeypatch):
+    path = tmp_path / "a.h5"
+    write(path, "x", 1)
+    monkeypatch.setattr(journal, "recover", lambda path: None)
+    write(path, "y", 2)
+    monkeypatch.undo()
+    place = journal.journal_of(path)
+    place.write_bytes(place.read_bytes()[:-100])
+    with pytest.raises(OSError, match=r"a\.h5\.journal is damaged"):
+        journal.recover(path)
+    assert read(path) == {"x": 1}
+
+
+LIMITED = """
+import resource, signal, sys
+from pathlib import Path
+import numpy as np
+from dentscope.campaigns import journal
+signal.signal(signal.SIGXFSZ, signal.SIG_IGN)
+resource.setrlimit(resource.RLIMIT_FSIZE, (int(sys.argv[2]), resource.RLIM_INFINITY))
+for k in range(100):
+    try:
+        with journal.changing(Path(sys.argv[1])) as file:
+            file[f"x{k}"] = np.full(3000, k)
+    except OSError as error:
+        print(k, error.errno)
+        break
+"""
+
+
+def test_a_file_that_may_not_grow_keeps_all_that_was_told_complete(tmp_path):
+    path = tmp_path / "a.h5"
+    answer = subprocess.run(
+        [sys.executable, "-c", LIMITED, str(path), "200000"],
+        capture_output=True, text=True, check=True,
+    )  # fmt: skip
+    complete, number = map(int, answer.stdout.split())
+    assert os.strerror(number) == "File too large"
+    assert 3 < complete < 20
+    assert set(read(path)) >= {f"x{k}" for k in range(complete)}
+    write(path, "more", 1)  # with room again, the change that was journalled is there too
+    assert set(read(path)) == {"more", *(f"x{k}" for k in range(complete + 1))}
+
+
+DYING = """
+import os, random, signal, sys, threading, time
+from pathlib import Path
+import numpy as np
+from dentscope.campaigns import journal
+path, k = Path(sys.argv[1]), int(sys.argv[2])
+def die():
+    time.sleep(random.uniform(0.0, 0.15))
+    os.kill(os.getpid(), signal.SIGKILL)
+threading.Thread(target=die, daemon=True).start()
+while True:
+    with journal.changing(path) as file:
+        file[f"x{k}"] = np.full(3000, k)
+    print(k, flush=True)
+    k += 1
+"""
+
+
+def test_kills_in_the_middle_of_writing_damage_nothing(tmp_path):
+    # no pause between changes: almost every kill falls into one
+    path, told = tmp_path / "a.h5", []
+    for _ in range(5):
+        start = len(read(path)) if path.exists() else 0
+        answer = subprocess.run(
+            [sys.executable, "-c", DYING, str(path), str(start)],
+            capture_output=True, text=True, check=False,
+        )  # fmt: skip
+        assert answer.returncode == -signal.SIGKILL, answer.stderr
+        told += [int(line) for line in answer.stdout.splitlines()]
+        journal.recover(path)
+        assert set(read(path)) >= {f"x{k}" for k in told}
+    assert len(told) == len(set(told)) > 5
