@@ -18,6 +18,7 @@ CHANNELS = ("grey", "red", "green", "blue")
 DOWN = {"down": 0, "left": 1, "up": 2, "right": 3}
 """Where gravity points in the picture, and the quarter turns counter-clockwise that undo it."""
 
+_CROP = re.compile(r"(\d+):(\d+),(\d+):(\d+)")
 _PICTURES = (".png", ".tif", ".tiff", ".bmp", ".jpg", ".jpeg", ".pgm")
 _LARGEST = 3_000_000_000
 
@@ -99,7 +100,7 @@ def read_clip(
             break
         frame = np.rot90(frame, DOWN[down])
         if crop is not None:
-            frame = _cropped(frame, crop)
+            frame = cropped(frame, crop)
         if frames and frame.shape != frames[0].shape:
             raise InputError(
                 f"frame {number} has {frame.shape[1]} x {frame.shape[0]} pixels, the first one "
@@ -208,9 +209,31 @@ def _channel(pixels: npt.NDArray[np.uint8], channel: str) -> npt.NDArray[np.uint
     return pixels[:, :, CHANNELS.index(channel) - 1]
 
 
-def _cropped(
-    frame: npt.NDArray[np.uint8], crop: tuple[int, int, int, int]
-) -> npt.NDArray[np.uint8]:
+def crop_window(text: str) -> tuple[int, int, int, int] | None:
+    """Return the four numbers of TOP:BOTTOM,LEFT:RIGHT, None for an empty text.
+
+    Raises
+    ------
+    ValueError
+        Any other text.
+    """
+    found = _CROP.fullmatch(text)
+    if found is None:
+        if text:
+            raise ValueError("TOP:BOTTOM,LEFT:RIGHT, four whole numbers")
+        return None
+    top, bottom, left, right = map(int, found.groups())
+    return top, bottom, left, right
+
+
+def cropped(frame: npt.NDArray[np.uint8], crop: tuple[int, int, int, int]) -> npt.NDArray[np.uint8]:
+    """Return the rows and columns of a crop, its ends excluded.
+
+    Raises
+    ------
+    InputError
+        The crop is not within the frame.
+    """
     top, bottom, left, right = crop
     if not (0 <= top < bottom <= frame.shape[0] and 0 <= left < right <= frame.shape[1]):
         raise InputError(

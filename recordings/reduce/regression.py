@@ -73,7 +73,7 @@ def robust_regression(design: Array, observed: Array, *, floor: float = 0.0) -> 
     freedom = max(int(used.sum()) - p, 1)
     sigma = max(float(np.sqrt(residual @ residual / freedom)), floor)
     information = scaled[used].T @ scaled[used]
-    covariance = sigma**2 * np.linalg.pinv(information) * _correlation_factor(residual)
+    covariance = sigma**2 * np.linalg.pinv(information) * correlation_factor(residual)
     return Regression(coefficients / scale, covariance / np.outer(scale, scale), sigma, used)
 
 
@@ -93,7 +93,8 @@ def _tiny(observed: Array) -> float:
     return float(1e-12 * (np.ptp(observed) + np.abs(observed).max()) + 1e-300)
 
 
-def _correlation_factor(residual: Array) -> float:
+def correlation_factor(residual: Array) -> float:
+    """Return by how much neighbours that hang together widen the variance of a mean."""
     total = float(residual @ residual)
     if residual.size < 8 or total == 0.0:
         return 1.0

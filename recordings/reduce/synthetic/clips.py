@@ -7,7 +7,7 @@ from pathlib import Path
 
 import numpy as np
 import numpy.typing as npt
-from scipy.ndimage import gaussian_filter
+from scipy.ndimage import gaussian_filter1d
 
 from ..measured import Array
 
@@ -103,35 +103,51 @@ def render(truth: ClipTruth) -> npt.NDArray[np.uint8]:
     """Return the frames, (n, rows, columns)."""
     random = np.random.default_rng(truth.seed)
     light = _light(truth)
+    lens = _lens(truth.rows, truth.blur), _lens(truth.columns, truth.blur).T
     frames = np.empty((truth.frames, truth.rows, truth.columns), dtype=np.uint8)
     for number in range(truth.frames):
-        cover = _smeared(truth, number)
+        cover = lens[0] @ _smeared(truth, number) @ lens[1]
         grey = (truth.dark + (truth.bright - truth.dark) * cover) * light
         grey += random.normal(0.0, truth.noise, grey.shape)
         frames[number] = np.clip(np.rint(grey), 0, 255)
     return frames
 
 
+def _lens(count: int, blur: float) -> Array:
+    """Return the matrix that blurs fine cells and gathers them to pixels, (count, 4 count)."""
+    sharp = np.eye(count * _SUPER)
+    blurred = gaussian_filter1d(sharp, blur * _SUPER, axis=0, mode="nearest")
+    return np.asarray(blurred.reshape(count, _SUPER, -1).mean(axis=1))
+
+
 def _smeared(truth: ClipTruth, number: int) -> Array:
-    """Part of each pixel that the body covers, seen through shutter and lens."""
+    """Part of each fine cell that the body covers while the shutter is open."""
     moments = number + truth.exposure * ((np.arange(_EXPOSURES) + 0.5) / _EXPOSURES - 0.5)
     columns, rows = truth.tip(moments)
-    cover = np.mean([_covered(truth, x, y) for x, y in zip(columns, rows, strict=True)], axis=0)
-    blurred = gaussian_filter(cover, truth.blur * _SUPER, mode="nearest")
-    return np.asarray(blurred.reshape(truth.rows, _SUPER, truth.columns, _SUPER).mean(axis=(1, 3)))
+    total = np.zeros((truth.rows * _SUPER, truth.columns * _SUPER))
+    for x, y in zip(columns, rows, strict=True):
+        _cover(total, truth, x, y)
+    return total / _EXPOSURES
 
 
-def _covered(truth: ClipTruth, x: float, y: float) -> Array:
-    fine_rows = (np.arange(truth.rows * _SUPER) + 0.5) / _SUPER - 0.5
-    fine_columns = (np.arange(truth.columns * _SUPER) + 0.5) / _SUPER - 0.5
-    dx, dy = fine_columns[None, :] - x, fine_rows[:, None] - y
+def _cover(total: Array, truth: ClipTruth, x: float, y: float) -> None:
+    """Add the cover of a body whose tip is at (x, y); cells below the tip stay empty."""
+    low = truth.half_width * abs(np.sin(truth.lean)) + 1.0
+    end = int(np.clip((y + low + 1.0) * _SUPER, 0, total.shape[0]))
+    dx = ((np.arange(total.shape[1]) + 0.5) / _SUPER - 0.5 - x)[None, :]
+    dy = ((np.arange(end) + 0.5) / _SUPER - 0.5 - y)[:, None]
     if truth.shape == "sphere":
-        inside = np.hypot(dx, dy + truth.tip_radius) - truth.tip_radius
-        return _soft(-inside)
+        total[:end] += _soft(truth.tip_radius - np.hypot(dx, dy + truth.tip_radius))
+        return
     across = dx * np.cos(truth.lean) + dy * np.sin(truth.lean)
-    up = dx * np.sin(truth.lean) - dy * np.cos(truth.lean)
-    cap = truth.tip_radius - np.hypot(across, np.minimum(up - truth.tip_radius, 0.0))
-    return np.minimum(_soft(cap), _soft(truth.half_width - np.abs(across)))
+    cover = _soft(truth.half_width - np.abs(across))
+    # the cap reaches up to where it meets the sides, and a little more where the rod leans
+    reach = truth.tip_radius - np.sqrt(max(truth.tip_radius**2 - truth.half_width**2, 0.0))
+    first = int(np.clip((y - reach - low - 1.0) * _SUPER, 0, end))
+    up = dx * np.sin(truth.lean) - dy[first:] * np.cos(truth.lean)
+    cap = np.hypot(across[first:], np.minimum(up - truth.tip_radius, 0.0))
+    cover[first:] = np.minimum(cover[first:], _soft(truth.tip_radius - cap))
+    total[:end] += cover
 
 
 def _soft(depth: Array) -> Array:
