@@ -37,6 +37,8 @@ class Case:
         As in `fem.ContactProblem`.
     accuracy
         Numerical settings.
+    snapshots
+        Depths at which the full fields are written beside the campaign file.
     """
 
     name: str
@@ -46,19 +48,17 @@ class Case:
     radius_at_least: float
     accuracy: fem.Accuracy
     profiles: tuple[float, ...] = ()
+    snapshots: tuple[float, ...] = ()
 
     @property
     def groups(self) -> dict[str, Any]:
         """The dimensionless groups that identify the physics."""
-        unit = self.pair.E_reduced
-        return {
-            "sphere": _body(self.pair.sphere, unit),
-            "flat": _body(self.pair.flat, unit),
-        }
+        return dimensionless_groups(self.pair)
 
     @property
     def id(self) -> str:
         """SHA-256 of the groups, the depths, the settings and the numerics version."""
+        fields = {"snapshots": [_rounded(d) for d in self.snapshots]} if self.snapshots else {}
         return content_id(
             {
                 "groups": self.groups,
@@ -68,6 +68,7 @@ class Case:
                 "profiles": [_rounded(d) for d in self.profiles],
                 "accuracy": {k: v for k, v in self.accuracy.as_dict().items() if k != "level"},
                 "numerics_version": fem.NUMERICS_VERSION,
+                **fields,
             }
         )
 
@@ -79,6 +80,7 @@ class Case:
             unload_from=self.unload_from,
             radius_at_least=self.radius_at_least,
             profiles=self.profiles,
+            snapshots=self.snapshots,
         )
 
     def refined(self) -> Case:
@@ -103,6 +105,7 @@ class Case:
             "unload_from": list(self.unload_from),
             "radius_at_least": self.radius_at_least,
             "profiles": list(self.profiles),
+            "snapshots": list(self.snapshots),
             "accuracy": self.accuracy.as_dict(),
         }
 
@@ -116,8 +119,15 @@ class Case:
             unload_from=tuple(spec["unload_from"]),
             radius_at_least=spec["radius_at_least"],
             profiles=tuple(spec.get("profiles", ())),
+            snapshots=tuple(spec.get("snapshots", ())),
             accuracy=fem.Accuracy(**spec["accuracy"]),
         )
+
+
+def dimensionless_groups(pair: Pair) -> dict[str, Any]:
+    """Return what identifies a pair whatever its units and size."""
+    unit = pair.E_reduced
+    return {"sphere": _body(pair.sphere, unit), "flat": _body(pair.flat, unit)}
 
 
 def standard_case(
@@ -129,6 +139,8 @@ def standard_case(
     unload_w: tuple[float, ...] = (),
     unload_depths: tuple[float, ...] = (),
     radius_at_least: float = 0.0,
+    through: float = 0.0,
+    fields: bool = False,
     accuracy: fem.Accuracy,
 ) -> Case:
     """Make a case with geometric depths from below first yield.
@@ -145,6 +157,10 @@ def standard_case(
         Depths to unload from, in units of the critical depth.
     unload_depths
         Depths to unload from, as Delta/R.
+    through
+        Delta/R that takes the place of the geometric depth nearest to it (0: none).
+    fields
+        Also write the full fields at `through`.
     """
     onset = fem.critical_depth(pair)
     if not math.isfinite(onset):
@@ -157,7 +173,7 @@ def standard_case(
     unload = sorted(
         d for d in {*(w * onset for w in unload_w), *unload_depths} if first < d <= deepest
     )
-    depths = fem.geometric_depths(first, deepest, n_depths)
+    depths = _through(fem.geometric_depths(first, deepest, n_depths), through)
     kept = np.unique(np.linspace(0, n_depths - 1, _PROFILES).round().astype(int))
     return Case(
         name=name,
@@ -166,8 +182,17 @@ def standard_case(
         unload_from=tuple(unload),
         radius_at_least=radius_at_least,
         profiles=tuple(depths[k] for k in kept),
+        snapshots=(through,) if fields else (),
         accuracy=accuracy,
     )
+
+
+def _through(depths: tuple[float, ...], wanted: float) -> tuple[float, ...]:
+    """Move the nearest of the inner depths to a wanted one between them."""
+    if not depths[0] < wanted < depths[-1]:
+        return depths
+    nearest = min(range(1, len(depths) - 1), key=lambda k: abs(math.log(depths[k] / wanted)))
+    return (*depths[:nearest], wanted, *depths[nearest + 1 :])
 
 
 def _body(body: Material, unit: float) -> Any:

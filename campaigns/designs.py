@@ -1,9 +1,11 @@
 """The sweeps, a few lines each.
 
-A design is a name and a function that gives its cases. Strengths follow the thesis: Sy_min is held
-and Sy* = S_ys/S_yf sets the stronger body. All but `smoke` go to Delta/R = 0.1 or a/R = 0.5,
-whichever comes later, in 48 depths from below first yield, and unload from five of them; `survey`
-does so at medium resolution, the others at that of published data.
+A design is a name and a function that gives its cases, in the order in which they are computed: a
+run that is stopped early has first what the thesis shows, then every range from coarse to fine.
+Strengths follow the thesis: Sy_min is held and Sy* = S_ys/S_yf sets the stronger body. All but
+`smoke` go to Delta/R = 0.1 or a/R = 0.5, whichever comes later, in 48 depths from below first yield
+through the thesis's 0.04, and unload from five of them; `survey` does so at medium resolution, the
+others at that of published data.
 """
 
 from __future__ import annotations
@@ -80,12 +82,31 @@ RATIOS = (
     *(1.07, 1.85, 2.0, 2.5, 3.5, 5.0, 7.0, 10.0),
 )
 
+_THESIS_DEPTH = 0.04  # Delta/R of the thesis's figures over Sy*
+
+
+def coarse_to_fine(values: tuple[float, ...]) -> tuple[float, ...]:
+    """Order values so that every beginning of the list covers their range evenly.
+
+    Examples
+    --------
+    >>> coarse_to_fine((1.0, 2.0, 3.0, 4.0, 5.0))
+    (1.0, 5.0, 3.0, 2.0, 4.0)
+    """
+    values = tuple(sorted(values))
+    taken = [0, len(values) - 1]
+    while len(taken) < len(values):
+        left = (k for k in range(len(values)) if k not in taken)
+        taken.append(max(left, key=lambda k: min(abs(k - t) for t in taken)))
+    return tuple(values[k] for k in taken)
+
 
 def _deep_case(
     name: str,
     pair: Pair,
     *,
     deepest: float = 0.1,
+    fields: bool = False,
     accuracy: fem.Accuracy = fem.Accuracy.production(),  # noqa: B008 (frozen)
 ) -> Case:
     """Case to a/R = 0.5: three unloadings below 20 critical depths, two beyond."""
@@ -99,6 +120,8 @@ def _deep_case(
         n_depths=48,
         unload_depths=(*light, (last_light * deepest) ** 0.5, deepest),
         radius_at_least=0.5,
+        through=_THESIS_DEPTH,
+        fields=fields,
         accuracy=accuracy,
     )
 
@@ -122,29 +145,59 @@ def _thesis() -> tuple[Case, ...]:
     The thesis does not print its 27 sets; ours are E_s, E_f from 50, 122, 300 GPa and Sy_min from
     50, 235, 1100 MPa.
     """
-    named: list[tuple[str, Pair]] = []
-    for (number, (E_s, E_f, Sy, nu_s, nu_f)), ratio in product(TABLE_2_1.items(), RATIOS):
-        pair = pair_of(E_s=E_s, E_f=E_f, Sy_min=Sy, ratio=ratio, nu_s=nu_s, nu_f=nu_f)
-        named.append((f"table-2.1-case-{number}-Sy*-{ratio:g}", pair))
-    moduli, strengths = (50.0, 122.0, 300.0), (50.0, 235.0, 1100.0)
-    for E_s, E_f, Sy, ratio in product(moduli, moduli, strengths, (0.1, 1.0, 10.0)):
-        pair = pair_of(E_s=E_s, E_f=E_f, Sy_min=Sy, ratio=ratio)
-        named.append((f"set-{E_s:g}-{E_f:g}-{Sy:g}-Sy*-{ratio:g}", pair))
-    for figure, ratio in (("2.2", 0.1), ("2.3", 1.0), ("2.4", 10.0)):
-        pair = pair_of(E_s=200.0, E_f=200.0, Sy_min=503.0, ratio=ratio)
-        named.append((f"figure-{figure}", pair))
-    for ratio in (0.1, 0.5, 0.9, 1.0, 1.1, 1.3, 2.0, 10.0):
-        pair = pair_of(E_s=71.7, E_f=200.0, Sy_min=300.0, ratio=ratio)
-        named.append((f"figure-2.16-Sy*-{ratio:g}", pair))
-    named.append(("figure-2.17", pair_of(E_s=300.0, E_f=300.0, Sy_min=100.0, ratio=10.0)))
+    pictures = [
+        _deep_case(
+            f"figure-{figure}",
+            pair_of(E_s=200.0, E_f=200.0, Sy_min=503.0, ratio=ratio),
+            fields=True,
+        )
+        for figure, ratio in (("2.2", 0.1), ("2.3", 1.0), ("2.4", 10.0))
+    ]
     # the thesis states no Poisson ratio for chapter 3; 0.3 as in chapters 4 and 5
-    named.append(("chapter-4-5", pair_of(E_s=200.0, E_f=200.0, Sy_min=305.0, ratio=760 / 305)))
     rod = pair_of(E_s=212.0, E_f=200.0, Sy_min=298.0, ratio=750.0 / 298.0)
-    rod_depth = 2500.0 * fem.critical_depth(rod)
+    striker = pair_of(E_s=200.0, E_f=200.0, Sy_min=305.0, ratio=760 / 305)
+    large = pair_of(E_s=300.0, E_f=300.0, Sy_min=100.0, ratio=10.0)
+    ends = (0.1, 1.0, 10.0)
+    ratios = (*ends, *(ratio for ratio in coarse_to_fine(RATIOS) if ratio not in ends))
     return (
-        *(_deep_case(name, pair) for name, pair in named),
-        _deep_case("chapter-3", rod, deepest=rod_depth),
+        *pictures,
+        _deep_case("chapter-3", rod, deepest=2500.0 * fem.critical_depth(rod)),
+        _deep_case("chapter-4-5", striker),
+        _deep_case("figure-2.17", large),
+        *_table_2_1(ratios[:6]),
+        *_twenty_seven_sets(),
+        *_table_2_1(ratios[6:]),
+        *_figure_2_16(),
     )
+
+
+def _table_2_1(ratios: tuple[float, ...]) -> list[Case]:
+    cases = []
+    for ratio, (number, (E_s, E_f, Sy, nu_s, nu_f)) in product(ratios, TABLE_2_1.items()):
+        pair = pair_of(E_s=E_s, E_f=E_f, Sy_min=Sy, ratio=ratio, nu_s=nu_s, nu_f=nu_f)
+        cases.append(_deep_case(f"table-2.1-case-{number}-Sy*-{ratio:g}", pair))
+    return cases
+
+
+def _twenty_seven_sets() -> list[Case]:
+    moduli, strengths = (50.0, 122.0, 300.0), (50.0, 235.0, 1100.0)
+    return [
+        _deep_case(
+            f"set-{E_s:g}-{E_f:g}-{Sy:g}-Sy*-{ratio:g}",
+            pair_of(E_s=E_s, E_f=E_f, Sy_min=Sy, ratio=ratio),
+        )
+        for ratio, E_s, E_f, Sy in product((0.1, 1.0, 10.0), moduli, moduli, strengths)
+    ]
+
+
+def _figure_2_16() -> list[Case]:
+    return [
+        _deep_case(
+            f"figure-2.16-Sy*-{ratio:g}",
+            pair_of(E_s=71.7, E_f=200.0, Sy_min=300.0, ratio=ratio),
+        )
+        for ratio in (0.1, 0.5, 0.9, 1.0, 1.1, 1.3, 2.0, 10.0)
+    ]
 
 
 @cache
@@ -229,5 +282,8 @@ def design_named(name: str) -> Design:
 
 
 def distinct_cases(design: Design) -> dict[str, Case]:
-    """Cases of a design by their id; equal ones are computed once."""
-    return {case.id: case for case in design.make()}
+    """Cases of a design by their id, in its order; equal ones are computed once."""
+    cases: dict[str, Case] = {}
+    for case in design.make():
+        cases.setdefault(case.id, case)
+    return cases

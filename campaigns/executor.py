@@ -10,8 +10,8 @@ import multiprocessing
 import os
 import threading
 import time
-from collections.abc import Generator, Mapping
-from concurrent.futures import FIRST_COMPLETED, wait
+from collections.abc import Callable, Generator, Mapping
+from concurrent.futures import FIRST_COMPLETED, CancelledError, wait
 from dataclasses import dataclass
 from typing import Any, Protocol
 
@@ -21,7 +21,8 @@ from .case import Case
 
 _THREADS = ("OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS", "MKL_NUM_THREADS", "NUMBA_NUM_THREADS")
 _MOST_POOLS = 20  # that a run makes when workers die between cases
-_TRIES = 2
+_TRIES = 3
+_WINDOW = 4  # cases sent ahead to each dask worker
 
 
 @dataclass(frozen=True)
@@ -48,11 +49,24 @@ def solve_specification(spec: dict[str, Any], time_limit_s: float) -> Solution:
     return solve(case.problem(), accuracy=case.accuracy, time_limit_s=time_limit_s)
 
 
+Work = Callable[[dict[str, Any], float], Solution]
+"""What a worker does with a case's specification and its time limit [s]."""
+
+
 @dataclass(frozen=True)
 class LocalExecutor:
-    """Worker processes on this machine, one thread each."""
+    """Worker processes on this machine, one thread each.
+
+    Parameters
+    ----------
+    workers
+        How many.
+    work
+        What they do with a case.
+    """
 
     workers: int
+    work: Work = solve_specification
 
     def run(self, cases: Mapping[str, Case], *, time_limit_s: float) -> Generator[Ended]:
         """Compute the cases; give each as it ends."""
@@ -107,11 +121,10 @@ class LocalExecutor:
                 pool.stop()
                 pool.join()
 
-    @staticmethod
-    def _submit(pool: Any, case: Case, time_limit_s: float) -> Any:
+    def _submit(self, pool: Any, case: Case, time_limit_s: float) -> Any:
         # the solver keeps the limit itself; the pool's is for one that hangs
         return pool.schedule(
-            solve_specification,
+            self.work,
             args=[case.specification(), time_limit_s],
             timeout=1.5 * time_limit_s + 60.0,
         )
@@ -129,11 +142,14 @@ class DaskExecutor:
         Workers known when the connection was made.
     client
         The connection.
+    work
+        What the workers do with a case.
     """
 
     address: str
     workers: int
     client: Any
+    work: Work = solve_specification
 
     @classmethod
     def connect(cls, address: str, *, timeout_s: float = 10.0) -> DaskExecutor:
@@ -163,34 +179,48 @@ class DaskExecutor:
         return cls(address, max(1, len(client.scheduler_info()["workers"])), client)
 
     def run(self, cases: Mapping[str, Case], *, time_limit_s: float) -> Generator[Ended]:
-        """Compute the cases in a sliding window of four per worker; give each as it ends."""
+        """Compute the cases in a sliding window of a few a worker; give each as it ends.
+
+        Workers may come and go, as under a batch system: the window follows their number, and dask
+        sends the cases of a worker that died to another.
+
+        Raises
+        ------
+        InputError
+            The scheduler went away.
+        """
         from distributed import as_completed
 
         todo = iter(cases.items())
         running = as_completed()
         keys: dict[str, str] = {}
 
-        def submit() -> bool:
-            for key, case in todo:
+        def fill() -> None:
+            while len(keys) < _WINDOW * max(1, len(self.client.scheduler_info()["workers"])):
+                key, case = next(todo, ("", None))
+                if case is None:
+                    return
                 future = self.client.submit(
-                    solve_specification, case.specification(), time_limit_s, key=f"case-{key}"
+                    self.work, case.specification(), time_limit_s, key=f"case-{key}"
                 )
                 keys[future.key] = key
                 running.add(future)
-                return True
-            return False
 
-        for _ in range(4 * self.workers):
-            if not submit():
-                break
+        fill()
         for future in running:
             key = keys.pop(future.key)
-            error = future.exception()
+            error = None if future.cancelled() else future.exception()
+            if future.cancelled() or isinstance(error, CancelledError):
+                raise InputError(
+                    "the dask scheduler went away; all completed cases are kept",
+                    source=self.address,
+                    allowed="a running scheduler; the same command goes on from here",
+                )
             if error is None:
                 yield Ended(key, future.result())
             else:
                 yield Ended(key, None, f"{type(error).__name__}: {error}")
-            submit()
+            fill()
 
 
 def _die_with(coordinator: int) -> None:

@@ -1,27 +1,63 @@
 """The published data set: immutable parts below 10 MB, made from a complete run.
 
-A part is a campaign file like any other, so that the same reader and schema serve both; the parts'
-checksums lie beside them.
+The parts' checksums lie beside them and are compared whenever they are read.
 """
 
 from __future__ import annotations
 
+import json
 import tempfile
+from collections import Counter
+from collections.abc import Sequence
+from dataclasses import dataclass
 from pathlib import Path
 
 import h5py
 import numpy as np
+import numpy.typing as npt
 
+from .. import fem
 from ..core.errors import InputError
 from ..core.provenance import file_digest
 from .designs import Design, distinct_cases
+from .parts import read_part, write_part
 from .run import status_of
-from .schema import FORMAT
-from .store import CaseRecord, Store, read_curves
+from .store import CaseRecord, Store
+
+Floats = npt.NDArray[np.float64]
 
 MOST_PARTS = 8
 MOST_BYTES = 10_000_000
 CHECKSUMS = "SHA256SUMS"
+_ROOM = 0.93  # of the size of a part, when its cases are shared out by their mean size
+
+
+@dataclass(frozen=True)
+class Published:
+    """One design of a published data set.
+
+    Parameters
+    ----------
+    design
+        Its name.
+    parts
+        How many files.
+    done, failed
+        Cases.
+    numerics_version
+        Of the solver that computed it.
+    """
+
+    design: str
+    parts: int
+    done: int
+    failed: int
+    numerics_version: int
+
+    @property
+    def stale(self) -> bool:
+        """Whether the present solver gives other numbers."""
+        return self.numerics_version != fem.NUMERICS_VERSION
 
 
 def publish(
@@ -50,7 +86,8 @@ def publish(
     InputError
         The run is not complete, the design is published already, or the parts become too many.
     """
-    status = status_of(design, Store(source))
+    store = Store(source)
+    status = status_of(design, store)
     if status.missing:
         raise InputError(
             f"{status.missing} of {status.designed} cases are missing",
@@ -61,8 +98,10 @@ def publish(
     folder.mkdir(parents=True, exist_ok=True)
     if any(folder.glob(f"{design.name}-*.h5")):
         raise InputError("is published already", source=str(folder), key=design.name)
+    stored = {record.id: record for record in store.read_all()}
+    records = [stored[key] for key in distinct_cases(design)]
     with tempfile.TemporaryDirectory(dir=folder, prefix=".part-") as scratch:
-        made = _write_parts(source, list(distinct_cases(design)), Path(scratch), most_bytes)
+        made = _write_parts(records, design.name, Path(scratch), most_bytes)
         if len(list(folder.glob("*.h5"))) + len(made) > MOST_PARTS:
             raise InputError(
                 f"{len(made)} more parts", source=str(folder), allowed=f"{MOST_PARTS} in all"
@@ -83,10 +122,41 @@ def read_published(folder: Path) -> list[CaseRecord]:
     InputError
         A part is missing, or its checksum is not the published one.
     """
+    records = (record for path in _checked_parts(folder) for record in read_part(path))
+    return [record for record in records if record.status == "done"]
+
+
+def published_designs(folder: Path) -> list[Published]:
+    """Say which designs a data set holds, without reading its curves.
+
+    Raises
+    ------
+    InputError
+        A part is missing, or its checksum is not the published one.
+    """
+    found: dict[str, list[tuple[int, Counter[str]]]] = {}
+    for path in _checked_parts(folder):
+        with h5py.File(path, "r") as file:
+            counts = Counter(text.decode() for text in file["cases/status"][()])
+            version = int(file.attrs["numerics_version"])
+            found.setdefault(str(file.attrs["design"]), []).append((version, counts))
+    return [
+        Published(
+            design=name,
+            parts=len(parts),
+            done=sum(counts["done"] for _, counts in parts),
+            failed=sum(counts["failed"] for _, counts in parts),
+            numerics_version=parts[0][0],
+        )
+        for name, parts in found.items()
+    ]
+
+
+def _checked_parts(folder: Path) -> list[Path]:
     sums = folder / CHECKSUMS
     if not sums.exists():
         return []
-    records = []
+    paths = []
     for line in sums.read_text(encoding="utf-8").splitlines():
         digest, name = line.split()
         path = folder / name
@@ -94,60 +164,90 @@ def read_published(folder: Path) -> list[CaseRecord]:
             raise InputError("no such file", source=str(path), allowed=f"a part of {sums}")
         if file_digest(path) != digest:
             raise InputError("its checksum is not the published one", source=str(path))
-        records += read_curves(path)
-    return records
+        paths.append(path)
+    return paths
 
 
-def largest_difference(own: list[CaseRecord], published: list[CaseRecord]) -> tuple[int, float]:
-    """Return the number of common cases and the largest relative difference of their force."""
-    reference = {record.id: record for record in published}
-    common = [(record, reference[record.id]) for record in own if record.id in reference]
-    differences = [
-        float(np.max(np.abs(a.curve["force"][:n] / b.curve["force"][:n] - 1.0)))
-        for a, b in common
-        if (n := min(len(a.curve["force"]), len(b.curve["force"])))
-    ]
-    return len(common), max(differences, default=0.0)
+@dataclass(frozen=True)
+class Difference:
+    """Largest relative differences between runs of the same cases, at the same depths.
+
+    Parameters
+    ----------
+    cases
+        How many cases both have.
+    same
+        Whether they are cases of the same identity, or only of the same pair.
+    force, radius, share
+        Largest relative difference of F, a and delta_s*; 0 without common cases.
+    """
+
+    cases: int
+    same: bool
+    force: float
+    radius: float
+    share: float
 
 
-def _write_parts(source: Path, keys: list[str], scratch: Path, most_bytes: int) -> list[Path]:
-    """Copy the cases in order; a part is closed before the next case would make it too large."""
-    parts: list[Path] = []
-    with h5py.File(source, "r") as whole:
-        sizes = _sizes(whole, keys, scratch)
-        start = 0
-        while start < len(keys):
-            end, total = start, 0
-            while end < len(keys) and (end == start or total + sizes[end] < 0.95 * most_bytes):
-                total += sizes[end]
-                end += 1
-            path = scratch / f"{len(parts) + 1}.h5"
-            with _new_part(path) as part:
-                for key in keys[start:end]:
-                    whole.copy(f"cases/{key}", part["cases"])
-            if path.stat().st_size >= most_bytes:
-                raise InputError("one case is larger than a part may be", source=str(source))
-            parts.append(path)
-            start = end
-    return parts
+def largest_difference(own: Sequence[CaseRecord], published: Sequence[CaseRecord]) -> Difference:
+    """Compare the cases that two runs have in common.
+
+    Cases of the same identity are compared depth by depth; where there are none, cases of the same
+    pair at another resolution are, at the depths of the first within those of the second.
+    """
+    by_id = {record.id: record for record in published}
+    common = [(record, by_id[record.id]) for record in own if record.id in by_id]
+    same = bool(common)
+    if not common:
+        by_pair = {_groups(record): record for record in published}
+        common = [(r, by_pair[_groups(r)]) for r in own if _groups(r) in by_pair]
+    found = [_differences(a, b) for a, b in common]
+    force, radius, share = np.max(found, axis=0) if found else (0.0, 0.0, 0.0)
+    return Difference(len(common), same, float(force), float(radius), float(share))
 
 
-def _sizes(whole: h5py.File, keys: list[str], scratch: Path) -> list[int]:
-    """Bytes that each case takes in a part, measured by writing it."""
-    path, sizes, before = scratch / "measure.h5", [], 0
-    with _new_part(path) as part:
-        for key in keys:
-            whole.copy(f"cases/{key}", part["cases"])
-            part.flush()
-            after = path.stat().st_size
-            sizes.append(after - before)
-            before = after
-    path.unlink()
-    return sizes
+def _groups(record: CaseRecord) -> str:
+    return json.dumps(record.case.groups)
 
 
-def _new_part(path: Path) -> h5py.File:
-    file = h5py.File(path, "w")
-    file.attrs["format"] = FORMAT
-    file.create_group("cases")
-    return file
+def _differences(a: CaseRecord, b: CaseRecord) -> tuple[float, float, float]:
+    mine, theirs = _scaled(a), _scaled(b)
+    x, y = np.log(mine[0]), np.log(theirs[0])
+    within = (x >= y[0] - 1e-6) & (x <= y[-1] + 1e-6)
+    force, radius, share = (
+        float(np.abs(own[within] / np.exp(np.interp(x[within], y, np.log(other))) - 1.0).max())
+        if within.any()
+        else 0.0
+        for own, other in zip(mine[1:], theirs[1:], strict=True)
+    )
+    return force, radius, share
+
+
+def _scaled(record: CaseRecord) -> tuple[Floats, Floats, Floats, Floats]:
+    """Delta/R, F/(E' R^2), a/R and delta_s*."""
+    pair, c = record.case.pair, record.curve
+    share = c["sphere"] / (c["sphere"] + c["flat"])
+    force = c["force"] / (pair.E_reduced * pair.R**2)
+    return c["delta"] / pair.R, force, c["radius"] / pair.R, share
+
+
+def _write_parts(
+    records: list[CaseRecord], design: str, scratch: Path, most_bytes: int
+) -> list[Path]:
+    """Write the cases, in order, as the fewest equal parts that stay below the size."""
+    about = {"design": design, "numerics_version": str(fem.NUMERICS_VERSION)}
+    whole = scratch / "whole.h5"
+    write_part(whole, records, about=about)
+    if whole.stat().st_size < most_bytes:
+        return [whole]
+    count = int(np.ceil(whole.stat().st_size / (_ROOM * most_bytes)))
+    while count <= max(MOST_PARTS, len(records)):
+        paths = []
+        for k, share in enumerate(np.array_split(np.arange(len(records)), count)):
+            path = scratch / f"{count}-{k}.h5"
+            write_part(path, [records[i] for i in share], about=about)
+            paths.append(path)
+        if all(path.stat().st_size < most_bytes for path in paths):
+            return paths
+        count += 1
+    raise InputError("one case is larger than a part may be", source=design)

@@ -47,6 +47,27 @@ def status_of(design: Design, store: Store) -> Status:
     return Status(len(distinct_cases(design)), found.count("done"), found.count("failed"))
 
 
+def cases_to_do(
+    design: Design, store: Store, *, again: frozenset[str] = frozenset()
+) -> dict[str, Case]:
+    """Cases that a run would compute, in its order, by their id.
+
+    Parameters
+    ----------
+    design, store
+        The sweep and what is there of it.
+    again
+        Statuses that are computed again. A case that failed is tried with smaller steps and
+        elements; its identity stays.
+    """
+    stored = store.statuses()
+    return {
+        key: case.refined() if key in stored else case
+        for key, case in distinct_cases(design).items()
+        if key not in stored or stored[key] in again
+    }
+
+
 def run_design(
     design: Design,
     path: Path,
@@ -89,12 +110,7 @@ def run_design(
     store = Store(path)
     cases = distinct_cases(design)
     with store.writing():
-        stored = store.statuses()
-        todo = {
-            key: case for key, case in cases.items() if key not in stored or stored[key] in again
-        }
-        # a case that failed is tried with smaller steps and elements; its identity stays
-        todo = {key: case.refined() if key in stored else case for key, case in todo.items()}
+        todo = cases_to_do(design, store, again=again)
         with closing(executor.run(todo, time_limit_s=time_limit_s)) as endings:
             for ended in endings:
                 case = cases[ended.id]

@@ -14,7 +14,7 @@ import os
 import time
 from collections.abc import Iterator
 from contextlib import contextmanager, suppress
-from dataclasses import dataclass
+from dataclasses import asdict, dataclass
 from pathlib import Path
 from typing import Any
 
@@ -26,7 +26,9 @@ from ..core.errors import InputError
 from ..core.provenance import environment
 from ..fem import Curve, Solution
 from .case import Case
+from .fields import FOLDER, write_fields
 from .journal import PATIENCE_S, changing, journal_of, recover
+from .quality import Quality, quality_of
 from .schema import CURVE, FORMAT, PROFILES, UNLOADING_PROFILES, Dataset
 
 Floats = npt.NDArray[np.float64]
@@ -70,6 +72,10 @@ class CaseRecord:
         Work that the solve took.
     accuracy
         Settings that it was solved with: finer than the specification's after a retry.
+    environment
+        Versions and commit that computed it.
+    mesh
+        Digest of its mesh.
     """
 
     id: str
@@ -81,6 +87,25 @@ class CaseRecord:
     profiles: dict[str, Floats]
     counters: dict[str, float]
     accuracy: dict[str, Any]
+    environment: dict[str, str]
+    mesh: str
+
+    @property
+    def quality(self) -> Quality:
+        """Balances, smoothness and reach of the loading curve."""
+        return quality_of(self.curve or {"delta": np.zeros(0)}, self.case.pair.R)
+
+
+@dataclass(frozen=True)
+class Summary:
+    """One stored case without its arrays; `quality` is none where the solver gave nothing."""
+
+    id: str
+    case: Case
+    status: str
+    message: str
+    cpu_s: float
+    quality: Quality | None
 
 
 class Store:
@@ -156,11 +181,24 @@ class Store:
             group.attrs["message"] = "" if done else (message or str(solution and solution.outcome))
             if solution is not None:
                 _put_solution(group, solution)
+                files = write_fields(solution, self.path.parent / FOLDER, name=case.id[:16])
+                group.attrs["fields"] = json.dumps([file.name for file in files])
             # last: a group without a status is one whose writing was cut short
             group.attrs["status"] = "done" if done else "failed"
 
     def _appending(self) -> Any:
         return _appending(self.path)
+
+    def summaries(self) -> list[Summary]:
+        """Read what is known of every case but its arrays, in the order of their ids."""
+        if not (self.path.exists() or journal_of(self.path).exists()):
+            return []
+        with _reading(self.path) as file:
+            return [
+                _summary(key, group, self.path)
+                for key, group in file["cases"].items()
+                if _ended(group)
+            ]
 
     def read(self, case_id: str) -> CaseRecord:
         """Read one case, named by its id or the beginning of it."""
@@ -188,21 +226,6 @@ class Store:
 def _ended(group: h5py.Group | None) -> bool:
     """Whether a case was written to its end; one that a kill cut short may not even open."""
     return group is not None and "status" in group.attrs
-
-
-def read_curves(path: Path) -> list[CaseRecord]:
-    """Read all completed cases of a campaign file.
-
-    Where a file holds cases of several numerics versions, only those of the present one are given:
-    the same pair would otherwise come twice.
-
-    Raises
-    ------
-    InputError
-        The file is missing, is no campaign file, or is damaged.
-    """
-    done = [record for record in Store(path).read_all() if record.status == "done"]
-    return [record for record in done if record.id == record.case.id] or done
 
 
 @contextmanager
@@ -277,6 +300,8 @@ def _put_solution(group: h5py.Group, solution: Solution) -> None:
     group.attrs["mesh"] = solution.mesh_digest
     group.attrs["boundary"] = solution.boundary
     group.attrs["yield_measure"] = solution.yield_measure
+    quality = quality_of(vars(solution.loading), solution.problem.pair.R)
+    group.attrs["quality"] = json.dumps(asdict(quality))
     counters = solution.counters
     for name in counters.__dataclass_fields__:
         group.attrs[f"counter_{name}"] = float(getattr(counters, name))
@@ -319,6 +344,22 @@ def _put_array(group: h5py.Group, name: str, values: Floats, about: Dataset) -> 
     data.attrs["meaning"] = about.meaning
 
 
+def _summary(key: str, group: h5py.Group, path: Path) -> Summary:
+    attrs, quality = group.attrs, None
+    if "quality" in attrs:
+        quality = Quality(**json.loads(attrs["quality"]))
+    elif "loading" in group:  # stored before the quality was
+        quality = _read_case(key, group, path).quality
+    return Summary(
+        id=key,
+        case=Case.from_specification(json.loads(attrs["specification"])),
+        status=str(attrs["status"]),
+        message=str(attrs["message"]),
+        cpu_s=float(attrs.get("counter_cpu_s", 0.0)),
+        quality=quality,
+    )
+
+
 def _read_case(key: str, group: h5py.Group, path: Path) -> CaseRecord:
     unloadings = []
     for name in sorted((n for n in group if n.startswith("unload-")), key=lambda n: int(n[7:])):
@@ -347,6 +388,8 @@ def _read_case(key: str, group: h5py.Group, path: Path) -> CaseRecord:
             if name.startswith(prefix)
         },
         accuracy=json.loads(group.attrs.get("accuracy", "{}")),
+        environment=json.loads(group.attrs["environment"]),
+        mesh=str(group.attrs.get("mesh", "")),
     )
 
 

@@ -1,4 +1,4 @@
-"""`dentscope campaign`: run a sweep, see where it stands, look at a case, export."""
+"""`dentscope campaign`: run a sweep, see where it stands, look at a case, export, publish, draw."""
 
 from __future__ import annotations
 
@@ -8,6 +8,7 @@ import math
 import os
 import time
 from collections.abc import Iterator
+from dataclasses import asdict
 from pathlib import Path
 from typing import Annotated, Any
 
@@ -18,11 +19,6 @@ from ..core.errors import EXIT_NOT_CONVERGED, InputError
 app = typer.Typer(help="Sweeps of finite-element cases.", no_args_is_help=True)
 
 _FILE = "campaign.h5"
-_TYPICAL_CPU_S = {
-    "smoke": 17.0,
-    "survey": 45.0,
-}  # mean processor seconds a case, measured (docs/performance.md)
-_DEEP_CPU_S = 200.0  # the same at production accuracy
 _PUBLISHED = Path(__file__).parents[1] / "data" / "campaign"
 
 Out = Annotated[Path, typer.Option(help="Folder of the run.")]
@@ -55,32 +51,33 @@ def run(
     """Compute what the sweep lacks; stop it at any time and run it again to go on."""
     from ..campaigns import Store, design_named, run_design, status_of
     from ..campaigns.executor import DaskExecutor, LocalExecutor
+    from ..campaigns.run import cases_to_do
 
     if retry not in ("", "failed"):
         raise InputError(f"{retry!r}", source="command line", key="--retry", allowed="failed")
     chosen = design_named(design)
     path = out / _FILE
     store = Store(path)
+    again = frozenset({retry} - {""})
     before = status_of(chosen, store)
     executor: Any = DaskExecutor.connect(scheduler) if scheduler else LocalExecutor(workers=workers)
-    todo = before.missing + (before.failed if retry else 0)
-    guess = todo * _TYPICAL_CPU_S.get(design, _DEEP_CPU_S) / executor.workers / 60.0
-    long = f"{guess:.0f} min" if guess < 120.0 else f"{guess / 60.0:.0f} h"
+    todo = list(cases_to_do(chosen, store, again=again).values())
+    forecast = _forecast(todo, store, executor.workers)
     typer.echo(
         f"design {design}: {before.designed} cases, {before.done} done, {before.failed} failed, "
-        f"{before.missing} to compute on {executor.workers} workers; about {long}. "
-        f"Results go to {path}."
+        f"{len(todo)} to compute on {executor.workers} workers; about "
+        f"{_long(forecast.left_s())} here. Results go to {path}."
     )
     started = time.monotonic()
     until = started + 60.0 * limit_minutes if limit_minutes else math.inf
     try:
-        with _Progress(todo) as progress:
+        with _Progress(forecast, len(todo)) as progress:
             after = run_design(
                 chosen,
                 path,
                 executor=executor,
                 time_limit_s=60.0 * case_minutes,
-                again=frozenset({retry} - {""}),
+                again=again,
                 until=until,
                 report=progress.step,
             )
@@ -91,7 +88,7 @@ def run(
             "the same command goes on from here"
         )
         return 130
-    _summary(store, out, after, time.monotonic() - started, progress.cpu_s)
+    _summary(chosen, out, after, time.monotonic() - started, progress.cpu_s)
     return 0 if after.done == after.designed else EXIT_NOT_CONVERGED
 
 
@@ -102,10 +99,12 @@ def status(
     as_json: Annotated[bool, typer.Option("--json", help="For programs.")] = False,
 ) -> None:
     """Count done, failed and missing cases; works while the sweep runs."""
-    from ..campaigns import Store, design_named, read_published, status_of
+    from ..campaigns import Store, design_named, published_designs, status_of
 
     path = out / _FILE
-    counts = status_of(design_named(design), Store(path))
+    store = Store(path)
+    counts = status_of(design_named(design), store)
+    published = published_designs(_PUBLISHED)
     content = {
         "design": design,
         "file": str(path),
@@ -114,17 +113,26 @@ def status(
         "failed": counts.failed,
         "missing": counts.missing,
     }
+    stored = store.summaries()
+    judged = _judged([s for s in stored if s.status == "done"])
     if as_json:
-        typer.echo(json.dumps(content))
+        told = {one.design: asdict(one) for one in published}
+        typer.echo(json.dumps({**content, "quality": judged, "published": told}))
         return
     typer.echo("  ".join(f"{key} {value}" for key, value in content.items()))
-    if not path.exists():
+    if not stored:
         typer.echo("No run here yet: `dentscope campaign run` starts one.")
-        typer.echo(f"Published: {len(read_published(_PUBLISHED))} cases in {_PUBLISHED}.")
-        return
-    for record in Store(path).read_all():
-        share = "" if record.status == "done" else f"  {record.message}"
-        typer.echo(f"{record.id[:12]}  {record.status:7} {record.case.name}{share}")
+    for summary in stored:
+        typer.echo(f"{summary.id[:12]}  {summary.status:7} {summary.case.name}{_remarks(summary)}")
+    _tell(judged)
+    if not published:
+        typer.echo(f"Published: nothing yet in {_PUBLISHED}.")
+    for one in published:
+        old = f", of numerics version {one.numerics_version}: stale" if one.stale else ""
+        typer.echo(
+            f"Published: {one.design}, {one.done} cases done, {one.failed} failed, "
+            f"{one.parts} parts in {_PUBLISHED}{old}."
+        )
 
 
 @app.command()
@@ -222,10 +230,70 @@ def publish(
         typer.echo(f"{part}: {part.stat().st_size / 1e6:.1f} MB")
 
 
-class _Progress:
-    """A bar on a terminal, a line a case in a log."""
+@app.command()
+def gallery(
+    data: Annotated[
+        Path | None,
+        typer.Option(help="Campaign file or folder of parts. Default: published, else own run."),
+    ] = None,
+    fields: Annotated[Path, typer.Option(help="Folder of a run's field files.")] = Path(
+        "build/campaign/fields"
+    ),
+    to: Annotated[Path, typer.Option(help="Folder of the pictures.")] = Path(
+        "docs/gallery/campaign"
+    ),
+) -> None:
+    """Draw the campaign: the figures over Sy*, F/F_c of all cases, stress fields."""
+    from ..figures.campaign import build
 
-    def __init__(self, total: int) -> None:
+    for picture in build(_data(data), to, fields=fields):
+        typer.echo(f"{picture.number:>10}  {picture.title}: {picture.note}")
+    typer.echo(f"written: {to / 'README.md'}")
+
+
+@app.command()
+def reproduction(
+    data: Annotated[
+        Path | None,
+        typer.Option(help="Campaign file or folder of parts. Default: published, else own run."),
+    ] = None,
+    to: Annotated[Path, typer.Option(help="Report to write.")] = Path("docs/reproduction.md"),
+) -> None:
+    """Check the trends that chapter 2 of the thesis tells, one by one."""
+    from ..figures.campaign_reproduction import write
+
+    for trend in write(_data(data), to):
+        typer.echo(f"{trend.verdict:>14}  {trend.claim}")
+    typer.echo(f"written: {to}")
+
+
+def _data(given: Path | None) -> Path:
+    """What to read: what was named, or the published data, or the own run."""
+    from ..campaigns.publish import CHECKSUMS
+
+    if given is not None:
+        return given
+    return _PUBLISHED if (_PUBLISHED / CHECKSUMS).exists() else Path("build/campaign") / _FILE
+
+
+def _forecast(todo: list[Any], store: Any, workers: int) -> Any:
+    from ..campaigns import Forecast, pace_of_this_machine
+
+    ended = [(s.case, s.cpu_s) for s in store.summaries() if s.status == "done"]
+    return Forecast(todo, workers=workers, ended=ended, pace=pace_of_this_machine())
+
+
+def _long(seconds: float) -> str:
+    if seconds < 90.0:
+        return f"{seconds:.0f} s"
+    minutes = seconds / 60.0
+    return f"{minutes:.0f} min" if minutes < 120.0 else f"{minutes / 60.0:.0f} h"
+
+
+class _Progress:
+    """A bar on a terminal, a line a case in a log; both with the time that is left."""
+
+    def __init__(self, forecast: Any, total: int) -> None:
         from rich.console import Console
         from rich.progress import (
             BarColumn,
@@ -233,12 +301,12 @@ class _Progress:
             Progress,
             TextColumn,
             TimeElapsedColumn,
-            TimeRemainingColumn,
         )
 
         self.cpu_s = 0.0
         self.total = total
         self.ended = 0
+        self.forecast = forecast
         self.started = time.monotonic()
         self.console = Console()
         self.bar = Progress(
@@ -246,11 +314,10 @@ class _Progress:
             BarColumn(),
             MofNCompleteColumn(),
             TimeElapsedColumn(),
-            TextColumn("left"),
-            TimeRemainingColumn(),
+            TextColumn("{task.fields[left]} left"),
             console=self.console,
         )
-        self.task = self.bar.add_task("cases", total=total)
+        self.task = self.bar.add_task("cases", total=total, left=_long(forecast.left_s()))
 
     def __enter__(self) -> _Progress:
         if self.console.is_terminal:
@@ -265,31 +332,83 @@ class _Progress:
         """Show one case that ended."""
         self.ended += 1
         self.cpu_s += step.cpu_s
-        self.bar.advance(self.task)
-        left = (time.monotonic() - self.started) / self.ended * (self.total - self.ended)
+        gone = time.monotonic() - self.started
+        self.forecast.end(step.case, gone)
+        left = _long(self.forecast.left_s(gone))
+        self.bar.update(self.task, advance=1, left=left)
         word = "done" if step.done else "FAILED"
         line = f"{word} {step.case.name} ({step.cpu_s:.0f} s) {step.message}"
         if not self.console.is_terminal:
-            line = f"[{self.ended}/{self.total}, {left / 60:.1f} min left] {line}"
+            line = f"[{self.ended}/{self.total}, {left} left] {line}"
         self.console.print(line, highlight=False, markup=False)
 
 
-def _summary(store: Any, out: Path, after: Any, wall_s: float, cpu_s: float) -> None:
-    from ..campaigns import largest_difference, read_published
+def _remarks(summary: Any) -> str:
+    from ..campaigns import MOST_ENERGY_DEFECT, MOST_STEP
+
+    if summary.status != "done":
+        return f"  {summary.message}"
+    quality, told = summary.quality, []
+    if quality.energy_defect > MOST_ENERGY_DEFECT:
+        told.append(f"energy defect {quality.energy_defect:.2%}")
+    if quality.largest_step > MOST_STEP:
+        told.append(f"step of {quality.largest_step:.1%}")
+    return f"  ({', '.join(told)})" if told else ""
+
+
+def _judged(done: list[Any]) -> dict[str, float]:
+    """What the completed cases keep: reach, energy balance, smoothness."""
+    from ..campaigns import MOST_ENERGY_DEFECT, MOST_STEP
+
+    if not done:
+        return {}
+    qualities = [summary.quality for summary in done]
+    return {
+        "cases": len(done),
+        "least_depth": min(q.depth_reached for q in qualities),
+        "energy_defect": max(q.energy_defect for q in qualities),
+        "energy_defect_above_mark": sum(q.energy_defect > MOST_ENERGY_DEFECT for q in qualities),
+        "largest_step": max(q.largest_step for q in qualities),
+        "steps_above_mark": sum(q.largest_step > MOST_STEP for q in qualities),
+        "cpu_s_a_case": sum(summary.cpu_s for summary in done) / len(done),
+    }
+
+
+def _tell(judged: dict[str, float]) -> None:
+    from ..campaigns import MOST_ENERGY_DEFECT, MOST_STEP
+
+    if not judged:
+        return
+    typer.echo(
+        f"{judged['cases']} completed cases, {judged['cpu_s_a_case']:.0f} processor seconds each: "
+        f"every one reaches Delta/R = {judged['least_depth']:.3g}; largest energy defect "
+        f"{judged['energy_defect']:.2%} ({judged['energy_defect_above_mark']} cases above "
+        f"{MOST_ENERGY_DEFECT:.1%}); largest step of F, a or delta_s* along a case "
+        f"{judged['largest_step']:.1%} ({judged['steps_above_mark']} cases above {MOST_STEP:.0%})"
+    )
+
+
+def _summary(design: Any, out: Path, after: Any, wall_s: float, cpu_s: float) -> None:
+    from ..campaigns import Store, distinct_cases, largest_difference, read_published
     from ..campaigns.pictures import draw_campaign
 
     typer.echo(
         f"{after.done} done, {after.failed} failed, {after.missing} missing of {after.designed}; "
-        f"{wall_s / 60:.1f} min, {cpu_s:.0f} processor seconds"
+        f"{_long(wall_s)}, {cpu_s:.0f} processor seconds"
     )
     if not after.done:
         return
-    records = [r for r in store.read_all() if r.status == "done"]
-    worst = max(float(abs(r.curve["energy_defect"]).max()) for r in records)
-    deepest = min(float(r.curve["delta"][-1] / r.case.pair.R) for r in records)
-    typer.echo(f"every case reaches Delta/R = {deepest:.3g}; largest energy defect {worst:.2%}")
-    common, difference = largest_difference(records, read_published(_PUBLISHED))
-    if common:
-        typer.echo(f"largest difference of F from {common} published cases: {difference:.2%}")
+    store, keys = Store(out / _FILE), set(distinct_cases(design))
+    _tell(_judged([s for s in store.summaries() if s.id in keys and s.status == "done"]))
+    records = [r for r in store.read_all() if r.id in keys and r.status == "done"]
+    found = largest_difference(records, read_published(_PUBLISHED))
+    if found.cases:
+        finer = "" if found.same else ", which were solved at another resolution"
+        typer.echo(
+            f"largest difference from {found.cases} published cases{finer}: F {found.force:.2%}, "
+            f"a {found.radius:.2%}, delta_s* {found.share:.2%}"
+        )
+    else:
+        typer.echo("no case of these is published: nothing to compare with")
     for picture in draw_campaign(records, out / "pictures"):
         typer.echo(f"picture: {picture}")

@@ -1,5 +1,9 @@
-"""Published parts: complete, small, never rewritten, checked when read."""
+"""Published parts: complete, small, never rewritten, checked when read, compared with own runs."""
 
+import json
+from dataclasses import replace
+
+import h5py
 import numpy as np
 import pytest
 from dentscope import fem
@@ -8,13 +12,16 @@ from dentscope.campaigns import (
     Store,
     largest_difference,
     publish,
+    published_designs,
     read_curves,
     read_published,
     standard_case,
 )
+from dentscope.campaigns.schema import CURVE, UNLOADING_PROFILES
+from dentscope.cli import campaign as command
 from dentscope.cli import run
-from dentscope.core import COMPLETED, InputError, Material, Pair
-from dentscope.fem import Counters, Curve, Solution
+from dentscope.core import COMPLETED, Ending, InputError, Material, Outcome, Pair
+from dentscope.fem import Counters, Curve, Profile, Solution, Unloading
 
 
 def made(n=6):
@@ -24,7 +31,8 @@ def made(n=6):
             f"case-{i}",
             Pair(Material(E=200e9, nu=0.3, Sy=4e8 + 1e7 * i), flat, 1e-3),
             deepest=0.01,
-            n_depths=4,
+            n_depths=30,
+            unload_depths=(0.004, 0.01),
             accuracy=fem.Accuracy.smoke(),
         )
         for i in range(n)
@@ -34,26 +42,112 @@ def made(n=6):
 DESIGN = Design("trial", "", made)
 
 
-def stored(path, n=6, factor=1.0):
+def solved(case, seed=0, factor=1.0):
+    """A made-up solve with curves, unloadings and profiles of uneven lengths."""
+    draw, R = np.random.default_rng(seed), case.pair.R
+    delta = np.array(case.depths) * R
+    noise = {name: 1.0 + 0.01 * draw.random(len(delta)) for name in CURVE}
+    curve = Curve(**{**noise, "delta": delta, "force": factor * delta * noise["force"] * 1e6})
+    n = 150 + seed
+    shapes = {name: draw.random(n) for name in UNLOADING_PROFILES}
+    unloadings = tuple(
+        Unloading(d, curve, 1e-6 * draw.random(), -1e-9, **shapes, steps=9, outcome=COMPLETED)
+        for d in case.unload_from
+    )
+    profiles = tuple(Profile(d, *draw.random((5, n))) for d in case.profiles)
     counters = Counters(**dict.fromkeys(Counters.__dataclass_fields__, 1))
-    line = factor * np.random.default_rng(1).random(3000)
-    curve = Curve(**dict.fromkeys(Curve.__dataclass_fields__, line))
-    for case in made()[:n]:
-        solution = Solution(case.problem(), case.accuracy, COMPLETED, curve, (), (), counters, "m")
-        Store(path).put(case, solution)
+    return Solution(
+        case.problem(), case.accuracy, COMPLETED, curve, unloadings, (), counters, "m", profiles
+    )
+
+
+def stored(path, n=6, factor=1.0):
+    for seed, case in enumerate(made()[:n]):
+        Store(path).put(case, solved(case, seed, factor))
     return path
 
 
 def test_parts_hold_every_case_once_below_their_size(tmp_path):
     source = stored(tmp_path / "c.h5")
-    parts = publish(DESIGN, source, tmp_path / "data", most_bytes=600_000)
+    parts = publish(DESIGN, source, tmp_path / "data", most_bytes=230_000)
     assert 1 < len(parts) <= 8
-    assert all(part.stat().st_size < 600_000 for part in parts)
+    assert all(part.stat().st_size < 230_000 for part in parts)
     published = read_published(tmp_path / "data")
     assert sorted(r.id for r in published) == sorted(r.id for r in read_curves(source))
-    assert largest_difference(read_curves(source), published) == (6, 0.0)
-    other = stored(tmp_path / "other.h5", factor=1.02)
-    assert largest_difference(read_curves(other), published) == (6, pytest.approx(0.02))
+    assert [r.id for r in read_curves(tmp_path / "data")] == [r.id for r in published]
+    first = [r.id for r in read_curves(parts[0])]
+    assert first == [r.id for r in published][: len(first)]
+    told = published_designs(tmp_path / "data")
+    assert [(d.design, d.parts, d.done, d.failed, d.stale) for d in told] == [
+        ("trial", len(parts), 6, 0, False)
+    ]
+
+
+def test_a_part_gives_back_what_the_run_stored(tmp_path):
+    source = stored(tmp_path / "c.h5")
+    publish(DESIGN, source, tmp_path / "data")
+    published = {record.id: record for record in read_published(tmp_path / "data")}
+    for own in read_curves(source):
+        other = published[own.id]
+        assert (other.case, other.message, other.counters) == (own.case, "", own.counters)
+        assert (other.accuracy, other.environment, other.mesh) == (
+            own.accuracy, own.environment, own.mesh
+        )  # fmt: skip
+        for mine, theirs in [
+            (own.curve, other.curve),
+            (own.profiles, other.profiles),
+            *((a.curve, b.curve) for a, b in zip(own.unloadings, other.unloadings, strict=True)),
+            *((a.profiles, b.profiles) for a, b in zip(own.unloadings, other.unloadings,
+                                                       strict=True)),
+        ]:  # fmt: skip
+            assert mine.keys() == theirs.keys()
+            for name, values in mine.items():
+                # single precision: half a unit in the last of 24 bits
+                np.testing.assert_allclose(theirs[name], values, rtol=2.0**-24)
+        for a, b in zip(own.unloadings, other.unloadings, strict=True):
+            assert (a.depth, a.residual_sphere, a.residual_flat) == (
+                b.depth, b.residual_sphere, b.residual_flat
+            )  # fmt: skip
+
+
+def test_every_column_of_a_part_tells_its_unit_and_meaning(tmp_path):
+    [part] = publish(DESIGN, stored(tmp_path / "c.h5"), tmp_path / "data")
+
+    def look(name, item):
+        if isinstance(item, h5py.Dataset):
+            assert item.attrs["meaning"], name
+            assert "unit" in item.attrs or item.dtype.kind == "S", name
+
+    with h5py.File(part) as file:
+        file.visititems(look)
+
+
+def test_failed_cases_are_published_with_their_reason(tmp_path):
+    source = stored(tmp_path / "c.h5", n=5)
+    case = made()[5]
+    stuck = Outcome(Ending.NOT_CONVERGED, "stuck at 0.003.", "Refine.")
+    Store(source).put(case, replace(solved(case), outcome=stuck, unloadings=(), profiles=()))
+    [part] = publish(DESIGN, source, tmp_path / "data")
+    assert len(read_curves(part)) == 5
+    assert published_designs(tmp_path / "data")[0].failed == 1
+    with h5py.File(part) as file:
+        assert b"stuck at 0.003" in file["cases/message"][()][5]
+
+
+def test_an_own_run_is_compared_with_what_is_published(tmp_path):
+    publish(DESIGN, stored(tmp_path / "c.h5"), tmp_path / "data")
+    published = read_published(tmp_path / "data")
+    found = largest_difference(read_curves(stored(tmp_path / "o.h5", factor=1.02)), published)
+    assert (found.cases, found.same) == (6, True)
+    assert found.force == pytest.approx(0.02, abs=1e-6)
+    assert found.radius < 1e-6
+    # at another resolution it is the pair that tells what to compare
+    finer = replace(made()[0], accuracy=fem.Accuracy.quick())
+    Store(tmp_path / "q.h5").put(finer, solved(finer, 0, 0.9))
+    found = largest_difference(read_curves(tmp_path / "q.h5"), published)
+    assert (found.cases, found.same) == (1, False)
+    assert found.force == pytest.approx(0.1, abs=1e-6)
+    assert largest_difference([], published).cases == 0
 
 
 def test_an_incomplete_run_is_not_published_and_nothing_is_written_twice(tmp_path):
@@ -67,6 +161,9 @@ def test_an_incomplete_run_is_not_published_and_nothing_is_written_twice(tmp_pat
     part.write_bytes(part.read_bytes()[:-1] + b"x")
     with pytest.raises(InputError, match="checksum"):
         read_published(tmp_path / "data")
+    part.unlink()
+    with pytest.raises(InputError, match="no such file"):
+        published_designs(tmp_path / "data")
 
 
 def test_too_many_parts_leave_the_folder_as_it_was(tmp_path):
@@ -86,3 +183,14 @@ def test_publishing_a_missing_run_is_one_line(tmp_path, capsys):
     )
     assert answer == 2
     assert "12 of 12 cases are missing" in capsys.readouterr().err
+
+
+def test_status_without_a_run_tells_of_the_published_data(tmp_path, capsys, monkeypatch):
+    monkeypatch.setattr(command, "_PUBLISHED", tmp_path / "data")
+    publish(DESIGN, stored(tmp_path / "c.h5"), tmp_path / "data")
+    assert run(["campaign", "status", "--out", str(tmp_path / "none")]) == 0
+    told = capsys.readouterr().out
+    assert "missing 12" in told
+    assert "Published: trial, 6 cases done, 0 failed, 1 parts" in told
+    run(["campaign", "status", "--json", "--out", str(tmp_path / "none")])
+    assert json.loads(capsys.readouterr().out)["published"]["trial"]["done"] == 6

@@ -272,15 +272,15 @@ def test_a_pool_that_breaks_is_made_anew(monkeypatch):
 
     submit, made = LocalExecutor._submit, []
 
-    def broken_at_first(pool, case, time_limit_s):
+    def broken_at_first(executor, pool, case, time_limit_s):
         made.append(pool)
         if len(made) <= 2:
             future = Future()
             future.set_exception(BrokenProcessPool("All workers expired"))
             return future
-        return submit(pool, case, time_limit_s)
+        return submit(executor, pool, case, time_limit_s)
 
-    monkeypatch.setattr(LocalExecutor, "_submit", staticmethod(broken_at_first))
+    monkeypatch.setattr(LocalExecutor, "_submit", broken_at_first)
     cases = distinct_cases(design(2))
     ended = list(LocalExecutor(workers=2).run(cases, time_limit_s=60.0))
     assert sorted(item.id for item in ended) == sorted(cases)

@@ -1,0 +1,140 @@
+"""How long a sweep will take: what each case costs, learned from the cases that have ended.
+
+The model is ln(seconds) = c + k1 ln(E'/(300 Sy_min)) + k2 min(s, 1) for s > 0, + k3 min(-s, 1) for
+s < 0, with s = ln Sy*: a soft pair needs more steps, a weak flat more iterations. It starts from
+what was measured and bends towards the cases that end (ridge regression on their wall times, which
+hold the speed of the machine and what else runs on it).
+"""
+
+from __future__ import annotations
+
+import time
+from collections.abc import Sequence
+
+import numpy as np
+import numpy.typing as npt
+
+from .case import Case
+
+Floats = npt.NDArray[np.float64]
+
+# processor seconds of a deep case with E'/Sy_min = 300 and Sy* = 1, see docs/performance.md
+_BASE_S = {"smoke": 37.0, "quick": 59.0, "production": 205.0}
+_DEEP = 0.1
+_SLOPES = (0.5, 0.35, -0.5)
+_FIRM = np.array([0.05, 1.0, 1.0, 1.0])  # weight of that against finished cases
+_REFERENCE_S = 0.042  # of `_benchmark`, on the machine where _BASE_S was measured
+_AT_LEAST = 0.15  # of its foreseen time that a case under way still takes, however long it has
+
+
+class Forecast:
+    """What is left of a sweep.
+
+    Parameters
+    ----------
+    todo
+        The cases, in the order of computing.
+    workers
+        How many are computed at a time.
+    ended
+        Cases that ended before, with their processor seconds.
+    pace
+        Seconds that one measured processor second takes here.
+    """
+
+    def __init__(
+        self,
+        todo: Sequence[Case],
+        *,
+        workers: int,
+        ended: Sequence[tuple[Case, float]] = (),
+        pace: float = 1.0,
+    ) -> None:
+        self._workers = max(1, workers)
+        self._waiting = {case.id: case for case in todo}
+        self._begun: dict[str, tuple[Case, float]] = {}
+        level = {case.accuracy.level for case in todo}
+        self._seen = [(c, s) for c, s in ended if s > 0.0 and c.accuracy.level in level]
+        # times of this machine tell its pace better than the benchmark
+        self._pace = 1.0 if self._seen else pace
+        self._fit()
+        self._begin(0.0)
+
+    def end(self, case: Case, gone_s: float) -> None:
+        """Take note that a case ended, `gone_s` seconds after the start."""
+        self._waiting.pop(case.id, None)
+        if case.id in self._begun:
+            _, since = self._begun.pop(case.id)
+            self._seen.append((case, max(gone_s - since, 1e-3)))
+            self._fit()
+        self._begin(gone_s)
+
+    def left_s(self, gone_s: float = 0.0) -> float:
+        """Wall time left, `gone_s` seconds after the start [s]."""
+        foreseen = [(self._cost(case), gone_s - since) for case, since in self._begun.values()]
+        under_way = [max(whole - gone, _AT_LEAST * whole) for whole, gone in foreseen]
+        waiting = [self._cost(case) for case in self._waiting.values()]
+        both = [*under_way, *waiting]
+        return max(sum(both) / self._workers, *both) if both else 0.0
+
+    def _begin(self, gone_s: float) -> None:
+        """Cases begin in their order, as soon as a worker is free."""
+        for key in list(self._waiting)[: self._workers - len(self._begun)]:
+            self._begun[key] = (self._waiting.pop(key), gone_s)
+
+    def _cost(self, case: Case) -> float:
+        """Mean of a case's seconds; that of a logarithmic scatter lies above its middle."""
+        middle = _measured(case) + float(_features(case) @ self._bend)
+        return self._pace * float(np.exp(middle + 0.5 * self._scatter**2))
+
+    def _fit(self) -> None:
+        """Bend the measured model towards the cases seen."""
+        self._bend, self._scatter = np.zeros(4), 0.0
+        if not self._seen:
+            return
+        A = np.array([_features(case) for case, _ in self._seen])
+        y = np.log([s / self._pace for _, s in self._seen])
+        y = y - [_measured(case) for case, _ in self._seen]
+        self._bend = np.linalg.solve(A.T @ A + np.diag(_FIRM), A.T @ y)
+        self._scatter = min(float((y - A @ self._bend).std()), 0.5)
+
+
+def pace_of_this_machine() -> float:
+    """Seconds that one processor second of the measured costs takes here, from a short benchmark.
+
+    It factorises a sparse matrix of the size of a case's, which is half of a case's work.
+    """
+    times = []
+    matrix = _laplacian(120)
+    for _ in range(5):
+        started = time.perf_counter()
+        _factorise(matrix)
+        times.append(time.perf_counter() - started)
+    return float(np.median(times)) / _REFERENCE_S
+
+
+def _laplacian(n: int) -> object:
+    from scipy import sparse
+
+    line = sparse.diags_array([-1.0, 2.0, -1.0], offsets=[-1, 0, 1], shape=(n, n))
+    return sparse.csc_array(sparse.kronsum(line, line))
+
+
+def _factorise(matrix: object) -> None:
+    from scipy.sparse.linalg import splu
+
+    splu(matrix, permc_spec="MMD_AT_PLUS_A", options={"SymmetricMode": True})
+
+
+def _measured(case: Case) -> float:
+    """Logarithm of the processor seconds measured before, by resolution, depth and pair."""
+    deep = float(np.sqrt(min(case.depths[-1] / _DEEP, 1.0)))
+    base = _BASE_S.get(case.accuracy.level.split(",")[0], _BASE_S["production"])
+    return float(np.log(base * deep) + _features(case)[1:] @ _SLOPES)
+
+
+def _features(case: Case) -> Floats:
+    pair = case.pair
+    soft = np.log(pair.E_reduced / pair.Sy_min / 300.0) if np.isfinite(pair.Sy_min) else 0.0
+    s = np.log(np.clip(pair.Sy_ratio, 1e-3, 1e3)) if np.isfinite(pair.Sy_ratio) else 0.0
+    return np.array([1.0, soft, np.clip(s, 0.0, 1.0), np.clip(-s, 0.0, 1.0)])

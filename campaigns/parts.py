@@ -1,0 +1,303 @@
+"""A published part: many cases as a few long columns, which compress and which any tool can read.
+
+A campaign file keeps each case by itself, so that a run can append it; most of its bytes are
+headers. A part holds the same cases as tables: `cases` (one row a case), `loading` (one row a
+depth, all cases below each other), `unloadings` (one row an unloading), `unloading_curves`,
+`craters`, `tips`, `profile_sphere` and `profile_flat`. A table's first column counts the rows of
+the table above it that its rows belong to: `case` counts rows of `cases`, `unloading` of
+`unloadings`, `profile` depths of a case. Columns of floating-point numbers of the curves and shapes
+are in single precision (relative error below 6e-8); scalars are in double precision.
+"""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Sequence
+from dataclasses import asdict
+from pathlib import Path
+from typing import Any
+
+import h5py
+import numpy as np
+import numpy.typing as npt
+
+from ..core.errors import InputError
+from ..fem import critical_depth
+from .case import Case
+from .schema import CURVE, PROFILES, UNLOADING_PROFILES, Dataset
+from .store import CaseRecord, UnloadingRecord
+
+Floats = npt.NDArray[np.float64]
+Columns = dict[str, npt.NDArray[Any]]
+
+PART_FORMAT = "dentscope-campaign-part/1"
+
+_ROW = Dataset("1", ("row",), "row of the table above that this row belongs to")
+SCALARS: dict[str, Dataset] = {
+    "E_s": Dataset("Pa", ("case",), "Young's modulus of the sphere"),
+    "nu_s": Dataset("1", ("case",), "Poisson ratio of the sphere"),
+    "Sy_s": Dataset("Pa", ("case",), "yield strength of the sphere"),
+    "E_f": Dataset("Pa", ("case",), "Young's modulus of the flat"),
+    "nu_f": Dataset("1", ("case",), "Poisson ratio of the flat"),
+    "Sy_f": Dataset("Pa", ("case",), "yield strength of the flat"),
+    "R": Dataset("m", ("case",), "radius of the sphere"),
+    "E_reduced": Dataset("Pa", ("case",), "reduced modulus E'"),
+    "Sy_min": Dataset("Pa", ("case",), "strength of the weaker body"),
+    "Sy_ratio": Dataset("1", ("case",), "Sy* = Sy_s/Sy_f"),
+    "critical_depth": Dataset("1", ("case",), "delta_c/R, first yield"),
+    "energy_defect": Dataset("1", ("case",), "largest |work - stored - dissipated|/work"),
+    "force_step": Dataset("1", ("case",), "largest step of F along the case, over F"),
+    "radius_step": Dataset("1", ("case",), "largest step of a along the case, over a"),
+    "share_step": Dataset("1", ("case",), "largest step of delta_s* along the case, over it"),
+    "depth_reached": Dataset("1", ("case",), "largest Delta/R"),
+    "radius_reached": Dataset("1", ("case",), "largest a/R"),
+}
+TEXTS: dict[str, str] = {
+    "id": "SHA-256 of groups, depths, settings and numerics version",
+    "name": "name within the design",
+    "status": "done or failed",
+    "message": "why it failed",
+    "specification": "what was asked, JSON",
+    "accuracy": "settings it was solved with, JSON",
+    "environment": "versions and commit that computed it, JSON",
+    "counters": "work that the solve took, JSON",
+    "mesh": "digest of the mesh",
+}
+_UNLOADING: dict[str, Dataset] = {
+    "depth": Dataset("1", ("row",), "Delta/R from which it unloads"),
+    "residual_sphere": Dataset("m", ("row",), "permanent displacement of the sphere's pole"),
+    "residual_flat": Dataset("m", ("row",), "permanent displacement of the flat below it"),
+}
+_CRATER = {n: d for n, d in UNLOADING_PROFILES.items() if n.startswith("crater")}
+_TIP = {n: d for n, d in UNLOADING_PROFILES.items() if n.startswith("tip")}
+_ON_SPHERE = {n: PROFILES[n] for n in ("sphere_r", "sphere_z", "pressure")}
+_ON_FLAT = {n: PROFILES[n] for n in ("flat_r", "flat_z")}
+
+
+def write_part(path: Path, records: Sequence[CaseRecord], *, about: dict[str, str]) -> None:
+    """Write cases as one part.
+
+    Parameters
+    ----------
+    path
+        The file; one that is there is replaced.
+    records
+        The cases.
+    about
+        What the part says of itself: design, numerics version.
+    """
+    with h5py.File(path, "w") as file:
+        file.attrs["format"] = PART_FORMAT
+        for name, value in about.items():
+            file.attrs[name] = value
+        _put_cases(file.create_group("cases"), records)
+        rows = list(enumerate(records))
+        _put_table(file, "loading", "case", [(k, r.curve) for k, r in rows], CURVE)
+        unloadings = [(k, u) for k, r in rows for u in r.unloadings]
+        scalars: list[tuple[int, Columns]] = [(k, _of_unloading(u)) for k, u in unloadings]
+        _put_table(file, "unloadings", "case", scalars, _UNLOADING, precision="f8")
+        flat = list(enumerate(u for _, u in unloadings))
+        _put_table(file, "unloading_curves", "unloading", [(k, u.curve) for k, u in flat], CURVE)
+        shapes = [(k, u.profiles) for k, u in flat]
+        _put_table(file, "craters", "unloading", shapes, _CRATER)
+        _put_table(file, "tips", "unloading", shapes, _TIP)
+        depths = [(k, {"depth": r.profiles["depth"]}) for k, r in rows if r.profiles]
+        _put_table(file, "profiles", "case", depths, {"depth": PROFILES["depth"]}, precision="f8")
+        states = list(enumerate(p for _, r in rows if r.profiles for p in _states(r.profiles)))
+        _put_table(file, "profile_sphere", "profile", states, _ON_SPHERE)
+        _put_table(file, "profile_flat", "profile", states, _ON_FLAT)
+
+
+def read_part(path: Path) -> list[CaseRecord]:
+    """Read all cases of a part.
+
+    Raises
+    ------
+    InputError
+        The file is damaged or no part.
+    """
+    try:
+        with h5py.File(path, "r") as file:
+            if file.attrs.get("format") != PART_FORMAT:
+                raise InputError(
+                    f"format {file.attrs.get('format')!r}", source=str(path), allowed=PART_FORMAT
+                )
+            return _read_records(file)
+    except (KeyError, OSError, RuntimeError, ValueError) as error:
+        if isinstance(error, InputError):
+            raise
+        raise InputError(f"damaged ({error})", source=str(path)) from None
+
+
+def is_part(path: Path) -> bool:
+    """Whether a file is a published part."""
+    try:
+        with h5py.File(path, "r") as file:
+            return bool(file.attrs.get("format") == PART_FORMAT)
+    except OSError:
+        return False
+
+
+def _put_cases(group: h5py.Group, records: Sequence[CaseRecord]) -> None:
+    texts = {
+        "id": [r.id for r in records],
+        "name": [r.case.name for r in records],
+        "status": [r.status for r in records],
+        "message": [r.message for r in records],
+        "specification": [json.dumps(r.case.specification()) for r in records],
+        "accuracy": [json.dumps(r.accuracy) for r in records],
+        "environment": [json.dumps(r.environment) for r in records],
+        "counters": [json.dumps(r.counters) for r in records],
+        "mesh": [r.mesh for r in records],
+    }
+    for name, meaning in TEXTS.items():
+        values = np.array([text.encode() for text in texts[name]])
+        if values.dtype.itemsize == 0:  # all empty: HDF5 has no strings of length nought
+            values = values.astype("S1")
+        data = _put(group, name, values)
+        data.attrs["meaning"] = meaning
+    scalars = [_scalars(record) for record in records]
+    for name, about in SCALARS.items():
+        _describe(_put(group, name, np.array([row[name] for row in scalars])), about)
+
+
+def _scalars(record: CaseRecord) -> dict[str, float]:
+    pair = record.case.pair
+    return {
+        "E_s": pair.sphere.E,
+        "nu_s": pair.sphere.nu,
+        "Sy_s": pair.sphere.Sy,
+        "E_f": pair.flat.E,
+        "nu_f": pair.flat.nu,
+        "Sy_f": pair.flat.Sy,
+        "R": pair.R,
+        "E_reduced": pair.E_reduced,
+        "Sy_min": pair.Sy_min,
+        "Sy_ratio": pair.Sy_ratio,
+        "critical_depth": critical_depth(pair),
+        **asdict(record.quality),
+    }
+
+
+def _of_unloading(unloading: UnloadingRecord) -> Columns:
+    return {
+        "depth": np.array([unloading.depth]),
+        "residual_sphere": np.array([unloading.residual_sphere]),
+        "residual_flat": np.array([unloading.residual_flat]),
+    }
+
+
+def _states(profiles: Columns) -> list[Columns]:
+    return [
+        {name: profiles[name][k] for name in PROFILES if name != "depth"}
+        for k in range(len(profiles["depth"]))
+    ]
+
+
+def _put_table(
+    file: h5py.File,
+    name: str,
+    parent: str,
+    parts: Sequence[tuple[int, Columns]],
+    columns: dict[str, Dataset],
+    *,
+    precision: str = "f4",
+) -> None:
+    group = file.create_group(name)
+    first = next(iter(columns))
+    lengths = [len(part[first]) if part else 0 for _, part in parts]
+    owner = np.repeat([row for row, _ in parts], lengths).astype(np.int32)
+    _describe(_put(group, parent, owner), _ROW)
+    for column, about in columns.items():
+        found = [part[column] for _, part in parts if part]
+        values = np.concatenate(found) if found else np.zeros(0)
+        _describe(_put(group, column, values.astype(precision)), about)
+
+
+def _put(group: h5py.Group, name: str, values: npt.NDArray[Any]) -> h5py.Dataset:
+    if values.size == 0:
+        return group.create_dataset(name, data=values)
+    return group.create_dataset(
+        name, data=values, compression="gzip", compression_opts=9, shuffle=True, fletcher32=True
+    )
+
+
+def _describe(data: h5py.Dataset, about: Dataset) -> None:
+    data.attrs["unit"] = about.unit
+    data.attrs["meaning"] = about.meaning
+
+
+def _read_records(file: h5py.File) -> list[CaseRecord]:
+    texts = {name: [t.decode() for t in file["cases"][name][()]] for name in TEXTS}
+    n = len(texts["id"])
+    curves = _split(file["loading"], "case", n, CURVE)
+    unloadings = _read_unloadings(file, n)
+    profiles = _read_profiles(file, n)
+    return [
+        CaseRecord(
+            id=texts["id"][k],
+            case=Case.from_specification(json.loads(texts["specification"][k])),
+            status=texts["status"][k],
+            message=texts["message"][k],
+            curve=curves[k],
+            unloadings=tuple(unloadings[k]),
+            profiles=profiles[k],
+            counters=json.loads(texts["counters"][k]),
+            accuracy=json.loads(texts["accuracy"][k]),
+            environment=json.loads(texts["environment"][k]),
+            mesh=texts["mesh"][k],
+        )
+        for k in range(n)
+    ]
+
+
+def _read_unloadings(file: h5py.File, n: int) -> list[list[UnloadingRecord]]:
+    table = file["unloadings"]
+    owner = table["case"][()]
+    count = len(owner)
+    curves = _split(file["unloading_curves"], "unloading", count, CURVE)
+    craters = _split(file["craters"], "unloading", count, _CRATER)
+    tips = _split(file["tips"], "unloading", count, _TIP)
+    scalars = {name: table[name][()] for name in _UNLOADING}
+    out: list[list[UnloadingRecord]] = [[] for _ in range(n)]
+    for k in range(count):
+        out[owner[k]].append(
+            UnloadingRecord(
+                depth=float(scalars["depth"][k]),
+                curve=curves[k],
+                residual_sphere=float(scalars["residual_sphere"][k]),
+                residual_flat=float(scalars["residual_flat"][k]),
+                profiles={**craters[k], **tips[k]},
+            )
+        )
+    return out
+
+
+def _read_profiles(file: h5py.File, n: int) -> list[dict[str, Floats]]:
+    owner, depth = file["profiles"]["case"][()], file["profiles"]["depth"][()]
+    spheres = _split(file["profile_sphere"], "profile", len(owner), _ON_SPHERE)
+    flats = _split(file["profile_flat"], "profile", len(owner), _ON_FLAT)
+    out: list[dict[str, Floats]] = []
+    for k in range(n):
+        rows = np.flatnonzero(owner == k)
+        states = [{**spheres[row], **flats[row]} for row in rows]
+        found = {
+            name: np.array([state[name] for state in states])
+            for name in (*_ON_SPHERE, *_ON_FLAT)
+            if states
+        }
+        out.append({"depth": depth[rows], **found} if states else {})
+    return out
+
+
+def _split(
+    group: h5py.Group, parent: str, n: int, columns: dict[str, Dataset]
+) -> list[dict[str, Floats]]:
+    """Cut a table's columns into the pieces of its `n` owners, whose rows lie together."""
+    ends = np.searchsorted(group[parent][()], np.arange(n), side="right")
+    starts = np.concatenate([[0], ends[:-1]]) if n else ends
+    whole = {name: group[name][()].astype(float) for name in columns}
+    return [
+        {name: values[a:b] for name, values in whole.items()} if b > a else {}
+        for a, b in zip(starts, ends, strict=True)
+    ]

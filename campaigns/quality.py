@@ -1,0 +1,105 @@
+"""How good a solved case is, in a few numbers that are stored with it."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Mapping
+from dataclasses import dataclass
+
+import numpy as np
+import numpy.typing as npt
+
+Floats = npt.NDArray[np.float64]
+
+MOST_ENERGY_DEFECT = 0.005
+"""Energy balance defect that a published case should keep."""
+
+MOST_STEP = 0.01
+"""Step of F, a and the share along a case, over the local value, that it should keep."""
+
+_WINDOW = 7  # recorded depths that a local cubic is fitted to
+_SEEN_OF_A_STEP = 0.667  # of a single step's height; the cubic follows it with the rest
+
+
+@dataclass(frozen=True)
+class Quality:
+    """Balances, smoothness and reach of one loading curve; nan where there are too few depths.
+
+    Parameters
+    ----------
+    energy_defect
+        Largest |work - stored - dissipated|/work.
+    force_step, radius_step, share_step
+        Largest step of F, a and delta_s*, over the local value: the difference, between two
+        neighbouring depths, of the departures from a smooth curve (a local cubic in log Delta over
+        seven depths), scaled so that a single step reads its height; an alternating ripple reads up
+        to 1.7 times its own.
+    depth_reached
+        Largest Delta/R.
+    radius_reached
+        Largest a/R.
+    """
+
+    energy_defect: float
+    force_step: float
+    radius_step: float
+    share_step: float
+    depth_reached: float
+    radius_reached: float
+
+    @property
+    def largest_step(self) -> float:
+        """The largest of the three steps."""
+        return float(np.nanmax([0.0, self.force_step, self.radius_step, self.share_step]))
+
+
+def quality_of(curve: Mapping[str, Floats], R: float) -> Quality:
+    """Judge a loading curve.
+
+    Parameters
+    ----------
+    curve
+        Arrays by the names of `campaigns.schema.CURVE`, shape (n,) [SI].
+    R
+        Radius of the sphere [m].
+    """
+    depth = curve["delta"]
+    if len(depth) == 0:
+        return Quality(math.nan, math.nan, math.nan, math.nan, 0.0, 0.0)
+    share = curve["sphere"] / (curve["sphere"] + curve["flat"])
+    return Quality(
+        energy_defect=float(np.nanmax(np.abs(curve["energy_defect"]))),
+        force_step=largest_step(depth, curve["force"]),
+        radius_step=largest_step(depth, curve["radius"]),
+        share_step=largest_step(depth, share),
+        depth_reached=float(depth[-1] / R),
+        radius_reached=float(np.nanmax(curve["radius"]) / R),
+    )
+
+
+def largest_step(depth: Floats, values: Floats) -> float:
+    """Largest step of positive values along a curve, over the local value.
+
+    Parameters
+    ----------
+    depth, values
+        Shape (n,), both positive.
+
+    Examples
+    --------
+    >>> depth = np.geomspace(1e-5, 0.1, 48)
+    >>> bool(largest_step(depth, depth**1.2) < 1e-9)
+    True
+    >>> round(largest_step(depth, depth**1.2 * np.where(depth > 1e-3, 1.02, 1.0)), 3)
+    0.02
+    """
+    if len(depth) < _WINDOW + 1 or not (np.all(values > 0.0) and np.all(np.isfinite(values))):
+        return math.nan
+    x, y = np.log(depth), np.log(values)
+    departure = np.empty_like(y)
+    for i in range(len(x)):
+        start = min(max(i - _WINDOW // 2, 0), len(x) - _WINDOW)
+        near = slice(start, start + _WINDOW)
+        at = (x[near] - x[i]) / (x[near][-1] - x[near][0])
+        departure[i] = y[i] - np.polyfit(at, y[near], 3)[-1]
+    return float(np.abs(np.diff(departure)).max()) / _SEEN_OF_A_STEP
