@@ -7,13 +7,17 @@ from dataclasses import dataclass, replace
 import numpy as np
 from numpy.typing import NDArray
 
+from .correction import widened
 from .fit import Fit
+from .problem import Problem
 from .rank import Ranking
 from .thresholds import Nulls, gain, null_bayes_factors
 
 Array = NDArray[np.float64]
 
 _THIN = 400
+_ALARM = 0.98
+"""Share of nulls that pass no threshold; the test of fit adds at most 1 % of false alarms."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -28,7 +32,7 @@ class Calibration:
     offset
         Mechanism to the 95 % point of its ln B over the nulls, at least 0.
     single
-        95 % point of the largest ln B minus offset over the library, at least 1.
+        98 % point of the largest ln B minus offset over the library, at least 1.
     best
         (n,) that largest value of each null.
     chi2
@@ -81,27 +85,36 @@ def calibrate(ranking: Ranking, nulls: Nulls) -> Calibration:
     names = [s.mechanism.name for s in ranking.screened]
     return Calibration(
         dict(zip(names, (float(x) for x in offset), strict=True)),
-        max(float(np.quantile(best, 0.95)), 1.0), best, chi2,
+        max(float(np.quantile(best, _ALARM)), 1.0), best, chi2,
     )  # fmt: skip
 
 
-def p_fit(fitted: Fit, nulls: Nulls) -> float:
+def p_fit(fitted: Fit, nulls: Nulls, problem: Problem) -> float:
     """Share of data sets made by this explanation that fit it no better than the data do.
 
     They are made of its prediction and the null residuals; the mechanism's parameters are fitted
-    to each.
+    to each. Two measures of misfit, each counted twice: the sum over all cells, and what a contact
+    law with a far wider error would gain, which sees a wrong force law spread over many cells.
     """
-    white = fitted.linear.white(nulls.residual)
-    plain = np.sum(white**2, axis=1)
+    residual = nulls.made_by(fitted)
     if fitted.mechanisms:
-        e = fitted.linear.white(_moves(fitted))
-        plain = plain - np.maximum(np.max(2.0 * white @ e.T - np.sum(e**2, axis=1), axis=1), 0.0)
-    return float((np.sum(plain >= fitted.chi2) + 1) / (len(plain) + 1))
+        moves = _moves(fitted)
+        e = fitted.linear.white(moves)
+        ratio = 2.0 * fitted.linear.white(residual) @ e.T - np.sum(e**2, axis=1)
+        best = np.argmax(ratio, axis=1)
+        moved = ratio[np.arange(len(best)), best] > 0.0
+        residual = np.where(moved[:, None], residual - moves[best], residual)
+    chi2 = np.sum(fitted.linear.white(residual) ** 2, axis=1)
+    wide = widened(problem, fitted)
+    gained = wide.log_likelihood(residual) - fitted.linear.log_likelihood(residual)
+    own = wide.log_likelihood(fitted.residual) - fitted.linear.log_likelihood(fitted.residual)
+    worse = min(int(np.sum(chi2 >= fitted.chi2)), int(np.sum(gained >= own)))
+    return min(2.0 * (worse + 1) / (len(chi2) + 1), 1.0)
 
 
-def extra_threshold(fitted: Fit, ranking: Ranking, nulls: Nulls, level: float = 0.95) -> float:
+def extra_threshold(fitted: Fit, ranking: Ranking, nulls: Nulls, level: float = 0.99) -> float:
     """Gain of ln evidence by a second mechanism when there is only the fitted one."""
-    white = fitted.linear.white(nulls.residual)
+    white = fitted.linear.white(nulls.made_by(fitted))
     own = gain(white, np.zeros(len(white)), fitted.linear, _moves(fitted))
     inside = {m.name for m in fitted.mechanisms}
     most = np.full(len(white), -np.inf)
@@ -117,7 +130,7 @@ def extra_threshold(fitted: Fit, ranking: Ranking, nulls: Nulls, level: float = 
 
 def set_width(fitted: Fit, ranking: Ranking, nulls: Nulls, level: float = 0.95) -> float:
     """How far below a rival the truth may come out, in nats: how wide the reported set must be."""
-    white = fitted.linear.white(nulls.residual)
+    white = fitted.linear.white(nulls.made_by(fitted))
     own = gain(white, np.zeros(len(white)), fitted.linear, _moves(fitted))
     size = len(fitted.mechanisms)
     behind = np.zeros(len(white))

@@ -72,7 +72,7 @@ def sampled_evidence(simulator: Simulator, fitted: Fit, rng: np.random.Generator
     half = np.linalg.solve(linear.lower, linear.J)
     cov = np.eye(linear.J.shape[1]) - half.T @ half
     lower = np.linalg.cholesky(cov + 1e-10 * np.eye(len(cov)))
-    noise = np.linalg.cholesky(linear.noise)
+    noise = np.linalg.cholesky(linear.measured)
     places = fitted.grid.places() if fitted.mechanisms else np.zeros((1, 0))
     constant = float(np.sum(np.log(np.diag(lower))) - np.sum(np.log(np.diag(noise))))
     constant -= 0.5 * len(cells) * math.log(2.0 * math.pi)

@@ -47,16 +47,12 @@ class Correction:
     high: Array
 
 
-def widened(problem: Problem, base: Fit) -> tuple[float, Array, Array]:
-    """Return ln evidence, posterior mean (n_b,) and covariance of the widened law error."""
+def widened(problem: Problem, fitted: Fit) -> Linear:
+    """Return the algebra of a fit with the law's error made so wide that it is free."""
     k = problem.n_nuisances
-    J = base.linear.J.copy()
+    J = fitted.linear.J.copy()
     J[:, k:] *= WIDER
-    linear = Linear(base.linear.noise, J)
-    # the expansion's offset by the law's own coefficients is part of the residual already
-    mean, cov = linear.unknowns(base.residual)
-    evidence = float(linear.log_likelihood(base.residual))
-    return evidence, mean[k:] * WIDER, cov[k:, k:] * WIDER**2
+    return Linear(fitted.linear.noise, J, fitted.linear.form)
 
 
 def correct(problem: Problem, base: Fit, reached: tuple[float, float]) -> list[Correction]:
@@ -71,7 +67,10 @@ def correct(problem: Problem, base: Fit, reached: tuple[float, float]) -> list[C
     reached
         Smallest and largest peak depth over radius of the set.
     """
-    _, mean, cov = widened(problem, base)
+    k = problem.n_nuisances
+    # the expansion's offset by the law's own coefficients is part of the residual already
+    mean, cov = widened(problem, base).unknowns(base.residual)
+    mean, cov = mean[k:] * WIDER, cov[k:, k:] * WIDER**2
     error = problem.error
     n, m = len(error.force), len(error.recovery)
     grid = np.linspace(LOG_DEPTH_FIRST, LOG_DEPTH_LAST, NODES)

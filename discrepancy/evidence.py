@@ -1,7 +1,8 @@
 """The algebra of a comparison that is linear in the nuisances and exact in the mechanism.
 
-With r the residual at the prior mean, J the cells' derivatives by the standardised unknowns and N
-the covariance of the measurements, Sigma = N + J J^T; then ln N(r - D(u); 0, Sigma) is the
+With r the residual at the prior mean, J the cells' derivatives by the standardised unknowns, N the
+covariance of the measurements and C the components of what a mechanism's textbook form may be off,
+Sigma = N + J J^T + C C^T; then ln N(r - D(u); 0, Sigma) is the
 likelihood of the mechanism's parameters u with nuisances and law error integrated out, where D(u)
 is the mechanism's simulated effect. The evidence is its mean over the prior of u.
 """
@@ -11,7 +12,7 @@ from __future__ import annotations
 import itertools
 import math
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from functools import cached_property
 
 import numpy as np
@@ -38,15 +39,28 @@ class Linear:
         (m, m) covariance of the cells.
     J
         (m, n_z) derivatives by the standardised unknowns.
+    form
+        (m, c) components of the error of the mechanism's form; none for the baseline.
     """
 
     noise: Array
     J: Array
+    form: Array = field(default_factory=lambda: np.zeros((0, 0)))
+
+    @cached_property
+    def measured(self) -> Array:
+        """(m, m) covariance of what neither nuisances nor the law's error can follow."""
+        return self.noise + self.form @ self.form.T if self.form.size else self.noise
+
+    @cached_property
+    def total(self) -> Array:
+        """Sigma, (m, m)."""
+        return np.asarray(self.measured + self.J @ self.J.T)
 
     @cached_property
     def lower(self) -> Array:
         """Cholesky factor of Sigma."""
-        return np.asarray(np.linalg.cholesky(self.noise + self.J @ self.J.T))
+        return np.asarray(np.linalg.cholesky(self.total))
 
     @cached_property
     def log_det(self) -> float:
@@ -109,20 +123,27 @@ class Grid:
         """Return the refined grid's places, shape (k, axes)."""
         return np.stack([g.ravel() for g in np.meshgrid(*self.fine, indexing="ij")], axis=-1)
 
+    def index(self, place: Array) -> int:
+        """Return the number of the refined grid's place nearest to one."""
+        places = [int(np.argmin(np.abs(f - x))) for f, x in zip(self.fine, place, strict=True)]
+        return int(np.ravel_multi_index(places, [len(f) for f in self.fine]))
+
     def refine(self, responses: Array) -> Array:
         """Interpolate responses (nodes, m) to the refined grid (k, m), by cubic splines."""
+        return self.onto(responses, self.fine)
+
+    def onto(self, responses: Array, axes: Sequence[Array]) -> Array:
+        """Interpolate responses (nodes, m) to the tensor grid of `axes`, shape (k, m)."""
         m = responses.shape[-1]
         table = responses.reshape(*[len(c) for c in self.coarse], m)
-        for axis, (coarse, fine) in enumerate(zip(self.coarse, self.fine, strict=True)):
-            table = _along(coarse, fine, table, axis)
-        return np.asarray(table.reshape(-1, m))
+        return along_all(self.coarse, axes, table).reshape(-1, m)
 
-    def at(self, responses: Array, place: Array) -> Array:
-        """Interpolate responses (nodes, m) to one place (axes,), shape (m,)."""
-        table = responses.reshape(*[len(c) for c in self.coarse], responses.shape[-1])
-        for coarse, x in zip(self.coarse, place, strict=True):
-            table = _along(coarse, np.array([x]), table, 0)[0]
-        return np.asarray(table)
+
+def along_all(coarse: Sequence[Array], fine: Sequence[Array], table: Array) -> Array:
+    """Interpolate a table (nodes of each axis..., m) from the axes `coarse` to the axes `fine`."""
+    for axis, (known, wanted) in enumerate(zip(coarse, fine, strict=True)):
+        table = _along(known, wanted, table, axis)
+    return np.asarray(table)
 
 
 def _along(coarse: Array, fine: Array, table: Array, axis: int) -> Array:

@@ -7,7 +7,7 @@ roughness of an event-driven simulation does not matter.
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -15,7 +15,7 @@ from numpy.typing import NDArray
 
 from .evidence import Grid, Linear, posterior
 from .forward import Point, Simulator
-from .mechanisms.base import Mechanism
+from .mechanisms.base import Mechanism, Situation
 from .problem import Problem
 
 Array = NDArray[np.float64]
@@ -52,8 +52,8 @@ class Fit:
         Algebra at the expansion point.
     residual
         (m,) data minus prediction at the prior mean, with the mechanism at `place`.
-    responses
-        (nodes, m) predictions over the grid at z.
+    here
+        (m,) prediction at the expansion point.
     log_likelihood
         (k,) over the refined grid.
     residuals
@@ -74,7 +74,7 @@ class Fit:
     chi2: float
     linear: Linear
     residual: Array
-    responses: Array
+    here: Array
     log_likelihood: Array
     residuals: Array
     expanded: Array
@@ -111,6 +111,35 @@ def measured_covariance(problem: Problem, by_speed: Array, by_angle: Array) -> A
     return np.asarray(total)
 
 
+def form_error(problem: Problem, effect: Array, share: float) -> Array:
+    """Return what the textbook form of a mechanism may be off, as components (m, c).
+
+    The same physics has several published forms, which differ by some share of their effect even
+    when they are fitted to each other. Components: shares of the observables against each other,
+    and a slope over the speed. The common size of the effect is left to the mechanism's parameters.
+
+    Parameters
+    ----------
+    problem
+        Cells and conditions.
+    effect
+        (m,) change of the cells by the mechanism.
+    share
+        Standard deviation of each component, as a share of the effect.
+    """
+    cells = problem.cells
+    names = list(dict.fromkeys(cells.observable))
+    here = np.array([[o == n for n in names] for o in cells.observable], dtype=float)
+    speed = np.log([c.speed for c in problem.conditions])[cells.condition]
+    columns = [here[:, k] - here[:, k + 1 :].mean(axis=1) * (k + 1 < len(names))
+               for k in range(len(names) - 1)]  # fmt: skip
+    if np.ptp(speed) > 0.0:
+        columns.append((speed - speed.mean()) / np.std(speed))
+    if not columns:
+        return np.zeros((len(effect), 0))
+    return np.asarray(share * effect[:, None] * np.stack(columns, axis=1))
+
+
 def derivatives(
     simulator: Simulator, mechanisms: Sequence[Mechanism], values: dict[str, float], z: Array
 ) -> tuple[Array, Linear]:
@@ -132,7 +161,11 @@ def derivatives(
     by_speed = (found[1] - here) / _SPEED_STEP
     by_angle = (found[2] - here) / -_ANGLE_STEP if leaning else np.zeros_like(here)
     J = ((found[first:] - here) / (STEP * sign[:, None])).T
-    return here, Linear(measured_covariance(problem, by_speed, by_angle), J)
+    noise = measured_covariance(problem, by_speed, by_angle)
+    if not mechanisms:
+        return here, Linear(noise, J)
+    effect = here - simulator.predict((), [Point(z)])[0]
+    return here, Linear(noise, J, form_error(problem, effect, max(m.form for m in mechanisms)))
 
 
 def fit(
@@ -142,6 +175,7 @@ def fit(
     start: Fit | None = None,
     place: Array | None = None,
     rounds: int = _ROUNDS,
+    effect: Array | None = None,
 ) -> Fit:
     """Fit an explanation.
 
@@ -154,17 +188,61 @@ def fit(
     start
         A fit whose unknowns to start from.
     place
-        Where in the mechanisms' priors to start.
+        Where in the mechanisms' priors to start; a place of the refined grid.
     rounds
         Largest number of Gauss-Newton rounds.
+    effect
+        (k, m) change of the cells over the refined grid, if known from a first pass: used, and
+        brought to the simulation at the expansion point, until the last round.
     """
     problem = simulator.problem
     grid = grid_of(problem, mechanisms)
     z = np.zeros(problem.n_z) if start is None else start.z.copy()
     if place is None:
         place = np.full(len(grid.parameters), 0.5)
-    for _ in range(max(rounds, 1)):
-        found = _expand(simulator, mechanisms, grid, z, place)
+    last = max(rounds, 1) - 1
+    settled = False
+    for k in range(last + 1):
+        exact = effect is None or settled or k == last
+        found = _expand(simulator, mechanisms, grid, z, place, None if exact else effect)
+        moved = found.z - z
+        shift = np.max(np.abs(moved), initial=0.0)
+        turned = np.max(np.abs(found.place - place), initial=0.0)
+        z = z + moved * min(1.0, _FARTHEST / shift) if shift > 0.0 else z
+        place = found.place
+        settled = bool(shift < _SETTLED and turned < 0.08)
+        if settled and exact:
+            break
+    return replace(found, z=z, values=grid.values(place))
+
+
+def fit_anchored(
+    simulator: Simulator,
+    mechanisms: tuple[Mechanism, ...],
+    effect: Callable[[Array, Array], Array],
+    *,
+    start: Fit,
+    place: Array,
+    rounds: int = 2,
+) -> Fit:
+    """Fit an explanation of several mechanisms whose effects are known one by one.
+
+    Parameters
+    ----------
+    simulator
+        The problem.
+    mechanisms
+        The explanation.
+    effect
+        From unknowns (n_z,) and a place of the refined grid to the change of the cells over the
+        refined grid, (k, m).
+    start, place, rounds
+        As for `fit`.
+    """
+    grid = grid_of(simulator.problem, mechanisms)
+    z, place = start.z.copy(), grid.places()[grid.index(place)]
+    for _ in range(rounds):
+        found = _expand(simulator, mechanisms, grid, z, place, effect(z, place))
         moved = found.z - z
         shift = np.max(np.abs(moved), initial=0.0)
         turned = np.max(np.abs(found.place - place), initial=0.0)
@@ -178,14 +256,10 @@ def fit(
 def grid_of(problem: Problem, mechanisms: Sequence[Mechanism]) -> Grid:
     """Return the grid of an explanation's parameters, with this rig's ranges."""
     situations = baseline_situations(problem)
-    parameters = [p for m in mechanisms for p in m.ranges(situations)]
-    if len(parameters) > 2:
-        parameters = [replace(p, nodes=max(min(p.nodes, 5) - (len(parameters) > 3), 3))
-                      for p in parameters]  # fmt: skip
-    return Grid(tuple(parameters))
+    return Grid(tuple(p for m in mechanisms for p in m.ranges(situations)))
 
 
-def baseline_situations(problem: Problem):  # type: ignore[no-untyped-def]
+def baseline_situations(problem: Problem) -> list[Situation]:
     """Return every condition's stated scene and surroundings."""
     scenes = problem.scenes(np.zeros(problem.n_z))
     return [(s, c.around) for s, c in zip(scenes, problem.conditions, strict=True)]
@@ -199,12 +273,17 @@ def responses_at(
 
 
 def _expand(
-    simulator: Simulator, mechanisms: tuple[Mechanism, ...], grid: Grid, z: Array, place: Array
-) -> Fit:
+    simulator: Simulator, mechanisms: tuple[Mechanism, ...], grid: Grid, z: Array, place: Array,
+    effect: Array | None,
+) -> Fit:  # fmt: skip
     cells = simulator.problem.cells
     here, linear = derivatives(simulator, mechanisms, grid.values(place), z)
-    responses = responses_at(simulator, mechanisms, grid, z) if mechanisms else here[None]
-    fine = grid.refine(responses) if mechanisms else here[None]
+    if not mechanisms:
+        fine = here[None]
+    elif effect is None:
+        fine = grid.refine(responses_at(simulator, mechanisms, grid, z))
+    else:
+        fine = effect + (here - effect[grid.index(place)])
     r = cells.value - fine + linear.J @ z
     log_likelihood = linear.log_likelihood(r)
     log_evidence, weight = posterior(log_likelihood)
@@ -214,5 +293,5 @@ def _expand(
     prediction = fine[best] + linear.J @ (mean - z)
     return Fit(
         mechanisms, grid, weight, at, grid.values(at), mean, cov, prediction, log_evidence,
-        float(np.sum(linear.white(r[best]) ** 2)), linear, r[best], responses, log_likelihood, r, z,
+        float(np.sum(linear.white(r[best]) ** 2)), linear, r[best], here, log_likelihood, r, z,
     )  # fmt: skip

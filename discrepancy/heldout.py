@@ -69,7 +69,7 @@ def groups_of(problem: Problem) -> list[NDArray[np.bool_]]:
 
 def held_out(problem: Problem, fitted: Fit) -> HeldOut:
     """Score an explanation with each group left out in turn."""
-    total = fitted.linear.noise + fitted.linear.J @ fitted.linear.J.T
+    total = fitted.linear.total
     noise = np.sqrt(np.diag(fitted.linear.noise))
     squares, density, count = [], 0.0, 0
     for test in groups_of(problem):

@@ -86,6 +86,8 @@ def _words(names: Sequence[str]) -> str:
         "peak_force_N": "peak force", "friction_impulse_ratio": "impulse ratio",
         "rebound_spin_rad_s": "spin", "sliding_length_m": "sliding length",
         "rebound_speed_m_s": "rebound speed", "tangential_rebound_m_s": "tangential rebound",
+        "peak_depth_m": "largest depth", "loading_time_s": "time to the largest force",
+        "normal_impulse_Ns": "impulse", "below_flat_s": "time below the flat",
     }  # fmt: skip
     return ", ".join(plain.get(n, n) for n in names)
 

@@ -2,8 +2,9 @@
 
 Repeats guard themselves by their median; a value without repeats is compared with what all other
 cells predict for it under the best explanation of a first pass. A value more than four standard
-deviations off is an outlier, the worst one first, up to one cell in sixteen: a mismatch that takes
-more cells than that is not a matter of single values.
+deviations off is an outlier, the worst one first, up to one cell in sixteen, unless the same
+observable of the same striker is off to the same side at a neighbouring condition: what neighbours
+share is a finding, not an outlier.
 """
 
 from __future__ import annotations
@@ -19,28 +20,63 @@ from .problem import Problem
 Array = NDArray[np.float64]
 
 LIMIT, SHARE, WIDER = 4.0, 1.0 / 16.0, 30.0
+ALONE = 2.0
+"""A neighbour that is as many standard deviations off to the same side speaks for a value."""
 
 
-def outlying(base: Fit, residual: Array) -> NDArray[np.bool_]:
-    """Return the mask (m,) of outliers in a residual at the prior mean.
+def outlying(problem: Problem, judge: Fit) -> NDArray[np.bool_]:
+    """Return the mask (m,) of the values that an explanation cannot hold one by one.
 
     Parameters
     ----------
-    base
-        Fit whose algebra is used.
-    residual
-        (m,) data minus prediction at the prior mean.
+    problem
+        Cells and conditions.
+    judge
+        Fit of the explanation.
     """
-    total = base.linear.noise + base.linear.J @ base.linear.J.T
+    residual, total = judge.residual, judge.linear.total
     found = np.zeros(len(residual), dtype=bool)
-    own = np.diag(base.linear.noise)
-    for _ in range(max(int(SHARE * len(residual)), 1)):
+    backed = np.zeros(len(residual), dtype=bool)
+    own = np.diag(judge.linear.noise)
+    near = _neighbours(problem)
+    most = max(int(SHARE * len(residual)), 1)
+    while found.sum() < most:
         inverse = np.linalg.inv(total + np.diag(np.where(found, WIDER**2 * own, 0.0)))
-        score = np.abs(inverse @ residual) / np.sqrt(np.diag(inverse))
-        worst = int(np.argmax(np.where(found, 0.0, score)))
-        if score[worst] < LIMIT or found[worst]:
+        score = inverse @ residual / np.sqrt(np.diag(inverse))
+        worst = int(np.argmax(np.where(found | backed, 0.0, np.abs(score))))
+        if abs(score[worst]) < LIMIT or found[worst] or backed[worst]:
             break
-        found[worst] = True
+        # without this value: do its neighbours lean the same way?
+        without = np.linalg.inv(total + np.diag(np.where(found, WIDER**2 * own, 0.0))
+                                + _wide(worst, own))  # fmt: skip
+        others = without @ residual / np.sqrt(np.diag(without)) * np.sign(score[worst])
+        if np.any(others[near[worst]] > ALONE):
+            backed[worst] = True
+        else:
+            found[worst] = True
+    return found
+
+
+def _wide(i: int, own: Array) -> Array:
+    extra = np.zeros((len(own), len(own)))
+    extra[i, i] = WIDER**2 * own[i]
+    return extra
+
+
+def _neighbours(problem: Problem) -> list[NDArray[np.intp]]:
+    """For each cell the two of the same observable and striker that are nearest in condition."""
+    cells, conditions = problem.cells, problem.conditions
+    place = np.array([[np.log(c.speed), 2.0 * c.angle, c.tangential / c.speed] for c in conditions])
+    found = []
+    for i, k in enumerate(cells.condition):
+        same = np.array([
+            j != i and o == cells.observable[i]
+            and conditions[cells.condition[j]].striker == conditions[k].striker
+            for j, o in enumerate(cells.observable)
+        ])  # fmt: skip
+        rows = np.flatnonzero(same)
+        away = np.linalg.norm(place[cells.condition[rows]] - place[k], axis=1)
+        found.append(rows[np.argsort(away)[:2]])
     return found
 
 

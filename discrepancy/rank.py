@@ -3,14 +3,17 @@
 from __future__ import annotations
 
 import itertools
+import math
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
 from numpy.typing import NDArray
+from scipy.special import logsumexp
 
-from .fit import Fit, baseline_situations, fit, grid_of, responses_at
-from .forward import Simulator
+from .evidence import Grid, along_all
+from .fit import Fit, baseline_situations, fit, fit_anchored, grid_of, responses_at
+from .forward import Point, Simulator
 from .mechanisms import MECHANISMS
 from .mechanisms.base import Mechanism
 from .outliers import outlying, without_weight
@@ -21,9 +24,12 @@ Progress = Callable[[str], None]
 
 FULL, NEAR = 4, 12.0
 """Mechanisms that are fitted in full: at least the first few, and all within some nats of them."""
-PAIRED = 4
-"""Leading mechanisms whose pairs are fitted."""
+PAIRED = 6
+"""Pairs that are fitted."""
 _INVISIBLE = 1.0
+_LEADS = 3.0  # nats from which outliers are judged under the leading mechanism
+_FEW = 48  # places of each mechanism that stand for all in the search for pairs
+_NEAR = 0.12  # of the prior's width: where the mutual effect of two mechanisms is simulated
 
 
 @dataclass(frozen=True, eq=False)
@@ -34,8 +40,10 @@ class Screened:
     ----------
     mechanism
         Which.
+    grid, change
+        Grid of its parameters, and the simulated change of the cells at its nodes (nodes, m).
     effect
-        (k, m) change of the cells over the refined grid.
+        (k, m) the same over the refined grid.
     log_bayes
         ln B against the baseline.
     place
@@ -43,6 +51,8 @@ class Screened:
     """
 
     mechanism: Mechanism
+    grid: Grid
+    change: Array
     effect: Array
     log_bayes: float
     place: Array
@@ -109,7 +119,12 @@ def rank(
     singles = []
     for found in chosen:
         progress(f"fitting {found.mechanism.name}")
-        singles.append(fit(simulator, (found.mechanism,), start=base, place=found.place, rounds=3))
+        singles.append(
+            fit(
+                simulator, (found.mechanism,), start=base, place=found.place, rounds=3,
+                effect=found.effect,
+            )
+        )  # fmt: skip
     singles.sort(key=lambda f: -f.log_evidence)
     return Ranking(base, tuple(screened), tuple(singles), (), excluded)
 
@@ -118,12 +133,14 @@ def _cleared(
     simulator: Simulator, base: Fit, screened: list[Screened]
 ) -> tuple[Fit, list[Screened]]:
     """Take the weight from outliers, and fit and screen again what that changes."""
-    residual = base.residual
+    judge = base
     lead = max(screened, key=lambda s: s.log_bayes, default=None)
-    if lead is not None and lead.log_bayes > 0.0:
-        misfit = np.sum(base.linear.white(residual - lead.effect) ** 2, axis=1)
-        residual = residual - lead.effect[int(np.argmin(misfit))]
-    outliers = outlying(base, residual)
+    if lead is not None and lead.log_bayes > _LEADS:
+        # a large effect moves the derivatives: judge single values by its own fit
+        judge = fit(
+            simulator, (lead.mechanism,), start=base, place=lead.place, rounds=2, effect=lead.effect
+        )
+    outliers = outlying(simulator.problem, judge)
     if not outliers.any():
         return base, screened
     simulator.problem = without_weight(simulator.problem, outliers)
@@ -136,43 +153,101 @@ def _cleared(
 
 
 def with_pairs(
-    simulator: Simulator,
-    ranking: Ranking,
-    *,
-    mechanisms: Sequence[Mechanism] = MECHANISMS,
-    progress: Progress = lambda _: None,
+    simulator: Simulator, ranking: Ranking, *, progress: Progress = lambda _: None
 ) -> Ranking:
-    """Fit the pairs of the leading single mechanisms."""
+    """Fit the leading pairs, which are found by adding the effects of all single mechanisms."""
     pairs = []
-    for one, two in itertools.combinations(ranking.singles[:PAIRED], 2):
-        both = _in_order(one, two, mechanisms)
-        progress(f"fitting {both[0].name} with {both[1].name}")
-        better = max((one, two), key=lambda f: f.log_evidence)
-        places = {f.mechanisms[0].name: f.place for f in (one, two)}
-        start = np.concatenate([places[m.name] for m in both])
-        pairs.append(fit(simulator, both, start=better, rounds=1, place=start))
+    for one, two, place in _leading_pairs(ranking):
+        progress(f"fitting {one.mechanism.name} with {two.mechanism.name}")
+        near = [f for f in ranking.singles if f.mechanisms[0] in (one.mechanism, two.mechanism)]
+        start = max(near, key=lambda f: f.log_evidence, default=ranking.base)
+        both = PairEffect(simulator, one, two)
+        pairs.append(fit_anchored(simulator, both.mechanisms, both, start=start, place=place))
     pairs.sort(key=lambda f: -f.log_evidence)
     return replace(ranking, pairs=tuple(pairs))
 
 
-def _in_order(one: Fit, two: Fit, mechanisms: Sequence[Mechanism]) -> tuple[Mechanism, Mechanism]:
-    names = [m.name for m in mechanisms]
-    first, second = sorted(
-        (one.mechanisms[0], two.mechanisms[0]), key=lambda m: names.index(m.name)
-    )
-    return first, second
+def _leading_pairs(ranking: Ranking) -> list[tuple[Screened, Screened, Array]]:
+    """Return the best pairs by the sum of their effects, and where in their priors they fit."""
+    base = ranking.base
+    w = base.linear.white(base.residual)
+    thin = [np.arange(0, len(s.effect), max(len(s.effect) // _FEW, 1)) for s in ranking.screened]
+    whites = [base.linear.white(s.effect[t]) for s, t in zip(ranking.screened, thin, strict=True)]
+    scored = []
+    for i, j in itertools.combinations(range(len(whites)), 2):
+        a, b = whites[i], whites[j]
+        ratio = (a @ w - 0.5 * np.sum(a**2, axis=1))[:, None] - a @ b.T
+        ratio = ratio + (b @ w - 0.5 * np.sum(b**2, axis=1))[None, :]
+        evidence = float(logsumexp(ratio)) - math.log(ratio.size)
+        scored.append((evidence, i, j, np.unravel_index(int(np.argmax(ratio)), ratio.shape)))
+    scored.sort(key=lambda x: -x[0])
+    found = []
+    for _, i, j, (p, q) in scored[:PAIRED]:
+        one, two = ranking.screened[i], ranking.screened[j]
+        place = np.concatenate([one.grid.places()[thin[i][p]], two.grid.places()[thin[j][q]]])
+        found.append((one, two, place))
+    return found
+
+
+@dataclass(frozen=True, eq=False)
+class PairEffect:
+    """Effect of two mechanisms: the sum of their own, and what they do to each other.
+
+    The mutual part is simulated near the place that is asked for and kept constant beyond.
+    """
+
+    simulator: Simulator
+    one: Screened
+    two: Screened
+
+    @property
+    def mechanisms(self) -> tuple[Mechanism, Mechanism]:
+        """Both."""
+        return self.one.mechanism, self.two.mechanism
+
+    def __call__(self, z: Array, place: Array) -> Array:
+        """Return the change of the cells over the pair's refined grid, (k, m)."""
+        n = len(self.one.grid.parameters)
+        own, other = self.one.grid.parameters, self.two.grid.parameters
+        grid = Grid((*own, *other))
+        first = self.one.grid.onto(self.one.change, grid.fine[:n])
+        second = self.two.grid.onto(self.two.change, grid.fine[n:])
+        total = (first[:, None, :] + second[None, :, :]).reshape(-1, first.shape[-1])
+        return np.asarray(total + self._mutual(grid, n, z, place))
+
+    def _mutual(self, grid: Grid, n: int, z: Array, place: Array) -> Array:
+        count = 3 if len(place) == 2 else 2
+        axes = [np.linspace(max(x - _NEAR, 0.0), min(x + _NEAR, 1.0), count) for x in place]
+        both, plain = self._at(self.mechanisms, grid, axes, z), self._plain(z)
+        alone = self._at(self.mechanisms[:1], self.one.grid, axes[:n], z)
+        rest = self._at(self.mechanisms[1:], self.two.grid, axes[n:], z)
+        m = both.shape[-1]
+        table = both.reshape(len(alone), len(rest), m) - alone[:, None] - rest[None, :] + plain
+        table = table.reshape(*[count] * len(place), m)
+        inside = [np.clip(f, a[0], a[-1]) for f, a in zip(grid.fine, axes, strict=True)]
+        return np.asarray(along_all(axes, inside, table).reshape(-1, m))
+
+    def _plain(self, z: Array) -> Array:
+        return np.asarray(self.simulator.predict((), [Point(z)])[0])
+
+    def _at(
+        self, mechanisms: Sequence[Mechanism], grid: Grid, axes: list[Array], z: Array
+    ) -> Array:
+        places = itertools.product(*axes)
+        return self.simulator.predict(mechanisms, [Point(z, grid.values(p)) for p in places])
 
 
 def screen(simulator: Simulator, base: Fit, mechanism: Mechanism) -> Screened:
     """Simulate a mechanism over its grid at the baseline's fit; use the baseline's derivatives."""
     grid = grid_of(simulator.problem, (mechanism,))
     responses = responses_at(simulator, (mechanism,), grid, base.z)
-    here = base.responses[0] + base.linear.J @ (base.z - base.expanded)
-    effect = grid.refine(responses - here)
+    change = responses - (base.here + base.linear.J @ (base.z - base.expanded))
+    effect = grid.refine(change)
     white = base.linear.white(base.residual)[None, :]
     log_bayes = float(gain(white, np.zeros(1), base.linear, effect)[0])
     chi2 = np.sum(base.linear.white(base.residual - effect) ** 2, axis=1)
-    return Screened(mechanism, effect, log_bayes, grid.places()[int(np.argmin(chi2))])
+    place = grid.places()[int(np.argmin(chi2))]
+    return Screened(mechanism, grid, change, effect, log_bayes, place)
 
 
 def visible(found: Screened, base: Fit) -> float:

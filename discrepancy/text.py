@@ -12,7 +12,9 @@ _NAMES = {
     "contact_time_s": "contact time", "peak_force_N": "peak force",
     "rebound_spin_rad_s": "rebound spin", "friction_impulse_ratio": "impulse ratio",
     "sliding_length_m": "sliding length", "rebound_speed_m_s": "rebound speed",
-    "tangential_rebound_m_s": "tangential rebound",
+    "tangential_rebound_m_s": "tangential rebound", "peak_depth_m": "largest depth",
+    "loading_time_s": "time to the largest force", "normal_impulse_Ns": "impulse",
+    "below_flat_s": "time below the flat",
 }  # fmt: skip
 
 

@@ -40,10 +40,20 @@ class Nulls:
         (n, m) discrepancy of null laws from the baseline, without noise.
     residual
         (n, m) with noise and nuisances: residuals at the prior mean.
+    form
+        (n, components) unit normal draws of the error of a mechanism's form.
     """
 
     law: Array
     residual: Array
+    form: Array
+
+    def made_by(self, fitted: Fit) -> Array:
+        """Residuals that a set made by an explanation would leave at its truth, (n, m)."""
+        form = fitted.linear.form
+        return (
+            self.residual + self.form[:, : form.shape[1]] @ form.T if form.size else self.residual
+        )
 
 
 def null_residuals(simulator: Simulator, base: Fit, count: int, rng: np.random.Generator) -> Nulls:
@@ -74,7 +84,8 @@ def null_residuals(simulator: Simulator, base: Fit, count: int, rng: np.random.G
     noise = scatter(rng, law.shape) * np.sqrt(np.diag(base.linear.noise))
     k = problem.n_nuisances
     unknown = rng.standard_normal((count, k)) @ base.linear.J[:, :k].T
-    return Nulls(law, law + noise + unknown)
+    form = rng.standard_normal((count, len(set(cells.observable)) + 1))
+    return Nulls(law, law + noise + unknown, form)
 
 
 def rig_of(problem: Problem, z: Array) -> Rig:

@@ -30,12 +30,14 @@ from .thresholds import Nulls, null_residuals
 
 Array = NDArray[np.float64]
 
-NULLS = 300
+NULLS = 500
 """Null data sets that set the thresholds of a screening."""
 CONFIRMED_NULLS = 2000
 """Null data sets with `confirm`."""
 P_FIT = 0.01
 """An explanation that fits worse than this share of its own data sets is rejected."""
+MOST = 3
+"""Explanations that are reported as indistinguishable; with more the verdict is undetermined."""
 _FEWEST = 6
 _PULLED = 2.0
 OUTSIDE = "outside-library"
@@ -193,7 +195,7 @@ def diagnose(
             tuple(m.name for m in f.mechanisms) for f in choice.members[1:]
         ),
         audit=findings, probabilities=_probabilities(problem, ranking),
-        scores=_scores(ranking, nulls, scores, confirmed), located=located,
+        scores=_scores(problem, ranking, nulls, scores, confirmed), located=located,
         parameters=parameters_of(problem, best), nuisance_pulls=_pulls(problem, best),
         excluded=ranking.excluded, limits=_limits(ranking, calibration),
         improvement=_improvement(scores[ranking.base.name], scores[best.name]),
@@ -239,12 +241,12 @@ def decide(problem: Problem, ranking: Ranking, nulls: Nulls, calibration: Calibr
     gain = calibration.excess(lead, base)
     reasons.append(
         f"the best single mechanism, {lead.name}, gains {lead.log_evidence - base.log_evidence:.1f}"
-        f" nats; with nothing missing one set in twenty would give it, or an equally rare gain to "
+        f" nats; with nothing missing one set in fifty would give it, or an equally rare gain to "
         f"another, {calibration.needed(lead):.1f}"
     )
     if gain <= calibration.single and p_base >= P_FIT:
         return Choice("adequate", (), tuple(reasons))
-    fits = {f.name: p_fit(f, nulls) for f in (*ranking.singles, *ranking.pairs)}
+    fits = {f.name: p_fit(f, nulls, problem) for f in (*ranking.singles, *ranking.pairs)}
     pairs = [f for f in ranking.pairs if fits[f.name] >= P_FIT]
     singles = [f for f in ranking.singles if fits[f.name] >= P_FIT]
     needed = extra_threshold(lead, ranking, nulls)
@@ -252,7 +254,7 @@ def decide(problem: Problem, ranking: Ranking, nulls: Nulls, calibration: Calibr
     if pairs and (more > needed or not singles):
         reasons.append(
             f"{pairs[0].name} gains {more:.1f} nats more; one mechanism too many would gain "
-            f"{needed:.1f} in one of twenty"
+            f"{needed:.1f} in one of a hundred"
         )
         return _set_of(pairs, pairs[0], ranking, nulls, reasons)
     if singles and calibration.excess(singles[0], base) > calibration.single:
@@ -269,6 +271,13 @@ def _set_of(
 ) -> Choice:
     width = set_width(best, ranking, nulls)
     members = [f for f in fits if f.log_evidence > best.log_evidence - width]
+    if len(members) > MOST:
+        names = ", ".join(f.name for f in members)
+        reasons.append(
+            f"something is missing, but {len(members)} explanations lie within {width:.1f} nats of "
+            f"each other: {names}; the set says too little to choose"
+        )
+        return Choice("undetermined", (), tuple(reasons))
     if len(members) > 1:
         reasons.append(f"{len(members)} explanations lie within {width:.1f} nats of each other")
         return Choice("indistinguishable", tuple(members), tuple(reasons))
@@ -294,7 +303,7 @@ def _finite(x: float) -> float | None:
 
 def _probabilities(problem: Problem, ranking: Ranking) -> dict[str, float]:
     """Posterior probabilities; half the prior on the baseline, a tenth outside the library."""
-    outside, _, _ = widened(problem, ranking.base)
+    outside = float(widened(problem, ranking.base).log_likelihood(ranking.base.residual))
     names = ["baseline", OUTSIDE]
     logs = [ranking.base.log_evidence + math.log(0.5), outside + math.log(0.05)]
     for share, fits in ((0.3, ranking.singles), (0.15, ranking.pairs)):
@@ -307,7 +316,11 @@ def _probabilities(problem: Problem, ranking: Ranking) -> dict[str, float]:
 
 
 def _scores(
-    ranking: Ranking, nulls: Nulls, scores: dict[str, HeldOut], confirmed: dict[str, float]
+    problem: Problem,
+    ranking: Ranking,
+    nulls: Nulls,
+    scores: dict[str, HeldOut],
+    confirmed: dict[str, float],
 ) -> dict[str, dict[str, float]]:
     found = {}
     for f in (ranking.base, *ranking.singles, *ranking.pairs):
@@ -315,7 +328,7 @@ def _scores(
             found[f.name] = {
                 "evidence": confirmed.get(f.name, f.log_evidence - ranking.base.log_evidence),
                 "held_out": scores[f.name].score,
-                "p_value": p_fit(f, nulls),
+                "p_value": p_fit(f, nulls, problem),
             }
     return found
 

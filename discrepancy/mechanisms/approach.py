@@ -31,6 +31,7 @@ class ImpactSpeedLoss(Mechanism):
         ),
     )  # fmt: skip
     direction: ClassVar[Mapping[str, int]] = {"permanent_depth_m": -1, "peak_force_N": -1}
+    form: ClassVar[float] = 0.05
 
     def applies(self, situations: Sequence[Situation]) -> str:
         """Needs speeds computed from heights."""
@@ -76,6 +77,7 @@ class Tilt(Mechanism):
         Parameter("tilt_deg", "deg", -8.0, 8.0, "linear", 0.0, "thesis: +-5 degrees", nodes=9),
     )
     direction: ClassVar[Mapping[str, int]] = {}
+    form: ClassVar[float] = 0.05
 
     def applies(self, situations: Sequence[Situation]) -> str:
         """Needs a rod, or a tangential motion."""

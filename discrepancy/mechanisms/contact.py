@@ -89,15 +89,24 @@ class Adhesion(Mechanism):
 
 
 class SqueezeFilm(Mechanism):
-    """A fluid film is squeezed out before the bodies touch."""
+    """A fluid film is squeezed out before the bodies touch, and resists their parting."""
 
     name = "squeeze-film"
     title = "a fluid film cushions the touch"
-    equations = "F = 6 pi eta R^2 v/h, so that v falls by (6 pi eta R^2/m) ln(h_0/h_1), in and out"
+    equations = (
+        "F = 6 pi eta R^2 v/h, so that v falls by (6 pi eta R^2/m) ln(h_0/h_1) before the touch "
+        "and by x times that after it"
+    )
     parameters = (
         Parameter(
             "film_drag_Pa_s", "Pa s", 1e-3, 10.0, "log", 0.0,
-            "viscosity times ln(h_0/h_1) of 3 to 8: water 1e-3, oils 0.01-1 Pa s",
+            "viscosity times ln(h_0/h_1): water 1e-3, oils 0.01-1 Pa s (Davis, Rager and Good, "
+            "J. Fluid Mech. 468 (2002) 107)",
+        ),
+        Parameter(
+            "film_exit_share", "-", 0.0, 1.0, "linear", 0.0,
+            "0 where the film cavitates as the bodies part, 1 where it does not (Barnocky and "
+            "Davis, Phys. Fluids 31 (1988) 1324)", nodes=3,
         ),
     )  # fmt: skip
     direction: ClassVar[Mapping[str, int]] = {"restitution": -1, "permanent_depth_m": -1}
@@ -117,10 +126,12 @@ class SqueezeFilm(Mechanism):
         return ""
 
     def ranges(self, situations: Sequence[Situation]) -> tuple[Parameter, ...]:
-        """A stated viscosity leaves the logarithm of the gaps."""
+        """A stated viscosity leaves ln(h_0/h_1): films of 1-100 um over asperities of 0.1-1 um."""
         eta = situations[0][1].viscosity
-        (drag,) = self.parameters
-        return (replace(drag, low=2.0 * eta, high=15.0 * eta),) if eta > 0.0 else (drag,)
+        drag, share = self.parameters
+        if not eta > 0.0:
+            return drag, share
+        return replace(drag, low=0.5 * eta, high=8.0 * eta), share
 
     def attach(self, scene: Scene, values: Values, around: Surroundings) -> Scene:
         """Slow the approach."""
@@ -135,7 +146,8 @@ class SqueezeFilm(Mechanism):
         lost = np.array([_film_loss(s, values["film_drag_Pa_s"]) for s, _ in situations])
         v = np.array([s.approach.speed for s, _ in situations])
         inside = np.maximum(v - lost, 0.05 * v)
-        slower(seen, np.maximum(seen["restitution"] * inside - lost, 0.0) / v)
+        kept = seen["restitution"] * inside - values["film_exit_share"] * lost
+        slower(seen, np.maximum(kept, 0.0) / v)
 
 
 def _film_loss(scene: Scene, drag: float) -> float:

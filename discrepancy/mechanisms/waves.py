@@ -38,6 +38,11 @@ def _all_modes(length: float, radius: float, material: Material, mass: float) ->
     return rod_modes(length, radius, material, mass=mass, count=_BENDING, loss_factor=_LOSS)
 
 
+@lru_cache(maxsize=256)
+def _unit_radiation(nu: float) -> float:
+    return half_space_radiation(Material(E=1.0, nu=nu, density=1.0))
+
+
 def _scaled(modes: Modes, share: float) -> Modes:
     factor = math.sqrt(share)
     return replace(
@@ -63,6 +68,7 @@ class RodLongitudinalWaves(Mechanism):
         "q_k'' + eta w_k q_k' + w_k^2 q_k = sqrt(2/m) F sin(theta), w_k = k pi sqrt(E/rho)/L"
     )
     parameters = (_PARTICIPATION,)
+    form: ClassVar[float] = 0.05
     direction: ClassVar[Mapping[str, int]] = {"contact_time_s": 1}
 
     def applies(self, situations: Sequence[Situation]) -> str:
@@ -86,6 +92,7 @@ class RodFlexuralVibration(Mechanism):
     title = "the leaning rod bends and rings"
     equations = "free-free Timoshenko beam and axial modes; re-contact while the tip returns"
     parameters = (_PARTICIPATION,)
+    form: ClassVar[float] = 0.05
     direction: ClassVar[Mapping[str, int]] = {}
 
     def applies(self, situations: Sequence[Situation]) -> str:
@@ -141,7 +148,9 @@ class HalfSpaceWaves(Mechanism):
             plate = plate_support(flat, thickness=around.thickness)
             mobility = scene.support.plate_mobility + scale * plate.plate_mobility
             return scene.with_(support=replace(scene.support, plate_mobility=mobility))
-        kappa = scene.force.radiation + scale * half_space_radiation(flat)
+        # kappa goes with density^(1/2)/E^(3/2); the integral over the waves knows nu only
+        one = _unit_radiation(flat.nu) * math.sqrt(flat.density) / flat.E**1.5
+        kappa = scene.force.radiation + scale * one
         return scene.with_(force=replace(scene.force, radiation=kappa))
 
 

@@ -80,7 +80,7 @@ def collide(bodies: Bodies, curves: Sequence[Curve]) -> dict[str, Array]:
     depth = np.zeros(n)
     peak, time, slid, low, high = (np.zeros(n) for _ in range(5))
     force_max, pn, pt = np.zeros(n), np.zeros(n), np.zeros(n)
-    peak_force, rest = np.zeros(n), np.zeros(n)
+    peak_force, rest, loading = np.zeros(n), np.zeros(n), np.zeros(n)
     live, gone = np.ones(n, dtype=bool), np.zeros(n)
     last_rate = bodies.normal.copy()
     eps = _SMOOTH * bodies.normal
@@ -107,6 +107,7 @@ def collide(bodies: Bodies, curves: Sequence[Curve]) -> dict[str, Array]:
         force_max = np.maximum(force_max, f)
         grow = live & (depth > peak)
         peak = np.where(grow, depth, peak)
+        loading = np.where(grow, time + step, loading)
         peak_force = np.where(grow, np.exp(look(log_force, peak)), peak_force)
         rest = np.where(grow, np.maximum(peak - look(recovery_of, peak), 0.0), rest)
         rate = -vy + w * c
@@ -129,6 +130,10 @@ def collide(bodies: Bodies, curves: Sequence[Curve]) -> dict[str, Array]:
         "sliding_length_m": high - low,
         "rebound_speed_m_s": vy,
         "tangential_rebound_m_s": vx,
+        "peak_depth_m": peak,
+        "loading_time_s": loading,
+        "normal_impulse_Ns": pn,
+        "below_flat_s": time + look(crater_of, peak) / np.maximum(gone, 1e-6),
     }
 
 
