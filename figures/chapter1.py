@@ -1,4 +1,4 @@
-"""Figures 1.2 and 1.3: the published hardness laws beside finite elements."""
+"""Figures 1.1-1.4: the two ways to press, and the published hardness laws."""
 
 from __future__ import annotations
 
@@ -9,14 +9,16 @@ import numpy as np
 
 from ..campaigns.store import CaseRecord
 from ..models import hardness
-from .plot import Floats, Picture, finish, sheet
+from . import sketches
+from .plot import Entry, Floats, Picture, finish, sheet
 
 _PLASTIC = 110.0  # w from which a contact counts as fully plastic (2.3.2)
 
 
-def pictures(records: Sequence[CaseRecord]) -> list[Picture]:
-    """Both figures; `records` are the stored finite-element cases, possibly none."""
+def pictures(records: Sequence[CaseRecord]) -> list[Entry]:
+    """The figures; `records` are the stored finite-element cases, possibly none."""
     return [
+        *sketches.chapter_1(),
         _hardness("1.2", "indentation", hardness.INDENTATION, records, lambda r: r > 1.7),
         _hardness("1.3", "flattening", hardness.FLATTENING, records, lambda r: r < 0.6),
     ]

@@ -11,19 +11,35 @@ from ..core.material import Material, Pair
 from ..models import LAWS, critical_depth, hardness
 from ..models.base import ContactLaw
 from ..models.ghaednia import share_of_sphere
-from .plot import Floats, Picture, at_depth, finish, laws, look, percent, same, sheet, table_2_1
+from . import fields, steps, tables
+from .plot import (
+    Entry,
+    Floats,
+    Picture,
+    at_depth,
+    finish,
+    laws,
+    look,
+    percent,
+    same,
+    sheet,
+    table_2_1,
+)
 
 _D = 0.04
 _RATIOS = np.geomspace(0.1, 10.0, 241)
 _FIGURE_2_17 = Pair(Material(E=300e9, nu=0.3, Sy=1e9), Material(E=300e9, nu=0.3, Sy=1e8), 1e-3)
-_COMPARED = ("jackson-green", "kogut-etsion", "kogut-komvopoulos", "ye-komvopoulos", "ghaednia",
-             "fitted")  # fmt: skip
+_COMPARED = ("jackson-green-2007", "kogut-etsion", "kogut-komvopoulos", "ye-komvopoulos",
+             "ghaednia", "fitted")  # fmt: skip
 
 
-def pictures(records: Sequence[CaseRecord]) -> list[Picture]:
+def pictures(records: Sequence[CaseRecord]) -> list[Entry]:
     """Redraw the figures; `records` are the stored finite-element cases, possibly none."""
     return [
+        *fields.chapter_2(records),
+        tables.table_2_1_again(),
         _share_five_cases(records),
+        *steps.pictures(records),
         _five_cases("2.6", "Contact radius of the five cases", "a/R", _radius, records),
         _five_cases("2.7", "Mean pressure of the five cases", "p/Sy_min", _pressure, records),
         _five_cases("2.8", "Contact force of the five cases", "F/(E' R^2)", _force, records),

@@ -1,4 +1,4 @@
-"""Figures 4.4-4.15, 5.3 and 5.7: the oblique rod with nine laws, and what its scar tells."""
+"""Chapters 4 and 5: the oblique rod with nine laws, and what its scar tells."""
 
 from __future__ import annotations
 
@@ -19,22 +19,26 @@ from ..impact.reference import Trace, reference_impact
 from ..impact.result import Impact
 from ..impact.scene import Approach, Friction, Scene, scene_of
 from ..models.base import ContactLaw
-from .plot import Picture, finish, laws, look, sheet
+from . import scars, sketches, tables
+from .plot import Entry, Picture, finish, laws, look, sheet
 
-NINE = ("jackson-green", "ghaednia", "kogut-etsion", "kogut-komvopoulos", "ye-komvopoulos",
+NINE = ("jackson-green-2007", "ghaednia", "kogut-etsion", "kogut-komvopoulos", "ye-komvopoulos",
         "brake-2015", "brake-2012", "stronge", "thornton", "fitted")  # fmt: skip
 _SPEEDS = np.linspace(0.5, 4.0, 8)
 Histories = list[tuple[ContactLaw, Trace]]
 _NOT_PRINTED = "The thesis prints no measured value in its text; only our curves are drawn."
 
 
-def pictures(records: Sequence[CaseRecord]) -> list[Picture]:
-    """Redraw the figures; nothing here needs finite elements."""
+def pictures(records: Sequence[CaseRecord]) -> list[Entry]:
+    """Redraw figures and tables; nothing here needs finite elements."""
     histories = [(law, reference_impact(_scene(law, 45.0, 1.0, 0.13), points=200))
                  for law in laws(*NINE)]  # fmt: skip
     steep = {law.name: _sweep(law, 45.0, 0.13) for law in laws(*NINE)}
     flat = {law.name: _sweep(law, 17.2, 0.20) for law in laws(*NINE)}
     return [
+        *sketches.chapters_4_and_5(),
+        tables.properties("4.1"),
+        tables.legend(NINE),
         *(_history(panel, histories) for panel in HISTORY_PANELS[:5]),
         _over_speed("4.9", "Residual depth, 45 degrees", steep, "residual_m", 1e6, "[um]", None),
         _over_speed("4.10", "Restitution, 45 degrees", steep, "restitution", 1.0, "", 0.43),
@@ -47,8 +51,11 @@ def pictures(records: Sequence[CaseRecord]) -> list[Picture]:
                     None),
         _over_speed("4.15", "Dent in the flat, 17.2 degrees", flat, "residual_flat_m", 1e6, "[um]",
                     None),
+        tables.properties("5.1"),
         _alpha(),
+        *scars.pictures(_experiments(), chapter5.thesis_rod().tip_radius),
         _pattern(),
+        *(tables.comparison(f"5.{k}", angle) for k, angle in ((2, 20.0), (3, 45.0), (4, 70.0))),
     ]  # fmt: skip
 
 
@@ -62,6 +69,19 @@ def _scene(law: ContactLaw, degrees: float, speed: float, mu: float) -> Scene:
         law, sphere=rod, flat=flat, striker=chapter5.thesis_rod(),
         approach=Approach(speed, math.radians(degrees)), friction=Friction(mu),
     )  # fmt: skip
+
+
+def _experiments() -> dict[float, Histories]:
+    """Chapter 5's three impacts with the laws whose scars are drawn."""
+    found = {}
+    for e in read_toml(REFERENCE / "chapter45.toml")["experiment"]:
+        angle = float(e["angle_deg"])
+        found[angle] = [
+            (law, reference_impact(_scene(law, angle, -e["approach_m_s"], e["friction"]),
+                                   points=300))
+            for law in laws("ghaednia", "kogut-komvopoulos", "brake-2015", "fitted")
+        ]  # fmt: skip
+    return found
 
 
 def _sweep(law: ContactLaw, degrees: float, mu: float) -> list[Impact]:

@@ -11,9 +11,9 @@ from ..campaigns.store import CaseRecord
 from ..core.errors import InputError
 from ..models import DomainWarning
 from . import chapter1, chapter2, chapter3, chapter45, errata, outside
-from .plot import Picture
+from .plot import Entry, Picture, Table
 
-CHAPTERS: dict[str, Callable[[Sequence[CaseRecord]], list[Picture]]] = {
+CHAPTERS: dict[str, Callable[[Sequence[CaseRecord]], Sequence[Entry]]] = {
     "1": chapter1.pictures,
     "2": chapter2.pictures,
     "3": chapter3.pictures,
@@ -24,18 +24,19 @@ CHAPTERS: dict[str, Callable[[Sequence[CaseRecord]], list[Picture]]] = {
 
 _HEAD = """# Gallery
 
-Made by `dentscope figures`; the lines under the pictures are computed with them. A law's name is
-that of `dentscope laws list`. Finite elements: {rests}.
+The thesis's figures and tables again, from our own numbers: `make figures`, or `dentscope figures
+--chapter 2` for one chapter. The line under each says whether it agrees, by how much it differs,
+and why; it is computed with the picture. A law's name is that of `dentscope laws list`; in every
+figure it keeps its colour (table 4.2).
+
 """
 
 NOT_REDRAWN = {
-    "1.1, 1.4, 4.1-4.3, 5.1, 5.2": "sketches",
-    "2.1-2.4, 3.7": "meshes and stress fields: `dentscope case CASE.toml --picture` draws them",
-    "2.9-2.13": "steps of the thesis's fit; 2.5-2.8 and 2.16-2.21 show its result",
-    "3.1-3.6": "photographs, videos and scans of the experiments, which are not published",
-    "5.4-5.6": "measured scars, which are not published; 5.7 is the predicted path",
+    "3.2-3.6": "the photographs, films and scans are not published; rendered ones stand for them",
+    "4.9, 4.11, 4.13-4.15": "drawn, but the thesis prints no measured value to compare with",
+    "5.4-5.6": "the measured scars are not published; predicted ones are drawn",
 }
-"""Figures of the thesis that are left out, with the reason."""
+"""Figures of the thesis that are drawn without its own data, with the reason."""
 
 
 def stored_cases(root: Path) -> list[CaseRecord]:
@@ -50,8 +51,8 @@ def stored_cases(root: Path) -> list[CaseRecord]:
     return records
 
 
-def build(folder: Path, *, chapters: Sequence[str], root: Path) -> list[Picture]:
-    """Draw the figures of `chapters` into `folder` and write its README.md and the errata.
+def build(folder: Path, *, chapters: Sequence[str], root: Path) -> list[Entry]:
+    """Draw `chapters` into `folder`, a page each, and write its README.md and the errata.
 
     Raises
     ------
@@ -62,29 +63,64 @@ def build(folder: Path, *, chapters: Sequence[str], root: Path) -> list[Picture]
         if chapter not in CHAPTERS:
             raise InputError(f"{chapter!r}", key="chapter", allowed=", ".join(CHAPTERS))
     records = stored_cases(root)
-    parts = []
-    drawn: list[Picture] = []
+    rests = f"{len(records)} stored cases" if records else "none found beside it"
+    folder.mkdir(parents=True, exist_ok=True)
+    drawn: list[Entry] = []
     for chapter in chapters:
         with warnings.catch_warnings():
             warnings.simplefilter("ignore", DomainWarning)  # the figures leave domains on purpose
-            pictures = CHAPTERS[chapter](records)
-        parts.append(_section(chapter, pictures))
-        for picture in pictures:
-            picture.save(folder)
-        drawn += pictures
-    rests = f"{len(records)} stored cases" if records else "none found beside it"
-    left = "\n".join(f"- {number}: {reason}" for number, reason in NOT_REDRAWN.items())
-    text = "\n".join([_HEAD.format(rests=rests), *parts, "## Not redrawn\n", left, ""])
-    (folder / "README.md").write_text(text, encoding="utf-8")
+            entries = sorted(CHAPTERS[chapter](records), key=_order)
+        for entry in entries:
+            if isinstance(entry, Picture):
+                entry.save(folder)
+        (folder / page_of(chapter)).write_text(_page(chapter, entries, rests), encoding="utf-8")
+        drawn += entries
+    (folder / "README.md").write_text(_index(folder), encoding="utf-8")
     if tuple(chapters) == tuple(CHAPTERS):
         errata.write(root / "docs" / "errata.md")
     return drawn
 
 
-def _section(chapter: str, pictures: Sequence[Picture]) -> str:
-    head = "## Beside another program\n" if chapter == "outside" else f"## Chapter {chapter}\n"
-    lines = [head]
-    for one in pictures:
-        name = f"Figure {one.number}" if one.number[0].isdigit() else one.number.capitalize()
-        lines.append(f"### {name}: {one.title}\n\n![{one.title}]({one.file})\n\n{one.note}\n")
+def page_of(chapter: str) -> str:
+    """File name of a chapter's page."""
+    return "outside.md" if chapter == "outside" else f"chapter-{chapter.replace(' and ', '-')}.md"
+
+
+def _order(entry: Entry) -> tuple[int, int, bool]:
+    """By chapter and number, figures before tables of the same number."""
+    if not entry.number[0].isdigit():
+        return (99, 0, False)
+    first, second = entry.number.split(".")
+    return (int(first), int(second), isinstance(entry, Table))
+
+
+def _name(entry: Entry) -> str:
+    if isinstance(entry, Table):
+        return f"Table {entry.number}"
+    return f"Figure {entry.number}" if entry.number[0].isdigit() else entry.number.upper()
+
+
+def _title(chapter: str) -> str:
+    return "Beside another program" if chapter == "outside" else f"Chapter {chapter}"
+
+
+def _page(chapter: str, entries: Sequence[Entry], rests: str) -> str:
+    lines = [f"# {_title(chapter)}\n\nFinite elements: {rests}.\n"]
+    for one in entries:
+        shown = one.markdown if isinstance(one, Table) else f"![{one.title}]({one.file})"
+        lines.append(f"## {_name(one)}: {one.title}\n\n{shown}\n\n{one.note}\n")
     return "\n".join(lines)
+
+
+def _index(folder: Path) -> str:
+    """Contents of all pages that there are, and what is drawn without the thesis's data."""
+    parts = [_HEAD]
+    for chapter in CHAPTERS:
+        page = folder / page_of(chapter)
+        if not page.exists():
+            continue
+        heads = [line[3:] for line in page.read_text("utf-8").splitlines() if line[:3] == "## "]
+        parts.append(f"## [{_title(chapter)}]({page.name})\n\n")
+        parts.append("\n".join(f"- {head}" for head in heads) + "\n\n")
+    left = "\n".join(f"- {number}: {reason}" for number, reason in NOT_REDRAWN.items())
+    return "".join([*parts, "## Without the thesis's own data\n\n", left, "\n"])

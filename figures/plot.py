@@ -20,7 +20,8 @@ from ..models.base import ContactLaw
 Floats = npt.NDArray[np.float64]
 
 COLOURS = {
-    "hertz": "0.6", "jackson-green": "C0", "kogut-etsion": "C1", "kogut-komvopoulos": "C2",
+    "hertz": "0.6", "jackson-green": "C0", "jackson-green-2007": "C0", "kogut-etsion": "C1",
+    "kogut-komvopoulos": "C2",
     "ye-komvopoulos": "C4", "brake-2015": "C5", "brake-2012": "C6", "stronge": "C8",
     "thornton": "C9", "thornton-ning": "C9", "ghaednia": "C3", "fitted": "k",
 }  # fmt: skip
@@ -61,11 +62,52 @@ class Picture:
         return path
 
 
+@dataclass(frozen=True, slots=True)
+class Table:
+    """One table of the thesis with our numbers.
+
+    Parameters
+    ----------
+    number
+        The thesis's table number.
+    title
+        What it shows.
+    header
+        Names of the columns, with units.
+    rows
+        Cells as text.
+    note
+        Agrees, differs by how much, why.
+    """
+
+    number: str
+    title: str
+    header: tuple[str, ...]
+    rows: Sequence[Sequence[str]]
+    note: str
+
+    @property
+    def markdown(self) -> str:
+        """The table in Markdown."""
+        lines = [self.header, tuple("---" for _ in self.header), *self.rows]
+        return "\n".join("| " + " | ".join(line) + " |" for line in lines)
+
+
+Entry = Picture | Table
+"""What a chapter of the gallery is made of."""
+
+
 def sheet(columns: int = 1, *, size: tuple[float, float] = (6.4, 4.6)) -> tuple[Figure, list[Any]]:
     """Return an off-screen figure and its axes in one row."""
-    made = Figure(figsize=(size[0] * columns, size[1]), layout="constrained")
-    FigureCanvasAgg(made)
+    made = bare_sheet((size[0] * columns, size[1]))
     return made, list(made.subplots(1, columns, squeeze=False)[0])
+
+
+def bare_sheet(size: tuple[float, float]) -> Figure:
+    """Return an off-screen figure without axes, `size` in inches."""
+    made = Figure(figsize=size, layout="constrained")
+    FigureCanvasAgg(made)
+    return made
 
 
 def finish(axis: Any, *, x: str, y: str, legend: str = "") -> None:

@@ -7,6 +7,7 @@ import numpy as np
 import pytest
 from dentscope.core import InputError
 from dentscope.figures import chapter1, chapter2, gallery, outside
+from dentscope.figures.plot import Picture
 from dentscope.models import DomainWarning
 
 
@@ -20,8 +21,8 @@ def test_law_figures_of_chapter_2_are_all_there(tmp_path):
     with warnings.catch_warnings():
         warnings.simplefilter("ignore", DomainWarning)
         pictures = chapter2.pictures([])
-    numbers = [one.number for one in pictures]
-    assert numbers == ["2.5", "2.6", "2.7", "2.8", *(f"2.{n}" for n in range(14, 22))]
+    figures = {one.number for one in pictures if isinstance(one, Picture)}
+    assert figures == {f"2.{n}" for n in range(1, 22)}
     assert all(one.note.endswith(".") for one in pictures)
 
 
