@@ -71,9 +71,9 @@ class Forecast:
 
     def left_s(self, gone_s: float = 0.0) -> float:
         """Wall time left, `gone_s` seconds after the start [s]."""
-        foreseen = [(self._cost(case), gone_s - since) for case, since in self._begun.values()]
+        foreseen = [(self.cost_s(case), gone_s - since) for case, since in self._begun.values()]
         under_way = [max(whole - gone, _AT_LEAST * whole) for whole, gone in foreseen]
-        waiting = [self._cost(case) for case in self._waiting.values()]
+        waiting = [self.cost_s(case) for case in self._waiting.values()]
         both = [*under_way, *waiting]
         return max(sum(both) / self._workers, *both) if both else 0.0
 
@@ -82,8 +82,8 @@ class Forecast:
         for key in list(self._waiting)[: self._workers - len(self._begun)]:
             self._begun[key] = (self._waiting.pop(key), gone_s)
 
-    def _cost(self, case: Case) -> float:
-        """Mean of a case's seconds; that of a logarithmic scatter lies above its middle."""
+    def cost_s(self, case: Case) -> float:
+        """Foreseen seconds of one case: the mean, which lies above the scatter's middle."""
         middle = _measured(case) + float(_features(case) @ self._bend)
         return self._pace * float(np.exp(middle + 0.5 * self._scatter**2))
 

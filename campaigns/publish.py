@@ -20,6 +20,7 @@ from .. import fem
 from ..core.errors import InputError
 from ..core.provenance import file_digest
 from .designs import Design, distinct_cases
+from .manifest import write_manifest
 from .parts import read_part, write_part
 from .run import status_of
 from .store import CaseRecord, Store
@@ -111,6 +112,7 @@ def publish(
             temporary.rename(part)
     lines = [f"{file_digest(path)}  {path.name}\n" for path in sorted(folder.glob("*.h5"))]
     (folder / CHECKSUMS).write_text("".join(lines), encoding="utf-8")
+    write_manifest(folder)
     return parts
 
 

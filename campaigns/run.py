@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 import time
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 from contextlib import closing
 from dataclasses import dataclass
 from pathlib import Path
@@ -42,9 +42,7 @@ class Step:
 
 def status_of(design: Design, store: Store) -> Status:
     """Count a design's cases in a store."""
-    stored = store.statuses()
-    found = [stored[key] for key in distinct_cases(design) if key in stored]
-    return Status(len(distinct_cases(design)), found.count("done"), found.count("failed"))
+    return _counts(distinct_cases(design), store.statuses())
 
 
 def cases_to_do(
@@ -111,16 +109,22 @@ def run_design(
     cases = distinct_cases(design)
     with store.writing():
         todo = cases_to_do(design, store, again=again)
+        stored = store.statuses()
         with closing(executor.run(todo, time_limit_s=time_limit_s)) as endings:
             for ended in endings:
-                case = cases[ended.id]
-                store.put(case, ended.solution, message=ended.message)
+                case, solution = cases[ended.id], ended.solution
+                store.put(case, solution, message=ended.message)
+                good = solution is not None and solution.outcome.completed
+                stored[ended.id] = "done" if good else "failed"
                 if report is not None:
-                    solution = ended.solution
-                    good = solution is not None and solution.outcome.completed
                     text = ended.message if solution is None else str(solution.outcome)
                     cpu = solution.counters.cpu_s if solution else 0.0
-                    report(Step(case, good, "" if good else text, cpu, status_of(design, store)))
+                    report(Step(case, good, "" if good else text, cpu, _counts(cases, stored)))
                 if time.monotonic() > until:
                     break
     return status_of(design, store)
+
+
+def _counts(cases: Mapping[str, Case], stored: Mapping[str, str]) -> Status:
+    found = [stored[key] for key in cases if key in stored]
+    return Status(len(cases), found.count("done"), found.count("failed"))

@@ -49,7 +49,7 @@ def run(
     ] = 0.0,
 ) -> int:
     """Compute what the sweep lacks; stop it at any time and run it again to go on."""
-    from ..campaigns import Store, design_named, run_design, status_of
+    from ..campaigns import Store, design_named, distinct_cases, run_design, status_of
     from ..campaigns.executor import DaskExecutor, LocalExecutor
     from ..campaigns.run import cases_to_do
 
@@ -61,7 +61,8 @@ def run(
     again = frozenset({retry} - {""})
     before = status_of(chosen, store)
     executor: Any = DaskExecutor.connect(scheduler) if scheduler else LocalExecutor(workers=workers)
-    todo = list(cases_to_do(chosen, store, again=again).values())
+    cases = distinct_cases(chosen)
+    todo = [cases[key] for key in cases_to_do(chosen, store, again=again)]
     forecast = _forecast(todo, store, executor.workers)
     typer.echo(
         f"design {design}: {before.designed} cases, {before.done} done, {before.failed} failed, "
@@ -174,13 +175,17 @@ def show(
 def export(
     out: Out = Path("build/campaign"),
     to: Annotated[Path, typer.Option(help="File to write.")] = Path("build/campaign/curves.csv"),
+    data: Annotated[
+        Path | None, typer.Option(help="Campaign file or folder of parts, instead of --out.")
+    ] = None,
 ) -> None:
     """Write all loading curves as one table: CSV, or Parquet where the name ends so."""
     from ..campaigns import read_curves
 
-    records = read_curves(out / _FILE)
+    source = data or out / _FILE
+    records = read_curves(source)
     if not records:
-        raise InputError("no completed case", source=str(out / _FILE))
+        raise InputError("no completed case", source=str(source))
     names = list(records[0].curve)
     if to.suffix not in (".csv", ".parquet"):
         raise InputError(

@@ -1,5 +1,6 @@
 """Faults that a long run meets: kills at random moments, a full disk, readers, damaged data."""
 
+import importlib.util
 import os
 import random
 import shutil
@@ -7,6 +8,7 @@ import signal
 import subprocess
 import sys
 import time
+from pathlib import Path
 
 import h5py
 import pytest
@@ -15,7 +17,7 @@ from dentscope.core import InputError
 
 # the product's store and main path with a solver that takes no time: writing is what is tested
 WRITER = """
-import sys, time
+import resource, signal, sys, time
 from pathlib import Path
 import numpy as np
 from dentscope import fem
@@ -23,6 +25,10 @@ from dentscope.campaigns import Design, run_design, standard_case
 from dentscope.campaigns.executor import Ended
 from dentscope.core import COMPLETED, Material, Pair
 from dentscope.fem import Counters, Curve, Solution
+
+if len(sys.argv) > 4:
+    signal.signal(signal.SIGXFSZ, signal.SIG_IGN)
+    resource.setrlimit(resource.RLIMIT_FSIZE, (int(sys.argv[4]), resource.RLIM_INFINITY))
 
 def made():
     flat = Material(E=1e11, nu=0.3, Sy=3e8)
@@ -50,9 +56,9 @@ except Exception as error:
 """
 
 
-def start(path, n=200, values=48):
+def start(path, n=200, values=48, limit=()):
     return subprocess.Popen(
-        [sys.executable, "-c", WRITER, str(path), str(n), str(values)],
+        [sys.executable, "-c", WRITER, *map(str, (path, n, values, *limit))],
         stdout=subprocess.PIPE,
         text=True,
     )
@@ -109,6 +115,21 @@ def test_a_full_disk_keeps_what_is_there(tmp_path):
         subprocess.run(["umount", str(disk)], check=True)
 
 
+def test_a_file_that_may_not_grow_keeps_what_is_there(tmp_path):
+    path = tmp_path / "c.h5"
+    process = start(path, n=50, values=5000, limit=(2_000_000,))
+    *lines, last = process.communicate()[0].splitlines()
+    assert process.returncode == 2
+    assert "a file may not be larger here; all completed cases are kept" in last
+    assert len(lines) > 1
+    # the case that had no room is in the journal, and in the file when there is room again
+    assert len(read_curves(path)) == len(lines) + 1
+    process = start(path, n=10, values=5000)
+    process.communicate()
+    assert process.returncode == 0
+    assert len(read_curves(path)) == 10
+
+
 def test_a_corrupt_dataset_is_named_in_one_line(tmp_path):
     path = tmp_path / "c.h5"
     start(path, n=1, values=4000).communicate()
@@ -121,3 +142,20 @@ def test_a_corrupt_dataset_is_named_in_one_line(tmp_path):
     with pytest.raises(InputError, match="damaged") as caught:
         read_curves(path)
     assert "\n" not in str(caught.value)
+
+
+def faults():
+    place = Path(__file__).with_name("faults_campaign.py")
+    spec = importlib.util.spec_from_file_location("faults_campaign", place)
+    module = importlib.util.module_from_spec(spec)
+    spec.loader.exec_module(module)
+    return module
+
+
+def test_kills_of_coordinator_and_workers_lose_no_case(tmp_path):
+    # the twenty kills of docs/campaign.md: python tests/unit/campaigns/faults_campaign.py
+    found = faults().inject(tmp_path, kills=3, cases=40, seed=4, say=lambda line: None)
+    assert found["stored"] == 40
+    assert found["lost"] == found["wrong"] == found["told twice"] == 0
+    assert found["workers left over"] == 0
+    assert found.get("coordinator", 0) + found.get("worker", 0) >= 1

@@ -6,10 +6,11 @@ one well.
 
 import subprocess
 import sys
+import warnings
 from pathlib import Path
 
 import pytest
-from dentscope.campaigns import read_curves
+from dentscope.campaigns import Store, read_curves
 
 pytest.importorskip("distributed")
 
@@ -62,6 +63,88 @@ def test_all_cases_arrive_though_a_worker_is_killed(tmp_path):
     )
     assert "KILLED 1 DONE 3 0 0" in answer.stdout, answer.stderr
     assert len(read_curves(path)) == 3
+
+
+LOST = """
+import os, signal, subprocess, sys, time
+from dataclasses import replace
+from pathlib import Path
+from dentscope import fem
+from dentscope.campaigns import Design, run_design, standard_case
+from dentscope.campaigns.executor import DaskExecutor
+from dentscope.core import InputError, Material, Pair
+
+def stand_in(specification, limit):
+    import time
+    time.sleep(0.2)
+    raise RuntimeError("stand-in")
+
+def made():
+    flat = Material(E=200e9, nu=0.3, Sy=3e8)
+    pairs = [Pair(Material(E=200e9, nu=0.3, Sy=4e8 + 1e7 * i), flat, 1e-3) for i in range(40)]
+    smoke = fem.Accuracy.smoke()
+    return tuple(standard_case(f"c{i}", p, deepest=3e-4, n_depths=4, accuracy=smoke)
+                 for i, p in enumerate(pairs))
+
+def started(name, *options):
+    command = [sys.executable, "-m", f"distributed.cli.dask_{name}", *options, "--no-dashboard"]
+    return subprocess.Popen(command, stderr=subprocess.DEVNULL)
+
+if __name__ == "__main__":
+    folder = Path(sys.argv[1])
+    file = folder / "scheduler.json"
+    scheduler = started("scheduler", "--port", "0", "--scheduler-file", str(file))
+    worker = started("worker", "--scheduler-file", str(file), "--nthreads", "1", "--no-nanny",
+                     "--death-timeout", "5")
+    while not file.exists():
+        time.sleep(0.05)
+    import json
+    address = json.loads(file.read_text())["address"]
+    executor = replace(DaskExecutor.connect(address, timeout_s=60.0), work=stand_in)
+    steps = []
+    def report(step):
+        steps.append(step)
+        if len(steps) == 3:
+            scheduler.kill()
+    try:
+        run_design(Design("lost", "", made), folder / "c.h5", executor=executor,
+                   time_limit_s=10.0, report=report)
+    except InputError as error:
+        print("TOLD", error, flush=True)
+    worker.kill()
+    print("STORED", len(steps), flush=True)
+    os._exit(0)
+"""
+
+
+@pytest.mark.fe
+def test_a_scheduler_that_goes_away_fails_no_case(tmp_path):
+    # dask's client looks for its scheduler for half a minute before it gives up
+    script = tmp_path / "lost.py"
+    script.write_text(LOST)
+    answer = subprocess.run(
+        [sys.executable, str(script), str(tmp_path)],
+        capture_output=True, text=True, timeout=240, check=False,
+    )  # fmt: skip
+    assert "TOLD" in answer.stdout, answer.stderr
+    assert "the dask scheduler went away; all completed cases are kept" in answer.stdout
+    told = int(answer.stdout.split("STORED")[1])
+    assert 3 <= told < 40
+    assert len(Store(tmp_path / "c.h5").statuses()) == told
+
+
+@pytest.mark.parametrize("kind", ["SLURMCluster", "PBSCluster"])
+def test_the_clusters_of_the_guide_write_their_job_scripts(kind):
+    jobqueue = pytest.importorskip("dask_jobqueue")
+    # the same words as docs/campaign.md; no batch system is needed to write the script
+    options = {"cores": 16, "processes": 16, "memory": "32GB", "walltime": "04:00:00"}
+    with warnings.catch_warnings():
+        warnings.simplefilter("ignore")
+        with getattr(jobqueue, kind)(**options, dashboard_address=None) as cluster:
+            script = cluster.job_script()
+    assert "dask" in script
+    assert "--nworkers 16" in script
+    assert "--nthreads 1" in script
 
 
 def test_an_address_without_a_scheduler_ends_with_exit_code_2(tmp_path):

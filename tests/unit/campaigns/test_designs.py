@@ -1,5 +1,7 @@
 """What the designs promise: counts, ranges, depths, unloadings, and that no pair is shared."""
 
+import itertools
+
 import pytest
 from dentscope import fem
 from dentscope.campaigns import DESIGNS, design_named, distinct_cases
@@ -68,6 +70,29 @@ def test_drawn_pairs_do_not_move_with_the_version_of_a_library():
     )
     held_out = DESIGNS["validation"].make()[1].pair
     assert (held_out.sphere.E, held_out.flat.E) == pytest.approx((91.84e9, 155.7e9))
+
+
+def test_a_run_that_is_stopped_early_has_the_thesis_first(cases):
+    names = [case.name for case in cases["full"].values()]
+    order = [name.split("-")[0] for name in names]
+    assert order.index("space") == 262
+    assert order.index("validation") == 262 + 256
+    assert names[:3] == ["figure-2.2", "figure-2.3", "figure-2.4"]
+    # half of Table 2.1 leaves no gap larger than 0.1 in the steep part
+    ratios = [c.pair.Sy_ratio for c in cases["thesis"].values() if c.name.startswith("table")]
+    steep = sorted({round(r, 3) for r in ratios[: len(ratios) // 2] if 0.85 < r < 1.75})
+    assert max(b - a for a, b in itertools.pairwise(steep)) < 0.11
+    assert {0.1, 1.0, 10.0} <= {round(r, 6) for r in ratios[:15]}
+
+
+def test_every_deep_case_has_the_depth_of_the_thesis(cases):
+    for name in ("thesis", "space", "validation"):
+        for case in cases[name].values():
+            assert 0.04 in case.depths
+            ratios = [b / a for a, b in itertools.pairwise(case.depths)]
+            assert max(ratios) < 1.3 * min(ratios)  # one is moved by less than half a step
+    fields = [c.name for c in cases["thesis"].values() if c.snapshots]
+    assert fields == ["figure-2.2", "figure-2.3", "figure-2.4"]
 
 
 def test_an_unknown_design_names_the_known_ones():

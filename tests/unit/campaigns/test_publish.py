@@ -1,7 +1,10 @@
 """Published parts: complete, small, never rewritten, checked when read, compared with own runs."""
 
+import hashlib
 import json
+import re
 from dataclasses import replace
+from pathlib import Path
 
 import h5py
 import numpy as np
@@ -122,6 +125,16 @@ def test_every_column_of_a_part_tells_its_unit_and_meaning(tmp_path):
         file.visititems(look)
 
 
+def test_the_readme_of_the_data_set_names_every_column(tmp_path):
+    [part] = publish(DESIGN, stored(tmp_path / "c.h5"), tmp_path / "data")
+    readme = (Path(__file__).parents[3] / "data" / "campaign" / "README.md").read_text()
+    named = set(re.findall(r"`([\w-]+)`", readme))
+    with h5py.File(part) as file:
+        for table, columns in file.items():
+            assert table in named
+            assert set(columns) - named == set()
+
+
 def test_failed_cases_are_published_with_their_reason(tmp_path):
     source = stored(tmp_path / "c.h5", n=5)
     case = made()[5]
@@ -132,6 +145,9 @@ def test_failed_cases_are_published_with_their_reason(tmp_path):
     assert published_designs(tmp_path / "data")[0].failed == 1
     with h5py.File(part) as file:
         assert b"stuck at 0.003" in file["cases/message"][()][5]
+    told = (tmp_path / "data" / "PARTS.md").read_text()
+    assert "- `case-5`: not-converged: stuck at 0.003. Refine." in told
+    assert hashlib.sha256(part.read_bytes()).hexdigest() in told
 
 
 def test_an_own_run_is_compared_with_what_is_published(tmp_path):

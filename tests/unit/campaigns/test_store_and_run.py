@@ -1,5 +1,6 @@
 """The campaign file: identity of cases, resuming, damage, and death of workers and coordinator."""
 
+import errno
 import multiprocessing
 import os
 import signal
@@ -9,22 +10,26 @@ import time
 from dataclasses import replace
 
 import h5py
+import meshio
 import numpy as np
 import pytest
 from dentscope import fem
 from dentscope.campaigns import (
     DESIGNS,
+    Case,
     Design,
     Store,
     distinct_cases,
+    fields,
     read_curves,
     run_design,
     standard_case,
     status_of,
 )
 from dentscope.campaigns.executor import Ended
+from dentscope.campaigns.fields import fields_of
 from dentscope.core import COMPLETED, Ending, InputError, Material, Outcome, Pair
-from dentscope.fem import Counters, Curve, Profile, Solution
+from dentscope.fem import Counters, Curve, Profile, Snapshot, Solution
 
 
 def pair(scale=1.0, R=1e-3, Sy=5e8):
@@ -126,6 +131,40 @@ def test_profiles_are_kept_out_to_twice_the_contact_radius(tmp_path):
         np.array([r[:9] - d for d in one.profiles]), rel=1e-6, abs=1e-6
     )
     assert kept["flat_z"].shape == (4, 9)
+
+
+def snapshot(depth):
+    corners = np.array([[0.0, 0.0], [1.0, 0.0], [1.0, 1.0], [0.0, 1.0]])
+    one, line = np.array([3e8]), np.linspace(0.0, 1.0, 3)
+    return Snapshot(
+        depth=depth, points=corners, quads=np.array([[0, 1, 2, 3]]), n_sphere_quads=1,
+        displacement=0.1 * corners, von_mises=one, plastic_strain=one, mean_stress=one,
+        stress=np.full((1, 4), 2.0), profile=Profile(depth, line, line, line, line, line),
+    )  # fmt: skip
+
+
+def test_fields_lie_beside_the_file_and_belong_to_the_case(tmp_path, monkeypatch):
+    plain = case()
+    chosen = replace(plain, snapshots=(plain.depths[1],))
+    assert chosen.id != plain.id
+    assert Case.from_specification(chosen.specification()) == chosen
+    assert chosen.problem().snapshots == chosen.snapshots
+    states = (snapshot(chosen.depths[1]),)
+    Store(tmp_path / "c.h5").put(chosen, replace(solution(chosen), snapshots=states))
+    [file] = fields_of(chosen.id, tmp_path / "fields")
+    mesh = meshio.read(file)
+    assert mesh.cell_data["von_mises_Pa"][0] == pytest.approx([3e8])
+    assert mesh.points[2, :2] == pytest.approx([1.1, 1.1])
+
+    # where there is no room for them the case is not stored, and nothing half written stays
+    def full(*_):
+        raise OSError(errno.ENOSPC, "No space left on device")
+
+    monkeypatch.setattr(fields, "write_vtu", full)
+    with pytest.raises(InputError, match="the disk is full"):
+        Store(tmp_path / "d.h5").put(chosen, replace(solution(chosen), snapshots=states))
+    assert not (tmp_path / "d.h5").exists()
+    assert fields_of(chosen.id, tmp_path / "fields") == [file]
 
 
 def test_results_of_another_numerics_version_do_not_come_twice(tmp_path, monkeypatch):
