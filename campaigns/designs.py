@@ -11,7 +11,7 @@ others at that of published data.
 from __future__ import annotations
 
 from collections.abc import Callable
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cache
 from itertools import product
 
@@ -244,6 +244,41 @@ def _drawn_pair(
     )
 
 
+@cache
+def _robustness() -> tuple[Case, ...]:
+    """300 scrambled Sobol points over all that the solver is meant for, at low resolution.
+
+    E_s/E_f 1/6 to 6, nu 0.1 to 0.45, Sy* 0.05 to 20 and E'/Sy_min 20 to 4000.
+    """
+    from scipy.stats import qmc
+
+    points = qmc.Sobol(5, scramble=True, rng=np.random.default_rng(300)).random_base2(9)[:300]
+    cases = []
+    for k, u in enumerate(points):
+        stiffness = 6.0 ** (2.0 * u[0] - 1.0)
+        nu_s, nu_f = (round(float(0.1 + 0.35 * x), 3) for x in u[1:3])
+        pair = pair_of(
+            E_s=_digits(100.0 * stiffness**0.5),
+            E_f=_digits(100.0 / stiffness**0.5),
+            Sy_min=1.0,
+            ratio=_digits(0.05 * 400.0 ** u[3]),
+            nu_s=nu_s,
+            nu_f=nu_f,
+        )
+        strength = _digits(pair.E_reduced / (20.0 * 200.0 ** u[4]))
+        pair = replace(
+            pair,
+            sphere=replace(pair.sphere, Sy=pair.sphere.Sy / 1e6 * strength),
+            flat=replace(pair.flat, Sy=pair.flat.Sy / 1e6 * strength),
+        )
+        cases.append(
+            standard_case(
+                f"robustness-{k:03}", pair, deepest=0.1, n_depths=24, accuracy=fem.Accuracy.smoke()
+            )
+        )
+    return tuple(cases)
+
+
 def _digits(x: float) -> float:
     return float(f"{x:.4g}")
 
@@ -263,6 +298,11 @@ DESIGNS: dict[str, Design] = {
         Design("space", "256 Sobol points over moduli, Poisson ratios, strengths", _space),
         Design("validation", "48 pairs that no fit may use", _validation),
         Design("full", "thesis, space and validation", _full),
+        Design(
+            "robustness",
+            "300 Sobol points over the solver's whole range, low resolution",
+            _robustness,
+        ),
     )
 }
 """Every design by name."""

@@ -3,7 +3,8 @@
 A file holds one group a case under `/cases/ID`. A case that ended has the attributes `status`
 (`done` or `failed`), `specification` and `environment` (JSON) and the datasets below; unloadings
 lie under `unload-1`, `unload-2`, ... in the order of their depth; contact pressure and surfaces at
-ten depths under `profiles`, in single precision and out to twice the contact radius.
+ten depths under `profiles`, in single precision and out to twice the contact radius;
+rows end with NaN where a profile has fewer nodes than the longest.
 """
 
 from __future__ import annotations

@@ -322,13 +322,21 @@ def _put_solution(group: h5py.Group, solution: Solution) -> None:
 
 def _put_profiles(group: h5py.Group, solution: Solution) -> None:
     reach = _PROFILE_REACH * np.nanmax(solution.loading.radius)
-    columns = {name: np.array([getattr(p, name) for p in solution.profiles]) for name in PROFILES}
     for name, about in PROFILES.items():
-        values = columns[name]
-        if about.axes[-1] == "node":
-            r = columns["flat_r" if name.startswith("flat") else "sphere_r"][-1]
-            values = values[:, : int(np.searchsorted(r, reach)) + 1]
-        _put_array(group, name, values.astype(np.float32), about)
+        columns = [getattr(p, name) for p in solution.profiles]
+        if about.axes[-1] != "node":
+            _put_array(group, name, np.array(columns, dtype=np.float32), about)
+            continue
+        side = "flat_r" if name.startswith("flat") else "sphere_r"
+        radii = [getattr(p, side) for p in solution.profiles]
+        kept = [
+            c[: int(np.searchsorted(r, reach)) + 1] for c, r in zip(columns, radii, strict=True)
+        ]
+        # the mesh follows the contact, so that the profiles differ in their number of nodes
+        values = np.full((len(kept), max(map(len, kept))), np.nan, dtype=np.float32)
+        for row, column in zip(values, kept, strict=True):
+            row[: len(column)] = column
+        _put_array(group, name, values, about)
 
 
 def _put_curve(group: h5py.Group, curve: Curve) -> None:
@@ -336,7 +344,9 @@ def _put_curve(group: h5py.Group, curve: Curve) -> None:
         _put_array(group, name, getattr(curve, name), about)
 
 
-def _put_array(group: h5py.Group, name: str, values: Floats, about: Dataset) -> None:
+def _put_array(
+    group: h5py.Group, name: str, values: Floats | npt.NDArray[np.float32], about: Dataset
+) -> None:
     packed = {"compression": "gzip", "shuffle": True} if values.size > _WORTH_COMPRESSING else {}
     data = group.create_dataset(name, data=values, **packed)
     data.attrs["unit"] = about.unit

@@ -54,6 +54,10 @@ class Elements:
         Shear and bulk modulus, shape (n_elements,).
     radius
         sqrt(2/3) Sy / (2 G), shape (n_elements,); `inf` where elastic.
+    stiffness
+        Constant stiffness matrices of linear elements, shape (n_linear, 8, 8) [E' R].
+    linear
+        Row of `stiffness` of each element, -1 for those of finite strain, shape (n_elements,).
     """
 
     conn: npt.NDArray[np.int64]
@@ -65,6 +69,8 @@ class Elements:
     G: Floats
     K: Floats
     radius: Floats
+    stiffness: Floats
+    linear: npt.NDArray[np.int64]
 
 
 @dataclass(frozen=True)
@@ -132,8 +138,17 @@ def _gradient(conn, grad, value, r, u, e, q, F):
 
 
 @njit(cache=True)
+def _linear_element(nodes, K, u, force):
+    for a in range(8):
+        total = 0.0
+        for b in range(8):
+            total += K[a, b] * u[2 * nodes[b // 2] + b % 2]
+        force[2 * nodes[a // 2] + a % 2] += total
+
+
+@njit(cache=True)
 def _assemble(
-    conn, grad, value, r, dV, volume, G, K, radius, u, Fn, bn, en, rule,
+    conn, grad, value, r, dV, volume, G, K, radius, stiffness, linear, u, Fn, bn, en, rule,
     with_tangent, force, tangent,
 ):  # fmt: skip
     F = np.empty((4, 5))
@@ -146,6 +161,11 @@ def _assemble(
     fe = np.empty(8)
     n_plastic = 0
     for e in range(conn.shape[0]):
+        if linear[e] >= 0:
+            _linear_element(conn[e], stiffness[linear[e]], u, force)
+            if with_tangent:
+                tangent[e] = stiffness[linear[e]]
+            continue
         J_sum = 0.0
         for q in range(4):
             _gradient(conn, grad, value, r, u, e, q, F[q])
@@ -298,7 +318,7 @@ def bulk_forces(
     room = tangent if tangent is not None else np.empty((0, 8, 8))
     return int(
         _assemble(
-            x.conn, x.grad, x.value, x.r, x.dV, x.volume, x.G, x.K, x.radius,
+            x.conn, x.grad, x.value, x.r, x.dV, x.volume, x.G, x.K, x.radius, x.stiffness, x.linear,
             u, state.F, state.b, state.strain, rule, with_tangent, force, room,
         )
     )  # fmt: skip
@@ -315,6 +335,16 @@ def advance(elements: Elements, u: Floats, *, state: State, rule: int) -> tuple[
     )  # fmt: skip
     new = State(F=F, b=b, strain=strain, peeq=peeq, dissipated=state.dissipated + dissipated)
     return new, float(stored)
+
+
+@njit(cache=True)
+def deformation(conn, grad, value, r, u):
+    """Deformation gradients at displacement `u`, shape (n_elements, 4, 5)."""
+    F = np.empty((conn.shape[0], 4, 5))
+    for e in range(conn.shape[0]):
+        for q in range(4):
+            _gradient(conn, grad, value, r, u, e, q, F[e, q])
+    return F
 
 
 def cauchy_stress(elements: Elements, state: State) -> tuple[Floats, Floats]:

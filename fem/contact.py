@@ -1,15 +1,16 @@
 """Frictionless contact of the two deforming surfaces by node-weighted (mortar) gaps.
 
-The sphere's surface is the slave side, piecewise linear; the flat's surface is the master side,
-smoothed to a C1 curve by uniform Catmull-Rom segments through its nodes, with the mirror image of
-the first node beyond the axis. The gap at a slave point is vertical, g = z_sphere(r) - z_flat(r) at
-equal current r; because the point slides along the master curve as it moves, the contact force
-comes out normal to that curve all the same.
+The sphere's surface is the slave side, the flat's the master side. For the gap both are smoothed to
+C1 curves of cubic segments through their nodes, whose slopes at the nodes are those of parabolas
+through three neighbours; the first node has its mirror image beyond the axis. The gap at a slave
+point is vertical, g = z_sphere(r) - z_flat(r) at equal current r.
 
 The gap of slave node A is the mean G_A = int N_A g dA / int N_A dA over the reference area
-2 pi R dR, its pressure p_A = max(0, -eps_A G_A). The forces are the derivative of
-1/2 sum eps_A m_A <-G_A>^2, so the tangent is symmetric and the sum of the pressures is the vertical
-force exactly.
+2 pi R dR, its pressure p_A = max(0, -eps_A G_A), so the sum of the pressures is the vertical force
+exactly. The force of a point acts normal to the flat's curve; on each body it goes to the two nodes
+of the straight segment, as the elements' own functions have it: a uniform pressure then gives both
+bodies the loads of a uniform pressure, whatever the size of their elements, which the weights of
+the smooth curves would not. The tangent is therefore not symmetric.
 """
 
 from __future__ import annotations
@@ -26,7 +27,7 @@ Integers = npt.NDArray[np.int64]
 
 POINTS = np.array([-math.sqrt(0.6), 0.0, math.sqrt(0.6)])
 WEIGHTS = np.array([5.0, 8.0, 5.0]) / 18.0
-_LOCAL = 12  # degrees of freedom that a slave point's gap depends on
+_LOCAL = 16  # degrees of freedom that a slave point's gap depends on
 _SUPPORT = 96  # room for those that a node's weighted gap depends on
 
 
@@ -44,6 +45,9 @@ class Surfaces:
         int N_A dA, shape (n_slave,).
     stiffness
         Penalty stiffness eps_A, shape (n_slave,) [E'/R].
+    slave_shape, master_shape
+        How the slopes at the ends of a segment, in units of its length, follow from the differences
+        between its four nodes, shape (n_slave - 1, 4) and (n_master - 1, 4).
     """
 
     slave: Integers
@@ -51,6 +55,8 @@ class Surfaces:
     weight: Floats
     mass: Floats
     stiffness: Floats
+    slave_shape: Floats
+    master_shape: Floats
 
     @classmethod
     def build(
@@ -65,7 +71,26 @@ class Surfaces:
         mass[:-1] += (weight * (1.0 - s)).sum(axis=1)
         mass[1:] += (weight * s).sum(axis=1)
         edge = np.maximum(np.append(length, 0.0), np.insert(length, 0, 0.0))
-        return cls(slave, master, weight, mass, penalty / edge)
+        slave_shape, master_shape = _slopes(r), _slopes(points[master, 0])
+        return cls(slave, master, weight, mass, penalty / edge, slave_shape, master_shape)
+
+
+def _slopes(r: Floats) -> Floats:
+    """Weights of the node differences in the segments' end slopes: exact for a parabola in r."""
+    length = np.diff(r)
+    before = np.insert(length[:-1], 0, length[0])  # the mirror image beyond the axis
+    after = np.append(length[1:], length[-1])
+    shape = np.stack(
+        [
+            length**2 / (before * (before + length)),
+            before / (before + length),
+            after / (length + after),
+            length**2 / (after * (length + after)),
+        ],
+        axis=1,
+    )
+    shape[-1, 2:] = 1.0, 0.0  # no node beyond the last
+    return shape
 
 
 @dataclass(frozen=True)
@@ -95,25 +120,37 @@ class ContactState:
 
 
 @njit(cache=True)
-def _catmull_rom(t, W, W1, W2):
+def _curve(t, shape, W, W1, W2):
+    """Weights of the four nodes about a master segment at t, with first and second derivative."""
+    # cubic Hermite functions of the two ends' slopes, and the rest is H(end) = 1 - H(start)
     t2 = t * t
     t3 = t2 * t
-    W[0] = 0.5 * (-t3 + 2.0 * t2 - t)
-    W[1] = 0.5 * (3.0 * t3 - 5.0 * t2 + 2.0)
-    W[2] = 0.5 * (-3.0 * t3 + 4.0 * t2 + t)
-    W[3] = 0.5 * (t3 - t2)
-    W1[0] = 0.5 * (-3.0 * t2 + 4.0 * t - 1.0)
-    W1[1] = 0.5 * (9.0 * t2 - 10.0 * t)
-    W1[2] = 0.5 * (-9.0 * t2 + 8.0 * t + 1.0)
-    W1[3] = 0.5 * (3.0 * t2 - 2.0 * t)
-    W2[0] = -3.0 * t + 2.0
-    W2[1] = 9.0 * t - 5.0
-    W2[2] = -9.0 * t + 4.0
-    W2[3] = 3.0 * t - 1.0
+    end = 3.0 * t2 - 2.0 * t3
+    end1 = 6.0 * (t - t2)
+    end2 = 6.0 - 12.0 * t
+    near = t3 - 2.0 * t2 + t
+    near1 = 3.0 * t2 - 4.0 * t + 1.0
+    near2 = 6.0 * t - 4.0
+    far = t3 - t2
+    far1 = 3.0 * t2 - 2.0 * t
+    far2 = 6.0 * t - 2.0
+    a, b, c, d = shape
+    W[0] = -a * near
+    W[1] = 1.0 - end + (a - b) * near - c * far
+    W[2] = end + b * near + (c - d) * far
+    W[3] = d * far
+    W1[0] = -a * near1
+    W1[1] = -end1 + (a - b) * near1 - c * far1
+    W1[2] = end1 + b * near1 + (c - d) * far1
+    W1[3] = d * far1
+    W2[0] = -a * near2
+    W2[1] = -end2 + (a - b) * near2 - c * far2
+    W2[2] = end2 + b * near2 + (c - d) * far2
+    W2[3] = d * far2
 
 
 @njit(cache=True)
-def _gaps(xs, xm, segment, position, gap, radius):
+def _gaps(xs, xm, shape_s, shape, segment, position, gap, radius):
     """Gap of every slave point; False when a point has left the master surface."""
     W = np.empty(4)
     W1 = np.empty(4)
@@ -122,9 +159,13 @@ def _gaps(xs, xm, segment, position, gap, radius):
     k = 0
     for e in range(xs.shape[0] - 1):
         for q in range(3):
-            s = 0.5 * (1.0 + POINTS[q])
-            r = (1.0 - s) * xs[e, 0] + s * xs[e + 1, 0]
-            z = (1.0 - s) * xs[e, 1] + s * xs[e + 1, 1]
+            _curve(0.5 * (1.0 + POINTS[q]), shape_s[e], W, W1, W2)
+            r = -W[0] * xs[1, 0] if e == 0 else W[0] * xs[e - 1, 0]
+            z = W[0] * xs[1 if e == 0 else e - 1, 1]
+            for j in range(1, 4):
+                node = min(e - 1 + j, xs.shape[0] - 1)
+                r += W[j] * xs[node, 0]
+                z += W[j] * xs[node, 1]
             while k < last and xm[k + 1, 0] < r:
                 k += 1
             while k > 0 and xm[k, 0] > r:
@@ -135,13 +176,13 @@ def _gaps(xs, xm, segment, position, gap, radius):
             z0 = xm[1, 1] if k == 0 else xm[k - 1, 1]
             t = (r - xm[k, 0]) / (xm[k + 1, 0] - xm[k, 0])
             for _ in range(30):
-                _catmull_rom(t, W, W1, W2)
+                _curve(t, shape[k], W, W1, W2)
                 f = W[0] * r0 + W[1] * xm[k, 0] + W[2] * xm[k + 1, 0] + W[3] * xm[k + 2, 0] - r
                 d = W1[0] * r0 + W1[1] * xm[k, 0] + W1[2] * xm[k + 1, 0] + W1[3] * xm[k + 2, 0]
                 t -= f / d
                 if abs(f) < 1e-15 * r:
                     break
-            _catmull_rom(t, W, W1, W2)
+            _curve(t, shape[k], W, W1, W2)
             segment[e, q] = k
             position[e, q] = t
             gap[e, q] = z - (
@@ -152,14 +193,17 @@ def _gaps(xs, xm, segment, position, gap, radius):
 
 
 @njit(cache=True)
-def _point_derivatives(e, q, k, t, xm, slave, master, W, W1, W2, dof, dg, dt, dz):
-    """First derivatives of the gap at one slave point, and what its second derivative needs.
+def _point_derivatives(
+    e, q, k, t, r, xs, xm, shape_s, shape, slave, master, W, W1, W2, dof, dg, b, db
+):  # fmt: skip
+    """Change of the gap and of the directions of force at one slave point.
 
-    dof, dg, dt, dz have 12 entries: degree of freedom, d gap, d t and W'_j (dz_j - slope dr_j).
-    Returns the curvature term z'' - slope r''.
+    The point depends on 16 degrees of freedom `dof`: r and z of four slave and four master nodes.
+    dg is the gradient of the gap (16,), b the share of the point's force that each takes (16,), and
+    db the derivative of b (16, 16).
     """
     s = 0.5 * (1.0 + POINTS[q])
-    _catmull_rom(t, W, W1, W2)
+    _curve(t, shape[k], W, W1, W2)
     mirrored = k == 0
     first = 1 if mirrored else k - 1
     sign = -1.0 if mirrored else 1.0
@@ -173,39 +217,60 @@ def _point_derivatives(e, q, k, t, xm, slave, master, W, W1, W2, dof, dg, dt, dz
         z1 += W1[j] * xm[k - 1 + j, 1]
         z2 += W2[j] * xm[k - 1 + j, 1]
     slope = z1 / r1
-    for n in range(2):
-        N = s if n == 1 else 1.0 - s
-        i = slave[e + n]
-        dof[2 * n] = 2 * i
-        dof[2 * n + 1] = 2 * i + 1
-        dt[2 * n] = N / r1
-        dt[2 * n + 1] = 0.0
-        dz[2 * n] = 0.0
-        dz[2 * n + 1] = 0.0
-        dg[2 * n] = -slope * N
-        dg[2 * n + 1] = N
+    bend = (z2 - slope * r2) / r1
+    length = xm[k + 1, 0] - xm[k, 0]
+    tau = (r - xm[k, 0]) / length
+    dslope = np.zeros(_LOCAL)
+    dtau = np.zeros(_LOCAL)
+    for i in range(_LOCAL):
+        b[i] = 0.0
+        for j in range(_LOCAL):
+            db[i, j] = 0.0
     for j in range(4):
         node = first if j == 0 else k - 1 + j
         sg = sign if j == 0 else 1.0
-        i = master[node]
-        p = 4 + 2 * j
-        dof[p] = 2 * i
-        dof[p + 1] = 2 * i + 1
-        dt[p] = -sg * W[j] / r1
-        dt[p + 1] = 0.0
-        dz[p] = -slope * sg * W1[j]
-        dz[p + 1] = W1[j]
-        dg[p] = slope * sg * W[j]
-        dg[p + 1] = -W[j]
-    return z2 - slope * r2
+        i = 8 + 2 * j
+        dof[i] = 2 * master[node]
+        dof[i + 1] = dof[i] + 1
+        dg[i] = slope * sg * W[j]
+        dg[i + 1] = -W[j]
+        dslope[i] = sg * (-slope * W1[j] - bend * W[j]) / r1
+        dslope[i + 1] = W1[j] / r1
+    _curve(s, shape_s[e], W, W1, W2)
+    for j in range(4):
+        node = 1 if j == 0 and e == 0 else min(e - 1 + j, xs.shape[0] - 1)
+        sg = -1.0 if j == 0 and e == 0 else 1.0
+        i = 2 * j
+        dof[i] = 2 * slave[node]
+        dof[i + 1] = dof[i] + 1
+        dg[i] = -slope * sg * W[j]
+        dg[i + 1] = W[j]
+        dslope[i] = bend * sg * W[j] / r1
+        dtau[i] = sg * W[j] / length
+    dtau[10] = -(1.0 - tau) / length
+    dtau[12] = -tau / length
+    for n in range(2):
+        N = s if n == 1 else 1.0 - s
+        L = tau if n == 1 else 1.0 - tau
+        turn = 1.0 if n == 1 else -1.0
+        i = 2 + 2 * n
+        m = 10 + 2 * n
+        b[i] = -slope * N
+        b[i + 1] = N
+        b[m] = slope * L
+        b[m + 1] = -L
+        for j in range(_LOCAL):
+            db[i, j] = -N * dslope[j]
+            db[m, j] = L * dslope[j] + slope * turn * dtau[j]
+            db[m + 1, j] = -turn * dtau[j]
 
 
 @njit(cache=True)
 def _evaluate(
-    xs, xm, slave, master, weight, mass, stiffness,
+    xs, xm, slave, master, shape_s, shape, weight, mass, stiffness,
     segment, position, gap, radius, pressure, force, with_tangent, row, col, value,
 ):  # fmt: skip
-    if not _gaps(xs, xm, segment, position, gap, radius):
+    if not _gaps(xs, xm, shape_s, shape, segment, position, gap, radius):
         return 0.0, 0.0, -1
     n_edges = gap.shape[0]
     n_nodes = n_edges + 1
@@ -225,37 +290,38 @@ def _evaluate(
     W = np.empty(4)
     W1 = np.empty(4)
     W2 = np.empty(4)
-    dt = np.empty(_LOCAL)
-    dz = np.empty(_LOCAL)
+    db = np.empty((_LOCAL, _LOCAL))
     dofs = np.empty((n_edges, 3, _LOCAL), np.int64)
     dgs = np.empty((n_edges, 3, _LOCAL))
+    bs = np.empty((n_edges, 3, _LOCAL))
     n = 0
     for e in range(n_edges):
         if pressure[e] == 0.0 and pressure[e + 1] == 0.0:
             continue
         for q in range(3):
             dof = dofs[e, q]
-            dg = dgs[e, q]
-            curvature = _point_derivatives(
-                e, q, segment[e, q], position[e, q], xm, slave, master, W, W1, W2, dof, dg, dt, dz
-            )
+            b = bs[e, q]
+            _point_derivatives(
+                e, q, segment[e, q], position[e, q], radius[e, q], xs, xm, shape_s, shape,
+                slave, master, W, W1, W2, dof, dgs[e, q], b, db,
+            )  # fmt: skip
             s = 0.5 * (1.0 + POINTS[q])
             p = ((1.0 - s) * pressure[e] + s * pressure[e + 1]) * weight[e, q]
             for i in range(_LOCAL):
-                force[dof[i]] -= p * dg[i]
+                force[dof[i]] -= p * b[i]
             if with_tangent:
                 for i in range(_LOCAL):
                     for j in range(_LOCAL):
-                        v = p * (dz[i] * dt[j] + dt[i] * dz[j] + curvature * dt[i] * dt[j])
-                        if v != 0.0:
+                        if db[i, j] != 0.0:
                             row[n] = dof[i]
                             col[n] = dof[j]
-                            value[n] = v
+                            value[n] = -p * db[i, j]
                             n += 1
     if not with_tangent:
         return total, energy, 0
     support = np.empty(_SUPPORT, np.int64)
     dG = np.empty(_SUPPORT)
+    B = np.empty(_SUPPORT)
     for A in range(n_nodes):
         if pressure[A] <= 0.0:
             continue
@@ -274,14 +340,18 @@ def _evaluate(
                         found = m
                         support[m] = dofs[e, q, i]
                         dG[m] = 0.0
+                        B[m] = 0.0
                         m += 1
                     dG[found] += N * dgs[e, q, i]
+                    B[found] += N * bs[e, q, i]
         k = stiffness[A] * mass[A]
         for i in range(m):
+            if B[i] == 0.0:
+                continue
             for j in range(m):
                 row[n] = support[i]
                 col[n] = support[j]
-                value[n] = k * dG[i] * dG[j]
+                value[n] = k * B[i] * dG[j]
                 n += 1
     return total, energy, n
 
@@ -319,6 +389,7 @@ def contact_forces(
     room = tangent or Triplets(np.empty(0, np.int64), np.empty(0, np.int64), np.empty(0))
     total, energy, n = _evaluate(
         x[surfaces.slave], x[surfaces.master], surfaces.slave, surfaces.master,
+        surfaces.slave_shape, surfaces.master_shape,
         surfaces.weight, surfaces.mass, surfaces.stiffness,
         segment, position, gap, radius, pressure, force,
         tangent is not None, room.row, room.col, room.value,

@@ -3,22 +3,26 @@
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 import numpy.typing as npt
 import skfem
 
 from ..core.material import Material
-from .assemble import Elements
+from .assemble import Elements, State, bulk_forces
 from .contact import Surfaces
-from .geometry import RingDesign, graded_rings, outer_rings
+from .geometry import Zone, ladder_rings, outer_rings
+from .material import EXACT
 from .mesh import Mesh, contact_mesh
 from .problem import Accuracy, ContactProblem, critical_depth
 
 Integers = npt.NDArray[np.int64]
 
 _GRADE = 1.15  # largest change of ring width from ring to ring
+# Beyond this distance [R] the half-space is linear: strains there stay below 1e-4 at a/R = 0.5, and
+# the round-off of 1 + grad u in elements of this size is what would rule the residual.
+_LINEAR = 4.0
 _GAUSS = 0.5 / math.sqrt(3.0)
 
 
@@ -72,9 +76,14 @@ class Discretisation:
         return np.flatnonzero(mask)
 
 
-def discretise(problem: ContactProblem, accuracy: Accuracy) -> Discretisation:
-    """Mesh the problem and set up its elements, surfaces and boundary conditions."""
-    mesh = _mesh(problem, accuracy)
+def discretise(
+    problem: ContactProblem, accuracy: Accuracy, zone: Zone | None = None
+) -> Discretisation:
+    """Mesh the problem and set up its elements, surfaces and boundary conditions.
+
+    The mesh is fine in `zone`; without one, all along the path of the contact edge.
+    """
+    mesh = _mesh(problem, accuracy, zone or whole_path(problem))
     pair = problem.pair
     r = mesh.points[:, 0]
     n = mesh.n_sphere_points
@@ -95,7 +104,9 @@ def discretise(problem: ContactProblem, accuracy: Accuracy) -> Discretisation:
         held += [2 * node[~sphere], 2 * node[~sphere] + 1]
     index = np.flatnonzero(deforms)
     elements = _elements(mesh, index, pair.sphere, pair.flat, pair.E_reduced)
-    slope = np.abs(elements.grad).sum(axis=(2, 3))
+    reach = np.hypot(*np.moveaxis(mesh.points[elements.conn], -1, 0)).min(axis=1)
+    elements = with_linear(elements, reach > _LINEAR)
+    slope = np.abs(elements.grad).sum(axis=(2, 3)) * (elements.linear < 0)[:, None]
     return Discretisation(
         mesh=mesh,
         elements=elements,
@@ -111,39 +122,45 @@ def discretise(problem: ContactProblem, accuracy: Accuracy) -> Discretisation:
     )
 
 
-def _mesh(problem: ContactProblem, accuracy: Accuracy) -> Mesh:
-    onset = critical_depth(problem.pair)
+def whole_path(problem: ContactProblem) -> Zone:
+    """Radii that the contact edge passes through from the first depth to the last."""
+    _, low, high = _radii(problem)
+    return Zone(low, high)
+
+
+def _radii(problem: ContactProblem) -> tuple[float, float, float]:
+    """Contact radius well below first yield, at the first depth, and a bound of the last."""
     deepest = max(problem.depths[-1], 0.5 * problem.radius_at_least**2)
-    first = problem.depths[0]
-    # radii of the contact at the first depth, at first yield (if nothing yields, the fine range
-    # starts with the first depth) and at the deepest point
-    a_first = math.sqrt(min(first, onset))
-    a_yield = a_first if math.isinf(onset) else math.sqrt(min(onset, deepest))
+    first = math.sqrt(problem.depths[0])
+    least = math.sqrt(min(problem.depths[0], critical_depth(problem.pair)))
     # a^2/(R Delta) tends to 2.6 in full plasticity, so the edge stays inside 1.7 sqrt(R Delta)
-    a_last = 1.7 * math.sqrt(deepest) + 0.02
-    a_last = min(max(a_last, 1.08 * problem.radius_at_least, min(4.0 * a_yield, 0.4)), 0.9)
-    design = RingDesign(
-        core=0.12 * a_first,
-        # where plastic flow is to come, the elastic edge, at which the pressure ends gently, can do
-        # without the fine rings
-        fine_from=0.2 * a_first if math.isinf(onset) else 1.5 * a_yield,
-        fine_to=a_last,
+    last = 1.7 * math.sqrt(deepest) + 0.02
+    return least, first, min(max(last, 1.08 * problem.radius_at_least), 0.9)
+
+
+def _mesh(problem: ContactProblem, accuracy: Accuracy, zone: Zone) -> Mesh:
+    least, _, last = _radii(problem)
+    end = max(0.65, last)  # the gap beside the contact is read over some elements beyond its edge
+    rings = ladder_rings(
+        zone, core=0.12 * least, end=end, fine=accuracy.fine, coarse=accuracy.coarse
     )
-    rings = graded_rings(design, coarse=accuracy.coarse, fine=accuracy.fine, grade=_GRADE)
-    sphere = rings
-    if a_last < 0.6:
-        beyond = outer_rings(a_last, 0.65, fine=accuracy.fine, coarse=accuracy.coarse, grade=_GRADE)
-        sphere = np.concatenate([rings, beyond[1:]])
-    far = outer_rings(
-        sphere[-1], accuracy.flat_radius, fine=accuracy.coarse, coarse=0.3, grade=_GRADE
-    )
+    far = outer_rings(end, accuracy.flat_radius, first=accuracy.coarse, last=0.3, grade=_GRADE)
     return contact_mesh(
-        sphere_rings=sphere,
-        flat_rings=np.concatenate([sphere, far[1:]]),
-        divisions=accuracy.divisions,
-        # the gap beside the contact is read over some elements beyond its edge
-        surface_to=float(sphere[-1]),
+        rings=rings, far_rings=far[1:], divisions=accuracy.divisions, crowding=accuracy.crowding
     )
+
+
+def with_linear(elements: Elements, mask: npt.NDArray[np.bool_]) -> Elements:
+    """Make the elements of `mask` linear: their stiffness is that of the undeformed state."""
+    n = len(mask)
+    tangent = np.empty((n, 8, 8))
+    zero = np.zeros(2 * (int(elements.conn.max()) + 1))
+    bulk_forces(
+        elements, zero, state=State.virgin(n), rule=EXACT, force=zero.copy(), tangent=tangent
+    )
+    linear = np.full(n, -1)
+    linear[mask] = np.arange(np.count_nonzero(mask))
+    return replace(elements, stiffness=tangent[mask], linear=linear)
 
 
 def _elements(
@@ -166,6 +183,8 @@ def _elements(
         r=np.ascontiguousarray(r),
         dV=np.ascontiguousarray(dV),
         volume=dV.sum(axis=1),
+        stiffness=np.empty((0, 8, 8)),
+        linear=np.full(len(index), -1),
         **_constants(index < mesh.n_sphere_quads, sphere, flat, unit),
     )
 

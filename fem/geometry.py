@@ -1,9 +1,8 @@
-"""Radii of the element rings: small where the contact edge will pass, growing outwards.
+"""Radii of the element rings: fine about the contact edge, growing smoothly inside and outside.
 
-The mesh is self-similar: rings about the first contact point whose width is a fixed fraction of
-their radius, so that a contact of any size sees the same number of elements. The fraction is fine
-wherever plastic contact will have its edge, because there the element size sets the ripple of force
-and contact radius, and coarse inside and outside of that range.
+All rings stand on one ladder of radii in constant ratio, four rungs to a fine ring. Meshes made for
+different contact radii share the fine rings that both have, and what is known there passes from one
+to the other without interpolation.
 """
 
 from __future__ import annotations
@@ -18,61 +17,78 @@ Floats = npt.NDArray[np.float64]
 
 
 @dataclass(frozen=True)
-class RingDesign:
-    """Radii between which the rings are fine, in units of R.
+class Zone:
+    """Range of radii through which the contact edge may pass on one mesh [R]."""
+
+    low: float
+    high: float
+
+    def allowed(self, r: float, *, fine: float, coarse: float) -> float:
+        """Largest ring width over radius at radius `r`: doubled step by step away from the zone."""
+        outside = max(self.low / r, r / self.high)
+        if outside <= 1.0:
+            return fine
+        twice, all_coarse = _INSIDE if r < self.low else _OUTSIDE
+        if outside <= twice:
+            return min(2.0 * fine, coarse)
+        return coarse if outside <= all_coarse else 2.0 * coarse
+
+
+# Up to the first factor away from the zone the rings are at most twice as wide as in it, up to the
+# second one coarse: the strain energy of a shell falls as 1/r outside the contact, as r^3 within.
+_INSIDE, _OUTSIDE = (1.5, 4.0), (2.5, 6.0)
+_RUNGS = 4  # in a fine ring
+_GROWTH = 1.25  # of neighbouring rings; an abrupt change shows in the contact pressure
+
+
+def ladder_rings(zone: Zone, *, core: float, end: float, fine: float, coarse: float) -> Floats:
+    """Ring radii from about `core` to `end`.
 
     Parameters
     ----------
-    core
-        Radius of the innermost block.
-    fine_from, fine_to
-        Range of the contact edge that is meshed finely.
-    """
-
-    core: float
-    fine_from: float
-    fine_to: float
-
-
-def graded_rings(design: RingDesign, *, coarse: float, fine: float, grade: float) -> Floats:
-    """Ring radii from the core to `fine_to`.
-
-    Parameters
-    ----------
-    design
-        The radii to connect.
-    coarse, fine
-        Ring width over radius outside and inside the fine range.
-    grade
-        Largest ratio of neighbouring relative ring widths; an abrupt change of size makes the
-        smoothed contact surface wavy.
+    zone
+        Where the rings are fine.
+    core, end
+        First and last radius; the first is moved to the next rung below.
+    fine, coarse
+        Ring width over radius in the zone, and beyond twice its neighbourhood.
 
     Returns
     -------
     ndarray
         Increasing radii, shape (n,) [R].
     """
-    n_grade = math.ceil(math.log(coarse / fine) / math.log(grade)) if coarse > fine else 0
-    widths = [coarse * (fine / coarse) ** ((k + 1) / n_grade) for k in range(n_grade)]
-    start = design.fine_from / math.prod(1.0 + w for w in widths)
-    core = min(design.core, start)
-    radii = [core]
-    n = max(1, round(math.log(start / core) / math.log1p(coarse))) if start > core else 0
-    radii += [core * (start / core) ** ((k + 1) / n) for k in range(n)]
-    for width in widths:
-        radii.append(radii[-1] * (1.0 + width))
-    base = radii[-1]
-    n = math.ceil(math.log(design.fine_to / base) / math.log1p(fine))
-    radii += [base * (design.fine_to / base) ** ((k + 1) / n) for k in range(n)]
-    return np.array(radii)
+    rung = math.log1p(fine) / _RUNGS
+    first = math.floor(math.log(core / end) / rung)
+    low = max(_RUNGS * math.floor(math.log(zone.low / end) / (rung * _RUNGS)), first)
+    high = min(_RUNGS * math.ceil(math.log(zone.high / end) / (rung * _RUNGS)), 0)
+
+    def strides(start: int, stop: int, direction: int) -> list[int]:
+        k, stride, found = start, _RUNGS, []
+        while k * direction < stop * direction:
+            width = zone.allowed(end * math.exp(rung * k), fine=fine, coarse=coarse)
+            widest = max(_RUNGS, int(width / fine * _RUNGS * 1.001))
+            stride = min(max(stride + 1, int(_GROWTH * stride)), widest)
+            k += direction * stride
+            found.append(k)
+        if found:  # the last ring ends where it must; a thin one is joined to its neighbour
+            found[-1] = stop
+            if len(found) > 1 and abs(stop - found[-2]) < stride // 2:
+                del found[-2]
+        return found
+
+    inside = strides(low, first, -1)[::-1]
+    middle = [*range(low, high, _RUNGS), high]
+    rungs = np.array(inside + middle + strides(high, 0, 1), dtype=float)
+    return np.asarray(end * np.exp(rung * rungs))
 
 
-def outer_rings(start: float, end: float, *, fine: float, coarse: float, grade: float) -> Floats:
-    """Ring radii from `start` (included) to `end`, the relative width growing to `coarse`."""
+def outer_rings(start: float, end: float, *, first: float, last: float, grade: float) -> Floats:
+    """Ring radii from `start` (included) to `end`, the relative width growing to `last`."""
     radii = [start]
-    width = fine
+    width = first
     while radii[-1] < end:
-        width = min(width * grade, coarse)
+        width = min(width * grade, last)
         radii.append(radii[-1] * (1.0 + width))
     r = np.array(radii)
     return np.asarray(start * (r / start) ** (math.log(end / start) / math.log(r[-1] / start)))

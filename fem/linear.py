@@ -169,7 +169,7 @@ class LinearSystem:
             low = max(int(edges.min()) - 1 - _REACH, 0)
             high = int(edges.max()) + 3 + _REACH
             nodes = np.concatenate(
-                [surfaces.slave[max(a - 1, 0) : a + 2], surfaces.master[low:high]]
+                [surfaces.slave[max(a - 2, 0) : a + 3], surfaces.master[low:high]]
             )
             dofs = np.concatenate([2 * nodes, 2 * nodes + 1])
             rows.append(np.repeat(dofs, len(dofs)))

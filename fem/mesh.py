@@ -1,9 +1,8 @@
 """Axisymmetric meshes of the hemisphere and the half-space, made by gmsh.
 
 Both bodies are meshed by the same log-polar scheme about the first contact point: an inner block of
-three transfinite patches, then sectors of rings, each between two radii with ring widths in
-constant ratio. The hemisphere ends in one block up to its flat top face, the half-space in rings
-that grow out to its far boundary.
+three transfinite patches, then one transfinite sector a ring. The hemisphere ends in one block up
+to its flat top face, the half-space in rings that grow out to its far boundary.
 """
 
 from __future__ import annotations
@@ -43,6 +42,8 @@ class Mesh:
         Surface nodes of the sphere and of the flat, from the axis outwards.
     top, far
         Nodes of the hemisphere's flat top face and of the half-space's far boundary.
+    rings, far_rings
+        Radii of the rings of both bodies, and of the half-space beyond them [R].
     """
 
     points: Floats
@@ -53,6 +54,8 @@ class Mesh:
     master: Integers
     top: Integers
     far: Integers
+    rings: Floats
+    far_rings: Floats
 
     @property
     def digest(self) -> str:
@@ -63,29 +66,33 @@ class Mesh:
 
 
 def contact_mesh(
-    *, sphere_rings: Floats, flat_rings: Floats, divisions: int, surface_to: float
+    *, rings: Floats, far_rings: Floats, divisions: int, crowding: float = 1.0
 ) -> Mesh:
     """Mesh both bodies.
 
     Parameters
     ----------
-    sphere_rings, flat_rings
-        Ring radii (chord distance from the first contact point) [R].
+    rings
+        Ring radii of both bodies (chord distance from the first contact point) [R]; up to the last
+        one the two surfaces can touch.
+    far_rings
+        Further rings of the half-space.
     divisions
         Elements over the quarter arc, even.
-    surface_to
-        Radius up to which the two surfaces can touch [R].
+    crowding
+        Angle of the elements at the axis over that at the surface.
     """
-    p_s, q_s = _body(sphere_rings, divisions, sphere=True)
-    p_f, q_f = _body(flat_rings, divisions, sphere=False)
+    layers = _Layers(divisions, crowding ** (1.0 / (divisions - 1)))
+    p_s, q_s = _body(rings, layers, sphere=True)
+    p_f, q_f = _body(np.concatenate([rings, far_rings]), layers, sphere=False)
     n = len(p_s)
     r, z = np.vstack([p_s, p_f]).T
     chord = np.hypot(r, z)
     node = np.arange(len(r))
     ball = (node < n) & (np.abs(np.hypot(r, z - 1.0) - 1.0) < 1e-9) & (z < 0.999)
     plane = (node >= n) & (np.abs(z) < 1e-12)
-    slave = np.flatnonzero(ball & (chord < surface_to * (1.0 + 1e-9)))
-    master = np.flatnonzero(plane & (r < 2.0 * surface_to))
+    slave = np.flatnonzero(ball & (chord < rings[-1] * (1.0 + 1e-9)))
+    master = np.flatnonzero(plane & (r < 2.0 * rings[-1]))
     return Mesh(
         points=np.column_stack([r, z]),
         quads=np.vstack([q_s, q_f + n]),
@@ -94,7 +101,9 @@ def contact_mesh(
         slave=slave[np.argsort(r[slave])],
         master=master[np.argsort(r[master])],
         top=np.flatnonzero((node < n) & (z > 1.0 - 1e-9)),
-        far=np.flatnonzero((node >= n) & (chord > flat_rings[-1] * (1.0 - 1e-9))),
+        far=np.flatnonzero((node >= n) & (chord > far_rings[-1] * (1.0 - 1e-9))),
+        rings=rings,
+        far_rings=far_rings,
     )
 
 
@@ -170,14 +179,35 @@ class _Sketch:
         self.geo.mesh.setRecombine(2, tag)
 
 
-def _body(radii: Floats, divisions: int, *, sphere: bool) -> tuple[Floats, Integers]:
+@dataclass(frozen=True)
+class _Layers:
+    """How the quarter arc is divided: so many elements, each `ratio` times as wide as the last."""
+
+    divisions: int
+    ratio: float
+
+    @property
+    def half(self) -> int:
+        return self.divisions // 2
+
+    @property
+    def middle(self) -> float:
+        """Fraction of the arc from the surface that the first half of the elements takes."""
+        if self.ratio == 1.0:
+            return 0.5
+        return float((self.ratio**self.half - 1.0) / (self.ratio**self.divisions - 1.0))
+
+
+def _body(radii: Floats, layers: _Layers, *, sphere: bool) -> tuple[Floats, Integers]:
     with _session() as gmsh:
         sketch = _Sketch(gmsh, sphere)
-        edge = _inner_block(sketch, radii[0], divisions)
-        for first, last, ratio in _constant_ratio_groups(radii):
-            edge = _sector(sketch, edge, radii[last], last - first, ratio, divisions)
+        edge = _inner_block(sketch, radii[0], layers)
+        # each ring is a sector of its own: within a wider one transfinite interpolation would bend
+        # the inner rings, and meshes with different rings would not share the nodes of common ones
+        for r in radii[1:]:
+            edge = _sector(sketch, edge, r, layers)
         if sphere:
-            _top_block(sketch, edge, radii, divisions)
+            _top_block(sketch, edge, radii[-1], layers)
         sketch.geo.synchronize()
         gmsh.model.mesh.generate(2)
         return _points_and_quads(gmsh)
@@ -192,44 +222,44 @@ class _Edge:
     curves: list[int]
 
 
-def _inner_block(k: _Sketch, r0: float, divisions: int) -> _Edge:
-    half = divisions // 2
+def _inner_block(k: _Sketch, r0: float, layers: _Layers) -> _Edge:
+    half, q = layers.half, layers.ratio
     start = math.asin(r0 / 2.0) if k.sphere else 0.0
-    middle = k.sign * 0.5 * (start + math.pi / 2.0)
+    middle = k.sign * (start + layers.middle * (math.pi / 2.0 - start))
     b, c = k.on_surface(0.5 * r0), k.on_axis(0.5 * r0)
     m = k.point(0.62 * r0 * math.cos(middle), 0.62 * r0 * math.sin(middle))
     b2, c2 = k.on_surface(r0), k.on_axis(r0)
     m2 = k.point(r0 * math.cos(middle), r0 * math.sin(middle))
-    ob, bm = k.surface(k.origin, b, half), k.line(b, m, half)
-    mc, co = k.line(m, c, half), k.line(c, k.origin, half)
+    ob, bm = k.surface(k.origin, b, half, 1.0 / q), k.line(b, m, half, q)
+    mc, co = k.line(m, c, half, q), k.line(c, k.origin, half, 1.0 / q)
     k.patch([ob, bm, mc, co], [k.origin, b, m, c])
-    bb, outer1 = k.surface(b, b2, _INNER_RINGS), k.arc(b2, k.origin, m2, half)
+    bb, outer1 = k.surface(b, b2, _INNER_RINGS), k.arc(b2, k.origin, m2, half, q)
     mm = k.line(m, m2, _INNER_RINGS)
     k.patch([bb, outer1, -mm, -bm], [b, b2, m2, m])
-    outer2, cc = k.arc(m2, k.origin, c2, half), k.line(c, c2, _INNER_RINGS)
+    outer2, cc = k.arc(m2, k.origin, c2, half, q), k.line(c, c2, _INNER_RINGS)
     k.patch([mm, outer2, -cc, -mc], [m, m2, c2, c])
     return _Edge(b2, c2, [outer1, outer2])
 
 
-def _sector(k: _Sketch, edge: _Edge, r: float, n: int, ratio: float, divisions: int) -> _Edge:
+def _sector(k: _Sketch, edge: _Edge, r: float, layers: _Layers) -> _Edge:
     b, c = k.on_surface(r), k.on_axis(r)
-    side, outer = k.surface(edge.surface, b, n, ratio), k.arc(b, k.origin, c, divisions)
-    axis = k.line(edge.axis, c, n, ratio)
+    outer = k.arc(b, k.origin, c, layers.divisions, layers.ratio)
+    side, axis = k.surface(edge.surface, b, 1), k.line(edge.axis, c, 1)
     k.patch(
         [side, outer, -axis, *(-x for x in reversed(edge.curves))], [edge.surface, b, c, edge.axis]
     )
     return _Edge(b, c, [outer])
 
 
-def _top_block(k: _Sketch, edge: _Edge, radii: Floats, divisions: int) -> None:
-    length = 1.0 - radii[-1]
-    width = radii[-1] - radii[-2]
-    # as many layers as keep the growth from the last ring's width below a quarter a layer
+def _top_block(k: _Sketch, edge: _Edge, radius: float, layers: _Layers) -> None:
+    length = 1.0 - radius
+    # as many layers as keep the growth from a tenth of the radius below a quarter a layer
+    width = 0.1 * radius
     n = max(4, math.ceil(math.log1p(0.25 * length / width) / math.log(1.25)))
     ratio = _growth(length / width, n)
     corner, top = k.point(1.0, 1.0), k.point(0.0, 1.0)
     side = k.surface(edge.surface, corner, n, ratio)
-    face = k.line(corner, top, divisions)
+    face = k.line(corner, top, layers.divisions, layers.ratio)
     axis = k.line(edge.axis, top, n, ratio)
     k.patch(
         [side, face, -axis, *(-x for x in reversed(edge.curves))],
@@ -246,18 +276,6 @@ def _growth(total: float, n: int) -> float:
         q = 0.5 * (low + high)
         low, high = (q, high) if (q**n - 1.0) / (q - 1.0) < total else (low, q)
     return 0.5 * (low + high)
-
-
-def _constant_ratio_groups(radii: Floats) -> Iterator[tuple[int, int, float]]:
-    width = np.diff(radii)
-    first = 0
-    while first < len(width):
-        last = first + 1
-        ratio = width[last] / width[first] if last < len(width) else 1.0
-        while last < len(width) and abs(width[last] / width[last - 1] / ratio - 1.0) < 1e-9:
-            last += 1
-        yield first, last, float(ratio) if last - first > 1 else 1.0
-        first = last
 
 
 def _points_and_quads(gmsh: Any) -> tuple[Floats, Integers]:

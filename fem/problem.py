@@ -9,7 +9,7 @@ from typing import Any, Literal
 from ..core.errors import InputError
 from ..core.material import Pair
 
-NUMERICS_VERSION = 3
+NUMERICS_VERSION = 4
 """Raised only when results change; stored with every case."""
 
 DEEPEST = 0.5
@@ -32,6 +32,8 @@ class Accuracy:
         Largest ratio of successive approaches after and before first yield.
     penalty
         Contact stiffness in E' over the edge length.
+    crowding
+        Angle of the elements at the axis over that of those at the surface.
     flat_radius
         Radius of the meshed half-space [R]; the truncation error of the force is 0.55 a/L.
     """
@@ -43,6 +45,7 @@ class Accuracy:
     step_ratio: float
     elastic_step_ratio: float = 1.3
     penalty: float = 10.0
+    crowding: float = 1.5
     flat_radius: float = 200.0
 
     @classmethod

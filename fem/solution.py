@@ -164,7 +164,11 @@ class Snapshot:
 
 @dataclass(frozen=True)
 class Counters:
-    """Work that a solve took; times are processor seconds."""
+    """Work that a solve took; times are processor seconds.
+
+    `dofs` are those of the largest mesh, `meshes` the number of meshes, `transfer_jump` the largest
+    relative change of the force at a change of mesh.
+    """
 
     dofs: int
     steps: int
@@ -172,6 +176,8 @@ class Counters:
     factorisations: int
     failed_steps: int
     patterns: int
+    meshes: int
+    transfer_jump: float
     cpu_s: float
     cpu_assembly_s: float
     cpu_contact_s: float

@@ -78,6 +78,8 @@ def block(mesh: skfem.MeshQuad, *, nu: float, yield_strain: float = math.inf) ->
             G=np.full(n, shear),
             K=np.full(n, 1.0 / (3.0 * (1.0 - 2.0 * nu))),
             radius=np.full(n, math.sqrt(2.0 / 3.0) * yield_strain / (2.0 * shear)),
+            stiffness=np.empty((0, 8, 8)),
+            linear=np.full(n, -1),
         ),
     )
 

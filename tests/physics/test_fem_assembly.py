@@ -49,6 +49,7 @@ def elements_of(mesh, radius):
         ),
         r=r, dV=dV, volume=dV.sum(axis=1),
         G=np.full(n, G), K=np.full(n, K), radius=np.full(n, radius),
+        stiffness=np.empty((0, 8, 8)), linear=np.full(n, -1),
     )  # fmt: skip
 
 

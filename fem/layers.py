@@ -1,0 +1,98 @@
+"""The mesh as layers around the first contact point: what the transfer between meshes walks along.
+
+Outside of its innermost block each body is a stack of layers with the same number of elements: the
+rings, and above the sphere's last ring the layers up to the top face.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+import numpy.typing as npt
+
+from .mesh import Mesh
+
+Floats = npt.NDArray[np.float64]
+Integers = npt.NDArray[np.int64]
+
+
+@dataclass(frozen=True)
+class Layers:
+    """Nodes and elements of one body, layer by layer.
+
+    Parameters
+    ----------
+    nodes
+        Node numbers, from the innermost block outwards and from the surface to the axis, shape
+        (n_layers + 1, divisions + 1).
+    quads
+        Element numbers, shape (n_layers, divisions).
+    corners
+        Which of its four nodes an element has at (inner, surface side), (inner, axis side),
+        (outer, surface side) and (outer, axis side), shape (n_layers, divisions, 4).
+    level
+        Coordinate along the layers: logarithm of a ring's radius, then the layer's number; shape
+        (n_layers + 1,).
+    """
+
+    nodes: Integers
+    quads: Integers
+    corners: Integers
+    level: Floats
+
+
+def layers_of(mesh: Mesh, *, sphere: bool) -> Layers:
+    """Walk through the layers of one body, from its innermost block outwards."""
+    radii = mesh.rings if sphere else np.concatenate([mesh.rings, mesh.far_rings])
+    mine = (np.arange(len(mesh.points)) < mesh.n_sphere_points) == sphere
+    chord = np.hypot(mesh.points[:, 0], mesh.points[:, 1])
+    first = np.flatnonzero(mine & (np.abs(chord / radii[0] - 1.0) < 1e-6))
+    row = first[np.argsort(np.abs(mesh.points[first, 1]))]
+    inside = mine & (chord < radii[0] * (1.0 - 1e-6))
+    of_body = np.arange(len(mesh.quads)) < mesh.n_sphere_quads
+    ahead = np.flatnonzero((of_body == sphere) & ~inside[mesh.quads].any(axis=1))
+    by_edge: dict[tuple[int, int], list[int]] = {}
+    for quad in ahead.tolist():
+        nodes = mesh.quads[quad].tolist()
+        for a, b in zip(nodes, nodes[1:] + nodes[:1], strict=True):
+            by_edge.setdefault((min(a, b), max(a, b)), []).append(quad)
+    rows, quads, corners = [row], [], []
+    done: set[int] = set()
+    while True:
+        layer = _next_layer(row, by_edge, done)
+        if layer is None:
+            break
+        done.update(layer.tolist())
+        corner = _corners(mesh.quads[layer], row)
+        nodes = np.take_along_axis(mesh.quads[layer], corner, axis=1)
+        row = np.append(nodes[:, 2], nodes[-1, 3])
+        rows.append(row)
+        quads.append(layer)
+        corners.append(corner)
+    level = np.log(radii)
+    beyond = 1.0 + np.arange(len(rows) - len(level))
+    level = np.concatenate([level, level[-1] + beyond])
+    return Layers(np.array(rows), np.array(quads), np.array(corners), level)
+
+
+def _next_layer(
+    row: Integers, by_edge: dict[tuple[int, int], list[int]], done: set[int]
+) -> Integers | None:
+    """Elements beyond a row of nodes; none at the end of the body."""
+    layer = []
+    for a, b in zip(row[:-1].tolist(), row[1:].tolist(), strict=True):
+        fresh = [quad for quad in by_edge[min(a, b), max(a, b)] if quad not in done]
+        if not fresh:
+            return None
+        layer += fresh
+    return np.array(layer)
+
+
+def _corners(quads: Integers, row: Integers) -> Integers:
+    """Places of the nodes (inner, inner, outer, outer) x (surface, axis side), shape (n, 4)."""
+    place = np.arange(4)
+    a = (quads == row[:-1, None]) @ place
+    b = (quads == row[1:, None]) @ place
+    # the nodes go round the element: those opposite to a and b are two places on
+    return np.stack([a, b, (b + 2) % 4, (a + 2) % 4], axis=1)

@@ -1,0 +1,219 @@
+"""The loading path: from first contact down to the last depth, on meshes that follow the contact.
+
+The mesh is fine only about the edge of the contact. When the edge nears the end of the fine zone, a
+mesh made for the present radius takes over at the same approach (`remesh`).
+"""
+
+from __future__ import annotations
+
+import time
+from collections.abc import Iterator
+from dataclasses import dataclass, field, replace
+
+import numpy as np
+import numpy.typing as npt
+
+from ..core.errors import Ending, Outcome
+from .assemble import State, advance
+from .discretise import discretise
+from .geometry import Zone
+from .material import EXACT
+from .measure import read
+from .newton import Solver, Timers
+from .path import MOST_CUTS, STEP_CUT, Point, Record, accept, extrapolate
+from .problem import DEEPEST, Accuracy, ContactProblem, critical_depth
+from .remesh import Transfer
+
+Floats = npt.NDArray[np.float64]
+
+# After a step in so many Newton iterations the next may be longer by the factor (of its logarithm).
+_REGROW = ((5, 1.5), (8, 1.15))
+_BELOW_YIELD = 0.8  # elastic step ratio up to this fraction of the critical depth
+_SOFT_START = (1e-3, 1e-2, 1e-1, 1.0)  # contact stiffness on the way to the first equilibrium
+# The fine zone of a mesh made for the contact radius a reaches from _BEHIND a to _AHEAD a, and
+# serves until the radius has grown by _SERVES: the gap is read and plastic flow runs ahead of it.
+_BEHIND, _AHEAD, _SERVES = 0.7, 2.0, 1.5
+
+
+@dataclass
+class Tally:
+    """Counts of one solve."""
+
+    steps: int = 0
+    failed: int = 0
+    meshes: int = 1
+    jump: float = 0.0
+    factorisations: int = 0
+    patterns: int = 0
+    dofs: int = 0
+    timers: Timers = field(default_factory=Timers)
+    started: float = field(default_factory=time.process_time)
+    wall: float = field(default_factory=time.perf_counter)
+    digests: list[str] = field(default_factory=list)
+
+    def leave(self, solver: Solver) -> None:
+        """Add up the counts of a mesh that is done with."""
+        self.factorisations += solver.system.n_factorisations
+        self.patterns += solver.system.n_patterns
+        self.dofs = max(self.dofs, len(solver.free))
+        self.digests.append(solver.grid.mesh.digest)
+
+
+class Loading:
+    """Walks down the loading path of a problem.
+
+    Parameters
+    ----------
+    problem, accuracy
+        What is solved and how finely.
+    tally
+        Where the counts go.
+    """
+
+    def __init__(self, problem: ContactProblem, accuracy: Accuracy, tally: Tally) -> None:
+        self.problem, self.accuracy, self.tally = problem, accuracy, tally
+        self._onset = critical_depth(problem.pair)
+        self._stops = _stops(problem, self._onset)
+        self._radius = np.sqrt(self._stops[0])  # of the contact that the mesh is made for
+
+    def points(self) -> Iterator[Point | Outcome]:
+        """Give every accepted point; an `Outcome` ends the path early."""
+        point = self._first_contact()
+        if point is None:
+            yield Outcome(
+                Ending.NOT_CONVERGED,
+                f"no equilibrium at the first depth, Delta/R = {self._stops[0]:.3g}.",
+                "Start from a smaller first depth.",
+            )
+            return
+        before: Floats | None = None
+        last_step = point.delta
+        ratio = self.accuracy.elastic_step_ratio
+        target = 1
+        while True:
+            yield point
+            point, before = self._follow(point, before)
+            if target == len(self._stops):
+                if self._deep_enough(point):
+                    return
+                self._stops.append(point.delta * self.accuracy.step_ratio)
+            goal = self._stops[target]
+            ratio = min(self._limit(point), 1.0 + (ratio - 1.0) * _growth(point))
+            found, ratio = self._step(point, before, last_step, goal=goal, ratio=ratio)
+            if found is None:
+                yield self._stuck(point)
+                return
+            if np.isnan(found.record.reading.radius):
+                yield Outcome(
+                    Ending.OUT_OF_RANGE,
+                    f"the contact grew out of the meshed surface at Delta/R = {found.delta:.4g}.",
+                    "Ask for a larger radius_at_least: it widens the mesh.",
+                )
+                return
+            before, last_step = point.equilibrium.u, found.delta - point.delta
+            point = found
+            self.tally.steps += 1
+            if point.delta >= goal * (1.0 - 1e-12):
+                target += 1
+
+    def _deep_enough(self, point: Point) -> bool:
+        radius = point.record.reading.radius
+        return radius >= self.problem.radius_at_least or point.delta >= DEEPEST
+
+    def _limit(self, point: Point) -> float:
+        elastic = point.delta < _BELOW_YIELD * self._onset
+        return self.accuracy.elastic_step_ratio if elastic else self.accuracy.step_ratio
+
+    def _stuck(self, point: Point) -> Outcome:
+        return Outcome(
+            Ending.NOT_CONVERGED,
+            f"no equilibrium beyond Delta/R = {point.delta:.4g} (a/R = "
+            f"{point.record.reading.radius:.3f}) after {MOST_CUTS} cuts of the step.",
+            "Try a finer or coarser accuracy level; the results up to there hold.",
+        )
+
+    def _solver(self) -> Solver:
+        zone = Zone(_BEHIND * self._radius, _AHEAD * self._radius)
+        grid = discretise(self.problem, self.accuracy, zone)
+        return Solver(grid, rule=EXACT, timers=self.tally.timers)
+
+    def _first_contact(self) -> Point | None:
+        """Equilibrium at the first depth, started from the rigid push of the sphere."""
+        delta = self._stops[0]
+        solver = self._solver()
+        grid = solver.grid
+        guess = np.zeros(grid.n_dofs)
+        guess[1 : 2 * grid.mesh.n_sphere_points : 2] = -delta
+        virgin = State.virgin(len(grid.elements.conn))
+        # Well below first yield: the yield condition is left out, because Newton's way from the
+        # rigid push could leave the elastic range; and the contact starts soft, because the whole
+        # push as an overlap under the full stiffness would crush the innermost elements.
+        solver.elements = replace(grid.elements, radius=np.full_like(grid.elements.radius, np.inf))
+        found = None
+        for softness in _SOFT_START:
+            solver.surfaces = replace(grid.surfaces, stiffness=grid.surfaces.stiffness * softness)
+            found = solver.equilibrium(guess, state=virgin, delta=delta)
+            if found is None:
+                break
+            guess = found.u
+        solver.elements, solver.surfaces = grid.elements, grid.surfaces
+        if found is None:
+            return None
+        state, stored = advance(grid.elements, found.u, state=virgin, rule=solver.rule)
+        reading = read(grid, found, delta)
+        # below first yield F ~ Delta^(3/2), so the work so far is 2/5 F Delta
+        stored += found.contact.energy
+        record = Record(reading, 0.4 * reading.force * delta, stored, state.dissipated)
+        return Point(delta, found, state, record, solver)
+
+    def _step(
+        self, point: Point, before: Floats | None, last_step: float, *, goal: float, ratio: float
+    ) -> tuple[Point | None, float]:
+        """Advance by at most `ratio` towards `goal`; the ratio that worked comes back."""
+        for _ in range(MOST_CUTS):
+            n = max(1, int(np.ceil(np.log(goal / point.delta) / np.log(ratio) - 1e-9)))
+            delta = goal if n == 1 else point.delta * (goal / point.delta) ** (1.0 / n)
+            reach = delta / point.delta if before is None else (delta - point.delta) / last_step
+            guess = extrapolate(point, before, reach)
+            found = point.solver.equilibrium(guess, state=point.state, delta=delta)
+            if found is not None:
+                return accept(point, found, delta), ratio
+            self.tally.failed += 1
+            ratio = 1.0 + (min(ratio, delta / point.delta) - 1.0) * STEP_CUT
+        return None, ratio
+
+    def _follow(self, point: Point, before: Floats | None) -> tuple[Point, Floats | None]:
+        """The same point on a mesh made for its contact radius, where the old one is outgrown."""
+        radius, end = point.record.reading.radius, float(point.grid.mesh.rings[-1])
+        if radius < _SERVES * self._radius or _AHEAD * self._radius >= end:
+            return point, before
+        was, self._radius = self._radius, radius
+        solver = self._solver()
+        transfer = Transfer(point.grid, solver.grid)
+        guess = transfer.displacements(point.equilibrium.u)
+        state = transfer.state(point.state, guess)
+        found = solver.equilibrium(guess, state=state, delta=point.delta)
+        if found is None:
+            self._radius = was  # it is tried again after the next step
+            return point, before
+        self.tally.leave(point.solver)
+        self.tally.meshes += 1
+        state, stored = advance(solver.grid.elements, found.u, state=state, rule=solver.rule)
+        reading = read(solver.grid, found, point.delta)
+        old = point.record
+        jump = abs(reading.force / old.reading.force - 1.0)
+        self.tally.jump = max(self.tally.jump, jump)
+        record = Record(reading, old.work, stored + found.contact.energy, state.dissipated)
+        moved = Point(point.delta, found, state, record, solver)
+        return moved, None if before is None else transfer.displacements(before)
+
+
+def _growth(point: Point) -> float:
+    return next((factor for most, factor in _REGROW if point.equilibrium.iterations <= most), 1.0)
+
+
+def _stops(problem: ContactProblem, onset: float) -> list[float]:
+    """Depths that are hit exactly, and one well below first yield to start from."""
+    depths = {*problem.depths, *problem.unload_from, *problem.snapshots, *problem.profiles}
+    start = min(min(depths), 0.3 * onset)
+    return sorted({start, *depths})

@@ -1,0 +1,87 @@
+"""Points of a loading path: a converged state with what was measured there, and how one follows.
+
+Everything is in units of R and E'.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+import numpy.typing as npt
+
+from .assemble import State, advance
+from .discretise import Discretisation
+from .measure import Reading, read
+from .newton import Equilibrium, Solver
+
+Floats = npt.NDArray[np.float64]
+
+STEP_CUT = 0.4
+"""A failed step is tried again with this fraction of its logarithm."""
+
+MOST_CUTS = 7
+"""So often, then the path ends."""
+
+_STRETCH = 2.5  # largest factor by which the last increment is extrapolated
+
+
+@dataclass(frozen=True)
+class Record:
+    """One accepted state with its energies (R = 1, E' = 1)."""
+
+    reading: Reading
+    work: float
+    stored: float
+    dissipated: float
+
+
+@dataclass(frozen=True)
+class Point:
+    """Where a path stands: equilibrium, material state and energies, on the mesh of `solver`."""
+
+    delta: float
+    equilibrium: Equilibrium
+    state: State
+    record: Record
+    solver: Solver
+
+    @property
+    def grid(self) -> Discretisation:
+        """The discretisation that the point stands on."""
+        return self.solver.grid
+
+
+def extrapolate(point: Point, before: Floats | None, reach: float) -> Floats:
+    """First guess of the displacements after a step from `point`.
+
+    Parameters
+    ----------
+    before
+        Displacements at the point before, on the same mesh; none: in proportion to the approach.
+    reach
+        The step over the last one; without a last one, the approach over that of `point`.
+    """
+    u = point.equilibrium.u
+    if before is None:
+        return u * reach
+    return np.asarray(u + min(reach, _STRETCH) * (u - before))
+
+
+def accept(point: Point, found: Equilibrium, delta: float) -> Point:
+    """Return the point after `point`, with the equilibrium `found` at `delta`."""
+    solver, grid = point.solver, point.grid
+    state, stored = advance(grid.elements, found.u, state=point.state, rule=solver.rule)
+    reading = read(grid, found, delta)
+    last = point.record
+    # F ~ Delta^n between two points: exact for a power law, where the trapezoidal rule is not
+    work = last.work + _work_between(last.reading, reading)
+    stored += found.contact.energy
+    return Point(delta, found, state, Record(reading, work, stored, state.dissipated), solver)
+
+
+def _work_between(a: Reading, b: Reading) -> float:
+    if a.force <= 0.0 or b.force <= 0.0 or b.delta <= a.delta:
+        return 0.5 * (a.force + b.force) * (b.delta - a.delta)
+    n = np.log(b.force / a.force) / np.log(b.delta / a.delta)
+    return float((b.force * b.delta - a.force * a.delta) / (n + 1.0))

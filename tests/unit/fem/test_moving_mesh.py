@@ -1,0 +1,156 @@
+"""The mesh that follows the contact: its rings, and the transfer from one mesh to the next."""
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+from dentscope import fem
+from dentscope.core import Material, Pair
+from dentscope.fem.assemble import State, advance, bulk_forces
+from dentscope.fem.contact import Surfaces, Triplets, contact_forces
+from dentscope.fem.discretise import discretise, with_linear
+from dentscope.fem.geometry import Zone, ladder_rings
+from dentscope.fem.layers import layers_of
+from dentscope.fem.loading import Loading, Tally
+from dentscope.fem.material import EXACT
+from dentscope.fem.remesh import Transfer
+
+STEEL = Material(E=200e9, nu=0.3, Sy=500e6)
+ELASTIC = Material(E=200e9, nu=0.3)
+SETTINGS = fem.Accuracy.smoke()
+
+
+@pytest.fixture(scope="module")
+def grids():
+    problem = fem.ContactProblem(Pair(STEEL, STEEL, 1e-3), (1e-4, 0.04))
+    return [discretise(problem, SETTINGS, Zone(low, 3.0 * low)) for low in (0.02, 0.03)]
+
+
+@pytest.mark.parametrize("low", [0.001, 0.02, 0.2])
+def test_rings_are_fine_in_the_zone_and_grow_smoothly(low):
+    zone = Zone(low, 2.9 * low)
+    rings = ladder_rings(zone, core=0.0007, end=0.65, fine=0.025, coarse=0.1)
+    width = np.diff(np.log(rings))
+    ahead = (rings[:-1] >= zone.low) & (rings[1:] <= zone.high)
+    assert np.allclose(width[ahead], np.log(1.025))
+    growth = np.maximum(width[1:] / width[:-1], width[:-1] / width[1:])
+    assert growth[1:-1].max() <= 1.55  # a thin last ring is joined to its neighbour
+    assert width.max() < 0.31
+
+
+def test_meshes_for_two_zones_share_core_end_and_fine_rings():
+    small, large = (
+        ladder_rings(Zone(low, 3.0 * low), core=0.0007, end=0.65, fine=0.025, coarse=0.1)
+        for low in (0.02, 0.03)
+    )
+    assert small[0] == large[0]
+    assert small[-1] == large[-1]
+    both = small[(small > 0.031) & (small < 0.059)]
+    assert np.abs(both[:, None] / large - 1.0).min(axis=1).max() < 1e-12
+
+
+def test_layers_cover_all_but_the_innermost_block(grids):
+    for grid in grids:
+        mesh = grid.mesh
+        layers = [layers_of(mesh, sphere=sphere) for sphere in (True, False)]
+        met = np.concatenate([x.quads.ravel() for x in layers])
+        assert len(np.unique(met)) == len(met)
+        core = np.setdiff1d(np.arange(len(mesh.quads)), met)
+        assert np.hypot(*mesh.points[mesh.quads[core]].reshape(-1, 2).T).max() <= mesh.rings[0] * (
+            1.0 + 1e-9
+        )
+        flat = layers[1]
+        assert len(flat.level) == len(mesh.rings) + len(mesh.far_rings)
+        corner = np.take_along_axis(mesh.quads[flat.quads], flat.corners, axis=-1)
+        assert np.array_equal(corner[:, :, 0], flat.nodes[:-1, :-1])
+        assert np.array_equal(corner[:, :, 3], flat.nodes[1:, 1:])
+
+
+def test_transfer_to_the_same_mesh_changes_nothing(grids):
+    grid = grids[0]
+    rng = np.random.default_rng(1)
+    u = rng.normal(0.0, 1e-6, grid.n_dofs)
+    state, _ = advance(grid.elements, u, state=State.virgin(len(grid.elements.conn)), rule=EXACT)
+    carry = Transfer(grid, grid)
+    assert np.array_equal(carry.displacements(u), u)
+    again = carry.state(state, u)
+    assert again.peeq == pytest.approx(state.peeq, abs=0.0)
+    assert again.F == pytest.approx(state.F, abs=1e-15)
+    assert again.strain == pytest.approx(state.strain, abs=1e-13)
+
+
+def test_what_has_never_yielded_keeps_no_memory_of_the_old_mesh(grids):
+    old, new = grids
+    x, y = (grid.mesh.points for grid in grids)
+    strain = np.array([-1e-4, 3e-4])
+    state, _ = advance(
+        old.elements,
+        (strain * x).ravel(),
+        state=State.virgin(len(old.elements.conn)),
+        rule=EXACT,
+    )
+    exact = (strain * y).ravel()
+    carried = Transfer(old, new).state(state, exact)
+    force, untouched = np.zeros(new.n_dofs), np.zeros(new.n_dofs)
+    bulk_forces(new.elements, exact, state=carried, rule=EXACT, force=force)
+    virgin = State.virgin(len(new.elements.conn))
+    bulk_forces(new.elements, exact, state=virgin, rule=EXACT, force=untouched)
+    assert force == pytest.approx(untouched, abs=1e-12 * np.abs(untouched).max())
+
+
+def test_an_elastic_path_over_several_meshes_ends_where_the_direct_solution_does():
+    problem = fem.ContactProblem(Pair(ELASTIC, Material(E=70e9, nu=0.3), 1e-3), (1e-5, 2e-4))
+    tally = Tally()
+    walk = Loading(problem, SETTINGS, tally)
+    # each point with the radius that its mesh was made for
+    moved, radius = [(point, walk._radius) for point in walk.points()][-1]
+    assert tally.meshes >= 3
+    loading = Loading(problem, SETTINGS, Tally())
+    loading._radius = radius
+    direct = list(loading.points())[-1]
+    assert direct.grid.mesh.digest == moved.grid.mesh.digest
+    for name in ("force", "radius", "sphere", "flat"):
+        ours, plain = (getattr(p.record.reading, name) for p in (moved, direct))
+        assert ours == pytest.approx(plain, rel=1e-5)
+
+
+def test_the_linear_far_field_agrees_with_finite_strain_where_strains_are_small(grids):
+    grid = grids[0]
+    n = len(grid.elements.conn)
+    nonlinear = replace(grid.elements, linear=np.full(n, -1))
+    everywhere = with_linear(nonlinear, np.ones(n, dtype=bool))
+    u = np.random.default_rng(2).normal(0.0, 1e-9, grid.n_dofs)
+    forces = []
+    for elements in (nonlinear, everywhere):
+        force = np.zeros(grid.n_dofs)
+        bulk_forces(elements, u, state=State.virgin(n), rule=EXACT, force=force)
+        forces.append(force)
+    assert forces[1] == pytest.approx(forces[0], abs=1e-5 * np.abs(forces[0]).max())
+    assert (grid.elements.linear >= 0).any()
+
+
+def test_contact_tangent_is_the_derivative_of_the_contact_forces(grids):
+    grid = grids[0]
+    rng = np.random.default_rng(3)
+    x = grid.mesh.points.copy()
+    n = grid.mesh.n_sphere_points
+    x[:n, 1] -= 2e-3
+    x += rng.normal(0.0, 1e-7, x.shape)
+    x[grid.mesh.points[:, 0] == 0.0, 0] = 0.0
+    surfaces: Surfaces = grid.surfaces
+    triplets = Triplets.for_surfaces(surfaces)
+    force = np.zeros(grid.n_dofs)
+    _, m = contact_forces(surfaces, x, force=force, tangent=triplets)
+    assert m > 1000
+    direction = rng.normal(0.0, 1.0, x.shape)
+    direction[grid.mesh.points[:, 0] == 0.0, 0] = 0.0
+    change = np.zeros(grid.n_dofs)
+    np.add.at(change, triplets.row[:m], triplets.value[:m] * direction.ravel()[triplets.col[:m]])
+    step = 1e-9
+    sides = []
+    for sign in (1.0, -1.0):
+        f = np.zeros(grid.n_dofs)
+        contact_forces(surfaces, x + sign * step * direction, force=f)
+        sides.append(f)
+    numeric = (sides[0] - sides[1]) / (2.0 * step)
+    assert change == pytest.approx(numeric, abs=2e-4 * np.abs(numeric).max())
