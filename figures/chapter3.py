@@ -1,4 +1,4 @@
-"""Figures 3.8-3.14: the upright rod, its dent and its rebound, and the updated laws."""
+"""Chapter 3: the upright rod, its dent and its rebound, and the updated laws."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ from ..impact.integrate import strike
 from ..impact.result import Impact
 from ..models import LAWS, critical_depth, critical_force, law_named
 from ..models.base import ContactLaw
-from . import fields, sketches
+from . import fields, rendered, sketches
 from .plot import Entry, Picture, finish, laws, look, percent, sheet
 
 _ORIGINAL = ("jackson-green-2007", "kogut-etsion", "kogut-komvopoulos", "ghaednia", "fitted")
@@ -27,6 +27,7 @@ def pictures(records: Sequence[CaseRecord]) -> list[Entry]:
     first = laws(*_ORIGINAL, "thornton-ning")
     return [
         *sketches.chapter_3(),
+        *rendered.pictures(),
         *fields.chapter_3_again(records),
         _force(found),
         _residual(found),
