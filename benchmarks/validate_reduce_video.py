@@ -24,7 +24,7 @@ SPEEDS = ("approach", "rebound", "restitution")
 
 def one(seed: int, shape: str) -> dict[str, float]:
     truth = random_truth(seed, **({} if shape == "rod" else SPHERE))
-    clip = Clip(render(truth), math.nan, 0, 0, f"clip {seed}")
+    clip = Clip(render(truth), math.nan, 0, np.empty(0, np.int64), f"clip {seed}")
     optics = Optics(truth.rate, scale=Measured(truth.scale, 0.0))
     found = reduce_video(clip, optics, shape=shape)
     _, row = truth.tip(found.frame)

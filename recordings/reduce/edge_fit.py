@@ -64,12 +64,13 @@ class RodPose:
 
 @dataclass(frozen=True)
 class Ball:
-    """Centre of a ball (column, row), its radius [pixel], standard deviation of the row."""
+    """Centre of a ball (column, row), its radius [pixel], standard deviation of the row, grey."""
 
     x: float
     y: float
     radius: float
     row_std: float
+    bright: float
 
 
 def fit_rod(
@@ -162,7 +163,7 @@ def fit_ball(
     p, covariance = settled
     if not (0.3 * contrast < p[4] < 2.0 * contrast and p[5] < 0.3 * p[2]):
         return None
-    return Ball(float(p[0]), float(p[1]), float(p[2]), float(np.sqrt(covariance[1, 1])))
+    return Ball(float(p[0]), float(p[1]), float(p[2]), float(np.sqrt(covariance[1, 1])), levels[1])
 
 
 def _settle(

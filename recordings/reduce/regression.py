@@ -98,9 +98,7 @@ def correlation_factor(residual: Array) -> float:
     total = float(residual @ residual)
     if residual.size < 8 or total == 0.0:
         return 1.0
-    # residuals of a fit are slightly anticorrelated; only a clear positive correlation counts
-    lag_one = float(residual[1:] @ residual[:-1]) / total
-    if lag_one < 2.0 / np.sqrt(residual.size):
-        return 1.0
-    lag_one = min(lag_one, 0.95)
+    # white residuals of a fit have a lag-one correlation of about -1/n
+    lag_one = float(residual[1:] @ residual[:-1]) / total + 1.0 / residual.size
+    lag_one = min(max(lag_one, 0.0), 0.95)
     return (1.0 + lag_one) / (1.0 - lag_one)

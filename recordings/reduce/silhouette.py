@@ -11,6 +11,9 @@ from .measured import Array
 
 Mask = npt.NDArray[np.bool_]
 
+_OWN_LEVEL = 1.3
+"""Contrast of a ball, in that of the clip, from which its own grey level is used."""
+
 
 def body_mask(frame: Array, level: float) -> Mask:
     """Return the largest connected region above `level`, (rows, columns); it may be empty."""
@@ -66,17 +69,23 @@ def ball_by_light(frame: Array, *, levels: tuple[float, float]) -> Ball | None:
         touches the edge of the frame.
     """
     mask = body_mask(frame, 0.5 * (levels[0] + levels[1]))
+    # other things that move pull the level of the clip; the ball has its own
+    bright = float(np.median(frame[mask])) if mask.any() else levels[1]
+    if bright > _OWN_LEVEL * levels[1] - (_OWN_LEVEL - 1.0) * levels[0]:
+        mask = body_mask(frame, 0.5 * (levels[0] + bright))
+    else:
+        bright = levels[1]
     if mask.sum() < 12 or mask[0].any() or mask[-1].any() or mask[:, [0, -1]].any():
         return None
     around = binary_dilation(mask, iterations=4)
     ring = binary_dilation(around, iterations=3) & ~around
     dark = float(np.median(frame[ring])) if ring.any() else levels[0]
-    light = (frame[around] - dark) / max(levels[1] - dark, 1e-9)
+    light = (frame[around] - dark) / max(bright - dark, 1e-9)
     total = float(light.sum())
     if total <= 0.0:
         return None
     rows, columns = np.nonzero(around)
     return Ball(
         float(light @ columns) / total, float(light @ rows) / total, float(np.sqrt(total / np.pi)),
-        float("nan"),
+        float("nan"), bright,
     )  # fmt: skip

@@ -17,7 +17,7 @@ import numpy.typing as npt
 
 from ...core.errors import InputError
 from .clip import Clip
-from .edge_fit import RodPose, RodShape, fit_ball, fit_rod
+from .edge_fit import Ball, RodPose, RodShape, fit_ball, fit_rod
 from .flight import Bounce, Track, bounces
 from .measured import Array, Measured, Trial
 from .silhouette import ball_by_light, body_mask, rod_guess
@@ -186,10 +186,12 @@ def reduce_video(
         tip_radius = rod.tip_radius
     else:
         track = _track_ball(frames, levels, clip.source)
-        radii = track.pop("radius")
+        radii = track["radius"]
         half = Measured(float(np.median(radii)), float(np.std(radii) / math.sqrt(radii.size)))
         half = Measured(half.value, max(half.std, 0.01 * half.value))
         tip_radius = half.value
+    fresh = np.isin(track["frame"], clip.repeats, invert=True)
+    track = {name: values[fresh] for name, values in track.items() if name != "radius"}
     notes = _timing_notes(clip, optics.rate)
     found, scale, origin = _contacts(track, half, optics, clip.source)
     result = VideoReduction(
@@ -293,10 +295,7 @@ def _track_ball(
             f"the ball is found in only {len(light)} frames", source=source,
             allowed="10 or more (see --striker-is, --background, --crop, --channel)",
         )  # fmt: skip
-    edges = [
-        (n, fit_ball(frames[n].astype(np.float64), (b.x, b.y, b.radius), levels=levels))
-        for n, b in light
-    ]
+    edges = [(n, _ball_edge(frames[n].astype(np.float64), b, levels[0])) for n, b in light]
     sharp = [(n, b) for n, b in edges if b is not None]
     # one kind of position for the whole clip: the two differ by a constant under uneven light
     found = sharp if len(sharp) > _MOSTLY * len(light) else light
@@ -308,6 +307,10 @@ def _track_ball(
         "lean": np.zeros(len(found)),
         "radius": np.array([b.radius for _, b in found]),
     }
+
+
+def _ball_edge(grey: Array, ball: Ball, dark: float) -> Ball | None:
+    return fit_ball(grey, (ball.x, ball.y, ball.radius), levels=(dark, ball.bright))
 
 
 def _contacts(
@@ -364,9 +367,10 @@ def _timing_notes(clip: Clip, rate: float) -> list[str]:
         )
     if clip.uneven:
         notes.append(f"{clip.uneven} gaps between the container's time stamps are uneven")
-    if clip.repeated:
+    if clip.repeats.size:
         notes.append(
-            f"{clip.repeated} frames repeat the one before: the rate may not be the camera's"
+            f"{clip.repeats.size} of {len(clip.frames)} frames repeat the one before and are left "
+            "out: the camera's own rate is lower"
         )
     return notes
 
