@@ -167,7 +167,7 @@ def _section(number: str, record: CaseRecord, file: Path) -> Picture:
     for side in (1.0, -1.0):
         drawn = PolyCollection(
             list(points[quads[near]] * np.array([side, 1.0])), array=stress[near], cmap="turbo",
-            clim=(0.0, 1.0),
+            clim=(0.0, 1.0), edgecolors="face", linewidths=0.2,
         )  # fmt: skip
         axis.add_collection(drawn)
     made.colorbar(drawn, ax=axis, label="von Mises stress / Sy_min", extend="max")

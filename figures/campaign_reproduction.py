@@ -76,7 +76,9 @@ def _rests(records: Sequence[CaseRecord]) -> str:
         return f"Of {len(records)} stored cases none is of Table 2.1."
     resolution = ", ".join(f"{count} at {level} resolution" for level, count in levels.items())
     ratios = ", ".join(f"case {n}: {len(sweep.ratio)}" for n, sweep in found.items())
+    rough = " Verdicts at less than production resolution are provisional: F and a ripple there."
     return (
         f"It rests on {sum(levels.values())} cases of Table 2.1 ({resolution}; values of Sy* "
         f"computed: {ratios}) among {len(records)} stored ones."
+        f"{'' if set(levels) == {'production'} else rough}"
     )

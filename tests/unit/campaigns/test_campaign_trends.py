@@ -3,6 +3,7 @@
 import numpy as np
 import pytest
 from dentscope.campaigns.designs import RATIOS
+from dentscope.figures import campaign_claims as claims
 from dentscope.figures import campaign_trends as trends
 from dentscope.figures.campaign_sweep import Sweep
 
@@ -29,7 +30,7 @@ def sweep(number=3, **changes):
 
 
 def verdict(words, made):
-    [claim] = [row for row in trends._CLAIMS if words in row[1]]
+    [claim] = [row for row in claims.CLAIMS if words in row[1]]
     return claim[2](made)
 
 
@@ -52,7 +53,7 @@ def verdict(words, made):
     ],
 )
 def test_a_sweep_as_the_text_describes_it_agrees(words):
-    found = [row[2](sweep()) for row in trends._CLAIMS if words in row[1] and "(not" not in row[1]]
+    found = [row[2](sweep()) for row in claims.CLAIMS if words in row[1] and "(not" not in row[1]]
     assert all(good for good, _ in found), found
 
 
@@ -82,7 +83,7 @@ def test_a_minimum_between_two_ratios_is_found_there():
 
 def test_where_data_is_missing_nothing_is_said():
     few = Sweep(3, RATIO[[0, -1]], *(sweep().radius[[0, -1]] for _ in range(4)), records=())
-    for _, claim, test in trends._CLAIMS[:-1]:
+    for _, claim, test in claims.CLAIMS[:-1]:
         if "starts near" not in claim:
             assert test(few) is None, claim
     assert trends.Trend("2.2", "claim", {}).verdict == "not computed"
