@@ -16,6 +16,9 @@ from .thresholds import Nulls, gain, null_bayes_factors
 Array = NDArray[np.float64]
 
 _THIN = 400
+_VERY_STRONG = 5.0
+"""Nats by which a freer force law must win to count against an explanation at all: odds of 150,
+"very strong" of R. E. Kass and A. E. Raftery, J. Am. Stat. Assoc. 90 (1995) 773."""
 _ALARM = 0.98
 """Share of nulls that pass no threshold; the test of fit adds at most 1 % of false alarms."""
 
@@ -108,7 +111,9 @@ def p_fit(fitted: Fit, nulls: Nulls, problem: Problem) -> float:
     wide = widened(problem, fitted)
     gained = wide.log_likelihood(residual) - fitted.linear.log_likelihood(residual)
     own = wide.log_likelihood(fitted.residual) - fitted.linear.log_likelihood(fitted.residual)
-    worse = min(int(np.sum(chi2 >= fitted.chi2)), int(np.sum(gained >= own)))
+    worse = int(np.sum(chi2 >= fitted.chi2))
+    if own > _VERY_STRONG:
+        worse = min(worse, int(np.sum(gained >= own)))
     return min(2.0 * (worse + 1) / (len(chi2) + 1), 1.0)
 
 

@@ -5,18 +5,21 @@ the tip's height the slopes before and after the contact, the largest depth and 
 undisturbed flat; from the force its peak, its impulse, its duration and the time to the peak; from
 a profile the depth of the crater. Time zero is arbitrary, so only differences of times are used.
 The standard deviation of each number is that of the same reduction over the curve with its noise
-added again.
+added again. What the reduction itself is off (a peak between samples, a blurred end) is found on
+the baseline's own curve, read off at the recording's instants, and taken off; what is left of it
+is part of the uncertainty.
 """
 
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
 
+from ..impact import Scene, Settings, reference_impact
 from ..recordings import RecordingSet
 
 Array = NDArray[np.float64]
@@ -28,13 +31,14 @@ FROM_CURVES = ("peak_depth_m", "below_flat_s", "normal_impulse_Ns", "loading_tim
 FEWEST = 5
 """Samples within the contact that a number of the contact needs."""
 
+_ACCURACY, _POINTS = Settings(tolerance=1e-7), 200
 _AGAIN = 40  # copies of a curve with fresh noise
-_FLOORS = {
-    "peak_depth_m": 0.01, "below_flat_s": 0.005, "normal_impulse_Ns": 0.005,
-    "loading_time_s": 0.02, "contact_time_s": 0.01, "peak_force_N": 0.005, "restitution": 0.002,
-    "permanent_depth_m": 0.01,
-}  # fmt: skip
-"""What a reduction may be off by itself, as a fraction: scale of the length, ends of the force."""
+_SCALE = {"peak_depth_m": 0.01, "permanent_depth_m": 0.01}
+"""Error of the length's scale, as a fraction, where a column of its own would state it."""
+_LEFT, _LEAST, _MOST = 0.25, 0.003, 0.25
+"""Of a reduction's own error: share that stays, least that stays, most that is corrected."""
+_INSTANTS = (-0.4, -0.2, 0.0, 0.2, 0.4)
+"""Touch before or after the one found, in samples: the trace itself does not know it better."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -51,7 +55,9 @@ class Readings:
     std: Array
 
 
-def readings_of(recordings: RecordingSet, notes: list[str]) -> dict[str, Readings]:
+def readings_of(
+    recordings: RecordingSet, scenes: Sequence[Scene], notes: list[str]
+) -> dict[str, Readings]:
     """Return every observable that the set holds, from its columns and from its curves.
 
     A number in trials.csv goes before the same number from a curve.
@@ -60,6 +66,8 @@ def readings_of(recordings: RecordingSet, notes: list[str]) -> dict[str, Reading
     ----------
     recordings
         The set.
+    scenes
+        The baseline's scene of every trial.
     notes
         Receives what could not be used, and why.
     """
@@ -76,6 +84,7 @@ def readings_of(recordings: RecordingSet, notes: list[str]) -> dict[str, Reading
             unknown += not stated
             numbers |= reduced(trace, noise, from_trace, seed=i)
             coarse += not numbers
+            numbers = _corrected(numbers, own_errors(trace, scenes[i]))
         if trial in recordings.profiles:
             profile = recordings.profile(trial)
             numbers |= reduced(profile, {"z_m": _roughness(profile)}, from_profile, seed=i)
@@ -84,7 +93,7 @@ def readings_of(recordings: RecordingSet, notes: list[str]) -> dict[str, Reading
             table = found.setdefault(name, Readings(np.full(n, np.nan), np.full(n, np.nan)))
             if math.isnan(table.value[i]):
                 table.value[i] = value
-                table.std[i] = math.hypot(std, _FLOORS[name] * abs(value))
+                table.std[i] = math.hypot(std, _SCALE.get(name, 0.0) * abs(value))
     if coarse:
         notes.append(f"{coarse} traces have too few samples within the contact to be used")
     if unknown:
@@ -93,6 +102,100 @@ def readings_of(recordings: RecordingSet, notes: list[str]) -> dict[str, Reading
             "neighbouring samples is taken"
         )
     return found
+
+
+def own_errors(trace: Mapping[str, Array], scene: Scene) -> dict[str, tuple[float, float]]:
+    """Return what a reduction is off: reduced over true number, and its standard deviation.
+
+    Found on the baseline's curve, read off at the trace's instants; the touch lies anywhere
+    within a sample.
+    """
+    t, start = trace["time_s"], _touch(trace)
+    if math.isnan(start):
+        return {}
+    model = _Model.of(scene)
+    sample = float(np.median(np.diff(t)))
+    ratios: dict[str, list[float]] = {}
+    for shift in _INSTANTS:
+        for name, value in from_trace(model.read(t - start + shift * sample, trace)).items():
+            ratios.setdefault(name, []).append(value / model.exact[name])
+    return {
+        name: (float(np.mean(r)), math.hypot(float(np.std(r)), _LEFT * abs(np.mean(r) - 1.0)))
+        for name, r in ratios.items()
+        if len(r) == len(_INSTANTS)
+    }
+
+
+def _corrected(
+    numbers: dict[str, tuple[float, float]], errors: dict[str, tuple[float, float]]
+) -> dict[str, tuple[float, float]]:
+    found = {}
+    for name, (value, std) in numbers.items():
+        ratio, spread = errors.get(name, (math.nan, 0.0))
+        if abs(ratio - 1.0) < _MOST and spread < _MOST:
+            found[name] = (value / ratio, math.hypot(std, max(spread, _LEAST) * value) / ratio)
+    return found
+
+
+@dataclass(frozen=True, eq=False)
+class _Model:
+    """One simulated impact as a curve, with the numbers that its reduction should give."""
+
+    time: Array
+    height: Array
+    force: Array
+    leaving: float
+    speed: float
+    exact: Numbers
+
+    @classmethod
+    def of(cls, scene: Scene) -> _Model:
+        trace = reference_impact(scene, _ACCURACY, points=_POINTS)
+        t, order = np.unique(trace.column("time_s"), return_index=True)
+        e, impact = trace.impact.restitution, trace.impact
+        leaving = e * scene.approach.speed
+        exact = {
+            "restitution": e, "peak_depth_m": impact.peak_depth_m,
+            "below_flat_s": impact.contact_time_s + impact.residual_flat_m / max(leaving, 1e-9),
+            "peak_force_N": impact.peak_force_N, "contact_time_s": impact.contact_time_s,
+            "loading_time_s": impact.loading_time_s,
+            "normal_impulse_Ns": impact.normal_impulse_Ns,
+        }  # fmt: skip
+        return cls(
+            t, trace.column("tip_height_m")[order], trace.column("normal_force_N")[order], leaving,
+            scene.approach.speed, exact,
+        )  # fmt: skip
+
+    def read(self, t: Array, trace: Mapping[str, Array]) -> dict[str, Array]:
+        """Return the curve at times after the touch, with the columns of a trace."""
+        found = {"time_s": t}
+        last = self.time[-1]
+        if "tip_height_m" in trace:
+            h = np.interp(t, self.time, self.height)
+            h = np.where(t < 0.0, -self.speed * t, h)
+            found["tip_height_m"] = np.where(
+                t > last, self.height[-1] + self.leaving * (t - last), h
+            )
+        if "force_N" in trace:
+            inside = (t >= 0.0) & (t <= last)
+            found["force_N"] = np.where(inside, np.interp(t, self.time, self.force), 0.0)
+        return found
+
+
+def _touch(trace: Mapping[str, Array]) -> float:
+    """Time of first touch, to about a sample."""
+    t = trace["time_s"]
+    if "tip_height_m" in trace:
+        h = trace["tip_height_m"]
+        below = np.flatnonzero(h < 0.0)
+        k = int(below[0]) if below.size else 0
+        if k > 0:
+            return float(np.interp(0.0, [-h[k - 1], -h[k]], [t[k - 1], t[k]]))
+    if "force_N" in trace:
+        f = trace["force_N"]
+        top = int(np.argmax(f))
+        return _foot(t[: top + 1], f[: top + 1], float(f[top]), power=1.0)
+    return math.nan
 
 
 def reduced(

@@ -7,6 +7,7 @@ roughness of an event-driven simulation does not matter.
 
 from __future__ import annotations
 
+import math
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
 
@@ -116,7 +117,8 @@ def form_error(problem: Problem, effect: Array, share: float) -> Array:
 
     The same physics has several published forms, which differ by some share of their effect even
     when they are fitted to each other. Components: shares of the observables against each other,
-    and a slope over the speed. The common size of the effect is left to the mechanism's parameters.
+    and slope and curvature over the speed. The common size of the effect is left to the
+    mechanism's parameters.
 
     Parameters
     ----------
@@ -134,7 +136,8 @@ def form_error(problem: Problem, effect: Array, share: float) -> Array:
     columns = [here[:, k] - here[:, k + 1 :].mean(axis=1) * (k + 1 < len(names))
                for k in range(len(names) - 1)]  # fmt: skip
     if np.ptp(speed) > 0.0:
-        columns.append((speed - speed.mean()) / np.std(speed))
+        x = (speed - speed.mean()) / np.std(speed)
+        columns += [x, (x * x - 1.0) / math.sqrt(2.0)]
     if not columns:
         return np.zeros((len(effect), 0))
     return np.asarray(share * effect[:, None] * np.stack(columns, axis=1))

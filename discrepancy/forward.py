@@ -11,7 +11,7 @@ from dataclasses import dataclass, field, replace
 import numpy as np
 from numpy.typing import NDArray
 
-from ..impact import Scene, Settings, strike_batch
+from ..impact import Scene, Settings, strike_batch, strike_many
 from ..impact import compiled as c
 from ..models.base import DomainWarning
 from .mechanisms.base import Mechanism, Situation
@@ -122,7 +122,9 @@ class Simulator:
                 for mechanism in mechanisms:
                     scene = mechanism.attach(scene, point.values, condition.around)
                 situations.append((scene, condition.around))
-        rows = _struck([s for s, _ in situations])
+        scenes = [s for s, _ in situations]
+        rows = _struck(scenes)
+        self._later_blows(scenes, rows)
         self.impacts += len(rows)
         shape = (len(points), len(problem.conditions))
         seen = {k: rows[:, _COLUMN[v]].copy() for k, v in SIMULATED.items()}
@@ -139,6 +141,18 @@ class Simulator:
             for k, v in here.items():
                 seen[k][part] = v
         return {k: v.reshape(shape) for k, v in seen.items()}
+
+    def _later_blows(self, scenes: list[Scene], rows: Array) -> None:
+        """Integrate again, in order, what meets the crater of an earlier blow."""
+        n = len(self.problem.conditions)
+        # a condition's number is above that of the one before it
+        for k, condition in enumerate(self.problem.conditions):
+            if condition.after < 0:
+                continue
+            earlier = strike_many(scenes[condition.after :: n], ACCURACY)
+            for i, impact in enumerate(earlier):
+                scenes[k + i * n] = scenes[k + i * n].with_(spot=impact.spot)
+            rows[k::n] = strike_batch(scenes[k::n], ACCURACY)
 
     def _crater(
         self, points: Sequence[Point], situations: Sequence[Situation], seen: dict[str, Array]

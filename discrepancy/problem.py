@@ -9,7 +9,7 @@ from __future__ import annotations
 
 import copy
 import math
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 from functools import cache, cached_property, lru_cache
 
@@ -21,10 +21,10 @@ from ..impact import Approach, ForceTransform, Friction, Scene, Striker
 from ..models import LAWS
 from ..models.base import ContactLaw
 from ..recordings import RecordingSet
-from ..recordings.noise import bins, numbered
+from ..recordings.noise import bins
 from ..recordings.setup_file import Quantity, Target
 from ..recordings.setup_file import Striker as StrikerTable
-from .curves import FROM_CURVES, readings_of
+from .curves import FROM_CURVES, Readings, readings_of
 from .lawerror import LawError, law_error
 from .mechanisms.base import Surroundings
 
@@ -104,6 +104,8 @@ class Condition:
         Rows of trials.csv.
     around
         What mechanisms may know.
+    after
+        The condition that struck the same place before; -1 on fresh metal.
     """
 
     striker: str
@@ -115,6 +117,7 @@ class Condition:
     angle_spread: float
     trials: tuple[int, ...]
     around: Surroundings
+    after: int = -1
 
 
 @dataclass(frozen=True, eq=False)
@@ -177,6 +180,11 @@ class Problem:
     def n_z(self) -> int:
         """Length of the vector of standardised unknowns: nuisances, then the law's error."""
         return len(self.nuisances) + self.error.count
+
+    @property
+    def fresh(self) -> Problem:
+        """The same with every blow on fresh metal."""
+        return replace(self, conditions=tuple(replace(c, after=-1) for c in self.conditions))
 
     def restricted(self, keep: NDArray[np.bool_]) -> Problem:
         """Return the problem with some of its cells."""
@@ -251,13 +259,17 @@ def problem_of(recordings: RecordingSet) -> Problem:
     conditions = _conditions(recordings, notes)
     nuisances = _nuisances(recordings, conditions, notes)
     law = _law_of(setup.target)
-    cells = _cells(recordings, conditions, notes)
-    error = law_error(law)
+    none = np.zeros(0)
     problem = Problem(
-        recordings.name, law, setup.target, dict(setup.strikers), conditions, cells, nuisances,
-        error, setup.gravity_m_s2.value, tuple(notes),
+        recordings.name, law, setup.target, dict(setup.strikers), conditions,
+        Cells(np.zeros(0, dtype=np.intp), (), none, none, np.zeros(0, dtype=np.intp)), nuisances,
+        law_error(law), setup.gravity_m_s2.value,
     )  # fmt: skip
-    return problem
+    of_trial = {i: s for c, s in zip(conditions, problem.scenes(np.zeros(problem.n_z)), strict=True)
+                for i in c.trials}  # fmt: skip
+    readings = readings_of(recordings, [of_trial[i] for i in sorted(of_trial)], notes)
+    cells = _cells(readings, recordings.approach.normal, conditions, notes)
+    return replace(problem, cells=cells, notes=tuple(notes))
 
 
 def _law_of(target: Target) -> ContactLaw:
@@ -280,7 +292,7 @@ def _remembering(name: str) -> ContactLaw:
 
 def _conditions(recordings: RecordingSet, notes: list[str]) -> tuple[Condition, ...]:
     setup, trials, approach = recordings.setup, recordings.trials, recordings.approach
-    numbers = _nominal(recordings)
+    numbers, before = _nominal(recordings)
     target, air = setup.target, setup.environment
     timed = ~np.isnan(trials.impact_speed_m_s)
     heights = np.where(timed, np.nan, trials.drop_height_m)
@@ -319,40 +331,45 @@ def _conditions(recordings: RecordingSet, notes: list[str]) -> tuple[Condition, 
                 name, v, float(np.mean(approach.angle[rows])),
                 float(np.mean(approach.tangential[rows])), float(np.mean(approach.spin[rows])),
                 float(np.sqrt(np.mean(relative**2) / n)), float(np.sqrt(np.mean(lean**2) / n)),
-                tuple(int(r) for r in rows), around,
+                tuple(int(r) for r in rows), around, int(before[first]),
             )
         )  # fmt: skip
-    again = [spot for spot in set(trials.spot) if spot and trials.spot.count(spot) > 1]
+    again = sum(c.after >= 0 for c in found)
     if again:
-        notes.append(
-            f"{len(again)} places were struck more than once; later blows are simulated on fresh "
-            "metal"
-        )
+        notes.append(f"{again} conditions are later blows on one place: they meet its crater")
     return tuple(found)
 
 
-def _nominal(recordings: RecordingSet) -> Ints:
-    """Number of each trial's nominal condition: repeats share one simulation.
+def _nominal(recordings: RecordingSet) -> tuple[Ints, Ints]:
+    """Number of each trial's nominal condition, and of the one that struck its place before.
 
-    As `RecordingSet.conditions`, but speeds may differ by 5 %: the mean of the repeats is compared
-    with a simulation at their mean speed, and what is left of second order is below 0.1 %.
+    Repeats share one simulation. Their speeds may differ by 5 %: the mean of the repeats is
+    compared with a simulation at their mean speed; what is left of second order is below 0.1 %.
     """
     approach, trials = recordings.approach, recordings.trials
-    struck: dict[str, int] = {}
-    blow = []
-    for spot in trials.spot:
-        struck[spot] = struck.get(spot, -1) + 1
-        blow.append((spot, struck[spot]) if spot and trials.spot.count(spot) > 1 else ("", 0))
-    ratio = approach.tangential / approach.normal
-    return numbered(
-        trials.striker,
-        list(bins(np.asarray(trials.angle_deg), width=1.0)),
-        list(bins(np.log(approach.normal), width=_SAME_SPEED)),
-        list(bins(ratio, width=_SAME_SPEED)),
-        list(bins(approach.spin / approach.normal, width=_SAME_SPEED)),
-        list(bins(trials.temperature_K, width=1.0)),
-        blow,
+    rows = list(
+        zip(
+            trials.striker,
+            bins(np.asarray(trials.angle_deg), width=1.0),
+            bins(np.log(approach.normal), width=_SAME_SPEED),
+            bins(approach.tangential / approach.normal, width=_SAME_SPEED),
+            bins(approach.spin / approach.normal, width=_SAME_SPEED),
+            bins(trials.temperature_K, width=1.0),
+            strict=True,
+        )
     )
+    numbers = np.zeros(len(rows), dtype=np.intp)
+    before = np.full(len(rows), -1, dtype=np.intp)
+    places: dict[object, int] = {}
+    latest: dict[str, int] = {}
+    # in the order of testing, so that a place's history is known when it is struck again
+    for i in np.argsort(np.nan_to_num(trials.order), kind="stable"):
+        spot = trials.spot[i]
+        before[i] = latest.get(spot, -1) if spot else -1
+        numbers[i] = places.setdefault((rows[i], int(before[i])), len(places))
+        if spot:
+            latest[spot] = int(numbers[i])
+    return numbers, before
 
 
 def _value(quantity: Quantity | None, default: float = math.nan) -> float:
@@ -420,11 +437,13 @@ def _stated(quantity: Quantity | None, name: str, unit: str) -> list[Nuisance]:
     return [Nuisance(name, unit, quantity.value, quantity.std / abs(quantity.value))]
 
 
-def _cells(recordings: RecordingSet, conditions: Sequence[Condition], notes: list[str]) -> Cells:
+def _cells(
+    readings: Mapping[str, Readings], speeds: Array, conditions: Sequence[Condition],
+    notes: list[str],
+) -> Cells:  # fmt: skip
     rows: list[tuple[int, str, float, float, int]] = []
-    approach = recordings.approach
     dropped = 0
-    for name, read in readings_of(recordings, notes).items():
+    for name, read in readings.items():
         values, std = read.value, read.std
         # a value of zero with a fractional noise is not exact
         std = np.maximum(std, 0.01 * np.sqrt(np.nanmean(values**2)) * (std <= 0.0))
@@ -440,7 +459,7 @@ def _cells(recordings: RecordingSet, conditions: Sequence[Condition], notes: lis
             y = np.log(values[index]) if log else values[index]
             s = std[index] / np.abs(values[index]) if log else std[index]
             # to the condition's mean speed, with the power that a plastic contact has
-            y = y - _power(name, y, log) * np.log(approach.normal[index] / c.speed)
+            y = y - _power(name, y, log) * np.log(speeds[index] / c.speed)
             keep = _kept(y, s)
             dropped += int(np.sum(~keep))
             y, s = y[keep], s[keep]

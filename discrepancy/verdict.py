@@ -355,17 +355,24 @@ def parameters_of(problem: Problem, fitted: Fit, level: float = 0.90) -> dict[st
 
 
 def _pulls(problem: Problem, fitted: Fit) -> dict[str, float]:
-    return {n.name: float(fitted.z[i]) for i, n in enumerate(problem.nuisances)}
+    """Shift of every stated number over what chance would give it.
+
+    The posterior mean in prior standard deviations, over sqrt(1 - its posterior variance): unit
+    normal when the sheet is right, however much of a shift other unknowns could take up.
+    """
+    learnt = np.sqrt(np.maximum(1.0 - np.diag(fitted.covariance), 0.01))
+    return {n.name: float(fitted.z[i] / learnt[i]) for i, n in enumerate(problem.nuisances)}
 
 
 def _notes(problem: Problem, best: Fit) -> tuple[str, ...]:
     notes = []
+    pulls = _pulls(problem, best)
     for i, n in enumerate(problem.nuisances):
-        z = float(best.z[i])
-        if abs(z) > _PULLED:
+        z, pull = float(best.z[i]), pulls[n.name]
+        if abs(pull) > _PULLED:
             notes.append(
-                f"{n.name} wants to be {n.at(z):.4g} {n.unit}, {abs(z):.1f} standard deviations "
-                f"{'above' if z > 0 else 'below'} the stated {n.value:.4g}"
+                f"{n.name} wants to be {n.at(z):.4g} {n.unit}, {'above' if z > 0 else 'below'} the "
+                f"stated {n.value:.4g}: a pull of {abs(pull):.1f} standard deviations"
             )
     sizes = ", ".join(f"{k} {100 * v:.2g} %" for k, v in problem.error.sizes.items())
     notes.append(f"the contact law '{problem.law.name}' is taken to be uncertain by: {sizes}")

@@ -21,7 +21,7 @@ class VelocityDependentFriction(Mechanism):
 
     name = "velocity-dependent-friction"
     title = "friction depends on the sliding speed"
-    equations = "mu(v) = mu_d + (mu_s - mu_d) exp(-v/v_0)"
+    equations = "mu(v) = mu_d + (mu_s - mu_d) exp(-v/v_0), stated mu = mu_d^(1-w) mu_s^w"
     parameters = (
         Parameter(
             "static_over_dynamic", "-", 0.3, 3.0, "log", 1.0,
@@ -31,8 +31,13 @@ class VelocityDependentFriction(Mechanism):
             "friction_speed_m_s", "m/s", 0.03, 3.0, "log", 1.0,
             "0.01-1 m/s in collections of friction laws; wider for what an impact can see", nodes=4,
         ),
+        Parameter(
+            "friction_stated_slow", "-", 0.0, 1.0, "linear", 0.0,
+            "0: the stated coefficient is that of fast sliding, 1: of a slow test; sheets rarely "
+            "say which", nodes=3,
+        ),
     )  # fmt: skip
-    direction: ClassVar[Mapping[str, int]] = {"friction_impulse_ratio": 1}
+    direction: ClassVar[Mapping[str, int]] = {}
 
     def applies(self, situations: Sequence[Situation]) -> str:
         """Needs sliding."""
@@ -43,8 +48,10 @@ class VelocityDependentFriction(Mechanism):
         ratio = values["static_over_dynamic"]
         if ratio == 1.0:
             return scene
-        speed = values["friction_speed_m_s"]
-        friction = replace(scene.friction, mu_static=ratio * scene.friction.mu, speed=speed)
+        fast = scene.friction.mu * ratio ** -values["friction_stated_slow"]
+        friction = replace(
+            scene.friction, mu=fast, mu_static=ratio * fast, speed=values["friction_speed_m_s"]
+        )
         return scene.with_(friction=friction)
 
 

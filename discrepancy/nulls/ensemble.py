@@ -24,14 +24,10 @@ class Rig:
         Strikers before touch, one a condition.
     references
         The baseline's curve of each condition.
-    low, high
-        Depths that the conditions reach, with a margin [m].
     """
 
     bodies: Bodies
     references: Sequence[Reference]
-    low: float
-    high: float
 
 
 def discrepancies(
@@ -48,14 +44,15 @@ def discrepancies(
     rng
         Source of the draws.
     size
-        Standard deviations of the levels of force and recovery.
+        Standard deviations of the levels of force and recovery and of their slopes, and the
+        largest rms distances of their shapes.
     """
     n = len(rig.references)
     contacts = list(dict.fromkeys(rig.references))
     curves = []
     for _ in range(count):
         law = draw(rng, size)
-        table = {r: curve(r, law, rig.low, rig.high) for r in contacts}
+        table = {r: curve(r, law) for r in contacts}
         curves += [table[r] for r in rig.references]
     many = Bodies(*(np.tile(getattr(rig.bodies, k), count) for k in Bodies.__dataclass_fields__))
     seen = collide(many, curves)

@@ -7,7 +7,8 @@
 * series: the depth is the sum of Hertz's and of a plastic dent's, each under the same force
 
 Constants of such laws are chosen to fit; so level and slope follow the reference but for a drawn
-offset, and the shape between is the law's own.
+offset, and the shape between is the law's own, drawn together where it strays farther from the
+reference than the reference is known to be off.
 """
 
 from __future__ import annotations
@@ -57,6 +58,8 @@ class Reference:
         (k,) at depths of a wide range [m, N, m, m].
     given_back
         Share of the elastic work that returns, for bodies without a yield strength.
+    low, high
+        Depths between which the impacts of this contact move [m].
     """
 
     R: float
@@ -67,6 +70,8 @@ class Reference:
     recovery: Array
     crater: Array
     given_back: float = 1.0
+    low: float = 0.0
+    high: float = math.inf
 
 
 @dataclass(frozen=True, slots=True)
@@ -83,6 +88,8 @@ class Draw:
         Logarithmic offset and slope over ln(depth) of force and of recovery.
     power
         Offset of the recovery's exponent.
+    stray
+        Largest rms distance of the shapes of force and of recovery from the reference (logarithm).
     """
 
     kind: str
@@ -92,6 +99,7 @@ class Draw:
     level: tuple[float, float]
     back: tuple[float, float]
     power: float
+    stray: tuple[float, float] = (math.inf, math.inf)
 
 
 def draw(rng: np.random.Generator, size: dict[str, float]) -> Draw:
@@ -102,11 +110,13 @@ def draw(rng: np.random.Generator, size: dict[str, float]) -> Draw:
         (float(rng.normal(0.0, size[k])), float(rng.normal(0.0, size[f"{k} slope"])))
         for k in ("force", "recovery")
     )
-    return Draw(kind, a, b, c, level, back, float(rng.uniform(-0.1, 0.1)))
+    stray = size.get("force shape", math.inf), size.get("recovery shape", math.inf)
+    return Draw(kind, a, b, c, level, back, float(rng.uniform(-0.1, 0.1)), stray)
 
 
-def curve(reference: Reference, law: Draw, low: float, high: float) -> Curve:
-    """Tabulate a law for one contact, levelled to the reference between two depths [m]."""
+def curve(reference: Reference, law: Draw) -> Curve:
+    """Tabulate a law for one contact, levelled to the reference over its range of depths."""
+    low, high = reference.low, reference.high
     x = np.linspace(math.log(low) - 6.0, math.log(high) + 1.0, _GRID)
     d = np.exp(x)
     known = np.log(reference.depth)
@@ -117,10 +127,13 @@ def curve(reference: Reference, law: Draw, low: float, high: float) -> Curve:
     inside = (x >= math.log(low)) & (x <= math.log(high))
     middle = 0.5 * (math.log(low) + math.log(high))
     if math.isinf(reference.Y):
-        return Curve(x, _levelled(base, base, x, inside, middle, law.level), recovery, crater, 1.5)
+        f = _levelled(base, base, x, inside, middle, law.level, math.inf)
+        return Curve(x, f, recovery, crater, 1.5)
     force, power, rec = _shape(reference, law, d)
-    f = _levelled(np.log(force), base, x, inside, middle, law.level)
-    rec = np.exp(_levelled(np.log(rec), np.log(recovery), x, inside, middle, law.back))
+    f = _levelled(np.log(force), base, x, inside, middle, law.level, law.stray[0])
+    rec = np.exp(
+        _levelled(np.log(rec), np.log(recovery), x, inside, middle, law.back, law.stray[1])
+    )
     rec = np.minimum(rec, 0.999 * d)
     # what does not recover stays; the crater's share of it is the reference's
     left = np.maximum(d - recovery, 1e-12)
@@ -130,12 +143,16 @@ def curve(reference: Reference, law: Draw, low: float, high: float) -> Curve:
 
 def _levelled(
     own: Array, base: Array, x: Array, inside: NDArray[np.bool_], middle: float,
-    offset: tuple[float, float],
+    offset: tuple[float, float], stray: float,
 ) -> Array:  # fmt: skip
     """Turn a logarithmic curve so that it follows the base but for the offset and its shape."""
     line = np.polynomial.polynomial.polyfit(x[inside] - middle, (base - own)[inside], 1)
     far = np.clip(x, x[inside][0], x[inside][-1]) - middle
-    return np.asarray(own + line[0] + offset[0] + (line[1] + offset[1]) * far)
+    shape = own - base + line[0] + line[1] * far
+    rms = float(np.sqrt(np.mean(shape[inside] ** 2)))
+    if rms > stray:
+        shape = shape * (stray / rms)
+    return np.asarray(base + shape + offset[0] + offset[1] * far)
 
 
 def _shape(reference: Reference, law: Draw, d: Array) -> tuple[Array, float, Array]:

@@ -19,7 +19,7 @@ def reference(Y: float) -> Reference:
     if math.isfinite(Y):
         force = (force**-2 + (2.0 * math.pi * R * 3.0 * Y * depth) ** -2) ** -0.5
     recovery = np.minimum(0.75 * force / (E * np.sqrt(1.5 * R * depth)), depth)
-    return Reference(R, E, Y, depth, force, recovery, depth - recovery)
+    return Reference(R, E, Y, depth, force, recovery, depth - recovery, low=5e-6, high=3e-4)
 
 
 def bodies(n: int, speed: float, *, beside: float = 0.0, mu: float = 0.0) -> Bodies:
@@ -33,8 +33,10 @@ def bodies(n: int, speed: float, *, beside: float = 0.0, mu: float = 0.0) -> Bod
 def test_elastic_impact_is_hertzs() -> None:
     plain = Draw("cut-off", 0.5, 0.5, 0.5, (0.0, 0.0), (0.0, 0.0), 0.0)
     ref = reference(math.inf)
-    elastic = Reference(R, E, math.inf, ref.depth, ref.force, ref.depth, 0.0 * ref.depth)
-    seen = collide(bodies(1, 1.0), [curve(elastic, plain, 1e-6, 1e-3)])
+    elastic = Reference(
+        R, E, math.inf, ref.depth, ref.force, ref.depth, 0.0 * ref.depth, low=1e-6, high=1e-3
+    )
+    seen = collide(bodies(1, 1.0), [curve(elastic, plain)])
     k = 4.0 / 3.0 * E * math.sqrt(R)
     depth = (5.0 * 0.1 / (4.0 * k)) ** 0.4
     # Johnson, Contact Mechanics, Eq. 11.24: 2.94 depth/v
@@ -47,7 +49,7 @@ def test_elastic_impact_is_hertzs() -> None:
 def test_null_laws_stay_within_some_per_cent_of_what_they_are_levelled_to(kind: str) -> None:
     ref = reference(3e8)
     law = Draw(kind, 0.5, 0.5, 0.5, (0.0, 0.0), (0.0, 0.0), 0.0)
-    found = curve(ref, law, 5e-6, 3e-4)
+    found = curve(ref, law)
     d = np.geomspace(5e-6, 3e-4, 40)
     base = np.interp(np.log(d), np.log(ref.depth), np.log(ref.force))
     off = np.interp(np.log(d), found.log_depth, found.log_force) - base
@@ -56,9 +58,22 @@ def test_null_laws_stay_within_some_per_cent_of_what_they_are_levelled_to(kind: 
     assert off.std() > 1e-3
 
 
+def test_a_null_law_strays_no_farther_than_the_baseline_is_known_to_be_off() -> None:
+    ref = reference(3e8)
+    d = np.geomspace(5e-6, 3e-4, 200)
+    base = np.interp(np.log(d), np.log(ref.depth), np.log(ref.force))
+    wild = Draw("cut-off", 0.5, 0.5, 0.5, (0.0, 0.0), (0.0, 0.0), 0.0)
+    tame = Draw("cut-off", 0.5, 0.5, 0.5, (0.0, 0.0), (0.0, 0.0), 0.0, (0.01, 0.01))
+    off = [np.interp(np.log(d), c.log_depth, c.log_force) - base
+           for c in (curve(ref, wild), curve(ref, tame))]  # fmt: skip
+    assert off[0].std() > 0.02
+    assert off[1].std() == pytest.approx(0.01, rel=0.1)
+    assert np.corrcoef(off[0], off[1])[0, 1] > 0.999
+
+
 def test_oblique_impulse_ratio_is_the_friction_coefficient_while_sliding() -> None:
     law = Draw("series", 0.5, 0.5, 0.5, (0.0, 0.0), (0.0, 0.0), 0.0)
-    seen = collide(bodies(1, 1.0, beside=0.05, mu=0.1), [curve(reference(3e8), law, 1e-6, 1e-3)])
+    seen = collide(bodies(1, 1.0, beside=0.05, mu=0.1), [curve(reference(3e8), law)])
     assert seen["friction_impulse_ratio"][0] == pytest.approx(0.1, rel=0.02)
 
 

@@ -1,0 +1,119 @@
+"""The whole way from a folder to a verdict, on small sets of the proof's generators."""
+
+from __future__ import annotations
+
+import json
+import math
+import subprocess
+import sys
+from pathlib import Path
+
+import numpy as np
+import pytest
+from dentscope.discrepancy import diagnose
+from dentscope.discrepancy.forward import Point, Simulator
+from dentscope.discrepancy.problem import problem_of
+from dentscope.discrepancy.proof import folder, truth
+from dentscope.recordings import read
+
+KEYS = """format set seed version audit verdict mechanisms alternatives probabilities scores
+located parameters nuisance_pulls excluded limits improvement correction next_experiment
+notes""".split()
+
+
+def dentscope(*arguments: str) -> subprocess.CompletedProcess[str]:
+    return subprocess.run(
+        [sys.executable, "-m", "dentscope", *arguments], capture_output=True, text=True,
+        timeout=300, check=False,
+    )  # fmt: skip
+
+
+def written(place: Path, kind: str, seed: int, name: str = "") -> Path:
+    case = truth.draw(np.random.default_rng(seed), kind, name=name)
+    folder.write_set(case, place / "set", name="set")
+    return place / "set"
+
+
+def test_one_folder_in_one_command_a_verdict(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(truth, "size_of", lambda *args, **more: 20.0)
+    case = written(tmp_path, "single", 5, "adhesion")
+    out = tmp_path / "out"
+    answer = dentscope("diagnose", str(case), "--out", str(out), "--quiet")
+    assert answer.returncode == 0, answer.stderr
+    verdict = json.loads((out / "verdict.json").read_text())
+    assert list(verdict) == KEYS
+    assert verdict["format"] == "verdict/1"
+    assert math.isclose(sum(verdict["probabilities"].values()), 1.0, rel_tol=1e-6)
+    page = (out / "report.html").read_text()
+    assert "<img" in page
+    assert "http://" not in page.replace("http://www.w3.org", "")
+    assert answer.stdout.startswith("set: ")
+    again = diagnose(read(case), seed=0).to_dict()
+    assert json.loads(json.dumps(again)) == verdict
+
+
+def test_strength_off_by_14_percent_is_a_stated_number_not_physics(tmp_path: Path) -> None:
+    verdict = diagnose(read(written(tmp_path, "strength-error", 3)))
+    assert verdict.verdict == "adequate"
+    # 14 % is 2.8 of the stated 5 %
+    assert abs(verdict.nuisance_pulls["target.Sy_Pa"]) > 2.0
+    assert any("target.Sy_Pa wants to be" in note for note in verdict.notes)
+
+
+def test_three_mistakes_are_three_lines_and_exit_code_2(tmp_path: Path) -> None:
+    case = written(tmp_path, "null", 2)
+    setup = (case / "set.toml").read_text()
+    (case / "set.toml").write_text(setup.replace('shape = "flat"', 'shape = "dome"', 1))
+    table = (case / "trials.csv").read_text().splitlines()
+    first, second = table[1].split(","), table[2].split(",")
+    first[1], second[2] = "nobody", "135"
+    table[1:3] = [",".join(first), ",".join(second)]
+    (case / "trials.csv").write_text("\n".join(table) + "\n")
+    answer = dentscope("diagnose", str(case), "--out", str(tmp_path / "out"), "--quiet")
+    assert answer.returncode == 2
+    assert len(answer.stderr.strip().splitlines()) == 3
+    assert "Traceback" not in answer.stderr
+    assert not (tmp_path / "out").exists()
+
+
+ONE_BALL = """format = "recording-set/1"
+[target]
+shape = "flat"
+E_Pa = 2.06e11
+nu = 0.29
+Sy_Pa = { value = 3e8, std = 1.2e7 }
+[strikers.ball]
+shape = "sphere"
+tip_radius_m = 0.005
+mass_kg = 0.004
+E_Pa = 2.08e11
+nu = 0.3
+Sy_Pa = 2e9
+[noise]
+permanent_depth_m = 1e-7
+"""
+
+
+def set_of_blows(place: Path, blows: list[tuple[str, float]]) -> Path:
+    place.mkdir(exist_ok=True)
+    (place / "set.toml").write_text(ONE_BALL)
+    rows = [f"t{k},ball,90,{v!r},{spot},2e-5" for k, (spot, v) in enumerate(blows)]
+    head = "trial,striker,angle_deg,impact_speed_m_s,spot,permanent_depth_m"
+    (place / "trials.csv").write_text("\n".join([head, *rows]) + "\n")
+    return place
+
+
+def test_a_second_blow_meets_the_crater_of_the_first(tmp_path: Path) -> None:
+    twice = problem_of(read(set_of_blows(tmp_path / "a", [("x", 1.0), ("x", 1.0), ("y", 1.0)])))
+    assert [c.after for c in twice.conditions] == [-1, 0]
+    assert twice.conditions[0].trials == (0, 2)
+    seen = Simulator(twice).observe((), [Point(np.zeros(twice.n_z))])
+    e = float(seen["restitution"][0, 0])
+    # the second blow must first give back what the first left in the metal: energy 2 - e^2
+    once = problem_of(read(set_of_blows(tmp_path / "b", [("x", math.sqrt(2.0 - e * e))])))
+    alone = Simulator(once).observe((), [Point(np.zeros(once.n_z))])
+    for name in ("permanent_depth_m", "peak_force_N"):
+        assert seen[name][0, 1] == pytest.approx(alone[name][0, 0], rel=1e-4)
+        assert seen[name][0, 1] > 1.1 * seen[name][0, 0]
