@@ -26,6 +26,10 @@ from .lists import LISTS, Entry, seed_of, shuffled
 from .seal import Ledger, digest_of, tree_hash
 from .truth import Truth, draw
 
+_PASSED = (
+    "PATH", "HOME", "LANG", "NUMBA_CACHE_DIR", "XDG_CACHE_HOME", "TMPDIR", "PYTHONPATH",
+)  # fmt: skip
+
 ROOT = Path(__file__).resolve().parents[2]
 
 
@@ -92,8 +96,7 @@ def _call(command: list[str], place: str, limit_s: float) -> tuple[int, str]:
     plain = {
         key: value
         for key, value in os.environ.items()
-        if key in ("PATH", "HOME", "LANG", "NUMBA_CACHE_DIR", "XDG_CACHE_HOME", "TMPDIR")
-        or key.endswith("_NUM_THREADS")
+        if key in _PASSED or key.endswith("_NUM_THREADS")
     }
     try:
         answer = subprocess.run(
