@@ -194,7 +194,7 @@ def diagnose(
         alternatives=tuple(
             tuple(m.name for m in f.mechanisms) for f in choice.members[1:]
         ),
-        audit=findings, probabilities=_probabilities(problem, ranking),
+        audit=findings, probabilities=_probabilities(problem, ranking, nulls, calibration),
         scores=_scores(problem, ranking, nulls, scores, confirmed), located=located,
         parameters=parameters_of(problem, best), nuisance_pulls=_pulls(problem, best),
         excluded=ranking.excluded, limits=_limits(ranking, calibration),
@@ -232,7 +232,7 @@ def decide(problem: Problem, ranking: Ranking, nulls: Nulls, calibration: Calibr
     p_base = calibration.p_baseline(base.chi2)
     reasons = [
         f"the baseline's misfit is {base.chi2:.0f} over {cells} cells; "
-        f"{100 * p_base:.2g} % of sets with nothing missing fit no better"
+        f"{_percent(p_base)} of sets with nothing missing fit no better"
     ]
     if not ranking.singles:
         verdict = "adequate" if p_base >= P_FIT else OUTSIDE
@@ -261,9 +261,13 @@ def decide(problem: Problem, ranking: Ranking, nulls: Nulls, calibration: Calibr
         return _set_of(singles, singles[0], ranking, nulls, reasons)
     reasons.append(
         f"no mechanism or pair fits: of the sets that {lead.name} would make, "
-        f"{100 * fits[lead.name]:.2g} % fit it no better"
+        f"{_percent(fits[lead.name])} fit it no better"
     )
     return Choice(OUTSIDE, (), tuple(reasons))
+
+
+def _percent(p: float) -> str:
+    return f"{100.0 * p:.1f} %" if p < 0.1 else f"{100.0 * p:.0f} %"
 
 
 def _set_of(
@@ -301,17 +305,28 @@ def _finite(x: float) -> float | None:
     return float(x) if math.isfinite(x) else None
 
 
-def _probabilities(problem: Problem, ranking: Ranking) -> dict[str, float]:
-    """Posterior probabilities; half the prior on the baseline, a tenth outside the library."""
-    outside = float(widened(problem, ranking.base).log_likelihood(ranking.base.residual))
+def _probabilities(
+    problem: Problem, ranking: Ranking, nulls: Nulls, calibration: Calibration
+) -> dict[str, float]:
+    """Posterior probabilities; half the prior on the baseline, a twentieth outside the library.
+
+    An explanation that its fit test rejects is not one: its share goes to outside the library.
+    """
+    base = ranking.base
+    outside = float(widened(problem, base).log_likelihood(base.residual))
     names = ["baseline", OUTSIDE]
-    logs = [ranking.base.log_evidence + math.log(0.5), outside + math.log(0.05)]
+    logs = [base.log_evidence + math.log(0.5), outside + math.log(0.05)]
+    rejected = {"baseline"} if calibration.p_baseline(base.chi2) < P_FIT else set()
     for share, fits in ((0.3, ranking.singles), (0.15, ranking.pairs)):
         for f in fits:
             names.append(f.name)
             logs.append(f.log_evidence + math.log(share / len(fits)))
+            if p_fit(f, nulls, problem) < P_FIT:
+                rejected.add(f.name)
     total = logsumexp(logs)
     found = {n: float(np.exp(x - total)) for n, x in zip(names, logs, strict=True)}
+    found[OUTSIDE] += sum(found[n] for n in rejected)
+    found |= dict.fromkeys(rejected, 0.0)
     return dict(sorted(found.items(), key=lambda item: -item[1]))
 
 
