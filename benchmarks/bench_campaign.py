@@ -86,7 +86,7 @@ def laid_out(costs, workers, put):
 def projection(put):
     cases = list(distinct_cases(DESIGNS["full"]).values())
     known = Store(OWN).summaries() if OWN.exists() else []
-    ended = [(s.case, s.cpu_s) for s in known if s.status == "done"]
+    ended = [(s.case, s.cpu_s) for s in known if s.status == "done" and not s.stale]
     alike = [pair for pair in ended if pair[0].accuracy.level == cases[0].accuracy.level]
     forecast = Forecast(cases, workers=1, ended=alike)
     costs = [forecast.cost_s(case) for case in cases]

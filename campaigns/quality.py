@@ -66,15 +66,42 @@ def quality_of(curve: Mapping[str, Floats], R: float) -> Quality:
     depth = curve["delta"]
     if len(depth) == 0:
         return Quality(math.nan, math.nan, math.nan, math.nan, 0.0, 0.0)
-    share = curve["sphere"] / (curve["sphere"] + curve["flat"])
+    force_step, radius_step, share_step = (largest_step(depth, v) for v in _judged(curve))
     return Quality(
         energy_defect=float(np.nanmax(np.abs(curve["energy_defect"]))),
-        force_step=largest_step(depth, curve["force"]),
-        radius_step=largest_step(depth, curve["radius"]),
-        share_step=largest_step(depth, share),
+        force_step=force_step,
+        radius_step=radius_step,
+        share_step=share_step,
         depth_reached=float(depth[-1] / R),
         radius_reached=float(np.nanmax(curve["radius"]) / R),
     )
+
+
+def steps_not_in(
+    curve: Mapping[str, Floats], finer: Mapping[str, Floats]
+) -> tuple[float, float, float]:
+    """Largest steps of F, a and delta_s* that a finer solve of the same case does not show.
+
+    They are the steps of the ratio of the two curves: what both show cancels.
+
+    Parameters
+    ----------
+    curve, finer
+        As for `quality_of`; compared at the depths of the first within those of the second.
+    """
+    depth = curve["delta"]
+    within = depth <= finer["delta"][-1] * (1.0 + 1e-9)
+    x, y = np.log(depth[within]), np.log(finer["delta"])
+    out = []
+    for values, other in zip(_judged(curve), _judged(finer), strict=True):
+        there = np.exp(np.interp(x, y, np.log(other)))
+        out.append(largest_step(depth[within], values[within] / there))
+    return out[0], out[1], out[2]
+
+
+def _judged(curve: Mapping[str, Floats]) -> tuple[Floats, Floats, Floats]:
+    share = curve["sphere"] / (curve["sphere"] + curve["flat"])
+    return curve["force"], curve["radius"], share
 
 
 def largest_step(depth: Floats, values: Floats) -> float:

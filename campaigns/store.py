@@ -107,6 +107,11 @@ class Summary:
     cpu_s: float
     quality: Quality | None
 
+    @property
+    def stale(self) -> bool:
+        """Whether the present solver would give other numbers."""
+        return self.id != self.case.id
+
 
 class Store:
     """A campaign file.

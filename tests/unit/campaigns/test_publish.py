@@ -13,6 +13,8 @@ from dentscope import fem
 from dentscope.campaigns import (
     Design,
     Store,
+    design_named,
+    executor,
     largest_difference,
     publish,
     published_designs,
@@ -20,6 +22,7 @@ from dentscope.campaigns import (
     read_published,
     standard_case,
 )
+from dentscope.campaigns.executor import Ended
 from dentscope.campaigns.schema import CURVE, UNLOADING_PROFILES
 from dentscope.cli import campaign as command
 from dentscope.cli import run
@@ -202,7 +205,7 @@ def test_publishing_a_missing_run_is_one_line(tmp_path, capsys):
 
 
 def test_status_without_a_run_tells_of_the_published_data(tmp_path, capsys, monkeypatch):
-    monkeypatch.setattr(command, "_PUBLISHED", tmp_path / "data")
+    monkeypatch.setattr(command, "PUBLISHED", tmp_path / "data")
     publish(DESIGN, stored(tmp_path / "c.h5"), tmp_path / "data")
     assert run(["campaign", "status", "--out", str(tmp_path / "none")]) == 0
     told = capsys.readouterr().out
@@ -210,3 +213,32 @@ def test_status_without_a_run_tells_of_the_published_data(tmp_path, capsys, monk
     assert "Published: trial, 6 cases done, 0 failed, 1 parts" in told
     run(["campaign", "status", "--json", "--out", str(tmp_path / "none")])
     assert json.loads(capsys.readouterr().out)["published"]["trial"]["done"] == 6
+
+
+class Quick:
+    """Solves every case of a design at once."""
+
+    def __init__(self, workers):
+        self.workers = workers
+
+    def run(self, cases, *, time_limit_s):
+        for key, case in cases.items():
+            yield Ended(key, solved(case, factor=1.01))
+
+
+def test_a_run_says_how_long_it_takes_and_how_far_it_is_from_the_published(
+    tmp_path, capsys, monkeypatch
+):
+    monkeypatch.setattr(executor, "LocalExecutor", Quick)
+    monkeypatch.setattr(command, "PUBLISHED", tmp_path / "data")
+    smoke = design_named("smoke")
+    for case in smoke.make():
+        Store(tmp_path / "c.h5").put(case, solved(case))
+    publish(smoke, tmp_path / "c.h5", tmp_path / "data")
+    assert run(["campaign", "run", "--out", str(tmp_path / "run"), "--workers", "2"]) == 0
+    first, *middle = capsys.readouterr().out.splitlines()
+    assert re.search(r"12 to compute on 2 workers; about \d+ (s|min) here", first)
+    assert re.match(r"\[12/12, 0 s left\] done", middle[11])
+    assert middle[12].startswith("12 done, 0 failed, 0 missing of 12")
+    assert "every one reaches Delta/R = 0.04" in middle[13]
+    assert "largest difference from 12 published cases: F 1.00%" in middle[14]

@@ -7,6 +7,7 @@ import pytest
 from dentscope import fem
 from dentscope.campaigns import DESIGNS, Forecast, distinct_cases, quality_of
 from dentscope.campaigns.cost import pace_of_this_machine
+from dentscope.campaigns.quality import steps_not_in
 
 
 def curve(**changes):
@@ -39,6 +40,16 @@ def test_a_step_reads_its_height_wherever_it_lies(name, height):
         found = quality_of(curve(**{name: smooth[name] * jump}), 1e-3)
         assert getattr(found, f"{name}_step") == pytest.approx(height, rel=0.02)
         assert found.largest_step == getattr(found, f"{name}_step")
+
+
+def test_a_step_that_the_finer_solve_shows_too_does_not_count():
+    smooth, jump = curve(), np.where(np.arange(48) < 20, 1.0, 1.03)
+    both = curve(force=smooth["force"] * jump)
+    ripple = curve(force=smooth["force"] * jump, radius=smooth["radius"] * jump)
+    force, radius, share = steps_not_in(ripple, both)
+    assert force < 1e-9
+    assert radius == pytest.approx(0.03, rel=0.02)
+    assert share < 1e-9
 
 
 def test_one_bad_energy_balance_is_what_counts():

@@ -1,0 +1,197 @@
+"""`dentscope campaign`: what is done with the cases that were computed."""
+
+from __future__ import annotations
+
+import csv
+import math
+from collections.abc import Iterator
+from pathlib import Path
+from typing import Annotated, Any
+
+import typer
+
+from ..core.errors import EXIT_NOT_CONVERGED, InputError
+
+FILE = "campaign.h5"
+"""Name of a run's file in its folder."""
+
+PUBLISHED = Path(__file__).parents[1] / "data" / "campaign"
+"""Folder of the published data."""
+
+Out = Annotated[Path, typer.Option(help="Folder of the run.")]
+DesignName = Annotated[str, typer.Option(help="Which sweep; see `campaign designs`.")]
+
+
+def show(
+    case: Annotated[str, typer.Argument(help="Case id or its beginning.")],
+    out: Out = Path("build/campaign"),
+) -> None:
+    """Print one case: its pair, its curve, its unloadings."""
+    from rich.console import Console
+    from rich.table import Table
+
+    from ..campaigns import Store
+
+    record = Store(out / FILE).read(case)
+    pair = record.case.pair
+    console = Console()
+    console.print(f"{record.case.name}  [{record.status}] {record.message}")
+    table = Table("Delta/R", "F [N]", "a [mm]", "share", "H/Sy_min")
+    c = record.curve
+    for i in range(0, len(c.get("delta", ())), 3):
+        share = c["sphere"][i] / (c["sphere"][i] + c["flat"][i])
+        table.add_row(
+            f"{c['delta'][i] / pair.R:.4g}",
+            f"{c['force'][i]:.4g}",
+            f"{c['radius'][i] * 1e3:.4g}",
+            f"{share:.3f}",
+            f"{c['hardness'][i] / pair.Sy_min:.3f}",
+        )
+    console.print(table)
+    for unloading in record.unloadings:
+        console.print(
+            f"unloaded from Delta/R = {unloading.depth:.4g}: left in the sphere "
+            f"{unloading.residual_sphere * 1e6:.3g} um, in the flat "
+            f"{unloading.residual_flat * 1e6:.3g} um"
+        )
+
+
+def refine(
+    case: Annotated[str, typer.Argument(help="Case id or its beginning.")],
+    out: Out = Path("build/campaign"),
+) -> int:
+    """Solve one case again more finely: which of its steps are the mesh's, how far is it off."""
+    from ..campaigns import Store, largest_difference
+    from ..campaigns.executor import solve_specification
+    from ..campaigns.quality import steps_not_in
+
+    record = Store(out / FILE).read(case)
+    finer = record.case.refined()
+    typer.echo(f"{record.case.name}: elements {finer.accuracy.fine:g} of the contact radius")
+    solution = solve_specification(finer.specification(), math.inf)
+    again = Store(out / "refined.h5")
+    again.put(finer, solution)
+    other = again.read(finer.id)
+    if not solution.outcome.completed:
+        typer.echo(str(solution.outcome))
+        return EXIT_NOT_CONVERGED
+    found = largest_difference([record], [other])
+    steps = steps_not_in(record.curve, other.curve)
+    for name, own, shown, far in zip(
+        ("F", "a", "delta_s*"),
+        (record.quality.force_step, record.quality.radius_step, record.quality.share_step),
+        steps,
+        (found.force, found.radius, found.share),
+        strict=True,
+    ):
+        typer.echo(
+            f"{name:9} largest step {own:.2%}, of it not in the finer solve {shown:.2%}; "
+            f"largest difference {far:.2%}"
+        )
+    return 0
+
+
+def export(
+    out: Out = Path("build/campaign"),
+    to: Annotated[Path, typer.Option(help="File to write.")] = Path("build/campaign/curves.csv"),
+    data: Annotated[
+        Path | None, typer.Option(help="Campaign file or folder of parts, instead of --out.")
+    ] = None,
+) -> None:
+    """Write all loading curves as one table: CSV, or Parquet where the name ends so."""
+    from ..campaigns import read_curves
+
+    source = data or out / FILE
+    records = read_curves(source)
+    if not records:
+        raise InputError("no completed case", source=str(source))
+    names = list(records[0].curve)
+    if to.suffix not in (".csv", ".parquet"):
+        raise InputError(
+            repr(to.suffix), key="--to", allowed="a name that ends in .csv or .parquet"
+        )
+    head = ["case", "E_s_Pa", "nu_s", "Sy_s_Pa", "E_f_Pa", "nu_f", "Sy_f_Pa", "R_m", *names]
+    to.parent.mkdir(parents=True, exist_ok=True)
+    if to.suffix == ".parquet":
+        try:
+            import pandas
+            import pyarrow  # noqa: F401 (pandas writes Parquet through it)
+        except ImportError as missing:
+            raise InputError(
+                f"{missing.name} is not installed",
+                key="--to",
+                allowed="pip install dentscope[tables]",
+            ) from None
+        pandas.DataFrame(list(_rows(records, names)), columns=head).to_parquet(to, index=False)
+    else:
+        with to.open("w", newline="", encoding="utf-8") as stream:
+            writer = csv.writer(stream)
+            writer.writerow(head)
+            writer.writerows(_rows(records, names))
+    typer.echo(f"{len(records)} cases -> {to}")
+
+
+def publish(
+    design: DesignName = "full",
+    out: Out = Path("build/campaign"),
+    to: Annotated[Path, typer.Option(help="Folder of the data set.")] = Path("data/campaign"),
+) -> None:
+    """Make immutable parts below 10 MB from a complete run."""
+    from ..campaigns import design_named
+    from ..campaigns import publish as write_parts
+
+    for part in write_parts(design_named(design), out / FILE, to):
+        typer.echo(f"{part}: {part.stat().st_size / 1e6:.1f} MB")
+
+
+def gallery(
+    data: Annotated[
+        Path | None,
+        typer.Option(help="Campaign file or folder of parts. Default: published, else own run."),
+    ] = None,
+    fields: Annotated[Path, typer.Option(help="Folder of a run's field files.")] = Path(
+        "build/campaign/fields"
+    ),
+    to: Annotated[Path, typer.Option(help="Folder of the pictures.")] = Path(
+        "docs/gallery/campaign"
+    ),
+) -> None:
+    """Draw the campaign: the figures over Sy*, F/F_c of all cases, stress fields."""
+    from ..figures.campaign import build
+
+    for picture in build(_data(data), to, fields=fields):
+        typer.echo(f"{picture.number:>10}  {picture.title}: {picture.note}")
+    typer.echo(f"written: {to / 'README.md'}")
+
+
+def reproduction(
+    data: Annotated[
+        Path | None,
+        typer.Option(help="Campaign file or folder of parts. Default: published, else own run."),
+    ] = None,
+    to: Annotated[Path, typer.Option(help="Report to write.")] = Path("docs/reproduction.md"),
+) -> None:
+    """Check the trends that chapter 2 of the thesis tells, one by one."""
+    from ..figures.campaign_reproduction import write
+
+    for trend in write(_data(data), to):
+        typer.echo(f"{trend.verdict:>14}  {trend.claim}")
+    typer.echo(f"written: {to}")
+
+
+def _data(given: Path | None) -> Path:
+    """What to read: what was named, or the published data, or the own run."""
+    from ..campaigns.publish import CHECKSUMS
+
+    if given is not None:
+        return given
+    return PUBLISHED if (PUBLISHED / CHECKSUMS).exists() else Path("build/campaign") / FILE
+
+
+def _rows(records: list[Any], names: list[str]) -> Iterator[list[Any]]:
+    for record in records:
+        p = record.case.pair
+        start = [record.case.name, p.sphere.E, p.sphere.nu, p.sphere.Sy]
+        start += [p.flat.E, p.flat.nu, p.flat.Sy, p.R]
+        for row in zip(*(record.curve[name] for name in names), strict=True):
+            yield [*start, *row]
