@@ -3,11 +3,13 @@
 from __future__ import annotations
 
 import re
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Any
 
 import numpy as np
+from scipy.spatial.transform import Rotation
 
 from ...core.errors import InputError, InputErrors
 from ..csv_table import Problems, TextTable, numbers, read_text_table
@@ -22,6 +24,7 @@ _COORDINATE = re.compile(
 )
 _TIME = re.compile(r"(?:t|time)(?:[ _]?[\[(]?(?P<unit>s|ms)[\])]?)?", re.IGNORECASE)
 _FRAME = re.compile(r"frame", re.IGNORECASE)
+_TURN = ("qw", "qx", "qy", "qz")
 _FEWEST = 10
 
 
@@ -84,12 +87,20 @@ class Markers:
         return replace(self, time=self.time[first:stop], position=self.position[first:stop])
 
 
-def read_markers(path: Path, *, unit: str | None, rate: float | None) -> Markers:
+def read_markers(
+    path: Path,
+    *,
+    unit: str | None,
+    rate: float | None,
+    select: str = "",
+    points: Mapping[str, Sequence[float]] | None = None,
+) -> Markers:
     """Read marker tracks from a C3D file or a CSV table.
 
     A CSV table has one header line, a column `time_s` (or `frame`, with `rate`), and three columns
     for each marker that end in x, y, z, with or without a unit: `A_x_mm`, `A.X`, `A:z`. An empty
-    cell, or a marker at exactly (0, 0, 0), was not seen.
+    cell, or a marker at exactly (0, 0, 0), was not seen. A table of poses has columns x, y, z of a
+    place on the body and qw, qx, qy, qz of its rotation (scalar first) instead.
 
     Parameters
     ----------
@@ -99,6 +110,10 @@ def read_markers(path: Path, *, unit: str | None, rate: float | None) -> Markers
         One of `UNITS`; None takes what the file says.
     rate
         Frames per second [1/s]; None takes what the file says.
+    select
+        `COLUMN=VALUE`: only these rows of a table.
+    points
+        Places on the body [m], by name, that stand for markers in a table of poses.
 
     Raises
     ------
@@ -107,7 +122,10 @@ def read_markers(path: Path, *, unit: str | None, rate: float | None) -> Markers
     """
     if path.is_dir():
         raise InputError("a folder", source=str(path), allowed="a C3D file or a CSV table")
-    markers = _c3d(path, unit, rate) if path.suffix.lower() == ".c3d" else _table(path, unit, rate)
+    if path.suffix.lower() == ".c3d":
+        markers = _c3d(path, unit, rate)
+    else:
+        markers = _table(path, unit, rate, select, points or {})
     if markers.time.size < _FEWEST:
         raise InputError(
             f"{markers.time.size} frames", source=str(path), allowed=f"{_FEWEST} or more"
@@ -165,12 +183,22 @@ def _factor(unit: str, path: Path) -> float:
     return UNITS[unit]
 
 
-def _table(path: Path, unit: str | None, rate: float | None) -> Markers:
+def _table(
+    path: Path,
+    unit: str | None,
+    rate: float | None,
+    select: str,
+    points: Mapping[str, Sequence[float]],
+) -> Markers:
     problems = Problems(str(path))
     table = read_text_table(path, _header(path), problems)
     if table is None:
         raise InputErrors(tuple(problems.found))
+    if select:
+        table = _selected(table, select, path)
     time = _times(table, rate, problems)
+    if set(_TURN) <= set(table.columns):
+        return _poses(table, time, unit, points, problems)
     groups = _groups(table)
     if not groups:
         problems.add("no marker", row=1, allowed="columns NAME_x, NAME_y, NAME_z for each marker")
@@ -192,6 +220,47 @@ def _table(path: Path, unit: str | None, rate: float | None) -> Markers:
     if problems.found:
         raise InputErrors(tuple(problems.found))
     return Markers(time, tuple(groups), np.stack(tracks, axis=1), str(path))
+
+
+def _selected(table: TextTable, select: str, path: Path) -> TextTable:
+    column, sign, value = select.partition("=")
+    if not sign or column not in table.columns:
+        raise InputError(
+            repr(select), source=str(path), key="select",
+            allowed=f"COLUMN=VALUE with a column of {', '.join(table.columns[:20])}",
+        )  # fmt: skip
+    rows = [k for k, cell in enumerate(table.cells[column]) if cell == value]
+    cells = {name: tuple(text[k] for k in rows) for name, text in table.cells.items()}
+    return TextTable(table.columns, tuple(table.rows[k] for k in rows), cells)
+
+
+def _poses(
+    table: TextTable,
+    time: Array,
+    unit: str | None,
+    points: Mapping[str, Sequence[float]],
+    problems: Problems,
+) -> Markers:
+    """Return the tracks of places on a body whose pose a table gives."""
+    place = {c[0]: c for c in table.columns if re.fullmatch(r"[xyz](_(m|cm|mm))?", c)}
+    if set(place) != set("xyz"):
+        problems.add("a pose has no place", row=1, allowed="columns x_m, y_m, z_m beside qw to qz")
+    if len(points) < 3:
+        problems.add("places on the body are needed for poses", allowed="a body file, 3 markers")
+    if problems.found:
+        raise InputErrors(tuple(problems.found))
+    stated = place["x"].partition("_")[2]
+    factor = _factor(unit or stated, Path(problems.source))
+    origin = np.stack([numbers(table, place[a], problems) for a in "xyz"], axis=1) * factor
+    turn = np.stack([numbers(table, a, problems) for a in _TURN], axis=1)
+    if problems.found:
+        raise InputErrors(tuple(problems.found))
+    known = np.isfinite(turn).all(axis=1) & (np.linalg.norm(turn, axis=1) > 0.5)
+    position = np.full((time.size, len(points), 3), np.nan)
+    rotation = Rotation.from_quat(turn[known], scalar_first=True).as_matrix()
+    body = np.array(list(points.values()), dtype=np.float64)
+    position[known] = origin[known, None] + np.einsum("kij,mj->kmi", rotation, body)
+    return Markers(time, tuple(points), position, problems.source)
 
 
 def _header(path: Path) -> tuple[str, ...]:

@@ -27,6 +27,9 @@ _CLEAN = 3.0
 _OFF = 2.5
 """Root mean square deviation, in standard deviations, at which a frame ends the flight."""
 
+_FALL = 0.3
+"""Part of gravity by which a flight's own acceleration may differ; drag of a light ball is less."""
+
 _ROUNDS = 6
 _SHARED, _OWN = 3, 12
 """Parameters: b; and for each flight X0, V, rotation about R0, w."""
@@ -124,7 +127,17 @@ def find_flights(poses: Poses, gravity: Array, prior: Prior) -> Flights | None:
     sigma = float(np.median([_alone(poses, s, gravity, prior)[1] for s in spans]))
     spans = _merged(poses, spans, gravity, prior, sigma)
     spans = [_grown(poses, s, spans, gravity, prior, sigma) for s in spans]
-    return fit_flights(poses, [s for s in spans if s[1] - s[0] >= 4], gravity, prior)
+    spans = [s for s in spans if s[1] - s[0] >= 4 and _falls(poses, s, gravity, prior)]
+    return fit_flights(poses, spans, gravity, prior)
+
+
+def _falls(poses: Poses, span: tuple[int, int], gravity: Array, prior: Prior) -> bool:
+    """Whether a span's own acceleration is that of a fall, not of rest or of sliding."""
+    alone = fit_flights(poses, [span], gravity, prior)
+    if alone is None:
+        return False
+    own, g = fall_acceleration(poses, alone), float(np.linalg.norm(gravity))
+    return abs(own.value - g) < max(4.0 * own.std, _FALL * g)
 
 
 def fit_flights(
@@ -285,7 +298,8 @@ def _spans(poses: Poses, gravity: Array, prior: Prior) -> list[tuple[int, int]]:
     for k in range(rms.size):
         if poses.time[k + WINDOW - 1] - poses.time[k] < 2.0 * WINDOW * usual:
             rms[k] = _alone(poses, (k, k + WINDOW - 1), gravity, prior)[1]
-    limit = _CLEAN * max(float(np.quantile(rms, 0.2)), _noise(poses))
+    # a body at rest fits worse than one in flight: the best windows tell the error of a marker
+    limit = _CLEAN * max(1.2 * float(np.quantile(rms, 0.05)), _noise(poses))
     clean = np.concatenate([[False], rms < limit, [False]])
     edges = np.flatnonzero(np.diff(clean.astype(int)))
     return [(int(a), int(b) + WINDOW - 2) for a, b in edges.reshape(-1, 2)]

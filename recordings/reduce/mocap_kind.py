@@ -9,14 +9,20 @@ from typing import Literal
 import numpy as np
 from pydantic import Field, model_validator
 
-from ...core.toml_input import InputTable
-from .measured import Measured
+from ...core.toml_input import InputTable, read_model
+from ..csv_table import number
+from .measured import Array, Measured
 from .mocap import GRAVITY, MocapReduction, Scene, reduce_mocap
-from .mocap_body import make_body
-from .mocap_file import read_markers
-from .mocap_picture import draw_mocap
+from .mocap_body import BodyFile, make_body
+from .mocap_file import Markers, read_markers
+from .mocap_picture import draw_mocap, draw_point
+from .mocap_point import reduce_point
 from .mocap_rigid import rigid_poses
 from .reduced import Reduced
+
+
+def _three_numbers(text: str) -> bool:
+    return len(text.split(",")) == 3 and all(math.isfinite(number(v)) for v in text.split(","))
 
 
 class Options(InputTable):
@@ -35,10 +41,14 @@ class Options(InputTable):
         "", description="TOML file with the places of the markers from the centre of mass"
     )
     markers: str = Field("", description="markers on the striker, as A,B,C; default: all")
+    select: str = Field("", description="COLUMN=VALUE: only these rows of a table")
     up: Literal["z", "-z", "y", "-y", "x", "-x"] = Field("z", description="out of the flat")
     unit: Literal["file", "m", "cm", "mm"] = Field("file", description="file: what it says")
     frame_rate_hz: float | None = Field(
         None, gt=0.0, description="frames per second; default: what the file says"
+    )
+    spin_before_rad_s: str = Field(
+        "", description="of a ball followed as one point, measured otherwise, as X,Y,Z"
     )
     first_frame: int = Field(0, ge=0, description="number of the first frame to use")
     last_frame: int | None = Field(None, ge=0, description="number of the last one")
@@ -55,9 +65,18 @@ class Options(InputTable):
             raise ValueError("length_m is needed for a rod")
         if self.axis and len(self.two_ends) != 2:
             raise ValueError("axis takes two markers, as A:B")
+        if self.spin_before_rad_s and not _three_numbers(self.spin_before_rad_s):
+            raise ValueError("spin_before_rad_s takes three numbers, as X,Y,Z")
         if self.last_frame is not None and self.last_frame < self.first_frame:
             raise ValueError("last_frame is first_frame or more")
         return self
+
+    @property
+    def spin(self) -> Array | None:
+        """Spin before the first bounce (3,) [rad/s], if it was given."""
+        if not self.spin_before_rad_s:
+            return None
+        return np.array([float(v) for v in self.spin_before_rad_s.split(",")])
 
     @property
     def two_ends(self) -> tuple[str, ...]:
@@ -73,12 +92,19 @@ def reduce(path: Path, options: Options) -> Reduced:
     InputError
         The file cannot be read, or shows no body or no impact.
     """
+    places = read_model(Path(options.body), BodyFile).markers if options.body else {}
     markers = read_markers(
-        path, unit=None if options.unit == "file" else options.unit, rate=options.frame_rate_hz
-    )
+        path, unit=None if options.unit == "file" else options.unit, rate=options.frame_rate_hz,
+        select=options.select, points=places,
+    )  # fmt: skip
     markers = markers.part(options.first_frame, options.last_frame)
     if options.markers:
         markers = markers.only(tuple(n.strip() for n in options.markers.split(",")))
+    up = np.zeros(3)
+    up["xyz".index(options.up[-1])] = -1.0 if options.up.startswith("-") else 1.0
+    scene = Scene(up, options.gravity_m_s2, options.length_scale_std)
+    if options.shape == "sphere" and len(markers.names) == 1:
+        return _point(path, markers, scene, options)
     poses = rigid_poses(markers)
     ends = options.two_ends
     body, remarks = make_body(
@@ -87,9 +113,6 @@ def reduce(path: Path, options: Options) -> Reduced:
         radius=options.radius_m, file=Path(options.body) if options.body else None,
         axis=(ends[0], ends[1]) if options.axis else None,
     )  # fmt: skip
-    up = np.zeros(3)
-    up["xyz".index(options.up[-1])] = -1.0 if options.up.startswith("-") else 1.0
-    scene = Scene(up, options.gravity_m_s2, options.length_scale_std)
     found = reduce_mocap(poses, body, scene, source=str(path))
     missing = f"{100.0 * markers.missing:.2g} % of the marker positions are missing"
     noise = {"frame_rate_hz": found.rate, "tip_height_m": found.flights.sigma}
@@ -100,12 +123,24 @@ def reduce(path: Path, options: Options) -> Reduced:
     )  # fmt: skip
 
 
+def _point(path: Path, markers: Markers, scene: Scene, options: Options) -> Reduced:
+    found = reduce_point(markers, scene, spin=options.spin)
+    values = {"position_noise_m": Measured(found.noise, math.nan)}
+    for k, bounce in enumerate(found.bounces, start=1):
+        label = f"bounce{k}_" if len(found.bounces) > 1 else ""
+        values |= {f"{label}{name}": value for name, value in bounce.measured.items()}
+    return Reduced(
+        source=path, values=values, trials=found.trials(), notes=found.notes,
+        draw=lambda picture: draw_point(found, picture), noise={"frame_rate_hz": markers.rate},
+    )  # fmt: skip
+
+
 def _values(found: MocapReduction) -> dict[str, Measured]:
     values = {
         "marker_noise_m": Measured(found.flights.sigma, math.nan),
         "fall_acceleration_m_s2": found.fall,
     }
-    for number, hit in enumerate(found.hits, start=1):
-        label = f"bounce{number}_" if len(found.hits) > 1 else ""
+    for k, hit in enumerate(found.hits, start=1):
+        label = f"bounce{k}_" if len(found.hits) > 1 else ""
         values |= {f"{label}{name}": value for name, value in hit.measured.items()}
     return values

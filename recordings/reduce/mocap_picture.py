@@ -11,6 +11,7 @@ from scipy.spatial.transform import Rotation
 from .measured import Array
 from .mocap import MocapReduction
 from .mocap_flight import deviations
+from .mocap_point import PointReduction
 from .pictures import figure, save
 
 
@@ -49,6 +50,27 @@ def draw_mocap(result: MocapReduction, path: Path) -> None:
     axes[1, 0].set_title(
         f"spin {hit.measured['approach_spin_rad_s']} to {hit.measured['rebound_spin_rad_s']} rad/s"
     )
+    save(made, path)
+
+
+def draw_point(result: PointReduction, path: Path) -> None:
+    """Draw the three coordinates of a followed ball with the parabolas next to each bounce."""
+    made, axes = figure(1, 3, size=(14.0, 4.5))
+    for k, axis in enumerate(axes[0]):
+        axis.plot(result.time, result.position[:, k], "k.", ms=3)
+        for bounce in result.bounces:
+            axis.axvline(bounce.time, color="0.5", ls=":", lw=1.0)
+            for side, colour in zip(bounce.sides, ("C0", "C1"), strict=True):
+                reach = side.time - bounce.time
+                tau = np.linspace(min(reach.min(), 0.0), max(reach.max(), 0.0), 60)
+                axis.plot(
+                    tau + bounce.time, np.polyval(side.coefficients[k, ::-1], tau), colour, lw=1.3
+                )
+        axis.set(xlabel="time [s]", ylabel=f"{'xyz'[k]} [m]")
+        axis.grid(alpha=0.3)
+    first = result.bounces[0].measured
+    axes[0, 0].set_title(f"restitution {first['restitution']}")
+    axes[0, 1].set_title(f"impulse ratio {first['friction_impulse_ratio']}")
     save(made, path)
 
 

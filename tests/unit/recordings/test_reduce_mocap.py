@@ -1,5 +1,6 @@
 """Motion capture: files, rigid-body fit, flights, spin and friction of rendered recordings."""
 
+import csv
 import math
 from pathlib import Path
 
@@ -177,3 +178,48 @@ def test_mistakes_in_a_c3d_file_and_the_options_are_a_line(tmp_path):
         reduce(tmp_path / "a.csv", Options(**sizes, body=str(tmp_path / "body.toml")))
     with pytest.raises(InputError, match="free flights"):
         reduce(tmp_path / "a.csv", Options(shape="body", last_frame=40))
+
+
+def test_poses_stand_for_markers(tmp_path):
+    body = tmp_path / "body.toml"
+    body.write_text("[markers]\nA = [0.1, 0, 0]\nB = [0, 0.1, 0]\nC = [0, 0, 0.1]\n")
+    rows = ["toss,time_s,x_m,y_m,z_m,qw,qx,qy,qz"]
+    half = math.sqrt(0.5)
+    rows += [f"{k % 2},{k / 200},1,2,3,{half},0,0,{half}" for k in range(40)]
+    (tmp_path / "a.csv").write_text("\n".join(rows) + "\n")
+    places = {"A": (0.1, 0.0, 0.0), "B": (0.0, 0.1, 0.0), "C": (0.0, 0.0, 0.1)}
+    found = read_markers(tmp_path / "a.csv", unit=None, rate=None, select="toss=1", points=places)
+    assert found.time.size == 20
+    # a quarter turn about z takes x to y and y to -x
+    expected = [[1.0, 2.1, 3.0], [0.9, 2.0, 3.0], [1.0, 2.0, 3.1]]
+    np.testing.assert_allclose(found.position[0], expected, atol=1e-12)
+    with pytest.raises(InputError, match="select"):
+        read_markers(tmp_path / "a.csv", unit=None, rate=None, select="drop=1", points=places)
+    with pytest.raises(InputError, match="places on the body"):
+        read_markers(tmp_path / "a.csv", unit=None, rate=None)
+
+
+ROOT = Path(__file__).parents[3]
+TOSSES = ROOT.parent / "shared" / "recordings" / "cube-toss-mocap" / "tosses_000-159.csv"
+
+
+@pytest.mark.skipif(not TOSSES.exists(), reason="the raw recordings are not beside the checkout")
+def test_a_tossed_cube_agrees_with_what_its_source_says():
+    body = ROOT / "data" / "recordings" / "recipes" / "cube-toss-body.toml"
+    found = reduce(TOSSES, Options(shape="body", body=str(body), select="toss=0"))
+    # gravity; the friction that the authors' model takes is 0.18, 148 frames a second (SOURCE.md)
+    assert found.values["fall_acceleration_m_s2"].value == pytest.approx(9.81, rel=0.03)
+    assert found.noise["frame_rate_hz"] == pytest.approx(148.0, rel=1e-3)
+    for k in (1, 2, 3):
+        ratio = found.values[f"bounce{k}_friction_impulse_ratio"]
+        assert ratio.value == pytest.approx(0.18, abs=0.03)
+        assert 0.0 < found.values[f"bounce{k}_restitution"].value < 0.5
+    # the authors' own velocity, smoothed, three frames before the first contact
+    with TOSSES.open() as stream:
+        rows = [r for r in csv.DictReader(stream) if r["toss"] == "0"]
+    time = found.values["bounce1_time_s"].value
+    row = {k: float(v) for k, v in [r for r in rows if float(r["t_s"]) < time][-4].items()}
+    speed = math.hypot(row["vx_m_s"], row["vy_m_s"])
+    assert -found.values["bounce1_approach_tangential_m_s"].value == pytest.approx(speed, rel=0.01)
+    fall = row["vz_m_s"] - 9.81 * (time - row["t_s"])
+    assert found.values["bounce1_approach_normal_m_s"].value == pytest.approx(fall, rel=0.05)
