@@ -12,6 +12,7 @@ from dataclasses import dataclass
 
 from .checks_contact import check_contact_size, check_duration, check_energy, check_force
 from .checks_motion import check_friction, check_impulse, check_mass, check_momentum, check_speed
+from .checks_trace import check_trace
 from .findings import Finding, Severity
 from .recording_set import RecordingSet
 
@@ -21,6 +22,7 @@ CHECKS: tuple[Callable[[RecordingSet], list[Finding]], ...] = (
     check_momentum,
     check_friction,
     check_impulse,
+    check_trace,
     check_energy,
     check_force,
     check_contact_size,
