@@ -137,8 +137,10 @@ def _reference(scene: Scene, known: dict[tuple[float, ...], Reference]) -> Refer
         depth = table.depth
         _, flat = law.residual(pair, depth)
         unit = len(table.log_force) // 2
+        # a baseline that does not yield is compared with laws that do not yield
+        strength = math.inf if law.name == "hertz" else pair.Sy_min
         known[key] = Reference(
-            pair.R, pair.E_reduced, pair.Sy_min, depth, np.exp(table.log_force[unit]),
+            pair.R, pair.E_reduced, strength, depth, np.exp(table.log_force[unit]),
             np.exp(table.log_recovery[unit]), flat, scene.force.given_back,
         )  # fmt: skip
     return known[key]

@@ -128,7 +128,8 @@ def curve(reference: Reference, law: Draw) -> Curve:
     middle = 0.5 * (math.log(low) + math.log(high))
     if math.isinf(reference.Y):
         f = _levelled(base, base, x, inside, middle, law.level, math.inf)
-        return Curve(x, f, recovery, crater, 1.5)
+        # without yield the way back is the way in
+        return Curve(x, f, recovery, crater, 1.5 + law.level[1])
     force, power, rec = _shape(reference, law, d)
     f = _levelled(np.log(force), base, x, inside, middle, law.level, law.stray[0])
     rec = np.exp(

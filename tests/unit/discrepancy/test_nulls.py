@@ -45,6 +45,16 @@ def test_elastic_impact_is_hertzs() -> None:
     assert seen["peak_force_N"][0] == pytest.approx(k * depth**1.5, rel=3e-3)
 
 
+def test_a_null_law_without_yield_gives_everything_back() -> None:
+    ref = reference(math.inf)
+    elastic = Reference(
+        R, E, math.inf, ref.depth, ref.force, ref.depth, 0.0 * ref.depth, low=1e-5, high=1e-4
+    )
+    steep = Draw("cut-off", 0.5, 0.5, 0.5, (0.03, 0.03), (0.0, 0.0), 0.0)
+    seen = collide(bodies(1, 1.0), [curve(elastic, steep)])
+    assert seen["restitution"][0] == pytest.approx(1.0, abs=4e-4)
+
+
 @pytest.mark.parametrize("kind", KINDS)
 def test_null_laws_stay_within_some_per_cent_of_what_they_are_levelled_to(kind: str) -> None:
     ref = reference(3e8)
