@@ -15,11 +15,12 @@ from .contact import Surfaces
 from .geometry import Zone, ladder_rings, outer_rings
 from .material import EXACT
 from .mesh import Mesh, contact_mesh
-from .problem import Accuracy, ContactProblem, critical_depth
+from .problem import Accuracy, ContactProblem
 
 Integers = npt.NDArray[np.int64]
 
 _GRADE = 1.15  # largest change of ring width from ring to ring
+_CORE = 0.12  # radius of the innermost block over that where the fine zone begins
 # Beyond this distance [R] the half-space is linear: strains there stay below 1e-4 at a/R = 0.5, and
 # the round-off of 1 + grad u in elements of this size is what would rule the residual.
 _LINEAR = 4.0
@@ -124,25 +125,21 @@ def discretise(
 
 def whole_path(problem: ContactProblem) -> Zone:
     """Radii that the contact edge passes through from the first depth to the last."""
-    _, low, high = _radii(problem)
-    return Zone(low, high)
+    return Zone(math.sqrt(problem.depths[0]), _last_radius(problem))
 
 
-def _radii(problem: ContactProblem) -> tuple[float, float, float]:
-    """Contact radius well below first yield, at the first depth, and a bound of the last."""
+def _last_radius(problem: ContactProblem) -> float:
     deepest = max(problem.depths[-1], 0.5 * problem.radius_at_least**2)
-    first = math.sqrt(problem.depths[0])
-    least = math.sqrt(min(problem.depths[0], critical_depth(problem.pair)))
     # a^2/(R Delta) tends to 2.6 in full plasticity, so the edge stays inside 1.7 sqrt(R Delta)
     last = 1.7 * math.sqrt(deepest) + 0.02
-    return least, first, min(max(last, 1.08 * problem.radius_at_least), 0.9)
+    return min(max(last, 1.08 * problem.radius_at_least), 0.9)
 
 
 def _mesh(problem: ContactProblem, accuracy: Accuracy, zone: Zone) -> Mesh:
-    least, _, last = _radii(problem)
-    end = max(0.65, last)  # the gap beside the contact is read over some elements beyond its edge
+    # the gap beside the contact is read over some elements beyond its edge
+    end = max(0.65, _last_radius(problem))
     rings = ladder_rings(
-        zone, core=0.12 * least, end=end, fine=accuracy.fine, coarse=accuracy.coarse
+        zone, core=_CORE * zone.low, end=end, fine=accuracy.fine, coarse=accuracy.coarse
     )
     far = outer_rings(end, accuracy.flat_radius, first=accuracy.coarse, last=0.3, grade=_GRADE)
     return contact_mesh(

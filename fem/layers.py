@@ -32,7 +32,7 @@ class Layers:
         Which of its four nodes an element has at (inner, surface side), (inner, axis side),
         (outer, surface side) and (outer, axis side), shape (n_layers, divisions, 4).
     level
-        Coordinate along the layers: logarithm of a ring's radius, then the layer's number; shape
+        Coordinate along the layers: a ring's radius, then counted on by the layer; shape
         (n_layers + 1,).
     """
 
@@ -70,9 +70,8 @@ def layers_of(mesh: Mesh, *, sphere: bool) -> Layers:
         rows.append(row)
         quads.append(layer)
         corners.append(corner)
-    level = np.log(radii)
-    beyond = 1.0 + np.arange(len(rows) - len(level))
-    level = np.concatenate([level, level[-1] + beyond])
+    beyond = 1.0 + np.arange(len(rows) - len(radii))
+    level = np.concatenate([radii, radii[-1] + beyond])
     return Layers(np.array(rows), np.array(quads), np.array(corners), level)
 
 

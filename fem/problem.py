@@ -58,12 +58,14 @@ class Accuracy:
     @classmethod
     def quick(cls) -> Accuracy:
         """About three times faster than production, with twice its element size."""
-        return cls(level="quick", divisions=16, coarse=0.1, fine=0.05, step_ratio=1.05)
+        return cls(
+            level="quick", divisions=16, coarse=0.1, fine=0.05, step_ratio=1.04, penalty=20.0
+        )
 
     @classmethod
     def smoke(cls) -> Accuracy:
         """For a first look: ripple of F about 2 %."""
-        return cls(level="smoke", divisions=12, coarse=0.13, fine=0.1, step_ratio=1.07, penalty=5.0)
+        return cls(level="smoke", divisions=12, coarse=0.13, fine=0.1, step_ratio=1.05)
 
     def with_(self, **changes: Any) -> Accuracy:
         """Return a copy with some settings replaced."""

@@ -1,13 +1,14 @@
 """From one mesh to the next, when the contact edge has left the finely meshed zone.
 
-Both meshes stand on the same ladder of rings, so most nodes and material points of the new mesh are
-nodes and points of the old one, and what is known there is copied. In between, along the lines of
-nodes that lead outwards, displacements are interpolated by Akima's splines. At material points that
-have never yielded the elastic strain follows from the displacements alone; where one has, the
-deviator of the elastic strain and the equivalent plastic strain are interpolated linearly, and the
-deviator is brought back onto the yield circle where it lies outside. The pressure always follows
-from the displacements (mean dilatation). The state is therefore in equilibrium only nearly: the
-next Newton solution, at the same approach, sees to that.
+Both meshes stand on the same ladder of rings, so the nodes and material points of the fine rings
+that both have are the same, and what is known there is copied. Elsewhere displacements are
+interpolated along the lines of nodes that lead outwards by Akima's splines, which follow a linear
+field exactly, and in the innermost block between these lines as well. At material points that have
+never yielded the elastic strain follows from the displacements alone; where one has, the deviator
+of the elastic strain and the equivalent plastic strain are interpolated linearly, and the deviator
+is brought back onto the yield circle where it lies outside. The pressure always follows from the
+displacements (mean dilatation). The state is therefore in equilibrium only nearly: the next Newton
+solution, at the same approach, sees to that.
 """
 
 from __future__ import annotations
@@ -17,13 +18,13 @@ import math
 import numpy as np
 import numpy.typing as npt
 from numba import njit
-from scipy.interpolate import Akima1DInterpolator
-from scipy.spatial import cKDTree
+from scipy.interpolate import Akima1DInterpolator, CubicSpline
 
 from .assemble import State, deformation
 from .discretise import Discretisation
 from .layers import Layers, layers_of
 from .material import exponential, log_strain
+from .mesh import Mesh
 
 Floats = npt.NDArray[np.float64]
 Integers = npt.NDArray[np.int64]
@@ -38,7 +39,8 @@ class Transfer:
     Parameters
     ----------
     old, new
-        Two discretisations of one problem, made for different zones.
+        Two discretisations of one problem, made for different zones; the innermost block of the new
+        one is not the smaller.
     """
 
     def __init__(self, old: Discretisation, new: Discretisation) -> None:
@@ -47,22 +49,24 @@ class Transfer:
             (layers_of(old.mesh, sphere=sphere), layers_of(new.mesh, sphere=sphere))
             for sphere in _BODIES
         ]
-        self._node = np.empty(len(new.mesh.points), dtype=np.int64)
-        # body by body, because a node of one may lie on one of the other
-        for mine_new, mine_old in zip(_of_bodies(new), _of_bodies(old), strict=True):
-            tree = cKDTree(old.mesh.points[mine_old])
-            self._node[mine_new] = mine_old[tree.query(new.mesh.points[mine_new])[1]]
 
     def displacements(self, u: Floats) -> Floats:
         """Displacements (2 n_nodes,) on the new mesh."""
         was = u.reshape(-1, 2)
-        now = was[self._node]  # right in the innermost blocks, which the meshes share
-        for before, after in self._layers:
-            spline = Akima1DInterpolator(before.level, was[before.nodes], axis=0)
-            level = np.clip(after.level, before.level[0], before.level[-1])
-            now[after.nodes] = spline(level)
+        now = np.empty(self.new.mesh.points.shape)
+        for sphere, (before, after) in zip(_BODIES, self._layers, strict=True):
+            # the pole closes each line of nodes
+            pole = np.full((1, before.nodes.shape[1]), _pole(self.old.mesh, sphere))
+            nodes = np.concatenate([pole, before.nodes])
+            spline = Akima1DInterpolator(np.insert(before.level, 0, 0.0), was[nodes], axis=0)
+            now[after.nodes] = spline(np.clip(after.level, 0.0, before.level[-1]))
             old, new = _common(before.level, after.level)
             now[after.nodes[new]] = was[before.nodes[old]]
+            core = _core_nodes(self.new.mesh, after, sphere)
+            level, place = _polar(self.new.mesh.points[core], sphere)
+            lines = _places(self.old.mesh, before, sphere)
+            for node, value, at in zip(core, spline(level), place, strict=True):
+                now[node] = CubicSpline(lines, value, axis=0)(at)
         return now.reshape(-1)
 
     def state(self, state: State, u: Floats) -> State:
@@ -75,38 +79,74 @@ class Transfer:
         return State(F=F, b=b, strain=strain, peeq=peeq, dissipated=state.dissipated)
 
     def _interpolated(self, state: State) -> tuple[Floats, Floats]:
-        points = _points(self.old), _points(self.new)
-        data = np.concatenate([state.strain, state.peeq[..., None]], axis=-1)
-        near = np.empty(points[1].shape[:1], dtype=np.int64)
-        sphere = [grid.element_index < grid.mesh.n_sphere_quads for grid in (self.old, self.new)]
-        for mine in _BODIES:
-            old, new = (np.repeat(s == mine, 4) for s in sphere)
-            if new.any():
-                near[new] = np.flatnonzero(old)[cKDTree(points[0][old]).query(points[1][new])[1]]
-        out = data.reshape(-1, 5)[near].reshape(-1, 4, 5)
-        for before, after in self._layers:
-            self._along_layers(data, out, before, after)
-        return np.ascontiguousarray(out[..., :4]), np.ascontiguousarray(out[..., 4])
-
-    def _along_layers(self, data: Floats, out: Floats, before: Layers, after: Layers) -> None:
+        data = np.concatenate([state.strain, state.peeq[..., None]], axis=-1).reshape(-1, 5)
+        out = np.empty((4 * len(self.new.elements.conn), 5))
+        points = _points(self.new)
         place = [_place(grid) for grid in (self.old, self.new)]
-        if place[0][before.quads[0, 0]] < 0:
-            return  # a rigid body has no material points
-        for side in (0, 1):
-            lines = []
-            for where, layers in zip(place, (before, after), strict=True):
-                quads = where[layers.quads]
-                inner, outer = layers.corners[:, :, side], layers.corners[:, :, 2 + side]
-                index = np.stack([4 * quads + inner, 4 * quads + outer], axis=1)
-                lines.append(index.reshape(-1, quads.shape[1]))
-            was = data.reshape(-1, 5)[lines[0]]
-            old, new = _between(before.level), _between(after.level)
-            k = np.clip(np.searchsorted(old, new) - 1, 0, len(old) - 2)
-            t = np.clip((new - old[k]) / (old[k + 1] - old[k]), 0.0, 1.0)
-            t[t > 1.0 - 1e-9] = 1.0
-            t = t[:, None, None]
-            # written so that a weight of 0 or 1 copies: plastic strain must stay exactly zero
-            out.reshape(-1, 5)[lines[1]] = (1.0 - t) * was[k] + t * was[k + 1]
+        for sphere, layers in zip(_BODIES, self._layers, strict=True):
+            before, after = layers
+            if place[0][before.quads[0, 0]] < 0:
+                continue  # a rigid body has no material points
+            old, new = (_lines_of_points(x, where) for x, where in zip(layers, place, strict=True))
+            at_old, at_new = _between(before.level), _between(after.level)
+            out[new] = _linear(at_old, data[old], at_new)
+            rest = np.setdiff1d(
+                np.flatnonzero(np.repeat(_is_sphere(self.new) == sphere, 4)), new.ravel()
+            )
+            level, angle = _polar(points[rest], sphere)
+            lines = _between(_places(self.old.mesh, before, sphere))
+            for point, values, at in zip(
+                rest, _linear(at_old, data[old], level), angle, strict=True
+            ):
+                out[point] = _linear(lines, values, np.array([at]))[0]
+        points_of = out.reshape(-1, 4, 5)
+        return np.ascontiguousarray(points_of[..., :4]), np.ascontiguousarray(points_of[..., 4])
+
+
+def _lines_of_points(layers: Layers, place: Integers) -> Integers:
+    """Material points along the layers and across them, shape (2 n_layers, 2 divisions)."""
+    first = 4 * place[layers.quads][..., None] + layers.corners
+    n_layers, divisions = layers.quads.shape
+    return first.reshape(n_layers, divisions, 2, 2).swapaxes(1, 2).reshape(2 * n_layers, -1)
+
+
+def _linear(x: Floats, values: Floats, at: Floats) -> Floats:
+    """Linear interpolation along the first axis, constant beyond the ends.
+
+    Written so that a weight of 0 or 1 copies: plastic strain must stay exactly zero.
+    """
+    k = np.clip(np.searchsorted(x, at) - 1, 0, len(x) - 2)
+    t = np.clip((at - x[k]) / (x[k + 1] - x[k]), 0.0, 1.0)
+    t[t > 1.0 - 1e-9] = 1.0
+    t = t.reshape(-1, *[1] * (values.ndim - 1))
+    return np.asarray((1.0 - t) * values[k] + t * values[k + 1])
+
+
+def _polar(points: Floats, sphere: bool) -> tuple[Floats, Floats]:
+    """Distance from the pole and angle from the surface (0) to the axis (1)."""
+    rho = np.hypot(*points.T)
+    angle = np.arctan2(np.abs(points[:, 1]), points[:, 0])
+    start = np.arcsin(0.5 * rho) if sphere else np.zeros(len(rho))
+    return rho, np.clip((angle - start) / (0.5 * math.pi - start), 0.0, 1.0)
+
+
+def _places(mesh: Mesh, layers: Layers, sphere: bool) -> Floats:
+    """Angles of the lines of nodes, as `_polar` counts them, shape (divisions + 1,)."""
+    return _polar(mesh.points[layers.nodes[0]], sphere)[1]
+
+
+def _pole(mesh: Mesh, sphere: bool) -> int:
+    return int((mesh.slave if sphere else mesh.master)[0])
+
+
+def _core_nodes(mesh: Mesh, layers: Layers, sphere: bool) -> Integers:
+    n = mesh.n_sphere_points
+    body = np.arange(n) if sphere else np.arange(n, len(mesh.points))
+    return np.setdiff1d(body, layers.nodes.ravel())
+
+
+def _is_sphere(grid: Discretisation) -> npt.NDArray[np.bool_]:
+    return np.asarray(grid.element_index < grid.mesh.n_sphere_quads)
 
 
 def _between(level: Floats) -> Floats:
@@ -119,13 +159,8 @@ def _common(old: Floats, new: Floats) -> tuple[Integers, Integers]:
     """Indices of the levels that both meshes have."""
     k = np.clip(np.searchsorted(old, new), 1, len(old) - 1)
     k -= new - old[k - 1] < old[k] - new
-    same = np.abs(old[k] - new) < 1e-9
+    same = np.abs(old[k] / new - 1.0) < 1e-9
     return k[same], np.flatnonzero(same)
-
-
-def _of_bodies(grid: Discretisation) -> tuple[Integers, Integers]:
-    n = grid.mesh.n_sphere_points
-    return np.arange(n), np.arange(n, len(grid.mesh.points))
 
 
 def _place(grid: Discretisation) -> Integers:
