@@ -104,8 +104,9 @@ def write_part(path: Path, records: Sequence[CaseRecord], *, about: dict[str, st
         depths = [(k, {"depth": r.profiles["depth"]}) for k, r in rows if r.profiles]
         _put_table(file, "profiles", "case", depths, {"depth": PROFILES["depth"]}, precision="f8")
         states = list(enumerate(p for _, r in rows if r.profiles for p in _states(r.profiles)))
-        _put_table(file, "profile_sphere", "profile", states, _ON_SPHERE)
-        _put_table(file, "profile_flat", "profile", states, _ON_FLAT)
+        for table, columns in (("profile_sphere", _ON_SPHERE), ("profile_flat", _ON_FLAT)):
+            nodes = [(k, _nodes(state, columns)) for k, state in states]
+            _put_table(file, table, "profile", nodes, columns)
 
 
 def read_part(path: Path) -> list[CaseRecord]:
@@ -192,6 +193,12 @@ def _states(profiles: Columns) -> list[Columns]:
         {name: profiles[name][k] for name in PROFILES if name != "depth"}
         for k in range(len(profiles["depth"]))
     ]
+
+
+def _nodes(state: Columns, columns: dict[str, Dataset]) -> Columns:
+    """The nodes of one surface, without the NaN that fill its row up to the longest."""
+    there = np.isfinite(state[next(iter(columns))])
+    return {name: state[name][there] for name in columns}
 
 
 def _put_table(
@@ -282,11 +289,19 @@ def _read_profiles(file: h5py.File, n: int) -> list[dict[str, Floats]]:
         rows = np.flatnonzero(owner == k)
         states = [{**spheres[row], **flats[row]} for row in rows]
         found = {
-            name: np.array([state[name] for state in states])
+            name: _filled([state[name] for state in states])
             for name in (*_ON_SPHERE, *_ON_FLAT)
             if states
         }
         out.append({"depth": depth[rows], **found} if states else {})
+    return out
+
+
+def _filled(rows: Sequence[Floats]) -> Floats:
+    """Rows of uneven length as one array, filled up with NaN as in a campaign file."""
+    out = np.full((len(rows), max(map(len, rows))), np.nan)
+    for row, values in zip(out, rows, strict=True):
+        row[: len(values)] = values
     return out
 
 

@@ -58,11 +58,12 @@ def run(
     executor: Any = DaskExecutor.connect(scheduler) if scheduler else LocalExecutor(workers=workers)
     cases = distinct_cases(chosen)
     todo = [cases[key] for key in cases_to_do(chosen, store, again=again)]
-    forecast = _forecast(todo, store, executor.workers)
+    forecast, slower = _forecast(todo, store, executor.workers)
+    busy = f" ({slower:.1f} times slower than measured: busy, or slow)" if slower > 1.5 else ""
     typer.echo(
         f"design {design}: {before.designed} cases, {before.done} done, {before.failed} failed, "
         f"{len(todo)} to compute on {executor.workers} workers; about "
-        f"{duration(forecast.left_s())} here. Results go to {path}."
+        f"{duration(forecast.left_s())} here{busy}. Results go to {path}."
     )
     started = time.monotonic()
     until = started + 60.0 * limit_minutes if limit_minutes else math.inf
@@ -142,11 +143,13 @@ for command in (
     app.command()(command)
 
 
-def _forecast(todo: list[Any], store: Any, workers: int) -> Any:
+def _forecast(todo: list[Any], store: Any, workers: int) -> tuple[Any, float]:
+    """What a run will take, and how much slower than measured the machine is."""
     from ..campaigns import Forecast, pace_of_this_machine
 
     ended = [(s.case, s.cpu_s) for s in store.summaries() if s.status == "done" and not s.stale]
-    return Forecast(todo, workers=workers, ended=ended, pace=pace_of_this_machine())
+    pace = pace_of_this_machine()
+    return Forecast(todo, workers=workers, ended=ended, pace=pace), pace
 
 
 def _summary(design: Any, out: Path, after: Any, wall_s: float, cpu_s: float) -> None:

@@ -60,7 +60,10 @@ def solved(case, seed=0, factor=1.0):
         Unloading(d, curve, 1e-6 * draw.random(), -1e-9, **shapes, steps=9, outcome=COMPLETED)
         for d in case.unload_from
     )
-    profiles = tuple(Profile(d, *draw.random((5, n))) for d in case.profiles)
+    # the mesh follows the contact: profiles have uneven numbers of nodes
+    profiles = tuple(
+        Profile(d, *np.sort(draw.random((5, n - k))) * 1e-3) for k, d in enumerate(case.profiles)
+    )
     counters = Counters(**dict.fromkeys(Counters.__dataclass_fields__, 1))
     return Solution(
         case.problem(), case.accuracy, COMPLETED, curve, unloadings, (), counters, "m", profiles
