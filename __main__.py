@@ -4,11 +4,14 @@ from __future__ import annotations
 
 import sys
 
-from .cli import run
+from .core.threads import one_thread_each
 
 
 def main() -> None:
     """Run the command line and leave with its exit code."""
+    one_thread_each()  # before numpy is loaded
+    from .cli import run
+
     sys.exit(run())
 
 

@@ -16,10 +16,10 @@ from dataclasses import dataclass
 from typing import Any, Protocol
 
 from ..core.errors import InputError
+from ..core.threads import one_thread_each
 from ..fem import Solution, solve
 from .case import Case
 
-_THREADS = ("OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS", "MKL_NUM_THREADS", "NUMBA_NUM_THREADS")
 _MOST_POOLS = 20  # that a run makes when workers die between cases
 _TRIES = 3
 _WINDOW = 4  # cases sent ahead to each dask worker
@@ -73,8 +73,7 @@ class LocalExecutor:
         from pebble import ProcessPool
 
         # workers are spawned: the variables act before their numpy loads
-        for name in _THREADS:
-            os.environ[name] = "1"
+        one_thread_each()
 
         def new_pool() -> Any:
             return ProcessPool(
