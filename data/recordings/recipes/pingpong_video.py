@@ -1,0 +1,54 @@
+"""A phone video of a bouncing table-tennis ball as a recording set.
+
+    python data/recordings/recipes/pingpong_video.py pingpongvid2.mov SET
+
+Raw file: `dentscope recordings fetch pingpong-video` (no licence stated, so not shipped). The
+container says 60 frames a second, but every other frame repeats the one before: they are found and
+left out. The ball is out of the ruler's plane, so that the size of a pixel comes from gravity.
+"""
+
+import sys
+from pathlib import Path
+
+from dentscope.recordings import Setup
+from dentscope.recordings.reduce.into_set import Row, Stored, store
+from dentscope.recordings.reduce.kinds import load_kind
+
+OPTIONS = {
+    "frame_rate_hz": 60.0,
+    "shape": "sphere",
+    "background": "median",
+    "channel": "green",
+    "last_frame": 95,
+}
+# a shell of celluloid or ABS: 2/3 m R2 about its centre
+SETUP = {
+    "format": "recording-set/1",
+    "name": "pingpong-video",
+    "description": "one drop of a table-tennis ball on wood, followed by a phone: four bounces",
+    "source": "github zakilyawatsonjarrett/PTV-restitution-coefficient-home-experiment",
+    "licence": "none stated; not for shipping",
+    "target": {"shape": "flat", "material": "wood", "law": "measured-restitution"},
+    "strikers": {
+        "ball": {
+            "shape": "sphere",
+            "tip_radius_m": 0.02,
+            "mass_kg": 0.0027,
+            "inertia_kg_m2": 7.2e-7,
+            "material": "hollow ball",
+        }
+    },
+    "environment": {"fluid": "air"},
+}
+
+
+def recipe(video: Path, folder: Path) -> Stored:
+    """Write the set."""
+    reduced = load_kind("video").run(video, OPTIONS, source="recipe")
+    setup = Setup.model_validate(SETUP)
+    return store(reduced, folder, Row(striker="ball"), kind="video", options=OPTIONS, setup=setup)
+
+
+if __name__ == "__main__":
+    done = recipe(Path(sys.argv[1]), Path(sys.argv[2]))
+    sys.stdout.write(f"{len(done.trials)} trials in {sys.argv[2]}\n")
