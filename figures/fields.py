@@ -27,7 +27,9 @@ from ..fem import (
     solve,
 )
 from ..fem.discretise import discretise
+from ..fem.geometry import Zone
 from ..impact import chapter3
+from ..models import LAWS
 from .plot import Floats, Picture, finish, sheet
 
 STORE = Path(__file__).resolve().parents[1] / "docs" / "gallery" / "fields"
@@ -155,10 +157,12 @@ def chapter_3_again(records: Sequence[CaseRecord]) -> list[Picture]:
 
 
 def _grid_of(pair: Pair, depth: float) -> tuple[Floats, Any]:
+    """Mesh of published results when the contact has reached Delta/R = `depth`."""
     problem = ContactProblem(
         pair=pair, depths=geometric_depths(0.3 * critical_depth(pair), depth, 20)
     )
-    mesh = discretise(problem, Accuracy.production()).mesh
+    a = float(LAWS["ghaednia"].contact_radius(pair, depth * pair.R)) / pair.R
+    mesh = discretise(problem, Accuracy.production(), Zone(0.9 * a, 1.4 * a)).mesh
     return np.asarray(mesh.points[mesh.quads]), mesh
 
 
@@ -176,14 +180,14 @@ def _draw_mesh(axis: Any, corners: Floats, spheres: int, *, reach: float) -> Non
 def _mesh() -> Picture:
     made, axes = sheet(2, size=(4.8, 6.2))
     corners, mesh = _grid_of(WANTED["2.3"].pair(), 0.04)
-    for axis, reach in zip(axes, (1.2, 0.08), strict=True):
+    for axis, reach in zip(axes, (1.2, 0.45), strict=True):
         _draw_mesh(axis, corners, mesh.n_sphere_quads, reach=reach)
         finish(axis, x="r/R", y="z/R")
     note = (
         f"Settings of published results: {len(mesh.quads)} four-node elements up to 200 R, "
         f"{mesh.n_sphere_quads} of them in the sphere; the thesis has {_THESIS_ELEMENTS} nine-node "
-        "ones. The elements shrink towards the contact in proportion to their distance from it, so "
-        "that every contact radius on the way is resolved alike."
+        "ones. Drawn for Delta/R = 0.04: the mesh is made anew as the contact grows, finest where "
+        "its edge is, so that every contact radius on the way is resolved alike."
     )
     return Picture("2.1", "Mesh, whole and near the contact", made, note)
 
@@ -192,7 +196,7 @@ def _mesh_of_chapter_3() -> Picture:
     made, (axis,) = sheet(size=(4.8, 6.2))
     wanted = WANTED["3.7"]
     corners, mesh = _grid_of(wanted.pair(), wanted.depth)
-    _draw_mesh(axis, corners, mesh.n_sphere_quads, reach=0.12)
+    _draw_mesh(axis, corners, mesh.n_sphere_quads, reach=0.1)
     finish(axis, x="r/R", y="z/R")
     note = (
         f"(a) only: {len(mesh.quads)} elements for the chapter's pair and R = 136.5 mm; the stress "

@@ -84,7 +84,8 @@ def _tip() -> Picture:
         f"A tip of 136.5 mm rises by {_SPAN**2 / 8.0 / 0.1365 * 1e6:.1f} um over 4.94 mm, 0.90 of "
         f"a pixel. The polynomial of order 8 through a thresholded edge reads {low:.2g} to "
         f"{high:.2g} times the true radius in 90 % of {_TRIES} photographs; our fit of the "
-        f"whole outline with its grey values reads {1e3 * radius.value:.0f} +- {1e3 * radius.std:.0f} mm."
+        "whole outline with its grey values reads "
+        f"{1e3 * radius.value:.0f} +- {1e3 * radius.std:.0f} mm."
     )
     return Picture("3.2", "Radius of the tip from a photograph", made, note)
 
