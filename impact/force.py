@@ -22,9 +22,10 @@ RADIUS, MODULUS, FLAT, EDGE, EDGE_DEPTH, EDGE_LIMIT = range(6)
 RECOVERY, DAMPING, RADIATION, SHAPE, RETURN = range(6, 11)
 N_FORCE = 11
 
-# The branch vector: what `set_peak` writes, and the smooth stretch of the loading curve.
-SEGMENT_LOW, SEGMENT_HIGH, PEAK_FORCE, POWER = 7, 8, 9, 10
-N_BRANCH = 11
+# The branch vector: what `set_peak` writes, the smooth stretch of the loading curve, the contact
+# radius at the peak and whether the depth falls.
+SEGMENT_LOW, SEGMENT_HIGH, PEAK_FORCE, POWER, PEAK_RADIUS, RECEDING = range(7, 13)
+N_BRANCH = 13
 
 # Nodes of the factors: ln(depth / R), equally spaced; first those of the loading force, then as
 # many of the elastic recovery.
@@ -182,11 +183,42 @@ def _jump_between(loading, par, force, factors, low, high):
     return high if abs(f_high - f_low) > 1e-9 else math.nan
 
 
+@njit(float64(LOADING, VECTOR, VECTOR, VECTOR, float64), cache=True)
+def _meeting_point(loading, par, force, factors, x):
+    """Logarithm of the depth at which the cubics through either side of a kink near x meet."""
+    h = 4e-4
+    sides = np.empty((2, 4))
+    for k in range(4):
+        sides[0, k] = _log_force(loading, par, force, factors, x - 1e-5 - k * h)
+        sides[1, k] = _log_force(loading, par, force, factors, x + 1e-5 + k * h)
+    low, high = -1e-5, 1e-5
+    g_low = 0.0
+    for i in range(40):
+        t = low if i == 0 else high if i == 1 else 0.5 * (low + high)
+        g = 0.0
+        for side in range(2):
+            u = (-1e-5 - t if side == 0 else t - 1e-5) / h
+            y0, y1, y2, y3 = sides[side]
+            d1, d2, d3 = y1 - y0, y2 - 2.0 * y1 + y0, y3 - 3.0 * y2 + 3.0 * y1 - y0
+            value = y0 + u * (d1 + (u - 1.0) / 2.0 * (d2 + (u - 2.0) / 3.0 * d3))
+            g += value if side == 0 else -value
+        if i == 0:
+            g_low = g
+        elif i == 1:
+            if (g < 0.0) == (g_low < 0.0):
+                return x
+        elif (g < 0.0) == (g_low < 0.0):
+            low = t
+        else:
+            high = t
+    return x + 0.5 * (low + high)
+
+
 @njit(float64(LOADING, VECTOR, VECTOR, VECTOR, float64, float64), cache=True)
 def _kink_between(loading, par, force, factors, low, high):
     """Logarithm of the depth of a kink (a jump of the slope); nan without one.
 
-    To about 1e-6 for a finite jump, to rounding for a slope that is infinite on one side.
+    To about 1e-10 for a finite jump, to rounding for a slope that is infinite on one side.
     """
     while high - low > 4e-15 * abs(low):
         h = 0.25 * (high - low)
@@ -207,7 +239,9 @@ def _kink_between(loading, par, force, factors, low, high):
     left -= _log_force(loading, par, force, factors, x - h)
     right = _log_force(loading, par, force, factors, x + h)
     right -= _log_force(loading, par, force, factors, x + middle)
-    return x if abs(right - left) > 2e-3 * h else math.nan
+    if abs(right - left) <= 2e-3 * h:
+        return math.nan
+    return _meeting_point(loading, par, force, factors, x)
 
 
 @njit(float64[::1](LOADING, VECTOR, VECTOR, VECTOR), cache=True)

@@ -12,8 +12,9 @@ from numpy.typing import NDArray
 
 from ..core.material import Pair
 from ..models.base import ContactLaw
-from . import compiled as c
 from . import force as fo
+from . import layout as c
+from .compiled import many_impacts, one_impact
 from .result import Impact, impact_of
 from .scene import RateFree, Scene, Spot
 from .strength import NODES, strength_table
@@ -98,6 +99,7 @@ def arrays_of(
     body[c.V_Y] = -approach.speed + approach.spin * body[c.HALF_COS]
     body[c.FLIGHT] = _flight(scene) if math.isnan(settings.flight) else settings.flight
     body[c.LOSS] = scene.modes.loss_factor
+    body[c.COMPLIANCE] = scene.friction.stiffness
     body[c.TOLERANCE] = settings.tolerance
     body[c.MAX_STEPS], body[c.MAX_CONTACTS] = settings.max_steps, settings.max_contacts
     factors = _factors(scene, pair)
@@ -148,7 +150,7 @@ def strike_many(scenes: Sequence[Scene], settings: Settings = Settings()) -> lis
     for scene in scenes:
         a = arrays_of(scene, settings)
         out = np.zeros(c.N_OUT)
-        c.one_impact(
+        one_impact(
             *kernels_of(scene.law),
             a.par,
             a.force,
@@ -168,17 +170,17 @@ def strike_rows(scene: Scene, body: Array, settings: Settings = Settings()) -> A
     """Integrate impacts that share law, pair and modes: rows of the body vector in, rows out.
 
     The fast path of inference: `body` starts from `arrays_of(scene).body` repeated, with the
-    columns of `compiled` (MASS, MU, V_Y, ...) overwritten.
+    columns of `layout` (MASS, MU, V_Y, ...) overwritten.
 
     Returns
     -------
-    (n, N_OUT) the columns `compiled.OBSERVABLES + compiled.COUNTS`.
+    (n, N_OUT) the columns `layout.OBSERVABLES + layout.COUNTS`.
     """
     a = arrays_of(scene, settings)
     rows = np.ascontiguousarray(body, dtype=float)
     out = np.zeros((len(rows), c.N_OUT))
     spot = np.tile(a.spot, (len(rows), 1))
-    c.many_impacts(
+    many_impacts(
         *kernels_of(scene.law), a.par[None], a.force[None], a.factors[None], a.breaks, rows, spot,
         a.omega[None], a.psi[None], out,
     )  # fmt: skip
@@ -193,7 +195,7 @@ def strike_batch(scenes: Sequence[Scene], settings: Settings = Settings()) -> Ar
 
     Returns
     -------
-    (n, N_OUT) the columns `compiled.OBSERVABLES + compiled.COUNTS`.
+    (n, N_OUT) the columns `layout.OBSERVABLES + layout.COUNTS`.
     """
     out = np.full((len(scenes), c.N_OUT), np.nan)
     rows = [arrays_of(scene, settings, breaks=_SMOOTH) for scene in scenes]
@@ -203,7 +205,7 @@ def strike_batch(scenes: Sequence[Scene], settings: Settings = Settings()) -> Ar
     for members in groups.values():
         part = [rows[i] for i in members]
         found = np.zeros((len(part), c.N_OUT))
-        c.many_impacts(
+        many_impacts(
             *kernels_of(scenes[0].law),
             *(np.stack([getattr(a, key) for a in part]) for key in ("par", "force", "factors")),
             _SMOOTH,

@@ -15,8 +15,9 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.integrate import solve_ivp
 
-from . import compiled as c
 from . import force as fo
+from . import layout as c
+from .events import reference_depth
 from .integrate import Arrays, Settings, arrays_of, kernels_of, spot_row
 from .result import Impact, impact_of
 from .scene import Scene
@@ -60,12 +61,15 @@ class _Contact:
     approaching: bool = True
     low: float = 0.0
     high: float = math.inf
+    peak_radius: float = 0.0
+    receding: bool = False
+    side: float = 0.0
 
     def stretch(self, breaks: Array, depth: float) -> None:
         """Bound the loading curve to its smooth stretch around `depth`."""
         above = breaks[breaks > depth * (1.0 + 2e-13)]
         below = breaks[breaks <= depth * (1.0 + 2e-13)]
-        self.low = float(below[-1]) if len(below) else 0.0
+        self.low = float(below[-1]) * (1.0 + 1e-13) if len(below) else 0.0
         self.high = float(above[0]) * (1.0 - 1e-13) if len(above) else math.inf
 
 
@@ -81,6 +85,8 @@ class _Motion:
         self.tip = float(a.body[c.TIP])
         self.n = len(a.omega)
         self.mu, self.mu_s = float(a.body[c.MU]), float(a.body[c.MU_STATIC])
+        self.spring = float(a.body[c.COMPLIANCE])
+        self.compliant = math.isfinite(self.spring)
 
     def lever(self, z: Array) -> tuple[float, float]:
         """Vector from the centre of mass to the contact point, r_T - r_C."""
@@ -96,7 +102,7 @@ class _Motion:
         height = z[_Y] + (ry + self.sin0 + self.tip)
         vx, vy = z[_VX] - z[_OM] * ry, z[_VY] + z[_OM] * rx
         if self.n:
-            q, p = z[_Q : _Q + self.n], z[_Q + self.n :]
+            q, p = z[_Q : _Q + self.n], z[_Q + self.n : _Q + 2 * self.n]
             height += float(self.a.psi[1] @ q)
             vx += float(self.a.psi[0] @ p)
             vy += float(self.a.psi[1] @ p)
@@ -128,6 +134,62 @@ class _Motion:
         f = max(f * (1.0 + a.force[fo.DAMPING] * rate), 0.0)
         return f, plough, rate - a.body[c.S_PLATE] * f
 
+    def radius_now(self, depth: float, k: _Contact) -> float:
+        """Contact radius: the law's on loading, about the residual depth as Hertz's else."""
+        if k.phase == UNLOADING:
+            rest = k.branch[1] + k.branch[2]
+            return k.peak_radius * math.sqrt(max(depth - rest, 0.0) / (k.branch[0] - rest))
+        return self.pressed_radius(depth)
+
+    def pressed_radius(self, depth: float) -> float:
+        """Contact radius on loading, with the flat and the edge of the tip."""
+        if depth <= 0.0:
+            return 0.0
+        flat = float(self.a.force[fo.FLAT])
+        x = depth + flat**2 / (2.0 * self.a.force[fo.RADIUS])
+        a = max(flat, float(self.radius(self.a.par, x, x)))
+        return float(min(a, self.a.force[fo.EDGE]))
+
+    def stiffness(self, z: Array, k: _Contact) -> float:
+        """Tangential stiffness k_t = s 2 E' a [N/m] (Mindlin 1949)."""
+        depth = self.motion(z)[0] - k.offset
+        return float(self.spring * 2.0 * self.a.force[fo.MODULUS] * self.radius_now(depth, k))
+
+    def limit(self, z: Array, k: _Contact) -> float:
+        """Largest tangential force while the contact slides [N]."""
+        f, plough, _ = self.normal(z, k)
+        mu = self.mu
+        if self.mu_s != self.mu:
+            v = abs(self.motion(z)[2])
+            mu += (self.mu_s - mu) * math.exp(-v / self.a.body[c.MU_SPEED])
+        return (mu + plough) * f
+
+    def slip(self, z: Array, k: _Contact, ahead: float) -> float:
+        """Speed at which the surfaces slip: the bodies' less the spring's [m/s].
+
+        The spring follows the friction limit, whose rate is a difference along the motion.
+        """
+        v = self.motion(z)[2]
+        depth = self.motion(z)[0] - k.offset + ahead * self.normal(z, k)[2]
+        rate = self.derivative(z, k)
+        first, second = z, z + ahead * rate
+        # Look back where looking ahead would leave this stretch of the force.
+        if k.phase == UNLOADING and depth < k.branch[1] + k.branch[2]:
+            first, second = z - 2.0 * ahead * rate, z - ahead * rate
+        elif k.phase == LOADING and depth > k.high:
+            first, second = z - ahead * rate, z
+        stiff, later = self.stiffness(first, k), self.stiffness(second, k)
+        if stiff <= 0.0 or later <= 0.0:
+            return k.sign * abs(v)
+        if k.receding:
+            change = self.limit(second, k) / later - self.limit(first, k) / stiff
+            return v - k.sign * change / ahead
+        return v - k.sign * (self.limit(second, k) - self.limit(first, k)) / (ahead * stiff)
+
+    def held(self, z: Array, k: _Contact) -> float:
+        """Force of the tangential spring on the striker [N]."""
+        return float(z[-1] * self.stiffness(z, k) if k.receding else z[-1])
+
     def tangential(self, z: Array, k: _Contact, f: float) -> tuple[float, float, float]:
         """Force that would hold the contact point, and both parts of its free acceleration."""
         rx, ry = self.lever(z)
@@ -136,21 +198,17 @@ class _Motion:
         tn = rx * (-ry) / self.inertia + float(psi[0] @ psi[1])
         free = -(z[_OM] ** 2) * rx
         if self.n:
-            q, p = z[_Q : _Q + self.n], z[_Q + self.n :]
+            q, p = z[_Q : _Q + self.n], z[_Q + self.n : _Q + 2 * self.n]
             free -= float(psi[0] @ (omega**2 * q + self.a.body[c.LOSS] * omega * p))
         return -(tn * f + free) / tt, tn * f + free, tt
 
     def forces(self, z: Array, k: _Contact) -> tuple[float, float, float]:
-        f, plough, rate = self.normal(z, k)
+        f, _, rate = self.normal(z, k)
         if k.phase == FLIGHT:
             return 0.0, 0.0, rate
         if k.sign == 0.0:
-            return f, self.tangential(z, k, f)[0], rate
-        mu = self.mu
-        if self.mu_s != self.mu:
-            v = abs(self.motion(z)[2])
-            mu += (self.mu_s - mu) * math.exp(-v / self.a.body[c.MU_SPEED])
-        return f, -k.sign * (mu + plough) * f, rate
+            return f, self.held(z, k) if self.compliant else self.tangential(z, k, f)[0], rate
+        return f, -k.sign * self.limit(z, k), rate
 
     def derivative(self, z: Array, k: _Contact) -> Array:
         """Newton and Euler: m a = F_f i + (F_n - m g) j, I alpha = (r_T - r_C) x F."""
@@ -171,18 +229,37 @@ class _Motion:
         slide = self.motion(z)[2]
         d[_U], d[_PN], d[_PT], d[_WN], d[_WT] = slide, f, ft, f * rate, -ft * slide
         if self.n:
-            q, p = z[_Q : _Q + self.n], z[_Q + self.n :]
+            q, p = z[_Q : _Q + self.n], z[_Q + self.n : _Q + 2 * self.n]
             omega, psi = self.a.omega, self.a.psi
             d[_Q : _Q + self.n] = p
-            d[_Q + self.n :] = psi[0] * ft + psi[1] * f - omega * (omega * q + b[c.LOSS] * p)
+            d[_Q + self.n : _Q + 2 * self.n] = (
+                psi[0] * ft + psi[1] * f - omega * (omega * q + b[c.LOSS] * p)
+            )
             d[_WD] = b[c.LOSS] * float(omega @ p**2)
+        if self.compliant and k.sign == 0.0 and k.phase != FLIGHT:
+            # The spring: its force while the area grows, its deformation while it shrinks.
+            d[-1] = -slide if k.receding else -self.stiffness(z, k) * slide
         return d
 
     def sign_from_rest(self, z: Array, k: _Contact, small: float) -> float:
         """Sign of the sliding that follows rest; 0 when friction holds."""
-        f = max(self.normal(z, k)[0], small)
+        f, plough, _ = self.normal(z, k)
+        f = max(f, small)
         need, pull, _ = self.tangential(z, k, f)
-        return 0.0 if abs(need) <= self.mu_s * f else math.copysign(1.0, pull)
+        return 0.0 if abs(need) <= (self.mu_s + plough) * f else math.copysign(1.0, pull)
+
+    def sign_at_touch(self, z: Array, k: _Contact, ahead: float) -> float:
+        """Sign of sliding as a contact that gives way sideways begins; 0 when it sticks."""
+        k.sign = 1.0
+        later = z + ahead * self.derivative(z, k)
+        k.sign = math.copysign(1.0, self.motion(later)[2])
+        return k.sign if k.sign * self.slip(later, k, 1e-3 * ahead) > 0.0 else 0.0
+
+    def settle(self, z: Array, k: _Contact) -> None:
+        """Let the contact rest; its spring keeps the friction that it slid with."""
+        force, stiff = self.forces(z, k)[1], self.stiffness(z, k)
+        z[-1] = force if not k.receding else (force / stiff if stiff > 0.0 else 0.0)
+        k.sign = 0.0
 
 
 def reference_impact(scene: Scene, settings: Settings = Settings(), *, points: int = 0) -> Trace:  # noqa: B008
@@ -210,7 +287,7 @@ class _Walk:
     def run(self) -> Trace:
         mo, b = self.motion, self.a.body
         k = self.meet(self.centre0)
-        z = np.zeros(_Q + 2 * mo.n)
+        z = np.zeros(_Q + 2 * mo.n + int(mo.compliant))
         z[_Y] = -(k.offset + (k.branch[1] + k.branch[2] if k.phase == UNLOADING else 0.0))
         z[_VX], z[_VY], z[_OM] = b[c.V_X], b[c.V_Y], b[c.V_SPIN]
         start = z.copy()
@@ -221,6 +298,7 @@ class _Walk:
         self.small = 1e-7 * reduced * self.v_n / self.t_ref
         self.rubbing = mo.mu > 0.0 or mo.mu_s > 0.0 or b[c.PLOUGH] > 0.0
         k.sign = self.first_sign(z, k)
+        k.side = self.side_of(z, k)
         out = np.full(c.N_OUT, np.nan)
         state = self.follow(z, k)
         self.fill(out, start, state, v_t)
@@ -229,10 +307,17 @@ class _Walk:
 
     def first_sign(self, z: Array, k: _Contact) -> float:
         """Sign of sliding at a touch; 0 when the point rests and nothing moves it."""
+        if self.motion.compliant:
+            return self.motion.sign_at_touch(z, k, 1e-6 * self.t_ref)
         slide = self.motion.motion(z)[2]
         if abs(slide) > 1e-14 * self.v_n:
             return math.copysign(1.0, slide)
         return self.motion.sign_from_rest(z, k, self.small)
+
+    def side_of(self, z: Array, k: _Contact) -> float:
+        """Sign of the tangential motion just after a touch."""
+        later = z + 1e-6 * self.t_ref * self.motion.derivative(z, k)
+        return float(np.sign(self.motion.motion(later)[2]))
 
     def meet(self, x: float) -> _Contact:
         """Begin a contact at x: crater, flattened tip or fresh metal."""
@@ -253,6 +338,7 @@ class _Walk:
                 s[c.SPOT_PEAK],
                 branch,
             )
+            k.peak_radius = mo.pressed_radius(float(branch[0]))
             if abs(r) <= 0.5 or branch[1] > branch[2]:
                 k.phase, k.branch = UNLOADING, branch
                 k.offset -= branch[1] + branch[2]
@@ -295,13 +381,23 @@ class _Walk:
         else:
             found.append(("part", lambda t, z: depth(z) - rest))
             found.append(("return", lambda t, z: -mo.normal(z, k)[2]))
-        if k.sign != 0.0:
+        if mo.compliant and k.side != 0.0:
+            found.append(("reversal", lambda t, z: k.side * mo.motion(z)[2]))
+        if k.sign != 0.0 and mo.compliant:
+            found.append(("rest", lambda t, z: k.sign * mo.slip(z, k, 1e-6 * self.t_ref)))
+        elif k.sign != 0.0:
             found.append(("rest", lambda t, z: k.sign * mo.motion(z)[2]))
         elif self.rubbing:
 
             def hold(t: float, z: Array) -> float:
                 f, plough, _ = mo.normal(z, k)
-                return float((mo.mu_s + plough) * f - abs(mo.tangential(z, k, f)[0]))
+                pull = mo.held(z, k) if mo.compliant else mo.tangential(z, k, f)[0]
+                gap = float((mo.mu_s + plough) * f - abs(pull))
+                if mo.compliant:
+                    # over the forces: near the parting friction vanishes before the spring does
+                    slack = k.approaching or z[-1] == 0.0
+                    return gap / (f + abs(pull)) if f > 0.0 else float(slack) - 1.0
+                return gap
 
             found.append(("slip", hold))
         return found
@@ -320,6 +416,9 @@ class _Walk:
         scale = self.scales(z)
         for _ in range(int(self.settings.max_contacts) * 100):
             self.stuck |= k.sign == 0.0 and self.rubbing and k.phase != FLIGHT
+            if mo.compliant:
+                # the spring's deformation, or its force
+                scale[-1] = self.d_ref if k.receding else mo.m * self.v_n / self.t_ref
             active = self.events(k)
             for _, function in active:
                 function.__dict__.update(terminal=True, direction=-1.0)
@@ -348,6 +447,8 @@ class _Walk:
                 item for item, te in zip(active, sol.t_events, strict=True) if len(te)
             )
             if k.phase != FLIGHT:
+                if name == "part" and mo.compliant:
+                    name, found, t = self.earlier(before, begin, t, k, active, scale)
                 z, t = self.polished(before, begin, t, k, found, scale)
             if k.phase != FLIGHT:
                 self.extremes(z, base)
@@ -362,6 +463,10 @@ class _Walk:
                     self.p_in, self.w_in = self.p_in + gain_p, self.w_in + gain_w
                 else:
                     self.p_out, self.w_out = self.p_out + gain_p, self.w_out - gain_w
+            if mo.compliant and name in ("turn", "return"):
+                stiff, k.receding = mo.stiffness(z, k), name == "turn"
+                if stiff > 0.0:
+                    z[-1] *= 1.0 / stiff if k.receding else stiff
             if name == "turn":
                 k.approaching = False
                 self.first = t if math.isnan(self.first) else self.first
@@ -378,11 +483,21 @@ class _Walk:
             elif name == "reload":
                 k.phase = LOADING
                 k.stretch(self.a.breaks, k.branch[0])
+                self.regrip(z, k)
             elif name == "jump":
                 k.stretch(self.a.breaks, k.high)
                 self.force = max(self.force, mo.normal(z, k)[0])
+                self.regrip(z, k)
+            elif name == "reversal":
+                k.side = -k.side
+            elif name == "rest" and mo.compliant:
+                mo.settle(z, k)
             elif name == "rest":
                 k.sign = mo.sign_from_rest(z, k, self.small) if self.rubbing else -k.sign
+            elif name == "slip" and mo.compliant:
+                force = mo.held(z, k)
+                slack = abs(force) <= 1e-6 * self.small
+                k.sign = math.copysign(1.0, mo.motion(z)[2] if slack else -force)
             elif name == "slip":
                 k.sign = math.copysign(1.0, mo.tangential(z, k, mo.normal(z, k)[0])[1])
             else:
@@ -392,10 +507,48 @@ class _Walk:
                 self.contacts += 1
                 touched = t
                 k = self.meet(self.centre0 + mo.place(z))
+                if mo.compliant:
+                    z[-1] = 0.0
                 k.sign = self.first_sign(z, k)
+                k.side = self.side_of(z, k)
                 base += z[_U] - kept[_U]
         self.ending, self.last = c.STEP_BUDGET, t
         return z
+
+    def regrip(self, z: Array, k: _Contact) -> None:
+        """Let a yielding contact rest where the friction limit now grows faster than its spring."""
+        mo = self.motion
+        if mo.compliant and k.sign * mo.slip(z, k, 1e-6 * self.t_ref) < 0.0:
+            mo.settle(z, k)
+
+    def earlier(
+        self,
+        start: float,
+        z: Array,
+        end: float,
+        k: _Contact,
+        active: list[tuple[str, Any]],
+        scale: Array,
+    ) -> tuple[str, Any, float]:
+        """Return the event that ends an interval which seems to end by parting.
+
+        A step across the parting hides what the spring does just before it.
+        """
+        short = end - 1e-7 * self.t_ref
+        part = next(item for item in active if item[0] == "part")
+        others = [item for item in active if item[0] not in ("part", "return")]
+        if short <= start:
+            return (*part, end)
+        sol = solve_ivp(
+            lambda _t, y: self.motion.derivative(y, k),
+            (start, short), z, method="DOP853", rtol=1e-11, atol=1e-12 * scale,
+            events=[function for _, function in others], max_step=self.longest(k),
+            first_step=min(1e-4 * self.t_ref, 0.5 * (short - start)),
+        )  # fmt: skip
+        for (name, function), te in zip(others, sol.t_events, strict=True):
+            if len(te):
+                return name, function, float(te[-1])
+        return (*part, end)
 
     def polished(
         self, start: float, z: Array, end: float, k: _Contact, event: Any, scale: Array
@@ -437,6 +590,7 @@ class _Walk:
             mo.loading, mo.unloading, mo.residual, a.par, a.force, a.factors, depth, k.branch
         )
         k.phase, k.local = UNLOADING, local + k.branch[2]
+        k.peak_radius = mo.pressed_radius(depth)
         self.tip_flat = tip + k.branch[1]
         self.flat = max(self.flat, k.local)
         s[c.SPOT_TIP], s[c.SPOT_FLAT], s[c.SPOT_PEAK] = self.tip_flat, k.local, depth
@@ -459,7 +613,7 @@ class _Walk:
         scale[[_PN, _PT]] = mo.m * self.v_n
         scale[[_WN, _WT, _WS, _WD]] = mo.m * self.v_n**2
         root = math.sqrt(mo.m)
-        scale[_Q : _Q + mo.n], scale[_Q + mo.n :] = self.d_ref * root, self.v_n * root
+        scale[_Q : _Q + mo.n], scale[_Q + mo.n : _Q + 2 * mo.n] = self.d_ref * root, self.v_n * root
         return scale
 
     def record(self, sol: Any, k: _Contact) -> None:
@@ -479,7 +633,7 @@ class _Walk:
         mo = self.motion
         rx, ry = mo.lever(z)
         rebound = z[_VY] + z[_OM] * rx
-        q, p = z[_Q : _Q + mo.n], z[_Q + mo.n :]
+        q, p = z[_Q : _Q + mo.n], z[_Q + mo.n : _Q + 2 * mo.n]
         modal = 0.5 * float(p @ p + (mo.a.omega * q) @ (mo.a.omega * q)) + z[_WD]
 
         def kinetic(s: Array) -> float:
@@ -532,7 +686,5 @@ def fo_reference(walk: _Walk, reduced: float) -> float:
     """Depth that takes up the kinetic energy of the approach; the scale of the tolerances."""
     mo, a = walk.motion, walk.a
     return float(
-        c._reference_depth(
-            mo.loading, a.par, a.force, a.factors, 0.5 * reduced * walk.v_n**2, mo.tip
-        )
+        reference_depth(mo.loading, a.par, a.force, a.factors, 0.5 * reduced * walk.v_n**2, mo.tip)
     )

@@ -9,7 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ..core.errors import COMPLETED, Ending, Outcome
-from .compiled import (
+from .layout import (
     CONTACT_BUDGET,
     COUNTS,
     DONE,

@@ -23,10 +23,11 @@ from dentscope.impact import (
     strike_many,
     strike_rows,
 )
-from dentscope.impact import compiled as c
+from dentscope.impact import layout as c
 from dentscope.models.ghaednia import GHAEDNIA
 from dentscope.models.hertz import HERTZ
 from dentscope.models.jackson_green import JACKSON_GREEN
+from dentscope.models.kogut_etsion import KOGUT_ETSION
 
 LAWS = (HERTZ, JACKSON_GREEN, GHAEDNIA)
 STEEL = Material(E=200e9, nu=0.3, Sy=760e6, density=7800.0)
@@ -103,6 +104,18 @@ def test_compiled_and_library_integrator_agree() -> None:
         # The thesis's weights start with an infinite slope: that law gets a digit less.
         bound = 1e-7 if scene.law is GHAEDNIA else 1e-8
         assert_agree(scene, bound, settings=Settings(tolerance=1e-11))
+
+
+def test_integrators_agree_on_contacts_that_give_way_sideways() -> None:
+    """Spring, slip, reversal and both ends of it, located as events by either."""
+    rng = np.random.default_rng(5)
+    for number in range(15):
+        scene = random_scene(rng, number)
+        law = (HERTZ, JACKSON_GREEN, KOGUT_ETSION)[number % 3]
+        yielding = Friction(scene.friction.mu or 0.2, stiffness=float(rng.uniform(0.4, 1.4)))
+        assert_agree(
+            scene.with_(law=law, friction=yielding), 1e-8, settings=Settings(tolerance=1e-11)
+        )
 
 
 def test_integrators_agree_on_a_vibrating_rod_with_several_contacts() -> None:
