@@ -199,15 +199,13 @@ def test_poses_stand_for_markers(tmp_path):
         read_markers(tmp_path / "a.csv", unit=None, rate=None)
 
 
-ROOT = Path(__file__).parents[3]
-TOSSES = ROOT.parent / "shared" / "recordings" / "cube-toss-mocap" / "tosses_000-159.csv"
+TOSS = Path(__file__).parents[3] / "data" / "recordings" / "recipes" / "cube-toss"
 
 
-@pytest.mark.skipif(not TOSSES.exists(), reason="the raw recordings are not beside the checkout")
 def test_a_tossed_cube_agrees_with_what_its_source_says():
-    body = ROOT / "data" / "recordings" / "recipes" / "cube-toss-body.toml"
-    found = reduce(TOSSES, Options(shape="body", body=str(body), select="toss=0"))
-    # gravity; the friction that the authors' model takes is 0.18, 148 frames a second (SOURCE.md)
+    body = str(TOSS / "body.toml")
+    found = reduce(TOSS / "toss-0.csv", Options(shape="body", body=body, select="toss=0"))
+    # gravity; 148 frames a second; the authors' model of the same table takes a friction of 0.18
     assert found.values["fall_acceleration_m_s2"].value == pytest.approx(9.81, rel=0.03)
     assert found.noise["frame_rate_hz"] == pytest.approx(148.0, rel=1e-3)
     for k in (1, 2, 3):
@@ -215,8 +213,8 @@ def test_a_tossed_cube_agrees_with_what_its_source_says():
         assert ratio.value == pytest.approx(0.18, abs=0.03)
         assert 0.0 < found.values[f"bounce{k}_restitution"].value < 0.5
     # the authors' own velocity, smoothed, three frames before the first contact
-    with TOSSES.open() as stream:
-        rows = [r for r in csv.DictReader(stream) if r["toss"] == "0"]
+    with (TOSS / "toss-0.csv").open() as stream:
+        rows = list(csv.DictReader(stream))
     time = found.values["bounce1_time_s"].value
     row = {k: float(v) for k, v in [r for r in rows if float(r["t_s"]) < time][-4].items()}
     speed = math.hypot(row["vx_m_s"], row["vy_m_s"])
