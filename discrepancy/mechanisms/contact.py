@@ -196,6 +196,10 @@ class Roughness(Mechanism):
     )  # fmt: skip
     direction: ClassVar[Mapping[str, int]] = {"contact_time_s": 1, "peak_force_N": -1}
 
+    def applies(self, situations: Sequence[Situation]) -> str:
+        """Needs a metal that yields."""
+        return _needs_yielding_law(situations)
+
     def ranges(self, situations: Sequence[Situation]) -> tuple[Parameter, ...]:
         """A stated roughness narrows the range."""
         stated = situations[0][1].roughness
@@ -211,6 +215,13 @@ class Roughness(Mechanism):
             return scene
         factors = Series(sigma).factors(strength_table(scene.law, scene.pair), scene.pair)
         return scene.with_(force=replace(scene.force, factors=times(scene.force.factors, factors)))
+
+
+def _needs_yielding_law(situations: Sequence[Situation]) -> str:
+    if all(scene.law.name == "hertz" for scene, _ in situations):
+        # its recovery is Hertz's own, so another loading curve would lose energy
+        return "the bodies do not yield: the surface's shape takes no energy, and is not simulated"
+    return ""
 
 
 def times(present: tuple[float, ...], factors: Array) -> tuple[float, ...]:
@@ -239,6 +250,10 @@ class TruncatedTip(Mechanism):
         "permanent_depth_m": -1,
         "peak_force_N": 1,
     }
+
+    def applies(self, situations: Sequence[Situation]) -> str:
+        """Needs a metal that yields."""
+        return _needs_yielding_law(situations)
 
     def attach(self, scene: Scene, values: Values, around: Surroundings) -> Scene:
         """Replace the tip."""
