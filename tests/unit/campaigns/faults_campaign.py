@@ -101,6 +101,16 @@ class Run:
         self.process.stdout.close()
 
 
+def still_there(workers, *, patience_s=30.0):
+    """How many processes do not end; on a free machine they see in a second that they are alone."""
+    until = time.monotonic() + patience_s
+    left = workers
+    while left and time.monotonic() < until:
+        time.sleep(0.1)
+        left = [pid for pid in left if Path(f"/proc/{pid}").exists()]
+    return len(left)
+
+
 def inject(folder, *, kills, cases, seed, say=tell):
     """Kill until `kills` are done, then let it finish; return what happened.
 
@@ -132,8 +142,7 @@ def inject(folder, *, kills, cases, seed, say=tell):
         run.ended()
         if path.exists():
             lost += len(set(told) - {record.case.name for record in read_curves(path)})
-        time.sleep(2.5)  # the workers see within two seconds that they are alone
-        left_over += sum(Path(f"/proc/{pid}").exists() for pid in workers)
+        left_over += still_there(workers)
         say(f"kill {sum(count.values())}: {len(told)} told as stored, {lost} of them lost")
         run = Run(path, cases, told)
     run.ended()
