@@ -73,9 +73,10 @@ def _compared(v: Verdict) -> Iterable[str]:
     p = v.problem
     yield "<h2>What was compared</h2>"
     trials = sum(len(c.trials) for c in p.conditions)
+    metal = " without yield" if p.law.name == "hertz" else " of a metal that knows no rate"
     yield (
         f"<p>{trials} trials at {len(p.conditions)} conditions, {len(p.cells)} numbers, against a "
-        f"rigid striker on a rigid base with a rate-free metal (contact law "
+        f"rigid striker on a rigid base{metal} (contact law "
         f"<b>{_e(p.law.name)}</b>, its own error kept as an unknown inside the law).</p>"
     )
     if v.audit:
@@ -146,7 +147,8 @@ def _ranking(v: Verdict) -> Iterable[str]:
     )
     yield (
         '<p class="small">ln evidence is counted from the baseline. p of fit: how many sets that '
-        "the explanation itself would make fit it no better; below 0.01 it is rejected.</p>"
+        "the explanation itself would make fit it no better; below 0.01 it is rejected. Held-out "
+        "miss: rms distance of conditions left out of the fit, in standard errors.</p>"
     )
     if v.excluded:
         yield "<p>Excluded by arithmetic, before fitting:</p>"
@@ -176,7 +178,11 @@ def _numbers(v: Verdict) -> Iterable[str]:
         )
         for n in v.problem.nuisances
     ]  # fmt: skip
-    yield _table(("number", "stated", "found", "shift in standard deviations", ""), rows)
+    yield _table(("number", "stated", "found", "pull", ""), rows)
+    yield (
+        '<p class="small">Pull: shift over what chance would give, in standard deviations; beyond '
+        "2 the sheet is doubted.</p>"
+    )
     if v.notes:
         yield "<h2>Notes</h2>"
         yield _list(v.notes)
