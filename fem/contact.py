@@ -1,13 +1,14 @@
 """Frictionless contact of the two deforming surfaces by node-weighted (mortar) gaps.
 
-The sphere's surface is the slave side, the flat's the master side. For the gap both are smoothed to
-C1 curves of cubic segments through their nodes, whose slopes at the nodes are those of parabolas
-through three neighbours; the first node has its mirror image beyond the axis. The gap at a slave
-point is vertical, g = z_sphere(r) - z_flat(r) at equal current r.
+The surface of the weaker body is the slave side, the other's the master side: the other way round,
+steps fail and take twice the iterations. For the gap both are smoothed to C1 curves of cubic
+segments through their nodes, whose slopes at the nodes are those of parabolas through three
+neighbours; the first node has its mirror image beyond the axis. The gap at a slave point is
+vertical, g = z_sphere(r) - z_flat(r) at equal current r.
 
 The gap of slave node A is the mean G_A = int N_A g dA / int N_A dA over the reference area
 2 pi R dR, its pressure p_A = max(0, -eps_A G_A), so the sum of the pressures is the vertical force
-exactly. The force of a point acts normal to the flat's curve; on each body it goes to the two nodes
+exactly. The force of a point acts normal to the master curve; on each body it goes to the two nodes
 of the straight segment, as the elements' own functions have it: a uniform pressure then gives both
 bodies the loads of a uniform pressure, whatever the size of their elements, which the weights of
 the smooth curves would not. The tangent is therefore not symmetric.
@@ -45,6 +46,8 @@ class Surfaces:
         int N_A dA, shape (n_slave,).
     stiffness
         Penalty stiffness eps_A, shape (n_slave,) [E'/R].
+    sign
+        1 if the sphere is the slave side, -1 if the flat is.
     slave_shape, master_shape
         How the slopes at the ends of a segment, in units of its length, follow from the differences
         between its four nodes, shape (n_slave - 1, 4) and (n_master - 1, 4).
@@ -57,12 +60,44 @@ class Surfaces:
     stiffness: Floats
     slave_shape: Floats
     master_shape: Floats
+    sign: float = 1.0
+
+    @property
+    def sphere(self) -> Integers:
+        """Surface nodes of the sphere."""
+        return self.slave if self.sign > 0.0 else self.master
+
+    @property
+    def flat(self) -> Integers:
+        """Surface nodes of the flat."""
+        return self.master if self.sign > 0.0 else self.slave
 
     @classmethod
     def build(
-        cls, points: Floats, *, slave: Integers, master: Integers, penalty: float
+        cls,
+        points: Floats,
+        *,
+        sphere: Integers,
+        flat: Integers,
+        penalty: float,
+        flat_is_slave: bool,
     ) -> Surfaces:
-        """Set up from the node coordinates (n_nodes, 2); `penalty` in E' over the edge length."""
+        """Set up the two surfaces.
+
+        Parameters
+        ----------
+        points
+            Node coordinates, shape (n_nodes, 2) [R].
+        sphere, flat
+            Their surface nodes from the axis outwards.
+        penalty
+            Contact stiffness in E' over the edge length.
+        flat_is_slave
+            Which side is which.
+        """
+        slave, master = (flat, sphere) if flat_is_slave else (sphere, flat)
+        if flat_is_slave:  # as far as the sphere's surface lies above it
+            slave = slave[points[slave, 0] < 0.98 * points[master[-1], 0]]
         r = points[slave, 0]
         length = np.diff(r)
         s = 0.5 * (1.0 + POINTS)
@@ -72,7 +107,8 @@ class Surfaces:
         mass[1:] += (weight * s).sum(axis=1)
         edge = np.maximum(np.append(length, 0.0), np.insert(length, 0, 0.0))
         slave_shape, master_shape = _slopes(r), _slopes(points[master, 0])
-        return cls(slave, master, weight, mass, penalty / edge, slave_shape, master_shape)
+        sign = -1.0 if flat_is_slave else 1.0
+        return cls(slave, master, weight, mass, penalty / edge, slave_shape, master_shape, sign)
 
 
 def _slopes(r: Floats) -> Floats:
@@ -150,12 +186,12 @@ def _curve(t, shape, W, W1, W2):
 
 
 @njit(cache=True)
-def _gaps(xs, xm, shape_s, shape, segment, position, gap, radius):
+def _gaps(xs, xm, shape_s, shape, sign, segment, position, gap, radius):
     """Gap of every slave point; False when a point has left the master surface."""
     W = np.empty(4)
     W1 = np.empty(4)
     W2 = np.empty(4)
-    last = xm.shape[0] - 3
+    last = xm.shape[0] - 2
     k = 0
     for e in range(xs.shape[0] - 1):
         for q in range(3):
@@ -174,19 +210,20 @@ def _gaps(xs, xm, shape_s, shape, segment, position, gap, radius):
                 return False
             r0 = -xm[1, 0] if k == 0 else xm[k - 1, 0]
             z0 = xm[1, 1] if k == 0 else xm[k - 1, 1]
+            n = min(k + 2, last + 1)  # beyond the last node the weight is zero
             t = (r - xm[k, 0]) / (xm[k + 1, 0] - xm[k, 0])
             for _ in range(30):
                 _curve(t, shape[k], W, W1, W2)
-                f = W[0] * r0 + W[1] * xm[k, 0] + W[2] * xm[k + 1, 0] + W[3] * xm[k + 2, 0] - r
-                d = W1[0] * r0 + W1[1] * xm[k, 0] + W1[2] * xm[k + 1, 0] + W1[3] * xm[k + 2, 0]
+                f = W[0] * r0 + W[1] * xm[k, 0] + W[2] * xm[k + 1, 0] + W[3] * xm[n, 0] - r
+                d = W1[0] * r0 + W1[1] * xm[k, 0] + W1[2] * xm[k + 1, 0] + W1[3] * xm[n, 0]
                 t -= f / d
                 if abs(f) < 1e-15 * r:
                     break
             _curve(t, shape[k], W, W1, W2)
             segment[e, q] = k
             position[e, q] = t
-            gap[e, q] = z - (
-                W[0] * z0 + W[1] * xm[k, 1] + W[2] * xm[k + 1, 1] + W[3] * xm[k + 2, 1]
+            gap[e, q] = sign * (
+                z - (W[0] * z0 + W[1] * xm[k, 1] + W[2] * xm[k + 1, 1] + W[3] * xm[n, 1])
             )
             radius[e, q] = r
     return True
@@ -212,10 +249,11 @@ def _point_derivatives(
     z1 = W1[0] * xm[first, 1]
     z2 = W2[0] * xm[first, 1]
     for j in range(1, 4):
-        r1 += W1[j] * xm[k - 1 + j, 0]
-        r2 += W2[j] * xm[k - 1 + j, 0]
-        z1 += W1[j] * xm[k - 1 + j, 1]
-        z2 += W2[j] * xm[k - 1 + j, 1]
+        node = min(k - 1 + j, xm.shape[0] - 1)
+        r1 += W1[j] * xm[node, 0]
+        r2 += W2[j] * xm[node, 0]
+        z1 += W1[j] * xm[node, 1]
+        z2 += W2[j] * xm[node, 1]
     slope = z1 / r1
     bend = (z2 - slope * r2) / r1
     length = xm[k + 1, 0] - xm[k, 0]
@@ -227,7 +265,7 @@ def _point_derivatives(
         for j in range(_LOCAL):
             db[i, j] = 0.0
     for j in range(4):
-        node = first if j == 0 else k - 1 + j
+        node = first if j == 0 else min(k - 1 + j, xm.shape[0] - 1)
         sg = sign if j == 0 else 1.0
         i = 8 + 2 * j
         dof[i] = 2 * master[node]
@@ -267,10 +305,10 @@ def _point_derivatives(
 
 @njit(cache=True)
 def _evaluate(
-    xs, xm, slave, master, shape_s, shape, weight, mass, stiffness,
+    xs, xm, slave, master, shape_s, shape, sign, weight, mass, stiffness,
     segment, position, gap, radius, pressure, force, with_tangent, row, col, value,
 ):  # fmt: skip
-    if not _gaps(xs, xm, shape_s, shape, segment, position, gap, radius):
+    if not _gaps(xs, xm, shape_s, shape, sign, segment, position, gap, radius):
         return 0.0, 0.0, -1
     n_edges = gap.shape[0]
     n_nodes = n_edges + 1
@@ -305,6 +343,9 @@ def _evaluate(
                 e, q, segment[e, q], position[e, q], radius[e, q], xs, xm, shape_s, shape,
                 slave, master, W, W1, W2, dof, dgs[e, q], b, db,
             )  # fmt: skip
+            for i in range(_LOCAL):
+                dgs[e, q, i] *= sign
+                b[i] *= sign
             s = 0.5 * (1.0 + POINTS[q])
             p = ((1.0 - s) * pressure[e] + s * pressure[e + 1]) * weight[e, q]
             for i in range(_LOCAL):
@@ -315,7 +356,7 @@ def _evaluate(
                         if db[i, j] != 0.0:
                             row[n] = dof[i]
                             col[n] = dof[j]
-                            value[n] = -p * db[i, j]
+                            value[n] = -p * sign * db[i, j]
                             n += 1
     if not with_tangent:
         return total, energy, 0
@@ -389,7 +430,7 @@ def contact_forces(
     room = tangent or Triplets(np.empty(0, np.int64), np.empty(0, np.int64), np.empty(0))
     total, energy, n = _evaluate(
         x[surfaces.slave], x[surfaces.master], surfaces.slave, surfaces.master,
-        surfaces.slave_shape, surfaces.master_shape,
+        surfaces.slave_shape, surfaces.master_shape, surfaces.sign,
         surfaces.weight, surfaces.mass, surfaces.stiffness,
         segment, position, gap, radius, pressure, force,
         tangent is not None, room.row, room.col, room.value,

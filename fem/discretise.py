@@ -9,7 +9,7 @@ import numpy as np
 import numpy.typing as npt
 import skfem
 
-from ..core.material import Material
+from ..core.material import Material, Pair
 from .assemble import Elements, State, bulk_forces
 from .contact import Surfaces
 from .geometry import Zone, ladder_rings, outer_rings
@@ -113,7 +113,11 @@ def discretise(
         elements=elements,
         element_index=index,
         surfaces=Surfaces.build(
-            mesh.points, slave=mesh.slave, master=mesh.master, penalty=accuracy.penalty
+            mesh.points,
+            sphere=mesh.sphere_surface,
+            flat=mesh.flat_surface,
+            penalty=accuracy.penalty,
+            flat_is_slave=_flat_is_slave(pair),
         ),
         driven=np.unique(np.concatenate(driven)),
         held=np.unique(np.concatenate(held)),
@@ -121,6 +125,11 @@ def discretise(
         stress_unit=pair.E_reduced,
         round_off=float(np.finfo(float).eps * (elements.K[:, None] * elements.dV * slope).sum()),
     )
+
+
+def _flat_is_slave(pair: Pair) -> bool:
+    """The weaker body, whose surface deforms the more, is the slave side."""
+    return pair.sphere.rigid or pair.flat.strength < pair.sphere.strength
 
 
 def whole_path(problem: ContactProblem) -> Zone:
@@ -137,7 +146,7 @@ def _last_radius(problem: ContactProblem) -> float:
 
 def _mesh(problem: ContactProblem, accuracy: Accuracy, zone: Zone) -> Mesh:
     # the gap beside the contact is read over some elements beyond its edge
-    end = max(0.65, _last_radius(problem))
+    end = min(max(0.65, (1.0 + 6.0 * accuracy.fine) * _last_radius(problem)), 0.93)
     rings = ladder_rings(
         zone, core=_CORE * zone.low, end=end, fine=accuracy.fine, coarse=accuracy.coarse
     )

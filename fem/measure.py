@@ -48,8 +48,8 @@ def read(grid: Discretisation, state: Equilibrium, delta: float) -> Reading:
         force=state.reaction,
         radius=edge_of_contact(state.contact, x[grid.surfaces.slave, 0]),
         radius_last_node=last,
-        sphere=delta + float(state.u[2 * grid.surfaces.slave[0] + 1]),
-        flat=-float(state.u[2 * grid.surfaces.master[0] + 1]),
+        sphere=delta + float(state.u[2 * grid.surfaces.sphere[0] + 1]),
+        flat=-float(state.u[2 * grid.surfaces.flat[0] + 1]),
         force_defect=(state.contact.force - state.reaction) / state.reaction
         if state.reaction
         else 0.0,

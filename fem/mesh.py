@@ -38,8 +38,8 @@ class Mesh:
         Node numbers, counter-clockwise, shape (n_elements, 4).
     n_sphere_points, n_sphere_quads
         How many nodes and elements belong to the sphere.
-    slave, master
-        Surface nodes of the sphere and of the flat, from the axis outwards.
+    sphere_surface, flat_surface
+        Surface nodes of the bodies, from the axis outwards.
     top, far
         Nodes of the hemisphere's flat top face and of the half-space's far boundary.
     rings, far_rings
@@ -50,8 +50,8 @@ class Mesh:
     quads: Integers
     n_sphere_points: int
     n_sphere_quads: int
-    slave: Integers
-    master: Integers
+    sphere_surface: Integers
+    flat_surface: Integers
     top: Integers
     far: Integers
     rings: Floats
@@ -91,15 +91,15 @@ def contact_mesh(
     node = np.arange(len(r))
     ball = (node < n) & (np.abs(np.hypot(r, z - 1.0) - 1.0) < 1e-9) & (z < 0.999)
     plane = (node >= n) & (np.abs(z) < 1e-12)
-    slave = np.flatnonzero(ball & (chord < rings[-1] * (1.0 + 1e-9)))
-    master = np.flatnonzero(plane & (r < 2.0 * rings[-1]))
+    outer = np.flatnonzero(ball & (chord < rings[-1] * (1.0 + 1e-9)))
+    upper = np.flatnonzero(plane & (r < 2.0 * rings[-1]))
     return Mesh(
         points=np.column_stack([r, z]),
         quads=np.vstack([q_s, q_f + n]),
         n_sphere_points=n,
         n_sphere_quads=len(q_s),
-        slave=slave[np.argsort(r[slave])],
-        master=master[np.argsort(r[master])],
+        sphere_surface=outer[np.argsort(r[outer])],
+        flat_surface=upper[np.argsort(r[upper])],
         top=np.flatnonzero((node < n) & (z > 1.0 - 1e-9)),
         far=np.flatnonzero((node >= n) & (chord > far_rings[-1] * (1.0 - 1e-9))),
         rings=rings,

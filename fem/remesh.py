@@ -136,7 +136,7 @@ def _places(mesh: Mesh, layers: Layers, sphere: bool) -> Floats:
 
 
 def _pole(mesh: Mesh, sphere: bool) -> int:
-    return int((mesh.slave if sphere else mesh.master)[0])
+    return int((mesh.sphere_surface if sphere else mesh.flat_surface)[0])
 
 
 def _core_nodes(mesh: Mesh, layers: Layers, sphere: bool) -> Integers:

@@ -53,14 +53,14 @@ def take_snapshot(
 def take_profile(grid: Discretisation, found: Equilibrium, *, depth: float, pair: Pair) -> Profile:
     """Collect the contact pressure and the shapes of the two surfaces."""
     x = (grid.mesh.points + found.u.reshape(-1, 2)) * pair.R
-    slave, master = grid.surfaces.slave, grid.surfaces.master
+    sphere, flat = grid.surfaces.sphere, grid.surfaces.flat
     return Profile(
         depth=depth,
-        sphere_r=x[slave, 0],
-        sphere_z=x[slave, 1],
+        sphere_r=x[sphere, 0],
+        sphere_z=x[sphere, 1],
         pressure=_current_pressure(grid, found) * grid.stress_unit,
-        flat_r=x[master, 0],
-        flat_z=x[master, 1],
+        flat_r=x[flat, 0],
+        flat_z=x[flat, 1],
     )
 
 
@@ -72,10 +72,14 @@ def _everywhere(values: np.ndarray, index: np.ndarray, n: int) -> np.ndarray:
 
 
 def _current_pressure(grid: Discretisation, found: Equilibrium) -> np.ndarray:
-    """Nodal pressure on the current horizontal area 2 pi r dr instead of the reference one."""
+    """Pressure at the sphere's surface nodes on the current area, not the reference one."""
     surfaces = grid.surfaces
-    r0 = grid.mesh.points[surfaces.slave, 0]
-    r = r0 + found.u[2 * surfaces.slave]
+
+    def radii(nodes: np.ndarray) -> np.ndarray:
+        return np.asarray(grid.mesh.points[nodes, 0] + found.u[2 * nodes])
+
+    r0, r = grid.mesh.points[surfaces.slave, 0], radii(surfaces.slave)
     edge0, edge = np.diff(r0**2), np.diff(r**2)
     area0, area = (np.append(e, 0.0) + np.insert(e, 0, 0.0) for e in (edge0, edge))
-    return np.asarray(found.contact.pressure * area0 / area)
+    pressure = found.contact.pressure * area0 / area
+    return np.asarray(np.interp(radii(surfaces.sphere), r, pressure, right=0.0))

@@ -67,17 +67,17 @@ def unload(point: Point, problem: ContactProblem) -> Unloading:
     if problem.reload:
         back = [record.reading.delta for record in reversed(records[:-1])]
         again = _reload(here, back, pair_R)
-    slave, master = grid.surfaces.slave, grid.surfaces.master
+    sphere, flat = grid.surfaces.sphere, grid.surfaces.flat
     x = grid.mesh.points + free.reshape(-1, 2)
     return Unloading(
         depth=point.delta,
         curve=curve_of(records, grid.stress_unit, pair_R, energy=False),
-        residual_sphere=(lift + float(free[2 * slave[0] + 1])) * pair_R,
-        residual_flat=-float(free[2 * master[0] + 1]) * pair_R,
-        crater_r=x[master, 0] * pair_R,
-        crater_z=x[master, 1] * pair_R,
-        tip_r=x[slave, 0] * pair_R,
-        tip_z=(x[slave, 1] + lift) * pair_R,
+        residual_sphere=(lift + float(free[2 * sphere[0] + 1])) * pair_R,
+        residual_flat=-float(free[2 * flat[0] + 1]) * pair_R,
+        crater_r=x[flat, 0] * pair_R,
+        crater_z=x[flat, 1] * pair_R,
+        tip_r=x[sphere, 0] * pair_R,
+        tip_z=(x[sphere, 1] + lift) * pair_R,
         steps=steps,
         outcome=outcome,
         reload=again,

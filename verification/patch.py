@@ -120,7 +120,9 @@ def _pressed(upper: Block, lower: Block) -> list[tuple[float, float]]:
     above = np.arange(len(r)) < n
     slave, master = (np.flatnonzero(side & (np.abs(z) < 1e-12)) for side in (above, ~above))
     slave, master = slave[np.argsort(r[slave])], master[np.argsort(r[master])]
-    surfaces = Surfaces.build(points, slave=slave, master=master, penalty=_PENALTY)
+    surfaces = Surfaces.build(
+        points, sphere=slave, flat=master, penalty=_PENALTY, flat_is_slave=False
+    )
     modulus = 0.7 / (1.3 * 0.4)  # of the laterally held block, nu = 0.3
     push = 2.0 * _PRESSURE / modulus + _PRESSURE / surfaces.stiffness[0]
     held = [2 * np.flatnonzero((r == 0.0) | (r == 1.5) | (above & (r == 1.0)))]

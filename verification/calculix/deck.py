@@ -67,12 +67,12 @@ def write_deck(deck: Deck) -> str:
         ("TOP", top),
         ("FAR", far),
         ("AXIS", axis),
-        ("SLAVE", mesh.slave),
-        ("MASTER", mesh.master),
+        ("SLAVE", mesh.sphere_surface),
+        ("MASTER", mesh.flat_surface),
     ):
         lines += [f"*NSET, NSET={name}", *_sixteen(nodes)]
-    lines += _surface("SSLAVE", mesh.quads, mesh.slave)
-    lines += _surface("SMASTER", mesh.quads, mesh.master)
+    lines += _surface("SSLAVE", mesh.quads, mesh.sphere_surface)
+    lines += _surface("SMASTER", mesh.quads, mesh.flat_surface)
     pair = deck.problem.pair
     for name, body in (("SPHERE", pair.sphere), ("FLAT", pair.flat)):
         lines += _material(name, body)

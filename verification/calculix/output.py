@@ -109,7 +109,7 @@ def load_reference(deck: Deck, *, name: str) -> Reference | None:
 def measure(deck: Deck, printed: str, *, cpu_s: float = 0.0, version: str = "") -> Reference:
     """Read the printed reactions and displacements and measure F, a and delta_s*."""
     grid = deck.grid
-    slave, master = grid.surfaces.slave, grid.surfaces.master
+    slave, master = grid.surfaces.sphere, grid.surfaces.flat
     found: list[tuple[float, float, float, float]] = []
     for depth, (reaction, moved) in zip(deck.problem.depths, _blocks(printed), strict=False):
         x = grid.mesh.points.copy()

@@ -144,15 +144,23 @@ def test_the_linear_far_field_agrees_with_finite_strain_where_strains_are_small(
     assert (grid.elements.linear >= 0).any()
 
 
-def test_contact_tangent_is_the_derivative_of_the_contact_forces(grids):
+@pytest.mark.parametrize("flat_is_slave", [False, True])
+def test_contact_tangent_is_the_derivative_of_the_contact_forces(grids, flat_is_slave):
     grid = grids[0]
+    mesh = grid.mesh
+    surfaces = Surfaces.build(
+        mesh.points,
+        sphere=mesh.sphere_surface,
+        flat=mesh.flat_surface,
+        penalty=10.0,
+        flat_is_slave=flat_is_slave,
+    )
     rng = np.random.default_rng(3)
     x = grid.mesh.points.copy()
     n = grid.mesh.n_sphere_points
     x[:n, 1] -= 2e-3
     x += rng.normal(0.0, 1e-7, x.shape)
     x[grid.mesh.points[:, 0] == 0.0, 0] = 0.0
-    surfaces: Surfaces = grid.surfaces
     triplets = Triplets.for_surfaces(surfaces)
     force = np.zeros(grid.n_dofs)
     _, m = contact_forces(surfaces, x, force=force, tangent=triplets)
@@ -169,3 +177,19 @@ def test_contact_tangent_is_the_derivative_of_the_contact_forces(grids):
         sides.append(f)
     numeric = (sides[0] - sides[1]) / (2.0 * step)
     assert change == pytest.approx(numeric, abs=2e-4 * np.abs(numeric).max())
+
+
+def test_exchanging_slave_and_master_changes_little(monkeypatch):
+    pair = Pair(STEEL, replace(STEEL, Sy=450e6), 1e-3)
+    problem = fem.ContactProblem(pair, (2e-4, 2e-3, 4e-3))
+    curves = []
+    for flat_is_slave in (True, False):
+        monkeypatch.setattr(
+            "dentscope.fem.discretise._flat_is_slave", lambda pair, side=flat_is_slave: side
+        )
+        curves.append(fem.solve(problem, accuracy=SETTINGS).loading)
+    assert curves[0].force == pytest.approx(curves[1].force, rel=0.02)
+    assert curves[0].radius == pytest.approx(curves[1].radius, rel=0.03)
+    assert curves[0].sphere / curves[0].delta == pytest.approx(
+        curves[1].sphere / curves[1].delta, abs=0.005
+    )

@@ -143,8 +143,8 @@ def test_the_deck_holds_the_mesh_the_surfaces_and_the_materials(deck, element, n
     first = section(text, f"*ELEMENT, TYPE={element}, ELSET=ESPHERE")
     assert len(first) == mesh.n_sphere_quads
     assert len(first[0].split(",")) == nodes + 1
-    assert len(section(text, "*SURFACE, NAME=SSLAVE")) == len(mesh.slave) - 1
-    assert len(section(text, "*SURFACE, NAME=SMASTER")) == len(mesh.master) - 1
+    assert len(section(text, "*SURFACE, NAME=SSLAVE")) == len(mesh.sphere_surface) - 1
+    assert len(section(text, "*SURFACE, NAME=SMASTER")) == len(mesh.flat_surface) - 1
     assert text.count("*PLASTIC") == 1  # the flat is elastic
     assert text.count("*END STEP") == 2
     assert "TOP,2,2,-2e-05" in text
@@ -159,18 +159,22 @@ def test_middle_nodes_of_the_sphere_lie_on_it(deck):
     mesh = deck.grid.mesh
     middle = points[len(mesh.points) :]
     near = np.abs(np.hypot(middle[:, 0], middle[:, 1] - 1.0) - 1.0) < 1e-3
-    outside = near & (middle[:, 1] > 0.0) & (np.hypot(*middle.T) < mesh.points[mesh.slave, 0].max())
+    outside = (
+        near
+        & (middle[:, 1] > 0.0)
+        & (np.hypot(*middle.T) < mesh.points[mesh.sphere_surface, 0].max())
+    )
     exact = np.abs(np.hypot(middle[outside, 0], middle[outside, 1] - 1.0) - 1.0)
-    assert (exact < 1e-11).sum() >= len(mesh.slave) - 2
+    assert (exact < 1e-11).sum() >= len(mesh.sphere_surface) - 2
 
 
 def printed(grid, delta, gap):
     """Output of one step as CalculiX prints it: both surfaces moved rigidly, `gap` apart."""
     mesh = grid.mesh
     lines = [" displacements (vx,vy,vz) for set SLAVE and time  0.1000000E+01", ""]
-    lines += [f" {i + 1} 0.0 {-delta + gap:.6E} 0.0" for i in mesh.slave]
+    lines += [f" {i + 1} 0.0 {-delta + gap:.6E} 0.0" for i in mesh.sphere_surface]
     lines += [" displacements (vx,vy,vz) for set MASTER and time  0.1000000E+01", ""]
-    lines += [f" {i + 1} 0.0 {-gap:.6E} 0.0" for i in mesh.master]
+    lines += [f" {i + 1} 0.0 {-gap:.6E} 0.0" for i in mesh.flat_surface]
     return [" total force (fx,fy,fz) for set TOP and time  0.1000000E+01", "",
             " 0.0 -2.500000E-03 0.0", "", *lines, ""]  # fmt: skip
 
