@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Mapping, Sequence
 from dataclasses import replace
 from typing import ClassVar
@@ -84,22 +85,28 @@ class TangentialCompliance(Mechanism):
 
     name = "tangential-compliance"
     title = "the contact gives way sideways before it slides"
-    equations = "u' = v_T - |v_T| k_t u/(mu F_n), F_t = -k_t u, k_t = s 2 E' a"
+    equations = "a spring k_t = s 2 E' a carries the tangential force up to mu F_n, then it slides"
     parameters = (
         Parameter(
-            "tangential_stiffness_ratio", "-", 0.3, 1.5, "log", 0.0,
-            "2 (1 - nu)/(2 - nu) = 0.82 (Mindlin 1949); plastic contacts +-50 %", nodes=5,
+            "tangential_stiffness_ratio",
+            "-",
+            0.3,
+            1.5,
+            "log",
+            math.inf,
+            "2 (1 - nu)/(2 - nu) = 0.82 (Mindlin 1949); plastic contacts +-50 %",
+            nodes=5,
         ),
-    )  # fmt: skip
+    )
     direction: ClassVar[Mapping[str, int]] = {}
 
     def applies(self, situations: Sequence[Situation]) -> str:
-        """Needs sliding, and a tangential spring that the integrator does not have yet."""
-        return _needs_sliding(situations) or (
-            "not simulated in this version: the integrator has no tangential spring"
-        )
+        """Needs sliding."""
+        return _needs_sliding(situations)
 
     def attach(self, scene: Scene, values: Values, around: Surroundings) -> Scene:
         """Replace the friction law."""
         ratio = values["tangential_stiffness_ratio"]
+        if not math.isfinite(ratio) or not is_oblique(scene):
+            return scene
         return scene.with_(friction=replace(scene.friction, stiffness=ratio))
