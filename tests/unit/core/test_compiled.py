@@ -7,13 +7,23 @@ import sys
 from dentscope.core.compiled import source_digest
 
 
-def test_a_change_in_any_kernel_file_changes_the_folder(tmp_path):
+def test_the_folder_follows_compiled_files_and_what_they_import(tmp_path):
     (tmp_path / "fem").mkdir()
-    (tmp_path / "fem" / "a.py").write_text("x = 1\n")
+    (tmp_path / "core").mkdir()
+    kernel = tmp_path / "fem" / "kernel.py"
+    constants = tmp_path / "core" / "constants.py"
+    other = tmp_path / "fem" / "other.py"
+    kernel.write_text("from numba import njit\nfrom ..core.constants import X\n")
+    constants.write_text("X = 1\n")
+    other.write_text("y = 1\n")
     before = source_digest(tmp_path)
-    assert before == source_digest(tmp_path)
-    (tmp_path / "fem" / "a.py").write_text("x = 2\n")
-    assert source_digest(tmp_path) != before
+    other.write_text("y = 2\n")
+    assert source_digest(tmp_path) == before
+    constants.write_text("X = 2\n")
+    renewed = source_digest(tmp_path)
+    assert renewed != before
+    kernel.write_text(kernel.read_text() + "# changed\n")
+    assert source_digest(tmp_path) != renewed
 
 
 def test_numba_is_pointed_there_and_a_choice_of_the_user_is_kept(tmp_path):
