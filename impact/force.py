@@ -23,9 +23,11 @@ RECOVERY, DAMPING, RADIATION, SHAPE, RETURN = range(6, 11)
 N_FORCE = 11
 
 # The branch vector: what `set_peak` writes, the smooth stretch of the loading curve, the contact
-# radius at the peak and whether the depth falls.
+# radius at the peak and whether the depth falls; flat, radius and modulus of a cut tip that has
+# stayed elastic, else a flat of 0.
 SEGMENT_LOW, SEGMENT_HIGH, PEAK_FORCE, POWER, PEAK_RADIUS, RECEDING = range(7, 13)
-N_BRANCH = 13
+CUT_FLAT, CUT_RADIUS, CUT_MODULUS = range(13, 16)
+N_BRANCH = 16
 
 # Nodes of the factors: ln(depth / R), equally spaced; first those of the loading force, then as
 # many of the elastic recovery.
@@ -52,6 +54,16 @@ def _factor(factors, half, x):
     return here + t * (m0 + t * (3.0 * rise - 2.0 * m0 - m1 + t * (m0 + m1 - 2.0 * rise)))
 
 
+@njit(float64(float64, float64, float64, float64), cache=True, error_model="numpy")
+def cut_force(b, radius, modulus, depth):
+    """Force [N] on an elastic sphere with a flat of radius b (Ejike 1969)."""
+    dr = depth * radius
+    root = math.sqrt(b**4 + 4.0 * dr * dr)
+    a2 = 0.5 * (b * b + root)
+    gap = 2.0 * dr * dr / (b * b + root)
+    return 2.0 * modulus / (3.0 * radius) * (2.0 * a2 + b * b) * gap**0.5
+
+
 @njit(float64(LOADING, VECTOR, VECTOR, VECTOR, float64), cache=True)
 def static_loading(loading, par, force, factors, depth):
     """Loading force [N] at `depth` [m], measured from first touch.
@@ -67,11 +79,7 @@ def static_loading(loading, par, force, factors, depth):
     x = min(depth, force[EDGE_DEPTH])
     if b > 0.0:
         f = loading(par, x + b * b / (2.0 * force[RADIUS]))
-        dr = x * force[RADIUS]
-        root = math.sqrt(b**4 + 4.0 * dr * dr)
-        a2 = 0.5 * (b * b + root)
-        gap = 2.0 * dr * dr / (b * b + root)
-        f = min(f, 2.0 * force[MODULUS] / (3.0 * force[RADIUS]) * (2.0 * a2 + b * b) * gap**0.5)
+        f = min(f, cut_force(b, force[RADIUS], force[MODULUS], x))
     else:
         f = loading(par, x)
     if depth > force[EDGE_DEPTH]:
@@ -144,6 +152,19 @@ def set_peak(loading, unloading, residual, par, force, factors, peak, branch):
     _fit_power(unloading, par, branch)
     if force[SHAPE] != 0.0 and branch[POWER] > 0.0:
         branch[POWER] += force[SHAPE]
+    # A cut tip whose elastic force is still the lesser one has not yielded: it gives all back.
+    branch[CUT_FLAT] = 0.0
+    b = force[FLAT]
+    if b > 0.0 and recovery == 1.0 and peak <= force[EDGE_DEPTH]:
+        elastic = cut_force(b, force[RADIUS], force[MODULUS], peak)
+        if elastic <= loading(par, law_peak):
+            branch[1], branch[2] = 0.0, 0.0
+            branch[CUT_FLAT], branch[CUT_RADIUS], branch[CUT_MODULUS] = (
+                b,
+                force[RADIUS],
+                force[MODULUS],
+            )
+            branch[3] = force[RETURN] * static_loading(loading, par, force, factors, peak) / elastic
 
 
 @njit(float64(BRANCH, VECTOR, VECTOR, float64), cache=True)
@@ -151,6 +172,10 @@ def static_unloading(unloading, par, branch, depth):
     """Force [N] at `depth` [m] on the branch that `set_peak` prepared."""
     if depth <= branch[1] + branch[2]:
         return 0.0
+    if branch[CUT_FLAT] > 0.0:
+        return branch[3] * cut_force(
+            branch[CUT_FLAT], branch[CUT_RADIUS], branch[CUT_MODULUS], depth
+        )
     if branch[POWER] > 0.0:
         x = min((depth - branch[1] - branch[2]) / (branch[0] - branch[1] - branch[2]), 1.0)
         fade = x * math.sqrt(x) if branch[POWER] == 1.5 else x ** branch[POWER]
