@@ -1,8 +1,8 @@
 """Where numba keeps its compiled code: one folder for each state of the source.
 
 numba renews a cached function when the file that holds it changes, but not when a function that
-it calls, in another file, does. A folder named after all compiled sources can never be stale, and it works
-where the package itself cannot be written to.
+it calls, in another file, does. A folder named after all compiled sources can never be stale, and
+it works where the package itself cannot be written to.
 """
 
 from __future__ import annotations
