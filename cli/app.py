@@ -11,7 +11,7 @@ import sys
 import typer
 
 from ..core.errors import EXIT_INPUT_ERROR, InputError
-from . import campaign, laws, proof, recordings
+from . import campaign, laws, proof, recordings, reduce
 from .case import case
 from .diagnose import diagnose
 from .doctor import doctor
@@ -37,6 +37,7 @@ _UsageError: type[Exception] = typer.BadParameter.__mro__[1]
 app.add_typer(campaign.app, name="campaign")
 app.add_typer(laws.app, name="laws")
 app.add_typer(recordings.app, name="recordings")
+app.add_typer(reduce.app, name="reduce")
 app.add_typer(proof.app, name="proof")
 app.command()(case)
 app.command()(fit)

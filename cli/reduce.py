@@ -1,0 +1,167 @@
+"""`dentscope reduce KIND FILE --into SET`: raw recordings to numbers with uncertainties.
+
+The options of each kind are those of its module's `Options`, read when the command is asked for.
+"""
+
+from __future__ import annotations
+
+import contextlib
+import inspect
+import types
+import typing
+from collections.abc import Iterator
+from pathlib import Path
+from typing import Annotated, Any
+
+import typer
+from typer.core import TyperGroup
+
+if typing.TYPE_CHECKING:
+    from pydantic.fields import FieldInfo
+
+    from ..recordings.reduce.kinds import Kind
+
+_SETTABLE = (float, int, bool, str, Path)
+
+
+class _Kinds(TyperGroup):
+    """The commands of the kinds, made from their options when they are asked for."""
+
+    def list_commands(self, ctx: Any) -> list[str]:
+        from ..recordings.reduce.kinds import offered
+
+        return [*offered(), *super().list_commands(ctx)]
+
+    def get_command(self, ctx: Any, cmd_name: str) -> Any:
+        from ..recordings.reduce.kinds import offered
+
+        return _command(cmd_name) if cmd_name in offered() else super().get_command(ctx, cmd_name)
+
+
+app = typer.Typer(
+    name="reduce",
+    cls=_Kinds,
+    help="Raw recordings to numbers with uncertainties, and a picture to check them by.",
+    no_args_is_help=True,
+)
+
+RawFile = Annotated[Path, typer.Argument(metavar="FILE", help="The raw recording.")]
+Into = Annotated[
+    Path | None, typer.Option("--into", help="Folder of a recording set, new or existing.")
+]
+Out = Annotated[
+    Path, typer.Option("--out", help="Without --into: folder for the numbers and the picture.")
+]
+
+
+def _command(name: str) -> Any:
+    """Return the command of a kind: FILE, the kind's options, the conditions of the trial."""
+    from ..recordings.reduce.into_set import Row
+    from ..recordings.reduce.kinds import KINDS, load_kind
+
+    kind = load_kind(name)
+
+    def run(**given: Any) -> None:
+        file, into, out = given.pop("file"), given.pop("into"), given.pop("out")
+        row = {k: given.pop(k) for k in Row.model_fields}
+        _reduce(kind, file, into, out, _set(given), _set(row))
+
+    keyword = inspect.Parameter.KEYWORD_ONLY
+    parameters = [
+        inspect.Parameter("file", keyword, annotation=RawFile),
+        inspect.Parameter("into", keyword, annotation=Into, default=None),
+        *(_parameter(k, field) for k, field in kind.options.model_fields.items()),
+        *(_parameter(k, field) for k, field in Row.model_fields.items()),
+        inspect.Parameter("out", keyword, annotation=Out, default=Path("build/reduce")),
+    ]
+    run.__signature__ = inspect.Signature(parameters)  # type: ignore[attr-defined]
+    run.__annotations__ = {p.name: p.annotation for p in parameters}
+    run.__doc__ = KINDS[name][0].upper() + KINDS[name][1:] + "."
+    alone = typer.Typer(add_completion=False, pretty_exceptions_enable=False)
+    alone.command(name)(run)
+    return typer.main.get_command(alone)
+
+
+def _parameter(name: str, field: FieldInfo) -> inspect.Parameter:
+    """Return the option of one field; the range is checked by the field itself, in one line."""
+    plain, choices = _plain_type(field.annotation)
+    words = (field.description or "", f"({', '.join(choices)})" if choices else "")
+    option = typer.Option("--" + name.replace("_", "-"), help=" ".join(filter(None, words)))
+    default = inspect.Parameter.empty if field.is_required() else field.default
+    if field.is_required() or default is None:
+        default = inspect.Parameter.empty if field.is_required() else None
+        plain = plain if field.is_required() else typing.Optional[plain]  # noqa: UP045
+    return inspect.Parameter(
+        name, inspect.Parameter.KEYWORD_ONLY, annotation=Annotated[plain, option], default=default
+    )
+
+
+def _plain_type(annotation: Any) -> tuple[Any, tuple[str, ...]]:
+    """Return the type that the command line shows, and the words it may take."""
+    inner = [a for a in typing.get_args(annotation) if a is not types.NoneType]
+    if typing.get_origin(annotation) is typing.Literal:
+        return str, tuple(map(str, inner))
+    for part in (annotation, *inner):
+        if part in _SETTABLE:
+            return part, ()
+    raise TypeError(f"{annotation} cannot be an option")
+
+
+def _set(given: dict[str, Any]) -> dict[str, Any]:
+    """What the user said; the rest is left to the defaults."""
+    return {k: v for k, v in given.items() if v is not None}
+
+
+def _reduce(
+    kind: Kind, file: Path, into: Path | None, out: Path, given: dict[str, Any], row: dict[str, Any]
+) -> None:
+    from ..core.toml_input import parse_model
+    from ..recordings.reduce.into_set import Row, store, trial_name, write_record
+
+    with _named_as_options():
+        conditions = parse_model(row, Row, source="command line")
+        reduced = kind.run(file, given, source="command line")
+        if into is None:
+            name = conditions.trial or trial_name(file)
+            written = write_record(reduced, out, name, kind=kind.name, options=given)
+            lines = []
+        else:
+            done = store(reduced, into, conditions, kind=kind.name, options=given)
+            written = (done.record, done.picture)
+            lines = [f"  rows of {into}: {', '.join(done.trials)}"] if done.trials else []
+            lines += [f"note: {note}" for note in done.notes]
+    _print(file, reduced)
+    for line in lines:
+        typer.echo(line)
+    typer.echo(f"written: {written[0]}, {written[1]}")
+
+
+@contextlib.contextmanager
+def _named_as_options() -> Iterator[None]:
+    """Tell mistakes in options under the names that they have on the command line."""
+    from ..core.errors import InputError, InputErrors
+
+    try:
+        yield
+    except InputError as error:
+        several = error.errors if isinstance(error, InputErrors) else (error,)
+        raise InputErrors(
+            tuple(
+                InputError(
+                    e.message,
+                    source=e.source or "command line",
+                    key="--" + e.key.replace("_", "-") if e.source in ("", "command line") and e.key
+                    else e.key,
+                    allowed=e.allowed,
+                )
+                for e in several
+            )
+        ) from None  # fmt: skip
+
+
+def _print(file: Path, reduced: Any) -> None:
+    typer.echo(f"{file}:")
+    for name, value in reduced.values.items():
+        typer.echo(f"  {name} = {value}")
+    for note in reduced.notes:
+        typer.echo(f"  note: {note}")

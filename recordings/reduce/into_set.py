@@ -1,0 +1,296 @@
+"""Reductions written into a recording set: rows, curves, and a record of where they came from.
+
+A trial that the set already has keeps what it holds, but for the columns that were measured now. A
+folder without set.toml gets the template to fill in. Nothing is written before the whole set, as it
+would be, has been read without a mistake.
+"""
+
+from __future__ import annotations
+
+import csv
+import json
+import math
+import re
+import shutil
+import tempfile
+from collections.abc import Mapping
+from dataclasses import dataclass, replace
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+from pydantic import Field
+
+from ...core.errors import InputError
+from ...core.provenance import file_digest
+from ...core.toml_input import InputTable, read_model
+from ..columns import CONDITIONS, OBSERVABLES, STD_SUFFIX
+from ..csv_table import Array
+from ..recording_set import RecordingSet, read, write
+from ..setup_file import Quantity, Setup
+from ..template import write_template
+from ..toml_text import setup_text
+from ..trials import Trials
+from .measured import Measured, Trial
+from .reduced import Reduced
+
+_TEXTS = ("trial", "striker", "spot", "note")
+_CONDITIONS = tuple(n for n in CONDITIONS if n not in _TEXTS and not n.endswith(STD_SUFFIX))
+
+
+class Row(InputTable):
+    """What the raw file does not tell about the trial."""
+
+    trial: str = Field("", description="name of the trial; default: the file's")
+    striker: str = Field("", description="name in set.toml; default: the only one")
+    angle_deg: float | None = Field(
+        None, gt=0.0, le=90.0, description="angle of the impact; default: 90"
+    )
+    impact_speed_m_s: float | None = Field(None, gt=0.0, description="normal approach speed")
+    impact_speed_m_s_std: float | None = Field(None, gt=0.0, description="its standard deviation")
+    drop_height_m: float | None = Field(None, gt=0.0, description="height of fall")
+    spot: str = Field("", description="same text: same place on the flat")
+
+
+@dataclass(frozen=True)
+class Stored:
+    """What was written: rows of trials.csv, the record, the picture, and remarks."""
+
+    trials: tuple[str, ...]
+    record: Path
+    picture: Path
+    notes: tuple[str, ...]
+
+
+def store(
+    reduced: Reduced,
+    folder: Path,
+    row: Row,
+    *,
+    kind: str,
+    options: Mapping[str, Any],
+    setup: Setup | None = None,
+) -> Stored:
+    """Write a reduction into a set, new or existing.
+
+    Parameters
+    ----------
+    reduced
+        What was measured.
+    folder
+        Of the set.
+    row
+        Conditions that the raw file does not tell.
+    kind, options
+        How it was reduced, for the record.
+    setup
+        set.toml of a new set; without it a new set gets the template.
+
+    Raises
+    ------
+    InputError
+        A condition is missing or the set would not be sound.
+    """
+    before, notes = _set_before(folder, setup)
+    striker = _striker(before, row)
+    after, curves = before, {}
+    names = []
+    for trial in reduced.trials:
+        name = "-".join(filter(None, (_name(reduced, row), trial.label)))
+        after = _with_trial(after, name, striker, trial, row)
+        curves[name] = trial
+        names.append(name)
+    after = _with_setup(after, striker, reduced)
+    _write_whole(before, after, curves, folder)
+    record, picture = write_record(
+        reduced, folder / "reduced", _name(reduced, row), kind=kind, options=options, trials=names
+    )
+    return Stored(tuple(names), record, picture, notes)
+
+
+def write_record(
+    reduced: Reduced,
+    folder: Path,
+    name: str,
+    *,
+    kind: str,
+    options: Mapping[str, Any],
+    trials: list[str] | None = None,
+) -> tuple[Path, Path]:
+    """Write NAME-KIND.json (raw file, checksum, options, values, notes) and the picture.
+
+    Returns
+    -------
+    tuple
+        Path of the record and of the picture.
+    """
+    folder.mkdir(parents=True, exist_ok=True)
+    record, picture = (folder / f"{name}-{kind}{end}" for end in (".json", ".png"))
+    content = {
+        "kind": kind,
+        **_origin(reduced.source),
+        "options": {k: v for k, v in options.items() if v not in (None, "")},
+        "trials": trials or [],
+        "values": {k: _plain(v) for k, v in reduced.values.items()},
+        "notes": list(reduced.notes),
+    }
+    record.write_text(json.dumps(content, indent=1, ensure_ascii=False) + "\n", encoding="utf-8")
+    reduced.draw(picture)
+    return record, picture
+
+
+def trial_name(path: Path) -> str:
+    """Return the name of a raw file as one that can name a trial."""
+    return re.sub(r'[/\\:*?"<>|\s]+', "_", path.stem).strip("_.") or "trial"
+
+
+def _name(reduced: Reduced, row: Row) -> str:
+    return row.trial or trial_name(reduced.source)
+
+
+def _origin(source: Path) -> dict[str, Any]:
+    if source.is_dir():
+        files = sorted(p for p in source.iterdir() if p.is_file())
+        return {"folder": source.name, "files": {p.name: file_digest(p) for p in files}}
+    return {"file": source.name, "bytes": source.stat().st_size, "sha256": file_digest(source)}
+
+
+def _plain(value: Measured) -> dict[str, float | None]:
+    """Numbers for JSON, which has no NaN."""
+    pair = {"value": value.value, "std": value.std}
+    return {k: float(v) if math.isfinite(v) else None for k, v in pair.items()}
+
+
+def _set_before(folder: Path, setup: Setup | None) -> tuple[RecordingSet, tuple[str, ...]]:
+    if folder.exists() and not folder.is_dir():
+        raise InputError("not a folder", source=str(folder), allowed="the folder of a set")
+    if (folder / "trials.csv").exists() or ((folder / "set.toml").exists() and setup is None):
+        if not (folder / "trials.csv").exists():
+            return _empty(read_model(folder / "set.toml", Setup), folder), ()
+        found = read(folder)
+        return (found if setup is None else replace(found, setup=setup)), ()
+    if setup is not None:
+        return _empty(setup, None), ()
+    with tempfile.TemporaryDirectory() as place:
+        write_template(Path(place), shape="rod")
+        template = read_model(Path(place) / "set.toml", Setup)
+    note = f"{folder / 'set.toml'} is a template: fill in the bodies before the set is used"
+    return _empty(template, None), (note,)
+
+
+def _empty(setup: Setup, folder: Path | None) -> RecordingSet:
+    return RecordingSet(setup, Trials((), (), np.empty(0)), folder=folder)
+
+
+def _striker(found: RecordingSet, row: Row) -> str:
+    names = tuple(found.setup.strikers)
+    if row.striker and row.striker not in names:
+        raise InputError(repr(row.striker), key="striker", allowed=", ".join(names))
+    if not row.striker and len(names) > 1:
+        raise InputError("not given", key="striker", allowed=", ".join(names))
+    return row.striker or names[0]
+
+
+def _with_trial(
+    found: RecordingSet, name: str, striker: str, trial: Trial, row: Row
+) -> RecordingSet:
+    """Return the set with one row added, or with the measured columns of a row replaced."""
+    old = found.trials
+    new = name not in old.trial
+    n = len(old) + new
+    place = n - 1 if new else old.trial.index(name)
+
+    def grown(values: Array | None) -> Array:
+        column = np.full(n, np.nan)
+        if values is not None and values.size:
+            column[: len(old)] = values
+        return column
+
+    texts = {k: [*getattr(old, k), *([""] if new else [])] for k in _TEXTS}
+    texts["trial"][place] = name
+    texts["striker"][place] = row.striker or texts["striker"][place] or striker
+    texts["spot"][place] = row.spot or texts["spot"][place]
+    numbers = {k: grown(getattr(old, k)) for k in CONDITIONS if k not in _TEXTS}
+    observables = {k: grown(v) for k, v in old.observables.items()}
+    stds = {k: grown(v) for k, v in old.observables_std.items()}
+    for key, value in {**trial.observables, **_given(row)}.items():
+        if key in OBSERVABLES:
+            observables.setdefault(key, grown(None))[place] = value.value
+            stds.setdefault(key, grown(None))[place] = value.std if value.std > 0.0 else np.nan
+        else:
+            numbers[key][place] = value.value
+            if key + STD_SUFFIX in numbers:
+                numbers[key + STD_SUFFIX][place] = value.std if value.std > 0.0 else np.nan
+    if np.isnan(numbers["angle_deg"][place]):
+        numbers["angle_deg"][place] = 90.0
+    if np.isnan([numbers[k][place] for k in ("impact_speed_m_s", "drop_height_m")]).all():
+        raise InputError(
+            f"the approach of trial {name!r} is not known", key="impact_speed_m_s",
+            allowed="impact_speed_m_s or drop_height_m as an option, or a trial of the set",
+        )  # fmt: skip
+    trials = Trials(
+        **{k: tuple(v) for k, v in texts.items()}, **numbers,  # type: ignore[arg-type]
+        observables=observables, observables_std=stds,
+    )  # fmt: skip
+    return replace(found, trials=trials)
+
+
+def _given(row: Row) -> dict[str, Measured]:
+    std = {"impact_speed_m_s": row.impact_speed_m_s_std or 0.0}
+    given = {k: getattr(row, k, None) for k in _CONDITIONS}
+    return {k: Measured(v, std.get(k, 0.0)) for k, v in given.items() if v is not None}
+
+
+def _with_setup(found: RecordingSet, striker: str, reduced: Reduced) -> RecordingSet:
+    noise = {**reduced.noise, **found.setup.noise}
+    body = found.setup.strikers[striker]
+    measured = {k: Quantity(value=v.value, std=v.std) for k, v in reduced.striker.items()}
+    strikers = {**found.setup.strikers, striker: body.model_copy(update=measured)}
+    if noise == found.setup.noise and not measured:
+        return found
+    setup = found.setup.model_copy(update={"noise": noise, "strikers": strikers})
+    return replace(found, setup=setup)
+
+
+def _write_whole(
+    before: RecordingSet, after: RecordingSet, curves: Mapping[str, Trial], folder: Path
+) -> None:
+    with tempfile.TemporaryDirectory() as made:
+        place = Path(made) / "set"
+        write(after, place)
+        for name, trial in curves.items():
+            for kind, columns in (("traces", trial.trace), ("profiles", trial.profile)):
+                if columns:
+                    _write_curve(columns, place / kind / f"{name}.csv")
+        if len(after.trials):
+            _read_as(place, folder)
+        _keep_comments(before, after, place / "set.toml", folder)
+        if not len(after.trials):
+            (place / "trials.csv").unlink()
+        shutil.copytree(place, folder, dirs_exist_ok=True)
+
+
+def _read_as(place: Path, folder: Path) -> None:
+    """Read the set where it was made; a mistake names the folder that it is meant for."""
+    try:
+        read(place)
+    except InputError as error:
+        raise InputError(str(error).replace(str(place), str(folder))) from None
+
+
+def _keep_comments(before: RecordingSet, after: RecordingSet, path: Path, folder: Path) -> None:
+    """Leave set.toml as a person wrote it where nothing in it has changed."""
+    old = folder / "set.toml"
+    if old.exists() and setup_text(before.setup) == setup_text(after.setup):
+        shutil.copyfile(old, path)
+
+
+def _write_curve(columns: Mapping[str, Array], path: Path) -> None:
+    path.parent.mkdir(exist_ok=True)
+    with path.open("w", newline="", encoding="utf-8") as stream:
+        writer = csv.writer(stream, lineterminator="\n")
+        writer.writerow(columns)
+        writer.writerows(
+            ["" if np.isnan(v) else f"{v:.9g}" for v in point]
+            for point in zip(*columns.values(), strict=True)
+        )
