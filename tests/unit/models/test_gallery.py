@@ -14,7 +14,8 @@ from dentscope.models import DomainWarning
 def test_hardness_figures_without_a_campaign(tmp_path):
     for picture in chapter1.pictures([]):
         assert picture.save(tmp_path).stat().st_size > 10_000
-        assert "No finite-element campaign" in picture.note
+        compared = picture.number in ("1.2", "1.3")
+        assert ("No finite-element campaign" in picture.note) == compared
 
 
 def test_law_figures_of_chapter_2_are_all_there(tmp_path):
