@@ -15,7 +15,9 @@ NUMBER = re.compile(r"(\d)\.(\d+)(?:-\1\.(\d+))?")
 
 
 def rows():
-    return [m.groups() for m in ROW.finditer(THEORY.read_text("utf-8"))]
+    # the chapters' tables; what follows them speaks of laws and where they serve
+    tables, _, _ = THEORY.read_text("utf-8").partition("## Where the equations were read")
+    return [m.groups() for m in ROW.finditer(tables)]
 
 
 def listed():
