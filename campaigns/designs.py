@@ -1,7 +1,8 @@
 """The sweeps, a few lines each.
 
 A design is a name and a function that gives its cases, in the order in which they are computed: a
-run that is stopped early has first what the thesis shows, then every range from coarse to fine.
+run that is stopped early has first what the thesis shows, then every range from coarse to fine. The
+halves of the two large designs are designs themselves: a half can be published when it is done.
 Strengths follow the thesis: Sy_min is held and Sy* = S_ys/S_yf sets the stronger body. All but
 `smoke` go to Delta/R = 0.1 or a/R = 0.5, whichever comes later, in 48 depths from below first yield
 through the thesis's 0.04, and unload from five of them; `survey` does so at medium resolution, the
@@ -82,6 +83,7 @@ RATIOS = (
     *(1.07, 1.85, 2.0, 2.5, 3.5, 5.0, 7.0, 10.0),
 )
 
+_FIRST_RATIOS = 6  # of them, spread over their range, belong to the first half of `thesis`
 _THESIS_DEPTH = 0.04  # Delta/R of the thesis's figures over Sy*
 
 
@@ -139,8 +141,8 @@ def _survey() -> tuple[Case, ...]:
 
 
 @cache
-def _thesis() -> tuple[Case, ...]:
-    """Table 2.1 over Sy*, 27 sets of materials, the figures' cases, the pairs of chapters 3-5.
+def _thesis_coarse() -> tuple[Case, ...]:
+    """Table 2.1 at six Sy*, 27 sets of materials, the figures' cases, the pairs of chapters 3-5.
 
     The thesis does not print its 27 sets; ours are E_s, E_f from 50, 122, 300 GPa and Sy_min from
     50, 235, 1100 MPa.
@@ -157,18 +159,25 @@ def _thesis() -> tuple[Case, ...]:
     rod = pair_of(E_s=212.0, E_f=200.0, Sy_min=298.0, ratio=750.0 / 298.0)
     striker = pair_of(E_s=200.0, E_f=200.0, Sy_min=305.0, ratio=760 / 305)
     large = pair_of(E_s=300.0, E_f=300.0, Sy_min=100.0, ratio=10.0)
-    ends = (0.1, 1.0, 10.0)
-    ratios = (*ends, *(ratio for ratio in coarse_to_fine(RATIOS) if ratio not in ends))
     return (
         *pictures,
         _deep_case("chapter-3", rod, deepest=2500.0 * fem.critical_depth(rod)),
         _deep_case("chapter-4-5", striker),
         _deep_case("figure-2.17", large),
-        *_table_2_1(ratios[:6]),
+        *_table_2_1(_ordered_ratios()[:_FIRST_RATIOS]),
         *_twenty_seven_sets(),
-        *_table_2_1(ratios[6:]),
-        *_figure_2_16(),
     )
+
+
+@cache
+def _thesis_fine() -> tuple[Case, ...]:
+    """Table 2.1 at the other values of Sy*, and figure 2.16."""
+    return (*_table_2_1(_ordered_ratios()[_FIRST_RATIOS:]), *_figure_2_16())
+
+
+def _ordered_ratios() -> tuple[float, ...]:
+    ends = (0.1, 1.0, 10.0)
+    return (*ends, *(ratio for ratio in coarse_to_fine(RATIOS) if ratio not in ends))
 
 
 def _table_2_1(ratios: tuple[float, ...]) -> list[Case]:
@@ -283,6 +292,10 @@ def _digits(x: float) -> float:
     return float(f"{x:.4g}")
 
 
+def _thesis() -> tuple[Case, ...]:
+    return (*_thesis_coarse(), *_thesis_fine())
+
+
 def _full() -> tuple[Case, ...]:
     return (*_thesis(), *_space(), *_validation())
 
@@ -295,7 +308,11 @@ DESIGNS: dict[str, Design] = {
         Design(
             "thesis", "Table 2.1 over Sy*, 27 sets of materials, figures, chapters 3-5", _thesis
         ),
+        Design("thesis-1", "its first half: six Sy*, the 27 sets, the chapters", _thesis_coarse),
+        Design("thesis-2", "its second half: the other 28 Sy*, figure 2.16", _thesis_fine),
         Design("space", "256 Sobol points over moduli, Poisson ratios, strengths", _space),
+        Design("space-1", "its first half, a Sobol design itself", lambda: _space()[:128]),
+        Design("space-2", "its second half", lambda: _space()[128:]),
         Design("validation", "48 pairs that no fit may use", _validation),
         Design("full", "thesis, space and validation", _full),
         Design(

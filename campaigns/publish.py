@@ -85,7 +85,7 @@ def publish(
     Raises
     ------
     InputError
-        The run is not complete, the design is published already, or the parts become too many.
+        The run is not complete, cases of it are published already, or the parts become too many.
     """
     store = Store(source)
     status = status_of(design, store)
@@ -97,10 +97,16 @@ def publish(
             allowed="a complete run",
         )
     folder.mkdir(parents=True, exist_ok=True)
-    if any(folder.glob(f"{design.name}-*.h5")):
-        raise InputError("is published already", source=str(folder), key=design.name)
+    wanted = distinct_cases(design)
+    twice = wanted.keys() & _published_ids(folder)
+    if twice:
+        raise InputError(
+            f"{len(twice)} of its {len(wanted)} cases are published already",
+            source=str(folder),
+            key=design.name,
+        )
     stored = {record.id: record for record in store.read_all()}
-    records = [stored[key] for key in distinct_cases(design)]
+    records = [stored[key] for key in wanted]
     with tempfile.TemporaryDirectory(dir=folder, prefix=".part-") as scratch:
         made = _write_parts(records, design.name, Path(scratch), most_bytes)
         if len(list(folder.glob("*.h5"))) + len(made) > MOST_PARTS:
@@ -152,6 +158,14 @@ def published_designs(folder: Path) -> list[Published]:
         )
         for name, parts in found.items()
     ]
+
+
+def _published_ids(folder: Path) -> set[str]:
+    ids: set[str] = set()
+    for path in _checked_parts(folder):
+        with h5py.File(path, "r") as file:
+            ids.update(text.decode() for text in file["cases/id"][()])
+    return ids
 
 
 def _checked_parts(folder: Path) -> list[Path]:

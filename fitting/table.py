@@ -21,6 +21,7 @@ Floats = npt.NDArray[np.float64]
 HELD_OUT = "validation"
 """Cases whose name begins so are for judging a finished fit; no fit reads them."""
 
+_COARSEST = "smoke"
 _DEEPEST_RADIUS = 0.55  # a/R up to which the form is meant, with some margin
 _UNLOADED = (0.05, 0.98)  # part of F_m over which the exponent of the unloading is taken
 
@@ -133,7 +134,8 @@ def read_tables(
 
     Notes
     -----
-    A case that the present solver made wins over one that an earlier version of it made.
+    A case that the present solver made wins over one that an earlier version of it made. Cases of
+    the lowest resolution, whose force ripples by percents, count only where none is finer.
 
     Raises
     ------
@@ -142,11 +144,10 @@ def read_tables(
     """
     paths = [paths] if isinstance(paths, Path) else list(paths)
     chosen: dict[object, CaseRecord] = {}
-    for record in (r for path in paths for r in read_curves(path)):
-        pair = record.case.pair
-        if not np.isfinite(pair.Sy_min) or record.case.name.startswith(HELD_OUT) != held_out:
-            continue
-        key = tuple(np.round(_key(pair), 9))
+    found = [r for path in paths for r in read_curves(path)]
+    found = [r for r in found if r.case.name.startswith(HELD_OUT) == held_out]
+    for record in _fine_ones([r for r in found if np.isfinite(r.case.pair.Sy_min)]):
+        key = tuple(np.round(_key(record.case.pair), 9))
         if key not in chosen or is_current(record) or not is_current(chosen[key]):
             chosen[key] = record
     if not chosen:
@@ -157,6 +158,10 @@ def read_tables(
         )
     records = list(chosen.values())
     return _loading(records), _residuals(records)
+
+
+def _fine_ones(records: list[CaseRecord]) -> list[CaseRecord]:
+    return [r for r in records if r.case.accuracy.level != _COARSEST] or records
 
 
 def is_current(record: CaseRecord) -> bool:

@@ -180,6 +180,9 @@ def test_an_incomplete_run_is_not_published_and_nothing_is_written_twice(tmp_pat
     [part] = publish(DESIGN, source, tmp_path / "data")
     with pytest.raises(InputError, match="published already"):
         publish(DESIGN, source, tmp_path / "data")
+    half = replace(DESIGN, name="half", make=lambda: made()[:3])
+    with pytest.raises(InputError, match="3 of its 3 cases are published already"):
+        publish(half, source, tmp_path / "data")
     part.write_bytes(part.read_bytes()[:-1] + b"x")
     with pytest.raises(InputError, match="checksum"):
         read_published(tmp_path / "data")

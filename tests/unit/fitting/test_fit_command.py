@@ -4,7 +4,9 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from dentscope.campaigns.designs import design_named
 from dentscope.cli.app import run
+from dentscope.fitting import table
 from dentscope.fitting.report import BEGIN, END, markdown, published_section, update_page
 from dentscope.fitting.table import read_tables
 from dentscope.models.fitted import read_coefficients
@@ -56,22 +58,28 @@ def test_markdown_table():
     assert markdown([["a", "b"], ["1", "2"]]) == "| a | b |\n| --- | --- |\n| 1 | 2 |\n"
 
 
+class Record:
+    """What a table reads of a completed case."""
+
+    def __init__(self, case):
+        self.case, self.id, self.unloadings = case, case.id, ()
+        one = np.linspace(1.0, 2.0, 5) * 1e-5
+        self.curve = {k: one for k in ("delta", "force", "radius", "sphere", "flat")}
+        self.curve["radius_last_node"] = one + 1e-7
+
+
+def test_cases_of_low_resolution_count_only_without_finer_ones(tmp_path, monkeypatch):
+    low, fine = design_named("smoke").make()[:3], design_named("space").make()[:2]
+    monkeypatch.setattr(table, "read_curves", lambda _: [Record(case) for case in (*low, *fine)])
+    assert read_tables(tmp_path)[0].names == tuple(case.name for case in fine)
+    monkeypatch.setattr(table, "read_curves", lambda _: [Record(case) for case in low])
+    assert len(read_tables(tmp_path)[0].pairs) == 3
+
+
 def test_held_out_cases_are_not_fitted(tmp_path, monkeypatch):
     """A case of the validation design never reaches a fit, whatever file it lies in."""
-    from dentscope.campaigns.designs import design_named
-    from dentscope.fitting import table as module
-
     cases = (*design_named("validation").make()[:2], *design_named("smoke").make()[:3])
-
-    class Record:
-        def __init__(self, case):
-            n = 5
-            self.case, self.id, self.unloadings = case, case.id, ()
-            one = np.linspace(1.0, 2.0, n) * 1e-5
-            self.curve = {k: one for k in ("delta", "force", "radius", "sphere", "flat")}
-            self.curve["radius_last_node"] = one + 1e-7
-
-    monkeypatch.setattr(module, "read_curves", lambda _: [Record(case) for case in cases])
+    monkeypatch.setattr(table, "read_curves", lambda _: [Record(case) for case in cases])
     fitted, _ = read_tables(tmp_path)
     judged, _ = read_tables(tmp_path, held_out=True)
     assert len(fitted.pairs) == 3
