@@ -88,20 +88,31 @@ _FIRST_RATIOS = (0.1, 0.5, 0.9, 1.0, 1.1, 1.25, 1.4, 1.6, 10.0)
 _THESIS_DEPTH = 0.04  # Delta/R of the thesis's figures over Sy*
 
 
-def coarse_to_fine(values: tuple[float, ...]) -> tuple[float, ...]:
+def coarse_to_fine(
+    values: tuple[float, ...], *, after: tuple[float, ...] = ()
+) -> tuple[float, ...]:
     """Order values so that every beginning of the list covers their range evenly.
+
+    Parameters
+    ----------
+    values
+        All of them.
+    after
+        Those that come first anyway and are not repeated; by default the two ends are first.
 
     Examples
     --------
     >>> coarse_to_fine((1.0, 2.0, 3.0, 4.0, 5.0))
     (1.0, 5.0, 3.0, 2.0, 4.0)
+    >>> coarse_to_fine((1.0, 2.0, 3.0, 4.0, 5.0), after=(1.0, 2.0))
+    (5.0, 3.0, 4.0)
     """
     values = tuple(sorted(values))
-    taken = [0, len(values) - 1]
+    taken = [values.index(value) for value in after] or [0, len(values) - 1]
     while len(taken) < len(values):
         left = (k for k in range(len(values)) if k not in taken)
         taken.append(max(left, key=lambda k: min(abs(k - t) for t in taken)))
-    return tuple(values[k] for k in taken)
+    return tuple(values[k] for k in taken[len(after) :])
 
 
 def _deep_case(
@@ -172,7 +183,7 @@ def _thesis_rest() -> tuple[Case, ...]:
     The thesis does not print its 27 sets; ours are E_s, E_f from 50, 122, 300 GPa and Sy_min from
     50, 235, 1100 MPa.
     """
-    others = tuple(ratio for ratio in coarse_to_fine(RATIOS) if ratio not in _FIRST_RATIOS)
+    others = coarse_to_fine(RATIOS, after=_FIRST_RATIOS)
     first = {case.id for case in _thesis_first()}
     rest = (*_twenty_seven_sets(), *_table_2_1(others), *_figure_2_16())
     return tuple(case for case in rest if case.id not in first)
