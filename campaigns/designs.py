@@ -320,8 +320,8 @@ DESIGNS: dict[str, Design] = {
         Design("thesis-1", "its first part: pictures, chapters, nine Sy*", _thesis_first),
         Design("thesis-2", "its second part: the 27 sets, the other 25 Sy*", _thesis_rest),
         Design("space", "256 Sobol points over moduli, Poisson ratios, strengths", _space),
-        Design("space-1", "its first 64 points, a Sobol design themselves", lambda: _space()[:64]),
-        Design("space-2", "its other points", lambda: _space()[64:]),
+        Design("space-1", "its first 32 points, a Sobol design themselves", lambda: _space()[:32]),
+        Design("space-2", "its other points", lambda: _space()[32:]),
         Design("validation", "48 pairs that no fit may use", _validation),
         Design("full", "thesis, space and validation", _full),
         Design(

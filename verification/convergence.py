@@ -18,7 +18,6 @@ from .result import Cell, Measurement, Result, Table
 Floats = npt.NDArray[np.float64]
 
 _RATIOS = (0.1, 1.0, 10.0)
-_N = 60
 # F [%], a [%], delta_s*, H [%]
 _NAMES = ("F", "a", "delta_s*", "H")
 _MARKS = (0.5, 1.0, 0.005, 1.5)
@@ -83,12 +82,20 @@ def ordered_cases() -> list[tuple[int, float]]:
 
 
 def case_of(number: int, ratio: float, *, plan: Plan, accuracy: fem.Accuracy) -> Case:
-    """Return a case of Table 2.1; the base is also unloaded."""
+    """Return a case of Table 2.1; the base is also unloaded.
+
+    Every step is recorded, so that the ripple, whose period is an element, is seen as it is:
+    at wider depths it would look like a wave of any length, which no smoothing takes out.
+    """
     pair = _pair(number, ratio)
+    first = 0.3 * fem.critical_depth(pair)
+    steps = int(np.ceil(np.log(plan.deepest / first) / np.log(plan.bolder.step_ratio)))
+    # depths of the bolder solve are every other one of the base's
+    steps *= 1 if accuracy == plan.bolder else 2
     return Case(
         name=f"table-2.1-case-{number}-Sy*-{ratio:g}",
         pair=pair,
-        depths=fem.geometric_depths(0.3 * fem.critical_depth(pair), plan.deepest, _N),
+        depths=fem.geometric_depths(first, plan.deepest, steps + 1),
         unload_from=plan.unload_from if accuracy == plan.base else (),
         radius_at_least=0.0,
         accuracy=accuracy,
@@ -130,17 +137,23 @@ def difference(other: Solved, base: Solved) -> tuple[Floats, Floats]:
 
     Depths that both reached, but for the ends, where smoothing is one-sided.
     """
-    n = min(len(other["delta"]), len(base["delta"]))
-    delta = base["delta"][:n]
-    curves = []
-    for solved in (other, base):
-        F, a = np.log(solved["force"][:n]), np.log(solved["radius"][:n])
-        curves.append((100.0 * F, 100.0 * a, solved.share[:n], 100.0 * (F - 2.0 * a)))
+    delta = base["delta"][inner(base["delta"])]
+    delta = delta[delta <= other["delta"][inner(other["delta"])][-1]]
     off = [
-        float(np.abs(smoothed(delta, x) - smoothed(delta, y))[inner(delta)].max())
-        for x, y in zip(*curves, strict=True)
+        float(np.abs(_smooth_at(delta, other, x) - _smooth_at(delta, base, y)).max())
+        for x, y in zip(_curves(other), _curves(base), strict=True)
     ]
-    return np.array(off), np.array([ripple(delta, y) for y in curves[1]])
+    return np.array(off), np.array([ripple(base["delta"], y) for y in _curves(base)])
+
+
+def _curves(solved: Solved) -> tuple[Floats, Floats, Floats, Floats]:
+    F, a = np.log(solved["force"]), np.log(solved["radius"])
+    return 100.0 * F, 100.0 * a, solved.share, 100.0 * (F - 2.0 * a)
+
+
+def _smooth_at(delta: Floats, solved: Solved, values: Floats) -> Floats:
+    own = solved["delta"]
+    return np.interp(np.log(delta), np.log(own), smoothed(own, values))
 
 
 def _result(
