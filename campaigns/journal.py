@@ -25,8 +25,8 @@ _PAGE = 4096
 _MAGIC = b"dentscope-journal-1\n"
 _NUMBER = 8  # bytes of a number in the journal
 _DIGEST = 32
-PATIENCE_S = 30.0
-"""How long to wait for another process that has the file open for a moment."""
+PATIENCE_S = 300.0
+"""How long to wait for another process that has the file open; ours have it for moments only."""
 
 
 @contextmanager
@@ -74,7 +74,7 @@ def recover(path: Path) -> None:
     with path.open("ab"):
         pass  # a file that is new has no bytes yet
     with path.open("r+b") as file:
-        _lock(file)
+        lock(file, fcntl.LOCK_EX)
         if not journal.exists():
             return  # its writer, or another reader, was faster
         size, pages = _read_journal(journal)
@@ -213,12 +213,26 @@ def _value(content: bytes, at: int) -> int:
     return int.from_bytes(content[at : at + _NUMBER], "little")
 
 
-def _lock(file: BinaryIO) -> None:
-    """Keep readers out for the moment of writing; HDF5 takes the same lock when it opens a file."""
+def lock(file: BinaryIO, kind: int) -> None:
+    """Wait for a lock that lasts until the file is closed.
+
+    Parameters
+    ----------
+    file
+        What is locked.
+    kind
+        `fcntl.LOCK_EX` keeps readers out for the moment of writing, `fcntl.LOCK_SH` writers for
+        that of reading. HDF5 takes the same locks when it opens a file.
+
+    Raises
+    ------
+    BlockingIOError
+        Another process holds it for longer than `PATIENCE_S`.
+    """
     until = time.monotonic() + PATIENCE_S
     while True:
         try:
-            fcntl.flock(file, fcntl.LOCK_EX | fcntl.LOCK_NB)
+            fcntl.flock(file, kind | fcntl.LOCK_NB)
         except BlockingIOError:
             if time.monotonic() > until:
                 raise

@@ -11,7 +11,6 @@ import errno
 import fcntl
 import json
 import os
-import time
 from collections.abc import Iterator
 from contextlib import contextmanager, suppress
 from dataclasses import asdict, dataclass
@@ -27,7 +26,7 @@ from ..core.provenance import environment
 from ..fem import Curve, Solution
 from .case import Case
 from .fields import FOLDER, write_fields
-from .journal import PATIENCE_S, changing, journal_of, recover
+from .journal import changing, journal_of, lock, recover
 from .quality import Quality, quality_of
 from .schema import CURVE, FORMAT, PROFILES, UNLOADING_PROFILES, Dataset
 
@@ -287,16 +286,14 @@ def _reading(path: Path) -> Iterator[h5py.File]:
 
 
 def _opened(path: Path) -> h5py.File:
-    """Open a file for reading, waiting while another process has it open for a moment."""
-    until = time.monotonic() + PATIENCE_S
-    while True:
-        try:
-            return h5py.File(path, "r")
-        except OSError as error:
-            busy = error.errno in (errno.EAGAIN, errno.EACCES) and os.access(path, os.R_OK)
-            if not busy or time.monotonic() > until:
-                raise
-            time.sleep(0.02)
+    """Open what the file holds at this moment, in memory: a slow reader stops no writer."""
+    with path.open("rb") as file:
+        lock(file, fcntl.LOCK_SH)
+        image = file.read()
+    try:
+        return h5py.File(h5py.h5f.open_file_image(image))
+    except ValueError:
+        raise OSError("cut short, or of another kind") from None
 
 
 def _put_solution(group: h5py.Group, solution: Solution) -> None:
