@@ -28,6 +28,7 @@ Floats = npt.NDArray[np.float64]
 _UNIT = 0.01  # a residual of one: 1 % in F and a, 0.01 in the shares
 _UNIT_EXPONENT = 0.03  # of N; 0.03 is about 1 % of F_m in the force on unloading
 _FOLDS = 12
+_ENOUGH = 1e-5  # relative change of the misfit at which a fit for cross-validation ends
 _DEEP = 5.0  # delta_m/delta_c from which residual depths are judged relatively
 
 
@@ -172,8 +173,14 @@ def fit_tables(
 
 
 def _regress(
-    table: Table, turns: ResidualTable, first: Floats, free: npt.NDArray[np.bool_]
+    table: Table,
+    turns: ResidualTable,
+    first: Floats,
+    free: npt.NDArray[np.bool_],
+    *,
+    change: float = 1e-8,
 ) -> tuple[Floats, Floats, Floats, bool]:
+    """Minimise until the misfit changes by less than `change`, relatively."""
     low, high = np.array([LIMITS[name] for name in COEFFICIENTS]).T
     inside = np.clip(first, low + 1e-9 * np.abs(low), high - 1e-9 * np.abs(high))
     residual = _misfit_of(table, turns, first, free)
@@ -184,6 +191,7 @@ def _regress(
         bounds=(low[free], high[free]),
         x_scale="jac",
         loss="soft_l1",
+        ftol=change,
         max_nfev=300,
     )
     values = first.copy()
@@ -262,7 +270,8 @@ def _cross_validate(
     collected = predict(values, table, turns)
     for number in range(min(folds, count)):
         out, out_turns = fold[table.case] == number, fold[turns.case] == number
-        found, _, _, _ = _regress(table.rows(~out), turns.rows(~out_turns), values, free)
+        rest, rest_turns = table.rows(~out), turns.rows(~out_turns)
+        found, _, _, _ = _regress(rest, rest_turns, values, free, change=_ENOUGH)
         collected = collected.mix(predict(found, table, turns), out, out_turns)
     return collected
 

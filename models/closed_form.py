@@ -2,8 +2,8 @@
 
 The same text is compiled into the law's kernels, runs on numpy arrays in the regression, on complex
 numbers for derivatives, and is translated to C, Fortran and MATLAB (`models.export`). So it keeps
-to assignments of + - * / **, exp and sqrt, and to plain numbers in and out; the arguments after the
-inputs are pair numbers (`PAIR_NUMBERS`) and coefficients (`COEFFICIENTS`).
+to assignments of + - * / **, exp, log and sqrt, and to plain numbers in and out; the arguments
+after the inputs are pair numbers (`PAIR_NUMBERS`) and coefficients (`COEFFICIENTS`).
 
 Symbols: k_i = (1 - nu_i^2)/E_i and q_i = 1/Sy_i of sphere (s) and flat (f), zero for a body that
 does not deform or yield; E' = 1/(k_s + k_f); D = Delta/R. What each line means, and why, is in
@@ -15,113 +15,151 @@ from __future__ import annotations
 from typing import Any
 
 from numba.extending import register_jitable
-from numpy import exp, sqrt
+from numpy import exp, log, sqrt
 
 PI = 3.141592653589793
-TINY = 1e-9  # keeps the weights of the two bodies defined when neither yields
+TINY = 1e-9  # keeps the strengths' ratio defined when a body does not yield
 
 PAIR_NUMBERS = (
-    "x_s", "W", "alpha", "beta", "gamma", "e0", "lag", "r_s", "r_f", "C_r",
+    "x_s", "W", "P", "g_a", "g_b", "k", "m", "lag", "j_s", "j_f", "L", "L_C", "a_t", "p",
 )  # fmt: skip
 """What `of_pair` returns, in this order."""
 
 COEFFICIENTS = (
-    "n", "wy", "m", "A", "a0", "a1", "e_s", "e_f", "h_s", "h_f", "r", "y0",
-    "c", "b0", "b1", "c_s", "c_f", "t", "y1",
-    "g0", "g1", "g2", "g3", "g4", "g5", "k1", "k2", "r1", "r2", "d1", "u1", "u2", "u3",
+    "n", "wy", "c", "b0", "b1", "b2", "b3", "b4", "b5", "z", "c_s", "c_f", "t", "y1", "c_m",
+    "h", "B_s", "B_f", "r", "k0", "k1", "k2", "m0", "m1", "e0",
+    "g0", "g1", "g2", "g3", "s0", "s1", "s2", "s3", "s4", "p0", "p1",
+    "f1", "f2", "f3", "l1", "l2", "d1", "u1", "u2", "u3",
 )  # fmt: skip
 """Every coefficient, in the order of the coefficients file."""
 
 
 def of_pair(
     k_s, k_f, nu_s, nu_f, q_s, q_f,
-    n, wy, A, a0, a1, e_s, e_f, b0, b1, d1,
+    n, wy, b0, b1, b2, b3, b4, h, k0, k1, k2, m0, m1, s0, s1, s2, s3, s4, p0, p1, d1,
 ):  # fmt: skip
     """Numbers of a pair that do not change with the depth.
 
     Returns
     -------
     tuple
-        `PAIR_NUMBERS`: elastic share of the sphere (2.3); W = w/D; alpha, beta: transition of the
-        force; gamma: transition of the radius; e0: finite elastic strain in the force; lag: of the
-        pressure's change behind first yield; r_s, r_f: 1/S of each body over the sum of both;
-        C_r = C_f/C_s.
+        `PAIR_NUMBERS`: elastic share of the sphere (2.3); W = w/D; P: pressure over E' to that of
+        first yield; g_a, g_b: transition of the radius, early and late; k, m: of the pressure; lag:
+        of the elastic displacement; j_s, j_f: E'/S of each body; L, L_C: logarithms of S_s/S_f and
+        C_s/C_f; a_t, p: radius at which the sphere takes over, and how sharply.
     """
     stiff = 1.0 / (k_s + k_f)
     x_s = k_s * stiff
     x_f = k_f * stiff
     C_s = 1.295 * exp(0.736 * nu_s)
     C_f = 1.295 * exp(0.736 * nu_f)
-    i_s = stiff * q_s / C_s + TINY
-    i_f = stiff * q_f / C_f + TINY
+    j_s = stiff * q_s + TINY
+    j_f = stiff * q_f + TINY
+    i_s = j_s / C_s
+    i_f = j_f / C_f
     i_sum = i_s + i_f
     u_s = (i_s / i_sum) ** n
     u_f = (i_f / i_sum) ** n
     v_s = u_s / (u_s + u_f)
     v_f = u_f / (u_s + u_f)
-    equal = 4.0 * v_s * v_f
-    X = i_sum * (u_s + u_f) ** (1.0 / n) * 2.0 ** (-equal / n)
-    W = (2.0 * X / PI) ** 2
-    elastic = 1.0 - x_s * (1.0 - v_f**4) - x_f * (1.0 - v_s**4)
-    alpha = a0 + a1 * elastic
-    slope = A * (v_s * C_s + v_f * C_f) / alpha
-    beta = wy * slope * slope
-    gamma = wy / b0 * exp(-b1 * elastic)
-    e0 = e_s * x_s + e_f * x_f
-    lag = exp(d1 * elastic)
-    j_s = stiff * q_s + TINY
-    j_f = stiff * q_f + TINY
-    r_s = j_s / (j_s + j_f)
-    r_f = j_f / (j_s + j_f)
-    C_r = C_f / C_s
-    return x_s, W, alpha, beta, gamma, e0, lag, r_s, r_f, C_r
+    X = i_sum * (u_s + u_f) ** (1.0 / n) * 2.0 ** (-4.0 * v_s * v_f / n)
+    W = (2.0 * X / PI) * (2.0 * X / PI)
+    P = 1.5 * X / sqrt(wy)
+    e = x_s * v_f * v_f * v_f + x_f * v_s * v_s * v_s
+    nu = v_s * nu_s + v_f * nu_f - 0.3
+    g_a = b0 * exp(b1 * e)
+    g_b = g_a * b2 * exp(b3 * e + b4 * nu)
+    k = k0 * exp(k1 * e + k2 * nu)
+    m = m0 * exp(m1 * nu)
+    lag = exp(d1 * e)
+    L = log(j_f / j_s)
+    L_C = log(C_s / C_f)
+    lead = L + s2 * L_C
+    spread = s1 * exp(-s3 * log(1e-4 * W))
+    a_t = s0 * (lead + sqrt(lead * lead + spread * spread)) * exp(s4 * log(1e-4 * W))
+    p = p0 * exp(p1 * L)
+    return x_s, W, P, g_a, g_b, k, m, lag, j_s, j_f, L, L_C, a_t, p
 
 
 @register_jitable
-def plastic_depth(D, W, wy, m):
+def plastic_depth(w, wy):
     """Depth beyond first yield in its own units: none before it, w/wy - 1 far beyond."""
-    z = (W * D / wy) ** m
-    return (1.0 + z) ** (1.0 / m) - 1.0
+    z2 = w / wy * (w / wy)
+    z4 = z2 * z2
+    return sqrt(sqrt(sqrt(1.0 + z4 * z4))) - 1.0
 
 
 @register_jitable
-def plastic_part_at(D, W, x_s, r_s, r_f, C_r, g0, g1, g2, g3, g4, g5):
-    """Sphere's part of what is not elastic."""
-    w = W * D
-    G = g0 * (1.0 + w / g3) ** g4
-    p_s = x_s * r_s**G * exp(G * g1 * D**g5) * C_r ** (g0 / (1.0 + w / g2))
-    p_f = (1.0 - x_s) * r_f**G
-    return p_s / (p_s + p_f)
+def small_radius_at(D, y, g_a, g_b, c, b5):
+    """a/R without finite deformation."""
+    g = g_b + (g_a - g_b) / (1.0 + y / b5)
+    return sqrt(D / (1.0 / c + (1.0 - 1.0 / c) / sqrt(1.0 + g * y)))
 
 
 @register_jitable
-def force_at(D, y, phi, alpha, beta, e0, h_s, h_f, r, y0):
-    """F/(E' R^2)."""
-    eta = h_f + (h_s - h_f) * phi
-    soft = 1.0 + alpha * (sqrt(1.0 + beta * y) - 1.0)
-    large = exp(e0 * sqrt(D) - eta * D**r * y / (y + y0))
-    return 4.0 / 3.0 * D * sqrt(D) * large / soft
+def first_part_at(w, x_s, L, L_C, g0, g1, g2, g3):
+    """Sphere's part of what is not elastic, while the strengths alone decide."""
+    odds = g0 * (1.0 + w / g1) ** g2 * (L + L_C / (1.0 + w / g3))
+    bounded = odds / sqrt(1.0 + 4e-6 * odds * odds)
+    return x_s / (x_s + (1.0 - x_s) * exp(bounded))
 
 
 @register_jitable
-def radius_at(D, y, phi, gamma, c, c_s, c_f, t, y1):
-    """a/R."""
-    zeta = c_f + (c_s - c_f) * phi
-    sink = 1.0 / c + (1.0 - 1.0 / c) / sqrt(1.0 + gamma * y)
-    return sqrt(D / sink * exp(zeta * D**t * y / (y + y1)))
+def still_flat_at(small, a_t, p):
+    """Part of the flat's flow that goes on: 1 until the sphere takes over at a_t."""
+    return (1.0 + (small / a_t) ** (2.0 * p)) ** (-1.0 / p)
 
 
 @register_jitable
-def share_at(D, y, F, a, phi, x_s, lag, k1, k2):
+def radius_at(small, y, first, still, z, c_s, c_f, t, y1, c_m):
+    """a/R from that without finite deformation."""
+    zeta = c_f + (c_s - c_f) * (1.0 - (1.0 - first) * still)
+    small_power = small**t
+    large = zeta * small_power / (1.0 + 2.0 * small_power) * y / (y + y1)
+    crater = c_m * (1.0 - still) * still * (1.0 - first)
+    return small * exp(0.5 * (large + (z * small - crater) * y / (y + 2.0)))
+
+
+@register_jitable
+def force_at(D, a, P, k, m, j_s, j_f, h, B_s, B_f, r, e0):
+    """F/(E' R^2) from the contact radius."""
+    elastic = 4.0 / (3.0 * PI) * a * exp(e0 * sqrt(D))
+    load2 = P * elastic * (P * elastic)
+    load4 = load2 * load2
+    q = sqrt(sqrt(sqrt(1.0 + load4 * load4))) - 1.0
+    a_power = a**r
+    J_s = j_s * exp(B_s * a_power)
+    J_f = j_f * exp(B_f * a_power)
+    J = J_s + J_f
+    weight_s2 = J_s * J_s / (J * J)
+    weight_s4 = weight_s2 * weight_s2
+    weight_s8 = weight_s4 * weight_s4
+    weight_s16 = weight_s8 * weight_s8
+    weight_f2 = J_f * J_f / (J * J)
+    weight_f4 = weight_f2 * weight_f2
+    weight_f8 = weight_f4 * weight_f4
+    weight_f16 = weight_f8 * weight_f8
+    both = weight_s16 * weight_s16 + weight_f16 * weight_f16
+    equal = weight_s16 * weight_f16 / both * (weight_s16 * weight_f16 / both)
+    weak = J * sqrt(sqrt(sqrt(sqrt(sqrt(both))))) * (1.0 - 0.08664339756999316 * equal)
+    q_power = (q + 1e-30) ** m
+    soft = 1.0 + weak / (P * h) * q * q_power / (q_power + k)
+    return PI * a * a * elastic / soft
+
+
+@register_jitable
+def share_at(D, y, F, a, phi, x_s, lag, f1, f2, f3):
     """delta_s*, the sphere's share of the approach."""
-    elastic = (0.75 - k1 * y / (y + k2 * lag)) * F / (a * D)
-    return phi + elastic * (x_s - phi)
+    f_power = (y + 1e-30) ** f2
+    recoverable = (0.75 - f1 * f_power / (f_power + f3 * lag)) * F / (a * D)
+    return phi + recoverable * (x_s - phi)
 
 
 @register_jitable
-def permanent_at(D, y, F, a, e0, lag, r1, r2):
+def permanent_at(D, y, F, a, lag, e0, f3, l1, l2):
     """Permanent approach over the largest one."""
-    return 1.0 - (0.75 - r1 * y / (y + r2 * lag)) * F * exp(-e0 * sqrt(D)) / (a * D)
+    l_power = (y + 1e-30) ** l2
+    return 1.0 - (0.75 - l1 * l_power / (l_power + f3 * lag)) * F * exp(-e0 * sqrt(D)) / (a * D)
 
 
 @register_jitable
@@ -133,9 +171,9 @@ def exponent_at(y, u1, u2, u3):
 @register_jitable
 def contact(
     D,
-    x_s, W, alpha, beta, gamma, e0, lag, r_s, r_f, C_r,
-    wy, m, h_s, h_f, r, y0, c, c_s, c_f, t, y1,
-    g0, g1, g2, g3, g4, g5, k1, k2, r1, r2, u1, u2, u3,
+    x_s, W, P, g_a, g_b, k, m, lag, j_s, j_f, L, L_C, a_t, p,
+    wy, c, b5, z, c_s, c_f, t, y1, c_m, h, B_s, B_f, r, e0, g0, g1, g2, g3,
+    f1, f2, f3, l1, l2, u1, u2, u3,
 ):  # fmt: skip
     """Everything at a depth D = Delta/R of first loading.
 
@@ -145,12 +183,16 @@ def contact(
         F/(E' R^2), a/R, delta_s*, permanent approach over Delta and the sphere's part of it, the
         exponent of the unloading curve.
     """
-    y = plastic_depth(D, W, wy, m)
-    phi = plastic_part_at(D, W, x_s, r_s, r_f, C_r, g0, g1, g2, g3, g4, g5)
-    F = force_at(D, y, phi, alpha, beta, e0, h_s, h_f, r, y0)
-    a = radius_at(D, y, phi, gamma, c, c_s, c_f, t, y1)
-    share = share_at(D, y, F, a, phi, x_s, lag, k1, k2)
-    left = permanent_at(D, y, F, a, e0, lag, r1, r2)
+    w = W * D
+    y = plastic_depth(w, wy)
+    small = small_radius_at(D, y, g_a, g_b, c, b5)
+    first = first_part_at(w, x_s, L, L_C, g0, g1, g2, g3)
+    still = still_flat_at(small, a_t, p)
+    phi = 1.0 - (1.0 - first) * still
+    a = radius_at(small, y, first, still, z, c_s, c_f, t, y1, c_m)
+    F = force_at(D, a, P, k, m, j_s, j_f, h, B_s, B_f, r, e0)
+    share = share_at(D, y, F, a, phi, x_s, lag, f1, f2, f3)
+    left = permanent_at(D, y, F, a, lag, e0, f3, l1, l2)
     N = exponent_at(y, u1, u2, u3)
     return F, a, share, left, phi, N
 

@@ -122,7 +122,7 @@ def python_source(law: Fitted) -> str:
 {_comment(law, "").replace(chr(10) + " ", chr(10)).strip()}
 """
 
-from math import exp, sqrt
+from math import exp, log, sqrt
 
 {_block(list(_coefficients(law).items()), indent=0)}
 

@@ -17,7 +17,7 @@ from typing import Any
 from . import closed_form
 
 _CONSTANTS = {"PI": closed_form.PI, "TINY": closed_form.TINY}
-_FUNCTIONS = ("exp", "sqrt")
+_FUNCTIONS = ("exp", "log", "sqrt")
 
 
 @dataclass(frozen=True)

@@ -123,7 +123,7 @@ def test_leaving_the_domain_names_the_bound():
 
 def planted():
     """Tables made by the form itself with known coefficients and 0.3 % of noise."""
-    truth = START | {"h_f": 2.0, "a1": 0.45, "c": 2.6, "g1": 0.8, "k1": 0.12}
+    truth = START | {"h": 2.9, "k1": 1.7, "c": 2.6, "s0": 0.7, "f1": 0.12}
     random = np.random.default_rng(3)
     ratios = (0.1, 0.4, 0.7, 0.85, 1.0, 1.15, 1.4, 3.0, 10.0)
     pairs = [
