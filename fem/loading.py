@@ -29,6 +29,7 @@ Floats = npt.NDArray[np.float64]
 # After a step in so many Newton iterations the next may be longer by the factor (of its logarithm).
 _REGROW = ((5, 1.5), (8, 1.15))
 _BELOW_YIELD = 0.8  # elastic step ratio up to this fraction of the critical depth
+_LEAST_RATIO = 1.0 + 1e-6  # of a step: below it the path stands still, whatever still converges
 _SOFT_START = (1e-3, 1e-2, 1e-1, 1.0)  # contact stiffness on the way to the first equilibrium
 # The fine zone of a mesh made for the contact radius a reaches from _BEHIND a to _AHEAD a, and
 # serves until the radius has grown by _SERVES: the gap is read and plastic flow runs ahead of it.
@@ -131,7 +132,7 @@ class Loading:
         return Outcome(
             Ending.NOT_CONVERGED,
             f"no equilibrium beyond Delta/R = {point.delta:.4g} (a/R = "
-            f"{point.record.reading.radius:.3f}) after {MOST_CUTS} cuts of the step.",
+            f"{point.record.reading.radius:.3f}), however short the step.",
             "Try a finer or coarser accuracy level; the results up to there hold.",
         )
 
@@ -175,6 +176,8 @@ class Loading:
     ) -> tuple[Point | None, float]:
         """Advance by at most `ratio` towards `goal`; the ratio that worked comes back."""
         for _ in range(MOST_CUTS):
+            if ratio < _LEAST_RATIO:
+                break
             n = max(1, int(np.ceil(np.log(goal / point.delta) / np.log(ratio) - 1e-9)))
             delta = goal if n == 1 else point.delta * (goal / point.delta) ** (1.0 / n)
             reach = delta / point.delta if before is None else (delta - point.delta) / last_step
