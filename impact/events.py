@@ -65,7 +65,7 @@ from .motion import contact, crater, derivative, kinematics, loading_radius, tip
 _BREAK_GAP = 1e-13
 
 
-@njit(float64(VECTOR, float64, float64), cache=True)
+@njit(float64(VECTOR, float64, float64), cache=True, _nrt=False)
 def sliding_mode(seen, rest_friction, small_force):
     """Sign of sliding that follows rest: 0 when friction can hold the contact point.
 
@@ -78,7 +78,7 @@ def sliding_mode(seen, rest_friction, small_force):
     return 1.0 if pull > 0.0 else -1.0
 
 
-@njit(float64(VECTOR, float64, float64, boolean, float64), cache=True)
+@njit(float64(VECTOR, float64, float64, boolean, float64), cache=True, _nrt=False)
 def first_mode(seen, rest_friction, small_force, rubbing, speed):
     """Sign of sliding at a touch; 0 when the point rests and nothing moves it."""
     if abs(seen[SLIDING]) > 1e-14 * speed:
@@ -89,7 +89,7 @@ def first_mode(seen, rest_friction, small_force, rubbing, speed):
 @njit(
     float64(LOADING, BRANCH, BRANCH, VECTOR, VECTOR, VECTOR, VECTOR, MATRIX, VECTOR, int64, float64,
             float64, float64, VECTOR, VECTOR, VECTOR, VECTOR),
-    cache=True, error_model="numpy",
+    cache=True, _nrt=False, error_model="numpy",
 )
 def slip_speed(loading, radius, unloading, par, force, factors, body, psi, branch, phase, mode,
                offset, ahead, z, dz, moved, seen):
@@ -129,7 +129,7 @@ def slip_speed(loading, radius, unloading, par, force, factors, body, psi, branc
 @njit(
     float64(LOADING, BRANCH, BRANCH, VECTOR, VECTOR, VECTOR, VECTOR, MATRIX, VECTOR, int64, float64,
             float64, VECTOR, VECTOR, VECTOR, VECTOR, VECTOR),
-    cache=True, error_model="numpy",
+    cache=True, _nrt=False, error_model="numpy",
 )
 def yielding_mode(loading, radius, unloading, par, force, factors, body, psi, branch, phase, offset,
                   ahead, z, dz, moved, further, seen):
@@ -146,7 +146,7 @@ def yielding_mode(loading, radius, unloading, par, force, factors, body, psi, br
     return mode if mode * speed > 0.0 else 0.0
 
 
-@njit(float64(float64, float64, float64, float64, float64), cache=True)
+@njit(float64(float64, float64, float64, float64, float64), cache=True, _nrt=False)
 def hermite_root(g0, d0, g1, d1, h):
     """Return the fraction in (0, 1) at which the cubic through both ends vanishes."""
     low, high = 0.0, 1.0
@@ -166,7 +166,7 @@ def hermite_root(g0, d0, g1, d1, h):
     types.void(LOADING, BRANCH, BRANCH, VECTOR, VECTOR, VECTOR, VECTOR, VECTOR, VECTOR, MATRIX,
                VECTOR, VECTOR, int64, float64, boolean, float64, float64, float64, float64, VECTOR,
                VECTOR, VECTOR, VECTOR, VECTOR, VECTOR),
-    cache=True, error_model="numpy",
+    cache=True, _nrt=False, error_model="numpy",
 )
 def event_values(loading, radius, unloading, par, force, factors, body, spot, omega, psi, shape,
                  branch, phase, mode, approaching, side, offset, ahead, centre0, z, dz, moved, seen,
@@ -200,7 +200,8 @@ def event_values(loading, radius, unloading, par, force, factors, body, spot, om
                 offset, ahead, z, dz, moved, seen_far)
 
 
-@njit(types.void(int64, float64, boolean, boolean, boolean, int64, types.boolean[::1]), cache=True)
+@njit(types.void(int64, float64, boolean, boolean, boolean, int64, types.boolean[::1]),
+      cache=True, _nrt=False)
 def mark_active(phase, mode, approaching, clear, compliant, variable, active):
     """Mark the events that can end the present interval."""
     pressed = phase != FLY
@@ -214,8 +215,8 @@ def mark_active(phase, mode, approaching, clear, compliant, variable, active):
     active[TOUCH] = not pressed and clear
 
 
-@njit(float64(int64, VECTOR, VECTOR, VECTOR, MATRIX, int64, VECTOR, float64, float64), cache=True,
-      error_model="numpy")
+@njit(float64(int64, VECTOR, VECTOR, VECTOR, MATRIX, int64, VECTOR, float64, float64),
+      cache=True, _nrt=False, error_model="numpy")
 def event_slope(event, body, z, dz, psi, n, seen, sign, pace):
     """Derivative of an event function where `pace` is dt per independent variable; 0: no form."""
     if event == PART:
@@ -240,7 +241,7 @@ def event_slope(event, body, z, dz, psi, n, seen, sign, pace):
     types.UniTuple(float64, 3)(
         LOADING, BRANCH, BRANCH, SPLIT, VECTOR, VECTOR, VECTOR, VECTOR, float64, VECTOR
     ),
-    cache=True,
+    cache=True, _nrt=False,
 )
 def meet(loading, radius, unloading, residual, par, force, factors, spot, x, branch):
     """Begin a contact at x: return (phase, offset of the law's depth, crater depth here).
@@ -263,7 +264,7 @@ def meet(loading, radius, unloading, residual, par, force, factors, spot, x, bra
     return float(LOAD), offset, local
 
 
-@njit(types.void(VECTOR, float64, VECTOR), cache=True)
+@njit(types.void(VECTOR, float64, VECTOR), cache=True, _nrt=False)
 def set_segment(breaks, depth, branch):
     """Bound the loading curve to its smooth stretch around `depth`."""
     branch[SEGMENT_LOW], branch[SEGMENT_HIGH] = 0.0, math.inf
@@ -275,7 +276,7 @@ def set_segment(breaks, depth, branch):
             break
 
 
-@njit(float64(LOADING, VECTOR, VECTOR, VECTOR, float64, float64), cache=True)
+@njit(float64(LOADING, VECTOR, VECTOR, VECTOR, float64, float64), cache=True, _nrt=False)
 def reference_depth(loading, par, force, factors, energy, R):
     """Depth [m] at which about `energy` [J] has been taken up; the scale of the tolerances."""
     d = 1e-12 * R

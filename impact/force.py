@@ -37,7 +37,7 @@ PUNCH_PRESSURE = 5.69 / math.sqrt(3.0)
 """Mean pressure over yield strength under a rigid circular punch (Eq. 1.10 at a -> 0)."""
 
 
-@njit(float64(VECTOR, int64, float64), cache=True, error_model="numpy")
+@njit(float64(VECTOR, int64, float64), cache=True, _nrt=False, error_model="numpy")
 def _factor(factors, half, x):
     """Interpolate one half of the table, smooth to the first derivative (Catmull and Rom)."""
     n = len(factors) // 2
@@ -54,7 +54,7 @@ def _factor(factors, half, x):
     return here + t * (m0 + t * (3.0 * rise - 2.0 * m0 - m1 + t * (m0 + m1 - 2.0 * rise)))
 
 
-@njit(float64(float64, float64, float64, float64), cache=True, error_model="numpy")
+@njit(float64(float64, float64, float64, float64), cache=True, _nrt=False, error_model="numpy")
 def cut_force(b, radius, modulus, depth):
     """Force [N] on an elastic sphere with a flat of radius b (Ejike 1969)."""
     dr = depth * radius
@@ -64,7 +64,7 @@ def cut_force(b, radius, modulus, depth):
     return 2.0 * modulus / (3.0 * radius) * (2.0 * a2 + b * b) * gap**0.5
 
 
-@njit(float64(LOADING, VECTOR, VECTOR, VECTOR, float64), cache=True)
+@njit(float64(LOADING, VECTOR, VECTOR, VECTOR, float64), cache=True, _nrt=False)
 def static_loading(loading, par, force, factors, depth):
     """Loading force [N] at `depth` [m], measured from first touch.
 
@@ -90,7 +90,7 @@ def static_loading(loading, par, force, factors, depth):
     return f
 
 
-@njit(types.void(BRANCH, VECTOR, VECTOR), cache=True)
+@njit(types.void(BRANCH, VECTOR, VECTOR), cache=True, _nrt=False)
 def _fit_power(unloading, par, branch):
     """Recognise a recovery F_m x^n, x from 0 at the residual depth to 1 at the peak.
 
@@ -118,6 +118,7 @@ def _fit_power(unloading, par, branch):
 @njit(
     types.void(LOADING, BRANCH, SPLIT, VECTOR, VECTOR, VECTOR, float64, VECTOR),
     cache=True,
+    _nrt=False,
 )
 def set_peak(loading, unloading, residual, par, force, factors, peak, branch):
     """Write into `branch` what the unloading from `peak` needs.
@@ -167,7 +168,7 @@ def set_peak(loading, unloading, residual, par, force, factors, peak, branch):
             branch[3] = force[RETURN] * static_loading(loading, par, force, factors, peak) / elastic
 
 
-@njit(float64(BRANCH, VECTOR, VECTOR, float64), cache=True)
+@njit(float64(BRANCH, VECTOR, VECTOR, float64), cache=True, _nrt=False)
 def static_unloading(unloading, par, branch, depth):
     """Force [N] at `depth` [m] on the branch that `set_peak` prepared."""
     if depth <= branch[1] + branch[2]:
@@ -186,12 +187,12 @@ def static_unloading(unloading, par, branch, depth):
     return branch[3] * unloading(par, x, branch[4])
 
 
-@njit(float64(LOADING, VECTOR, VECTOR, VECTOR, float64), cache=True)
+@njit(float64(LOADING, VECTOR, VECTOR, VECTOR, float64), cache=True, _nrt=False)
 def _log_force(loading, par, force, factors, x):
     return math.log(max(static_loading(loading, par, force, factors, math.exp(x)), 1e-300))
 
 
-@njit(float64(LOADING, VECTOR, VECTOR, VECTOR, float64, float64), cache=True)
+@njit(float64(LOADING, VECTOR, VECTOR, VECTOR, float64, float64), cache=True, _nrt=False)
 def _jump_between(loading, par, force, factors, low, high):
     """Logarithm of the depth just above a jump between two others; nan without one."""
     f_low = _log_force(loading, par, force, factors, low)

@@ -94,11 +94,14 @@ _C = np.ascontiguousarray(np.append(DOP853.C[:STAGES], 1.0))
 _E3 = np.ascontiguousarray(DOP853.E3[: STAGES + 1])
 _E5 = np.ascontiguousarray(DOP853.E5[: STAGES + 1])
 _FAST = {"reassoc", "contract"}  # the loops over the modes may be summed in vectors
+# Nothing here or in `force` and `events` allocates: _nrt=False leaves out numba's counting of
+# references, which took half of an impact.
+_PLAIN = {"error_model": "numpy", "fastmath": _FAST, "_nrt": False}
 
 
 @njit(
     types.void(VECTOR, VECTOR, MATRIX, int64, VECTOR),
-    cache=True,
+    cache=True, _nrt=False,
     error_model="numpy",
     fastmath=_FAST,
 )
@@ -126,7 +129,7 @@ def kinematics(body, z, psi, n_modes, seen):
     seen[SLIDING] = sliding
 
 
-@njit(float64(VECTOR, VECTOR, MATRIX, int64), cache=True)
+@njit(float64(VECTOR, VECTOR, MATRIX, int64), cache=True, _nrt=False)
 def tip_x(body, z, psi, n):
     """Tangential position of the contact point on the flat [m], 0 at first touch."""
     sine, cosine = math.sin(0.5 * z[PHI]), math.cos(0.5 * z[PHI])
@@ -136,7 +139,7 @@ def tip_x(body, z, psi, n):
     return x
 
 
-@njit(float64(VECTOR, float64), cache=True)
+@njit(float64(VECTOR, float64), cache=True, _nrt=False)
 def crater(spot, x):
     """Depth of the crater at the tangential position x [m], a parabola about its centre."""
     if spot[SPOT_RADIUS] <= 0.0:
@@ -145,7 +148,7 @@ def crater(spot, x):
     return spot[SPOT_FLAT] * max(0.0, 1.0 - r * r)
 
 
-@njit(float64(int64, float64, VECTOR), cache=True, error_model="numpy")
+@njit(float64(int64, float64, VECTOR), cache=True, _nrt=False, error_model="numpy")
 def pace_of(variable, place, seen):
     """Time per unit of the independent variable, dt / d(place)."""
     if variable == BY_TIME:
@@ -157,7 +160,7 @@ def pace_of(variable, place, seen):
     return 1.0 / seen[ACCELERATION]
 
 
-@njit(float64(BRANCH, VECTOR, VECTOR, float64), cache=True, error_model="numpy")
+@njit(float64(BRANCH, VECTOR, VECTOR, float64), cache=True, _nrt=False, error_model="numpy")
 def loading_radius(radius, par, force, depth):
     """Contact radius [m] on loading, with a flat of the tip and the tip's edge."""
     b = force[FLAT]
@@ -215,8 +218,8 @@ def _contact_of(loading, radius, unloading, par, force, factors, body, psi, n, b
 
 _CONTACT = types.UniTuple(float64, 4)(LOADING, BRANCH, BRANCH, VECTOR, VECTOR, VECTOR, VECTOR,
                                       MATRIX, int64, VECTOR, int64, float64, VECTOR, VECTOR)
-_contact_inlined = njit(inline="always", error_model="numpy", fastmath=_FAST)(_contact_of)
-contact = njit(_CONTACT, cache=True, error_model="numpy", fastmath=_FAST)(_contact_of)
+_contact_inlined = njit(inline="always", **_PLAIN)(_contact_of)
+contact = njit(_CONTACT, cache=True, **_PLAIN)(_contact_of)
 
 
 def _derivative_of(loading, radius, unloading, par, force, factors, body, omega, psi, shape, branch,
@@ -301,15 +304,15 @@ def _derivative_of(loading, radius, unloading, par, force, factors, body, omega,
 _DERIVATIVE = types.void(LOADING, BRANCH, BRANCH, VECTOR, VECTOR, VECTOR, VECTOR, VECTOR, MATRIX,
                          VECTOR, VECTOR, int64, float64, float64, int64, float64, VECTOR, VECTOR,
                          VECTOR)
-_derivative_inlined = njit(inline="always", error_model="numpy", fastmath=_FAST)(_derivative_of)
-derivative = njit(_DERIVATIVE, cache=True, error_model="numpy", fastmath=_FAST)(_derivative_of)
+_derivative_inlined = njit(inline="always", **_PLAIN)(_derivative_of)
+derivative = njit(_DERIVATIVE, cache=True, **_PLAIN)(_derivative_of)
 
 
 @njit(
     float64(LOADING, BRANCH, BRANCH, VECTOR, VECTOR, VECTOR, VECTOR, VECTOR, MATRIX, VECTOR,
             VECTOR, int64, float64, float64, int64, float64, float64, VECTOR, MATRIX, VECTOR,
             VECTOR, VECTOR, VECTOR, VECTOR),
-    cache=True, error_model="numpy", fastmath=_FAST,
+    cache=True, _nrt=False, error_model="numpy", fastmath=_FAST,
 )
 def step(loading, radius, unloading, par, force, factors, body, omega, psi, shape, branch, phase,
           mode, offset, variable, place, h, z, stages, z_new, work, z_err, scale, seen):

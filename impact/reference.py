@@ -79,6 +79,9 @@ class _Motion:
     def __init__(self, scene: Scene, a: Arrays) -> None:
         self.a = a
         self.loading, self.radius, self.unloading, self.residual = kernels_of(scene.law)
+        # As Python: handing a kernel to compiled code costs far more than these few lines do.
+        self.on_loading = fo.static_loading.py_func
+        self.on_unloading = fo.static_unloading.py_func
         self.m, self.inertia = float(a.body[c.MASS]), float(a.body[c.INERTIA])
         self.cos0, self.sin0 = float(a.body[c.HALF_COS]), float(a.body[c.HALF_SIN])
         self.theta = math.atan2(self.sin0, self.cos0)
@@ -122,9 +125,9 @@ class _Motion:
         a, d = self.a, depth - k.offset
         if k.phase == LOADING:
             d = min(max(d, k.low), k.high)
-            f = fo.static_loading(self.loading, a.par, a.force, a.factors, d)
+            f = self.on_loading(self.loading, a.par, a.force, a.factors, d)
         else:
-            f = fo.static_unloading(self.unloading, a.par, k.branch, d)
+            f = self.on_unloading(self.unloading, a.par, k.branch, d)
         plough = 0.0
         if a.force[fo.RADIATION] or a.body[c.PLOUGH]:
             peak = max(d, k.branch[0]) if k.phase == UNLOADING else d

@@ -43,10 +43,11 @@ RESIDUAL_SIGNATURE = types.UniTuple(float64, 2)(VECTOR, float64)
 R, E, S, RATIO, SHARE, E_WEAK, NU_WEAK, C, ONSET, CRITICAL, K_HERTZ = range(11)
 N_COMMON = 11
 
-# error_model: no check for a division by zero, which costs as much as the division
-loading_kernel = njit(LOADING_SIGNATURE, cache=True, error_model="numpy")
-branch_kernel = njit(BRANCH_SIGNATURE, cache=True, error_model="numpy")
-residual_kernel = njit(RESIDUAL_SIGNATURE, cache=True, error_model="numpy")
+# error_model: no check for a division by zero, which costs as much as the division.
+# _nrt: no reference counts, which cost as much as the arithmetic; a kernel allocates nothing.
+loading_kernel = njit(LOADING_SIGNATURE, cache=True, _nrt=False, error_model="numpy")
+branch_kernel = njit(BRANCH_SIGNATURE, cache=True, _nrt=False, error_model="numpy")
+residual_kernel = njit(RESIDUAL_SIGNATURE, cache=True, _nrt=False, error_model="numpy")
 
 
 CLAUSES = (
@@ -302,19 +303,19 @@ def _combined_kernels(first: ContactLaw, second: ContactLaw) -> Kernels:
         loading, radius = first.kernels.loading, first.kernels.radius
         residual_of, unloading_of = second.kernels.residual, second.kernels.unloading
 
-        @njit(LOADING_SIGNATURE)
+        @njit(LOADING_SIGNATURE, _nrt=False)
         def combined_loading(par, depth):
             return loading(par[: int(par[-1])], depth)
 
-        @njit(BRANCH_SIGNATURE)
+        @njit(BRANCH_SIGNATURE, _nrt=False)
         def combined_radius(par, depth, peak):
             return radius(par[: int(par[-1])], depth, peak)
 
-        @njit(RESIDUAL_SIGNATURE)
+        @njit(RESIDUAL_SIGNATURE, _nrt=False)
         def combined_residual(par, peak):
             return residual_of(par[int(par[-1]) : len(par) - 1], peak)
 
-        @njit(BRANCH_SIGNATURE)
+        @njit(BRANCH_SIGNATURE, _nrt=False)
         def combined_unloading(par, depth, peak):
             # the second law gives the shape of the recovery, the first its height
             theirs = par[int(par[-1]) : len(par) - 1]
@@ -389,7 +390,7 @@ def onset(par, _depth):
     return par[ONSET]
 
 
-@njit(float64(float64, float64, float64, float64), cache=True)
+@njit(float64(float64, float64, float64, float64), cache=True, _nrt=False)
 def hertz_recovery(force_peak, depth, peak, residual):
     """Elastic recovery about the residual depth, F_m ((d - d_r)/(d_m - d_r))^(3/2) (3.5-3.6)."""
     if depth <= residual or peak <= residual:
@@ -405,7 +406,7 @@ def hertz_recovery(force_peak, depth, peak, residual):
         types.FunctionType(LOADING_SIGNATURE), float64[:, ::1], types.int64[::1], float64[::1],
         float64[::1],
     ),
-    cache=True,
+    cache=True, _nrt=False,
 )  # fmt: skip
 def _map_loading(kernel, par, row, depth, out):
     for i in range(depth.size):
@@ -418,7 +419,7 @@ def _map_loading(kernel, par, row, depth, out):
         types.FunctionType(BRANCH_SIGNATURE), float64[:, ::1], types.int64[::1], float64[::1],
         float64[::1], float64[::1],
     ),
-    cache=True,
+    cache=True, _nrt=False,
 )  # fmt: skip
 def _map_branch(kernel, par, row, depth, peak, out):
     for i in range(depth.size):
@@ -431,7 +432,7 @@ def _map_branch(kernel, par, row, depth, peak, out):
         types.FunctionType(RESIDUAL_SIGNATURE), float64[:, ::1], types.int64[::1], float64[::1],
         float64[::1], float64[::1],
     ),
-    cache=True,
+    cache=True, _nrt=False,
 )  # fmt: skip
 def _map_residual(kernel, par, row, peak, sphere, flat):
     for i in range(peak.size):

@@ -88,7 +88,7 @@ def _numbers_2012(common: Floats) -> tuple[float, ...]:
 _FIVE = float64(float64, float64, float64, float64, float64)
 
 
-@njit(_FIVE, cache=True)
+@njit(_FIVE, cache=True, _nrt=False)
 def cubic(t, low, high, slope_low, slope_high):
     """Cubic on 0 <= t <= 1 with the values and slopes of both ends."""
     rise = high - low

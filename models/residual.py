@@ -19,14 +19,14 @@ _MOST = 0.999  # nothing can be left that was not pressed in
 _NODES, _WEIGHTS = np.polynomial.legendre.leggauss(16)
 
 
-@njit(inline="always")
+@njit(_nrt=False, inline="always")
 def recover(loading, residual, par, depth, peak):
     """Unloading of a law with the given kernels, by Hertz's recovery (3.5-3.6, 4.13-4.14)."""
     s, f = residual(par, peak)
     return hertz_recovery(loading(par, peak), depth, peak, s + f)
 
 
-@njit(inline="always")
+@njit(_nrt=False, inline="always")
 def bounded(loading, par, onset, peak, exponent, fraction):
     """Raise a residual fraction until the recovery gives back no more than was spent.
 
@@ -44,7 +44,7 @@ def bounded(loading, par, onset, peak, exponent, fraction):
     return max(fraction, 1.0 - most)
 
 
-@njit(float64(float64), cache=True)
+@njit(float64(float64), cache=True, _nrt=False)
 def jackson(w):
     """Jackson, Chusoipin and Green: 1.02 [1 - ((w + 5.9)/6.9)^-0.54] (4.12), below 1."""
     if w <= 1.0:
@@ -53,7 +53,7 @@ def jackson(w):
     return min(1.02 * (1.0 - ((w + 5.9) / 6.9) ** -0.54), _MOST)
 
 
-@njit(float64(float64), cache=True)
+@njit(float64(float64), cache=True, _nrt=False)
 def ghaednia(w):
     """Fitted to the experiments of chapter 3: 0.8 [1 - ((w + 5.5)/6.5)^-2] (3.7)."""
     if w <= 1.0:
@@ -62,7 +62,7 @@ def ghaednia(w):
     return 0.8 * (1.0 - x * x)
 
 
-@njit(float64(float64), cache=True)
+@njit(float64(float64), cache=True, _nrt=False)
 def etsion(w):
     """Etsion, Kligerman and Kadin: (1 - w^-0.28)(1 - w^-0.69) (4.18)."""
     if w <= 1.0:
@@ -70,25 +70,25 @@ def etsion(w):
     return (1.0 - w**-0.28) * (1.0 - w**-0.69)
 
 
-@njit(float64(float64), cache=True)
+@njit(float64(float64), cache=True, _nrt=False)
 def kogut_komvopoulos(modulus_ratio):
     """Kogut and Komvopoulos: 1 - 0.591 (E'/S)^-0.156, whatever the depth (4.22)."""
     return max(1.0 - 0.591 * modulus_ratio**-0.156, 0.0)
 
 
-@njit(float64(VECTOR, float64, float64, float64), cache=True)
+@njit(float64(VECTOR, float64, float64, float64), cache=True, _nrt=False)
 def elastic_recovery(par, force, a, peak):
     """Recovery at constant contact radius: 1 - 3 F/(4 E' a peak); 0 for Hertz."""
     return max(1.0 - 0.75 * force / (par[E] * a * peak), 0.0)
 
 
-@njit(float64(VECTOR, float64, float64), cache=True)
+@njit(float64(VECTOR, float64, float64), cache=True, _nrt=False)
 def brake(par, force, peak):
     """Brake 2015: 1 - F_m/F_Hertz(peak) (4.31, corrected)."""
     return max(1.0 - force / (par[K_HERTZ] * peak * math.sqrt(peak)), 0.0)
 
 
-@njit(types.UniTuple(float64, 2)(VECTOR, float64), cache=True)
+@njit(types.UniTuple(float64, 2)(VECTOR, float64), cache=True, _nrt=False)
 def to_weaker(par, total):
     """Split a residual depth: the weaker body takes it, equal strengths take halves.
 
