@@ -54,6 +54,13 @@ class Measured:
         return Measured(self.value - other.value, math.hypot(self.std, other.std))
 
 
+UNITY = Measured(1.0, 0.0)
+"""The scale of an instrument that is taken as exact."""
+
+ZERO = Measured(0.0, 0.0)
+"""An effect that is taken as absent."""
+
+
 def _digits(value: float, std: float) -> int:
     if value == 0.0:
         return 2

@@ -1,0 +1,50 @@
+"""Prove the crater reduction on rendered scans: `python benchmarks/validate_reduce_scan.py 200`.
+
+Prints error and coverage of depth, and of the sliding length of scars, over scans with drawn size,
+rim, tilt, roughness, noise, spikes and holes.
+"""
+
+import sys
+
+import numpy as np
+from dentscope.recordings.reduce.crater import reduce_scan
+from dentscope.recordings.reduce.measured import Measured
+from dentscope.recordings.reduce.synthetic.scans import ScanTruth, random_truth, render
+
+
+def _stated_blur(truth: ScanTruth) -> Measured:
+    """What a data sheet says of the instrument: the blur, off by up to 20 %."""
+    off = np.random.default_rng(truth.seed + 10_000).uniform(0.8, 1.2)
+    return Measured(truth.blur * off, 0.12 * truth.blur * off)
+
+
+def main(count: int) -> None:
+    scores: dict[str, list[tuple[float, float, float]]] = {}
+    for seed in range(count):
+        truth = random_truth(seed)
+        found = reduce_scan(render(truth), blur=_stated_blur(truth))
+        rows = [
+            ("depth", found.depth, truth.depth),
+            ("width", found.width, 2.0 * truth.radius),
+            ("length", found.length, 2.0 * truth.radius),
+        ]
+        scar = random_truth(seed, sliding=4e-4)
+        slid = reduce_scan(render(scar), blur=_stated_blur(scar))
+        rows += [("depth of scar", slid.depth, scar.depth), ("sliding", slid.sliding, scar.sliding)]
+        for name, value, known in rows:
+            scores.setdefault(name, []).append((value.value, value.std, known))
+    for name, listed in scores.items():
+        value, std, known = np.array(listed).T
+        error, z = value / known - 1.0, (value - known) / std
+        print(
+            f"{name}: {np.isnan(value).sum()} not found, rms error "
+            f"{100 * np.sqrt(np.nanmean(error**2)):.3f} %, "
+            f"within 1 % {np.nanmean(abs(error) < 0.01):.1%}, "
+            f"worst {100 * np.nanmax(abs(error)):.2f} %, "
+            f"mean {100 * np.nanmean(error):+.3f} %, within 2 std {np.nanmean(abs(z) < 2.0):.1%}, "
+            f"mean std {100 * np.nanmean(std / known):.3f} %"
+        )
+
+
+if __name__ == "__main__":
+    main(int(sys.argv[1]) if len(sys.argv) > 1 else 200)
