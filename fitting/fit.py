@@ -28,7 +28,9 @@ Floats = npt.NDArray[np.float64]
 _UNIT = 0.01  # a residual of one: 1 % in F and a, 0.01 in the shares
 _UNIT_EXPONENT = 0.03  # of N; 0.03 is about 1 % of F_m in the force on unloading
 _FOLDS = 12
-_ENOUGH = 1e-5  # relative change of the misfit at which a fit for cross-validation ends
+ENOUGH = 1e-5
+"""Relative change of the misfit at which a fit for comparison or cross-validation ends."""
+
 _DEEP = 5.0  # delta_m/delta_c from which residual depths are judged relatively
 
 
@@ -135,6 +137,7 @@ def fit_tables(
     held: Mapping[str, float] | None = None,
     start: Mapping[str, float] | None = None,
     folds: int = _FOLDS,
+    change: float = 1e-8,
 ) -> Fit:
     """Fit the closed form to a campaign.
 
@@ -148,11 +151,13 @@ def fit_tables(
         Where to start; `form.START` if not given.
     folds
         Groups of combinations that are left out in turn; 0 leaves the cross-validation out.
+    change
+        Relative change of the misfit at which the regression ends.
     """
     held = dict(held or {})
     first = np.array([{**START, **(start or {}), **held}[name] for name in COEFFICIENTS])
     free = np.array([name not in held for name in COEFFICIENTS])
-    values, jacobian, misfit, ok = _regress(table, turns, first, free)
+    values, jacobian, misfit, ok = _regress(table, turns, first, free, change=change)
     clusters = np.concatenate([np.tile(table.case, 3), np.tile(turns.case, 3)])
     covariance = np.zeros((len(values), len(values)))
     covariance[np.ix_(free, free)] = covariance_of(jacobian, misfit, clusters)
@@ -271,7 +276,7 @@ def _cross_validate(
     for number in range(min(folds, count)):
         out, out_turns = fold[table.case] == number, fold[turns.case] == number
         rest, rest_turns = table.rows(~out), turns.rows(~out_turns)
-        found, _, _, _ = _regress(rest, rest_turns, values, free, change=_ENOUGH)
+        found, _, _, _ = _regress(rest, rest_turns, values, free, change=ENOUGH)
         collected = collected.mix(predict(found, table, turns), out, out_turns)
     return collected
 

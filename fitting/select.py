@@ -12,7 +12,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from ..models.closed_form import COEFFICIENTS
-from .fit import Errors, Prediction, fit_tables, predict
+from .fit import ENOUGH, Errors, Prediction, fit_tables, predict
 from .table import ResidualTable, Table
 
 CANDIDATES: dict[str, Mapping[str, float]] = {
@@ -68,12 +68,12 @@ class Choice:
 
 
 def compare_forms(
-    table: Table, turns: ResidualTable, *, start: Mapping[str, float], folds: int = 6
+    table: Table, turns: ResidualTable, *, start: Mapping[str, float], folds: int = 4
 ) -> list[Choice]:
     """Fit every candidate with whole combinations left out in turn."""
     choices = []
     for name, held in CANDIDATES.items():
-        fit = fit_tables(table, turns, held=held, start=start, folds=folds)
+        fit = fit_tables(table, turns, held=held, start=start, folds=folds, change=ENOUGH)
         assert fit.predicted is not None
         assert fit.held_out is not None
         choices.append(
