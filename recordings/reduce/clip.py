@@ -197,6 +197,10 @@ def read_picture(path: Path, *, channel: str = "grey") -> npt.NDArray[np.uint8]:
         raise missing_extra("reading pictures", "video") from None
     if not path.is_file():
         raise InputError("no such file", source=str(path), allowed="a picture")
+    if path.suffix.lower() not in _PICTURES:
+        raise InputError(
+            "cannot be read as a picture", source=str(path), allowed=" ".join(_PICTURES)
+        )
     try:
         pixels = np.asarray(imread(path))
     except Exception as error:  # every plug-in of the picture reader raises its own kind

@@ -7,7 +7,8 @@ drag stay out; the velocities are read at the instant in which both parabolas me
 
 from __future__ import annotations
 
-from collections.abc import Callable
+import math
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -30,6 +31,12 @@ _RESOLVED = 4
 
 _MARGIN = 2
 """Samples left out between the flight and the first one that deviates from it."""
+
+
+_SAME_FALL = 0.3
+"""Largest relative difference of the accelerations on both sides of a contact: drag makes some."""
+
+_MOST_CUTS = 6
 
 
 @dataclass(frozen=True)
@@ -109,7 +116,7 @@ def contact_samples(track: Track) -> list[int]:
     """
     smooth = median_filter(track.height, 3, mode="nearest")
     noise = robust_std(np.diff(smooth, 2)) / np.sqrt(6.0)
-    prominence = max(0.03 * float(np.ptp(smooth)), 8.0 * noise)
+    prominence = max(0.01 * float(np.ptp(smooth)), 8.0 * noise)
     if prominence <= 0.0:
         return []
     peaks, _ = find_peaks(-smooth, prominence=prominence)
@@ -136,11 +143,50 @@ def bounces(track: Track, *, acceleration: float | None) -> list[Bounce]:
     edges = [-1, *contacts, track.time.size]
     result = []
     for k, turning in enumerate(contacts, start=1):
-        before = fit_flight(track, turning, edges[k - 1] + 1, acceleration=acceleration)
-        after = fit_flight(track, turning, edges[k + 1] - 1, acceleration=acceleration)
+        ends = _flight_ends(track, turning, (edges[k - 1] + 1, edges[k + 1] - 1))
+        before, after = (fit_flight(track, turning, e, acceleration=acceleration) for e in ends)
         if before is not None and after is not None:
             result.append(_bounce(track, turning, before, after))
     return [b for b in result if b.approach.value > 0.0 and b.rebound.value > 0.0]
+
+
+def _flight_ends(track: Track, turning: int, ends: tuple[int, int]) -> tuple[int, int]:
+    """Leave out rest, and bounces too small to see, behind a flight.
+
+    Gravity is the same on both sides of a contact: where the fitted accelerations differ, the side
+    of the smaller one is cut to half its length.
+    """
+    low, high = ends
+    for _ in range(_MOST_CUTS):
+        sides = [fit_flight(track, turning, e, acceleration=None) for e in (low, high)]
+        before, after = (None if f is None else f.fitted_acceleration for f in sides)
+        if before is None or after is None:
+            break
+        allowed = 4.0 * math.hypot(before.std, after.std)
+        allowed = max(allowed, _SAME_FALL * max(before.value, after.value))
+        if abs(before.value - after.value) <= allowed:
+            return low, high
+        if before.value < after.value:
+            low = turning - (turning - low) // 2
+        else:
+            high = turning + (high - turning) // 2
+    return ends
+
+
+def scale_from_fall(found: Sequence[Bounce], gravity: float) -> tuple[Measured, str]:
+    """Return metres in the track's unit of length from gravity, nan if not known to 10 %."""
+    values = [f.fitted_acceleration for b in found for f in (b.before, b.after)]
+    pairs = np.array([(v.value, v.std) for v in values if v is not None and v.value > 0.0])
+    if pairs.size == 0:
+        return Measured(math.nan, math.nan), "nothing"
+    weight = 1.0 / pairs[:, 1] ** 2
+    mean = float(np.sum(weight * pairs[:, 0]) / weight.sum())
+    # flights that disagree by more than their errors widen the uncertainty (Birge's ratio)
+    spread = float(np.sum(weight * (pairs[:, 0] - mean) ** 2)) / max(len(pairs) - 1, 1)
+    std = math.sqrt(max(1.0, spread) / float(weight.sum()))
+    if not mean > 10.0 * std:
+        return Measured(math.nan, math.nan), "nothing"
+    return Measured(gravity / mean, gravity * std / mean**2), "gravity"
 
 
 def fit_flight(

@@ -16,7 +16,7 @@ import tempfile
 from collections.abc import Mapping
 from dataclasses import dataclass, replace
 from pathlib import Path
-from typing import Any
+from typing import Any, Literal
 
 import numpy as np
 from pydantic import Field
@@ -95,10 +95,11 @@ def store(
     InputError
         A condition is missing or the set would not be sound.
     """
-    before, notes = _set_before(folder, setup)
+    before, notes = _set_before(folder, setup, shape="sphere" if kind == "sound" else "rod")
     striker = _striker(before, row)
     after, curves = before, {}
     names = []
+    _check_one_approach(reduced, row)
     for trial in reduced.trials:
         name = "-".join(filter(None, (_name(reduced, row), trial.label)))
         after = _with_trial(after, name, striker, trial, row)
@@ -165,7 +166,9 @@ def _plain(value: Measured) -> dict[str, float | None]:
     return {k: float(v) if math.isfinite(v) else None for k, v in pair.items()}
 
 
-def _set_before(folder: Path, setup: Setup | None) -> tuple[RecordingSet, tuple[str, ...]]:
+def _set_before(
+    folder: Path, setup: Setup | None, *, shape: Literal["rod", "sphere"]
+) -> tuple[RecordingSet, tuple[str, ...]]:
     if folder.exists() and not folder.is_dir():
         raise InputError("not a folder", source=str(folder), allowed="the folder of a set")
     if (folder / "trials.csv").exists() or ((folder / "set.toml").exists() and setup is None):
@@ -176,7 +179,7 @@ def _set_before(folder: Path, setup: Setup | None) -> tuple[RecordingSet, tuple[
     if setup is not None:
         return _empty(setup, None), ()
     with tempfile.TemporaryDirectory() as place:
-        write_template(Path(place), shape="rod")
+        write_template(Path(place), shape=shape)
         template = read_model(Path(place) / "set.toml", Setup)
     note = f"{folder / 'set.toml'} is a template: fill in the bodies before the set is used"
     return _empty(template, None), (note,)
@@ -184,6 +187,17 @@ def _set_before(folder: Path, setup: Setup | None) -> tuple[RecordingSet, tuple[
 
 def _empty(setup: Setup, folder: Path | None) -> RecordingSet:
     return RecordingSet(setup, Trials((), (), np.empty(0)), folder=folder)
+
+
+def _check_one_approach(reduced: Reduced, row: Row) -> None:
+    """One approach cannot hold for several impacts that were each measured."""
+    measured = [t for t in reduced.trials if "impact_speed_m_s" in t.observables]
+    for key in ("impact_speed_m_s", "drop_height_m"):
+        if len(measured) > 1 and getattr(row, key) is not None:
+            raise InputError(
+                f"given for {len(measured)} impacts that were each measured", key=key,
+                allowed="left out (release_height_m is that of the first impact)",
+            )  # fmt: skip
 
 
 def _striker(found: RecordingSet, row: Row) -> str:

@@ -18,7 +18,7 @@ import numpy.typing as npt
 from ...core.errors import InputError
 from .clip import Clip
 from .edge_fit import Ball, RodPose, RodShape, fit_ball, fit_rod
-from .flight import Bounce, Track, bounces
+from .flight import Bounce, Track, bounces, scale_from_fall
 from .measured import Array, Measured, Trial
 from .silhouette import ball_by_light, body_mask, rod_guess
 
@@ -328,7 +328,7 @@ def _contacts(
             allowed="a clip that shows the striker fall, touch and rise",
         )  # fmt: skip
     if known is None:
-        scale, origin = _scale_from_fall(found, optics)
+        scale, origin = scale_from_fall(found, optics.gravity)
         if not math.isfinite(scale.value):
             # over so short a fall gravity is nothing: a free acceleration would only add noise
             found = bounces(path, acceleration=0.0)
@@ -341,22 +341,6 @@ def _known_scale(half: Measured, optics: Optics) -> tuple[Measured, str]:
     if optics.size is not None:
         return optics.size.over(half.scaled(2.0)), "the striker's diameter"
     return Measured(math.nan, math.nan), ""
-
-
-def _scale_from_fall(found: list[Bounce], optics: Optics) -> tuple[Measured, str]:
-    """Size of a pixel from the fitted accelerations, if they are known to 10 %."""
-    values = [f.fitted_acceleration for b in found for f in (b.before, b.after)]
-    pairs = np.array([(v.value, v.std) for v in values if v is not None and v.value > 0.0])
-    if pairs.size == 0:
-        return Measured(math.nan, math.nan), "nothing"
-    weight = 1.0 / pairs[:, 1] ** 2
-    mean = float(np.sum(weight * pairs[:, 0]) / weight.sum())
-    # flights that disagree by more than their errors widen the uncertainty (Birge's ratio)
-    spread = float(np.sum(weight * (pairs[:, 0] - mean) ** 2)) / max(len(pairs) - 1, 1)
-    std = math.sqrt(max(1.0, spread) / float(weight.sum()))
-    if not mean > 10.0 * std:
-        return Measured(math.nan, math.nan), "nothing"
-    return Measured(optics.gravity / mean, optics.gravity * std / mean**2), "gravity"
 
 
 def _timing_notes(clip: Clip, rate: float) -> list[str]:

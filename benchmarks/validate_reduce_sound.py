@@ -1,0 +1,67 @@
+"""Reduce rendered recordings of bouncing balls and compare with what they were made of.
+
+    python benchmarks/validate_reduce_sound.py [COUNT]
+
+Each record has a ball whose restitution falls with speed, drag, ringing at each contact, an echo,
+noise at a drawn level, up to two knocks that belong to nothing, and clipping in some.
+"""
+
+import sys
+import tempfile
+from pathlib import Path
+
+import numpy as np
+from dentscope.core.errors import InputError
+from dentscope.recordings.reduce.kinds import load_kind
+from dentscope.recordings.reduce.synthetic.sounds import (
+    bounces,
+    random_bounces,
+    record,
+    write_wav,
+)
+
+
+def main(count):
+    kind = load_kind("sound")
+    rows, failed, found_part = [], 0, []
+    with tempfile.TemporaryDirectory() as place:
+        path = Path(place) / "a.wav"
+        for seed in range(count):
+            truth = random_bounces(seed)
+            write_wav(record(truth), path)
+            given = {
+                "mass_kg": truth.mass,
+                "diameter_m": truth.diameter,
+                "contact_time_s": truth.contact_time,
+            }
+            try:
+                reduced = kind.run(path, given, source="validation")
+            except InputError as error:
+                failed += 1
+                print(seed, error)
+                continue
+            true = np.array(bounces(truth))
+            matched = 0
+            for trial in reduced.trials:
+                v, e = trial.observables["impact_speed_m_s"], trial.observables["restitution"]
+                near = int(np.argmin(np.abs(true[:, 1] - v.value)))
+                matched += abs(true[near, 1] / v.value - 1.0) < 0.03
+                rows.append((v.value, true[near, 1], v.std, e.value, true[near, 2], e.std))
+            found_part.append(matched / max(len(true) - 2, 1))
+    a = np.array(rows)
+    print(f"{count} records, {failed} without a result, {len(a)} bounces")
+    wrong = np.abs(a[:, 0] / a[:, 1] - 1.0) > 0.03
+    print(f"bounces that match none of the record: {wrong.sum()}")
+    print(f"inner bounces found, mean over the records: {100 * np.mean(found_part):.1f} %")
+    for name, (x, true, std) in {"speed": a[~wrong, :3].T, "restitution": a[~wrong, 3:].T}.items():
+        off = x / true - 1.0
+        low, high = np.quantile(np.abs(off), (0.5, 0.95))
+        print(
+            f"{name}: median error {100 * low:.3f} %, 95 % of them below {100 * high:.2f} %, "
+            f"beyond 2 %: {(np.abs(off) > 0.02).sum()}, median bias {100 * np.median(off):+.4f} %, "
+            f"within two std {100 * np.mean(np.abs(x - true) < 2 * std):.1f} %"
+        )
+
+
+if __name__ == "__main__":
+    main(int(sys.argv[1]) if len(sys.argv) > 1 else 200)

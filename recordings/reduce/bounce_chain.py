@@ -1,0 +1,182 @@
+"""Which of many recorded instants belong to one bouncing ball.
+
+Intervals between contacts shrink by a nearly steady factor. Echoes and knocks add instants, quiet
+bounces are missed; the chain is the longest run of instants whose intervals agree with one factor,
+one missed bounce at a time allowed.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+
+from .measured import Array
+from .regression import robust_regression, robust_std
+
+_TOLERANCE = 0.2
+"""Largest change of an interval, in its logarithm, against the steady factor."""
+
+_FACTORS = np.exp(np.arange(math.log(0.1), 0.0, 0.08))
+_MISSED_COST = 0.75
+"""Instants that a run has to gain before a missed bounce in it is believed."""
+
+_MOST = 80
+
+_STRAY = 8.0
+"""Distance from the course of the others, in their scatter, that no real bounce has."""
+
+
+@dataclass(frozen=True)
+class Chain:
+    """Instants of one run.
+
+    Parameters
+    ----------
+    times
+        (n,), all instants [s].
+    kept
+        Indices of those that belong to the run, (k,).
+    single
+        Whether the gap after each but the last is one flight that can be used (not two with a
+        missed contact between, nor one that strays), k - 1 entries.
+    factor
+        Typical ratio of an interval to the one before.
+    notes
+        What was left out.
+    """
+
+    times: Array
+    kept: tuple[int, ...]
+    single: tuple[bool, ...]
+    factor: float
+    notes: tuple[str, ...]
+
+    def scatter(self) -> float:
+        """Return the standard deviation of an instant by the roughness of the intervals [s].
+
+        Each rest about the smooth course is the error of two instants. NaN for fewer than six
+        intervals.
+        """
+        rest = _rests(self.times, self.kept, self.single)
+        if rest is None:
+            return math.nan
+        return robust_std(rest[np.array(self.single)], lost=3) / math.sqrt(2.0)
+
+
+def _rests(times: Array, kept: Sequence[int], single: Sequence[bool]) -> Array | None:
+    """Intervals less their smooth course, (k - 1,) [s]; None for fewer than six flights.
+
+    The logarithms of the intervals follow a parabola in the number of the bounce.
+    """
+    gaps = np.diff(times[list(kept)])
+    use = np.array(single)
+    if use.sum() < 6:
+        return None
+    number = np.arange(gaps.size) + np.cumsum(~use) - 0.5 * gaps.size
+    design = np.stack([np.ones_like(number), number, number**2], axis=1)
+    weight = gaps[use] / gaps[use].max()  # an error in seconds weighs less in a long interval
+    fit = robust_regression(design[use] * weight[:, None], np.log(gaps[use]) * weight)
+    return np.asarray(gaps - np.exp(design @ fit.coefficients))
+
+
+def chain_of(times: Array) -> Chain | None:
+    """Return the longest run of bounces in a list of instants, None if there is none.
+
+    Parameters
+    ----------
+    times
+        (n,), increasing [s]; the first 80 are looked at.
+    """
+    used = np.asarray(times[:_MOST], dtype=np.float64)
+    if used.size < 3:
+        return None
+    found = max((_longest(used, factor) for factor in _FACTORS), key=lambda c: c[0])
+    for _ in range(3):
+        again = _longest(used, _typical(used, found))
+        if again[0] <= found[0]:
+            break
+        found = again
+    _, kept, single = found
+    if len(kept) < 3:
+        return None
+    notes = []
+    extra = sum(kept[0] < i < kept[-1] for i in set(range(used.size)) - set(kept))
+    if extra:
+        notes.append(f"{extra} instants between bounces are left out as echoes or knocks")
+    outside = times.size - len(kept) - extra
+    if outside:
+        notes.append(f"{outside} instants before or after the run are left out")
+    missed = len(single) - sum(single)
+    if missed:
+        notes.append(f"{missed} bounces were not recorded; those next to them are left out")
+    single, stray = _without_strays(used, kept, single)
+    if stray:
+        notes.append(f"{stray} intervals stray from the course of the others and are left out")
+    return Chain(np.asarray(times), kept, single, _typical(used, found), tuple(notes))
+
+
+def _without_strays(
+    times: Array, kept: tuple[int, ...], single: tuple[bool, ...]
+) -> tuple[tuple[bool, ...], int]:
+    """Give up flights that a knock in place of a bounce has shortened or lengthened."""
+    rest = _rests(times, kept, single)
+    if rest is None:
+        return single, 0
+    limit = _STRAY * robust_std(rest[np.array(single)], lost=3)
+    kept_ones = tuple(bool(s and abs(r) <= limit) for s, r in zip(single, rest, strict=True))
+    return kept_ones, sum(single) - sum(kept_ones)
+
+
+_Run = tuple[float, tuple[int, ...], tuple[bool, ...]]
+
+
+def _typical(times: Array, run: _Run) -> float:
+    _, kept, single = run
+    gaps = np.diff(times[list(kept)])
+    pairs = [k for k in range(1, gaps.size) if single[k - 1] and single[k]]
+    if not pairs:
+        return 0.5
+    return min(float(np.median([gaps[k] / gaps[k - 1] for k in pairs])), 0.999)
+
+
+def _longest(times: Array, factor: float) -> _Run:
+    """Score and members of the best run for one factor.
+
+    `score[i, j, m]` is that of the best run that ends with the gap from i to j, holding one flight
+    (m = 0) or two (m = 1); a run grows where the next gap begins as the factor says.
+    """
+    n = times.size
+    gap = times[None, :] - times[:, None]
+    first = np.stack([gap, gap / (1.0 + factor)], axis=2)  # first flight within the gap
+    last = np.stack([gap, gap * factor / (1.0 + factor)], axis=2)
+    cost = np.array([0.0, _MISSED_COST])
+    score = np.full((n, n, 2), -np.inf)
+    back: dict[tuple[int, int, int], tuple[int, int]] = {}
+    rows, columns = np.triu_indices(n, 1)
+    score[rows, columns] = 2.0 - cost
+    with np.errstate(divide="ignore", invalid="ignore"):
+        log_first, log_last = np.log(first), np.log(last)
+    step = math.log(factor)
+    for j in range(1, n - 1):
+        incoming = log_last[:j, j] + step  # (j, 2)
+        for k in range(j + 1, n):
+            for m in (0, 1):
+                off = np.abs(log_first[j, k, m] - incoming)
+                # a small price for disorder picks the smoother of two runs of one length
+                gain = np.where(off <= _TOLERANCE, score[:j, j] - 0.5 * off, -np.inf)
+                best = int(np.argmax(gain))
+                value = float(gain.flat[best]) + 1.0 - cost[m]
+                if value > score[j, k, m]:
+                    score[j, k, m] = value
+                    back[j, k, m] = (best // 2, best % 2)
+    j, k, m = (int(v) for v in np.unravel_index(int(np.argmax(score)), score.shape))
+    kept, single, total = [k, j], [m == 0], float(score[j, k, m])
+    while (j, k, m) in back:
+        i, m = back[j, k, m]
+        j, k = i, j
+        kept.append(i)
+        single.append(m == 0)
+    return total, tuple(reversed(kept)), tuple(reversed(single))

@@ -1,0 +1,256 @@
+"""Restitution from the times at which a ball touches the flat, again and again.
+
+Between two contacts the ball flies up and falls back. The time of that flight gives the speeds at
+both of its ends, exactly v = gT/2 in a vacuum and with quadratic drag otherwise; a bounce between
+two flights has then an approach and a rebound speed.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+from pydantic import Field
+from scipy.optimize import brentq
+
+from ...core.errors import InputError
+from ...core.toml_input import InputTable
+from .bounce_chain import Chain, chain_of
+from .measured import Array, Measured, Trial
+
+GRAVITY = 9.81
+
+
+class BounceOptions(InputTable):
+    """What is known of a ball that bounces."""
+
+    release_height_m: float | None = Field(
+        None, gt=0.0, description="fall before the first contact, from rest, of the ball's bottom"
+    )
+    release_height_m_std: float = Field(0.0, ge=0.0, description="its standard deviation")
+    contact_time_s: float = Field(
+        0.0, ge=0.0, description="duration of a contact, which is not flight"
+    )
+    mass_kg: float | None = Field(None, gt=0.0, description="of the striker")
+    diameter_m: float | None = Field(
+        None, gt=0.0, description="of the ball; with mass_kg the drag of the air is taken off"
+    )
+    drag_coefficient: float = Field(0.45, ge=0.0, description="of the ball in the air")
+    air_density_kg_m3: float = Field(1.2, ge=0.0, description="of the air")
+    gravity_m_s2: float = Field(GRAVITY, gt=0.0, description="acceleration of the fall")
+
+    @property
+    def flight(self) -> Fall:
+        """Vertical flight of this ball; without drag if mass or diameter is not known."""
+        if self.mass_kg is None or self.diameter_m is None:
+            return Fall(self.gravity_m_s2, math.inf)
+        volume = math.pi * self.diameter_m**3 / 6.0
+        weight = self.gravity_m_s2 * (1.0 - self.air_density_kg_m3 * volume / self.mass_kg)
+        if not weight > 0.0:
+            raise InputError(
+                f"{self.mass_kg:g} kg", key="mass_kg", allowed="a ball heavier than the air"
+            )
+        area = 0.25 * math.pi * self.diameter_m**2
+        drag = self.air_density_kg_m3 * self.drag_coefficient * area
+        fastest = math.sqrt(2.0 * self.mass_kg * weight / drag) if drag > 0.0 else math.inf
+        return Fall(weight, fastest)
+
+
+@dataclass(frozen=True)
+class Fall:
+    """Vertical flight under gravity and quadratic drag.
+
+    Parameters
+    ----------
+    gravity
+        Acceleration, buoyancy taken off [m/s²].
+    terminal
+        Speed at which the drag carries the ball, inf without drag [m/s].
+    """
+
+    gravity: float
+    terminal: float
+
+    def landing(self, launch: float) -> float:
+        """Return the speed at which a ball launched upwards comes back [m/s]."""
+        return launch / math.sqrt(1.0 + (launch / self.terminal) ** 2)
+
+    def duration(self, launch: float) -> float:
+        """Return the time from launch to landing [s]."""
+        if math.isinf(self.terminal):
+            return 2.0 * launch / self.gravity
+        rise = math.atan(launch / self.terminal)
+        return (
+            self.terminal / self.gravity * (rise + math.atanh(self.landing(launch) / self.terminal))
+        )
+
+    def launch(self, duration: float) -> float:
+        """Return the speed at which a flight of this duration began [m/s]."""
+        vacuum = 0.5 * self.gravity * duration
+        if math.isinf(self.terminal):
+            return vacuum
+        high = vacuum
+        while self.duration(high) < duration:
+            high *= 1.5
+        return float(brentq(lambda v: self.duration(v) - duration, 0.5 * vacuum, high, rtol=1e-13))
+
+    def impact(self, height: float) -> float:
+        """Return the speed after a fall from rest [m/s]."""
+        if math.isinf(self.terminal):
+            return math.sqrt(2.0 * self.gravity * height)
+        exponent = -2.0 * self.gravity * height / self.terminal**2
+        return self.terminal * math.sqrt(-math.expm1(exponent))
+
+    def rise(self, height: float) -> float:
+        """Return the speed at which a ball must start to rise this high [m/s]."""
+        if math.isinf(self.terminal):
+            return math.sqrt(2.0 * self.gravity * height)
+        exponent = 2.0 * self.gravity * height / self.terminal**2
+        return self.terminal * math.sqrt(math.expm1(exponent))
+
+
+@dataclass(frozen=True)
+class Bounced:
+    """One bounce: which contact it was, and its speeds [m/s]."""
+
+    number: int
+    time: float
+    approach: Measured
+    rebound: Measured
+    restitution: Measured
+
+    def trial(self, several: bool, notes: tuple[str, ...]) -> Trial:
+        """Return the row of trials.csv."""
+        row = {"impact_speed_m_s": self.approach, "restitution": self.restitution}
+        return Trial(row, notes, label=f"bounce{self.number}" if several else "")
+
+
+@dataclass(frozen=True)
+class BounceTimes:
+    """Contacts that hang together, and the bounces between known flights.
+
+    Parameters
+    ----------
+    chain
+        The contacts that were used.
+    time_std
+        Standard deviation of a contact's time [s].
+    bounces
+        In the order of time.
+    notes
+        What was left out and taken for granted.
+    """
+
+    chain: Chain
+    time_std: Array
+    bounces: tuple[Bounced, ...]
+    notes: tuple[str, ...]
+
+    def trials(self) -> tuple[Trial, ...]:
+        """Return a row of trials.csv for each bounce."""
+        several = len(self.bounces) > 1
+        return tuple(b.trial(several, self.notes) for b in self.bounces)
+
+    def values(self) -> dict[str, Measured]:
+        """Return the numbers of every bounce by name."""
+        several, values = len(self.bounces) > 1, {}
+        for b in self.bounces:
+            label = f"bounce{b.number}_" if several else ""
+            values[f"{label}impact_speed_m_s"] = b.approach
+            values[f"{label}restitution"] = b.restitution
+        return values
+
+
+def reduce_bounce_times(
+    times: Array, options: BounceOptions, *, std: Array | None, source: str
+) -> BounceTimes:
+    """Return the bounces behind a list of instants of contact.
+
+    Parameters
+    ----------
+    times
+        (n,), increasing: beginning of each contact [s]; missed and false ones are allowed.
+    options
+        What is known of the ball.
+    std
+        (n,) standard deviations of the times [s]; None takes them from the scatter of the
+        intervals about a smooth course.
+    source
+        The file.
+
+    Raises
+    ------
+    InputError
+        No three instants hang together.
+    """
+    chain = chain_of(times)
+    if chain is None:
+        raise InputError(
+            "no run of bounces: three or more instants whose intervals shrink by a steady factor",
+            source=source, allowed="the times of successive bounces",
+        )  # fmt: skip
+    notes = list(chain.notes)
+    scatter = chain.scatter()
+    if std is None:
+        if math.isnan(scatter):
+            notes.append("too few bounces to tell how well the instants are known")
+        else:
+            notes.append(f"instants ± {1e3 * scatter:.2g} ms by the scatter of the intervals")
+        spread = np.full(times.size, scatter)
+    else:
+        spread = std
+    if options.mass_kg is None or options.diameter_m is None:
+        notes.append("drag of the air left out: give mass_kg and diameter_m to take it off")
+    if options.contact_time_s == 0.0:
+        notes.append("the duration of a contact counts as flight: contact_time_s = 0")
+    return BounceTimes(chain, spread, _bounces(times, spread, chain, options, source), tuple(notes))
+
+
+def _bounces(
+    times: Array, spread: Array, chain: Chain, options: BounceOptions, source: str
+) -> tuple[Bounced, ...]:
+    fall = options.flight
+    found = []
+    kept, single = chain.kept, chain.single
+    gaps = np.diff(times[list(kept)])
+    flights = gaps - options.contact_time_s
+    if (flights <= 0.0).any():
+        raise InputError(
+            f"{options.contact_time_s:g} s, and an interval of {gaps.min():.3g} s",
+            source=source, key="contact_time_s", allowed="less than every interval",
+        )  # fmt: skip
+    first = kept[0]
+    if options.release_height_m is not None and first == 0 and single[0]:
+        height = Measured(options.release_height_m, options.release_height_m_std)
+        speed = fall.impact(height.value)
+        approach = Measured(speed, 0.5 * speed * height.std / height.value)
+        rebound = Measured(
+            fall.launch(flights[0]),
+            0.5 * fall.gravity * math.hypot(spread[kept[0]], spread[kept[1]]),
+        )
+        found.append(Bounced(1, float(times[first]), approach, rebound, rebound.over(approach)))
+    for k in range(1, len(kept) - 1):
+        if single[k - 1] and single[k]:
+            found.append(_between(times, spread, kept[k - 1 : k + 2], flights[k - 1 : k + 1], fall))
+    return tuple(found)
+
+
+def _between(
+    times: Array, spread: Array, three: Sequence[int], flights: Array, fall: Fall
+) -> Bounced:
+    before, after = float(flights[0]), float(flights[1])
+    approach, rebound = fall.landing(fall.launch(before)), fall.launch(after)
+    ratio = rebound / approach
+    # the middle instant lengthens one flight and shortens the other
+    part = np.array([1.0 / before, 1.0 / before + 1.0 / after, 1.0 / after])
+    sigma = spread[list(three)]
+    half = 0.5 * fall.gravity
+    return Bounced(
+        three[1] + 1,
+        float(times[three[1]]),
+        Measured(approach, half * math.hypot(sigma[0], sigma[1])),
+        Measured(rebound, half * math.hypot(sigma[1], sigma[2])),
+        Measured(ratio, ratio * float(np.linalg.norm(part * sigma))),
+    )
