@@ -2,7 +2,7 @@
 
 A design is a name and a function that gives its cases, in the order in which they are computed: a
 run that is stopped early has first what the thesis shows, then every range from coarse to fine. The
-two parts of each large design are designs themselves: a part can be published when it is done.
+parts of each large design are designs themselves: a part can be published when it is done.
 Strengths follow the thesis: Sy_min is held and Sy* = S_ys/S_yf sets the stronger body. All but
 `smoke` go to Delta/R = 0.1 or a/R = 0.5, whichever comes later, in 48 depths from below first yield
 through the thesis's 0.04, and unload from five of them; `survey` does so at medium resolution, the
@@ -177,16 +177,22 @@ def _thesis_first() -> tuple[Case, ...]:
 
 
 @cache
-def _thesis_rest() -> tuple[Case, ...]:
-    """27 sets of materials, Table 2.1 at the other values of Sy*, figure 2.16.
+def _thesis_second() -> tuple[Case, ...]:
+    """Table 2.1 at the other values of Sy*, figure 2.16."""
+    others = coarse_to_fine(RATIOS, after=_FIRST_RATIOS)
+    first = {case.id for case in _thesis_first()}
+    return tuple(case for case in (*_table_2_1(others), *_figure_2_16()) if case.id not in first)
+
+
+@cache
+def _thesis_third() -> tuple[Case, ...]:
+    """27 sets of materials at Sy* = 0.1, 1 and 10.
 
     The thesis does not print its 27 sets; ours are E_s, E_f from 50, 122, 300 GPa and Sy_min from
     50, 235, 1100 MPa.
     """
-    others = coarse_to_fine(RATIOS, after=_FIRST_RATIOS)
-    first = {case.id for case in _thesis_first()}
-    rest = (*_twenty_seven_sets(), *_table_2_1(others), *_figure_2_16())
-    return tuple(case for case in rest if case.id not in first)
+    before = {case.id for case in (*_thesis_first(), *_thesis_second())}
+    return tuple(case for case in _twenty_seven_sets() if case.id not in before)
 
 
 def _table_2_1(ratios: tuple[float, ...]) -> list[Case]:
@@ -302,7 +308,7 @@ def _digits(x: float) -> float:
 
 
 def _thesis() -> tuple[Case, ...]:
-    return (*_thesis_first(), *_thesis_rest())
+    return (*_thesis_first(), *_thesis_second(), *_thesis_third())
 
 
 def _full() -> tuple[Case, ...]:
@@ -318,7 +324,8 @@ DESIGNS: dict[str, Design] = {
             "thesis", "Table 2.1 over Sy*, 27 sets of materials, figures, chapters 3-5", _thesis
         ),
         Design("thesis-1", "its first part: pictures, chapters, nine Sy*", _thesis_first),
-        Design("thesis-2", "its second part: the 27 sets, the other 25 Sy*", _thesis_rest),
+        Design("thesis-2", "its second part: the other 25 Sy*, figure 2.16", _thesis_second),
+        Design("thesis-3", "its third part: the 27 sets", _thesis_third),
         Design("space", "256 Sobol points over moduli, Poisson ratios, strengths", _space),
         Design("space-1", "its first 32 points, a Sobol design themselves", lambda: _space()[:32]),
         Design("space-2", "its other points", lambda: _space()[32:]),

@@ -95,11 +95,13 @@ def test_every_deep_case_has_the_depth_of_the_thesis(cases):
     assert fields == ["figure-2.2", "figure-2.3", "figure-2.4"]
 
 
-@pytest.mark.parametrize("name", ["thesis", "space"])
-def test_the_parts_of_a_design_are_the_design(name):
-    parts = [distinct_cases(design_named(f"{name}-{k}")) for k in (1, 2)]
-    assert not parts[0].keys() & parts[1].keys()
-    assert [*parts[0], *parts[1]] == list(distinct_cases(design_named(name)))
+@pytest.mark.parametrize(("name", "count"), [("thesis", 3), ("space", 2)])
+def test_the_parts_of_a_design_are_the_design(name, count):
+    parts = [distinct_cases(design_named(f"{name}-{k + 1}")) for k in range(count)]
+    for one, other in itertools.combinations(parts, 2):
+        assert not one.keys() & other.keys()
+    together = list(itertools.chain.from_iterable(parts))
+    assert together == list(distinct_cases(design_named(name)))
 
 
 def test_an_unknown_design_names_the_known_ones():
