@@ -10,6 +10,7 @@ from __future__ import annotations
 import math
 import sys
 import time
+from dataclasses import replace
 
 import numpy as np
 from dentscope.core import Material
@@ -34,6 +35,7 @@ STEEL = Material(E=200e9, nu=0.3, Sy=760e6, density=7800.0)
 IRON = Material(E=200e9, nu=0.3, Sy=305e6, density=7870.0)
 ROD = Striker(mass=0.4607, tip_radius=0.0088, length=0.3048, radius=0.0088)
 FAST = Settings(tolerance=1e-7)
+EXACT = Settings(tolerance=3e-13)
 
 
 def thesis_scene(law: str, angle: float, *, modes: int) -> Scene:
@@ -97,7 +99,12 @@ def agree(count: int, first: int = 0) -> None:
         scene = random_scene(rng, number)
         if number < first:
             continue
-        ours = strike(scene, Settings(tolerance=1e-11))
+        ours = strike(scene, EXACT)
+        while ours.peak_depth_m > 0.5 * scene.striker.tip_radius:
+            # no law reaches so deep: the same impact at a lower speed
+            slower = replace(scene.approach, speed=0.5 * scene.approach.speed)
+            scene = scene.with_(approach=slower)
+            ours = strike(scene, EXACT)
         theirs = reference_impact(scene).impact
         assert ours.contacts == theirs.contacts, (number, scene)
         largest = (0.0, "")

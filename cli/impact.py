@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any
 
@@ -142,7 +143,10 @@ def _from_file(path: Path, names: list[str], out: Path) -> None:
     table.add_column("unit")
     for label, key, factor, unit in SHOWN:
         values = [getattr(t.impact, key) for t in traces.values()]
-        table.add_row(label, *(f"{factor * v:.4g}" for v in values), unit)
+        # a tip that comes straight down has no tangential speed to be given back
+        table.add_row(
+            label, *("none" if math.isnan(v) else f"{factor * v:.4g}" for v in values), unit
+        )
     console.print(table)
     write_csv(out / f"{path.stem}.csv", rows)
     write_hdf5(out / f"{path.stem}.h5", traces)

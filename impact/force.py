@@ -270,9 +270,43 @@ def _kink_between(loading, par, force, factors, low, high):
     return _meeting_point(loading, par, force, factors, x)
 
 
+@njit(float64(LOADING, VECTOR, VECTOR, VECTOR, float64, float64), cache=True)
+def _bend_between(loading, par, force, factors, low, high):
+    """Logarithm of the depth at which the curvature jumps, to about 1e-5; nan without one.
+
+    Yield without a jump of the slope: a step across it has an error that its estimate can miss.
+    """
+    level = np.empty(17)
+    while True:
+        h = (high - low) / 16.0
+        for k in range(17):
+            level[k] = _log_force(loading, par, force, factors, low + k * h)
+        best, place = -1.0, 0
+        for k in range(2, 14):
+            before = level[k] - 2.0 * level[k - 1] + level[k - 2]
+            after = level[k + 3] - 2.0 * level[k + 2] + level[k + 1]
+            if abs(after - before) > best:
+                best, place = abs(after - before), k
+        low, high = low + (place - 1) * h, low + (place + 2) * h
+        if h < 1e-5:
+            break
+    x = 0.5 * (low + high)
+    curvature = np.empty(4)
+    h = 2e-4
+    for k in range(4):
+        # two places on each side of x
+        at = x + (-3.0, -1.2, 1.2, 3.0)[k] * h
+        bend = _log_force(loading, par, force, factors, at - h)
+        bend += _log_force(loading, par, force, factors, at + h)
+        curvature[k] = (bend - 2.0 * _log_force(loading, par, force, factors, at)) / h**2
+    jump = abs(curvature[2] - curvature[1])
+    smooth = abs(curvature[1] - curvature[0]) + abs(curvature[3] - curvature[2])
+    return x if jump > 1e-2 + 3.0 * smooth else math.nan
+
+
 @njit(float64[::1](LOADING, VECTOR, VECTOR, VECTOR), cache=True)
 def find_breaks(loading, par, force, factors):
-    """Depths at which the loading force or its slope jumps, rising.
+    """Depths at which the loading force, its slope or its curvature jumps, rising.
 
     Published fits do so at the borders of their ranges. A logarithmic scan for uneven slopes, each
     then located; an integrator that knows these depths can end a step on them.
@@ -285,15 +319,23 @@ def find_breaks(loading, par, force, factors):
         level[i] = _log_force(loading, par, force, factors, first + i * step)
     found = np.empty(32)
     count = 0
-    for i in range(1, n - 1):
+    for i in range(2, n - 3):
         rise = level[i + 1] - level[i]
         around = 0.5 * (level[i] - level[i - 1] + level[i + 2] - level[i + 1])
-        if abs(rise - around) < 1e-4 or count == len(found):
-            continue
-        low = first + i * step
-        x = _jump_between(loading, par, force, factors, low, low + step)
-        if math.isnan(x):
-            x = _kink_between(loading, par, force, factors, low, low + step)
+        before = level[i] - 2.0 * level[i - 1] + level[i - 2]
+        after = level[i + 3] - 2.0 * level[i + 2] + level[i + 1]
+        low, x = first + i * step, math.nan
+        if count == len(found):
+            break
+        if abs(rise - around) >= 1e-4:
+            x = _jump_between(loading, par, force, factors, low, low + step)
+            if math.isnan(x):
+                x = _kink_between(loading, par, force, factors, low, low + step)
+        if math.isnan(x) and abs(after - before) > 3e-5:
+            x = _bend_between(loading, par, force, factors, low - step, low + 2.0 * step)
+            # neighbouring cells see the same bend
+            if not low <= x < low + step:
+                x = math.nan
         if not math.isnan(x) and (count == 0 or math.exp(x) > found[count - 1] * (1.0 + 1e-5)):
             found[count] = math.exp(x)
             count += 1

@@ -99,7 +99,9 @@ def arrays_of(
     body[c.V_Y] = -approach.speed + approach.spin * body[c.HALF_COS]
     body[c.FLIGHT] = _flight(scene) if math.isnan(settings.flight) else settings.flight
     body[c.LOSS] = scene.modes.loss_factor
-    body[c.COMPLIANCE] = scene.friction.stiffness
+    # without friction nothing can load the spring
+    slippery = scene.friction.mu_static == 0.0
+    body[c.COMPLIANCE] = math.inf if slippery else scene.friction.stiffness
     body[c.TOLERANCE] = settings.tolerance
     body[c.MAX_STEPS], body[c.MAX_CONTACTS] = settings.max_steps, settings.max_contacts
     factors = _factors(scene, pair)

@@ -319,7 +319,13 @@ class _Walk:
 
     def side_of(self, z: Array, k: _Contact) -> float:
         """Sign of the tangential motion just after a touch."""
-        later = z + 1e-6 * self.t_ref * self.motion.derivative(z, k)
+        short = 1e-6 * self.t_ref
+        later = z + short * self.motion.derivative(z, k)
+        if self.motion.motion(later)[2] == 0.0:
+            # a tip that comes straight down is set in motion by the force, which is still zero
+            short = 1e-4 * self.t_ref
+            later = z + short * self.motion.derivative(later, k)
+            later = z + short * self.motion.derivative(later, k)
         return float(np.sign(self.motion.motion(later)[2]))
 
     def meet(self, x: float) -> _Contact:
@@ -580,7 +586,7 @@ class _Walk:
         """Longest step: short against the contact, against a vibration in flight."""
         if k.phase == FLIGHT:
             return float(self.a.body[c.FLIGHT]) / 100.0
-        return 0.2 * self.t_ref if self.motion.n == 0 else math.inf
+        return 0.05 * self.t_ref if self.motion.n == 0 else math.inf
 
     def turn(self, z: Array, k: _Contact) -> None:
         """Loading ends: the branch to unload on, and what the metal will remember."""
