@@ -67,6 +67,8 @@ def _residual(found: chapter3.Bench) -> Picture:
     for law in laws(*_ORIGINAL, "thornton-ning"):
         axis.loglog(peak * 1e6, sum(law.residual(pair, peak)) * 1e6, **look(law))
     axis.plot(148.0, 118.0, "kx", ms=9, mew=2, label="measured 118 um at the thesis's 148 um")
+    axis.set_xticks([20, 50, 100, 200, 300], ["20", "50", "100", "200", "300"])
+    axis.set_xticks([], minor=True)
     finish(axis, x="largest depth [um]", y="residual depth [um]")
     left = float(sum(LAWS["ghaednia"].residual(pair, 148e-6))) * 1e6
     note = f"3.7 leaves {left:.0f} um of 148 um; figure 3.10 says 107 um, the measurement 118 um."

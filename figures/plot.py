@@ -117,7 +117,9 @@ def finish(axis: Any, *, x: str, y: str, legend: str = "") -> None:
     axis.grid(alpha=0.3)
     handles, _ = axis.get_legend_handles_labels()
     if handles:
-        axis.legend(fontsize=7, title=legend or None, title_fontsize=7)
+        # a long legend would hide curves
+        beside = {"loc": "upper left", "bbox_to_anchor": (1.0, 1.0)} if len(handles) > 7 else {}
+        axis.legend(fontsize=7, title=legend or None, title_fontsize=7, **beside)
 
 
 def laws(*names: str) -> list[ContactLaw]:
