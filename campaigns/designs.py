@@ -11,7 +11,7 @@ others at that of published data.
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
 from functools import cache
 from itertools import product
@@ -85,6 +85,7 @@ RATIOS = (
 
 # those of the first part of `thesis`: both ends, equal strengths and the steep part
 _FIRST_RATIOS = (0.1, 0.5, 0.9, 1.0, 1.1, 1.25, 1.4, 1.6, 10.0)
+_SECOND = 18  # as many more in its second part
 _THESIS_DEPTH = 0.04  # Delta/R of the thesis's figures over Sy*
 
 
@@ -178,21 +179,27 @@ def _thesis_first() -> tuple[Case, ...]:
 
 @cache
 def _thesis_second() -> tuple[Case, ...]:
-    """Table 2.1 at the other values of Sy*, figure 2.16."""
-    others = coarse_to_fine(RATIOS, after=_FIRST_RATIOS)
-    first = {case.id for case in _thesis_first()}
-    return tuple(case for case in (*_table_2_1(others), *_figure_2_16()) if case.id not in first)
+    """Table 2.1 at 18 more values of Sy*."""
+    others = coarse_to_fine(RATIOS, after=_FIRST_RATIOS)[:_SECOND]
+    return _without(_table_2_1(others), _thesis_first())
 
 
 @cache
 def _thesis_third() -> tuple[Case, ...]:
-    """27 sets of materials at Sy* = 0.1, 1 and 10.
+    """27 sets of materials at Sy* = 0.1, 1 and 10, the last values of Sy*, figure 2.16.
 
     The thesis does not print its 27 sets; ours are E_s, E_f from 50, 122, 300 GPa and Sy_min from
     50, 235, 1100 MPa.
     """
-    before = {case.id for case in (*_thesis_first(), *_thesis_second())}
-    return tuple(case for case in _twenty_seven_sets() if case.id not in before)
+    others = coarse_to_fine(RATIOS, after=_FIRST_RATIOS)[_SECOND:]
+    rest = [*_twenty_seven_sets(), *_table_2_1(others), *_figure_2_16()]
+    return _without(rest, (*_thesis_first(), *_thesis_second()))
+
+
+def _without(cases: Sequence[Case], others: Sequence[Case]) -> tuple[Case, ...]:
+    """Cases that are not among the others."""
+    there = {case.id for case in others}
+    return tuple(case for case in cases if case.id not in there)
 
 
 def _table_2_1(ratios: tuple[float, ...]) -> list[Case]:
@@ -324,8 +331,8 @@ DESIGNS: dict[str, Design] = {
             "thesis", "Table 2.1 over Sy*, 27 sets of materials, figures, chapters 3-5", _thesis
         ),
         Design("thesis-1", "its first part: pictures, chapters, nine Sy*", _thesis_first),
-        Design("thesis-2", "its second part: the other 25 Sy*, figure 2.16", _thesis_second),
-        Design("thesis-3", "its third part: the 27 sets", _thesis_third),
+        Design("thesis-2", "its second part: 18 more Sy*", _thesis_second),
+        Design("thesis-3", "its third part: the 27 sets, the last Sy*, figure 2.16", _thesis_third),
         Design("space", "256 Sobol points over moduli, Poisson ratios, strengths", _space),
         Design("space-1", "its first 32 points, a Sobol design themselves", lambda: _space()[:32]),
         Design("space-2", "its other points", lambda: _space()[32:]),

@@ -21,22 +21,23 @@ PI = 3.141592653589793
 TINY = 1e-9  # keeps the strengths' ratio defined when a body does not yield
 
 PAIR_NUMBERS = (
-    "x_s", "W", "P", "g_a", "g_b", "k", "m", "lag", "j_s", "j_f", "L", "L_C", "a_t", "p",
+    "x_s", "W", "P", "g_a", "g_b", "k", "m", "lag", "fin", "j_s", "j_f", "L", "L_C", "a_t", "p",
 )  # fmt: skip
 """What `of_pair` returns, in this order."""
 
 COEFFICIENTS = (
     "n", "wy", "c", "b0", "b1", "b2", "b3", "b4", "b5", "z", "c_s", "c_f", "t", "y1", "c_m",
-    "h", "B_s", "B_f", "r", "k0", "k1", "k2", "m0", "m1", "e0",
-    "g0", "g1", "g2", "g3", "s0", "s1", "s2", "s3", "s4", "p0", "p1",
-    "f1", "f2", "f3", "l1", "l2", "d1", "u1", "u2", "u3",
+    "h", "B_s", "B_f", "r", "B_e", "k0", "k1", "k2", "k3", "m0", "m1", "e0", "e1",
+    "g0", "g1", "g2", "g3", "g4", "s0", "s1", "s2", "s3", "s4", "s5", "p0", "p1", "p2", "p3",
+    "f1", "f2", "f3", "l1", "l2", "d1", "d2", "u1", "u2", "u3",
 )  # fmt: skip
 """Every coefficient, in the order of the coefficients file."""
 
 
 def of_pair(
     k_s, k_f, nu_s, nu_f, q_s, q_f,
-    n, wy, b0, b1, b2, b3, b4, h, k0, k1, k2, m0, m1, s0, s1, s2, s3, s4, p0, p1, d1,
+    n, wy, b0, b1, b2, b3, b4, h, k0, k1, k2, m0, m1, e1, s0, s1, s2, s3, s4, s5, p0, p1, p2, p3,
+    d1, d2,
 ):  # fmt: skip
     """Numbers of a pair that do not change with the depth.
 
@@ -45,8 +46,9 @@ def of_pair(
     tuple
         `PAIR_NUMBERS`: elastic share of the sphere (2.3); W = w/D; P: pressure over E' to that of
         first yield; g_a, g_b: transition of the radius, early and late; k, m: of the pressure; lag:
-        of the elastic displacement; j_s, j_f: E'/S of each body; L, L_C: logarithms of S_s/S_f and
-        C_s/C_f; a_t, p: radius at which the sphere takes over, and how sharply.
+        of the elastic displacement; fin: finite strain of the stiffer body; j_s, j_f: E'/S of each
+        body; L, L_C: logarithms of S_s/S_f and C_s/C_f; a_t, p: radius at which the sphere takes
+        over, and how sharply.
     """
     stiff = 1.0 / (k_s + k_f)
     x_s = k_s * stiff
@@ -71,14 +73,20 @@ def of_pair(
     g_b = g_a * b2 * exp(b3 * e + b4 * nu)
     k = k0 * exp(k1 * e + k2 * nu)
     m = m0 * exp(m1 * nu)
-    lag = exp(d1 * e)
+    lag = exp(d1 * e + d2 * e * e * e * e)
+    fin = e1 * (x_s - 0.5)
     L = log(j_f / j_s)
     L_C = log(C_s / C_f)
-    lead = L + s2 * L_C
-    spread = s1 * exp(-s3 * log(1e-4 * W))
-    a_t = s0 * (lead + sqrt(lead * lead + spread * spread)) * exp(s4 * log(1e-4 * W))
-    p = p0 * exp(p1 * L)
-    return x_s, W, P, g_a, g_b, k, m, lag, j_s, j_f, L, L_C, a_t, p
+    plastic = log(1e-4 * W)
+    a_even = s0 * exp(-s3 * plastic - s4 * plastic * plastic + s5 * (x_s - 0.5))
+    lead = 0.5 * (L + sqrt(L * L + 9e-4))
+    reach = s1 * exp(s2 * log(lead)) / a_even
+    reach2 = reach * reach
+    reach4 = reach2 * reach2
+    grow = exp(log(1.0 + reach4 * reach4 * reach4) / 12.0)
+    a_t = a_even * grow
+    p = p0 * exp(-p2 * plastic - p3 * (x_s - 0.5) + p1 * log(grow))
+    return x_s, W, P, g_a, g_b, k, m, lag, fin, j_s, j_f, L, L_C, a_t, p
 
 
 @register_jitable
@@ -97,9 +105,10 @@ def small_radius_at(D, y, g_a, g_b, c, b5):
 
 
 @register_jitable
-def first_part_at(w, x_s, L, L_C, g0, g1, g2, g3):
-    """Sphere's part of what is not elastic, while the strengths alone decide."""
-    odds = g0 * (1.0 + w / g1) ** g2 * (L + L_C / (1.0 + w / g3))
+def first_part_at(w, small, x_s, L, L_C, g0, g1, g2, g3, g4):
+    """Sphere's part of what is not elastic, before it takes the flow over."""
+    lead = L + L_C / (1.0 + w / g3) - g4 * small * sqrt(small)
+    odds = g0 * (1.0 + w / g1) ** g2 * lead
     bounded = odds / sqrt(1.0 + 4e-6 * odds * odds)
     return x_s / (x_s + (1.0 - x_s) * exp(bounded))
 
@@ -121,14 +130,16 @@ def radius_at(small, y, first, still, z, c_s, c_f, t, y1, c_m):
 
 
 @register_jitable
-def force_at(D, a, P, k, m, j_s, j_f, h, B_s, B_f, r, e0):
+def force_at(D, a, P, k, m, fin, j_s, j_f, h, B_s, B_f, r, B_e, k3, e0):
     """F/(E' R^2) from the contact radius."""
-    elastic = 4.0 / (3.0 * PI) * a * exp(e0 * sqrt(D))
+    elastic = 4.0 / (3.0 * PI) * a * exp(e0 * sqrt(D) + fin * D)
     load2 = P * elastic * (P * elastic)
     load4 = load2 * load2
     q = sqrt(sqrt(sqrt(1.0 + load4 * load4))) - 1.0
     a_power = a**r
-    J_s = j_s * exp(B_s * a_power)
+    a2 = a * a
+    a4 = a2 * a2
+    J_s = j_s * exp(B_s * a_power + B_e * a4 * a4)
     J_f = j_f * exp(B_f * a_power)
     J = J_s + J_f
     weight_s2 = J_s * J_s / (J * J)
@@ -143,7 +154,7 @@ def force_at(D, a, P, k, m, j_s, j_f, h, B_s, B_f, r, e0):
     equal = weight_s16 * weight_f16 / both * (weight_s16 * weight_f16 / both)
     weak = J * sqrt(sqrt(sqrt(sqrt(sqrt(both))))) * (1.0 - 0.08664339756999316 * equal)
     q_power = (q + 1e-30) ** m
-    soft = 1.0 + weak / (P * h) * q * q_power / (q_power + k)
+    soft = 1.0 + weak / (P * h) * q * q_power / (q_power + k * exp(-k3 * a))
     return PI * a * a * elastic / soft
 
 
@@ -156,10 +167,11 @@ def share_at(D, y, F, a, phi, x_s, lag, f1, f2, f3):
 
 
 @register_jitable
-def permanent_at(D, y, F, a, lag, e0, f3, l1, l2):
+def permanent_at(D, y, F, a, lag, fin, e0, f3, l1, l2):
     """Permanent approach over the largest one."""
     l_power = (y + 1e-30) ** l2
-    return 1.0 - (0.75 - l1 * l_power / (l_power + f3 * lag)) * F * exp(-e0 * sqrt(D)) / (a * D)
+    recoverable = (0.75 - l1 * l_power / (l_power + f3 * lag)) * F / (a * D)
+    return 1.0 - recoverable * exp(-e0 * sqrt(D) - fin * D)
 
 
 @register_jitable
@@ -171,8 +183,8 @@ def exponent_at(y, u1, u2, u3):
 @register_jitable
 def contact(
     D,
-    x_s, W, P, g_a, g_b, k, m, lag, j_s, j_f, L, L_C, a_t, p,
-    wy, c, b5, z, c_s, c_f, t, y1, c_m, h, B_s, B_f, r, e0, g0, g1, g2, g3,
+    x_s, W, P, g_a, g_b, k, m, lag, fin, j_s, j_f, L, L_C, a_t, p,
+    wy, c, b5, z, c_s, c_f, t, y1, c_m, h, B_s, B_f, r, B_e, k3, e0, g0, g1, g2, g3, g4,
     f1, f2, f3, l1, l2, u1, u2, u3,
 ):  # fmt: skip
     """Everything at a depth D = Delta/R of first loading.
@@ -186,13 +198,13 @@ def contact(
     w = W * D
     y = plastic_depth(w, wy)
     small = small_radius_at(D, y, g_a, g_b, c, b5)
-    first = first_part_at(w, x_s, L, L_C, g0, g1, g2, g3)
+    first = first_part_at(w, small, x_s, L, L_C, g0, g1, g2, g3, g4)
     still = still_flat_at(small, a_t, p)
     phi = 1.0 - (1.0 - first) * still
     a = radius_at(small, y, first, still, z, c_s, c_f, t, y1, c_m)
-    F = force_at(D, a, P, k, m, j_s, j_f, h, B_s, B_f, r, e0)
+    F = force_at(D, a, P, k, m, fin, j_s, j_f, h, B_s, B_f, r, B_e, k3, e0)
     share = share_at(D, y, F, a, phi, x_s, lag, f1, f2, f3)
-    left = permanent_at(D, y, F, a, lag, e0, f3, l1, l2)
+    left = permanent_at(D, y, F, a, lag, fin, e0, f3, l1, l2)
     N = exponent_at(y, u1, u2, u3)
     return F, a, share, left, phi, N
 
