@@ -164,8 +164,7 @@ def _thesis_first() -> tuple[Case, ...]:
         )
         for figure, ratio in (("2.2", 0.1), ("2.3", 1.0), ("2.4", 10.0))
     ]
-    # the thesis states no Poisson ratio for chapter 3; 0.3 as in chapters 4 and 5
-    rod = pair_of(E_s=212.0, E_f=200.0, Sy_min=298.0, ratio=750.0 / 298.0)
+    rod = _chapter_3()
     striker = pair_of(E_s=200.0, E_f=200.0, Sy_min=305.0, ratio=760 / 305)
     large = pair_of(E_s=300.0, E_f=300.0, Sy_min=100.0, ratio=10.0)
     return (
@@ -177,6 +176,11 @@ def _thesis_first() -> tuple[Case, ...]:
     )
 
 
+def _chapter_3() -> Pair:
+    # the thesis states no Poisson ratio for chapter 3; 0.3 as in chapters 4 and 5
+    return pair_of(E_s=212.0, E_f=200.0, Sy_min=298.0, ratio=750.0 / 298.0)
+
+
 @cache
 def _thesis_second() -> tuple[Case, ...]:
     """Table 2.1 at 18 more values of Sy*."""
@@ -186,13 +190,16 @@ def _thesis_second() -> tuple[Case, ...]:
 
 @cache
 def _thesis_third() -> tuple[Case, ...]:
-    """27 sets of materials at Sy* = 0.1, 1 and 10, the last values of Sy*, figure 2.16.
+    """27 sets of materials at Sy* = 0.1, 1 and 10, the last values of Sy*, figure 2.16, chapter 3.
 
     The thesis does not print its 27 sets; ours are E_s, E_f from 50, 122, 300 GPa and Sy_min from
-    50, 235, 1100 MPa.
+    50, 235, 1100 MPa. The pair of chapter 3 is here a second time, to the depth that its mesh
+    bears: the path to 2500 critical depths ends at 2473 of them.
     """
     others = coarse_to_fine(RATIOS, after=_FIRST_RATIOS)[_SECOND:]
-    rest = [*_twenty_seven_sets(), *_table_2_1(others), *_figure_2_16()]
+    rod = _chapter_3()
+    deep = _deep_case("chapter-3-to-2450", rod, deepest=2450.0 * fem.critical_depth(rod))
+    rest = [*_twenty_seven_sets(), *_table_2_1(others), *_figure_2_16(), deep]
     return _without(rest, (*_thesis_first(), *_thesis_second()))
 
 
@@ -335,7 +342,8 @@ DESIGNS: dict[str, Design] = {
         Design("thesis-3", "its third part: the 27 sets, the last Sy*, figure 2.16", _thesis_third),
         Design("space", "256 Sobol points over moduli, Poisson ratios, strengths", _space),
         Design("space-1", "its first 32 points, a Sobol design themselves", lambda: _space()[:32]),
-        Design("space-2", "its other points", lambda: _space()[32:]),
+        Design("space-2", "the next 96, a Sobol design with the first", lambda: _space()[32:128]),
+        Design("space-3", "its other points", lambda: _space()[128:]),
         Design("validation", "48 pairs that no fit may use", _validation),
         Design("full", "thesis, space and validation", _full),
         Design(

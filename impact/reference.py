@@ -586,7 +586,7 @@ class _Walk:
         """Longest step: short against the contact, against a vibration in flight."""
         if k.phase == FLIGHT:
             return float(self.a.body[c.FLIGHT]) / 100.0
-        return 0.05 * self.t_ref if self.motion.n == 0 else math.inf
+        return 0.2 * self.t_ref if self.motion.n == 0 else math.inf
 
     def turn(self, z: Array, k: _Contact) -> None:
         """Loading ends: the branch to unload on, and what the metal will remember."""

@@ -154,6 +154,37 @@ def numbers(table: TextTable, column: str, problems: Problems) -> Array:
     return values
 
 
+def selection(which: str, *, source: str) -> tuple[str, str]:
+    """Return column and value of `COLUMN=VALUE`, the rows that an option picks.
+
+    Raises
+    ------
+    InputError
+        Not of that form.
+    """
+    column, sign, value = which.partition("=")
+    if not sign:
+        raise InputError(repr(which), source=source, key="select", allowed="COLUMN=VALUE")
+    return column.strip(), value.strip()
+
+
+def rows_with(value: str, cells: Sequence[str], *, source: str) -> list[int]:
+    """Return the places of a value in a column.
+
+    Raises
+    ------
+    InputError
+        It is not there.
+    """
+    rows = [k for k, cell in enumerate(cells) if cell == value]
+    if not rows:
+        raise InputError(
+            f"no row with {value!r}", source=source, key="select",
+            allowed=", ".join(sorted(set(cells))[:12]),
+        )  # fmt: skip
+    return rows
+
+
 def shown(text: str, limit: int = 40) -> str:
     """Return a text in quotes, control characters escaped, shortened to `limit`."""
     whole = repr(text)

@@ -192,20 +192,18 @@ def reduce_bounce_times(
             source=source, allowed="the times of successive bounces",
         )  # fmt: skip
     notes = list(chain.notes)
-    scatter = chain.scatter()
     if std is None:
+        scatter = chain.scatter()
         if math.isnan(scatter):
             notes.append("too few bounces to tell how well the instants are known")
         else:
             notes.append(f"instants ± {1e3 * scatter:.2g} ms by the scatter of the intervals")
-        spread = np.full(times.size, scatter)
-    else:
-        spread = std
+        std = np.full(times.size, scatter)
     if options.mass_kg is None or options.diameter_m is None:
         notes.append("drag of the air left out: give mass_kg and diameter_m to take it off")
     if options.contact_time_s == 0.0:
         notes.append("the duration of a contact counts as flight: contact_time_s = 0")
-    return BounceTimes(chain, spread, _bounces(times, spread, chain, options, source), tuple(notes))
+    return BounceTimes(chain, std, _bounces(times, std, chain, options, source), tuple(notes))
 
 
 def _bounces(

@@ -32,7 +32,6 @@ _RESOLVED = 4
 _MARGIN = 2
 """Samples left out between the flight and the first one that deviates from it."""
 
-
 _SAME_FALL = 0.3
 """Largest relative difference of the accelerations on both sides of a contact: drag makes some."""
 
@@ -143,34 +142,49 @@ def bounces(track: Track, *, acceleration: float | None) -> list[Bounce]:
     edges = [-1, *contacts, track.time.size]
     result = []
     for k, turning in enumerate(contacts, start=1):
-        ends = _flight_ends(track, turning, (edges[k - 1] + 1, edges[k + 1] - 1))
-        before, after = (fit_flight(track, turning, e, acceleration=acceleration) for e in ends)
+        ends = (edges[k - 1] + 1, edges[k + 1] - 1)
+        before, after = _both_sides(track, turning, ends, acceleration=acceleration)
         if before is not None and after is not None:
             result.append(_bounce(track, turning, before, after))
     return [b for b in result if b.approach.value > 0.0 and b.rebound.value > 0.0]
 
 
-def _flight_ends(track: Track, turning: int, ends: tuple[int, int]) -> tuple[int, int]:
-    """Leave out rest, and bounces too small to see, behind a flight.
+def _both_sides(
+    track: Track, turning: int, ends: tuple[int, int], *, acceleration: float | None
+) -> tuple[Flight | None, Flight | None]:
+    """Fit the flights on both sides without rest, or bounces too small to see, behind them.
 
     Gravity is the same on both sides of a contact: where the fitted accelerations differ, the side
     of the smaller one is cut to half its length.
     """
-    low, high = ends
+    (low, high), whole = ends, ends
     for _ in range(_MOST_CUTS):
-        sides = [fit_flight(track, turning, e, acceleration=None) for e in (low, high)]
-        before, after = (None if f is None else f.fitted_acceleration for f in sides)
+        before, after = (fit_flight(track, turning, e, acceleration=None) for e in (low, high))
         if before is None or after is None:
             break
-        allowed = 4.0 * math.hypot(before.std, after.std)
-        allowed = max(allowed, _SAME_FALL * max(before.value, after.value))
-        if abs(before.value - after.value) <= allowed:
-            return low, high
-        if before.value < after.value:
+        slower = _slower_fall(before, after)
+        if slower == 0:
+            whole = (low, high)
+            break
+        if slower < 0:
             low = turning - (turning - low) // 2
         else:
             high = turning + (high - turning) // 2
-    return ends
+    if acceleration is None and whole == (low, high):
+        return before, after
+    first, last = (fit_flight(track, turning, e, acceleration=acceleration) for e in whole)
+    return first, last
+
+
+def _slower_fall(before: Flight, after: Flight) -> int:
+    """Return the side with the smaller acceleration, -1 or 1; 0 where they agree."""
+    a, b = before.fitted_acceleration, after.fitted_acceleration
+    assert a is not None
+    assert b is not None
+    allowed = max(4.0 * math.hypot(a.std, b.std), _SAME_FALL * max(a.value, b.value))
+    if abs(a.value - b.value) <= allowed:
+        return 0
+    return -1 if a.value < b.value else 1
 
 
 def scale_from_fall(found: Sequence[Bounce], gravity: float) -> tuple[Measured, str]:

@@ -13,7 +13,7 @@ import math
 import re
 import shutil
 import tempfile
-from collections.abc import Mapping
+from collections.abc import Callable, Iterable, Mapping
 from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Any, Literal
@@ -111,6 +111,49 @@ def store(
         reduced, folder / "reduced", _name(reduced, row), kind=kind, options=options, trials=names
     )
     return Stored(tuple(names), record, picture, notes)
+
+
+def store_each(
+    items: Iterable[tuple[str, Callable[[], tuple[Reduced, Row, Mapping[str, Any]]]]],
+    folder: Path,
+    *,
+    kind: str,
+    setup: Setup,
+) -> tuple[list[Stored], list[str]]:
+    """Write many raw files into one set, those that show nothing left out.
+
+    Parameters
+    ----------
+    items
+        Name of each raw file, and what reduces it: the reduction, the conditions that the file
+        does not tell, the options that were used.
+    folder
+        Of the set.
+    kind
+        How all of them are reduced.
+    setup
+        set.toml of the set if it is new.
+
+    Returns
+    -------
+    tuple
+        What was written, and a line for each raw file that was left out.
+    """
+    written: list[Stored] = []
+    left_out = []
+    for name, make in items:
+        try:
+            reduced, row, options = make()
+            done = store(
+                reduced, folder, row, kind=kind, options=options,
+                setup=None if written else setup,
+            )  # fmt: skip
+            written.append(done)
+        except InputError as error:
+            left_out.append(f"{name}: {error}")
+    if not written and not left_out:
+        left_out.append("no raw file of the kind that the recipe reads")
+    return written, left_out
 
 
 def write_record(

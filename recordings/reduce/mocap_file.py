@@ -12,12 +12,13 @@ import numpy as np
 from scipy.spatial.transform import Rotation
 
 from ...core.errors import InputError, InputErrors
-from ..csv_table import Problems, TextTable, numbers, read_text_table
+from ..csv_table import Problems, TextTable, numbers, read_text_table, rows_with, selection
 from .clip import missing_extra
 from .measured import Array
+from .units import LENGTH, metres
 
-UNITS = {"m": 1.0, "cm": 1e-2, "mm": 1e-3}
-"""Units of length that a file may be in, in metres."""
+UNITS = ("m", "cm", "mm")
+"""Units of length that a file may be in."""
 
 _COORDINATE = re.compile(
     r"(?P<marker>.+?)[ _.:]?(?P<axis>[xyzXYZ])(?:[ _]?[\[(]?(?P<unit>mm|cm|m)[\])]?)?"
@@ -158,7 +159,8 @@ def _c3d(path: Path, unit: str | None, rate: float | None) -> Markers:
             f"cannot be read as C3D ({line})", source=str(path), allowed="a C3D file"
         ) from None
     labels += [f"M{k + 1}" for k in range(len(labels), points.shape[1])]
-    factor = _factor(unit or (stated[0] if stated else ""), path)
+    said = unit or (stated[0] if stated else "")
+    factor = metres(said, source=str(path), allowed=UNITS)
     hertz = rate or (rates[0] if rates else 0.0)
     if hertz <= 0.0:
         raise InputError(
@@ -174,13 +176,6 @@ def _c3d(path: Path, unit: str | None, rate: float | None) -> Markers:
 def _parameter(content: Any, name: str) -> list[Any]:
     group = content["parameters"]["POINT"]
     return list(group[name]["value"]) if name in group else []
-
-
-def _factor(unit: str, path: Path) -> float:
-    if unit not in UNITS:
-        said = f"unit {unit!r}" if unit else "the file does not say its unit of length"
-        raise InputError(said, source=str(path), key="unit", allowed=", ".join(UNITS))
-    return UNITS[unit]
 
 
 def _table(
@@ -208,7 +203,7 @@ def _table(
             lacking = ", ".join(sorted(set("xyz") - set(columns)))
             problems.add(f"marker {name!r} has no {lacking}", row=1, allowed="x, y and z")
             continue
-        factor = [UNITS.get(unit or columns[a][1] or "", float("nan")) for a in "xyz"]
+        factor = [LENGTH.get(unit or columns[a][1] or "", float("nan")) for a in "xyz"]
         if np.isnan(factor).any():
             problems.add(
                 f"the unit of marker {name!r} is not stated", row=1,
@@ -223,13 +218,13 @@ def _table(
 
 
 def _selected(table: TextTable, select: str, path: Path) -> TextTable:
-    column, sign, value = select.partition("=")
-    if not sign or column not in table.columns:
+    column, value = selection(select, source=str(path))
+    if column not in table.columns:
         raise InputError(
-            repr(select), source=str(path), key="select",
-            allowed=f"COLUMN=VALUE with a column of {', '.join(table.columns[:20])}",
+            repr(column), source=str(path), key="select",
+            allowed=f"a column of {', '.join(table.columns[:20])}",
         )  # fmt: skip
-    rows = [k for k, cell in enumerate(table.cells[column]) if cell == value]
+    rows = rows_with(value, table.cells[column], source=str(path))
     cells = {name: tuple(text[k] for k in rows) for name, text in table.cells.items()}
     return TextTable(table.columns, tuple(table.rows[k] for k in rows), cells)
 
@@ -250,7 +245,7 @@ def _poses(
     if problems.found:
         raise InputErrors(tuple(problems.found))
     stated = place["x"].partition("_")[2]
-    factor = _factor(unit or stated, Path(problems.source))
+    factor = metres(unit or stated, source=problems.source, allowed=UNITS)
     origin = np.stack([numbers(table, place[a], problems) for a in "xyz"], axis=1) * factor
     turn = np.stack([numbers(table, a, problems) for a in _TURN], axis=1)
     if problems.found:

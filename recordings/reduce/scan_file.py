@@ -13,9 +13,7 @@ from ...core.errors import InputError
 from ..csv_table import number, shown
 from .clip import missing_extra
 from .measured import Array
-
-UNITS = {"m": 1.0, "mm": 1e-3, "um": 1e-6, "µm": 1e-6, "μm": 1e-6, "nm": 1e-9, "pm": 1e-12,
-         "Å": 1e-10, "in": 0.0254}  # fmt: skip
+from .units import LENGTH, metres
 
 _TEXT = (".csv",)
 _UNSEEN = ("", "nan", "-", "na")
@@ -57,8 +55,8 @@ def read_scan(
     path
         The file.
     unit, height_unit
-        Units of length along the surface and of the heights, one of `UNITS`, for files that name
-        none or a wrong one; `height_unit` defaults to `unit`.
+        Units of length along the surface and of the heights, of `units.LENGTH`, for files that
+        name none or a wrong one; `height_unit` defaults to `unit`.
     step
         Distance between neighbouring points [m], for files whose header is wrong or silent.
 
@@ -85,10 +83,7 @@ def read_scan(
     if step is None and found.step is not None:
         steps = found.step * _factor(unit or found.unit, path)
     if not np.all(np.isfinite(steps) & (steps > 0.0)):
-        raise InputError(
-            "the file does not say the distance of its points", source=str(path), key="step_m",
-            allowed="a distance above 0",
-        )  # fmt: skip
+        raise _no_step(path)
     return Scan(heights, steps, str(path))
 
 
@@ -105,10 +100,7 @@ class _Raw:
 def _positions(found: _Raw, unit: str | None, step: float | None, path: Path) -> Array:
     if step is not None or found.x is None:
         if step is None:
-            raise InputError(
-                "the file does not say the distance of its points", source=str(path),
-                key="step_m", allowed="a distance above 0",
-            )  # fmt: skip
+            raise _no_step(path)
         return np.asarray(np.arange(found.z.size) * step)
     if not np.all(np.diff(found.x) > 0.0):
         row = int(np.argmin(np.diff(found.x) > 0.0)) + 1
@@ -206,7 +198,11 @@ def _regular(points: Array, path: Path) -> _Raw:
 
 
 def _factor(unit: str | None, path: Path) -> float:
-    if unit in UNITS:
-        return UNITS[unit]
-    said = "the file does not say its unit of length" if not unit else f"unit of length {unit!r}"
-    raise InputError(said, source=str(path), key="unit", allowed="m, mm, um, nm")
+    return metres(unit or "", source=str(path), allowed=LENGTH)
+
+
+def _no_step(path: Path) -> InputError:
+    return InputError(
+        "the file does not say the distance of its points", source=str(path), key="step_m",
+        allowed="a distance above 0",
+    )  # fmt: skip

@@ -6,7 +6,7 @@ import math
 from pathlib import Path
 
 import numpy as np
-from pydantic import Field, model_validator
+from pydantic import Field
 
 from ...core.errors import InputError
 from .bounce_times import BounceOptions, reduce_bounce_times
@@ -15,13 +15,12 @@ from .reduced import Reduced
 from .sound_file import Sound, read_sound
 from .sound_onsets import find_onsets
 from .sound_picture import draw_sound
+from .time_window import TimeWindow
 
 
-class Options(BounceOptions):
+class Options(BounceOptions, TimeWindow):
     """Options of the reduction of a sound."""
 
-    first_s: float = Field(0.0, ge=0.0, description="beginning of the part to use")
-    last_s: float | None = Field(None, gt=0.0, description="its end")
     least_rise_db: float = Field(
         12.0, gt=0.0, description="rise of the energy within a millisecond that counts as a contact"
     )
@@ -29,12 +28,6 @@ class Options(BounceOptions):
         0.02, gt=0.0, description="shortest time between two contacts; echoes come sooner"
     )
     lowest_hz: float = Field(300.0, gt=0.0, description="lower frequencies are taken out")
-
-    @model_validator(mode="after")
-    def _order(self) -> Options:
-        if self.last_s is not None and self.last_s <= self.first_s:
-            raise ValueError("last_s is later than first_s")
-        return self
 
 
 def reduce(path: Path, options: Options) -> Reduced:
@@ -70,9 +63,7 @@ def reduce(path: Path, options: Options) -> Reduced:
 
 
 def _part(sound: Sound, options: Options) -> Sound:
-    first = round(options.first_s * sound.rate)
-    last = None if options.last_s is None else round(options.last_s * sound.rate)
-    part = sound.samples[first:last]
+    part = sound.samples[options.keeps(sound.time)]
     if part.size < 0.1 * sound.rate:
         raise InputError(
             f"{part.size / sound.rate:.3g} s of sound", source=sound.source, key="first_s",

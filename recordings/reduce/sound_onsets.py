@@ -78,9 +78,9 @@ def _rise_db(heard: Array, rate: float) -> Array:
     past = (total[here] - total[behind]) / np.maximum(here - behind, 1)
     # digital silence would make any click infinitely loud
     floor = max(float(np.quantile(past, 0.1)), 1e-10 * float(np.max(energy)), 1e-30)
-    rise = 10.0 * np.log10(np.maximum(energy, floor) / np.maximum(past, floor))
+    rise: Array = 10.0 * np.log10(np.maximum(energy, floor) / np.maximum(past, floor))
     rise[: before // 2] = 0.0
-    return np.asarray(rise)
+    return rise
 
 
 def _pick(heard: Array, peak: int, rate: float) -> tuple[float, float]:

@@ -16,9 +16,10 @@ from typing import Any
 import numpy as np
 
 from ...core.errors import InputError
-from ..csv_table import number
+from ..csv_table import number, rows_with, selection
 from .clip import missing_extra
 from .measured import Array
+from .units import UNITS
 
 _BOOKS = (".xls", ".xlsx", ".xlsm", ".xlsb", ".ods")
 _LARGEST = 200_000_000
@@ -55,17 +56,9 @@ class Columns:
         InputError
             Not of that form, or no row has the value.
         """
-        name, sign, value = which.partition("=")
-        if not sign:
-            raise InputError(repr(which), key="select", allowed="COLUMN=VALUE")
+        name, value = selection(which, source=self.source)
         place = self.find(name, key="select")
-        rows = [k for k, row in enumerate(self.cells) if row[place] == value.strip()]
-        if not rows:
-            there = sorted({row[place] for row in self.cells})
-            raise InputError(
-                f"no row with {which}", source=self.source, key="select",
-                allowed=", ".join(there[:12]),
-            )  # fmt: skip
+        rows = rows_with(value, [row[place] for row in self.cells], source=self.source)
         return replace(self, values=self.values[rows], cells=tuple(self.cells[k] for k in rows))
 
     def find(self, which: str, *, key: str) -> int:
@@ -97,6 +90,44 @@ class Columns:
         name = self.names[place]
         found = _UNIT.search(name)
         return found.group(1) if found else name.rsplit("_", 1)[-1] if "_" in name else ""
+
+    def factor(
+        self, place: int, quantity: str, *, given: str, key: str, default: str | None = None
+    ) -> float:
+        """Return what the numbers of a column are multiplied by.
+
+        Parameters
+        ----------
+        place
+            The column.
+        quantity
+            One of `units.UNITS`.
+        given
+            Unit by the user, or `"file"` for what the column's name says.
+        key
+            Option that gives the unit.
+        default
+            Unit where neither says one; None asks for it.
+
+        Raises
+        ------
+        InputError
+            The unit is not known.
+        """
+        units = UNITS[quantity]
+        if given != "file":
+            if given not in units:
+                raise InputError(repr(given), key=key, allowed=", ".join(units))
+            return units[given]
+        said = self.unit(place)
+        if said in units:
+            return units[said]
+        if default is None:
+            raise InputError(
+                f"column {self.names[place] or place + 1!r} does not name its unit",
+                source=self.source, key=key, allowed=", ".join(units),
+            )  # fmt: skip
+        return units[default]
 
 
 def read_columns(path: Path, *, sheet: str = "") -> Columns:

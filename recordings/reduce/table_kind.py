@@ -6,7 +6,7 @@ from pathlib import Path
 from typing import Literal
 
 import numpy as np
-from pydantic import Field, model_validator
+from pydantic import Field
 
 from ...core.errors import InputError
 from .bounce_times import BounceOptions, reduce_bounce_times
@@ -17,14 +17,14 @@ from .table_height import reduce_heights
 from .table_picture import draw_heights, draw_pulse, draw_times, draw_trials
 from .table_pulse import reduce_pulse
 from .table_trials import reduce_rebounds, reduce_trials
-from .table_units import factor
+from .time_window import TimeWindow
 
 Holds = Literal["force", "acceleration", "height", "bounces", "rebounds", "trials"]
 
 _FEWEST = 20
 
 
-class Options(BounceOptions):
+class Options(BounceOptions, TimeWindow):
     """Options of the reduction of a table."""
 
     holds: Holds = Field(
@@ -59,16 +59,6 @@ class Options(BounceOptions):
         description="normal speed before the pulse; with mass_kg gives the restitution",
     )
     approach_speed_m_s_std: float = Field(0.0, ge=0.0, description="its standard deviation")
-    first_s: float | None = Field(
-        None, description="beginning of the part to use, in the file's time"
-    )
-    last_s: float | None = Field(None, description="its end")
-
-    @model_validator(mode="after")
-    def _order(self) -> Options:
-        if None not in (self.first_s, self.last_s) and self.last_s <= self.first_s:  # type: ignore[operator]
-            raise ValueError("last_s is later than first_s")
-        return self
 
 
 def reduce(path: Path, options: Options) -> Reduced:
@@ -102,7 +92,8 @@ def reduce(path: Path, options: Options) -> Reduced:
 
 
 def _pulse(path: Path, table: Columns, options: Options) -> Reduced:
-    time, value, unit, _ = _series(table, options, options.holds)
+    time, value, column = _series(table, options)
+    unit = table.factor(column, options.holds, given=options.value_unit, key="value_unit")
     speed = options.approach_speed_m_s
     found = reduce_pulse(
         time, value * unit, holds=options.holds, mass=options.mass_kg,
@@ -116,11 +107,14 @@ def _pulse(path: Path, table: Columns, options: Options) -> Reduced:
 
 
 def _heights(path: Path, table: Columns, options: Options) -> Reduced:
-    time, value, unit, name = _series(table, options, "length")
+    time, value, column = _series(table, options)
+    said = table.unit(column) if options.value_unit == "file" else options.value_unit
+    metres = None
+    if said != "px":
+        metres = table.factor(column, "length", given=options.value_unit, key="value_unit")
     found = reduce_heights(
-        time, value if options.upwards == "up" else -value,
-        metres=None if name == "px" else unit, std=options.value_std,
-        gravity=options.gravity_m_s2, source=str(path),
+        time, value if options.upwards == "up" else -value, metres=metres,
+        std=options.value_std, gravity=options.gravity_m_s2, source=str(path),
     )  # fmt: skip
     rate = float(1.0 / np.median(np.diff(time)))
     return Reduced(
@@ -131,10 +125,10 @@ def _heights(path: Path, table: Columns, options: Options) -> Reduced:
 
 def _bounces(path: Path, table: Columns, options: Options) -> Reduced:
     column = table.find(options.time, key="time")
-    unit, _ = factor(table, column, "time", given=options.time_unit, key="time_unit", default="s")
+    unit = table.factor(column, "time", given=options.time_unit, key="time_unit", default="s")
     times = table.values[:, column] * unit
     times = times[np.isfinite(times)]
-    times = times[_window(times, options)]
+    times = times[options.keeps(times)]
     if times.size < 3:
         raise InputError(
             f"{times.size} instants", source=str(path), key="time", allowed="three or more"
@@ -152,23 +146,17 @@ def _bounces(path: Path, table: Columns, options: Options) -> Reduced:
     )  # fmt: skip
 
 
-def _series(table: Columns, options: Options, quantity: str) -> tuple[Array, Array, float, str]:
-    """Time [s] and numbers as they stand, the size of their unit and its name."""
+def _series(table: Columns, options: Options) -> tuple[Array, Array, int]:
+    """Time [s], numbers as they stand, and their column."""
     where = table.find(options.time, key="time")
     column = table.find(options.value, key="value")
-    second, _ = factor(table, where, "time", given=options.time_unit, key="time_unit", default="s")
+    second = table.factor(where, "time", given=options.time_unit, key="time_unit", default="s")
     if options.rate_hz is not None:
         second = 1.0 / options.rate_hz
-    if quantity == "length" and options.value_unit == "px":
-        unit, name = 1.0, "px"
-    else:
-        unit, name = factor(
-            table, column, quantity, given=options.value_unit, key="value_unit", default=None
-        )
     time, value = table.values[:, where] * second, table.values[:, column]
     whole = np.isfinite(time) & np.isfinite(value)
     time, value = time[whole], value[whole]
-    part = _window(time, options)
+    part = options.keeps(time)
     time, value = time[part], value[part]
     # a tracker that begins anew writes its frames again further down
     ahead = time > np.concatenate([[-np.inf], np.maximum.accumulate(time)[:-1]])
@@ -182,10 +170,4 @@ def _series(table: Columns, options: Options, quantity: str) -> tuple[Array, Arr
             f"{int(ahead.sum())} rows with a time and a value", source=table.source, key="value",
             allowed=f"{_FEWEST} or more",
         )  # fmt: skip
-    return time[ahead], value[ahead], unit, name
-
-
-def _window(time: Array, options: Options) -> Array:
-    first = -np.inf if options.first_s is None else options.first_s
-    last = np.inf if options.last_s is None else options.last_s
-    return np.asarray((time >= first) & (time <= last))
+    return time[ahead], value[ahead], column

@@ -14,7 +14,7 @@ from ..columns import CONDITIONS, OBSERVABLES, STD_SUFFIX
 from .bounce_times import Fall
 from .measured import Array, Measured, Trial
 from .table_file import Columns
-from .table_units import UNITS, factor
+from .units import UNITS
 
 _QUANTITY_OF_UNIT = {
     "_m_s": "speed", "_m": "length", "_s": "time", "_N": "force", "_rad_s": "spin",
@@ -57,7 +57,7 @@ def reduce_rebounds(
         No rebound heights, or one above its drop.
     """
     first = table.find(value, key="value")
-    metres, _ = factor(table, first, "length", given=unit, key="value_unit", default=None)
+    metres = table.factor(first, "length", given=unit, key="value_unit")
     heights = table.values[:, first:] * metres
     if heights.shape[1] < 2:
         raise InputError(
@@ -119,6 +119,7 @@ def reduce_trials(table: Columns) -> TrialsReduction:
         A column that is no column of trials.csv, or none with an approach.
     """
     known = _known_columns(table)
+    labels = _labels(table)
     names = [name for name, _ in known.values()]
     if not {"impact_speed_m_s", "drop_height_m"} & set(names):
         raise InputError(
@@ -128,7 +129,7 @@ def reduce_trials(table: Columns) -> TrialsReduction:
     if not any(name in OBSERVABLES for name in names):
         raise InputError("no measured column", source=table.source, allowed=", ".join(OBSERVABLES))
     trials = []
-    for row, cells in enumerate(table.values, start=1):
+    for label, cells in zip(labels, table.values, strict=True):
         numbers = {name: cells[k] * unit for k, (name, unit) in known.items()}
         observed = {
             name: Measured(float(v), float(numbers.get(name + STD_SUFFIX, math.nan)))
@@ -136,7 +137,7 @@ def reduce_trials(table: Columns) -> TrialsReduction:
             if math.isfinite(v) and not name.endswith(STD_SUFFIX)
         }
         if observed:
-            trials.append(Trial(observed, label=f"{row:03d}"))
+            trials.append(Trial(observed, label=label))
     place = {name: k for k, (name, _) in known.items()}
     across = next(n for n in ("impact_speed_m_s", "drop_height_m") if n in place)
     up = next(n for n in OBSERVABLES if n in place)
@@ -145,6 +146,21 @@ def reduce_trials(table: Columns) -> TrialsReduction:
         {"trials": Measured(float(len(trials)), math.nan)}, tuple(trials), (),
         (across, column[across]), (up, column[up]),
     )  # fmt: skip
+
+
+def _labels(table: Columns) -> list[str]:
+    """Names of the trials: those of the column `trial`, else the number of the row."""
+    if "trial" not in table.names:
+        return [f"{row:03d}" for row in range(1, len(table.cells) + 1)]
+    place = table.names.index("trial")
+    labels = [row[place] for row in table.cells]
+    twice = {name for name in labels if not name or labels.count(name) > 1}
+    if twice:
+        raise InputError(
+            f"{min(twice)!r} stands more than once or is empty", source=table.source, key="trial",
+            allowed="a name of its own for each row",
+        )  # fmt: skip
+    return labels
 
 
 def _known_columns(table: Columns) -> dict[int, tuple[str, float]]:

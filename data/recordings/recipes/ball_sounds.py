@@ -10,12 +10,14 @@ are not stated, so that the drag of the air stays in.
 
 import re
 import sys
+from functools import partial
 from pathlib import Path
+from typing import Any
 
-from dentscope.core.errors import InputError
 from dentscope.recordings import Setup
-from dentscope.recordings.reduce.into_set import Row, store
+from dentscope.recordings.reduce.into_set import Row, store_each
 from dentscope.recordings.reduce.kinds import load_kind
+from dentscope.recordings.reduce.reduced import Reduced
 
 SETUP = {
     "format": "recording-set/1",
@@ -37,25 +39,24 @@ SETUP = {
 }
 
 
+def reduced(file: Path) -> tuple[Reduced, Row, dict[str, Any]]:
+    """Reduce one run; its number and height stand in the name of the file."""
+    run, centimetres = map(int, re.findall(r"\d+", file.stem)[:2])
+    given = {"holds": "bounces", "sheet": "All", "release_height_m": centimetres / 100.0,
+             "release_height_m_std": 0.005}  # fmt: skip
+    row = Row(striker="ball", trial=f"{centimetres}cm-{run}")
+    return load_kind("table").run(file, given, source="recipe"), row, given
+
+
 def recipe(folder: Path, target: Path) -> tuple[int, list[str]]:
     """Write the set; the number of trials made, and a line for each run left out."""
-    kind, made, left_out = load_kind("table"), 0, []
-    for file in sorted(folder.glob("*.xls")):
-        run, centimetres = map(int, re.findall(r"\d+", file.stem)[:2])
-        given = {"holds": "bounces", "sheet": "All", "release_height_m": centimetres / 100.0,
-                 "release_height_m_std": 0.005}  # fmt: skip
-        try:
-            reduced = kind.run(file, given, source="recipe")
-            store(
-                reduced, target, Row(striker="ball", trial=f"{centimetres}cm-{run}"), kind="table",
-                options=given, setup=Setup.model_validate(SETUP) if made == 0 else None,
-            )  # fmt: skip
-            made += len(reduced.trials)
-        except InputError as error:
-            left_out.append(f"{file.name}: {error}")
-    return made, left_out
+    items = [(file.name, partial(reduced, file)) for file in sorted(folder.rglob("*.xls"))]
+    setup = Setup.model_validate(SETUP)
+    written, left_out = store_each(items, target, kind="table", setup=setup)
+    return sum(len(done.trials) for done in written), left_out
 
 
 if __name__ == "__main__":
     done, missing = recipe(Path(sys.argv[1]), Path(sys.argv[2]))
     sys.stdout.write(f"{done} trials in {sys.argv[2]}\n" + "".join(f"{m}\n" for m in missing))
+    sys.exit(0 if done else 2)

@@ -10,12 +10,14 @@ of a pixel. Files that the authors put aside ("-niet") are left out here too.
 
 import sys
 from dataclasses import replace
+from functools import partial
 from pathlib import Path
+from typing import Any
 
-from dentscope.core.errors import InputError
 from dentscope.recordings import Setup
-from dentscope.recordings.reduce.into_set import Row, store
+from dentscope.recordings.reduce.into_set import Row, store_each
 from dentscope.recordings.reduce.kinds import load_kind
+from dentscope.recordings.reduce.reduced import Reduced
 
 OPTIONS = {
     "holds": "height",
@@ -43,25 +45,23 @@ SETUP = {
 }
 
 
+def reduced(file: Path) -> tuple[Reduced, Row, dict[str, Any]]:
+    """Reduce the first bounce of one file."""
+    repeat, sheets, _ = file.stem.split("-")
+    found = load_kind("table").run(file, OPTIONS, source="recipe")
+    first = replace(found, trials=(replace(found.trials[0], label=""),))
+    return first, Row(striker="marble", trial=f"{sheets}-sheets-{repeat}"), OPTIONS
+
+
 def recipe(folder: Path, target: Path) -> tuple[int, list[str]]:
-    """Write the set: the first bounce of each file; a line for each file left out."""
-    kind, made, left_out = load_kind("table"), 0, []
-    for file in sorted(folder.glob("[0-9]*-M.csv")):
-        repeat, sheets, _ = file.stem.split("-")
-        try:
-            reduced = kind.run(file, OPTIONS, source="recipe")
-            first = replace(reduced, trials=(replace(reduced.trials[0], label=""),))
-            store(
-                first, target, Row(striker="marble", trial=f"{sheets}-sheets-{repeat}"),
-                kind="table", options=OPTIONS,
-                setup=Setup.model_validate(SETUP) if made == 0 else None,
-            )  # fmt: skip
-            made += 1
-        except InputError as error:
-            left_out.append(f"{file.name}: {error}")
-    return made, left_out
+    """Write the set; the number of trials made, and a line for each file left out."""
+    items = [(f.name, partial(reduced, f)) for f in sorted(folder.rglob("[0-9]*-M.csv"))]
+    setup = Setup.model_validate(SETUP)
+    written, left_out = store_each(items, target, kind="table", setup=setup)
+    return len(written), left_out
 
 
 if __name__ == "__main__":
     done, missing = recipe(Path(sys.argv[1]), Path(sys.argv[2]))
     sys.stdout.write(f"{done} trials in {sys.argv[2]}\n" + "".join(f"{m}\n" for m in missing))
+    sys.exit(0 if done else 2)

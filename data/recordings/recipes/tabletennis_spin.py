@@ -12,11 +12,13 @@ import sys
 import tempfile
 import zipfile
 from dataclasses import replace
+from functools import partial
 from pathlib import Path
+from typing import Any
 
 from dentscope.core.errors import InputError
 from dentscope.recordings import Setup
-from dentscope.recordings.reduce.into_set import Row, store
+from dentscope.recordings.reduce.into_set import Row, store_each
 from dentscope.recordings.reduce.kinds import load_kind
 from dentscope.recordings.reduce.reduced import Reduced
 
@@ -50,27 +52,25 @@ def _on_the_table(reduced: Reduced, name: str) -> Reduced:
     return replace(reduced, trials=tuple(kept))
 
 
+def reduced(raw: zipfile.ZipFile, place: Path, line: str) -> tuple[Reduced, Row, dict[str, Any]]:
+    """Reduce the trajectory of one line of the index: its number, and the spin before."""
+    number, *spin = line.split(",")
+    track = place / f"{int(number):03d}.csv"
+    points = raw.read(track.name).decode().replace(";", ",")
+    track.write_text("time_s,ball_x_m,ball_y_m,ball_z_m\n" + points)
+    given = {"shape": "sphere", "tip_radius_m": 0.02, "spin_before_rad_s": ",".join(spin)}
+    found = load_kind("mocap").run(track, given, source="recipe")
+    return _on_the_table(found, track.stem), Row(striker="ball"), given
+
+
 def recipe(archive: Path, folder: Path, count: int) -> tuple[int, list[str]]:
     """Write the set; the number of trials made, and a line for each trajectory left out."""
-    kind, left_out, made = load_kind("mocap"), [], 0
     with zipfile.ZipFile(archive) as raw, tempfile.TemporaryDirectory() as place:
-        rows = raw.read("index.csv").decode().split()[1:]
-        for line in rows[:count]:
-            number, *spin = line.split(",")
-            name = f"{int(number):03d}"
-            track = Path(place) / f"{name}.csv"
-            points = raw.read(f"{name}.csv").decode().replace(";", ",")
-            track.write_text("time_s,ball_x_m,ball_y_m,ball_z_m\n" + points)
-            given = {"shape": "sphere", "tip_radius_m": 0.02, "spin_before_rad_s": ",".join(spin)}
-            try:
-                reduced = _on_the_table(kind.run(track, given, source="recipe"), name)
-                setup = Setup.model_validate(SETUP) if made == 0 else None
-                store(reduced, folder, Row(striker="ball"), kind="mocap", options=given,
-                      setup=setup)  # fmt: skip
-                made += 1
-            except InputError as error:
-                left_out.append(f"{name}: {error}")
-    return made, left_out
+        lines = raw.read("index.csv").decode().split()[1 : count + 1]
+        items = [(line.split(",")[0], partial(reduced, raw, Path(place), line)) for line in lines]
+        setup = Setup.model_validate(SETUP)
+        written, left_out = store_each(items, folder, kind="mocap", setup=setup)
+    return len(written), left_out
 
 
 if __name__ == "__main__":
@@ -78,3 +78,4 @@ if __name__ == "__main__":
         Path(sys.argv[1]), Path(sys.argv[2]), int(sys.argv[3]) if len(sys.argv) > 3 else 300
     )
     sys.stdout.write(f"{done} trials in {sys.argv[2]}\n" + "".join(f"{m}\n" for m in missing))
+    sys.exit(0 if done else 2)

@@ -19,7 +19,10 @@ def groups(cases):
 
 
 def test_the_full_design_has_more_combinations_than_the_thesis(cases):
-    assert len(groups(cases["full"])) == len(cases["full"]) >= 432
+    names = {c.name for c in cases["full"].values()}
+    # the pair of chapter 3 is the only one that is solved twice, to two depths
+    assert {"chapter-3", "chapter-3-to-2450"} <= names
+    assert len(groups(cases["full"])) == len(cases["full"]) - 1 >= 432
     assert len(cases["space"]) >= 256
     # the thesis: at least 30 ratios of five cases, three of 27 sets
     assert len(set(RATIOS)) >= 30
@@ -75,8 +78,8 @@ def test_drawn_pairs_do_not_move_with_the_version_of_a_library():
 def test_a_run_that_is_stopped_early_has_the_thesis_first(cases):
     names = [case.name for case in cases["full"].values()]
     order = [name.split("-")[0] for name in names]
-    assert order.index("space") == 262
-    assert order.index("validation") == 262 + 256
+    assert order.index("space") == 263
+    assert order.index("validation") == 263 + 256
     assert names[:3] == ["figure-2.2", "figure-2.3", "figure-2.4"]
     # half of Table 2.1 leaves no gap larger than 0.15 in the steep part
     ratios = [c.pair.Sy_ratio for c in cases["thesis"].values() if c.name.startswith("table")]
@@ -95,7 +98,7 @@ def test_every_deep_case_has_the_depth_of_the_thesis(cases):
     assert fields == ["figure-2.2", "figure-2.3", "figure-2.4"]
 
 
-@pytest.mark.parametrize(("name", "count"), [("thesis", 3), ("space", 2)])
+@pytest.mark.parametrize(("name", "count"), [("thesis", 3), ("space", 3)])
 def test_the_parts_of_a_design_are_the_design(name, count):
     parts = [distinct_cases(design_named(f"{name}-{k + 1}")) for k in range(count)]
     for one, other in itertools.combinations(parts, 2):

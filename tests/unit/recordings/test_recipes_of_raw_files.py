@@ -1,0 +1,59 @@
+"""Recipes that turn many raw files into one set, and what they say of files that show nothing."""
+
+import importlib.util
+import shutil
+from pathlib import Path
+
+import numpy as np
+import pytest
+from dentscope.recordings import read
+
+ROOT = Path(__file__).parents[3]
+RAW = ROOT.parent / "shared" / "recordings"
+measured = pytest.mark.skipif(not RAW.exists(), reason="the recordings are not here")
+
+
+def _recipe(name):
+    path = ROOT / "data" / "recordings" / "recipes" / f"{name}.py"
+    spec = importlib.util.spec_from_file_location(name, path)
+    module = importlib.util.module_from_spec(spec)
+    spec.loader.exec_module(module)
+    return module.recipe
+
+
+@measured
+def test_ball_sounds_give_one_set(tmp_path):
+    for file in sorted((RAW / "ball-bounce-acoustic").rglob("*65.xls"))[:3]:
+        shutil.copy(file, tmp_path)
+    made, left_out = _recipe("ball_sounds")(tmp_path, tmp_path / "set")
+    found = read(tmp_path / "set")
+    assert not left_out
+    assert made == len(found.trials.trial) > 15
+    e = found.values("restitution")
+    # rebound heights by video, same ball and authors: 49.6 of 65 cm, e = 0.87, at the first bounce
+    assert 0.8 < np.median(e) < 0.92
+    # the first bounce of a run falls from 65 cm
+    assert np.max(found.trials.impact_speed_m_s) == pytest.approx(
+        np.sqrt(2 * 9.81 * 0.65), rel=0.01
+    )
+
+
+@measured
+def test_marble_recipe_leaves_out_what_shows_no_bounce(tmp_path):
+    folder = RAW / "marble-on-paper-a4" / "a4"
+    (tmp_path / "raw").mkdir()
+    for name in ("1-60-M.csv", "2-60-M.csv"):
+        shutil.copy(folder / name, tmp_path / "raw")
+    (tmp_path / "raw" / "3-60-M.csv").write_text((folder / "1-60-M.csv").read_text()[:2000])
+    made, left_out = _recipe("marble_paper")(tmp_path / "raw", tmp_path / "set")
+    assert made == 2
+    assert [line.partition(":")[0] for line in left_out] == ["3-60-M.csv"]
+    # SOURCE.md: about 0.54 on 60 sheets
+    assert read(tmp_path / "set").values("restitution") == pytest.approx([0.56, 0.56], abs=0.06)
+
+
+def test_a_folder_without_raw_files_gives_a_line(tmp_path):
+    made, left_out = _recipe("ball_sounds")(tmp_path, tmp_path / "set")
+    assert made == 0
+    assert left_out == ["no raw file of the kind that the recipe reads"]
+    assert not (tmp_path / "set").exists()
