@@ -14,7 +14,7 @@ import typer
 
 from ..core.errors import EXIT_NOT_CONVERGED, InputError
 from . import campaign_data
-from .campaign_data import FILE, PUBLISHED, DesignName, Out
+from .campaign_data import DEFAULT_DESIGN, FILE, PUBLISHED, DesignName, Out
 from .campaign_progress import Progress, duration, judged, remarks, tell
 
 app = typer.Typer(help="Sweeps of finite-element cases.", no_args_is_help=True)
@@ -31,7 +31,7 @@ def designs() -> None:
 
 @app.command()
 def run(
-    design: DesignName = "smoke",
+    design: DesignName = DEFAULT_DESIGN,
     out: Out = Path("build/campaign"),
     workers: Annotated[int, typer.Option(min=1, help="Worker processes.")] = os.cpu_count() or 1,
     scheduler: Annotated[str, typer.Option(help="Address of a dask scheduler.")] = "",
@@ -63,12 +63,14 @@ def run(
     typer.echo(
         f"design {design}: {before.designed} cases, {before.done} done, {before.failed} failed, "
         f"{len(todo)} to compute on {executor.workers} workers; about "
-        f"{duration(forecast.left_s())} here{busy}. Results go to {path}."
+        f"{duration(forecast.left_s())} here{busy}. Results go to {path}. Ctrl-C stops, the same "
+        "command goes on."
     )
     started = time.monotonic()
     until = started + 60.0 * limit_minutes if limit_minutes else math.inf
+    progress = Progress(forecast, len(todo))
     try:
-        with Progress(forecast, len(todo)) as progress:
+        with progress:
             after = run_design(
                 chosen,
                 path,
@@ -79,11 +81,8 @@ def run(
                 report=progress.step,
             )
     except KeyboardInterrupt:
-        now = status_of(chosen, store)
-        typer.echo(
-            f"stopped: {now.done} done, {now.failed} failed, {now.missing} missing; "
-            "the same command goes on from here"
-        )
+        typer.echo("stopped; the same command goes on from here")
+        _summary(chosen, out, status_of(chosen, store), time.monotonic() - started, progress.cpu_s)
         return 130
     _summary(chosen, out, after, time.monotonic() - started, progress.cpu_s)
     return 0 if after.done == after.designed else EXIT_NOT_CONVERGED
@@ -91,7 +90,7 @@ def run(
 
 @app.command()
 def status(
-    design: DesignName = "smoke",
+    design: DesignName = DEFAULT_DESIGN,
     out: Out = Path("build/campaign"),
     as_json: Annotated[bool, typer.Option("--json", help="For programs.")] = False,
 ) -> None:

@@ -18,6 +18,9 @@ FILE = "campaign.h5"
 PUBLISHED = Path(__file__).parents[1] / "data" / "campaign"
 """Folder of the published data."""
 
+DEFAULT_DESIGN = "full"
+"""Sweep of a command that names none."""
+
 Out = Annotated[Path, typer.Option(help="Folder of the run.")]
 DesignName = Annotated[str, typer.Option(help="Which sweep; see `campaign designs`.")]
 

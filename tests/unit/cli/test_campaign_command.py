@@ -1,9 +1,9 @@
-"""`dentscope campaign export`: one table, the same numbers in both formats."""
+"""`dentscope campaign`: one table in both formats; what is said where a run is stopped."""
 
 import pandas
 import pytest
-from dentscope import fem
-from dentscope.campaigns import Store, standard_case
+from dentscope import campaigns, fem
+from dentscope.campaigns import DESIGNS, Design, Store, standard_case
 from dentscope.cli import run
 from dentscope.core import COMPLETED, Material, Pair
 from dentscope.fem import Counters, Curve, Solution
@@ -42,3 +42,25 @@ def test_another_format_is_refused(stored, capsys):
     folder, _ = stored
     assert run(["campaign", "export", "--out", str(folder), "--to", str(folder / "t.xls")]) == 2
     assert "'.xls'" in capsys.readouterr().err
+
+
+def test_a_run_that_is_stopped_says_how_to_go_on_and_shows_what_is_done(
+    stored, monkeypatch, capsys
+):
+    folder, _ = stored
+    cases = [record.case for record in Store(folder / "campaign.h5").read_all()]
+    steel = Material(E=100e9, nu=0.3, Sy=5e8)
+    other = standard_case(
+        "two", Pair(steel, steel, 1e-3), deepest=0.01, n_depths=4, accuracy=fem.Accuracy.smoke()
+    )
+    monkeypatch.setitem(DESIGNS, "small", Design("small", "", lambda: (*cases, other)))
+
+    def stop(*given, **options):
+        raise KeyboardInterrupt
+
+    monkeypatch.setattr(campaigns, "run_design", stop)
+    assert run(["campaign", "run", "--design", "small", "--out", str(folder)]) == 130
+    shown = " ".join(capsys.readouterr().out.split())
+    assert "2 cases, 1 done, 0 failed, 1 to compute" in shown
+    assert "stopped; the same command goes on from here 1 done, 0 failed, 1 missing of 2" in shown
+    assert (folder / "pictures" / "curves.png").exists()
