@@ -342,8 +342,9 @@ DESIGNS: dict[str, Design] = {
         Design("thesis-3", "its third part: the 27 sets, the last Sy*, figure 2.16", _thesis_third),
         Design("space", "256 Sobol points over moduli, Poisson ratios, strengths", _space),
         Design("space-1", "its first 32 points, a Sobol design themselves", lambda: _space()[:32]),
-        Design("space-2", "the next 96, a Sobol design with the first", lambda: _space()[32:128]),
-        Design("space-3", "its other points", lambda: _space()[128:]),
+        Design("space-2", "the next 32, a Sobol design with the first", lambda: _space()[32:64]),
+        Design("space-3", "the next 64, likewise", lambda: _space()[64:128]),
+        Design("space-4", "its other points", lambda: _space()[128:]),
         Design("validation", "48 pairs that no fit may use", _validation),
         Design("full", "thesis, space and validation", _full),
         Design(
