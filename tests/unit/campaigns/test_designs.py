@@ -98,7 +98,7 @@ def test_every_deep_case_has_the_depth_of_the_thesis(cases):
     assert fields == ["figure-2.2", "figure-2.3", "figure-2.4"]
 
 
-@pytest.mark.parametrize(("name", "count"), [("thesis", 3), ("space", 3)])
+@pytest.mark.parametrize(("name", "count"), [("thesis", 3), ("space", 4)])
 def test_the_parts_of_a_design_are_the_design(name, count):
     parts = [distinct_cases(design_named(f"{name}-{k + 1}")) for k in range(count)]
     for one, other in itertools.combinations(parts, 2):
