@@ -293,6 +293,8 @@ def one_impact(loading, radius, unloading, residual, par, force, factors, breaks
             event_values(loading, radius, unloading, par, force, factors, body, spot, omega, psi,
                          shape, branch, phase, mode, approaching, side, offset, ahead, centre0, z,
                          z_err, work, seen, seen_far, values)
+            if phase == FLY and clear and values[TOUCH] > -1e-9 * spot[SPOT_PEAK]:
+                values[TOUCH] = max(values[TOUCH], 0.0)  # at the parting it is zero to round-off
         if mode == 0.0 and rubbing and phase != FLY:
             stuck = 1.0
         if steps >= body[MAX_STEPS]:
@@ -534,7 +536,7 @@ def one_impact(loading, radius, unloading, residual, par, force, factors, breaks
                 kept[j] = z[j]
             offset = 0.0
             mode, clear = 1.0, True
-            variable, h = BY_TIME, 0.02 * body[FLIGHT]
+            variable, h = BY_TIME, min(0.02 * body[FLIGHT], 0.02 * t_ref)
             if body[FLIGHT] <= 0.0:
                 break
         elif chosen == RETURNED:

@@ -18,6 +18,7 @@ from .layout import (
     PHI,
     RATE,
     SPIN,
+    SPOT_PEAK,
     SPOT_TIP,
     TIME,
     VX,
@@ -62,6 +63,27 @@ def clearance(body, spot, z, centre, psi, seen):
 
 
 @njit(
+    float64(VECTOR, VECTOR, VECTOR, MATRIX, float64, VECTOR, float64, float64, VECTOR, VECTOR),
+    cache=True,
+    error_model="numpy",
+)
+def nearest(body, spot, omega, psi, centre, z, low, high, z_new, seen):
+    """Return when, between `low` and `high`, the tip stops approaching; leave that in `z_new`."""
+    t = high
+    for _ in range(40):
+        t = 0.5 * (low + high)
+        coast(body, z, omega, t, z_new)
+        gap = clearance(body, spot, z_new, centre, psi, seen)
+        if gap < 0.0 or high - low < 1e-6 * t:
+            break
+        if seen[RATE] > 0.0:
+            low = t
+        else:
+            high = t
+    return t
+
+
+@njit(
     boolean(VECTOR, VECTOR, VECTOR, MATRIX, float64, VECTOR, VECTOR, VECTOR, VECTOR, VECTOR),
     cache=True,
     error_model="numpy",
@@ -70,7 +92,8 @@ def fly(body, spot, omega, psi, centre, z, z_new, z_now, z_far, seen):
     """Follow a free flight to the next touch; write it into `z_new`; return whether there is one.
 
     The vibration is known in closed form: the tip is looked at twelve times in each period of
-    the fastest mode, and no longer once no vibration can bring it back.
+    the fastest mode, between two looks where it comes near the flat and turns, and no longer once
+    no vibration can bring it back.
     """
     n = len(omega)
     step = 2.0 * math.pi / (12.0 * omega[n - 1])
@@ -96,7 +119,11 @@ def fly(body, spot, omega, psi, centre, z, z_new, z_now, z_far, seen):
         z_now[j] = z[j]
     start, end = z[TIME], z[TIME] + body[FLIGHT]
     # The rim of the crater just left is no obstacle: the tip must first have come clear of it.
-    clear = clearance(body, spot, z, centre, psi, seen) >= 0.0
+    # Without a crater it is at the parting, to round-off.
+    g = clearance(body, spot, z, centre, psi, seen)
+    clear = g >= -1e-9 * spot[SPOT_PEAK]
+    g, rate = max(g, 0.0), seen[RATE]
+    low, high = 0.0, step
     q, p = z_now[N_RIGID : N_RIGID + n], z_now[N_RIGID + n :]
     look, touched = 0, False
     while z_now[TIME] < end and not touched:
@@ -110,8 +137,22 @@ def fly(body, spot, omega, psi, centre, z, z_new, z_now, z_far, seen):
             q0 = q[k]
             q[k] = turn[0, k] * q0 + turn[1, k] * p[k]
             p[k] = turn[2, k] * q0 + turn[3, k] * p[k]
+        g_before, rate_before = g, rate
         g = clearance(body, spot, z_now, centre, psi, seen)
-        touched = g < 0.0 and clear and seen[RATE] > 0.0
+        rate = seen[RATE]
+        touched = g < 0.0 and clear and rate > 0.0
+        if clear and rate_before > 0.0 > rate:
+            # Between the looks the tip came near and turned: a parabola tells how near.
+            fall = 0.5 * rate_before * rate_before * step / (rate_before - rate)
+            if g_before - fall < 0.01 * reach:
+                high = nearest(body, spot, omega, psi, centre, z, t - step, t, z_far, seen)
+                touched = clearance(body, spot, z_far, centre, psi, seen) < 0.0
+                for j in range(N_RIGID, len(z)):
+                    z_far[j] = 0.0
+        elif touched:
+            high = t
+        if touched:
+            low = t - step
         clear = g >= 0.0 or (clear and touched)
         if look % 16 == 0 and not touched:
             z_far[X], z_far[Y], z_far[PHI] = z_now[X], z_now[Y], z_now[PHI]
@@ -123,10 +164,20 @@ def fly(body, spot, omega, psi, centre, z, z_new, z_now, z_far, seen):
                 return False
     if not touched:
         return False
-    # The touch lies in (t - step, t]: false position on the exact motion.
-    low, high = (look - 1) * step, look * step
+    # The touch lies in (low, high]: false position on the exact motion. A flight shorter than a
+    # look starts at the flat: its bracket starts where the tip is off it.
     coast(body, z, omega, low, z_new)
-    g_low = max(clearance(body, spot, z_new, centre, psi, seen), 1e-300)
+    g_low = clearance(body, spot, z_new, centre, psi, seen)
+    if look == 1:
+        low = high
+        for _ in range(40):
+            low *= 0.5
+            coast(body, z, omega, low, z_new)
+            g_low = clearance(body, spot, z_new, centre, psi, seen)
+            if g_low > 0.0:
+                break
+            high = low
+    g_low = max(g_low, 1e-300)
     coast(body, z, omega, high, z_new)
     g_high = clearance(body, spot, z_new, centre, psi, seen)
     side = 0
