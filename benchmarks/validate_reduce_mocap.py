@@ -9,7 +9,7 @@ import sys
 
 import numpy as np
 from dentscope.recordings.reduce.mocap import MocapReduction, Scene, reduce_mocap
-from dentscope.recordings.reduce.mocap_body import Body
+from dentscope.recordings.reduce.mocap_body import Body, centre_of
 from dentscope.recordings.reduce.mocap_flight import Prior
 from dentscope.recordings.reduce.mocap_rigid import kabsch, rigid_poses
 from dentscope.recordings.reduce.synthetic.mocap import (
@@ -28,7 +28,7 @@ def reduced(truth: MocapTruth, *, known: bool) -> MocapReduction:
     origin, turn = kabsch(np.array(truth.markers), poses.shape)
     axis = turn[:, 2] if truth.shape == "rod" else np.zeros(3)
     random = np.random.default_rng(truth.seed + 10**6)
-    centre = Prior(np.zeros(3), max(poses.extent, truth.tip_radius))
+    centre = centre_of(poses, axis, max(poses.extent, truth.tip_radius), truth.tip_radius)
     if known:
         centre = Prior(origin + random.normal(0.0, 5e-4, 3), 5e-4)
     body = Body(

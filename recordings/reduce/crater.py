@@ -12,7 +12,7 @@ from .measured import UNITY, ZERO, Array, Measured, Trial
 from .scan_bottom import find_bottom
 from .scan_file import Scan
 from .scan_level import Levelled, levelled
-from .scan_walls import Section, opening, pile_up, section, section_covariance
+from .scan_walls import Section, opening, pile_up, section, section_covariance, without_band
 
 
 @dataclass(frozen=True)
@@ -103,6 +103,7 @@ def reduce_scan(
     across = section(shown, bottom.place, direction + 0.5 * math.pi, half_width)
     covariance = section_covariance(shown, half_width)
     length, width = (opening(s, bottom.depth.value, covariance) for s in (along, across))
+    length, width = without_band(length, width, half_width)
     depth = _without_blur(bottom.depth, bottom.laplacian, blur)
     cell = float(np.prod(scan.step))
     volume = Measured(

@@ -17,7 +17,7 @@ from ...core.errors import InputError
 from .flight import propagate
 from .measured import Array, Measured, Trial
 from .mocap_body import Body
-from .mocap_flight import Flights, Motion, Prior, fall_acceleration, find_flights
+from .mocap_flight import Flights, Motion, fall_acceleration, find_flights
 from .mocap_rigid import Poses
 
 GRAVITY = 9.81
@@ -149,7 +149,7 @@ def reduce_mocap(poses: Poses, body: Body, scene: Scene, *, source: str) -> Moca
             allowed="a flight before and one after an impact (units, up and gravity right?)",
         )  # fmt: skip
     rate = float(1.0 / np.median(np.diff(poses.time)))
-    body = replace(body, centre=Prior(flights.offset, body.centre.std))
+    body = replace(body, centre=replace(body.centre, value=flights.offset))
     hits = []
     for f in range(len(flights.spans) - 1):
         gap = int(poses.frame[flights.spans[f + 1][0]] - poses.frame[flights.spans[f][1]]) - 1

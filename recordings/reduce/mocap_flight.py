@@ -8,7 +8,8 @@ constant spin is exact about a principal axis (a rod that tumbles, any spin of a
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+import math
+from dataclasses import dataclass, field
 
 import numpy as np
 import numpy.typing as npt
@@ -24,23 +25,52 @@ WINDOW = 8
 _CLEAN = 3.0
 """A window fits free flight if its residual is below this many usual ones."""
 
+_STANDS_OUT, _BROKEN = 1.5, 5.0
+"""A span of clean windows is cut at its worst if that is so many usual ones, and the span as one
+flight so many limits."""
+
 _OFF = 2.5
 """Root mean square deviation, in standard deviations, at which a frame ends the flight."""
 
 _FALL = 0.3
 """Part of gravity by which a flight's own acceleration may differ; drag of a light ball is less."""
 
-_ROUNDS = 6
+_MOST_ROUNDS = 20
+_SETTLED = 1e-3
+"""Part of the misfit that a step may still promise when the fit of a motion ends."""
+
 _SHARED, _OWN = 3, 12
 """Parameters: b; and for each flight X0, V, rotation about R0, w."""
 
 
 @dataclass(frozen=True)
 class Prior:
-    """What is known beforehand about b, the centre of mass seen from the centroid."""
+    """What is known beforehand about b, the centre of mass seen from the centroid.
+
+    Parameters
+    ----------
+    value
+        (3,) [m].
+    std
+        Standard deviation along `way`, or in all directions [m].
+    way
+        (3,) axis of a rod; zeros for no direction of its own.
+    across
+        Standard deviation across `way` [m].
+    """
 
     value: Array
     std: float
+    way: Array = field(default_factory=lambda: np.zeros(3))
+    across: float = math.inf
+
+    @property
+    def scale(self) -> Array:
+        """The matrix that makes a deviation of b one of standard size, (3, 3) [1/m]."""
+        along = np.outer(self.way, self.way)
+        if not self.way.any():
+            return np.asarray(np.eye(3) / self.std)
+        return np.asarray(along / self.std + (np.eye(3) - along) / self.across)
 
 
 @dataclass(frozen=True)
@@ -146,24 +176,19 @@ def fit_flights(
     """Fit all flights together, with one centre of mass."""
     if not spans:
         return None
-    motions = [_start(poses, s, gravity) for s in spans]
-    offset, sigma = prior.value.copy(), 1e-4
-    for round_ in range(_ROUNDS + 2):
-        design, residual = _system(poses, spans, motions, offset)
-        weight = max(sigma, 1e-7) / prior.std
-        design = np.concatenate([design, weight * np.eye(_SHARED, design.shape[1])])
-        residual = np.concatenate([residual, weight * (prior.value - offset)])
-        if round_ < _ROUNDS:
-            step = _solved(design, residual)
-            sigma = robust_std(residual - design @ step)
-        else:
-            fit = robust_regression(design, residual, floor=1e-7)
-            step, sigma = fit.coefficients, fit.sigma
-        offset = offset + step[:_SHARED]
-        motions = [
-            m.moved(step[_SHARED + _OWN * f : _SHARED + _OWN * (f + 1)])
-            for f, m in enumerate(motions)
-        ]
+    motions, offset, sigma = [_start(poses, s, gravity) for s in spans], prior.value.copy(), 1e-4
+    for _ in range(_MOST_ROUNDS):
+        weight = max(sigma, 1e-7)
+        motions, offset, left, settled = _round(poses, spans, motions, offset, prior, weight)
+        sigma = robust_std(left)
+        if settled:
+            break
+    for _ in range(2):
+        weight = max(sigma, 1e-7)
+        design, residual = _with_prior(poses, spans, motions, offset, prior, weight)
+        fit = robust_regression(design, residual, floor=1e-7)
+        sigma = fit.sigma
+        motions, offset = _moved(motions, offset, fit.coefficients)
     return Flights(tuple(spans), tuple(motions), offset, fit.covariance, sigma)
 
 
@@ -203,12 +228,35 @@ def _solved(design: Array, residual: Array) -> Array:
     return np.asarray(np.linalg.lstsq(design / scale, residual, rcond=1e-12)[0] / scale)
 
 
+def _residual(
+    poses: Poses, spans: list[tuple[int, int]], motions: list[Motion], offset: Array
+) -> Array:
+    """Return the deviations of all spans, component by component in time, (6 n,)."""
+    each = (
+        deviations(poses, np.arange(span[0], span[1] + 1), motion, offset).T.ravel()
+        for span, motion in zip(spans, motions, strict=True)
+    )
+    return np.concatenate(list(each))
+
+
+def _with_prior(
+    poses: Poses, spans: list[tuple[int, int]], motions: list[Motion], offset: Array,
+    prior: Prior, weight: float,
+) -> tuple[Array, Array]:  # fmt: skip
+    """Return design and residual with three rows that draw b to what is known beforehand."""
+    design, residual = _system(poses, spans, motions, offset)
+    known = np.zeros((_SHARED, design.shape[1]))
+    known[:, :_SHARED] = weight * prior.scale
+    residual = np.concatenate([residual, known[:, :_SHARED] @ (prior.value - offset)])
+    return np.concatenate([design, known]), residual
+
+
 def _system(
     poses: Poses, spans: list[tuple[int, int]], motions: list[Motion], offset: Array
 ) -> tuple[Array, Array]:
     """Return design (6 n, 3 + 12 f) and residual (6 n,), component by component in time."""
     width = _SHARED + _OWN * len(spans)
-    designs, residuals = [], []
+    designs = []
     for f, (span, motion) in enumerate(zip(spans, motions, strict=True)):
         index = np.arange(span[0], span[1] + 1)
         own = _jacobian(poses, index, motion, offset)
@@ -218,8 +266,7 @@ def _system(
         whole[:, :, first : first + _OWN] = own[:, :, _SHARED:]
         # component by component, so that neighbours in the stack are neighbours in time
         designs.append(np.swapaxes(whole, 0, 1).reshape(-1, width))
-        residuals.append(deviations(poses, index, motion, offset).T.ravel())
-    return np.concatenate(designs), np.concatenate(residuals)
+    return np.concatenate(designs), _residual(poses, spans, motions, offset)
 
 
 def _jacobian(poses: Poses, index: npt.NDArray[np.int_], motion: Motion, offset: Array) -> Array:
@@ -271,21 +318,50 @@ def _start(poses: Poses, span: tuple[int, int], gravity: Array) -> Motion:
 
 
 def _alone(
-    poses: Poses, span: tuple[int, int], gravity: Array, prior: Prior, rounds: int = 3
+    poses: Poses, span: tuple[int, int], gravity: Array, prior: Prior
 ) -> tuple[tuple[Motion, Array], float]:
     """Fit one flight by itself; motion and b, and the root mean square residual [m]."""
-    motion, offset = _start(poses, span, gravity), prior.value.copy()
+    motions, offset = [_start(poses, span, gravity)], prior.value.copy()
     # the prior of b only keeps what no spin shows from running away
-    weight = 1e-4 / prior.std
-    for _ in range(rounds):
-        design, residual = _system(poses, [span], [motion], offset)
-        design = np.concatenate([design, weight * np.eye(_SHARED, design.shape[1])])
-        residual = np.concatenate([residual, weight * (prior.value - offset)])
-        step = _solved(design, residual)
-        offset, motion = offset + step[:_SHARED], motion.moved(step[_SHARED:])
-    _, residual = _system(poses, [span], [motion], offset)
+    weight = 1e-4
+    for _ in range(_MOST_ROUNDS):
+        motions, offset, _, settled = _round(poses, [span], motions, offset, prior, weight)
+        if settled:
+            break
+    residual = _residual(poses, [span], motions, offset)
     freedom = max(residual.size - _OWN, 1)
-    return (motion, offset), float(np.sqrt(residual @ residual / freedom))
+    return (motions[0], offset), float(np.sqrt(residual @ residual / freedom))
+
+
+def _moved(motions: list[Motion], offset: Array, step: Array) -> tuple[list[Motion], Array]:
+    """Return motions and b after a step of all parameters."""
+    own = step[_SHARED:].reshape(-1, _OWN)
+    return [m.moved(s) for m, s in zip(motions, own, strict=True)], offset + step[:_SHARED]
+
+
+def _round(
+    poses: Poses, spans: list[tuple[int, int]], motions: list[Motion], offset: Array,
+    prior: Prior, weight: float,
+) -> tuple[list[Motion], Array, Array, bool]:  # fmt: skip
+    """Bring motions and b nearer to the poses: both, what the step leaves, and whether it ends.
+
+    Where little spin shows b, a whole step can turn a body by so much that it no longer does.
+    """
+
+    def misfit(motions: list[Motion], offset: Array) -> float:
+        residual = _residual(poses, spans, motions, offset)
+        far = weight * prior.scale @ (prior.value - offset)
+        return float(residual @ residual + far @ far)
+
+    design, residual = _with_prior(poses, spans, motions, offset, prior, weight)
+    step = _solved(design, residual)
+    left = residual - design @ step
+    before = float(residual @ residual)
+    for part in (1.0, 0.5, 0.2, 0.05):
+        there = _moved(motions, offset, part * step)
+        if misfit(*there) < before:
+            return *there, left, bool(before - left @ left < _SETTLED * before)
+    return motions, offset, left, True
 
 
 def _spans(poses: Poses, gravity: Array, prior: Prior) -> list[tuple[int, int]]:
@@ -300,9 +376,21 @@ def _spans(poses: Poses, gravity: Array, prior: Prior) -> list[tuple[int, int]]:
             rms[k] = _alone(poses, (k, k + WINDOW - 1), gravity, prior)[1]
     # a body at rest fits worse than one in flight: the best windows tell the error of a marker
     limit = _CLEAN * max(1.2 * float(np.quantile(rms, 0.05)), _noise(poses))
-    clean = np.concatenate([[False], rms < limit, [False]])
-    edges = np.flatnonzero(np.diff(clean.astype(int)))
-    return [(int(a), int(b) + WINDOW - 2) for a, b in edges.reshape(-1, 2)]
+    clean = rms < limit
+    while True:
+        edges = np.flatnonzero(np.diff(np.concatenate([[False], clean, [False]]).astype(int)))
+        runs = edges.reshape(-1, 2)
+        spans = [(int(a), int(b) + WINDOW - 2) for a, b in runs]
+        # a contact that b can pass for within a window shows over the whole span
+        hidden = [
+            a + int(np.argmax(rms[a:b]))
+            for (a, b), span in zip(runs, spans, strict=True)
+            if rms[a:b].max() > _STANDS_OUT * np.median(rms[a:b])
+            and _alone(poses, span, gravity, prior)[1] > _BROKEN * limit
+        ]
+        if not hidden:
+            return spans
+        clean[hidden] = False
 
 
 def _noise(poses: Poses) -> float:

@@ -14,6 +14,13 @@ from .scan_level import Levelled, filled
 _EDGE_FROM, _EDGE_TO = 0.08, 0.45
 """Depths, as parts of the whole, between which a wall is followed up to the surface."""
 
+_GRID = 0.14
+"""What a wall's end misses on rendered craters without noise, in steps of the scan: its parabola,
+and the interpolation between points."""
+
+_BAND = np.linspace(-0.08, 0.08, 7)
+"""Lines that are averaged into a section, from its middle, in halves of the crater's width."""
+
 _SECTORS = 12
 
 
@@ -31,7 +38,7 @@ def section(found: Levelled, place: Array, direction: float, half_width: float) 
     normal = np.array([-axis[1], axis[0]])
     size = float(np.hypot(*(np.array(found.z.shape) * found.step)))
     s = np.arange(-size, size, float(found.step.min()))
-    band = np.linspace(-0.08, 0.08, 7) * half_width
+    band = _BAND * half_width
     points = place + s[:, None, None] * axis + band[None, :, None] * normal
     at = (points / found.step).transpose(2, 0, 1)
     z = ndimage.map_coordinates(filled(found.z), at, order=1, mode="constant", cval=np.nan)
@@ -66,6 +73,20 @@ def opening(line: Section, depth: float, covariance: Array) -> Measured:
     return Measured(left.value + right.value, math.hypot(left.std, right.std))
 
 
+def without_band(length: Measured, width: Measured, half_width: float) -> tuple[Measured, Measured]:
+    """Return both without what averaging over a band takes off where a wall is curved.
+
+    The outline of radius `half_width` lies t²/(2 half_width) further in at t beside the middle: at
+    the ends of a scar always, at its sides as far as they are not straight over the band.
+    """
+    short = half_width * float(np.mean(_BAND**2))
+    straight = (length.value - width.value) / (2.0 * _BAND[-1] * half_width)
+    bent = min(max(1.0 - straight, 0.0), 1.0)
+    return Measured(length.value + short, length.std), Measured(
+        width.value + bent * short, width.std
+    )
+
+
 def _wall_end(outward: Array, z: Array, depth: float, covariance: Array) -> Measured | None:
     """Return where the wall on one side, a parabola near its upper end, reaches height 0."""
     order = np.argsort(outward)
@@ -94,7 +115,8 @@ def _wall_end(outward: Array, z: Array, depth: float, covariance: Array) -> Meas
     noise = np.where(lag < covariance.size, covariance[lag.clip(0, covariance.size - 1)], 0.0)
     weights = np.array([1.0, end, end * end]) @ solver
     std = math.sqrt(max(float(weights @ noise @ weights), 0.0)) / abs(slope) * scale
-    return Measured(middle + end * scale, std)
+    step = scale / (u.size - 1)
+    return Measured(middle + end * scale, math.hypot(std, _GRID * step))
 
 
 def pile_up(found: Levelled, half_width: float) -> Measured:

@@ -7,6 +7,8 @@ from pathlib import Path
 import numpy as np
 import pytest
 from dentscope.core.errors import InputError
+from dentscope.recordings.reduce.mocap import Scene, reduce_mocap
+from dentscope.recordings.reduce.mocap_body import Body, centre_of
 from dentscope.recordings.reduce.mocap_file import read_markers
 from dentscope.recordings.reduce.mocap_kind import Options, reduce
 from dentscope.recordings.reduce.mocap_rigid import kabsch, rigid_poses
@@ -118,6 +120,26 @@ def test_flights_show_the_centre_of_mass(tmp_path):
     for name in ("rebound_spin_rad_s", "rebound_speed_m_s"):
         one, two = known.trials[0].observables[name], ball.values[name]
         assert abs(one.value) == pytest.approx(abs(two.value), abs=4.0 * (one.std + two.std))
+
+
+@pytest.mark.parametrize("seed", [8, 144])
+def test_a_rod_without_spin_and_body_file_shows_one_impact(seed):
+    """Its flights must not fall apart although no spin shows the centre of mass."""
+    truth = random_rod(seed)
+    poses = rigid_poses(simulate(truth))
+    _, turn = kabsch(np.array(truth.markers), poses.shape)
+    axis = turn[:, 2]
+    centre = centre_of(poses, axis, poses.extent, truth.tip_radius)
+    body = Body(
+        "rod", axis, truth.length, truth.tip_radius, truth.inertia_over_mass, centre, poses.shape
+    )
+    found = reduce_mocap(poses, body, Scene(np.array([0.0, 0.0, 1.0])), source="rendered")
+    (hit,) = found.hits
+    for name, value in truth.values().items():
+        assert abs(hit.measured[name].value - value) < 4.0 * hit.measured[name].std, name
+    speed = hit.measured["impact_speed_m_s"]
+    assert speed.value == pytest.approx(truth.normal, rel=0.005)
+    assert speed.std < 0.005 * truth.normal
 
 
 def test_wrong_unit_is_seen_in_the_fall(tmp_path):
