@@ -15,12 +15,14 @@ from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
 from functools import cache
 from itertools import product
+from pathlib import Path
 
 import numpy as np
 
 from .. import fem
 from ..core.errors import InputError
 from ..core.material import Material, Pair
+from ..core.provenance import file_digest
 from .case import Case, standard_case
 
 
@@ -263,6 +265,26 @@ def _validation() -> tuple[Case, ...]:
     return tuple(_deep_case(f"validation-{k:02}", pair) for k, pair in enumerate(pairs))
 
 
+_COEFFICIENTS = Path(__file__).resolve().parents[1] / "data" / "coefficients" / "fitted.json"
+
+
+def challenge_cases(digest: str) -> tuple[Case, ...]:
+    """24 pairs drawn from a checksum: 12 anywhere, 8 at the steep part, 4 of soft, strong bodies.
+
+    Parameters
+    ----------
+    digest
+        Hexadecimal; its first twelve digits are the seed, and stand in the cases' names.
+    """
+    draw = np.random.default_rng(int(digest[:12], 16)).random((24, 6))
+    pairs = [_drawn_pair(u) for u in draw[:12]]
+    pairs += [_drawn_pair(u, ratios=(0.85, 1.7)) for u in draw[12:20]]
+    pairs += [_drawn_pair(u, moduli=(50.0, 95.0), strengths=(950.0, 1100.0)) for u in draw[20:]]
+    return tuple(
+        _deep_case(f"challenge-{digest[:12]}-{k:02}", pair) for k, pair in enumerate(pairs)
+    )
+
+
 def _drawn_pair(
     u: np.ndarray[tuple[int], np.dtype[np.float64]],
     *,
@@ -346,6 +368,11 @@ DESIGNS: dict[str, Design] = {
         Design("space-3", "the next 64, likewise", lambda: _space()[64:128]),
         Design("space-4", "its other points", lambda: _space()[128:]),
         Design("validation", "48 pairs that no fit may use", _validation),
+        Design(
+            "challenge",
+            "24 pairs drawn from the checksum of the coefficients in use, which no fit may use",
+            lambda: challenge_cases(file_digest(_COEFFICIENTS)),
+        ),
         Design("full", "thesis, space and validation", _full),
         Design(
             "robustness",

@@ -39,6 +39,13 @@ def fit(
         bool,
         typer.Option("--compare/--no-compare", help="Also fit simpler forms and the thesis's own."),
     ] = True,
+    judge: Annotated[
+        Path | None,
+        typer.Option(
+            help="Only judge the law in use on the cases of this folder of parts that no fit "
+            "reads; with --publish also in docs/closed-form.md."
+        ),
+    ] = None,
     export: Annotated[
         Path | None,
         typer.Option(
@@ -53,9 +60,17 @@ def fit(
     console = Console()
     if export is not None:
         return _export(export, console)
+    if judge is not None:
+        return _judge(judge, console, publish=publish)
     from ..fitting import fit_tables, read_tables
     from ..fitting.coefficients import coefficients_content, write_coefficients
-    from ..fitting.report import coefficient_rows, error_rows, update_page, write_report
+    from ..fitting.report import (
+        coefficient_rows,
+        error_rows,
+        published_section,
+        update_page,
+        write_report,
+    )
 
     files = _files(campaigns)
     table, turns = read_tables(files)
@@ -77,7 +92,7 @@ def fit(
     if publish:
         write_coefficients(content, _PLACE)
         if _PAGE.is_file():
-            update_page(_PAGE, content)
+            update_page(_PAGE, published_section(content))
         console.print("the fitted law now uses these coefficients")
     choices: Sequence[Choice] = ()
     thesis = ""
@@ -142,6 +157,27 @@ def _show(console: Console, rows: Sequence[Sequence[str]]) -> None:
     for row in rows[1:]:
         shown.add_row(*row)
     console.print(shown)
+
+
+def _judge(folder: Path, console: Console, *, publish: bool) -> int:
+    """Show the errors of the law in use on cases that no fit reads."""
+    from ..core.provenance import file_digest
+    from ..fitting.fit import errors_of, predict
+    from ..fitting.report import error_rows, judged_section, update_page
+    from ..fitting.table import read_tables
+    from ..models.closed_form import COEFFICIENTS
+    from ..models.fitted import read_coefficients
+
+    table, turns = read_tables(_files([folder]), held_out=True)
+    content = read_coefficients()
+    if content is None:
+        raise InputError("no such file", source=str(_PLACE), allowed="dentscope fit --publish")
+    values = [content["coefficients"][name]["value"] for name in COEFFICIENTS]
+    errors = errors_of(predict(values, table, turns), table, turns)
+    _show(console, error_rows([(f"{len(table.names)} pairs", errors)]))
+    if publish and _PAGE.is_file():
+        update_page(_PAGE, judged_section(errors, table.names, file_digest(_PLACE)))
+    return 0
 
 
 def _export(folder: Path, console: Console) -> int:

@@ -10,6 +10,7 @@ from typing import Any
 import numpy as np
 import numpy.typing as npt
 
+from ..core.errors import InputError
 from .fit import Errors, Fit, Prediction, errors_of
 from .ripple import ripple_of, without_ripple
 from .select import Choice
@@ -187,6 +188,8 @@ def write_report(
 
 BEGIN = "<!-- coefficients: begin, written by dentscope fit --publish -->"
 END = "<!-- coefficients: end -->"
+JUDGED_BEGIN = "<!-- judged: begin, written by dentscope fit --judge data/challenge --publish -->"
+JUDGED_END = "<!-- judged: end -->"
 
 
 def published_section(content: dict[str, Any]) -> str:
@@ -215,9 +218,35 @@ def published_section(content: dict[str, Any]) -> str:
     )
 
 
-def update_page(page: Path, content: dict[str, Any]) -> None:
-    """Put the coefficients into the page, between its two marks."""
+def judged_section(errors: Errors, names: Sequence[str], digest: str) -> str:
+    """Return the part of docs/closed-form.md on pairs that no fit has read.
+
+    Parameters
+    ----------
+    errors
+        Of the law in use on them.
+    names
+        Of the cases; those of a challenge carry the beginning of the checksum that drew them.
+    digest
+        Checksum of the coefficients in use.
+    """
+    drawn = sorted({name.split("-")[1] for name in names if name.startswith("challenge-")})
+    then = all(digest.startswith(d) for d in drawn)
+    about = f"{len(names)} pairs, drawn from {', '.join(drawn) or 'a seed of their own'}"
+    if drawn:
+        about += ": the checksum of the coefficients above" if then else (
+            f": earlier coefficients; those above have {digest[:12]}"
+        )  # fmt: skip
+    rows = error_rows([("pairs drawn afterwards", errors)])
+    return f"{JUDGED_BEGIN}\n{about}.\n\n{markdown(rows)}{JUDGED_END}"
+
+
+def update_page(page: Path, section: str) -> None:
+    """Put a section into the page in place of the one that has its marks."""
+    begin, end = section.splitlines()[0], section.splitlines()[-1]
     text = page.read_text(encoding="utf-8")
-    before, _, rest = text.partition(BEGIN)
-    _, _, after = rest.partition(END)
-    page.write_text(before + published_section(content) + after, encoding="utf-8")
+    before, found, rest = text.partition(begin)
+    if not found:
+        raise InputError("has no place for this section", source=str(page), allowed=begin)
+    _, _, after = rest.partition(end)
+    page.write_text(before + section + after, encoding="utf-8")

@@ -18,7 +18,7 @@ from ..models.fitted import bodies_of
 
 Floats = npt.NDArray[np.float64]
 
-HELD_OUT = "validation"
+HELD_OUT = ("validation", "challenge")
 """Cases whose name begins so are for judging a finished fit; no fit reads them."""
 
 _COARSEST = "smoke"
@@ -152,7 +152,8 @@ def read_tables(
             chosen[key] = record
     if not chosen:
         raise InputError(
-            "no completed elastic-plastic case" + (f" named {HELD_OUT}-..." if held_out else ""),
+            "no completed elastic-plastic case"
+            + (f" named {' or '.join(HELD_OUT)}-..." if held_out else ""),
             source=", ".join(map(str, paths)),
             allowed="a finished campaign",
         )

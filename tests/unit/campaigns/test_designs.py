@@ -5,7 +5,7 @@ import itertools
 import pytest
 from dentscope import fem
 from dentscope.campaigns import DESIGNS, design_named, distinct_cases
-from dentscope.campaigns.designs import RATIOS
+from dentscope.campaigns.designs import RATIOS, challenge_cases
 from dentscope.core import InputError
 
 
@@ -105,6 +105,17 @@ def test_the_parts_of_a_design_are_the_design(name, count):
         assert not one.keys() & other.keys()
     together = list(itertools.chain.from_iterable(parts))
     assert together == list(distinct_cases(design_named(name)))
+
+
+def test_a_challenge_follows_from_its_checksum_and_shares_no_pair(cases):
+    digest = "0123456789abcdef" * 4
+    one, other = challenge_cases(digest), challenge_cases(digest[1:])
+    assert [c.id for c in one] == [c.id for c in challenge_cases(digest[:12])]
+    assert len({c.id for c in (*one, *other)}) == 48
+    assert all(c.name.split("-")[1] == digest[:12] for c in one)
+    drawn = {str(c.groups) for c in cases["challenge"].values()}
+    assert len(drawn) == 24
+    assert not drawn & groups(cases["full"])
 
 
 def test_an_unknown_design_names_the_known_ones():

@@ -5,9 +5,20 @@ from pathlib import Path
 import numpy as np
 import pytest
 from dentscope.campaigns.designs import design_named
+from dentscope.cli import fit as fit_command
 from dentscope.cli.app import run
 from dentscope.fitting import table
-from dentscope.fitting.report import BEGIN, END, markdown, published_section, update_page
+from dentscope.fitting.fit import Errors
+from dentscope.fitting.report import (
+    BEGIN,
+    END,
+    JUDGED_BEGIN,
+    JUDGED_END,
+    judged_section,
+    markdown,
+    published_section,
+    update_page,
+)
 from dentscope.fitting.table import read_tables
 from dentscope.models.fitted import read_coefficients
 
@@ -45,13 +56,41 @@ def test_page_keeps_what_stands_around_the_coefficients(tmp_path):
     page = tmp_path / "page.md"
     page.write_text(f"before\n{BEGIN}\nold\n{END}\nafter\n")
     content = read_coefficients()
-    update_page(page, content)
-    update_page(page, content)
+    update_page(page, published_section(content))
+    update_page(page, published_section(content))
     text = page.read_text()
     assert text.startswith("before\n")
     assert text.endswith("\nafter\n")
     assert "old" not in text
     assert text.count(BEGIN) == 1
+
+
+def test_the_law_in_use_is_judged_on_cases_that_no_fit_reads(tmp_path, monkeypatch, capsys):
+    """The validation part stands in for a challenge: its errors are those that a fit reports."""
+    page = tmp_path / "page.md"
+    page.write_text(f"before\n{JUDGED_BEGIN}\nold\n{JUDGED_END}\nafter\n")
+    monkeypatch.setattr(fit_command, "_PAGE", page)
+    part = PAGE.parents[1] / "data" / "campaign" / "validation-1.h5"
+    assert run(["fit", "--judge", str(part), "--publish"]) == 0
+    assert "48 pairs" in capsys.readouterr().out
+    text = page.read_text()
+    assert "48 pairs, drawn from a seed of their own." in text
+    assert "| F [%] |" in text
+    assert "old" not in text
+    assert text.endswith("\nafter\n")
+    smoke = part.with_name("smoke-1.h5")
+    assert run(["fit", "--judge", str(smoke)]) == 2
+    assert "no completed elastic-plastic case named validation or challenge" in (
+        capsys.readouterr().err
+    )
+
+
+def test_a_challenge_of_other_coefficients_is_called_so():
+    content = read_coefficients()
+    errors = Errors(**{k: tuple(v) for k, v in content["errors"]["fitted"].items()})
+    names = [f"challenge-0123456789ab-{k:02}" for k in range(24)]
+    assert "coefficients above" in judged_section(errors, names, "0123456789ab" + "0" * 52)
+    assert "earlier coefficients" in judged_section(errors, names, "f" * 64)
 
 
 def test_markdown_table():
