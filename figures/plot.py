@@ -118,7 +118,7 @@ def finish(axis: Any, *, x: str, y: str, legend: str = "") -> None:
     handles, _ = axis.get_legend_handles_labels()
     if handles:
         # a long legend would hide curves
-        beside = {"loc": "upper left", "bbox_to_anchor": (1.0, 1.0)} if len(handles) > 7 else {}
+        beside = {"loc": "upper left", "bbox_to_anchor": (1.0, 1.0)} if len(handles) > 4 else {}
         axis.legend(fontsize=7, title=legend or None, title_fontsize=7, **beside)
 
 

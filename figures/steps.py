@@ -111,22 +111,27 @@ def _modulus(records: Sequence[CaseRecord]) -> Picture:
         axis.loglog(q, ours, "k", lw=2.0, label="our fitted law")
     elastic = np.array([_elastic_share(p, D) for p in pairs])
     axis.loglog(q, elastic, "0.6", ls="--", label="elastic sphere under the slip-line pressure")
-    count = soft = 0
+    count = 0
+    kinds = {"alike": "o", "softer": "^", "stiffer": "v"}
     for record in records:
         pair, found = record.case.pair, at_depth(record, D)
         if found and abs(math.log(max(pair.Sy_ratio, 1e-9) / 10.0)) < 0.05:
             value = found["sphere"] / (D * pair.R)
-            axis.plot(pair.E_reduced / pair.Sy_min, value, "ko", ms=5, mfc="w")
+            ratio = pair.sphere.E / pair.flat.E
+            kind = "alike" if 0.9 < ratio < 1.1 else "softer" if ratio < 1.0 else "stiffer"
+            axis.plot(pair.E_reduced / pair.Sy_min, value, "k" + kinds[kind], ms=5, mfc="w")
             count += 1
-            soft += pair.sphere.E < 0.9 * pair.flat.E
-    finish(axis, x="E'/Sy_min", y="delta_s*", legend="circles: our finite elements")
+    for kind, marker in kinds.items():
+        what = "moduli alike" if kind == "alike" else f"{kind} sphere"
+        axis.plot([], [], "k" + marker, ms=5, mfc="w", label=f"finite elements, {what}")
+    finish(axis, x="E'/Sy_min", y="delta_s*")
     slope = float(np.polyfit(np.log(q), np.log(elastic), 1)[0])
     note = (
         f"Sy* = 10, Delta/R = 0.04; {count} of our cases. The thesis's exponent is -0.7; an "
         f"elastic sphere pressed by the plastic pressure of the flat gives {slope:.2f}."
     )
-    if soft:
-        note += " Circles above the curves have the softer sphere: E'/Sy alone does not decide."
+    if count:
+        note += " The curves are for equal moduli; E'/Sy alone does not decide."
     return Picture("2.11", "Share of the sphere over E'/Sy, indentation", made, note)
 
 

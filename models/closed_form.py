@@ -21,14 +21,16 @@ PI = 3.141592653589793
 TINY = 1e-9  # keeps the strengths' ratio defined when a body does not yield
 
 PAIR_NUMBERS = (
-    "x_s", "W", "P", "g_a", "g_b", "k", "m", "lag", "fin", "j_s", "j_f", "L", "L_C", "a_t", "p",
+    "x_s", "W", "P", "g_a", "g_b", "k", "m", "lag", "fin", "even",
+    "j_s", "j_f", "L", "L_C", "a_t", "p",
 )  # fmt: skip
 """What `of_pair` returns, in this order."""
 
 COEFFICIENTS = (
     "n", "wy", "c", "b0", "b1", "b2", "b3", "b4", "b5", "z", "c_s", "c_f", "t", "y1", "c_m",
-    "h", "B_s", "B_f", "r", "B_e", "k0", "k1", "k2", "k3", "m0", "m1", "e0", "e1",
-    "g0", "g1", "g2", "g3", "g4", "s0", "s1", "s2", "s3", "s4", "s5", "p0", "p1", "p2", "p3",
+    "h", "B_s", "B_d", "B_f", "r", "B_e", "B_q", "k0", "k1", "k2", "k3", "m0", "m1", "e0", "e1",
+    "e2", "g0", "g1", "g2", "g3", "g4", "s0", "s1", "s2", "s3", "s4", "s5", "s6", "p0", "p1", "p2",
+    "p3",
     "f1", "f2", "f3", "l1", "l2", "d1", "d2", "u1", "u2", "u3",
 )  # fmt: skip
 """Every coefficient, in the order of the coefficients file."""
@@ -36,19 +38,19 @@ COEFFICIENTS = (
 
 def of_pair(
     k_s, k_f, nu_s, nu_f, q_s, q_f,
-    n, wy, b0, b1, b2, b3, b4, h, k0, k1, k2, m0, m1, e1, s0, s1, s2, s3, s4, s5, p0, p1, p2, p3,
-    d1, d2,
+    n, wy, b0, b1, b2, b3, b4, h, B_q, k0, k1, k2, m0, m1, e1, s0, s1, s2, s3, s4, s5, s6,
+    p0, p1, p2, p3, d1, d2,
 ):  # fmt: skip
     """Numbers of a pair that do not change with the depth.
 
     Returns
     -------
     tuple
-        `PAIR_NUMBERS`: elastic share of the sphere (2.3); W = w/D; P: pressure over E' to that of
-        first yield; g_a, g_b: transition of the radius, early and late; k, m: of the pressure; lag:
-        of the elastic displacement; fin: finite strain of the stiffer body; j_s, j_f: E'/S of each
-        body; L, L_C: logarithms of S_s/S_f and C_s/C_f; a_t, p: radius at which the sphere takes
-        over, and how sharply.
+        `PAIR_NUMBERS`: elastic share of the sphere (2.3); W = w/D; P: E' over the pressure of first
+        yield; g_a, g_b: transition of the radius, early and late; k, m: of the pressure; lag: of
+        the elastic displacement; fin: finite strain of the stiffer body; even: what two bodies
+        that yield together hold more; j_s, j_f: E'/S of each body; L, L_C: logarithms of S_s/S_f
+        and C_s/C_f; a_t, p: radius at which the sphere takes over, and how sharply.
     """
     stiff = 1.0 / (k_s + k_f)
     x_s = k_s * stiff
@@ -75,18 +77,19 @@ def of_pair(
     m = m0 * exp(m1 * nu)
     lag = exp(d1 * e + d2 * e * e * e * e)
     fin = e1 * (x_s - 0.5)
+    even = B_q * 4.0 * v_s * v_f * x_f
     L = log(j_f / j_s)
     L_C = log(C_s / C_f)
     plastic = log(1e-4 * W)
     a_even = s0 * exp(-s3 * plastic - s4 * plastic * plastic + s5 * (x_s - 0.5))
     lead = 0.5 * (L + sqrt(L * L + 9e-4))
-    reach = s1 * exp(s2 * log(lead)) / a_even
+    reach = s1 * exp(s2 * log(lead) + s6 * plastic) / a_even
     reach2 = reach * reach
     reach4 = reach2 * reach2
     grow = exp(log(1.0 + reach4 * reach4 * reach4) / 12.0)
     a_t = a_even * grow
     p = p0 * exp(-p2 * plastic - p3 * (x_s - 0.5) + p1 * log(grow))
-    return x_s, W, P, g_a, g_b, k, m, lag, fin, j_s, j_f, L, L_C, a_t, p
+    return x_s, W, P, g_a, g_b, k, m, lag, fin, even, j_s, j_f, L, L_C, a_t, p
 
 
 @register_jitable
@@ -116,21 +119,24 @@ def first_part_at(w, small, x_s, L, L_C, g0, g1, g2, g3, g4):
 @register_jitable
 def still_flat_at(small, a_t, p):
     """Part of the flat's flow that goes on: 1 until the sphere takes over at a_t."""
-    return (1.0 + (small / a_t) ** (2.0 * p)) ** (-1.0 / p)
+    # (1 + (small/a_t)^(2 p))^(-1/p), so written that a sharp p overflows nothing
+    t = 2.0 * p * log(small / a_t + 1e-300)
+    size = sqrt(t * t + 1e-280)
+    return exp(-(0.5 * (t + size) + log(1.0 + exp(-size))) / p)
 
 
 @register_jitable
-def radius_at(small, y, first, still, z, c_s, c_f, t, y1, c_m):
+def radius_at(D, small, y, first, still, fin, z, c_s, c_f, t, y1, c_m, e2):
     """a/R from that without finite deformation."""
     zeta = c_f + (c_s - c_f) * (1.0 - (1.0 - first) * still)
     small_power = small**t
     large = zeta * small_power / (1.0 + 2.0 * small_power) * y / (y + y1)
     crater = c_m * (1.0 - still) * still * (1.0 - first)
-    return small * exp(0.5 * (large + (z * small - crater) * y / (y + 2.0)))
+    return small * exp(0.5 * (e2 * fin * D + large + (z * small - crater) * y / (y + 2.0)))
 
 
 @register_jitable
-def force_at(D, a, P, k, m, fin, j_s, j_f, h, B_s, B_f, r, B_e, k3, e0):
+def force_at(D, a, P, k, m, fin, even, j_s, j_f, h, B_s, B_d, B_f, r, B_e, k3, e0):
     """F/(E' R^2) from the contact radius."""
     elastic = 4.0 / (3.0 * PI) * a * exp(e0 * sqrt(D) + fin * D)
     load2 = P * elastic * (P * elastic)
@@ -139,8 +145,10 @@ def force_at(D, a, P, k, m, fin, j_s, j_f, h, B_s, B_f, r, B_e, k3, e0):
     a_power = a**r
     a2 = a * a
     a4 = a2 * a2
-    J_s = j_s * exp(B_s * a_power + B_e * a4 * a4)
-    J_f = j_f * exp(B_f * a_power)
+    # bounded: beyond a/R = 0.5, where no data reach, the force must not collapse without end
+    collapse = a4 * a4 / (1.0 + 50.0 * a4 * a4)
+    J_s = j_s * exp(B_s * a_power / (1.0 + B_d * a_power) + B_e * collapse - even * a)
+    J_f = j_f * exp(B_f * a_power - even * a)
     J = J_s + J_f
     weight_s2 = J_s * J_s / (J * J)
     weight_s4 = weight_s2 * weight_s2
@@ -167,11 +175,11 @@ def share_at(D, y, F, a, phi, x_s, lag, f1, f2, f3):
 
 
 @register_jitable
-def permanent_at(D, y, F, a, lag, fin, e0, f3, l1, l2):
+def permanent_at(D, y, F, a, lag, fin, e0, e2, f3, l1, l2):
     """Permanent approach over the largest one."""
     l_power = (y + 1e-30) ** l2
     recoverable = (0.75 - l1 * l_power / (l_power + f3 * lag)) * F / (a * D)
-    return 1.0 - recoverable * exp(-e0 * sqrt(D) - fin * D)
+    return 1.0 - recoverable * exp(-e0 * sqrt(D) - (1.0 + e2) * fin * D)
 
 
 @register_jitable
@@ -183,8 +191,8 @@ def exponent_at(y, u1, u2, u3):
 @register_jitable
 def contact(
     D,
-    x_s, W, P, g_a, g_b, k, m, lag, fin, j_s, j_f, L, L_C, a_t, p,
-    wy, c, b5, z, c_s, c_f, t, y1, c_m, h, B_s, B_f, r, B_e, k3, e0, g0, g1, g2, g3, g4,
+    x_s, W, P, g_a, g_b, k, m, lag, fin, even, j_s, j_f, L, L_C, a_t, p,
+    wy, c, b5, z, c_s, c_f, t, y1, c_m, h, B_s, B_d, B_f, r, B_e, k3, e0, e2, g0, g1, g2, g3, g4,
     f1, f2, f3, l1, l2, u1, u2, u3,
 ):  # fmt: skip
     """Everything at a depth D = Delta/R of first loading.
@@ -201,10 +209,10 @@ def contact(
     first = first_part_at(w, small, x_s, L, L_C, g0, g1, g2, g3, g4)
     still = still_flat_at(small, a_t, p)
     phi = 1.0 - (1.0 - first) * still
-    a = radius_at(small, y, first, still, z, c_s, c_f, t, y1, c_m)
-    F = force_at(D, a, P, k, m, fin, j_s, j_f, h, B_s, B_f, r, B_e, k3, e0)
+    a = radius_at(D, small, y, first, still, fin, z, c_s, c_f, t, y1, c_m, e2)
+    F = force_at(D, a, P, k, m, fin, even, j_s, j_f, h, B_s, B_d, B_f, r, B_e, k3, e0)
     share = share_at(D, y, F, a, phi, x_s, lag, f1, f2, f3)
-    left = permanent_at(D, y, F, a, lag, fin, e0, f3, l1, l2)
+    left = permanent_at(D, y, F, a, lag, fin, e0, e2, f3, l1, l2)
     N = exponent_at(y, u1, u2, u3)
     return F, a, share, left, phi, N
 

@@ -53,7 +53,7 @@ from .closed_form import (
 
 Floats = npt.NDArray[np.float64]
 
-FORMAT = "dentscope-coefficients/6"
+FORMAT = "dentscope-coefficients/7"
 BOUNDS = ("Sy_ratio", "E_reduced_over_Sy_min", "nu", "elastic_share", "Delta_over_R", "a_over_R")
 """What the domain of validity is stated in; each has a smallest and a largest value."""
 
@@ -64,18 +64,18 @@ _OF_PAIR = arguments_of(of_pair)[len(_OF_BODIES) :]
 _CONTACT = arguments_of(contact)[1:]
 
 _ALL = types.UniTuple(float64, 6)(VECTOR, float64)
-assert len(_CONTACT) == 44
+assert len(_CONTACT) == 47
 _AT = {name: N_COMMON + k for k, name in enumerate(_CONTACT)}
 # places in the parameter vector, for the kernels that need only some of the numbers
-_X_S, _W, _P, _G_A, _G_B, _K, _M, _FIN = (
-    _AT[k] for k in ("x_s", "W", "P", "g_a", "g_b", "k", "m", "fin")
+_X_S, _W, _P, _G_A, _G_B, _K, _M, _FIN, _EVEN = (
+    _AT[k] for k in ("x_s", "W", "P", "g_a", "g_b", "k", "m", "fin", "even")
 )
 _J_S, _J_F, _L, _L_C, _A_T, _POWER = (_AT[k] for k in ("j_s", "j_f", "L", "L_C", "a_t", "p"))
 _WY, _C, _B5, _Z, _C_S, _C_F, _T, _Y1, _C_M = (
     _AT[k] for k in ("wy", "c", "b5", "z", "c_s", "c_f", "t", "y1", "c_m")
 )
-_H, _B_S, _B_F, _R_POWER, _B_E, _K3, _E0 = (
-    _AT[k] for k in ("h", "B_s", "B_f", "r", "B_e", "k3", "e0")
+_H, _B_S, _B_D, _B_F, _R_POWER, _B_E, _K3, _E0, _E2 = (
+    _AT[k] for k in ("h", "B_s", "B_d", "B_f", "r", "B_e", "k3", "e0", "e2")
 )
 _G0, _G1, _G2, _G3, _G4 = (_AT[k] for k in ("g0", "g1", "g2", "g3", "g4"))
 
@@ -90,16 +90,18 @@ def _radius_over_R(par, D):
     )
     still = still_flat_at(small, par[_A_T], par[_POWER])
     return radius_at(
-        small, y, first, still, par[_Z], par[_C_S], par[_C_F], par[_T], par[_Y1], par[_C_M]
-    )
+        D, small, y, first, still, par[_FIN], par[_Z], par[_C_S], par[_C_F], par[_T], par[_Y1],
+        par[_C_M], par[_E2],
+    )  # fmt: skip
 
 
 @loading_kernel
 def _loading(par, depth):
     D = depth / par[R]
     F = force_at(
-        D, _radius_over_R(par, D), par[_P], par[_K], par[_M], par[_FIN], par[_J_S], par[_J_F],
-        par[_H], par[_B_S], par[_B_F], par[_R_POWER], par[_B_E], par[_K3], par[_E0],
+        D, _radius_over_R(par, D), par[_P], par[_K], par[_M], par[_FIN], par[_EVEN], par[_J_S],
+        par[_J_F], par[_H], par[_B_S], par[_B_D], par[_B_F], par[_R_POWER], par[_B_E], par[_K3],
+        par[_E0],
     )  # fmt: skip
     return F * par[E] * par[R] * par[R]
 
@@ -118,7 +120,7 @@ def everything(par, depth):
         p[0], p[1], p[2], p[3], p[4], p[5], p[6], p[7], p[8], p[9], p[10], p[11],
         p[12], p[13], p[14], p[15], p[16], p[17], p[18], p[19], p[20], p[21], p[22], p[23],
         p[24], p[25], p[26], p[27], p[28], p[29], p[30], p[31], p[32], p[33], p[34], p[35],
-        p[36], p[37], p[38], p[39], p[40], p[41], p[42], p[43],
+        p[36], p[37], p[38], p[39], p[40], p[41], p[42], p[43], p[44], p[45], p[46],
     )  # fmt: skip
 
 
@@ -278,7 +280,7 @@ def _body(body: Material) -> tuple[float, float, float]:
 
 
 def contact_numbers(coefficients: Mapping[str, float], bodies: Floats) -> Floats:
-    """What `closed_form.contact` takes behind D for each pair, shape (n_pairs, 44)."""
+    """What `closed_form.contact` takes behind D for each pair, shape (n_pairs, 47)."""
     numbers = of_pair(*bodies.T, *(coefficients[name] for name in _OF_PAIR))
     given = {**coefficients, **dict(zip(PAIR_NUMBERS, numbers, strict=True))}
     columns = [np.broadcast_to(given[name], len(bodies)) for name in _CONTACT]
