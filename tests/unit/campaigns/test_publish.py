@@ -215,7 +215,7 @@ def test_status_without_a_run_tells_of_the_published_data(tmp_path, capsys, monk
     publish(DESIGN, stored(tmp_path / "c.h5"), tmp_path / "data")
     assert run(["campaign", "status", "--out", str(tmp_path / "none")]) == 0
     told = capsys.readouterr().out
-    assert "missing 12" in told
+    assert "missing 567" in told
     assert "Published: trial, 6 cases done, 0 failed, 1 parts" in told
     run(["campaign", "status", "--json", "--out", str(tmp_path / "none")])
     assert json.loads(capsys.readouterr().out)["published"]["trial"]["done"] == 6
@@ -241,7 +241,8 @@ def test_a_run_says_how_long_it_takes_and_how_far_it_is_from_the_published(
     for case in smoke.make():
         Store(tmp_path / "c.h5").put(case, solved(case))
     publish(smoke, tmp_path / "c.h5", tmp_path / "data")
-    assert run(["campaign", "run", "--out", str(tmp_path / "run"), "--workers", "2"]) == 0
+    given = ["--design", "smoke", "--out", str(tmp_path / "run"), "--workers", "2"]
+    assert run(["campaign", "run", *given]) == 0
     first, *middle = capsys.readouterr().out.splitlines()
     assert re.search(r"12 to compute on 2 workers; about \d+ (s|min) here", first)
     assert re.match(r"\[12/12, 0 s left\] done", middle[11])
