@@ -28,7 +28,7 @@ def reduced(truth: MocapTruth, *, known: bool) -> MocapReduction:
     origin, turn = kabsch(np.array(truth.markers), poses.shape)
     axis = turn[:, 2] if truth.shape == "rod" else np.zeros(3)
     random = np.random.default_rng(truth.seed + 10**6)
-    centre = centre_of(poses, axis, max(poses.extent, truth.tip_radius), truth.tip_radius)
+    centre = centre_of(poses, axis, truth.tip_radius, truth.tip_radius)
     if known:
         centre = Prior(origin + random.normal(0.0, 5e-4, 3), 5e-4)
     body = Body(

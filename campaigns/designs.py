@@ -15,7 +15,6 @@ from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
 from functools import cache
 from itertools import product
-from pathlib import Path
 
 import numpy as np
 
@@ -259,13 +258,24 @@ def _validation() -> tuple[Case, ...]:
     The last have E'/Sy_min below 60, where first yield lies deepest.
     """
     draw = np.random.default_rng(77003).random((48, 6))
-    pairs = [_drawn_pair(u) for u in draw[:24]]
-    pairs += [_drawn_pair(u, ratios=(0.85, 1.7)) for u in draw[24:40]]
-    pairs += [_drawn_pair(u, moduli=(50.0, 95.0), strengths=(950.0, 1100.0)) for u in draw[40:]]
-    return tuple(_deep_case(f"validation-{k:02}", pair) for k, pair in enumerate(pairs))
+    return tuple(
+        _deep_case(f"validation-{k:02}", pair) for k, pair in enumerate(_for_judging(draw))
+    )
 
 
-_COEFFICIENTS = Path(__file__).resolve().parents[1] / "data" / "coefficients" / "fitted.json"
+def _for_judging(draw: np.ndarray[tuple[int, int], np.dtype[np.float64]]) -> list[Pair]:
+    """Half of the pairs anywhere, a third at the steep part, the others of soft, strong bodies."""
+    half, most = len(draw) // 2, 5 * len(draw) // 6
+    pairs = [_drawn_pair(u) for u in draw[:half]]
+    pairs += [_drawn_pair(u, ratios=(0.85, 1.7)) for u in draw[half:most]]
+    pairs += [_drawn_pair(u, moduli=(50.0, 95.0), strengths=(950.0, 1100.0)) for u in draw[most:]]
+    return pairs
+
+
+def _challenge() -> tuple[Case, ...]:
+    from ..models.fitted import COEFFICIENTS_FILE
+
+    return challenge_cases(file_digest(COEFFICIENTS_FILE))
 
 
 def challenge_cases(digest: str) -> tuple[Case, ...]:
@@ -277,12 +287,8 @@ def challenge_cases(digest: str) -> tuple[Case, ...]:
         Hexadecimal; its first twelve digits are the seed, and stand in the cases' names.
     """
     draw = np.random.default_rng(int(digest[:12], 16)).random((24, 6))
-    pairs = [_drawn_pair(u) for u in draw[:12]]
-    pairs += [_drawn_pair(u, ratios=(0.85, 1.7)) for u in draw[12:20]]
-    pairs += [_drawn_pair(u, moduli=(50.0, 95.0), strengths=(950.0, 1100.0)) for u in draw[20:]]
-    return tuple(
-        _deep_case(f"challenge-{digest[:12]}-{k:02}", pair) for k, pair in enumerate(pairs)
-    )
+    name = f"challenge-{digest[:12]}"
+    return tuple(_deep_case(f"{name}-{k:02}", pair) for k, pair in enumerate(_for_judging(draw)))
 
 
 def _drawn_pair(
@@ -371,7 +377,7 @@ DESIGNS: dict[str, Design] = {
         Design(
             "challenge",
             "24 pairs drawn from the checksum of the coefficients in use, which no fit may use",
-            lambda: challenge_cases(file_digest(_COEFFICIENTS)),
+            _challenge,
         ),
         Design("full", "thesis, space and validation", _full),
         Design(

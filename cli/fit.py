@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated
+from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
@@ -19,7 +19,6 @@ if TYPE_CHECKING:
 _PUBLISHED = Path("data/campaign")
 _OWN = Path("build/campaign/campaign.h5")
 _ROOT = Path(__file__).resolve().parents[1]
-_PLACE = _ROOT / "data" / "coefficients" / "fitted.json"
 _PAGE = _ROOT / "docs" / "closed-form.md"
 
 
@@ -71,6 +70,7 @@ def fit(
         update_page,
         write_report,
     )
+    from ..models.fitted import COEFFICIENTS_FILE
 
     files = _files(campaigns)
     table, turns = read_tables(files)
@@ -90,7 +90,7 @@ def fit(
     ]
     _show(console, error_rows(columns))
     if publish:
-        write_coefficients(content, _PLACE)
+        write_coefficients(content, COEFFICIENTS_FILE)
         if _PAGE.is_file():
             update_page(_PAGE, published_section(content))
         console.print("the fitted law now uses these coefficients")
@@ -140,14 +140,19 @@ def _files(campaigns: Sequence[Path] | None) -> list[Path]:
 
 def _validation(files: Sequence[Path], result: Fit) -> Errors | None:
     """Errors on the cases that no fit reads; none if the campaign holds none."""
+    try:
+        return _judged(files, result.values)[0]
+    except InputError:
+        return None
+
+
+def _judged(files: Sequence[Path], values: Any) -> tuple[Errors, tuple[str, ...]]:
+    """Errors of the closed form on the cases that no fit reads, and the names of these."""
     from ..fitting.fit import errors_of, predict
     from ..fitting.table import read_tables
 
-    try:
-        table, turns = read_tables(files, held_out=True)
-    except InputError:
-        return None
-    return errors_of(predict(result.values, table, turns), table, turns)
+    table, turns = read_tables(files, held_out=True)
+    return errors_of(predict(values, table, turns), table, turns), table.names
 
 
 def _show(console: Console, rows: Sequence[Sequence[str]]) -> None:
@@ -162,21 +167,18 @@ def _show(console: Console, rows: Sequence[Sequence[str]]) -> None:
 def _judge(folder: Path, console: Console, *, publish: bool) -> int:
     """Show the errors of the law in use on cases that no fit reads."""
     from ..core.provenance import file_digest
-    from ..fitting.fit import errors_of, predict
     from ..fitting.report import error_rows, judged_section, update_page
-    from ..fitting.table import read_tables
+    from ..models import law_named
     from ..models.closed_form import COEFFICIENTS
-    from ..models.fitted import read_coefficients
+    from ..models.fitted import COEFFICIENTS_FILE, Fitted
 
-    table, turns = read_tables(_files([folder]), held_out=True)
-    content = read_coefficients()
-    if content is None:
-        raise InputError("no such file", source=str(_PLACE), allowed="dentscope fit --publish")
-    values = [content["coefficients"][name]["value"] for name in COEFFICIENTS]
-    errors = errors_of(predict(values, table, turns), table, turns)
-    _show(console, error_rows([(f"{len(table.names)} pairs", errors)]))
+    law = law_named("fitted")
+    assert isinstance(law, Fitted)
+    values = [law.coefficients[name] for name in COEFFICIENTS]
+    errors, names = _judged(_files([folder]), values)
+    _show(console, error_rows([(f"{len(names)} pairs", errors)]))
     if publish and _PAGE.is_file():
-        update_page(_PAGE, judged_section(errors, table.names, file_digest(_PLACE)))
+        update_page(_PAGE, judged_section(errors, names, file_digest(COEFFICIENTS_FILE)))
     return 0
 
 

@@ -231,12 +231,11 @@ def judged_section(errors: Errors, names: Sequence[str], digest: str) -> str:
         Checksum of the coefficients in use.
     """
     drawn = sorted({name.split("-")[1] for name in names if name.startswith("challenge-")})
-    then = all(digest.startswith(d) for d in drawn)
     about = f"{len(names)} pairs, drawn from {', '.join(drawn) or 'a seed of their own'}"
-    if drawn:
-        about += ": the checksum of the coefficients above" if then else (
-            f": earlier coefficients; those above have {digest[:12]}"
-        )  # fmt: skip
+    if drawn == [digest[:12]]:
+        about += ": the checksum of the coefficients above"
+    elif drawn:
+        about += f": earlier coefficients; those above have {digest[:12]}"
     rows = error_rows([("pairs drawn afterwards", errors)])
     return f"{JUDGED_BEGIN}\n{about}.\n\n{markdown(rows)}{JUDGED_END}"
 

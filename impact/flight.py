@@ -63,13 +63,18 @@ def clearance(body, spot, z, centre, psi, seen):
 
 
 @njit(
-    float64(VECTOR, VECTOR, VECTOR, MATRIX, float64, VECTOR, float64, float64, VECTOR, VECTOR),
+    types.UniTuple(float64, 2)(
+        VECTOR, VECTOR, VECTOR, MATRIX, float64, VECTOR, float64, float64, VECTOR, VECTOR
+    ),
     cache=True,
     error_model="numpy",
 )
 def nearest(body, spot, omega, psi, centre, z, low, high, z_new, seen):
-    """Return when, between `low` and `high`, the tip stops approaching; leave that in `z_new`."""
-    t = high
+    """Return when, between `low` and `high`, the tip stops approaching, and its clearance then.
+
+    It ends at once where the tip is inside. Overwrites `z_new`.
+    """
+    t, gap = high, 0.0
     for _ in range(40):
         t = 0.5 * (low + high)
         coast(body, z, omega, t, z_new)
@@ -80,7 +85,7 @@ def nearest(body, spot, omega, psi, centre, z, low, high, z_new, seen):
             low = t
         else:
             high = t
-    return t
+    return t, gap
 
 
 @njit(
@@ -123,7 +128,7 @@ def fly(body, spot, omega, psi, centre, z, z_new, z_now, z_far, seen):
     g = clearance(body, spot, z, centre, psi, seen)
     clear = g >= -1e-9 * spot[SPOT_PEAK]
     g, rate = max(g, 0.0), seen[RATE]
-    low, high = 0.0, step
+    high = 0.0
     q, p = z_now[N_RIGID : N_RIGID + n], z_now[N_RIGID + n :]
     look, touched = 0, False
     while z_now[TIME] < end and not touched:
@@ -140,19 +145,13 @@ def fly(body, spot, omega, psi, centre, z, z_new, z_now, z_far, seen):
         g_before, rate_before = g, rate
         g = clearance(body, spot, z_now, centre, psi, seen)
         rate = seen[RATE]
-        touched = g < 0.0 and clear and rate > 0.0
+        touched, high = g < 0.0 and clear and rate > 0.0, t
         if clear and rate_before > 0.0 > rate:
             # Between the looks the tip came near and turned: a parabola tells how near.
             fall = 0.5 * rate_before * rate_before * step / (rate_before - rate)
             if g_before - fall < 0.01 * reach:
-                high = nearest(body, spot, omega, psi, centre, z, t - step, t, z_far, seen)
-                touched = clearance(body, spot, z_far, centre, psi, seen) < 0.0
-                for j in range(N_RIGID, len(z)):
-                    z_far[j] = 0.0
-        elif touched:
-            high = t
-        if touched:
-            low = t - step
+                high, gap = nearest(body, spot, omega, psi, centre, z, t - step, t, z_new, seen)
+                touched = gap < 0.0
         clear = g >= 0.0 or (clear and touched)
         if look % 16 == 0 and not touched:
             z_far[X], z_far[Y], z_far[PHI] = z_now[X], z_now[Y], z_now[PHI]
@@ -166,6 +165,7 @@ def fly(body, spot, omega, psi, centre, z, z_new, z_now, z_far, seen):
         return False
     # The touch lies in (low, high]: false position on the exact motion. A flight shorter than a
     # look starts at the flat: its bracket starts where the tip is off it.
+    low = (look - 1) * step
     coast(body, z, omega, low, z_new)
     g_low = clearance(body, spot, z_new, centre, psi, seen)
     if look == 1:

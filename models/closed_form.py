@@ -29,8 +29,8 @@ PAIR_NUMBERS = (
 COEFFICIENTS = (
     "n", "wy", "c", "b0", "b1", "b2", "b3", "b4", "b5", "z", "c_s", "c_f", "t", "y1", "c_m",
     "h", "B_s", "B_d", "B_f", "r", "B_e", "B_q", "k0", "k1", "k2", "k3", "m0", "m1", "e0", "e1",
-    "e2", "g0", "g1", "g2", "g3", "g4", "s0", "s1", "s2", "s3", "s4", "s5", "s6", "p0", "p1", "p2",
-    "p3",
+    "e2", "g0", "g1", "g2", "g3", "g4", "s0", "s1", "s2", "s3", "s4", "s5", "s6",
+    "p0", "p1", "p2", "p3",
     "f1", "f2", "f3", "l1", "l2", "d1", "d2", "u1", "u2", "u3",
 )  # fmt: skip
 """Every coefficient, in the order of the coefficients file."""
@@ -48,9 +48,9 @@ def of_pair(
     tuple
         `PAIR_NUMBERS`: elastic share of the sphere (2.3); W = w/D; P: E' over the pressure of first
         yield; g_a, g_b: transition of the radius, early and late; k, m: of the pressure; lag: of
-        the elastic displacement; fin: finite strain of the stiffer body; even: what two bodies
-        that yield together hold more; j_s, j_f: E'/S of each body; L, L_C: logarithms of S_s/S_f
-        and C_s/C_f; a_t, p: radius at which the sphere takes over, and how sharply.
+        the elastic displacement; fin: finite strain of the stiffer body; even: rise of the full
+        pressure over a/R where both bodies yield; j_s, j_f: E'/S of each body; L, L_C: logarithms
+        of S_s/S_f and C_s/C_f; a_t, p: radius at which the sphere takes over, and how sharply.
     """
     stiff = 1.0 / (k_s + k_f)
     x_s = k_s * stiff
@@ -120,9 +120,9 @@ def first_part_at(w, small, x_s, L, L_C, g0, g1, g2, g3, g4):
 def still_flat_at(small, a_t, p):
     """Part of the flat's flow that goes on: 1 until the sphere takes over at a_t."""
     # (1 + (small/a_t)^(2 p))^(-1/p), so written that a sharp p overflows nothing
-    t = 2.0 * p * log(small / a_t + 1e-300)
-    size = sqrt(t * t + 1e-280)
-    return exp(-(0.5 * (t + size) + log(1.0 + exp(-size))) / p)
+    power = 2.0 * p * log(small / a_t + 1e-300)
+    size = sqrt(power * power + 1e-280)
+    return exp(-(0.5 * (power + size) + log(1.0 + exp(-size))) / p)
 
 
 @register_jitable

@@ -11,7 +11,7 @@ import math
 import warnings
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
-from importlib import resources
+from pathlib import Path
 from typing import Any
 
 import numpy as np
@@ -57,7 +57,9 @@ FORMAT = "dentscope-coefficients/7"
 BOUNDS = ("Sy_ratio", "E_reduced_over_Sy_min", "nu", "elastic_share", "Delta_over_R", "a_over_R")
 """What the domain of validity is stated in; each has a smallest and a largest value."""
 
-_FILE = "fitted.json"
+COEFFICIENTS_FILE = Path(__file__).resolve().parents[1] / "data" / "coefficients" / "fitted.json"
+"""What the law in use reads; `dentscope fit --publish` writes it."""
+
 _FINITE = 0.01  # Delta/R at which the law says how far finite elastic strain takes it from Hertz
 _OF_BODIES = ("k_s", "k_f", "nu_s", "nu_f", "q_s", "q_f")
 _OF_PAIR = arguments_of(of_pair)[len(_OF_BODIES) :]
@@ -313,8 +315,8 @@ def _note(limits: Mapping[str, tuple[float, float]]) -> str:
 
 def read_coefficients() -> dict[str, Any] | None:
     """Content of the shipped coefficients file; none if there is none yet."""
-    place = resources.files("dentscope").joinpath("data", "coefficients", _FILE)
-    return json.loads(place.read_text("utf-8")) if place.is_file() else None
+    file = COEFFICIENTS_FILE
+    return json.loads(file.read_text("utf-8")) if file.is_file() else None
 
 
 def law_from(content: Mapping[str, Any], *, source: str) -> Fitted:
@@ -345,7 +347,15 @@ def law_from(content: Mapping[str, Any], *, source: str) -> Fitted:
 def shipped_law() -> Fitted | None:
     """The law with the shipped coefficients; none if they were never fitted."""
     content = read_coefficients()
-    return None if content is None else law_from(content, source=f"data/coefficients/{_FILE}")
+    return None if content is None else law_from(content, source=str(COEFFICIENTS_FILE))
 
 
-__all__ = ["BOUNDS", "FORMAT", "Fitted", "fitted_law", "law_from", "shipped_law"]
+__all__ = [
+    "BOUNDS",
+    "COEFFICIENTS_FILE",
+    "FORMAT",
+    "Fitted",
+    "fitted_law",
+    "law_from",
+    "shipped_law",
+]

@@ -134,12 +134,22 @@ _Run = tuple[float, tuple[int, ...], tuple[bool, ...]]
 
 
 def _typical(times: Array, run: _Run) -> float:
+    """Return the median factor from a gap to the next; a gap of two flights f, f² tells it too.
+
+    One wrong end moves one factor of many: so the run with the echo of a bounce in its place does
+    not confirm itself.
+    """
     _, kept, single = run
     gaps = np.diff(times[list(kept)])
-    pairs = [k for k in range(1, gaps.size) if single[k - 1] and single[k]]
-    if not pairs:
-        return 0.5
-    return min(float(np.median([gaps[k] / gaps[k - 1] for k in pairs])), 0.999)
+    factors = []
+    for ratio, one, next_one in zip(gaps[1:] / gaps[:-1], single, single[1:], strict=False):
+        if one == next_one:
+            factors.append(ratio if one else math.sqrt(ratio))
+        elif one:  # ratio = f + f²
+            factors.append(0.5 * (math.sqrt(1.0 + 4.0 * ratio) - 1.0))
+        else:  # ratio = f²/(1 + f)
+            factors.append(0.5 * (ratio + math.sqrt(ratio * (ratio + 4.0))))
+    return min(float(np.median(factors)), 0.999) if factors else 0.5
 
 
 def _longest(times: Array, factor: float) -> _Run:

@@ -118,10 +118,10 @@ def make_body(
         A rod without an axis, or a file that does not fit the markers.
     """
     across = radius if radius is not None else tip_radius
-    centre, way = Prior(np.zeros(3), max(poses.extent, tip_radius)), np.zeros(3)
-    remarks: tuple[str, ...] = ()
+    given, way = None, np.zeros(3)
+    remarks: tuple[str, ...] = ("centre of mass found from the flights (no body file)",)
     if file is not None:
-        centre, way, remarks = _from_file(file, poses, markers)
+        given, way, remarks = _from_file(file, poses, markers)
     if axis is not None:
         one, two = (markers.names.index(_known(n, markers)) for n in axis)
         way = poses.shape[one] - poses.shape[two]
@@ -133,26 +133,25 @@ def make_body(
             "the axis of the rod is not known", key="axis",
             allowed="two markers along it as A:B, or a body file",
         )  # fmt: skip
-    if file is None:
-        centre = centre_of(poses, way, max(poses.extent, tip_radius), across)
-        remarks = (*remarks, "centre of mass found from the flights (no body file)")
+    centre = given or centre_of(poses, way, tip_radius, across)
     inertia = length**2 / 12.0 + across**2 / 4.0 if shape == "rod" else 0.4 * tip_radius**2
     if shape == "body":
         inertia = float("inf")
     return Body(shape, way, length, tip_radius, inertia, centre, poses.shape), remarks
 
 
-def centre_of(poses: Poses, axis: Array, along: float, across: float) -> Prior:
+def centre_of(poses: Poses, axis: Array, tip_radius: float, radius: float) -> Prior:
     """Return what the markers alone tell of the centre of mass: it lies near a rod's axis.
 
-    A rod's markers sit on it, so that their centroid lies no farther beside its axis than they
-    spread, or than its radius.
+    `axis` is zero for a body without one, `radius` that of the rod. A rod's markers sit on it, so
+    that their centroid lies no farther beside its axis than they spread, or than its radius.
     """
+    along = max(poses.extent, tip_radius)
     if not axis.any():
         return Prior(np.zeros(3), along)
     beside = poses.shape - np.outer(poses.shape @ axis, axis)
     spread = float(np.linalg.norm(beside, axis=1).max())
-    return Prior(np.zeros(3), along, axis, max(across, spread))
+    return Prior(np.zeros(3), along, axis, max(radius, spread))
 
 
 def _known(name: str, markers: Markers) -> str:

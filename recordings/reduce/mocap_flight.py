@@ -35,7 +35,7 @@ _OFF = 2.5
 _FALL = 0.3
 """Part of gravity by which a flight's own acceleration may differ; drag of a light ball is less."""
 
-_MOST_ROUNDS = 20
+_MOST_STEPS = 20
 _SETTLED = 1e-3
 """Part of the misfit that a step may still promise when the fit of a motion ends."""
 
@@ -177,9 +177,9 @@ def fit_flights(
     if not spans:
         return None
     motions, offset, sigma = [_start(poses, s, gravity) for s in spans], prior.value.copy(), 1e-4
-    for _ in range(_MOST_ROUNDS):
+    for _ in range(_MOST_STEPS):
         weight = max(sigma, 1e-7)
-        motions, offset, left, settled = _round(poses, spans, motions, offset, prior, weight)
+        motions, offset, left, settled = _gauss_newton(poses, spans, motions, offset, prior, weight)
         sigma = robust_std(left)
         if settled:
             break
@@ -324,8 +324,8 @@ def _alone(
     motions, offset = [_start(poses, span, gravity)], prior.value.copy()
     # the prior of b only keeps what no spin shows from running away
     weight = 1e-4
-    for _ in range(_MOST_ROUNDS):
-        motions, offset, _, settled = _round(poses, [span], motions, offset, prior, weight)
+    for _ in range(_MOST_STEPS):
+        motions, offset, _, settled = _gauss_newton(poses, [span], motions, offset, prior, weight)
         if settled:
             break
     residual = _residual(poses, [span], motions, offset)
@@ -339,7 +339,7 @@ def _moved(motions: list[Motion], offset: Array, step: Array) -> tuple[list[Moti
     return [m.moved(s) for m, s in zip(motions, own, strict=True)], offset + step[:_SHARED]
 
 
-def _round(
+def _gauss_newton(
     poses: Poses, spans: list[tuple[int, int]], motions: list[Motion], offset: Array,
     prior: Prior, weight: float,
 ) -> tuple[list[Motion], Array, Array, bool]:  # fmt: skip

@@ -129,7 +129,7 @@ def test_a_rod_without_spin_and_body_file_shows_one_impact(seed):
     poses = rigid_poses(simulate(truth))
     _, turn = kabsch(np.array(truth.markers), poses.shape)
     axis = turn[:, 2]
-    centre = centre_of(poses, axis, poses.extent, truth.tip_radius)
+    centre = centre_of(poses, axis, truth.tip_radius, truth.tip_radius)
     body = Body(
         "rod", axis, truth.length, truth.tip_radius, truth.inertia_over_mass, centre, poses.shape
     )
