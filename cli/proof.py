@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import os
 from datetime import UTC, datetime
 from pathlib import Path
 from typing import Annotated
@@ -32,17 +33,52 @@ def run(
     hours: Annotated[float, typer.Option(help="Stop after so many hours.")] = 1e9,
     most: Annotated[int, typer.Option(help="Stop after so many sets.")] = 10**9,
     limit: Annotated[float, typer.Option(help="Longest time of one diagnosis [s].")] = 900.0,
-) -> None:
+    workers: Annotated[int, typer.Option(min=1, help="Worker processes.")] = os.cpu_count() or 1,
+) -> int:
     """Go on with the run of this source tree: draw, seal, diagnose, seal. Stop it at any time."""
+    from rich.console import Console
+    from rich.progress import (
+        BarColumn,
+        MofNCompleteColumn,
+        Progress,
+        TextColumn,
+        TimeElapsedColumn,
+        TimeRemainingColumn,
+    )  # fmt: skip
+
+    from ..core.threads import one_thread_each
     from ..discrepancy.proof.lists import LISTS
-    from ..discrepancy.proof.run import carry_on, run_folder
+    from ..discrepancy.proof.run import carry_on, local_workers, run_folder, verdicts_of
 
     folder = run_folder(out, _checked(which))
-    total = len(LISTS[which]())
-    typer.echo(f"{folder}: {total} sets")
-    for name, event in carry_on(folder, which, hours=hours, most=most, limit_s=limit):
-        state = "sealed" if event["verdict"] else f"no verdict ({event['exit']})"
-        typer.echo(f"  {name}  {state}  {event['wall_s']:.0f} s")
+    total, before = len(LISTS[which]()), verdicts_of(folder)
+    typer.echo(
+        f"{folder}: {total} sets, {before} done; {workers} workers. Ctrl-C stops, the same command "
+        "goes on."
+    )
+    one_thread_each()
+    console = Console()
+    columns = (
+        TextColumn("sets"), BarColumn(), MofNCompleteColumn(), TimeElapsedColumn(),
+        TimeRemainingColumn(), TextColumn("left"),
+    )  # fmt: skip
+    pool = local_workers(workers)
+    steps = carry_on(
+        folder, which, pool, at_once=workers, hours=hours, most=most, limit_s=limit
+    )  # fmt: skip
+    try:
+        with Progress(*columns, console=console, disable=not console.is_terminal) as bar:
+            task = bar.add_task("sets", total=total, completed=before)
+            for name, event in steps:
+                bar.advance(task)
+                state = "sealed" if event["verdict"] else f"no verdict ({event['exit']})"
+                console.print(f"  {name}  {state}  {event['wall_s']:.0f} s", highlight=False)
+    except KeyboardInterrupt:
+        typer.echo("stopped; the same command goes on from here")
+        return 130
+    finally:
+        pool.shutdown(cancel_futures=True)
+    return 0
 
 
 @app.command()
@@ -122,4 +158,14 @@ def library() -> None:
     from ..discrepancy.proof.explicit_library import fill
 
     for line in fill():
+        typer.echo(line)
+
+
+@app.command()
+def laws() -> None:
+    """Solve and fit the pairs that the generators' base laws lack."""
+    from ..discrepancy.proof.base_laws import fill
+    from ..discrepancy.proof.benches import BEARING_STEEL, CARBIDE, TARGETS
+
+    for line in fill(TARGETS, (BEARING_STEEL, CARBIDE)):
         typer.echo(line)

@@ -58,14 +58,6 @@ class Calibration:
     def _offset(self, fitted: Fit) -> float:
         return max((self.offset.get(m.name, 0.0) for m in fitted.mechanisms), default=0.0)
 
-    def p_single(self, excess: float) -> float:
-        """Share of nulls with at least this excess, at least one in n + 1."""
-        return float((np.sum(self.best >= excess) + 1) / (len(self.best) + 1))
-
-    def p_baseline(self, chi2: float) -> float:
-        """Share of nulls that fit the baseline no better."""
-        return float((np.sum(self.chi2 >= chi2) + 1) / (len(self.chi2) + 1))
-
     def sorted(self, ranking: Ranking) -> Ranking:
         """Return the ranking with the explanations in the order of their excess."""
         order = lambda f: -self.excess(f, ranking.base)  # noqa: E731

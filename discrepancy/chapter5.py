@@ -51,7 +51,8 @@ LITERATURE: Mapping[str, Mapping[str, float]] = {
     "velocity-dependent-friction": {"static_over_dynamic": 1.5, "friction_speed_m_s": 0.3},
     # Hunter and Crossley's alpha for steel near 0.1 s/m, times 3/2
     "contact-damping": {"damping_s_m": 0.15},
-    "roughness": {"roughness_m": 4e-7},
+    # asperities that are flattened; a sixth of the area, Gaussian heights above one deviation
+    "roughness": {"roughness_m": 4e-7, "asperity_force_ratio": 0.16, "asperity_flattening": 1.0},
     "truncated-tip": {"flat_radius_over_R": 0.03},
     "hardened-layer": {"layer_hardening": 0.3, "layer_thickness_m": 1.5e-4},
     # the thesis's own tolerance

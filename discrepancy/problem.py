@@ -25,6 +25,7 @@ from ..recordings.noise import bins
 from ..recordings.setup_file import Quantity, Target
 from ..recordings.setup_file import Striker as StrikerTable
 from .curves import FROM_CURVES, Readings, readings_of
+from .drift import Drift, drift_of
 from .lawerror import LawError, law_error
 from .mechanisms.base import Surroundings
 
@@ -170,6 +171,7 @@ class Problem:
     error: LawError
     gravity: float
     notes: tuple[str, ...] = ()
+    drifts: tuple[Drift, ...] = ()
 
     @property
     def n_nuisances(self) -> int:
@@ -268,8 +270,9 @@ def problem_of(recordings: RecordingSet) -> Problem:
     of_trial = {i: s for c, s in zip(conditions, problem.scenes(np.zeros(problem.n_z)), strict=True)
                 for i in c.trials}  # fmt: skip
     readings = readings_of(recordings, [of_trial[i] for i in sorted(of_trial)], notes)
-    cells = _cells(readings, recordings.approach.normal, conditions, notes)
-    return replace(problem, cells=cells, notes=tuple(notes))
+    speeds, order = recordings.approach.normal, recordings.trials.order
+    cells, drifts = _cells(readings, speeds, order, conditions, notes)
+    return replace(problem, cells=cells, drifts=drifts, notes=tuple(notes))
 
 
 def _law_of(target: Target) -> ContactLaw:
@@ -438,9 +441,11 @@ def _stated(quantity: Quantity | None, name: str, unit: str) -> list[Nuisance]:
 
 
 def _cells(
-    readings: Mapping[str, Readings], speeds: Array, conditions: Sequence[Condition],
+    readings: Mapping[str, Readings], speeds: Array, order: Array, conditions: Sequence[Condition],
     notes: list[str],
-) -> Cells:  # fmt: skip
+) -> tuple[Cells, tuple[Drift, ...]]:  # fmt: skip
+    place = order / np.nanmax(order) if np.isfinite(order).any() else np.full(len(speeds), np.nan)
+    drifts = []
     rows: list[tuple[int, str, float, float, int]] = []
     dropped = 0
     for name, read in readings.items():
@@ -450,6 +455,7 @@ def _cells(
         log = name in LOGARITHMIC
         part: list[tuple[int, str, float, float, int]] = []
         squares, degrees = 0.0, 0
+        repeats = []
         for k, c in enumerate(conditions):
             index = np.array([i for i in c.trials if np.isfinite(values[i])], dtype=np.intp)
             if log:
@@ -463,6 +469,7 @@ def _cells(
             keep = _kept(y, s)
             dropped += int(np.sum(~keep))
             y, s = y[keep], s[keep]
+            repeats.append((place[index[keep]], y, s))
             weight = 1.0 / s**2
             mean = float(np.sum(weight * y) / np.sum(weight))
             squares += float(np.sum(((y - mean) / s) ** 2))
@@ -476,16 +483,18 @@ def _cells(
             )
             part = [(k, n, m, s * math.sqrt(ratio), c) for k, n, m, s, c in part]
         rows += part
+        drifts.append(drift_of(name, repeats, observables=len(readings)))
     if dropped:
         notes.append(f"{dropped} single values lie far off their repeats and were left out")
     value = np.array([r[2] for r in rows])
     names = tuple(r[1] for r in rows)
     floor = np.array([_FLOOR if n in LOGARITHMIC else _FLOOR * _size(n, rows) for n in names])
-    return Cells(
+    cells = Cells(
         np.array([r[0] for r in rows], dtype=np.intp), names, value,
         np.hypot(np.array([r[3] for r in rows]), floor),
         np.array([r[4] for r in rows], dtype=np.intp),
     )  # fmt: skip
+    return cells, tuple(d for d in drifts if d is not None)
 
 
 def _size(name: str, rows: Sequence[tuple[int, str, float, float, int]]) -> float:

@@ -14,7 +14,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ..impact import Scene
-from ..impact.strength import strength_table
+from ..impact.strength import UNIT, strength_table
 from .evidence import Linear
 from .fit import Fit
 from .forward import Point, Simulator
@@ -84,7 +84,8 @@ def null_residuals(simulator: Simulator, base: Fit, count: int, rng: np.random.G
         value = seen[name][:, cells.condition[j]]
         law[:, j] = np.log(np.maximum(value, 1e-12)) if name in LOGARITHMIC else value
     law -= here
-    noise = scatter(rng, law.shape) * np.sqrt(np.diag(base.linear.noise))
+    # what a condition's scatter of speed and angle does is shared by its observables
+    noise = scatter(rng, law.shape) @ np.linalg.cholesky(base.linear.noise).T
     k = problem.n_nuisances
     unknown = rng.standard_normal((count, k)) @ base.linear.J[:, :k].T
     form = rng.standard_normal((count, len(set(cells.observable)) + 2))
@@ -136,12 +137,11 @@ def _reference(scene: Scene, known: dict[tuple[float, ...], Reference]) -> Refer
         table = strength_table(law, pair)
         depth = table.depth
         _, flat = law.residual(pair, depth)
-        unit = len(table.log_force) // 2
         # a baseline that does not yield is compared with laws that do not yield
         strength = math.inf if law.name == "hertz" else pair.Sy_min
         known[key] = Reference(
-            pair.R, pair.E_reduced, strength, depth, np.exp(table.log_force[unit]),
-            np.exp(table.log_recovery[unit]), flat, scene.force.given_back,
+            pair.R, pair.E_reduced, strength, depth, np.exp(table.log_force[UNIT]),
+            np.exp(table.log_recovery[UNIT]), flat, scene.force.given_back,
         )  # fmt: skip
     return known[key]
 

@@ -7,7 +7,7 @@ held-out conditions -> next experiment. `Verdict.to_dict` gives verdict.json, ve
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from typing import Any
 
 import numpy as np
@@ -18,13 +18,14 @@ from .. import __version__
 from ..recordings import RecordingSet, Severity, audit
 from .calibration import Calibration, calibrate, extra_threshold, p_fit, set_width
 from .correction import Correction, correct, widened
+from .drift import Drift
 from .evidence import interval
 from .fit import Fit
 from .forward import Point, Simulator
 from .heldout import HeldOut, held_out
 from .locate import Located, locate
 from .next_experiment import Proposal, propose
-from .problem import Problem, problem_of
+from .problem import LOGARITHMIC, Problem, problem_of
 from .rank import Progress, Ranking, rank, with_pairs
 from .thresholds import Nulls, null_residuals
 
@@ -41,6 +42,8 @@ MOST = 3
 _FEWEST = 6
 _PULLED = 2.0
 OUTSIDE = "outside-library"
+_RATHER_OUTSIDE = 0.9
+"""Probability of something outside the library above which no explanation is named."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -162,11 +165,15 @@ def diagnose(
     nulls = null_residuals(simulator, ranking.base, CONFIRMED_NULLS if confirm else NULLS, rng)
     calibration = calibrate(ranking, nulls)
     ranking = calibration.sorted(ranking)
-    if needs_more(ranking, calibration):
+    p_base = p_fit(ranking.base, nulls, problem)
+    if needs_more(ranking, calibration, p_base):
         ranking = calibration.sorted(with_pairs(simulator, ranking, progress=progress))
     located = locate(problem, ranking.base, nulls)
     progress("deciding")
     choice = decide(problem, ranking, nulls, calibration)
+    probabilities = _probabilities(problem, ranking, nulls, calibration)
+    if choice.members and probabilities[OUTSIDE] > _RATHER_OUTSIDE:
+        choice = Choice(OUTSIDE, (), (*choice.reasons, _rather_outside(choice, probabilities)))
     confirmed: dict[str, float] = {}
     if confirm:
         from .confirm import confirm_evidence
@@ -194,7 +201,7 @@ def diagnose(
         alternatives=tuple(
             tuple(m.name for m in f.mechanisms) for f in choice.members[1:]
         ),
-        audit=findings, probabilities=_probabilities(problem, ranking, nulls, calibration),
+        audit=findings, probabilities=probabilities,
         scores=_scores(problem, ranking, nulls, scores, confirmed), located=located,
         parameters=parameters_of(problem, best), nuisance_pulls=_pulls(problem, best),
         excluded=ranking.excluded, limits=_limits(ranking, calibration),
@@ -214,22 +221,53 @@ class Choice:
     reasons: tuple[str, ...]
 
 
-def needs_more(ranking: Ranking, calibration: Calibration) -> bool:
+def needs_more(ranking: Ranking, calibration: Calibration, p_base: float) -> bool:
     """Whether the baseline is in doubt, so that pairs are worth fitting."""
     base = ranking.base
     if not ranking.singles:
         return False
     gain = calibration.excess(ranking.singles[0], base)
-    return gain > calibration.single or calibration.p_baseline(base.chi2) < P_FIT
+    return gain > calibration.single or p_base < P_FIT
 
 
 def decide(problem: Problem, ranking: Ranking, nulls: Nulls, calibration: Calibration) -> Choice:
-    """Decide by thresholds that come from nulls of the same set."""
+    """Decide by thresholds that come from nulls of the same set, and by drifts of its repeats."""
+    choice = _by_thresholds(problem, ranking, nulls, calibration)
+    if not problem.drifts:
+        return choice
+    seen = (
+        f"{d.observable}: repeats of one condition change by {_change(d)} from the first trial to "
+        f"the last ({abs(d.z):.1f} standard errors), whatever the simulation"
+        for d in problem.drifts
+    )
+    outside = choice.verdict in ("adequate", "undetermined")
+    return replace(
+        choice, verdict=OUTSIDE if outside else choice.verdict, reasons=(*choice.reasons, *seen)
+    )
+
+
+def _rather_outside(choice: Choice, probabilities: dict[str, float]) -> str:
+    return (
+        f"{choice.members[0].name} passes the tests, but a contact law that is free explains the "
+        f"set so much better that something outside the library has "
+        f"{_percent(probabilities[OUTSIDE])} of the probability"
+    )
+
+
+def _change(drift: Drift) -> str:
+    if drift.observable in LOGARITHMIC:
+        return f"{100.0 * math.expm1(drift.change):+.1f} %"
+    return f"{drift.change:+.3g}"
+
+
+def _by_thresholds(
+    problem: Problem, ranking: Ranking, nulls: Nulls, calibration: Calibration
+) -> Choice:
     base = ranking.base
     cells = len(problem.cells)
     if cells < _FEWEST:
         return Choice("undetermined", (), (f"only {cells} numbers to compare",))
-    p_base = calibration.p_baseline(base.chi2)
+    p_base = p_fit(base, nulls, problem)
     reasons = [
         f"the baseline's misfit is {base.chi2:.0f} over {cells} cells; "
         f"{_percent(p_base)} of sets with nothing missing fit no better"
@@ -316,7 +354,7 @@ def _probabilities(
     outside = float(widened(problem, base).log_likelihood(base.residual))
     names = ["baseline", OUTSIDE]
     logs = [base.log_evidence + math.log(0.5), outside + math.log(0.05)]
-    rejected = {"baseline"} if calibration.p_baseline(base.chi2) < P_FIT else set()
+    rejected = {"baseline"} if p_fit(base, nulls, problem) < P_FIT else set()
     for share, fits in ((0.3, ranking.singles), (0.15, ranking.pairs)):
         for f in fits:
             names.append(f.name)

@@ -25,7 +25,8 @@ NODES = 41
 """Nodes of the table over ln(depth / R)."""
 
 _LEVELS = np.log(np.array([0.1, 0.25, 0.5, 1.0, 2.0, 4.0, 10.0]))
-_UNIT = int(np.searchsorted(_LEVELS, -1e-9))
+UNIT = int(np.searchsorted(_LEVELS, -1e-9))
+"""Row of a table at the stated strength."""
 
 
 @njit(cache=True)
@@ -41,7 +42,7 @@ def _factors(strength, log_force, log_recovery):  # type: ignore[no-untyped-def]
         t = (level - _LEVELS[i]) / (_LEVELS[i + 1] - _LEVELS[i])
         for half, table in enumerate((log_force, log_recovery)):
             here = (1.0 - t) * table[i, k] + t * table[i + 1, k]
-            out[half * n + k] = math.exp(here - table[_UNIT, k])
+            out[half * n + k] = math.exp(here - table[UNIT, k])
     return out
 
 
@@ -99,7 +100,7 @@ def _tabulated(law: ContactLaw, pair: Pair) -> StrengthTable:
         force = law.loading(pairs, grid)
     sphere, flat = law.residual(pairs, grid)
     recovery = np.maximum(grid - sphere - flat, 1e-9 * grid)
-    f = force[_UNIT]
+    f = force[UNIT]
     # exact for a power law between the nodes
     power = np.diff(np.log(f)) / np.diff(np.log(depth))
     step = (f[1:] * depth[1:] - f[:-1] * depth[:-1]) / (power + 1.0)

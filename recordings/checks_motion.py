@@ -24,6 +24,9 @@ from .trial_view import combined, views
 PULSE = (0.25, 1.0)
 """Impulse over peak force times duration: a rectangular pulse has 1, a ringing one may have 0.3."""
 
+_ALONE = 0.25
+"""Part of the masses' false alarms that goes to single strikers where there are several."""
+
 _MOMENTUM_SHARE = FALSE_ALARMS_OTHER / 2.0
 _BEYOND = 4.0
 _ANGLES = 2.0
@@ -45,12 +48,13 @@ def check_mass(found: RecordingSet) -> list[Finding]:
         if name not in known
     ]
     rods = sum(mass.high > mass.low for mass in known.values())
+    alone = FALSE_ALARMS_MASS if len(known) < 2 else _ALONE * FALSE_ALARMS_MASS
     for name, mass in known.items():
         stated, relative = strikers[name].mass_kg.value, _mass_relative(strikers[name], mass)
-        expected = mass.low + part * (mass.high - mass.low)
+        expected = _expected(mass, part)
         z = abs(stated / expected - 1.0) / relative
         width = (mass.high / mass.low - 1.0) / relative if rods == 1 else 0.0
-        critical = critical_interval(width, FALSE_ALARMS_MASS / len(known))
+        critical = critical_interval(width, alone / len(known))
         span = f"{mass.low:.4g}" + (f" to {mass.high:.4g}" if mass.high > mass.low else "")
         findings.append(
             Finding(
@@ -63,7 +67,49 @@ def check_mass(found: RecordingSet) -> list[Finding]:
                 z,
             )
         )
+    if len(known) > 1:
+        findings.append(_masses_together([(strikers[name], mass) for name, mass in known.items()]))
     return findings
+
+
+def _masses_together(bodies: list[tuple[Striker, limits.Range]]) -> Finding:
+    """All stated masses off by one factor, beside none off."""
+    part = _part_of_the_ends(bodies)
+    plain = _misfit(bodies, part)
+    if any(m.high > m.low for _, m in bodies):
+        free = minimize_scalar(
+            lambda p: _misfit(bodies, p, _factor(bodies, p)), bounds=(0.0, 1.0), method="bounded"
+        )
+        part = min((0.0, float(free.x), 1.0), key=lambda p: _misfit(bodies, p, _factor(bodies, p)))
+    factor = _factor(bodies, part)
+    gain = max(plain - _misfit(bodies, part, factor), 0.0)
+    wrong = float(chi2.sf(gain, 1)) < (1.0 - _ALONE) * FALSE_ALARMS_MASS
+    return Finding(
+        "mass of all strikers together",
+        Severity.CONTRADICTION if wrong else Severity.CONSISTENT,
+        f"{factor:.4g} times what density and size give ({factor - 1.0:+.1%})",
+        factor, 1.0, float(np.sqrt(gain)),
+    )  # fmt: skip
+
+
+def _expected(m: limits.Range, part: float) -> float:
+    return m.low + part * (m.high - m.low)
+
+
+def _misfit(bodies: list[tuple[Striker, limits.Range]], part: float, factor: float = 1.0) -> float:
+    """Sum of squares of the masses' distances, in standard deviations."""
+    return sum(
+        ((striker.mass_kg.value / (factor * _expected(m, part)) - 1.0)
+         / _mass_relative(striker, m)) ** 2
+        for striker, m in bodies
+    )  # fmt: skip
+
+
+def _factor(bodies: list[tuple[Striker, limits.Range]], part: float) -> float:
+    """Common factor on all masses that fits best."""
+    ratio = [striker.mass_kg.value / _expected(m, part) for striker, m in bodies]
+    weight = [_mass_relative(striker, m) ** -2 for striker, m in bodies]
+    return float(np.average(ratio, weights=weight))
 
 
 def _mass_relative(striker: Striker, mass: limits.Range) -> float:
@@ -72,16 +118,12 @@ def _mass_relative(striker: Striker, mass: limits.Range) -> float:
 
 def _part_of_the_ends(rods: list[tuple[Striker, limits.Range]]) -> float:
     """Return the part of the end caps, 0 to 1, with which all stated masses agree best."""
-
-    def misfit(part: float) -> float:
-        return sum(
-            ((striker.mass_kg.value / (m.low + part * (m.high - m.low)) - 1.0)
-             / _mass_relative(striker, m)) ** 2
-            for striker, m in rods
-        )  # fmt: skip
-
     if not any(m.high > m.low for _, m in rods):
         return 0.0
+
+    def misfit(part: float) -> float:
+        return _misfit(rods, part)
+
     inside = float(minimize_scalar(misfit, bounds=(0.0, 1.0), method="bounded").x)
     return min((0.0, inside, 1.0), key=misfit)
 

@@ -9,9 +9,8 @@ from typing import ClassVar
 
 import numpy as np
 
-from ...core.material import Pair
 from ...impact import Scene
-from ...impact.strength import StrengthTable
+from ...impact.strength import UNIT, StrengthTable, strength_table
 from .base import (
     Array,
     Mechanism,
@@ -162,36 +161,87 @@ def slower(seen: dict[str, Array], restitution: Array) -> None:
     seen["restitution"] = restitution
 
 
+_POWER = 1.25
+"""Exponent of a recovery, between Hertz's 3/2 and a flat punch's 1: for the layer's share alone."""
+
+
 @dataclass(frozen=True, slots=True)
-class Series:
-    """A soft layer in series, as a strength-free factor on the force."""
+class Layer:
+    """A rough layer in series with the bulk, over the depth nodes of a law's table.
 
-    sigma: float
+    Parameters
+    ----------
+    force, recovery
+        (NODES,) factors on the smooth contact's loading force and elastic recovery.
+    dent
+        (NODES,) depth that stays over the peak depth less the recovery, which is the energy's.
+    """
 
-    def factors(self, table: StrengthTable, pair: Pair) -> Array:
-        """Return force of the rough over that of the smooth contact, at the table's depths.
+    force: Array
+    recovery: Array
+    dent: Array
 
-        Asperities with exponential heights carry F = F_0 exp(d_r/sigma) once F_0 is reached; F_0
-        is the force at which the bulk has moved by sigma.
+    @classmethod
+    def of(cls, table: StrengthTable, sigma: float, start: float, kept: float) -> Layer:
+        """Return the layer that closes by sigma ln(1 + F/F_0).
+
+        Asperities with exponential heights carry F = F_0 (exp(closure/sigma) - 1), and open again
+        on the same curve until the part `kept` of the closure is left.
+
+        Parameters
+        ----------
+        table
+            Of the smooth contact.
+        sigma
+            Mean height of the asperities [m].
+        start
+            F_0 over the force at which the bulk has moved by sigma.
+        kept
+            Part of the closure that stays.
         """
-        force = np.exp(table.log_force[3])
-        start = np.interp(math.log(self.sigma), np.log(table.depth), np.log(force))
-        layer = self.sigma * np.log1p(force / math.exp(start))
-        total = table.depth + layer
-        rough = np.exp(np.interp(np.log(table.depth), np.log(total), np.log(force)))
-        return np.asarray(rough / force)
+        depth, (force, recovered) = table.depth, (
+            np.exp(table.log_force[UNIT]), np.exp(table.log_recovery[UNIT]),
+        )  # fmt: skip
+        scale = start * math.exp(np.interp(math.log(sigma), np.log(depth), np.log(force)))
+        turns = np.log1p(force / scale)
+        freed = scale * np.expm1(kept * turns)
+        given = sigma * (force - freed - scale * (1.0 - kept) * turns)
+        back = recovered + (1.0 + _POWER) * given / force
+        total = depth + sigma * turns
+
+        def at_nodes(value: Array) -> Array:
+            return np.asarray(np.interp(np.log(depth), np.log(total), value))
+
+        rough_back = np.minimum(np.exp(at_nodes(np.log(back))), depth)
+        stays = np.maximum(at_nodes(depth - recovered + kept * sigma * turns), 0.0)
+        rest = np.maximum(depth - rough_back, 1e-3 * depth)
+        return cls(
+            np.exp(at_nodes(np.log(force))) / force, rough_back / recovered,
+            stays / rest,
+        )  # fmt: skip
 
 
 class Roughness(Mechanism):
-    """Asperities give way before the bulk does."""
+    """Asperities give way before the bulk does, and do not come back whole."""
 
     name = "roughness"
     title = "asperities give way before the bulk"
-    equations = "depth + sigma ln(1 + F/F_0), F_0 = F(sigma)"
+    equations = "depth + sigma ln(1 + F/F_0); the part k of the closure stays"
     parameters = (
         Parameter(
             "roughness_m", "m", 1e-7, 1e-5, "log", 0.0,
-            "Greenwood and Williamson 1966; ground 0.4 um, turned 1-5 um",
+            "Greenwood and Williamson 1966; ground 0.4 um, turned 1-5 um", nodes=7,
+        ),
+        Parameter(
+            "asperity_force_ratio", "-", 0.01, 3.0, "log", 1.0,
+            "F_0 over the force that dents the bulk by sigma: the part of the area that Gaussian "
+            "heights put above three standard deviations (0.001) to one (0.16), each way tenfold",
+            nodes=5,
+        ),
+        Parameter(
+            "asperity_flattening", "-", 0.0, 1.0, "linear", 0.0,
+            "part of the closure that stays: 0 for elastic asperities, 1 for those that flow "
+            "(plasticity index, Greenwood and Williamson 1966)", nodes=3,
         ),
     )  # fmt: skip
     direction: ClassVar[Mapping[str, int]] = {"contact_time_s": 1, "peak_force_N": -1}
@@ -203,18 +253,42 @@ class Roughness(Mechanism):
     def ranges(self, situations: Sequence[Situation]) -> tuple[Parameter, ...]:
         """A stated roughness narrows the range."""
         stated = situations[0][1].roughness
-        (sigma,) = self.parameters
-        return (replace(sigma, low=0.5 * stated, high=4.0 * stated),) if stated > 0 else (sigma,)
+        sigma, *rest = self.parameters
+        if stated > 0.0:
+            sigma = replace(sigma, low=0.5 * stated, high=4.0 * stated)
+        return (sigma, *rest)
 
     def attach(self, scene: Scene, values: Values, around: Surroundings) -> Scene:
         """Replace the transform of the normal force."""
-        from ...impact.strength import strength_table
-
-        sigma = values["roughness_m"]
-        if sigma == 0.0:
+        if values["roughness_m"] == 0.0:
             return scene
-        factors = Series(sigma).factors(strength_table(scene.law, scene.pair), scene.pair)
-        return scene.with_(force=replace(scene.force, factors=times(scene.force.factors, factors)))
+        layer, now = _layer_of(scene, values), scene.force
+        return scene.with_(
+            force=replace(
+                now, factors=times(now.factors, layer.force),
+                recovery_factors=times(now.recovery_factors, layer.recovery),
+            )
+        )  # fmt: skip
+
+    def after(
+        self, situations: Sequence[Situation], values: Values, seen: dict[str, Array]
+    ) -> None:
+        """Set the depth that stays, of bulk and layer."""
+        if values["roughness_m"] == 0.0:
+            return
+        for i, (scene, _) in enumerate(situations):
+            depth = strength_table(scene.law, scene.pair).depth
+            seen["permanent_depth_m"][i] *= np.interp(
+                math.log(max(seen["peak_depth_m"][i], depth[0])), np.log(depth),
+                _layer_of(scene, values).dent,
+            )  # fmt: skip
+
+
+def _layer_of(scene: Scene, values: Values) -> Layer:
+    table = strength_table(scene.law, scene.pair)
+    return Layer.of(
+        table, values["roughness_m"], values["asperity_force_ratio"], values["asperity_flattening"]
+    )
 
 
 def _needs_yielding_law(situations: Sequence[Situation]) -> str:

@@ -132,10 +132,10 @@ def curve(reference: Reference, law: Draw) -> Curve:
         return Curve(x, f, recovery, crater, 1.5 + law.level[1])
     force, power, rec = _shape(reference, law, d)
     f = _levelled(np.log(force), base, x, inside, middle, law.level, law.stray[0])
-    rec = np.exp(
-        _levelled(np.log(rec), np.log(recovery), x, inside, middle, law.back, law.stray[1])
-    )
-    rec = np.minimum(rec, 0.999 * d)
+    own = _levelled(np.log(rec), np.log(recovery), x, inside, middle, law.back, law.stray[1])
+    # where little is left, laws differ by a part of that, not by a part of the recovery
+    part = np.minimum(np.maximum(d - recovery, 0.0) / recovery, 1.0)
+    rec = np.minimum(recovery * np.exp(part * (own - np.log(recovery))), 0.999 * d)
     # what does not recover stays; the crater's share of it is the reference's
     left = np.maximum(d - recovery, 1e-12)
     crater = np.maximum(d - rec, 0.0) * np.clip(crater / left, 0.0, 1.0)

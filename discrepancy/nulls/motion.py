@@ -99,7 +99,9 @@ def collide(bodies: Bodies, curves: Sequence[Curve]) -> dict[str, Array]:
         step = 2.0 * half
         before = depth
         depth = depth + step * (-vy_m + w_m * c)
-        slid = slid + step * (vx_m + w_m * s)
+        # below a few eps the smooth friction creeps where Coulomb's sticks
+        slip = vx_m + w_m * s
+        slid = slid + step * np.where(np.abs(slip) > 3.0 * eps, slip, 0.0)
         vy, vx = vy + step * f / m, vx + step * t / m
         w = w + step * (t * s - f * c) / inertia
         low, high = np.minimum(low, slid), np.maximum(high, slid)

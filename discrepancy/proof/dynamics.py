@@ -57,8 +57,11 @@ def _friction_limit(p, force, slip, a):
 
 
 @njit(cache=True)
-def _tangential(p, force, slip, mobility, dt, a, a_last, held):
-    """Tangential force [N] on the striker; `held` is that of the last step."""
+def _tangential(p, force, slip, mobility, turned, dt, a, a_last, held):
+    """Tangential force [N] on the striker; `held` is that of the last step.
+
+    `turned` is what the normal force adds to the slip's rate [1/kg]: a contact sticks against it.
+    """
     if force <= 0.0:
         return 0.0
     limit = _friction_limit(p, force, slip, a)
@@ -71,7 +74,7 @@ def _tangential(p, force, slip, mobility, dt, a, a_last, held):
             stiffness *= max(1.0 - min(against, 1.0), 1e-3) ** (1.0 / 3.0)
         wanted = held * (min(a / a_last, 1.0) if a_last > 0.0 else 0.0) - stiffness * slip * dt
     else:
-        wanted = -slip / (mobility * dt)
+        wanted = -(slip / dt + turned * force) / mobility
     return min(max(wanted, -limit), limit)
 
 
@@ -155,7 +158,7 @@ def impact(p, result, trace):
     start = approach
     Fn, Ft, a_last = 0.0, 0.0, 0.0
     t, first, last, parted = 0.0, -1.0, 0.0, 0.0
-    most, least = 0.0, 0.0
+    most, least, slid, place = 0.0, 0.0, 0.0, 0.0
     peak = 0.0
     Pn, Pt, work = 0.0, 0.0, 0.0
     contacts = 0
@@ -179,7 +182,8 @@ def impact(p, result, trace):
         speed = -tvy - sdw
         Fn = normal_force(p, memory, approach, speed, step, plastic)
         a = memory[RADIUS_NOW]
-        Ft = _tangential(p, Fn, tvx, mobility, step, a, a_last, Ft)
+        turned = 0.0 if n else -s * c / inertia
+        Ft = _tangential(p, Fn, tvx, mobility, turned, step, a, a_last, Ft)
         a_last = a
         if room > 0:
             if count % every == 0:
@@ -243,13 +247,16 @@ def impact(p, result, trace):
         t += step
         if n:
             approach = start - (u[0] * st + w[0] * ct) - sw
-            tip_x = u[0] * ct - w[0] * st + R * f[0]
+            tip_x, rolled = u[0] * ct - w[0] * st, R * f[0]
         else:
             approach = start - ((y - s) - (y0 - half * math.sin(theta) - R)) - sw
-            tip_x = (x - c) - (x0 - half * math.cos(theta))
+            tip_x, rolled = (x - c) - (x0 - half * math.cos(theta)), R * turn
+        # the material point that touches: with the tip's centre, and with its turning; what it
+        # travels between two contacts is no sliding
         if touching:
-            most = max(most, tip_x)
-            least = min(least, tip_x)
+            slid += tip_x + rolled - place
+            most, least = max(most, slid), min(least, slid)
+        place = tip_x + rolled
         if contacts > 0 and not touching and t - parted > p[at.FOLLOW]:
             freed = memory[FREED] - approach
             if (

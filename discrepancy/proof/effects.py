@@ -307,11 +307,14 @@ def _rough(rng: np.random.Generator, rig: Rig, family: float) -> Effect:
         "height": _log(rng, 0.3e-6, 3e-6), "force": _log(rng, 0.3, 3.0) * (tip / 1e-3),
         "kept": float(rng.uniform(0.2, 0.9)),
     }  # fmt: skip
-    return Effect("roughness", "logarithmic-closure", numbers)
+    if rng.random() < 0.5:
+        return Effect("roughness", "logarithmic-closure", numbers, True)
+    return Effect("roughness", "finite-height-closure", numbers)
 
 
 def _put_rough(p: Array, rig: Rig, effect: Effect) -> None:
     k = effect.numbers
+    p[:, at.ROUGH_KIND] = float(effect.form == "finite-height-closure")
     p[:, at.ROUGH], p[:, at.ROUGH_FORCE], p[:, at.ROUGH_LOSS] = k["height"], k["force"], k["kept"]
 
 

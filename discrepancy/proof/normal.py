@@ -10,8 +10,6 @@ from numba import njit
 from . import cavity, flow, foundation
 from . import parameters as at
 
-_CAVITY = cavity.COEFFICIENTS
-_ROW = foundation.COEFFICIENTS
 _PLACE = ((np.arange(foundation.N_SPRINGS) + 0.5) / foundation.N_SPRINGS) ** 2
 
 # places in the memory of a contact: static peak depth, its force, its residual depth, its radius,
@@ -23,7 +21,12 @@ N_MEMORY = 11
 @njit(cache=True)
 def _dent(p, depth):
     return cavity.dent(
-        depth, p[at.MODULUS], p[at.TIP], flow.strength(p, depth), p[at.FLAT], _CAVITY
+        depth,
+        p[at.MODULUS],
+        p[at.TIP],
+        flow.strength(p, depth),
+        p[at.FLAT],
+        p[at.CAVITY_LAW : at.ROW_LAW],
     )
 
 
@@ -34,7 +37,7 @@ def _recovered(p, memory, depth):
     if depth <= rest:
         return 0.0
     W = memory[PEAK] / p[at.TIP] * (p[at.MODULUS] / p[at.STRENGTH]) ** 2
-    n = 1.5 - (1.5 - _CAVITY[8]) * W / (W + 10.0)
+    n = cavity.exponent(W, p[at.CAVITY_LAW : at.ROW_LAW])
     return memory[PEAK_F] * ((depth - rest) / (memory[PEAK] - rest)) ** n
 
 
@@ -94,10 +97,11 @@ def _row_force(p, memory, depth, speed, dt, plastic):
     peak = max(depth, memory[PEAK])
     Y = flow.strength(p, peak)
     W = 0.0 if math.isinf(Y) else peak / R * (E / Y) ** 2
-    wide = foundation.spread(W, _ROW) * R
+    law = p[at.ROW_LAW : at.N_PARAMETERS]
+    wide = foundation.spread(W, law) * R
     flat = p[at.FLAT]
     a2_peak = wide * peak + flat * flat
-    h = math.inf if math.isinf(Y) else foundation.limit(W, math.sqrt(a2_peak) / R, _ROW) * Y
+    h = math.inf if math.isinf(Y) else foundation.limit(W, math.sqrt(a2_peak) / R, law) * Y
     # stress above the static limit goes on relaxing behind the peak
     a2 = wide * (peak if rate else max(depth, 0.0)) + flat * flat
     total, half = 0.0, 0.0
@@ -143,9 +147,15 @@ def _row_force(p, memory, depth, speed, dt, plastic):
 
 @njit(cache=True)
 def _close_layer(p, memory, approach):
-    """Rough layer in series, sigma ln(1 + F/F0), following its rest value within a few steps."""
+    """Rough layer in series, following its rest value within a few steps.
+
+    Closure sigma ln(1 + F/F0), or that of asperities of finite height, at most 3 sigma.
+    """
     sigma = p[at.ROUGH]
-    rest = sigma * math.log1p(max(memory[LAST_F], 0.0) / p[at.ROUGH_FORCE])
+    load = max(memory[LAST_F], 0.0) / p[at.ROUGH_FORCE]
+    rest = sigma * math.log1p(load)
+    if p[at.ROUGH_KIND] == 1.0:
+        rest = 3.0 * sigma * (1.0 - 1.0 / math.sqrt(1.0 + 2.0 / 3.0 * load))
     rest = max(rest, p[at.ROUGH_LOSS] * memory[LAYER_MOST])
     memory[LAYER] += 0.1 * (rest - memory[LAYER])
     memory[LAYER] = min(memory[LAYER], max(approach, 0.0))

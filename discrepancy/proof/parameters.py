@@ -17,7 +17,7 @@ from __future__ import annotations
     FLAT,
     # dissipation and layers of the contact
     DAMP_KIND, DAMP, RADIATION, ADHESION, ADHESION_RANGE, FILM_VISCOSITY, FILM_THICKNESS,
-    FILM_CLOSED, FILM_EXIT, ROUGH, ROUGH_FORCE, ROUGH_LOSS,
+    FILM_CLOSED, FILM_EXIT, ROUGH_KIND, ROUGH, ROUGH_FORCE, ROUGH_LOSS,
     # support
     SUPPORT_MASS, SUPPORT_STIFFNESS, SUPPORT_DAMPING, SUPPORT_GAP, PLATE,
     # tangential
@@ -26,8 +26,10 @@ from __future__ import annotations
     BEAM, BEAM_EA, BEAM_EI, BEAM_GA, BEAM_ROTARY, BEAM_LOSS,
     # numerics
     STEPS, FOLLOW,
-) = range(57)  # fmt: skip
-N_PARAMETERS = 57
+) = range(58)  # fmt: skip
+CAVITY_LAW, ROW_LAW = 58, 68
+"""First places of the constants of the two base laws, 10 and 7."""
+N_PARAMETERS = 75
 
 # what an impact returns
 (

@@ -12,6 +12,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from . import parameters as at
+from .base_laws import constants
 
 Array = NDArray[np.float64]
 
@@ -138,6 +139,7 @@ class Rig:
             row[at.MASS] = body.mass * factor["mass"]
             row[at.INERTIA] = body.inertia * factor["mass"]
             row[at.LENGTH] = body.length
+            row[at.CAVITY_LAW : at.N_PARAMETERS] = constants(self.target, body.metal)
             row[at.TIP] = body.tip_radius * factor["radius"]
             row[at.MODULUS] = factor["modulus"] / (1.0 / flat + 1.0 / other)
             if body.length > 0.0:

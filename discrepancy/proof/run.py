@@ -11,11 +11,15 @@ import os
 import resource
 import secrets
 import shutil
+import signal
 import subprocess
 import sys
 import tempfile
 import time
-from collections.abc import Iterator
+from collections.abc import Generator
+from concurrent.futures import FIRST_COMPLETED, Executor, Future, ProcessPoolExecutor, wait
+from itertools import islice
+from multiprocessing import get_context
 from pathlib import Path
 from typing import Any
 
@@ -38,6 +42,11 @@ def run_folder(base: Path, which: str) -> Path:
     return base / f"{which}-{tree_hash(ROOT)[:12]}"
 
 
+def verdicts_of(run: Path) -> int:
+    """How many sets of a run have a sealed verdict."""
+    return len(Ledger(run / "ledger.jsonl").of("verdict"))
+
+
 def draw_entry(tree: str, entry: Entry) -> Truth:
     """The concealed case of one entry."""
     rng = seed_of(tree, entry)
@@ -47,8 +56,14 @@ def draw_entry(tree: str, entry: Entry) -> Truth:
     return draw(rng, entry.kind, name=entry.effect)
 
 
-def prepare(run: Path, ledger: Ledger, tree: str, entry: Entry) -> None:
-    """Draw one case, write its recordings and its salted truth, and seal both."""
+def prepare(run: Path, tree: str, entry: Entry) -> dict[str, Any]:
+    """Draw one case, write its recordings and its salted truth.
+
+    Returns
+    -------
+    dict
+        The event that seals both.
+    """
     truth = draw_entry(tree, entry)
     for place in ("sets", "truths", "verdicts"):
         (run / place).mkdir(parents=True, exist_ok=True)
@@ -59,16 +74,20 @@ def prepare(run: Path, ledger: Ledger, tree: str, entry: Entry) -> None:
     record = truth.record() | {"salt": secrets.token_hex(16), "tree": tree}
     path = run / "truths" / f"{entry.name}.json"
     path.write_text(json.dumps(record, indent=1) + "\n")
-    ledger.add(event="truth", set=entry.name, truth=digest_of(path), recordings=digest_of(folder))
+    return {
+        "event": "truth", "set": entry.name, "truth": digest_of(path),
+        "recordings": digest_of(folder),
+    }  # fmt: skip
 
 
-def diagnose(run: Path, ledger: Ledger, name: str, *, limit_s: float) -> dict[str, Any]:
-    """Diagnose one set in a process that sees only its recordings; seal what it says.
+def diagnose(run: Path, name: str, limit_s: float) -> dict[str, Any]:
+    """Diagnose one set in a process that sees only its recordings.
 
     Returns
     -------
     dict
-        The event: `verdict` (hash, empty if there is none), `exit`, `cpu_s`, `wall_s`, `message`.
+        The event that seals what was said: `verdict` (hash, empty if there is none), `exit`,
+        `cpu_s`, `wall_s`, `message`.
     """
     start, before = time.monotonic(), _children_cpu()
     with tempfile.TemporaryDirectory() as place:
@@ -83,13 +102,11 @@ def diagnose(run: Path, ledger: Ledger, name: str, *, limit_s: float) -> dict[st
             kept = run / "verdicts" / f"{name}.json"
             shutil.copyfile(found, kept)
             digest = digest_of(kept)
-    event = {
+    return {
         "event": "verdict", "set": name, "verdict": digest, "exit": code,
         "cpu_s": round(_children_cpu() - before, 2),
         "wall_s": round(time.monotonic() - start, 2), "message": message,
     }  # fmt: skip
-    ledger.add(**event)
-    return event
 
 
 def _call(command: list[str], place: str, limit_s: float) -> tuple[int, str]:
@@ -113,10 +130,21 @@ def _children_cpu() -> float:
     return used.ru_utime + used.ru_stime
 
 
+def local_workers(count: int) -> Executor:
+    """Processes of this machine that draw and diagnose; Ctrl-C is for their parent alone."""
+    return ProcessPoolExecutor(
+        count, get_context("spawn"), initializer=signal.signal,
+        initargs=(signal.SIGINT, signal.SIG_IGN),
+    )  # fmt: skip
+
+
 def carry_on(
-    run: Path, which: str, *, hours: float = float("inf"), most: int = 10**9, limit_s: float = 900.0
-) -> Iterator[tuple[str, dict[str, Any]]]:
+    run: Path, which: str, workers: Executor, *, at_once: int = 1, hours: float = float("inf"),
+    most: int = 10**9, limit_s: float = 900.0,
+) -> Generator[tuple[str, dict[str, Any]]]:  # fmt: skip
     """Go on with a run where it stopped; yield each set's name and its verdict event.
+
+    Only this process writes the ledger; a truth is sealed before its diagnosis is handed out.
 
     Parameters
     ----------
@@ -124,6 +152,10 @@ def carry_on(
         Folder of the run.
     which
         Name of the list: `full` or `small`.
+    workers
+        Draw and diagnose.
+    at_once
+        How many sets are under way at a time.
     hours, most
         When to stop: time [h], number of sets diagnosed now.
     limit_s
@@ -135,6 +167,35 @@ def carry_on(
         The source tree changed since the run began; a new run draws new truths.
     """
     tree = tree_hash(ROOT)
+    ledger = _ledger_of(run, which, tree)
+    sealed = set(ledger.of("truth"))
+    todo = islice(entries_to_do(ledger, which, tree), most)
+    end = time.monotonic() + 3600.0 * hours
+    waiting: set[Future[dict[str, Any]]] = set()
+    while True:
+        while len(waiting) < at_once and time.monotonic() < end and (entry := next(todo, None)):
+            if entry.name in sealed:
+                waiting.add(workers.submit(diagnose, run, entry.name, limit_s))
+            else:
+                waiting.add(workers.submit(prepare, run, tree, entry))
+        if not waiting:
+            return
+        ended, waiting = wait(waiting, return_when=FIRST_COMPLETED)
+        for event in (future.result() for future in ended):
+            ledger.add(**event)
+            if event["event"] == "truth":
+                waiting.add(workers.submit(diagnose, run, event["set"], limit_s))
+            else:
+                yield event["set"], event
+
+
+def entries_to_do(ledger: Ledger, which: str, tree: str) -> Generator[Entry]:
+    """Entries of a list that have no verdict yet, in the order of this tree's run."""
+    done = set(ledger.of("verdict"))
+    return (entry for entry in shuffled(LISTS[which](), tree) if entry.name not in done)
+
+
+def _ledger_of(run: Path, which: str, tree: str) -> Ledger:
     run.mkdir(parents=True, exist_ok=True)
     ledger = Ledger(run / "ledger.jsonl")
     events = ledger.events()
@@ -142,15 +203,4 @@ def carry_on(
         ledger.add(event="begin", set="", tree=tree, list=which)
     elif events[0]["tree"] != tree:
         raise ValueError("the source tree is not the one of this run")
-    sealed, done = set(ledger.of("truth")), set(ledger.of("verdict"))
-    end = time.monotonic() + 3600.0 * hours
-    count = 0
-    for entry in shuffled(LISTS[which](), tree):
-        if count >= most or time.monotonic() > end:
-            return
-        if entry.name in done:
-            continue
-        if entry.name not in sealed:
-            prepare(run, ledger, tree, entry)
-        count += 1
-        yield entry.name, diagnose(run, ledger, entry.name, limit_s=limit_s)
+    return ledger

@@ -4,7 +4,7 @@ import math
 
 import numpy as np
 import pytest
-from dentscope.discrepancy.proof import benches, effects, simulate
+from dentscope.discrepancy.proof import base_laws, benches, cavity, effects, foundation, simulate
 from dentscope.discrepancy.proof import parameters as at
 from dentscope.discrepancy.proof.truth import FAMILIES
 
@@ -13,6 +13,8 @@ LAWS = [at.CAVITY, at.FOUNDATION]
 
 def row(law, *, speed=2.0, angle=90.0, length=0.3, strength=300e6, **more):
     p = np.zeros((1, at.N_PARAMETERS))
+    p[0, at.CAVITY_LAW : at.ROW_LAW] = cavity.COEFFICIENTS
+    p[0, at.ROW_LAW :] = foundation.COEFFICIENTS
     radius = 4.5e-3
     mass = 7800.0 * math.pi * radius**2 * 0.3
     inertia = mass * (length**2 / 12.0 + radius**2 / 4.0)
@@ -150,3 +152,19 @@ def test_every_effect_is_seen_somewhere(name):
         if largest > 3.0:
             break
     assert largest > 3.0
+
+
+@pytest.mark.parametrize("law", list(base_laws.LAWS))
+@pytest.mark.parametrize("target", benches.TARGETS, ids=lambda metal: metal.name)
+def test_base_laws_follow_the_finite_elements_of_each_pair(target, law):
+    entry = base_laws.stored()[f"{benches.BEARING_STEEL.name} on {target.name}"]
+    curve = base_laws.Curve(
+        **{k: np.asarray(entry[k]) if k != "stiffness" else entry[k]
+           for k in ("stiffness", "depth", "force", "turn", "left", "back")}
+    )  # fmt: skip
+    of_pair, usual = base_laws.LAWS[law]
+    for constants, mark in ((np.array(entry[law]["constants"]), 0.015), (usual, 0.12)):
+        force = [of_pair(constants, curve.stiffness, d)[0] for d in curve.depth]
+        back = [of_pair(constants, curve.stiffness, d)[2] for d in curve.turn]
+        assert np.sqrt(np.mean(np.log(force / curve.force) ** 2)) < mark
+        assert np.sqrt(np.mean(np.log(back / curve.back) ** 2)) < mark

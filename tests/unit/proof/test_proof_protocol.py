@@ -1,6 +1,7 @@
 """Seals, seeds, lists, scores and page of the proof; the diagnosis is replaced by a stand-in."""
 
 import json
+from concurrent.futures import ThreadPoolExecutor
 from pathlib import Path
 
 import numpy as np
@@ -123,8 +124,10 @@ def test_run_goes_on_where_it_stopped(tmp_path, monkeypatch):
 
     monkeypatch.setattr(run, "_call", stand_in)
     monkeypatch.setattr(run, "tree_hash", lambda root: "ab" * 32)
-    assert len(list(run.carry_on(tmp_path, "small", most=2))) == 2
-    assert len(list(run.carry_on(tmp_path, "small"))) == 1
+    with ThreadPoolExecutor(2) as threads:
+        assert len(list(run.carry_on(tmp_path, "small", threads, most=2))) == 2
+        assert run.verdicts_of(tmp_path) == 2
+        assert len(list(run.carry_on(tmp_path, "small", threads, at_once=2))) == 1
     assert sorted(seen) == ["set-0000", "set-0001", "set-0002"]
     cases = score.open_run(tmp_path)
     found = {s.name: s for s in score.scores(cases)}
