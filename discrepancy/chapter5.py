@@ -48,7 +48,11 @@ LITERATURE: Mapping[str, Mapping[str, float]] = {
     "support-compliance": {"support_stiffness_N_m": 4e8, "support_mass_kg": 10.0},
     # Bowden and Tabor's front of a sphere; dry steel twice as sticky at rest
     "ploughing-friction": {"ploughing_scale": 1.0},
-    "velocity-dependent-friction": {"static_over_dynamic": 1.5, "friction_speed_m_s": 0.3},
+    "velocity-dependent-friction": {
+        "static_over_dynamic": 1.5,
+        "friction_speed_m_s": 0.3,
+        "friction_stated_slow": 0.0,
+    },
     # Hunter and Crossley's alpha for steel near 0.1 s/m, times 3/2
     "contact-damping": {"damping_s_m": 0.15},
     # asperities that are flattened; a sixth of the area, Gaussian heights above one deviation
@@ -152,9 +156,14 @@ def _predict(
                 scene = m.attach(scene, LITERATURE[m.name], around)
             attached.append(scene)
     rows = strike_batch(attached, ACCURACY)
-    columns = [c.OBSERVABLES.index(SIMULATED[name]) for name in OBSERVED]
-    found = rows[:, columns].reshape(len(candidates), len(scenes), len(OBSERVED))
-    return list(found)
+    n, found = len(scenes), []
+    for i, mechanisms in enumerate(candidates):
+        part = rows[i * n : (i + 1) * n]
+        seen = {k: part[:, c.OBSERVABLES.index(v)].copy() for k, v in SIMULATED.items()}
+        for m in reversed(mechanisms):
+            m.after([(s, around) for s in scenes], LITERATURE[m.name], seen)
+        found.append(np.stack([seen[name] for name in OBSERVED], axis=1))
+    return found
 
 
 def _miss(predicted: Array, measured: Array) -> float:
