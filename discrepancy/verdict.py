@@ -439,15 +439,16 @@ def _limits(ranking: Ranking, calibration: Calibration) -> dict[str, float]:
     for s in ranking.screened:
         seen_at = calibration.single + calibration.offset.get(s.mechanism.name, 0.0)
         needed = math.sqrt(2.0 * (max(seen_at, 1.0) + 3.0))
-        p = s.mechanism.parameters[0]
+        p = s.grid.parameters[0]
         size = np.linalg.norm(base.linear.white(s.effect), axis=1)
-        n = round(len(size) ** (1.0 / len(s.mechanism.parameters)))
+        n = len(s.grid.fine[0])
         # over the other parameters the typical size
         along = np.median(size.reshape(n, -1), axis=1)
-        seen = np.flatnonzero(along > needed)
-        if seen.size:
-            spot = seen[0] if abs(p.neutral) < math.inf else seen[-1]
-            found[s.mechanism.name] = float(p.value((spot + 0.5) / n))
+        values = p.value((np.flatnonzero(along > needed) + 0.5) / n)
+        if values.size:
+            # nearest to doing nothing: the stiffest where that is to be rigid
+            nearest = -values if math.isinf(p.neutral) else np.abs(values - p.neutral)
+            found[s.mechanism.name] = float(values[np.argmin(nearest)])
     return found
 
 
