@@ -54,7 +54,7 @@ LITERATURE: Mapping[str, Mapping[str, float]] = {
         "friction_stated_slow": 0.0,
     },
     # Hunter and Crossley's alpha for steel near 0.1 s/m, times 3/2
-    "contact-damping": {"damping_s_m": 0.15},
+    "contact-damping": {"damping_s_m": 0.15, "damping_depth_exponent": 0.0},
     # asperities that are flattened; a sixth of the area, Gaussian heights above one deviation
     "roughness": {"roughness_m": 4e-7, "asperity_force_ratio": 0.16, "asperity_flattening": 1.0},
     "truncated-tip": {"flat_radius_over_R": 0.03},

@@ -23,6 +23,7 @@ Array = NDArray[np.float64]
 
 STEP = 0.3
 _SPEED_STEP, _ANGLE_STEP = 0.01, 0.01
+_JUMP = 0.05  # of the parameter: how near a jump makes a cell unsure
 _ROUNDS, _SETTLED = 4, 0.15
 _FARTHEST = 2.0  # of the unknowns within one round
 
@@ -159,7 +160,10 @@ def derivatives(
         moved = z.copy()
         moved[i] += STEP * sign[i]
         points.append(Point(moved, values))
+    beside = len(points)
+    points += [Point(z, v) for v in _beside(mechanisms, values)]
     found = simulator.predict(mechanisms, points)
+    found, around = found[:beside], found[beside:]
     here = found[0]
     by_speed = (found[1] - here) / _SPEED_STEP
     by_angle = (found[2] - here) / -_ANGLE_STEP if leaning else np.zeros_like(here)
@@ -168,7 +172,23 @@ def derivatives(
     if not mechanisms:
         return here, Linear(noise, J)
     effect = here - simulator.predict((), [Point(z)])[0]
-    return here, Linear(noise, J, form_error(problem, effect, max(m.form for m in mechanisms)))
+    form = form_error(problem, effect, max(m.form for m in mechanisms))
+    wider = max(m.law_error for m in mechanisms)
+    if wider > 1.0:
+        form = np.hstack([form, math.sqrt(wider**2 - 1.0) * J[:, problem.n_nuisances :]])
+    if len(around):
+        # by how much a cell departs from a smooth change nearby: half a jump, if there is one
+        jump = 0.5 * np.abs(around[0] + around[1] - 2.0 * here)
+        form = np.hstack([form, np.diag(jump)])
+    return here, Linear(noise, J, form)
+
+
+def _beside(mechanisms: Sequence[Mechanism], values: dict[str, float]) -> list[dict[str, float]]:
+    """Values a little below and above those of mechanisms whose outcome may jump."""
+    names = [m.parameters[0].name for m in mechanisms if m.jumps]
+    if not names:
+        return []
+    return [values | {n: values[n] * (1.0 + side) for n in names} for side in (-_JUMP, _JUMP)]
 
 
 def fit(

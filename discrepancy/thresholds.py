@@ -88,7 +88,8 @@ def null_residuals(simulator: Simulator, base: Fit, count: int, rng: np.random.G
     noise = scatter(rng, law.shape) @ np.linalg.cholesky(base.linear.noise).T
     k = problem.n_nuisances
     unknown = rng.standard_normal((count, k)) @ base.linear.J[:, :k].T
-    form = rng.standard_normal((count, len(set(cells.observable)) + 2))
+    most = len(set(cells.observable)) + 2 + problem.error.count + len(cells)
+    form = rng.standard_normal((count, most))
     return Nulls(law, law + noise + unknown, form)
 
 

@@ -123,6 +123,12 @@ class Mechanism(ABC):
         How far published forms of this physics differ, as a share of its effect, when they are
         fitted to each other over a decade of speed: 0.15 for constitutive laws (a power against a
         logarithm or an exponential), less where the equations are those of rigid or elastic bodies.
+    law_error
+        How many times larger the contact law's own error is with this mechanism: above 1 where the
+        law is used for a contact that it was not made for.
+    jumps
+        Whether the outcome jumps with the first parameter, because a tip may or may not touch
+        again.
     """
 
     name: str
@@ -131,6 +137,8 @@ class Mechanism(ABC):
     parameters: tuple[Parameter, ...]
     direction: ClassVar[Mapping[str, int]] = {}
     form: ClassVar[float] = 0.15
+    law_error: ClassVar[float] = 1.0
+    jumps: ClassVar[bool] = False
 
     def applies(self, situations: Sequence[Situation]) -> str:
         """Return why arithmetic rules the mechanism out for these conditions, or ""."""

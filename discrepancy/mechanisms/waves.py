@@ -69,6 +69,7 @@ class RodLongitudinalWaves(Mechanism):
     )
     parameters = (_PARTICIPATION,)
     form: ClassVar[float] = 0.05
+    jumps: ClassVar[bool] = True
     direction: ClassVar[Mapping[str, int]] = {"contact_time_s": 1}
 
     def applies(self, situations: Sequence[Situation]) -> str:
@@ -93,6 +94,7 @@ class RodFlexuralVibration(Mechanism):
     equations = "free-free Timoshenko beam and axial modes; re-contact while the tip returns"
     parameters = (_PARTICIPATION,)
     form: ClassVar[float] = 0.05
+    jumps: ClassVar[bool] = True
     direction: ClassVar[Mapping[str, int]] = {}
 
     def applies(self, situations: Sequence[Situation]) -> str:
