@@ -6,6 +6,7 @@ of the line before it, so that no line can be changed, dropped or put in later w
 
 from __future__ import annotations
 
+import fcntl
 import hashlib
 import json
 from pathlib import Path
@@ -86,12 +87,13 @@ class Ledger:
         return found
 
     def add(self, **event: Any) -> None:
-        """Append one event."""
-        before = ""
-        for old in self.events():
-            before = _chain(before, old)
-        line = event | {"chain": _chain(before, event)}
+        """Append one event; a run and its scoring may write at the same time."""
         with self.path.open("a", encoding="utf-8") as stream:
+            fcntl.flock(stream, fcntl.LOCK_EX)  # dropped as the file closes
+            before = ""
+            for old in self.events():
+                before = _chain(before, old)
+            line = event | {"chain": _chain(before, event)}
             stream.write(json.dumps(line, sort_keys=True) + "\n")
 
     def of(self, kind: str) -> dict[str, dict[str, Any]]:

@@ -61,6 +61,13 @@ def test_changed_ledger_breaks_the_chain(sealed, change):
         score.open_run(sealed)
 
 
+def test_several_writers_leave_the_chain_whole(tmp_path):
+    path = tmp_path / "ledger.jsonl"
+    with ThreadPoolExecutor(4) as threads:
+        list(threads.map(lambda k: seal.Ledger(path).add(event="e", set=str(k)), range(60)))
+    assert sorted(int(e["set"]) for e in seal.Ledger(path).events()) == list(range(60))
+
+
 def test_verdict_after_opening_is_refused(tmp_path, sealed):
     ledger = seal.Ledger(sealed / "ledger.jsonl")
     score.open_run(sealed)
