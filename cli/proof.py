@@ -37,14 +37,7 @@ def run(
 ) -> int:
     """Go on with the run of this source tree: draw, seal, diagnose, seal. Stop it at any time."""
     from rich.console import Console
-    from rich.progress import (
-        BarColumn,
-        MofNCompleteColumn,
-        Progress,
-        TextColumn,
-        TimeElapsedColumn,
-        TimeRemainingColumn,
-    )  # fmt: skip
+    from rich.progress import Progress
 
     from ..core.threads import one_thread_each
     from ..discrepancy.proof.lists import LISTS
@@ -58,16 +51,10 @@ def run(
     )
     one_thread_each()
     console = Console()
-    columns = (
-        TextColumn("sets"), BarColumn(), MofNCompleteColumn(), TimeElapsedColumn(),
-        TimeRemainingColumn(), TextColumn("left"),
-    )  # fmt: skip
     pool = local_workers(workers)
-    steps = carry_on(
-        folder, which, pool, at_once=workers, hours=hours, most=most, limit_s=limit
-    )  # fmt: skip
+    steps = carry_on(folder, which, pool, at_once=workers, hours=hours, most=most, limit_s=limit)
     try:
-        with Progress(*columns, console=console, disable=not console.is_terminal) as bar:
+        with Progress(console=console, disable=not console.is_terminal) as bar:
             task = bar.add_task("sets", total=total, completed=before)
             for name, event in steps:
                 bar.advance(task)

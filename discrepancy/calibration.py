@@ -36,16 +36,10 @@ class Calibration:
         Mechanism to the 95 % point of its ln B over the nulls, at least 0.
     single
         98 % point of the largest ln B minus offset over the library, at least 1.
-    best
-        (n,) that largest value of each null.
-    chi2
-        (n,) misfit of the baseline.
     """
 
     offset: dict[str, float]
     single: float
-    best: Array
-    chi2: Array
 
     def excess(self, fitted: Fit, base: Fit) -> float:
         """Ln B of a fit over the baseline, less its mechanisms' offset."""
@@ -70,18 +64,16 @@ class Calibration:
 
 def calibrate(ranking: Ranking, nulls: Nulls) -> Calibration:
     """Put the nulls through the screening."""
-    base = ranking.base
-    chi2 = np.sum(base.linear.white(nulls.residual) ** 2, axis=1)
     if not ranking.screened:
-        return Calibration({}, 1.0, np.full(len(chi2), -np.inf), chi2)
-    factors = null_bayes_factors(nulls, base, [s.effect for s in ranking.screened])
+        return Calibration({}, 1.0)
+    factors = null_bayes_factors(nulls, ranking.base, [s.effect for s in ranking.screened])
     offset = np.maximum(np.quantile(factors, 0.95, axis=0), 0.0)
     best = (factors - offset).max(axis=1)
     names = [s.mechanism.name for s in ranking.screened]
     return Calibration(
         dict(zip(names, (float(x) for x in offset), strict=True)),
-        max(float(np.quantile(best, _ALARM)), 1.0), best, chi2,
-    )  # fmt: skip
+        max(float(np.quantile(best, _ALARM)), 1.0),
+    )
 
 
 def p_fit(fitted: Fit, nulls: Nulls, problem: Problem) -> float:

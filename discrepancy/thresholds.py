@@ -41,7 +41,7 @@ class Nulls:
     residual
         (n, m) with noise and nuisances: residuals at the prior mean.
     form
-        (n, components) unit normal draws of the error of a mechanism's form.
+        (n, components) unit normal draws of the error of a mechanism's form, for the most it has.
     """
 
     law: Array
@@ -88,8 +88,8 @@ def null_residuals(simulator: Simulator, base: Fit, count: int, rng: np.random.G
     noise = scatter(rng, law.shape) @ np.linalg.cholesky(base.linear.noise).T
     k = problem.n_nuisances
     unknown = rng.standard_normal((count, k)) @ base.linear.J[:, :k].T
-    most = len(set(cells.observable)) + 2 + problem.error.count + len(cells)
-    form = rng.standard_normal((count, most))
+    components = len(set(cells.observable)) + 2 + problem.error.count + len(cells)
+    form = rng.standard_normal((count, components))
     return Nulls(law, law + noise + unknown, form)
 
 

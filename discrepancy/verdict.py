@@ -7,6 +7,7 @@ held-out conditions -> next experiment. `Verdict.to_dict` gives verdict.json, ve
 from __future__ import annotations
 
 import math
+from collections.abc import Mapping
 from dataclasses import dataclass, field, replace
 from typing import Any
 
@@ -165,15 +166,14 @@ def diagnose(
     nulls = null_residuals(simulator, ranking.base, CONFIRMED_NULLS if confirm else NULLS, rng)
     calibration = calibrate(ranking, nulls)
     ranking = calibration.sorted(ranking)
-    p_base = p_fit(ranking.base, nulls, problem)
-    if needs_more(ranking, calibration, p_base):
+    p_fits = {ranking.base.name: p_fit(ranking.base, nulls, problem)}
+    if needs_more(ranking, calibration, p_fits):
         ranking = calibration.sorted(with_pairs(simulator, ranking, progress=progress))
     located = locate(problem, ranking.base, nulls)
     progress("deciding")
-    choice = decide(problem, ranking, nulls, calibration)
-    probabilities = _probabilities(problem, ranking, nulls, calibration)
-    if choice.members and probabilities[OUTSIDE] > _RATHER_OUTSIDE:
-        choice = Choice(OUTSIDE, (), (*choice.reasons, _rather_outside(choice, probabilities)))
+    p_fits |= {f.name: p_fit(f, nulls, problem) for f in (*ranking.singles, *ranking.pairs)}
+    probabilities = _probabilities(problem, ranking, p_fits)
+    choice = decide(problem, ranking, nulls, calibration, p_fits, probabilities)
     confirmed: dict[str, float] = {}
     if confirm:
         from .confirm import confirm_evidence
@@ -202,7 +202,7 @@ def diagnose(
             tuple(m.name for m in f.mechanisms) for f in choice.members[1:]
         ),
         audit=findings, probabilities=probabilities,
-        scores=_scores(problem, ranking, nulls, scores, confirmed), located=located,
+        scores=_scores(ranking, p_fits, scores, confirmed), located=located,
         parameters=parameters_of(problem, best), nuisance_pulls=_pulls(problem, best),
         excluded=ranking.excluded, limits=_limits(ranking, calibration),
         improvement=_improvement(scores[ranking.base.name], scores[best.name]),
@@ -221,18 +221,33 @@ class Choice:
     reasons: tuple[str, ...]
 
 
-def needs_more(ranking: Ranking, calibration: Calibration, p_base: float) -> bool:
+def needs_more(ranking: Ranking, calibration: Calibration, p_fits: Mapping[str, float]) -> bool:
     """Whether the baseline is in doubt, so that pairs are worth fitting."""
     base = ranking.base
     if not ranking.singles:
         return False
     gain = calibration.excess(ranking.singles[0], base)
-    return gain > calibration.single or p_base < P_FIT
+    return gain > calibration.single or p_fits[base.name] < P_FIT
 
 
-def decide(problem: Problem, ranking: Ranking, nulls: Nulls, calibration: Calibration) -> Choice:
-    """Decide by thresholds that come from nulls of the same set, and by drifts of its repeats."""
-    choice = _by_thresholds(problem, ranking, nulls, calibration)
+def decide(
+    problem: Problem, ranking: Ranking, nulls: Nulls, calibration: Calibration,
+    p_fits: Mapping[str, float], probabilities: Mapping[str, float],
+) -> Choice:  # fmt: skip
+    """Decide by thresholds from nulls of the same set, by the odds of something outside, by drifts.
+
+    Parameters
+    ----------
+    problem, ranking, nulls, calibration
+        What was compared, all fits, and what nulls of the same set give.
+    p_fits
+        For each fit by name, the share of its own data sets that fit it no better.
+    probabilities
+        For each fit by name, and for `OUTSIDE`.
+    """
+    choice = _by_thresholds(problem, ranking, nulls, calibration, p_fits)
+    if choice.members and probabilities[OUTSIDE] > _RATHER_OUTSIDE:
+        choice = Choice(OUTSIDE, (), (*choice.reasons, _rather_outside(choice, probabilities)))
     if not problem.drifts:
         return choice
     seen = (
@@ -246,7 +261,7 @@ def decide(problem: Problem, ranking: Ranking, nulls: Nulls, calibration: Calibr
     )
 
 
-def _rather_outside(choice: Choice, probabilities: dict[str, float]) -> str:
+def _rather_outside(choice: Choice, probabilities: Mapping[str, float]) -> str:
     return (
         f"{choice.members[0].name} passes the tests, but a contact law that is free explains the "
         f"set so much better that something outside the library has "
@@ -261,13 +276,14 @@ def _change(drift: Drift) -> str:
 
 
 def _by_thresholds(
-    problem: Problem, ranking: Ranking, nulls: Nulls, calibration: Calibration
-) -> Choice:
+    problem: Problem, ranking: Ranking, nulls: Nulls, calibration: Calibration,
+    p_fits: Mapping[str, float],
+) -> Choice:  # fmt: skip
     base = ranking.base
     cells = len(problem.cells)
     if cells < _FEWEST:
         return Choice("undetermined", (), (f"only {cells} numbers to compare",))
-    p_base = p_fit(base, nulls, problem)
+    p_base = p_fits[base.name]
     reasons = [
         f"the baseline's misfit is {base.chi2:.0f} over {cells} cells; "
         f"{_percent(p_base)} of sets with nothing missing fit no better"
@@ -284,9 +300,8 @@ def _by_thresholds(
     )
     if gain <= calibration.single and p_base >= P_FIT:
         return Choice("adequate", (), tuple(reasons))
-    fits = {f.name: p_fit(f, nulls, problem) for f in (*ranking.singles, *ranking.pairs)}
-    pairs = [f for f in ranking.pairs if fits[f.name] >= P_FIT]
-    singles = [f for f in ranking.singles if fits[f.name] >= P_FIT]
+    pairs = [f for f in ranking.pairs if p_fits[f.name] >= P_FIT]
+    singles = [f for f in ranking.singles if p_fits[f.name] >= P_FIT]
     needed = extra_threshold(lead, ranking, nulls)
     more = pairs[0].log_evidence - lead.log_evidence if pairs else -math.inf
     if pairs and (more > needed or not singles):
@@ -299,7 +314,7 @@ def _by_thresholds(
         return _set_of(singles, singles[0], ranking, nulls, reasons)
     reasons.append(
         f"no mechanism or pair fits: of the sets that {lead.name} would make, "
-        f"{_percent(fits[lead.name])} fit it no better"
+        f"{_percent(p_fits[lead.name])} fit it no better"
     )
     return Choice(OUTSIDE, (), tuple(reasons))
 
@@ -344,7 +359,7 @@ def _finite(x: float) -> float | None:
 
 
 def _probabilities(
-    problem: Problem, ranking: Ranking, nulls: Nulls, calibration: Calibration
+    problem: Problem, ranking: Ranking, p_fits: Mapping[str, float]
 ) -> dict[str, float]:
     """Posterior probabilities; half the prior on the baseline, a twentieth outside the library.
 
@@ -354,13 +369,11 @@ def _probabilities(
     outside = float(widened(problem, base).log_likelihood(base.residual))
     names = ["baseline", OUTSIDE]
     logs = [base.log_evidence + math.log(0.5), outside + math.log(0.05)]
-    rejected = {"baseline"} if p_fit(base, nulls, problem) < P_FIT else set()
+    rejected = {name for name, p in p_fits.items() if p < P_FIT}
     for share, fits in ((0.3, ranking.singles), (0.15, ranking.pairs)):
         for f in fits:
             names.append(f.name)
             logs.append(f.log_evidence + math.log(share / len(fits)))
-            if p_fit(f, nulls, problem) < P_FIT:
-                rejected.add(f.name)
     total = logsumexp(logs)
     found = {n: float(np.exp(x - total)) for n, x in zip(names, logs, strict=True)}
     found[OUTSIDE] += sum(found[n] for n in rejected)
@@ -369,9 +382,8 @@ def _probabilities(
 
 
 def _scores(
-    problem: Problem,
     ranking: Ranking,
-    nulls: Nulls,
+    p_fits: Mapping[str, float],
     scores: dict[str, HeldOut],
     confirmed: dict[str, float],
 ) -> dict[str, dict[str, float]]:
@@ -381,7 +393,7 @@ def _scores(
             found[f.name] = {
                 "evidence": confirmed.get(f.name, f.log_evidence - ranking.base.log_evidence),
                 "held_out": scores[f.name].score,
-                "p_value": p_fit(f, nulls, problem),
+                "p_value": p_fits[f.name],
             }
     return found
 

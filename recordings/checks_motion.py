@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
+
 import numpy as np
 from scipy.optimize import minimize_scalar
 from scipy.stats import chi2
@@ -74,14 +76,9 @@ def check_mass(found: RecordingSet) -> list[Finding]:
 
 def _masses_together(bodies: list[tuple[Striker, limits.Range]]) -> Finding:
     """All stated masses off by one factor, beside none off."""
-    part = _part_of_the_ends(bodies)
-    plain = _misfit(bodies, part)
-    if any(m.high > m.low for _, m in bodies):
-        free = minimize_scalar(
-            lambda p: _misfit(bodies, p, _factor(bodies, p)), bounds=(0.0, 1.0), method="bounded"
-        )
-        part = min((0.0, float(free.x), 1.0), key=lambda p: _misfit(bodies, p, _factor(bodies, p)))
+    part = _best_part(bodies, lambda p: _misfit(bodies, p, _factor(bodies, p)))
     factor = _factor(bodies, part)
+    plain = _misfit(bodies, _part_of_the_ends(bodies))
     gain = max(plain - _misfit(bodies, part, factor), 0.0)
     wrong = float(chi2.sf(gain, 1)) < (1.0 - _ALONE) * FALSE_ALARMS_MASS
     return Finding(
@@ -118,12 +115,14 @@ def _mass_relative(striker: Striker, mass: limits.Range) -> float:
 
 def _part_of_the_ends(rods: list[tuple[Striker, limits.Range]]) -> float:
     """Return the part of the end caps, 0 to 1, with which all stated masses agree best."""
-    if not any(m.high > m.low for _, m in rods):
+    return _best_part(rods, lambda part: _misfit(rods, part))
+
+
+def _best_part(
+    bodies: list[tuple[Striker, limits.Range]], misfit: Callable[[float], float]
+) -> float:
+    if not any(m.high > m.low for _, m in bodies):
         return 0.0
-
-    def misfit(part: float) -> float:
-        return _misfit(rods, part)
-
     inside = float(minimize_scalar(misfit, bounds=(0.0, 1.0), method="bounded").x)
     return min((0.0, inside, 1.0), key=misfit)
 

@@ -210,9 +210,8 @@ class Layer:
         kept
             Part of the closure that stays.
         """
-        depth, (force, recovered) = table.depth, (
-            np.exp(table.log_force[UNIT]), np.exp(table.log_recovery[UNIT]),
-        )  # fmt: skip
+        depth, force = table.depth, np.exp(table.log_force[UNIT])
+        recovered = np.exp(table.log_recovery[UNIT])
         scale = start * math.exp(np.interp(math.log(sigma), np.log(depth), np.log(force)))
         turns = np.log1p(force / scale)
         freed = scale * np.expm1(kept * turns)

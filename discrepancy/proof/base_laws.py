@@ -34,7 +34,6 @@ FILE = Path(__file__).with_name("base_laws.json")
 _DEPTHS = np.geomspace(2e-4, 0.1, 40)
 _TURNS = (6, 13, 20, 26, 32, 39)
 _CLOSE, _LOOSE = 0.01, 0.5
-_PLACE = ((np.arange(foundation.N_SPRINGS) + 0.5) / foundation.N_SPRINGS) ** 2
 
 
 @dataclass(frozen=True)
@@ -97,10 +96,10 @@ def _of_row(c: Array, stiffness: float, depth: float) -> tuple[float, float, flo
     edge = math.sqrt(wide * depth)
     plastic, force = np.zeros(foundation.N_SPRINGS), np.zeros(foundation.N_SPRINGS)
     total, _, _ = foundation.press(
-        depth, depth, edge, stiffness, 1.0, 1.0, c, _PLACE, plastic, force
+        depth, depth, edge, stiffness, 1.0, 1.0, c, foundation.PLACE, plastic, force
     )
-    width = 2.0 * np.sqrt(_PLACE) / foundation.N_SPRINGS * edge
-    left = float(np.min(plastic + (_PLACE * edge) ** 2 / wide))
+    width = 2.0 * np.sqrt(foundation.PLACE) / foundation.N_SPRINGS * edge
+    left = float(np.min(plastic + (foundation.PLACE * edge) ** 2 / wide))
     return total, left, float(np.sum(force**2 / stiffness * width))
 
 

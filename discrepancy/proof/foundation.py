@@ -19,6 +19,8 @@ import numpy as np
 from numba import njit
 
 N_SPRINGS = 64
+PLACE = ((np.arange(N_SPRINGS) + 0.5) / N_SPRINGS) ** 2
+"""Places of the springs over the edge of the row: fine where first contact is made."""
 
 # W = (peak / R) (E'/Sy)^2: profile 1 + WIDE x/(1+x), x = (W/W_WIDE)^S_WIDE;
 # pressure limit over Sy from LOW to HIGH over W_HARD, less FALL a/R
@@ -67,7 +69,6 @@ def press(depth, peak, edge, E, R, Y, c, place, plastic, force):
     a2 = wide * depth if depth > 0.0 else 0.0
     work = 0.0
     for i in range(n):
-        # places are squares of equally spaced numbers: fine where first contact is made
         root = (i + 0.5) / n
         x = place[i] * edge
         dx = 2.0 * root / n * edge

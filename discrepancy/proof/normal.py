@@ -4,13 +4,10 @@ from __future__ import annotations
 
 import math
 
-import numpy as np
 from numba import njit
 
 from . import cavity, flow, foundation
 from . import parameters as at
-
-_PLACE = ((np.arange(foundation.N_SPRINGS) + 0.5) / foundation.N_SPRINGS) ** 2
 
 # places in the memory of a contact: static peak depth, its force, its residual depth, its radius,
 # the last depth and force, largest layer closure, layer closure now, radius now, depth when freed
@@ -109,7 +106,7 @@ def _row_force(p, memory, depth, speed, dt, plastic):
     edge = memory[EDGE]
     for i in range(n):
         root = (i + 0.5) / n
-        x = _PLACE[i] * edge
+        x = foundation.PLACE[i] * edge
         profile = x * x / wide
         if flat > 0.0:
             # image of a paraboloid with a cut tip: x sqrt(x^2 - b^2) / R
