@@ -20,9 +20,6 @@ from .problem import Problem
 
 Array = NDArray[np.float64]
 
-WIDER = 8.0
-"""How much wider than the law's known error the correction may be."""
-
 _SHOWN = 12
 
 
@@ -51,7 +48,7 @@ def widened(problem: Problem, fitted: Fit) -> Linear:
     """Return the algebra of a fit with the law's error made so wide that it is free."""
     k = problem.n_nuisances
     J = fitted.linear.J.copy()
-    J[:, k:] *= WIDER
+    J[:, k:] *= problem.error.freedom
     return Linear(fitted.linear.noise, J, fitted.linear.form)
 
 
@@ -70,8 +67,9 @@ def correct(problem: Problem, base: Fit, reached: tuple[float, float]) -> list[C
     k = problem.n_nuisances
     # the expansion's offset by the law's own coefficients is part of the residual already
     mean, cov = widened(problem, base).unknowns(base.residual)
-    mean, cov = mean[k:] * WIDER, cov[k:, k:] * WIDER**2
     error = problem.error
+    free = error.freedom
+    mean, cov = mean[k:] * free, cov[k:, k:] * np.outer(free, free)
     n, m = len(error.force), len(error.recovery)
     grid = np.linspace(LOG_DEPTH_FIRST, LOG_DEPTH_LAST, NODES)
     at = np.linspace(math.log(0.3 * reached[0]), math.log(reached[1]), _SHOWN)

@@ -27,6 +27,8 @@ Array = NDArray[np.float64]
 
 FINE = {1: 241, 2: 49, 3: 17, 4: 11}
 """Points per parameter of the refined grid, by the number of parameters."""
+IN_WINDOW = {1: 5, 2: 4, 3: 3}
+"""Nodes per parameter of a grid over a part of the prior, by the number of parameters."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -96,20 +98,34 @@ class Grid:
     ----------
     parameters
         In the order of the axes.
+    window
+        Part of the prior that it covers, (low, high) within (0, 1) for each axis; all if empty.
     """
 
     parameters: tuple[Parameter, ...]
+    window: tuple[tuple[float, float], ...] = ()
 
     @cached_property
     def coarse(self) -> list[Array]:
         """Places in (0, 1) of the nodes of each axis."""
-        return [np.linspace(0.0, 1.0, p.nodes) for p in self.parameters]
+        if not self.window:
+            return [np.linspace(0.0, 1.0, p.nodes) for p in self.parameters]
+        count = IN_WINDOW.get(len(self.parameters), 3)
+        return [np.linspace(low, high, count) for low, high in self.window]
 
     @cached_property
     def fine(self) -> list[Array]:
         """Places of the refined grid: middles of equal shares of the prior."""
         n = FINE.get(len(self.parameters), 9)
-        return [(np.arange(n) + 0.5) / n for _ in self.parameters]
+        share = (np.arange(n) + 0.5) / n
+        if not self.window:
+            return [share for _ in self.parameters]
+        return [low + (high - low) * share for low, high in self.window]
+
+    @property
+    def log_volume(self) -> float:
+        """Ln of the part of the prior that the grid covers."""
+        return sum(math.log(high - low) for low, high in self.window)
 
     def values(self, places: Sequence[float] | Array) -> dict[str, float]:
         """Return the parameters at places in (0, 1)."""

@@ -29,7 +29,9 @@ Array = NDArray[np.float64]
 
 # Depths that impacts reach; outside, the components stay at their end values.
 _FIRST, _LAST = math.log(3e-5), math.log(0.2)
-_SHAPE, _SPLIT = 0.08, 0.03
+_SPLIT = 0.03
+FREE = {"force": 0.16, "recovery": 0.5, "recovery exponent": 0.5, "crater": 0.24}
+"""Standard deviations of a contact law that is free: what something unknown may make of it."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -58,6 +60,15 @@ class LawError:
     def count(self) -> int:
         """Number of unknowns."""
         return len(self.force) + len(self.recovery) + (self.shape > 0.0) + len(self.split)
+
+    @property
+    def freedom(self) -> Array:
+        """Factor on each unknown that makes the law free, shape (count,)."""
+        parts = (
+            ("force", len(self.force)), ("recovery", len(self.recovery)),
+            ("recovery exponent", int(self.shape > 0.0)), ("crater", len(self.split)),
+        )  # fmt: skip
+        return np.concatenate([np.full(n, FREE[k] / self.sizes[k]) for k, n in parts if n])
 
     def transform(self, b: Array) -> ForceTransform:
         """Return the force seam at the unknowns b, shape (count,)."""
@@ -114,10 +125,10 @@ def law_error(law: ContactLaw) -> LawError:
     errors = stored["errors"]["left_out"]
     # mean absolute errors; 1.25 of it is a standard deviation
     force = min(max(1.25 * errors["force"][0], 0.02), 0.06)
-    residual = min(max(1.25 * errors["left"][0], 0.005), 0.03)
-    recovery = min(residual / 0.25, 0.08)  # of the quarter of the depth that typically recovers
+    recovery = min(max(1.25 * errors["given_back"][0], 0.02), 0.08)
+    shape = min(max(1.25 * errors["exponent"][0], 0.02), 0.1)
     return LawError(
-        components(force, 1.5), components(recovery, 2.0), _SHAPE,
+        components(force, 1.5), components(recovery, 2.0), shape,
         components(_SPLIT, 2.5, keep=0.95),
-        {"force": force, "recovery": recovery, "recovery exponent": _SHAPE, "crater": _SPLIT},
+        {"force": force, "recovery": recovery, "recovery exponent": shape, "crater": _SPLIT},
     )  # fmt: skip

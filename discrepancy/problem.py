@@ -56,7 +56,8 @@ PHASES = {
 
 _SAME_SPEED = 0.05
 _SPEED_MEASURED, _SPEED_FROM_HEIGHT = 0.003, 0.005  # systematic, where nothing is stated
-_FLOOR = 0.004  # what repeats cannot average away: gauges, definitions (fraction of the value)
+# what repeats cannot average away: gauges, definitions; of the value, and of one reading's noise
+_FLOOR, _FLOOR_OF_NOISE = 0.004, 0.5
 
 
 @dataclass(frozen=True, slots=True)
@@ -488,7 +489,9 @@ def _cells(
         notes.append(f"{dropped} single values lie far off their repeats and were left out")
     value = np.array([r[2] for r in rows])
     names = tuple(r[1] for r in rows)
-    floor = np.array([_FLOOR if n in LOGARITHMIC else _FLOOR * _size(n, rows) for n in names])
+    of_value = np.array([_FLOOR if n in LOGARITHMIC else _FLOOR * _size(n, rows) for n in names])
+    one_reading = np.array([r[3] * math.sqrt(r[4]) for r in rows])
+    floor = np.minimum(of_value, _FLOOR_OF_NOISE * one_reading)
     cells = Cells(
         np.array([r[0] for r in rows], dtype=np.intp), names, value,
         np.hypot(np.array([r[3] for r in rows]), floor),

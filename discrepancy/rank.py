@@ -12,7 +12,15 @@ from numpy.typing import NDArray
 from scipy.special import logsumexp
 
 from .evidence import Grid, along_all
-from .fit import Fit, baseline_situations, fit, fit_anchored, grid_of, responses_at
+from .fit import (
+    Fit,
+    baseline_situations,
+    fit,
+    fit_anchored,
+    grid_of,
+    responses_at,
+    sharpened,
+)
 from .forward import Point, Simulator
 from .mechanisms import MECHANISMS
 from .mechanisms.base import Mechanism
@@ -24,9 +32,11 @@ Progress = Callable[[str], None]
 
 FULL, NEAR = 4, 12.0
 """Mechanisms that are fitted in full: at least the first few, and all within some nats of them."""
-PAIRED = 6
-"""Pairs that are fitted."""
+PAIRED, PARTNERS = 4, 3
+"""Pairs that are fitted: the leading by the sum of their effects, and of the leading mechanism with
+those that explain most of what it leaves."""
 _INVISIBLE = 1.0
+_CLEAR, _RIVAL = 10.0, 0.6  # nats, and part of the leading gain, from which a fit is sharpened
 _LEADS = 3.0  # nats from which outliers are judged under the leading mechanism
 _FEW = 48  # places of each mechanism that stand for all in the search for pairs
 _NEAR = 0.12  # of the prior's width: where the mutual effect of two mechanisms is simulated
@@ -125,8 +135,25 @@ def rank(
                 effect=found.effect,
             )
         )  # fmt: skip
-    singles.sort(key=lambda f: -f.log_evidence)
+    progress("sharpening the leading fits")
+    singles = _sharpened(simulator, singles, base)
     return Ranking(base, tuple(screened), tuple(singles), (), excluded)
+
+
+def _sharpened(
+    simulator: Simulator, fits: list[Fit], base: Fit, *, most: int = FULL, rounds: int = 8
+) -> list[Fit]:
+    """Sharpen fits that gain much, the leading and its rivals; best first."""
+    fits = sorted(fits, key=lambda f: -f.log_evidence)
+    best = fits[0].log_evidence - base.log_evidence if fits else 0.0
+    enough = max(_CLEAR, _RIVAL * best)
+    found = [
+        sharpened(simulator, f, rounds=rounds)
+        if i < most and f.log_evidence - base.log_evidence > enough
+        else f
+        for i, f in enumerate(fits)
+    ]
+    return sorted(found, key=lambda f: -f.log_evidence)
 
 
 def _cleared(
@@ -155,15 +182,19 @@ def _cleared(
 def with_pairs(
     simulator: Simulator, ranking: Ranking, *, progress: Progress = lambda _: None
 ) -> Ranking:
-    """Fit the leading pairs, which are found by adding the effects of all single mechanisms."""
+    """Fit the leading pairs."""
     pairs = []
-    for one, two, place in _leading_pairs(ranking):
+    found = {
+        (one.mechanism.name, two.mechanism.name): (one, two, place)
+        for one, two, place in (*_leading_pairs(ranking), *_partners(ranking))
+    }
+    for one, two, place in found.values():
         progress(f"fitting {one.mechanism.name} with {two.mechanism.name}")
         near = [f for f in ranking.singles if f.mechanisms[0] in (one.mechanism, two.mechanism)]
         start = max(near, key=lambda f: f.log_evidence, default=ranking.base)
         both = PairEffect(simulator, one, two)
         pairs.append(fit_anchored(simulator, both.mechanisms, both, start=start, place=place))
-    pairs.sort(key=lambda f: -f.log_evidence)
+    pairs = _sharpened(simulator, pairs, ranking.base, most=2, rounds=5)
     return replace(ranking, pairs=tuple(pairs))
 
 
@@ -186,6 +217,30 @@ def _leading_pairs(ranking: Ranking) -> list[tuple[Screened, Screened, Array]]:
         one, two = ranking.screened[i], ranking.screened[j]
         place = np.concatenate([one.grid.places()[thin[i][p]], two.grid.places()[thin[j][q]]])
         found.append((one, two, place))
+    return found
+
+
+def _partners(ranking: Ranking) -> list[tuple[Screened, Screened, Array]]:
+    """Return the leading mechanism with those that explain most of what it leaves."""
+    order = {s.mechanism.name: i for i, s in enumerate(ranking.screened)}
+    lead = ranking.singles[0]
+    first = ranking.screened[order[lead.mechanisms[0].name]]
+    white = lead.linear.white(lead.residual)[None, :]
+    scored = []
+    for s in ranking.screened:
+        if s is first:
+            continue
+        e = lead.linear.white(s.effect)
+        best = int(np.argmax(white[0] @ e.T - 0.5 * np.sum(e**2, axis=1)))
+        gained = float(gain(white, np.zeros(1), lead.linear, s.effect)[0])
+        scored.append((gained, order[s.mechanism.name], s, s.grid.places()[best]))
+    scored.sort(key=lambda x: -x[0])
+    found = []
+    for _, i, s, place in scored[:PARTNERS]:
+        if i < order[first.mechanism.name]:
+            found.append((s, first, np.concatenate([place, lead.place])))
+        else:
+            found.append((first, s, np.concatenate([lead.place, place])))
     return found
 
 

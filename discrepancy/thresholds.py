@@ -26,8 +26,9 @@ from .problem import LOGARITHMIC, Problem
 
 Array = NDArray[np.float64]
 
-LEVELS = {"force": 0.03, "force slope": 0.01, "recovery": 0.05, "recovery slope": 0.02}
-"""Spread of the null laws' levels about the baseline's, as the published laws have it."""
+LEVEL, SLOPE = 1.5, 0.5
+"""Spread of the null laws' levels about the baseline's and of their slopes over ln(depth), in what
+the baseline is known to be off by: a null law is off by more than its test allows for."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -39,21 +40,29 @@ class Nulls:
     law
         (n, m) discrepancy of null laws from the baseline, without noise.
     residual
-        (n, m) with noise and nuisances: residuals at the prior mean.
+        (n, m) with noise and nuisances of the baseline: residuals at the prior mean.
+    scatter, unknown
+        (n, m) and (n, nuisances) unit draws behind them.
     form
         (n, components) unit normal draws of the error of a mechanism's form, for the most it has.
     """
 
     law: Array
     residual: Array
+    scatter: Array
+    unknown: Array
     form: Array
 
     def made_by(self, fitted: Fit) -> Array:
-        """Residuals that a set made by an explanation would leave at its truth, (n, m)."""
-        form = fitted.linear.form
-        return (
-            self.residual + self.form[:, : form.shape[1]] @ form.T if form.size else self.residual
-        )
+        """Residuals that a set made by an explanation would leave at its truth, (n, m).
+
+        What noise of the approach and nuisances do follows the explanation's own derivatives.
+        """
+        linear = fitted.linear
+        noise = self.scatter @ np.linalg.cholesky(linear.noise).T
+        found = self.law + noise + self.unknown @ linear.J[:, : self.unknown.shape[1]].T
+        form = linear.form
+        return found + self.form[:, : form.shape[1]] @ form.T if form.size else found
 
 
 def null_residuals(simulator: Simulator, base: Fit, count: int, rng: np.random.Generator) -> Nulls:
@@ -76,8 +85,11 @@ def null_residuals(simulator: Simulator, base: Fit, count: int, rng: np.random.G
     # null laws strike fresh metal; what they differ by there stands for later blows as well
     here = Simulator(problem.fresh).predict((), [Point(z)])[0]
     sizes = problem.error.sizes
-    strays = {f"{k} shape": sizes[k] for k in ("force", "recovery") if k in sizes}
-    seen = discrepancies(rig_of(problem, z), count, rng, LEVELS | strays)
+    spread = {}
+    for kind in ("force", "recovery"):
+        known = sizes.get(kind, 0.0)
+        spread |= {kind: LEVEL * known, f"{kind} slope": SLOPE * known, f"{kind} shape": known}
+    seen = discrepancies(rig_of(problem, z), count, rng, spread)
     cells = problem.cells
     law = np.empty((count, len(cells)))
     for j, name in enumerate(cells.observable):
@@ -85,12 +97,12 @@ def null_residuals(simulator: Simulator, base: Fit, count: int, rng: np.random.G
         law[:, j] = np.log(np.maximum(value, 1e-12)) if name in LOGARITHMIC else value
     law -= here
     # what a condition's scatter of speed and angle does is shared by its observables
-    noise = scatter(rng, law.shape) @ np.linalg.cholesky(base.linear.noise).T
-    k = problem.n_nuisances
-    unknown = rng.standard_normal((count, k)) @ base.linear.J[:, :k].T
+    unit = scatter(rng, law.shape)
+    unknown = rng.standard_normal((count, problem.n_nuisances))
     components = len(set(cells.observable)) + 2 + problem.error.count + len(cells)
     form = rng.standard_normal((count, components))
-    return Nulls(law, law + noise + unknown, form)
+    nulls = Nulls(law, law, unit, unknown, form)
+    return replace(nulls, residual=nulls.made_by(base))
 
 
 def rig_of(problem: Problem, z: Array) -> Rig:

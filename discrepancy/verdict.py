@@ -43,8 +43,11 @@ MOST = 3
 _FEWEST = 6
 _PULLED = 2.0
 OUTSIDE = "outside-library"
-_RATHER_OUTSIDE = 0.9
+_RATHER_OUTSIDE = 0.5
 """Probability of something outside the library above which no explanation is named."""
+INEXACT = 0.15
+"""Part of the baseline's misfit, as an amplitude, that an explanation may leave: by so much of its
+effect does the textbook form of a mechanism differ from other published forms."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -172,8 +175,9 @@ def diagnose(
     located = locate(problem, ranking.base, nulls)
     progress("deciding")
     p_fits |= {f.name: p_fit(f, nulls, problem) for f in (*ranking.singles, *ranking.pairs)}
-    probabilities = _probabilities(problem, ranking, p_fits)
-    choice = decide(problem, ranking, nulls, calibration, p_fits, probabilities)
+    tests = Tests.of(ranking, p_fits)
+    probabilities = _probabilities(problem, ranking, tests)
+    choice = decide(problem, ranking, nulls, calibration, tests, probabilities)
     confirmed: dict[str, float] = {}
     if confirm:
         from .confirm import confirm_evidence
@@ -230,9 +234,42 @@ def needs_more(ranking: Ranking, calibration: Calibration, p_fits: Mapping[str, 
     return gain > calibration.single or p_fits[base.name] < P_FIT
 
 
+def left_over(fitted: Fit, base: Fit) -> float:
+    """Part of the baseline's misfit that an explanation leaves, as an amplitude."""
+    cells = len(fitted.residual)
+    return math.sqrt(max(fitted.chi2 - cells, 0.0) / max(base.chi2 - cells, 1.0))
+
+
+@dataclass(frozen=True)
+class Tests:
+    """How the explanations fit.
+
+    Parameters
+    ----------
+    p
+        For each fit by name, the share of its own data sets that fit it no better.
+    passed
+        Names of those that are not rejected: they fit, or leave no more than an inexact form may.
+    """
+
+    p: Mapping[str, float]
+    passed: frozenset[str]
+
+    @classmethod
+    def of(cls, ranking: Ranking, p_fits: Mapping[str, float]) -> Tests:
+        """Judge all fits of a ranking."""
+        base = ranking.base
+        passed = frozenset(
+            f.name
+            for f in (base, *ranking.singles, *ranking.pairs)
+            if p_fits[f.name] >= P_FIT or (f.mechanisms and left_over(f, base) <= INEXACT)
+        )
+        return cls(p_fits, passed)
+
+
 def decide(
     problem: Problem, ranking: Ranking, nulls: Nulls, calibration: Calibration,
-    p_fits: Mapping[str, float], probabilities: Mapping[str, float],
+    tests: Tests, probabilities: Mapping[str, float],
 ) -> Choice:  # fmt: skip
     """Decide by thresholds from nulls of the same set, by the odds of something outside, by drifts.
 
@@ -240,12 +277,12 @@ def decide(
     ----------
     problem, ranking, nulls, calibration
         What was compared, all fits, and what nulls of the same set give.
-    p_fits
-        For each fit by name, the share of its own data sets that fit it no better.
+    tests
+        How they fit.
     probabilities
         For each fit by name, and for `OUTSIDE`.
     """
-    choice = _by_thresholds(problem, ranking, nulls, calibration, p_fits)
+    choice = _by_thresholds(problem, ranking, nulls, calibration, tests)
     if choice.members and probabilities[OUTSIDE] > _RATHER_OUTSIDE:
         choice = Choice(OUTSIDE, (), (*choice.reasons, _rather_outside(choice, probabilities)))
     if not problem.drifts:
@@ -276,14 +313,13 @@ def _change(drift: Drift) -> str:
 
 
 def _by_thresholds(
-    problem: Problem, ranking: Ranking, nulls: Nulls, calibration: Calibration,
-    p_fits: Mapping[str, float],
-) -> Choice:  # fmt: skip
+    problem: Problem, ranking: Ranking, nulls: Nulls, calibration: Calibration, tests: Tests
+) -> Choice:
     base = ranking.base
     cells = len(problem.cells)
     if cells < _FEWEST:
         return Choice("undetermined", (), (f"only {cells} numbers to compare",))
-    p_base = p_fits[base.name]
+    p_base = tests.p[base.name]
     reasons = [
         f"the baseline's misfit is {base.chi2:.0f} over {cells} cells; "
         f"{_percent(p_base)} of sets with nothing missing fit no better"
@@ -300,9 +336,12 @@ def _by_thresholds(
     )
     if gain <= calibration.single and p_base >= P_FIT:
         return Choice("adequate", (), tuple(reasons))
-    pairs = [f for f in ranking.pairs if p_fits[f.name] >= P_FIT]
-    singles = [f for f in ranking.singles if p_fits[f.name] >= P_FIT]
+    pairs = [f for f in ranking.pairs if f.name in tests.passed]
+    singles = [f for f in ranking.singles if f.name in tests.passed]
     needed = extra_threshold(lead, ranking, nulls)
+    if lead.name in tests.passed:
+        # a second mechanism must explain more than the first one's form may be off by
+        needed = max(needed, 0.5 * INEXACT**2 * (base.chi2 - cells))
     more = pairs[0].log_evidence - lead.log_evidence if pairs else -math.inf
     if pairs and (more > needed or not singles):
         reasons.append(
@@ -311,10 +350,16 @@ def _by_thresholds(
         )
         return _set_of(pairs, pairs[0], ranking, nulls, reasons)
     if singles and calibration.excess(singles[0], base) > calibration.single:
+        if tests.p[singles[0].name] < P_FIT:
+            left = _percent(left_over(singles[0], base))
+            reasons.append(
+                f"{singles[0].name} does not fit to the last: {left} of the mismatch stays, as "
+                "where its form is not quite the textbook's"
+            )
         return _set_of(singles, singles[0], ranking, nulls, reasons)
     reasons.append(
         f"no mechanism or pair fits: of the sets that {lead.name} would make, "
-        f"{_percent(p_fits[lead.name])} fit it no better"
+        f"{_percent(tests.p[lead.name])} fit it no better"
     )
     return Choice(OUTSIDE, (), tuple(reasons))
 
@@ -358,9 +403,7 @@ def _finite(x: float) -> float | None:
     return float(x) if math.isfinite(x) else None
 
 
-def _probabilities(
-    problem: Problem, ranking: Ranking, p_fits: Mapping[str, float]
-) -> dict[str, float]:
+def _probabilities(problem: Problem, ranking: Ranking, tests: Tests) -> dict[str, float]:
     """Posterior probabilities; half the prior on the baseline, a twentieth outside the library.
 
     An explanation that its fit test rejects is not one: its share goes to outside the library.
@@ -369,7 +412,7 @@ def _probabilities(
     outside = float(widened(problem, base).log_likelihood(base.residual))
     names = ["baseline", OUTSIDE]
     logs = [base.log_evidence + math.log(0.5), outside + math.log(0.05)]
-    rejected = {name for name, p in p_fits.items() if p < P_FIT}
+    rejected = {f.name for f in (base, *ranking.singles, *ranking.pairs)} - tests.passed
     for share, fits in ((0.3, ranking.singles), (0.15, ranking.pairs)):
         for f in fits:
             names.append(f.name)

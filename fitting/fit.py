@@ -27,6 +27,7 @@ Floats = npt.NDArray[np.float64]
 
 _UNIT = 0.01  # a residual of one: 1 % in F and a, 0.01 in the shares
 _UNIT_EXPONENT = 0.03  # of N; 0.03 is about 1 % of F_m in the force on unloading
+_UNIT_GIVEN_BACK = 0.02  # of the energy; 1 % of a restitution
 _FOLDS = 12
 ENOUGH = 1e-5
 """Relative change of the misfit at which a fit for comparison or cross-validation ends."""
@@ -50,6 +51,9 @@ class Errors:
         Whole residual depth, relative, turning points beyond five critical depths.
     exponent
         Of the unloading curve, absolute.
+    given_back
+        Elastic energy of the unloading at equal peak force, relative, turning points beyond five
+        critical depths.
     """
 
     force: tuple[float, float]
@@ -60,6 +64,7 @@ class Errors:
     left_flat: tuple[float, float]
     left: tuple[float, float]
     exponent: tuple[float, float]
+    given_back: tuple[float, float]
 
 
 @dataclass(frozen=True)
@@ -158,7 +163,7 @@ def fit_tables(
     first = np.array([{**START, **(start or {}), **held}[name] for name in COEFFICIENTS])
     free = np.array([name not in held for name in COEFFICIENTS])
     values, jacobian, misfit, ok = _regress(table, turns, first, free, change=change)
-    clusters = np.concatenate([np.tile(table.case, 3), np.tile(turns.case, 3)])
+    clusters = np.concatenate([np.tile(table.case, 3), np.tile(turns.case, 4)])
     covariance = np.zeros((len(values), len(values)))
     covariance[np.ix_(free, free)] = covariance_of(jacobian, misfit, clusters)
     found = predict(values, table, turns)
@@ -208,7 +213,10 @@ def _regress(
 def _misfit_of(
     table: Table, turns: ResidualTable, first: Floats, free: npt.NDArray[np.bool_]
 ) -> Callable[[Any], Any]:
-    """Weighted ln F, ln a, share, residual depth, sphere's residual, exponent: form minus data."""
+    """Weighted misfit, form minus data.
+
+    Of ln F, ln a, share, residual depth, the sphere's residual, exponent, ln of the energy back.
+    """
     known = np.isfinite(turns.exponent)
     exponent = np.where(known, turns.exponent, 0.0)
     # a case whose mesh ripples says less about the curve than one that does not
@@ -226,6 +234,7 @@ def _misfit_of(
                 (p.total - turns.total) / _UNIT,
                 (p.sphere - turns.sphere_part * turns.total) / _UNIT,
                 np.where(known, p.exponent - exponent, 0.0) / _UNIT_EXPONENT,
+                np.where(known, np.log(given_back(p, turns)), 0.0) / _UNIT_GIVEN_BACK,
             ]
         )
 
@@ -281,6 +290,15 @@ def _cross_validate(
     return collected
 
 
+def given_back(p: Prediction, turns: ResidualTable) -> Any:
+    """Elastic energy of the unloadings over the data's, at equal peak force; nan where unknown.
+
+    A power law of exponent N gives back F_m (Delta_m - Delta_r)/(N + 1).
+    """
+    recovered = (1.0 - p.total) / (1.0 - turns.total)
+    return recovered * (turns.exponent + 1.0) / (p.exponent + 1.0)
+
+
 def errors_of(p: Prediction, table: Table, turns: ResidualTable) -> Errors:
     """Mean and largest error beyond first yield."""
     yielding = table.w >= 1.0
@@ -298,6 +316,7 @@ def errors_of(p: Prediction, table: Table, turns: ResidualTable) -> Errors:
         left_flat=_size(p.total - turns.total - sphere),
         left=_size((p.total / turns.total - 1.0)[deep]),
         exponent=_size((p.exponent - turns.exponent)[known]),
+        given_back=_size((given_back(p, turns) - 1.0)[known & deep]),
     )
 
 

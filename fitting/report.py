@@ -25,6 +25,7 @@ MARKS: dict[str, tuple[str, float, tuple[float, float] | None]] = {
     "left_sphere": ("sphere's residual depth / Delta_m", 1.0, None),
     "left_flat": ("flat's residual depth / Delta_m", 1.0, None),
     "exponent": ("exponent of the unloading", 1.0, None),
+    "given_back": ("energy given back, delta_m >= 5 delta_c [%]", 100.0, None),
 }
 """Each quantity's name in tables, its scale, and the mean and largest error that we aim at."""
 

@@ -12,7 +12,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from ..models.closed_form import COEFFICIENTS
-from .fit import ENOUGH, Errors, Prediction, fit_tables, predict
+from .fit import ENOUGH, Errors, Prediction, fit_tables, given_back, predict
 from .table import ResidualTable, Table
 
 CANDIDATES: dict[str, Mapping[str, float]] = {
@@ -58,7 +58,9 @@ CANDIDATES: dict[str, Mapping[str, float]] = {
     "taking over blind to the elastic sphere": {"s5": 0.0, "p3": 0.0},
     "taking over leaves the radius alone": {"c_m": 0.0},
     "elastic displacements blind to the elastic body": {"d1": 0.0, "d2": 0.0},
-    "Hertz's recovery": {"u1": 0.0, "u2": 1.0, "u3": 100.0},
+    "recovery blind to which body flows": {"l3": 0.0, "l4": 100.0},
+    "Hertz's recovery": {"u1": 0.0, "u2": 1.0, "u3": 100.0, "u4": 0.0, "u5": 0.0},
+    "recovery blind to the contact radius": {"u5": 0.0},
 }
 """What is compared: name of the candidate and the coefficients that it holds."""
 
@@ -121,5 +123,6 @@ def _rms(p: Prediction, table: Table, turns: ResidualTable) -> float:
         100.0 * (p.total - turns.total),
         100.0 * (p.sphere - turns.sphere_part * turns.total),
         100.0 / 3.0 * (p.exponent - turns.exponent)[known],
+        100.0 / 2.0 * np.log(given_back(p, turns))[known],
     )
     return float(np.sqrt(np.mean(np.concatenate(parts) ** 2)))

@@ -23,7 +23,6 @@ HELD_OUT = ("validation", "challenge")
 
 _COARSEST = "smoke"
 _DEEPEST_RADIUS = 0.55  # a/R up to which the form is meant, with some margin
-_UNLOADED = (0.05, 0.98)  # part of F_m over which the exponent of the unloading is taken
 
 
 @dataclass(frozen=True)
@@ -91,7 +90,7 @@ class ResidualTable:
     sphere_part
         The sphere's part of the permanent approach.
     exponent
-        N of F/F_m = ((Delta - Delta_r)/(Delta_m - Delta_r))^N, by regression over the unloading.
+        N of F/F_m = ((Delta - Delta_r)/(Delta_m - Delta_r))^N, so that the elastic energy is right.
     pairs, names
         As in `Table`.
     """
@@ -237,10 +236,17 @@ def _residuals(records: list[CaseRecord]) -> ResidualTable:
 
 
 def _exponent(depth: Floats, force: Floats, residual: float) -> float:
-    """Slope of ln F over ln (Delta - Delta_r), both from the peak."""
+    """Exponent of the power law that gives back the same energy, F_m (Delta_m - Delta_r)/(N + 1).
+
+    The unloading is no exact power law; a slope fitted to its logarithms, which look at small
+    forces, gives back 3 % too little. Between neighbours the curve is taken as a power law.
+    """
     x, y = (depth - residual) / (depth[0] - residual), force / force[0]
-    m = (y > _UNLOADED[0]) & (y < _UNLOADED[1]) & (x > 0.0)
-    if m.sum() < 3:
+    m = (y > 1e-9) & (x > 1e-9)
+    x, y = x[m], y[m]
+    if len(x) < 3 or not (np.all(np.diff(x) < 0.0) and np.all(np.diff(y) < 0.0)):
         return float("nan")
-    x, y = np.log(x[m]), np.log(y[m])
-    return float((x @ y) / (x @ x))
+    power = np.diff(np.log(y)) / np.diff(np.log(x))
+    power = np.append(power, power[-1])  # from the last point on to the residual depth
+    begin, end = x * y, np.append(x[1:] * y[1:], 0.0)
+    return float(1.0 / np.sum((begin - end) / (power + 1.0)) - 1.0)

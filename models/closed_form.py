@@ -31,7 +31,7 @@ COEFFICIENTS = (
     "h", "B_s", "B_d", "B_f", "r", "B_e", "B_q", "k0", "k1", "k2", "k3", "m0", "m1", "e0", "e1",
     "e2", "g0", "g1", "g2", "g3", "g4", "s0", "s1", "s2", "s3", "s4", "s5", "s6",
     "p0", "p1", "p2", "p3",
-    "f1", "f2", "f3", "l1", "l2", "d1", "d2", "u1", "u2", "u3",
+    "f1", "f2", "f3", "l1", "l2", "l3", "l4", "d1", "d2", "u1", "u2", "u3", "u4", "u5",
 )  # fmt: skip
 """Every coefficient, in the order of the coefficients file."""
 
@@ -175,17 +175,18 @@ def share_at(D, y, F, a, phi, x_s, lag, f1, f2, f3):
 
 
 @register_jitable
-def permanent_at(D, y, F, a, lag, fin, e0, e2, f3, l1, l2):
+def permanent_at(D, y, F, a, phi, lag, fin, e0, e2, f3, l1, l2, l3, l4):
     """Permanent approach over the largest one."""
     l_power = (y + 1e-30) ** l2
     recoverable = (0.75 - l1 * l_power / (l_power + f3 * lag)) * F / (a * D)
+    recoverable = recoverable * exp(l3 * (1.0 - phi) * y / (y + l4))
     return 1.0 - recoverable * exp(-e0 * sqrt(D) - (1.0 + e2) * fin * D)
 
 
 @register_jitable
-def exponent_at(y, u1, u2, u3):
+def exponent_at(y, a, phi, u1, u2, u3, u4, u5):
     """Exponent N of the unloading curve F/F_m = ((Delta - Delta_r)/(Delta_m - Delta_r))^N."""
-    return 1.5 - u1 * y / ((y + u2) * (1.0 + y / u3))
+    return 1.5 - y / (y + u2) * (u1 / (1.0 + y / u3) + u4) + u5 * (1.0 - phi) * a * a
 
 
 @register_jitable
@@ -193,7 +194,7 @@ def contact(
     D,
     x_s, W, P, g_a, g_b, k, m, lag, fin, even, j_s, j_f, L, L_C, a_t, p,
     wy, c, b5, z, c_s, c_f, t, y1, c_m, h, B_s, B_d, B_f, r, B_e, k3, e0, e2, g0, g1, g2, g3, g4,
-    f1, f2, f3, l1, l2, u1, u2, u3,
+    f1, f2, f3, l1, l2, l3, l4, u1, u2, u3, u4, u5,
 ):  # fmt: skip
     """Everything at a depth D = Delta/R of first loading.
 
@@ -212,8 +213,8 @@ def contact(
     a = radius_at(D, small, y, first, still, fin, z, c_s, c_f, t, y1, c_m, e2)
     F = force_at(D, a, P, k, m, fin, even, j_s, j_f, h, B_s, B_d, B_f, r, B_e, k3, e0)
     share = share_at(D, y, F, a, phi, x_s, lag, f1, f2, f3)
-    left = permanent_at(D, y, F, a, lag, fin, e0, e2, f3, l1, l2)
-    N = exponent_at(y, u1, u2, u3)
+    left = permanent_at(D, y, F, a, phi, lag, fin, e0, e2, f3, l1, l2, l3, l4)
+    N = exponent_at(y, a, phi, u1, u2, u3, u4, u5)
     return F, a, share, left, phi, N
 
 

@@ -53,7 +53,7 @@ from .closed_form import (
 
 Floats = npt.NDArray[np.float64]
 
-FORMAT = "dentscope-coefficients/7"
+FORMAT = "dentscope-coefficients/8"
 BOUNDS = ("Sy_ratio", "E_reduced_over_Sy_min", "nu", "elastic_share", "Delta_over_R", "a_over_R")
 """What the domain of validity is stated in; each has a smallest and a largest value."""
 
@@ -66,7 +66,7 @@ _OF_PAIR = arguments_of(of_pair)[len(_OF_BODIES) :]
 _CONTACT = arguments_of(contact)[1:]
 
 _ALL = types.UniTuple(float64, 6)(VECTOR, float64)
-assert len(_CONTACT) == 47
+assert len(_CONTACT) == 51
 _AT = {name: N_COMMON + k for k, name in enumerate(_CONTACT)}
 # places in the parameter vector, for the kernels that need only some of the numbers
 _X_S, _W, _P, _G_A, _G_B, _K, _M, _FIN, _EVEN = (
@@ -122,7 +122,8 @@ def everything(par, depth):
         p[0], p[1], p[2], p[3], p[4], p[5], p[6], p[7], p[8], p[9], p[10], p[11],
         p[12], p[13], p[14], p[15], p[16], p[17], p[18], p[19], p[20], p[21], p[22], p[23],
         p[24], p[25], p[26], p[27], p[28], p[29], p[30], p[31], p[32], p[33], p[34], p[35],
-        p[36], p[37], p[38], p[39], p[40], p[41], p[42], p[43], p[44], p[45], p[46],
+        p[36], p[37], p[38], p[39], p[40], p[41], p[42], p[43], p[44], p[45], p[46], p[47],
+        p[48], p[49], p[50],
     )  # fmt: skip
 
 

@@ -7,11 +7,8 @@ from collections.abc import Mapping, Sequence
 from dataclasses import replace
 from typing import ClassVar
 
-import numpy as np
-
 from ...impact import Scene
-from .base import Array, Mechanism, Parameter, Situation, Surroundings, Values, is_oblique
-from .contact import slower
+from .base import Mechanism, Parameter, Situation, Surroundings, Values, is_oblique
 
 
 class ImpactSpeedLoss(Mechanism):
@@ -19,11 +16,12 @@ class ImpactSpeedLoss(Mechanism):
 
     name = "impact-speed-loss"
     title = "the striker arrives slower than its height of fall says"
-    equations = "v = sqrt(2 g H) [1 - zeta (H/H_max)^p]"
+    equations = "v = sqrt(2 g H) (1 - zeta)^((H/H_max)^p)"
     parameters = (
         Parameter(
-            "speed_loss", "-", 0.01, 0.3, "log", 0.0,
-            "guides and releases take 1-30 %", nodes=6,
+            "speed_loss", "-", 0.01, 0.6, "log", 0.0,
+            "at the largest height: guides and releases take 1-30 %, air more of a light body",
+            nodes=7,
         ),
         Parameter(
             "loss_growth", "-", -0.5, 1.0, "linear", 0.0,
@@ -49,22 +47,12 @@ class ImpactSpeedLoss(Mechanism):
             approach=replace(old, speed=share * old.speed, tangential=share * old.tangential)
         )
 
-    def after(
-        self, situations: Sequence[Situation], values: Values, seen: dict[str, Array]
-    ) -> None:
-        """Refer the rebound to the speed that the height of fall promises."""
-        share = np.array([_kept(values, around) for _, around in situations])
-        rebound = seen["rebound_speed_m_s"]
-        slower(seen, seen["restitution"] * share)
-        # the centre's rebound is a speed already, not a ratio
-        seen["rebound_speed_m_s"] = rebound
-
 
 def _kept(values: Values, around: Surroundings) -> float:
     if not around.from_height:
         return 1.0
     growth = around.height_share ** values["loss_growth"]
-    return float(max(1.0 - values["speed_loss"] * growth, 0.3))
+    return float(max((1.0 - values["speed_loss"]) ** growth, 0.2))
 
 
 class Tilt(Mechanism):

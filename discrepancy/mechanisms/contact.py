@@ -339,13 +339,15 @@ class TruncatedTip(Mechanism):
     """The law is that of a sphere, pressed deeper by the missing cap; about 5 % of the force."""
 
     def applies(self, situations: Sequence[Situation]) -> str:
-        """Needs a metal that yields."""
+        """Needs a machined tip and a metal that yields."""
+        if all(scene.striker.length == 0.0 for scene, _ in situations):
+            return "every striker is a ball, which turns: a flat on it would not meet every impact"
         return _needs_yielding_law(situations)
 
     def attach(self, scene: Scene, values: Values, around: Surroundings) -> Scene:
         """Replace the tip."""
         b = values["flat_radius_over_R"] * scene.striker.tip_radius
-        if b == 0.0:
+        if b == 0.0 or scene.striker.length == 0.0:
             return scene
         flat = math.hypot(b, scene.striker.tip_flat_radius)
         return scene.with_(striker=replace(scene.striker, tip_flat_radius=flat))

@@ -179,7 +179,7 @@ def _axial(rng: np.random.Generator, rig: Rig, family: float) -> Effect:
 
 
 def _flexural(rng: np.random.Generator, rig: Rig, family: float) -> Effect:
-    numbers = {"elements": 20.0, "loss_time": _log(rng, 3e-9, 1e-7)}
+    numbers = {"elements": 40.0, "loss_time": _log(rng, 3e-9, 1e-7)}
     return Effect("rod-flexural-vibration", "beam-elements", numbers)
 
 

@@ -3,9 +3,11 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from dataclasses import dataclass, replace
 
 import numpy as np
 from numpy.typing import NDArray
+from scipy.optimize import minimize
 
 from . import dynamics
 from . import parameters as at
@@ -65,14 +67,73 @@ def noise_std(rig: Rig, clean: dict[str, Array]) -> dict[str, Array]:
     }
 
 
+@dataclass(frozen=True, eq=False)
+class Sight:
+    """How large changes of a rig's readings look, with what nuisances imitate taken out.
+
+    With e a change of all readings over their noise, and J their derivatives with respect to the
+    nuisances in prior standard deviations, the size is sqrt(e' (1 + J J')^-1 e).
+
+    Parameters
+    ----------
+    rig
+        Each condition once.
+    family, z, keep
+        Base law, nuisances, and what acts in all impacts that are compared.
+    plain, weight
+        (m,) readings without more, and one over the noise of their repeats' mean.
+    J
+        (m, k) derivatives over the noise.
+    """
+
+    rig: Rig
+    family: float
+    z: dict[str, float]
+    keep: tuple[Effect, ...]
+    plain: Array
+    weight: Array
+    J: Array
+
+    @classmethod
+    def of(
+        cls, rig: Rig, *, family: float, z: dict[str, float], keep: Sequence[Effect] = ()
+    ) -> Sight:
+        """Simulate what is needed."""
+        few, counts = _distinct(rig)
+        readings = _stacked(few, keep, family, z)
+        clean = dict(zip(few.noise, readings, strict=True))
+        std = np.concatenate(list(noise_std(few, clean).values()))
+        weight = np.sqrt(np.tile(counts, len(few.noise))) / std
+        columns = []
+        for name in NUISANCES:
+            if rig.tolerance[name] == 0.0:
+                continue
+            step = 0.5
+            high = _stacked(few, keep, family, z | {name: z.get(name, 0.0) + step})
+            low = _stacked(few, keep, family, z | {name: z.get(name, 0.0) - step})
+            column = (np.concatenate(high) - np.concatenate(low)) / (2.0 * step) * weight
+            columns.append(np.nan_to_num(column))
+        plain = np.concatenate(readings)
+        return cls(few, family, z, tuple(keep), plain, weight, np.stack(columns, axis=1))
+
+    def change(self, effects: Sequence[Effect]) -> Array:
+        """Change of the readings by effects, over the noise, shape (m,)."""
+        there = np.concatenate(_stacked(self.rig, [*self.keep, *effects], self.family, self.z))
+        e = (there - self.plain) * self.weight
+        e[~np.isfinite(e)] = 0.0
+        return e
+
+    def size(self, e: Array) -> float:
+        """Return the size of a change (m,)."""
+        inner = np.linalg.solve(np.eye(self.J.shape[1]) + self.J.T @ self.J, self.J.T @ e)
+        return float(np.sqrt(max(e @ e - (self.J.T @ e) @ inner, 0.0)))
+
+
 def size_of(
     rig: Rig, effects: Sequence[Effect], *, family: float, z: dict[str, float],
     keep: Sequence[Effect] = (),
 ) -> float:  # fmt: skip
     """Norm of the effect over the noise, after what the nuisances can imitate is taken out.
-
-    With e the change of all readings over their noise, and J its derivatives with respect to the
-    nuisances in prior standard deviations: sqrt(e' (1 + J J')^-1 e). Repeats are identical here.
 
     Parameters
     ----------
@@ -83,32 +144,61 @@ def size_of(
     keep
         What acts in both impacts that are compared.
     """
-    few, counts = _distinct(rig)
-    with_it = _stacked(few, [*keep, *effects], family, z)
-    without = _stacked(few, keep, family, z)
-    clean = {name: column for name, column in zip(few.noise, without, strict=True)}
-    std = np.concatenate(list(noise_std(few, clean).values()))
-    weight = np.sqrt(np.tile(counts, len(few.noise))) / std
-    e = (np.concatenate(with_it) - np.concatenate(without)) * weight
-    e[~np.isfinite(e)] = 0.0
-    columns = []
-    for name in NUISANCES:
-        if rig.tolerance[name] == 0.0:
-            continue
-        step = 0.5
-        high = _stacked(few, keep, family, z | {name: z.get(name, 0.0) + step})
-        low = _stacked(few, keep, family, z | {name: z.get(name, 0.0) - step})
-        column = (np.concatenate(high) - np.concatenate(low)) / (2.0 * step) * weight
-        columns.append(np.nan_to_num(column))
-    J = np.stack(columns, axis=1)
-    inner = np.linalg.solve(np.eye(J.shape[1]) + J.T @ J, J.T @ e)
-    return float(np.sqrt(max(e @ e - (J.T @ e) @ inner, 0.0)))
+    sight = Sight.of(rig, family=family, z=z, keep=keep)
+    return sight.size(sight.change(effects))
+
+
+_SAMPLES, _POLISHED, _STEPS = 12, 2, 60
+
+
+def size_beyond_library(
+    rng: np.random.Generator, rig: Rig, effect: Effect, *, family: float, z: dict[str, float]
+) -> float:
+    """Size of what is left of an effect after any one effect of the library has imitated it.
+
+    A support that rattles through a gap may look like one that simply moves, to any instrument of
+    the set; then no name is wrong. The imitators are the generator's own: draws of each effect that
+    the bench can show, the nearest of them improved by a simplex search in their numbers.
+
+    Parameters
+    ----------
+    rng
+        Source of the draws.
+    rig, family, z
+        As for `rows_of`.
+    effect
+        One of `OUTSIDE`.
+    """
+    sight = Sight.of(rig, family=family, z=z)
+    wanted = sight.change([effect])
+    least = sight.size(wanted)
+    tried: list[tuple[float, int, Effect]] = []
+    for name in _able(rig):
+        draws = [EFFECTS[name].draw(rng, rig, family) for _ in range(_SAMPLES)]
+        # a bar or beam has no numbers that matter, and costs much
+        for one in draws[: 1 if "elements" in draws[0].numbers else _SAMPLES]:
+            tried.append((sight.size(wanted - sight.change([one])), len(tried), one))
+    for size, _, one in sorted(tried)[:_POLISHED]:
+        keys = [k for k, v in one.numbers.items() if k not in ("elements", "seed") and v > 0.0]
+        first = np.log([one.numbers[k] for k in keys])
+
+        def left(x: Array, one: Effect = one, keys: list[str] = keys) -> float:
+            numbers = one.numbers | dict(zip(keys, np.exp(x).tolist(), strict=True))
+            return sight.size(wanted - sight.change([replace(one, numbers=numbers)]))
+
+        found = minimize(left, first, method="Nelder-Mead", options={"maxfev": _STEPS})
+        least = min(least, size, float(found.fun))
+    return least
+
+
+def _able(rig: Rig) -> list[str]:
+    """Effects of the library that the bench can show."""
+    names = [n for n, kind in EFFECTS.items() if rig.bench in kind.benches]
+    return [n for n in names if n != "impact-speed-loss" or rig.drop]
 
 
 def _distinct(rig: Rig) -> tuple[Rig, Array]:
     """The bench with each condition once, and how often it was repeated."""
-    from dataclasses import replace
-
     key = np.stack([rig.which, rig.angle, rig.speed, rig.tangential, rig.temperature], axis=1)
     _, first, counts = np.unique(key, axis=0, return_index=True, return_counts=True)
     some = {

@@ -12,7 +12,7 @@ from .benches import BENCHES
 from .effects import EFFECTS, OUTSIDE, Effect, Kind
 from .parameters import CAVITY, FOUNDATION
 from .rig import NUISANCES, Rig
-from .simulate import size_of
+from .simulate import size_beyond_library, size_of
 
 NULL_BENCHES = (
     "rods-normal", "rods-oblique", "balls-normal", "balls-oblique", "balls-small", "balls-elastic",
@@ -20,6 +20,9 @@ NULL_BENCHES = (
 
 SEEN, ENORMOUS = 4.0, 80.0
 """Sizes between which a drawn effect is kept at once; else the nearest of several draws."""
+
+BEYOND = 10.0
+"""Size of what the library cannot imitate, from which an effect outside it is kept at once."""
 
 PLANTED = ("mass-error", "strength-error")
 """Kinds of case in which a stated value is wrong by more than its tolerance allows."""
@@ -51,7 +54,7 @@ class Truth:
     effects
         What acts; empty for a null.
     sizes
-        Size of each effect, given the others.
+        Size of each effect, given the others; outside the library of what that cannot imitate.
     family
         Base law: `cavity`, `foundation` or `explicit`.
     z
@@ -179,6 +182,9 @@ def _single(
         effect = kind.draw(rng, rig, FAMILIES[family])
         size = size_of(rig, [effect], family=FAMILIES[family], z=z)
         away = max(np.log(SEEN / max(size, 1e-3)), np.log(size / ENORMOUS + 1e-12), 0.0)
+        if name in OUTSIDE:
+            size = size_beyond_library(rng, rig, effect, family=FAMILIES[family], z=z)
+            away = max(away, float(np.log(BEYOND / max(size, 1e-3))))
         tried.append((float(away), rig, effect, size))
         if away == 0.0:
             break

@@ -7,6 +7,7 @@ import math
 import subprocess
 import sys
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 import pytest
@@ -26,6 +27,17 @@ def dentscope(*arguments: str) -> subprocess.CompletedProcess[str]:
         [sys.executable, "-m", "dentscope", *arguments], capture_output=True, text=True,
         timeout=300, check=False,
     )  # fmt: skip
+
+
+def close(one: Any, other: Any) -> bool:
+    """Whether two verdicts are the same but for the round-off of other thread counts."""
+    if isinstance(one, dict):
+        return list(one) == list(other) and all(close(one[k], other[k]) for k in one)
+    if isinstance(one, list):
+        return len(one) == len(other) and all(map(close, one, other))
+    if isinstance(one, float):
+        return math.isclose(one, other, rel_tol=1e-6, abs_tol=1e-9)
+    return bool(one == other)
 
 
 def written(place: Path, kind: str, seed: int, name: str = "") -> Path:
@@ -51,7 +63,7 @@ def test_one_folder_in_one_command_a_verdict(
     assert "http://" not in page.replace("http://www.w3.org", "")
     assert answer.stdout.startswith("set: ")
     again = diagnose(read(case), seed=0).to_dict()
-    assert json.loads(json.dumps(again)) == verdict
+    assert close(json.loads(json.dumps(again)), verdict)
 
 
 def test_strength_off_by_14_percent_is_a_stated_number_not_physics(tmp_path: Path) -> None:
