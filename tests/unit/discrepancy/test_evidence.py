@@ -39,6 +39,20 @@ def test_grid_is_exact_for_cubics() -> None:
     assert grid.nodes()[0] == {"a": 1.0, "b": -1.0}
 
 
+def test_window_and_whole_prior_give_one_evidence() -> None:
+    """A likelihood that is nothing beyond a window: the window's part of the prior counts."""
+    p = Parameter("a", "-", 0.0, 1.0, "linear", 0.0, "", nodes=9)
+
+    def evidence(grid: Grid) -> float:
+        found, _ = posterior(norm.logpdf(grid.places()[:, 0], 0.4, 0.02))
+        return found + grid.log_volume
+
+    whole, part = Grid((p,)), Grid((p,), ((0.3, 0.5),))
+    assert part.coarse[0][[0, -1]] == pytest.approx([0.3, 0.5])
+    assert evidence(part) == pytest.approx(0.0, abs=1e-5)  # all of the density is inside
+    assert evidence(whole) == pytest.approx(evidence(part), abs=1e-3)
+
+
 def test_interval_of_a_normal_sample() -> None:
     x = np.linspace(-6.0, 6.0, 4001)
     weight = norm.pdf(x) / norm.pdf(x).sum()

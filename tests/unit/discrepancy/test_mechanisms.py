@@ -69,6 +69,24 @@ def test_observables_move_in_the_declared_direction(mechanism: Mechanism) -> Non
         assert sign * (getattr(after, key) - getattr(before, key)) > 0.0, name
 
 
+def test_a_drop_loses_speed_and_keeps_its_restitution() -> None:
+    loss = next(m for m in MECHANISMS if m.name == "impact-speed-loss")
+    half = Surroundings(from_height=True, height_share=0.5)
+    values = {"speed_loss": 0.19, "loss_growth": 1.0}
+    changed = loss.attach(scene(), values, half)
+    assert changed.approach.speed == pytest.approx(0.9)  # sqrt(1 - 0.19) at half the height
+    seen = strike(changed)
+    assert seen.restitution > strike(scene()).restitution  # slower, so less is lost
+
+
+def test_a_ball_has_no_cut_tip() -> None:
+    cut = next(m for m in MECHANISMS if m.name == "truncated-tip")
+    ball = scene().with_(striker=Striker(mass=0.2, tip_radius=0.0088))
+    assert "ball" in cut.applies([(ball, AROUND)])
+    assert cut.attach(ball, {"flat_radius_over_R": 0.05}, AROUND) == ball
+    assert cut.applies([(ball, AROUND), (scene(), AROUND)]) == ""
+
+
 def test_adhesion_takes_the_work_of_parting() -> None:
     # Thornton and Ning 1998: 7.09 (W^5 R^4 / E'^2)^(1/3); 2.2e-8 J here
     import numpy as np

@@ -154,6 +154,27 @@ def test_every_effect_is_seen_somewhere(name):
     assert largest > 3.0
 
 
+def test_a_support_without_play_is_within_the_library_and_one_with_much_is_not():
+    rig = benches.balls_normal(np.random.default_rng(3))
+    heavy = max(s.mass for s in rig.strikers)
+    numbers = {"mass": 12.0 * heavy, "stiffness": 12.0 * heavy * (2.0 * np.pi / 6e-4) ** 2}
+    numbers["damping"] = 0.02 * np.sqrt(numbers["mass"] * numbers["stiffness"])
+    tight = effects.Effect("loose-support", "gap", numbers | {"gap": 1e-12})
+    law = LAWS[0]
+    plain = simulate.size_of(rig, [tight], family=law, z={})
+    beyond = simulate.size_beyond_library(
+        np.random.default_rng(1), rig, tight, family=law, z={}
+    )  # fmt: skip
+    assert plain > 20.0
+    assert beyond < 0.1 * plain
+    softening = effects.Effect("strain-softening", "saturating", {"fall": 0.5, "strain": 0.01})
+    plain = simulate.size_of(rig, [softening], family=law, z={})
+    beyond = simulate.size_beyond_library(
+        np.random.default_rng(1), rig, softening, family=law, z={}
+    )  # fmt: skip
+    assert 5.0 < beyond <= plain
+
+
 @pytest.mark.parametrize("law", list(base_laws.LAWS))
 @pytest.mark.parametrize("target", benches.TARGETS, ids=lambda metal: metal.name)
 def test_base_laws_follow_the_finite_elements_of_each_pair(target, law):
