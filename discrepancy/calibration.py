@@ -19,7 +19,7 @@ _THIN = 400
 _VERY_STRONG = 5.0
 """Nats by which a freer force law must win to count against an explanation at all: odds of 150,
 "very strong" of R. E. Kass and A. E. Raftery, J. Am. Stat. Assoc. 90 (1995) 773."""
-_ALARM = 0.98
+_ALARM = 0.97
 """Share of nulls that pass no threshold; the test of fit adds at most 1 % of false alarms."""
 
 
@@ -35,7 +35,7 @@ class Calibration:
     offset
         Mechanism to the 95 % point of its ln B over the nulls, at least 0.
     single
-        98 % point of the largest ln B minus offset over the library, at least 1.
+        97 % point of the largest ln B minus offset over the library, at least 1.
     """
 
     offset: dict[str, float]

@@ -7,7 +7,7 @@ held-out conditions -> next experiment. `Verdict.to_dict` gives verdict.json, ve
 from __future__ import annotations
 
 import math
-from collections.abc import Mapping
+from collections.abc import Iterable, Mapping
 from dataclasses import dataclass, field, replace
 from typing import Any
 
@@ -331,13 +331,15 @@ def _by_thresholds(
     gain = calibration.excess(lead, base)
     reasons.append(
         f"the best single mechanism, {lead.name}, gains {lead.log_evidence - base.log_evidence:.1f}"
-        f" nats; with nothing missing one set in fifty would give it, or an equally rare gain to "
-        f"another, {calibration.needed(lead):.1f}"
+        " nats; with nothing missing three sets in a hundred would give it, or an equally rare "
+        f"gain to another, {calibration.needed(lead):.1f}"
     )
     if gain <= calibration.single and p_base >= P_FIT:
         return Choice("adequate", (), tuple(reasons))
-    pairs = [f for f in ranking.pairs if f.name in tests.passed]
-    singles = [f for f in ranking.singles if f.name in tests.passed]
+    # something is missing: from here on the evidence alone says what
+    pairs = _by_evidence(f for f in ranking.pairs if f.name in tests.passed)
+    singles = _by_evidence(f for f in ranking.singles if f.name in tests.passed)
+    lead = _by_evidence(ranking.singles)[0]
     needed = extra_threshold(lead, ranking, nulls)
     if lead.name in tests.passed:
         # a second mechanism must explain more than the first one's form may be off by
@@ -349,7 +351,7 @@ def _by_thresholds(
             f"{needed:.1f} in one of a hundred"
         )
         return _set_of(pairs, pairs[0], ranking, nulls, reasons)
-    if singles and calibration.excess(singles[0], base) > calibration.single:
+    if any(calibration.excess(f, base) > calibration.single for f in singles):
         if tests.p[singles[0].name] < P_FIT:
             left = _percent(left_over(singles[0], base))
             reasons.append(
@@ -362,6 +364,10 @@ def _by_thresholds(
         f"{_percent(tests.p[lead.name])} fit it no better"
     )
     return Choice(OUTSIDE, (), tuple(reasons))
+
+
+def _by_evidence(fits: Iterable[Fit]) -> list[Fit]:
+    return sorted(fits, key=lambda f: -f.log_evidence)
 
 
 def _percent(p: float) -> str:

@@ -22,8 +22,10 @@ from .force import (
     RECEDING,
     SEGMENT_HIGH,
     SEGMENT_LOW,
+    loading_slope,
     static_loading,
     static_unloading,
+    unloading_slope,
 )
 from .layout import (
     ACCELERATION,
@@ -189,12 +191,19 @@ def _contact_of(loading, radius, unloading, par, force, factors, body, psi, n, b
             f = static_loading(loading, par, force, factors, d)
         else:
             f = static_unloading(unloading, par, branch, depth)
-        if force[RADIATION] != 0.0 or body[PLOUGH] != 0.0:
+        if body[PLOUGH] != 0.0:
             a = 0.0
             if depth > 0.0:
                 a = radius(par, depth, max(depth, branch[0] if phase == UNLOAD else depth))
             ploughing = body[PLOUGH] * 4.0 / (3.0 * math.pi) * a / body[TIP]
-            f += force[RADIATION] * (2.0 * force[MODULUS] * a) ** 2 * seen[RATE]
+        if force[RADIATION] != 0.0:
+            # the waves' power is kappa (dF/dt)^2
+            if phase == LOAD:
+                d = min(max(depth, branch[SEGMENT_LOW]), branch[SEGMENT_HIGH])
+                slope = loading_slope(loading, par, force, factors, branch, d)
+            else:
+                slope = unloading_slope(unloading, par, branch, depth)
+            f += force[RADIATION] * slope * slope * seen[RATE]
         if force[DAMPING] != 0.0:
             f += f * force[DAMPING] * seen[RATE]
         f = max(f, 0.0)

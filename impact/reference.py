@@ -129,13 +129,34 @@ class _Motion:
         else:
             f = self.on_unloading(self.unloading, a.par, k.branch, d)
         plough = 0.0
-        if a.force[fo.RADIATION] or a.body[c.PLOUGH]:
+        if a.body[c.PLOUGH]:
             peak = max(d, k.branch[0]) if k.phase == UNLOADING else d
             radius = self.radius(a.par, d, peak) if d > 0.0 else 0.0
             plough = a.body[c.PLOUGH] * 4.0 / (3.0 * math.pi) * radius / self.tip
-            f += a.force[fo.RADIATION] * (2.0 * a.force[fo.MODULUS] * radius) ** 2 * rate
+        if a.force[fo.RADIATION]:
+            f += a.force[fo.RADIATION] * self.slope(d, k) ** 2 * rate
         f = max(f * (1.0 + a.force[fo.DAMPING] * rate), 0.0)
         return f, plough, rate - a.body[c.S_PLATE] * f
+
+    def slope(self, d: float, k: _Contact) -> float:
+        """Slope of the static force over the depth: waves take kappa (dF/dt)^2."""
+        a, step = self.a, 1e-4
+        if k.phase == LOADING:
+            if d <= 0.0:
+                return 0.0
+            low, high = max(d * (1.0 - step), k.low), min(d * (1.0 + step), k.high)
+            if high <= low:
+                return 0.0
+            force = [
+                self.on_loading(self.loading, a.par, a.force, a.factors, x) for x in (low, high)
+            ]
+            return float((force[1] - force[0]) / (high - low))
+        rest = k.branch[1] + k.branch[2]
+        if d <= rest:
+            return 0.0
+        low, high = d - step * (d - rest), min(d + step * (d - rest), max(k.branch[0], d))
+        force = [self.on_unloading(self.unloading, a.par, k.branch, x) for x in (low, high)]
+        return float((force[1] - force[0]) / (high - low))
 
     def radius_now(self, depth: float, k: _Contact) -> float:
         """Contact radius: the law's on loading, about the residual depth as Hertz's else."""

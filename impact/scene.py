@@ -127,7 +127,8 @@ class ForceTransform:
     damping
         chi of F (1 + chi d'), Hunt and Crossley's form [s/m].
     radiation
-        kappa [m s/N]: waves sent into a half-space take F up by kappa (2 E' a)^2 d'.
+        kappa [m s/N]: waves sent into a half-space take F up by kappa (dF/d(depth))^2 d'
+        (elastically 2 E' a): their power is kappa (dF/dt)^2.
     factors
         Multiply the loading force, interpolated in ln(depth / R) between equally spaced
         nodes from `force.LOG_DEPTH_FIRST` to `force.LOG_DEPTH_LAST`; empty for none.

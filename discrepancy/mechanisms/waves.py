@@ -129,7 +129,7 @@ class HalfSpaceWaves(Mechanism):
     name = "half-space-waves"
     title = "waves carry energy off into the flat"
     equations = (
-        "half-space: F + kappa (2 E' a)^2 d'; plate: w' = s F/(8 sqrt(rho h D)) while h is crossed "
+        "half-space: F + kappa (dF/dd)^2 d'; plate: w' = s F/(8 sqrt(rho h D)) while h is crossed "
         "many times within the contact"
     )
     parameters = (
