@@ -85,7 +85,7 @@ def null_residuals(simulator: Simulator, base: Fit, count: int, rng: np.random.G
     # null laws strike fresh metal; what they differ by there stands for later blows as well
     here = Simulator(problem.fresh).predict((), [Point(z)])[0]
     sizes = problem.error.sizes
-    spread = {}
+    spread: dict[str, float] = {}
     for kind in ("force", "recovery"):
         known = sizes.get(kind, 0.0)
         spread |= {kind: LEVEL * known, f"{kind} slope": SLOPE * known, f"{kind} shape": known}

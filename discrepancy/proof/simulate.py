@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
 
@@ -126,7 +127,7 @@ class Sight:
     def size(self, e: Array) -> float:
         """Return the size of a change (m,)."""
         inner = np.linalg.solve(np.eye(self.J.shape[1]) + self.J.T @ self.J, self.J.T @ e)
-        return float(np.sqrt(max(e @ e - (self.J.T @ e) @ inner, 0.0)))
+        return math.sqrt(max(float(e @ e - (self.J.T @ e) @ inner), 0.0))
 
 
 def size_of(
