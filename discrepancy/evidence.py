@@ -115,7 +115,7 @@ class Grid:
 
     @cached_property
     def fine(self) -> list[Array]:
-        """Places of the refined grid: middles of equal shares of the prior."""
+        """Places of the refined grid: middles of equal shares of what it covers."""
         n = FINE.get(len(self.parameters), 9)
         share = (np.arange(n) + 0.5) / n
         if not self.window:

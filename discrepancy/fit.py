@@ -26,6 +26,7 @@ _SPEED_STEP, _ANGLE_STEP = 0.01, 0.01
 _JUMPS = (0.02, 0.05, 0.1)  # of the parameter: how near a jump makes a cell unsure
 _ROUNDS, _SETTLED = 4, 0.15
 _FARTHEST = 2.0  # of the unknowns within one round
+# places of the refined grid in a standard deviation that need no window; its half width, in those
 _RESOLVED, _WINDOW = 2.0, 4.0
 
 

@@ -90,7 +90,7 @@ def locate(problem: Problem, base: Fit, nulls: Nulls, *, level: float = 0.95) ->
     solved = linear.solve(contrasts.T)
     size = np.sqrt(np.einsum("ij,ji->i", contrasts, solved))
     score = base.residual @ solved / size
-    null = np.abs(nulls.residual @ solved / size)
+    null = np.abs(nulls.made_by(base) @ solved / size)
     threshold = float(np.quantile(null.max(axis=1), level))
     spread = np.maximum(null.std(axis=0) / math.sqrt(1.0 - 2.0 / math.pi), 1.0)
     found = []

@@ -222,25 +222,22 @@ def _leading_pairs(ranking: Ranking) -> list[tuple[Screened, Screened, Array]]:
 
 def _partners(ranking: Ranking) -> list[tuple[Screened, Screened, Array]]:
     """Return the leading mechanism with those that explain most of what it leaves."""
-    order = {s.mechanism.name: i for i, s in enumerate(ranking.screened)}
     lead = ranking.singles[0]
-    first = ranking.screened[order[lead.mechanisms[0].name]]
-    white = lead.linear.white(lead.residual)[None, :]
-    scored = []
-    for s in ranking.screened:
-        if s is first:
+    white = lead.linear.white(lead.residual)
+    scored: list[tuple[float, int, Array]] = []
+    for i, s in enumerate(ranking.screened):
+        if s.mechanism in lead.mechanisms:
+            first = i
             continue
         e = lead.linear.white(s.effect)
-        best = int(np.argmax(white[0] @ e.T - 0.5 * np.sum(e**2, axis=1)))
-        gained = float(gain(white, np.zeros(1), lead.linear, s.effect)[0])
-        scored.append((gained, order[s.mechanism.name], s, s.grid.places()[best]))
-    scored.sort(key=lambda x: -x[0])
+        ratio = white @ e.T - 0.5 * np.sum(e**2, axis=1)
+        scored.append(
+            (float(logsumexp(ratio)) - math.log(len(e)), i, s.grid.places()[ratio.argmax()])
+        )
     found = []
-    for _, i, s, place in scored[:PARTNERS]:
-        if i < order[first.mechanism.name]:
-            found.append((s, first, np.concatenate([place, lead.place])))
-        else:
-            found.append((first, s, np.concatenate([lead.place, place])))
+    for _, i, place in sorted(scored, key=lambda x: -x[0])[:PARTNERS]:
+        (j, one), (k, two) = sorted([(i, place), (first, lead.place)], key=lambda x: x[0])
+        found.append((ranking.screened[j], ranking.screened[k], np.concatenate([one, two])))
     return found
 
 

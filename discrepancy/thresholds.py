@@ -39,22 +39,19 @@ class Nulls:
     ----------
     law
         (n, m) discrepancy of null laws from the baseline, without noise.
-    residual
-        (n, m) with noise and nuisances of the baseline: residuals at the prior mean.
     scatter, unknown
-        (n, m) and (n, nuisances) unit draws behind them.
+        (n, m) and (n, nuisances) unit draws of noise and nuisances.
     form
         (n, components) unit normal draws of the error of a mechanism's form, for the most it has.
     """
 
     law: Array
-    residual: Array
     scatter: Array
     unknown: Array
     form: Array
 
     def made_by(self, fitted: Fit) -> Array:
-        """Residuals that a set made by an explanation would leave at its truth, (n, m).
+        """Residuals at the prior mean of sets that an explanation makes, (n, m).
 
         What noise of the approach and nuisances do follows the explanation's own derivatives.
         """
@@ -101,8 +98,7 @@ def null_residuals(simulator: Simulator, base: Fit, count: int, rng: np.random.G
     unknown = rng.standard_normal((count, problem.n_nuisances))
     components = len(set(cells.observable)) + 2 + problem.error.count + len(cells)
     form = rng.standard_normal((count, components))
-    nulls = Nulls(law, law, unit, unknown, form)
-    return replace(nulls, residual=nulls.made_by(base))
+    return Nulls(law, unit, unknown, form)
 
 
 def rig_of(problem: Problem, z: Array) -> Rig:
@@ -172,7 +168,7 @@ def null_bayes_factors(nulls: Nulls, base: Fit, responses: list[Array]) -> Array
         For each mechanism, its effect on the cells over its refined grid, shape (k, m).
     """
     linear = base.linear
-    white = linear.white(nulls.residual)
+    white = linear.white(nulls.made_by(base))
     plain = np.sum(white**2, axis=1)
     out = np.empty((len(white), len(responses)))
     for j, effect in enumerate(responses):

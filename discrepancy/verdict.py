@@ -175,7 +175,7 @@ def diagnose(
     located = locate(problem, ranking.base, nulls)
     progress("deciding")
     p_fits |= {f.name: p_fit(f, nulls, problem) for f in (*ranking.singles, *ranking.pairs)}
-    tests = Tests.of(ranking, p_fits)
+    tests = FitTests.of(ranking, p_fits)
     probabilities = _probabilities(problem, ranking, tests)
     choice = decide(problem, ranking, nulls, calibration, tests, probabilities)
     confirmed: dict[str, float] = {}
@@ -241,7 +241,7 @@ def left_over(fitted: Fit, base: Fit) -> float:
 
 
 @dataclass(frozen=True)
-class Tests:
+class FitTests:
     """How the explanations fit.
 
     Parameters
@@ -256,7 +256,7 @@ class Tests:
     passed: frozenset[str]
 
     @classmethod
-    def of(cls, ranking: Ranking, p_fits: Mapping[str, float]) -> Tests:
+    def of(cls, ranking: Ranking, p_fits: Mapping[str, float]) -> FitTests:
         """Judge all fits of a ranking."""
         base = ranking.base
         passed = frozenset(
@@ -269,7 +269,7 @@ class Tests:
 
 def decide(
     problem: Problem, ranking: Ranking, nulls: Nulls, calibration: Calibration,
-    tests: Tests, probabilities: Mapping[str, float],
+    tests: FitTests, probabilities: Mapping[str, float],
 ) -> Choice:  # fmt: skip
     """Decide by thresholds from nulls of the same set, by the odds of something outside, by drifts.
 
@@ -313,7 +313,7 @@ def _change(drift: Drift) -> str:
 
 
 def _by_thresholds(
-    problem: Problem, ranking: Ranking, nulls: Nulls, calibration: Calibration, tests: Tests
+    problem: Problem, ranking: Ranking, nulls: Nulls, calibration: Calibration, tests: FitTests
 ) -> Choice:
     base = ranking.base
     cells = len(problem.cells)
@@ -409,7 +409,7 @@ def _finite(x: float) -> float | None:
     return float(x) if math.isfinite(x) else None
 
 
-def _probabilities(problem: Problem, ranking: Ranking, tests: Tests) -> dict[str, float]:
+def _probabilities(problem: Problem, ranking: Ranking, tests: FitTests) -> dict[str, float]:
     """Posterior probabilities; half the prior on the baseline, a twentieth outside the library.
 
     An explanation that its fit test rejects is not one: its share goes to outside the library.

@@ -188,32 +188,22 @@ def static_unloading(unloading, par, branch, depth):
 
 
 _SLOPE_STEP = 1e-4  # of the depth, for differences of a force that is smooth between its borders
+_WINDOW = types.UniTuple(float64, 2)
 
 
-@njit(float64(LOADING, VECTOR, VECTOR, VECTOR, VECTOR, float64), cache=True, _nrt=False)
-def loading_slope(loading, par, force, factors, branch, depth):
-    """Return dF/d(depth) [N/m] on loading, within the smooth stretch of the curve."""
-    if depth <= 0.0:
-        return 0.0
-    low = max(depth * (1.0 - _SLOPE_STEP), branch[SEGMENT_LOW])
-    high = min(depth * (1.0 + _SLOPE_STEP), branch[SEGMENT_HIGH])
-    if high <= low:
-        return 0.0
-    up = static_loading(loading, par, force, factors, high)
-    return (up - static_loading(loading, par, force, factors, low)) / (high - low)
+@njit(_WINDOW(float64, float64, float64), cache=True, _nrt=False)
+def loading_window(depth, first, last):
+    """Depths about one on loading between which its slope is taken, from `first` to `last`."""
+    low, high = max(depth * (1.0 - _SLOPE_STEP), first), min(depth * (1.0 + _SLOPE_STEP), last)
+    return low, max(low, high)
 
 
-@njit(float64(BRANCH, VECTOR, VECTOR, float64), cache=True, _nrt=False)
-def unloading_slope(unloading, par, branch, depth):
-    """Return dF/d(depth) [N/m] on the branch that `set_peak` prepared."""
+@njit(_WINDOW(VECTOR, float64), cache=True, _nrt=False)
+def unloading_window(branch, depth):
+    """Depths about one on the branch that `set_peak` prepared between which its slope is taken."""
     rest = branch[1] + branch[2]
-    if depth <= rest:
-        return 0.0
-    step = _SLOPE_STEP * (depth - rest)
-    high = min(depth + step, max(branch[0], depth))
-    up = static_unloading(unloading, par, branch, high)
-    down = static_unloading(unloading, par, branch, depth - step)
-    return (up - down) / (high - depth + step)
+    step = _SLOPE_STEP * max(depth - rest, 0.0)
+    return depth - step, min(depth + step, max(branch[0], depth))
 
 
 @njit(float64(LOADING, VECTOR, VECTOR, VECTOR, float64), cache=True, _nrt=False)

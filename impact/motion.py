@@ -22,10 +22,10 @@ from .force import (
     RECEDING,
     SEGMENT_HIGH,
     SEGMENT_LOW,
-    loading_slope,
+    loading_window,
     static_loading,
     static_unloading,
-    unloading_slope,
+    unloading_window,
 )
 from .layout import (
     ACCELERATION,
@@ -199,10 +199,14 @@ def _contact_of(loading, radius, unloading, par, force, factors, body, psi, n, b
         if force[RADIATION] != 0.0:
             # the waves' power is kappa (dF/dt)^2
             if phase == LOAD:
-                d = min(max(depth, branch[SEGMENT_LOW]), branch[SEGMENT_HIGH])
-                slope = loading_slope(loading, par, force, factors, branch, d)
+                low, high = loading_window(d, branch[SEGMENT_LOW], branch[SEGMENT_HIGH])
+                rise = static_loading(loading, par, force, factors, high)
+                rise -= static_loading(loading, par, force, factors, low)
             else:
-                slope = unloading_slope(unloading, par, branch, depth)
+                low, high = unloading_window(branch, depth)
+                rise = static_unloading(unloading, par, branch, high)
+                rise -= static_unloading(unloading, par, branch, low)
+            slope = rise / (high - low) if high > low else 0.0
             f += force[RADIATION] * slope * slope * seen[RATE]
         if force[DAMPING] != 0.0:
             f += f * force[DAMPING] * seen[RATE]

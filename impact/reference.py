@@ -140,23 +140,16 @@ class _Motion:
 
     def slope(self, d: float, k: _Contact) -> float:
         """Slope of the static force over the depth: waves take kappa (dF/dt)^2."""
-        a, step = self.a, 1e-4
+        a = self.a
         if k.phase == LOADING:
-            if d <= 0.0:
-                return 0.0
-            low, high = max(d * (1.0 - step), k.low), min(d * (1.0 + step), k.high)
-            if high <= low:
-                return 0.0
-            force = [
+            low, high = fo.loading_window.py_func(d, k.low, k.high)
+            ends = [
                 self.on_loading(self.loading, a.par, a.force, a.factors, x) for x in (low, high)
             ]
-            return float((force[1] - force[0]) / (high - low))
-        rest = k.branch[1] + k.branch[2]
-        if d <= rest:
-            return 0.0
-        low, high = d - step * (d - rest), min(d + step * (d - rest), max(k.branch[0], d))
-        force = [self.on_unloading(self.unloading, a.par, k.branch, x) for x in (low, high)]
-        return float((force[1] - force[0]) / (high - low))
+        else:
+            low, high = fo.unloading_window.py_func(k.branch, d)
+            ends = [self.on_unloading(self.unloading, a.par, k.branch, x) for x in (low, high)]
+        return float((ends[1] - ends[0]) / (high - low)) if high > low else 0.0
 
     def radius_now(self, depth: float, k: _Contact) -> float:
         """Contact radius: the law's on loading, about the residual depth as Hertz's else."""

@@ -316,9 +316,8 @@ def _note(limits: Mapping[str, tuple[float, float]]) -> str:
 
 def read_coefficients() -> dict[str, Any] | None:
     """Content of the shipped coefficients file; none if there is none yet."""
-    if not COEFFICIENTS_FILE.is_file():
-        return None
-    return json.loads(COEFFICIENTS_FILE.read_text("utf-8"))  # type: ignore[no-any-return]
+    file = COEFFICIENTS_FILE
+    return json.loads(file.read_text("utf-8")) if file.is_file() else None
 
 
 def law_from(content: Mapping[str, Any], *, source: str) -> Fitted:

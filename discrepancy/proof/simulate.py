@@ -69,7 +69,7 @@ def noise_std(rig: Rig, clean: dict[str, Array]) -> dict[str, Array]:
 
 
 @dataclass(frozen=True, eq=False)
-class Sight:
+class Visibility:
     """How large changes of a rig's readings look, with what nuisances imitate taken out.
 
     With e a change of all readings over their noise, and J their derivatives with respect to the
@@ -98,7 +98,7 @@ class Sight:
     @classmethod
     def of(
         cls, rig: Rig, *, family: float, z: dict[str, float], keep: Sequence[Effect] = ()
-    ) -> Sight:
+    ) -> Visibility:
         """Simulate what is needed."""
         few, counts = _distinct(rig)
         readings = _stacked(few, keep, family, z)
@@ -145,10 +145,11 @@ def size_of(
     keep
         What acts in both impacts that are compared.
     """
-    sight = Sight.of(rig, family=family, z=z, keep=keep)
-    return sight.size(sight.change(effects))
+    seen = Visibility.of(rig, family=family, z=z, keep=keep)
+    return seen.size(seen.change(effects))
 
 
+# draws of each imitator, how many of the nearest are improved, and by how many steps
 _SAMPLES, _POLISHED, _STEPS = 12, 2, 60
 
 
@@ -170,22 +171,22 @@ def size_beyond_library(
     effect
         One of `OUTSIDE`.
     """
-    sight = Sight.of(rig, family=family, z=z)
-    wanted = sight.change([effect])
-    least = sight.size(wanted)
+    seen = Visibility.of(rig, family=family, z=z)
+    wanted = seen.change([effect])
+    least = seen.size(wanted)
     tried: list[tuple[float, int, Effect]] = []
     for name in _able(rig):
         draws = [EFFECTS[name].draw(rng, rig, family) for _ in range(_SAMPLES)]
         # a bar or beam has no numbers that matter, and costs much
         for one in draws[: 1 if "elements" in draws[0].numbers else _SAMPLES]:
-            tried.append((sight.size(wanted - sight.change([one])), len(tried), one))
+            tried.append((seen.size(wanted - seen.change([one])), len(tried), one))
     for size, _, one in sorted(tried)[:_POLISHED]:
         keys = [k for k, v in one.numbers.items() if k not in ("elements", "seed") and v > 0.0]
         first = np.log([one.numbers[k] for k in keys])
 
         def left(x: Array, one: Effect = one, keys: list[str] = keys) -> float:
             numbers = one.numbers | dict(zip(keys, np.exp(x).tolist(), strict=True))
-            return sight.size(wanted - sight.change([replace(one, numbers=numbers)]))
+            return seen.size(wanted - seen.change([replace(one, numbers=numbers)]))
 
         found = minimize(left, first, method="Nelder-Mead", options={"maxfev": _STEPS})
         least = min(least, size, float(found.fun))

@@ -7,9 +7,19 @@ import math
 import numpy as np
 import pytest
 from dentscope.core import Material
-from dentscope.impact import Approach, Modes, Settings, Striker, Support, scene_of, strike
+from dentscope.impact import (
+    Approach,
+    Modes,
+    Settings,
+    Striker,
+    Support,
+    reference_impact,
+    scene_of,
+    strike,
+)
 from dentscope.impact.beam import axial_frequencies, bending_modes, shear_coefficient
 from dentscope.impact.support import half_space_radiation, plate_support, radiated_shares
+from dentscope.models import LAWS
 from dentscope.models.hertz import HERTZ
 from scipy.integrate import solve_ivp
 from scipy.optimize import brentq
@@ -171,3 +181,25 @@ def test_half_space_takes_hunters_share() -> None:
     impact = strike(scene.with_(force=type(scene.force)(radiation=kappa)))
     c0 = math.sqrt(STEEL.E / STEEL.density)
     assert 1.0 - impact.restitution**2 == pytest.approx(1.04 * (1.0 / c0) ** 0.6, rel=0.1)
+
+
+def test_a_growing_dent_sends_waves_by_the_slope_of_its_own_force() -> None:
+    """F exceeds the law's by kappa (dF/d(depth))^2 d', with the law's exact derivative."""
+    law, kappa = LAWS["fitted"], half_space_radiation(STEEL)
+    scene = scene_of(
+        law, sphere=STEEL.with_(Sy=2e9), flat=STEEL.with_(Sy=3e8),
+        striker=Striker(mass=0.024, tip_radius=0.009), approach=Approach(1.0),
+    )  # fmt: skip
+    scene = scene.with_(force=type(scene.force)(radiation=kappa))
+    trace = reference_impact(scene, points=200)
+    depth, force = trace.column("penetration_m"), trace.column("normal_force_N")
+    rate = np.abs(trace.column("normal_velocity_m_s"))
+    down = np.arange(len(depth)) < int(np.argmax(depth))
+    down &= (depth > 0.1 * depth.max()) & (depth < 0.9 * depth.max())
+    extra = force[down] - law.loading(scene.pair, depth[down])
+    slope = law.gradient(scene.pair, depth[down])["depth"]
+    assert down.sum() > 10
+    assert extra == pytest.approx(kappa * slope**2 * rate[down], rel=1e-4)
+    elastic = 2.0 * scene.pair.E_reduced * law.contact_radius(scene.pair, depth[down])
+    assert slope[-1] < 0.5 * elastic[-1]  # a dent is softer than the contact is elastically
+    assert strike(scene).restitution == pytest.approx(trace.impact.restitution, abs=1e-6)
