@@ -195,7 +195,13 @@ class DaskExecutor:
         keys: dict[str, str] = {}
 
         def fill() -> None:
-            while len(keys) < _WINDOW * max(1, len(self.client.scheduler_info()["workers"])):
+            while True:
+                # a client that has given up on its scheduler knows of no workers, not of none
+                workers = self.client.scheduler_info().get("workers")
+                if workers is None:
+                    raise self._went_away()
+                if len(keys) >= _WINDOW * max(1, len(workers)):
+                    return
                 key, case = next(todo, ("", None))
                 if case is None:
                     return
@@ -210,16 +216,19 @@ class DaskExecutor:
             key = keys.pop(future.key)
             error = None if future.cancelled() else future.exception()
             if future.cancelled() or isinstance(error, CancelledError):
-                raise InputError(
-                    "the dask scheduler went away; all completed cases are kept",
-                    source=self.address,
-                    allowed="a running scheduler; the same command goes on from here",
-                )
+                raise self._went_away()
             if error is None:
                 yield Ended(key, future.result())
             else:
                 yield Ended(key, None, f"{type(error).__name__}: {error}")
             fill()
+
+    def _went_away(self) -> InputError:
+        return InputError(
+            "the dask scheduler went away; all completed cases are kept",
+            source=self.address,
+            allowed="a running scheduler; the same command goes on from here",
+        )
 
 
 def _die_with(coordinator: int) -> None:

@@ -8,9 +8,12 @@ import subprocess
 import sys
 import warnings
 from pathlib import Path
+from types import SimpleNamespace
 
 import pytest
 from dentscope.campaigns import Store, read_curves
+from dentscope.campaigns.executor import DaskExecutor
+from dentscope.core import InputError
 
 pytest.importorskip("distributed")
 
@@ -159,3 +162,11 @@ def test_an_address_without_a_scheduler_ends_with_exit_code_2(tmp_path):
     assert answer.returncode == 2, answer.stderr
     assert "no dask scheduler at tcp://127.0.0.1:9" in answer.stderr
     assert "Traceback" not in answer.stderr
+
+
+def test_a_client_that_gave_up_says_that_the_scheduler_went_away(monkeypatch):
+    monkeypatch.setattr("distributed.as_completed", list)
+    closed = SimpleNamespace(scheduler_info=dict)
+    ended = DaskExecutor("tcp://nowhere:1", 1, closed).run({}, time_limit_s=1.0)
+    with pytest.raises(InputError, match="went away"):
+        next(ended)
