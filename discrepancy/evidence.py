@@ -27,8 +27,8 @@ Array = NDArray[np.float64]
 
 FINE = {1: 241, 2: 49, 3: 17, 4: 11}
 """Points per parameter of the refined grid, by the number of parameters."""
-IN_WINDOW = {1: 5, 2: 4, 3: 3}
-"""Nodes per parameter of a grid over a part of the prior, by the number of parameters."""
+IN_WINDOW = {1: 5, 2: 5, 3: 3}
+"""Least nodes per parameter of a grid over a part of the prior, by the number of parameters."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -110,8 +110,11 @@ class Grid:
         """Places in (0, 1) of the nodes of each axis."""
         if not self.window:
             return [np.linspace(0.0, 1.0, p.nodes) for p in self.parameters]
-        count = IN_WINDOW.get(len(self.parameters), 3)
-        return [np.linspace(low, high, count) for low, high in self.window]
+        least = IN_WINDOW.get(len(self.parameters), 3)
+        return [
+            np.linspace(low, high, max(least, math.ceil((p.nodes - 1) * (high - low)) + 1))
+            for p, (low, high) in zip(self.parameters, self.window, strict=True)
+        ]
 
     @cached_property
     def fine(self) -> list[Array]:

@@ -28,6 +28,7 @@ _ROUNDS, _SETTLED = 4, 0.15
 _FARTHEST = 2.0  # of the unknowns within one round
 # places of the refined grid in a standard deviation that need no window; its half width, in those
 _RESOLVED, _WINDOW = 2.0, 4.0
+_NODE = 0.25  # of a prior's range: distance of nodes from which a response counts as straight
 
 
 @dataclass(frozen=True, eq=False)
@@ -299,8 +300,9 @@ def sharpened(simulator: Simulator, fitted: Fit, *, rounds: int = 8) -> Fit:
     grid, z, place = fitted.grid, fitted.z, fitted.place
     spread = _spread(fitted)
     share = np.array([1.0 / len(f) for f in grid.fine])
+    node = np.array([min(1.0 / (len(c) - 1), _NODE) for c in grid.coarse])
     jumps = any(m.jumps for m in fitted.mechanisms)
-    if np.all(spread > _RESOLVED * share) and not jumps:
+    if np.all(spread > np.maximum(_RESOLVED * share, node)) and not jumps:
         return fitted
     half = np.maximum(_WINDOW * spread, 2.5 * share)
     best = None

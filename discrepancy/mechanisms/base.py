@@ -34,7 +34,8 @@ class Parameter:
     low, high
         Range within which the source (or physics) puts it; the prior is flat over it.
     scale
-        Whether flat means in the number or in its logarithm.
+        Whether flat means in the number, in its logarithm, or in the angle whose squared sine the
+        share of the range is: `ends`, where both ends are states that occur.
     neutral
         The value at which the mechanism does nothing.
     source
@@ -47,7 +48,7 @@ class Parameter:
     unit: str
     low: float
     high: float
-    scale: Literal["log", "linear"]
+    scale: Literal["log", "linear", "ends"]
     neutral: float
     source: str
     nodes: int = 9
@@ -57,6 +58,8 @@ class Parameter:
         p = np.asarray(place, dtype=float)
         if self.scale == "log":
             return np.asarray(self.low * (self.high / self.low) ** p)
+        if self.scale == "ends":
+            p = np.sin(0.5 * np.pi * p) ** 2
         return np.asarray(self.low + (self.high - self.low) * p)
 
 

@@ -111,12 +111,12 @@ class SqueezeFilm(Mechanism):
         Parameter(
             "film_drag_Pa_s", "Pa s", 1e-3, 10.0, "log", 0.0,
             "viscosity times ln(h_0/h_1): water 1e-3, oils 0.01-1 Pa s (Davis, Rager and Good, "
-            "J. Fluid Mech. 468 (2002) 107)",
+            "J. Fluid Mech. 468 (2002) 107)", nodes=17,
         ),
         Parameter(
-            "film_exit_share", "-", 0.0, 1.0, "linear", 0.0,
+            "film_exit_share", "-", 0.0, 1.0, "ends", 0.0,
             "0 where the film cavitates as the bodies part, 1 where it does not (Barnocky and "
-            "Davis, Phys. Fluids 31 (1988) 1324)", nodes=3,
+            "Davis, Phys. Fluids 31 (1988) 1324)", nodes=5,
         ),
     )  # fmt: skip
     direction: ClassVar[Mapping[str, int]] = {"restitution": -1, "permanent_depth_m": -1}

@@ -168,8 +168,8 @@ class ThermalSoftening(Mechanism):
     equations = "S = S_y (1 - T*^m), T* = (T - T_0 + 0.9 S_y eps/(rho c_p))/(T_m - T_0)"
     parameters = (
         Parameter(
-            "softening_exponent", "-", 0.5, 1.7, "linear", math.inf,
-            "Johnson and Cook 1983: 1.03 (4340), 1.00 (1006), 1.09 (OFHC copper), 1.70 (7039)",
+            "softening_exponent", "-", 0.4, 2.5, "linear", math.inf,
+            "Johnson and Cook 1983: 1.00 (1006) to 1.70 (7039); half as far again for other metals",
         ),
     )  # fmt: skip
     direction: ClassVar[Mapping[str, int]] = {"restitution": -1, "permanent_depth_m": 1}
