@@ -86,7 +86,7 @@ def solve(target: Metal, striker: Metal) -> Curve:
 def _of_cavity(c: Array, stiffness: float, depth: float) -> tuple[float, float, float]:
     """Force, residual depth and energy given back, by Y and R."""
     force, _, left = cavity.dent(depth, stiffness, 1.0, 1.0, 0.0, c)
-    power = cavity.exponent(depth * stiffness**2, c)
+    power = cavity.exponent(depth * stiffness**2, 0.0, c)
     return force, left, force * (depth - left) / (power + 1.0)
 
 

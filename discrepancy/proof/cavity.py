@@ -8,6 +8,8 @@ stiffness 2 E' a at the peak. With W = (depth/R) (E'/Sy)^2:
     F = (F_H^-p + F_P^-p)^(-1/p),  F_P = pi a^2 Sy h (1 - g a/R)
     residual = d - m F/(2 E' a),   m = 3/2 - (3/2 - m_inf) y/(1 + y),  y = (W/w3)^q
 
+A flat on the tip joins the sphere to the rigid punch, whose m is 1 and which recovers linearly.
+
 The coefficients for all pairs alike (`base_laws` has those of each pair) were fitted to quasi-
 static finite-element curves of a hard sphere on a softer flat: 82 pairs of data/campaign, E'/Sy
 from 60 to 2500, depth up to 0.1 R. Rms of what is left: force 1 % below W = 30, 2 to 4.5 % above;
@@ -26,11 +28,18 @@ from numba import njit
 COEFFICIENTS = np.array([2.384, 572.0, 0.8483, 3.271, 0.1454, 3.512, 1.1986, 28.94, 1.390, 2.552])
 """k, w2, s, h, g, p, m_inf, w3, exponent of the recovery, q."""
 
+_JOIN = 1.6  # of the sphere's force and the punch's
+
 
 @njit(cache=True)
-def exponent(W, c):
-    """Exponent of the recovery from a dent of plasticity index W."""
-    return 1.5 - (1.5 - c[8]) * W / (W + 10.0)
+def exponent(W, ring, c):
+    """Exponent of the recovery from a dent of plasticity index W: 1 under a punch.
+
+    `ring` is the flat's area over that of the sphere without it, flat^2/(R depth).
+    """
+    n = 1.5 - (1.5 - c[8]) * W / (W + 10.0)
+    edge = (1.5 * math.sqrt(ring)) ** _JOIN
+    return 1.0 + (n - 1.0) / (1.0 + edge)
 
 
 @njit(cache=True)
@@ -52,7 +61,7 @@ def dent(depth, E, R, Y, flat, c):
     if flat > 0.0:
         # a rounded edge: the punch takes over from the sphere where its force is the lesser
         ring = flat * flat / (R * depth)
-        hertz *= (1.0 + (1.5 * math.sqrt(ring)) ** 1.6) ** (1.0 / 1.6)
+        hertz *= (1.0 + (1.5 * math.sqrt(ring)) ** _JOIN) ** (1.0 / _JOIN)
     if math.isinf(Y):
         return hertz, math.sqrt(R * depth + flat * flat), 0.0
     W = depth / R * (E / Y) ** 2
@@ -64,10 +73,10 @@ def dent(depth, E, R, Y, flat, c):
     plastic = math.pi * a2 * Y * c[3] * max(1.0 - c[4] * a / R, 0.2)
     force = hertz * (1.0 + (hertz / plastic) ** c[5]) ** (-1.0 / c[5])
     y = (W / c[7]) ** c[9]
-    m = 1.0 - (1.0 - c[6] / 1.5) * y / (1.0 + y)
+    m = 1.5
     if flat > 0.0:
         round_edge = ((R * depth) ** 1.5 + flat**3) ** (1.0 / 3.0)
-        m *= 2.0 * E * round_edge * depth / hertz
-    else:
-        m *= 1.5
+        m = 2.0 * E * round_edge * depth / hertz
+    # a dent's bottom recovers less than a sphere's, but under a punch it stays flat
+    m -= (1.5 - c[6]) * (2.0 * m - 2.0) * y / (1.0 + y)
     return force, a, max(depth - m * force / (2.0 * E * a), 0.0)

@@ -189,7 +189,10 @@ def _support(rng: np.random.Generator, rig: Rig, family: float) -> Effect:
     stiffness = mass * (2.0 * math.pi / period) ** 2
     loss = 2.0 * _log(rng, 0.01, 0.3) * math.sqrt(stiffness * mass)
     numbers = {"mass": mass, "stiffness": stiffness, "damping": loss}
-    return Effect("support-compliance", "mass-spring-dashpot", numbers, True)
+    if rng.random() < 0.5:
+        return Effect("support-compliance", "mass-spring-dashpot", numbers, True)
+    numbers["gap"] = _log(rng, 5e-6, 40e-6)
+    return Effect("support-compliance", "spring-with-play", numbers)
 
 
 def _put_support(p: Array, rig: Rig, effect: Effect) -> None:
@@ -417,12 +420,6 @@ def _put_oscillating(p: Array, rig: Rig, effect: Effect) -> None:
     p[:, at.WAVE_A], p[:, at.WAVE_B] = effect.numbers["share"], effect.numbers["length"]
 
 
-def _loose(rng: np.random.Generator, rig: Rig, family: float) -> Effect:
-    drawn = _support(rng, rig, family)
-    numbers = drawn.numbers | {"gap": _log(rng, 5e-6, 40e-6)}
-    return Effect("loose-support", "gap", numbers)
-
-
 def _order(rng: np.random.Generator, rig: Rig, family: float) -> Effect:
     numbers = {"rise": float(rng.choice([-1, 1])) * _log(rng, 0.15, 0.5), "seed": 0.0}
     numbers["seed"] = float(rng.integers(2**31))
@@ -455,7 +452,6 @@ OUTSIDE: dict[str, Kind] = {
     "crushed-layer": Kind((*_METALS, "balls-small"), _crushed, _put_crushed),
     "negative-rate-sensitivity": Kind(_METALS, _falling, _put_falling),
     "oscillating-strength": Kind((*_METALS, "balls-small"), _oscillating, _put_oscillating),
-    "loose-support": Kind(_METALS, _loose, _put_support),
     "drift-with-order": Kind((*_METALS, "balls-oblique"), _order, _put_order),
     "speed-threshold": Kind((*_METALS, "balls-small"), _threshold, _put_threshold),
 }

@@ -34,7 +34,8 @@ def _recovered(p, memory, depth):
     if depth <= rest:
         return 0.0
     W = memory[PEAK] / p[at.TIP] * (p[at.MODULUS] / p[at.STRENGTH]) ** 2
-    n = cavity.exponent(W, p[at.CAVITY_LAW : at.ROW_LAW])
+    ring = p[at.FLAT] ** 2 / (p[at.TIP] * memory[PEAK])
+    n = cavity.exponent(W, ring, p[at.CAVITY_LAW : at.ROW_LAW])
     return memory[PEAK_F] * ((depth - rest) / (memory[PEAK] - rest)) ** n
 
 

@@ -32,10 +32,13 @@ _WORDS: dict[str, Callable[[str, Numbers], Numbers]] = {
     "size-effect": lambda form, k: {"size_length_m": k["length"]} if form == "swadener" else {},
     "impact-speed-loss": lambda form, k: {"speed_loss": k["loss"]} if "loss" in k else {},
     "tilt": lambda form, k: {"tilt_deg": math.degrees(k["angle"])},
-    "tangential-compliance": lambda form, k: {"tangential_stiffness_ratio": k["ratio"]},
+    # under partial slip the ratio is that of the first touch; a spring's is a mean
+    "tangential-compliance": lambda form, k: (
+        {"tangential_stiffness_ratio": k["ratio"]} if form == "spring-and-slider" else {}
+    ),
     "support-compliance": lambda form, k: (
         {"support_stiffness_N_m": k["stiffness"], "support_mass_kg": k["mass"]}
-        if "mass" in k
+        if form == "mass-spring-dashpot"
         else {}
     ),
 }

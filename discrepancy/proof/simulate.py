@@ -158,9 +158,9 @@ def size_beyond_library(
 ) -> float:
     """Size of what is left of an effect after any one effect of the library has imitated it.
 
-    A support that rattles through a gap may look like one that simply moves, to any instrument of
-    the set; then no name is wrong. The imitators are the generator's own: draws of each effect that
-    the bench can show, the nearest of them improved by a simplex search in their numbers.
+    A layer that crushes may look like a blunt tip to every instrument of the set; then no name is
+    wrong. The imitators are the generator's own: draws of each effect that the bench can show, the
+    nearest of them improved by a simplex search in their numbers.
 
     Parameters
     ----------

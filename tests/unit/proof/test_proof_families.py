@@ -154,12 +154,12 @@ def test_every_effect_is_seen_somewhere(name):
     assert largest > 3.0
 
 
-def test_a_support_without_play_is_within_the_library_and_one_with_much_is_not():
+def test_a_support_with_play_is_within_the_library_and_a_flat_that_softens_is_not():
     rig = benches.balls_normal(np.random.default_rng(3))
     heavy = max(s.mass for s in rig.strikers)
     numbers = {"mass": 12.0 * heavy, "stiffness": 12.0 * heavy * (2.0 * np.pi / 6e-4) ** 2}
     numbers["damping"] = 0.02 * np.sqrt(numbers["mass"] * numbers["stiffness"])
-    tight = effects.Effect("loose-support", "gap", numbers | {"gap": 1e-12})
+    tight = effects.Effect("support-compliance", "spring-with-play", numbers | {"gap": 1e-12})
     law = LAWS[0]
     plain = simulate.size_of(rig, [tight], family=law, z={})
     beyond = simulate.size_beyond_library(
