@@ -129,3 +129,21 @@ def test_a_second_blow_meets_the_crater_of_the_first(tmp_path: Path) -> None:
     for name in ("permanent_depth_m", "peak_force_N"):
         assert seen[name][0, 1] == pytest.approx(alone[name][0, 0], rel=1e-4)
         assert seen[name][0, 1] > 1.1 * seen[name][0, 0]
+
+
+def test_repeats_that_scatter_beyond_their_stated_noise_are_all_kept(tmp_path: Path) -> None:
+    """Two bounces each on a thick and a thin plate under one name: no majority is an outlier."""
+    (tmp_path / "set.toml").write_text(
+        'format = "recording-set/1"\nname = "plates"\n'
+        '[target]\nmaterial = "wood"\nshape = "flat"\nlaw = "measured-restitution"\n'
+        '[strikers.ball]\nmaterial = "steel"\nshape = "sphere"\n'
+        "tip_radius_m = 0.005\nmass_kg = 0.004\n"
+    )
+    e = np.array([0.4, 0.41, 0.6, 0.61])
+    rows = ["trial,striker,angle_deg,impact_speed_m_s,restitution,restitution_std"]
+    rows += [f"{k},ball,90,2.0,{value},0.001" for k, value in enumerate(e)]
+    (tmp_path / "trials.csv").write_text("\n".join(rows) + "\n")
+    cells = problem_of(read(tmp_path)).cells
+    assert cells.count.tolist() == [4]
+    # logarithms, whose noise is the stated one over the value
+    assert cells.value == pytest.approx(np.average(np.log(e), weights=e**2), rel=1e-9)

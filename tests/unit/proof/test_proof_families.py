@@ -51,6 +51,22 @@ def test_elastic_impact_is_hertz(law):
     assert out[at.PEAK_FORCE] == pytest.approx(force, rel=2e-3)
 
 
+def test_a_flat_tip_recovers_between_sphere_and_punch():
+    """The rigid punch of radius b has F = 2 E' b d: the dent gives F^2/(4 E' b) back."""
+    E, Y, R, depth = 110e9, 300e6, 9e-3, 1e-6
+    c = cavity.COEFFICIENTS
+    W = depth / R * (E / Y) ** 2
+    for flat, off in ((1e-9, 1e-3), (0.08 * R, 0.02)):
+        force, a, left = cavity.dent(depth, E, R, Y, flat, c)
+        n = cavity.exponent(W, flat**2 / (R * depth), c)
+        round_force, round_a, round_left = cavity.dent(depth, E, R, Y, 0.0, c)
+        sphere = round_force * (depth - round_left) / (cavity.exponent(W, 0.0, c) + 1.0)
+        wanted = sphere if flat < 1e-6 else force**2 / (4.0 * E * a)
+        assert force * (depth - left) / (n + 1.0) == pytest.approx(wanted, rel=off)
+    assert n == pytest.approx(1.0, abs=0.01)
+    assert a == pytest.approx(flat, rel=0.01)
+
+
 @pytest.mark.parametrize("law", LAWS)
 @pytest.mark.parametrize("angle", [90.0, 40.0])
 def test_momentum_and_energy_balance(law, angle):
