@@ -518,9 +518,10 @@ def _power(name: str, y: Array, log: bool) -> Array:
 def _kept(y: Array, s: Array) -> NDArray[np.bool_]:
     """Repeats (three or more) that lie within 5 standard deviations of their median.
 
-    Where most do not, the stated noise is too small and says nothing of single ones.
+    Where most of four or more do not, the stated noise is too small and says nothing of single
+    ones; of three the middle one stands.
     """
     near = np.abs(y - np.median(y)) < 5.0 * s
-    if len(y) < 3 or 2 * np.sum(near) < len(y):
+    if len(y) < 3 or (len(y) > 3 and 2 * np.sum(near) < len(y)):
         return np.ones(len(y), dtype=bool)
     return np.asarray(near)
