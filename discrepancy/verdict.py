@@ -207,7 +207,7 @@ def diagnose(
         ),
         audit=findings, probabilities=probabilities,
         scores=_scores(ranking, p_fits, scores, confirmed), located=located,
-        parameters=parameters_of(problem, best), nuisance_pulls=_pulls(problem, best),
+        parameters=parameters_of(simulator, best), nuisance_pulls=_pulls(problem, best),
         excluded=ranking.excluded, limits=_limits(ranking, calibration),
         improvement=_improvement(scores[ranking.base.name], scores[best.name]),
         corrections=corrections, proposals=tuple(proposals[:5]), notes=_notes(problem, best),
@@ -447,13 +447,23 @@ def _scores(
     return found
 
 
-def parameters_of(problem: Problem, fitted: Fit, level: float = 0.90) -> dict[str, dict[str, Any]]:
-    """Return value and interval of every parameter, the nuisances included."""
+def parameters_of(
+    simulator: Simulator, fitted: Fit, level: float = 0.90
+) -> dict[str, dict[str, Any]]:
+    """Return value and interval of every parameter, the nuisances included.
+
+    A mechanism's intervals hold what the textbook's form may be off in the size of its effect: the
+    likelihood leaves that to the parameters.
+    """
+    problem = simulator.problem
     found: dict[str, dict[str, Any]] = {}
     if fitted.mechanisms:
         places = fitted.grid.places()
+        off = 1.645 * _moved_by_form(simulator, fitted)
         for axis, p in enumerate(fitted.grid.parameters):
             middle, low, high = interval(places[:, axis], fitted.weight, level)
+            low = max(middle - math.hypot(middle - low, off[axis]), 0.0)
+            high = min(middle + math.hypot(high - middle, off[axis]), 1.0)
             found[p.name] = {
                 "value": float(p.value(middle)), "low": float(p.value(low)),
                 "high": float(p.value(high)), "level": level, "unit": p.unit,
@@ -466,6 +476,21 @@ def parameters_of(problem: Problem, fitted: Fit, level: float = 0.90) -> dict[st
             "level": level, "unit": n.unit,
         }  # fmt: skip
     return found
+
+
+def _moved_by_form(simulator: Simulator, fitted: Fit) -> Array:
+    """By how much of their ranges the parameters would move, (axes,), if the form's size is off.
+
+    To first order the posterior mean follows a change d of the data by its covariance with
+    d^T Sigma^-1 times the prediction; d is the form's share of the effect.
+    """
+    without = simulator.predict((), [Point(fitted.z)])[0]
+    share = max(m.form for m in fitted.mechanisms)
+    change = fitted.linear.white(share * (fitted.prediction - without))
+    along = -fitted.linear.white(fitted.residuals) @ change
+    places = fitted.grid.places()
+    away = places - fitted.weight @ places
+    return np.abs((fitted.weight * (along - fitted.weight @ along)) @ away)
 
 
 def _pulls(problem: Problem, fitted: Fit) -> dict[str, float]:

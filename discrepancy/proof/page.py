@@ -39,9 +39,9 @@ import nothing of the diagnosis, of the contact laws, of the impact or of the re
 * **Size** of an effect: norm of the change of all readings over their noise, after what the
   nuisances within their tolerance can imitate is taken out, from the generator itself. Of an effect
   outside the library also what the nearest of the generator's own library effects imitates (draws
-  of each, the best improved by a simplex search): a layer that crushes may look like asperities to
-  every instrument of a set, and then no name is wrong. Outside truths are drawn until 10 is left, if
-  eight draws give it.
+  of each, the best improved by a simplex search): a layer that crushes may look like asperities
+  to every instrument of a set, and then no name is wrong. Outside truths are drawn until 10 is
+  left, if eight draws give it.
 * **Marks.** `met` or `missed` only if the whole 95 % interval (Clopper and Pearson) is on one
   side; else `not shown`.
 """

@@ -3,11 +3,13 @@
 from __future__ import annotations
 
 import math
+from types import SimpleNamespace
 
 import numpy as np
 import pytest
 from dentscope.discrepancy.evidence import Grid, Linear, interval, posterior
 from dentscope.discrepancy.mechanisms import Parameter
+from dentscope.discrepancy.verdict import parameters_of
 from scipy.stats import beta, multivariate_normal, norm
 
 
@@ -78,3 +80,26 @@ def test_evidence_of_a_flat_likelihood_is_its_height() -> None:
     evidence, weight = posterior(np.full(50, -3.0))
     assert evidence == pytest.approx(-3.0)
     assert math.isclose(weight.sum(), 1.0)
+
+
+def test_interval_holds_what_a_form_may_be_off_in_size() -> None:
+    """Effect theta times a shape, nearly no noise: 15 % of the effect are 15 % of theta."""
+    shape, theta, noise = np.array([1.0, 2.0, -1.0]), 0.4, 1e-2
+    p = Parameter("theta", "-", 0.3, 0.5, "linear", 0.0, "", nodes=5)
+    grid = Grid((p,))
+    at = p.value(grid.places()[:, 0])
+    residuals = (theta - at)[:, None] * shape
+    linear = Linear(noise**2 * np.eye(3), np.zeros((3, 1)))
+    _, weight = posterior(linear.log_likelihood(residuals))
+    fitted = SimpleNamespace(
+        mechanisms=(SimpleNamespace(form=0.15),), grid=grid, weight=weight, residuals=residuals,
+        linear=linear, prediction=theta * shape, z=np.zeros(1), covariance=np.zeros((1, 1)),
+    )  # fmt: skip
+    nothing_else = SimpleNamespace(
+        problem=SimpleNamespace(nuisances=()), predict=lambda mechanisms, points: [0.0 * shape]
+    )
+    found = parameters_of(nothing_else, fitted)["theta"]
+    assert found["value"] == pytest.approx(theta, rel=2e-3)
+    wide = 1.645 * 0.15 * theta
+    assert found["high"] - found["value"] == pytest.approx(wide, rel=0.02)
+    assert found["value"] - found["low"] == pytest.approx(wide, rel=0.02)

@@ -59,7 +59,7 @@ def test_a_flat_tip_recovers_between_sphere_and_punch():
     for flat, off in ((1e-9, 1e-3), (0.08 * R, 0.02)):
         force, a, left = cavity.dent(depth, E, R, Y, flat, c)
         n = cavity.exponent(W, flat**2 / (R * depth), c)
-        round_force, round_a, round_left = cavity.dent(depth, E, R, Y, 0.0, c)
+        round_force, _, round_left = cavity.dent(depth, E, R, Y, 0.0, c)
         sphere = round_force * (depth - round_left) / (cavity.exponent(W, 0.0, c) + 1.0)
         wanted = sphere if flat < 1e-6 else force**2 / (4.0 * E * a)
         assert force * (depth - left) / (n + 1.0) == pytest.approx(wanted, rel=off)
