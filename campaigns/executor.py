@@ -195,13 +195,7 @@ class DaskExecutor:
         keys: dict[str, str] = {}
 
         def fill() -> None:
-            while True:
-                # a client that has given up on its scheduler knows of no workers, not of none
-                workers = self.client.scheduler_info().get("workers")
-                if workers is None:
-                    raise self._went_away()
-                if len(keys) >= _WINDOW * max(1, len(workers)):
-                    return
+            while len(keys) < _WINDOW * max(1, self._worker_count()):
                 key, case = next(todo, ("", None))
                 if case is None:
                     return
@@ -222,6 +216,13 @@ class DaskExecutor:
             else:
                 yield Ended(key, None, f"{type(error).__name__}: {error}")
             fill()
+
+    def _worker_count(self) -> int:
+        # a client that has given up on its scheduler knows of no workers, not of none
+        workers = self.client.scheduler_info().get("workers")
+        if workers is None:
+            raise self._went_away()
+        return len(workers)
 
     def _went_away(self) -> InputError:
         return InputError(

@@ -28,7 +28,7 @@ _ROUNDS, _SETTLED = 4, 0.15
 _FARTHEST = 2.0  # of the unknowns within one round
 # places of the refined grid in a standard deviation that need no window; its half width, in those
 _RESOLVED, _WINDOW = 2.0, 4.0
-_NODE = 0.25  # of a prior's range: distance of nodes from which a response counts as straight
+_NODE = 0.25  # of a prior's range: nodes farther apart stand for a response that is nearly straight
 
 
 @dataclass(frozen=True, eq=False)

@@ -28,18 +28,20 @@ from numba import njit
 COEFFICIENTS = np.array([2.384, 572.0, 0.8483, 3.271, 0.1454, 3.512, 1.1986, 28.94, 1.390, 2.552])
 """k, w2, s, h, g, p, m_inf, w3, exponent of the recovery, q."""
 
-_JOIN = 1.6  # of the sphere's force and the punch's
+_JOIN = 1.6  # exponent that joins the sphere's force and the punch's
+
+
+@njit(cache=True)
+def _punch(ring):
+    """The punch's force over the sphere's, to the power `_JOIN`; `ring` is flat^2/(R depth)."""
+    return (1.5 * math.sqrt(ring)) ** _JOIN if ring > 0.0 else 0.0
 
 
 @njit(cache=True)
 def exponent(W, ring, c):
-    """Exponent of the recovery from a dent of plasticity index W: 1 under a punch.
-
-    `ring` is the flat's area over that of the sphere without it, flat^2/(R depth).
-    """
+    """Exponent of the recovery from a dent of plasticity index W; 1 where a flat is large."""
     n = 1.5 - (1.5 - c[8]) * W / (W + 10.0)
-    edge = (1.5 * math.sqrt(ring)) ** _JOIN
-    return 1.0 + (n - 1.0) / (1.0 + edge)
+    return 1.0 + (n - 1.0) / (1.0 + _punch(ring))
 
 
 @njit(cache=True)
@@ -60,8 +62,7 @@ def dent(depth, E, R, Y, flat, c):
     hertz = 4.0 / 3.0 * E * math.sqrt(R * depth) * depth
     if flat > 0.0:
         # a rounded edge: the punch takes over from the sphere where its force is the lesser
-        ring = flat * flat / (R * depth)
-        hertz *= (1.0 + (1.5 * math.sqrt(ring)) ** _JOIN) ** (1.0 / _JOIN)
+        hertz *= (1.0 + _punch(flat * flat / (R * depth))) ** (1.0 / _JOIN)
     if math.isinf(Y):
         return hertz, math.sqrt(R * depth + flat * flat), 0.0
     W = depth / R * (E / Y) ** 2

@@ -155,8 +155,8 @@ _SAMPLES, _POLISHED, _STEPS = 12, 2, 60
 
 def size_beyond_library(
     rng: np.random.Generator, rig: Rig, effect: Effect, *, family: float, z: dict[str, float]
-) -> float:
-    """Size of what is left of an effect after any one effect of the library has imitated it.
+) -> tuple[float, float]:
+    """Size of an effect, and of what is left after any one effect of the library has imitated it.
 
     A layer that crushes may look like a blunt tip to every instrument of the set; then no name is
     wrong. The imitators are the generator's own: draws of each effect that the bench can show, the
@@ -173,7 +173,7 @@ def size_beyond_library(
     """
     seen = Visibility.of(rig, family=family, z=z)
     wanted = seen.change([effect])
-    least = seen.size(wanted)
+    whole = least = seen.size(wanted)
     tried: list[tuple[float, int, Effect]] = []
     for name in _able(rig):
         draws = [EFFECTS[name].draw(rng, rig, family) for _ in range(_SAMPLES)]
@@ -190,7 +190,7 @@ def size_beyond_library(
 
         found = minimize(left, first, method="Nelder-Mead", options={"maxfev": _STEPS})
         least = min(least, size, float(found.fun))
-    return least
+    return whole, least
 
 
 def _able(rig: Rig) -> list[str]:

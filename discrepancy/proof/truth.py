@@ -180,11 +180,15 @@ def _single(
     for _ in range(_DRAWS):
         rig = _prepared(rng, str(rng.choice(kind.benches)), (name,))
         effect = kind.draw(rng, rig, FAMILIES[family])
-        size = size_of(rig, [effect], family=FAMILIES[family], z=z)
-        away = max(np.log(SEEN / max(size, 1e-3)), np.log(size / ENORMOUS + 1e-12), 0.0)
+        law, away = FAMILIES[family], 0.0
         if name in OUTSIDE:
-            size = size_beyond_library(rng, rig, effect, family=FAMILIES[family], z=z)
-            away = max(away, float(np.log(BEYOND / max(size, 1e-3))))
+            whole, size = size_beyond_library(rng, rig, effect, family=law, z=z)
+            away = np.log(BEYOND / max(size, 1e-3))
+        else:
+            whole = size = size_of(rig, [effect], family=law, z=z)
+        away = max(
+            np.log(SEEN / max(whole, 1e-3)), np.log(whole / ENORMOUS + 1e-12), away, 0.0
+        )  # fmt: skip
         tried.append((float(away), rig, effect, size))
         if away == 0.0:
             break

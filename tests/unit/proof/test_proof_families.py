@@ -177,15 +177,13 @@ def test_a_support_with_play_is_within_the_library_and_a_flat_that_softens_is_no
     numbers["damping"] = 0.02 * np.sqrt(numbers["mass"] * numbers["stiffness"])
     tight = effects.Effect("support-compliance", "spring-with-play", numbers | {"gap": 1e-12})
     law = LAWS[0]
-    plain = simulate.size_of(rig, [tight], family=law, z={})
-    beyond = simulate.size_beyond_library(
+    plain, beyond = simulate.size_beyond_library(
         np.random.default_rng(1), rig, tight, family=law, z={}
     )  # fmt: skip
     assert plain > 20.0
     assert beyond < 0.1 * plain
     softening = effects.Effect("strain-softening", "saturating", {"fall": 0.5, "strain": 0.01})
-    plain = simulate.size_of(rig, [softening], family=law, z={})
-    beyond = simulate.size_beyond_library(
+    plain, beyond = simulate.size_beyond_library(
         np.random.default_rng(1), rig, softening, family=law, z={}
     )  # fmt: skip
     assert 5.0 < beyond <= plain
