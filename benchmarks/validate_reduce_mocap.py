@@ -8,16 +8,11 @@ number of recordings, `rod` or `ball`, and `body` to give the places of the mark
 import sys
 
 import numpy as np
-from dentscope.recordings.reduce.mocap import MocapReduction, Scene, reduce_mocap
-from dentscope.recordings.reduce.mocap_body import Body, centre_of
-from dentscope.recordings.reduce.mocap_flight import Prior
-from dentscope.recordings.reduce.mocap_rigid import kabsch, rigid_poses
-from dentscope.recordings.reduce.synthetic.mocap import (
-    MocapTruth,
-    random_ball,
-    random_rod,
-    simulate,
-)
+from dentscope.recordings.reduce.mocap.body import Body, centre_of
+from dentscope.recordings.reduce.mocap.flight import Prior
+from dentscope.recordings.reduce.mocap.reduction import MocapReduction, Scene, reduce_mocap
+from dentscope.recordings.reduce.mocap.rigid import kabsch, rigid_poses
+from dentscope.studies.synthetic.mocap import MocapTruth, random_ball, random_rod, simulate
 
 UP = np.array([0.0, 0.0, 1.0])
 

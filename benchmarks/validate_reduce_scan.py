@@ -7,9 +7,9 @@ rim, tilt, roughness, noise, spikes and holes.
 import sys
 
 import numpy as np
-from dentscope.recordings.reduce.crater import reduce_scan
 from dentscope.recordings.reduce.measured import Measured
-from dentscope.recordings.reduce.synthetic.scans import ScanTruth, random_truth, render
+from dentscope.recordings.reduce.scan.crater import reduce_scan
+from dentscope.studies.synthetic.scans import ScanTruth, random_truth, render
 
 
 def _stated_blur(truth: ScanTruth) -> Measured:

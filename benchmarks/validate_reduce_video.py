@@ -13,8 +13,8 @@ from pathlib import Path
 import numpy as np
 from dentscope.recordings.reduce.clip import Clip
 from dentscope.recordings.reduce.measured import Measured
-from dentscope.recordings.reduce.synthetic.clips import random_truth, render
-from dentscope.recordings.reduce.video import Optics, reduce_video
+from dentscope.recordings.reduce.video.reduction import Optics, reduce_video
+from dentscope.studies.synthetic.clips import random_truth, render
 
 SPHERE = {
     "shape": "sphere", "columns": 72, "middle": 35.2, "half_width": 12.0, "tip_radius": 12.0,

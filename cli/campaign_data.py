@@ -160,7 +160,7 @@ def gallery(
     ),
 ) -> None:
     """Draw the campaign: the figures over Sy*, F/F_c of all cases, stress fields."""
-    from ..figures.campaign import build
+    from ..studies.campaign.gallery import build
 
     for picture in build(_data(data), to, fields=fields):
         typer.echo(f"{picture.number:>10}  {picture.title}: {picture.note}")
@@ -175,7 +175,7 @@ def reproduction(
     to: Annotated[Path, typer.Option(help="Report to write.")] = Path("docs/reproduction.md"),
 ) -> None:
     """Check the trends that chapter 2 of the thesis tells, one by one."""
-    from ..figures.campaign_reproduction import write
+    from ..studies.campaign.reproduction import write
 
     for trend in write(_data(data), to):
         typer.echo(f"{trend.verdict:>14}  {trend.claim}")

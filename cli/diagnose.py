@@ -66,7 +66,7 @@ def diagnose(
 
 
 def _chapter5(out: Path) -> None:
-    from ..discrepancy.chapter5 import demonstrate, draw, table
+    from ..studies.thesis.demonstration import demonstrate, draw, table
 
     found = demonstrate()
     for line in table(found):

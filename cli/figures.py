@@ -21,8 +21,8 @@ def figures(
 ) -> None:
     """Draw the gallery: a picture and a computed line for every figure."""
     from ..core.errors import InputError
-    from ..figures.fields import WANTED, solve_field
-    from ..figures.gallery import CHAPTERS, build
+    from ..studies.thesis.figures.fields import WANTED, solve_field
+    from ..studies.thesis.figures.gallery import CHAPTERS, build
 
     for number in fields or ():
         if number not in WANTED:

@@ -98,7 +98,7 @@ def fit(
     thesis = ""
     if compare:
         from ..fitting.select import compare_forms
-        from ..fitting.thesis_forms import refit_all, thesis_section
+        from ..studies.thesis.refitted import refit_all, thesis_section
 
         console.print("fitting simpler forms and the thesis's own ...")
         start = {k: v["value"] for k, v in content["coefficients"].items()}

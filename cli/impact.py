@@ -61,9 +61,8 @@ def _chapter3(names: list[str], out: Path) -> None:
     from rich.console import Console
     from rich.table import Table
 
-    from ..impact import chapter3
-    from ..impact.draw import draw_chapter3
     from ..impact.tables import impact_row, write_csv
+    from ..studies.thesis import chapter3
 
     console = Console()
     found = chapter3.bench()
@@ -100,7 +99,7 @@ def _chapter3(names: list[str], out: Path) -> None:
         for h, i in zip(c.heights, c.impacts, strict=True)
     ]
     write_csv(out / "chapter3.csv", rows)
-    draw_chapter3(found, curves, out / "chapter3.png")
+    chapter3.draw_chapter3(found, curves, out / "chapter3.png")
     console.print(f"written: {out / 'chapter3.csv'}, {out / 'chapter3.png'}", soft_wrap=True)
     _leave_if_unfinished([i for c in curves for i in c.impacts])
 

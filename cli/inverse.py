@@ -25,12 +25,17 @@ def inverse(
     from rich.console import Console
     from rich.table import Table
 
-    from ..impact import chapter5
     from ..impact.draw import draw_alpha
+    from ..impact.inverse_file import read_inverse
     from ..impact.tables import write_csv
 
     console = Console()
-    rod, rows = chapter5.thesis_rows() if file is None else chapter5.read_inverse(file)
+    if file is None:
+        from ..studies.thesis.chapter5 import thesis_rows
+
+        rod, rows = thesis_rows()
+    else:
+        rod, rows = read_inverse(file)
     table = Table(title="duration and mean force from depth, sliding length and restitution")
     for column in (
         "trial", "alpha", "to last\nparting\n(ms)", "mean\nforce\n(N)",
@@ -65,8 +70,8 @@ def _tables(console: Any, names: list[str]) -> None:
     from rich.table import Table
 
     from ..core.toml_input import read_toml
-    from ..impact.chapter3 import REFERENCE
-    from ..impact.chapter5 import simulate_experiment, thesis_rod
+    from ..studies.thesis.chapter3 import REFERENCE
+    from ..studies.thesis.chapter5 import simulate_experiment, thesis_rod
     from .impact import laws_named
 
     data = read_toml(REFERENCE / "chapter45.toml")

@@ -18,7 +18,7 @@ _Which = Annotated[str, typer.Option("--list", help="full or small.")]
 
 def _checked(which: str) -> str:
     from ..core.errors import InputError
-    from ..discrepancy.proof.lists import LISTS
+    from ..studies.proof.lists import LISTS
 
     if which not in LISTS:
         raise InputError(f"no list {which!r}", source="command line", key="--list",
@@ -40,8 +40,8 @@ def run(
     from rich.progress import Progress
 
     from ..core.threads import one_thread_each
-    from ..discrepancy.proof.lists import LISTS
-    from ..discrepancy.proof.run import carry_on, local_workers, run_folder, verdicts_of
+    from ..studies.proof.lists import LISTS
+    from ..studies.proof.run import carry_on, local_workers, run_folder, verdicts_of
 
     folder = run_folder(out, _checked(which))
     total, before = len(LISTS[which]()), verdicts_of(folder)
@@ -72,11 +72,11 @@ def run(
 def score(which: _Which = "full", out: _Base = _BASE) -> None:
     """Open the truths of the sets that have a sealed verdict, score, and rewrite docs/proof.md."""
     from ..core.errors import InputError
-    from ..discrepancy.proof import page as pages
-    from ..discrepancy.proof.lists import LISTS
-    from ..discrepancy.proof.run import ROOT, run_folder
-    from ..discrepancy.proof.score import open_run
-    from ..discrepancy.proof.seal import SealBroken, tree_hash
+    from ..studies.proof import page as pages
+    from ..studies.proof.lists import LISTS
+    from ..studies.proof.run import ROOT, run_folder
+    from ..studies.proof.score import open_run
+    from ..studies.proof.seal import SealBroken, tree_hash
 
     folder = run_folder(out, _checked(which))
     if not (folder / "ledger.jsonl").exists():
@@ -101,15 +101,15 @@ def page() -> None:
     """Rewrite docs/proof.md from the runs that were scored."""
     import json
 
-    from ..discrepancy.proof.page import RUNS
+    from ..studies.proof.page import RUNS
 
     _write_page(json.loads(RUNS.read_text()) if RUNS.exists() else [])
 
 
 def _write_page(runs: list[dict[str, object]]) -> None:
-    from ..discrepancy.proof import page as pages
-    from ..discrepancy.proof.explicit_library import stored
-    from ..discrepancy.proof.run import ROOT
+    from ..studies.proof import page as pages
+    from ..studies.proof.explicit.library import stored
+    from ..studies.proof.run import ROOT
 
     (ROOT / "docs" / "proof.md").write_text(pages.page(runs, impacts=stored()))
 
@@ -126,9 +126,9 @@ def sample(
 ) -> None:
     """Write sample sets with their truths beside them."""
     from ..core.errors import InputError
-    from ..discrepancy.proof.effects import EFFECTS, OUTSIDE
-    from ..discrepancy.proof.sample import KINDS
-    from ..discrepancy.proof.sample import sample as samples
+    from ..studies.proof.generators.effects import EFFECTS, OUTSIDE
+    from ..studies.proof.sample import KINDS
+    from ..studies.proof.sample import sample as samples
 
     if kind and kind not in KINDS:
         raise InputError(repr(kind), source="command line", key="--kind", allowed=", ".join(KINDS))
@@ -142,7 +142,7 @@ def sample(
 @app.command()
 def library() -> None:
     """Compute the finite-element impacts that the library lacks."""
-    from ..discrepancy.proof.explicit_library import fill
+    from ..studies.proof.explicit.library import fill
 
     for line in fill():
         typer.echo(line)
@@ -151,8 +151,8 @@ def library() -> None:
 @app.command()
 def laws() -> None:
     """Solve and fit the pairs that the generators' base laws lack."""
-    from ..discrepancy.proof.base_laws import fill
-    from ..discrepancy.proof.benches import BEARING_STEEL, CARBIDE, TARGETS
+    from ..studies.proof.generators.base_laws import fill
+    from ..studies.proof.generators.benches import BEARING_STEEL, CARBIDE, TARGETS
 
     for line in fill(TARGETS, (BEARING_STEEL, CARBIDE)):
         typer.echo(line)

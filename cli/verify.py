@@ -36,7 +36,7 @@ def verify(
     """
     from rich.console import Console
 
-    from ..verification import CHECKS, Bench, Effort, check_named, run_checks, write_report
+    from ..studies.verification import CHECKS, Bench, Effort, check_named, run_checks, write_report
 
     console = Console(highlight=False, soft_wrap=True)
     if known:

@@ -12,7 +12,7 @@ import os
 import re
 from pathlib import Path
 
-_STAGES = ("core", "fem", "models", "impact", "discrepancy")
+_STAGES = ("core", "fem", "models", "impact", "discrepancy", "studies")
 _VARIABLE = "NUMBA_CACHE_DIR"
 _RELATIVE = re.compile(r"^from (\.+)([\w.]+) import ", re.MULTILINE)
 

@@ -10,7 +10,6 @@ import numpy as np
 from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.figure import Figure
 
-from .chapter3 import Bench, Curve
 from .inverse import alpha_curve
 from .reference import Trace
 from .scene import Striker
@@ -32,31 +31,6 @@ def figure(rows: int, columns: int, *, size: tuple[float, float]) -> tuple[Figur
     return made, made.subplots(rows, columns, squeeze=False)
 
 
-def draw_chapter3(found: Bench, curves: Sequence[Curve], path: Path) -> None:
-    """Restitution and residual depth against drop height (figures 3.11 and 3.12)."""
-    made, axes = figure(1, 2, size=(11.0, 4.6))
-    panels = (("restitution", "restitution", 1.0), ("residual_depth", "residual depth [um]", 1e6))
-    styles = dict(zip(sorted({c.mass for c in curves}), ("-", "--", ":", "-."), strict=False))
-    names = list(dict.fromkeys(c.law.name for c in curves))
-    for axis, (key, label, factor) in zip(axes[0], panels, strict=True):
-        for curve in curves:
-            y = [
-                i.restitution if key == "restitution" else i.residual_flat_m for i in curve.impacts
-            ]
-            axis.plot(
-                curve.heights, factor * np.array(y), styles[curve.mass],
-                color=f"C{names.index(curve.law.name)}",
-                label=f"{curve.law.name}, {curve.mass:g} kg",
-            )  # fmt: skip
-        for row in found.measured:
-            if row["observable"] == key:
-                axis.plot(row["drop_height_m"], factor * row["value"], "kx", ms=9, mew=2)
-        axis.set(xlabel="drop height [m]", ylabel=label, ylim=(0.0, None))
-        axis.grid(alpha=0.3)
-    axes[0, 1].legend(fontsize=7, ncols=2, title="crosses: measured", title_fontsize=7)
-    _save(made, path)
-
-
 def draw_histories(traces: Sequence[tuple[str, Trace]], path: Path) -> None:
     """Motion of the contact point and force against time (figures 4.4-4.8)."""
     made, axes = figure(2, 3, size=(13.0, 7.0))
@@ -66,7 +40,7 @@ def draw_histories(traces: Sequence[tuple[str, Trace]], path: Path) -> None:
         axis.set(xlabel="time [ms]", ylabel=label, title=f"as Fig. {number}" if number else "")
         axis.grid(alpha=0.3)
     axes[0, 0].legend(fontsize=7)
-    _save(made, path)
+    save(made, path)
 
 
 def draw_sweep(
@@ -85,7 +59,7 @@ def draw_sweep(
         axis.set(xlabel="approach speed [m/s]", ylabel=label)
         axis.grid(alpha=0.3)
     axes[0, 0].legend(fontsize=7)
-    _save(made, path)
+    save(made, path)
 
 
 def draw_alpha(striker: Striker, frictions: Sequence[float], path: Path) -> None:
@@ -102,9 +76,10 @@ def draw_alpha(striker: Striker, frictions: Sequence[float], path: Path) -> None
     )
     axes[0, 0].legend(fontsize=8)
     axes[0, 0].grid(alpha=0.3)
-    _save(made, path)
+    save(made, path)
 
 
-def _save(made: Figure, path: Path) -> None:
+def save(made: Figure, path: Path) -> None:
+    """Write a figure, its folder made if need be."""
     path.parent.mkdir(parents=True, exist_ok=True)
     made.savefig(path, dpi=130)

@@ -1,8 +1,7 @@
 """Stage recordings: measured impacts, reduced and checked."""
 
-from .audit import Audit, audit
+from .audit import Audit, Finding, Severity, audit
 from .columns import CONDITIONS, OBSERVABLES
-from .findings import Finding, Severity
 from .noise import Noise
 from .recording_set import Approach, RecordingSet, read, write
 from .setup_file import FORMAT, Environment, Friction, Quantity, Setup, Striker, Target

@@ -27,7 +27,7 @@ KINDS = {
     "sound": "sound of a bouncing ball: restitution of each bounce",
     "table": "table of force, acceleration, height, bounce times or trials",
 }
-"""Each kind, reduced by the module `NAME_kind`, and what it gives."""
+"""Each kind, reduced by the module `NAME/kind.py`, and what it gives."""
 
 
 @dataclass(frozen=True)
@@ -48,7 +48,7 @@ class Kind:
 
 def offered() -> tuple[str, ...]:
     """Return the kinds whose module is there."""
-    return tuple(k for k in KINDS if find_spec(f".{k}_kind", __package__))
+    return tuple(k for k in KINDS if find_spec(f".{k}.kind", __package__))
 
 
 def load_kind(name: str) -> Kind:
@@ -61,5 +61,5 @@ def load_kind(name: str) -> Kind:
     """
     if name not in offered():
         raise InputError(f"no kind {name!r}", key="kind", allowed=", ".join(offered()))
-    module = import_module(f".{name}_kind", __package__)
+    module = import_module(f".{name}.kind", __package__)
     return Kind(name, module.Options, module.reduce)

@@ -24,10 +24,10 @@ from dentscope.impact import (
     strike_rows,
 )
 from dentscope.impact import layout as c
-from dentscope.models.ghaednia import GHAEDNIA
-from dentscope.models.hertz import HERTZ
-from dentscope.models.jackson_green import JACKSON_GREEN
-from dentscope.models.kogut_etsion import KOGUT_ETSION
+from dentscope.models.published.ghaednia import GHAEDNIA
+from dentscope.models.published.hertz import HERTZ
+from dentscope.models.published.jackson_green import JACKSON_GREEN
+from dentscope.models.published.kogut_etsion import KOGUT_ETSION
 
 LAWS = (HERTZ, JACKSON_GREEN, GHAEDNIA)
 STEEL = Material(E=200e9, nu=0.3, Sy=760e6, density=7800.0)

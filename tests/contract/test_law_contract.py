@@ -5,8 +5,9 @@ import math
 import numpy as np
 import pytest
 from dentscope.core import InputError, Material, Pair
-from dentscope.models import LAWS, critical_depth, critical_force, hardness, law_named
+from dentscope.models import LAWS, critical_depth, critical_force, law_named
 from dentscope.models.base import CLAUSES, DomainWarning
+from dentscope.models.published import hardness
 
 # the clauses hold beyond the data that a law was fitted to, too
 pytestmark = pytest.mark.filterwarnings("ignore::dentscope.models.base.DomainWarning")

@@ -11,7 +11,7 @@ import pytest
 from dentscope.core import Material
 from dentscope.core.toml_input import read_toml
 from dentscope.impact import Approach, Friction, Scene, Striker, scene_of, strike
-from dentscope.models.hertz import HERTZ
+from dentscope.models.published.hertz import HERTZ
 
 STEEL = Material(E=200e9, nu=0.3, density=7800.0)
 MU = 0.1

@@ -21,8 +21,8 @@ from dentscope.models.base import (
     loading_kernel,
     residual_kernel,
 )
-from dentscope.models.hertz import HERTZ
-from dentscope.models.jackson_green import JACKSON_GREEN
+from dentscope.models.published.hertz import HERTZ
+from dentscope.models.published.jackson_green import JACKSON_GREEN
 
 STEEL = Material(E=200e9, nu=0.3, Sy=760e6, density=7800.0)
 IRON = Material(E=200e9, nu=0.3, Sy=305e6, density=7870.0)
@@ -191,9 +191,9 @@ def test_rod_sticks_from_the_friction_of_the_audit() -> None:
 def test_thesis_tables_with_the_mass_that_fits() -> None:
     """Tables 5.2 and 5.4: dents of 67 and 251 um, mean force 2571 and 11009 N (Ghaednia)."""
     from dentscope.core.toml_input import read_toml
-    from dentscope.impact.chapter3 import REFERENCE
-    from dentscope.impact.chapter5 import simulate_experiment
-    from dentscope.models.ghaednia import GHAEDNIA
+    from dentscope.models.published.ghaednia import GHAEDNIA
+    from dentscope.studies.thesis.chapter3 import REFERENCE
+    from dentscope.studies.thesis.chapter5 import simulate_experiment
 
     first, _, last = read_toml(REFERENCE / "chapter45.toml")["experiment"]
     for row, dent, force, time in ((first, 67e-6, 2571, 0.25e-3), (last, 251e-6, 11009, None)):
@@ -206,8 +206,8 @@ def test_thesis_tables_with_the_mass_that_fits() -> None:
 
 def test_chapter3_depths_and_restitution_agree_for_one_mass() -> None:
     """Measured 42 and 118 um, 0.56 and 0.49: met by the corrected model at 0.33-0.355 kg."""
-    from dentscope.impact.chapter3 import bench, curves, deviation
-    from dentscope.models.ghaednia import GHAEDNIA
+    from dentscope.models.published.ghaednia import GHAEDNIA
+    from dentscope.studies.thesis.chapter3 import bench, curves, deviation
 
     found = bench()
     curve = curves(found, [GHAEDNIA], masses=[found.mass_that_fits], count=2)[0]

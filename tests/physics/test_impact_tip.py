@@ -19,8 +19,8 @@ from dentscope.impact import (
     strike,
 )
 from dentscope.impact.inverse import mobility
-from dentscope.models.hertz import HERTZ
-from dentscope.models.jackson_green import JACKSON_GREEN
+from dentscope.models.published.hertz import HERTZ
+from dentscope.models.published.jackson_green import JACKSON_GREEN
 
 STEEL = Material(E=200e9, nu=0.3, Sy=760e6, density=7800.0)
 IRON = Material(E=200e9, nu=0.3, Sy=305e6, density=7870.0)

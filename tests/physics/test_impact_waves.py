@@ -20,7 +20,7 @@ from dentscope.impact import (
 from dentscope.impact.beam import axial_frequencies, bending_modes, shear_coefficient
 from dentscope.impact.support import half_space_radiation, plate_support, radiated_shares
 from dentscope.models import LAWS
-from dentscope.models.hertz import HERTZ
+from dentscope.models.published.hertz import HERTZ
 from scipy.integrate import solve_ivp
 from scipy.optimize import brentq
 

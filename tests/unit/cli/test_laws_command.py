@@ -29,7 +29,7 @@ def test_show_tells_source_standing_and_breaches(capsys):
     assert "657" in text
     assert "unverified" in text
     assert "force jumps at w = 1: 3 %" in text
-    assert "models.kogut_etsion" in text
+    assert "published.kogut_etsion" in text
     run("show", "jackson-green+ghaednia")
     assert "jackson-green+ghaednia" in capsys.readouterr().out
 

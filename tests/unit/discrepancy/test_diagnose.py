@@ -14,8 +14,8 @@ import pytest
 from dentscope.discrepancy import diagnose
 from dentscope.discrepancy.forward import Point, Simulator
 from dentscope.discrepancy.problem import problem_of
-from dentscope.discrepancy.proof import folder, truth
 from dentscope.recordings import read
+from dentscope.studies.proof.generators import folder, truth
 
 KEYS = """format set seed version audit verdict mechanisms alternatives probabilities scores
 located parameters nuisance_pulls excluded limits improvement correction next_experiment

@@ -9,7 +9,7 @@ import pytest
 from dentscope.cli import run
 from dentscope.core import InputErrors
 from dentscope.impact.setup import read_setup
-from dentscope.models.hertz import HERTZ
+from dentscope.models.published.hertz import HERTZ
 
 SETUP = """
 name = "rod"

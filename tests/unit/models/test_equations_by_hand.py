@@ -14,23 +14,24 @@ import numpy as np
 import pytest
 from dentscope.core import Material, Pair
 from dentscope.fem import Curve
-from dentscope.impact import chapter5
 from dentscope.impact.inverse import alpha, infer, mobility
 from dentscope.impact.reference import reference_impact
 from dentscope.impact.scene import Approach, Friction, scene_of
-from dentscope.models import LAWS, critical_depth, critical_force, hardness, yield_constant
+from dentscope.models import LAWS, critical_depth, critical_force, yield_constant
 from dentscope.models.base import common_parameters, hertz_force, hertz_recovery
-from dentscope.models.brake import brake_2015, effective_hardness, stress_factor
-from dentscope.models.brake import yield_depth as brake_yield_depth
-from dentscope.models.ceb import yield_depth
-from dentscope.models.ghaednia import (
+from dentscope.models.published import hardness
+from dentscope.models.published.brake import brake_2015, effective_hardness, stress_factor
+from dentscope.models.published.brake import yield_depth as brake_yield_depth
+from dentscope.models.published.ceb import yield_depth
+from dentscope.models.published.ghaednia import (
     indentation_weight,
     model_hardness,
     share_of_sphere,
     updated_jackson_green,
 )
-from dentscope.models.jackson_green import growth_exponent
-from dentscope.models.kogut_komvopoulos import truncated
+from dentscope.models.published.jackson_green import growth_exponent
+from dentscope.models.published.kogut_komvopoulos import truncated
+from dentscope.studies.thesis import chapter5
 
 THEORY = Path(__file__).parents[3] / "docs" / "theory.md"
 R = 0.01

@@ -10,8 +10,8 @@ import pytest
 from dentscope.core import InputError, Material, Pair
 from dentscope.models import LAWS, UNAVAILABLE, critical_depth, law_named
 from dentscope.models.base import common_parameters
-from dentscope.models.brake import brake_2015, effective_hardness, stress_factor
-from dentscope.models.thornton import restitution
+from dentscope.models.published.brake import brake_2015, effective_hardness, stress_factor
+from dentscope.models.published.thornton import restitution
 
 RIGID = Material(E=math.nan, nu=math.nan, rigid=True)
 NU = 0.3
@@ -317,7 +317,7 @@ def test_every_law_says_what_was_read_and_what_is_missing():
 @pytest.mark.parametrize("ratio", [0.1, 1.0, 10.0])
 def test_stretched_hand_over_of_the_thesis_model_stays_near_the_printed_factors(ratio):
     """Between delta_n = 408 and 480 chi differs by at most 2.3 % from 2.25 and 2.32."""
-    from dentscope.models import ghaednia
+    from dentscope.models.published import ghaednia
 
     s, f = (3e8, 3e8 / ratio) if ratio < 1.0 else (3e8 * ratio, 3e8)
     pair = Pair(Material(E=2e11, nu=NU, Sy=s), Material(E=2e11, nu=NU, Sy=f), 1e-3)

@@ -5,9 +5,9 @@ at 0.2 and 1.3 m (text on figures 3.11 and 3.12).
 """
 
 import pytest
-from dentscope.figures.chapter3 import MASSES, mean_deviation
-from dentscope.impact import chapter3
 from dentscope.models import law_named
+from dentscope.studies.thesis import chapter3
+from dentscope.studies.thesis.figures.chapter3 import MASSES, mean_deviation
 
 UPDATED = [
     f"{name}+ghaednia" for name in ("jackson-green-2007", "kogut-etsion", "kogut-komvopoulos")

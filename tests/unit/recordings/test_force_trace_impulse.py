@@ -5,8 +5,8 @@ from pathlib import Path
 import numpy as np
 import pytest
 from dentscope.recordings import Quantity, RecordingSet, Setup, Striker, Target, Trials
-from dentscope.recordings.checks_trace import check_trace
-from dentscope.recordings.findings import Severity
+from dentscope.recordings.audit.findings import Severity
+from dentscope.recordings.audit.trace import check_trace
 
 MASS, SPEED, TIME, E = 0.05, 2.0, 1e-4, 0.6
 

@@ -5,7 +5,7 @@ import pytest
 from dentscope.cli import run
 from dentscope.core.errors import InputError
 from dentscope.recordings.reduce.kinds import load_kind
-from dentscope.recordings.reduce.synthetic.sounds import write_wav
+from dentscope.studies.synthetic.sounds import write_wav
 from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
 

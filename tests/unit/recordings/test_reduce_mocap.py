@@ -7,12 +7,13 @@ from pathlib import Path
 import numpy as np
 import pytest
 from dentscope.core.errors import InputError
-from dentscope.recordings.reduce.mocap import Scene, reduce_mocap
-from dentscope.recordings.reduce.mocap_body import Body, centre_of
-from dentscope.recordings.reduce.mocap_file import read_markers
-from dentscope.recordings.reduce.mocap_kind import Options, reduce
-from dentscope.recordings.reduce.mocap_rigid import kabsch, rigid_poses
-from dentscope.recordings.reduce.synthetic.mocap import (
+from dentscope.recordings.audit.rigid import Touch
+from dentscope.recordings.reduce.mocap.body import Body, centre_of
+from dentscope.recordings.reduce.mocap.file import read_markers
+from dentscope.recordings.reduce.mocap.kind import Options, reduce
+from dentscope.recordings.reduce.mocap.reduction import Scene, reduce_mocap
+from dentscope.recordings.reduce.mocap.rigid import kabsch, rigid_poses
+from dentscope.studies.synthetic.mocap import (
     MocapTruth,
     random_ball,
     random_rod,
@@ -20,7 +21,6 @@ from dentscope.recordings.reduce.synthetic.mocap import (
     write_c3d,
     write_csv,
 )
-from dentscope.recordings.rigid import Touch
 from scipy.spatial.transform import Rotation
 
 SPIN = 0.005

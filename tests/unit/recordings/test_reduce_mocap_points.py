@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 from dentscope.core.errors import InputError
 from dentscope.recordings import audit, read
-from dentscope.recordings.reduce.mocap_kind import Options, reduce
+from dentscope.recordings.reduce.mocap.kind import Options, reduce
 
 ROOT = Path(__file__).parents[3]
 RAW = ROOT.parent / "shared" / "recordings" / "tabletennis-spin-bounce" / "trajectories.zip"

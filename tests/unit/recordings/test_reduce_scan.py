@@ -5,9 +5,9 @@ from pathlib import Path
 import numpy as np
 import pytest
 from dentscope.cli import run
-from dentscope.recordings.reduce.crater import reduce_scan
-from dentscope.recordings.reduce.scan_kind import Options, reduce
-from dentscope.recordings.reduce.synthetic.scans import random_truth, render
+from dentscope.recordings.reduce.scan.crater import reduce_scan
+from dentscope.recordings.reduce.scan.kind import Options, reduce
+from dentscope.studies.synthetic.scans import random_truth, render
 
 REAL = Path(__file__).resolve().parents[4] / "shared" / "recordings" / "surface-scans"
 measured = pytest.mark.skipif(not REAL.is_dir(), reason="the measured surfaces are not here")

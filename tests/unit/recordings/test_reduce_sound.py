@@ -11,12 +11,7 @@ from dentscope.recordings import read
 from dentscope.recordings.reduce.bounce_chain import chain_of
 from dentscope.recordings.reduce.bounce_times import Fall
 from dentscope.recordings.reduce.kinds import load_kind
-from dentscope.recordings.reduce.synthetic.sounds import (
-    SoundTruth,
-    bounces,
-    record,
-    write_wav,
-)
+from dentscope.studies.synthetic.sounds import SoundTruth, bounces, record, write_wav
 from hypothesis import given, settings
 from hypothesis import strategies as st
 from scipy.integrate import solve_ivp

@@ -10,8 +10,8 @@ from dentscope.cli import run
 from dentscope.core.errors import InputError
 from dentscope.recordings import read
 from dentscope.recordings.reduce.kinds import load_kind
-from dentscope.recordings.reduce.pulse import find_pulse
-from dentscope.recordings.reduce.table_file import read_columns
+from dentscope.recordings.reduce.table.file import read_columns
+from dentscope.recordings.reduce.table.pulse import find_pulse
 from scipy.integrate import solve_ivp
 
 REAL = Path(__file__).parents[4] / "shared" / "recordings"

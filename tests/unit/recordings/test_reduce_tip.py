@@ -4,9 +4,9 @@ import numpy as np
 import pytest
 from dentscope.core.errors import InputError
 from dentscope.recordings.reduce.measured import Measured
-from dentscope.recordings.reduce.synthetic.tip import TipTruth, photograph, random_tip
-from dentscope.recordings.reduce.tip import reduce_tip
-from dentscope.recordings.reduce.tip_kind import Options, reduce
+from dentscope.recordings.reduce.tip.kind import Options, reduce
+from dentscope.recordings.reduce.tip.reduction import reduce_tip
+from dentscope.studies.synthetic.tip import TipTruth, photograph, random_tip
 
 imsave = pytest.importorskip("skimage.io").imsave
 

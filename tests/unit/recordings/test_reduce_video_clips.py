@@ -11,14 +11,9 @@ from dentscope.core.errors import InputError
 from dentscope.recordings import audit, read
 from dentscope.recordings.reduce.clip import Clip, read_clip, repeated_frames
 from dentscope.recordings.reduce.measured import Measured
-from dentscope.recordings.reduce.synthetic.clips import (
-    random_truth,
-    render,
-    write_pictures,
-    write_video,
-)
-from dentscope.recordings.reduce.video import Optics, reduce_video
-from dentscope.recordings.reduce.video_kind import Options, reduce
+from dentscope.recordings.reduce.video.kind import Options, reduce
+from dentscope.recordings.reduce.video.reduction import Optics, reduce_video
+from dentscope.studies.synthetic.clips import random_truth, render, write_pictures, write_video
 
 pytest.importorskip("skimage")
 

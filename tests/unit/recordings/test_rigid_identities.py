@@ -6,8 +6,8 @@ from pathlib import Path
 import numpy as np
 import pytest
 from dentscope.recordings import Severity, Striker, audit, read
-from dentscope.recordings.limits import bending_period, wave_limit
-from dentscope.recordings.rigid import touch
+from dentscope.recordings.audit.limits import bending_period, wave_limit
+from dentscope.recordings.audit.rigid import touch
 from hypothesis import assume, given
 from hypothesis import strategies as st
 

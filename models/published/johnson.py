@@ -1,0 +1,80 @@
+"""Johnson's simple plastic contact: Hertz, then a constant mean pressure of 2.8 S (1.3.1).
+
+The plastic contact neither piles up nor sinks in, a^2 = 2 R delta, so F = 2 pi R delta H. The two
+phases meet where they give the same force, at delta_p = R (3 pi H/(2 E'))^2; the radius steps up
+there by sqrt(2). A crater recovers at constant contact radius (Johnson, 11.5).
+"""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+import numpy.typing as npt
+
+from ..base import (
+    N_COMMON,
+    Domain,
+    E,
+    Kernels,
+    PublishedLaw,
+    R,
+    S,
+    Standing,
+    branch_kernel,
+    hertz_force,
+    loading_kernel,
+    residual_kernel,
+)
+from .residual import elastic_recovery, recover, to_weaker
+
+HARDNESS = 2.8
+"""Mean pressure in full plasticity over the yield strength."""
+
+_DEPTH, _SLOPE = N_COMMON, N_COMMON + 1
+
+
+def _numbers(common: npt.NDArray[np.float64]) -> tuple[float, float]:
+    x = 3.0 * math.pi * HARDNESS * common[S] / (2.0 * common[E])
+    return common[R] * x * x, 2.0 * math.pi * common[R] * HARDNESS * common[S]
+
+
+@loading_kernel
+def _loading(par, depth):
+    if depth <= par[_DEPTH]:
+        return hertz_force(par, depth)
+    return par[_SLOPE] * depth
+
+
+@branch_kernel
+def _radius(par, depth, peak):
+    if depth <= par[_DEPTH]:
+        return math.sqrt(par[R] * depth)
+    return math.sqrt(2.0 * par[R] * depth)
+
+
+@residual_kernel
+def _residual(par, peak):
+    if peak <= par[_DEPTH]:
+        return 0.0, 0.0
+    a = _radius(par, peak, peak)
+    return to_weaker(par, elastic_recovery(par, _loading(par, peak), a, peak) * peak)
+
+
+@branch_kernel
+def _unloading(par, depth, peak):
+    return recover(_loading, _residual, par, depth, peak)
+
+
+JOHNSON = PublishedLaw(
+    name="johnson",
+    title="Johnson 1985, simple plastic",
+    source="Johnson, Contact Mechanics (1985), chapters 6 and 11",
+    equations="thesis 1.3.1 (in words)",
+    standing=Standing.OUR_READING,
+    domain=Domain(note="full plasticity; too stiff between first yield and delta_p"),
+    breaks=(("radius jumps at delta_p", 41.5), ("residual jumps at delta_p", 29.3)),
+    read="the thesis's words; the impact relations of Johnson 11.5 as test_impact_exact uses them",
+    own=Kernels(_loading, _radius, _unloading, _residual),
+    numbers=_numbers,
+)

@@ -1,0 +1,121 @@
+"""Thornton 1997 and Thornton and Ning 1998: the pressure is cut off at p_y.
+
+Beyond delta_y = (pi p_y/(2 E'))^2 R the force grows linearly, F = F_y + pi R p_y (delta - delta_y),
+with a^2 = R delta; the recovery is Hertz's with the radius R_p = (4 E'/(3 F_m))
+((2 F_m + F_y)/(2 pi p_y))^(3/2), which keeps the contact radius. The restitution has a closed form
+in V/V_y. The two papers differ in adhesion, which is left out here, and in the meaning of p_y:
+first yield, 1.6 S, or the limiting pressure, 2.84 S. The latter comes closer to figure 3.11.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable
+from dataclasses import replace
+
+import numpy as np
+import numpy.typing as npt
+
+from ..base import (
+    K_HERTZ,
+    N_COMMON,
+    Domain,
+    E,
+    Kernels,
+    PublishedLaw,
+    R,
+    S,
+    Standing,
+    branch_kernel,
+    hertz_force,
+    loading_kernel,
+    residual_kernel,
+)
+from .residual import elastic_recovery, recover, to_weaker
+
+_DEPTH, _FORCE, _SLOPE = N_COMMON, N_COMMON + 1, N_COMMON + 2
+
+
+def _numbers_at(
+    pressure_over_S: float,
+) -> Callable[[npt.NDArray[np.float64]], tuple[float, float, float]]:
+    def numbers(common: npt.NDArray[np.float64]) -> tuple[float, float, float]:
+        p = pressure_over_S * common[S]
+        depth = common[R] * (math.pi * p / (2.0 * common[E])) ** 2
+        return depth, common[K_HERTZ] * depth * math.sqrt(depth), math.pi * common[R] * p
+
+    return numbers
+
+
+@loading_kernel
+def _loading(par, depth):
+    if depth <= par[_DEPTH]:
+        return hertz_force(par, depth)
+    return par[_FORCE] + par[_SLOPE] * (depth - par[_DEPTH])
+
+
+@branch_kernel
+def _radius(par, depth, peak):
+    return math.sqrt(par[R] * depth)
+
+
+@residual_kernel
+def _residual(par, peak):
+    if peak <= par[_DEPTH]:
+        return 0.0, 0.0
+    a = math.sqrt(par[R] * peak)
+    return to_weaker(par, elastic_recovery(par, _loading(par, peak), a, peak) * peak)
+
+
+@branch_kernel
+def _unloading(par, depth, peak):
+    return recover(_loading, _residual, par, depth, peak)
+
+
+def restitution(speed_over_yield: npt.ArrayLike) -> npt.NDArray[np.float64]:
+    """Thornton's closed form of the restitution of a ball, 1 up to V = V_y.
+
+    e = (6 sqrt 3/5)^(1/2) [1 - (V_y/V)^2/6]^(1/2)
+        [(V_y/V)/((V_y/V) + 2 (6/5 - (V_y/V)^2/5)^(1/2))]^(1/4)
+
+    Parameters
+    ----------
+    speed_over_yield
+        V/V_y, shape (...).
+
+    Examples
+    --------
+    >>> round(float(restitution(1000.0)) * 1000.0**0.25, 2)
+    1.18
+    """
+    y = 1.0 / np.maximum(np.asarray(speed_over_yield, dtype=float), 1.0)
+    last = y / (y + 2.0 * np.sqrt(1.2 - 0.2 * y * y))
+    e = math.sqrt(1.2 * math.sqrt(3.0)) * np.sqrt(1.0 - y * y / 6.0) * last**0.25
+    return np.asarray(np.minimum(e, 1.0))
+
+
+THORNTON = PublishedLaw(
+    name="thornton",
+    title="Thornton 1997",
+    source="J. Appl. Mech. 64 (1997) 383",
+    equations="thesis 1.4, 3.3 and 4.2 (in words)",
+    standing=Standing.SECOND_HAND,
+    domain=Domain(note="impact of spheres; p_y = 1.6 S, the pressure at first yield"),
+    read="equations 1-5 of arXiv:2104.00344 and the closed-form restitution, equation 2 of "
+    "Jackson, Green and Marghitu, Nonlinear Dyn. 60 (2010) 217, both as the public code "
+    "ranssist/chiton-helmet-sim restates them; force, recovery and closed form agree to 4 digits",
+    own=Kernels(_loading, _radius, _unloading, _residual),
+    numbers=_numbers_at(1.6),
+)
+
+THORNTON_NING = replace(
+    THORNTON,
+    name="thornton-ning",
+    title="Thornton and Ning 1998, without adhesion",
+    source="Powder Technol. 99 (1998) 154",
+    domain=Domain(note="impact of spheres; p_y = 2.84 S, a limiting pressure, is our choice"),
+    read="yield radius (equation 65), linear force, R_p = 4 E' a^3/(3 F_m) and V_y = "
+    "1.56 (p_y^5/(E'^4 rho))^(1/2) in the public code PyGran, class ThorntonNing, where p_y is the "
+    "user's; its adhesion is left out",
+    numbers=_numbers_at(2.84),
+)

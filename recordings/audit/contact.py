@@ -1,0 +1,212 @@
+"""Checks of what the contact means: energy of the dent, forces, sizes, durations."""
+
+from __future__ import annotations
+
+import math
+
+from ..recording_set import RecordingSet
+from ..setup_file import Quantity
+from . import limits
+from .findings import Finding, Severity, gathered
+from .trial_view import TrialView, combined, views
+
+UNEXPLAINED = 0.5
+"""Part of the lost energy that a dent should explain at least."""
+
+DENT_RANGE = (0.55, 1.1)
+"""True work of a dent over p pi R d^2: barely plastic, and hardened."""
+
+LONG_ENOUGH = 3.0
+"""Periods of a vibration that a contact should last for the body to act as rigid."""
+
+_BEYOND = 4.0
+_BOUND_STD = 0.05
+
+
+def check_energy(found: RecordingSet) -> list[Finding]:
+    """Energy that the contact loses, or is brought, against the work of the measured dent."""
+    findings = []
+    for view in views(found):
+        e, depth, pressure = view.measured("restitution"), _depth(view), _pressure(view)
+        brought, lost = _energies(view, e)
+        if e is not None and lost.value < -_BEYOND * lost.std and view.touch.c == 0.0:
+            text = f"restitution {e.value:.3g} is a gain of {-lost.value:.3g} J"
+            z = -lost.value / lost.std
+            findings.append(
+                Finding(f"energy of {view.name}", Severity.CONTRADICTION, text, e.value, 1.0, z)
+            )
+        elif depth is not None and pressure is not None:
+            work = limits.dent_work(view.striker, depth.value, pressure.value)
+            relative = combined(
+                2.0 * depth.relative, view.striker.tip_radius_m.relative, pressure.relative
+            )
+            cost = Quantity(value=work, std=relative * work)
+            if e is None:
+                findings.append(_supply(view.name, cost, brought))
+            else:
+                findings.append(_budget(view.name, cost, lost))
+    return gathered(findings)
+
+
+def _depth(view: TrialView) -> Quantity | None:
+    depth = view.measured("permanent_depth_m")
+    return depth if depth is not None and depth.value > 0.0 else None
+
+
+def _energies(view: TrialView, e: Quantity | None) -> tuple[Quantity, Quantity]:
+    """Energy that the contact point brings, v^2 / 2B, and what (1 - e^2) of it loses [J]."""
+    mu = view.measured("friction_impulse_ratio")
+    touch = view.touch
+    v = abs(float(touch.tip[1]))
+    brought = 0.5 * float(touch.impulse(0.0, mu.value if mu else 0.0)[1]) * v
+    relative = max(
+        combined(2.0 * view.speed.relative, view.striker.mass_kg.relative), limits.ROUNDING
+    )
+    whole = Quantity(value=brought, std=relative * brought)
+    if e is None:
+        return whole, whole
+    lost = (1.0 - e.value**2) * brought
+    std = combined(2.0 * e.value * e.std * brought, relative * lost)
+    return whole, Quantity(value=lost, std=max(std, limits.ROUNDING * brought))
+
+
+def _supply(name: str, work: Quantity, brought: Quantity) -> Finding:
+    least = DENT_RANGE[0]
+    z = (least * work.value - brought.value) / math.hypot(least * work.std, brought.std)
+    return Finding(
+        f"energy of {name} against all that was brought",
+        Severity.CONTRADICTION if z > _BEYOND else Severity.CONSISTENT,
+        f"the dent takes {work.value:.3g} J of {brought.value:.3g} J brought "
+        f"({work.value / brought.value:.0%})",
+        work.value,
+        brought.value,
+        max(z, 0.0),
+    )
+
+
+def _budget(name: str, work: Quantity, lost: Quantity) -> Finding:
+    title = f"energy of {name}"
+    least, most = DENT_RANGE
+    beyond = (least * work.value - lost.value) / math.hypot(least * work.std, lost.std)
+    missing = (UNEXPLAINED * lost.value - most * work.value) / math.hypot(
+        most * work.std, UNEXPLAINED * lost.std
+    )
+    share = f" ({work.value / lost.value:.0%})" if lost.value > 0.0 else ""
+    text = f"the dent takes {work.value:.3g} J of {lost.value:.3g} J lost{share}"
+    if beyond > _BEYOND:
+        return Finding(title, Severity.CONTRADICTION, text, work.value, lost.value, beyond)
+    if missing > 2.0:
+        text += ": look for a sink outside the contact"
+        return Finding(title, Severity.CAUTION, text, work.value, lost.value, missing)
+    z = max(beyond, missing, 0.0)
+    return Finding(title, Severity.CONSISTENT, text, work.value, lost.value, z)
+
+
+def check_force(found: RecordingSet) -> list[Finding]:
+    """Peak force, measured or needed by the dent, against yield and waves of the rod."""
+    findings = []
+    for view in views(found):
+        striker = view.striker
+        force, word = _force(view)
+        if striker.shape != "rod" or force is None:
+            continue
+        bounds = {"wave limit rho c v A": limits.wave_limit(striker, view.speed.value)}
+        if striker.Sy_Pa is not None:
+            bounds["yield force of the rod"] = striker.Sy_Pa.value * limits.rod_area(striker)
+        wrong = Severity.CONTRADICTION if word == "measured" else Severity.CAUTION
+        for what, bound in bounds.items():
+            if math.isnan(bound):
+                continue
+            z = (force.value - bound) / math.hypot(force.std, _BOUND_STD * bound)
+            findings.append(
+                Finding(
+                    f"force of {view.name} against {what}",
+                    wrong if z > _BEYOND else Severity.CONSISTENT,
+                    f"{force.value:.4g} N {word}, {bound:.4g} N ({force.value / bound:.2g} times)",
+                    force.value,
+                    bound,
+                    max(z, 0.0),
+                )
+            )
+    return gathered(findings)
+
+
+def check_contact_size(found: RecordingSet) -> list[Finding]:
+    """Radius of the dent against the radius of the rod."""
+    findings = []
+    for view in views(found):
+        depth, striker = view.measured("permanent_depth_m"), view.striker
+        if striker.shape != "rod" or depth is None:
+            continue
+        a, r = limits.open_dent_radius(striker, depth.value), striker.body_radius
+        severity, tail = Severity.CONSISTENT, ""
+        if a > r:
+            severity, tail = Severity.CAUTION, ": the contact reaches the edge"
+        findings.append(
+            Finding(
+                f"contact size of {view.name}",
+                severity,
+                f"a dent {depth.value * 1e6:.3g} um deep is {a * 1e3:.3g} mm in radius, the rod "
+                f"{r * 1e3:.3g} mm{tail}",
+                a,
+                r,
+            )
+        )
+    return gathered(findings)
+
+
+def check_duration(found: RecordingSet) -> list[Finding]:
+    """Contact time against wave round trip and bending period of the rod."""
+    findings = []
+    for view in views(found):
+        striker = view.striker
+        time, word = _duration(view)
+        if striker.shape != "rod" or striker.E_Pa is None or time is None:
+            continue
+        periods = {"wave round trip 2L/c": 2.0 * striker.length / limits.bar_wave_speed(striker)}
+        if view.touch.c > 1e-3 * view.touch.s:
+            periods["first bending period"] = limits.bending_period(striker)
+        for what, period in periods.items():
+            severity, tail = Severity.CONSISTENT, ""
+            if time < LONG_ENOUGH * period:
+                severity, tail = Severity.CAUTION, ": the rod may not act as rigid"
+            findings.append(
+                Finding(
+                    f"duration of {view.name} against {what}",
+                    severity,
+                    f"{time * 1e3:.3g} ms {word}, {period * 1e3:.3g} ms "
+                    f"({time / period:.2g} times){tail}",
+                    time,
+                    period,
+                )
+            )
+    return gathered(findings)
+
+
+def _pressure(view: TrialView) -> Quantity | None:
+    if view.found.setup.target.law != "elastic-plastic":
+        return None
+    return limits.hardness(view.found.setup.target, view.striker)
+
+
+def _force(view: TrialView) -> tuple[Quantity | None, str]:
+    force = view.measured("peak_force_N")
+    if force is not None:
+        return force, "measured"
+    depth, pressure = view.measured("permanent_depth_m"), _pressure(view)
+    if depth is None or pressure is None:
+        return None, ""
+    value = pressure.value * math.pi * limits.dent_radius(view.striker, depth.value) ** 2
+    relative = combined(depth.relative, pressure.relative)
+    return Quantity(value=value, std=relative * value), "needed by the dent"
+
+
+def _duration(view: TrialView) -> tuple[float | None, str]:
+    time = view.measured("contact_time_s")
+    if time is not None:
+        return time.value, "measured"
+    pressure = _pressure(view)
+    if pressure is None:
+        return None, ""
+    mass = 1.0 / float(view.touch.mobility[1, 1])
+    return limits.plastic_duration(view.striker, mass, pressure.value), "expected"

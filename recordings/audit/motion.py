@@ -1,0 +1,237 @@
+"""Checks of what moved: mass, speed, momentum, friction, impulse."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+
+import numpy as np
+from scipy.optimize import minimize_scalar
+from scipy.stats import chi2
+
+from ..recording_set import RecordingSet
+from ..setup_file import Striker
+from . import limits, rigid
+from .findings import (
+    FALSE_ALARMS_MASS,
+    FALSE_ALARMS_OTHER,
+    Finding,
+    Severity,
+    critical_interval,
+    gathered,
+    judged,
+    two_sided,
+)
+from .trial_view import combined, views
+
+PULSE = (0.25, 1.0)
+"""Impulse over peak force times duration: a rectangular pulse has 1, a ringing one may have 0.3."""
+
+_ALONE = 0.25
+"""Part of the masses' false alarms that goes to single strikers where there are several."""
+
+_MOMENTUM_SHARE = FALSE_ALARMS_OTHER / 2.0
+_BEYOND = 4.0
+_ANGLES = 2.0
+
+
+def check_mass(found: RecordingSet) -> list[Finding]:
+    """Stated mass against density and volume.
+
+    How much of the round ends a rod has beyond its length is left open, from plain ends to two
+    whole caps, but all rods of a set are taken to have ends of one kind.
+    """
+    strikers = found.setup.strikers
+    allowed = {name: limits.geometric_mass(striker) for name, striker in strikers.items()}
+    known = {name: mass for name, mass in allowed.items() if mass is not None}
+    part = _part_of_the_ends([(strikers[name], mass) for name, mass in known.items()])
+    findings = [
+        Finding(f"mass of {name}", Severity.UNCHECKED, "no density is stated")
+        for name in strikers
+        if name not in known
+    ]
+    rods = sum(mass.high > mass.low for mass in known.values())
+    alone = FALSE_ALARMS_MASS if len(known) < 2 else _ALONE * FALSE_ALARMS_MASS
+    for name, mass in known.items():
+        stated, relative = strikers[name].mass_kg.value, _mass_relative(strikers[name], mass)
+        expected = _expected(mass, part)
+        z = abs(stated / expected - 1.0) / relative
+        width = (mass.high / mass.low - 1.0) / relative if rods == 1 else 0.0
+        critical = critical_interval(width, alone / len(known))
+        span = f"{mass.low:.4g}" + (f" to {mass.high:.4g}" if mass.high > mass.low else "")
+        findings.append(
+            Finding(
+                f"mass of {name}",
+                Severity.CONTRADICTION if z > critical else Severity.CONSISTENT,
+                f"{stated:.4g} kg stated, {span} kg from density and size "
+                f"({stated / expected - 1.0:+.1%})",
+                stated,
+                expected,
+                z,
+            )
+        )
+    if len(known) > 1:
+        findings.append(_masses_together([(strikers[name], mass) for name, mass in known.items()]))
+    return findings
+
+
+def _masses_together(bodies: list[tuple[Striker, limits.Range]]) -> Finding:
+    """All stated masses off by one factor, beside none off."""
+    part = _best_part(bodies, lambda p: _misfit(bodies, p, _factor(bodies, p)))
+    factor = _factor(bodies, part)
+    plain = _misfit(bodies, _part_of_the_ends(bodies))
+    gain = max(plain - _misfit(bodies, part, factor), 0.0)
+    wrong = float(chi2.sf(gain, 1)) < (1.0 - _ALONE) * FALSE_ALARMS_MASS
+    return Finding(
+        "mass of all strikers together",
+        Severity.CONTRADICTION if wrong else Severity.CONSISTENT,
+        f"{factor:.4g} times what density and size give ({factor - 1.0:+.1%})",
+        factor, 1.0, float(np.sqrt(gain)),
+    )  # fmt: skip
+
+
+def _expected(m: limits.Range, part: float) -> float:
+    return m.low + part * (m.high - m.low)
+
+
+def _misfit(bodies: list[tuple[Striker, limits.Range]], part: float, factor: float = 1.0) -> float:
+    """Sum of squares of the masses' distances, in standard deviations."""
+    return sum(
+        ((striker.mass_kg.value / (factor * _expected(m, part)) - 1.0)
+         / _mass_relative(striker, m)) ** 2
+        for striker, m in bodies
+    )  # fmt: skip
+
+
+def _factor(bodies: list[tuple[Striker, limits.Range]], part: float) -> float:
+    """Common factor on all masses that fits best."""
+    ratio = [striker.mass_kg.value / _expected(m, part) for striker, m in bodies]
+    weight = [_mass_relative(striker, m) ** -2 for striker, m in bodies]
+    return float(np.average(ratio, weights=weight))
+
+
+def _mass_relative(striker: Striker, mass: limits.Range) -> float:
+    return combined(striker.mass_kg.relative, mass.relative) or limits.ROUNDING
+
+
+def _part_of_the_ends(rods: list[tuple[Striker, limits.Range]]) -> float:
+    """Return the part of the end caps, 0 to 1, with which all stated masses agree best."""
+    return _best_part(rods, lambda part: _misfit(rods, part))
+
+
+def _best_part(
+    bodies: list[tuple[Striker, limits.Range]], misfit: Callable[[float], float]
+) -> float:
+    if not any(m.high > m.low for _, m in bodies):
+        return 0.0
+    inside = float(minimize_scalar(misfit, bounds=(0.0, 1.0), method="bounded").x)
+    return min((0.0, inside, 1.0), key=misfit)
+
+
+def check_speed(found: RecordingSet) -> list[Finding]:
+    """Impact speed against the height of fall, where a trial gives both."""
+    trials, g = found.trials, found.setup.gravity_m_s2.value
+    both = ~np.isnan(trials.impact_speed_m_s) & ~np.isnan(trials.drop_height_m)
+    if not both.any():
+        return []
+    speed = trials.impact_speed_m_s[both]
+    rod = np.array([s.shape == "rod" for s in found.strikers()])[both]
+    share = np.where(rod, 1.0, np.sin(np.radians(trials.angle_deg[both])))
+    fall = np.sqrt(2.0 * g * trials.drop_height_m[both]) * share
+    std = np.array([v.speed.std for v in views(found)])[both]
+    z = (speed - fall) / np.where(std > 0.0, std, limits.ROUNDING * speed)
+    p = float(chi2.sf(np.sum(z**2), z.size))
+    worst = int(np.argmax(np.abs(z)))
+    mean = float(np.mean(speed / fall))
+    return [
+        Finding(
+            "speed against height of fall",
+            judged(p, FALSE_ALARMS_OTHER - _MOMENTUM_SHARE),
+            f"on average {mean - 1.0:+.1%} of sqrt(2 g H), at most {speed[worst]:.4g} against "
+            f"{fall[worst]:.4g} m/s, {z.size} trials",
+            mean,
+            1.0,
+            two_sided(p),
+        )
+    ]
+
+
+def check_momentum(found: RecordingSet) -> list[Finding]:
+    """One impulse must explain every velocity, spin and impulse ratio of a trial."""
+    total, degrees, worst, most = 0.0, 0, "", 0.0
+    for view in views(found):
+        measured = {n: view.measured(n) for n in rigid.FIXED_BY_MOMENTUM}
+        known = {n: quantity for n, quantity in measured.items() if quantity is not None}
+        misfit, extra = rigid.momentum_misfit(
+            view.striker, view.touch, view.angle, view.speed, known
+        )
+        total, degrees = total + misfit, degrees + extra
+        if extra and misfit / extra > most:
+            worst, most = view.name, misfit / extra
+    if degrees == 0:
+        return []
+    p = float(chi2.sf(total, degrees))
+    return [
+        Finding(
+            "momentum",
+            judged(p, _MOMENTUM_SHARE),
+            f"one impulse a trial leaves chi squared {total:.1f} on {degrees} degrees of freedom"
+            + (f", most in {worst}" if worst else ""),
+            total,
+            float(degrees),
+            two_sided(p),
+        )
+    ]
+
+
+def check_friction(found: RecordingSet) -> list[Finding]:
+    """Impulse ratio against the ratio at which a rigid tip would stick."""
+    findings = []
+    for view in views(found):
+        ratio, touch = view.measured("friction_impulse_ratio"), view.touch
+        if ratio is None or touch.c == 0.0 or touch.vx or touch.spin:
+            continue
+        leaning = max(view.angle.value - _ANGLES * view.angle.std, 0.0)
+        limit = max(touch.stick_ratio, view.touch_at(leaning).stick_ratio)
+        z = (ratio.value - limit) / ratio.std
+        stuck = z > _BEYOND
+        findings.append(
+            Finding(
+                f"friction of {view.name}",
+                Severity.CAUTION if stuck else Severity.CONSISTENT,
+                f"impulse ratio {ratio.value:.3g}, a rigid tip sticks at {limit:.3g}",
+                ratio.value,
+                limit,
+                max(z, 0.0),
+            )
+        )
+    return gathered(findings)
+
+
+def check_impulse(found: RecordingSet) -> list[Finding]:
+    """Impulse that reverses the motion against peak force times duration."""
+    findings = []
+    for view in views(found):
+        e, mu = view.measured("restitution"), view.measured("friction_impulse_ratio")
+        force, time = view.measured("peak_force_N"), view.measured("contact_time_s")
+        if e is None or force is None or time is None:
+            continue
+        impulse = float(view.touch.impulse(e.value, mu.value if mu else 0.0)[1])
+        pulse = force.value * time.value
+        ratio = impulse / pulse
+        relative = combined(
+            force.relative, time.relative, view.speed.relative, view.striker.mass_kg.relative
+        )
+        z = (ratio - PULSE[1]) / (max(relative, limits.ROUNDING) * ratio)
+        severity = Severity.CONSISTENT if ratio > PULSE[0] else Severity.CAUTION
+        findings.append(
+            Finding(
+                f"impulse of {view.name}",
+                Severity.CONTRADICTION if z > _BEYOND else severity,
+                f"{impulse:.4g} N s from the motion, {pulse:.4g} N s peak force times duration "
+                f"(ratio {ratio:.2g}, at most 1)",
+                impulse,
+                pulse,
+                max(z, 0.0),
+            )
+        )
+    return gathered(findings)

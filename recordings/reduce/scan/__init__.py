@@ -1,0 +1,1 @@
+"""Scan of a crater or a ball."""

@@ -1,0 +1,123 @@
+"""A scan of a crater, a profile or a tip, read, levelled, measured and drawn."""
+
+from __future__ import annotations
+
+import math
+from pathlib import Path
+from typing import Literal
+
+import numpy as np
+from pydantic import Field
+
+from ....core.errors import InputError
+from ....core.toml_input import InputTable
+from ..measured import Measured
+from ..reduced import Reduced
+from .ball import reduce_ball
+from .crater import Crater, reduce_scan
+from .file import LineScan, read_scan
+from .line import reduce_line
+from .picture import draw_ball, draw_crater, draw_groove
+
+
+class Options(InputTable):
+    """Options of the reduction of a scan."""
+
+    shows: Literal["crater", "ball"] = Field(
+        "crater", description="a crater, or the top of a ball or tip"
+    )
+    level: Literal["plane", "paraboloid"] = Field(
+        "plane", description="shape of the undisturbed surface"
+    )
+    unit: Literal["file", "m", "mm", "um", "nm"] = Field(
+        "file", description="of the lengths along the surface; file: what it says"
+    )
+    height_unit: Literal["same", "m", "mm", "um", "nm"] = Field(
+        "same", description="of the heights; same: as along the surface"
+    )
+    step_m: float | None = Field(
+        None, gt=0.0, description="distance of the points, for files that are silent or wrong"
+    )
+    height_scale: float = Field(1.0, gt=0.0, description="true over shown height")
+    height_scale_std: float = Field(0.0, ge=0.0, description="its standard deviation")
+    blur_m: float = Field(
+        0.0, ge=0.0, description="standard deviation of the instrument's lateral blur"
+    )
+    blur_m_std: float = Field(0.0, ge=0.0, description="its standard deviation")
+    reach_m: float | None = Field(
+        None, gt=0.0, description="of a ball: distance from the top that is used; default: all"
+    )
+
+
+def reduce(path: Path, options: Options) -> Reduced:
+    """Measure the deepest crater of a scan or a profile, or the radius of a ball.
+
+    Raises
+    ------
+    InputError
+        The file cannot be read, or shows no crater or no ball.
+    """
+    scan = read_scan(
+        path, unit=None if options.unit == "file" else options.unit,
+        height_unit=None if options.height_unit == "same" else options.height_unit,
+        step=options.step_m,
+    )  # fmt: skip
+    scale = Measured(options.height_scale, options.height_scale_std)
+    if options.shows == "ball":
+        return _ball(path, scan, options)
+    if isinstance(scan, LineScan):
+        line = reduce_line(scan, height_scale=scale)
+        values = {"permanent_depth_m": line.depth, "crater_width_m": line.width}
+        return Reduced(
+            source=path, values=_known(values), trials=line.trials(), notes=line.notes,
+            draw=lambda to: draw_groove(line, to),
+        )  # fmt: skip
+    found = reduce_scan(
+        scan, level=options.level, height_scale=scale,
+        blur=Measured(options.blur_m, options.blur_m_std),
+    )  # fmt: skip
+    return Reduced(
+        source=path, values=_known(_values(found)), trials=found.trials(), notes=found.notes,
+        draw=lambda to: draw_crater(found, to),
+    )  # fmt: skip
+
+
+def _ball(path: Path, scan: object, options: Options) -> Reduced:
+    if isinstance(scan, LineScan):
+        raise InputError("a line profile", source=str(path), key="shows", allowed="a map of a ball")
+    found = reduce_ball(scan, reach=options.reach_m)  # type: ignore[arg-type]
+    # a radius is a length squared over a height
+    radius = found.radius.over(Measured(options.height_scale, options.height_scale_std))
+    values = {
+        "tip_radius_m": radius,
+        "roughness_m": Measured(found.rest, math.nan),
+        "reach_m": Measured(found.reach, math.nan),
+    }
+    return Reduced(
+        source=path, values=values, trials=(), notes=found.notes,
+        draw=lambda to: draw_ball(found, to), striker={"tip_radius_m": radius},
+    )  # fmt: skip
+
+
+def _values(found: Crater) -> dict[str, Measured]:
+    values = {
+        "permanent_depth_m": found.depth,
+        "pile_up_m": found.pile_up,
+        "crater_volume_m3": found.volume,
+    }
+    if found.is_scar:
+        return values | {
+            "scar_length_m": found.length,
+            "scar_width_m": found.width,
+            "sliding_length_m": found.sliding,
+            "scar_direction_deg": Measured(np.degrees(found.direction) % 180.0, math.nan),
+        }
+    across = Measured(
+        0.5 * (found.length.value + found.width.value),
+        0.5 * math.hypot(found.length.std, found.width.std),
+    )
+    return values | {"crater_diameter_m": across, "contact_radius_m": across.scaled(0.5)}
+
+
+def _known(values: dict[str, Measured]) -> dict[str, Measured]:
+    return {k: v for k, v in values.items() if math.isfinite(v.value)}

@@ -1,0 +1,59 @@
+"""How far roughness that hangs together moves what is read from a scan.
+
+Every height that is read is a weighted sum of points. Its variance is the sum, over the distances
+between two points, of the autocorrelation of the weights times the autocovariance of the
+undisturbed surface; so waviness counts as what it is, and so does the error of the level.
+"""
+
+from __future__ import annotations
+
+import numpy as np
+import numpy.typing as npt
+
+from ..measured import Array
+
+_FEWEST = 30
+"""Pairs of points that a lag of the autocovariance needs."""
+
+
+def autocovariance(z: Array, clear: npt.NDArray[np.bool_], reach: npt.NDArray[np.int_]) -> Array:
+    """Return the autocovariance of the clear points by lag, (2 rx + 1, 2 ry + 1) [m²].
+
+    Parameters
+    ----------
+    z
+        (nx, ny) heights above the level [m].
+    clear
+        (nx, ny) points that count.
+    reach
+        (2,) largest lag along both axes, in points.
+    """
+    weights = clear.astype(np.float64)
+    sums = _correlation(np.where(clear, z, 0.0), reach)
+    pairs = np.rint(_correlation(weights, reach))
+    return np.where(pairs >= _FEWEST, sums / np.maximum(pairs, 1.0), 0.0)
+
+
+def variance(weights: Array, covariance: Array) -> float:
+    """Return the variance of the weighted sum of heights [m²].
+
+    Parameters
+    ----------
+    weights
+        (nx, ny) weight of each point.
+    covariance
+        Autocovariance of the surface by lag; beyond its reach it is taken as 0.
+    """
+    reach = (np.array(covariance.shape) - 1) // 2
+    # lags near 0 can come out a little negative in sum where the surface is almost white
+    floor = float(covariance[tuple(reach)]) * float(np.sum(weights**2)) * 0.1
+    return max(float(np.sum(_correlation(weights, reach) * covariance)), floor)
+
+
+def _correlation(field: Array, reach: npt.NDArray[np.int_]) -> Array:
+    """Return the sums of products of points `lag` apart, lags from -reach to reach."""
+    size = [int(n + r) for n, r in zip(field.shape, reach, strict=True)]
+    spectrum = np.fft.rfft2(field, size)
+    full = np.fft.irfft2(np.abs(spectrum) ** 2, size)
+    i, j = (np.arange(-r, r + 1) for r in reach)
+    return np.asarray(full[np.ix_(i, j)])

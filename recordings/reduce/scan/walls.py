@@ -1,0 +1,140 @@
+"""Sections through a crater: where its walls reach the surface, and the height of its rim."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+
+import numpy as np
+from scipy import ndimage
+
+from ..measured import Array, Measured
+from .level import Levelled, filled
+
+_EDGE_FROM, _EDGE_TO = 0.08, 0.45
+"""Depths, as parts of the whole, between which a wall is followed up to the surface."""
+
+_GRID = 0.14
+"""What a wall's end misses on rendered craters without noise, in steps of the scan: its parabola,
+and the interpolation between points."""
+
+_BAND = np.linspace(-0.08, 0.08, 7)
+"""Lines that are averaged into a section, from its middle, in halves of the crater's width."""
+
+_SECTORS = 12
+
+
+@dataclass(frozen=True)
+class Section:
+    """Heights along a line through the deepest point: `s` from it, `z` above the level [m]."""
+
+    s: Array
+    z: Array
+
+
+def section(found: Levelled, place: Array, direction: float, half_width: float) -> Section:
+    """Return the heights along a line through `place`, averaged over a narrow band."""
+    axis = np.array([math.cos(direction), math.sin(direction)])
+    normal = np.array([-axis[1], axis[0]])
+    size = float(np.hypot(*(np.array(found.z.shape) * found.step)))
+    s = np.arange(-size, size, float(found.step.min()))
+    band = _BAND * half_width
+    points = place + s[:, None, None] * axis + band[None, :, None] * normal
+    at = (points / found.step).transpose(2, 0, 1)
+    z = ndimage.map_coordinates(filled(found.z), at, order=1, mode="constant", cval=np.nan)
+    mean = z.mean(axis=1)
+    inside = np.isfinite(mean)
+    return Section(s[inside], mean[inside])
+
+
+def section_covariance(found: Levelled, half_width: float) -> Array:
+    """Return the autocovariance of a section's heights on undisturbed surface by lag [m²]."""
+    lags = max(int(0.6 * half_width / float(found.step.min())), 4)
+    band = np.maximum((0.16 * half_width / found.step).astype(int), 1)
+    sums, counts = np.zeros(lags), np.zeros(lags)
+    for axis in (0, 1):
+        mean = ndimage.uniform_filter1d(filled(found.z), int(band[1 - axis]), axis=1 - axis)
+        field = np.moveaxis(np.where(found.clear, mean, 0.0), axis, 0)
+        seen = np.moveaxis(found.clear, axis, 0)
+        for lag in range(min(lags, field.shape[0] - 1)):
+            both = seen[lag:] & seen[: seen.shape[0] - lag]
+            products = field[lag:] * field[: field.shape[0] - lag]
+            sums[lag] += float(np.sum(products[both]))
+            counts[lag] += float(both.sum())
+    return np.asarray(sums / np.maximum(counts, 1.0))
+
+
+def opening(line: Section, depth: float, covariance: Array) -> Measured:
+    """Return the distance between the two walls where they reach the surface; nan if one is cut."""
+    ends = [_wall_end(side * line.s, line.z, depth, covariance) for side in (-1.0, 1.0)]
+    if any(e is None for e in ends):
+        return Measured(math.nan, math.nan)
+    left, right = (e for e in ends if e is not None)
+    return Measured(left.value + right.value, math.hypot(left.std, right.std))
+
+
+def without_band(length: Measured, width: Measured, half_width: float) -> tuple[Measured, Measured]:
+    """Return both without what averaging over a band takes off where a wall is curved.
+
+    The outline of radius `half_width` lies t²/(2 half_width) further in at t beside the middle: at
+    the ends of a scar always, at its sides as far as they are not straight over the band.
+    """
+    short = half_width * float(np.mean(_BAND**2))
+    straight = (length.value - width.value) / (2.0 * _BAND[-1] * half_width)
+    bent = min(max(1.0 - straight, 0.0), 1.0)
+    return Measured(length.value + short, length.std), Measured(
+        width.value + bent * short, width.std
+    )
+
+
+def _wall_end(outward: Array, z: Array, depth: float, covariance: Array) -> Measured | None:
+    """Return where the wall on one side, a parabola near its upper end, reaches height 0."""
+    order = np.argsort(outward)
+    order = order[outward[order] >= 0.0]
+    out, height = outward[order], z[order]
+    if not out.size:
+        return None
+    smooth = ndimage.uniform_filter1d(height, max(out.size // 60, 1))
+    over = np.flatnonzero(smooth > -_EDGE_FROM * depth)
+    deep = np.flatnonzero(smooth[: over[0]] < -_EDGE_TO * depth) if over.size else over
+    if not over.size or not deep.size or over[0] - deep[-1] < 5:
+        return None
+    wall = slice(int(deep[-1]) + 1, int(over[0]))
+    middle, scale = float(out[wall].mean()), float(np.ptp(out[wall]))
+    u = (out[wall] - middle) / scale
+    solver = np.linalg.pinv(np.stack([np.ones_like(u), u, u * u], axis=1))
+    c = solver @ height[wall]
+    roots = np.roots(c[::-1])
+    roots = roots[np.isreal(roots)].real
+    roots = roots[(roots > 0.3) & (roots < 2.0)]
+    if roots.size == 0:
+        return None
+    end = float(roots.min())
+    slope = float(c[1] + 2.0 * c[2] * end)
+    lag = np.abs(np.subtract.outer(np.arange(u.size), np.arange(u.size)))
+    noise = np.where(lag < covariance.size, covariance[lag.clip(0, covariance.size - 1)], 0.0)
+    weights = np.array([1.0, end, end * end]) @ solver
+    std = math.sqrt(max(float(weights @ noise @ weights), 0.0)) / abs(slope) * scale
+    step = scale / (u.size - 1)
+    return Measured(middle + end * scale, math.hypot(std, _GRID * step))
+
+
+def pile_up(found: Levelled, half_width: float) -> Measured:
+    """Return the largest mean height along lines of equal distance from the crater's edge."""
+    away = ndimage.distance_transform_edt(~found.crater, sampling=found.step)
+    width = max(0.06 * half_width, float(found.step.max()))
+    middle = np.argwhere(found.crater).mean(0)[:, None, None]
+    angle = np.arctan2(*(np.indices(found.crater.shape) - middle))
+    sector = ((angle + np.pi) / (2.0 * np.pi) * _SECTORS).astype(int).clip(0, _SECTORS - 1)
+    best = Measured(0.0, 0.0)
+    for number in range(int(1.2 * half_width / width)):
+        ring = (away > number * width) & (away <= (number + 1) * width) & np.isfinite(found.z)
+        if ring.sum() < 2 * _SECTORS:
+            continue
+        sums = np.bincount(sector[ring], found.z[ring], minlength=_SECTORS)
+        counts = np.bincount(sector[ring], minlength=_SECTORS)
+        means = sums[counts > 0] / counts[counts > 0]
+        mean = float(found.z[ring].mean())
+        if (mean > best.value or number == 0) and len(means) > 1:
+            best = Measured(mean, float(np.std(means, ddof=1)) / math.sqrt(len(means)))
+    return best

@@ -1,0 +1,1 @@
+"""Tables of force, acceleration, height, bounce times or trials."""

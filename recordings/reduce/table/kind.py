@@ -1,0 +1,173 @@
+"""A table of what an instrument or a person wrote down, read, measured and drawn."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import Literal
+
+import numpy as np
+from pydantic import Field
+
+from ....core.errors import InputError
+from ..bounce_times import BounceOptions, reduce_bounce_times
+from ..measured import Array, Measured
+from ..reduced import Reduced
+from ..time_window import TimeWindow
+from .file import Columns, read_columns
+from .force import reduce_pulse
+from .height import reduce_heights
+from .picture import draw_heights, draw_pulse, draw_times, draw_trials
+from .trials import reduce_rebounds, reduce_trials
+
+Holds = Literal["force", "acceleration", "height", "bounces", "rebounds", "trials"]
+
+_FEWEST = 20
+
+
+class Options(BounceOptions, TimeWindow):
+    """Options of the reduction of a table."""
+
+    holds: Holds = Field(
+        description="force, acceleration or height against time; times of bounces; rebound heights "
+        "beside drop heights; a row a trial"
+    )
+    sheet: str = Field("", description="of a workbook; default: the first")
+    select: str = Field("", description="COLUMN=VALUE: only these rows")
+    time: str = Field("1", description="column of the time, by name or number")
+    value: str = Field("2", description="column of what was measured, by name or number")
+    time_unit: Literal["file", "s", "ms", "us", "min"] = Field(
+        "file", description="file: what the column's name says, else seconds"
+    )
+    value_unit: str = Field(
+        "file", description="as N, kN, m/s2, g, mm, px; file: what the column's name says"
+    )
+    rate_hz: float | None = Field(
+        None, gt=0.0, description="samples a second, where the time column counts samples"
+    )
+    time_std_s: float | None = Field(
+        None, gt=0.0, description="of an instant of contact; default: from their scatter"
+    )
+    value_std: float = Field(
+        0.0, ge=0.0, description="standard deviation of a height, in the unit of its column"
+    )
+    upwards: Literal["up", "down"] = Field(
+        "up", description="down: the heights grow downwards, as rows of a picture do"
+    )
+    approach_speed_m_s: float | None = Field(
+        None,
+        gt=0.0,
+        description="normal speed before the pulse; with mass_kg gives the restitution",
+    )
+    approach_speed_m_s_std: float = Field(0.0, ge=0.0, description="its standard deviation")
+
+
+def reduce(path: Path, options: Options) -> Reduced:
+    """Measure what a table holds.
+
+    Raises
+    ------
+    InputError
+        The table cannot be read, or does not hold what it should.
+    """
+    table = read_columns(path, sheet=options.sheet)
+    if options.select:
+        table = table.select(options.select)
+    if options.holds in ("force", "acceleration"):
+        return _pulse(path, table, options)
+    if options.holds == "height":
+        return _heights(path, table, options)
+    if options.holds == "bounces":
+        return _bounces(path, table, options)
+    if options.holds == "rebounds":
+        found = reduce_rebounds(
+            table, value=options.value, unit=options.value_unit, std=options.value_std,
+            fall=options.flight,
+        )  # fmt: skip
+    else:
+        found = reduce_trials(table)
+    return Reduced(
+        source=path, values=found.values, trials=found.trials, notes=found.notes,
+        draw=lambda to: draw_trials(found, to),
+    )  # fmt: skip
+
+
+def _pulse(path: Path, table: Columns, options: Options) -> Reduced:
+    time, value, column = _series(table, options)
+    unit = table.factor(column, options.holds, given=options.value_unit, key="value_unit")
+    speed = options.approach_speed_m_s
+    found = reduce_pulse(
+        time, value * unit, holds=options.holds, mass=options.mass_kg,
+        approach=None if speed is None else Measured(speed, options.approach_speed_m_s_std),
+        gravity=options.gravity_m_s2, source=str(path),
+    )  # fmt: skip
+    return Reduced(
+        source=path, values=found.values, trials=(found.trial,), notes=found.notes,
+        draw=lambda to: draw_pulse(found, to),
+    )  # fmt: skip
+
+
+def _heights(path: Path, table: Columns, options: Options) -> Reduced:
+    time, value, column = _series(table, options)
+    said = table.unit(column) if options.value_unit == "file" else options.value_unit
+    metres = None
+    if said != "px":
+        metres = table.factor(column, "length", given=options.value_unit, key="value_unit")
+    found = reduce_heights(
+        time, value if options.upwards == "up" else -value, metres=metres,
+        std=options.value_std, gravity=options.gravity_m_s2, source=str(path),
+    )  # fmt: skip
+    rate = float(1.0 / np.median(np.diff(time)))
+    return Reduced(
+        source=path, values=found.values, trials=found.trials, notes=found.notes,
+        draw=lambda to: draw_heights(found, to), noise={"frame_rate_hz": rate},
+    )  # fmt: skip
+
+
+def _bounces(path: Path, table: Columns, options: Options) -> Reduced:
+    column = table.find(options.time, key="time")
+    unit = table.factor(column, "time", given=options.time_unit, key="time_unit", default="s")
+    times = table.values[:, column] * unit
+    times = times[np.isfinite(times)]
+    times = times[options.keeps(times)]
+    if times.size < 3:
+        raise InputError(
+            f"{times.size} instants", source=str(path), key="time", allowed="three or more"
+        )
+    if (np.diff(times) <= 0.0).any():
+        raise InputError(
+            "the instants do not increase", source=str(path), key="time",
+            allowed="the column of the times, not of the intervals",
+        )  # fmt: skip
+    std = None if options.time_std_s is None else np.full(times.size, options.time_std_s)
+    found = reduce_bounce_times(times, options, std=std, source=str(path))
+    return Reduced(
+        source=path, values=found.values(), trials=found.trials(), notes=found.notes,
+        draw=lambda to: draw_times(found, to),
+    )  # fmt: skip
+
+
+def _series(table: Columns, options: Options) -> tuple[Array, Array, int]:
+    """Time [s], numbers as they stand, and their column."""
+    where = table.find(options.time, key="time")
+    column = table.find(options.value, key="value")
+    second = table.factor(where, "time", given=options.time_unit, key="time_unit", default="s")
+    if options.rate_hz is not None:
+        second = 1.0 / options.rate_hz
+    time, value = table.values[:, where] * second, table.values[:, column]
+    whole = np.isfinite(time) & np.isfinite(value)
+    time, value = time[whole], value[whole]
+    part = options.keeps(time)
+    time, value = time[part], value[part]
+    # a tracker that begins anew writes its frames again further down
+    ahead = time > np.concatenate([[-np.inf], np.maximum.accumulate(time)[:-1]])
+    if time.size and ahead.sum() < 0.5 * time.size:
+        raise InputError(
+            "the times do not increase", source=table.source, key="time",
+            allowed="a column of times, or of numbers of samples with rate_hz",
+        )  # fmt: skip
+    if ahead.sum() < _FEWEST:
+        raise InputError(
+            f"{int(ahead.sum())} rows with a time and a value", source=table.source, key="value",
+            allowed=f"{_FEWEST} or more",
+        )  # fmt: skip
+    return time[ahead], value[ahead], column

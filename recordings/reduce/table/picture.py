@@ -1,0 +1,80 @@
+"""The pictures of tables: a pulse with its ends, heights with flights, times, trials."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import numpy as np
+
+from ..bounce_times import BounceTimes
+from ..pictures import figure, save
+from ..sound.picture import draw_intervals, draw_restitution
+from .force import PulseReduction
+from .height import HeightReduction
+from .trials import TrialsReduction
+
+
+def draw_pulse(found: PulseReduction, path: Path) -> None:
+    """Draw the record, the pulse with its ends, and the flanks in the power 2/3."""
+    pulse = found.pulse
+    made, axes = figure(1, 3, size=(14.0, 4.5))
+    axes[0, 0].plot(1e3 * pulse.time, pulse.value, lw=0.7)
+    axes[0, 0].axvspan(1e3 * pulse.start.value, 1e3 * pulse.end.value, color="C1", alpha=0.3)
+    axes[0, 0].set(xlabel="time [ms]", ylabel=f"record less {pulse.baseline:.3g} [{found.unit}]")
+    span = max(pulse.duration.value, 1e-12)
+    near = np.abs(pulse.time - 0.5 * (pulse.start.value + pulse.end.value)) < span
+    for axis, power in ((axes[0, 1], 1.0), (axes[0, 2], 2.0 / 3.0)):
+        y = np.maximum(pulse.value[near], 0.0) ** power if power != 1.0 else pulse.value[near]
+        axis.plot(1e3 * pulse.time[near], y, "k.-", ms=3, lw=0.6)
+        for end in (pulse.start, pulse.end):
+            axis.axvline(1e3 * end.value, color="C3", lw=1.0)
+        axis.axhline(0.0, color="0.5", lw=0.5)
+        axis.set(xlabel="time [ms]")
+    axes[0, 1].axhline(pulse.peak.value, color="C0", lw=0.8, ls=":")
+    axes[0, 1].set(ylabel=f"pulse [{found.unit}]", title=f"peak {pulse.peak} {found.unit}")
+    axes[0, 2].set(ylabel="its power 2/3: straight flanks", title=f"{pulse.duration} s")
+    for axis in axes.flat:
+        axis.grid(alpha=0.3)
+    save(made, path)
+
+
+def draw_heights(found: HeightReduction, path: Path) -> None:
+    """Draw the heights with the fitted flights, and what is left of them."""
+    made, axes = figure(2, 1, size=(11.0, 7.0))
+    track = found.track
+    axes[0, 0].plot(track.time, track.height, "k.", ms=3)
+    for k, bounce in enumerate(found.found):
+        for flight in (bounce.before, bounce.after):
+            part = slice(flight.first, flight.last + 1)
+            time = track.time[part]
+            span = np.linspace(float(time[0]), bounce.time.value, 80)
+            span = np.union1d(span, np.linspace(time[0], time[-1], 80))
+            axes[0, 0].plot(span, flight.heights(span), f"C{k % 8}", lw=1.2)
+            rest = track.height[part] - flight.heights(time)
+            axes[1, 0].plot(time, rest, ".", color=f"C{k % 8}", ms=3)
+        axes[0, 0].annotate(
+            f"e = {bounce.restitution}", (bounce.time.value, float(track.height[bounce.turning])),
+            fontsize=8, rotation=90, va="bottom",
+        )  # fmt: skip
+    axes[0, 0].set(ylabel="height [unit of the table]")
+    axes[1, 0].set(xlabel="time [s]", ylabel="residuals of the flights")
+    for axis in axes.flat:
+        axis.grid(alpha=0.3)
+    save(made, path)
+
+
+def draw_times(found: BounceTimes, path: Path) -> None:
+    """Draw intervals and restitution of timed bounces."""
+    made, axes = figure(1, 2, size=(11.0, 4.5))
+    draw_intervals(axes[0, 0], found)
+    draw_restitution(axes[0, 1], found)
+    save(made, path)
+
+
+def draw_trials(found: TrialsReduction, path: Path) -> None:
+    """Draw the first measured column over the approach."""
+    made, axes = figure(1, 1, size=(7.0, 5.0))
+    axes[0, 0].plot(found.x[1], found.y[1], "o", ms=4)
+    axes[0, 0].set(xlabel=found.x[0], ylabel=found.y[0])
+    axes[0, 0].grid(alpha=0.3)
+    save(made, path)

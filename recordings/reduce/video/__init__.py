@@ -1,0 +1,1 @@
+"""High-speed video of a ball or a rod."""

@@ -1,0 +1,70 @@
+"""The picture of a tracked clip: the striker's outline over frames, flights and residuals."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from ..clip import Clip
+from ..pictures import figure, save
+from .reduction import VideoReduction
+
+
+def draw_video(result: VideoReduction, clip: Clip, path: Path) -> None:
+    """Draw the tracked point over frames, its path with the fitted flights, and residuals."""
+    made, axes = figure(2, 3, size=(14.0, 8.0))
+    bounce = result.bounces[0]
+    shown = [0, bounce.turning, result.frame.size - 1]
+    for axis, index in zip(axes[0], shown, strict=True):
+        number = int(result.frame[index])
+        axis.imshow(clip.frames[number], cmap="gray", vmin=0, vmax=255, aspect="equal")
+        axis.plot(result.column[: index + 1], result.row[: index + 1], "c-", lw=0.6)
+        axis.plot(result.column[index], result.row[index], "r+", ms=12)
+        _outline(axis, result, index)
+        axis.set_title(f"frame {number}" + (" (lowest)" if index == bounce.turning else ""))
+    time = 1e3 * result.time
+    axes[1, 0].plot(time, -result.row, "k.", ms=2)
+    for flight, colour in ((bounce.before, "C0"), (bounce.after, "C1")):
+        span = result.time[flight.first : flight.last + 1]
+        axes[1, 0].plot(1e3 * span, flight.heights(span), colour, lw=1.5)
+        part = slice(flight.first, flight.last + 1)
+        residual = -result.row[part] - flight.heights(span)
+        axes[1, 1].plot(1e3 * span, residual, ".", color=colour, ms=3)
+        out = ~flight.height.used
+        axes[1, 1].plot(1e3 * span[out], residual[out], "x", color="r", ms=4)
+    axes[1, 0].set(
+        xlabel="time [ms]",
+        ylabel="height of the tip [pixel]",
+        title=f"restitution {bounce.restitution}",
+    )
+    axes[1, 1].axhline(0.0, color="k", lw=0.5)
+    axes[1, 1].set(xlabel="time [ms]", ylabel="residual [pixel]", title="x: left out")
+    if result.shape == "rod":
+        axes[1, 2].plot(time, np.degrees(result.lean), "k.", ms=2)
+        axes[1, 2].set(xlabel="time [ms]", ylabel="lean [deg]")
+    else:
+        axes[1, 2].plot(time, result.column, "k.", ms=2)
+        axes[1, 2].set(xlabel="time [ms]", ylabel="column [pixel]")
+    for axis in axes[1]:
+        axis.grid(alpha=0.3)
+    save(made, path)
+
+
+def _outline(axis: Any, result: VideoReduction, index: int) -> None:
+    x, y = result.column[index], result.row[index]
+    angle = np.linspace(-np.pi, np.pi, 200)
+    if result.shape == "sphere":
+        r = result.half_width.value
+        axis.plot(x + r * np.cos(angle), y + r * np.sin(angle), "r-", lw=0.7)
+        return
+    half, radius, lean = result.half_width.value, result.tip_radius, result.lean[index]
+    across = np.linspace(-half, half, 60)
+    up = radius - np.sqrt(np.maximum(radius**2 - across**2, 0.0))
+    across = np.concatenate([[-half], across, [half]])
+    up = np.concatenate([[2.5 * half], up, [2.5 * half]])
+    axis.plot(
+        x + across * np.cos(lean) + up * np.sin(lean),
+        y + across * np.sin(lean) - up * np.cos(lean), "r-", lw=0.7,
+    )  # fmt: skip

@@ -1,0 +1,1 @@
+"""Impacts computed by an explicit finite-element code of the proof alone."""

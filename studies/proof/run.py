@@ -1,0 +1,206 @@
+"""A run: draw and seal, diagnose in a process of its own, seal the verdict. It may be stopped.
+
+Folder of a run: `ledger.jsonl`, `sets/NAME/`, `truths/NAME.json`, `verdicts/NAME.json`. The
+diagnosing process is given the path of a copy of the recordings and nothing else.
+"""
+
+from __future__ import annotations
+
+import json
+import os
+import resource
+import secrets
+import shutil
+import signal
+import subprocess
+import sys
+import tempfile
+import time
+from collections.abc import Generator
+from concurrent.futures import FIRST_COMPLETED, Executor, Future, ProcessPoolExecutor, wait
+from itertools import islice
+from multiprocessing import get_context
+from pathlib import Path
+from typing import Any
+
+from .explicit.library import SERIES
+from .explicit.sets import draw_explicit, write_explicit
+from .generators.folder import write_set
+from .generators.truth import Truth, draw
+from .lists import LISTS, Entry, seed_of, shuffled
+from .seal import Ledger, digest_of, tree_hash
+
+_PASSED = (
+    "PATH", "HOME", "LANG", "NUMBA_CACHE_DIR", "XDG_CACHE_HOME", "TMPDIR", "PYTHONPATH",
+)  # fmt: skip
+
+ROOT = Path(__file__).resolve().parents[2]
+
+
+def run_folder(base: Path, which: str) -> Path:
+    """Folder of the run of this list on the present source tree."""
+    return base / f"{which}-{tree_hash(ROOT)[:12]}"
+
+
+def verdicts_of(run: Path) -> int:
+    """How many sets of a run have a sealed verdict."""
+    return len(Ledger(run / "ledger.jsonl").of("verdict"))
+
+
+def draw_entry(tree: str, entry: Entry) -> Truth:
+    """The concealed case of one entry."""
+    rng = seed_of(tree, entry)
+    if entry.series:
+        series = next(s for s in SERIES if s.name == entry.series)
+        return draw_explicit(rng, series)
+    return draw(rng, entry.kind, name=entry.effect)
+
+
+def prepare(run: Path, tree: str, entry: Entry) -> dict[str, Any]:
+    """Draw one case, write its recordings and its salted truth.
+
+    Returns
+    -------
+    dict
+        The event that seals both.
+    """
+    truth = draw_entry(tree, entry)
+    for place in ("sets", "truths", "verdicts"):
+        (run / place).mkdir(parents=True, exist_ok=True)
+    folder = run / "sets" / entry.name
+    shutil.rmtree(folder, ignore_errors=True)
+    write = write_explicit if entry.series else write_set
+    write(truth, folder, name=entry.name)
+    record = truth.record() | {"salt": secrets.token_hex(16), "tree": tree}
+    path = run / "truths" / f"{entry.name}.json"
+    path.write_text(json.dumps(record, indent=1) + "\n")
+    return {
+        "event": "truth", "set": entry.name, "truth": digest_of(path),
+        "recordings": digest_of(folder),
+    }  # fmt: skip
+
+
+def diagnose(run: Path, name: str, limit_s: float) -> dict[str, Any]:
+    """Diagnose one set in a process that sees only its recordings.
+
+    Returns
+    -------
+    dict
+        The event that seals what was said: `verdict` (hash, empty if there is none), `exit`,
+        `cpu_s`, `wall_s`, `message`.
+    """
+    start, before = time.monotonic(), _children_cpu()
+    with tempfile.TemporaryDirectory() as place:
+        folder = Path(place) / name
+        shutil.copytree(run / "sets" / name, folder)
+        out = Path(place) / "out"
+        command = [sys.executable, "-m", "dentscope", "diagnose", str(folder), "--out", str(out)]
+        code, message = _call(command, place, limit_s)
+        found = out / "verdict.json"
+        digest = ""
+        if code == 0 and found.exists():
+            kept = run / "verdicts" / f"{name}.json"
+            shutil.copyfile(found, kept)
+            digest = digest_of(kept)
+    return {
+        "event": "verdict", "set": name, "verdict": digest, "exit": code,
+        "cpu_s": round(_children_cpu() - before, 2),
+        "wall_s": round(time.monotonic() - start, 2), "message": message,
+    }  # fmt: skip
+
+
+def _call(command: list[str], place: str, limit_s: float) -> tuple[int, str]:
+    plain = {
+        key: value
+        for key, value in os.environ.items()
+        if key in _PASSED or key.endswith("_NUM_THREADS")
+    }
+    try:
+        answer = subprocess.run(
+            command, cwd=place, capture_output=True, text=True, timeout=limit_s, env=plain,
+            check=False,
+        )  # fmt: skip
+    except subprocess.TimeoutExpired:
+        return 124, f"not done after {limit_s:g} s"
+    return answer.returncode, answer.stderr[-400:] if answer.returncode else ""
+
+
+def _children_cpu() -> float:
+    used = resource.getrusage(resource.RUSAGE_CHILDREN)
+    return used.ru_utime + used.ru_stime
+
+
+def local_workers(count: int) -> Executor:
+    """Processes of this machine that draw and diagnose; Ctrl-C is for their parent alone."""
+    return ProcessPoolExecutor(
+        count, get_context("spawn"), initializer=signal.signal,
+        initargs=(signal.SIGINT, signal.SIG_IGN),
+    )  # fmt: skip
+
+
+def carry_on(
+    run: Path, which: str, workers: Executor, *, at_once: int = 1, hours: float = float("inf"),
+    most: int = 10**9, limit_s: float = 900.0,
+) -> Generator[tuple[str, dict[str, Any]]]:  # fmt: skip
+    """Go on with a run where it stopped; yield each set's name and its verdict event.
+
+    Only this process writes the ledger; a truth is sealed before its diagnosis is handed out.
+
+    Parameters
+    ----------
+    run
+        Folder of the run.
+    which
+        Name of the list: `full` or `small`.
+    workers
+        Draw and diagnose.
+    at_once
+        How many sets are under way at a time.
+    hours, most
+        When to stop: time [h], number of sets diagnosed now.
+    limit_s
+        Longest time of one diagnosis [s].
+
+    Raises
+    ------
+    ValueError
+        The source tree changed since the run began; a new run draws new truths.
+    """
+    tree = tree_hash(ROOT)
+    ledger = _ledger_of(run, which, tree)
+    sealed = set(ledger.of("truth"))
+    todo = islice(entries_to_do(ledger, which, tree), most)
+    end = time.monotonic() + 3600.0 * hours
+    waiting: set[Future[dict[str, Any]]] = set()
+    while True:
+        while len(waiting) < at_once and time.monotonic() < end and (entry := next(todo, None)):
+            if entry.name in sealed:
+                waiting.add(workers.submit(diagnose, run, entry.name, limit_s))
+            else:
+                waiting.add(workers.submit(prepare, run, tree, entry))
+        if not waiting:
+            return
+        ended, waiting = wait(waiting, return_when=FIRST_COMPLETED)
+        for event in (future.result() for future in ended):
+            ledger.add(**event)
+            if event["event"] == "truth":
+                waiting.add(workers.submit(diagnose, run, event["set"], limit_s))
+            else:
+                yield event["set"], event
+
+
+def entries_to_do(ledger: Ledger, which: str, tree: str) -> Generator[Entry]:
+    """Entries of a list that have no verdict yet, in the order of this tree's run."""
+    done = set(ledger.of("verdict"))
+    return (entry for entry in shuffled(LISTS[which](), tree) if entry.name not in done)
+
+
+def _ledger_of(run: Path, which: str, tree: str) -> Ledger:
+    run.mkdir(parents=True, exist_ok=True)
+    ledger = Ledger(run / "ledger.jsonl")
+    events = ledger.events()
+    if not events:
+        ledger.add(event="begin", set="", tree=tree, list=which)
+    elif events[0]["tree"] != tree:
+        raise ValueError("the source tree is not the one of this run")
+    return ledger

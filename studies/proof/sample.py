@@ -1,0 +1,76 @@
+"""Write sample sets with their truths beside them, to look at or to try a diagnosis on.
+
+`python -m dentscope.studies.proof.sample OUT --count 8 --kind single --name tilt --seed 1`
+writes OUT/sets/NAME/ (recording sets) and OUT/truths/NAME.json. The proof itself never uses these
+seeds.
+"""
+
+from __future__ import annotations
+
+import argparse
+import json
+from collections.abc import Iterator
+from pathlib import Path
+
+import numpy as np
+
+from .generators.effects import EFFECTS, OUTSIDE
+from .generators.folder import write_set
+from .generators.truth import draw
+
+KINDS = ("null", "single", "pair", "outside")
+
+
+def sample(
+    out: Path, *, count: int, kind: str = "", name: str = "", seed: int = 1
+) -> Iterator[tuple[str, dict[str, object]]]:
+    """Write `count` sets below `out`; yield the name and the truth of each.
+
+    Parameters
+    ----------
+    out
+        Folder; sets go to `out/sets`, truths to `out/truths`.
+    count
+        Number of sets.
+    kind
+        `null`, `single`, `pair` or `outside`; in turn if empty.
+    name
+        Effect of a single or of one outside the library; every one in turn if empty.
+    seed
+        Of the draw.
+    """
+    (out / "truths").mkdir(parents=True, exist_ok=True)
+    names = list(EFFECTS if kind == "single" else OUTSIDE)
+    for number in range(count):
+        rng = np.random.default_rng([seed, number])
+        this = kind or _kind_of(name) or KINDS[number % len(KINDS)]
+        effect = name or (names[number % len(names)] if kind in ("single", "outside") else "")
+        truth = draw(rng, this, name=effect)
+        label = f"sample-{seed}-{number:03d}"
+        write_set(truth, out / "sets" / label, name=label)
+        record = truth.record()
+        (out / "truths" / f"{label}.json").write_text(json.dumps(record, indent=1) + "\n")
+        yield label, record
+
+
+def _kind_of(name: str) -> str:
+    return "single" if name in EFFECTS else ("outside" if name in OUTSIDE else "")
+
+
+def main() -> None:
+    """Command line."""
+    parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
+    parser.add_argument("out", type=Path)
+    parser.add_argument("--count", type=int, default=8)
+    parser.add_argument("--kind", choices=KINDS, default="")
+    parser.add_argument("--name", default="")
+    parser.add_argument("--seed", type=int, default=1)
+    given = parser.parse_args()
+    for _ in sample(
+        given.out, count=given.count, kind=given.kind, name=given.name, seed=given.seed
+    ):
+        pass
+
+
+if __name__ == "__main__":
+    main()

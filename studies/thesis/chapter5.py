@@ -1,0 +1,63 @@
+"""Chapter 5: the thesis's oblique rows, and our own rigid impacts beside them."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Mapping
+from typing import Any
+
+from ...core.material import Material
+from ...core.toml_input import read_toml
+from ...impact.integrate import strike
+from ...impact.inverse import Measured, infer
+from ...impact.inverse_file import Row
+from ...impact.result import Impact
+from ...impact.scene import Approach, Friction, Striker, scene_of
+from ...models.base import ContactLaw
+from .chapter3 import REFERENCE
+
+
+def thesis_rod(*, mass: float | None = None) -> Striker:
+    """Return chapter 5's rod; its inertia is m L^2 / 12 as in the thesis."""
+    rod = read_toml(REFERENCE / "chapter45.toml")["rod"]
+    m = mass or rod["mass_kg"]
+    return Striker(
+        mass=m, tip_radius=rod["radius_m"], length=rod["length_m"], radius=rod["radius_m"],
+        inertia=m * rod["length_m"] ** 2 / 12.0, name=rod["material"],
+    )  # fmt: skip
+
+
+def thesis_rows(*, mass: float | None = None) -> tuple[Striker, list[Row]]:
+    """Infer chapter 5's three experiments from their measured values."""
+    rod = thesis_rod(mass=mass)
+    rows = []
+    for e in read_toml(REFERENCE / "chapter45.toml")["experiment"]:
+        measured = Measured(
+            math.radians(e["angle_deg"]), -e["approach_m_s"], e["friction"], e["restitution"],
+            -e["depth_m"], -e["sliding_m"], e["rebound_m_s"],
+        )  # fmt: skip
+        rows.append(
+            Row(
+                f"{e['angle_deg']} degrees", measured, infer(rod, measured),
+                e["printed_duration_s"], e["printed_mean_force_N"],
+            )
+        )  # fmt: skip
+    return rod, rows
+
+
+def simulate_experiment(experiment: Mapping[str, Any], law: ContactLaw, *, mass: float) -> Impact:
+    """Simulate one row of tables 5.2-5.4 with the rigid rod of the given mass."""
+    data = read_toml(REFERENCE / "chapter45.toml")
+    rod, flat = (
+        Material(b["E_Pa"], b["nu"], b["Sy_Pa"], density=b["density_kg_m3"])
+        for b in (data["rod"], data["flat"])
+    )
+    return strike(
+        scene_of(
+            law, sphere=rod, flat=flat, striker=thesis_rod(mass=mass),
+            approach=Approach(
+                -experiment["approach_m_s"], math.radians(experiment["angle_deg"])
+            ),
+            friction=Friction(experiment["friction"]),
+        )
+    )  # fmt: skip

@@ -1,0 +1,250 @@
+"""Figures 2.1-2.4 and 3.7: the mesh, and von Mises fields of stored finite-element solves.
+
+The fields come from `dentscope figures --fields 2.2` (minutes), which solves the pair of a figure
+and keeps the part near the contact in `docs/gallery/fields`; drawing needs the file only.
+"""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import numpy.typing as npt
+from matplotlib.collections import PolyCollection
+
+from ....campaigns.store import CaseRecord
+from ....core.material import Material, Pair
+from ....fem import (
+    NUMERICS_VERSION,
+    Accuracy,
+    ContactProblem,
+    critical_depth,
+    geometric_depths,
+    solve,
+)
+from ....fem.discretise import discretise
+from ....fem.geometry import Zone
+from ....models import LAWS
+from ...plot import Floats, Picture, finish, sheet
+from .. import chapter3
+
+STORE = Path(__file__).resolve().parents[3] / "docs" / "gallery" / "fields"
+_THESIS_ELEMENTS = 9784
+
+
+def _steels(sphere: float, flat: float) -> Pair:
+    return Pair(
+        Material(E=200e9, nu=0.3, Sy=sphere), Material(E=200e9, nu=0.3, Sy=flat), 1e-3
+    )  # fmt: skip
+
+
+def _chapter_3() -> Pair:
+    found = chapter3.bench()
+    return Pair(found.sphere, found.flat, found.striker.tip_radius)
+
+
+@dataclass(frozen=True, slots=True)
+class Wanted:
+    """A field picture: its pair and depth, and what the thesis says of it."""
+
+    title: str
+    pair: Callable[[], Pair]
+    depth: float
+    said: str
+
+
+WANTED = {
+    "2.2": Wanted("von Mises stress, Sy* = 0.1", lambda: _steels(503e6, 5030e6), 0.02,
+                  "the flat is still elastic"),
+    "2.3": Wanted("von Mises stress, Sy* = 1", lambda: _steels(503e6, 503e6), 0.02,
+                  "large parts of both bodies yield"),
+    "2.4": Wanted("von Mises stress, Sy* = 10", lambda: _steels(5030e6, 503e6), 0.02,
+                  "the flat yields also outside the contact, the sphere does not"),
+    "3.7": Wanted("mesh and von Mises stress of chapter 3", _chapter_3, 148e-6 / 0.1365,
+                  "no number"),
+}  # fmt: skip
+"""Field pictures by figure number; the thesis gives no depth for 2.2-2.4."""
+
+
+@dataclass(frozen=True, slots=True)
+class Field:
+    """Part of a solved section near the contact; lengths in R, stress in Sy_min.
+
+    Parameters
+    ----------
+    corners
+        Corners of the elements as deformed, shape (n, 4, 2).
+    sphere
+        Whether an element is the sphere's, shape (n,).
+    stress, plastic
+        von Mises stress and equivalent plastic strain, shape (n,).
+    origin
+        Depth, contact radius, force, settings and version of the solve.
+    """
+
+    corners: Floats
+    sphere: npt.NDArray[np.bool_]
+    stress: Floats
+    plastic: Floats
+    origin: dict[str, Any]
+
+
+def solve_field(number: str, *, folder: Path = STORE) -> Path:
+    """Solve the pair of figure `number` at the level "quick" and keep its field.
+
+    Raises
+    ------
+    RuntimeError
+        The solver did not reach the depth; nothing is written.
+    """
+    wanted, accuracy = WANTED[number], Accuracy.quick()
+    pair = wanted.pair()
+    first = 0.3 * critical_depth(pair)
+    problem = ContactProblem(
+        pair=pair, depths=geometric_depths(first, wanted.depth, 20), snapshots=(wanted.depth,)
+    )
+    solution = solve(problem, accuracy=accuracy)
+    if not solution.snapshots:
+        raise RuntimeError(str(solution.outcome))
+    seen, R = solution.snapshots[-1], pair.R
+    a = float(solution.loading.radius[-1]) / R
+    corners = ((seen.points + seen.displacement) / R)[seen.quads]
+    near = np.hypot(*corners.mean(axis=1).T) < 3.2 * a
+    folder.mkdir(parents=True, exist_ok=True)
+    path = folder / f"figure-{number.replace('.', '-')}.npz"
+    origin = {
+        "Delta_over_R": seen.depth, "a_over_R": a, "force_N": float(solution.loading.force[-1]),
+        "level": accuracy.level, "numerics_version": NUMERICS_VERSION,
+        "elements": len(seen.quads),
+    }  # fmt: skip
+    np.savez_compressed(
+        path,
+        corners=corners[near].astype(np.float32),
+        sphere=(np.arange(len(seen.quads)) < seen.n_sphere_quads)[near],
+        stress=(seen.von_mises[near] / pair.Sy_min).astype(np.float32),
+        plastic=seen.plastic_strain[near].astype(np.float32),
+        origin=np.array(json.dumps(origin)),
+    )
+    return path
+
+
+def read_field(number: str, *, folder: Path = STORE) -> Field | None:
+    """Return the stored field of figure `number`; None if there is none."""
+    path = folder / f"figure-{number.replace('.', '-')}.npz"
+    if not path.exists():
+        return None
+    with np.load(path, allow_pickle=False) as data:
+        return Field(
+            data["corners"].astype(float), data["sphere"], data["stress"].astype(float),
+            data["plastic"].astype(float), json.loads(str(data["origin"])),
+        )  # fmt: skip
+
+
+def chapter_2(records: Sequence[CaseRecord]) -> list[Picture]:
+    """Figures 2.1-2.4."""
+    found = [(number, read_field(number)) for number in ("2.2", "2.3", "2.4")]
+    return [_mesh(), *(_field(number, field) for number, field in found if field is not None)]
+
+
+def chapter_3_again(records: Sequence[CaseRecord]) -> list[Picture]:
+    """Figure 3.7."""
+    field = read_field("3.7")
+    return [_field("3.7", field)] if field is not None else [_mesh_of_chapter_3()]
+
+
+def _grid_of(pair: Pair, depth: float) -> tuple[Floats, Any]:
+    """Mesh of published results when the contact has reached Delta/R = `depth`."""
+    problem = ContactProblem(
+        pair=pair, depths=geometric_depths(0.3 * critical_depth(pair), depth, 20)
+    )
+    a = float(LAWS["ghaednia"].contact_radius(pair, depth * pair.R)) / pair.R
+    mesh = discretise(problem, Accuracy.production(), Zone(0.9 * a, 1.4 * a)).mesh
+    return np.asarray(mesh.points[mesh.quads]), mesh
+
+
+def _draw_mesh(axis: Any, corners: Floats, spheres: int, *, reach: float) -> None:
+    for part, colour in ((corners[:spheres], "C0"), (corners[spheres:], "C1")):
+        near = np.max(np.abs(part.mean(axis=1)), axis=1) < 1.3 * reach
+        axis.add_collection(
+            PolyCollection(list(part[near]), facecolors="none", edgecolors=colour, linewidths=0.4)
+        )
+    axis.set_xlim(0.0, reach)
+    axis.set_ylim(-reach, reach)
+    axis.set_aspect("equal")
+
+
+def _mesh() -> Picture:
+    made, axes = sheet(2, size=(4.8, 6.2))
+    corners, mesh = _grid_of(WANTED["2.3"].pair(), 0.04)
+    for axis, reach in zip(axes, (1.2, 0.45), strict=True):
+        _draw_mesh(axis, corners, mesh.n_sphere_quads, reach=reach)
+        finish(axis, x="r/R", y="z/R")
+    note = (
+        f"Settings of published results: {len(mesh.quads)} four-node elements up to 200 R, "
+        f"{mesh.n_sphere_quads} of them in the sphere; the thesis has {_THESIS_ELEMENTS} nine-node "
+        "ones. Drawn for Delta/R = 0.04: the mesh is made anew as the contact grows, finest where "
+        "its edge is, so that every contact radius on the way is resolved alike."
+    )
+    return Picture("2.1", "Mesh, whole and near the contact", made, note)
+
+
+def _mesh_of_chapter_3() -> Picture:
+    made, (axis,) = sheet(size=(4.8, 6.2))
+    wanted = WANTED["3.7"]
+    corners, mesh = _grid_of(wanted.pair(), wanted.depth)
+    _draw_mesh(axis, corners, mesh.n_sphere_quads, reach=0.1)
+    finish(axis, x="r/R", y="z/R")
+    note = (
+        f"(a) only: {len(mesh.quads)} elements for the chapter's pair and R = 136.5 mm; the stress "
+        "of (b) needs `dentscope figures --fields 3.7`, some minutes."
+    )
+    return Picture("3.7", "Mesh of chapter 3", made, note)
+
+
+def _field(number: str, field: Field) -> Picture:
+    made, (axis,) = sheet(size=(7.2, 6.2))
+    a = field.origin["a_over_R"]
+    for side in (1.0, -1.0):
+        drawn = PolyCollection(
+            list(field.corners * np.array([side, 1.0])), array=field.stress, cmap="turbo",
+            edgecolors="face", linewidths=0.2,
+        )  # fmt: skip
+        drawn.set_clim(0.0, 1.5)
+        axis.add_collection(drawn)
+    reach = 2.2 * a
+    axis.set_xlim(-reach, reach)
+    axis.set_ylim(-reach, reach)
+    axis.set_aspect("equal")
+    made.colorbar(drawn, ax=axis, label="von Mises stress / Sy_min", shrink=0.85, extend="max")
+    finish(axis, x="r/R", y="z/R")
+    wanted = WANTED[number]
+    note = (
+        f"Delta/R = {field.origin['Delta_over_R']:.3g}, a/R = {a:.3f}, level "
+        f"{field.origin['level']}. {_yielded(field, a)} The thesis: {wanted.said}."
+    )
+    return Picture(number, wanted.title, made, note)
+
+
+def _yielded(field: Field, a: float) -> str:
+    """What has yielded in either body, by its plastic strain."""
+    told = []
+    middles = field.corners.mean(axis=1)
+    for name, mine in (("sphere", field.sphere), ("flat", ~field.sphere)):
+        plastic = mine & (field.plastic > 1e-5)
+        if not np.any(plastic):
+            told.append(
+                f"the {name} has not yielded (at most {field.stress[mine].max():.2f} Sy_min)"
+            )
+            continue
+        wide = float(middles[plastic, 0].max()) / a
+        deep = float(np.abs(middles[plastic, 1]).max()) / a
+        strain = 100.0 * float(field.plastic[plastic].max())
+        told.append(
+            f"the {name} has yielded to {wide:.2f} a sideways and {deep:.2f} a deep, by up to "
+            f"{strain:.2g} %"
+        )
+    return f"{told[0][0].upper()}{told[0][1:]}; {told[1]}."

@@ -1,0 +1,127 @@
+"""The gallery: every figure that our numbers can redraw, with a line under each."""
+
+from __future__ import annotations
+
+import warnings
+from collections.abc import Callable, Sequence
+from pathlib import Path
+
+from ....campaigns import read_curves, read_published
+from ....campaigns.store import CaseRecord
+from ....core.errors import InputError
+from ....models import DomainWarning
+from ...plot import Entry, Picture, Table
+from .. import errata
+from . import chapter1, chapter2, chapter3, chapter45, outside
+
+CHAPTERS: dict[str, Callable[[Sequence[CaseRecord]], Sequence[Entry]]] = {
+    "1": chapter1.pictures,
+    "2": chapter2.pictures,
+    "3": chapter3.pictures,
+    "4 and 5": chapter45.pictures,
+    "outside": outside.pictures,
+}
+"""Chapters in reading order; the last compares with another program's law."""
+
+_HEAD = """# Gallery
+
+The thesis's figures and tables again, from our own numbers: `make figures`, or `dentscope figures
+--chapter 2` for one chapter. The line under each says whether it agrees, by how much it differs,
+and why; it is computed with the picture. A law's name is that of `dentscope laws list`; in every
+figure it keeps its colour (table 4.2).
+
+"""
+
+NOT_REDRAWN = {
+    "3.2-3.6": "the photographs, films and scans are not published; rendered ones stand for them",
+    "4.9, 4.11, 4.13-4.15": "drawn, but the thesis prints no measured value to compare with",
+    "5.4-5.6": "the measured scars are not published; predicted ones are drawn",
+}
+"""Figures of the thesis that are drawn without its own data, with the reason."""
+
+
+def stored_cases(root: Path) -> list[CaseRecord]:
+    """Completed cases of the published campaign, or else of a run in build/campaign."""
+    records = read_published(root / "data" / "campaign")
+    own = root / "build" / "campaign" / "campaign.h5"
+    if not records and own.exists():
+        try:
+            records = read_curves(own)
+        except InputError:
+            return []
+    return records
+
+
+def build(folder: Path, *, chapters: Sequence[str], root: Path) -> list[Entry]:
+    """Draw `chapters` into `folder`, a page each, and write its README.md and the errata.
+
+    Raises
+    ------
+    InputError
+        A chapter that there is none of.
+    """
+    for chapter in chapters:
+        if chapter not in CHAPTERS:
+            raise InputError(f"{chapter!r}", key="chapter", allowed=", ".join(CHAPTERS))
+    records = stored_cases(root)
+    rests = f"{len(records)} stored cases" if records else "none found beside it"
+    folder.mkdir(parents=True, exist_ok=True)
+    drawn: list[Entry] = []
+    for chapter in chapters:
+        with warnings.catch_warnings():
+            warnings.simplefilter("ignore", DomainWarning)  # the figures leave domains on purpose
+            entries = sorted(CHAPTERS[chapter](records), key=_order)
+        for entry in entries:
+            if isinstance(entry, Picture):
+                entry.save(folder)
+        (folder / page_of(chapter)).write_text(_page(chapter, entries, rests), encoding="utf-8")
+        drawn += entries
+    (folder / "README.md").write_text(_index(folder), encoding="utf-8")
+    if tuple(chapters) == tuple(CHAPTERS):
+        errata.write(root / "docs" / "errata.md")
+    return drawn
+
+
+def page_of(chapter: str) -> str:
+    """File name of a chapter's page."""
+    return "outside.md" if chapter == "outside" else f"chapter-{chapter.replace(' and ', '-')}.md"
+
+
+def _order(entry: Entry) -> tuple[int, int, bool]:
+    """By chapter and number, figures before tables of the same number."""
+    if not entry.number[0].isdigit():
+        return (99, 0, False)
+    first, second = entry.number.split(".")
+    return (int(first), int(second), isinstance(entry, Table))
+
+
+def _name(entry: Entry) -> str:
+    if isinstance(entry, Table):
+        return f"Table {entry.number}"
+    return f"Figure {entry.number}" if entry.number[0].isdigit() else entry.number.upper()
+
+
+def _title(chapter: str) -> str:
+    return "Beside another program" if chapter == "outside" else f"Chapter {chapter}"
+
+
+def _page(chapter: str, entries: Sequence[Entry], rests: str) -> str:
+    lines = [f"# {_title(chapter)}\n\nFinite elements: {rests}.\n"]
+    for one in entries:
+        shown = one.markdown if isinstance(one, Table) else f"![{one.title}]({one.file})"
+        lines.append(f"## {_name(one)}: {one.title}\n\n{shown}\n\n{one.note}\n")
+    return "\n".join(lines)
+
+
+def _index(folder: Path) -> str:
+    """Contents of all pages that there are, and what is drawn without the thesis's data."""
+    parts = [_HEAD]
+    for chapter in CHAPTERS:
+        page = folder / page_of(chapter)
+        if not page.exists():
+            continue
+        heads = [line[3:] for line in page.read_text("utf-8").splitlines() if line[:3] == "## "]
+        parts.append(f"## [{_title(chapter)}]({page.name})\n\n")
+        parts.append("\n".join(f"- {head}" for head in heads) + "\n\n")
+    left = "\n".join(f"- {number}: {reason}" for number, reason in NOT_REDRAWN.items())
+    return "".join([*parts, "## Without the thesis's own data\n\n", left, "\n"])

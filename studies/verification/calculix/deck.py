@@ -1,0 +1,162 @@
+"""Input deck for CalculiX: axisymmetric elements on our mesh, hard contact, one step a depth.
+
+Lengths are in R and stresses in MPa, so that forces come out in MPa R^2. The deck uses none of our
+numerics: elements, plasticity, contact and Newton's method are CalculiX's own.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Iterator
+from dataclasses import dataclass
+
+import numpy as np
+import numpy.typing as npt
+
+from .... import fem
+from ....core.material import Material
+from ....fem.discretise import Discretisation, discretise
+
+Floats = npt.NDArray[np.float64]
+Integers = npt.NDArray[np.int64]
+
+
+@dataclass(frozen=True)
+class Deck:
+    """What is to be written.
+
+    Parameters
+    ----------
+    problem
+        Pair and depths; every depth becomes a step.
+    accuracy
+        Settings whose mesh is used.
+    element
+        `"CAX4"` (four nodes, full integration) or `"CAX8R"` (eight nodes, reduced).
+    stiffness
+        Contact pressure over penetration [MPa/R].
+    """
+
+    problem: fem.ContactProblem
+    accuracy: fem.Accuracy
+    element: str = "CAX8R"
+    stiffness: float = 1e9
+
+    @property
+    def grid(self) -> Discretisation:
+        """Our discretisation, whose mesh and node sets the deck shares."""
+        return discretise(self.problem, self.accuracy)
+
+
+def write_deck(deck: Deck) -> str:
+    """Return the text of the deck."""
+    grid = deck.grid
+    mesh = grid.mesh
+    points, quads = mesh.points, mesh.quads
+    top, far, axis = mesh.top, mesh.far, np.flatnonzero(mesh.points[:, 0] == 0.0)
+    if deck.element == "CAX8R":
+        points, quads, middle = _with_middle_nodes(grid)
+        top, far, axis = (np.concatenate([s, _between(s, middle)]) for s in (top, far, axis))
+    n = mesh.n_sphere_quads
+    lines = ["*HEADING", "sphere on flat, lengths in R, stresses in MPa", "*NODE, NSET=ALL"]
+    lines += [f"{i + 1},{x:.12g},{y:.12g},0." for i, (x, y) in enumerate(points)]
+    for name, part, first in (("SPHERE", quads[:n], 0), ("FLAT", quads[n:], n)):
+        lines.append(f"*ELEMENT, TYPE={deck.element}, ELSET=E{name}")
+        for e, row in enumerate(part, start=first + 1):
+            lines.append(",".join(str(x) for x in (e, *(int(i) + 1 for i in row))))
+    for name, nodes in (
+        ("TOP", top),
+        ("FAR", far),
+        ("AXIS", axis),
+        ("SLAVE", mesh.sphere_surface),
+        ("MASTER", mesh.flat_surface),
+    ):
+        lines += [f"*NSET, NSET={name}", *_sixteen(nodes)]
+    lines += _surface("SSLAVE", mesh.quads, mesh.sphere_surface)
+    lines += _surface("SMASTER", mesh.quads, mesh.flat_surface)
+    pair = deck.problem.pair
+    for name, body in (("SPHERE", pair.sphere), ("FLAT", pair.flat)):
+        lines += _material(name, body)
+        lines += [f"*SOLID SECTION, ELSET=E{name}, MATERIAL=M{name}", "1."]
+    lines += [
+        "*SURFACE INTERACTION, NAME=SMOOTH",
+        "*SURFACE BEHAVIOR, PRESSURE-OVERCLOSURE=LINEAR",
+        f"{deck.stiffness:g}",
+        "*CONTACT PAIR, INTERACTION=SMOOTH, TYPE=SURFACE TO SURFACE",
+        "SSLAVE, SMASTER",
+        "*BOUNDARY",
+        "AXIS,1,1",
+        "FAR,1,2",
+    ]
+    for depth in deck.problem.depths:
+        lines += _step(depth)
+    return "\n".join(lines) + "\n"
+
+
+def _material(name: str, body: Material) -> list[str]:
+    lines = [f"*MATERIAL, NAME=M{name}", "*ELASTIC", f"{body.E * 1e-6:.10g},{body.nu:g}"]
+    if np.isfinite(body.strength):
+        lines += ["*PLASTIC", f"{body.Sy * 1e-6:.10g},0."]
+    return lines
+
+
+def _step(depth: float) -> list[str]:
+    return [
+        "*STEP, NLGEOM, INC=1000",
+        "*STATIC",
+        "1.,1.,1e-5,1.",
+        "*BOUNDARY",
+        f"TOP,2,2,{-depth:.12g}",
+        "*NODE PRINT, NSET=TOP, TOTALS=ONLY, FREQUENCY=1000",
+        "RF",
+        "*NODE PRINT, NSET=SLAVE, FREQUENCY=1000",
+        "U",
+        "*NODE PRINT, NSET=MASTER, FREQUENCY=1000",
+        "U",
+        "*END STEP",
+    ]
+
+
+def _sixteen(nodes: Iterable[int]) -> list[str]:
+    numbers = [str(int(i) + 1) for i in nodes]
+    return [",".join(numbers[k : k + 16]) + "," for k in range(0, len(numbers), 16)]
+
+
+def _surface(name: str, quads: Integers, nodes: Integers) -> Iterator[str]:
+    """Element faces whose two corners both lie in `nodes`."""
+    yield f"*SURFACE, NAME={name}, TYPE=ELEMENT"
+    inside = np.isin(quads, nodes)
+    for e, side in zip(*np.nonzero(inside & np.roll(inside, -1, axis=1)), strict=True):
+        yield f"{e + 1},S{side + 1}"
+
+
+def _with_middle_nodes(
+    grid: Discretisation,
+) -> tuple[Floats, Integers, dict[tuple[int, int], int]]:
+    """Eight-node elements: a node on the middle of every edge, of the sphere's on the sphere."""
+    points, quads = grid.mesh.points, grid.mesh.quads
+    n = len(points)
+    ball = np.abs(np.hypot(points[:, 0], points[:, 1] - 1.0) - 1.0) < 1e-9
+    ball &= np.arange(n) < grid.mesh.n_sphere_points
+    middle: dict[tuple[int, int], int] = {}
+    added: list[Floats] = []
+    rows = []
+    for quad in quads:
+        row = list(quad)
+        for a, b in zip(quad, np.roll(quad, -1), strict=True):
+            key = (min(int(a), int(b)), max(int(a), int(b)))
+            if key not in middle:
+                middle[key] = n + len(added)
+                x = 0.5 * (points[a] + points[b])
+                if ball[a] and ball[b]:
+                    arm = x - np.array([0.0, 1.0])
+                    x = np.array([0.0, 1.0]) + arm / np.linalg.norm(arm)
+                added.append(x)
+            row.append(middle[key])
+        rows.append(row)
+    return np.vstack([points, *added]), np.array(rows), middle
+
+
+def _between(nodes: Integers, middle: dict[tuple[int, int], int]) -> Integers:
+    """Middle nodes of the edges both of whose ends are in `nodes`."""
+    inside = set(nodes.tolist())
+    return np.array([m for (a, b), m in middle.items() if a in inside and b in inside], dtype=int)

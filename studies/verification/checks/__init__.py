@@ -1,0 +1,84 @@
+"""Every check, in the order of the report.
+
+Exact solutions, balances, discretisation, numbers of others. Cheap ones come first: a run that is
+stopped early has given most of the report.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass
+
+from ....core.errors import InputError
+from ..bench import Bench
+from ..result import Result
+from . import (
+    balances,
+    convergence,
+    first_yield,
+    flattening,
+    hertz,
+    indentation,
+    independent_code,
+    locking,
+    objectivity,
+    patch,
+    penalty,
+    plastic_zones,
+    rates,
+    role_swap,
+    scale_invariance,
+    top_face,
+    truncation,
+    unloading,
+)
+
+
+@dataclass(frozen=True)
+class Check:
+    """A named check; `run` measures it."""
+
+    name: str
+    title: str
+    run: Callable[[Bench], Result]
+
+
+CHECKS: tuple[Check, ...] = (
+    Check("patch", "uniform strain in the mesh, uniform pressure across the contact", patch.run),
+    Check("rates", "manufactured solution and elastic contact under halved elements", rates.run),
+    Check("locking", "plastic limit loads, nearly incompressible elasticity", locking.run),
+    Check("objectivity", "objectivity and yield surface of the stress update", objectivity.run),
+    Check("hertz", "elastic contact: F, a, pressure, stresses on the axis", hertz.run),
+    Check("first-yield", "depth and load at first yield", first_yield.run),
+    Check("truncation", "truncation of the half-space", truncation.run),
+    Check("scale", "scale invariance in R and in the unit of stress", scale_invariance.run),
+    Check("penalty", "independence of the contact stiffness", penalty.run),
+    Check("role-swap", "exchange of the bodies where the problem is symmetric", role_swap.run),
+    Check("top-face", "the hemisphere's top face held radially", top_face.run),
+    Check("unloading", "unloading to zero force and reload", unloading.run),
+    Check(
+        "plastic-zones",
+        "pictures of figures 2.2 to 2.4 and what is said of them",
+        plastic_zones.run,
+    ),
+    Check("indentation", "slip-line hardness and published indentation", indentation.run),
+    Check("flattening", "Jackson and Green, Kogut and Etsion", flattening.run),
+    Check("convergence", "mesh and step over Table 2.1 at Sy* = 0.1, 1, 10", convergence.run),
+    Check("independent-code", "the same cases in CalculiX", independent_code.run),
+    Check("balances", "energy and force of every kept solve", balances.run),
+)
+"""In the order of the report."""
+
+
+def check_named(name: str) -> Check:
+    """Return a check.
+
+    Raises
+    ------
+    InputError
+        There is none of that name; the message lists the known ones.
+    """
+    for check in CHECKS:
+        if check.name == name:
+            return check
+    raise InputError(f"{name!r}", key="--only", allowed=", ".join(c.name for c in CHECKS))

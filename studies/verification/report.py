@@ -1,0 +1,144 @@
+"""docs/verification.md from what has been measured."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from pathlib import Path
+
+from ... import fem
+from ...core.provenance import environment
+from .checks import CHECKS
+from .result import Measurement, Result, Table
+from .runner import best_result, publish
+
+_TESTS = (
+    ("residual and tangent of the assembly", "plain scikit-fem forms on the same mesh and state",
+     "1e-10, elastic and plastic", "`tests/physics/test_fem_assembly.py`"),
+    ("tangent", "Taylor remainder", "slope 2 within 0.1",
+     "same, and `tests/unit/fem/test_material.py`"),
+    ("path error of the stress update", "its own limit", "order 2 (radial return 1) within 0.1",
+     "`tests/unit/fem/test_material.py`"),
+    ("stress update", "yield surface, rotation, pure volume change", "1e-10", "same"),
+    ("elastic F, a and share, unequal and rigid bodies", "Hertz, Eq. 2.3", "1 %",
+     "`tests/physics/test_fem_solve.py`"),
+    ("six whole curves", "their last release", "see there", "`tests/golden`"),
+)  # fmt: skip
+
+
+def write_report(path: Path, *, folder: Path) -> Path:
+    """Write the report from the measurements kept in `folder`; return its path.
+
+    What is not measured there is taken from the results beside the report, where all that it shows
+    is kept; so a report can be renewed check by check.
+    """
+    beside = path.parent / path.stem
+    known = {check.name: best_result(check, folders=(folder, beside)) for check in CHECKS}
+    found = [result for result in known.values() if result is not None]
+    for result in found:
+        publish(result, folder=beside)
+    lines = [*_head(), *_summary(found, [name for name, r in known.items() if r is None])]
+    for result in found:
+        lines += _section(result, path)
+    lines += _tests()
+    path.parent.mkdir(parents=True, exist_ok=True)
+    path.write_text("\n".join(lines).rstrip() + "\n", encoding="utf-8")
+    return path
+
+
+def _head() -> Iterator[str]:
+    versions = environment()
+    packages = ", ".join(f"{k} {v}" for k, v in versions.items() if k != "commit")
+    yield "# What the solver was checked against"
+    yield ""
+    yield (
+        "Made by `dentscope verify`; `dentscope verify --list` names the checks, `--only NAME` "
+        "runs one. It can be stopped and goes on where it was. Marks are those that were set "
+        "before measuring; a missed one stands as missed. Effort `quick` solves at coarse levels, "
+        "`production` (the default) at those of published results. Processor seconds are of one "
+        "thread on a shared two-core machine."
+    )
+    yield ""
+    yield f"Present numerics version of the solver {fem.NUMERICS_VERSION}; {packages}."
+    yield ""
+
+
+def _tests() -> Iterator[str]:
+    yield "## Kept by the tests"
+    yield ""
+    yield "| check | reference | kept to | test |"
+    yield "| --- | --- | --- | --- |"
+    for row in _TESTS:
+        yield "| " + " | ".join(row) + " |"
+    yield ""
+
+
+def _summary(results: list[Result], absent: list[str]) -> Iterator[str]:
+    yield "| check | numbers with a mark | met | effort | numerics | processor s |"
+    yield "| --- | --- | --- | --- | --- | --- |"
+    for r in results:
+        marked = [m for m in r.measurements if m.met is not None]
+        yield (
+            f"| [{r.title}](#{_anchor(r.title)}) | {len(marked)} | {len(marked) - len(r.missed)} | "
+            f"{r.effort} | {r.numerics_version} | {r.cpu_s:.0f} |"
+        )
+    yield ""
+    if absent:
+        yield f"Not measured yet: {', '.join(absent)}."
+        yield ""
+    missed = [(r, m) for r in results for m in r.missed]
+    if missed:
+        yield "Marks that are missed:"
+        yield ""
+    for r, m in missed:
+        value = f"{m.value:.3g} {m.unit}".rstrip()
+        yield f"- {r.title}: {m.what}: {value} ({m.mark})"
+    yield ""
+
+
+def _section(result: Result, path: Path) -> Iterator[str]:
+    yield f"## {result.title}"
+    yield ""
+    yield result.about
+    yield ""
+    if result.measurements:
+        yield "| measured | value | mark | | reference |"
+        yield "| --- | --- | --- | --- | --- |"
+        for m in result.measurements:
+            yield _measurement(m)
+        yield ""
+    for table in result.tables:
+        yield from _table(table)
+    for name, caption in result.pictures:
+        yield f"![{result.title}]({path.stem}/{name})"
+        yield ""
+        yield caption
+        yield ""
+    for note in result.notes:
+        yield note
+        yield ""
+
+
+def _measurement(m: Measurement) -> str:
+    state = {True: "met", False: "**missed**", None: ""}[m.met]
+    value = f"{m.value:.3g} {m.unit}".rstrip()
+    return f"| {_cell(m.what)} | {value} | {m.mark} | {state} | {_cell(m.source)} |"
+
+
+def _table(table: Table) -> Iterator[str]:
+    yield f"{table.title}:"
+    yield ""
+    yield "| " + " | ".join(table.columns) + " |"
+    yield "| " + " | ".join("---" for _ in table.columns) + " |"
+    for row in table.rows:
+        cells = (f"{x:.4g}" if isinstance(x, float) else _cell(str(x)) for x in row)
+        yield "| " + " | ".join(cells) + " |"
+    yield ""
+
+
+def _cell(text: str) -> str:
+    return text.replace("|", "\\|")
+
+
+def _anchor(title: str) -> str:
+    kept = "".join(c for c in title.lower() if c.isalnum() or c in " -_")
+    return kept.replace(" ", "-")

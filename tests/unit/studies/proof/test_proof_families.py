@@ -1,0 +1,212 @@
+"""The generators against exact results: Hertz's impact, momentum, energy, Hunter's share."""
+
+import math
+
+import numpy as np
+import pytest
+from dentscope.studies.proof.generators import (
+    base_laws,
+    benches,
+    cavity,
+    effects,
+    foundation,
+    simulate,
+)
+from dentscope.studies.proof.generators import parameters as at
+from dentscope.studies.proof.generators.truth import FAMILIES
+
+LAWS = [at.CAVITY, at.FOUNDATION]
+
+
+def row(law, *, speed=2.0, angle=90.0, length=0.3, strength=300e6, **more):
+    p = np.zeros((1, at.N_PARAMETERS))
+    p[0, at.CAVITY_LAW : at.ROW_LAW] = cavity.COEFFICIENTS
+    p[0, at.ROW_LAW :] = foundation.COEFFICIENTS
+    radius = 4.5e-3
+    mass = 7800.0 * math.pi * radius**2 * 0.3
+    inertia = mass * (length**2 / 12.0 + radius**2 / 4.0)
+    given = {
+        "MASS": mass, "LENGTH": length, "INERTIA": inertia, "TIP": 9e-3,
+        "THETA": math.radians(angle), "NORMAL_SPEED": speed, "LAW": law, "MODULUS": 110e9,
+        "STRENGTH": strength, "MU": 0.15, "STEPS": 1500, "FOLLOW": 1e-6,
+    } | more  # fmt: skip
+    for key, value in given.items():
+        p[0, getattr(at, key)] = value
+    return p
+
+
+def with_beam(p, *, E=200e9, radius=4.5e-3):
+    area = math.pi * radius**2
+    given = {
+        "BEAM": 30, "BEAM_EA": E * area, "BEAM_EI": E * math.pi * radius**4 / 4.0,
+        "BEAM_GA": E / 2.6 * area * 0.886, "BEAM_ROTARY": 7800.0 * math.pi * radius**4 / 4.0,
+        "BEAM_LOSS": 0.0, "FOLLOW": 4e-4,
+    }  # fmt: skip
+    for key, value in given.items():
+        p[0, getattr(at, key)] = value
+    return p
+
+
+@pytest.mark.parametrize("law", LAWS)
+def test_elastic_impact_is_hertz(law):
+    p = row(law, speed=0.1, strength=math.inf)
+    out = simulate.results_of(p)[0]
+    depth = (15.0 * p[0, at.MASS] * 0.01 / (16.0 * math.sqrt(9e-3) * 110e9)) ** 0.4
+    assert out[at.RESTITUTION] == pytest.approx(1.0, abs=2e-4)
+    assert out[at.TIME] == pytest.approx(2.9432 * depth / 0.1, rel=2e-3)
+    force = 4.0 / 3.0 * 110e9 * math.sqrt(9e-3) * depth**1.5
+    assert out[at.PEAK_FORCE] == pytest.approx(force, rel=2e-3)
+
+
+def test_a_flat_tip_recovers_between_sphere_and_punch():
+    """The rigid punch of radius b has F = 2 E' b d: the dent gives F^2/(4 E' b) back."""
+    E, Y, R, depth = 110e9, 300e6, 9e-3, 1e-6
+    c = cavity.COEFFICIENTS
+    W = depth / R * (E / Y) ** 2
+    for flat, off in ((1e-9, 1e-3), (0.08 * R, 0.02)):
+        force, a, left = cavity.dent(depth, E, R, Y, flat, c)
+        n = cavity.exponent(W, flat**2 / (R * depth), c)
+        round_force, _, round_left = cavity.dent(depth, E, R, Y, 0.0, c)
+        sphere = round_force * (depth - round_left) / (cavity.exponent(W, 0.0, c) + 1.0)
+        wanted = sphere if flat < 1e-6 else force**2 / (4.0 * E * a)
+        assert force * (depth - left) / (n + 1.0) == pytest.approx(wanted, rel=off)
+    assert n == pytest.approx(1.0, abs=0.01)
+    assert a == pytest.approx(flat, rel=0.01)
+
+
+@pytest.mark.parametrize("law", LAWS)
+@pytest.mark.parametrize("angle", [90.0, 40.0])
+def test_momentum_and_energy_balance(law, angle):
+    p = row(law, angle=angle)
+    out = simulate.results_of(p)[0]
+    assert out[at.COMPLETED] == 1.0
+    mass = p[0, at.MASS]
+    assert out[at.NORMAL_IMPULSE] == pytest.approx(mass * (out[at.REBOUND] + 2.0), rel=1e-9)
+    assert out[at.TANGENTIAL_IMPULSE] == pytest.approx(mass * out[at.TANGENTIAL_REBOUND], abs=1e-12)
+    lost = out[at.ENERGY_IN] - out[at.ENERGY_OUT]
+    assert -out[at.WORK] == pytest.approx(lost, rel=1e-3)
+
+
+@pytest.mark.parametrize("law", LAWS)
+def test_step_does_not_matter(law):
+    coarse, fine = (simulate.results_of(row(law, STEPS=n))[0] for n in (1200, 4800))
+    for place in (at.RESTITUTION, at.DEPTH, at.TIME, at.PEAK_FORCE):
+        assert coarse[place] == pytest.approx(fine[place], rel=2e-3)
+
+
+def test_chain_keeps_energy_of_an_elastic_contact():
+    p = with_beam(row(at.CAVITY, speed=0.5, strength=math.inf))
+    out = simulate.results_of(p)[0]
+    # the work of the contact ends up in rigid motion and vibration: more is lost from the first
+    assert out[at.NORMAL_IMPULSE] == pytest.approx(
+        p[0, at.MASS] * (out[at.REBOUND] + 0.5), rel=1e-9
+    )
+    assert out[at.RESTITUTION] < 1.0
+    assert abs(out[at.WORK]) < 1e-3 * out[at.ENERGY_IN]
+
+
+def test_stiff_chain_is_the_rigid_rod():
+    stiff = with_beam(row(at.CAVITY, angle=55.0), E=2e17)
+    stiff[0, at.FOLLOW] = 1e-6
+    rigid = row(at.CAVITY, angle=55.0)
+    a, b = simulate.results_of(stiff)[0], simulate.results_of(rigid)[0]
+    # lumped mass and small rotation: a few per mille
+    for place in (at.RESTITUTION, at.DEPTH, at.PEAK_FORCE, at.REBOUND_SPIN):
+        assert a[place] == pytest.approx(b[place], rel=1e-2)
+
+
+def test_half_space_takes_hunters_share():
+    # Hunter 1957: lambda = 1.04 (v/c0)^(3/5) of a steel ball on a steel half-space
+    steel = benches.HARD
+    rig = next(
+        rig
+        for rig in (benches.balls_elastic(np.random.default_rng(k)) for k in range(20))
+        if rig.target is steel
+    )
+    p = rig.rows(at.CAVITY, {})
+    effects.EFFECTS["half-space-waves"].put(
+        p, rig, effects.Effect("half-space-waves", "cone", {"scale": 1.0})
+    )
+    out = simulate.results_of(p)
+    lost = 1.0 - out[:, at.RESTITUTION] ** 2
+    c0 = math.sqrt(steel.E / steel.density)
+    hunter = 1.04 * (rig.speed / c0) ** 0.6
+    assert np.all(lost / hunter > 0.6)
+    assert np.all(lost / hunter < 1.6)
+
+
+@pytest.mark.parametrize("law", LAWS)
+def test_overstress_raises_force_and_cuts_depth(law):
+    still = simulate.results_of(row(law))[0]
+    fast = simulate.results_of(row(law, RATE_KIND=1.0, RATE_A=40.4, RATE_B=5.0))[0]
+    assert fast[at.PEAK_FORCE] > 1.15 * still[at.PEAK_FORCE]
+    assert fast[at.DEPTH] < 0.85 * still[at.DEPTH]
+    assert fast[at.RESTITUTION] > still[at.RESTITUTION]
+
+
+@pytest.mark.parametrize("family", FAMILIES)
+def test_null_has_no_effect(family):
+    rig = benches.balls_normal(np.random.default_rng(3))
+    law = FAMILIES[family]
+    assert simulate.size_of(rig, [], family=law, z={}) == 0.0
+    plain = simulate.rows_of(rig, [], family=law, z={})
+    assert np.array_equal(plain, rig.rows(law, {}))
+
+
+def test_families_are_the_same_contact_within_a_few_per_cent():
+    rig = benches.rods_normal(np.random.default_rng(5))
+    one, two = (
+        simulate.observables(rig, simulate.rows_of(rig, [], family=law, z={})) for law in LAWS
+    )
+    for name in rig.noise:
+        spread = np.abs(np.log(one[name] / two[name]))
+        assert 1e-4 < spread.max() < 0.10, name
+
+
+@pytest.mark.parametrize("name", [*effects.EFFECTS, *effects.OUTSIDE])
+def test_every_effect_is_seen_somewhere(name):
+    kind = (effects.EFFECTS | effects.OUTSIDE)[name]
+    rng = np.random.default_rng(7)
+    largest = 0.0
+    for k in range(4):
+        rig = benches.BENCHES[kind.benches[0]](rng)
+        law = LAWS[k % 2]
+        largest = max(largest, simulate.size_of(rig, [kind.draw(rng, rig, law)], family=law, z={}))
+        if largest > 3.0:
+            break
+    assert largest > 3.0
+
+
+def test_a_support_with_play_is_within_the_library_and_a_flat_that_softens_is_not():
+    rig = benches.balls_normal(np.random.default_rng(3))
+    heavy = max(s.mass for s in rig.strikers)
+    numbers = {"mass": 12.0 * heavy, "stiffness": 12.0 * heavy * (2.0 * np.pi / 6e-4) ** 2}
+    numbers["damping"] = 0.02 * np.sqrt(numbers["mass"] * numbers["stiffness"])
+    tight = effects.Effect("support-compliance", "spring-with-play", numbers | {"gap": 1e-12})
+    law = LAWS[0]
+    plain, beyond = simulate.size_beyond_library(
+        np.random.default_rng(1), rig, tight, family=law, z={}
+    )  # fmt: skip
+    assert plain > 20.0
+    assert beyond < 0.1 * plain
+    softening = effects.Effect("strain-softening", "saturating", {"fall": 0.5, "strain": 0.01})
+    plain, beyond = simulate.size_beyond_library(
+        np.random.default_rng(1), rig, softening, family=law, z={}
+    )  # fmt: skip
+    assert 5.0 < beyond <= plain
+
+
+@pytest.mark.parametrize("law", list(base_laws.LAWS))
+@pytest.mark.parametrize("target", benches.TARGETS, ids=lambda metal: metal.name)
+def test_base_laws_follow_the_finite_elements_of_each_pair(target, law):
+    entry = base_laws.stored()[f"{benches.BEARING_STEEL.name} on {target.name}"]
+    curve = base_laws.Curve(
+        **{k: np.asarray(entry[k]) if k != "stiffness" else entry[k]
+           for k in ("stiffness", "depth", "force", "turn", "left", "back")}
+    )  # fmt: skip
+    of_pair, usual = base_laws.LAWS[law]
+    for constants, mark in ((np.array(entry[law]["constants"]), 0.015), (usual, 0.12)):
+        force = [of_pair(constants, curve.stiffness, d)[0] for d in curve.depth]
+        back = [of_pair(constants, curve.stiffness, d)[2] for d in curve.turn]
+        assert np.sqrt(np.mean(np.log(force / curve.force) ** 2)) < mark
+        assert np.sqrt(np.mean(np.log(back / curve.back) ** 2)) < mark

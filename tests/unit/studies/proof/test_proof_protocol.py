@@ -1,0 +1,206 @@
+"""Seals, seeds, lists, scores and page of the proof; the diagnosis is replaced by a stand-in."""
+
+import json
+from concurrent.futures import ThreadPoolExecutor
+from pathlib import Path
+
+import numpy as np
+import pytest
+from dentscope.studies.proof import lists, page, run, score, seal
+from dentscope.studies.proof.lists import Entry
+
+
+@pytest.fixture
+def sealed(tmp_path):
+    """A run with one sealed set and verdict."""
+    for place in ("sets/set-0000", "truths", "verdicts"):
+        (tmp_path / place).mkdir(parents=True)
+    (tmp_path / "sets/set-0000/trials.csv").write_text("trial\n")
+    truth = {"kind": "null", "mechanisms": [], "effects": [], "sizes": [], "salt": "s"}
+    (tmp_path / "truths/set-0000.json").write_text(json.dumps(truth))
+    (tmp_path / "verdicts/set-0000.json").write_text(json.dumps({"verdict": "adequate"}))
+    ledger = seal.Ledger(tmp_path / "ledger.jsonl")
+    ledger.add(
+        event="truth", set="set-0000",
+        truth=seal.digest_of(tmp_path / "truths/set-0000.json"),
+        recordings=seal.digest_of(tmp_path / "sets/set-0000"),
+    )  # fmt: skip
+    ledger.add(
+        event="verdict", set="set-0000", cpu_s=1.0, message="",
+        verdict=seal.digest_of(tmp_path / "verdicts/set-0000.json"),
+    )  # fmt: skip
+    return tmp_path
+
+
+def test_whole_run_opens(sealed):
+    (case,) = score.open_run(sealed)
+    assert case.said == "adequate"
+    # a second opening is as good as the first
+    assert score.open_run(sealed)[0].said == "adequate"
+
+
+@pytest.mark.parametrize(
+    "path", ["truths/set-0000.json", "verdicts/set-0000.json", "sets/set-0000/trials.csv"]
+)
+def test_changed_file_breaks_the_seal(sealed, path):
+    (sealed / path).write_text((sealed / path).read_text() + " ")
+    with pytest.raises(seal.SealBroken, match="not"):
+        score.open_run(sealed)
+
+
+@pytest.mark.parametrize("change", ["drop", "swap", "edit", "cut"])
+def test_changed_ledger_breaks_the_chain(sealed, change):
+    path = sealed / "ledger.jsonl"
+    one, two = path.read_text().splitlines()
+    text = {
+        "drop": two, "swap": two + "\n" + one, "edit": one.replace("set-0000", "set-0001", 1),
+        "cut": one + "\n" + two[:20],
+    }[change]  # fmt: skip
+    path.write_text(text + "\n")
+    with pytest.raises(seal.SealBroken):
+        score.open_run(sealed)
+
+
+def test_several_writers_leave_the_chain_whole(tmp_path):
+    path = tmp_path / "ledger.jsonl"
+    with ThreadPoolExecutor(4) as threads:
+        list(threads.map(lambda k: seal.Ledger(path).add(event="e", set=str(k)), range(60)))
+    assert sorted(int(e["set"]) for e in seal.Ledger(path).events()) == list(range(60))
+
+
+def test_verdict_after_opening_is_refused(tmp_path, sealed):
+    ledger = seal.Ledger(sealed / "ledger.jsonl")
+    score.open_run(sealed)
+    ledger.add(**(ledger.of("verdict")["set-0000"] | {"cpu_s": 2.0}))
+    with pytest.raises(seal.SealBroken, match="more than once"):
+        score.open_run(sealed)
+
+
+def test_tree_hash_sees_the_tool_and_not_the_proof(tmp_path):
+    for name in ("core/__init__.py", "discrepancy/__init__.py", "studies/proof/__init__.py",
+                 "data/coefficients/fitted.json", "docs/x.md"):  # fmt: skip
+        (tmp_path / name).parent.mkdir(parents=True, exist_ok=True)
+        (tmp_path / name).write_text("1")
+    first = seal.tree_hash(tmp_path)
+    changes = {
+        "studies/proof/__init__.py": True,
+        "docs/x.md": True,
+        "core/__init__.py": False,
+        "data/coefficients/fitted.json": False,
+    }
+    for name, same in changes.items():
+        before = seal.tree_hash(tmp_path)
+        (tmp_path / name).write_text("2" + name)
+        assert (seal.tree_hash(tmp_path) == before) is same, name
+    assert seal.tree_hash(tmp_path) != first
+
+
+def test_lists_have_the_promised_numbers():
+    entries = lists.full()
+    kinds = [e.kind for e in entries]
+    assert kinds.count("null") == 200
+    assert kinds.count("outside") == 100
+    assert kinds.count("pair") == 40
+    assert kinds.count("single") == 20 * 19
+    assert kinds.count("series") >= 12
+    assert len(lists.small()) <= 12
+    assert len({e.name for e in entries}) == len(entries)
+
+
+def test_seed_follows_tree_and_number():
+    a, b = Entry(3, "null"), Entry(4, "null")
+    one = lists.seed_of("aa", a).random()
+    assert one == lists.seed_of("aa", a).random()
+    assert one != lists.seed_of("ab", a).random()
+    assert one != lists.seed_of("aa", b).random()
+
+
+def test_run_goes_on_where_it_stopped(tmp_path, monkeypatch):
+    entries = [Entry(k, "null") for k in range(3)]
+    monkeypatch.setitem(lists.LISTS, "small", lambda: entries)
+    seen = []
+
+    def stand_in(command, place, limit_s):
+        folder, out = Path(command[4]), Path(command[6])
+        assert sorted(p.name for p in folder.iterdir()) == ["set.toml", "trials.csv"]
+        assert not list(Path(place).rglob("truths"))
+        seen.append(folder.name)
+        out.mkdir()
+        (out / "verdict.json").write_text(json.dumps({"verdict": "adequate"}))
+        return 0, ""
+
+    monkeypatch.setattr(run, "_call", stand_in)
+    monkeypatch.setattr(run, "tree_hash", lambda root: "ab" * 32)
+    with ThreadPoolExecutor(2) as threads:
+        assert len(list(run.carry_on(tmp_path, "small", threads, most=2))) == 2
+        assert run.verdicts_of(tmp_path) == 2
+        assert len(list(run.carry_on(tmp_path, "small", threads, at_once=2))) == 1
+    assert sorted(seen) == ["set-0000", "set-0001", "set-0002"]
+    cases = score.open_run(tmp_path)
+    found = {s.name: s for s in score.scores(cases)}
+    assert found["false alarms on nulls"].hits == 0
+    assert found["false alarms on nulls"].state == "not shown"
+
+
+def case(name, kind, true, verdict, size=15.0):
+    effects = [{"name": t, "form": "swadener", "numbers": {"length": 1e-4}} for t in true]
+    truth = {
+        "kind": kind, "mechanisms": list(true), "effects": effects, "sizes": [size] * len(true),
+        "bench": "b", "family": "cavity",
+    }  # fmt: skip
+    return score.Case(name, truth, verdict, {"cpu_s": 1.0, "message": ""})
+
+
+def test_scores_count_what_they_say():
+    right = {
+        "verdict": "missing-physics", "mechanisms": ["size-effect"], "alternatives": [],
+        "parameters": {"size_length_m": {"low": 0.5e-4, "high": 2e-4}},
+        "improvement": {"held_out_baseline": 3.0, "held_out_extended": 1.0},
+        "probabilities": {"size-effect": 0.99, "baseline": 0.01},
+    }  # fmt: skip
+    wrong = right | {"mechanisms": ["roughness"], "alternatives": [["size-effect"]]}
+    wrong["verdict"] = "indistinguishable"
+    cases = [
+        case("a", "single", ["size-effect"], right, 30.0),
+        case("b", "single", ["size-effect"], wrong),
+        case("c", "single", ["size-effect"], {"verdict": "adequate"}),
+        case("d", "null", [], {"verdict": "outside-library"}),
+        case("e", "outside", [], right),
+        case("f", "single", ["size-effect"], {}),
+    ]
+    found = {s.name: s for s in score.scores(cases)}
+    assert (found["detected, size above 10"].hits, found["detected, size above 10"].of) == (2, 4)
+    assert found["right name first, of those named"].hits == 1
+    assert found["truth in the reported set"].hits == 2
+    assert found["false alarms on nulls"].hits == 1
+    assert found["forced name, outside the library"].hits == 1
+    assert found["undetermined or failed"].hits == 1
+    assert found["90 % intervals cover"].of == 1
+    assert found["held-out score falls by, median above size 20"].value == pytest.approx(3.0)
+    assert found["mean size of the set"].value == pytest.approx(1.5)
+    table = score.confusion(cases)
+    assert table["size-effect"] == {"size-effect": 1, "roughness": 1, "adequate": 1,
+                                    "undetermined": 1}  # fmt: skip
+    text = page.page(
+        [page.summary(cases, which="full", tree="ab" * 32, date="2020-01-01", total=9)], impacts=3
+    )
+    assert "| false alarms on nulls | 100.0 % (1 of 1) |" in text
+
+
+def test_interval_is_clopper_and_pearsons():
+    # 2 of 20: Newcombe, Stat. Med. 17 (1998) 857 uses the same method; table of Diem and Lentner
+    low, high = score.interval(2, 20)
+    assert low == pytest.approx(0.0123, abs=1e-4)
+    assert high == pytest.approx(0.3170, abs=1e-4)
+
+
+def test_state_needs_the_whole_interval():
+    def hits(n, of, **marks):
+        chosen = [case(str(k), "null", [], {}) for k in range(of)]
+        return score.share("x", chosen, lambda c: int(c.name) < n, **marks).state
+
+    assert hits(0, 100, most=0.05) == "met"
+    assert hits(2, 100, most=0.05) == "not shown"
+    assert hits(30, 100, most=0.05) == "missed"
+    assert hits(100, 100, least=0.9) == "met"
+    assert np.isnan(score.share("x", [], bool).value)
