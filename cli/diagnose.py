@@ -43,8 +43,7 @@ def diagnose(
             allowed="a folder, or --chapter5",
         )
     from ..discrepancy import diagnose as run
-    from ..discrepancy.report import write_report
-    from ..discrepancy.text import lines
+    from ..discrepancy.report import lines, write_report
     from ..recordings import read
 
     recordings = read(folder)

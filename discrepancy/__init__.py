@@ -9,14 +9,15 @@ from __future__ import annotations
 from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
+    from .findings import Verdict
     from .mechanisms import MECHANISMS, Mechanism, Parameter
-    from .verdict import Verdict, diagnose
+    from .verdict import diagnose
 
 __all__ = ["MECHANISMS", "Mechanism", "Parameter", "Verdict", "diagnose"]
 
 _HOMES = {
     "MECHANISMS": "mechanisms", "Mechanism": "mechanisms", "Parameter": "mechanisms",
-    "Verdict": "verdict", "diagnose": "verdict",
+    "Verdict": "findings", "diagnose": "verdict",
 }  # fmt: skip
 
 

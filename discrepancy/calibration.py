@@ -8,7 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from .correction import widened
-from .fit import Fit
+from .inference.fit import Fit
 from .problem import Problem
 from .rank import Ranking
 from .thresholds import Nulls, gain, null_bayes_factors

@@ -14,8 +14,8 @@ from numpy.typing import NDArray
 
 from ..impact.force import LOG_DEPTH_FIRST, LOG_DEPTH_LAST
 from ..impact.strength import NODES
-from .evidence import Linear
-from .fit import Fit
+from .inference.fit import Fit
+from .inference.linear import Linear
 from .problem import Problem
 
 Array = NDArray[np.float64]

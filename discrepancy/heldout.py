@@ -14,7 +14,7 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.special import logsumexp
 
-from .fit import Fit
+from .inference.fit import Fit
 from .problem import Problem
 
 Array = NDArray[np.float64]

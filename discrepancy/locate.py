@@ -14,11 +14,28 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from .fit import Fit
-from .problem import PHASES, Problem
+from .inference.fit import Fit
+from .problem import Problem
 from .thresholds import Nulls
 
 Array = NDArray[np.float64]
+
+PHASES = {
+    "restitution": "unloading",
+    "permanent_depth_m": "loading",
+    "contact_time_s": "loading",
+    "peak_force_N": "loading",
+    "rebound_spin_rad_s": "sliding",
+    "friction_impulse_ratio": "sliding",
+    "sliding_length_m": "sliding",
+    "rebound_speed_m_s": "free-flight",
+    "tangential_rebound_m_s": "free-flight",
+    "peak_depth_m": "loading",
+    "loading_time_s": "loading",
+    "normal_impulse_Ns": "unloading",
+    "below_flat_s": "unloading",
+}
+"""Phase of the impact that shapes each observable most."""
 
 
 @dataclass(frozen=True, slots=True)

@@ -16,9 +16,11 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ..recordings import Quantity, Striker
-from .fit import Fit
+from .cells import LOGARITHMIC
+from .conditions import Condition
 from .forward import Point, Simulator
-from .problem import LOGARITHMIC, Condition, Problem
+from .inference.fit import Fit
+from .problem import Problem
 
 Array = NDArray[np.float64]
 _Candidate = tuple[str, Condition, Striker | None]

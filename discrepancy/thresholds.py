@@ -15,14 +15,15 @@ from numpy.typing import NDArray
 
 from ..impact import Scene
 from ..impact.strength import UNIT, strength_table
-from .evidence import Linear
-from .fit import Fit
+from .cells import LOGARITHMIC
 from .forward import Point, Simulator
+from .inference.fit import Fit
+from .inference.linear import Linear
 from .mechanisms.base import effective_mass
 from .nulls import Rig, discrepancies, scatter
 from .nulls.laws import Reference
 from .nulls.motion import Bodies
-from .problem import LOGARITHMIC, Problem
+from .problem import Problem
 
 Array = NDArray[np.float64]
 

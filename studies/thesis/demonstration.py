@@ -23,8 +23,8 @@ from numpy.typing import NDArray
 
 from ...core.material import Material
 from ...core.toml_input import read_toml
-from ...discrepancy.fit import label
 from ...discrepancy.forward import ACCURACY, SIMULATED
+from ...discrepancy.inference.fit import label
 from ...discrepancy.mechanisms import MECHANISMS, Mechanism, Surroundings
 from ...impact import Approach, Friction, Scene, scene_of, strike_batch
 from ...impact import compiled as c

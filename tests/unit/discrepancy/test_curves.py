@@ -7,7 +7,8 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from dentscope.discrepancy.curves import from_profile, from_trace, readings_of, reduced
+from dentscope.discrepancy.curves.readings import readings_of, reduced
+from dentscope.discrepancy.curves.reduction import from_profile, from_trace
 from dentscope.discrepancy.problem import problem_of
 from dentscope.recordings import read
 

@@ -7,9 +7,10 @@ from types import SimpleNamespace
 
 import numpy as np
 import pytest
-from dentscope.discrepancy.evidence import Grid, Linear, interval, posterior
+from dentscope.discrepancy.estimates import parameters_of
+from dentscope.discrepancy.inference.grid import Grid, interval, posterior
+from dentscope.discrepancy.inference.linear import Linear
 from dentscope.discrepancy.mechanisms import Parameter
-from dentscope.discrepancy.verdict import parameters_of
 from scipy.stats import beta, multivariate_normal, norm
 
 

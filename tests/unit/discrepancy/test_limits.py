@@ -5,9 +5,9 @@ from types import SimpleNamespace
 
 import numpy as np
 import pytest
-from dentscope.discrepancy.evidence import Grid
+from dentscope.discrepancy.estimates import limits_of
+from dentscope.discrepancy.inference.grid import Grid
 from dentscope.discrepancy.mechanisms.base import Parameter
-from dentscope.discrepancy.verdict import _limits
 
 
 @pytest.mark.parametrize(
@@ -21,7 +21,7 @@ from dentscope.discrepancy.verdict import _limits
 def test_limit_is_the_value_nearest_to_doing_nothing(low, high, scale, neutral, effect, value):
     own = Parameter("p", "-", low, high, scale, neutral, "", nodes=5)
     grid = Grid((own,))
-    found = _limits(
+    found = limits_of(
         SimpleNamespace(
             base=SimpleNamespace(linear=SimpleNamespace(white=lambda e: e)),
             screened=[

@@ -5,7 +5,8 @@ from __future__ import annotations
 import math
 from typing import Any
 
-from .verdict import OUTSIDE, Verdict
+from ..decide import OUTSIDE
+from ..findings import Verdict
 
 _NAMES = {
     "restitution": "restitution", "permanent_depth_m": "crater depth",

@@ -2,20 +2,13 @@
 
 from __future__ import annotations
 
-import base64
 import html
-import io
 from collections.abc import Iterable, Sequence
 from pathlib import Path
 
-import numpy as np
-from matplotlib.backends.backend_agg import FigureCanvasAgg
-from matplotlib.figure import Figure
-from matplotlib.ticker import FuncFormatter, NullFormatter
-
-from .fit import Fit
+from ..findings import Verdict
+from .pictures import figure_correction, figure_misfit, image
 from .text import headline, number, observable, own_parameters
-from .verdict import Verdict
 
 _STYLE = """
 body { font: 16px/1.5 system-ui, sans-serif; color: #1c2430; max-width: 60rem;
@@ -32,7 +25,6 @@ img { max-width: 100% }
   font-size: 1.1rem }
 .small { color: #5a6675; font-size: .88rem }
 """
-_BASE, _BEST = "#8a94a3", "#2b6cb0"
 
 
 def write_report(verdict: Verdict, path: Path) -> None:
@@ -98,7 +90,7 @@ def _misses(v: Verdict) -> Iterable[str]:
         )
     else:
         yield "<p>Nowhere beyond what chance gives over all observables and conditions.</p>"
-    yield _image(figure_misfit(v), "Recording over simulation for each observable")
+    yield image(figure_misfit(v), "Recording over simulation for each observable")
 
 
 def _explanation(v: Verdict) -> Iterable[str]:
@@ -130,7 +122,7 @@ def _outside(v: Verdict) -> Iterable[str]:
         "<p>No mechanism of the library repairs the baseline. Freed from its known error, the "
         "force law would change as drawn: a correction without physics in it, as a lead.</p>"
     )
-    yield _image(figure_correction(v), "Factor on the force law over the depth")
+    yield image(figure_correction(v), "Factor on the force law over the depth")
 
 
 def _ranking(v: Verdict) -> Iterable[str]:
@@ -186,73 +178,6 @@ def _numbers(v: Verdict) -> Iterable[str]:
     if v.notes:
         yield "<h2>Notes</h2>"
         yield _list(v.notes)
-
-
-def figure_misfit(v: Verdict) -> Figure:
-    """Recording over simulation against speed, before and after, a panel for each observable."""
-    cells = v.problem.cells
-    names = list(dict.fromkeys(cells.observable))
-    columns = min(len(names), 2)
-    lines = -(-len(names) // columns)
-    figure = Figure(figsize=(4.6 * columns, 2.7 * lines), layout="constrained")
-    axes = np.atleast_1d(figure.subplots(lines, columns, squeeze=False)).ravel()
-    shown: list[tuple[str, Fit, str]] = [("baseline", v.ranking.base, _BASE)]
-    if v.mechanisms:
-        shown.append((" + ".join(v.mechanisms), v.best, _BEST))
-    for axis, name in zip(axes, names, strict=False):
-        here = np.array([o == name for o in cells.observable])
-        speed = np.array([v.problem.conditions[k].speed for k in cells.condition[here]])
-        for place, (label, fitted, colour) in enumerate(shown):
-            miss = _prior_miss(fitted)[here]
-            log = bool(cells.is_log[here][0])
-            value = 100.0 * np.expm1(miss) if log else miss
-            bar = cells.std[here] * (100.0 if log else 1.0)
-            axis.errorbar(
-                speed * 1.03**place, value, yerr=bar, fmt="o", ms=4, lw=1, color=colour,
-                label=label,
-            )  # fmt: skip
-        axis.axhline(0.0, color="#444", lw=0.8)
-        axis.set_xscale("log")
-        axis.xaxis.set_major_formatter(FuncFormatter(lambda x, _: f"{x:g}"))
-        axis.xaxis.set_minor_formatter(NullFormatter())
-        ticks = sorted({float(f"{x:.2g}") for x in speed})
-        axis.set_xticks(ticks if len(ticks) < 7 else ticks[:: len(ticks) // 5])
-        axis.set_title(observable(name), fontsize=10)
-        axis.set_xlabel("approach speed [m/s]", fontsize=9)
-        axis.set_ylabel("recording off simulation" + (" [%]" if log else ""), fontsize=9)
-        axis.tick_params(labelsize=8)
-    for axis in axes[len(names) :]:
-        axis.set_visible(False)
-    axes[0].legend(fontsize=8)
-    return figure
-
-
-def _prior_miss(fitted: Fit) -> np.ndarray:
-    """Recording minus prediction, with what the law's known error does not explain."""
-    return np.asarray(fitted.residual - fitted.linear.J @ fitted.z)
-
-
-def figure_correction(v: Verdict) -> Figure:
-    """Factor on loading and recovery over the depth, with the 90 % band."""
-    figure = Figure(figsize=(4.6 * len(v.corrections), 3.0), layout="constrained")
-    axes = figure.subplots(1, len(v.corrections), squeeze=False)[0]
-    for axis, c in zip(axes, v.corrections, strict=True):
-        axis.fill_between(c.depth_over_R, c.low, c.high, color=_BEST, alpha=0.25, lw=0)
-        axis.plot(c.depth_over_R, c.factor, color=_BEST)
-        axis.axhline(1.0, color="#444", lw=0.8)
-        axis.set_xscale("log")
-        what = "loading force" if c.phase == "loading" else "elastic recovery"
-        axis.set_title(f"factor on the {what}", fontsize=10)
-        axis.set_xlabel("depth / R", fontsize=9)
-        axis.tick_params(labelsize=8)
-    return figure
-
-
-def _image(figure: Figure, alt: str) -> str:
-    buffer = io.BytesIO()
-    FigureCanvasAgg(figure).print_png(buffer, metadata={"Software": None})
-    data = base64.b64encode(buffer.getvalue()).decode("ascii")
-    return f'<p><img alt="{_e(alt)}" src="data:image/png;base64,{data}"></p>'
 
 
 def _table(head: Sequence[str], rows: Sequence[Sequence[str]], *, right: int = 99) -> str:

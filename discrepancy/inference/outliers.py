@@ -14,8 +14,8 @@ from dataclasses import replace
 import numpy as np
 from numpy.typing import NDArray
 
+from ..problem import Problem
 from .fit import Fit
-from .problem import Problem
 
 Array = NDArray[np.float64]
 

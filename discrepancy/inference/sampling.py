@@ -21,9 +21,9 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.special import logsumexp
 
+from ..forward import Point, Simulator
+from ..rank import Progress
 from .fit import Fit
-from .forward import Point, Simulator
-from .rank import Progress
 
 Array = NDArray[np.float64]
 

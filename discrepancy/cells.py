@@ -1,0 +1,161 @@
+"""Cells: one observable at one condition, the mean of its repeats and its standard error."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from functools import cached_property
+
+import numpy as np
+from numpy.typing import NDArray
+
+from .conditions import Condition
+from .curves import FROM_CURVES, Readings
+from .drift import Drift, drift_of
+
+Array = NDArray[np.float64]
+Ints = NDArray[np.intp]
+
+LOGARITHMIC = (
+    "restitution", "permanent_depth_m", "contact_time_s", "peak_force_N", *FROM_CURVES,
+)  # fmt: skip
+"""Observables that are compared as logarithms."""
+
+# what repeats cannot average away: gauges, definitions; of the value, and of one reading's noise
+_FLOOR, _FLOOR_OF_NOISE = 0.004, 0.5
+
+
+@dataclass(frozen=True, eq=False)
+class Cells:
+    """The measured numbers, m of them.
+
+    Parameters
+    ----------
+    condition, observable
+        Index of the condition and name of the observable.
+    value, std
+        Mean (of the logarithm where logarithmic) and its standard error.
+    count
+        Trials behind it.
+    """
+
+    condition: Ints
+    observable: tuple[str, ...]
+    value: Array
+    std: Array
+    count: Ints
+
+    def __len__(self) -> int:
+        return len(self.value)
+
+    @cached_property
+    def is_log(self) -> NDArray[np.bool_]:
+        """Whether each cell is a logarithm."""
+        return np.array([name in LOGARITHMIC for name in self.observable], dtype=bool)
+
+    def take(self, keep: NDArray[np.bool_]) -> Cells:
+        """Return some of the cells."""
+        names = tuple(n for n, k in zip(self.observable, keep, strict=True) if k)
+        return Cells(
+            self.condition[keep], names, self.value[keep], self.std[keep], self.count[keep]
+        )
+
+
+def cells_of(
+    readings: Mapping[str, Readings], speeds: Array, order: Array, conditions: Sequence[Condition],
+    notes: list[str],
+) -> tuple[Cells, tuple[Drift, ...]]:  # fmt: skip
+    """Return the cells of a set, and what drifts over the order of testing.
+
+    Parameters
+    ----------
+    readings
+        Every observable's values over the trials.
+    speeds, order
+        Normal speed [m/s] and place in the order of testing of every trial, shape (n,).
+    conditions
+        The nominal impacts.
+    notes
+        Receives what was left out or scatters more than stated.
+    """
+    place = order / np.nanmax(order) if np.isfinite(order).any() else np.full(len(speeds), np.nan)
+    drifts = []
+    rows: list[tuple[int, str, float, float, int]] = []
+    dropped = 0
+    for name, read in readings.items():
+        values, std = read.value, read.std
+        # a value of zero with a fractional noise is not exact
+        std = np.maximum(std, 0.01 * np.sqrt(np.nanmean(values**2)) * (std <= 0.0))
+        log = name in LOGARITHMIC
+        part: list[tuple[int, str, float, float, int]] = []
+        squares, degrees = 0.0, 0
+        repeats = []
+        for k, c in enumerate(conditions):
+            index = np.array([i for i in c.trials if np.isfinite(values[i])], dtype=np.intp)
+            if log:
+                index = index[values[index] > 0.0]
+            if index.size == 0:
+                continue
+            y = np.log(values[index]) if log else values[index]
+            s = std[index] / np.abs(values[index]) if log else std[index]
+            # to the condition's mean speed, with the power that a plastic contact has
+            y = y - _power(name, y, log) * np.log(speeds[index] / c.speed)
+            keep = _kept(y, s)
+            dropped += int(np.sum(~keep))
+            y, s = y[keep], s[keep]
+            repeats.append((place[index[keep]], y, s))
+            weight = 1.0 / s**2
+            mean = float(np.sum(weight * y) / np.sum(weight))
+            squares += float(np.sum(((y - mean) / s) ** 2))
+            degrees += len(y) - 1
+            part.append((k, name, mean, float(np.sum(weight) ** -0.5), len(y)))
+        ratio = squares / degrees if degrees >= 8 else 1.0
+        if ratio > 1.0 + 3.0 * math.sqrt(2.0 / max(degrees, 1)):
+            notes.append(
+                f"{name}: repeats scatter {math.sqrt(ratio):.1f} times as much as stated; their "
+                "scatter is used"
+            )
+            part = [(k, n, m, s * math.sqrt(ratio), c) for k, n, m, s, c in part]
+        rows += part
+        drifts.append(drift_of(name, repeats, observables=len(readings)))
+    if dropped:
+        notes.append(f"{dropped} single values lie far off their repeats and were left out")
+    value = np.array([r[2] for r in rows])
+    names = tuple(r[1] for r in rows)
+    of_value = np.array([_FLOOR if n in LOGARITHMIC else _FLOOR * _size(n, rows) for n in names])
+    one_reading = np.array([r[3] * math.sqrt(r[4]) for r in rows])
+    floor = np.minimum(of_value, _FLOOR_OF_NOISE * one_reading)
+    cells = Cells(
+        np.array([r[0] for r in rows], dtype=np.intp), names, value,
+        np.hypot(np.array([r[3] for r in rows]), floor),
+        np.array([r[4] for r in rows], dtype=np.intp),
+    )  # fmt: skip
+    return cells, tuple(d for d in drifts if d is not None)
+
+
+def _size(name: str, rows: Sequence[tuple[int, str, float, float, int]]) -> float:
+    return float(np.sqrt(np.mean([r[2] ** 2 for r in rows if r[1] == name])))
+
+
+def _power(name: str, y: Array, log: bool) -> Array:
+    """D y / d ln v of a fully plastic contact; good enough between repeats."""
+    power = {
+        "restitution": -0.25, "permanent_depth_m": 1.0, "contact_time_s": 0.0, "peak_force_N": 1.0,
+        "rebound_spin_rad_s": 1.0, "friction_impulse_ratio": 0.0, "sliding_length_m": 1.0,
+        "rebound_speed_m_s": 0.75, "tangential_rebound_m_s": 1.0, "peak_depth_m": 1.0,
+        "loading_time_s": 0.0, "normal_impulse_Ns": 1.0, "below_flat_s": 0.1,
+    }[name]  # fmt: skip
+    return np.full(y.shape, power) if log else power * y
+
+
+def _kept(y: Array, s: Array) -> NDArray[np.bool_]:
+    """Repeats (three or more) that lie within 5 standard deviations of their median.
+
+    Where most of four or more do not, the stated noise is too small and says nothing of single
+    ones; of three the middle one stands.
+    """
+    near = np.abs(y - np.median(y)) < 5.0 * s
+    if len(y) < 3 or (len(y) > 3 and 2 * np.sum(near) < len(y)):
+        return np.ones(len(y), dtype=bool)
+    return np.asarray(near)

@@ -1,0 +1,139 @@
+"""Conditions: nominal impacts, each with the trials that repeat it and what struck there before."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ..recordings import RecordingSet
+from ..recordings.noise import bins
+from ..recordings.setup_file import Quantity
+from .mechanisms.base import Surroundings
+
+Ints = NDArray[np.intp]
+
+_SAME_SPEED = 0.05
+SPEED_MEASURED, SPEED_FROM_HEIGHT = 0.003, 0.005
+"""Systematic relative error of a speed of approach, where nothing is stated."""
+
+
+@dataclass(frozen=True, slots=True)
+class Condition:
+    """One nominal impact.
+
+    Parameters
+    ----------
+    striker
+        Name of the striker.
+    speed, angle, tangential, spin
+        Mean motion just before touch [m/s, rad, m/s, rad/s].
+    speed_spread, angle_spread
+        Standard error of the mean speed (fraction) and angle [rad].
+    trials
+        Rows of trials.csv.
+    around
+        What mechanisms may know.
+    after
+        The condition that struck the same place before; -1 on fresh metal.
+    """
+
+    striker: str
+    speed: float
+    angle: float
+    tangential: float
+    spin: float
+    speed_spread: float
+    angle_spread: float
+    trials: tuple[int, ...]
+    around: Surroundings
+    after: int = -1
+
+
+def conditions_of(recordings: RecordingSet, notes: list[str]) -> tuple[Condition, ...]:
+    """Return the conditions of a set, in the order in which they were first tested."""
+    setup, trials, approach = recordings.setup, recordings.trials, recordings.approach
+    numbers, before = _nominal(recordings)
+    target, air = setup.target, setup.environment
+    timed = ~np.isnan(trials.impact_speed_m_s)
+    heights = np.where(timed, np.nan, trials.drop_height_m)
+    highest = np.nanmax(heights) if np.isfinite(heights).any() else 1.0
+    found = []
+    for number in np.unique(numbers):
+        rows = np.flatnonzero(numbers == number)
+        first, n = rows[0], len(rows)
+        name = trials.striker[first]
+        table = setup.strikers[name]
+        v = float(np.mean(approach.normal[rows]))
+        relative = approach.normal_std[rows] / approach.normal[rows]
+        unknown = SPEED_MEASURED if timed[first] else SPEED_FROM_HEIGHT
+        relative = np.where(np.isnan(relative), unknown, relative)
+        lean = np.radians(np.nan_to_num(trials.angle_deg_std[rows], nan=0.0))
+        rough = [q.value for q in (target.Ra_m, table.Ra_m) if q is not None]
+        temperature = trials.temperature_K[first]
+        ambient = _value(air.temperature_K, 293.0)
+        around = Surroundings(
+            thickness=_value(target.thickness_m),
+            support_mass=_value(target.support_mass_kg),
+            support_stiffness=_value(target.support_stiffness_N_m),
+            roughness=math.hypot(*rough) if rough else math.nan,
+            viscosity=_value(air.viscosity_Pa_s),
+            fluid=air.fluid,
+            heat_capacity=_value(target.cp_J_kgK),
+            melting=_value(target.melting_K),
+            temperature=ambient if math.isnan(temperature) else float(temperature),
+            ambient=ambient,
+            layer_thickness=_value(target.layer_thickness_m),
+            from_height=not timed[first],
+            height_share=1.0 if timed[first] else float(heights[first] / highest),
+        )
+        found.append(
+            Condition(
+                name, v, float(np.mean(approach.angle[rows])),
+                float(np.mean(approach.tangential[rows])), float(np.mean(approach.spin[rows])),
+                float(np.sqrt(np.mean(relative**2) / n)), float(np.sqrt(np.mean(lean**2) / n)),
+                tuple(int(r) for r in rows), around, int(before[first]),
+            )
+        )  # fmt: skip
+    again = sum(c.after >= 0 for c in found)
+    if again:
+        notes.append(f"{again} conditions are later blows on one place: they meet its crater")
+    return tuple(found)
+
+
+def _nominal(recordings: RecordingSet) -> tuple[Ints, Ints]:
+    """Number of each trial's nominal condition, and of the one that struck its place before.
+
+    Repeats share one simulation. Their speeds may differ by 5 %: the mean of the repeats is
+    compared with a simulation at their mean speed; what is left of second order is below 0.1 %.
+    """
+    approach, trials = recordings.approach, recordings.trials
+    rows = list(
+        zip(
+            trials.striker,
+            bins(np.asarray(trials.angle_deg), width=1.0),
+            bins(np.log(approach.normal), width=_SAME_SPEED),
+            bins(approach.tangential / approach.normal, width=_SAME_SPEED),
+            bins(approach.spin / approach.normal, width=_SAME_SPEED),
+            bins(trials.temperature_K, width=1.0),
+            strict=True,
+        )
+    )
+    numbers = np.zeros(len(rows), dtype=np.intp)
+    before = np.full(len(rows), -1, dtype=np.intp)
+    places: dict[object, int] = {}
+    latest: dict[str, int] = {}
+    # in the order of testing, so that a place's history is known when it is struck again
+    for i in np.argsort(np.nan_to_num(trials.order), kind="stable"):
+        spot = trials.spot[i]
+        before[i] = latest.get(spot, -1) if spot else -1
+        numbers[i] = places.setdefault((rows[i], int(before[i])), len(places))
+        if spot:
+            latest[spot] = int(numbers[i])
+    return numbers, before
+
+
+def _value(quantity: Quantity | None, default: float = math.nan) -> float:
+    return default if quantity is None else quantity.value

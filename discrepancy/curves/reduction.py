@@ -1,0 +1,140 @@
+"""Numbers of one curve: what a trace or a profile says by itself."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Mapping
+
+import numpy as np
+from numpy.typing import NDArray
+
+Array = NDArray[np.float64]
+Numbers = dict[str, float]
+
+FROM_CURVES = ("peak_depth_m", "below_flat_s", "normal_impulse_Ns", "loading_time_s")
+"""Numbers that only curves give; simulated by the same names."""
+
+FEWEST = 5
+"""Samples within the contact that a number of the contact needs."""
+
+
+def from_trace(trace: Mapping[str, Array]) -> Numbers:
+    """Return what a trace says, by the observables' names; empty if it says nothing."""
+    t = trace["time_s"]
+    found: Numbers = {}
+    if "tip_height_m" in trace:
+        found |= _from_height(t, trace["tip_height_m"])
+    if "force_N" in trace:
+        found |= _from_force(t, trace["force_N"])
+    return found
+
+
+def _from_height(t: Array, h: Array) -> Numbers:
+    lowest = int(np.argmin(h))
+    depth = -float(h[lowest])
+    if depth <= 0.0:
+        return {}
+    free = h > 0.05 * depth
+    inside = np.flatnonzero(h < 0.0)
+    before = np.flatnonzero(free & (np.arange(len(t)) < lowest))
+    after = np.flatnonzero(free & (np.arange(len(t)) > lowest))
+    found: Numbers = {}
+    if len(before) >= FEWEST and len(after) >= FEWEST:
+        down, up = np.polyfit(t[before], h[before], 1), np.polyfit(t[after], h[after], 1)
+        if down[0] < 0.0:
+            found["restitution"] = float(-up[0] / down[0])
+            if len(inside) >= FEWEST:
+                found["below_flat_s"] = float(-up[1] / up[0] + down[1] / down[0])
+    if len(inside) >= FEWEST:
+        near = inside[h[inside] < -0.6 * depth]
+        if len(near) >= FEWEST:
+            found["peak_depth_m"] = -_extremum(t[near], h[near])[1]
+    return found
+
+
+def _from_force(t: Array, f: Array) -> Numbers:
+    top = int(np.argmax(f))
+    level = 0.1 * f[top]
+    first, last = top, top
+    while first > 0 and f[first - 1] > level:
+        first -= 1
+    while last < len(f) - 1 and f[last + 1] > level:
+        last += 1
+    if last - first + 1 < FEWEST or first == 0 or last == len(f) - 1:
+        return {}
+    near = np.flatnonzero(f > 0.85 * f[top])
+    near = near[(near >= first) & (near <= last)]
+    at, peak = _extremum(t[near], f[near]) if len(near) >= FEWEST else (t[top], float(f[top]))
+    # yield makes the rise straight soon after the touch; the end is that of an elastic recovery
+    start = foot(t[: top + 1], f[: top + 1], peak, power=1.0)
+    end = foot(t[top:][::-1], f[top:][::-1], peak, power=2.0 / 3.0)
+    if not start < at < end:
+        return {}
+    within = (t >= start) & (t <= end)
+    return {
+        "peak_force_N": peak,
+        "contact_time_s": end - start,
+        "loading_time_s": at - start,
+        "normal_impulse_Ns": float(np.trapezoid(np.append(f[within], 0.0),
+                                                np.append(t[within], end))),
+    }  # fmt: skip
+
+
+def foot(t: Array, f: Array, peak: float, *, power: float) -> float:
+    """Time at which force^power, drawn through its tenth and its third of the peak, vanishes."""
+    low, high = 0.1 * peak, 0.33 * peak
+    above = np.flatnonzero(f > high)
+    if not above.size:
+        return math.nan
+    k = int(above[0])
+    part = slice(max(k - 1, 0), k + 1)
+    t_high = float(np.interp(high, f[part], t[part]))
+    below = np.flatnonzero(f[:k] <= low)
+    if not below.size:
+        return math.nan
+    j = int(below[-1])
+    t_low = float(np.interp(low, f[j : j + 2], t[j : j + 2]))
+    a, b = 0.1**power, 0.33**power
+    return float(t_low - (t_high - t_low) * a / (b - a))
+
+
+def _extremum(t: Array, y: Array) -> tuple[float, float]:
+    """Place and value of the extremum of the parabola through the samples."""
+    middle, width = float(t.mean()), float(np.ptp(t)) or 1.0
+    a, b, c = np.polyfit((t - middle) / width, y, 2)
+    if a == 0.0:
+        return middle, float(c)
+    x = float(np.clip(-b / (2.0 * a), -0.5, 0.5))
+    return middle + x * width, float(a * x * x + b * x + c)
+
+
+def from_profile(profile: Mapping[str, Array]) -> Numbers:
+    """Return the depth of a crater below the flat around it."""
+    x, z = profile["x_m"], profile["z_m"]
+    line = _ground(x, z)
+    if line is None:
+        return {}
+    level = z - np.polyval(line, x)
+    low = int(np.argmin(level))
+    near = np.flatnonzero(level < 0.7 * level[low])
+    if len(near) < FEWEST or level[low] >= 0.0:
+        return {}
+    return {"permanent_depth_m": -_extremum(x[near], level[near])[1]}
+
+
+def _ground(x: Array, z: Array) -> Array | None:
+    """Line through the undisturbed surface: the outer fifths of the profile."""
+    span = float(np.ptp(x))
+    outer = (x < x.min() + 0.2 * span) | (x > x.max() - 0.2 * span)
+    return np.asarray(np.polyfit(x[outer], z[outer], 1)) if outer.sum() >= 4 else None
+
+
+def roughness(profile: Mapping[str, Array]) -> float:
+    """Return the scatter of a profile's undisturbed surface about its line."""
+    x, z = profile["x_m"], profile["z_m"]
+    line = _ground(x, z)
+    if line is None:
+        return 0.0
+    span = float(np.ptp(x))
+    outer = (x < x.min() + 0.2 * span) | (x > x.max() - 0.2 * span)
+    return float(np.std((z - np.polyval(line, x))[outer]))

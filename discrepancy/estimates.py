@@ -1,0 +1,158 @@
+"""Numbers of a verdict: parameters, pulls, limits, scores, notes."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Mapping
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ..recordings import RecordingSet, Severity, audit
+from .calibration import Calibration
+from .forward import Point, Simulator
+from .heldout import HeldOut
+from .inference.fit import Fit
+from .inference.grid import interval
+from .problem import Problem
+from .rank import Ranking
+
+Array = NDArray[np.float64]
+
+_PULLED = 2.0
+
+
+def audit_rows(recordings: RecordingSet) -> tuple[dict[str, Any], ...]:
+    """Contradictions and cautions, the contradictions first."""
+    found = audit(recordings)
+    rows = (*found.of(Severity.CONTRADICTION), *found.of(Severity.CAUTION))
+    return tuple(
+        {
+            "check": f.check, "value": _finite(f.value), "expected": _finite(f.expected),
+            "message": f"{f.severity.value}: {f.check}: {f.message}",
+        }
+        for f in rows
+    )  # fmt: skip
+
+
+def _finite(x: float) -> float | None:
+    return float(x) if math.isfinite(x) else None
+
+
+def scores_of(
+    ranking: Ranking,
+    p_fits: Mapping[str, float],
+    scores: dict[str, HeldOut],
+    confirmed: dict[str, float],
+) -> dict[str, dict[str, float]]:
+    """Return evidence over the baseline, held-out miss and p of fit of every explanation."""
+    found = {}
+    for f in (ranking.base, *ranking.singles, *ranking.pairs):
+        if f.name in scores:
+            found[f.name] = {
+                "evidence": confirmed.get(f.name, f.log_evidence - ranking.base.log_evidence),
+                "held_out": scores[f.name].score,
+                "p_value": p_fits[f.name],
+            }
+    return found
+
+
+def parameters_of(
+    simulator: Simulator, fitted: Fit, level: float = 0.90
+) -> dict[str, dict[str, Any]]:
+    """Return value and interval of every parameter, the nuisances included.
+
+    A mechanism's intervals hold what the textbook's form may be off in the size of its effect: the
+    likelihood leaves that to the parameters.
+    """
+    problem = simulator.problem
+    found: dict[str, dict[str, Any]] = {}
+    if fitted.mechanisms:
+        places = fitted.grid.places()
+        off = 1.645 * _moved_by_form(simulator, fitted)
+        for axis, p in enumerate(fitted.grid.parameters):
+            middle, low, high = interval(places[:, axis], fitted.weight, level)
+            low = max(middle - math.hypot(middle - low, off[axis]), 0.0)
+            high = min(middle + math.hypot(high - middle, off[axis]), 1.0)
+            found[p.name] = {
+                "value": float(p.value(middle)), "low": float(p.value(low)),
+                "high": float(p.value(high)), "level": level, "unit": p.unit,
+            }  # fmt: skip
+    spread = 1.645 * np.sqrt(np.maximum(np.diag(fitted.covariance), 0.0))
+    for i, n in enumerate(problem.nuisances):
+        z = float(fitted.z[i])
+        found[n.name] = {
+            "value": n.at(z), "low": n.at(z - spread[i]), "high": n.at(z + spread[i]),
+            "level": level, "unit": n.unit,
+        }  # fmt: skip
+    return found
+
+
+def _moved_by_form(simulator: Simulator, fitted: Fit) -> Array:
+    """By how much of their ranges the parameters would move, (axes,), if the form's size is off.
+
+    To first order the posterior mean follows a change d of the data by its covariance with
+    d^T Sigma^-1 times the prediction; d is the form's share of the effect.
+    """
+    without = simulator.predict((), [Point(fitted.z)])[0]
+    share = max(m.form for m in fitted.mechanisms)
+    change = fitted.linear.white(share * (fitted.prediction - without))
+    along = -fitted.linear.white(fitted.residuals) @ change
+    places = fitted.grid.places()
+    away = places - fitted.weight @ places
+    return np.abs((fitted.weight * (along - fitted.weight @ along)) @ away)
+
+
+def pulls_of(problem: Problem, fitted: Fit) -> dict[str, float]:
+    """Shift of every stated number over what chance would give it.
+
+    The posterior mean in prior standard deviations, over sqrt(1 - its posterior variance): unit
+    normal when the sheet is right, however much of a shift other unknowns could take up.
+    """
+    learnt = np.sqrt(np.maximum(1.0 - np.diag(fitted.covariance), 0.01))
+    return {n.name: float(fitted.z[i] / learnt[i]) for i, n in enumerate(problem.nuisances)}
+
+
+def notes_of(problem: Problem, best: Fit) -> tuple[str, ...]:
+    """Return what a reader must know: doubted numbers, the law's error, what was assumed."""
+    notes = []
+    pulls = pulls_of(problem, best)
+    for i, n in enumerate(problem.nuisances):
+        z, pull = float(best.z[i]), pulls[n.name]
+        if abs(pull) > _PULLED:
+            notes.append(
+                f"{n.name} wants to be {n.at(z):.4g} {n.unit}, {'above' if z > 0 else 'below'} the "
+                f"stated {n.value:.4g}: a pull of {abs(pull):.1f} standard deviations"
+            )
+    sizes = ", ".join(f"{k} {100 * v:.2g} %" for k, v in problem.error.sizes.items())
+    notes.append(f"the contact law '{problem.law.name}' is taken to be uncertain by: {sizes}")
+    return (*notes, *problem.notes)
+
+
+def limits_of(ranking: Ranking, calibration: Calibration) -> dict[str, float]:
+    """Smallest value of each first parameter whose effect would have been seen."""
+    base = ranking.base
+    found = {}
+    for s in ranking.screened:
+        seen_at = calibration.single + calibration.offset.get(s.mechanism.name, 0.0)
+        needed = math.sqrt(2.0 * (max(seen_at, 1.0) + 3.0))
+        p = s.grid.parameters[0]
+        size = np.linalg.norm(base.linear.white(s.effect), axis=1)
+        n = len(s.grid.fine[0])
+        # over the other parameters the typical size
+        along = np.median(size.reshape(n, -1), axis=1)
+        values = p.value((np.flatnonzero(along > needed) + 0.5) / n)
+        if values.size:
+            # nearest to doing nothing: the stiffest where that is to be rigid
+            nearest = -values if math.isinf(p.neutral) else np.abs(values - p.neutral)
+            found[s.mechanism.name] = float(values[np.argmin(nearest)])
+    return found
+
+
+def improvement_of(base: HeldOut, best: HeldOut) -> dict[str, float]:
+    """Return how well left-out conditions are predicted, before and after."""
+    return {
+        "held_out_baseline": base.score, "held_out_extended": best.score,
+        "raw_baseline": base.raw, "raw_extended": best.raw, "trials": base.trials,
+    }  # fmt: skip

@@ -1,0 +1,121 @@
+"""What the cells do about one point: their derivatives, their noise, the error of a form."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ..forward import Point, Simulator
+from ..mechanisms.base import Mechanism
+from ..problem import Problem
+from .linear import Linear
+
+Array = NDArray[np.float64]
+
+STEP = 0.3
+_SPEED_STEP, _ANGLE_STEP = 0.01, 0.01
+_JUMPS = (0.02, 0.05, 0.1)  # of the parameter: how near a jump makes a cell unsure
+
+
+def measured_covariance(problem: Problem, by_speed: Array, by_angle: Array) -> Array:
+    """Noise of the cells, with what the scatter of speed and angle adds, shape (m, m).
+
+    Parameters
+    ----------
+    problem
+        Cells and conditions.
+    by_speed, by_angle
+        (m,) derivative of each cell by its condition's relative speed and angle.
+    """
+    k = problem.cells.condition
+    same = k[:, None] == k[None, :]
+    speed = np.array([c.speed_spread for c in problem.conditions])[k]
+    angle = np.array([c.angle_spread for c in problem.conditions])[k]
+    total = np.diag(problem.cells.std**2)
+    for derivative, spread in ((by_speed, speed), (by_angle, angle)):
+        column = derivative * spread
+        total = total + np.where(same, column[:, None] * column[None, :], 0.0)
+    return np.asarray(total)
+
+
+def form_error(problem: Problem, effect: Array, share: float) -> Array:
+    """Return what the textbook form of a mechanism may be off, as components (m, c).
+
+    The same physics has several published forms, which differ by some share of their effect even
+    when they are fitted to each other. Components: shares of the observables against each other,
+    and slope and curvature over the speed. The common size of the effect is left to the
+    mechanism's parameters.
+
+    Parameters
+    ----------
+    problem
+        Cells and conditions.
+    effect
+        (m,) change of the cells by the mechanism.
+    share
+        Standard deviation of each component, as a share of the effect.
+    """
+    cells = problem.cells
+    names = list(dict.fromkeys(cells.observable))
+    here = np.array([[o == n for n in names] for o in cells.observable], dtype=float)
+    speed = np.log([c.speed for c in problem.conditions])[cells.condition]
+    columns = [here[:, k] - here[:, k + 1 :].mean(axis=1) * (k + 1 < len(names))
+               for k in range(len(names) - 1)]  # fmt: skip
+    if np.ptp(speed) > 0.0:
+        x = (speed - speed.mean()) / np.std(speed)
+        columns += [x, (x * x - 1.0) / math.sqrt(2.0)]
+    if not columns:
+        return np.zeros((len(effect), 0))
+    return np.asarray(share * effect[:, None] * np.stack(columns, axis=1))
+
+
+def derivatives(
+    simulator: Simulator, mechanisms: Sequence[Mechanism], values: dict[str, float], z: Array
+) -> tuple[Array, Linear]:
+    """Return prediction (m,) at z, and the algebra there."""
+    problem = simulator.problem
+    leaning = any(c.angle_spread > 0.0 for c in problem.conditions)
+    points = [Point(z, values), Point(z, values, faster=_SPEED_STEP)]
+    if leaning:
+        points.append(Point(z, values, steeper=-_ANGLE_STEP))
+    first = len(points)
+    # away from the bounds of the priors the sign of the step does not matter
+    sign = np.where(z > 0.0, -1.0, 1.0)
+    for i in range(len(z)):
+        moved = z.copy()
+        moved[i] += STEP * sign[i]
+        points.append(Point(moved, values))
+    beside = len(points)
+    points += [Point(z, v) for v in _beside(mechanisms, values)]
+    found = simulator.predict(mechanisms, points)
+    found, around = found[:beside], found[beside:]
+    here = found[0]
+    by_speed = (found[1] - here) / _SPEED_STEP
+    by_angle = (found[2] - here) / -_ANGLE_STEP if leaning else np.zeros_like(here)
+    J = ((found[first:] - here) / (STEP * sign[:, None])).T
+    noise = measured_covariance(problem, by_speed, by_angle)
+    if not mechanisms:
+        return here, Linear(noise, J)
+    effect = here - simulator.predict((), [Point(z)])[0]
+    form = form_error(problem, effect, max(m.form for m in mechanisms))
+    wider = max(m.law_error for m in mechanisms)
+    if wider > 1.0:
+        form = np.hstack([form, math.sqrt(wider**2 - 1.0) * J[:, problem.n_nuisances :]])
+    if len(around):
+        # by how much a cell departs from a smooth change nearby: half a jump, if there is one
+        below, above = around[0::2], around[1::2]
+        jump = 0.5 * np.max(np.abs(below + above - 2.0 * here), axis=0)
+        form = np.hstack([form, np.diag(jump)])
+    return here, Linear(noise, J, form)
+
+
+def _beside(mechanisms: Sequence[Mechanism], values: dict[str, float]) -> list[dict[str, float]]:
+    """Values a little below and above those of mechanisms whose outcome may jump."""
+    names = [m.parameters[0].name for m in mechanisms if m.jumps]
+    if not names:
+        return []
+    sides = [side for jump in _JUMPS for side in (-jump, jump)]
+    return [values | {n: values[n] * (1.0 + side) for n in names} for side in sides]

@@ -1,0 +1,106 @@
+"""Nuisances: stated or assumed numbers that are not exactly known, with their priors."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+
+from ..recordings import RecordingSet
+from ..recordings.setup_file import Quantity, Target
+from ..recordings.setup_file import Striker as StrikerTable
+from .conditions import SPEED_FROM_HEIGHT, SPEED_MEASURED, Condition
+
+
+@dataclass(frozen=True, slots=True)
+class Nuisance:
+    """A stated number that is not exactly known.
+
+    Parameters
+    ----------
+    name, unit
+        Key of set.toml, with its table.
+    value
+        As stated (or assumed where `stated` is false).
+    spread
+        Standard deviation: of the logarithm if `log`, else of the number.
+    log
+        Whether the logarithm is normal.
+    stated
+        Whether the set gives it.
+    """
+
+    name: str
+    unit: str
+    value: float
+    spread: float
+    log: bool = True
+    stated: bool = True
+
+    def at(self, z: float) -> float:
+        """Return the value that lies z standard deviations off."""
+        return self.value * math.exp(self.spread * z) if self.log else self.value + self.spread * z
+
+
+def nuisances_of(
+    recordings: RecordingSet, conditions: Sequence[Condition], notes: list[str]
+) -> tuple[Nuisance, ...]:
+    """Return the uncertain numbers of a set; `notes` receives what had to be assumed."""
+    setup = recordings.setup
+    found: list[Nuisance] = []
+    found += _of_body(setup.target, "target", setup.target.law == "elastic-plastic", notes)
+    used = sorted({c.striker for c in conditions})
+    for name in used:
+        table = setup.strikers[name]
+        key = f"strikers.{name}"
+        found += _of_body(table, key, False, notes)
+        found += _stated(table.tip_radius_m, f"{key}.tip_radius_m", "m")
+        found += _stated(table.mass_kg, f"{key}.mass_kg", "kg")
+    measured = not any(c.around.from_height for c in conditions)
+    spread = SPEED_MEASURED if measured else SPEED_FROM_HEIGHT
+    found.append(Nuisance("speed.scale", "-", 1.0, spread, stated=False))
+    leaning = [c for c in conditions if c.angle < math.pi / 2.0 - 1e-6]
+    oblique = leaning or [c for c in conditions if c.tangential != 0.0 or c.spin != 0.0]
+    if leaning:
+        found.append(
+            Nuisance("angle.offset", "rad", 0.0, math.radians(0.5), log=False, stated=False)
+        )
+    if oblique:
+        mu = setup.friction.coefficient
+        if mu is None:
+            notes.append("friction.coefficient is not stated: 0.15 within a factor of 2 is assumed")
+            found.append(Nuisance("friction.coefficient", "-", 0.15, 0.7, stated=False))
+        else:
+            spread = max(mu.std / mu.value if mu.value else 0.0, 0.03)
+            found.append(Nuisance("friction.coefficient", "-", mu.value, spread))
+    if setup.target.law == "measured-restitution":
+        e = recordings.values("restitution") if "restitution" in recordings.observed else None
+        start = 0.8 if e is None else float(np.nanmedian(e))
+        found.append(Nuisance("target.restitution", "-", start, 0.5, stated=False))
+    return tuple(found)
+
+
+def _of_body(
+    table: Target | StrikerTable, key: str, yields: bool, notes: list[str]
+) -> list[Nuisance]:
+    found = _stated(table.E_Pa, f"{key}.E_Pa", "Pa")
+    if table.E_Pa is None:
+        notes.append(f"{key}.E_Pa is not stated: 200 GPa within 40 % is assumed")
+        found.append(Nuisance(f"{key}.E_Pa", "Pa", 2e11, 0.4, stated=False))
+    found += _stated(table.Sy_Pa, f"{key}.Sy_Pa", "Pa")
+    if table.Sy_Pa is None and table.hardness_Pa is not None:
+        Sy = table.hardness_Pa.value / 2.8
+        notes.append(f"{key}.Sy_Pa is taken from the hardness: {Sy / 1e6:.0f} MPa within 15 %")
+        found.append(Nuisance(f"{key}.Sy_Pa", "Pa", Sy, 0.15, stated=False))
+    elif table.Sy_Pa is None and yields:
+        notes.append(f"{key}.Sy_Pa is not stated: 350 MPa within a factor of 2 is assumed")
+        found.append(Nuisance(f"{key}.Sy_Pa", "Pa", 3.5e8, 0.7, stated=False))
+    return found
+
+
+def _stated(quantity: Quantity | None, name: str, unit: str) -> list[Nuisance]:
+    if quantity is None or not quantity.std > 0.0:
+        return []
+    return [Nuisance(name, unit, quantity.value, quantity.std / abs(quantity.value))]
