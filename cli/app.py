@@ -11,10 +11,11 @@ import sys
 import typer
 
 from ..core.errors import EXIT_INPUT_ERROR, InputError
-from . import campaign, laws, proof, recordings, reduce
+from . import campaign, laws, proof, recordings, reduce, studies
 from .case import case
 from .diagnose import diagnose
 from .doctor import doctor
+from .examples import examples
 from .figures import figures
 from .fit import fit
 from .impact import impact
@@ -38,15 +39,16 @@ app.add_typer(campaign.app, name="campaign")
 app.add_typer(laws.app, name="laws")
 app.add_typer(recordings.app, name="recordings")
 app.add_typer(reduce.app, name="reduce")
-app.add_typer(proof.app, name="proof")
 app.command()(case)
 app.command()(fit)
 app.command()(impact)
 app.command()(inverse)
 app.command()(diagnose)
-app.command()(figures)
-app.command()(verify)
+app.command()(examples)
 app.command()(doctor)
+studies.add(app, figures, name="figures")
+studies.add(app, verify, name="verify")
+studies.add(app, proof.app, name="proof")
 
 
 @app.callback()

@@ -13,7 +13,7 @@ from typing import Annotated, Any
 import typer
 
 from ..core.errors import EXIT_NOT_CONVERGED, InputError
-from . import campaign_data
+from . import campaign_data, studies
 from .campaign_data import DEFAULT_DESIGN, FILE, PUBLISHED, DesignName, Out
 from .campaign_progress import Progress, duration, judged, remarks, tell
 
@@ -136,10 +136,10 @@ for command in (
     campaign_data.refine,
     campaign_data.export,
     campaign_data.publish,
-    campaign_data.gallery,
-    campaign_data.reproduction,
 ):
     app.command()(command)
+studies.add(app, campaign_data.gallery, name="campaign gallery")
+studies.add(app, campaign_data.reproduction, name="campaign reproduction")
 
 
 def _forecast(todo: list[Any], store: Any, workers: int) -> tuple[Any, float]:

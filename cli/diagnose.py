@@ -9,11 +9,13 @@ from typing import Annotated
 import typer
 
 from ..core.errors import InputError
+from . import studies
 
 
 def diagnose(
     folder: Annotated[
-        Path | None, typer.Argument(help="Recording set (a folder with set.toml).")
+        Path | None,
+        typer.Argument(help="Recording set: a folder with set.toml, or a shipped name."),
     ] = None,
     out: Annotated[Path, typer.Option(help="Folder for verdict.json and report.html.")] = Path(
         "build/diagnose"
@@ -33,20 +35,23 @@ def diagnose(
     finding.
     """
     if chapter5:
+        studies.needed_for("`dentscope diagnose --chapter5`")
         _chapter5(out)
         return
+    from ..recordings.shipped import set_folder, shipped_sets
+
     if folder is None:
         raise InputError(
             "no recording set",
             source="command line",
             key="FOLDER",
-            allowed="a folder, or --chapter5",
+            allowed=f"a folder, --chapter5, or a shipped set: {', '.join(shipped_sets())}",
         )
     from ..discrepancy import diagnose as run
     from ..discrepancy.report import lines, write_report
     from ..recordings import read
 
-    recordings = read(folder)
+    recordings = read(set_folder(folder))
 
     def show(step: str) -> None:
         if not quiet:

@@ -6,8 +6,11 @@ import os
 import subprocess
 import sys
 from dataclasses import dataclass
+from pathlib import Path
 
 import typer
+
+from . import studies
 
 _SYSTEM_PACKAGES = (
     "libgl1 libglu1-mesa libxrender1 libxcursor1 libxft2 libxinerama1 libgomp1 libegl1"
@@ -64,6 +67,8 @@ def examine() -> tuple[Finding, ...]:
     return (
         Finding("versions", shown),
         Finding("processors", str(os.cpu_count() or 1)),
+        Finding("docs, examples, data", str(Path(__file__).resolve().parents[1])),
+        Finding("workshop", "here" if studies.present() else studies.WHERE),
         _gmsh(),
         Finding(
             "off-screen pictures",

@@ -9,6 +9,8 @@ from typing import TYPE_CHECKING, Annotated, Any
 import typer
 
 from ..core.errors import EXIT_NOT_CONVERGED, InputError
+from . import studies
+from .campaign_data import PUBLISHED
 
 if TYPE_CHECKING:
     from rich.console import Console
@@ -16,7 +18,6 @@ if TYPE_CHECKING:
     from ..fitting import Errors, Fit
     from ..fitting.select import Choice
 
-_PUBLISHED = Path("data/campaign")
 _OWN = Path("build/campaign/campaign.h5")
 _ROOT = Path(__file__).resolve().parents[1]
 _PAGE = _ROOT / "docs" / "closed-form.md"
@@ -98,12 +99,15 @@ def fit(
     thesis = ""
     if compare:
         from ..fitting.select import compare_forms
-        from ..studies.thesis.refitted import refit_all, thesis_section
 
-        console.print("fitting simpler forms and the thesis's own ...")
+        own = " and the thesis's own" if studies.present() else ""
+        console.print(f"fitting simpler forms{own} ...")
         start = {k: v["value"] for k, v in content["coefficients"].items()}
         choices = compare_forms(table, turns, start=start)
-        thesis = thesis_section(refit_all(table, turns))
+        if studies.present():
+            from ..studies.thesis.refitted import refit_all, thesis_section
+
+            thesis = thesis_section(refit_all(table, turns))
     page = write_report(
         result, content, table, turns, out, validation=validation, choices=choices, thesis=thesis
     )
@@ -128,7 +132,7 @@ def _show_in_docs(out: Path) -> None:
 
 def _files(campaigns: Sequence[Path] | None) -> list[Path]:
     if not campaigns:
-        return sorted(_PUBLISHED.glob("*.h5")) or [_OWN]
+        return sorted(PUBLISHED.glob("*.h5")) or [_OWN]
     files: list[Path] = []
     for path in campaigns:
         found = sorted(path.glob("*.h5")) if path.is_dir() else [path]

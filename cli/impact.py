@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING, Annotated, Any
 import typer
 
 from ..core.errors import EXIT_NOT_CONVERGED
+from . import studies
 
 if TYPE_CHECKING:
     from ..impact.result import Impact
@@ -35,6 +36,7 @@ def impact(
     set's set.toml and [impact]): all observables of each law, histories, CSV and HDF5.
     """
     if setup is None:
+        studies.needed_for("`dentscope impact` without a set-up file")
         _chapter3(law or [], out)
     else:
         _from_file(setup, law or [], out)

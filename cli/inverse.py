@@ -8,6 +8,8 @@ from typing import Annotated, Any
 
 import typer
 
+from . import studies
+
 
 def inverse(
     file: Annotated[
@@ -31,6 +33,7 @@ def inverse(
 
     console = Console()
     if file is None:
+        studies.needed_for("`dentscope inverse` without a file")
         from ..studies.thesis.chapter5 import thesis_rows
 
         rod, rows = thesis_rows()

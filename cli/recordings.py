@@ -13,15 +13,19 @@ app = typer.Typer(
     no_args_is_help=True,
 )
 
-SetFolder = Annotated[Path, typer.Argument(metavar="SET", help="Folder of the recording set.")]
+NewFolder = Annotated[Path, typer.Argument(metavar="SET", help="Folder of the recording set.")]
+SetFolder = Annotated[
+    Path, typer.Argument(metavar="SET", help="Folder of the recording set, or a shipped name.")
+]
 
 
 @app.command()
 def check(folder: SetFolder) -> None:
     """List every mistake of a set, or say what it holds."""
     from ..recordings import read
+    from ..recordings.shipped import set_folder
 
-    found = read(folder)
+    found = read(set_folder(folder))
     strikers = ", ".join(found.setup.strikers)
     typer.echo(f"{folder}: sound; {len(found.trials)} trials of {strikers}")
     for name in found.observed:
@@ -44,8 +48,9 @@ def audit_command(
 ) -> None:
     """Compare a set's numbers with each other: mass, speed, momentum, energy, forces, durations."""
     from ..recordings import Severity, audit, read
+    from ..recordings.shipped import set_folder
 
-    found = audit(read(folder))
+    found = audit(read(set_folder(folder)))
     shown = (Severity.CONTRADICTION, Severity.CAUTION)
     for finding in found.findings:
         if everything or finding.severity in shown:
@@ -56,7 +61,7 @@ def audit_command(
 
 @app.command()
 def new(
-    folder: SetFolder,
+    folder: NewFolder,
     sphere: Annotated[
         bool, typer.Option("--sphere", help="The striker is a sphere, not a rod.")
     ] = False,
@@ -70,14 +75,16 @@ def new(
 
 @app.command("list")
 def list_sets(
-    folder: Annotated[Path, typer.Argument(help="Folder that holds sets.")] = Path(
-        "data/recordings"
-    ),
+    folder: Annotated[
+        Path | None, typer.Argument(help="Folder that holds sets; the shipped ones without it.")
+    ] = None,
 ) -> None:
     """List the sets in a folder, a line each."""
     from ..core.errors import InputError
     from ..recordings import read
+    from ..recordings.shipped import FOLDER
 
+    folder = folder or FOLDER
     if not folder.is_dir():
         raise InputError("no such folder", source=str(folder), allowed="a folder with sets")
     for path in sorted(folder.glob("*/set.toml")):
@@ -91,15 +98,16 @@ def fetch(
     names: Annotated[
         list[str] | None, typer.Argument(metavar="NAME...", help="Which; all without a name.")
     ] = None,
-    catalogue: Annotated[Path, typer.Option(help="List of addresses and checksums.")] = Path(
-        "data/recordings/fetch.toml"
-    ),
+    catalogue: Annotated[
+        Path | None, typer.Option(help="List of addresses and checksums, instead of the shipped.")
+    ] = None,
     out: Annotated[Path, typer.Option(help="Folder to fetch into.")] = Path("build/recordings"),
 ) -> None:
     """Fetch raw files that may not be shipped, by pinned address and checksum."""
     from ..recordings.fetch import fetch_sources, read_catalogue
+    from ..recordings.shipped import FOLDER
 
-    for got in fetch_sources(read_catalogue(catalogue), out, names or []):
+    for got in fetch_sources(read_catalogue(catalogue or FOLDER / "fetch.toml"), out, names or []):
         typer.echo(f"{got.name}: {len(got.files)} files in {got.folder}")
         if got.recipe:
             typer.echo(f"  next: {got.recipe}")

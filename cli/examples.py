@@ -1,0 +1,29 @@
+"""`dentscope examples`: the example files that are installed with the package."""
+
+from __future__ import annotations
+
+import shutil
+from pathlib import Path
+from typing import Annotated
+
+import typer
+
+FOLDER = Path(__file__).resolve().parents[1] / "examples"
+"""Where they lie."""
+
+
+def examples(
+    to: Annotated[Path | None, typer.Option(help="Folder to copy them into.")] = None,
+) -> None:
+    """List the examples, or copy them to start from."""
+    for path in sorted(p for p in FOLDER.iterdir() if p.is_file()):
+        if to is None:
+            typer.echo(f"{path.name:28} {_about(path)}")
+        else:
+            to.mkdir(parents=True, exist_ok=True)
+            typer.echo(f"written: {shutil.copyfile(path, to / path.name)}")
+
+
+def _about(path: Path) -> str:
+    """First line of what the file says of itself."""
+    return path.read_text(encoding="utf-8").splitlines()[0].strip('#" ')

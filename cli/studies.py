@@ -1,0 +1,64 @@
+"""The workshop, `studies/`: it lies in a checkout and is not installed with the package.
+
+The one place that knows whether it is there. A command that needs it appears in a checkout;
+elsewhere it is hidden, and answers in one line where to get the workshop, with exit code 2.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from importlib.util import find_spec
+from typing import Any
+
+import typer
+
+from ..core.errors import InputError
+
+WHERE = "not installed: get a checkout or the source archive of dentscope, `make install` there"
+"""Where the workshop is to be had."""
+
+_ANYTHING = {"allow_extra_args": True, "ignore_unknown_options": True}
+
+
+def present() -> bool:
+    """Whether this installation is a checkout that holds the workshop."""
+    return find_spec("..studies", package=__package__) is not None
+
+
+def needed_for(what: str) -> None:
+    """Pass where the workshop is present.
+
+    Parameters
+    ----------
+    what
+        The command, as the user wrote it.
+
+    Raises
+    ------
+    InputError
+        Elsewhere: says where to get it.
+    """
+    if not present():
+        raise InputError(f"{what} belongs to the workshop (studies/), which is {WHERE}")
+
+
+def add(group: typer.Typer, part: typer.Typer | Callable[..., Any], *, name: str) -> None:
+    """Add a command, or a group of commands, of the workshop to a group of the command line.
+
+    Parameters
+    ----------
+    group
+        What it is added to.
+    part
+        The command's function, or the group's own.
+    name
+        What the user types after `dentscope`, for example "campaign gallery".
+    """
+    last = name.rsplit(" ", 1)[-1]
+    if not present():
+        hidden = group.command(last, hidden=True, add_help_option=False, context_settings=_ANYTHING)
+        hidden(lambda: needed_for(f"`dentscope {name}`"))
+    elif isinstance(part, typer.Typer):
+        group.add_typer(part, name=last)
+    else:
+        group.command(last)(part)

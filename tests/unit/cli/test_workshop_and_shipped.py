@@ -1,0 +1,80 @@
+"""Commands of the workshop where it is absent; recording sets and examples that are installed."""
+
+import pytest
+import typer
+from dentscope.cli import run, studies
+from dentscope.cli.proof import app as proof
+from dentscope.cli.verify import verify
+from dentscope.core import InputError
+from dentscope.recordings.shipped import set_folder, shipped_sets
+from typer.testing import CliRunner
+
+
+def group(**parts):
+    app = typer.Typer()
+    app.command("beside")(lambda: None)
+    for name, part in parts.items():
+        studies.add(app, part, name=name)
+    return app
+
+
+def test_workshop_commands_appear_in_a_checkout():
+    help_ = CliRunner().invoke(group(verify=verify, proof=proof), ["--help"]).output
+    assert "verify" in help_
+    assert "proof" in help_
+
+
+@pytest.mark.parametrize(
+    "line", [["verify", "--only", "x"], ["verify", "--help"], ["proof", "run"]]
+)
+def test_workshop_commands_elsewhere_are_hidden_and_say_where_to_get_them(monkeypatch, line):
+    monkeypatch.setattr(studies, "present", lambda: False)
+    app = group(verify=verify, proof=proof)
+    assert "verify" not in CliRunner().invoke(app, ["--help"]).output
+    with pytest.raises(InputError, match=rf"`dentscope {line[0]}` .* checkout"):
+        CliRunner().invoke(app, line, catch_exceptions=False, standalone_mode=False)
+
+
+@pytest.mark.parametrize("line", [["impact"], ["inverse"], ["diagnose", "--chapter5"]])
+def test_commands_without_a_file_need_the_workshop(monkeypatch, capsys, line):
+    monkeypatch.setattr(studies, "present", lambda: False)
+    assert run(line) == 2
+    told = capsys.readouterr()
+    assert "checkout" in told.err
+    assert len(told.err.splitlines()) == 1
+    assert told.out == ""
+
+
+def test_a_shipped_set_is_found_by_name_from_anywhere(tmp_path, monkeypatch, capsys):
+    monkeypatch.chdir(tmp_path)
+    assert run(["recordings", "check", "kharaz-2001-oblique"]) == 0
+    assert "12 trials" in capsys.readouterr().out  # Kharaz et al. 2001: twelve angles
+    assert run(["recordings", "list"]) == 0
+    assert "kharaz-2001-oblique" in capsys.readouterr().out
+
+
+@pytest.mark.parametrize(
+    "command", [["diagnose"], ["recordings", "check"], ["recordings", "audit"]]
+)
+def test_a_wrong_name_lists_the_shipped_sets(tmp_path, monkeypatch, capsys, command):
+    monkeypatch.chdir(tmp_path)
+    assert run([*command, "kharaz-2002"]) == 2
+    told = capsys.readouterr().err
+    assert len(told.splitlines()) == 1
+    assert all(name in told for name in shipped_sets())
+
+
+def test_a_folder_of_the_user_goes_before_a_shipped_name(tmp_path, monkeypatch):
+    monkeypatch.chdir(tmp_path)
+    (tmp_path / "leeb-steel-300hv").mkdir()
+    (tmp_path / "other").mkdir()
+    for name in ("leeb-steel-300hv", "other"):
+        assert set_folder((tmp_path / name).relative_to(tmp_path)).resolve() == tmp_path / name
+    assert set_folder(tmp_path / "absent" / "set") == tmp_path / "absent" / "set"
+
+
+def test_examples_are_listed_and_copied(tmp_path, capsys):
+    assert run(["examples"]) == 0
+    assert "case_steel.toml" in capsys.readouterr().out
+    assert run(["examples", "--to", str(tmp_path / "new")]) == 0
+    assert "radius_m" in (tmp_path / "new" / "case_steel.toml").read_text()
