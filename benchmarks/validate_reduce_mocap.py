@@ -9,7 +9,7 @@ import sys
 
 import numpy as np
 from dentscope.recordings.reduce.mocap.body import Body, centre_of
-from dentscope.recordings.reduce.mocap.flight import Prior
+from dentscope.recordings.reduce.mocap.motion import Prior
 from dentscope.recordings.reduce.mocap.reduction import MocapReduction, Scene, reduce_mocap
 from dentscope.recordings.reduce.mocap.rigid import kabsch, rigid_poses
 from dentscope.studies.synthetic.mocap import MocapTruth, random_ball, random_rod, simulate

@@ -11,7 +11,7 @@ import sys
 from pathlib import Path
 
 import numpy as np
-from dentscope.recordings.reduce.clip import Clip
+from dentscope.recordings.reduce.images.clip import Clip
 from dentscope.recordings.reduce.measured import Measured
 from dentscope.recordings.reduce.video.reduction import Optics, reduce_video
 from dentscope.studies.synthetic.clips import random_truth, render

@@ -28,14 +28,14 @@ class _Kinds(TyperGroup):
     """The commands of the kinds, made from their options when they are asked for."""
 
     def list_commands(self, ctx: Any) -> list[str]:
-        from ..recordings.reduce.kinds import offered
+        from ..recordings.reduce.kinds import KINDS
 
-        return [*offered(), *super().list_commands(ctx)]
+        return [*KINDS, *super().list_commands(ctx)]
 
     def get_command(self, ctx: Any, cmd_name: str) -> Any:
-        from ..recordings.reduce.kinds import offered
+        from ..recordings.reduce.kinds import KINDS
 
-        return _command(cmd_name) if cmd_name in offered() else super().get_command(ctx, cmd_name)
+        return _command(cmd_name) if cmd_name in KINDS else super().get_command(ctx, cmd_name)
 
 
 app = typer.Typer(
@@ -116,7 +116,8 @@ def _reduce(
     kind: Kind, file: Path, into: Path | None, out: Path, given: dict[str, Any], row: dict[str, Any]
 ) -> None:
     from ..core.toml_input import parse_model
-    from ..recordings.reduce.into_set import Row, store, trial_name, write_record
+    from ..recordings.reduce.into_set import Row, store
+    from ..recordings.reduce.record import trial_name, write_record
 
     with _named_as_options():
         conditions = parse_model(row, Row, source="command line")

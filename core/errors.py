@@ -63,6 +63,14 @@ class InputErrors(InputError):
         self.message, self.source, self.key, self.allowed = str(self), "", "", ""
 
 
+def missing_extra(what: str, extra: str) -> InputError:
+    """Return the line that says which optional packages something needs."""
+    return InputError(
+        f"{what} needs packages that are not installed", source="installation",
+        allowed=f"pip install 'dentscope[{extra}]'",
+    )  # fmt: skip
+
+
 class Ending(Enum):
     """How a computation ended; the value is the stored code."""
 

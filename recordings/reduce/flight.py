@@ -8,7 +8,7 @@ drag stay out; the velocities are read at the instant in which both parabolas me
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -16,7 +16,7 @@ import numpy.typing as npt
 from scipy.ndimage import median_filter
 from scipy.signal import find_peaks
 
-from .measured import Array, Measured
+from .measured import Array, Measured, propagate
 from .regression import Regression, robust_regression, robust_std
 
 Indices = npt.NDArray[np.int_]
@@ -349,20 +349,3 @@ def _contact(
 def _rate(c: Array, tau: float, acceleration: float | None) -> float:
     a = c[2] if acceleration is None else acceleration
     return float(c[1] - a * tau)
-
-
-def propagate(
-    function: Callable[[Array], Array], x: Array, covariance: Array
-) -> tuple[Measured, ...]:
-    """Return `function(x)` with standard deviations from the covariance of x, to first order."""
-    value = function(x)
-    step = 1e-4 * np.sqrt(np.diag(covariance)) + 1e-12 * np.abs(x) + 1e-300
-    jacobian = np.stack(
-        [
-            (function(x + h * e) - function(x - h * e)) / (2.0 * h)
-            for h, e in zip(step, np.eye(x.size), strict=True)
-        ],
-        axis=1,
-    )
-    std = np.sqrt(np.einsum("ij,jk,ik->i", jacobian, covariance, jacobian))
-    return tuple(Measured(float(v), float(s)) for v, s in zip(value, std, strict=True))

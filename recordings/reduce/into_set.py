@@ -8,9 +8,6 @@ would be, has been read without a mistake.
 from __future__ import annotations
 
 import csv
-import json
-import math
-import re
 import shutil
 import tempfile
 from collections.abc import Callable, Iterable, Mapping
@@ -22,7 +19,6 @@ import numpy as np
 from pydantic import Field
 
 from ...core.errors import InputError
-from ...core.provenance import file_digest
 from ...core.toml_input import InputTable, read_model
 from ..columns import CONDITIONS, OBSERVABLES, STD_SUFFIX
 from ..csv_table import Array
@@ -32,6 +28,7 @@ from ..template import write_template
 from ..toml_text import setup_text
 from ..trials import Trials
 from .measured import Measured, Trial
+from .record import trial_name, write_record
 from .reduced import Reduced
 
 _TEXTS = ("trial", "striker", "spot", "note")
@@ -156,57 +153,8 @@ def store_each(
     return written, left_out
 
 
-def write_record(
-    reduced: Reduced,
-    folder: Path,
-    name: str,
-    *,
-    kind: str,
-    options: Mapping[str, Any],
-    trials: list[str] | None = None,
-) -> tuple[Path, Path]:
-    """Write NAME-KIND.json (raw file, checksum, options, values, notes) and the picture.
-
-    Returns
-    -------
-    tuple
-        Path of the record and of the picture.
-    """
-    folder.mkdir(parents=True, exist_ok=True)
-    record, picture = (folder / f"{name}-{kind}{end}" for end in (".json", ".png"))
-    content = {
-        "kind": kind,
-        **_origin(reduced.source),
-        "options": {k: v for k, v in options.items() if v not in (None, "")},
-        "trials": trials or [],
-        "values": {k: _plain(v) for k, v in reduced.values.items()},
-        "notes": list(reduced.notes),
-    }
-    record.write_text(json.dumps(content, indent=1, ensure_ascii=False) + "\n", encoding="utf-8")
-    reduced.draw(picture)
-    return record, picture
-
-
-def trial_name(path: Path) -> str:
-    """Return the name of a raw file as one that can name a trial."""
-    return re.sub(r'[/\\:*?"<>|\s]+', "_", path.stem).strip("_.") or "trial"
-
-
 def _name(reduced: Reduced, row: Row) -> str:
     return row.trial or trial_name(reduced.source)
-
-
-def _origin(source: Path) -> dict[str, Any]:
-    if source.is_dir():
-        files = sorted(p for p in source.iterdir() if p.is_file())
-        return {"folder": source.name, "files": {p.name: file_digest(p) for p in files}}
-    return {"file": source.name, "bytes": source.stat().st_size, "sha256": file_digest(source)}
-
-
-def _plain(value: Measured) -> dict[str, float | None]:
-    """Numbers for JSON, which has no NaN."""
-    pair = {"value": value.value, "std": value.std}
-    return {k: float(v) if math.isfinite(v) else None for k, v in pair.items()}
 
 
 def _set_before(

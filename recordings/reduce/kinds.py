@@ -1,9 +1,10 @@
-"""The kinds of raw file, in reading order, and what each module offers.
+"""The kinds of raw file, in reading order, and what each of their folders offers.
 
-A kind is one module with two names: `Options`, the table of its options (an `InputTable` whose
-fields have a description; field names end in their unit), and `reduce(path, options) -> Reduced`.
-The command line and the recipes make their options from `Options`, so that an option is written
-once.
+The folder of a kind holds `kind.py` with two names: `Options`, the table of its options (an
+`InputTable` whose fields have a description; field names end in their unit), and
+`reduce(path, options) -> Reduced`; and `picture.py`, which draws the picture to check the numbers
+by. The command line and the recipes make their options from `Options`, so that an option is
+written once.
 """
 
 from __future__ import annotations
@@ -11,7 +12,6 @@ from __future__ import annotations
 from collections.abc import Callable
 from dataclasses import dataclass
 from importlib import import_module
-from importlib.util import find_spec
 from pathlib import Path
 from typing import Any
 
@@ -27,12 +27,12 @@ KINDS = {
     "sound": "sound of a bouncing ball: restitution of each bounce",
     "table": "table of force, acceleration, height, bounce times or trials",
 }
-"""Each kind, reduced by the module `NAME/kind.py`, and what it gives."""
+"""Each kind, named as its folder, and what it gives."""
 
 
 @dataclass(frozen=True)
 class Kind:
-    """The two names that the module of a kind offers."""
+    """One way to reduce a file: its options and the function that takes them."""
 
     name: str
     options: type[InputTable]
@@ -46,11 +46,6 @@ class Kind:
         return self.reduce(path, options)
 
 
-def offered() -> tuple[str, ...]:
-    """Return the kinds whose module is there."""
-    return tuple(k for k in KINDS if find_spec(f".{k}.kind", __package__))
-
-
 def load_kind(name: str) -> Kind:
     """Return a kind by its name.
 
@@ -59,7 +54,7 @@ def load_kind(name: str) -> Kind:
     InputError
         There is no such kind.
     """
-    if name not in offered():
-        raise InputError(f"no kind {name!r}", key="kind", allowed=", ".join(offered()))
+    if name not in KINDS:
+        raise InputError(f"no kind {name!r}", key="kind", allowed=", ".join(KINDS))
     module = import_module(f".{name}.kind", __package__)
     return Kind(name, module.Options, module.reduce)

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field
 from types import MappingProxyType
 
@@ -65,6 +65,23 @@ def _digits(value: float, std: float) -> int:
     if value == 0.0:
         return 2
     return 2 + math.floor(math.log10(abs(value))) - math.floor(math.log10(std))
+
+
+def propagate(
+    function: Callable[[Array], Array], x: Array, covariance: Array
+) -> tuple[Measured, ...]:
+    """Return `function(x)` with standard deviations from the covariance of x, to first order."""
+    value = function(x)
+    step = 1e-4 * np.sqrt(np.diag(covariance)) + 1e-12 * np.abs(x) + 1e-300
+    jacobian = np.stack(
+        [
+            (function(x + h * e) - function(x - h * e)) / (2.0 * h)
+            for h, e in zip(step, np.eye(x.size), strict=True)
+        ],
+        axis=1,
+    )
+    std = np.sqrt(np.einsum("ij,jk,ik->i", jacobian, covariance, jacobian))
+    return tuple(Measured(float(v), float(s)) for v, s in zip(value, std, strict=True))
 
 
 @dataclass(frozen=True)

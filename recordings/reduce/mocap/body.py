@@ -12,7 +12,7 @@ from ....core.errors import InputError
 from ....core.toml_input import InputTable, read_model
 from ..measured import Array
 from .file import Markers
-from .flight import Prior
+from .motion import Prior
 from .rigid import Poses, kabsch
 
 SHAPES = ("rod", "sphere", "body")

@@ -11,9 +11,8 @@ from typing import Any
 import numpy as np
 from scipy.spatial.transform import Rotation
 
-from ....core.errors import InputError, InputErrors
+from ....core.errors import InputError, InputErrors, missing_extra
 from ...csv_table import Problems, TextTable, numbers, read_text_table, rows_with, selection
-from ..clip import missing_extra
 from ..measured import Array
 from ..units import LENGTH, metres
 

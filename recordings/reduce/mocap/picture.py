@@ -10,7 +10,7 @@ from scipy.spatial.transform import Rotation
 
 from ..measured import Array
 from ..pictures import figure, save
-from .flight import deviations
+from .motion import deviations
 from .point import PointReduction
 from .reduction import MocapReduction
 

@@ -12,8 +12,8 @@ from dataclasses import dataclass
 import numpy as np
 
 from ....core.errors import InputError
-from ..flight import Bounce, Track, bounces, propagate
-from ..measured import Array, Measured, Trial
+from ..flight import Bounce, Track, bounces
+from ..measured import Array, Measured, Trial, propagate
 from ..regression import robust_regression
 from .file import Markers
 from .reduction import Scene

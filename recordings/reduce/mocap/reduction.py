@@ -14,10 +14,11 @@ import numpy as np
 from scipy.spatial.transform import Rotation
 
 from ....core.errors import InputError
-from ..flight import propagate
-from ..measured import Array, Measured, Trial
+from ..measured import Array, Measured, Trial, propagate
 from .body import Body
-from .flight import Flights, Motion, fall_acceleration, find_flights
+from .flight import Flights, fall_acceleration
+from .flight_search import find_flights
+from .motion import Motion
 from .rigid import Poses
 
 GRAVITY = 9.81

@@ -9,9 +9,8 @@ from pathlib import Path
 
 import numpy as np
 
-from ....core.errors import InputError
+from ....core.errors import InputError, missing_extra
 from ...csv_table import number, shown
-from ..clip import missing_extra
 from ..measured import Array
 from ..units import LENGTH, metres
 

@@ -7,8 +7,7 @@ from pathlib import Path
 
 import numpy as np
 
-from ....core.errors import InputError
-from ..clip import missing_extra
+from ....core.errors import InputError, missing_extra
 from ..measured import Array
 
 _LONGEST = 600.0

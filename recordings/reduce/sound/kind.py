@@ -9,7 +9,7 @@ import numpy as np
 from pydantic import Field
 
 from ....core.errors import InputError
-from ..bounce_times import BounceOptions, reduce_bounce_times
+from ..bounces.times import BounceOptions, reduce_bounce_times
 from ..measured import Measured
 from ..reduced import Reduced
 from ..time_window import TimeWindow

@@ -7,7 +7,8 @@ from typing import Any
 
 import numpy as np
 
-from ..bounce_times import BounceTimes
+from ..bounces.picture import draw_intervals, draw_restitution
+from ..bounces.times import BounceTimes
 from ..pictures import figure, save
 from .file import Sound
 from .onsets import Onsets
@@ -29,35 +30,6 @@ def draw_sound(sound: Sound, onsets: Onsets, found: BounceTimes, path: Path) -> 
     draw_restitution(axes[1, 1], found)
     _picks(axes[1, 2], found)
     save(made, path)
-
-
-def draw_intervals(axis: Any, found: BounceTimes) -> None:
-    """Draw the intervals of the run over the time of their beginning."""
-    times = found.chain.times
-    kept = list(found.chain.kept)
-    gaps = np.diff(times[kept])
-    single = np.array(found.chain.single)
-    axis.plot(times[kept[:-1]][single], gaps[single], "o-", ms=4, label="one flight")
-    if not single.all():
-        axis.plot(
-            times[kept[:-1]][~single], gaps[~single], "s", mfc="none", label="a bounce missed"
-        )
-    left = np.setdiff1d(np.arange(times.size), kept)
-    for k in left:
-        axis.axvline(times[k], color="0.7", lw=0.8, ls=":")
-    axis.set(xlabel="time [s] (dotted: left out)", ylabel="interval [s]", yscale="log")
-    axis.legend()
-    axis.grid(alpha=0.3, which="both")
-
-
-def draw_restitution(axis: Any, found: BounceTimes) -> None:
-    """Draw restitution over impact speed with two standard deviations."""
-    speed = np.array([b.approach.value for b in found.bounces])
-    e = np.array([b.restitution.value for b in found.bounces])
-    bar = 2.0 * np.nan_to_num([b.restitution.std for b in found.bounces])
-    axis.errorbar(speed, e, yerr=bar, fmt="o", ms=4, capsize=2)
-    axis.set(xlabel="impact speed [m/s]", ylabel="restitution (bars: two standard deviations)")
-    axis.grid(alpha=0.3)
 
 
 def _record(axis: Any, sound: Sound, found: BounceTimes) -> None:

@@ -15,9 +15,8 @@ from typing import Any
 
 import numpy as np
 
-from ....core.errors import InputError
+from ....core.errors import InputError, missing_extra
 from ...csv_table import number, rows_with, selection
-from ..clip import missing_extra
 from ..measured import Array
 from ..units import UNITS
 

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
-from ..bounce_times import GRAVITY
+from ..bounces.times import GRAVITY
 from ..measured import Array, Measured, Trial
 from .pulse import Pulse, find_pulse
 
@@ -56,40 +56,42 @@ def reduce_pulse(
         No pulse above the noise.
     """
     pulse = find_pulse(time, value, source=source)
-    is_force = holds == "force"
-    values = {("peak_force_N" if is_force else "peak_acceleration_m_s2"): pulse.peak}
+    values = {("peak_force_N" if holds == "force" else "peak_acceleration_m_s2"): pulse.peak}
     values["contact_time_s"] = pulse.duration
-    change: Measured | None = None
     row = {"contact_time_s": pulse.duration}
-    if is_force:
+    change: Measured | None
+    force: Array | None
+    if holds == "force":
         values["impulse_N_s"] = pulse.area
         row["peak_force_N"] = pulse.peak
         change = None if mass is None else pulse.area.scaled(1.0 / mass)
+        force = pulse.value
     else:
         # an accelerometer at rest shows zero here, for its level before the pulse is taken off
         change = pulse.area
+        force = None if mass is None else mass * pulse.value
         if mass is not None:
             row["peak_force_N"] = values["peak_force_N"] = pulse.peak.scaled(mass)
-    notes = list(pulse.notes)
     if change is not None:
         values["speed_change_m_s"] = change
+    notes = pulse.notes
     if approach is not None:
         values["impact_speed_m_s"] = row["impact_speed_m_s"] = approach
         if change is not None:
-            fall = gravity * pulse.duration.value
-            turned = Measured(change.value - fall, change.std)
-            ratio = turned.over(approach)
-            restitution = Measured(ratio.value - 1.0, ratio.std)
+            restitution = _restitution(change, approach, gravity * pulse.duration.value)
             if 0.0 <= restitution.value <= 1.0:
                 values["restitution"] = row["restitution"] = restitution
             else:
-                notes.append(
+                notes += (
                     f"the impulse asks for a restitution of {restitution}: scale of the record, "
-                    "mass or speed are off, or the striker is not free"
+                    "mass or speed are off, or the striker is not free",
                 )
-    force = pulse.value if is_force else None if mass is None else mass * pulse.value
     trace = {} if force is None else {"time_s": time - pulse.start.value, "force_N": force}
-    return PulseReduction(
-        pulse, "N" if is_force else "m/s²", values, Trial(row, tuple(notes), trace=trace),
-        tuple(notes),
-    )  # fmt: skip
+    unit = "N" if holds == "force" else "m/s²"
+    return PulseReduction(pulse, unit, values, Trial(row, notes, trace=trace), notes)
+
+
+def _restitution(change: Measured, approach: Measured, fall: float) -> Measured:
+    """Return what turns the approach round: the change of speed less what gravity took."""
+    ratio = Measured(change.value - fall, change.std).over(approach)
+    return Measured(ratio.value - 1.0, ratio.std)

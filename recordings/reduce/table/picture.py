@@ -6,9 +6,9 @@ from pathlib import Path
 
 import numpy as np
 
-from ..bounce_times import BounceTimes
+from ..bounces.picture import draw_intervals, draw_restitution
+from ..bounces.times import BounceTimes
 from ..pictures import figure, save
-from ..sound.picture import draw_intervals, draw_restitution
 from .force import PulseReduction
 from .height import HeightReduction
 from .trials import TrialsReduction

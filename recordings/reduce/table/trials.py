@@ -11,7 +11,7 @@ import numpy as np
 
 from ....core.errors import InputError, InputErrors
 from ...columns import CONDITIONS, OBSERVABLES, STD_SUFFIX
-from ..bounce_times import Fall
+from ..bounces.times import Fall
 from ..measured import Array, Measured, Trial
 from ..units import UNITS
 from .file import Columns
@@ -56,6 +56,37 @@ def reduce_rebounds(
     InputError
         No rebound heights, or one above its drop.
     """
+    heights, metres = _heights(table, value, unit)
+    error = std * metres
+    trials: list[Trial] = []
+    for row, (drop, *rebounds) in enumerate(heights, start=1):
+        if not np.isfinite(drop):
+            continue
+        speed = fall.impact(float(drop))
+        approach = Measured(speed, 0.5 * speed * error / drop)
+        for k, height in enumerate(rebounds, start=1):
+            if np.isfinite(height):
+                up = fall.rise(float(height))
+                ratio = Measured(up, 0.5 * up * error / height).over(approach)
+                seen = {"impact_speed_m_s": approach, "restitution": ratio}
+                trials.append(Trial(seen, label=f"drop{row}-{k}"))
+    if not trials:
+        raise InputError("no rebound height", source=table.source, allowed="heights above 0")
+    speeds = np.array([t.observables["impact_speed_m_s"].value for t in trials])
+    ratios = np.array([t.observables["restitution"].value for t in trials])
+    values = {}
+    for speed in np.unique(speeds):
+        same = ratios[speeds == speed]
+        spread = float(np.std(same, ddof=1) / math.sqrt(same.size)) if same.size > 1 else math.nan
+        values[f"restitution_at_{speed:.4g}_m_s"] = Measured(float(same.mean()), spread)
+    return TrialsReduction(
+        values, tuple(trials), (f"{len(trials)} rebounds",),
+        ("impact speed [m/s]", speeds), ("restitution", ratios),
+    )  # fmt: skip
+
+
+def _heights(table: Columns, value: str, unit: str) -> tuple[Array, float]:
+    """Return drop and rebound heights, (rows, 1 + repeats) [m], and their unit [m]."""
     first = table.find(value, key="value")
     metres = table.factor(first, "length", given=unit, key="value_unit")
     heights = table.values[:, first:] * metres
@@ -64,7 +95,7 @@ def reduce_rebounds(
             "no column after the drop heights", source=table.source, key="value",
             allowed="rebound heights in the columns that follow",
         )  # fmt: skip
-    wrong = [
+    wrong = tuple(
         InputError(
             f"{h[k]:g} m after a drop of {h[0]:g} m", source=table.source,
             key=f"row {row + 1} of the numbers, column {first + k + 1}",
@@ -73,38 +104,10 @@ def reduce_rebounds(
         for row, h in enumerate(heights)
         for k in range(1, h.size)
         if np.isfinite(h[k]) and not 0.0 < h[k] < h[0]
-    ]  # fmt: skip
-    if wrong:
-        raise InputErrors(tuple(wrong))
-    trials, speeds, ratios = [], [], []
-    error = std * metres
-    for row, h in enumerate(heights):
-        if not np.isfinite(h[0]):
-            continue
-        speed = fall.impact(float(h[0]))
-        approach = Measured(speed, 0.5 * speed * error / h[0])
-        for k in range(1, h.size):
-            if not np.isfinite(h[k]):
-                continue
-            up = fall.rise(float(h[k]))
-            rebound = Measured(up, 0.5 * up * error / h[k])
-            ratio = rebound.over(approach)
-            label = f"drop{row + 1}-{k}"
-            trials.append(Trial({"impact_speed_m_s": approach, "restitution": ratio}, label=label))
-            speeds.append(speed)
-            ratios.append(ratio.value)
-    if not trials:
-        raise InputError("no rebound height", source=table.source, allowed="heights above 0")
-    speeds_a, ratios_a = np.array(speeds), np.array(ratios)
-    values = {}
-    for speed in np.unique(speeds_a):
-        same = ratios_a[speeds_a == speed]
-        spread = float(np.std(same, ddof=1) / math.sqrt(same.size)) if same.size > 1 else math.nan
-        values[f"restitution_at_{speed:.4g}_m_s"] = Measured(float(same.mean()), spread)
-    return TrialsReduction(
-        values, tuple(trials), (f"{len(trials)} rebounds",),
-        ("impact speed [m/s]", speeds_a), ("restitution", ratios_a),
     )  # fmt: skip
+    if wrong:
+        raise InputErrors(wrong)
+    return heights, metres
 
 
 def reduce_trials(table: Columns) -> TrialsReduction:

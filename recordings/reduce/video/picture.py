@@ -7,7 +7,7 @@ from typing import Any
 
 import numpy as np
 
-from ..clip import Clip
+from ..images.clip import Clip
 from ..pictures import figure, save
 from .reduction import VideoReduction
 

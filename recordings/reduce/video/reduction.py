@@ -10,17 +10,15 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass, replace
-from typing import Any
 
 import numpy as np
 import numpy.typing as npt
 
 from ....core.errors import InputError
-from ..clip import Clip
-from ..edge_fit import Ball, RodPose, RodShape, fit_ball, fit_rod
 from ..flight import Bounce, Track, bounces, scale_from_fall
+from ..images.clip import Clip
 from ..measured import Array, Measured, Trial
-from ..silhouette import ball_by_light, body_mask, rod_guess
+from .tracking import grey_levels, striker_bright, track_ball, track_rod
 
 SHAPES = ("rod", "sphere")
 BACKGROUNDS = ("none", "median")
@@ -29,9 +27,6 @@ GRAVITY = 9.81
 
 _LEAN_FRAMES = 20
 _LEAN_LIMIT = math.radians(5.0)
-_SHAPE_FRAMES = 15
-_MOSTLY = 0.8
-"""Part of the frames in which the edge of the ball must be found, else its light is used."""
 
 _POSITION_FLOOR = 1e-3
 """No position in a picture is believed better than this [pixel]."""
@@ -175,17 +170,17 @@ def reduce_video(
     InputError
         No striker, no contact or too few frames of flight in the clip.
     """
-    frames = _signal(clip, striker_is, background)
-    levels = _levels(frames, clip.source)
+    frames = striker_bright(clip, striker_is, background)
+    levels = grey_levels(frames, clip.source)
     dark_pixels = np.array([np.count_nonzero(f <= 0.5 * sum(levels)) for f in frames])
     critical = int(np.argmin(dark_pixels))
     if shape == "rod":
-        levels = _levels(frames[critical : critical + 1], clip.source)
-        track, rod = _track_rod(frames, critical, levels, clip.source)
+        levels = grey_levels(frames[critical : critical + 1], clip.source)
+        track, rod = track_rod(frames, critical, levels, clip.source)
         half = Measured(rod.half_width, 0.02)
         tip_radius = rod.tip_radius
     else:
-        track = _track_ball(frames, levels, clip.source)
+        track = track_ball(frames, levels, clip.source)
         radii = track["radius"]
         half = Measured(float(np.median(radii)), float(np.std(radii) / math.sqrt(radii.size)))
         half = Measured(half.value, max(half.std, 0.01 * half.value))
@@ -200,117 +195,6 @@ def reduce_video(
         gravity=optics.gravity, bounces=tuple(found), notes=(), source=clip.source,
     )  # fmt: skip
     return replace(result, notes=(*notes, *_flight_notes(result, optics)))
-
-
-def _signal(clip: Clip, striker_is: str, background: str) -> npt.NDArray[np.uint8]:
-    frames = clip.frames
-    if background == "median":
-        ground = np.median(frames[:: max(1, len(frames) // 60)], axis=0).astype(np.int16)
-        sign = 1 if striker_is == "bright" else -1
-        moved = np.empty_like(frames)
-        for number, frame in enumerate(frames):
-            moved[number] = np.clip(sign * (frame.astype(np.int16) - ground), 0, 255)
-        return moved
-    return frames if striker_is == "bright" else 255 - frames
-
-
-def _levels(frames: npt.NDArray[np.uint8], source: str) -> tuple[float, float]:
-    """Return the grey levels of ground and striker: medians on both sides of Otsu's threshold."""
-    from skimage.filters import threshold_otsu
-
-    sample = frames[:: max(1, len(frames) // 40)].ravel()
-    if sample.min() == sample.max():
-        raise InputError(
-            "every pixel has the same grey", source=source, allowed="a clip of an impact"
-        )
-    threshold = threshold_otsu(sample)
-    dark, bright = sample[sample <= threshold], sample[sample > threshold]
-    return float(np.median(dark)), float(np.median(bright))
-
-
-def _track_rod(
-    frames: npt.NDArray[np.uint8], critical: int, levels: tuple[float, float], source: str
-) -> tuple[dict[str, Any], RodShape]:
-    shape = _rod_shape(frames, critical, levels)
-    if shape is None:
-        raise InputError(
-            "no round-ended rod that enters from above is seen near the critical frame "
-            f"{critical}", source=source,
-            allowed="a rod from the upper edge to its tip (see --down, --striker-is, --crop)",
-        )  # fmt: skip
-    poses: list[tuple[int, RodPose]] = []
-    for number, frame in enumerate(frames):
-        grey = frame.astype(np.float64)
-        start = rod_guess(body_mask(grey, 0.5 * sum(levels)))
-        if start is None:
-            continue
-        pose = fit_rod(grey, shape, start[1], levels=levels)
-        if pose is not None:
-            poses.append((number, pose))
-    if len(poses) < 10:
-        raise InputError(
-            f"the tip is found in only {len(poses)} frames", source=source, allowed="10 or more"
-        )
-    return {
-        "frame": np.array([n for n, _ in poses]),
-        "column": np.array([p.x for _, p in poses]),
-        "row": np.array([p.y for _, p in poses]),
-        "row_std": np.array([math.sqrt(max(p.covariance[1, 1], 0.0)) for _, p in poses]),
-        "lean": np.array([p.lean for _, p in poses]),
-    }, shape
-
-
-def _rod_shape(
-    frames: npt.NDArray[np.uint8], critical: int, levels: tuple[float, float]
-) -> RodShape | None:
-    """Median shape from frames around the critical one, in which most of the rod is seen."""
-    reach = max(len(frames) // 8, _SHAPE_FRAMES)
-    first, last = max(critical - reach, 0), min(critical + reach, len(frames) - 1)
-    chosen = np.unique(np.linspace(first, last, 2 * _SHAPE_FRAMES).astype(int))
-    found = []
-    for number in chosen:
-        grey = frames[number].astype(np.float64)
-        start = rod_guess(body_mask(grey, 0.5 * sum(levels)))
-        if start is None:
-            continue
-        pose = fit_rod(grey, start[0], start[1], levels=levels, free="shape")
-        if pose is not None:
-            found.append((pose.shape.half_width, pose.shape.curvature, pose.shape.blur))
-    if len(found) < 3:
-        return None
-    return RodShape(*(float(v) for v in np.median(np.array(found), axis=0)))
-
-
-def _track_ball(
-    frames: npt.NDArray[np.uint8], levels: tuple[float, float], source: str
-) -> dict[str, Any]:
-    seen = [(n, ball_by_light(f.astype(np.float64), levels=levels)) for n, f in enumerate(frames)]
-    light = [(n, b) for n, b in seen if b is not None]
-    if light:
-        # other things that move are not of the ball's size
-        usual = float(np.median([b.radius for _, b in light]))
-        light = [(n, b) for n, b in light if 0.7 < b.radius / usual < 1.4]
-    if len(light) < 10:
-        raise InputError(
-            f"the ball is found in only {len(light)} frames", source=source,
-            allowed="10 or more (see --striker-is, --background, --crop, --channel)",
-        )  # fmt: skip
-    edges = [(n, _ball_edge(frames[n].astype(np.float64), b, levels[0])) for n, b in light]
-    sharp = [(n, b) for n, b in edges if b is not None]
-    # one kind of position for the whole clip: the two differ by a constant under uneven light
-    found = sharp if len(sharp) > _MOSTLY * len(light) else light
-    return {
-        "frame": np.array([n for n, _ in found]),
-        "column": np.array([b.x for _, b in found]),
-        "row": np.array([b.y for _, b in found]),
-        "row_std": np.array([b.row_std for _, b in found]),
-        "lean": np.zeros(len(found)),
-        "radius": np.array([b.radius for _, b in found]),
-    }
-
-
-def _ball_edge(grey: Array, ball: Ball, dark: float) -> Ball | None:
-    return fit_ball(grey, (ball.x, ball.y, ball.radius), levels=(dark, ball.bright))
 
 
 def _contacts(

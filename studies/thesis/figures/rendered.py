@@ -14,7 +14,7 @@ import numpy as np
 
 from ....impact.integrate import strike
 from ....models import LAWS
-from ....recordings.reduce.clip import Clip
+from ....recordings.reduce.images.clip import Clip
 from ....recordings.reduce.measured import Measured
 from ....recordings.reduce.tip.reduction import reduce_tip
 from ....recordings.reduce.video.reduction import Optics, VideoReduction, reduce_video

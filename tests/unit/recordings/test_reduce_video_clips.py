@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 from dentscope.core.errors import InputError
 from dentscope.recordings import audit, read
-from dentscope.recordings.reduce.clip import Clip, read_clip, repeated_frames
+from dentscope.recordings.reduce.images.clip import Clip, read_clip, repeated_frames
 from dentscope.recordings.reduce.measured import Measured
 from dentscope.recordings.reduce.video.kind import Options, reduce
 from dentscope.recordings.reduce.video.reduction import Optics, reduce_video

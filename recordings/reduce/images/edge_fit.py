@@ -15,8 +15,8 @@ import numpy as np
 import numpy.typing as npt
 from scipy.special import ndtr
 
-from .measured import Array
-from .regression import robust_std
+from ..measured import Array
+from ..regression import robust_std
 
 _ROUNDS = 10
 _SETTLED, _LAST_MOVE = 1e-4, 0.02

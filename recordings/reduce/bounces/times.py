@@ -15,10 +15,10 @@ import numpy as np
 from pydantic import Field
 from scipy.optimize import brentq
 
-from ...core.errors import InputError
-from ...core.toml_input import InputTable
-from .bounce_chain import Chain, chain_of
-from .measured import Array, Measured, Trial
+from ....core.errors import InputError
+from ....core.toml_input import InputTable
+from ..measured import Array, Measured, Trial
+from .chain import Chain, chain_of
 
 GRAVITY = 9.81
 

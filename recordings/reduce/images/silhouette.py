@@ -6,8 +6,8 @@ import numpy as np
 import numpy.typing as npt
 from scipy.ndimage import binary_dilation
 
+from ..measured import Array
 from .edge_fit import Ball, RodShape
-from .measured import Array
 
 Mask = npt.NDArray[np.bool_]
 

@@ -13,8 +13,8 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from .measured import Array
-from .regression import robust_regression, robust_std
+from ..measured import Array
+from ..regression import robust_regression, robust_std
 
 _TOLERANCE = 0.2
 """Largest change of an interval, in its logarithm, against the steady factor."""

@@ -1,0 +1,1 @@
+"""A body that bounces: its flights, its contacts, its speeds."""
