@@ -14,6 +14,7 @@ from numpy.typing import NDArray
 
 from ..impact.force import LOG_DEPTH_FIRST, LOG_DEPTH_LAST
 from ..impact.strength import NODES
+from .forward import Point, Simulator
 from .inference.fit import Fit
 from .inference.linear import Linear
 from .problem import Problem
@@ -52,19 +53,19 @@ def widened(problem: Problem, fitted: Fit) -> Linear:
     return Linear(fitted.linear.noise, J, fitted.linear.form)
 
 
-def correct(problem: Problem, base: Fit, reached: tuple[float, float]) -> list[Correction]:
-    """Return the corrections of loading and unloading over the depths that the set reaches.
+def correct(simulator: Simulator, base: Fit) -> tuple[Correction, ...]:
+    """Return the corrections of loading and unloading over the depths that a set reaches.
 
     Parameters
     ----------
-    problem
-        What was compared.
+    simulator
+        The problem.
     base
         Fit of the baseline.
-    reached
-        Smallest and largest peak depth over radius of the set.
     """
+    problem = simulator.problem
     k = problem.n_nuisances
+    shallowest, deepest = _reached(simulator, base)
     # the expansion's offset by the law's own coefficients is part of the residual already
     mean, cov = widened(problem, base).unknowns(base.residual)
     error = problem.error
@@ -72,7 +73,7 @@ def correct(problem: Problem, base: Fit, reached: tuple[float, float]) -> list[C
     mean, cov = mean[k:] * free, cov[k:, k:] * np.outer(free, free)
     n, m = len(error.force), len(error.recovery)
     grid = np.linspace(LOG_DEPTH_FIRST, LOG_DEPTH_LAST, NODES)
-    at = np.linspace(math.log(0.3 * reached[0]), math.log(reached[1]), _SHOWN)
+    at = np.linspace(math.log(0.3 * shallowest), math.log(deepest), _SHOWN)
     found = []
     for phase, rows, basis in (
         ("loading", slice(0, n), error.force),
@@ -89,4 +90,11 @@ def correct(problem: Problem, base: Fit, reached: tuple[float, float]) -> list[C
                 np.exp(middle + 1.645 * spread),
             )
         )  # fmt: skip
-    return found
+    return tuple(found)
+
+
+def _reached(simulator: Simulator, base: Fit) -> tuple[float, float]:
+    """Smallest and largest peak depth over radius of a set."""
+    seen = simulator.observe((), [Point(base.z)])["peak_depth_m"][0]
+    R = np.array([s.pair.R for s in simulator.problem.scenes(base.z)])
+    return float(np.min(seen / R)), float(np.max(seen / R))

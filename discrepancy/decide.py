@@ -9,12 +9,11 @@ from dataclasses import dataclass, replace
 import numpy as np
 from scipy.special import logsumexp
 
-from .calibration import Calibration, extra_threshold, set_width
+from .calibration import Calibration, extra_threshold, p_fit, set_width
 from .cells import LOGARITHMIC
 from .correction import widened
 from .drift import Drift
 from .inference.fit import Fit
-from .problem import Problem
 from .rank import Ranking
 from .thresholds import Nulls
 
@@ -40,13 +39,13 @@ class Choice:
     reasons: tuple[str, ...]
 
 
-def needs_more(ranking: Ranking, calibration: Calibration, p_fits: Mapping[str, float]) -> bool:
+def needs_more(ranking: Ranking, calibration: Calibration, p_base: float) -> bool:
     """Whether the baseline is in doubt, so that pairs are worth fitting."""
     base = ranking.base
     if not ranking.singles:
         return False
     gain = calibration.excess(ranking.singles[0], base)
-    return gain > calibration.single or p_fits[base.name] < P_FIT
+    return gain > calibration.single or p_base < P_FIT
 
 
 def left_over(fitted: Fit, base: Fit) -> float:
@@ -71,27 +70,27 @@ class FitTests:
     passed: frozenset[str]
 
     @classmethod
-    def of(cls, ranking: Ranking, p_fits: Mapping[str, float]) -> FitTests:
+    def of(cls, ranking: Ranking, nulls: Nulls) -> FitTests:
         """Judge all fits of a ranking."""
-        base = ranking.base
+        p = {f.name: p_fit(f, nulls, ranking.problem) for f in ranking.fits}
         passed = frozenset(
             f.name
-            for f in (base, *ranking.singles, *ranking.pairs)
-            if p_fits[f.name] >= P_FIT or (f.mechanisms and left_over(f, base) <= INEXACT)
+            for f in ranking.fits
+            if p[f.name] >= P_FIT or (f.mechanisms and left_over(f, ranking.base) <= INEXACT)
         )
-        return cls(p_fits, passed)
+        return cls(p, passed)
 
 
-def probabilities_of(problem: Problem, ranking: Ranking, tests: FitTests) -> dict[str, float]:
+def probabilities_of(ranking: Ranking, tests: FitTests) -> dict[str, float]:
     """Posterior probabilities; half the prior on the baseline, a twentieth outside the library.
 
     An explanation that its fit test rejects is not one: its share goes to outside the library.
     """
     base = ranking.base
-    outside = float(widened(problem, base).log_likelihood(base.residual))
+    outside = float(widened(ranking.problem, base).log_likelihood(base.residual))
     names = ["baseline", OUTSIDE]
     logs = [base.log_evidence + math.log(0.5), outside + math.log(0.05)]
-    rejected = {f.name for f in (base, *ranking.singles, *ranking.pairs)} - tests.passed
+    rejected = {f.name for f in ranking.fits} - tests.passed
     for share, fits in ((0.3, ranking.singles), (0.15, ranking.pairs)):
         for f in fits:
             names.append(f.name)
@@ -104,29 +103,30 @@ def probabilities_of(problem: Problem, ranking: Ranking, tests: FitTests) -> dic
 
 
 def decide(
-    problem: Problem, ranking: Ranking, nulls: Nulls, calibration: Calibration,
-    tests: FitTests, probabilities: Mapping[str, float],
+    ranking: Ranking, nulls: Nulls, calibration: Calibration, tests: FitTests,
+    probabilities: Mapping[str, float],
 ) -> Choice:  # fmt: skip
     """Decide by thresholds from nulls of the same set, by the odds of something outside, by drifts.
 
     Parameters
     ----------
-    problem, ranking, nulls, calibration
-        What was compared, all fits, and what nulls of the same set give.
+    ranking, nulls, calibration
+        All fits, and what nulls of the same set give.
     tests
         How they fit.
     probabilities
         For each fit by name, and for `OUTSIDE`.
     """
-    choice = _by_thresholds(problem, ranking, nulls, calibration, tests)
+    choice = _by_thresholds(ranking, nulls, calibration, tests)
     if choice.members and probabilities[OUTSIDE] > _RATHER_OUTSIDE:
         choice = Choice(OUTSIDE, (), (*choice.reasons, _rather_outside(choice, probabilities)))
-    if not problem.drifts:
+    drifts = ranking.problem.drifts
+    if not drifts:
         return choice
     seen = (
         f"{d.observable}: repeats of one condition change by {_change(d)} from the first trial to "
         f"the last ({abs(d.z):.1f} standard errors), whatever the simulation"
-        for d in problem.drifts
+        for d in drifts
     )
     outside = choice.verdict in ("adequate", "undetermined")
     return replace(
@@ -149,10 +149,10 @@ def _change(drift: Drift) -> str:
 
 
 def _by_thresholds(
-    problem: Problem, ranking: Ranking, nulls: Nulls, calibration: Calibration, tests: FitTests
+    ranking: Ranking, nulls: Nulls, calibration: Calibration, tests: FitTests
 ) -> Choice:
     base = ranking.base
-    cells = len(problem.cells)
+    cells = len(ranking.problem.cells)
     if cells < _FEWEST:
         return Choice("undetermined", (), (f"only {cells} numbers to compare",))
     p_base = tests.p[base.name]

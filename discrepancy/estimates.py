@@ -42,20 +42,30 @@ def _finite(x: float) -> float | None:
 
 def scores_of(
     ranking: Ranking,
-    p_fits: Mapping[str, float],
-    scores: dict[str, HeldOut],
-    confirmed: dict[str, float],
+    p: Mapping[str, float],
+    left_out: Mapping[str, HeldOut],
+    sampled: Mapping[str, float],
 ) -> dict[str, dict[str, float]]:
-    """Return evidence over the baseline, held-out miss and p of fit of every explanation."""
-    found = {}
-    for f in (ranking.base, *ranking.singles, *ranking.pairs):
-        if f.name in scores:
-            found[f.name] = {
-                "evidence": confirmed.get(f.name, f.log_evidence - ranking.base.log_evidence),
-                "held_out": scores[f.name].score,
-                "p_value": p_fits[f.name],
-            }
-    return found
+    """Return evidence over the baseline, held-out miss and p of fit of every explanation.
+
+    Parameters
+    ----------
+    ranking
+        All fits.
+    p, left_out
+        For each fit by name, how it passes the test of fit and predicts left-out conditions.
+    sampled
+        Sampled ln evidence over the baseline, of those that were sampled.
+    """
+    base = ranking.base.log_evidence
+    return {
+        f.name: {
+            "evidence": sampled.get(f.name, f.log_evidence - base),
+            "held_out": left_out[f.name].score,
+            "p_value": p[f.name],
+        }
+        for f in ranking.fits
+    }
 
 
 def parameters_of(
@@ -71,11 +81,13 @@ def parameters_of(
     if fitted.mechanisms:
         places = fitted.grid.places()
         off = 1.645 * _moved_by_form(simulator, fitted)
-        for axis, p in enumerate(fitted.grid.parameters):
+        for axis, (label, (_, p)) in enumerate(
+            zip(fitted.grid.labels, fitted.grid.axes, strict=True)
+        ):
             middle, low, high = interval(places[:, axis], fitted.weight, level)
             low = max(middle - math.hypot(middle - low, off[axis]), 0.0)
             high = min(middle + math.hypot(high - middle, off[axis]), 1.0)
-            found[p.name] = {
+            found[label] = {
                 "value": float(p.value(middle)), "low": float(p.value(low)),
                 "high": float(p.value(high)), "level": level, "unit": p.unit,
             }  # fmt: skip
@@ -137,7 +149,7 @@ def limits_of(ranking: Ranking, calibration: Calibration) -> dict[str, float]:
     for s in ranking.screened:
         seen_at = calibration.single + calibration.offset.get(s.mechanism.name, 0.0)
         needed = math.sqrt(2.0 * (max(seen_at, 1.0) + 3.0))
-        p = s.grid.parameters[0]
+        p = s.grid.axes[0].parameter
         size = np.linalg.norm(base.linear.white(s.effect), axis=1)
         n = len(s.grid.fine[0])
         # over the other parameters the typical size

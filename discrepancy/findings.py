@@ -2,11 +2,10 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, field
+from dataclasses import dataclass
 from typing import Any
 
 from .. import __version__
-from .calibration import Calibration
 from .correction import Correction
 from .inference.fit import Fit
 from .locate import Located
@@ -48,13 +47,15 @@ class Verdict:
     corrections: tuple[Correction, ...]
     proposals: tuple[Proposal, ...]
     notes: tuple[str, ...]
-    problem: Problem
+    reasons: tuple[str, ...]
     ranking: Ranking
     best: Fit
-    calibration: Calibration
-    reasons: tuple[str, ...] = ()
-    impacts: int = 0
-    confirmed: dict[str, float] = field(default_factory=dict)
+    impacts: int
+
+    @property
+    def problem(self) -> Problem:
+        """What was compared."""
+        return self.ranking.problem
 
     def to_dict(self) -> dict[str, Any]:
         """Return the content of verdict.json."""

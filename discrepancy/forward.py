@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import os
 import warnings
-from collections.abc import Mapping, Sequence
+from collections.abc import Sequence
 from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass, field, replace
 
@@ -14,7 +14,7 @@ from numpy.typing import NDArray
 from ..impact import Scene, Settings, strike_batch, strike_many
 from ..impact import compiled as c
 from ..models.base import DomainWarning
-from .mechanisms.base import Mechanism, Situation
+from .mechanisms.base import Constants, Mechanism, Situation, attached, observed
 from .problem import Problem
 
 Array = NDArray[np.float64]
@@ -50,7 +50,7 @@ class Point:
     z
         (n_z,) standardised nuisances and law errors.
     values
-        Value of every parameter of the mechanisms.
+        Numbers of every mechanism.
     faster
         Relative change of every condition's speed.
     steeper
@@ -58,7 +58,7 @@ class Point:
     """
 
     z: Array
-    values: Mapping[str, float] = field(default_factory=dict)
+    values: Constants = field(default_factory=dict)
     faster: float = 0.0
     steeper: float = 0.0
 
@@ -78,11 +78,22 @@ def _struck(scenes: list[Scene]) -> Array:
 
 
 @dataclass(eq=False)
+class Tally:
+    """Impacts that were simulated, over all problems that share the count."""
+
+    impacts: int = 0
+
+
+@dataclass(frozen=True, eq=False)
 class Simulator:
-    """Predicts the cells of a problem; counts the impacts it took."""
+    """Predicts the cells of a problem, and counts the impacts that it takes."""
 
     problem: Problem
-    impacts: int = 0
+    tally: Tally = field(default_factory=Tally)
+
+    def of(self, problem: Problem) -> Simulator:
+        """Return the simulator of another problem, with the same tally."""
+        return replace(self, problem=problem)
 
     def predict(self, mechanisms: Sequence[Mechanism], points: Sequence[Point]) -> Array:
         """Return the cells' predictions, shape (points, cells)."""
@@ -119,26 +130,22 @@ class Simulator:
                     a = replace(a, speed=a.speed * up, tangential=a.tangential * up, angle=angle)
                     scene = scene.with_(approach=a)
                 plain.append((scene, condition.around))
-                for mechanism in mechanisms:
-                    scene = mechanism.attach(scene, point.values, condition.around)
+                scene = attached(mechanisms, scene, point.values, condition.around)
                 situations.append((scene, condition.around))
         scenes = [s for s, _ in situations]
         rows = _struck(scenes)
         self._later_blows(scenes, rows)
-        self.impacts += len(rows)
+        self.tally.impacts += len(rows)
         shape = (len(points), len(problem.conditions))
         seen = {k: rows[:, _COLUMN[v]].copy() for k, v in SIMULATED.items()}
         self._crater(points, situations, seen)
         # a tip that has parted still has to come out of the crater
         leaving = np.maximum(rows[:, _COLUMN["tip_rebound_m_s"]], 1e-6)
         seen["below_flat_s"] = seen["contact_time_s"] + seen["permanent_depth_m"] / leaving
-        # undone in the order of attachment: the last change of the approach was the innermost
         for i, point in enumerate(points):
             part = slice(i * shape[1], (i + 1) * shape[1])
             here = {k: v[part] for k, v in seen.items()}
-            for mechanism in reversed(list(mechanisms)):
-                mechanism.after(plain[part], point.values, here)
-            for k, v in here.items():
+            for k, v in observed(mechanisms, plain[part], point.values, here).items():
                 seen[k][part] = v
         return {k: v.reshape(shape) for k, v in seen.items()}
 

@@ -21,6 +21,7 @@ from .conditions import Condition
 from .forward import Point, Simulator
 from .inference.fit import Fit
 from .problem import Problem
+from .rank import Ranking
 
 Array = NDArray[np.float64]
 _Candidate = tuple[str, Condition, Striker | None]
@@ -38,6 +39,19 @@ class Proposal:
 
     change: str
     expected_discrimination: float
+
+
+def rivals_of(members: Sequence[Fit], ranking: Ranking) -> list[Fit]:
+    """Return the explanations that a next experiment should tell apart.
+
+    Those that the verdict holds; where it holds one or none, it or the baseline, and the best other
+    single mechanism or the baseline.
+    """
+    if len(members) > 1:
+        return list(members)
+    best = members[0] if members else ranking.base
+    others = [f for f in (*ranking.singles, ranking.base) if f.name != best.name]
+    return [best, *others[:1]]
 
 
 def propose(
@@ -58,14 +72,13 @@ def propose(
     candidates = _candidates(problem)
     if len(rivals) < 2 or not candidates:
         return []
-    trial = Simulator(
+    trial = simulator.of(
         replace(
             problem, conditions=tuple(c for _, c, _ in candidates),
             strikers={**problem.strikers, **{c.striker: s for _, c, s in candidates if s}},
         )
     )  # fmt: skip
     seen = [trial.observe(f.mechanisms, _samples(f, rng)) for f in rivals]
-    simulator.impacts += trial.impacts
     measured = list(dict.fromkeys(problem.cells.observable))
     found = []
     for k, (change, _, _) in enumerate(candidates):

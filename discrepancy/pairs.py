@@ -29,7 +29,8 @@ _NEAR = 0.12  # of the prior's width: where the mutual effect of two mechanisms 
 def with_pairs(
     simulator: Simulator, ranking: Ranking, *, progress: Progress = lambda _: None
 ) -> Ranking:
-    """Fit the leading pairs."""
+    """Fit the leading pairs, to the problem that the singles were fitted to."""
+    simulator = simulator.of(ranking.problem)
     pairs = []
     found = {
         (one.mechanism.name, two.mechanism.name): (one, two, place)
@@ -106,9 +107,8 @@ class PairEffect:
 
     def __call__(self, z: Array, place: Array) -> Array:
         """Return the change of the cells over the pair's refined grid, (k, m)."""
-        n = len(self.one.grid.parameters)
-        own, other = self.one.grid.parameters, self.two.grid.parameters
-        grid = Grid((*own, *other))
+        n = len(self.one.grid.axes)
+        grid = Grid((*self.one.grid.axes, *self.two.grid.axes))
         first = self.one.grid.onto(self.one.change, grid.fine[:n])
         second = self.two.grid.onto(self.two.change, grid.fine[n:])
         total = (first[:, None, :] + second[None, :, :]).reshape(-1, first.shape[-1])

@@ -15,6 +15,7 @@ from .inference.outliers import outlying, without_weight
 from .inference.window import sharpened
 from .mechanisms import MECHANISMS
 from .mechanisms.base import Mechanism
+from .problem import Problem
 from .thresholds import gain
 
 Array = NDArray[np.float64]
@@ -59,6 +60,8 @@ class Ranking:
 
     Parameters
     ----------
+    problem
+        What they were fitted to: outliers have no weight in it.
     base
         Fit of the baseline.
     screened
@@ -69,11 +72,17 @@ class Ranking:
         Mechanism to the reason why arithmetic rules it out.
     """
 
+    problem: Problem
     base: Fit
     screened: tuple[Screened, ...]
     singles: tuple[Fit, ...]
     pairs: tuple[Fit, ...]
     excluded: dict[str, str]
+
+    @property
+    def fits(self) -> tuple[Fit, ...]:
+        """The baseline, the singles and the pairs."""
+        return (self.base, *self.singles, *self.pairs)
 
 
 def rank(
@@ -108,7 +117,8 @@ def rank(
                 continue
             reason = f"its largest plausible effect is {size:.1g} standard errors over all cells"
         excluded[mechanism.name] = reason
-    base, screened = _cleared(simulator, base, screened)
+    problem, base, screened = _cleared(simulator, base, screened)
+    simulator = simulator.of(problem)
     order = sorted(screened, key=lambda s: -s.log_bayes)
     chosen = [s for i, s in enumerate(order) if i < FULL or s.log_bayes > order[0].log_bayes - NEAR]
     singles = []
@@ -122,7 +132,7 @@ def rank(
         )  # fmt: skip
     progress("sharpening the leading fits")
     singles = sharpened_leading(simulator, singles, base)
-    return Ranking(base, tuple(screened), tuple(singles), (), excluded)
+    return Ranking(problem, base, tuple(screened), tuple(singles), (), excluded)
 
 
 def screen(simulator: Simulator, base: Fit, mechanism: Mechanism) -> Screened:
@@ -146,7 +156,7 @@ def visible(found: Screened, base: Fit) -> float:
 
 def _cleared(
     simulator: Simulator, base: Fit, screened: list[Screened]
-) -> tuple[Fit, list[Screened]]:
+) -> tuple[Problem, Fit, list[Screened]]:
     """Take the weight from outliers, and fit and screen again what that changes."""
     judge = base
     lead = max(screened, key=lambda s: s.log_bayes, default=None)
@@ -155,16 +165,21 @@ def _cleared(
         judge = fit(
             simulator, (lead.mechanism,), start=base, place=lead.place, rounds=2, effect=lead.effect
         )
-    outliers = outlying(simulator.problem, judge)
+    problem = simulator.problem
+    outliers = outlying(problem, judge)
     if not outliers.any():
-        return base, screened
-    simulator.problem = without_weight(simulator.problem, outliers)
-    again = fit(simulator, (), start=base, rounds=2)
+        return problem, base, screened
+    problem = without_weight(problem, outliers)
+    again = fit(simulator.of(problem), (), start=base, rounds=2)
     white = again.linear.white(again.residual)[None, :]
-    return again, [
-        replace(s, log_bayes=float(gain(white, np.zeros(1), again.linear, s.effect)[0]))
-        for s in screened
-    ]
+    return (
+        problem,
+        again,
+        [
+            replace(s, log_bayes=float(gain(white, np.zeros(1), again.linear, s.effect)[0]))
+            for s in screened
+        ],
+    )
 
 
 def sharpened_leading(

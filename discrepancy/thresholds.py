@@ -19,7 +19,7 @@ from .cells import LOGARITHMIC
 from .forward import Point, Simulator
 from .inference.fit import Fit
 from .inference.linear import Linear
-from .mechanisms.base import effective_mass
+from .mechanisms.arithmetic import effective_mass
 from .nulls import Rig, discrepancies, scatter
 from .nulls.laws import Reference
 from .nulls.motion import Bodies

@@ -22,11 +22,11 @@ from .estimates import (
     scores_of,
 )
 from .findings import Verdict
-from .forward import Point, Simulator
+from .forward import Simulator
 from .heldout import held_out
-from .inference.fit import Fit
+from .inference.sampling import confirm_evidence
 from .locate import locate
-from .next_experiment import propose
+from .next_experiment import propose, rivals_of
 from .pairs import with_pairs
 from .problem import problem_of
 from .rank import Progress, rank
@@ -36,6 +36,8 @@ NULLS = 500
 """Null data sets that set the thresholds of a screening."""
 CONFIRMED_NULLS = 2000
 """Null data sets with `confirm`."""
+PROPOSED = 5
+"""Next experiments that a verdict keeps."""
 
 
 def diagnose(
@@ -65,66 +67,44 @@ def diagnose(
     """
     rng = np.random.default_rng(seed)
     progress("auditing the inputs")
-    findings = audit_rows(recordings)
-    problem = problem_of(recordings)
-    simulator = Simulator(problem)
+    audit = audit_rows(recordings)
+    simulator = Simulator(problem_of(recordings))
+
     ranking = rank(simulator, progress=progress)
-    problem = simulator.problem
+    simulator = simulator.of(ranking.problem)
     progress("simulating sets in which nothing is missing")
     nulls = null_residuals(simulator, ranking.base, CONFIRMED_NULLS if confirm else NULLS, rng)
     calibration = calibrate(ranking, nulls)
     ranking = calibration.sorted(ranking)
-    p_fits = {ranking.base.name: p_fit(ranking.base, nulls, problem)}
-    if needs_more(ranking, calibration, p_fits):
+    if needs_more(ranking, calibration, p_fit(ranking.base, nulls, ranking.problem)):
         ranking = calibration.sorted(with_pairs(simulator, ranking, progress=progress))
-    located = locate(problem, ranking.base, nulls)
+
     progress("deciding")
-    p_fits |= {f.name: p_fit(f, nulls, problem) for f in (*ranking.singles, *ranking.pairs)}
-    tests = FitTests.of(ranking, p_fits)
-    probabilities = probabilities_of(problem, ranking, tests)
-    choice = decide(problem, ranking, nulls, calibration, tests, probabilities)
-    confirmed: dict[str, float] = {}
-    if confirm:
-        from .inference.sampling import confirm_evidence
+    located = locate(ranking.problem, ranking.base, nulls)
+    tests = FitTests.of(ranking, nulls)
+    probabilities = probabilities_of(ranking, tests)
+    choice = decide(ranking, nulls, calibration, tests, probabilities)
+    leading = [ranking.base, *choice.members]
+    sampled = confirm_evidence(simulator, leading, rng, progress) if confirm else {}
 
-        leading = [ranking.base, *choice.members[:4]]
-        confirmed = confirm_evidence(simulator, leading, rng, progress)
     progress("predicting conditions that were left out")
-    best = choice.members[0] if choice.members else ranking.base
-    scored = {f.name: f for f in (ranking.base, *ranking.singles, *ranking.pairs)}
-    scores = {name: held_out(problem, f) for name, f in scored.items()}
+    left_out = {f.name: held_out(ranking.problem, f) for f in ranking.fits}
     progress("looking for the next experiment")
-    rivals = list(choice.members[:4])
-    if len(rivals) < 2:
-        others = [f for f in (*ranking.singles, ranking.base) if f.name != best.name]
-        rivals = [best, *others[:1]]
-    proposals = propose(simulator, rivals, rng)
-    corrections = (
-        tuple(correct(problem, ranking.base, _reached(simulator, ranking.base)))
-        if choice.verdict == OUTSIDE
-        else ()
-    )
+    best = choice.members[0] if choice.members else ranking.base
+    proposals = propose(simulator, rivals_of(choice.members, ranking), rng)
+    corrections = correct(simulator, ranking.base) if choice.verdict == OUTSIDE else ()
     return Verdict(
-        name=recordings.name, seed=seed, verdict=choice.verdict,
-        mechanisms=tuple(m.name for m in best.mechanisms),
-        alternatives=tuple(
-            tuple(m.name for m in f.mechanisms) for f in choice.members[1:]
-        ),
-        audit=findings, probabilities=probabilities,
-        scores=scores_of(ranking, p_fits, scores, confirmed), located=located,
-        parameters=parameters_of(simulator, best), nuisance_pulls=pulls_of(problem, best),
-        excluded=ranking.excluded, limits=limits_of(ranking, calibration),
-        improvement=improvement_of(scores[ranking.base.name], scores[best.name]),
-        corrections=corrections, proposals=tuple(proposals[:5]), notes=notes_of(problem, best),
-        problem=problem, ranking=ranking, best=best, calibration=calibration,
-        reasons=choice.reasons, impacts=simulator.impacts, confirmed=confirmed,
+        name=recordings.name, seed=seed, verdict=choice.verdict, mechanisms=best.names,
+        alternatives=tuple(f.names for f in choice.members[1:]), audit=audit,
+        probabilities=probabilities, scores=scores_of(ranking, tests.p, left_out, sampled),
+        located=located, parameters=parameters_of(simulator, best),
+        nuisance_pulls=pulls_of(ranking.problem, best), excluded=ranking.excluded,
+        limits=limits_of(ranking, calibration),
+        improvement=improvement_of(left_out[ranking.base.name], left_out[best.name]),
+        corrections=corrections, proposals=tuple(proposals[:PROPOSED]),
+        notes=notes_of(ranking.problem, best), reasons=choice.reasons, ranking=ranking, best=best,
+        impacts=simulator.tally.impacts,
     )  # fmt: skip
-
-
-def _reached(simulator: Simulator, base: Fit) -> tuple[float, float]:
-    seen = simulator.observe((), [Point(base.z)])["peak_depth_m"][0]
-    R = np.array([s.pair.R for s in simulator.problem.scenes(base.z)])
-    return float(np.min(seen / R)), float(np.max(seen / R))
 
 
 __all__ = ["Verdict", "diagnose"]

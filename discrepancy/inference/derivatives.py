@@ -9,7 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ..forward import Point, Simulator
-from ..mechanisms.base import Mechanism
+from ..mechanisms.base import Constants, Mechanism
 from ..problem import Problem
 from .linear import Linear
 
@@ -73,7 +73,7 @@ def form_error(problem: Problem, effect: Array, share: float) -> Array:
 
 
 def derivatives(
-    simulator: Simulator, mechanisms: Sequence[Mechanism], values: dict[str, float], z: Array
+    simulator: Simulator, mechanisms: Sequence[Mechanism], values: Constants, z: Array
 ) -> tuple[Array, Linear]:
     """Return prediction (m,) at z, and the algebra there."""
     problem = simulator.problem
@@ -112,10 +112,13 @@ def derivatives(
     return here, Linear(noise, J, form)
 
 
-def _beside(mechanisms: Sequence[Mechanism], values: dict[str, float]) -> list[dict[str, float]]:
+def _beside(mechanisms: Sequence[Mechanism], values: Constants) -> list[Constants]:
     """Values a little below and above those of mechanisms whose outcome may jump."""
-    names = [m.parameters[0].name for m in mechanisms if m.jumps]
-    if not names:
+    jumping = [(m.name, m.parameters[0].name) for m in mechanisms if m.jumps]
+    if not jumping:
         return []
-    sides = [side for jump in _JUMPS for side in (-jump, jump)]
-    return [values | {n: values[n] * (1.0 + side) for n in names} for side in sides]
+    found: list[Constants] = []
+    for side in (sign * jump for jump in _JUMPS for sign in (-1.0, 1.0)):
+        moved = {m: {**values[m], p: values[m][p] * (1.0 + side)} for m, p in jumping}
+        found.append({**values, **moved})
+    return found

@@ -17,12 +17,13 @@ from ..forward import Point, Simulator
 from ..mechanisms.base import Mechanism, Situation
 from ..problem import Problem
 from .derivatives import derivatives
-from .grid import Grid, posterior
+from .grid import Axis, Grid, posterior
 from .linear import Linear
 
 Array = NDArray[np.float64]
 
-_ROUNDS, _SETTLED = 4, 0.15
+_ROUNDS = 4
+_SETTLED, _TURNED = 0.15, 0.08  # of the unknowns, and of the places in the priors
 _FARTHEST = 2.0  # of the unknowns within one round
 
 
@@ -38,8 +39,6 @@ class Fit:
         Refined grid of their parameters and posterior weights (k,).
     place
         Most probable place (axes,).
-    values
-        Parameters there.
     z, covariance
         Posterior mean (n_z,) and covariance of the unknowns there.
     prediction
@@ -66,7 +65,6 @@ class Fit:
     grid: Grid
     weight: Array
     place: Array
-    values: dict[str, float]
     z: Array
     covariance: Array
     prediction: Array
@@ -78,6 +76,11 @@ class Fit:
     log_likelihood: Array
     residuals: Array
     expanded: Array
+
+    @property
+    def names(self) -> tuple[str, ...]:
+        """Names of the mechanisms."""
+        return tuple(m.name for m in self.mechanisms)
 
     @property
     def name(self) -> str:
@@ -121,21 +124,17 @@ def fit(
     grid = grid_of(problem, mechanisms)
     z = np.zeros(problem.n_z) if start is None else start.z.copy()
     if place is None:
-        place = np.full(len(grid.parameters), 0.5)
+        place = np.full(len(grid.axes), 0.5)
     last = max(rounds, 1) - 1
     settled = False
     for k in range(last + 1):
         exact = effect is None or settled or k == last
         found = expand(simulator, mechanisms, grid, z, place, None if exact else effect)
-        moved = found.z - z
-        shift = np.max(np.abs(moved), initial=0.0)
-        turned = np.max(np.abs(found.place - place), initial=0.0)
-        z = z + moved * min(1.0, _FARTHEST / shift) if shift > 0.0 else z
+        z, settled = moved_towards(found, z, place)
         place = found.place
-        settled = bool(shift < _SETTLED and turned < 0.08)
         if settled and exact:
             break
-    return replace(found, z=z, values=grid.values(place))
+    return replace(found, z=z)
 
 
 def fit_anchored(
@@ -165,20 +164,30 @@ def fit_anchored(
     z, place = start.z.copy(), grid.places()[grid.index(place)]
     for _ in range(rounds):
         found = expand(simulator, mechanisms, grid, z, place, effect(z, place))
-        moved = found.z - z
-        shift = np.max(np.abs(moved), initial=0.0)
-        turned = np.max(np.abs(found.place - place), initial=0.0)
-        z = z + moved * min(1.0, _FARTHEST / shift) if shift > 0.0 else z
+        z, settled = moved_towards(found, z, place)
         place = found.place
-        if shift < _SETTLED and turned < 0.08:
+        if settled:
             break
-    return replace(found, z=z, values=grid.values(place))
+    return replace(found, z=z)
+
+
+def moved_towards(found: Fit, z: Array, place: Array | None = None) -> tuple[Array, bool]:
+    """Return the unknowns of the next round, from z towards a fit, and whether they have settled.
+
+    No unknown moves by more than two prior standard deviations at once; the place in the
+    mechanisms' priors must have settled as well where it is given.
+    """
+    moved = found.z - z
+    shift = float(np.max(np.abs(moved), initial=0.0))
+    turned = 0.0 if place is None else float(np.max(np.abs(found.place - place), initial=0.0))
+    after = z + moved * min(1.0, _FARTHEST / shift) if shift > 0.0 else z
+    return after, shift < _SETTLED and turned < _TURNED
 
 
 def grid_of(problem: Problem, mechanisms: Sequence[Mechanism]) -> Grid:
     """Return the grid of an explanation's parameters, with this rig's ranges."""
     situations = baseline_situations(problem)
-    return Grid(tuple(p for m in mechanisms for p in m.ranges(situations)))
+    return Grid(tuple(Axis(m.name, p) for m in mechanisms for p in m.ranges(situations)))
 
 
 def baseline_situations(problem: Problem) -> list[Situation]:
@@ -220,6 +229,6 @@ def expand(
     mean, cov = linear.unknowns(r[best])
     prediction = fine[best] + linear.J @ (mean - z)
     return Fit(
-        mechanisms, grid, weight, at, grid.values(at), mean, cov, prediction, log_evidence,
+        mechanisms, grid, weight, at, mean, cov, prediction, log_evidence,
         float(np.sum(linear.white(r[best]) ** 2)), linear, r[best], here, log_likelihood, r, z,
     )  # fmt: skip

@@ -7,13 +7,14 @@ import math
 from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import cached_property
+from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 from scipy.interpolate import CubicSpline
 from scipy.special import logsumexp
 
-from ..mechanisms.base import Parameter
+from ..mechanisms.base import Constants, Parameter
 
 Array = NDArray[np.float64]
 
@@ -24,39 +25,55 @@ IN_WINDOW = {1: 5, 2: 5, 3: 3}
 """Least nodes per parameter of a grid over a part of the prior, by the number of parameters."""
 
 
+class Axis(NamedTuple):
+    """One parameter of one mechanism; two mechanisms may use the same word."""
+
+    mechanism: str
+    parameter: Parameter
+
+
 @dataclass(frozen=True, eq=False)
 class Grid:
     """A tensor grid over the mechanisms' parameters, and how to refine it.
 
     Parameters
     ----------
-    parameters
-        In the order of the axes.
+    axes
+        Whose parameter runs along each.
     window
         Part of the prior that it covers, (low, high) within (0, 1) for each axis; all if empty.
     """
 
-    parameters: tuple[Parameter, ...]
+    axes: tuple[Axis, ...]
     window: tuple[tuple[float, float], ...] = ()
+
+    @cached_property
+    def labels(self) -> tuple[str, ...]:
+        """Name of each parameter, after its mechanism's and a dot where two have the same."""
+        names = [a.parameter.name for a in self.axes]
+        return tuple(
+            name if names.count(name) == 1 else f"{a.mechanism}.{name}"
+            for name, a in zip(names, self.axes, strict=True)
+        )
 
     @cached_property
     def coarse(self) -> list[Array]:
         """Places in (0, 1) of the nodes of each axis."""
         if not self.window:
-            return [np.linspace(0.0, 1.0, p.nodes) for p in self.parameters]
-        least = IN_WINDOW.get(len(self.parameters), 3)
+            return [np.linspace(0.0, 1.0, a.parameter.nodes) for a in self.axes]
+        least = IN_WINDOW.get(len(self.axes), 3)
         return [
             np.linspace(low, high, max(least, math.ceil((p.nodes - 1) * (high - low)) + 1))
-            for p, (low, high) in zip(self.parameters, self.window, strict=True)
+            for (_, p), (low, high) in zip(self.axes, self.window, strict=True)
         ]
 
     @cached_property
     def fine(self) -> list[Array]:
         """Places of the refined grid: middles of equal shares of what it covers."""
-        n = FINE.get(len(self.parameters), 9)
+        n = FINE.get(len(self.axes), 9)
         share = (np.arange(n) + 0.5) / n
         if not self.window:
-            return [share for _ in self.parameters]
+            return [share for _ in self.axes]
         return [low + (high - low) * share for low, high in self.window]
 
     @property
@@ -64,11 +81,14 @@ class Grid:
         """Ln of the part of the prior that the grid covers."""
         return sum(math.log(high - low) for low, high in self.window)
 
-    def values(self, places: Sequence[float] | Array) -> dict[str, float]:
-        """Return the parameters at places in (0, 1)."""
-        return {p.name: float(p.value(x)) for p, x in zip(self.parameters, places, strict=True)}
+    def values(self, places: Sequence[float] | Array) -> Constants:
+        """Return every mechanism's parameters at places in (0, 1)."""
+        found: dict[str, dict[str, float]] = {}
+        for (mechanism, p), x in zip(self.axes, places, strict=True):
+            found.setdefault(mechanism, {})[p.name] = float(p.value(x))
+        return found
 
-    def nodes(self) -> list[dict[str, float]]:
+    def nodes(self) -> list[Constants]:
         """Return the parameters at every node, the last axis fastest."""
         return [self.values(places) for places in itertools.product(*self.coarse)]
 

@@ -6,12 +6,11 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ..forward import Simulator
-from .fit import Fit, expand
+from .fit import Fit, expand, moved_towards
 from .grid import Grid
 
 Array = NDArray[np.float64]
 
-_FARTHEST, _SETTLED = 2.0, 0.15
 # places of the refined grid in a standard deviation that need no window; its half width, in those
 _RESOLVED, _WINDOW = 2.0, 4.0
 _NODE = 0.25  # of a prior's range: nodes farther apart stand for a response that is nearly straight
@@ -45,14 +44,12 @@ def sharpened(simulator: Simulator, fitted: Fit, *, rounds: int = 8) -> Fit:
     for _ in range(rounds):
         low, high = np.maximum(place - half, 0.0), np.minimum(place + half, 1.0)
         window = tuple(zip(low.tolist(), high.tolist(), strict=True))
-        local = Grid(grid.parameters, window)
+        local = Grid(grid.axes, window)
         found = expand(simulator, fitted.mechanisms, local, z, place, None)
         # where outcomes jump, a step may fall off the branch that the data are on
         if best is None or found.log_evidence > best.log_evidence:
             best = found
-        moved = found.z - z
-        shift = np.max(np.abs(moved), initial=0.0)
-        z = z + moved * min(1.0, _FARTHEST / shift) if shift > 0.0 else z
+        z, settled = moved_towards(found, z)
         wide = high - low
         outward = (
             ((found.place < low + 0.1 * wide) & (low > 0.0))
@@ -60,7 +57,7 @@ def sharpened(simulator: Simulator, fitted: Fit, *, rounds: int = 8) -> Fit:
         )  # fmt: skip
         place = found.place
         narrow = _WINDOW * _spread(found)
-        if not outward.any() and np.all(narrow > 0.3 * half) and shift < _SETTLED:
+        if not outward.any() and np.all(narrow > 0.3 * half) and settled:
             break
         half = np.where(outward, 1.6 * half, np.clip(narrow, 0.1 * half, half))
     assert best is not None

@@ -2,18 +2,23 @@
 
 from __future__ import annotations
 
+from .adhesion import Adhesion
 from .approach import ImpactSpeedLoss, Tilt
 from .base import Mechanism, Parameter, Surroundings
-from .contact import Adhesion, ContactDamping, Roughness, SqueezeFilm, TruncatedTip
-from .flow import (
-    HardenedLayer,
-    SizeEffect,
-    StrainRateHardening,
-    ThermalSoftening,
-    WorkHardening,
-)
-from .sliding import PloughingFriction, TangentialCompliance, VelocityDependentFriction
-from .waves import HalfSpaceWaves, RodFlexuralVibration, RodLongitudinalWaves, SupportCompliance
+from .contact_damping import ContactDamping
+from .friction import PloughingFriction, VelocityDependentFriction
+from .half_space_waves import HalfSpaceWaves
+from .hardened_layer import HardenedLayer
+from .rod_vibration import RodFlexuralVibration, RodLongitudinalWaves
+from .roughness import Roughness
+from .size_effect import SizeEffect
+from .squeeze_film import SqueezeFilm
+from .strain_rate_hardening import StrainRateHardening
+from .support_compliance import SupportCompliance
+from .tangential_compliance import TangentialCompliance
+from .thermal_softening import ThermalSoftening
+from .truncated_tip import TruncatedTip
+from .work_hardening import WorkHardening
 
 MECHANISMS: tuple[Mechanism, ...] = (
     StrainRateHardening(),

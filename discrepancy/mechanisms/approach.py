@@ -1,4 +1,4 @@
-"""Mechanisms before touch: a drop that loses speed, and a striker that leans."""
+"""Before touch: a drop that loses speed, and a striker that leans."""
 
 from __future__ import annotations
 
@@ -8,7 +8,8 @@ from dataclasses import replace
 from typing import ClassVar
 
 from ...impact import Scene
-from .base import Mechanism, Parameter, Situation, Surroundings, Values, is_oblique
+from .arithmetic import is_oblique
+from .base import Literature, Mechanism, Parameter, Situation, Surroundings, Values
 
 
 class ImpactSpeedLoss(Mechanism):
@@ -40,8 +41,6 @@ class ImpactSpeedLoss(Mechanism):
     def attach(self, scene: Scene, values: Values, around: Surroundings) -> Scene:
         """Replace the approach."""
         share = _kept(values, around)
-        if share == 1.0:
-            return scene
         old = scene.approach
         return scene.with_(
             approach=replace(old, speed=share * old.speed, tangential=share * old.tangential)
@@ -62,8 +61,11 @@ class Tilt(Mechanism):
     title = "the striker leans more or less than stated"
     equations = "theta + d_theta"
     parameters = (
-        Parameter("tilt_deg", "deg", -8.0, 8.0, "linear", 0.0, "thesis: +-5 degrees", nodes=9),
-    )
+        Parameter(
+            "tilt_deg", "deg", -8.0, 8.0, "linear", 0.0, "thesis: +-5 degrees", nodes=9,
+            literature=Literature(5.0, "the tolerance that the thesis states"),
+        ),
+    )  # fmt: skip
     direction: ClassVar[Mapping[str, int]] = {}
     form: ClassVar[float] = 0.05
 
@@ -83,8 +85,6 @@ class Tilt(Mechanism):
         """Replace the approach."""
         turn = math.radians(values["tilt_deg"])
         old = scene.approach
-        if turn == 0.0:
-            return scene
         if scene.striker.length > 0.0:
             angle = 0.5 * math.pi - abs(0.5 * math.pi - old.angle - turn)
             return scene.with_(approach=replace(old, angle=max(angle, 0.02)))

@@ -3,6 +3,7 @@
 To add your own, write one file like its neighbours here: a subclass of `Mechanism` with its name,
 equations, parameters with ranges and sources, `attach` that returns a scene with one seam
 replaced, and, if it can be ruled out by arithmetic, `applies`; then put it into `MECHANISMS`.
+What every mechanism must keep to is tested in tests/contract/test_mechanism_contract.py.
 """
 
 from __future__ import annotations
@@ -11,16 +12,25 @@ import math
 from abc import ABC, abstractmethod
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
-from typing import ClassVar, Literal
+from typing import ClassVar, Literal, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 
-from ...impact import Profiles, RateFree, Scene
-from ...impact.scene import FlowStress
+from ...impact import Scene
 
 Array = NDArray[np.float64]
 Values = Mapping[str, float]
+"""Numbers of one mechanism, by the names of its parameters."""
+Constants = Mapping[str, Values]
+"""Numbers of several mechanisms, by their names; two may use the same word for a parameter."""
+
+
+class Literature(NamedTuple):
+    """A value that was published before any recording was seen, and where."""
+
+    value: float
+    source: str
 
 
 @dataclass(frozen=True, slots=True)
@@ -42,6 +52,9 @@ class Parameter:
         Where the range comes from.
     nodes
         Points of the grid on which the mechanism is simulated.
+    literature
+        A published value for mild steel and common rigs, at which the mechanism can be tried
+        without fitting; none where there is no such value.
     """
 
     name: str
@@ -52,6 +65,7 @@ class Parameter:
     neutral: float
     source: str
     nodes: int = 9
+    literature: Literature | None = None
 
     def value(self, place: float | Array) -> Array:
         """Return the value at a place in (0, 1) of the prior."""
@@ -119,7 +133,8 @@ class Mechanism(ABC):
     equations
         What is added to the baseline, in one or two lines.
     parameters
-        Its free numbers.
+        Its free numbers. The first is the size of the effect: at its neutral value nothing happens,
+        whatever the others.
     direction
         Observable to the sign of its change: +1, -1.
     form
@@ -143,6 +158,12 @@ class Mechanism(ABC):
     law_error: ClassVar[float] = 1.0
     jumps: ClassVar[bool] = False
 
+    @property
+    def literature(self) -> Values:
+        """Published values of all parameters; empty if one of them has none."""
+        known = {p.name: p.literature.value for p in self.parameters if p.literature}
+        return known if len(known) == len(self.parameters) else {}
+
     def applies(self, situations: Sequence[Situation]) -> str:
         """Return why arithmetic rules the mechanism out for these conditions, or ""."""
         return ""
@@ -153,35 +174,42 @@ class Mechanism(ABC):
 
     @abstractmethod
     def attach(self, scene: Scene, values: Values, around: Surroundings) -> Scene:
-        """Return the scene with the mechanism's seam replaced."""
+        """Return the scene with the mechanism's seam replaced; not called at the neutral size."""
 
     def after(
-        self, situations: Sequence[Situation], values: Values, seen: dict[str, Array]
-    ) -> None:
-        """Change observables, arrays over the situations, that no seam of the motion carries."""
-        return
+        self, situations: Sequence[Situation], values: Values, seen: Mapping[str, Array]
+    ) -> Mapping[str, Array]:
+        """Return the observables, arrays over the situations, with what no seam carries.
+
+        Not called at the neutral size.
+        """
+        return seen
 
 
-def with_flow(scene: Scene, flow: FlowStress) -> Scene:
-    """Return the scene with one more influence on the flow stress."""
-    if isinstance(scene.flow, RateFree):
-        return scene.with_(flow=flow)
-    return scene.with_(flow=Profiles((scene.flow, flow)))
+def _acting(mechanisms: Sequence[Mechanism], constants: Constants) -> list[Mechanism]:
+    sizes = [(m, m.parameters[0]) for m in mechanisms]
+    return [m for m, size in sizes if constants[m.name][size.name] != size.neutral]
 
 
-def effective_mass(scene: Scene) -> float:
-    """Mass that the normal motion of the contact point meets, 1/(1/m + c^2/I) [kg]."""
-    striker = scene.striker
-    c = 0.5 * striker.length * math.cos(scene.approach.angle)
-    return 1.0 / (1.0 / striker.mass + c * c / striker.inertia)
+def attached(
+    mechanisms: Sequence[Mechanism], scene: Scene, constants: Constants, around: Surroundings
+) -> Scene:
+    """Return the scene with mechanisms attached one after the other."""
+    for m in _acting(mechanisms, constants):
+        scene = m.attach(scene, constants[m.name], around)
+    return scene
 
 
-def is_oblique(scene: Scene) -> bool:
-    """Whether the contact point has a tangential motion, or gets one from the rod's lean."""
-    leaning = scene.striker.length > 0.0 and scene.approach.angle < math.pi / 2.0 - 1e-6
-    return leaning or scene.approach.tangential != 0.0 or scene.approach.spin != 0.0
+def observed(
+    mechanisms: Sequence[Mechanism],
+    situations: Sequence[Situation],
+    constants: Constants,
+    seen: Mapping[str, Array],
+) -> Mapping[str, Array]:
+    """Return the observables after the motion, with what attached mechanisms change of them.
 
-
-def energy(scene: Scene) -> float:
-    """Kinetic energy that the contact must take up, m_eff v^2 / 2 [J]."""
-    return 0.5 * effective_mass(scene) * scene.approach.speed**2
+    Undone in the order of attachment: the last change of the approach was the innermost.
+    """
+    for m in reversed(_acting(mechanisms, constants)):
+        seen = m.after(situations, constants[m.name], seen)
+    return seen

@@ -99,10 +99,9 @@ def _explanation(v: Verdict) -> Iterable[str]:
     yield "<h2>What explains it</h2>"
     for m in v.best.mechanisms:
         yield f"<p><b>{_e(m.name)}</b>: {_e(m.title)}. <code>{_e(m.equations)}</code></p>"
-    sources = {q.name: q.source for q in v.best.grid.parameters}
     rows = [
-        (n, number(q), f"{q['low']:.3g} to {q['high']:.3g}", sources[n])
-        for n, q in own_parameters(v).items()
+        (n, number(q), f"{q['low']:.3g} to {q['high']:.3g}", axis.parameter.source)
+        for (n, q), axis in zip(own_parameters(v).items(), v.best.grid.axes, strict=True)
     ]
     yield _table(("parameter", "value", "90 % interval", "where its range comes from"), rows)
     i = v.improvement

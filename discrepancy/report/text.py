@@ -104,8 +104,7 @@ def lines(v: Verdict) -> list[str]:
 
 def own_parameters(v: Verdict) -> dict[str, dict[str, Any]]:
     """Return the parameters of the best explanation's mechanisms only."""
-    names = [q.name for q in v.best.grid.parameters]
-    return {n: v.parameters[n] for n in names}
+    return {label: v.parameters[label] for label in v.best.grid.labels}
 
 
 def number(q: dict[str, Any]) -> str:

@@ -26,6 +26,7 @@ from ...core.toml_input import read_toml
 from ...discrepancy.forward import ACCURACY, SIMULATED
 from ...discrepancy.inference.fit import label
 from ...discrepancy.mechanisms import MECHANISMS, Mechanism, Surroundings
+from ...discrepancy.mechanisms.base import attached, observed
 from ...impact import Approach, Friction, Scene, scene_of, strike_batch
 from ...impact import compiled as c
 from ...models import LAWS
@@ -35,34 +36,6 @@ from .chapter5 import thesis_rod
 Array = NDArray[np.float64]
 
 OBSERVED = ("permanent_depth_m", "sliding_length_m", "restitution", "friction_impulse_ratio")
-
-LITERATURE: Mapping[str, Mapping[str, float]] = {
-    # Johnson and Cook 1983, 1006 steel: C = 0.022, B/A = 275/350, n = 0.36
-    "strain-rate-hardening": {"rise_at_1000_per_s": 0.152, "rate_exponent": 0.145},
-    "work-hardening": {"hardening_ratio": 0.79, "hardening_exponent": 0.36},
-    # theory of the uniform rod, of Zener's plate or Hunter's half-space
-    "rod-longitudinal-waves": {"modal_participation": 1.0},
-    "rod-flexural-vibration": {"modal_participation": 1.0},
-    "half-space-waves": {"wave_scale": 1.0},
-    # a clamped 30 mm plate of about 10 kg at 1 kHz
-    "support-compliance": {"support_stiffness_N_m": 4e8, "support_mass_kg": 10.0},
-    # Bowden and Tabor's front of a sphere; dry steel twice as sticky at rest
-    "ploughing-friction": {"ploughing_scale": 1.0},
-    "velocity-dependent-friction": {
-        "static_over_dynamic": 1.5,
-        "friction_speed_m_s": 0.3,
-        "friction_stated_slow": 0.0,
-    },
-    # Hunter and Crossley's alpha for steel near 0.1 s/m, times 3/2
-    "contact-damping": {"damping_s_m": 0.15, "damping_depth_exponent": 0.0},
-    # asperities that are flattened; a sixth of the area, Gaussian heights above one deviation
-    "roughness": {"roughness_m": 4e-7, "asperity_force_ratio": 0.16, "asperity_flattening": 1.0},
-    "truncated-tip": {"flat_radius_over_R": 0.03},
-    "hardened-layer": {"layer_hardening": 0.3, "layer_thickness_m": 1.5e-4},
-    # the thesis's own tolerance
-    "tilt": {"tilt_deg": 5.0},
-}
-"""Constants that no measurement of the thesis has touched."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -116,7 +89,7 @@ def demonstrate() -> Demonstration:
     scenes = [_scene(data, e) for e in experiments]
     around = Surroundings(thickness=float(data["flat"].get("thickness_m", 0.03)))
     situations = [(s, around) for s in scenes]
-    usable = [m for m in MECHANISMS if m.name in LITERATURE and not m.applies(situations)]
+    usable = [m for m in MECHANISMS if m.literature and not m.applies(situations)]
     candidates: list[tuple[Mechanism, ...]] = [(), *((m,) for m in usable)]
     candidates += list(itertools.combinations(usable, 2))
     predictions = _predict(scenes, around, candidates)
@@ -149,19 +122,19 @@ def _scene(data: Mapping[str, Any], experiment: Mapping[str, Any]) -> Scene:
 def _predict(
     scenes: Sequence[Scene], around: Surroundings, candidates: Sequence[tuple[Mechanism, ...]]
 ) -> list[Array]:
-    attached = []
-    for mechanisms in candidates:
-        for scene in scenes:
-            for m in mechanisms:
-                scene = m.attach(scene, LITERATURE[m.name], around)
-            attached.append(scene)
-    rows = strike_batch(attached, ACCURACY)
+    constants = {m.name: m.literature for m in MECHANISMS}
+    changed = [
+        attached(mechanisms, scene, constants, around)
+        for mechanisms in candidates
+        for scene in scenes
+    ]
+    rows = strike_batch(changed, ACCURACY)
+    situations = [(s, around) for s in scenes]
     n, found = len(scenes), []
     for i, mechanisms in enumerate(candidates):
         part = rows[i * n : (i + 1) * n]
         seen = {k: part[:, c.OBSERVABLES.index(v)].copy() for k, v in SIMULATED.items()}
-        for m in reversed(mechanisms):
-            m.after([(s, around) for s in scenes], LITERATURE[m.name], seen)
+        seen = dict(observed(mechanisms, situations, constants, seen))
         found.append(np.stack([seen[name] for name in OBSERVED], axis=1))
     return found
 

@@ -8,7 +8,7 @@ from types import SimpleNamespace
 import numpy as np
 import pytest
 from dentscope.discrepancy.estimates import parameters_of
-from dentscope.discrepancy.inference.grid import Grid, interval, posterior
+from dentscope.discrepancy.inference.grid import Axis, Grid, interval, posterior
 from dentscope.discrepancy.inference.linear import Linear
 from dentscope.discrepancy.mechanisms import Parameter
 from scipy.stats import beta, multivariate_normal, norm
@@ -34,12 +34,21 @@ def test_unknowns_are_those_of_ridge_regression() -> None:
 def test_grid_is_exact_for_cubics() -> None:
     one = Parameter("a", "-", 1.0, 10.0, "log", 0.0, "", nodes=5)
     two = Parameter("b", "-", -1.0, 1.0, "linear", 0.0, "", nodes=3)
-    grid = Grid((one, two))
+    grid = Grid((Axis("m", one), Axis("m", two)))
     x, y = np.meshgrid(*grid.coarse, indexing="ij")
     table = (x**3 - x + 2.0 * y**2 * x).reshape(-1, 1)
     u, v = grid.places().T
     assert grid.refine(table)[:, 0] == pytest.approx(u**3 - u + 2.0 * v**2 * u, abs=1e-12)
-    assert grid.nodes()[0] == {"a": 1.0, "b": -1.0}
+    assert grid.nodes()[0] == {"m": {"a": 1.0, "b": -1.0}}
+
+
+def test_two_mechanisms_may_use_the_same_word() -> None:
+    share = Parameter("share", "-", 0.0, 1.0, "linear", 0.0, "", nodes=5)
+    own = Parameter("own", "-", 0.0, 1.0, "linear", 0.0, "", nodes=3)
+    grid = Grid((Axis("one", share), Axis("two", share), Axis("two", own)))
+    nodes = grid.nodes()
+    assert len({(n["one"]["share"], n["two"]["share"]) for n in nodes}) == 25
+    assert grid.labels == ("one.share", "two.share", "own")
 
 
 def test_window_and_whole_prior_give_one_evidence() -> None:
@@ -50,7 +59,8 @@ def test_window_and_whole_prior_give_one_evidence() -> None:
         found, _ = posterior(norm.logpdf(grid.places()[:, 0], 0.4, 0.02))
         return found + grid.log_volume
 
-    whole, part = Grid((p,)), Grid((p,), ((0.3, 0.5),))
+    axis = Axis("m", p)
+    whole, part = Grid((axis,)), Grid((axis,), ((0.3, 0.5),))
     assert part.coarse[0][[0, -1]] == pytest.approx([0.3, 0.5])
     assert evidence(part) == pytest.approx(0.0, abs=1e-5)  # all of the density is inside
     assert evidence(whole) == pytest.approx(evidence(part), abs=1e-3)
@@ -59,7 +69,7 @@ def test_window_and_whole_prior_give_one_evidence() -> None:
 def test_a_window_has_no_fewer_nodes_than_the_prior_has_there() -> None:
     fine = Parameter("a", "-", 1.0, 10.0, "log", 0.0, "", nodes=17)
     share = Parameter("b", "-", 0.0, 1.0, "ends", 0.0, "", nodes=5)
-    first, second = Grid((fine, share), ((0.1, 0.9), (0.4, 0.5))).coarse
+    first, second = Grid((Axis("m", fine), Axis("m", share)), ((0.1, 0.9), (0.4, 0.5))).coarse
     assert len(first) == 14  # 0.8 of 16 steps
     assert len(second) == 5
 
@@ -87,7 +97,7 @@ def test_interval_holds_what_a_form_may_be_off_in_size() -> None:
     """Effect theta times a shape, nearly no noise: 15 % of the effect are 15 % of theta."""
     shape, theta, noise = np.array([1.0, 2.0, -1.0]), 0.4, 1e-2
     p = Parameter("theta", "-", 0.3, 0.5, "linear", 0.0, "", nodes=5)
-    grid = Grid((p,))
+    grid = Grid((Axis("m", p),))
     at = p.value(grid.places()[:, 0])
     residuals = (theta - at)[:, None] * shape
     linear = Linear(noise**2 * np.eye(3), np.zeros((3, 1)))

@@ -6,7 +6,7 @@ from types import SimpleNamespace
 import numpy as np
 import pytest
 from dentscope.discrepancy.estimates import limits_of
-from dentscope.discrepancy.inference.grid import Grid
+from dentscope.discrepancy.inference.grid import Axis, Grid
 from dentscope.discrepancy.mechanisms.base import Parameter
 
 
@@ -20,7 +20,7 @@ from dentscope.discrepancy.mechanisms.base import Parameter
 )
 def test_limit_is_the_value_nearest_to_doing_nothing(low, high, scale, neutral, effect, value):
     own = Parameter("p", "-", low, high, scale, neutral, "", nodes=5)
-    grid = Grid((own,))
+    grid = Grid((Axis("m", own),))
     found = limits_of(
         SimpleNamespace(
             base=SimpleNamespace(linear=SimpleNamespace(white=lambda e: e)),

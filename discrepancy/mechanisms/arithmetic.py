@@ -1,0 +1,70 @@
+"""What arithmetic says of a scene, before any simulation; used by `applies` and `attach`."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Mapping, Sequence
+
+import numpy as np
+
+from ...core.material import Material
+from ...impact import Scene
+from .base import Array, Situation
+
+_STEEL_DENSITY = 7800.0
+
+
+def effective_mass(scene: Scene) -> float:
+    """Mass that the normal motion of the contact point meets, 1/(1/m + c^2/I) [kg]."""
+    striker = scene.striker
+    c = 0.5 * striker.length * math.cos(scene.approach.angle)
+    return 1.0 / (1.0 / striker.mass + c * c / striker.inertia)
+
+
+def energy(scene: Scene) -> float:
+    """Kinetic energy that the contact must take up, m_eff v^2 / 2 [J]."""
+    return 0.5 * effective_mass(scene) * scene.approach.speed**2
+
+
+def density_of(material: Material) -> float:
+    """Density as stated, else that of steel [kg/m^3]."""
+    return material.density if math.isfinite(material.density) else _STEEL_DENSITY
+
+
+def is_oblique(scene: Scene) -> bool:
+    """Whether the contact point has a tangential motion, or gets one from the rod's lean."""
+    leaning = scene.striker.length > 0.0 and scene.approach.angle < math.pi / 2.0 - 1e-6
+    return leaning or scene.approach.tangential != 0.0 or scene.approach.spin != 0.0
+
+
+def needs_yielding_law(situations: Sequence[Situation]) -> str:
+    """Return the reason against a mechanism of the surface's shape, or ""."""
+    if all(scene.law.name == "hertz" for scene, _ in situations):
+        # its recovery is Hertz's own, so another loading curve would lose energy
+        return "the bodies do not yield: the surface's shape takes no energy, and is not simulated"
+    return ""
+
+
+def needs_sliding(situations: Sequence[Situation]) -> str:
+    """Return the reason against a mechanism of the tangential motion, or ""."""
+    if not any(is_oblique(scene) for scene, _ in situations):
+        return "every impact is normal: nothing slides"
+    return ""
+
+
+def needs_rod(situations: Sequence[Situation]) -> str:
+    """Return the reason against a mechanism of a rod, or ""."""
+    if not any(scene.striker.length > 0.0 for scene, _ in situations):
+        return "no striker is a rod"
+    return ""
+
+
+def slower(seen: Mapping[str, Array], restitution: Array) -> dict[str, Array]:
+    """Return the observables with another restitution, and with it the centre's rebound speed."""
+    with np.errstate(divide="ignore", invalid="ignore"):
+        ratio = np.where(seen["restitution"] > 0.0, restitution / seen["restitution"], 1.0)
+    return {
+        **seen,
+        "rebound_speed_m_s": seen["rebound_speed_m_s"] * ratio,
+        "restitution": restitution,
+    }

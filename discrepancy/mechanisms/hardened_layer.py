@@ -1,0 +1,58 @@
+"""The surface is harder than the bulk."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from ...impact import Scene
+from ...impact.scene import FlowStress
+from ...impact.strength import StrengthTable
+from .base import Array, Literature, Parameter, Situation, Surroundings, Values
+from .flow_stress import FlowMechanism, StrengthProfile
+
+
+@dataclass(frozen=True, slots=True)
+class LayerProfile(StrengthProfile):
+    """1 + k exp(-z/t) at z = a/2, the depth of the largest shear."""
+
+    rise: float
+    thickness: float
+
+    def profile(self, scene: Scene, table: StrengthTable) -> Array:
+        """Return relative strengths at the depths of `table`, shape (nodes,)."""
+        return np.asarray(1.0 + self.rise * np.exp(-0.5 * table.radius / self.thickness))
+
+
+class HardenedLayer(FlowMechanism):
+    """A surface harder than the bulk: a case, a machined or polished skin."""
+
+    name = "hardened-layer"
+    title = "the surface is harder than the bulk"
+    equations = "S = S_y [1 + k exp(-a/(2 t))]"
+    parameters = (
+        Parameter(
+            "layer_hardening", "-", 0.1, 2.5, "log", 0.0,
+            "machined skins 10-50 % harder, carburised cases up to 3 times", nodes=5,
+            literature=Literature(0.3, "the middle of machined skins"),
+        ),
+        Parameter(
+            "layer_thickness_m", "m", 2e-5, 2e-3, "log", 0.0,
+            "polished 5-50 um, machined 0.1-0.3 mm, carburised 0.5-2 mm", nodes=5,
+            literature=Literature(1.5e-4, "a machined skin"),
+        ),
+    )  # fmt: skip
+
+    def ranges(self, situations: Sequence[Situation]) -> tuple[Parameter, ...]:
+        """A stated thickness narrows the range to a factor of two."""
+        stated = situations[0][1].layer_thickness
+        if not stated > 0.0:
+            return self.parameters
+        one, two = self.parameters
+        return one, replace(two, low=0.5 * stated, high=2.0 * stated, source="stated in set.toml")
+
+    def strength(self, scene: Scene, values: Values, around: Surroundings) -> FlowStress:
+        """Return the profile of this mechanism."""
+        return LayerProfile(values["layer_hardening"], values["layer_thickness_m"])

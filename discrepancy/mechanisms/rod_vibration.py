@@ -1,0 +1,109 @@
+"""The rod rings along its axis, and bends where it leans."""
+
+from __future__ import annotations
+
+import math
+from abc import abstractmethod
+from collections.abc import Mapping, Sequence
+from dataclasses import replace
+from functools import lru_cache
+from typing import ClassVar
+
+from ...core.material import Material
+from ...impact import Modes, Scene, Striker, rod_modes
+from ...impact.beam import axial_frequencies
+from .arithmetic import density_of, is_oblique, needs_rod
+from .base import Literature, Mechanism, Parameter, Situation, Surroundings, Values
+
+_AXIAL, _BENDING = 6, 9
+_LOSS = 1e-3  # of steel rods; what it takes during a contact is below a thousandth
+
+_PARTICIPATION = Parameter(
+    "modal_participation", "-", 0.5, 1.5, "linear", 0.0,
+    "1 is the theory of the uniform rod; the ends' shape and the mass's spread move it", nodes=5,
+    literature=Literature(1.0, "the uniform rod"),
+)  # fmt: skip
+
+
+class _Ringing(Mechanism):
+    """A rod that is no rigid body: its modes take energy and give it back."""
+
+    parameters = (_PARTICIPATION,)
+    form: ClassVar[float] = 0.05
+    jumps: ClassVar[bool] = True
+
+    def applies(self, situations: Sequence[Situation]) -> str:
+        """Needs a rod."""
+        return needs_rod(situations)
+
+    @abstractmethod
+    def modes(self, striker: Striker, body: Material) -> Modes:
+        """Return the modes of a rod of this material."""
+
+    def attach(self, scene: Scene, values: Values, around: Surroundings) -> Scene:
+        """Replace the rigid striker."""
+        striker, body = scene.striker, scene.pair.sphere
+        if striker.length == 0.0 or body.rigid:
+            return scene
+        modes = self.modes(striker, body.with_(density=density_of(body)))
+        return scene.with_(modes=_scaled(modes, values["modal_participation"]))
+
+
+class RodLongitudinalWaves(_Ringing):
+    """The rod's axial modes store energy and shape the force."""
+
+    name = "rod-longitudinal-waves"
+    title = "the rod rings along its axis"
+    equations = (
+        "q_k'' + eta w_k q_k' + w_k^2 q_k = sqrt(2/m) F sin(theta), w_k = k pi sqrt(E/rho)/L"
+    )
+    direction: ClassVar[Mapping[str, int]] = {"contact_time_s": 1}
+
+    def modes(self, striker: Striker, body: Material) -> Modes:
+        """Return the lowest axial modes."""
+        return axial_modes(striker.length, body, striker.mass)
+
+
+class RodFlexuralVibration(_Ringing):
+    """The leaning rod bends as well: energy goes into bending, and the tip may touch again."""
+
+    name = "rod-flexural-vibration"
+    title = "the leaning rod bends and rings"
+    equations = "free-free Timoshenko beam and axial modes; re-contact while the tip returns"
+
+    def applies(self, situations: Sequence[Situation]) -> str:
+        """Needs a rod that leans."""
+        reason = super().applies(situations)
+        if reason:
+            return reason
+        if not any(scene.striker.length > 0.0 and is_oblique(scene) for scene, _ in situations):
+            return "every rod stands upright: a central blow along the axis does not bend it"
+        return ""
+
+    def modes(self, striker: Striker, body: Material) -> Modes:
+        """Return the lowest axial and bending modes."""
+        return _all_modes(striker.length, striker.radius, body, striker.mass)
+
+
+@lru_cache(maxsize=256)
+def axial_modes(length: float, material: Material, mass: float) -> Modes:
+    """Return the lowest axial modes of a free rod with the stated mass."""
+    omega = axial_frequencies(length, material, count=_AXIAL)
+    ends = tuple([math.sqrt(2.0 / mass)] * _AXIAL)
+    none = (0.0,) * _AXIAL
+    return Modes(tuple(float(w) for w in omega), ends, none, none, _LOSS)
+
+
+@lru_cache(maxsize=256)
+def _all_modes(length: float, radius: float, material: Material, mass: float) -> Modes:
+    return rod_modes(length, radius, material, mass=mass, count=_BENDING, loss_factor=_LOSS)
+
+
+def _scaled(modes: Modes, share: float) -> Modes:
+    factor = math.sqrt(share)
+    return replace(
+        modes,
+        axial=tuple(factor * x for x in modes.axial),
+        transverse=tuple(factor * x for x in modes.transverse),
+        rotation=tuple(factor * x for x in modes.rotation),
+    )

@@ -1,0 +1,151 @@
+"""Asperities give way before the bulk does, and do not come back whole."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, replace
+from typing import ClassVar
+
+import numpy as np
+
+from ...impact import Scene
+from ...impact.strength import UNIT, StrengthTable, strength_table
+from .arithmetic import needs_yielding_law
+from .base import Array, Literature, Mechanism, Parameter, Situation, Surroundings, Values
+
+_POWER = 1.25
+"""Exponent of a recovery, between Hertz's 3/2 and a flat punch's 1: for the layer's share alone."""
+
+
+@dataclass(frozen=True, slots=True)
+class Layer:
+    """A rough layer in series with the bulk, over the depth nodes of a law's table.
+
+    Parameters
+    ----------
+    force, recovery
+        (NODES,) factors on the smooth contact's loading force and elastic recovery.
+    dent
+        (NODES,) depth that stays over the peak depth less the recovery, which is the energy's.
+    """
+
+    force: Array
+    recovery: Array
+    dent: Array
+
+    @classmethod
+    def of(cls, table: StrengthTable, sigma: float, start: float, kept: float) -> Layer:
+        """Return the layer that closes by sigma ln(1 + F/F_0).
+
+        Asperities with exponential heights carry F = F_0 (exp(closure/sigma) - 1), and open again
+        on the same curve until the part `kept` of the closure is left.
+
+        Parameters
+        ----------
+        table
+            Of the smooth contact.
+        sigma
+            Mean height of the asperities [m].
+        start
+            F_0 over the force at which the bulk has moved by sigma.
+        kept
+            Part of the closure that stays.
+        """
+        depth, force = table.depth, np.exp(table.log_force[UNIT])
+        recovered = np.exp(table.log_recovery[UNIT])
+        scale = start * math.exp(np.interp(math.log(sigma), np.log(depth), np.log(force)))
+        turns = np.log1p(force / scale)
+        freed = scale * np.expm1(kept * turns)
+        given = sigma * (force - freed - scale * (1.0 - kept) * turns)
+        back = recovered + (1.0 + _POWER) * given / force
+        total = depth + sigma * turns
+
+        def at_nodes(value: Array) -> Array:
+            return np.asarray(np.interp(np.log(depth), np.log(total), value))
+
+        rough_back = np.minimum(np.exp(at_nodes(np.log(back))), depth)
+        stays = np.maximum(at_nodes(depth - recovered + kept * sigma * turns), 0.0)
+        rest = np.maximum(depth - rough_back, 1e-3 * depth)
+        return cls(
+            np.exp(at_nodes(np.log(force))) / force, rough_back / recovered,
+            stays / rest,
+        )  # fmt: skip
+
+
+class Roughness(Mechanism):
+    """Asperities give way before the bulk does, and do not come back whole."""
+
+    name = "roughness"
+    title = "asperities give way before the bulk"
+    equations = "depth + sigma ln(1 + F/F_0); the part k of the closure stays"
+    parameters = (
+        Parameter(
+            "roughness_m", "m", 1e-7, 1e-5, "log", 0.0,
+            "Greenwood and Williamson 1966; ground 0.4 um, turned 1-5 um", nodes=7,
+            literature=Literature(4e-7, "a ground surface"),
+        ),
+        Parameter(
+            "asperity_force_ratio", "-", 0.01, 3.0, "log", 1.0,
+            "F_0 over the force that dents the bulk by sigma: the part of the area that Gaussian "
+            "heights put above three standard deviations (0.001) to one (0.16), each way tenfold",
+            nodes=5,
+            literature=Literature(0.16, "Gaussian heights above one standard deviation"),
+        ),
+        Parameter(
+            "asperity_flattening", "-", 0.0, 1.0, "linear", 0.0,
+            "part of the closure that stays: 0 for elastic asperities, 1 for those that flow "
+            "(plasticity index, Greenwood and Williamson 1966)", nodes=3,
+            literature=Literature(1.0, "asperities that flow"),
+        ),
+    )  # fmt: skip
+    direction: ClassVar[Mapping[str, int]] = {"contact_time_s": 1, "peak_force_N": -1}
+
+    def applies(self, situations: Sequence[Situation]) -> str:
+        """Needs a metal that yields."""
+        return needs_yielding_law(situations)
+
+    def ranges(self, situations: Sequence[Situation]) -> tuple[Parameter, ...]:
+        """A stated roughness narrows the range."""
+        stated = situations[0][1].roughness
+        sigma, *rest = self.parameters
+        if stated > 0.0:
+            sigma = replace(sigma, low=0.5 * stated, high=4.0 * stated)
+        return (sigma, *rest)
+
+    def attach(self, scene: Scene, values: Values, around: Surroundings) -> Scene:
+        """Replace the transform of the normal force."""
+        layer, now = _layer_of(scene, values), scene.force
+        return scene.with_(
+            force=replace(
+                now, factors=times(now.factors, layer.force),
+                recovery_factors=times(now.recovery_factors, layer.recovery),
+            )
+        )  # fmt: skip
+
+    def after(
+        self, situations: Sequence[Situation], values: Values, seen: Mapping[str, Array]
+    ) -> Mapping[str, Array]:
+        """Set the depth that stays, of bulk and layer."""
+        left = []
+        for (scene, _), peak in zip(situations, seen["peak_depth_m"], strict=True):
+            depth = strength_table(scene.law, scene.pair).depth
+            dent = _layer_of(scene, values).dent
+            left.append(np.interp(math.log(max(peak, depth[0])), np.log(depth), dent))
+        return {**seen, "permanent_depth_m": seen["permanent_depth_m"] * np.array(left)}
+
+
+def _layer_of(scene: Scene, values: Values) -> Layer:
+    table = strength_table(scene.law, scene.pair)
+    return Layer.of(
+        table, values["roughness_m"], values["asperity_force_ratio"], values["asperity_flattening"]
+    )
+
+
+def times(present: tuple[float, ...], factors: Array) -> tuple[float, ...]:
+    """Multiply two tables over the depth nodes; an empty one is neutral."""
+    if not present:
+        return tuple(float(x) for x in factors)
+    grid = np.linspace(0.0, 1.0, len(factors))
+    old = np.interp(grid, np.linspace(0.0, 1.0, len(present)), present)
+    return tuple(float(x) for x in old * factors)

@@ -1,0 +1,57 @@
+"""Small tips meet a harder metal."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+
+from ...impact import Scene
+from ...impact.scene import FlowStress
+from ...impact.strength import StrengthTable
+from .base import Array, Parameter, Situation, Surroundings, Values
+from .flow_stress import FlowMechanism, StrengthProfile
+
+
+@dataclass(frozen=True, slots=True)
+class SizeProfile(StrengthProfile):
+    """sqrt(1 + R*/R), the same at every depth."""
+
+    length: float
+
+    def profile(self, scene: Scene, table: StrengthTable) -> Array:
+        """Return relative strengths at the depths of `table`, shape (nodes,)."""
+        return np.full(table.depth.shape, math.sqrt(1.0 + self.length / scene.pair.R))
+
+
+class SizeEffect(FlowMechanism):
+    """Smaller spheres meet a harder metal (geometrically necessary dislocations)."""
+
+    name = "size-effect"
+    title = "small tips meet a harder metal"
+    equations = "S = S_y sqrt(1 + R*/R)"
+    parameters = (
+        Parameter(
+            "size_length_m", "m", 1e-6, 1e-3, "log", 0.0,
+            "Swadener, George and Pharr, J. Mech. Phys. Solids 50 (2002) 681",
+        ),
+    )  # fmt: skip
+
+    def applies(self, situations: Sequence[Situation]) -> str:
+        """Needs a metal that yields, and tips of different radius."""
+        reason = super().applies(situations)
+        if reason:
+            return reason
+        radii = [scene.pair.R for scene, _ in situations]
+        if max(radii) < 1.3 * min(radii):
+            return (
+                "all tips have nearly one radius: a size effect is then the same as another "
+                "yield strength"
+            )
+        return ""
+
+    def strength(self, scene: Scene, values: Values, around: Surroundings) -> FlowStress:
+        """Return the profile of this mechanism."""
+        return SizeProfile(values["size_length_m"])

@@ -1,0 +1,54 @@
+"""The flat moves on its support."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Mapping, Sequence
+from dataclasses import replace
+from typing import ClassVar
+
+from ...impact import Scene, Support
+from .base import Literature, Mechanism, Parameter, Situation, Surroundings, Values
+
+
+class SupportCompliance(Mechanism):
+    """The flat moves on its support."""
+
+    name = "support-compliance"
+    title = "the flat moves on its support"
+    equations = "M w'' + c w' + k w = F"
+    parameters = (
+        Parameter(
+            "support_stiffness_N_m", "N/m", 1e6, 1e9, "log", math.inf,
+            "blocks on foam or clamped to a bench; frames 1e8-1e10 N/m", nodes=5,
+            literature=Literature(4e8, "a clamped plate of 30 mm and 10 kg at 1 kHz"),
+        ),
+        Parameter(
+            "support_mass_kg", "kg", 0.1, 100.0, "log", math.inf,
+            "from the flat alone to the bench with it", nodes=5,
+            literature=Literature(10.0, "a clamped plate of 30 mm and 10 kg at 1 kHz"),
+        ),
+    )  # fmt: skip
+    direction: ClassVar[Mapping[str, int]] = {"restitution": -1, "permanent_depth_m": -1}
+
+    def ranges(self, situations: Sequence[Situation]) -> tuple[Parameter, ...]:
+        """Stated values narrow the ranges; the flat on one striker's mass bounds the mass."""
+        around = situations[0][1]
+        k, m = self.parameters
+        heaviest = max(scene.striker.mass for scene, _ in situations)
+        m = replace(m, low=2.0 * heaviest, high=300.0 * heaviest)
+        stated = around.support_stiffness, around.support_mass
+        if stated[0] > 0.0:
+            k = replace(k, low=stated[0] / 2.0, high=stated[0] * 2.0, source="stated", nodes=3)
+        if stated[1] > 0.0:
+            m = replace(m, low=stated[1] / 1.5, high=stated[1] * 1.5, source="stated", nodes=3)
+        return k, m
+
+    def attach(self, scene: Scene, values: Values, around: Surroundings) -> Scene:
+        """Replace the rigid base."""
+        mass = values["support_mass_kg"]
+        k = values["support_stiffness_N_m"]
+        damping = 0.04 * math.sqrt(k * mass)  # 2 % of critical, as bolted frames have
+        return scene.with_(
+            support=Support(mass, k, damping, plate_mobility=scene.support.plate_mobility)
+        )

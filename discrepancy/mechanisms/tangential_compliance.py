@@ -1,0 +1,38 @@
+"""The contact gives way sideways before it slides."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Mapping, Sequence
+from dataclasses import replace
+from typing import ClassVar
+
+from ...impact import Scene
+from .arithmetic import is_oblique, needs_sliding
+from .base import Mechanism, Parameter, Situation, Surroundings, Values
+
+
+class TangentialCompliance(Mechanism):
+    """The contact gives way sideways before it slides (Mindlin; Maw, Barber and Fawcett)."""
+
+    name = "tangential-compliance"
+    title = "the contact gives way sideways before it slides"
+    equations = "a spring k_t = s 2 E' a carries the tangential force up to mu F_n, then it slides"
+    parameters = (
+        Parameter(
+            "tangential_stiffness_ratio", "-", 0.3, 1.5, "log", math.inf,
+            "2 (1 - nu)/(2 - nu) = 0.82 (Mindlin 1949); plastic contacts +-50 %", nodes=5,
+        ),
+    )  # fmt: skip
+    direction: ClassVar[Mapping[str, int]] = {}
+
+    def applies(self, situations: Sequence[Situation]) -> str:
+        """Needs sliding."""
+        return needs_sliding(situations)
+
+    def attach(self, scene: Scene, values: Values, around: Surroundings) -> Scene:
+        """Replace the friction law."""
+        ratio = values["tangential_stiffness_ratio"]
+        if not is_oblique(scene):
+            return scene
+        return scene.with_(friction=replace(scene.friction, stiffness=ratio))

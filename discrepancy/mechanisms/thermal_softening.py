@@ -1,0 +1,93 @@
+"""The flow stress falls with temperature and with the heat of deformation."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from typing import ClassVar
+
+import numpy as np
+
+from ...impact import Scene
+from ...impact.scene import FlowStress
+from ...impact.strength import StrengthTable
+from .arithmetic import density_of, energy
+from .base import Array, Literature, Parameter, Situation, Surroundings, Values
+from .flow_stress import STRAIN, FlowMechanism, StrengthProfile, strain
+
+
+@dataclass(frozen=True, slots=True)
+class HeatProfile(StrengthProfile):
+    """1 - T*^m over that at the reference temperature."""
+
+    heat: float
+    exponent: float
+    temperature: float
+    ambient: float
+    melting: float
+
+    def profile(self, scene: Scene, table: StrengthTable) -> Array:
+        """Return relative strengths at the depths of `table`, shape (nodes,)."""
+        hot = self.temperature - self.ambient + self.heat * strain(scene, table)
+        share = np.clip(hot / (self.melting - self.ambient), 0.0, 0.95)
+        return np.asarray(1.0 - share**self.exponent)
+
+
+class ThermalSoftening(FlowMechanism):
+    """The flow stress falls with the stated temperature and the heat of deformation."""
+
+    name = "thermal-softening"
+    title = "the metal is softened by heat"
+    equations = "S = S_y (1 - T*^m), T* = (T - T_0 + 0.9 S_y eps/(rho c_p))/(T_m - T_0)"
+    parameters = (
+        Parameter(
+            "softening_exponent", "-", 0.4, 2.5, "linear", math.inf,
+            "Johnson and Cook 1983: 1.00 (1006) to 1.70 (7039); half as far again for other metals",
+            literature=Literature(1.0, "m of 1006 steel, Johnson and Cook 1983"),
+        ),
+    )  # fmt: skip
+    direction: ClassVar[Mapping[str, int]] = {"restitution": -1, "permanent_depth_m": 1}
+
+    def applies(self, situations: Sequence[Situation]) -> str:
+        """Compare the heat of deformation with the way to melting."""
+        reason = super().applies(situations)
+        if reason:
+            return reason
+        largest, heat = 0.0, 0.0
+        for scene, around in situations:
+            hot = _heat(scene, around) * STRAIN * _edge(scene)
+            heat = max(heat, hot)
+            hot += max(around.temperature - around.ambient, 0.0)
+            largest = max(largest, hot / (_melting(around) - around.ambient))
+        if largest < 0.02:
+            return (
+                f"deformation heats the metal by at most {heat:.1f} K, "
+                f"{100.0 * largest:.1f} % of the way to melting"
+            )
+        return ""
+
+    def strength(self, scene: Scene, values: Values, around: Surroundings) -> FlowStress:
+        """Return the profile of this mechanism."""
+        heat = _heat(scene, around)
+        return HeatProfile(
+            heat, values["softening_exponent"], around.temperature, around.ambient,
+            _melting(around),
+        )  # fmt: skip
+
+
+def _melting(around: Surroundings) -> float:
+    return around.melting if around.melting > around.ambient else 1790.0
+
+
+def _heat(scene: Scene, around: Surroundings) -> float:
+    """Warming per unit of plastic strain, 0.9 S_y/(rho c_p) [K]."""
+    weak = scene.pair.weaker
+    capacity = around.heat_capacity if around.heat_capacity > 0.0 else 470.0
+    return 0.9 * weak.Sy / (density_of(weak) * capacity)
+
+
+def _edge(scene: Scene) -> float:
+    """Largest a/R, from the volume of a dent that takes up the energy at 2.8 S_y."""
+    volume = energy(scene) / (2.8 * scene.pair.Sy_min)
+    return float(min((4.0 * volume * scene.pair.R / math.pi) ** 0.25 / scene.pair.R, 1.0))

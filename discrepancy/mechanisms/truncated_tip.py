@@ -1,0 +1,49 @@
+"""A flat, worn or cut, ends the tip's curvature."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Mapping, Sequence
+from dataclasses import replace
+from typing import ClassVar
+
+from ...impact import Scene
+from .arithmetic import needs_yielding_law
+from .base import Literature, Mechanism, Parameter, Situation, Surroundings, Values
+
+
+class TruncatedTip(Mechanism):
+    """A flat, worn or cut, ends the tip's curvature."""
+
+    name = "truncated-tip"
+    title = "the tip is flat at its end"
+    equations = "a (a^2 - b^2)^(1/2) = R d elastically; the law at d + b^2/(2R) once it yields"
+    parameters = (
+        Parameter(
+            "flat_radius_over_R", "-", 0.003, 0.12, "log", 0.0,
+            "0.05-1 mm on tips of 9 mm: handling wear to a turned-off centre",
+            literature=Literature(0.03, "the middle of that range"),
+        ),
+    )  # fmt: skip
+    direction: ClassVar[Mapping[str, int]] = {
+        "contact_time_s": -1,
+        "permanent_depth_m": -1,
+        "peak_force_N": 1,
+    }
+
+    law_error: ClassVar[float] = 2.5
+    """The law is that of a sphere, pressed deeper by the missing cap; about 5 % of the force."""
+
+    def applies(self, situations: Sequence[Situation]) -> str:
+        """Needs a machined tip and a metal that yields."""
+        if all(scene.striker.length == 0.0 for scene, _ in situations):
+            return "every striker is a ball, which turns: a flat on it would not meet every impact"
+        return needs_yielding_law(situations)
+
+    def attach(self, scene: Scene, values: Values, around: Surroundings) -> Scene:
+        """Replace the tip."""
+        b = values["flat_radius_over_R"] * scene.striker.tip_radius
+        if scene.striker.length == 0.0:
+            return scene
+        flat = math.hypot(b, scene.striker.tip_flat_radius)
+        return scene.with_(striker=replace(scene.striker, tip_flat_radius=flat))

@@ -1,0 +1,49 @@
+"""The flow stress rises with plastic strain."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from ...impact import Scene
+from ...impact.scene import FlowStress
+from ...impact.strength import StrengthTable
+from .base import Array, Literature, Parameter, Surroundings, Values
+from .flow_stress import FlowMechanism, StrengthProfile, strain
+
+
+@dataclass(frozen=True, slots=True)
+class StrainProfile(StrengthProfile):
+    """1 + K (0.2 a/R)^n."""
+
+    rise: float
+    exponent: float
+
+    def profile(self, scene: Scene, table: StrengthTable) -> Array:
+        """Return relative strengths at the depths of `table`, shape (nodes,)."""
+        return np.asarray(1.0 + self.rise * strain(scene, table) ** self.exponent)
+
+
+class WorkHardening(FlowMechanism):
+    """The flow stress rises with plastic strain."""
+
+    name = "work-hardening"
+    title = "the metal hardens as it is deformed"
+    equations = "S = S_y [1 + K (0.2 a/R)^n]"
+    parameters = (
+        Parameter(
+            "hardening_ratio", "-", 0.15, 6.0, "log", 0.0,
+            "B/A of Johnson and Cook's metals: 0.6 (4340) to 3.2 (OFHC copper)", nodes=7,
+            literature=Literature(0.79, "B/A = 275/350 of 1006 steel, Johnson and Cook 1983"),
+        ),
+        Parameter(
+            "hardening_exponent", "-", 0.15, 1.0, "linear", 1.0,
+            "0.26 (4340) to 0.36 (1006); 1 for linear hardening", nodes=3,
+            literature=Literature(0.36, "n of 1006 steel, Johnson and Cook 1983"),
+        ),
+    )  # fmt: skip
+
+    def strength(self, scene: Scene, values: Values, around: Surroundings) -> FlowStress:
+        """Return the profile of this mechanism."""
+        return StrainProfile(values["hardening_ratio"], values["hardening_exponent"])

@@ -1,0 +1,189 @@
+"""What every mechanism keeps to, whichever the library holds; no names are listed here.
+
+At neutral parameters an impact is what it was, bit for bit; near them it is nearly so; attaching
+changes nothing that it was given; observables move as declared; numbers have a unit, a range and a
+source; what arithmetic rules out comes with a reason.
+"""
+
+from __future__ import annotations
+
+import copy
+import math
+import re
+from collections.abc import Mapping, Sequence
+from pathlib import Path
+
+import numpy as np
+import pytest
+from dentscope.core import Material
+from dentscope.discrepancy.forward import ACCURACY, SIMULATED
+from dentscope.discrepancy.mechanisms import MECHANISMS, Mechanism, Surroundings
+from dentscope.discrepancy.mechanisms.base import Constants, Situation, Values, attached, observed
+from dentscope.impact import Approach, Friction, Scene, Striker, scene_of, strike_batch
+from dentscope.impact import compiled as c
+from dentscope.models import LAWS
+
+Seen = Mapping[str, np.ndarray]
+
+HARD = Material(E=208e9, nu=0.3, Sy=2e9, density=7830.0)
+MILD = Material(E=206e9, nu=0.29, Sy=3e8, density=7850.0)
+GEL = Material(E=2e6, nu=0.45, density=1000.0)
+ROD = Striker(mass=0.2, tip_radius=0.0088, length=0.1, radius=0.0088)
+OIL = Surroundings(viscosity=0.1, fluid="oil")
+HOT_DROP = Surroundings(from_height=True, height_share=0.5, temperature=600.0, thickness=0.3)
+
+
+def ball(radius: float, speed: float, **approach: float) -> Scene:
+    striker = Striker(mass=7830.0 * 4.0 / 3.0 * math.pi * radius**3, tip_radius=radius)
+    return scene_of(
+        LAWS["fitted"], sphere=HARD, flat=MILD, striker=striker,
+        approach=Approach(speed, **approach), friction=Friction(0.15),
+    )  # fmt: skip
+
+
+def rod(degrees: float) -> Scene:
+    return scene_of(
+        LAWS["fitted"], sphere=HARD, flat=MILD, striker=ROD,
+        approach=Approach(1.0, math.radians(degrees)), friction=Friction(0.15),
+    )  # fmt: skip
+
+
+def bead() -> Scene:
+    """A micrometre bead on a gel: what sticks, and does not yield."""
+    striker = Striker(mass=1e-15, tip_radius=1e-6)
+    return scene_of(LAWS["hertz"], sphere=GEL, flat=GEL, striker=striker, approach=Approach(0.1))
+
+
+RIGS: dict[str, list[Situation]] = {
+    "balls": [(ball(r, 1.0), OIL) for r in (2e-3, 8e-3)],
+    "oblique ball": [(ball(8e-3, 1.0, tangential=0.7), Surroundings())],
+    "upright rod": [(rod(90.0), HOT_DROP)],
+    "leaning rod": [(rod(50.0), HOT_DROP)],
+    "bead": [(bead(), Surroundings())],
+}
+"""What the mechanisms of the library meet somewhere."""
+
+
+def simulated(scenes: Sequence[Scene]) -> dict[str, np.ndarray]:
+    rows = strike_batch(list(scenes), ACCURACY)
+    return {k: rows[:, c.OBSERVABLES.index(v)].copy() for k, v in SIMULATED.items()}
+
+
+def with_mechanism(mechanism: Mechanism, rig: list[Situation], constants: Constants) -> Seen:
+    scenes = [attached([mechanism], s, constants, around) for s, around in rig]
+    return observed([mechanism], rig, constants, simulated(scenes))
+
+
+def at(mechanism: Mechanism, rig: list[Situation], place: float) -> Values:
+    return {p.name: float(p.value(place)) for p in mechanism.ranges(rig)}
+
+
+def rigs_of(mechanism: Mechanism) -> dict[str, list[Situation]]:
+    return {name: rig for name, rig in RIGS.items() if not mechanism.applies(rig)}
+
+
+every = pytest.mark.parametrize("mechanism", MECHANISMS, ids=lambda m: m.name)
+
+
+@every
+@pytest.mark.parametrize("rig", RIGS.values(), ids=RIGS.keys())
+def test_neutral_parameters_leave_the_impact_bit_for_bit(mechanism, rig):
+    neutral = {mechanism.name: {p.name: p.neutral for p in mechanism.parameters}}
+    before, after = simulated([s for s, _ in rig]), with_mechanism(mechanism, rig, neutral)
+    assert {k: v.tobytes() for k, v in after.items()} == {k: v.tobytes() for k, v in before.items()}
+
+
+@every
+def test_near_the_neutral_size_an_impact_is_nearly_what_it_was(mechanism):
+    """So the declared neutral value is the formula's own, and no guard hides a jump there."""
+    rig = next(iter(rigs_of(mechanism).values()))
+    middle, size = at(mechanism, rig, 0.5), mechanism.parameters[0]
+    if math.isinf(size.neutral):
+        near = 1e4 * size.high
+    else:
+        near = size.neutral + 1e-5 * (middle[size.name] - size.neutral or size.high)
+    values = {**middle, size.name: near}
+    scenes = [mechanism.attach(s, values, around) for s, around in rig]
+    after = mechanism.after(rig, values, simulated(scenes))
+    before = simulated([s for s, _ in rig])
+    for name in ("restitution", "permanent_depth_m", "peak_force_N", "contact_time_s"):
+        assert after[name] == pytest.approx(before[name], rel=1e-3, abs=1e-12), name
+
+
+@every
+def test_attaching_changes_nothing_that_it_was_given(mechanism):
+    for rig in rigs_of(mechanism).values():
+        given, values = copy.deepcopy(rig), at(mechanism, rig, 0.6)
+        said = dict(values)
+        scenes = [mechanism.attach(s, values, around) for s, around in rig]
+        seen = simulated(scenes)
+        kept = {k: v.copy() for k, v in seen.items()}
+        mechanism.after(rig, values, seen)
+        assert [repr(x) for x in rig] == [repr(x) for x in given]
+        assert values == said
+        assert {k: v.tobytes() for k, v in seen.items()} == {
+            k: v.tobytes() for k, v in kept.items()
+        }
+
+
+@every
+def test_observables_move_as_declared(mechanism):
+    rigs = rigs_of(mechanism)
+    assert rigs, "no rig of this test is one that the mechanism applies to"
+    moved = set()
+    for rig in rigs.values():
+        before = simulated([s for s, _ in rig])
+        after = with_mechanism(mechanism, rig, {mechanism.name: at(mechanism, rig, 0.6)})
+        changed = {k: after[k] - before[k] for k in before}
+        moved |= {k for k, v in changed.items() if np.any(v != 0.0)}
+        for name, sign in mechanism.direction.items():
+            # what rig and mechanism leave alone (a crater in a gel) has no direction
+            assert np.all(sign * changed[name] >= 0.0), (name, changed[name])
+    assert moved
+    assert set(mechanism.direction) <= moved
+
+
+@every
+def test_numbers_have_unit_range_neutral_value_and_source(mechanism):
+    assert mechanism.title
+    assert mechanism.equations
+    assert re.fullmatch(r"[a-z]+(-[a-z]+)*", mechanism.name)
+    assert 0.0 < mechanism.form <= 0.5
+    assert mechanism.law_error >= 1.0
+    assert set(mechanism.direction.values()) <= {-1, 1}
+    names = [p.name for p in mechanism.parameters]
+    assert len(set(names)) == len(names) > 0
+    for p in mechanism.parameters:
+        assert p.unit
+        assert len(p.source) > 5
+        assert p.low < p.high
+        assert math.isfinite(p.low)
+        assert math.isfinite(p.high)
+        assert p.scale != "log" or p.low > 0.0
+        assert not math.isnan(p.neutral)
+        assert p.nodes >= 3
+        if p.literature:
+            assert p.low <= p.literature.value <= p.high
+            assert len(p.literature.source) > 5
+    for rig in rigs_of(mechanism).values():
+        ranged = mechanism.ranges(rig)
+        assert [(p.name, p.unit, p.neutral) for p in ranged] == [
+            (p.name, p.unit, p.neutral) for p in mechanism.parameters
+        ]
+        assert all(p.low < p.high for p in ranged)
+
+
+@every
+def test_what_is_ruled_out_comes_with_a_reason(mechanism):
+    reasons = [mechanism.applies(rig) for rig in RIGS.values()]
+    assert all(isinstance(r, str) for r in reasons)
+    assert all(len(r) > 15 for r in reasons if r)
+    if type(mechanism).applies is not Mechanism.applies:
+        assert any(reasons), "it can be ruled out, but nothing here does"
+
+
+def test_names_are_the_documented_ones_in_their_order():
+    text = (Path(__file__).parents[2] / "docs" / "diagnose.md").read_text(encoding="utf-8")
+    table = text.split("## Mechanisms")[1].split("\n\n")[1]
+    documented = re.findall(r"^\| `([a-z-]+)` \|", table, flags=re.MULTILINE)
+    assert documented == [m.name for m in MECHANISMS]
