@@ -5,6 +5,7 @@ from __future__ import annotations
 from .beam import Modes, rod_modes
 from .integrate import Settings, arrays_of, strike, strike_batch, strike_many, strike_rows
 from .inverse import Inferred, Measured, infer
+from .law_table import tabulated
 from .reference import Trace, reference_impact
 from .result import Impact
 from .scene import (
@@ -49,4 +50,5 @@ __all__ = [
     "strike_batch",
     "strike_many",
     "strike_rows",
+    "tabulated",
 ]

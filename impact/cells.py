@@ -1,0 +1,155 @@
+"""Functions of one variable as polynomials over cells of uneven width, quick to look up.
+
+A table is one vector, so that it can travel in a contact law's parameters: a head, a guide (for
+each of many equal bins the first cell that reaches into it), the cells' left ends, and for each
+column and cell the seven coefficients of a polynomial about the left end. A linear cell at either
+end carries each function on beyond the range.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass
+
+import numpy as np
+from numba import float64, int64, njit, types
+from numpy.typing import NDArray
+
+from ..models.base import VECTOR
+
+Array = NDArray[np.float64]
+
+_LOW, _BINS_PER_UNIT, _BINS, _CELLS = range(4)
+_HEAD = 4
+_ORDER = 7
+_NODES = 0.5 - 0.5 * np.cos(np.pi * np.arange(_ORDER) / (_ORDER - 1))
+_BETWEEN = np.array([0.03, 0.15, 0.37, 0.63, 0.85, 0.97])
+_FIT = np.linalg.inv(np.vander(_NODES, increasing=True))
+_CHECK = np.vander(_BETWEEN, _ORDER, increasing=True)
+_START, _BINS_PER_CELL = 24, 8
+
+
+@dataclass(frozen=True, slots=True)
+class Cells:
+    """Columns over cells.
+
+    Parameters
+    ----------
+    vector
+        The table, shape (n,).
+    error
+        Largest deviation from the function that was seen between the nodes, for each column; cells
+        narrower than `least`, which hold a jump, are left out.
+    count
+        Number of cells.
+    """
+
+    vector: Array
+    error: Array
+    count: int
+
+
+def cells_of(
+    function: Callable[[Array], Array], low: float, high: float, *, tolerance: float,
+    least: float = 1e-12,
+) -> Cells:  # fmt: skip
+    """Return the table of a function: cells are halved until the tolerance holds in each.
+
+    Parameters
+    ----------
+    function
+        From places, shape (n,), to columns, shape (n, columns); all of order 1.
+    low, high
+        Range.
+    tolerance
+        Largest error of any column at the places where a cell is checked.
+    least
+        Cells are not halved below this width: what remains there is a jump.
+
+    Examples
+    --------
+    >>> import numpy as np
+    >>> table = cells_of(lambda x: np.stack([np.sin(x), x], axis=1), 0.0, 3.0, tolerance=1e-9)
+    >>> bool(abs(column_at(table.vector, 0, 0, 1.0) - np.sin(1.0)) < 1e-9)
+    True
+    """
+    left = np.linspace(low, high, _START + 1)[:-1]
+    width = np.full(_START, (high - low) / _START)
+    done: list[tuple[Array, Array, Array]] = []
+    error = np.zeros(1)
+    while len(left):
+        places = left[:, None] + width[:, None] * np.concatenate([_NODES, _BETWEEN])
+        # a border may lie exactly on the right end: stay inside
+        places[:, _ORDER - 1] = np.nextafter(left + width, -np.inf)
+        values = function(places.ravel()).reshape(len(left), len(_NODES) + len(_BETWEEN), -1)
+        nodes, between = values[:, :_ORDER], values[:, _ORDER:]
+        own = np.einsum("pk,nkc->npc", _FIT, nodes)
+        off = np.abs(np.einsum("bp,npc->nbc", _CHECK, own) - between).max(axis=1)
+        wide = width > least
+        good = ~wide | (off.max(axis=1) <= tolerance)
+        jump = ~wide
+        own[jump, 1] = nodes[jump, -1] - nodes[jump, 0]
+        own[jump, 2:] = 0.0
+        done.append((left[good], width[good], own[good]))
+        error = np.maximum(error, off[good & wide].max(axis=0, initial=0.0))
+        halves = 0.5 * width[~good]
+        left = np.concatenate([left[~good], left[~good] + halves])
+        width = np.concatenate([halves, halves])
+    lefts, widths, owns = (np.concatenate(part) for part in zip(*done, strict=True))
+    order = np.argsort(lefts)
+    return Cells(_packed(lefts[order], widths[order], owns[order], high), error, len(order))
+
+
+def _packed(left: Array, width: Array, own: Array, high: float) -> Array:
+    """Put cells, with a linear one before and one behind, into one vector."""
+    scaled = own / width[:, None, None] ** np.arange(_ORDER)[None, :, None]
+    first, last = np.zeros((2, _ORDER, own.shape[2]))
+    first[:2] = scaled[0, :2]
+    last[0] = own[-1].sum(axis=0)
+    last[1] = (own[-1] * np.arange(_ORDER)[:, None]).sum(axis=0) / width[-1]
+    # the first cell counts from its right end, where it meets the second
+    lefts = np.concatenate([left[:1], left, [high]])
+    coefficients = np.concatenate([first[None], scaled, last[None]]).transpose(2, 0, 1)
+    bins = _BINS_PER_CELL * len(lefts)
+    edges = left[0] + (high - left[0]) * np.arange(bins) / bins
+    guide = np.maximum(np.searchsorted(lefts[1:], edges, side="right"), 0)
+    guide[0] = 0
+    head = [left[0], bins / (high - left[0]), bins, len(lefts)]
+    return np.concatenate([head, guide, lefts, [np.inf], coefficients.ravel()])
+
+
+@njit(int64(VECTOR, int64, float64), cache=True, _nrt=False, error_model="numpy")
+def cell_at(table, at, x):
+    """Return the cell that holds `x`, of the table that begins at `at`."""
+    bins = int(table[at + _BINS])
+    place = (x - table[at + _LOW]) * table[at + _BINS_PER_UNIT]
+    k = min(int(max(place, 0.0)), bins - 1)
+    cell = int(table[at + _HEAD + k])
+    first = at + _HEAD + bins
+    while x >= table[first + cell + 1]:
+        cell += 1
+    return cell
+
+
+@njit(float64(VECTOR, int64, int64, int64, float64), cache=True, _nrt=False, error_model="numpy")
+def column_in(table, at, cell, column, x):
+    """Return a column at `x`, which lies in `cell`."""
+    first, cells = at + _HEAD + int(table[at + _BINS]), int(table[at + _CELLS])
+    u = x - table[first + cell]
+    k = first + cells + 1 + (column * cells + cell) * _ORDER
+    u2 = u * u
+    low = table[k] + u * table[k + 1] + u2 * (table[k + 2] + u * table[k + 3])
+    return low + u2 * u2 * (table[k + 4] + u * table[k + 5] + u2 * table[k + 6])
+
+
+@njit(float64(VECTOR, int64, int64, float64), cache=True, _nrt=False, error_model="numpy")
+def column_at(table, at, column, x):
+    """Return a column at `x`."""
+    return column_in(table, at, cell_at(table, at, x), column, x)
+
+
+@njit(types.void(VECTOR, int64, int64, VECTOR, VECTOR), cache=True, _nrt=False)
+def fill_column(table, at, column, x, out):
+    """Write a column at each of `x`, shape (n,), into `out`."""
+    for i in range(len(x)):
+        out[i] = column_in(table, at, cell_at(table, at, x[i]), column, x[i])

@@ -1,0 +1,111 @@
+"""A law from its table: the stated error holds for every law, at borders and in an impact."""
+
+from __future__ import annotations
+
+import math
+import warnings
+
+import numpy as np
+import pytest
+from dentscope.core import InputError, Material, Pair
+from dentscope.impact import Approach, Settings, Striker, scene_of, strike
+from dentscope.impact.cells import cells_of, column_at
+from dentscope.impact.law_table import ERROR, tabulated
+from dentscope.models import LAWS
+from dentscope.models.base import BRANCH_SIGNATURE, DomainWarning, Kernels, PublishedLaw
+from dentscope.models.published.hertz import HERTZ
+from dentscope.models.published.jackson_green import JACKSON_GREEN
+from numba import njit
+
+STEEL = Material(E=200e9, nu=0.3, Sy=760e6, density=7800.0)
+IRON = Material(E=200e9, nu=0.3, Sy=305e6, density=7870.0)
+PAIR = Pair(STEEL, IRON, 0.0088)
+
+
+def quiet(answer, *given):
+    with warnings.catch_warnings():
+        warnings.simplefilter("ignore", DomainWarning)
+        return answer(*given)
+
+
+@pytest.mark.parametrize("name", list(LAWS))
+@pytest.mark.parametrize("flat", [IRON, Material(E=70e9, nu=0.33, Sy=1900e6)])
+def test_the_stated_error_holds_where_it_was_not_checked(name: str, flat: Material) -> None:
+    law, pair = LAWS[name], Pair(STEEL, flat, 0.003)
+    table = tabulated(law)
+    depth = pair.R * 10.0 ** np.random.default_rng(5).uniform(-8.5, -0.5, 4000)
+    for answer in ("loading", "contact_radius"):
+        ours, theirs = (quiet(getattr(x, answer), pair, depth) for x in (table, law))
+        assert np.abs(ours / theirs - 1.0).max() < 2.0 * ERROR
+    ours, theirs = (np.array(x.residual(pair, depth)) for x in (table, law))
+    assert (np.abs(ours - theirs) / depth).max() < 2.0 * ERROR
+    part, peak = 0.9 * depth, quiet(law.loading, pair, depth)
+    ours, theirs = table.unloading(pair, part, depth), law.unloading(pair, part, depth)
+    # near full plasticity the recovery is short: an error of the residual depth counts for more
+    way = np.maximum(depth - np.array(law.residual(pair, depth)).sum(axis=0), 1e-12) / depth
+    assert (np.abs(ours - theirs) / peak * way).max() < 6.0 * ERROR
+
+
+def test_a_jump_of_a_published_law_stays_where_it_is() -> None:
+    # w = 1.9 is the border of Jackson and Green (1.18 and 1.20)
+    border = 1.9 * JACKSON_GREEN.parameters(PAIR)[8]
+    depths = border * np.array([1.0 - 1e-9, 1.0 + 1e-9])
+    ours, theirs = (
+        tabulated(JACKSON_GREEN).loading(PAIR, depths),
+        JACKSON_GREEN.loading(PAIR, depths),
+    )
+    assert abs(theirs[1] / theirs[0] - 1.0) > 1e-3
+    assert ours == pytest.approx(theirs, rel=2.0 * ERROR)
+
+
+def test_an_impact_by_table_ends_as_by_the_law() -> None:
+    rod = Striker(mass=0.4607, tip_radius=0.0088, length=0.3048, radius=0.0088)
+    for angle in (90.0, 45.0):
+        found = [
+            strike(
+                scene_of(law, sphere=STEEL, flat=IRON, striker=rod,
+                         approach=Approach(1.0, math.radians(angle))),
+                Settings(tolerance=1e-10),
+            )
+            for law in (JACKSON_GREEN, tabulated(JACKSON_GREEN))
+        ]  # fmt: skip
+        for name in ("restitution", "residual_flat_m", "contact_time_s", "peak_force_N"):
+            assert getattr(found[1], name) == pytest.approx(getattr(found[0], name), rel=1e-7)
+
+
+def test_open_contacts_and_the_power_below_the_range() -> None:
+    table = tabulated(HERTZ)
+    assert table.loading(PAIR, [-1e-6, 0.0]).tolist() == [0.0, 0.0]
+    shallow = 1e-11 * PAIR.R
+    assert table.loading(PAIR, [shallow]) == pytest.approx(HERTZ.loading(PAIR, [shallow]), rel=1e-7)
+    with pytest.raises(InputError, match="not a number"):
+        table.loading(PAIR, [math.nan])
+
+
+def test_a_recovery_that_is_no_power_is_refused() -> None:
+    @njit(BRANCH_SIGNATURE, _nrt=False)
+    def bent(par, depth, peak):
+        return par[10] * depth * (0.5 * math.sqrt(depth) + 0.5 * depth / math.sqrt(peak))
+
+    own = HERTZ.kernels
+    law = PublishedLaw(
+        name="bent", title="", source="", equations="", standing=HERTZ.standing,
+        domain=HERTZ.domain, own=Kernels(own.loading, own.radius, bent, own.residual),
+    )  # fmt: skip
+    with pytest.raises(InputError, match="otherwise than by a power"):
+        tabulated(law).loading(PAIR, [1e-6, 2e-6])
+
+
+def test_cells_are_halved_until_kinks_and_jumps_are_narrow() -> None:
+    def broken(x):
+        return np.stack([np.abs(x - 0.123), np.where(x < 0.777, np.sin(x), 2.0)], axis=1)
+
+    table = cells_of(broken, 0.0, 1.0, tolerance=1e-9)
+    assert table.error.max() <= 1e-9
+    places = np.random.default_rng(1).uniform(0.0, 1.0, 2000)
+    for column in (0, 1):
+        found = [column_at(table.vector, 0, column, x) for x in places]
+        assert np.abs(found - broken(places)[:, column]).max() < 2e-9
+    # beyond the range straight on
+    assert column_at(table.vector, 0, 0, 1.5) == pytest.approx(1.377, abs=1e-8)
+    assert column_at(table.vector, 0, 0, -0.5) == pytest.approx(0.623, abs=1e-8)
