@@ -6,6 +6,7 @@ import math
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from functools import cached_property
+from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -24,6 +25,7 @@ LOGARITHMIC = (
 
 # what repeats cannot average away: gauges, definitions; of the value, and of one reading's noise
 _FLOOR, _FLOOR_OF_NOISE = 0.004, 0.5
+_ENOUGH = 8  # repeats beyond the first from which their own scatter is trusted
 
 
 @dataclass(frozen=True, eq=False)
@@ -54,19 +56,43 @@ class Cells:
         """Whether each cell is a logarithm."""
         return np.array([name in LOGARITHMIC for name in self.observable], dtype=bool)
 
-    def take(self, keep: NDArray[np.bool_]) -> Cells:
-        """Return some of the cells."""
-        names = tuple(n for n, k in zip(self.observable, keep, strict=True) if k)
-        return Cells(
-            self.condition[keep], names, self.value[keep], self.std[keep], self.count[keep]
-        )
+
+NO_CELLS = Cells(
+    np.zeros(0, dtype=np.intp), (), np.zeros(0), np.zeros(0), np.zeros(0, dtype=np.intp)
+)
+
+
+class _Mean(NamedTuple):
+    """One cell before the floor of its standard error."""
+
+    condition: int
+    observable: str
+    value: float
+    std: float
+    trials: int
+
+
+class _Repeats(NamedTuple):
+    """Repeats of one observable at one condition, at the condition's mean speed: (n,) each."""
+
+    place: Array
+    value: Array
+    std: Array
+
+
+class _Compared(NamedTuple):
+    """One observable over all conditions: means, the repeats behind them, how many fell out."""
+
+    means: list[_Mean]
+    repeats: list[_Repeats]
+    dropped: int
+    note: str
 
 
 def cells_of(
-    readings: Mapping[str, Readings], speeds: Array, order: Array, conditions: Sequence[Condition],
-    notes: list[str],
-) -> tuple[Cells, tuple[Drift, ...]]:  # fmt: skip
-    """Return the cells of a set, and what drifts over the order of testing.
+    readings: Mapping[str, Readings], speeds: Array, order: Array, conditions: Sequence[Condition]
+) -> tuple[Cells, tuple[Drift, ...], tuple[str, ...]]:
+    """Return the cells of a set, what drifts over the order of testing, and notes.
 
     Parameters
     ----------
@@ -76,66 +102,73 @@ def cells_of(
         Normal speed [m/s] and place in the order of testing of every trial, shape (n,).
     conditions
         The nominal impacts.
-    notes
-        Receives what was left out or scatters more than stated.
     """
     place = order / np.nanmax(order) if np.isfinite(order).any() else np.full(len(speeds), np.nan)
-    drifts = []
-    rows: list[tuple[int, str, float, float, int]] = []
-    dropped = 0
-    for name, read in readings.items():
-        values, std = read.value, read.std
-        # a value of zero with a fractional noise is not exact
-        std = np.maximum(std, 0.01 * np.sqrt(np.nanmean(values**2)) * (std <= 0.0))
-        log = name in LOGARITHMIC
-        part: list[tuple[int, str, float, float, int]] = []
-        squares, degrees = 0.0, 0
-        repeats = []
-        for k, c in enumerate(conditions):
-            index = np.array([i for i in c.trials if np.isfinite(values[i])], dtype=np.intp)
-            if log:
-                index = index[values[index] > 0.0]
-            if index.size == 0:
-                continue
-            y = np.log(values[index]) if log else values[index]
-            s = std[index] / np.abs(values[index]) if log else std[index]
-            # to the condition's mean speed, with the power that a plastic contact has
-            y = y - _power(name, y, log) * np.log(speeds[index] / c.speed)
-            keep = _kept(y, s)
-            dropped += int(np.sum(~keep))
-            y, s = y[keep], s[keep]
-            repeats.append((place[index[keep]], y, s))
-            weight = 1.0 / s**2
-            mean = float(np.sum(weight * y) / np.sum(weight))
-            squares += float(np.sum(((y - mean) / s) ** 2))
-            degrees += len(y) - 1
-            part.append((k, name, mean, float(np.sum(weight) ** -0.5), len(y)))
-        ratio = squares / degrees if degrees >= 8 else 1.0
-        if ratio > 1.0 + 3.0 * math.sqrt(2.0 / max(degrees, 1)):
-            notes.append(
-                f"{name}: repeats scatter {math.sqrt(ratio):.1f} times as much as stated; their "
-                "scatter is used"
-            )
-            part = [(k, n, m, s * math.sqrt(ratio), c) for k, n, m, s, c in part]
-        rows += part
-        drifts.append(drift_of(name, repeats, observables=len(readings)))
+    found = {name: _compared(name, r, speeds, place, conditions) for name, r in readings.items()}
+    notes = [one.note for one in found.values() if one.note]
+    dropped = sum(one.dropped for one in found.values())
     if dropped:
         notes.append(f"{dropped} single values lie far off their repeats and were left out")
-    value = np.array([r[2] for r in rows])
-    names = tuple(r[1] for r in rows)
-    of_value = np.array([_FLOOR if n in LOGARITHMIC else _FLOOR * _size(n, rows) for n in names])
-    one_reading = np.array([r[3] * math.sqrt(r[4]) for r in rows])
+    drifts = [drift_of(n, one.repeats, observables=len(found)) for n, one in found.items()]
+    means = [mean for one in found.values() for mean in one.means]
+    size = {n: _rms([m.value for m in one.means]) for n, one in found.items() if one.means}
+    std = np.array([m.std for m in means])
+    of_value = np.array([
+        _FLOOR if m.observable in LOGARITHMIC else _FLOOR * size[m.observable] for m in means
+    ])  # fmt: skip
+    one_reading = std * np.sqrt([m.trials for m in means])
     floor = np.minimum(of_value, _FLOOR_OF_NOISE * one_reading)
     cells = Cells(
-        np.array([r[0] for r in rows], dtype=np.intp), names, value,
-        np.hypot(np.array([r[3] for r in rows]), floor),
-        np.array([r[4] for r in rows], dtype=np.intp),
-    )  # fmt: skip
-    return cells, tuple(d for d in drifts if d is not None)
+        np.array([m.condition for m in means], dtype=np.intp),
+        tuple(m.observable for m in means),
+        np.array([m.value for m in means]),
+        np.hypot(std, floor),
+        np.array([m.trials for m in means], dtype=np.intp),
+    )
+    return cells, tuple(d for d in drifts if d is not None), tuple(notes)
 
 
-def _size(name: str, rows: Sequence[tuple[int, str, float, float, int]]) -> float:
-    return float(np.sqrt(np.mean([r[2] ** 2 for r in rows if r[1] == name])))
+def _compared(
+    name: str, read: Readings, speeds: Array, place: Array, conditions: Sequence[Condition]
+) -> _Compared:
+    values = read.value
+    # a value of zero with a fractional noise is not exact
+    std = np.maximum(read.std, 0.01 * np.sqrt(np.nanmean(values**2)) * (read.std <= 0.0))
+    log = name in LOGARITHMIC
+    means, repeats, dropped = [], [], 0
+    squares, degrees = 0.0, 0
+    for k, c in enumerate(conditions):
+        index = np.array([i for i in c.trials if np.isfinite(values[i])], dtype=np.intp)
+        if log:
+            index = index[values[index] > 0.0]
+        if index.size == 0:
+            continue
+        y = np.log(values[index]) if log else values[index]
+        s = std[index] / np.abs(values[index]) if log else std[index]
+        # to the condition's mean speed, with the power that a plastic contact has
+        y = y - _power(name, y, log) * np.log(speeds[index] / c.speed)
+        keep = _kept(y, s)
+        dropped += int(np.sum(~keep))
+        y, s = y[keep], s[keep]
+        repeats.append(_Repeats(place[index[keep]], y, s))
+        weight = 1.0 / s**2
+        mean = float(np.sum(weight * y) / np.sum(weight))
+        squares += float(np.sum(((y - mean) / s) ** 2))
+        degrees += len(y) - 1
+        means.append(_Mean(k, name, mean, float(np.sum(weight) ** -0.5), len(y)))
+    ratio = squares / degrees if degrees >= _ENOUGH else 1.0
+    if ratio <= 1.0 + 3.0 * math.sqrt(2.0 / max(degrees, 1)):
+        return _Compared(means, repeats, dropped, "")
+    wider = [m._replace(std=m.std * math.sqrt(ratio)) for m in means]
+    note = (
+        f"{name}: repeats scatter {math.sqrt(ratio):.1f} times as much as stated; their scatter is "
+        "used"
+    )
+    return _Compared(wider, repeats, dropped, note)
+
+
+def _rms(values: Sequence[float]) -> float:
+    return float(np.sqrt(np.mean([x**2 for x in values])))
 
 
 def _power(name: str, y: Array, log: bool) -> Array:

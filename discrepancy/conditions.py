@@ -52,7 +52,7 @@ class Condition:
     after: int = -1
 
 
-def conditions_of(recordings: RecordingSet, notes: list[str]) -> tuple[Condition, ...]:
+def conditions_of(recordings: RecordingSet) -> tuple[Condition, ...]:
     """Return the conditions of a set, in the order in which they were first tested."""
     setup, trials, approach = recordings.setup, recordings.trials, recordings.approach
     numbers, before = _nominal(recordings)
@@ -97,9 +97,6 @@ def conditions_of(recordings: RecordingSet, notes: list[str]) -> tuple[Condition
                 tuple(int(r) for r in rows), around, int(before[first]),
             )
         )  # fmt: skip
-    again = sum(c.after >= 0 for c in found)
-    if again:
-        notes.append(f"{again} conditions are later blows on one place: they meet its crater")
     return tuple(found)
 
 

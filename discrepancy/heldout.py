@@ -34,15 +34,12 @@ class HeldOut:
         least 0.1.
     raw
         The rms itself.
-    density
-        Sum of log predictive densities [nat].
     trials
         Trials behind it.
     """
 
     score: float
     raw: float
-    density: float
     trials: int
 
 
@@ -71,33 +68,27 @@ def held_out(problem: Problem, fitted: Fit) -> HeldOut:
     """Score an explanation with each group left out in turn."""
     total = fitted.linear.total
     noise = np.sqrt(np.diag(fitted.linear.noise))
-    squares, density, count = [], 0.0, 0
+    squares, count = [], 0
     for test in groups_of(problem):
         train = ~test
         if not test.any() or not train.any():
             continue
-        error, log_density = _predict(fitted, total, test, train)
-        squares.append((error / noise[test]) ** 2)
-        density += log_density
+        miss = _missed(fitted, total, test, train)
+        squares.append((miss / noise[test]) ** 2)
         count += int(np.sum(problem.cells.count[test]))
     if not squares:
-        return HeldOut(math.nan, math.nan, math.nan, 0)
+        return HeldOut(math.nan, math.nan, 0)
     mean = float(np.mean(np.concatenate(squares)))
-    return HeldOut(math.sqrt(max(mean - 1.0, _FLOOR**2)), math.sqrt(mean), density, count)
+    return HeldOut(math.sqrt(max(mean - 1.0, _FLOOR**2)), math.sqrt(mean), count)
 
 
-def _predict(
-    fitted: Fit, total: Array, test: NDArray[np.bool_], train: NDArray[np.bool_]
-) -> tuple[Array, float]:
+def _missed(fitted: Fit, total: Array, test: NDArray[np.bool_], train: NDArray[np.bool_]) -> Array:
+    """Data minus prediction of the left-out cells, over the parameters that explain the others."""
     lower = np.linalg.cholesky(total[np.ix_(train, train)])
     half = np.linalg.solve(lower, total[np.ix_(train, test)])
     inside = np.linalg.solve(lower, fitted.residuals[:, train].T)
     log_weight = -0.5 * np.sum(inside**2, axis=0)
     keep = np.argsort(-log_weight)[:_MOST]
     log_weight = log_weight[keep] - logsumexp(log_weight[keep])
-    error = fitted.residuals[keep][:, test] - (half.T @ inside[:, keep]).T
-    left = np.linalg.cholesky(total[np.ix_(test, test)] - half.T @ half)
-    white = np.linalg.solve(left, error.T)
-    log_normal = -0.5 * np.sum(white**2, axis=0) - np.sum(np.log(np.diag(left)))
-    log_normal -= 0.5 * test.sum() * math.log(2.0 * math.pi)
-    return np.exp(log_weight) @ error, float(logsumexp(log_weight + log_normal))
+    miss = fitted.residuals[keep][:, test] - (half.T @ inside[:, keep]).T
+    return np.asarray(np.exp(log_weight) @ miss)

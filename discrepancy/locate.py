@@ -65,7 +65,6 @@ class Located:
 
     misses: tuple[Miss, ...]
     threshold: float
-    all: tuple[Miss, ...]
 
 
 def covariates(problem: Problem) -> dict[str, Array]:
@@ -118,7 +117,7 @@ def locate(problem: Problem, base: Fit, nulls: Nulls, *, level: float = 0.95) ->
     null_max = float(np.quantile((null / spread).max(axis=1), level))
     found.sort(key=lambda m: -abs(m.z))
     misses = tuple(m for m in found if abs(m.z) > null_max)
-    return Located(misses, min(threshold, null_max), tuple(found))
+    return Located(misses, min(threshold, null_max))
 
 
 def _contrasts(problem: Problem) -> tuple[list[tuple[str, str]], Array]:

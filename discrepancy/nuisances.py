@@ -30,6 +30,8 @@ class Nuisance:
         Whether the logarithm is normal.
     stated
         Whether the set gives it.
+    note
+        What was assumed in its place, for the reader of a verdict.
     """
 
     name: str
@@ -38,24 +40,23 @@ class Nuisance:
     spread: float
     log: bool = True
     stated: bool = True
+    note: str = ""
 
     def at(self, z: float) -> float:
         """Return the value that lies z standard deviations off."""
         return self.value * math.exp(self.spread * z) if self.log else self.value + self.spread * z
 
 
-def nuisances_of(
-    recordings: RecordingSet, conditions: Sequence[Condition], notes: list[str]
-) -> tuple[Nuisance, ...]:
-    """Return the uncertain numbers of a set; `notes` receives what had to be assumed."""
+def nuisances_of(recordings: RecordingSet, conditions: Sequence[Condition]) -> tuple[Nuisance, ...]:
+    """Return the uncertain numbers of a set, stated and assumed."""
     setup = recordings.setup
     found: list[Nuisance] = []
-    found += _of_body(setup.target, "target", setup.target.law == "elastic-plastic", notes)
+    found += _of_body(setup.target, "target", setup.target.law == "elastic-plastic")
     used = sorted({c.striker for c in conditions})
     for name in used:
         table = setup.strikers[name]
         key = f"strikers.{name}"
-        found += _of_body(table, key, False, notes)
+        found += _of_body(table, key, False)
         found += _stated(table.tip_radius_m, f"{key}.tip_radius_m", "m")
         found += _stated(table.mass_kg, f"{key}.mass_kg", "kg")
     measured = not any(c.around.from_height for c in conditions)
@@ -70,8 +71,8 @@ def nuisances_of(
     if oblique:
         mu = setup.friction.coefficient
         if mu is None:
-            notes.append("friction.coefficient is not stated: 0.15 within a factor of 2 is assumed")
-            found.append(Nuisance("friction.coefficient", "-", 0.15, 0.7, stated=False))
+            note = "friction.coefficient is not stated: 0.15 within a factor of 2 is assumed"
+            found.append(Nuisance("friction.coefficient", "-", 0.15, 0.7, stated=False, note=note))
         else:
             spread = max(mu.std / mu.value if mu.value else 0.0, 0.03)
             found.append(Nuisance("friction.coefficient", "-", mu.value, spread))
@@ -82,21 +83,19 @@ def nuisances_of(
     return tuple(found)
 
 
-def _of_body(
-    table: Target | StrikerTable, key: str, yields: bool, notes: list[str]
-) -> list[Nuisance]:
+def _of_body(table: Target | StrikerTable, key: str, yields: bool) -> list[Nuisance]:
     found = _stated(table.E_Pa, f"{key}.E_Pa", "Pa")
     if table.E_Pa is None:
-        notes.append(f"{key}.E_Pa is not stated: 200 GPa within 40 % is assumed")
-        found.append(Nuisance(f"{key}.E_Pa", "Pa", 2e11, 0.4, stated=False))
+        note = f"{key}.E_Pa is not stated: 200 GPa within 40 % is assumed"
+        found.append(Nuisance(f"{key}.E_Pa", "Pa", 2e11, 0.4, stated=False, note=note))
     found += _stated(table.Sy_Pa, f"{key}.Sy_Pa", "Pa")
     if table.Sy_Pa is None and table.hardness_Pa is not None:
         Sy = table.hardness_Pa.value / 2.8
-        notes.append(f"{key}.Sy_Pa is taken from the hardness: {Sy / 1e6:.0f} MPa within 15 %")
-        found.append(Nuisance(f"{key}.Sy_Pa", "Pa", Sy, 0.15, stated=False))
+        note = f"{key}.Sy_Pa is taken from the hardness: {Sy / 1e6:.0f} MPa within 15 %"
+        found.append(Nuisance(f"{key}.Sy_Pa", "Pa", Sy, 0.15, stated=False, note=note))
     elif table.Sy_Pa is None and yields:
-        notes.append(f"{key}.Sy_Pa is not stated: 350 MPa within a factor of 2 is assumed")
-        found.append(Nuisance(f"{key}.Sy_Pa", "Pa", 3.5e8, 0.7, stated=False))
+        note = f"{key}.Sy_Pa is not stated: 350 MPa within a factor of 2 is assumed"
+        found.append(Nuisance(f"{key}.Sy_Pa", "Pa", 3.5e8, 0.7, stated=False, note=note))
     return found
 
 

@@ -17,7 +17,7 @@ from ..models.base import ContactLaw
 from ..recordings import RecordingSet
 from ..recordings.setup_file import Striker as StrikerTable
 from ..recordings.setup_file import Target
-from .cells import Cells, cells_of
+from .cells import NO_CELLS, Cells, cells_of
 from .conditions import Condition, conditions_of
 from .curves import readings_of
 from .drift import Drift
@@ -57,10 +57,6 @@ class Problem:
     def fresh(self) -> Problem:
         """The same with every blow on fresh metal."""
         return replace(self, conditions=tuple(replace(c, after=-1) for c in self.conditions))
-
-    def restricted(self, keep: NDArray[np.bool_]) -> Problem:
-        """Return the problem with some of its cells."""
-        return replace(self, cells=self.cells.take(keep))
 
     def scenes(self, z: Array) -> list[Scene]:
         """Return the baseline scene of every condition at the unknowns z, shape (n_z,)."""
@@ -126,23 +122,25 @@ def problem_of(recordings: RecordingSet) -> Problem:
     InputError
         Nothing to compare.
     """
-    setup = recordings.setup
-    notes: list[str] = list(recordings.notes)
-    conditions = conditions_of(recordings, notes)
-    nuisances = nuisances_of(recordings, conditions, notes)
+    setup, approach = recordings.setup, recordings.approach
+    conditions = conditions_of(recordings)
+    nuisances = nuisances_of(recordings, conditions)
     law = _law_of(setup.target)
-    none = np.zeros(0)
     problem = Problem(
-        recordings.name, law, setup.target, dict(setup.strikers), conditions,
-        Cells(np.zeros(0, dtype=np.intp), (), none, none, np.zeros(0, dtype=np.intp)), nuisances,
+        recordings.name, law, setup.target, dict(setup.strikers), conditions, NO_CELLS, nuisances,
         law_error(law), setup.gravity_m_s2.value,
     )  # fmt: skip
-    of_trial = {i: s for c, s in zip(conditions, problem.scenes(np.zeros(problem.n_z)), strict=True)
-                for i in c.trials}  # fmt: skip
-    readings = readings_of(recordings, [of_trial[i] for i in sorted(of_trial)], notes)
-    speeds, order = recordings.approach.normal, recordings.trials.order
-    cells, drifts = cells_of(readings, speeds, order, conditions, notes)
-    return replace(problem, cells=cells, drifts=drifts, notes=tuple(notes))
+    stated = problem.scenes(np.zeros(problem.n_z))
+    of_trial = {i: s for c, s in zip(conditions, stated, strict=True) for i in c.trials}
+    readings, unread = readings_of(recordings, [of_trial[i] for i in sorted(of_trial)])
+    cells, drifts, left_out = cells_of(
+        readings, approach.normal, recordings.trials.order, conditions
+    )
+    again = sum(c.after >= 0 for c in conditions)
+    later = [f"{again} conditions are later blows on one place: they meet its crater"] * bool(again)
+    assumed = [n.note for n in nuisances if n.note]
+    notes = (*recordings.notes, *later, *assumed, *unread, *left_out)
+    return replace(problem, cells=cells, drifts=drifts, notes=notes)
 
 
 def _law_of(target: Target) -> ContactLaw:

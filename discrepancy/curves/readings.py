@@ -50,9 +50,9 @@ class Readings:
 
 
 def readings_of(
-    recordings: RecordingSet, scenes: Sequence[Scene], notes: list[str]
-) -> dict[str, Readings]:
-    """Return every observable that the set holds, from its columns and from its curves.
+    recordings: RecordingSet, scenes: Sequence[Scene]
+) -> tuple[dict[str, Readings], tuple[str, ...]]:
+    """Return every observable that the set holds, from columns and curves, and notes.
 
     A number in trials.csv goes before the same number from a curve.
 
@@ -62,8 +62,6 @@ def readings_of(
         The set.
     scenes
         The baseline's scene of every trial.
-    notes
-        Receives what could not be used, and why.
     """
     found = {
         name: Readings(recordings.values(name).copy(), recordings.std(name).copy())
@@ -88,6 +86,7 @@ def readings_of(
             if math.isnan(table.value[i]):
                 table.value[i] = value
                 table.std[i] = math.hypot(std, _SCALE.get(name, 0.0) * abs(value))
+    notes = []
     if coarse:
         notes.append(f"{coarse} traces have too few samples within the contact to be used")
     if unknown:
@@ -95,7 +94,7 @@ def readings_of(
             f"{unknown} traces have no noise in set.toml (tip_height_m, force_N): the scatter of "
             "neighbouring samples is taken"
         )
-    return found
+    return found, tuple(notes)
 
 
 def own_errors(trace: Mapping[str, Array], scene: Scene) -> dict[str, tuple[float, float]]:

@@ -179,9 +179,11 @@ def _numbers(v: Verdict) -> Iterable[str]:
         yield _list(v.notes)
 
 
-def _table(head: Sequence[str], rows: Sequence[Sequence[str]], *, right: int = 99) -> str:
+def _table(head: Sequence[str], rows: Sequence[Sequence[str]], *, right: int | None = None) -> str:
+    """Return a table; columns from `right` on are numbers."""
+
     def cell(tag: str, k: int, text: str) -> str:
-        side = ' class="n"' if k >= right else ""
+        side = ' class="n"' if right is not None and k >= right else ""
         return f"<{tag}{side}>{_e(text)}</{tag}>"
 
     top = "".join(cell("th", k, text) for k, text in enumerate(head))

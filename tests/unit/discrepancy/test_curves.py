@@ -116,6 +116,6 @@ def test_a_column_goes_before_its_trace(traced: Path) -> None:
     recordings = read(traced)
     problem = problem_of(recordings)
     scenes = problem.scenes(np.zeros(problem.n_z))
-    found = readings_of(recordings, scenes, [])
+    found, _ = readings_of(recordings, scenes)
     assert np.all(found["peak_force_N"].value == 1234.0)
     assert np.all(np.isfinite(found["contact_time_s"].value))
