@@ -18,8 +18,10 @@ from .. import fem
 from ..core.errors import InputError
 from ..core.material import Material, Pair
 from ..core.provenance import content_id
+from ..core.rig import MaterialTable, material_keys
 
 _PROFILES = 10  # depths at which pressure and surfaces are kept
+_ASKED = ("pair", "depths", "unload_from", "radius_at_least", "profiles", "snapshots")
 _DIGITS = 12  # groups are rounded to this many digits, so that round-off makes no new case
 
 
@@ -72,16 +74,14 @@ class Case:
             }
         )
 
+    @classmethod
+    def of(cls, problem: fem.ContactProblem, *, name: str, accuracy: fem.Accuracy) -> Case:
+        """Return the case that a problem of the solver is."""
+        return cls(**{k: getattr(problem, k) for k in _ASKED}, name=name, accuracy=accuracy)
+
     def problem(self) -> fem.ContactProblem:
         """Return the solver's input."""
-        return fem.ContactProblem(
-            pair=self.pair,
-            depths=self.depths,
-            unload_from=self.unload_from,
-            radius_at_least=self.radius_at_least,
-            profiles=self.profiles,
-            snapshots=self.snapshots,
-        )
+        return fem.ContactProblem(**{k: getattr(self, k) for k in _ASKED})
 
     def refined(self) -> Case:
         """Return the same case with smaller steps and elements, for another try."""
@@ -99,8 +99,8 @@ class Case:
         return {
             "name": self.name,
             "R_m": self.pair.R,
-            "sphere": _plain(self.pair.sphere),
-            "flat": _plain(self.pair.flat),
+            "sphere": material_keys(self.pair.sphere),
+            "flat": material_keys(self.pair.flat),
             "depths": list(self.depths),
             "unload_from": list(self.unload_from),
             "radius_at_least": self.radius_at_least,
@@ -112,9 +112,10 @@ class Case:
     @classmethod
     def from_specification(cls, spec: dict[str, Any]) -> Case:
         """Rebuild a case from `specification()`."""
+        sphere, flat = (MaterialTable.model_validate(spec[k]) for k in ("sphere", "flat"))
         return cls(
             name=spec["name"],
-            pair=Pair(_material(spec["sphere"]), _material(spec["flat"]), spec["R_m"]),
+            pair=Pair(sphere.to_material(), flat.to_material(), spec["R_m"]),
             depths=tuple(spec["depths"]),
             unload_from=tuple(spec["unload_from"]),
             radius_at_least=spec["radius_at_least"],
@@ -204,18 +205,3 @@ def _body(body: Material, unit: float) -> Any:
 
 def _rounded(x: float) -> float:
     return float(f"{x:.{_DIGITS}g}")
-
-
-def _plain(body: Material) -> dict[str, Any]:
-    if body.rigid:
-        return {"rigid": True}
-    out: dict[str, Any] = {"E_Pa": body.E, "nu": body.nu}
-    if math.isfinite(body.Sy):
-        out["Sy_Pa"] = body.Sy
-    return out
-
-
-def _material(spec: dict[str, Any]) -> Material:
-    if spec.get("rigid"):
-        return Material(E=math.nan, nu=math.nan, rigid=True)
-    return Material(E=spec["E_Pa"], nu=spec["nu"], Sy=spec.get("Sy_Pa", math.inf))

@@ -12,7 +12,8 @@ from pydantic import Field
 
 from ..core.errors import EXIT_NOT_CONVERGED, InputError
 from ..core.material import Pair
-from ..core.toml_input import InputTable, MaterialTable, read_model
+from ..core.rig import MaterialTable
+from ..core.toml_input import InputTable, read_model
 
 
 class _Load(InputTable):
@@ -95,6 +96,20 @@ def case(
     return 0
 
 
+def read_pair(file: Path) -> tuple[CaseFile, Pair]:
+    """Read CASE.toml: its keys, and its two bodies.
+
+    Raises
+    ------
+    InputError
+        Every mistake, a line each.
+    """
+    content = read_model(file, CaseFile)
+    sphere = content.sphere.to_material("sphere", source=str(file))
+    flat = content.flat.to_material("flat", source=str(file))
+    return content, Pair(sphere, flat, content.radius_m)
+
+
 def read_case(file: Path) -> tuple[Any, Any]:
     """Read CASE.toml into the solver's problem and accuracy.
 
@@ -105,13 +120,7 @@ def read_case(file: Path) -> tuple[Any, Any]:
     """
     from .. import fem
 
-    content = read_model(file, CaseFile)
-    source = str(file)
-    pair = Pair(
-        sphere=content.sphere.to_material(source=source, key="sphere"),
-        flat=content.flat.to_material(source=source, key="flat"),
-        R=content.radius_m,
-    )
+    content, pair = read_pair(file)
     last = content.load.max_delta_over_R
     # recorded from below first yield; a body that yields late or never still gets two decades
     first = min(0.3 * fem.critical_depth(pair), 1e-2 * last)
@@ -120,7 +129,7 @@ def read_case(file: Path) -> tuple[Any, Any]:
         if not first < depth <= last:
             raise InputError(
                 f"{depth:g}",
-                source=source,
+                source=str(file),
                 key="load.unload_from",
                 allowed=f"Delta/R above {first:.3g} and up to max_delta_over_R = {last:g}",
             )
@@ -171,16 +180,9 @@ def _write_result(name: str, solution: Any, uncertainty: Any, path: Path) -> Pat
 
     from ..campaigns import Case, Store
 
-    problem = solution.problem
-    case = Case(
-        name=name,
-        pair=problem.pair,
-        depths=problem.depths,
-        unload_from=problem.unload_from,
-        radius_at_least=problem.radius_at_least,
-        accuracy=solution.accuracy,
-        profiles=problem.profiles,
-    )
+    # the fields lie beside the case in this file, not in a campaign's own files
+    asked = replace(solution.problem, snapshots=())
+    case = Case.of(asked, name=name, accuracy=solution.accuracy)
     path.unlink(missing_ok=True)
     Store(path).put(case, solution)
     with h5py.File(path, "a") as file:

@@ -91,8 +91,10 @@ def compare(
 
     from ..models import LAWS, law_named
     from ..models.choose import demand, objection, recommended
+    from .case import read_pair
 
-    pair, last = read_pair(file)
+    content, pair = read_pair(file)
+    last = content.load.max_delta_over_R
     laws = [law_named(name) for name in law] if law else list(LAWS.values())
     rows = curves(pair, laws, last=last)
     out.mkdir(parents=True, exist_ok=True)
@@ -132,25 +134,6 @@ def _described_in(law: ContactLaw) -> str:
         return type(law).__module__.split(".", 1)[-1]
     place = sys.modules[kernels.residual.py_func.__module__]
     return str(place.__name__).split(".", 1)[-1]
-
-
-def read_pair(file: Path) -> tuple[Pair, float]:
-    """Return the pair of CASE.toml and its largest Delta/R.
-
-    Raises
-    ------
-    InputError
-        Every mistake, a line each.
-    """
-    from ..core.material import Pair
-    from ..core.toml_input import read_model
-    from .case import CaseFile
-
-    content = read_model(file, CaseFile)
-    source = str(file)
-    sphere = content.sphere.to_material(source=source, key="sphere")
-    flat = content.flat.to_material(source=source, key="flat")
-    return Pair(sphere, flat, content.radius_m), content.load.max_delta_over_R
 
 
 def curves(pair: Pair, laws: list[ContactLaw], *, last: float) -> list[tuple[Any, ...]]:

@@ -6,10 +6,9 @@ import tomllib
 from pathlib import Path
 from typing import Any, TypeVar, cast, get_args
 
-from pydantic import BaseModel, ConfigDict, Field, ValidationError
+from pydantic import BaseModel, ConfigDict, ValidationError
 
 from .errors import InputError, InputErrors
-from .material import Material
 
 Model = TypeVar("Model", bound=BaseModel)
 
@@ -18,42 +17,6 @@ class InputTable(BaseModel):
     """Base of the tables of an input file: unknown keys and non-finite numbers are mistakes."""
 
     model_config = ConfigDict(extra="forbid", frozen=True, allow_inf_nan=False)
-
-
-class MaterialTable(InputTable):
-    """The keys of a body in every input file: `E_Pa`, `nu`, `Sy_Pa`, `rigid`, `density_kg_m3`.
-
-    `Sy_Pa` left out means purely elastic; `rigid = true` needs no other key.
-    """
-
-    E_Pa: float | None = Field(default=None, gt=0.0)
-    nu: float | None = Field(default=None, ge=0.0, lt=0.5)
-    Sy_Pa: float | None = Field(default=None, gt=0.0)
-    rigid: bool = False
-    density_kg_m3: float | None = Field(default=None, gt=0.0)
-    material: str = ""
-
-    def to_material(self, *, source: str, key: str) -> Material:
-        """Return the `Material`; `source` and `key` name the table in an error."""
-        if self.rigid:
-            return Material(E=float("nan"), nu=float("nan"), rigid=True, name=self.material)
-        for name in ("E_Pa", "nu"):
-            if getattr(self, name) is None:
-                raise InputError(
-                    "missing",
-                    source=source,
-                    key=f"{key}.{name}",
-                    allowed="a number (or rigid = true)",
-                )
-        assert self.E_Pa is not None
-        assert self.nu is not None
-        return Material(
-            E=self.E_Pa,
-            nu=self.nu,
-            Sy=float("inf") if self.Sy_Pa is None else self.Sy_Pa,
-            density=float("nan") if self.density_kg_m3 is None else self.density_kg_m3,
-            name=self.material,
-        )
 
 
 def read_toml(path: Path) -> dict[str, Any]:
@@ -107,7 +70,12 @@ def _as_input_error(item: Any, model: type[BaseModel], source: str) -> InputErro
         known = ", ".join(_known_keys(model, location[:-1]))
         return InputError("unknown key", source=source, key=key, allowed=known)
     message = item["msg"].removeprefix("Input should be ").removeprefix("Value error, ")
-    return InputError(f"{item['input']!r}", source=source, key=key, allowed=message)
+    if location[-1:] == ("[key]",):
+        key = key.removesuffix(".[key]")
+        return InputError("unknown key", source=source, key=key, allowed=message)
+    # TOML has no null: a validator that complains of None misses the key
+    found = "missing" if item["input"] is None else f"{item['input']!r}"
+    return InputError(found, source=source, key=key, allowed=message)
 
 
 def _known_keys(model: type[BaseModel], path: tuple[Any, ...]) -> list[str]:

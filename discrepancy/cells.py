@@ -11,17 +11,13 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
+from ..core.observables import OBSERVABLES
 from .conditions import Condition
-from .curves import FROM_CURVES, Readings
+from .curves import Readings
 from .drift import Drift, drift_of
 
 Array = NDArray[np.float64]
 Ints = NDArray[np.intp]
-
-LOGARITHMIC = (
-    "restitution", "permanent_depth_m", "contact_time_s", "peak_force_N", *FROM_CURVES,
-)  # fmt: skip
-"""Observables that are compared as logarithms."""
 
 # what repeats cannot average away: gauges, definitions; of the value, and of one reading's noise
 _FLOOR, _FLOOR_OF_NOISE = 0.004, 0.5
@@ -54,7 +50,7 @@ class Cells:
     @cached_property
     def is_log(self) -> NDArray[np.bool_]:
         """Whether each cell is a logarithm."""
-        return np.array([name in LOGARITHMIC for name in self.observable], dtype=bool)
+        return np.array([OBSERVABLES[name].log for name in self.observable], dtype=bool)
 
 
 NO_CELLS = Cells(
@@ -89,6 +85,11 @@ class _Compared(NamedTuple):
     note: str
 
 
+def compared(name: str, values: Array) -> Array:
+    """Return values as they are compared: their logarithm, where the observable asks for it."""
+    return np.log(np.maximum(values, 1e-12)) if OBSERVABLES[name].log else values
+
+
 def cells_of(
     readings: Mapping[str, Readings], speeds: Array, order: Array, conditions: Sequence[Condition]
 ) -> tuple[Cells, tuple[Drift, ...], tuple[str, ...]]:
@@ -114,7 +115,7 @@ def cells_of(
     size = {n: _rms([m.value for m in one.means]) for n, one in found.items() if one.means}
     std = np.array([m.std for m in means])
     of_value = np.array([
-        _FLOOR if m.observable in LOGARITHMIC else _FLOOR * size[m.observable] for m in means
+        _FLOOR * (1.0 if OBSERVABLES[m.observable].log else size[m.observable]) for m in means
     ])  # fmt: skip
     one_reading = std * np.sqrt([m.trials for m in means])
     floor = np.minimum(of_value, _FLOOR_OF_NOISE * one_reading)
@@ -134,7 +135,7 @@ def _compared(
     values = read.value
     # a value of zero with a fractional noise is not exact
     std = np.maximum(read.std, 0.01 * np.sqrt(np.nanmean(values**2)) * (read.std <= 0.0))
-    log = name in LOGARITHMIC
+    log = OBSERVABLES[name].log
     means, repeats, dropped = [], [], 0
     squares, degrees = 0.0, 0
     for k, c in enumerate(conditions):
@@ -146,7 +147,7 @@ def _compared(
         y = np.log(values[index]) if log else values[index]
         s = std[index] / np.abs(values[index]) if log else std[index]
         # to the condition's mean speed, with the power that a plastic contact has
-        y = y - _power(name, y, log) * np.log(speeds[index] / c.speed)
+        y = y - _power(name, y) * np.log(speeds[index] / c.speed)
         keep = _kept(y, s)
         dropped += int(np.sum(~keep))
         y, s = y[keep], s[keep]
@@ -171,15 +172,10 @@ def _rms(values: Sequence[float]) -> float:
     return float(np.sqrt(np.mean([x**2 for x in values])))
 
 
-def _power(name: str, y: Array, log: bool) -> Array:
-    """D y / d ln v of a fully plastic contact; good enough between repeats."""
-    power = {
-        "restitution": -0.25, "permanent_depth_m": 1.0, "contact_time_s": 0.0, "peak_force_N": 1.0,
-        "rebound_spin_rad_s": 1.0, "friction_impulse_ratio": 0.0, "sliding_length_m": 1.0,
-        "rebound_speed_m_s": 0.75, "tangential_rebound_m_s": 1.0, "peak_depth_m": 1.0,
-        "loading_time_s": 0.0, "normal_impulse_Ns": 1.0, "below_flat_s": 0.1,
-    }[name]  # fmt: skip
-    return np.full(y.shape, power) if log else power * y
+def _power(name: str, y: Array) -> Array:
+    """D y / d ln v, y a logarithm or not."""
+    row = OBSERVABLES[name]
+    return np.full(y.shape, row.power) if row.log else row.power * y
 
 
 def _kept(y: Array, s: Array) -> NDArray[np.bool_]:

@@ -8,9 +8,9 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
+from ..core.rig import Quantity
 from ..recordings import RecordingSet
 from ..recordings.noise import bins
-from ..recordings.setup_file import Quantity
 from .mechanisms.base import Surroundings
 
 Ints = NDArray[np.intp]

@@ -9,8 +9,8 @@ from dataclasses import dataclass, replace
 import numpy as np
 from scipy.special import logsumexp
 
+from ..core.observables import OBSERVABLES
 from .calibration import Calibration, extra_threshold, p_fit, set_width
-from .cells import LOGARITHMIC
 from .correction import widened
 from .drift import Drift
 from .inference.fit import Fit
@@ -143,7 +143,7 @@ def _rather_outside(choice: Choice, probabilities: Mapping[str, float]) -> str:
 
 
 def _change(drift: Drift) -> str:
-    if drift.observable in LOGARITHMIC:
+    if OBSERVABLES[drift.observable].log:
         return f"{100.0 * math.expm1(drift.change):+.1f} %"
     return f"{drift.change:+.3g}"
 

@@ -11,28 +11,17 @@ from dataclasses import dataclass, field, replace
 import numpy as np
 from numpy.typing import NDArray
 
+from ..core.observables import OBSERVABLES
 from ..impact import Scene, Settings, strike_batch, strike_many
 from ..impact import compiled as c
 from ..models.base import DomainWarning
+from .cells import compared
 from .mechanisms.base import Constants, Mechanism, Situation, attached, observed
 from .problem import Problem
 
 Array = NDArray[np.float64]
 
-SIMULATED = {
-    "restitution": "restitution",
-    "permanent_depth_m": "residual_flat_m",
-    "contact_time_s": "contact_time_s",
-    "peak_force_N": "peak_force_N",
-    "rebound_spin_rad_s": "rebound_spin_rad_s",
-    "friction_impulse_ratio": "friction_impulse_ratio",
-    "sliding_length_m": "sliding_length_m",
-    "rebound_speed_m_s": "rebound_speed_m_s",
-    "tangential_rebound_m_s": "tangential_rebound_m_s",
-    "peak_depth_m": "peak_depth_m",
-    "loading_time_s": "loading_time_s",
-    "normal_impulse_Ns": "normal_impulse_Ns",
-}
+SIMULATED = {name: row.simulated for name, row in OBSERVABLES.items() if row.simulated}
 """Column of trials.csv to observable of the impact."""
 
 _COLUMN = {name: i for i, name in enumerate(c.OBSERVABLES)}
@@ -102,10 +91,7 @@ class Simulator:
         out = np.empty((len(points), len(cells)))
         for name in set(cells.observable):
             here = np.array([o == name for o in cells.observable])
-            values = seen[name][:, cells.condition[here]]
-            if np.any(cells.is_log[here]):
-                values = np.log(np.maximum(values, 1e-12))
-            out[:, here] = values
+            out[:, here] = compared(name, seen[name][:, cells.condition[here]])
         return out
 
     def observe(self, mechanisms: Sequence[Mechanism], points: Sequence[Point]) -> dict[str, Array]:

@@ -14,28 +14,12 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
+from ..core.observables import OBSERVABLES
 from .inference.fit import Fit
 from .problem import Problem
 from .thresholds import Nulls
 
 Array = NDArray[np.float64]
-
-PHASES = {
-    "restitution": "unloading",
-    "permanent_depth_m": "loading",
-    "contact_time_s": "loading",
-    "peak_force_N": "loading",
-    "rebound_spin_rad_s": "sliding",
-    "friction_impulse_ratio": "sliding",
-    "sliding_length_m": "sliding",
-    "rebound_speed_m_s": "free-flight",
-    "tangential_rebound_m_s": "free-flight",
-    "peak_depth_m": "loading",
-    "loading_time_s": "loading",
-    "normal_impulse_Ns": "unloading",
-    "below_flat_s": "unloading",
-}
-"""Phase of the impact that shapes each observable most."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -72,9 +56,9 @@ def covariates(problem: Problem) -> dict[str, Array]:
     c = problem.conditions
     raw = {
         "impact speed": np.log([x.speed for x in c]),
-        "rod length": np.array([problem.strikers[x.striker].length for x in c]),
-        "tip radius": np.log([problem.strikers[x.striker].tip_radius_m.value for x in c]),
-        "striker mass": np.log([problem.strikers[x.striker].mass_kg.value for x in c]),
+        "rod length": np.array([problem.rig.strikers[x.striker].length for x in c]),
+        "tip radius": np.log([problem.rig.strikers[x.striker].tip_radius_m.value for x in c]),
+        "striker mass": np.log([problem.rig.strikers[x.striker].mass_kg.value for x in c]),
         "angle": np.array([x.angle for x in c]),
         "tangential speed": np.array([x.tangential for x in c]),
         "temperature": np.array([x.around.temperature for x in c]),
@@ -112,7 +96,9 @@ def locate(problem: Problem, base: Fit, nulls: Nulls, *, level: float = 0.95) ->
     found = []
     for (observable, covariate), z in zip(names, score / spread, strict=True):
         found.append(
-            Miss(observable, PHASES[observable], covariate, _trend(covariate, z), float(z))
+            Miss(
+                observable, OBSERVABLES[observable].phase, covariate, _trend(covariate, z), float(z)
+            )
         )
     null_max = float(np.quantile((null / spread).max(axis=1), level))
     found.sort(key=lambda m: -abs(m.z))

@@ -15,8 +15,9 @@ from dataclasses import dataclass, replace
 import numpy as np
 from numpy.typing import NDArray
 
-from ..recordings import Quantity, Striker
-from .cells import LOGARITHMIC
+from ..core.observables import OBSERVABLES
+from ..core.rig import Quantity, StrikerTable
+from .cells import compared
 from .conditions import Condition
 from .forward import Point, Simulator
 from .inference.fit import Fit
@@ -24,13 +25,9 @@ from .problem import Problem
 from .rank import Ranking
 
 Array = NDArray[np.float64]
-_Candidate = tuple[str, Condition, Striker | None]
+_Candidate = tuple[str, Condition, StrikerTable | None]
 
 _SAMPLES = 6
-_USUAL = {
-    "restitution": 0.01, "permanent_depth_m": 0.03, "contact_time_s": 0.01, "peak_force_N": 0.03,
-    "friction_impulse_ratio": 0.01, "rebound_spin_rad_s": 0.03,
-}  # fmt: skip
 
 
 @dataclass(frozen=True, slots=True)
@@ -72,10 +69,11 @@ def propose(
     candidates = _candidates(problem)
     if len(rivals) < 2 or not candidates:
         return []
+    strikers = {**problem.rig.strikers, **{c.striker: s for _, c, s in candidates if s}}
     trial = simulator.of(
         replace(
             problem, conditions=tuple(c for _, c, _ in candidates),
-            strikers={**problem.strikers, **{c.striker: s for _, c, s in candidates if s}},
+            rig=problem.rig.model_copy(update={"strikers": strikers}),
         )
     )  # fmt: skip
     seen = [trial.observe(f.mechanisms, _samples(f, rng)) for f in rivals]
@@ -84,9 +82,9 @@ def propose(
     for k, (change, _, _) in enumerate(candidates):
         same = _worth([{o: s[o][:, k] for o in measured} for s in seen], problem)
         found.append(Proposal(f"{change}, measuring {_words(measured)}", same))
-        for extra in _USUAL:
-            oblique = extra in ("friction_impulse_ratio", "rebound_spin_rad_s")
-            if extra in measured or (oblique and candidates[k][1].angle > 1.5):
+        for extra, row in OBSERVABLES.items():
+            idle = row.phase == "sliding" and candidates[k][1].angle > 1.5
+            if extra in measured or idle or not row.usual_noise:
                 continue
             more = _worth([{o: s[o][:, k] for o in [*measured, extra]} for s in seen], problem)
             if more > 1.5 * same:
@@ -96,15 +94,7 @@ def propose(
 
 
 def _words(names: Sequence[str]) -> str:
-    plain = {
-        "permanent_depth_m": "crater depth", "contact_time_s": "contact time",
-        "peak_force_N": "peak force", "friction_impulse_ratio": "impulse ratio",
-        "rebound_spin_rad_s": "spin", "sliding_length_m": "sliding length",
-        "rebound_speed_m_s": "rebound speed", "tangential_rebound_m_s": "tangential rebound",
-        "peak_depth_m": "largest depth", "loading_time_s": "time to the largest force",
-        "normal_impulse_Ns": "impulse", "below_flat_s": "time below the flat",
-    }  # fmt: skip
-    return ", ".join(plain.get(n, n) for n in names)
+    return ", ".join(OBSERVABLES[n].label for n in names)
 
 
 def _samples(fitted: Fit, rng: np.random.Generator) -> list[Point]:
@@ -122,8 +112,7 @@ def _worth(seen: Sequence[dict[str, Array]], problem: Problem) -> float:
     noise = np.array([_noise(name, seen, problem) for name in names])
     tables = []
     for one in seen:
-        rows = [np.log(np.maximum(one[n], 1e-12)) if n in LOGARITHMIC else one[n] for n in names]
-        tables.append(np.stack(rows))
+        tables.append(np.stack([compared(n, one[n]) for n in names]))
     worth = []
     for a, b in itertools.combinations(tables, 2):
         gap = a.mean(axis=1) - b.mean(axis=1)
@@ -137,7 +126,8 @@ def _noise(name: str, seen: Sequence[dict[str, Array]], problem: Problem) -> flo
     if here.any():
         return float(np.median(problem.cells.std[here]))
     size = float(np.mean([np.mean(np.abs(s[name])) for s in seen]))
-    return _USUAL[name] * (1.0 if name in LOGARITHMIC else max(size, 1e-12))
+    row = OBSERVABLES[name]
+    return row.usual_noise * (1.0 if row.log else max(size, 1e-12))
 
 
 def _candidates(problem: Problem) -> list[_Candidate]:
@@ -151,7 +141,7 @@ def _candidates(problem: Problem) -> list[_Candidate]:
         speeds = [x.speed for x in problem.conditions if x.striker == c.striker]
         for v in (0.4 * min(speeds), 2.0 * max(speeds), 4.0 * max(speeds)):
             found.append((f"{c.striker} at {v:.2g} m/s", replace(c, speed=v), None))
-        table = problem.strikers[c.striker]
+        table = problem.rig.strikers[c.striker]
         v = float(np.median(speeds))
         if table.length > 0.0 and table.length_m is not None:
             for ratio in (0.4, 2.5):

@@ -8,10 +8,12 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from ..core.rig import BodyTable, Quantity
 from ..recordings import RecordingSet
-from ..recordings.setup_file import Quantity, Target
-from ..recordings.setup_file import Striker as StrikerTable
 from .conditions import SPEED_FROM_HEIGHT, SPEED_MEASURED, Condition
+
+ASSUMED_E, ASSUMED_NU = 2e11, 0.3
+"""Modulus [Pa] and Poisson's ratio of a body of which the set says nothing."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -83,11 +85,11 @@ def nuisances_of(recordings: RecordingSet, conditions: Sequence[Condition]) -> t
     return tuple(found)
 
 
-def _of_body(table: Target | StrikerTable, key: str, yields: bool) -> list[Nuisance]:
+def _of_body(table: BodyTable, key: str, yields: bool) -> list[Nuisance]:
     found = _stated(table.E_Pa, f"{key}.E_Pa", "Pa")
     if table.E_Pa is None:
-        note = f"{key}.E_Pa is not stated: 200 GPa within 40 % is assumed"
-        found.append(Nuisance(f"{key}.E_Pa", "Pa", 2e11, 0.4, stated=False, note=note))
+        note = f"{key}.E_Pa is not stated: {ASSUMED_E / 1e9:.0f} GPa within 40 % is assumed"
+        found.append(Nuisance(f"{key}.E_Pa", "Pa", ASSUMED_E, 0.4, stated=False, note=note))
     found += _stated(table.Sy_Pa, f"{key}.Sy_Pa", "Pa")
     if table.Sy_Pa is None and table.hardness_Pa is not None:
         Sy = table.hardness_Pa.value / 2.8

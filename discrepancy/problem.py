@@ -10,19 +10,19 @@ from functools import cache, lru_cache
 import numpy as np
 from numpy.typing import NDArray
 
-from ..core.material import Material, Pair
+from ..core.material import Pair
+from ..core.rig import Rig, TargetTable
 from ..impact import Approach, ForceTransform, Friction, Scene, Striker
+from ..impact.bodies import bodies_of
 from ..models import LAWS
 from ..models.base import ContactLaw
 from ..recordings import RecordingSet
-from ..recordings.setup_file import Striker as StrikerTable
-from ..recordings.setup_file import Target
 from .cells import NO_CELLS, Cells, cells_of
 from .conditions import Condition, conditions_of
 from .curves import readings_of
 from .drift import Drift
 from .lawerror import LawError, law_error
-from .nuisances import Nuisance, nuisances_of
+from .nuisances import ASSUMED_E, ASSUMED_NU, Nuisance, nuisances_of
 
 Array = NDArray[np.float64]
 
@@ -33,13 +33,11 @@ class Problem:
 
     name: str
     law: ContactLaw
-    target: Target
-    strikers: dict[str, StrikerTable]
+    rig: Rig
     conditions: tuple[Condition, ...]
     cells: Cells
     nuisances: tuple[Nuisance, ...]
     error: LawError
-    gravity: float
     notes: tuple[str, ...] = ()
     drifts: tuple[Drift, ...] = ()
 
@@ -62,16 +60,12 @@ class Problem:
         """Return the baseline scene of every condition at the unknowns z, shape (n_z,)."""
         values = {n.name: n.at(float(x)) for n, x in zip(self.nuisances, z, strict=False)}
         force = self.error.transform(z[self.n_nuisances :])
-        elastic = self.target.law == "measured-restitution"
-        if elastic:
+        if self.rig.target.law == "measured-restitution":
             force = replace(force, given_back=values["target.restitution"] ** 2)
-        flat = material_of(self.target, "target", values)
-        parts: dict[str, tuple[Pair, Striker]] = {}
-        for name in {c.striker for c in self.conditions}:
-            table = self.strikers[name]
-            body = material_of(table, f"strikers.{name}", values)
-            striker = striker_of(table, name, values)
-            parts[name] = Pair(body, flat, striker.tip_radius), striker
+        parts = {
+            name: bodies_of(self.rig, name, values=values, E=ASSUMED_E, nu=ASSUMED_NU)
+            for name in {c.striker for c in self.conditions}
+        }
         scale = values.get("speed.scale", 1.0)
         turn = values.get("angle.offset", 0.0)
         mu = Friction(values.get("friction.coefficient", 0.0))
@@ -89,29 +83,9 @@ class Problem:
         approach = Approach(c.speed * scale, angle, c.tangential * scale, c.spin * scale)
         slides = leaning or c.tangential != 0.0 or c.spin != 0.0
         return Scene(
-            self.law, pair, striker, approach, gravity=self.gravity, force=force,
+            self.law, pair, striker, approach, gravity=self.rig.gravity_m_s2.value, force=force,
             friction=friction if slides else Friction(),
         )  # fmt: skip
-
-
-def material_of(table: Target | StrikerTable, key: str, values: dict[str, float]) -> Material:
-    """Return a body's material at the nuisances' values."""
-    plain = table.to_material(E=2e11, nu=0.3, Sy=math.inf)
-    return plain.with_(
-        E=values.get(f"{key}.E_Pa", plain.E), Sy=values.get(f"{key}.Sy_Pa", plain.Sy)
-    )
-
-
-def striker_of(table: StrikerTable, name: str, values: dict[str, float]) -> Striker:
-    """Return a striker at the nuisances' values."""
-    mass = values.get(f"strikers.{name}.mass_kg", table.mass_kg.value)
-    tip = values.get(f"strikers.{name}.tip_radius_m", table.tip_radius_m.value)
-    flat = table.tip_flat_radius_m
-    return Striker(
-        mass=mass, tip_radius=tip, length=table.length, radius=table.body_radius,
-        inertia=table.inertia * mass / table.mass_kg.value,
-        tip_flat_radius=flat.value if flat else 0.0, name=name,
-    )  # fmt: skip
 
 
 def problem_of(recordings: RecordingSet) -> Problem:
@@ -127,8 +101,7 @@ def problem_of(recordings: RecordingSet) -> Problem:
     nuisances = nuisances_of(recordings, conditions)
     law = _law_of(setup.target)
     problem = Problem(
-        recordings.name, law, setup.target, dict(setup.strikers), conditions, NO_CELLS, nuisances,
-        law_error(law), setup.gravity_m_s2.value,
+        recordings.name, law, setup, conditions, NO_CELLS, nuisances, law_error(law),
     )  # fmt: skip
     stated = problem.scenes(np.zeros(problem.n_z))
     of_trial = {i: s for c, s in zip(conditions, stated, strict=True) for i in c.trials}
@@ -143,7 +116,7 @@ def problem_of(recordings: RecordingSet) -> Problem:
     return replace(problem, cells=cells, drifts=drifts, notes=notes)
 
 
-def _law_of(target: Target) -> ContactLaw:
+def _law_of(target: TargetTable) -> ContactLaw:
     if target.law != "elastic-plastic":
         return _remembering("hertz")
     return _remembering("fitted" if "fitted" in LAWS else "ghaednia")

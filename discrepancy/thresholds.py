@@ -15,7 +15,7 @@ from numpy.typing import NDArray
 
 from ..impact import Scene
 from ..impact.strength import UNIT, strength_table
-from .cells import LOGARITHMIC
+from .cells import compared
 from .forward import Point, Simulator
 from .inference.fit import Fit
 from .inference.linear import Linear
@@ -91,8 +91,7 @@ def null_residuals(simulator: Simulator, base: Fit, count: int, rng: np.random.G
     cells = problem.cells
     law = np.empty((count, len(cells)))
     for j, name in enumerate(cells.observable):
-        value = seen[name][:, cells.condition[j]]
-        law[:, j] = np.log(np.maximum(value, 1e-12)) if name in LOGARITHMIC else value
+        law[:, j] = compared(name, seen[name][:, cells.condition[j]])
     law -= here
     # what a condition's scatter of speed and angle does is shared by its observables
     unit = scatter(rng, law.shape)

@@ -10,6 +10,7 @@ import numpy as np
 from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.figure import Figure
 
+from ..core.observables import OBSERVABLES
 from .inverse import alpha_curve
 from .reference import Trace
 from .scene import Striker
@@ -48,15 +49,12 @@ def draw_sweep(
 ) -> None:
     """Residual depth, restitution and spin against approach speed (figures 4.9-4.11)."""
     made, axes = figure(1, 3, size=(13.0, 4.2))
-    panels = (
-        ("residual_flat_m", "residual depth of the flat [um]", 1e6),
-        ("restitution", "restitution", 1.0),
-        ("rebound_spin_rad_s", "rebound spin [rad/s]", 1.0),
-    )
-    for axis, (name, label, factor) in zip(axes[0], panels, strict=True):
+    panels = (OBSERVABLES[k] for k in ("permanent_depth_m", "restitution", "rebound_spin_rad_s"))
+    for axis, shown in zip(axes[0], panels, strict=True):
         for law, impacts in curves:
-            axis.plot(speeds, [factor * getattr(i, name) for i in impacts], label=law)
-        axis.set(xlabel="approach speed [m/s]", ylabel=label)
+            values = [shown.scale * getattr(i, shown.simulated) for i in impacts]
+            axis.plot(speeds, values, label=law)
+        axis.set(xlabel="approach speed [m/s]", ylabel=shown.axis)
         axis.grid(alpha=0.3)
     axes[0, 0].legend(fontsize=7)
     save(made, path)

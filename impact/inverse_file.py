@@ -5,23 +5,24 @@ from __future__ import annotations
 import math
 from dataclasses import dataclass
 from pathlib import Path
+from typing import Literal
 
 from pydantic import Field
 
 from ..core.errors import InputError
+from ..core.rig import Positive, StrikerTable
 from ..core.toml_input import InputTable, parse_model, read_toml
+from .bodies import striker_of
 from .inverse import Inferred, Measured, infer
 from .scene import Striker
 
 
-class _RodTable(InputTable):
-    """`[striker]` of an inverse file."""
+class _RodTable(StrikerTable):
+    """`[striker]` of an inverse file: a rod of one radius, unless it says otherwise."""
 
-    tip_radius_m: float = Field(gt=0.0)
-    mass_kg: float = Field(gt=0.0)
-    length_m: float = Field(gt=0.0)
-    radius_m: float | None = Field(default=None, gt=0.0)
-    inertia_kg_m2: float | None = Field(default=None, gt=0.0)
+    shape: Literal["rod"] = "rod"
+    radius_m: Positive | None = None
+    length_m: Positive
 
 
 class _TrialTable(InputTable):
@@ -65,11 +66,7 @@ def read_inverse(path: Path) -> tuple[Striker, list[Row]]:
     """
     source = str(path)
     found = parse_model(read_toml(path), _InverseFile, source=source)
-    table = found.striker
-    rod = Striker(
-        mass=table.mass_kg, tip_radius=table.tip_radius_m, length=table.length_m,
-        radius=table.radius_m or table.tip_radius_m, inertia=table.inertia_kg_m2 or math.nan,
-    )  # fmt: skip
+    rod = striker_of(found.striker, "rod")
     rows = []
     for i, trial in enumerate(found.trial, start=1):
         measured = Measured(

@@ -10,27 +10,19 @@ from typing import Any
 import h5py
 import numpy as np
 
+from ..core.observables import OBSERVABLES
 from ..core.provenance import environment
 from .reference import HISTORY, Trace
 from .result import Impact
 
 SHOWN = (
-    ("kinematic restitution", "restitution", 1.0, "-"),
+    *((o.label, o.simulated, o.scale, o.unit) for o in OBSERVABLES.values() if o.simulated),
     ("kinetic restitution", "kinetic_restitution", 1.0, "-"),
     ("energetic restitution", "energetic_restitution", 1.0, "-"),
     ("tangential restitution", "tangential_restitution", 1.0, "-"),
-    ("residual depth, flat", "residual_flat_m", 1e6, "um"),
     ("residual depth, tip", "residual_sphere_m", 1e6, "um"),
-    ("largest depth", "peak_depth_m", 1e6, "um"),
-    ("contact time", "contact_time_s", 1e3, "ms"),
-    ("compression time", "loading_time_s", 1e3, "ms"),
-    ("peak force", "peak_force_N", 1e-3, "kN"),
     ("mean force", "mean_force_N", 1e-3, "kN"),
-    ("rebound spin", "rebound_spin_rad_s", 1.0, "rad/s"),
-    ("sliding length", "sliding_length_m", 1e6, "um"),
     ("travel on the flat", "scar_travel_m", 1e6, "um"),
-    ("impulse ratio", "friction_impulse_ratio", 1.0, "-"),
-    ("normal impulse", "normal_impulse_Ns", 1.0, "N s"),
     ("kept by the contact", "contact_work_J", 1e3, "mJ"),
     ("lost to friction", "friction_work_J", 1e3, "mJ"),
     ("in vibration", "modal_energy_J", 1e3, "mJ"),

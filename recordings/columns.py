@@ -6,6 +6,8 @@ import math
 from dataclasses import dataclass
 from typing import Literal
 
+from ..core.observables import OBSERVABLES
+
 Kind = Literal["text", "condition", "observable", "std"]
 
 
@@ -73,40 +75,22 @@ CONDITIONS: dict[str, Column] = {
 }
 """Columns that describe a trial, in the order in which they are written."""
 
-OBSERVABLES: dict[str, Column] = {
-    "restitution": _not_negative("observable", "rebound over approach normal tip velocity"),
-    "permanent_depth_m": _not_negative("observable", "depth of the crater in the flat"),
-    "contact_time_s": _positive("observable", "first touch to last separation"),
-    "peak_force_N": _positive("observable", "largest normal force"),
-    "rebound_spin_rad_s": Column("observable", "angular velocity after, counter-clockwise"),
-    "friction_impulse_ratio": _not_negative("observable", "tangential over normal impulse"),
-    "sliding_length_m": _not_negative("observable", "range of the contact point's travel"),
-    "rebound_speed_m_s": Column("observable", "velocity of the centre of mass after, along +y"),
-    "tangential_rebound_m_s": Column("observable", "the same along +x"),
+MEASURED: dict[str, Column] = {
+    name: Column("observable", row.meaning, low=row.low, low_allowed=row.zero)
+    for name, row in OBSERVABLES.items()
+    if row.in_trials
 }
 """Measured columns, in the order of the format's table."""
 
 STD_SUFFIX = "_std"
-RELATIVE_SUFFIX = "_relative"
 
 TRIAL_COLUMNS: dict[str, Column] = (
     CONDITIONS
-    | OBSERVABLES
-    | {name + STD_SUFFIX: _positive("std", f"of {name}") for name in OBSERVABLES}
+    | MEASURED
+    | {name + STD_SUFFIX: _positive("std", f"of {name}") for name in MEASURED}
     | {"note": Column("text", "free text, not used")}
 )
 """Every column that trials.csv may have."""
 
 TRACE_COLUMNS: tuple[str, ...] = ("time_s", "tip_height_m", "force_N", "tip_x_m", "angle_rad")
 PROFILE_COLUMNS: tuple[str, ...] = ("x_m", "z_m")
-
-NOISE_KEYS: tuple[str, ...] = (
-    *OBSERVABLES,
-    *(name + RELATIVE_SUFFIX for name in OBSERVABLES),
-    "tip_height_m",
-    "force_N",
-    "force_N" + RELATIVE_SUFFIX,
-    "impact_speed" + RELATIVE_SUFFIX,
-    "frame_rate_hz",
-)
-"""Every key that `[noise]` may have."""

@@ -8,7 +8,7 @@ from dataclasses import dataclass
 import numpy as np
 import numpy.typing as npt
 
-from .columns import RELATIVE_SUFFIX
+from ..core.observables import RELATIVE_SUFFIX
 from .csv_table import Array
 
 MIN_REPEATS = 3

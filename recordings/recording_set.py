@@ -16,14 +16,15 @@ import numpy as np
 import numpy.typing as npt
 
 from ..core.errors import InputError, InputErrors
+from ..core.observables import RELATIVE_SUFFIX
+from ..core.rig import StrikerTable
 from ..core.toml_input import parse_model, read_toml
 from . import noise
-from .columns import NOISE_KEYS, OBSERVABLES, RELATIVE_SUFFIX
+from .columns import MEASURED
 from .csv_table import Array, Problems
 from .noise import Noise
 from .series import read_profile, read_trace, series_in
-from .setup_file import Setup, Striker
-from .toml_text import setup_text
+from .setup_file import Setup, setup_text
 from .trials import Trials, read_trials, write_trials
 
 _NOT_COLUMNS = ("impact_speed" + RELATIVE_SUFFIX, "frame_rate_hz")
@@ -90,9 +91,9 @@ class RecordingSet:
     def observed(self) -> tuple[str, ...]:
         """Observables with at least one value, in the order of the format."""
         found = self.trials.observables
-        return tuple(k for k in OBSERVABLES if k in found and not np.isnan(found[k]).all())
+        return tuple(k for k in MEASURED if k in found and not np.isnan(found[k]).all())
 
-    def strikers(self) -> tuple[Striker, ...]:
+    def strikers(self) -> tuple[StrikerTable, ...]:
         """The striker of each trial, n of them."""
         return tuple(self.setup.strikers[name] for name in self.trials.striker)
 
@@ -226,53 +227,16 @@ def _read_setup(path: Path, mistakes: list[InputError]) -> tuple[Setup | None, f
         mistakes += several.errors
     except InputError as error:
         mistakes.append(error)
-    tables, noises = content.get("strikers"), content.get("noise")
-    mistakes += _unsound_strikers(tables if isinstance(tables, dict) else {}, str(path))
-    for key in noises if isinstance(noises, dict) else ():
-        if key not in NOISE_KEYS:
-            mistakes.append(
-                InputError(
-                    "unknown key",
-                    source=str(path),
-                    key=f"noise.{key}",
-                    allowed=", ".join(NOISE_KEYS),
-                )
+    if setup is not None:
+        mistakes += (
+            InputError(
+                "true", source=str(path), key=f"{key}.rigid", allowed="a body that gives way"
             )
+            for key, body in setup.bodies.items()
+            if body.rigid
+        )
+    tables = content.get("strikers")
     return setup, frozenset(tables) if isinstance(tables, dict) else frozenset()
-
-
-def _unsound_strikers(tables: Mapping[str, object], source: str) -> list[InputError]:
-    """What the single keys of a striker cannot show, found even when one of them is wrong."""
-    mistakes = []
-    for name, table in tables.items():
-        if not isinstance(table, dict):
-            continue
-        for key in ("radius_m", "length_m"):
-            if table.get("shape") == "rod" and key not in table:
-                mistakes.append(
-                    InputError(
-                        "missing",
-                        source=source,
-                        key=f"strikers.{name}.{key}",
-                        allowed="this key is needed for a rod",
-                    )
-                )
-        tip, flat = (_plain(table.get(k)) for k in ("tip_radius_m", "tip_flat_radius_m"))
-        if flat >= tip:
-            mistakes.append(
-                InputError(
-                    f"{flat:g}",
-                    source=source,
-                    key=f"strikers.{name}.tip_flat_radius_m",
-                    allowed=f"below tip_radius_m = {tip:g}",
-                )
-            )
-    return mistakes
-
-
-def _plain(given: object) -> float:
-    value = given.get("value") if isinstance(given, dict) else given
-    return float(value) if isinstance(value, int | float) else float("nan")
 
 
 def _checked_series(

@@ -6,7 +6,7 @@ from pathlib import Path
 from typing import Literal
 
 from ..core.errors import InputError
-from .columns import OBSERVABLES
+from .columns import MEASURED
 from .setup_file import FORMAT
 
 _HEAD = f'''# A quantity is {{ value = ..., std = ... }}, or a plain number that is taken as exact.
@@ -102,7 +102,7 @@ def write_template(folder: Path, *, shape: Literal["rod", "sphere"]) -> None:
     striker = _STRIKER[shape].format(mass=_MASS[shape])
     (folder / "set.toml").write_text(_HEAD + striker + _TAIL, encoding="utf-8")
     name, depth = ("rod", "95e-6") if shape == "rod" else ("ball", "19e-6")
-    columns = ["trial", "striker", "angle_deg", "drop_height_m", *list(OBSERVABLES)[:2], "note"]
+    columns = ["trial", "striker", "angle_deg", "drop_height_m", *list(MEASURED)[:2], "note"]
     rows = [columns, ["T01", name, "90", "0.05", "0.5", depth, "an example row: replace it"]]
     text = "\n".join(",".join(row) for row in rows) + "\n"
     (folder / "trials.csv").write_text(text, encoding="utf-8")

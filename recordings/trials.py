@@ -10,12 +10,12 @@ from pathlib import Path
 import numpy as np
 import numpy.typing as npt
 
-from .columns import CONDITIONS, OBSERVABLES, STD_SUFFIX, TRIAL_COLUMNS
+from .columns import CONDITIONS, MEASURED, STD_SUFFIX, TRIAL_COLUMNS
 from .csv_table import Array, Problems, TextTable, numbers, read_text_table, shown
 
 _TEXTS = tuple(name for name, column in TRIAL_COLUMNS.items() if column.kind == "text")
 _NUMBERS = tuple(name for name, column in CONDITIONS.items() if column.kind != "text")
-_STDS = {name + STD_SUFFIX: name for name in OBSERVABLES}
+_STDS = {name + STD_SUFFIX: name for name in MEASURED}
 
 
 @dataclass(frozen=True, eq=False)
@@ -142,7 +142,7 @@ def _as_trials(table: TextTable, values: Mapping[str, Array]) -> Trials:
     return Trials(
         **texts,  # type: ignore[arg-type]
         **{name: values[name] for name in _NUMBERS if name in values},  # type: ignore[arg-type]
-        observables={name: values[name] for name in OBSERVABLES if name in values},
+        observables={name: values[name] for name in MEASURED if name in values},
         observables_std={_STDS[name]: values[name] for name in _STDS if name in values},
     )
 
@@ -205,7 +205,7 @@ def write_trials(trials: Trials, path: Path) -> None:
         cells = list(value) if name in _TEXTS else _cells(value)
         if any(cells) or name in ("trial", "striker", "angle_deg"):
             columns[name] = cells
-    for name in OBSERVABLES:
+    for name in MEASURED:
         if name in trials.observables:
             columns[name] = _cells(trials.observables[name])
         if name in trials.observables_std:

@@ -3,6 +3,5 @@
 from __future__ import annotations
 
 from .readings import Readings, readings_of
-from .reduction import FROM_CURVES
 
-__all__ = ["FROM_CURVES", "Readings", "readings_of"]
+__all__ = ["Readings", "readings_of"]

@@ -27,8 +27,8 @@ Array = NDArray[np.float64]
 
 _ACCURACY, _POINTS = Settings(tolerance=1e-7), 200
 _AGAIN = 40  # copies of a curve with fresh noise
-_SCALE = {"peak_depth_m": 0.01, "permanent_depth_m": 0.01}
-"""Error of the length's scale, as a fraction, where a column of its own would state it."""
+_SCALE = 0.01
+"""Error of a length's scale, as a fraction, where a column of its own would state it."""
 _LEFT, _LEAST, _MOST = 0.25, 0.003, 0.25
 """Of a reduction's own error: share that stays, least that stays, most that is corrected."""
 _INSTANTS = (-0.4, -0.2, 0.0, 0.2, 0.4)
@@ -85,7 +85,8 @@ def readings_of(
             table = found.setdefault(name, Readings(np.full(n, np.nan), np.full(n, np.nan)))
             if math.isnan(table.value[i]):
                 table.value[i] = value
-                table.std[i] = math.hypot(std, _SCALE.get(name, 0.0) * abs(value))
+                scale = _SCALE if name.endswith("_m") else 0.0
+                table.std[i] = math.hypot(std, scale * abs(value))
     notes = []
     if coarse:
         notes.append(f"{coarse} traces have too few samples within the contact to be used")

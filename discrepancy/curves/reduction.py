@@ -11,9 +11,6 @@ from numpy.typing import NDArray
 Array = NDArray[np.float64]
 Numbers = dict[str, float]
 
-FROM_CURVES = ("peak_depth_m", "below_flat_s", "normal_impulse_Ns", "loading_time_s")
-"""Numbers that only curves give; simulated by the same names."""
-
 FEWEST = 5
 """Samples within the contact that a number of the contact needs."""
 

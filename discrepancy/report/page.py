@@ -6,9 +6,10 @@ import html
 from collections.abc import Iterable, Sequence
 from pathlib import Path
 
+from ...core.observables import OBSERVABLES
 from ..findings import Verdict
 from .pictures import figure_correction, figure_misfit, image
-from .text import headline, number, observable, own_parameters
+from .text import headline, number, own_parameters
 
 _STYLE = """
 body { font: 16px/1.5 system-ui, sans-serif; color: #1c2430; max-width: 60rem;
@@ -80,7 +81,7 @@ def _misses(v: Verdict) -> Iterable[str]:
     yield "<h2>Where the baseline misses</h2>"
     if v.located.misses:
         rows = [
-            (observable(m.observable), m.phase, m.trend, f"{m.z:+.1f}")
+            (OBSERVABLES[m.observable].label, m.phase, m.trend, f"{m.z:+.1f}")
             for m in v.located.misses[:8]
         ]
         yield _table(("observable", "phase", "recording against simulation", "score"), rows)

@@ -11,9 +11,9 @@ from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.figure import Figure
 from matplotlib.ticker import FuncFormatter, NullFormatter
 
+from ...core.observables import OBSERVABLES
 from ..findings import Verdict
 from ..inference.fit import Fit
-from .text import observable
 
 _BASE, _BEST = "#8a94a3", "#2b6cb0"
 
@@ -47,7 +47,7 @@ def figure_misfit(v: Verdict) -> Figure:
         axis.xaxis.set_minor_formatter(NullFormatter())
         ticks = sorted({float(f"{x:.2g}") for x in speed})
         axis.set_xticks(ticks if len(ticks) < 7 else ticks[:: len(ticks) // 5])
-        axis.set_title(observable(name), fontsize=10)
+        axis.set_title(OBSERVABLES[name].label, fontsize=10)
         axis.set_xlabel("approach speed [m/s]", fontsize=9)
         axis.set_ylabel("recording off simulation" + (" [%]" if log else ""), fontsize=9)
         axis.tick_params(labelsize=8)

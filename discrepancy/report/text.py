@@ -5,23 +5,9 @@ from __future__ import annotations
 import math
 from typing import Any
 
+from ...core.observables import OBSERVABLES
 from ..decide import OUTSIDE
 from ..findings import Verdict
-
-_NAMES = {
-    "restitution": "restitution", "permanent_depth_m": "crater depth",
-    "contact_time_s": "contact time", "peak_force_N": "peak force",
-    "rebound_spin_rad_s": "rebound spin", "friction_impulse_ratio": "impulse ratio",
-    "sliding_length_m": "sliding length", "rebound_speed_m_s": "rebound speed",
-    "tangential_rebound_m_s": "tangential rebound", "peak_depth_m": "largest depth",
-    "loading_time_s": "time to the largest force", "normal_impulse_Ns": "impulse",
-    "below_flat_s": "time below the flat",
-}  # fmt: skip
-
-
-def observable(name: str) -> str:
-    """Return an observable's name for people."""
-    return _NAMES.get(name, name)
 
 
 def headline(v: Verdict) -> str:
@@ -50,7 +36,7 @@ def lines(v: Verdict) -> list[str]:
     """Return the finding as lines for a terminal."""
     p = v.problem
     trials = sum(len(c.trials) for c in p.conditions)
-    seen = ", ".join(observable(o) for o in dict.fromkeys(p.cells.observable))
+    seen = ", ".join(OBSERVABLES[o].label for o in dict.fromkeys(p.cells.observable))
     out = [
         f"{v.name}: {trials} trials, {len(p.conditions)} conditions, {len(p.cells)} numbers "
         f"({seen})",
@@ -65,7 +51,7 @@ def lines(v: Verdict) -> list[str]:
     out += ["", "Where the baseline misses"]
     if v.located.misses:
         for m in v.located.misses[:4]:
-            out.append(f"  {observable(m.observable)} ({m.phase}): {m.trend}, z = {m.z:.1f}")
+            out.append(f"  {OBSERVABLES[m.observable].label} ({m.phase}): {m.trend}, z = {m.z:.1f}")
     else:
         out.append("  nowhere beyond what chance gives over all observables and conditions")
     if v.mechanisms:
@@ -113,4 +99,4 @@ def number(q: dict[str, Any]) -> str:
     return f"{q['value']:.3g}{unit}"
 
 
-__all__ = ["headline", "lines", "number", "observable", "own_parameters"]
+__all__ = ["headline", "lines", "number", "own_parameters"]

@@ -4,8 +4,8 @@ from __future__ import annotations
 
 import math
 
+from ...core.rig import Quantity
 from ..recording_set import RecordingSet
-from ..setup_file import Quantity
 from . import limits
 from .findings import Finding, Severity, gathered
 from .trial_view import TrialView, combined, views

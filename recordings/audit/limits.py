@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 from dataclasses import dataclass
 
-from ..setup_file import Quantity, Striker, Target
+from ...core.rig import Quantity, StrikerTable, TargetTable
 
 FULLY_PLASTIC = 2.84
 """Contact pressure of a fully developed dent over the yield strength (Tabor; thesis 1.2)."""
@@ -29,7 +29,7 @@ class Range:
     relative: float
 
 
-def geometric_mass(striker: Striker) -> Range | None:
+def geometric_mass(striker: StrikerTable) -> Range | None:
     """Return the mass that density and size allow [kg]; `None` without a density.
 
     Notes
@@ -60,7 +60,7 @@ def _end_volume(R: float, r: float) -> float:
     return min(common, math.pi * r**3)
 
 
-def hardness(target: Target, striker: Striker) -> Quantity | None:
+def hardness(target: TargetTable, striker: StrikerTable) -> Quantity | None:
     """Return the pressure that makes a dent in the flat [Pa]: its hardness, else 2.84 S_y.
 
     `None` when neither is stated or when the striker is the weaker body.
@@ -78,29 +78,29 @@ def hardness(target: Target, striker: Striker) -> Quantity | None:
     return found if found.std else Quantity(value=found.value, std=UNSTATED_STRENGTH * found.value)
 
 
-def rod_area(striker: Striker) -> float:
+def rod_area(striker: StrikerTable) -> float:
     """Cross-section of a rod's shank [m^2]."""
     return math.pi * striker.body_radius**2
 
 
-def density(striker: Striker) -> float:
+def density(striker: StrikerTable) -> float:
     """Density of a rod: as stated, else its mass over its plain volume [kg/m^3]."""
     if striker.density_kg_m3 is not None:
         return striker.density_kg_m3.value
     return striker.mass_kg.value / (rod_area(striker) * striker.length)
 
 
-def bar_wave_speed(striker: Striker) -> float:
+def bar_wave_speed(striker: StrikerTable) -> float:
     """Speed of long waves in a rod, sqrt(E / rho) [m/s]; NaN without a modulus."""
     return math.sqrt(striker.E_Pa.value / density(striker)) if striker.E_Pa else math.nan
 
 
-def wave_limit(striker: Striker, speed: float) -> float:
+def wave_limit(striker: StrikerTable, speed: float) -> float:
     """Largest force at the end of an elastic rod that strikes end-on, rho c v A [N]."""
     return density(striker) * bar_wave_speed(striker) * speed * rod_area(striker)
 
 
-def bending_period(striker: Striker) -> float:
+def bending_period(striker: StrikerTable) -> float:
     """First free-free bending period of the shank (Euler-Bernoulli) [s].
 
     T = 2 pi L^2 / (x1^2 c r / 2), x1 = 4.730.
@@ -109,7 +109,7 @@ def bending_period(striker: Striker) -> float:
     return 2.0 * math.pi * striker.length**2 / (FIRST_BENDING**2 * wave)
 
 
-def dent_radius(striker: Striker, depth: float) -> float:
+def dent_radius(striker: StrikerTable, depth: float) -> float:
     """Radius of a crater that has the tip's shape and this depth [m], at most the shank's.
 
     a^2 = 2 R d - d^2; pile-up and elastic recovery change it.
@@ -119,17 +119,17 @@ def dent_radius(striker: Striker, depth: float) -> float:
     return min(a, striker.body_radius) if striker.shape == "rod" else a
 
 
-def open_dent_radius(striker: Striker, depth: float) -> float:
+def open_dent_radius(striker: StrikerTable, depth: float) -> float:
     """The same without the limit of the shank [m]."""
     R = striker.tip_radius_m.value
     return math.sqrt(max(2.0 * R * depth - depth**2, 0.0)) if depth < R else R
 
 
-def dent_work(striker: Striker, depth: float, pressure: float) -> float:
+def dent_work(striker: StrikerTable, depth: float, pressure: float) -> float:
     """Work of pressing a crater of the tip's shape at a constant pressure, p pi R d^2 [J]."""
     return pressure * math.pi * striker.tip_radius_m.value * depth**2
 
 
-def plastic_duration(striker: Striker, mass: float, pressure: float) -> float:
+def plastic_duration(striker: StrikerTable, mass: float, pressure: float) -> float:
     """Duration of the loading at constant pressure, (pi/2) sqrt(m / (2 pi R p)) [s]."""
     return 0.5 * math.pi * math.sqrt(mass / (2.0 * math.pi * striker.tip_radius_m.value * pressure))

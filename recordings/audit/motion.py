@@ -8,8 +8,8 @@ import numpy as np
 from scipy.optimize import minimize_scalar
 from scipy.stats import chi2
 
+from ...core.rig import StrikerTable
 from ..recording_set import RecordingSet
-from ..setup_file import Striker
 from . import limits, rigid
 from .findings import (
     FALSE_ALARMS_MASS,
@@ -74,7 +74,7 @@ def check_mass(found: RecordingSet) -> list[Finding]:
     return findings
 
 
-def _masses_together(bodies: list[tuple[Striker, limits.Range]]) -> Finding:
+def _masses_together(bodies: list[tuple[StrikerTable, limits.Range]]) -> Finding:
     """All stated masses off by one factor, beside none off."""
     part = _best_part(bodies, lambda p: _misfit(bodies, p, _factor(bodies, p)))
     factor = _factor(bodies, part)
@@ -93,7 +93,9 @@ def _expected(m: limits.Range, part: float) -> float:
     return m.low + part * (m.high - m.low)
 
 
-def _misfit(bodies: list[tuple[Striker, limits.Range]], part: float, factor: float = 1.0) -> float:
+def _misfit(
+    bodies: list[tuple[StrikerTable, limits.Range]], part: float, factor: float = 1.0
+) -> float:
     """Sum of squares of the masses' distances, in standard deviations."""
     return sum(
         ((striker.mass_kg.value / (factor * _expected(m, part)) - 1.0)
@@ -102,24 +104,24 @@ def _misfit(bodies: list[tuple[Striker, limits.Range]], part: float, factor: flo
     )  # fmt: skip
 
 
-def _factor(bodies: list[tuple[Striker, limits.Range]], part: float) -> float:
+def _factor(bodies: list[tuple[StrikerTable, limits.Range]], part: float) -> float:
     """Common factor on all masses that fits best."""
     ratio = [striker.mass_kg.value / _expected(m, part) for striker, m in bodies]
     weight = [_mass_relative(striker, m) ** -2 for striker, m in bodies]
     return float(np.average(ratio, weights=weight))
 
 
-def _mass_relative(striker: Striker, mass: limits.Range) -> float:
+def _mass_relative(striker: StrikerTable, mass: limits.Range) -> float:
     return combined(striker.mass_kg.relative, mass.relative) or limits.ROUNDING
 
 
-def _part_of_the_ends(rods: list[tuple[Striker, limits.Range]]) -> float:
+def _part_of_the_ends(rods: list[tuple[StrikerTable, limits.Range]]) -> float:
     """Return the part of the end caps, 0 to 1, with which all stated masses agree best."""
     return _best_part(rods, lambda part: _misfit(rods, part))
 
 
 def _best_part(
-    bodies: list[tuple[Striker, limits.Range]], misfit: Callable[[float], float]
+    bodies: list[tuple[StrikerTable, limits.Range]], misfit: Callable[[float], float]
 ) -> float:
     if not any(m.high > m.low for _, m in bodies):
         return 0.0

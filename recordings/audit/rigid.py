@@ -14,8 +14,9 @@ from dataclasses import dataclass
 import numpy as np
 from scipy.optimize import least_squares
 
+from ...core.observables import OBSERVABLES
+from ...core.rig import Quantity, StrikerTable
 from ..csv_table import Array
-from ..setup_file import Quantity, Striker
 
 MODEL_TOLERANCE = 0.005
 """Part of the approach speed by which a frozen angle and a fixed contact point may err."""
@@ -23,12 +24,8 @@ MODEL_TOLERANCE = 0.005
 DEFAULT_ANGLE_STD = math.radians(1.0)
 """Standard deviation of an angle that the set does not state [rad]."""
 
-FIXED_BY_MOMENTUM = (
-    "restitution",
-    "friction_impulse_ratio",
-    "rebound_spin_rad_s",
-    "rebound_speed_m_s",
-    "tangential_rebound_m_s",
+FIXED_BY_MOMENTUM = tuple(
+    name for name, o in OBSERVABLES.items() if o.instrument == "motion" and o.in_trials
 )
 """Observables that follow from the impulse alone."""
 
@@ -101,7 +98,7 @@ class Touch:
 
 
 def touch(
-    striker: Striker, *, angle: float, normal: float, tangential: float, spin: float
+    striker: StrikerTable, *, angle: float, normal: float, tangential: float, spin: float
 ) -> Touch:
     """Return the `Touch` of a striker; `angle` of the axis [rad], speeds [m/s, rad/s]."""
     half = striker.length / 2.0
@@ -126,7 +123,7 @@ def measured_after(before: Touch, impulse: Array) -> dict[str, float]:
 
 
 def momentum_misfit(
-    striker: Striker,
+    striker: StrikerTable,
     before: Touch,
     angle: Quantity,
     speed: Quantity,
@@ -180,7 +177,7 @@ def momentum_misfit(
     return best, degrees
 
 
-def _unit(name: str, speed: float, striker: Striker) -> float:
+def _unit(name: str, speed: float, striker: StrikerTable) -> float:
     """What the model tolerance is a part of: 1, a speed, or a speed over an arm."""
     if name == "rebound_spin_rad_s":
         return speed / (striker.length / 2.0 or striker.tip_radius_m.value)

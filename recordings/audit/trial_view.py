@@ -6,8 +6,8 @@ import math
 from collections.abc import Iterator
 from dataclasses import dataclass
 
+from ...core.rig import Quantity, StrikerTable
 from ..recording_set import RecordingSet
-from ..setup_file import Quantity, Striker
 from . import rigid
 
 UNSTATED_SPEED = 0.02
@@ -27,7 +27,7 @@ class TrialView:
         return self.found.trials.trial[self.i]
 
     @property
-    def striker(self) -> Striker:
+    def striker(self) -> StrikerTable:
         """What was dropped."""
         return self.found.setup.strikers[self.found.trials.striker[self.i]]
 

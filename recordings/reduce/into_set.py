@@ -19,13 +19,13 @@ import numpy as np
 from pydantic import Field
 
 from ...core.errors import InputError
+from ...core.rig import Quantity
 from ...core.toml_input import InputTable, read_model
-from ..columns import CONDITIONS, OBSERVABLES, STD_SUFFIX
+from ..columns import CONDITIONS, MEASURED, STD_SUFFIX
 from ..csv_table import Array
 from ..recording_set import RecordingSet, read, write
-from ..setup_file import Quantity, Setup
+from ..setup_file import Setup, setup_text
 from ..template import write_template
-from ..toml_text import setup_text
 from ..trials import Trials
 from .measured import Measured, Trial
 from .record import trial_name, write_record
@@ -223,7 +223,7 @@ def _with_trial(
     observables = {k: grown(v) for k, v in old.observables.items()}
     stds = {k: grown(v) for k, v in old.observables_std.items()}
     for key, value in {**trial.observables, **_given(row)}.items():
-        if key in OBSERVABLES:
+        if key in MEASURED:
             observables.setdefault(key, grown(None))[place] = value.value
             stds.setdefault(key, grown(None))[place] = value.std if value.std > 0.0 else np.nan
         else:

@@ -14,6 +14,7 @@ import numpy as np
 from scipy.spatial.transform import Rotation
 
 from ....core.errors import InputError
+from ...columns import TRIAL_COLUMNS
 from ..measured import Array, Measured, Trial, propagate
 from .body import Body
 from .flight import Flights, fall_acceleration
@@ -36,12 +37,7 @@ _NAMES = (
     "out_of_plane_ratio", "spin_out_of_plane_rad_s", "spin_change_by_momentum_rad_s",
 )  # fmt: skip
 _SPEEDS = tuple(n for n in _NAMES if n.endswith("_m_s"))
-_COLUMNS = (
-    "angle_deg", "impact_speed_m_s", "approach_tangential_m_s", "approach_spin_rad_s",
-    "restitution", "friction_impulse_ratio", "rebound_spin_rad_s", "rebound_speed_m_s",
-    "tangential_rebound_m_s",
-)  # fmt: skip
-"""Of `_NAMES`, the columns of trials.csv."""
+_COLUMNS = tuple(n for n in _NAMES if n in TRIAL_COLUMNS)
 
 
 @dataclass(frozen=True)

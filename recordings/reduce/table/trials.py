@@ -10,7 +10,7 @@ from difflib import get_close_matches
 import numpy as np
 
 from ....core.errors import InputError, InputErrors
-from ...columns import CONDITIONS, OBSERVABLES, STD_SUFFIX
+from ...columns import CONDITIONS, MEASURED, STD_SUFFIX
 from ..bounces.times import Fall
 from ..measured import Array, Measured, Trial
 from ..units import UNITS
@@ -129,8 +129,8 @@ def reduce_trials(table: Columns) -> TrialsReduction:
             "no column of the approach", source=table.source,
             allowed="impact_speed or drop_height with a unit",
         )  # fmt: skip
-    if not any(name in OBSERVABLES for name in names):
-        raise InputError("no measured column", source=table.source, allowed=", ".join(OBSERVABLES))
+    if not any(name in MEASURED for name in names):
+        raise InputError("no measured column", source=table.source, allowed=", ".join(MEASURED))
     trials = []
     for label, cells in zip(labels, table.values, strict=True):
         numbers = {name: cells[k] * unit for k, (name, unit) in known.items()}
@@ -143,7 +143,7 @@ def reduce_trials(table: Columns) -> TrialsReduction:
             trials.append(Trial(observed, label=label))
     place = {name: k for k, (name, _) in known.items()}
     across = next(n for n in ("impact_speed_m_s", "drop_height_m") if n in place)
-    up = next(n for n in OBSERVABLES if n in place)
+    up = next(n for n in MEASURED if n in place)
     column = {n: table.values[:, place[n]] * known[place[n]][1] for n in (across, up)}
     return TrialsReduction(
         {"trials": Measured(float(len(trials)), math.nan)}, tuple(trials), (),
@@ -170,8 +170,8 @@ def _known_columns(table: Columns) -> dict[int, tuple[str, float]]:
     """Place, name in trials.csv and factor of every column."""
     found: dict[int, tuple[str, float]] = {}
     wrong: list[InputError] = []
-    numbers = [n for n, c in (CONDITIONS | OBSERVABLES).items() if c.kind != "text"]
-    all_names = [*numbers, *(n + STD_SUFFIX for n in OBSERVABLES)]
+    numbers = [n for n, c in (CONDITIONS | MEASURED).items() if c.kind != "text"]
+    all_names = [*numbers, *(n + STD_SUFFIX for n in MEASURED)]
     for place, name in enumerate(table.names):
         if name in ("trial", "striker", "note", "spot", ""):
             continue

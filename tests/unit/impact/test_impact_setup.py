@@ -76,7 +76,7 @@ def test_a_spheres_angle_is_that_of_its_velocity(tmp_path: Path) -> None:
         ("nu = 0.3", "nu = 0.7", "target.nu: 0.7"),
         ("E_Pa = 200e9", "E_Pa = -1", "strikers.rod.E_Pa: -1"),
         ("mass_kg = 0.4607", "", "strikers.rod.mass_kg: missing"),
-        ("length_m = 0.3048", "", "strikers.rod: a rod without size"),
+        ("length_m = 0.3048", "", "strikers.rod.length_m: missing"),
         ("angle_deg = 45", "angle_deg = 95", "impact.angle_deg: 95"),
         ("angle_deg = 45", "angel_deg = 45", "impact.angel_deg: unknown key"),
         ("impact_speed_m_s = 1.0", "", "impact.impact_speed_m_s: give one"),
@@ -99,7 +99,7 @@ def test_command_line_from_file(tmp_path: Path, capsys: pytest.CaptureFixture[st
     file = write(tmp_path, SETUP.replace("angle_deg", "sweep_m_s = [0.5, 2]\nangle_deg"))
     assert run(["impact", str(file), "--out", str(tmp_path / "out")]) == 0
     printed = capsys.readouterr().out
-    assert "kinematic restitution" in printed
+    assert "kinetic restitution" in printed
     for name in ("setup.csv", "setup.h5", "setup.png", "setup-sweep.png"):
         assert (tmp_path / "out" / name).stat().st_size > 100
     # By hand from the CSV: the energetic restitution of Hertz's law is 1.

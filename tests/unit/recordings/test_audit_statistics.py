@@ -11,10 +11,11 @@ from functools import cache
 import numpy as np
 import pytest
 from dentscope.core.material import Material
+from dentscope.core.rig import Quantity, StrikerTable, TargetTable
 from dentscope.impact import Approach, Friction, scene_of, strike_many
 from dentscope.impact import Striker as Body
 from dentscope.models import LAWS
-from dentscope.recordings import Quantity, RecordingSet, Setup, Striker, Target, Trials, audit
+from dentscope.recordings import RecordingSet, Setup, Trials, audit
 
 SETS = 120
 SPREAD = {
@@ -67,7 +68,7 @@ def one_set(rng, *, mass_error):
     for name in ("restitution", "permanent_depth_m", "friction_impulse_ratio"):
         columns[name] = np.abs(columns[name])
     extra = {"length_m": quantity(length, 0.002, rng)} if rod else {}
-    stated = Striker(
+    stated = StrikerTable(
         shape=shape,
         tip_radius_m=quantity(r, 0.003, rng),
         radius_m=quantity(r, 0.003, rng),
@@ -80,7 +81,7 @@ def one_set(rng, *, mass_error):
     )
     setup = Setup(
         format="recording-set/1",
-        target=Target(E_Pa=E, nu=0.3, Sy_Pa=quantity(Sy, 0.05, rng)),
+        target=TargetTable(E_Pa=E, nu=0.3, Sy_Pa=quantity(Sy, 0.05, rng)),
         strikers={"body": stated},
         noise={**SPREAD, "impact_speed_relative": 0.005},
     )
@@ -122,7 +123,7 @@ def test_thick_rods_of_several_lengths_tell_their_ends(ends, error, wrong):
         rods = {}
         for k, (length, r) in enumerate((a, b) for a in (0.1, 0.2, 0.3) for b in (5e-3, 1e-2)):
             m = 7800.0 * np.pi * r**2 * (length + ends * 4.0 / 3.0 * r)
-            rods[f"rod{k}"] = Striker(
+            rods[f"rod{k}"] = StrikerTable(
                 shape="rod",
                 tip_radius_m=r,
                 radius_m=quantity(r, 0.003, rng),
@@ -130,7 +131,7 @@ def test_thick_rods_of_several_lengths_tell_their_ends(ends, error, wrong):
                 mass_kg=quantity(m * (1.0 + (error if k < wrong else 0.0)), 0.001, rng),
                 density_kg_m3=quantity(7800.0, 0.002, rng),
             )
-        setup = Setup(format="recording-set/1", target=Target(), strikers=rods)
+        setup = Setup(format="recording-set/1", target=TargetTable(), strikers=rods)
         trials = Trials(("a",), ("rod0",), np.array([90.0]), np.array([1.0]))
         flagged += audit(RecordingSet(setup, trials)).flagged
     assert flagged >= 57 if error else flagged <= 3

@@ -4,7 +4,8 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from dentscope.recordings import Quantity, RecordingSet, Setup, Striker, Target, Trials
+from dentscope.core.rig import Quantity, StrikerTable, TargetTable
+from dentscope.recordings import RecordingSet, Setup, Trials
 from dentscope.recordings.audit.findings import Severity
 from dentscope.recordings.audit.trace import check_trace
 
@@ -19,13 +20,13 @@ def recorded(folder: Path, *, scale: float, restitution: float | None, upto: flo
     path = folder / "a.csv"
     rows = [f"{a!r},{b!r}" for a, b in zip(t.tolist(), force.tolist(), strict=True)]
     path.write_text("time_s,force_N\n" + "\n".join(rows) + "\n")
-    ball = Striker(
+    ball = StrikerTable(
         shape="sphere", tip_radius_m=Quantity(value=0.0115, std=0.0),
         mass_kg=Quantity(value=MASS, std=1e-5), E_Pa=Quantity(value=2e11, std=0.0), nu=0.3,
         Sy_Pa=Quantity(value=7e8, std=0.0),
     )  # fmt: skip
     setup = Setup(
-        format="recording-set/1", target=Target(E_Pa=2e11, nu=0.3, Sy_Pa=3e8),
+        format="recording-set/1", target=TargetTable(E_Pa=2e11, nu=0.3, Sy_Pa=3e8),
         strikers={"ball": ball},
         noise={"impact_speed_relative": 0.005, "force_N_relative": 0.005, "restitution": 0.005},
     )  # fmt: skip
@@ -70,12 +71,12 @@ def test_set_without_force_traces_says_nothing(tmp_path):
     assert found
     (tmp_path / "a.csv").write_text("time_s,tip_height_m\n0.0,0.0\n1e-5,1e-6\n")
     # the same set whose trace holds the motion only
-    ball = Striker(
+    ball = StrikerTable(
         shape="sphere", tip_radius_m=Quantity(value=0.0115, std=0.0),
         mass_kg=Quantity(value=MASS, std=1e-5), E_Pa=Quantity(value=2e11, std=0.0), nu=0.3,
     )  # fmt: skip
     setup = Setup(
-        format="recording-set/1", target=Target(E_Pa=2e11, nu=0.3, Sy_Pa=3e8),
+        format="recording-set/1", target=TargetTable(E_Pa=2e11, nu=0.3, Sy_Pa=3e8),
         strikers={"ball": ball},
     )  # fmt: skip
     trials = Trials(

@@ -74,6 +74,7 @@ CASES = {
     "quantity with other key": (toml("std = 4", "sd = 4"), r"E_Pa\.sd: unknown key .*value, std"),
     "list as quantity": (toml("nu = 0.3", "nu = [0.3]"), r"target\.nu: \[0\.3\]"),
     "unknown key of the target": (toml("nu =", "mu ="), r"target\.mu: unknown key .*nu"),
+    "rigid target": (toml("[target]", "[target]\nrigid = true"), r"target\.rigid: true .*gives"),
     "no target": (toml("[target]", "[targets]"), r"target: missing"),
     "other shape of target": (
         toml("[target]", '[target]\nshape = "ball"'), r"target\.shape: 'ball'"

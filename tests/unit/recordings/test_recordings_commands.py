@@ -7,14 +7,12 @@ import numpy as np
 import pytest
 from dentscope.cli.recordings import app
 from dentscope.core.errors import InputError
+from dentscope.core.rig import Quantity, StrikerTable, TargetTable
 from dentscope.recordings import (
     CONDITIONS,
-    OBSERVABLES,
-    Quantity,
+    MEASURED,
     RecordingSet,
     Setup,
-    Striker,
-    Target,
     Trials,
     audit,
     read,
@@ -70,7 +68,7 @@ names = st.text("abcdefgh 0123456789-_.", min_size=1, max_size=8).filter(
 @given(data=st.data())
 def test_any_sound_set_comes_back_from_its_files(data, tmp_path_factory):
     quantity = st.builds(Quantity, value=numbers, std=st.just(0.0) | numbers)
-    rod = Striker(
+    rod = StrikerTable(
         shape="rod",
         material=data.draw(words),
         tip_radius_m=data.draw(quantity),
@@ -79,12 +77,12 @@ def test_any_sound_set_comes_back_from_its_files(data, tmp_path_factory):
         length_m=data.draw(quantity),
         E_Pa=data.draw(st.none() | quantity),
     )
-    observable = data.draw(st.sampled_from(sorted(OBSERVABLES)))
+    observable = data.draw(st.sampled_from(sorted(MEASURED)))
     striker = data.draw(names)
     setup = Setup(
         format="recording-set/1",
         description=data.draw(words),
-        target=Target(E_Pa=data.draw(st.none() | quantity), law=data.draw(st.sampled_from(
+        target=TargetTable(E_Pa=data.draw(st.none() | quantity), law=data.draw(st.sampled_from(
             ["elastic-plastic", "elastic", "measured-restitution"]))),
         strikers={striker: rod},
         noise={observable: data.draw(numbers)},
@@ -111,7 +109,7 @@ def test_any_sound_set_comes_back_from_its_files(data, tmp_path_factory):
 
 def test_the_documentation_names_every_key_and_column_and_its_block_runs(monkeypatch):
     text = (DATA.parents[1] / "docs" / "recording-set.md").read_text(encoding="utf-8")
-    for name in (*CONDITIONS, *OBSERVABLES, *Target.model_fields, *Striker.model_fields):
+    for name in (*CONDITIONS, *MEASURED, *TargetTable.model_fields, *StrikerTable.model_fields):
         assert f"`{name}`" in text or f"`{name} =" in text, name
     (block,) = re.findall(r"```python\n(.*?)```", text, flags=re.DOTALL)
     monkeypatch.chdir(DATA.parents[1])

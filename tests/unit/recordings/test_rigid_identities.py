@@ -5,7 +5,8 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from dentscope.recordings import Severity, Striker, audit, read
+from dentscope.core.rig import StrikerTable
+from dentscope.recordings import Severity, audit, read
 from dentscope.recordings.audit.limits import bending_period, wave_limit
 from dentscope.recordings.audit.rigid import touch
 from hypothesis import assume, given
@@ -13,11 +14,11 @@ from hypothesis import strategies as st
 
 DATA = Path(__file__).parents[3] / "data" / "recordings"
 
-ROD = Striker(
+ROD = StrikerTable(
     shape="rod", tip_radius_m=8.8e-3, radius_m=8.8e-3, length_m=0.3048, mass_kg=0.4607, E_Pa=200e9,
     density_kg_m3=7800.0,
 )  # fmt: skip
-BALL = Striker(shape="sphere", tip_radius_m=8.8e-3, mass_kg=0.02)
+BALL = StrikerTable(shape="sphere", tip_radius_m=8.8e-3, mass_kg=0.02)
 
 
 @given(
@@ -49,7 +50,7 @@ def test_thesis_rod_has_the_published_stick_ratio_mass_and_bending_period():
     # friction of the experiments 0.1346, 0.2013, 0.3690 kg; first bending period 1.17 ms; 33 kN
     # wave limit at 3.45 m/s (rho c v A)
     inertia = 0.4607 * 0.3048**2 / 12.0
-    thin = Striker.model_validate({**ROD.model_dump(), "inertia_kg_m2": inertia})
+    thin = StrikerTable.model_validate({**ROD.model_dump(), "inertia_kg_m2": inertia})
     rows = ((20, 0.20, 0.762, 0.1346), (45, 0.13, 0.589, 0.2013), (70, 0.10, 0.257, 0.3690))
     for angle, mu, ratio, mass in rows:
         before = touch(thin, angle=math.radians(angle), normal=1.0, tangential=0.0, spin=0.0)

@@ -1,0 +1,257 @@
+"""The rig: what strikes what, as a person writes it in TOML; every input file is read by it.
+
+set.toml of a recording set, the set-up of an impact and the bodies of CASE.toml are made of these
+frozen tables. The attributes carry the names of the keys, unit included, so that file and program
+speak the same language. A value that the file leaves out is `None`.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable, Mapping
+from typing import Annotated, Any, Literal
+
+from pydantic import (
+    AfterValidator,
+    BeforeValidator,
+    Field,
+    ValidationInfo,
+    field_validator,
+    model_validator,
+)
+
+from .errors import InputError
+from .material import Material
+from .observables import NOISE_KEYS
+from .toml_input import InputTable
+
+Number = Annotated[float, Field(strict=True)]
+
+
+class Quantity(InputTable):
+    """A value and its standard deviation; 0 means taken as exact.
+
+    Examples
+    --------
+    >>> Quantity.model_validate({"value": 2.0e11, "std": 4.0e9}).std
+    4000000000.0
+    >>> Quantity.model_validate(9.81)
+    Quantity(value=9.81, std=0.0)
+    """
+
+    value: Number
+    std: Annotated[float, Field(strict=True, ge=0.0)] = 0.0
+
+    @model_validator(mode="before")
+    @classmethod
+    def _from_number(cls, given: Any) -> Any:
+        if isinstance(given, dict | Quantity):
+            return given
+        if isinstance(given, bool) or not isinstance(given, int | float):
+            raise ValueError("a number, or { value = ..., std = ... }")
+        return {"value": given}
+
+    @property
+    def relative(self) -> float:
+        """Standard deviation over value [-]."""
+        return self.std / abs(self.value) if self.value else 0.0
+
+
+def _within(accept: Callable[[float], bool], allowed: str) -> AfterValidator:
+    def check(quantity: Quantity) -> Quantity:
+        if not accept(quantity.value):
+            raise ValueError(allowed)
+        return quantity
+
+    return AfterValidator(check)
+
+
+Positive = Annotated[Quantity, _within(lambda x: x > 0.0, "a number above 0")]
+NotNegative = Annotated[Quantity, _within(lambda x: x >= 0.0, "a number not below 0")]
+Poisson = Annotated[Quantity, _within(lambda x: 0.0 <= x < 0.5, "0 <= nu < 0.5")]
+
+
+class MaterialTable(InputTable):
+    """What every input file may say of a body's metal.
+
+    `Sy_Pa` left out means purely elastic; `rigid = true` needs no other key.
+    """
+
+    material: str = ""
+    E_Pa: Positive | None = None
+    nu: Poisson | None = None
+    Sy_Pa: Positive | None = None
+    density_kg_m3: Positive | None = None
+    rigid: Annotated[bool, Field(strict=True)] = False
+
+    def to_material(
+        self, key: str = "", *, source: str = "", values: Mapping[str, float] | None = None,
+        E: float | None = None, nu: float | None = None,
+    ) -> Material:  # fmt: skip
+        """Return the `Material` at the stated values.
+
+        Parameters
+        ----------
+        key, source
+            Table and file that an error names.
+        values
+            Numbers that replace stated ones, by `KEY.NAME`, for example `target.E_Pa`.
+        E, nu
+            What to take where the file says nothing [Pa, -].
+
+        Raises
+        ------
+        InputError
+            Modulus or Poisson's ratio is missing, and nothing stands in for it.
+        """
+        if self.rigid:
+            return Material(E=math.nan, nu=math.nan, rigid=True, name=self.material)
+
+        def number(name: str, otherwise: float | None) -> float:
+            replaced = (values or {}).get(f"{key}.{name}")
+            if replaced is not None:
+                return replaced
+            stated: Quantity | None = getattr(self, name)
+            if stated is not None:
+                return stated.value
+            if otherwise is None:
+                raise InputError(
+                    "missing", source=source, key=f"{key}.{name}",
+                    allowed="a number (or rigid = true)",
+                )  # fmt: skip
+            return otherwise
+
+        return Material(
+            E=number("E_Pa", E),
+            nu=number("nu", nu),
+            Sy=number("Sy_Pa", math.inf),
+            density=number("density_kg_m3", math.nan),
+            name=self.material,
+        )
+
+
+def material_keys(body: Material) -> dict[str, float | bool]:
+    """Return the keys of a `MaterialTable` that give this body's statics again."""
+    if body.rigid:
+        return {"rigid": True}
+    strength = {"Sy_Pa": body.Sy} if math.isfinite(body.Sy) else {}
+    return {"E_Pa": body.E, "nu": body.nu, **strength}
+
+
+class BodyTable(MaterialTable):
+    """A body that strikes or is struck."""
+
+    hardness_Pa: Positive | None = None
+    Ra_m: NotNegative | None = None
+    cp_J_kgK: Positive | None = None
+    melting_K: Positive | None = None
+
+
+class TargetTable(BodyTable):
+    """`[target]`: the flat, its support and the baseline that its law asks for."""
+
+    shape: Literal["flat"] = "flat"
+    thickness_m: Positive | None = None
+    layer_thickness_m: Positive | None = None
+    support_mass_kg: Positive | None = None
+    support_stiffness_N_m: NotNegative | None = None
+    law: Literal["elastic-plastic", "elastic", "measured-restitution"] = "elastic-plastic"
+
+
+class StrikerTable(BodyTable):
+    """`[strikers.NAME]`: a rod with two round ends, or a sphere."""
+
+    shape: Literal["rod", "sphere"]
+    tip_radius_m: Positive
+    mass_kg: Positive
+    radius_m: Positive | None = Field(default=None, validate_default=True)
+    length_m: Positive | None = Field(default=None, validate_default=True)
+    tip_flat_radius_m: NotNegative | None = None
+    inertia_kg_m2: Positive | None = None
+
+    @field_validator("radius_m", "length_m")
+    @classmethod
+    def _size_of_a_rod(cls, given: Quantity | None, info: ValidationInfo) -> Quantity | None:
+        if given is None and info.data.get("shape") == "rod":
+            raise ValueError("this key is needed for a rod")
+        return given
+
+    @field_validator("tip_flat_radius_m")
+    @classmethod
+    def _within_the_tip(cls, given: Quantity | None, info: ValidationInfo) -> Quantity | None:
+        tip = info.data.get("tip_radius_m")
+        if given is not None and tip is not None and given.value >= tip.value:
+            raise ValueError(f"below tip_radius_m = {tip.value:g}")
+        return given
+
+    @property
+    def body_radius(self) -> float:
+        """Radius of the rod's shank, or of the sphere [m]."""
+        return (self.radius_m or self.tip_radius_m).value
+
+    @property
+    def length(self) -> float:
+        """Distance between the centres of a rod's tip spheres [m]; 0 for a sphere."""
+        return self.length_m.value if self.shape == "rod" and self.length_m else 0.0
+
+    @property
+    def inertia(self) -> float:
+        """Moment of inertia about the centre of mass, across the axis [kg m^2].
+
+        As given; else m (L^2/12 + r^2/4) of a rod, 2/5 m r^2 of a solid sphere.
+        """
+        if self.inertia_kg_m2 is not None:
+            return self.inertia_kg_m2.value
+        m, r, L = self.mass_kg.value, self.body_radius, self.length
+        return m * (L**2 / 12.0 + r**2 / 4.0) if self.shape == "rod" else 0.4 * m * r**2
+
+
+class FrictionTable(InputTable):
+    """`[friction]`."""
+
+    coefficient: NotNegative | None = None
+
+
+class EnvironmentTable(InputTable):
+    """`[environment]`."""
+
+    fluid: str = ""
+    viscosity_Pa_s: NotNegative | None = None
+    temperature_K: Positive | None = None
+
+
+def _known_noise(key: str) -> str:
+    if key not in NOISE_KEYS:
+        raise ValueError(", ".join(NOISE_KEYS))
+    return key
+
+
+def _plain(given: Any) -> Any:
+    """The value of a noise that is written as a quantity."""
+    whole = isinstance(given, dict) and set(given) <= {"value", "std"} and "value" in given
+    return given["value"] if whole else given
+
+
+NoiseKey = Annotated[str, AfterValidator(_known_noise)]
+NoiseStd = Annotated[float, BeforeValidator(_plain), Field(strict=True, gt=0.0)]
+
+
+class Rig(InputTable):
+    """What strikes what, where, and how noisy the readings are: the keys of set.toml."""
+
+    format: str = ""
+    name: str = ""
+    description: str = ""
+    source: str = ""
+    licence: str = ""
+    gravity_m_s2: NotNegative = Quantity(value=9.81)
+    target: TargetTable
+    strikers: dict[str, StrikerTable] = Field(min_length=1)
+    friction: FrictionTable = FrictionTable()
+    environment: EnvironmentTable = EnvironmentTable()
+    noise: dict[NoiseKey, NoiseStd] = Field(default_factory=dict)
+
+    @property
+    def bodies(self) -> dict[str, BodyTable]:
+        """Every body by the key of its table."""
+        return {"target": self.target, **{f"strikers.{k}": t for k, t in self.strikers.items()}}

@@ -1,0 +1,119 @@
+"""Facts about observables stand in one place: core/observables.py."""
+
+import ast
+from pathlib import Path
+
+import numpy as np
+import pytest
+from dentscope.core.observables import OBSERVABLES
+from dentscope.discrepancy.cells import compared
+from dentscope.impact.layout import OBSERVABLES as SIMULATED
+from dentscope.recordings.columns import TRIAL_COLUMNS
+
+ROOT = Path(__file__).parents[2]
+STAGES = (
+    "core", "fem", "models", "campaigns", "fitting", "impact", "recordings", "discrepancy", "cli",
+)  # fmt: skip
+HOME = "core/observables.py"
+CHOICES = {
+    ("impact/layout.py", "OBSERVABLES"): "order of the integrator's row",
+    ("impact/energy_route.py", "NAMES"): "order of a computed row",
+    ("recordings/reduce/mocap/reduction.py", "_NAMES"): "order of a computed vector",
+    ("recordings/reduce/mocap/point.py", "_NAMES"): "order of a computed vector",
+    ("impact/draw.py", "panels"): "which observables a figure shows",
+}
+"""Tuples that choose or order observables and say nothing of them."""
+
+FEW = 3
+
+
+def names_in(node):
+    """Observables among the keys or entries of a literal, rows of rows included."""
+    entries = node.keys if isinstance(node, ast.Dict) else node.elts
+    found = set()
+    for entry in entries:
+        if isinstance(entry, ast.Constant) and entry.value in OBSERVABLES:
+            found.add(entry.value)
+        elif isinstance(entry, ast.Tuple | ast.List):
+            found |= {e.value for e in entry.elts if isinstance(e, ast.Constant)} & set(OBSERVABLES)
+    return found
+
+
+def is_stated(node):
+    """Whether a literal holds what a person wrote, and not numbers that the program computed."""
+    if isinstance(node, ast.Dict):
+        return any(isinstance(v, ast.Constant | ast.Tuple | ast.List) for v in node.values)
+    return True
+
+
+def tables_in(path):
+    """Names to which a file gives a table of three or more observables."""
+    tree = ast.parse(path.read_text(encoding="utf-8"))
+    owner = {}
+    for statement in ast.walk(tree):
+        if isinstance(statement, ast.Assign | ast.AnnAssign):
+            targets = getattr(statement, "targets", None) or [statement.target]
+            named = ast.unparse(targets[0])
+            owner |= {id(node): named for node in ast.walk(statement)}
+    return [
+        owner.get(id(node), f"line {node.lineno}")
+        for node in ast.walk(tree)
+        if isinstance(node, ast.Dict | ast.Tuple | ast.List | ast.Set)
+        and len(names_in(node)) >= FEW
+        and is_stated(node)
+    ]
+
+
+def test_no_other_module_holds_a_table_of_observables():
+    found = {
+        (str(path.relative_to(ROOT)), name)
+        for stage in STAGES
+        for path in (ROOT / stage).rglob("*.py")
+        for name in tables_in(path)
+        # in which direction a mechanism moves each observable is a fact about the mechanism
+        if name != "direction"
+    }
+    assert found == set(CHOICES)
+
+
+@pytest.mark.parametrize(
+    ("text", "count"),
+    [
+        ('UNIT = {"restitution": "-", "contact_time_s": "s", "peak_force_N": "N"}', 1),
+        ('LOG = ("restitution", "contact_time_s", "peak_force_N")', 1),
+        ('S = (("e", "restitution"), ("t", "contact_time_s"), ("F", "peak_force_N"))', 1),
+        ('P = {n: 1 for n in ["restitution", "contact_time_s", "peak_force_N"]}', 1),
+        ('def f():\n return {"restitution": e, "contact_time_s": t, "peak_force_N": F}', 0),
+        ('LOG = ("restitution", "contact_time_s", "trial")', 0),
+    ],
+)
+def test_the_walk_sees_tables_and_not_results(tmp_path, text, count):
+    (tmp_path / "a.py").write_text(text)
+    assert len(tables_in(tmp_path / "a.py")) == count
+
+
+def test_every_row_reaches_files_and_simulation():
+    for name, row in OBSERVABLES.items():
+        assert row.simulated in SIMULATED or (name == "below_flat_s" and not row.simulated)
+        assert (name in TRIAL_COLUMNS) is row.in_trials
+        if row.log:
+            assert row.low == 0.0, "a logarithm of what may be negative"
+
+
+def test_units_for_people_agree_with_the_column():
+    per = {"um": ("_m", 1e6), "ms": ("_s", 1e3), "kN": ("_N", 1e-3), "N s": ("_Ns", 1.0),
+           "m/s": ("_m_s", 1.0), "rad/s": ("_rad_s", 1.0)}  # fmt: skip
+    for row in OBSERVABLES.values():
+        if row.unit == "-":
+            assert not row.column.endswith(("_m", "_s", "_N"))
+        else:
+            end, scale = per[row.unit]
+            assert row.column.endswith(end)
+            assert row.scale == scale
+
+
+def test_what_is_compared():
+    values = np.array([1.0, np.e, 0.0])
+    np.testing.assert_allclose(compared("restitution", values), [0.0, 1.0, np.log(1e-12)])
+    assert compared("rebound_spin_rad_s", -values) is not None
+    np.testing.assert_array_equal(compared("rebound_spin_rad_s", -values), -values)

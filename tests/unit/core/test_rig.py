@@ -1,0 +1,102 @@
+"""A rig is read once: the same tables, the same bodies and the same mistakes in every file."""
+
+import math
+
+import pytest
+from dentscope.cli.case import CaseFile
+from dentscope.core import InputError, Material
+from dentscope.core.errors import InputErrors
+from dentscope.core.rig import MaterialTable, Rig, StrikerTable, material_keys
+from dentscope.core.toml_input import parse_model
+from dentscope.impact.bodies import bodies_of
+from dentscope.impact.setup import SetupFile
+from dentscope.recordings import Setup
+
+BODIES = {
+    "target": {"E_Pa": {"value": 2.0e11, "std": 4e9}, "nu": 0.3, "Sy_Pa": 3e8},
+    "strikers": {
+        "rod": {
+            "shape": "rod", "tip_radius_m": 0.01, "radius_m": 0.008, "length_m": 0.3,
+            "mass_kg": {"value": 0.5, "std": 0.01}, "E_Pa": 7e10, "nu": 0.33, "density_kg_m3": 2700,
+        }
+    },
+}  # fmt: skip
+FILES = {
+    Rig: {},
+    Setup: {"format": "recording-set/1"},
+    SetupFile: {"impact": {"impact_speed_m_s": 1.0}},
+}
+MISTAKES = {
+    ("strikers", "rod", "length_m"): (None, "strikers.rod.length_m: missing"),
+    ("strikers", "rod", "tip_flat_radius_m"): (0.01, "tip_flat_radius_m: 0.01 .*below tip_radius"),
+    ("target", "nu"): (0.5, "target.nu: 0.5"),
+    ("target", "E_Pa"): ("steel", "target.E_Pa: 'steel'"),
+    ("strikers", "rod", "mass"): (1.0, "strikers.rod.mass: unknown key"),
+    ("noise",): ({"restituton": 0.1}, "noise.restituton: unknown key"),
+    ("friction",): ({"coefficient": -1.0}, "friction.coefficient: -1.0"),
+    ("environment",): ({"temperature_K": 0.0}, "environment.temperature_K: 0.0"),
+}
+
+
+def changed(content, place, value):
+    """A copy of nested tables with one key set, or left out where `value` is none."""
+    first, *rest = place
+    if rest:
+        return {**content, first: changed(content[first], rest, value)}
+    left = {k: v for k, v in content.items() if k != first}
+    return left if value is None else {**left, first: value}
+
+
+@pytest.mark.parametrize("model", FILES, ids=lambda m: m.__name__)
+@pytest.mark.parametrize("place", MISTAKES, ids=".".join)
+def test_a_mistake_reads_the_same_in_every_file(model, place):
+    value, line = MISTAKES[place]
+    content = changed({**FILES[model], **BODIES}, place, value)
+    with pytest.raises(InputErrors, match=line) as caught:
+        parse_model(content, model, source="a.toml")
+    assert len(caught.value.errors) == 1
+
+
+def test_a_rig_gives_the_bodies_of_a_scene():
+    rig = parse_model(BODIES, Rig, source="a.toml")
+    pair, rod = bodies_of(rig, "rod")
+    assert (pair.flat.E, pair.flat.Sy, pair.R) == (2.0e11, 3e8, 0.01)
+    assert (pair.sphere.E, pair.sphere.Sy, pair.sphere.density) == (7e10, math.inf, 2700.0)
+    # m (L^2/12 + r^2/4) by hand: 0.5 (0.0075 + 0.000016)
+    assert rod.inertia == pytest.approx(0.003758, rel=1e-12)
+    values = {"strikers.rod.mass_kg": 1.0, "target.E_Pa": 1e11, "strikers.rod.tip_radius_m": 0.02}
+    pair, heavy = bodies_of(rig, "rod", values=values)
+    assert (pair.flat.E, pair.R, heavy.mass) == (1e11, 0.02, 1.0)
+    assert heavy.inertia == pytest.approx(2.0 * rod.inertia, rel=1e-12)
+    assert heavy.radius == rod.radius
+
+
+def test_what_is_not_stated_is_a_mistake_unless_something_stands_in():
+    rig = parse_model(changed(BODIES, ("target", "E_Pa"), None), Rig, source="a.toml")
+    with pytest.raises(InputError, match=r"a\.toml: target\.E_Pa: missing"):
+        bodies_of(rig, "rod", source="a.toml")
+    assert bodies_of(rig, "rod", E=1e11)[0].flat.E == 1e11
+
+
+def test_a_case_takes_the_quantities_of_a_set():
+    steel = {"E_Pa": {"value": 2.1e11, "std": 2e9}, "nu": 0.3}
+    content = {"radius_m": 0.01, "sphere": steel, "flat": {"rigid": True},
+               "load": {"max_delta_over_R": 0.01}}  # fmt: skip
+    found = parse_model(content, CaseFile, source="CASE.toml")
+    assert found.sphere.to_material("sphere") == Material(E=2.1e11, nu=0.3)
+    assert found.flat.to_material("flat").rigid
+
+
+@pytest.mark.parametrize(
+    "body",
+    [Material(E=2e11, nu=0.3, Sy=3e8), Material(E=7e10, nu=0.0), Material(0.0, 0.0, rigid=True)],
+)
+def test_keys_of_a_material_give_it_again(body):
+    keys = material_keys(body)
+    assert material_keys(MaterialTable.model_validate(keys).to_material()) == keys
+
+
+def test_a_sphere_is_a_solid_ball():
+    ball = StrikerTable.model_validate({"shape": "sphere", "tip_radius_m": 0.01, "mass_kg": 0.5})
+    assert ball.inertia == pytest.approx(2e-5)
+    assert ball.length == 0.0
