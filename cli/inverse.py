@@ -24,6 +24,8 @@ def inverse(
     ),
 ) -> None:
     """Infer duration and mean force from depth, sliding length and restitution (chapter 5)."""
+    if file is None:
+        studies.needed_for("`dentscope inverse` without a file")
     from rich.console import Console
     from rich.table import Table
 
@@ -33,7 +35,6 @@ def inverse(
 
     console = Console()
     if file is None:
-        studies.needed_for("`dentscope inverse` without a file")
         from ..studies.thesis.chapter5 import thesis_rows
 
         rod, rows = thesis_rows()

@@ -200,17 +200,18 @@ def compute(
     history = np.zeros((400, 3))
     settle = max(16.0 * a / 5000.0 + 4e-6, 2.2 * striker.length / 5100.0)
     start = time.process_time()
-    rebound, duration, peak, dent, kept, steps, impulse, mass, vibration, parted = explicit.strike(
+    found = explicit.strike(
         mesh.x.copy(), mesh.quads, mesh.body, mesh.tip, mesh.top, mesh.held, materials, base, speed,
         5e-3, settle, history,
     )  # fmt: skip
     return {
-        "restitution": rebound / speed, "contact_time_s": duration, "peak_force_N": peak,
-        "permanent_depth_m": dent, "mass_kg": mass,
-        "momentum": impulse / (mass * (speed + rebound)),
-        "vibration": vibration / (0.5 * mass * speed**2), "steps": steps, "parted": parted,
+        "restitution": found.rebound / speed, "contact_time_s": found.duration,
+        "peak_force_N": found.peak, "permanent_depth_m": found.depth, "mass_kg": found.mass,
+        "momentum": found.impulse / (found.mass * (speed + found.rebound)),
+        "vibration": found.vibration / (0.5 * found.mass * speed**2), "steps": found.steps,
+        "parted": found.parted,
         "elements": len(mesh.quads), "cpu_s": time.process_time() - start,
-        "history": history[:kept].astype(np.float32),
+        "history": history[:found.rows].astype(np.float32),
     }  # fmt: skip
 
 

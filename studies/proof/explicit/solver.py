@@ -10,6 +10,7 @@ Methods Eng. 32 (1991) 103). Bar, block and pad all have inertia; nothing is add
 from __future__ import annotations
 
 import math
+from typing import NamedTuple
 
 import numpy as np
 from numba import njit
@@ -228,9 +229,104 @@ def lumped_mass(x, quads, body, materials):
     return mass
 
 
+class Strike(NamedTuple):
+    """What a strike gave.
+
+    Parameters
+    ----------
+    rebound
+        Speed of the bar's centre of mass [m/s].
+    duration, peak
+        Contact time [s], peak force [N].
+    depth
+        Residual depth [m].
+    rows, steps
+        Rows of the history, time steps.
+    impulse
+        Of the contact [N s].
+    mass
+        Of the bar [kg].
+    vibration
+        Kinetic energy left in the bar's vibration [J].
+    parted
+        1 if the bar parted in time.
+    """
+
+    rebound: float
+    duration: float
+    peak: float
+    depth: float
+    rows: int
+    steps: int
+    impulse: float
+    mass: float
+    vibration: float
+    parted: float
+
+
+@njit(cache=True)
+def _nodes_of_bar(n, quads, body):
+    """Whether each of the n nodes is the bar's."""
+    bar = np.zeros(n, dtype=np.bool_)
+    for e in range(len(quads)):
+        if body[e] == 0:
+            for k in range(4):
+                bar[quads[e, k]] = True
+    return bar
+
+
+@njit(cache=True)
+def _advanced(x, v, force, mass, bar, held, dt):
+    """Move the nodes by a step; momentum [kg m/s] and first moment [kg m] of the bar, upward."""
+    n = len(x)
+    center = 0.0
+    up = 0.0
+    for i in range(n):
+        for k in range(2):
+            v[i, k] += dt * force[i, k] / mass[i]
+        if x[i, 0] <= 0.0:
+            v[i, 0] = 0.0
+        if bar[i]:
+            up += mass[i] * v[i, 1]
+            center += mass[i] * x[i, 1]
+    for i in held:
+        v[i, 0] = 0.0
+        v[i, 1] = 0.0
+    for i in range(n):
+        x[i, 0] += dt * v[i, 0]
+        x[i, 1] += dt * v[i, 1]
+    return up, center
+
+
+@njit(cache=True)
+def _kept(history, kept, every, t, total, height):
+    """Write a row of the history, every other one dropped when it is full."""
+    if kept == len(history):
+        for i in range(kept // 2):
+            history[i] = history[2 * i]
+        kept //= 2
+        every *= 2
+    history[kept, 0] = t
+    history[kept, 1] = total
+    history[kept, 2] = height
+    return kept + 1, every
+
+
+@njit(cache=True)
+def _motion_of_bar(v, mass, bar, bar_mass):
+    """Speed of the bar's centre of mass [m/s], and energy of its motion about it [J]."""
+    up, square = 0.0, 0.0
+    for i in range(len(v)):
+        if bar[i]:
+            up += mass[i] * v[i, 1]
+            square += 0.5 * mass[i] * (v[i, 0] ** 2 + v[i, 1] ** 2)
+    rebound = up / bar_mass
+    return rebound, square - 0.5 * bar_mass * rebound * rebound
+
+
 @njit(cache=True)
 def strike(x, quads, body, tip, top, held, materials, base, speed, most, settle, history):
-    """Let the bar strike the block.
+    """Let the bar strike the block; return a `Strike`.
 
     Parameters
     ----------
@@ -248,13 +344,6 @@ def strike(x, quads, body, tip, top, held, materials, base, speed, most, settle,
         Time for which the block is left to come to rest, damped [s].
     history
         (k, 3) written: time, force, height of the bar's centre of mass; thinned when full.
-
-    Returns
-    -------
-    tuple
-        rebound speed of the bar's centre of mass, contact time, peak force, residual depth, number
-        of history rows, steps, impulse, mass of the bar, kinetic energy left in its vibration, 1 if
-        the bar parted in time.
     """
     n = len(x)
     v = np.zeros((n, 2))
@@ -264,11 +353,7 @@ def strike(x, quads, body, tip, top, held, materials, base, speed, most, settle,
     hour = np.zeros((len(quads), 2))
     push = np.zeros(len(top))
     mass = lumped_mass(x, quads, body, materials)
-    bar = np.zeros(n, dtype=np.bool_)
-    for e in range(len(quads)):
-        if body[e] == 0:
-            for k in range(4):
-                bar[quads[e, k]] = True
+    bar = _nodes_of_bar(n, quads, body)
     bar_mass = 0.0
     for i in range(n):
         if bar[i]:
@@ -286,22 +371,7 @@ def strike(x, quads, body, tip, top, held, materials, base, speed, most, settle,
         force[:] = 0.0
         _forces(x, v, quads, body, materials, dt, stress, peeq, hour, base, force)
         total = _contact(x, v, force, mass, tip, top, dt, push)
-        center = 0.0
-        up = 0.0
-        for i in range(n):
-            for k in range(2):
-                v[i, k] += dt * force[i, k] / mass[i]
-            if x[i, 0] <= 0.0:
-                v[i, 0] = 0.0
-            if bar[i]:
-                up += mass[i] * v[i, 1]
-                center += mass[i] * x[i, 1]
-        for i in held:
-            v[i, 0] = 0.0
-            v[i, 1] = 0.0
-        for i in range(n):
-            x[i, 0] += dt * v[i, 0]
-            x[i, 1] += dt * v[i, 1]
+        up, center = _advanced(x, v, force, mass, bar, held, dt)
         t += dt
         steps += 1
         impulse += total * dt
@@ -314,32 +384,20 @@ def strike(x, quads, body, tip, top, held, materials, base, speed, most, settle,
             quiet += dt
         peak = max(peak, total)
         if steps % every == 0:
-            if kept == len(history):
-                for i in range(kept // 2):
-                    history[i] = history[2 * i]
-                kept //= 2
-                every *= 2
-            history[kept, 0] = t
-            history[kept, 1] = total
-            history[kept, 2] = center / bar_mass
-            kept += 1
+            kept, every = _kept(history, kept, every, t, total, center / bar_mass)
         if not math.isfinite(total) or not math.isfinite(up):
             break
         if first >= 0.0 and quiet > settle and up > 0.0:
             done = 1.0
             break
-    up, square = 0.0, 0.0
-    for i in range(n):
-        if bar[i]:
-            up += mass[i] * v[i, 1]
-            square += 0.5 * mass[i] * (v[i, 0] ** 2 + v[i, 1] ** 2)
-    rebound = up / bar_mass
-    vibration = square - 0.5 * bar_mass * rebound * rebound
+    rebound, vibration = _motion_of_bar(v, mass, bar, bar_mass)
     depth = _settled(
         x, v, quads, body, materials, dt, stress, peeq, hour, base, force, mass, bar, top, held,
         settle,
     )  # fmt: skip
-    return rebound, last - first, peak, depth, kept, steps, impulse, bar_mass, vibration, done
+    return Strike(
+        rebound, last - first, peak, depth, kept, steps, impulse, bar_mass, vibration, done
+    )
 
 
 @njit(cache=True)

@@ -9,13 +9,20 @@ rod may touch again.
 from __future__ import annotations
 
 import math
+from typing import NamedTuple
 
 import numpy as np
 from numba import njit
+from numpy.typing import NDArray
 
 from . import chain, foundation
 from . import parameters as at
 from .normal import EDGE, FREED, LAST, LAYER_MOST, N_MEMORY, PEAK, RADIUS_NOW, normal_force
+
+Array = NDArray[np.float64]
+
+_BUDGET = 4000000
+"""Most steps of an impact."""
 
 
 @njit(cache=True)
@@ -94,6 +101,207 @@ def _support_step(p, force, w, dw, dt):
     return 0.0, 0.0
 
 
+class _Body(NamedTuple):
+    """A rigid striker: speeds, place, turn, and the arm (c, s) from its tip to its centre."""
+
+    vx: float
+    vy: float
+    spin: float
+    x: float
+    y: float
+    turn: float
+    c: float
+    s: float
+
+
+class _Rod(NamedTuple):
+    """A striker of n nodes: places, speeds and forces along u, across w and turning f; masses."""
+
+    n: int
+    u: Array
+    w: Array
+    f: Array
+    du: Array
+    dw: Array
+    df: Array
+    fu: Array
+    fw: Array
+    ff: Array
+    mass: Array
+    element: float
+    rotary: float
+    stable: float
+
+
+class _Touches(NamedTuple):
+    """Whether the striker touches, how often it has, when it first did, last did, and parted."""
+
+    now: bool
+    count: int
+    first: float
+    last: float
+    parted: float
+
+
+@njit(cache=True)
+def _body(p):
+    """State of the striker as it comes in: the contact point approaches at the normal speed."""
+    half = 0.5 * p[at.LENGTH]
+    c, s = half * math.cos(p[at.THETA]), half * math.sin(p[at.THETA]) + p[at.TIP]
+    spin = p[at.SPIN]
+    return _Body(p[at.TANGENTIAL_SPEED], -p[at.NORMAL_SPEED] + spin * c, spin, c, s, 0.0, c, s)
+
+
+@njit(cache=True)
+def _rod(p, body):
+    """Nodes of a rod that moves as the rigid body does; one node of no meaning for a rigid one."""
+    m, half = p[at.MASS], 0.5 * p[at.LENGTH]
+    ct, st = math.cos(p[at.THETA]), math.sin(p[at.THETA])
+    n = int(p[at.BEAM]) + 1 if p[at.BEAM] > 0.0 else 0
+    size = max(n, 1)
+    u, w, f = np.zeros(size), np.zeros(size), np.zeros(size)
+    du, dw, df = np.zeros(size), np.zeros(size), np.zeros(size)
+    fu, fw, ff = np.zeros(size), np.zeros(size), np.zeros(size)
+    mass = np.ones(size)
+    element, rotary, stable = 1.0, 1.0, math.inf
+    if n:
+        element = p[at.LENGTH] / (n - 1)
+        for i in range(n):
+            mass[i] = m / (n - 1) * (0.5 if i == 0 or i == n - 1 else 1.0)
+            arm = i * element - half
+            # velocity of node i of the moving rigid rod, along and across the axis
+            ax, ay = body.vx - body.spin * arm * st, body.vy + body.spin * arm * ct
+            du[i] = ax * ct + ay * st
+            dw[i] = -ax * st + ay * ct
+            df[i] = body.spin
+        rotary = p[at.BEAM_ROTARY] * element
+        wave = element / math.sqrt(p[at.BEAM_EA] * (n - 1) * element / m)
+        # stable step of the chain: axial waves, and the fastest rotation of a section
+        stable = 0.5 * min(wave, math.sqrt(p[at.BEAM_ROTARY] / p[at.BEAM_GA]))
+    return _Rod(n, u, w, f, du, dw, df, fu, fw, ff, mass, element, rotary, stable)
+
+
+@njit(cache=True)
+def _contact_speed(p, body, rod):
+    """Speed of the contact point along and out of the flat [m/s]."""
+    if rod.n:
+        ct, st = math.cos(p[at.THETA]), math.sin(p[at.THETA])
+        along = rod.du[0] * ct - rod.dw[0] * st + p[at.TIP] * rod.df[0]
+        return along, rod.du[0] * st + rod.dw[0] * ct
+    return body.vx + body.spin * body.s, body.vy - body.spin * body.c
+
+
+@njit(cache=True)
+def _moved_rod(p, rod, Fn, Ft, step):
+    """Write new speeds, then new places, of the nodes under a force at the tip."""
+    n, g = rod.n, p[at.GRAVITY]
+    ct, st = math.cos(p[at.THETA]), math.sin(p[at.THETA])
+    chain.elastic_forces(
+        rod.u, rod.w, rod.f, rod.du, rod.dw, rod.df, rod.element, p[at.BEAM_EA], p[at.BEAM_EI],
+        p[at.BEAM_GA], p[at.BEAM_LOSS], rod.fu, rod.fw, rod.ff,
+    )  # fmt: skip
+    rod.fu[0] += Ft * ct + Fn * st
+    rod.fw[0] += -Ft * st + Fn * ct
+    rod.ff[0] += p[at.TIP] * Ft
+    for i in range(n):
+        rod.du[i] += step * (rod.fu[i] / rod.mass[i] - g * st)
+        rod.dw[i] += step * (rod.fw[i] / rod.mass[i] - g * ct)
+        turning = rod.rotary * (0.5 if i == 0 or i == n - 1 else 1.0)
+        rod.df[i] += step * rod.ff[i] / turning
+        rod.u[i] += step * rod.du[i]
+        rod.w[i] += step * rod.dw[i]
+        rod.f[i] += step * rod.df[i]
+
+
+@njit(cache=True)
+def _moved_body(p, body, Fn, Ft, step):
+    """New speeds, then the new place, of a rigid striker."""
+    m, inertia, half = p[at.MASS], p[at.INERTIA], 0.5 * p[at.LENGTH]
+    vx = body.vx + step * Ft / m
+    vy = body.vy + step * (Fn / m - p[at.GRAVITY])
+    spin = body.spin + step * (Ft * body.s - Fn * body.c) / inertia
+    turn = body.turn + step * spin
+    c = half * math.cos(p[at.THETA] + turn)
+    s = half * math.sin(p[at.THETA] + turn) + p[at.TIP]
+    return _Body(vx, vy, spin, body.x + step * vx, body.y + step * vy, turn, c, s)
+
+
+@njit(cache=True)
+def _tip_place(p, body, rod):
+    """How far the tip has moved along and out of the flat, and rolled on it [m]."""
+    half, R, theta = 0.5 * p[at.LENGTH], p[at.TIP], p[at.THETA]
+    ct, st = math.cos(theta), math.sin(theta)
+    if rod.n:
+        along = rod.u[0] * ct - rod.w[0] * st
+        return along, rod.u[0] * st + rod.w[0] * ct, R * rod.f[0]
+    x0, y0 = half * ct, half * st + R
+    along = (body.x - body.c) - (x0 - half * ct)
+    return along, (body.y - body.s) - (y0 - half * st - R), R * body.turn
+
+
+@njit(cache=True)
+def _sampled(trace, kept, every, count, t, height, force, along):
+    """Write a sample where it is due, every other one dropped when the room is full."""
+    room = len(trace) - 1
+    if count % every == 0:
+        if kept == room:
+            for i in range(room // 2):
+                trace[1 + i] = trace[1 + 2 * i]
+            kept = room // 2
+            every *= 2
+        kept += 1
+        trace[kept, 0] = t
+        trace[kept, 1] = height
+        trace[kept, 2] = force
+        trace[kept, 3] = along
+    return kept, every
+
+
+@njit(cache=True)
+def _touched(touches, solid, t):
+    """Touches after a step in which the solids press on each other or do not."""
+    if solid and not touches.now:
+        first = t if touches.first < 0.0 else touches.first
+        return _Touches(True, touches.count + 1, first, touches.last, touches.parted)
+    if touches.now and not solid:
+        return _Touches(False, touches.count, touches.first, t, t)
+    return touches
+
+
+@njit(cache=True)
+def _leaving(p, body, rod):
+    """Rigid motion of the striker that leaves, and its moment of inertia [kg m2]."""
+    m, half, theta = p[at.MASS], 0.5 * p[at.LENGTH], p[at.THETA]
+    n = rod.n
+    if not n:
+        c, s = half * math.cos(theta), half * math.sin(theta) + p[at.TIP]
+        return _Body(body.vx, body.vy, body.spin, body.x, body.y, body.turn, c, s), p[at.INERTIA]
+    ct, st = math.cos(theta), math.sin(theta)
+    vx, vy, spin, total = 0.0, 0.0, 0.0, 0.0
+    for i in range(n):
+        arm = i * rod.element - half
+        turning = rod.rotary * (0.5 if i == 0 or i == n - 1 else 1.0)
+        vx += rod.mass[i] / m * (rod.du[i] * ct - rod.dw[i] * st)
+        vy += rod.mass[i] / m * (rod.du[i] * st + rod.dw[i] * ct)
+        spin += rod.mass[i] * arm * rod.dw[i] + turning * rod.df[i]
+        total += rod.mass[i] * arm * arm + turning
+    c, s = half * ct, half * st + p[at.TIP]
+    return _Body(vx, vy, spin / total, body.x, body.y, body.turn, c, s), total
+
+
+@njit(cache=True)
+def _given_up(p, memory, approach, t, touches, scale, speed):
+    """Whether the striker has parted for good (1), or never arrives (2)."""
+    if touches.count > 0 and not touches.now and t - touches.parted > p[at.FOLLOW]:
+        freed = memory[FREED] - approach
+        if (
+            freed > max(p[at.ADHESION_RANGE], p[at.FILM_THICKNESS])
+            or t > 50.0 * scale / speed + 4.0 * p[at.FOLLOW]
+        ):
+            return 1
+    return 2 if touches.first < 0.0 and t > 100.0 * scale / speed else 0
+
+
 @njit(cache=True)
 def impact(p, result, trace):
     """Run one impact; write `result` (N_RESULTS,) and samples of `trace` (k, 4).
@@ -109,198 +317,81 @@ def impact(p, result, trace):
         left, thinned by two whenever it is full. Its first row is (number of rows, 0, 0, 0).
     """
     m, inertia, R = p[at.MASS], p[at.INERTIA], p[at.TIP]
-    g = p[at.GRAVITY]
-    half = 0.5 * p[at.LENGTH]
-    theta = p[at.THETA]
     scale, dt = _scales(p)
-    memory = np.zeros(N_MEMORY)
-    plastic = np.zeros(foundation.N_SPRINGS)
+    memory, plastic = np.zeros(N_MEMORY), np.zeros(foundation.N_SPRINGS)
     memory[EDGE] = math.sqrt(3.2 * R * 3.0 * scale + p[at.FLAT] ** 2)
-    c, s = half * math.cos(theta), half * math.sin(theta) + R
-    n = int(p[at.BEAM]) + 1 if p[at.BEAM] > 0.0 else 0
-    vx = p[at.TANGENTIAL_SPEED]
-    w0 = p[at.SPIN]
-    # the contact point approaches at the normal speed
-    vy = -p[at.NORMAL_SPEED] + w0 * c
-    x0, y0 = c, s
-    x, y, turn = x0, y0, 0.0
-    e_in = 0.5 * m * (vx * vx + vy * vy) + 0.5 * inertia * w0 * w0
-    tip_in = vy - w0 * c
-    size = max(n, 1)
-    u, w, f = np.zeros(size), np.zeros(size), np.zeros(size)
-    du, dw, df = np.zeros(size), np.zeros(size), np.zeros(size)
-    fu, fw, ff = np.zeros(size), np.zeros(size), np.zeros(size)
-    ct, st = math.cos(theta), math.sin(theta)
-    mass = np.ones(size)
-    rotary = 1.0
-    element = 1.0
-    stable = math.inf
-    if n:
-        element = p[at.LENGTH] / (n - 1)
-        for i in range(n):
-            mass[i] = m / (n - 1) * (0.5 if i == 0 or i == n - 1 else 1.0)
-            arm = i * element - half
-            # velocity of node i of the moving rigid rod, along and across the axis
-            ax, ay = vx - w0 * arm * st, vy + w0 * arm * ct
-            du[i] = ax * ct + ay * st
-            dw[i] = -ax * st + ay * ct
-            df[i] = w0
-        rotary = p[at.BEAM_ROTARY] * element
-        wave = element / math.sqrt(p[at.BEAM_EA] * (n - 1) * element / m)
-        # stable step of the chain: axial waves, and the fastest rotation of a section
-        stable = 0.5 * min(wave, math.sqrt(p[at.BEAM_ROTARY] / p[at.BEAM_GA]))
-        dt = min(dt, stable)
-    mobility = 1.0 / mass[0] + R * R / rotary if n else 1.0 / m + s * s / inertia
-    approach, tip_x = 0.0, 0.0
-    if p[at.FILM_VISCOSITY] > 0.0:
-        approach = -p[at.FILM_THICKNESS]
-    sw, sdw = 0.0, 0.0
-    start = approach
-    Fn, Ft, a_last = 0.0, 0.0, 0.0
-    t, first, last, parted = 0.0, -1.0, 0.0, 0.0
+    body = _body(p)
+    rod = _rod(p, body)
+    if rod.n:
+        dt = min(dt, rod.stable)
+    mobility = 1.0 / rod.mass[0] + R * R / rod.rotary if rod.n else 1.0 / m + body.s**2 / inertia
+    e_in = 0.5 * m * (body.vx * body.vx + body.vy * body.vy) + 0.5 * inertia * body.spin * body.spin
+    tip_in = body.vy - body.spin * body.c
+    start = -p[at.FILM_THICKNESS] if p[at.FILM_VISCOSITY] > 0.0 else 0.0
+    approach, tip_x, sw, sdw = start, 0.0, 0.0, 0.0
+    Ft, a_last, t, peak = 0.0, 0.0, 0.0, 0.0
+    touches = _Touches(False, 0, -1.0, 0.0, 0.0)
     most, least, slid, place = 0.0, 0.0, 0.0, 0.0
-    peak = 0.0
     Pn, Pt, work = 0.0, 0.0, 0.0
-    contacts = 0
-    touching = False
-    room = len(trace) - 1
-    every, count, kept = 1, 0, 0
-    done = False
-    budget = 4000000
-    while budget > 0:
-        budget -= 1
+    every, kept, ended = 1, 0, 0
+    for count in range(_BUDGET):
         step = dt
-        if contacts > 0 and not touching and approach < memory[PEAK] - 0.2 * scale:
-            step = min(4.0 * dt, stable)
-        # speeds of the contact point
-        if n:
-            tvx = du[0] * ct - dw[0] * st + R * df[0]
-            tvy = du[0] * st + dw[0] * ct
-        else:
-            tvx = vx + w0 * s
-            tvy = vy - w0 * c
-        speed = -tvy - sdw
-        Fn = normal_force(p, memory, approach, speed, step, plastic)
+        if touches.count > 0 and not touches.now and approach < memory[PEAK] - 0.2 * scale:
+            step = min(4.0 * dt, rod.stable)
+        along, out = _contact_speed(p, body, rod)
+        Fn = normal_force(p, memory, approach, -out - sdw, step, plastic)
         a = memory[RADIUS_NOW]
-        turned = 0.0 if n else -s * c / inertia
-        Ft = _tangential(p, Fn, tvx, mobility, turned, step, a, a_last, Ft)
+        turned = 0.0 if rod.n else -body.s * body.c / inertia
+        Ft = _tangential(p, Fn, along, mobility, turned, step, a, a_last, Ft)
         a_last = a
-        if room > 0:
-            if count % every == 0:
-                if kept == room:
-                    for i in range(room // 2):
-                        trace[1 + i] = trace[1 + 2 * i]
-                    kept = room // 2
-                    every *= 2
-                kept += 1
-                trace[kept, 0] = t
-                trace[kept, 1] = -approach - sw
-                trace[kept, 2] = Fn
-                trace[kept, 3] = tip_x
-            count += 1
+        if len(trace) > 1:
+            kept, every = _sampled(trace, kept, every, count, t, -approach - sw, Fn, tip_x)
         solid = Fn > 0.0 and memory[LAST] > 0.0
-        if solid and not touching:
-            touching = True
-            contacts += 1
-            if first < 0.0:
-                first = t
-        elif touching and not solid:
-            touching = False
-            last = t
-            parted = t
+        touches = _touched(touches, solid, t)
         if solid and Fn > peak:
             peak = Fn
         Pn += Fn * step
         Pt += Ft * step
-        # new speeds, then new places
-        if n:
-            chain.elastic_forces(
-                u, w, f, du, dw, df, element, p[at.BEAM_EA], p[at.BEAM_EI], p[at.BEAM_GA],
-                p[at.BEAM_LOSS], fu, fw, ff,
-            )  # fmt: skip
-            fu[0] += Ft * ct + Fn * st
-            fw[0] += -Ft * st + Fn * ct
-            ff[0] += R * Ft
-            for i in range(n):
-                du[i] += step * (fu[i] / mass[i] - g * st)
-                dw[i] += step * (fw[i] / mass[i] - g * ct)
-                turning = rotary * (0.5 if i == 0 or i == n - 1 else 1.0)
-                df[i] += step * ff[i] / turning
-                u[i] += step * du[i]
-                w[i] += step * dw[i]
-                f[i] += step * df[i]
-            nvx = du[0] * ct - dw[0] * st + R * df[0]
-            nvy = du[0] * st + dw[0] * ct
+        if rod.n:
+            _moved_rod(p, rod, Fn, Ft, step)
         else:
-            vx += step * Ft / m
-            vy += step * (Fn / m - g)
-            w0 += step * (Ft * s - Fn * c) / inertia
-            x += step * vx
-            y += step * vy
-            turn += step * w0
-            c = half * math.cos(theta + turn)
-            s = half * math.sin(theta + turn) + R
-            nvx = vx + w0 * s
-            nvy = vy - w0 * c
-        work += step * (Fn * 0.5 * (tvy + nvy) + Ft * 0.5 * (tvx + nvx))
+            body = _moved_body(p, body, Fn, Ft, step)
+        new_along, new_out = _contact_speed(p, body, rod)
+        work += step * (Fn * 0.5 * (out + new_out) + Ft * 0.5 * (along + new_along))
         sw, sdw = _support_step(p, Fn, sw, sdw, step)
         t += step
-        if n:
-            approach = start - (u[0] * st + w[0] * ct) - sw
-            tip_x, rolled = u[0] * ct - w[0] * st, R * f[0]
-        else:
-            approach = start - ((y - s) - (y0 - half * math.sin(theta) - R)) - sw
-            tip_x, rolled = (x - c) - (x0 - half * math.cos(theta)), R * turn
+        tip_x, height, rolled = _tip_place(p, body, rod)
+        approach = start - height - sw
         # the material point that touches: with the tip's centre, and with its turning; what it
         # travels between two contacts is no sliding
-        if touching:
+        if touches.now:
             slid += tip_x + rolled - place
             most, least = max(most, slid), min(least, slid)
         place = tip_x + rolled
-        if contacts > 0 and not touching and t - parted > p[at.FOLLOW]:
-            freed = memory[FREED] - approach
-            if (
-                freed > max(p[at.ADHESION_RANGE], p[at.FILM_THICKNESS])
-                or t > 50.0 * scale / abs(tip_in) + 4.0 * p[at.FOLLOW]
-            ):
-                done = True
-                break
-        if first < 0.0 and t > 100.0 * scale / abs(tip_in):
+        ended = _given_up(p, memory, approach, t, touches, scale, abs(tip_in))
+        if ended:
             break
-    if n:
-        vx, vy, w0 = 0.0, 0.0, 0.0
-        total = 0.0
-        for i in range(n):
-            arm = i * element - half
-            turning = rotary * (0.5 if i == 0 or i == n - 1 else 1.0)
-            vx += mass[i] / m * (du[i] * ct - dw[i] * st)
-            vy += mass[i] / m * (du[i] * st + dw[i] * ct)
-            w0 += mass[i] * arm * dw[i] + turning * df[i]
-            total += mass[i] * arm * arm + turning
-        w0 /= total
-        c, s = half * ct, half * st + R
-        inertia = total
-    else:
-        c, s = half * math.cos(theta), half * math.sin(theta) + R
-    vy += g * (t - last)
-    result[at.RESTITUTION] = -(vy - w0 * c) / tip_in
-    result[at.TIME] = last - first
+    body, inertia = _leaving(p, body, rod)
+    vy = body.vy + p[at.GRAVITY] * (t - touches.last)
+    e_out = 0.5 * m * (body.vx * body.vx + vy * vy) + 0.5 * inertia * body.spin * body.spin
+    result[at.RESTITUTION] = -(vy - body.spin * body.c) / tip_in
+    result[at.TIME] = touches.last - touches.first
     result[at.PEAK_FORCE] = peak
-    result[at.REBOUND_SPIN] = w0
+    result[at.REBOUND_SPIN] = body.spin
     result[at.IMPULSE_RATIO] = abs(Pt) / Pn if Pn > 0.0 else 0.0
     result[at.SLIDING] = most - least
     result[at.REBOUND] = vy
-    result[at.TANGENTIAL_REBOUND] = vx
+    result[at.TANGENTIAL_REBOUND] = body.vx
     result[at.NORMAL_IMPULSE] = Pn
     result[at.TANGENTIAL_IMPULSE] = Pt
     result[at.WORK] = work
     result[at.ENERGY_IN] = e_in
-    result[at.ENERGY_OUT] = 0.5 * m * (vx * vx + vy * vy) + 0.5 * inertia * w0 * w0
-    result[at.CONTACTS] = contacts
+    result[at.ENERGY_OUT] = e_out
+    result[at.CONTACTS] = touches.count
     result[at.PEAK_DEPTH] = memory[PEAK]
     result[at.DEPTH] = memory[FREED] + memory[LAYER_MOST] * p[at.ROUGH_LOSS]
-    result[at.COMPLETED] = 1.0 if done else 0.0
-    if room > 0:
+    result[at.COMPLETED] = 1.0 if ended == 1 else 0.0
+    if len(trace) > 1:
         trace[0, 0] = kept
 
 

@@ -1,0 +1,249 @@
+"""Build the package, install it into an empty environment, use every command there once.
+
+Run by `make wheel` and by continuous integration. Raw recordings to reduce are rendered by the
+workshop of this checkout; everything else comes out of the wheel.
+"""
+
+from __future__ import annotations
+
+import os
+import shutil
+import subprocess
+import sys
+import tempfile
+import time
+import zipfile
+from collections.abc import Sequence
+from concurrent.futures import ThreadPoolExecutor
+from pathlib import Path
+from typing import NamedTuple
+
+from dentscope.studies.synthetic.clips import ClipTruth, render, write_video
+from dentscope.studies.synthetic.scans import ScanTruth, true_surface
+from dentscope.studies.synthetic.sounds import SoundTruth, record, write_wav
+from dentscope.studies.synthetic.tip import TipTruth, photograph
+from matplotlib.image import imsave
+
+ROOT = Path(__file__).resolve().parents[1]
+LOCK = ROOT / "requirements" / f"py3{sys.version_info.minor}.txt"
+UV = Path(sys.executable).parent / "uv"
+EXTRAS = "video,mocap,surface,tables"
+
+
+class Use(NamedTuple):
+    """One use of a command in the empty environment.
+
+    Parameters
+    ----------
+    command
+        What follows `dentscope`, words separated by blanks.
+    says
+        Part of what it prints, on either stream.
+    code
+        Exit code.
+    """
+
+    command: str
+    says: str
+    code: int = 0
+
+    def is_of(self, command: str) -> bool:
+        """Whether this is a use of a command."""
+        words = command.split()
+        return self.command.split()[: len(words)] == words
+
+
+SOLVER = (
+    Use("version", "0."),
+    Use("doctor", "not installed"),
+    Use("examples --to examples", "case_steel.toml"),
+    Use("case examples/case_steel.toml --out case", "result.h5"),
+    Use("laws list", "fitted"),
+    Use("laws show ghaednia", "Ghaednia"),
+    Use("laws compare examples/case_steel.toml --law fitted --law hertz --out laws", "use:"),
+    Use("campaign designs", "full"),
+    Use("campaign run --design smoke --out run --limit-minutes 0.02", "missing of 12", 3),
+    Use("campaign status --design smoke --out run", "designed 12"),
+    Use("campaign show {case} --out run", "Delta/R"),
+    Use("campaign refine {case} --out run", "largest difference"),
+    Use("campaign export --out run --to curves.csv", "cases -> curves.csv"),
+    Use("campaign publish --design smoke --out run --to parts", "run it to the end", 2),
+    Use("campaign gallery", "checkout", 2),
+    Use("campaign reproduction", "checkout", 2),
+    Use("fit --export sources", "fitted"),
+)
+"""Laws, solver and sweep: uses in this order, with the package's own dependencies only."""
+
+IMPACT = (
+    Use("impact {data}/../examples/impact_rod.toml --out impact", "energy balance"),
+    Use("impact", "checkout", 2),
+    Use("inverse {data}/../examples/inverse_scar.toml --out inverse", "1.384"),
+    Use("inverse", "checkout", 2),
+    Use("recordings list", "kharaz-2001-oblique"),
+    Use("recordings check kharaz-2001-oblique", "12 trials"),
+    Use("recordings audit thesis-chapter-5", "thesis-chapter-5"),
+    Use("recordings new set", "fill in"),
+    Use("recordings fetch absent", "absent", 2),
+    Use("diagnose kharaz-2001-oblique --quiet --out diagnosis", "verdict.json"),
+    Use("diagnose absent", "leeb-steel-300hv", 2),
+    Use("diagnose --chapter5", "checkout", 2),
+    Use("verify", "checkout", 2),
+    Use("figures", "checkout", 2),
+    Use("proof run", "checkout", 2),
+    Use("reduce sound ball.wav --out reduced", "restitution"),
+    Use("reduce table rebounds.csv --holds rebounds --out reduced", "restitution"),
+    Use("reduce video clip.mkv --frame-rate-hz 80000 --pixel-m 2e-4", "dentscope[video]", 2),
+)
+"""Impact and recordings, at the same time as the others."""
+
+WITH_EXTRAS = (
+    Use("reduce video clip.mkv --frame-rate-hz 80000 --pixel-m 2e-4 --out reduced", "restitution"),
+    Use("reduce tip tip.png --pixel-m 1e-5 --out reduced", "tip_radius_m"),
+    Use("reduce scan crater.csv --unit um --step-m 9e-6 --out reduced", "permanent_depth_m"),
+    Use(
+        "reduce mocap {data}/recordings/recipes/cube-toss/toss-0.csv --shape body "
+        "--body {data}/recordings/recipes/cube-toss/body.toml --select toss=0 --out reduced",
+        "restitution",
+    ),
+)
+"""Uses that need the optional parts."""
+
+
+def main() -> int:
+    """Build, install, use; return the exit code."""
+    with tempfile.TemporaryDirectory(prefix="dentscope-wheel-") as name:
+        folder = Path(name)
+        wheel = build(folder / "dist")
+        environment = make_environment(folder / "environment")
+        install(environment, str(wheel))
+        work = folder / "work"
+        work.mkdir()
+        write_recordings(work)
+        uses = SOLVER + IMPACT + WITH_EXTRAS
+        missed = [c for c in commands(environment) if not any(u.is_of(c) for u in uses)]
+        for command in missed:
+            say(f"no use of `dentscope {command}` is tried")
+        with ThreadPoolExecutor(2) as lanes:
+            wrong = sum(lanes.map(lambda lane: failures(environment, work, lane), (SOLVER, IMPACT)))
+        install(environment, f"{wheel}[{EXTRAS}]")
+        wrong += failures(environment, work, WITH_EXTRAS)
+    say(f"{len(uses) - wrong} of {len(uses)} uses as they should be")
+    return 1 if wrong or missed else 0
+
+
+def say(line: str) -> None:
+    """Print a line of the report."""
+    print(f"wheel: {line}", flush=True)
+
+
+def build(dist: Path) -> Path:
+    """Build source archive and wheel in isolation, the build tool pinned by hash."""
+    run(UV, "build", "-q", "--build-constraint", LOCK, "--require-hashes", "-o", dist, ROOT)
+    for path in sorted(dist.glob("dentscope-*")):
+        say(f"{path.name}: {path.stat().st_size / 1e6:.1f} MB")
+    (wheel,) = dist.glob("*.whl")
+    with zipfile.ZipFile(wheel) as file:
+        names = file.namelist()
+    say(f"{len(names)} files in the wheel, {sum(n.endswith('.py') for n in names)} of them Python")
+    return wheel
+
+
+def make_environment(folder: Path) -> Path:
+    """Make an empty environment of the running Python."""
+    run(UV, "venv", "-q", "-p", sys.executable, folder)
+    return folder
+
+
+def install(environment: Path, what: str) -> None:
+    """Install the wheel with the dependencies pinned that it asks for."""
+    pins = environment / "pins.txt"
+    if not pins.exists():
+        # constraints of a package that is asked for by file cannot require hashes
+        lines = [line.removesuffix(" \\") for line in LOCK.read_text().splitlines()]
+        pins.write_text("\n".join(line for line in lines if not line.lstrip().startswith("--hash")))
+    begun = time.monotonic()
+    run(UV, "pip", "install", "-q", "--python", environment / "bin/python", "-c", pins, what)
+    size = sum(p.stat().st_size for p in environment.rglob("*") if not p.is_symlink())
+    say(f"installed in {time.monotonic() - begun:.1f} s; the environment holds {size / 1e9:.2f} GB")
+
+
+def commands(environment: Path) -> set[str]:
+    """Names of all commands that the installed package has, hidden ones too."""
+    program = (
+        "import typer\nfrom dentscope.cli.app import app\n"
+        "def walk(c, path):\n"
+        "    names = c.list_commands(None) if hasattr(c, 'list_commands') else []\n"
+        "    for n in names: walk(c.get_command(None, n), [*path, n])\n"
+        "    if not names: print(' '.join(path))\n"
+        "walk(typer.main.get_command(app), [])\n"
+    )
+    answer = run(environment / "bin/python", "-c", program, cwd=environment)
+    return set(answer.split("\n")) - {""}
+
+
+def write_recordings(folder: Path) -> None:
+    """Render raw recordings to reduce: bounces heard and written down, a clip, a tip, a crater."""
+    write_wav(record(SoundTruth()), folder / "ball.wav")
+    rows = "\n".join(f"{h},{0.49 * h}" for h in (0.2, 0.4, 0.8))
+    (folder / "rebounds.csv").write_text(f"drop height (m),rebound height (m)\n{rows}\n")
+    write_video(render(ClipTruth()), folder / "clip.mkv")
+    imsave(folder / "tip.png", photograph(TipTruth()), cmap="gray", vmin=0, vmax=255)
+    surface = true_surface(ScanTruth()) * 1e6
+    text = "\n".join(",".join(f"{z:.4f}" for z in row) for row in surface)
+    (folder / "crater.csv").write_text(text + "\n")
+
+
+def failures(environment: Path, folder: Path, uses: Sequence[Use]) -> int:
+    """Run uses in their order; return how many went wrong."""
+    return sum(not try_one(environment, folder, use) for use in uses)
+
+
+def try_one(environment: Path, folder: Path, use: Use) -> bool:
+    """Run one use and say whether it does what it should."""
+    data = next(environment.glob("lib/python*/site-packages/dentscope/data"))
+    words = use.command.format(data=data, case=first_case(environment, folder, use)).split()
+    begun = time.monotonic()
+    answer = subprocess.run(
+        [environment / "bin/dentscope", *words],
+        cwd=folder, env=alone(), capture_output=True, text=True, check=False, timeout=300,
+    )  # fmt: skip
+    told = answer.stdout + answer.stderr
+    fine = answer.returncode == use.code and use.says in told and "Traceback" not in told
+    fine &= use.code != 2 or len(answer.stderr.splitlines()) == 1
+    mark = "ok" if fine else f"WRONG (exit {answer.returncode})"
+    say(f"{time.monotonic() - begun:6.1f} s  {mark:8} dentscope {use.command}")
+    if not fine:
+        say(f"asked for exit {use.code} and {use.says!r}; it printed\n{told}")
+    return fine
+
+
+def first_case(environment: Path, folder: Path, use: Use) -> str:
+    """Return the beginning of the id of a case that the sweep solved, where a use asks for it."""
+    if "{case}" not in use.command:
+        return ""
+    program = (
+        "from pathlib import Path\nfrom dentscope.campaigns import Store\n"
+        "print(Store(Path('run/campaign.h5')).summaries()[0].id)"
+    )
+    return run(environment / "bin/python", "-c", program, cwd=folder)[:12]
+
+
+def alone() -> dict[str, str]:
+    """Return the variables of this process without those that lead back to the checkout."""
+    apart = ("PYTHONPATH", "VIRTUAL_ENV")
+    return {k: v for k, v in os.environ.items() if k not in apart}
+
+
+def run(*words: object, cwd: Path | None = None) -> str:
+    """Run a step that must succeed; return what it printed."""
+    answer = subprocess.run(
+        [str(word) for word in words],
+        cwd=cwd, env=alone(), capture_output=True, text=True, check=False,
+    )  # fmt: skip
+    if answer.returncode:
+        sys.exit(f"wheel: {shutil.which(str(words[0]))} failed:\n{answer.stderr}")
+    return answer.stdout
+
+
+if __name__ == "__main__":
+    sys.exit(main())
