@@ -12,7 +12,7 @@ export OMP_NUM_THREADS ?= 1
 export OPENBLAS_NUM_THREADS ?= 1
 
 .DEFAULT_GOAL := help
-.PHONY: help install campaign fit impact diagnose figures recordings proof verify test check bench lock clean
+.PHONY: help install campaign fit impact diagnose figures recordings proof verify test check hooks wheel bench lock clean
 
 help: ## list the targets
 	@grep -hE '^[a-z]+:.*## ' $(MAKEFILE_LIST) | sed -E 's/^([a-z]+):.*## /\1\t/' | expand -t 12
@@ -55,6 +55,13 @@ check: $(STAMP) ## lint, formatting, types, import order
 	@$(BIN)/ruff format --check .
 	@$(BIN)/mypy -p dentscope
 	@$(BIN)/lint-imports
+
+hooks: $(STAMP) ## the other checks of a commit: blanks, ends of files, marks of a merge
+	@if ! git rev-parse --git-dir >/dev/null 2>&1; then echo "hooks: no git repository here"; \
+	  else SKIP=ruff,ruff-format,mypy,import-order $(BIN)/pre-commit run --all-files; fi
+
+wheel: $(STAMP) ## build the package, install it elsewhere, use every command there once
+	@$(BIN)/python scripts/try_wheel.py
 
 bench: $(STAMP) ## measure the speed of solver and impact, as ratios within one run
 	@for file in benchmarks/bench_*.py; do echo "== $$file"; $(BIN)/python $$file || exit 1; done

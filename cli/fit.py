@@ -62,18 +62,15 @@ def fit(
         return _export(export, console)
     if judge is not None:
         return _judge(judge, console, publish=publish)
+    return _refit(_files(campaigns), out, console, publish=publish, compare=compare)
+
+
+def _refit(files: list[Path], out: Path, console: Console, *, publish: bool, compare: bool) -> int:
+    """Fit, show what came out, and write coefficients and report."""
     from ..fitting import fit_tables, read_tables
     from ..fitting.coefficients import coefficients_content, write_coefficients
-    from ..fitting.report import (
-        coefficient_rows,
-        error_rows,
-        published_section,
-        update_page,
-        write_report,
-    )
-    from ..models.fitted import COEFFICIENTS_FILE
+    from ..fitting.report import coefficient_rows, error_rows, write_report
 
-    files = _files(campaigns)
     table, turns = read_tables(files)
     console.print(
         f"{', '.join(map(str, files))}: {len(table.pairs)} combinations, {len(table.D)} depths, "
@@ -91,23 +88,8 @@ def fit(
     ]
     _show(console, error_rows(columns))
     if publish:
-        write_coefficients(content, COEFFICIENTS_FILE)
-        if _PAGE.is_file():
-            update_page(_PAGE, published_section(content))
-        console.print("the fitted law now uses these coefficients")
-    choices: Sequence[Choice] = ()
-    thesis = ""
-    if compare:
-        from ..fitting.select import compare_forms
-
-        own = " and the thesis's own" if studies.present() else ""
-        console.print(f"fitting simpler forms{own} ...")
-        start = {k: v["value"] for k, v in content["coefficients"].items()}
-        choices = compare_forms(table, turns, start=start)
-        if studies.present():
-            from ..studies.thesis.refitted import refit_all, thesis_section
-
-            thesis = thesis_section(refit_all(table, turns))
+        _put_in_use(content, console)
+    choices, thesis = _compared(table, turns, content, console) if compare else ((), "")
     page = write_report(
         result, content, table, turns, out, validation=validation, choices=choices, thesis=thesis
     )
@@ -118,6 +100,35 @@ def fit(
         console.print(str(result.outcome))
         return EXIT_NOT_CONVERGED
     return 0
+
+
+def _put_in_use(content: dict[str, Any], console: Console) -> None:
+    """Replace the coefficients of the fitted law, and what docs/closed-form.md says of them."""
+    from ..fitting.coefficients import write_coefficients
+    from ..fitting.report import published_section, update_page
+    from ..models.fitted import COEFFICIENTS_FILE
+
+    write_coefficients(content, COEFFICIENTS_FILE)
+    if _PAGE.is_file():
+        update_page(_PAGE, published_section(content))
+    console.print("the fitted law now uses these coefficients")
+
+
+def _compared(
+    table: Any, turns: Any, content: dict[str, Any], console: Console
+) -> tuple[Sequence[Choice], str]:
+    """Simpler forms fitted to the same data; where the workshop is, the thesis's own too."""
+    from ..fitting.select import compare_forms
+
+    own = " and the thesis's own" if studies.present() else ""
+    console.print(f"fitting simpler forms{own} ...")
+    start = {k: v["value"] for k, v in content["coefficients"].items()}
+    choices = compare_forms(table, turns, start=start)
+    if not studies.present():
+        return choices, ""
+    from ..studies.thesis.refitted import refit_all, thesis_section
+
+    return choices, thesis_section(refit_all(table, turns))
 
 
 def _show_in_docs(out: Path) -> None:

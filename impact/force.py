@@ -7,6 +7,7 @@ the law's own numbers untouched, bit for bit.
 from __future__ import annotations
 
 import math
+from typing import Any
 
 import numpy as np
 from numba import float64, int64, njit, types
@@ -361,7 +362,7 @@ def find_breaks(loading, par, force, factors):
     return found[:count].copy()
 
 
-def edge_depth(radius_kernel, par, force, limit):
+def edge_depth(radius_kernel: Any, par: Any, force: Any, limit: float) -> float:
     """Depth [m] at which the contact radius reaches `limit`; infinite when it never does."""
     if not math.isfinite(limit):
         return math.inf

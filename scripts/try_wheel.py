@@ -67,10 +67,10 @@ SOLVER = (
     Use("campaign show {case} --out run", "Delta/R"),
     Use("campaign refine {case} --out run", "largest difference"),
     Use("campaign export --out run --to curves.csv", "cases -> curves.csv"),
-    Use("campaign publish --design smoke --out run --to parts", "run it to the end", 2),
+    Use("campaign publish --design smoke --out run --to parts", "cases are missing", 2),
     Use("campaign gallery", "checkout", 2),
     Use("campaign reproduction", "checkout", 2),
-    Use("fit --export sources", "fitted"),
+    Use("fit --export sources", "dentscope_contact.f90"),
 )
 """Laws, solver and sweep: uses in this order, with the package's own dependencies only."""
 
@@ -90,13 +90,13 @@ IMPACT = (
     Use("verify", "checkout", 2),
     Use("figures", "checkout", 2),
     Use("proof run", "checkout", 2),
-    Use("reduce sound ball.wav --out reduced", "restitution"),
-    Use("reduce table rebounds.csv --holds rebounds --out reduced", "restitution"),
+    Use("reduce table rebounds.csv --holds rebounds --value 1 --out reduced", "restitution"),
     Use("reduce video clip.mkv --frame-rate-hz 80000 --pixel-m 2e-4", "dentscope[video]", 2),
 )
 """Impact and recordings, at the same time as the others."""
 
 WITH_EXTRAS = (
+    Use("reduce sound ball.wav --out reduced", "restitution"),
     Use("reduce video clip.mkv --frame-rate-hz 80000 --pixel-m 2e-4 --out reduced", "restitution"),
     Use("reduce tip tip.png --pixel-m 1e-5 --out reduced", "tip_radius_m"),
     Use("reduce scan crater.csv --unit um --step-m 9e-6 --out reduced", "permanent_depth_m"),
@@ -185,7 +185,7 @@ def write_recordings(folder: Path) -> None:
     """Render raw recordings to reduce: bounces heard and written down, a clip, a tip, a crater."""
     write_wav(record(SoundTruth()), folder / "ball.wav")
     rows = "\n".join(f"{h},{0.49 * h}" for h in (0.2, 0.4, 0.8))
-    (folder / "rebounds.csv").write_text(f"drop height (m),rebound height (m)\n{rows}\n")
+    (folder / "rebounds.csv").write_text(f"drop_m,up_m\n{rows}\n")
     write_video(render(ClipTruth()), folder / "clip.mkv")
     imsave(folder / "tip.png", photograph(TipTruth()), cmap="gray", vmin=0, vmax=255)
     surface = true_surface(ScanTruth()) * 1e6

@@ -137,7 +137,7 @@ class _Touches(NamedTuple):
     """Whether the striker touches, how often it has, when it first did, last did, and parted."""
 
     now: bool
-    count: int
+    contacts: int
     first: float
     last: float
     parted: float
@@ -262,9 +262,9 @@ def _touched(touches, solid, t):
     """Touches after a step in which the solids press on each other or do not."""
     if solid and not touches.now:
         first = t if touches.first < 0.0 else touches.first
-        return _Touches(True, touches.count + 1, first, touches.last, touches.parted)
+        return _Touches(True, touches.contacts + 1, first, touches.last, touches.parted)
     if touches.now and not solid:
-        return _Touches(False, touches.count, touches.first, t, t)
+        return _Touches(False, touches.contacts, touches.first, t, t)
     return touches
 
 
@@ -292,7 +292,7 @@ def _leaving(p, body, rod):
 @njit(cache=True)
 def _given_up(p, memory, approach, t, touches, scale, speed):
     """Whether the striker has parted for good (1), or never arrives (2)."""
-    if touches.count > 0 and not touches.now and t - touches.parted > p[at.FOLLOW]:
+    if touches.contacts > 0 and not touches.now and t - touches.parted > p[at.FOLLOW]:
         freed = memory[FREED] - approach
         if (
             freed > max(p[at.ADHESION_RANGE], p[at.FILM_THICKNESS])
@@ -336,7 +336,7 @@ def impact(p, result, trace):
     every, kept, ended = 1, 0, 0
     for count in range(_BUDGET):
         step = dt
-        if touches.count > 0 and not touches.now and approach < memory[PEAK] - 0.2 * scale:
+        if touches.contacts > 0 and not touches.now and approach < memory[PEAK] - 0.2 * scale:
             step = min(4.0 * dt, rod.stable)
         along, out = _contact_speed(p, body, rod)
         Fn = normal_force(p, memory, approach, -out - sdw, step, plastic)
@@ -387,7 +387,7 @@ def impact(p, result, trace):
     result[at.WORK] = work
     result[at.ENERGY_IN] = e_in
     result[at.ENERGY_OUT] = e_out
-    result[at.CONTACTS] = touches.count
+    result[at.CONTACTS] = touches.contacts
     result[at.PEAK_DEPTH] = memory[PEAK]
     result[at.DEPTH] = memory[FREED] + memory[LAYER_MOST] * p[at.ROUGH_LOSS]
     result[at.COMPLETED] = 1.0 if ended == 1 else 0.0

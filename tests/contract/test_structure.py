@@ -1,0 +1,136 @@
+"""What the layout promises: no circle of imports, small folders and functions, a whole wheel.
+
+`make check` keeps the order of the stages; this keeps the rest of docs/architecture.md.
+"""
+
+import ast
+import tomllib
+from functools import cache
+from pathlib import Path
+
+import grimp
+import numpy as np
+import pytest
+from scipy.sparse import csr_array
+from scipy.sparse.csgraph import connected_components
+
+ROOT = Path(__file__).resolve().parents[2]
+PROJECT = tomllib.loads((ROOT / "pyproject.toml").read_text(encoding="utf-8"))
+APART = {"tests", "benchmarks", "examples", "docs", "scripts", "data", "build"}
+WORKSHOP = "studies"
+IN_THE_WORKS = "impact"
+FORMULAS = {"of_pair"}  # read as source too, by the printers of other languages
+KERNELS_KEY = "disallow_untyped_defs"
+
+
+@cache
+def sources() -> tuple[Path, ...]:
+    """Every module of the package, the workshop's too, relative to the root."""
+    found = (p.relative_to(ROOT) for p in ROOT.rglob("*.py"))
+    return tuple(
+        sorted(p for p in found if p.parts[0] not in APART and not p.parts[0].startswith("."))
+    )
+
+
+@cache
+def tree(path: Path) -> ast.Module:
+    return ast.parse((ROOT / path).read_text(encoding="utf-8"))
+
+
+def functions(path: Path) -> list[ast.FunctionDef | ast.AsyncFunctionDef]:
+    kinds = ast.FunctionDef | ast.AsyncFunctionDef
+    return [node for node in ast.walk(tree(path)) if isinstance(node, kinds)]
+
+
+def lengths(*, tool_only: bool) -> dict[str, int]:
+    """Lines of each function, by place."""
+    return {
+        f"{path}:{f.name}": f.end_lineno - f.lineno + 1
+        for path in sources()
+        if path.parts[0] != IN_THE_WORKS and not (tool_only and path.parts[0] == WORKSHOP)
+        for f in functions(path)
+    }
+
+
+def test_no_circle_of_imports():
+    graph = grimp.build_graph("dentscope", exclude_type_checking_imports=True, cache_dir=None)
+    names = sorted(n for n in graph.modules if n.split(".")[1:2] not in [[a] for a in APART])
+    place = {name: i for i, name in enumerate(names)}
+    edges = [
+        (place[name], place[other])
+        for name in names
+        for other in graph.find_modules_directly_imported_by(name)
+        if other in place
+    ]
+    assert len(edges) > 500  # the graph was read
+    rows, columns = np.array(edges).T
+    size = (len(names), len(names))
+    links = csr_array((np.ones(len(edges)), (rows, columns)), shape=size)
+    _, label = connected_components(links, connection="strong")
+    groups = [[n for n in names if label[place[n]] == k] for k in np.unique(label)]
+    assert [g for g in groups if len(g) > 1] == []
+
+
+def test_a_folder_shows_at_most_twenty_modules():
+    folders = {p.parent for p in sources()} - {Path(IN_THE_WORKS)}
+    count = {f: sum(p.parent == f and p.name != "__init__.py" for p in sources()) for f in folders}
+    assert {str(f): n for f, n in count.items() if n > 20} == {}
+
+
+def test_no_function_is_longer_than_a_hundred_lines():
+    long = {k for k, n in lengths(tool_only=False).items() if n > 100}
+    assert long <= {"fem/material.py:deviatoric_tangent"}
+
+
+def test_few_functions_are_longer_than_a_screen():
+    long = {k: n for k, n in lengths(tool_only=True).items() if n > 60}
+    assert len(long) <= 10, long
+
+
+def test_the_wheel_holds_every_package_but_the_workshop():
+    packages = {
+        ".".join(("dentscope", *path.parent.parts))
+        for path in sources()
+        if path.name == "__init__.py" and path.parts[0] != WORKSHOP
+    }
+    assert set(PROJECT["tool"]["setuptools"]["packages"]) == packages
+
+
+def kernel_modules() -> list[str]:
+    (override,) = (o for o in PROJECT["tool"]["mypy"]["overrides"] if o.get(KERNELS_KEY) is False)
+    return list(override["module"])
+
+
+def typed(function: ast.FunctionDef | ast.AsyncFunctionDef) -> bool:
+    a = function.args
+    named = [*a.posonlyargs, *a.args, *a.kwonlyargs, *filter(None, (a.vararg, a.kwarg))]
+    bare = [one for one in named if one.annotation is None and one.arg not in ("self", "cls")]
+    return not bare and (function.returns is not None or function.name == "__init__")
+
+
+def compiled(module: ast.Module) -> set[str]:
+    """Names of the functions that numba compiles: decorated, or handed to a decorator."""
+    makers = {"njit", "register_jitable", "vectorize", "guvectorize", "overload", "cfunc"}
+    makers |= {"loading_kernel", "branch_kernel", "residual_kernel"}
+
+    def makes(node: ast.expr) -> bool:
+        while isinstance(node, ast.Call):
+            node = node.func
+        return isinstance(node, ast.Name) and node.id in makers
+
+    found = set()
+    for node in ast.walk(module):
+        if isinstance(node, ast.FunctionDef) and any(map(makes, node.decorator_list)):
+            found.add(node.name)
+        if isinstance(node, ast.Call) and makes(node.func):
+            found |= {a.id for a in node.args if isinstance(a, ast.Name)}
+    return found
+
+
+@pytest.mark.parametrize("name", kernel_modules())
+def test_only_kernels_go_without_types(name):
+    """What mypy is told to pass over is numba's, and each module of the list has such a kernel."""
+    path = Path(*name.split(".")[1:]).with_suffix(".py")
+    bare = {f.name for f in functions(path) if not typed(f)}
+    assert bare, f"{name} needs no exemption"
+    assert bare - compiled(tree(path)) - FORMULAS == set()
