@@ -25,10 +25,10 @@ _ALARM = 0.97
 
 @dataclass(frozen=True, eq=False)
 class Calibration:
-    """What nulls of this set give.
+    """Gains of evidence that sets with nothing missing give.
 
-    Mechanisms that can imitate an error of the contact law gain evidence from it. So every gain is
-    counted from what nulls give that mechanism in one of twenty, its offset.
+    Mechanisms that can imitate an error of the contact law gain evidence from it. So the gain of a
+    mechanism counts from what one null in twenty gives it, its offset.
 
     Parameters
     ----------
@@ -79,9 +79,10 @@ def calibrate(ranking: Ranking, nulls: Nulls) -> Calibration:
 def p_fit(fitted: Fit, nulls: Nulls, problem: Problem) -> float:
     """Share of data sets made by this explanation that fit it no better than the data do.
 
-    They are made of its prediction and the null residuals; the mechanism's parameters are fitted
-    to each. Two measures of misfit, each counted twice: the sum over all cells, and what a contact
-    law with a far wider error would gain, which sees a wrong force law spread over many cells.
+    A set is the explanation's prediction with the null residuals; the mechanism's parameters are
+    fitted to each. The smaller of two shares, doubled because there are two: by the misfit over all
+    cells, and by what a contact law with a far wider error would gain, which sees a wrong force law
+    whose misfit is spread over many cells.
     """
     residual = nulls.made_by(fitted)
     if fitted.mechanisms:
@@ -102,7 +103,10 @@ def p_fit(fitted: Fit, nulls: Nulls, problem: Problem) -> float:
 
 
 def extra_threshold(fitted: Fit, ranking: Ranking, nulls: Nulls, level: float = 0.99) -> float:
-    """Gain of ln evidence by a second mechanism when there is only the fitted one."""
+    """Gain of ln evidence that a second mechanism must pass, where only the fitted one acts.
+
+    `level` of the sets that the fit itself would make give less to the best of all others.
+    """
     white = fitted.linear.white(nulls.made_by(fitted))
     own = gain(white, np.zeros(len(white)), fitted.linear, _moves(fitted))
     inside = {m.name for m in fitted.mechanisms}
@@ -118,7 +122,11 @@ def extra_threshold(fitted: Fit, ranking: Ranking, nulls: Nulls, level: float = 
 
 
 def set_width(fitted: Fit, ranking: Ranking, nulls: Nulls, level: float = 0.95) -> float:
-    """How far below a rival the truth may come out, in nats: how wide the reported set must be."""
+    """Distance in ln evidence within which rivals of the best fit are reported beside it.
+
+    In `level` of the sets that the fit itself would make it lies no farther behind a rival of its
+    own size; kept between 2 and 5 nats.
+    """
     white = fitted.linear.white(nulls.made_by(fitted))
     own = gain(white, np.zeros(len(white)), fitted.linear, _moves(fitted))
     size = len(fitted.mechanisms)

@@ -7,6 +7,7 @@ from typing import Any
 
 from .. import __version__
 from .correction import Correction
+from .decide import Choice
 from .inference.fit import Fit
 from .locate import Located
 from .next_experiment import Proposal
@@ -20,21 +21,27 @@ class Verdict:
 
     Parameters
     ----------
-    verdict
-        `adequate`, `missing-physics`, `indistinguishable`, `outside-library`, `undetermined`.
-    mechanisms
-        Names of the best explanation's mechanisms.
-    alternatives
-        Other explanations that the data cannot tell from the best.
+    choice
+        The verdict, the explanations that it holds, and why.
+    audit
+        Contradictions and cautions of the inputs.
+    probabilities, scores
+        By explanation.
+    parameters, nuisance_pulls
+        By the number's name, of the best explanation.
+    excluded, limits
+        By mechanism: why it was not fitted; the smallest value that would have been seen.
+    ranking
+        All fits, and the problem that they were fitted to.
     best
-        Its fit; the baseline's when none is named.
+        Fit of the best explanation; the baseline's when none is named.
+    impacts
+        Impacts that were simulated.
     """
 
     name: str
     seed: int
-    verdict: str
-    mechanisms: tuple[str, ...]
-    alternatives: tuple[tuple[str, ...], ...]
+    choice: Choice
     audit: tuple[dict[str, Any], ...]
     probabilities: dict[str, float]
     scores: dict[str, dict[str, float]]
@@ -47,10 +54,29 @@ class Verdict:
     corrections: tuple[Correction, ...]
     proposals: tuple[Proposal, ...]
     notes: tuple[str, ...]
-    reasons: tuple[str, ...]
     ranking: Ranking
     best: Fit
     impacts: int
+
+    @property
+    def verdict(self) -> str:
+        """`adequate`, `missing-physics`, `indistinguishable`, `outside-library`, `undetermined`."""
+        return self.choice.verdict
+
+    @property
+    def mechanisms(self) -> tuple[str, ...]:
+        """Names of the best explanation's mechanisms."""
+        return self.best.names
+
+    @property
+    def alternatives(self) -> tuple[tuple[str, ...], ...]:
+        """Other explanations that the data cannot tell from the best."""
+        return tuple(f.names for f in self.choice.members[1:])
+
+    @property
+    def reasons(self) -> tuple[str, ...]:
+        """Why, in sentences."""
+        return self.choice.reasons
 
     @property
     def problem(self) -> Problem:

@@ -45,7 +45,7 @@ class Miss:
 
 @dataclass(frozen=True, slots=True)
 class Located:
-    """All scores above the family-wise threshold, worst first, and the threshold."""
+    """What misses, worst first, and the score beyond which one set in twenty has any by chance."""
 
     misses: tuple[Miss, ...]
     threshold: float

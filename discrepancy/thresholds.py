@@ -28,8 +28,9 @@ from .problem import Problem
 Array = NDArray[np.float64]
 
 LEVEL, SLOPE = 1.5, 0.5
-"""Spread of the null laws' levels about the baseline's and of their slopes over ln(depth), in what
-the baseline is known to be off by: a null law is off by more than its test allows for."""
+"""Standard deviations of a null law's level and of its slope over ln(depth), relative to the
+baseline's, in units of the baseline's known error. Above 1, so that a law which is off by somewhat
+more than it is known to be is still no missing physics."""
 
 
 @dataclass(frozen=True, eq=False)

@@ -94,15 +94,13 @@ def diagnose(
     proposals = propose(simulator, rivals_of(choice.members, ranking), rng)
     corrections = correct(simulator, ranking.base) if choice.verdict == OUTSIDE else ()
     return Verdict(
-        name=recordings.name, seed=seed, verdict=choice.verdict, mechanisms=best.names,
-        alternatives=tuple(f.names for f in choice.members[1:]), audit=audit,
-        probabilities=probabilities, scores=scores_of(ranking, tests.p, left_out, sampled),
-        located=located, parameters=parameters_of(simulator, best),
-        nuisance_pulls=pulls_of(ranking.problem, best), excluded=ranking.excluded,
-        limits=limits_of(ranking, calibration),
+        name=recordings.name, seed=seed, choice=choice, audit=audit, probabilities=probabilities,
+        scores=scores_of(ranking, tests.p, left_out, sampled), located=located,
+        parameters=parameters_of(simulator, best), nuisance_pulls=pulls_of(ranking.problem, best),
+        excluded=ranking.excluded, limits=limits_of(ranking, calibration),
         improvement=improvement_of(left_out[ranking.base.name], left_out[best.name]),
         corrections=corrections, proposals=tuple(proposals[:PROPOSED]),
-        notes=notes_of(ranking.problem, best), reasons=choice.reasons, ranking=ranking, best=best,
+        notes=notes_of(ranking.problem, best), ranking=ranking, best=best,
         impacts=simulator.tally.impacts,
     )  # fmt: skip
 

@@ -146,19 +146,10 @@ def fit_anchored(
     place: Array,
     rounds: int = 2,
 ) -> Fit:
-    """Fit an explanation of several mechanisms whose effects are known one by one.
+    """Fit an explanation of several mechanisms whose effects are known one by one, as `fit` does.
 
-    Parameters
-    ----------
-    simulator
-        The problem.
-    mechanisms
-        The explanation.
-    effect
-        From unknowns (n_z,) and a place of the refined grid to the change of the cells over the
-        refined grid, (k, m).
-    start, place, rounds
-        As for `fit`.
+    `effect` gives the change of the cells over the refined grid, (k, m), from unknowns (n_z,) and a
+    place of that grid.
     """
     grid = grid_of(simulator.problem, mechanisms)
     z, place = start.z.copy(), grid.places()[grid.index(place)]

@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 from collections.abc import Sequence
 from dataclasses import dataclass
+from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -47,105 +48,156 @@ class Bodies:
     given_back: Array
 
 
-def collide(bodies: Bodies, curves: Sequence[Curve]) -> dict[str, Array]:
-    """Return the observables of n impacts, each of shape (n,)."""
-    n = len(bodies.mass)
-    x0 = np.array([c.log_depth[0] for c in curves])
-    dx = np.array([c.log_depth[1] - c.log_depth[0] for c in curves])
-    last = len(curves[0].log_depth) - 1
-    row = np.arange(n)
-    log_force = np.stack([c.log_force for c in curves])
-    recovery_of = np.stack([c.recovery for c in curves])
-    crater_of = np.stack([c.crater for c in curves])
-    power = np.array([c.power for c in curves])
+@dataclass(frozen=True, eq=False)
+class _Contacts:
+    """The curves of n contacts, looked up at one depth each."""
 
-    def look(table: Array, depth: Array) -> Array:
-        place = np.clip((np.log(np.maximum(depth, 1e-30)) - x0) / dx, 0.0, last - 1e-9)
+    first: Array
+    step: Array
+    log_force: Array
+    recovery: Array
+    crater: Array
+    power: Array
+    given_back: Array
+
+    @classmethod
+    def of(cls, curves: Sequence[Curve], given_back: Array) -> _Contacts:
+        """Stack the tables of the curves."""
+        return cls(
+            np.array([c.log_depth[0] for c in curves]),
+            np.array([c.log_depth[1] - c.log_depth[0] for c in curves]),
+            np.stack([c.log_force for c in curves]),
+            np.stack([c.recovery for c in curves]),
+            np.stack([c.crater for c in curves]),
+            np.array([c.power for c in curves]),
+            given_back,
+        )
+
+    def look(self, table: Array, depth: Array) -> Array:
+        """Return the values of a table (n, k) at the depths (n,)."""
+        row, last = np.arange(len(table)), table.shape[1] - 1
+        place = np.clip((np.log(np.maximum(depth, 1e-30)) - self.first) / self.step, 0.0,
+                        last - 1e-9)  # fmt: skip
         i = place.astype(np.intp)
         t = place - i
         return np.asarray((1.0 - t) * table[row, i] + t * table[row, i + 1])
 
-    def force_at(depth: Array, peak: Array, peak_force: Array, rest: Array) -> Array:
-        up = np.exp(look(log_force, depth))
-        part = np.clip((depth - rest) / np.maximum(peak - rest, 1e-30), 0.0, 1.0)
-        down = peak_force * part**power * bodies.given_back
-        return np.asarray(np.where(depth >= peak, up, down) * (depth > 0.0))
+    def force(self, depth: Array, s: _State) -> Array:
+        """Return the normal force at the depths, above the peak on loading, below on recovery."""
+        up = np.exp(self.look(self.log_force, depth))
+        part = np.clip((depth - s.rest) / np.maximum(s.peak - s.rest, 1e-30), 0.0, 1.0)
+        down = s.peak_force * part**self.power * self.given_back
+        return np.asarray(np.where(depth >= s.peak, up, down) * (depth > 0.0))
 
-    m, inertia, c, s = bodies.mass, bodies.inertia, bodies.beside, bodies.above
-    reduced = 1.0 / (1.0 / m + c * c / inertia)
-    depth_scale = _stopping_depth(look, log_force, reduced, bodies.normal)
-    h = depth_scale / bodies.normal * (1.6 / _STEPS_TO_STOP)
-    vx, w = bodies.tangential.copy(), bodies.spin.copy()
-    vy = -bodies.normal + w * c
-    depth = np.zeros(n)
-    peak, time, slid, low, high = (np.zeros(n) for _ in range(5))
-    force_max, pn, pt = np.zeros(n), np.zeros(n), np.zeros(n)
-    peak_force, rest, loading = np.zeros(n), np.zeros(n), np.zeros(n)
-    live, gone = np.ones(n, dtype=bool), np.zeros(n)
-    last_rate = bodies.normal.copy()
-    eps = _SMOOTH * bodies.normal
+    def stopping_depth(self, mass: Array, speed: Array) -> Array:
+        """Depth [m] at which the loading has taken up the energy, to some per cent."""
+        energy = 0.5 * mass * speed**2
+        low, high = np.full(len(mass), math.log(1e-9)), np.full(len(mass), math.log(1e-1))
+        for _ in range(30):
+            middle = 0.5 * (low + high)
+            d = np.exp(middle)
+            work = 0.45 * d * np.exp(self.look(self.log_force, d))
+            low, high = np.where(work < energy, middle, low), np.where(work < energy, high, middle)
+        return np.asarray(np.exp(0.5 * (low + high)))
+
+
+class _State(NamedTuple):
+    """Where n impacts are: velocities, depth and its peak, slip, impulses, times; (n,) each."""
+
+    vx: Array
+    vy: Array
+    spin: Array
+    depth: Array
+    peak: Array
+    peak_force: Array
+    rest: Array
+    slid: Array
+    slid_low: Array
+    slid_high: Array
+    normal: Array
+    tangential: Array
+    largest_force: Array
+    time: Array
+    loading: Array
+    rate: Array
+    gone: Array
+    live: NDArray[np.bool_]
+
+    @classmethod
+    def touching(cls, bodies: Bodies) -> _State:
+        """Return the state at first touch."""
+        n = len(bodies.mass)
+        zero = np.zeros(n)
+        vy = -bodies.normal + bodies.spin * bodies.beside
+        return cls(
+            bodies.tangential, vy, bodies.spin, zero, zero, zero, zero, zero, zero, zero, zero,
+            zero, zero, zero, zero, bodies.normal, zero, np.ones(n, dtype=bool),
+        )  # fmt: skip
+
+
+def collide(bodies: Bodies, curves: Sequence[Curve]) -> dict[str, Array]:
+    """Return the observables of n impacts, each of shape (n,)."""
+    contacts = _Contacts.of(curves, bodies.given_back)
+    reduced = 1.0 / (1.0 / bodies.mass + bodies.beside * bodies.beside / bodies.inertia)
+    h = contacts.stopping_depth(reduced, bodies.normal) / bodies.normal * (1.6 / _STEPS_TO_STOP)
+    s = _State.touching(bodies)
     for _ in range(_MOST_STEPS):
-        # the forces in the middle of the step, from a half step ahead
-        half = 0.5 * h * live
-        middle = depth + half * (-vy + w * c)
-        slide = vx + w * s
-        f_start = force_at(middle - half * (-vy + w * c), peak, peak_force, rest)
-        t_start = -bodies.friction * f_start * np.tanh(slide / eps)
-        vy_m = vy + half * f_start / m
-        vx_m = vx + half * t_start / m
-        w_m = w + half * (t_start * s - f_start * c) / inertia
-        f = force_at(middle, peak, peak_force, rest) * live
-        t = -bodies.friction * f * np.tanh((vx_m + w_m * s) / eps)
-        step = 2.0 * half
-        before = depth
-        depth = depth + step * (-vy_m + w_m * c)
-        # below a few eps the smooth friction creeps where Coulomb's sticks
-        slip = vx_m + w_m * s
-        slid = slid + step * np.where(np.abs(slip) > 3.0 * eps, slip, 0.0)
-        vy, vx = vy + step * f / m, vx + step * t / m
-        w = w + step * (t * s - f * c) / inertia
-        low, high = np.minimum(low, slid), np.maximum(high, slid)
-        pn, pt = pn + step * f, pt + step * t
-        force_max = np.maximum(force_max, f)
-        grow = live & (depth > peak)
-        peak = np.where(grow, depth, peak)
-        loading = np.where(grow, time + step, loading)
-        peak_force = np.where(grow, np.exp(look(log_force, peak)), peak_force)
-        rest = np.where(grow, np.maximum(peak - look(recovery_of, peak), 0.0), rest)
-        rate = -vy + w * c
-        over = live & (rate < 0.0) & (depth <= rest)
-        share = np.where(over, (before - rest) / np.maximum(before - depth, 1e-30), 1.0)
-        time = time + step * np.clip(share, 0.0, 1.0)
-        gone = np.where(over, -rate, gone)
-        live = live & ~over
-        last_rate = rate
-        if not live.any():
+        s = _stepped(s, bodies, contacts, h)
+        if not s.live.any():
             break
-    gone = np.where(live, np.maximum(-last_rate, 0.0), gone)
+    gone = np.where(s.live, np.maximum(-s.rate, 0.0), s.gone)
+    crater = contacts.look(contacts.crater, s.peak)
     return {
         "restitution": gone / bodies.normal,
-        "permanent_depth_m": look(crater_of, peak),
-        "contact_time_s": time,
-        "peak_force_N": force_max,
-        "rebound_spin_rad_s": w,
-        "friction_impulse_ratio": np.abs(pt) / np.maximum(pn, 1e-30),
-        "sliding_length_m": high - low,
-        "rebound_speed_m_s": vy,
-        "tangential_rebound_m_s": vx,
-        "peak_depth_m": peak,
-        "loading_time_s": loading,
-        "normal_impulse_Ns": pn,
-        "below_flat_s": time + look(crater_of, peak) / np.maximum(gone, 1e-6),
+        "permanent_depth_m": crater,
+        "contact_time_s": s.time,
+        "peak_force_N": s.largest_force,
+        "rebound_spin_rad_s": s.spin,
+        "friction_impulse_ratio": np.abs(s.tangential) / np.maximum(s.normal, 1e-30),
+        "sliding_length_m": s.slid_high - s.slid_low,
+        "rebound_speed_m_s": s.vy,
+        "tangential_rebound_m_s": s.vx,
+        "peak_depth_m": s.peak,
+        "loading_time_s": s.loading,
+        "normal_impulse_Ns": s.normal,
+        "below_flat_s": s.time + crater / np.maximum(gone, 1e-6),
     }
 
 
-def _stopping_depth(look, log_force: Array, mass: Array, speed: Array) -> Array:  # type: ignore[no-untyped-def]
-    """Depth [m] at which the loading has taken up the energy, to some per cent."""
-    energy = 0.5 * mass * speed**2
-    low, high = np.full(len(mass), math.log(1e-9)), np.full(len(mass), math.log(1e-1))
-    for _ in range(30):
-        middle = 0.5 * (low + high)
-        d = np.exp(middle)
-        work = 0.45 * d * np.exp(look(log_force, d))
-        low, high = np.where(work < energy, middle, low), np.where(work < energy, high, middle)
-    return np.asarray(np.exp(0.5 * (low + high)))
+def _stepped(s: _State, bodies: Bodies, contacts: _Contacts, h: Array) -> _State:
+    """Return the state after a step h; those that have parted stay as they are."""
+    m, inertia, beside, above = bodies.mass, bodies.inertia, bodies.beside, bodies.above
+    mu, eps = bodies.friction, _SMOOTH * bodies.normal
+    # the forces in the middle of the step, from a half step ahead
+    half = 0.5 * h * s.live
+    middle = s.depth + half * (-s.vy + s.spin * beside)
+    slide = s.vx + s.spin * above
+    f = contacts.force(middle - half * (-s.vy + s.spin * beside), s)
+    t = -mu * f * np.tanh(slide / eps)
+    vy_middle = s.vy + half * f / m
+    vx_middle = s.vx + half * t / m
+    spin_middle = s.spin + half * (t * above - f * beside) / inertia
+    slip = vx_middle + spin_middle * above
+    f = contacts.force(middle, s) * s.live
+    t = -mu * f * np.tanh(slip / eps)
+    step = 2.0 * half
+    depth = s.depth + step * (-vy_middle + spin_middle * beside)
+    # below a few eps the smooth friction creeps where Coulomb's sticks
+    slid = s.slid + step * np.where(np.abs(slip) > 3.0 * eps, slip, 0.0)
+    vy, vx = s.vy + step * f / m, s.vx + step * t / m
+    spin = s.spin + step * (t * above - f * beside) / inertia
+    grow = s.live & (depth > s.peak)
+    peak = np.where(grow, depth, s.peak)
+    rest = np.maximum(peak - contacts.look(contacts.recovery, peak), 0.0)
+    rest = np.where(grow, rest, s.rest)
+    rate = -vy + spin * beside
+    over = s.live & (rate < 0.0) & (depth <= rest)
+    share = np.where(over, (s.depth - rest) / np.maximum(s.depth - depth, 1e-30), 1.0)
+    return _State(
+        vx, vy, spin, depth, peak,
+        np.where(grow, np.exp(contacts.look(contacts.log_force, peak)), s.peak_force), rest, slid,
+        np.minimum(s.slid_low, slid), np.maximum(s.slid_high, slid), s.normal + step * f,
+        s.tangential + step * t, np.maximum(s.largest_force, f),
+        s.time + step * np.clip(share, 0.0, 1.0), np.where(grow, s.time + step, s.loading), rate,
+        np.where(over, -rate, s.gone), s.live & ~over,
+    )  # fmt: skip
