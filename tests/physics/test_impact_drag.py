@@ -1,0 +1,104 @@
+"""Flight with drag: terminal speeds and falls of other people, exact limits, both ways."""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+import pytest
+from dentscope.core import InputError
+from dentscope.core.drag import Fluid, air, rod_drag_across
+from dentscope.impact import Striker
+from dentscope.impact.drag import flown, terminal_speed
+from scipy.optimize import brentq
+
+WATER = Fluid(1000.0, 1e-3)
+BALL = Striker(mass=0.0027, tip_radius=0.02)
+ROD = Striker(mass=0.4607, tip_radius=0.0088, length=0.3048, radius=0.0088)
+
+
+def sphere(diameter: float, density: float) -> Striker:
+    volume = math.pi / 6.0 * diameter**3
+    return Striker(mass=density * volume, tip_radius=0.5 * diameter)
+
+
+def test_terminal_speed_of_a_quartz_grain_in_water() -> None:
+    # Rushton, Ward and Holdich, Solid-Liquid Filtration and Separation Technology (1996): 4.06 mm/s
+    assert terminal_speed(sphere(70e-6, 2600.0), WATER) == pytest.approx(0.00406, rel=0.01)
+
+
+def test_terminal_speed_where_stokes_holds() -> None:
+    # v = g d^2 (rho_s - rho)/(18 mu), Re = 1.5e-4
+    found = terminal_speed(sphere(5e-6, 2600.0), WATER)
+    assert found == pytest.approx(9.81 * 25e-12 * 1600.0 / 18e-3, rel=1e-4)
+
+
+def test_a_ping_pong_balls_drop() -> None:
+    # R. M. French, Experimental Techniques, My Favorite Experiment 4: C_D = 0.445 in standard air
+    # and v = v_t sqrt(1 - exp(-2 g h / v_t^2))
+    fluid = Fluid(1.225, 1.789e-5)
+    v_t = math.sqrt(0.0027 * 9.81 / (0.5 * 1.225 * 0.445 * math.pi * 0.02**2))
+    for height in (0.5, 1.0, 2.0):
+        published = v_t * math.sqrt(-math.expm1(-2.0 * 9.81 * height / v_t**2))
+        found = flown(BALL, fluid, normal=0.0, rise=-height)
+        assert -found.normal == pytest.approx(published, rel=0.01)
+        # without air it arrives markedly faster
+        assert math.sqrt(2.0 * 9.81 * height) > 1.005 * published
+
+
+def test_a_grain_shot_downwards_slows() -> None:
+    # C. Bell, the library fluids, test of integrate_drag_sphere with another drag curve (Barati):
+    # 1 mm, 2200 kg/m3, 30 m/s in air; after 0.5 s 9.686 m/s and 7.829 m
+    fluid, grain = Fluid(1.2, 1.78e-5), sphere(1e-3, 2200.0)
+
+    def late(fall: float) -> float:
+        return float(flown(grain, fluid, normal=-30.0, rise=-fall).time) - 0.5
+
+    fall = brentq(late, 5.0, 10.0)
+    assert fall == pytest.approx(7.829, rel=0.01)
+    assert -flown(grain, fluid, normal=-30.0, rise=-fall).normal == pytest.approx(9.686, rel=0.01)
+
+
+def test_without_a_fluid_it_is_galileis_fall() -> None:
+    nothing = Fluid(1e-12, 1e-12)
+    heights = np.array([0.1, 0.5, 2.0])
+    found = flown(BALL, nothing, normal=0.0, rise=-heights)
+    assert -found.normal == pytest.approx(np.sqrt(2.0 * 9.81 * heights), rel=1e-9)
+    assert found.time == pytest.approx(np.sqrt(2.0 * heights / 9.81), rel=1e-6)
+    thrown = flown(ROD, nothing, normal=3.0, tangential=1.0, rise=0.2, angle=1.0)
+    assert thrown.normal == pytest.approx(math.sqrt(9.0 - 2.0 * 9.81 * 0.2), rel=1e-9)
+    assert thrown.tangential == pytest.approx(1.0, rel=1e-9)
+
+
+@pytest.mark.parametrize(("striker", "angle"), [(BALL, math.pi / 2), (ROD, 0.7)])
+def test_there_and_back(striker: Striker, angle: float) -> None:
+    down = flown(striker, air(), normal=[-0.5, -4.0], tangential=[0.3, 1.5], rise=-0.4, angle=angle)
+    back = flown(
+        striker, air(), normal=down.normal, tangential=down.tangential, rise=0.4, angle=angle
+    )
+    assert back.normal == pytest.approx([-0.5, -4.0], rel=1e-6)
+    assert back.tangential == pytest.approx([0.3, 1.5], rel=1e-6)
+    assert back.time == pytest.approx(-down.time, rel=1e-6)
+
+
+def test_energy_goes_into_the_fluid_only() -> None:
+    up = flown(BALL, air(), normal=3.0, rise=[0.1, 0.2, 0.3])
+    mechanical = 0.5 * up.normal**2 + 9.81 * np.array([0.1, 0.2, 0.3])
+    assert np.all(np.diff(mechanical) < 0.0)
+    assert mechanical[0] < 4.5
+
+
+def test_a_rod_is_barely_held_back_and_a_peak_is_not_passed() -> None:
+    # drag along a steel rod is below 1e-3 of its weight here
+    fall = flown(ROD, air(), normal=0.0, rise=-0.5)
+    assert -fall.normal == pytest.approx(math.sqrt(2.0 * 9.81 * 0.5), rel=4e-4)
+    assert np.isnan(flown(BALL, air(), normal=2.0, rise=0.5).normal)
+    # the endless cylinder's plateau, Schlichting's figure 1.4: 1.0 to 1.2 from 1e3 to 2e5
+    assert 1.0 < rod_drag_across(1e4, 1e6) * 1.2 / 0.98 < 1.2
+
+
+def test_a_floating_body_has_no_terminal_speed() -> None:
+    with pytest.raises(InputError, match="floats"):
+        terminal_speed(sphere(1e-3, 800.0), WATER)
+    with pytest.raises(InputError, match="not a number"):
+        flown(BALL, air(), normal=math.nan, rise=1.0)
