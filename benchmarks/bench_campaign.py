@@ -22,8 +22,8 @@ from dentscope.campaigns import (
     run_design,
     standard_case,
 )
-from dentscope.campaigns.designs import pair_of
 from dentscope.campaigns.executor import LocalExecutor
+from dentscope.campaigns.pairs import pair_of
 
 CASES = 8
 DEPTH = 0.02
@@ -63,7 +63,7 @@ def measured(workers, folder):
 def store_cost(path):
     """Seconds that the coordinator takes to store and to read a case."""
     store, records = Store(path), Store(path).read_all()
-    solution = fem.solve(records[0].case.problem(), accuracy=fem.Accuracy.smoke())
+    solution = fem.solve(records[0].case.problem, accuracy=fem.Accuracy.smoke())
     started = time.perf_counter()
     for record in records:
         store.put(record.case, solution)

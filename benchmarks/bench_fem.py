@@ -12,9 +12,10 @@ import numpy as np
 import skfem
 from dentscope import fem
 from dentscope.core import Material, Pair
-from dentscope.fem.assemble import State, bulk_forces
+from dentscope.fem.assemble import bulk_forces
 from dentscope.fem.contact import contact_forces
 from dentscope.fem.discretise import discretise
+from dentscope.fem.elements import State
 from dentscope.fem.linear import superlu
 from dentscope.fem.material import EXACT
 from dentscope.fem.newton import Solver

@@ -15,8 +15,9 @@ from .publish import (
 )
 from .quality import MOST_ENERGY_DEFECT, MOST_STEP, Quality, quality_of
 from .read import read_curves
+from .records import CaseRecord, Summary, UnloadingRecord
 from .run import Status, Step, run_design, status_of
-from .store import CaseRecord, Store, Summary, UnloadingRecord
+from .store import Store
 
 __all__ = [
     "DESIGNS",

@@ -21,7 +21,6 @@ from ..core.provenance import content_id
 from ..core.rig import MaterialTable, material_keys
 
 _PROFILES = 10  # depths at which pressure and surfaces are kept
-_ASKED = ("pair", "depths", "unload_from", "radius_at_least", "profiles", "snapshots")
 _DIGITS = 12  # groups are rounded to this many digits, so that round-off makes no new case
 
 
@@ -33,24 +32,25 @@ class Case:
     ----------
     name
         Short readable name, unique within a design.
-    pair
-        The two bodies and the radius [SI].
-    depths, unload_from, radius_at_least, profiles
-        As in `fem.ContactProblem`.
+    problem
+        The pair and the depths; the full fields at its `snapshots` are written beside the file.
     accuracy
         Numerical settings.
-    snapshots
-        Depths at which the full fields are written beside the campaign file.
     """
 
     name: str
-    pair: Pair
-    depths: tuple[float, ...]
-    unload_from: tuple[float, ...]
-    radius_at_least: float
+    problem: fem.ContactProblem
     accuracy: fem.Accuracy
-    profiles: tuple[float, ...] = ()
-    snapshots: tuple[float, ...] = ()
+
+    @property
+    def pair(self) -> Pair:
+        """The two bodies and the radius [SI]."""
+        return self.problem.pair
+
+    @property
+    def depths(self) -> tuple[float, ...]:
+        """Recorded Delta/R."""
+        return self.problem.depths
 
     @property
     def groups(self) -> dict[str, Any]:
@@ -60,28 +60,20 @@ class Case:
     @property
     def id(self) -> str:
         """SHA-256 of the groups, the depths, the settings and the numerics version."""
-        fields = {"snapshots": [_rounded(d) for d in self.snapshots]} if self.snapshots else {}
+        p = self.problem
+        fields = {"snapshots": [_rounded(d) for d in p.snapshots]} if p.snapshots else {}
         return content_id(
             {
                 "groups": self.groups,
-                "depths": [_rounded(d) for d in self.depths],
-                "unload_from": [_rounded(d) for d in self.unload_from],
-                "radius_at_least": self.radius_at_least,
-                "profiles": [_rounded(d) for d in self.profiles],
+                "depths": [_rounded(d) for d in p.depths],
+                "unload_from": [_rounded(d) for d in p.unload_from],
+                "radius_at_least": p.radius_at_least,
+                "profiles": [_rounded(d) for d in p.profiles],
                 "accuracy": {k: v for k, v in self.accuracy.as_dict().items() if k != "level"},
                 "numerics_version": fem.NUMERICS_VERSION,
                 **fields,
             }
         )
-
-    @classmethod
-    def of(cls, problem: fem.ContactProblem, *, name: str, accuracy: fem.Accuracy) -> Case:
-        """Return the case that a problem of the solver is."""
-        return cls(**{k: getattr(problem, k) for k in _ASKED}, name=name, accuracy=accuracy)
-
-    def problem(self) -> fem.ContactProblem:
-        """Return the solver's input."""
-        return fem.ContactProblem(**{k: getattr(self, k) for k in _ASKED})
 
     def refined(self) -> Case:
         """Return the same case with smaller steps and elements, for another try."""
@@ -96,16 +88,17 @@ class Case:
 
     def specification(self) -> dict[str, Any]:
         """Return everything that `from_specification` needs, as plain values."""
+        p = self.problem
         return {
             "name": self.name,
-            "R_m": self.pair.R,
-            "sphere": material_keys(self.pair.sphere),
-            "flat": material_keys(self.pair.flat),
-            "depths": list(self.depths),
-            "unload_from": list(self.unload_from),
-            "radius_at_least": self.radius_at_least,
-            "profiles": list(self.profiles),
-            "snapshots": list(self.snapshots),
+            "R_m": p.pair.R,
+            "sphere": material_keys(p.pair.sphere),
+            "flat": material_keys(p.pair.flat),
+            "depths": list(p.depths),
+            "unload_from": list(p.unload_from),
+            "radius_at_least": p.radius_at_least,
+            "profiles": list(p.profiles),
+            "snapshots": list(p.snapshots),
             "accuracy": self.accuracy.as_dict(),
         }
 
@@ -113,16 +106,15 @@ class Case:
     def from_specification(cls, spec: dict[str, Any]) -> Case:
         """Rebuild a case from `specification()`."""
         sphere, flat = (MaterialTable.model_validate(spec[k]) for k in ("sphere", "flat"))
-        return cls(
-            name=spec["name"],
+        problem = fem.ContactProblem(
             pair=Pair(sphere.to_material(), flat.to_material(), spec["R_m"]),
             depths=tuple(spec["depths"]),
             unload_from=tuple(spec["unload_from"]),
             radius_at_least=spec["radius_at_least"],
             profiles=tuple(spec.get("profiles", ())),
             snapshots=tuple(spec.get("snapshots", ())),
-            accuracy=fem.Accuracy(**spec["accuracy"]),
         )
+        return cls(spec["name"], problem, fem.Accuracy(**spec["accuracy"]))
 
 
 def dimensionless_groups(pair: Pair) -> dict[str, Any]:
@@ -148,8 +140,10 @@ def standard_case(
 
     Parameters
     ----------
-    name, pair, radius_at_least, accuracy
+    name, accuracy
         As in `Case`.
+    pair, radius_at_least
+        As in `fem.ContactProblem`.
     deepest
         Largest Delta/R.
     n_depths
@@ -176,16 +170,15 @@ def standard_case(
     )
     depths = _through(fem.geometric_depths(first, deepest, n_depths), through)
     kept = np.unique(np.linspace(0, n_depths - 1, _PROFILES).round().astype(int))
-    return Case(
-        name=name,
+    problem = fem.ContactProblem(
         pair=pair,
         depths=depths,
         unload_from=tuple(unload),
         radius_at_least=radius_at_least,
         profiles=tuple(depths[k] for k in kept),
         snapshots=(through,) if fields else (),
-        accuracy=accuracy,
     )
+    return Case(name, problem, accuracy)
 
 
 def _through(depths: tuple[float, ...], wanted: float) -> tuple[float, ...]:

@@ -46,7 +46,7 @@ class Executor(Protocol):
 def solve_specification(spec: dict[str, Any], time_limit_s: float) -> Solution:
     """Solve one case from its specification; the function that workers run."""
     case = Case.from_specification(spec)
-    return solve(case.problem(), accuracy=case.accuracy, time_limit_s=time_limit_s)
+    return solve(case.problem, accuracy=case.accuracy, time_limit_s=time_limit_s)
 
 
 Work = Callable[[dict[str, Any], float], Solution]

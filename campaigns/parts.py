@@ -24,8 +24,8 @@ import numpy.typing as npt
 from ..core.errors import InputError
 from ..fem import critical_depth
 from .case import Case
+from .records import CaseRecord, UnloadingRecord
 from .schema import CURVE, PROFILES, UNLOADING_PROFILES, Dataset
-from .store import CaseRecord, UnloadingRecord
 
 Floats = npt.NDArray[np.float64]
 Columns = dict[str, npt.NDArray[Any]]

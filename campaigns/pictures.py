@@ -8,7 +8,7 @@ import numpy as np
 
 from ..core.material import Pair
 from ..fem import critical_depth
-from .store import CaseRecord
+from .records import CaseRecord
 
 
 def draw_campaign(records: list[CaseRecord], folder: Path) -> list[Path]:

@@ -22,8 +22,9 @@ from ..core.provenance import file_digest
 from .designs import Design, distinct_cases
 from .manifest import write_manifest
 from .parts import read_part, write_part
+from .records import CaseRecord
 from .run import status_of
-from .store import CaseRecord, Store
+from .store import Store
 
 Floats = npt.NDArray[np.float64]
 

@@ -6,7 +6,8 @@ from pathlib import Path
 
 from .parts import is_part, read_part
 from .publish import CHECKSUMS, read_published
-from .store import CaseRecord, Store
+from .records import CaseRecord
+from .store import Store
 
 
 def read_curves(path: Path) -> list[CaseRecord]:

@@ -51,6 +51,3 @@ PROFILES: dict[str, Dataset] = {
     "flat_r": Dataset("m", ("profile", "node"), "radius of the flat's surface nodes"),
     "flat_z": Dataset("m", ("profile", "node"), "height of the flat's surface"),
 }
-
-UNLOADING_ATTRIBUTES = ("depth", "residual_sphere_m", "residual_flat_m", "steps", "outcome")
-CASE_ATTRIBUTES = ("status", "outcome", "message", "specification", "environment", "mesh")

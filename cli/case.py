@@ -181,8 +181,7 @@ def _write_result(name: str, solution: Any, uncertainty: Any, path: Path) -> Pat
     from ..campaigns import Case, Store
 
     # the fields lie beside the case in this file, not in a campaign's own files
-    asked = replace(solution.problem, snapshots=())
-    case = Case.of(asked, name=name, accuracy=solution.accuracy)
+    case = Case(name, replace(solution.problem, snapshots=()), solution.accuracy)
     path.unlink(missing_ok=True)
     Store(path).put(case, solution)
     with h5py.File(path, "a") as file:

@@ -76,7 +76,6 @@ class Ending(Enum):
 
     COMPLETED = "completed"
     NOT_CONVERGED = "not-converged"
-    MESH_DISTORTED = "mesh-distorted"
     OUT_OF_RANGE = "out-of-range"
     TIME_LIMIT = "time-limit"
     STEP_LIMIT = "step-limit"

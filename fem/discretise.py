@@ -3,18 +3,18 @@
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 
 import numpy as np
 import numpy.typing as npt
 import skfem
 
 from ..core.material import Material, Pair
-from .assemble import Elements, State, bulk_forces
+from .assemble import bulk_forces
 from .contact import Surfaces
-from .geometry import Zone, ladder_rings, outer_rings
+from .elements import Elements, State
 from .material import EXACT
-from .mesh import Mesh, contact_mesh
+from .mesh import Mesh, Zone, contact_mesh, ladder_rings, outer_rings
 from .problem import Accuracy, ContactProblem
 
 Integers = npt.NDArray[np.int64]
@@ -166,7 +166,7 @@ def with_linear(elements: Elements, mask: npt.NDArray[np.bool_]) -> Elements:
     )
     linear = np.full(n, -1)
     linear[mask] = np.arange(np.count_nonzero(mask))
-    return replace(elements, stiffness=tangent[mask], linear=linear)
+    return elements._replace(stiffness=tangent[mask], linear=linear)
 
 
 def _elements(

@@ -8,17 +8,18 @@ from __future__ import annotations
 
 import time
 from collections.abc import Iterator
-from dataclasses import dataclass, field, replace
+from dataclasses import dataclass, field
 
 import numpy as np
 import numpy.typing as npt
 
 from ..core.errors import Ending, Outcome
-from .assemble import State, advance
+from .assemble import advance
 from .discretise import discretise
-from .geometry import Zone
+from .elements import State
 from .material import EXACT
 from .measure import read
+from .mesh import Zone
 from .newton import Solver, Timers
 from .path import MOST_CUTS, STEP_CUT, Point, Record, accept, extrapolate
 from .problem import DEEPEST, Accuracy, ContactProblem, critical_depth
@@ -153,10 +154,10 @@ class Loading:
         # Well below first yield: the yield condition is left out, because Newton's way from the
         # rigid push could leave the elastic range; and the contact starts soft, because the whole
         # push as an overlap under the full stiffness would crush the innermost elements.
-        solver.elements = replace(grid.elements, radius=np.full_like(grid.elements.radius, np.inf))
+        solver.elements = grid.elements._replace(radius=np.full_like(grid.elements.radius, np.inf))
         found = None
         for softness in _SOFT_START:
-            solver.surfaces = replace(grid.surfaces, stiffness=grid.surfaces.stiffness * softness)
+            solver.surfaces = grid.surfaces._replace(stiffness=grid.surfaces.stiffness * softness)
             found = solver.equilibrium(guess, state=virgin, delta=delta)
             if found is None:
                 break

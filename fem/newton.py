@@ -12,9 +12,10 @@ from dataclasses import dataclass, field
 import numpy as np
 import numpy.typing as npt
 
-from .assemble import DISTORTED, State, bulk_forces
+from .assemble import DISTORTED, bulk_forces
 from .contact import ContactState, Triplets, contact_forces
 from .discretise import Discretisation
+from .elements import State
 from .linear import LinearSystem
 
 Floats = npt.NDArray[np.float64]

@@ -10,8 +10,9 @@ from dataclasses import dataclass
 import numpy as np
 import numpy.typing as npt
 
-from .assemble import State, advance
+from .assemble import advance
 from .discretise import Discretisation
+from .elements import State
 from .measure import Reading, read
 from .newton import Equilibrium, Solver
 

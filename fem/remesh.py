@@ -20,11 +20,10 @@ import numpy.typing as npt
 from numba import njit
 from scipy.interpolate import Akima1DInterpolator, CubicSpline
 
-from .assemble import State, deformation
 from .discretise import Discretisation
-from .layers import Layers, layers_of
+from .elements import State, deformation
 from .material import exponential, log_strain
-from .mesh import Mesh
+from .mesh import Layers, Mesh, layers_of
 
 Floats = npt.NDArray[np.float64]
 Integers = npt.NDArray[np.int64]
@@ -73,7 +72,7 @@ class Transfer:
         """Material state on the new mesh, at whose nodes the displacements are `u`."""
         x = self.new.elements
         strain, peeq = self._interpolated(state)
-        F = deformation(x.conn, x.grad, x.value, x.r, u)
+        F = deformation(x, u)
         b = np.empty_like(strain)
         _settle(F, x.radius, strain, peeq, b)
         return State(F=F, b=b, strain=strain, peeq=peeq, dissipated=state.dissipated)
@@ -182,23 +181,21 @@ def _settle(F, radius, strain, peeq, b):
     for e in range(F.shape[0]):
         for q in range(4):
             f = F[e, q]
-            d0, d1, d2, d3, m = log_strain(
-                f[0] * f[0] + f[1] * f[1],
-                f[2] * f[2] + f[3] * f[3],
-                f[0] * f[2] + f[1] * f[3],
-                f[4] * f[4],
+            whole, m = log_strain(
+                (
+                    f[0] * f[0] + f[1] * f[1],
+                    f[2] * f[2] + f[3] * f[3],
+                    f[0] * f[2] + f[1] * f[3],
+                    f[4] * f[4],
+                )
             )
             s = strain[e, q]
             if peeq[e, q] == 0.0:
-                s[0] = d0
-                s[1] = d1
-                s[2] = d2
-                s[3] = d3
+                for i in range(4):
+                    s[i] = whole[i]
             size = math.sqrt(s[0] * s[0] + s[1] * s[1] + s[3] * s[3] + 2.0 * s[2] * s[2])
             limit = radius[e] * math.exp(3.0 * m)
             if size > limit:
                 for i in range(4):
                     s[i] *= limit / size
-            b[e, q, 0], b[e, q, 1], b[e, q, 2], b[e, q, 3] = exponential(
-                s[0] + m, s[1] + m, s[2], s[3] + m
-            )
+            b[e, q, 0], b[e, q, 1], b[e, q, 2], b[e, q, 3] = exponential(s, m)

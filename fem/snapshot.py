@@ -5,8 +5,8 @@ from __future__ import annotations
 import numpy as np
 
 from ..core.material import Pair
-from .assemble import State, cauchy_stress
 from .discretise import Discretisation
+from .elements import State, cauchy_stress
 from .newton import Equilibrium
 from .solution import Profile, Snapshot
 

@@ -10,6 +10,7 @@ import hashlib
 import resource
 import time
 from collections.abc import Callable
+from dataclasses import dataclass, field
 
 import numpy as np
 
@@ -49,10 +50,7 @@ def solve(
         converge is a result too, with all that was reached.
     """
     tally = Tally()
-    loading: list[Record] = []
-    unloadings: list[Unloading] = []
-    snapshots: list[Snapshot] = []
-    profiles: list[Profile] = []
+    found = _Found(problem)
     outcome = COMPLETED
     last: Point | None = None
     for item in Loading(problem, accuracy, tally).points():
@@ -60,20 +58,7 @@ def solve(
             outcome = item
             break
         last = item
-        if _among(item.delta, problem.depths) or item.delta > problem.depths[-1]:
-            loading.append(item.record)
-        if _among(item.delta, problem.unload_from):
-            unloadings.append(unload(item, problem))
-        if _among(item.delta, problem.snapshots):
-            snapshots.append(
-                take_snapshot(
-                    item.grid, item.equilibrium, item.state, depth=item.delta, pair=problem.pair
-                )
-            )
-        if _among(item.delta, problem.profiles):
-            profiles.append(
-                take_profile(item.grid, item.equilibrium, depth=item.delta, pair=problem.pair)
-            )
+        found.take(item)
         if progress is not None:
             progress(_fraction(item, problem))
         if time_limit_s is not None and time.perf_counter() - tally.wall > time_limit_s:
@@ -89,14 +74,38 @@ def solve(
         problem=problem,
         accuracy=accuracy,
         outcome=outcome,
-        loading=curve_of(loading, problem.pair.E_reduced, problem.pair.R, energy=True),
-        unloadings=tuple(unloadings),
-        snapshots=tuple(snapshots),
-        profiles=tuple(profiles),
+        loading=curve_of(found.loading, problem.pair.E_reduced, problem.pair.R, energy=True),
+        unloadings=tuple(found.unloadings),
+        snapshots=tuple(found.snapshots),
+        profiles=tuple(found.profiles),
         counters=_counters(tally),
         mesh_digest=hashlib.sha256("".join(tally.digests).encode()).hexdigest(),
         boundary=f"top face moves by -Delta, {problem.top} radially",
     )
+
+
+@dataclass
+class _Found:
+    """What is kept of the points of the path, as the problem asks."""
+
+    problem: ContactProblem
+    loading: list[Record] = field(default_factory=list)
+    unloadings: list[Unloading] = field(default_factory=list)
+    snapshots: list[Snapshot] = field(default_factory=list)
+    profiles: list[Profile] = field(default_factory=list)
+
+    def take(self, point: Point) -> None:
+        """Record, unload from and picture a point where its depth asks for it."""
+        wanted, delta = self.problem, point.delta
+        if _among(delta, wanted.depths) or delta > wanted.depths[-1]:
+            self.loading.append(point.record)
+        if _among(delta, wanted.unload_from):
+            self.unloadings.append(unload(point, wanted))
+        here = (point.grid, point.equilibrium)
+        if _among(delta, wanted.snapshots):
+            self.snapshots.append(take_snapshot(*here, point.state, depth=delta, pair=wanted.pair))
+        if _among(delta, wanted.profiles):
+            self.profiles.append(take_profile(*here, depth=delta, pair=wanted.pair))
 
 
 def _counters(tally: Tally) -> Counters:

@@ -17,40 +17,9 @@ _MOST_STEPS = 60
 
 def unload(point: Point, problem: ContactProblem) -> Unloading:
     """Follow the contact back to zero force, then lift the sphere off and read what is left."""
-    start = point.record.reading
-    solver, grid = point.solver, point.grid
-    pair_R = problem.pair.R
+    grid, pair_R = point.grid, problem.pair.R
     records = [point.record]
-    here = point
-    behind: Point | None = None
-    outcome = COMPLETED
-    steps = 0
-    # a flat punch of the final radius recovers F/(2 E' a): the scale of the first step
-    step = 0.05 * start.force / (2.0 * max(start.radius, 1e-12))
-    while here.record.reading.force > 2e-3 * start.force:
-        found = None
-        for _ in range(MOST_CUTS):
-            delta = here.delta - step
-            guess = _guess(here, behind, delta)
-            found = solver.equilibrium(guess, state=here.state, delta=delta)
-            if found is not None:
-                break
-            step *= STEP_CUT
-        steps += 1
-        if found is None or steps > _MOST_STEPS:
-            outcome = Outcome(
-                Ending.NOT_CONVERGED,
-                f"unloading from Delta/R = {point.delta:.4g} stopped at F/F_m = "
-                f"{here.record.reading.force / start.force:.3g}.",
-                "The residual depths are those of the last state.",
-            )
-            break
-        behind, here = here, accept(here, found, delta)
-        records.append(here.record)
-        slope = (behind.record.reading.force - here.record.reading.force) / (
-            behind.delta - here.delta
-        )
-        step = min(0.6 * here.record.reading.force / slope, 2.0 * (behind.delta - here.delta))
+    here, outcome, steps = _back(point, records)
     free = _lift(here)
     if free is None:
         free = here.equilibrium.u
@@ -82,6 +51,41 @@ def unload(point: Point, problem: ContactProblem) -> Unloading:
         outcome=outcome,
         reload=again,
     )
+
+
+def _back(point: Point, records: list[Record]) -> tuple[Point, Outcome, int]:
+    """Walk back until next to no force is left: last state, how it ended, steps; fill `records`."""
+    start = point.record.reading
+    here = point
+    behind: Point | None = None
+    steps = 0
+    # a flat punch of the final radius recovers F/(2 E' a): the scale of the first step
+    step = 0.05 * start.force / (2.0 * max(start.radius, 1e-12))
+    while here.record.reading.force > 2e-3 * start.force:
+        found = None
+        for _ in range(MOST_CUTS):
+            delta = here.delta - step
+            guess = _guess(here, behind, delta)
+            found = here.solver.equilibrium(guess, state=here.state, delta=delta)
+            if found is not None:
+                break
+            step *= STEP_CUT
+        steps += 1
+        if found is None or steps > _MOST_STEPS:
+            stopped = Outcome(
+                Ending.NOT_CONVERGED,
+                f"unloading from Delta/R = {point.delta:.4g} stopped at F/F_m = "
+                f"{here.record.reading.force / start.force:.3g}.",
+                "The residual depths are those of the last state.",
+            )
+            return here, stopped, steps
+        behind, here = here, accept(here, found, delta)
+        records.append(here.record)
+        slope = (behind.record.reading.force - here.record.reading.force) / (
+            behind.delta - here.delta
+        )
+        step = min(0.6 * here.record.reading.force / slope, 2.0 * (behind.delta - here.delta))
+    return here, COMPLETED, steps
 
 
 def _reload(here: Point, depths: list[float], pair_R: float) -> Curve:

@@ -12,7 +12,7 @@ import numpy.typing as npt
 from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.figure import Figure
 
-from ..campaigns.store import CaseRecord
+from ..campaigns import CaseRecord
 from ..core.material import Material, Pair
 from ..models import LAWS
 from ..models.base import ContactLaw

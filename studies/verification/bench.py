@@ -110,7 +110,7 @@ class Bench:
         self._warm_up()
         self.say(f"  solving {case.name} at level {case.accuracy.level}")
         started = time.perf_counter()
-        raw = _kept(fem.solve(case.problem(), accuracy=case.accuracy))
+        raw = _kept(fem.solve(case.problem, accuracy=case.accuracy))
         raw["case"] = case.specification()
         path.parent.mkdir(parents=True, exist_ok=True)
         part = path.with_suffix(".part")

@@ -12,7 +12,8 @@ import scipy.sparse as sparse
 import scipy.sparse.linalg as sparse_linalg
 import skfem
 
-from ...fem.assemble import Elements, State, advance, bulk_forces
+from ...fem.assemble import advance, bulk_forces
+from ...fem.elements import Elements, State
 from ...fem.material import EXACT
 
 Floats = npt.NDArray[np.float64]

@@ -5,13 +5,9 @@ import math
 import numpy as np
 import pytest
 import skfem
-from dentscope.fem.assemble import Elements, State, advance, bulk_forces
-from dentscope.fem.material import (
-    EXACT,
-    RADIAL,
-    deviatoric_tangent,
-    elastic_deviator,
-)
+from dentscope.fem.assemble import advance, bulk_forces
+from dentscope.fem.elements import Elements, State
+from dentscope.fem.material import EXACT, RADIAL, Step, deviatoric_tangent, elastic_deviator
 from skfem.helpers import ddot
 
 G, K, RADIUS = 0.4, 0.9, 0.003
@@ -117,9 +113,8 @@ def plain_scikit_fem(mesh, u, state, radius, rule):
     for e in range(F.shape[0]):
         for q in range(4):
             f = F[e, q]
-            s0, s1, s2, s3, _, _, _ = elastic_deviator(
-                f, state.F[e, q], state.b[e, q], state.strain[e, q], radius, rule
-            )
+            old = (state.F[e, q], state.b[e, q], state.strain[e, q])
+            (s0, s1, s2, s3), _, _, _ = elastic_deviator(Step(f, *old, radius, rule))
             tau = 2.0 * G * np.array([[s0, s2], [s2, s1]])
             P[e, q, :4] = (tau @ np.linalg.inv(f[:4].reshape(2, 2)).T).ravel()
             P[e, q, 4] = 2.0 * G * s3 / f[4]
@@ -172,12 +167,11 @@ def test_tangent_is_the_derivative_of_the_residual(distorted, size, radius, rule
 
 def point_tangents(F, state, radius, rule):
     """dP/dF of the deviatoric part, point by point, from the material's own functions."""
-    A, P, work = np.empty((*F.shape[:2], 5, 5)), np.empty(5), np.empty((6, 4))
+    A, P = np.empty((*F.shape[:2], 5, 5)), np.empty(5)
     for e in range(F.shape[0]):
         for q in range(4):
-            strain = state.strain[e, q]
-            point = (F[e, q], state.F[e, q], state.b[e, q], strain, G, radius, rule)
-            deviatoric_tangent(*point, P, work, A[e, q])
+            old = (state.F[e, q], state.b[e, q], state.strain[e, q])
+            deviatoric_tangent(Step(F[e, q], *old, radius, rule), G, P, A[e, q])
     return A
 
 

@@ -7,7 +7,7 @@ from typing import Any
 
 import numpy as np
 
-from ....campaigns.store import CaseRecord
+from ....campaigns import CaseRecord
 from ....models.published import hardness
 from ...plot import Entry, Floats, Picture, finish, sheet
 from . import sketches

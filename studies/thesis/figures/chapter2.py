@@ -6,7 +6,7 @@ from collections.abc import Callable, Sequence
 
 import numpy as np
 
-from ....campaigns.store import CaseRecord
+from ....campaigns import CaseRecord
 from ....core.material import Material, Pair
 from ....models import LAWS, critical_depth
 from ....models.base import ContactLaw

@@ -6,7 +6,7 @@ from collections.abc import Callable, Sequence
 
 import numpy as np
 
-from ....campaigns.store import CaseRecord
+from ....campaigns import CaseRecord
 from ....core.material import Pair
 from ....impact.integrate import strike
 from ....impact.result import Impact

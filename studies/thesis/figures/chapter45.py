@@ -7,7 +7,7 @@ from collections.abc import Callable, Sequence
 
 import numpy as np
 
-from ....campaigns.store import CaseRecord
+from ....campaigns import CaseRecord
 from ....core.material import Material
 from ....core.toml_input import read_toml
 from ....impact.draw import HISTORY_PANELS

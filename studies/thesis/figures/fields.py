@@ -16,7 +16,7 @@ import numpy as np
 import numpy.typing as npt
 from matplotlib.collections import PolyCollection
 
-from ....campaigns.store import CaseRecord
+from ....campaigns import CaseRecord
 from ....core.material import Material, Pair
 from ....fem import (
     NUMERICS_VERSION,
@@ -27,7 +27,7 @@ from ....fem import (
     solve,
 )
 from ....fem.discretise import discretise
-from ....fem.geometry import Zone
+from ....fem.mesh import Zone
 from ....models import LAWS
 from ...plot import Floats, Picture, finish, sheet
 from .. import chapter3

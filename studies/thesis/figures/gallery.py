@@ -6,8 +6,7 @@ import warnings
 from collections.abc import Callable, Sequence
 from pathlib import Path
 
-from ....campaigns import read_curves, read_published
-from ....campaigns.store import CaseRecord
+from ....campaigns import CaseRecord, read_curves, read_published
 from ....core.errors import InputError
 from ....models import DomainWarning
 from ...plot import Entry, Picture, Table

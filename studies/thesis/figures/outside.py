@@ -16,7 +16,7 @@ from typing import Any
 
 import numpy as np
 
-from ....campaigns.store import CaseRecord
+from ....campaigns import CaseRecord
 from ....core.material import Material
 from ....core.toml_input import read_toml
 from ....impact.integrate import strike

@@ -9,7 +9,7 @@ from typing import Any
 import numpy as np
 from matplotlib import colormaps
 
-from ....campaigns.store import CaseRecord
+from ....campaigns import CaseRecord
 from ....core.material import Material, Pair
 from ....models import LAWS, critical_depth
 from ....models.fitted import Fitted

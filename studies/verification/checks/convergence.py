@@ -9,7 +9,7 @@ import numpy.typing as npt
 
 from .... import fem
 from ....campaigns.case import Case
-from ....campaigns.designs import TABLE_2_1, pair_of
+from ....campaigns.pairs import TABLE_2_1, pair_of
 from ....core.material import Pair
 from ..bench import Bench, Effort, Solved
 from ..curves import inner, ripple, smoothed
@@ -92,14 +92,12 @@ def case_of(number: int, ratio: float, *, plan: Plan, accuracy: fem.Accuracy) ->
     steps = int(np.ceil(np.log(plan.deepest / first) / np.log(plan.bolder.step_ratio)))
     # depths of the bolder solve are every other one of the base's
     steps *= 1 if accuracy == plan.bolder else 2
-    return Case(
-        name=f"table-2.1-case-{number}-Sy*-{ratio:g}",
-        pair=pair,
-        depths=fem.geometric_depths(first, plan.deepest, steps + 1),
+    problem = fem.ContactProblem(
+        pair,
+        fem.geometric_depths(first, plan.deepest, steps + 1),
         unload_from=plan.unload_from if accuracy == plan.base else (),
-        radius_at_least=0.0,
-        accuracy=accuracy,
     )
+    return Case(f"table-2.1-case-{number}-Sy*-{ratio:g}", problem, accuracy)
 
 
 def run(bench: Bench) -> Result:

@@ -30,7 +30,7 @@ def run(bench: Bench) -> Result:
     pair = Pair(sphere=_STEEL, flat=RIGID, R=R)
     accuracy = fem.Accuracy.smoke() if bench.effort is Effort.QUICK else fem.Accuracy.quick()
     depths = fem.geometric_depths(fem.critical_depth(pair), _DEEPEST, 70)
-    solved = bench.solve(Case("published-flattening", pair, depths, (), 0.0, accuracy))
+    solved = bench.solve(Case("published-flattening", fem.ContactProblem(pair, depths), accuracy))
     delta = solved["delta"]
     force, a = (np.exp(smoothed(delta, np.log(solved[n]))) for n in ("force", "radius"))
     w = delta / (fem.critical_depth(pair) * R)

@@ -29,7 +29,7 @@ def run(bench: Bench) -> Result:
     pair = Pair(sphere=RIGID, flat=_STEEL, R=R)
     accuracy = fem.Accuracy.smoke() if bench.effort is Effort.QUICK else fem.Accuracy.quick()
     depths = fem.geometric_depths(20.0 * fem.critical_depth(pair), _DEEPEST, 70)
-    solved = bench.solve(Case("published-indentation", pair, depths, (), 0.0, accuracy))
+    solved = bench.solve(Case("published-indentation", fem.ContactProblem(pair, depths), accuracy))
     delta = solved["delta"]
     ln_f, ln_a = (smoothed(delta, np.log(solved[name])) for name in ("force", "radius"))
     a = np.exp(ln_a) / R

@@ -10,7 +10,7 @@ import numpy.typing as npt
 
 from .... import fem
 from ....campaigns.case import Case
-from ....campaigns.designs import pair_of
+from ....campaigns.pairs import pair_of
 from ..bench import Bench, Effort, Solved
 from ..calculix import Deck, Reference, load_reference, run_deck
 from ..curves import inner, smoothed
@@ -35,19 +35,13 @@ class Twin:
     def case(self) -> Case:
         """Our case; its depths are the steps of the deck."""
         pair = pair_of(E_s=200.0, E_f=200.0, Sy_min=503.0, ratio=self.ratio)
-        return Case(
-            name=self.name,
-            pair=pair,
-            depths=fem.geometric_depths(0.3 * fem.critical_depth(pair), _DEEPEST, self.steps),
-            unload_from=(),
-            radius_at_least=0.0,
-            accuracy=self.accuracy,
-        )
+        depths = fem.geometric_depths(0.3 * fem.critical_depth(pair), _DEEPEST, self.steps)
+        return Case(self.name, fem.ContactProblem(pair, depths), self.accuracy)
 
     @property
     def deck(self) -> Deck:
         """The same for CalculiX."""
-        return Deck(self.case.problem(), self.accuracy, element=self.element)
+        return Deck(self.case.problem, self.accuracy, element=self.element)
 
 
 def twins_of(effort: Effort) -> tuple[Twin, ...]:

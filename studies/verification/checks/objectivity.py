@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from ....fem.material import EXACT, RADIAL, elastic_deviator, log_strain
+from ....fem.material import EXACT, RADIAL, Step, elastic_deviator, log_strain
 from ..bench import Bench
 from ..result import Measurement, Result
 
@@ -20,19 +20,19 @@ def run(bench: Bench) -> Result:
         for _ in range(_SAMPLES):
             old = _gradient(rng, 0.05)
             b = _elastic_b(rng)
-            strain = np.array(log_strain(*b)[:4])
+            strain = np.array(log_strain(b)[0])
             new = _after(_gradient(rng, 0.03), old)
-            e = elastic_deviator(new, old, b, strain, _RADIUS, rule)
+            step = Step(new, old, b, strain, _RADIUS, rule)
+            e, mean, plastic, _ = elastic_deviator(step)
             angle = rng.uniform(-np.pi, np.pi)
-            turned = elastic_deviator(_rotated(new, angle), old, b, strain, _RADIUS, rule)
+            turned, *_ = elastic_deviator(step._replace(F=_rotated(new, angle)))
             worst = max(worst, _difference(e, turned, angle) / _RADIUS)
-            if e[5]:
-                radius = _RADIUS * np.exp(3.0 * e[4])
-                surface = max(surface, abs(_norm(e[:4]) / radius - 1.0))
-            swollen = new * 1.01
-            pure = elastic_deviator(swollen, old, b, strain, np.inf, rule)
-            plain = elastic_deviator(new, old, b, strain, np.inf, rule)
-            volume = max(volume, float(np.abs(np.subtract(pure[:4], plain[:4])).max()) / _RADIUS)
+            if plastic:
+                surface = max(surface, abs(_norm(e) / (_RADIUS * np.exp(3.0 * mean)) - 1.0))
+            elastic = step._replace(radius=np.inf)
+            pure, *_ = elastic_deviator(elastic._replace(F=new * 1.01))
+            plain, *_ = elastic_deviator(elastic)
+            volume = max(volume, float(np.abs(np.subtract(pure, plain)).max()) / _RADIUS)
     source = "exact"
     return Result(
         name="objectivity",
@@ -77,7 +77,7 @@ def _difference(e: tuple[float, ...], turned: tuple[float, ...], angle: float) -
     Q = np.array([[c, -s], [s, c]])
     plane = Q @ np.array([[e[0], e[2]], [e[2], e[1]]]) @ Q.T
     expected = np.array([plane[0, 0], plane[1, 1], plane[0, 1], e[3]])
-    return float(np.abs(expected - np.array(turned[:4])).max())
+    return float(np.abs(expected - np.array(turned)).max())
 
 
 def _norm(e: tuple[float, ...]) -> float:

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import math
-from dataclasses import replace
 from itertools import pairwise
 
 import numpy as np
@@ -12,11 +11,12 @@ import scipy.sparse as sparse
 import scipy.sparse.linalg as sparse_linalg
 
 from .... import fem
-from ....campaigns.designs import pair_of
+from ....campaigns.pairs import pair_of
 from ....core.material import Pair
-from ....fem.assemble import State, bulk_forces
+from ....fem.assemble import bulk_forces
 from ....fem.contact import Surfaces, Triplets, contact_forces
 from ....fem.discretise import Discretisation, discretise
+from ....fem.elements import State
 from ....fem.material import EXACT
 from ..bench import Bench
 from ..blocks import Block, block, rectangle, stiffness
@@ -64,7 +64,7 @@ def _unbalanced(pair: Pair, strain: float) -> float:
     force = np.zeros(grid.n_dofs)
     state = State.virgin(len(grid.elements.conn))
     # the far half-space is linear in a solve; the patch test asks the finite-strain element
-    elements = replace(grid.elements, linear=np.full(len(grid.elements.conn), -1))
+    elements = grid.elements._replace(linear=np.full(len(grid.elements.conn), -1))
     bulk_forces(elements, u, state=state, rule=EXACT, force=force)
     return float((np.abs(force) / _parts(grid, strain))[_inner_dofs(grid)].max())
 

@@ -6,7 +6,7 @@ import numpy as np
 
 from .... import fem
 from ....campaigns.case import Case
-from ....campaigns.designs import pair_of
+from ....campaigns.pairs import pair_of
 from ..bench import Bench
 from ..curves import inner, smoothed
 from ..result import Cell, Measurement, Result, Table
@@ -26,7 +26,7 @@ def run(bench: Bench) -> Result:
     curves = []
     for stiffness in stiffnesses:
         accuracy = mesh.with_(level=f"smoke, penalty {stiffness:g}", penalty=stiffness)
-        s = bench.solve(Case("penalty", pair, depths, (), 0.0, accuracy))
+        s = bench.solve(Case("penalty", fem.ContactProblem(pair, depths), accuracy))
         kept = inner(s["delta"])
         curves.append(
             [smoothed(s["delta"], y)[kept] for y in (np.log(s["force"]), np.log(s["radius"]),

@@ -8,7 +8,7 @@ import scipy.sparse.linalg as sparse_linalg
 import skfem
 
 from .... import fem
-from ....fem.assemble import State
+from ....fem.elements import State
 from ..bench import Bench
 from ..blocks import block, rectangle, stiffness
 from ..pairs import R, elastic_pair, hertz_force

@@ -6,7 +6,7 @@ import numpy as np
 
 from .... import fem
 from ....campaigns.case import Case
-from ....campaigns.designs import pair_of
+from ....campaigns.pairs import pair_of
 from ....core.material import Material, Pair
 from ..bench import Bench, Effort, Solved
 from ..curves import inner, smoothed
@@ -21,7 +21,7 @@ def run(bench: Bench) -> Result:
     smoke = fem.Accuracy.smoke()
     level = smoke if bench.effort is Effort.QUICK else fem.Accuracy.quick()
     elastic = [
-        bench.solve(Case("swap-elastic", Pair(s, f, R), depths, (), 0.0, level))
+        bench.solve(Case("swap-elastic", fem.ContactProblem(Pair(s, f, R), depths), level))
         for s, f in ((soft, stiff), (stiff, soft))
     ]
     # E'/Sy = 1100: first yield at Delta/R = 5e-6
@@ -30,7 +30,9 @@ def run(bench: Bench) -> Result:
     for ratio in (0.1, 10.0):
         pair = pair_of(E_s=200.0, E_f=200.0, Sy_min=100.0, ratio=ratio)
         path = fem.geometric_depths(0.3 * fem.critical_depth(pair), last, 50)
-        plastic.append(bench.solve(Case(f"swap-Sy*-{ratio:g}", pair, path, (), 0.0, level)))
+        plastic.append(
+            bench.solve(Case(f"swap-Sy*-{ratio:g}", fem.ContactProblem(pair, path), level))
+        )
     measurements = []
     rows: list[tuple[Cell, ...]] = []
     for name, marks, pairs in (

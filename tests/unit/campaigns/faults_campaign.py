@@ -50,7 +50,7 @@ def stand_in(specification, time_limit_s):
     unloading = Unloading(0.01, curve, 1e-6, 1e-6, *(shape,) * 4, steps=9, outcome=COMPLETED)
     counters = Counters(**dict.fromkeys(Counters.__dataclass_fields__, 1))
     return Solution(
-        case.problem(), case.accuracy, COMPLETED, curve, (unloading,) * 5, (), counters, "mesh"
+        case.problem, case.accuracy, COMPLETED, curve, (unloading,) * 5, (), counters, "mesh"
     )
 
 

@@ -44,7 +44,7 @@ class Quick:
             line = np.random.default_rng(0).random(int(sys.argv[3]))
             curve = Curve(**dict.fromkeys(Curve.__dataclass_fields__, line))
             counters = Counters(**dict.fromkeys(Counters.__dataclass_fields__, 1))
-            yield Ended(key, Solution(case.problem(), case.accuracy, COMPLETED, curve, (), (),
+            yield Ended(key, Solution(case.problem, case.accuracy, COMPLETED, curve, (), (),
                                       counters, "mesh"))
 
 try:

@@ -5,7 +5,8 @@ import itertools
 import pytest
 from dentscope import fem
 from dentscope.campaigns import DESIGNS, design_named, distinct_cases
-from dentscope.campaigns.designs import RATIOS, challenge_cases
+from dentscope.campaigns.drawn_cases import challenge_cases
+from dentscope.campaigns.pairs import RATIOS
 from dentscope.core import InputError
 
 
@@ -46,9 +47,9 @@ def test_depths_and_unloadings_of_every_case(cases, name):
         assert len(case.depths) >= 40
         assert case.depths[0] < onset
         assert case.depths[-1] >= 0.1
-        assert case.radius_at_least == 0.5
-        assert len(case.unload_from) >= 5
-        assert sum(depth < 20 * onset for depth in case.unload_from) >= 3
+        assert case.problem.radius_at_least == 0.5
+        assert len(case.problem.unload_from) >= 5
+        assert sum(depth < 20 * onset for depth in case.problem.unload_from) >= 3
 
 
 def test_the_space_is_covered_to_its_borders(cases):
@@ -94,7 +95,7 @@ def test_every_deep_case_has_the_depth_of_the_thesis(cases):
             assert 0.04 in case.depths
             ratios = [b / a for a, b in itertools.pairwise(case.depths)]
             assert max(ratios) < 1.3 * min(ratios)  # one is moved by less than half a step
-    fields = [c.name for c in cases["thesis"].values() if c.snapshots]
+    fields = [c.name for c in cases["thesis"].values() if c.problem.snapshots]
     assert fields == ["figure-2.2", "figure-2.3", "figure-2.4"]
 
 

@@ -58,15 +58,16 @@ def solved(case, seed=0, factor=1.0):
     shapes = {name: draw.random(n) for name in UNLOADING_PROFILES}
     unloadings = tuple(
         Unloading(d, curve, 1e-6 * draw.random(), -1e-9, **shapes, steps=9, outcome=COMPLETED)
-        for d in case.unload_from
+        for d in case.problem.unload_from
     )
     # the mesh follows the contact: profiles have uneven numbers of nodes
     profiles = tuple(
-        Profile(d, *np.sort(draw.random((5, n - k))) * 1e-3) for k, d in enumerate(case.profiles)
+        Profile(d, *np.sort(draw.random((5, n - k))) * 1e-3)
+        for k, d in enumerate(case.problem.profiles)
     )
     counters = Counters(**dict.fromkeys(Counters.__dataclass_fields__, 1))
     return Solution(
-        case.problem(), case.accuracy, COMPLETED, curve, unloadings, (), counters, "m", profiles
+        case.problem, case.accuracy, COMPLETED, curve, unloadings, (), counters, "m", profiles
     )
 
 

@@ -51,7 +51,7 @@ def solution(of, outcome=COMPLETED):
     line = np.linspace(1.0, 2.0, n)
     curve = Curve(**dict.fromkeys(Curve.__dataclass_fields__, line))
     counters = Counters(**dict.fromkeys(Counters.__dataclass_fields__, 1))
-    return Solution(of.problem(), of.accuracy, outcome, curve, (), (), counters, "mesh")
+    return Solution(of.problem, of.accuracy, outcome, curve, (), (), counters, "mesh")
 
 
 class FakeExecutor:
@@ -119,16 +119,16 @@ def test_a_failed_case_is_stored_with_its_reason_and_retried_on_demand(tmp_path)
 
 def test_profiles_are_kept_out_to_twice_the_contact_radius(tmp_path):
     one = case()
-    assert len(one.profiles) == 4
-    assert set(one.profiles) <= set(one.depths)
+    assert len(one.problem.profiles) == 4
+    assert set(one.problem.profiles) <= set(one.depths)
     r = np.linspace(0.0, 9.0, 19)
-    made = tuple(Profile(d, r, r - d, 2.0 * r, r[:10], -r[:10]) for d in one.profiles)
+    made = tuple(Profile(d, r, r - d, 2.0 * r, r[:10], -r[:10]) for d in one.problem.profiles)
     Store(tmp_path / "c.h5").put(one, replace(solution(one), profiles=made))
     kept = read_curves(tmp_path / "c.h5")[0].profiles
     # the stand-in's largest contact radius is 2, so that the surface ends with the node at 4
-    assert kept["depth"] == pytest.approx(one.profiles, rel=1e-6)
+    assert kept["depth"] == pytest.approx(one.problem.profiles, rel=1e-6)
     assert kept["sphere_z"] == pytest.approx(
-        np.array([r[:9] - d for d in one.profiles]), rel=1e-6, abs=1e-6
+        np.array([r[:9] - d for d in one.problem.profiles]), rel=1e-6, abs=1e-6
     )
     assert kept["flat_z"].shape == (4, 9)
 
@@ -145,10 +145,9 @@ def snapshot(depth):
 
 def test_fields_lie_beside_the_file_and_belong_to_the_case(tmp_path, monkeypatch):
     plain = case()
-    chosen = replace(plain, snapshots=(plain.depths[1],))
+    chosen = replace(plain, problem=replace(plain.problem, snapshots=(plain.depths[1],)))
     assert chosen.id != plain.id
     assert Case.from_specification(chosen.specification()) == chosen
-    assert chosen.problem().snapshots == chosen.snapshots
     states = (snapshot(chosen.depths[1]),)
     Store(tmp_path / "c.h5").put(chosen, replace(solution(chosen), snapshots=states))
     [file] = fields_of(chosen.id, tmp_path / "fields")

@@ -22,7 +22,7 @@ def stored(tmp_path):
     counters = Counters(**dict.fromkeys(Counters.__dataclass_fields__, 1))
     curve = Curve(**{name: pandas.Series(column).to_numpy() for name, column in columns.items()})
     Store(tmp_path / "campaign.h5").put(
-        case, Solution(case.problem(), case.accuracy, COMPLETED, curve, (), (), counters, "mesh")
+        case, Solution(case.problem, case.accuracy, COMPLETED, curve, (), (), counters, "mesh")
     )
     return tmp_path, columns
 

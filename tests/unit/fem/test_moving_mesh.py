@@ -6,13 +6,13 @@ import numpy as np
 import pytest
 from dentscope import fem
 from dentscope.core import Material, Pair
-from dentscope.fem.assemble import State, advance, bulk_forces
+from dentscope.fem.assemble import advance, bulk_forces
 from dentscope.fem.contact import Surfaces, Triplets, contact_forces
 from dentscope.fem.discretise import discretise, with_linear
-from dentscope.fem.geometry import Zone, ladder_rings
-from dentscope.fem.layers import layers_of
+from dentscope.fem.elements import State
 from dentscope.fem.loading import Loading, Tally
 from dentscope.fem.material import EXACT
+from dentscope.fem.mesh import Zone, ladder_rings, layers_of
 from dentscope.fem.remesh import Transfer
 
 STEEL = Material(E=200e9, nu=0.3, Sy=500e6)
@@ -132,7 +132,7 @@ def test_an_elastic_path_over_several_meshes_ends_where_the_direct_solution_does
 def test_the_linear_far_field_agrees_with_finite_strain_where_strains_are_small(grids):
     grid = grids[0]
     n = len(grid.elements.conn)
-    nonlinear = replace(grid.elements, linear=np.full(n, -1))
+    nonlinear = grid.elements._replace(linear=np.full(n, -1))
     everywhere = with_linear(nonlinear, np.ones(n, dtype=bool))
     u = np.random.default_rng(2).normal(0.0, 1e-9, grid.n_dofs)
     forces = []

@@ -11,7 +11,7 @@ from dataclasses import dataclass
 import numpy as np
 import numpy.typing as npt
 
-from .mesh import Mesh
+from .bodies import Mesh
 
 Floats = npt.NDArray[np.float64]
 Integers = npt.NDArray[np.int64]

@@ -1,0 +1,135 @@
+"""Cases drawn over all materials: for a first fit, for the whole space, for judging a fit."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from functools import cache
+
+import numpy as np
+
+from .. import fem
+from ..core.material import Pair
+from ..core.provenance import file_digest
+from .case import Case, standard_case
+from .pairs import deep_case, pair_of
+
+
+@cache
+def survey() -> tuple[Case, ...]:
+    """64 scrambled Sobol points over the ranges of `space`, at twice its element size."""
+    from scipy.stats import qmc
+
+    points = qmc.Sobol(6, scramble=True, rng=np.random.default_rng(64)).random_base2(6)
+    return tuple(
+        deep_case(f"survey-{k:02}", _drawn_pair(u), accuracy=fem.Accuracy.quick())
+        for k, u in enumerate(points)
+    )
+
+
+@cache
+def space() -> tuple[Case, ...]:
+    """256 scrambled Sobol points; in every fourth the two moduli are equal."""
+    from scipy.stats import qmc
+
+    points = qmc.Sobol(6, scramble=True, rng=np.random.default_rng(20141)).random_base2(8)
+    return tuple(
+        deep_case(f"space-{k:03}", _drawn_pair(u, equal_moduli=k % 4 == 0))
+        for k, u in enumerate(points)
+    )
+
+
+@cache
+def validation() -> tuple[Case, ...]:
+    """48 pairs kept out of every fit: 24 anywhere, 16 at the steep part, 8 of soft, strong bodies.
+
+    The last have E'/Sy_min below 60, where first yield lies deepest.
+    """
+    draw = np.random.default_rng(77003).random((48, 6))
+    return tuple(deep_case(f"validation-{k:02}", pair) for k, pair in enumerate(_for_judging(draw)))
+
+
+def _for_judging(draw: np.ndarray[tuple[int, int], np.dtype[np.float64]]) -> list[Pair]:
+    """Half of the pairs anywhere, a third at the steep part, the others of soft, strong bodies."""
+    half, most = len(draw) // 2, 5 * len(draw) // 6
+    pairs = [_drawn_pair(u) for u in draw[:half]]
+    pairs += [_drawn_pair(u, ratios=(0.85, 1.7)) for u in draw[half:most]]
+    pairs += [_drawn_pair(u, moduli=(50.0, 95.0), strengths=(950.0, 1100.0)) for u in draw[most:]]
+    return pairs
+
+
+def challenge() -> tuple[Case, ...]:
+    """24 pairs drawn from the checksum of the coefficients in use, kept out of every fit."""
+    from ..models.fitted import COEFFICIENTS_FILE
+
+    return challenge_cases(file_digest(COEFFICIENTS_FILE))
+
+
+def challenge_cases(digest: str) -> tuple[Case, ...]:
+    """24 pairs drawn from a checksum: 12 anywhere, 8 at the steep part, 4 of soft, strong bodies.
+
+    Parameters
+    ----------
+    digest
+        Hexadecimal; its first twelve digits are the seed, and stand in the cases' names.
+    """
+    draw = np.random.default_rng(int(digest[:12], 16)).random((24, 6))
+    name = f"challenge-{digest[:12]}"
+    return tuple(deep_case(f"{name}-{k:02}", pair) for k, pair in enumerate(_for_judging(draw)))
+
+
+def _drawn_pair(
+    u: np.ndarray[tuple[int], np.dtype[np.float64]],
+    *,
+    moduli: tuple[float, float] = (50.0, 300.0),
+    strengths: tuple[float, float] = (50.0, 1100.0),
+    ratios: tuple[float, float] = (0.1, 10.0),
+    equal_moduli: bool = False,
+) -> Pair:
+    """Pair from six numbers in [0, 1): moduli [GPa] linear, strength [MPa] and Sy* logarithmic."""
+    E_s, E_f = (_digits(moduli[0] + (moduli[1] - moduli[0]) * x) for x in u[:2])
+    Sy, ratio = (
+        _digits(a * (b / a) ** x) for (a, b), x in zip((strengths, ratios), u[2:4], strict=True)
+    )
+    nu_s, nu_f = (round(float(0.2 + 0.25 * x), 3) for x in u[4:])
+    return pair_of(
+        E_s=E_s, E_f=E_s if equal_moduli else E_f, Sy_min=Sy, ratio=ratio, nu_s=nu_s, nu_f=nu_f
+    )
+
+
+@cache
+def robustness() -> tuple[Case, ...]:
+    """300 scrambled Sobol points over all that the solver is meant for, at medium resolution.
+
+    E_s/E_f 1/6 to 6, nu 0.1 to 0.45, Sy* 0.05 to 20 and E'/Sy_min 20 to 4000.
+    """
+    from scipy.stats import qmc
+
+    points = qmc.Sobol(5, scramble=True, rng=np.random.default_rng(300)).random_base2(9)[:300]
+    cases = []
+    for k, u in enumerate(points):
+        stiffness = 6.0 ** (2.0 * u[0] - 1.0)
+        nu_s, nu_f = (round(float(0.1 + 0.35 * x), 3) for x in u[1:3])
+        pair = pair_of(
+            E_s=_digits(100.0 * stiffness**0.5),
+            E_f=_digits(100.0 / stiffness**0.5),
+            Sy_min=1.0,
+            ratio=_digits(0.05 * 400.0 ** u[3]),
+            nu_s=nu_s,
+            nu_f=nu_f,
+        )
+        strength = _digits(pair.E_reduced / (20.0 * 200.0 ** u[4]))
+        pair = replace(
+            pair,
+            sphere=replace(pair.sphere, Sy=pair.sphere.Sy / 1e6 * strength),
+            flat=replace(pair.flat, Sy=pair.flat.Sy / 1e6 * strength),
+        )
+        cases.append(
+            standard_case(
+                f"robustness-{k:03}", pair, deepest=0.1, n_depths=24, accuracy=fem.Accuracy.quick()
+            )
+        )
+    return tuple(cases)
+
+
+def _digits(x: float) -> float:
+    return float(f"{x:.4g}")

@@ -1,0 +1,80 @@
+"""One solution into its group of a campaign file: curves, unloadings, profiles with their units."""
+
+from __future__ import annotations
+
+import json
+from dataclasses import asdict
+
+import h5py
+import numpy as np
+import numpy.typing as npt
+
+from ..fem import Curve, Solution
+from .quality import quality_of
+from .schema import CURVE, PROFILES, UNLOADING_PROFILES, Dataset
+
+Floats = npt.NDArray[np.float64]
+
+_PROFILE_REACH = 2.0  # profiles are kept out to this many contact radii
+_WORTH_COMPRESSING = 512  # values; below it a chunk's index takes more room than it saves
+
+
+def put_solution(group: h5py.Group, solution: Solution) -> None:
+    """Write a solution into the empty group of its case."""
+    # a retried case may have been solved more finely than its specification asks
+    group.attrs["accuracy"] = json.dumps(solution.accuracy.as_dict())
+    group.attrs["mesh"] = solution.mesh_digest
+    group.attrs["boundary"] = solution.boundary
+    group.attrs["yield_measure"] = solution.yield_measure
+    quality = quality_of(vars(solution.loading), solution.problem.pair.R)
+    group.attrs["quality"] = json.dumps(asdict(quality))
+    counters = solution.counters
+    for name in counters.__dataclass_fields__:
+        group.attrs[f"counter_{name}"] = float(getattr(counters, name))
+    _put_curve(group.create_group("loading"), solution.loading)
+    for number, unloading in enumerate(solution.unloadings, start=1):
+        part = group.create_group(f"unload-{number}")
+        part.attrs["depth"] = unloading.depth
+        part.attrs["residual_sphere_m"] = unloading.residual_sphere
+        part.attrs["residual_flat_m"] = unloading.residual_flat
+        part.attrs["steps"] = unloading.steps
+        part.attrs["outcome"] = unloading.outcome.ending.value
+        _put_curve(part, unloading.curve)
+        for name, about in UNLOADING_PROFILES.items():
+            _put_array(part, name, getattr(unloading, name), about)
+    if solution.profiles:
+        _put_profiles(group.create_group("profiles"), solution)
+
+
+def _put_profiles(group: h5py.Group, solution: Solution) -> None:
+    reach = _PROFILE_REACH * np.nanmax(solution.loading.radius)
+    for name, about in PROFILES.items():
+        columns = [getattr(p, name) for p in solution.profiles]
+        if about.axes[-1] != "node":
+            _put_array(group, name, np.array(columns, dtype=np.float32), about)
+            continue
+        side = "flat_r" if name.startswith("flat") else "sphere_r"
+        radii = [getattr(p, side) for p in solution.profiles]
+        kept = [
+            c[: int(np.searchsorted(r, reach)) + 1] for c, r in zip(columns, radii, strict=True)
+        ]
+        # the mesh follows the contact, so that the profiles differ in their number of nodes
+        values = np.full((len(kept), max(map(len, kept))), np.nan, dtype=np.float32)
+        for row, column in zip(values, kept, strict=True):
+            row[: len(column)] = column
+        _put_array(group, name, values, about)
+
+
+def _put_curve(group: h5py.Group, curve: Curve) -> None:
+    for name, about in CURVE.items():
+        _put_array(group, name, getattr(curve, name), about)
+
+
+def _put_array(
+    group: h5py.Group, name: str, values: Floats | npt.NDArray[np.float32], about: Dataset
+) -> None:
+    packed = {"compression": "gzip", "shuffle": True} if values.size > _WORTH_COMPRESSING else {}
+    data = group.create_dataset(name, data=values, **packed)
+    data.attrs["unit"] = about.unit
+    data.attrs["axes"] = ",".join(about.axes)
+    data.attrs["meaning"] = about.meaning

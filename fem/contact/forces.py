@@ -1,0 +1,202 @@
+"""Pressures, forces and tangent of the contact at given positions of the nodes."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import NamedTuple
+
+import numpy as np
+import numpy.typing as npt
+from numba import njit
+
+from .gap import SlavePoints, find_gaps
+from .point import LOCAL, Changes, new_room, point_changes
+from .surfaces import POINTS, Surfaces
+
+Floats = npt.NDArray[np.float64]
+Integers = npt.NDArray[np.int64]
+
+_SUPPORT = 96  # room for the degrees of freedom that a node's weighted gap depends on
+
+
+@dataclass(frozen=True)
+class ContactState:
+    """What one evaluation of the contact gives.
+
+    Parameters
+    ----------
+    pressure
+        Nodal pressures p_A on the reference area, shape (n_slave,) [E'].
+    gap, r
+        Gap and current radius of the slave points, shape (n_edges, 3) [R].
+    segment
+        Master segment under each slave point, shape (n_edges, 3).
+    force
+        Vertical contact force [E' R^2].
+    energy
+        Penalty energy [E' R^3].
+    """
+
+    pressure: Floats
+    gap: Floats
+    r: Floats
+    segment: Integers
+    force: float
+    energy: float
+
+
+class Triplets(NamedTuple):
+    """Room for the contact tangent as (row, column, value)."""
+
+    row: Integers
+    col: Integers
+    value: Floats
+
+    @classmethod
+    def room(cls, n: int) -> Triplets:
+        """Allocate so many."""
+        return cls(np.empty(n, np.int64), np.empty(n, np.int64), np.empty(n))
+
+    @classmethod
+    def for_surfaces(cls, surfaces: Surfaces) -> Triplets:
+        """Allocate enough for every slave node in contact."""
+        return cls.room(len(surfaces.slave) * 1500)
+
+
+@njit(cache=True)
+def _find_pressures(s, gap, pressure):
+    """Fill the nodal pressures from the gaps; total force and energy."""
+    n_edges = gap.shape[0]
+    pressure[:] = 0.0
+    for e in range(n_edges):
+        for q in range(3):
+            part = 0.5 * (1.0 + POINTS[q])
+            pressure[e] += (1.0 - part) * s.weight[e, q] * gap[e, q]
+            pressure[e + 1] += part * s.weight[e, q] * gap[e, q]
+    energy = 0.0
+    total = 0.0
+    for A in range(n_edges + 1):
+        pressure[A] = max(0.0, -s.stiffness[A] * pressure[A] / s.mass[A])
+        energy += 0.5 * s.mass[A] * pressure[A] ** 2 / s.stiffness[A]
+        total += s.mass[A] * pressure[A]
+    return total, energy
+
+
+@njit(cache=True)
+def _of(changes, e, q):
+    return Changes(changes.dof[e, q], changes.dg[e, q], changes.b[e, q])
+
+
+@njit(cache=True)
+def _add_forces(s, xm, points, pressure, force, changes, with_tangent, out):
+    """Add the forces of the points; the tangent of their directions goes to `out`; how many."""
+    room = new_room()
+    n = 0
+    for e in range(len(pressure) - 1):
+        if pressure[e] == 0.0 and pressure[e + 1] == 0.0:
+            continue
+        for q in range(3):
+            here = _of(changes, e, q)
+            point_changes(e, q, s, xm, points, room, here)
+            part = 0.5 * (1.0 + POINTS[q])
+            p = ((1.0 - part) * pressure[e] + part * pressure[e + 1]) * s.weight[e, q]
+            for i in range(LOCAL):
+                here.dg[i] *= s.sign
+                here.b[i] *= s.sign
+                force[here.dof[i]] -= p * here.b[i]
+            if not with_tangent:
+                continue
+            for i in range(LOCAL):
+                for j in range(LOCAL):
+                    if room.db[i, j] != 0.0:
+                        out.row[n] = here.dof[i]
+                        out.col[n] = here.dof[j]
+                        out.value[n] = -p * s.sign * room.db[i, j]
+                        n += 1
+    return n
+
+
+@njit(cache=True)
+def _gather(A, s, changes, sums):
+    """Sum what the weighted gap of node A depends on over its points; how many entries."""
+    m = 0
+    for e in range(max(A - 1, 0), min(A + 1, len(s.slave) - 1)):
+        for q in range(3):
+            part = 0.5 * (1.0 + POINTS[q])
+            N = (part if e == A - 1 else 1.0 - part) * s.weight[e, q] / s.mass[A]
+            here = _of(changes, e, q)
+            for i in range(LOCAL):
+                found = -1
+                for j in range(m):
+                    if sums.dof[j] == here.dof[i]:
+                        found = j
+                        break
+                if found < 0:
+                    found = m
+                    sums.dof[m] = here.dof[i]
+                    sums.dg[m] = 0.0
+                    sums.b[m] = 0.0
+                    m += 1
+                sums.dg[found] += N * here.dg[i]
+                sums.b[found] += N * here.b[i]
+    return m
+
+
+@njit(cache=True)
+def _add_stiffness(s, pressure, changes, out, n):
+    """Append the tangent of the nodal pressures to the `n` triplets in `out`; how many now."""
+    sums = Changes(np.empty(_SUPPORT, np.int64), np.empty(_SUPPORT), np.empty(_SUPPORT))
+    for A in range(len(pressure)):
+        if pressure[A] <= 0.0:
+            continue
+        m = _gather(A, s, changes, sums)
+        k = s.stiffness[A] * s.mass[A]
+        for i in range(m):
+            if sums.b[i] == 0.0:
+                continue
+            for j in range(m):
+                out.row[n] = sums.dof[i]
+                out.col[n] = sums.dof[j]
+                out.value[n] = k * sums.b[i] * sums.dg[j]
+                n += 1
+    return n
+
+
+@njit(cache=True)
+def _evaluate(s, x, points, pressure, force, with_tangent, out):
+    """Fill points and pressures, add forces, write triplets; force, energy, how many triplets."""
+    xm = x[s.master]
+    if not find_gaps(s, x[s.slave], xm, points):
+        return 0.0, 0.0, -1
+    total, energy = _find_pressures(s, points.gap, pressure)
+    n_edges = len(pressure) - 1
+    changes = Changes(
+        np.empty((n_edges, 3, LOCAL), np.int64),
+        np.empty((n_edges, 3, LOCAL)),
+        np.empty((n_edges, 3, LOCAL)),
+    )
+    n = _add_forces(s, xm, points, pressure, force, changes, with_tangent, out)
+    if with_tangent:
+        n = _add_stiffness(s, pressure, changes, out, n)
+    return total, energy, n
+
+
+def contact_forces(
+    surfaces: Surfaces, x: Floats, *, force: Floats, tangent: Triplets | None = None
+) -> tuple[ContactState | None, int]:
+    """Add the contact forces at the current coordinates `x` (n_nodes, 2) to `force`.
+
+    Returns
+    -------
+    tuple
+        The contact's state, none when a slave point has left the master surface, and the number of
+        triplets written into `tangent`.
+    """
+    points = SlavePoints.room(len(surfaces.slave) - 1)
+    pressure = np.empty(len(surfaces.slave))
+    room = Triplets.room(0) if tangent is None else tangent
+    total, energy, n = _evaluate(surfaces, x, points, pressure, force, tangent is not None, room)
+    if n < 0:
+        return None, 0
+    gap, r, segment = points.gap, points.radius, points.segment
+    return ContactState(pressure, gap, r, segment, float(total), float(energy)), n

@@ -1,0 +1,138 @@
+"""The four-node elements, the material state at their points, and what is read from both."""
+
+from __future__ import annotations
+
+from typing import NamedTuple
+
+import numpy as np
+import numpy.typing as npt
+from numba import njit
+
+Floats = npt.NDArray[np.float64]
+
+
+class Elements(NamedTuple):
+    """Everything about the elements that does not change during a solve (R = 1, E' = 1).
+
+    Parameters
+    ----------
+    conn
+        Node numbers, shape (n_elements, 4).
+    grad
+        Reference gradients of the basis functions, shape (n_elements, 4, 4, 2): element, point,
+        node, direction.
+    value
+        Basis functions at the points, shape (4, 4): point, node.
+    r
+        Reference radius of the points, shape (n_elements, 4).
+    dV
+        Reference volume of the points (2 pi r dA), shape (n_elements, 4).
+    volume
+        Reference volume of the elements, shape (n_elements,).
+    G, K
+        Shear and bulk modulus, shape (n_elements,).
+    radius
+        sqrt(2/3) Sy / (2 G), shape (n_elements,); `inf` where elastic.
+    stiffness
+        Constant stiffness matrices of linear elements, shape (n_linear, 8, 8) [E' R].
+    linear
+        Row of `stiffness` of each element, -1 for those of finite strain, shape (n_elements,).
+    """
+
+    conn: npt.NDArray[np.int64]
+    grad: Floats
+    value: Floats
+    r: Floats
+    dV: Floats
+    volume: Floats
+    G: Floats
+    K: Floats
+    radius: Floats
+    stiffness: Floats
+    linear: npt.NDArray[np.int64]
+
+
+class State(NamedTuple):
+    """Material state at the last accepted step.
+
+    Parameters
+    ----------
+    F
+        Deformation gradient (rr, rz, zr, zz, tt), shape (n_elements, 4, 5).
+    b
+        Elastic left Cauchy-Green tensor (rr, zz, rz, tt), shape (n_elements, 4, 4).
+    strain
+        Deviator of the elastic logarithmic strain 1/2 ln b, shape (n_elements, 4, 4).
+    peeq
+        Equivalent plastic strain, shape (n_elements, 4).
+    dissipated
+        Plastic work so far, summed over the mesh.
+    """
+
+    F: Floats
+    b: Floats
+    strain: Floats
+    peeq: Floats
+    dissipated: float
+
+    @classmethod
+    def virgin(cls, n_elements: int) -> State:
+        """Undeformed, unstressed state."""
+        F = np.zeros((n_elements, 4, 5))
+        F[..., [0, 3, 4]] = 1.0
+        b = np.zeros((n_elements, 4, 4))
+        b[..., [0, 1, 3]] = 1.0
+        return cls(F, b, np.zeros_like(b), np.zeros((n_elements, 4)), 0.0)
+
+    def room(self) -> State:
+        """Arrays for another state of as many points."""
+        F, b, strain, peeq = (np.empty_like(x) for x in self[:4])
+        return State(F, b, strain, peeq, 0.0)
+
+
+@njit(cache=True, inline="always")
+def gradient(x, u, e, q, F):
+    """Write the deformation gradient at point q of element e into `F` (5,)."""
+    f0 = 1.0
+    f1 = 0.0
+    f2 = 0.0
+    f3 = 1.0
+    hoop = 0.0
+    for a in range(4):
+        i = 2 * x.conn[e, a]
+        gr = x.grad[e, q, a, 0]
+        gz = x.grad[e, q, a, 1]
+        f0 += u[i] * gr
+        f1 += u[i] * gz
+        f2 += u[i + 1] * gr
+        f3 += u[i + 1] * gz
+        hoop += u[i] * x.value[q, a]
+    F[0] = f0
+    F[1] = f1
+    F[2] = f2
+    F[3] = f3
+    F[4] = 1.0 + hoop / x.r[e, q]
+
+
+@njit(cache=True)
+def deformation(elements, u):
+    """Deformation gradients at displacement `u`, shape (n_elements, 4, 5)."""
+    F = np.empty((elements.conn.shape[0], 4, 5))
+    for e in range(elements.conn.shape[0]):
+        for q in range(4):
+            gradient(elements, u, e, q, F[e, q])
+    return F
+
+
+def cauchy_stress(elements: Elements, state: State) -> tuple[Floats, Floats]:
+    """Cauchy stress deviator (rr, zz, rz, tt) at the points and pressure of the elements.
+
+    Returns
+    -------
+    tuple
+        Deviator, shape (n_elements, 4, 4), and mean stress, shape (n_elements,) [E'].
+    """
+    J = (state.F[..., 0] * state.F[..., 3] - state.F[..., 1] * state.F[..., 2]) * state.F[..., 4]
+    theta = (J * elements.dV).sum(axis=1) / elements.volume
+    mean = elements.K * np.log(theta) / theta
+    return 2.0 * elements.G[:, None, None] * state.strain / J[..., None], mean
