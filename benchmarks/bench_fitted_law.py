@@ -15,8 +15,7 @@ import numpy as np
 from dentscope.core import Material, Pair
 from dentscope.models import LAWS
 from dentscope.models.base import DomainWarning
-from dentscope.models.closed_form import contact
-from dentscope.models.fitted import contact_numbers
+from dentscope.models.closed_form import Bodies, Coefficients, contact, of_pair
 
 COUNT = 1_000_000
 PAIR = Pair(Material(E=71.7e9, nu=0.33, Sy=300e6), Material(E=200e9, nu=0.3, Sy=360e6), 1e-3)
@@ -54,19 +53,18 @@ def random_draws() -> None:
     )
     D = 10.0 ** (-8.0 + 7.0 * u[6])
     law = LAWS["fitted"]
-    bodies = np.stack(
-        [(1 - nu_s**2) / E_s, (1 - nu_f**2) / E_f, nu_s, nu_f, 1 / Sy_s, 1 / Sy_f], axis=1
-    )
-    numbers = contact_numbers(law.coefficients, bodies).T
-    F, a, share, left, phi, exponent = contact(D, *numbers)
-    beyond = contact(D * (1.0 + 1e-6), *numbers)
+    bodies = Bodies((1 - nu_s**2) / E_s, (1 - nu_f**2) / E_f, nu_s, nu_f, 1 / Sy_s, 1 / Sy_f)
+    co = Coefficients(**law.coefficients)
+    numbers = of_pair(bodies, co)
+    F, a, share, left, phi, exponent = contact(D, numbers, co)
+    beyond = contact(D * (1.0 + 1e-6), numbers, co)
     # the slope by a complex step: exact, where a difference would only show round-off
-    slope = np.imag(contact(D + 1e-30j, *numbers)[0]) / 1e-30
+    slope = np.imag(contact(D + 1e-30j, numbers, co).F) / 1e-30
     bad = {
         "not finite": ~np.isfinite(F + a + share + left + phi + exponent + slope),
         "F not above zero": ~(F > 0.0),
         "F falls": ~(slope > 0.0),
-        "a falls": ~(beyond[1] > a),
+        "a falls": ~(beyond.a > a),
         "share outside 0 to 1": ~((share >= 0.0) & (share <= 1.0)),
         "permanent part outside 0 to 1": ~((left > -1e-12) & (left < 1.0)),
         "exponent outside 1 to 2": ~((exponent > 1.0) & (exponent < 2.0)),
@@ -79,7 +77,7 @@ def random_draws() -> None:
     onset = (
         (np.pi / 2 * 1.295) ** 2
         * np.exp(2 * 0.736 * np.minimum(nu_s, nu_f))
-        * (weak * (bodies[:, 0] + bodies[:, 1])) ** 2
+        * (weak * (bodies.k_s + bodies.k_f)) ** 2
     )
     low &= D < 0.1 * onset
     off = np.abs(F[low] / (4.0 / 3.0 * D[low] ** 1.5) - 1.0)

@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from .fit import Errors, Fit, fit_tables
+from .fit import Fit, fit_tables
+from .prediction import Errors
 from .table import ResidualTable, Table, read_tables
 
 __all__ = [

@@ -9,7 +9,7 @@ from typing import Any
 import numpy as np
 import numpy.typing as npt
 
-from .fit import Prediction
+from .prediction import Prediction
 from .select import Choice
 from .table import ResidualTable, Table
 

@@ -8,10 +8,9 @@ from pathlib import Path
 from typing import Any
 
 import numpy as np
-import numpy.typing as npt
 
-from ..core.errors import InputError
-from .fit import Errors, Fit, Prediction, errors_of
+from .fit import Fit
+from .prediction import Errors, Prediction, errors_of
 from .ripple import ripple_of, without_ripple
 from .select import Choice
 from .table import ResidualTable, Table
@@ -51,6 +50,23 @@ def coefficient_rows(content: dict[str, Any]) -> list[list[str]]:
     return rows
 
 
+def domain_rows(content: dict[str, Any], title: str) -> list[list[str]]:
+    """Rows of the table of the domain, its head with `title` first."""
+    limits = content["domain"]["limits"].items()
+    return [[title, "from", "to"], *([key, f"{a:.4g}", f"{b:.4g}"] for key, (a, b) in limits)]
+
+
+def choice_rows(choices: Sequence[Choice]) -> list[list[str]]:
+    """Rows of the table of simpler forms, its head first."""
+    head = ["form", "coefficients", "rms fitted", "rms left out", "F, a [%], delta_s* left out"]
+    rows = []
+    for c in choices:
+        F, a, share = (mean for mean, _ in (c.errors.force, c.errors.radius, c.errors.share))
+        means = f"{100 * F:.2f}, {100 * a:.2f}, {share:.4f}"
+        rows.append([c.name, str(c.free), f"{c.fitted:.3f}", f"{c.left_out:.3f}", means])
+    return [head, *rows]
+
+
 def markdown(rows: Sequence[Sequence[str]]) -> str:
     """Return rows, the head first, as a markdown table."""
     head, *rest = rows
@@ -61,36 +77,23 @@ def markdown(rows: Sequence[Sequence[str]]) -> str:
 def worst_rows(p: Prediction, table: Table, *, most: int = 12) -> list[list[str]]:
     """Rows of the table of the combinations with the largest errors of F, its head first."""
     seen = (table.w >= 1.0) & table.edge_seen
-    force = np.abs(p.force / table.force - 1.0)
-    radius = np.abs(p.radius / table.radius - 1.0)
+    force = 100.0 * np.abs(p.force / table.force - 1.0)
+    radius = 100.0 * np.abs(p.radius / table.radius - 1.0)
     share = np.abs(p.share - table.share)
     lines = []
     for number, (name, pair) in enumerate(zip(table.names, table.pairs, strict=True)):
         m = seen & (table.case == number)
-        if m.any():
-            lines.append(
-                (
-                    float(force[m].mean()),
-                    [
-                        name,
-                        f"{pair.Sy_ratio:.3g}",
-                        f"{pair.E_reduced / pair.Sy_min:.0f}",
-                        f"{pair.elastic_share:.2f}",
-                        *(
-                            f"{100 * x[m].mean():.2f}, {100 * x[m].max():.2f}"
-                            for x in (force, radius)
-                        ),
-                        f"{share[m].mean():.3f}, {share[m].max():.3f}",
-                    ],
-                )
-            )
+        if not m.any():
+            continue
+        who = [name, f"{pair.Sy_ratio:.3g}", f"{pair.E_reduced / pair.Sy_min:.0f}"]
+        sizes = [
+            f"{error[m].mean():.{digits}f}, {error[m].max():.{digits}f}"
+            for error, digits in ((force, 2), (radius, 2), (share, 3))
+        ]
+        lines.append((float(force[m].mean()), [*who, f"{pair.elastic_share:.2f}", *sizes]))
     lines.sort(key=lambda line: -line[0])
     head = ["combination", "Sy*", "E'/Sy_min", "x_s", "F [%]", "a [%]", "delta_s*"]
     return [head, *(cells for _, cells in lines[:most])]
-
-
-def _pair(error: npt.NDArray[np.float64], pattern: str) -> str:
-    return pattern % (error.mean(), error.max())
 
 
 def write_report(
@@ -119,65 +122,39 @@ def write_report(
     thesis
         Section on the thesis's own forms, markdown.
     """
-    from .pictures import draw_choice, draw_curves, draw_errors, draw_maps
+    from . import pictures
 
     folder.mkdir(parents=True, exist_ok=True)
     shown = fit.predicted
     assert shown is not None
-    draw_errors(shown, table, turns, folder / "errors.png")
-    draw_maps(shown, table, folder / "maps.png")
-    draw_curves(shown, table, folder / "curves.png")
-    limits = content["domain"]["limits"].items()
+    pictures.draw_errors(shown, table, turns, folder / "errors.png")
+    pictures.draw_maps(shown, table, folder / "maps.png")
+    pictures.draw_curves(shown, table, folder / "curves.png")
     columns = [
         ("fitted", fit.errors),
         ("left out", fit.held_out),
         ("left out, ripple smoothed", errors_of(shown, without_ripple(table), turns)),
         ("validation", validation),
     ]
-    ripple_F, ripple_a = (100.0 * float(np.median(r)) for r in ripple_of(table))
     parts = [
         "# The fitted law\n",
-        f"{len(table.pairs)} combinations, {len(table.D)} depths, {len(turns.D)} unloadings; "
-        f"{len(fit.values)} coefficients. Left out: each combination predicted by a fit that did "
-        "not see it.\n",
-        "Accuracy of the data: "
-        + "; ".join(", ".join(c["accuracy"]) for c in content["provenance"]["campaigns"])
-        + ". F and a of a mesh ripple with the period of a surface element; no smooth law can "
-        f"follow: here {ripple_F:.2g} % and {ripple_a:.2g} % (median over the cases of the rms "
-        "deviation from a local cubic).\n",
+        _about_data(fit, content, table, turns),
         "## Errors\n",
         markdown(error_rows(columns)),
         "![errors](errors.png)\n\n![maps](maps.png)\n\n![curves](curves.png)\n",
         "## Combinations that fit worst\n\nMean and largest.\n",
         markdown(worst_rows(shown, table)),
         "## Domain\n",
-        markdown(
-            [
-                ["quantity", "from", "to"],
-                *([k, f"{a:.4g}", f"{b:.4g}"] for k, (a, b) in limits),
-            ]
-        ),
+        markdown(domain_rows(content, "quantity")),
         "## Coefficients\n",
         markdown(coefficient_rows(content)),
     ]
     if choices:
-        draw_choice(choices, folder / "choice.png")
-        head = ["form", "coefficients", "rms fitted", "rms left out", "F, a [%], delta_s* left out"]
-        rows = [
-            [
-                c.name,
-                str(c.free),
-                f"{c.fitted:.3f}",
-                f"{c.left_out:.3f}",
-                f"{100 * c.errors.force[0]:.2f}, {100 * c.errors.radius[0]:.2f}, "
-                f"{c.errors.share[0]:.4f}",
-            ]
-            for c in choices
-        ]
+        pictures.draw_choice(choices, folder / "choice.png")
         parts += [
             "## What each term is worth\n\nRms of the misfit in units of 1 % (F, a) and 0.01 "
             "(shares).\n",
-            markdown([head, *rows]),
+            markdown(choice_rows(choices)),
             "![choice](choice.png)\n",
         ]
     if thesis:
@@ -187,66 +164,14 @@ def write_report(
     return page
 
 
-BEGIN = "<!-- coefficients: begin, written by dentscope fit --publish -->"
-END = "<!-- coefficients: end -->"
-JUDGED_BEGIN = "<!-- judged: begin, written by dentscope fit --judge data/challenge --publish -->"
-JUDGED_END = "<!-- judged: end -->"
-
-
-def published_section(content: dict[str, Any]) -> str:
-    """Return the part of docs/closed-form.md that follows from a coefficients file."""
-    errors = content["errors"]
-    rows = [["beyond first yield", "fitted: mean, largest", "left out: mean, largest"]]
-    for name, (title, scale, _) in MARKS.items():
-        cells = [
-            ", ".join(f"{scale * x:.3g}" for x in errors[kind][name])
-            for kind in ("fitted", "left_out")
-        ]
-        rows.append([title, *cells])
-    levels = sorted({x for c in content["provenance"]["campaigns"] for x in c["accuracy"]})
-    domain = [
-        [key, *(f"{x:.4g}" for x in bounds)] for key, bounds in content["domain"]["limits"].items()
-    ]
-    return "\n".join(
-        [
-            BEGIN,
-            f"{content['domain']['combinations']} combinations; accuracy of the finite elements: "
-            f"{', '.join(levels)}.\n",
-            markdown(coefficient_rows(content)),
-            markdown(rows),
-            markdown([["domain", "from", "to"], *domain]) + END,
-        ]
+def _about_data(fit: Fit, content: dict[str, Any], table: Table, turns: ResidualTable) -> str:
+    """How many rows there are, how fine the finite elements, and how much their curves ripple."""
+    levels = "; ".join(", ".join(c["accuracy"]) for c in content["provenance"]["campaigns"])
+    ripple_F, ripple_a = (100.0 * float(np.median(r)) for r in ripple_of(table))
+    return (
+        f"{len(table.pairs)} combinations, {len(table.D)} depths, {len(turns.D)} unloadings; "
+        f"{len(fit.values)} coefficients. Left out: each combination predicted by a fit that did "
+        f"not see it.\n\nAccuracy of the data: {levels}. F and a of a mesh ripple with the period "
+        f"of a surface element; no smooth law can follow: here {ripple_F:.2g} % and "
+        f"{ripple_a:.2g} % (median over the cases of the rms deviation from a local cubic).\n"
     )
-
-
-def judged_section(errors: Errors, names: Sequence[str], digest: str) -> str:
-    """Return the part of docs/closed-form.md on pairs that no fit has read.
-
-    Parameters
-    ----------
-    errors
-        Of the law in use on them.
-    names
-        Of the cases; those of a challenge carry the beginning of the checksum that drew them.
-    digest
-        Checksum of the coefficients in use.
-    """
-    drawn = sorted({name.split("-")[1] for name in names if name.startswith("challenge-")})
-    about = f"{len(names)} pairs, drawn from {', '.join(drawn) or 'a seed of their own'}"
-    if drawn == [digest[:12]]:
-        about += ": the checksum of the coefficients above"
-    elif drawn:
-        about += f": earlier coefficients; those above have {digest[:12]}"
-    rows = error_rows([("pairs drawn afterwards", errors)])
-    return f"{JUDGED_BEGIN}\n{about}.\n\n{markdown(rows)}{JUDGED_END}"
-
-
-def update_page(page: Path, section: str) -> None:
-    """Put a section into the page in place of the one that has its marks."""
-    begin, end = section.splitlines()[0], section.splitlines()[-1]
-    text = page.read_text(encoding="utf-8")
-    before, found, rest = text.partition(begin)
-    if not found:
-        raise InputError("has no place for this section", source=str(page), allowed=begin)
-    _, _, after = rest.partition(end)
-    page.write_text(before + section + after, encoding="utf-8")

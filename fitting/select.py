@@ -12,55 +12,44 @@ from dataclasses import dataclass
 import numpy as np
 
 from ..models.closed_form import COEFFICIENTS
-from .fit import ENOUGH, Errors, Prediction, fit_tables, given_back, predict
+from .fit import ENOUGH, fit_tables
+from .prediction import Errors, Prediction, given_back, predict
 from .table import ResidualTable, Table
+
+
+def _without(*names: str, **values: float) -> dict[str, float]:
+    """Hold the named coefficients at zero and the others at what is given."""
+    return {**dict.fromkeys(names, 0.0), **values}
+
 
 CANDIDATES: dict[str, Mapping[str, float]] = {
     "full form": {},
-    "radius without finite deformation": {"c_s": 0.0, "c_f": 0.0, "t": 3.0, "y1": 50.0},
-    "radius without its early rise": {"z": 0.0},
-    "radius blind to the elastic body": {"b1": 0.0, "b3": 0.0},
-    "radius blind to Poisson's ratio": {"b4": 0.0},
-    "pressure blind to the elastic body": {"k1": 0.0},
-    "pressure blind to Poisson's ratio": {"k2": 0.0, "m1": 0.0},
-    "full pressure at every radius": {
-        "B_s": 0.0,
-        "B_d": 0.0,
-        "B_f": 0.0,
-        "B_e": 0.0,
-        "B_q": 0.0,
-        "r": 1.4,
-    },
-    "pressure of a sphere falls alike at every radius": {"B_d": 0.0},
-    "flattened sphere without collapse": {"B_e": 0.0},
-    "bodies that yield together hold no more": {"B_q": 0.0},
-    "full pressure reached alike at every radius": {"k3": 0.0},
-    "no finite elastic strain": {"e0": 0.0, "e1": 0.0, "e2": 0.0},
-    "finite elastic strain alike in both bodies": {"e1": 0.0, "e2": 0.0},
-    "radius without finite elastic strain": {"e2": 0.0},
-    "share of constant sharpness": {"g2": 0.0, "g1": 1000.0},
-    "sphere never takes over": {
-        "s0": 1e6,
-        "s1": 1.0,
-        "s2": 1.0,
-        "s3": 0.0,
-        "s4": 0.0,
-        "s5": 0.0,
-        "s6": 0.0,
-        "p0": 3.0,
-        "p1": 0.0,
-        "p2": 0.0,
-        "p3": 0.0,
-        "c_m": 0.0,
-    },
-    "share blind to the contact radius before": {"g4": 0.0},
-    "taking over of unequal bodies blind to E'/S": {"s6": 0.0},
-    "taking over blind to the elastic sphere": {"s5": 0.0, "p3": 0.0},
-    "taking over leaves the radius alone": {"c_m": 0.0},
-    "elastic displacements blind to the elastic body": {"d1": 0.0, "d2": 0.0},
-    "recovery blind to which body flows": {"l3": 0.0, "l4": 100.0},
-    "Hertz's recovery": {"u1": 0.0, "u2": 1.0, "u3": 100.0, "u4": 0.0, "u5": 0.0},
-    "recovery blind to the contact radius": {"u5": 0.0},
+    "radius without finite deformation": _without("c_s", "c_f", t=3.0, y1=50.0),
+    "radius without its early rise": _without("z"),
+    "radius blind to the elastic body": _without("b1", "b3"),
+    "radius blind to Poisson's ratio": _without("b4"),
+    "pressure blind to the elastic body": _without("k1"),
+    "pressure blind to Poisson's ratio": _without("k2", "m1"),
+    "full pressure at every radius": _without("B_s", "B_d", "B_f", "B_e", "B_q", r=1.4),
+    "pressure of a sphere falls alike at every radius": _without("B_d"),
+    "flattened sphere without collapse": _without("B_e"),
+    "bodies that yield together hold no more": _without("B_q"),
+    "full pressure reached alike at every radius": _without("k3"),
+    "no finite elastic strain": _without("e0", "e1", "e2"),
+    "finite elastic strain alike in both bodies": _without("e1", "e2"),
+    "radius without finite elastic strain": _without("e2"),
+    "share of constant sharpness": _without("g2", g1=1000.0),
+    "sphere never takes over": _without(
+        "s3", "s4", "s5", "s6", "p1", "p2", "p3", "c_m", s0=1e6, s1=1.0, s2=1.0, p0=3.0
+    ),
+    "share blind to the contact radius before": _without("g4"),
+    "taking over of unequal bodies blind to E'/S": _without("s6"),
+    "taking over blind to the elastic sphere": _without("s5", "p3"),
+    "taking over leaves the radius alone": _without("c_m"),
+    "elastic displacements blind to the elastic body": _without("d1", "d2"),
+    "recovery blind to which body flows": _without("l3", l4=100.0),
+    "Hertz's recovery": _without("u1", "u4", "u5", u2=1.0, u3=100.0),
+    "recovery blind to the contact radius": _without("u5"),
 }
 """What is compared: name of the candidate and the coefficients that it holds."""
 

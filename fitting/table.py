@@ -14,6 +14,7 @@ from ..campaigns import CaseRecord, read_curves
 from ..core.errors import InputError
 from ..core.material import Pair
 from ..models import critical_depth
+from ..models.closed_form import Bodies
 from ..models.fitted import bodies_of
 
 Floats = npt.NDArray[np.float64]
@@ -62,8 +63,8 @@ class Table:
     names: tuple[str, ...]
 
     @property
-    def bodies(self) -> Floats:
-        """What the closed form needs of each case's bodies, shape (n_cases, 6)."""
+    def bodies(self) -> Bodies:
+        """What the closed form needs of each case's bodies, every field of shape (n_cases,)."""
         return bodies_of(self.pairs)
 
     @property
@@ -105,8 +106,8 @@ class ResidualTable:
     names: tuple[str, ...]
 
     @property
-    def bodies(self) -> Floats:
-        """What the closed form needs of each case's bodies, shape (n_cases, 6)."""
+    def bodies(self) -> Bodies:
+        """What the closed form needs of each case's bodies, every field of shape (n_cases,)."""
         return bodies_of(self.pairs)
 
     def rows(self, mask: npt.NDArray[np.bool_]) -> ResidualTable:
@@ -170,9 +171,8 @@ def is_current(record: CaseRecord) -> bool:
 
 
 def _key(pair: Pair) -> Floats:
-    E = pair.E_reduced
-    k_s, k_f, nu_s, nu_f, q_s, q_f = bodies_of([pair])[0]
-    return np.array([k_s * E, nu_s, nu_f, q_s * E, q_f * E, k_f * E])
+    E, b = pair.E_reduced, bodies_of([pair])
+    return np.ravel([b.k_s * E, b.nu_s, b.nu_f, b.q_s * E, b.q_f * E, b.k_f * E])
 
 
 def _loading(records: list[CaseRecord]) -> Table:

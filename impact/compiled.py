@@ -11,7 +11,7 @@ import math
 import numpy as np
 from numba import njit, types
 
-from ..models.base import VECTOR
+from ..models.kernel import VECTOR
 from .events import (
     event_slope,
     event_values,

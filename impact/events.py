@@ -6,7 +6,7 @@ import math
 
 from numba import boolean, float64, int64, njit, types
 
-from ..models.base import VECTOR
+from ..models.kernel import VECTOR
 from .force import (
     BRANCH,
     LOADING,

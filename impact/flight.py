@@ -7,7 +7,7 @@ import math
 import numpy as np
 from numba import boolean, float64, njit, types
 
-from ..models.base import VECTOR
+from ..models.kernel import VECTOR
 from .layout import (
     DEPTH,
     FLIGHT,

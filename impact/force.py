@@ -12,7 +12,7 @@ from typing import Any
 import numpy as np
 from numba import float64, int64, njit, types
 
-from ..models.base import BRANCH_SIGNATURE, LOADING_SIGNATURE, RESIDUAL_SIGNATURE, VECTOR
+from ..models.kernel import BRANCH_SIGNATURE, LOADING_SIGNATURE, RESIDUAL_SIGNATURE, VECTOR
 
 LOADING = types.FunctionType(LOADING_SIGNATURE)
 BRANCH = types.FunctionType(BRANCH_SIGNATURE)

@@ -8,7 +8,7 @@ import numpy as np
 from numba import float64, int64, njit, types
 from scipy.integrate import DOP853
 
-from ..models.base import VECTOR
+from ..models.kernel import VECTOR
 from .force import (
     BRANCH,
     DAMPING,

@@ -3,16 +3,9 @@
 from __future__ import annotations
 
 from ..core.errors import InputError
-from .base import (
-    ContactLaw,
-    Domain,
-    DomainWarning,
-    Kernels,
-    critical_depth,
-    critical_force,
-    yield_constant,
-)
+from .base import ContactLaw, Domain, DomainWarning, Kernels
 from .fitted import shipped_law
+from .kernel import critical_depth, critical_force, yield_constant
 from .published import PUBLISHED, UNAVAILABLE
 
 try:

@@ -11,7 +11,8 @@ import math
 from dataclasses import dataclass
 
 from ..core.material import Pair
-from .base import ContactLaw, critical_depth
+from .base import ContactLaw
+from .kernel import critical_depth
 
 FLATTENING_BELOW, INDENTATION_ABOVE = 0.6, 1.7
 _ELASTIC = 1.9
@@ -71,8 +72,6 @@ def objection(law: ContactLaw, need: Demand) -> str:
         return f"made for {law.regime}"
     if need.regime == "both bodies" and law.regime != "either":
         return f"made for {law.regime}, while both bodies yield here"
-    if need.w > law.domain.w_max:
-        return f"w = {need.w:.3g} is beyond {law.domain.w_max:g}"
     if need.a_over_R > law.domain.a_over_R_max:
         return f"a/R of about {need.a_over_R:.2g} is beyond {law.domain.a_over_R_max:g}"
     return ""

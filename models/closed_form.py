@@ -2,8 +2,8 @@
 
 The same text is compiled into the law's kernels, runs on numpy arrays in the regression, on complex
 numbers for derivatives, and is translated to C, Fortran and MATLAB (`models.export`). So it keeps
-to assignments of + - * / **, exp, log and sqrt, and to plain numbers in and out; the arguments
-after the inputs are pair numbers (`PAIR_NUMBERS`) and coefficients (`COEFFICIENTS`).
+to assignments of + - * / **, exp, log and sqrt of plain numbers and of the fields of the tuples
+below; a function is called with arguments of the names that it gives them itself.
 
 Symbols: k_i = (1 - nu_i^2)/E_i and q_i = 1/Sy_i of sphere (s) and flat (f), zero for a body that
 does not deform or yield; E' = 1/(k_s + k_f); D = Delta/R. What each line means, and why, is in
@@ -12,7 +12,8 @@ docs/closed-form.md.
 
 from __future__ import annotations
 
-from typing import Any
+from collections import namedtuple
+from typing import Any, NamedTuple
 
 from numba.extending import register_jitable
 from numpy import exp, log, sqrt
@@ -20,135 +21,177 @@ from numpy import exp, log, sqrt
 PI = 3.141592653589793
 TINY = 1e-9  # keeps the strengths' ratio defined when a body does not yield
 
-PAIR_NUMBERS = (
-    "x_s", "W", "P", "g_a", "g_b", "k", "m", "lag", "fin", "even",
-    "j_s", "j_f", "L", "L_C", "a_t", "p",
-)  # fmt: skip
-"""What `of_pair` returns, in this order."""
 
-COEFFICIENTS = (
-    "n", "wy", "c", "b0", "b1", "b2", "b3", "b4", "b5", "z", "c_s", "c_f", "t", "y1", "c_m",
-    "h", "B_s", "B_d", "B_f", "r", "B_e", "B_q", "k0", "k1", "k2", "k3", "m0", "m1", "e0", "e1",
-    "e2", "g0", "g1", "g2", "g3", "g4", "s0", "s1", "s2", "s3", "s4", "s5", "s6",
-    "p0", "p1", "p2", "p3",
-    "f1", "f2", "f3", "l1", "l2", "l3", "l4", "d1", "d2", "u1", "u2", "u3", "u4", "u5",
-)  # fmt: skip
-"""Every coefficient, in the order of the coefficients file."""
+class Bodies(NamedTuple):
+    """Both bodies of a pair; each field a number or an array."""
+
+    k_s: Any
+    k_f: Any
+    nu_s: Any
+    nu_f: Any
+    q_s: Any
+    q_f: Any
 
 
-def of_pair(
-    k_s, k_f, nu_s, nu_f, q_s, q_f,
-    n, wy, b0, b1, b2, b3, b4, h, B_q, k0, k1, k2, m0, m1, e1, s0, s1, s2, s3, s4, s5, s6,
-    p0, p1, p2, p3, d1, d2,
-):  # fmt: skip
-    """Numbers of a pair that do not change with the depth.
+class PairNumbers(NamedTuple):
+    """What the form needs of a pair at every depth; each field a number or an array."""
 
-    Returns
-    -------
-    tuple
-        `PAIR_NUMBERS`: elastic share of the sphere (2.3); W = w/D; P: E' over the pressure of first
-        yield; g_a, g_b: transition of the radius, early and late; k, m: of the pressure; lag: of
-        the elastic displacement; fin: finite strain of the stiffer body; even: rise of the full
-        pressure over a/R where both bodies yield; j_s, j_f: E'/S of each body; L, L_C: logarithms
-        of S_s/S_f and C_s/C_f; a_t, p: radius at which the sphere takes over, and how sharply.
-    """
-    stiff = 1.0 / (k_s + k_f)
-    x_s = k_s * stiff
-    x_f = k_f * stiff
-    C_s = 1.295 * exp(0.736 * nu_s)
-    C_f = 1.295 * exp(0.736 * nu_f)
-    j_s = stiff * q_s + TINY
-    j_f = stiff * q_f + TINY
+    x_s: Any  # elastic share of the sphere (2.3)
+    W: Any  # w/D
+    P: Any  # E' over the pressure of first yield
+    g_a: Any  # transition of the radius, early
+    g_b: Any  # and late
+    k: Any  # transition of the pressure: where
+    m: Any  # and how sharp
+    lag: Any  # of the elastic displacement
+    fin: Any  # finite strain of the stiffer body
+    even: Any  # rise of the full pressure over a/R where both bodies yield
+    j_s: Any  # E'/S of the sphere
+    j_f: Any  # and of the flat
+    L: Any  # logarithm of S_s/S_f
+    L_C: Any  # logarithm of C_s/C_f
+    a_t: Any  # radius over R at which the sphere takes over
+    p: Any  # and how sharply
+
+
+class Spread(NamedTuple):
+    """How far the contact has spread at one depth."""
+
+    y: Any  # depth beyond first yield, in its own units
+    phi: Any  # the sphere's part of the plastic flow
+    a: Any  # contact radius over R
+
+
+class Contact(NamedTuple):
+    """The contact at one depth; each field a number or an array."""
+
+    F: Any  # force over E' R^2
+    a: Any  # contact radius over R
+    share: Any  # delta_s*
+    left: Any  # permanent approach over Delta
+    phi: Any  # the sphere's part of it
+    N: Any  # exponent of the unloading curve
+
+
+Coefficients = namedtuple(
+    "Coefficients",
+    "n wy c b0 b1 b2 b3 b4 b5 z c_s c_f t y1 c_m h B_s B_d B_f r B_e B_q k0 k1 k2 k3 m0 m1 "
+    "e0 e1 e2 g0 g1 g2 g3 g4 s0 s1 s2 s3 s4 s5 s6 p0 p1 p2 p3 f1 f2 f3 l1 l2 l3 l4 d1 d2 "
+    "u1 u2 u3 u4 u5",
+)
+"""What the regression finds, in the order of the coefficients file."""
+
+COEFFICIENTS = Coefficients._fields
+"""Name of every coefficient."""
+
+TUPLES = ("PairNumbers", "Spread", "Contact")
+ELEMENTARY = ("exp", "log", "sqrt")
+"""What the functions below may return, and what they may call beside each other."""
+
+
+def of_pair(bodies: Bodies, co: Any) -> PairNumbers:
+    """Numbers of a pair that do not change with the depth; `co` are the coefficients."""
+    stiff = 1.0 / (bodies.k_s + bodies.k_f)
+    x_s = bodies.k_s * stiff
+    x_f = bodies.k_f * stiff
+    C_s = 1.295 * exp(0.736 * bodies.nu_s)
+    C_f = 1.295 * exp(0.736 * bodies.nu_f)
+    j_s = stiff * bodies.q_s + TINY
+    j_f = stiff * bodies.q_f + TINY
     i_s = j_s / C_s
     i_f = j_f / C_f
     i_sum = i_s + i_f
-    u_s = (i_s / i_sum) ** n
-    u_f = (i_f / i_sum) ** n
+    u_s = (i_s / i_sum) ** co.n
+    u_f = (i_f / i_sum) ** co.n
     v_s = u_s / (u_s + u_f)
     v_f = u_f / (u_s + u_f)
-    X = i_sum * (u_s + u_f) ** (1.0 / n) * 2.0 ** (-4.0 * v_s * v_f / n)
+    X = i_sum * (u_s + u_f) ** (1.0 / co.n) * 2.0 ** (-4.0 * v_s * v_f / co.n)
     W = (2.0 * X / PI) * (2.0 * X / PI)
-    P = 1.5 * X / sqrt(wy)
+    P = 1.5 * X / sqrt(co.wy)
     e = x_s * v_f * v_f * v_f + x_f * v_s * v_s * v_s
-    nu = v_s * nu_s + v_f * nu_f - 0.3
-    g_a = b0 * exp(b1 * e)
-    g_b = g_a * b2 * exp(b3 * e + b4 * nu)
-    k = k0 * exp(k1 * e + k2 * nu)
-    m = m0 * exp(m1 * nu)
-    lag = exp(d1 * e + d2 * e * e * e * e)
-    fin = e1 * (x_s - 0.5)
-    even = B_q * 4.0 * v_s * v_f * x_f
+    nu = v_s * bodies.nu_s + v_f * bodies.nu_f - 0.3
+    g_a = co.b0 * exp(co.b1 * e)
+    g_b = g_a * co.b2 * exp(co.b3 * e + co.b4 * nu)
+    k = co.k0 * exp(co.k1 * e + co.k2 * nu)
+    m = co.m0 * exp(co.m1 * nu)
+    lag = exp(co.d1 * e + co.d2 * e * e * e * e)
+    fin = co.e1 * (x_s - 0.5)
+    even = co.B_q * 4.0 * v_s * v_f * x_f
     L = log(j_f / j_s)
     L_C = log(C_s / C_f)
     plastic = log(1e-4 * W)
-    a_even = s0 * exp(-s3 * plastic - s4 * plastic * plastic + s5 * (x_s - 0.5))
+    a_even = co.s0 * exp(-co.s3 * plastic - co.s4 * plastic * plastic + co.s5 * (x_s - 0.5))
     lead = 0.5 * (L + sqrt(L * L + 9e-4))
-    reach = s1 * exp(s2 * log(lead) + s6 * plastic) / a_even
+    reach = co.s1 * exp(co.s2 * log(lead) + co.s6 * plastic) / a_even
     reach2 = reach * reach
     reach4 = reach2 * reach2
     grow = exp(log(1.0 + reach4 * reach4 * reach4) / 12.0)
     a_t = a_even * grow
-    p = p0 * exp(-p2 * plastic - p3 * (x_s - 0.5) + p1 * log(grow))
-    return x_s, W, P, g_a, g_b, k, m, lag, fin, even, j_s, j_f, L, L_C, a_t, p
+    p = co.p0 * exp(-co.p2 * plastic - co.p3 * (x_s - 0.5) + co.p1 * log(grow))
+    return PairNumbers(x_s, W, P, g_a, g_b, k, m, lag, fin, even, j_s, j_f, L, L_C, a_t, p)
 
 
 @register_jitable
-def plastic_depth(w, wy):
+def plastic_depth(w, co):
     """Depth beyond first yield in its own units: none before it, w/wy - 1 far beyond."""
-    z2 = w / wy * (w / wy)
+    z2 = w / co.wy * (w / co.wy)
     z4 = z2 * z2
     return sqrt(sqrt(sqrt(1.0 + z4 * z4))) - 1.0
 
 
 @register_jitable
-def small_radius_at(D, y, g_a, g_b, c, b5):
+def small_radius_at(D, y, pair, co):
     """a/R without finite deformation."""
-    g = g_b + (g_a - g_b) / (1.0 + y / b5)
-    return sqrt(D / (1.0 / c + (1.0 - 1.0 / c) / sqrt(1.0 + g * y)))
+    g = pair.g_b + (pair.g_a - pair.g_b) / (1.0 + y / co.b5)
+    return sqrt(D / (1.0 / co.c + (1.0 - 1.0 / co.c) / sqrt(1.0 + g * y)))
 
 
 @register_jitable
-def first_part_at(w, small, x_s, L, L_C, g0, g1, g2, g3, g4):
+def first_part_at(w, small, pair, co):
     """Sphere's part of what is not elastic, before it takes the flow over."""
-    lead = L + L_C / (1.0 + w / g3) - g4 * small * sqrt(small)
-    odds = g0 * (1.0 + w / g1) ** g2 * lead
+    lead = pair.L + pair.L_C / (1.0 + w / co.g3) - co.g4 * small * sqrt(small)
+    odds = co.g0 * (1.0 + w / co.g1) ** co.g2 * lead
     bounded = odds / sqrt(1.0 + 4e-6 * odds * odds)
-    return x_s / (x_s + (1.0 - x_s) * exp(bounded))
+    return pair.x_s / (pair.x_s + (1.0 - pair.x_s) * exp(bounded))
 
 
 @register_jitable
-def still_flat_at(small, a_t, p):
+def still_flat_at(small, pair):
     """Part of the flat's flow that goes on: 1 until the sphere takes over at a_t."""
     # (1 + (small/a_t)^(2 p))^(-1/p), so written that a sharp p overflows nothing
-    power = 2.0 * p * log(small / a_t + 1e-300)
+    power = 2.0 * pair.p * log(small / pair.a_t + 1e-300)
     size = sqrt(power * power + 1e-280)
-    return exp(-(0.5 * (power + size) + log(1.0 + exp(-size))) / p)
+    return exp(-(0.5 * (power + size) + log(1.0 + exp(-size))) / pair.p)
 
 
 @register_jitable
-def radius_at(D, small, y, first, still, fin, z, c_s, c_f, t, y1, c_m, e2):
+def radius_at(D, small, y, first, still, pair, co):
     """a/R from that without finite deformation."""
-    zeta = c_f + (c_s - c_f) * (1.0 - (1.0 - first) * still)
-    small_power = small**t
-    large = zeta * small_power / (1.0 + 2.0 * small_power) * y / (y + y1)
-    crater = c_m * (1.0 - still) * still * (1.0 - first)
-    return small * exp(0.5 * (e2 * fin * D + large + (z * small - crater) * y / (y + 2.0)))
+    zeta = co.c_f + (co.c_s - co.c_f) * (1.0 - (1.0 - first) * still)
+    small_power = small**co.t
+    large = zeta * small_power / (1.0 + 2.0 * small_power) * y / (y + co.y1)
+    crater = co.c_m * (1.0 - still) * still * (1.0 - first)
+    return small * exp(
+        0.5 * (co.e2 * pair.fin * D + large + (co.z * small - crater) * y / (y + 2.0))
+    )
 
 
 @register_jitable
-def force_at(D, a, P, k, m, fin, even, j_s, j_f, h, B_s, B_d, B_f, r, B_e, k3, e0):
+def force_at(D, a, pair, co):
     """F/(E' R^2) from the contact radius."""
-    elastic = 4.0 / (3.0 * PI) * a * exp(e0 * sqrt(D) + fin * D)
-    load2 = P * elastic * (P * elastic)
+    elastic = 4.0 / (3.0 * PI) * a * exp(co.e0 * sqrt(D) + pair.fin * D)
+    load2 = pair.P * elastic * (pair.P * elastic)
     load4 = load2 * load2
     q = sqrt(sqrt(sqrt(1.0 + load4 * load4))) - 1.0
-    a_power = a**r
+    a_power = a**co.r
     a2 = a * a
     a4 = a2 * a2
     # bounded: beyond a/R = 0.5, where no data reach, the force must not collapse without end
     collapse = a4 * a4 / (1.0 + 50.0 * a4 * a4)
-    J_s = j_s * exp(B_s * a_power / (1.0 + B_d * a_power) + B_e * collapse - even * a)
-    J_f = j_f * exp(B_f * a_power - even * a)
+    J_s = pair.j_s * exp(
+        co.B_s * a_power / (1.0 + co.B_d * a_power) + co.B_e * collapse - pair.even * a
+    )
+    J_f = pair.j_f * exp(co.B_f * a_power - pair.even * a)
     J = J_s + J_f
     weight_s2 = J_s * J_s / (J * J)
     weight_s4 = weight_s2 * weight_s2
@@ -161,64 +204,53 @@ def force_at(D, a, P, k, m, fin, even, j_s, j_f, h, B_s, B_d, B_f, r, B_e, k3, e
     both = weight_s16 * weight_s16 + weight_f16 * weight_f16
     equal = weight_s16 * weight_f16 / both * (weight_s16 * weight_f16 / both)
     weak = J * sqrt(sqrt(sqrt(sqrt(sqrt(both))))) * (1.0 - 0.08664339756999316 * equal)
-    q_power = (q + 1e-30) ** m
-    soft = 1.0 + weak / (P * h) * q * q_power / (q_power + k * exp(-k3 * a))
+    q_power = (q + 1e-30) ** pair.m
+    soft = 1.0 + weak / (pair.P * co.h) * q * q_power / (q_power + pair.k * exp(-co.k3 * a))
     return PI * a * a * elastic / soft
 
 
 @register_jitable
-def share_at(D, y, F, a, phi, x_s, lag, f1, f2, f3):
+def share_at(D, y, F, a, phi, pair, co):
     """delta_s*, the sphere's share of the approach."""
-    f_power = (y + 1e-30) ** f2
-    recoverable = (0.75 - f1 * f_power / (f_power + f3 * lag)) * F / (a * D)
-    return phi + recoverable * (x_s - phi)
+    f_power = (y + 1e-30) ** co.f2
+    recoverable = (0.75 - co.f1 * f_power / (f_power + co.f3 * pair.lag)) * F / (a * D)
+    return phi + recoverable * (pair.x_s - phi)
 
 
 @register_jitable
-def permanent_at(D, y, F, a, phi, lag, fin, e0, e2, f3, l1, l2, l3, l4):
+def permanent_at(D, y, F, a, phi, pair, co):
     """Permanent approach over the largest one."""
-    l_power = (y + 1e-30) ** l2
-    recoverable = (0.75 - l1 * l_power / (l_power + f3 * lag)) * F / (a * D)
-    recoverable = recoverable * exp(l3 * (1.0 - phi) * y / (y + l4))
-    return 1.0 - recoverable * exp(-e0 * sqrt(D) - (1.0 + e2) * fin * D)
+    l_power = (y + 1e-30) ** co.l2
+    recoverable = (0.75 - co.l1 * l_power / (l_power + co.f3 * pair.lag)) * F / (a * D)
+    recoverable = recoverable * exp(co.l3 * (1.0 - phi) * y / (y + co.l4))
+    return 1.0 - recoverable * exp(-co.e0 * sqrt(D) - (1.0 + co.e2) * pair.fin * D)
 
 
 @register_jitable
-def exponent_at(y, a, phi, u1, u2, u3, u4, u5):
+def exponent_at(y, a, phi, co):
     """Exponent N of the unloading curve F/F_m = ((Delta - Delta_r)/(Delta_m - Delta_r))^N."""
-    return 1.5 - y / (y + u2) * (u1 / (1.0 + y / u3) + u4) + u5 * (1.0 - phi) * a * a
+    return 1.5 - y / (y + co.u2) * (co.u1 / (1.0 + y / co.u3) + co.u4) + co.u5 * (1.0 - phi) * a * a
 
 
 @register_jitable
-def contact(
-    D,
-    x_s, W, P, g_a, g_b, k, m, lag, fin, even, j_s, j_f, L, L_C, a_t, p,
-    wy, c, b5, z, c_s, c_f, t, y1, c_m, h, B_s, B_d, B_f, r, B_e, k3, e0, e2, g0, g1, g2, g3, g4,
-    f1, f2, f3, l1, l2, l3, l4, u1, u2, u3, u4, u5,
-):  # fmt: skip
-    """Everything at a depth D = Delta/R of first loading.
-
-    Returns
-    -------
-    tuple
-        F/(E' R^2), a/R, delta_s*, permanent approach over Delta and the sphere's part of it, the
-        exponent of the unloading curve.
-    """
-    w = W * D
-    y = plastic_depth(w, wy)
-    small = small_radius_at(D, y, g_a, g_b, c, b5)
-    first = first_part_at(w, small, x_s, L, L_C, g0, g1, g2, g3, g4)
-    still = still_flat_at(small, a_t, p)
+def spread_at(D, pair, co):
+    """How far the contact has spread: depth beyond yield, the sphere's part of the flow, a/R."""
+    w = pair.W * D
+    y = plastic_depth(w, co)
+    small = small_radius_at(D, y, pair, co)
+    first = first_part_at(w, small, pair, co)
+    still = still_flat_at(small, pair)
     phi = 1.0 - (1.0 - first) * still
-    a = radius_at(D, small, y, first, still, fin, z, c_s, c_f, t, y1, c_m, e2)
-    F = force_at(D, a, P, k, m, fin, even, j_s, j_f, h, B_s, B_d, B_f, r, B_e, k3, e0)
-    share = share_at(D, y, F, a, phi, x_s, lag, f1, f2, f3)
-    left = permanent_at(D, y, F, a, phi, lag, fin, e0, e2, f3, l1, l2, l3, l4)
-    N = exponent_at(y, a, phi, u1, u2, u3, u4, u5)
-    return F, a, share, left, phi, N
+    a = radius_at(D, small, y, first, still, pair, co)
+    return Spread(y, phi, a)
 
 
-def arguments_of(function: Any) -> tuple[str, ...]:
-    """Names of the arguments of one of the functions above."""
-    code = function.__code__
-    return tuple(code.co_varnames[: code.co_argcount])
+@register_jitable
+def contact(D, pair, co):
+    """Everything at a depth D = Delta/R of first loading."""
+    y, phi, a = spread_at(D, pair, co)
+    F = force_at(D, a, pair, co)
+    share = share_at(D, y, F, a, phi, pair, co)
+    left = permanent_at(D, y, F, a, phi, pair, co)
+    N = exponent_at(y, a, phi, co)
+    return Contact(F, a, share, left, phi, N)

@@ -15,43 +15,35 @@ from pathlib import Path
 from typing import Any
 
 import numpy as np
-import numpy.typing as npt
-from numba import float64, njit, types
+from numba import njit, types
 
 from ..core.errors import InputError
 from ..core.material import Material, Pair
-from .base import (
+from .base import ContactLaw, Domain, DomainWarning, Kernels, Standing
+from .closed_form import (
+    COEFFICIENTS,
+    Bodies,
+    Coefficients,
+    Contact,
+    PairNumbers,
+    contact,
+    force_at,
+    of_pair,
+    spread_at,
+)
+from .driver import Depths, Pairs
+from .kernel import (
     N_COMMON,
     VECTOR,
-    ContactLaw,
-    Depths,
-    Domain,
-    DomainWarning,
     E,
-    Kernels,
-    Pairs,
+    Floats,
     R,
-    Standing,
     branch_kernel,
     common_parameters,
     loading_kernel,
+    reader,
     residual_kernel,
 )
-from .closed_form import (
-    COEFFICIENTS,
-    PAIR_NUMBERS,
-    arguments_of,
-    contact,
-    first_part_at,
-    force_at,
-    of_pair,
-    plastic_depth,
-    radius_at,
-    small_radius_at,
-    still_flat_at,
-)
-
-Floats = npt.NDArray[np.float64]
 
 FORMAT = "dentscope-coefficients/8"
 BOUNDS = ("Sy_ratio", "E_reduced_over_Sy_min", "nu", "elastic_share", "Delta_over_R", "a_over_R")
@@ -61,90 +53,52 @@ COEFFICIENTS_FILE = Path(__file__).resolve().parents[1] / "data" / "coefficients
 """What the law in use reads; `dentscope fit --publish` writes it."""
 
 _FINITE = 0.01  # Delta/R at which the law says how far finite elastic strain takes it from Hertz
-_OF_BODIES = ("k_s", "k_f", "nu_s", "nu_f", "q_s", "q_f")
-_OF_PAIR = arguments_of(of_pair)[len(_OF_BODIES) :]
-_CONTACT = arguments_of(contact)[1:]
 
-_ALL = types.UniTuple(float64, 6)(VECTOR, float64)
-assert len(_CONTACT) == 51
-_AT = {name: N_COMMON + k for k, name in enumerate(_CONTACT)}
-# places in the parameter vector, for the kernels that need only some of the numbers
-_X_S, _W, _P, _G_A, _G_B, _K, _M, _FIN, _EVEN = (
-    _AT[k] for k in ("x_s", "W", "P", "g_a", "g_b", "k", "m", "fin", "even")
-)
-_J_S, _J_F, _L, _L_C, _A_T, _POWER = (_AT[k] for k in ("j_s", "j_f", "L", "L_C", "a_t", "p"))
-_WY, _C, _B5, _Z, _C_S, _C_F, _T, _Y1, _C_M = (
-    _AT[k] for k in ("wy", "c", "b5", "z", "c_s", "c_f", "t", "y1", "c_m")
-)
-_H, _B_S, _B_D, _B_F, _R_POWER, _B_E, _K3, _E0, _E2 = (
-    _AT[k] for k in ("h", "B_s", "B_d", "B_f", "r", "B_e", "k3", "e0", "e2")
-)
-_G0, _G1, _G2, _G3, _G4 = (_AT[k] for k in ("g0", "g1", "g2", "g3", "g4"))
-
-
-@njit(float64(VECTOR, float64), cache=True, _nrt=False)
-def _radius_over_R(par, D):
-    w = par[_W] * D
-    y = plastic_depth(w, par[_WY])
-    small = small_radius_at(D, y, par[_G_A], par[_G_B], par[_C], par[_B5])
-    first = first_part_at(
-        w, small, par[_X_S], par[_L], par[_L_C], par[_G0], par[_G1], par[_G2], par[_G3], par[_G4]
-    )
-    still = still_flat_at(small, par[_A_T], par[_POWER])
-    return radius_at(
-        D, small, y, first, still, par[_FIN], par[_Z], par[_C_S], par[_C_F], par[_T], par[_Y1],
-        par[_C_M], par[_E2],
-    )  # fmt: skip
+# behind the common numbers: the pair's, then the coefficients
+_pair_numbers = reader(PairNumbers, N_COMMON)
+_coefficients = reader(Coefficients, N_COMMON + len(PairNumbers._fields))
+_CONTACT = types.NamedUniTuple(types.float64, len(Contact._fields), Contact)
 
 
 @loading_kernel
 def _loading(par, depth):
-    D = depth / par[R]
-    F = force_at(
-        D, _radius_over_R(par, D), par[_P], par[_K], par[_M], par[_FIN], par[_EVEN], par[_J_S],
-        par[_J_F], par[_H], par[_B_S], par[_B_D], par[_B_F], par[_R_POWER], par[_B_E], par[_K3],
-        par[_E0],
-    )  # fmt: skip
-    return F * par[E] * par[R] * par[R]
+    D, pair, co = depth / par[R], _pair_numbers(par), _coefficients(par)
+    return force_at(D, spread_at(D, pair, co).a, pair, co) * par[E] * par[R] * par[R]
 
 
 @branch_kernel
 def _radius(par, depth, _peak):
-    return par[R] * _radius_over_R(par, depth / par[R])
+    return par[R] * spread_at(depth / par[R], _pair_numbers(par), _coefficients(par)).a
 
 
-@njit(_ALL, cache=True, _nrt=False)
-def everything(par, depth):
-    """All that `closed_form.contact` returns, from a parameter vector."""
-    p = par[N_COMMON:]
-    return contact(
-        depth / par[R],
-        p[0], p[1], p[2], p[3], p[4], p[5], p[6], p[7], p[8], p[9], p[10], p[11],
-        p[12], p[13], p[14], p[15], p[16], p[17], p[18], p[19], p[20], p[21], p[22], p[23],
-        p[24], p[25], p[26], p[27], p[28], p[29], p[30], p[31], p[32], p[33], p[34], p[35],
-        p[36], p[37], p[38], p[39], p[40], p[41], p[42], p[43], p[44], p[45], p[46], p[47],
-        p[48], p[49], p[50],
-    )  # fmt: skip
+@njit(_CONTACT(VECTOR, types.float64), cache=True, _nrt=False)
+def contact_of(par, depth):
+    """The contact at `depth`, from a parameter vector."""
+    return contact(depth / par[R], _pair_numbers(par), _coefficients(par))
+
+
+@njit(_nrt=False, inline="always")
+def _left_by(at, peak):
+    left = max(at.left, 0.0) * peak  # round-off before first yield
+    return at.phi * left, (1.0 - at.phi) * left
 
 
 @residual_kernel
 def _residual(par, peak):
-    _, _, _, left, phi, _ = everything(par, peak)
-    left = max(left, 0.0) * peak  # round-off before first yield
-    return phi * left, (1.0 - phi) * left
+    return _left_by(contact_of(par, peak), peak)
 
 
 @branch_kernel
 def _unloading(par, depth, peak):
-    F, _, _, left, phi, N = everything(par, peak)
-    force = F * par[E] * par[R] * par[R]
-    left = max(left, 0.0) * peak
-    residual = phi * left + (1.0 - phi) * left  # to the last bit what `_residual` answers
+    at = contact_of(par, peak)
+    force = at.F * par[E] * par[R] * par[R]
+    sphere, flat = _left_by(at, peak)
+    residual = sphere + flat
     if depth <= residual or peak <= residual:
         return 0.0
     if depth >= peak:
         return force
-    return force * ((depth - residual) / (peak - residual)) ** N
+    return force * ((depth - residual) / (peak - residual)) ** at.N
 
 
 _KERNELS = Kernels(_loading, _radius, _unloading, _residual)
@@ -171,17 +125,18 @@ class Fitted(ContactLaw):
         return _KERNELS
 
     def parameters(self, pair: Pair) -> Floats:
-        """Common numbers, then what `closed_form.contact` takes behind D, shape (n,)."""
-        own = contact_numbers(self.coefficients, bodies_of([pair]))[0]
-        return np.concatenate([common_parameters(pair), own])
+        """Common numbers, those of the pair, the coefficients; shape (n,)."""
+        co = Coefficients(**self.coefficients)
+        own = np.ravel(of_pair(bodies_of([pair]), co))
+        return np.array([*common_parameters(pair), *own, *co])
 
     def share(self, pair: Pair, depth: Depths) -> Floats:
         """delta_s*, shape (...); the elastic share where the contact is open."""
-        return self._each(pair, depth, 2, pair.elastic_share)
+        return self._each(pair, depth, "share", pair.elastic_share)
 
     def unloading_exponent(self, pair: Pair, peak: Depths) -> Floats:
         """Exponent N of F/F_m = ((Delta - Delta_r)/(Delta_m - Delta_r))^N, shape (...)."""
-        return self._each(pair, peak, 5, 1.5)
+        return self._each(pair, peak, "N", 1.5)
 
     def gradient(self, pair: Pair, depth: Depths) -> dict[str, Floats]:
         """Derivatives of the loading force, exact to round-off (complex steps).
@@ -228,24 +183,21 @@ class Fitted(ContactLaw):
         self, *, depth: Any, E_s: Any, E_f: Any, nu_s: Any, nu_f: Any, Sy_s: Any, Sy_f: Any, R: Any
     ) -> Any:
         k_s, k_f = (1.0 - nu_s**2) / E_s, (1.0 - nu_f**2) / E_f
-        own = [self.coefficients[name] for name in _OF_PAIR]
-        numbers = of_pair(k_s, k_f, nu_s, nu_f, 1.0 / Sy_s, 1.0 / Sy_f, *own)
-        given = {**self.coefficients, **dict(zip(PAIR_NUMBERS, numbers, strict=True))}
-        D = depth / R
-        return contact(D, *(given[name] for name in _CONTACT))[0] * R**2 / (k_s + k_f)
+        co = Coefficients(**self.coefficients)
+        numbers = of_pair(Bodies(k_s, k_f, nu_s, nu_f, 1.0 / Sy_s, 1.0 / Sy_f), co)
+        return contact(depth / R, numbers, co).F * R**2 / (k_s + k_f)
 
-    def _each(self, pair: Pair, depth: Depths, which: int, open_value: float) -> Floats:
+    def _each(self, pair: Pair, depth: Depths, which: str, open_value: float) -> Floats:
         par, d = self.parameters(pair), np.asarray(depth, dtype=float)
         out = np.full(d.shape, open_value)
         closed = d > 0.0
-        out[closed] = [everything(par, x)[which] for x in d[closed]]
+        out[closed] = [getattr(contact_of(par, x), which) for x in d[closed]]
         return out
 
-    def _checked(self, out: Floats, pair: Pairs, depth: Depths) -> Floats:
+    def _warn_outside(self, pair: Pairs, depth: Depths) -> None:
         beyond = self._beyond(pair, depth) if self.limits else ""
         if beyond:
             warnings.warn(f"{self.name}: {beyond}", DomainWarning, stacklevel=3)
-        return out
 
     def _beyond(self, pair: Pairs, depth: Depths) -> str:
         """Name the first bound that is left; empty inside."""
@@ -271,23 +223,17 @@ class Fitted(ContactLaw):
         return ""
 
 
-def bodies_of(pairs: Sequence[Pair]) -> Floats:
-    """k_s, k_f, nu_s, nu_f, q_s, q_f of each pair, shape (n_pairs, 6)."""
-    return np.array([(*_body(p.sphere), *_body(p.flat)) for p in pairs])[:, [0, 3, 1, 4, 2, 5]]
+def bodies_of(pairs: Sequence[Pair]) -> Bodies:
+    """What the closed form needs of the bodies of each pair, every field of shape (n_pairs,)."""
+    columns = np.array([(*_body(p.sphere), *_body(p.flat)) for p in pairs]).T
+    k_s, nu_s, q_s, k_f, nu_f, q_f = columns
+    return Bodies(k_s, k_f, nu_s, nu_f, q_s, q_f)
 
 
 def _body(body: Material) -> tuple[float, float, float]:
     if body.rigid:
         return 0.0, 0.0, 0.0
     return 1.0 / body.plane_strain_modulus, body.nu, 1.0 / body.Sy
-
-
-def contact_numbers(coefficients: Mapping[str, float], bodies: Floats) -> Floats:
-    """What `closed_form.contact` takes behind D for each pair, shape (n_pairs, 47)."""
-    numbers = of_pair(*bodies.T, *(coefficients[name] for name in _OF_PAIR))
-    given = {**coefficients, **dict(zip(PAIR_NUMBERS, numbers, strict=True))}
-    columns = [np.broadcast_to(given[name], len(bodies)) for name in _CONTACT]
-    return np.ascontiguousarray(np.stack(columns, axis=1))
 
 
 def fitted_law(

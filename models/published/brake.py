@@ -18,30 +18,22 @@ import numpy.typing as npt
 from numba import float64, njit
 
 from ...core.errors import InputError
-from ..base import (
-    K_HERTZ,
-    N_COMMON,
-    NU_WEAK,
-    RATIO,
-    Domain,
-    E,
-    Kernels,
-    PublishedLaw,
+from ..base import Domain, Kernels, PublishedLaw, Standing
+from ..kernel import (
+    Common,
     R,
-    S,
-    Standing,
     branch_kernel,
     hertz_force,
     loading_kernel,
     residual_kernel,
 )
 from .johnson import HARDNESS
-from .residual import bounded, brake, elastic_recovery, recover, to_weaker
+from .residual import YIELD, bounded, brake, crater, recover, to_weaker
 
 Floats = npt.NDArray[np.float64]
 
 _FULL_PLASTICITY = 40.0  # E' a/(R S) where the 2012 law is fully plastic
-_DEPTH, _FULL, _SLOPE, _FORCE = range(N_COMMON, N_COMMON + 4)
+_FULL, _SLOPE, _FORCE = range(YIELD + 1, YIELD + 4)
 _MEYER = _FORCE  # n - 2; the later law needs no force at yield
 
 
@@ -65,24 +57,24 @@ def stress_factor(nu: float) -> float:
     return float(-best.fun)
 
 
-def yield_depth(common: Floats) -> float:
+def yield_depth(common: Common) -> float:
     """delta_y = (R/F^2)(pi S/(2 E'))^2 [m] (4.28, corrected)."""
-    slope = math.pi * common[S] / (2.0 * common[E] * stress_factor(float(common[NU_WEAK])))
-    return float(common[R] * slope * slope)
+    slope = math.pi * common.S / (2.0 * common.E * stress_factor(float(common.nu_weak)))
+    return float(common.R * slope * slope)
 
 
-def effective_hardness(common: Floats) -> float:
+def effective_hardness(common: Common) -> float:
     """p_0 of the pair from 2.8 S of each body, (1/H_s + 1/H_f)^-1 [Pa] (4.30, corrected)."""
-    ratio = float(common[RATIO])
+    ratio = float(common.ratio)
     stronger = 1.0 if math.isnan(ratio) else max(ratio, 1.0 / ratio if ratio > 0.0 else math.inf)
-    return float(HARDNESS * common[S] / (1.0 + 1.0 / stronger))
+    return float(HARDNESS * common.S / (1.0 + 1.0 / stronger))
 
 
-def _numbers_2012(common: Floats) -> tuple[float, ...]:
+def _numbers_2012(common: Common) -> tuple[float, ...]:
     depth = yield_depth(common)
-    full = 0.5 * common[R] * (_FULL_PLASTICITY * common[S] / common[E]) ** 2
-    slope = 2.0 * math.pi * common[R] * HARDNESS * common[S]
-    return depth, full, slope, common[K_HERTZ] * depth * math.sqrt(depth)
+    full = 0.5 * common.R * (_FULL_PLASTICITY * common.S / common.E) ** 2
+    slope = 2.0 * math.pi * common.R * HARDNESS * common.S
+    return depth, full, slope, common.k_hertz * depth * math.sqrt(depth)
 
 
 _FIVE = float64(float64, float64, float64, float64, float64)
@@ -98,33 +90,30 @@ def cubic(t, low, high, slope_low, slope_high):
 
 @loading_kernel
 def _loading_2012(par, depth):
-    if depth <= par[_DEPTH]:
+    if depth <= par[YIELD]:
         return hertz_force(par, depth)
     if depth >= par[_FULL]:
         return par[_SLOPE] * depth
-    width = par[_FULL] - par[_DEPTH]
-    t = (depth - par[_DEPTH]) / width
-    steep = 1.5 * par[_FORCE] / par[_DEPTH] * width
+    width = par[_FULL] - par[YIELD]
+    t = (depth - par[YIELD]) / width
+    steep = 1.5 * par[_FORCE] / par[YIELD] * width
     return cubic(t, par[_FORCE], par[_SLOPE] * par[_FULL], steep, par[_SLOPE] * width)
 
 
 @branch_kernel
 def _radius_2012(par, depth, peak):
-    if depth <= par[_DEPTH]:
+    if depth <= par[YIELD]:
         return math.sqrt(par[R] * depth)
     if depth >= par[_FULL]:
         return math.sqrt(2.0 * par[R] * depth)
-    width = par[_FULL] - par[_DEPTH]
-    t = (depth - par[_DEPTH]) / width
-    return math.sqrt(par[R] * cubic(t, par[_DEPTH], 2.0 * par[_FULL], width, 2.0 * width))
+    width = par[_FULL] - par[YIELD]
+    t = (depth - par[YIELD]) / width
+    return math.sqrt(par[R] * cubic(t, par[YIELD], 2.0 * par[_FULL], width, 2.0 * width))
 
 
 @residual_kernel
 def _residual_2012(par, peak):
-    if peak <= par[_DEPTH]:
-        return 0.0, 0.0
-    a = _radius_2012(par, peak, peak)
-    return to_weaker(par, elastic_recovery(par, _loading_2012(par, peak), a, peak) * peak)
+    return crater(_loading_2012, _radius_2012, par, peak)
 
 
 @branch_kernel
@@ -132,30 +121,30 @@ def _unloading_2012(par, depth, peak):
     return recover(_loading_2012, _residual_2012, par, depth, peak)
 
 
-def _numbers_2015(common: Floats, meyer: float, hardness: float | None) -> tuple[float, ...]:
+def _numbers_2015(common: Common, meyer: float, hardness: float | None) -> tuple[float, ...]:
     pressure = effective_hardness(common) if hardness is None else hardness
-    x = 3.0 * math.pi * pressure / (2.0 * common[E])
-    depth, full = yield_depth(common), float(common[R] * x * x)
+    x = 3.0 * math.pi * pressure / (2.0 * common.E)
+    depth, full = yield_depth(common), float(common.R * x * x)
     if full <= depth < math.inf:
-        least = 2.0 * common[E] / (3.0 * math.pi) * math.sqrt(depth / common[R])
+        least = 2.0 * common.E / (3.0 * math.pi) * math.sqrt(depth / common.R)
         raise InputError(
             f"{pressure:g} Pa is below the pressure at first yield",
             key="hardness",
             allowed=f"above {least:.3g} Pa for this pair",
         )
     # p_0 pi a^n / a_p^(n - 2) with a^2 = 2 R delta is p_0 2 pi R delta (delta/delta_p)^(n/2 - 1)
-    return depth, full, 2.0 * math.pi * common[R] * pressure, meyer - 2.0
+    return depth, full, 2.0 * math.pi * common.R * pressure, meyer - 2.0
 
 
 @loading_kernel
 def _fade(par, depth):
     """Argument (delta - delta_y)/(delta_p - delta_y) of both secants."""
-    return (depth - par[_DEPTH]) / (par[_FULL] - par[_DEPTH])
+    return (depth - par[YIELD]) / (par[_FULL] - par[YIELD])
 
 
 @loading_kernel
 def _loading_2015(par, depth):
-    if depth <= par[_DEPTH]:
+    if depth <= par[YIELD]:
         return hertz_force(par, depth)
     x = _fade(par, depth)
     meyer = par[_MEYER]
@@ -168,17 +157,17 @@ def _loading_2015(par, depth):
 
 @branch_kernel
 def _radius_2015(par, depth, peak):
-    if depth <= par[_DEPTH]:
+    if depth <= par[YIELD]:
         return math.sqrt(par[R] * depth)
     return math.sqrt(par[R] * depth * (2.0 - 1.0 / math.cosh(_fade(par, depth))))
 
 
 @residual_kernel
 def _residual_2015(par, peak):
-    if peak <= par[_DEPTH]:
+    if peak <= par[YIELD]:
         return 0.0, 0.0
     left = brake(par, _loading_2015(par, peak), peak)
-    return to_weaker(par, bounded(_loading_2015, par, par[_DEPTH], peak, 1.5, left) * peak)
+    return to_weaker(par, bounded(_loading_2015, par, par[YIELD], peak, 1.5, left) * peak)
 
 
 @branch_kernel

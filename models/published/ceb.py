@@ -9,65 +9,53 @@ from __future__ import annotations
 
 import math
 
-import numpy as np
-import numpy.typing as npt
-
-from ..base import (
-    N_COMMON,
-    NU_WEAK,
-    Domain,
-    E,
-    Kernels,
-    PublishedLaw,
+from ..base import Domain, Kernels, PublishedLaw, Standing
+from ..kernel import (
+    Common,
     R,
-    S,
-    Standing,
     branch_kernel,
     hertz_force,
     loading_kernel,
     residual_kernel,
 )
-from .residual import bounded, elastic_recovery, recover, to_weaker
+from .residual import YIELD, bounded_crater, recover
 
-_DEPTH, _PRESSURE = N_COMMON, N_COMMON + 1
+_PRESSURE = YIELD + 1
 
 
-def yield_pressure(common: npt.NDArray[np.float64]) -> float:
+def yield_pressure(common: Common) -> float:
     """Largest pressure at first yield, K H = (0.454 + 0.41 nu) 2.8 S [Pa] (4.15)."""
-    return float((0.454 + 0.41 * common[NU_WEAK]) * 2.8 * common[S])
+    return float((0.454 + 0.41 * common.nu_weak) * 2.8 * common.S)
 
 
-def yield_depth(common: npt.NDArray[np.float64]) -> float:
+def yield_depth(common: Common) -> float:
     """Critical approach delta_c = (pi K H/(2 E'))^2 R [m] (4.15)."""
-    x = math.pi * yield_pressure(common) / (2.0 * common[E])
-    return float(common[R] * x * x)
+    x = math.pi * yield_pressure(common) / (2.0 * common.E)
+    return float(common.R * x * x)
 
 
-def _numbers(common: npt.NDArray[np.float64]) -> tuple[float, float]:
+def _numbers(common: Common) -> tuple[float, float]:
     return yield_depth(common), yield_pressure(common)
 
 
 @branch_kernel
-def _radius(par, depth, peak):
-    if depth <= par[_DEPTH]:
+def constant_volume_radius(par, depth, peak):
+    """a^2 = R (2 delta - delta_y) beyond a law's own critical approach, R delta before it."""
+    if depth <= par[YIELD]:
         return math.sqrt(par[R] * depth)
-    return math.sqrt(par[R] * (2.0 * depth - par[_DEPTH]))
+    return math.sqrt(par[R] * (2.0 * depth - par[YIELD]))
 
 
 @loading_kernel
 def _loading(par, depth):
-    if depth <= par[_DEPTH]:
+    if depth <= par[YIELD]:
         return hertz_force(par, depth)
-    return math.pi * par[R] * (2.0 * depth - par[_DEPTH]) * par[_PRESSURE]
+    return math.pi * par[R] * (2.0 * depth - par[YIELD]) * par[_PRESSURE]
 
 
 @residual_kernel
 def _residual(par, peak):
-    if peak <= par[_DEPTH]:
-        return 0.0, 0.0
-    a = _radius(par, peak, peak)
-    left = elastic_recovery(par, _loading(par, peak), a, peak)
-    return to_weaker(par, bounded(_loading, par, par[_DEPTH], peak, 1.5, left) * peak)
+    return bounded_crater(_loading, constant_volume_radius, par, peak)
 
 
 @branch_kernel
@@ -86,6 +74,6 @@ CEB = PublishedLaw(
     regime="flattening",
     read="the thesis's words; K = 0.454 + 0.41 nu in tmd-lab/microslip-rough-contact (CEB_MU); the "
     "area after yield is the known consequence of constant volume, read nowhere",
-    own=Kernels(_loading, _radius, _unloading, _residual),
+    own=Kernels(_loading, constant_volume_radius, _unloading, _residual),
     numbers=_numbers,
 )

@@ -19,25 +19,19 @@ from __future__ import annotations
 
 import math
 
-import numpy as np
-import numpy.typing as npt
 from numba import float64, njit, types
 
 from ...core.material import Pair
-from ..base import (
+from ..base import Domain, Kernels, PublishedLaw, Standing
+from ..kernel import (
     E_WEAK,
     N_COMMON,
     ONSET,
-    RATIO,
     SHARE,
     VECTOR,
-    Domain,
-    E,
-    Kernels,
-    PublishedLaw,
+    Common,
     R,
     S,
-    Standing,
     branch_kernel,
     hertz_force,
     loading_kernel,
@@ -121,18 +115,18 @@ def indentation_weight(ratio: float) -> float:
     return math.atan(300.0 * math.log(ratio - _FLATTENING_ONLY)) / math.pi + 0.5
 
 
-def _numbers(common: npt.NDArray[np.float64]) -> tuple[float, ...]:
-    ratio = float(common[RATIO])
+def _numbers(common: Common) -> tuple[float, ...]:
+    ratio = float(common.ratio)
     if math.isnan(ratio):  # nothing yields: the kernels never get beyond Hertz
         return (0.0,) * 10
     held = min(ratio, _RATIO_MAX)
     return (
-        *share_numbers(float(common[E] / common[S]), ratio, BORDER),
+        *share_numbers(float(common.E / common.S), ratio, BORDER),
         math.log(max(held, 1e-300)),
         held**6 if ratio <= BORDER else 0.0,
         indentation_weight(ratio),
-        growth_exponent(common[S], common[E]),
-        float(common[ONSET] / common[R]),
+        growth_exponent(common.S, common.E),
+        float(common.onset / common.R),
         _branch(ratio, BORDER),
     )
 

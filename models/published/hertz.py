@@ -4,16 +4,8 @@ from __future__ import annotations
 
 import math
 
-from ..base import (
-    Domain,
-    Kernels,
-    PublishedLaw,
-    R,
-    Standing,
-    branch_kernel,
-    hertz_force,
-    residual_kernel,
-)
+from ..base import Domain, Kernels, PublishedLaw, Standing
+from ..kernel import R, branch_kernel, hertz_force, residual_kernel
 
 
 @branch_kernel

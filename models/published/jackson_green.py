@@ -10,24 +10,20 @@ All powers of w come from its logarithm, which makes the law cheap.
 from __future__ import annotations
 
 import math
+from dataclasses import replace
 
 import numpy as np
-import numpy.typing as npt
 from numba import float64, njit, types
 
-from ..base import (
+from ..base import Domain, Kernels, PublishedLaw, Standing
+from ..kernel import (
     CRITICAL,
     N_COMMON,
     ONSET,
     VECTOR,
     C,
-    Domain,
-    E,
-    Kernels,
-    PublishedLaw,
+    Common,
     R,
-    S,
-    Standing,
     branch_kernel,
     hertz_force,
     loading_kernel,
@@ -47,10 +43,10 @@ def growth_exponent(strength: float, modulus: float) -> float:
     return 0.14 * math.exp(min(23.0 * strength / modulus, 100.0))
 
 
-def _numbers(common: npt.NDArray[np.float64]) -> tuple[float, float]:
+def _numbers(common: Common) -> tuple[float, float]:
     with np.errstate(divide="ignore"):
-        shallow = float(np.log(common[ONSET] / common[R]))
-    return growth_exponent(common[S], common[E]), shallow
+        shallow = float(np.log(common.onset / common.R))
+    return growth_exponent(common.S, common.E), shallow
 
 
 @branch_kernel
@@ -110,11 +106,6 @@ def _unloading_2007(par, depth, peak):
     return recover(_loading_2007, _residual, par, depth, peak)
 
 
-_BREAKS = (
-    ("force jumps at w = 1.9 for nu = 0.3", 0.5),
-    ("force falls at w = 1.9 for nu = 0.33", 0.17),
-)
-
 _RESIDUAL = (
     "residual depth and recovery of Jackson, Chusoipin and Green in the public code "
     "tmd-lab/microslip-rough-contact; the papers themselves could not be read"
@@ -128,7 +119,10 @@ JACKSON_GREEN = PublishedLaw(
     equations="1.14, 1.16-1.22, 4.9-4.14",
     standing=Standing.SECOND_HAND,
     domain=Domain(a_over_R_max=0.41, note="flattening of the sphere, a/R up to 0.41"),
-    breaks=_BREAKS,
+    breaks=(
+        ("force jumps at w = 1.9 for nu = 0.3", 0.5),
+        ("force falls at w = 1.9 for nu = 0.33", 0.17),
+    ),
     regime="flattening",
     read="C, F_c, B, the exponents 5/12 and 5/9 and the hardness 1.14 in a public code of rough "
     "contact (function JG), the radius in tmd-lab/tmdsimpy; " + _RESIDUAL,
@@ -136,17 +130,14 @@ JACKSON_GREEN = PublishedLaw(
     numbers=_numbers,
 )
 
-JACKSON_GREEN_2007 = PublishedLaw(
+JACKSON_GREEN_2007 = replace(
+    JACKSON_GREEN,
     name="jackson-green-2007",
     title="Jackson and Green with the later hardness",
     source="as jackson-green, with the hardness that the thesis takes for it",
     equations="1.15-1.22, 4.9-4.14",
-    standing=Standing.SECOND_HAND,
     domain=Domain(a_over_R_max=1.0, note="flattening of the sphere; hardness down to S at a/R = 1"),
-    breaks=_BREAKS,
-    regime="flattening",
     read="equations 3, 5, 6, 23, 24 and 27-29 of Ghaednia, Brake, Berryhill and Jackson, J. "
     "Tribol. (2019), restated in tmd-lab/microslip-rough-contact; " + _RESIDUAL,
     own=Kernels(_loading_2007, _radius, _unloading_2007, _residual),
-    numbers=_numbers,
 )

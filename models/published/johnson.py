@@ -9,56 +9,45 @@ from __future__ import annotations
 
 import math
 
-import numpy as np
-import numpy.typing as npt
-
-from ..base import (
-    N_COMMON,
-    Domain,
-    E,
-    Kernels,
-    PublishedLaw,
+from ..base import Domain, Kernels, PublishedLaw, Standing
+from ..kernel import (
+    Common,
     R,
-    S,
-    Standing,
     branch_kernel,
     hertz_force,
     loading_kernel,
     residual_kernel,
 )
-from .residual import elastic_recovery, recover, to_weaker
+from .residual import YIELD, crater, recover
 
 HARDNESS = 2.8
 """Mean pressure in full plasticity over the yield strength."""
 
-_DEPTH, _SLOPE = N_COMMON, N_COMMON + 1
+_SLOPE = YIELD + 1
 
 
-def _numbers(common: npt.NDArray[np.float64]) -> tuple[float, float]:
-    x = 3.0 * math.pi * HARDNESS * common[S] / (2.0 * common[E])
-    return common[R] * x * x, 2.0 * math.pi * common[R] * HARDNESS * common[S]
+def _numbers(common: Common) -> tuple[float, float]:
+    x = 3.0 * math.pi * HARDNESS * common.S / (2.0 * common.E)
+    return common.R * x * x, 2.0 * math.pi * common.R * HARDNESS * common.S
 
 
 @loading_kernel
 def _loading(par, depth):
-    if depth <= par[_DEPTH]:
+    if depth <= par[YIELD]:
         return hertz_force(par, depth)
     return par[_SLOPE] * depth
 
 
 @branch_kernel
 def _radius(par, depth, peak):
-    if depth <= par[_DEPTH]:
+    if depth <= par[YIELD]:
         return math.sqrt(par[R] * depth)
     return math.sqrt(2.0 * par[R] * depth)
 
 
 @residual_kernel
 def _residual(par, peak):
-    if peak <= par[_DEPTH]:
-        return 0.0, 0.0
-    a = _radius(par, peak, peak)
-    return to_weaker(par, elastic_recovery(par, _loading(par, peak), a, peak) * peak)
+    return crater(_loading, _radius, par, peak)
 
 
 @branch_kernel

@@ -9,34 +9,26 @@ from __future__ import annotations
 
 import math
 
-import numpy as np
-import numpy.typing as npt
-
-from ..base import (
-    K_HERTZ,
-    N_COMMON,
-    Domain,
-    Kernels,
-    PublishedLaw,
+from ..base import Domain, Kernels, PublishedLaw, Standing
+from ..kernel import (
+    Common,
     R,
-    S,
-    Standing,
     branch_kernel,
     hertz_force,
     loading_kernel,
     residual_kernel,
 )
 from .ceb import yield_depth
-from .residual import bounded, etsion, to_weaker
+from .residual import YIELD, bounded, etsion, to_weaker
 
 _FIRST, _SECOND, _LAST = 1.0, 6.0, 110.0
-_DEPTH, _FORCE, _FULL = N_COMMON, N_COMMON + 1, N_COMMON + 2
+_FORCE, _FULL = YIELD + 1, YIELD + 2
 
 
-def _numbers(common: npt.NDArray[np.float64]) -> tuple[float, float, float]:
+def _numbers(common: Common) -> tuple[float, float, float]:
     depth = yield_depth(common)
-    full = 2.8 * common[S] * math.pi * common[R] * depth
-    return depth, common[K_HERTZ] * depth * math.sqrt(depth), full
+    full = 2.8 * common.S * math.pi * common.R * depth
+    return depth, common.k_hertz * depth * math.sqrt(depth), full
 
 
 @loading_kernel
@@ -52,7 +44,7 @@ def _area(par, w):
 
 @loading_kernel
 def _loading(par, depth):
-    w = depth / par[_DEPTH]
+    w = depth / par[YIELD]
     if w <= _FIRST:
         return hertz_force(par, depth)
     if w <= _SECOND:
@@ -64,26 +56,26 @@ def _loading(par, depth):
 
 @branch_kernel
 def _radius(par, depth, peak):
-    w = depth / par[_DEPTH]
+    w = depth / par[YIELD]
     if w <= _FIRST:
         return math.sqrt(par[R] * depth)
-    return math.sqrt(par[R] * par[_DEPTH] * _area(par, w))
+    return math.sqrt(par[R] * par[YIELD] * _area(par, w))
 
 
 @loading_kernel
 def _exponent(par, peak):
     """Exponent of the recovery, 1.5 w_m^-0.0331 (4.19, corrected)."""
-    w = peak / par[_DEPTH]
+    w = peak / par[YIELD]
     return 1.5 * math.exp(-0.0331 * math.log(w)) if w > _FIRST else 1.5
 
 
 @residual_kernel
 def _residual(par, peak):
-    if peak <= par[_DEPTH]:
+    if peak <= par[YIELD]:
         return 0.0, 0.0
-    left = etsion(peak / par[_DEPTH])
+    left = etsion(peak / par[YIELD])
     n = _exponent(par, peak)
-    return to_weaker(par, bounded(_loading, par, par[_DEPTH], peak, n, left) * peak)
+    return to_weaker(par, bounded(_loading, par, par[YIELD], peak, n, left) * peak)
 
 
 @branch_kernel

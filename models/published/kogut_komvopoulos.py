@@ -10,20 +10,16 @@ from __future__ import annotations
 
 import math
 
-import numpy as np
-import numpy.typing as npt
 from numba import float64, njit, types
 
-from ..base import (
+from ..base import Domain, Kernels, PublishedLaw, Standing
+from ..kernel import (
     N_COMMON,
     VECTOR,
-    Domain,
+    Common,
     E,
-    Kernels,
-    PublishedLaw,
     R,
     S,
-    Standing,
     branch_kernel,
     loading_kernel,
     residual_kernel,
@@ -40,8 +36,8 @@ SMALLEST = 0.71
 _LIMIT, _PRESSURE, _RATIO, _TOP, _LEFT = range(N_COMMON, N_COMMON + 5)
 
 
-def _numbers(common: npt.NDArray[np.float64]) -> tuple[float, ...]:
-    q = common[E] / common[S]
+def _numbers(common: Common) -> tuple[float, ...]:
+    q = common.E / common.S
     if q == 0.0:  # nothing yields
         return math.inf, 0.0, 0.0, 0.0, 0.0
     log_q = math.log(q)

@@ -13,7 +13,10 @@ import math
 import numpy as np
 from numba import float64, njit, types
 
-from ..base import K_HERTZ, RATIO, VECTOR, E, hertz_force, hertz_recovery
+from ..kernel import K_HERTZ, N_COMMON, RATIO, VECTOR, E, hertz_force, hertz_recovery
+
+YIELD = N_COMMON
+"""Place of a law's own critical approach, first of its numbers; up to it the law is Hertz's."""
 
 _MOST = 0.999  # nothing can be left that was not pressed in
 _NODES, _WEIGHTS = np.polynomial.legendre.leggauss(16)
@@ -42,6 +45,25 @@ def bounded(loading, par, onset, peak, exponent, fraction):
         work += half * _WEIGHTS[k] * depth * loading(par, depth)
     most = (exponent + 1.0) * work / (loading(par, peak) * peak)
     return max(fraction, 1.0 - most)
+
+
+@njit(_nrt=False, inline="always")
+def crater(loading, radius, par, peak):
+    """Residual depths by recovery at constant contact radius; for laws with a `YIELD`."""
+    left = 0.0
+    if peak > par[YIELD]:
+        left = elastic_recovery(par, loading(par, peak), radius(par, peak, peak), peak) * peak
+    return to_weaker(par, left)
+
+
+@njit(_nrt=False, inline="always")
+def bounded_crater(loading, radius, par, peak):
+    """As `crater`, and no cycle gives back more than was spent."""
+    left = 0.0
+    if peak > par[YIELD]:
+        left = elastic_recovery(par, loading(par, peak), radius(par, peak, peak), peak)
+        left = bounded(loading, par, par[YIELD], peak, 1.5, left) * peak
+    return to_weaker(par, left)
 
 
 @njit(float64(float64), cache=True, _nrt=False)

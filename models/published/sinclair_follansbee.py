@@ -9,61 +9,44 @@ from __future__ import annotations
 
 import math
 
-import numpy as np
-import numpy.typing as npt
-
-from ..base import (
-    N_COMMON,
-    Domain,
-    E,
-    Kernels,
-    PublishedLaw,
+from ..base import Domain, Kernels, PublishedLaw, Standing
+from ..kernel import (
+    Common,
     R,
     S,
-    Standing,
     branch_kernel,
     hertz_force,
     loading_kernel,
     residual_kernel,
 )
-from .residual import bounded, elastic_recovery, recover, to_weaker
+from .ceb import constant_volume_radius
+from .residual import YIELD, bounded_crater, recover
 
 _FIRST, _FULL = 1.1, 2.8  # mean pressure at the elastic limit and in full plasticity, over S
 _X_FULL = 50.0  # a E'/(R S) of full plasticity
 _X_FIRST = 0.75 * math.pi * _FIRST  # the same at the elastic limit, by Hertz
 _RATE = (_FULL - _FIRST) / math.log(_X_FULL / _X_FIRST)
 
-_DEPTH, _STRAIN = N_COMMON, N_COMMON + 1
+_STRAIN = YIELD + 1
 
 
-def _numbers(common: npt.NDArray[np.float64]) -> tuple[float, float]:
-    x = _X_FIRST * common[S] / common[E]
-    return common[R] * x * x, common[E] / (common[R] * common[S])
-
-
-@branch_kernel
-def _radius(par, depth, peak):
-    if depth <= par[_DEPTH]:
-        return math.sqrt(par[R] * depth)
-    return math.sqrt(par[R] * (2.0 * depth - par[_DEPTH]))
+def _numbers(common: Common) -> tuple[float, float]:
+    x = _X_FIRST * common.S / common.E
+    return common.R * x * x, common.E / (common.R * common.S)
 
 
 @loading_kernel
 def _loading(par, depth):
-    if depth <= par[_DEPTH]:
+    if depth <= par[YIELD]:
         return hertz_force(par, depth)
-    square = par[R] * (2.0 * depth - par[_DEPTH])
+    square = par[R] * (2.0 * depth - par[YIELD])
     pressure = _FIRST + _RATE * math.log(math.sqrt(square) * par[_STRAIN] / _X_FIRST)
     return math.pi * square * min(pressure, _FULL) * par[S]
 
 
 @residual_kernel
 def _residual(par, peak):
-    if peak <= par[_DEPTH]:
-        return 0.0, 0.0
-    a = _radius(par, peak, peak)
-    left = elastic_recovery(par, _loading(par, peak), a, peak)
-    return to_weaker(par, bounded(_loading, par, par[_DEPTH], peak, 1.5, left) * peak)
+    return bounded_crater(_loading, constant_volume_radius, par, peak)
 
 
 @branch_kernel
@@ -80,6 +63,6 @@ SINCLAIR_FOLLANSBEE = PublishedLaw(
     domain=Domain(note="indentation; the law between the two stated ends is our reading"),
     regime="indentation",
     read="the thesis's words only",
-    own=Kernels(_loading, _radius, _unloading, _residual),
+    own=Kernels(_loading, constant_volume_radius, _unloading, _residual),
     numbers=_numbers,
 )

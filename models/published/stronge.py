@@ -9,39 +9,30 @@ from __future__ import annotations
 
 import math
 
-import numpy as np
-import numpy.typing as npt
-
-from ..base import (
-    K_HERTZ,
-    N_COMMON,
-    Domain,
-    E,
-    Kernels,
-    PublishedLaw,
-    R,
-    S,
-    Standing,
+from ..base import Domain, Kernels, PublishedLaw, Standing
+from ..kernel import (
+    Common,
     branch_kernel,
     hertz_force,
     loading_kernel,
     residual_kernel,
 )
-from .residual import bounded, elastic_recovery, recover, to_weaker
+from .ceb import constant_volume_radius
+from .residual import YIELD, bounded_crater, recover
 
 _FIRST, _FULL = 1.1, 2.8  # mean pressure at the elastic limit and in full plasticity, over S
 _LAST = 84.0
-_DEPTH, _FORCE = N_COMMON, N_COMMON + 1
+_FORCE = YIELD + 1
 
 
-def _numbers(common: npt.NDArray[np.float64]) -> tuple[float, float]:
-    depth = common[R] * (0.75 * math.pi * _FIRST * common[S] / common[E]) ** 2
-    return depth, common[K_HERTZ] * depth * math.sqrt(depth)
+def _numbers(common: Common) -> tuple[float, float]:
+    depth = common.R * (0.75 * math.pi * _FIRST * common.S / common.E) ** 2
+    return depth, common.k_hertz * depth * math.sqrt(depth)
 
 
 @loading_kernel
 def _loading(par, depth):
-    w = depth / par[_DEPTH]
+    w = depth / par[YIELD]
     if w <= 1.0:
         return hertz_force(par, depth)
     spread = 2.0 * w - 1.0
@@ -50,20 +41,9 @@ def _loading(par, depth):
     return par[_FORCE] * spread * (_FULL / _FIRST)
 
 
-@branch_kernel
-def _radius(par, depth, peak):
-    if depth <= par[_DEPTH]:
-        return math.sqrt(par[R] * depth)
-    return math.sqrt(par[R] * (2.0 * depth - par[_DEPTH]))
-
-
 @residual_kernel
 def _residual(par, peak):
-    if peak <= par[_DEPTH]:
-        return 0.0, 0.0
-    a = _radius(par, peak, peak)
-    left = elastic_recovery(par, _loading(par, peak), a, peak)
-    return to_weaker(par, bounded(_loading, par, par[_DEPTH], peak, 1.5, left) * peak)
+    return bounded_crater(_loading, constant_volume_radius, par, peak)
 
 
 @branch_kernel
@@ -80,6 +60,6 @@ STRONGE = PublishedLaw(
     domain=Domain(note="indentation or impact of spheres"),
     breaks=(("force falls at w = 84", 0.23),),
     read="not readable; written from memory, continuous at both borders",
-    own=Kernels(_loading, _radius, _unloading, _residual),
+    own=Kernels(_loading, constant_volume_radius, _unloading, _residual),
     numbers=_numbers,
 )

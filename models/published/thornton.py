@@ -16,42 +16,36 @@ from dataclasses import replace
 import numpy as np
 import numpy.typing as npt
 
-from ..base import (
-    K_HERTZ,
-    N_COMMON,
-    Domain,
-    E,
-    Kernels,
-    PublishedLaw,
+from ..base import Domain, Kernels, PublishedLaw, Standing
+from ..kernel import (
+    Common,
     R,
-    S,
-    Standing,
     branch_kernel,
     hertz_force,
     loading_kernel,
     residual_kernel,
 )
-from .residual import elastic_recovery, recover, to_weaker
+from .residual import YIELD, crater, recover
 
-_DEPTH, _FORCE, _SLOPE = N_COMMON, N_COMMON + 1, N_COMMON + 2
+_FORCE, _SLOPE = YIELD + 1, YIELD + 2
 
 
 def _numbers_at(
     pressure_over_S: float,
-) -> Callable[[npt.NDArray[np.float64]], tuple[float, float, float]]:
-    def numbers(common: npt.NDArray[np.float64]) -> tuple[float, float, float]:
-        p = pressure_over_S * common[S]
-        depth = common[R] * (math.pi * p / (2.0 * common[E])) ** 2
-        return depth, common[K_HERTZ] * depth * math.sqrt(depth), math.pi * common[R] * p
+) -> Callable[[Common], tuple[float, float, float]]:
+    def numbers(common: Common) -> tuple[float, float, float]:
+        p = pressure_over_S * common.S
+        depth = common.R * (math.pi * p / (2.0 * common.E)) ** 2
+        return depth, common.k_hertz * depth * math.sqrt(depth), math.pi * common.R * p
 
     return numbers
 
 
 @loading_kernel
 def _loading(par, depth):
-    if depth <= par[_DEPTH]:
+    if depth <= par[YIELD]:
         return hertz_force(par, depth)
-    return par[_FORCE] + par[_SLOPE] * (depth - par[_DEPTH])
+    return par[_FORCE] + par[_SLOPE] * (depth - par[YIELD])
 
 
 @branch_kernel
@@ -61,10 +55,7 @@ def _radius(par, depth, peak):
 
 @residual_kernel
 def _residual(par, peak):
-    if peak <= par[_DEPTH]:
-        return 0.0, 0.0
-    a = math.sqrt(par[R] * peak)
-    return to_weaker(par, elastic_recovery(par, _loading(par, peak), a, peak) * peak)
+    return crater(_loading, _radius, par, peak)
 
 
 @branch_kernel

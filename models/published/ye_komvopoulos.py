@@ -8,22 +8,8 @@ from __future__ import annotations
 
 import math
 
-import numpy as np
-import numpy.typing as npt
-
-from ..base import (
-    N_COMMON,
-    ONSET,
-    Domain,
-    E,
-    Kernels,
-    PublishedLaw,
-    S,
-    Standing,
-    branch_kernel,
-    loading_kernel,
-    residual_kernel,
-)
+from ..base import Domain, Kernels, PublishedLaw, Standing
+from ..kernel import N_COMMON, ONSET, Common, S, branch_kernel, loading_kernel, residual_kernel
 from .kogut_komvopoulos import ELASTIC, SMALLEST, truncated, truncated_hertz
 from .residual import jackson, recover, to_weaker
 
@@ -32,8 +18,8 @@ _FULL = 2.9  # mean pressure over S from there on
 _Q = N_COMMON
 
 
-def _numbers(common: npt.NDArray[np.float64]) -> tuple[float]:
-    return (float(common[E] / common[S]),)
+def _numbers(common: Common) -> tuple[float]:
+    return (float(common.E / common.S),)
 
 
 @loading_kernel

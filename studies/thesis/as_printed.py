@@ -12,11 +12,7 @@ import numpy as np
 import numpy.typing as npt
 
 from ...core.material import Pair
-from ...models.base import C as C_
-from ...models.base import E as E_
-from ...models.base import R as R_
-from ...models.base import S as S_
-from ...models.base import common_parameters
+from ...models.kernel import common_parameters
 
 Floats = npt.NDArray[np.float64]
 
@@ -78,9 +74,9 @@ def jackson_green_4_10(w: npt.ArrayLike, C: float, hardness: float = 2.84) -> Fl
 def radius_4_11(pair: Pair, depth: float) -> float:
     """A = sqrt(R delta_y (delta/1.9 delta_c)^B); corrected: delta in place of delta_y."""
     par = common_parameters(pair)
-    onset = (math.pi * par[C_] * par[S_] / (2.0 * par[E_])) ** 2 * par[R_]
-    B = 0.14 * math.exp(23.0 * par[S_] / par[E_])
-    return float(math.sqrt(par[R_] * onset * (depth / (1.9 * onset)) ** B))
+    onset = (math.pi * par.C * par.S / (2.0 * par.E)) ** 2 * par.R
+    B = 0.14 * math.exp(23.0 * par.S / par.E)
+    return float(math.sqrt(par.R * onset * (depth / (1.9 * onset)) ** B))
 
 
 def unloading_4_19(x: float, w: float) -> float:
@@ -127,10 +123,10 @@ def ghaednia_force(pair: Pair, depth: npt.ArrayLike) -> Floats:
     from ...models.published.ghaednia import share_of_sphere
 
     par = common_parameters(pair)
-    ratio, q = pair.Sy_ratio, float(par[E_] / par[S_])
-    slope = math.pi * par[C_] * par[S_] / (2.0 * par[E_])
+    ratio, q = pair.Sy_ratio, float(par.E / par.S)
+    slope = math.pi * par.C * par.S / (2.0 * par.E)
     weak = pair.weaker.plane_strain_modulus
-    B = 0.14 * math.exp(23.0 * par[S_] / par[E_])
+    B = 0.14 * math.exp(23.0 * par.S / par.E)
     weight = math.atan(300.0 * math.log(ratio - 0.06)) / math.pi + 0.5 if ratio > 0.06 else 0.0
     out = []
     for d in np.asarray(depth, float).ravel():

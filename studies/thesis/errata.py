@@ -17,7 +17,7 @@ from ...core.material import Material, Pair
 from ...impact.inverse import alpha
 from ...impact.scene import Striker
 from ...models import LAWS, critical_depth, critical_force, yield_constant
-from ...models.base import common_parameters
+from ...models.kernel import common_parameters
 from ...models.published import hardness
 from ...models.published.brake import stress_factor
 from ...models.published.ghaednia import indentation_weight, share_of_sphere
@@ -135,7 +135,7 @@ def _radius() -> str:
     par = common_parameters(pair)
     slope = math.sqrt(critical_depth(pair) / pair.R)
     n = 0.92 * 0.04 * pair.R / critical_depth(pair)
-    B = 0.14 * math.exp(23.0 * par[2] / par[1])
+    B = 0.14 * math.exp(23.0 * par.S / par.E)
     printed = as_printed.radius_2_21(pair.R, slope, n, B, 1.0) / pair.R
     root = slope * math.sqrt(n * (n / 1.9) ** B)
     return (

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 from dentscope.core import InputError, Material, Pair
 from dentscope.models import LAWS, critical_depth, critical_force, law_named
-from dentscope.models.base import CLAUSES, DomainWarning
+from dentscope.models.base import CLAUSES
 from dentscope.models.published import hardness
 
 # the clauses hold beyond the data that a law was fitted to, too
@@ -254,13 +254,3 @@ def test_combination_takes_loading_from_one_and_residual_from_the_other():
     assert float(law.loading(pair, peak)) == float(LAWS["jackson-green"].loading(pair, peak))
     assert law.residual(pair, peak) == LAWS["ghaednia"].residual(pair, peak)
     assert float(law.unloading(pair, peak, peak)) == pytest.approx(float(law.loading(pair, peak)))
-
-
-def test_leaving_the_domain_warns():
-    from dataclasses import replace
-
-    from dentscope.models import Domain
-
-    narrow = replace(LAWS["jackson-green"], domain=Domain(w_max=5.0))
-    with pytest.warns(DomainWarning, match="beyond 5"):
-        narrow.loading(PAIRS["equal"], 0.01 * PAIRS["equal"].R)

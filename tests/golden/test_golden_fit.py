@@ -6,7 +6,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 from dentscope.fitting import fit_tables
-from dentscope.fitting.fit import predict
+from dentscope.fitting.prediction import predict
 from dentscope.models.closed_form import COEFFICIENTS
 
 _TOOLS = runpy.run_path(str(Path(__file__).with_name("regenerate_fit.py")))

@@ -10,17 +10,8 @@ import pytest
 from dentscope.core import Material
 from dentscope.impact import Approach, Friction, Settings, Striker, scene_of, strike
 from dentscope.impact.inverse import alpha, mobility
-from dentscope.models.base import (
-    ContactLaw,
-    Domain,
-    E,
-    Kernels,
-    R,
-    S,
-    branch_kernel,
-    loading_kernel,
-    residual_kernel,
-)
+from dentscope.models.base import ContactLaw, Domain, Kernels
+from dentscope.models.kernel import E, R, S, branch_kernel, loading_kernel, residual_kernel
 from dentscope.models.published.hertz import HERTZ
 from dentscope.models.published.jackson_green import JACKSON_GREEN
 

@@ -8,8 +8,9 @@ import numpy as np
 import pytest
 from dentscope.core import InputError, Material, Pair
 from dentscope.fitting.coefficients import write_coefficients
-from dentscope.fitting.fit import fit_tables, predict
+from dentscope.fitting.fit import fit_tables
 from dentscope.fitting.form import START
+from dentscope.fitting.prediction import predict
 from dentscope.fitting.table import ResidualTable, Table
 from dentscope.models import LAWS, DomainWarning, critical_depth
 from dentscope.models.closed_form import COEFFICIENTS

@@ -8,17 +8,17 @@ from dentscope.campaigns.designs import design_named
 from dentscope.cli import fit as fit_command
 from dentscope.cli.app import run
 from dentscope.fitting import table
-from dentscope.fitting.fit import Errors
-from dentscope.fitting.report import (
+from dentscope.fitting.page import (
     BEGIN,
     END,
     JUDGED_BEGIN,
     JUDGED_END,
     judged_section,
-    markdown,
     published_section,
     update_page,
 )
+from dentscope.fitting.prediction import Errors
+from dentscope.fitting.report import markdown
 from dentscope.fitting.table import read_tables
 from dentscope.models.fitted import read_coefficients
 

@@ -18,7 +18,7 @@ from dentscope.impact.inverse import alpha, infer, mobility
 from dentscope.impact.reference import reference_impact
 from dentscope.impact.scene import Approach, Friction, scene_of
 from dentscope.models import LAWS, critical_depth, critical_force, yield_constant
-from dentscope.models.base import common_parameters, hertz_force, hertz_recovery
+from dentscope.models.kernel import common_parameters, hertz_force, hertz_recovery
 from dentscope.models.published import hardness
 from dentscope.models.published.brake import brake_2015, effective_hardness, stress_factor
 from dentscope.models.published.brake import yield_depth as brake_yield_depth
@@ -118,12 +118,12 @@ def equation_2_3():
 
 
 def hertz_of_depth():
-    close(hertz_force(common_parameters(STEEL), 1e-7), 0.4633374)
+    close(hertz_force(LAWS["hertz"].parameters(STEEL), 1e-7), 0.4633374)
 
 
 def equation_2_5():
     """sqrt(2 R d - d^2) = 4.35890 mm at 1 mm."""
-    close(math.sqrt(truncated(common_parameters(STEEL), 1e-3)[0]), 4.358899e-3)
+    close(math.sqrt(truncated(LAWS["hertz"].parameters(STEEL), 1e-3)[0]), 4.358899e-3)
 
 
 # case 1 of table 2.1, worked along the corrected 2.13-2.43; delta_n on both sides of 408:
@@ -227,7 +227,7 @@ def etsion_recovery():
 def kogut_and_komvopoulos():
     """At 40 um p/Sy = 2.689462 and a'/a = 1.167580; at 1 um of an elastic pair Hertz's force."""
     depth = 4e-5
-    square, strain = truncated(common_parameters(FLAT), depth)
+    square, strain = truncated(LAWS["hertz"].parameters(FLAT), depth)
     close(strain, 0.04476615)
     close(LAWS["kogut-komvopoulos"].loading(FLAT, depth), math.pi * square * 300e6 * 2.303450)
     elastic = Pair(FLAT.sphere, Material(E=200e9, nu=0.3, Sy=3e9), R)
@@ -241,7 +241,7 @@ def equation_4_22():
 
 def equation_4_23():
     """Q = (E'/Sy) delta/r' = 25.9663 at 100 um."""
-    _, strain = truncated(common_parameters(FLAT), 1e-4)
+    _, strain = truncated(LAWS["hertz"].parameters(FLAT), 1e-4)
     close(FLAT.E_reduced / 300e6 * strain, 25.96634)
 
 

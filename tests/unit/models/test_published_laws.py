@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 from dentscope.core import InputError, Material, Pair
 from dentscope.models import LAWS, UNAVAILABLE, critical_depth, law_named
-from dentscope.models.base import common_parameters
+from dentscope.models.kernel import common_parameters
 from dentscope.models.published.brake import brake_2015, effective_hardness, stress_factor
 from dentscope.models.published.thornton import restitution
 

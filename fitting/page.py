@@ -1,0 +1,72 @@
+"""The sections of docs/closed-form.md that a fit writes."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from pathlib import Path
+from typing import Any
+
+from ..core.errors import InputError
+from .prediction import Errors
+from .report import MARKS, coefficient_rows, domain_rows, error_rows, markdown
+
+BEGIN = "<!-- coefficients: begin, written by dentscope fit --publish -->"
+END = "<!-- coefficients: end -->"
+JUDGED_BEGIN = "<!-- judged: begin, written by dentscope fit --judge data/challenge --publish -->"
+JUDGED_END = "<!-- judged: end -->"
+
+
+def published_section(content: dict[str, Any]) -> str:
+    """Return the part of docs/closed-form.md that follows from a coefficients file."""
+    errors = content["errors"]
+    rows = [["beyond first yield", "fitted: mean, largest", "left out: mean, largest"]]
+    for name, (title, scale, _) in MARKS.items():
+        cells = [
+            ", ".join(f"{scale * x:.3g}" for x in errors[kind][name])
+            for kind in ("fitted", "left_out")
+        ]
+        rows.append([title, *cells])
+    levels = sorted({x for c in content["provenance"]["campaigns"] for x in c["accuracy"]})
+    return "\n".join(
+        [
+            BEGIN,
+            f"{content['domain']['combinations']} combinations; accuracy of the finite elements: "
+            f"{', '.join(levels)}.\n",
+            markdown(coefficient_rows(content)),
+            markdown(rows),
+            markdown(domain_rows(content, "domain")) + END,
+        ]
+    )
+
+
+def judged_section(errors: Errors, names: Sequence[str], digest: str) -> str:
+    """Return the part of docs/closed-form.md on pairs that no fit has read.
+
+    Parameters
+    ----------
+    errors
+        Of the law in use on them.
+    names
+        Of the cases; those of a challenge carry the beginning of the checksum that drew them.
+    digest
+        Checksum of the coefficients in use.
+    """
+    drawn = sorted({name.split("-")[1] for name in names if name.startswith("challenge-")})
+    about = f"{len(names)} pairs, drawn from {', '.join(drawn) or 'a seed of their own'}"
+    if drawn == [digest[:12]]:
+        about += ": the checksum of the coefficients above"
+    elif drawn:
+        about += f": earlier coefficients; those above have {digest[:12]}"
+    rows = error_rows([("pairs drawn afterwards", errors)])
+    return f"{JUDGED_BEGIN}\n{about}.\n\n{markdown(rows)}{JUDGED_END}"
+
+
+def update_page(page: Path, section: str) -> None:
+    """Put a section into the page in place of the one that has its marks."""
+    begin, end = section.splitlines()[0], section.splitlines()[-1]
+    text = page.read_text(encoding="utf-8")
+    before, found, rest = text.partition(begin)
+    if not found:
+        raise InputError("has no place for this section", source=str(page), allowed=begin)
+    _, _, after = rest.partition(end)
+    page.write_text(before + section + after, encoding="utf-8")

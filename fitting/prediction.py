@@ -1,0 +1,120 @@
+"""The closed form on the rows of a campaign, and its errors there."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+import numpy.typing as npt
+
+from ..models.closed_form import Coefficients, PairNumbers, contact, of_pair
+from .table import ResidualTable, Table
+
+Floats = npt.NDArray[np.float64]
+
+_DEEP = 5.0  # delta_m/delta_c from which residual depths are judged relatively
+
+
+@dataclass(frozen=True)
+class Errors:
+    """(mean, largest) error beyond first yield.
+
+    Parameters
+    ----------
+    force, radius, hardness
+        Relative.
+    share
+        Absolute.
+    left_sphere, left_flat
+        Residual depth of the body over Delta_m, absolute, all turning points.
+    left
+        Whole residual depth, relative, turning points beyond five critical depths.
+    exponent
+        Of the unloading curve, absolute.
+    given_back
+        Elastic energy of the unloading at equal peak force, relative, turning points beyond five
+        critical depths.
+    """
+
+    force: tuple[float, float]
+    radius: tuple[float, float]
+    hardness: tuple[float, float]
+    share: tuple[float, float]
+    left_sphere: tuple[float, float]
+    left_flat: tuple[float, float]
+    left: tuple[float, float]
+    exponent: tuple[float, float]
+    given_back: tuple[float, float]
+
+
+@dataclass(frozen=True)
+class Prediction:
+    """The closed form on the rows of both tables; arrays as in `Table` and `ResidualTable`."""
+
+    force: Any
+    radius: Any
+    share: Any
+    total: Any
+    sphere: Any
+    exponent: Any
+
+    def mix(self, other: Prediction, rows: Any, turns: Any) -> Prediction:
+        """Return this with the rows and turning points of the masks taken from `other`."""
+        loading = {
+            k: np.where(rows, getattr(other, k), getattr(self, k))
+            for k in ("force", "radius", "share")
+        }
+        unloading = {
+            k: np.where(turns, getattr(other, k), getattr(self, k))
+            for k in ("total", "sphere", "exponent")
+        }
+        return Prediction(**loading, **unloading)
+
+
+def predict(values: Any, table: Table, turns: ResidualTable) -> Prediction:
+    """Evaluate the closed form on every row; complex coefficients give complex rows."""
+    co = Coefficients(*values)
+    of_cases = of_pair(table.bodies, co)
+    loaded, turned = (
+        contact(rows.D, PairNumbers(*(x[rows.case] for x in of_cases)), co)
+        for rows in (table, turns)
+    )
+    return Prediction(
+        loaded.F, loaded.a, loaded.share, turned.left, turned.phi * turned.left, turned.N
+    )
+
+
+def given_back(p: Prediction, turns: ResidualTable) -> Any:
+    """Elastic energy of the unloadings over the data's, at equal peak force; nan where unknown.
+
+    A power law of exponent N gives back F_m (Delta_m - Delta_r)/(N + 1).
+    """
+    recovered = (1.0 - p.total) / (1.0 - turns.total)
+    return recovered * (turns.exponent + 1.0) / (p.exponent + 1.0)
+
+
+def errors_of(p: Prediction, table: Table, turns: ResidualTable) -> Errors:
+    """Mean and largest error beyond first yield."""
+    yielding = table.w >= 1.0
+    seen = yielding & table.edge_seen
+    F, a = p.force / table.force, p.radius / table.radius
+    deep = turns.w >= _DEEP
+    known = np.isfinite(turns.exponent)
+    sphere = p.sphere - turns.sphere_part * turns.total
+    return Errors(
+        force=_size((F - 1.0)[seen]),
+        radius=_size((a - 1.0)[seen]),
+        hardness=_size((F / a**2 - 1.0)[seen]),
+        share=_size((p.share - table.share)[yielding]),
+        left_sphere=_size(sphere),
+        left_flat=_size(p.total - turns.total - sphere),
+        left=_size((p.total / turns.total - 1.0)[deep]),
+        exponent=_size((p.exponent - turns.exponent)[known]),
+        given_back=_size((given_back(p, turns) - 1.0)[known & deep]),
+    )
+
+
+def _size(part: Floats) -> tuple[float, float]:
+    part = np.abs(part)
+    return (float(part.mean()), float(part.max())) if part.size else (0.0, 0.0)

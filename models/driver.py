@@ -1,0 +1,92 @@
+"""The one driver of all laws: it broadcasts over depths and pairs, an open contact being zero."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from typing import NamedTuple
+
+import numpy as np
+import numpy.typing as npt
+from numba import float64, njit, types
+
+from ..core.errors import InputError
+from ..core.material import Pair
+from .kernel import BRANCH_SIGNATURE, LOADING_SIGNATURE, RESIDUAL_SIGNATURE, Floats
+
+Depths = npt.ArrayLike
+Pairs = Pair | Sequence[Pair]
+
+
+@njit(
+    types.void(
+        types.FunctionType(LOADING_SIGNATURE), float64[:, ::1], types.int64[::1], float64[::1],
+        float64[::1],
+    ),
+    cache=True, _nrt=False,
+)  # fmt: skip
+def map_loading(kernel, par, row, depth, out):
+    """Fill `out` with a loading kernel's answers."""
+    for i in range(depth.size):
+        if depth[i] > 0.0:
+            out[i] = kernel(par[row[i]], depth[i])
+
+
+@njit(
+    types.void(
+        types.FunctionType(BRANCH_SIGNATURE), float64[:, ::1], types.int64[::1], float64[::1],
+        float64[::1], float64[::1],
+    ),
+    cache=True, _nrt=False,
+)  # fmt: skip
+def map_branch(kernel, par, row, depth, peak, out):
+    """Fill `out` with the answers of a radius or unloading kernel."""
+    for i in range(depth.size):
+        if depth[i] > 0.0:
+            out[i] = kernel(par[row[i]], depth[i], peak[i])
+
+
+@njit(
+    types.void(
+        types.FunctionType(RESIDUAL_SIGNATURE), float64[:, ::1], types.int64[::1], float64[::1],
+        float64[::1], float64[::1],
+    ),
+    cache=True, _nrt=False,
+)  # fmt: skip
+def map_residual(kernel, par, row, peak, sphere, flat):
+    """Fill both with a residual kernel's answers."""
+    for i in range(peak.size):
+        if peak[i] > 0.0:
+            s, f = kernel(par[row[i]], peak[i])
+            sphere[i] = s
+            flat[i] = f
+
+
+class Rows(NamedTuple):
+    """A call taken apart: what each entry of the answer needs."""
+
+    table: Floats  # vectors of the pairs, shape (n_pairs, n)
+    row: npt.NDArray[np.int64]  # which of them, shape (n,)
+    depth: Floats  # shape (n,) [m]
+    shape: tuple[int, ...]  # of the answer
+
+
+def rows_of(parameters: Callable[[Pair], Floats], pair: Pairs, depth: Depths) -> Rows:
+    """Take a call apart; `parameters` is the law's own method of that name.
+
+    Raises
+    ------
+    InputError
+        A depth is not a number.
+    """
+    d = np.asarray(depth, dtype=float)
+    if not np.all(np.isfinite(d)):
+        raise InputError("a depth is not a number", key="depth", allowed="finite depths in m")
+    if isinstance(pair, Pair):
+        table = parameters(pair)[None, :]
+        row = np.zeros(d.size, dtype=np.int64)
+    else:
+        table = np.stack([parameters(p) for p in pair])
+        if d.ndim == 0 or d.shape[0] != len(table):
+            d = np.broadcast_to(d, (len(table), *d.shape))
+        row = np.repeat(np.arange(len(table)), d.size // len(table))
+    return Rows(np.ascontiguousarray(table), row, np.ascontiguousarray(d.ravel()), d.shape)
