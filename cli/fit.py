@@ -15,8 +15,9 @@ from .campaign_data import PUBLISHED
 if TYPE_CHECKING:
     from rich.console import Console
 
-    from ..fitting import Errors, Fit
+    from ..fitting import Errors, Fit, ResidualTable, Table
     from ..fitting.select import Choice
+    from ..models.fitted import Fitted
 
 _OWN = Path("build/campaign/campaign.h5")
 _ROOT = Path(__file__).resolve().parents[1]
@@ -87,54 +88,54 @@ def _refit(files: list[Path], out: Path, console: Console, *, publish: bool, com
         ("validation", validation),
     ]
     _show(console, error_rows(columns))
-    if publish:
-        _put_in_use(content, console)
-    choices, thesis = _compared(table, turns, content, console) if compare else ((), "")
+    choices, thesis = _compared(content, table, turns, console) if compare else ((), "")
     page = write_report(
         result, content, table, turns, out, validation=validation, choices=choices, thesis=thesis
     )
     console.print(f"coefficients: {out / 'fitted.json'}; report: {page}")
-    if publish and _PAGE.is_file():
-        _show_in_docs(out)
+    if publish:
+        _publish(content, out)
+        console.print("the fitted law now uses these coefficients")
     if not result.outcome.completed:
         console.print(str(result.outcome))
         return EXIT_NOT_CONVERGED
     return 0
 
 
-def _put_in_use(content: dict[str, Any], console: Console) -> None:
-    """Replace the coefficients of the fitted law, and what docs/closed-form.md says of them."""
-    from ..fitting.coefficients import write_coefficients
-    from ..fitting.report import published_section, update_page
-    from ..models.fitted import COEFFICIENTS_FILE
-
-    write_coefficients(content, COEFFICIENTS_FILE)
-    if _PAGE.is_file():
-        update_page(_PAGE, published_section(content))
-    console.print("the fitted law now uses these coefficients")
-
-
 def _compared(
-    table: Any, turns: Any, content: dict[str, Any], console: Console
+    content: dict[str, Any], table: Table, turns: ResidualTable, console: Console
 ) -> tuple[Sequence[Choice], str]:
-    """Simpler forms fitted to the same data; where the workshop is, the thesis's own too."""
+    """Fits of simpler forms, and the report's section on the thesis's own where it can be made."""
     from ..fitting.select import compare_forms
 
-    own = " and the thesis's own" if studies.present() else ""
-    console.print(f"fitting simpler forms{own} ...")
+    own = studies.present()
+    console.print(
+        "fitting simpler forms and the thesis's own ..."
+        if own
+        else f"fitting simpler forms; the thesis's own are left out, they need a checkout: "
+        f"{studies.WHERE}"
+    )
     start = {k: v["value"] for k, v in content["coefficients"].items()}
     choices = compare_forms(table, turns, start=start)
-    if not studies.present():
+    if not own:
         return choices, ""
     from ..studies.thesis.refitted import refit_all, thesis_section
 
     return choices, thesis_section(refit_all(table, turns))
 
 
-def _show_in_docs(out: Path) -> None:
-    """Put the pictures that docs/closed-form.md shows beside it."""
+def _publish(content: dict[str, Any], out: Path) -> None:
+    """Put the coefficients where the law reads them, and tables and pictures into its page."""
     import shutil
 
+    from ..fitting.coefficients import write_coefficients
+    from ..fitting.page import published_section, update_page
+    from ..models.fitted import COEFFICIENTS_FILE
+
+    write_coefficients(content, COEFFICIENTS_FILE)
+    if not _PAGE.is_file():
+        return
+    update_page(_PAGE, published_section(content))
     folder = _PAGE.parent / "pictures"
     folder.mkdir(exist_ok=True)
     for name in ("errors", "maps"):
@@ -163,7 +164,7 @@ def _validation(files: Sequence[Path], result: Fit) -> Errors | None:
 
 def _judged(files: Sequence[Path], values: Any) -> tuple[Errors, tuple[str, ...]]:
     """Errors of the closed form on the cases that no fit reads, and the names of these."""
-    from ..fitting.fit import errors_of, predict
+    from ..fitting.prediction import errors_of, predict
     from ..fitting.table import read_tables
 
     table, turns = read_tables(files, held_out=True)
@@ -182,13 +183,12 @@ def _show(console: Console, rows: Sequence[Sequence[str]]) -> None:
 def _judge(folder: Path, console: Console, *, publish: bool) -> int:
     """Show the errors of the law in use on cases that no fit reads."""
     from ..core.provenance import file_digest
-    from ..fitting.report import error_rows, judged_section, update_page
-    from ..models import law_named
+    from ..fitting.page import judged_section, update_page
+    from ..fitting.report import error_rows
     from ..models.closed_form import COEFFICIENTS
-    from ..models.fitted import COEFFICIENTS_FILE, Fitted
+    from ..models.fitted import COEFFICIENTS_FILE
 
-    law = law_named("fitted")
-    assert isinstance(law, Fitted)
+    law = _law_in_use()
     values = [law.coefficients[name] for name in COEFFICIENTS]
     errors, names = _judged(_files([folder]), values)
     _show(console, error_rows([(f"{len(names)} pairs", errors)]))
@@ -198,12 +198,17 @@ def _judge(folder: Path, console: Console, *, publish: bool) -> int:
 
 
 def _export(folder: Path, console: Console) -> int:
-    from ..models import law_named
     from ..models.export import write_sources
+
+    for path in write_sources(_law_in_use(), folder):
+        console.print(str(path))
+    return 0
+
+
+def _law_in_use() -> Fitted:
+    from ..models import law_named
     from ..models.fitted import Fitted
 
     law = law_named("fitted")
     assert isinstance(law, Fitted)
-    for path in write_sources(law, folder):
-        console.print(str(path))
-    return 0
+    return law

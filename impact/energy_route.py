@@ -21,7 +21,8 @@ import numpy as np
 from numba import float64, int64, njit, types
 
 from ..core.material import Pair
-from ..models.base import VECTOR, ContactLaw
+from ..models.base import ContactLaw
+from ..models.kernel import VECTOR
 from .cells import Array, cell_at, column_in
 from .energy_table import (
     DEEPEST,

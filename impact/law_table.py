@@ -17,16 +17,14 @@ from numba import njit, types
 
 from ..core.errors import InputError
 from ..core.material import Pair
-from ..models.base import (
+from ..models.base import ContactLaw, Kernels
+from ..models.driver import Depths, Pairs
+from ..models.kernel import (
     BRANCH_SIGNATURE,
     LOADING_SIGNATURE,
     N_COMMON,
     RESIDUAL_SIGNATURE,
     VECTOR,
-    ContactLaw,
-    Depths,
-    Kernels,
-    Pairs,
     branch_kernel,
     common_parameters,
     loading_kernel,
@@ -119,10 +117,12 @@ class TabulatedLaw(ContactLaw):
         fill_column(self.table(pair).vector, 0, _FORCE, logs, force)
         np.exp(force, out=force)
         force[~closed] = 0.0
-        return self._checked(force, pair, depth).reshape(d.shape)
+        self.warn_outside(pair, depth)
+        return force.reshape(d.shape)
 
-    def _checked(self, out: Array, pair: Pairs, depth: Depths) -> Array:
-        return self.law._checked(out, pair, depth)
+    def warn_outside(self, pair: Pairs, depth: Depths) -> None:
+        """Warn where the law itself would."""
+        self.law.warn_outside(pair, depth)
 
     def table(self, pair: Pair) -> Cells:
         """Return the pair's table.

@@ -168,7 +168,7 @@ class ContactLaw(ABC):
         par, row, d, shape = rows_of(self.parameters, pair, depth)
         out = np.zeros(d.size)
         map_loading(self.kernels.loading, par, row, d, out)
-        self._warn_outside(pair, depth)
+        self.warn_outside(pair, depth)
         return out.reshape(shape)
 
     def contact_radius(self, pair: Pairs, depth: Depths, peak: Depths | None = None) -> Floats:
@@ -214,8 +214,8 @@ class ContactLaw(ABC):
         map_branch(kernel, par, row, d, np.maximum(p, d), out)
         return out.reshape(shape)
 
-    def _warn_outside(self, pair: Pairs, depth: Depths) -> None:  # noqa: B027
-        """Warn with `DomainWarning`, if the law knows its range in numbers; most do not."""
+    def warn_outside(self, pair: Pairs, depth: Depths) -> None:  # noqa: B027
+        """Warn with `DomainWarning` if the law knows its range in numbers; most do not."""
 
 
 def _no_numbers(common: Common) -> Sequence[float]:

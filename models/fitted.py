@@ -194,7 +194,8 @@ class Fitted(ContactLaw):
         out[closed] = [getattr(contact_of(par, x), which) for x in d[closed]]
         return out
 
-    def _warn_outside(self, pair: Pairs, depth: Depths) -> None:
+    def warn_outside(self, pair: Pairs, depth: Depths) -> None:
+        """Warn with `DomainWarning` that names the first bound that is left."""
         beyond = self._beyond(pair, depth) if self.limits else ""
         if beyond:
             warnings.warn(f"{self.name}: {beyond}", DomainWarning, stacklevel=3)

@@ -60,16 +60,15 @@ def reader(kind: Any, start: int) -> Any:
     count = len(kind._fields)
     read_type = types.NamedUniTuple(types.float64, count, kind)
 
-    @intrinsic
-    def read(typing_context, par):
-        def code(context, builder, signature, arguments):
+    def read(_typing: Any, par: Any) -> Any:
+        def code(context: Any, builder: Any, signature: Any, arguments: Any) -> Any:
             data = context.make_array(signature.args[0])(context, builder, arguments[0]).data
             places = (cgutils.gep_inbounds(builder, data, start + k) for k in range(count))
             return context.make_tuple(builder, read_type, [builder.load(p) for p in places])
 
         return read_type(par), code
 
-    return read
+    return intrinsic(read)
 
 
 def common_parameters(pair: Pair) -> Common:

@@ -12,7 +12,8 @@ from dentscope.impact import Approach, Settings, Striker, scene_of, strike
 from dentscope.impact.cells import cells_of, column_at
 from dentscope.impact.law_table import ERROR, tabulated
 from dentscope.models import LAWS
-from dentscope.models.base import BRANCH_SIGNATURE, DomainWarning, Kernels, PublishedLaw
+from dentscope.models.base import DomainWarning, Kernels, PublishedLaw
+from dentscope.models.kernel import BRANCH_SIGNATURE
 from dentscope.models.published.hertz import HERTZ
 from dentscope.models.published.jackson_green import JACKSON_GREEN
 from numba import njit
