@@ -97,7 +97,7 @@ def probabilities_of(ranking: Ranking, tests: FitTests) -> dict[str, float]:
             logs.append(f.log_evidence + math.log(share / len(fits)))
     total = logsumexp(logs)
     found = {n: float(np.exp(x - total)) for n, x in zip(names, logs, strict=True)}
-    found[OUTSIDE] += sum(found[n] for n in rejected)
+    found[OUTSIDE] = math.fsum([found[OUTSIDE], *(found[n] for n in rejected)])
     found |= dict.fromkeys(rejected, 0.0)
     return dict(sorted(found.items(), key=lambda item: -item[1]))
 
