@@ -57,6 +57,11 @@ class Quantity(InputTable):
         return self.std / abs(self.value) if self.value else 0.0
 
 
+def value_of(quantity: Quantity | None, otherwise: float = math.nan) -> float:
+    """Return the value of a quantity, or `otherwise` where the file leaves it out."""
+    return otherwise if quantity is None else quantity.value
+
+
 def _within(accept: Callable[[float], bool], allowed: str) -> AfterValidator:
     def check(quantity: Quantity) -> Quantity:
         if not accept(quantity.value):
@@ -192,7 +197,7 @@ class StrikerTable(BodyTable):
     @property
     def length(self) -> float:
         """Distance between the centres of a rod's tip spheres [m]; 0 for a sphere."""
-        return self.length_m.value if self.shape == "rod" and self.length_m else 0.0
+        return value_of(self.length_m, 0.0) if self.shape == "rod" else 0.0
 
     @property
     def inertia(self) -> float:

@@ -8,7 +8,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from ..core.rig import Quantity
+from ..core.rig import value_of
 from ..recordings import RecordingSet
 from ..recordings.noise import bins
 from .mechanisms.base import Surroundings
@@ -73,19 +73,19 @@ def conditions_of(recordings: RecordingSet) -> tuple[Condition, ...]:
         lean = np.radians(np.nan_to_num(trials.angle_deg_std[rows], nan=0.0))
         rough = [q.value for q in (target.Ra_m, table.Ra_m) if q is not None]
         temperature = trials.temperature_K[first]
-        ambient = _value(air.temperature_K, 293.0)
+        ambient = value_of(air.temperature_K, 293.0)
         around = Surroundings(
-            thickness=_value(target.thickness_m),
-            support_mass=_value(target.support_mass_kg),
-            support_stiffness=_value(target.support_stiffness_N_m),
+            thickness=value_of(target.thickness_m),
+            support_mass=value_of(target.support_mass_kg),
+            support_stiffness=value_of(target.support_stiffness_N_m),
             roughness=math.hypot(*rough) if rough else math.nan,
-            viscosity=_value(air.viscosity_Pa_s),
+            viscosity=value_of(air.viscosity_Pa_s),
             fluid=air.fluid,
-            heat_capacity=_value(target.cp_J_kgK),
-            melting=_value(target.melting_K),
+            heat_capacity=value_of(target.cp_J_kgK),
+            melting=value_of(target.melting_K),
             temperature=ambient if math.isnan(temperature) else float(temperature),
             ambient=ambient,
-            layer_thickness=_value(target.layer_thickness_m),
+            layer_thickness=value_of(target.layer_thickness_m),
             from_height=not timed[first],
             height_share=1.0 if timed[first] else float(heights[first] / highest),
         )
@@ -130,7 +130,3 @@ def _nominal(recordings: RecordingSet) -> tuple[Ints, Ints]:
         if spot:
             latest[spot] = int(numbers[i])
     return numbers, before
-
-
-def _value(quantity: Quantity | None, default: float = math.nan) -> float:
-    return default if quantity is None else quantity.value

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Mapping
 
 from ..core.material import Pair
-from ..core.rig import Rig, StrikerTable
+from ..core.rig import Rig, StrikerTable, value_of
 from .scene import Striker
 
 
@@ -44,13 +44,12 @@ def striker_of(
     """Return the rigid body of a striker; a mass among `values` scales the inertia with it."""
     values, stated = values or {}, table.mass_kg.value
     mass = values.get(f"strikers.{name}.mass_kg")
-    flat = table.tip_flat_radius_m
     return Striker(
         mass=stated if mass is None else mass,
         tip_radius=values.get(f"strikers.{name}.tip_radius_m", table.tip_radius_m.value),
         length=table.length,
         radius=table.body_radius,
         inertia=table.inertia if mass is None else table.inertia * mass / stated,
-        tip_flat_radius=flat.value if flat else 0.0,
+        tip_flat_radius=value_of(table.tip_flat_radius_m, 0.0),
         name=name,
     )

@@ -10,7 +10,7 @@ from typing import Literal
 from pydantic import Field
 
 from ..core.errors import InputError, InputErrors
-from ..core.rig import Positive, Quantity, Rig
+from ..core.rig import Positive, Quantity, Rig, value_of
 from ..core.toml_input import InputTable, parse_model, read_toml
 from ..models.base import ContactLaw
 from .beam import rod_modes
@@ -120,10 +120,9 @@ def _scene(found: SetupFile, law: ContactLaw, *, source: str, speed: float | Non
     )
     support, radiation = Support(), 0.0
     if impact.support == "sprung" and target.support_mass_kg is not None:
-        stiffness = target.support_stiffness_N_m
         support = sprung_support(
             target.support_mass_kg.value,
-            stiffness.value if stiffness else 0.0,
+            value_of(target.support_stiffness_N_m, 0.0),
             damping=impact.support_damping_N_s_m,
         )
     elif impact.support == "plate" and target.thickness_m is not None:
@@ -140,10 +139,10 @@ def _scene(found: SetupFile, law: ContactLaw, *, source: str, speed: float | Non
         raise InputError(
             error.message, source=source, key="impact.modes", allowed=error.allowed
         ) from None
-    gravity, mu = found.gravity_m_s2.value, found.friction.coefficient
+    gravity = found.gravity_m_s2.value
     return Scene(
         law, pair, striker, _approach(impact, gravity, rod=rod, speed=speed), gravity=gravity,
-        friction=Friction(mu.value if mu else 0.0),
+        friction=Friction(value_of(found.friction.coefficient, 0.0)),
         force=ForceTransform(radiation=radiation, edge=edge), modes=modes, support=support,
     )  # fmt: skip
 
@@ -156,12 +155,11 @@ def _approach(impact: ImpactTable, gravity: float, *, rod: bool, speed: float | 
     elif impact.impact_speed_m_s is not None:
         normal = impact.impact_speed_m_s.value
     else:
-        height = impact.drop_height_m.value if impact.drop_height_m else 0.0
+        height = value_of(impact.drop_height_m)
         normal = math.sqrt(2.0 * gravity * height) * (1.0 if rod else math.sin(angle))
     upright = rod or impact.angle_deg == 90.0
-    tangential = 0.0 if upright else -normal / math.tan(angle)
-    if impact.approach_tangential_m_s is not None:
-        tangential = impact.approach_tangential_m_s.value
+    along = 0.0 if upright else -normal / math.tan(angle)
     return Approach(
-        normal, angle if rod else math.pi / 2.0, tangential, impact.approach_spin_rad_s.value
-    )
+        normal, angle if rod else math.pi / 2.0, value_of(impact.approach_tangential_m_s, along),
+        impact.approach_spin_rad_s.value,
+    )  # fmt: skip

@@ -19,6 +19,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
+from ...core.observables import OBSERVABLES
 from ...impact import Scene, Settings, reference_impact
 from ...recordings import RecordingSet
 from .reduction import Numbers, foot, from_profile, from_trace, roughness
@@ -149,12 +150,9 @@ class _Model:
         e, impact = trace.impact.restitution, trace.impact
         leaving = e * scene.approach.speed
         exact = {
-            "restitution": e, "peak_depth_m": impact.peak_depth_m,
-            "below_flat_s": impact.contact_time_s + impact.residual_flat_m / max(leaving, 1e-9),
-            "peak_force_N": impact.peak_force_N, "contact_time_s": impact.contact_time_s,
-            "loading_time_s": impact.loading_time_s,
-            "normal_impulse_Ns": impact.normal_impulse_Ns,
-        }  # fmt: skip
+            o.column: getattr(impact, o.simulated) for o in OBSERVABLES.values() if o.simulated
+        }
+        exact["below_flat_s"] = impact.contact_time_s + impact.residual_flat_m / max(leaving, 1e-9)
         return cls(
             t, trace.column("tip_height_m")[order], trace.column("normal_force_N")[order], leaving,
             scene.approach.speed, exact,

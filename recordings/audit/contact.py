@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 
-from ...core.rig import Quantity
+from ...core.rig import Quantity, value_of
 from ..recording_set import RecordingSet
 from . import limits
 from .findings import Finding, Severity, gathered
@@ -58,7 +58,7 @@ def _energies(view: TrialView, e: Quantity | None) -> tuple[Quantity, Quantity]:
     mu = view.measured("friction_impulse_ratio")
     touch = view.touch
     v = abs(float(touch.tip[1]))
-    brought = 0.5 * float(touch.impulse(0.0, mu.value if mu else 0.0)[1]) * v
+    brought = 0.5 * float(touch.impulse(0.0, value_of(mu, 0.0))[1]) * v
     relative = max(
         combined(2.0 * view.speed.relative, view.striker.mass_kg.relative), limits.ROUNDING
     )

@@ -8,7 +8,7 @@ import numpy as np
 from scipy.optimize import minimize_scalar
 from scipy.stats import chi2
 
-from ...core.rig import StrikerTable
+from ...core.rig import StrikerTable, value_of
 from ..recording_set import RecordingSet
 from . import limits, rigid
 from .findings import (
@@ -217,7 +217,7 @@ def check_impulse(found: RecordingSet) -> list[Finding]:
         force, time = view.measured("peak_force_N"), view.measured("contact_time_s")
         if e is None or force is None or time is None:
             continue
-        impulse = float(view.touch.impulse(e.value, mu.value if mu else 0.0)[1])
+        impulse = float(view.touch.impulse(e.value, value_of(mu, 0.0))[1])
         pulse = force.value * time.value
         ratio = impulse / pulse
         relative = combined(

@@ -15,7 +15,7 @@ import numpy as np
 from scipy.optimize import least_squares
 
 from ...core.observables import OBSERVABLES
-from ...core.rig import Quantity, StrikerTable
+from ...core.rig import Quantity, StrikerTable, value_of
 from ..csv_table import Array
 
 MODEL_TOLERANCE = 0.005
@@ -170,7 +170,7 @@ def momentum_misfit(
     e = measured["restitution"].value if "restitution" in measured else 0.5
     mu = measured.get("friction_impulse_ratio")
     best = math.inf
-    for start_mu in (mu.value if mu else 0.1, 0.3):
+    for start_mu in (value_of(mu, 0.1), 0.3):
         start = before.impulse(e, start_mu) / (before.m * speed.value)
         fit = least_squares(residuals, np.array([*start, 0.0, 0.0]), method="lm")
         best = min(best, 2.0 * float(fit.cost))

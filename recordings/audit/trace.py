@@ -7,6 +7,7 @@ from collections.abc import Mapping
 
 import numpy as np
 
+from ...core.rig import value_of
 from ..csv_table import Array
 from ..recording_set import RecordingSet
 from . import limits
@@ -54,7 +55,7 @@ def _compared(found: RecordingSet, view: TrialView, trace: Mapping[str, Array]) 
     drop = found.setup.gravity_m_s2.value * _duration(time, force) / view.speed.value
 
     def moved(restitution: float) -> float:
-        return float(view.touch.impulse(restitution + drop, mu.value if mu else 0.0)[1])
+        return float(view.touch.impulse(restitution + drop, value_of(mu, 0.0))[1])
 
     noise = found.setup.noise
     ragged = noise.get("force_N", 0.0) * lasts / math.sqrt(time.size)

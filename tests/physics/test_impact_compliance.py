@@ -2,16 +2,17 @@
 
 from __future__ import annotations
 
-import csv
 import math
 from pathlib import Path
 
 import numpy as np
 import pytest
 from dentscope.core import Material
-from dentscope.core.toml_input import read_toml
+from dentscope.core.rig import value_of
 from dentscope.impact import Approach, Friction, Scene, Striker, scene_of, strike
+from dentscope.impact.bodies import bodies_of
 from dentscope.models.published.hertz import HERTZ
+from dentscope.recordings import read
 
 STEEL = Material(E=200e9, nu=0.3, density=7800.0)
 MU = 0.1
@@ -113,35 +114,19 @@ def test_measured_spin_of_ceramic_balls() -> None:
 
     Nearer to the normal, psi < 3, one spring gives back too much of the tangential motion.
     """
-    folder = Path(__file__).resolve().parents[2] / "data/recordings/kharaz-2001-oblique"
-    setup = read_toml(folder / "set.toml")
-    ball, glass = setup["strikers"]["ball"], setup["target"]
-
-    def value(table: dict, key: str) -> float:
-        return float(table[key]["value"])
-
-    alumina = Material(value(ball, "E_Pa"), value(ball, "nu"), density=4000.0)
-    plate = Material(value(glass, "E_Pa"), value(glass, "nu"), density=2500.0)
+    found = read(Path(__file__).resolve().parents[2] / "data/recordings/kharaz-2001-oblique")
+    pair, ball = bodies_of(found.setup, "ball")
     # 1/G* = (2 - nu_1)/G_1 + (2 - nu_2)/G_2; k_t/k_n = 4 G*/E*
-    soft = sum((2.0 - b.nu) * 2.0 * (1.0 + b.nu) / b.E for b in (alumina, plate))
-    normal = sum((1.0 - b.nu**2) / b.E for b in (alumina, plate))
-    friction = Friction(value(setup["friction"], "coefficient"), stiffness=4.0 * normal / soft)
-    off = []
-    with (folder / "trials.csv").open() as stream:
-        rows = [
-            row
-            for row in csv.DictReader(stream)
-            if row["rebound_spin_rad_s"] and float(row["angle_deg"]) < 72.0
-        ]
+    soft = sum((2.0 - b.nu) * 2.0 * (1.0 + b.nu) / b.E for b in (pair.sphere, pair.flat))
+    mu = value_of(found.setup.friction.coefficient)
+    friction = Friction(mu, stiffness=4.0 / (pair.E_reduced * soft))
+    measured, motion = found.values("rebound_spin_rad_s"), found.approach
+    rows = np.flatnonzero(np.isfinite(measured) & (found.trials.angle_deg < 72.0))
     assert len(rows) == 8
-    for row in rows:
-        angle, v = math.radians(float(row["angle_deg"])), float(row["impact_speed_m_s"])
-        scene = scene_of(
-            HERTZ, sphere=alumina, flat=plate,
-            striker=Striker(mass=value(ball, "mass_kg"), tip_radius=value(ball, "tip_radius_m")),
-            approach=Approach(v, tangential=-v / math.tan(angle)), friction=friction,
-        )  # fmt: skip
-        spin = strike(scene).rebound_spin_rad_s
-        off.append(spin / float(row["rebound_spin_rad_s"]) - 1.0)
+    off = []
+    for i in rows:
+        approach = Approach(motion.normal[i], tangential=motion.tangential[i])
+        spin = strike(Scene(HERTZ, pair, ball, approach, friction=friction)).rebound_spin_rad_s
+        off.append(spin / measured[i] - 1.0)
     assert np.max(np.abs(off)) < 0.1
     assert np.sqrt(np.mean(np.square(off))) < 0.07
