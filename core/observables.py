@@ -42,10 +42,8 @@ class Observable:
     in_trials
         Whether trials.csv has the column; else only a curve gives it.
     usual_noise
-        Relative standard deviation of a usual instrument (of a ratio the absolute one); 0 for what
-        is not proposed as a further measurement.
-    unit, scale
-        Unit for people, and how many of it are one of the SI.
+        Relative standard deviation of a usual instrument; 0 for what is not proposed as a further
+        measurement.
     """
 
     column: str
@@ -60,8 +58,16 @@ class Observable:
     simulated: str
     in_trials: bool = True
     usual_noise: float = 0.0
-    unit: str = "-"
-    scale: float = 1.0
+
+    @property
+    def unit(self) -> str:
+        """Unit for people."""
+        return _shown(self.column)[1]
+
+    @property
+    def scale(self) -> float:
+        """How many units for people are one of the SI."""
+        return _shown(self.column)[2]
 
     @property
     def axis(self) -> str:
@@ -69,75 +75,82 @@ class Observable:
         return self.label if self.unit == "-" else f"{self.label} [{self.unit}]"
 
 
+_SHOWN = (
+    ("_rad_s", "rad/s", 1.0), ("_m_s", "m/s", 1.0), ("_Ns", "N s", 1.0),
+    ("_m", "um", 1e6), ("_s", "ms", 1e3), ("_N", "kN", 1e-3), ("", "-", 1.0),
+)  # fmt: skip
+"""End of a column, unit in which people read it, and how many of it are one of the SI."""
+
+
+def _shown(column: str) -> tuple[str, str, float]:
+    return next(row for row in _SHOWN if column.endswith(row[0]))
+
+
 _ROWS = (
     Observable(
         column="restitution", label="restitution",
-        meaning="rebound over approach normal tip velocity",
-        instrument="motion", phase="unloading", log=True, power=-0.25, simulated="restitution",
-        usual_noise=0.01,
+        meaning="rebound over approach normal tip velocity", simulated="restitution",
+        instrument="motion", phase="unloading", log=True, power=-0.25, usual_noise=0.01,
     ),
     Observable(
-        column="permanent_depth_m", label="crater depth", meaning="depth of the crater in the flat",
-        instrument="surface", phase="loading", log=True, power=1.0, simulated="residual_flat_m",
-        usual_noise=0.03, unit="um", scale=1e6,
+        column="permanent_depth_m", label="crater depth",
+        meaning="depth of the crater in the flat", simulated="residual_flat_m",
+        instrument="surface", phase="loading", log=True, power=1.0, usual_noise=0.03,
     ),
     Observable(
-        column="contact_time_s", label="contact time", meaning="first touch to last separation",
-        instrument="force", phase="loading", zero=False, log=True, power=0.0,
-        simulated="contact_time_s", usual_noise=0.01, unit="ms", scale=1e3,
+        column="contact_time_s", label="contact time", zero=False,
+        meaning="first touch to last separation", simulated="contact_time_s",
+        instrument="force", phase="loading", log=True, power=0.0, usual_noise=0.01,
     ),
     Observable(
-        column="peak_force_N", label="peak force", meaning="largest normal force",
-        instrument="force", phase="loading", zero=False, log=True, power=1.0,
-        simulated="peak_force_N", usual_noise=0.03, unit="kN", scale=1e-3,
+        column="peak_force_N", label="peak force", zero=False,
+        meaning="largest normal force", simulated="peak_force_N",
+        instrument="force", phase="loading", log=True, power=1.0, usual_noise=0.03,
     ),
     Observable(
-        column="rebound_spin_rad_s", label="spin",
-        meaning="angular velocity after, counter-clockwise", instrument="motion",
-        phase="sliding", low=-math.inf, power=1.0, simulated="rebound_spin_rad_s",
-        usual_noise=0.03, unit="rad/s",
+        column="rebound_spin_rad_s", label="spin", low=-math.inf,
+        meaning="angular velocity after, counter-clockwise", simulated="rebound_spin_rad_s",
+        instrument="motion", phase="sliding", power=1.0, usual_noise=0.03,
     ),
     Observable(
         column="friction_impulse_ratio", label="impulse ratio",
-        meaning="tangential over normal impulse", instrument="motion", phase="sliding", power=0.0,
-        simulated="friction_impulse_ratio", usual_noise=0.01,
+        meaning="tangential over normal impulse", simulated="friction_impulse_ratio",
+        instrument="motion", phase="sliding", power=0.0, usual_noise=0.01,
     ),
     Observable(
         column="sliding_length_m", label="sliding length",
-        meaning="range of the contact point's travel", instrument="surface", phase="sliding",
-        power=1.0, simulated="sliding_length_m", unit="um", scale=1e6,
+        meaning="range of the contact point's travel", simulated="sliding_length_m",
+        instrument="surface", phase="sliding", power=1.0,
     ),
     Observable(
-        column="rebound_speed_m_s", label="rebound speed",
-        meaning="velocity of the centre of mass after, along +y", instrument="motion",
-        phase="free-flight", low=-math.inf, power=0.75, simulated="rebound_speed_m_s", unit="m/s",
+        column="rebound_speed_m_s", label="rebound speed", low=-math.inf,
+        meaning="velocity of the centre of mass after, along +y", simulated="rebound_speed_m_s",
+        instrument="motion", phase="free-flight", power=0.75,
     ),
     Observable(
-        column="tangential_rebound_m_s", label="tangential rebound", meaning="the same along +x",
-        instrument="motion", phase="free-flight", low=-math.inf, power=1.0,
-        simulated="tangential_rebound_m_s", unit="m/s",
+        column="tangential_rebound_m_s", label="tangential rebound", low=-math.inf,
+        meaning="the same along +x", simulated="tangential_rebound_m_s",
+        instrument="motion", phase="free-flight", power=1.0,
     ),
     Observable(
-        column="peak_depth_m", label="largest depth",
-        meaning="deepest place of the tip below the undisturbed flat", instrument="motion",
-        phase="loading", log=True, power=1.0, simulated="peak_depth_m", in_trials=False,
-        unit="um", scale=1e6,
+        column="peak_depth_m", label="largest depth", in_trials=False,
+        meaning="deepest place of the tip below the undisturbed flat", simulated="peak_depth_m",
+        instrument="motion", phase="loading", log=True, power=1.0,
     ),
     Observable(
-        column="loading_time_s", label="time to the largest force",
-        meaning="first touch to the largest force", instrument="force", phase="loading", log=True,
-        power=0.0, simulated="loading_time_s", in_trials=False, unit="ms", scale=1e3,
+        column="loading_time_s", label="time to the largest force", in_trials=False,
+        meaning="first touch to the largest force", simulated="loading_time_s",
+        instrument="force", phase="loading", log=True, power=0.0,
     ),
     Observable(
-        column="normal_impulse_Ns", label="impulse",
-        meaning="normal force over the time in contact", instrument="force", phase="unloading",
-        log=True, power=1.0, simulated="normal_impulse_Ns", in_trials=False, unit="N s",
+        column="normal_impulse_Ns", label="impulse", in_trials=False,
+        meaning="normal force over the time in contact", simulated="normal_impulse_Ns",
+        instrument="force", phase="unloading", log=True, power=1.0,
     ),
     Observable(
-        column="below_flat_s", label="time below the flat",
-        meaning="how long the tip is below the undisturbed flat", instrument="motion",
-        phase="unloading", log=True, power=0.1, simulated="", in_trials=False, unit="ms",
-        scale=1e3,
+        column="below_flat_s", label="time below the flat", in_trials=False,
+        meaning="how long the tip is below the undisturbed flat", simulated="",
+        instrument="motion", phase="unloading", log=True, power=0.1,
     ),
 )  # fmt: skip
 
@@ -146,13 +159,10 @@ OBSERVABLES: dict[str, Observable] = {row.column: row for row in _ROWS}
 
 _MEASURED = tuple(row.column for row in _ROWS if row.in_trials)
 
+TRACE_NOISE = ("tip_height_m", "force_N", "force_N" + RELATIVE_SUFFIX)
+RIG_NOISE = ("impact_speed" + RELATIVE_SUFFIX, "frame_rate_hz")
+
 NOISE_KEYS: tuple[str, ...] = (
-    *_MEASURED,
-    *(name + RELATIVE_SUFFIX for name in _MEASURED),
-    "tip_height_m",
-    "force_N",
-    "force_N" + RELATIVE_SUFFIX,
-    "impact_speed" + RELATIVE_SUFFIX,
-    "frame_rate_hz",
-)
-"""Every key that `[noise]` may have: observables, traces, the approach, the camera."""
+    *_MEASURED, *(name + RELATIVE_SUFFIX for name in _MEASURED), *TRACE_NOISE, *RIG_NOISE,
+)  # fmt: skip
+"""Every key that `[noise]` may have: of observables, of traces, of the approach and the camera."""

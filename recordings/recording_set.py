@@ -16,7 +16,7 @@ import numpy as np
 import numpy.typing as npt
 
 from ..core.errors import InputError, InputErrors
-from ..core.observables import RELATIVE_SUFFIX
+from ..core.observables import RELATIVE_SUFFIX, RIG_NOISE, TRACE_NOISE
 from ..core.rig import StrikerTable
 from ..core.toml_input import parse_model, read_toml
 from . import noise
@@ -27,8 +27,6 @@ from .series import read_profile, read_trace, series_in
 from .setup_file import Setup, setup_text
 from .trials import Trials, read_trials, write_trials
 
-_NOT_COLUMNS = ("impact_speed" + RELATIVE_SUFFIX, "frame_rate_hz")
-_TRACE_NOISE = ("tip_height_m", "force_N", "force_N" + RELATIVE_SUFFIX)
 _SPEED_BIN = 0.02
 _ANGLE_BIN = 1.0
 
@@ -168,11 +166,8 @@ class RecordingSet:
         return read_profile(self.profiles[trial])
 
     def take(self, rows: npt.ArrayLike) -> RecordingSet:
-        """Return the set with some of its trials: indices or a mask."""
-        return self.with_trials(self.trials.take(rows))
-
-    def with_trials(self, trials: Trials) -> RecordingSet:
-        """Return the set with other trials; curves of trials that are gone are left out."""
+        """Return the set with some of its trials and their curves: indices or a mask."""
+        trials = self.trials.take(rows)
         kept = set(trials.trial)
         return replace(
             self,
@@ -271,8 +266,8 @@ def _notes(found: RecordingSet) -> list[str]:
     notes = []
     for key in found.setup.noise:
         column = key.removesuffix(RELATIVE_SUFFIX)
-        used = column in found.observed or (key in _TRACE_NOISE and bool(found.traces))
-        if not used and key not in _NOT_COLUMNS:
+        used = column in found.observed or (key in TRACE_NOISE and bool(found.traces))
+        if not used and key not in RIG_NOISE:
             notes.append(f"noise.{key} is not used: the set has no values of {column}")
     columns = found.trials.observables.values()
     empty = (

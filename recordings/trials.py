@@ -89,12 +89,6 @@ class Trials:
                 changes[item.name] = {k: v[index] for k, v in value.items()}
         return replace(self, **changes)  # type: ignore[arg-type]
 
-    def measuring(
-        self, observables: Mapping[str, Array], observables_std: Mapping[str, Array] | None = None
-    ) -> Trials:
-        """Return the same trials with other observables, for example simulated ones."""
-        return replace(self, observables=observables, observables_std=observables_std or {})
-
 
 def _column(values: npt.ArrayLike, n: int, name: str) -> Array:
     given = np.array(values, dtype=float)
