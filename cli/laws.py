@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import csv
 import warnings
+from collections.abc import Iterable
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any
 
@@ -36,7 +37,7 @@ def list_laws() -> None:
     from rich.console import Console
     from rich.table import Column, Table
 
-    from ..models import LAWS, UNAVAILABLE
+    from ..models import LAWS, RATE_MODELS, UNAVAILABLE
 
     table = Table(Column("law", no_wrap=True), "authors", "made for", "equations")
     for law in LAWS.values():
@@ -49,6 +50,12 @@ def list_laws() -> None:
         "thesis, on limits and continuity. What was read: dentscope laws show LAW."
     )
     console.print("Any two can be joined: LOADING+UNLOADING, for example kogut-etsion+ghaednia.")
+    console.print(
+        "Models of depth and rate that chapter 1 criticises leave no dent, so that no command "
+        "computes with them:"
+    )
+    for name, model in RATE_MODELS.items():
+        console.print(f"  [bold]{name}[/bold]: {model.formula}; {model.objection}", highlight=False)
     for name, reason in UNAVAILABLE.items():
         console.print(f"not offered: [bold]{name}[/bold]: {reason}", highlight=False)
 
@@ -56,8 +63,11 @@ def list_laws() -> None:
 @app.command()
 def show(law: Annotated[str, typer.Argument(help="A name of `dentscope laws list`.")]) -> None:
     """One law: source, equations, range, what was read, and what it breaks."""
-    from ..models import law_named
+    from ..models import RATE_MODELS, law_named
 
+    if law in RATE_MODELS:
+        _show_rate_model(law)
+        return
     chosen = law_named(law)
     lines = {
         "law": chosen.name,
@@ -70,11 +80,34 @@ def show(law: Annotated[str, typer.Argument(help="A name of `dentscope laws list
         "read": chosen.read,
         "described in": _described_in(chosen),
     }
-    for key, text in lines.items():
+    _echo([*lines.items(), *(("breaks", f"{text}: {size:g} %") for text, size in chosen.breaks)])
+
+
+def _show_rate_model(name: str) -> None:
+    """One model of depth and rate, and for Kelvin and Voigt's an impact worked out."""
+    from ..models import RATE_MODELS
+    from ..models.published.viscous import paradox
+
+    model = RATE_MODELS[name]
+    lines = [
+        ("model", name), ("authors", model.title), ("source", model.source),
+        ("force", model.formula), ("objection", model.objection),
+    ]  # fmt: skip
+    if name == "kelvin-voigt":
+        told = paradox(mass=0.05, stiffness=2e6, damping=120.0, speed=1.3)
+        example = (
+            f"0.05 kg at 1.3 m/s on 2 MN/m with 120 N s/m: {told.force_at_touch:.0f} N at first "
+            f"touch, {told.pull_at_return:.1f} N on return; let go where the force vanishes, "
+            f"{told.depth_at_zero_force * 1e6:.0f} um stay"
+        )
+        lines.append(("example", example))
+    _echo([*lines, ("described in", "models.published.viscous")])
+
+
+def _echo(lines: Iterable[tuple[str, str]]) -> None:
+    for key, text in lines:
         if text:
             typer.echo(f"{key:>12}  {text}")
-    for clause, size in chosen.breaks:
-        typer.echo(f"{'breaks':>12}  {clause}: {size:g} %")
 
 
 @app.command()

@@ -6,7 +6,7 @@ from ..core.errors import InputError
 from .base import ContactLaw, Domain, DomainWarning, Kernels
 from .fitted import shipped_law
 from .kernel import critical_depth, critical_force, yield_constant
-from .published import PUBLISHED, UNAVAILABLE
+from .published import PUBLISHED, RATE_MODELS, UNAVAILABLE
 
 try:
     _FITTED, _UNREADABLE = shipped_law(), None
@@ -30,6 +30,8 @@ def law_named(name: str) -> ContactLaw:
         raise _UNREADABLE
     if name in UNAVAILABLE:
         raise InputError(f"{name!r} is not offered: {UNAVAILABLE[name]}", key="law")
+    if name in RATE_MODELS:
+        raise InputError(f"{name!r} is no law of depth alone; it leaves no dent", key="law")
     if name.count("+") == 1:
         first, second = name.split("+")
         return law_named(first).with_unloading(law_named(second))
@@ -40,6 +42,7 @@ def law_named(name: str) -> ContactLaw:
 
 __all__ = [
     "LAWS",
+    "RATE_MODELS",
     "UNAVAILABLE",
     "ContactLaw",
     "Domain",

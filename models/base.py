@@ -78,11 +78,6 @@ class Standing(IntEnum):
     OWN_SOURCE = 4
 
     @property
-    def verified(self) -> bool:
-        """Whether the whole law was found outside the thesis."""
-        return self >= Standing.SECOND_HAND
-
-    @property
     def told(self) -> str:
         """The standing in words, beginning with "verified" or "unverified"."""
         return {
@@ -135,11 +130,6 @@ class ContactLaw(ABC):
     @abstractmethod
     def kernels(self) -> Kernels:
         """The compiled functions."""
-
-    @property
-    def verified(self) -> bool:
-        """Whether a source other than the thesis was read for the whole law."""
-        return self.standing.verified
 
     def parameters(self, pair: Pair) -> Floats:
         """Return the numbers that the kernels take, shape (n,)."""

@@ -46,9 +46,6 @@ from .kernel import (
 )
 
 FORMAT = "dentscope-coefficients/8"
-BOUNDS = ("Sy_ratio", "E_reduced_over_Sy_min", "nu", "elastic_share", "Delta_over_R", "a_over_R")
-"""What the domain of validity is stated in; each has a smallest and a largest value."""
-
 COEFFICIENTS_FILE = Path(__file__).resolve().parents[1] / "data" / "coefficients" / "fitted.json"
 """What the law in use reads; `dentscope fit --publish` writes it."""
 
@@ -113,7 +110,7 @@ class Fitted(ContactLaw):
     coefficients
         Value of every name in `closed_form.COEFFICIENTS`.
     limits
-        Smallest and largest value of each of `BOUNDS` in the data behind the coefficients.
+        Smallest and largest value of each quantity of the domain in the data behind them.
     """
 
     coefficients: Mapping[str, float] = field(default_factory=dict)
@@ -299,7 +296,6 @@ def shipped_law() -> Fitted | None:
 
 
 __all__ = [
-    "BOUNDS",
     "COEFFICIENTS_FILE",
     "FORMAT",
     "Fitted",

@@ -18,6 +18,7 @@ from .kogut_komvopoulos import KOGUT_KOMVOPOULOS
 from .sinclair_follansbee import SINCLAIR_FOLLANSBEE
 from .stronge import STRONGE
 from .thornton import THORNTON, THORNTON_NING
+from .viscous import RATE_MODELS as RATE_MODELS
 from .ye_komvopoulos import YE_KOMVOPOULOS
 
 PUBLISHED: tuple[ContactLaw, ...] = (

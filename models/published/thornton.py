@@ -1,10 +1,10 @@
 """Thornton 1997 and Thornton and Ning 1998: the pressure is cut off at p_y.
 
 Beyond delta_y = (pi p_y/(2 E'))^2 R the force grows linearly, F = F_y + pi R p_y (delta - delta_y),
-with a^2 = R delta; the recovery is Hertz's with the radius R_p = (4 E'/(3 F_m))
-((2 F_m + F_y)/(2 pi p_y))^(3/2), which keeps the contact radius. The restitution has a closed form
-in V/V_y. The two papers differ in adhesion, which is left out here, and in the meaning of p_y:
-first yield, 1.6 S, or the limiting pressure, 2.84 S. The latter comes closer to figure 3.11.
+with a^2 = R delta; the recovery is Hertz's with the radius R_p = (4 E'/(3 F_m)) ((2 F_m + F_y)/(2
+pi p_y))^(3/2), which keeps the contact radius. The two papers differ in adhesion, which is left out
+here, and in the meaning of p_y: first yield, 1.6 S, or the limiting pressure, 2.84 S. The latter
+comes closer to figure 3.11.
 """
 
 from __future__ import annotations
@@ -12,9 +12,6 @@ from __future__ import annotations
 import math
 from collections.abc import Callable
 from dataclasses import replace
-
-import numpy as np
-import numpy.typing as npt
 
 from ..base import Domain, Kernels, PublishedLaw, Standing
 from ..kernel import (
@@ -61,28 +58,6 @@ def _residual(par, peak):
 @branch_kernel
 def _unloading(par, depth, peak):
     return recover(_loading, _residual, par, depth, peak)
-
-
-def restitution(speed_over_yield: npt.ArrayLike) -> npt.NDArray[np.float64]:
-    """Thornton's closed form of the restitution of a ball, 1 up to V = V_y.
-
-    e = (6 sqrt 3/5)^(1/2) [1 - (V_y/V)^2/6]^(1/2)
-        [(V_y/V)/((V_y/V) + 2 (6/5 - (V_y/V)^2/5)^(1/2))]^(1/4)
-
-    Parameters
-    ----------
-    speed_over_yield
-        V/V_y, shape (...).
-
-    Examples
-    --------
-    >>> round(float(restitution(1000.0)) * 1000.0**0.25, 2)
-    1.18
-    """
-    y = 1.0 / np.maximum(np.asarray(speed_over_yield, dtype=float), 1.0)
-    last = y / (y + 2.0 * np.sqrt(1.2 - 0.2 * y * y))
-    e = math.sqrt(1.2 * math.sqrt(3.0)) * np.sqrt(1.0 - y * y / 6.0) * last**0.25
-    return np.asarray(np.minimum(e, 1.0))
 
 
 THORNTON = PublishedLaw(

@@ -4,7 +4,7 @@ import math
 
 import pytest
 from dentscope.core import InputError
-from dentscope.models.published.viscous import hunt_crossley, kelvin_voigt, paradox
+from dentscope.models.published.viscous import alpha_for, hunt_crossley, kelvin_voigt, paradox
 from scipy.integrate import solve_ivp
 
 MASS, STIFFNESS, DAMPING, SPEED = 0.05, 2e6, 120.0, 1.3
@@ -64,6 +64,7 @@ def test_hunt_crossley_restitution(alpha):
 
     _, rate = impact(law, lambda _t, y: y[0]).y_events[0][0]
     e = -rate / SPEED
+    assert alpha_for(e, speed=SPEED) == pytest.approx(alpha, rel=1e-5)
     assert e == pytest.approx(1.0 - alpha * SPEED, abs=1.5 * (alpha * SPEED) ** 2)
     assert float(law(0.0, SPEED)) == 0.0
     # exact first integral: e and v satisfy ln((1 + u)/(1 - u e)) = u (1 + e) with u = 1.5 alpha v

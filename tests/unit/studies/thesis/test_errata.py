@@ -8,9 +8,11 @@ import pytest
 from dentscope.core import Material, Pair
 from dentscope.models import LAWS
 from dentscope.studies.thesis import as_printed
-from dentscope.studies.thesis.errata import CONTRADICTIONS, MISPRINTS, text
+from dentscope.studies.thesis.contradictions import CONTRADICTIONS
+from dentscope.studies.thesis.errata import text
+from dentscope.studies.thesis.misprints import MISPRINTS
 
-DOCS = Path(__file__).parents[3] / "docs"
+DOCS = Path(__file__).parents[4] / "docs"
 
 
 def test_the_document_is_what_the_code_computes():
