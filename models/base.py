@@ -1,8 +1,8 @@
 """The one contract of every contact law.
 
 A law is a frozen object without material numbers. Its physics are four scalar kernels compiled by
-numba with fixed signatures, written once; everything else is the driver below, which broadcasts
-over depths and pairs. The same kernels go, as function values, into the compiled impact integrator,
+numba with fixed signatures (`kernel`), written once; one driver (`driver`) broadcasts them over
+depths and pairs. The same kernels go, as function values, into the compiled impact integrator,
 which therefore needs no recompilation for another law.
 
     loading(par, depth)         -> F          normal force on first loading [N]

@@ -293,13 +293,3 @@ def shipped_law() -> Fitted | None:
     """The law with the shipped coefficients; none if they were never fitted."""
     content = read_coefficients()
     return None if content is None else law_from(content, source=str(COEFFICIENTS_FILE))
-
-
-__all__ = [
-    "COEFFICIENTS_FILE",
-    "FORMAT",
-    "Fitted",
-    "fitted_law",
-    "law_from",
-    "shipped_law",
-]
