@@ -1,0 +1,147 @@
+"""Comparisons small enough to work out by hand: linear cells, shapes for mechanisms."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+from dataclasses import dataclass, field, replace
+from types import SimpleNamespace
+from typing import Any
+
+import numpy as np
+import pytest
+from dentscope.discrepancy.cells import Cells
+from dentscope.discrepancy.conditions import Condition
+from dentscope.discrepancy.inference.fit import Fit
+from dentscope.discrepancy.inference.grid import Axis, Grid, posterior
+from dentscope.discrepancy.inference.linear import Linear
+from dentscope.discrepancy.mechanisms.base import Parameter, Surroundings
+from dentscope.discrepancy.rank import Ranking, Screened
+from dentscope.discrepancy.thresholds import Nulls
+
+NONE = np.zeros((0, 0))
+
+
+@dataclass(frozen=True)
+class Effect:
+    """A mechanism that adds `size` times a shape to the cells."""
+
+    name: str
+    shape: tuple[float, ...]
+    reason: str = ""
+    form: float = 0.0
+    law_error: float = 1.0
+    jumps: bool = False
+    parameters: tuple[Parameter, ...] = (
+        Parameter("size", "-", 0.0, 1.0, "linear", 0.0, "", nodes=5),
+    )
+
+    def applies(self, situations: Any) -> str:
+        return self.reason
+
+    def ranges(self, situations: Any) -> tuple[Parameter, ...]:
+        return self.parameters
+
+
+@dataclass(frozen=True, eq=False)
+class Problem:
+    """What the rules ask a problem for."""
+
+    conditions: tuple[Condition, ...]
+    cells: Cells
+    derivative: np.ndarray
+    drifts: tuple[Any, ...] = ()
+    notes: tuple[str, ...] = ()
+    error: Any = field(default_factory=lambda: SimpleNamespace(freedom=np.zeros(0), count=0))
+    rig: Any = None
+
+    @property
+    def n_z(self) -> int:
+        return self.derivative.shape[1]
+
+    @property
+    def n_nuisances(self) -> int:
+        return self.n_z - self.error.count
+
+    def scenes(self, z: np.ndarray) -> list[Any]:
+        return [None for _ in self.conditions]
+
+
+@dataclass(frozen=True, eq=False)
+class Simulator:
+    """Cells that are linear in the unknowns and in the size of every effect."""
+
+    problem: Problem
+
+    def of(self, problem: Problem) -> Simulator:
+        return replace(self, problem=problem)
+
+    def predict(self, mechanisms: Sequence[Effect], points: Sequence[Any]) -> np.ndarray:
+        rows = []
+        for point in points:
+            row = self.problem.derivative @ point.z
+            for m in mechanisms:
+                row = row + point.values[m.name]["size"] * np.array(m.shape)
+            rows.append(row)
+        return np.array(rows)
+
+
+def condition(speed: float = 1.0, striker: str = "ball", angle: float = math.pi / 2) -> Condition:
+    return Condition(striker, speed, angle, 0.0, 0.0, 0.0, 0.0, (0,), Surroundings())
+
+
+def problem(
+    value: Sequence[float], *, speeds: Sequence[float] = (), observable: str = "rebound_speed_m_s",
+    derivative: Any = None, **more: Any,
+) -> Problem:  # fmt: skip
+    """Return one cell a condition, of unit standard error, at 1, 2, 3 ... m/s."""
+    m = len(value)
+    speeds = speeds or [float(k + 1) for k in range(m)]
+    cells = Cells(
+        np.arange(m), (observable,) * m, np.array(value, dtype=float), np.ones(m),
+        np.ones(m, dtype=np.intp),
+    )  # fmt: skip
+    J = np.zeros((m, 0)) if derivative is None else np.array(derivative, dtype=float)
+    return Problem(tuple(condition(v) for v in speeds), cells, J, **more)
+
+
+def fit_of(data: Sequence[float], *effects: Effect, J: Any = None, lift: float = 0.0) -> Fit:
+    """Return the fit of data (m,) by effects over their whole grid; `lift` raises its evidence."""
+    r = np.array(data, dtype=float)
+    m = len(r)
+    linear = Linear(np.eye(m), np.zeros((m, 0)) if J is None else np.array(J, dtype=float))
+    grid = Grid(tuple(Axis(e.name, e.parameters[0]) for e in effects))
+    places = grid.places() if effects else np.zeros((1, 0))
+    shapes = np.array([e.shape for e in effects]).reshape(len(effects), m)
+    residuals = r - places @ shapes
+    log_likelihood = linear.log_likelihood(residuals)
+    evidence, weight = posterior(log_likelihood)
+    best = int(np.argmax(log_likelihood))
+    z, cov = linear.unknowns(residuals[best])
+    return Fit(
+        effects, grid, weight, places[best], z, cov, r - residuals[best], evidence + lift,
+        float(np.sum(linear.white(residuals[best]) ** 2)), linear, residuals[best],
+        np.zeros(m), log_likelihood, residuals, np.zeros(linear.J.shape[1]),
+    )  # fmt: skip
+
+
+def screened_of(effect: Effect, changes: Any) -> Screened:
+    grid = Grid((Axis(effect.name, effect.parameters[0]),))
+    return Screened(effect, grid, np.zeros((0, 0)), np.array(changes, dtype=float), 0.0, np.ones(1))
+
+
+def nulls_of(scatter: Any) -> Nulls:
+    draws = np.array(scatter, dtype=float)
+    return Nulls(0.0 * draws, draws, np.zeros((len(draws), 0)), np.zeros((len(draws), 0)))
+
+
+def ranking_of(given: Problem, base: Fit, *, singles=(), pairs=(), screened=()) -> Ranking:
+    return Ranking(given, base, tuple(screened), tuple(singles), tuple(pairs), {})
+
+
+@pytest.fixture(scope="session")
+def toy() -> SimpleNamespace:
+    return SimpleNamespace(
+        Effect=Effect, Simulator=Simulator, condition=condition, problem=problem, fit_of=fit_of,
+        screened_of=screened_of, nulls_of=nulls_of, ranking_of=ranking_of,
+    )  # fmt: skip

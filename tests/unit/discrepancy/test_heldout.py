@@ -1,0 +1,52 @@
+"""Held-out conditions, where what is left out follows from the others by a known formula."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import replace
+
+import numpy as np
+import pytest
+from dentscope.discrepancy.heldout import groups_of, held_out
+
+
+def test_whole_strikers_speeds_and_angles_are_left_out(toy) -> None:
+    c = toy.condition
+    given = replace(
+        toy.problem([0.0] * 4),
+        conditions=(c(1.0, "a"), c(2.0, "a"), c(1.0, "b"), c(2.0, "b", math.radians(60.0))),
+    )
+    groups = {tuple(np.flatnonzero(mask).tolist()) for mask in groups_of(given)}
+    assert groups == {(0, 1), (2, 3), (0, 2), (1, 3), (0, 1, 2), (3,)}
+
+
+def test_where_nothing_varies_single_conditions_are_left_out(toy) -> None:
+    given = toy.problem([0.0] * 3, speeds=[1.0, 1.001, 1.002])
+    assert [np.flatnonzero(m).tolist() for m in groups_of(given)] == [[0], [1], [2]]
+
+
+def test_cells_that_share_nothing_are_missed_by_their_residual(toy) -> None:
+    given = toy.problem([3.0, -4.0])
+    found = held_out(given, toy.fit_of([3.0, -4.0]))
+    raw = math.sqrt((9.0 + 16.0) / 2.0)
+    assert found.raw == pytest.approx(raw)
+    assert found.score == pytest.approx(math.sqrt(raw**2 - 1.0))  # the noise's own part is out
+    assert found.trials == 2
+    assert held_out(given, toy.fit_of([0.5, 0.5])).score == pytest.approx(0.1)  # at least
+
+
+def test_what_cells_share_is_learnt_from_those_that_were_kept(toy) -> None:
+    """An unknown of variance 9 in two cells of unit noise: 9/10 of one foretells the other."""
+    J = [[3.0], [3.0]]
+    found = held_out(toy.problem([5.0, 7.0], derivative=J), toy.fit_of([5.0, 7.0], J=J))
+    miss = np.array([5.0 - 0.9 * 7.0, 7.0 - 0.9 * 5.0])
+    assert found.raw == pytest.approx(math.sqrt(np.mean(miss**2)), rel=1e-12)
+
+
+def test_a_mechanism_foretells_what_it_was_not_shown(toy) -> None:
+    """Its size is learnt from one speed and foretells the other."""
+    data = [20.0, 40.0]
+    effect = toy.Effect("a", (40.0, 80.0))
+    with_it, without = (held_out(toy.problem(data), toy.fit_of(data, *e)) for e in ((effect,), ()))
+    assert with_it.raw < 1.0
+    assert without.raw == pytest.approx(math.sqrt((400.0 + 1600.0) / 2.0))

@@ -1,0 +1,66 @@
+"""Where the baseline misses, on four cells whose contrasts can be added up by hand."""
+
+from __future__ import annotations
+
+from types import SimpleNamespace
+
+import numpy as np
+import pytest
+from dentscope.discrepancy.locate import covariates, locate
+
+SPEEDS = [1.0, np.e, np.e**2, np.e**3]
+UNIT = np.random.default_rng(1).standard_normal((4000, 4))
+
+
+@pytest.fixture
+def located(toy):
+    tables = SimpleNamespace(
+        length=0.0, tip_radius_m=SimpleNamespace(value=0.01), mass_kg=SimpleNamespace(value=0.1)
+    )
+    rig = SimpleNamespace(strikers={"ball": tables})
+
+    def found(residual, level=0.95):
+        given = toy.problem(residual, speeds=SPEEDS, rig=rig)
+        return locate(given, toy.fit_of(residual), toy.nulls_of(UNIT), level=level)
+
+    return found
+
+
+def test_only_what_varies_is_a_covariate(toy, located) -> None:
+    tables = SimpleNamespace(
+        length=0.0, tip_radius_m=SimpleNamespace(value=0.01), mass_kg=SimpleNamespace(value=0.1)
+    )
+    rig = SimpleNamespace(strikers={"ball": tables})
+    found = covariates(toy.problem([0.0] * 4, speeds=SPEEDS, rig=rig))
+    # ln v = 0 ... 3: mean 3/2, standard deviation sqrt(5)/2
+    assert list(found) == ["impact speed"]
+    assert found["impact speed"] == pytest.approx(np.array([-3.0, -1.0, 1.0, 3.0]) / np.sqrt(5.0))
+
+
+def test_a_miss_everywhere_is_a_miss_overall(located) -> None:
+    (miss,) = located([3.0, 3.0, 3.0, 3.0]).misses
+    # the sum over the square root of their number
+    assert (miss.covariate, miss.trend) == ("overall", "recordings lie above the simulation")
+    assert miss.z == pytest.approx(6.0, rel=0.05)
+    (below,) = located([-3.0, -3.0, -3.0, -3.0]).misses
+    assert below.trend == "recordings lie below it"
+
+
+def test_a_slope_is_a_miss_along_its_condition(located) -> None:
+    (miss,) = located([-3.0, -1.0, 1.0, 3.0]).misses
+    assert miss.covariate == "impact speed"
+    assert miss.trend == "recording over simulation rises with impact speed"
+    assert miss.z == pytest.approx(np.sqrt(20.0), rel=0.05)
+    assert miss.phase == "free-flight"
+
+
+def test_misses_come_worst_first(located) -> None:
+    found = located([0.0, 4.0, 8.0, 12.0]).misses
+    assert [m.covariate for m in found] == ["overall", "impact speed"]
+
+
+def test_chance_gives_one_set_in_twenty_a_miss(located) -> None:
+    """Over all observables and conditions together, whatever the number of contrasts."""
+    draws = np.random.default_rng(2).standard_normal((1000, 4))
+    seen = sum(bool(located(r).misses) for r in draws)
+    assert 30 <= seen <= 75

@@ -1,0 +1,88 @@
+"""Ranking, on cells that are linear in everything: shapes go in, their names come out."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+from dentscope.discrepancy.inference.outliers import WIDER
+from dentscope.discrepancy.pairs import with_pairs
+from dentscope.discrepancy.rank import rank
+
+RISING = tuple(8.0 * (k - 3.5) for k in range(8))
+ALIKE = (20.0,) * 8
+BENT = tuple(4.0 * (k - 3.5) ** 2 for k in range(8))
+
+
+@pytest.fixture
+def library(toy):
+    return (
+        toy.Effect("alike", ALIKE),
+        toy.Effect("rising", RISING),
+        toy.Effect("bent", BENT),
+        toy.Effect("faint", (0.01,) * 8),
+        toy.Effect("ruled-out", ALIKE, reason="the bodies are of the wrong kind"),
+    )
+
+
+def ranked(toy, library, data, derivative=None):
+    given = toy.problem(data, derivative=np.zeros((8, 0)) if derivative is None else derivative)
+    simulator = toy.Simulator(given)
+    return simulator, rank(simulator, mechanisms=library)
+
+
+def test_the_shape_that_made_the_data_comes_first(toy, library) -> None:
+    _, found = ranked(toy, library, 0.5 * np.array(RISING))
+    lead = found.singles[0]
+    assert lead.name == "rising"
+    # known to 1/|shape| = 1/52 of its range: sharpened beyond the five nodes and 241 places
+    assert lead.place[0] == pytest.approx(0.5, abs=2e-3)
+    assert lead.chi2 < 0.1
+    assert [f.log_evidence for f in found.singles] == sorted(
+        (f.log_evidence for f in found.singles), reverse=True
+    )
+
+
+def test_evidence_of_a_well_known_size_is_occams(toy, library) -> None:
+    """A Gaussian likelihood of width s inside a flat prior: sqrt(2 pi) s times its height."""
+    _, found = ranked(toy, library, 0.5 * np.array(RISING))
+    lead, size = found.singles[0], np.linalg.norm(RISING)
+    gain = 0.5 * (0.5 * size) ** 2 + np.log(np.sqrt(2.0 * np.pi) / size)
+    assert lead.log_evidence - found.base.log_evidence == pytest.approx(gain, abs=0.02)
+
+
+def test_what_cannot_act_or_be_seen_is_excluded_with_its_reason(toy, library) -> None:
+    _, found = ranked(toy, library, 0.5 * np.array(RISING))
+    assert found.excluded["ruled-out"] == "the bodies are of the wrong kind"
+    assert found.excluded["faint"].startswith(
+        "its largest plausible effect is 0.03 standard errors"
+    )
+    assert {s.mechanism.name for s in found.screened} == {"alike", "rising", "bent"}
+
+
+def test_what_a_stated_number_can_follow_is_not_physics(toy, library) -> None:
+    """The same data, where an unknown of the sheet has the same shape."""
+    _, found = ranked(toy, library, 0.5 * np.array(RISING), np.array(RISING)[:, None])
+    assert found.base.chi2 < 0.5
+    assert found.base.z[0] == pytest.approx(0.5, abs=0.01)
+    assert found.singles[0].log_evidence - found.base.log_evidence < 1.0
+
+
+def test_an_outlier_loses_its_weight_in_the_problem_that_is_returned(toy, library) -> None:
+    data = np.zeros(8)
+    data[5] = 40.0
+    simulator, found = ranked(toy, library, data)
+    assert found.problem.cells.std.tolist() == [1, 1, 1, 1, 1, WIDER, 1, 1]
+    assert "given no weight" in found.problem.notes[-1]
+    assert "6 m/s" in found.problem.notes[-1]
+    # nothing was written into what was given
+    assert simulator.problem.cells.std.tolist() == [1.0] * 8
+    assert simulator.problem.notes == ()
+
+
+def test_a_pair_is_found_whose_members_both_act(toy, library) -> None:
+    data = 0.5 * np.array(RISING) + 0.4 * np.array(BENT)
+    simulator, found = ranked(toy, library, data)
+    pair = with_pairs(simulator, found).pairs[0]
+    assert pair.name == "rising+bent"
+    assert pair.place == pytest.approx([0.5, 0.4], abs=0.02)
+    assert pair.log_evidence > found.singles[0].log_evidence + 10.0
