@@ -50,3 +50,10 @@ def test_a_mechanism_foretells_what_it_was_not_shown(toy) -> None:
     with_it, without = (held_out(toy.problem(data), toy.fit_of(data, *e)) for e in ((effect,), ()))
     assert with_it.raw < 1.0
     assert without.raw == pytest.approx(math.sqrt((400.0 + 1600.0) / 2.0))
+
+
+def test_sizes_count_by_how_well_they_explain_what_was_kept(toy) -> None:
+    """Near the end of its range the sizes that come into question lie to one side."""
+    data, effect = [0.8, 1.6], toy.Effect("a", (40.0, 80.0))
+    # shown one cell, the size is known to 1/80 or 1/40 of its range: 2 standard errors at the most
+    assert held_out(toy.problem(data), toy.fit_of(data, effect)).raw < 1.5

@@ -116,7 +116,7 @@ def test_a_second_mechanism_must_beat_one_of_a_hundred(toy) -> None:
 def test_the_reported_set_is_as_wide_as_nulls_fall_behind(toy, scale, width) -> None:
     one, two = toy.Effect("one", (0.0, 0.0)), toy.Effect("two", (0.0, 0.0))
     best, rival = toy.fit_of([0.0, 0.0], one), toy.fit_of([-1.0, 0.0], two)
-    pair = toy.fit_of([-50.0, 0.0], one, two)
+    pair = toy.fit_of([-2.0, 0.0], one, two)
     ranking = toy.ranking_of(None, toy.fit_of([0.0, 0.0]), singles=[best, rival], pairs=[pair])
     # the rival lies 1 away: x - 1/2, and 95 % of x lie below 90 times the scale; between 2 and 5;
     # a pair is no rival of a single
