@@ -145,7 +145,7 @@ def test_an_input_format(recipe):
 
 
 DESIGN = '''
-def _toy() -> tuple[Case, ...]:
+def toy() -> tuple[Case, ...]:
     """Brass on steel and steel on brass."""
     pairs = {"one": (100.0, 200.0), "other": (200.0, 100.0)}
     return tuple(
@@ -161,11 +161,15 @@ def _toy() -> tuple[Case, ...]:
 def test_a_design(recipe):
     toy = recipe("Add a design")
     toy.change(
+        "campaigns/drawn_cases.py",
+        ("\n\ndef _digits(", f"\n\n{DESIGN}\n\ndef _digits("),
+    )
+    toy.change(
         "campaigns/designs.py",
-        ("\n\nDESIGNS: dict", f"\n\n{DESIGN}\n\nDESIGNS: dict"),
+        ("from .drawn_cases import ", "from .drawn_cases import toy, "),
         (
             "    for design in (\n",
-            '    for design in (\n        Design("toy", "brass and steel", _toy),\n',
+            '    for design in (\n        Design("toy", "brass and steel", toy),\n',
         ),
     )
     assert "brass and steel" in toy.dentscope("campaign", "designs")
