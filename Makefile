@@ -4,7 +4,7 @@ VENV := .venv
 BIN := $(VENV)/bin
 STAMP := $(VENV)/.installed
 DESIGN ?= full
-SET ?= data/recordings/thesis-chapter-5
+SET ?= thesis-chapter-5
 WORKERS ?=
 LOCKS := $(wildcard requirements/*.txt)
 # the solver runs one case a core: more threads inside a case only disturb the others
