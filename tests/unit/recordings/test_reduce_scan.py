@@ -9,6 +9,7 @@ from dentscope.recordings.reduce.scan.crater import reduce_scan
 from dentscope.recordings.reduce.scan.kind import Options, reduce
 from dentscope.studies.synthetic.scans import random_truth, render
 
+EXCERPTS = Path(__file__).resolve().parents[2] / "data" / "surface-scans"
 REAL = Path(__file__).resolve().parents[4] / "shared" / "recordings" / "surface-scans"
 measured = pytest.mark.skipif(not REAL.is_dir(), reason="the measured surfaces are not here")
 
@@ -28,6 +29,16 @@ def test_a_scar_has_a_sliding_length():
     assert found.is_scar
     assert found.sliding.value == pytest.approx(truth.sliding, rel=0.05)
     assert found.depth.value == pytest.approx(truth.depth, rel=0.02)
+
+
+def test_radius_and_depth_in_excerpts_of_measured_surfaces():
+    # 499 um and about 0.3 um with a raised rim: tests/data/surface-scans/SOURCE.md
+    ball = Options(shows="ball", unit="um", step_m=8.98562e-7, reach_m=30e-6)
+    radius = reduce(EXCERPTS / "ball.csv", ball).values["tip_radius_m"]
+    assert radius.value == pytest.approx(499e-6, rel=0.01)
+    crater = reduce(EXCERPTS / "crater.csv", Options(unit="um", step_m=6.25e-7)).values
+    assert crater["permanent_depth_m"].value == pytest.approx(0.3e-6, abs=0.03e-6)
+    assert crater["pile_up_m"].value > 0.0
 
 
 @measured
