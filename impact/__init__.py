@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from .batch import Impacts, impacts
 from .beam import Modes, rod_modes
 from .integrate import Settings, arrays_of, strike, strike_batch, strike_many, strike_rows
 from .inverse import Inferred, Measured, infer
@@ -29,6 +30,7 @@ __all__ = [
     "ForceTransform",
     "Friction",
     "Impact",
+    "Impacts",
     "Inferred",
     "Instrument",
     "Measured",
@@ -42,6 +44,7 @@ __all__ = [
     "Support",
     "Trace",
     "arrays_of",
+    "impacts",
     "infer",
     "reference_impact",
     "rod_modes",

@@ -1,0 +1,321 @@
+"""Many impacts at once: arrays of conditions in, named columns out.
+
+Each row goes the quickest way that answers it: normal impacts of a rigid striker by work alone,
+all others by the time steps, there too with the law from its table.
+"""
+
+from __future__ import annotations
+
+import csv
+import math
+from collections.abc import Iterator, Mapping
+from dataclasses import dataclass, replace
+from importlib.util import find_spec
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from ..core.errors import Ending, InputError
+from ..core.observables import OBSERVABLES as MEASURED
+from ..models.base import ContactLaw
+from . import layout as c
+from .cells import Array
+from .energy_route import NAMES, energy_impacts, why_not
+from .integrate import Settings, arrays_of, strike_rows
+from .law_table import tabulated
+from .scene import Friction, Scene, Striker
+
+BY_WORK, BY_STEPS = "work", "steps"
+"""What the column `route` says."""
+
+QUICK = Settings(tolerance=1e-8)
+"""Accuracy of the time steps of a batch."""
+
+# What a normal impact without vibration leaves at nothing, and what it makes equal.
+_NOTHING = (
+    "rebound_spin_rad_s", "sliding_length_m", "scar_travel_m", "friction_impulse_ratio",
+    "tangential_impulse_Ns", "friction_work_J", "modal_energy_J", "support_energy_J",
+    "tangential_rebound_m_s", "energy_residual", "momentum_residual",
+)  # fmt: skip
+_SAME = {"touching_time_s": "contact_time_s", "tip_rebound_m_s": "rebound_speed_m_s"}
+
+
+@dataclass(frozen=True, eq=False)
+class Impacts:
+    """Conditions and observables of n impacts, by column; the names are those of trials.csv.
+
+    Parameters
+    ----------
+    columns
+        Each of shape (n,): the conditions, what trials.csv may hold, all other observables, then
+        `contacts`, `route` (`work` or `steps`) and `outcome`.
+    """
+
+    columns: Mapping[str, NDArray[Any]]
+
+    def __len__(self) -> int:
+        return len(next(iter(self.columns.values())))
+
+    def __getitem__(self, name: str) -> NDArray[Any]:
+        if name not in self.columns:
+            raise InputError(f"no column {name!r}", key="column", allowed=", ".join(self.columns))
+        return self.columns[name]
+
+    def rows(self) -> Iterator[dict[str, Any]]:
+        """Yield one dictionary an impact."""
+        for values in zip(*(x.tolist() for x in self.columns.values()), strict=True):
+            yield dict(zip(self.columns, values, strict=True))
+
+    def joined(self, other: Impacts) -> Impacts:
+        """Return these rows and those of `other`, which has the same columns."""
+        return Impacts({k: np.concatenate([v, other[k]]) for k, v in self.columns.items()})
+
+    def to_csv(self, path: Path | str) -> None:
+        """Write a CSV file, floats with all digits; an empty cell where there is no number."""
+        target = Path(path)
+        target.parent.mkdir(parents=True, exist_ok=True)
+        with target.open("w", newline="", encoding="utf-8") as stream:
+            writer = csv.writer(stream)
+            writer.writerow(self.columns)
+            for row in self.rows():
+                writer.writerow("" if x != x else x for x in row.values())
+
+    def to_frame(self) -> Any:
+        """Return a pandas data frame.
+
+        Raises
+        ------
+        InputError
+            pandas is not installed.
+        """
+        _needed("pandas")
+        import pandas as pd
+
+        return pd.DataFrame(dict(self.columns))
+
+    def to_parquet(self, path: Path | str) -> None:
+        """Write a Parquet file.
+
+        Raises
+        ------
+        InputError
+            pandas or pyarrow is not installed.
+        """
+        _needed("pyarrow")
+        target = Path(path)
+        target.parent.mkdir(parents=True, exist_ok=True)
+        self.to_frame().to_parquet(target, index=False)
+
+
+def _needed(library: str) -> None:
+    if find_spec(library) is None:
+        raise InputError(
+            f"{library} is not installed", key="output", allowed="pip install 'dentscope[tables]'"
+        )
+
+
+def impacts(
+    scene: Scene, *, speeds: ArrayLike | None = None, angles: ArrayLike | None = None,
+    friction: ArrayLike | None = None, masses: ArrayLike | None = None,
+    tangential: ArrayLike | None = None, spins: ArrayLike | None = None,
+    settings: Settings = QUICK,
+) -> Impacts:  # fmt: skip
+    """Simulate impacts of a scene over arrays of conditions, which are broadcast.
+
+    Parameters
+    ----------
+    scene
+        Gives whatever is left out, the law and all seams.
+    speeds
+        Normal approach speed of the contact point [m/s].
+    angles
+        Rod: between axis and flat. Sphere: between velocity and flat, which gives the tangential
+        speed unless `tangential` does [rad].
+    friction
+        Coefficient, at rest as in motion [-].
+    masses
+        Of the striker [kg]; its inertia follows.
+    tangential, spins
+        Of the approach [m/s, rad/s].
+    settings
+        Of the time steps.
+
+    Returns
+    -------
+    Impacts
+        In the order of the broadcast arrays, flattened.
+
+    Raises
+    ------
+    InputError
+        Shapes that cannot be broadcast, or a number outside its range.
+
+    Examples
+    --------
+    >>> from dentscope.core import Material
+    >>> from dentscope.impact import Approach, Striker, impacts, scene_of
+    >>> from dentscope.models import LAWS
+    >>> steel = Material(E=200e9, nu=0.3, Sy=760e6)
+    >>> ball = scene_of(LAWS["fitted"], sphere=steel, flat=steel,
+    ...                 striker=Striker(mass=0.004, tip_radius=0.005), approach=Approach(1.0))
+    >>> found = impacts(ball, speeds=[0.5, 1.0, 2.0])
+    >>> found["route"].tolist(), bool((np.diff(found["restitution"]) < 0).all())
+    (['work', 'work', 'work'], True)
+    """
+    given = _conditions(scene, speeds, angles, friction, masses, tangential, spins)
+    n = len(given["speed"])
+    values = {name: np.full(n, np.nan) for name in c.OBSERVABLES + c.COUNTS}
+    route = np.full(n, BY_STEPS, dtype="<U5")
+    normal = (given["tangential"] == 0.0) & (given["spin"] == 0.0) & (given["friction"] >= 0.0)
+    if scene.striker.length > 0.0:
+        normal &= np.abs(given["angle"] - 0.5 * math.pi) < 1e-12
+    upright = replace(scene.approach, angle=0.5 * math.pi, tangential=0.0, spin=0.0)
+    if normal.any() and not why_not(scene.with_(approach=upright)):
+        _by_work(scene, given, normal, values, route)
+    rest = np.flatnonzero(route == BY_STEPS)
+    if len(rest):
+        _by_steps(scene, {k: v[rest] for k, v in given.items()}, rest, values, settings)
+    return _named(scene, given, values, route)
+
+
+def _conditions(
+    scene: Scene, speeds: Any, angles: Any, friction: Any, masses: Any, tangential: Any, spins: Any
+) -> dict[str, Array]:
+    """Broadcast the conditions; what is left out is the scene's."""
+    approach, sphere = scene.approach, scene.striker.length == 0.0
+    named = {
+        "speed": (speeds, approach.speed), "angle": (angles, approach.angle),
+        "friction": (friction, scene.friction.mu), "mass": (masses, scene.striker.mass),
+        "tangential": (tangential, approach.tangential), "spin": (spins, approach.spin),
+    }  # fmt: skip
+    try:
+        arrays = np.broadcast_arrays(
+            *(
+                np.asarray(stated if given is None else given, dtype=float)
+                for given, stated in named.values()
+            )
+        )
+    except ValueError as error:
+        raise InputError(str(error), key="impacts", allowed="shapes that broadcast") from None
+    found = {k: np.array(a, dtype=float).ravel() for k, a in zip(named, arrays, strict=True)}
+    checks = {
+        "speed": (found["speed"] > 0.0, "above 0"),
+        "angle": ((found["angle"] > 0.0) & (found["angle"] < 0.5 * math.pi + 1e-9), "0 to pi/2"),
+        "friction": (found["friction"] >= 0.0, "0 or more"),
+        "mass": (found["mass"] > 0.0, "above 0"),
+        "tangential": (np.isfinite(found["tangential"]), "a number"),
+        "spin": (np.isfinite(found["spin"]), "a number"),
+    }
+    for key, (good, allowed) in checks.items():
+        if not np.all(good & np.isfinite(found[key])):
+            wrong = found[key][~(good & np.isfinite(found[key]))][0]
+            raise InputError(f"{wrong:g}", key=key, allowed=allowed)
+    if sphere and angles is not None and tangential is None:
+        slanted = np.abs(found["angle"] - 0.5 * math.pi) > 1e-12
+        along = -found["speed"] / np.tan(found["angle"])
+        found["tangential"] = np.where(slanted, along, 0.0)
+    return found
+
+
+def _by_work(
+    scene: Scene, given: Mapping[str, Array], normal: NDArray[np.bool_],
+    values: Mapping[str, Array], route: NDArray[Any],
+) -> None:  # fmt: skip
+    """Fill the rows that the work alone settles."""
+    found = energy_impacts(
+        scene.law, scene.pair, given["mass"][normal], given["speed"][normal], gravity=scene.gravity
+    )
+    answered = np.isfinite(found[:, 0])
+    rows = np.flatnonzero(normal)[answered]
+    route[rows] = BY_WORK
+    for k, name in enumerate(NAMES):
+        values[name][rows] = found[answered, k]
+    for name in _NOTHING:
+        values[name][rows] = 0.0
+    for name, same in _SAME.items():
+        values[name][rows] = values[same][rows]
+    values["ending"][rows], values["contacts"][rows] = c.DONE, 1.0
+
+
+def _by_steps(
+    scene: Scene, given: Mapping[str, Array], rows: NDArray[np.int64],
+    values: Mapping[str, Array], settings: Settings,
+) -> None:  # fmt: skip
+    """Fill the other rows: those of one angle, mass and friction share all but their speeds."""
+    scene = scene.with_(law=_quick(scene.law, scene))
+    keys = np.stack([given[k] for k in ("angle", "mass", "friction")], axis=1)
+    groups, which = np.unique(keys, axis=0, return_inverse=True)
+    for k, (angle, mass, mu) in enumerate(groups):
+        mine = np.flatnonzero(which.ravel() == k)
+        one = scene.with_(
+            striker=_of_mass(scene.striker, float(mass)),
+            friction=_friction(scene.friction, float(mu)),
+            approach=replace(
+                scene.approach, angle=float(angle) if scene.striker.length > 0.0 else 0.5 * math.pi
+            ),
+        )
+        body = np.tile(arrays_of(one, settings).body, (len(mine), 1))
+        body[:, c.V_X], body[:, c.V_SPIN] = given["tangential"][mine], given["spin"][mine]
+        # the stated speed is the contact point's
+        body[:, c.V_Y] = given["spin"][mine] * body[:, c.HALF_COS] - given["speed"][mine]
+        found = strike_rows(one, body, settings)
+        for j, name in enumerate(c.OBSERVABLES + c.COUNTS):
+            values[name][rows[mine]] = found[:, j]
+
+
+def _quick(law: ContactLaw, scene: Scene) -> ContactLaw:
+    """Return the law from its table if it can stand in one."""
+    table = tabulated(law)
+    try:
+        table.table(scene.pair)
+    except InputError:
+        return law
+    return table
+
+
+def _of_mass(striker: Striker, mass: float) -> Striker:
+    share = mass / striker.mass
+    return replace(striker, mass=mass, inertia=striker.inertia * share)
+
+
+def _friction(stated: Friction, mu: float) -> Friction:
+    if mu == stated.mu:
+        return stated
+    return replace(stated, mu=mu, mu_static=mu)
+
+
+def _named(
+    scene: Scene, given: Mapping[str, Array], values: Mapping[str, Array], route: NDArray[Any]
+) -> Impacts:
+    """Put the columns into the order of trials.csv, all others behind."""
+    n = len(route)
+    angle = given["angle"]
+    if scene.striker.length == 0.0:
+        angle = np.arctan2(given["speed"], np.abs(given["tangential"]))
+    columns: dict[str, NDArray[Any]] = {
+        "striker": np.full(n, scene.striker.name or "striker"),
+        "law": np.full(n, scene.law.name),
+        "mass_kg": given["mass"],
+        "angle_deg": np.degrees(angle),
+        "impact_speed_m_s": given["speed"],
+        "approach_tangential_m_s": given["tangential"],
+        "approach_spin_rad_s": given["spin"],
+        "friction": given["friction"],
+    }
+    measured = {row.column: row.simulated for row in MEASURED.values() if row.simulated in values}
+    columns |= {name: values[own] for name, own in measured.items()}
+    taken = set(measured.values())
+    columns |= {name: values[name] for name in c.OBSERVABLES if name not in taken}
+    columns["contacts"] = np.nan_to_num(values["contacts"]).astype(int)
+    columns["route"] = route
+    columns["outcome"] = _outcomes(values["ending"])
+    return Impacts(columns)
+
+
+def _outcomes(ending: Array) -> NDArray[Any]:
+    told = np.full(len(ending), Ending.NOT_CONVERGED.value, dtype="<U16")
+    told[ending == c.DONE] = Ending.COMPLETED.value
+    told[(ending == c.STEP_BUDGET) | (ending == c.CONTACT_BUDGET)] = Ending.STEP_LIMIT.value
+    return told
