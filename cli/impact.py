@@ -12,10 +12,12 @@ from ..core.errors import EXIT_NOT_CONVERGED
 from . import studies
 
 if TYPE_CHECKING:
-    from ..impact.result import Impact
-    from ..models.base import ContactLaw
+    from rich.table import Table
 
-_DEFAULT = ("hertz", "jackson-green", "ghaednia", "fitted")
+    from ..core.material import Pair
+    from ..impact.result import Impact
+    from ..impact.setup import Setup
+    from ..models.base import ContactLaw
 
 
 def impact(
@@ -25,21 +27,37 @@ def impact(
     law: Annotated[
         list[str] | None, typer.Option("--law", help="Contact law; repeat for several.")
     ] = None,
-    out: Annotated[Path, typer.Option(help="Folder for figures, CSV and HDF5.")] = Path(
+    new: Annotated[
+        str, typer.Option(help="Write a set-up to start from: ball, rod or oblique-ball.")
+    ] = "",
+    out: Annotated[Path, typer.Option(help="Folder for figures, CSV, HDF5 and Parquet.")] = Path(
         "build/impact"
     ),
 ) -> None:
-    """Simulate impacts and compare contact laws.
+    """Simulate impacts by the fitted law, published ones beside it.
 
-    Without a file: the thesis's rod dropped on the thesis's flat (chapter 3), restitution and
-    residual depth of each law beside the measured values. With a file (the keys of a recording
-    set's set.toml and [impact]): all observables of each law, histories, CSV and HDF5.
+    With a file (the keys of a recording set's set.toml, [impact] and [sweep]): all observables of
+    each law, histories, CSV and HDF5; every combination of [sweep] into CSV and Parquet. Without
+    one, in a checkout: the thesis's rod dropped on the thesis's flat (chapter 3), each law beside
+    the measured values.
     """
-    if setup is None:
+    if new:
+        _write_new(new, setup)
+    elif setup is None:
         studies.needed_for("`dentscope impact` without a set-up file")
-        _chapter3(law or [], out)
+        from .chapter3 import chapter3
+
+        leave_if_unfinished(chapter3(law or [], out))
     else:
         _from_file(setup, law or [], out)
+
+
+def _write_new(kind: str, path: Path | None) -> None:
+    from ..impact.template import write_template
+
+    target = path or Path(f"{kind}.toml")
+    write_template(kind, target)
+    typer.echo(f"{target}: change what differs, then: dentscope impact {target}")
 
 
 def laws_named(names: list[str], *, source: str = "command line", key: str = "--law") -> Any:
@@ -53,74 +71,17 @@ def laws_named(names: list[str], *, source: str = "command line", key: str = "--
     return [LAWS[name] for name in names]
 
 
-def _default_laws() -> list[ContactLaw]:
-    from ..models import LAWS
-
-    return [LAWS[name] for name in _DEFAULT if name in LAWS]
-
-
-def _chapter3(names: list[str], out: Path) -> None:
-    from rich.console import Console
-    from rich.table import Table
-
-    from ..impact.tables import impact_row, write_csv
-    from ..studies.thesis import chapter3
-
-    console = Console()
-    found = chapter3.bench()
-    laws = laws_named(names) if names else _default_laws()
-    masses = (found.striker.mass, found.mass_that_fits)
-    curves = chapter3.curves(found, laws, masses=masses)
-    console.print(
-        "Chapter 3: the upright rod dropped on the flat, as a rigid body; every law beside the "
-        "measured values (deviation in brackets).",
-        soft_wrap=True,
-    )
-    for mass in masses:
-        stated = mass == found.striker.mass
-        label = "as stated" if stated else "not stated: makes depths and restitution agree"
-        table = Table(title=f"mass {mass:g} kg ({label})", title_justify="left")
-        table.add_column("law", no_wrap=True)
-        for row in found.measured:
-            unit = "e" if row["observable"] == "restitution" else "depth, um,"
-            table.add_column(f"{unit}\nat {row['drop_height_m']:.2f} m", justify="right")
-        table.add_row("measured", *(_shown(row, row["value"]) for row in found.measured))
-        for curve in (c for c in curves if c.mass == mass):
-            cells = []
-            for row in found.measured:
-                ours, off = chapter3.deviation(curve, row)
-                cells.append(f"{_shown(row, ours)} ({off:+.0%})")
-            table.add_row(curve.law.name, *cells)
-        console.print(table)
-    console.print("The stated inputs contradict each other:")
-    for line in chapter3.contradictions(found):
-        console.print(f"  {line}", soft_wrap=True, highlight=False)
-    rows = [
-        {"law": c.law.name, "mass_kg": c.mass, "drop_height_m": float(h), **impact_row(i)}
-        for c in curves
-        for h, i in zip(c.heights, c.impacts, strict=True)
-    ]
-    write_csv(out / "chapter3.csv", rows)
-    chapter3.draw_chapter3(found, curves, out / "chapter3.png")
-    console.print(f"written: {out / 'chapter3.csv'}, {out / 'chapter3.png'}", soft_wrap=True)
-    _leave_if_unfinished([i for c in curves for i in c.impacts])
-
-
-def _shown(row: Any, value: float) -> str:
-    return f"{value:.3f}" if row["observable"] == "restitution" else f"{value * 1e6:.1f}"
-
-
 def _from_file(path: Path, names: list[str], out: Path) -> None:
     from rich.console import Console
-    from rich.table import Table
 
-    from ..impact.draw import draw_histories, draw_sweep
+    from ..impact.draw import draw_histories
     from ..impact.integrate import strike
     from ..impact.reference import reference_impact
     from ..impact.setup import read_setup
-    from ..impact.tables import SHOWN, impact_row, write_csv, write_hdf5
+    from ..impact.tables import impact_row, write_csv, write_hdf5
 
-    console = Console()
+    # names and units hold brackets, which are no markup here
+    console = Console(markup=False, highlight=False)
     setup = read_setup(path)
     laws = (
         laws_named(names)
@@ -137,34 +98,100 @@ def _from_file(path: Path, names: list[str], out: Path) -> None:
             # The next blow falls on the same spot: hardened crater, flattened tip.
             scene = scene.with_(spot=impact_here.spot)
         traces[law.name] = trace
-    table = Table(title=setup.name)
-    table.add_column("observable")
-    for name in traces:
-        table.add_column(name, justify="right")
-    table.add_column("unit")
-    for label, key, factor, unit in SHOWN:
-        values = [getattr(t.impact, key) for t in traces.values()]
-        # a tip that comes straight down has no tangential speed to be given back
-        table.add_row(
-            label, *("none" if math.isnan(v) else f"{factor * v:.4g}" for v in values), unit
-        )
-    console.print(table)
+    found = {name: trace.impact for name, trace in traces.items()}
+    console.print(setup.name)
+    for table in _beside_each_other(found, width=console.width):
+        console.print(table)
+    for law in laws:
+        line = _doubt(law, setup.scene(law).pair, found[law.name])
+        if line:
+            console.print(line, soft_wrap=True)
     write_csv(out / f"{path.stem}.csv", rows)
     write_hdf5(out / f"{path.stem}.h5", traces)
     draw_histories(list(traces.items()), out / f"{path.stem}.png")
     written = [out / f"{path.stem}{end}" for end in (".csv", ".h5", ".png")]
-    if setup.sweep:
-        sweeps = [
-            (law.name, [strike(setup.scene(law, speed=v), setup.settings) for v in setup.sweep])
-            for law in laws
-        ]
-        draw_sweep(setup.sweep, sweeps, out / f"{path.stem}-sweep.png")
-        written.append(out / f"{path.stem}-sweep.png")
+    unfinished = 0
+    if setup.sweep.count:
+        files, unfinished = _sweep(setup, laws, out / f"{path.stem}-sweep")
+        written += files
     console.print("written: " + ", ".join(str(w) for w in written), soft_wrap=True)
-    _leave_if_unfinished([t.impact for t in traces.values()])
+    if unfinished:
+        console.print(f"{unfinished} impacts of the sweep did not end: see the column outcome")
+    leave_if_unfinished(list(found.values()))
 
 
-def _leave_if_unfinished(impacts: list[Impact]) -> None:
+def _beside_each_other(found: dict[str, Impact], *, width: int) -> list[Table]:
+    """Tables of the observables, a law a column, as many columns as the width holds."""
+    from rich.box import SIMPLE_HEAD
+    from rich.table import Table
+
+    from ..impact.tables import SHOWN
+
+    shown = [
+        (f"{label} [{unit}]" if unit != "-" else label, key, scale)
+        for label, key, scale, unit in SHOWN
+        if any(abs(getattr(i, key)) > 0.0 for i in found.values())
+    ]
+    room = max(width, 60) - max(len(label) for label, _, _ in shown) - 3
+    tables: list[Table] = []
+    left = list(found)
+    while left:
+        taken: list[str] = []
+        used = 0
+        while left and (not taken or used + _column(left[0]) <= room):
+            used += _column(left[0])
+            taken.append(left.pop(0))
+        table = Table(box=SIMPLE_HEAD, pad_edge=False, padding=(0, 0, 0, 1))
+        table.add_column("", no_wrap=True)
+        for name in taken:
+            table.add_column(name, justify="right", no_wrap=True)
+        for label, key, scale in shown:
+            table.add_row(label, *(_cell(scale * getattr(found[name], key)) for name in taken))
+        tables.append(table)
+    return tables
+
+
+def _column(name: str) -> int:
+    """Width of a law's column with the space around it."""
+    return max(len(name), 8) + 2
+
+
+def _cell(value: float) -> str:
+    # a tip that comes straight down has no tangential speed to be given back
+    if math.isnan(value):
+        return "none"
+    return f"{value:.4g}" if value == 0.0 or abs(value) >= 1e-3 else f"{value:.1e}"
+
+
+def _doubt(law: ContactLaw, pair: Pair, found: Impact) -> str:
+    """Say what speaks against a law at this depth; empty if nothing does."""
+    from ..models.choose import demand, objection
+
+    against = objection(law, demand(pair, found.peak_depth_m))
+    return f"{law.name}: {against}" if against else ""
+
+
+def _sweep(setup: Setup, laws: list[ContactLaw], stem: Path) -> tuple[list[Path], int]:
+    """Run `[sweep]` for each law; return the files and how many impacts did not end."""
+    from importlib.util import find_spec
+
+    from ..impact.draw import draw_sweep
+
+    curves = {law.name: setup.swept(law) for law in laws}
+    first, *others = curves.values()
+    for other in others:
+        first = first.joined(other)
+    written = [stem.with_suffix(".csv"), stem.with_suffix(".png")]
+    first.to_csv(written[0])
+    draw_sweep(setup.sweep.swept, curves, written[1])
+    if find_spec("pandas") and find_spec("pyarrow"):
+        written.append(stem.with_suffix(".parquet"))
+        first.to_parquet(written[-1])
+    return written, int((first["outcome"] != "completed").sum())
+
+
+def leave_if_unfinished(impacts: list[Impact]) -> None:
+    """End with exit code 3 if an impact ran out of a budget."""
     stopped = [i for i in impacts if not i.outcome.completed]
     if stopped:
         typer.echo(f"{len(stopped)} of {len(impacts)} impacts: {stopped[0].outcome}", err=True)

@@ -164,7 +164,10 @@ class TargetTable(BodyTable):
 
 
 class StrikerTable(BodyTable):
-    """`[strikers.NAME]`: a rod with two round ends, or a sphere."""
+    """`[strikers.NAME]`: a rod with two round ends, or a sphere.
+
+    A sphere without `mass_kg` is a solid one of its radius and density.
+    """
 
     shape: Literal["rod", "sphere"]
     tip_radius_m: Positive
@@ -173,6 +176,20 @@ class StrikerTable(BodyTable):
     length_m: Positive | None = Field(default=None, validate_default=True)
     tip_flat_radius_m: NotNegative | None = None
     inertia_kg_m2: Positive | None = None
+
+    @model_validator(mode="before")
+    @classmethod
+    def _mass_of_a_sphere(cls, given: Any) -> Any:
+        if not isinstance(given, dict) or given.get("shape") != "sphere" or "mass_kg" in given:
+            return given
+        try:
+            density = Quantity.model_validate(given["density_kg_m3"])
+            radius = Quantity.model_validate(given.get("radius_m", given["tip_radius_m"]))
+        except (KeyError, ValueError):
+            return given
+        mass = 4.0 / 3.0 * math.pi * radius.value**3 * density.value
+        std = mass * math.hypot(density.relative, 3.0 * radius.relative)
+        return {**given, "mass_kg": {"value": mass, "std": std}}
 
     @field_validator("radius_m", "length_m")
     @classmethod

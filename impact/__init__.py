@@ -2,8 +2,9 @@
 
 from __future__ import annotations
 
-from .batch import Impacts, impacts
+from .batch import impacts
 from .beam import Modes, rod_modes
+from .columns import Impacts
 from .integrate import Settings, arrays_of, strike, strike_batch, strike_many, strike_rows
 from .inverse import Inferred, Measured, infer
 from .law_table import tabulated

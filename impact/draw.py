@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+import math
+from collections.abc import Mapping, Sequence
 from pathlib import Path
 from typing import Any
 
@@ -10,18 +11,29 @@ import numpy as np
 from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.figure import Figure
 
-from ..core.observables import OBSERVABLES
+from .columns import Impacts
 from .inverse import alpha_curve
 from .reference import Trace
 from .scene import Striker
 
-HISTORY_PANELS = (
-    ("tip_height_m", "tip height [um]", 1e6, "4.4"),
-    ("slip_m", "tangential displacement [um]", 1e6, "4.5"),
-    ("normal_velocity_m_s", "normal velocity [m/s]", 1.0, "4.6"),
-    ("sliding_velocity_m_s", "tangential velocity [m/s]", 1.0, "4.7"),
-    ("spin_rad_s", "spin [rad/s]", 1.0, "4.8"),
-    ("normal_force_N", "normal force [kN]", 1e-3, ""),
+LOOP = ("penetration_m", "depth [um]", 1e6, "normal_force_N", "normal force [kN]", 1e-3)
+AGAINST_TIME = (
+    ("tip_height_m", "tip height [um]", 1e6, 1e-9),
+    ("normal_force_N", "normal force [kN]", 1e-3, 0.0),
+    ("normal_velocity_m_s", "normal velocity [m/s]", 1.0, 0.0),
+    ("slip_m", "tangential displacement [um]", 1e6, 1e-9),
+    ("sliding_velocity_m_s", "tangential velocity [m/s]", 1.0, 1e-9),
+    ("spin_rad_s", "spin [rad/s]", 1.0, 1e-6),
+)
+"""Column, axis, scale, and what counts as nothing at all [SI]."""
+
+SWEPT = (
+    ("restitution", "restitution", 1.0),
+    ("permanent_depth_m", "crater depth [um]", 1e6),
+    ("contact_time_s", "contact time [ms]", 1e3),
+    ("peak_force_N", "largest force [kN]", 1e-3),
+    ("rebound_spin_rad_s", "rebound spin [rad/s]", 1.0),
+    ("sliding_length_m", "sliding length [um]", 1e6),
 )
 
 
@@ -32,36 +44,72 @@ def figure(rows: int, columns: int, *, size: tuple[float, float]) -> tuple[Figur
     return made, made.subplots(rows, columns, squeeze=False)
 
 
+def _panels(count: int) -> tuple[Figure, list[Any]]:
+    """Return a figure of `count` panels, three a row, and no empty one."""
+    columns = min(count, 3)
+    rows = math.ceil(count / columns)
+    made, axes = figure(rows, columns, size=(4.4 * columns, 3.6 * rows))
+    for spare in axes.flat[count:]:
+        spare.remove()
+    return made, list(axes.flat[:count])
+
+
 def draw_histories(traces: Sequence[tuple[str, Trace]], path: Path) -> None:
-    """Motion of the contact point and force against time (figures 4.4-4.8)."""
-    made, axes = figure(2, 3, size=(13.0, 7.0))
-    for axis, (name, label, factor, number) in zip(axes.flat, HISTORY_PANELS, strict=True):
-        for law, trace in traces:
-            axis.plot(1e3 * trace.column("time_s"), factor * trace.column(name), label=law)
-        axis.set(xlabel="time [ms]", ylabel=label, title=f"as Fig. {number}" if number else "")
+    """Force over depth, and against time whatever moves at all."""
+    shown = [
+        panel
+        for panel in AGAINST_TIME
+        if any(np.ptp(trace.column(panel[0])) > panel[3] for _, trace in traces)
+    ]
+    made, axes = _panels(1 + len(shown))
+    depth, depth_label, depth_scale, force, force_label, force_scale = LOOP
+    for law, trace in traces:
+        axes[0].plot(
+            depth_scale * trace.column(depth), force_scale * trace.column(force), label=law
+        )
+        for axis, (name, _, scale, _) in zip(axes[1:], shown, strict=True):
+            axis.plot(1e3 * trace.column("time_s"), scale * trace.column(name))
+    axes[0].set(xlabel=depth_label, ylabel=force_label)
+    for axis, (_, label, _, _) in zip(axes[1:], shown, strict=True):
+        axis.set(xlabel="time [ms]", ylabel=label)
+    for axis in axes:
         axis.grid(alpha=0.3)
-    axes[0, 0].legend(fontsize=7)
+    axes[0].legend(fontsize=7)
     save(made, path)
 
 
 def draw_sweep(
-    speeds: Sequence[float], curves: Sequence[tuple[str, Sequence[Any]]], path: Path
+    swept: Mapping[str, Sequence[float]], curves: Mapping[str, Impacts], path: Path
 ) -> None:
-    """Residual depth, restitution and spin against approach speed (figures 4.9-4.11)."""
-    made, axes = figure(1, 3, size=(13.0, 4.2))
-    panels = (OBSERVABLES[k] for k in ("permanent_depth_m", "restitution", "rebound_spin_rad_s"))
-    for axis, shown in zip(axes[0], panels, strict=True):
-        for law, impacts in curves:
-            values = [shown.scale * getattr(i, shown.simulated) for i in impacts]
-            axis.plot(speeds, values, label=law)
-        axis.set(xlabel="approach speed [m/s]", ylabel=shown.axis)
+    """Observables against the condition with the most values, one curve a law.
+
+    Where several conditions are swept, the others stand at their first values.
+    """
+    across = max(swept, key=lambda name: len(swept[name]))
+    lengths = [len(v) for v in swept.values()]
+    place = tuple(slice(None) if name == across else 0 for name in swept)
+    rows = np.arange(math.prod(lengths)).reshape(lengths)[place]
+    shown = [
+        panel
+        for panel in SWEPT
+        if any(
+            np.nanmax(np.abs(found[panel[0]][rows]), initial=0.0) > 0 for found in curves.values()
+        )
+    ]
+    made, axes = _panels(len(shown))
+    for axis, (name, label, scale) in zip(axes, shown, strict=True):
+        for law, found in curves.items():
+            axis.plot(swept[across], scale * found[name][rows], label=law)
+        axis.set(xlabel=across, ylabel=label)
         axis.grid(alpha=0.3)
-    axes[0, 0].legend(fontsize=7)
+    fixed = ", ".join(f"{name} = {v[0]:g}" for name, v in swept.items() if name != across)
+    made.suptitle(fixed, fontsize=9)
+    axes[0].legend(fontsize=7)
     save(made, path)
 
 
 def draw_alpha(striker: Striker, frictions: Sequence[float], path: Path) -> None:
-    """Sliding per normal travel over the angle (figure 5.3); above zero the tip sticks."""
+    """Sliding per normal travel over the angle; above zero the tip sticks."""
     made, axes = figure(1, 1, size=(6.5, 4.6))
     angles = np.radians(np.linspace(0.2, 89.8, 400))
     for mu in frictions:

@@ -15,9 +15,14 @@ from ..core.toml_input import InputTable, parse_model, read_toml
 from ..models.base import ContactLaw
 from .beam import rod_modes
 from .bodies import bodies_of
+from .columns import Impacts
 from .integrate import Settings
 from .scene import Approach, ForceTransform, Friction, Scene, Support
 from .support import half_space_radiation, plate_support, sprung_support
+from .sweep import SweepTable, mistakes_in, run_sweep
+
+DEFAULT_LAWS = ("fitted", "hertz", "jackson-green", "ghaednia")
+"""Ours first, then published ones beside it."""
 
 
 class ImpactTable(InputTable):
@@ -29,7 +34,7 @@ class ImpactTable(InputTable):
     drop_height_m: Positive | None = None
     approach_tangential_m_s: Quantity | None = None
     approach_spin_rad_s: Quantity = Quantity(value=0.0)
-    laws: tuple[str, ...] = ("ghaednia",)
+    laws: tuple[str, ...] = DEFAULT_LAWS
     modes: int = Field(default=0, ge=0, le=60)
     loss_factor: float = Field(default=0.0, ge=0.0, lt=1.0)
     support: Literal["rigid", "sprung", "plate", "half-space"] = "rigid"
@@ -39,13 +44,13 @@ class ImpactTable(InputTable):
     flight_s: float | None = Field(default=None, ge=0.0)
     max_steps: int = Field(default=20_000, ge=10)
     max_contacts: int = Field(default=50, ge=1)
-    sweep_m_s: tuple[Positive, ...] = ()
 
 
 class SetupFile(Rig):
     """The whole file."""
 
     impact: ImpactTable
+    sweep: SweepTable = SweepTable()
 
 
 @dataclass(frozen=True, slots=True)
@@ -55,7 +60,7 @@ class Setup:
     name: str
     laws: tuple[str, ...]
     repeats: int
-    sweep: tuple[float, ...]
+    sweep: SweepTable
     settings: Settings
     file: SetupFile
     source: str
@@ -63,6 +68,13 @@ class Setup:
     def scene(self, law: ContactLaw, *, speed: float | None = None) -> Scene:
         """Return the scene of one law; `speed` replaces the file's normal approach speed [m/s]."""
         return _scene(self.file, law, source=self.source, speed=speed)
+
+    def swept(self, law: ContactLaw) -> Impacts:
+        """Return the impacts of `[sweep]` by one law."""
+        return run_sweep(
+            self.sweep, self.scene(law), self.settings,
+            angle=math.radians(self.file.impact.angle_deg),
+        )  # fmt: skip
 
 
 def read_setup(path: Path) -> Setup:
@@ -75,7 +87,7 @@ def read_setup(path: Path) -> Setup:
     """
     source = str(path)
     found = parse_model(read_toml(path), SetupFile, source=source)
-    errors = tuple(_mistakes(found, source))
+    errors = (*_mistakes(found, source), *mistakes_in(found.sweep, source))
     if errors:
         raise InputErrors(errors)
     impact = found.impact
@@ -83,7 +95,7 @@ def read_setup(path: Path) -> Setup:
     settings = Settings(max_steps=impact.max_steps, max_contacts=impact.max_contacts, flight=flight)
     return Setup(
         found.name or path.stem, tuple(impact.laws), impact.repeats,
-        tuple(v.value for v in impact.sweep_m_s), settings, found, source,
+        found.sweep, settings, found, source,
     )  # fmt: skip
 
 

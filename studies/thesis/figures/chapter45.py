@@ -10,7 +10,6 @@ import numpy as np
 from ....campaigns import CaseRecord
 from ....core.material import Material
 from ....core.toml_input import read_toml
-from ....impact.draw import HISTORY_PANELS
 from ....impact.integrate import strike
 from ....impact.inverse import alpha_curve
 from ....impact.reference import Trace, reference_impact
@@ -25,6 +24,13 @@ from . import scars, sketches, tables
 NINE = ("jackson-green-2007", "ghaednia", "kogut-etsion", "kogut-komvopoulos", "ye-komvopoulos",
         "brake-2015", "brake-2012", "stronge", "thornton", "fitted")  # fmt: skip
 _SPEEDS = np.linspace(0.5, 4.0, 8)
+_PANELS = (
+    ("tip_height_m", "tip height [um]", 1e6, "4.4"),
+    ("slip_m", "tangential displacement [um]", 1e6, "4.5"),
+    ("normal_velocity_m_s", "normal velocity [m/s]", 1.0, "4.6"),
+    ("sliding_velocity_m_s", "tangential velocity [m/s]", 1.0, "4.7"),
+    ("spin_rad_s", "spin [rad/s]", 1.0, "4.8"),
+)
 Histories = list[tuple[ContactLaw, Trace]]
 _NOT_PRINTED = "The thesis prints no measured value in its text; only our curves are drawn."
 
@@ -39,7 +45,7 @@ def pictures(records: Sequence[CaseRecord]) -> list[Entry]:
         *sketches.chapters_4_and_5(),
         tables.properties("4.1"),
         tables.legend(NINE),
-        *(_history(panel, histories) for panel in HISTORY_PANELS[:5]),
+        *(_history(panel, histories) for panel in _PANELS),
         _over_speed("4.9", "Residual depth, 45 degrees", steep, "residual_m", 1e6, "[um]", None),
         _over_speed("4.10", "Restitution, 45 degrees", steep, "restitution", 1.0, "", 0.43),
         _over_speed("4.11", "Rebound spin, 45 degrees", steep, "rebound_spin_rad_s", 1.0,

@@ -96,7 +96,7 @@ def test_each_mistake_is_one_line(tmp_path: Path, old: str, new: str, line: str)
 
 
 def test_command_line_from_file(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
-    file = write(tmp_path, SETUP.replace("angle_deg", "sweep_m_s = [0.5, 2]\nangle_deg"))
+    file = write(tmp_path, SETUP + "[sweep]\nimpact_speed_m_s = [0.5, 2]\n")
     assert run(["impact", str(file), "--out", str(tmp_path / "out")]) == 0
     printed = capsys.readouterr().out
     assert "kinetic restitution" in printed

@@ -1,0 +1,70 @@
+"""`dentscope impact` without a file: the thesis's chapter 3 beside our own impacts."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+if TYPE_CHECKING:
+    from ..impact.result import Impact
+    from ..models.base import ContactLaw
+
+
+def _default_laws() -> list[ContactLaw]:
+    from ..impact.setup import DEFAULT_LAWS
+    from ..models import LAWS
+
+    return [LAWS[name] for name in DEFAULT_LAWS if name in LAWS]
+
+
+def chapter3(names: list[str], out: Path) -> list[Impact]:
+    """Print chapter 3 beside our impacts, write its files and return the impacts."""
+    from rich.console import Console
+    from rich.table import Table
+
+    from ..impact.tables import impact_row, write_csv
+    from ..studies.thesis import chapter3 as thesis
+    from .impact import laws_named
+
+    console = Console()
+    found = thesis.bench()
+    laws = laws_named(names) if names else _default_laws()
+    masses = (found.striker.mass, found.mass_that_fits)
+    curves = thesis.curves(found, laws, masses=masses)
+    console.print(
+        "Chapter 3: the upright rod dropped on the flat, as a rigid body; every law beside the "
+        "measured values (deviation in brackets).",
+        soft_wrap=True,
+    )
+    for mass in masses:
+        stated = mass == found.striker.mass
+        label = "as stated" if stated else "not stated: makes depths and restitution agree"
+        table = Table(title=f"mass {mass:g} kg ({label})", title_justify="left")
+        table.add_column("law", no_wrap=True)
+        for row in found.measured:
+            unit = "e" if row["observable"] == "restitution" else "depth, um,"
+            table.add_column(f"{unit}\nat {row['drop_height_m']:.2f} m", justify="right")
+        table.add_row("measured", *(_shown(row, row["value"]) for row in found.measured))
+        for curve in (c for c in curves if c.mass == mass):
+            cells = []
+            for row in found.measured:
+                ours, off = thesis.deviation(curve, row)
+                cells.append(f"{_shown(row, ours)} ({off:+.0%})")
+            table.add_row(curve.law.name, *cells)
+        console.print(table)
+    console.print("The stated inputs contradict each other:")
+    for line in thesis.contradictions(found):
+        console.print(f"  {line}", soft_wrap=True, highlight=False)
+    rows = [
+        {"law": c.law.name, "mass_kg": c.mass, "drop_height_m": float(h), **impact_row(i)}
+        for c in curves
+        for h, i in zip(c.heights, c.impacts, strict=True)
+    ]
+    write_csv(out / "chapter3.csv", rows)
+    thesis.draw_chapter3(found, curves, out / "chapter3.png")
+    console.print(f"written: {out / 'chapter3.csv'}, {out / 'chapter3.png'}", soft_wrap=True)
+    return [i for c in curves for i in c.impacts]
+
+
+def _shown(row: Any, value: float) -> str:
+    return f"{value:.3f}" if row["observable"] == "restitution" else f"{value * 1e6:.1f}"

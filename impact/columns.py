@@ -1,0 +1,89 @@
+"""The result of many impacts: columns with the names of trials.csv, to a file or a data frame."""
+
+from __future__ import annotations
+
+import csv
+from collections.abc import Iterator, Mapping
+from dataclasses import dataclass
+from importlib.util import find_spec
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ..core.errors import InputError
+
+
+@dataclass(frozen=True, eq=False)
+class Impacts:
+    """Conditions and observables of n impacts, by column; the names are those of trials.csv.
+
+    Parameters
+    ----------
+    columns
+        Each of shape (n,): the conditions, what trials.csv may hold, all other observables, then
+        `contacts`, `route` (`work` or `steps`) and `outcome`.
+    """
+
+    columns: Mapping[str, NDArray[Any]]
+
+    def __len__(self) -> int:
+        return len(next(iter(self.columns.values())))
+
+    def __getitem__(self, name: str) -> NDArray[Any]:
+        if name not in self.columns:
+            raise InputError(f"no column {name!r}", key="column", allowed=", ".join(self.columns))
+        return self.columns[name]
+
+    def rows(self) -> Iterator[dict[str, Any]]:
+        """Yield one dictionary an impact."""
+        for values in zip(*(x.tolist() for x in self.columns.values()), strict=True):
+            yield dict(zip(self.columns, values, strict=True))
+
+    def joined(self, other: Impacts) -> Impacts:
+        """Return these rows and those of `other`, which has the same columns."""
+        return Impacts({k: np.concatenate([v, other[k]]) for k, v in self.columns.items()})
+
+    def to_csv(self, path: Path | str) -> None:
+        """Write a CSV file, floats with all digits; an empty cell where there is no number."""
+        target = Path(path)
+        target.parent.mkdir(parents=True, exist_ok=True)
+        with target.open("w", newline="", encoding="utf-8") as stream:
+            writer = csv.writer(stream)
+            writer.writerow(self.columns)
+            for row in self.rows():
+                writer.writerow("" if x != x else x for x in row.values())
+
+    def to_frame(self) -> Any:
+        """Return a pandas data frame.
+
+        Raises
+        ------
+        InputError
+            pandas is not installed.
+        """
+        _needed("pandas")
+        import pandas as pd
+
+        return pd.DataFrame(dict(self.columns))
+
+    def to_parquet(self, path: Path | str) -> None:
+        """Write a Parquet file.
+
+        Raises
+        ------
+        InputError
+            pandas or pyarrow is not installed.
+        """
+        _needed("pyarrow")
+        target = Path(path)
+        target.parent.mkdir(parents=True, exist_ok=True)
+        self.to_frame().to_parquet(target, index=False)
+
+
+def _needed(library: str) -> None:
+    if find_spec(library) is None:
+        raise InputError(
+            f"{library} is not installed", key="output", allowed="pip install 'dentscope[tables]'"
+        )

@@ -1,0 +1,136 @@
+"""`[sweep]` of a set-up: conditions that run through values, every combination simulated."""
+
+from __future__ import annotations
+
+import math
+from typing import Annotated, Any, Literal
+
+import numpy as np
+from pydantic import AfterValidator, BeforeValidator, Field, ValidationError
+
+from ..core.errors import InputError
+from ..core.toml_input import InputTable
+from .batch import impacts
+from .cells import Array
+from .columns import Impacts
+from .integrate import Settings
+from .scene import Scene
+
+MOST = 10_000_000
+"""Largest number of combinations."""
+
+_ALLOWED = (
+    'a list of numbers, or { from = ..., to = ..., count = ..., spacing = "linear" or "log" }'
+)
+
+
+class _Range(InputTable):
+    first: float = Field(alias="from")
+    last: float = Field(alias="to")
+    count: int = Field(ge=2, le=1_000_000, strict=True)
+    spacing: Literal["linear", "log"] = "linear"
+
+
+def _spread(given: Any) -> Any:
+    """Return the numbers of a list or of a range."""
+    if isinstance(given, dict):
+        try:
+            span = _Range.model_validate(given)
+        except ValidationError:
+            raise ValueError(_ALLOWED) from None
+        if span.spacing == "linear":
+            return tuple(np.linspace(span.first, span.last, span.count).tolist())
+        if not (span.first > 0.0 and span.last > 0.0):
+            raise ValueError("both ends above 0 for logarithmic spacing")
+        return tuple(np.geomspace(span.first, span.last, span.count).tolist())
+    whole = isinstance(given, list | tuple) and len(given) > 0
+    if not whole or any(isinstance(x, bool) or not isinstance(x, int | float) for x in given):
+        raise ValueError(_ALLOWED)
+    return tuple(float(x) for x in given)
+
+
+def _all(accept: Any, allowed: str) -> AfterValidator:
+    def check(values: tuple[float, ...]) -> tuple[float, ...]:
+        if not all(accept(x) for x in values):
+            raise ValueError(f"each {allowed}")
+        return values
+
+    return AfterValidator(check)
+
+
+_Values = Annotated[tuple[float, ...], BeforeValidator(_spread)]
+_Positive = Annotated[_Values, _all(lambda x: x > 0.0, "above 0")]
+
+
+class SweepTable(InputTable):
+    """`[sweep]`: values of the conditions named; each a list or a range."""
+
+    impact_speed_m_s: _Positive = ()
+    drop_height_m: _Positive = ()
+    angle_deg: Annotated[_Values, _all(lambda x: 0.0 < x <= 90.0, "above 0 and up to 90")] = ()
+    friction: Annotated[_Values, _all(lambda x: x >= 0.0, "0 or more")] = ()
+    mass_kg: _Positive = ()
+    approach_tangential_m_s: _Values = ()
+    approach_spin_rad_s: _Values = ()
+
+    @property
+    def swept(self) -> dict[str, tuple[float, ...]]:
+        """The conditions that the file names, in the order of the keys."""
+        return {name: tuple(v) for name, v in self.model_dump().items() if v}
+
+    @property
+    def count(self) -> int:
+        """Number of combinations; 0 without any condition."""
+        return math.prod(len(v) for v in self.swept.values()) if self.swept else 0
+
+
+def mistakes_in(sweep: SweepTable, source: str) -> list[InputError]:
+    """What the single keys cannot show."""
+    found = []
+    if sweep.impact_speed_m_s and sweep.drop_height_m:
+        found.append(
+            InputError(
+                "both speed and height", source=source, key="sweep",
+                allowed="impact_speed_m_s or drop_height_m",
+            )
+        )  # fmt: skip
+    if sweep.count > MOST:
+        found.append(
+            InputError(
+                f"{sweep.count} combinations", source=source, key="sweep", allowed=f"up to {MOST}"
+            )
+        )
+    return found
+
+
+def run_sweep(sweep: SweepTable, scene: Scene, settings: Settings, *, angle: float) -> Impacts:
+    """Simulate every combination; what is not swept is the scene's.
+
+    Parameters
+    ----------
+    sweep
+        At least one condition.
+    scene, settings
+        The set-up's.
+    angle
+        Stated angle [rad]: of a rod's axis or of a sphere's velocity.
+    """
+    names = list(sweep.swept)
+    grid = np.meshgrid(*sweep.swept.values(), indexing="ij")
+    given: dict[str, Array] = {name: g.ravel() for name, g in zip(names, grid, strict=True)}
+    rod = scene.striker.length > 0.0
+    angles = np.radians(given["angle_deg"]) if "angle_deg" in given else np.asarray(angle)
+    speeds: Any = given.get("impact_speed_m_s")
+    if "drop_height_m" in given:
+        speeds = np.sqrt(2.0 * scene.gravity * given["drop_height_m"])
+        # a sphere's fall gives its whole speed, of which the angle takes the normal part
+        speeds = speeds if rod else speeds * np.sin(angles)
+    tangential = given.get("approach_tangential_m_s")
+    slanted = not rod and "angle_deg" not in given and math.isclose(angle, 0.5 * math.pi)
+    if tangential is None and (rod or slanted):
+        tangential = np.asarray(scene.approach.tangential)
+    return impacts(
+        scene, speeds=speeds, angles=angles, friction=given.get("friction"),
+        masses=given.get("mass_kg"), tangential=tangential, spins=given.get("approach_spin_rad_s"),
+        settings=settings,
+    )  # fmt: skip

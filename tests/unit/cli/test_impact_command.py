@@ -1,0 +1,85 @@
+"""`dentscope impact`: templates run as they are, sweeps go to files, nothing is cut at 80."""
+
+from __future__ import annotations
+
+import csv
+from pathlib import Path
+
+import pytest
+from dentscope.cli import run
+from dentscope.impact.setup import read_setup
+from dentscope.impact.template import KINDS
+from dentscope.models.published.hertz import HERTZ
+
+
+@pytest.mark.parametrize("kind", KINDS)
+def test_a_template_runs_through_unchanged(
+    kind: str, tmp_path: Path, capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setenv("COLUMNS", "80")
+    file = tmp_path / f"{kind}.toml"
+    assert run(["impact", "--new", kind, str(file)]) == 0
+    capsys.readouterr()
+    assert run(["impact", str(file), "--out", str(tmp_path / "out")]) == 0
+    printed = capsys.readouterr().out
+    table = printed.split("written:")[0].splitlines()
+    assert max(len(line) for line in table) <= 80
+    assert "…" not in printed
+    assert "crater depth [um]" in printed
+    heads = [line.split() for line in table if "fitted" in line]
+    assert heads[0][0] == "fitted"
+    for end in (".csv", ".h5", ".png", "-sweep.csv", "-sweep.png"):
+        assert (tmp_path / "out" / f"{kind}{end}").stat().st_size > 100
+    with (tmp_path / "out" / f"{kind}-sweep.csv").open() as stream:
+        rows = list(csv.DictReader(stream))
+    setup = read_setup(file)
+    assert len(rows) == setup.sweep.count * len(setup.laws)
+    assert {row["outcome"] for row in rows} == {"completed"}
+    # by whoever: a contact gives nothing back that it did not get
+    assert all(float(row["energetic_restitution"]) < 1.0 + 1e-6 for row in rows)
+
+
+def test_a_spheres_mass_follows_from_radius_and_density(tmp_path: Path) -> None:
+    file = tmp_path / "ball.toml"
+    assert run(["impact", "--new", "ball", str(file)]) == 0
+    striker = read_setup(file).scene(HERTZ).striker
+    # 4/3 pi (5 mm)^3 7800 kg/m^3, by hand
+    assert striker.mass == pytest.approx(4.0841e-3, rel=1e-4)
+    assert striker.inertia == pytest.approx(0.4 * 4.0841e-3 * 25e-6, rel=1e-4)
+
+
+def test_a_template_overwrites_nothing(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    file = tmp_path / "mine.toml"
+    file.write_text("mine")
+    assert run(["impact", "--new", "ball", str(file)]) == 2
+    assert "exists (allowed: a name that is free)" in capsys.readouterr().err
+    assert file.read_text() == "mine"
+    assert run(["impact", "--new", "cube"]) == 2
+    assert "no set-up 'cube' (allowed: ball, rod, oblique-ball)" in capsys.readouterr().err
+
+
+@pytest.mark.parametrize(
+    ("sweep", "message"),
+    [
+        ("speeds = [1, 2]", "sweep.speeds: unknown key"),
+        ("friction = 0.1", "sweep.friction"),
+        ("friction = [0.1, -0.2]", "each 0 or more"),
+        ("angle_deg = { from = 10, to = 100, count = 3 }", "each above 0 and up to 90"),
+        ("mass_kg = { from = 1, count = 3 }", "a list of numbers, or"),
+        ('mass_kg = { from = 0, to = 1, count = 3, spacing = "log" }', "both ends above 0"),
+        ("impact_speed_m_s = [1]\ndrop_height_m = [1]", "both speed and height"),
+        ("friction = []", "a list of numbers, or"),
+    ],
+)
+def test_a_bad_sweep_is_one_line(
+    sweep: str, message: str, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    file = tmp_path / "ball.toml"
+    assert run(["impact", "--new", "ball", str(file)]) == 0
+    text = file.read_text()
+    file.write_text(text[: text.index("[sweep]")] + f"[sweep]\n{sweep}\n")
+    capsys.readouterr()
+    assert run(["impact", str(file)]) == 2
+    told = capsys.readouterr().err
+    assert message in told
+    assert len(told.strip().splitlines()) == 1
