@@ -78,6 +78,25 @@ def test_a_mechanism(recipe):
     assert "toy" in told
 
 
+def test_an_observable(recipe):
+    toy = recipe("Add an observable")
+    row = (
+        'Observable(column="contact_work_J", label="work kept", meaning="kept by the contact", '
+        'instrument="force", phase="unloading", log=True, power=2.0, simulated="contact_work_J"),'
+    )
+    toy.change("core/observables.py", ("_ROWS = (\n", f"_ROWS = (\n    {row}\n"))
+    folder = shutil.copytree(ROOT / "data/recordings/leeb-steel-300hv", toy.work / "set")
+    lines = (folder / "trials.csv").read_text().splitlines()
+    work = ["contact_work_J", "0.0075", "0.0018", "0.06"]
+    text = "\n".join(f"{line},{w}" for line, w in zip(lines, work, strict=True))
+    (folder / "trials.csv").write_text(text + "\n")
+    with (folder / "set.toml").open("a") as stream:
+        stream.write("contact_work_J = 0.0005\n")
+    assert "contact_work_J: 3 values" in toy.dentscope("recordings", "check", "set")
+    code, told = toy.pytest("tests/contract/test_observables.py")
+    assert code == 0, told
+
+
 KIND = '''
 """Two heights on a line: fall and rebound."""
 
