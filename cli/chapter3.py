@@ -24,7 +24,7 @@ def chapter3(names: list[str], out: Path) -> list[Impact]:
 
     from ..impact.tables import impact_row, write_csv
     from ..studies.thesis import chapter3 as thesis
-    from .impact import laws_named
+    from .laws import laws_named
 
     console = Console()
     found = thesis.bench()

@@ -4,12 +4,13 @@ from __future__ import annotations
 
 import math
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated, Any
+from typing import TYPE_CHECKING, Annotated
 
 import typer
 
 from ..core.errors import EXIT_NOT_CONVERGED
 from . import studies
+from .laws import laws_named
 
 if TYPE_CHECKING:
     from rich.table import Table
@@ -58,17 +59,6 @@ def _write_new(kind: str, path: Path | None) -> None:
     target = path or Path(f"{kind}.toml")
     write_template(kind, target)
     typer.echo(f"{target}: change what differs, then: dentscope impact {target}")
-
-
-def laws_named(names: list[str], *, source: str = "command line", key: str = "--law") -> Any:
-    """Return the laws of these names; an unknown one is an error that lists the known."""
-    from ..core.errors import InputError
-    from ..models import LAWS
-
-    for name in names:
-        if name not in LAWS:
-            raise InputError(f"no law {name!r}", source=source, key=key, allowed=", ".join(LAWS))
-    return [LAWS[name] for name in names]
 
 
 def _from_file(path: Path, names: list[str], out: Path) -> None:

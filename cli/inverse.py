@@ -76,7 +76,7 @@ def _tables(console: Any, names: list[str]) -> None:
     from ..core.toml_input import read_toml
     from ..studies.thesis.chapter3 import REFERENCE
     from ..studies.thesis.chapter5 import simulate_experiment, thesis_rod
-    from .impact import laws_named
+    from .laws import laws_named
 
     data = read_toml(REFERENCE / "chapter45.toml")
     masses = (data["rod"]["mass_kg"], data["mass_that_fits"]["value_kg"])

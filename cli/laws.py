@@ -31,6 +31,16 @@ COLUMNS = (
 _POINTS = 120
 
 
+def laws_named(names: list[str], *, source: str = "command line", key: str = "--law") -> Any:
+    """Return the laws of these names; an unknown one is an error that lists the known."""
+    from ..models import LAWS
+
+    for name in names:
+        if name not in LAWS:
+            raise InputError(f"no law {name!r}", source=source, key=key, allowed=", ".join(LAWS))
+    return [LAWS[name] for name in names]
+
+
 @app.command("list")
 def list_laws() -> None:
     """Every law: what it is for, and whether its own paper was read."""
