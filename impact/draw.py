@@ -11,6 +11,7 @@ import numpy as np
 from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.figure import Figure
 
+from ..core.observables import OBSERVABLES
 from .columns import Impacts
 from .inverse import alpha_curve
 from .reference import Trace
@@ -28,13 +29,10 @@ AGAINST_TIME = (
 """Column, axis, scale, and what counts as nothing at all [SI]."""
 
 SWEPT = (
-    ("restitution", "restitution", 1.0),
-    ("permanent_depth_m", "crater depth [um]", 1e6),
-    ("contact_time_s", "contact time [ms]", 1e3),
-    ("peak_force_N", "largest force [kN]", 1e-3),
-    ("rebound_spin_rad_s", "rebound spin [rad/s]", 1.0),
-    ("sliding_length_m", "sliding length [um]", 1e6),
-)
+    "restitution", "permanent_depth_m", "contact_time_s", "peak_force_N", "rebound_spin_rad_s",
+    "sliding_length_m",
+)  # fmt: skip
+"""Observables that the picture of a sweep shows, where they are anything."""
 
 
 def figure(rows: int, columns: int, *, size: tuple[float, float]) -> tuple[Figure, Any]:
@@ -90,17 +88,16 @@ def draw_sweep(
     place = tuple(slice(None) if name == across else 0 for name in swept)
     rows = np.arange(math.prod(lengths)).reshape(lengths)[place]
     shown = [
-        panel
-        for panel in SWEPT
-        if any(
-            np.nanmax(np.abs(found[panel[0]][rows]), initial=0.0) > 0 for found in curves.values()
-        )
+        name
+        for name in SWEPT
+        if any(np.nanmax(np.abs(found[name][rows]), initial=0.0) > 0.0 for found in curves.values())
     ]
     made, axes = _panels(len(shown))
-    for axis, (name, label, scale) in zip(axes, shown, strict=True):
+    for axis, name in zip(axes, shown, strict=True):
+        told = OBSERVABLES[name]
         for law, found in curves.items():
-            axis.plot(swept[across], scale * found[name][rows], label=law)
-        axis.set(xlabel=across, ylabel=label)
+            axis.plot(swept[across], told.scale * found[name][rows], label=law)
+        axis.set(xlabel=across, ylabel=told.axis)
         axis.grid(alpha=0.3)
     fixed = ", ".join(f"{name} = {v[0]:g}" for name, v in swept.items() if name != across)
     made.suptitle(fixed, fontsize=9)

@@ -20,7 +20,8 @@ CHOICES = {
     ("impact/energy_route.py", "NAMES"): "order of a computed row",
     ("recordings/reduce/mocap/reduction.py", "_NAMES"): "order of a computed vector",
     ("recordings/reduce/mocap/point.py", "_NAMES"): "order of a computed vector",
-    ("impact/draw.py", "panels"): "which observables a figure shows",
+    ("impact/batch.py", "_NOTHING"): "what a normal impact without vibration lacks",
+    ("impact/draw.py", "SWEPT"): "which observables a figure shows",
 }
 """Tuples that choose or order observables and say nothing of them."""
 
