@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from .adhesion import Adhesion
+from .air_drag import AirDrag
 from .approach import ImpactSpeedLoss, Tilt
 from .base import Mechanism, Parameter, Surroundings
 from .contact_damping import ContactDamping
@@ -39,6 +40,7 @@ MECHANISMS: tuple[Mechanism, ...] = (
     HardenedLayer(),
     SizeEffect(),
     ImpactSpeedLoss(),
+    AirDrag(),
     Tilt(),
 )
 """Every mechanism by the names and in the order of docs/diagnose.md."""

@@ -54,12 +54,19 @@ def bead() -> Scene:
     return scene_of(LAWS["hertz"], sphere=GEL, flat=GEL, striker=striker, approach=Approach(0.1))
 
 
+def hollow_ball() -> Scene:
+    """A light ball dropped from 0.46 m: a ping-pong ball's size and mass."""
+    striker = Striker(mass=0.0027, tip_radius=0.02)
+    return scene_of(LAWS["fitted"], sphere=HARD, flat=MILD, striker=striker, approach=Approach(3.0))
+
+
 RIGS: dict[str, list[Situation]] = {
     "balls": [(ball(r, 1.0), OIL) for r in (2e-3, 8e-3)],
     "oblique ball": [(ball(8e-3, 1.0, tangential=0.7), Surroundings())],
     "upright rod": [(rod(90.0), HOT_DROP)],
     "leaning rod": [(rod(50.0), HOT_DROP)],
     "bead": [(bead(), Surroundings())],
+    "light ball": [(hollow_ball(), Surroundings(from_height=True))],
 }
 """What the mechanisms of the library meet somewhere."""
 

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from dataclasses import replace
 
 import numpy as np
 import pytest
@@ -82,3 +83,27 @@ def test_one_more_influence_on_the_flow_stress_multiplies() -> None:
     assert both.flow.profile(scene(), table) == pytest.approx(
         2.0 * alone.flow.profile(scene(), table), rel=1e-12
     )
+
+
+def test_air_takes_from_a_light_ball_and_not_from_a_rod() -> None:
+    drag = named("air-drag")
+    ball = scene().with_(
+        striker=Striker(mass=0.0027, tip_radius=0.02), pair=replace(scene().pair, R=0.02),
+        approach=Approach(math.sqrt(2.0 * 9.81 * 0.5)),
+    )  # fmt: skip
+    dropped, timed = Surroundings(from_height=True, ambient=288.15), Surroundings(ambient=288.15)
+    values = {"drag": 1.0, "reading_m": 1e-3}
+    # R. M. French's C_D of 0.445: v = v_t sqrt(1 - exp(-2 g h/v_t^2)) after a drop of 0.5 m
+    v_t = math.sqrt(0.0027 * 9.81 / (0.5 * 1.225 * 0.445 * math.pi * 0.02**2))
+    published = v_t * math.sqrt(-math.expm1(-2.0 * 9.81 * 0.5 / v_t**2))
+    assert drag.attach(ball, values, dropped).approach.speed == pytest.approx(published, rel=0.01)
+    near = drag.attach(ball, values, timed).approach.speed / ball.approach.speed
+    assert 0.9995 < near < 1.0
+    # read 0.3 m above the flat on either side, a ball seems to give back 2 to 4 % less
+    seen = {"restitution": np.array([0.9]), "rebound_speed_m_s": np.array([2.8])}
+    after = drag.after([(ball, timed)], {"drag": 1.0, "reading_m": 0.3}, seen)
+    assert 0.02 < 1.0 - after["restitution"][0] / 0.9 < 0.04
+    assert seen["restitution"][0] == 0.9
+    assert "at most" in drag.applies([(scene(), AROUND)])
+    assert "oil" in drag.applies([(ball, Surroundings(fluid="oil"))])
+    assert drag.applies([(ball, dropped)]) == ""

@@ -1,0 +1,127 @@
+"""Air brakes the striker in flight, before the contact and after it."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Mapping, Sequence
+from dataclasses import replace
+from typing import ClassVar
+
+import numpy as np
+
+from ...core.drag import DRAG_COEFFICIENT_STD, Fluid, air
+from ...impact import Scene
+from ...impact.drag import flown
+from .base import Array, Literature, Mechanism, Parameter, Situation, Surroundings, Values
+
+_GASES = ("", "air", "none", "dry", "nitrogen")
+_VISIBLE = 5e-4
+"""Smallest change of a speed that motion was ever read with."""
+_STOPPED = 0.8
+
+
+class AirDrag(Mechanism):
+    """Drag between contact and reading, which was taken for a flight under gravity alone.
+
+    A speed that follows from a height of fall is too high; a speed read above the flat and carried
+    to it by gravity is too high before the contact and too low after it.
+    """
+
+    name = "air-drag"
+    title = "air brakes the striker between reading and contact"
+    equations = (
+        "(m + m_a) v' = -(m - rho V) g - k C_D(Re) A rho v |v|/2 from release, or from a distance "
+        "s above the flat, to the contact and back over s"
+    )
+    parameters = (
+        Parameter(
+            "drag", "-", 0.8, 1.25, "log", 0.0,
+            f"times the standard curve (Clift, Grace and Weber 1978), which is good to "
+            f"{DRAG_COEFFICIENT_STD:.0%}; seams, spin and a stirred room do the rest", nodes=3,
+            literature=Literature(1.0, "Clift, Grace and Weber, Bubbles, Drops, and Particles"),
+        ),
+        Parameter(
+            "reading_m", "m", 1e-3, 1.0, "log", 0.0,
+            "where speeds were read: light gates and scans close to the flat, parabolas of whole "
+            "bounces far from it", nodes=5,
+        ),
+    )  # fmt: skip
+    direction: ClassVar[Mapping[str, int]] = {"restitution": -1, "permanent_depth_m": -1}
+    form: ClassVar[float] = 0.05
+
+    def applies(self, situations: Sequence[Situation]) -> str:
+        """Needs a light or a fast striker in air."""
+        around = situations[0][1]
+        if around.fluid.strip().lower() not in _GASES:
+            return f"the fluid is stated as {around.fluid.strip()}, not air"
+        most = {p.name: p.high for p in self.parameters}
+        seen = {"restitution": np.ones(len(situations)), "rebound_speed_m_s": np.ones(1)}
+        taken = float(np.max(1.0 - self.after(situations, most, seen)["restitution"]))
+        before = max(1.0 - _arriving(s, most, a) / s.approach.speed for s, a in situations)
+        largest = max(taken, before)
+        if largest < _VISIBLE:
+            return f"air takes at most {largest:.1e} of a speed"
+        if largest > _STOPPED:
+            return f"air takes {largest:.0%} of a speed: no flight under gravity was read"
+        return ""
+
+    def attach(self, scene: Scene, values: Values, around: Surroundings) -> Scene:
+        """Slow the approach."""
+        if values["drag"] == 0.0:
+            return scene
+        speed = _arriving(scene, values, around)
+        return scene.with_(approach=replace(scene.approach, speed=speed))
+
+    def after(
+        self, situations: Sequence[Situation], values: Values, seen: Mapping[str, Array]
+    ) -> Mapping[str, Array]:
+        """Refer the rebound, as it was read, to the approach as it was stated."""
+        if values["drag"] == 0.0:
+            return seen
+        read, left = np.empty(len(situations)), np.empty(len(situations))
+        for i, (scene, around) in enumerate(situations):
+            left[i] = seen["restitution"][i] * _arriving(scene, values, around)
+            read[i] = _read_after(scene, left[i], values, around)
+        stated = np.array([scene.approach.speed for scene, _ in situations])
+        kept = np.divide(read, left, out=np.ones_like(left), where=left > 0.0)
+        return {
+            **seen,
+            "restitution": np.where(left > 0.0, read / stated, seen["restitution"]),
+            "rebound_speed_m_s": seen["rebound_speed_m_s"] * kept,
+        }
+
+
+def _air(values: Values, around: Surroundings) -> Fluid:
+    """Air whose drag is `drag` times the standard one: density scaled, Reynolds number kept."""
+    still = air(around.ambient)
+    return Fluid(values["drag"] * still.density, values["drag"] * still.viscosity)
+
+
+def _arriving(scene: Scene, values: Values, around: Surroundings) -> float:
+    """Normal speed at the flat of a striker whose stated speed is gravity's alone [m/s]."""
+    stated, g = scene.approach.speed, scene.gravity
+    whole = stated**2 / (2.0 * g) if g > 0.0 else math.inf
+    fall = whole if around.from_height else min(values["reading_m"], whole)
+    start = math.sqrt(max(stated**2 - 2.0 * g * fall, 0.0))
+    arrived = flown(
+        scene.striker, _air(values, around), normal=-start, rise=-fall,
+        tangential=scene.approach.tangential, angle=scene.approach.angle, gravity=g,
+    )  # fmt: skip
+    # one that air stops keeps a twentieth, so that there is an impact
+    return float(np.fmax(-arrived.normal, 0.05 * stated))
+
+
+def _read_after(scene: Scene, left: float, values: Values, around: Surroundings) -> float:
+    """Rebound speed that a reading above the flat, carried back by gravity, gives [m/s]."""
+    g = scene.gravity
+    # a flight is read while it rises: to half the height that it would reach
+    peak = left**2 / (2.0 * g) if g > 0.0 else math.inf
+    rise = min(values["reading_m"], 0.5 * peak)
+    if not rise > 0.0:
+        return left
+    seen = flown(
+        scene.striker, _air(values, around), normal=left, rise=rise,
+        angle=scene.approach.angle, gravity=g,
+    )  # fmt: skip
+    there = float(seen.normal)
+    return math.sqrt(there**2 + 2.0 * g * rise) if math.isfinite(there) else 0.0
