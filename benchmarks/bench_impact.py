@@ -1,6 +1,7 @@
 """Speed of the compiled impact integrator, and its agreement with the library's on many impacts.
 
 python benchmarks/bench_impact.py            impacts a second, on one core
+python benchmarks/bench_impact.py rates      the marks: steps, work and table, beside Hertz
 python benchmarks/bench_impact.py agree 1000 largest difference to the reference integrator
 python benchmarks/bench_impact.py agree 1000 300 the same from number 300 on
 """
@@ -10,6 +11,7 @@ from __future__ import annotations
 import math
 import sys
 import time
+from collections.abc import Callable
 from dataclasses import replace
 
 import numpy as np
@@ -22,13 +24,16 @@ from dentscope.impact import (
     Striker,
     Support,
     arrays_of,
+    impacts,
     reference_impact,
     rod_modes,
     scene_of,
     strike,
     strike_rows,
+    tabulated,
 )
 from dentscope.impact import layout as c
+from dentscope.impact.energy_route import energy_impacts
 from dentscope.models import LAWS
 
 STEEL = Material(E=200e9, nu=0.3, Sy=760e6, density=7800.0)
@@ -63,6 +68,55 @@ def speed() -> None:
                 print(
                     f"  {law:15s} {angle:3.0f} {modes:3d}: {rate:8.0f}  (contacts {contacts:.1f})"
                 )
+
+
+def rates() -> None:
+    """What is asked for, each figure the best of three, processor time of one core."""
+    print("impacts a second, 0.5-4 m/s, by steps: tolerance 1e-7, with modes 1e-6; by work: 1e-7")
+    laws = {"hertz": LAWS["hertz"], "fitted": LAWS["fitted"], "table": tabulated(LAWS["fitted"])}
+    for angle, modes, count, mark in (
+        (90.0, 0, 20_000, 100_000), (45.0, 0, 20_000, 50_000),
+        (90.0, 20, 2_000, 10_000), (45.0, 20, 1_000, 4_000),
+    ):  # fmt: skip
+        found = []
+        for name, law in laws.items():
+            scene = thesis_scene("hertz", angle, modes=modes).with_(law=law)
+            settings = FAST if modes == 0 else Settings(tolerance=1e-6)
+            body = np.tile(arrays_of(scene, settings).body, (count, 1))
+            body[:, c.V_Y] = -np.linspace(0.5, 4.0, count)
+            strike_rows(scene, body[:2], settings)
+            seconds = best(lambda s=scene, b=body, t=settings: strike_rows(s, b, t))
+            found.append(f"{name} {count / seconds:8.0f}")
+        print(f"  {angle:3.0f} degrees, {modes:2d} modes: {', '.join(found)}  (mark {mark})")
+    speeds = np.random.default_rng(1).uniform(0.5, 4.0, 500_000)
+    mass = np.full(len(speeds), ROD.mass)
+    for name in ("hertz", "fitted"):
+        scene = thesis_scene(name, 90.0, modes=0)
+        energy_impacts(scene.law, scene.pair, mass[:2], speeds[:2], gravity=9.81)
+        seconds = best(
+            lambda s=scene: energy_impacts(s.law, s.pair, mass, speeds, gravity=s.gravity)
+        )
+        rows = best(lambda s=scene: impacts(s, speeds=speeds))
+        print(
+            f"  by work, {name}: {len(speeds) / seconds:9.0f}  (mark 3000000), "
+            f"with all columns {len(speeds) / rows:9.0f}"
+        )
+    pair = thesis_scene("fitted", 90.0, modes=0).pair
+    depth = pair.R * 10.0 ** np.random.default_rng(2).uniform(-6.0, -1.0, 1_000_000)
+    for name, law in laws.items():
+        law.loading(pair, depth[:2])
+        print(f"  a million forces, {name}: {best(lambda x=law: x.loading(pair, depth)):.4f} s")
+    print("  (mark of the table 0.02 s)")
+
+
+def best(run: Callable[[], object]) -> float:
+    """Shortest processor time of three runs [s]."""
+    found = []
+    for _ in range(3):
+        start = time.process_time()
+        run()
+        found.append(time.process_time() - start)
+    return min(found)
 
 
 def random_scene(rng: np.random.Generator, number: int) -> Scene:
@@ -137,5 +191,7 @@ def agree(count: int, first: int = 0) -> None:
 if __name__ == "__main__":
     if sys.argv[1:2] == ["agree"]:
         agree(*map(int, sys.argv[2:]))
+    elif sys.argv[1:2] == ["rates"]:
+        rates()
     else:
         speed()
