@@ -3,7 +3,8 @@
 The problem is scale-free: length enters only through Delta/R and stress only through ratios. A case
 is therefore identified by the six groups E_s/E', nu_s, nu_f, Sy_s/E', Sy_f/E' and which body is
 rigid, (E_f/E' follows from the others), together with the depths and the numerical settings. Two
-specifications with equal groups are one case, whatever their units.
+specifications with equal groups are one case, whatever their units. A metal that hardens adds its
+flow law over E', one that feels the rate its rates over speed/R, and the speeds over the first.
 """
 
 from __future__ import annotations
@@ -16,6 +17,7 @@ import numpy as np
 
 from .. import fem
 from ..core.errors import InputError
+from ..core.flow import Flow
 from ..core.material import Material, Pair
 from ..core.provenance import content_id
 from ..core.rig import MaterialTable, material_keys
@@ -61,7 +63,9 @@ class Case:
     def id(self) -> str:
         """SHA-256 of the groups, the depths, the settings and the numerics version."""
         p = self.problem
-        fields = {"snapshots": [_rounded(d) for d in p.snapshots]} if p.snapshots else {}
+        more: dict[str, Any] = dict(_flow_groups(p))
+        if p.snapshots:
+            more["snapshots"] = [_rounded(d) for d in p.snapshots]
         return content_id(
             {
                 "groups": self.groups,
@@ -71,7 +75,7 @@ class Case:
                 "profiles": [_rounded(d) for d in p.profiles],
                 "accuracy": {k: v for k, v in self.accuracy.as_dict().items() if k != "level"},
                 "numerics_version": fem.NUMERICS_VERSION,
-                **fields,
+                **more,
             }
         )
 
@@ -100,19 +104,21 @@ class Case:
             "profiles": list(p.profiles),
             "snapshots": list(p.snapshots),
             "accuracy": self.accuracy.as_dict(),
+            **_flow_keys(p),
         }
 
     @classmethod
     def from_specification(cls, spec: dict[str, Any]) -> Case:
         """Rebuild a case from `specification()`."""
-        sphere, flat = (MaterialTable.model_validate(spec[k]) for k in ("sphere", "flat"))
+        sphere, flat = (_metal(spec, body) for body in ("sphere", "flat"))
         problem = fem.ContactProblem(
-            pair=Pair(sphere.to_material(), flat.to_material(), spec["R_m"]),
+            pair=Pair(sphere, flat, spec["R_m"]),
             depths=tuple(spec["depths"]),
             unload_from=tuple(spec["unload_from"]),
             radius_at_least=spec["radius_at_least"],
             profiles=tuple(spec.get("profiles", ())),
             snapshots=tuple(spec.get("snapshots", ())),
+            speeds=tuple(tuple(row) for row in spec.get("speeds", ())),
         )
         return cls(spec["name"], problem, fem.Accuracy(**spec["accuracy"]))
 
@@ -198,3 +204,53 @@ def _body(body: Material, unit: float) -> Any:
 
 def _rounded(x: float) -> float:
     return float(f"{x:.{_DIGITS}g}")
+
+
+def _flow_keys(problem: fem.ContactProblem) -> dict[str, Any]:
+    """What a specification says of flow laws and speeds; nothing where there are none."""
+    bodies = {"sphere_flow": problem.pair.sphere.flow, "flat_flow": problem.pair.flat.flow}
+    keys: dict[str, Any] = {name: flow.as_dict() for name, flow in bodies.items() if flow}
+    if problem.speeds:
+        keys["speeds"] = [list(row) for row in problem.speeds]
+    return keys
+
+
+def _metal(spec: dict[str, Any], body: str) -> Material:
+    plain = MaterialTable.model_validate(spec[body]).to_material()
+    flow = spec.get(f"{body}_flow")
+    return plain.with_(flow=Flow.from_dict(flow)) if flow else plain
+
+
+def _flow_groups(problem: fem.ContactProblem) -> dict[str, Any]:
+    """Flow laws and speeds without units: what they add to the identity."""
+    pair = problem.pair
+    laws = {"sphere": pair.sphere.flow, "flat": pair.flat.flow}
+    hurried = [flow for flow in laws.values() if flow and flow.rate]
+    first = problem.speeds[0][1] if hurried else math.nan
+    groups: dict[str, Any] = {
+        f"{body}_flow": _flow(flow, unit=pair.E_reduced, seconds=pair.R / first)
+        for body, flow in laws.items()
+        if flow
+    }
+    if hurried:
+        groups["speeds"] = [[_rounded(d), _rounded(v / first)] for d, v in problem.speeds]
+    return groups
+
+
+def _flow(flow: Flow, *, unit: float, seconds: float) -> dict[str, Any]:
+    out: dict[str, Any] = {}
+    if (c := flow.curve) is not None:
+        stress = [_rounded(x / unit) for x in c.stress]
+        # slopes are differences: fewer of their digits are free of round-off
+        out["curve"] = [
+            [_rounded(p) for p in c.strain],
+            stress,
+            [f"{x / unit:.7g}" for x in c.slope],
+        ]
+    if (r := flow.rate) is not None:
+        numbers = (r.reference * seconds, r.number, r.stress / unit)
+        out["rate"] = [r.law, *(_rounded(x) for x in numbers)]
+    if (h := flow.heating) is not None:
+        rise = h.fraction * unit / (h.capacity * h.range)
+        out["heating"] = [_rounded(rise), _rounded(h.exponent)]
+    return out

@@ -5,35 +5,12 @@ from __future__ import annotations
 import csv
 from dataclasses import replace
 from pathlib import Path
-from typing import Annotated, Any, Literal
+from typing import Annotated, Any
 
 import typer
-from pydantic import Field
 
-from ..core.errors import EXIT_NOT_CONVERGED, InputError
-from ..core.material import Pair
-from ..core.rig import MaterialTable
-from ..core.toml_input import InputTable, read_model
-
-
-class _Load(InputTable):
-    max_delta_over_R: float = Field(gt=0.0, le=0.5)
-    unload_from: tuple[float, ...] = ()
-
-
-class _Accuracy(InputTable):
-    level: Literal["production", "quick", "smoke"] = "quick"
-
-
-class CaseFile(InputTable):
-    """The keys of CASE.toml."""
-
-    radius_m: float = Field(gt=0.0)
-    sphere: MaterialTable
-    flat: MaterialTable
-    load: _Load
-    accuracy: _Accuracy = _Accuracy()
-
+from ..core.errors import EXIT_NOT_CONVERGED
+from .case_file import read_case
 
 _COLUMNS = (
     "force_N",
@@ -94,59 +71,6 @@ def case(
         console.print(str(solution.outcome), highlight=False)
         return EXIT_NOT_CONVERGED
     return 0
-
-
-def read_pair(file: Path) -> tuple[CaseFile, Pair]:
-    """Read CASE.toml: its keys, and its two bodies.
-
-    Raises
-    ------
-    InputError
-        Every mistake, a line each.
-    """
-    content = read_model(file, CaseFile)
-    sphere = content.sphere.to_material("sphere", source=str(file))
-    flat = content.flat.to_material("flat", source=str(file))
-    return content, Pair(sphere, flat, content.radius_m)
-
-
-def read_case(file: Path) -> tuple[Any, Any]:
-    """Read CASE.toml into the solver's problem and accuracy.
-
-    Raises
-    ------
-    InputError
-        Every mistake, a line each.
-    """
-    from .. import fem
-
-    content, pair = read_pair(file)
-    last = content.load.max_delta_over_R
-    # recorded from below first yield; a body that yields late or never still gets two decades
-    first = min(0.3 * fem.critical_depth(pair), 1e-2 * last)
-    unload = tuple(sorted(content.load.unload_from))
-    for depth in unload:
-        if not first < depth <= last:
-            raise InputError(
-                f"{depth:g}",
-                source=str(file),
-                key="load.unload_from",
-                allowed=f"Delta/R above {first:.3g} and up to max_delta_over_R = {last:g}",
-            )
-    depths = fem.geometric_depths(first, last, 60)
-    problem = fem.ContactProblem(
-        pair=pair,
-        depths=depths,
-        unload_from=unload,
-        snapshots=(last,),
-        profiles=tuple(depths[k] for k in range(5, 60, 6)),
-    )
-    levels = {
-        "production": fem.Accuracy.production,
-        "quick": fem.Accuracy.quick,
-        "smoke": fem.Accuracy.smoke,
-    }
-    return problem, levels[content.accuracy.level]()
 
 
 def _write_curves(solution: Any, uncertainty: Any, path: Path) -> Path:

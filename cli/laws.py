@@ -134,7 +134,7 @@ def compare(
 
     from ..models import LAWS, law_named
     from ..models.choose import demand, objection, recommended
-    from .case import read_pair
+    from .case_file import read_pair
 
     content, pair = read_pair(file)
     last = content.load.max_delta_over_R

@@ -11,11 +11,12 @@ from dataclasses import dataclass, replace
 from typing import Any
 
 from .errors import InputError
+from .flow import Flow
 
 
 @dataclass(frozen=True, slots=True)
 class Material:
-    """An isotropic, elastic-perfectly-plastic body (or an elastic, or a rigid one).
+    """An isotropic, elastic-perfectly-plastic body (or an elastic, a rigid, a hardening one).
 
     Parameters
     ----------
@@ -31,6 +32,9 @@ class Material:
         Mass density [kg/m^3]; only dynamics needs it.
     name
         Text for tables and pictures.
+    flow
+        How the strength changes with plastic strain, rate and heat; only the finite elements know
+        of it, and its curve begins at `Sy`.
 
     Raises
     ------
@@ -44,6 +48,7 @@ class Material:
     rigid: bool = False
     density: float = math.nan
     name: str = ""
+    flow: Flow | None = None
 
     def __post_init__(self) -> None:
         if self.rigid:
@@ -58,6 +63,17 @@ class Material:
                 key="Sy_Pa",
                 allowed="a number above 0, or left out for a purely elastic body",
             )
+        if self.flow is not None:
+            self._check_flow(self.flow)
+
+    def _check_flow(self, flow: Flow) -> None:
+        if math.isinf(self.Sy):
+            raise InputError("missing", key="Sy_Pa", allowed="a strength where a flow law is given")
+        if flow.curve is not None and abs(flow.curve.strength / self.Sy - 1.0) > 1e-9:
+            raise InputError(
+                f"{self.Sy:g}", key="Sy_Pa",
+                allowed=f"the flow curve's first stress, {flow.curve.strength:g}",
+            )  # fmt: skip
 
     @property
     def plane_strain_modulus(self) -> float:

@@ -17,12 +17,16 @@ from numba import njit
 
 from .elements import Elements, State, gradient
 from .material import (
+    NO_LAW,
     Step,
     deviatoric_pk1,
     deviatoric_tangent,
     elastic_deviator,
     exponential,
+    hardened,
+    law_of,
 )
+from .material.tensor import norm
 
 Floats = npt.NDArray[np.float64]
 
@@ -65,6 +69,8 @@ def _step(x, old, rule, e, q, F):
         (s[0], s[1], s[2], s[3]),
         x.radius[e],
         rule,
+        False,
+        NO_LAW,
     )
 
 
@@ -131,12 +137,15 @@ def _add_point_tangent(x, e, q, F, p, A, K):
 
 
 @njit(cache=True)
-def _assemble(x, u, old, rule, with_tangent, force, tangent):
+def _assemble(x, u, old, rule, seconds, with_tangent, force, tangent):
     F = np.empty((4, 5))
     P = np.empty(5)
     A = np.empty((5, 5))
     g = np.empty(8)
     fe = np.empty(8)
+    laws = x.laws
+    law = NO_LAW
+    curve = np.empty((3, 0))
     n_plastic = 0
     for e in range(x.conn.shape[0]):
         if x.linear[e] >= 0:
@@ -154,12 +163,18 @@ def _assemble(x, u, old, rule, with_tangent, force, tangent):
             if with_tangent:
                 for j in range(8):
                     tangent[e, i, j] = 0.0
+        hard = x.law[e] >= 0
+        if hard:
+            law = law_of(laws, x.law[e], 2.0 * x.G[e], seconds)
+            curve = laws.curve[x.law[e]]
         for q in range(4):
             step = _step(x, old, rule, e, q, F[q])
+            if hard:
+                step = hardened(step, law, curve, old.peeq[e, q], old.work[e, q])
             if with_tangent:
-                n_plastic += deviatoric_tangent(step, x.G[e], P, A)
+                n_plastic += deviatoric_tangent(step, curve, x.G[e], P, A)
             else:
-                n_plastic += deviatoric_pk1(step, x.G[e], P)
+                n_plastic += deviatoric_pk1(step, curve, x.G[e], P)
             _add_point_forces(x, e, q, F[q], P, p, g, fe)
             if with_tangent:
                 _add_point_tangent(x, e, q, F[q], p, A, tangent[e])
@@ -176,26 +191,39 @@ def _assemble(x, u, old, rule, with_tangent, force, tangent):
 
 
 @njit(cache=True)
-def _advance(x, u, old, rule, new):
+def _advance(x, u, old, rule, seconds, new):
     """Fill the arrays of the state `new`; plastic work of the step and stored energy."""
     dissipated = 0.0
     stored = 0.0
+    laws = x.laws
+    law = NO_LAW
+    curve = np.empty((3, 0))
     for e in range(x.conn.shape[0]):
         J_sum = 0.0
+        hard = x.law[e] >= 0
+        if hard:
+            law = law_of(laws, x.law[e], 2.0 * x.G[e], seconds)
+            curve = laws.curve[x.law[e]]
         for q in range(4):
             F = new.F[e, q]
             gradient(x, u, e, q, F)
             J = (F[0] * F[3] - F[1] * F[2]) * F[4]
             J_sum += J * x.dV[e, q]
-            s, m, _, slip = elastic_deviator(_step(x, old, rule, e, q, F))
-            b = exponential(s, m)
+            step = _step(x, old, rule, e, q, F)
+            if hard:
+                step = hardened(step, law, curve, old.peeq[e, q], old.work[e, q])
+            done = elastic_deviator(step, curve)
+            s = done.e
+            b = exponential(s, done.mean)
             for i in range(4):
                 new.b[e, q, i] = b[i]
                 new.strain[e, q, i] = s[i]
-            new.peeq[e, q] = old.peeq[e, q] + math.sqrt(2.0 / 3.0) * slip
-            norm = math.sqrt(s[0] * s[0] + s[1] * s[1] + s[3] * s[3] + 2.0 * s[2] * s[2])
-            dissipated += 2.0 * x.G[e] * norm * slip * x.dV[e, q]
-            stored += x.G[e] * norm * norm * x.dV[e, q]
+            new.peeq[e, q] = old.peeq[e, q] + math.sqrt(2.0 / 3.0) * done.slip
+            work = 2.0 * x.G[e] * done.worked * done.slip
+            new.work[e, q] = old.work[e, q] + work
+            dissipated += work * x.dV[e, q]
+            size = norm(s)
+            stored += x.G[e] * size * size * x.dV[e, q]
         log_theta = math.log(J_sum / x.volume[e])
         stored += 0.5 * x.K[e] * log_theta * log_theta * x.volume[e]
     return dissipated, stored
@@ -209,6 +237,7 @@ def bulk_forces(
     rule: int,
     force: Floats,
     tangent: Floats | None = None,
+    seconds: float = math.inf,
 ) -> int:
     """Add the internal forces at displacement `u` to `force`, and fill the element tangents.
 
@@ -222,6 +251,8 @@ def bulk_forces(
         Material state at the last accepted step.
     rule
         Stress update, `material.RADIAL` or `material.EXACT`.
+    seconds
+        Time since the last accepted step, for what feels the rate [s]; `inf`: slow.
     force
         Array that the forces are added to, shape (2 n_nodes,) [E' R^2].
     tangent
@@ -233,11 +264,13 @@ def bulk_forces(
         Number of plastic points, or `DISTORTED`.
     """
     room = tangent if tangent is not None else np.empty((0, 8, 8))
-    return int(_assemble(elements, u, state, rule, tangent is not None, force, room))
+    return int(_assemble(elements, u, state, rule, seconds, tangent is not None, force, room))
 
 
-def advance(elements: Elements, u: Floats, *, state: State, rule: int) -> tuple[State, float]:
+def advance(
+    elements: Elements, u: Floats, *, state: State, rule: int, seconds: float = math.inf
+) -> tuple[State, float]:
     """Return the material state at the converged displacement `u`, and the stored energy."""
     new = state.room()
-    dissipated, stored = _advance(elements, u, state, rule, new)
+    dissipated, stored = _advance(elements, u, state, rule, seconds, new)
     return new._replace(dissipated=state.dissipated + dissipated), float(stored)

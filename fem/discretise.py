@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass
+from typing import Any
 
 import numpy as np
 import numpy.typing as npt
@@ -13,9 +14,10 @@ from ..core.material import Material, Pair
 from .assemble import bulk_forces
 from .contact import Surfaces
 from .elements import Elements, State
+from .laws import laws_of
 from .material import EXACT
 from .mesh import Mesh, Zone, contact_mesh, ladder_rings, outer_rings
-from .problem import Accuracy, ContactProblem
+from .problem import Accuracy, Clock, ContactProblem
 
 Integers = npt.NDArray[np.int64]
 
@@ -51,6 +53,8 @@ class Discretisation:
     round_off
         Sum of nodal forces that round-off in the deformation gradient makes [E' R^2]; the large
         elements far from the contact rule it.
+    clock
+        Time that the approach takes.
     """
 
     mesh: Mesh
@@ -62,6 +66,7 @@ class Discretisation:
     reaction: Integers
     stress_unit: float
     round_off: float
+    clock: Clock
 
     @property
     def n_dofs(self) -> int:
@@ -124,6 +129,7 @@ def discretise(
         reaction=np.empty(0, np.int64) if pair.sphere.rigid else 2 * mesh.top + 1,
         stress_unit=pair.E_reduced,
         round_off=float(np.finfo(float).eps * (elements.K[:, None] * elements.dV * slope).sum()),
+        clock=problem.clock,
     )
 
 
@@ -197,8 +203,10 @@ def _elements(
 
 def _constants(
     is_sphere: npt.NDArray[np.bool_], sphere: Material, flat: Material, unit: float
-) -> dict[str, npt.NDArray[np.float64]]:
+) -> dict[str, Any]:
     G, K, radius = (np.empty(len(is_sphere)) for _ in range(3))
+    law = np.full(len(is_sphere), -1)
+    flows: list[tuple[Material, float]] = []
     for mask, body in ((is_sphere, sphere), (~is_sphere, flat)):
         if not mask.any():
             continue
@@ -206,4 +214,7 @@ def _constants(
         G[mask] = shear / unit
         K[mask] = body.E / (3.0 * (1.0 - 2.0 * body.nu)) / unit
         radius[mask] = math.sqrt(2.0 / 3.0) * body.strength / (2.0 * shear)
-    return {"G": G, "K": K, "radius": radius}
+        if body.flow is not None:
+            law[mask] = len(flows)
+            flows.append((body, shear))
+    return {"G": G, "K": K, "radius": radius, "law": law, "laws": laws_of(flows, unit)}

@@ -8,6 +8,9 @@ import numpy as np
 import numpy.typing as npt
 from numba import njit
 
+from .material import Laws, law_of
+from .material.flow import NO_RATE, at_point
+
 Floats = npt.NDArray[np.float64]
 
 
@@ -37,6 +40,10 @@ class Elements(NamedTuple):
         Constant stiffness matrices of linear elements, shape (n_linear, 8, 8) [E' R].
     linear
         Row of `stiffness` of each element, -1 for those of finite strain, shape (n_elements,).
+    law
+        Row of `laws` of each element, -1 for those perfectly plastic, shape (n_elements,).
+    laws
+        The flow laws.
     """
 
     conn: npt.NDArray[np.int64]
@@ -50,6 +57,28 @@ class Elements(NamedTuple):
     radius: Floats
     stiffness: Floats
     linear: npt.NDArray[np.int64]
+    law: npt.NDArray[np.int64]
+    laws: Laws
+
+    @property
+    def elastic(self) -> Elements:
+        """The same without yield."""
+        return self._replace(
+            radius=np.full_like(self.radius, np.inf), law=np.full_like(self.law, -1)
+        )
+
+    @property
+    def unhurried(self) -> Elements:
+        """The same where those that feel the rate, which no time can pass for, do not yield."""
+        slow = (self.law >= 0) & (self.laws.rate[self.law] != NO_RATE) if self.has_rate else []
+        radius, law = self.radius.copy(), self.law.copy()
+        radius[slow], law[slow] = np.inf, -1
+        return self._replace(radius=radius, law=law)
+
+    @property
+    def has_rate(self) -> bool:
+        """Whether any law feels the rate."""
+        return bool((self.laws.rate != NO_RATE).any())
 
 
 class State(NamedTuple):
@@ -63,8 +92,8 @@ class State(NamedTuple):
         Elastic left Cauchy-Green tensor (rr, zz, rz, tt), shape (n_elements, 4, 4).
     strain
         Deviator of the elastic logarithmic strain 1/2 ln b, shape (n_elements, 4, 4).
-    peeq
-        Equivalent plastic strain, shape (n_elements, 4).
+    peeq, work
+        Equivalent plastic strain and plastic work of a volume [E'], shape (n_elements, 4).
     dissipated
         Plastic work so far, summed over the mesh.
     """
@@ -73,6 +102,7 @@ class State(NamedTuple):
     b: Floats
     strain: Floats
     peeq: Floats
+    work: Floats
     dissipated: float
 
     @classmethod
@@ -82,12 +112,13 @@ class State(NamedTuple):
         F[..., [0, 3, 4]] = 1.0
         b = np.zeros((n_elements, 4, 4))
         b[..., [0, 1, 3]] = 1.0
-        return cls(F, b, np.zeros_like(b), np.zeros((n_elements, 4)), 0.0)
+        none = np.zeros((n_elements, 4))
+        return cls(F, b, np.zeros_like(b), none, none.copy(), 0.0)
 
     def room(self) -> State:
         """Arrays for another state of as many points."""
-        F, b, strain, peeq = (np.empty_like(x) for x in self[:4])
-        return State(F, b, strain, peeq, 0.0)
+        F, b, strain, peeq, work = (np.empty_like(x) for x in self[:5])
+        return State(F, b, strain, peeq, work, 0.0)
 
 
 @njit(cache=True, inline="always")
@@ -112,6 +143,23 @@ def gradient(x, u, e, q, F):
     F[2] = f2
     F[3] = f3
     F[4] = 1.0 + hoop / x.r[e, q]
+
+
+@njit(cache=True)
+def radius_at_rest(elements, peeq, work):
+    """Radius of the yield circle at rest at J = 1; `inf` where rate may hold a point outside."""
+    out = np.empty(peeq.shape)
+    laws = elements.laws
+    for e in range(peeq.shape[0]):
+        k = elements.law[e]
+        for q in range(4):
+            out[e, q] = elements.radius[e]
+            if k >= 0:
+                law = law_of(laws, k, 0.0, np.inf)
+                _, out[e, q] = at_point(law, laws.curve[k], peeq[e, q], work[e, q])
+                if law.rate != NO_RATE:
+                    out[e, q] = np.inf
+    return out
 
 
 @njit(cache=True)

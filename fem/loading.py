@@ -154,7 +154,7 @@ class Loading:
         # Well below first yield: the yield condition is left out, because Newton's way from the
         # rigid push could leave the elastic range; and the contact starts soft, because the whole
         # push as an overlap under the full stiffness would crush the innermost elements.
-        solver.elements = grid.elements._replace(radius=np.full_like(grid.elements.radius, np.inf))
+        solver.elements = grid.elements.elastic
         found = None
         for softness in _SOFT_START:
             solver.surfaces = grid.surfaces._replace(stiffness=grid.surfaces.stiffness * softness)
@@ -183,7 +183,7 @@ class Loading:
             delta = goal if n == 1 else point.delta * (goal / point.delta) ** (1.0 / n)
             reach = delta / point.delta if before is None else (delta - point.delta) / last_step
             guess = extrapolate(point, before, reach)
-            found = point.solver.equilibrium(guess, state=point.state, delta=delta)
+            found = point.balanced(guess, delta)
             if found is not None:
                 return accept(point, found, delta), ratio
             self.tally.failed += 1
@@ -200,13 +200,16 @@ class Loading:
         transfer = Transfer(point.grid, solver.grid)
         guess = transfer.displacements(point.equilibrium.u)
         state = transfer.state(point.state, guess)
+        # no time passes: what feels the rate can't flow
+        solver.elements = solver.grid.elements.unhurried
         found = solver.equilibrium(guess, state=state, delta=point.delta)
         if found is None:
             self._radius = was  # it is tried again after the next step
             return point, before
         self.tally.leave(point.solver)
         self.tally.meshes += 1
-        state, stored = advance(solver.grid.elements, found.u, state=state, rule=solver.rule)
+        state, stored = advance(solver.elements, found.u, state=state, rule=solver.rule)
+        solver.elements = solver.grid.elements
         reading = read(solver.grid, found, point.delta)
         old = point.record
         jump = abs(reading.force / old.reading.force - 1.0)

@@ -6,6 +6,7 @@ s(alpha) = x . R(u + alpha x): in plasticity the norm of the residual misleads, 
 
 from __future__ import annotations
 
+import math
 import time
 from dataclasses import dataclass, field
 
@@ -84,9 +85,16 @@ class Solver:
         self.system = LinearSystem(dofs, free=self.free, n_dofs=self.grid.n_dofs)
         self._tangent = np.empty((n, 8, 8))
         self._triplets = Triplets.for_surfaces(self.grid.surfaces)
+        self._seconds = math.inf
 
-    def equilibrium(self, guess: Floats, *, state: State, delta: float) -> Equilibrium | None:
-        """Equilibrium at approach `delta`, starting from displacements `guess`; none: failed."""
+    def equilibrium(
+        self, guess: Floats, *, state: State, delta: float, seconds: float = math.inf
+    ) -> Equilibrium | None:
+        """Equilibrium at approach `delta`, starting from displacements `guess`; none: failed.
+
+        `state` is that of the last accepted step, `seconds` ago.
+        """
+        self._seconds = seconds
         u = guess.copy()
         u[self.grid.driven] = -delta
         now = self._evaluate(u, state)
@@ -110,8 +118,9 @@ class Solver:
         start = time.process_time()
         force = np.zeros(self.grid.n_dofs)
         code = bulk_forces(
-            self.elements, u, state=state, rule=self.rule, force=force, tangent=self._tangent
-        )
+            self.elements, u, state=state, rule=self.rule, force=force, tangent=self._tangent,
+            seconds=self._seconds,
+        )  # fmt: skip
         middle = time.process_time()
         self.timers.assembly += middle - start
         if code == DISTORTED:

@@ -52,6 +52,11 @@ class Point:
         """The discretisation that the point stands on."""
         return self.solver.grid
 
+    def balanced(self, guess: Floats, delta: float) -> Equilibrium | None:
+        """Equilibrium at `delta`, one step from here; none: not found."""
+        seconds = self.grid.clock.seconds(self.delta, delta)
+        return self.solver.equilibrium(guess, state=self.state, delta=delta, seconds=seconds)
+
 
 def extrapolate(point: Point, before: Floats | None, reach: float) -> Floats:
     """First guess of the displacements after a step from `point`.
@@ -72,7 +77,10 @@ def extrapolate(point: Point, before: Floats | None, reach: float) -> Floats:
 def accept(point: Point, found: Equilibrium, delta: float) -> Point:
     """Return the point after `point`, with the equilibrium `found` at `delta`."""
     solver, grid = point.solver, point.grid
-    state, stored = advance(grid.elements, found.u, state=point.state, rule=solver.rule)
+    seconds = grid.clock.seconds(point.delta, delta)
+    state, stored = advance(
+        grid.elements, found.u, state=point.state, rule=solver.rule, seconds=seconds
+    )
     reading = read(grid, found, delta)
     last = point.record
     # F ~ Delta^n between two points: exact for a power law, where the trapezoidal rule is not

@@ -6,6 +6,8 @@ import math
 from dataclasses import asdict, dataclass, replace
 from typing import Any, Literal
 
+import numpy as np
+
 from ..core.errors import InputError
 from ..core.material import Pair
 
@@ -77,6 +79,41 @@ class Accuracy:
 
 
 @dataclass(frozen=True)
+class Clock:
+    """Time that an approach takes, from its speed by depth.
+
+    Parameters
+    ----------
+    speeds
+        Rows of Delta/R and speed [m/s], the depths increasing; linear between them, constant
+        beyond. Empty: so slow that no rate counts.
+    R
+        Radius [m].
+    """
+
+    speeds: tuple[tuple[float, float], ...]
+    R: float
+
+    def seconds(self, start: float, end: float) -> float:
+        """Time between two Delta/R, up or down [s]; infinite without a speed."""
+        if not self.speeds:
+            return math.inf
+        depth, speed = np.array(self.speeds).T
+        low, high = sorted((start, end))
+        inner = depth[(depth > low) & (depth < high)]
+        ends = np.concatenate([[low], inner, [high]])
+        v = np.interp(ends, depth, speed)
+        # between two rows dt = d Delta/v, v linear: the logarithmic mean of the speeds
+        ratio = v[1:] / v[:-1]
+        mean = np.where(
+            np.abs(ratio - 1.0) < 1e-6,
+            0.5 * (v[1:] + v[:-1]),
+            (v[1:] - v[:-1]) / np.log(np.where(ratio == 1.0, 2.0, ratio)),
+        )
+        return float((np.diff(ends) / mean).sum() * self.R)
+
+
+@dataclass(frozen=True)
 class ContactProblem:
     """A sphere pressed into a flat, and at which depths to look.
 
@@ -100,6 +137,9 @@ class ContactProblem:
         Delta/R at which contact pressure and surface profiles are kept.
     top
         Whether the driven face is `free` to move radially or `held`.
+    speeds
+        Speed of the approach by depth, as in `Clock`; only a flow stress that feels the rate needs
+        it.
 
     Raises
     ------
@@ -115,8 +155,15 @@ class ContactProblem:
     profiles: tuple[float, ...] = ()
     reload: bool = False
     top: Literal["free", "held"] = "free"
+    speeds: tuple[tuple[float, float], ...] = ()
+
+    @property
+    def clock(self) -> Clock:
+        """Time that the approach takes."""
+        return Clock(self.speeds, self.pair.R)
 
     def __post_init__(self) -> None:
+        self._check_speeds()
         if not self.depths:
             raise InputError("no depth given", key="depths", allowed="at least one Delta/R")
         previous = 0.0
@@ -132,6 +179,22 @@ class ContactProblem:
                     raise InputError(f"{depth:g}", key=name, allowed=f"Delta/R in (0, {DEEPEST:g}]")
         if not 0.0 <= self.radius_at_least <= 0.8:
             raise InputError(f"{self.radius_at_least:g}", key="radius_at_least", allowed="0 to 0.8")
+
+    def _check_speeds(self) -> None:
+        hurried = [body.flow and body.flow.rate for body in (self.pair.sphere, self.pair.flat)]
+        if any(hurried) and not self.speeds:
+            raise InputError(
+                "missing", key="speed_m_s", allowed="a speed [m/s] where a body has a rate law"
+            )
+        previous = -math.inf
+        for depth, speed in self.speeds:
+            if not (depth > previous and 0.0 < speed < math.inf):
+                raise InputError(
+                    f"[{depth:g}, {speed:g}]",
+                    key="speed_m_s",
+                    allowed="a speed above 0, or rows [Delta/R, speed] of increasing Delta/R",
+                )
+            previous = depth
 
 
 def critical_depth(pair: Pair) -> float:

@@ -21,7 +21,7 @@ from numba import njit
 from scipy.interpolate import Akima1DInterpolator, CubicSpline
 
 from .discretise import Discretisation
-from .elements import State, deformation
+from .elements import State, deformation, radius_at_rest
 from .material import exponential, log_strain
 from .mesh import Layers, Mesh, layers_of
 
@@ -71,15 +71,16 @@ class Transfer:
     def state(self, state: State, u: Floats) -> State:
         """Material state on the new mesh, at whose nodes the displacements are `u`."""
         x = self.new.elements
-        strain, peeq = self._interpolated(state)
+        strain, peeq, work = self._interpolated(state)
         F = deformation(x, u)
         b = np.empty_like(strain)
-        _settle(F, x.radius, strain, peeq, b)
-        return State(F=F, b=b, strain=strain, peeq=peeq, dissipated=state.dissipated)
+        _settle(F, radius_at_rest(x, peeq, work), strain, peeq, b)
+        return State(F, b, strain, peeq, work, state.dissipated)
 
-    def _interpolated(self, state: State) -> tuple[Floats, Floats]:
-        data = np.concatenate([state.strain, state.peeq[..., None]], axis=-1).reshape(-1, 5)
-        out = np.empty((4 * len(self.new.elements.conn), 5))
+    def _interpolated(self, state: State) -> tuple[Floats, Floats, Floats]:
+        scalars = np.stack([state.peeq, state.work], axis=-1)
+        data = np.concatenate([state.strain, scalars], axis=-1).reshape(-1, 6)
+        out = np.empty((4 * len(self.new.elements.conn), 6))
         points = _points(self.new)
         place = [_place(grid) for grid in (self.old, self.new)]
         for sphere, layers in zip(_BODIES, self._layers, strict=True):
@@ -98,8 +99,9 @@ class Transfer:
                 rest, _linear(at_old, data[old], level), angle, strict=True
             ):
                 out[point] = _linear(lines, values, np.array([at]))[0]
-        points_of = out.reshape(-1, 4, 5)
-        return np.ascontiguousarray(points_of[..., :4]), np.ascontiguousarray(points_of[..., 4])
+        parts = out.reshape(-1, 4, 6)
+        strain, peeq, work = (np.ascontiguousarray(parts[..., k]) for k in (slice(4), 4, 5))
+        return strain, peeq, work
 
 
 def _lines_of_points(layers: Layers, place: Integers) -> Integers:
@@ -194,7 +196,7 @@ def _settle(F, radius, strain, peeq, b):
                 for i in range(4):
                     s[i] = whole[i]
             size = math.sqrt(s[0] * s[0] + s[1] * s[1] + s[3] * s[3] + 2.0 * s[2] * s[2])
-            limit = radius[e] * math.exp(3.0 * m)
+            limit = radius[e, q] * math.exp(3.0 * m)
             if size > limit:
                 for i in range(4):
                     s[i] *= limit / size

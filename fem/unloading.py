@@ -66,7 +66,7 @@ def _back(point: Point, records: list[Record]) -> tuple[Point, Outcome, int]:
         for _ in range(MOST_CUTS):
             delta = here.delta - step
             guess = _guess(here, behind, delta)
-            found = here.solver.equilibrium(guess, state=here.state, delta=delta)
+            found = here.balanced(guess, delta)
             if found is not None:
                 break
             step *= STEP_CUT
@@ -94,7 +94,7 @@ def _reload(here: Point, depths: list[float], pair_R: float) -> Curve:
     behind: Point | None = None
     for delta in depths:
         guess = _guess(here, behind, delta)
-        found = here.solver.equilibrium(guess, state=here.state, delta=delta)
+        found = here.balanced(guess, delta)
         if found is None:
             break
         behind, here = here, accept(here, found, delta)
@@ -111,13 +111,13 @@ def _guess(here: Point, behind: Point | None, delta: float) -> Floats:
 
 def _lift(here: Point) -> Floats | None:
     """Displacements with the surfaces just apart, where the force is zero exactly."""
-    solver, grid = here.solver, here.grid
+    grid = here.grid
     step = 0.02 * here.delta
     for _ in range(3):
         delta = here.delta - step
         guess = here.equilibrium.u.copy()
         guess[1 : 2 * grid.mesh.n_sphere_points : 2] += step
-        found = solver.equilibrium(guess, state=here.state, delta=delta)
+        found = here.balanced(guess, delta)
         if found is not None and found.contact.force == 0.0:
             return found.u
         step *= 2.0

@@ -1,24 +1,33 @@
-"""Finite-strain, logarithmic, perfectly plastic von Mises material: stress update and tangents.
+"""Finite-strain, logarithmic von Mises material: stress update and tangents.
 
 The stress follows from the elastic logarithmic strain e = 1/2 ln b: tau = 2 G dev e + p J I. The
 pressure belongs to the element (mean dilatation); this package holds the deviatoric part. Yield is
 |dev sigma| = sqrt(2/3) Sy in the Cauchy stress, so that the radius in dev e is
-sqrt(2/3) Sy J / (2 G).
+sqrt(2/3) Sy J / (2 G). The strength is constant, or grows with plastic strain and rate and falls
+with heat (`flow`).
 """
 
 from __future__ import annotations
 
+from .flow import NO_LAW, Law, Laws, law_of, no_laws
+from .slide import EXACT, RADIAL
 from .tangent import deviatoric_tangent
 from .tensor import exponential, log_strain
-from .update import EXACT, RADIAL, Step, deviatoric_pk1, elastic_deviator
+from .update import Step, deviatoric_pk1, elastic_deviator, hardened
 
 __all__ = [
     "EXACT",
+    "NO_LAW",
     "RADIAL",
+    "Law",
+    "Laws",
     "Step",
     "deviatoric_pk1",
     "deviatoric_tangent",
     "elastic_deviator",
     "exponential",
+    "hardened",
+    "law_of",
     "log_strain",
+    "no_laws",
 ]

@@ -12,18 +12,10 @@ from typing import NamedTuple
 
 from numba import njit
 
+from .flow import NO_CIRCLE, linear_circle
+from .slide import NO_SLIDE, Four
 from .tensor import dot, spectral
-from .update import (
-    EXACT,
-    MARGIN,
-    Four,
-    elastic_part,
-    is_directed,
-    returned,
-    stress_of,
-    trial_of,
-    turned,
-)
+from .update import MARGIN, returned, stress_of, trial_of
 
 
 class _Axes(NamedTuple):
@@ -39,42 +31,6 @@ class _Axes(NamedTuple):
     mixed: float
 
 
-class _Slide(NamedTuple):
-    """A slide along the yield circle.
-
-    Parameters
-    ----------
-    x, d
-        Where it begins, and the whole strain increment.
-    turning
-        Change of the turned old point with the angle.
-    t
-        Elastic fraction of the increment.
-    slope
-        Derivative of |r + t d|^2/2 by t; 0: the circle is not crossed.
-    n, length
-        |x|, and length of the rest of the increment.
-    c
-        Cosine between x and d.
-    a
-        Decay, exp(-length/radius).
-    xd, dd
-        x . d and d . d.
-    """
-
-    x: Four
-    d: Four
-    turning: Four
-    t: float
-    slope: float
-    n: float
-    length: float
-    c: float
-    a: float
-    xd: float
-    dd: float
-
-
 class _Turn(NamedTuple):
     """In-plane f of the step and its rotation (x, y)/sqrt(square)."""
 
@@ -82,10 +38,6 @@ class _Turn(NamedTuple):
     x: float
     y: float
     square: float
-
-
-_NOUGHT = (0.0, 0.0, 0.0, 0.0)
-_NO_SLIDE = _Slide(_NOUGHT, _NOUGHT, _NOUGHT, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0)
 
 
 @njit(cache=True)
@@ -107,40 +59,14 @@ def _principal(b):
 
 
 @njit(cache=True)
-def _slide_of(r, d, radius):
-    """The slide from the turned old point r along the increment d."""
-    dd = dot(d, d)
-    along = dot(r, d)
-    t = elastic_part(r, d, radius)
-    slope = along + t * dd if 0.0 < t < 1.0 else 0.0
-    t = min(max(t, 0.0), 1.0)
-    x = (r[0] + t * d[0], r[1] + t * d[1], r[2] + t * d[2], r[3] + t * d[3])
-    n = math.sqrt(dot(x, x))
-    xd = dot(x, d)
-    length = (1.0 - t) * math.sqrt(dd)
-    c = xd / (n * math.sqrt(dd))
-    turning = (-2.0 * r[2], 2.0 * r[2], r[0] - r[1], 0.0)
-    return _Slide(x, d, turning, t, slope, n, length, c, math.exp(-length / radius), xd, dd)
-
-
-@njit(cache=True)
-def _find_slide(step, f, trial, radius):
-    """Whether the step slides along the circle (else it returns radially), and the slide."""
-    if step.rule != EXACT:
-        return False, _NO_SLIDE
-    r = turned(f, step.e_old)
-    d = (trial[0] - r[0], trial[1] - r[1], trial[2] - r[2], trial[3] - r[3])
-    if not is_directed(d, radius):
-        return False, _NO_SLIDE
-    return True, _slide_of(r, d, radius)
-
-
-@njit(cache=True)
-def _linear_slide(slide, radius, dradius, dangle, dtrial):
-    """Change of a point that slid, from those of the radius, the angle and the trial point."""
-    x, d, turn, t, slope, n, length, c, a, xd, dd = slide
+def _linear_slide(slide, circle, dm, dangle, dtrial):
+    """Change of a point that slid, from those of mean strain, angle and trial point."""
+    x, d, turn, t, slope, n, length, c, xd, dd = slide
     if length == 0.0:
         return dtrial
+    mean = circle.mean
+    end = circle.end
+    a = circle.decay
     rest = 1.0 - t
     # changes of the old point, dangle turn, and of the increment, dtrial - dangle turn
     x_turn = dangle * dot(x, turn)
@@ -149,20 +75,24 @@ def _linear_slide(slide, radius, dradius, dangle, dtrial):
     d_inc = dot(d, dtrial) - d_turn
     dt = 0.0
     if slope != 0.0:
-        dt = (radius * dradius - x_turn - t * x_inc) / slope
+        dt = (circle.start * (3.0 * circle.start * dm) - x_turn - t * x_inc) / slope
     dn = (x_turn + t * x_inc + dt * xd) / n
     dl = rest * (rest * d_inc - dt * dd) / length
     dc = (rest * (d_turn + t * d_inc + dt * dd + x_inc) - dt * xd) / (n * length)
     dc -= c * (dn / n + dl / length)
-    da = -a * (dl - length * dradius / radius) / radius
+    dmean = 3.0 * mean * dm
+    dend = dmean
+    if circle.hard:
+        dmean, dend = linear_circle(circle, c, (dn, dl, dc, dm))
+    da = -a * (dl - length * dmean / mean) / mean
     den = 1.0 + a * a + (1.0 - a * a) * c
     dden = (2.0 * a * da * (1.0 - c) + (1.0 - a * a) * dc) / den
     top = 1.0 - a * a + (1.0 - a) ** 2 * c
     dtop = (1.0 - a) ** 2 * dc - 2.0 * da * (a + (1.0 - a) * c)
-    scale = radius / den
+    scale = end / den
     kx = 2.0 * a * scale / n
     kd = top * scale / length
-    grow = dradius / radius - dden
+    grow = dend / end - dden
     dkx = kx * (grow - dn / n) + 2.0 * da * scale / n
     dkd = kd * (grow - dl / length) + dtop * scale / length
     inc = kx * t + kd * rest
@@ -177,10 +107,14 @@ def _linear_slide(slide, radius, dradius, dangle, dtrial):
 
 
 @njit(cache=True)
-def _linear_return(trial, size, radius, dm, dtrial):
+def _linear_return(trial, size, circle, dm, dtrial):
     """Change of a radially returned point."""
-    k = radius / size
-    grow = 3.0 * dm - dot(trial, dtrial) / (size * size)
+    k = circle.end / size
+    along = dot(trial, dtrial) / (size * size)
+    grow = 3.0 * dm - along
+    if circle.hard:
+        _, dend = linear_circle(circle, 1.0, (along * size, 0.0, 0.0, dm))
+        grow = dend / circle.end - along
     return (
         k * (dtrial[0] + grow * trial[0]),
         k * (dtrial[1] + grow * trial[1]),
@@ -254,7 +188,7 @@ def _put_column(j, F, G, inverse, de, P, A):
 
 
 @njit(cache=True)
-def deviatoric_tangent(step, G, P, A):
+def deviatoric_tangent(step, curve, G, P, A):
     """Write the deviatoric stress into `P` (5,) and its dP/dF (5, 5) into `A`; 1 if plastic.
 
     The stress is that of `deviatoric_pk1`.
@@ -268,12 +202,9 @@ def deviatoric_tangent(step, G, P, A):
     x = f[0] + f[3]
     y = f[2] - f[1]
     turn = _Turn(f, x, y, x * x + y * y)
-    directed = False
-    slide = _NO_SLIDE
-    e = trial
+    e, circle, directed, slide = trial, NO_CIRCLE, False, NO_SLIDE
     if plastic:
-        e = returned(step, f, trial, size, radius)
-        directed, slide = _find_slide(step, f, trial, radius)
+        e, circle, directed, slide = returned(step, curve, f, trial, size, radius)
     stress_of(F, G, e, P)
     det = F[0] * F[3] - F[1] * F[2]
     inverse = (F[3] / det, -F[1] / det, -F[2] / det, F[0] / det)
@@ -283,8 +214,8 @@ def deviatoric_tangent(step, G, P, A):
         de = _linear_trial(axes, change, dm)
         if directed:
             dangle = _angle_change(change, turn)
-            de = _linear_slide(slide, radius, 3.0 * radius * dm, dangle, de)
+            de = _linear_slide(slide, circle, dm, dangle, de)
         elif plastic:
-            de = _linear_return(trial, size, radius, dm, de)
+            de = _linear_return(trial, size, circle, dm, de)
         _put_column(j, F, G, inverse, de, P, A)
     return 1 if plastic else 0

@@ -1,10 +1,8 @@
 """The stress update: the elastic strain at a material point after a step, and the stress.
 
 Two updates are offered by number (`RADIAL`, `EXACT`). The radial return is first order in the step
-when the strain path bends, and under a growing contact it bends everywhere. The exact update
-integrates the flow rule for a constant direction of the strain increment in the rotated frame
-(Krieg and Krieg, J. Press. Vessel Technol. 99 (1977) 510): the stress point slides along the yield
-circle towards that direction, tan(psi/2) decaying exponentially; its error is of second order.
+when the strain path bends, and under a growing contact it bends everywhere. The exact update slides
+along the yield circle (`slide`); its error is of second order.
 """
 
 from __future__ import annotations
@@ -16,23 +14,15 @@ import numpy as np
 import numpy.typing as npt
 from numba import njit
 
-from .tensor import dot, log_strain, norm
-
-Four = tuple[float, float, float, float] | npt.NDArray[np.float64]
-"""A symmetric tensor, (rr, zz, rz, tt)."""
+from .flow import Law, at_point, circle_of, perfect
+from .slide import RADIAL, Four, elastic_part, find_slide, is_directed, slid, slid_far, turned
+from .tensor import log_strain, norm
 
 Five = tuple[float, float, float, float, float] | npt.NDArray[np.float64]
 """A deformation gradient, (rr, rz, zr, zz, tt)."""
 
-RADIAL = 0
-"""Radial return (backward Euler)."""
-
-EXACT = 1
-"""Exact integration along a constant strain-rate direction."""
-
 # keeps round-off from calling converged plastic points plastic again on unloading
 MARGIN = 1.0 + 1e-10
-_STILL = 1e-24  # a smaller increment (squared, over the radius) has no direction: radial return
 
 
 class Step(NamedTuple):
@@ -46,9 +36,13 @@ class Step(NamedTuple):
         Elastic left Cauchy-Green tensor at the last accepted step, and the deviator of its
         logarithmic strain [-].
     radius
-        sqrt(2/3) Sy / (2 G), radius of the yield circle at J = 1 [-]; `inf` if elastic.
+        sqrt(2/3) Sy / (2 G), radius of the yield circle at rest at J = 1 [-]; `inf` if elastic.
     rule
         `RADIAL` or `EXACT`.
+    hard
+        Whether the circle grows as `law` says; else it is perfectly plastic.
+    law
+        How.
     """
 
     F: Five
@@ -57,6 +51,37 @@ class Step(NamedTuple):
     e_old: Four
     radius: float
     rule: int
+    hard: bool
+    law: Law
+
+
+class Updated(NamedTuple):
+    """A material point after a step.
+
+    Parameters
+    ----------
+    e, mean
+        Deviator (rr, zz, rz, tt) and mean of the elastic strain.
+    plastic
+        1 if it flowed, else 0.
+    slip
+        Length of the plastic increment.
+    worked
+        Mean radius of the yield circle while it flowed.
+    """
+
+    e: Four
+    mean: float
+    plastic: int
+    slip: float
+    worked: float
+
+
+@njit(cache=True)
+def hardened(step, law, curve, strain, work):
+    """The same step of a point that follows `law`, after a plastic strain and work."""
+    here, radius = at_point(law, curve, strain, work)
+    return Step(step.F, step.F_old, step.b_old, step.e_old, radius, step.rule, True, here)
 
 
 @njit(cache=True)
@@ -86,62 +111,8 @@ def trial_of(step):
 
 
 @njit(cache=True)
-def turned(f, e):
-    """Old elastic strain deviator turned by the increment's in-plane rotation."""
-    x = f[0] + f[3]
-    y = f[2] - f[1]
-    turn = math.sqrt(x * x + y * y)
-    cosine = x / turn
-    sine = y / turn
-    cc = cosine * cosine
-    ss = sine * sine
-    cs = cosine * sine
-    return (
-        cc * e[0] - 2.0 * cs * e[2] + ss * e[1],
-        ss * e[0] + 2.0 * cs * e[2] + cc * e[1],
-        cs * (e[0] - e[1]) + (cc - ss) * e[2],
-        e[3],
-    )
-
-
-@njit(cache=True)
-def is_directed(d, radius):
-    """Whether an increment is long enough to have a direction."""
-    return dot(d, d) > _STILL * radius * radius
-
-
-@njit(cache=True)
-def elastic_part(r, d, radius):
-    """Fraction of the increment `d` after which the point `r` meets the yield circle."""
-    dd = dot(d, d)
-    along = dot(r, d)
-    reach = math.sqrt(max(along * along - dd * (dot(r, r) - radius * radius), 0.0))
-    return (reach - along) / dd
-
-
-@njit(cache=True)
-def _slid(x, d, radius):
-    """Slide from the point x of the yield circle along the strain increment d; new point."""
-    length = norm(d)
-    if length == 0.0:
-        return x
-    size = norm(x)
-    cosine = dot(x, d) / (size * length)
-    decay = math.exp(-length / radius)
-    scale = radius / (1.0 + decay * decay + (1.0 - decay * decay) * cosine)
-    kx = scale * 2.0 * decay / size
-    kd = scale * (1.0 - decay * decay + (1.0 - decay) ** 2 * cosine) / length
-    return (
-        kx * x[0] + kd * d[0],
-        kx * x[1] + kd * d[1],
-        kx * x[2] + kd * d[2],
-        kx * x[3] + kd * d[3],
-    )
-
-
-@njit(cache=True)
-def returned(step, f, a, size, radius):
-    """Updated point from the trial point `a`, of length `size`, outside the yield circle."""
+def _returned(step, f, a, size, radius):
+    """Point from the trial point `a`, of length `size`, outside a circle that does not grow."""
     k = radius / size
     if step.rule == RADIAL:
         return k * a[0], k * a[1], k * a[2], k * a[3]
@@ -151,7 +122,7 @@ def returned(step, f, a, size, radius):
         return k * a[0], k * a[1], k * a[2], k * a[3]
     t = min(max(elastic_part(r, d, radius), 0.0), 1.0)
     rest = 1.0 - t
-    return _slid(
+    return slid(
         (r[0] + t * d[0], r[1] + t * d[1], r[2] + t * d[2], r[3] + t * d[3]),
         (rest * d[0], rest * d[1], rest * d[2], rest * d[3]),
         radius,
@@ -159,23 +130,46 @@ def returned(step, f, a, size, radius):
 
 
 @njit(cache=True)
-def elastic_deviator(step):
-    """Elastic deviatoric strain after a step.
+def returned(step, curve, f, a, size, radius):
+    """Updated point from the trial point `a`, of length `size`, outside the yield circle.
 
     Returns
     -------
     tuple
-        dev e (rr, zz, rz, tt), mean of e, 1 if plastic else 0, length of the plastic increment
-        |dev e_trial - dev e|.
+        The point, the circle that it ends on, whether it slid there and the slide.
+    """
+    directed, slide = find_slide(step, f, a, radius)
+    if not step.hard:
+        return _returned(step, f, a, size, radius), perfect(radius, slide.length), directed, slide
+    J = radius / step.radius
+    if directed and slide.length == 0.0:
+        return a, perfect(radius, 0.0), directed, slide
+    if directed:
+        circle = circle_of(step.law, curve, J, radius, (slide.n, slide.length, slide.c))
+        return slid_far(slide, circle), circle, directed, slide
+    circle = circle_of(step.law, curve, J, radius, (size, 0.0, 1.0))
+    k = circle.end / size
+    return (k * a[0], k * a[1], k * a[2], k * a[3]), circle, directed, slide
+
+
+@njit(cache=True)
+def elastic_deviator(step, curve):
+    """Elastic deviatoric strain after a step, `Updated`.
+
+    `curve` is the flow curve of a point that hardens, shape (3, n_rows); see `flow.Laws`.
     """
     f, b = trial_of(step)
     a, m = log_strain(b)
     size = norm(a)
     radius = step.radius * math.exp(3.0 * m)
     if size <= radius * MARGIN:
-        return a, m, 0, 0.0
-    q = returned(step, f, a, size, radius)
-    return q, m, 1, norm((a[0] - q[0], a[1] - q[1], a[2] - q[2], a[3] - q[3]))
+        return Updated(a, m, 0, 0.0, 0.0)
+    if step.hard:
+        q, circle, _, _ = returned(step, curve, f, a, size, radius)
+        return Updated(q, m, 1, circle.flow, circle.worked)
+    q = _returned(step, f, a, size, radius)
+    slip = norm((a[0] - q[0], a[1] - q[1], a[2] - q[2], a[3] - q[3]))
+    return Updated(q, m, 1, slip, norm(q))
 
 
 @njit(cache=True)
@@ -190,8 +184,8 @@ def stress_of(F, G, e, P):
 
 
 @njit(cache=True)
-def deviatoric_pk1(step, G, P):
+def deviatoric_pk1(step, curve, G, P):
     """Write the deviatoric first Piola-Kirchhoff stress into `P` (5,); return 1 if plastic."""
-    e, _, plastic, _ = elastic_deviator(step)
-    stress_of(step.F, G, e, P)
-    return plastic
+    done = elastic_deviator(step, curve)
+    stress_of(step.F, G, done.e, P)
+    return done.plastic

@@ -14,7 +14,7 @@ import skfem
 
 from ...fem.assemble import advance, bulk_forces
 from ...fem.elements import Elements, State
-from ...fem.material import EXACT
+from ...fem.material import EXACT, no_laws
 
 Floats = npt.NDArray[np.float64]
 Integers = npt.NDArray[np.int64]
@@ -81,6 +81,8 @@ def block(mesh: skfem.MeshQuad, *, nu: float, yield_strain: float = math.inf) ->
             radius=np.full(n, math.sqrt(2.0 / 3.0) * yield_strain / (2.0 * shear)),
             stiffness=np.empty((0, 8, 8)),
             linear=np.full(n, -1),
+            law=np.full(n, -1),
+            laws=no_laws(),
         ),
     )
 

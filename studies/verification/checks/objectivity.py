@@ -4,11 +4,12 @@ from __future__ import annotations
 
 import numpy as np
 
-from ....fem.material import EXACT, RADIAL, Step, elastic_deviator, log_strain
+from ....fem.material import EXACT, NO_LAW, RADIAL, Step, elastic_deviator, log_strain
 from ..bench import Bench
 from ..result import Measurement, Result
 
 _RADIUS = 0.004
+_NO_CURVE = np.empty((3, 0))
 _SAMPLES = 300
 
 
@@ -22,16 +23,16 @@ def run(bench: Bench) -> Result:
             b = _elastic_b(rng)
             strain = np.array(log_strain(b)[0])
             new = _after(_gradient(rng, 0.03), old)
-            step = Step(new, old, b, strain, _RADIUS, rule)
-            e, mean, plastic, _ = elastic_deviator(step)
+            step = Step(new, old, b, strain, _RADIUS, rule, False, NO_LAW)
+            e, mean, plastic, *_ = elastic_deviator(step, _NO_CURVE)
             angle = rng.uniform(-np.pi, np.pi)
-            turned, *_ = elastic_deviator(step._replace(F=_rotated(new, angle)))
+            turned, *_ = elastic_deviator(step._replace(F=_rotated(new, angle)), _NO_CURVE)
             worst = max(worst, _difference(e, turned, angle) / _RADIUS)
             if plastic:
                 surface = max(surface, abs(_norm(e) / (_RADIUS * np.exp(3.0 * mean)) - 1.0))
             elastic = step._replace(radius=np.inf)
-            pure, *_ = elastic_deviator(elastic._replace(F=new * 1.01))
-            plain, *_ = elastic_deviator(elastic)
+            pure, *_ = elastic_deviator(elastic._replace(F=new * 1.01), _NO_CURVE)
+            plain, *_ = elastic_deviator(elastic, _NO_CURVE)
             volume = max(volume, float(np.abs(np.subtract(pure, plain)).max()) / _RADIUS)
     source = "exact"
     return Result(

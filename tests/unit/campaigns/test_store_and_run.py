@@ -1,6 +1,7 @@
 """The campaign file: identity of cases, resuming, damage, and death of workers and coordinator."""
 
 import errno
+import json
 import multiprocessing
 import os
 import signal
@@ -29,6 +30,7 @@ from dentscope.campaigns import (
 from dentscope.campaigns.executor import Ended
 from dentscope.campaigns.fields import fields_of
 from dentscope.core import COMPLETED, Ending, InputError, Material, Outcome, Pair
+from dentscope.core.flow import Flow, Heating, Rate, swift
 from dentscope.fem import Counters, Curve, Profile, Snapshot, Solution
 
 
@@ -79,6 +81,28 @@ def test_a_case_is_its_dimensionless_groups():
     assert case().id != case(Sy=5.001e8).id
     finer = replace(case(), accuracy=fem.Accuracy.quick())
     assert finer.id != case().id
+
+
+def flowing(scale=1.0, R=1e-3, speed=5.0, **changes):
+    """A case whose flat hardens, feels the rate and its heat; all stresses, times, sizes scaled."""
+    laws = {"K": 6e8 * scale, "D": 4e3 * speed / (5.0 * R / 1e-3)} | changes
+    flow = Flow(
+        swift(Sy=3e8 * scale, K=laws["K"], n=0.2),
+        Rate("cowper-symonds", laws["D"], 5.0),
+        Heating(0.9, 3.6e6 * scale, 1200.0),
+    )
+    plain = case(scale=scale, R=R)
+    metals = replace(plain.pair, flat=plain.pair.flat.with_(flow=flow))
+    return replace(plain, problem=replace(plain.problem, pair=metals, speeds=((0.0, speed),)))
+
+
+def test_a_flow_law_belongs_to_the_case_without_its_units():
+    one = flowing()
+    assert one.id != case().id
+    assert one.id == flowing(scale=7.0, R=3.0, speed=11.0).id
+    assert one.id != flowing(K=6.1e8).id
+    assert one.id != flowing(D=4.1e3).id
+    assert Case.from_specification(json.loads(json.dumps(one.specification()))) == one
 
 
 def test_the_smoke_design_has_twelve_distinct_cases_of_three_pairs():

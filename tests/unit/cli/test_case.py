@@ -1,12 +1,15 @@
 """`dentscope case`: what it writes, and how it answers mistakes."""
 
 import csv
+from pathlib import Path
 
 import meshio
 import numpy as np
 import pytest
 from dentscope.campaigns import read_curves
 from dentscope.cli import run
+from dentscope.cli.case_file import read_case
+from dentscope.core import InputError
 
 GOOD = """
 radius_m = 0.002
@@ -86,3 +89,113 @@ def test_three_mistakes_are_three_lines(tmp_path, capsys):
     path.write_text(GOOD.replace("nu = 0.3", "nu = 3").replace("radius_m = 0.002", "radius_m = -1"))
     assert run(["case", str(path)]) == 2
     assert len(capsys.readouterr().err.strip().splitlines()) == 3
+
+
+HARD = """
+radius_m = 0.002
+[sphere]
+E_Pa = 200e9
+nu = 0.3
+Sy_Pa = 900e6
+[flat]
+E_Pa = 70e9
+nu = 0.33
+flow_curve = "curve.csv"
+[flat.rate]
+law = "cowper-symonds"
+D_1_s = 6500
+q = 4
+[load]
+max_delta_over_R = 3e-4
+speed_m_s = 2.0
+[accuracy]
+level = "smoke"
+"""
+CURVE = "plastic_strain,stress_Pa\n0,276e6\n0.01,300e6\n0.1,350e6\n"
+SWIFT = """Sy_Pa = 276e6
+[flat.hardening]
+law = "swift"
+K_Pa = 600e6
+n = 0.2
+"""
+
+
+def read(tmp_path, text=HARD, curve=CURVE):
+    (tmp_path / "curve.csv").write_text(curve)
+    path = tmp_path / "case.toml"
+    path.write_text(text)
+    return read_case(path)[0]
+
+
+def test_a_flow_curve_a_rate_and_a_speed_reach_the_solver(tmp_path):
+    problem = read(tmp_path)
+    flat = problem.pair.flat
+    assert flat.Sy == 276e6
+    assert flat.flow.curve(0.01) == pytest.approx(300e6)
+    assert (flat.flow.rate.law, flat.flow.rate.reference) == ("cowper-symonds", 6500.0)
+    # 0.3 um at 2 m/s
+    assert problem.clock.seconds(0.0, 1.5e-4) == pytest.approx(1.5e-7)
+    slowing = read(tmp_path, HARD.replace("2.0", "[[0.0, 2.0], [3e-4, 1.0]]"))
+    exact = 0.002 * 3e-4 * np.log(2.0)  # dt = d Delta/v, v linear
+    assert slowing.clock.seconds(3e-4, 0.0) == pytest.approx(exact, rel=1e-12)
+    assert slowing.clock.seconds(0.0, 6e-4) == pytest.approx(exact + 6e-7, rel=1e-12)
+    written = read(tmp_path, HARD.replace('flow_curve = "curve.csv"\n', SWIFT))
+    assert written.pair.flat.flow.curve(0.1) == pytest.approx(
+        600e6 * ((276 / 600) ** 5 + 0.1) ** 0.2, rel=1e-6
+    )
+
+
+@pytest.mark.parametrize(
+    ("old", "new", "words"),
+    [
+        ("q = 4", "", ["flat.rate.q", "missing", "cowper-symonds"]),
+        ("q = 4", "q = 4\nC = 0.1", ["flat.rate.C", "0.1", "D_1_s, q"]),
+        ('law = "cowper-symonds"', 'law = "fast"', ["flat.rate.law", "fast"]),
+        ("speed_m_s = 2.0", "", ["case.toml", "load.speed_m_s", "missing"]),
+        ("speed_m_s = 2.0", "speed_m_s = -2.0", ["speed_m_s", "-2"]),
+        ("speed_m_s = 2.0", "speed_m_s = [[0.1, 2], [0.0, 1]]", ["speed_m_s", "[0, 1]"]),
+        ("curve.csv", "other.csv", ["other.csv"]),
+        ('flow_curve = "curve.csv"', 'flow_curve = "curve.csv"\nSy_Pa = 3e8',
+         ["flat.Sy_Pa", "2.76e+08"]),
+        ('flow_curve = "curve.csv"', "", ["flat.Sy_Pa", "missing"]),
+        ('flow_curve = "curve.csv"\n', 'flow_curve = "curve.csv"\n' + SWIFT[14:],
+         ["flat.hardening", "flow_curve"]),
+        ('flow_curve = "curve.csv"\n', SWIFT.replace("600e6", "200e6"), ["flat.hardening.K_Pa"]),
+        ('flow_curve = "curve.csv"\n', SWIFT.replace("n = 0.2", "b = 2"),
+         ["flat.hardening.n", "missing"]),
+        ("nu = 0.33", "rigid = true", ["flat", "rigid"]),
+    ],
+)  # fmt: skip
+def test_a_mistake_in_a_flow_law_is_one_line(tmp_path, capsys, old, new, words):
+    (tmp_path / "curve.csv").write_text(CURVE)
+    path = tmp_path / "case.toml"
+    path.write_text(HARD.replace(old, new))
+    assert run(["case", str(path), "--out", str(tmp_path / "out")]) == 2
+    message = capsys.readouterr().err.strip()
+    assert len(message.splitlines()) == 1, message
+    for word in words:
+        assert word in message
+
+
+@pytest.mark.parametrize(
+    ("curve", "words"),
+    [
+        ("plastic_strain,stress_Pa\n0,276e6\n0.1,soft\n", ["row 3", "soft"]),
+        ("strain,stress_Pa\n0,276e6\n0.1,3e8\n", ["plastic_strain"]),
+        ("plastic_strain,stress_Pa\n0.01,276e6\n0.1,3e8\n", ["0.01", "row 2"]),
+        ("plastic_strain,stress_Pa\n0,276e6\n0.1,3e8\n0.05,3e8\n", ["0.05", "row 4", "0.1"]),
+        ("plastic_strain,stress_Pa\n0,276e6\n0.1,-3e8\n", ["-3e+08", "row 3", "stress_Pa"]),
+        ("plastic_strain,stress_Pa\n0,276e6\n", ["rows"]),
+    ],
+)
+def test_a_mistake_in_a_flow_curve_names_its_row(tmp_path, curve, words):
+    with pytest.raises(InputError) as caught:
+        read(tmp_path, curve=curve)
+    for word in ["curve.csv", *words]:
+        assert word in str(caught.value)
+
+
+@pytest.mark.parametrize("name", ["case_aluminium", "case_mild_steel_fast"])
+def test_the_example_files_are_sound(name):
+    problem, _ = read_case(Path(__file__).parents[3] / "examples" / f"{name}.toml")
+    assert problem.pair.flat.flow.curve(0.1) > problem.pair.flat.Sy

@@ -3,7 +3,7 @@
 import math
 
 import pytest
-from dentscope.cli.case import CaseFile
+from dentscope.cli.case_file import CaseFile
 from dentscope.core import InputError, Material
 from dentscope.core.errors import InputErrors
 from dentscope.core.rig import MaterialTable, Rig, StrikerTable, material_keys

@@ -1,0 +1,278 @@
+"""CASE.toml: two bodies, how far and how fast they are pressed, how finely it is solved."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Mapping
+from pathlib import Path
+from typing import Any, Literal
+
+from pydantic import Field
+
+from ..core.errors import InputError, InputErrors
+from ..core.flow import Flow, FlowCurve, Heating, Rate, ludwik, swift, tabulated, voce
+from ..core.material import Material, Pair
+from ..core.rig import MaterialTable
+from ..core.toml_input import InputTable, read_model
+
+_CURVE_COLUMNS = ("plastic_strain", "stress_Pa")
+_HARDENING = {
+    "swift": ("K_Pa", "n"),
+    "ludwik": ("K_Pa", "n"),
+    "voce": ("Q_Pa", "b"),
+    "johnson-cook": ("B_Pa", "n"),
+}
+_RATE = {
+    "cowper-symonds": ("D_1_s", "q"),
+    "johnson-cook": ("rate_0_1_s", "C"),
+    "overstress": ("rate_0_1_s", "m", "stress_Pa"),
+}
+
+
+class _LawTable(InputTable):
+    """A table whose `law` says which of its numbers are needed."""
+
+    def numbers(
+        self, needed: Mapping[str, tuple[str, ...]], *, key: str, source: str
+    ) -> list[float]:
+        """Return the law's numbers in its order.
+
+        Raises
+        ------
+        InputError
+            One is missing, or one of another law is there.
+        """
+        law = self.__dict__["law"]
+        given = {k: v for k, v in self.__dict__.items() if k != "law" and v is not None}
+        for name in needed[law]:
+            if name not in given:
+                raise InputError(
+                    "missing", source=source, key=f"{key}.{name}", allowed=f"a number for {law}"
+                )
+        for name in given.keys() - set(needed[law]):
+            raise InputError(
+                f"{given[name]:g}", source=source, key=f"{key}.{name}",
+                allowed=f"{', '.join(needed[law])} with law = {law!r}",
+            )  # fmt: skip
+        return [given[name] for name in needed[law]]
+
+
+class HardeningTable(_LawTable):
+    """`[sphere.hardening]`: flow stress over plastic strain p, from Sy_Pa on."""
+
+    law: Literal["swift", "ludwik", "voce", "johnson-cook"]
+    K_Pa: float | None = Field(default=None, gt=0.0)
+    B_Pa: float | None = Field(default=None, gt=0.0)
+    Q_Pa: float | None = Field(default=None, gt=0.0)
+    n: float | None = Field(default=None, gt=0.0, le=1.0)
+    b: float | None = Field(default=None, gt=0.0)
+
+    def curve(self, Sy: float, *, key: str, source: str) -> FlowCurve:
+        """Return the law as a flow curve that begins at `Sy` [Pa]."""
+        first, second = self.numbers(_HARDENING, key=key, source=source)
+        if self.law == "voce":
+            return voce(Sy=Sy, Q=first, b=second)
+        if self.law == "swift":
+            if first <= Sy:
+                raise InputError(
+                    f"{first:g}", source=source, key=f"{key}.K_Pa", allowed=f"above Sy_Pa = {Sy:g}"
+                )
+            return swift(Sy=Sy, K=first, n=second)
+        return ludwik(Sy=Sy, K=first, n=second)
+
+
+class RateTable(_LawTable):
+    """`[sphere.rate]`: flow stress at a rate of plastic strain."""
+
+    law: Literal["cowper-symonds", "johnson-cook", "overstress"]
+    D_1_s: float | None = Field(default=None, gt=0.0)
+    q: float | None = Field(default=None, ge=1.0)
+    rate_0_1_s: float | None = Field(default=None, gt=0.0)
+    C: float | None = Field(default=None, ge=0.0)
+    m: float | None = Field(default=None, gt=0.0, le=1.0)
+    stress_Pa: float | None = Field(default=None, ge=0.0)
+
+    def rate(self, *, key: str, source: str) -> Rate:
+        """Return the law."""
+        return Rate(self.law, *self.numbers(_RATE, key=key, source=source))
+
+
+class HeatingTable(InputTable):
+    """`[sphere.heating]`: adiabatic heating and softening."""
+
+    capacity_J_m3K: float = Field(gt=0.0)
+    melting_rise_K: float = Field(gt=0.0)
+    exponent: float = Field(default=1.0, gt=0.0)
+    fraction: float = Field(default=0.9, ge=0.0, le=1.0)
+
+    def heating(self) -> Heating:
+        """Return the law."""
+        return Heating(self.fraction, self.capacity_J_m3K, self.melting_rise_K, self.exponent)
+
+
+class CaseBody(MaterialTable):
+    """A body of CASE.toml: a metal, and how it flows."""
+
+    flow_curve: str | None = None
+    hardening: HardeningTable | None = None
+    rate: RateTable | None = None
+    heating: HeatingTable | None = None
+
+    def to_body(self, key: str, *, file: Path) -> Material:
+        """Return the body; a flow curve's file is looked for beside CASE.toml."""
+        source = str(file)
+        metal = self.to_material(key, source=source)
+        if not (self.flow_curve or self.hardening or self.rate or self.heating):
+            return metal
+        if metal.rigid:
+            raise InputError(
+                "a rigid body does not flow", source=source, key=key,
+                allowed="no flow_curve, hardening, rate or heating with rigid = true",
+            )  # fmt: skip
+        if self.flow_curve and self.hardening:
+            raise InputError(
+                "given beside flow_curve", source=source, key=f"{key}.hardening",
+                allowed="one of the two",
+            )  # fmt: skip
+        curve = read_flow_curve(file.parent / self.flow_curve) if self.flow_curve else None
+        Sy = curve.strength if curve and math.isinf(metal.Sy) else metal.Sy
+        if math.isinf(Sy):
+            raise InputError(
+                "missing", source=source, key=f"{key}.Sy_Pa", allowed="a number above 0"
+            )
+        if self.hardening:
+            curve = self.hardening.curve(Sy, key=f"{key}.hardening", source=source)
+        flow = Flow(
+            curve=curve,
+            rate=self.rate.rate(key=f"{key}.rate", source=source) if self.rate else None,
+            heating=self.heating.heating() if self.heating else None,
+        )
+        try:
+            return metal.with_(Sy=Sy, flow=flow)
+        except InputError as error:
+            raise InputError(
+                error.message, source=source, key=f"{key}.{error.key}", allowed=error.allowed
+            ) from None
+
+
+class _Load(InputTable):
+    max_delta_over_R: float = Field(gt=0.0, le=0.5)
+    unload_from: tuple[float, ...] = ()
+    speed_m_s: float | tuple[tuple[float, float], ...] | None = None
+
+    @property
+    def speeds(self) -> tuple[tuple[float, float], ...]:
+        """Rows of Delta/R and speed [m/s]; none: no clock."""
+        if self.speed_m_s is None:
+            return ()
+        if isinstance(self.speed_m_s, float):
+            return ((0.0, self.speed_m_s),)
+        return self.speed_m_s
+
+
+class _Accuracy(InputTable):
+    level: Literal["production", "quick", "smoke"] = "quick"
+
+
+class CaseFile(InputTable):
+    """The keys of CASE.toml."""
+
+    radius_m: float = Field(gt=0.0)
+    sphere: CaseBody
+    flat: CaseBody
+    load: _Load
+    accuracy: _Accuracy = _Accuracy()
+
+
+def read_flow_curve(path: Path) -> FlowCurve:
+    """Read a table of true stress over plastic strain: columns plastic_strain and stress_Pa.
+
+    Raises
+    ------
+    InputError
+        Every mistake, a line each, with its row.
+    """
+    from ..recordings.csv_table import Problems, numbers, read_text_table
+
+    problems = Problems(str(path))
+    table = read_text_table(path, _CURVE_COLUMNS, problems)
+    if table is not None:
+        for name in _CURVE_COLUMNS:
+            if name not in table.columns:
+                problems.add("missing", column=name, allowed=" and ".join(_CURVE_COLUMNS))
+    if table is None or problems.found:
+        raise InputErrors(tuple(problems.found))
+    strain, stress = (numbers(table, name, problems) for name in _CURVE_COLUMNS)
+    before = -math.inf
+    for row, p, s in zip(table.rows, strain, stress, strict=True):
+        if before == -math.inf and p != 0.0:
+            problems.add(f"{p:g}", row=row, column=_CURVE_COLUMNS[0], allowed="0 in the first row")
+        elif not p > before:
+            problems.add(f"{p:g}", row=row, column=_CURVE_COLUMNS[0], allowed=f"above {before:g}")
+        if not s > 0.0:
+            problems.add(f"{s:g}", row=row, column=_CURVE_COLUMNS[1], allowed="above 0")
+        before = p
+    if len(strain) < 2:
+        problems.add(f"{len(strain)} rows", allowed="two or more rows")
+    if problems.found:
+        raise InputErrors(tuple(problems.found))
+    return tabulated(strain, stress)
+
+
+def read_pair(file: Path) -> tuple[CaseFile, Pair]:
+    """Read CASE.toml: its keys, and its two bodies.
+
+    Raises
+    ------
+    InputError
+        Every mistake, a line each.
+    """
+    content = read_model(file, CaseFile)
+    sphere = content.sphere.to_body("sphere", file=file)
+    flat = content.flat.to_body("flat", file=file)
+    return content, Pair(sphere, flat, content.radius_m)
+
+
+def read_case(file: Path) -> tuple[Any, Any]:
+    """Read CASE.toml into the solver's problem and accuracy.
+
+    Raises
+    ------
+    InputError
+        Every mistake, a line each.
+    """
+    from .. import fem
+
+    content, pair = read_pair(file)
+    last = content.load.max_delta_over_R
+    # recorded from below first yield; a body that yields late or never still gets two decades
+    first = min(0.3 * fem.critical_depth(pair), 1e-2 * last)
+    unload = tuple(sorted(content.load.unload_from))
+    for depth in unload:
+        if not first < depth <= last:
+            raise InputError(
+                f"{depth:g}",
+                source=str(file),
+                key="load.unload_from",
+                allowed=f"Delta/R above {first:.3g} and up to max_delta_over_R = {last:g}",
+            )
+    depths = fem.geometric_depths(first, last, 60)
+    try:
+        problem = fem.ContactProblem(
+            pair=pair,
+            depths=depths,
+            unload_from=unload,
+            speeds=content.load.speeds,
+            snapshots=(last,),
+            profiles=tuple(depths[k] for k in range(5, 60, 6)),
+        )
+    except InputError as error:
+        raise InputError(
+            error.message, source=str(file), key=f"load.{error.key}", allowed=error.allowed
+        ) from None
+    levels = {
+        "production": fem.Accuracy.production,
+        "quick": fem.Accuracy.quick,
+        "smoke": fem.Accuracy.smoke,
+    }
+    return problem, levels[content.accuracy.level]()

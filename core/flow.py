@@ -1,0 +1,208 @@
+"""How a metal's flow stress depends on plastic strain, rate and its own heat.
+
+A flow curve is a table of true (Cauchy) stress over equivalent plastic strain, between whose rows
+runs a cubic with the slopes of the table; Swift's, Ludwik's, Voce's and Johnson and Cook's laws are
+ways to write one. The finite elements solve with it; laws in closed form take the strength alone.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import asdict, dataclass
+from typing import Any, Literal
+
+import numpy as np
+import numpy.typing as npt
+
+from .errors import InputError
+
+Floats = npt.NDArray[np.float64]
+
+_FIRST, _LAST, _ROWS = 1e-6, 10.0, 200  # plastic strains of a written law's table
+
+
+@dataclass(frozen=True, slots=True)
+class FlowCurve:
+    """True stress over equivalent plastic strain; constant beyond the last row.
+
+    Parameters
+    ----------
+    strain
+        Equivalent plastic strains, increasing from 0 [-].
+    stress
+        Flow stress there [Pa].
+    slope
+        Its slope there [Pa].
+
+    Raises
+    ------
+    InputError
+        The table does not begin at 0, does not increase, or holds a stress that is not positive.
+    """
+
+    strain: tuple[float, ...]
+    stress: tuple[float, ...]
+    slope: tuple[float, ...]
+
+    def __post_init__(self) -> None:
+        strain, stress = np.array(self.strain), np.array(self.stress)
+        if not len(strain) == len(stress) == len(self.slope) >= 2:
+            raise InputError(f"{len(strain)} rows", key="flow_curve", allowed="two or more rows")
+        if strain[0] != 0.0:
+            raise InputError(
+                f"begins at {strain[0]:g}", key="flow_curve", allowed="a first plastic strain of 0"
+            )
+        wrong = np.flatnonzero(~(np.diff(strain) > 0.0))
+        if len(wrong):
+            row = int(wrong[0]) + 2
+            raise InputError(
+                f"{strain[row - 1]:g} in row {row}",
+                key="flow_curve",
+                allowed=f"plastic strains that increase (above {strain[row - 2]:g})",
+            )
+        wrong = np.flatnonzero(~((stress > 0.0) & np.isfinite(stress)))
+        if len(wrong):
+            row = int(wrong[0]) + 1
+            raise InputError(
+                f"{stress[row - 1]:g} in row {row}",
+                key="flow_curve",
+                allowed="stresses above 0 [Pa]",
+            )
+
+    @property
+    def strength(self) -> float:
+        """Flow stress at first yield [Pa]."""
+        return self.stress[0]
+
+    def __call__(self, strain: float) -> float:
+        """Flow stress at a plastic strain [Pa]."""
+        if strain >= self.strain[-1]:
+            return self.stress[-1]
+        from scipy.interpolate import CubicHermiteSpline
+
+        return float(CubicHermiteSpline(self.strain, self.stress, self.slope)(strain))
+
+
+def tabulated(strain: Floats, stress: Floats) -> FlowCurve:
+    """Flow curve through measured rows, smooth and without overshoot (Fritsch and Butland, 1984).
+
+    Parameters
+    ----------
+    strain, stress
+        Equivalent plastic strain [-] and true stress [Pa], shape (n,); two rows make a line.
+    """
+    rows = (tuple(map(float, strain)), tuple(map(float, stress)))
+    if len(strain) != len(stress) or len(strain) < 2 or not (np.diff(strain) > 0.0).all():
+        return FlowCurve(*rows, slope=(0.0,) * len(strain))  # says what is wrong
+    from scipy.interpolate import PchipInterpolator
+
+    slope = PchipInterpolator(strain, stress).derivative()(strain)
+    return FlowCurve(*rows, slope=tuple(map(float, slope)))
+
+
+def swift(*, Sy: float, K: float, n: float) -> FlowCurve:
+    """Swift's law K (e0 + p)^n, e0 = (Sy/K)^(1/n) (J. Mech. Phys. Solids 1 (1952) 1)."""
+    start = (Sy / K) ** (1.0 / n)
+    return _written(
+        lambda p: K * (start + p) ** n,
+        lambda p: n * K * (start + p) ** (n - 1.0),
+        first=n * K * start ** (n - 1.0),
+    )
+
+
+def ludwik(*, Sy: float, K: float, n: float) -> FlowCurve:
+    """Ludwik's law Sy + K p^n (1909); with K = B also Johnson and Cook's at rest and cold."""
+    # it leaves the origin vertically: a straight line up to the second row
+    return _written(
+        lambda p: Sy + K * p**n, lambda p: n * K * p ** (n - 1.0), first=K * _FIRST ** (n - 1.0)
+    )
+
+
+def voce(*, Sy: float, Q: float, b: float) -> FlowCurve:
+    """Voce's law Sy + Q (1 - exp(-b p)) (J. Inst. Metals 74 (1948) 537)."""
+    return _written(
+        lambda p: Sy - Q * np.expm1(-b * p), lambda p: Q * b * np.exp(-b * p), first=Q * b
+    )
+
+
+def _written(
+    stress: Callable[[Floats], Floats], slope: Callable[[Floats], Floats], *, first: float
+) -> FlowCurve:
+    strain = np.append(0.0, np.geomspace(_FIRST, _LAST, _ROWS))
+    values = stress(strain)
+    slopes = np.append(first, slope(strain[1:]))
+    return FlowCurve(*(tuple(x.tolist()) for x in (strain, values, slopes)))
+
+
+@dataclass(frozen=True, slots=True)
+class Rate:
+    """How the flow stress rises with the rate r of plastic strain.
+
+    Parameters
+    ----------
+    law
+        `cowper-symonds`: times 1 + (r/reference)^(1/number). `johnson-cook`: times
+        1 + number ln(r/reference), 1 below the reference. `overstress`: plus
+        stress (r/reference)^number.
+    reference
+        [1/s].
+    number
+        q, C or m of the law [-].
+    stress
+        Overstress at the reference rate [Pa]; of that law only.
+
+    References
+    ----------
+    Cowper and Symonds, Brown University Tech. Rep. 28 (1957); Johnson and Cook, 7th Int. Symp. on
+    Ballistics (1983) 541; Perzyna, Adv. Appl. Mech. 9 (1966) 243.
+    """
+
+    law: Literal["cowper-symonds", "johnson-cook", "overstress"]
+    reference: float
+    number: float
+    stress: float = 0.0
+
+
+@dataclass(frozen=True, slots=True)
+class Heating:
+    """Adiabatic heating, and how it softens: times 1 - (T_rise/range)^exponent, 0.01 at least.
+
+    Parameters
+    ----------
+    fraction
+        Part of the plastic work that heats (Taylor and Quinney) [-].
+    capacity
+        Heat capacity of a volume [J/(m^3 K)].
+    range
+        Rise of temperature at which no strength is left, melting over the start [K].
+    exponent
+        1 for a linear law.
+    """
+
+    fraction: float
+    capacity: float
+    range: float
+    exponent: float = 1.0
+
+
+@dataclass(frozen=True, slots=True)
+class Flow:
+    """What makes a metal more than perfectly plastic; each part may be left out."""
+
+    curve: FlowCurve | None = None
+    rate: Rate | None = None
+    heating: Heating | None = None
+
+    def as_dict(self) -> dict[str, Any]:
+        """Return what is set, as plain values."""
+        return {name: part for name, part in asdict(self).items() if part is not None}
+
+    @classmethod
+    def from_dict(cls, content: dict[str, Any]) -> Flow:
+        """Rebuild from `as_dict`."""
+        curve, rate, heating = (content.get(k) for k in ("curve", "rate", "heating"))
+        return cls(
+            curve=FlowCurve(**{k: tuple(v) for k, v in curve.items()}) if curve else None,
+            rate=Rate(**rate) if rate else None,
+            heating=Heating(**heating) if heating else None,
+        )

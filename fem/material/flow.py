@@ -1,0 +1,333 @@
+"""Flow stress that depends on plastic strain, rate and heat, and how far the yield circle grows.
+
+Radii are those of the yield circle in dev e at J = 1, rho = sqrt(2/3) sigma/(2 G), and lambda is
+the length of the plastic increment, dp = sqrt(2/3) lambda.
+"""
+
+from __future__ import annotations
+
+import math
+from typing import NamedTuple
+
+import numpy as np
+import numpy.typing as npt
+from numba import njit
+
+Floats = npt.NDArray[np.float64]
+
+NO_RATE, COWPER_SYMONDS, JOHNSON_COOK, OVERSTRESS = range(4)
+
+_ROOT = math.sqrt(2.0 / 3.0)
+_WEAKEST = 0.01  # of the strength that heat leaves
+_ROUND_OFF = 3e-15  # of the radius: the root is found to this
+_MOST = 80
+
+
+class Laws(NamedTuple):
+    """The flow laws of a solve, one row each (R = 1, E' = 1).
+
+    Parameters
+    ----------
+    curve
+        Plastic strain, radius and its slope by row of the table, shape (n_laws, 3, n_rows).
+    rate
+        `NO_RATE`, `COWPER_SYMONDS`, `JOHNSON_COOK` or `OVERSTRESS`, shape (n_laws,).
+    reference, number, overstress
+        Of the rate law [1/s], [-], [radius], shape (n_laws,).
+    rise
+        Rise of temperature by a plastic work, over that at which no strength is left [1/E'].
+    exponent
+        Of the softening [-].
+    """
+
+    curve: Floats
+    rate: npt.NDArray[np.int64]
+    reference: Floats
+    number: Floats
+    overstress: Floats
+    rise: Floats
+    exponent: Floats
+
+
+class Law(NamedTuple):
+    """One point's law in one step: numbers of `Laws`, and where the step starts.
+
+    Parameters
+    ----------
+    rate, reference, number, overstress, rise, exponent
+        As in `Laws`.
+    strain, work
+        Plastic strain and plastic work so far [-, E'].
+    static
+        Radius of the table at that strain.
+    stiffness
+        2 G, which turns a radius times lambda into work [E'].
+    seconds
+        Duration of the step; `inf`: no clock.
+    """
+
+    rate: int
+    reference: float
+    number: float
+    overstress: float
+    rise: float
+    exponent: float
+    strain: float
+    work: float
+    static: float
+    stiffness: float
+    seconds: float
+
+
+class Radius(NamedTuple):
+    """Radius of the yield circle after some flow.
+
+    Parameters
+    ----------
+    end, gain
+        The radius and its derivative by lambda.
+    start
+        The radius of the same rate at the step's start.
+    """
+
+    end: float
+    gain: float
+    start: float
+
+
+class Circle(NamedTuple):
+    """The yield circle through a step, with the present J.
+
+    Parameters
+    ----------
+    start, mean, end
+        Radius where it is reached, on which the point slides, and in the end.
+    gain
+        Derivative of the end by lambda.
+    stiff
+        Derivative of the equation for lambda by lambda.
+    drift
+        Derivative of the way along the increment by the mean radius.
+    flow
+        lambda.
+    worked
+        Mean radius while it flows, for the plastic work.
+    decay
+        exp(-length/mean) of the slide on it.
+    hard
+        Whether it grows at all.
+    """
+
+    start: float
+    mean: float
+    end: float
+    gain: float
+    stiff: float
+    drift: float
+    flow: float
+    worked: float
+    decay: float
+    hard: bool
+
+
+@njit(cache=True)
+def table(curve, p):
+    """Radius and its slope at plastic strain p, by Hermite's cubics."""
+    strain = curve[0]
+    radius = curve[1]
+    slope = curve[2]
+    low = 0
+    high = len(strain) - 1
+    if p >= strain[high]:
+        return radius[high], 0.0
+    while high - low > 1:
+        middle = (low + high) // 2
+        if strain[middle] <= p:
+            low = middle
+        else:
+            high = middle
+    h = strain[high] - strain[low]
+    t = (p - strain[low]) / h
+    rise = radius[high] - radius[low]
+    a = h * slope[low] - rise
+    b = rise - h * slope[high]
+    value = radius[low] + t * (rise + (1.0 - t) * (a * (1.0 - t) + b * t))
+    grow = rise + (1.0 - 2.0 * t) * (a * (1.0 - t) + b * t) + t * (1.0 - t) * (b - a)
+    return value, grow / h
+
+
+def no_laws() -> Laws:
+    """Laws of a solve in which all is perfectly plastic."""
+    none = np.empty(0)
+    return Laws(np.empty((0, 3, 0)), np.empty(0, np.int64), *[none] * 5)
+
+
+@njit(cache=True)
+def law_of(laws, k, stiffness, seconds):
+    """Law k of an unstrained point of the stiffness 2 G, in a step of so many seconds."""
+    return Law(
+        laws.rate[k],
+        laws.reference[k],
+        laws.number[k],
+        laws.overstress[k],
+        laws.rise[k],
+        laws.exponent[k],
+        0.0,
+        0.0,
+        laws.curve[k, 1, 0],
+        stiffness,
+        seconds,
+    )
+
+
+@njit(cache=True)
+def at_point(law, curve, strain, work):
+    """The law where a step starts from a plastic strain and work, and the radius at rest there."""
+    static, _ = table(curve, strain)
+    soft, _ = softening(law, work)
+    rate, reference, number, overstress, rise, exponent, _, _, _, stiffness, seconds = law
+    return (
+        Law(
+            rate,
+            reference,
+            number,
+            overstress,
+            rise,
+            exponent,
+            strain,
+            work,
+            static,
+            stiffness,
+            seconds,
+        ),
+        static * soft,
+    )
+
+
+NO_LAW = Law(NO_RATE, 1.0, 1.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 0.0, math.inf)
+"""Of a point that is perfectly plastic."""
+
+
+@njit(cache=True)
+def softening(law, work):
+    """Factor that the heat of a plastic work leaves of the strength, and its derivative."""
+    if law.rise == 0.0 or work <= 0.0:
+        return 1.0, 0.0
+    loss = (law.rise * work) ** law.exponent
+    if loss > 1.0 - _WEAKEST:
+        return _WEAKEST, 0.0
+    return 1.0 - loss, -law.exponent * loss / work
+
+
+@njit(cache=True)
+def _of_rate(law, rate):
+    """Factor and addend of the radius at a rate of plastic strain, and their derivatives."""
+    x = rate / law.reference
+    if law.rate == NO_RATE or x <= 0.0:
+        return 1.0, 0.0, 0.0, 0.0
+    if law.rate == COWPER_SYMONDS:
+        more = x ** (1.0 / law.number)
+        return 1.0 + more, more / (law.number * rate), 0.0, 0.0
+    if law.rate == JOHNSON_COOK:
+        if x <= 1.0:
+            return 1.0, 0.0, 0.0, 0.0
+        return 1.0 + law.number * math.log(x), law.number / rate, 0.0, 0.0
+    more = law.overstress * x**law.number
+    return 1.0, 0.0, more, law.number * more / rate
+
+
+@njit(cache=True)
+def grown(law, curve, flow):
+    """`Radius` at J = 1 after a plastic increment of length `flow`.
+
+    The heat of the step is foreseen from the flow stress at its start.
+    """
+    dp = _ROOT * flow
+    still, grow = table(curve, law.strain + dp)
+    factor, dfactor, more, dmore = _of_rate(law, dp / law.seconds)
+    dfactor *= _ROOT / law.seconds
+    dmore *= _ROOT / law.seconds
+    soft0, _ = softening(law, law.work)
+    begun = (law.static * factor + more) * soft0
+    heat = law.stiffness * begun * flow
+    dheat = law.stiffness * (begun + flow * (law.static * dfactor + dmore) * soft0)
+    soft, dsoft = softening(law, law.work + heat)
+    hot = still * factor + more
+    gain = (_ROOT * grow * factor + still * dfactor + dmore) * soft + hot * dsoft * dheat
+    return Radius(hot * soft, gain, begun)
+
+
+@njit(cache=True)
+def perfect(radius, length):
+    """Circle of a perfectly plastic step, on which a point may slide by `length`."""
+    decay = math.exp(-length / radius)
+    return Circle(radius, radius, radius, 0.0, 1.0, 0.0, 0.0, radius, decay, False)
+
+
+NO_CIRCLE = Circle(math.inf, math.inf, math.inf, 0.0, 1.0, 0.0, 0.0, 0.0, 1.0, False)
+"""Of a point that stays elastic."""
+
+
+@njit(cache=True)
+def circle_of(law, curve, J, start, way):
+    """Find how far the circle grows in a step, by Newton's method between two bounds.
+
+    A point at distance n from the centre moves by `length` under the cosine c, `way` for short: on
+    a circle of radius M its way along the increment is W = M ln((1 + c + a^2 (1 - c))/(2 a)),
+    a = exp(-length/M), which holds for a radius that changes with M its mean, and
+    lambda = W - (end - n).
+    """
+    n, length, c = way
+    low = 0.0
+    high = n + length
+    flow = high - start
+    if not 0.0 < flow < high:
+        flow = 0.5 * high
+    found = perfect(start, 0.0)
+    for _ in range(_MOST):
+        now = grown(law, curve, flow)
+        end = J * now.end
+        gain = J * now.gain
+        mean = 0.5 * (n + end)
+        a = math.exp(-length / mean)
+        den = 1.0 + c + a * a * (1.0 - c)
+        along = math.log(0.5 * den) + length / mean
+        drift = along - length / mean * (1.0 + c - a * a * (1.0 - c)) / den
+        off = flow + end - n - mean * along
+        stiff = 1.0 + gain * (1.0 - 0.5 * drift)
+        worked = 0.5 * (J * now.start + end)
+        found = Circle(start, mean, end, gain, stiff, drift, flow, worked, a, True)
+        if off > 0.0:
+            high = flow
+        else:
+            low = flow
+        # a rate law may be vertical at no flow: only what is left over, a stress, tells the root
+        if abs(off) <= _ROUND_OFF * start or high - low <= 1e-16 * high:
+            break
+        flow -= off / stiff
+        if not low < flow < high:
+            # many orders of magnitude may lie below
+            flow = math.sqrt(low * high) if low > 0.0 else 0.03 * high
+    return found
+
+
+@njit(cache=True)
+def linear_circle(circle, c, changes):
+    """Changes of the mean and the end radius in a step that flows.
+
+    Parameters
+    ----------
+    circle, c
+        The circle, and the cosine where the slide begins.
+    changes
+        Of n, of the length, of the cosine and of the mean strain.
+    """
+    dn, dl, dc, dm = changes
+    a = circle.decay
+    even = 3.0 * circle.end * dm
+    den = 1.0 + c + a * a * (1.0 - c)
+    last = (1.0 + c - a * a * (1.0 - c)) / den
+    drive = dn - even + 0.5 * circle.drift * (dn + even) + last * dl
+    drive += circle.mean * (1.0 - a * a) / den * dc
+    dend = circle.gain * drive / circle.stiff + even
+    return 0.5 * (dn + dend), dend
