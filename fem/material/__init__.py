@@ -13,7 +13,7 @@ from .flow import NO_LAW, Law, Laws, law_of, no_laws
 from .slide import EXACT, RADIAL
 from .tangent import deviatoric_tangent
 from .tensor import exponential, log_strain
-from .update import Step, deviatoric_pk1, elastic_deviator, hardened
+from .update import Step, Updated, deviatoric_pk1, elastic_deviator, hardened
 
 __all__ = [
     "EXACT",
@@ -22,6 +22,7 @@ __all__ = [
     "Law",
     "Laws",
     "Step",
+    "Updated",
     "deviatoric_pk1",
     "deviatoric_tangent",
     "elastic_deviator",

@@ -18,6 +18,8 @@ _TESTS = (
      "same, and `tests/unit/fem/test_material.py`"),
     ("path error of the stress update", "its own limit", "order 2 (radial return 1) within 0.1",
      "`tests/unit/fem/test_material.py`"),
+    ("hardening, rate and heat", "exact tension; Taylor remainder of each law",
+     "1e-6; slope 2 within 0.1", "`tests/unit/fem/test_flow.py`"),
     ("stress update", "yield surface, rotation, pure volume change", "1e-10", "same"),
     ("elastic F, a and share, unequal and rigid bodies", "Hertz, Eq. 2.3", "1 %",
      "`tests/physics/test_fem_solve.py`"),

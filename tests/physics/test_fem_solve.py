@@ -6,6 +6,7 @@ import numpy as np
 import pytest
 from dentscope import fem
 from dentscope.core import InputError, Material, Pair
+from dentscope.core.flow import Flow, Rate, swift
 
 pytestmark = pytest.mark.fe
 
@@ -125,6 +126,48 @@ def test_units_do_not_matter(equal_strengths):
     plain = equal_strengths.loading
     assert other.force / (1e-3 * 7000.0**2) == pytest.approx(plain.force[:6], rel=2e-3)
     assert other.sphere_share == pytest.approx(plain.sphere_share[:6], abs=1e-4)
+
+
+def flowing_pair(scale=1.0, radius=1e-3, hurry=1.0, **parts):
+    flow = Flow(
+        curve=parts.get("curve", swift(Sy=503e6 * scale, K=900e6 * scale, n=0.2)),
+        rate=Rate("cowper-symonds", 4e4 * hurry * 1e-3 / radius, 5.0) if hurry else None,
+    )
+    plain = plastic_pair(scale, radius)
+    return dataclasses.replace(plain, flat=plain.flat.with_(flow=flow))
+
+
+def forces(pair, depths, **asked):
+    problem = fem.ContactProblem(pair, depths, **asked)
+    solution = fem.solve(problem, accuracy=fem.Accuracy.smoke())
+    assert solution.outcome.completed, str(solution.outcome)
+    return solution
+
+
+def test_a_metal_that_hardens_and_feels_the_rate_keeps_its_balances(equal_strengths):
+    depths = fem.geometric_depths(4e-5, 0.004, 12)
+    c = equal_strengths.loading
+    soft = float(np.interp(0.004, c.delta / 1e-3, c.sphere_share))
+    slow = forces(flowing_pair(hurry=0.0), depths, unload_from=(0.004,))
+    fast = forces(flowing_pair(), depths, speeds=((0.0, 8.0), (0.004, 2.0)), unload_from=(0.004,))
+    # the flat alone has become harder: the sphere gives way
+    shares = [soft, *(float(s.loading.sphere_share[-1]) for s in (slow, fast))]
+    assert shares[0] + 0.01 < shares[1] < shares[2] - 0.1, shares
+    for solution in (slow, fast):
+        c = solution.loading
+        assert np.abs(c.energy_defect).max() < 0.012
+        assert np.abs(c.force_defect[c.delta / 1e-3 >= 1e-3]).max() < 1e-6
+        assert np.all(np.diff(c.dissipated) >= 0.0)
+        assert solution.unloadings[0].outcome.completed
+
+
+def test_rates_count_in_units_of_speed_over_radius():
+    depths = fem.geometric_depths(4e-5, 1e-3, 5)
+    one = forces(flowing_pair(), depths, speeds=((0.0, 8.0),)).loading
+    other = forces(
+        flowing_pair(scale=1e-3, radius=7.0, hurry=0.5), depths, speeds=((0.0, 4.0),)
+    ).loading
+    assert other.force / (1e-3 * 7000.0**2) == pytest.approx(one.force, rel=2e-3)
 
 
 def test_what_cannot_converge_is_a_result_with_a_reason():

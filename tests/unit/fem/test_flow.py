@@ -6,25 +6,18 @@ import numpy as np
 import pytest
 from dentscope.core import Material
 from dentscope.core.flow import Flow, Heating, Rate, ludwik, swift, tabulated, voce
-from dentscope.fem.laws import laws_of
 from dentscope.fem.material import (
     EXACT,
-    NO_LAW,
     RADIAL,
-    Step,
-    deviatoric_pk1,
     deviatoric_tangent,
     elastic_deviator,
     exponential,
-    hardened,
-    law_of,
 )
+from dentscope.studies.verification.material_point import MaterialPoint, stretched
 
 E, NU, SY = 200e9, 0.3, 400e6
 SHEAR = E / (2.0 * (1.0 + NU))
-UNIT = E  # of stress in the solver's laws here
-G = SHEAR / UNIT
-IDENTITY = np.array([1.0, 0.0, 0.0, 1.0, 1.0])
+G = SHEAR / E
 SECONDS = 1e-3
 
 CURVES = {
@@ -48,41 +41,11 @@ FLOWS = {
 }
 
 
-class Point:
-    """A material point that is walked along a path of deformation."""
+class Point(MaterialPoint):
+    """A point of one metal in these tests."""
 
     def __init__(self, flow, *, rule=EXACT, seconds=SECONDS):
-        laws = laws_of([(Material(E, NU, SY, flow=flow), SHEAR)], UNIT)
-        self.curve = laws.curve[0]
-        self.law = law_of(laws, 0, 2.0 * G, seconds)
-        self.start = Step(
-            IDENTITY, IDENTITY, np.array([1.0, 1.0, 0.0, 1.0]), np.zeros(4),
-            self.curve[1, 0], rule, False, NO_LAW,
-        )  # fmt: skip
-        self.strain, self.work = 0.0, 0.0
-
-    def step(self, F):
-        return hardened(self.start._replace(F=F), self.law, self.curve, self.strain, self.work)
-
-    def walk(self, F):
-        done = elastic_deviator(self.step(F), self.curve)
-        self.start = self.start._replace(
-            F_old=F, b_old=np.array(exponential(done.e, done.mean)), e_old=np.array(done.e)
-        )
-        self.strain += math.sqrt(2.0 / 3.0) * done.slip
-        self.work += 2.0 * G * done.worked * done.slip
-        return done
-
-    def stress(self, F):
-        P = np.empty(5)
-        deviatoric_pk1(self.step(F), self.curve, G, P)
-        return P
-
-
-def stretched(strain):
-    """Isochoric tension along z by a logarithmic strain."""
-    across = math.exp(-0.5 * strain)
-    return np.array([across, 0.0, 0.0, math.exp(strain), across])
+        super().__init__(Material(E, NU, SY, flow=flow), seconds=seconds, rule=rule)
 
 
 def bent(t):
@@ -90,11 +53,6 @@ def bent(t):
         [1.0 + 0.15 * t * np.cos(2.0 * t), 0.4 * np.sin(3.0 * t) * t, 0.2 * t * t,
          1.0 - 0.1 * t + 0.06 * np.sin(4.0 * t) ** 2, 1.0 + 0.05 * np.sin(5.0 * t)]
     )  # fmt: skip
-
-
-def mises(done):
-    e = done.e
-    return 2.0 * SHEAR * math.sqrt(1.5 * (e[0] ** 2 + e[1] ** 2 + e[3] ** 2 + 2.0 * e[2] ** 2))
 
 
 LAWS = {
@@ -122,7 +80,7 @@ def test_tension_at_a_constant_rate_of_plastic_strain_is_exact(rule, hardening, 
         more = 50e6 * math.sqrt(3.0) if rate == "overstress" else 0.0
         stress = LAWS[hardening](p) * FACTORS.get(rate, FACTORS["none"])(speed) + more
         done = point.walk(stretched(p + stress / (3.0 * SHEAR)))
-        assert mises(done) == pytest.approx(stress, rel=1e-6)
+        assert point.mises(done) == pytest.approx(stress, rel=1e-6)
         assert point.strain == pytest.approx(p, rel=1e-6)
 
 
@@ -133,23 +91,25 @@ def test_heat_of_an_adiabatic_tension_follows_the_exact_solution():
     for value in strain:
         done = point.walk(stretched(value))
     p = point.strain
-    assert mises(done) == pytest.approx(SY * math.exp(-0.9 * SY * p / (3.6e6 * 500.0)), rel=1e-5)
+    assert point.mises(done) == pytest.approx(
+        SY * math.exp(-0.9 * SY * p / (3.6e6 * 500.0)), rel=1e-5
+    )
 
 
 def test_a_slow_step_feels_no_rate():
     fast, slow = Point(FLOWS["cowper-symonds"]), Point(FLOWS["cowper-symonds"], seconds=math.inf)
-    assert mises(slow.walk(stretched(0.01))) == pytest.approx(SY, rel=1e-12)
-    assert mises(fast.walk(stretched(0.01))) > 1.3 * SY
+    assert slow.mises(slow.walk(stretched(0.01))) == pytest.approx(SY, rel=1e-12)
+    assert fast.mises(fast.walk(stretched(0.01))) > 1.3 * SY
 
 
 def test_a_stress_that_is_held_relaxes_exponentially():
     """Overstress V r/r0: it decays over the time V/(3 G r0)."""
     relaxation = 50e6 / (3.0 * SHEAR * 10.0)
     point = Point(Flow(rate=Rate("overstress", 10.0, 1.0, 50e6)), seconds=relaxation / 200)
-    before = mises(point.walk(stretched(0.004))) - SY
+    before = point.mises(point.walk(stretched(0.004))) - SY
     for _ in range(200):
         done = point.walk(stretched(0.004))
-    assert (mises(done) - SY) / before == pytest.approx(math.exp(-1.0), rel=0.005)
+    assert (point.mises(done) - SY) / before == pytest.approx(math.exp(-1.0), rel=0.005)
 
 
 @pytest.mark.parametrize("name", FLOWS)
@@ -189,7 +149,7 @@ def test_exact_update_is_second_order_in_a_bent_path(name):
 def test_a_law_that_changes_nothing_is_perfect_plasticity():
     flat = tabulated(np.array([0.0, 1.0]), np.array([SY, SY]))
     hard = Point(Flow(flat))
-    plain = hard.start
+    plain = hard._last
     for t in np.linspace(0.0, 0.7, 200)[1:]:
         done = hard.walk(bent(t))
         plain = plain._replace(F=bent(t))
