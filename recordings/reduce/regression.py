@@ -6,7 +6,6 @@ from dataclasses import dataclass
 
 import numpy as np
 import numpy.typing as npt
-from scipy.optimize import least_squares
 
 from .measured import Array
 
@@ -14,6 +13,7 @@ _REJECT = 4.0
 """Residuals beyond this many robust standard deviations are left out of the final fit."""
 
 _MAD_TO_STD = 1.4826
+_ROUNDS = 40
 
 
 @dataclass(frozen=True)
@@ -59,10 +59,7 @@ def robust_regression(design: Array, observed: Array, *, floor: float = 0.0) -> 
     scaled = design / scale
     start = np.linalg.lstsq(scaled, observed, rcond=None)[0]
     spread = max(robust_std(observed - scaled @ start), floor, _tiny(observed))
-    bulk = least_squares(
-        lambda c: (scaled @ c - observed) / spread, start, jac=lambda _c: scaled / spread,
-        loss="soft_l1", method="trf",
-    ).x  # fmt: skip
+    bulk = _soft_l1(scaled, observed, start, spread)
     residual = observed - scaled @ bulk
     limit = _REJECT * max(robust_std(residual, lost=p), floor, _tiny(observed))
     used = np.abs(residual) <= limit
@@ -75,6 +72,19 @@ def robust_regression(design: Array, observed: Array, *, floor: float = 0.0) -> 
     information = scaled[used].T @ scaled[used]
     covariance = sigma**2 * np.linalg.pinv(information) * correlation_factor(residual)
     return Regression(coefficients / scale, covariance / np.outer(scale, scale), sigma, used)
+
+
+def _soft_l1(design: Array, observed: Array, start: Array, spread: float) -> Array:
+    """Minimise the sum of sqrt(1 + z²) over residuals z in units of `spread`, by reweighting."""
+    c: Array = start
+    for _ in range(_ROUNDS):
+        weight = (1.0 + ((observed - design @ c) / spread) ** 2) ** -0.25
+        there = np.linalg.lstsq(design * weight[:, None], observed * weight, rcond=None)[0]
+        moved = float(np.abs(design @ (there - c)).max())
+        c = np.asarray(there, dtype=np.float64)
+        if moved < 1e-3 * spread:
+            break
+    return np.asarray(c)
 
 
 def robust_std(values: Array, *, lost: int = 0) -> float:
@@ -102,3 +112,22 @@ def correlation_factor(residual: Array) -> float:
     lag_one = float(residual[1:] @ residual[:-1]) / total + 1.0 / residual.size
     lag_one = min(max(lag_one, 0.0), 0.95)
     return (1.0 + lag_one) / (1.0 - lag_one)
+
+
+def long_run_factor(residual: Array, *, lost: float = 0.0) -> float:
+    """Return by how much residuals that hang together, or swing, widen the variance of a mean.
+
+    The long-run variance over the plain one, with Bartlett's weights over lags up to the root of
+    the number of samples (W. Newey, K. West, Econometrica 55 (1987)); never below 1. `lost` is the
+    number of degrees of freedom that the fit has taken from these residuals.
+    """
+    n = residual.size
+    total = float(residual @ residual)
+    if n < 8 or total == 0.0:
+        return 1.0
+    lags = max(2, round(n**0.5))
+    factor = 1.0
+    for k in range(1, lags + 1):
+        lagged = float(residual[k:] @ residual[:-k]) / total + (1.0 + lost) / n
+        factor += 2.0 * (1.0 - k / (lags + 1.0)) * lagged
+    return max(factor, 1.0)

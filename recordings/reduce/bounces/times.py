@@ -13,18 +13,19 @@ from dataclasses import dataclass
 
 import numpy as np
 from pydantic import Field
-from scipy.optimize import brentq
 
 from ....core.errors import InputError
-from ....core.toml_input import InputTable
 from ..measured import Array, Measured, Trial
 from .chain import Chain, chain_of
+from .fall import Ball, Fall
+from .options import BallOptions
 
-GRAVITY = 9.81
+_TYPICAL = 0.75
+"""Speed at which the drag coefficient of a flight is taken, in that of its launch."""
 
 
-class BounceOptions(InputTable):
-    """What is known of a ball that bounces."""
+class BounceOptions(BallOptions):
+    """What is known of a ball whose bounces are timed."""
 
     release_height_m: float | None = Field(
         None, gt=0.0, description="fall before the first contact, from rest, of the ball's bottom"
@@ -33,82 +34,18 @@ class BounceOptions(InputTable):
     contact_time_s: float = Field(
         0.0, ge=0.0, description="duration of a contact, which is not flight"
     )
-    mass_kg: float | None = Field(None, gt=0.0, description="of the striker")
     diameter_m: float | None = Field(
         None, gt=0.0, description="of the ball; with mass_kg the drag of the air is taken off"
     )
-    drag_coefficient: float = Field(0.45, ge=0.0, description="of the ball in the air")
-    air_density_kg_m3: float = Field(1.2, ge=0.0, description="of the air")
-    gravity_m_s2: float = Field(GRAVITY, gt=0.0, description="acceleration of the fall")
 
     @property
-    def flight(self) -> Fall:
-        """Vertical flight of this ball; without drag if mass or diameter is not known."""
-        if self.mass_kg is None or self.diameter_m is None:
-            return Fall(self.gravity_m_s2, math.inf)
-        volume = math.pi * self.diameter_m**3 / 6.0
-        weight = self.gravity_m_s2 * (1.0 - self.air_density_kg_m3 * volume / self.mass_kg)
-        if not weight > 0.0:
-            raise InputError(
-                f"{self.mass_kg:g} kg", key="mass_kg", allowed="a ball heavier than the air"
-            )
-        area = 0.25 * math.pi * self.diameter_m**2
-        drag = self.air_density_kg_m3 * self.drag_coefficient * area
-        fastest = math.sqrt(2.0 * self.mass_kg * weight / drag) if drag > 0.0 else math.inf
-        return Fall(weight, fastest)
+    def ball(self) -> Ball:
+        """What flies."""
+        return self.ball_of(self.diameter_m)
 
-
-@dataclass(frozen=True)
-class Fall:
-    """Vertical flight under gravity and quadratic drag.
-
-    Parameters
-    ----------
-    gravity
-        Acceleration, buoyancy taken off [m/s²].
-    terminal
-        Speed at which the drag carries the ball, inf without drag [m/s].
-    """
-
-    gravity: float
-    terminal: float
-
-    def landing(self, launch: float) -> float:
-        """Return the speed at which a ball launched upwards comes back [m/s]."""
-        return launch / math.sqrt(1.0 + (launch / self.terminal) ** 2)
-
-    def duration(self, launch: float) -> float:
-        """Return the time from launch to landing [s]."""
-        if math.isinf(self.terminal):
-            return 2.0 * launch / self.gravity
-        rise = math.atan(launch / self.terminal)
-        return (
-            self.terminal / self.gravity * (rise + math.atanh(self.landing(launch) / self.terminal))
-        )
-
-    def launch(self, duration: float) -> float:
-        """Return the speed at which a flight of this duration began [m/s]."""
-        vacuum = 0.5 * self.gravity * duration
-        if math.isinf(self.terminal):
-            return vacuum
-        high = vacuum
-        while self.duration(high) < duration:
-            high *= 1.5
-        return float(brentq(lambda v: self.duration(v) - duration, 0.5 * vacuum, high, rtol=1e-13))
-
-    def impact(self, height: float) -> float:
-        """Return the speed after a fall from rest [m/s]."""
-        if math.isinf(self.terminal):
-            return math.sqrt(2.0 * self.gravity * height)
-        exponent = -2.0 * self.gravity * height / self.terminal**2
-        return self.terminal * math.sqrt(-math.expm1(exponent))
-
-    def rise(self, height: float) -> float:
-        """Return the speed at which a ball must start to rise this high [m/s]."""
-        if math.isinf(self.terminal):
-            return math.sqrt(2.0 * self.gravity * height)
-        exponent = 2.0 * self.gravity * height / self.terminal**2
-        return self.terminal * math.sqrt(math.expm1(exponent))
+    def fall_of(self, launch: float) -> Fall:
+        """Return a flight launched at about a speed [m/s]; most of the drag acts near its ends."""
+        return self.ball.fall(_TYPICAL * launch)
 
 
 @dataclass(frozen=True)
@@ -209,7 +146,6 @@ def reduce_bounce_times(
 def _bounces(
     times: Array, spread: Array, chain: Chain, options: BounceOptions, source: str
 ) -> tuple[Bounced, ...]:
-    fall = options.flight
     found = []
     kept, single = chain.kept, chain.single
     gaps = np.diff(times[list(kept)])
@@ -222,29 +158,34 @@ def _bounces(
     first = kept[0]
     if options.release_height_m is not None and first == 0 and single[0]:
         height = Measured(options.release_height_m, options.release_height_m_std)
-        speed = fall.impact(height.value)
+        vacuum = math.sqrt(2.0 * options.gravity_m_s2 * height.value)
+        speed = options.fall_of(vacuum).impact(height.value)
         approach = Measured(speed, 0.5 * speed * height.std / height.value)
+        after = options.fall_of(0.5 * options.gravity_m_s2 * flights[0])
         rebound = Measured(
-            fall.launch(flights[0]),
-            0.5 * fall.gravity * math.hypot(spread[kept[0]], spread[kept[1]]),
+            after.launch(flights[0]),
+            0.5 * after.gravity * math.hypot(spread[kept[0]], spread[kept[1]]),
         )
         found.append(Bounced(1, float(times[first]), approach, rebound, rebound.over(approach)))
     for k in range(1, len(kept) - 1):
         if single[k - 1] and single[k]:
-            found.append(_between(times, spread, kept[k - 1 : k + 2], flights[k - 1 : k + 1], fall))
+            found.append(
+                _between(times, spread, kept[k - 1 : k + 2], flights[k - 1 : k + 1], options)
+            )
     return tuple(found)
 
 
 def _between(
-    times: Array, spread: Array, three: Sequence[int], flights: Array, fall: Fall
+    times: Array, spread: Array, three: Sequence[int], flights: Array, options: BounceOptions
 ) -> Bounced:
     before, after = float(flights[0]), float(flights[1])
-    approach, rebound = fall.landing(fall.launch(before)), fall.launch(after)
+    down, up = (options.fall_of(0.5 * options.gravity_m_s2 * t) for t in (before, after))
+    approach, rebound = down.landing(down.launch(before)), up.launch(after)
     ratio = rebound / approach
     # the middle instant lengthens one flight and shortens the other
     part = np.array([1.0 / before, 1.0 / before + 1.0 / after, 1.0 / after])
     sigma = spread[list(three)]
-    half = 0.5 * fall.gravity
+    half = 0.5 * down.gravity
     return Bounced(
         three[1] + 1,
         float(times[three[1]]),

@@ -7,12 +7,16 @@ short part of the flight next to the contact.
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass
+from collections.abc import Iterator
+from dataclasses import dataclass, replace
 
 import numpy as np
 
 from ....core.errors import InputError
-from ..flight import Bounce, Track, bounces
+from ..bounces.flights import Piece
+from ..bounces.sides import sides_of
+from ..bounces.track import Track, on_the_body, turning_points
+from ..bounces.view import Stage
 from ..measured import Array, Measured, Trial, propagate
 from ..regression import robust_regression
 from .file import Markers
@@ -94,17 +98,18 @@ def reduce_point(markers: Markers, scene: Scene, *, spin: Array | None) -> Point
             f"the ball is seen in {time.size} frames", source=markers.source,
             allowed=f"{2 * _FEWEST} or more",
         )  # fmt: skip
-    height = position @ scene.up
-    found = bounces(Track(time, height, np.zeros_like(height)), acceleration=None)
     measured, noise = [], []
-    for number, bounce in enumerate(found):
-        before, after = (_side(time, position, bounce, way) for way in (-1, 1))
+    for number, (instant, flights) in enumerate(_contacts(time, position @ scene.up)):
+        before, after = (
+            _side(time, position, instant, flight, way)
+            for flight, way in zip(flights, (-1, 1), strict=True)
+        )
         if before is None or after is None:
             continue
         sides = (before[0], after[0])
         noise += [before[1], after[1]]
         values = _measured(sides, scene, spin if number == 0 else None)
-        measured.append(PointBounce(values, sides, bounce.time.value))
+        measured.append(PointBounce(values, sides, instant))
     if not measured:
         raise InputError(
             "no bounce with a flight before and after it", source=markers.source,
@@ -114,11 +119,42 @@ def reduce_point(markers: Markers, scene: Scene, *, spin: Array | None) -> Point
     return PointReduction(time, position, tuple(measured), float(np.mean(noise)), notes)
 
 
-def _side(time: Array, position: Array, bounce: Bounce, way: int) -> tuple[Side, float] | None:
+def _contacts(time: Array, height: Array) -> Iterator[tuple[float, tuple[Piece, Piece]]]:
+    """Find each contact: its instant, and the flights on both sides.
+
+    A spinning ball is lifted, otherwise before a bounce than after it: the flights share no fall.
+    """
+    seen = Track(time, height)
+    chosen = on_the_body(seen)
+    track = Track(time[chosen], height[chosen])
+    turning = turning_points(track)
+    if not turning:
+        return
+    floor = float(np.median(track.height[turning]))
+    stage = Stage(floor, float(np.ptp(track.height)), float(time[0]), float(np.ptp(time)))
+    sides = sides_of(track, turning, stage, None)
+    for contact, before, after in zip(turning, sides[::2], sides[1::2], strict=True):
+        if before is None or after is None:
+            continue
+        at = float(track.time[contact])
+        near = [p.index[np.abs(track.time[p.index] - at) < _NEAR] for p in (before, after)]
+        if min(n.size for n in near) < 3:
+            continue
+        one, two = (np.polyfit(track.time[n] - at, track.height[n], 2) for n in near)
+        meet = np.roots(one - two)
+        meet = meet[np.isreal(meet)].real
+        if meet.size:
+            instant = at + float(meet[np.argmin(np.abs(meet))])
+            yield instant, (replace(before, index=chosen[before.index]),
+                            replace(after, index=chosen[after.index]))  # fmt: skip
+
+
+def _side(
+    time: Array, position: Array, instant: float, flight: Piece, way: int
+) -> tuple[Side, float] | None:
     """Fit the flight next to a contact; the frame nearest to it may be within it."""
-    flight = bounce.before if way < 0 else bounce.after
-    tau = time - bounce.time.value
-    index = np.arange(flight.first, flight.last + 1)
+    tau = time - instant
+    index = flight.index
     index = index[(way * tau[index] > 0.0) & (np.abs(tau[index]) < _NEAR)]
     if index.size < _FEWEST:
         return None

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
-from ..bounces.times import GRAVITY
+from ..bounces.options import GRAVITY
 from ..measured import Array, Measured, Trial
 from .pulse import Pulse, find_pulse
 

@@ -5,29 +5,28 @@ from __future__ import annotations
 import math
 from dataclasses import dataclass
 
-import numpy as np
-
 from ....core.errors import InputError
-from ..flight import Bounce, Track, bounces, scale_from_fall
+from ..bounces.bounce import Bounced
+from ..bounces.contacts import find_bounces
+from ..bounces.fall import Ball
+from ..bounces.track import Track
 from ..measured import Array, Measured, Trial
 
 
 @dataclass(frozen=True)
 class HeightReduction:
-    """Contacts in a track of heights; `scale` is metres in its unit, nan if unknown."""
+    """Contacts in a track of heights, and the rows that they make."""
 
     track: Track
-    found: tuple[Bounce, ...]
-    scale: Measured
+    found: Bounced
     values: dict[str, Measured]
     trials: tuple[Trial, ...]
-    notes: tuple[str, ...]
 
 
 def reduce_heights(
-    time: Array, height: Array, *, metres: float | None, std: float, gravity: float, source: str
+    time: Array, height: Array, *, metres: float | None, std: float, ball: Ball, source: str
 ) -> HeightReduction:
-    """Fit the flights of a track and read the speeds where they meet.
+    """Fit the flights of a track and read the speeds at its contacts.
 
     Parameters
     ----------
@@ -37,8 +36,8 @@ def reduce_heights(
         Size of that unit [m]; None takes it from the acceleration of the fall.
     std
         Standard deviation of a height that is believed at least [unit].
-    gravity
-        Acceleration of the fall [m/s²].
+    ball
+        Gravity, and the drag as far as it is known.
     source
         The file.
 
@@ -47,50 +46,38 @@ def reduce_heights(
     InputError
         No contact with flight on both sides.
     """
-    track = Track(time, height, np.zeros_like(height), floor=std)
-    known = None if metres is None else gravity / metres
-    found = bounces(track, acceleration=known)
-    if not found:
+    track = Track(time, height, floor=std)
+    found = find_bounces(track, ball, metres=None if metres is None else Measured(metres, 0.0))
+    if found is None:
         raise InputError(
             "no contact with flight before and after it", source=source,
             allowed="heights of a body that falls, touches and rises (see --upwards, --first-s)",
         )  # fmt: skip
-    notes = []
-    scale = Measured(metres or math.nan, 0.0)
-    if metres is None:
-        scale, origin = scale_from_fall(found, gravity)
-        if math.isfinite(scale.value):
-            notes.append(f"unit of the heights {scale} m from {origin}")
-        else:
-            notes.append("no length scale: ratios only")
-            found = bounces(track, acceleration=0.0)
-    trials = tuple(_trial(track, found, k, scale, tuple(notes)) for k in range(len(found)))
+    trials = tuple(_trial(track, found, k) for k in range(len(found.bounces)))
     values: dict[str, Measured] = {}
     for trial in trials:
         label = f"{trial.label}_" if trial.label else ""
         values |= {label + name: v for name, v in trial.observables.items()}
-    if metres is not None:
-        free = bounces(track, acceleration=None)
-        falls = [f.fitted_acceleration for b in free for f in (b.before, b.after)]
-        longest = min((f for f in falls if f is not None), key=lambda f: f.std, default=None)
-        if longest is not None:
-            values["fall_acceleration_m_s2"] = longest.scaled(metres)
-    return HeightReduction(track, tuple(found), scale, values, trials, tuple(notes))
+    if metres is None and found.scale.known:
+        values["unit_m"] = found.scale.metres
+    if metres is not None and math.isfinite(found.fall.value):
+        values["fall_acceleration_m_s2"] = found.fall.scaled(metres)
+    return HeightReduction(track, found, values, trials)
 
 
-def _trial(
-    track: Track, found: list[Bounce], k: int, scale: Measured, notes: tuple[str, ...]
-) -> Trial:
-    bounce = found[k]
+def _trial(track: Track, found: Bounced, k: int) -> Trial:
+    bounces, scale = found.bounces, found.scale.metres
+    bounce = bounces[k]
     row, trace = {"restitution": bounce.restitution}, {}
-    if math.isfinite(scale.value):
+    if found.scale.known:
         row["impact_speed_m_s"] = bounce.approach.times(scale)
         row["rebound_speed_m_s"] = bounce.rebound.times(scale)
-        low = 0 if k == 0 else found[k - 1].turning
-        high = track.time.size if k + 1 == len(found) else found[k + 1].turning
-        touch = float(bounce.before.heights(np.array([bounce.time.value]))[0])
+        low = 0 if k == 0 else bounces[k - 1].turning
+        high = track.time.size if k + 1 == len(bounces) else bounces[k + 1].turning
+        touch = found.stage.floor + bounce.height.value
         trace = {
             "time_s": track.time[low:high] - bounce.time.value,
             "tip_height_m": (track.height[low:high] - touch) * scale.value,
         }
-    return Trial(row, notes, trace=trace, label=f"bounce{k + 1}" if len(found) > 1 else "")
+    label = f"bounce{k + 1}" if len(bounces) > 1 else ""
+    return Trial(row, found.notes, trace=trace, label=label)

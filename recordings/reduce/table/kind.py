@@ -81,7 +81,7 @@ def reduce(path: Path, options: Options) -> Reduced:
     if options.holds == "rebounds":
         found = reduce_rebounds(
             table, value=options.value, unit=options.value_unit, std=options.value_std,
-            fall=options.flight,
+            ball=options.ball,
         )  # fmt: skip
     else:
         found = reduce_trials(table)
@@ -114,11 +114,11 @@ def _heights(path: Path, table: Columns, options: Options) -> Reduced:
         metres = table.factor(column, "length", given=options.value_unit, key="value_unit")
     found = reduce_heights(
         time, value if options.upwards == "up" else -value, metres=metres,
-        std=options.value_std, gravity=options.gravity_m_s2, source=str(path),
+        std=options.value_std, ball=options.ball, source=str(path),
     )  # fmt: skip
     rate = float(1.0 / np.median(np.diff(time)))
     return Reduced(
-        source=path, values=found.values, trials=found.trials, notes=found.notes,
+        source=path, values=found.values, trials=found.trials, notes=found.found.notes,
         draw=lambda to: draw_heights(found, to), noise={"frame_rate_hz": rate},
     )  # fmt: skip
 

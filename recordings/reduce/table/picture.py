@@ -43,14 +43,14 @@ def draw_heights(found: HeightReduction, path: Path) -> None:
     made, axes = figure(2, 1, size=(11.0, 7.0))
     track = found.track
     axes[0, 0].plot(track.time, track.height, "k.", ms=3)
-    for k, bounce in enumerate(found.found):
-        for flight in (bounce.before, bounce.after):
-            part = slice(flight.first, flight.last + 1)
-            time = track.time[part]
-            span = np.linspace(float(time[0]), bounce.time.value, 80)
-            span = np.union1d(span, np.linspace(time[0], time[-1], 80))
-            axes[0, 0].plot(span, flight.heights(span), f"C{k % 8}", lw=1.2)
-            rest = track.height[part] - flight.heights(time)
+    bounced = found.found
+    for k, bounce in enumerate(bounced.bounces):
+        for piece in (bounce.before, bounce.after):
+            time = track.time[piece.index]
+            ends = (*time[[0, -1]], bounce.time.value)
+            span = np.linspace(min(ends), max(ends), 160)
+            axes[0, 0].plot(span, bounced.heights(piece, span), f"C{k % 8}", lw=1.2)
+            rest = track.height[piece.index] - bounced.heights(piece, time)
             axes[1, 0].plot(time, rest, ".", color=f"C{k % 8}", ms=3)
         axes[0, 0].annotate(
             f"e = {bounce.restitution}", (bounce.time.value, float(track.height[bounce.turning])),

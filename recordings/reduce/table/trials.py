@@ -11,7 +11,7 @@ import numpy as np
 
 from ....core.errors import InputError, InputErrors
 from ...columns import CONDITIONS, MEASURED, STD_SUFFIX
-from ..bounces.times import Fall
+from ..bounces.fall import Ball, Fall
 from ..measured import Array, Measured, Trial
 from ..units import UNITS
 from .file import Columns
@@ -34,7 +34,7 @@ class TrialsReduction:
 
 
 def reduce_rebounds(
-    table: Columns, *, value: str, unit: str, std: float, fall: Fall
+    table: Columns, *, value: str, unit: str, std: float, ball: Ball
 ) -> TrialsReduction:
     """Return a trial for each rebound height beside a drop height.
 
@@ -48,8 +48,8 @@ def reduce_rebounds(
         Of all of them, or `"file"`.
     std
         Standard deviation of a height [that unit].
-    fall
-        Flight of the ball: with drag it lands slower than it was dropped.
+    ball
+        What flies: with drag it lands slower than it was dropped.
 
     Raises
     ------
@@ -62,11 +62,11 @@ def reduce_rebounds(
     for row, (drop, *rebounds) in enumerate(heights, start=1):
         if not np.isfinite(drop):
             continue
-        speed = fall.impact(float(drop))
+        speed = _fall(ball, drop).impact(float(drop))
         approach = Measured(speed, 0.5 * speed * error / drop)
         for k, height in enumerate(rebounds, start=1):
             if np.isfinite(height):
-                up = fall.rise(float(height))
+                up = _fall(ball, height).rise(float(height))
                 ratio = Measured(up, 0.5 * up * error / height).over(approach)
                 seen = {"impact_speed_m_s": approach, "restitution": ratio}
                 trials.append(Trial(seen, label=f"drop{row}-{k}"))
@@ -83,6 +83,11 @@ def reduce_rebounds(
         values, tuple(trials), (f"{len(trials)} rebounds",),
         ("impact speed [m/s]", speeds), ("restitution", ratios),
     )  # fmt: skip
+
+
+def _fall(ball: Ball, height: float) -> Fall:
+    """Return the flight over a height [m], its drag taken at a typical speed."""
+    return ball.fall(0.75 * math.sqrt(2.0 * ball.gravity * height))
 
 
 def _heights(table: Columns, value: str, unit: str) -> tuple[Array, float]:

@@ -8,21 +8,24 @@ from typing import Literal
 from pydantic import Field
 
 from ....core.errors import InputError
+from ..bounces.options import BallOptions
 from ..images.clip import read_clip
 from ..images.options import PictureOptions
 from ..images.picture_file import crop_window
 from ..measured import Measured
 from ..reduced import Reduced
 from .picture import draw_video
-from .reduction import GRAVITY, Optics, VideoReduction, reduce_video
+from .reduction import Optics, VideoReduction, reduce_video
 
 
-class Options(PictureOptions):
+class Options(PictureOptions, BallOptions):
     """Options of the reduction of a video."""
 
     frame_rate_hz: float = Field(gt=0.0, description="the camera's own frames per second")
     shape: Literal["rod", "sphere"] = Field("rod", description="of the striker")
-    gravity_m_s2: float = Field(GRAVITY, gt=0.0, description="acceleration of the fall")
+    line_time_s: float = Field(
+        0.0, ge=0.0, description="from one row to the next, of a shutter that rolls down"
+    )
     striker_is: Literal["bright", "dark"] = Field("bright", description="against its ground")
     background: Literal["none", "median"] = Field(
         "none", description="median: subtract the median of all frames"
@@ -53,7 +56,8 @@ def reduce(path: Path, options: Options) -> Reduced:
         rate=options.frame_rate_hz,
         scale=options.pixel,
         size=options.diameter,
-        gravity=options.gravity_m_s2,
+        ball=options.ball_of(options.diameter_m),
+        line_time=options.line_time_s,
     )
     found = reduce_video(
         clip, optics, shape=options.shape, striker_is=options.striker_is,
@@ -62,7 +66,7 @@ def reduce(path: Path, options: Options) -> Reduced:
     return Reduced(
         source=path, values=_values(found), trials=found.trials(), notes=found.notes,
         draw=lambda picture: draw_video(found, clip, picture),
-        noise={"frame_rate_hz": found.rate},
+        noise={"frame_rate_hz": found.optics.rate},
     )  # fmt: skip
 
 

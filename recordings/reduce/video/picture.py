@@ -26,13 +26,12 @@ def draw_video(result: VideoReduction, clip: Clip, path: Path) -> None:
         axis.set_title(f"frame {number}" + (" (lowest)" if index == bounce.turning else ""))
     time = 1e3 * result.time
     axes[1, 0].plot(time, -result.row, "k.", ms=2)
-    for flight, colour in ((bounce.before, "C0"), (bounce.after, "C1")):
-        span = result.time[flight.first : flight.last + 1]
-        axes[1, 0].plot(1e3 * span, flight.heights(span), colour, lw=1.5)
-        part = slice(flight.first, flight.last + 1)
-        residual = -result.row[part] - flight.heights(span)
+    for piece, colour in ((bounce.before, "C0"), (bounce.after, "C1")):
+        span = result.time[piece.first : piece.last + 1]
+        axes[1, 0].plot(1e3 * span, result.found.heights(piece, span), colour, lw=1.5)
+        residual = -result.row[piece.first : piece.last + 1] - result.found.heights(piece, span)
         axes[1, 1].plot(1e3 * span, residual, ".", color=colour, ms=3)
-        out = ~flight.height.used
+        out = np.isin(np.arange(piece.first, piece.last + 1), piece.index, invert=True)
         axes[1, 1].plot(1e3 * span[out], residual[out], "x", color="r", ms=4)
     axes[1, 0].set(
         xlabel="time [ms]",

@@ -15,7 +15,10 @@ import numpy as np
 import numpy.typing as npt
 
 from ....core.errors import InputError
-from ..flight import Bounce, Track, bounces, scale_from_fall
+from ..bounces.bounce import Bounce, Bounced
+from ..bounces.contacts import find_bounces
+from ..bounces.fall import UNKNOWN, Ball
+from ..bounces.track import Track
 from ..images.clip import Clip
 from ..measured import Array, Measured, Trial
 from .tracking import grey_levels, striker_bright, track_ball, track_rod
@@ -23,7 +26,6 @@ from .tracking import grey_levels, striker_bright, track_ball, track_rod
 SHAPES = ("rod", "sphere")
 BACKGROUNDS = ("none", "median")
 BRIGHTNESS = ("bright", "dark")
-GRAVITY = 9.81
 
 _LEAN_FRAMES = 20
 _LEAN_LIMIT = math.radians(5.0)
@@ -44,14 +46,21 @@ class Optics:
         Size of a pixel [m], or None.
     size
         Diameter of the striker [m], from which the scale follows, or None.
-    gravity
-        [m/s²]; gives the scale when neither of the others is known and the fall is long enough.
+    ball
+        Gravity, which gives the scale where the fall is long enough, and drag as far as known.
+    line_time
+        From one row of the picture to the next, of a shutter that rolls down [s].
     """
 
     rate: float
+    ball: Ball = UNKNOWN
     scale: Measured | None = None
     size: Measured | None = None
-    gravity: float = GRAVITY
+    line_time: float = 0.0
+
+    def time(self, frame: npt.NDArray[np.int64], row: Array) -> Array:
+        """Return when a row of a frame was exposed, (n,) [s]."""
+        return np.asarray(frame / self.rate + self.line_time * row)
 
 
 @dataclass(frozen=True)
@@ -72,10 +81,8 @@ class VideoReduction:
         Frame with the fewest dark pixels, grey level between body and background, both levels.
     half_width
         Half the width of the rod, or radius of the ball [pixel].
-    scale, scale_from
-        Size of a pixel [m] and where it came from; a scale of nan leaves only ratios.
-    bounces
-        Contacts in pixels and seconds.
+    found
+        Contacts in pixels and seconds, and the size of a pixel [m]; nan leaves only ratios.
     """
 
     frame: npt.NDArray[np.int64]
@@ -89,18 +96,25 @@ class VideoReduction:
     levels: tuple[float, float]
     half_width: Measured
     tip_radius: float
-    scale: Measured
-    scale_from: str
-    rate: float
-    gravity: float
-    bounces: tuple[Bounce, ...]
+    optics: Optics
+    found: Bounced
     notes: tuple[str, ...]
     source: str
 
     @property
     def time(self) -> Array:
         """Time of each tracked frame, (n,) [s]."""
-        return self.frame / self.rate
+        return self.optics.time(self.frame, self.row)
+
+    @property
+    def bounces(self) -> tuple[Bounce, ...]:
+        """The contacts."""
+        return self.found.bounces
+
+    @property
+    def scale(self) -> Measured:
+        """Size of a pixel [m]."""
+        return self.found.scale.metres
 
     def trials(self) -> tuple[Trial, ...]:
         """Return a row of trials.csv for each contact."""
@@ -120,7 +134,7 @@ class VideoReduction:
         return Trial(row, self.notes, trace=self._trace(bounce, number), label=label)
 
     def _lean_before(self, bounce: Bounce) -> Measured:
-        near = self.frame <= self.frame[bounce.before.last]
+        near = self.frame <= self.frame[bounce.near[0]]
         last = self.lean[near][-_LEAN_FRAMES:]
         return Measured(float(np.median(last)), float(np.std(last) / max(len(last) - 1, 1) ** 0.5))
 
@@ -130,7 +144,7 @@ class VideoReduction:
         low = 0 if number == 1 else self.bounces[number - 2].turning
         high = self.frame.size if number == len(self.bounces) else self.bounces[number].turning
         part = slice(low, high)
-        touch = float(bounce.before.heights(np.array([bounce.time.value]))[0])
+        touch = self.found.stage.floor + bounce.height.value
         trace = {
             "time_s": self.time[part] - bounce.time.value,
             "tip_height_m": (-self.row[part] - touch) * self.scale.value,
@@ -188,43 +202,27 @@ def reduce_video(
     fresh = np.isin(track["frame"], clip.repeats, invert=True)
     track = {name: values[fresh] for name, values in track.items() if name != "radius"}
     notes = _timing_notes(clip, optics.rate)
-    found, scale, origin = _contacts(track, half, optics, clip.source)
     result = VideoReduction(
         **track, shape=shape, critical_frame=critical, threshold=0.5 * sum(levels), levels=levels,
-        half_width=half, tip_radius=tip_radius, scale=scale, scale_from=origin, rate=optics.rate,
-        gravity=optics.gravity, bounces=tuple(found), notes=(), source=clip.source,
+        half_width=half, tip_radius=tip_radius, optics=optics,
+        found=_contacts(track, half, optics, clip.source), notes=(), source=clip.source,
     )  # fmt: skip
-    return replace(result, notes=(*notes, *_flight_notes(result, optics)))
+    return replace(result, notes=(*notes, *result.found.notes, *_flight_notes(result)))
 
 
-def _contacts(
-    track: dict[str, Array], half: Measured, optics: Optics, source: str
-) -> tuple[list[Bounce], Measured, str]:
-    path = Track(
-        track["frame"] / optics.rate, -track["row"], track["column"], floor=_POSITION_FLOOR
-    )
-    scale, origin = _known_scale(half, optics)
-    known = optics.gravity / scale.value if math.isfinite(scale.value) else None
-    found = bounces(path, acceleration=known)
-    if not found:
+def _contacts(track: dict[str, Array], half: Measured, optics: Optics, source: str) -> Bounced:
+    time = optics.time(track["frame"].astype(np.int64), track["row"])
+    stated = optics.scale
+    if stated is None and optics.size is not None:
+        stated = optics.size.over(half.scaled(2.0))
+    path = Track(time, -track["row"], floor=_POSITION_FLOOR)
+    found = find_bounces(path, optics.ball, metres=stated)
+    if found is None:
         raise InputError(
             "no contact with flight before and after it", source=source,
             allowed="a clip that shows the striker fall, touch and rise",
         )  # fmt: skip
-    if known is None:
-        scale, origin = scale_from_fall(found, optics.gravity)
-        if not math.isfinite(scale.value):
-            # over so short a fall gravity is nothing: a free acceleration would only add noise
-            found = bounces(path, acceleration=0.0)
-    return found, scale, origin
-
-
-def _known_scale(half: Measured, optics: Optics) -> tuple[Measured, str]:
-    if optics.scale is not None:
-        return optics.scale, "as given"
-    if optics.size is not None:
-        return optics.size.over(half.scaled(2.0)), "the striker's diameter"
-    return Measured(math.nan, math.nan), ""
+    return found
 
 
 def _timing_notes(clip: Clip, rate: float) -> list[str]:
@@ -243,21 +241,22 @@ def _timing_notes(clip: Clip, rate: float) -> list[str]:
     return notes
 
 
-def _flight_notes(result: VideoReduction, optics: Optics) -> list[str]:
+def _flight_notes(result: VideoReduction) -> list[str]:
     notes = []
     if not math.isfinite(result.scale.value):
         notes.append("no length scale: ratios only (give the size of a pixel or the diameter)")
     else:
-        part = result.scale.std / result.scale.value
-        notes.append(
-            f"pixel {result.scale.value * 1e6:.4g} um ± {100 * part:.2g} % from {result.scale_from}"
-        )
+        part, origin = result.scale.std / result.scale.value, result.found.scale.origin
+        size = result.scale.value * 1e6
+        notes.append(f"pixel {size:.4g} um ± {100 * part:.2g} % from {origin}")
     for number, bounce in enumerate(result.bounces, start=1):
-        gap = result.frame[bounce.after.first] - result.frame[bounce.before.last] - 1
-        used = [int(f.height.used.sum()) for f in (bounce.before, bounce.after)]
+        last, first = bounce.near
+        gap = result.frame[first] - result.frame[last] - 1
+        used = [p.index.size for p in (bounce.before, bounce.after)]
         notes.append(
             f"contact {number}: {gap} frames left out, contact shorter than "
-            f"{(gap + 1) / result.rate * 1e3:.3g} ms; flights of {used[0]} and {used[1]} frames"
+            f"{(gap + 1) / result.optics.rate * 1e3:.3g} ms; flights of {used[0]} and {used[1]} "
+            "frames"
         )
     if result.shape == "rod":
         notes.extend(_lean_notes(result))

@@ -118,6 +118,26 @@ def test_stop_watch_times_of_a_golf_ball():
 
 
 @measured
+def test_restitution_of_a_golf_ball_is_one_value_with_drag_taken_out():
+    """Four heights of release: what is left of a course with speed is below 0.003."""
+    given = {"holds": "bounces", "time": "4", "mass_kg": 0.0459, "diameter_m": 0.0427,
+             "contact_time_s": 5e-4}  # fmt: skip
+    rows = []
+    for height in ("80", "90", "100", "110"):
+        reduced = load_kind("table").run(
+            REAL / "golf_ball/data_golfball.xlsx", given | {"sheet": f"{height} cm"}, source="test"
+        )
+        for trial in reduced.trials:
+            e = trial.observables["restitution"]
+            rows.append((trial.observables["impact_speed_m_s"].value, e.value, e.std**-2))
+    v, e, weight = np.array(rows).T
+    mean = np.average(e, weights=weight)
+    for low, high in ((0.0, 2.5), (2.5, 3.2), (3.2, 9.0)):
+        part = (v >= low) & (v < high)
+        assert np.average(e[part], weights=weight[part]) == pytest.approx(mean, abs=0.003)
+
+
+@measured
 def test_heights_and_times_of_one_ball_agree():
     """First rebounds of the blue ball: heights from video against intervals from sound."""
     kind = load_kind("table")

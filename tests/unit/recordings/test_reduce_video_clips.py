@@ -115,13 +115,13 @@ def test_phone_video_recipe_makes_a_sound_set(tmp_path):
     spec = importlib.util.spec_from_file_location("pingpong_video", path)
     module = importlib.util.module_from_spec(spec)
     spec.loader.exec_module(module)
-    module.OPTIONS["last_frame"] = 45  # two bounces, for speed
     module.recipe(SHARED / "pingpong-video" / "pingpongvid2.mov", tmp_path / "set")
     found = read(tmp_path / "set")
     e, std = found.values("restitution"), found.std("restitution")
-    # its author reports 0.87, and 0.86 +- 0.03 over several drops (SOURCE.md)
-    assert abs(e[0] - 0.86) < 0.03 + 2.0 * std[0]
-    assert np.all(np.abs(e - 0.86) < 0.06)
+    # its author reports 0.87, and 0.86 +- 0.03 over several drops (SOURCE.md); another tracking of
+    # the same frames (threshold and moments, a parabola a flight) gives these of bounces 1 to 3
+    assert np.all(np.abs(e[:3] - [0.851, 0.848, 0.864]) < 2.0 * std[:3])
+    assert np.all(np.abs(e - 0.86) < 0.03 + 2.0 * std)
     # the ball starts close to the upper end of a 30 cm ruler: about 25 cm, 2.2 m/s (SOURCE.md)
     assert found.trials.impact_speed_m_s[0] == pytest.approx(math.sqrt(2 * 9.81 * 0.25), rel=0.1)
     record = json.loads((tmp_path / "set/reduced/pingpongvid2-video.json").read_text())

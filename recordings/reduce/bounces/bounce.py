@@ -1,0 +1,63 @@
+"""What a track says of the contacts in it."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+from ..measured import Array, Measured
+from .flights import Piece
+from .scale import Scale
+from .view import Stage, View
+
+
+@dataclass(frozen=True)
+class Bounce:
+    """One contact: velocities just before and after, in the track's unit of length per second."""
+
+    time: Measured
+    approach: Measured
+    """Downward speed of the point at the contact."""
+    rebound: Measured
+    restitution: Measured
+    height: Measured
+    """At which the flights meet, above the stage's floor."""
+    turning: int
+    """Index of the lowest sample."""
+    before: Piece
+    after: Piece
+
+    @property
+    def near(self) -> tuple[int, int]:
+        """Last sample of the flight before, and first one of the flight after the contact."""
+        before, after = self.before.index, self.after.index
+        return int(before[before < self.turning][-1]), int(after[after > self.turning][0])
+
+
+@dataclass(frozen=True)
+class Bounced:
+    """The contacts of a track and what its flights share.
+
+    Parameters
+    ----------
+    bounces
+        In the order of time.
+    stage, view
+        Ranges, and the likeliest shared unknowns.
+    fall
+        Acceleration at rest that the track itself shows [unit/s²], nan if it shows none.
+    scale
+        Size of the unit.
+    notes
+        What the reader should know.
+    """
+
+    bounces: tuple[Bounce, ...]
+    stage: Stage
+    view: View
+    fall: Measured
+    scale: Scale
+    notes: tuple[str, ...]
+
+    def heights(self, piece: Piece, time: Array) -> Array:
+        """Return the heights of a flight as the camera sees them, (n,) [unit]."""
+        return self.stage.seen(self.view, piece.launch, piece.reference, time)

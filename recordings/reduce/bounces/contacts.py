@@ -1,0 +1,196 @@
+"""Contacts in the track of a falling body: where its path turns, and the speeds on both sides.
+
+Every flight is fitted from its contact outwards; all share one fall, one drag and one drift of the
+scale. Speeds are read where two flights meet, or at both ends of a contact that the track resolves.
+What lies between the last sample of a flight and the contact is bridged by gravity and drag, and
+the error grows with it.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+
+import numpy as np
+
+from ..measured import Array, Measured, propagate
+from .bounce import Bounce, Bounced
+from .fall import Ball
+from .flights import Piece
+from .joint import SHARED, Before, Solution, fit_together
+from .scale import floor_drift, scale_of
+from .sides import joined, known_before, sides_of, true_contacts
+from .touch import speeds, touch_of
+from .track import Indices, Track, on_the_body, turning_points
+from .view import Stage, View
+
+_UNEVEN = 0.02
+"""Part of the fall by which the acceleration in a span without samples may be another."""
+
+_ROUNDS = 3
+
+
+def find_bounces(
+    track: Track, ball: Ball, *, metres: Measured | None, contact: Measured | None = None
+) -> Bounced | None:
+    """Return every contact that has a usable flight on both sides, or None if there is none.
+
+    Parameters
+    ----------
+    track
+        The point that is followed.
+    ball
+        Gravity, and the drag as far as it is known.
+    metres
+        Size of the track's unit [m], if it is known otherwise than by the fall.
+    contact
+        Duration of a contact [s], if it is known.
+    """
+    chosen = on_the_body(track)
+    body = Track(track.time[chosen], track.height[chosen], track.floor)
+    contacts = turning_points(body)
+    if not contacts:
+        return None
+    floor = float(np.median(body.height[contacts]))
+    stage = Stage(
+        floor, max(float(body.height.max()) - floor, 1e-12), float(body.time[0]),
+        float(np.ptp(body.time)),
+    )  # fmt: skip
+    sides = sides_of(body, contacts, stage, None)
+    before = known_before(body, sides, ball, metres, stage)
+    if before is None:
+        return None
+    view = View(before.fall.value, before.drag.value, 0.0, 0.0, 0.0)
+    contacts, sides = true_contacts(body, contacts, stage, before.fall.value, sides)
+    for again in reversed(range(_ROUNDS)):
+        pieces, places = joined(sides)
+        if not pieces:
+            return None
+        pieces, solutions = fit_together(body, pieces, stage, view, before)
+        view = solutions[0].view
+        if again:
+            known = [s is not None for s in sides]
+            grown = sides_of(body, contacts, stage, view)
+            sides = [g if k else None for g, k in zip(grown, known, strict=True)]
+    found = [
+        _bounce(
+            body, turning, stage, pieces, (places[2 * k], places[2 * k + 1]), solutions, contact
+        )
+        for k, turning in enumerate(contacts)
+    ]
+    bounces = [b for b in found if b is not None]
+    if not bounces:
+        return None
+    return _whole(bounces, chosen, stage, view, solutions, before, ball, metres)
+
+
+def _bounce(
+    body: Track, turning: int, stage: Stage, pieces: Sequence[Piece],
+    place: tuple[int | None, int | None], solutions: Sequence[Solution], contact: Measured | None,
+) -> Bounce | None:  # fmt: skip
+    b, a = place
+    if b is None or a is None:
+        return None
+    before, after = pieces[b], pieces[a]
+    guess = float(body.time[turning])
+    last, first = _nearest(before, turning, -1), _nearest(after, turning, 1)
+    if last is None or first is None:
+        return None
+    index = [*range(SHARED), *(SHARED + 2 * p + j for p in (b, a) for j in (0, 1))]
+
+    def numbers(c: Array, offsets: tuple[float, float]) -> Array:
+        return speeds(c, stage, (before.reference, after.reference), guess, offsets)
+
+    start = numbers(solutions[0].x[index], (0.0, 0.0))
+    step, meeting = body.step, float(start[0])
+    # a contact lies between its flights: where they meet elsewhere one of them is none
+    if not body.time[last] - step <= meeting <= body.time[first] + step:
+        return None
+    touch = touch_of(body, stage, solutions[0].view, (before, after), start, contact)
+    found = [
+        (s.weight, propagate(lambda c: numbers(c, touch.offsets), s.x[index],
+                             s.covariance[np.ix_(index, index)]))
+        for s in solutions if s.weight > 0.01
+    ]  # fmt: skip
+    time, approach, rebound, ratio, height = (
+        _mixed([(w, values[k]) for w, values in found]) for k in range(5)
+    )
+    if not (approach.value > 0.0 and rebound.value > 0.0):
+        return None
+    fall = abs(solutions[0].view.fall)
+    late = [fall * e for e in touch.errors]
+    gaps = (meeting - body.time[last], body.time[first] - meeting)
+    bridged = [fall * _UNEVEN * max(g - 2.0 * step, 0.0) for g in gaps]
+    more = [math.hypot(e, g) for e, g in zip(late, bridged, strict=True)]
+    values = (approach.value, rebound.value)
+    # one duration moves both ends of a contact, in opposite ways
+    both = sum(e / v for e, v in zip(late, values, strict=True))
+    part = ratio.value * math.hypot(both, *(g / v for g, v in zip(bridged, values, strict=True)))
+    # the flights meet below the flat where a contact takes time
+    height = _widened(height, sum(touch.errors) * ratio.value / (1.0 + ratio.value) * values[0])
+    return Bounce(
+        time, _widened(approach, more[0]), _widened(rebound, more[1]), _widened(ratio, part),
+        height, turning, before, after,
+    )  # fmt: skip
+
+
+def _nearest(piece: Piece, turning: int, way: int) -> int | None:
+    """Return the sample of a flight that is nearest to a contact on its side."""
+    there = piece.index[piece.index * way > turning * way]
+    return None if there.size == 0 else int(there[0] if way > 0 else there[-1])
+
+
+def _mixed(values: Sequence[tuple[float, Measured]]) -> Measured:
+    """Return mean and standard deviation of a mixture."""
+    weight = sum(w for w, _ in values)
+    mean = sum(w * v.value for w, v in values) / weight
+    variance = sum(w * (v.std**2 + (v.value - mean) ** 2) for w, v in values) / weight
+    return Measured(mean, math.sqrt(variance))
+
+
+def _widened(value: Measured, more: float) -> Measured:
+    return Measured(value.value, math.hypot(value.std, more))
+
+
+def _whole(
+    bounces: list[Bounce], chosen: Indices, stage: Stage, view: View, solutions: Sequence[Solution],
+    before: Before, ball: Ball, metres: Measured | None,
+) -> Bounced:  # fmt: skip
+    """Take the drift of the flat off the speeds, and find the scale."""
+    notes = []
+    drift = floor_drift([(b.time, b.height) for b in bounces], solutions[0].view.fall)
+    if abs(drift.value) > 3.0 * drift.std:
+        notes.append(f"the flat drifts by {drift} units/s through the picture: taken off")
+    moved = []
+    for b in bounces:
+        approach = Measured(b.approach.value + drift.value, math.hypot(b.approach.std, drift.std))
+        rebound = Measured(b.rebound.value - drift.value, math.hypot(b.rebound.std, drift.std))
+        e = (
+            rebound.value
+            / approach.value
+            * (b.restitution.value * b.approach.value / b.rebound.value)
+        )
+        std = math.hypot(b.restitution.std, drift.std * (1.0 + e) / approach.value)
+        moved.append(Bounce(
+            b.time, approach, rebound, Measured(e, std), b.height, int(chosen[b.turning]),
+            _renumbered(b.before, chosen), _renumbered(b.after, chosen),
+        ))  # fmt: skip
+    own = _mixed([
+        (s.weight, Measured(s.view.fall, math.sqrt(s.covariance[0, 0]))) for s in solutions
+    ])  # fmt: skip
+    fall = _without(own, before.fall)
+    scale = scale_of(fall, ball.fall(3.0).gravity, metres)
+    return Bounced(tuple(moved), stage, view, fall, scale, (*notes, *scale.notes))
+
+
+def _renumbered(piece: Piece, chosen: Indices) -> Piece:
+    return Piece(chosen[piece.index], piece.reference, piece.launch, piece.sigma)
+
+
+def _without(value: Measured, prior: Measured) -> Measured:
+    """Return what the data alone say, where a normal prior took part."""
+    information = 1.0 / value.std**2 - 1.0 / prior.std**2
+    if not information > 0.01 / prior.std**2:
+        return Measured(math.nan, math.nan)
+    mean = (value.value / value.std**2 - prior.value / prior.std**2) / information
+    return Measured(mean, 1.0 / math.sqrt(information))

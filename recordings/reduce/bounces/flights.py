@@ -1,0 +1,220 @@
+"""Flights in a track, each over as many samples as one motion describes.
+
+A flight grows from its contact outwards. It begins behind the samples that the contact has moved
+and ends where its residuals show structure: a hand, a frame that was dropped without a word, a
+tracker that begins anew.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from ..measured import Array, Measured
+from ..regression import Regression, robust_regression
+from .track import Indices, Track
+from .view import Launch, Stage, View
+
+FEWEST = 5
+"""Samples of a flight."""
+
+_CORE = 12
+"""Samples with which a flight begins."""
+
+_NEAR_LIMIT, _FAR_LIMIT = 4.0, 3.5
+_BLOCK = 0.25
+_STRAY_BLOCKS = 2
+"""Blocks off the flight that are passed over where the next one lies on it again."""
+
+_MOST_NOISE = 3.0
+"""Spread of the samples of a flight, in that of the track, that is believed."""
+
+_MOSTLY = 0.6
+"""Part of a block that must lie on the flight."""
+
+_FARTHEST = 2
+"""Lengths of the first part of a flight, in which it is looked for next to the contact."""
+
+_UPWARDS = 4.0
+"""Standard deviations of upward curvature that show a contact, not a flight."""
+
+
+@dataclass(frozen=True)
+class Piece:
+    """Samples of one flight, in order of time, and its motion.
+
+    Parameters
+    ----------
+    index
+        (n,) samples that lie on it.
+    reference
+        Time at which `launch` holds [s].
+    launch
+        Height and speed.
+    sigma
+        Standard deviation of a sample [unit].
+    """
+
+    index: Indices
+    reference: float
+    launch: Launch
+    sigma: float
+
+    @property
+    def first(self) -> int:
+        """First sample."""
+        return int(self.index[0])
+
+    @property
+    def last(self) -> int:
+        """Last sample."""
+        return int(self.index[-1])
+
+
+def side(track: Track, contact: int, end: int, stage: Stage, view: View | None) -> Piece | None:
+    """Return the flight next to sample `contact`, towards sample `end`; None where there is none.
+
+    Parameters
+    ----------
+    track
+        The heights.
+    contact, end
+        Turning point, and the last sample to look at on its earlier or later side.
+    stage, view
+        What the flights share; without a view each is a parabola of its own.
+    """
+    step = 1 if end > contact else -1
+    order = np.arange(contact + step, end + step, step)
+    if order.size < FEWEST:
+        return None
+    size = min(_CORE, order.size)
+    near = _first_clean(track, order, size)
+    used = order[near : near + size]
+    far = near + size
+    while True:
+        fit = _fitted(track, used, stage, view)
+        more, reached = _next_blocks(track, fit, order, far, used.size)
+        if more.size == 0:
+            break
+        used, far = np.concatenate([used, more]), reached
+    used = np.sort(np.concatenate([_nearer(track, fit, order[:near]), used]))
+    fit = _fitted(track, used, stage, view)
+    index = used[fit.regression.used]
+    return (
+        Piece(index, fit.reference, fit.launch, fit.regression.sigma)
+        if index.size >= FEWEST
+        else None
+    )
+
+
+def _first_clean(track: Track, order: Indices, size: int) -> int:
+    """Return how many samples next to a turning point the contact has moved."""
+    offsets, spreads = [], []
+    offset = 0
+    # farther out lie rest and other flights, which may be quieter
+    while offset + size <= order.size and offset <= _FARTHEST * size:
+        fit = _parabola(track, order[offset : offset + size])
+        upward = fit.coefficients[2] > _UPWARDS * np.sqrt(fit.covariance[2, 2])
+        spreads.append(np.inf if upward else fit.sigma)
+        offsets.append(offset)
+        offset += max(1, offset // 2)
+    best = min(spreads, default=np.inf)
+    limit = 1.5 * max(best, track.noise)
+    clean = [o for o, s in zip(offsets, spreads, strict=True) if s <= limit]
+    return clean[0] if clean else 0
+
+
+def _parabola(track: Track, index: Indices) -> Regression:
+    tau = track.time[index] - track.time[index].mean()
+    return robust_regression(_powers(tau), track.height[index], floor=track.floor)
+
+
+@dataclass(frozen=True)
+class _Fit:
+    """One flight fitted by itself: as a parabola, or as a launch in the view that all share."""
+
+    stage: Stage
+    view: View | None
+    reference: float
+    launch: Launch
+    regression: Regression
+    sigma: float
+
+    def heights(self, time: Array) -> Array:
+        if self.view is None:
+            return self.regression.predict(_powers(time - self.reference))
+        return self.stage.seen(self.view, self.launch, self.reference, time)
+
+    def deviations(self, track: Track, index: Indices) -> Array:
+        """Return how far samples lie off, in units of the spread that is expected."""
+        time = track.time[index]
+        if self.view is None:
+            design = _powers(time - self.reference)
+        else:
+            design = self.stage.launch_slopes(self.view, self.launch, self.reference, time)
+        predicted = self.regression.prediction_std(design) * self.sigma / self.regression.sigma
+        spread = np.maximum(np.hypot(self.sigma, predicted), 1e-9 * self.stage.reach)
+        return np.asarray((track.height[index] - self.heights(time)) / spread)
+
+
+def _powers(tau: Array) -> Array:
+    return np.stack([np.ones_like(tau), tau, tau**2], axis=1)
+
+
+def _fitted(track: Track, index: Indices, stage: Stage, view: View | None) -> _Fit:
+    time = track.time[index]
+    reference = float(time.mean())
+    tau = time - reference
+    tiny = max(track.floor, 1e-9 * stage.reach)
+    if view is None:
+        fit = robust_regression(_powers(tau), track.height[index], floor=tiny)
+        launch = Launch(float(fit.coefficients[0] - stage.floor), float(fit.coefficients[1]))
+    else:
+        slope, middle = np.polyfit(tau, track.height[index] + 0.5 * view.fall * tau**2, 1)
+        launch = Launch(float(middle) - stage.floor, float(slope))
+        for _ in range(2):
+            left = track.height[index] - stage.seen(view, launch, reference, time)
+            design = stage.launch_slopes(view, launch, reference, time)
+            fit = robust_regression(design, left, floor=tiny)
+            launch = Launch(*(float(v) for v in np.add(launch, fit.coefficients)))
+    # a flight that has taken in what is none would take in more
+    return _Fit(stage, view, reference, launch, fit, min(fit.sigma, _MOST_NOISE * track.noise))
+
+
+def own_fall(track: Track, piece: Piece) -> Measured:
+    """Return the downward acceleration of a flight by itself, as a parabola [unit/s²]."""
+    fit = _parabola(track, piece.index)
+    return Measured(-2.0 * float(fit.coefficients[2]), 2.0 * float(np.sqrt(fit.covariance[2, 2])))
+
+
+def _next_blocks(
+    track: Track, fit: _Fit, order: Indices, far: int, size: int
+) -> tuple[Indices, int]:
+    """Return the next samples away from the contact that lie on the flight, and how far they go."""
+    width = max(3, int(_BLOCK * size))
+    for skipped in range(_STRAY_BLOCKS + 1):
+        start = far + skipped * width
+        block = order[start : start + width]
+        if block.size < min(3, width) and block.size < order.size - far:
+            break
+        if block.size == 0:
+            break
+        z = fit.deviations(track, block)
+        # a block off the flight has a middle that its own noise does not explain
+        limit = _FAR_LIMIT
+        if abs(float(np.median(z))) < limit and np.mean(np.abs(z) < _NEAR_LIMIT) >= _MOSTLY:
+            return block, start + block.size
+    return order[:0], far
+
+
+def _nearer(track: Track, fit: _Fit, rest: Indices) -> Indices:
+    """Return the samples towards the contact that lie on the flight, up to the first ones off."""
+    if rest.size == 0:
+        return rest
+    z = np.abs(fit.deviations(track, rest))
+    off = np.flatnonzero(z > _NEAR_LIMIT)
+    # an isolated stray is the regression's business; contact is two in a row or the very end
+    contact = [i for i in off if i == 0 or z[i - 1] > _NEAR_LIMIT]
+    first = int(contact[-1]) + 1 if contact else 0
+    return rest[first:]

@@ -1,0 +1,173 @@
+"""All flights of a track fitted together: a launch each, and one view that they share.
+
+How much the scale drifts is not known beforehand. Its parameters have a normal prior of width s;
+the fit is made for several s, and each counts as much as the track makes it likely (the evidence
+of a linear model with normal errors; MacKay, Information Theory, 2003, ch. 28).
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+
+import numpy as np
+import numpy.typing as npt
+
+from ..measured import Array, Measured
+from ..regression import long_run_factor, robust_std
+from .flights import FEWEST, Piece
+from .track import Track
+from .view import Launch, Stage, View
+
+SHARED = len(View._fields)
+_WIDTHS = (3e-4, 3e-3, 1e-2, 3e-2, 1e-1)
+_FIRST_WIDTH = 3e-2
+_REJECT, _TRIM = 4.0, 2.5
+_POOLED = 8
+"""Samples for which the spread of all flights counts in that of one."""
+
+
+@dataclass(frozen=True)
+class Before:
+    """What is known of fall and drag before the track is looked at [unit/s², 1/unit]."""
+
+    fall: Measured
+    drag: Measured
+
+
+@dataclass(frozen=True)
+class Solution:
+    """One fit: shared unknowns and launches in a row, their covariance, its share of belief."""
+
+    x: Array
+    covariance: Array
+    weight: float
+
+    @property
+    def view(self) -> View:
+        """The shared unknowns."""
+        return View(*(float(v) for v in self.x[:SHARED]))
+
+    def launch(self, piece: int) -> Launch:
+        """Return the launch of a piece."""
+        k = SHARED + 2 * piece
+        return Launch(float(self.x[k]), float(self.x[k + 1]))
+
+
+def fit_together(
+    track: Track, pieces: Sequence[Piece], stage: Stage, view: View, before: Before
+) -> tuple[list[Piece], list[Solution]]:
+    """Fit all pieces with one view.
+
+    Parameters
+    ----------
+    track, pieces, stage
+        Heights, flights, ranges.
+    view
+        To begin with.
+    before
+        What is known of fall and drag.
+
+    Returns
+    -------
+    tuple
+        The pieces without their strays and with the spread of a sample; the fits, the weights of
+        which add up to one, the likeliest first.
+    """
+    pieces = list(pieces)
+    x = np.concatenate([view, *(p.launch for p in pieces)])
+    for _ in range(3):
+        x, _, _, _ = _settled(track, pieces, stage, x, before, _FIRST_WIDTH)
+        pieces = _cleaned(track, pieces, stage, x)
+    found = []
+    for width in _WIDTHS:
+        there, covariance, misfit, spread = _settled(track, pieces, stage, x, before, width)
+        found.append((there, covariance, -0.5 * misfit - 0.5 * spread))
+    best = max(f[2] for f in found)
+    belief = np.exp([f[2] - best for f in found])
+    belief /= belief.sum()
+    solutions = [Solution(f[0], f[1], float(w)) for f, w in zip(found, belief, strict=True)]
+    solutions.sort(key=lambda s: -s.weight)
+    launches = [solutions[0].launch(k) for k in range(len(pieces))]
+    return [replace(p, launch=q) for p, q in zip(pieces, launches, strict=True)], solutions
+
+
+def _settled(
+    track: Track, pieces: Sequence[Piece], stage: Stage, x: Array, before: Before, width: float
+) -> tuple[Array, Array, float, float]:
+    """Gauss-Newton: unknowns, covariance, misfit with the prior's, log of the spread of belief."""
+    mean = np.array([before.fall.value, before.drag.value, 0.0, 0.0, 0.0])
+    std = np.array([before.fall.std, before.drag.std, width, width, width])
+    x, moved = x.copy(), np.inf
+    for _ in range(15):
+        design, left = _system(track, pieces, stage, x)
+        known = np.zeros((SHARED, x.size))
+        known[:, :SHARED] = np.diag(1.0 / std)
+        design = np.concatenate([design, known])
+        left = np.concatenate([left, (mean - x[:SHARED]) / std])
+        size = np.linalg.norm(design, axis=0)
+        normal = (design / size).T @ (design / size)
+        inverse = np.linalg.pinv(normal, hermitian=True)
+        step = inverse @ ((design / size).T @ left)
+        misfit = float(left @ left)
+        moved = float(np.abs(step).max())
+        x = x + step / size
+        if moved < 1e-3:
+            break
+    _, log_size = np.linalg.slogdet(normal)
+    spread = float(log_size + 2.0 * np.log(size).sum() + 2.0 * np.log(std).sum())
+    return x, inverse / np.outer(size, size), misfit, spread
+
+
+def _system(track: Track, pieces: Sequence[Piece], stage: Stage, x: Array) -> tuple[Array, Array]:
+    """Return design (n, 5 + 2 pieces) and residual (n,), both over the spread of a sample."""
+    view = View(*x[:SHARED])
+    rows, lefts = [], []
+    for k, piece in enumerate(pieces):
+        first = SHARED + 2 * k
+        launch = Launch(*x[first : first + 2])
+        time = track.time[piece.index]
+        seen = stage.seen(view, launch, piece.reference, time)
+        design = np.zeros((time.size, x.size))
+        slopes = stage.slopes(view, launch, piece.reference, time)
+        design[:, :SHARED] = slopes[:, :SHARED]
+        design[:, first : first + 2] = slopes[:, SHARED:]
+        rows.append(design / piece.sigma)
+        lefts.append((track.height[piece.index] - seen) / piece.sigma)
+    return np.concatenate(rows), np.concatenate(lefts)
+
+
+def _cleaned(track: Track, pieces: Sequence[Piece], stage: Stage, x: Array) -> list[Piece]:
+    """Leave strays out, and take the spread of a sample from what is left."""
+    view = View(*x[:SHARED])
+    kept = []
+    for k, piece in enumerate(pieces):
+        launch = Launch(*x[SHARED + 2 * k : SHARED + 2 * k + 2])
+        left = track.height[piece.index] - stage.seen(
+            view, launch, piece.reference, track.time[piece.index]
+        )
+        usual = max(robust_std(left, lost=2), track.floor, 1e-9 * stage.reach)
+        good = np.abs(left - np.median(left)) <= _REJECT * usual
+        good &= _untrimmed(left / usual)
+        if good.sum() < FEWEST:
+            good = np.ones(left.size, dtype=np.bool_)
+        kept.append((piece, launch, left[good], piece.index[good]))
+    squares = [float(left @ left) for _, _, left, _ in kept]
+    freedom = [max(left.size - 2.5, 1.0) for _, _, left, _ in kept]
+    pooled = float(np.median([s / f for s, f in zip(squares, freedom, strict=True)]))
+    result = []
+    for (piece, launch, left, index), s, f in zip(kept, squares, freedom, strict=True):
+        variance = (s + _POOLED * pooled) / (f + _POOLED) * long_run_factor(left, lost=2.5)
+        sigma = max(float(np.sqrt(variance)), track.floor, 1e-9 * stage.reach)
+        result.append(replace(piece, index=index, launch=launch, sigma=sigma))
+    return result
+
+
+def _untrimmed(z: Array) -> npt.NDArray[np.bool_]:
+    """Leave out samples at both ends that hang off together: a shadow, a touch, a hand."""
+    kept = np.ones(z.size, dtype=np.bool_)
+    most = z.size // 4
+    for way in (1, -1):
+        off = np.abs(z[::way][: most + 1]) > _TRIM
+        kept[::way][: int(np.argmin(off)) if not off.all() else most] = False
+    return kept

@@ -1,0 +1,114 @@
+"""The size of a track's unit of length, by gravity and by what was stated, and a flat that drifts.
+
+Gravity and the body's own diameter (or a stated size) are independent scales. Where they disagree
+the result lies between them and its error holds both.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+
+from ..measured import Measured
+
+_AGREE = 2.0
+_KNOWN = 0.1
+"""Relative error of a fall from which on it gives no scale."""
+
+_PRIORS = (1e-4, 1e-3, 1e-2)
+"""Widths of what is believed of a drift, in units of the speed of a fall over a second."""
+
+
+@dataclass(frozen=True)
+class Scale:
+    """Size of the unit [m], nan if it is not known; where it came from; remarks."""
+
+    metres: Measured
+    origin: str
+    notes: tuple[str, ...] = ()
+
+    @property
+    def known(self) -> bool:
+        """Whether speeds in metres per second can be told."""
+        return math.isfinite(self.metres.value)
+
+
+def scale_of(fall: Measured, gravity: float, stated: Measured | None) -> Scale:
+    """Return the size of the unit by both ways.
+
+    Parameters
+    ----------
+    fall
+        Acceleration at rest that the track shows [unit/s²], nan if it shows none.
+    gravity
+        That it should be [m/s²].
+    stated
+        Size of the unit [m], or None.
+    """
+    by_fall = None
+    if fall.value > 0.0 and fall.std < _KNOWN * fall.value:
+        by_fall = Measured(gravity / fall.value, gravity * fall.std / fall.value**2)
+    if stated is None:
+        if by_fall is None:
+            return Scale(Measured(math.nan, math.nan), "nothing")
+        return Scale(by_fall, "gravity")
+    if by_fall is None:
+        return Scale(stated, "as stated")
+    both = math.hypot(by_fall.std, stated.std)
+    apart = abs(by_fall.value - stated.value)
+    if apart <= _AGREE * both:
+        if stated.std == 0.0:
+            return Scale(stated, "as stated")
+        w = np.array([by_fall.std, stated.std]) ** -2.0
+        mean = float(w @ [by_fall.value, stated.value] / w.sum())
+        return Scale(Measured(mean, float(w.sum() ** -0.5)), "gravity and what is stated")
+    middle = stated.value if stated.std == 0.0 else 0.5 * (by_fall.value + stated.value)
+    std = max(abs(v - middle) for v in (by_fall.value, stated.value))
+    note = (
+        f"the stated unit {stated} m and that of the fall, {by_fall} m, differ by "
+        f"{100.0 * (by_fall.value / stated.value - 1.0):+.2g} %: check unit, rate, plane of the "
+        "scale; the error of the speeds holds both"
+    )
+    return Scale(
+        Measured(middle, math.hypot(std, both)), "what is stated, against gravity", (note,)
+    )
+
+
+def floor_drift(contacts: Sequence[tuple[Measured, Measured]], fall: float) -> Measured:
+    """Return how fast the flat itself moves up through the picture [unit/s].
+
+    The heights of the contacts show it where there are two or more: a camera that is not level
+    while the body drifts aside, or a body that comes nearer.
+
+    Parameters
+    ----------
+    contacts
+        Time [s] and height [unit] of each.
+    fall
+        Acceleration of the fall [unit/s²].
+    """
+    if len(contacts) < 2:
+        return Measured(0.0, 0.0)
+    time = np.array([t.value for t, _ in contacts])
+    height = np.array([h.value for _, h in contacts])
+    error = np.array([h.std for _, h in contacts])
+    late = time - time.mean()
+    level = float(np.average(height, weights=error**-2.0))
+    rest = height - level
+    beliefs, means, variances = [], [], []
+    for width in _PRIORS:
+        std = width * abs(fall)
+        covariance = np.diag(error**2) + np.outer(late, late) * std**2
+        size = np.linalg.slogdet(covariance)[1]
+        gain = std**2 * late @ np.linalg.inv(covariance)
+        beliefs.append(-0.5 * (size + rest @ np.linalg.solve(covariance, rest)))
+        means.append(float(gain @ rest))
+        variances.append(float(std**2 * (1.0 - gain @ late)))
+    weight = np.exp(np.array(beliefs) - max(beliefs))
+    weight /= weight.sum()
+    mean = float(weight @ means)
+    variance = float(weight @ (np.array(variances) + (np.array(means) - mean) ** 2))
+    return Measured(mean, math.sqrt(max(variance, 0.0)))

@@ -1,0 +1,92 @@
+"""The heights of a body against time, and where its path turns."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+from functools import cached_property
+
+import numpy as np
+import numpy.typing as npt
+from scipy.ndimage import median_filter
+from scipy.signal import find_peaks
+
+from ..measured import Array
+from ..regression import robust_std
+
+Indices = npt.NDArray[np.int_]
+
+_IMPOSSIBLE = 3.0
+"""Speed between two samples, in the nine tenths quantile of all, that no body has."""
+
+_FEWEST = 6
+"""Samples that a part between two impossible steps must have to be the body's own."""
+
+
+@dataclass(frozen=True)
+class Track:
+    """Heights of a point against time; the unit of length is the caller's.
+
+    Parameters
+    ----------
+    time
+        (n,), increasing [s].
+    height
+        (n,), upwards [unit].
+    floor
+        Smallest error of a position that is believed [unit].
+    """
+
+    time: Array
+    height: Array
+    floor: float = 0.0
+
+    @cached_property
+    def step(self) -> float:
+        """Usual time between two samples [s]."""
+        return float(np.median(np.diff(self.time)))
+
+    @cached_property
+    def noise(self) -> float:
+        """Spread of a sample by third differences, which a flight passes through [unit]."""
+        return max(robust_std(np.diff(self.height, 3)) / math.sqrt(20.0), self.floor)
+
+
+def on_the_body(track: Track) -> Indices:
+    """Return the samples that one moving body can have, (m,): strays of a tracker are left out.
+
+    Steps faster than any body of this track cut it into parts; short ones between two cuts are
+    something else that the tracker held for the body.
+    """
+    speed = np.abs(np.diff(track.height)) / np.diff(track.time)
+    noise = robust_std(np.diff(track.height, 2)) / np.sqrt(6.0) / track.step
+    limit = _IMPOSSIBLE * float(np.quantile(speed, 0.9)) + 6.0 * noise
+    kept = np.arange(track.time.size)
+    for _ in range(4):
+        time, height = track.time[kept], track.height[kept]
+        cuts = np.flatnonzero(np.abs(np.diff(height)) > limit * np.diff(time)) + 1
+        parts = np.split(np.arange(kept.size), cuts)
+        good = [p for p in parts if p.size >= _FEWEST]
+        if len(good) == len(parts) or not good:
+            break
+        kept = kept[np.concatenate(good)]
+    return kept
+
+
+def turning_points(track: Track) -> list[int]:
+    """Return the indices of the lowest samples of every contact.
+
+    A free flight has no minimum of height, so each clear minimum is a contact.
+    """
+    smooth = median_filter(track.height, 3, mode="nearest")
+    noise = robust_std(np.diff(smooth, 2)) / np.sqrt(6.0)
+    prominence = max(0.01 * float(np.ptp(smooth)), 8.0 * noise)
+    if prominence <= 0.0:
+        return []
+    peaks, _ = find_peaks(-smooth, prominence=prominence)
+    # the filter widens a sharp minimum: go back to the lowest sample itself
+    found = []
+    for peak in peaks:
+        low, high = max(peak - 1, 0), min(peak + 2, smooth.size)
+        found.append(low + int(np.argmin(track.height[low:high])))
+    return found
