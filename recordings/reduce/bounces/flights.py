@@ -89,7 +89,18 @@ def side(track: Track, contact: int, end: int, stage: Stage, view: View | None) 
     if order.size < FEWEST:
         return None
     size = min(_CORE, order.size)
-    near = _first_clean(track, order, size)
+    tried = [
+        _grown(track, order, near, size, stage, view) for near in _clean_starts(track, order, size)
+    ]
+    # begun within a contact it does not reach far
+    best = max(tried, key=lambda p: p.index.size)
+    return best if best.index.size >= FEWEST else None
+
+
+def _grown(
+    track: Track, order: Indices, near: int, size: int, stage: Stage, view: View | None
+) -> Piece:
+    """Let a flight grow from `size` samples, `near` samples away from its contact."""
     used = order[near : near + size]
     far = near + size
     while True:
@@ -100,16 +111,11 @@ def side(track: Track, contact: int, end: int, stage: Stage, view: View | None) 
         used, far = np.concatenate([used, more]), reached
     used = np.sort(np.concatenate([_nearer(track, fit, order[:near]), used]))
     fit = _fitted(track, used, stage, view)
-    index = used[fit.regression.used]
-    return (
-        Piece(index, fit.reference, fit.launch, fit.regression.sigma)
-        if index.size >= FEWEST
-        else None
-    )
+    return Piece(used[fit.regression.used], fit.reference, fit.launch, fit.regression.sigma)
 
 
-def _first_clean(track: Track, order: Indices, size: int) -> int:
-    """Return how many samples next to a turning point the contact has moved."""
+def _clean_starts(track: Track, order: Indices, size: int) -> list[int]:
+    """Return after how many samples from a turning point the contact may be over, up to three."""
     offsets, spreads = [], []
     offset = 0
     # farther out lie rest and other flights, which may be quieter
@@ -122,7 +128,8 @@ def _first_clean(track: Track, order: Indices, size: int) -> int:
     best = min(spreads, default=np.inf)
     limit = 1.5 * max(best, track.noise)
     clean = [o for o, s in zip(offsets, spreads, strict=True) if s <= limit]
-    return clean[0] if clean else 0
+    clean = clean or [0]
+    return sorted({clean[0], clean[len(clean) // 2], clean[-1]})
 
 
 def _parabola(track: Track, index: Indices) -> Regression:
