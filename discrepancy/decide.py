@@ -154,7 +154,8 @@ def _by_thresholds(
     base = ranking.base
     cells = len(ranking.problem.cells)
     if cells < _FEWEST:
-        return Choice("undetermined", (), (f"only {cells} numbers to compare",))
+        reason = f"too few: only {cells} numbers to compare, {_FEWEST} are needed"
+        return Choice("undetermined", (), (reason,))
     p_base = tests.p[base.name]
     reasons = [
         f"the baseline's misfit is {base.chi2:.0f} over {cells} cells; "

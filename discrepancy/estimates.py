@@ -117,10 +117,15 @@ def _moved_by_form(simulator: Simulator, fitted: Fit) -> Array:
 
 
 def pulls_of(problem: Problem, fitted: Fit) -> dict[str, float]:
+    """Shift of every stated number in its own stated standard deviations."""
+    return {n.name: float(fitted.z[i]) for i, n in enumerate(problem.nuisances)}
+
+
+def surprises_of(problem: Problem, fitted: Fit) -> dict[str, float]:
     """Shift of every stated number over what chance would give it.
 
-    The posterior mean in prior standard deviations, over sqrt(1 - its posterior variance): unit
-    normal when the sheet is right, however much of a shift other unknowns could take up.
+    The pull over sqrt(1 - its posterior variance): unit normal when the sheet is right, however
+    much of a shift other unknowns could take up.
     """
     learnt = np.sqrt(np.maximum(1.0 - np.diag(fitted.covariance), 0.01))
     return {n.name: float(fitted.z[i] / learnt[i]) for i, n in enumerate(problem.nuisances)}
@@ -129,13 +134,14 @@ def pulls_of(problem: Problem, fitted: Fit) -> dict[str, float]:
 def notes_of(problem: Problem, best: Fit) -> tuple[str, ...]:
     """Return what a reader must know: doubted numbers, the law's error, what was assumed."""
     notes = []
-    pulls = pulls_of(problem, best)
+    surprises = surprises_of(problem, best)
     for i, n in enumerate(problem.nuisances):
-        z, pull = float(best.z[i]), pulls[n.name]
-        if abs(pull) > _PULLED:
+        z, surprise = float(best.z[i]), abs(surprises[n.name])
+        if surprise > _PULLED:
+            chance = "" if abs(z) > _PULLED else f", {surprise:.1f} times what chance would move it"
             notes.append(
                 f"{n.name} wants to be {n.at(z):.4g} {n.unit}, {'above' if z > 0 else 'below'} the "
-                f"stated {n.value:.4g}: a pull of {abs(pull):.1f} standard deviations"
+                f"stated {n.value:.4g}: a pull of {abs(z):.1f} stated standard deviations{chance}"
             )
     sizes = ", ".join(f"{k} {100 * v:.2g} %" for k, v in problem.error.sizes.items())
     notes.append(f"the contact law '{problem.law.name}' is taken to be uncertain by: {sizes}")

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from dataclasses import dataclass
 from typing import Any
 
@@ -27,7 +28,7 @@ class Verdict:
         Contradictions and cautions of the inputs.
     probabilities, scores
         By explanation.
-    parameters, nuisance_pulls
+    parameters, nuisance_pulls, surprise
         By the number's name, of the best explanation.
     excluded, limits
         By mechanism: why it was not fitted; the smallest value that would have been seen.
@@ -48,6 +49,7 @@ class Verdict:
     located: Located
     parameters: dict[str, dict[str, Any]]
     nuisance_pulls: dict[str, float]
+    surprise: dict[str, float]
     excluded: dict[str, str]
     limits: dict[str, float]
     improvement: dict[str, float]
@@ -95,7 +97,7 @@ class Verdict:
             "mechanisms": list(self.mechanisms),
             "alternatives": [list(names) for names in self.alternatives],
             "probabilities": self.probabilities,
-            "scores": self.scores,
+            "scores": {name: _stated(found) for name, found in self.scores.items()},
             "located": [
                 {
                     "observable": m.observable, "phase": m.phase, "covariate": m.covariate,
@@ -105,9 +107,10 @@ class Verdict:
             ],
             "parameters": self.parameters,
             "nuisance_pulls": self.nuisance_pulls,
+            "surprise": self.surprise,
             "excluded": [{"mechanism": k, "reason": v} for k, v in self.excluded.items()],
             "limits": self.limits,
-            "improvement": self.improvement,
+            "improvement": _stated(self.improvement),
             "correction": [
                 {
                     "phase": c.phase, "indentation_over_R": c.depth_over_R.tolist(),
@@ -123,3 +126,8 @@ class Verdict:
             },
             "notes": [*self.reasons, *self.notes],
         }  # fmt: skip
+
+
+def _stated(found: dict[str, float]) -> dict[str, float | None]:
+    """Numbers as JSON holds them: null where no condition could be left out."""
+    return {name: None if math.isnan(value) else value for name, value in found.items()}

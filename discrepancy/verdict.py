@@ -20,6 +20,7 @@ from .estimates import (
     parameters_of,
     pulls_of,
     scores_of,
+    surprises_of,
 )
 from .findings import Verdict
 from .forward import Simulator
@@ -97,6 +98,7 @@ def diagnose(
         name=recordings.name, seed=seed, choice=choice, audit=audit, probabilities=probabilities,
         scores=scores_of(ranking, tests.p, left_out, sampled), located=located,
         parameters=parameters_of(simulator, best), nuisance_pulls=pulls_of(ranking.problem, best),
+        surprise=surprises_of(ranking.problem, best),
         excluded=ranking.excluded, limits=limits_of(ranking, calibration),
         improvement=improvement_of(left_out[ranking.base.name], left_out[best.name]),
         corrections=corrections, proposals=tuple(proposals[:PROPOSED]),

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import html
+import math
 from collections.abc import Iterable, Sequence
 from pathlib import Path
 
@@ -106,6 +107,9 @@ def _explanation(v: Verdict) -> Iterable[str]:
     ]
     yield _table(("parameter", "value", "90 % interval", "where its range comes from"), rows)
     i = v.improvement
+    if math.isnan(i["held_out_extended"]):
+        yield "<p>No condition could be left out of the fit to try the prediction on.</p>"
+        return
     yield (
         "<p>Conditions that were left out of the fit, whole speeds, strikers and angles at a time, "
         f"are predicted with a miss of <b>{i['held_out_extended']:.2f}</b> standard errors instead "
@@ -125,12 +129,16 @@ def _outside(v: Verdict) -> Iterable[str]:
     yield image(figure_correction(v), "Factor on the force law over the depth")
 
 
+def _miss(score: float) -> str:
+    return "none left out" if math.isnan(score) else f"{score:.2f}"
+
+
 def _ranking(v: Verdict) -> Iterable[str]:
     yield "<h2>How sure</h2>"
     rows = [
         (
             name.replace("+", " + "), f"{s['evidence']:+.1f}", f"{s['p_value']:.3f}",
-            f"{s['held_out']:.2f}", f"{v.probabilities.get(name, 0.0):.3f}",
+            _miss(s["held_out"]), f"{v.probabilities.get(name, 0.0):.3f}",
         )
         for name, s in sorted(v.scores.items(), key=lambda item: -item[1]["evidence"])
     ]  # fmt: skip
@@ -166,14 +174,15 @@ def _numbers(v: Verdict) -> Iterable[str]:
     rows = [
         (
             n.name, f"{n.value:.4g} {n.unit}", f"{v.parameters[n.name]['value']:.4g}",
-            f"{v.nuisance_pulls[n.name]:+.1f}", "" if n.stated else "assumed",
+            f"{v.nuisance_pulls[n.name]:+.1f}", f"{v.surprise[n.name]:+.1f}",
+            "" if n.stated else "assumed",
         )
         for n in v.problem.nuisances
     ]  # fmt: skip
-    yield _table(("number", "stated", "found", "pull", ""), rows)
+    yield _table(("number", "stated", "found", "pull", "surprise", ""), rows)
     yield (
-        '<p class="small">Pull: shift over what chance would give, in standard deviations; beyond '
-        "2 the sheet is doubted.</p>"
+        '<p class="small">Pull: shift in stated standard deviations. Surprise: shift over what '
+        "chance would give; beyond 2 the sheet is doubted.</p>"
     )
     if v.notes:
         yield "<h2>Notes</h2>"

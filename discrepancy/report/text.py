@@ -60,7 +60,9 @@ def lines(v: Verdict) -> list[str]:
             out.append(f"  {name} = {number(q)} ({q['low']:.3g} to {q['high']:.3g})")
         i = v.improvement
         out.append(
-            f"  on conditions left out of the fit the miss falls from "
+            "  no condition could be left out of the fit to try the prediction on"
+            if math.isnan(i["held_out_extended"])
+            else f"  on conditions left out of the fit the miss falls from "
             f"{i['held_out_baseline']:.2f} to {i['held_out_extended']:.2f} standard errors"
         )
     out += ["", "Probabilities"]

@@ -190,7 +190,7 @@ def _flagged_mass(case: Case) -> bool:
 
 
 def _strength_only(case: Case) -> bool:
-    pulls = case.verdict.get("nuisance_pulls") or {}
+    pulls = case.verdict.get("surprise") or case.verdict.get("nuisance_pulls") or {}
     strong = [abs(float(v)) for k, v in pulls.items() if "Sy" in k or "strength" in k]
     return case.said == "adequate" and bool(strong) and max(strong) > 2.0
 

@@ -14,11 +14,13 @@ import pytest
 from dentscope.discrepancy import diagnose
 from dentscope.discrepancy.forward import Point, Simulator
 from dentscope.discrepancy.problem import problem_of
+from dentscope.discrepancy.report.page import report
 from dentscope.recordings import read
+from dentscope.recordings.template import write_template
 from dentscope.studies.proof.generators import folder, truth
 
 KEYS = """format set seed version audit verdict mechanisms alternatives probabilities scores
-located parameters nuisance_pulls excluded limits improvement correction next_experiment
+located parameters nuisance_pulls surprise excluded limits improvement correction next_experiment
 notes""".split()
 
 
@@ -70,7 +72,7 @@ def test_strength_off_by_14_percent_is_a_stated_number_not_physics(tmp_path: Pat
     verdict = diagnose(read(written(tmp_path, "strength-error", 3)))
     assert verdict.verdict == "adequate"
     # 14 % is 2.8 of the stated 5 %
-    assert abs(verdict.nuisance_pulls["target.Sy_Pa"]) > 2.0
+    assert abs(verdict.surprise["target.Sy_Pa"]) > 2.0
     assert any("target.Sy_Pa wants to be" in note for note in verdict.notes)
 
 
@@ -147,3 +149,22 @@ def test_repeats_that_scatter_beyond_their_stated_noise_are_all_kept(tmp_path: P
     assert cells.count.tolist() == [4]
     # logarithms, whose noise is the stated one over the value
     assert cells.value == pytest.approx(np.average(np.log(e), weights=e**2), rel=1e-9)
+
+
+def test_the_template_as_it_is_written_is_too_little_to_say_anything(tmp_path: Path) -> None:
+    write_template(tmp_path / "mine", shape="rod")
+    verdict = diagnose(read(tmp_path / "mine"))
+    found = json.loads(json.dumps(verdict.to_dict(), allow_nan=False))
+    assert found["verdict"] == "undetermined"
+    assert found["notes"][0].startswith("too few")
+    # with a single condition nothing can be left out and predicted
+    assert found["improvement"]["held_out_baseline"] is None
+    assert "none left out" in report(verdict)
+
+
+def test_a_pull_is_in_stated_standard_deviations(tmp_path: Path) -> None:
+    verdict = diagnose(read(written(tmp_path, "strength-error", 3)))
+    strength = next(n for n in verdict.problem.nuisances if n.name == "target.Sy_Pa")
+    shift = verdict.parameters["target.Sy_Pa"]["value"] / strength.value
+    # the set states 5 %; a strength is shifted as a logarithm
+    assert math.isclose(verdict.nuisance_pulls["target.Sy_Pa"], math.log(shift) / 0.05, rel_tol=0.1)
