@@ -10,7 +10,9 @@ from functools import cache, lru_cache
 import numpy as np
 from numpy.typing import NDArray
 
+from ..core.errors import InputError
 from ..core.material import Pair
+from ..core.observables import OBSERVABLES
 from ..core.rig import Rig, TargetTable
 from ..impact import Approach, ForceTransform, Friction, Scene, Striker
 from ..impact.bodies import bodies_of
@@ -109,6 +111,11 @@ def problem_of(recordings: RecordingSet) -> Problem:
     cells, drifts, left_out = cells_of(
         readings, approach.normal, recordings.trials.order, conditions
     )
+    if len(cells) == 0:
+        raise InputError(
+            "no measured number to compare with the simulation", source=recordings.name,
+            key="trials.csv", allowed="one or more of " + ", ".join(k for k, o in OBSERVABLES.items() if o.in_trials),
+        )  # fmt: skip
     again = sum(c.after >= 0 for c in conditions)
     later = [f"{again} conditions are later blows on one place: they meet its crater"] * bool(again)
     assumed = [n.note for n in nuisances if n.note]

@@ -11,6 +11,7 @@ from typing import Any
 
 import numpy as np
 import pytest
+from dentscope.core import InputError
 from dentscope.discrepancy import diagnose
 from dentscope.discrepancy.forward import Point, Simulator
 from dentscope.discrepancy.problem import problem_of
@@ -160,6 +161,15 @@ def test_the_template_as_it_is_written_is_too_little_to_say_anything(tmp_path: P
     # with a single condition nothing can be left out and predicted
     assert found["improvement"]["held_out_baseline"] is None
     assert "none left out" in report(verdict)
+
+
+def test_trials_without_a_measured_number_are_refused_in_one_line(tmp_path: Path) -> None:
+    write_template(tmp_path / "mine", shape="rod")
+    (tmp_path / "mine" / "trials.csv").write_text(
+        "trial,striker,angle_deg,drop_height_m\nT01,rod,90,0.05\n"
+    )
+    with pytest.raises(InputError, match=r"no measured number .* one or more of restitution"):
+        diagnose(read(tmp_path / "mine"))
 
 
 def test_a_pull_is_in_stated_standard_deviations(tmp_path: Path) -> None:
