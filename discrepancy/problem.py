@@ -112,9 +112,10 @@ def problem_of(recordings: RecordingSet) -> Problem:
         readings, approach.normal, recordings.trials.order, conditions
     )
     if len(cells) == 0:
+        known = ", ".join(name for name, row in OBSERVABLES.items() if row.in_trials)
         raise InputError(
             "no measured number to compare with the simulation", source=recordings.name,
-            key="trials.csv", allowed="one or more of " + ", ".join(k for k, o in OBSERVABLES.items() if o.in_trials),
+            key="trials.csv", allowed=f"one or more of {known}",
         )  # fmt: skip
     again = sum(c.after >= 0 for c in conditions)
     later = [f"{again} conditions are later blows on one place: they meet its crater"] * bool(again)
