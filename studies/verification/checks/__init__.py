@@ -52,6 +52,7 @@ CHECKS: tuple[Check, ...] = (
     Check("objectivity", "objectivity and yield surface of the stress update", objectivity.run),
     Check("flow-laws", "exact paths of hardening, rate and heat; a balance", flow_laws.run),
     Check("hertz", "elastic contact: F, a, pressure, stresses on the axis", hertz.run),
+    Check("elastic-bias", "where the bias of F as a/R goes to zero comes from", hertz.bias),
     Check("first-yield", "depth and load at first yield", first_yield.run),
     Check("truncation", "truncation of the half-space", truncation.run),
     Check("scale", "scale invariance in R and in the unit of stress", scale_invariance.run),
