@@ -17,7 +17,7 @@ from pathlib import Path
 import numpy as np
 from dentscope.core import Material
 from dentscope.discrepancy import Verdict, diagnose
-from dentscope.impact import Approach, ForceTransform, Striker, reference_impact, scene_of
+from dentscope.impact import Approach, ForceTransform, Striker, scene_of, traced
 from dentscope.models import LAWS
 from dentscope.recordings import read
 
@@ -43,7 +43,7 @@ def write_set(folder: Path, *, force: bool, damping: float) -> None:
                 LAWS["fitted"], sphere=BALL, flat=FLAT, approach=Approach(float(v)),
                 striker=Striker(mass=float(mass), tip_radius=r),
             ).with_(force=ForceTransform(damping=damping))  # fmt: skip
-            impact = reference_impact(scene, points=400)
+            impact = traced(scene, points=400)
             T, e = impact.impact.contact_time_s, impact.impact.restitution
             t, first = np.unique(impact.column("time_s"), return_index=True)
             grid = np.arange(-T, 2.0 * T, T / SAMPLES) + 0.03 * T

@@ -65,8 +65,7 @@ def _from_file(path: Path, names: list[str], out: Path) -> None:
     from rich.console import Console
 
     from ..impact.draw import draw_histories
-    from ..impact.integrate import strike
-    from ..impact.reference import reference_impact
+    from ..impact.integrate import strike, traced
     from ..impact.setup import read_setup
     from ..impact.tables import impact_row, write_csv, write_hdf5
 
@@ -84,7 +83,7 @@ def _from_file(path: Path, names: list[str], out: Path) -> None:
         for number in range(1, setup.repeats + 1):
             impact_here = strike(scene, setup.settings)
             rows.append({"law": law.name, "repeat": number, **impact_row(impact_here)})
-            trace = reference_impact(scene, setup.settings, points=200)
+            trace = traced(scene, setup.settings, points=200)
             # The next blow falls on the same spot: hardened crater, flattened tip.
             scene = scene.with_(spot=impact_here.spot)
         traces[law.name] = trace

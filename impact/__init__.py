@@ -5,10 +5,18 @@ from __future__ import annotations
 from .batch import impacts
 from .beam import Modes, rod_modes
 from .columns import Impacts
-from .integrate import Settings, arrays_of, strike, strike_batch, strike_many, strike_rows
+from .integrate import (
+    Settings,
+    Trace,
+    arrays_of,
+    strike,
+    strike_batch,
+    strike_many,
+    strike_rows,
+    traced,
+)
 from .inverse import Inferred, Measured, infer
 from .law_table import tabulated
-from .reference import Trace, reference_impact
 from .result import Impact
 from .scene import (
     Approach,
@@ -19,11 +27,11 @@ from .scene import (
     Profiles,
     RateFree,
     Scene,
-    Spot,
     Striker,
     Support,
     scene_of,
 )
+from .surface import Imprint, Spot
 
 __all__ = [
     "Approach",
@@ -32,6 +40,7 @@ __all__ = [
     "Friction",
     "Impact",
     "Impacts",
+    "Imprint",
     "Inferred",
     "Instrument",
     "Measured",
@@ -47,7 +56,6 @@ __all__ = [
     "arrays_of",
     "impacts",
     "infer",
-    "reference_impact",
     "rod_modes",
     "scene_of",
     "strike",
@@ -55,4 +63,5 @@ __all__ = [
     "strike_many",
     "strike_rows",
     "tabulated",
+    "traced",
 ]

@@ -241,5 +241,6 @@ def _named(
 def _outcomes(ending: Array) -> NDArray[Any]:
     told = np.full(len(ending), Ending.NOT_CONVERGED.value, dtype="<U16")
     told[ending == c.DONE] = Ending.COMPLETED.value
-    told[(ending == c.STEP_BUDGET) | (ending == c.CONTACT_BUDGET)] = Ending.STEP_LIMIT.value
+    budgets = (c.STEP_BUDGET, c.CONTACT_BUDGET, c.FLIGHT_BUDGET)
+    told[np.isin(ending, budgets)] = Ending.STEP_LIMIT.value
     return told

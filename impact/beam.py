@@ -42,13 +42,16 @@ class Modes:
     loss_factor: float = 0.0
 
     def at_contact(self, angle: float, tip_radius: float) -> Array:
-        """Return (2, n): the contact point's displacement per modal coordinate, along x and y."""
+        """Return (3, n): displacement per modal coordinate, along x and y at the contact point.
+
+        The third row is that of the tip's centre along x: below it lies the place of contact.
+        """
         along = np.asarray(self.axial, dtype=float)
         across = np.asarray(self.transverse, dtype=float)
         turn = np.asarray(self.rotation, dtype=float)
-        x = along * math.cos(angle) - across * math.sin(angle) + turn * tip_radius
+        x = along * math.cos(angle) - across * math.sin(angle)
         y = along * math.sin(angle) + across * math.cos(angle)
-        return np.stack([x, y])
+        return np.stack([x + turn * tip_radius, y, x])
 
 
 def axial_frequencies(length: float, material: Material, *, count: int) -> Array:

@@ -13,8 +13,8 @@ from matplotlib.figure import Figure
 
 from ..core.observables import OBSERVABLES
 from .columns import Impacts
+from .integrate import Trace
 from .inverse import alpha_curve
-from .reference import Trace
 from .scene import Striker
 
 LOOP = ("penetration_m", "depth [um]", 1e6, "normal_force_N", "normal force [kN]", 1e-3)

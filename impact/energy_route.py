@@ -36,7 +36,8 @@ from .energy_table import (
     TERMS,
     energy_table,
 )  # fmt: skip
-from .scene import ForceTransform, RateFree, Scene, Spot
+from .scene import ForceTransform, RateFree, Scene
+from .surface import Spot
 
 GRAVITY_LIMIT = 0.1
 """Largest work of gravity over the work of a branch; the series is cut after its fourth power."""

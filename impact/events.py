@@ -1,149 +1,101 @@
-"""Events of an impact: what ends an interval, when, and how friction goes on after it."""
+"""Events of a contact: what ends an interval, when, and how friction goes on after it."""
 
 from __future__ import annotations
 
 import math
 
-from numba import boolean, float64, int64, njit, types
+from numba import float64, int64, njit, types
 
 from ..models.kernel import VECTOR
-from .force import (
-    BRANCH,
-    LOADING,
-    PEAK_RADIUS,
-    RECEDING,
-    SEGMENT_HIGH,
-    SEGMENT_LOW,
-    SPLIT,
-    set_peak,
-    static_loading,
-)
-from .layout import (
-    ARM,
-    B_T,
-    BORDER,
-    BY_RATE,
-    BY_ROOT_DEPTH,
-    BY_TIME,
-    COMPLIANCE,
-    DEPTH,
-    FLY,
-    FORCE,
-    LOAD,
-    M_TN,
-    M_TT,
-    MARGIN,
-    MATRIX,
-    N_RIGID,
-    PART,
-    RATE,
-    RELOAD,
-    REST,
-    RETURNED,
-    REVERSAL,
-    RISE,
-    SLIDE,
-    SLIDING,
-    SPIN,
-    SPOT_CENTRE,
-    SPOT_PEAK,
-    SPOT_RADIUS,
-    SPOT_TIP,
-    SPRING,
-    TANGENTIAL,
-    TIP,
-    TOUCH,
-    TURN,
-    UNLOAD,
-    VX,
-    VY,
-    W_RATE,
-)
-from .motion import contact, crater, derivative, kinematics, loading_radius, tip_x
+from . import force as fo
+from . import layout as at
+from . import surface as su
+from .layout import MODEL, WORK
+from .motion import PLAIN, contact, derivative, kinematics, loading_radius, tail_of
 
 # fmt: off
 _BREAK_GAP = 1e-13
 
 
-@njit(float64(VECTOR, float64, float64), cache=True, _nrt=False)
-def sliding_mode(seen, rest_friction, small_force):
-    """Sign of sliding that follows rest: 0 when friction can hold the contact point.
+@njit(float64(MODEL, WORK, float64), cache=True, **PLAIN)
+def sliding_mode(m, w, friction):
+    """Sign of sliding that follows rest: 0 when the coefficient `friction` can hold the point.
 
-    `small_force` stands for the force at a touch, where both sides of the question vanish.
+    The impact's small force stands for the force at a touch, where both sides vanish.
     """
-    f = max(seen[FORCE], small_force)
-    pull = seen[M_TN] * f + seen[B_T]
-    if abs(pull) <= rest_friction * seen[M_TT] * f:
+    seen = w.seen
+    f = max(seen[at.FORCE], w.scales[at.SMALL_FORCE])
+    pull = seen[at.M_TN] * f + seen[at.B_T]
+    if abs(pull) <= friction * seen[at.M_TT] * f:
         return 0.0
     return 1.0 if pull > 0.0 else -1.0
 
 
-@njit(float64(VECTOR, float64, float64, boolean, float64), cache=True, _nrt=False)
-def first_mode(seen, rest_friction, small_force, rubbing, speed):
-    """Sign of sliding at a touch; 0 when the point rests and nothing moves it."""
-    if abs(seen[SLIDING]) > 1e-14 * speed:
-        return 1.0 if seen[SLIDING] > 0.0 else -1.0
-    return sliding_mode(seen, rest_friction if rubbing else 0.0, small_force)
+@njit(float64(MODEL, WORK), cache=True, **PLAIN)
+def rest_friction(m, w):
+    """Coefficient that holds a resting point: static and ploughing friction together."""
+    return m.body[at.MU_STATIC] + w.seen[at.PLOUGHING]
 
 
-@njit(
-    float64(LOADING, BRANCH, BRANCH, VECTOR, VECTOR, VECTOR, VECTOR, MATRIX, VECTOR, int64, float64,
-            float64, float64, VECTOR, VECTOR, VECTOR, VECTOR),
-    cache=True, _nrt=False, error_model="numpy",
-)
-def slip_speed(loading, radius, unloading, par, force, factors, body, psi, branch, phase, mode,
-               offset, ahead, z, dz, moved, seen):
+@njit(types.boolean(MODEL), cache=True, **PLAIN)
+def rubbing(m):
+    """Whether there is any friction."""
+    return m.body[at.MU_STATIC] > 0.0 or m.body[at.MU] > 0.0 or m.body[at.PLOUGH] > 0.0
+
+
+@njit(float64(MODEL, WORK, float64, float64, VECTOR, VECTOR, VECTOR), cache=True, **PLAIN)
+def slip_speed(m, w, mode, ahead, z, dz, moved):
     """Speed at which a yielding contact slips [m/s]: the bodies' speed less the spring's.
 
     `dz` is the derivative by time; the friction limit is followed along it for the short time
-    `ahead`. Overwrites `moved` and `seen`.
+    `ahead`. Overwrites `moved` and `w.seen_far`.
     """
-    n = psi.shape[1]
-    _, limit, _, stiffness = contact(
-        loading, radius, unloading, par, force, factors, body, psi, n, branch, phase, offset, z,
-        seen)
-    speed, depth, rate = seen[SLIDING], seen[DEPTH], seen[RATE]
+    seen, branch, phase = w.seen_far, w.branch, w.now[at.PHASE]
+    _, limit, _, stiffness = contact(m, w, z, seen)
+    speed, depth, rate = seen[at.SLIDING], seen[at.DEPTH], seen[at.RATE]
     from_here = 0.0
     # Look back where looking ahead would leave this stretch of the force.
-    if phase == UNLOAD and depth + ahead * rate < branch[1] + branch[2]:
+    if phase == at.UNLOAD and depth + ahead * rate < branch[1] + branch[2]:
         from_here = -2.0 * ahead
         for j in range(len(z)):
             moved[j] = z[j] + from_here * dz[j]
-        _, limit, _, stiffness = contact(
-            loading, radius, unloading, par, force, factors, body, psi, n, branch, phase, offset,
-            moved, seen)
-    elif phase == LOAD and depth + ahead * rate > branch[SEGMENT_HIGH]:
+        _, limit, _, stiffness = contact(m, w, moved, seen)
+    elif phase == at.LOAD and depth + ahead * rate > branch[fo.SEGMENT_HIGH]:
         ahead = -ahead
     for j in range(len(z)):
         moved[j] = z[j] + (from_here + ahead) * dz[j]
-    _, later, _, stiff = contact(
-        loading, radius, unloading, par, force, factors, body, psi, n, branch, phase, offset, moved,
-        seen)
+    _, later, _, stiff = contact(m, w, moved, seen)
     if stiff <= 0.0 or stiffness <= 0.0:
         return mode * abs(speed)
-    if branch[RECEDING] > 0.0:
+    if branch[fo.RECEDING] > 0.0:
         return speed - mode * (later / stiff - limit / stiffness) / ahead
     return speed - mode * (later - limit) / (ahead * stiffness)
 
 
-@njit(
-    float64(LOADING, BRANCH, BRANCH, VECTOR, VECTOR, VECTOR, VECTOR, MATRIX, VECTOR, int64, float64,
-            float64, VECTOR, VECTOR, VECTOR, VECTOR, VECTOR),
-    cache=True, _nrt=False, error_model="numpy",
-)
-def yielding_mode(loading, radius, unloading, par, force, factors, body, psi, branch, phase, offset,
-                  ahead, z, dz, moved, further, seen):
+@njit(float64(MODEL, WORK), cache=True, **PLAIN)
+def _yielding_mode(m, w):
     """Sign of sliding at the touch of a contact that gives way sideways; 0 when it sticks.
 
-    Decided a moment `ahead` of the touch, where friction and spring have grown from nothing.
+    Decided a moment ahead of the touch, where friction and spring have grown from nothing.
     """
+    z, dz, later, ahead = w.z, w.stages[0], w.moved, w.scales[at.AHEAD]
     for j in range(len(z)):
-        moved[j] = z[j] + ahead * dz[j]
-    kinematics(body, moved, psi, psi.shape[1], seen)
-    mode = 1.0 if seen[SLIDING] > 0.0 else -1.0
-    speed = slip_speed(loading, radius, unloading, par, force, factors, body, psi, branch, phase,
-                       mode, offset, 1e-3 * ahead, moved, dz, further, seen)
+        later[j] = z[j] + ahead * dz[j]
+    kinematics(m, later, w.seen_far)
+    mode = 1.0 if w.seen_far[at.SLIDING] > 0.0 else -1.0
+    speed = slip_speed(m, w, mode, 1e-3 * ahead, later, dz, w.spare)
     return mode if mode * speed > 0.0 else 0.0
+
+
+@njit(float64(MODEL, WORK), cache=True, **PLAIN)
+def first_mode(m, w):
+    """Sign of sliding at a touch; 0 when the point rests and nothing moves it."""
+    if m.body[at.COMPLIANCE] < math.inf:
+        return _yielding_mode(m, w)
+    sliding = w.seen[at.SLIDING]
+    if abs(sliding) > 1e-14 * w.scales[at.SPEED]:
+        return 1.0 if sliding > 0.0 else -1.0
+    return sliding_mode(m, w, rest_friction(m, w) if rubbing(m) else 0.0)
 
 
 @njit(float64(float64, float64, float64, float64, float64), cache=True, _nrt=False)
@@ -162,128 +114,130 @@ def hermite_root(g0, d0, g1, d1, h):
     return 0.5 * (low + high)
 
 
-@njit(
-    types.void(LOADING, BRANCH, BRANCH, VECTOR, VECTOR, VECTOR, VECTOR, VECTOR, VECTOR, MATRIX,
-               VECTOR, VECTOR, int64, float64, boolean, float64, float64, float64, float64, VECTOR,
-               VECTOR, VECTOR, VECTOR, VECTOR, VECTOR),
-    cache=True, _nrt=False, error_model="numpy",
-)
-def event_values(loading, radius, unloading, par, force, factors, body, spot, omega, psi, shape,
-                 branch, phase, mode, approaching, side, offset, ahead, centre0, z, dz, moved, seen,
-                 seen_far, values):
+@njit(types.void(MODEL, WORK, VECTOR, VECTOR, VECTOR), cache=True, **PLAIN)
+def _yielding_values(m, w, z, seen, values):
+    """Write the event functions of a contact that gives way sideways."""
+    mode = w.now[at.MODE]
+    if mode == 0.0:
+        # over the forces: near the parting friction vanishes before the spring does
+        both = seen[at.FORCE] + abs(seen[at.TANGENTIAL])
+        slack = w.now[at.APPROACHING] > 0.0 or z[at.SPRING] == 0.0
+        values[at.SLIDE] = 0.0 if slack else -1.0
+        if seen[at.FORCE] > 0.0:
+            values[at.SLIDE] = -seen[at.MARGIN] / both
+    else:
+        derivative(m, w, at.BY_TIME, 0.0, z, w.spare, w.seen_far)
+        values[at.REST] = mode * slip_speed(
+            m, w, mode, w.scales[at.AHEAD], z, w.spare, w.moved)
+
+
+@njit(inline="always", **PLAIN)
+def event_values(m, w, z, seen, values):
     """Write the event functions at a state: each falls through zero when its event happens.
 
-    Overwrites `dz`, `moved` and `seen_far`.
+    Overwrites `w.spare`, `w.moved` and `w.seen_far`.
     """
-    depth, rate, sliding = seen[DEPTH], seen[RATE], seen[SLIDING]
-    values[TURN], values[RETURNED] = rate, -rate
-    values[PART], values[RELOAD] = depth - (branch[1] + branch[2]), branch[0] - depth
-    values[REST], values[REVERSAL] = mode * sliding, side * sliding
-    values[SLIDE], values[BORDER] = -seen[MARGIN], branch[SEGMENT_HIGH] - depth
-    values[TOUCH] = 1.0
-    if phase == FLY:
-        values[TOUCH] = (
-            spot[SPOT_TIP] + crater(spot, centre0 + tip_x(body, z, psi, psi.shape[1])) - depth)
-    elif body[COMPLIANCE] < math.inf:
-        if mode == 0.0:
-            # over the forces: near the parting friction vanishes before the spring does
-            both = seen[FORCE] + abs(seen[TANGENTIAL])
-            slack = approaching or z[SPRING] == 0.0
-            values[SLIDE] = 0.0 if slack else -1.0
-            if seen[FORCE] > 0.0:
-                values[SLIDE] = -seen[MARGIN] / both
-        else:
-            derivative(loading, radius, unloading, par, force, factors, body, omega, psi, shape,
-                       branch, phase, mode, offset, BY_TIME, 0.0, z, dz, seen_far)
-            values[REST] = mode * slip_speed(
-                loading, radius, unloading, par, force, factors, body, psi, branch, phase, mode,
-                offset, ahead, z, dz, moved, seen_far)
+    now, branch = w.now, w.branch
+    depth, rate, sliding = seen[at.DEPTH], seen[at.RATE], seen[at.SLIDING]
+    values[at.TURN], values[at.RETURNED] = rate, -rate
+    values[at.PART] = depth - (branch[1] + branch[2])
+    values[at.RELOAD] = branch[0] - depth
+    values[at.REST], values[at.REVERSAL] = now[at.MODE] * sliding, now[at.SIDE] * sliding
+    values[at.SLIDE] = -seen[at.MARGIN]
+    values[at.BORDER] = branch[fo.SEGMENT_HIGH] - depth
+    if m.body[at.COMPLIANCE] < math.inf:
+        _yielding_values(m, w, z, seen, values)
 
 
-@njit(types.void(int64, float64, boolean, boolean, boolean, int64, types.boolean[::1]),
-      cache=True, _nrt=False)
-def mark_active(phase, mode, approaching, clear, compliant, variable, active):
+@njit(inline="always", **PLAIN)
+def mark_active(m, w):
     """Mark the events that can end the present interval."""
-    pressed = phase != FLY
-    active[TURN] = pressed and approaching and variable != BY_RATE
-    leaving = phase == UNLOAD and not approaching and variable != BY_ROOT_DEPTH
-    active[PART] = active[RETURNED] = leaving
-    active[RELOAD] = phase == UNLOAD and approaching
-    active[BORDER] = phase == LOAD and variable != BY_ROOT_DEPTH
-    active[REST], active[SLIDE] = pressed and mode != 0.0, pressed and mode == 0.0
-    active[REVERSAL] = pressed and compliant
-    active[TOUCH] = not pressed and clear
+    now, active = w.now, w.active
+    approaching, variable, loading = now[at.APPROACHING] > 0.0, now[at.VARIABLE], now[at.PHASE]
+    active[at.TURN] = approaching and variable != at.BY_RATE
+    leaving = loading == at.UNLOAD and not approaching and variable != at.BY_ROOT_DEPTH
+    active[at.PART] = active[at.RETURNED] = leaving
+    active[at.RELOAD] = loading == at.UNLOAD and approaching
+    active[at.BORDER] = loading == at.LOAD and variable != at.BY_ROOT_DEPTH
+    active[at.REST], active[at.SLIDE] = now[at.MODE] != 0.0, now[at.MODE] == 0.0
+    active[at.REVERSAL] = m.body[at.COMPLIANCE] < math.inf
 
 
-@njit(float64(int64, VECTOR, VECTOR, VECTOR, MATRIX, int64, VECTOR, float64, float64),
-      cache=True, _nrt=False, error_model="numpy")
-def event_slope(event, body, z, dz, psi, n, seen, sign, pace):
+@njit(types.boolean(MODEL, WORK, int64), cache=True, **PLAIN)
+def by_chord(m, w, event):
+    """Whether the event's function has no slope in closed form."""
+    if event == at.SLIDE or (event == at.REST and m.body[at.COMPLIANCE] < math.inf):
+        return True
+    turns = event == at.TURN or event == at.RETURNED
+    if turns and w.surface[su.STANDING] > 0.0:
+        return True
+    plate = m.body[at.S_PLATE] > 0.0
+    return plate and (turns or event == at.RELOAD or event == at.BORDER)
+
+
+@njit(float64(MODEL, int64, VECTOR, VECTOR, VECTOR, float64, float64), cache=True, **PLAIN)
+def event_slope(m, event, z, dz, seen, sign, pace):
     """Derivative of an event function where `pace` is dt per independent variable; 0: no form."""
-    if event == PART:
-        return seen[RATE] * pace
-    if event == RELOAD or event == TOUCH or event == BORDER:
-        return -seen[RATE] * pace
-    if event == SLIDE:
+    if event == at.PART:
+        return seen[at.RATE] * pace
+    if event == at.RELOAD or event == at.BORDER:
+        return -seen[at.RATE] * pace
+    if event == at.SLIDE:
         return 0.0
-    c, rise = seen[ARM], seen[RISE]
-    if event == REST or event == REVERSAL:
-        pull = dz[VX] + dz[SPIN] * (rise + body[TIP]) + z[SPIN] ** 2 * c * pace
+    n, c, rise = len(m.omega), seen[at.ARM], seen[at.RISE]
+    if event == at.REST or event == at.REVERSAL:
+        turning = dz[at.SPIN] * (rise + m.body[at.TIP]) + z[at.SPIN] ** 2 * c * pace
+        pull = dz[at.VX] + turning
         for k in range(n):
-            pull += psi[0, k] * dz[N_RIGID + n + k]
+            pull += m.psi[0, k] * dz[at.N_RIGID + n + k]
         return sign * pull
-    push = -dz[VY] + dz[SPIN] * c - z[SPIN] ** 2 * rise * pace - dz[W_RATE]
+    push = -dz[at.VY] + dz[at.SPIN] * c - z[at.SPIN] ** 2 * rise * pace
+    tail = tail_of(m.omega, m.sums)
+    if tail >= 0:
+        push -= dz[tail + at.W_RATE]
     for k in range(n):
-        push -= psi[1, k] * dz[N_RIGID + n + k]
-    return push if event == TURN else -push
+        push -= m.psi[1, k] * dz[at.N_RIGID + n + k]
+    return push if event == at.TURN else -push
 
 
-@njit(
-    types.UniTuple(float64, 3)(
-        LOADING, BRANCH, BRANCH, SPLIT, VECTOR, VECTOR, VECTOR, VECTOR, float64, VECTOR
-    ),
-    cache=True, _nrt=False,
-)
-def meet(loading, radius, unloading, residual, par, force, factors, spot, x, branch):
-    """Begin a contact at x: return (phase, offset of the law's depth, crater depth here).
-
-    The hardened crater is met within half its radius, and the flattened tip everywhere when the
-    tip is the weaker body; else fresh metal.
-    """
-    local = crater(spot, x)
-    offset = local + spot[SPOT_TIP]
-    branch[RECEDING] = 0.0
-    if spot[SPOT_PEAK] <= 0.0:
-        return float(LOAD), offset, local
-    set_peak(loading, unloading, residual, par, force, factors, spot[SPOT_PEAK], branch)
-    branch[PEAK_RADIUS] = loading_radius(radius, par, force, branch[0])
-    same = abs(x - spot[SPOT_CENTRE]) <= 0.5 * spot[SPOT_RADIUS]
-    if same or branch[1] > branch[2]:
-        return float(UNLOAD), offset - branch[1] - branch[2], local
-    for i in range(SEGMENT_LOW):
-        branch[i] = 0.0
-    return float(LOAD), offset, local
-
-
-@njit(types.void(VECTOR, float64, VECTOR), cache=True, _nrt=False)
-def set_segment(breaks, depth, branch):
+@njit(types.void(MODEL, WORK, float64), cache=True, **PLAIN)
+def set_segment(m, w, depth):
     """Bound the loading curve to its smooth stretch around `depth`."""
-    branch[SEGMENT_LOW], branch[SEGMENT_HIGH] = 0.0, math.inf
-    for border in breaks:
+    branch = w.branch
+    branch[fo.SEGMENT_LOW], branch[fo.SEGMENT_HIGH] = 0.0, math.inf
+    for border in m.breaks:
         if border <= depth * (1.0 + 2.0 * _BREAK_GAP):
-            branch[SEGMENT_LOW] = border * (1.0 + _BREAK_GAP)
+            branch[fo.SEGMENT_LOW] = border * (1.0 + _BREAK_GAP)
         else:
-            branch[SEGMENT_HIGH] = border * (1.0 - _BREAK_GAP)
+            branch[fo.SEGMENT_HIGH] = border * (1.0 - _BREAK_GAP)
             break
 
 
-@njit(float64(LOADING, VECTOR, VECTOR, VECTOR, float64, float64), cache=True, _nrt=False)
-def reference_depth(loading, par, force, factors, energy, R):
-    """Depth [m] at which about `energy` [J] has been taken up; the scale of the tolerances."""
-    d = 1e-12 * R
-    taken, last = 0.0, 0.0
-    while taken < energy and d < 10.0 * R:
-        f = static_loading(loading, par, force, factors, d)
-        taken += 0.25 * d * (f + last)
-        last = f
-        d *= 2.0
-    return d
+@njit(types.void(MODEL, WORK, float64), cache=True, **PLAIN)
+def meet(m, w, x):
+    """Begin a contact at x: the phase, what the law's depth is counted from, the branch.
+
+    A bed is met at its residual depth and is elastic up to the peak that it stands for; fresh metal
+    is met at no depth. Either lies where the surface says that the tip meets it.
+    """
+    now, branch, surface = w.now, w.branch, w.surface
+    surface[su.STANDING] = surface[su.COUNT]
+    now[at.APPROACHING] = 1.0
+    branch[fo.RECEDING] = 0.0
+    for i in range(fo.SEGMENT_LOW):
+        branch[i] = 0.0
+    now[at.PHASE], now[at.OFFSET] = at.LOAD, surface[su.TIP_FLAT]
+    set_segment(m, w, 0.0)
+    here = su.bed(surface, x)
+    most = max(here, surface[su.TIP_PEAK])
+    if most <= 0.0:
+        return
+    tip, flat = m.residual(m.par, most)
+    share = tip / (tip + flat) if tip + flat > 0.0 else 0.0
+    peak = share * surface[su.TIP_PEAK] + (1.0 - share) * here
+    if peak <= 0.0:
+        return
+    fo.set_peak(m.loading, m.unloading, m.residual, m.par, m.force, m.factors, peak, branch)
+    branch[fo.PEAK_RADIUS] = loading_radius(m, peak)
+    now[at.PHASE] = at.UNLOAD
+    now[at.OFFSET] -= branch[1] + branch[2]

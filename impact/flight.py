@@ -1,202 +1,210 @@
-"""Free flight of the striker between two contacts, and where it touches again."""
+"""Free flight of the striker between two contacts, and where it touches again.
+
+Nothing acts but gravity and the vibrations' own springs, so that the motion is known in closed
+form. A touch is found from the side on which the tip is free: with the gap g, its rate g' and a
+bound B of its second derivative nothing can touch before tau, g + g' tau - B tau^2/2 = 0; the
+flight goes on by tau until g is nothing. Such a search can miss no touch, whatever its steps.
+"""
 
 from __future__ import annotations
 
 import math
 
-import numpy as np
-from numba import boolean, float64, njit, types
+from numba import float64, int64, njit, types
 
 from ..models.kernel import VECTOR
-from .layout import (
-    DEPTH,
-    FLIGHT,
-    GRAVITY,
-    LOSS,
-    MATRIX,
-    N_RIGID,
-    PHI,
-    RATE,
-    SPIN,
-    SPOT_PEAK,
-    SPOT_TIP,
-    TIME,
-    VX,
-    VY,
-    WORK_D,
-    X,
-    Y,
-)
-from .motion import crater, kinematics, tip_x
+from . import layout as at
+from . import surface as su
+from .layout import MODEL, WORK
+from .motion import PLAIN, kinematics, place_of, tail_of
+
+# fmt: off
+LOOKS = 100_000
+"""Looks at the gap in one flight; beyond it the flight ends unfinished."""
+CLEAR, TOUCHED, HORIZON, LOST = range(4)
+
+# Rows of the scratch matrix: amplitude of each mode at the tip, its largest acceleration there, and
+# along the flat its largest speed and acceleration.
+_REACH, _PUSH, _ASIDE, _ASIDE_PUSH = range(4)
+N_FAST = 4
 
 
-@njit(types.void(VECTOR, VECTOR, VECTOR, float64, VECTOR), cache=True, error_model="numpy")
-def coast(body, z, omega, t, z_new):
-    """Write the state after a flight of duration t: ballistic motion, free damped vibration."""
+@njit(types.UniTuple(float64, 2)(VECTOR, float64, float64, float64), cache=True, **PLAIN)
+def _support(body, w, v, t):
+    """Sinking of the free support and its rate after the time t."""
+    b = 0.5 * body[at.S_DAMP] / body[at.S_MASS]
+    square = body[at.S_STIFF] / body[at.S_MASS]
+    left = square - b * b
+    root = math.sqrt(abs(left))
+    if left > 0.0:
+        fade = math.exp(-b * t)
+        c, s = fade * math.cos(root * t), fade * math.sin(root * t) / root
+    else:
+        slow, fast = math.exp((root - b) * t), math.exp(-(root + b) * t)
+        c = 0.5 * (slow + fast)
+        s = (slow - fast) / (2.0 * root) if root * t > 1e-9 else t * math.exp(-b * t)
+    return w * (c + b * s) + v * s, v * (c - b * s) - square * w * s
+
+
+@njit(types.void(MODEL, VECTOR, float64, VECTOR), cache=True, **PLAIN)
+def coast(m, z, t, z_new):
+    """Write the state after a flight of duration t: ballistic motion, free damped vibrations."""
+    body, omega = m.body, m.omega
     n = len(omega)
     for j in range(len(z)):
         z_new[j] = z[j]
-    z_new[X] += z[VX] * t
-    z_new[Y] += z[VY] * t - 0.5 * body[GRAVITY] * t * t
-    z_new[VY] -= body[GRAVITY] * t
-    z_new[PHI] += z[SPIN] * t
-    z_new[TIME] += t
-    zeta = 0.5 * body[LOSS]
+    z_new[at.X] += z[at.VX] * t
+    z_new[at.Y] += z[at.VY] * t - 0.5 * body[at.GRAVITY] * t * t
+    z_new[at.VY] -= body[at.GRAVITY] * t
+    z_new[at.PHI] += z[at.SPIN] * t
+    z_new[at.TIME] += t
+    tail = tail_of(omega, m.sums)
+    if body[at.S_MASS] < math.inf:
+        sinking = _support(body, z[tail + at.W], z[tail + at.W_RATE], t)
+        z_new[tail + at.W], z_new[tail + at.W_RATE] = sinking
+    zeta = 0.5 * body[at.LOSS]
     root = math.sqrt(1.0 - zeta * zeta)
     for k in range(n):
-        q, p, w = z[N_RIGID + k], z[N_RIGID + n + k], omega[k]
-        fade = math.exp(-zeta * w * t)
+        q, p, w = z[at.N_RIGID + k], z[at.N_RIGID + n + k], omega[k]
+        fade = math.exp(-zeta * w * t) if zeta > 0.0 else 1.0
         cosine, sine = math.cos(w * root * t), math.sin(w * root * t) / root
-        z_new[N_RIGID + k] = fade * (q * (cosine + zeta * sine) + p / w * sine)
-        z_new[N_RIGID + n + k] = fade * (p * (cosine - zeta * sine) - q * w * sine)
-        energy = p * p + w * w * q * q
-        left = z_new[N_RIGID + n + k] ** 2 + (w * z_new[N_RIGID + k]) ** 2
-        z_new[WORK_D] += 0.5 * (energy - left)
+        q_new = fade * (q * (cosine + zeta * sine) + p / w * sine)
+        p_new = fade * (p * (cosine - zeta * sine) - q * w * sine)
+        z_new[at.N_RIGID + k], z_new[at.N_RIGID + n + k] = q_new, p_new
+        if zeta > 0.0:
+            z_new[tail + at.WORK_D] += 0.5 * (p * p + (w * q) ** 2 - p_new**2 - (w * q_new) ** 2)
 
 
-@njit(float64(VECTOR, VECTOR, VECTOR, float64, MATRIX, VECTOR), cache=True, error_model="numpy")
-def clearance(body, spot, z, centre, psi, seen):
-    """How far the tip is from meeting the flat below it [m]; negative when it would be inside."""
-    n = psi.shape[1]
-    kinematics(body, z, psi, n, seen)
-    return spot[SPOT_TIP] + crater(spot, centre + tip_x(body, z, psi, n)) - seen[DEPTH]
+@njit(types.UniTuple(float64, 2)(MODEL, WORK, VECTOR), cache=True, **PLAIN)
+def clearance(m, w, z):
+    """How far the tip is from the remembered surface [m], and how fast that grows [m/s].
 
-
-@njit(
-    types.UniTuple(float64, 2)(
-        VECTOR, VECTOR, VECTOR, MATRIX, float64, VECTOR, float64, float64, VECTOR, VECTOR
-    ),
-    cache=True,
-    error_model="numpy",
-)
-def nearest(body, spot, omega, psi, centre, z, low, high, z_new, seen):
-    """Return when, between `low` and `high`, the tip stops approaching, and its clearance then.
-
-    It ends at once where the tip is inside. Overwrites `z_new`.
+    Overwrites `w.seen_far`, which then holds depth and rate below the fresh flat.
     """
-    t, gap = high, 0.0
-    for _ in range(40):
-        t = 0.5 * (low + high)
-        coast(body, z, omega, t, z_new)
-        gap = clearance(body, spot, z_new, centre, psi, seen)
-        if gap < 0.0 or high - low < 1e-6 * t:
-            break
-        if seen[RATE] > 0.0:
-            low = t
-        else:
-            high = t
-    return t, gap
+    kinematics(m, z, w.seen_far)
+    gap, rate = w.surface[su.TIP_FLAT] - w.seen_far[at.DEPTH], -w.seen_far[at.RATE]
+    if w.surface[su.COUNT] > 0.0:
+        x, speed = place_of(m, z)
+        low, slope = su.height(w.surface, w.surface[su.COUNT], w.scales[at.ORIGIN] + x)
+        gap += low
+        rate += slope * speed
+    return gap, rate
 
 
-@njit(
-    boolean(VECTOR, VECTOR, VECTOR, MATRIX, float64, VECTOR, VECTOR, VECTOR, VECTOR, VECTOR),
-    cache=True,
-    error_model="numpy",
-)
-def fly(body, spot, omega, psi, centre, z, z_new, z_now, z_far, seen):
-    """Follow a free flight to the next touch; write it into `z_new`; return whether there is one.
+@njit(float64(float64, float64, float64), cache=True, **PLAIN)
+def _free_for(gap, rate, bound):
+    """Time that nothing can happen in: gap + rate t - bound t^2/2 >= 0 before it."""
+    if gap < 0.0:
+        return 0.0
+    if bound <= 0.0:
+        return gap / -rate if rate < 0.0 else math.inf
+    root = math.sqrt(rate * rate + 2.0 * bound * gap)
+    return (rate + root) / bound if rate > 0.0 else 2.0 * gap / (root - rate)
 
-    The vibration is known in closed form: the tip is looked at twelve times in each period of
-    the fastest mode, between two looks where it comes near the flat and turns, and no longer once
-    no vibration can bring it back.
+
+@njit(float64(MODEL, WORK, VECTOR, float64, float64, float64), cache=True, **PLAIN)
+def _safe(m, w, z, gap, rate, bound):
+    """Longest time without a touch: the slow modes by their acceleration, the rest by their reach.
+
+    `gap` and `rate` hold all modes, `bound` none.
     """
-    n = len(omega)
-    step = 2.0 * math.pi / (12.0 * omega[n - 1])
-    reach = 0.0
+    n = len(m.omega)
+    along, reach, push = m.psi[1], w.fast[_REACH], w.fast[_PUSH]
+    tail = 0.0
     for k in range(n):
-        q, p = z[N_RIGID + k], z[N_RIGID + n + k] / omega[k]
-        reach += abs(psi[1, k]) * math.sqrt(q * q + p * p)
-    for j in range(N_RIGID):
-        z_far[j] = z[j]
-    for j in range(N_RIGID, len(z)):
-        z_far[j] = 0.0
-    # Rotation of each mode over one step, so that a look costs no sine.
-    turn = np.empty((4, n))
-    zeta = 0.5 * body[LOSS]
-    root = math.sqrt(1.0 - zeta * zeta)
+        tail += along[k] * z[at.N_RIGID + k] + reach[k]
+        rate -= along[k] * z[at.N_RIGID + n + k]
+    best = _free_for(gap - tail, rate, bound)
     for k in range(n):
-        w = omega[k]
-        fade = math.exp(-zeta * w * step)
-        cosine, sine = math.cos(w * root * step), math.sin(w * root * step) / root
-        turn[0, k], turn[1, k] = fade * (cosine + zeta * sine), fade * sine / w
-        turn[2, k], turn[3, k] = -fade * w * sine, fade * (cosine - zeta * sine)
-    for j in range(len(z)):
-        z_now[j] = z[j]
-    start, end = z[TIME], z[TIME] + body[FLIGHT]
-    # The rim of the crater just left is no obstacle: the tip must first have come clear of it.
-    # Without a crater it is at the parting, to round-off.
-    g = clearance(body, spot, z, centre, psi, seen)
-    clear = g >= -1e-9 * spot[SPOT_PEAK]
-    g, rate = max(g, 0.0), seen[RATE]
-    high = 0.0
-    q, p = z_now[N_RIGID : N_RIGID + n], z_now[N_RIGID + n :]
-    look, touched = 0, False
-    while z_now[TIME] < end and not touched:
-        look += 1
-        t = look * step
-        z_now[TIME] = start + t
-        z_now[X] = z[X] + z[VX] * t
-        z_now[Y] = z[Y] + z[VY] * t - 0.5 * body[GRAVITY] * t * t
-        z_now[PHI] = z[PHI] + z[SPIN] * t
-        for k in range(n):
-            q0 = q[k]
-            q[k] = turn[0, k] * q0 + turn[1, k] * p[k]
-            p[k] = turn[2, k] * q0 + turn[3, k] * p[k]
-        g_before, rate_before = g, rate
-        g = clearance(body, spot, z_now, centre, psi, seen)
-        rate = seen[RATE]
-        touched, high = g < 0.0 and clear and rate > 0.0, t
-        if clear and rate_before > 0.0 > rate:
-            # Between the looks the tip came near and turned: a parabola tells how near.
-            fall = 0.5 * rate_before * rate_before * step / (rate_before - rate)
-            if g_before - fall < 0.01 * reach:
-                high, gap = nearest(body, spot, omega, psi, centre, z, t - step, t, z_new, seen)
-                touched = gap < 0.0
-        clear = g >= 0.0 or (clear and touched)
-        if look % 16 == 0 and not touched:
-            z_far[X], z_far[Y], z_far[PHI] = z_now[X], z_now[Y], z_now[PHI]
-            z_far[VY] = z[VY] - body[GRAVITY] * t
-            kinematics(body, z_far, psi, n, seen)
-            left = end - z_now[TIME]
-            far = seen[DEPTH] + reach + 0.5 * body[GRAVITY] * left * left < spot[SPOT_TIP]
-            if far and seen[RATE] < 0.0:
-                return False
-    if not touched:
-        return False
-    # The touch lies in (low, high]: false position on the exact motion. A flight shorter than a
-    # look starts at the flat: its bracket starts where the tip is off it.
-    low = (look - 1) * step
-    coast(body, z, omega, low, z_new)
-    g_low = clearance(body, spot, z_new, centre, psi, seen)
-    if look == 1:
-        low = high
-        for _ in range(40):
-            low *= 0.5
-            coast(body, z, omega, low, z_new)
-            g_low = clearance(body, spot, z_new, centre, psi, seen)
-            if g_low > 0.0:
-                break
-            high = low
-    g_low = max(g_low, 1e-300)
-    coast(body, z, omega, high, z_new)
-    g_high = clearance(body, spot, z_new, centre, psi, seen)
-    side = 0
-    for _ in range(100):
-        t = (low * g_high - high * g_low) / (g_high - g_low)
-        if not low < t < high:
-            t = 0.5 * (low + high)
-        coast(body, z, omega, t, z_new)
-        g = clearance(body, spot, z_new, centre, psi, seen)
-        if g < 0.0:
-            high, g_high = t, g
-            if side == -1:
-                g_low *= 0.5
-            side = -1
-        else:
-            low, g_low = t, max(g, 1e-300)
-            if side == 1:
-                g_high *= 0.5
-            side = 1
-        if high - low <= 1e-15 * (start + high) or g == 0.0:
-            break
-    return True
+        tail -= along[k] * z[at.N_RIGID + k] + reach[k]
+        rate += along[k] * z[at.N_RIGID + n + k]
+        bound += push[k]
+        best = max(best, _free_for(gap - max(tail, 0.0), rate, bound))
+    return best
+
+
+@njit(types.UniTuple(float64, 2)(MODEL, WORK), cache=True, **PLAIN)
+def _bounds(m, w):
+    """Fill `w.fast`; return bounds of the rigid motion's and of the leaning gap's acceleration."""
+    z, body = w.kept, m.body
+    n = len(m.omega)
+    half = math.hypot(body[at.HALF_COS], body[at.HALF_SIN])
+    rigid = body[at.GRAVITY] + z[at.SPIN] ** 2 * half
+    if body[at.S_MASS] < math.inf:
+        tail, mass, stiff = tail_of(m.omega, m.sums), body[at.S_MASS], body[at.S_STIFF]
+        energy = mass * z[tail + at.W_RATE] ** 2 + stiff * z[tail + at.W] ** 2
+        rigid += (math.sqrt(stiff * energy) + body[at.S_DAMP] * math.sqrt(energy / mass)) / mass
+    aside = abs(z[at.VX]) + abs(z[at.SPIN]) * half
+    aside_push = z[at.SPIN] ** 2 * half
+    for k in range(n):
+        q, p, omega = z[at.N_RIGID + k], z[at.N_RIGID + n + k], m.omega[k]
+        size = math.sqrt(q * q + (p / omega) ** 2)
+        push = omega * omega * size * (1.0 + body[at.LOSS])
+        w.fast[_REACH, k] = abs(m.psi[1, k]) * size
+        w.fast[_PUSH, k] = abs(m.psi[1, k]) * push
+        aside += abs(m.psi[2, k]) * omega * size
+        aside_push += abs(m.psi[2, k]) * push
+    slope, curvature = su.roughest(w.surface, w.surface[su.COUNT])
+    return rigid, slope * aside_push + curvature * aside * aside
+
+
+@njit(float64(MODEL, WORK, VECTOR), cache=True, **PLAIN)
+def _until_clear(m, w, z):
+    """About how long until no vibration and no wall can bring the leaving tip back; 0 once so.
+
+    Infinite while the body does not leave. `w.seen_far` holds depth and rate of the tip.
+    """
+    n = len(m.omega)
+    body = m.body
+    gap, rate = w.surface[su.TIP_FLAT] - w.seen_far[at.DEPTH], -w.seen_far[at.RATE]
+    swings = body[at.S_MASS] < math.inf and body[at.S_STIFF] > 0.0
+    if swings:
+        tail = tail_of(m.omega, m.sums)
+        sunk, sinking = z[tail + at.W], z[tail + at.W_RATE]
+        gap -= sunk + math.sqrt(sunk**2 + body[at.S_MASS] * sinking**2 / body[at.S_STIFF])
+        rate -= sinking
+    for k in range(n):
+        gap -= m.psi[1, k] * z[at.N_RIGID + k] + w.fast[_REACH, k]
+        rate -= m.psi[1, k] * z[at.N_RIGID + n + k]
+    if rate <= 0.0:
+        return math.inf
+    if gap > 0.0:
+        return 0.0
+    if n == 0 and not swings:
+        # A rigid body: it leaves a crater that no wall is steep enough to hold it in.
+        slope, _ = su.roughest(w.surface, w.surface[su.COUNT])
+        half = math.hypot(body[at.HALF_COS], body[at.HALF_SIN])
+        if rate > slope * (abs(z[at.VX]) + abs(z[at.SPIN]) * half):
+            return 0.0
+    return -1.01 * gap / rate
+
+
+@njit(int64(MODEL, WORK), cache=True, **PLAIN)
+def fly(m, w):
+    """Follow a flight from `w.kept` to the next touch, written into `w.z`; say how it ended."""
+    z0, z = w.kept, w.z
+    horizon = m.body[at.FLIGHT]
+    if horizon <= 0.0:
+        return HORIZON
+    rigid, leaning = _bounds(m, w)
+    near = 1e-13 * w.scales[at.D_REF]
+    t = 0.0
+    coast(m, z0, t, z)
+    gap, rate = clearance(m, w, z)
+    gap = max(gap, 0.0)
+    for look in range(LOOKS):
+        left = _until_clear(m, w, z)
+        if left == 0.0:
+            return CLEAR
+        if look > 0 and gap <= near and rate < 0.0:
+            return TOUCHED
+        free = _safe(m, w, z, gap, rate, rigid + leaning)
+        plane = w.surface[su.TIP_FLAT] - w.seen_far[at.DEPTH]
+        if plane > 0.0 and leaning > 0.0:
+            free = max(free, _safe(m, w, z, plane, -w.seen_far[at.RATE], rigid))
+        t += max(min(free, left), 1e-15 * w.scales[at.T_REF])
+        if t >= horizon:
+            return HORIZON
+        coast(m, z0, t, z)
+        gap, rate = clearance(m, w, z)
+    return LOST

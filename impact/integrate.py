@@ -16,12 +16,14 @@ from . import force as fo
 from . import layout as c
 from .compiled import many_impacts, one_impact
 from .result import Impact, impact_of
-from .scene import RateFree, Scene, Spot
+from .scene import RateFree, Scene
 from .strength import NODES, strength_table
 
 Array = NDArray[np.float64]
 
-_SMOOTH, _STILL = np.empty(0), np.empty((2, 0))
+_UNWRITTEN = np.zeros((0, len(c.HISTORY)))
+_ROWS = 4000  # of a history, beside those that were asked for
+_SMOOTH, _STILL = np.empty(0), np.empty((3, 0))
 
 
 @dataclass(frozen=True, slots=True)
@@ -35,8 +37,8 @@ class Settings:
     max_steps, max_contacts
         Budgets; reaching one is an `Outcome`, not an error.
     flight
-        How long after a separation the tip is followed for a re-contact [s]; nan picks three
-        periods of the slowest vibration of striker and support (0 when neither vibrates).
+        How long after a separation the tip is followed for a re-contact [s]; nan: until nothing
+        that vibrates and no wall of the scar can bring it back.
     """
 
     tolerance: float = 2e-9
@@ -97,17 +99,20 @@ def arrays_of(
     body[c.V_X], body[c.V_SPIN] = approach.tangential, approach.spin
     # The stated speed is the contact point's: v_T = v_C - omega c.
     body[c.V_Y] = -approach.speed + approach.spin * body[c.HALF_COS]
-    body[c.FLIGHT] = _flight(scene) if math.isnan(settings.flight) else settings.flight
+    body[c.FLIGHT] = math.inf if math.isnan(settings.flight) else settings.flight
     body[c.LOSS] = scene.modes.loss_factor
     # without friction nothing can load the spring
     slippery = scene.friction.mu_static == 0.0
     body[c.COMPLIANCE] = math.inf if slippery else scene.friction.stiffness
     body[c.TOLERANCE] = settings.tolerance
     body[c.MAX_STEPS], body[c.MAX_CONTACTS] = settings.max_steps, settings.max_contacts
+    body[c.SCAN_STEP] = scene.instrument.scan_step
+    body[c.SCAN_LEVEL] = scene.instrument.scan_height
+    body[c.LONGEST] = math.inf
     factors = _factors(scene, pair)
     if breaks is None:
         breaks = _breaks(law, par, force, factors)
-    return Arrays(par, force, factors, breaks, body, spot_row(scene.spot), omega, psi)
+    return Arrays(par, force, factors, breaks, body, scene.spot.row(), omega, psi)
 
 
 def _factors(scene: Scene, pair: Pair) -> Array:
@@ -133,14 +138,6 @@ def _factors(scene: Scene, pair: Pair) -> Array:
     return both
 
 
-def spot_row(spot: Spot) -> Array:
-    """Return the vector of a spot."""
-    row = np.zeros(c.N_SPOT)
-    row[c.SPOT_PEAK], row[c.SPOT_FLAT], row[c.SPOT_TIP] = spot.peak, spot.flat, spot.tip
-    row[c.SPOT_CENTRE], row[c.SPOT_RADIUS] = spot.centre, spot.radius
-    return row
-
-
 def strike(scene: Scene, settings: Settings = Settings()) -> Impact:
     """Integrate one impact."""
     return strike_many([scene], settings)[0]
@@ -148,24 +145,56 @@ def strike(scene: Scene, settings: Settings = Settings()) -> Impact:
 
 def strike_many(scenes: Sequence[Scene], settings: Settings = Settings()) -> list[Impact]:
     """Integrate scenes that may differ in everything; each gives what `strike` gives."""
-    found = []
-    for scene in scenes:
-        a = arrays_of(scene, settings)
-        out = np.zeros(c.N_OUT)
-        one_impact(
-            *kernels_of(scene.law),
-            a.par,
-            a.force,
-            a.factors,
-            a.breaks,
-            a.body,
-            a.spot,
-            a.omega,
-            a.psi,
-            out,
-        )
-        found.append(impact_of(out, a.spot))
-    return found
+    return [_struck(scene, arrays_of(scene, settings), _UNWRITTEN)[0] for scene in scenes]
+
+
+def _struck(scene: Scene, a: Arrays, history: Array) -> tuple[Impact, int]:
+    """Integrate one impact; return it and how many rows of `history` were filled."""
+    out, rows = np.zeros(c.N_OUT), np.zeros(1)
+    one_impact(
+        *kernels_of(scene.law), a.par, a.force, a.factors, a.breaks, a.body, a.spot, a.omega, a.psi,
+        out, history, rows,
+    )  # fmt: skip
+    return impact_of(out, a.spot), int(rows[0])
+
+
+@dataclass(frozen=True, slots=True)
+class Trace:
+    """An impact with its history: (n, len(HISTORY)) rows, the columns of HISTORY."""
+
+    impact: Impact
+    history: Array
+
+    def column(self, name: str) -> Array:
+        """Return one column of the history by its name in `layout.HISTORY`."""
+        return np.asarray(self.history[:, c.HISTORY.index(name)])
+
+
+def traced(scene: Scene, settings: Settings = Settings(), *, points: int = 200) -> Trace:
+    """Integrate one impact and keep its history: each row a state of the motion, none in between.
+
+    Parameters
+    ----------
+    points
+        At least so many rows during the first contact; flights between contacts are written with
+        the same distance, the flight after the last one is not.
+
+    Returns
+    -------
+    Trace
+        `penetration_m` is the law's depth, `clearance_m` the tip's distance from the remembered
+        surface (negative while it is pressed in), `place_m` the tip's centre along the flat.
+    """
+    a = arrays_of(scene, settings)
+    first, _ = _struck(scene, a, _UNWRITTEN)
+    span = first.touching_time_s if first.contacts == 1 else first.loading_time_s
+    a = arrays_of(scene, settings)
+    if span > 0.0:
+        a.body[c.LONGEST] = span / max(points, 1)
+        a.body[c.MAX_STEPS] += 100.0 * points
+    history = np.empty((_ROWS + 40 * points, len(c.HISTORY)))
+    impact, rows = _struck(scene, a, history)
+    return Trace(impact, history[:rows].copy())
 
 
 def strike_rows(scene: Scene, body: Array, settings: Settings = Settings()) -> Array:
@@ -181,10 +210,9 @@ def strike_rows(scene: Scene, body: Array, settings: Settings = Settings()) -> A
     a = arrays_of(scene, settings)
     rows = np.ascontiguousarray(body, dtype=float)
     out = np.zeros((len(rows), c.N_OUT))
-    spot = np.tile(a.spot, (len(rows), 1))
     many_impacts(
-        *kernels_of(scene.law), a.par[None], a.force[None], a.factors[None], a.breaks, rows, spot,
-        a.omega[None], a.psi[None], out,
+        *kernels_of(scene.law), a.par[None], a.force[None], a.factors[None], a.breaks, rows,
+        a.spot[None], a.omega[None], a.psi[None], out,
     )  # fmt: skip
     return out
 
@@ -236,10 +264,3 @@ def _breaks(law: ContactLaw, par: Array, force: Array, factors: Array) -> Array:
             _BREAKS.clear()
         _BREAKS[key] = fo.find_breaks(law.kernels.loading, par, force, factors)
     return _BREAKS[key]
-
-
-def _flight(scene: Scene) -> float:
-    slow = [float(w) for w in scene.modes.frequencies[:1]]
-    if math.isfinite(scene.support.mass) and scene.support.stiffness > 0.0:
-        slow.append(math.sqrt(scene.support.stiffness / scene.support.mass))
-    return 3.0 * 2.0 * math.pi / min(slow) if slow else 0.0

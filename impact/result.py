@@ -9,19 +9,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ..core.errors import COMPLETED, Ending, Outcome
-from .layout import (
-    CONTACT_BUDGET,
-    COUNTS,
-    DONE,
-    OBSERVABLES,
-    SPOT_CENTRE,
-    SPOT_FLAT,
-    SPOT_PEAK,
-    SPOT_RADIUS,
-    SPOT_TIP,
-    STEP_BUDGET,
-)
-from .scene import Spot
+from .layout import CONTACT_BUDGET, COUNTS, DONE, FLIGHT_BUDGET, OBSERVABLES, STEP_BUDGET
+from .surface import Spot
 
 _ENDINGS = {
     DONE: COMPLETED,
@@ -34,6 +23,11 @@ _ENDINGS = {
         Ending.STEP_LIMIT,
         "the tip was still re-contacting after the allowed number of contacts.",
         "Raise max_contacts or lower flight_s.",
+    ),
+    FLIGHT_BUDGET: Outcome(
+        Ending.STEP_LIMIT,
+        "the tip was still hovering near the flat after the allowed number of looks at it.",
+        "Lower flight_s: how long a tip is followed after it parts.",
     ),
 }
 _NOT_FINITE = Outcome(
@@ -52,11 +46,21 @@ class Impact:
     `energetic_restitution` sqrt(W_r / W_c), `tangential_restitution` the ratio of tangential
     velocities (nan without any at touch). `sliding_length_m` follows the material point that
     touches (Eq. 5.9), `scar_travel_m` the place of contact on the flat; both are largest minus
-    smallest while in contact. `contact_time_s` runs from first touch to last separation,
-    `touching_time_s` leaves out the flights between. `contact_work_J` is what the contact kept,
-    `support_energy_J` what the support took up. `energy_residual` is the unbalanced energy over
-    the kinetic energy of the approach, `momentum_residual` the unbalanced momentum over m v.
+    smallest while in contact. `scar_length_m` and `scar_width_m` (at the deepest place) are those
+    of what all touches left, as the scene's instrument ends them; `scar_excess_m` is their
+    difference, the thesis's L_s (5.2). `contact_time_s` runs from first touch to last separation,
+    `touching_time_s` leaves out the flights between. `clearance_m` and `clearance_rate_m_s` say
+    how far above the remembered surface the tip is at its last separation, and how fast it leaves.
     `stuck` says whether friction held the tip for some time.
+
+    The energy: `kinetic_before_J` and `gravity_work_J` come in; `kinetic_after_J`,
+    `modal_stored_J` and `support_stored_J` are still there; lost are `plastic_work_J`,
+    `damping_work_J` and `radiated_J` (together `contact_work_J`, all that the contact kept: it
+    stores nothing once it has parted), `friction_work_J`, `structural_loss_J` (with the ringing
+    `modal_energy_J`) and `support_loss_J` (with what is stored `support_energy_J`).
+    `energy_residual` is what is left over, over the kinetic energy of the approach;
+    `momentum_residual` the unbalanced momentum over m v, `angular_residual` the unbalanced angular
+    momentum over m v and the radius of gyration.
     """
 
     restitution: float
@@ -73,6 +77,9 @@ class Impact:
     rebound_spin_rad_s: float
     sliding_length_m: float
     scar_travel_m: float
+    scar_length_m: float
+    scar_width_m: float
+    scar_excess_m: float
     friction_impulse_ratio: float
     normal_impulse_Ns: float
     tangential_impulse_Ns: float
@@ -85,6 +92,19 @@ class Impact:
     energy_residual: float
     momentum_residual: float
     tip_rebound_m_s: float
+    kinetic_before_J: float
+    kinetic_after_J: float
+    gravity_work_J: float
+    plastic_work_J: float
+    damping_work_J: float
+    radiated_J: float
+    modal_stored_J: float
+    structural_loss_J: float
+    support_stored_J: float
+    support_loss_J: float
+    angular_residual: float
+    clearance_m: float
+    clearance_rate_m_s: float
     contacts: int
     stuck: bool
     spot: Spot
@@ -124,17 +144,6 @@ def impact_of(row: NDArray[np.float64], spot: NDArray[np.float64]) -> Impact:
         **{name: values[name] for name in kept},
         contacts=int(values["contacts"]),
         stuck=values["stuck"] > 0.0,
-        spot=spot_of(spot),
+        spot=Spot.of(spot),
         outcome=outcome,
-    )
-
-
-def spot_of(row: NDArray[np.float64]) -> Spot:
-    """Return the `Spot` of a spot vector."""
-    return Spot(
-        peak=float(row[SPOT_PEAK]),
-        flat=float(row[SPOT_FLAT]),
-        tip=float(row[SPOT_TIP]),
-        centre=float(row[SPOT_CENTRE]),
-        radius=float(row[SPOT_RADIUS]),
     )

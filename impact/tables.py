@@ -12,7 +12,8 @@ import numpy as np
 
 from ..core.observables import OBSERVABLES
 from ..core.provenance import environment
-from .reference import HISTORY, Trace
+from .integrate import Trace
+from .layout import HISTORY
 from .result import Impact
 
 SHOWN = (

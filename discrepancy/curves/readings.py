@@ -20,7 +20,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ...core.observables import OBSERVABLES
-from ...impact import Scene, Settings, reference_impact
+from ...impact import Scene, Settings, traced
 from ...recordings import RecordingSet
 from .reduction import Numbers, foot, from_profile, from_trace, roughness
 
@@ -145,7 +145,7 @@ class _Model:
 
     @classmethod
     def of(cls, scene: Scene) -> _Model:
-        trace = reference_impact(scene, _ACCURACY, points=_POINTS)
+        trace = traced(scene, _ACCURACY, points=_POINTS)
         t, order = np.unique(trace.column("time_s"), return_index=True)
         e, impact = trace.impact.restitution, trace.impact
         leaving = e * scene.approach.speed

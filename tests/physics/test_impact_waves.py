@@ -13,9 +13,9 @@ from dentscope.impact import (
     Settings,
     Striker,
     Support,
-    reference_impact,
     scene_of,
     strike,
+    traced,
 )
 from dentscope.impact.beam import axial_frequencies, bending_modes, shear_coefficient
 from dentscope.impact.support import half_space_radiation, plate_support, radiated_shares
@@ -191,7 +191,7 @@ def test_a_growing_dent_sends_waves_by_the_slope_of_its_own_force() -> None:
         striker=Striker(mass=0.024, tip_radius=0.009), approach=Approach(1.0),
     )  # fmt: skip
     scene = scene.with_(force=type(scene.force)(radiation=kappa))
-    trace = reference_impact(scene, points=200)
+    trace = traced(scene, points=200)
     depth, force = trace.column("penetration_m"), trace.column("normal_force_N")
     rate = np.abs(trace.column("normal_velocity_m_s"))
     down = np.arange(len(depth)) < int(np.argmax(depth))

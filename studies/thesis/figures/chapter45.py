@@ -10,9 +10,8 @@ import numpy as np
 from ....campaigns import CaseRecord
 from ....core.material import Material
 from ....core.toml_input import read_toml
-from ....impact.integrate import strike
+from ....impact.integrate import Trace, strike, traced
 from ....impact.inverse import alpha_curve
-from ....impact.reference import Trace, reference_impact
 from ....impact.result import Impact
 from ....impact.scene import Approach, Friction, Scene, scene_of
 from ....models.base import ContactLaw
@@ -37,7 +36,7 @@ _NOT_PRINTED = "The thesis prints no measured value in its text; only our curves
 
 def pictures(records: Sequence[CaseRecord]) -> list[Entry]:
     """Redraw figures and tables; nothing here needs finite elements."""
-    histories = [(law, reference_impact(_scene(law, 45.0, 1.0, 0.13), points=200))
+    histories = [(law, traced(_scene(law, 45.0, 1.0, 0.13), points=200))
                  for law in laws(*NINE)]  # fmt: skip
     steep = {law.name: _sweep(law, 45.0, 0.13) for law in laws(*NINE)}
     flat = {law.name: _sweep(law, 17.2, 0.20) for law in laws(*NINE)}
@@ -83,7 +82,7 @@ def _experiments() -> dict[float, Histories]:
     for e in read_toml(REFERENCE / "chapter45.toml")["experiment"]:
         angle = float(e["angle_deg"])
         found[angle] = [
-            (law, reference_impact(_scene(law, angle, -e["approach_m_s"], e["friction"]),
+            (law, traced(_scene(law, angle, -e["approach_m_s"], e["friction"]),
                                    points=300))
             for law in laws("ghaednia", "kogut-komvopoulos", "brake-2015", "fitted")
         ]  # fmt: skip
@@ -166,7 +165,7 @@ def _pattern() -> Picture:
     made, (axis,) = sheet()
     told = []
     for law in laws("ghaednia", "kogut-komvopoulos", "brake-2015", "fitted"):
-        trace = reference_impact(_scene(law, 20.0, 1.41, 0.20), points=300)
+        trace = traced(_scene(law, 20.0, 1.41, 0.20), points=300)
         x, y = trace.column("slip_m"), trace.column("tip_height_m")
         axis.plot(1e6 * x, 1e6 * np.minimum(y, 0.0), **look(law))
         told.append(f"{law.name} {1e6 * trace.impact.sliding_length_m:.0f}")

@@ -14,7 +14,7 @@ from typing import Any
 import numpy as np
 
 from ....core.toml_input import read_toml
-from ....impact.reference import Trace
+from ....impact.integrate import Trace
 from ....models.base import ContactLaw
 from ...plot import Floats, Picture, finish, look, sheet
 from ..chapter3 import REFERENCE

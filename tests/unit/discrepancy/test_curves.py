@@ -64,7 +64,7 @@ def test_profile_of_a_cap() -> None:
 def traced(tmp_path: Path) -> Path:
     """One ball, traces of the baseline's own impacts at a tenth of the contact per sample."""
     from dentscope.core import Material
-    from dentscope.impact import Approach, Striker, reference_impact, scene_of
+    from dentscope.impact import Approach, Striker, scene_of, traced
     from dentscope.models import LAWS
 
     ball, flat = Material(E=208e9, nu=0.3, Sy=2e9), Material(E=206e9, nu=0.29, Sy=3e8)
@@ -76,7 +76,7 @@ def traced(tmp_path: Path) -> Path:
         one = scene_of(
             LAWS["fitted"], sphere=ball, flat=flat, striker=striker, approach=Approach(v)
         )
-        impact = reference_impact(one, points=200)
+        impact = traced(one, points=200)
         t, first = np.unique(impact.column("time_s"), return_index=True)
         T = impact.impact.contact_time_s
         grid = np.arange(-T, 2.0 * T, T / 10.0) + 0.03 * T

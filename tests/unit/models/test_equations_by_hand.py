@@ -14,8 +14,8 @@ import numpy as np
 import pytest
 from dentscope.core import Material, Pair
 from dentscope.fem import Curve
+from dentscope.impact import traced
 from dentscope.impact.inverse import alpha, infer, mobility
-from dentscope.impact.reference import reference_impact
 from dentscope.impact.scene import Approach, Friction, scene_of
 from dentscope.models import LAWS, critical_depth, critical_force, yield_constant
 from dentscope.models.kernel import common_parameters, hertz_force, hertz_recovery
@@ -276,7 +276,7 @@ def equation_4_31():
 def oblique():
     rod = Material(E=200e9, nu=0.3, Sy=760e6)
     flat = Material(E=200e9, nu=0.3, Sy=305e6)
-    return reference_impact(
+    return traced(
         scene_of(
             LAWS["ghaednia"], sphere=rod, flat=flat, striker=chapter5.thesis_rod(),
             approach=Approach(2.18, math.radians(45.0)), friction=Friction(0.13), gravity=0.0,
