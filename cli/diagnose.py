@@ -36,7 +36,7 @@ def diagnose(
     """
     if chapter5:
         studies.needed_for("`dentscope diagnose --chapter5`")
-        _chapter5(out)
+        _chapter5(out, seed)
         return
     from ..recordings.shipped import set_folder, shipped_sets
 
@@ -69,10 +69,11 @@ def diagnose(
     typer.echo(f"\n{out / 'verdict.json'}, {out / 'report.html'}")
 
 
-def _chapter5(out: Path) -> None:
-    from ..studies.thesis.demonstration import demonstrate, draw, table
+def _chapter5(out: Path, seed: int) -> None:
+    from ..studies.thesis.demonstration import demonstrate
+    from ..studies.thesis.demonstration_report import draw, table
 
-    found = demonstrate()
+    found = demonstrate(seed=seed)
     for line in table(found):
         typer.echo(line)
     draw(found, out / "chapter5.png")

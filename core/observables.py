@@ -123,6 +123,21 @@ _ROWS = (
         instrument="surface", phase="sliding", power=1.0,
     ),
     Observable(
+        column="scar_length_m", label="scar length",
+        meaning="length of the mark of all touches", simulated="scar_length_m",
+        instrument="surface", phase="sliding", power=0.5,
+    ),
+    Observable(
+        column="scar_width_m", label="scar width",
+        meaning="its width at the deepest place", simulated="scar_width_m",
+        instrument="surface", phase="loading", power=0.5,
+    ),
+    Observable(
+        column="scar_excess_m", label="scar length less width", low=-math.inf,
+        meaning="length of the mark minus its width at the deepest place",
+        simulated="scar_excess_m", instrument="surface", phase="sliding", power=1.0,
+    ),
+    Observable(
         column="rebound_speed_m_s", label="rebound speed", low=-math.inf,
         meaning="velocity of the centre of mass after, along +y", simulated="rebound_speed_m_s",
         instrument="motion", phase="free-flight", power=0.75,

@@ -123,11 +123,13 @@ def rig_of(problem: Problem, z: Array) -> Rig:
         np.array([s.striker.inertia for s in scenes]),
         np.array([0.0 if up else a[0] for a, up in zip(arms, upright, strict=True)]),
         np.array([a[1] for a in arms]),
+        np.array([s.striker.tip_radius for s in scenes]),
         np.array([s.approach.speed for s in scenes]),
         np.array([s.approach.tangential for s in scenes]),
         np.array([s.approach.spin for s in scenes]),
         np.array([s.friction.mu for s in scenes]),
         np.array([r.given_back for r in references]),
+        np.array([s.instrument.scan_height for s in scenes]),
     )
     return Rig(bodies, references)
 
@@ -151,7 +153,7 @@ def _reference(scene: Scene, known: dict[tuple[float, ...], Reference]) -> Refer
         strength = math.inf if law.name == "hertz" else pair.Sy_min
         known[key] = Reference(
             pair.R, pair.E_reduced, strength, depth, np.exp(table.log_force[UNIT]),
-            np.exp(table.log_recovery[UNIT]), flat, scene.force.given_back,
+            np.exp(table.log_recovery[UNIT]), flat, table.radius, scene.force.given_back,
         )  # fmt: skip
     return known[key]
 

@@ -47,12 +47,12 @@ class StrainRateHardening(FlowMechanism):
         Parameter(
             "rise_at_1000_per_s", "-", 0.03, 2.5, "log", 0.0,
             "Johnson-Cook C 0.014-0.06 gives 0.1-0.4; Cowper-Symonds (40.4, 5) gives 1.9", nodes=7,
-            literature=Literature(0.152, "C = 0.022 of 1006 steel, Johnson and Cook 1983"),
+            literature=Literature(1.9, "(1000/40.4)^(1/5), mild steel, Cowper and Symonds 1957"),
         ),
         Parameter(
             "rate_exponent", "-", 0.03, 0.4, "linear", 0.0,
             "Cowper-Symonds 1/q 0.1-0.25; a logarithm looks like C/A", nodes=3,
-            literature=Literature(0.145, "C/A of 1006 steel, Johnson and Cook 1983"),
+            literature=Literature(0.2, "q = 5, mild steel, Cowper and Symonds 1957"),
         ),
     )  # fmt: skip
 

@@ -33,8 +33,9 @@ class Curve:
     ----------
     log_depth
         (k,) equally spaced logarithms [ln m].
-    log_force, recovery, crater
-        (k,) loading force [ln N]; elastic recovery and crater depth after a peak there [m].
+    log_force, recovery, crater, radius
+        (k,) loading force [ln N]; elastic recovery and crater depth after a peak there, radius of
+        the contact [m].
     power
         Exponent of the recovery.
     """
@@ -43,6 +44,7 @@ class Curve:
     log_force: Array
     recovery: Array
     crater: Array
+    radius: Array
     power: float
 
 
@@ -54,8 +56,8 @@ class Reference:
     ----------
     R, E, Y
         Radius [m], reduced modulus [Pa], strength of the weaker body [Pa] (inf: elastic).
-    depth, force, recovery, crater
-        (k,) at depths of a wide range [m, N, m, m].
+    depth, force, recovery, crater, radius
+        (k,) at depths of a wide range [m, N, m, m, m].
     given_back
         Share of the elastic work that returns, for bodies without a yield strength.
     low, high
@@ -69,6 +71,7 @@ class Reference:
     force: Array
     recovery: Array
     crater: Array
+    radius: Array
     given_back: float = 1.0
     low: float = 0.0
     high: float = math.inf
@@ -124,12 +127,13 @@ def curve(reference: Reference, law: Draw) -> Curve:
     recovery = np.exp(np.interp(x, known, np.log(reference.recovery)))
     total = np.exp(x)
     crater = np.interp(x, known, reference.crater / reference.depth) * total
+    radius = np.exp(np.interp(x, known, np.log(reference.radius)))
     inside = (x >= math.log(low)) & (x <= math.log(high))
     middle = 0.5 * (math.log(low) + math.log(high))
     if math.isinf(reference.Y):
         f = _levelled(base, base, x, inside, middle, law.level, math.inf)
         # without yield the way back is the way in
-        return Curve(x, f, recovery, crater, 1.5 + law.level[1])
+        return Curve(x, f, recovery, crater, radius, 1.5 + law.level[1])
     force, power, rec = _shape(reference, law, d)
     f = _levelled(np.log(force), base, x, inside, middle, law.level, law.stray[0])
     own = _levelled(np.log(rec), np.log(recovery), x, inside, middle, law.back, law.stray[1])
@@ -139,7 +143,7 @@ def curve(reference: Reference, law: Draw) -> Curve:
     # what does not recover stays; the crater's share of it is the reference's
     left = np.maximum(d - recovery, 1e-12)
     crater = np.maximum(d - rec, 0.0) * np.clip(crater / left, 0.0, 1.0)
-    return Curve(x, f, rec, crater, power)
+    return Curve(x, f, rec, crater, radius, power)
 
 
 def _levelled(

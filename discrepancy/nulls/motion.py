@@ -27,25 +27,30 @@ class Bodies:
     ----------
     mass, inertia
         [kg, kg m^2].
-    beside, above
-        How far the centre lies beside and above the contact point [m].
+    beside, above, tip
+        How far the centre of mass lies beside and above the contact point, and that of the tip
+        above it [m].
     normal, tangential, spin
         Approach of the contact point (positive), velocity of the centre along +x, rotation.
     friction
         Coefficient [-].
     given_back
         Share of the elastic work that returns.
+    scan
+        Depth at which a scan ends a mark [m].
     """
 
     mass: Array
     inertia: Array
     beside: Array
     above: Array
+    tip: Array
     normal: Array
     tangential: Array
     spin: Array
     friction: Array
     given_back: Array
+    scan: Array
 
 
 @dataclass(frozen=True, eq=False)
@@ -57,6 +62,7 @@ class _Contacts:
     log_force: Array
     recovery: Array
     crater: Array
+    radius: Array
     power: Array
     given_back: Array
 
@@ -69,6 +75,7 @@ class _Contacts:
             np.stack([c.log_force for c in curves]),
             np.stack([c.recovery for c in curves]),
             np.stack([c.crater for c in curves]),
+            np.stack([c.radius for c in curves]),
             np.array([c.power for c in curves]),
             given_back,
         )
@@ -102,7 +109,10 @@ class _Contacts:
 
 
 class _State(NamedTuple):
-    """Where n impacts are: velocities, depth and its peak, slip, impulses, times; (n,) each."""
+    """Where n impacts are: velocities, depth and its peak, slip, mark, impulses, times; (n,) each.
+
+    `place` is that of the contact on the flat, `first` and `last` are the ends of the mark.
+    """
 
     vx: Array
     vy: Array
@@ -114,6 +124,9 @@ class _State(NamedTuple):
     slid: Array
     slid_low: Array
     slid_high: Array
+    place: Array
+    first: Array
+    last: Array
     normal: Array
     tangential: Array
     largest_force: Array
@@ -131,7 +144,7 @@ class _State(NamedTuple):
         vy = -bodies.normal + bodies.spin * bodies.beside
         return cls(
             bodies.tangential, vy, bodies.spin, zero, zero, zero, zero, zero, zero, zero, zero,
-            zero, zero, zero, zero, bodies.normal, zero, np.ones(n, dtype=bool),
+            zero, zero, zero, zero, zero, zero, zero, bodies.normal, zero, np.ones(n, dtype=bool),
         )  # fmt: skip
 
 
@@ -147,6 +160,11 @@ def collide(bodies: Bodies, curves: Sequence[Curve]) -> dict[str, Array]:
             break
     gone = np.where(s.live, np.maximum(-s.rate, 0.0), s.gone)
     crater = contacts.look(contacts.crater, s.peak)
+    # a scan ends a mark a little below the fresh flat, on its wall
+    radius = contacts.look(contacts.radius, s.peak)
+    inside = np.sqrt(np.clip(1.0 - bodies.scan / np.maximum(crater, 1e-30), 0.0, 1.0))
+    width = 2.0 * radius * inside
+    length = np.where(inside > 0.0, s.last - s.first - 2.0 * radius * (1.0 - inside), 0.0)
     return {
         "restitution": gone / bodies.normal,
         "permanent_depth_m": crater,
@@ -155,6 +173,9 @@ def collide(bodies: Bodies, curves: Sequence[Curve]) -> dict[str, Array]:
         "rebound_spin_rad_s": s.spin,
         "friction_impulse_ratio": np.abs(s.tangential) / np.maximum(s.normal, 1e-30),
         "sliding_length_m": s.slid_high - s.slid_low,
+        "scar_length_m": length,
+        "scar_width_m": width,
+        "scar_excess_m": length - width,
         "rebound_speed_m_s": s.vy,
         "tangential_rebound_m_s": s.vx,
         "peak_depth_m": s.peak,
@@ -184,19 +205,24 @@ def _stepped(s: _State, bodies: Bodies, contacts: _Contacts, h: Array) -> _State
     depth = s.depth + step * (-vy_middle + spin_middle * beside)
     # below a few eps the smooth friction creeps where Coulomb's sticks
     slid = s.slid + step * np.where(np.abs(slip) > 3.0 * eps, slip, 0.0)
+    place = s.place + step * (vx_middle + spin_middle * (above - bodies.tip))
     vy, vx = s.vy + step * f / m, s.vx + step * t / m
     spin = s.spin + step * (t * above - f * beside) / inertia
     grow = s.live & (depth > s.peak)
     peak = np.where(grow, depth, s.peak)
     rest = np.maximum(peak - contacts.look(contacts.recovery, peak), 0.0)
     rest = np.where(grow, rest, s.rest)
+    wide = contacts.look(contacts.radius, peak)
+    wide *= np.sqrt(np.clip((depth - rest) / np.maximum(peak - rest, 1e-30), 0.0, 1.0))
+    wide *= s.live
     rate = -vy + spin * beside
     over = s.live & (rate < 0.0) & (depth <= rest)
     share = np.where(over, (s.depth - rest) / np.maximum(s.depth - depth, 1e-30), 1.0)
     return _State(
         vx, vy, spin, depth, peak,
         np.where(grow, np.exp(contacts.look(contacts.log_force, peak)), s.peak_force), rest, slid,
-        np.minimum(s.slid_low, slid), np.maximum(s.slid_high, slid), s.normal + step * f,
+        np.minimum(s.slid_low, slid), np.maximum(s.slid_high, slid), place,
+        np.minimum(s.first, place - wide), np.maximum(s.last, place + wide), s.normal + step * f,
         s.tangential + step * t, np.maximum(s.largest_force, f),
         s.time + step * np.clip(share, 0.0, 1.0), np.where(grow, s.time + step, s.loading), rate,
         np.where(over, -rate, s.gone), s.live & ~over,

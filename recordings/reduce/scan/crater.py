@@ -65,7 +65,7 @@ class Crater:
         """Return the observables of trials.csv and the profile along the scar."""
         row = {"permanent_depth_m": self.depth}
         if self.is_scar:
-            row["sliding_length_m"] = self.sliding
+            row |= {"scar_length_m": self.length, "scar_width_m": self.width}
         profile = {"x_m": self.along.s - self.along.s[0], "z_m": self.along.z}
         return (Trial(row, self.notes, profile=profile),)
 

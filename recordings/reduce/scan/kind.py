@@ -109,7 +109,7 @@ def _values(found: Crater) -> dict[str, Measured]:
         return values | {
             "scar_length_m": found.length,
             "scar_width_m": found.width,
-            "sliding_length_m": found.sliding,
+            "scar_excess_m": found.sliding,
             "scar_direction_deg": Measured(np.degrees(found.direction) % 180.0, math.nan),
         }
     across = Measured(

@@ -3,12 +3,19 @@
 from __future__ import annotations
 
 import math
+from pathlib import Path
 
 import numpy as np
 import pytest
 from dentscope.discrepancy.nulls.ensemble import scatter
 from dentscope.discrepancy.nulls.laws import KINDS, Draw, Reference, curve
 from dentscope.discrepancy.nulls.motion import Bodies, collide
+from dentscope.discrepancy.problem import problem_of
+from dentscope.discrepancy.thresholds import rig_of
+from dentscope.impact import strike_many
+from dentscope.recordings import read
+
+SETS = Path(__file__).parents[3] / "data" / "recordings"
 
 R, E = 0.01, 1e11
 
@@ -19,14 +26,16 @@ def reference(Y: float) -> Reference:
     if math.isfinite(Y):
         force = (force**-2 + (2.0 * math.pi * R * 3.0 * Y * depth) ** -2) ** -0.5
     recovery = np.minimum(0.75 * force / (E * np.sqrt(1.5 * R * depth)), depth)
-    return Reference(R, E, Y, depth, force, recovery, depth - recovery, low=5e-6, high=3e-4)
+    return Reference(
+        R, E, Y, depth, force, recovery, depth - recovery, np.sqrt(R * depth), low=5e-6, high=3e-4
+    )
 
 
 def bodies(n: int, speed: float, *, beside: float = 0.0, mu: float = 0.0) -> Bodies:
     one = np.ones(n)
     return Bodies(
-        0.1 * one, 1e-4 * one, beside * one, 0.02 * one, speed * one, 0 * one, 0 * one, mu * one,
-        one,
+        0.1 * one, 1e-4 * one, beside * one, 0.02 * one, R * one, speed * one, 0 * one, 0 * one,
+        mu * one, one, 4e-7 * one,
     )  # fmt: skip
 
 
@@ -34,7 +43,16 @@ def test_elastic_impact_is_hertzs() -> None:
     plain = Draw("cut-off", 0.5, 0.5, 0.5, (0.0, 0.0), (0.0, 0.0), 0.0)
     ref = reference(math.inf)
     elastic = Reference(
-        R, E, math.inf, ref.depth, ref.force, ref.depth, 0.0 * ref.depth, low=1e-6, high=1e-3
+        R,
+        E,
+        math.inf,
+        ref.depth,
+        ref.force,
+        ref.depth,
+        0.0 * ref.depth,
+        ref.radius,
+        low=1e-6,
+        high=1e-3,
     )
     seen = collide(bodies(1, 1.0), [curve(elastic, plain)])
     k = 4.0 / 3.0 * E * math.sqrt(R)
@@ -48,7 +66,16 @@ def test_elastic_impact_is_hertzs() -> None:
 def test_a_null_law_without_yield_gives_everything_back() -> None:
     ref = reference(math.inf)
     elastic = Reference(
-        R, E, math.inf, ref.depth, ref.force, ref.depth, 0.0 * ref.depth, low=1e-5, high=1e-4
+        R,
+        E,
+        math.inf,
+        ref.depth,
+        ref.force,
+        ref.depth,
+        0.0 * ref.depth,
+        ref.radius,
+        low=1e-5,
+        high=1e-4,
     )
     steep = Draw("cut-off", 0.5, 0.5, 0.5, (0.03, 0.03), (0.0, 0.0), 0.0)
     seen = collide(bodies(1, 1.0), [curve(elastic, steep)])
@@ -91,3 +118,17 @@ def test_scatter_has_unit_deviation() -> None:
     x = scatter(np.random.default_rng(3), (200_000,))
     assert x.std() == pytest.approx(1.0, rel=0.01)
     assert np.mean(x**4) == pytest.approx(4.2, rel=0.06)  # logistic kurtosis
+
+
+def test_scar_of_a_null_law_is_that_of_the_simulation_that_it_is_levelled_to() -> None:
+    """The thesis's rod at three angles, rigid: width within 2 %, excess within the scan's 3 um."""
+    problem = problem_of(read(SETS / "thesis-chapter-5"))
+    z = np.zeros(problem.n_z)
+    rig = rig_of(problem, z)
+    plain = Draw("cut-off", 0.5, 0.5, 0.5, (0.0, 0.0), (0.0, 0.0), 0.0, (1e-3, 1e-3))
+    seen = collide(rig.bodies, [curve(r, plain) for r in rig.references])
+    theirs = strike_many(problem.scenes(z))
+    for k, impact in enumerate(theirs):
+        assert seen["scar_width_m"][k] == pytest.approx(impact.scar_width_m, rel=0.02)
+        assert seen["scar_excess_m"][k] == pytest.approx(impact.scar_excess_m, abs=3e-6)
+        assert seen["scar_length_m"][k] == pytest.approx(impact.scar_length_m, rel=0.02)
