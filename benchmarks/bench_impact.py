@@ -160,8 +160,9 @@ def agree(count: int, first: int = 0) -> None:
             scene = scene.with_(approach=slower)
             ours = strike(scene, EXACT)
         theirs = oracle_impact(scene)
-        assert ours.contacts == theirs.contacts, (number, scene)
         largest = (0.0, "")
+        if ours.contacts != theirs.contacts or not theirs.outcome.completed:
+            largest = (math.inf, f"contacts: {ours.contacts} and {theirs.contacts}")
         m, v = scene.striker.mass, max(scene.approach.speed, abs(scene.approach.tangential))
         for name, value in ours.observables.items():
             other = theirs.observables[name]

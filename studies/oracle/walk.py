@@ -287,6 +287,11 @@ class _Walk:
         if math.isfinite(b[c.S_MASS]) and b[c.S_STIFF] > 0.0:
             gap -= z[W] + math.sqrt(z[W] ** 2 + b[c.S_MASS] / b[c.S_STIFF] * z[WR] ** 2)
             leaving -= z[WR]
+        elif mo.n == 0 and not math.isfinite(b[c.S_MASS]):
+            # nothing but gravity can bring a rigid tip back that no wall is steep enough to hold
+            steepest, _ = su.roughest(self.surface, self.surface[su.COUNT])
+            aside = abs(z[VX]) + abs(z[OM]) * math.hypot(mo.cos0, mo.sin0)
+            gap = math.inf if leaving > steepest * aside else gap
         return leaving > 0.0 and gap > 0.0
 
     def halve(self, z: Array, k: Contact) -> None:
