@@ -29,6 +29,9 @@ _UNEVEN = 0.02
 
 _ROUNDS = 3
 
+_SAME_FLAT = 0.05
+"""Part of the largest height by which the contacts of a track may differ in theirs."""
+
 
 def find_bounces(
     track: Track, ball: Ball, *, metres: Measured | None, contact: Measured | None = None
@@ -78,7 +81,7 @@ def find_bounces(
         )
         for k, turning in enumerate(contacts)
     ]
-    bounces = [b for b in found if b is not None]
+    bounces = _on_one_flat([b for b in found if b is not None], stage)
     if not bounces:
         return None
     return _whole(bounces, chosen, stage, view, solutions, before, ball, metres)
@@ -132,6 +135,15 @@ def _bounce(
         time, _widened(approach, more[0]), _widened(rebound, more[1]), _widened(ratio, part),
         height, turning, before, after,
     )  # fmt: skip
+
+
+def _on_one_flat(bounces: list[Bounce], stage: Stage) -> list[Bounce]:
+    """Leave out contacts at another height than most: strays that turn, a hand."""
+    if not bounces:
+        return []
+    level = float(np.median([b.height.value for b in bounces]))
+    limit = _SAME_FLAT * stage.reach
+    return [b for b in bounces if abs(b.height.value - level) <= limit + 4.0 * b.height.std]
 
 
 def _nearest(piece: Piece, turning: int, way: int) -> int | None:
