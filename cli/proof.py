@@ -108,7 +108,7 @@ def page() -> None:
 
 def _write_page(runs: list[dict[str, object]]) -> None:
     from ..studies.proof import page as pages
-    from ..studies.proof.explicit.library import stored
+    from ..studies.proof.explicit.catalogue import stored
     from ..studies.proof.run import ROOT
 
     (ROOT / "docs" / "proof.md").write_text(pages.page(runs, impacts=stored()))
@@ -142,7 +142,7 @@ def sample(
 @app.command()
 def library() -> None:
     """Compute the finite-element impacts that the library lacks."""
-    from ..studies.proof.explicit.library import fill
+    from ..studies.proof.explicit.catalogue import fill
 
     for line in fill():
         typer.echo(line)

@@ -23,7 +23,7 @@ from multiprocessing import get_context
 from pathlib import Path
 from typing import Any
 
-from .explicit.library import SERIES
+from .explicit.catalogue import SERIES
 from .explicit.sets import draw_explicit, write_explicit
 from .generators.folder import write_set
 from .generators.truth import Truth, draw

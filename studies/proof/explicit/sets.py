@@ -14,7 +14,7 @@ from ..generators.effects import EFFECTS, Effect
 from ..generators.folder import read_off, write_files
 from ..generators.rig import Rig, Striker
 from ..generators.truth import Truth, draw_instrument, draw_nuisances
-from .library import FILE, SERIES, Series, impacts
+from .catalogue import FILE, SERIES, Series, impacts
 
 Array = NDArray[np.float64]
 

@@ -15,7 +15,7 @@ from dentscope.studies.proof.explicit import (
 from dentscope.studies.proof.explicit import (
     sets as explicit_sets,
 )
-from dentscope.studies.proof.explicit.library import Series
+from dentscope.studies.proof.explicit.catalogue import Series
 
 
 def test_mesh_has_no_turned_element():

@@ -1,6 +1,6 @@
 """The library of impacts by dynamic finite elements, and the sets that are made from it.
 
-`python -m dentscope.studies.proof.explicit.library` computes the impacts that the file lacks,
+`python -m dentscope.studies.proof.explicit.catalogue` computes the impacts that the file lacks,
 one after the other; it may be stopped at any time. Each impact is kept with its description, so a
 changed description is computed anew.
 """
