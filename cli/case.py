@@ -10,7 +10,6 @@ from typing import Annotated, Any
 import typer
 
 from ..core.errors import EXIT_NOT_CONVERGED
-from .case_file import read_case
 
 _COLUMNS = (
     "force_N",
@@ -32,6 +31,7 @@ def case(
 
     from .. import fem
     from ..fem.fields import draw_section, write_vtu
+    from .case_file import read_case
 
     problem, accuracy = read_case(file)
     pair = problem.pair

@@ -8,10 +8,12 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass, replace
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 from .errors import InputError
-from .flow import Flow
+
+if TYPE_CHECKING:  # numpy comes with it, and the command line starts without
+    from .flow import Flow
 
 
 @dataclass(frozen=True, slots=True)

@@ -7,7 +7,7 @@ import h5py
 import numpy as np
 import pytest
 from dentscope.studies.proof.explicit import (
-    library as explicit_library,
+    catalogue as explicit_library,
 )
 from dentscope.studies.proof.explicit import (
     mesh as explicit_mesh,
