@@ -31,8 +31,8 @@ from dentscope.impact import (
     strike_rows,
     tabulated,
 )
-from dentscope.impact import layout as c
-from dentscope.impact.energy_route import energy_impacts
+from dentscope.impact.tabulated.energy_route import energy_impacts
+from dentscope.impact.walk import layout as c
 from dentscope.models import LAWS
 from dentscope.studies.oracle import oracle_impact
 

@@ -11,7 +11,7 @@ if TYPE_CHECKING:
 
 
 def _default_laws() -> list[ContactLaw]:
-    from ..impact.setup import DEFAULT_LAWS
+    from ..impact.files.setup import DEFAULT_LAWS
     from ..models import LAWS
 
     return [LAWS[name] for name in DEFAULT_LAWS if name in LAWS]
@@ -22,7 +22,7 @@ def chapter3(names: list[str], out: Path) -> list[Impact]:
     from rich.console import Console
     from rich.table import Table
 
-    from ..impact.tables import impact_row, write_csv
+    from ..impact.files.tables import impact_row, write_csv
     from ..studies.thesis import chapter3 as thesis
     from .laws import laws_named
 

@@ -16,8 +16,8 @@ if TYPE_CHECKING:
     from rich.table import Table
 
     from ..core.material import Pair
+    from ..impact.files.setup import Setup
     from ..impact.result import Impact
-    from ..impact.setup import Setup
     from ..models.base import ContactLaw
 
 
@@ -54,7 +54,7 @@ def impact(
 
 
 def _write_new(kind: str, path: Path | None) -> None:
-    from ..impact.template import write_template
+    from ..impact.files.template import write_template
 
     target = path or Path(f"{kind}.toml")
     write_template(kind, target)
@@ -65,9 +65,9 @@ def _from_file(path: Path, names: list[str], out: Path) -> None:
     from rich.console import Console
 
     from ..impact.draw import draw_histories
+    from ..impact.files.setup import read_setup
+    from ..impact.files.tables import impact_row, write_csv, write_hdf5
     from ..impact.integrate import strike, traced
-    from ..impact.setup import read_setup
-    from ..impact.tables import impact_row, write_csv, write_hdf5
 
     # names and units hold brackets, which are no markup here
     console = Console(markup=False, highlight=False)
@@ -114,7 +114,7 @@ def _beside_each_other(found: dict[str, Impact], *, width: int) -> list[Table]:
     from rich.box import SIMPLE_HEAD
     from rich.table import Table
 
-    from ..impact.tables import SHOWN
+    from ..impact.files.tables import SHOWN
 
     shown = [
         (f"{label} [{unit}]" if unit != "-" else label, key, scale)

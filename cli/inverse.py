@@ -30,8 +30,8 @@ def inverse(
     from rich.table import Table
 
     from ..impact.draw import draw_alpha
-    from ..impact.inverse_file import read_inverse
-    from ..impact.tables import write_csv
+    from ..impact.files.inverse_file import read_inverse
+    from ..impact.files.tables import write_csv
 
     console = Console()
     if file is None:

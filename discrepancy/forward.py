@@ -13,7 +13,7 @@ from numpy.typing import NDArray
 
 from ..core.observables import OBSERVABLES
 from ..impact import Scene, Settings, strike_batch, strike_many
-from ..impact import compiled as c
+from ..impact.walk import compiled as c
 from ..models.base import DomainWarning
 from .cells import compared
 from .mechanisms.base import Constants, Mechanism, Situation, attached, observed

@@ -15,7 +15,7 @@ from ..core.material import Pair
 from ..core.observables import OBSERVABLES
 from ..core.rig import Rig, TargetTable
 from ..impact import Approach, ForceTransform, Friction, Scene, Striker
-from ..impact.bodies import bodies_of
+from ..impact.files.bodies import bodies_of
 from ..models import LAWS
 from ..models.base import ContactLaw
 from ..recordings import RecordingSet

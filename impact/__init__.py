@@ -16,7 +16,6 @@ from .integrate import (
     traced,
 )
 from .inverse import Inferred, Measured, infer
-from .law_table import tabulated
 from .result import Impact
 from .scene import (
     Approach,
@@ -32,6 +31,7 @@ from .scene import (
     scene_of,
 )
 from .surface import Imprint, Spot
+from .tabulated.law_table import tabulated
 
 __all__ = [
     "Approach",

@@ -17,13 +17,13 @@ from numpy.typing import ArrayLike, NDArray
 from ..core.errors import Ending, InputError
 from ..core.observables import OBSERVABLES as MEASURED
 from ..models.base import ContactLaw
-from . import layout as c
-from .cells import Array
 from .columns import Impacts
-from .energy_route import NAMES, energy_impacts, why_not
 from .integrate import Settings, arrays_of, strike_rows
-from .law_table import tabulated
 from .scene import Friction, Scene, Striker
+from .tabulated.cells import Array
+from .tabulated.energy_route import NAMES, energy_impacts, why_not
+from .tabulated.law_table import tabulated
+from .walk import layout as c
 
 BY_WORK, BY_STEPS = "work", "steps"
 """What the column `route` says."""

@@ -22,8 +22,8 @@ from numpy.typing import ArrayLike
 
 from ..core.drag import Fluid, drag_force, rod_drag_across, rod_drag_along
 from ..core.errors import InputError
-from .cells import Array
 from .scene import STANDARD_GRAVITY, Striker
+from .tabulated.cells import Array
 
 _STEPS = 128
 

@@ -13,11 +13,11 @@ from numpy.typing import NDArray
 from ..core.material import Pair
 from ..models.base import ContactLaw
 from . import force as fo
-from . import layout as c
-from .compiled import many_impacts, one_impact
 from .result import Impact, impact_of
 from .scene import RateFree, Scene
 from .strength import NODES, strength_table
+from .walk import layout as c
+from .walk.compiled import many_impacts, one_impact
 
 Array = NDArray[np.float64]
 

@@ -9,8 +9,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ..core.errors import COMPLETED, Ending, Outcome
-from .layout import CONTACT_BUDGET, COUNTS, DONE, FLIGHT_BUDGET, OBSERVABLES, STEP_BUDGET
 from .surface import Spot
+from .walk.layout import CONTACT_BUDGET, COUNTS, DONE, FLIGHT_BUDGET, OBSERVABLES, STEP_BUDGET
 
 _ENDINGS = {
     DONE: COMPLETED,

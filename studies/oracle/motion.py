@@ -9,10 +9,10 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ...impact import force as fo
-from ...impact import layout as c
 from ...impact import surface as su
 from ...impact.integrate import Arrays, kernels_of
 from ...impact.scene import Scene
+from ...impact.walk import layout as c
 
 Array = NDArray[np.float64]
 

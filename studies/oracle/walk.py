@@ -9,12 +9,12 @@ import numpy as np
 from scipy.integrate import solve_ivp
 
 from ...impact import force as fo
-from ...impact import layout as c
 from ...impact import surface as su
 from ...impact.integrate import Arrays, Settings, arrays_of
 from ...impact.result import Impact, impact_of
 from ...impact.scene import Scene
 from ...impact.surface import Spot
+from ...impact.walk import layout as c
 from .motion import (
     FLIGHT,
     LOADING,

@@ -8,9 +8,9 @@ from typing import Any
 
 from ...core.material import Material
 from ...core.toml_input import read_toml
+from ...impact.files.inverse_file import Row
 from ...impact.integrate import strike
 from ...impact.inverse import Measured, infer
-from ...impact.inverse_file import Row
 from ...impact.result import Impact
 from ...impact.scene import Approach, Friction, Striker, scene_of
 from ...models.base import ContactLaw

@@ -24,7 +24,7 @@ from ...discrepancy.mechanisms import MECHANISMS, Mechanism
 from ...discrepancy.mechanisms.base import Situation, observed
 from ...discrepancy.problem import Problem, problem_of
 from ...impact import Scene, strike_batch
-from ...impact import layout as c
+from ...impact.walk import layout as c
 from ...recordings import RecordingSet, read
 from ...recordings.shipped import set_folder
 from .later_touch import Later, later_touch

@@ -23,7 +23,7 @@ from dentscope.impact import (
     strike_many,
     strike_rows,
 )
-from dentscope.impact import layout as c
+from dentscope.impact.walk import layout as c
 from dentscope.models.published.ghaednia import GHAEDNIA
 from dentscope.models.published.hertz import HERTZ
 from dentscope.models.published.jackson_green import JACKSON_GREEN

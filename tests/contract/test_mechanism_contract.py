@@ -20,7 +20,7 @@ from dentscope.discrepancy.forward import ACCURACY, SIMULATED
 from dentscope.discrepancy.mechanisms import MECHANISMS, Mechanism, Surroundings
 from dentscope.discrepancy.mechanisms.base import Constants, Situation, Values, attached, observed
 from dentscope.impact import Approach, Friction, Scene, Striker, scene_of, strike_batch
-from dentscope.impact import compiled as c
+from dentscope.impact.walk import compiled as c
 from dentscope.models import LAWS
 
 Seen = Mapping[str, np.ndarray]

@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 from dentscope.core.observables import OBSERVABLES
 from dentscope.discrepancy.cells import compared
-from dentscope.impact.layout import OBSERVABLES as SIMULATED
+from dentscope.impact.walk.layout import OBSERVABLES as SIMULATED
 from dentscope.recordings.columns import TRIAL_COLUMNS
 
 ROOT = Path(__file__).parents[2]
@@ -16,8 +16,8 @@ STAGES = (
 )  # fmt: skip
 HOME = "core/observables.py"
 CHOICES = {
-    ("impact/layout.py", "OBSERVABLES"): "order of the integrator's row",
-    ("impact/energy_route.py", "NAMES"): "order of a computed row",
+    ("impact/walk/layout.py", "OBSERVABLES"): "order of the integrator's row",
+    ("impact/tabulated/energy_route.py", "NAMES"): "order of a computed row",
     ("recordings/reduce/mocap/reduction.py", "_NAMES"): "order of a computed vector",
     ("recordings/reduce/mocap/point.py", "_NAMES"): "order of a computed vector",
     ("impact/batch.py", "_NOTHING"): "what a normal impact without vibration lacks",

@@ -18,7 +18,6 @@ ROOT = Path(__file__).resolve().parents[2]
 PROJECT = tomllib.loads((ROOT / "pyproject.toml").read_text(encoding="utf-8"))
 APART = {"tests", "benchmarks", "examples", "docs", "scripts", "data", "build"}
 WORKSHOP = "studies"
-IN_THE_WORKS = "impact"
 KERNELS_KEY = "disallow_untyped_defs"
 
 
@@ -46,7 +45,7 @@ def lengths(*, tool_only: bool) -> dict[str, int]:
     return {
         f"{path}:{f.name}": f.end_lineno - f.lineno + 1
         for path in sources()
-        if path.parts[0] != IN_THE_WORKS and not (tool_only and path.parts[0] == WORKSHOP)
+        if not (tool_only and path.parts[0] == WORKSHOP)
         for f in functions(path)
     }
 
@@ -71,7 +70,7 @@ def test_no_circle_of_imports():
 
 
 def test_a_folder_shows_at_most_twenty_modules():
-    folders = {p.parent for p in sources()} - {Path(IN_THE_WORKS)}
+    folders = {p.parent for p in sources()}
     count = {f: sum(p.parent == f and p.name != "__init__.py" for p in sources()) for f in folders}
     assert {str(f): n for f, n in count.items() if n > 20} == {}
 

@@ -10,7 +10,7 @@ import pytest
 from dentscope.core import Material
 from dentscope.core.rig import value_of
 from dentscope.impact import Approach, Friction, Scene, Striker, scene_of, strike
-from dentscope.impact.bodies import bodies_of
+from dentscope.impact.files.bodies import bodies_of
 from dentscope.models.published.hertz import HERTZ
 from dentscope.recordings import read
 

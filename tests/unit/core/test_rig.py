@@ -8,8 +8,8 @@ from dentscope.core import InputError, Material
 from dentscope.core.errors import InputErrors
 from dentscope.core.rig import MaterialTable, Rig, StrikerTable, material_keys
 from dentscope.core.toml_input import parse_model
-from dentscope.impact.bodies import bodies_of
-from dentscope.impact.setup import SetupFile
+from dentscope.impact.files.bodies import bodies_of
+from dentscope.impact.files.setup import SetupFile
 from dentscope.recordings import Setup
 
 BODIES = {

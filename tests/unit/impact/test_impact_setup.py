@@ -8,7 +8,7 @@ from pathlib import Path
 import pytest
 from dentscope.cli import run
 from dentscope.core import InputErrors
-from dentscope.impact.setup import read_setup
+from dentscope.impact.files.setup import read_setup
 from dentscope.models.published.hertz import HERTZ
 
 SETUP = """

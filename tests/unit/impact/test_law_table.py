@@ -9,8 +9,8 @@ import numpy as np
 import pytest
 from dentscope.core import InputError, Material, Pair
 from dentscope.impact import Approach, Settings, Striker, scene_of, strike
-from dentscope.impact.cells import cells_of, column_at
-from dentscope.impact.law_table import ERROR, tabulated
+from dentscope.impact.tabulated.cells import cells_of, column_at
+from dentscope.impact.tabulated.law_table import ERROR, tabulated
 from dentscope.models import LAWS
 from dentscope.models.base import DomainWarning, Kernels, PublishedLaw
 from dentscope.models.kernel import BRANCH_SIGNATURE

@@ -10,11 +10,11 @@ from typing import Any
 import h5py
 import numpy as np
 
-from ..core.observables import OBSERVABLES
-from ..core.provenance import environment
-from .integrate import Trace
-from .layout import HISTORY
-from .result import Impact
+from ...core.observables import OBSERVABLES
+from ...core.provenance import environment
+from ..integrate import Trace
+from ..result import Impact
+from ..walk.layout import HISTORY
 
 SHOWN = (
     *((o.label, o.simulated, o.scale, o.unit) for o in OBSERVABLES.values() if o.simulated),

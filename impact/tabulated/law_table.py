@@ -15,11 +15,11 @@ from typing import Any
 import numpy as np
 from numba import njit, types
 
-from ..core.errors import InputError
-from ..core.material import Pair
-from ..models.base import ContactLaw, Kernels
-from ..models.driver import Depths, Pairs
-from ..models.kernel import (
+from ...core.errors import InputError
+from ...core.material import Pair
+from ...models.base import ContactLaw, Kernels
+from ...models.driver import Depths, Pairs
+from ...models.kernel import (
     BRANCH_SIGNATURE,
     LOADING_SIGNATURE,
     N_COMMON,

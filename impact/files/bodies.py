@@ -4,9 +4,9 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 
-from ..core.material import Pair
-from ..core.rig import Rig, StrikerTable, value_of
-from .scene import Striker
+from ...core.material import Pair
+from ...core.rig import Rig, StrikerTable, value_of
+from ..scene import Striker
 
 
 def bodies_of(

@@ -8,11 +8,11 @@ import numpy as np
 from numba import float64, int64, njit, types
 from scipy.integrate import DOP853
 
-from ..models.kernel import VECTOR
-from . import force as fo
+from ...models.kernel import VECTOR
+from .. import force as fo
+from ..surface import STANDING, height
 from . import layout as at
 from .layout import MODEL, WORK
-from .surface import STANDING, height
 
 # fmt: off
 STAGES = int(DOP853.n_stages)

@@ -6,8 +6,8 @@ from typing import Any, NamedTuple
 
 from numba import types
 
-from ..models.kernel import VECTOR
-from .force import BRANCH, LOADING, SPLIT
+from ...models.kernel import VECTOR
+from ..force import BRANCH, LOADING, SPLIT
 
 # The kernels take their state as plain vectors; the names stay on few lines.
 # fmt: off

@@ -15,7 +15,7 @@ import numpy as np
 from numba import float64, int64, njit, types
 from numpy.typing import NDArray
 
-from ..models.kernel import VECTOR
+from ...models.kernel import VECTOR
 
 Array = NDArray[np.float64]
 

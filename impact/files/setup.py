@@ -9,16 +9,16 @@ from typing import Literal
 
 from pydantic import Field
 
-from ..core.errors import InputError, InputErrors
-from ..core.rig import Positive, Quantity, Rig, value_of
-from ..core.toml_input import InputTable, parse_model, read_toml
-from ..models.base import ContactLaw
-from .beam import rod_modes
+from ...core.errors import InputError, InputErrors
+from ...core.rig import Positive, Quantity, Rig, value_of
+from ...core.toml_input import InputTable, parse_model, read_toml
+from ...models.base import ContactLaw
+from ..beam import rod_modes
+from ..columns import Impacts
+from ..integrate import Settings
+from ..scene import Approach, ForceTransform, Friction, Scene, Support
+from ..support import half_space_radiation, plate_support, sprung_support
 from .bodies import bodies_of
-from .columns import Impacts
-from .integrate import Settings
-from .scene import Approach, ForceTransform, Friction, Scene, Support
-from .support import half_space_radiation, plate_support, sprung_support
 from .sweep import SweepTable, mistakes_in, run_sweep
 
 DEFAULT_LAWS = ("fitted", "hertz", "jackson-green", "ghaednia")

@@ -13,9 +13,9 @@ import math
 import numpy as np
 from numba import boolean, float64, int64, njit, types
 
-from . import force as fo
+from .. import force as fo
+from .. import surface as su
 from . import layout as at
-from . import surface as su
 from .events import (
     by_chord,
     event_slope,

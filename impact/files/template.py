@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from pathlib import Path
 
-from ..core.errors import InputError
+from ...core.errors import InputError
 
 _METALS = {
     "target": """E_Pa = 2.0e11                 # Young's modulus

@@ -7,10 +7,10 @@ import math
 import numpy as np
 from numba import float64, njit, types
 
-from ..models.kernel import VECTOR
-from . import force as fo
+from ...models.kernel import VECTOR
+from .. import force as fo
+from .. import surface as su
 from . import layout as at
-from . import surface as su
 from .flight import clearance, coast
 from .layout import MODEL, WORK
 from .motion import PLAIN, derivative, kinematics, penetration, place_of, tail_of

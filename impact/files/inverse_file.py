@@ -9,12 +9,12 @@ from typing import Literal
 
 from pydantic import Field
 
-from ..core.errors import InputError
-from ..core.rig import Positive, StrikerTable
-from ..core.toml_input import InputTable, parse_model, read_toml
+from ...core.errors import InputError
+from ...core.rig import Positive, StrikerTable
+from ...core.toml_input import InputTable, parse_model, read_toml
+from ..inverse import Inferred, Measured, infer
+from ..scene import Striker
 from .bodies import striker_of
-from .inverse import Inferred, Measured, infer
-from .scene import Striker
 
 
 class _RodTable(StrikerTable):

@@ -6,10 +6,10 @@ import math
 
 from numba import float64, int64, njit, types
 
-from ..models.kernel import VECTOR
-from . import force as fo
+from ...models.kernel import VECTOR
+from .. import force as fo
+from .. import surface as su
 from . import layout as at
-from . import surface as su
 from .layout import MODEL, WORK
 from .motion import PLAIN, contact, derivative, kinematics, loading_radius, tail_of
 

@@ -20,9 +20,11 @@ import math
 import numpy as np
 from numba import float64, int64, njit, types
 
-from ..core.material import Pair
-from ..models.base import ContactLaw
-from ..models.kernel import VECTOR
+from ...core.material import Pair
+from ...models.base import ContactLaw
+from ...models.kernel import VECTOR
+from ..scene import ForceTransform, RateFree, Scene
+from ..surface import Spot
 from .cells import Array, cell_at, column_in
 from .energy_table import (
     DEEPEST,
@@ -36,8 +38,6 @@ from .energy_table import (
     TERMS,
     energy_table,
 )  # fmt: skip
-from .scene import ForceTransform, RateFree, Scene
-from .surface import Spot
 
 GRAVITY_LIMIT = 0.1
 """Largest work of gravity over the work of a branch; the series is cut after its fourth power."""

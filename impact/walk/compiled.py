@@ -5,16 +5,16 @@ from __future__ import annotations
 import numpy as np
 from numba import njit, types
 
-from ..models.kernel import VECTOR
+from ...models.kernel import VECTOR
+from .. import surface as su
+from ..force import BRANCH, DAMPING, LOADING, N_BRANCH, RADIATION, SPLIT
 from . import layout as at
-from . import surface as su
 from .events import rubbing
 from .flight import N_FAST
-from .force import BRANCH, DAMPING, LOADING, N_BRANCH, RADIATION, SPLIT
 from .layout import MATRIX, MODEL, OBSERVABLES, WORK, Model, Work
 from .motion import PLAIN, STAGES
+from .phases import AGAIN, NONE, advance, change, part, refresh, touch
 from .record import begin, finish, note, note_flight
-from .walk import AGAIN, NONE, advance, change, part, refresh, touch
 
 __all__ = ["OBSERVABLES", "many_impacts", "one_impact"]
 

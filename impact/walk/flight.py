@@ -12,9 +12,9 @@ import math
 
 from numba import float64, int64, njit, types
 
-from ..models.kernel import VECTOR
+from ...models.kernel import VECTOR
+from .. import surface as su
 from . import layout as at
-from . import surface as su
 from .layout import MODEL, WORK
 from .motion import PLAIN, kinematics, place_of, tail_of
 

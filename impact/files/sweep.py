@@ -8,13 +8,13 @@ from typing import Annotated, Any, Literal
 import numpy as np
 from pydantic import AfterValidator, BeforeValidator, Field, ValidationError
 
-from ..core.errors import InputError
-from ..core.toml_input import InputTable
-from .batch import impacts
-from .cells import Array
-from .columns import Impacts
-from .integrate import Settings
-from .scene import Scene
+from ...core.errors import InputError
+from ...core.toml_input import InputTable
+from ..batch import impacts
+from ..columns import Impacts
+from ..integrate import Settings
+from ..scene import Scene
+from ..tabulated.cells import Array
 
 MOST = 10_000_000
 """Largest number of combinations."""

@@ -12,9 +12,9 @@ import math
 import numpy as np
 from numba import float64, int64, njit, types
 
-from ..core.material import Pair
-from ..models.base import ContactLaw, Kernels
-from ..models.kernel import BRANCH_SIGNATURE, LOADING_SIGNATURE, RESIDUAL_SIGNATURE, VECTOR
+from ...core.material import Pair
+from ...models.base import ContactLaw, Kernels
+from ...models.kernel import BRANCH_SIGNATURE, LOADING_SIGNATURE, RESIDUAL_SIGNATURE, VECTOR
 from .cells import Array, Cells, cells_of
 
 ERROR = 1e-8

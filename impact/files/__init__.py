@@ -1,0 +1,1 @@
+"""What stands in files: setups, sweeps, templates, rows of results."""

@@ -1,0 +1,1 @@
+"""A pair's law and its energy as tables: quick forces, and impacts without steps."""
