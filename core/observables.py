@@ -90,7 +90,7 @@ _ROWS = (
     Observable(
         column="restitution", label="restitution",
         meaning="rebound over approach normal tip velocity", simulated="restitution",
-        instrument="motion", phase="unloading", log=True, power=-0.25, usual_noise=0.01,
+        instrument="motion", phase="unloading", power=-0.25, usual_noise=0.01,
     ),
     Observable(
         column="permanent_depth_m", label="crater depth",

@@ -21,6 +21,7 @@ Ints = NDArray[np.intp]
 
 # what repeats cannot average away: gauges, definitions; of the value, and of one reading's noise
 _FLOOR, _FLOOR_OF_NOISE = 0.004, 0.5
+_WILD = 0.1  # part of all repeats beyond which those far off their median are no slips
 _ENOUGH = 8  # repeats beyond the first from which their own scatter is trusted
 
 
@@ -58,6 +59,23 @@ NO_CELLS = Cells(
 )
 
 
+class Scatter(NamedTuple):
+    """Repeats of one observable that differ more than their noise: how many times, on how many."""
+
+    observable: str
+    ratio: float
+    degrees: int
+
+
+class Reduced(NamedTuple):
+    """What the readings come to: the cells, what is odd about the repeats, and notes."""
+
+    cells: Cells
+    drifts: tuple[Drift, ...]
+    scatters: tuple[Scatter, ...]
+    notes: tuple[str, ...]
+
+
 class _Mean(NamedTuple):
     """One cell before the floor of its standard error."""
 
@@ -77,12 +95,12 @@ class _Repeats(NamedTuple):
 
 
 class _Compared(NamedTuple):
-    """One observable over all conditions: means, the repeats behind them, how many fell out."""
+    """One observable over all conditions: means, repeats, how many fell out, how they scatter."""
 
     means: list[_Mean]
     repeats: list[_Repeats]
     dropped: int
-    note: str
+    scatter: Scatter | None
 
 
 def compared(name: str, values: Array) -> Array:
@@ -92,8 +110,8 @@ def compared(name: str, values: Array) -> Array:
 
 def cells_of(
     readings: Mapping[str, Readings], speeds: Array, order: Array, conditions: Sequence[Condition]
-) -> tuple[Cells, tuple[Drift, ...], tuple[str, ...]]:
-    """Return the cells of a set, what drifts over the order of testing, and notes.
+) -> Reduced:
+    """Return the cells of a set, and what its repeats say of themselves.
 
     Parameters
     ----------
@@ -106,10 +124,9 @@ def cells_of(
     """
     place = order / np.nanmax(order) if np.isfinite(order).any() else np.full(len(speeds), np.nan)
     found = {name: _compared(name, r, speeds, place, conditions) for name, r in readings.items()}
-    notes = [one.note for one in found.values() if one.note]
     dropped = sum(one.dropped for one in found.values())
-    if dropped:
-        notes.append(f"{dropped} single values lie far off their repeats and were left out")
+    text = f"{dropped} single values lie far off their repeats and were left out"
+    notes = (text,) if dropped else ()
     drifts = [drift_of(n, one.repeats, observables=len(found)) for n, one in found.items()]
     means = [mean for one in found.values() for mean in one.means]
     size = {n: _rms([m.value for m in one.means]) for n, one in found.items() if one.means}
@@ -126,46 +143,56 @@ def cells_of(
         np.hypot(std, floor),
         np.array([m.trials for m in means], dtype=np.intp),
     )
-    return cells, tuple(d for d in drifts if d is not None), tuple(notes)
+    return Reduced(
+        cells, tuple(d for d in drifts if d is not None),
+        tuple(one.scatter for one in found.values() if one.scatter is not None), notes,
+    )  # fmt: skip
 
 
 def _compared(
     name: str, read: Readings, speeds: Array, place: Array, conditions: Sequence[Condition]
 ) -> _Compared:
+    parted = [_repeats(name, read, speeds, place, c) for c in conditions]
+    kept = [_kept(r.value, r.std) for r in parted]
+    total, dropped = sum(len(k) for k in kept), sum(int(np.sum(~k)) for k in kept)
+    if dropped > max(1.0, _WILD * total):
+        # so many are no slips: their scatter is the noise
+        kept, dropped = [np.ones(len(k), dtype=bool) for k in kept], 0
+    means, repeats = [], []
+    squares, degrees = 0.0, 0
+    for number, (all_of, keep) in enumerate(zip(parted, kept, strict=True)):
+        if not keep.any():
+            continue
+        r = _Repeats(*(part[keep] for part in all_of))
+        repeats.append(r)
+        weight = 1.0 / r.std**2
+        mean = float(np.sum(weight * r.value) / np.sum(weight))
+        squares += float(np.sum(((r.value - mean) / r.std) ** 2))
+        degrees += len(keep[keep]) - 1
+        std = float(np.sum(weight) ** -0.5)
+        means.append(_Mean(number, name, mean, std, int(keep.sum())))
+    ratio = squares / degrees if degrees >= _ENOUGH else 1.0
+    if ratio <= 1.0 + 3.0 * math.sqrt(2.0 / max(degrees, 1)):
+        return _Compared(means, repeats, dropped, None)
+    times = math.sqrt(ratio)
+    wider = [m._replace(std=m.std * times) for m in means]
+    return _Compared(wider, repeats, dropped, Scatter(name, times, degrees))
+
+
+def _repeats(name: str, read: Readings, speeds: Array, place: Array, c: Condition) -> _Repeats:
+    """Readings of one observable at one condition, at its mean speed, as they are compared."""
     values = read.value
     # a value of zero with a fractional noise is not exact
     std = np.maximum(read.std, 0.01 * np.sqrt(np.nanmean(values**2)) * (read.std <= 0.0))
     log = OBSERVABLES[name].log
-    means, repeats, dropped = [], [], 0
-    squares, degrees = 0.0, 0
-    for k, c in enumerate(conditions):
-        index = np.array([i for i in c.trials if np.isfinite(values[i])], dtype=np.intp)
-        if log:
-            index = index[values[index] > 0.0]
-        if index.size == 0:
-            continue
-        y = np.log(values[index]) if log else values[index]
-        s = std[index] / np.abs(values[index]) if log else std[index]
-        # to the condition's mean speed, with the power that a plastic contact has
-        y = y - _power(name, y) * np.log(speeds[index] / c.speed)
-        keep = _kept(y, s)
-        dropped += int(np.sum(~keep))
-        y, s = y[keep], s[keep]
-        repeats.append(_Repeats(place[index[keep]], y, s))
-        weight = 1.0 / s**2
-        mean = float(np.sum(weight * y) / np.sum(weight))
-        squares += float(np.sum(((y - mean) / s) ** 2))
-        degrees += len(y) - 1
-        means.append(_Mean(k, name, mean, float(np.sum(weight) ** -0.5), len(y)))
-    ratio = squares / degrees if degrees >= _ENOUGH else 1.0
-    if ratio <= 1.0 + 3.0 * math.sqrt(2.0 / max(degrees, 1)):
-        return _Compared(means, repeats, dropped, "")
-    wider = [m._replace(std=m.std * math.sqrt(ratio)) for m in means]
-    note = (
-        f"{name}: repeats scatter {math.sqrt(ratio):.1f} times as much as stated; their scatter is "
-        "used"
-    )
-    return _Compared(wider, repeats, dropped, note)
+    index = np.array([i for i in c.trials if np.isfinite(values[i])], dtype=np.intp)
+    if log:
+        index = index[values[index] > 0.0]
+    y = np.log(values[index]) if log else values[index]
+    s = std[index] / np.abs(values[index]) if log else std[index]
+    # with the power that a plastic contact has
+    y = y - _power(name, y) * np.log(speeds[index] / c.speed)
+    return _Repeats(place[index], y, s)
 
 
 def _rms(values: Sequence[float]) -> float:

@@ -11,6 +11,7 @@ from scipy.special import logsumexp
 
 from ..core.observables import OBSERVABLES
 from .calibration import Calibration, extra_threshold, p_fit, set_width
+from .cells import Scatter
 from .correction import widened
 from .drift import Drift
 from .inference.fit import Fit
@@ -118,6 +119,7 @@ def decide(
         For each fit by name, and for `OUTSIDE`.
     """
     choice = _by_thresholds(ranking, nulls, calibration, tests)
+    choice = replace(choice, reasons=(*map(_scattered, ranking.problem.scatters), *choice.reasons))
     if choice.members and probabilities[OUTSIDE] > _RATHER_OUTSIDE:
         choice = Choice(OUTSIDE, (), (*choice.reasons, _rather_outside(choice, probabilities)))
     drifts = ranking.problem.drifts
@@ -139,6 +141,14 @@ def _rather_outside(choice: Choice, probabilities: Mapping[str, float]) -> str:
         f"{choice.members[0].name} passes the tests, but a contact law that is free explains the "
         f"set so much better that something outside the library has "
         f"{_percent(probabilities[OUTSIDE])} of the probability"
+    )
+
+
+def _scattered(s: Scatter) -> str:
+    return (
+        f"repeats of {OBSERVABLES[s.observable].label} differ {s.ratio:.2g} times more than their "
+        "stated noise: it is too small, or something was varied and not recorded; their own "
+        "scatter is used"
     )
 
 

@@ -19,7 +19,7 @@ from ..impact.files.bodies import bodies_of
 from ..models import LAWS
 from ..models.base import ContactLaw
 from ..recordings import RecordingSet
-from .cells import NO_CELLS, Cells, cells_of
+from .cells import NO_CELLS, Cells, Scatter, cells_of
 from .conditions import Condition, conditions_of
 from .curves import readings_of
 from .drift import Drift
@@ -42,6 +42,7 @@ class Problem:
     error: LawError
     notes: tuple[str, ...] = ()
     drifts: tuple[Drift, ...] = ()
+    scatters: tuple[Scatter, ...] = ()
 
     @property
     def n_nuisances(self) -> int:
@@ -52,6 +53,18 @@ class Problem:
     def n_z(self) -> int:
         """Length of the vector of standardised unknowns: nuisances, then the law's error."""
         return len(self.nuisances) + self.error.count
+
+    @property
+    def without_modulus(self) -> dict[str, tuple[str, ...]]:
+        """Bodies whose modulus is assumed, as `target` or `striker`: their tables in set.toml."""
+        tables = [
+            n.name.removesuffix(".E_Pa")
+            for n in self.nuisances
+            if n.name.endswith(".E_Pa") and not n.stated
+        ]
+        flat = tuple(t for t in tables if t == "target")
+        strikers = tuple(t for t in tables if t != "target")
+        return {"target": flat, "striker": strikers}
 
     @property
     def fresh(self) -> Problem:
@@ -108,10 +121,8 @@ def problem_of(recordings: RecordingSet) -> Problem:
     stated = problem.scenes(np.zeros(problem.n_z))
     of_trial = {i: s for c, s in zip(conditions, stated, strict=True) for i in c.trials}
     readings, unread = readings_of(recordings, [of_trial[i] for i in sorted(of_trial)])
-    cells, drifts, left_out = cells_of(
-        readings, approach.normal, recordings.trials.order, conditions
-    )
-    if len(cells) == 0:
+    seen = cells_of(readings, approach.normal, recordings.trials.order, conditions)
+    if len(seen.cells) == 0:
         known = ", ".join(name for name, row in OBSERVABLES.items() if row.in_trials)
         raise InputError(
             "no measured number to compare with the simulation", source=recordings.name,
@@ -120,8 +131,10 @@ def problem_of(recordings: RecordingSet) -> Problem:
     again = sum(c.after >= 0 for c in conditions)
     later = [f"{again} conditions are later blows on one place: they meet its crater"] * bool(again)
     assumed = [n.note for n in nuisances if n.note]
-    notes = (*recordings.notes, *later, *assumed, *unread, *left_out)
-    return replace(problem, cells=cells, drifts=drifts, notes=notes)
+    notes = (*recordings.notes, *later, *assumed, *unread, *seen.notes)
+    return replace(
+        problem, cells=seen.cells, drifts=seen.drifts, scatters=seen.scatters, notes=notes
+    )
 
 
 def _law_of(target: TargetTable) -> ContactLaw:

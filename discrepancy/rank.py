@@ -108,7 +108,7 @@ def rank(
     excluded, screened = {}, []
     for mechanism in mechanisms:
         progress(f"screening {mechanism.name}")
-        reason = mechanism.applies(situations)
+        reason = _without_data(mechanism, simulator.problem) or mechanism.applies(situations)
         if not reason:
             found = screen(simulator, base, mechanism)
             size = visible(found, base)
@@ -133,6 +133,15 @@ def rank(
     progress("sharpening the leading fits")
     singles = sharpened_leading(simulator, singles, base)
     return Ranking(problem, base, tuple(screened), tuple(singles), (), excluded)
+
+
+def _without_data(mechanism: Mechanism, problem: Problem) -> str:
+    """Return why a mechanism would rest on an assumption, or ""."""
+    unknown = problem.without_modulus
+    tables = [table for body in mechanism.rests_on for table in unknown[body]]
+    if not tables:
+        return ""
+    return f"its numbers would rest on the modulus of {', '.join(tables)}, which is not stated"
 
 
 def screen(simulator: Simulator, base: Fit, mechanism: Mechanism) -> Screened:

@@ -26,6 +26,7 @@ class Adhesion(Mechanism):
         ),
     )  # fmt: skip
     direction: ClassVar[Mapping[str, int]] = {"restitution": -1}
+    rests_on: ClassVar[tuple[str, ...]] = ("target", "striker")
 
     def applies(self, situations: Sequence[Situation]) -> str:
         """Compare the work of parting with the energy of the slowest impact."""

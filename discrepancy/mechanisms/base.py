@@ -147,6 +147,9 @@ class Mechanism(ABC):
     jumps
         Whether the outcome jumps with the first parameter, because a tip may or may not touch
         again.
+    rests_on
+        Bodies whose elastic modulus its numbers rest on: "target", "striker". Where a set does not
+        state one, the mechanism is not tried: its constants would be those of the assumption.
     """
 
     name: str
@@ -157,6 +160,7 @@ class Mechanism(ABC):
     form: ClassVar[float] = 0.15
     law_error: ClassVar[float] = 1.0
     jumps: ClassVar[bool] = False
+    rests_on: ClassVar[tuple[str, ...]] = ()
 
     @property
     def literature(self) -> Values:

@@ -32,6 +32,7 @@ class HalfSpaceWaves(Mechanism):
         ),
     )  # fmt: skip
     direction: ClassVar[Mapping[str, int]] = {"restitution": -1}
+    rests_on: ClassVar[tuple[str, ...]] = ("target", "striker")
 
     def attach(self, scene: Scene, values: Values, around: Surroundings) -> Scene:
         """Replace the rigid half-space."""

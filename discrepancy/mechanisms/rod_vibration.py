@@ -31,6 +31,7 @@ class _Ringing(Mechanism):
     parameters = (_PARTICIPATION,)
     form: ClassVar[float] = 0.05
     jumps: ClassVar[bool] = True
+    rests_on: ClassVar[tuple[str, ...]] = ("striker",)
 
     def applies(self, situations: Sequence[Situation]) -> str:
         """Needs a rod."""

@@ -30,6 +30,7 @@ class SupportCompliance(Mechanism):
         ),
     )  # fmt: skip
     direction: ClassVar[Mapping[str, int]] = {"restitution": -1, "permanent_depth_m": -1}
+    rests_on: ClassVar[tuple[str, ...]] = ("target", "striker")
 
     def ranges(self, situations: Sequence[Situation]) -> tuple[Parameter, ...]:
         """Stated values narrow the ranges; the flat on one striker's mass bounds the mass."""

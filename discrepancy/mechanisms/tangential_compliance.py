@@ -25,6 +25,7 @@ class TangentialCompliance(Mechanism):
         ),
     )  # fmt: skip
     direction: ClassVar[Mapping[str, int]] = {}
+    rests_on: ClassVar[tuple[str, ...]] = ("target", "striker")
 
     def applies(self, situations: Sequence[Situation]) -> str:
         """Needs sliding."""

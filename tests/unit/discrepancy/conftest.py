@@ -32,6 +32,7 @@ class Effect:
     form: float = 0.0
     law_error: float = 1.0
     jumps: bool = False
+    rests_on: tuple[str, ...] = ()
     parameters: tuple[Parameter, ...] = (
         Parameter("size", "-", 0.0, 1.0, "linear", 0.0, "", nodes=5),
     )
@@ -51,9 +52,11 @@ class Problem:
     cells: Cells
     derivative: np.ndarray
     drifts: tuple[Any, ...] = ()
+    scatters: tuple[Any, ...] = ()
     notes: tuple[str, ...] = ()
     error: Any = field(default_factory=lambda: SimpleNamespace(freedom=np.zeros(0), count=0))
     rig: Any = None
+    without_modulus: Any = field(default_factory=lambda: {"target": (), "striker": ()})
 
     @property
     def n_z(self) -> int:

@@ -8,6 +8,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 from dentscope.discrepancy.calibration import Calibration
+from dentscope.discrepancy.cells import Scatter
 from dentscope.discrepancy.decide import (
     OUTSIDE,
     FitTests,
@@ -30,9 +31,9 @@ def case(toy):
 
     def decided(
         singles, pairs=(), *, p_base=0.5, rejected=(), chi2=CELLS, cells=CELLS, outside=0.0,
-        drifts=(),
+        drifts=(), scatters=(),
     ):  # fmt: skip
-        given = toy.problem([0.0] * cells, drifts=drifts)
+        given = toy.problem([0.0] * cells, drifts=drifts, scatters=scatters)
         base = replace(toy.fit_of([0.0] * CELLS), chi2=float(chi2))
         effects = {n: toy.Effect(n, ZERO) for n in singles}
         one = [toy.fit_of(ZERO, effects[n], lift=x) for n, x in singles.items()]
@@ -107,12 +108,18 @@ def test_rather_something_outside_than_a_name(case) -> None:
     assert (found.verdict, named(found)) == (OUTSIDE, [])
 
 
+def test_scatter_beyond_the_noise_is_said_first(case) -> None:
+    found = case({"a": 1.0}, scatters=(Scatter("restitution", 78.0, 40),))
+    assert found.reasons[0].startswith("repeats of restitution differ 78 times more than")
+    assert case({"a": 1.0}).reasons[0].startswith("the baseline's misfit")
+
+
 def test_a_drift_is_something_outside_unless_something_is_named(case) -> None:
-    drift = Drift("restitution", math.log(1.1), 5.0)
+    drift = Drift("peak_force_N", math.log(1.1), 5.0)
     assert case({"a": 1.0}, drifts=(drift,)).verdict == OUTSIDE
     found = case({"a": 10.0}, drifts=(drift,))
     assert found.verdict == "missing-physics"
-    assert "restitution: repeats of one condition change by +10.0 %" in found.reasons[-1]
+    assert "peak_force_N: repeats of one condition change by +10.0 %" in found.reasons[-1]
 
 
 def test_pairs_are_worth_fitting_where_the_baseline_is_in_doubt(toy) -> None:

@@ -59,6 +59,19 @@ def test_what_cannot_act_or_be_seen_is_excluded_with_its_reason(toy, library) ->
     assert {s.mechanism.name for s in found.screened} == {"alike", "rising", "bent"}
 
 
+def test_what_would_rest_on_an_assumed_modulus_is_excluded(toy, library) -> None:
+    waves = toy.Effect("waves", RISING, rests_on=("target",))
+    given = toy.problem(
+        0.5 * np.array(RISING), derivative=np.zeros((8, 0)),
+        without_modulus={"target": ("target",), "striker": ()},
+    )  # fmt: skip
+    found = rank(toy.Simulator(given), mechanisms=(*library, waves))
+    assert found.excluded["waves"] == (
+        "its numbers would rest on the modulus of target, which is not stated"
+    )
+    assert found.singles[0].name == "rising"
+
+
 def test_what_a_stated_number_can_follow_is_not_physics(toy, library) -> None:
     """The same data, where an unknown of the sheet has the same shape."""
     _, found = ranked(toy, library, 0.5 * np.array(RISING), np.array(RISING)[:, None])
