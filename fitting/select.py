@@ -48,7 +48,7 @@ CANDIDATES: dict[str, Mapping[str, float]] = {
     "taking over leaves the radius alone": _without("c_m"),
     "elastic displacements blind to the elastic body": _without("d1", "d2"),
     "recovery blind to which body flows": _without("l3", l4=100.0),
-    "Hertz's recovery": _without("u1", "u4", "u5", u2=1.0, u3=100.0),
+    "recovery along the curve of an elastic body": _without("u2", "u4", "u5", u1=1e-9, u3=100.0),
     "recovery blind to the contact radius": _without("u5"),
 }
 """What is compared: name of the candidate and the coefficients that it holds."""

@@ -227,9 +227,38 @@ def permanent_at(D, y, F, a, phi, pair, co):
 
 
 @register_jitable
-def exponent_at(y, a, phi, co):
-    """Exponent N of the unloading curve F/F_m = ((Delta - Delta_r)/(Delta_m - Delta_r))^N."""
-    return 1.5 - y / (y + co.u2) * (co.u1 / (1.0 + y / co.u3) + co.u4) + co.u5 * (1.0 - phi) * a * a
+def elastic_work_at(lift, rise):
+    """Work of loading an elastic body over F Delta; 2/5 for Hertz.
+
+    The integral over 2 tau^4 exp[-lift (1 - tau) - rise (1 - tau^2)], tau^2 = depth/D from 0 to 1,
+    by the five points of Gauss and Jacobi; its error is below 1e-11 up to D = 0.2, 1e-7 at 1.
+    """
+    return (
+        0.12471059717856033 * exp(-0.027385581465734443 * lift - 0.054021192859252554 * rise)
+        + 0.16542542620387934 * exp(-0.13911365632355732 * lift - 0.2588747032714058 * rise)
+        + 0.08804893901076577 * exp(-0.31994076725899045 * lift - 0.5375194399637094 * rise)
+        + 0.020421083450944417 * exp(-0.5390663254684844 * lift - 0.787540147682875 * rise)
+        + 0.001393954155850188 * exp(-0.760207955197519 * lift - 0.942499775249445 * rise)
+    )
+
+
+@register_jitable
+def exponent_at(D, y, F, a, phi, left, pair, co):
+    """Exponent N of the unloading curve F/F_m = ((Delta - Delta_r)/(Delta_m - Delta_r))^N.
+
+    An elastic body gives back the work of its loading. Of what a permanent depth costs, a body that
+    has yielded saves the part `back`, which stays below 1, so that no cycle creates energy.
+    """
+    lift = co.e0 * sqrt(D)
+    rise = (1.0 + 1.5 * co.e2) * pair.fin * D
+    work = elastic_work_at(lift, rise)
+    # just beyond yield the force may exceed an elastic body's; what is above was not spent before
+    excess = F / (4.0 / 3.0 * D * sqrt(D) * exp(lift + rise)) - 1.0
+    above = 0.5 * (excess + sqrt(excess * excess))
+    far = y / co.u3
+    late = co.u2 / (1.0 + far * far) + co.u4
+    back = late + (0.9 - co.u2 - co.u4) / (1.0 + y / co.u1) - co.u5 * (1.0 - phi) * a * a
+    return (1.0 + above) * (1.0 - back * left) / work - 1.0
 
 
 @register_jitable
@@ -252,5 +281,5 @@ def contact(D, pair, co):
     F = force_at(D, a, pair, co)
     share = share_at(D, y, F, a, phi, pair, co)
     left = permanent_at(D, y, F, a, phi, pair, co)
-    N = exponent_at(y, a, phi, co)
+    N = exponent_at(D, y, F, a, phi, left, pair, co)
     return Contact(F, a, share, left, phi, N)

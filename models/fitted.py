@@ -45,7 +45,7 @@ from .kernel import (
     residual_kernel,
 )
 
-FORMAT = "dentscope-coefficients/8"
+FORMAT = "dentscope-coefficients/9"
 COEFFICIENTS_FILE = Path(__file__).resolve().parents[1] / "data" / "coefficients" / "fitted.json"
 """What the law in use reads; `dentscope fit --publish` writes it."""
 

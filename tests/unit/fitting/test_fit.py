@@ -92,6 +92,49 @@ def test_force_rises_everywhere_in_the_domain(law):
         assert np.all((law.share(pair, d) >= 0.0) & (law.share(pair, d) <= 1.0))
 
 
+NODES, WEIGHTS = np.polynomial.legendre.leggauss(4)
+
+
+def work_of_loading(law, pair, peak):
+    """By four Gauss points in ln(depth) on each of 80 panels; what lies below 1e-9 is no work."""
+    low = math.log(1e-9)
+    at = np.concatenate([low - low * (k + 0.5 * (NODES + 1.0)) / 80 for k in range(80)])
+    d = peak * np.exp(at)
+    return float(np.sum(np.tile(-low / 160 * WEIGHTS, 80) * d * law.loading(pair, d)))
+
+
+def restitution(law, pair, peak):
+    """From the energies of one cycle; a power law of exponent N gives back F d/(N + 1)."""
+    left = sum(float(x) for x in law.residual(pair, peak))
+    given = float(law.loading(pair, peak)) * (peak - left)
+    given /= float(law.unloading_exponent(pair, peak)) + 1.0
+    return math.sqrt(given / work_of_loading(law, pair, peak))
+
+
+@pytest.mark.parametrize("soft", [70e9, 1e9])
+@pytest.mark.parametrize("weak_one", ["sphere", "flat"])
+def test_what_does_not_yield_returns_all_that_it_took(law, soft, weak_one):
+    """At finite strain too: depths up to those of 60 m/s with the soft body of 1 GPa."""
+    bodies = [Material(E=soft, nu=0.4), Material(E=200e9, nu=0.3)]
+    pair = Pair(*(bodies if weak_one == "sphere" else bodies[::-1]), 1e-2)
+    for D in (1e-4, 1e-3, 1e-2, 0.1, 0.18):
+        assert restitution(law, pair, D * pair.R) == pytest.approx(1.0, abs=1e-9)
+
+
+@pytest.mark.parametrize("around", [1.0, 10.0])
+def test_no_cycle_creates_energy_in_the_domain_and_far_around_it(law, around):
+    """Sy* 0.1-10 and E'/S 25-3300, and ten times beyond either end; most where yield begins."""
+    deepest = 0.18 if around == 1.0 else 1.0
+    for a, b, c, d, e, f, g in np.random.default_rng(17).random((400, 7)):
+        moduli, nus = (50e9 * 6.0**c, 50e9 * 6.0**d), (0.1 + 0.35 * e, 0.1 + 0.35 * f)
+        ratio = 0.1 / around * (100.0 * around**2) ** a
+        stiffness = 25.0 / around * (132.0 * around**2) ** b
+        modulus = pair_of(*moduli, 1e8, ratio, *nus).E_reduced
+        pair = pair_of(*moduli, modulus / stiffness, ratio, *nus)
+        peak = min(critical_depth(pair) * 10.0 ** (3.0 * g - 1.0), deepest * pair.R)
+        assert restitution(law, pair, peak) <= 1.0 + 1e-9
+
+
 def test_derivatives_agree_with_differences(law):
     pair = pair_of(71.7e9, 200e9, 3e8, 1.2, nu_s=0.33)
     d = np.array([1e-7, 2e-6, 3e-5])
