@@ -132,6 +132,12 @@ def refresh(m, w):
     if now[at.PHASE] == at.LOAD:
         w.tally[at.TOP_FORCE] = max(w.tally[at.TOP_FORCE], seen[at.FORCE])
     event_values(m, w, z, seen, w.values)
+    # What has just crossed zero, as well as an event is met, may fall through it within the first
+    # step: a hair below zero it would have no crossing there.
+    still = m.body[at.TOLERANCE] * w.scales[at.SPEED]
+    for event in (at.TURN, at.RETURNED, at.REST, at.REVERSAL):
+        if abs(w.values[event]) <= still:
+            w.values[event] = 0.0
 
 
 @njit(inline="always", **PLAIN)
@@ -255,7 +261,9 @@ def _first_crossing(m, w):
         else:
             d0 = event_slope(m, event, w.z, w.stages[0], w.seen, sign, pace)
             d1 = event_slope(m, event, w.z_new, w.stages[STAGES], w.seen_new, sign, pace_new)
-        part = hermite_root(w.values[event], d0, w.values_new[event], d1, h)
+        part = 0.5
+        if w.values[event] > 0.0 or d0 * h > 0.0:
+            part = hermite_root(w.values[event], d0, w.values_new[event], d1, h)
         if part < where:
             chosen, where = float64(event), part
     return chosen, where

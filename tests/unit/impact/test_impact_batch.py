@@ -20,6 +20,7 @@ from dentscope.impact import (
     scene_of,
     strike,
 )
+from dentscope.impact.batch import QUICK
 from dentscope.models import LAWS
 
 STEEL = Material(E=200e9, nu=0.3, Sy=760e6, density=7800.0)
@@ -38,10 +39,10 @@ def scene(striker: Striker = ROD, law: str = "fitted", **seams):
     return scene_of(LAWS[law], sphere=STEEL, flat=IRON, striker=striker, **given)
 
 
-def check(row, one) -> None:
+def check(row, one, within: float = 3e-6) -> None:
     for name in SEEN:
         theirs = getattr(one, OWN.get(name, name))
-        assert row[name] == pytest.approx(theirs, rel=3e-6, abs=1e-12), name
+        assert row[name] == pytest.approx(theirs, rel=within, abs=1e-12), name
 
 
 def test_normal_impacts_go_by_work_and_agree_with_the_steps() -> None:
@@ -61,7 +62,10 @@ def test_oblique_and_vibrating_impacts_go_by_steps(law: str) -> None:
     assert found["angle_deg"] == pytest.approx([40.0, 90.0, 40.0, 90.0])
     for k, (speed, angle) in enumerate([(0.5, 40.0), (0.5, 90.0), (1.5, 40.0), (1.5, 90.0)]):
         one = base.with_(approach=Approach(speed, math.radians(angle)))
-        check({n: found[n][k] for n in SEEN}, strike(one, Settings(tolerance=1e-10)))
+        row = {n: found[n][k] for n in SEEN}
+        check(row, strike(one, QUICK))
+        # several touches, at rest in between, carry the error of a step on
+        check(row, strike(one, Settings(tolerance=1e-10)), within=2e-5)
 
 
 def test_friction_and_mass_run_through_their_values() -> None:
