@@ -7,27 +7,27 @@ did not reach its end says so and leaves with exit code 3. Neither shows a trace
 from __future__ import annotations
 
 import sys
+from typing import Annotated
 
 import typer
 
 from ..core.errors import EXIT_INPUT_ERROR, InputError
-from . import campaign, laws, proof, recordings, reduce, studies
+from . import campaign, laws, recordings, reduce, studies
 from .case import case
 from .diagnose import diagnose
 from .doctor import doctor
 from .examples import examples
-from .figures import figures
 from .fit import fit
+from .groups import Sections
 from .impact import impact
 from .inverse import inverse
-from .verify import verify
 
 app = typer.Typer(
     name="dentscope",
-    help="Elastic-plastic contact and impact: finite elements, closed forms, recordings.",
-    no_args_is_help=True,
-    add_completion=False,
+    cls=Sections,
+    rich_markup_mode=None,
     pretty_exceptions_enable=False,
+    context_settings={"help_option_names": ["-h", "--help"]},
 )
 
 # typer ships its own copy of click in newer versions and uses the installed one in older ones;
@@ -46,14 +46,24 @@ app.command()(inverse)
 app.command()(diagnose)
 app.command()(examples)
 app.command()(doctor)
-studies.add(app, figures, name="figures")
-studies.add(app, verify, name="verify")
-studies.add(app, proof.app, name="proof")
+for _name in ("figures", "verify", "proof"):
+    studies.add(app, _name)
+
+
+def _tell_version(asked: bool) -> None:
+    if asked:
+        version()
+        raise typer.Exit
 
 
 @app.callback()
-def main() -> None:
-    """Elastic-plastic contact and impact: finite elements, closed forms, recordings."""
+def main(
+    version: Annotated[
+        bool,
+        typer.Option("--version", help="Print the version.", callback=_tell_version, is_eager=True),
+    ] = False,
+) -> None:
+    """Elastic-plastic contact and impact: simulate a blow, and say what a recording shows of it."""
 
 
 @app.command()
@@ -73,16 +83,24 @@ def run(arguments: list[str] | None = None) -> int:
         What follows `dentscope` on the command line; by default the process's own arguments.
     """
     try:
-        result = app(args=arguments, standalone_mode=False)
+        result = app(args=arguments, standalone_mode=False, prog_name="dentscope")
     except InputError as error:
-        sys.stderr.write(f"{error}\n")
-        return EXIT_INPUT_ERROR
+        return _refused(str(error))
     except _UsageError as error:
-        sys.stderr.write(f"command line: {getattr(error, 'format_message', error.__str__)()}\n")
-        return EXIT_INPUT_ERROR
+        return _refused(f"command line: {getattr(error, 'format_message', error.__str__)()}")
+    except OSError as error:
+        # what only shows while a file is read or written: no room, no permission, no file
+        if error.filename is None:
+            raise
+        return _refused(f"{error.filename}: {error.strerror}")
     except typer.Exit as stop:
         return int(stop.exit_code)
     except (typer.Abort, KeyboardInterrupt):
         sys.stderr.write("stopped\n")
         return 130
     return result if isinstance(result, int) else 0
+
+
+def _refused(line: str) -> int:
+    sys.stderr.write(f"{line}\n")
+    return EXIT_INPUT_ERROR

@@ -16,8 +16,9 @@ from ..core.errors import EXIT_NOT_CONVERGED, InputError
 from . import campaign_data, studies
 from .campaign_data import DEFAULT_DESIGN, FILE, PUBLISHED, DesignName, Out
 from .campaign_progress import Progress, duration, judged, remarks, tell
+from .groups import group
 
-app = typer.Typer(help="Sweeps of finite-element cases.", no_args_is_help=True)
+app = group("Sweeps of finite-element cases: run, status, show, export, publish.")
 
 
 @app.command()
@@ -90,45 +91,59 @@ def run(
 
 @app.command()
 def status(
-    design: DesignName = DEFAULT_DESIGN,
+    design: Annotated[
+        str, typer.Option(help="Which sweep. Default: all of which the run holds cases.")
+    ] = "",
     out: Out = Path("build/campaign"),
     as_json: Annotated[bool, typer.Option("--json", help="For programs.")] = False,
 ) -> None:
-    """Count done, failed and missing cases; works while the sweep runs."""
-    from ..campaigns import Store, design_named, published_designs, status_of
+    """Count done, failed and missing cases, own and published; works while the sweep runs."""
+    from ..campaigns import DESIGNS, Store, design_named, published_designs, status_of
 
     path = out / FILE
     store = Store(path)
-    counts = status_of(design_named(design), store)
-    published = published_designs(PUBLISHED)
-    content = {
-        "design": design,
-        "file": str(path),
-        "designed": counts.designed,
-        "done": counts.done,
-        "failed": counts.failed,
-        "missing": counts.missing,
-    }
     stored = store.summaries()
+    chosen = [design_named(design)] if design else list(DESIGNS.values())
+    counts = {one.name: status_of(one, store) for one in chosen}
+    begun = {k: c for k, c in counts.items() if design or c.done or c.failed}
+    named = begun or {DEFAULT_DESIGN: counts[DEFAULT_DESIGN]}
+    published = published_designs(PUBLISHED)
     found = judged([s for s in stored if s.status == "done" and not s.stale])
     if as_json:
-        told = {one.design: asdict(one) for one in published}
-        typer.echo(json.dumps({**content, "quality": found, "published": told}))
+        first = min(named, key=lambda k: named[k].missing)
+        content = {
+            "design": first, "file": str(path), **_counts(named[first]), "quality": found,
+            "designs": {k: _counts(c) for k, c in named.items()},
+            "published": {one.design: asdict(one) for one in published},
+        }  # fmt: skip
+        typer.echo(json.dumps(content))
         return
-    typer.echo("  ".join(f"{key} {value}" for key, value in content.items()))
-    if not stored:
-        typer.echo("No run here yet: `dentscope campaign run` starts one.")
-    for summary in stored:
-        typer.echo(f"{summary.id[:12]}  {summary.status:7} {summary.case.name}{remarks(summary)}")
-    tell(found)
+    if stored:
+        typer.echo(f"Own run, {path}:")
+        for name, c in named.items():
+            typer.echo("  ".join([f"design {name}", *(f"{k} {n}" for k, n in _counts(c).items())]))
+        for summary in stored:
+            typer.echo(
+                f"{summary.id[:12]}  {summary.status:7} {summary.case.name}{remarks(summary)}"
+            )
+        tell(found)
+    else:
+        typer.echo(f"No run of your own in {out}: `dentscope campaign run` starts one.")
+    _tell_published(published)
+
+
+def _counts(c: Any) -> dict[str, int]:
+    return {"designed": c.designed, "done": c.done, "failed": c.failed, "missing": c.missing}
+
+
+def _tell_published(published: list[Any]) -> None:
     if not published:
         typer.echo(f"Published: nothing yet in {PUBLISHED}.")
+        return
+    typer.echo(f"Published, {PUBLISHED}:")
     for one in published:
-        old = f", of numerics version {one.numerics_version}: stale" if one.stale else ""
-        typer.echo(
-            f"Published: {one.design}, {one.done} cases done, {one.failed} failed, "
-            f"{one.parts} parts in {PUBLISHED}{old}."
-        )
+        old = f"; stale: of numerics version {one.numerics_version}" if one.stale else ""
+        typer.echo(f"  {one.design:12} {one.done:4} done {one.failed:3} failed{old}")
 
 
 for command in (
@@ -138,8 +153,8 @@ for command in (
     campaign_data.publish,
 ):
     app.command()(command)
-studies.add(app, campaign_data.gallery, name="campaign gallery")
-studies.add(app, campaign_data.reproduction, name="campaign reproduction")
+for _name in ("campaign gallery", "campaign reproduction"):
+    studies.add(app, _name)
 
 
 def _forecast(todo: list[Any], store: Any, workers: int) -> tuple[Any, float]:

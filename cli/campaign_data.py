@@ -11,6 +11,9 @@ from typing import Annotated, Any
 import typer
 
 from ..core.errors import EXIT_NOT_CONVERGED, InputError
+from .places import file_option, folder_option
+from .terminal import console as new_console
+from .terminal import show_table
 
 FILE = "campaign.h5"
 """Name of a run's file in its folder."""
@@ -21,42 +24,60 @@ PUBLISHED = Path(__file__).parents[1] / "data" / "campaign"
 DEFAULT_DESIGN = "full"
 """Sweep of a command that names none."""
 
-Out = Annotated[Path, typer.Option(help="Folder of the run.")]
+Out = Annotated[Path, folder_option("Folder of the run.")]
 DesignName = Annotated[str, typer.Option(help="Which sweep; see `campaign designs`.")]
 
 
 def show(
-    case: Annotated[str, typer.Argument(help="Case id or its beginning.")],
+    case: Annotated[str, typer.Argument(help="Name, or id or its beginning.")],
     out: Out = Path("build/campaign"),
 ) -> None:
-    """Print one case: its pair, its curve, its unloadings."""
-    from rich.console import Console
-    from rich.table import Table
-
-    from ..campaigns import Store
-
-    record = Store(out / FILE).read(case)
+    """Print one case of the own run, else of the published data: pair, curve, unloadings."""
+    record, source = _found(case, out)
     pair = record.case.pair
-    console = Console()
-    console.print(f"{record.case.name}  [{record.status}] {record.message}")
-    table = Table("Delta/R", "F [N]", "a [mm]", "share", "H/Sy_min")
+    console = new_console()
+    console.print(f"{record.case.name}: {record.status} {record.message}".rstrip())
+    console.print(f"{source}, {record.case.id[:12]}", soft_wrap=True)
     c = record.curve
-    for i in range(0, len(c.get("delta", ())), 3):
-        share = c["sphere"][i] / (c["sphere"][i] + c["flat"][i])
-        table.add_row(
-            f"{c['delta'][i] / pair.R:.4g}",
-            f"{c['force'][i]:.4g}",
-            f"{c['radius'][i] * 1e3:.4g}",
-            f"{share:.3f}",
+    rows = [
+        (
+            f"{c['delta'][i] / pair.R:.4g}", f"{c['force'][i]:.4g}", f"{c['radius'][i] * 1e3:.4g}",
+            f"{c['sphere'][i] / (c['sphere'][i] + c['flat'][i]):.3f}",
             f"{c['hardness'][i] / pair.Sy_min:.3f}",
         )
-    console.print(table)
+        for i in range(0, len(c.get("delta", ())), 3)
+    ]  # fmt: skip
+    if rows:
+        show_table(console, ("Delta/R", "F [N]", "a [mm]", "sphere's share", "H/Sy_min"), rows)
     for unloading in record.unloadings:
         console.print(
             f"unloaded from Delta/R = {unloading.depth:.4g}: left in the sphere "
             f"{unloading.residual_sphere * 1e6:.3g} um, in the flat "
             f"{unloading.residual_flat * 1e6:.3g} um"
         )
+
+
+def _found(case: str, out: Path) -> tuple[Any, str]:
+    """Return a case by its name or the beginning of its id, and where it was found."""
+    from ..campaigns import Store, read_published
+
+    own = Store(out / FILE)
+    records = own.read_all() if own.summaries() else []
+    for some, where in ((records, str(out / FILE)), (None, str(PUBLISHED))):
+        some = read_published(PUBLISHED) if some is None else some
+        found = [r for r in some if r.case.name == case]
+        found = found or [r for r in some if case and r.case.id.startswith(case)]
+        if len(found) == 1:
+            return found[0], where
+        if found:
+            raise InputError(
+                f"{len(found)} cases begin with {case!r}", source=where, key="CASE",
+                allowed="more of the id",
+            )  # fmt: skip
+    raise InputError(
+        f"no case {case!r} in the own run or the published data", source="command line",
+        key="CASE", allowed="a name or an id of `dentscope campaign status`",
+    )  # fmt: skip
 
 
 def refine(
@@ -96,7 +117,9 @@ def refine(
 
 def export(
     out: Out = Path("build/campaign"),
-    to: Annotated[Path, typer.Option(help="File to write.")] = Path("build/campaign/curves.csv"),
+    to: Annotated[Path, file_option("File to write, .csv or .parquet.")] = Path(
+        "build/campaign/curves.csv"
+    ),
     data: Annotated[
         Path | None, typer.Option(help="Campaign file or folder of parts, instead of --out.")
     ] = None,
@@ -137,7 +160,9 @@ def export(
 def publish(
     design: DesignName = "full",
     out: Out = Path("build/campaign"),
-    to: Annotated[Path, typer.Option(help="Folder of the data set.")] = Path("data/campaign"),
+    to: Annotated[Path, folder_option("Folder of the data set.", name="--to")] = Path(
+        "data/campaign"
+    ),
 ) -> None:
     """Make immutable parts below 10 MB from a complete run."""
     from ..campaigns import design_named
@@ -145,50 +170,6 @@ def publish(
 
     for part in write_parts(design_named(design), out / FILE, to):
         typer.echo(f"{part}: {part.stat().st_size / 1e6:.1f} MB")
-
-
-def gallery(
-    data: Annotated[
-        Path | None,
-        typer.Option(help="Campaign file or folder of parts. Default: published, else own run."),
-    ] = None,
-    fields: Annotated[Path, typer.Option(help="Folder of a run's field files.")] = Path(
-        "build/campaign/fields"
-    ),
-    to: Annotated[Path, typer.Option(help="Folder of the pictures.")] = Path(
-        "docs/gallery/campaign"
-    ),
-) -> None:
-    """Draw the campaign: the figures over Sy*, F/F_c of all cases, stress fields."""
-    from ..studies.campaign.gallery import build
-
-    for picture in build(_data(data), to, fields=fields):
-        typer.echo(f"{picture.number:>10}  {picture.title}: {picture.note}")
-    typer.echo(f"written: {to / 'README.md'}")
-
-
-def reproduction(
-    data: Annotated[
-        Path | None,
-        typer.Option(help="Campaign file or folder of parts. Default: published, else own run."),
-    ] = None,
-    to: Annotated[Path, typer.Option(help="Report to write.")] = Path("docs/reproduction.md"),
-) -> None:
-    """Check the trends that chapter 2 of the thesis tells, one by one."""
-    from ..studies.campaign.reproduction import write
-
-    for trend in write(_data(data), to):
-        typer.echo(f"{trend.verdict:>14}  {trend.claim}")
-    typer.echo(f"written: {to}")
-
-
-def _data(given: Path | None) -> Path:
-    """What to read: what was named, or the published data, or the own run."""
-    from ..campaigns.publish import CHECKSUMS
-
-    if given is not None:
-        return given
-    return PUBLISHED if (PUBLISHED / CHECKSUMS).exists() else Path("build/campaign") / FILE
 
 
 def _rows(records: list[Any], names: list[str]) -> Iterator[list[Any]]:

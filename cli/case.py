@@ -9,7 +9,11 @@ from typing import Annotated, Any
 
 import typer
 
-from ..core.errors import EXIT_NOT_CONVERGED
+from ..core.errors import EXIT_NOT_CONVERGED, InputError
+from .places import folder_option
+from .templates import CASE, write_new
+from .terminal import console as new_console
+from .terminal import show_table
 
 _COLUMNS = (
     "force_N",
@@ -21,12 +25,26 @@ _COLUMNS = (
 
 
 def case(
-    file: Annotated[Path, typer.Argument(help="CASE.toml; see examples/case_steel.toml.")],
-    out: Annotated[Path, typer.Option(help="Folder for results.")] = Path("build/case"),
+    file: Annotated[
+        Path | None, typer.Argument(help="CASE.toml: two bodies, how far, how finely.")
+    ] = None,
+    new: Annotated[
+        bool, typer.Option("--new", help="Write a file to start from, case.toml by default.")
+    ] = False,
+    out: Annotated[Path, folder_option("Folder for results.")] = Path("build/case"),
     picture: Annotated[bool, typer.Option("--picture", help="Draw the stresses too.")] = False,
 ) -> int:
-    """Solve one pair: table, curves, fields; every mistake in the file is a line."""
-    from rich.console import Console
+    """Solve your own pair by finite elements: table, curves, stress fields.
+
+    Solved twice, the second time with larger elements, which gives the uncertainty.
+    """
+    if new:
+        typer.echo(write_new(CASE, file or Path("case.toml"), command="case"))
+        return 0
+    if file is None:
+        raise InputError(
+            "no file", source="command line", key="FILE", allowed="CASE.toml; --new writes one"
+        )
     from rich.progress import Progress
 
     from .. import fem
@@ -35,7 +53,7 @@ def case(
 
     problem, accuracy = read_case(file)
     pair = problem.pair
-    console = Console()
+    console = new_console()
     second = fem.coarser(accuracy)
     with Progress(console=console, disable=not console.is_terminal) as bar:
         task = bar.add_task(f"solving at level {accuracy.level}", total=1.0)
@@ -49,7 +67,7 @@ def case(
             progress=lambda done: bar.update(task, completed=done),
         )
     if len(solution.loading.delta) == 0:
-        console.print(str(solution.outcome), highlight=False)
+        console.print(str(solution.outcome))
         return EXIT_NOT_CONVERGED
     out.mkdir(parents=True, exist_ok=True)
     uncertainty = fem.discretisation_uncertainty(solution.loading, rough.loading)
@@ -58,17 +76,17 @@ def case(
         _write_curves(solution, uncertainty, out / "curve.csv"),
         _write_result(file.stem, solution, uncertainty, out / "result.h5"),
     ):
-        console.print(f"written: {path}", highlight=False)
+        console.print(f"written: {path}")
     for snapshot in solution.snapshots:
         name = f"fields-{snapshot.depth:.4g}"
-        console.print(f"written: {write_vtu(snapshot, out / f'{name}.vtu')}", highlight=False)
+        console.print(f"written: {write_vtu(snapshot, out / f'{name}.vtu')}")
         if picture:
             extent = 2.5 * float(solution.loading.radius[-1])
             strength = pair.Sy_min if pair.Sy_min < float("inf") else pair.E_reduced
             tool = draw_section(snapshot, out / f"{name}.png", Sy_min=strength, extent=extent)
-            console.print(f"written: {out / f'{name}.png'} (drawn by {tool})", highlight=False)
+            console.print(f"written: {out / f'{name}.png'} (drawn by {tool})")
     if not solution.outcome.completed:
-        console.print(str(solution.outcome), highlight=False)
+        console.print(str(solution.outcome))
         return EXIT_NOT_CONVERGED
     return 0
 
@@ -141,21 +159,20 @@ _FIELDS = {
 
 
 def _show(console: Any, solution: Any, uncertainty: Any) -> None:
-    from rich.table import Table
-
     pair, c = solution.problem.pair, solution.loading
-    table = Table("Delta/R", "F [N]", "a [mm]", "sphere's share", "H/Sy_min")
     share = c.sphere_share
     u = uncertainty
-    for i in range(0, len(c.delta), max(1, len(c.delta) // 12)):
-        table.add_row(
+    rows = [
+        (
             f"{c.delta[i] / pair.R:.4g}",
             f"{c.force[i]:.5g} ± {u.force[i]:.1g}",
             f"{c.radius[i] * 1e3:.4g} ± {u.radius[i] * 1e3:.1g}",
             f"{share[i]:.4f} ± {u.sphere_share[i]:.1g}",
             f"{c.hardness[i] / pair.Sy_min:.3f} ± {u.hardness[i] / pair.Sy_min:.1g}",
         )
-    console.print(table)
+        for i in range(0, len(c.delta), max(1, len(c.delta) // 12))
+    ]
+    show_table(console, ("Delta/R", "F [N]", "a [mm]", "sphere's share", "H/Sy_min"), rows)
     for u in solution.unloadings:
         console.print(
             f"unloaded from Delta/R = {u.depth:.4g}: left in the sphere "

@@ -10,6 +10,7 @@ import typer
 
 from ..core.errors import InputError
 from . import studies
+from .places import folder_option
 
 
 def diagnose(
@@ -17,7 +18,7 @@ def diagnose(
         Path | None,
         typer.Argument(help="Recording set: a folder with set.toml, or a shipped name."),
     ] = None,
-    out: Annotated[Path, typer.Option(help="Folder for verdict.json and report.html.")] = Path(
+    out: Annotated[Path, folder_option("Folder for verdict.json and report.html.")] = Path(
         "build/diagnose"
     ),
     seed: Annotated[int, typer.Option(help="Same seed, same answer.")] = 0,
@@ -36,7 +37,7 @@ def diagnose(
     """
     if chapter5:
         studies.needed_for("`dentscope diagnose --chapter5`")
-        _chapter5(out, seed)
+        studies.module("chapter5").demonstration(out, seed)
         return
     from ..recordings.shipped import set_folder, shipped_sets
 
@@ -67,14 +68,3 @@ def diagnose(
     for line in lines(verdict):
         typer.echo(line)
     typer.echo(f"\n{out / 'verdict.json'}, {out / 'report.html'}")
-
-
-def _chapter5(out: Path, seed: int) -> None:
-    from ..studies.thesis.demonstration import demonstrate
-    from ..studies.thesis.demonstration_report import draw, table
-
-    found = demonstrate(seed=seed)
-    for line in table(found):
-        typer.echo(line)
-    draw(found, out / "chapter5.png")
-    typer.echo(f"\n{out / 'chapter5.png'}")

@@ -8,12 +8,14 @@ from typing import Annotated
 
 import typer
 
+from .places import folder_option
+
 FOLDER = Path(__file__).resolve().parents[1] / "examples"
 """Where they lie."""
 
 
 def examples(
-    to: Annotated[Path | None, typer.Option(help="Folder to copy them into.")] = None,
+    to: Annotated[Path | None, folder_option("Folder to copy them into.", name="--to")] = None,
 ) -> None:
     """List the examples, or copy them to start from."""
     for path in sorted(p for p in FOLDER.iterdir() if p.is_file()):

@@ -11,6 +11,9 @@ import typer
 from ..core.errors import EXIT_NOT_CONVERGED, InputError
 from . import studies
 from .campaign_data import PUBLISHED
+from .places import folder_option
+from .terminal import console as new_console
+from .terminal import show_table
 
 if TYPE_CHECKING:
     from rich.console import Console
@@ -32,7 +35,7 @@ def fit(
             "else build/campaign/campaign.h5."
         ),
     ] = None,
-    out: Annotated[Path, typer.Option(help="Folder for the report.")] = Path("build/fit"),
+    out: Annotated[Path, folder_option("Folder for the report.")] = Path("build/fit"),
     publish: Annotated[
         bool, typer.Option("--publish", help="Also replace the coefficients that the law uses.")
     ] = False,
@@ -56,9 +59,7 @@ def fit(
     ] = None,
 ) -> int:
     """Fit the closed form; write coefficients with standard errors, and a report with pictures."""
-    from rich.console import Console
-
-    console = Console()
+    console = new_console()
     if export is not None:
         return _export(export, console)
     if judge is not None:
@@ -172,12 +173,7 @@ def _judged(files: Sequence[Path], values: Any) -> tuple[Errors, tuple[str, ...]
 
 
 def _show(console: Console, rows: Sequence[Sequence[str]]) -> None:
-    from rich.table import Table as RichTable
-
-    shown = RichTable(*rows[0])
-    for row in rows[1:]:
-        shown.add_row(*row)
-    console.print(shown)
+    show_table(console, rows[0], rows[1:])
 
 
 def _judge(folder: Path, console: Console, *, publish: bool) -> int:

@@ -11,10 +11,11 @@ import typer
 from ..core.errors import EXIT_NOT_CONVERGED
 from . import studies
 from .laws import laws_named
+from .places import folder_option
+from .terminal import console as new_console
+from .terminal import show_table
 
 if TYPE_CHECKING:
-    from rich.table import Table
-
     from ..core.material import Pair
     from ..impact.files.setup import Setup
     from ..impact.result import Impact
@@ -31,7 +32,7 @@ def impact(
     new: Annotated[
         str, typer.Option(help="Write a set-up to start from: ball, rod or oblique-ball.")
     ] = "",
-    out: Annotated[Path, typer.Option(help="Folder for figures, CSV, HDF5 and Parquet.")] = Path(
+    out: Annotated[Path, folder_option("Folder for figures, CSV, HDF5 and Parquet.")] = Path(
         "build/impact"
     ),
 ) -> None:
@@ -46,9 +47,7 @@ def impact(
         _write_new(new, setup)
     elif setup is None:
         studies.needed_for("`dentscope impact` without a set-up file")
-        from .chapter3 import chapter3
-
-        leave_if_unfinished(chapter3(law or [], out))
+        leave_if_unfinished(studies.module("chapter3").chapter3(law or [], out))
     else:
         _from_file(setup, law or [], out)
 
@@ -62,15 +61,12 @@ def _write_new(kind: str, path: Path | None) -> None:
 
 
 def _from_file(path: Path, names: list[str], out: Path) -> None:
-    from rich.console import Console
-
     from ..impact.draw import draw_histories
     from ..impact.files.setup import read_setup
     from ..impact.files.tables import impact_row, write_csv, write_hdf5
     from ..impact.integrate import strike, traced
 
-    # names and units hold brackets, which are no markup here
-    console = Console(markup=False, highlight=False)
+    console = new_console()
     setup = read_setup(path)
     laws = (
         laws_named(names)
@@ -89,8 +85,7 @@ def _from_file(path: Path, names: list[str], out: Path) -> None:
         traces[law.name] = trace
     found = {name: trace.impact for name, trace in traces.items()}
     console.print(setup.name)
-    for table in _beside_each_other(found, width=console.width):
-        console.print(table)
+    show_table(console, ("", *found), _rows(found))
     for law in laws:
         line = _doubt(law, setup.scene(law).pair, found[law.name])
         if line:
@@ -109,40 +104,18 @@ def _from_file(path: Path, names: list[str], out: Path) -> None:
     leave_if_unfinished(list(found.values()))
 
 
-def _beside_each_other(found: dict[str, Impact], *, width: int) -> list[Table]:
-    """Tables of the observables, a law a column, as many columns as the width holds."""
-    from rich.box import SIMPLE_HEAD
-    from rich.table import Table
-
+def _rows(found: dict[str, Impact]) -> list[tuple[str, ...]]:
+    """Rows of the observables, a law a column; those that no law moves are left out."""
     from ..impact.files.tables import SHOWN
 
-    shown = [
-        (f"{label} [{unit}]" if unit != "-" else label, key, scale)
+    return [
+        (
+            f"{label} [{unit}]" if unit != "-" else label,
+            *(_cell(scale * getattr(i, key)) for i in found.values()),
+        )
         for label, key, scale, unit in SHOWN
         if any(abs(getattr(i, key)) > 0.0 for i in found.values())
     ]
-    room = max(width, 60) - max(len(label) for label, _, _ in shown) - 3
-    tables: list[Table] = []
-    left = list(found)
-    while left:
-        taken: list[str] = []
-        used = 0
-        while left and (not taken or used + _column(left[0]) <= room):
-            used += _column(left[0])
-            taken.append(left.pop(0))
-        table = Table(box=SIMPLE_HEAD, pad_edge=False, padding=(0, 0, 0, 1))
-        table.add_column("", no_wrap=True)
-        for name in taken:
-            table.add_column(name, justify="right", no_wrap=True)
-        for label, key, scale in shown:
-            table.add_row(label, *(_cell(scale * getattr(found[name], key)) for name in taken))
-        tables.append(table)
-    return tables
-
-
-def _column(name: str) -> int:
-    """Width of a law's column with the space around it."""
-    return max(len(name), 8) + 2
 
 
 def _cell(value: float) -> str:

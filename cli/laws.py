@@ -3,6 +3,8 @@
 from __future__ import annotations
 
 import csv
+import shutil
+import textwrap
 import warnings
 from collections.abc import Iterable
 from pathlib import Path
@@ -11,12 +13,23 @@ from typing import TYPE_CHECKING, Annotated, Any
 import typer
 
 from ..core.errors import InputError
+from .groups import Commands, group
+from .places import folder_option
+from .terminal import NARROWEST, show_table
+from .terminal import console as new_console
 
 if TYPE_CHECKING:
     from ..core.material import Pair
     from ..models.base import ContactLaw
 
-app = typer.Typer(help="Published contact laws: list, show, compare.", no_args_is_help=True)
+
+class _Laws(Commands):
+    """Alone: the list."""
+
+    alone = ("list",)
+
+
+app = group("Contact laws, ours and published: list, show, compare. Alone: the list.", cls=_Laws)
 
 COLUMNS = (
     "law",
@@ -43,31 +56,32 @@ def laws_named(names: list[str], *, source: str = "command line", key: str = "--
 
 @app.command("list")
 def list_laws() -> None:
-    """Every law: what it is for, and whether its own paper was read."""
-    from rich.console import Console
-    from rich.table import Column, Table
-
+    """Every law: what it is for, and from where its equations were read."""
     from ..models import LAWS, RATE_MODELS, UNAVAILABLE
 
-    table = Table(Column("law", no_wrap=True), "authors", "made for", "equations")
     for law in LAWS.values():
-        table.add_row(law.name, law.title, law.regime, law.standing.told)
-    console = Console()
-    console.print(table)
-    console.print(
-        "verified second hand: the equations were found in a text or code, other than the thesis, "
-        "that names the paper; the paper itself could not be read. unverified: they rest on the "
-        "thesis, on limits and continuity. What was read: dentscope laws show LAW."
-    )
-    console.print("Any two can be joined: LOADING+UNLOADING, for example kogut-etsion+ghaednia.")
-    console.print(
-        "Models of depth and rate that chapter 1 criticises leave no dent, so that no command "
-        "computes with them:"
+        bodies = "both bodies" if law.regime == "either" else law.regime
+        _entry(law.name, f"{law.title}. For {bodies}; {law.standing.told}: {law.read}.")
+    typer.echo(
+        "\nverified second hand: read in a text or code, other than the thesis, that names the "
+        "paper. unverified: they rest on the thesis, on limits and continuity.\n"
+        "Any two can be joined, LOADING+UNLOADING: kogut-etsion+ghaednia.\n"
+        "\nModels of depth and rate that leave no dent; shown, and not computed with:"
     )
     for name, model in RATE_MODELS.items():
-        console.print(f"  [bold]{name}[/bold]: {model.formula}; {model.objection}", highlight=False)
+        _entry(name, f"{model.formula}; {model.objection}.")
+    typer.echo("\nNot offered, and why:")
     for name, reason in UNAVAILABLE.items():
-        console.print(f"not offered: [bold]{name}[/bold]: {reason}", highlight=False)
+        _entry(name, f"{reason}.")
+
+
+def _entry(name: str, text: str) -> None:
+    """Print a name, and what is said of it indented below."""
+    width = max(shutil.get_terminal_size().columns, NARROWEST)
+    typer.echo(name)
+    text = text.replace("..", ".")
+    for line in textwrap.wrap(text, width - 4, break_long_words=False, break_on_hyphens=False):
+        typer.echo(f"    {line}")
 
 
 @app.command()
@@ -117,7 +131,7 @@ def _show_rate_model(name: str) -> None:
 def _echo(lines: Iterable[tuple[str, str]]) -> None:
     for key, text in lines:
         if text:
-            typer.echo(f"{key:>12}  {text}")
+            _entry(key, text)
 
 
 @app.command()
@@ -126,12 +140,9 @@ def compare(
     law: Annotated[
         list[str] | None, typer.Option(help="A law; may be repeated. Default: all.")
     ] = None,
-    out: Annotated[Path, typer.Option(help="Folder for table and picture.")] = Path("build/laws"),
+    out: Annotated[Path, folder_option("Folder for table and picture.")] = Path("build/laws"),
 ) -> None:
     """Curves of the laws for one pair, and which of them to use."""
-    from rich.console import Console
-    from rich.table import Column, Table
-
     from ..models import LAWS, law_named
     from ..models.choose import demand, objection, recommended
     from .case_file import read_pair
@@ -149,24 +160,31 @@ def compare(
     draw(pair, laws, rows, picture)
 
     need = demand(pair, last * pair.R)
-    console = Console()
-    table = Table(
-        Column("law", no_wrap=True), "F [N]", "a [mm]", "p/Sy_min", "left [um]", "may be used"
-    )
-    for one in laws:
-        row = [r for r in rows if r[0] == one.name][-1]
-        table.add_row(
-            one.name, f"{row[3]:.4g}", f"{row[4] * 1e3:.4g}", f"{row[5]:.3f}",
-            f"{(row[6] + row[7]) * 1e6:.4g}", objection(one, need) or "yes",
-        )  # fmt: skip
-    console.print(table)
+    console = new_console()
+    best = recommended(LAWS, need)
+    console.print(f"use: {', '.join(best) or 'none of these laws holds here'}")
     console.print(
-        f"at Delta/R = {last:g}: w = delta/delta_c = {need.w:.4g}, regime: {need.regime}",
-        highlight=False,
+        f"at Delta/R = {last:g}: {need.w:.4g} times the depth of first yield; regime: {need.regime}"
     )
-    best = ", ".join(recommended(LAWS, need)) or "none of these laws holds here"
-    console.print(f"use: {best}", highlight=False)
-    console.print(f"written: {table_file}\nwritten: {picture}", highlight=False)
+    objections = {one.name: objection(one, need) for one in laws}
+    found = [[r for r in rows if r[0] == one.name][-1] for one in laws]
+    order = {name: k for k, name in enumerate(best)}
+    found.sort(key=lambda row: (order.get(row[0], len(order)), bool(objections[row[0]])))
+    show_table(
+        console,
+        ("law", "F [N]", "a [mm]", "p/Sy_min", "left [um]", "may be used"),
+        [
+            (
+                row[0], f"{row[3]:.4g}", f"{row[4] * 1e3:.4g}", f"{row[5]:.3f}",
+                f"{(row[6] + row[7]) * 1e6:.4g}", "no" if objections[row[0]] else "yes",
+            )
+            for row in found
+        ],
+    )  # fmt: skip
+    for reason in dict.fromkeys(filter(None, objections.values())):
+        names = ", ".join(name for name, told in objections.items() if told == reason)
+        console.print(f"no: {reason}: {names}")
+    console.print(f"written: {table_file}\nwritten: {picture}", soft_wrap=True)
 
 
 def _described_in(law: ContactLaw) -> str:

@@ -7,11 +7,10 @@ from typing import Annotated
 
 import typer
 
-app = typer.Typer(
-    name="recordings",
-    help="Recording sets: measured impacts, checked and audited.",
-    no_args_is_help=True,
-)
+from .groups import group
+from .places import folder_option
+
+app = group("Recording sets, measured impacts: list, check, audit, new, fetch.")
 
 NewFolder = Annotated[Path, typer.Argument(metavar="SET", help="Folder of the recording set.")]
 SetFolder = Annotated[
@@ -101,7 +100,7 @@ def fetch(
     catalogue: Annotated[
         Path | None, typer.Option(help="List of addresses and checksums, instead of the shipped.")
     ] = None,
-    out: Annotated[Path, typer.Option(help="Folder to fetch into.")] = Path("build/recordings"),
+    out: Annotated[Path, folder_option("Folder to fetch into.")] = Path("build/recordings"),
 ) -> None:
     """Fetch raw files that may not be shipped, by pinned address and checksum."""
     from ..recordings.fetch import fetch_sources, read_catalogue

@@ -14,7 +14,9 @@ from pathlib import Path
 from typing import Annotated, Any
 
 import typer
-from typer.core import TyperGroup
+
+from .groups import Commands, group
+from .places import folder_option
 
 if typing.TYPE_CHECKING:
     from pydantic.fields import FieldInfo
@@ -24,13 +26,19 @@ if typing.TYPE_CHECKING:
 _SETTABLE = (float, int, bool, str, Path)
 
 
-class _Kinds(TyperGroup):
+class _Kinds(Commands):
     """The commands of the kinds, made from their options when they are asked for."""
 
     def list_commands(self, ctx: Any) -> list[str]:
         from ..recordings.reduce.kinds import KINDS
 
-        return [*KINDS, *super().list_commands(ctx)]
+        return list(KINDS)
+
+    def abouts(self, ctx: Any) -> dict[str, str]:
+        """Kinds and what each gives, without loading any of them."""
+        from ..recordings.reduce.kinds import KINDS
+
+        return dict(KINDS)
 
     def get_command(self, ctx: Any, cmd_name: str) -> Any:
         from ..recordings.reduce.kinds import KINDS
@@ -38,20 +46,15 @@ class _Kinds(TyperGroup):
         return _command(cmd_name) if cmd_name in KINDS else super().get_command(ctx, cmd_name)
 
 
-app = typer.Typer(
-    name="reduce",
-    cls=_Kinds,
-    help="Raw recordings to numbers with uncertainties, and a picture to check them by.",
-    no_args_is_help=True,
+app = group(
+    "Raw recordings to numbers with uncertainties, and a picture to check them by.", cls=_Kinds
 )
 
 RawFile = Annotated[Path, typer.Argument(metavar="FILE", help="The raw recording.")]
 Into = Annotated[
-    Path | None, typer.Option("--into", help="Folder of a recording set, new or existing.")
+    Path | None, folder_option("Folder of a recording set, new or existing.", name="--into")
 ]
-Out = Annotated[
-    Path, typer.Option("--out", help="Without --into: folder for the numbers and the picture.")
-]
+Out = Annotated[Path, folder_option("Without --into: folder for the numbers and the picture.")]
 
 
 def _command(name: str) -> Any:
@@ -77,7 +80,7 @@ def _command(name: str) -> Any:
     run.__signature__ = inspect.Signature(parameters)  # type: ignore[attr-defined]
     run.__annotations__ = {p.name: p.annotation for p in parameters}
     run.__doc__ = KINDS[name][0].upper() + KINDS[name][1:] + "."
-    alone = typer.Typer(add_completion=False, pretty_exceptions_enable=False)
+    alone = group("")
     alone.command(name)(run)
     return typer.main.get_command(alone)
 

@@ -6,9 +6,9 @@ elsewhere it is hidden, and answers in one line where to get the workshop, with 
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from importlib import import_module
 from importlib.util import find_spec
-from typing import Any
+from types import ModuleType
 
 import typer
 
@@ -16,6 +16,15 @@ from ..core.errors import InputError
 
 WHERE = "not installed: get a checkout or the source archive of dentscope, `make install` there"
 """Where the workshop is to be had."""
+
+COMMANDS = {
+    "figures": "figures",
+    "verify": "verify",
+    "proof": "proof",
+    "campaign gallery": "campaign",
+    "campaign reproduction": "campaign",
+}
+"""What the user types after `dentscope`, and the module of the workshop that holds it."""
 
 _ANYTHING = {"allow_extra_args": True, "ignore_unknown_options": True}
 
@@ -42,23 +51,28 @@ def needed_for(what: str) -> None:
         raise InputError(f"{what} belongs to the workshop (studies/), which is {WHERE}")
 
 
-def add(group: typer.Typer, part: typer.Typer | Callable[..., Any], *, name: str) -> None:
+def module(name: str) -> ModuleType:
+    """Return a module of the workshop's commands."""
+    return import_module(f".workshop.{name}", __package__)
+
+
+def add(group: typer.Typer, name: str) -> None:
     """Add a command, or a group of commands, of the workshop to a group of the command line.
 
     Parameters
     ----------
     group
         What it is added to.
-    part
-        The command's function, or the group's own.
     name
-        What the user types after `dentscope`, for example "campaign gallery".
+        One of `COMMANDS`.
     """
     last = name.rsplit(" ", 1)[-1]
     if not present():
         hidden = group.command(last, hidden=True, add_help_option=False, context_settings=_ANYTHING)
         hidden(lambda: needed_for(f"`dentscope {name}`"))
-    elif isinstance(part, typer.Typer):
-        group.add_typer(part, name=last)
+        return
+    part = module(COMMANDS[name])
+    if hasattr(part, "app"):
+        group.add_typer(part.app, name=last)
     else:
-        group.command(last)(part)
+        group.command(last)(getattr(part, last))

@@ -13,11 +13,13 @@ from collections.abc import Callable
 from dataclasses import dataclass
 from importlib import import_module
 from pathlib import Path
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 from ...core.errors import InputError
 from ...core.toml_input import InputTable, parse_model
-from .reduced import Reduced
+
+if TYPE_CHECKING:
+    from .reduced import Reduced
 
 KINDS = {
     "video": "high-speed video: approach and rebound speed, lean, motion of the tip",

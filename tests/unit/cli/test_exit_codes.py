@@ -20,11 +20,11 @@ def dentscope(*arguments, cwd=None):
 @pytest.mark.parametrize(
     ("arguments", "word"),
     [
-        (("nonsense",), "No such command"),
+        (("nonsense",), "no command"),
         (("campaign", "run", "--design", "huge"), "smoke"),
         (("campaign", "run", "--workers", "0"), "workers"),
         (("campaign", "run", "--retry", "all"), "failed"),
-        (("campaign", "show", "abc"), "no such file"),
+        (("campaign", "show", "zz"), "no case"),
         (("campaign", "export"), "no such file"),
         (("fit", "absent.h5"), "no such file"),
         (("fit", "text.h5"), "not a readable HDF5 file"),

@@ -4,6 +4,7 @@ import csv
 from pathlib import Path
 
 import pytest
+from dentscope.cli import run as dentscope
 from dentscope.cli.laws import COLUMNS, app
 from dentscope.core import InputError
 from dentscope.models import LAWS, RATE_MODELS, UNAVAILABLE
@@ -15,13 +16,19 @@ def run(*arguments):
     return app(args=list(arguments), standalone_mode=False)
 
 
-def test_list_names_every_law_and_marks_the_unverified(capsys):
+def test_alone_they_are_listed(capsys):
+    assert dentscope(["laws"]) == 0
+    assert "jackson-green" in capsys.readouterr().out
+
+
+def test_list_names_every_law_and_marks_the_unverified(capsys, monkeypatch):
+    monkeypatch.setenv("COLUMNS", "20000")
     run("list")
     text = capsys.readouterr().out
     assert all(name in text for name in (*LAWS, *UNAVAILABLE))
     told = [law.standing.told for law in LAWS.values()]
-    assert text.count("│ unverified") == sum(t.startswith("unverified") for t in told)
-    assert text.count("│ verified") == sum(t.startswith("verified") for t in told)
+    assert text.count("; unverified") == sum(t.startswith("unverified") for t in told)
+    assert text.count("; verified") == sum(t.startswith("verified") for t in told)
     assert all(name in text for name in RATE_MODELS)
 
 

@@ -3,23 +3,21 @@
 import pytest
 import typer
 from dentscope.cli import run, studies
-from dentscope.cli.proof import app as proof
-from dentscope.cli.verify import verify
 from dentscope.core import InputError
 from dentscope.recordings.shipped import set_folder, shipped_sets
 from typer.testing import CliRunner
 
 
-def group(**parts):
+def group():
     app = typer.Typer()
     app.command("beside")(lambda: None)
-    for name, part in parts.items():
-        studies.add(app, part, name=name)
+    for name in ("verify", "proof"):
+        studies.add(app, name)
     return app
 
 
 def test_workshop_commands_appear_in_a_checkout():
-    help_ = CliRunner().invoke(group(verify=verify, proof=proof), ["--help"]).output
+    help_ = CliRunner().invoke(group(), ["--help"]).output
     assert "verify" in help_
     assert "proof" in help_
 
@@ -29,7 +27,7 @@ def test_workshop_commands_appear_in_a_checkout():
 )
 def test_workshop_commands_elsewhere_are_hidden_and_say_where_to_get_them(monkeypatch, line):
     monkeypatch.setattr(studies, "present", lambda: False)
-    app = group(verify=verify, proof=proof)
+    app = group()
     assert "verify" not in CliRunner().invoke(app, ["--help"]).output
     with pytest.raises(InputError, match=rf"`dentscope {line[0]}` .* checkout"):
         CliRunner().invoke(app, line, catch_exceptions=False, standalone_mode=False)

@@ -20,9 +20,9 @@ def figures(
     out: Annotated[Path, typer.Option(help="Folder of the gallery.")] = Path("docs/gallery"),
 ) -> None:
     """Draw the gallery: a picture and a computed line for every figure."""
-    from ..core.errors import InputError
-    from ..studies.thesis.figures.fields import WANTED, solve_field
-    from ..studies.thesis.figures.gallery import CHAPTERS, build
+    from ...core.errors import InputError
+    from ...studies.thesis.figures.fields import WANTED, solve_field
+    from ...studies.thesis.figures.gallery import CHAPTERS, build
 
     for number in fields or ():
         if number not in WANTED:
@@ -30,7 +30,7 @@ def figures(
         typer.echo(f"written: {solve_field(number)}")
 
     chosen = chapter or list(CHAPTERS)
-    root = Path(__file__).resolve().parents[1]
+    root = Path(__file__).resolve().parents[2]
     for entry in build(out, chapters=chosen, root=root):
         typer.echo(f"{entry.number:>8}  {entry.title}: {entry.note}")
     typer.echo(f"written: {out / 'README.md'}")

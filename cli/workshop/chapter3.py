@@ -6,27 +6,26 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
-    from ..impact.result import Impact
-    from ..models.base import ContactLaw
+    from ...impact.result import Impact
+    from ...models.base import ContactLaw
 
 
 def _default_laws() -> list[ContactLaw]:
-    from ..impact.files.setup import DEFAULT_LAWS
-    from ..models import LAWS
+    from ...impact.files.setup import DEFAULT_LAWS
+    from ...models import LAWS
 
     return [LAWS[name] for name in DEFAULT_LAWS if name in LAWS]
 
 
 def chapter3(names: list[str], out: Path) -> list[Impact]:
     """Print chapter 3 beside our impacts, write its files and return the impacts."""
-    from rich.console import Console
-    from rich.table import Table
+    from ...impact.files.tables import impact_row, write_csv
+    from ...studies.thesis import chapter3 as thesis
+    from ..laws import laws_named
+    from ..terminal import console as new_console
+    from ..terminal import show_table
 
-    from ..impact.files.tables import impact_row, write_csv
-    from ..studies.thesis import chapter3 as thesis
-    from .laws import laws_named
-
-    console = Console()
+    console = new_console()
     found = thesis.bench()
     laws = laws_named(names) if names else _default_laws()
     masses = (found.striker.mass, found.mass_that_fits)
@@ -39,28 +38,28 @@ def chapter3(names: list[str], out: Path) -> list[Impact]:
     for mass in masses:
         stated = mass == found.striker.mass
         label = "as stated" if stated else "not stated: makes depths and restitution agree"
-        table = Table(title=f"mass {mass:g} kg ({label})", title_justify="left")
-        table.add_column("law", no_wrap=True)
+        head = ["law"]
         for row in found.measured:
             unit = "e" if row["observable"] == "restitution" else "depth, um,"
-            table.add_column(f"{unit}\nat {row['drop_height_m']:.2f} m", justify="right")
-        table.add_row("measured", *(_shown(row, row["value"]) for row in found.measured))
+            head.append(f"{unit}\nat {row['drop_height_m']:.2f} m")
+        rows = [("measured", *(_shown(row, row["value"]) for row in found.measured))]
         for curve in (c for c in curves if c.mass == mass):
-            cells = []
-            for row in found.measured:
-                ours, off = thesis.deviation(curve, row)
-                cells.append(f"{_shown(row, ours)} ({off:+.0%})")
-            table.add_row(curve.law.name, *cells)
-        console.print(table)
+            off = (thesis.deviation(curve, row) for row in found.measured)
+            cells = (
+                f"{_shown(row, ours)} ({part:+.0%})"
+                for row, (ours, part) in zip(found.measured, off, strict=True)
+            )
+            rows.append((curve.law.name, *cells))
+        show_table(console, head, rows, title=f"mass {mass:g} kg ({label})")
     console.print("The stated inputs contradict each other:")
     for line in thesis.contradictions(found):
-        console.print(f"  {line}", soft_wrap=True, highlight=False)
-    rows = [
+        console.print(f"  {line}", soft_wrap=True)
+    written = [
         {"law": c.law.name, "mass_kg": c.mass, "drop_height_m": float(h), **impact_row(i)}
         for c in curves
         for h, i in zip(c.heights, c.impacts, strict=True)
     ]
-    write_csv(out / "chapter3.csv", rows)
+    write_csv(out / "chapter3.csv", written)
     thesis.draw_chapter3(found, curves, out / "chapter3.png")
     console.print(f"written: {out / 'chapter3.csv'}, {out / 'chapter3.png'}", soft_wrap=True)
     return [i for c in curves for i in c.impacts]

@@ -9,7 +9,9 @@ from typing import Annotated
 
 import typer
 
-app = typer.Typer(help="Blind proof of the diagnosis on concealed impacts.", no_args_is_help=True)
+from ..groups import group
+
+app = group("Blind proof of the diagnosis on concealed impacts.")
 
 _BASE = Path("build/proof")
 _Base = Annotated[Path, typer.Option("--out", help="Folder of the runs.")]
@@ -17,8 +19,8 @@ _Which = Annotated[str, typer.Option("--list", help="full or small.")]
 
 
 def _checked(which: str) -> str:
-    from ..core.errors import InputError
-    from ..studies.proof.lists import LISTS
+    from ...core.errors import InputError
+    from ...studies.proof.lists import LISTS
 
     if which not in LISTS:
         raise InputError(f"no list {which!r}", source="command line", key="--list",
@@ -39,9 +41,9 @@ def run(
     from rich.console import Console
     from rich.progress import Progress
 
-    from ..core.threads import one_thread_each
-    from ..studies.proof.lists import LISTS
-    from ..studies.proof.run import carry_on, local_workers, run_folder, verdicts_of
+    from ...core.threads import one_thread_each
+    from ...studies.proof.lists import LISTS
+    from ...studies.proof.run import carry_on, local_workers, run_folder, verdicts_of
 
     folder = run_folder(out, _checked(which))
     total, before = len(LISTS[which]()), verdicts_of(folder)
@@ -71,12 +73,12 @@ def run(
 @app.command()
 def score(which: _Which = "full", out: _Base = _BASE) -> None:
     """Open the truths of the sets that have a sealed verdict, score, and rewrite docs/proof.md."""
-    from ..core.errors import InputError
-    from ..studies.proof import page as pages
-    from ..studies.proof.lists import LISTS
-    from ..studies.proof.run import ROOT, run_folder
-    from ..studies.proof.score import open_run
-    from ..studies.proof.seal import SealBroken, tree_hash
+    from ...core.errors import InputError
+    from ...studies.proof import page as pages
+    from ...studies.proof.lists import LISTS
+    from ...studies.proof.run import ROOT, run_folder
+    from ...studies.proof.score import open_run
+    from ...studies.proof.seal import SealBroken, tree_hash
 
     folder = run_folder(out, _checked(which))
     if not (folder / "ledger.jsonl").exists():
@@ -101,15 +103,15 @@ def page() -> None:
     """Rewrite docs/proof.md from the runs that were scored."""
     import json
 
-    from ..studies.proof.page import RUNS
+    from ...studies.proof.page import RUNS
 
     _write_page(json.loads(RUNS.read_text()) if RUNS.exists() else [])
 
 
 def _write_page(runs: list[dict[str, object]]) -> None:
-    from ..studies.proof import page as pages
-    from ..studies.proof.explicit.catalogue import stored
-    from ..studies.proof.run import ROOT
+    from ...studies.proof import page as pages
+    from ...studies.proof.explicit.catalogue import stored
+    from ...studies.proof.run import ROOT
 
     (ROOT / "docs" / "proof.md").write_text(pages.page(runs, impacts=stored()))
 
@@ -125,10 +127,10 @@ def sample(
     seed: Annotated[int, typer.Option(help="Seed of the draw.")] = 1,
 ) -> None:
     """Write sample sets with their truths beside them."""
-    from ..core.errors import InputError
-    from ..studies.proof.generators.effects import EFFECTS, OUTSIDE
-    from ..studies.proof.sample import KINDS
-    from ..studies.proof.sample import sample as samples
+    from ...core.errors import InputError
+    from ...studies.proof.generators.effects import EFFECTS, OUTSIDE
+    from ...studies.proof.sample import KINDS
+    from ...studies.proof.sample import sample as samples
 
     if kind and kind not in KINDS:
         raise InputError(repr(kind), source="command line", key="--kind", allowed=", ".join(KINDS))
@@ -142,7 +144,7 @@ def sample(
 @app.command()
 def library() -> None:
     """Compute the finite-element impacts that the library lacks."""
-    from ..studies.proof.explicit.catalogue import fill
+    from ...studies.proof.explicit.catalogue import fill
 
     for line in fill():
         typer.echo(line)
@@ -151,8 +153,8 @@ def library() -> None:
 @app.command()
 def laws() -> None:
     """Solve and fit the pairs that the generators' base laws lack."""
-    from ..studies.proof.generators.base_laws import fill
-    from ..studies.proof.generators.benches import BEARING_STEEL, CARBIDE, TARGETS
+    from ...studies.proof.generators.base_laws import fill
+    from ...studies.proof.generators.benches import BEARING_STEEL, CARBIDE, TARGETS
 
     for line in fill(TARGETS, (BEARING_STEEL, CARBIDE)):
         typer.echo(line)

@@ -34,25 +34,22 @@ def verify(
     It can be stopped and started again: every solve and every check is kept. Exit code 1 means
     that a mark is missed.
     """
-    from rich.console import Console
+    from ...studies.verification import CHECKS, Bench, Effort, check_named, run_checks, write_report
 
-    from ..studies.verification import CHECKS, Bench, Effort, check_named, run_checks, write_report
-
-    console = Console(highlight=False, soft_wrap=True)
     if known:
         for check in CHECKS:
-            console.print(f"{check.name:22} {check.title}")
+            typer.echo(f"{check.name:22} {check.title}")
         return 0
     chosen = [check_named(name) for name in only] if only else list(CHECKS)
     bench = Bench(
         folder=folder,
         pictures=report.parent / report.stem,
         effort=Effort.QUICK if quick else Effort.PRODUCTION,
-        say=lambda line: console.print(line, markup=False),
+        say=typer.echo,
     )
     results = run_checks(chosen, bench=bench, afresh=afresh)
     missed = [(r.name, m) for r in results for m in r.missed]
     for name, m in missed:
-        console.print(f"missed: {name}: {m.what}: {m.value:.4g} {m.unit} ({m.mark})", markup=False)
-    console.print(f"written: {write_report(report, folder=folder)}")
+        typer.echo(f"missed: {name}: {m.what}: {m.value:.4g} {m.unit} ({m.mark})")
+    typer.echo(f"written: {write_report(report, folder=folder)}")
     return EXIT_MISSED if missed else 0

@@ -1,0 +1,56 @@
+"""Where commands write: an option that is checked before anything is computed."""
+
+from __future__ import annotations
+
+import os
+from pathlib import Path
+from typing import Any
+
+import typer
+
+from ..core.errors import InputError
+
+_LINE = "command line"
+
+
+def folder_option(about: str, *, name: str = "--out") -> Any:
+    """Return the option of a folder that is made and written into."""
+
+    def check(path: Path | None) -> Path | None:
+        return path if path is None else writable_folder(path, key=name)
+
+    return typer.Option(name, help=about, callback=check)
+
+
+def file_option(about: str, *, name: str = "--to") -> Any:
+    """Return the option of a file that is written."""
+
+    def check(path: Path) -> Path:
+        if path.is_dir():
+            raise InputError(f"{path} is a folder", source=_LINE, key=name, allowed="a file's name")
+        writable_folder(path.parent, key=name)
+        return path
+
+    return typer.Option(name, help=about, callback=check)
+
+
+def writable_folder(path: Path, *, key: str) -> Path:
+    """Return the folder; it need not exist yet.
+
+    Raises
+    ------
+    InputError
+        It is a file, lies below one, or may not be written.
+    """
+    there = path.absolute()
+    while not there.exists() and not there.is_symlink() and there != there.parent:
+        there = there.parent
+    if not there.is_dir():
+        raise InputError(
+            f"{there} is no folder", source=_LINE, key=key, allowed="a folder, new or existing"
+        )
+    if not os.access(there, os.W_OK | os.X_OK):
+        raise InputError(
+            f"{there} may not be written", source=_LINE, key=key, allowed="a folder of your own"
+        )
+    return path

@@ -1,0 +1,69 @@
+"""What the commands print: tables that keep every character, whatever the width."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from typing import TYPE_CHECKING
+
+if TYPE_CHECKING:
+    from rich.console import Console
+    from rich.table import Table
+
+NARROWEST = 40
+"""Columns that a table takes to be there."""
+
+
+def console() -> Console:
+    """Return a console for text in which square brackets are units, and no markup."""
+    from rich.console import Console
+
+    return Console(markup=False, highlight=False, emoji=False)
+
+
+def show_table(
+    to: Console, head: Sequence[str], rows: Sequence[Sequence[str]], *, title: str = ""
+) -> None:
+    """Print a table, in parts where the width does not hold all columns.
+
+    Parameters
+    ----------
+    to
+        From `console`.
+    head
+        Names of the columns; the first is repeated in every part.
+    rows
+        Cells, as many as columns; numbers are aligned to the right, all but the first column.
+    title
+        Line above.
+    """
+    if title:
+        to.print(title)
+    for table in parts(head, rows, width=to.width):
+        to.print(table)
+
+
+def parts(head: Sequence[str], rows: Sequence[Sequence[str]], *, width: int) -> list[Table]:
+    """Return tables of as many columns as the width holds, each with the first column."""
+    from rich.box import SIMPLE_HEAD
+    from rich.table import Table
+
+    size = [max(map(_width, column)) + 2 for column in zip(head, *rows, strict=True)]
+    room = max(width, NARROWEST) - size[0] - 1
+    tables: list[Table] = []
+    left = list(range(1, len(head)))
+    while left:
+        taken: list[int] = []
+        while left and (not taken or sum(size[k] for k in [*taken, left[0]]) <= room):
+            taken.append(left.pop(0))
+        table = Table(box=SIMPLE_HEAD, pad_edge=False, padding=(0, 1, 0, 0), highlight=False)
+        table.add_column(head[0], no_wrap=True)
+        for k in taken:
+            table.add_column(head[k], justify="right", no_wrap=True)
+        for row in rows:
+            table.add_row(row[0], *(row[k] for k in taken))
+        tables.append(table)
+    return tables
+
+
+def _width(cell: str) -> int:
+    return max(map(len, cell.split("\n")))

@@ -1,0 +1,54 @@
+"""`dentscope campaign gallery` and `reproduction`: what a sweep shows, beside the thesis."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import Annotated
+
+import typer
+
+from ..campaign_data import FILE, PUBLISHED
+from ..places import file_option, folder_option
+
+_Data = Annotated[
+    Path | None,
+    typer.Option(help="Campaign file or folder of parts. Default: published, else own run."),
+]
+
+
+def gallery(
+    data: _Data = None,
+    fields: Annotated[Path, typer.Option(help="Folder of a run's field files.")] = Path(
+        "build/campaign/fields"
+    ),
+    to: Annotated[Path, folder_option("Folder of the pictures.", name="--to")] = Path(
+        "docs/gallery/campaign"
+    ),
+) -> None:
+    """Draw the campaign: the figures over Sy*, F/F_c of all cases, stress fields."""
+    from ...studies.campaign.gallery import build
+
+    for picture in build(_data(data), to, fields=fields):
+        typer.echo(f"{picture.number:>10}  {picture.title}: {picture.note}")
+    typer.echo(f"written: {to / 'README.md'}")
+
+
+def reproduction(
+    data: _Data = None,
+    to: Annotated[Path, file_option("Report to write.")] = Path("docs/reproduction.md"),
+) -> None:
+    """Check the trends that chapter 2 of the thesis tells, one by one."""
+    from ...studies.campaign.reproduction import write
+
+    for trend in write(_data(data), to):
+        typer.echo(f"{trend.verdict:>14}  {trend.claim}")
+    typer.echo(f"written: {to}")
+
+
+def _data(given: Path | None) -> Path:
+    """What to read: what was named, or the published data, or the own run."""
+    from ...campaigns.publish import CHECKSUMS
+
+    if given is not None:
+        return given
+    return PUBLISHED if (PUBLISHED / CHECKSUMS).exists() else Path("build/campaign") / FILE

@@ -1,0 +1,97 @@
+"""What a terminal shows: help of every command at any width, units, nothing cut, completion."""
+
+import io
+import os
+import re
+import subprocess
+import sys
+from pathlib import Path
+
+import pytest
+import typer
+from dentscope.cli import app as assembly
+from dentscope.cli import run
+from dentscope.cli.terminal import parts
+from rich.console import Console
+
+COMMAND = typer.main.get_command(assembly.app)
+
+
+def letters(text: str) -> str:
+    """The text without its blanks: a line may end within a word that has a hyphen."""
+    return "".join(text.split())
+
+
+def commands() -> list[list[str]]:
+    def below(command, name):
+        found = [name]
+        for one in getattr(command, "commands", {}):
+            found += below(command.commands[one], [*name, one])
+        return found
+
+    return below(COMMAND, [])
+
+
+def found_at(names):
+    command = COMMAND
+    for name in names:
+        command = command.commands[name]
+    return command
+
+
+@pytest.mark.parametrize("width", [60, 80, 120])
+@pytest.mark.parametrize("names", commands(), ids=" ".join)
+def test_help_is_whole_at_every_width(names, width, monkeypatch, capsys):
+    monkeypatch.setenv("COLUMNS", str(width))
+    assert run([*names, "-h"]) == 0
+    shown = capsys.readouterr().out
+    assert max(map(len, shown.splitlines())) <= width
+    assert "…" not in shown
+    command = found_at(names)
+    for told in (command.help, *(getattr(p, "help", "") for p in command.params)):
+        # every sentence as it was written, its units in square brackets too
+        paragraph = letters((told or "").split("\n\n")[0])
+        assert paragraph in letters(shown), paragraph
+
+
+def test_version_and_asking_for_nothing(capsys):
+    assert run(["--version"]) == 0
+    assert re.fullmatch(r"\d+\.\d+\.\d+", capsys.readouterr().out.strip())
+    assert run([]) == 0
+    assert "Your own:" in capsys.readouterr().out
+
+
+@pytest.mark.parametrize("width", [60, 80])
+def test_a_table_is_split_before_it_is_cut(width):
+    head = ("law", *(f"quantity {k} [mm]" for k in range(6)))
+    rows = [(f"law-number-{k}", *(f"{1.2345e-7 * k:.4g}" for k in range(6))) for k in range(3)]
+    console = Console(width=width, markup=False, record=True, file=io.StringIO())
+    tables = parts(head, rows, width=width)
+    assert len(tables) > 1
+    for table in tables:
+        console.print(table)
+    shown = console.export_text()
+    assert "…" not in shown
+    for cell in (*head[1:], *(c for row in rows for c in row)):
+        assert cell in shown
+
+
+def test_a_published_case_is_shown_without_a_run(tmp_path, monkeypatch, capsys):
+    monkeypatch.chdir(tmp_path)
+    assert run(["campaign", "show", "space-020"]) == 0
+    shown = capsys.readouterr().out
+    assert "F [N]" in shown
+    assert "data/campaign" in shown
+    assert run(["campaign", "status"]) == 0
+    shown = capsys.readouterr().out
+    assert "No run of your own" in shown
+    assert re.search(r"thesis-1 +50 done +1 failed", shown)
+
+
+def test_the_shell_completes_commands():
+    told = {**os.environ, "_DENTSCOPE_COMPLETE": "complete_bash", "COMP_WORDS": "dentscope re"}
+    answer = subprocess.run(
+        [str(Path(sys.executable).with_name("dentscope"))],
+        env={**told, "COMP_CWORD": "1"}, capture_output=True, text=True, timeout=120, check=False,
+    )  # fmt: skip
+    assert answer.stdout.split() == ["recordings", "reduce"]

@@ -1,0 +1,240 @@
+"""More than a hundred wrong uses: each one line on standard error and exit code 2, no traceback."""
+
+from pathlib import Path
+
+import pytest
+from dentscope.cli import run
+
+BALL = """
+name = "ball"
+[target]
+E_Pa = 2e11
+nu = 0.3
+Sy_Pa = 3e8
+[strikers.ball]
+shape = "sphere"
+tip_radius_m = 0.005
+mass_kg = 0.004
+E_Pa = 2e11
+nu = 0.3
+[impact]
+impact_speed_m_s = 1.0
+laws = ["hertz"]
+"""
+CASE = """
+radius_m = 0.01
+[sphere]
+E_Pa = 2e11
+nu = 0.3
+[flat]
+E_Pa = 2e11
+nu = 0.3
+Sy_Pa = 3e8
+[load]
+max_delta_over_R = 0.01
+[accuracy]
+level = "smoke"
+"""
+ROD = """
+[striker]
+tip_radius_m = 0.0088
+radius_m = 0.0088
+length_m = 0.3048
+mass_kg = 0.4607
+[[trial]]
+angle_deg = 45
+impact_speed_m_s = 2.18
+friction_impulse_ratio = 0.13
+restitution = 0.49
+permanent_depth_m = 26e-6
+sliding_length_m = 1650e-6
+"""
+
+
+@pytest.fixture(autouse=True)
+def _folder_of_a_newcomer(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.chdir(tmp_path)
+    texts = {
+        "ball.toml": BALL,
+        "case.toml": CASE,
+        "rod.toml": ROD,
+        "empty.toml": "",
+        "broken.toml": "radius_m = = 1\n",
+        "words.txt": "nothing to see\n",
+        "words.csv": "nothing,to\nsee,here\n",
+        "words.png": "no picture\n",
+        "words.wav": "no sound\n",
+        "words.mp4": "no clip\n",
+        "words.c3d": "no markers\n",
+        "words.h5": "no HDF5\n",
+    }
+    for name, text in texts.items():
+        (tmp_path / name).write_text(text)
+    (tmp_path / "nothing.csv").write_bytes(b"")
+    (tmp_path / "bytes.toml").write_bytes(b"\xff\xfe\x00\x01" * 20)
+    (tmp_path / "bytes.csv").write_bytes(b"\xff\xfe\x00\x01" * 20)
+    (tmp_path / "folder").mkdir()
+    (tmp_path / "half-set").mkdir()
+    (tmp_path / "half-set" / "set.toml").write_text('format = "recording-set/1"\n')
+
+
+LINES = """
+nonsense
+Impact
+--nonsense
+-x
+impact ball.toml extra
+impact --law
+impact absent.toml
+impact folder
+impact words.txt
+impact broken.toml
+impact bytes.toml
+impact empty.toml
+impact case.toml
+impact rod.toml
+impact ball.toml --law nonsense
+impact ball.toml --law hertz --law Hertz
+impact ball.toml --law kogut-etsion+
+impact ball.toml --out words.txt
+impact ball.toml --out words.txt/below
+impact ball.toml --outt build
+impact --new
+impact --new cube
+impact --new ball ball.toml
+impact --new ball words.txt/ball.toml
+case
+case absent.toml
+case folder
+case words.csv
+case broken.toml
+case bytes.toml
+case empty.toml
+case ball.toml
+case case.toml --out words.txt
+case case.toml --level smoke
+case --new case.toml
+inverse absent.toml
+inverse folder
+inverse broken.toml
+inverse empty.toml
+inverse ball.toml
+inverse rod.toml --out words.txt
+inverse --law nonsense
+inverse --new rod.toml
+laws nonsense
+laws show
+laws show nonsense
+laws show kogut-etsion+nonsense
+laws show wang
+laws compare
+laws compare absent.toml
+laws compare folder
+laws compare empty.toml
+laws compare ball.toml
+laws compare case.toml --law nonsense
+laws compare case.toml --law kelvin-voigt
+laws compare case.toml --out words.txt
+laws list extra
+diagnose
+diagnose absent
+diagnose folder
+diagnose half-set
+diagnose words.txt
+diagnose kharaz-2001-oblique --out words.txt
+diagnose kharaz-2001-oblique --seed many
+diagnose kharaz-2001-oblique --seed 1.5
+diagnose kharaz-2001-oblique liquidmetal-bounces
+recordings nonsense
+recordings check
+recordings check absent
+recordings check folder
+recordings check half-set
+recordings check words.txt
+recordings audit absent
+recordings audit half-set
+recordings list absent
+recordings list words.txt
+recordings new
+recordings new half-set
+recordings new words.txt
+recordings new words.txt/below
+recordings fetch nonsense
+recordings fetch --catalogue absent.toml
+recordings fetch --out words.txt
+reduce nonsense
+reduce video
+reduce video absent.mp4
+reduce video words.mp4
+reduce video words.mp4 --frame-rate-hz 1000 --pixel-m 1e-4
+reduce video words.mp4 --frame-rate-hz fast --pixel-m 1e-4
+reduce video words.mp4 --frame-rate-hz -5 --pixel-m 1e-4
+reduce tip words.png
+reduce tip words.png --pixel-m 1e-5
+reduce tip words.png --pixel-m 0
+reduce mocap words.c3d
+reduce mocap words.csv --shape cube
+reduce scan words.csv
+reduce scan words.csv --unit um --step-m 1e-6
+reduce scan absent.csv --unit um --step-m 1e-6
+reduce sound words.wav
+reduce sound absent.wav
+reduce sound words.wav --out words.txt
+reduce table words.csv
+reduce table words.csv --holds nonsense
+reduce table words.csv --holds force
+reduce table words.csv --holds force --value nonsense
+reduce table nothing.csv --holds force
+reduce table bytes.csv --holds force
+reduce table words.csv --holds rebounds --into words.txt
+campaign nonsense
+campaign run --design huge
+campaign run --workers 0
+campaign run --workers some
+campaign run --retry all
+campaign run --out words.txt
+campaign status --design huge
+campaign show
+campaign show zz
+campaign show 0
+campaign export --data absent.h5
+campaign export --data words.h5
+campaign export --to table.xls
+campaign export --to folder
+campaign publish --design huge
+campaign publish --design smoke --out folder
+campaign refine zz
+fit absent.h5
+fit words.h5
+fit folder
+fit --out words.txt
+fit --judge absent
+fit --export words.txt
+examples --to words.txt
+examples extra
+keys nonsense
+doctor extra
+version extra
+verify --only nonsense
+proof nonsense
+proof run --list nonsense
+figures --chapter 9
+"""
+USES = [line.split() for line in LINES.strip().splitlines()]
+
+
+def test_there_are_more_than_a_hundred():
+    assert len({tuple(use) for use in USES}) == len(USES) > 100
+
+
+@pytest.mark.parametrize("use", USES, ids=" ".join)
+def test_a_wrong_use_is_told_in_short(use: list[str], capsys: pytest.CaptureFixture[str]) -> None:
+    code = run(use)
+    told = capsys.readouterr()
+    assert code == 2, told.out
+    lines = told.err.strip().splitlines()
+    # a line a mistake: a file of another kind has several
+    assert 1 <= len(lines) <= 25
+    assert all(len(line) > 8 for line in lines)
+    assert "Traceback" not in told.out + told.err
+    assert told.out == ""
