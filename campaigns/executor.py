@@ -12,10 +12,11 @@ import threading
 import time
 from collections.abc import Callable, Generator, Mapping
 from concurrent.futures import FIRST_COMPLETED, CancelledError, wait
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Any, Protocol
 
 from ..core.errors import InputError
+from ..core.provenance import differences, environment
 from ..core.threads import one_thread_each
 from ..fem import Solution, solve
 from .case import Case
@@ -23,15 +24,19 @@ from .case import Case
 _MOST_POOLS = 20  # that a run makes when workers die between cases
 _TRIES = 3
 _WINDOW = 4  # cases sent ahead to each dask worker
+_LOOK_S = 1.0  # between two looks at who is there
+PATIENCE_S = 60.0
+"""How long a run on a cluster goes on without any worker."""
 
 
 @dataclass(frozen=True)
 class Ended:
-    """One case that ended: its solution, or why there is none."""
+    """One case that ended: its solution, or why there is none, and by which versions."""
 
     id: str
     solution: Solution | None
     message: str = ""
+    computed_by: Mapping[str, str] | None = None
 
 
 class Executor(Protocol):
@@ -51,6 +56,29 @@ def solve_specification(spec: dict[str, Any], time_limit_s: float) -> Solution:
 
 Work = Callable[[dict[str, Any], float], Solution]
 """What a worker does with a case's specification and its time limit [s]."""
+
+Signed = tuple[Solution, dict[str, str]]
+
+
+def signed(work: Work, spec: dict[str, Any], time_limit_s: float) -> Signed:
+    """Do the work and say by which versions and source; what is sent to workers."""
+    return work(spec, time_limit_s), environment()
+
+
+def _ended(key: str, answer: Signed, *, where: str) -> Ended:
+    solution, computed_by = answer
+    _check_same(computed_by, where=where)
+    return Ended(key, solution, computed_by=computed_by)
+
+
+def _check_same(computed_by: Mapping[str, str], *, where: str) -> None:
+    """Refuse a worker whose numbers need not be those of this process."""
+    found = differences(environment(), computed_by)
+    if found:
+        raise InputError(
+            f"other versions: {'; '.join(found)}", source=where,
+            allowed="the same packages and source on every worker and here; what is done is kept",
+        )  # fmt: skip
 
 
 @dataclass(frozen=True)
@@ -123,8 +151,8 @@ class LocalExecutor:
     def _submit(self, pool: Any, case: Case, time_limit_s: float) -> Any:
         # the solver keeps the limit itself; the pool's is for one that hangs
         return pool.schedule(
-            self.work,
-            args=[case.specification(), time_limit_s],
+            signed,
+            args=[self.work, case.specification(), time_limit_s],
             timeout=1.5 * time_limit_s + 60.0,
         )
 
@@ -143,21 +171,36 @@ class DaskExecutor:
         The connection.
     work
         What the workers do with a case.
+    patience_s
+        How long to go on without any worker.
     """
 
     address: str
     workers: int
     client: Any
     work: Work = solve_specification
+    patience_s: float = PATIENCE_S
 
     @classmethod
-    def connect(cls, address: str, *, timeout_s: float = 10.0) -> DaskExecutor:
-        """Connect to a scheduler.
+    def connect(
+        cls, address: str, *, timeout_s: float = 10.0, patience_s: float = PATIENCE_S
+    ) -> DaskExecutor:
+        """Connect to a scheduler, wait for a worker, and see that all are of this source.
+
+        Parameters
+        ----------
+        address
+            `tcp://HOST:PORT`, or `tls://HOST:PORT` with the certificates of dask's configuration.
+        timeout_s
+            How long to wait for the scheduler.
+        patience_s
+            How long to wait for a worker, now and whenever there is none.
 
         Raises
         ------
         InputError
-            dask is not installed, or nobody answers at the address.
+            dask is not installed, nobody answers at the address, there is no worker, or one has
+            other versions.
         """
         try:
             from distributed import Client
@@ -169,13 +212,17 @@ class DaskExecutor:
             ) from None
         try:
             client = Client(address, timeout=timeout_s)
-        except (OSError, ValueError, TimeoutError) as error:
+        except (OSError, ValueError, TypeError, RuntimeError, TimeoutError) as error:
+            reason = (str(error).splitlines() or [type(error).__name__])[0]
             raise InputError(
-                f"no dask scheduler at {address} ({error})",
+                f"no dask scheduler at {address} ({reason})",
                 key="scheduler",
-                allowed="tcp://HOST:PORT",
+                allowed="tcp://HOST:PORT, or tls://HOST:PORT and the certificates of "
+                "distributed.comm.tls in dask's configuration",
             ) from None
-        return cls(address, max(1, len(client.scheduler_info()["workers"])), client)
+        made = cls(address, 1, client, patience_s=patience_s)
+        made._wait_for_worker()
+        return replace(made, workers=made._check_workers())
 
     def run(self, cases: Mapping[str, Case], *, time_limit_s: float) -> Generator[Ended]:
         """Compute the cases in a sliding window of a few a worker; give each as it ends.
@@ -186,7 +233,7 @@ class DaskExecutor:
         Raises
         ------
         InputError
-            The scheduler went away.
+            The scheduler went away, all workers did, or one has other versions.
         """
         from distributed import as_completed
 
@@ -200,22 +247,58 @@ class DaskExecutor:
                 if case is None:
                     return
                 future = self.client.submit(
-                    self.work, case.specification(), time_limit_s, key=f"case-{key}"
+                    signed, self.work, case.specification(), time_limit_s, key=f"case-{key}"
                 )
                 keys[future.key] = key
                 running.add(future)
 
         fill()
-        for future in running:
+        while keys:
+            future = self._next(running)
             key = keys.pop(future.key)
             error = None if future.cancelled() else future.exception()
             if future.cancelled() or isinstance(error, CancelledError):
                 raise self._went_away()
             if error is None:
-                yield Ended(key, future.result())
+                yield _ended(key, future.result(), where=f"a worker of {self.address}")
             else:
                 yield Ended(key, None, f"{type(error).__name__}: {error}")
             fill()
+
+    def _next(self, running: Any) -> Any:
+        """Wait for a case to end; not for ever where nobody computes."""
+        looked = time.monotonic()
+        while not running.has_ready():
+            time.sleep(0.02)
+            if time.monotonic() - looked > _LOOK_S:
+                if not self._worker_count():
+                    self._wait_for_worker()
+                looked = time.monotonic()
+        return next(running)
+
+    def _wait_for_worker(self) -> None:
+        try:
+            self.client.wait_for_workers(1, timeout=self.patience_s)
+        except TimeoutError:
+            raise InputError(
+                f"no worker within {self.patience_s:g} s; all completed cases are kept",
+                source=self.address,
+                allowed="a scheduler with workers: dask worker ADDRESS --nthreads 1",
+            ) from None
+
+    def _check_workers(self) -> int:
+        """Compare every worker with this process; return how many there are."""
+        try:
+            found = self.client.run(environment)
+        except Exception as error:  # a worker without this package raises what it likes
+            reason = (str(error).splitlines() or [type(error).__name__])[0]
+            raise InputError(
+                f"a worker cannot say its versions ({reason})", source=self.address,
+                allowed="dentscope, of this source, on every worker",
+            ) from None  # fmt: skip
+        for worker, versions in found.items():
+            _check_same(versions, where=worker)
+        return max(1, len(found))
 
     def _worker_count(self) -> int:
         # a client that has given up on its scheduler knows of no workers, not of none
@@ -254,10 +337,11 @@ def _answer(key: str, future: Any) -> Ended | None:
     from pebble import ProcessExpired
 
     try:
-        return Ended(key, future.result())
+        answer = future.result()
     except ProcessExpired:
         return None
     except TimeoutError:
         return Ended(key, None, "the case hung beyond its time limit")
     except Exception as error:  # a bug in one case must not take the campaign with it
         return Ended(key, None, f"{type(error).__name__}: {error}")
+    return _ended(key, answer, where="a worker of this machine")

@@ -1,10 +1,11 @@
-"""All or nothing: a change of an HDF5 file that a kill or a full disk cannot leave half done.
+"""All or nothing: a change of an HDF5 file that no kill, full disk or loss of power leaves half.
 
 HDF5 rewrites parts of its file in place, so that a writer that dies in the middle can damage what
-was complete before. Here the writer works on the file through an overlay in memory; the pages that
-it changed go to a journal beside the file (written whole, then renamed), and only then into the
-file. Whoever opens the file next finishes a journal that it finds. This is the redo log of
-databases.
+was complete before. Here the writer works on a copy in memory; the pages that it changed go to a
+journal beside the file (written whole, then renamed), and only then into the file. Whoever opens
+the file next finishes a journal that it finds. This is the redo log of databases. The journal knows
+by digests which file it belongs to, at whatever point its writing was interrupted, and touches no
+other.
 """
 
 from __future__ import annotations
@@ -12,26 +13,34 @@ from __future__ import annotations
 import fcntl
 import hashlib
 import io
-import os
 import time
 from collections.abc import Iterator
-from contextlib import contextmanager
+from contextlib import contextmanager, suppress
+from dataclasses import dataclass
 from pathlib import Path
 from typing import BinaryIO
 
 import h5py
 
-_PAGE = 4096
-_MAGIC = b"dentscope-journal-1\n"
+from ..core.disk import DISK
+from ..core.errors import InputError
+from ..core.output import write_file
+from .contents import SEALED_FROM, check_seal, seal
+
+PAGE = 4096
+_SECTOR = 512  # what a disk writes whole
+_MAGIC = b"dentscope-journal-2\n"
 _NUMBER = 8  # bytes of a number in the journal
 _DIGEST = 32
+_SHORT = 8  # bytes of a sector's digest
+_LAYOUT = ("v110", "v110")  # of HDF5: the first whose headers carry checksums at no cost of room
 PATIENCE_S = 300.0
 """How long to wait for another process that has the file open; ours have it for moments only."""
 
 
 @contextmanager
 def changing(path: Path) -> Iterator[h5py.File]:
-    """Open an HDF5 file for a change that happens whole or not at all.
+    """Open a sealed HDF5 file for a change that happens whole or not at all.
 
     Parameters
     ----------
@@ -40,19 +49,38 @@ def changing(path: Path) -> Iterator[h5py.File]:
 
     Raises
     ------
-    OSError
-        The change cannot be written, for example because the disk is full; the file is as it was,
-        or the journal holds the whole change.
+    InputError
+        The file or its journal is damaged, or the change cannot be written, for example because
+        the disk is full; the file is as it was, or the journal holds the whole change.
     """
     recover(path)
-    overlay = _Overlay(path)
-    try:
-        with h5py.File(overlay, "r+" if overlay.size else "w") as file:
-            yield file
-        overlay.write_journal(journal_of(path))
-    finally:
-        overlay.close()
+    before = path.read_bytes() if path.exists() else b""
+    if before:
+        check_seal(before, path)
+    with new_image(before) as changed:
+        yield changed.file
+    write_file(journal_of(path), journalled(before, changed.sealed))
     recover(path)
+
+
+@dataclass
+class Image:
+    """A file that is made in memory: `file` while it is open, then its bytes, sealed."""
+
+    file: h5py.File
+    sealed: bytes = b""
+
+
+@contextmanager
+def new_image(before: bytes = b"") -> Iterator[Image]:
+    """Make a sealed HDF5 file in memory, from nothing or from one that is to be changed."""
+    copy = io.BytesIO(before)
+    block = {} if before else {"userblock_size": SEALED_FROM}
+    with h5py.File(copy, "r+" if before else "w", libver=_LAYOUT, **block) as file:
+        made = Image(file)
+        yield made
+    image = copy.getvalue()
+    made.sealed = seal(image) + image[SEALED_FROM:]
 
 
 def journal_of(path: Path) -> Path:
@@ -66,151 +94,82 @@ def recover(path: Path) -> None:
     Raises
     ------
     OSError
-        There is no room for it; the file is as it was and the journal stays.
+        There is no room for it; the file is as it was, and the journal stays.
+    InputError
+        The journal is damaged, or belongs to another file.
     """
     journal = journal_of(path)
     if not journal.exists():
         return
-    with path.open("ab"):
-        pass  # a file that is new has no bytes yet
-    with path.open("r+b") as file:
+    change = _read_journal(journal)
+    if not path.exists():
+        if change.size_before:
+            raise _stale(journal)
+        DISK.close(DISK.create(path))
+        DISK.sync_folder(path.parent)
+    with path.open("rb") as file:
         lock(file, fcntl.LOCK_EX)
         if not journal.exists():
             return  # its writer, or another reader, was faster
-        size, pages = _read_journal(journal)
-        before = os.fstat(file.fileno()).st_size
-        if before < size:
-            try:
-                file.seek(before)
-                file.write(bytes(size - before))
-                file.flush()
-                os.fsync(file.fileno())
-            except OSError:
-                os.ftruncate(file.fileno(), before)
-                raise
-        # the room is there: from here on only a kill can interrupt, and then all is done again
-        for offset, page in pages:
-            file.seek(offset)
-            file.write(page)
-        file.truncate(size)
-        file.flush()
-        os.fsync(file.fileno())
-        journal.unlink()
+        image = file.read()
+        if hashlib.sha256(image).digest() != change.after:
+            if not change.belongs_to(image):
+                raise _stale(journal)
+            _write_pages(path, len(image), change)
+        DISK.remove(journal)
 
 
-class _Overlay(io.RawIOBase):
-    """A file as its writer sees it: changed pages lie in memory, the file is only read."""
+@dataclass(frozen=True)
+class Change:
+    """What a journal says.
 
-    def __init__(self, path: Path) -> None:
-        self._file: BinaryIO | None = path.open("rb") if path.exists() else None
-        self._on_disk = os.fstat(self._file.fileno()).st_size if self._file else 0
-        self._pages: dict[int, bytearray] = {}
-        self._at = 0
-        self.size = self._on_disk
+    Parameters
+    ----------
+    size_before, size
+        Of the file [bytes].
+    rest
+        Digest of the file before, its changed pages blank.
+    after
+        Digest of the file when the change is complete.
+    pages
+        Place, digests of the sectors before, and content of each changed page.
+    """
 
-    def readable(self) -> bool:
-        return True
+    size_before: int
+    size: int
+    rest: bytes
+    after: bytes
+    pages: tuple[tuple[int, bytes, bytes], ...]
 
-    def writable(self) -> bool:
-        return True
-
-    def seekable(self) -> bool:
-        return True
-
-    def seek(self, offset: int, whence: int = os.SEEK_SET) -> int:
-        start = {os.SEEK_SET: 0, os.SEEK_CUR: self._at, os.SEEK_END: self.size}[whence]
-        self._at = start + offset
-        return self._at
-
-    def tell(self) -> int:
-        return self._at
-
-    def truncate(self, size: int | None = None) -> int:
-        self.size = self._at if size is None else size
-        return self.size
-
-    def flush(self) -> None:
-        """Do nothing: what was changed is journalled at the end."""
-
-    def close(self) -> None:
-        if self._file is not None:
-            self._file.close()
-        super().close()
-
-    def readinto(self, buffer: memoryview) -> int:  # type: ignore[override]
-        count = min(len(buffer), max(0, self.size - self._at))
-        for number, within, start, length in self._spans(count):
-            page = self._pages.get(number)
-            if page is None:
-                page = self._from_disk(number)
-            buffer[start : start + length] = page[within : within + length]
-        self._at += count
-        return count
-
-    def write(self, data: bytes) -> int:  # type: ignore[override]
-        view = memoryview(data).cast("B")
-        for number, within, start, length in self._spans(len(view)):
-            if number not in self._pages:
-                self._pages[number] = self._from_disk(number)
-            self._pages[number][within : within + length] = view[start : start + length]
-        self._at += len(view)
-        self.size = max(self.size, self._at)
-        return len(view)
-
-    def write_journal(self, journal: Path) -> None:
-        """Write the changed pages beside the file, whole or not at all."""
-        content = bytearray(_MAGIC + _number(self.size) + _number(len(self._pages)))
-        for number, page in sorted(self._pages.items()):
-            content += _number(number * _PAGE) + page
-        unfinished = journal.with_suffix(".unfinished")
-        try:
-            with unfinished.open("wb") as stream:
-                stream.write(content)
-                stream.write(hashlib.sha256(content).digest())
-                stream.flush()
-                os.fsync(stream.fileno())
-        except OSError:
-            unfinished.unlink(missing_ok=True)
-            raise
-        unfinished.rename(journal)
-
-    def _spans(self, count: int) -> Iterator[tuple[int, int, int, int]]:
-        """Split the next `count` bytes: page, place within it, place in the buffer, length."""
-        done = 0
-        while done < count:
-            number, within = divmod(self._at + done, _PAGE)
-            length = min(_PAGE - within, count - done)
-            yield number, within, done, length
-            done += length
-
-    def _from_disk(self, number: int) -> bytearray:
-        page = bytearray(_PAGE)
-        if self._file is not None and number * _PAGE < self._on_disk:
-            self._file.seek(number * _PAGE)
-            found = self._file.read(_PAGE)
-            page[: len(found)] = found
-        return page
+    def belongs_to(self, image: bytes) -> bool:
+        """Whether a file is the one before the change, however much of it is written already."""
+        if not self.size_before <= len(image) <= max(self.size, self.size_before):
+            return False
+        old = bytearray(image[: self.size_before])
+        for at, before, content in self.pages:
+            if not _in_between(image[at : at + PAGE], before, content):
+                return False
+            old[at : at + PAGE] = bytes(len(old[at : at + PAGE]))
+        return hashlib.sha256(old).digest() == self.rest
 
 
-def _read_journal(journal: Path) -> tuple[int, list[tuple[int, bytes]]]:
-    content = journal.read_bytes()
-    body, digest = content[:-_DIGEST], content[-_DIGEST:]
-    if not body.startswith(_MAGIC) or hashlib.sha256(body).digest() != digest:
-        raise OSError(f"{journal.name} is damaged; remove it to go on without its one change")
-    at = len(_MAGIC)
-    size, count = (_value(body, at + k * _NUMBER) for k in range(2))
-    at += 2 * _NUMBER
-    step = _NUMBER + _PAGE
-    starts = range(at, at + count * step, step)
-    return size, [(_value(body, k), body[k + _NUMBER : k + step]) for k in starts]
-
-
-def _number(value: int) -> bytes:
-    return value.to_bytes(_NUMBER, "little")
-
-
-def _value(content: bytes, at: int) -> int:
-    return int.from_bytes(content[at : at + _NUMBER], "little")
+def journalled(before: bytes, after: bytes) -> bytes:
+    """Return a journal: what turns a file's bytes into others, and the digests of both."""
+    blank = bytearray(before)
+    pages = []
+    for at in range(0, len(after), PAGE):
+        old, new = before[at : at + PAGE], after[at : at + PAGE]
+        if old != new:
+            sectors = b"".join(_short(s) for s in _sectors(old.ljust(PAGE, b"\0")))
+            pages.append(_number(at) + sectors + new.ljust(PAGE, b"\0"))
+            blank[at : at + PAGE] = bytes(len(old))
+    body = b"".join(
+        (
+            _MAGIC, *map(_number, (len(before), len(after), len(pages))),
+            hashlib.sha256(blank).digest(), hashlib.sha256(after).digest(), *pages,
+        )
+    )  # fmt: skip
+    return body + hashlib.sha256(body).digest()
 
 
 def lock(file: BinaryIO, kind: int) -> None:
@@ -239,3 +198,78 @@ def lock(file: BinaryIO, kind: int) -> None:
             time.sleep(0.02)
         else:
             return
+
+
+def _write_pages(path: Path, size: int, change: Change) -> None:
+    file = DISK.open(path)
+    try:
+        if size < change.size:
+            try:
+                DISK.write(file, bytes(change.size - size), size)
+                DISK.sync(file)
+            except OSError:
+                with suppress(OSError):
+                    DISK.resize(file, size)
+                raise
+        # the room is there: from here on only a kill can interrupt, and then all is done again
+        for at, _, content in change.pages:
+            DISK.write(file, content[: change.size - at], at)
+        if size > change.size:
+            DISK.sync(file)
+            DISK.resize(file, change.size)
+        DISK.sync(file)
+    finally:
+        DISK.close(file)
+
+
+def _stale(journal: Path) -> InputError:
+    return InputError(
+        f"belongs to another {journal.name.removesuffix('.journal')}, which is left as it is",
+        source=str(journal),
+        allowed="a journal beside its own file: move it away, or bring the file back",
+    )
+
+
+def _read_journal(journal: Path) -> Change:
+    content = journal.read_bytes()
+    body, digest = content[:-_DIGEST], content[-_DIGEST:]
+    if not body.startswith(_MAGIC) or hashlib.sha256(body).digest() != digest:
+        raise InputError(
+            "damaged", source=str(journal), allowed="remove it to go on without its one change"
+        )
+    at = len(_MAGIC) + 3 * _NUMBER
+    before, size, count = (_value(body, at - k * _NUMBER) for k in (3, 2, 1))
+    rest, after = (body[at + k * _DIGEST : at + (k + 1) * _DIGEST] for k in range(2))
+    at += 2 * _DIGEST
+    split = _NUMBER + _SHORT * (PAGE // _SECTOR)
+    step = split + PAGE
+    pages = tuple(
+        (_value(body, k), body[k + _NUMBER : k + split], body[k + split : k + step])
+        for k in range(at, at + count * step, step)
+    )
+    return Change(before, size, rest, after, pages)
+
+
+def _in_between(found: bytes, before: bytes, content: bytes) -> bool:
+    """Whether each sector of a page is as it was, or as it will be; none yet counts as zeros."""
+    sectors = zip(_sectors(found.ljust(PAGE, b"\0")), _sectors(content), strict=True)
+    return all(
+        old_or_new == new or _short(old_or_new) == before[k * _SHORT : (k + 1) * _SHORT]
+        for k, (old_or_new, new) in enumerate(sectors)
+    )
+
+
+def _sectors(page: bytes) -> list[bytes]:
+    return [page[k : k + _SECTOR] for k in range(0, PAGE, _SECTOR)]
+
+
+def _short(sector: bytes) -> bytes:
+    return hashlib.blake2b(sector, digest_size=_SHORT).digest()
+
+
+def _number(value: int) -> bytes:
+    return value.to_bytes(_NUMBER, "little")
+
+
+def _value(content: bytes, at: int) -> int:
+    return int.from_bytes(content[at : at + _NUMBER], "little")

@@ -2,14 +2,18 @@
 
 from __future__ import annotations
 
+import hashlib
 import json
 from collections import Counter
+from collections.abc import Iterable, Mapping
 from pathlib import Path
+from typing import Any, NamedTuple
 
 import h5py
 import numpy as np
+import numpy.typing as npt
 
-from ..core.provenance import file_digest
+from .contents import open_image, read_array
 from .quality import MOST_ENERGY_DEFECT, MOST_STEP
 
 MANIFEST = "PARTS.md"
@@ -25,72 +29,89 @@ recorded depths, over the local value.
 """
 
 
-def write_manifest(folder: Path) -> Path:
-    """Write PARTS.md for all parts in `folder`."""
-    parts = sorted(folder.glob("*.h5"))
-    text = _HEAD + "".join(_row(path) for path in parts)
+def manifest(folder: Path, names: Iterable[str], made: Mapping[str, bytes]) -> str:
+    """Return PARTS.md for the parts of a folder.
+
+    Parameters
+    ----------
+    folder
+        Where the parts lie.
+    names
+        All of them.
+    made
+        Contents of those that are not written yet.
+    """
+    parts = []
+    for name in sorted(names):
+        image = made.get(name) or (folder / name).read_bytes()
+        with open_image(image) as file:
+            parts.append(Part(name, len(image), hashlib.sha256(image).hexdigest(), _tables(file)))
+    text = _HEAD + "".join(map(_row, parts))
     text += "\n## Quality\n\n"
     text += "| part | energy defect, median and largest | above the mark | "
     text += "step, median and largest | above the mark |\n| --- | --- | --- | --- | --- |\n"
-    text += "".join(_quality(path) for path in parts)
+    text += "".join(map(_quality, parts))
     text += f"\nMarks: energy defect {MOST_ENERGY_DEFECT:.1%}, step {MOST_STEP:.0%}.\n"
     text += "\n## Failures\n\n" + ("".join(map(_failures, parts)) or "None.\n")
     text += "\n## Computed with\n\n" + "".join(map(_versions, parts))
     text += "\n## SHA-256\n\n"
-    text += "".join(f"- `{path.name}` {file_digest(path)}\n" for path in parts)
-    place = folder / MANIFEST
-    place.write_text(text, encoding="utf-8")
-    return place
+    return text + "".join(f"- `{part.name}` {part.sha256}\n" for part in parts)
 
 
-def _row(path: Path) -> str:
-    with h5py.File(path, "r") as file:
-        cases = file["cases"]
-        done = _texts(cases["status"]) == "done"
-        depth, radius = cases["depth_reached"][()], cases["radius_reached"][()]
-        whole = int(((depth >= 0.1 - 1e-9) & (radius >= 0.5 - 1e-9)).sum())
-        hours = sum(json.loads(t).get("cpu_s", 0.0) for t in _texts(cases["counters"])) / 3600.0
-        version = file.attrs["numerics_version"]
-    n, size = len(done), path.stat().st_size / 1e6
+class Part(NamedTuple):
+    """One part: its file and the columns of its table `cases`."""
+
+    name: str
+    size: int
+    sha256: str
+    cases: dict[str, Any]
+
+    @property
+    def done(self) -> npt.NDArray[np.bool_]:
+        """Which cases are complete, (n,)."""
+        return np.array([status == "done" for status in self.cases["status"]])
+
+
+def _tables(file: h5py.File) -> dict[str, Any]:
+    columns = {name: read_array(file["cases"][name]) for name in file["cases"]}
+    texts = {k: np.char.decode(v, "utf-8") for k, v in columns.items() if v.dtype.kind == "S"}
+    return {**columns, **texts, "numerics_version": file.attrs["numerics_version"]}
+
+
+def _row(part: Part) -> str:
+    cases, n = part.cases, len(part.done)
+    depth, radius = cases["depth_reached"], cases["radius_reached"]
+    whole = int(((depth >= 0.1 - 1e-9) & (radius >= 0.5 - 1e-9)).sum())
+    hours = sum(json.loads(t).get("cpu_s", 0.0) for t in cases["counters"]) / 3600.0
     shallow = int((depth >= 0.04 - 1e-9).sum())
     return (
-        f"| `{path.name}` | {size:.2f} | {n} | {n - int(done.sum())} | {whole} | {shallow} | "
-        f"{version} | {hours:.1f} |\n"
+        f"| `{part.name}` | {part.size / 1e6:.2f} | {n} | {n - int(part.done.sum())} | {whole} | "
+        f"{shallow} | {cases['numerics_version']} | {hours:.1f} |\n"
     )
 
 
-def _quality(path: Path) -> str:
-    with h5py.File(path, "r") as file:
-        cases = file["cases"]
-        done = _texts(cases["status"]) == "done"
-        if not done.any():
-            return f"| `{path.name}` | | | | |\n"
-        energy = cases["energy_defect"][()][done]
-        names = ("force_step", "radius_step", "share_step")
-        steps = np.nanmax([cases[name][()][done] for name in names], axis=0)
+def _quality(part: Part) -> str:
+    done = part.done
+    if not done.any():
+        return f"| `{part.name}` | | | | |\n"
+    energy = part.cases["energy_defect"][done]
+    names = ("force_step", "radius_step", "share_step")
+    steps = np.nanmax([part.cases[name][done] for name in names], axis=0)
     return (
-        f"| `{path.name}` | {np.median(energy):.2%}, {energy.max():.2%} | "
+        f"| `{part.name}` | {np.median(energy):.2%}, {energy.max():.2%} | "
         f"{int((energy > MOST_ENERGY_DEFECT).sum())} | "
         f"{np.median(steps):.2%}, {steps.max():.2%} | {int((steps > MOST_STEP).sum())} |\n"
     )
 
 
-def _failures(path: Path) -> str:
-    with h5py.File(path, "r") as file:
-        cases = file["cases"]
-        told = zip(*(_texts(cases[name]) for name in ("status", "name", "message")), strict=True)
-        return "".join(f"- `{name}`: {why}\n" for status, name, why in told if status != "done")
+def _failures(part: Part) -> str:
+    told = zip(*(part.cases[name] for name in ("status", "name", "message")), strict=True)
+    return "".join(f"- `{name}`: {why}\n" for status, name, why in told if status != "done")
 
 
-def _versions(path: Path) -> str:
-    with h5py.File(path, "r") as file:
-        found = Counter(_texts(file["cases/environment"]))
+def _versions(part: Part) -> str:
     lines = []
-    for text, count in found.most_common():
+    for text, count in Counter(part.cases["environment"].tolist()).most_common():
         words = ", ".join(f"{name} {value}" for name, value in json.loads(text).items())
-        lines.append(f"- `{path.name}`, {count} cases: {words}\n")
+        lines.append(f"- `{part.name}`, {count} cases: {words}\n")
     return "".join(lines)
-
-
-def _texts(data: h5py.Dataset) -> np.ndarray[tuple[int], np.dtype[np.str_]]:
-    return np.char.decode(data[()], "utf-8")

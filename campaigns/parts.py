@@ -7,12 +7,18 @@ depth, all cases below each other), `unloadings` (one row an unloading), `unload
 the table above it that its rows belong to: `case` counts rows of `cases`, `unloading` of
 `unloadings`, `profile` depths of a case. Columns of floating-point numbers of the curves and shapes
 are in single precision (relative error below 6e-8); scalars are in double precision.
+
+A part is sealed as a campaign file is, and holds a digest of each case as it is read. Parts of
+format 1 are held to `SHA256SUMS` and `DIGESTS` beside them.
 """
 
 from __future__ import annotations
 
+import hashlib
 import json
-from collections.abc import Sequence
+import re
+from collections.abc import Iterator, Sequence
+from contextlib import contextmanager
 from dataclasses import asdict
 from pathlib import Path
 from typing import Any
@@ -22,16 +28,27 @@ import numpy as np
 import numpy.typing as npt
 
 from ..core.errors import InputError
+from ..core.input_file import read_bytes
+from ..core.provenance import canonical_json
 from ..fem import critical_depth
 from .case import Case
+from .contents import DIGEST, Tree, check_seal, is_sealed, open_image, read_array
+from .journal import new_image
 from .records import CaseRecord, UnloadingRecord
 from .schema import CURVE, PROFILES, UNLOADING_PROFILES, Dataset
 
 Floats = npt.NDArray[np.float64]
 Columns = dict[str, npt.NDArray[Any]]
 
-PART_FORMAT = "dentscope-campaign-part/1"
+PART_FORMAT = "dentscope-campaign-part/2"
+_FIRST_FORMAT = "dentscope-campaign-part/1"
+CHECKSUMS = "SHA256SUMS"
+"""Checksums of the parts of a folder."""
 
+DIGESTS = "DIGESTS"
+"""Digest and id of each case of the parts of format 1 in a folder."""
+
+_MOST_BYTES = 100_000_000
 _ROW = Dataset("1", ("row",), "row of the table above that this row belongs to")
 SCALARS: dict[str, Dataset] = {
     "E_s": Dataset("Pa", ("case",), "Young's modulus of the sphere"),
@@ -74,19 +91,18 @@ _ON_SPHERE = {n: PROFILES[n] for n in ("sphere_r", "sphere_z", "pressure")}
 _ON_FLAT = {n: PROFILES[n] for n in ("flat_r", "flat_z")}
 
 
-def write_part(path: Path, records: Sequence[CaseRecord], *, about: dict[str, str]) -> None:
-    """Write cases as one part.
+def part_of(records: Sequence[CaseRecord], *, about: dict[str, str]) -> bytes:
+    """Return cases as the bytes of one part.
 
     Parameters
     ----------
-    path
-        The file; one that is there is replaced.
     records
         The cases.
     about
         What the part says of itself: design, numerics version.
     """
-    with h5py.File(path, "w") as file:
+    with new_image() as made:
+        file = made.file
         file.attrs["format"] = PART_FORMAT
         for name, value in about.items():
             file.attrs[name] = value
@@ -107,6 +123,44 @@ def write_part(path: Path, records: Sequence[CaseRecord], *, about: dict[str, st
         for table, columns in (("profile_sphere", _ON_SPHERE), ("profile_flat", _ON_FLAT)):
             nodes = [(k, _nodes(state, columns)) for k, state in states]
             _put_table(file, table, "profile", nodes, columns)
+        # of what a reader will get: single precision has rounded it
+        digests = [digest_of(record).encode() for record in _read_records(file)]
+        data = _put(file["cases"], DIGEST, np.array(digests, dtype="S64"))
+        data.attrs["meaning"] = "SHA-256 of the case as it is read"
+    return made.sealed
+
+
+@contextmanager
+def opened_part(path: Path) -> Iterator[h5py.File]:
+    """Open a part of which no byte has changed.
+
+    Raises
+    ------
+    InputError
+        The file is damaged, is no part, or nothing beside it says what it should be.
+    """
+    image = read_bytes(path, most=_MOST_BYTES, allowed="a published part")
+    if is_sealed(image):
+        check_seal(image, path)
+    elif hashlib.sha256(image).hexdigest() != checksums(path.parent).get(path.name):
+        raise InputError(
+            "damaged, or not a published part: no checksum beside it is its own",
+            source=str(path),
+            allowed=f"a sealed part, or one that {CHECKSUMS} in its folder names",
+        )
+    try:
+        with open_image(image) as file:
+            known = (PART_FORMAT, _FIRST_FORMAT)
+            if file.attrs.get("format") not in known:
+                raise InputError(
+                    f"format {file.attrs.get('format')!r}", source=str(path),
+                    allowed=" or ".join(known),
+                )  # fmt: skip
+            yield file
+    except InputError:
+        raise
+    except (KeyError, OSError, RuntimeError, ValueError, TypeError) as error:
+        raise InputError(f"damaged ({error})", source=str(path)) from None
 
 
 def read_part(path: Path) -> list[CaseRecord]:
@@ -117,26 +171,86 @@ def read_part(path: Path) -> list[CaseRecord]:
     InputError
         The file is damaged or no part.
     """
-    try:
-        with h5py.File(path, "r") as file:
-            if file.attrs.get("format") != PART_FORMAT:
+    with opened_part(path) as file:
+        records = _read_records(file)
+        if DIGEST in file["cases"]:
+            known = texts_of(file, DIGEST)
+        else:
+            listed = _digests(path.parent)
+            known = [listed.get(record.id, "") for record in records]
+        for record, digest in zip(records, known, strict=True):
+            if digest != digest_of(record):
                 raise InputError(
-                    f"format {file.attrs.get('format')!r}", source=str(path), allowed=PART_FORMAT
+                    "its digest is another: damaged", source=str(path), key=record.case.name
                 )
-            return _read_records(file)
-    except (KeyError, OSError, RuntimeError, ValueError) as error:
-        if isinstance(error, InputError):
-            raise
-        raise InputError(f"damaged ({error})", source=str(path)) from None
+        return records
 
 
 def is_part(path: Path) -> bool:
-    """Whether a file is a published part."""
+    """Whether a file is a published part, and as it was written."""
     try:
-        with h5py.File(path, "r") as file:
-            return bool(file.attrs.get("format") == PART_FORMAT)
-    except OSError:
+        with opened_part(path):
+            return True
+    except InputError:
         return False
+
+
+def checksums(folder: Path) -> dict[str, str]:
+    """Checksum of each part of a folder by its name; empty where there is no list.
+
+    Raises
+    ------
+    InputError
+        The list is damaged.
+    """
+    return {name: digest for digest, name in _lines(folder / CHECKSUMS)}
+
+
+def _digests(folder: Path) -> dict[str, str]:
+    return {name: digest for digest, name in _lines(folder / DIGESTS)}
+
+
+def _lines(place: Path) -> list[list[str]]:
+    if not place.exists():
+        return []
+    raw = read_bytes(place, most=10_000_000, allowed="lines of a digest and a name")
+    lines = [line.split() for line in raw.decode(errors="replace").splitlines()]
+    for number, line in enumerate(lines, start=1):
+        if len(line) != 2 or not re.fullmatch(r"[0-9a-f]{64}", line[0]):
+            raise InputError(
+                "damaged", source=str(place), key=f"line {number}", allowed="a digest and a name"
+            )
+    return lines
+
+
+def digest_of(record: CaseRecord) -> str:
+    """SHA-256 of all that a record holds, as 64 hexadecimal digits."""
+    arrays = {
+        "loading": record.curve,
+        "profiles": record.profiles,
+        **{f"unload-{k}": u.curve | u.profiles for k, u in enumerate(record.unloadings)},
+    }
+    about = {
+        "id": record.id,
+        "specification": record.case.specification(),
+        "status": record.status,
+        "message": record.message,
+        "unloadings": [(u.depth, u.residual_sphere, u.residual_flat) for u in record.unloadings],
+        "counters": record.counters,
+        "accuracy": record.accuracy,
+        "environment": record.environment,
+        "mesh": record.mesh,
+    }
+    groups = {
+        name: Tree(arrays=dict(columns), units=dict.fromkeys(columns, ""))
+        for name, columns in arrays.items()
+    }
+    return Tree(attributes={"about": canonical_json(about)}, groups=groups).digest()
+
+
+def texts_of(file: h5py.File, name: str) -> list[str]:
+    """Return a column of texts of the table `cases`."""
+    return [text.decode() for text in read_array(file["cases"][name]).tolist()]
 
 
 def _put_cases(group: h5py.Group, records: Sequence[CaseRecord]) -> None:
@@ -235,7 +349,7 @@ def _describe(data: h5py.Dataset, about: Dataset) -> None:
 
 
 def _read_records(file: h5py.File) -> list[CaseRecord]:
-    texts = {name: [t.decode() for t in file["cases"][name][()]] for name in TEXTS}
+    texts = {name: texts_of(file, name) for name in TEXTS}
     n = len(texts["id"])
     curves = _split(file["loading"], "case", n, CURVE)
     unloadings = _read_unloadings(file, n)
@@ -260,12 +374,12 @@ def _read_records(file: h5py.File) -> list[CaseRecord]:
 
 def _read_unloadings(file: h5py.File, n: int) -> list[list[UnloadingRecord]]:
     table = file["unloadings"]
-    owner = table["case"][()]
+    owner = read_array(table["case"])
     count = len(owner)
     curves = _split(file["unloading_curves"], "unloading", count, CURVE)
     craters = _split(file["craters"], "unloading", count, _CRATER)
     tips = _split(file["tips"], "unloading", count, _TIP)
-    scalars = {name: table[name][()] for name in _UNLOADING}
+    scalars = {name: read_array(table[name]) for name in _UNLOADING}
     out: list[list[UnloadingRecord]] = [[] for _ in range(n)]
     for k in range(count):
         out[owner[k]].append(
@@ -281,7 +395,7 @@ def _read_unloadings(file: h5py.File, n: int) -> list[list[UnloadingRecord]]:
 
 
 def _read_profiles(file: h5py.File, n: int) -> list[dict[str, Floats]]:
-    owner, depth = file["profiles"]["case"][()], file["profiles"]["depth"][()]
+    owner, depth = (read_array(file["profiles"][name]) for name in ("case", "depth"))
     spheres = _split(file["profile_sphere"], "profile", len(owner), _ON_SPHERE)
     flats = _split(file["profile_flat"], "profile", len(owner), _ON_FLAT)
     out: list[dict[str, Floats]] = []
@@ -309,9 +423,9 @@ def _split(
     group: h5py.Group, parent: str, n: int, columns: dict[str, Dataset]
 ) -> list[dict[str, Floats]]:
     """Cut a table's columns into the pieces of its `n` owners, whose rows lie together."""
-    ends = np.searchsorted(group[parent][()], np.arange(n), side="right")
+    ends = np.searchsorted(read_array(group[parent]), np.arange(n), side="right")
     starts = np.concatenate([[0], ends[:-1]]) if n else ends
-    whole = {name: group[name][()].astype(float) for name in columns}
+    whole = {name: read_array(group[name]).astype(float) for name in columns}
     return [
         {name: values[a:b] for name, values in whole.items()} if b > a else {}
         for a, b in zip(starts, ends, strict=True)

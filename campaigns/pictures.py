@@ -7,6 +7,7 @@ from pathlib import Path
 import numpy as np
 
 from ..core.material import Pair
+from ..core.output import write_figure
 from ..fem import critical_depth
 from .records import CaseRecord
 
@@ -18,7 +19,6 @@ def draw_campaign(records: list[CaseRecord], folder: Path) -> list[Path]:
     mpl.use("Agg")
     from matplotlib.figure import Figure
 
-    folder.mkdir(parents=True, exist_ok=True)
     figure = Figure(figsize=(10, 8), layout="constrained")
     axes = figure.subplots(2, 2)
     colours = mpl.colormaps["coolwarm"]
@@ -47,9 +47,7 @@ def draw_campaign(records: list[CaseRecord], folder: Path) -> list[Path]:
         axis.set_ylabel(y)
         axis.grid(alpha=0.3)
     figure.suptitle("blue: weak sphere (flattening), red: weak flat (indentation)")
-    path = folder / "curves.png"
-    figure.savefig(path, dpi=120)
-    return [path]
+    return [write_figure(figure, folder / "curves.png", dpi=120)]
 
 
 def _critical_force(pair: Pair) -> float:

@@ -6,22 +6,22 @@ The parts' checksums lie beside them and are compared whenever they are read.
 from __future__ import annotations
 
 import json
-import tempfile
 from collections import Counter
 from collections.abc import Sequence
 from dataclasses import dataclass
+from hashlib import sha256
 from pathlib import Path
 
-import h5py
 import numpy as np
 import numpy.typing as npt
 
 from .. import fem
 from ..core.errors import InputError
+from ..core.output import finish, finish_pending, locked, write_files
 from ..core.provenance import file_digest
 from .designs import Design, distinct_cases
-from .manifest import write_manifest
-from .parts import read_part, write_part
+from .manifest import MANIFEST, manifest
+from .parts import CHECKSUMS, checksums, opened_part, part_of, read_part, texts_of
 from .records import CaseRecord
 from .run import status_of
 from .store import Store
@@ -30,7 +30,6 @@ Floats = npt.NDArray[np.float64]
 
 MOST_PARTS = 8
 MOST_BYTES = 10_000_000
-CHECKSUMS = "SHA256SUMS"
 _ROOM = 0.93  # of the size of a part, when its cases are shared out by their mean size
 
 
@@ -97,30 +96,29 @@ def publish(
             key=design.name,
             allowed="a complete run",
         )
-    folder.mkdir(parents=True, exist_ok=True)
-    wanted = distinct_cases(design)
-    twice = wanted.keys() & _published_ids(folder)
-    if twice:
-        raise InputError(
-            f"{len(twice)} of its {len(wanted)} cases are published already",
-            source=str(folder),
-            key=design.name,
-        )
-    stored = {record.id: record for record in store.read_all()}
-    records = [stored[key] for key in wanted]
-    with tempfile.TemporaryDirectory(dir=folder, prefix=".part-") as scratch:
-        made = _write_parts(records, design.name, Path(scratch), most_bytes)
+    with locked(folder):
+        finish_pending(folder)
+        wanted = distinct_cases(design)
+        twice = wanted.keys() & _published_ids(folder)
+        if twice:
+            raise InputError(
+                f"{len(twice)} of its {len(wanted)} cases are published already",
+                source=str(folder),
+                key=design.name,
+            )
+        stored = {record.id: record for record in store.read_all()}
+        made = _made_parts([stored[key] for key in wanted], design.name, most_bytes)
         if len(list(folder.glob("*.h5"))) + len(made) > MOST_PARTS:
             raise InputError(
                 f"{len(made)} more parts", source=str(folder), allowed=f"{MOST_PARTS} in all"
             )
-        parts = [folder / f"{design.name}-{k}.h5" for k in range(1, len(made) + 1)]
-        for temporary, part in zip(made, parts, strict=True):
-            temporary.rename(part)
-    lines = [f"{file_digest(path)}  {path.name}\n" for path in sorted(folder.glob("*.h5"))]
-    (folder / CHECKSUMS).write_text("".join(lines), encoding="utf-8")
-    write_manifest(folder)
-    return parts
+        parts = {f"{design.name}-{k}.h5": part for k, part in enumerate(made, start=1)}
+        sums = checksums(folder) | {k: sha256(v).hexdigest() for k, v in parts.items()}
+        lines = [f"{digest}  {name}\n" for name, digest in sorted(sums.items())]
+        everything: dict[str, bytes | str] = {**parts, CHECKSUMS: "".join(lines)}
+        everything[MANIFEST] = manifest(folder, tuple(sums), parts)
+        write_files(folder, everything)
+    return [folder / name for name in parts]
 
 
 def read_published(folder: Path) -> list[CaseRecord]:
@@ -145,8 +143,8 @@ def published_designs(folder: Path) -> list[Published]:
     """
     found: dict[str, list[tuple[int, Counter[str]]]] = {}
     for path in _checked_parts(folder):
-        with h5py.File(path, "r") as file:
-            counts = Counter(text.decode() for text in file["cases/status"][()])
+        with opened_part(path) as file:
+            counts = Counter(texts_of(file, "status"))
             version = int(file.attrs["numerics_version"])
             found.setdefault(str(file.attrs["design"]), []).append((version, counts))
     return [
@@ -164,21 +162,18 @@ def published_designs(folder: Path) -> list[Published]:
 def _published_ids(folder: Path) -> set[str]:
     ids: set[str] = set()
     for path in _checked_parts(folder):
-        with h5py.File(path, "r") as file:
-            ids.update(text.decode() for text in file["cases/id"][()])
+        with opened_part(path) as file:
+            ids.update(texts_of(file, "id"))
     return ids
 
 
 def _checked_parts(folder: Path) -> list[Path]:
-    sums = folder / CHECKSUMS
-    if not sums.exists():
-        return []
+    finish(folder)
     paths = []
-    for line in sums.read_text(encoding="utf-8").splitlines():
-        digest, name = line.split()
+    for name, digest in checksums(folder).items():
         path = folder / name
         if not path.exists():
-            raise InputError("no such file", source=str(path), allowed=f"a part of {sums}")
+            raise InputError("no such file", source=str(path), allowed=f"a part of {CHECKSUMS}")
         if file_digest(path) != digest:
             raise InputError("its checksum is not the published one", source=str(path))
         paths.append(path)
@@ -248,23 +243,17 @@ def _scaled(record: CaseRecord) -> tuple[Floats, Floats, Floats, Floats]:
     return c["delta"] / pair.R, force, c["radius"] / pair.R, share
 
 
-def _write_parts(
-    records: list[CaseRecord], design: str, scratch: Path, most_bytes: int
-) -> list[Path]:
-    """Write the cases, in order, as the fewest equal parts that stay below the size."""
+def _made_parts(records: list[CaseRecord], design: str, most_bytes: int) -> list[bytes]:
+    """Return the cases, in order, as the fewest equal parts that stay below the size."""
     about = {"design": design, "numerics_version": str(fem.NUMERICS_VERSION)}
-    whole = scratch / "whole.h5"
-    write_part(whole, records, about=about)
-    if whole.stat().st_size < most_bytes:
+    whole = part_of(records, about=about)
+    if len(whole) < most_bytes:
         return [whole]
-    count = int(np.ceil(whole.stat().st_size / (_ROOM * most_bytes)))
+    count = int(np.ceil(len(whole) / (_ROOM * most_bytes)))
     while count <= max(MOST_PARTS, len(records)):
-        paths = []
-        for k, share in enumerate(np.array_split(np.arange(len(records)), count)):
-            path = scratch / f"{count}-{k}.h5"
-            write_part(path, [records[i] for i in share], about=about)
-            paths.append(path)
-        if all(path.stat().st_size < most_bytes for path in paths):
-            return paths
+        shares = np.array_split(np.arange(len(records)), count)
+        parts = [part_of([records[i] for i in share], about=about) for share in shares]
+        if all(len(part) < most_bytes for part in parts):
+            return parts
         count += 1
     raise InputError("one case is larger than a part may be", source=design)

@@ -4,8 +4,8 @@ from __future__ import annotations
 
 from pathlib import Path
 
-from .parts import is_part, read_part
-from .publish import CHECKSUMS, read_published
+from .parts import CHECKSUMS, is_part, read_part
+from .publish import read_published
 from .records import CaseRecord
 from .store import Store
 

@@ -5,7 +5,7 @@ from __future__ import annotations
 import json
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Any
+from typing import Any, NamedTuple
 
 import h5py
 import numpy as np
@@ -13,6 +13,7 @@ import numpy.typing as npt
 
 from ..core.errors import InputError
 from .case import Case
+from .contents import DIGEST, Tree, read_tree
 from .quality import Quality, quality_of
 from .schema import CURVE, PROFILES, UNLOADING_PROFILES, Dataset
 
@@ -113,50 +114,69 @@ def read_summary(key: str, group: h5py.Group, path: Path) -> Summary:
 
 
 def read_case(key: str, group: h5py.Group, path: Path) -> CaseRecord:
-    """Read a case whole; a dataset that is missing or in another unit is refused."""
-    unloadings = []
-    for name in sorted((n for n in group if n.startswith("unload-")), key=lambda n: int(n[7:])):
-        part = group[name]
-        unloadings.append(
-            UnloadingRecord(
-                depth=float(part.attrs["depth"]),
-                curve=_read_arrays(part, CURVE, path),
-                residual_sphere=float(part.attrs["residual_sphere_m"]),
-                residual_flat=float(part.attrs["residual_flat_m"]),
-                profiles=_read_arrays(part, UNLOADING_PROFILES, path),
-            )
-        )
-    prefix = "counter_"
+    """Read a case whole.
+
+    Raises
+    ------
+    InputError
+        Its digest is another, or a dataset is missing or in another unit.
+    """
+    tree = read_tree(group)
+    attributes, prefix = tree.attributes, "counter_"
+    if DIGEST in attributes and attributes[DIGEST] != tree.digest():
+        raise InputError("its digest is another: damaged", source=str(path), key=group.name)
+    place = _Place(path, group.name)
+    names = sorted((n for n in tree.groups if n.startswith("unload-")), key=lambda n: int(n[7:]))
     return CaseRecord(
         id=key,
-        case=Case.from_specification(json.loads(group.attrs["specification"])),
-        status=str(group.attrs["status"]),
-        message=str(group.attrs["message"]),
-        curve=_read_arrays(group["loading"], CURVE, path) if "loading" in group else {},
-        unloadings=tuple(unloadings),
-        profiles=_read_arrays(group["profiles"], PROFILES, path) if "profiles" in group else {},
+        case=Case.from_specification(json.loads(attributes["specification"])),
+        status=str(attributes["status"]),
+        message=str(attributes["message"]),
+        curve=_arrays(tree, "loading", CURVE, place),
+        unloadings=tuple(_unloading(tree, name, place) for name in names),
+        profiles=_arrays(tree, "profiles", PROFILES, place),
         counters={
             name[len(prefix) :]: float(value)
-            for name, value in group.attrs.items()
+            for name, value in attributes.items()
             if name.startswith(prefix)
         },
-        accuracy=json.loads(group.attrs.get("accuracy", "{}")),
-        environment=json.loads(group.attrs["environment"]),
-        mesh=str(group.attrs.get("mesh", "")),
+        accuracy=json.loads(attributes.get("accuracy", "{}")),
+        environment=json.loads(attributes["environment"]),
+        mesh=str(attributes.get("mesh", "")),
     )
 
 
-def _read_arrays(group: h5py.Group, schema: dict[str, Dataset], path: Path) -> dict[str, Floats]:
-    out = {}
-    for name, about in schema.items():
-        if name not in group:
-            raise InputError("missing", source=str(path), key=f"{group.name}/{name}")
-        if group[name].attrs.get("unit") != about.unit:
+class _Place(NamedTuple):
+    """File and group, for errors."""
+
+    path: Path
+    group: str
+
+
+def _unloading(case: Tree, name: str, place: _Place) -> UnloadingRecord:
+    attributes = case.groups[name].attributes
+    return UnloadingRecord(
+        depth=float(attributes["depth"]),
+        curve=_arrays(case, name, CURVE, place),
+        residual_sphere=float(attributes["residual_sphere_m"]),
+        residual_flat=float(attributes["residual_flat_m"]),
+        profiles=_arrays(case, name, UNLOADING_PROFILES, place),
+    )
+
+
+def _arrays(case: Tree, name: str, schema: dict[str, Dataset], place: _Place) -> dict[str, Floats]:
+    """Arrays of one of a case's groups; nothing where it has no such group."""
+    if name not in case.groups:
+        return {}
+    group, out = case.groups[name], {}
+    for column, about in schema.items():
+        key = f"{place.group}/{name}/{column}"
+        if column not in group.arrays:
+            raise InputError("missing", source=str(place.path), key=key)
+        if group.units[column] != about.unit:
             raise InputError(
-                f"unit {group[name].attrs.get('unit')!r}",
-                source=str(path),
-                key=f"{group.name}/{name}",
+                f"unit {group.units[column]!r}", source=str(place.path), key=key,
                 allowed=about.unit,
-            )
-        out[name] = np.asarray(group[name][()], dtype=float)
+            )  # fmt: skip
+        out[column] = np.asarray(group.arrays[column], dtype=float)
     return out

@@ -113,7 +113,7 @@ def run_design(
         with closing(executor.run(todo, time_limit_s=time_limit_s)) as endings:
             for ended in endings:
                 case, solution = cases[ended.id], ended.solution
-                store.put(case, solution, message=ended.message)
+                store.put(case, solution, message=ended.message, computed_by=ended.computed_by)
                 good = solution is not None and solution.outcome.completed
                 stored[ended.id] = "done" if good else "failed"
                 if report is not None:

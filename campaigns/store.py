@@ -1,31 +1,39 @@
 """The campaign file: one writer, opened, appended and closed for each case.
 
 A case is appended whole or not at all (see `campaigns.journal`), so that the file is readable at
-any moment and survives the death of its writer and a full disk; what a kill costs is at most the
-cases in flight. A second writer is refused through a lock file that names its process.
+any moment and survives the death of its writer, a full disk and a loss of power; what a kill costs
+is at most the cases in flight. A second writer is refused through a lock file that names its
+process. The file is sealed and each case carries its digest (see `campaigns.contents`): no changed
+byte is taken for a number.
 """
 
 from __future__ import annotations
 
-import errno
 import fcntl
 import json
 import os
-from collections.abc import Iterator
-from contextlib import contextmanager, suppress
+from collections.abc import Callable, Iterator, Mapping
+from contextlib import contextmanager
+from dataclasses import asdict
 from pathlib import Path
+from typing import TypeVar
 
 import h5py
 
 from ..core.errors import Ending, InputError
+from ..core.output import NO_ROOM, cannot_write, folder_for_output, write_file
 from ..core.provenance import environment
 from ..fem import Solution
 from .case import Case
-from .fields import FOLDER, write_fields
-from .journal import changing, journal_of, lock, recover
+from .contents import DIGEST, check_seal, open_image, read_tree
+from .journal import changing, journal_of, lock, new_image, recover
 from .records import CaseRecord, Summary, read_case, read_summary
 from .schema import FORMAT
-from .writing import put_solution
+from .writing import FIELDS, put_solution, write_fields
+
+Read = TypeVar("Read")
+
+_REPAIR = "`dentscope campaign repair` keeps the cases that are whole"
 
 
 class Store:
@@ -47,12 +55,16 @@ class Store:
         Raises
         ------
         InputError
-            Another living process holds it.
+            Another living process holds it, or it cannot be made.
         """
-        lock = self.path.with_suffix(".lock")
-        self.path.parent.mkdir(parents=True, exist_ok=True)
+        place = self.path.with_suffix(".lock")
+        folder_for_output(self.path.parent)
+        try:
+            handle = place.open("a+")
+        except OSError as error:
+            raise cannot_write(error, place) from None
         # the system drops a flock with its process, however that ended; the number is for people
-        with lock.open("a+") as handle:
+        with handle:
             try:
                 fcntl.flock(handle, fcntl.LOCK_EX | fcntl.LOCK_NB)
             except BlockingIOError:
@@ -69,16 +81,17 @@ class Store:
 
     def statuses(self) -> dict[str, str]:
         """Status of every stored case by id."""
-        if not (self.path.exists() or journal_of(self.path).exists()):
-            return {}
-        with _reading(self.path) as file:
-            return {
-                key: str(group.attrs["status"])
-                for key, group in file["cases"].items()
-                if _ended(group)
-            }
+        return {} if self._absent() else _each(self.path, _status)
 
-    def put(self, case: Case, solution: Solution | None, *, message: str = "") -> None:
+    def put(
+        self,
+        case: Case,
+        solution: Solution | None,
+        *,
+        message: str = "",
+        computed_by: Mapping[str, str] | None = None,
+        also: Callable[[h5py.Group], None] | None = None,
+    ) -> None:
         """Append one ended case.
 
         Parameters
@@ -89,34 +102,41 @@ class Store:
             What the solver gave; none when the worker gave nothing.
         message
             Why there is no solution.
+        computed_by
+            Versions and commit of the worker; those of this process by default.
+        also
+            Writes more into the case's group.
+
+        Raises
+        ------
+        InputError
+            It cannot be written; all completed cases are kept.
         """
+        if not self._absent():
+            with _reading(self.path):
+                pass  # a damaged file is reported, never written to
         with _appending(self.path) as cases:
             if cases.get(case.id, getlink=True) is not None:
                 del cases[case.id]
             group = cases.create_group(case.id)
             done = solution is not None and solution.outcome.completed
             group.attrs["specification"] = json.dumps(case.specification())
-            group.attrs["environment"] = json.dumps(environment())
+            group.attrs["environment"] = json.dumps(dict(computed_by or environment()))
             ending = solution.outcome.ending if solution else Ending.WORKER_LOST
             group.attrs["outcome"] = ending.value
             group.attrs["message"] = "" if done else (message or str(solution and solution.outcome))
             if solution is not None:
                 put_solution(group, solution)
-                files = write_fields(solution, self.path.parent / FOLDER, name=case.id[:16])
+                files = write_fields(solution, self.path.parent / FIELDS, name=case.id[:16])
                 group.attrs["fields"] = json.dumps([file.name for file in files])
-            # last: a group without a status is one whose writing was cut short
+            if also is not None:
+                also(group)
             group.attrs["status"] = "done" if done else "failed"
+            group.attrs[DIGEST] = read_tree(group).digest()
 
     def summaries(self) -> list[Summary]:
         """Read what is known of every case but its arrays, in the order of their ids."""
-        if not (self.path.exists() or journal_of(self.path).exists()):
-            return []
-        with _reading(self.path) as file:
-            return [
-                read_summary(key, group, self.path)
-                for key, group in file["cases"].items()
-                if _ended(group)
-            ]
+        return [] if self._absent() else list(_each(self.path, read_summary).values())
 
     def read(self, case_id: str) -> CaseRecord:
         """Read one case, named by its id or the beginning of it."""
@@ -133,59 +153,70 @@ class Store:
 
     def read_all(self) -> list[CaseRecord]:
         """Read every case, in the order of their ids."""
-        with _reading(self.path) as file:
-            return [
-                read_case(key, group, self.path)
-                for key, group in file["cases"].items()
-                if _ended(group)
-            ]
+        return list(_each(self.path, read_case).values())
+
+    def repair(self) -> tuple[int, list[str]]:
+        """Make the file anew from the cases that are whole; what was there is kept beside it.
+
+        Returns
+        -------
+        tuple
+            How many cases were kept, and a line for each that was not.
+
+        Raises
+        ------
+        InputError
+            Nothing of the file can be read, or there is no room for the new one.
+        """
+        with self.writing():
+            return _repaired(self.path)
+
+    def _absent(self) -> bool:
+        return not (self.path.exists() or journal_of(self.path).exists())
 
 
-def _ended(group: h5py.Group | None) -> bool:
-    """Whether a case was written to its end; one that a kill cut short may not even open."""
-    return group is not None and "status" in group.attrs
+def _status(_key: str, group: h5py.Group, _path: Path) -> str:
+    return str(group.attrs["status"])
+
+
+def _each(path: Path, read: Callable[[str, h5py.Group, Path], Read]) -> dict[str, Read]:
+    with _reading(path) as file:
+        return {key: read(key, group, path) for key, group in file["cases"].items()}
 
 
 @contextmanager
 def _appending(path: Path) -> Iterator[h5py.Group]:
-    if path.exists() or journal_of(path).exists():
-        with _reading(path):
-            pass  # a damaged file is reported, never written to
+    kept = "; all completed cases are kept"
     try:
         with changing(path) as file:
-            if "cases" not in file:
-                file.attrs["format"] = FORMAT
-                file.create_group("cases")
-            yield file["cases"]
+            yield _begun(file)
+    except InputError as error:
+        if error.message in NO_ROOM.values() or error.message.startswith("cannot be written"):
+            raise InputError(
+                error.message + kept, source=error.source, allowed=error.allowed
+            ) from None
+        raise
     except OSError as error:
-        reasons = {
-            errno.ENOSPC: "the disk is full",
-            errno.EDQUOT: "the disk quota is used up",
-            errno.EFBIG: "a file may not be larger here",
-        }
-        reason = reasons.get(error.errno or 0, f"cannot be written ({error})")
-        raise InputError(
-            f"{reason}; all completed cases are kept",
-            source=str(path),
-            allowed="make room and run again" if error.errno in reasons else "",
-        ) from None
+        told = cannot_write(error, path)
+        raise InputError(told.message + kept, source=told.source, allowed=told.allowed) from None
 
 
 @contextmanager
 def _reading(path: Path) -> Iterator[h5py.File]:
-    with suppress(OSError):
-        recover(path)  # where it cannot be finished the file is still as it was
+    try:
+        recover(path)
+    except OSError:
+        pass  # where a change cannot be finished the file is still as it was
     if not path.exists():
         raise InputError("no such file", source=str(path), allowed="a campaign file (.h5)")
     try:
-        file = _opened(path)
+        with path.open("rb") as stream:
+            lock(stream, fcntl.LOCK_SH)
+            image = stream.read()
+        check_seal(image, path, allowed=_REPAIR)
+        file = open_image(image)
     except OSError as error:
-        reason = str(error).split("(", 1)[-1].rstrip(")")
-        raise InputError(
-            f"not a readable HDF5 file ({reason})",
-            source=str(path),
-            allowed=f"a campaign file; move this one to {path.name}.damaged to start again",
-        ) from None
+        raise InputError(f"cannot be read ({error})", source=str(path)) from None
     with file:
         if file.attrs.get("format") != FORMAT or "cases" not in file:
             raise InputError(
@@ -195,16 +226,38 @@ def _reading(path: Path) -> Iterator[h5py.File]:
             yield file
         except InputError:
             raise
-        except (KeyError, OSError, RuntimeError, ValueError) as error:
-            raise InputError(f"damaged ({error})", source=str(path)) from None
+        except (KeyError, OSError, RuntimeError, ValueError, TypeError) as error:
+            raise InputError(f"damaged ({error})", source=str(path), allowed=_REPAIR) from None
 
 
-def _opened(path: Path) -> h5py.File:
-    """Open what the file holds at this moment, in memory: a slow reader stops no writer."""
-    with path.open("rb") as file:
-        lock(file, fcntl.LOCK_SH)
-        image = file.read()
+def _repaired(path: Path) -> tuple[int, list[str]]:
+    recover(path)
+    if not path.exists():
+        raise InputError("no such file", source=str(path), allowed="a campaign file (.h5)")
+    image = path.read_bytes()
+    lost: list[str] = []
     try:
-        return h5py.File(h5py.h5f.open_file_image(image))
-    except ValueError:
-        raise OSError("cut short, or of another kind") from None
+        with open_image(image) as old, new_image() as new:
+            cases = _begun(new.file)
+            for key in old["cases"]:
+                try:
+                    record = read_case(key, old["cases"][key], path)
+                    old.copy(old["cases"][key], cases, name=key)
+                    cases[key].attrs["quality"] = json.dumps(asdict(record.quality))
+                    cases[key].attrs[DIGEST] = read_tree(cases[key]).digest()
+                except (KeyError, OSError, RuntimeError, ValueError, TypeError) as error:
+                    lost.append(f"{key[:12]}: {error}")
+            kept = len(cases)
+    except (KeyError, OSError, RuntimeError, ValueError) as error:
+        raise InputError(f"nothing in it can be read ({error})", source=str(path)) from None
+    write_file(path.with_name(f"{path.name}.damaged"), image)
+    write_file(path, new.sealed)
+    return kept, lost
+
+
+def _begun(file: h5py.File) -> h5py.Group:
+    """The group of the cases; made in a file that is new."""
+    if "cases" not in file:
+        file.attrs["format"] = FORMAT
+        file.create_group("cases")
+    return file["cases"]

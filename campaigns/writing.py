@@ -1,22 +1,28 @@
-"""One solution into its group of a campaign file: curves, unloadings, profiles with their units."""
+"""One solution into its group of a campaign file, and its full fields into files beside that."""
 
 from __future__ import annotations
 
 import json
+from collections.abc import Sequence
 from dataclasses import asdict
+from pathlib import Path
 
 import h5py
 import numpy as np
 import numpy.typing as npt
 
 from ..fem import Curve, Solution
+from ..fem.fields import write_vtu
 from .quality import quality_of
 from .schema import CURVE, PROFILES, UNLOADING_PROFILES, Dataset
 
 Floats = npt.NDArray[np.float64]
 
+FIELDS = "fields"
+"""Folder of the full fields, beside the campaign file."""
+
 _PROFILE_REACH = 2.0  # profiles are kept out to this many contact radii
-_WORTH_COMPRESSING = 512  # values; below it a chunk's index takes more room than it saves
+_WORTH_COMPRESSING = 512  # values; below it compression saves nothing
 
 
 def put_solution(group: h5py.Group, solution: Solution) -> None:
@@ -44,6 +50,34 @@ def put_solution(group: h5py.Group, solution: Solution) -> None:
             _put_array(part, name, getattr(unloading, name), about)
     if solution.profiles:
         _put_profiles(group.create_group("profiles"), solution)
+
+
+def write_fields(solution: Solution, folder: Path, *, name: str) -> list[Path]:
+    """Write each kept state as `NAME-DEPTH.vtu`, whole or not at all.
+
+    Parameters
+    ----------
+    solution
+        A solve with snapshots.
+    folder
+        Where the files go; made if needed.
+    name
+        First part of their names.
+
+    Raises
+    ------
+    InputError
+        They cannot be written.
+    """
+    return [
+        write_vtu(snapshot, folder / f"{name}-{snapshot.depth:.4g}.vtu")
+        for snapshot in solution.snapshots
+    ]
+
+
+def fields_of(case_id: str, folder: Path) -> Sequence[Path]:
+    """Return the files of one case, in the order of their names."""
+    return sorted(folder.glob(f"{case_id[:16]}-*.vtu"))
 
 
 def _put_profiles(group: h5py.Group, solution: Solution) -> None:
@@ -74,6 +108,8 @@ def _put_array(
     group: h5py.Group, name: str, values: Floats | npt.NDArray[np.float32], about: Dataset
 ) -> None:
     packed = {"compression": "gzip", "shuffle": True} if values.size > _WORTH_COMPRESSING else {}
+    if values.size:  # HDF5 has no chunk of nothing, and so no checksum of it
+        packed |= {"chunks": values.shape, "fletcher32": True}
     data = group.create_dataset(name, data=values, **packed)
     data.attrs["unit"] = about.unit
     data.attrs["axes"] = ",".join(about.axes)

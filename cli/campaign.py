@@ -151,6 +151,7 @@ for command in (
     campaign_data.refine,
     campaign_data.export,
     campaign_data.publish,
+    campaign_data.repair,
 ):
     app.command()(command)
 for _name in ("campaign gallery", "campaign reproduction"):

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import csv
 import math
 from collections.abc import Iterator
 from pathlib import Path
@@ -11,6 +10,7 @@ from typing import Annotated, Any
 import typer
 
 from ..core.errors import EXIT_NOT_CONVERGED, InputError
+from ..core.output import csv_text, write_file
 from .places import file_option, folder_option
 from .terminal import console as new_console
 from .terminal import show_table
@@ -137,7 +137,6 @@ def export(
             repr(to.suffix), key="--to", allowed="a name that ends in .csv or .parquet"
         )
     head = ["case", "E_s_Pa", "nu_s", "Sy_s_Pa", "E_f_Pa", "nu_f", "Sy_f_Pa", "R_m", *names]
-    to.parent.mkdir(parents=True, exist_ok=True)
     if to.suffix == ".parquet":
         try:
             import pandas
@@ -148,12 +147,10 @@ def export(
                 key="--to",
                 allowed="pip install dentscope[tables]",
             ) from None
-        pandas.DataFrame(list(_rows(records, names)), columns=head).to_parquet(to, index=False)
+        table = pandas.DataFrame(list(_rows(records, names)), columns=head)
+        write_file(to, table.to_parquet(None, index=False))
     else:
-        with to.open("w", newline="", encoding="utf-8") as stream:
-            writer = csv.writer(stream)
-            writer.writerow(head)
-            writer.writerows(_rows(records, names))
+        write_file(to, csv_text(_rows(records, names), header=head))
     typer.echo(f"{len(records)} cases -> {to}")
 
 
@@ -170,6 +167,18 @@ def publish(
 
     for part in write_parts(design_named(design), out / FILE, to):
         typer.echo(f"{part}: {part.stat().st_size / 1e6:.1f} MB")
+
+
+def repair(out: Out = Path("build/campaign")) -> int:
+    """Make a damaged run's file anew from the cases that are whole, or one of an older format."""
+    from ..campaigns import Store
+
+    path = out / FILE
+    kept, lost = Store(path).repair()
+    for line in lost:
+        typer.echo(f"not kept: {line}")
+    typer.echo(f"{kept} cases kept in {path}; what was there is {path}.damaged")
+    return EXIT_NOT_CONVERGED if lost else 0
 
 
 def _rows(records: list[Any], names: list[str]) -> Iterator[list[Any]]:

@@ -2,14 +2,15 @@
 
 from __future__ import annotations
 
-import csv
 from dataclasses import replace
 from pathlib import Path
 from typing import Annotated, Any
 
 import typer
 
+from ..core.disk import DISK
 from ..core.errors import EXIT_NOT_CONVERGED, InputError
+from ..core.output import csv_text, write_file
 from .places import folder_option
 from .templates import CASE, write_new
 from .terminal import console as new_console
@@ -69,7 +70,6 @@ def case(
     if len(solution.loading.delta) == 0:
         console.print(str(solution.outcome))
         return EXIT_NOT_CONVERGED
-    out.mkdir(parents=True, exist_ok=True)
     uncertainty = fem.discretisation_uncertainty(solution.loading, rough.loading)
     _show(console, solution, uncertainty)
     for path in (
@@ -95,20 +95,18 @@ def _write_curves(solution: Any, uncertainty: Any, path: Path) -> Path:
     pair = solution.problem.pair
     phases = [("load", solution.loading)]
     phases += [(f"unload-{i}", u.curve) for i, u in enumerate(solution.unloadings, start=1)]
-    with path.open("w", newline="", encoding="utf-8") as stream:
-        writer = csv.writer(stream)
-        named = [name for column in _COLUMNS for name in (column, f"{column}_uncertainty")]
-        writer.writerow(["phase", "delta_over_R", *named])
-        for phase, c in phases:
-            values = _columns(c, pair.Sy_min)
-            # the second solve follows the loading only
-            errors = _columns(uncertainty, pair.Sy_min) if phase == "load" else None
-            for i in range(len(c.delta)):
-                row = [phase, c.delta[i] / pair.R]
-                for k, column in enumerate(values):
-                    row += [column[i], errors[k][i] if errors else ""]
-                writer.writerow(row)
-    return path
+    named = [name for column in _COLUMNS for name in (column, f"{column}_uncertainty")]
+    rows = []
+    for phase, c in phases:
+        values = _columns(c, pair.Sy_min)
+        # the second solve follows the loading only
+        errors = _columns(uncertainty, pair.Sy_min) if phase == "load" else None
+        for i in range(len(c.delta)):
+            row = [phase, c.delta[i] / pair.R]
+            for k, column in enumerate(values):
+                row += [column[i], errors[k][i] if errors else ""]
+            rows.append(row)
+    return write_file(path, csv_text(rows, header=["phase", "delta_over_R", *named]))
 
 
 def _columns(of: Any, Sy_min: float) -> tuple[Any, ...]:
@@ -118,16 +116,13 @@ def _columns(of: Any, Sy_min: float) -> tuple[Any, ...]:
 
 def _write_result(name: str, solution: Any, uncertainty: Any, path: Path) -> Path:
     """Write everything into one file: a campaign file with uncertainties and fields added."""
-    import h5py
-
     from ..campaigns import Case, Store
+    from ..campaigns.journal import journal_of
 
     # the fields lie beside the case in this file, not in a campaign's own files
     case = Case(name, replace(solution.problem, snapshots=()), solution.accuracy)
-    path.unlink(missing_ok=True)
-    Store(path).put(case, solution)
-    with h5py.File(path, "a") as file:
-        group = file["cases"][case.id]
+
+    def add(group: Any) -> None:
         for key, unit in (
             ("force", "N"), ("radius", "m"), ("radius_last_node", "m"),
             ("sphere_share", "1"), ("hardness", "Pa"),
@@ -142,8 +137,17 @@ def _write_result(name: str, solution: Any, uncertainty: Any, path: Path) -> Pat
             part.attrs["n_sphere_quads"] = snapshot.n_sphere_quads
             for key, unit in _FIELDS.items():
                 values = getattr(snapshot, key)
-                data = part.create_dataset(key, data=values, compression="gzip", shuffle=True)
+                data = part.create_dataset(
+                    key, data=values, compression="gzip", shuffle=True, fletcher32=True
+                )
                 data.attrs["unit"] = unit
+
+    draft = path.with_name(f".{path.name}.draft")
+    for left_over in (draft, journal_of(draft)):
+        left_over.unlink(missing_ok=True)
+    Store(draft).put(case, replace(solution, snapshots=()), also=add)
+    DISK.rename(draft, path)
+    DISK.sync_folder(path.parent)
     return path
 
 

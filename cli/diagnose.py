@@ -9,6 +9,7 @@ from typing import Annotated
 import typer
 
 from ..core.errors import InputError
+from ..core.output import write_file
 from . import studies
 from .places import folder_option
 
@@ -61,9 +62,8 @@ def diagnose(
     verdict = run(recordings, seed=seed, confirm=confirm, progress=show)
     if not quiet:
         typer.echo("\r\x1b[K", nl=False, err=True)
-    out.mkdir(parents=True, exist_ok=True)
     text = json.dumps(verdict.to_dict(), indent=1, allow_nan=False)
-    (out / "verdict.json").write_text(text + "\n", encoding="utf-8")
+    write_file(out / "verdict.json", text + "\n")
     write_report(verdict, out / "report.html")
     for line in lines(verdict):
         typer.echo(line)

@@ -2,12 +2,12 @@
 
 from __future__ import annotations
 
-import shutil
 from pathlib import Path
 from typing import Annotated
 
 import typer
 
+from ..core.output import write_file
 from .places import folder_option
 
 FOLDER = Path(__file__).resolve().parents[1] / "examples"
@@ -22,8 +22,7 @@ def examples(
         if to is None:
             typer.echo(f"{path.name:28} {_about(path)}")
         else:
-            to.mkdir(parents=True, exist_ok=True)
-            typer.echo(f"written: {shutil.copyfile(path, to / path.name)}")
+            typer.echo(f"written: {write_file(to / path.name, path.read_bytes())}")
 
 
 def _about(path: Path) -> str:

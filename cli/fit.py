@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING, Annotated, Any
 import typer
 
 from ..core.errors import EXIT_NOT_CONVERGED, InputError
+from ..core.output import write_file
 from . import studies
 from .campaign_data import PUBLISHED
 from .places import folder_option
@@ -127,8 +128,6 @@ def _compared(
 
 def _publish(content: dict[str, Any], out: Path) -> None:
     """Put the coefficients where the law reads them, and tables and pictures into its page."""
-    import shutil
-
     from ..fitting.coefficients import write_coefficients
     from ..fitting.page import published_section, update_page
     from ..models.fitted import COEFFICIENTS_FILE
@@ -138,9 +137,8 @@ def _publish(content: dict[str, Any], out: Path) -> None:
         return
     update_page(_PAGE, published_section(content))
     folder = _PAGE.parent / "pictures"
-    folder.mkdir(exist_ok=True)
     for name in ("errors", "maps"):
-        shutil.copyfile(out / f"{name}.png", folder / f"fitted-{name}.png")
+        write_file(folder / f"fitted-{name}.png", (out / f"{name}.png").read_bytes())
 
 
 def _files(campaigns: Sequence[Path] | None) -> list[Path]:

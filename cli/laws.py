@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import csv
 import shutil
 import textwrap
 import warnings
@@ -13,6 +12,7 @@ from typing import TYPE_CHECKING, Annotated, Any
 import typer
 
 from ..core.errors import InputError
+from ..core.output import csv_text, write_figure, write_file
 from .groups import Commands, group
 from .places import folder_option
 from .terminal import NARROWEST, show_table
@@ -151,12 +151,8 @@ def compare(
     last = content.load.max_delta_over_R
     laws = [law_named(name) for name in law] if law else list(LAWS.values())
     rows = curves(pair, laws, last=last)
-    out.mkdir(parents=True, exist_ok=True)
     table_file, picture = out / "curves.csv", out / "curves.png"
-    with table_file.open("w", newline="", encoding="utf-8") as stream:
-        writer = csv.writer(stream)
-        writer.writerow(COLUMNS)
-        writer.writerows(rows)
+    write_file(table_file, csv_text(rows, header=COLUMNS))
     draw(pair, laws, rows, picture)
 
     need = demand(pair, last * pair.R)
@@ -255,6 +251,6 @@ def draw(pair: Pair, laws: list[ContactLaw], rows: list[tuple[Any, ...]], pictur
     axes[0, 0].set_ylim(0.0, 2.0)
     axes[0, 1].set_ylim(0.0, 5.0)
     figure.legend(loc="outside right center", fontsize=8)
-    figure.savefig(picture, dpi=130)
+    write_figure(figure, picture, dpi=130)
     plt.close(figure)
     return picture

@@ -5,6 +5,7 @@ from __future__ import annotations
 from pathlib import Path
 
 from ..core.errors import InputError
+from ..core.output import write_file
 
 CASE = """\
 # A hard steel ball on a softer steel flat: dentscope case {name}
@@ -78,6 +79,5 @@ def write_new(text: str, path: Path, *, command: str) -> str:
     """
     if path.exists():
         raise InputError("exists", source=str(path), allowed="a name that is free")
-    path.parent.mkdir(parents=True, exist_ok=True)
-    path.write_text(text.replace("{name}", path.name), encoding="utf-8")
+    write_file(path, text.replace("{name}", path.name))
     return f"{path}: change what differs, then: dentscope {command} {path}"

@@ -7,11 +7,14 @@ import json
 import math
 import platform
 import subprocess
+from collections.abc import Mapping
+from functools import cache
 from importlib.metadata import PackageNotFoundError, version
 from pathlib import Path
 from typing import Any
 
 _RECORDED_PACKAGES = ("numpy", "scipy", "numba", "scikit-fem", "gmsh", "meshio", "h5py")
+_STAGES = ("core", "fem", "models", "campaigns")
 
 
 def canonical_json(value: Any) -> str:
@@ -44,7 +47,36 @@ def file_digest(path: Path) -> str:
 
 
 def environment() -> dict[str, str]:
-    """Versions of Python and of the packages that influence numbers, with the source commit."""
+    """Versions of Python and of the packages that influence numbers, and the source.
+
+    `commit` is for people; `source` is a digest of the files that results come from, which also
+    tells edited ones apart. Both are those of the first call: code that is loaded stays.
+    """
+    return dict(_environment())
+
+
+def differences(mine: Mapping[str, str], other: Mapping[str, str]) -> list[str]:
+    """Return what two environments do not share, as `NAME: MINE, there OTHER`, sources by commit.
+
+    Examples
+    --------
+    >>> differences({"numpy": "2.4", "scipy": "1.17"}, {"numpy": "2.3", "scipy": "1.17"})
+    ['numpy 2.4, there 2.3']
+    """
+    lines = [
+        f"{name} {mine.get(name, 'none')}, there {other.get(name, 'none')}"
+        for name in sorted({*mine, *other} - {"source", "commit"})
+        if mine.get(name) != other.get(name)
+    ]
+    if mine.get("source") != other.get("source"):
+        lines.append(
+            f"source of commit {mine.get('commit', 'none')}, there {other.get('commit', 'none')}"
+        )
+    return lines
+
+
+@cache
+def _environment() -> dict[str, str]:
     from .. import __version__
 
     found = {"dentscope": __version__, "python": platform.python_version()}
@@ -54,7 +86,18 @@ def environment() -> dict[str, str]:
         except PackageNotFoundError:
             found[name] = "absent"
     found["commit"] = source_commit()
+    found["source"] = _source()
     return found
+
+
+def _source() -> str:
+    """First 16 hexadecimal digits of the SHA-256 of all files that a case's numbers come from."""
+    root = Path(__file__).resolve().parents[1]
+    digest = hashlib.sha256()
+    for stage in _STAGES:
+        for path in sorted((root / stage).rglob("*.py")):
+            digest.update(str(path.relative_to(root)).encode() + path.read_bytes())
+    return digest.hexdigest()[:16]
 
 
 def source_commit() -> str:

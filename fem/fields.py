@@ -6,12 +6,15 @@ is told which of the two it was.
 
 from __future__ import annotations
 
+import io
+import tempfile
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 import numpy.typing as npt
 
+from ..core.output import write_figure, write_file
 from ..core.rendering import offscreen_available
 from .solution import Snapshot
 
@@ -46,9 +49,9 @@ def write_vtu(snapshot: Snapshot, path: Path) -> Path:
             },
         },
     )
-    path.parent.mkdir(parents=True, exist_ok=True)
-    mesh.write(path)
-    return path
+    with tempfile.TemporaryDirectory() as folder:  # its writer takes names of files only
+        mesh.write(made := Path(folder) / "fields.vtu")
+        return write_file(path, made.read_bytes())
 
 
 def draw_section(snapshot: Snapshot, path: Path, *, Sy_min: float, extent: float) -> str:
@@ -70,7 +73,6 @@ def draw_section(snapshot: Snapshot, path: Path, *, Sy_min: float, extent: float
     str
         What drew it, `"pyvista"` or `"matplotlib"`.
     """
-    path.parent.mkdir(parents=True, exist_ok=True)
     points = snapshot.points + snapshot.displacement
     near = np.hypot(*points[snapshot.quads].mean(axis=1).T) < 2.0 * extent
     quads, stress = snapshot.quads[near], snapshot.von_mises[near] / Sy_min
@@ -116,8 +118,10 @@ def _by_pyvista(
     plotter.camera.parallel_scale = 1.0
     plotter.camera.focal_point = (0.0, 0.0, 0.0)
     plotter.camera.position = (0.0, 0.0, 5.0)
-    plotter.screenshot(str(path))
+    stream = io.BytesIO()
+    plotter.screenshot(stream)
     plotter.close()
+    write_file(path, stream.getvalue())
 
 
 def _by_matplotlib(
@@ -139,4 +143,4 @@ def _by_matplotlib(
     axis.set_aspect("equal")
     axis.set_xlabel("r [mm]")
     axis.set_ylabel("z [mm]")
-    figure.savefig(path, dpi=140)
+    write_figure(figure, path, dpi=140)

@@ -15,6 +15,7 @@ from typing import Any
 import numpy as np
 
 from ..campaigns import read_curves
+from ..core.output import write_file
 from ..core.provenance import environment, file_digest
 from ..fem import NUMERICS_VERSION
 from ..models.closed_form import COEFFICIENTS
@@ -76,11 +77,7 @@ def limits_of(table: Table) -> dict[str, list[float]]:
 
 def write_coefficients(content: dict[str, Any], path: Path) -> None:
     """Write the file as a whole or not at all."""
-    path.parent.mkdir(parents=True, exist_ok=True)
-    draft = path.with_suffix(".tmp")
-    text = json.dumps(content, indent=1)
-    draft.write_text(_rows_on_one_line(text) + "\n", encoding="utf-8")
-    draft.replace(path)
+    write_file(path, _rows_on_one_line(json.dumps(content, indent=1)) + "\n")
 
 
 def _rows_on_one_line(text: str) -> str:

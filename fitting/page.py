@@ -7,6 +7,7 @@ from pathlib import Path
 from typing import Any
 
 from ..core.errors import InputError
+from ..core.output import write_file
 from .prediction import Errors
 from .report import MARKS, coefficient_rows, domain_rows, error_rows, markdown
 
@@ -69,4 +70,4 @@ def update_page(page: Path, section: str) -> None:
     if not found:
         raise InputError("has no place for this section", source=str(page), allowed=begin)
     _, _, after = rest.partition(end)
-    page.write_text(before + section + after, encoding="utf-8")
+    write_file(page, before + section + after)

@@ -9,6 +9,7 @@ from typing import Any
 import numpy as np
 import numpy.typing as npt
 
+from ..core.output import write_figure
 from .prediction import Prediction
 from .select import Choice
 from .table import ResidualTable, Table
@@ -61,8 +62,7 @@ def draw_errors(p: Prediction, table: Table, turns: ResidualTable, path: Path) -
     figure.suptitle(
         "combinations predicted by fits that did not see them; blue: weak sphere, red: weak flat"
     )
-    figure.savefig(path, dpi=110)
-    return path
+    return write_figure(figure, path, dpi=110)
 
 
 def draw_maps(p: Prediction, table: Table, path: Path) -> Path:
@@ -88,8 +88,7 @@ def draw_maps(p: Prediction, table: Table, path: Path) -> Path:
         axis.set_title(title)
         axis.grid(alpha=0.3)
         figure.colorbar(dots, ax=axis)
-    figure.savefig(path, dpi=110)
-    return path
+    return write_figure(figure, path, dpi=110)
 
 
 def draw_curves(p: Prediction, table: Table, path: Path, *, most: int = 9) -> Path:
@@ -114,8 +113,7 @@ def draw_curves(p: Prediction, table: Table, path: Path, *, most: int = 9) -> Pa
     for axis in axes:
         axis.grid(alpha=0.3)
     figure.suptitle("lines: law; dots: finite elements")
-    figure.savefig(path, dpi=110)
-    return path
+    return write_figure(figure, path, dpi=110)
 
 
 def draw_choice(choices: Sequence[Choice], path: Path) -> Path:
@@ -131,5 +129,4 @@ def draw_choice(choices: Sequence[Choice], path: Path) -> Path:
     axis.set_xlabel("rms of the weighted misfit (1: 1 % of F and a, 0.01 of a share)")
     axis.set_title("what each term is worth; number of coefficients in brackets", fontsize=10)
     axis.legend(fontsize=8)
-    figure.savefig(path, dpi=110)
-    return path
+    return write_figure(figure, path, dpi=110)

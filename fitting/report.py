@@ -9,6 +9,7 @@ from typing import Any
 
 import numpy as np
 
+from ..core.output import write_file
 from .fit import Fit
 from .prediction import Errors, Prediction, errors_of
 from .ripple import ripple_of, without_ripple
@@ -124,7 +125,6 @@ def write_report(
     """
     from . import pictures
 
-    folder.mkdir(parents=True, exist_ok=True)
     shown = fit.predicted
     assert shown is not None
     pictures.draw_errors(shown, table, turns, folder / "errors.png")
@@ -159,9 +159,7 @@ def write_report(
         ]
     if thesis:
         parts.append(thesis)
-    page = folder / "report.md"
-    page.write_text("\n".join(parts), encoding="utf-8")
-    return page
+    return write_file(folder / "report.md", "\n".join(parts))
 
 
 def _about_data(fit: Fit, content: dict[str, Any], table: Table, turns: ResidualTable) -> str:

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import csv
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
 from importlib.util import find_spec
@@ -13,6 +12,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ..core.errors import InputError
+from ..core.output import csv_text, write_file
 
 
 @dataclass(frozen=True, eq=False)
@@ -47,13 +47,8 @@ class Impacts:
 
     def to_csv(self, path: Path | str) -> None:
         """Write a CSV file, floats with all digits; an empty cell where there is no number."""
-        target = Path(path)
-        target.parent.mkdir(parents=True, exist_ok=True)
-        with target.open("w", newline="", encoding="utf-8") as stream:
-            writer = csv.writer(stream)
-            writer.writerow(self.columns)
-            for row in self.rows():
-                writer.writerow("" if x != x else x for x in row.values())
+        rows = (["" if x != x else x for x in row.values()] for row in self.rows())
+        write_file(Path(path), csv_text(rows, header=self.columns))
 
     def to_frame(self) -> Any:
         """Return a pandas data frame.
@@ -77,9 +72,7 @@ class Impacts:
             pandas or pyarrow is not installed.
         """
         _needed("pyarrow")
-        target = Path(path)
-        target.parent.mkdir(parents=True, exist_ok=True)
-        self.to_frame().to_parquet(target, index=False)
+        write_file(Path(path), self.to_frame().to_parquet(None, index=False))
 
 
 def _needed(library: str) -> None:

@@ -12,6 +12,7 @@ from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.figure import Figure
 
 from ..core.observables import OBSERVABLES
+from ..core.output import write_figure
 from .columns import Impacts
 from .integrate import Trace
 from .inverse import alpha_curve
@@ -124,5 +125,4 @@ def draw_alpha(striker: Striker, frictions: Sequence[float], path: Path) -> None
 
 def save(made: Figure, path: Path) -> None:
     """Write a figure, its folder made if need be."""
-    path.parent.mkdir(parents=True, exist_ok=True)
-    made.savefig(path, dpi=130)
+    write_figure(made, path, dpi=130)

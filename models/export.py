@@ -13,6 +13,7 @@ from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field, replace
 from pathlib import Path
 
+from ..core.output import write_file
 from .closed_form import COEFFICIENTS
 from .discrete_elements import dem_table
 from .export_tree import INPUTS, OUTPUTS, Lines, before, when_closed, when_open
@@ -111,7 +112,6 @@ def write_sources(law: Fitted, folder: Path) -> list[Path]:
     list of Path
         The files written.
     """
-    folder.mkdir(parents=True, exist_ok=True)
     texts = {
         f"{NAME}.py": python_source(law),
         f"{NAME}.h": c_header(law),
@@ -120,9 +120,7 @@ def write_sources(law: Fitted, folder: Path) -> list[Path]:
         f"{NAME}.m": matlab_source(law),
         "dem_parameters.csv": dem_table(law),
     }
-    for name, text in texts.items():
-        (folder / name).write_text(text, encoding="ascii")
-    return [folder / name for name in texts]
+    return [write_file(folder / name, text.encode("ascii")) for name, text in texts.items()]
 
 
 def _about(law: Fitted, mark: str) -> str:

@@ -6,7 +6,6 @@
 
 from __future__ import annotations
 
-import shutil
 from collections.abc import Mapping
 from dataclasses import dataclass, field, replace
 from functools import cached_property
@@ -17,6 +16,7 @@ import numpy.typing as npt
 
 from ..core.errors import InputError, InputErrors
 from ..core.observables import RELATIVE_SUFFIX, RIG_NOISE, TRACE_NOISE
+from ..core.output import finish, locked, write_files
 from ..core.rig import StrikerTable
 from ..core.toml_input import parse_model, read_toml
 from . import noise
@@ -25,7 +25,7 @@ from .csv_table import Array, Problems
 from .noise import Noise
 from .series import read_profile, read_trace, series_in
 from .setup_file import Setup, setup_text
-from .trials import Trials, read_trials, write_trials
+from .trials import Trials, read_trials, trials_text
 
 _SPEED_BIN = 0.02
 _ANGLE_BIN = 1.0
@@ -194,6 +194,7 @@ def read(folder: Path | str) -> RecordingSet:
     folder = Path(folder)
     if not folder.is_dir():
         raise InputError("no such folder", source=str(folder), allowed="a folder with set.toml")
+    finish(folder)
     mistakes: list[InputError] = []
     setup, strikers = _read_setup(folder / "set.toml", mistakes)
     problems = Problems(str(folder / "trials.csv"))
@@ -291,14 +292,21 @@ def write(found: RecordingSet, folder: Path | str) -> None:
         The set.
     folder
         Made if it does not exist; set.toml and trials.csv in it are replaced.
+
+    Raises
+    ------
+    InputError
+        It cannot be written.
     """
-    folder = Path(folder)
-    folder.mkdir(parents=True, exist_ok=True)
-    (folder / "set.toml").write_text(setup_text(found.setup), encoding="utf-8")
-    write_trials(found.trials, folder / "trials.csv")
-    for kind, files in (("traces", found.traces), ("profiles", found.profiles)):
-        for trial, path in files.items():
-            place = folder / kind / f"{trial}.csv"
-            place.parent.mkdir(exist_ok=True)
-            if not (place.exists() and place.samefile(path)):
-                shutil.copyfile(path, place)
+    with locked(Path(folder)):
+        write_files(Path(folder), files_of(found))
+
+
+def files_of(found: RecordingSet) -> dict[str, bytes | str]:
+    """Return the files of a set by their place in its folder."""
+    curves = {
+        f"{kind}/{trial}.csv": path.read_bytes()
+        for kind, files in (("traces", found.traces), ("profiles", found.profiles))
+        for trial, path in files.items()
+    }
+    return {**curves, "set.toml": setup_text(found.setup), "trials.csv": trials_text(found.trials)}

@@ -6,6 +6,7 @@ from pathlib import Path
 from typing import Literal
 
 from ..core.errors import InputError
+from ..core.output import write_file
 from .columns import MEASURED
 from .setup_file import FORMAT
 
@@ -93,16 +94,10 @@ def write_template(folder: Path, *, shape: Literal["rod", "sphere"]) -> None:
             raise InputError(
                 "there is one already", source=str(folder / name), allowed="a new folder"
             )
-    try:
-        folder.mkdir(parents=True, exist_ok=True)
-    except OSError as error:
-        raise InputError(
-            f"cannot be made ({error.strerror})", source=str(folder), allowed="a new folder"
-        ) from None
     striker = _STRIKER[shape].format(mass=_MASS[shape])
-    (folder / "set.toml").write_text(_HEAD + striker + _TAIL, encoding="utf-8")
     name, depth = ("rod", "95e-6") if shape == "rod" else ("ball", "19e-6")
     columns = ["trial", "striker", "angle_deg", "drop_height_m", *list(MEASURED)[:2], "note"]
     rows = [columns, ["T01", name, "90", "0.05", "0.5", depth, "an example row: replace it"]]
     text = "\n".join(",".join(row) for row in rows) + "\n"
-    (folder / "trials.csv").write_text(text, encoding="utf-8")
+    write_file(folder / "set.toml", _HEAD + striker + _TAIL)
+    write_file(folder / "trials.csv", text)

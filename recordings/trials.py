@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import csv
 from collections.abc import Mapping
 from dataclasses import dataclass, field, fields, replace
 from pathlib import Path
@@ -10,6 +9,7 @@ from pathlib import Path
 import numpy as np
 import numpy.typing as npt
 
+from ..core.output import csv_text
 from .columns import CONDITIONS, MEASURED, STD_SUFFIX, TRIAL_COLUMNS
 from .csv_table import Array, Problems, TextTable, numbers, read_text_table, shown
 
@@ -191,8 +191,8 @@ def _check_approach(table: TextTable, values: Mapping[str, Array], problems: Pro
                     )  # fmt: skip
 
 
-def write_trials(trials: Trials, path: Path) -> None:
-    """Write trials.csv; columns without any entry are left out, numbers keep every digit."""
+def trials_text(trials: Trials) -> str:
+    """Return trials.csv; columns without any entry are left out, numbers keep every digit."""
     columns: dict[str, list[str]] = {}
     for name in CONDITIONS:
         value = getattr(trials, name)
@@ -206,10 +206,7 @@ def write_trials(trials: Trials, path: Path) -> None:
             columns[name + STD_SUFFIX] = _cells(trials.observables_std[name])
     if any(trials.note):
         columns["note"] = list(trials.note)
-    with path.open("w", newline="", encoding="utf-8") as stream:
-        writer = csv.writer(stream, lineterminator="\n")
-        writer.writerow(columns)
-        writer.writerows(zip(*columns.values(), strict=True))
+    return csv_text(zip(*columns.values(), strict=True), header=columns)
 
 
 def _cells(values: Array) -> list[str]:

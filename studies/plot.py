@@ -14,6 +14,7 @@ from matplotlib.figure import Figure
 
 from ..campaigns import CaseRecord
 from ..core.material import Material, Pair
+from ..core.output import write_figure
 from ..models import LAWS
 from ..models.base import ContactLaw
 
@@ -56,10 +57,7 @@ class Picture:
 
     def save(self, folder: Path) -> Path:
         """Write the PNG into `folder`."""
-        folder.mkdir(parents=True, exist_ok=True)
-        path = folder / self.file
-        self.made.savefig(path, dpi=110, metadata={"Software": None})
-        return path
+        return write_figure(self.made, folder / self.file, dpi=110, metadata={"Software": None})
 
 
 @dataclass(frozen=True, slots=True)

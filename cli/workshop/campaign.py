@@ -47,7 +47,7 @@ def reproduction(
 
 def _data(given: Path | None) -> Path:
     """What to read: what was named, or the published data, or the own run."""
-    from ...campaigns.publish import CHECKSUMS
+    from ...campaigns.parts import CHECKSUMS
 
     if given is not None:
         return given

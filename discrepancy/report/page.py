@@ -8,6 +8,7 @@ from collections.abc import Iterable, Sequence
 from pathlib import Path
 
 from ...core.observables import OBSERVABLES
+from ...core.output import write_file
 from ..findings import Verdict
 from .pictures import figure_correction, figure_misfit, image
 from .text import headline, number, own_parameters
@@ -39,7 +40,7 @@ def write_report(verdict: Verdict, path: Path) -> None:
     path
         Of the HTML file.
     """
-    path.write_text(report(verdict), encoding="utf-8")
+    write_file(path, report(verdict))
 
 
 def report(v: Verdict) -> str:

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-import csv
+import io
 from collections.abc import Mapping, Sequence
 from pathlib import Path
 from typing import Any
@@ -11,6 +11,7 @@ import h5py
 import numpy as np
 
 from ...core.observables import OBSERVABLES
+from ...core.output import csv_text, write_file
 from ...core.provenance import environment
 from ..integrate import Trace
 from ..result import Impact
@@ -36,11 +37,8 @@ SHOWN = (
 
 def write_csv(path: Path, rows: Sequence[Mapping[str, Any]]) -> None:
     """Write rows that share their keys; floats with all digits."""
-    path.parent.mkdir(parents=True, exist_ok=True)
-    with path.open("w", newline="", encoding="utf-8") as stream:
-        writer = csv.DictWriter(stream, fieldnames=list(rows[0]))
-        writer.writeheader()
-        writer.writerows(rows)
+    header = list(rows[0])
+    write_file(path, csv_text(([row[name] for name in header] for row in rows), header=header))
 
 
 def impact_row(impact: Impact) -> dict[str, Any]:
@@ -56,8 +54,8 @@ def impact_row(impact: Impact) -> dict[str, Any]:
 
 def write_hdf5(path: Path, traces: Mapping[str, Trace]) -> None:
     """Write histories and observables, one group for each law; units are in the names."""
-    path.parent.mkdir(parents=True, exist_ok=True)
-    with h5py.File(path, "w") as store:
+    stream = io.BytesIO()
+    with h5py.File(stream, "w") as store:
         for key, value in environment().items():
             store.attrs[key] = value
         for law, trace in traces.items():
@@ -66,3 +64,4 @@ def write_hdf5(path: Path, traces: Mapping[str, Trace]) -> None:
                 group.create_dataset(name, data=np.ascontiguousarray(trace.history[:, i]))
             for name, value in impact_row(trace.impact).items():
                 group.attrs[name] = value
+    write_file(path, stream.getvalue())

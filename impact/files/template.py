@@ -5,6 +5,7 @@ from __future__ import annotations
 from pathlib import Path
 
 from ...core.errors import InputError
+from ...core.output import write_file
 
 _METALS = {
     "target": """E_Pa = 2.0e11                 # Young's modulus
@@ -114,5 +115,4 @@ def write_template(kind: str, path: Path) -> None:
     text = template(kind)
     if path.exists():
         raise InputError("exists", source=str(path), allowed="a name that is free")
-    path.parent.mkdir(parents=True, exist_ok=True)
-    path.write_text(text, encoding="utf-8")
+    write_file(path, text)

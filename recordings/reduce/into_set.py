@@ -7,8 +7,6 @@ would be, has been read without a mistake.
 
 from __future__ import annotations
 
-import csv
-import shutil
 import tempfile
 from collections.abc import Callable, Iterable, Mapping
 from dataclasses import dataclass, replace
@@ -19,11 +17,12 @@ import numpy as np
 from pydantic import Field
 
 from ...core.errors import InputError
+from ...core.output import csv_text, finish_pending, locked, write_files
 from ...core.rig import Quantity
 from ...core.toml_input import InputTable, read_model
 from ..columns import CONDITIONS, MEASURED, STD_SUFFIX
 from ..csv_table import Array
-from ..recording_set import RecordingSet, read, write
+from ..recording_set import RecordingSet, files_of, read
 from ..setup_file import Setup, setup_text
 from ..template import write_template
 from ..trials import Trials
@@ -92,18 +91,21 @@ def store(
     InputError
         A condition is missing or the set would not be sound.
     """
-    before, notes = _set_before(folder, setup, shape="sphere" if kind == "sound" else "rod")
-    striker = _striker(before, row)
-    after, curves = before, {}
-    names = []
-    _check_one_approach(reduced, row)
-    for trial in reduced.trials:
-        name = "-".join(filter(None, (_name(reduced, row), trial.label)))
-        after = _with_trial(after, name, striker, trial, row)
-        curves[name] = trial
-        names.append(name)
-    after = _with_setup(after, striker, reduced)
-    _write_whole(before, after, curves, folder)
+    # another reduction may write the same set: what it added must not be lost
+    with locked(folder):
+        finish_pending(folder)
+        before, notes = _set_before(folder, setup, shape="sphere" if kind == "sound" else "rod")
+        striker = _striker(before, row)
+        after, curves = before, {}
+        names = []
+        _check_one_approach(reduced, row)
+        for trial in reduced.trials:
+            name = "-".join(filter(None, (_name(reduced, row), trial.label)))
+            after = _with_trial(after, name, striker, trial, row)
+            curves[name] = trial
+            names.append(name)
+        after = _with_setup(after, striker, reduced)
+        _write_whole(before, after, curves, folder)
     record, picture = write_record(
         reduced, folder / "reduced", _name(reduced, row), kind=kind, options=options, trials=names
     )
@@ -264,42 +266,40 @@ def _with_setup(found: RecordingSet, striker: str, reduced: Reduced) -> Recordin
 def _write_whole(
     before: RecordingSet, after: RecordingSet, curves: Mapping[str, Trial], folder: Path
 ) -> None:
-    with tempfile.TemporaryDirectory() as made:
-        place = Path(made) / "set"
-        write(after, place)
-        for name, trial in curves.items():
-            for kind, columns in (("traces", trial.trace), ("profiles", trial.profile)):
-                if columns:
-                    _write_curve(columns, place / kind / f"{name}.csv")
-        if len(after.trials):
-            _read_as(place, folder)
-        _keep_comments(before, after, place / "set.toml", folder)
-        if not len(after.trials):
-            (place / "trials.csv").unlink()
-        shutil.copytree(place, folder, dirs_exist_ok=True)
-
-
-def _read_as(place: Path, folder: Path) -> None:
-    """Read the set where it was made; a mistake names the folder that it is meant for."""
-    try:
-        read(place)
-    except InputError as error:
-        raise InputError(str(error).replace(str(place), str(folder))) from None
-
-
-def _keep_comments(before: RecordingSet, after: RecordingSet, path: Path, folder: Path) -> None:
-    """Leave set.toml as a person wrote it where nothing in it has changed."""
+    files = files_of(after)
+    for name, trial in curves.items():
+        for kind, columns in (("traces", trial.trace), ("profiles", trial.profile)):
+            if columns:
+                files[f"{kind}/{name}.csv"] = _curve_text(columns)
     old = folder / "set.toml"
     if old.exists() and setup_text(before.setup) == setup_text(after.setup):
-        shutil.copyfile(old, path)
+        del files["set.toml"]  # as a person wrote it, comments and all
+    if len(after.trials):
+        _read_as(folder, {**files, "set.toml": setup_text(after.setup)})
+    else:
+        del files["trials.csv"]
+    write_files(folder, files)
 
 
-def _write_curve(columns: Mapping[str, Array], path: Path) -> None:
-    path.parent.mkdir(exist_ok=True)
-    with path.open("w", newline="", encoding="utf-8") as stream:
-        writer = csv.writer(stream, lineterminator="\n")
-        writer.writerow(columns)
-        writer.writerows(
+def _read_as(folder: Path, files: Mapping[str, bytes | str]) -> None:
+    """Read the set as it would be; a mistake names the folder that it is meant for."""
+    with tempfile.TemporaryDirectory() as made:
+        place = Path(made)
+        for name, content in files.items():
+            path = place / name
+            path.parent.mkdir(exist_ok=True)
+            path.write_bytes(content.encode() if isinstance(content, str) else content)
+        try:
+            read(place)
+        except InputError as error:
+            raise InputError(str(error).replace(str(place), str(folder))) from None
+
+
+def _curve_text(columns: Mapping[str, Array]) -> str:
+    return csv_text(
+        (
             ["" if np.isnan(v) else f"{v:.9g}" for v in point]
             for point in zip(*columns.values(), strict=True)
-        )
+        ),
+        header=columns,
+    )

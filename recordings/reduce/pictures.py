@@ -8,6 +8,8 @@ from typing import Any
 from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.figure import Figure
 
+from ...core.output import write_figure
+
 
 def figure(rows: int, columns: int, *, size: tuple[float, float]) -> tuple[Figure, Any]:
     """Return a figure that needs no screen, and its axes (rows, columns)."""
@@ -18,5 +20,4 @@ def figure(rows: int, columns: int, *, size: tuple[float, float]) -> tuple[Figur
 
 def save(made: Figure, path: Path) -> None:
     """Write the picture, making its folder."""
-    path.parent.mkdir(parents=True, exist_ok=True)
-    made.savefig(path, dpi=110)
+    write_figure(made, path, dpi=110)

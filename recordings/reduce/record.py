@@ -9,6 +9,7 @@ from collections.abc import Mapping
 from pathlib import Path
 from typing import Any
 
+from ...core.output import write_file
 from ...core.provenance import file_digest
 from .measured import Measured
 from .reduced import Reduced
@@ -30,7 +31,6 @@ def write_record(
     tuple
         Path of the record and of the picture.
     """
-    folder.mkdir(parents=True, exist_ok=True)
     record, picture = (folder / f"{name}-{kind}{end}" for end in (".json", ".png"))
     content = {
         "kind": kind,
@@ -40,7 +40,7 @@ def write_record(
         "values": {k: _plain(v) for k, v in reduced.values.items()},
         "notes": list(reduced.notes),
     }
-    record.write_text(json.dumps(content, indent=1, ensure_ascii=False) + "\n", encoding="utf-8")
+    write_file(record, json.dumps(content, indent=1, ensure_ascii=False) + "\n")
     reduced.draw(picture)
     return record, picture
 

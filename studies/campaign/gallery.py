@@ -8,8 +8,9 @@ from pathlib import Path
 import numpy as np
 
 from ...campaigns import MOST_ENERGY_DEFECT, MOST_STEP, CaseRecord, read_curves
-from ...campaigns.fields import fields_of
+from ...campaigns.writing import fields_of
 from ...core.material import Pair
+from ...core.output import write_file
 from ...fem import critical_depth
 from ..plot import Floats, Picture, finish, sheet
 from .sweep import DEPTH, Sweep, sweeps
@@ -51,7 +52,7 @@ def build(source: Path, folder: Path, *, fields: Path) -> list[Picture]:
             "Figures 2.2 to 2.4 are drawn where the design `thesis` was run: its first three cases "
             "write their fields beside the campaign file.\n"
         )
-    (folder / "README.md").write_text("\n".join(lines), encoding="utf-8")
+    write_file(folder / "README.md", "\n".join(lines))
     return drawn
 
 

@@ -7,6 +7,7 @@ from collections.abc import Sequence
 from pathlib import Path
 
 from ...campaigns import CaseRecord, read_curves
+from ...core.output import write_file
 from .sweep import sweeps
 from .trends import Trend, trends
 
@@ -35,8 +36,7 @@ def write(source: Path, to: Path) -> list[Trend]:
     """
     records = read_curves(source)
     found = trends(records)
-    to.parent.mkdir(parents=True, exist_ok=True)
-    to.write_text(report(records, found), encoding="utf-8")
+    write_file(to, report(records, found))
     return found
 
 

@@ -8,6 +8,7 @@ from dataclasses import asdict
 from pathlib import Path
 from typing import Any
 
+from ...core.output import write_file
 from .score import Case, calibration, confusion, scores
 
 _DATA = Path(__file__).resolve().parents[2] / "data" / "proof"
@@ -78,7 +79,7 @@ def keep(entry: dict[str, Any], path: Path = RUNS) -> list[dict[str, Any]]:
     same = (entry["list"], entry["tree"])
     runs = [r for r in runs if (r["list"], r["tree"]) != same] + [entry]
     text = json.dumps(runs, indent=1, default=str)
-    path.write_text(text.replace("NaN", "null") + "\n")
+    write_file(path, text.replace("NaN", "null") + "\n")
     return runs
 
 

@@ -10,6 +10,7 @@ from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.figure import Figure
 
 from ...core.observables import OBSERVABLES
+from ...core.output import write_figure
 from .demonstration import Demonstration, Row
 from .later_touch import Later
 from .uncertain import RANGES
@@ -151,5 +152,5 @@ def draw(found: Demonstration, path: Path) -> None:
     handles, labels = panels[0].get_legend_handles_labels()
     figure.legend(handles, labels, loc="outside lower center", ncols=2, fontsize=8)
     figure.suptitle("Chapter 5: 5 to 95 % of the draws, nothing fitted", fontsize=11)
-    path.parent.mkdir(parents=True, exist_ok=True)
-    FigureCanvasAgg(figure).print_png(str(path))
+    FigureCanvasAgg(figure)
+    write_figure(figure, path, dpi=figure.dpi)

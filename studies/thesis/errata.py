@@ -8,6 +8,7 @@ from __future__ import annotations
 import textwrap
 from pathlib import Path
 
+from ...core.output import write_file
 from .contradictions import CONTRADICTIONS
 from .misprints import MISPRINTS, Erratum
 
@@ -33,8 +34,7 @@ def _entry(one: Erratum) -> str:
 
 def write(path: Path) -> Path:
     """Write the errata to `path`."""
-    path.write_text(text(), encoding="utf-8")
-    return path
+    return write_file(path, text())
 
 
 if __name__ == "__main__":

@@ -16,6 +16,7 @@ import numpy.typing as npt
 from ... import fem
 from ...campaigns.case import Case
 from ...core.material import Material, Pair
+from ...core.output import write_file
 from .result import Result
 
 Floats = npt.NDArray[np.float64]
@@ -112,10 +113,7 @@ class Bench:
         started = time.perf_counter()
         raw = _kept(fem.solve(case.problem, accuracy=case.accuracy))
         raw["case"] = case.specification()
-        path.parent.mkdir(parents=True, exist_ok=True)
-        part = path.with_suffix(".part")
-        part.write_text(json.dumps(raw), encoding="utf-8")
-        part.replace(path)
+        write_file(path, json.dumps(raw))
         self.say(
             f"    {raw['message']} {raw['counters']['cpu_s']:.0f} processor seconds, "
             f"{time.perf_counter() - started:.0f} s"

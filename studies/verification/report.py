@@ -6,6 +6,7 @@ from collections.abc import Iterator
 from pathlib import Path
 
 from ... import fem
+from ...core.output import write_file
 from ...core.provenance import environment
 from .checks import CHECKS
 from .result import Measurement, Result, Table
@@ -42,9 +43,7 @@ def write_report(path: Path, *, folder: Path) -> Path:
     for result in found:
         lines += _section(result, path)
     lines += _tests()
-    path.parent.mkdir(parents=True, exist_ok=True)
-    path.write_text("\n".join(lines).rstrip() + "\n", encoding="utf-8")
-    return path
+    return write_file(path, "\n".join(lines).rstrip() + "\n")
 
 
 def _head() -> Iterator[str]:

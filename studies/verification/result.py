@@ -8,6 +8,8 @@ from dataclasses import asdict, dataclass
 from pathlib import Path
 from typing import Any
 
+from ...core.output import write_file
+
 Cell = str | float | int
 
 
@@ -109,11 +111,8 @@ class Result:
 
 
 def write_result(result: Result, path: Path) -> None:
-    """Write a result as JSON, by way of a second file, so that a kill leaves no half of it."""
-    path.parent.mkdir(parents=True, exist_ok=True)
-    part = path.with_suffix(".part")
-    part.write_text(json.dumps(asdict(result), indent=1) + "\n", encoding="utf-8")
-    part.replace(path)
+    """Write a result as JSON."""
+    write_file(path, json.dumps(asdict(result), indent=1) + "\n")
 
 
 def read_result(path: Path) -> Result:

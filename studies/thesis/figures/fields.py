@@ -6,6 +6,7 @@ and keeps the part near the contact in `docs/gallery/fields`; drawing needs the 
 
 from __future__ import annotations
 
+import io
 import json
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
@@ -18,6 +19,7 @@ from matplotlib.collections import PolyCollection
 
 from ....campaigns import CaseRecord
 from ....core.material import Material, Pair
+from ....core.output import write_file
 from ....fem import (
     NUMERICS_VERSION,
     Accuracy,
@@ -114,22 +116,22 @@ def solve_field(number: str, *, folder: Path = STORE) -> Path:
     a = float(solution.loading.radius[-1]) / R
     corners = ((seen.points + seen.displacement) / R)[seen.quads]
     near = np.hypot(*corners.mean(axis=1).T) < 3.2 * a
-    folder.mkdir(parents=True, exist_ok=True)
     path = folder / f"figure-{number.replace('.', '-')}.npz"
     origin = {
         "Delta_over_R": seen.depth, "a_over_R": a, "force_N": float(solution.loading.force[-1]),
         "level": accuracy.level, "numerics_version": NUMERICS_VERSION,
         "elements": len(seen.quads),
     }  # fmt: skip
+    stream = io.BytesIO()
     np.savez_compressed(
-        path,
+        stream,
         corners=corners[near].astype(np.float32),
         sphere=(np.arange(len(seen.quads)) < seen.n_sphere_quads)[near],
         stress=(seen.von_mises[near] / pair.Sy_min).astype(np.float32),
         plastic=seen.plastic_strain[near].astype(np.float32),
         origin=np.array(json.dumps(origin)),
     )
-    return path
+    return write_file(path, stream.getvalue())
 
 
 def read_field(number: str, *, folder: Path = STORE) -> Field | None:

@@ -8,6 +8,7 @@ from pathlib import Path
 
 from ....campaigns import CaseRecord, read_curves, read_published
 from ....core.errors import InputError
+from ....core.output import write_file
 from ....models import DomainWarning
 from ...plot import Entry, Picture, Table
 from .. import errata
@@ -64,7 +65,6 @@ def build(folder: Path, *, chapters: Sequence[str], root: Path) -> list[Entry]:
             raise InputError(f"{chapter!r}", key="chapter", allowed=", ".join(CHAPTERS))
     records = stored_cases(root)
     rests = f"{len(records)} stored cases" if records else "none found beside it"
-    folder.mkdir(parents=True, exist_ok=True)
     drawn: list[Entry] = []
     for chapter in chapters:
         with warnings.catch_warnings():
@@ -73,9 +73,9 @@ def build(folder: Path, *, chapters: Sequence[str], root: Path) -> list[Entry]:
         for entry in entries:
             if isinstance(entry, Picture):
                 entry.save(folder)
-        (folder / page_of(chapter)).write_text(_page(chapter, entries, rests), encoding="utf-8")
+        write_file(folder / page_of(chapter), _page(chapter, entries, rests))
         drawn += entries
-    (folder / "README.md").write_text(_index(folder), encoding="utf-8")
+    write_file(folder / "README.md", _index(folder))
     if tuple(chapters) == tuple(CHAPTERS):
         errata.write(root / "docs" / "errata.md")
     return drawn

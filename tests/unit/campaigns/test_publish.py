@@ -79,9 +79,9 @@ def stored(path, n=6, factor=1.0):
 
 def test_parts_hold_every_case_once_below_their_size(tmp_path):
     source = stored(tmp_path / "c.h5")
-    parts = publish(DESIGN, source, tmp_path / "data", most_bytes=230_000)
+    parts = publish(DESIGN, source, tmp_path / "data", most_bytes=120_000)
     assert 1 < len(parts) <= 8
-    assert all(part.stat().st_size < 230_000 for part in parts)
+    assert all(part.stat().st_size < 120_000 for part in parts)
     published = read_published(tmp_path / "data")
     assert sorted(r.id for r in published) == sorted(r.id for r in read_curves(source))
     assert [r.id for r in read_curves(tmp_path / "data")] == [r.id for r in published]
@@ -216,8 +216,8 @@ def test_status_without_a_run_tells_of_the_published_data(tmp_path, capsys, monk
     publish(DESIGN, stored(tmp_path / "c.h5"), tmp_path / "data")
     assert run(["campaign", "status", "--out", str(tmp_path / "none")]) == 0
     told = capsys.readouterr().out
-    assert "missing 567" in told
-    assert "Published: trial, 6 cases done, 0 failed, 1 parts" in told
+    assert "No run of your own" in told
+    assert re.search(r"trial +6 done +0 failed", told)
     run(["campaign", "status", "--json", "--out", str(tmp_path / "none")])
     assert json.loads(capsys.readouterr().out)["published"]["trial"]["done"] == 6
 

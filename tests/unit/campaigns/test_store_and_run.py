@@ -20,15 +20,17 @@ from dentscope.campaigns import (
     Case,
     Design,
     Store,
+    contents,
     distinct_cases,
-    fields,
+    journal,
     read_curves,
     run_design,
     standard_case,
     status_of,
+    writing,
 )
 from dentscope.campaigns.executor import Ended
-from dentscope.campaigns.fields import fields_of
+from dentscope.campaigns.writing import fields_of
 from dentscope.core import COMPLETED, Ending, InputError, Material, Outcome, Pair
 from dentscope.core.flow import Flow, Heating, Rate, swift
 from dentscope.fem import Counters, Curve, Profile, Snapshot, Solution
@@ -183,7 +185,7 @@ def test_fields_lie_beside_the_file_and_belong_to_the_case(tmp_path, monkeypatch
     def full(*_):
         raise OSError(errno.ENOSPC, "No space left on device")
 
-    monkeypatch.setattr(fields, "write_vtu", full)
+    monkeypatch.setattr(writing, "write_vtu", full)
     with pytest.raises(InputError, match="the disk is full"):
         Store(tmp_path / "d.h5").put(chosen, replace(solution(chosen), snapshots=states))
     assert not (tmp_path / "d.h5").exists()
@@ -228,7 +230,7 @@ def test_two_coordinators_do_not_write_one_file(tmp_path):
     assert run_design(design(1), path, executor=FakeExecutor(), time_limit_s=1.0).done == 1
 
 
-@pytest.mark.parametrize("damage", ["truncated", "text", "other"])
+@pytest.mark.parametrize("damage", ["truncated", "text", "other", "one bit"])
 def test_a_damaged_file_is_reported_and_left_alone(tmp_path, damage):
     path = tmp_path / "c.h5"
     run_design(design(2), path, executor=FakeExecutor(), time_limit_s=1.0)
@@ -236,6 +238,10 @@ def test_a_damaged_file_is_reported_and_left_alone(tmp_path, damage):
         path.write_bytes(path.read_bytes()[:900])
     elif damage == "text":
         path.write_text("nothing")
+    elif damage == "one bit":
+        image = bytearray(path.read_bytes())
+        image[len(image) // 2] ^= 8
+        path.write_bytes(image)
     else:
         path.unlink()
         with h5py.File(path, "w") as file:
@@ -246,13 +252,127 @@ def test_a_damaged_file_is_reported_and_left_alone(tmp_path, damage):
     assert path.read_bytes() == before
 
 
+def changed(path, change):
+    """Change a sealed file as one would who knows how to seal it."""
+    with journal.new_image(path.read_bytes()) as image:
+        change(image.file["cases"])
+    path.write_bytes(image.sealed)
+
+
 def test_a_missing_dataset_names_itself(tmp_path):
     path = tmp_path / "c.h5"
     run_design(design(1), path, executor=FakeExecutor(), time_limit_s=1.0)
-    with h5py.File(path, "a") as file:
-        del next(iter(file["cases"].values()))["loading"]["force"]
+
+    def take(cases):
+        [group] = cases.values()
+        del group["loading"]["force"]
+        group.attrs["digest"] = contents.read_tree(group).digest()
+
+    changed(path, take)
     with pytest.raises(InputError, match="loading/force"):
         read_curves(path)
+
+
+@pytest.mark.parametrize("place", ["value", "unit", "attribute"])
+def test_a_case_is_held_to_its_own_digest(tmp_path, place):
+    path = tmp_path / "c.h5"
+    run_design(design(2), path, executor=FakeExecutor(), time_limit_s=1.0)
+
+    def alter(cases):
+        group = next(iter(cases.values()))
+        if place == "value":
+            group["loading/force"][1] *= 1.0001
+        elif place == "unit":
+            group["loading/force"].attrs["unit"] = "kN"
+        else:
+            group.attrs["mesh"] = "another"
+
+    changed(path, alter)
+    with pytest.raises(InputError, match="its digest is another"):
+        read_curves(path)
+
+
+def linked(cases, path):
+    del cases["loading/force"]
+    cases["loading/force"] = h5py.ExternalLink(str(path.with_name("other.h5")), "/x")
+
+
+def soft(cases, path):
+    del cases["loading/force"]
+    cases["loading/force"] = h5py.SoftLink("/cases")
+
+
+def outside(cases, path):
+    del cases["loading/force"]
+    path.with_name("raw").write_bytes(b"\1" * 32)
+    cases.create_dataset(
+        "loading/force", (4,), "f8", external=[(str(path.with_name("raw")), 0, 32)]
+    )
+
+
+def referring(cases, path):
+    del cases["loading/force"]
+    cases["loading"].create_dataset("force", data=[cases.ref] * 4, dtype=h5py.ref_dtype)
+
+
+def absurd(cases, path):
+    del cases["loading/force"]
+    cases.create_dataset("loading/force", (10**12,), "f8", chunks=(10**6,))
+
+
+def bomb(cases, path):
+    del cases["loading/force"]
+    cases.create_dataset("loading/force", data=np.zeros(200_000), compression="gzip")
+
+
+@pytest.mark.parametrize("trick", [linked, soft, outside, referring, absurd, bomb])
+def test_what_leads_elsewhere_or_claims_too_much_is_refused(tmp_path, trick, monkeypatch):
+    monkeypatch.setattr(contents, "_MOST_BYTES", 1_000_000)
+    path = tmp_path / "c.h5"
+    run_design(design(1), path, executor=FakeExecutor(), time_limit_s=1.0)
+    with h5py.File(path.with_name("other.h5"), "w") as other:
+        other["x"] = np.ones(4)
+    changed(path, lambda cases: trick(next(iter(cases.values())), path))
+    with pytest.raises(InputError, match=r"force (is a link|is of kind|lies in|claims)"):
+        read_curves(path)
+
+
+def test_a_damaged_file_gives_back_its_whole_cases(tmp_path):
+    path = tmp_path / "c.h5"
+    run_design(design(4), path, executor=FakeExecutor(), time_limit_s=1.0)
+    whole = {record.id: record for record in read_curves(path)}
+    hit = min(whole)
+    with h5py.File(path) as file:
+        offset = file[f"cases/{hit}/loading/force"].id.get_chunk_info(0).byte_offset
+    image = bytearray(path.read_bytes())
+    image[offset + 512] ^= 1  # offsets count from the end of the user block
+    path.write_bytes(image)
+    with pytest.raises(InputError, match="campaign repair"):
+        read_curves(path)
+    kept, lost = Store(path).repair()
+    assert kept == 3
+    assert [line.split(":")[0] for line in lost] == [hit[:12]]
+    found = {record.id: record for record in read_curves(path)}
+    assert set(found) == set(whole) - {hit}
+    assert all(np.array_equal(found[k].curve["force"], whole[k].curve["force"]) for k in found)
+    assert path.with_name("c.h5.damaged").read_bytes() == bytes(image)
+    assert run_design(design(4), path, executor=FakeExecutor(), time_limit_s=1.0).done == 4
+
+
+def test_a_file_of_the_first_format_is_made_anew_on_demand(tmp_path):
+    path = tmp_path / "c.h5"
+    run_design(design(2), path, executor=FakeExecutor(), time_limit_s=1.0)
+    before = read_curves(path)
+    old = tmp_path / "old.h5"
+    with contents.open_image(path.read_bytes()) as new, h5py.File(old, "w") as file:
+        file.attrs["format"] = "dentscope-campaign/1"
+        new.copy("cases", file)
+        for group in file["cases"].values():
+            del group.attrs["digest"]
+    with pytest.raises(InputError, match=r"older format, without a digest .*campaign repair"):
+        read_curves(old)
+    assert Store(old).repair() == (2, [])
+    assert [r.id for r in read_curves(old)] == [r.id for r in before]
 
 
 SCRIPT = """

@@ -1,0 +1,163 @@
+"""What an HDF5 file of ours holds: whether every byte is as it was written, and plain values only.
+
+A file is sealed: HDF5 leaves its first 512 bytes (the user block) to others, and there stands the
+SHA-256 of all that follows. It is compared before HDF5 sees a byte. A group is read as a tree of
+texts, numbers and arrays; whatever leads elsewhere (links, external storage, references) or claims
+more than it holds is refused.
+"""
+
+from __future__ import annotations
+
+import hashlib
+from collections.abc import Iterator
+from dataclasses import dataclass, field
+from pathlib import Path
+from typing import Any
+
+import h5py
+import numpy as np
+import numpy.typing as npt
+
+from ..core.errors import InputError
+
+SEALED_FROM = 512
+"""Size of the user block."""
+
+DIGEST = "digest"
+"""Attribute of a case's group: the digest of its tree without this attribute."""
+
+_MAGIC = b"dentscope-sealed-1\n".ljust(32, b"\0")
+_SHA256 = 32
+_DEEPEST = 4
+_MOST_BYTES = 256_000_000  # of one dataset
+_MOST_RATIO = 1100  # of deflate, which gives at most 1032 bytes for one
+_MOST_TEXT = 1_000_000
+_KINDS = "fiubSU"
+
+
+def seal(image: bytes) -> bytes:
+    """Return the user block of a file whose bytes are given."""
+    digest = hashlib.sha256(memoryview(image)[SEALED_FROM:]).digest()
+    return (_MAGIC + digest).ljust(SEALED_FROM, b"\0")
+
+
+def is_sealed(image: bytes) -> bool:
+    """Whether a file claims a seal, right or wrong."""
+    return image[: len(_MAGIC)] == _MAGIC
+
+
+def check_seal(image: bytes, path: Path, *, allowed: str = "") -> None:
+    """Refuse a file of which any byte changed since it was written.
+
+    Raises
+    ------
+    InputError
+        It is another kind of file, or was changed.
+    """
+    if not is_sealed(image):
+        known = image[:8] == b"\x89HDF\r\n\x1a\n"
+        what = "of an older format, without a digest" if known else "not a file of dentscope's"
+        raise InputError(what, source=str(path), allowed=allowed)
+    if image[:SEALED_FROM] != seal(image):
+        raise InputError(
+            "damaged: its bytes are not those that were written", source=str(path), allowed=allowed
+        )
+
+
+def open_image(image: bytes) -> h5py.File:
+    """Open a file that was read into memory.
+
+    Raises
+    ------
+    OSError
+        It is no HDF5 file, or cut short.
+    """
+    try:
+        return h5py.File(h5py.h5f.open_file_image(image))
+    except (ValueError, RuntimeError):
+        raise OSError("cut short, or of another kind") from None
+
+
+@dataclass(frozen=True)
+class Tree:
+    """One group as plain values."""
+
+    attributes: dict[str, Any] = field(default_factory=dict)
+    arrays: dict[str, npt.NDArray[Any]] = field(default_factory=dict)
+    units: dict[str, str] = field(default_factory=dict)
+    groups: dict[str, Tree] = field(default_factory=dict)
+
+    def digest(self) -> str:
+        """SHA-256 of names, units, kinds, shapes and values, as 64 hexadecimal digits."""
+        whole = hashlib.sha256()
+        for part in self._parts(""):
+            whole.update(len(part).to_bytes(8, "little") + part)
+        return whole.hexdigest()
+
+    def _parts(self, place: str) -> Iterator[bytes]:
+        for name, value in sorted(self.attributes.items()):
+            if name != DIGEST:
+                yield f"{place}@{name}={value!r}".encode()
+        for name, values in sorted(self.arrays.items()):
+            kind = values.dtype.newbyteorder("<")
+            yield f"{place}{name} [{self.units[name]}] {kind.str} {values.shape}".encode()
+            yield np.ascontiguousarray(values, dtype=kind).tobytes()
+        for name, group in sorted(self.groups.items()):
+            yield f"{place}{name}/".encode()
+            yield from group._parts(f"{place}{name}/")
+
+
+def read_tree(group: h5py.Group, *, depth: int = 0) -> Tree:
+    """Read a group and those in it.
+
+    Raises
+    ------
+    ValueError
+        Something leads elsewhere, claims more than it holds, or is of a kind that we never write.
+    """
+    if depth > _DEEPEST:
+        raise ValueError(f"{group.name} lies too deep")
+    tree = Tree(attributes={name: _attribute(group, name) for name in group.attrs})
+    for name in group:
+        if not isinstance(group.get(name, getlink=True), h5py.HardLink):
+            raise ValueError(f"{group.name}/{name} is a link to elsewhere")
+        item = group[name]
+        if isinstance(item, h5py.Group):
+            tree.groups[name] = read_tree(item, depth=depth + 1)
+        elif isinstance(item, h5py.Dataset):
+            tree.arrays[name] = read_array(item)
+            tree.units[name] = str(_attribute(item, "unit")) if "unit" in item.attrs else ""
+        else:
+            raise ValueError(f"{group.name}/{name} is neither group nor dataset")
+    return tree
+
+
+def read_array(data: h5py.Dataset) -> npt.NDArray[Any]:
+    """Read a dataset that holds what it claims.
+
+    Raises
+    ------
+    ValueError
+        As `read_tree`.
+    """
+    if data.dtype.kind not in _KINDS or data.dtype.hasobject or data.shape is None:
+        raise ValueError(f"{data.name} is of kind {data.dtype}")
+    if data.is_virtual or data.external:
+        raise ValueError(f"{data.name} lies in another file")
+    stored = data.id.get_storage_size()
+    if data.nbytes > _MOST_BYTES or data.nbytes > _MOST_RATIO * stored:
+        raise ValueError(f"{data.name} claims {data.nbytes} bytes and holds {stored}")
+    return np.asarray(data[()])
+
+
+def _attribute(item: Any, name: str) -> Any:
+    kind = item.attrs.get_id(name)
+    text = h5py.check_string_dtype(kind.dtype) is not None
+    if kind.shape != () or not (text or kind.dtype.kind in _KINDS):
+        raise ValueError(f"attribute {name} of {item.name} is of kind {kind.dtype}{kind.shape}")
+    value = item.attrs[name]
+    if isinstance(value, bytes):
+        value = value.decode()
+    if isinstance(value, str) and len(value) > _MOST_TEXT:
+        raise ValueError(f"attribute {name} of {item.name} has {len(value)} characters")
+    return value.item() if isinstance(value, np.generic) else value

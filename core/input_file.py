@@ -1,0 +1,61 @@
+"""Opening files that others made: ordinary ones, of a size that the program can hold."""
+
+from __future__ import annotations
+
+import stat
+from pathlib import Path
+
+from .errors import InputError
+
+
+def checked_file(path: Path, *, most: int, allowed: str) -> Path:
+    """Return a path that stands for an ordinary file of a bearable size.
+
+    Parameters
+    ----------
+    path
+        The file; a pipe or a device would be waited for without end.
+    most
+        Largest size [bytes].
+    allowed
+        What the file should be, for the error.
+
+    Raises
+    ------
+    InputError
+        It is missing, is no ordinary file, or is too large.
+    """
+    try:
+        about = path.stat()
+    except FileNotFoundError:
+        raise InputError("no such file", source=str(path), allowed=allowed) from None
+    except (OSError, ValueError) as error:
+        reason = getattr(error, "strerror", None) or str(error)
+        raise InputError(f"cannot be read ({reason})", source=str(path), allowed=allowed) from None
+    if stat.S_ISDIR(about.st_mode):
+        raise InputError("a folder", source=str(path), allowed=allowed)
+    if not stat.S_ISREG(about.st_mode):
+        raise InputError("a pipe or a device, no file", source=str(path), allowed=allowed)
+    if about.st_size > most:
+        raise InputError(
+            f"{about.st_size / 1e6:.0f} MB", source=str(path), allowed=f"up to {most / 1e6:g} MB"
+        )
+    return path
+
+
+def read_bytes(path: Path, *, most: int, allowed: str) -> bytes:
+    """Return the content of an ordinary file of a bearable size.
+
+    Raises
+    ------
+    InputError
+        As `checked_file`, or it may not be read.
+    """
+    checked_file(path, most=most, allowed=allowed)
+    try:
+        with path.open("rb") as stream:
+            return stream.read(most + 1)
+    except OSError as error:
+        raise InputError(
+            f"cannot be read ({error.strerror})", source=str(path), allowed=allowed
+        ) from None

@@ -1,0 +1,274 @@
+"""Files for people and programs, each written whole or not at all.
+
+One file: a draft beside it is filled, synchronised and renamed. Several files of one folder that
+belong together: their contents first go to one pending file, so that whoever comes next finishes
+what a kill or a loss of power interrupted. A folder that several processes change is locked.
+"""
+
+from __future__ import annotations
+
+import csv
+import errno
+import fcntl
+import hashlib
+import io
+import itertools
+import json
+import os
+import stat
+import time
+from collections.abc import Iterable, Iterator, Mapping
+from contextlib import contextmanager, suppress
+from pathlib import Path
+from typing import Any
+
+from .disk import DISK
+from .errors import InputError
+
+PENDING = ".dentscope-pending"
+PATIENCE_S = 300.0
+"""How long to wait for another process that changes the same folder."""
+
+NO_ROOM = {
+    errno.ENOSPC: "the disk is full",
+    errno.EDQUOT: "the disk quota is used up",
+    errno.EFBIG: "a file may not be larger here",
+}
+_NO_LOCKS = (errno.EBADF, errno.ENOLCK, errno.EOPNOTSUPP, errno.EINVAL)
+"""Errors of file systems, over a network, that cannot lock a folder: there nothing is held."""
+
+_MAGIC = b"dentscope-pending-1\n"
+_DIGEST = 32
+_LONGEST_NAME = 200
+_numbers = itertools.count()
+
+
+def cannot_write(error: OSError, path: Path | str, *, allowed: str = "") -> InputError:
+    """Return the one line for a file that cannot be written."""
+    if error.errno in NO_ROOM:
+        return InputError(
+            NO_ROOM[error.errno], source=str(path), allowed=allowed or "make room and run again"
+        )
+    reason = error.strerror or str(error) or type(error).__name__
+    return InputError(
+        f"cannot be written ({reason.lower()})",
+        source=str(path),
+        allowed=allowed or "a place where you may write",
+    )
+
+
+def folder_for_output(folder: Path) -> Path:
+    """Make a folder, and those that it lies in.
+
+    Raises
+    ------
+    InputError
+        It cannot be made, or is no folder.
+    """
+    try:
+        _make_folder(folder)
+    except (OSError, ValueError) as error:
+        raise _one_line(error, folder) from None
+    return folder
+
+
+def write_file(path: Path, content: bytes | str) -> Path:
+    """Write a file whole or not at all; its folder is made if needed.
+
+    Raises
+    ------
+    InputError
+        It cannot be written; what was there is unchanged.
+    """
+    data = content.encode() if isinstance(content, str) else content
+    try:
+        _make_folder(path.parent)
+        _replace(Path(os.path.realpath(path)), data)
+    except (OSError, ValueError) as error:
+        raise _one_line(error, path) from None
+    return path
+
+
+def write_files(folder: Path, files: Mapping[str, bytes | str]) -> None:
+    """Write several files of one folder, all or none; the caller holds its lock.
+
+    Parameters
+    ----------
+    folder
+        Made if needed.
+    files
+        Contents by path within the folder.
+
+    Raises
+    ------
+    InputError
+        They cannot be written; the folder is as it was, or is finished when it is next looked at.
+    """
+    contents = {k: v.encode() if isinstance(v, str) else v for k, v in files.items()}
+    finish_pending(folder)
+    write_file(folder / PENDING, _pending(folder, contents))
+    _apply(folder, contents)
+
+
+def finish(folder: Path) -> None:
+    """Finish what another process had begun to write into a folder; do nothing if there is nothing.
+
+    Raises
+    ------
+    InputError
+        It belongs to another state of this folder, is damaged, or cannot be written.
+    """
+    if (folder / PENDING).exists():
+        with locked(folder):
+            finish_pending(folder)
+
+
+def finish_pending(folder: Path) -> None:
+    """Do what `finish` does; the caller holds the lock."""
+    place = folder / PENDING
+    if not place.exists():
+        return
+    found = _read_pending(place.read_bytes(), place)
+    for name, (before, content) in found.items():
+        now = _digest_of(folder / name)
+        if now not in (before, hashlib.sha256(content).hexdigest()):
+            raise InputError(
+                f"belongs to another state of this folder: {name} is not what it was",
+                source=str(place),
+                allowed="no such file: remove it to keep the folder as it is",
+            )
+    _apply(folder, {name: content for name, (_, content) in found.items()})
+
+
+@contextmanager
+def locked(folder: Path) -> Iterator[None]:
+    """Hold a folder, there or not yet, for oneself; wait for another process that does.
+
+    Raises
+    ------
+    InputError
+        It cannot be locked, or another process holds it for longer than `PATIENCE_S`.
+    """
+    # what lies in it may still be refused, and then nothing new should lie anywhere: the lock is
+    # one of the folder around it, and leaves no file
+    place = folder_for_output(folder.resolve().parent)
+    handle = os.open(place, os.O_RDONLY | os.O_DIRECTORY | os.O_CLOEXEC)
+    try:
+        until = time.monotonic() + PATIENCE_S
+        while not _taken(handle):
+            if time.monotonic() > until:
+                raise InputError(
+                    "another process writes here", source=str(folder), allowed="one at a time"
+                )
+            time.sleep(0.02)
+        yield
+    finally:
+        os.close(handle)
+
+
+def _taken(handle: int) -> bool:
+    try:
+        fcntl.flock(handle, fcntl.LOCK_EX | fcntl.LOCK_NB)
+    except BlockingIOError:
+        return False
+    except OSError as error:
+        if error.errno not in _NO_LOCKS:
+            raise
+    return True
+
+
+def csv_text(rows: Iterable[Iterable[Any]], *, header: Iterable[str]) -> str:
+    """Return rows as comma-separated text, floats with every digit."""
+    stream = io.StringIO()
+    writer = csv.writer(stream, lineterminator="\n")
+    writer.writerow(header)
+    writer.writerows(rows)
+    return stream.getvalue()
+
+
+def write_figure(figure: Any, path: Path, *, dpi: float, **options: Any) -> Path:
+    """Write a matplotlib figure as PNG, whole or not at all."""
+    stream = io.BytesIO()
+    figure.savefig(stream, format="png", dpi=dpi, **options)
+    return write_file(path, stream.getvalue())
+
+
+def _one_line(error: OSError | ValueError, path: Path) -> InputError:
+    if isinstance(error, InputError):
+        return error
+    if isinstance(error, OSError):
+        return cannot_write(error, path)
+    return InputError("no name of a file", source=repr(str(path)), allowed="text without NUL")
+
+
+def _make_folder(folder: Path) -> None:
+    if folder.is_dir():
+        return
+    if folder.parent != folder:
+        _make_folder(folder.parent)
+    # another process may have made it a moment ago; a file of that name is no folder
+    with suppress(FileExistsError):
+        DISK.make_folder(folder)
+    if not folder.is_dir():
+        raise NotADirectoryError(errno.ENOTDIR, os.strerror(errno.ENOTDIR))
+    DISK.sync_folder(folder.parent)
+
+
+def _replace(path: Path, data: bytes) -> None:
+    mode = 0o666
+    if path.exists():
+        about = path.stat()
+        if not stat.S_ISREG(about.st_mode):
+            raise OSError(errno.EINVAL, "a folder, a pipe or a device")
+        mode = stat.S_IMODE(about.st_mode)
+    draft = path.with_name(f".{path.name[:_LONGEST_NAME]}.{os.getpid()}-{next(_numbers)}.part")
+    try:
+        file = DISK.create(draft, mode)
+        try:
+            DISK.write(file, data)
+            DISK.sync(file)
+        finally:
+            DISK.close(file)
+        DISK.rename(draft, path)
+    except OSError:
+        with suppress(OSError):
+            DISK.remove(draft)
+        raise
+    DISK.sync_folder(path.parent)
+
+
+def _pending(folder: Path, contents: Mapping[str, bytes]) -> bytes:
+    head = [[name, len(data), _digest_of(folder / name)] for name, data in contents.items()]
+    text = json.dumps(head).encode()
+    body = _MAGIC + len(text).to_bytes(8, "little") + text + b"".join(contents.values())
+    return body + hashlib.sha256(body).digest()
+
+
+def _read_pending(content: bytes, place: Path) -> dict[str, tuple[str, bytes]]:
+    body, digest = content[:-_DIGEST], content[-_DIGEST:]
+    if not body.startswith(_MAGIC) or hashlib.sha256(body).digest() != digest:
+        raise InputError(
+            "damaged", source=str(place), allowed="remove it to go on without its one change"
+        )
+    at = len(_MAGIC) + 8
+    end = at + int.from_bytes(body[at - 8 : at], "little")
+    found: dict[str, tuple[str, bytes]] = {}
+    for name, size, before in json.loads(body[at:end]):
+        found[name] = (before, body[end : end + size])
+        end += size
+    return found
+
+
+def _digest_of(path: Path) -> str:
+    return hashlib.sha256(path.read_bytes()).hexdigest() if path.is_file() else ""
+
+
+def _apply(folder: Path, contents: Mapping[str, bytes]) -> None:
+    for name, data in contents.items():
+        write_file(folder / name, data)
+    try:
+        DISK.remove(folder / PENDING)
+    except FileNotFoundError:
+        pass  # a reader was faster
+    except OSError as error:
+        raise cannot_write(error, folder / PENDING) from None
