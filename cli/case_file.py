@@ -61,11 +61,17 @@ class HardeningTable(_LawTable):
     """`[sphere.hardening]`: flow stress over plastic strain p, from Sy_Pa on."""
 
     law: Literal["swift", "ludwik", "voce", "johnson-cook"]
+    """K (e0 + p)^n, Sy + K p^n, Sy + Q (1 - exp(-b p)), Sy + B p^n."""
     K_Pa: float | None = Field(default=None, gt=0.0)
+    """Of Swift's or Ludwik's law."""
     B_Pa: float | None = Field(default=None, gt=0.0)
+    """Of Johnson and Cook's law."""
     Q_Pa: float | None = Field(default=None, gt=0.0)
+    """Of Voce's law."""
     n: float | None = Field(default=None, gt=0.0, le=1.0)
+    """Exponent."""
     b: float | None = Field(default=None, gt=0.0)
+    """Of Voce's law."""
 
     def curve(self, Sy: float, *, key: str, source: str) -> FlowCurve:
         """Return the law as a flow curve that begins at `Sy` [Pa]."""
@@ -85,12 +91,19 @@ class RateTable(_LawTable):
     """`[sphere.rate]`: flow stress at a rate of plastic strain."""
 
     law: Literal["cowper-symonds", "johnson-cook", "overstress"]
+    """1 + (rate/D)^(1/q), 1 + C ln(rate/rate_0), or an added stress."""
     D_1_s: float | None = Field(default=None, gt=0.0)
+    """Of Cowper and Symonds' law."""
     q: float | None = Field(default=None, ge=1.0)
+    """Of Cowper and Symonds' law."""
     rate_0_1_s: float | None = Field(default=None, gt=0.0)
+    """Rate at which the strength was measured."""
     C: float | None = Field(default=None, ge=0.0)
+    """Of Johnson and Cook's law."""
     m: float | None = Field(default=None, gt=0.0, le=1.0)
+    """Exponent of the overstress."""
     stress_Pa: float | None = Field(default=None, ge=0.0)
+    """Overstress at the reference rate."""
 
     def rate(self, *, key: str, source: str) -> Rate:
         """Return the law."""
@@ -101,9 +114,13 @@ class HeatingTable(InputTable):
     """`[sphere.heating]`: adiabatic heating and softening."""
 
     capacity_J_m3K: float = Field(gt=0.0)
+    """Heat capacity of a volume."""
     melting_rise_K: float = Field(gt=0.0)
+    """Melting temperature above that of the test."""
     exponent: float = Field(default=1.0, gt=0.0)
+    """Of the softening."""
     fraction: float = Field(default=0.9, ge=0.0, le=1.0)
+    """Part of the plastic work that becomes heat."""
 
     def heating(self) -> Heating:
         """Return the law."""
@@ -114,9 +131,13 @@ class CaseBody(MaterialTable):
     """A body of CASE.toml: a metal, and how it flows."""
 
     flow_curve: str | None = None
+    """File beside CASE.toml with columns plastic_strain and stress_Pa."""
     hardening: HardeningTable | None = None
+    """The flow stress grows with plastic strain."""
     rate: RateTable | None = None
+    """The flow stress grows with its rate; needs load.speed_m_s."""
     heating: HeatingTable | None = None
+    """The flow stress falls with the heat of the deformation."""
 
     def to_body(self, key: str, *, file: Path) -> Material:
         """Return the body; a flow curve's file is looked for beside CASE.toml."""
@@ -157,8 +178,11 @@ class CaseBody(MaterialTable):
 
 class _Load(InputTable):
     max_delta_over_R: float = Field(gt=0.0, le=0.5)
+    """Largest approach over the sphere's radius."""
     unload_from: tuple[float, ...] = ()
+    """Approaches over R from which the sphere is drawn back."""
     speed_m_s: float | tuple[tuple[float, float], ...] | None = None
+    """Speed of the approach: one number, or rows of Delta/R and speed."""
 
     @property
     def speeds(self) -> tuple[tuple[float, float], ...]:
@@ -172,16 +196,22 @@ class _Load(InputTable):
 
 class _Accuracy(InputTable):
     level: Literal["production", "quick", "smoke"] = "quick"
+    """How finely it is solved; smoke is coarse, for a first look."""
 
 
 class CaseFile(InputTable):
     """The keys of CASE.toml."""
 
     radius_m: float = Field(gt=0.0)
+    """Radius of the sphere."""
     sphere: CaseBody
+    """What presses."""
     flat: CaseBody
+    """What is pressed."""
     load: _Load
+    """How far, how fast, from where back."""
     accuracy: _Accuracy = _Accuracy()
+    """How finely it is solved."""
 
 
 def read_flow_curve(path: Path) -> FlowCurve:

@@ -64,7 +64,7 @@ def diagnose(
         typer.echo("\r\x1b[K", nl=False, err=True)
     text = json.dumps(verdict.to_dict(), indent=1, allow_nan=False)
     write_file(out / "verdict.json", text + "\n")
-    write_report(verdict, out / "report.html")
+    written = write_report(verdict, out / "report.html")
     for line in lines(verdict):
         typer.echo(line)
-    typer.echo(f"\n{out / 'verdict.json'}, {out / 'report.html'}")
+    typer.echo(f"\nwritten: {', '.join(map(str, (out / 'verdict.json', *written)))}")

@@ -83,11 +83,17 @@ class MaterialTable(InputTable):
     """
 
     material: str = ""
+    """Name of the metal, for people."""
     E_Pa: Positive | None = None
+    """Young's modulus."""
     nu: Poisson | None = None
+    """Poisson's ratio."""
     Sy_Pa: Positive | None = None
+    """Yield strength; left out: purely elastic."""
     density_kg_m3: Positive | None = None
+    """Density."""
     rigid: Annotated[bool, Field(strict=True)] = False
+    """Does not deform at all; then no other number is needed."""
 
     def to_material(
         self, key: str = "", *, source: str = "", values: Mapping[str, float] | None = None,
@@ -147,20 +153,30 @@ class BodyTable(MaterialTable):
     """A body that strikes or is struck."""
 
     hardness_Pa: Positive | None = None
+    """Indentation hardness; gives the yield strength where that is left out."""
     Ra_m: NotNegative | None = None
+    """Mean roughness of the surface."""
     cp_J_kgK: Positive | None = None
+    """Specific heat."""
     melting_K: Positive | None = None
+    """Melting temperature."""
 
 
 class TargetTable(BodyTable):
     """`[target]`: the flat, its support and the baseline that its law asks for."""
 
     shape: Literal["flat"] = "flat"
+    """The struck body is flat."""
     thickness_m: Positive | None = None
+    """Thickness of the flat."""
     layer_thickness_m: Positive | None = None
+    """Thickness of a surface layer."""
     support_mass_kg: Positive | None = None
+    """Mass that moves with the flat."""
     support_stiffness_N_m: NotNegative | None = None
+    """Stiffness of what the flat rests on."""
     law: Literal["elastic-plastic", "elastic", "measured-restitution"] = "elastic-plastic"
+    """What the contact does: elastic and plastic, elastic, or a restitution to be measured."""
 
 
 class StrikerTable(BodyTable):
@@ -170,12 +186,19 @@ class StrikerTable(BodyTable):
     """
 
     shape: Literal["rod", "sphere"]
+    """A rod with two round ends, or a sphere."""
     tip_radius_m: Positive
+    """Radius of the round tip."""
     mass_kg: Positive
+    """Mass; a sphere without it is solid."""
     radius_m: Positive | None = Field(default=None, validate_default=True)
+    """Radius of the rod's shank, or of the sphere."""
     length_m: Positive | None = Field(default=None, validate_default=True)
+    """Between the centres of a rod's two tip spheres."""
     tip_flat_radius_m: NotNegative | None = None
+    """Radius of a flat at the end of the tip."""
     inertia_kg_m2: Positive | None = None
+    """Moment of inertia across the axis; left out: of a rod or sphere of this mass."""
 
     @model_validator(mode="before")
     @classmethod
@@ -232,14 +255,18 @@ class FrictionTable(InputTable):
     """`[friction]`."""
 
     coefficient: NotNegative | None = None
+    """Coulomb's coefficient of friction."""
 
 
 class EnvironmentTable(InputTable):
     """`[environment]`."""
 
     fluid: str = ""
+    """What is between the bodies, for example air."""
     viscosity_Pa_s: NotNegative | None = None
+    """Its viscosity."""
     temperature_K: Positive | None = None
+    """Temperature of bodies and surroundings."""
 
 
 def _known_noise(key: str) -> str:
@@ -262,16 +289,27 @@ class Rig(InputTable):
     """What strikes what, where, and how noisy the readings are: the keys of set.toml."""
 
     format: str = ""
+    """Version of the file's format."""
     name: str = ""
+    """Name, for people."""
     description: str = ""
+    """What was dropped on what, and how it was measured."""
     source: str = ""
+    """Who measured it, where it is published."""
     licence: str = ""
+    """Who may use it."""
     gravity_m_s2: NotNegative = Quantity(value=9.81)
+    """Gravity."""
     target: TargetTable
+    """The flat."""
     strikers: dict[str, StrikerTable] = Field(min_length=1)
+    """What strikes, by name: `[strikers.NAME]`."""
     friction: FrictionTable = FrictionTable()
+    """Friction between tip and flat."""
     environment: EnvironmentTable = EnvironmentTable()
+    """What is around the bodies."""
     noise: dict[NoiseKey, NoiseStd] = Field(default_factory=dict)
+    """Standard deviations of the readings, by column; NAME_relative is a fraction of the value."""
 
     @property
     def bodies(self) -> dict[str, BodyTable]:

@@ -16,7 +16,9 @@ Model = TypeVar("Model", bound=BaseModel)
 class InputTable(BaseModel):
     """Base of the tables of an input file: unknown keys and non-finite numbers are mistakes."""
 
-    model_config = ConfigDict(extra="forbid", frozen=True, allow_inf_nan=False)
+    model_config = ConfigDict(
+        extra="forbid", frozen=True, allow_inf_nan=False, use_attribute_docstrings=True
+    )
 
 
 def read_toml(path: Path) -> dict[str, Any]:

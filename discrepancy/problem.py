@@ -43,6 +43,8 @@ class Problem:
     notes: tuple[str, ...] = ()
     drifts: tuple[Drift, ...] = ()
     scatters: tuple[Scatter, ...] = ()
+    weightless: frozenset[int] = frozenset()
+    """Cells that are too far off everything else to count."""
 
     @property
     def n_nuisances(self) -> int:

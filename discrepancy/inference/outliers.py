@@ -89,7 +89,10 @@ def without_weight(problem: Problem, outliers: NDArray[np.bool_]) -> Problem:
         c = problem.conditions[cells.condition[i]]
         places.append(f"{cells.observable[i]} of {c.striker} at {c.speed:.3g} m/s")
     note = f"given no weight, because far off what everything else says: {'; '.join(places)}"
-    return replace(problem, cells=replace(cells, std=std), notes=(*problem.notes, note))
+    return replace(
+        problem, cells=replace(cells, std=std), notes=(*problem.notes, note),
+        weightless=frozenset(np.flatnonzero(outliers).tolist()),
+    )  # fmt: skip
 
 
 __all__ = ["outlying", "without_weight"]

@@ -1,4 +1,4 @@
-"""A verdict in words: what the terminal shows and the report begins with."""
+"""A verdict in words: the finding in one sentence, and what the terminal shows."""
 
 from __future__ import annotations
 
@@ -8,26 +8,42 @@ from typing import Any
 from ...core.observables import OBSERVABLES
 from ..decide import OUTSIDE
 from ..findings import Verdict
+from .wording import explanation, interval, joined, miss_sentences, percent, quantity, title_of
+
+
+def inclusion_of(v: Verdict) -> dict[str, float]:
+    """Return the probability that each mechanism takes part, alone or with others, most first."""
+    given: dict[str, float] | None = getattr(v, "inclusion", None)
+    if given is None:
+        given = {}
+        for name, p in v.probabilities.items():
+            for part in name.split("+"):
+                if part not in ("baseline", OUTSIDE):
+                    given[part] = given.get(part, 0.0) + p
+    return dict(sorted(given.items(), key=lambda item: -item[1]))
 
 
 def headline(v: Verdict) -> str:
-    """Return the finding in one sentence."""
-    names = " with ".join(v.mechanisms)
+    """Return the finding in one sentence, with its probability."""
+    part = inclusion_of(v)
     if v.verdict == "adequate":
+        p = v.probabilities.get("baseline", math.nan)
         return (
-            "Nothing is missing: the baseline explains the recordings within their noise and the "
-            "stated uncertainties."
+            "Nothing is missing: the simulation as described explains the recordings within their "
+            f"noise and the stated uncertainties (probability {percent(p)})."
         )
     if v.verdict == "missing-physics":
-        title = v.best.mechanisms[0].title if len(v.best.mechanisms) == 1 else "both act"
-        return f"Missing physics: {names} ({title})."
+        what = joined([f"{title_of(m)} ({m})" for m in v.mechanisms])
+        sure = joined([percent(part.get(m, 0.0)) for m in v.mechanisms])
+        each = " each" if len(v.mechanisms) > 1 else ""
+        return f"The simulation lacks this: {what}; probability that it takes part{each}: {sure}."
     if v.verdict == "indistinguishable":
-        rest = "; ".join(" with ".join(a) for a in v.alternatives)
-        return f"Something is missing, and these explain it equally well: {names}; {rest}."
+        rival = joined([explanation("+".join(a)) for a in (v.mechanisms, *v.alternatives)], "or")
+        return f"Something is missing, and these explain it equally well: {rival}."
     if v.verdict == OUTSIDE:
         return (
-            "The baseline fails, and nothing in the library repairs it: the cause is something "
-            "else."
+            "The simulation as described fails, and nothing that dentscope knows repairs it: the "
+            "cause is something else."
         )
     return "Too few data to say."
 
@@ -42,31 +58,34 @@ def lines(v: Verdict) -> list[str]:
         f"({seen})",
         "",
         headline(v),
-        "",
-        *(f"  {r}" for r in v.reasons),
     ]
     flagged = [a["message"] for a in v.audit]
     if flagged:
         out += ["", "Inputs", *(f"  {m}" for m in flagged)]
-    out += ["", "Where the baseline misses"]
-    if v.located.misses:
-        for m in v.located.misses[:4]:
-            out.append(f"  {OBSERVABLES[m.observable].label} ({m.phase}): {m.trend}, z = {m.z:.1f}")
-    else:
-        out.append("  nowhere beyond what chance gives over all observables and conditions")
+    out += ["", "Where the simulation misses"]
+    out += [f"  {m}" for m in miss_sentences(v.located.misses[:4], v.located.threshold)] or [
+        "  nowhere beyond what chance gives over all observables and conditions"
+    ]
     if v.mechanisms:
         out += ["", "What explains it"]
         for name, q in own_parameters(v).items():
-            out.append(f"  {name} = {number(q)} ({q['low']:.3g} to {q['high']:.3g})")
+            between = interval(q["low"], q["high"], q["unit"])
+            out.append(f"  {name} = {quantity(q['value'], q['unit'])} (90 %: {between})")
         i = v.improvement
         out.append(
             "  no condition could be left out of the fit to try the prediction on"
             if math.isnan(i["held_out_extended"])
-            else f"  on conditions left out of the fit the miss falls from "
-            f"{i['held_out_baseline']:.2f} to {i['held_out_extended']:.2f} standard errors"
+            else f"  on conditions left out of the fit the miss goes from "
+            f"{i['held_out_baseline']:.1f} to {i['held_out_extended']:.1f} standard errors"
         )
-    out += ["", "Probabilities"]
-    out += [f"  {k:55s} {x:6.3f}" for k, x in list(v.probabilities.items())[:5]]
+    part = {k: x for k, x in inclusion_of(v).items() if x >= 0.01}
+    out += ["", "Probability that it takes part"]
+    out += [f"  {percent(x):>14}  {k}: {title_of(k)}" for k, x in list(part.items())[:5]]
+    unknown = v.probabilities.get(OUTSIDE, 0.0)
+    if unknown >= 0.01:
+        out.append(f"  {percent(unknown):>14}  something that dentscope does not know")
+    nothing = v.probabilities.get("baseline", 0.0)
+    out.append(f"  {percent(nothing):>14}  nothing is missing")
     if v.corrections:
         out += ["", "Where the force law would have to change"]
         for c in v.corrections:
@@ -76,14 +95,11 @@ def lines(v: Verdict) -> list[str]:
                 f"depth of {c.depth_over_R[k]:.2g} R"
             )
     if v.proposals:
-        best = v.proposals[0]
-        out += [
-            "", "Next experiment",
-            f"  {best.change} (discrimination {best.expected_discrimination:.3g})",
-        ]  # fmt: skip
+        out += ["", "Next experiment", f"  {v.proposals[0].change}"]
     if v.limits and v.verdict == "adequate":
         out += ["", "What would have been seen"]
         out += [f"  {k}: {x:.3g} or more" for k, x in v.limits.items()]
+    out += ["", "How it was decided", *(f"  {r}" for r in v.reasons)]
     notes = [n for n in v.notes if n]
     if notes:
         out += ["", "Notes", *(f"  {n}" for n in notes)]
@@ -93,12 +109,3 @@ def lines(v: Verdict) -> list[str]:
 def own_parameters(v: Verdict) -> dict[str, dict[str, Any]]:
     """Return the parameters of the best explanation's mechanisms only."""
     return {label: v.parameters[label] for label in v.best.grid.labels}
-
-
-def number(q: dict[str, Any]) -> str:
-    """Return a value with its unit."""
-    unit = "" if q["unit"] == "-" else f" {q['unit']}"
-    return f"{q['value']:.3g}{unit}"
-
-
-__all__ = ["headline", "lines", "number", "own_parameters"]

@@ -21,28 +21,43 @@ class _RodTable(StrikerTable):
     """`[striker]` of an inverse file: a rod of one radius, unless it says otherwise."""
 
     shape: Literal["rod"] = "rod"
+    """A rod with two round ends."""
     radius_m: Positive | None = None
+    """Radius of the shank."""
     length_m: Positive
+    """Between the centres of the two tip spheres."""
 
 
 class _TrialTable(InputTable):
     """`[[trial]]` of an inverse file, named as the columns of trials.csv."""
 
     trial: str = ""
+    """Name of the trial."""
     angle_deg: float = Field(gt=0.0, lt=90.0)
+    """Between the rod's axis and the flat."""
     impact_speed_m_s: float = Field(gt=0.0)
+    """Speed of the tip along the flat's normal."""
     rebound_m_s: float | None = None
+    """Speed of the centre of mass after, where it was measured."""
     friction_impulse_ratio: float = Field(ge=0.0)
+    """Tangential over normal impulse."""
     restitution: float = Field(ge=0.0)
+    """Rebound over approach speed of the tip."""
     permanent_depth_m: float = Field(gt=0.0)
+    """Depth of the crater."""
     sliding_length_m: float = Field(gt=0.0)
+    """Length of the scar less its width."""
     printed_duration_s: float | None = None
+    """A published duration to show beside."""
     printed_mean_force_N: float | None = None
+    """A published mean force to show beside."""
 
 
 class _InverseFile(InputTable):
     striker: _RodTable
+    """The rod."""
     trial: list[_TrialTable] = Field(min_length=1)
+    """The trials: `[[trial]]`, as many as there are."""
 
 
 @dataclass(frozen=True, slots=True)

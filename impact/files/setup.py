@@ -29,28 +29,46 @@ class ImpactTable(InputTable):
     """`[impact]`: what is dropped, how, with which laws and which of the options."""
 
     striker: str = ""
+    """Which striker; needed where there are several."""
     angle_deg: float = Field(default=90.0, gt=0.0, le=90.0)
+    """Between a rod's axis, or a sphere's velocity, and the flat."""
     impact_speed_m_s: Positive | None = None
+    """Speed of the tip along the flat's normal; or drop_height_m."""
     drop_height_m: Positive | None = None
+    """Height of fall; or impact_speed_m_s."""
     approach_tangential_m_s: Quantity | None = None
+    """Speed along the flat."""
     approach_spin_rad_s: Quantity = Quantity(value=0.0)
+    """Spin before the touch, counter-clockwise."""
     laws: tuple[str, ...] = DEFAULT_LAWS
+    """Contact laws, as in `dentscope laws list`."""
     modes: int = Field(default=0, ge=0, le=60)
+    """Vibrations of the rod that are simulated, lowest first; 0: a rigid rod."""
     loss_factor: float = Field(default=0.0, ge=0.0, lt=1.0)
+    """Their damping."""
     support: Literal["rigid", "sprung", "plate", "half-space"] = "rigid"
+    """How the flat rests."""
     support_damping_N_s_m: float = Field(default=0.0, ge=0.0)
+    """Damping of a sprung support."""
     finite_tip: bool = False
+    """Whether the curvature of a rod's tip ends at its shank."""
     repeats: int = Field(default=1, ge=1, le=100)
+    """Blows on the same spot."""
     flight_s: float | None = Field(default=None, ge=0.0)
+    """How long a flight between two touches may last."""
     max_steps: int = Field(default=20_000, ge=10)
+    """Steps after which an impact is given up."""
     max_contacts: int = Field(default=50, ge=1)
+    """Touches after which an impact is given up."""
 
 
 class SetupFile(Rig):
     """The whole file."""
 
     impact: ImpactTable
+    """The blow."""
     sweep: SweepTable = SweepTable()
+    """Conditions that run through values; every combination is simulated."""
 
 
 @dataclass(frozen=True, slots=True)

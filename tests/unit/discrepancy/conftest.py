@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 from collections.abc import Sequence
 from dataclasses import dataclass, field, replace
+from html.parser import HTMLParser
 from types import SimpleNamespace
 from typing import Any
 
@@ -148,3 +149,43 @@ def toy() -> SimpleNamespace:
         Effect=Effect, Simulator=Simulator, condition=condition, problem=problem, fit_of=fit_of,
         screened_of=screened_of, nulls_of=nulls_of, ranking_of=ranking_of,
     )  # fmt: skip
+
+
+_EMPTY = {"meta", "path", "use", "rect", "input", "br"}
+
+
+class Page(HTMLParser):
+    """A page as a person sees it: text outside what is folded, attributes, nesting."""
+
+    def __init__(self, text: str) -> None:
+        super().__init__()
+        self.open: list[str] = []
+        self.attributes: list[tuple[str, dict[str, str | None]]] = []
+        self.seen = ""
+        self.feed(text)
+        self.close()
+        assert self.open == []
+
+    def handle_starttag(self, tag: str, attrs: list[tuple[str, str | None]]) -> None:
+        self.attributes.append((tag, dict(attrs)))
+        if tag not in _EMPTY:
+            self.open.append(tag)
+
+    def handle_startendtag(self, tag: str, attrs: list[tuple[str, str | None]]) -> None:
+        self.attributes.append((tag, dict(attrs)))
+
+    def handle_endtag(self, tag: str) -> None:
+        if tag not in _EMPTY:
+            assert self.open.pop() == tag
+
+    def handle_data(self, data: str) -> None:
+        if not {"details", "script", "style", "title"} & set(self.open):
+            self.seen += data
+
+    def of(self, tag: str) -> list[dict[str, str | None]]:
+        return [attributes for name, attributes in self.attributes if name == tag]
+
+
+@pytest.fixture(scope="session")
+def page_of() -> type[Page]:
+    return Page

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import csv
 import json
 import math
 import subprocess
@@ -15,7 +16,7 @@ from dentscope.core import InputError
 from dentscope.discrepancy import diagnose
 from dentscope.discrepancy.forward import Point, Simulator
 from dentscope.discrepancy.problem import problem_of
-from dentscope.discrepancy.report.page import report
+from dentscope.discrepancy.report import story_of
 from dentscope.recordings import read
 from dentscope.recordings.template import write_template
 from dentscope.studies.proof.generators import folder, truth
@@ -50,7 +51,7 @@ def written(place: Path, kind: str, seed: int, name: str = "") -> Path:
 
 
 def test_one_folder_in_one_command_a_verdict(
-    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, page_of: Any
 ) -> None:
     monkeypatch.setattr(truth, "size_of", lambda *args, **more: 20.0)
     case = written(tmp_path, "single", 5, "adhesion")
@@ -61,12 +62,33 @@ def test_one_folder_in_one_command_a_verdict(
     assert list(verdict) == KEYS
     assert verdict["format"] == "verdict/1"
     assert math.isclose(sum(verdict["probabilities"].values()), 1.0, rel_tol=1e-6)
-    page = (out / "report.html").read_text()
-    assert "<img" in page
-    assert "http://" not in page.replace("http://www.w3.org", "")
+    _is_readable(out, page_of((out / "report.html").read_text()))
     assert answer.stdout.startswith("set: ")
     again = diagnose(read(case), seed=0).to_dict()
     assert close(json.loads(json.dumps(again)), verdict)
+
+
+def _is_readable(out: Path, page: Any) -> None:
+    """The report stands alone, its figures and files show every number, its words are plain."""
+    for link in (a["href"] for a in page.of("a")):
+        assert link is not None
+        assert link.startswith("data:")
+    assert not page.of("link")
+    assert "src" not in {key for _, attributes in page.attributes for key in attributes}
+    for word in ("nats", "cells", "discrimination", " z ="):
+        assert word not in page.seen
+    for part in ("probability", "Measured beside simulated", "What to do next"):
+        assert part in page.seen
+    points = json.loads((out / "report.json").read_text())["points"]
+    with (out / "report.csv").open() as stream:
+        rows = list(csv.DictReader(stream))
+    assert [float(r["measured"]) for r in rows] == [p["measured"] for p in points]
+    drawn = [a for a in page.of("g") if a.get("class") == "point"]
+    assert len(drawn) >= len(points) > 5
+    assert all(p["low"] < p["measured"] < p["high"] for p in points)
+    # what is drawn first is what stands first in the files; every figure has its own ids
+    ids = [a["id"] for _, a in page.attributes if "id" in a]
+    assert len(set(ids)) == len(ids)
 
 
 def test_strength_off_by_14_percent_is_a_stated_number_not_physics(tmp_path: Path) -> None:
@@ -159,7 +181,7 @@ def test_the_template_as_it_is_written_is_too_little_to_say_anything(tmp_path: P
     assert found["notes"][0].startswith("too few")
     # with a single condition nothing can be left out and predicted
     assert found["improvement"]["held_out_baseline"] is None
-    assert "none left out" in report(verdict)
+    assert story_of(verdict).prediction == ""
 
 
 def test_trials_without_a_measured_number_are_refused_in_one_line(tmp_path: Path) -> None:

@@ -1,0 +1,144 @@
+"""What a report draws: measured beside simulated, a row a number of the comparison."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import asdict, dataclass
+from typing import Any, NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ...core.observables import OBSERVABLES
+from ..findings import Verdict
+from ..inference.outliers import WIDER
+
+Array = NDArray[np.float64]
+
+
+class Against(NamedTuple):
+    """Something that varies over the conditions.
+
+    Parameters
+    ----------
+    key
+        Name in files.
+    label
+        Text of an axis.
+    values
+        (conditions,) in the label's unit.
+    """
+
+    key: str
+    label: str
+    values: Array
+
+
+@dataclass(frozen=True, slots=True)
+class Point:
+    """One number of the comparison, in the units that people read.
+
+    Parameters
+    ----------
+    observable, unit, striker
+        What, in which unit, of whom.
+    condition, trials
+        Number of the condition, from 1, and trials behind the mean.
+    x
+        What varies, by the key of `Against`.
+    measured, low, high
+        Mean of the repeats and its standard error on both sides.
+    as_stated
+        Simulated with every number as stated.
+    before
+        Simulated with the numbers moved within their uncertainties, nothing added.
+    after
+        The same with the mechanisms that are named; nan without any.
+    weight
+        Whether it counts: a value far off everything else does not.
+    """
+
+    observable: str
+    unit: str
+    striker: str
+    condition: int
+    trials: int
+    x: dict[str, float]
+    measured: float
+    low: float
+    high: float
+    as_stated: float
+    before: float
+    after: float
+    weight: bool
+
+    def row(self) -> dict[str, Any]:
+        """Return the point as one flat row of a table."""
+        content = asdict(self)
+        return {**content.pop("x"), **content}
+
+
+def againsts(v: Verdict) -> tuple[Against, ...]:
+    """Return what varies over the conditions, the speed first even if it does not."""
+    c, rigs = v.problem.conditions, v.problem.rig.strikers
+    total = np.array([math.hypot(one.speed, one.tangential) for one in c])
+    lean = [
+        one.angle if rigs[one.striker].length > 0.0 else math.atan2(one.speed, abs(one.tangential))
+        for one in c
+    ]
+    known = (
+        Against("speed_m_s", "approach speed [m/s]", np.array([one.speed for one in c])),
+        Against("angle_deg", "angle [deg]", np.degrees(lean)),
+        Against(
+            "tangential_m_s", "tangential speed [m/s]", np.array([one.tangential for one in c])
+        ),
+        Against(
+            "tip_radius_mm", "radius of the tip [mm]",
+            np.array([1e3 * rigs[one.striker].tip_radius_m.value for one in c]),
+        ),
+        Against(
+            "length_mm", "length of the rod [mm]",
+            np.array([1e3 * rigs[one.striker].length for one in c]),
+        ),
+        Against(
+            "mass_g", "mass of the striker [g]",
+            np.array([1e3 * rigs[one.striker].mass_kg.value for one in c]),
+        ),
+        Against(
+            "temperature_K", "temperature [K]", np.array([one.around.temperature for one in c])
+        ),
+    )  # fmt: skip
+    varying = [a for a in known if np.ptp(a.values) > 1e-3 * np.max(np.abs(a.values))]
+    if np.ptp(total) < 0.01 * total.max() and len(varying) > 1:
+        # one speed at several angles: its parts are not what was chosen
+        varying.sort(key=lambda a: a.key != "angle_deg")
+    return tuple(varying or known[:1])
+
+
+def points_of(v: Verdict) -> tuple[Point, ...]:
+    """Return every number of the comparison."""
+    cells, conditions = v.problem.cells, v.problem.conditions
+    base = v.ranking.base
+    along = againsts(v)
+    counts = np.array([i not in v.problem.weightless for i in range(len(cells))])
+    std = np.where(counts, cells.std, cells.std / WIDER)
+    stated = cells.value - base.residual
+    found = []
+    for i, name in enumerate(cells.observable):
+        row, log = OBSERVABLES[name], bool(cells.is_log[i])
+        k = int(cells.condition[i])
+
+        def shown(x: float, log: bool = log, scale: float = row.scale) -> float:
+            return scale * (math.exp(x) if log else float(x))
+
+        found.append(
+            Point(
+                name, row.unit, conditions[k].striker, k + 1, int(cells.count[i]),
+                {a.key: float(a.values[k]) for a in along},
+                shown(cells.value[i]), shown(cells.value[i] - std[i]),
+                shown(cells.value[i] + std[i]), shown(stated[i]), shown(base.prediction[i]),
+                shown(v.best.prediction[i]) if v.mechanisms else math.nan,
+                bool(counts[i]),
+            )
+        )  # fmt: skip
+    return tuple(found)

@@ -1,0 +1,249 @@
+"""What a report says, as plain values: the page, its tables and its files are made from it."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+from typing import Any, NamedTuple
+
+import numpy as np
+
+from ...core.observables import OBSERVABLES
+from ..findings import Verdict
+from .series import Against, Point, againsts, points_of
+from .text import headline, inclusion_of, own_parameters
+from .wording import (
+    explanation,
+    interval,
+    joined,
+    miss_sentences,
+    number_name,
+    percent,
+    quantity,
+    title_of,
+)
+
+_SHOWN = 8
+_LEAST = 0.005  # a probability below this is not worth a line
+
+
+class Bar(NamedTuple):
+    """A part of a whole, with its name in words."""
+
+    name: str
+    share: float
+
+    @property
+    def told(self) -> str:
+        """The share in words."""
+        return percent(self.share)
+
+
+class Cells(NamedTuple):
+    """A table: names of the columns, and rows of texts."""
+
+    head: tuple[str, ...]
+    rows: tuple[tuple[str, ...], ...]
+
+
+@dataclass(frozen=True)
+class Story:
+    """Everything that a report says.
+
+    Parameters
+    ----------
+    name, finding, summary
+        The set, the finding in one sentence, and what was compared.
+    points, against, strikers
+        What is drawn, against what, and who struck.
+    misses, audit, reasons, notes
+        Sentences: where the simulation misses, contradictions of the inputs, how the verdict came
+        about, what was assumed.
+    parts, explanations
+        Probability of each mechanism to take part, and of each explanation.
+    found
+        Numbers of the mechanisms that are named, with intervals.
+    prediction
+        How the trials kept out of the fit are predicted, in one sentence.
+    doubt
+        What the uncertainty of the comparison is made of.
+    numbers, scores, excluded, limits
+        Tables for those who want to know.
+    next_step, further
+        The next experiment as an instruction, and other useful ones.
+    """
+
+    name: str
+    finding: str
+    summary: str
+    points: tuple[Point, ...]
+    against: tuple[Against, ...]
+    strikers: tuple[str, ...]
+    misses: tuple[str, ...]
+    audit: tuple[str, ...]
+    reasons: tuple[str, ...]
+    notes: tuple[str, ...]
+    parts: tuple[Bar, ...]
+    explanations: tuple[Bar, ...]
+    found: Cells
+    prediction: str
+    doubt: tuple[Bar, ...]
+    numbers: Cells
+    scores: Cells
+    excluded: Cells
+    limits: Cells
+    next_step: str
+    further: tuple[str, ...]
+
+    def to_dict(self) -> dict[str, Any]:
+        """Return what the figures show, for programs."""
+        return {
+            "format": "report/1",
+            "set": self.name,
+            "finding": self.finding,
+            "axes": {a.key: a.label for a in self.against},
+            "points": [p.row() for p in self.points],
+        }
+
+
+def story_of(v: Verdict) -> Story:
+    """Return what there is to say of a verdict."""
+    step, *further = [*_instructions(v), ""]
+    return Story(
+        name=v.name,
+        finding=headline(v),
+        summary=_summary(v),
+        points=points_of(v),
+        against=againsts(v),
+        strikers=tuple(dict.fromkeys(c.striker for c in v.problem.conditions)),
+        misses=miss_sentences(v.located.misses[:_SHOWN], v.located.threshold),
+        audit=tuple(str(a["message"]) for a in v.audit),
+        reasons=v.reasons,
+        notes=tuple(n for n in v.notes if n),
+        parts=tuple(
+            Bar(f"{title_of(k)} ({k})", p) for k, p in inclusion_of(v).items() if p >= _LEAST
+        ),
+        explanations=tuple(
+            Bar(explanation(k), p) for k, p in v.probabilities.items() if p >= _LEAST
+        ),
+        found=_found(v),
+        prediction=_prediction(v),
+        doubt=_doubt(v),
+        numbers=_numbers(v),
+        scores=_scores(v),
+        excluded=Cells(
+            ("what", "why not"), tuple((title_of(k), why) for k, why in v.excluded.items())
+        ),
+        limits=_limits(v),
+        next_step=step,
+        further=tuple(filter(None, further)),
+    )
+
+
+def _summary(v: Verdict) -> str:
+    p = v.problem
+    trials = sum(len(c.trials) for c in p.conditions)
+    seen = joined([OBSERVABLES[o].label for o in dict.fromkeys(p.cells.observable)])
+    metal = "elastic bodies" if p.law.name == "hertz" else "a metal that knows no rate"
+    return (
+        f"{trials} trials at {len(p.conditions)} conditions, {len(p.cells)} numbers ({seen}), "
+        f"beside a rigid striker on a rigid base of {metal} (contact law: {p.law.name})."
+    )
+
+
+def _found(v: Verdict) -> Cells:
+    rows = []
+    if v.mechanisms:
+        axes = v.best.grid.axes
+        for (name, q), axis in zip(own_parameters(v).items(), axes, strict=True):
+            rows.append(
+                (
+                    name, quantity(q["value"], q["unit"]),
+                    interval(q["low"], q["high"], q["unit"]), axis.parameter.source,
+                )
+            )  # fmt: skip
+    return Cells(("number", "value", "90 % interval", "where its range comes from"), tuple(rows))
+
+
+def _prediction(v: Verdict) -> str:
+    i = v.improvement
+    if not v.mechanisms:
+        return ""
+    if math.isnan(i["held_out_extended"]):
+        return "No condition could be kept out of the fit to try the prediction on."
+    before, after = i["held_out_baseline"], i["held_out_extended"]
+    better = "better" if after < before else "worse, which speaks against the name"
+    return (
+        f"Tried on conditions that were kept out of the fit, whole speeds, strikers and angles at "
+        f"a time ({i['trials']:.0f} predictions): off by {after:.1f} standard errors with it, "
+        f"{before:.1f} without; {better}. A better prediction does not prove the name: a wrong "
+        "mechanism can improve it too."
+    )
+
+
+def _doubt(v: Verdict) -> tuple[Bar, ...]:
+    """Mean share of each source in the variance between recording and simulation."""
+    p, linear = v.problem, v.best.linear
+    counts = [i for i in range(len(p.cells)) if i not in p.weightless]
+    total = np.diag(linear.total)
+    sources = {"scatter and noise of the readings": np.diag(linear.noise)}
+    for k, n in enumerate(p.nuisances):
+        name = number_name(n.name)
+        sources[name] = sources.get(name, 0.0) + linear.J[:, k] ** 2
+    sources["the contact law's own error"] = np.sum(linear.J[:, p.n_nuisances :] ** 2, axis=1)
+    if linear.form.size:
+        sources["the textbook form of the mechanism"] = np.sum(linear.form**2, axis=1)
+    bars = [Bar(k, float(np.mean((x / total)[counts]))) for k, x in sources.items()]
+    return tuple(b for b in sorted(bars, key=lambda b: -b.share) if b.share >= 0.01)
+
+
+def _numbers(v: Verdict) -> Cells:
+    rows = []
+    for n in v.problem.nuisances:
+        q = v.parameters[n.name]
+        rows.append(
+            (
+                number_name(n.name) + ("" if n.stated else " (assumed)"),
+                quantity(n.value, n.unit), quantity(q["value"], q["unit"]),
+                interval(q["low"], q["high"], q["unit"]),
+                f"{v.nuisance_pulls[n.name]:+.1f}", f"{v.surprise[n.name]:+.1f}",
+            )
+        )  # fmt: skip
+    head = ("number of set.toml", "stated", "found", "90 % interval", "shift", "surprise")
+    return Cells(head, tuple(rows))
+
+
+def _scores(v: Verdict) -> Cells:
+    rows = tuple(
+        (
+            explanation(name), f"{s['evidence']:+.1f}", f"{s['p_value']:.3f}",
+            "-" if math.isnan(s["held_out"]) else f"{s['held_out']:.2f}",
+            percent(v.probabilities.get(name, 0.0)),
+        )
+        for name, s in sorted(v.scores.items(), key=lambda item: -item[1]["evidence"])
+    )  # fmt: skip
+    head = (
+        "explanation", "weight of evidence over 'nothing missing' [nat]",
+        "share of its own sets that fit no better", "miss on trials kept out [standard errors]",
+        "probability",
+    )  # fmt: skip
+    return Cells(head, rows)
+
+
+def _limits(v: Verdict) -> Cells:
+    units = {s.mechanism.name: s.mechanism.parameters[0] for s in v.ranking.screened}
+    rows = tuple(
+        (title_of(k), units[k].name if k in units else "", quantity(x, units[k].unit))
+        for k, x in v.limits.items()
+        if k in units
+    )
+    return Cells(("what", "number", "would have been seen from"), rows)
+
+
+def _instructions(v: Verdict) -> list[str]:
+    """Return the proposed trials, best first, with what each would tell."""
+    return [
+        f"Strike again, with {q.change}. What is still confounded would then lie about "
+        f"{math.sqrt(max(q.expected_discrimination, 0.0)):.1f} standard deviations apart."
+        for q in v.proposals
+    ]

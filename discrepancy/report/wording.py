@@ -1,0 +1,141 @@
+"""Words of a report: numbers as people write them, names without keys, the glossary."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+
+from matplotlib.ticker import EngFormatter
+
+from ...core.observables import OBSERVABLES
+from ..locate import Miss
+from ..mechanisms import MECHANISMS
+
+_PREFIXED = frozenset({"Pa", "m", "s", "N", "J", "Hz", "N/m", "g"})
+_TITLES = {m.name: m.title for m in MECHANISMS}
+_WHILE = {
+    "approach": "before the touch",
+    "loading": "while the bodies are pressed together",
+    "unloading": "while they part",
+    "sliding": "while the tip slides",
+    "free-flight": "in the flight",
+}
+_KEYS = {
+    "E_Pa": "Young's modulus",
+    "Sy_Pa": "yield strength",
+    "tip_radius_m": "radius of the tip",
+    "mass_kg": "mass",
+    "restitution": "restitution where nothing is missing",
+}
+_WHOLE = {
+    "speed.scale": "all speeds, by one factor",
+    "angle.offset": "all angles, by one shift",
+    "friction.coefficient": "friction coefficient",
+}
+GLOSSARY = (
+    (
+        "simulation as described",
+        "the impact of the bodies in your set.toml: rigid striker, rigid base, a contact law of "
+        "the two metals in which flow stress depends neither on rate nor on temperature; every "
+        "number may move within its stated uncertainty",
+    ),
+    ("mechanism", "one piece of physics that can be added to the simulation, such as friction "
+     "that depends on speed, or a flat that moves on its support"),
+    ("restitution", "rebound over approach speed of the tip, along the normal of the flat"),
+    ("takes part", "the mechanism acts, alone or together with another one"),
+    ("90 % interval", "the value lies in it with a probability of 90 %, if the explanation is "
+     "right"),
+    ("standard error", "by how much the mean of repeated readings is uncertain"),
+    ("conditions", "trials with the same striker, speed and angle, taken together"),
+    ("number of the comparison (cell)", "the mean of one measured quantity at one condition"),
+    ("weight of evidence (nat)", "natural logarithm of how many times more probable an "
+     "explanation makes the readings than another does: 3 is 20 times, 10 is 22 000 times"),
+    ("shift", "by how many of its own stated standard deviations a number of your set.toml would "
+     "have to move; beyond 2 look at it again"),
+    ("surprise", "the same, over what chance alone would move it"),
+)  # fmt: skip
+"""Terms of the report, in the order in which they appear."""
+
+
+def title_of(name: str) -> str:
+    """Return what a mechanism means, as a clause."""
+    return _TITLES.get(name, name.replace("-", " "))
+
+
+def explanation(name: str) -> str:
+    """Return an explanation's name, as the scores know it, in words."""
+    if name == "baseline":
+        return "nothing is missing"
+    if name == "outside-library":
+        return "something that dentscope does not know"
+    return " and ".join(title_of(part) for part in name.split("+"))
+
+
+def number_name(key: str) -> str:
+    """Return the name of a number of set.toml in words: `target.E_Pa` is Young's modulus ..."""
+    if key in _WHOLE:
+        return _WHOLE[key]
+    *place, last = key.split(".")
+    what = _KEYS.get(last, last.replace("_", " "))
+    if not place:
+        return what
+    return f"{what} of {'the flat' if place == ['target'] else place[-1]}"
+
+
+def quantity(value: float, unit: str) -> str:
+    """Return a value of three figures with its unit, the unit prefixed where that is usual.
+
+    Examples
+    --------
+    >>> quantity(3.0512e8, "Pa"), quantity(2.9e-5, "m"), quantity(40.2, "1/s")
+    ('305 MPa', '29 µm', '40.2 1/s')
+    """
+    short = float(f"{value:.3g}")
+    if not math.isfinite(short):
+        return "none" if math.isnan(short) else "without bound"
+    if unit == "kg":
+        short, unit = float(f"{1e3 * value:.3g}"), "g"
+    if unit in _PREFIXED:
+        return str(EngFormatter(unit)(short)).replace("\N{MINUS SIGN}", "-")
+    plain = f"{short:.3g}" if 1e-3 <= abs(short) < 1e5 or short == 0.0 else f"{short:.2e}"
+    return plain if unit in ("-", "") else f"{plain} {unit}"
+
+
+def interval(low: float, high: float, unit: str) -> str:
+    """Return an interval with its unit."""
+    return f"{quantity(low, unit)} to {quantity(high, unit)}"
+
+
+def percent(p: float) -> str:
+    """Return a probability in words that are no surer than it is.
+
+    Examples
+    --------
+    >>> percent(0.974), percent(0.9999), percent(0.0004)
+    ('97 %', 'more than 99 %', 'less than 1 %')
+    """
+    if p > 0.99:
+        return "more than 99 %"
+    if p < 0.01:
+        return "less than 1 %"
+    return f"{100.0 * p:.0f} %"
+
+
+def joined(parts: Sequence[str], last: str = "and") -> str:
+    """Return words as a list within a sentence."""
+    if len(parts) < 2:
+        return "".join(parts)
+    return f"{', '.join(parts[:-1])} {last} {parts[-1]}"
+
+
+def miss_sentences(misses: Sequence[Miss], threshold: float) -> tuple[str, ...]:
+    """Return where the simulation misses, a sentence an observable, the worst first."""
+    found = []
+    for name in dict.fromkeys(m.observable for m in misses):
+        own = [m for m in misses if m.observable == name]
+        label, when = OBSERVABLES[name].label, _WHILE.get(own[0].phase, own[0].phase)
+        trends = "; ".join(
+            f"{m.trend}, {abs(m.z) / threshold:.1f} times what chance gives" for m in own
+        )
+        found.append(f"{label[0].upper()}{label[1:]} ({when}): {trends}.")
+    return tuple(found)
