@@ -21,6 +21,7 @@ from .fit import fit
 from .groups import Sections
 from .impact import impact
 from .inverse import inverse
+from .keys import keys
 
 app = typer.Typer(
     name="dentscope",
@@ -45,6 +46,7 @@ app.command()(impact)
 app.command()(inverse)
 app.command()(diagnose)
 app.command()(examples)
+app.command()(keys)
 app.command()(doctor)
 for _name in ("figures", "verify", "proof"):
     studies.add(app, _name)

@@ -17,7 +17,7 @@ from .studies import COMMANDS as _WORKSHOP
 SECTIONS = (
     ("Your own", ("impact", "diagnose", "recordings", "reduce", "case", "laws", "inverse")),
     ("Behind the law", ("campaign", "fit")),
-    ("To begin", ("examples", "doctor", "version")),
+    ("To begin", ("examples", "keys", "doctor", "version")),
 )
 """Commands as the first help shows them; what stands in none comes last, as the workshop's."""
 

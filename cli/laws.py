@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-import shutil
-import textwrap
 import warnings
 from collections.abc import Iterable
 from pathlib import Path
@@ -15,8 +13,8 @@ from ..core.errors import InputError
 from ..core.output import csv_text, write_figure, write_file
 from .groups import Commands, group
 from .places import folder_option
-from .terminal import NARROWEST, show_table
 from .terminal import console as new_console
+from .terminal import entry, show_table
 
 if TYPE_CHECKING:
     from ..core.material import Pair
@@ -61,7 +59,7 @@ def list_laws() -> None:
 
     for law in LAWS.values():
         bodies = "both bodies" if law.regime == "either" else law.regime
-        _entry(law.name, f"{law.title}. For {bodies}; {law.standing.told}: {law.read}.")
+        entry(law.name, f"{law.title}. For {bodies}; {law.standing.told}: {law.read}")
     typer.echo(
         "\nverified second hand: read in a text or code, other than the thesis, that names the "
         "paper. unverified: they rest on the thesis, on limits and continuity.\n"
@@ -69,19 +67,10 @@ def list_laws() -> None:
         "\nModels of depth and rate that leave no dent; shown, and not computed with:"
     )
     for name, model in RATE_MODELS.items():
-        _entry(name, f"{model.formula}; {model.objection}.")
+        entry(name, f"{model.formula}; {model.objection}")
     typer.echo("\nNot offered, and why:")
     for name, reason in UNAVAILABLE.items():
-        _entry(name, f"{reason}.")
-
-
-def _entry(name: str, text: str) -> None:
-    """Print a name, and what is said of it indented below."""
-    width = max(shutil.get_terminal_size().columns, NARROWEST)
-    typer.echo(name)
-    text = text.replace("..", ".")
-    for line in textwrap.wrap(text, width - 4, break_long_words=False, break_on_hyphens=False):
-        typer.echo(f"    {line}")
+        entry(name, reason)
 
 
 @app.command()
@@ -131,7 +120,7 @@ def _show_rate_model(name: str) -> None:
 def _echo(lines: Iterable[tuple[str, str]]) -> None:
     for key, text in lines:
         if text:
-            _entry(key, text)
+            entry(key, text)
 
 
 @app.command()

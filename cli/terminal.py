@@ -2,8 +2,12 @@
 
 from __future__ import annotations
 
+import shutil
+import textwrap
 from collections.abc import Sequence
 from typing import TYPE_CHECKING
+
+import typer
 
 if TYPE_CHECKING:
     from rich.console import Console
@@ -67,3 +71,12 @@ def parts(head: Sequence[str], rows: Sequence[Sequence[str]], *, width: int) -> 
 
 def _width(cell: str) -> int:
     return max(map(len, cell.split("\n")))
+
+
+def entry(name: str, text: str) -> None:
+    """Print a name, and what is said of it indented below."""
+    width = max(shutil.get_terminal_size().columns, NARROWEST)
+    typer.echo(name)
+    text = f"{text.rstrip('.')}."
+    for line in textwrap.wrap(text, width - 4, break_long_words=False, break_on_hyphens=False):
+        typer.echo(f"    {line}")

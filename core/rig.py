@@ -9,6 +9,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable, Mapping
+from dataclasses import dataclass
 from typing import Annotated, Any, Literal
 
 from pydantic import (
@@ -62,13 +63,22 @@ def value_of(quantity: Quantity | None, otherwise: float = math.nan) -> float:
     return otherwise if quantity is None else quantity.value
 
 
-def _within(accept: Callable[[float], bool], allowed: str) -> AfterValidator:
-    def check(quantity: Quantity) -> Quantity:
-        if not accept(quantity.value):
-            raise ValueError(allowed)
+@dataclass(frozen=True)
+class Within:
+    """Accepts quantities of a range; says which in `allowed`, for errors and the reference."""
+
+    accept: Callable[[float], bool]
+    allowed: str
+
+    def __call__(self, quantity: Quantity) -> Quantity:
+        """Return the quantity if it lies in the range."""
+        if not self.accept(quantity.value):
+            raise ValueError(self.allowed)
         return quantity
 
-    return AfterValidator(check)
+
+def _within(accept: Callable[[float], bool], allowed: str) -> AfterValidator:
+    return AfterValidator(Within(accept, allowed))
 
 
 Positive = Annotated[Quantity, _within(lambda x: x > 0.0, "a number above 0")]

@@ -19,6 +19,7 @@ class Setup(Rig):
     """All of set.toml."""
 
     format: Literal["recording-set/1"]
+    """Version of the file's format."""
 
 
 def setup_text(setup: Setup) -> str:

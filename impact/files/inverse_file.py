@@ -53,7 +53,9 @@ class _TrialTable(InputTable):
     """A published mean force to show beside."""
 
 
-class _InverseFile(InputTable):
+class InverseFile(InputTable):
+    """The keys of an inverse file."""
+
     striker: _RodTable
     """The rod."""
     trial: list[_TrialTable] = Field(min_length=1)
@@ -80,7 +82,7 @@ def read_inverse(path: Path) -> tuple[Striker, list[Row]]:
         One line for each mistake, also for a friction coefficient at which the tip sticks.
     """
     source = str(path)
-    found = parse_model(read_toml(path), _InverseFile, source=source)
+    found = parse_model(read_toml(path), InverseFile, source=source)
     rod = striker_of(found.striker, "rod")
     rows = []
     for i, trial in enumerate(found.trial, start=1):

@@ -66,12 +66,19 @@ class SweepTable(InputTable):
     """`[sweep]`: values of the conditions named; each a list or a range."""
 
     impact_speed_m_s: _Positive = ()
+    """Speeds along the flat's normal."""
     drop_height_m: _Positive = ()
+    """Heights of fall."""
     angle_deg: Annotated[_Values, _all(lambda x: 0.0 < x <= 90.0, "above 0 and up to 90")] = ()
+    """Angles, as in [impact]."""
     friction: Annotated[_Values, _all(lambda x: x >= 0.0, "0 or more")] = ()
+    """Coefficients of friction."""
     mass_kg: _Positive = ()
+    """Masses of the striker."""
     approach_tangential_m_s: _Values = ()
+    """Speeds along the flat."""
     approach_spin_rad_s: _Values = ()
+    """Spins before the touch."""
 
     @property
     def swept(self) -> dict[str, tuple[float, ...]]:

@@ -1,0 +1,209 @@
+"""`dentscope keys`: every key of an input file, read off the schema that checks the file."""
+
+from __future__ import annotations
+
+import types
+import typing
+from collections.abc import Iterator
+from typing import Annotated, Any, NamedTuple
+
+import typer
+
+from ..core.errors import InputError
+from .terminal import entry
+
+if typing.TYPE_CHECKING:
+    from pydantic import BaseModel
+    from pydantic.fields import FieldInfo
+
+FILES = {
+    "case": "CASE.toml, of `dentscope case` and `laws compare`",
+    "impact": "set-up of `dentscope impact`",
+    "inverse": "file of `dentscope inverse`",
+    "set": "set.toml of a recording set",
+    "trials": "columns of a set's trials.csv",
+}
+"""What there are keys of."""
+
+_LEFT_OUT = "may be left out"
+_UNITS = {
+    "kg_m3": "kg/m^3", "J_kgK": "J/(kg K)", "J_m3K": "J/(m^3 K)", "Pa_s": "Pa s",
+    "kg_m2": "kg m^2", "N_s_m": "N s/m", "N_m": "N/m", "rad_s": "rad/s", "m_s2": "m/s^2",
+    "m_s": "m/s", "1_s": "1/s", "deg": "degrees", "Pa": "Pa", "kg": "kg", "K": "K", "m": "m",
+    "s": "s", "N": "N", "Ns": "N s", "Hz": "Hz",
+}  # fmt: skip
+
+
+class Key(NamedTuple):
+    """One key of a file.
+
+    Parameters
+    ----------
+    table
+        Where it stands, as in the file: `[target]`, or empty at the top.
+    name, meaning, allowed, default
+        What is written, what it says, what is accepted, and what holds without it.
+    """
+
+    table: str
+    name: str
+    meaning: str
+    allowed: str
+    default: str
+
+
+def keys(
+    file: Annotated[str, typer.Argument(help=f"One of {', '.join(FILES)}; without it, all.")] = "",
+) -> None:
+    """Say what every key of an input file means, allows and is by default."""
+    if file and file not in FILES:
+        raise InputError(
+            f"no file {file!r}", source="command line", key="FILE", allowed=", ".join(FILES)
+        )
+    typer.echo("A quantity is a number, or { value = ..., std = ... }; all are in SI units.\n")
+    for kind in [file] if file else FILES:
+        typer.echo(f"{kind}: {FILES[kind]}")
+        table = ""
+        for key in keys_of(kind):
+            if key.table != table:
+                table = key.table
+                typer.echo(f"\n{table}")
+            given = "needed" if not key.default else key.default
+            entry(key.name, f"{key.meaning} {key.allowed}; {given}.")
+        typer.echo("")
+
+
+def keys_of(kind: str) -> list[Key]:
+    """Return the keys of one of `FILES`, in the order of its schema."""
+    if kind == "trials":
+        from ..recordings import CONDITIONS, MEASURED
+
+        columns = {**CONDITIONS, **MEASURED}
+        return [
+            Key(
+                "",
+                name,
+                f"{_upper(c.meaning)}.",
+                "a text" if c.kind == "text" else _with_unit(c.allowed, name),
+                _LEFT_OUT,
+            )
+            for name, c in columns.items()
+        ]
+    return list(_keys(_schema(kind), ""))
+
+
+def _schema(kind: str) -> type[BaseModel]:
+    if kind == "case":
+        from .case_file import CaseFile
+
+        return CaseFile
+    if kind == "impact":
+        from ..impact.files.setup import SetupFile
+
+        return SetupFile
+    if kind == "inverse":
+        from ..impact.files.inverse_file import InverseFile
+
+        return InverseFile
+    from ..recordings.setup_file import Setup
+
+    return Setup
+
+
+def _keys(model: type[BaseModel], table: str) -> Iterator[Key]:
+    """Return the keys of a table, then those of the tables within it."""
+    within: list[tuple[str, type[BaseModel]]] = []
+    for name, field in model.model_fields.items():
+        inner, many = _table_in(field.annotation)
+        if inner is None:
+            yield Key(table, name, field.description or "", _allowed(name, field), _default(field))
+            continue
+        place = f"{table.strip('[]')}.{name}".lstrip(".")
+        place = f"{place}.NAME" if many == "named" else place
+        within.append((f"[[{place}]]" if many == "listed" else f"[{place}]", inner))
+    for place, inner in within:
+        yield from _keys(inner, place)
+
+
+def _table_in(annotation: Any) -> tuple[type[BaseModel] | None, str]:
+    """The table that a key holds, and whether there are several, `named` or `listed`."""
+    from ..core.rig import Quantity
+    from ..core.toml_input import InputTable
+
+    if isinstance(annotation, type) and issubclass(annotation, InputTable):
+        return (None, "") if annotation is Quantity else (annotation, "")
+    origin, inner = typing.get_origin(annotation), typing.get_args(annotation)
+    if origin in (dict, list) and inner:
+        found, _ = _table_in(inner[-1])
+        return found, "named" if origin is dict else "listed"
+    if origin in (typing.Union, types.UnionType):
+        return next((t for t in map(_table_in, inner) if t[0] is not None), (None, ""))
+    return None, ""
+
+
+def _allowed(name: str, field: FieldInfo) -> str:
+    """What the schema accepts, in words."""
+    words = [*_choices(field.annotation)] or [_kind(field.annotation)]
+    limits = [getattr(getattr(m, "func", None), "allowed", "") for m in _metadata(field)]
+    bounds = {"gt": "above {:g}", "ge": "{:g} or more", "lt": "below {:g}", "le": "up to {:g}"}
+    for part in field.metadata:
+        limits += [text.format(getattr(part, k)) for k, text in bounds.items() if hasattr(part, k)]
+    limits = [one.removeprefix("a number ") for one in limits if one]
+    return _with_unit(" ".join([" or ".join(words), " and ".join(limits)]).strip(), name)
+
+
+def _metadata(field: FieldInfo) -> list[Any]:
+    found = list(field.metadata)
+    for part in (field.annotation, *typing.get_args(field.annotation)):
+        found += getattr(part, "__metadata__", ())
+    return found
+
+
+def _choices(annotation: Any) -> Iterator[str]:
+    if typing.get_origin(annotation) is typing.Literal:
+        yield from (f'"{value}"' for value in typing.get_args(annotation))
+
+
+def _kind(annotation: Any) -> str:
+    from ..core.rig import Quantity
+
+    def held(part: Any) -> set[Any]:
+        inner = typing.get_args(part)
+        return {part} if not inner else {one for p in inner for one in held(p)}
+
+    types_ = held(annotation)
+    if Quantity in types_:
+        return "a quantity"
+    if typing.get_origin(annotation) is tuple:
+        return "a list of texts" if str in types_ else "a list of numbers"
+    if typing.get_origin(annotation) is dict:
+        return "numbers by name"
+    for kind, word in ((bool, "true or false"), (str, "a text"), (int, "a whole number")):
+        if kind in types_:
+            return word
+    return "a list of numbers or a range" if tuple in types_ else "a number"
+
+
+def _default(field: FieldInfo) -> str:
+    from ..core.rig import Quantity
+
+    if field.is_required():
+        return ""
+    value = field.get_default(call_default_factory=True, validated_data={})
+    if value is None or value == () or value == "" or value == {}:
+        return _LEFT_OUT
+    if isinstance(value, Quantity):
+        return f"default: {value.value:g}"
+    if isinstance(value, bool):
+        return f"default: {str(value).lower()}"
+    shown = ", ".join(map(str, value)) if isinstance(value, tuple) else value
+    return f"default: {shown}"
+
+
+def _with_unit(text: str, name: str) -> str:
+    unit = next((u for end, u in _UNITS.items() if name.endswith(f"_{end}")), "")
+    return f"{text} [{unit}]" if unit else text
+
+
+def _upper(text: str) -> str:
+    return text[:1].upper() + text[1:]

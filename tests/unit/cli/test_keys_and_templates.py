@@ -1,0 +1,74 @@
+"""Templates run as they are written; the reference of keys is complete and comes from the schemas."""
+
+import csv
+import tomllib
+from pathlib import Path
+
+import pytest
+from dentscope.cli import run
+from dentscope.cli.keys import FILES, keys_of
+from dentscope.cli.templates import CASE, INVERSE
+from dentscope.impact.files.template import KINDS, template
+
+
+@pytest.mark.parametrize("kind", FILES)
+def test_every_key_says_what_it_means_and_allows(kind):
+    found = keys_of(kind)
+    assert len(found) > 10
+    for key in found:
+        assert len(key.meaning) > 5, key
+        assert key.allowed, key
+    assert len({(k.table, k.name) for k in found}) == len(found)
+
+
+def test_ranges_units_and_defaults_come_from_the_schema():
+    found = {(k.table, k.name): k for k in keys_of("impact")}
+    assert found["[target]", "E_Pa"].allowed == "a quantity above 0 [Pa]"
+    assert found["[target]", "nu"].allowed == "a quantity 0 <= nu < 0.5"
+    assert found["[impact]", "angle_deg"].allowed == "a number above 0 and up to 90 [degrees]"
+    assert found["[impact]", "modes"].default == "default: 0"
+    assert found["[strikers.NAME]", "tip_radius_m"].default == ""
+    assert '"half-space"' in found["[impact]", "support"].allowed
+
+
+@pytest.mark.parametrize(
+    ("kind", "text"),
+    [("case", CASE), ("inverse", INVERSE), *(("impact", template(kind)) for kind in KINDS)],
+)
+def test_a_template_uses_keys_that_there_are(kind, text):
+    known = {k.name for k in keys_of(kind)} | {"value", "std", "from", "to", "count", "spacing"}
+    # also what is commented out
+    lines = [line.removeprefix("# ") for line in text.splitlines()]
+    written = {line.split("=")[0].strip() for line in lines if " = " in line and line[0] != "#"}
+    written = {name for name in written if name.replace("_", "").isalnum() and " " not in name}
+    assert len(written) > 8
+    assert written - known == set()
+
+
+@pytest.mark.fe
+def test_the_template_of_a_case_is_solved_as_it_is(tmp_path, capsys):
+    file = tmp_path / "mine.toml"
+    assert run(["case", "--new", str(file)]) == 0
+    assert f"dentscope case {file}" in capsys.readouterr().out
+    # the same pair, less deep: a test has seconds
+    text = file.read_text().replace("= 0.01  ", "= 0.001  ").replace("[0.01]  ", "[0.001]  ")
+    assert tomllib.loads(text)["load"] == {"max_delta_over_R": 0.001, "unload_from": [0.001]}
+    file.write_text(text)
+    assert run(["case", str(file), "--out", str(tmp_path / "out")]) == 0
+    with (tmp_path / "out" / "curve.csv").open() as stream:
+        load = [r for r in csv.DictReader(stream) if r["phase"] == "load"]
+    # Hertz at the first depth, below yield: 4/3 E' sqrt(R) d^1.5
+    reduced = 1.0 / (0.91 / 2.1e11 + 0.91 / 2.0e11)
+    d = 0.005 * float(load[0]["delta_over_R"])
+    hertz = 4.0 / 3.0 * reduced * (0.005 * d**3) ** 0.5
+    assert float(load[0]["force_N"]) == pytest.approx(hertz, rel=0.01)
+
+
+def test_the_template_of_an_inverse_runs_as_it_is(tmp_path: Path, monkeypatch, capsys):
+    monkeypatch.chdir(tmp_path)
+    assert run(["inverse", "--new"]) == 0
+    assert run(["inverse", "inverse.toml"]) == 0
+    # m v (1 + e) over the mean force, with the rod's mass and the factor that leaning takes away
+    assert "T01" in capsys.readouterr().out
+    assert run(["inverse", "--new"]) == 2
+    assert "exists" in capsys.readouterr().err
