@@ -1,4 +1,4 @@
-"""Templates run as they are written; the reference of keys is complete and comes from the schemas."""
+"""Templates run as they are written; the reference of keys comes from the schemas, complete."""
 
 import csv
 import tomllib
