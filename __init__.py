@@ -1,6 +1,13 @@
 """dentscope: elastic-plastic contact and impact, from the mesh to the missing physics.
 
-The stages, in the order in which a result passes through them:
+    import dentscope as ds
+
+    ds.impact("ball", impact_speed_m_s=2.0)    a blow, by several contact laws
+    ds.diagnose("my-recordings")               what physics the simulation of them lacks
+    ds.case("case.toml")                       one's own pair by finite elements
+    ds.LAWS                                    every contact law, as a table
+
+The stages, in the order in which a result passes through them; each is loaded when it is used:
 
     core         materials, input errors, outcomes, provenance
     fem          gmsh mesh and finite-strain contact solve of a sphere and a flat
@@ -10,11 +17,46 @@ The stages, in the order in which a result passes through them:
     impact       a sphere or a round-ended rod striking the flat
     recordings   measured impacts, reduced and checked
     discrepancy  what physics the simulation of a recording left out
+    start        the calls of a newcomer, above all stages
 """
+
+from importlib import import_module
+from typing import TYPE_CHECKING, Any
 
 # absolute: pytest imports this file under another name where the checkout's is no identifier
 from dentscope.core.compiled import keep_compiled_code
 
+if TYPE_CHECKING:
+    from dentscope.core import Material, Pair
+    from dentscope.models import LAWS
+    from dentscope.start import case, diagnose
+
 __version__ = "0.1.0"
 
+_FROM = {
+    "LAWS": "models",
+    "Material": "core",
+    "Pair": "core",
+    "case": "start",
+    "diagnose": "start",
+}
+_STAGES = (
+    "core", "fem", "models", "campaigns", "fitting", "impact", "recordings", "discrepancy", "start",
+)  # fmt: skip
+
+__all__ = ["LAWS", "Material", "Pair", "case", "diagnose"]
+
 keep_compiled_code()
+
+
+def __getattr__(name: str) -> Any:
+    """Load a stage, or a name of one, when it is first asked for."""
+    if name in _STAGES:
+        return import_module(f"dentscope.{name}")
+    if name in _FROM:
+        return getattr(import_module(f"dentscope.{_FROM[name]}"), name)
+    raise AttributeError(f"module 'dentscope' has no attribute {name!r}")
+
+
+def __dir__() -> list[str]:
+    return sorted([*__all__, *_STAGES, "__version__"])

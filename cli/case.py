@@ -48,29 +48,22 @@ def case(
         )
     from rich.progress import Progress
 
-    from .. import fem
     from ..fem.fields import draw_section, write_vtu
-    from .case_file import read_case
+    from ..start.case_file import read_case
+    from ..start.pair import Steps, solved
 
     problem, accuracy = read_case(file)
     pair = problem.pair
     console = new_console()
-    second = fem.coarser(accuracy)
     with Progress(console=console, disable=not console.is_terminal) as bar:
-        task = bar.add_task(f"solving at level {accuracy.level}", total=1.0)
-        solution = fem.solve(
-            problem, accuracy=accuracy, progress=lambda done: bar.update(task, completed=done)
+        tasks = [bar.add_task(name, total=1.0) for name in Steps.__members__]
+        found = solved(
+            problem, accuracy, lambda step, done: bar.update(tasks[step.value], completed=done)
         )
-        task = bar.add_task("again with larger elements, for the uncertainty", total=1.0)
-        rough = fem.solve(
-            replace(problem, unload_from=(), snapshots=(), profiles=()),
-            accuracy=second,
-            progress=lambda done: bar.update(task, completed=done),
-        )
-    if len(solution.loading.delta) == 0:
+    solution, uncertainty = found.solution, found.uncertainty
+    if uncertainty is None:
         console.print(str(solution.outcome))
         return EXIT_NOT_CONVERGED
-    uncertainty = fem.discretisation_uncertainty(solution.loading, rough.loading)
     _show(console, solution, uncertainty)
     for path in (
         _write_curves(solution, uncertainty, out / "curve.csv"),

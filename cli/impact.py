@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import math
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated
 
@@ -62,9 +61,9 @@ def _write_new(kind: str, path: Path | None) -> None:
 
 def _from_file(path: Path, names: list[str], out: Path) -> None:
     from ..impact.draw import draw_histories
+    from ..impact.files.blow import blow_of
     from ..impact.files.setup import read_setup
-    from ..impact.files.tables import impact_row, write_csv, write_hdf5
-    from ..impact.integrate import strike, traced
+    from ..impact.files.tables import write_csv, write_hdf5
 
     console = new_console()
     setup = read_setup(path)
@@ -73,24 +72,15 @@ def _from_file(path: Path, names: list[str], out: Path) -> None:
         if names
         else laws_named(list(setup.laws), source=str(path), key="impact.laws")
     )
-    traces, rows = {}, []
-    for law in laws:
-        scene = setup.scene(law)
-        for number in range(1, setup.repeats + 1):
-            impact_here = strike(scene, setup.settings)
-            rows.append({"law": law.name, "repeat": number, **impact_row(impact_here)})
-            trace = traced(scene, setup.settings, points=200)
-            # The next blow falls on the same spot: hardened crater, flattened tip.
-            scene = scene.with_(spot=impact_here.spot)
-        traces[law.name] = trace
-    found = {name: trace.impact for name, trace in traces.items()}
+    blow = blow_of(setup, laws)
+    traces, found = blow.traces, blow.impacts
     console.print(setup.name)
-    show_table(console, ("", *found), _rows(found))
+    show_table(console, ("", *found), blow.table())
     for law in laws:
         line = _doubt(law, setup.scene(law).pair, found[law.name])
         if line:
             console.print(line, soft_wrap=True)
-    write_csv(out / f"{path.stem}.csv", rows)
+    write_csv(out / f"{path.stem}.csv", blow.rows)
     write_hdf5(out / f"{path.stem}.h5", traces)
     draw_histories(list(traces.items()), out / f"{path.stem}.png")
     written = [out / f"{path.stem}{end}" for end in (".csv", ".h5", ".png")]
@@ -102,27 +92,6 @@ def _from_file(path: Path, names: list[str], out: Path) -> None:
     if unfinished:
         console.print(f"{unfinished} impacts of the sweep did not end: see the column outcome")
     leave_if_unfinished(list(found.values()))
-
-
-def _rows(found: dict[str, Impact]) -> list[tuple[str, ...]]:
-    """Rows of the observables, a law a column; those that no law moves are left out."""
-    from ..impact.files.tables import SHOWN
-
-    return [
-        (
-            f"{label} [{unit}]" if unit != "-" else label,
-            *(_cell(scale * getattr(i, key)) for i in found.values()),
-        )
-        for label, key, scale, unit in SHOWN
-        if any(abs(getattr(i, key)) > 0.0 for i in found.values())
-    ]
-
-
-def _cell(value: float) -> str:
-    # a tip that comes straight down has no tangential speed to be given back
-    if math.isnan(value):
-        return "none"
-    return f"{value:.4g}" if value == 0.0 or abs(value) >= 1e-3 else f"{value:.1e}"
 
 
 def _doubt(law: ContactLaw, pair: Pair, found: Impact) -> str:

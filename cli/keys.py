@@ -94,7 +94,7 @@ def keys_of(kind: str) -> list[Key]:
 
 def _schema(kind: str) -> type[BaseModel]:
     if kind == "case":
-        from .case_file import CaseFile
+        from ..start.case_file import CaseFile
 
         return CaseFile
     if kind == "impact":

@@ -134,7 +134,7 @@ def compare(
     """Curves of the laws for one pair, and which of them to use."""
     from ..models import LAWS, law_named
     from ..models.choose import demand, objection, recommended
-    from .case_file import read_pair
+    from ..start.case_file import read_pair
 
     content, pair = read_pair(file)
     last = content.load.max_delta_over_R

@@ -1,10 +1,18 @@
-"""Stage impact: a sphere or a round-ended rod striking a flat."""
+"""Stage impact: a sphere or a round-ended rod striking the flat.
+
+The stage itself can be called: `dentscope.impact("ball", angle_deg=60)` is `blow` of the same.
+"""
 
 from __future__ import annotations
+
+import sys
+from types import ModuleType
+from typing import Any
 
 from .batch import impacts
 from .beam import Modes, rod_modes
 from .columns import Impacts
+from .files.blow import Blow, blow
 from .integrate import (
     Settings,
     Trace,
@@ -35,6 +43,7 @@ from .tabulated.law_table import tabulated
 
 __all__ = [
     "Approach",
+    "Blow",
     "FlowStress",
     "ForceTransform",
     "Friction",
@@ -54,6 +63,7 @@ __all__ = [
     "Support",
     "Trace",
     "arrays_of",
+    "blow",
     "impacts",
     "infer",
     "rod_modes",
@@ -65,3 +75,14 @@ __all__ = [
     "tabulated",
     "traced",
 ]
+
+
+class _Stage(ModuleType):
+    """The stage, which can be called."""
+
+    def __call__(self, *given: Any, **changes: Any) -> Blow:
+        """Simulate a blow, as `blow` does."""
+        return blow(*given, **changes)
+
+
+sys.modules[__name__].__class__ = _Stage

@@ -54,7 +54,12 @@ def _panels(count: int) -> tuple[Figure, list[Any]]:
 
 
 def draw_histories(traces: Sequence[tuple[str, Trace]], path: Path) -> None:
-    """Force over depth, and against time whatever moves at all."""
+    """Write the picture of `histories`."""
+    save(histories(traces), path)
+
+
+def histories(traces: Sequence[tuple[str, Trace]]) -> Figure:
+    """Return force over depth, and against time whatever moves at all, a curve a law."""
     shown = [
         panel
         for panel in AGAINST_TIME
@@ -74,7 +79,7 @@ def draw_histories(traces: Sequence[tuple[str, Trace]], path: Path) -> None:
     for axis in axes:
         axis.grid(alpha=0.3)
     axes[0].legend(fontsize=7)
-    save(made, path)
+    return made
 
 
 def draw_sweep(

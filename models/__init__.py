@@ -7,14 +7,13 @@ from .base import ContactLaw, Domain, DomainWarning, Kernels
 from .fitted import shipped_law
 from .kernel import critical_depth, critical_force, yield_constant
 from .published import PUBLISHED, RATE_MODELS, UNAVAILABLE
+from .shelf import Shelf
 
 try:
     _FITTED, _UNREADABLE = shipped_law(), None
 except InputError as error:  # kept for whoever asks for the law: a new fit must still be possible
     _FITTED, _UNREADABLE = None, error
-LAWS: dict[str, ContactLaw] = {
-    law.name: law for law in (*PUBLISHED, *((_FITTED,) if _FITTED else ()))
-}
+LAWS = Shelf((law.name, law) for law in (*PUBLISHED, *((_FITTED,) if _FITTED else ())))
 """Every law by name, in reading order: from the simplest assumption to the fullest."""
 
 
@@ -48,6 +47,7 @@ __all__ = [
     "Domain",
     "DomainWarning",
     "Kernels",
+    "Shelf",
     "critical_depth",
     "critical_force",
     "law_named",

@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Literal
+from typing import Any, Literal
 
 from pydantic import Field
 
@@ -103,8 +103,18 @@ def read_setup(path: Path) -> Setup:
     InputErrors
         One line for each mistake: file, key, value, what is allowed.
     """
-    source = str(path)
-    found = parse_model(read_toml(path), SetupFile, source=source)
+    return setup_of(read_toml(path), source=str(path))
+
+
+def setup_of(content: dict[str, Any], *, source: str) -> Setup:
+    """Check the content of a set-up file; `source` names it in errors.
+
+    Raises
+    ------
+    InputErrors
+        One line for each mistake: file, key, value, what is allowed.
+    """
+    found = parse_model(content, SetupFile, source=source)
     errors = (*_mistakes(found, source), *mistakes_in(found.sweep, source))
     if errors:
         raise InputErrors(errors)
@@ -112,7 +122,7 @@ def read_setup(path: Path) -> Setup:
     flight = math.nan if impact.flight_s is None else impact.flight_s
     settings = Settings(max_steps=impact.max_steps, max_contacts=impact.max_contacts, flight=flight)
     return Setup(
-        found.name or path.stem, tuple(impact.laws), impact.repeats,
+        found.name or Path(source).stem, tuple(impact.laws), impact.repeats,
         found.sweep, settings, found, source,
     )  # fmt: skip
 

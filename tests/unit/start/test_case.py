@@ -8,8 +8,8 @@ import numpy as np
 import pytest
 from dentscope.campaigns import read_curves
 from dentscope.cli import run
-from dentscope.cli.case_file import read_case
 from dentscope.core import InputError
+from dentscope.start.case_file import read_case
 
 GOOD = """
 radius_m = 0.002

@@ -263,8 +263,8 @@ def read_pair(file: Path) -> tuple[CaseFile, Pair]:
     return content, Pair(sphere, flat, content.radius_m)
 
 
-def read_case(file: Path) -> tuple[Any, Any]:
-    """Read CASE.toml into the solver's problem and accuracy.
+def read_case(file: Path, *, level: str = "") -> tuple[Any, Any]:
+    """Read CASE.toml into the solver's problem and accuracy, of another level where one is given.
 
     Raises
     ------
@@ -305,4 +305,6 @@ def read_case(file: Path) -> tuple[Any, Any]:
         "quick": fem.Accuracy.quick,
         "smoke": fem.Accuracy.smoke,
     }
-    return problem, levels[content.accuracy.level]()
+    if level and level not in levels:
+        raise InputError(repr(level), key="level", allowed=", ".join(levels))
+    return problem, levels[level or content.accuracy.level]()

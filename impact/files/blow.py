@@ -1,0 +1,150 @@
+"""A blow by several laws beside each other: `dentscope.impact(...)`."""
+
+from __future__ import annotations
+
+import math
+import tomllib
+from collections.abc import Sequence
+from dataclasses import dataclass
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+from ...core.tables import frame, html_table
+from ...core.toml_input import read_toml
+from ...models import law_named
+from ...models.base import ContactLaw
+from ..draw import histories
+from ..integrate import Trace, strike, traced
+from ..result import Impact
+from .setup import Setup, read_setup, setup_of
+from .tables import SHOWN, impact_row
+from .template import KINDS, template
+
+if TYPE_CHECKING:
+    from matplotlib.figure import Figure
+
+_POINTS = 200
+_EITHER = (("impact_speed_m_s", "drop_height_m"), ("drop_height_m", "impact_speed_m_s"))
+
+
+@dataclass(frozen=True)
+class Blow:
+    """One blow, by every law that was asked for.
+
+    Parameters
+    ----------
+    name
+        Of the set-up.
+    traces
+        History of the last repeat, by law.
+    rows
+        Observables of every repeat by every law, SI, units in the names.
+    """
+
+    name: str
+    traces: dict[str, Trace]
+    rows: tuple[dict[str, Any], ...]
+
+    @property
+    def impacts(self) -> dict[str, Impact]:
+        """Observables of the last repeat, by law."""
+        return {law: trace.impact for law, trace in self.traces.items()}
+
+    def __getitem__(self, law: str) -> Impact:
+        return self.impacts[law]
+
+    def table(self) -> list[tuple[str, ...]]:
+        """Return the observables in units for people, a law a column; what is nothing is left out.
+
+        Returns
+        -------
+        list of tuple of str
+            Name with unit, then the value by each law.
+        """
+        found = self.impacts
+        return [
+            (
+                f"{label} [{unit}]" if unit != "-" else label,
+                *(_cell(scale * getattr(i, key)) for i in found.values()),
+            )
+            for label, key, scale, unit in SHOWN
+            if any(abs(getattr(i, key)) > 0.0 for i in found.values())
+        ]
+
+    def frame(self) -> Any:
+        """Return all repeats by all laws as a pandas data frame, SI."""
+        return frame(self.rows)
+
+    def plot(self) -> Figure:
+        """Return force over depth, and what moves against time."""
+        return histories(list(self.traces.items()))
+
+    def __repr__(self) -> str:
+        return "\n".join([
+            f"{self.name}: {', '.join(self.traces)}",
+            *(f"{row[0]:34}" + "".join(f"{cell:>12}" for cell in row[1:]) for row in self.table()),
+        ])  # fmt: skip
+
+    def _repr_html_(self) -> str:
+        return html_table(("", *self.traces), self.table(), title=self.name)
+
+
+def blow(setup: str | Path = "ball", *, law: str | Sequence[str] = (), **changes: Any) -> Blow:
+    """Simulate a blow, a law beside the other.
+
+    Parameters
+    ----------
+    setup
+        A set-up file, or one to start from: `ball`, `rod`, `oblique-ball`.
+    law
+        Name of a contact law, or several; by default those of the set-up.
+    **changes
+        Keys of `[impact]`, for example `impact_speed_m_s=2.0` or `angle_deg=60`.
+
+    Raises
+    ------
+    InputErrors
+        One line for each mistake: file, key, value, what is allowed.
+
+    Examples
+    --------
+    >>> found = blow("ball", law="hertz", impact_speed_m_s=1.0)
+    >>> round(found["hertz"].restitution, 9)  # elastic: everything is given back
+    1.0
+    """
+    chosen = _changed(setup, changes) if changes or setup in KINDS else read_setup(Path(setup))
+    names = [law] if isinstance(law, str) else list(law) or list(chosen.laws)
+    return blow_of(chosen, [law_named(name) for name in names])
+
+
+def _changed(setup: str | Path, changes: dict[str, Any]) -> Setup:
+    known = setup in KINDS
+    content = tomllib.loads(template(str(setup))) if known else read_toml(Path(setup))
+    section = {**content.get("impact", {}), **changes}
+    # speed and height exclude each other: what is asked for goes before what the file says
+    for given, other in _EITHER:
+        if given in changes and other not in changes:
+            section.pop(other, None)
+    return setup_of({**content, "impact": section}, source=str(setup))
+
+
+def blow_of(setup: Setup, laws: Sequence[ContactLaw]) -> Blow:
+    """Return the blow of a set-up by these laws, every repeat on the spot of the one before."""
+    traces: dict[str, Trace] = {}
+    rows: list[dict[str, Any]] = []
+    for law in laws:
+        scene = setup.scene(law)
+        for number in range(1, setup.repeats + 1):
+            found = strike(scene, setup.settings)
+            rows.append({"law": law.name, "repeat": number, **impact_row(found)})
+            traces[law.name] = traced(scene, setup.settings, points=_POINTS)
+            # the next blow falls on the same spot: hardened crater, flattened tip
+            scene = scene.with_(spot=found.spot)
+    return Blow(setup.name, traces, tuple(rows))
+
+
+def _cell(value: float) -> str:
+    # a tip that comes straight down has no tangential speed to be given back
+    if math.isnan(value):
+        return "none"
+    return f"{value:.4g}" if value == 0.0 or abs(value) >= 1e-3 else f"{value:.1e}"

@@ -1,0 +1,78 @@
+"""`dentscope.diagnose(...)`: what physics a folder of recordings shows to be missing."""
+
+from __future__ import annotations
+
+import html
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+from ..core.tables import frame, html_table
+from ..discrepancy import Verdict
+from ..discrepancy import diagnose as verdict_of
+from ..discrepancy.report import Story, lines, story_of, write_report
+from ..recordings import read
+from ..recordings.shipped import set_folder
+
+
+@dataclass(frozen=True)
+class Diagnosis:
+    """A verdict and how it is told.
+
+    Parameters
+    ----------
+    verdict
+        All numbers: `verdict.verdict`, `verdict.probabilities`, `verdict.to_dict()`, ...
+    story
+        The same in sentences and tables, as the report has them.
+    """
+
+    verdict: Verdict
+    story: Story
+
+    @property
+    def finding(self) -> str:
+        """The finding in one sentence."""
+        return self.story.finding
+
+    @property
+    def mechanisms(self) -> tuple[str, ...]:
+        """Names of the mechanisms that are missing, as the best explanation has them."""
+        return self.verdict.mechanisms
+
+    def frame(self) -> Any:
+        """Return measured beside simulated as a pandas data frame, in units for people."""
+        return frame(point.row() for point in self.story.points)
+
+    def report(self, path: str | Path = "report.html") -> Path:
+        """Write the report, with its numbers as JSON and CSV beside it."""
+        return write_report(self.verdict, Path(path))[0]
+
+    def __repr__(self) -> str:
+        return "\n".join(lines(self.verdict))
+
+    def _repr_html_(self) -> str:
+        parts = ((bar.told, bar.name) for bar in self.story.parts)
+        table = html_table(("probability that it takes part", ""), parts)
+        return f"<p><b>{html.escape(self.finding)}</b></p>{table}"
+
+
+def diagnose(folder: str | Path, *, seed: int = 0, confirm: bool = False) -> Diagnosis:
+    """Say what physics is missing in the simulation of a recording set.
+
+    Parameters
+    ----------
+    folder
+        A folder with set.toml and trials.csv, or the name of a shipped set.
+    seed
+        Same seed, same answer.
+    confirm
+        Also sample the evidence, and use the full ensemble of sets with nothing missing.
+
+    Raises
+    ------
+    InputErrors
+        One line for each mistake in the set.
+    """
+    verdict = verdict_of(read(set_folder(Path(folder))), seed=seed, confirm=confirm)
+    return Diagnosis(verdict, story_of(verdict))

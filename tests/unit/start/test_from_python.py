@@ -1,0 +1,63 @@
+"""What a newcomer writes after `import dentscope as ds`."""
+
+import math
+import subprocess
+import sys
+
+import dentscope as ds
+import pytest
+from dentscope.core import InputError
+
+
+def test_importing_loads_nothing_heavy_and_everything_is_there():
+    program = (
+        "import sys, dentscope as ds; print('numpy' in sys.modules); print(*dir(ds));"
+        "print(ds.models.LAWS is ds.LAWS, 'fem' in dir(ds))"
+    )
+    answer = subprocess.run(
+        [sys.executable, "-c", program], capture_output=True, text=True, timeout=120, check=True
+    )
+    first, names, last = answer.stdout.splitlines()
+    assert first == "False"
+    assert {"LAWS", "Material", "Pair", "case", "diagnose", "impact", "models"} <= set(
+        names.split()
+    )
+    assert last == "True True"
+    with pytest.raises(AttributeError, match="nonsense"):
+        _ = ds.nonsense
+
+
+def test_a_blow_of_a_template_with_changes():
+    blow = ds.impact("ball", law=["fitted", "hertz"], impact_speed_m_s=2.0)
+    # elastic: all is given back; Hertz's time 2.943 d/v of a ball of 4.0841e-3 kg, 5 mm
+    mass, v = 4.0 / 3.0 * math.pi * 5e-3**3 * 7800, 2.0
+    stiffness = 4.0 / 3.0 * 2e11 / 0.91 / 2.0 * 5e-3**0.5
+    deepest = (1.25 * mass * v**2 / stiffness) ** 0.4
+    assert blow["hertz"].restitution == pytest.approx(1.0, abs=1e-6)
+    assert blow["hertz"].contact_time_s == pytest.approx(2.943 * deepest / v, rel=1e-3)
+    assert 0.3 < blow["fitted"].restitution < 0.7
+    frame = blow.frame()
+    assert list(frame["law"]) == ["fitted", "hertz"]
+    assert frame["restitution"][1] == pytest.approx(blow["hertz"].restitution, abs=1e-8)
+    assert "restitution" in repr(blow)
+    assert "<td>hertz</td>" not in blow._repr_html_()
+    assert "<th>hertz</th>" in blow._repr_html_()
+    assert blow.plot().axes[0].get_xlabel() == "depth [um]"
+
+
+def test_a_wrong_word_is_one_line_with_what_is_allowed():
+    with pytest.raises(InputError, match=r"impact.impact_speed: unknown key .*impact_speed_m_s"):
+        ds.impact("ball", impact_speed=2.0)
+    with pytest.raises(InputError, match="hertz"):
+        ds.impact("ball", law="nonsense")
+    with pytest.raises(InputError, match="kharaz-2001-oblique"):
+        ds.diagnose("nonsense")
+    with pytest.raises(InputError, match="no such file"):
+        ds.case("nonsense.toml")
+
+
+def test_the_laws_show_themselves_as_a_table():
+    lines = repr(ds.LAWS).splitlines()
+    assert len(lines) == 1 + len(ds.LAWS)
+    assert lines[1].startswith("hertz ")
+    assert ds.LAWS._repr_html_().count("<tr>") == len(lines)
