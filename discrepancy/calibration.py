@@ -1,152 +1,149 @@
-"""Thresholds of one set, from its null residuals: single, pair, fit, width of the reported set."""
+"""What evidence sets with nothing missing give away, by simulation: it counts from there.
+
+With nothing missing a Bayes factor above 20 may come up in at most one set of twenty, whatever the
+alternative, if the comparison's own assumptions hold (A. M. Turing, I. J. Good, Probability and
+the Weighing of Evidence, 1950). Where the nulls of this rig exceed that, because a mechanism can
+imitate what a contact law may be off by in other ways than those assumed, the excess is taken off.
+"""
 
 from __future__ import annotations
 
-from dataclasses import dataclass, replace
+import math
+from collections.abc import Mapping
+from dataclasses import dataclass, field
 
 import numpy as np
 from numpy.typing import NDArray
+from scipy.special import logsumexp
 
-from .correction import widened
 from .inference.fit import Fit
-from .problem import Problem
+from .inference.linear import Mixture
+from .odds import NAMED_AT, OUTSIDE, PRIORS
 from .rank import Ranking
-from .thresholds import Nulls, gain, null_bayes_factors
+from .thresholds import Nulls
 
 Array = NDArray[np.float64]
 
-_THIN = 400
-_VERY_STRONG = 5.0
-"""Nats by which a freer force law must win to count against an explanation at all: odds of 150,
-"very strong" of R. E. Kass and A. E. Raftery, J. Am. Stat. Assoc. 90 (1995) 773."""
-_ALARM = 0.97
-"""Share of nulls that pass no threshold; the test of fit adds at most 1 % of false alarms."""
+ONE_IN = 20.0
+"""The Bayes factor, and one over the share of nulls, at which evidence is checked."""
+ALARM = 0.97
+"""Share of nulls that are not to be named, all alternatives together."""
+_THIN, _MOVES, _SECOND = 400, 12, 36
 
 
-@dataclass(frozen=True, eq=False)
+@dataclass(frozen=True)
 class Calibration:
-    """Gains of evidence that sets with nothing missing give.
-
-    Mechanisms that can imitate an error of the contact law gain evidence from it. So the gain of a
-    mechanism counts from what one null in twenty gives it, its offset.
+    """Nats that nulls give away.
 
     Parameters
     ----------
     offset
-        Mechanism to the 95 % point of its ln B over the nulls, at least 0.
-    single
-        97 % point of the largest ln B minus offset over the library, at least 1.
+        Mechanism, or `OUTSIDE`, to the nats that are taken off its evidence over the baseline.
+    common
+        Nats taken off every alternative, so that no more than `1 - ALARM` of nulls are named.
+    second
+        Nats taken off pairs, for what the nulls of the leading single give a second mechanism.
     """
 
-    offset: dict[str, float]
-    single: float
+    offset: Mapping[str, float] = field(default_factory=dict)
+    common: float = 0.0
+    second: float = 0.0
 
-    def excess(self, fitted: Fit, base: Fit) -> float:
-        """Ln B of a fit over the baseline, less its mechanisms' offset."""
-        return fitted.log_evidence - base.log_evidence - self._offset(fitted)
-
-    def needed(self, fitted: Fit) -> float:
-        """Return the ln B that a single mechanism must pass."""
-        return self.single + self._offset(fitted)
-
-    def _offset(self, fitted: Fit) -> float:
-        return max((self.offset.get(m.name, 0.0) for m in fitted.mechanisms), default=0.0)
-
-    def sorted(self, ranking: Ranking) -> Ranking:
-        """Return the ranking with the explanations in the order of their excess."""
-        order = lambda f: -self.excess(f, ranking.base)  # noqa: E731
-        return replace(
-            ranking,
-            singles=tuple(sorted(ranking.singles, key=order)),
-            pairs=tuple(sorted(ranking.pairs, key=order)),
-        )
+    def off(self, names: tuple[str, ...]) -> float:
+        """Nats that are taken off an explanation of these mechanisms."""
+        if not names:
+            return 0.0
+        own = max(self.offset.get(n, 0.0) for n in names)
+        return self.common + own + self.second * (len(names) > 1)
 
 
-def calibrate(ranking: Ranking, nulls: Nulls) -> Calibration:
-    """Put the nulls through the screening."""
-    if not ranking.screened:
-        return Calibration({}, 1.0)
-    factors = null_bayes_factors(nulls, ranking.base, [s.effect for s in ranking.screened])
-    offset = np.maximum(np.quantile(factors, 0.95, axis=0), 0.0)
-    best = (factors - offset).max(axis=1)
-    names = [s.mechanism.name for s in ranking.screened]
+def calibrate(ranking: Ranking, nulls: Nulls, outside: Mixture) -> Calibration:
+    """Put sets with nothing missing through the comparison.
+
+    Parameters
+    ----------
+    ranking
+        The baseline and the singles.
+    nulls
+        Null residuals.
+    outside
+        Likelihood of something outside the library.
+    """
+    base = ranking.base
+    r = nulls.made_by(base)
+    plain = base.mixture.log_likelihood(r)
+    names = [*(s.mechanism.name for s in ranking.screened), OUTSIDE]
+    found = [base.mixture.gain(r, thinned(s.effect, _THIN)) for s in ranking.screened]
+    factors = np.stack([*found, outside.log_likelihood(r) - plain], axis=1)
+    offset = np.array([given_away(column) for column in factors.T])
+    if ranking.singles:
+        offset[-1] = max(offset[-1], _outside_beside(ranking, nulls, outside))
+    each = PRIORS["singles"] / max(len(names) - 1, 1)
+    prior = np.array([*(each for _ in names[:-1]), PRIORS[OUTSIDE]]) / PRIORS["baseline"]
+    odds = logsumexp(factors - offset + np.log(prior), axis=1)
+    common = max(float(np.quantile(odds, ALARM)) - NAMED_AT, 0.0)
     return Calibration(
-        dict(zip(names, (float(x) for x in offset), strict=True)),
-        max(float(np.quantile(best, _ALARM)), 1.0),
-    )
+        dict(zip(names, (float(x) for x in offset), strict=True)), common,
+        _second(ranking, nulls),
+    )  # fmt: skip
 
 
-def p_fit(fitted: Fit, nulls: Nulls, problem: Problem) -> float:
+def given_away(factors: Array) -> float:
+    """Nats by which nulls' ln Bayes factors (n,) exceed what one in twenty may."""
+    return max(float(np.quantile(factors, 1.0 - 1.0 / ONE_IN)) - math.log(ONE_IN), 0.0)
+
+
+def _outside_beside(ranking: Ranking, nulls: Nulls, outside: Mixture) -> float:
+    """Nats that sets made by the leading single give to something outside against it."""
+    lead = max(ranking.singles, key=lambda f: f.log_evidence)
+    made = nulls.made_by(lead)
+    own = lead.mixture.mean_likelihood(made, moves(lead, _THIN)) + lead.grid.log_volume
+    # the baseline leaves of them what the mechanism does as well
+    left = made + (ranking.base.residual - lead.residual)
+    return given_away(outside.log_likelihood(left) - own)
+
+
+def _second(ranking: Ranking, nulls: Nulls) -> float:
+    """Nats that sets made by the leading single give to the best second mechanism."""
+    if not ranking.singles:
+        return 0.0
+    lead = max(ranking.singles, key=lambda f: f.log_evidence)
+    r = nulls.made_by(lead)
+    own = lead.mixture.mean_likelihood(r, moves(lead, _THIN))
+    few = moves(lead, _MOVES)
+    best = np.full(len(r), -np.inf)
+    for s in ranking.screened:
+        if s.mechanism.name in lead.names:
+            continue
+        more = thinned(s.effect, _SECOND)
+        both = (few[:, None, :] + more[None, :, :]).reshape(-1, more.shape[1])
+        best = np.maximum(best, lead.mixture.mean_likelihood(r, both) - own)
+    return given_away(best) if np.isfinite(best).all() else 0.0
+
+
+def p_fit(fitted: Fit, nulls: Nulls) -> float:
     """Share of data sets made by this explanation that fit it no better than the data do.
 
     A set is the explanation's prediction with the null residuals; the mechanism's parameters are
-    fitted to each. The smaller of two shares, doubled because there are two: by the misfit over all
-    cells, and by what a contact law with a far wider error would gain, which sees a wrong force law
-    whose misfit is spread over many cells.
+    fitted to each.
     """
     residual = nulls.made_by(fitted)
     if fitted.mechanisms:
-        moves = _moves(fitted)
-        e = fitted.linear.white(moves)
+        effects = moves(fitted, _THIN)
+        e = fitted.linear.white(effects)
         ratio = 2.0 * fitted.linear.white(residual) @ e.T - np.sum(e**2, axis=1)
         best = np.argmax(ratio, axis=1)
         moved = ratio[np.arange(len(best)), best] > 0.0
-        residual = np.where(moved[:, None], residual - moves[best], residual)
+        residual = np.where(moved[:, None], residual - effects[best], residual)
     chi2 = np.sum(fitted.linear.white(residual) ** 2, axis=1)
-    wide = widened(problem, fitted)
-    gained = wide.log_likelihood(residual) - fitted.linear.log_likelihood(residual)
-    own = wide.log_likelihood(fitted.residual) - fitted.linear.log_likelihood(fitted.residual)
-    worse = int(np.sum(chi2 >= fitted.chi2))
-    if own > _VERY_STRONG:
-        worse = min(worse, int(np.sum(gained >= own)))
-    return min(2.0 * (worse + 1) / (len(chi2) + 1), 1.0)
+    return (int(np.sum(chi2 >= fitted.chi2)) + 1) / (len(chi2) + 1)
 
 
-def extra_threshold(fitted: Fit, ranking: Ranking, nulls: Nulls, level: float = 0.99) -> float:
-    """Gain of ln evidence that a second mechanism must pass, where only the fitted one acts.
-
-    `level` of the sets that the fit itself would make give less to the best of all others.
-    """
-    white = fitted.linear.white(nulls.made_by(fitted))
-    own = gain(white, np.zeros(len(white)), fitted.linear, _moves(fitted))
-    inside = {m.name for m in fitted.mechanisms}
-    most = np.full(len(white), -np.inf)
-    moves = _thinned(_moves(fitted), 12)
-    for s in ranking.screened:
-        if s.mechanism.name in inside:
-            continue
-        effect = _thinned(s.effect, 36)
-        both = (moves[:, None, :] + effect[None, :, :]).reshape(-1, effect.shape[1])
-        most = np.maximum(most, gain(white, np.zeros(len(white)), fitted.linear, both) - own)
-    return max(float(np.quantile(most, level)), 2.0) if np.isfinite(most).all() else np.inf
+def moves(fitted: Fit, most: int) -> Array:
+    """Effect of other parameter values than the best, (k, m), no more than about `most`."""
+    return thinned(fitted.residual - fitted.residuals, most)
 
 
-def set_width(fitted: Fit, ranking: Ranking, nulls: Nulls, level: float = 0.95) -> float:
-    """Distance in ln evidence within which rivals of the best fit are reported beside it.
-
-    In `level` of the sets that the fit itself would make it lies no farther behind a rival of its
-    own size; kept between 2 and 5 nats.
-    """
-    white = fitted.linear.white(nulls.made_by(fitted))
-    own = gain(white, np.zeros(len(white)), fitted.linear, _moves(fitted))
-    size = len(fitted.mechanisms)
-    behind = np.zeros(len(white))
-    for rival in (*ranking.singles, *ranking.pairs):
-        if rival.name == fitted.name or len(rival.mechanisms) != size:
-            continue
-        # the rival's predictions, seen from the fitted explanation's
-        effect = -rival.residuals + fitted.residual
-        effect = _thinned(effect, _THIN)
-        theirs = gain(white, np.zeros(len(white)), fitted.linear, effect)
-        behind = np.maximum(behind, theirs - own)
-    return float(np.clip(np.quantile(behind, level), 2.0, 5.0))
-
-
-def _moves(fitted: Fit) -> Array:
-    """Effect of other parameter values than the best, (k, m)."""
-    return _thinned(fitted.residual - fitted.residuals, _THIN)
-
-
-def _thinned(effect: Array, most: int) -> Array:
-    step = max(len(effect) // most, 1)
-    return effect[::step]
+def thinned(effect: Array, most: int) -> Array:
+    """Return every so many rows, about `most`."""
+    return effect[:: max(len(effect) // most, 1)]

@@ -7,10 +7,11 @@ is a correction without physics in it, with its band: the lead that a person can
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 from numpy.typing import NDArray
+from scipy.stats import norm
 
 from ..impact.force import LOG_DEPTH_FIRST, LOG_DEPTH_LAST
 from ..impact.strength import NODES
@@ -21,6 +22,8 @@ from .problem import Problem
 
 Array = NDArray[np.float64]
 
+LEVEL = 0.90
+"""Probability of the band of a correction."""
 _SHOWN = 12
 
 
@@ -47,10 +50,8 @@ class Correction:
 
 def widened(problem: Problem, fitted: Fit) -> Linear:
     """Return the algebra of a fit with the law's error made so wide that it is free."""
-    k = problem.n_nuisances
-    J = fitted.linear.J.copy()
-    J[:, k:] *= problem.error.freedom
-    return Linear(fitted.linear.noise, J, fitted.linear.form)
+    prior = np.concatenate([np.ones(problem.n_nuisances), problem.error.freedom])
+    return replace(fitted.linear, prior=prior)
 
 
 def correct(simulator: Simulator, base: Fit) -> tuple[Correction, ...]:
@@ -68,26 +69,23 @@ def correct(simulator: Simulator, base: Fit) -> tuple[Correction, ...]:
     shallowest, deepest = _reached(simulator, base)
     # the expansion's offset by the law's own coefficients is part of the residual already
     mean, cov = widened(problem, base).unknowns(base.residual)
+    mean, cov = mean[k:], cov[k:, k:]
     error = problem.error
-    free = error.freedom
-    mean, cov = mean[k:] * free, cov[k:, k:] * np.outer(free, free)
-    n, m = len(error.force), len(error.recovery)
+    beyond = norm.ppf(0.5 + 0.5 * LEVEL)
     grid = np.linspace(LOG_DEPTH_FIRST, LOG_DEPTH_LAST, NODES)
     at = np.linspace(math.log(0.3 * shallowest), math.log(deepest), _SHOWN)
     found = []
-    for phase, rows, basis in (
-        ("loading", slice(0, n), error.force),
-        ("unloading", slice(n, n + m), error.recovery),
-    ):
-        if len(basis) == 0:
+    for phase, kind in (("loading", "force"), ("unloading", "recovery")):
+        rows = error.rows[kind]
+        if rows.start == rows.stop:
             continue
-        curves = np.stack([np.interp(at, grid, row) for row in basis])
+        curves = np.stack([np.interp(at, grid, row) for row in error.curves(kind)])
         middle = mean[rows] @ curves
         spread = np.sqrt(np.einsum("ij,ik,kj->j", curves, cov[rows, rows], curves))
         found.append(
             Correction(
-                phase, np.exp(at), np.exp(middle), np.exp(middle - 1.645 * spread),
-                np.exp(middle + 1.645 * spread),
+                phase, np.exp(at), np.exp(middle), np.exp(middle - beyond * spread),
+                np.exp(middle + beyond * spread),
             )
         )  # fmt: skip
     return tuple(found)

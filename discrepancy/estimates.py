@@ -8,13 +8,15 @@ from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
+from scipy.stats import norm
 
 from ..recordings import RecordingSet, Severity, audit
 from .calibration import Calibration
-from .forward import Point, Simulator
+from .forward import Simulator
 from .heldout import HeldOut
 from .inference.fit import Fit
 from .inference.grid import interval
+from .odds import NAMED_AT, PRIORS
 from .problem import Problem
 from .rank import Ranking
 
@@ -73,25 +75,21 @@ def parameters_of(
 ) -> dict[str, dict[str, Any]]:
     """Return value and interval of every parameter, the nuisances included.
 
-    A mechanism's intervals hold what the textbook's form may be off in the size of its effect: the
-    likelihood leaves that to the parameters.
+    A mechanism's intervals hold what the textbook's form may be off: its likelihood does.
     """
     problem = simulator.problem
     found: dict[str, dict[str, Any]] = {}
     if fitted.mechanisms:
         places = fitted.grid.places()
-        off = 1.645 * _moved_by_form(simulator, fitted)
         for axis, (label, (_, p)) in enumerate(
             zip(fitted.grid.labels, fitted.grid.axes, strict=True)
         ):
             middle, low, high = interval(places[:, axis], fitted.weight, level)
-            low = max(middle - math.hypot(middle - low, off[axis]), 0.0)
-            high = min(middle + math.hypot(high - middle, off[axis]), 1.0)
             found[label] = {
                 "value": float(p.value(middle)), "low": float(p.value(low)),
                 "high": float(p.value(high)), "level": level, "unit": p.unit,
             }  # fmt: skip
-    spread = 1.645 * np.sqrt(np.maximum(np.diag(fitted.covariance), 0.0))
+    spread = norm.ppf(0.5 + 0.5 * level) * np.sqrt(np.maximum(np.diag(fitted.covariance), 0.0))
     for i, n in enumerate(problem.nuisances):
         z = float(fitted.z[i])
         found[n.name] = {
@@ -99,21 +97,6 @@ def parameters_of(
             "level": level, "unit": n.unit,
         }  # fmt: skip
     return found
-
-
-def _moved_by_form(simulator: Simulator, fitted: Fit) -> Array:
-    """By how much of their ranges the parameters would move, (axes,), if the form's size is off.
-
-    To first order the posterior mean follows a change d of the data by its covariance with
-    d^T Sigma^-1 times the prediction; d is the form's share of the effect.
-    """
-    without = simulator.predict((), [Point(fitted.z)])[0]
-    share = max(m.form for m in fitted.mechanisms)
-    change = fitted.linear.white(share * (fitted.prediction - without))
-    along = -fitted.linear.white(fitted.residuals) @ change
-    places = fitted.grid.places()
-    away = places - fitted.weight @ places
-    return np.abs((fitted.weight * (along - fitted.weight @ along)) @ away)
 
 
 def pulls_of(problem: Problem, fitted: Fit) -> dict[str, float]:
@@ -143,18 +126,66 @@ def notes_of(problem: Problem, best: Fit) -> tuple[str, ...]:
                 f"{n.name} wants to be {n.at(z):.4g} {n.unit}, {'above' if z > 0 else 'below'} the "
                 f"stated {n.value:.4g}: a pull of {abs(z):.1f} stated standard deviations{chance}"
             )
-    sizes = ", ".join(f"{k} {100 * v:.2g} %" for k, v in problem.error.sizes.items())
-    notes.append(f"the contact law '{problem.law.name}' is taken to be uncertain by: {sizes}")
     return (*notes, *problem.notes)
 
 
+def misfit_of(problem: Problem, base: Fit) -> dict[str, float]:
+    """Return the baseline's misfit before anything may move, and which part took how much of it.
+
+    With r the residual as stated, s_k what part k moves of it at the posterior mean and N the
+    noise, a part took s_k^T N^-1 r / r^T N^-1 r; what no part took is `rest`. The law's error is
+    shared between the finite elements and the metal by their variances.
+    """
+    r, J, k = base.residual, base.linear.J, problem.n_nuisances
+    by_noise = np.linalg.solve(base.linear.noise, r)
+    whole = max(float(r @ by_noise), 1e-12)
+    sheet = float(J[:, :k] @ base.z[:k] @ by_noise) / whole
+    found = {"law": 0.0, "metal": 0.0}
+    for kind, (law, metal) in problem.error.parts.items():
+        rows = problem.error.rows[kind]
+        b = slice(k + rows.start, k + rows.stop)
+        took = float(J[:, b] @ base.z[b] @ by_noise) / whole
+        part = law**2 / max(law**2 + metal**2, 1e-30)
+        found["law"] += part * took
+        found["metal"] += (1.0 - part) * took
+    rest = 1.0 - sheet - found["law"] - found["metal"]
+    size = float(base.linear.prior[-1]) if base.linear.prior.size else 1.0
+    return {
+        "as_stated": whole, "numbers": float(len(r)), "sheet": sheet, **found, "rest": rest,
+        "error_size": size,
+    }  # fmt: skip
+
+
+def law_notes(problem: Problem, misfit: Mapping[str, float]) -> tuple[str, ...]:
+    """Return how unsure the law is taken to be, by part, and how much of the misfit each took."""
+    sizes = "; ".join(
+        f"{kind} {100 * law:.2g} % to finite elements, {100 * metal:.2g} % to a metal"
+        for kind, (law, metal) in problem.error.parts.items()
+    )
+    took = ", ".join(
+        f"{100 * misfit[key]:.0f} % {words}"
+        for key, words in (
+            ("sheet", "the data sheet"), ("metal", "the metal's distance from the law's"),
+            ("law", "the law's from finite elements"), ("rest", "nothing of these"),
+        )
+    )  # fmt: skip
+    return (
+        f"the contact law '{problem.law.name}' is taken to be uncertain by: {sizes}; the set "
+        f"speaks for {misfit['error_size']:.2g} times that",
+        f"of the misfit as stated, {misfit['as_stated']:.0f} over {misfit['numbers']:.0f} numbers, "
+        f"this much is taken up by: {took}",
+    )
+
+
 def limits_of(ranking: Ranking, calibration: Calibration) -> dict[str, float]:
-    """Smallest value of each first parameter whose effect would have been seen."""
+    """Smallest value of each first parameter whose effect would have been named."""
     base = ranking.base
     found = {}
+    prior = math.log(PRIORS["baseline"] * max(len(ranking.screened), 1) / PRIORS["singles"])
     for s in ranking.screened:
-        seen_at = calibration.single + calibration.offset.get(s.mechanism.name, 0.0)
-        needed = math.sqrt(2.0 * (max(seen_at, 1.0) + 3.0))
+        nats = NAMED_AT + prior + calibration.off((s.mechanism.name,))
+        # three nats are what not knowing the parameters costs
+        needed = math.sqrt(2.0 * (nats + 3.0))
         p = s.grid.axes[0].parameter
         size = np.linalg.norm(base.linear.white(s.effect), axis=1)
         n = len(s.grid.fine[0])
@@ -168,9 +199,13 @@ def limits_of(ranking: Ranking, calibration: Calibration) -> dict[str, float]:
     return found
 
 
-def improvement_of(base: HeldOut, best: HeldOut) -> dict[str, float]:
-    """Return how well left-out conditions are predicted, before and after."""
+def improvement_of(base: HeldOut, chosen: HeldOut, same: float) -> dict[str, float]:
+    """Return how well left-out conditions are predicted, before and after.
+
+    `same` is the share of the groups left out whose rest chooses as the whole set does.
+    """
     return {
-        "held_out_baseline": base.score, "held_out_extended": best.score,
-        "raw_baseline": base.raw, "raw_extended": best.raw, "trials": base.trials,
+        "held_out_baseline": base.score, "held_out_extended": chosen.score,
+        "raw_baseline": base.raw, "raw_extended": chosen.raw, "trials": base.trials,
+        "same_choice": same,
     }  # fmt: skip

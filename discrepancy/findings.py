@@ -28,10 +28,14 @@ class Verdict:
         Contradictions and cautions of the inputs.
     probabilities, scores
         By explanation.
+    inclusion
+        Mechanism to the probability that it takes part, alone or with others.
     parameters, nuisance_pulls, surprise
         By the number's name, of the best explanation.
     excluded, limits
         By mechanism: why it was not fitted; the smallest value that would have been seen.
+    misfit
+        How much of the baseline's misfit the data sheet, the law and the metal took.
     ranking
         All fits, and the problem that they were fitted to.
     best
@@ -45,6 +49,7 @@ class Verdict:
     choice: Choice
     audit: tuple[dict[str, Any], ...]
     probabilities: dict[str, float]
+    inclusion: dict[str, float]
     scores: dict[str, dict[str, float]]
     located: Located
     parameters: dict[str, dict[str, Any]]
@@ -53,6 +58,7 @@ class Verdict:
     excluded: dict[str, str]
     limits: dict[str, float]
     improvement: dict[str, float]
+    misfit: dict[str, float]
     corrections: tuple[Correction, ...]
     proposals: tuple[Proposal, ...]
     notes: tuple[str, ...]
@@ -96,6 +102,7 @@ class Verdict:
             "verdict": self.verdict,
             "mechanisms": list(self.mechanisms),
             "alternatives": [list(names) for names in self.alternatives],
+            "inclusion": self.inclusion,
             "probabilities": self.probabilities,
             "scores": {name: _stated(found) for name, found in self.scores.items()},
             "located": [
@@ -111,6 +118,7 @@ class Verdict:
             "excluded": [{"mechanism": k, "reason": v} for k, v in self.excluded.items()],
             "limits": self.limits,
             "improvement": _stated(self.improvement),
+            "misfit": self.misfit,
             "correction": [
                 {
                     "phase": c.phase, "indentation_over_R": c.depth_over_R.tolist(),
@@ -123,6 +131,14 @@ class Verdict:
                 "expected_discrimination": (
                     self.proposals[0].expected_discrimination if self.proposals else 0.0
                 ),
+                "others": [
+                    {
+                        "change": p.change, "kind": p.kind,
+                        "expected_discrimination": p.expected_discrimination,
+                        "interval": None if math.isnan(p.interval) else p.interval,
+                    }
+                    for p in self.proposals[1:]
+                ],
             },
             "notes": [*self.reasons, *self.notes],
         }  # fmt: skip

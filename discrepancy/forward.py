@@ -151,9 +151,11 @@ class Simulator:
         self, points: Sequence[Point], situations: Sequence[Situation], seen: dict[str, Array]
     ) -> None:
         n = len(self.problem.conditions)
+        strikers = [c.striker for c in self.problem.conditions]
         for i, point in enumerate(points):
             part = slice(i * n, (i + 1) * n)
             b = point.z[self.problem.n_nuisances :]
             R = np.array([s.pair.R for s, _ in situations[part]])
-            change = self.problem.error.crater(b, seen["peak_depth_m"][part] / R)
+            depth = seen["peak_depth_m"][part] / R
+            change = self.problem.error.crater_change(b, strikers, depth)
             seen["permanent_depth_m"][part] *= np.exp(change)

@@ -8,7 +8,9 @@ mechanism's parameters, weighted by how well these explain the cells that were k
 from __future__ import annotations
 
 import math
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
+from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -20,6 +22,7 @@ from .problem import Problem
 Array = NDArray[np.float64]
 
 _FLOOR = 0.1
+_GRID = 400  # parameter values that stand for all
 _MOST = 40  # parameter values that carry the weight
 
 
@@ -66,14 +69,66 @@ def groups_of(problem: Problem) -> list[NDArray[np.bool_]]:
 
 def held_out(problem: Problem, fitted: Fit) -> HeldOut:
     """Score an explanation with each group left out in turn."""
-    total = fitted.linear.total
-    noise = np.sqrt(np.diag(fitted.linear.noise))
+    return _scored(problem, [(fitted, test) for test in _folds(problem)])
+
+
+class Repeated(NamedTuple):
+    """The whole choice made again on what was kept, group by group.
+
+    Parameters
+    ----------
+    score
+        Of the explanation that each group's rest would choose, on that group.
+    same
+        Share of the groups whose rest chooses as the whole set does.
+    """
+
+    score: HeldOut
+    same: float
+
+
+def repeated_choice(
+    problem: Problem, fits: Sequence[Fit], log_prior: Mapping[str, float], chosen: str
+) -> Repeated:
+    """Leave out each group in turn, choose by what was kept, and predict the group by that.
+
+    Parameters
+    ----------
+    problem
+        What was compared.
+    fits
+        All explanations, the baseline included.
+    log_prior
+        Name to ln of the prior probability less what nulls give away.
+    chosen
+        Name of the whole set's choice.
+    """
+    used = []
+    for test in _folds(problem):
+        evidence = {f.name: _kept_evidence(f, ~test) + log_prior[f.name] for f in fits}
+        best = max(fits, key=lambda f: evidence[f.name])
+        used.append((best, test))
+    same = np.mean([f.name == chosen for f, _ in used]) if used else math.nan
+    return Repeated(_scored(problem, used), float(same))
+
+
+def _kept_evidence(fitted: Fit, train: NDArray[np.bool_]) -> float:
+    """Ln evidence of an explanation by some of the cells alone."""
+    few = fitted.residuals[:: max(len(fitted.residuals) // _GRID, 1), :][:, train]
+    found = fitted.mixture.of_cells(train).log_likelihood(few)
+    return float(logsumexp(found)) - math.log(len(few)) + fitted.grid.log_volume
+
+
+def _folds(problem: Problem) -> list[NDArray[np.bool_]]:
+    return [test for test in groups_of(problem) if test.any() and not test.all()]
+
+
+def _scored(problem: Problem, used: Sequence[tuple[Fit, NDArray[np.bool_]]]) -> HeldOut:
+    """Score predictions of groups of cells by the explanation that goes with each."""
     squares, count = [], 0
-    for test in groups_of(problem):
-        train = ~test
-        if not test.any() or not train.any():
-            continue
-        miss = _missed(fitted, total, test, train)
+    for fitted, test in used:
+        miss = _missed(fitted, fitted.linear.total, test, ~test)
+        noise = np.sqrt(np.diag(fitted.linear.noise))
         squares.append((miss / noise[test]) ** 2)
         count += int(np.sum(problem.cells.count[test]))
     if not squares:

@@ -15,6 +15,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ..core.observables import OBSERVABLES
+from .covariates import covariates
 from .inference.fit import Fit
 from .problem import Problem
 from .thresholds import Nulls
@@ -49,26 +50,6 @@ class Located:
 
     misses: tuple[Miss, ...]
     threshold: float
-
-
-def covariates(problem: Problem) -> dict[str, Array]:
-    """Return what varies over the conditions, standardised, each of shape (conditions,)."""
-    c = problem.conditions
-    raw = {
-        "impact speed": np.log([x.speed for x in c]),
-        "rod length": np.array([problem.rig.strikers[x.striker].length for x in c]),
-        "tip radius": np.log([problem.rig.strikers[x.striker].tip_radius_m.value for x in c]),
-        "striker mass": np.log([problem.rig.strikers[x.striker].mass_kg.value for x in c]),
-        "angle": np.array([x.angle for x in c]),
-        "tangential speed": np.array([x.tangential for x in c]),
-        "temperature": np.array([x.around.temperature for x in c]),
-    }
-    found = {}
-    for name, value in raw.items():
-        spread = float(np.std(value))
-        if spread > 1e-6 * max(1.0, float(np.max(np.abs(value)))):
-            found[name] = (value - value.mean()) / spread
-    return found
 
 
 def locate(problem: Problem, base: Fit, nulls: Nulls, *, level: float = 0.95) -> Located:

@@ -1,8 +1,10 @@
-"""Which feasible trial would best separate what is still confounded.
+"""What to do next: the trial, the instrument or the observable that would bring most.
 
-Each candidate is simulated under the rival explanations with their posterior spread; its worth is
-D = (mu_i - mu_j)^T (Sigma_i + Sigma_j)^-1 (mu_i - mu_j), the criterion of Buzzi-Ferraris and
-Forzatti (Chem. Eng. Sci. 39 (1984) 81), averaged over the pairs.
+Rivals are the explanations that share the probability. A trial is simulated under each with its
+posterior spread; its worth is D = (mu_i - mu_j)^T (Sigma_i + Sigma_j)^-1 (mu_i - mu_j), the
+criterion of Box and Hill (Technometrics 9 (1967) 57) and of Buzzi-Ferraris and Forzatti (Chem. Eng.
+Sci. 39 (1984) 81), averaged over the pairs with the product of their probabilities. Half of it is
+about the nats by which the odds of two rivals would move.
 """
 
 from __future__ import annotations
@@ -16,81 +18,171 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ..core.observables import OBSERVABLES
-from ..core.rig import Quantity, StrikerTable
 from .cells import compared
-from .conditions import Condition
+from .feasible import Candidate, candidates_of
 from .forward import Point, Simulator
 from .inference.fit import Fit
+from .odds import Odds
 from .problem import Problem
 from .rank import Ranking
 
 Array = NDArray[np.float64]
-_Candidate = tuple[str, Condition, StrikerTable | None]
 
-_SAMPLES = 6
+SHARE = 0.02
+"""Probability from which an explanation is a rival."""
+MOST = 4
+"""Rivals that are told apart."""
+LITTLE = 0.9
+"""Width of an interval, over that of today, above which a change is not worth its while."""
+_SAMPLES = 12
+_BUILD = 2.0  # what is to be built must bring as many times more than what is there
 
 
 @dataclass(frozen=True, slots=True)
 class Proposal:
-    """A trial to make, and how well it would discriminate."""
+    """What to do, how well it would discriminate, and what it would do to the interval.
+
+    Parameters
+    ----------
+    change
+        In words.
+    expected_discrimination
+        D averaged over the rivals; 0 where there are none.
+    kind
+        `trial`, `build`, `noise`, `observable` or `none`.
+    interval
+        Width of the leading parameter's interval over that of today; nan where not worked out.
+    """
 
     change: str
     expected_discrimination: float
+    kind: str = "trial"
+    interval: float = math.nan
 
 
-def rivals_of(members: Sequence[Fit], ranking: Ranking) -> list[Fit]:
-    """Return the explanations that a next experiment should tell apart.
-
-    Those that the verdict holds; where it holds one or none, it or the baseline, and the best other
-    single mechanism or the baseline.
-    """
-    if len(members) > 1:
-        return list(members)
-    best = members[0] if members else ranking.base
-    others = [f for f in (*ranking.singles, ranking.base) if f.name != best.name]
-    return [best, *others[:1]]
+def rivals_of(ranking: Ranking, odds: Odds) -> list[tuple[Fit, float]]:
+    """Return the explanations that share the probability, most probable first, and their shares."""
+    shared = [(f, odds.probability[f.name]) for f in ranking.fits]
+    shared = sorted(shared, key=lambda item: -item[1])
+    return [(f, p) for i, (f, p) in enumerate(shared[:MOST]) if i < 2 or p > SHARE]
 
 
 def propose(
-    simulator: Simulator, rivals: Sequence[Fit], rng: np.random.Generator
+    simulator: Simulator, ranking: Ranking, odds: Odds, rng: np.random.Generator
 ) -> list[Proposal]:
-    """Return candidate trials, best first.
+    """Return what to do next, best first.
 
     Parameters
     ----------
     simulator
         The problem.
-    rivals
-        At least two explanations.
+    ranking, odds
+        The explanations and their probabilities.
     rng
         Draws the posterior samples.
     """
-    problem = simulator.problem
-    candidates = _candidates(problem)
-    if len(rivals) < 2 or not candidates:
+    rivals = rivals_of(ranking, odds)
+    if len(rivals) < 2:
         return []
-    strikers = {**problem.rig.strikers, **{c.striker: s for _, c, s in candidates if s}}
-    trial = simulator.of(
-        replace(
-            problem, conditions=tuple(c for _, c, _ in candidates),
-            rig=problem.rig.model_copy(update={"strikers": strikers}),
-        )
-    )  # fmt: skip
-    seen = [trial.observe(f.mechanisms, _samples(f, rng)) for f in rivals]
-    measured = list(dict.fromkeys(problem.cells.observable))
-    found = []
-    for k, (change, _, _) in enumerate(candidates):
-        same = _worth([{o: s[o][:, k] for o in measured} for s in seen], problem)
-        found.append(Proposal(f"{change}, measuring {_words(measured)}", same))
-        for extra, row in OBSERVABLES.items():
-            idle = row.phase == "sliding" and candidates[k][1].angle > 1.5
-            if extra in measured or idle or not row.usual_noise:
-                continue
-            more = _worth([{o: s[o][:, k] for o in [*measured, extra]} for s in seen], problem)
-            if more > 1.5 * same:
-                found.append(Proposal(f"{change}, measuring {_words([*measured, extra])}", more))
-    found.sort(key=lambda p: -p.expected_discrimination)
+    points = [_samples(f, rng) for f, _ in rivals]
+    found = [*_trials(simulator, rivals, points), *_further(simulator, rivals, points)]
+    found.sort(key=lambda p: -p.expected_discrimination / (_BUILD if p.kind == "build" else 1.0))
+    best = rivals[0][0]
+    if best.mechanisms:
+        sharper = _sharper(simulator.problem, best)
+        if 1.0 - rivals[0][1] < SHARE:
+            # nothing left to tell apart: what is left is to know the numbers better
+            return [*sharper, *found]
+        found += sharper
     return found
+
+
+def _trials(
+    simulator: Simulator, rivals: Sequence[tuple[Fit, float]], points: Sequence[list[Point]]
+) -> list[Proposal]:
+    problem = simulator.problem
+    candidates = candidates_of(problem)
+    built = {c.condition.striker: c.built for c in candidates if c.built}
+    rig = problem.rig.model_copy(update={"strikers": {**problem.rig.strikers, **built}})
+    conditions = tuple(c.condition for c in candidates)
+    trial = simulator.of(replace(problem, conditions=conditions, rig=rig).with_error())
+    seen = [trial.observe(f.mechanisms, p) for (f, _), p in zip(rivals, points, strict=True)]
+    measured = list(dict.fromkeys(problem.cells.observable))
+    weight = [p for _, p in rivals]
+    return [_trial(c, k, seen, measured, weight, problem) for k, c in enumerate(candidates)]
+
+
+def _trial(
+    c: Candidate, k: int, seen: Sequence[dict[str, Array]], measured: list[str],
+    weight: Sequence[float], problem: Problem,
+) -> Proposal:  # fmt: skip
+    here = [{o: s[o][:, k] for o in measured} for s in seen]
+    text = f"{c.change}, measuring {_words(measured)}"
+    return Proposal(text, _worth(here, weight, problem), "build" if c.built else "trial")
+
+
+def _further(
+    simulator: Simulator, rivals: Sequence[tuple[Fit, float]], points: Sequence[list[Point]]
+) -> list[Proposal]:
+    """What else could be measured, at the condition of the set where it would tell most."""
+    problem = simulator.problem
+    seen = [simulator.observe(f.mechanisms, p) for (f, _), p in zip(rivals, points, strict=True)]
+    measured = set(problem.cells.observable)
+    weight = [p for _, p in rivals]
+    slides = any(c.angle < 1.5 or c.tangential or c.spin for c in problem.conditions)
+    found = []
+    for name, row in OBSERVABLES.items():
+        if name in measured or not row.usual_noise or (row.phase == "sliding" and not slides):
+            continue
+        worth = [
+            _worth([{name: s[name][:, k]} for s in seen], weight, problem)
+            for k in range(len(problem.conditions))
+        ]
+        c = problem.conditions[int(np.argmax(worth))]
+        text = f"measure {row.label} too, first of {c.striker} at {c.speed:.2g} m/s"
+        found.append(Proposal(text, max(worth), "observable"))
+    return found
+
+
+def _sharper(problem: Problem, best: Fit) -> list[Proposal]:
+    """What half the noise would do to the interval of the leading parameter, or that nothing will.
+
+    By the curvature of the likelihood at the best place; the parameters are linear over it.
+    """
+    slopes = _slopes(best)
+    total, noise = best.linear.total, np.diag(best.linear.noise)
+    today = _width(slopes, total)
+    names = list(dict.fromkeys(problem.cells.observable))
+    found = []
+    for name in names:
+        here = np.array([o == name for o in problem.cells.observable])
+        less = total - np.diag(np.where(here, 0.75 * noise, 0.0))
+        share = _width(slopes, less) / today
+        text = f"halve the noise of {OBSERVABLES[name].label}, or repeat it four times as often"
+        found.append(Proposal(text, 0.0, "noise", share))
+    found.sort(key=lambda p: p.interval)
+    label = best.grid.labels[0]
+    if _width(slopes, total - np.diag(0.75 * noise)) > LITTLE * today:
+        text = (
+            f"nothing more to gain for {label} from better instruments or more repeats: the errors "
+            "of the contact law and of the mechanism's form rule its interval"
+        )
+        return [Proposal(text, 0.0, "none", 1.0), *found]
+    return found
+
+
+def _slopes(best: Fit) -> Array:
+    """Derivatives of the cells by the parameters' places in their priors, (axes, m)."""
+    places = best.grid.places()
+    near = np.argsort(np.sum((places - best.place) ** 2, axis=1))[: 3 ** len(best.grid.axes) + 2]
+    x = np.column_stack([np.ones(len(near)), places[near] - best.place])
+    return np.asarray(-np.linalg.lstsq(x, best.residuals[near], rcond=None)[0][1:])
+
+
+def _width(slopes: Array, total: Array) -> float:
+    """Standard deviation of the first parameter's place; a flat prior has 1/sqrt(12)."""
+    information = slopes @ np.linalg.solve(total, slopes.T) + 12.0 * np.eye(len(slopes))
+    return math.sqrt(float(np.linalg.inv(information)[0, 0]))
 
 
 def _words(names: Sequence[str]) -> str:
@@ -107,18 +199,18 @@ def _samples(fitted: Fit, rng: np.random.Generator) -> list[Point]:
     ]
 
 
-def _worth(seen: Sequence[dict[str, Array]], problem: Problem) -> float:
+def _worth(seen: Sequence[dict[str, Array]], weight: Sequence[float], problem: Problem) -> float:
+    """D of one trial, (samples,) of each observable under each rival, averaged over the pairs."""
     names = list(seen[0])
     noise = np.array([_noise(name, seen, problem) for name in names])
-    tables = []
-    for one in seen:
-        tables.append(np.stack([compared(n, one[n]) for n in names]))
-    worth = []
-    for a, b in itertools.combinations(tables, 2):
+    tables = [np.stack([compared(n, one[n]) for n in names]) for one in seen]
+    worth, whole = 0.0, 0.0
+    for (a, p), (b, q) in itertools.combinations(zip(tables, weight, strict=True), 2):
         gap = a.mean(axis=1) - b.mean(axis=1)
         cov = np.atleast_2d(np.cov(a)) + np.atleast_2d(np.cov(b)) + 2.0 * np.diag(noise**2)
-        worth.append(float(gap @ np.linalg.solve(cov, gap)))
-    return float(np.mean(worth))
+        worth += p * q * float(gap @ np.linalg.solve(cov, gap))
+        whole += p * q
+    return worth / whole if whole > 0.0 else 0.0
 
 
 def _noise(name: str, seen: Sequence[dict[str, Array]], problem: Problem) -> float:
@@ -128,45 +220,3 @@ def _noise(name: str, seen: Sequence[dict[str, Array]], problem: Problem) -> flo
     size = float(np.mean([np.mean(np.abs(s[name])) for s in seen]))
     row = OBSERVABLES[name]
     return row.usual_noise * (1.0 if row.log else max(size, 1e-12))
-
-
-def _candidates(problem: Problem) -> list[_Candidate]:
-    """Conditions near those of the set: other speeds, lengths, radii and angles."""
-    found: list[_Candidate] = []
-    heard = set()
-    for c in problem.conditions:
-        if c.striker in heard:
-            continue
-        heard.add(c.striker)
-        speeds = [x.speed for x in problem.conditions if x.striker == c.striker]
-        for v in (0.4 * min(speeds), 2.0 * max(speeds), 4.0 * max(speeds)):
-            found.append((f"{c.striker} at {v:.2g} m/s", replace(c, speed=v), None))
-        table = problem.rig.strikers[c.striker]
-        v = float(np.median(speeds))
-        if table.length > 0.0 and table.length_m is not None:
-            for ratio in (0.4, 2.5):
-                changed = table.model_copy(
-                    update={
-                        "length_m": Quantity(value=table.length * ratio),
-                        "mass_kg": Quantity(value=table.mass_kg.value * ratio),
-                        "inertia_kg_m2": None,
-                    }
-                )
-                name = f"{c.striker} x {ratio:g}"
-                text = (
-                    f"a rod like {c.striker} but {table.length * ratio:.3g} m long at {v:.2g} m/s"
-                )
-                found.append((text, replace(c, striker=name, speed=v), changed))
-            for angle in (30.0, 60.0, 90.0):
-                near = [x.angle for x in problem.conditions if x.striker == c.striker]
-                radians = math.radians(angle)
-                if min(abs(radians - a) for a in near) > math.radians(8.0):
-                    text = f"{c.striker} at {angle:.0f} degrees and {v:.2g} m/s"
-                    found.append((text, replace(c, angle=radians, speed=v), None))
-        for ratio in (0.4, 2.5):
-            radius = table.tip_radius_m.value * ratio
-            changed = table.model_copy(update={"tip_radius_m": Quantity(value=radius)})
-            name = f"{c.striker} R x {ratio:g}"
-            text = f"{c.striker} with a tip radius of {1e3 * radius:.3g} mm at {v:.2g} m/s"
-            found.append((text, replace(c, striker=name, speed=v), changed))
-    return found

@@ -23,7 +23,7 @@ from .cells import NO_CELLS, Cells, Scatter, cells_of
 from .conditions import Condition, conditions_of
 from .curves import readings_of
 from .drift import Drift
-from .lawerror import LawError, law_error
+from .lawerror import NO_ERROR, LawError, law_error
 from .nuisances import ASSUMED_E, ASSUMED_NU, Nuisance, nuisances_of
 
 Array = NDArray[np.float64]
@@ -68,6 +68,15 @@ class Problem:
         strikers = tuple(t for t in tables if t != "target")
         return {"target": flat, "striker": strikers}
 
+    def with_error(self) -> Problem:
+        """Return the same with the law's error as these conditions have it."""
+        plain = replace(self, error=NO_ERROR)
+        scenes: dict[str, list[Scene]] = {}
+        stated = plain.scenes(np.zeros(plain.n_z))
+        for c, scene in zip(self.conditions, stated, strict=True):
+            scenes.setdefault(c.striker, []).append(scene)
+        return replace(self, error=law_error(scenes))
+
     @property
     def fresh(self) -> Problem:
         """The same with every blow on fresh metal."""
@@ -76,17 +85,23 @@ class Problem:
     def scenes(self, z: Array) -> list[Scene]:
         """Return the baseline scene of every condition at the unknowns z, shape (n_z,)."""
         values = {n.name: n.at(float(x)) for n, x in zip(self.nuisances, z, strict=False)}
-        force = self.error.transform(z[self.n_nuisances :])
+        used = {c.striker for c in self.conditions}
+        b = z[self.n_nuisances :]
+        forces = {name: self.error.transform(b, name) for name in used}
         if self.rig.target.law == "measured-restitution":
-            force = replace(force, given_back=values["target.restitution"] ** 2)
+            back = values["target.restitution"] ** 2
+            forces = {name: replace(f, given_back=back) for name, f in forces.items()}
         parts = {
             name: bodies_of(self.rig, name, values=values, E=ASSUMED_E, nu=ASSUMED_NU)
-            for name in {c.striker for c in self.conditions}
+            for name in used
         }
         scale = values.get("speed.scale", 1.0)
         turn = values.get("angle.offset", 0.0)
         mu = Friction(values.get("friction.coefficient", 0.0))
-        return [self._scene(c, parts[c.striker], scale, turn, mu, force) for c in self.conditions]
+        return [
+            self._scene(c, parts[c.striker], scale, turn, mu, forces[c.striker])
+            for c in self.conditions
+        ]
 
     def _scene(
         self, c: Condition, parts: tuple[Pair, Striker], scale: float, turn: float,
@@ -118,8 +133,8 @@ def problem_of(recordings: RecordingSet) -> Problem:
     nuisances = nuisances_of(recordings, conditions)
     law = _law_of(setup.target)
     problem = Problem(
-        recordings.name, law, setup, conditions, NO_CELLS, nuisances, law_error(law),
-    )  # fmt: skip
+        recordings.name, law, setup, conditions, NO_CELLS, nuisances, NO_ERROR
+    ).with_error()
     stated = problem.scenes(np.zeros(problem.n_z))
     of_trial = {i: s for c, s in zip(conditions, stated, strict=True) for i in c.trials}
     readings, unread = readings_of(recordings, [of_trial[i] for i in sorted(of_trial)])

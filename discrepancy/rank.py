@@ -16,7 +16,6 @@ from .inference.window import sharpened
 from .mechanisms import MECHANISMS
 from .mechanisms.base import Mechanism
 from .problem import Problem
-from .thresholds import gain
 
 Array = NDArray[np.float64]
 Progress = Callable[[str], None]
@@ -150,8 +149,7 @@ def screen(simulator: Simulator, base: Fit, mechanism: Mechanism) -> Screened:
     responses = responses_at(simulator, (mechanism,), grid, base.z)
     change = responses - (base.here + base.linear.J @ (base.z - base.expanded))
     effect = grid.refine(change)
-    white = base.linear.white(base.residual)[None, :]
-    log_bayes = float(gain(white, np.zeros(1), base.linear, effect)[0])
+    log_bayes = float(base.mixture.gain(base.residual[None, :], effect)[0])
     chi2 = np.sum(base.linear.white(base.residual - effect) ** 2, axis=1)
     place = grid.places()[int(np.argmin(chi2))]
     return Screened(mechanism, grid, change, effect, log_bayes, place)
@@ -180,14 +178,11 @@ def _cleared(
         return problem, base, screened
     problem = without_weight(problem, outliers)
     again = fit(simulator.of(problem), (), start=base, rounds=2)
-    white = again.linear.white(again.residual)[None, :]
+    residual = again.residual[None, :]
     return (
         problem,
         again,
-        [
-            replace(s, log_bayes=float(gain(white, np.zeros(1), again.linear, s.effect)[0]))
-            for s in screened
-        ],
+        [replace(s, log_bayes=float(again.mixture.gain(residual, s.effect)[0])) for s in screened],
     )
 
 

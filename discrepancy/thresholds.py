@@ -18,7 +18,7 @@ from ..impact.strength import UNIT, strength_table
 from .cells import compared
 from .forward import Point, Simulator
 from .inference.fit import Fit
-from .inference.linear import Linear
+from .lawerror import SIZE_SPREAD, not_given_back
 from .mechanisms.arithmetic import effective_mass
 from .nulls import Rig, discrepancies, scatter
 from .nulls.laws import Reference
@@ -27,10 +27,9 @@ from .problem import Problem
 
 Array = NDArray[np.float64]
 
-LEVEL, SLOPE = 1.5, 0.5
+LEVEL, SLOPE = 1.0, 0.4
 """Standard deviations of a null law's level and of its slope over ln(depth), relative to the
-baseline's, in units of the baseline's known error. Above 1, so that a law which is off by somewhat
-more than it is known to be is still no missing physics."""
+baseline's, in units of the error that the baseline is assumed to have."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -44,7 +43,7 @@ class Nulls:
     scatter, unknown
         (n, m) and (n, nuisances) unit draws of noise and nuisances.
     form
-        (n, components) unit normal draws of the error of a mechanism's form, for the most it has.
+        (n, m) unit normal draws of the error of a mechanism's form.
     """
 
     law: Array
@@ -85,9 +84,10 @@ def null_residuals(simulator: Simulator, base: Fit, count: int, rng: np.random.G
     here = Simulator(problem.fresh).predict((), [Point(z)])[0]
     sizes = problem.error.sizes
     spread: dict[str, float] = {}
-    for kind in ("force", "recovery"):
+    for kind in ("force", "recovery", "crater"):
         known = sizes.get(kind, 0.0)
         spread |= {kind: LEVEL * known, f"{kind} slope": SLOPE * known, f"{kind} shape": known}
+    spread["size"] = SIZE_SPREAD
     seen = discrepancies(rig_of(problem, z), count, rng, spread)
     cells = problem.cells
     law = np.empty((count, len(cells)))
@@ -97,8 +97,7 @@ def null_residuals(simulator: Simulator, base: Fit, count: int, rng: np.random.G
     # what a condition's scatter of speed and angle does is shared by its observables
     unit = scatter(rng, law.shape)
     unknown = rng.standard_normal((count, problem.n_nuisances))
-    components = len(set(cells.observable)) + 2 + problem.error.count + len(cells)
-    form = rng.standard_normal((count, components))
+    form = rng.standard_normal((count, len(cells)))
     return Nulls(law, unit, unknown, form)
 
 
@@ -154,34 +153,6 @@ def _reference(scene: Scene, known: dict[tuple[float, ...], Reference]) -> Refer
         known[key] = Reference(
             pair.R, pair.E_reduced, strength, depth, np.exp(table.log_force[UNIT]),
             np.exp(table.log_recovery[UNIT]), flat, table.radius, scene.force.given_back,
+            not_given_back(scene),
         )  # fmt: skip
     return known[key]
-
-
-def null_bayes_factors(nulls: Nulls, base: Fit, responses: list[Array]) -> Array:
-    """Return ln B of every mechanism for every null, shape (n, mechanisms).
-
-    Parameters
-    ----------
-    nulls
-        Null residuals.
-    base
-        Fit of the baseline, whose derivatives are used for all.
-    responses
-        For each mechanism, its effect on the cells over its refined grid, shape (k, m).
-    """
-    linear = base.linear
-    white = linear.white(nulls.made_by(base))
-    plain = np.sum(white**2, axis=1)
-    out = np.empty((len(white), len(responses)))
-    for j, effect in enumerate(responses):
-        out[:, j] = gain(white, plain, linear, effect)
-    return out
-
-
-def gain(white: Array, plain: Array, linear: Linear, effect: Array) -> Array:
-    """Return ln of the mean likelihood ratio over a grid of effects (k, m), shape (n,)."""
-    e = linear.white(effect)
-    ratio = white @ e.T - 0.5 * np.sum(e**2, axis=1)
-    top = ratio.max(axis=1)
-    return np.asarray(top + np.log(np.mean(np.exp(ratio - top[:, None]), axis=1)))

@@ -6,16 +6,20 @@ held-out conditions -> next experiment. `Verdict.to_dict` gives verdict.json, ve
 
 from __future__ import annotations
 
+import math
+
 import numpy as np
 
 from ..recordings import RecordingSet
-from .calibration import calibrate, p_fit
+from .calibration import p_fit
 from .correction import correct
-from .decide import OUTSIDE, FitTests, decide, needs_more, probabilities_of
+from .decide import in_doubt, withdrawn
 from .estimates import (
     audit_rows,
     improvement_of,
+    law_notes,
     limits_of,
+    misfit_of,
     notes_of,
     parameters_of,
     pulls_of,
@@ -24,10 +28,12 @@ from .estimates import (
 )
 from .findings import Verdict
 from .forward import Simulator
-from .heldout import held_out
+from .heldout import Repeated, held_out, repeated_choice
 from .inference.sampling import confirm_evidence
+from .judge import Judge
 from .locate import locate
-from .next_experiment import propose, rivals_of
+from .next_experiment import propose
+from .odds import OUTSIDE
 from .pairs import with_pairs
 from .problem import problem_of
 from .rank import Progress, rank
@@ -75,35 +81,45 @@ def diagnose(
     simulator = simulator.of(ranking.problem)
     progress("simulating sets in which nothing is missing")
     nulls = null_residuals(simulator, ranking.base, CONFIRMED_NULLS if confirm else NULLS, rng)
-    calibration = calibrate(ranking, nulls)
-    ranking = calibration.sorted(ranking)
-    if needs_more(ranking, calibration, p_fit(ranking.base, nulls, ranking.problem)):
-        ranking = calibration.sorted(with_pairs(simulator, ranking, progress=progress))
+    judge = Judge.of(ranking, nulls)
+    if in_doubt(judge.odds(ranking)):
+        ranking = with_pairs(simulator, ranking, progress=progress)
 
     progress("deciding")
-    located = locate(ranking.problem, ranking.base, nulls)
-    tests = FitTests.of(ranking, nulls)
-    probabilities = probabilities_of(ranking, tests)
-    choice = decide(ranking, nulls, calibration, tests, probabilities)
-    leading = [ranking.base, *choice.members]
-    sampled = confirm_evidence(simulator, leading, rng, progress) if confirm else {}
-
+    choice = judge.decided(ranking, {})
+    sampled: dict[str, float] = {}
+    if confirm:
+        leading = [ranking.base, *choice.members]
+        sampled = confirm_evidence(simulator, leading, rng, progress)
+        choice = judge.decided(ranking, sampled)
+    odds = judge.odds(ranking, sampled)
     progress("predicting conditions that were left out")
     left_out = {f.name: held_out(ranking.problem, f) for f in ranking.fits}
+    base = left_out[ranking.base.name]
+    again = Repeated(base, math.nan)
+    if choice.members:
+        name = choice.members[0].name
+        prior = judge.log_prior(ranking)
+        again = repeated_choice(ranking.problem, ranking.fits, prior, name)
+        choice = withdrawn(choice, (base.score, again.score.score), name)
     progress("looking for the next experiment")
     best = choice.members[0] if choice.members else ranking.base
-    proposals = propose(simulator, rivals_of(choice.members, ranking), rng)
+    proposals = propose(simulator, ranking, odds, rng)
     corrections = correct(simulator, ranking.base) if choice.verdict == OUTSIDE else ()
+    misfit = misfit_of(ranking.problem, ranking.base)
+    notes = (*notes_of(ranking.problem, best), *law_notes(ranking.problem, misfit))
     return Verdict(
-        name=recordings.name, seed=seed, choice=choice, audit=audit, probabilities=probabilities,
-        scores=scores_of(ranking, tests.p, left_out, sampled), located=located,
+        name=recordings.name, seed=seed, choice=choice, audit=audit,
+        probabilities=dict(odds.probability), inclusion=odds.inclusion,
+        scores=scores_of(ranking, {f.name: p_fit(f, nulls) for f in ranking.fits}, left_out,
+                         sampled),
+        located=locate(ranking.problem, ranking.base, nulls),
         parameters=parameters_of(simulator, best), nuisance_pulls=pulls_of(ranking.problem, best),
-        surprise=surprises_of(ranking.problem, best),
-        excluded=ranking.excluded, limits=limits_of(ranking, calibration),
-        improvement=improvement_of(left_out[ranking.base.name], left_out[best.name]),
-        corrections=corrections, proposals=tuple(proposals[:PROPOSED]),
-        notes=notes_of(ranking.problem, best), ranking=ranking, best=best,
-        impacts=simulator.tally.impacts,
+        surprise=surprises_of(ranking.problem, best), excluded=ranking.excluded,
+        limits=limits_of(ranking, judge.calibration),
+        improvement=improvement_of(base, again.score, again.same), misfit=misfit,
+        corrections=corrections, proposals=tuple(proposals[:PROPOSED]), notes=notes,
+        ranking=ranking, best=best, impacts=simulator.tally.impacts,
     )  # fmt: skip
 
 

@@ -8,6 +8,7 @@ from collections.abc import Sequence
 import numpy as np
 from numpy.typing import NDArray
 
+from ..covariates import nearness, same_observable
 from ..forward import Point, Simulator
 from ..mechanisms.base import Constants, Mechanism
 from ..problem import Problem
@@ -17,6 +18,7 @@ Array = NDArray[np.float64]
 
 STEP = 0.3
 _SPEED_STEP, _ANGLE_STEP = 0.01, 0.01
+_LENGTH, _ROUGH = 2.0, 0.1  # of the error of a form: correlation length, part without one
 _JUMPS = (0.02, 0.05, 0.1)  # of the parameter: how near a jump makes a cell unsure
 
 
@@ -42,12 +44,11 @@ def measured_covariance(problem: Problem, by_speed: Array, by_angle: Array) -> A
 
 
 def form_error(problem: Problem, effect: Array, share: float) -> Array:
-    """Return what the textbook form of a mechanism may be off, as components (m, c).
+    """Return what the textbook form of a mechanism may be off, as components (m, m).
 
     The same physics has several published forms, which differ by some share of their effect even
-    when they are fitted to each other. Components: shares of the observables against each other,
-    and slope and curvature over the speed. The common size of the effect is left to the
-    mechanism's parameters.
+    when they are fitted to each other: half of the variance alike in all observables, half in each
+    by itself, smooth over what varies but for a tenth.
 
     Parameters
     ----------
@@ -56,20 +57,12 @@ def form_error(problem: Problem, effect: Array, share: float) -> Array:
     effect
         (m,) change of the cells by the mechanism.
     share
-        Standard deviation of each component, as a share of the effect.
+        Standard deviation, as a share of the effect.
     """
-    cells = problem.cells
-    names = list(dict.fromkeys(cells.observable))
-    here = np.array([[o == n for n in names] for o in cells.observable], dtype=float)
-    speed = np.log([c.speed for c in problem.conditions])[cells.condition]
-    columns = [here[:, k] - here[:, k + 1 :].mean(axis=1) * (k + 1 < len(names))
-               for k in range(len(names) - 1)]  # fmt: skip
-    if np.ptp(speed) > 0.0:
-        x = (speed - speed.mean()) / np.std(speed)
-        columns += [x, (x * x - 1.0) / math.sqrt(2.0)]
-    if not columns:
-        return np.zeros((len(effect), 0))
-    return np.asarray(share * effect[:, None] * np.stack(columns, axis=1))
+    smooth = (1.0 - _ROUGH) * nearness(problem, _LENGTH)
+    alike = smooth * (0.5 + 0.5 * same_observable(problem)) + _ROUGH * np.eye(len(effect))
+    lower = np.linalg.cholesky(alike + 1e-9 * np.eye(len(effect)))
+    return np.asarray(share * effect[:, None] * lower)
 
 
 def derivatives(
@@ -99,8 +92,12 @@ def derivatives(
     noise = measured_covariance(problem, by_speed, by_angle)
     if not mechanisms:
         return here, Linear(noise, J)
-    effect = here - simulator.predict((), [Point(z)])[0]
-    form = form_error(problem, effect, max(m.form for m in mechanisms))
+    form = np.hstack([
+        form_error(problem, effect, m.form)
+        for m, effect in zip(
+            mechanisms, _effects(simulator, mechanisms, values, z, here), strict=True
+        )
+    ])  # fmt: skip
     wider = max(m.law_error for m in mechanisms)
     if wider > 1.0:
         form = np.hstack([form, math.sqrt(wider**2 - 1.0) * J[:, problem.n_nuisances :]])
@@ -109,7 +106,23 @@ def derivatives(
         below, above = around[0::2], around[1::2]
         jump = 0.5 * np.max(np.abs(below + above - 2.0 * here), axis=0)
         form = np.hstack([form, np.diag(jump)])
-    return here, Linear(noise, J, form)
+    return here, Linear(noise, J, _condensed(form))
+
+
+def _effects(
+    simulator: Simulator, mechanisms: Sequence[Mechanism], values: Constants, z: Array, here: Array
+) -> list[Array]:
+    """Change of the cells (m,) by each mechanism, in the presence of the others."""
+    without = [[o for o in mechanisms if o is not m] for m in mechanisms]
+    return [here - simulator.predict(rest, [Point(z, values)])[0] for rest in without]
+
+
+def _condensed(form: Array) -> Array:
+    """Components (m, c) with the same covariance, no more of them than cells."""
+    if form.shape[1] <= form.shape[0]:
+        return form
+    size, shape = np.linalg.eigh(form @ form.T)
+    return np.asarray(shape * np.sqrt(np.maximum(size, 0.0)))
 
 
 def _beside(mechanisms: Sequence[Mechanism], values: Constants) -> list[Constants]:

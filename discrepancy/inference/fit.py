@@ -14,11 +14,12 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ..forward import Point, Simulator
+from ..lawerror import SIZE_WEIGHTS, SIZES
 from ..mechanisms.base import Mechanism, Situation
 from ..problem import Problem
 from .derivatives import derivatives
 from .grid import Axis, Grid, posterior
-from .linear import Linear
+from .linear import Linear, Mixture
 
 Array = NDArray[np.float64]
 
@@ -48,7 +49,7 @@ class Fit:
     chi2
         r^T Sigma^-1 r at `place`.
     linear
-        Algebra at the expansion point.
+        Algebra at the expansion point, with the likeliest size of the model's error.
     residual
         (m,) data minus prediction at the prior mean, with the mechanism at `place`.
     here
@@ -59,6 +60,8 @@ class Fit:
         (k, m) as `residual`, over the refined grid.
     expanded
         (n_z,) unknowns at the expansion point.
+    mixture
+        The algebra with the model's error of every size; `linear` is that of the likeliest.
     """
 
     mechanisms: tuple[Mechanism, ...]
@@ -76,6 +79,7 @@ class Fit:
     log_likelihood: Array
     residuals: Array
     expanded: Array
+    mixture: Mixture
 
     @property
     def names(self) -> tuple[str, ...]:
@@ -203,7 +207,7 @@ def expand(
     `effect` is the change of the cells over the refined grid where it is known; else the grid's
     nodes are simulated.
     """
-    cells = simulator.problem.cells
+    problem = simulator.problem
     here, linear = derivatives(simulator, mechanisms, grid.values(place), z)
     if not mechanisms:
         fine = here[None]
@@ -211,15 +215,18 @@ def expand(
         fine = grid.refine(responses_at(simulator, mechanisms, grid, z))
     else:
         fine = effect + (here - effect[grid.index(place)])
-    r = cells.value - fine + linear.J @ z
-    log_likelihood = linear.log_likelihood(r)
+    r = problem.cells.value - fine + linear.J @ z
+    mixture = Mixture.of(linear, problem.n_nuisances, SIZES, SIZE_WEIGHTS)
+    log_likelihood = mixture.log_likelihood(r)
     log_evidence, weight = posterior(log_likelihood)
     log_evidence += grid.log_volume
     best = int(np.argmax(log_likelihood))
     at = grid.places()[best] if mechanisms else place
-    mean, cov = linear.unknowns(r[best])
+    mean, cov = mixture.unknowns(r[best])
+    linear = mixture.likeliest(r[best])
     prediction = fine[best] + linear.J @ (mean - z)
     return Fit(
         mechanisms, grid, weight, at, mean, cov, prediction, log_evidence,
         float(np.sum(linear.white(r[best]) ** 2)), linear, r[best], here, log_likelihood, r, z,
+        mixture,
     )  # fmt: skip

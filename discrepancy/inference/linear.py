@@ -1,21 +1,23 @@
 """The algebra of a comparison that is linear in the nuisances and exact in the mechanism.
 
-With r the residual at the prior mean, J the cells' derivatives by the standardised unknowns, N the
-covariance of the measurements and C the components of what a mechanism's textbook form may be off,
-Sigma = N + J J^T + C C^T; then ln N(r - D(u); 0, Sigma) is the
-likelihood of the mechanism's parameters u with nuisances and law error integrated out, where D(u)
-is the mechanism's simulated effect. The evidence is its mean over the prior of u.
+With r the residual at the prior mean, J the cells' derivatives by the unknowns and P the diagonal
+of their prior variances, N the covariance of the measurements and C the components of what a
+mechanism's textbook form may be off, Sigma = N + J P J^T + C C^T; then ln N(r - D(u); 0, Sigma) is
+the likelihood of the mechanism's parameters u with nuisances and law error integrated out, where
+D(u) is the mechanism's simulated effect. The evidence is its mean over the prior of u.
 """
 
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass, field
+from collections.abc import Sequence
+from dataclasses import dataclass, field, replace
 from functools import cached_property
 
 import numpy as np
 from numpy.typing import NDArray
 from scipy.linalg import cho_solve, solve_triangular
+from scipy.special import logsumexp
 
 Array = NDArray[np.float64]
 
@@ -29,14 +31,22 @@ class Linear:
     noise
         (m, m) covariance of the cells.
     J
-        (m, n_z) derivatives by the standardised unknowns.
+        (m, n_z) derivatives by the unknowns.
     form
         (m, c) components of the error of the mechanism's form; none for the baseline.
+    prior
+        (n_z,) prior standard deviations of the unknowns; 1 each where empty.
     """
 
     noise: Array
     J: Array
     form: Array = field(default_factory=lambda: np.zeros((0, 0)))
+    prior: Array = field(default_factory=lambda: np.zeros(0))
+
+    @cached_property
+    def scaled(self) -> Array:
+        """(m, n_z) derivatives by the unknowns in prior standard deviations."""
+        return self.J * self.prior if self.prior.size else self.J
 
     @cached_property
     def measured(self) -> Array:
@@ -46,7 +56,7 @@ class Linear:
     @cached_property
     def total(self) -> Array:
         """Sigma, (m, m)."""
-        return np.asarray(self.measured + self.J @ self.J.T)
+        return np.asarray(self.measured + self.scaled @ self.scaled.T)
 
     @cached_property
     def lower(self) -> Array:
@@ -70,10 +80,85 @@ class Linear:
 
     def unknowns(self, r: Array) -> tuple[Array, Array]:
         """Return posterior mean (n_z,) and covariance (n_z, n_z) of the unknowns given r."""
-        half = solve_triangular(self.lower, self.J, lower=True)
-        mean = half.T @ self.white(r)
-        return np.asarray(mean), np.eye(self.J.shape[1]) - half.T @ half
+        prior = self.prior if self.prior.size else np.ones(self.J.shape[1])
+        half = solve_triangular(self.lower, self.scaled, lower=True)
+        mean = prior * (half.T @ self.white(r))
+        return np.asarray(mean), (np.eye(len(prior)) - half.T @ half) * np.outer(prior, prior)
 
     def solve(self, b: Array) -> Array:
         """Return Sigma^-1 b."""
         return np.asarray(cho_solve((self.lower, True), b))
+
+    def of(self, cells: NDArray[np.bool_]) -> Linear:
+        """Return the algebra of some cells alone, by a mask (m,)."""
+        form = self.form[cells] if self.form.size else self.form
+        return replace(self, noise=self.noise[np.ix_(cells, cells)], J=self.J[cells], form=form)
+
+
+@dataclass(frozen=True, eq=False)
+class Mixture:
+    """The same algebra with a model error of several sizes, by their prior weights.
+
+    Parameters
+    ----------
+    parts
+        One for each size.
+    log_weight
+        (sizes,) ln of the prior weights.
+    """
+
+    parts: tuple[Linear, ...]
+    log_weight: Array
+
+    @classmethod
+    def of(
+        cls, linear: Linear, fixed: int, sizes: Sequence[float], weights: Sequence[float]
+    ) -> Mixture:
+        """Return the algebra with all unknowns but the first `fixed` of several sizes."""
+        n = linear.J.shape[1]
+        if n <= fixed:
+            return cls((linear,), np.zeros(1))
+        priors = [np.where(np.arange(n) < fixed, 1.0, size) for size in sizes]
+        return cls(tuple(replace(linear, prior=p) for p in priors), np.log(weights))
+
+    def each(self, r: Array) -> Array:
+        """Return ln of weight times likelihood for each size, shape (sizes, ...)."""
+        found = [w + p.log_likelihood(r) for w, p in zip(self.log_weight, self.parts, strict=True)]
+        return np.stack(found)
+
+    def log_likelihood(self, r: Array) -> Array:
+        """Return ln of the likelihood over all sizes, shape (...)."""
+        return np.asarray(logsumexp(self.each(r), axis=0))
+
+    def likeliest(self, r: Array) -> Linear:
+        """Return the algebra of the size that residuals (m,) speak for most."""
+        return self.parts[int(np.argmax(self.each(r)))]
+
+    def unknowns(self, r: Array) -> tuple[Array, Array]:
+        """Return posterior mean (n_z,) and covariance (n_z, n_z) over all sizes."""
+        each = self.each(r)
+        weight = np.exp(each - logsumexp(each))
+        means, covs = zip(*(p.unknowns(r) for p in self.parts), strict=True)
+        mean = np.tensordot(weight, np.stack(means), 1)
+        away = np.stack(means) - mean
+        cov = np.tensordot(weight, np.stack(covs), 1) + (weight[:, None] * away).T @ away
+        return np.asarray(mean), np.asarray(cov)
+
+    def mean_likelihood(self, r: Array, effect: Array) -> Array:
+        """Return ln of the mean likelihood of r (n, m) over effects (k, m), shape (n,)."""
+        found = []
+        for weight, part in zip(self.log_weight, self.parts, strict=True):
+            w, e = part.white(r), part.white(effect)
+            ratio = w @ e.T - 0.5 * np.sum(e**2, axis=1)
+            top = ratio.max(axis=1)
+            mean = top + np.log(np.mean(np.exp(ratio - top[:, None]), axis=1))
+            found.append(weight + mean - 0.5 * (np.sum(w**2, axis=1) + part.log_det))
+        return np.asarray(logsumexp(np.stack(found), axis=0))
+
+    def gain(self, r: Array, effect: Array) -> Array:
+        """Return ln of the mean likelihood over effects less that of no effect, shape (n,)."""
+        return np.asarray(self.mean_likelihood(r, effect) - self.log_likelihood(r))
+
+    def of_cells(self, cells: NDArray[np.bool_]) -> Mixture:
+        """Return the algebra of some cells alone, by a mask (m,)."""
+        return replace(self, parts=tuple(p.of(cells) for p in self.parts))

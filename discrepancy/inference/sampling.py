@@ -68,13 +68,14 @@ def sampled_evidence(simulator: Simulator, fitted: Fit, rng: np.random.Generator
     """Return ln evidence of one explanation by annealing from its screened posterior."""
     linear, cells = fitted.linear, simulator.problem.cells
     solved = linear.solve(fitted.residuals.T)
-    means = (linear.J.T @ solved).T
-    half = np.linalg.solve(linear.lower, linear.J)
-    cov = np.eye(linear.J.shape[1]) - half.T @ half
+    prior = linear.prior if linear.prior.size else np.ones(linear.J.shape[1])
+    means = (linear.J.T @ solved).T * prior**2
+    _, cov = linear.unknowns(fitted.residual)
     lower = np.linalg.cholesky(cov + 1e-10 * np.eye(len(cov)))
     noise = np.linalg.cholesky(linear.measured)
     places = fitted.grid.places() if fitted.mechanisms else np.zeros((1, 0))
     constant = float(np.sum(np.log(np.diag(lower))) - np.sum(np.log(np.diag(noise))))
+    constant -= float(np.sum(np.log(prior)))
     constant -= 0.5 * len(cells) * math.log(2.0 * math.pi)
 
     def log_ratio(index: NDArray[np.intp], offset: Array) -> Array:
@@ -82,7 +83,7 @@ def sampled_evidence(simulator: Simulator, fitted: Fit, rng: np.random.Generator
         points = [Point(z[i], fitted.grid.values(places[k])) for i, k in enumerate(index)]
         miss = cells.value - simulator.predict(fitted.mechanisms, points)
         white = np.linalg.solve(noise, miss.T).T
-        log_p = -0.5 * np.sum(white**2, axis=1) - 0.5 * np.sum(z**2, axis=1)
+        log_p = -0.5 * np.sum(white**2, axis=1) - 0.5 * np.sum((z / prior) ** 2, axis=1)
         log_q = np.log(fitted.weight[index] * len(places)) - 0.5 * np.sum(offset**2, axis=1)
         return np.asarray(np.nan_to_num(log_p - log_q + constant, nan=-1e9))
 
@@ -115,7 +116,9 @@ def sampled_evidence(simulator: Simulator, fitted: Fit, rng: np.random.Generator
                 np.where(take[:, None], offset, swarm.offset),
                 np.where(take, ratio, swarm.log_ratio),
             )
-    return total
+    # sampled with the likeliest size of the law's error: the others as the algebra has them
+    one_size = float(logsumexp(linear.log_likelihood(fitted.residuals)))
+    return total + float(logsumexp(fitted.log_likelihood)) - one_size + fitted.grid.log_volume
 
 
 def _next_step(log_ratio: Array, most: float) -> float:

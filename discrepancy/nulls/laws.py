@@ -60,6 +60,9 @@ class Reference:
         (k,) at depths of a wide range [m, N, m, m, m].
     given_back
         Share of the elastic work that returns, for bodies without a yield strength.
+    lost
+        (k,) share of the work that the baseline keeps: laws differ by a part of that; by all that
+        they differ where it is not given.
     low, high
         Depths between which the impacts of this contact move [m].
     """
@@ -73,6 +76,7 @@ class Reference:
     crater: Array
     radius: Array
     given_back: float = 1.0
+    lost: Array | None = None
     low: float = 0.0
     high: float = math.inf
 
@@ -93,6 +97,8 @@ class Draw:
         Offset of the recovery's exponent.
     stray
         Largest rms distance of the shapes of force and of recovery from the reference (logarithm).
+    dent
+        As `level`, of the crater.
     """
 
     kind: str
@@ -103,18 +109,26 @@ class Draw:
     back: tuple[float, float]
     power: float
     stray: tuple[float, float] = (math.inf, math.inf)
+    dent: tuple[float, float] = (0.0, 0.0)
 
 
 def draw(rng: np.random.Generator, size: dict[str, float]) -> Draw:
-    """Draw a law; `size` holds the standard deviations of the levels."""
+    """Draw a law; `size` holds the standard deviations of the levels, and of the size of all."""
     kind = KINDS[int(rng.integers(len(KINDS)))]
     a, b, c = (float(x) for x in rng.random(3))
-    level, back = (
-        (float(rng.normal(0.0, size[k])), float(rng.normal(0.0, size[f"{k} slope"])))
-        for k in ("force", "recovery")
-    )
+    drawn = {
+        k: float(rng.normal(0.0, size.get(k, 0.0)))
+        for kind in ("force", "recovery", "crater")
+        for k in (kind, f"{kind} slope")
+    }
+    level, back, dent = ((drawn[k], drawn[f"{k} slope"]) for k in ("force", "recovery", "crater"))
+    times = math.exp(rng.normal(0.0, size.get("size", 0.0)))
     stray = size.get("force shape", math.inf), size.get("recovery shape", math.inf)
-    return Draw(kind, a, b, c, level, back, float(rng.uniform(-0.1, 0.1)), stray)
+    return Draw(
+        kind, a, b, c, (times * level[0], times * level[1]), (times * back[0], times * back[1]),
+        float(rng.uniform(-0.1, 0.1)), (times * stray[0], times * stray[1]),
+        (times * dent[0], times * dent[1]),
+    )  # fmt: skip
 
 
 def curve(reference: Reference, law: Draw) -> Curve:
@@ -138,11 +152,18 @@ def curve(reference: Reference, law: Draw) -> Curve:
     f = _levelled(np.log(force), base, x, inside, middle, law.level, law.stray[0])
     own = _levelled(np.log(rec), np.log(recovery), x, inside, middle, law.back, law.stray[1])
     # where little is left, laws differ by a part of that, not by a part of the recovery
-    part = np.minimum(np.maximum(d - recovery, 0.0) / recovery, 1.0)
-    rec = np.minimum(recovery * np.exp(part * (own - np.log(recovery))), 0.999 * d)
+    part = np.ones_like(d)
+    if reference.lost is not None:
+        kept = np.interp(x, known, reference.lost)
+        part = kept / max(float(np.sqrt(np.mean(kept[inside] ** 2))), 1e-3)
+    f = base + np.minimum(part, 2.0) * (f - base)
+    rec = recovery * np.exp(np.minimum(part, 2.0) * (own - np.log(recovery)))
+    rec = np.minimum(rec, 0.999 * d)
     # what does not recover stays; the crater's share of it is the reference's
     left = np.maximum(d - recovery, 1e-12)
     crater = np.maximum(d - rec, 0.0) * np.clip(crater / left, 0.0, 1.0)
+    far = np.clip(x, x[inside][0], x[inside][-1]) - middle
+    crater = crater * np.exp(law.dent[0] + law.dent[1] * far)
     return Curve(x, f, rec, crater, radius, power)
 
 

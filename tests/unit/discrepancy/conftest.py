@@ -15,7 +15,7 @@ from dentscope.discrepancy.cells import Cells
 from dentscope.discrepancy.conditions import Condition
 from dentscope.discrepancy.inference.fit import Fit
 from dentscope.discrepancy.inference.grid import Axis, Grid, posterior
-from dentscope.discrepancy.inference.linear import Linear
+from dentscope.discrepancy.inference.linear import Linear, Mixture
 from dentscope.discrepancy.mechanisms.base import Parameter, Surroundings
 from dentscope.discrepancy.rank import Ranking, Screened
 from dentscope.discrepancy.thresholds import Nulls
@@ -55,7 +55,9 @@ class Problem:
     drifts: tuple[Any, ...] = ()
     scatters: tuple[Any, ...] = ()
     notes: tuple[str, ...] = ()
-    error: Any = field(default_factory=lambda: SimpleNamespace(freedom=np.zeros(0), count=0))
+    error: Any = field(
+        default_factory=lambda: SimpleNamespace(freedom=np.zeros(0), count=0, parts={}, rows={})
+    )
     rig: Any = None
     without_modulus: Any = field(default_factory=lambda: {"target": (), "striker": ()})
 
@@ -106,6 +108,10 @@ def problem(
         np.ones(m, dtype=np.intp),
     )  # fmt: skip
     J = np.zeros((m, 0)) if derivative is None else np.array(derivative, dtype=float)
+    ball = SimpleNamespace(
+        length=0.0, tip_radius_m=SimpleNamespace(value=0.01), mass_kg=SimpleNamespace(value=0.03)
+    )
+    more.setdefault("rig", SimpleNamespace(strikers={"ball": ball}))
     return Problem(tuple(condition(v) for v in speeds), cells, J, **more)
 
 
@@ -126,6 +132,7 @@ def fit_of(data: Sequence[float], *effects: Effect, J: Any = None, lift: float =
         effects, grid, weight, places[best], z, cov, r - residuals[best], evidence + lift,
         float(np.sum(linear.white(residuals[best]) ** 2)), linear, residuals[best],
         np.zeros(m), log_likelihood, residuals, np.zeros(linear.J.shape[1]),
+        Mixture((linear,), np.zeros(1)),
     )  # fmt: skip
 
 
@@ -136,7 +143,7 @@ def screened_of(effect: Effect, changes: Any) -> Screened:
 
 def nulls_of(scatter: Any) -> Nulls:
     draws = np.array(scatter, dtype=float)
-    return Nulls(0.0 * draws, draws, np.zeros((len(draws), 0)), np.zeros((len(draws), 0)))
+    return Nulls(0.0 * draws, draws, np.zeros((len(draws), 0)), 0.0 * draws)
 
 
 def ranking_of(given: Problem, base: Fit, *, singles=(), pairs=(), screened=()) -> Ranking:

@@ -10,13 +10,16 @@ import numpy as np
 import pytest
 from dentscope.discrepancy.correction import correct, widened
 from dentscope.discrepancy.inference.linear import Linear
-from dentscope.discrepancy.lawerror import FREE, LawError
+from dentscope.discrepancy.lawerror import FREE, LawError, Spread
 from dentscope.impact.strength import NODES
+from scipy.stats import norm
 
 KNOWN = 0.02
+NONE = dict.fromkeys(("force", "recovery", "recovery exponent", "crater"), np.zeros(NODES))
 ERROR = LawError(
-    np.full((1, NODES), KNOWN), np.zeros((0, NODES)), 0.0, np.zeros((0, NODES)), {"force": KNOWN}
-)
+    np.ones((1, NODES)), np.zeros((0, NODES)), np.zeros((0, NODES)),
+    {"ball": Spread(NONE, NONE | {"force": np.full(NODES, KNOWN)}, np.array([-5.0]))},
+)  # fmt: skip
 
 
 def corrected(toy, data, noise):
@@ -46,12 +49,13 @@ def test_a_force_off_by_a_fifth_is_a_factor_of_that_size(toy) -> None:
 def test_the_band_is_that_of_the_measurement(toy) -> None:
     (loading,) = corrected(toy, [0.0], 0.05)
     spread = (FREE["force"] ** -2 + 0.05**-2) ** -0.5
-    assert np.log(loading.high) == pytest.approx(1.645 * spread, rel=1e-9)
-    assert np.log(loading.low) == pytest.approx(-1.645 * spread, rel=1e-9)
+    beyond = norm.ppf(0.95)
+    assert np.log(loading.high) == pytest.approx(beyond * spread, rel=1e-9)
+    assert np.log(loading.low) == pytest.approx(-beyond * spread, rel=1e-9)
 
 
 def test_only_the_laws_error_is_set_free(toy) -> None:
     J = [[0.5, KNOWN]]
     given = toy.problem([0.0], derivative=J, error=ERROR)
     wide = widened(given, toy.fit_of([0.0], J=J))
-    assert wide.J == pytest.approx(np.array([[0.5, FREE["force"]]]))
+    assert wide.scaled == pytest.approx(np.array([[0.5, FREE["force"]]]))

@@ -21,9 +21,9 @@ from dentscope.recordings import read
 from dentscope.recordings.template import write_template
 from dentscope.studies.proof.generators import folder, truth
 
-KEYS = """format set seed version audit verdict mechanisms alternatives probabilities scores
-located parameters nuisance_pulls surprise excluded limits improvement correction next_experiment
-notes""".split()
+KEYS = """format set seed version audit verdict mechanisms alternatives inclusion
+probabilities scores located parameters nuisance_pulls surprise excluded limits improvement misfit
+correction next_experiment notes""".split()
 
 
 def dentscope(*arguments: str) -> subprocess.CompletedProcess[str]:
@@ -62,6 +62,9 @@ def test_one_folder_in_one_command_a_verdict(
     assert list(verdict) == KEYS
     assert verdict["format"] == "verdict/1"
     assert math.isclose(sum(verdict["probabilities"].values()), 1.0, rel_tol=1e-6)
+    parts = verdict["misfit"]
+    took = parts["sheet"] + parts["law"] + parts["metal"] + parts["rest"]
+    assert math.isclose(took, 1.0, rel_tol=1e-9)
     _is_readable(out, page_of((out / "report.html").read_text()))
     assert answer.stdout.startswith("set: ")
     again = diagnose(read(case), seed=0).to_dict()

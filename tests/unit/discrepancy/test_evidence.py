@@ -8,8 +8,9 @@ from types import SimpleNamespace
 import numpy as np
 import pytest
 from dentscope.discrepancy.estimates import parameters_of
+from dentscope.discrepancy.inference.derivatives import form_error
 from dentscope.discrepancy.inference.grid import Axis, Grid, interval, posterior
-from dentscope.discrepancy.inference.linear import Linear
+from dentscope.discrepancy.inference.linear import Linear, Mixture
 from dentscope.discrepancy.mechanisms import Parameter
 from scipy.stats import beta, multivariate_normal, norm
 
@@ -93,24 +94,88 @@ def test_evidence_of_a_flat_likelihood_is_its_height() -> None:
     assert math.isclose(weight.sum(), 1.0)
 
 
+def test_a_prior_is_a_scale_of_the_derivatives() -> None:
+    rng = np.random.default_rng(3)
+    J, r = rng.normal(size=(8, 3)), rng.normal(size=8)
+    prior = np.array([1.0, 0.5, 3.0])
+    wide = Linear(np.eye(8), J, prior=prior)
+    assert wide.log_likelihood(r) == pytest.approx(Linear(np.eye(8), J * prior).log_likelihood(r))
+    mean, cov = wide.unknowns(r)
+    normal = J.T @ J + np.diag(prior**-2.0)
+    assert mean == pytest.approx(np.linalg.solve(normal, J.T @ r), rel=1e-10)
+    assert cov == pytest.approx(np.linalg.inv(normal), rel=1e-9)
+
+
+def test_the_size_of_an_error_is_integrated_over() -> None:
+    """One fixed unknown and one of three sizes: scipy's densities, weighted."""
+    rng = np.random.default_rng(4)
+    J, r = rng.normal(size=(6, 2)), rng.normal(size=(5, 6))
+    sizes, weights = (0.5, 1.0, 2.0), (0.2, 0.5, 0.3)
+    found = Mixture.of(Linear(np.eye(6), J), 1, sizes, weights)
+    dense = [
+        w * multivariate_normal(np.zeros(6), np.eye(6) + scaled @ scaled.T).pdf(r)
+        for s, w in zip(sizes, weights, strict=True)
+        for scaled in [J * np.array([1.0, s])]
+    ]
+    assert found.log_likelihood(r) == pytest.approx(np.log(np.sum(dense, axis=0)), rel=1e-10)
+    likely = int(np.argmax([d[0] for d in dense]))
+    assert found.likeliest(r[0]) is found.parts[likely]
+    mean, cov = found.unknowns(r[0])
+    share = np.array([d[0] for d in dense]) / sum(d[0] for d in dense)
+    means = [p.unknowns(r[0])[0] for p in found.parts]
+    assert mean == pytest.approx(share @ np.array(means))
+    plain = share @ np.array([np.diag(p.unknowns(r[0])[1]) for p in found.parts])
+    assert np.all(np.diag(cov) >= plain - 1e-12)
+    # large residuals along the sized unknown speak for the largest size
+    far = 10.0 * J[:, 1]
+    assert found.likeliest(far) is found.parts[2]
+
+
+def test_without_unknowns_that_scale_there_is_one_size() -> None:
+    linear = Linear(np.eye(2), np.zeros((2, 1)))
+    assert Mixture.of(linear, 1, (0.5, 1.0), (0.5, 0.5)).parts == (linear,)
+
+
+def test_some_cells_alone_have_the_marginal_likelihood() -> None:
+    rng = np.random.default_rng(5)
+    linear = Linear(np.eye(4), rng.normal(size=(4, 2)), rng.normal(size=(4, 3)))
+    r, kept = rng.normal(size=4), np.array([True, False, True, True])
+    expected = multivariate_normal(np.zeros(3), linear.total[np.ix_(kept, kept)]).logpdf(r[kept])
+    assert Mixture((linear,), np.zeros(1)).of_cells(kept).log_likelihood(r[kept]) == pytest.approx(
+        expected
+    )
+
+
+def test_a_forms_error_is_a_share_of_the_effect_and_smooth(toy) -> None:
+    given = toy.problem([0.0] * 4, speeds=[1.0, 1.1, 2.0, 8.0])
+    effect = np.array([1.0, 2.0, -3.0, 4.0])
+    form = form_error(given, effect, 0.15)
+    cov = form @ form.T
+    assert np.sqrt(np.diag(cov)) == pytest.approx(0.15 * np.abs(effect), rel=1e-6)
+    alike = cov / np.outer(effect, effect) / 0.15**2
+    assert alike[0, 1] > alike[0, 2] > alike[0, 3] > 0.0
+    assert alike[0, 1] < 0.9
+
+
 def test_interval_holds_what_a_form_may_be_off_in_size() -> None:
     """Effect theta times a shape, nearly no noise: 15 % of the effect are 15 % of theta."""
     shape, theta, noise = np.array([1.0, 2.0, -1.0]), 0.4, 1e-2
-    p = Parameter("theta", "-", 0.3, 0.5, "linear", 0.0, "", nodes=5)
+    p = Parameter("theta", "-", 0.2, 0.6, "linear", 0.0, "", nodes=5)
     grid = Grid((Axis("m", p),))
     at = p.value(grid.places()[:, 0])
     residuals = (theta - at)[:, None] * shape
-    linear = Linear(noise**2 * np.eye(3), np.zeros((3, 1)))
+    form = 0.15 * theta * shape[:, None]
+    linear = Linear(noise**2 * np.eye(3), np.zeros((3, 1)), form)
     _, weight = posterior(linear.log_likelihood(residuals))
     fitted = SimpleNamespace(
         mechanisms=(SimpleNamespace(form=0.15),), grid=grid, weight=weight, residuals=residuals,
         linear=linear, prediction=theta * shape, z=np.zeros(1), covariance=np.zeros((1, 1)),
     )  # fmt: skip
-    nothing_else = SimpleNamespace(
-        problem=SimpleNamespace(nuisances=()), predict=lambda mechanisms, points: [0.0 * shape]
-    )
-    found = parameters_of(nothing_else, fitted)["theta"]
+    found = parameters_of(SimpleNamespace(problem=SimpleNamespace(nuisances=())), fitted)["theta"]
     assert found["value"] == pytest.approx(theta, rel=2e-3)
-    wide = 1.645 * 0.15 * theta
+    wide = norm.ppf(0.95) * 0.15 * theta
     assert found["high"] - found["value"] == pytest.approx(wide, rel=0.02)
     assert found["value"] - found["low"] == pytest.approx(wide, rel=0.02)
+    # the level is that which is asked for
+    half = parameters_of(SimpleNamespace(problem=SimpleNamespace(nuisances=())), fitted, 0.5)
+    assert half["theta"]["high"] - theta == pytest.approx(wide * 0.6745 / 1.6449, rel=0.02)

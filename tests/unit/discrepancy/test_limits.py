@@ -8,6 +8,7 @@ import pytest
 from dentscope.discrepancy.estimates import limits_of
 from dentscope.discrepancy.inference.grid import Axis, Grid
 from dentscope.discrepancy.mechanisms.base import Parameter
+from dentscope.discrepancy.odds import NAMED_AT, PRIORS
 
 
 @pytest.mark.parametrize(
@@ -31,7 +32,10 @@ def test_limit_is_the_value_nearest_to_doing_nothing(low, high, scale, neutral, 
                 )
             ],
         ),
-        SimpleNamespace(single=1.0, offset={}),
+        # one nat is needed in all
+        SimpleNamespace(
+            off=lambda names: 1.0 - NAMED_AT - math.log(PRIORS["baseline"] / PRIORS["singles"])
+        ),
     )  # fmt: skip
     step = (own.value(1.0 / len(grid.fine[0])) / low) if scale == "log" else 1.0
     assert abs(found["m"]) == pytest.approx(value, rel=max(step - 1.0, 0.4))

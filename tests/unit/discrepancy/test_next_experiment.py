@@ -1,38 +1,96 @@
-"""The next experiment: worth by hand, rivals, candidates."""
+"""The next experiment: worth by hand, rivals, what a laboratory can do."""
 
 from __future__ import annotations
 
+import math
+from dataclasses import replace
 from types import SimpleNamespace
 
 import numpy as np
 import pytest
-from dentscope.discrepancy.next_experiment import _worth, propose, rivals_of
+from dentscope.core.rig import Quantity, StrikerTable
+from dentscope.discrepancy.feasible import candidates_of
+from dentscope.discrepancy.next_experiment import _sharper, _worth, propose, rivals_of
+from dentscope.discrepancy.odds import Odds
 
 SEEN = "rebound_speed_m_s"
+
+
+def odds(**p: float) -> Odds:
+    return Odds({k: () for k in p}, p)
 
 
 def test_worth_is_the_gap_over_what_blurs_it(toy) -> None:
     given = toy.problem([0.0])
     one, two = {SEEN: np.array([1.0, 3.0])}, {SEEN: np.array([6.0, 8.0])}
     # means 2 and 7, variances 2 and 2, unit noise of each measurement: 25/(2 + 2 + 2)
-    assert _worth([one, two], given) == pytest.approx(25.0 / 6.0)
-    # over three rivals the mean of the pairs: 25/6, 25/6 and 0
-    assert _worth([one, two, one], given) == pytest.approx(2.0 / 3.0 * 25.0 / 6.0)
+    assert _worth([one, two], [0.5, 0.5], given) == pytest.approx(25.0 / 6.0)
+    # over three rivals by the products of their probabilities: 25/6 of 0.2, 25/6 of 0.06, 0 of 0.15
+    pairs = (0.2 + 0.06) / (0.2 + 0.06 + 0.15) * 25.0 / 6.0
+    assert _worth([one, two, one], [0.5, 0.4 * 0.5 / 0.5 * 1.0, 0.3], given) != pairs
+    assert _worth([one, two, one], [0.5, 0.4, 0.15], given) == pytest.approx(
+        (0.5 * 0.4 + 0.4 * 0.15) / (0.5 * 0.4 + 0.5 * 0.15 + 0.4 * 0.15) * 25.0 / 6.0
+    )
 
 
-def test_rivals_are_those_of_the_verdict_or_the_next_best(toy) -> None:
-    a, b, c = (toy.fit_of([0.0], toy.Effect(n, (0.0,))) for n in "abc")
-    base = toy.fit_of([0.0])
-    ranking = toy.ranking_of(None, base, singles=[a, b])
+def test_rivals_are_those_that_share_the_probability(toy) -> None:
+    a, b = (toy.Effect(n, (0.0,)) for n in "ab")
+    ranking = toy.ranking_of(
+        None, toy.fit_of([0.0]), singles=[toy.fit_of([0.0], a), toy.fit_of([0.0], b)],
+        pairs=[toy.fit_of([0.0], a, b)],
+    )  # fmt: skip
 
-    def names(members):
-        return [f.name for f in rivals_of(members, ranking)]
+    def names(**p):
+        given = Odds({}, {"baseline": 0.0, "a": 0.0, "b": 0.0, "a+b": 0.0, **p})
+        return [f.name for f, _ in rivals_of(ranking, given)]
 
-    assert names([c, a]) == ["c", "a"]
-    assert names([a]) == ["a", "b"]
-    assert names([]) == ["baseline", "a"]
-    alone = toy.ranking_of(None, base)
-    assert [f.name for f in rivals_of([], alone)] == ["baseline"]
+    # the pair that shares it, not the next single
+    assert names(a=0.6, **{"a+b": 0.39}) == ["a", "a+b"]
+    assert names(a=0.6, b=0.2, baseline=0.2) == ["a", "baseline", "b"]
+    # two at the least
+    assert names(a=0.99, b=0.01) == ["a", "b"]
+
+
+BALL = StrikerTable(shape="sphere", tip_radius_m=Quantity(value=0.01), mass_kg=Quantity(value=0.03))
+ROD = StrikerTable(
+    shape="rod", tip_radius_m=Quantity(value=0.01), mass_kg=Quantity(value=0.5),
+    length_m=Quantity(value=0.3), radius_m=Quantity(value=0.01),
+)  # fmt: skip
+
+
+def on_rig(toy, **strikers):
+    rig = SimpleNamespace(strikers=strikers, model_copy=lambda update: SimpleNamespace(**update))
+    return toy.problem([0.0, 0.0], speeds=[0.5, 2.0], rig=rig)
+
+
+def test_trials_lie_within_the_rigs_speeds_and_angles(toy) -> None:
+    given = on_rig(toy, ball=BALL)
+    found = candidates_of(given)
+    own = [c for c in found if not c.built]
+    assert own
+    assert all(0.499 < c.condition.speed < 2.001 for c in found)
+    assert all(c.condition.angle == math.pi / 2.0 for c in own)
+    oblique = replace(
+        given,
+        conditions=tuple(
+            toy.condition(1.0, angle=math.radians(a)) for a in (30.0, 75.0)
+        ),
+    )  # fmt: skip
+    angles = [math.degrees(c.condition.angle) for c in candidates_of(oblique)]
+    assert min(angles) > 29.9
+    assert max(angles) < 75.1
+    assert any(31.0 < a < 74.0 for a in angles)
+
+
+def test_a_body_of_another_size_has_another_mass_and_is_to_be_built(toy) -> None:
+    balls = [c for c in candidates_of(on_rig(toy, ball=BALL)) if c.built]
+    assert sorted(c.built.mass_kg.value for c in balls) == pytest.approx([0.00375, 0.24])
+    assert all(c.change.startswith("build a ball") for c in balls)
+    rods = candidates_of(on_rig(toy, ball=ROD))
+    longer = next(c for c in rods if "0.6 m long" in c.change)
+    assert longer.built.mass_kg.value == pytest.approx(1.0)
+    tip = next(c for c in rods if "tip radius of 20 mm" in c.change)
+    assert tip.built.mass_kg.value == 0.5
 
 
 class Bench:
@@ -47,7 +105,7 @@ class Bench:
     def observe(self, mechanisms, points):
         speed = np.array([c.speed for c in self.problem.conditions])
         doubled = 2.0 if mechanisms else 1.0
-        seen = np.where(speed > 3.0, doubled * speed, speed)
+        seen = np.where(speed > 1.9, doubled * speed, speed)
         return {name: np.tile(seen, (len(points), 1)) for name in [SEEN, *OTHERS]}
 
 
@@ -55,20 +113,37 @@ OTHERS = ("restitution", "permanent_depth_m", "contact_time_s", "peak_force_N",
           "friction_impulse_ratio", "rebound_spin_rad_s")  # fmt: skip
 
 
-def test_the_trial_that_tells_rivals_apart_comes_first(toy) -> None:
-    table = SimpleNamespace(
-        length=0.0, tip_radius_m=SimpleNamespace(value=0.01),
-        model_copy=lambda update: SimpleNamespace(**update),
-    )  # fmt: skip
-    rig = SimpleNamespace(
-        strikers={"ball": table}, model_copy=lambda update: SimpleNamespace(**update)
-    )
-    given = toy.problem([0.0, 0.0], speeds=[0.5, 1.0], rig=rig)
-    rivals = [toy.fit_of([0.0, 0.0]), toy.fit_of([0.0, 0.0], toy.Effect("a", (0.0, 0.0)))]
-    found = propose(Bench(given), rivals, np.random.default_rng(0))
-    assert found[0].change.startswith("ball at 4 m/s")
-    worth = [p.expected_discrimination for p in found]
-    assert worth == sorted(worth, reverse=True)
-    plain = next(p for p in found if p.change == "ball at 4 m/s, measuring rebound speed")
-    assert plain.expected_discrimination == pytest.approx(16.0 / 2.0)  # (8 - 4)^2 over 1 + 1
-    assert propose(Bench(given), rivals[:1], np.random.default_rng(0)) == []
+def test_the_trial_that_tells_rivals_apart_comes_first(toy, monkeypatch) -> None:
+    given = on_rig(toy, ball=BALL)
+    monkeypatch.setattr(type(given), "with_error", lambda self: self, raising=False)
+    base, one = toy.fit_of([0.0, 0.0]), toy.fit_of([0.0, 0.0], toy.Effect("a", (0.0, 0.0)))
+    ranking = toy.ranking_of(given, base, singles=[one])
+    shared = odds(baseline=0.5, a=0.5)
+    found = propose(Bench(given), ranking, shared, np.random.default_rng(0))
+    trials = [p for p in found if p.kind == "trial"]
+    assert trials[0].change.startswith("ball at 2 m/s")
+    assert trials[0].expected_discrimination == pytest.approx(4.0 / 2.0)  # (4 - 2)^2 over 1 + 1
+    assert {p.kind for p in found} >= {"trial", "build", "observable"}
+    alone = toy.ranking_of(given, base)
+    assert propose(Bench(given), alone, odds(baseline=1.0), np.random.default_rng(0)) == []
+
+
+def test_half_the_noise_brings_what_the_curvature_says(toy) -> None:
+    """Two observables of unit noise and slopes 30 and 10: their squares add, four times the one."""
+    given = toy.problem([0.0, 0.0])
+    names = ("rebound_speed_m_s", "tangential_rebound_m_s")
+    given = replace(given, cells=replace(given.cells, observable=names))
+    best = toy.fit_of([15.0, 5.0], toy.Effect("a", (30.0, 10.0)))
+    first = _sharper(given, best)[0]
+    assert first.change.startswith("halve the noise of rebound speed")
+    expected = math.sqrt((900.0 + 100.0 + 12.0) / (3600.0 + 100.0 + 12.0))
+    assert first.interval == pytest.approx(expected, rel=1e-6)
+
+
+def test_where_other_errors_rule_nothing_is_to_be_gained(toy) -> None:
+    given = toy.problem([0.0, 0.0])
+    J = [[30.0], [10.0]]
+    best = toy.fit_of([15.0, 5.0], toy.Effect("a", (30.0, 10.0)), J=J)
+    first = _sharper(given, best)[0]
+    assert first.kind == "none"
+    assert first.change.startswith("nothing more to gain for size")

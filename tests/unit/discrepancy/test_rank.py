@@ -4,8 +4,9 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
+from dentscope.discrepancy.inference.grid import Grid
 from dentscope.discrepancy.inference.outliers import WIDER
-from dentscope.discrepancy.pairs import with_pairs
+from dentscope.discrepancy.pairs import PairEffect, with_pairs
 from dentscope.discrepancy.rank import rank
 
 RISING = tuple(8.0 * (k - 3.5) for k in range(8))
@@ -90,6 +91,45 @@ def test_an_outlier_loses_its_weight_in_the_problem_that_is_returned(toy, librar
     # nothing was written into what was given
     assert simulator.problem.cells.std.tolist() == [1.0] * 8
     assert simulator.problem.notes == ()
+
+
+def test_what_lost_its_weight_no_longer_speaks_for_a_mechanism(toy, library) -> None:
+    """A value of 40 along a shape: its evidence is gone with its weight."""
+    data = np.zeros(8)
+    data[5] = 40.0
+    spike = toy.Effect("spike", (0.0, 0.0, 0.0, 0.0, 0.0, 40.0, 2.0, 0.0))
+    _, found = ranked(toy, (*library, spike), data)
+    for s in found.screened:
+        expected = found.base.mixture.gain(found.base.residual[None, :], s.effect)[0]
+        assert s.log_bayes == pytest.approx(expected)
+
+
+def test_what_two_mechanisms_do_to_each_other_is_part_of_a_pair(toy, library) -> None:
+    """Beside the sum of two effects the bench adds the product of their sizes times a shape."""
+    mutual = np.array([5.0, -5.0] * 4)
+
+    class Bench(toy.Simulator):
+        def predict(self, mechanisms, points):
+            plain = super().predict(mechanisms, points)
+            if len(mechanisms) < 2:
+                return plain
+            sizes = [np.prod([p.values[m.name]["size"] for m in mechanisms]) for p in points]
+            return plain + np.array(sizes)[:, None] * mutual
+
+    bench = Bench(toy.problem(0.2 * np.array(RISING), derivative=np.zeros((8, 0))))
+    found = rank(bench, mechanisms=library)
+    one, two = (
+        next(s for s in found.screened if s.mechanism.name == n) for n in ("rising", "bent")
+    )
+    both = PairEffect(bench, one, two)
+    place = np.array([0.5, 0.4])
+    grid = Grid((*one.grid.axes, *two.grid.axes))
+    at = grid.index(place)
+    x, y = grid.places()[at]
+    effect = both(np.zeros(0), place)[at]
+    assert effect == pytest.approx(
+        x * np.array(RISING) + y * np.array(BENT) + x * y * mutual, abs=1e-6
+    )
 
 
 def test_a_pair_is_found_whose_members_both_act(toy, library) -> None:

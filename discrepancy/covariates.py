@@ -1,0 +1,55 @@
+"""What varies over the conditions of a set, and how alike its cells are for it."""
+
+from __future__ import annotations
+
+import numpy as np
+from numpy.typing import NDArray
+
+from .problem import Problem
+
+Array = NDArray[np.float64]
+
+
+def covariates(problem: Problem) -> dict[str, Array]:
+    """Return what varies over the conditions, standardised, each of shape (conditions,)."""
+    c = problem.conditions
+    raw = {
+        "impact speed": np.log([x.speed for x in c]),
+        "rod length": np.array([problem.rig.strikers[x.striker].length for x in c]),
+        "tip radius": np.log([problem.rig.strikers[x.striker].tip_radius_m.value for x in c]),
+        "striker mass": np.log([problem.rig.strikers[x.striker].mass_kg.value for x in c]),
+        "angle": np.array([x.angle for x in c]),
+        "tangential speed": np.array([x.tangential for x in c]),
+        "temperature": np.array([x.around.temperature for x in c]),
+    }
+    found = {}
+    for name, value in raw.items():
+        spread = float(np.std(value))
+        if spread > 1e-6 * max(1.0, float(np.max(np.abs(value)))):
+            found[name] = (value - value.mean()) / spread
+    return found
+
+
+def nearness(problem: Problem, length: float) -> Array:
+    """Squared-exponential covariance of the cells by their conditions alone, (m, m).
+
+    Parameters
+    ----------
+    problem
+        Cells and conditions.
+    length
+        Correlation length, in standard deviations of each covariate.
+    """
+    varied = list(covariates(problem).values())
+    m = len(problem.cells)
+    if not varied:
+        return np.ones((m, m))
+    place = np.stack(varied, axis=1)[problem.cells.condition] / length
+    away = np.sum((place[:, None, :] - place[None, :, :]) ** 2, axis=2)
+    return np.asarray(np.exp(-0.5 * away))
+
+
+def same_observable(problem: Problem) -> Array:
+    """1 where two cells are of one observable, else 0, (m, m)."""
+    names = np.array(problem.cells.observable)
+    return np.asarray((names[:, None] == names[None, :]).astype(float))

@@ -1,0 +1,112 @@
+"""How probable each explanation is: prior, evidence, and what nulls give away taken off."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterable, Mapping
+from dataclasses import dataclass
+from typing import Protocol
+
+from scipy.special import logsumexp
+
+from .rank import Ranking
+
+OUTSIDE = "outside-library"
+PRIORS = {"baseline": 0.5, "singles": 0.28, "pairs": 0.12, OUTSIDE: 0.1}
+"""Before the comparison: as likely as not that nothing is missing; each single mechanism that
+could act here shares alike, and so does each pair."""
+SURE = 0.93
+NAMED_AT = math.log(SURE / (1.0 - SURE))
+"""Ln odds of something missing from which a name costs less than silence (`decide.COSTS`)."""
+
+
+class GivenAway(Protocol):
+    """Nats that are taken off what is something else than the baseline."""
+
+    @property
+    def common(self) -> float:
+        """Nats taken off every alternative."""
+
+    def off(self, names: tuple[str, ...]) -> float:
+        """Return the nats taken off an explanation of these mechanisms, common ones included."""
+
+
+@dataclass(frozen=True)
+class Odds:
+    """Probabilities of the explanations.
+
+    Parameters
+    ----------
+    names
+        Label to the mechanisms: `baseline` and `OUTSIDE` have none.
+    probability
+        Label to the posterior probability, most probable first.
+    """
+
+    names: Mapping[str, tuple[str, ...]]
+    probability: Mapping[str, float]
+
+    @property
+    def baseline(self) -> float:
+        """Probability that nothing is missing."""
+        return self.probability["baseline"]
+
+    @property
+    def outside(self) -> float:
+        """Probability of something that is not in the library."""
+        return self.probability[OUTSIDE]
+
+    @property
+    def inclusion(self) -> dict[str, float]:
+        """Mechanism to the probability that it takes part, alone or with others."""
+        found: dict[str, float] = {}
+        for label, p in self.probability.items():
+            for name in self.names[label]:
+                found[name] = found.get(name, 0.0) + p
+        return dict(sorted(found.items(), key=lambda item: -item[1]))
+
+
+def odds_of(
+    ranking: Ranking,
+    given: GivenAway,
+    outside: float,
+    *,
+    sampled: Mapping[str, float] | None = None,
+) -> Odds:
+    """Return the probabilities of a ranking's explanations.
+
+    Parameters
+    ----------
+    ranking
+        All fits; a mechanism without a full fit counts by its screening.
+    given
+        What nulls give away.
+    outside
+        Ln evidence of something outside the library over the baseline's, what nulls give it
+        taken off.
+    sampled
+        Sampled ln evidence over the baseline, of the explanations that have it.
+    """
+    base = ranking.base.log_evidence
+    gained = {f.name: f.log_evidence - base for f in (*ranking.singles, *ranking.pairs)}
+    for s in ranking.screened:
+        gained.setdefault(s.mechanism.name, s.log_bayes)
+    gained |= {k: v for k, v in (sampled or {}).items() if k in gained}
+    alone = [s.mechanism.name for s in ranking.screened]
+    n = max(len(alone), 1)
+    log = {"baseline": math.log(PRIORS["baseline"])}
+    log[OUTSIDE] = outside + math.log(PRIORS[OUTSIDE]) - given.common
+    names: dict[str, tuple[str, ...]] = {"baseline": (), OUTSIDE: ()}
+    for label, more in gained.items():
+        names[label] = tuple(label.split("+"))
+        share = PRIORS["singles"] / n
+        if len(names[label]) > 1:
+            share = PRIORS["pairs"] / max(n * (n - 1) // 2, 1)
+        log[label] = more + math.log(share) - given.off(names[label])
+    return Odds(names, _normalised(log.items()))
+
+
+def _normalised(logs: Iterable[tuple[str, float]]) -> dict[str, float]:
+    ordered = sorted(logs, key=lambda item: -item[1])
+    total = float(logsumexp([x for _, x in ordered]))
+    return {name: math.exp(x - total) for name, x in ordered}

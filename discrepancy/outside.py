@@ -1,0 +1,74 @@
+"""Something outside the library, as an explanation with a likelihood of its own.
+
+Half of it is a contact law that is free: 16 % in force, 50 % in recovery, over the depth. The
+other half knows nothing of contacts: each observable departs from the baseline by 3, 10 or 30 %,
+smoothly over what varies in the set, or from condition to condition. What repeats say of
+themselves, whatever the simulation, speaks for it as well: a drift over the order of testing, and
+scatter beyond any noise that a laboratory misjudges.
+"""
+
+from __future__ import annotations
+
+import math
+from dataclasses import replace
+
+import numpy as np
+from numpy.typing import NDArray
+from scipy.stats import norm
+
+from .cells import Scatter
+from .correction import widened
+from .covariates import nearness, same_observable
+from .drift import Drift
+from .inference.fit import Fit
+from .inference.linear import Mixture
+from .problem import Problem
+
+Array = NDArray[np.float64]
+
+AMPLITUDES = (0.03, 0.1, 0.3)
+"""Of departures that no law is behind: from what four observables just show to the gross."""
+MISJUDGED = 0.5
+"""Standard deviation of the logarithm of a stated noise: by so much do laboratories misjudge it."""
+WIDEST = 5.0
+"""Logarithm of the largest scatter over the stated noise that something varied may give."""
+_SMOOTH = 1.0  # correlation length in standard deviations of each covariate
+
+
+def outside_of(problem: Problem, base: Fit) -> Mixture:
+    """Return the likelihood of the baseline's residuals if something outside acts."""
+    parts, weights = [widened(problem, base)], [0.5]
+    cells = problem.cells
+    plain = replace(base.mixture.parts[len(base.mixture.parts) // 2], form=np.zeros((0, 0)))
+    scale = np.ones(len(cells))
+    for name in set(cells.observable):
+        here = np.array([o == name for o in cells.observable]) & ~cells.is_log
+        scale[here] = np.sqrt(np.mean(cells.value[here] ** 2)) if here.any() else 1.0
+    alike = same_observable(problem) * nearness(problem, _SMOOTH)
+    for shape in (alike, np.eye(len(cells))):
+        for amplitude in AMPLITUDES:
+            more = amplitude**2 * np.outer(scale, scale) * shape
+            parts.append(replace(plain, noise=plain.noise + more))
+            weights.append(0.5 / (2 * len(AMPLITUDES)))
+    return Mixture(tuple(parts), np.log(weights))
+
+
+def odd_repeats(problem: Problem) -> float:
+    """Ln odds, by the repeats alone, that something is outside which no simulation knows."""
+    found = [_of_drift(d) for d in problem.drifts] + [_of_scatter(s) for s in problem.scatters]
+    return max(found, default=-math.inf)
+
+
+def _of_drift(drift: Drift) -> float:
+    """Ln of the most that a p value can be worth, 1/(-e p ln p).
+
+    T. Sellke, M. J. Bayarri, J. O. Berger, Am. Stat. 55 (2001) 62.
+    """
+    log_p = math.log(2.0) + float(norm.logsf(abs(drift.z)))
+    return -1.0 - log_p - math.log(-log_p)
+
+
+def _of_scatter(scatter: Scatter) -> float:
+    """Ln odds of a scatter that was varied, up to `WIDEST`, against a noise misjudged."""
+    times = math.log(scatter.ratio)
+    return -math.log(WIDEST) - float(norm.logpdf(times, 0.0, MISJUDGED))

@@ -1,0 +1,56 @@
+"""Something outside as an explanation of its own: what it takes up, and what repeats say."""
+
+from __future__ import annotations
+
+import math
+from types import SimpleNamespace
+
+import numpy as np
+import pytest
+from dentscope.discrepancy.cells import Scatter
+from dentscope.discrepancy.drift import Drift
+from dentscope.discrepancy.outside import AMPLITUDES, odd_repeats, outside_of
+
+CELLS = 8
+
+
+def gained(toy, departure) -> float:
+    """Ln odds of something outside for numbers of about 200 that are known to 1."""
+    base = toy.fit_of(departure)
+    found = outside_of(toy.problem([200.0 + x for x in departure]), base)
+    return float(found.log_likelihood(base.residual)) - base.log_evidence
+
+
+def test_its_weights_are_a_prior_and_its_departures_are_parts_of_the_value(toy) -> None:
+    given = toy.problem([200.0] * CELLS)
+    found = outside_of(given, toy.fit_of([0.0] * CELLS))
+    assert np.exp(found.log_weight).sum() == pytest.approx(1.0)
+    assert np.sqrt(found.parts[-1].noise[0, 0] - 1.0) == pytest.approx(AMPLITUDES[-1] * 200.0)
+    # of a logarithm the departure is the part itself
+    force = toy.problem([5.0] * CELLS, observable="peak_force_N")
+    parts = outside_of(force, toy.fit_of([0.0] * CELLS)).parts
+    assert np.sqrt(parts[-1].noise[0, 0] - 1.0) == pytest.approx(AMPLITUDES[-1])
+
+
+def test_noise_alone_speaks_against_it(toy) -> None:
+    assert gained(toy, np.random.default_rng(1).standard_normal(CELLS).tolist()) < 0.0
+
+
+def test_what_no_law_explains_is_taken_up(toy) -> None:
+    assert gained(toy, [40.0 * (-1) ** k for k in range(CELLS)]) > 100.0
+
+
+def test_a_drift_is_worth_what_its_p_value_can_be(toy) -> None:
+    p = 1e-4
+    given = toy.problem([0.0], drifts=(Drift("restitution", 0.1, 3.8906),))
+    assert odd_repeats(given) == pytest.approx(-math.log(-math.e * p * math.log(p)), abs=1e-3)
+    assert odd_repeats(SimpleNamespace(drifts=(), scatters=())) == -math.inf
+
+
+def test_scatter_may_be_a_noise_misjudged_up_to_a_few_times(toy) -> None:
+    def odds(ratio: float) -> float:
+        return odd_repeats(toy.problem([0.0], scatters=(Scatter("restitution", ratio, 30),)))
+
+    assert odds(1.5) < 0.0
+    assert odds(78.0) > 20.0
+    assert odds(2.0) < odds(4.0) < odds(8.0)
