@@ -54,6 +54,7 @@ class Problem:
     derivative: np.ndarray
     drifts: tuple[Any, ...] = ()
     scatters: tuple[Any, ...] = ()
+    weightless: tuple[int, ...] = ()
     notes: tuple[str, ...] = ()
     error: Any = field(
         default_factory=lambda: SimpleNamespace(freedom=np.zeros(0), count=0, parts={}, rows={})
