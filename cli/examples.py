@@ -27,4 +27,6 @@ def examples(
 
 def _about(path: Path) -> str:
     """First line of what the file says of itself."""
+    if path.suffix == ".ipynb":
+        return "the same as a notebook"
     return path.read_text(encoding="utf-8").splitlines()[0].strip('#" ')

@@ -211,7 +211,10 @@ def _kept(y: Array, s: Array) -> NDArray[np.bool_]:
     Where most of four or more do not, the stated noise is too small and says nothing of single
     ones; of three the middle one stands.
     """
+    everything = np.ones(len(y), dtype=bool)
+    if len(y) < 3:
+        return everything
     near = np.abs(y - np.median(y)) < 5.0 * s
-    if len(y) < 3 or (len(y) > 3 and 2 * np.sum(near) < len(y)):
-        return np.ones(len(y), dtype=bool)
+    if len(y) > 3 and 2 * np.sum(near) < len(y):
+        return everything
     return np.asarray(near)

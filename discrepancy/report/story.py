@@ -11,7 +11,7 @@ import numpy as np
 from ...core.observables import OBSERVABLES
 from ..findings import Verdict
 from .series import Against, Point, againsts, points_of
-from .text import headline, inclusion_of, own_parameters
+from .text import headline, own_parameters
 from .wording import (
     explanation,
     interval,
@@ -120,9 +120,7 @@ def story_of(v: Verdict) -> Story:
         audit=tuple(str(a["message"]) for a in v.audit),
         reasons=v.reasons,
         notes=tuple(n for n in v.notes if n),
-        parts=tuple(
-            Bar(f"{title_of(k)} ({k})", p) for k, p in inclusion_of(v).items() if p >= _LEAST
-        ),
+        parts=tuple(Bar(f"{title_of(k)} ({k})", p) for k, p in v.inclusion.items() if p >= _LEAST),
         explanations=tuple(
             Bar(explanation(k), p) for k, p in v.probabilities.items() if p >= _LEAST
         ),

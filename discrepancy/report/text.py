@@ -11,21 +11,9 @@ from ..odds import OUTSIDE
 from .wording import explanation, interval, joined, miss_sentences, percent, quantity, title_of
 
 
-def inclusion_of(v: Verdict) -> dict[str, float]:
-    """Return the probability that each mechanism takes part, alone or with others, most first."""
-    given: dict[str, float] | None = getattr(v, "inclusion", None)
-    if given is None:
-        given = {}
-        for name, p in v.probabilities.items():
-            for part in name.split("+"):
-                if part not in ("baseline", OUTSIDE):
-                    given[part] = given.get(part, 0.0) + p
-    return dict(sorted(given.items(), key=lambda item: -item[1]))
-
-
 def headline(v: Verdict) -> str:
     """Return the finding in one sentence, with its probability."""
-    part = inclusion_of(v)
+    part = v.inclusion
     if v.verdict == "adequate":
         p = v.probabilities.get("baseline", math.nan)
         return (
@@ -78,7 +66,7 @@ def lines(v: Verdict) -> list[str]:
             else f"  on conditions left out of the fit the miss goes from "
             f"{i['held_out_baseline']:.1f} to {i['held_out_extended']:.1f} standard errors"
         )
-    part = {k: x for k, x in inclusion_of(v).items() if x >= 0.01}
+    part = {k: x for k, x in v.inclusion.items() if x >= 0.01}
     out += ["", "Probability that it takes part"]
     out += [f"  {percent(x):>14}  {k}: {title_of(k)}" for k, x in list(part.items())[:5]]
     unknown = v.probabilities.get(OUTSIDE, 0.0)
