@@ -15,7 +15,7 @@ import numpy as np
 from dentscope.core import Material, Pair
 from dentscope.models import LAWS
 from dentscope.models.base import DomainWarning
-from dentscope.models.closed_form import Bodies, Coefficients, contact, of_pair
+from dentscope.models.closed_form import Bodies, contact
 
 COUNT = 1_000_000
 PAIR = Pair(Material(E=71.7e9, nu=0.33, Sy=300e6), Material(E=200e9, nu=0.3, Sy=360e6), 1e-3)
@@ -54,12 +54,11 @@ def random_draws() -> None:
     D = 10.0 ** (-8.0 + 7.0 * u[6])
     law = LAWS["fitted"]
     bodies = Bodies((1 - nu_s**2) / E_s, (1 - nu_f**2) / E_f, nu_s, nu_f, 1 / Sy_s, 1 / Sy_f)
-    co = Coefficients(**law.coefficients)
-    numbers = of_pair(bodies, co)
-    F, a, share, left, phi, exponent = contact(D, numbers, co)
-    beyond = contact(D * (1.0 + 1e-6), numbers, co)
+    numbers = law.numbers(bodies)
+    F, a, share, left, phi, exponent = contact(D, numbers)
+    beyond = contact(D * (1.0 + 1e-6), numbers)
     # the slope by a complex step: exact, where a difference would only show round-off
-    slope = np.imag(contact(D + 1e-30j, numbers, co).F) / 1e-30
+    slope = np.imag(contact(D + 1e-30j, numbers).F) / 1e-30
     bad = {
         "not finite": ~np.isfinite(F + a + share + left + phi + exponent + slope),
         "F not above zero": ~(F > 0.0),

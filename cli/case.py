@@ -70,6 +70,7 @@ def case(
         _write_result(file.stem, solution, uncertainty, out / "result.h5"),
     ):
         console.print(f"written: {path}")
+    console.print(_write_law(solution, uncertainty, out / "law.json"))
     for snapshot in solution.snapshots:
         name = f"fields-{snapshot.depth:.4g}"
         console.print(f"written: {write_vtu(snapshot, out / f'{name}.vtu')}")
@@ -82,6 +83,18 @@ def case(
         console.print(str(solution.outcome))
         return EXIT_NOT_CONVERGED
     return 0
+
+
+def _write_law(solution: Any, uncertainty: Any, path: Path) -> str:
+    """Write the pair as a contact law where there are unloadings enough; say so, or why not."""
+    from ..fitting.case_table import pair_table
+    from ..models.table_file import write_table
+
+    try:
+        table = pair_table(solution, uncertainty)
+    except InputError as error:
+        return f"no law.json: {error}"
+    return f"written: {write_table(table, path)} (a contact law: --law {path})"
 
 
 def _write_curves(solution: Any, uncertainty: Any, path: Path) -> Path:

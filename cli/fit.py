@@ -9,7 +9,6 @@ from typing import TYPE_CHECKING, Annotated, Any
 import typer
 
 from ..core.errors import EXIT_NOT_CONVERGED, InputError
-from ..core.output import write_file
 from . import studies
 from .campaign_data import PUBLISHED
 from .places import folder_option
@@ -19,9 +18,8 @@ from .terminal import show_table
 if TYPE_CHECKING:
     from rich.console import Console
 
-    from ..fitting import Errors, Fit, ResidualTable, Table
-    from ..fitting.select import Choice
-    from ..models.fitted import Fitted
+    from ..fitting import Errors, ResidualTable, Table
+    from ..models.fitted import ClosedForm
 
 _OWN = Path("build/campaign/campaign.h5")
 _ROOT = Path(__file__).resolve().parents[1]
@@ -38,12 +36,15 @@ def fit(
     ] = None,
     out: Annotated[Path, folder_option("Folder for the report.")] = Path("build/fit"),
     publish: Annotated[
-        bool, typer.Option("--publish", help="Also replace the coefficients that the law uses.")
+        bool,
+        typer.Option(
+            "--publish", help="Also replace the coefficients that the laws use; a checkout."
+        ),
     ] = False,
     compare: Annotated[
         bool,
-        typer.Option("--compare/--no-compare", help="Also fit simpler forms and the thesis's own."),
-    ] = True,
+        typer.Option("--compare", help="Also fit simpler forms and the thesis's own; a checkout."),
+    ] = False,
     judge: Annotated[
         Path | None,
         typer.Option(
@@ -61,6 +62,8 @@ def fit(
 ) -> int:
     """Fit the closed form; write coefficients with standard errors, and a report with pictures."""
     console = new_console()
+    if publish:
+        studies.needed_for("`dentscope fit --publish`")
     if export is not None:
         return _export(export, console)
     if judge is not None:
@@ -70,75 +73,69 @@ def fit(
 
 def _refit(files: list[Path], out: Path, console: Console, *, publish: bool, compare: bool) -> int:
     """Fit, show what came out, and write coefficients and report."""
-    from ..fitting import fit_tables, read_tables
+    from ..fitting import fit_laws, read_tables
     from ..fitting.coefficients import coefficients_content, write_coefficients
-    from ..fitting.report import coefficient_rows, error_rows, write_report
+    from ..fitting.report import coefficient_rows, error_rows, uncertainty_rows, write_report
+    from ..models.fitted import laws_from
 
     table, turns = read_tables(files)
     console.print(
         f"{', '.join(map(str, files))}: {len(table.pairs)} combinations, {len(table.D)} depths, "
         f"{len(turns.D)} unloadings; fitting, then leaving combinations out ..."
     )
-    result = fit_tables(table, turns)
+    result = fit_laws(table, turns)
     content = coefficients_content(result, table, files)
     write_coefficients(content, out / "fitted.json")
     _show(console, coefficient_rows(content))
-    validation = _validation(files, result)
+    validation = _validation(files, laws_from(content, source="this fit"))
     columns = [
-        ("fitted", result.errors),
-        ("left out", result.held_out),
-        ("validation", validation),
+        ("compact, left out", result.compact.held_out),
+        ("fitted, left out", result.fitted.held_out),
+        *((f"{name}, validation", errors) for name, errors in validation),
     ]
     _show(console, error_rows(columns))
-    choices, thesis = _compared(content, table, turns, console) if compare else ((), "")
-    page = write_report(
-        result, content, table, turns, out, validation=validation, choices=choices, thesis=thesis
-    )
+    _show(console, uncertainty_rows(content))
+    more = _compared(content, table, turns, out, console) if compare else []
+    page = write_report(result, content, table, turns, out, validation=validation, more=more)
     console.print(f"coefficients: {out / 'fitted.json'}; report: {page}")
     if publish:
         _publish(content, out)
-        console.print("the fitted law now uses these coefficients")
-    if not result.outcome.completed:
-        console.print(str(result.outcome))
+        console.print("the closed forms now use these coefficients")
+    if not result.fit.outcome.completed:
+        console.print(str(result.fit.outcome))
         return EXIT_NOT_CONVERGED
     return 0
 
 
 def _compared(
-    content: dict[str, Any], table: Table, turns: ResidualTable, console: Console
-) -> tuple[Sequence[Choice], str]:
-    """Fits of simpler forms, and the report's section on the thesis's own where it can be made."""
-    from ..fitting.select import compare_forms
-
-    own = studies.present()
-    console.print(
-        "fitting simpler forms and the thesis's own ..."
-        if own
-        else f"fitting simpler forms; the thesis's own are left out, they need a checkout: "
-        f"{studies.WHERE}"
-    )
-    start = {k: v["value"] for k, v in content["coefficients"].items()}
-    choices = compare_forms(table, turns, start=start)
-    if not own:
-        return choices, ""
+    content: dict[str, Any], table: Table, turns: ResidualTable, out: Path, console: Console
+) -> list[str]:
+    """Sections of the report: fits of simpler forms and of the thesis's own."""
+    studies.needed_for("`dentscope fit --compare`")
+    from ..studies.closed_form.terms import compare_forms, terms_section
     from ..studies.thesis.refitted import refit_all, thesis_section
 
-    return choices, thesis_section(refit_all(table, turns))
+    console.print("fitting simpler forms and the thesis's own ...")
+    start = {k: v["value"] for k, v in content["coefficients"].items()}
+    out.mkdir(parents=True, exist_ok=True)
+    terms = terms_section(compare_forms(table, turns, start=start), out)
+    return [terms, thesis_section(refit_all(table, turns))]
 
 
 def _publish(content: dict[str, Any], out: Path) -> None:
-    """Put the coefficients where the law reads them, and tables and pictures into its page."""
+    """Put the coefficients where the laws read them, and tables and pictures into their page."""
+    from ..core.output import write_file
     from ..fitting.coefficients import write_coefficients
-    from ..fitting.page import published_section, update_page
     from ..models.fitted import COEFFICIENTS_FILE
+    from ..studies.closed_form.page import published_section, update_page
 
     write_coefficients(content, COEFFICIENTS_FILE)
-    if not _PAGE.is_file():
-        return
     update_page(_PAGE, published_section(content))
     folder = _PAGE.parent / "pictures"
-    for name in ("errors", "maps"):
-        write_file(folder / f"fitted-{name}.png", (out / f"{name}.png").read_bytes())
+    for ours, theirs in (
+        ("errors", "fitted-errors"), ("maps", "fitted-maps"), ("compact-maps", "compact-maps"),
+    ):  # fmt: skip
+        write_file(folder / f"{theirs}.png", (out / f"{ours}.png").read_bytes())
 
 
 def _files(campaigns: Sequence[Path] | None) -> list[Path]:
@@ -153,21 +150,27 @@ def _files(campaigns: Sequence[Path] | None) -> list[Path]:
     return files
 
 
-def _validation(files: Sequence[Path], result: Fit) -> Errors | None:
-    """Errors on the cases that no fit reads; none if the campaign holds none."""
+def _validation(files: Sequence[Path], laws: Sequence[ClosedForm]) -> list[tuple[str, Errors]]:
+    """Errors of the laws on the cases that no fit reads; none if the campaign holds none."""
     try:
-        return _judged(files, result.values)[0]
+        return _judged(files, laws)[0]
     except InputError:
-        return None
+        return []
 
 
-def _judged(files: Sequence[Path], values: Any) -> tuple[Errors, tuple[str, ...]]:
-    """Errors of the closed form on the cases that no fit reads, and the names of these."""
-    from ..fitting.prediction import errors_of, predict
+def _judged(
+    files: Sequence[Path], laws: Sequence[ClosedForm]
+) -> tuple[list[tuple[str, Errors]], tuple[str, ...]]:
+    """Name and errors of each law on the cases that no fit reads, and the names of these."""
+    from ..fitting.prediction import errors_of, predict_by
     from ..fitting.table import read_tables
 
     table, turns = read_tables(files, held_out=True)
-    return errors_of(predict(values, table, turns), table, turns), table.names
+    found = [
+        (law.name, errors_of(predict_by(law.numbers(table.bodies), table, turns), table, turns))
+        for law in laws
+    ]
+    return found, table.names
 
 
 def _show(console: Console, rows: Sequence[Sequence[str]]) -> None:
@@ -175,18 +178,16 @@ def _show(console: Console, rows: Sequence[Sequence[str]]) -> None:
 
 
 def _judge(folder: Path, console: Console, *, publish: bool) -> int:
-    """Show the errors of the law in use on cases that no fit reads."""
+    """Show the errors of the laws in use on cases that no fit reads."""
     from ..core.provenance import file_digest
-    from ..fitting.page import judged_section, update_page
     from ..fitting.report import error_rows
-    from ..models.closed_form import COEFFICIENTS
     from ..models.fitted import COEFFICIENTS_FILE
 
-    law = _law_in_use()
-    values = [law.coefficients[name] for name in COEFFICIENTS]
-    errors, names = _judged(_files([folder]), values)
-    _show(console, error_rows([(f"{len(names)} pairs", errors)]))
-    if publish and _PAGE.is_file():
+    errors, names = _judged(_files([folder]), [_law_in_use("compact"), _law_in_use("fitted")])
+    _show(console, error_rows([(f"{name}, {len(names)} pairs", e) for name, e in errors]))
+    if publish:
+        from ..studies.closed_form.page import judged_section, update_page
+
         update_page(_PAGE, judged_section(errors, names, file_digest(COEFFICIENTS_FILE)))
     return 0
 
@@ -194,15 +195,15 @@ def _judge(folder: Path, console: Console, *, publish: bool) -> int:
 def _export(folder: Path, console: Console) -> int:
     from ..models.export import write_sources
 
-    for path in write_sources(_law_in_use(), folder):
+    for path in write_sources(_law_in_use("fitted"), folder):
         console.print(str(path))
     return 0
 
 
-def _law_in_use() -> Fitted:
+def _law_in_use(name: str) -> ClosedForm:
     from ..models import law_named
-    from ..models.fitted import Fitted
+    from ..models.fitted import ClosedForm
 
-    law = law_named("fitted")
-    assert isinstance(law, Fitted)
+    law = law_named(name)
+    assert isinstance(law, ClosedForm)
     return law

@@ -43,13 +43,20 @@ _POINTS = 120
 
 
 def laws_named(names: list[str], *, source: str = "command line", key: str = "--law") -> Any:
-    """Return the laws of these names; an unknown one is an error that lists the known."""
-    from ..models import LAWS
+    """Return the laws of these names or files; an unknown one is an error that lists the known."""
+    from ..models import law_named
 
+    found = []
     for name in names:
-        if name not in LAWS:
-            raise InputError(f"no law {name!r}", source=source, key=key, allowed=", ".join(LAWS))
-    return [LAWS[name] for name in names]
+        try:
+            found.append(law_named(name))
+        except InputError as error:
+            if error.source:
+                raise
+            raise InputError(
+                f"no law {name!r}", source=source, key=key, allowed=error.allowed
+            ) from None
+    return found
 
 
 @app.command("list")

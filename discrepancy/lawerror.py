@@ -242,7 +242,7 @@ def _of_law(law: ContactLaw, lost: Array) -> dict[str, Array]:
         return dict.fromkeys(_KINDS, np.zeros(NODES)) | {"force": np.full(NODES, 0.003)}
     stored = read_coefficients()
     assert stored is not None, "no law but Hertz's is used without coefficients"
-    errors = stored["errors"]["left_out"]
+    errors = stored["errors"]["fitted"]["left_out"]
     # mean absolute errors; 1.25 of it is a standard deviation
     known = {"force": "force", "recovery": "given_back", "recovery exponent": "exponent",
              "crater": "left"}  # fmt: skip

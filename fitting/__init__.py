@@ -3,14 +3,17 @@
 from __future__ import annotations
 
 from .fit import Fit, fit_tables
+from .laws import Laws, fit_laws
 from .prediction import Errors
 from .table import ResidualTable, Table, read_tables
 
 __all__ = [
     "Errors",
     "Fit",
+    "Laws",
     "ResidualTable",
     "Table",
+    "fit_laws",
     "fit_tables",
     "read_tables",
 ]

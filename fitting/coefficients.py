@@ -13,29 +13,33 @@ from pathlib import Path
 from typing import Any
 
 import numpy as np
+import numpy.typing as npt
 
 from ..campaigns import read_curves
 from ..core.output import write_file
 from ..core.provenance import environment, file_digest
 from ..fem import NUMERICS_VERSION
 from ..models.closed_form import COEFFICIENTS
+from ..models.correction import CHANNELS, GROUPS
 from ..models.fitted import FORMAT
-from .fit import Fit
+from .laws import Laws
 from .table import Table
 
 
-def coefficients_content(fit: Fit, table: Table, campaigns: Sequence[Path]) -> dict[str, Any]:
+def coefficients_content(laws: Laws, table: Table, campaigns: Sequence[Path]) -> dict[str, Any]:
     """Return the content of the coefficients file.
 
     Parameters
     ----------
-    fit
-        The regression's result.
+    laws
+        The regressions' result.
     table
         The rows that it was made from.
     campaigns
         The files that these were read from.
     """
+    fit, correction = laws.fit, laws.correction
+    judged = {"compact": laws.compact, "fitted": laws.fitted}
     return {
         "format": FORMAT,
         "form": "docs/closed-form.md",
@@ -45,10 +49,21 @@ def coefficients_content(fit: Fit, table: Table, campaigns: Sequence[Path]) -> d
                 COEFFICIENTS, fit.values.tolist(), fit.standard_errors.tolist(), strict=True
             )
         },
-        "covariance": [[float(f"{x:.6g}") for x in row] for row in fit.covariance],
+        "covariance": _digits(fit.covariance),
+        "correction": {
+            "groups": list(GROUPS),
+            "channels": list(CHANNELS),
+            "reaches": correction.reaches.tolist(),
+            "centres": _digits(correction.centres),
+            "weights": _digits(correction.weights),
+        },
         "errors": {
-            "fitted": asdict(fit.errors),
-            "left_out": asdict(fit.held_out) if fit.held_out else None,
+            name: {"fitted": asdict(law.errors), "left_out": asdict(law.held_out)}
+            for name, law in judged.items()
+        },
+        "uncertainty": {
+            name: {**law.calibration.content(), "within": law.within}
+            for name, law in judged.items()
         },
         "domain": {"limits": limits_of(table), "combinations": len(table.pairs)},
         "provenance": {
@@ -59,6 +74,10 @@ def coefficients_content(fit: Fit, table: Table, campaigns: Sequence[Path]) -> d
             "environment": environment(),
         },
     }
+
+
+def _digits(rows: npt.NDArray[np.float64]) -> list[list[float]]:
+    return [[float(f"{x:.6g}") for x in row] for row in rows]
 
 
 def limits_of(table: Table) -> dict[str, list[float]]:

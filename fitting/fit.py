@@ -1,9 +1,7 @@
-"""Regression of our closed form on a campaign, with honest errors.
+"""Regression of the compact law on a campaign, with honest errors.
 
 Rows of one material combination are not independent: the standard errors allow for that (clustered
-by combination), and the error that a user should expect is that of combinations left out of the fit
-(cross-validation over whole combinations). The derivatives are exact: the closed form is evaluated
-on complex numbers.
+by combination). The derivatives are exact: the law is evaluated on complex numbers.
 """
 
 from __future__ import annotations
@@ -18,9 +16,9 @@ from scipy.optimize import least_squares
 
 from ..core.errors import COMPLETED, Ending, Outcome
 from ..models.closed_form import COEFFICIENTS
-from ..models.fitted import Fitted, fitted_law
+from ..models.fitted import ClosedForm, closed_form_law
 from .form import LIMITS, START
-from .prediction import Errors, Prediction, errors_of, given_back, predict
+from .prediction import Errors, errors_of, given_back, predict
 from .ripple import ripple_of
 from .table import ResidualTable, Table
 
@@ -29,7 +27,6 @@ Floats = npt.NDArray[np.float64]
 _UNIT = 0.01  # a residual of one: 1 % in F and a, 0.01 in the shares
 _UNIT_EXPONENT = 0.03  # of N; 0.03 is about 1 % of F_m in the force on unloading
 _UNIT_GIVEN_BACK = 0.02  # of the energy; 1 % of a restitution
-_FOLDS = 12
 ENOUGH = 1e-5
 """Relative change of the misfit at which a fit for comparison or cross-validation ends."""
 
@@ -44,10 +41,8 @@ class Fit:
         By the order of `COEFFICIENTS`, shape (n,).
     covariance
         Allowing for rows of one combination that move together, shape (n, n).
-    errors, held_out
-        Errors on the fitted rows, and on combinations left out of the fit in turn.
-    predicted
-        Every row as predicted by fits that did not see its combination.
+    errors
+        Errors on the fitted rows.
     held
         Coefficients that were held at their start.
     outcome
@@ -58,15 +53,13 @@ class Fit:
     standard_errors: Floats
     covariance: Floats
     errors: Errors
-    held_out: Errors | None
-    predicted: Prediction | None
     outcome: Outcome
     held: Mapping[str, float] = field(default_factory=dict)
 
     @property
-    def law(self) -> Fitted:
+    def law(self) -> ClosedForm:
         """The law with these coefficients."""
-        return fitted_law(dict(zip(COEFFICIENTS, self.values.tolist(), strict=True)))
+        return closed_form_law(dict(zip(COEFFICIENTS, self.values.tolist(), strict=True)))
 
 
 def fit_tables(
@@ -75,10 +68,9 @@ def fit_tables(
     *,
     held: Mapping[str, float] | None = None,
     start: Mapping[str, float] | None = None,
-    folds: int = _FOLDS,
     change: float = 1e-8,
 ) -> Fit:
-    """Fit the closed form to a campaign.
+    """Fit the compact law to a campaign.
 
     Parameters
     ----------
@@ -88,8 +80,6 @@ def fit_tables(
         Coefficients that keep the given value, for comparing simpler forms.
     start
         Where to start; `form.START` if not given.
-    folds
-        Groups of combinations that are left out in turn; 0 leaves the cross-validation out.
     change
         Relative change of the misfit at which the regression ends.
     """
@@ -100,15 +90,11 @@ def fit_tables(
     clusters = np.concatenate([np.tile(table.case, 3), np.tile(turns.case, 4)])
     covariance = np.zeros((len(values), len(values)))
     covariance[np.ix_(free, free)] = covariance_of(jacobian, misfit, clusters)
-    found = predict(values, table, turns)
-    crossed = _cross_validate(table, turns, values, free, folds) if folds else None
     return Fit(
         values=values,
         standard_errors=np.sqrt(np.maximum(np.diag(covariance), 0.0)),
         covariance=covariance,
-        errors=errors_of(found, table, turns),
-        held_out=errors_of(crossed, table, turns) if crossed else None,
-        predicted=crossed,
+        errors=errors_of(predict(values, table, turns), table, turns),
         held=held,
         outcome=COMPLETED
         if ok
@@ -202,23 +188,3 @@ def covariance_of(jacobian: Floats, misfit: Floats, clusters: npt.NDArray[np.int
     ratio = np.diag(robust) / np.maximum(np.diag(plain), 1e-300)
     scale = np.sqrt(np.maximum(ratio, 1.0))
     return np.asarray(plain * np.outer(scale, scale))
-
-
-def _cross_validate(
-    table: Table,
-    turns: ResidualTable,
-    values: Floats,
-    free: npt.NDArray[np.bool_],
-    folds: int,
-) -> Prediction:
-    """Predict every combination by a fit that did not see it."""
-    count = len(table.pairs)
-    # a fixed shuffle: neighbours of a design do not leave together, and a rerun gives the same
-    fold = np.random.default_rng(1).permutation(count) % min(folds, count)
-    collected = predict(values, table, turns)
-    for number in range(min(folds, count)):
-        out, out_turns = fold[table.case] == number, fold[turns.case] == number
-        rest, rest_turns = table.rows(~out), turns.rows(~out_turns)
-        found, _, _, _ = _regress(rest, rest_turns, values, free, change=ENOUGH)
-        collected = collected.mix(predict(found, table, turns), out, out_turns)
-    return collected

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
 from pathlib import Path
 from typing import Any
 
@@ -11,7 +10,6 @@ import numpy.typing as npt
 
 from ..core.output import write_figure
 from .prediction import Prediction
-from .select import Choice
 from .table import ResidualTable, Table
 
 Floats = npt.NDArray[np.float64]
@@ -113,20 +111,4 @@ def draw_curves(p: Prediction, table: Table, path: Path, *, most: int = 9) -> Pa
     for axis in axes:
         axis.grid(alpha=0.3)
     figure.suptitle("lines: law; dots: finite elements")
-    return write_figure(figure, path, dpi=110)
-
-
-def draw_choice(choices: Sequence[Choice], path: Path) -> Path:
-    """Draw the misfit of every candidate, the full form first, with its number of coefficients."""
-    figure, axes = _figure(1, 1, (9, 4.5))
-    axis = axes[0]
-    places = np.arange(len(choices))
-    axis.barh(places, [c.left_out for c in choices], color="tab:blue", label="left out")
-    axis.barh(places, [c.fitted for c in choices], color="lightgrey", height=0.4, label="fitted")
-    axis.set_yticks(places, [f"{c.name} ({c.free})" for c in choices], fontsize=8)
-    axis.axvline(choices[0].left_out, color="black", lw=0.8, ls="--")
-    axis.invert_yaxis()
-    axis.set_xlabel("rms of the weighted misfit (1: 1 % of F and a, 0.01 of a share)")
-    axis.set_title("what each term is worth; number of coefficients in brackets", fontsize=10)
-    axis.legend(fontsize=8)
     return write_figure(figure, path, dpi=110)

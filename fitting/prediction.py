@@ -1,4 +1,4 @@
-"""The closed form on the rows of a campaign, and its errors there."""
+"""The closed forms on the rows of a campaign, and their errors there."""
 
 from __future__ import annotations
 
@@ -50,7 +50,7 @@ class Errors:
 
 @dataclass(frozen=True)
 class Prediction:
-    """The closed form on the rows of both tables; arrays as in `Table` and `ResidualTable`."""
+    """A closed form on the rows of both tables; arrays as in `Table` and `ResidualTable`."""
 
     force: Any
     radius: Any
@@ -73,16 +73,23 @@ class Prediction:
 
 
 def predict(values: Any, table: Table, turns: ResidualTable) -> Prediction:
-    """Evaluate the closed form on every row; complex coefficients give complex rows."""
-    co = Coefficients(*values)
-    of_cases = of_pair(table.bodies, co)
+    """Evaluate the compact law on every row; complex coefficients give complex rows."""
+    return predict_by(of_pair(table.bodies, Coefficients(*values)), table, turns)
+
+
+def predict_by(numbers: PairNumbers, table: Table, turns: ResidualTable) -> Prediction:
+    """Draw every case's curves from its numbers, fields of shape (n_cases,) or single numbers."""
     loaded, turned = (
-        contact(rows.D, PairNumbers(*(x[rows.case] for x in of_cases)), co)
+        contact(rows.D, PairNumbers(*(_each(x, rows.case) for x in numbers)))
         for rows in (table, turns)
     )
     return Prediction(
         loaded.F, loaded.a, loaded.share, turned.left, turned.phi * turned.left, turned.N
     )
+
+
+def _each(number: Any, case: Any) -> Any:
+    return number[case] if np.ndim(number) else number
 
 
 def given_back(p: Prediction, turns: ResidualTable) -> Any:

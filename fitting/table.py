@@ -16,6 +16,7 @@ from ..core.material import Pair
 from ..models import critical_depth
 from ..models.closed_form import Bodies
 from ..models.fitted import bodies_of
+from ..models.table import energy_exponent
 
 Floats = npt.NDArray[np.float64]
 
@@ -220,7 +221,7 @@ def _residuals(records: list[CaseRecord]) -> ResidualTable:
             depth = u.depth * p.R
             if not 0.0 < total < depth or u.curve["radius"][0] > _DEEPEST_RADIUS * p.R:
                 continue
-            exponent = _exponent(u.curve["delta"], u.curve["force"], total)
+            exponent = energy_exponent(u.curve["delta"], u.curve["force"], total)
             rows.append(
                 (
                     number,
@@ -233,20 +234,3 @@ def _residuals(records: list[CaseRecord]) -> ResidualTable:
             )
     columns = np.array(rows).reshape(-1, 6).T
     return ResidualTable(columns[0].astype(np.int64), *columns[1:], **_who(records))
-
-
-def _exponent(depth: Floats, force: Floats, residual: float) -> float:
-    """Exponent of the power law that gives back the same energy, F_m (Delta_m - Delta_r)/(N + 1).
-
-    The unloading is no exact power law; a slope fitted to its logarithms, which look at small
-    forces, gives back 3 % too little. Between neighbours the curve is taken as a power law.
-    """
-    x, y = (depth - residual) / (depth[0] - residual), force / force[0]
-    m = (y > 1e-9) & (x > 1e-9)
-    x, y = x[m], y[m]
-    if len(x) < 3 or not (np.all(np.diff(x) < 0.0) and np.all(np.diff(y) < 0.0)):
-        return float("nan")
-    power = np.diff(np.log(y)) / np.diff(np.log(x))
-    power = np.append(power, power[-1])  # from the last point on to the residual depth
-    begin, end = x * y, np.append(x[1:] * y[1:], 0.0)
-    return float(1.0 / np.sum((begin - end) / (power + 1.0)) - 1.0)

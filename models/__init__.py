@@ -2,30 +2,39 @@
 
 from __future__ import annotations
 
+from pathlib import Path
+
 from ..core.errors import InputError
 from .base import ContactLaw, Domain, DomainWarning, Kernels
-from .fitted import shipped_law
+from .fitted import shipped_laws
 from .kernel import critical_depth, critical_force, yield_constant
 from .published import PUBLISHED, RATE_MODELS, UNAVAILABLE
 from .shelf import Shelf
+from .table_file import read_table
+from .uncertainty import Uncertainty
 
 try:
-    _FITTED, _UNREADABLE = shipped_law(), None
-except InputError as error:  # kept for whoever asks for the law: a new fit must still be possible
-    _FITTED, _UNREADABLE = None, error
-LAWS = Shelf((law.name, law) for law in (*PUBLISHED, *((_FITTED,) if _FITTED else ())))
+    _OURS, _UNREADABLE = shipped_laws(), None
+except InputError as error:  # kept for whoever asks for a law: a new fit must still be possible
+    _OURS, _UNREADABLE = (), error
+LAWS = Shelf((law.name, law) for law in (*PUBLISHED, *_OURS))
 """Every law by name, in reading order: from the simplest assumption to the fullest."""
 
 
 def law_named(name: str) -> ContactLaw:
-    """Return the law called `name`; `one+other` is one's loading with the other's unloading.
+    """Return the law called `name`.
+
+    `one+other` is one's loading with the other's unloading; the path of a law.json, or of the
+    folder in which `dentscope case` wrote it, is the law of that pair.
 
     Raises
     ------
     InputError
         There is none; the message lists the known ones.
     """
-    if name == "fitted" and _UNREADABLE is not None:
+    if name.endswith(".json") or "/" in name:
+        return read_table(Path(name))
+    if name in ("compact", "fitted") and _UNREADABLE is not None:
         raise _UNREADABLE
     if name in UNAVAILABLE:
         raise InputError(f"{name!r} is not offered: {UNAVAILABLE[name]}", key="law")
@@ -35,7 +44,7 @@ def law_named(name: str) -> ContactLaw:
         first, second = name.split("+")
         return law_named(first).with_unloading(law_named(second))
     if name not in LAWS:
-        raise InputError(f"{name!r}", key="law", allowed=", ".join(LAWS))
+        raise InputError(f"{name!r}", key="law", allowed=f"{', '.join(LAWS)}, or a law.json")
     return LAWS[name]
 
 
@@ -43,6 +52,7 @@ __all__ = [
     "LAWS",
     "RATE_MODELS",
     "UNAVAILABLE",
+    "Uncertainty",
     "ContactLaw",
     "Domain",
     "DomainWarning",

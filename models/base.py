@@ -25,6 +25,7 @@ from typing import Any
 import numpy as np
 from numba import njit
 
+from ..core.errors import InputError
 from ..core.material import Pair
 from .driver import Depths, Pairs, map_branch, map_loading, map_residual, rows_of
 from .kernel import (
@@ -35,6 +36,7 @@ from .kernel import (
     Floats,
     common_parameters,
 )
+from .uncertainty import Uncertainty
 
 CLAUSES = (
     "force falls", "force jumps", "radius falls", "radius jumps", "residual jumps", "not Hertz",
@@ -181,6 +183,34 @@ class ContactLaw(ABC):
         force, a = self.loading(pair, depth), self.contact_radius(pair, depth)
         area = np.pi * a**2
         return np.divide(force, area, out=np.zeros_like(force), where=area > 0.0)
+
+    def uncertainty(self, pair: Pair, depth: Depths) -> Uncertainty:
+        """How far off the law may be at a depth of first loading: standard deviations.
+
+        Parameters
+        ----------
+        pair
+            The two bodies.
+        depth
+            Approach, shape (...) [m]; for dent and energy the depth of the turning point.
+
+        Returns
+        -------
+        Uncertainty
+            Of force, contact radius, dent and energy given back relative, of the sphere's share of
+            the approach absolute; each of shape (...). They are those of the law against finite
+            elements of the same bodies, elastic and perfectly plastic: that a real metal is not
+            such a body comes on top. Errors of one pair go together over the depth.
+
+        Raises
+        ------
+        InputError
+            The law states none, as published ones: `models.beside.beside_fitted` says by how much
+            such a law misses the fitted one.
+        """
+        raise InputError(
+            f"{self.name} states no error", key="law", allowed="compact, fitted or a solved pair"
+        )
 
     def with_unloading(self, other: ContactLaw) -> ContactLaw:
         """Return this law's loading with the residual depth and the recovery of `other`."""

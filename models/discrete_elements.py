@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 
 from ..core.material import Material, Pair
-from .fitted import Fitted
+from .fitted import ClosedForm
 from .kernel import critical_depth
 
 _DEM_PAIRS = ((200.0, 200.0, 200.0), (71.7, 200.0, 300.0), (200.0, 200.0, 503.0))
@@ -13,7 +13,7 @@ _DEM_RATIOS = (0.1, 1.0, 10.0)
 _DEM_DEPTHS = (0.001, 0.003, 0.01, 0.03)
 
 
-def dem_table(law: Fitted) -> str:
+def dem_table(law: ClosedForm) -> str:
     """What the simpler laws of discrete-element codes need to agree with this law, as CSV.
 
     Those laws carry neither two yielding bodies nor this loading curve, so the table gives what

@@ -17,7 +17,7 @@ from ..core.output import write_file
 from .closed_form import COEFFICIENTS
 from .discrete_elements import dem_table
 from .export_tree import INPUTS, OUTPUTS, Lines, before, when_closed, when_open
-from .fitted import Fitted
+from .fitted import ClosedForm
 
 NAME = "dentscope_contact"
 
@@ -97,7 +97,7 @@ class _Written(ast.NodeTransformer):
         return ast.BinOp(left, node.op, right)
 
 
-def write_sources(law: Fitted, folder: Path) -> list[Path]:
+def write_sources(law: ClosedForm, folder: Path) -> list[Path]:
     """Write the law in every language and the table for discrete-element codes.
 
     Parameters
@@ -123,16 +123,16 @@ def write_sources(law: Fitted, folder: Path) -> list[Path]:
     return [write_file(folder / name, text.encode("ascii")) for name, text in texts.items()]
 
 
-def _about(law: Fitted, mark: str) -> str:
+def _about(law: ClosedForm, mark: str) -> str:
     domain = f"Fitted over: {law.domain.note}." if law.domain.note else "Domain not stated."
     return textwrap.indent("\n".join((*_ABOUT, *textwrap.wrap(domain, 94))), mark)
 
 
-def _coefficients(law: Fitted) -> Lines:
+def _coefficients(law: ClosedForm) -> Lines:
     return [(f"coef_{n}", ast.Constant(float(law.coefficients[n]))) for n in COEFFICIENTS]
 
 
-def python_source(law: Fitted) -> str:
+def python_source(law: ClosedForm) -> str:
     """The law as a Python module that imports nothing but math."""
     python = Language()
     return f'''"""Contact of a sphere and a flat.
@@ -151,12 +151,12 @@ def contact({", ".join(INPUTS)}):
     if D <= 0.0:
 {python.lines(when_open(), indent=8)}
     else:
-{python.lines(when_closed(), indent=8)}
+{python.lines(when_closed(law.correction), indent=8)}
     return {", ".join(f"out_{name}" for name in OUTPUTS)}
 '''
 
 
-def c_header(law: Fitted) -> str:
+def c_header(law: ClosedForm) -> str:
     """Declaration of the C function."""
     return f"""/*
 {_about(law, " * ")}
@@ -180,7 +180,7 @@ dentscope_result {NAME}({", ".join(f"double {name}" for name in INPUTS)});
 """
 
 
-def c_source(law: Fitted) -> str:
+def c_source(law: ClosedForm) -> str:
     """The law as C99 that needs nothing but the mathematical library."""
     local = Language("const double {target} = {value};", functions={"pow": "pow", "max": "fmax"})
     return f"""/* See {NAME}.h */
@@ -197,7 +197,7 @@ dentscope_result {NAME}({", ".join(f"double {name}" for name in INPUTS)})
         const dentscope_result result = {{{", ".join(f"out_{name}" for name in OUTPUTS)}}};
         return result;
     }}
-{local.lines(when_closed())}
+{local.lines(when_closed(law.correction))}
     const dentscope_result result = {{{", ".join(f"out_{name}" for name in OUTPUTS)}}};
     return result;
 }}
@@ -218,11 +218,11 @@ def _continued(line: str) -> str:
     return " &\n".join(textwrap.wrap(line, 100, subsequent_indent=8 * " "))
 
 
-def fortran_source(law: Fitted) -> str:
+def fortran_source(law: ClosedForm) -> str:
     """The law as an elemental subroutine of a Fortran 2008 module."""
     fortran = Language(number=lambda x: f"{x!r}_dp", name=_fortran_name)
     constants = replace(fortran, line="real(dp), parameter :: {target} = {value}")
-    first, last = before(), when_closed()
+    first, last = before(), when_closed(law.correction)
     inputs, outputs = ([f"{way}_{n.lower()}" for n in names] for way, names in
                        (("in", INPUTS), ("out", OUTPUTS)))  # fmt: skip
     local = sorted({_fortran_name(name) for name, _ in (*first, *last)} - set(outputs))
@@ -252,7 +252,7 @@ end module {NAME}_law
     return "\n".join(map(_continued, text.split("\n")))
 
 
-def matlab_source(law: Fitted) -> str:
+def matlab_source(law: ClosedForm) -> str:
     """The law as a MATLAB or Octave function; any input may be an array."""
     matlab = Language(
         "{target} = {value};", operators={" ** ": " .^ ", " * ": " .* ", " / ": " ./ "}
@@ -268,7 +268,7 @@ def matlab_source(law: Fitted) -> str:
 {matlab.lines(before(), indent=2)}
   closed = D > 0;
   D = max(D, 1e-100);
-{matlab.lines(when_closed(), indent=2)}
+{matlab.lines(when_closed(law.correction), indent=2)}
 {by_mask}
 end
 """

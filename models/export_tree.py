@@ -8,13 +8,15 @@ from __future__ import annotations
 
 import ast
 import inspect
+from collections.abc import Mapping
 
 from . import closed_form
+from .correction import CHANNELS, MOST, Correction
 
 INPUTS = ("E_s", "nu_s", "Sy_s", "E_f", "nu_f", "Sy_f", "R", "depth")
 OUTPUTS = ("force", "contact_radius", "share", "residual_s", "residual_f", "exponent")
 
-_CONSTANTS = {"PI": closed_form.PI, "TINY": closed_form.TINY}
+_CONSTANTS = {name: getattr(closed_form, name) for name in ("PI", "TINY", "SHARPEST")}
 _FROM_INPUTS = """
 k_s = (1.0 - nu_s * nu_s) / E_s
 k_f = (1.0 - nu_f * nu_f) / E_f
@@ -54,14 +56,44 @@ def when_open() -> Lines:
     return _parsed(_OPEN)
 
 
-def when_closed() -> Lines:
+def when_closed(correction: Correction | None) -> Lines:
     """The closed form, and the outputs from what it gives."""
     lines: Lines = []
     defined = {*INPUTS, *(target for target, _ in before())}
-    _unroll("of_pair", closed_form.PairNumbers._fields, lines, defined)
-    _unroll("contact", closed_form.Contact._fields, lines, defined)
+    own: dict[str, str] = {}
+    _unroll("of_pair", closed_form.PairNumbers._fields, lines, defined, own)
+    if correction is not None:
+        _unroll("groups_of", closed_form.Groups._fields, lines, defined, own)
+        lines += _corrected(correction)
+        own = {name: f"own_{name}" for name in CHANNELS}
+    _unroll("contact", closed_form.Contact._fields, lines, defined, own)
     used = [(name, value) for name, value in lines if ast.unparse(value) != name]
     return [*used, *_parsed(_TO_OUTPUTS)]
+
+
+def _corrected(correction: Correction) -> Lines:
+    """What `Correction.of` does to the pair's numbers, bump by bump and channel by channel."""
+    text = []
+    for number, centre in enumerate(correction.centres.tolist()):
+        places = zip(closed_form.Groups._fields, centre, correction.reaches.tolist(), strict=True)
+        away = " - ".join(
+            f"({name}{-at:+}) * ({name}{-at:+}) / {2.0 * reach * reach!r}"
+            for name, at, reach in places
+        )
+        text.append(f"bump_{number} = exp(-{away})")
+    for k, (name, channel) in enumerate(CHANNELS.items()):
+        weights = enumerate(correction.weights[:, k].tolist())
+        text.append(
+            f"shift_{name} = " + "".join(f"{w:+} * bump_{n}" for n, w in weights).lstrip("+")
+        )
+        bent = (
+            f"{channel.unit!r} * shift_{name} "
+            f"/ sqrt(1.0 + shift_{name} * shift_{name} / {MOST * MOST!r})"
+        )
+        text.append(
+            f"own_{name} = " + (f"{name} * exp({bent})" if channel.factor else f"{name} + {bent}")
+        )
+    return _parsed("\n".join(text))
 
 
 def _parsed(text: str) -> Lines:
@@ -72,11 +104,20 @@ def _parsed(text: str) -> Lines:
     return found
 
 
-def _unroll(function: str, results: tuple[str, ...], lines: Lines, defined: set[str]) -> None:
-    """Append the lines of a function of `closed_form`, its results named `results`."""
+def _unroll(
+    function: str,
+    results: tuple[str, ...],
+    lines: Lines,
+    defined: set[str],
+    own: Mapping[str, str],
+) -> None:
+    """Append the lines of a function of `closed_form`, its results named `results`.
+
+    A field that is in `own` is read under the name given there.
+    """
     (tree,) = ast.parse(inspect.getsource(getattr(closed_form, function))).body
     assert isinstance(tree, ast.FunctionDef)
-    flat = _Flat()
+    flat = _Flat(own)
     for node in tree.body[1:]:  # the first is the docstring
         assert isinstance(node, ast.Assign | ast.Return)
         assert node.value is not None
@@ -89,7 +130,7 @@ def _unroll(function: str, results: tuple[str, ...], lines: Lines, defined: set[
             continue
         names = ast.unparse(node.targets[0]).strip("()").split(", ")
         if called is not None:
-            _unroll(called, tuple(names), lines, defined)
+            _unroll(called, tuple(names), lines, defined, own)
             continue
         (name,) = names
         new = _unused(name, defined)
@@ -117,13 +158,14 @@ def _called(value: ast.expr) -> str | None:
 class _Flat(ast.NodeTransformer):
     """Fields and renamed locals become names, constants numbers."""
 
-    def __init__(self) -> None:
+    def __init__(self, own: Mapping[str, str]) -> None:
         self.renamed: dict[str, str] = {}
+        self.own = own
 
     def visit_Attribute(self, node: ast.Attribute) -> ast.Name:
         assert isinstance(node.value, ast.Name)
         coefficient = node.value.id == "co"
-        return ast.Name(f"coef_{node.attr}" if coefficient else node.attr)
+        return ast.Name(f"coef_{node.attr}" if coefficient else self.own.get(node.attr, node.attr))
 
     def visit_Name(self, node: ast.Name) -> ast.expr:
         if node.id in _CONSTANTS:

@@ -1,7 +1,7 @@
-"""Our closed form as a contact law: one smooth expression over all strength ratios.
+"""Our closed forms as contact laws: compact, and fitted with its correction.
 
-The arithmetic is in `closed_form`, the coefficients in data/coefficients/fitted.json, which
-`dentscope fit` writes; formulas and reasons are in docs/closed-form.md.
+The arithmetic is in `closed_form` and `correction`, the numbers in data/coefficients/fitted.json,
+which `dentscope fit` writes; formulas and reasons are in docs/closed-form.md.
 """
 
 from __future__ import annotations
@@ -31,6 +31,7 @@ from .closed_form import (
     of_pair,
     spread_at,
 )
+from .correction import CHANNELS, GROUPS, Correction
 from .driver import Depths, Pairs
 from .kernel import (
     N_COMMON,
@@ -44,34 +45,33 @@ from .kernel import (
     reader,
     residual_kernel,
 )
+from .uncertainty import Calibration, Uncertainty
 
-FORMAT = "dentscope-coefficients/9"
+FORMAT = "dentscope-coefficients/10"
 COEFFICIENTS_FILE = Path(__file__).resolve().parents[1] / "data" / "coefficients" / "fitted.json"
-"""What the law in use reads; `dentscope fit --publish` writes it."""
+"""What the laws in use read; `dentscope fit --publish` writes it."""
 
 _FINITE = 0.01  # Delta/R at which the law says how far finite elastic strain takes it from Hertz
 
-# behind the common numbers: the pair's, then the coefficients
-_pair_numbers = reader(PairNumbers, N_COMMON)
-_coefficients = reader(Coefficients, N_COMMON + len(PairNumbers._fields))
+_pair_numbers = reader(PairNumbers, N_COMMON)  # behind the common numbers
 _CONTACT = types.NamedUniTuple(types.float64, len(Contact._fields), Contact)
 
 
 @loading_kernel
 def _loading(par, depth):
-    D, pair, co = depth / par[R], _pair_numbers(par), _coefficients(par)
-    return force_at(D, spread_at(D, pair, co).a, pair, co) * par[E] * par[R] * par[R]
+    D, pair = depth / par[R], _pair_numbers(par)
+    return force_at(D, spread_at(D, pair).a, pair) * par[E] * par[R] * par[R]
 
 
 @branch_kernel
 def _radius(par, depth, _peak):
-    return par[R] * spread_at(depth / par[R], _pair_numbers(par), _coefficients(par)).a
+    return par[R] * spread_at(depth / par[R], _pair_numbers(par)).a
 
 
 @njit(_CONTACT(VECTOR, types.float64), cache=True, _nrt=False)
 def contact_of(par, depth):
     """The contact at `depth`, from a parameter vector."""
-    return contact(depth / par[R], _pair_numbers(par), _coefficients(par))
+    return contact(depth / par[R], _pair_numbers(par))
 
 
 @njit(_nrt=False, inline="always")
@@ -101,31 +101,43 @@ def _unloading(par, depth, peak):
 _KERNELS = Kernels(_loading, _radius, _unloading, _residual)
 
 
-@dataclass(frozen=True)
-class Fitted(ContactLaw):
-    """The fitted law with its coefficients.
+@dataclass(frozen=True, kw_only=True)
+class ClosedForm(ContactLaw):
+    """One of our closed forms with its numbers.
 
     Parameters
     ----------
     coefficients
         Value of every name in `closed_form.COEFFICIENTS`.
+    correction
+        What is added to the compact law; none for that law itself.
     limits
         Smallest and largest value of each quantity of the domain in the data behind them.
+    calibration
+        How far pairs that no fit had seen lay away; none if not stated.
     """
 
     coefficients: Mapping[str, float] = field(default_factory=dict)
+    correction: Correction | None = None
     limits: Mapping[str, tuple[float, float]] = field(default_factory=dict)
+    calibration: Calibration | None = None
 
     @property
     def kernels(self) -> Kernels:
-        """The compiled functions."""
+        """The compiled functions, the same for both laws."""
         return _KERNELS
 
     def parameters(self, pair: Pair) -> Floats:
-        """Common numbers, those of the pair, the coefficients; shape (n,)."""
-        co = Coefficients(**self.coefficients)
-        own = np.ravel(of_pair(bodies_of([pair]), co))
-        return np.array([*common_parameters(pair), *own, *co])
+        """Common numbers, then those of the pair; shape (n,)."""
+        own = np.ravel(self.numbers(bodies_of([pair])))
+        return np.array([*common_parameters(pair), *own])
+
+    def numbers(self, bodies: Bodies) -> PairNumbers:
+        """Numbers of pairs, every field of shape (n,); real or complex."""
+        compact = of_pair(bodies, Coefficients(**self.coefficients))
+        shape = np.shape(compact.x_s)
+        whole = PairNumbers(*(np.broadcast_to(x, shape) for x in compact))
+        return whole if self.correction is None else self.correction.of(bodies, whole)
 
     def share(self, pair: Pair, depth: Depths) -> Floats:
         """delta_s*, shape (...); the elastic share where the contact is open."""
@@ -134,6 +146,13 @@ class Fitted(ContactLaw):
     def unloading_exponent(self, pair: Pair, peak: Depths) -> Floats:
         """Exponent N of F/F_m = ((Delta - Delta_r)/(Delta_m - Delta_r))^N, shape (...)."""
         return self._each(pair, peak, "N", 1.5)
+
+    def uncertainty(self, pair: Pair, depth: Depths) -> Uncertainty:
+        """How far off the law may be, as pairs left out of the fit were; see `ContactLaw`."""
+        if self.calibration is None:
+            return super().uncertainty(pair, depth)
+        numbers = PairNumbers(*(x[0] for x in self.numbers(bodies_of([pair]))))
+        return self.calibration.of(numbers, np.asarray(depth, dtype=float) / pair.R)
 
     def gradient(self, pair: Pair, depth: Depths) -> dict[str, Floats]:
         """Derivatives of the loading force, exact to round-off (complex steps).
@@ -180,9 +199,10 @@ class Fitted(ContactLaw):
         self, *, depth: Any, E_s: Any, E_f: Any, nu_s: Any, nu_f: Any, Sy_s: Any, Sy_f: Any, R: Any
     ) -> Any:
         k_s, k_f = (1.0 - nu_s**2) / E_s, (1.0 - nu_f**2) / E_f
-        co = Coefficients(**self.coefficients)
-        numbers = of_pair(Bodies(k_s, k_f, nu_s, nu_f, 1.0 / Sy_s, 1.0 / Sy_f), co)
-        return contact(depth / R, numbers, co).F * R**2 / (k_s + k_f)
+        one = (k_s, k_f, nu_s, nu_f, 1.0 / Sy_s, 1.0 / Sy_f)
+        numbers = self.numbers(Bodies(*(np.array([x]) for x in one)))
+        alone = PairNumbers(*(x[0] for x in numbers))
+        return contact(depth / R, alone).F * R**2 / (k_s + k_f)
 
     def _each(self, pair: Pair, depth: Depths, which: str, open_value: float) -> Floats:
         par, d = self.parameters(pair), np.asarray(depth, dtype=float)
@@ -234,23 +254,31 @@ def _body(body: Material) -> tuple[float, float, float]:
     return 1.0 / body.plane_strain_modulus, body.nu, 1.0 / body.Sy
 
 
-def fitted_law(
-    coefficients: Mapping[str, float], *, limits: Mapping[str, tuple[float, float]] | None = None
-) -> Fitted:
-    """Return the law with the given coefficients."""
+def closed_form_law(
+    coefficients: Mapping[str, float],
+    *,
+    correction: Correction | None = None,
+    limits: Mapping[str, tuple[float, float]] | None = None,
+    calibration: Calibration | None = None,
+) -> ClosedForm:
+    """Return the law with the given numbers: compact, or fitted where there is a correction."""
     # the stiffer body may be either: its part counts in full
-    strain = coefficients["e0"] * math.sqrt(_FINITE) + 0.5 * abs(coefficients["e1"]) * _FINITE
-    finite = 100.0001 * math.expm1(strain)
-    return Fitted(
-        name="fitted",
-        title="dentscope, fitted to finite elements",
+    finite = 100.0001 * math.expm1(0.31 * math.sqrt(_FINITE) + 1.25 * _FINITE)
+    count = f"{len(COEFFICIENTS)} coefficients"
+    return ClosedForm(
+        name="compact" if correction is None else "fitted",
+        title=f"dentscope, {count}"
+        if correction is None
+        else "dentscope, fitted to finite elements",
         source="data/coefficients/fitted.json",
         equations="docs/closed-form.md",
         standing=Standing.OWN_SOURCE,
         domain=Domain(note=_note(limits or {})),
         breaks=((f"not Hertz: finite elastic strain, at Delta/R = {_FINITE:g}", finite),),
         coefficients=dict(coefficients),
+        correction=correction,
         limits=dict(limits or {}),
+        calibration=calibration,
     )
 
 
@@ -264,13 +292,13 @@ def read_coefficients() -> dict[str, Any] | None:
     return json.loads(file.read_text("utf-8")) if file.is_file() else None
 
 
-def law_from(content: Mapping[str, Any], *, source: str) -> Fitted:
-    """Return the law of a coefficients file's content.
+def laws_from(content: Mapping[str, Any], *, source: str) -> tuple[ClosedForm, ClosedForm]:
+    """Return the compact and the fitted law of a coefficients file's content.
 
     Raises
     ------
     InputError
-        The file belongs to another form, or lacks a coefficient.
+        The file belongs to another form, or lacks a number.
     """
     found = content.get("format")
     if found != FORMAT:
@@ -286,10 +314,31 @@ def law_from(content: Mapping[str, Any], *, source: str) -> Fitted:
         )  # fmt: skip
     values = {name: float(content["coefficients"][name]["value"]) for name in COEFFICIENTS}
     limits = {k: (float(v[0]), float(v[1])) for k, v in content["domain"]["limits"].items()}
-    return fitted_law(values, limits=limits)
+    spread = content["uncertainty"]
+    return (
+        closed_form_law(
+            values, limits=limits, calibration=Calibration.from_content(spread["compact"])
+        ),
+        closed_form_law(
+            values, correction=_correction(content["correction"], source), limits=limits,
+            calibration=Calibration.from_content(spread["fitted"]),
+        ),
+    )  # fmt: skip
 
 
-def shipped_law() -> Fitted | None:
-    """The law with the shipped coefficients; none if they were never fitted."""
+def _correction(content: Mapping[str, Any], source: str) -> Correction:
+    for key, names in (("channels", tuple(CHANNELS)), ("groups", GROUPS)):
+        if tuple(content[key]) != names:
+            raise InputError(
+                f"{', '.join(content[key])}", source=source, key=f"correction.{key}",
+                allowed=f"{', '.join(names)}; make the file anew with `dentscope fit`",
+            )  # fmt: skip
+    return Correction(
+        np.array(content["centres"]), np.array(content["reaches"]), np.array(content["weights"])
+    )
+
+
+def shipped_laws() -> tuple[ClosedForm, ...]:
+    """The laws with the shipped numbers; none if they were never fitted."""
     content = read_coefficients()
-    return None if content is None else law_from(content, source=str(COEFFICIENTS_FILE))
+    return () if content is None else laws_from(content, source=str(COEFFICIENTS_FILE))

@@ -38,8 +38,8 @@ def plain(body):
 def content(paths):
     table, turns = read_tables(paths)
     third = table.rows(np.arange(len(table.D)) % EVERY == 0)
-    fit = fit_tables(third, turns, folds=0)
-    whole = fit_tables(table, turns, folds=0)
+    fit = fit_tables(third, turns)
+    whole = fit_tables(table, turns)
     return {
         "pairs": [[plain(p.sphere), plain(p.flat), p.R] for p in table.pairs],
         "loading": columns(third),

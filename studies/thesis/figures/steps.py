@@ -12,7 +12,7 @@ from matplotlib import colormaps
 from ....campaigns import CaseRecord
 from ....core.material import Material, Pair
 from ....models import LAWS, critical_depth
-from ....models.fitted import Fitted
+from ....models.fitted import ClosedForm
 from ....models.published.ghaednia import share_of_sphere, updated_jackson_green
 from ...plot import Picture, at_depth, bare_sheet, finish, look, percent, sheet, table_2_1
 
@@ -36,9 +36,9 @@ def _model_share(pair: Pair, D: float) -> float:
     return share_of_sphere(D, pair.E_reduced / pair.Sy_min, pair.Sy_ratio, 1.0)
 
 
-def _fitted() -> Fitted | None:
+def _fitted() -> ClosedForm | None:
     found = LAWS.get("fitted")
-    return found if isinstance(found, Fitted) else None
+    return found if isinstance(found, ClosedForm) else None
 
 
 def _depths(records: Sequence[CaseRecord]) -> Picture:

@@ -14,7 +14,7 @@ from dentscope.fitting.prediction import predict
 from dentscope.fitting.table import ResidualTable, Table
 from dentscope.models import LAWS, DomainWarning, critical_depth
 from dentscope.models.closed_form import COEFFICIENTS
-from dentscope.models.fitted import fitted_law, law_from, read_coefficients
+from dentscope.models.fitted import closed_form_law, laws_from, read_coefficients
 
 
 def pair_of(E_s, E_f, Sy_min, ratio, nu_s=0.3, nu_f=0.3):
@@ -34,10 +34,10 @@ def random_pairs(count, seed):
     ]  # fmt: skip
 
 
-@pytest.fixture(scope="module")
-def law():
-    """The shipped law without its domain, which these draws leave on purpose."""
-    return replace(LAWS["fitted"], limits={})
+@pytest.fixture(scope="module", params=["compact", "fitted"])
+def law(request):
+    """A shipped law without its domain, which these draws leave on purpose."""
+    return replace(LAWS[request.param], limits={})
 
 
 def test_small_load_is_hertz_with_the_elastic_share(law):
@@ -167,7 +167,7 @@ def test_leaving_the_domain_names_the_bound():
 
 def planted():
     """Tables made by the form itself with known coefficients and 0.3 % of noise."""
-    truth = START | {"h": 2.9, "k1": 1.7, "c": 2.6, "s0": 0.7, "f1": 0.12}
+    truth = START | {"h": 2.9, "k1": 1.7, "z": 0.25, "s0": 0.7, "f1": 0.12}
     random = np.random.default_rng(3)
     ratios = (0.1, 0.4, 0.7, 0.85, 1.0, 1.15, 1.4, 3.0, 10.0)
     pairs = [
@@ -194,7 +194,7 @@ def planted():
 
 def test_planted_coefficients_come_back_within_their_errors():
     truth, table, turns = planted()
-    found = fit_tables(table, turns, folds=0)
+    found = fit_tables(table, turns)
     assert found.outcome.completed
     # F and a at the level of the planted noise, whose mean absolute value is 0.24 %
     assert found.errors.force[0] < 0.003
@@ -214,7 +214,7 @@ def test_rows_whose_contact_edge_was_not_seen_do_not_move_the_fit():
     hidden[29::30] = True  # the deepest row of each case
     wrong = replace(table, radius=np.where(hidden, 0.9, 1.0) * table.radius, edge_seen=~hidden)
     right = replace(table, edge_seen=~hidden)
-    values = [fit_tables(t, turns, folds=0).values for t in (wrong, right)]
+    values = [fit_tables(t, turns).values for t in (wrong, right)]
     assert values[0] == pytest.approx(values[1], rel=1e-9)
 
 
@@ -230,10 +230,33 @@ def test_shipped_coefficients_say_where_they_come_from():
 def test_an_older_coefficients_file_is_refused_with_what_to_do():
     content = read_coefficients()
     with pytest.raises(InputError, match="dentscope fit"):
-        law_from({**content, "format": "dentscope-coefficients/1"}, source="fitted.json")
+        laws_from({**content, "format": "dentscope-coefficients/1"}, source="fitted.json")
     some = dict(list(content["coefficients"].items())[1:])
     with pytest.raises(InputError, match=f"no {COEFFICIENTS[0]}"):
-        law_from({**content, "coefficients": some}, source="fitted.json")
+        laws_from({**content, "coefficients": some}, source="fitted.json")
+
+
+def test_a_correction_of_other_channels_is_refused():
+    content = read_coefficients()
+    other = {**content["correction"], "channels": ["g_a", "h"]}
+    with pytest.raises(InputError, match=r"correction\.channels: g_a, h \(allowed: c, g_a, "):
+        laws_from({**content, "correction": other}, source="fitted.json")
+
+
+def test_below_first_yield_and_far_from_the_data_the_laws_are_one():
+    """The correction moves what follows first yield, over pairs like those of the data."""
+    compact, fitted = (replace(LAWS[name], limits={}) for name in ("compact", "fitted"))
+    inside = pair_of(150e9, 200e9, 3e8, 0.7)
+    onset = critical_depth(inside)
+    early, late = (
+        float(fitted.loading(inside, d * onset) / compact.loading(inside, d * onset))
+        for d in (0.4, 60.0)
+    )
+    assert early == pytest.approx(1.0, abs=1e-4)
+    assert abs(late - 1.0) > 1e-3
+    outside = pair_of(150e9, 200e9, 1e3, 0.7)
+    d = np.geomspace(1e-8, 4e-5, 20)
+    assert fitted.loading(outside, d) == pytest.approx(compact.loading(outside, d), rel=1e-3)
 
 
 def test_the_written_file_reads_back_as_the_same_law(tmp_path):
@@ -242,4 +265,6 @@ def test_the_written_file_reads_back_as_the_same_law(tmp_path):
     again = json.loads((tmp_path / "fitted.json").read_text())
     assert again == content
     values = {k: v["value"] for k, v in content["coefficients"].items()}
-    assert law_from(again, source="x").coefficients == fitted_law(values).coefficients
+    compact, fitted = laws_from(again, source="x")
+    assert compact.coefficients == fitted.coefficients == closed_form_law(values).coefficients
+    assert np.array_equal(fitted.correction.weights, LAWS["fitted"].correction.weights)

@@ -8,7 +8,11 @@ from dentscope.campaigns.designs import design_named
 from dentscope.cli import fit as fit_command
 from dentscope.cli.app import run
 from dentscope.fitting import table
-from dentscope.fitting.page import (
+from dentscope.fitting.prediction import Errors
+from dentscope.fitting.report import markdown
+from dentscope.fitting.table import read_tables
+from dentscope.models.fitted import read_coefficients
+from dentscope.studies.closed_form.page import (
     BEGIN,
     END,
     JUDGED_BEGIN,
@@ -17,10 +21,6 @@ from dentscope.fitting.page import (
     published_section,
     update_page,
 )
-from dentscope.fitting.prediction import Errors
-from dentscope.fitting.report import markdown
-from dentscope.fitting.table import read_tables
-from dentscope.models.fitted import read_coefficients
 
 PAGE = Path(__file__).resolve().parents[3] / "docs" / "closed-form.md"
 
@@ -30,6 +30,16 @@ def test_export_writes_every_language(tmp_path, capsys):
     found = {path.suffix for path in (tmp_path / "law").iterdir()}
     assert found == {".py", ".c", ".h", ".f90", ".m", ".csv"}
     assert "dentscope_contact.f90" in capsys.readouterr().out.replace("\n", "")
+
+
+def test_publishing_outside_a_checkout_is_one_line(monkeypatch, capsys):
+    """An installed package does not write into itself."""
+    monkeypatch.setattr(fit_command.studies, "present", lambda: False)
+    for line in (["fit", "--publish"], ["fit", "--judge", "data/challenge", "--publish"]):
+        assert run(line) == 2
+        told = capsys.readouterr()
+        assert "`dentscope fit --publish` belongs to the workshop" in told.err
+        assert len(told.err.splitlines()) == 1
 
 
 @pytest.mark.parametrize("name", ["none.h5", "text.h5", "folder"])
@@ -87,7 +97,8 @@ def test_the_law_in_use_is_judged_on_cases_that_no_fit_reads(tmp_path, monkeypat
 
 def test_a_challenge_of_other_coefficients_is_called_so():
     content = read_coefficients()
-    errors = Errors(**{k: tuple(v) for k, v in content["errors"]["fitted"].items()})
+    found = content["errors"]["fitted"]["left_out"]
+    errors = [("fitted", Errors(**{k: tuple(v) for k, v in found.items()}))]
     names = [f"challenge-0123456789ab-{k:02}" for k in range(24)]
     assert "coefficients above" in judged_section(errors, names, "0123456789ab" + "0" * 52)
     assert "earlier coefficients" in judged_section(errors, names, "f" * 64)

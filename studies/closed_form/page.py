@@ -6,10 +6,16 @@ from collections.abc import Sequence
 from pathlib import Path
 from typing import Any
 
-from ..core.errors import InputError
-from ..core.output import write_file
-from .prediction import Errors
-from .report import MARKS, coefficient_rows, domain_rows, error_rows, markdown
+from ...core.errors import InputError
+from ...fitting.prediction import Errors
+from ...fitting.report import (
+    MARKS,
+    coefficient_rows,
+    domain_rows,
+    error_rows,
+    markdown,
+    uncertainty_rows,
+)
 
 BEGIN = "<!-- coefficients: begin, written by dentscope fit --publish -->"
 END = "<!-- coefficients: end -->"
@@ -20,12 +26,14 @@ JUDGED_END = "<!-- judged: end -->"
 def published_section(content: dict[str, Any]) -> str:
     """Return the part of docs/closed-form.md that follows from a coefficients file."""
     errors = content["errors"]
-    rows = [["beyond first yield", "fitted: mean, largest", "left out: mean, largest"]]
+    kinds = {
+        "compact, left out": errors["compact"]["left_out"],
+        "fitted": errors["fitted"]["fitted"],
+        "fitted, left out": errors["fitted"]["left_out"],
+    }
+    rows = [["beyond first yield", *(f"{kind}: mean, largest" for kind in kinds)]]
     for name, (title, scale, _) in MARKS.items():
-        cells = [
-            ", ".join(f"{scale * x:.3g}" for x in errors[kind][name])
-            for kind in ("fitted", "left_out")
-        ]
+        cells = [", ".join(f"{scale * x:.3g}" for x in kind[name]) for kind in kinds.values()]
         rows.append([title, *cells])
     levels = sorted({x for c in content["provenance"]["campaigns"] for x in c["accuracy"]})
     return "\n".join(
@@ -35,18 +43,19 @@ def published_section(content: dict[str, Any]) -> str:
             f"{', '.join(levels)}.\n",
             markdown(coefficient_rows(content)),
             markdown(rows),
+            markdown(uncertainty_rows(content)),
             markdown(domain_rows(content, "domain")) + END,
         ]
     )
 
 
-def judged_section(errors: Errors, names: Sequence[str], digest: str) -> str:
+def judged_section(errors: Sequence[tuple[str, Errors]], names: Sequence[str], digest: str) -> str:
     """Return the part of docs/closed-form.md on pairs that no fit has read.
 
     Parameters
     ----------
     errors
-        Of the law in use on them.
+        Names of the laws in use, and their errors on these pairs.
     names
         Of the cases; those of a challenge carry the beginning of the checksum that drew them.
     digest
@@ -58,7 +67,7 @@ def judged_section(errors: Errors, names: Sequence[str], digest: str) -> str:
         about += ": the checksum of the coefficients above"
     elif drawn:
         about += f": earlier coefficients; those above have {digest[:12]}"
-    rows = error_rows([("pairs drawn afterwards", errors)])
+    rows = error_rows(errors)
     return f"{JUDGED_BEGIN}\n{about}.\n\n{markdown(rows)}{JUDGED_END}"
 
 
@@ -70,4 +79,4 @@ def update_page(page: Path, section: str) -> None:
     if not found:
         raise InputError("has no place for this section", source=str(page), allowed=begin)
     _, _, after = rest.partition(end)
-    write_file(page, before + section + after)
+    page.write_text(before + section + after, encoding="utf-8")

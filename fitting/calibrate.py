@@ -1,0 +1,104 @@
+"""Regression of how far the laws are off, on combinations that their fits had not seen."""
+
+from __future__ import annotations
+
+from typing import NamedTuple
+
+import numpy as np
+import numpy.typing as npt
+from scipy.optimize import brentq, minimize
+
+from ..models.closed_form import PairNumbers
+from ..models.uncertainty import FEATURES, Calibration, Uncertainty, deviation, features_of
+from .prediction import Prediction, given_back
+from .table import ResidualTable, Table
+
+Floats = npt.NDArray[np.float64]
+
+_ONE_SIGMA = 0.6827
+_NOISE = 2e-3  # of the finite elements, beside the law's own error
+_BEFORE_YIELD = (0.5, 4.0)  # power with which a law's error vanishes there; the dent does itself
+_RIDGE = 0.02  # of the features' weights, the constant's aside
+
+
+class Misses(NamedTuple):
+    """Errors of one quantity and the features of where they were made."""
+
+    features: Floats  # shape (n, n_features)
+    off: Floats  # shape (n,)
+
+
+def misses(
+    p: Prediction, numbers: PairNumbers, table: Table, turns: ResidualTable
+) -> dict[str, Misses]:
+    """Errors of every quantity of `Uncertainty` beyond first yield, by name.
+
+    Parameters
+    ----------
+    p
+        Predictions, of combinations left out.
+    numbers
+        The law's numbers of every case, fields of shape (n_cases,).
+    table, turns
+        The rows.
+    """
+
+    def at(rows: Table | ResidualTable) -> Floats:
+        return features_of(PairNumbers(*(x[rows.case] for x in numbers)), rows.D)
+
+    loaded, turned = at(table), at(turns)
+    seen = (table.w >= 1.0) & table.edge_seen
+    known = np.isfinite(turns.exponent)
+    off = {
+        "force": (loaded, seen, np.log(p.force / table.force)),
+        "radius": (loaded, seen, np.log(p.radius / table.radius)),
+        "share": (loaded, table.w >= 1.0, p.share - table.share),
+        "dent": (turned, turns.w >= 1.0, p.total / turns.total - 1.0),
+        "given_back": (turned, known, given_back(p, turns) - 1.0),
+    }
+    return {name: Misses(x[m], error[m]) for name, (x, m, error) in off.items()}
+
+
+def calibrate(found: dict[str, Misses]) -> Calibration:
+    """Find the weights of the features: most likely, then so scaled that 68 % lie within one."""
+    rows = []
+    for name in Uncertainty._fields:
+        features, off = found[name]
+        size = np.maximum(np.abs(off), 1e-6)
+
+        def surprise(weights: Floats, features: Floats = features, size: Floats = size) -> float:
+            # of a distribution with long ends: some combinations are worse than any rule says
+            spread = deviation(features, weights, least=_NOISE)
+            loss = np.log(spread) + 2.5 * np.log1p((size / spread) ** 2 / 4.0)
+            return float(np.mean(loss)) + _RIDGE * float(np.sum(weights[1:] ** 2)) / len(FEATURES)
+
+        first = np.zeros(len(FEATURES))
+        first[0] = np.log(np.mean(size) + 1e-4)
+        first[1] = 1.0
+        bounds: list[tuple[float | None, float | None]] = [(None, None)] * len(FEATURES)
+        if name != "dent":
+            bounds[1] = _BEFORE_YIELD
+        weights = minimize(surprise, first, method="L-BFGS-B", bounds=bounds).x
+        rows.append(_scaled(weights, features, size))
+    return Calibration(np.array(rows))
+
+
+def _scaled(weights: Floats, features: Floats, size: Floats) -> Floats:
+    """Return the weights at which 68 % of the errors lie within one standard deviation."""
+
+    def beyond(scale: float) -> float:
+        moved = weights + scale * np.eye(len(weights))[0]
+        return float(np.mean(size <= deviation(features, moved, least=_NOISE))) - _ONE_SIGMA
+
+    if beyond(-3.0) >= 0.0:
+        return weights
+    return np.asarray(weights + brentq(beyond, -3.0, 3.0) * np.eye(len(weights))[0])
+
+
+def within(calibration: Calibration, found: dict[str, Misses]) -> dict[str, tuple[float, float]]:
+    """Shares of the errors within one and two standard deviations, by quantity."""
+    result = {}
+    for weights, name in zip(calibration.weights, Uncertainty._fields, strict=True):
+        ratio = np.abs(found[name].off) / deviation(found[name].features, weights, least=_NOISE)
+        result[name] = (float(np.mean(ratio <= 1.0)), float(np.mean(ratio <= 2.0)))
+    return result

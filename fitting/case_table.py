@@ -1,0 +1,51 @@
+"""A solved pair as the table that a contact law reads."""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+
+from .. import fem
+from ..core.errors import InputError
+from ..models.table import FEWEST_UNLOADINGS, Curve, PairTable, Turns, energy_exponent
+
+
+def pair_table(solution: fem.Solution, uncertainty: fem.Uncertainty) -> PairTable:
+    """Return what a law needs of a solve.
+
+    Parameters
+    ----------
+    solution
+        The pair pressed, and unloaded from several depths.
+    uncertainty
+        Of its loading curve, from `fem.discretisation_uncertainty`.
+
+    Raises
+    ------
+    InputError
+        A pair that yields was unloaded from too few depths.
+    """
+    pair, c = solution.problem.pair, solution.loading
+    rows = []
+    for u in solution.unloadings:
+        total = u.residual_sphere + u.residual_flat
+        if 0.0 < total < u.depth * pair.R:
+            exponent = energy_exponent(u.curve.delta, u.curve.force, total)
+            rows.append((u.depth, total / (u.depth * pair.R), u.residual_sphere / total, exponent))
+    turns = np.array(sorted(row for row in rows if math.isfinite(row[-1]))).reshape(-1, 4)
+    if len(turns) < FEWEST_UNLOADINGS and math.isfinite(pair.Sy_min):
+        raise InputError(
+            f"{len(turns)} depths beyond first yield", key="load.unload_from",
+            allowed=f"{FEWEST_UNLOADINGS} or more for a law of this pair",
+        )  # fmt: skip
+    curve = Curve(
+        depth=c.delta / pair.R,
+        force=c.force / (pair.E_reduced * pair.R**2),
+        radius=c.radius / pair.R,
+        share=c.sphere_share,
+        force_std=uncertainty.force / c.force,
+        radius_std=uncertainty.radius / c.radius,
+        share_std=uncertainty.sphere_share,
+    )
+    return PairTable(pair, curve, Turns(*turns.T))

@@ -1,0 +1,176 @@
+"""Regression of what the fitted law adds to the compact one.
+
+The weights of the bumps are found by Gauss and Newton's steps on all curves at once, held back by a
+prior that says: no shift unless the data ask for one. Number and reach of the bumps and the prior
+were chosen by what they give for combinations left out.
+"""
+
+from __future__ import annotations
+
+import math
+from typing import Any, NamedTuple
+
+import numpy as np
+import numpy.typing as npt
+from scipy.linalg import cho_factor, cho_solve
+
+from ..models.closed_form import Coefficients, PairNumbers, of_pair
+from ..models.correction import CHANNELS, Correction, bumps, coordinates, moved
+from .prediction import Prediction, given_back, predict_by
+from .table import ResidualTable, Table
+
+Floats = npt.NDArray[np.float64]
+
+BUMPS = 60
+REACHES = np.array([1.2, 1.2, 2.2, 1.2, 3.0, 4.0])
+PRIOR = 2.0
+"""Weight of the prior against the misfit's squares: of one shift, alone, by one unit."""
+
+_EVERY = 4  # depths; neighbours say nearly the same
+_STEPS = 25
+_FARTHEST = 1.5  # change of a shift in one step
+_CHANGE = 2e-3  # relative change of the objective at which the regression ends
+_OUTLIER = 4.0  # misfit from which on it counts linearly
+_UNIT = 0.003  # a misfit of one: 0.3 % of F and a, 0.003 of the share
+_UNIT_LEFT = (4e-4, 6e-3)  # of the permanent approach: of Delta_m, and of itself
+_UNIT_EXPONENT, _UNIT_BACK = 0.015, 0.008
+
+
+def corrected_prediction(
+    values: Floats, correction: Correction, table: Table, turns: ResidualTable
+) -> Prediction:
+    """Every row by the compact law of these values with a correction."""
+    return predict_by(correction.of(table.bodies, compact_numbers(values, table)), table, turns)
+
+
+def compact_numbers(values: Floats, table: Table) -> PairNumbers:
+    """The compact law's numbers of every case, each of shape (n_cases,)."""
+    numbers = of_pair(table.bodies, Coefficients(*values))
+    return PairNumbers(*(np.broadcast_to(x, len(table.pairs)) for x in numbers))
+
+
+def correct(values: Floats, table: Table, turns: ResidualTable, ripple: Floats) -> Correction:
+    """Find the correction to the compact law for the cases that have rows.
+
+    Parameters
+    ----------
+    values
+        Coefficients of the compact law.
+    table, turns
+        Rows of the campaign, from `read_tables`; every fourth depth is looked at.
+    ripple
+        Of ln F and ln a of each row's case, shape (2, n); a case whose mesh ripples says less.
+    """
+    thin = np.arange(len(table.D)) % _EVERY == 0
+    numbers = compact_numbers(values, table)
+    units = np.hypot(_UNIT, ripple)
+    groups = coordinates(table.bodies, numbers)
+    centres = _spread_out(groups[np.unique(table.case)])
+    alike = bumps(centres, centres, REACHES) + 1e-4 * np.eye(len(centres))
+    white = np.linalg.inv(np.linalg.cholesky(alike)).T
+    rows = _Rows(numbers, table.rows(thin), turns, *units[:, thin])
+    basis = bumps(groups, centres, REACHES) @ white
+    return Correction(centres, REACHES, white @ _descend(rows, basis))
+
+
+def _spread_out(groups: Floats) -> Floats:
+    """Return a subset of `groups` as far from each other as may be, shape (BUMPS, n_groups)."""
+    scaled = groups / REACHES
+    chosen = [int(np.argmin(np.sum((scaled - scaled.mean(axis=0)) ** 2, axis=1)))]
+    nearest = np.full(len(scaled), np.inf)
+    while len(chosen) < min(BUMPS, len(scaled)):
+        away = np.sum((scaled - scaled[chosen[-1]]) ** 2, axis=1)
+        nearest = np.minimum(nearest, away)
+        chosen.append(int(np.argmax(nearest)))
+    return np.asarray(groups[chosen])
+
+
+class _Rows(NamedTuple):
+    """The curves of all cases as functions of the cases' shifts."""
+
+    numbers: PairNumbers
+    table: Table
+    turns: ResidualTable
+    unit_F: Floats
+    unit_a: Floats
+
+    def misfit(self, shifts: Any) -> tuple[Any, Any]:
+        """Misfits in their units of loading, shape (3, n), and of unloading, shape (4, n)."""
+        p = predict_by(moved(self.numbers, shifts), self.table, self.turns)
+        t, u = self.table, self.turns
+        known = np.isfinite(u.exponent)
+        loading = np.stack(
+            [
+                np.where(t.edge_seen, np.log(p.force / t.force), 0.0) / self.unit_F,
+                np.where(t.edge_seen, np.log(p.radius / t.radius), 0.0) / self.unit_a,
+                (p.share - t.share) / _UNIT,
+            ]
+        )
+        unit_left = _UNIT_LEFT[0] + _UNIT_LEFT[1] * u.total
+        exponent = np.where(known, u.exponent, 0.0)
+        unloading = np.stack(
+            [
+                (p.total - u.total) / unit_left,
+                (p.sphere - u.sphere_part * u.total) / (10.0 * _UNIT_LEFT[0]),
+                np.where(known, p.exponent - exponent, 0.0) / _UNIT_EXPONENT,
+                np.where(known, np.log(given_back(p, u)), 0.0) / _UNIT_BACK,
+            ]
+        )
+        return loading, unloading
+
+    def cost(self, shifts: Floats) -> float:
+        """Sum of the squares, of outliers less; infinite where a curve can't be drawn."""
+        with np.errstate(all="ignore"):
+            parts = self.misfit(shifts)
+            total = sum(float(np.sum(np.sqrt(1.0 + (r / _OUTLIER) ** 2) - 1.0)) for r in parts)
+        return _OUTLIER**2 * total if np.isfinite(total) else math.inf
+
+    def normal(self, shifts: Floats) -> tuple[Floats, Floats]:
+        """Each case's normal matrix, shape (n_cases, k, k), and gradient, shape (n_cases, k)."""
+        cases, k = shifts.shape
+        slopes = []
+        for channel in range(k):
+            at = shifts.astype(complex)
+            at[:, channel] += 1e-30j
+            slopes.append([np.imag(part) / 1e-30 for part in self.misfit(at)])
+        matrix, gradient = np.zeros((cases, k, k)), np.zeros((cases, k))
+        cases_of = (self.table.case, self.turns.case)
+        for side, (misfit, number) in enumerate(zip(self.misfit(shifts), cases_of, strict=True)):
+            slope = np.stack([s[side] for s in slopes])  # (k, quantities, rows)
+            weight = 1.0 / np.sqrt(1.0 + (misfit / _OUTLIER) ** 2)
+            for case in np.unique(number):
+                m = number == case
+                J = slope[:, :, m].reshape(k, -1)
+                w = weight[:, m].ravel()
+                matrix[case] += (J * w) @ J.T
+                gradient[case] += (J * w) @ misfit[:, m].ravel()
+        return matrix, gradient
+
+
+def _descend(rows: _Rows, basis: Floats) -> Floats:
+    """Weights of the basis, shape (m, k), by damped steps of Gauss and Newton from none."""
+    m, k = basis.shape[1], len(CHANNELS)
+    weights, damping = np.zeros((m, k)), 1e-2
+
+    def objective(at: Floats) -> float:
+        return rows.cost(basis @ at) + 0.5 * PRIOR * float(np.sum(at**2))
+
+    best = objective(weights)
+    for _ in range(_STEPS):
+        matrix, gradient = rows.normal(basis @ weights)
+        whole = np.einsum("nm,nkl,np->mkpl", basis, matrix, basis, optimize=True)
+        whole = whole.reshape(m * k, m * k)
+        slope = np.einsum("nm,nk->mk", basis, gradient).ravel() + PRIOR * weights.ravel()
+        before = best
+        for _ in range(8):
+            damped = whole + PRIOR * (1.0 + damping) * np.eye(m * k)
+            step = -cho_solve(cho_factor(damped), slope).reshape(m, k)
+            step *= min(1.0, _FARTHEST / float(np.abs(basis @ step).max()))
+            value = objective(weights + step)
+            if value < best:
+                weights, best, damping = weights + step, value, damping / 4.0
+                break
+            damping = max(5.0 * damping, 1.0)
+        if before - best < _CHANGE * before:
+            break
+    return weights

@@ -1,0 +1,53 @@
+"""How far off a law is that states no error of its own."""
+
+from __future__ import annotations
+
+import numpy as np
+import numpy.typing as npt
+
+from ..core.material import Pair
+from . import law_named
+from .base import ContactLaw
+from .fitted import ClosedForm
+from .uncertainty import Uncertainty
+
+Floats = npt.NDArray[np.float64]
+
+
+def beside_fitted(law: ContactLaw, pair: Pair, depth: npt.ArrayLike) -> Uncertainty:
+    """How far `law` may be off: its distance from the fitted law, and that law's own error.
+
+    A law without a share of its own is taken to divide the approach as elastic bodies do.
+    """
+    fitted = law_named("fitted")
+    assert isinstance(fitted, ClosedForm)
+    d = np.asarray(depth, dtype=float)
+    own, ours, theirs = (
+        fitted.uncertainty(pair, d),
+        _answers(fitted, pair, d),
+        _answers(law, pair, d),
+    )
+    away = [np.abs(np.log(a / b)) for a, b in zip(theirs, ours, strict=True)]
+    split = getattr(law, "share", None)
+    share = split(pair, d) if split else np.full(d.shape, pair.elastic_share)
+    away.insert(2, np.abs(share - fitted.share(pair, d)))
+    return Uncertainty(*(np.hypot(a, b) for a, b in zip(away, own, strict=True)))
+
+
+_X, _W = np.polynomial.legendre.leggauss(12)
+
+
+def _answers(law: ContactLaw, pair: Pair, d: Floats) -> tuple[Floats, Floats, Floats, Floats]:
+    """Force, radius, dent and energy given back over force and depth, each above zero."""
+    closed = np.maximum(d, 1e-12 * pair.R)
+    force = law.loading(pair, closed)
+    left = np.asarray(sum(law.residual(pair, closed)))
+    back = np.zeros_like(closed)
+    for x, w in zip(0.5 * (_X + 1.0), 0.5 * _W, strict=True):
+        back += w * law.unloading(pair, left + x * (closed - left), closed)
+    back *= (closed - left) / (force * closed)
+    # a dent below a hundredth of a per mille of the depth is none
+    return (
+        force, law.contact_radius(pair, closed), np.maximum(left, 1e-5 * closed),
+        np.maximum(back, 1e-9),
+    )  # fmt: skip

@@ -1,0 +1,270 @@
+"""The finite elements of one's own pair as a contact law, nothing fitted between.
+
+`dentscope case` writes the file; `law_named` takes its path. Loading and radius run monotonely
+through the recorded depths in logarithms (C1; Fritsch and Carlson), and are exactly Hertz's below
+first yield. Permanent depth and energy of recovery follow from those of the unloadings, between
+which the elastic displacement over F/a, the bodies' parts and the exponent are interpolated.
+
+References
+----------
+F. N. Fritsch, R. E. Carlson, SIAM J. Numer. Anal. 17 (1980) 238.
+"""
+
+from __future__ import annotations
+
+import math
+import warnings
+from collections.abc import Sequence
+from dataclasses import dataclass
+from functools import lru_cache
+from typing import NamedTuple
+
+import numpy as np
+from scipy.interpolate import PchipInterpolator
+
+from ..core.errors import InputError
+from ..core.material import Pair
+from .base import ContactLaw, Domain, DomainWarning, Kernels, Standing
+from .driver import Depths, Pairs
+from .kernel import Floats, common_parameters, critical_depth
+from .table_kernels import TABLE_KERNELS
+from .uncertainty import LEAST, Uncertainty
+
+FEWEST_UNLOADINGS = 3
+_POINTS = 240  # of the table, even in ln(depth)
+# depths over the critical one at which the law is Hertz's, and from which the data count
+_ELASTIC = (0.02, 0.05, 0.1, 0.2, 0.4, 0.5, 0.6)
+_JOINED = 0.8
+
+
+class Curve(NamedTuple):
+    """Loading of a pair, arrays of shape (n,), dimensionless, with standard deviations."""
+
+    depth: Floats  # Delta/R, rising
+    force: Floats  # over E' R^2
+    radius: Floats  # over R
+    share: Floats  # delta_s*
+    force_std: Floats  # relative
+    radius_std: Floats  # relative
+    share_std: Floats
+
+
+class Turns(NamedTuple):
+    """Unloadings of a pair, arrays of shape (m,), dimensionless."""
+
+    depth: Floats  # Delta/R of the turning point, rising
+    left: Floats  # permanent approach over the largest one
+    part: Floats  # the sphere's part of it
+    exponent: Floats  # of the power law that gives back the same energy
+
+
+@dataclass(frozen=True, eq=False)
+class PairTable:
+    """What the finite elements say of one pair."""
+
+    pair: Pair
+    curve: Curve
+    turns: Turns
+
+    @property
+    def yields_at(self) -> float:
+        """Delta/R of first yield; infinite for an elastic pair."""
+        return critical_depth(self.pair) / self.pair.R
+
+    def is_of(self, pair: Pair) -> bool:
+        """Whether `pair` is the same problem, whatever its size and unit of stress."""
+        ours, theirs = _groups(self.pair), _groups(pair)
+        return bool(np.allclose(ours, theirs, rtol=1e-6, atol=1e-12))
+
+    def numbers(self) -> Floats:
+        """What the kernels read behind the common numbers."""
+        x, force, radius = self._loading()
+        grid = np.linspace(x[0], x[-1], _POINTS)
+        F, a = (PchipInterpolator(x, v)(grid) for v in (force, radius))
+        left, part, exponent = self._recovery(grid, F, a)
+        rows = []
+        for values in (F, a, left, part, exponent):
+            slope = PchipInterpolator(grid, values).derivative()(grid) * (grid[1] - grid[0])
+            rows.append(np.stack([values, slope], axis=1).ravel())
+        return np.concatenate([[_POINTS, grid[0], grid[1] - grid[0]], *rows])
+
+    def _loading(self) -> tuple[Floats, Floats, Floats]:
+        """Logarithms of depth, force and radius: Hertz's while elastic, then the data's."""
+        c = self.curve
+        onset = self.yields_at
+        if math.isfinite(onset):
+            early, seen = np.array(_ELASTIC) * onset, c.depth >= _JOINED * onset
+        else:
+            early, seen = np.geomspace(1e-3, 0.3, 5) * c.depth[0], c.depth > 0.0
+        depth = np.concatenate([early, c.depth[seen]])
+        force = np.concatenate([4.0 / 3.0 * early**1.5, c.force[seen]])
+        radius = np.concatenate([np.sqrt(early), c.radius[seen]])
+        # a ripple of the mesh may not turn into a force that falls
+        force, radius = (np.maximum.accumulate(v) for v in (force, radius))
+        return np.log(depth), np.log(force), np.log(radius)
+
+    def _recovery(self, x: Floats, F: Floats, a: Floats) -> tuple[Floats, Floats, Floats]:
+        """Permanent part, the sphere's part of it and the exponent at x, of ln F and ln a there."""
+        D, force, radius = np.exp(x), np.exp(F), np.exp(a)
+        work = np.concatenate([[0.4 * force[0] * D[0]], np.zeros(len(x) - 1)])
+        work[1:] = work[0] + np.cumsum(_panels(x, F))
+        elastic = force * D / work  # N + 1 of a body that gives back all that it took
+        onset, t = self.yields_at, self.turns
+        if not math.isfinite(onset) or len(t.depth) == 0:
+            return np.zeros_like(x), np.full_like(x, 0.5), elastic - 1.0
+        per_force = radius * D / force
+        at = np.log(np.concatenate([[onset], t.depth]))
+        recovered = np.interp(at[1:], x, np.log(per_force)) + np.log(1.0 - t.left)
+        first = np.interp(at[0], x, np.log(per_force))
+        curve = PchipInterpolator(at, np.concatenate([[first], recovered]))
+        inside = np.clip(x, at[0], at[-1])
+        left = np.where(x > at[0], 1.0 - np.exp(curve(inside)) / per_force, 0.0)
+        left = np.maximum(left, 0.0)
+        ends = np.concatenate([[np.interp(at[0], x, elastic) - 1.0], t.exponent])
+        part = PchipInterpolator(at, np.concatenate([[t.part[0]], t.part]))(inside)
+        exponent = PchipInterpolator(at, ends)(inside)
+        # no cycle gives back more than was spent, between two unloadings neither
+        needed = elastic * (1.0 - left) - 1.0
+        yielded = np.where(x > at[0], np.maximum(exponent, needed), elastic - 1.0)
+        return left, part, yielded
+
+
+def _panels(x: Floats, F: Floats) -> Floats:
+    """Work over each interval of ln depth, of a force that is a power of the depth there."""
+    power = np.diff(F) / np.diff(x) + 1.0
+    return np.asarray((np.exp(F[1:] + x[1:]) - np.exp(F[:-1] + x[:-1])) / power)
+
+
+def _groups(pair: Pair) -> list[float]:
+    modulus = pair.E_reduced
+    found = [pair.elastic_share]
+    for body in (pair.sphere, pair.flat):
+        strength = 0.0 if math.isinf(body.strength) else body.strength / modulus
+        found += [0.0, 0.0] if body.rigid else [body.nu, strength]
+    return found
+
+
+@dataclass(frozen=True, kw_only=True)
+class TableLaw(ContactLaw):
+    """The law of the pairs whose finite elements were given.
+
+    Parameters
+    ----------
+    tables
+        One or several pairs'.
+    """
+
+    tables: tuple[PairTable, ...]
+
+    @property
+    def kernels(self) -> Kernels:
+        """The compiled functions, the same for every table."""
+        return TABLE_KERNELS
+
+    def parameters(self, pair: Pair) -> Floats:
+        """Common numbers, then the table of the pair.
+
+        Raises
+        ------
+        InputError
+            No table is of this pair.
+        """
+        return np.concatenate([common_parameters(pair), _numbers(self._table(pair))])
+
+    def share(self, pair: Pair, depth: Depths) -> Floats:
+        """delta_s*, shape (...); the elastic share where the contact is open."""
+        c, d = self._table(pair).curve, np.asarray(depth, dtype=float)
+        x = np.log(np.maximum(d / pair.R, 1e-300))
+        return np.where(d > 0.0, np.interp(x, np.log(c.depth), c.share), pair.elastic_share)
+
+    def uncertainty(self, pair: Pair, depth: Depths) -> Uncertainty:
+        """What the solve says of its own elements; see `ContactLaw.uncertainty`.
+
+        Dent and energy of recovery, of which there is no second solve, are off by as much as force
+        and radius together.
+        """
+        c, d = self._table(pair).curve, np.asarray(depth, dtype=float)
+        x = np.log(np.maximum(d / pair.R, 1e-300))
+        force, radius, share = (
+            np.maximum(np.interp(x, np.log(c.depth), v), LEAST)
+            for v in (c.force_std, c.radius_std, c.share_std)
+        )
+        both = np.hypot(force, radius)
+        return Uncertainty(force, radius, share, both, both)
+
+    def warn_outside(self, pair: Pairs, depth: Depths) -> None:
+        """Warn with `DomainWarning` beyond the deepest recorded depth."""
+        pairs = [pair] if isinstance(pair, Pair) else list(pair)
+        deepest = float(np.max(np.asarray(depth, dtype=float), initial=0.0))
+        for one in pairs:
+            last = float(self._table(one).curve.depth[-1])
+            if deepest > last * one.R * (1.0 + 1e-9):
+                told = f"Delta_over_R = {deepest / one.R:.4g} is beyond the table's {last:.4g}"
+                warnings.warn(f"{self.name}: {told}", DomainWarning, stacklevel=3)
+                return
+
+    def _table(self, pair: Pair) -> PairTable:
+        for table in self.tables:
+            if table.is_of(pair):
+                return table
+        raise InputError(
+            "the table is of another pair", source=self.name, key="law",
+            allowed="; ".join(_told(table.pair) for table in self.tables),
+        )  # fmt: skip
+
+
+@lru_cache(maxsize=64)
+def _numbers(table: PairTable) -> Floats:
+    return table.numbers()
+
+
+def _told(pair: Pair) -> str:
+    return ", ".join(
+        f"{name} rigid" if body.rigid else
+        f"{name} E_Pa {body.E:g} nu {body.nu:g} Sy_Pa {body.Sy:g}"
+        for name, body in (("sphere", pair.sphere), ("flat", pair.flat))
+    )  # fmt: skip
+
+
+def energy_exponent(depth: Floats, force: Floats, residual: float) -> float:
+    """Exponent of the power law that gives back the same energy, F_m (Delta_m - Delta_r)/(N + 1).
+
+    The unloading is no exact power law; a slope fitted to its logarithms, which look at small
+    forces, gives back 3 % too little. Between neighbours the curve is taken as a power law.
+
+    Parameters
+    ----------
+    depth, force
+        Of an unloading, from its peak on, shape (n,), in any unit.
+    residual
+        The permanent approach, in the unit of the depth.
+
+    Returns
+    -------
+    float
+        N; nan where the curve is none.
+    """
+    x, y = (depth - residual) / (depth[0] - residual), force / force[0]
+    m = (y > 1e-9) & (x > 1e-9)
+    x, y = x[m], y[m]
+    if len(x) < 3 or not (np.all(np.diff(x) < 0.0) and np.all(np.diff(y) < 0.0)):
+        return float("nan")
+    power = np.diff(np.log(y)) / np.diff(np.log(x))
+    power = np.append(power, power[-1])  # from the last point on to the residual depth
+    begin, end = x * y, np.append(x[1:] * y[1:], 0.0)
+    return float(1.0 / np.sum((begin - end) / (power + 1.0)) - 1.0)
+
+
+def table_law(tables: Sequence[PairTable], *, name: str) -> TableLaw:
+    """Return the law of these tables."""
+    deepest = min(float(t.curve.depth[-1]) for t in tables)
+    return TableLaw(
+        name=name,
+        title="dentscope, finite elements of this pair",
+        source=name,
+        equations="no form: a table",
+        standing=Standing.OWN_SOURCE,
+        domain=Domain(note=f"Delta_over_R to {deepest:.3g}"),
+        breaks=(),
+        tables=tuple(tables),
+    )

@@ -1,0 +1,100 @@
+"""How far off a law may be, as a function of pair and depth.
+
+Ours are calibrated on pairs that the fit had not seen: a standard deviation of each quantity grows
+from nothing at first yield and follows how close the strengths are, how near the taking over is,
+how deep the contact. A published law states none: `beside.beside_fitted` says how far it is off.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from typing import Any, NamedTuple
+
+import numpy as np
+import numpy.typing as npt
+
+from .closed_form import PairNumbers, plastic_depth, small_radius_at
+
+Floats = npt.NDArray[np.float64]
+
+FEATURES = (
+    "one", "yield", "depth", "equal", "taking_over", "stiffness", "elastic_share",
+)  # fmt: skip
+"""What a standard deviation depends on; see `features_of`."""
+
+LEAST = 1e-3
+"""Standard deviation that no law goes below."""
+
+
+class Uncertainty(NamedTuple):
+    """Standard deviations of what a law says of a pair at a depth, each of the depth's shape.
+
+    All relative but that of the share, which is absolute. `dent` is the whole permanent depth left
+    by unloading from this depth; `given_back` the energy of that unloading at equal peak force.
+    """
+
+    force: Floats
+    radius: Floats
+    share: Floats
+    dent: Floats
+    given_back: Floats
+
+
+@dataclass(frozen=True)
+class Calibration:
+    """Weights of `FEATURES` in the logarithm of each standard deviation.
+
+    Parameters
+    ----------
+    weights
+        One row for each field of `Uncertainty`, shape (5, n_features).
+    """
+
+    weights: Floats
+
+    def of(self, numbers: PairNumbers, D: Floats) -> Uncertainty:
+        """Return the standard deviations of one pair at Delta/R = D, shape (...)."""
+        features = features_of(numbers, np.maximum(D, 1e-12))
+        sizes = (deviation(features, row) for row in self.weights)
+        return Uncertainty(*(np.where(D > 0.0, size, LEAST) for size in sizes))
+
+    @classmethod
+    def from_content(cls, content: Mapping[str, Sequence[float]]) -> Calibration:
+        """Rebuild from `content()`."""
+        return cls(np.array([content[name] for name in Uncertainty._fields], dtype=float))
+
+    def content(self) -> dict[str, list[float]]:
+        """Plain values for a file."""
+        return {
+            name: [float(f"{x:.6g}") for x in row]
+            for name, row in zip(Uncertainty._fields, self.weights, strict=True)
+        }
+
+
+def features_of(numbers: PairNumbers, D: Any) -> Floats:
+    """Features at Delta/R = D, shape (..., n_features); fields of the numbers go with D.
+
+    One; how far the contact has yielded (logarithm, 0 in the end); depth beyond yield; closeness of
+    the strengths; of the taking over; E'/S; the elastic share of the stiffer body.
+    """
+    y = plastic_depth(numbers.W * D)
+    small = small_radius_at(D, y, numbers)
+    even = 1.0 / (1.0 + (numbers.L / 0.2) ** 2)
+    turn = 1.0 / (1.0 + (np.log(small / numbers.a_t) / 0.25) ** 2)
+    columns = (
+        np.ones_like(y),
+        np.log(np.maximum(y, 1e-9) / (1.0 + y)),
+        np.log1p(y) / 5.0,
+        even + 0.0 * y,
+        turn / (1.0 + (numbers.L / 0.7) ** 2),
+        (0.5 * np.log(numbers.W) - 5.0) / 1.2 + 0.0 * y,
+        np.abs(numbers.x_s - 0.5) / 0.22 + 0.0 * y,
+    )
+    return np.stack(columns, axis=-1)
+
+
+def deviation(features: Floats, weights: Floats, *, least: float = LEAST) -> Floats:
+    """Standard deviation, shape (...): at least `least`, hardly above 1."""
+    log_size = np.minimum(features @ weights, 0.0)
+    return np.asarray(np.hypot(least, np.exp(log_size)))
