@@ -126,22 +126,23 @@ class Verdict:
                 }
                 for c in self.corrections
             ],
-            "next_experiment": {
-                "change": self.proposals[0].change if self.proposals else "",
-                "expected_discrimination": (
-                    self.proposals[0].expected_discrimination if self.proposals else 0.0
-                ),
-                "others": [
-                    {
-                        "change": p.change, "kind": p.kind,
-                        "expected_discrimination": p.expected_discrimination,
-                        "interval": None if math.isnan(p.interval) else p.interval,
-                    }
-                    for p in self.proposals[1:]
-                ],
-            },
+            "next_experiment": self._next(),
             "notes": [*self.reasons, *self.notes],
         }  # fmt: skip
+
+    def _next(self) -> dict[str, Any]:
+        """The best proposal, and the others beside it."""
+        if not self.proposals:
+            return {"change": "", "expected_discrimination": 0.0, "others": []}
+        first, *others = (_proposed(p) for p in self.proposals)
+        return {**first, "others": others}
+
+
+def _proposed(p: Proposal) -> dict[str, Any]:
+    return {
+        "change": p.change, "expected_discrimination": p.expected_discrimination, "kind": p.kind,
+        "interval": None if math.isnan(p.interval) else p.interval, "trial": dict(p.trial),
+    }  # fmt: skip
 
 
 def _stated(found: dict[str, float]) -> dict[str, float | None]:

@@ -11,8 +11,8 @@ from __future__ import annotations
 
 import itertools
 import math
-from collections.abc import Sequence
-from dataclasses import dataclass, replace
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, field, replace
 
 import numpy as np
 from numpy.typing import NDArray
@@ -52,12 +52,15 @@ class Proposal:
         `trial`, `build`, `noise`, `observable` or `none`.
     interval
         Width of the leading parameter's interval over that of today; nan where not worked out.
+    trial
+        Striker, speed [m/s] and angle [degrees] of a trial, and mass [kg] and tip radius [m].
     """
 
     change: str
     expected_discrimination: float
     kind: str = "trial"
     interval: float = math.nan
+    trial: Mapping[str, str | float] = field(default_factory=dict)
 
 
 def rivals_of(ranking: Ranking, odds: Odds) -> list[tuple[Fit, float]]:
@@ -118,7 +121,14 @@ def _trial(
 ) -> Proposal:  # fmt: skip
     here = [{o: s[o][:, k] for o in measured} for s in seen]
     text = f"{c.change}, measuring {_words(measured)}"
-    return Proposal(text, _worth(here, weight, problem), "build" if c.built else "trial")
+    table = c.built or problem.rig.strikers[c.condition.striker]
+    trial: dict[str, str | float] = {
+        "striker": c.condition.striker, "speed_m_s": c.condition.speed,
+        "angle_deg": math.degrees(c.condition.angle), "mass_kg": table.mass_kg.value,
+        "tip_radius_m": table.tip_radius_m.value,
+    }  # fmt: skip
+    kind = "build" if c.built else "trial"
+    return Proposal(text, _worth(here, weight, problem), kind, trial=trial)
 
 
 def _further(

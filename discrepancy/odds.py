@@ -12,7 +12,7 @@ from scipy.special import logsumexp
 from .rank import Ranking
 
 OUTSIDE = "outside-library"
-PRIORS = {"baseline": 0.5, "singles": 0.28, "pairs": 0.12, OUTSIDE: 0.1}
+PRIORS = {"baseline": 0.5, "singles": 0.34, "pairs": 0.06, OUTSIDE: 0.1}
 """Before the comparison: as likely as not that nothing is missing; each single mechanism that
 could act here shares alike, and so does each pair."""
 SURE = 0.93

@@ -75,9 +75,9 @@ def score(which: _Which = "full", out: _Base = _BASE) -> None:
     """Open the truths of the sets that have a sealed verdict, score, and rewrite docs/proof.md."""
     from ...core.errors import InputError
     from ...studies.proof import page as pages
+    from ...studies.proof.case import open_run
     from ...studies.proof.lists import LISTS
     from ...studies.proof.run import ROOT, run_folder
-    from ...studies.proof.score import open_run
     from ...studies.proof.seal import SealBroken, tree_hash
 
     folder = run_folder(out, _checked(which))

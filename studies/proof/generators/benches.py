@@ -163,6 +163,29 @@ def microspheres(rng: np.random.Generator) -> Rig:
     return _rig(rng, "microspheres", GLASS, strikers, (which, angle, speed), noise, law="elastic")
 
 
+def balls_drops(rng: np.random.Generator) -> Rig:
+    """Balls of three sizes from five to eight heights, their restitution alone."""
+    radii = sorted(rng.choice([2e-3, 3e-3, 5e-3, 8e-3, 12.5e-3], 3, False).tolist())
+    count = int(rng.integers(5, 9))
+    heights = np.geomspace(rng.uniform(0.02, 0.05), rng.uniform(0.8, 1.5), count)
+    speeds = np.round(np.sqrt(2.0 * 9.81 * heights), 3)
+    noise = {"restitution": (0.004 * rng.uniform(0.7, 1.5), 0.005)}
+    grid = _grid(3, [0.5 * math.pi], speeds, int(rng.integers(3, 6)))
+    return _rig(rng, "balls-drops", _metal(rng), _balls(rng, radii), grid, noise)
+
+
+def rods_angles(rng: np.random.Generator) -> Rig:
+    """One rod at four angles from two or three heights."""
+    radius = float(rng.choice([4.5e-3, 6.35e-3, 8.8e-3]))
+    length = float(rng.choice([0.15, 0.20, 0.30]))
+    body = Striker(f"rod-{1e3 * length:.0f}", BEARING_STEEL, radius, radius, length)
+    angles = [math.radians(a) for a in (20.0, 45.0, 70.0, 80.0)]
+    speeds = np.round(np.geomspace(rng.uniform(0.8, 1.2), rng.uniform(2.0, 3.0), 3), 3)
+    grid = _grid(1, angles, speeds[: rng.integers(2, 4)], 4)
+    names = ("restitution", "permanent_depth_m", "sliding_length_m")
+    return _rig(rng, "rods-angles", _metal(rng), (body,), grid, _noise(rng, *names))
+
+
 def balls_heated(rng: np.random.Generator) -> Rig:
     """One ball on a flat at four temperatures."""
     r = float(rng.choice([4e-3, 6e-3, 9e-3]))
@@ -190,6 +213,8 @@ BENCHES: dict[str, Callable[[np.random.Generator], Rig]] = {
     "balls-elastic": balls_elastic,
     "balls-small": balls_small,
     "balls-heated": balls_heated,
+    "balls-drops": balls_drops,
+    "rods-angles": rods_angles,
     "microspheres": microspheres,
 }
 """By name; the first four are the common ones."""

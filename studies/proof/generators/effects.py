@@ -349,12 +349,12 @@ def _put_slow(p: Array, rig: Rig, effect: Effect) -> None:
 _METALS = ("rods-normal", "balls-normal")
 
 EFFECTS: dict[str, Kind] = {
-    "strain-rate-hardening": Kind(_METALS, _rate, _put_rate),
-    "work-hardening": Kind(_METALS, _hardening, _put_hardening),
+    "strain-rate-hardening": Kind((*_METALS, "balls-drops"), _rate, _put_rate),
+    "work-hardening": Kind((*_METALS, "balls-drops"), _hardening, _put_hardening),
     "thermal-softening": Kind(("balls-heated",), _thermal, _put_thermal),
-    "half-space-waves": Kind(("balls-elastic", "balls-normal"), _waves, _put_waves),
+    "half-space-waves": Kind(("balls-elastic", "balls-normal", "balls-drops"), _waves, _put_waves),
     "rod-longitudinal-waves": Kind(("rods-normal",), _axial, _beam),
-    "rod-flexural-vibration": Kind(("rods-oblique",), _flexural, _beam),
+    "rod-flexural-vibration": Kind(("rods-oblique", "rods-angles"), _flexural, _beam),
     "support-compliance": Kind(_METALS, _support, _put_support),
     "tangential-compliance": Kind(("balls-oblique",), _elastic_slip, _put_elastic_slip),
     "velocity-dependent-friction": Kind(
@@ -369,7 +369,7 @@ EFFECTS: dict[str, Kind] = {
     "hardened-layer": Kind((*_METALS, "balls-small"), _layer, _put_layer),
     "size-effect": Kind(("balls-small",), _size, _put_size),
     "impact-speed-loss": Kind(_METALS, _slow, _put_slow),
-    "tilt": Kind(("rods-oblique",), _tilt, _put_tilt),
+    "tilt": Kind(("rods-oblique", "rods-angles"), _tilt, _put_tilt),
 }
 """The names of the verdict, in its order."""
 

@@ -36,6 +36,8 @@ def strength(p, peak):
     if peak <= 0.0:
         return Y
     a = math.sqrt(2.0 * R * peak + p[at.FLAT] ** 2)
+    if p[at.CURVE] > 0.0:
+        Y *= 1.0 + p[at.CURVE] * (1.0 - math.exp(-0.2 * a / R / p[at.CURVE_STRAIN]))
     kind = p[at.HARD_KIND]
     if kind > 0.0:
         e = 0.2 * a / R
@@ -60,6 +62,19 @@ def strength(p, peak):
     if p[at.WAVE_A] > 0.0:
         Y *= 1.0 + p[at.WAVE_A] * math.sin(2.0 * math.pi * a / p[at.WAVE_B])
     return Y
+
+
+@njit(cache=True)
+def softer(p, peak):
+    """Elastic compliance of the unloading from a dent over that of the virgin metal, less 1.
+
+    The chord modulus of unloading falls with plastic strain, E_0 - (E_0 - E_a) (1 - exp(-xi e)):
+    F. Yoshida, T. Uemori, K. Fujiwara, Int. J. Plasticity 18 (2002) 633.
+    """
+    if p[at.CHORD] == 0.0 or peak <= 0.0 or math.isinf(p[at.STRENGTH]):
+        return 0.0
+    e = 0.2 * math.sqrt(2.0 * peak / p[at.TIP])
+    return p[at.CHORD] * (1.0 - math.exp(-e / p[at.CHORD_STRAIN]))
 
 
 @njit(cache=True)

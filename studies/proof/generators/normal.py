@@ -1,4 +1,9 @@
-"""The normal force of a step: both base laws with memory, then layers and dissipation on top."""
+"""The normal force of a step: both base laws with memory, then layers and dissipation on top.
+
+The metal may differ from elastic-perfect plasticity: by the unloading law of I. Etsion, Y.
+Kligerman, Y. Kadin, Int. J. Solids Struct. 42 (2005) 3716, for a part of it (`OTHER_UNLOADING`), by
+a modulus of unloading that falls with strain, or by a flow curve (`flow`).
+"""
 
 from __future__ import annotations
 
@@ -16,7 +21,30 @@ N_MEMORY = 11
 
 
 @njit(cache=True)
+def _first_yield(p):
+    """Depth of first yield of a hard sphere on a flat: pressure of 1.6 yield strengths."""
+    return p[at.TIP] * (0.5 * math.pi * 1.6 * p[at.STRENGTH] / p[at.MODULUS]) ** 2
+
+
+@njit(cache=True)
+def _left(p, depth):
+    """Residual over largest depth by Etsion, Kligerman and Kadin (2005)."""
+    x = max(depth / _first_yield(p), 1.0)
+    return (1.0 - x**-0.28) * (1.0 - x**-0.69)
+
+
+@njit(cache=True)
 def _dent(p, depth):
+    force, a, left = _perfect(p, depth)
+    recovered = (depth - left) * (1.0 + flow.softer(p, depth))
+    if p[at.OTHER_UNLOADING] != 0.0:
+        other = depth * (1.0 - _left(p, depth))
+        recovered += p[at.OTHER_UNLOADING] * (other - recovered)
+    return force, a, max(depth - recovered, 0.0)
+
+
+@njit(cache=True)
+def _perfect(p, depth):
     return cavity.dent(
         depth,
         p[at.MODULUS],
@@ -36,6 +64,10 @@ def _recovered(p, memory, depth):
     W = memory[PEAK] / p[at.TIP] * (p[at.MODULUS] / p[at.STRENGTH]) ** 2
     ring = p[at.FLAT] ** 2 / (p[at.TIP] * memory[PEAK])
     n = cavity.exponent(W, ring, p[at.CAVITY_LAW : at.ROW_LAW])
+    if p[at.OTHER_UNLOADING] != 0.0:
+        # the same source
+        other = 1.5 * max(memory[PEAK] / _first_yield(p), 1.0) ** -0.0331
+        n += p[at.OTHER_UNLOADING] * (other - n)
     return memory[PEAK_F] * ((depth - rest) / (memory[PEAK] - rest)) ** n
 
 
@@ -105,6 +137,7 @@ def _row_force(p, memory, depth, speed, dt, plastic):
     total, half = 0.0, 0.0
     n = len(plastic)
     edge = memory[EDGE]
+    soft = 1.0 + flow.softer(p, peak)
     for i in range(n):
         root = (i + 0.5) / n
         x = foundation.PLACE[i] * edge
@@ -113,14 +146,15 @@ def _row_force(p, memory, depth, speed, dt, plastic):
             # image of a paraboloid with a cut tip: x sqrt(x^2 - b^2) / R
             profile = x * math.sqrt(x * x - flat * flat) / wide if x > flat else 0.0
         u = depth - profile
-        q = E * (u - plastic[i])
+        # a spring that has yielded gives back more than it took elastically
+        q = E * u if plastic[i] == 0.0 else E / soft * (u - plastic[i])
         if q <= 0.0:
             continue
         b2 = a2 - x * x
         cap = 2.0 * h * math.sqrt(b2) if b2 > 0.0 else 0.0
         if (growing or rate) and q > cap:
             if not rate:
-                plastic[i] = u - cap / E
+                plastic[i] = u - soft * cap / E
                 q = cap
             else:
                 low, high = cap, q
@@ -132,7 +166,7 @@ def _row_force(p, memory, depth, speed, dt, plastic):
                     else:
                         high = middle
                 q = 0.5 * (low + high)
-                plastic[i] = u - q / E
+                plastic[i] = u - soft * q / E
         total += q * 2.0 * root / n * edge
         half = x
     memory[PEAK] = peak

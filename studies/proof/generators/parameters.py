@@ -24,12 +24,15 @@ from __future__ import annotations
     TANGENTIAL_RATIO, FRICTION_KIND, FRICTION_A, FRICTION_B, PLOUGH_KIND, PLOUGH,
     # rod: elements (0 rigid), line stiffnesses, damping time
     BEAM, BEAM_EA, BEAM_EI, BEAM_GA, BEAM_ROTARY, BEAM_LOSS,
+    # the metal's distance from elastic-perfect plasticity: loss of unloading modulus and its
+    # strain, rise of the flow curve and its strain, weight of another unloading law
+    CHORD, CHORD_STRAIN, CURVE, CURVE_STRAIN, OTHER_UNLOADING,
     # numerics
     STEPS, FOLLOW,
-) = range(58)  # fmt: skip
-CAVITY_LAW, ROW_LAW = 58, 68
+) = range(63)  # fmt: skip
+CAVITY_LAW, ROW_LAW = 63, 73
 """First places of the constants of the two base laws, 10 and 7."""
-N_PARAMETERS = 75
+N_PARAMETERS = 80
 
 # what an impact returns
 (

@@ -97,6 +97,10 @@ class Rig:
         Key `law` of the flat.
     extra
         Further keys of [target] and [environment].
+    metal
+        Place of a parameter to its value: how the metal differs from elastic-perfect plasticity.
+    metal_told
+        The same in plain values, for the record.
     """
 
     bench: str
@@ -113,6 +117,8 @@ class Rig:
     drop: bool = False
     law: str = "elastic-plastic"
     extra: dict[str, dict[str, object]] = field(default_factory=dict)
+    metal: dict[int, float] = field(default_factory=dict)
+    metal_told: dict[str, float | str] = field(default_factory=dict)
 
     def __len__(self) -> int:
         return len(self.which)
@@ -155,4 +161,6 @@ class Rig:
         p[:, at.LAW] = family
         p[:, at.STEPS] = steps
         p[:, at.FOLLOW] = 1e-6
+        for place, value in self.metal.items():
+            p[:, place] = value
         return p

@@ -129,6 +129,34 @@ class Visibility:
         inner = np.linalg.solve(np.eye(self.J.shape[1]) + self.J.T @ self.J, self.J.T @ e)
         return math.sqrt(max(float(e @ e - (self.J.T @ e) @ inner), 0.0))
 
+    def places(self, e: Array) -> list[tuple[str, str, float]]:
+        """Where a change (m,) shows: observable, condition or "overall", and score; largest first.
+
+        A contrast is a constant over the readings of one observable, or a slope along a condition
+        that varies; its score is what the change has along it over what noise and nuisances have.
+        """
+        rig, n = self.rig, len(self.rig)
+        bodies = [rig.strikers[k] for k in rig.which]
+        along = {
+            "impact speed": np.log(rig.speed), "rod length": np.array([b.length for b in bodies]),
+            "tip radius": np.log([b.tip_radius for b in bodies]),
+            "striker mass": np.log([b.mass for b in bodies]), "angle": rig.angle,
+            "tangential speed": rig.tangential, "temperature": rig.temperature,
+        }  # fmt: skip
+        total = np.eye(len(e)) + self.J @ self.J.T
+        solved = np.linalg.solve(total, e)
+        found = []
+        for k, name in enumerate(rig.noise):
+            here = slice(k * n, (k + 1) * n)
+            shapes = {"overall": np.ones(n)}
+            shapes |= {c: x - x.mean() for c, x in along.items() if np.ptp(x) > 1e-6}
+            for condition, x in shapes.items():
+                contrast = np.zeros(len(e))
+                contrast[here] = x * self.weight[here]
+                size = math.sqrt(float(contrast @ np.linalg.solve(total, contrast)))
+                found.append((name, condition, abs(float(contrast @ solved)) / size))
+        return sorted(found, key=lambda place: -place[2])
+
 
 def size_of(
     rig: Rig, effects: Sequence[Effect], *, family: float, z: dict[str, float],

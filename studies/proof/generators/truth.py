@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import dataclass, field, replace
 from typing import Any
 
@@ -10,12 +11,14 @@ from numpy.typing import NDArray
 
 from .benches import BENCHES
 from .effects import EFFECTS, OUTSIDE, Effect, Kind
+from .metals import draw_metal
 from .parameters import CAVITY, FOUNDATION
 from .rig import NUISANCES, Rig
-from .simulate import size_beyond_library, size_of
+from .simulate import Visibility, size_beyond_library, size_of
 
 NULL_BENCHES = (
     "rods-normal", "rods-oblique", "balls-normal", "balls-oblique", "balls-small", "balls-elastic",
+    "balls-drops", "rods-angles",
 )  # fmt: skip
 
 SEEN, ENORMOUS = 4.0, 80.0
@@ -92,6 +95,9 @@ class Truth:
             "bench": self.rig.bench,
             "family": self.family,
             "nuisances": self.z,
+            "strikers": [s.name for s in self.rig.strikers],
+            "speeds": [float(np.min(self.rig.speed)), float(np.max(self.rig.speed))],
+            "angles": [float(np.min(self.rig.angle)), float(np.max(self.rig.angle))],
             "instrument": {
                 "shape": self.instrument.shape,
                 "outliers": self.instrument.outliers,
@@ -125,18 +131,46 @@ def draw(rng: np.random.Generator, kind: str, *, name: str = "", off: bool | Non
     instrument = draw_instrument(rng)
     if kind in PLANTED:
         return _planted(rng, kind, family, instrument)
+    make = _maker(rng, family, z)
     if kind == "null":
-        rig = BENCHES[str(rng.choice(NULL_BENCHES))](rng)
-        if rig.law == "elastic-plastic" and "oblique" not in rig.bench and rng.random() < 0.3:
+        rig = make(str(rng.choice(NULL_BENCHES)))
+        if rig.law == "elastic-plastic" and _upright(rig) and rng.random() < 0.3:
             rig = replace(rig, drop=True)
-        return Truth(kind, rig, (), (), family, z, instrument)
+        return _told(Truth(kind, rig, (), (), family, z, instrument))
     if kind == "pair":
-        rig, effects, sizes = _pair(rng, family, z)
-        return Truth(kind, rig, effects, sizes, family, z, instrument)
+        rig, effects, sizes = _pair(rng, family, z, make)
+        return _told(Truth(kind, rig, effects, sizes, family, z, instrument))
     table = EFFECTS if kind == "single" else OUTSIDE
     name = name or str(rng.choice(list(table)))
-    rig, effect, size = _single(rng, name, table[name], family, z)
-    return Truth(kind, rig, (effect,), (size,), family, z, instrument)
+    rig, effect, size = _single(rng, name, table[name], family, z, make)
+    return _told(Truth(kind, rig, (effect,), (size,), family, z, instrument))
+
+
+def _upright(rig: Rig) -> bool:
+    return bool(np.all(rig.angle > 0.5 * np.pi - 1e-9)) and not np.any(rig.tangential)
+
+
+Maker = Callable[[str], Rig]
+
+
+def _maker(rng: np.random.Generator, family: str, z: dict[str, float]) -> Maker:
+    """Return what draws a bench; half of all sets are of metals that are off perfect plasticity."""
+    off = bool(rng.random() < 0.5)
+
+    def make(bench: str) -> Rig:
+        rig = BENCHES[bench](rng)
+        return draw_metal(rng, rig, family=FAMILIES[family], z=z) if off else rig
+
+    return make
+
+
+def _told(case: Truth) -> Truth:
+    """The same with what its metal is, and where its effects would be seen first, on record."""
+    more: dict[str, Any] = {**case.rig.metal_told}
+    if case.effects:
+        seen = Visibility.of(case.rig, family=FAMILIES[case.family], z=case.z)
+        more["places"] = seen.places(seen.change(case.effects))
+    return replace(case, more=case.more | more)
 
 
 def _planted(rng: np.random.Generator, kind: str, family: str, instrument: Instrument) -> Truth:
@@ -165,20 +199,20 @@ def draw_nuisances(rng: np.random.Generator) -> dict[str, float]:
     return {name: float(np.clip(rng.normal(), -2.0, 2.0)) for name in NUISANCES}
 
 
-def _prepared(rng: np.random.Generator, bench: str, names: tuple[str, ...]) -> Rig:
+def _prepared(make: Maker, bench: str, names: tuple[str, ...]) -> Rig:
     """The bench with what a user would write down when such an effect is possible there."""
-    rig = BENCHES[bench](rng)
+    rig = make(bench)
     if "impact-speed-loss" in names:
         rig = replace(rig, drop=True)
     return rig
 
 
 def _single(
-    rng: np.random.Generator, name: str, kind: Kind, family: str, z: dict[str, float]
+    rng: np.random.Generator, name: str, kind: Kind, family: str, z: dict[str, float], make: Maker
 ) -> tuple[Rig, Effect, float]:
     tried: list[tuple[float, Rig, Effect, float]] = []
     for _ in range(_DRAWS):
-        rig = _prepared(rng, str(rng.choice(kind.benches)), (name,))
+        rig = _prepared(make, str(rng.choice(kind.benches)), (name,))
         effect = kind.draw(rng, rig, FAMILIES[family])
         law, away = FAMILIES[family], 0.0
         if name in OUTSIDE:
@@ -197,7 +231,7 @@ def _single(
 
 
 def _pair(
-    rng: np.random.Generator, family: str, z: dict[str, float]
+    rng: np.random.Generator, family: str, z: dict[str, float], make: Maker
 ) -> tuple[Rig, tuple[Effect, ...], tuple[float, ...]]:
     law = FAMILIES[family]
     tried: list[tuple[float, Rig, tuple[Effect, ...], tuple[float, ...]]] = []
@@ -207,7 +241,7 @@ def _pair(
         chosen = tuple(str(n) for n in rng.choice(able, 2, replace=False))
         if any(set(chosen) == seam for seam in _SAME_SEAM):
             continue
-        rig = _prepared(rng, bench, chosen)
+        rig = _prepared(make, bench, chosen)
         effects = tuple(EFFECTS[n].draw(rng, rig, law) for n in chosen)
         sizes = tuple(
             size_of(rig, [e], family=law, z=z, keep=[o for o in effects if o is not e])

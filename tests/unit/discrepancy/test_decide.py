@@ -162,4 +162,4 @@ def test_a_mechanism_without_a_fit_counts_by_its_screening(toy) -> None:
     screened = SimpleNamespace(mechanism=one, log_bayes=math.log(6.0))
     ranking = toy.ranking_of(toy.problem([0.0] * CELLS), base, screened=[screened])
     found = odds_of(ranking, Calibration(), -math.inf)
-    assert found.probability["a"] / found.baseline == pytest.approx(6.0 * 0.28 / 0.5)
+    assert found.probability["a"] / found.baseline == pytest.approx(6.0 * PRIORS["singles"] / 0.5)

@@ -10,6 +10,8 @@ from dentscope.studies.proof.generators import (
     cavity,
     effects,
     foundation,
+    metals,
+    normal,
     simulate,
 )
 from dentscope.studies.proof.generators import parameters as at
@@ -210,3 +212,48 @@ def test_base_laws_follow_the_finite_elements_of_each_pair(target, law):
         back = [of_pair(constants, curve.stiffness, d)[2] for d in curve.turn]
         assert np.sqrt(np.mean(np.log(force / curve.force) ** 2)) < mark
         assert np.sqrt(np.mean(np.log(back / curve.back) ** 2)) < mark
+
+
+@pytest.mark.parametrize("law", LAWS)
+def test_a_modulus_that_falls_gives_more_back_and_digs_no_deeper(law):
+    """The energy that returns goes with the compliance of the unloading (a spring's F^2/(2k))."""
+    plain, soft = row(law), row(law)
+    soft[0, at.CHORD], soft[0, at.CHORD_STRAIN] = 0.2, 1e-6
+    one, two = (simulate.results_of(p)[0] for p in (plain, soft))
+    assert (two[at.RESTITUTION] / one[at.RESTITUTION]) ** 2 == pytest.approx(1.2, abs=0.03)
+    assert two[at.PEAK_FORCE] == pytest.approx(one[at.PEAK_FORCE], rel=5e-3)
+
+
+def test_another_unloading_is_that_of_its_source():
+    """Etsion, Kligerman and Kadin: what is left of a dent of 100 times the depth of first yield."""
+    p = row(at.CAVITY)[0]
+    p[at.OTHER_UNLOADING] = 1.0
+    first = normal._first_yield(p)
+    _, _, left = normal._dent(p, 100.0 * first)
+    x = 100.0
+    assert left / (100.0 * first) == pytest.approx((1.0 - x**-0.28) * (1.0 - x**-0.69), rel=1e-9)
+    assert normal._dent(p, 0.5 * first)[2] == 0.0
+
+
+@pytest.mark.parametrize("law", LAWS)
+def test_metals_are_as_far_off_as_was_drawn(law):
+    rng = np.random.default_rng(8)
+    for _ in range(3):
+        rig = metals.draw_metal(rng, benches.balls_normal(rng), family=law, z={})
+        assert metals.OFF[0] * 0.85 < rig.metal_told["metal_off"] < metals.OFF[1] * 1.15
+    glass = benches.balls_elastic(rng)
+    assert metals.draw_metal(rng, glass, family=law, z={}) is glass
+
+
+def test_an_effect_is_placed_where_its_readings_change():
+    """A lost share of the speed: every dent smaller alike, nothing along the radius."""
+    rng = np.random.default_rng(2)
+    rig = benches.balls_normal(rng)
+    seen = simulate.Visibility.of(rig, family=at.CAVITY, z={})
+    n = len(seen.rig)
+    change = np.zeros(len(seen.weight))
+    depth = list(rig.noise).index("permanent_depth_m")
+    speed = np.log(seen.rig.speed)
+    change[depth * n : (depth + 1) * n] = 9.0 * (speed - speed.mean())
+    first = seen.places(change)[0]
+    assert first[:2] == ("permanent_depth_m", "impact speed")

@@ -6,7 +6,8 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from dentscope.studies.proof import lists, page, run, score, seal
+from dentscope.studies.proof import calibrated, lists, page, run, score, seal
+from dentscope.studies.proof.case import Case, interval, open_run
 from dentscope.studies.proof.lists import Entry
 
 
@@ -33,10 +34,10 @@ def sealed(tmp_path):
 
 
 def test_whole_run_opens(sealed):
-    (case,) = score.open_run(sealed)
+    (case,) = open_run(sealed)
     assert case.said == "adequate"
     # a second opening is as good as the first
-    assert score.open_run(sealed)[0].said == "adequate"
+    assert open_run(sealed)[0].said == "adequate"
 
 
 @pytest.mark.parametrize(
@@ -45,7 +46,7 @@ def test_whole_run_opens(sealed):
 def test_changed_file_breaks_the_seal(sealed, path):
     (sealed / path).write_text((sealed / path).read_text() + " ")
     with pytest.raises(seal.SealBroken, match="not"):
-        score.open_run(sealed)
+        open_run(sealed)
 
 
 @pytest.mark.parametrize("change", ["drop", "swap", "edit", "cut"])
@@ -58,7 +59,7 @@ def test_changed_ledger_breaks_the_chain(sealed, change):
     }[change]  # fmt: skip
     path.write_text(text + "\n")
     with pytest.raises(seal.SealBroken):
-        score.open_run(sealed)
+        open_run(sealed)
 
 
 def test_several_writers_leave_the_chain_whole(tmp_path):
@@ -70,10 +71,10 @@ def test_several_writers_leave_the_chain_whole(tmp_path):
 
 def test_verdict_after_opening_is_refused(tmp_path, sealed):
     ledger = seal.Ledger(sealed / "ledger.jsonl")
-    score.open_run(sealed)
+    open_run(sealed)
     ledger.add(**(ledger.of("verdict")["set-0000"] | {"cpu_s": 2.0}))
     with pytest.raises(seal.SealBroken, match="more than once"):
-        score.open_run(sealed)
+        open_run(sealed)
 
 
 def test_tree_hash_sees_the_tool_and_not_the_proof(tmp_path):
@@ -136,10 +137,14 @@ def test_run_goes_on_where_it_stopped(tmp_path, monkeypatch):
         assert run.verdicts_of(tmp_path) == 2
         assert len(list(run.carry_on(tmp_path, "small", threads, at_once=2))) == 1
     assert sorted(seen) == ["set-0000", "set-0001", "set-0002"]
-    cases = score.open_run(tmp_path)
+    cases = open_run(tmp_path)
     found = {s.name: s for s in score.scores(cases)}
-    assert found["false alarms on nulls"].hits == 0
-    assert found["false alarms on nulls"].state == "not shown"
+    right, off = (
+        found[f"false alarms on nulls, metal {m}"] for m in ("as the law", "3 to 8 % off")
+    )
+    assert right.hits + off.hits == 0
+    assert right.of + off.of == 3
+    assert {right.state, off.state} <= {"not shown", "no cases"}
 
 
 def case(name, kind, true, verdict, size=15.0):
@@ -148,7 +153,7 @@ def case(name, kind, true, verdict, size=15.0):
         "kind": kind, "mechanisms": list(true), "effects": effects, "sizes": [size] * len(true),
         "bench": "b", "family": "cavity",
     }  # fmt: skip
-    return score.Case(name, truth, verdict, {"cpu_s": 1.0, "message": ""})
+    return Case(name, truth, verdict, {"cpu_s": 1.0, "message": ""})
 
 
 def test_scores_count_what_they_say():
@@ -172,7 +177,8 @@ def test_scores_count_what_they_say():
     assert (found["detected, size above 10"].hits, found["detected, size above 10"].of) == (2, 4)
     assert found["right name first, of those named"].hits == 1
     assert found["truth in the reported set"].hits == 2
-    assert found["false alarms on nulls"].hits == 1
+    assert found["false alarms on nulls, metal as the law"].hits == 1
+    assert found["false alarms on nulls, metal 3 to 8 % off"].of == 0
     assert found["forced name, outside the library"].hits == 1
     assert found["undetermined or failed"].hits == 1
     assert found["90 % intervals cover"].of == 1
@@ -184,12 +190,55 @@ def test_scores_count_what_they_say():
     text = page.page(
         [page.summary(cases, which="full", tree="ab" * 32, date="2020-01-01", total=9)], impacts=3
     )
-    assert "| false alarms on nulls | 100.0 % (1 of 1) |" in text
+    assert "| false alarms on nulls, metal as the law | 100.0 % (1 of 1) |" in text
+
+
+def test_inclusion_is_counted_mechanism_by_mechanism():
+    said = {"verdict": "adequate", "inclusion": {"size-effect": 0.9, "roughness": 0.1}}
+    cases = [case("a", "single", ["size-effect"], said), case("b", "null", [], said)]
+    low, high = calibrated.inclusion(cases)
+    assert low[2:] == (0.1, 0, 2)
+    assert high[2:] == (0.9, 1, 2)
+    # 0.1 against 0 of 2 and 0.9 against 1 of 2
+    assert calibrated.calibration_error(cases) == pytest.approx(0.5 * 0.1 + 0.5 * 0.4)
+
+
+def test_a_next_experiment_outside_the_rig_cannot_be_done():
+    def can(kind, speed, striker="ball", change="ball at some speed", angle=90.0):
+        trial = {"striker": striker, "speed_m_s": speed, "angle_deg": angle}
+        given = {"change": change, "kind": kind, "trial": trial}
+        found = case("a", "null", [], {"next_experiment": given})
+        found.truth.update(strikers=["ball"], speeds=[0.5, 3.0], angles=[1.5708, 1.5708])
+        return score.feasible(found)
+
+    assert can("trial", 2.0)
+    assert not can("trial", 12.0)
+    assert not can("trial", 2.0, "another")
+    assert not can("trial", 2.0, angle=45.0)
+    assert can("build", 2.0, "another", "build a ball like ball with a radius of 18 mm")
+    assert not can("build", 2.0, "another")
+    assert can("noise", 99.0)
+
+
+def test_the_first_place_counts_if_the_truth_shows_there_nearly_most():
+    places = [["restitution", "impact speed", 10.0], ["restitution", "overall", 8.5],
+              ["permanent_depth_m", "overall", 3.0]]  # fmt: skip
+
+    def right(observable, covariate):
+        said = {"located": [{"observable": observable, "covariate": covariate}]}
+        found = case("a", "single", ["size-effect"], {"verdict": "adequate", **said})
+        found.truth["places"] = places
+        table = {s.name: s for s in score.scores([found])}
+        return table["first place of the mismatch right, size above 10"].hits
+
+    assert right("restitution", "impact speed") == 1
+    assert right("restitution", "overall") == 1
+    assert right("permanent_depth_m", "overall") == 0
 
 
 def test_interval_is_clopper_and_pearsons():
     # 2 of 20: Newcombe, Stat. Med. 17 (1998) 857 uses the same method; table of Diem and Lentner
-    low, high = score.interval(2, 20)
+    low, high = interval(2, 20)
     assert low == pytest.approx(0.0123, abs=1e-4)
     assert high == pytest.approx(0.3170, abs=1e-4)
 

@@ -1,0 +1,119 @@
+"""One set of a run: its truth and what was said of it, opened after both were sealed."""
+
+from __future__ import annotations
+
+import json
+import math
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+from scipy.stats import beta
+
+from .same_meaning import comparable
+from .seal import Ledger, check
+
+
+@dataclass(frozen=True)
+class Case:
+    """One set with its truth and what was said of it; `verdict` is empty after a failure."""
+
+    name: str
+    truth: dict[str, Any]
+    verdict: dict[str, Any]
+    event: dict[str, Any]
+
+    @property
+    def said(self) -> str:
+        """The verdict's kind; a diagnosis that failed counts as undetermined."""
+        return str(self.verdict.get("verdict", "undetermined"))
+
+    @property
+    def best(self) -> frozenset[str]:
+        """Names of the best explanation."""
+        return frozenset(self.verdict.get("mechanisms", ()))
+
+    @property
+    def reported(self) -> list[frozenset[str]]:
+        """Every explanation that is reported, the best first."""
+        rest = [frozenset(names) for names in self.verdict.get("alternatives", ())]
+        return ([self.best] if self.best else []) + [r for r in rest if r != self.best]
+
+    @property
+    def true(self) -> frozenset[str]:
+        """Names of what is missing."""
+        return frozenset(self.truth["mechanisms"])
+
+    @property
+    def named(self) -> bool:
+        """Whether a mechanism is named."""
+        return self.said in ("missing-physics", "indistinguishable") and bool(self.reported)
+
+    @property
+    def off(self) -> bool:
+        """Whether the metal is some per cent off elastic-perfect plasticity."""
+        return "metal" in self.truth
+
+    @property
+    def worse(self) -> bool:
+        """Whether held-out conditions are predicted worse than by the baseline."""
+        table = self.verdict.get("improvement") or {}
+        base, more = table.get("held_out_baseline"), table.get("held_out_extended")
+        return base is not None and more is not None and float(more) > float(base)
+
+    @property
+    def size(self) -> float:
+        """Size of the smallest effect; NaN if it is not known."""
+        return float(np.min(self.truth["sizes"])) if self.truth["sizes"] else math.nan
+
+
+def open_run(run: Path) -> list[Case]:
+    """Check the seals of every set that has a verdict, and read truth and verdict.
+
+    Raises
+    ------
+    SealBroken
+        A seal does not hold; nothing is scored then.
+    """
+    ledger = Ledger(run / "ledger.jsonl")
+    verdicts, opened = ledger.of("verdict"), ledger.of("opened")
+    cases = []
+    for name in sorted(verdicts):
+        check(ledger, run, name)
+    for name in sorted(verdicts):
+        if name not in opened:
+            ledger.add(event="opened", set=name)
+        event = verdicts[name]
+        truth = json.loads((run / "truths" / f"{name}.json").read_text())
+        path = run / "verdicts" / f"{name}.json"
+        verdict = json.loads(path.read_text()) if event["verdict"] else {}
+        cases.append(Case(name, truth, verdict, event))
+    return cases
+
+
+def interval(hits: int, of: int, *, level: float = 0.95) -> tuple[float, float]:
+    """Binomial interval of Clopper and Pearson (Biometrika 26 (1934) 404).
+
+    Examples
+    --------
+    >>> [round(x, 4) for x in interval(0, 10)]
+    [0.0, 0.3085]
+    """
+    tail = 0.5 * (1.0 - level)
+    low = 0.0 if hits == 0 else float(beta.ppf(tail, hits, of - hits + 1))
+    high = 1.0 if hits == of else float(beta.ppf(1.0 - tail, hits + 1, of - hits))
+    return low, high
+
+
+def covered(case: Case) -> list[bool]:
+    """Whether each parameter that means the same in both lies in its 90 % interval."""
+    if case.best != case.true:
+        return []
+    found = []
+    for effect in case.truth["effects"]:
+        for name, value in comparable(effect).items():
+            said = (case.verdict.get("parameters") or {}).get(name)
+            if said:
+                found.append(float(said["low"]) <= value <= float(said["high"]))
+    return found
