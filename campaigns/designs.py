@@ -15,7 +15,16 @@ from dataclasses import dataclass
 
 from ..core.errors import InputError
 from .case import Case
-from .drawn_cases import challenge, robustness, space, survey, validation
+from .drawn_cases import (
+    challenge,
+    near_equal,
+    robustness,
+    space,
+    survey,
+    validation,
+    validation_2,
+)
+from .hardening_cases import hardening, validation_hardening
 from .thesis_cases import smoke, thesis_first, thesis_second, thesis_third
 
 
@@ -52,7 +61,13 @@ DESIGNS: dict[str, Design] = {
         Design("space-2", "the next 32, a Sobol design with the first", lambda: space()[32:64]),
         Design("space-3", "the next 64, likewise", lambda: space()[64:128]),
         Design("space-4", "its other points", lambda: space()[128:]),
+        Design("near-equal", "128 Sobol points at Sy* 0.75 to 1.35", near_equal),
+        Design("hardening", "96 Sobol points over metals that harden", hardening),
         Design("validation", "48 pairs that no fit may use", validation),
+        Design("validation-2", "48 more, half of them near equal strengths", validation_2),
+        Design(
+            "validation-hardening", "24 pairs that harden, for no fit either", validation_hardening
+        ),
         Design(
             "challenge",
             "24 pairs drawn from the checksum of the coefficients in use, which no fit may use",

@@ -48,12 +48,50 @@ def validation() -> tuple[Case, ...]:
     return tuple(deep_case(f"validation-{k:02}", pair) for k, pair in enumerate(_for_judging(draw)))
 
 
+@cache
+def near_equal() -> tuple[Case, ...]:
+    """128 scrambled Sobol points at Sy* 0.75 to 1.35, where the share jumps; both nu free."""
+    from scipy.stats import qmc
+
+    points = qmc.Sobol(6, scramble=True, rng=np.random.default_rng(20142)).random_base2(7)
+    return tuple(deep_case(f"near-equal-{k:03}", _near_pair(u)) for k, u in enumerate(points))
+
+
+@cache
+def validation_2() -> tuple[Case, ...]:
+    """48 more pairs kept out of every fit: 24 as in `near_equal`, 16 anywhere, 8 of soft, strong.
+
+    Both kinds from the first to the last, so that a part of them is of use.
+    """
+    near, other = np.random.default_rng(77004).random((2, 24, 6))
+    pairs = [
+        pair
+        for u, v, k in zip(near, other, range(24), strict=True)
+        for pair in (_near_pair(u), _soft_pair(v) if k % 3 == 2 else _drawn_pair(v))
+    ]
+    return tuple(deep_case(f"validation-2-{k:02}", pair) for k, pair in enumerate(pairs))
+
+
+def _near_pair(u: np.ndarray[tuple[int], np.dtype[np.float64]]) -> Pair:
+    """Pair from six numbers in [0, 1) as `_drawn_pair`, but by Sy* 0.75-1.35, E'/Sy 150-3300."""
+    E_s, E_f = (_digits(50.0 + 250.0 * x) for x in u[:2])
+    ratio = _digits(0.75 * 1.8 ** u[2])
+    nu_s, nu_f = (round(float(0.2 + 0.25 * x), 3) for x in u[4:])
+    stiff = pair_of(E_s=E_s, E_f=E_f, Sy_min=1.0, ratio=ratio, nu_s=nu_s, nu_f=nu_f).E_reduced
+    Sy = _digits(stiff / 1e6 / (150.0 * 22.0 ** u[3]))
+    return pair_of(E_s=E_s, E_f=E_f, Sy_min=Sy, ratio=ratio, nu_s=nu_s, nu_f=nu_f)
+
+
+def _soft_pair(u: np.ndarray[tuple[int], np.dtype[np.float64]]) -> Pair:
+    return _drawn_pair(u, moduli=(50.0, 95.0), strengths=(950.0, 1100.0))
+
+
 def _for_judging(draw: np.ndarray[tuple[int, int], np.dtype[np.float64]]) -> list[Pair]:
     """Half of the pairs anywhere, a third at the steep part, the others of soft, strong bodies."""
     half, most = len(draw) // 2, 5 * len(draw) // 6
     pairs = [_drawn_pair(u) for u in draw[:half]]
     pairs += [_drawn_pair(u, ratios=(0.85, 1.7)) for u in draw[half:most]]
-    pairs += [_drawn_pair(u, moduli=(50.0, 95.0), strengths=(950.0, 1100.0)) for u in draw[most:]]
+    pairs += [_soft_pair(u) for u in draw[most:]]
     return pairs
 
 

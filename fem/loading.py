@@ -19,22 +19,24 @@ from .discretise import discretise
 from .elements import State
 from .material import EXACT
 from .measure import read
-from .mesh import Zone
+from .mesh import Layers, Zone
 from .newton import Solver, Timers
 from .path import MOST_CUTS, STEP_CUT, Point, Record, accept, extrapolate
 from .problem import DEEPEST, Accuracy, ContactProblem, critical_depth
 from .remesh import Transfer
+from .ripple import BEYOND
 
 Floats = npt.NDArray[np.float64]
 
 # After a step in so many Newton iterations the next may be longer by the factor (of its logarithm).
 _REGROW = ((5, 1.5), (8, 1.15))
 _BELOW_YIELD = 0.8  # elastic step ratio up to this fraction of the critical depth
+_LEAD_IN = 0.75  # the path begins at this fraction of the first depth, for the smooth curve there
 _LEAST_RATIO = 1.0 + 1e-6  # of a step: below it the path stands still, whatever still converges
 _SOFT_START = (1e-3, 1e-2, 1e-1, 1.0)  # contact stiffness on the way to the first equilibrium
 # The fine zone of a mesh made for the contact radius a reaches from _BEHIND a to _AHEAD a, and
 # serves until the radius has grown by _SERVES: the gap is read and plastic flow runs ahead of it.
-_BEHIND, _AHEAD, _SERVES = 0.7, 2.0, 1.5
+_BEHIND, _AHEAD, _SERVES = 0.85, 1.6, 1.35
 # The mesh that would have to serve beyond this radius [R] is the last one: where strains are of the
 # order of one, a change of mesh would upset the state (the force drops by 1 to 2 %).
 _LAST = 0.2
@@ -80,9 +82,14 @@ class Loading:
         self._onset = critical_depth(problem.pair)
         self._stops = _stops(problem, self._onset)
         self._radius = np.sqrt(self._stops[0])  # of the contact that the mesh is made for
+        self._layers: list[Layers] = []  # of that mesh, once a transfer has walked through it
+        self._beyond = 0  # steps past the end
 
     def points(self) -> Iterator[Point | Outcome]:
-        """Give every accepted point; an `Outcome` ends the path early."""
+        """Give every accepted point; an `Outcome` ends the path early.
+
+        A few points follow past the end, for the smooth curve at the last depth (`past_end`).
+        """
         point = self._first_contact()
         if point is None:
             yield Outcome(
@@ -100,11 +107,15 @@ class Loading:
             point, before = self._follow(point, before)
             if target == len(self._stops):
                 if self._deep_enough(point):
-                    return
+                    self._beyond += 1
+                    if self._beyond > BEYOND:
+                        return
                 self._stops.append(point.delta * self.accuracy.step_ratio)
             goal = self._stops[target]
             ratio = min(self._limit(point), 1.0 + (ratio - 1.0) * _growth(point))
             found, ratio = self._step(point, before, last_step, goal=goal, ratio=ratio)
+            if self._beyond and (found is None or np.isnan(found.record.reading.radius)):
+                return
             if found is None:
                 yield self._stuck(point)
                 return
@@ -120,6 +131,11 @@ class Loading:
             self.tally.steps += 1
             if point.delta >= goal * (1.0 - 1e-12):
                 target += 1
+
+    @property
+    def past_end(self) -> bool:
+        """Whether the last point lies past the end."""
+        return self._beyond > 0
 
     def _deep_enough(self, point: Point) -> bool:
         radius = point.record.reading.radius
@@ -197,7 +213,7 @@ class Loading:
             return point, before
         was, self._radius = self._radius, radius
         solver = self._solver()
-        transfer = Transfer(point.grid, solver.grid)
+        transfer = Transfer(point.grid, solver.grid, self._layers)
         guess = transfer.displacements(point.equilibrium.u)
         state = transfer.state(point.state, guess)
         # no time passes: what feels the rate can't flow
@@ -206,6 +222,7 @@ class Loading:
         if found is None:
             self._radius = was  # it is tried again after the next step
             return point, before
+        self._layers = transfer.after
         self.tally.leave(point.solver)
         self.tally.meshes += 1
         state, stored = advance(solver.elements, found.u, state=state, rule=solver.rule)
@@ -226,5 +243,5 @@ def _growth(point: Point) -> float:
 def _stops(problem: ContactProblem, onset: float) -> list[float]:
     """Depths that are hit exactly, and one well below first yield to start from."""
     depths = {*problem.depths, *problem.unload_from, *problem.snapshots, *problem.profiles}
-    start = min(min(depths), 0.3 * onset)
+    start = _LEAD_IN * min(min(depths), 0.3 * onset)
     return sorted({start, *depths})

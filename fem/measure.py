@@ -36,6 +36,12 @@ class Reading:
     sphere: float
     flat: float
     force_defect: float
+    place: float
+
+    @property
+    def share(self) -> float:
+        """The sphere's part of the approach."""
+        return self.sphere / (self.sphere + self.flat)
 
 
 def read(grid: Discretisation, state: Equilibrium, delta: float) -> Reading:
@@ -43,17 +49,26 @@ def read(grid: Discretisation, state: Equilibrium, delta: float) -> Reading:
     x = grid.mesh.points + state.u.reshape(-1, 2)
     active = np.flatnonzero(state.contact.pressure > 0.0)
     last = float(x[grid.surfaces.slave[active[-1]], 0]) if len(active) else 0.0
+    radius = edge_of_contact(state.contact, x[grid.surfaces.slave, 0])
     return Reading(
         delta=delta,
         force=state.reaction,
-        radius=edge_of_contact(state.contact, x[grid.surfaces.slave, 0]),
+        radius=radius,
         radius_last_node=last,
         sphere=delta + float(state.u[2 * grid.surfaces.sphere[0] + 1]),
         flat=-float(state.u[2 * grid.surfaces.flat[0] + 1]),
         force_defect=(state.contact.force - state.reaction) / state.reaction
         if state.reaction
         else 0.0,
+        place=_place(grid, x, radius),
     )
+
+
+def _place(grid: Discretisation, x: Floats, radius: float) -> float:
+    """Where the edge of contact stands on the slave's surface, counted in fine rings."""
+    slave = grid.surfaces.slave[1:]
+    ring = np.log(np.hypot(*grid.mesh.points[slave].T) / grid.mesh.rings[-1])
+    return float(np.interp(radius, x[slave, 0], ring) / np.log1p(grid.fine))
 
 
 def edge_of_contact(contact: ContactState, slave_r: Floats) -> float:

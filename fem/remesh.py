@@ -14,6 +14,7 @@ solution, at the same approach, sees to that.
 from __future__ import annotations
 
 import math
+from collections.abc import Sequence
 
 import numpy as np
 import numpy.typing as npt
@@ -40,14 +41,22 @@ class Transfer:
     old, new
         Two discretisations of one problem, made for different zones; the innermost block of the new
         one is not the smaller.
+    before
+        `after` of the transfer to the old one, if there was one: saves walking through its mesh.
+
+    Attributes
+    ----------
+    after
+        Layers of the new discretisation's bodies.
     """
 
-    def __init__(self, old: Discretisation, new: Discretisation) -> None:
+    def __init__(
+        self, old: Discretisation, new: Discretisation, before: Sequence[Layers] = ()
+    ) -> None:
         self.old, self.new = old, new
-        self._layers = [
-            (layers_of(old.mesh, sphere=sphere), layers_of(new.mesh, sphere=sphere))
-            for sphere in _BODIES
-        ]
+        self.after = [layers_of(new.mesh, sphere=sphere) for sphere in _BODIES]
+        before = before or [layers_of(old.mesh, sphere=sphere) for sphere in _BODIES]
+        self._layers = list(zip(before, self.after, strict=True))
 
     def displacements(self, u: Floats) -> Floats:
         """Displacements (2 n_nodes,) on the new mesh."""
@@ -64,8 +73,7 @@ class Transfer:
             core = _core_nodes(self.new.mesh, after, sphere)
             level, place = _polar(self.new.mesh.points[core], sphere)
             lines = _places(self.old.mesh, before, sphere)
-            for node, value, at in zip(core, spline(level), place, strict=True):
-                now[node] = CubicSpline(lines, value, axis=0)(at)
+            now[core] = _cubic(lines, spline(level), place)
         return now.reshape(-1)
 
     def state(self, state: State, u: Floats) -> State:
@@ -95,10 +103,7 @@ class Transfer:
             )
             level, angle = _polar(points[rest], sphere)
             lines = _between(_places(self.old.mesh, before, sphere))
-            for point, values, at in zip(
-                rest, _linear(at_old, data[old], level), angle, strict=True
-            ):
-                out[point] = _linear(lines, values, np.array([at]))[0]
+            out[rest] = _linear_each(lines, _linear(at_old, data[old], level), angle)
         parts = out.reshape(-1, 4, 6)
         strain, peeq, work = (np.ascontiguousarray(parts[..., k]) for k in (slice(4), 4, 5))
         return strain, peeq, work
@@ -112,15 +117,38 @@ def _lines_of_points(layers: Layers, place: Integers) -> Integers:
 
 
 def _linear(x: Floats, values: Floats, at: Floats) -> Floats:
-    """Linear interpolation along the first axis, constant beyond the ends.
+    """Linear interpolation along the first axis, constant beyond the ends."""
+    k, t = _between_knots(x, at)
+    t = t.reshape(-1, *[1] * (values.ndim - 1))
+    return np.asarray((1.0 - t) * values[k] + t * values[k + 1])
 
-    Written so that a weight of 0 or 1 copies: plastic strain must stay exactly zero.
+
+def _linear_each(x: Floats, values: Floats, at: Floats) -> Floats:
+    """The same along the second axis, each row of `values` at its own place: (n, m) from n."""
+    k, t = _between_knots(x, at)
+    row = np.arange(len(at))
+    return np.asarray((1.0 - t[:, None]) * values[row, k] + t[:, None] * values[row, k + 1])
+
+
+def _between_knots(x: Floats, at: Floats) -> tuple[Integers, Floats]:
+    """Knot before each place and how far it is to the next, 0 to 1.
+
+    The ends of an interval are met exactly, so that a weight of 0 or 1 copies: plastic strain must
+    stay exactly zero.
     """
     k = np.clip(np.searchsorted(x, at) - 1, 0, len(x) - 2)
     t = np.clip((at - x[k]) / (x[k + 1] - x[k]), 0.0, 1.0)
     t[t > 1.0 - 1e-9] = 1.0
-    t = t.reshape(-1, *[1] * (values.ndim - 1))
-    return np.asarray((1.0 - t) * values[k] + t * values[k + 1])
+    return k, t
+
+
+def _cubic(x: Floats, values: Floats, at: Floats) -> Floats:
+    """Cubic splines through the rows of `values` (n, n_knots, m), each at its own place `at`."""
+    pieces = CubicSpline(x, values, axis=1).c
+    k = np.clip(np.searchsorted(x, at) - 1, 0, len(x) - 2)
+    c = pieces[:, k, np.arange(len(at))]
+    t = (at - x[k])[:, None]
+    return np.asarray(((c[0] * t + c[1]) * t + c[2]) * t + c[3])
 
 
 def _polar(points: Floats, sphere: bool) -> tuple[Floats, Floats]:

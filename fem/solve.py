@@ -10,7 +10,7 @@ import hashlib
 import resource
 import time
 from collections.abc import Callable
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 
 import numpy as np
 
@@ -18,9 +18,10 @@ from ..core.errors import COMPLETED, Ending, Outcome
 from .loading import Loading, Tally
 from .path import Point, Record
 from .problem import Accuracy, ContactProblem
+from .ripple import Track
 from .snapshot import take_profile, take_snapshot
-from .solution import Counters, Profile, Snapshot, Solution, Unloading
-from .unloading import curve_of, unload
+from .solution import Counters, Curve, Profile, Snapshot, Solution, Unloading
+from .unloading import curve_of, level, unload
 
 
 def solve(
@@ -53,11 +54,15 @@ def solve(
     found = _Found(problem)
     outcome = COMPLETED
     last: Point | None = None
-    for item in Loading(problem, accuracy, tally).points():
+    path = Loading(problem, accuracy, tally)
+    for item in path.points():
         if isinstance(item, Outcome):
             outcome = item
             break
         last = item
+        found.track.readings.append(item.record.reading)
+        if path.past_end:
+            continue
         found.take(item)
         if progress is not None:
             progress(_fraction(item, problem))
@@ -74,8 +79,8 @@ def solve(
         problem=problem,
         accuracy=accuracy,
         outcome=outcome,
-        loading=curve_of(found.loading, problem.pair.E_reduced, problem.pair.R, energy=True),
-        unloadings=tuple(found.unloadings),
+        loading=found.curve(),
+        unloadings=found.levelled(),
         snapshots=tuple(found.snapshots),
         profiles=tuple(found.profiles),
         counters=_counters(tally),
@@ -89,6 +94,7 @@ class _Found:
     """What is kept of the points of the path, as the problem asks."""
 
     problem: ContactProblem
+    track: Track = field(default_factory=Track)
     loading: list[Record] = field(default_factory=list)
     unloadings: list[Unloading] = field(default_factory=list)
     snapshots: list[Snapshot] = field(default_factory=list)
@@ -106,6 +112,25 @@ class _Found:
             self.snapshots.append(take_snapshot(*here, point.state, depth=delta, pair=wanted.pair))
         if _among(delta, wanted.profiles):
             self.profiles.append(take_profile(*here, depth=delta, pair=wanted.pair))
+
+    def curve(self) -> Curve:
+        """The loading curve without its ripple."""
+        pair = self.problem.pair
+        smooth = self.track.smooth([record.reading for record in self.loading])
+        records = [
+            replace(record, reading=reading)
+            for record, reading in zip(self.loading, smooth, strict=True)
+        ]
+        return curve_of(records, pair.E_reduced, pair.R, energy=True)
+
+    def levelled(self) -> tuple[Unloading, ...]:
+        """The unloadings, scaled so that each begins at the smooth curve's force and radius."""
+        raw = [r for r in self.track.readings if _among(r.delta, self.problem.unload_from)]
+        smooth = self.track.smooth(raw)
+        return tuple(
+            level(unloading, force=to.force / was.force, radius=to.radius / was.radius)
+            for unloading, was, to in zip(self.unloadings, raw, smooth, strict=True)
+        )
 
 
 def _counters(tally: Tally) -> Counters:

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 import numpy as np
 import numpy.typing as npt
 
@@ -122,6 +124,23 @@ def _lift(here: Point) -> Floats | None:
             return found.u
         step *= 2.0
     return None
+
+
+def level(unloading: Unloading, *, force: float, radius: float) -> Unloading:
+    """Scale forces and contact radii of an unloading, and of its reload, by two factors."""
+
+    def scaled(curve: Curve) -> Curve:
+        return replace(
+            curve,
+            force=force * curve.force,
+            radius=radius * curve.radius,
+            hardness=force / radius**2 * curve.hardness,
+        )
+
+    again = unloading.reload
+    return replace(
+        unloading, curve=scaled(unloading.curve), reload=None if again is None else scaled(again)
+    )
 
 
 def curve_of(records: list[Record], stress: float, R: float, *, energy: bool) -> Curve:

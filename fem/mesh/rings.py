@@ -25,18 +25,31 @@ class Zone:
 
     def allowed(self, r: float, *, fine: float, coarse: float) -> float:
         """Largest ring width over radius at radius `r`: doubled step by step away from the zone."""
-        outside = max(self.low / r, r / self.high)
-        if outside <= 1.0:
+        if self.low <= r <= self.high:
             return fine
-        twice, all_coarse = _INSIDE if r < self.low else _OUTSIDE
-        if outside <= twice:
+        if r > self.high:
+            return max(fine, coarse * widening(r / self.high))
+        inside = self.low / r
+        twice, all_coarse = _INSIDE
+        if inside <= twice:
             return min(2.0 * fine, coarse)
-        return coarse if outside <= all_coarse else 2.0 * coarse
+        return coarse if inside <= all_coarse else 2.0 * coarse
 
 
-# Up to the first factor away from the zone the rings are at most twice as wide as in it, up to the
-# second one coarse: the strain energy of a shell falls as 1/r outside the contact, as r^3 within.
-_INSIDE, _OUTSIDE = (1.5, 4.0), (2.5, 6.0)
+# Within the contact the rings are at most twice as wide as in the zone up to the first factor away
+# from it, up to the second one coarse: strains vary there over the contact radius, not the ring's.
+_INSIDE = (1.5, 4.0)
+
+
+def widening(x: float) -> float:
+    """Ring width over radius at `x` times where the edge may come, in units of the coarse one.
+
+    The strain energy of a shell falls as 1/r, and what a ring of relative width h adds to the
+    stiffness as h^2 of that: least in sum, for so many rings, where h grows as r^(1/3).
+    """
+    return min(0.4 * math.cbrt(x), 1.2)
+
+
 _RUNGS = 4  # in a fine ring
 _GROWTH = 1.25  # of neighbouring rings; an abrupt change shows in the contact pressure
 
@@ -83,12 +96,13 @@ def ladder_rings(zone: Zone, *, core: float, end: float, fine: float, coarse: fl
     return np.asarray(end * np.exp(rung * rungs))
 
 
-def outer_rings(start: float, end: float, *, first: float, last: float, grade: float) -> Floats:
-    """Ring radii from `start` (included) to `end`, the relative width growing to `last`."""
+def outer_rings(start: float, end: float, *, coarse: float) -> Floats:
+    """Ring radii from `start` (included) to `end`, their relative width growing outwards.
+
+    The deepest contacts reach nearly up to `start`, hence the same law, a half wider.
+    """
     radii = [start]
-    width = first
     while radii[-1] < end:
-        width = min(width * grade, last)
-        radii.append(radii[-1] * (1.0 + width))
+        radii.append(radii[-1] * (1.0 + 1.5 * coarse * widening(radii[-1] / start)))
     r = np.array(radii)
     return np.asarray(start * (r / start) ** (math.log(end / start) / math.log(r[-1] / start)))

@@ -1,6 +1,7 @@
 """What the designs promise: counts, ranges, depths, unloadings, and that no pair is shared."""
 
 import itertools
+import math
 
 import pytest
 from dentscope import fem
@@ -40,7 +41,52 @@ def test_validation_shares_no_pair_and_covers_the_hard_parts(cases):
     assert sum(p.E_reduced / p.Sy_min < 60 for p in pairs) >= 8
 
 
-@pytest.mark.parametrize("name", ["thesis", "space", "validation"])
+def test_near_equal_strengths_are_covered_and_judged_by_others(cases):
+    near = [case.pair for case in cases["near-equal"].values()]
+    assert len(near) == 128
+    for values, low, high in (
+        ([p.Sy_ratio for p in near], 0.75, 1.35),
+        ([p.E_reduced / p.Sy_min for p in near], 150, 3300),
+        ([p.sphere.nu - p.flat.nu for p in near], -0.25, 0.25),
+    ):
+        span = high - low
+        assert low - 0.001 * span <= min(values) < low + 0.12 * span
+        assert high - 0.12 * span < max(values) <= high + 0.001 * span
+    judges = [case.pair for case in cases["validation-2"].values()]
+    assert len(judges) == 48
+    assert sum(0.75 <= p.Sy_ratio <= 1.35 for p in judges) >= 24
+    assert sum(p.E_reduced / p.Sy_min < 60 for p in judges) >= 6
+    fitted = set.union(*(groups(cases[n]) for n in ("thesis", "space", "validation", "near-equal")))
+    assert not groups(cases["validation-2"]) & fitted
+
+
+def test_metals_that_harden_begin_at_their_yield_strain_and_rise_as_a_power(cases):
+    found = [case.pair for case in cases["hardening"].values()]
+    assert len(found) == 96
+    both = sum(bool(p.sphere.flow and p.flat.flow) for p in found)
+    one = sum(bool(p.sphere.flow) != bool(p.flat.flow) for p in found)
+    assert both + one == 96
+    assert one >= 30
+    exponents = []
+    for body in (b for p in found for b in (p.sphere, p.flat) if b.flow):
+        curve = body.flow.curve
+        assert curve.stress[0] == pytest.approx(body.Sy)
+        e = body.Sy / body.E
+        assert e < 0.1
+        late = [(p, S) for p, S in zip(curve.strain, curve.stress, strict=True) if p > 0.01]
+        n = [math.log(S / body.Sy) / math.log(1.0 + p / e) for p, S in late]
+        assert max(n) == pytest.approx(min(n), rel=1e-9)
+        exponents.append(n[0])
+    assert min(exponents) < 0.01
+    assert 0.49 < max(exponents) <= 0.5
+    judges = distinct_cases(DESIGNS["validation-hardening"])
+    assert len(judges) == 24
+    assert not set(judges) & set(cases["hardening"])
+
+
+@pytest.mark.parametrize(
+    "name", ["thesis", "space", "validation", "near-equal", "validation-2", "hardening"]
+)
 def test_depths_and_unloadings_of_every_case(cases, name):
     for case in cases[name].values():
         onset = fem.critical_depth(case.pair)

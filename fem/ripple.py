@@ -1,0 +1,88 @@
+"""Curves without the ripple of the mesh, from all steps of the path.
+
+With the approach prescribed, force and radius rise and fall by some tenths of a per cent as the
+contact edge crosses one ring of elements after the other. Where the edge stands between two rings
+is known at every step, so the part that repeats from ring to ring is told from the curve by least
+squares over the neighbouring steps, and left out: a mean over whole rings that follows slope and
+curvature of the curve.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass, field, replace
+
+import numpy as np
+import numpy.typing as npt
+
+from .measure import Reading
+
+Floats = npt.NDArray[np.float64]
+
+BEYOND = 4
+"""So many steps past the last depth make the fit there two-sided."""
+
+_REACH = 0.36  # of the fit to either side, in the logarithm of the approach
+_DEGREE = 3  # of the curve within the reach
+_HARMONICS = 2  # of the part that repeats from ring to ring
+_ENOUGH = 2 * _HARMONICS + _DEGREE + 4  # steps within the reach, else the raw value stands
+_NAMES = ("force", "radius", "radius_last_node", "share")
+
+
+@dataclass
+class Track:
+    """All steps of a loading path: what the smooth curves are made from."""
+
+    readings: list[Reading] = field(default_factory=list)
+
+    def smooth(self, wanted: Sequence[Reading]) -> list[Reading]:
+        """Return some of the readings without their ripple; F, a and the share have one."""
+        path = self.readings
+        x = np.log([r.delta for r in path])
+        turns = 2.0 * np.pi * np.array([r.place for r in path])
+        raw = {name: np.array([getattr(r, name) for r in path]) for name in _NAMES}
+        out = []
+        for reading in wanted:
+            here = int(np.abs(x - np.log(reading.delta)).argmin())
+            weights = _weights(x, turns, here)
+            if weights is None:
+                out.append(reading)
+                continue
+            force, radius, last, share = (_mean(raw[name], weights, here) for name in _NAMES)
+            both = reading.sphere + reading.flat
+            out.append(
+                replace(
+                    reading,
+                    force=force,
+                    radius=radius,
+                    radius_last_node=last,
+                    sphere=share * both,
+                    flat=(1.0 - share) * both,
+                )
+            )
+        return out
+
+
+def _mean(values: Floats, weights: Floats, here: int) -> float:
+    """Weighted mean of the logarithms, of the values themselves where one is not above 0."""
+    near = values[weights != 0.0]
+    weights = weights[weights != 0.0]
+    if near.min() <= 0.0:  # the share of a nearly rigid body
+        return float(values[here] + weights @ (near - values[here]))
+    return float(values[here] * np.exp(weights @ np.log(near / values[here])))
+
+
+def _weights(x: Floats, turns: Floats, here: int) -> Floats | None:
+    """Weights of the steps in the smooth value at step `here`; none: too few steps about it."""
+    t = (x - x[here]) / _REACH
+    near = np.flatnonzero(np.abs(t) < 1.0)
+    if len(near) < _ENOUGH:
+        return None
+    t = t[near]
+    columns = [t**k for k in range(_DEGREE + 1)]
+    for k in range(1, _HARMONICS + 1):
+        columns += [np.cos(k * turns[near]), np.sin(k * turns[near])]
+    root = np.sqrt((1.0 - np.abs(t) ** 3) ** 3)
+    weights = np.zeros(len(x))
+    weights[near] = np.linalg.pinv(np.stack(columns, axis=1) * root[:, None])[0] * root
+    return weights
