@@ -50,7 +50,7 @@ def superlu(matrix: sparse.csc_matrix) -> Solve:
 def _distinct(keys: Integers) -> Integers:
     """Sorted distinct keys; numpy's own way, by hashing, takes three times as long on so many."""
     keys = np.sort(keys)
-    return keys[np.concatenate([[True], keys[1:] != keys[:-1]])]
+    return np.asarray(keys[np.concatenate([[True], keys[1:] != keys[:-1]])])
 
 
 @njit(cache=True)

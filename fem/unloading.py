@@ -113,8 +113,9 @@ def _guess(here: Point, behind: Point | None, delta: float) -> Floats:
 
 def _lift(here: Point) -> Floats | None:
     """Displacements with the surfaces just apart, where the force is zero exactly."""
-    grid = here.grid
-    step = 0.02 * here.delta
+    grid, now = here.grid, here.record.reading
+    # Hertz's way back from this force is 3/4 F/(E' a): it is long where little has yielded
+    step = max(0.02 * here.delta, now.force / max(now.radius, 1e-12))
     for _ in range(3):
         delta = here.delta - step
         guess = here.equilibrium.u.copy()
