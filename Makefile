@@ -6,13 +6,13 @@ STAMP := $(VENV)/.installed
 DESIGN ?= full
 SET ?= thesis-chapter-5
 WORKERS ?=
-LOCKS := $(wildcard requirements/*.txt)
+LOCKS := $(wildcard requirements/py3*.txt)
 # the solver runs one case a core: more threads inside a case only disturb the others
 export OMP_NUM_THREADS ?= 1
 export OPENBLAS_NUM_THREADS ?= 1
 
 .DEFAULT_GOAL := help
-.PHONY: help install campaign fit impact diagnose figures recordings proof verify test check hooks wheel bench lock clean
+.PHONY: help install campaign fit impact diagnose figures recordings proof verify test check docs hooks wheel bench lock clean
 
 help: ## list the targets
 	@grep -hE '^[a-z]+:.*## ' $(MAKEFILE_LIST) | sed -E 's/^([a-z]+):.*## /\1\t/' | expand -t 12
@@ -56,6 +56,16 @@ check: $(STAMP) ## lint, formatting, types, import order
 	@$(BIN)/mypy -p dentscope
 	@$(BIN)/lint-imports
 
+docs: .venv-docs/.installed ## build the documentation site into build/docs; it needs no server and no network
+	@$(BIN)/python scripts/site/gather.py
+	@NO_MKDOCS_2_WARNING=1 .venv-docs/bin/mkdocs build -q --strict -f build/mkdocs.yml
+	@echo "docs: build/docs/index.html"
+
+.venv-docs/.installed: $(STAMP) requirements/docs.txt
+	@$(BIN)/uv venv -q --clear --python $(BIN)/python .venv-docs
+	@$(BIN)/uv pip install -q --python .venv-docs/bin/python --require-hashes -r requirements/docs.txt
+	@touch $@
+
 hooks: $(STAMP) ## the other checks of a commit: blanks, ends of files, marks of a merge
 	@if ! git rev-parse --git-dir >/dev/null 2>&1; then echo "hooks: no git repository here"; \
 	  else SKIP=ruff,ruff-format,mypy,import-order $(BIN)/pre-commit run --all-files; fi
@@ -72,6 +82,8 @@ lock: $(STAMP) ## pin all packages anew for every supported Python
 	    --extra tables --extra bayes --generate-hashes \
 	    --python-version 3.$$minor --no-emit-index-url --no-header --no-annotate --upgrade \
 	    -o requirements/py3$$minor.txt; done
+	@$(BIN)/uv pip compile -q --group docs --generate-hashes --universal \
+	  --python-version 3.11 --no-emit-index-url --no-header --no-annotate --upgrade -o requirements/docs.txt
 
 clean: ## remove what was built; the environment and data/ stay
 	@rm -rf build .pytest_cache .mypy_cache .ruff_cache .hypothesis .benchmarks

@@ -11,8 +11,8 @@ import typer
 from ..core.disk import DISK
 from ..core.errors import EXIT_NOT_CONVERGED, InputError
 from ..core.output import csv_text, write_file
+from ..core.templates import CASE, write_new
 from .places import folder_option
-from .templates import CASE, write_new
 from .terminal import console as new_console
 from .terminal import show_table
 

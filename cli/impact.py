@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, Annotated
 import typer
 
 from ..core.errors import EXIT_NOT_CONVERGED
+from ..core.templates import template, write_new
 from . import studies
 from .laws import laws_named
 from .places import folder_option
@@ -52,11 +53,8 @@ def impact(
 
 
 def _write_new(kind: str, path: Path | None) -> None:
-    from ..impact.files.template import write_template
-
     target = path or Path(f"{kind}.toml")
-    write_template(kind, target)
-    typer.echo(f"{target}: change what differs, then: dentscope impact {target}")
+    typer.echo(write_new(template(kind), target, command="impact"))
 
 
 def _from_file(path: Path, names: list[str], out: Path) -> None:

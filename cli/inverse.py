@@ -8,10 +8,10 @@ from typing import Annotated, Any
 
 import typer
 
+from ..core.templates import INVERSE, write_new
 from . import studies
 from .laws import laws_named
 from .places import folder_option
-from .templates import INVERSE, write_new
 from .terminal import console as new_console
 from .terminal import show_table
 

@@ -206,7 +206,4 @@ def svg(figure: Figure, label: str, *, key: str, titles: dict[str, str] | None =
     text = re.sub(r"<style.*?</style>", "", text, count=1, flags=re.DOTALL)
     head, rest = text.split(">", 1)
     head = re.sub(r' (?:width|height)="[^"]*"', "", head)
-    width = 72.0 * figure.get_figwidth()
-    return (
-        f'{head} role="img" aria-label="{html.escape(label)}" style="width: {width:.0f}pt">{rest}'
-    )
+    return f'{head} role="img" aria-label="{html.escape(label)}">{rest}'

@@ -239,9 +239,17 @@ def _limits(v: Verdict) -> Cells:
 
 
 def _instructions(v: Verdict) -> list[str]:
-    """Return the proposed trials, best first, with what each would tell."""
-    return [
-        f"Strike again, with {q.change}. What is still confounded would then lie about "
-        f"{math.sqrt(max(q.expected_discrimination, 0.0)):.1f} standard deviations apart."
-        for q in v.proposals
-    ]
+    """Return what is proposed, best first, with what each would tell."""
+    told = []
+    for q in v.proposals:
+        text = f"Strike again: {q.change}" if q.kind == "trial" else q.change
+        apart = math.sqrt(max(q.expected_discrimination, 0.0))
+        gains = []
+        if apart > 0.0:
+            gains.append(
+                f"what is still confounded would lie about {apart:.1f} standard deviations apart"
+            )
+        if math.isfinite(q.interval):
+            gains.append(f"the interval would be {q.interval:.2g} times as wide as now")
+        told.append(". ".join(f"{s[0].upper()}{s[1:]}" for s in (text, *gains)) + ".")
+    return told

@@ -10,6 +10,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from ...core.tables import frame, html_table
+from ...core.templates import KINDS, template
 from ...core.toml_input import read_toml
 from ...models import law_named
 from ...models.base import ContactLaw
@@ -18,7 +19,6 @@ from ..integrate import Trace, strike, traced
 from ..result import Impact
 from .setup import Setup, read_setup, setup_of
 from .tables import SHOWN, impact_row
-from .template import KINDS, template
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure

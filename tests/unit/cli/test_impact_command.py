@@ -7,8 +7,8 @@ from pathlib import Path
 
 import pytest
 from dentscope.cli import run
+from dentscope.core.templates import KINDS
 from dentscope.impact.files.setup import read_setup
-from dentscope.impact.files.template import KINDS
 from dentscope.models.published.hertz import HERTZ
 
 

@@ -7,8 +7,7 @@ from pathlib import Path
 import pytest
 from dentscope.cli import run
 from dentscope.cli.keys import FILES, keys_of
-from dentscope.cli.templates import CASE, INVERSE
-from dentscope.impact.files.template import KINDS, template
+from dentscope.core.templates import CASE, INVERSE, KINDS, template
 
 
 @pytest.mark.parametrize("kind", FILES)
