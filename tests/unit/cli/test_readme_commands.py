@@ -16,7 +16,7 @@ PAGES = ("README.md", "docs/tutorial.md")
 def lines(page: str) -> list[str]:
     text = (ROOT / page).read_text(encoding="utf-8")
     # a fence without a language: what is typed or shown
-    text = re.sub(r"^```\\w+\\n.*?^```$", "", text, flags=re.DOTALL | re.MULTILINE)
+    text = re.sub(r"^```\w+\n.*?^```$", "", text, flags=re.DOTALL | re.MULTILINE)
     blocks = re.findall(r"^```\n(.*?)^```$", text, flags=re.DOTALL | re.MULTILINE)
     found = [line.split("#")[0] for block in blocks for line in block.splitlines()]
     return [x.split("dentscope ", 1)[1] for x in found if re.match(r"(\.venv/bin/)?dentscope ", x)]
