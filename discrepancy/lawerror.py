@@ -19,6 +19,7 @@ K. Sargsyan, X. Huan, H. N. Najm, Int. J. Uncertain. Quantif. 9 (2019) 365: embe
 from __future__ import annotations
 
 import math
+import warnings
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
 from functools import cached_property
@@ -29,8 +30,7 @@ from numpy.typing import NDArray
 from ..impact import ForceTransform, Scene
 from ..impact.force import LOG_DEPTH_FIRST, LOG_DEPTH_LAST
 from ..impact.strength import NODES, UNIT, strength_table
-from ..models.base import ContactLaw
-from ..models.fitted import read_coefficients
+from ..models.base import DomainWarning
 from .mechanisms.arithmetic import energy
 
 Array = NDArray[np.float64]
@@ -47,6 +47,7 @@ SIZE_WEIGHTS = (1.0 / 6.0, 2.0 / 3.0, 1.0 / 6.0)
 FREE = {"force": 0.16, "recovery": 0.5, "recovery exponent": 0.5, "crater": 0.24}
 """Standard deviations of a contact law that is free: what something unknown may make of it."""
 
+_EXPONENT = 0.02  # of the recovery, of the closed form to finite elements
 _LENGTH = 2.5  # correlation length in ln(depth/R)
 _KINDS = ("force", "recovery", "recovery exponent", "crater")
 _GRID = np.linspace(LOG_DEPTH_FIRST, LOG_DEPTH_LAST, NODES)
@@ -220,7 +221,7 @@ def _spread(scenes: Sequence[Scene]) -> Spread:
     metal = {kind: size * lost for kind, size in METAL.items()}
     # a crater is all of what does not come back, however little that is
     metal["crater"] = np.where(lost > 0.0, METAL["crater"], 0.0)
-    return Spread(_of_law(law, lost), metal, peaks)
+    return Spread(_of_law(scenes[0], lost), metal, peaks)
 
 
 def not_given_back(scene: Scene) -> Array:
@@ -235,18 +236,20 @@ def not_given_back(scene: Scene) -> Array:
     return np.where(kept < 1e-6, 0.0, kept)
 
 
-def _of_law(law: ContactLaw, lost: Array) -> dict[str, Array]:
-    """Errors of the law to finite elements on pairs that it was not fitted to, (NODES,) each."""
+def _of_law(scene: Scene, lost: Array) -> dict[str, Array]:
+    """Errors of the law to finite elements of the same two bodies, (NODES,) each."""
+    law, pair = scene.law, scene.pair
     if law.name == "hertz":
         # exact but for what Hertz leaves out: the finite depth of the contact
         return dict.fromkeys(_KINDS, np.zeros(NODES)) | {"force": np.full(NODES, 0.003)}
-    stored = read_coefficients()
-    assert stored is not None, "no law but Hertz's is used without coefficients"
-    errors = stored["errors"]["fitted"]["left_out"]
-    # mean absolute errors; 1.25 of it is a standard deviation
-    known = {"force": "force", "recovery": "given_back", "recovery exponent": "exponent",
-             "crater": "left"}  # fmt: skip
-    plain = {kind: np.full(NODES, 1.25 * errors[key][0]) for kind, key in known.items()}
-    for kind in ("recovery", "recovery exponent"):
-        plain[kind] = plain[kind] * lost
-    return plain
+    with warnings.catch_warnings():
+        # the nodes' ends reach beyond what an impact will ask for
+        warnings.simplefilter("ignore", DomainWarning)
+        known = law.uncertainty(pair, pair.R * np.exp(_GRID))
+    return {
+        "force": known.force,
+        # no more can be wrong of what comes back than does not
+        "recovery": np.minimum(known.given_back, lost),
+        "recovery exponent": _EXPONENT * lost,
+        "crater": np.minimum(known.dent, METAL["crater"]),
+    }
