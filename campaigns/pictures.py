@@ -11,23 +11,27 @@ from ..core.output import write_figure
 from ..fem import critical_depth
 from .records import CaseRecord
 
+_APPROACH = r"approach over that at first yield $\delta/\delta_c$"
+
 
 def draw_campaign(records: list[CaseRecord], folder: Path) -> list[Path]:
     """Draw all completed cases into `folder`; return the files."""
     import matplotlib as mpl
 
     mpl.use("Agg")
+    from matplotlib.cm import ScalarMappable
+    from matplotlib.colors import LogNorm
     from matplotlib.figure import Figure
 
     figure = Figure(figsize=(10, 8), layout="constrained")
     axes = figure.subplots(2, 2)
-    colours = mpl.colormaps["coolwarm"]
+    shades = ScalarMappable(LogNorm(0.1, 10.0, clip=True), "coolwarm")
     for record in records:
         pair = record.case.pair
         c = record.curve
         w = c["delta"] / (critical_depth(pair) * pair.R)
-        ratio = np.clip(np.log10(pair.Sy_ratio), -1.0, 1.0) if np.isfinite(pair.Sy_ratio) else 0.0
-        style = {"color": colours(0.5 + 0.5 * ratio), "lw": 1.0}
+        ratio = pair.Sy_ratio if np.isfinite(pair.Sy_ratio) else 1.0
+        style = {"color": shades.to_rgba(np.array(ratio)), "lw": 1.0}
         axes[0, 0].loglog(w, c["force"] / _critical_force(pair), **style)
         axes[0, 1].plot(c["delta"] / pair.R, c["radius"] / pair.R, **style)
         axes[1, 0].semilogx(w, c["sphere"] / (c["sphere"] + c["flat"]), **style)
@@ -36,17 +40,20 @@ def draw_campaign(records: list[CaseRecord], folder: Path) -> list[Path]:
     for axis, (x, y) in zip(
         axes.flat,
         (
-            (r"$\delta/\delta_c$", r"$F/F_c$"),
-            (r"$\Delta/R$", r"$a/R$"),
-            (r"$\delta/\delta_c$", r"sphere's share $\delta_s^*$"),
-            (r"$\delta/\delta_c$", r"$H/S_{y,min}$"),
+            (_APPROACH, "force over that at first yield"),
+            (r"approach over radius $\Delta/R$", "contact radius over radius $a/R$"),
+            (_APPROACH, r"sphere's share of the approach $\delta_s^*$"),
+            (_APPROACH, "mean pressure over the weaker strength"),
         ),
         strict=True,
     ):
         axis.set_xlabel(x)
         axis.set_ylabel(y)
         axis.grid(alpha=0.3)
-    figure.suptitle("blue: weak sphere (flattening), red: weak flat (indentation)")
+    bar = figure.colorbar(shades, ax=axes, shrink=0.6, ticks=[0.1, 1.0, 10.0])
+    bar.ax.set_yticklabels(["0.1\nsphere weaker:\nit flattens", "1", "10\nflat weaker:\nit dents"])
+    bar.set_label("strength of the sphere over that of the flat, $S_y^*$")
+    figure.suptitle(f"{len(records)} pairs of a sphere and a flat, loading")
     return [write_figure(figure, folder / "curves.png", dpi=120)]
 
 

@@ -18,6 +18,10 @@ from .campaign_data import DEFAULT_DESIGN, FILE, PUBLISHED, DesignName, Out
 from .campaign_progress import Progress, duration, judged, remarks, tell
 from .groups import group
 
+# With so many cases done the pictures are drawn while a run goes on: the first three of the large
+# designs are the figures' pairs, Sy* = 0.1, 1 and 10.
+_PICTURED = frozenset(3 * 2**k for k in range(12))
+
 app = group("Sweeps of finite-element cases: run, status, show, export, publish.")
 
 
@@ -70,6 +74,13 @@ def run(
     started = time.monotonic()
     until = started + 60.0 * limit_minutes if limit_minutes else math.inf
     progress = Progress(forecast, len(todo))
+
+    def ended(step: Any) -> None:
+        progress.step(step)
+        if step.done and step.status.done in _PICTURED:
+            for picture in _draw(chosen, out):
+                progress.console.print(f"picture of {step.status.done} cases: {picture}")
+
     try:
         with progress:
             after = run_design(
@@ -79,7 +90,7 @@ def run(
                 time_limit_s=60.0 * case_minutes,
                 again=again,
                 until=until,
-                report=progress.step,
+                report=ended,
             )
     except KeyboardInterrupt:
         typer.echo("stopped; the same command goes on from here")
@@ -169,7 +180,6 @@ def _forecast(todo: list[Any], store: Any, workers: int) -> tuple[Any, float]:
 
 def _summary(design: Any, out: Path, after: Any, wall_s: float, cpu_s: float) -> None:
     from ..campaigns import Store, distinct_cases, largest_difference, read_published
-    from ..campaigns.pictures import draw_campaign
 
     typer.echo(
         f"{after.done} done, {after.failed} failed, {after.missing} missing of {after.designed}; "
@@ -179,7 +189,7 @@ def _summary(design: Any, out: Path, after: Any, wall_s: float, cpu_s: float) ->
         return
     store, keys = Store(out / FILE), set(distinct_cases(design))
     tell(judged([s for s in store.summaries() if s.id in keys and s.status == "done"]))
-    records = [r for r in store.read_all() if r.id in keys and r.status == "done"]
+    records = _done(design, store)
     found = largest_difference(records, read_published(PUBLISHED))
     if found.cases:
         finer = "" if found.same else ", which were solved at another resolution"
@@ -189,5 +199,21 @@ def _summary(design: Any, out: Path, after: Any, wall_s: float, cpu_s: float) ->
         )
     else:
         typer.echo("no case of these is published: nothing to compare with")
-    for picture in draw_campaign(records, out / "pictures"):
+    for picture in _draw(design, out):
         typer.echo(f"picture: {picture}")
+
+
+def _done(design: Any, store: Any) -> list[Any]:
+    """The completed cases of a design."""
+    from ..campaigns import distinct_cases
+
+    keys = distinct_cases(design)
+    return [r for r in store.read_all() if r.id in keys and r.status == "done"]
+
+
+def _draw(design: Any, out: Path) -> list[Path]:
+    """Draw what a run has so far; return the files."""
+    from ..campaigns import Store
+    from ..campaigns.pictures import draw_campaign
+
+    return draw_campaign(_done(design, Store(out / FILE)), out / "pictures")

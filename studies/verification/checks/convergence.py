@@ -20,9 +20,9 @@ Floats = npt.NDArray[np.float64]
 _RATIOS = (0.1, 1.0, 10.0)
 # F [%], a [%], delta_s*, H [%]
 _NAMES = ("F", "a", "delta_s*", "H")
-_MARKS = (0.5, 1.0, 0.005, 1.5)
+_MARKS = (0.5, 0.5, 0.002, 1.0)
 _BULK = 4.0 / 3.0
-_RIPPLE_MARKS = {"F": 0.3, "a": 0.5}
+_RIPPLE_MARKS = {"F": 0.1, "a": 0.05}
 
 
 @dataclass(frozen=True)

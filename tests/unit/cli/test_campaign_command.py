@@ -4,6 +4,7 @@ import pandas
 import pytest
 from dentscope import campaigns, fem
 from dentscope.campaigns import DESIGNS, Design, Store, standard_case
+from dentscope.campaigns.run import Status, Step
 from dentscope.cli import run
 from dentscope.core import COMPLETED, Material, Pair
 from dentscope.fem import Counters, Curve, Solution
@@ -64,3 +65,21 @@ def test_a_run_that_is_stopped_says_how_to_go_on_and_shows_what_is_done(
     assert "2 cases, 1 done, 0 failed, 1 to compute" in shown
     assert "stopped; the same command goes on from here 1 done, 0 failed, 1 missing of 2" in shown
     assert (folder / "pictures" / "curves.png").exists()
+
+
+def test_the_first_pictures_come_with_the_third_case(stored, monkeypatch, capsys):
+    folder, _ = stored
+    (case,) = (record.case for record in Store(folder / "campaign.h5").read_all())
+    monkeypatch.setitem(DESIGNS, "small", Design("small", "", lambda: (case,)))
+
+    def third(*given, report, **options):
+        for done in (2, 3):
+            before = (folder / "pictures" / "curves.png").exists()
+            report(Step(case, True, "", 1.0, Status(9, done, 0)))
+            drawn = (folder / "pictures" / "curves.png").exists()
+            assert (before, drawn) == (False, done == 3)
+        return Status(9, 3, 0)
+
+    monkeypatch.setattr(campaigns, "run_design", third)
+    run(["campaign", "run", "--design", "small", "--out", str(folder)])
+    assert "picture of 3 cases:" in " ".join(capsys.readouterr().out.split())
