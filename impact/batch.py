@@ -33,11 +33,17 @@ QUICK = Settings(tolerance=1e-8)
 
 # What a normal impact without vibration leaves at nothing, and what it makes equal.
 _NOTHING = (
-    "rebound_spin_rad_s", "sliding_length_m", "scar_travel_m", "friction_impulse_ratio",
-    "tangential_impulse_Ns", "friction_work_J", "modal_energy_J", "support_energy_J",
-    "tangential_rebound_m_s", "energy_residual", "momentum_residual",
+    "rebound_spin_rad_s", "sliding_length_m", "scar_travel_m", "scar_excess_m",
+    "friction_impulse_ratio", "tangential_impulse_Ns", "friction_work_J", "modal_energy_J",
+    "modal_stored_J", "structural_loss_J", "support_energy_J", "support_stored_J",
+    "support_loss_J", "damping_work_J", "radiated_J", "tangential_rebound_m_s", "energy_residual",
+    "momentum_residual", "angular_residual", "clearance_m",
 )  # fmt: skip
-_SAME = {"touching_time_s": "contact_time_s", "tip_rebound_m_s": "rebound_speed_m_s"}
+_SAME = {
+    "touching_time_s": "contact_time_s", "tip_rebound_m_s": "rebound_speed_m_s",
+    "clearance_rate_m_s": "rebound_speed_m_s", "plastic_work_J": "contact_work_J",
+    "scar_length_m": "scar_width_m",
+}  # fmt: skip
 
 
 def impacts(
@@ -89,9 +95,8 @@ def impacts(
     (['work', 'work', 'work'], True)
     """
     given = _conditions(scene, speeds, angles, friction, masses, tangential, spins)
-    n = len(given["speed"])
-    values = {name: np.full(n, np.nan) for name in c.OBSERVABLES + c.COUNTS}
-    route = np.full(n, BY_STEPS, dtype="<U5")
+    values = {name: np.full(len(given["speed"]), np.nan) for name in c.OBSERVABLES + c.COUNTS}
+    route = np.full(len(given["speed"]), BY_STEPS, dtype="<U5")
     normal = (given["tangential"] == 0.0) & (given["spin"] == 0.0) & (given["friction"] >= 0.0)
     if scene.striker.length > 0.0:
         normal &= np.abs(given["angle"] - 0.5 * math.pi) < 1e-12
@@ -158,9 +163,29 @@ def _by_work(
         values[name][rows] = found[answered, k]
     for name in _NOTHING:
         values[name][rows] = 0.0
+    mass, rest = given["mass"][rows], values["residual_sphere_m"] + values["residual_flat_m"]
+    values["kinetic_before_J"][rows] = 0.5 * mass * given["speed"][rows] ** 2
+    values["kinetic_after_J"][rows] = 0.5 * mass * values["rebound_speed_m_s"][rows] ** 2
+    values["gravity_work_J"][rows] = mass * scene.gravity * rest[rows]
+    values["scar_width_m"][rows] = _crater_width(
+        scene, values["residual_flat_m"][rows], values["peak_depth_m"][rows]
+    )
     for name, same in _SAME.items():
         values[name][rows] = values[same][rows]
     values["ending"][rows], values["contacts"][rows] = c.DONE, 1.0
+
+
+def _crater_width(scene: Scene, depth: Array, peak: Array) -> Array:
+    """Width of a round crater of parabolic walls as `surface.scar` reads it from a scan [m]."""
+    step, level = scene.instrument.scan_step, scene.instrument.scan_height
+    width, seen = np.zeros_like(depth), depth > level
+    if seen.any():
+        deep, law = depth[seen], _quick(scene.law, scene)
+        radius = law.contact_radius(scene.pair, peak[seen])
+        below = np.floor(radius * (1.0 - np.sqrt(1.0 - level / deep)) / step) + 1.0
+        here, before = (deep * (1.0 - (1.0 - k * step / radius) ** 2) for k in (below, below - 1.0))
+        width[seen] = 2.0 * (radius - step * (below - (here - level) / (here - before)))
+    return width
 
 
 def _by_steps(
