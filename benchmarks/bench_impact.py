@@ -19,6 +19,7 @@ from dentscope.core import Material
 from dentscope.impact import (
     Approach,
     Friction,
+    Impact,
     Scene,
     Settings,
     Striker,
@@ -144,8 +145,28 @@ def random_scene(rng: np.random.Generator, number: int) -> Scene:
     )  # fmt: skip
 
 
-def agree(count: int, first: int = 0) -> None:
+def differences(scene: Scene, ours: Impact, theirs: Impact) -> dict[str, float]:
     """Differences relative to the observable, or to the impact's own scale if that is larger."""
+    if ours.contacts != theirs.contacts or not theirs.outcome.completed:
+        return {f"contacts: {ours.contacts} and {theirs.contacts}": math.inf}
+    m, v = scene.striker.mass, max(scene.approach.speed, abs(scene.approach.tangential))
+    found = {}
+    for name, value in ours.observables.items():
+        other = theirs.observables[name]
+        if name.endswith("residual") or (math.isnan(value) and math.isnan(other)):
+            continue
+        scale = {"J": 0.5 * m * v * v, "Ns": m * v, "m": ours.peak_depth_m}.get(
+            name.rsplit("_", 1)[-1], 1.0 if "restitution" in name or "ratio" in name else 0.0
+        )
+        scale = v if name.endswith("m_s") else scale
+        if name == "rebound_spin_rad_s":
+            scale = v * math.sqrt(m / scene.striker.inertia)
+        found[name] = abs(value - other) / max(abs(value), abs(other), scale, 1e-300)
+    return found
+
+
+def agree(count: int, first: int = 0) -> None:
+    """Largest differences of many random impacts."""
     rng = np.random.default_rng(2024)
     worst: dict[str, float] = {}
     beyond = []
@@ -159,27 +180,16 @@ def agree(count: int, first: int = 0) -> None:
             slower = replace(scene.approach, speed=0.5 * scene.approach.speed)
             scene = scene.with_(approach=slower)
             ours = strike(scene, EXACT)
-        theirs = oracle_impact(scene)
-        largest = (0.0, "")
-        if ours.contacts != theirs.contacts or not theirs.outcome.completed:
-            largest = (math.inf, f"contacts: {ours.contacts} and {theirs.contacts}")
-        m, v = scene.striker.mass, max(scene.approach.speed, abs(scene.approach.tangential))
-        for name, value in ours.observables.items():
-            other = theirs.observables[name]
-            if name.endswith("residual") or (math.isnan(value) and math.isnan(other)):
-                continue
-            scale = {"J": 0.5 * m * v * v, "Ns": m * v, "m": ours.peak_depth_m}.get(
-                name.rsplit("_", 1)[-1], 1.0 if "restitution" in name or "ratio" in name else 0.0
-            )
-            scale = v if name.endswith("m_s") else scale
-            if name == "rebound_spin_rad_s":
-                scale = v * math.sqrt(m / scene.striker.inertia)
-            off = abs(value - other) / max(abs(value), abs(other), scale, 1e-300)
+        found = differences(scene, ours, oracle_impact(scene))
+        if max(found.values()) > 1e-8:
+            # where the outcome hangs on small things the reference is made as exact as it can be
+            found = differences(scene, ours, oracle_impact(scene, tolerance=1e-13))
+        for name, off in found.items():
             worst[name] = max(worst.get(name, 0.0), off)
-            largest = max(largest, (off, name))
-        if largest[0] > 1e-8:
+        off, name = max((off, name) for name, off in found.items())
+        if off > 1e-8:
             where = f"{scene.law.name}, {ours.contacts} contacts"
-            beyond.append(f"{number}: {largest[0]:.1e} in {largest[1]} ({where})")
+            beyond.append(f"{number}: {off:.1e} in {name} ({where})")
             print(f"  {beyond[-1]}", flush=True)
         if number % 100 == 99:
             print(f"  {number + 1} done, {len(beyond)} beyond 1e-8", flush=True)

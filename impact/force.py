@@ -180,7 +180,10 @@ def static_unloading(unloading, par, branch, depth):
         )
     if branch[POWER] > 0.0:
         x = min((depth - branch[1] - branch[2]) / (branch[0] - branch[1] - branch[2]), 1.0)
-        fade = x * math.sqrt(x) if branch[POWER] == 1.5 else x ** branch[POWER]
+        if branch[POWER] == 1.5:
+            return branch[3] * branch[PEAK_FORCE] * (x * math.sqrt(x))
+        # quicker than the power, and right to a few units in the last place
+        fade = math.exp(branch[POWER] * math.log(x))
         return branch[3] * branch[PEAK_FORCE] * fade
     if branch[3] == 1.0 and branch[6] == 1.0 and branch[4] == branch[0]:
         return unloading(par, depth, branch[0])

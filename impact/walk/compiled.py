@@ -3,18 +3,21 @@
 from __future__ import annotations
 
 import numpy as np
-from numba import njit, types
+from numba import int64, njit, types
 
 from ...models.kernel import VECTOR
 from .. import surface as su
 from ..force import BRANCH, DAMPING, LOADING, N_BRANCH, RADIATION, SPLIT
 from . import layout as at
+from .advance import advance
+from .change import change, part
 from .events import rubbing
 from .flight import N_FAST
-from .layout import MATRIX, MODEL, OBSERVABLES, WORK, Model, Work
-from .motion import PLAIN, STAGES
-from .phases import AGAIN, NONE, advance, change, part, refresh, touch
+from .land import AGAIN, NONE
+from .layout import MATRIX, MODEL, OBSERVABLES, PLAIN, WORK, Model, Work
 from .record import begin, finish, note, note_flight
+from .step import STAGES
+from .touch import refresh, touch
 
 __all__ = ["OBSERVABLES", "many_impacts", "one_impact"]
 
@@ -57,6 +60,47 @@ def walk(m, w):
     finish(m, w)
 
 
+@njit(types.UniTuple(int64, 2)(VECTOR, VECTOR, int64), cache=True, _nrt=False)
+def _size_of(force, body, n):
+    """Length of the state with n modes, as laid out and as much of it as is in use."""
+    waves = force[DAMPING] != 0.0 or force[RADIATION] != 0.0
+    held = body[at.S_MASS] == np.inf and body[at.S_PLATE] == 0.0
+    used = at.N_RIGID + 2 * n
+    if n > 0 or waves or not held:
+        used += at.N_TAIL
+    if body[at.COMPLIANCE] < np.inf:
+        used += 1
+    return -(-used // _LANES) * _LANES, used
+
+
+@njit(WORK(int64, int64, VECTOR, VECTOR, MATRIX), cache=True)
+def _work_of(size, n, surface, out, history):
+    """Return room for impacts with a state of length `size` and n modes."""
+    return Work(
+        np.zeros(size), np.zeros(size), np.zeros(size), np.zeros(size), np.zeros(size),
+        np.ones(size), np.zeros(N_BRANCH), surface, np.zeros(at.N_SEEN), np.zeros(at.N_SEEN),
+        np.zeros(at.N_SEEN), np.zeros(at.N_EVENTS), np.zeros(at.N_EVENTS), np.zeros(at.N_NOW),
+        np.zeros(at.N_SCALES), np.zeros(at.N_TALLY), np.zeros(su.N_IMPRINT), out,
+        np.zeros((STAGES + 1, size)), np.zeros((N_FAST, n)), history,
+        np.zeros(at.N_EVENTS, np.bool_))
+
+
+@njit(types.void(VECTOR, VECTOR, VECTOR, MATRIX, VECTOR), cache=True, _nrt=False)
+def _sum_up(force, body, omega, psi, sums):
+    """Fill the sums of a model."""
+    n = len(omega)
+    sums[:] = 0.0
+    for k in range(n):
+        sums[at.S_XX] += psi[0, k] ** 2
+        sums[at.S_XY] += psi[0, k] * psi[1, k]
+        sums[at.S_XP] += psi[0, k] * psi[2, k]
+    sums[at.PER_MASS], sums[at.PER_INERTIA] = 1.0 / body[at.MASS], 1.0 / body[at.INERTIA]
+    _, used = _size_of(force, body, n)
+    springs = 1 if body[at.COMPLIANCE] < np.inf else 0
+    sums[at.HAS_TAIL] = 1.0 if used - springs > at.N_RIGID + 2 * n else 0.0
+    sums[at.SIZE] = float(used)
+
+
 @njit(
     types.void(LOADING, BRANCH, BRANCH, SPLIT, VECTOR, VECTOR, VECTOR, VECTOR, VECTOR, VECTOR,
                VECTOR, MATRIX, VECTOR, MATRIX, VECTOR),
@@ -68,30 +112,12 @@ def one_impact(loading, radius, unloading, residual, par, force, factors, breaks
 
     As many rows of `history` are filled as there are; `rows` takes how many.
     """
-    n = len(omega)
-    waves = force[DAMPING] != 0.0 or force[RADIATION] != 0.0
-    held = body[at.S_MASS] == np.inf and body[at.S_PLATE] == 0.0
-    tail = n > 0 or waves or not held
-    size = at.N_RIGID + 2 * n + (at.N_TAIL if tail else 0)
-    size += 1 if body[at.COMPLIANCE] < np.inf else 0
-    count = float(size)
-    size = -(-size // _LANES) * _LANES
+    size, _ = _size_of(force, body, len(omega))
     sums = np.zeros(at.N_SUMS)
-    for k in range(n):
-        sums[at.S_XX] += psi[0, k] ** 2
-        sums[at.S_XY] += psi[0, k] * psi[1, k]
-        sums[at.S_XP] += psi[0, k] * psi[2, k]
-    sums[at.PER_MASS], sums[at.PER_INERTIA] = 1.0 / body[at.MASS], 1.0 / body[at.INERTIA]
-    sums[at.HAS_TAIL], sums[at.SIZE] = 1.0 if tail else 0.0, count
+    _sum_up(force, body, omega, psi, sums)
     m = Model(loading, radius, unloading, residual, par, force, factors, breaks, body, omega, psi,
               sums)
-    w = Work(
-        np.zeros(size), np.zeros(size), np.zeros(size), np.zeros(size), np.zeros(size),
-        np.ones(size), np.zeros(N_BRANCH), surface, np.zeros(at.N_SEEN), np.zeros(at.N_SEEN),
-        np.zeros(at.N_SEEN), np.zeros(at.N_EVENTS), np.zeros(at.N_EVENTS), np.zeros(at.N_NOW),
-        np.zeros(at.N_SCALES), np.zeros(at.N_TALLY), np.zeros(su.N_IMPRINT), out,
-        np.zeros((STAGES + 1, size)), np.zeros((N_FAST, n)), history,
-        np.zeros(at.N_EVENTS, np.bool_))
+    w = _work_of(size, len(omega), surface, out, history)
     walk(m, w)
     rows[0] = w.tally[at.ROWS]
 
@@ -105,13 +131,19 @@ def many_impacts(loading, radius, unloading, residual, par, force, factors, brea
                  omega, psi, out):
     """Integrate row after row; all but `breaks` and `body` hold one row or one per impact.
 
-    The surfaces stay as they are.
+    The surfaces stay as they are. Room is made anew only where the state has another length.
     """
-    history, rows = np.zeros((0, len(at.HISTORY))), np.zeros(1)
-    ours = np.zeros(su.N_SURFACE)
+    n = omega.shape[1]
+    sums = np.zeros(at.N_SUMS)
+    w = _work_of(0, n, np.zeros(su.N_SURFACE), np.zeros(at.N_OUT), np.zeros((0, len(at.HISTORY))))
     for i in range(len(body)):
-        ours[:] = surface[min(i, len(surface) - 1)]
-        one_impact(loading, radius, unloading, residual, par[min(i, len(par) - 1)],
-                   force[min(i, len(force) - 1)], factors[min(i, len(factors) - 1)], breaks,
-                   body[i], ours, omega[min(i, len(omega) - 1)], psi[min(i, len(psi) - 1)], out[i],
-                   history, rows)
+        f, modes = force[min(i, len(force) - 1)], omega[min(i, len(omega) - 1)]
+        shapes = psi[min(i, len(psi) - 1)]
+        size, _ = _size_of(f, body[i], n)
+        if size != len(w.z):
+            w = _work_of(size, n, w.surface, w.out, w.history)
+        _sum_up(f, body[i], modes, shapes, sums)
+        w.surface[:] = surface[min(i, len(surface) - 1)]
+        walk(Model(loading, radius, unloading, residual, par[min(i, len(par) - 1)], f,
+                   factors[min(i, len(factors) - 1)], breaks, body[i], modes, shapes, sums), w)
+        out[i] = w.out

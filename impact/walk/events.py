@@ -10,8 +10,9 @@ from ...models.kernel import VECTOR
 from .. import force as fo
 from .. import surface as su
 from . import layout as at
-from .layout import MODEL, WORK
-from .motion import PLAIN, contact, derivative, kinematics, loading_radius, tail_of
+from .contact import contact, kinematics, loading_radius, tail_of
+from .layout import MODEL, PLAIN, WORK
+from .motion import derivative
 
 # fmt: off
 _BREAK_GAP = 1e-13

@@ -15,8 +15,8 @@ from numba import float64, int64, njit, types
 from ...models.kernel import VECTOR
 from .. import surface as su
 from . import layout as at
-from .layout import MODEL, WORK
-from .motion import PLAIN, kinematics, place_of, tail_of
+from .contact import kinematics, place_of, tail_of
+from .layout import MODEL, PLAIN, WORK
 
 # fmt: off
 LOOKS = 100_000
@@ -27,6 +27,35 @@ CLEAR, TOUCHED, HORIZON, LOST = range(4)
 # along the flat its largest speed and acceleration.
 _REACH, _PUSH, _ASIDE, _ASIDE_PUSH = range(4)
 N_FAST = 4
+
+
+# pi/2 as a sum: the first two parts have few digits, so that their multiples are exact
+_QUARTER = (1.57079632673412561417e0, 6.07710050630396597660e-11, 2.02226624879595063154e-21)
+
+
+@njit(types.UniTuple(float64, 2)(float64), cache=True, _nrt=False, error_model="numpy")
+def turned(x):
+    """Cosine and sine of 0 <= x < 1e5, right to 2e-16: without branches, so that modes go in fours.
+
+    The polynomials are those of the C library fdlibm, about the nearest multiple of pi/2.
+    """
+    count = math.floor(x * 0.63661977236758134308 + 0.5)
+    r = ((x - count * _QUARTER[0]) - count * _QUARTER[1]) - count * _QUARTER[2]
+    y = r * r
+    sine = 1.58969099521155010221e-10
+    for a in (-2.50507602534068634195e-8, 2.75573137070700676789e-6, -1.98412698298579493134e-4,
+              8.33333333332248946124e-3, -1.66666666666666324348e-1):
+        sine = a + y * sine
+    sine = r + r * y * sine
+    cosine = -1.13596475577881948265e-11
+    for a in (2.08757232129817482790e-9, -2.75573143513906633035e-7, 2.48015872894767294178e-5,
+              -1.38888888888741095749e-3, 4.16666666666666019037e-2):
+        cosine = a + y * cosine
+    cosine = 1.0 - 0.5 * y + y * y * cosine
+    quarter = count - 4.0 * math.floor(0.25 * count)
+    odd = quarter == 1.0 or quarter == 3.0
+    c, s = (sine, cosine) if odd else (cosine, sine)
+    return (-c if quarter == 1.0 or quarter == 2.0 else c), (-s if quarter >= 2.0 else s)
 
 
 @njit(types.UniTuple(float64, 2)(VECTOR, float64, float64, float64), cache=True, **PLAIN)
@@ -47,6 +76,23 @@ def _support(body, w, v, t):
 
 
 @njit(types.void(MODEL, VECTOR, float64, VECTOR), cache=True, **PLAIN)
+def _ring_down(m, z, t, z_new):
+    """Write the modes after a flight of duration t, and what their damping took."""
+    omega, n, tail = m.omega, len(m.omega), tail_of(m.omega, m.sums)
+    zeta = 0.5 * m.body[at.LOSS]
+    root = math.sqrt(1.0 - zeta * zeta)
+    for k in range(n):
+        q, p, w = z[at.N_RIGID + k], z[at.N_RIGID + n + k], omega[k]
+        fade = math.exp(-zeta * w * t) if zeta > 0.0 else 1.0
+        cosine, sine = math.cos(w * root * t), math.sin(w * root * t) / root
+        q_new = fade * (q * (cosine + zeta * sine) + p / w * sine)
+        p_new = fade * (p * (cosine - zeta * sine) - q * w * sine)
+        z_new[at.N_RIGID + k], z_new[at.N_RIGID + n + k] = q_new, p_new
+        if zeta > 0.0:
+            z_new[tail + at.WORK_D] += 0.5 * (p * p + (w * q) ** 2 - p_new**2 - (w * q_new) ** 2)
+
+
+@njit(types.void(MODEL, VECTOR, float64, VECTOR), cache=True, **PLAIN)
 def coast(m, z, t, z_new):
     """Write the state after a flight of duration t: ballistic motion, free damped vibrations."""
     body, omega = m.body, m.omega
@@ -62,17 +108,15 @@ def coast(m, z, t, z_new):
     if body[at.S_MASS] < math.inf:
         sinking = _support(body, z[tail + at.W], z[tail + at.W_RATE], t)
         z_new[tail + at.W], z_new[tail + at.W_RATE] = sinking
-    zeta = 0.5 * body[at.LOSS]
-    root = math.sqrt(1.0 - zeta * zeta)
+    if body[at.LOSS] > 0.0 or (n > 0 and omega[n - 1] * t >= 1e5):
+        _ring_down(m, z, t, z_new)
+        return
+    first, rates = at.N_RIGID, at.N_RIGID + n
     for k in range(n):
-        q, p, w = z[at.N_RIGID + k], z[at.N_RIGID + n + k], omega[k]
-        fade = math.exp(-zeta * w * t) if zeta > 0.0 else 1.0
-        cosine, sine = math.cos(w * root * t), math.sin(w * root * t) / root
-        q_new = fade * (q * (cosine + zeta * sine) + p / w * sine)
-        p_new = fade * (p * (cosine - zeta * sine) - q * w * sine)
-        z_new[at.N_RIGID + k], z_new[at.N_RIGID + n + k] = q_new, p_new
-        if zeta > 0.0:
-            z_new[tail + at.WORK_D] += 0.5 * (p * p + (w * q) ** 2 - p_new**2 - (w * q_new) ** 2)
+        q, p, w = z[first + k], z[rates + k], omega[k]
+        cosine, sine = turned(w * t)
+        z_new[first + k] = q * cosine + p / w * sine
+        z_new[rates + k] = p * cosine - q * w * sine
 
 
 @njit(types.UniTuple(float64, 2)(MODEL, WORK, VECTOR), cache=True, **PLAIN)

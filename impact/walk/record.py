@@ -11,19 +11,28 @@ from ...models.kernel import VECTOR
 from .. import force as fo
 from .. import surface as su
 from . import layout as at
+from .contact import kinematics, penetration, place_of, tail_of
 from .flight import clearance, coast
-from .layout import MODEL, WORK
-from .motion import PLAIN, derivative, kinematics, penetration, place_of, tail_of
+from .layout import MODEL, PLAIN, WORK
+from .motion import derivative
 
 # fmt: off
 
 
 @njit(float64(MODEL, float64), cache=True, **PLAIN)
 def _reference_depth(m, energy):
-    """Depth [m] at which about `energy` [J] has been taken up; the scale of the tolerances."""
-    d = 1e-12 * m.body[at.TIP]
+    """Depth [m] at which about `energy` [J] has been taken up; the scale of the tolerances.
+
+    Doubled from far below the depth at which elastic bodies have taken it, the least there is.
+    """
+    tip = m.body[at.TIP]
+    stiff = 8.0 / 15.0 * m.force[fo.MODULUS] * math.sqrt(tip)
+    d = 1e-12 * tip
+    low = 1e-3 * (energy / stiff) ** 0.4
+    while d < low:
+        d *= 2.0
     taken, last = 0.0, 0.0
-    while taken < energy and d < 10.0 * m.body[at.TIP]:
+    while taken < energy and d < 10.0 * tip:
         f = fo.static_loading(m.loading, m.par, m.force, m.factors, d)
         taken += 0.25 * d * (f + last)
         last = f
@@ -37,6 +46,8 @@ def begin(m, w):
     body, z, scales, tally = m.body, w.z, w.scales, w.tally
     z[:] = 0.0
     tally[:] = 0.0
+    w.now[:] = 0.0
+    w.branch[:] = 0.0
     tally[at.FIRST_TURN], tally[at.ENDING] = np.nan, at.GOING
     scales[at.ORIGIN] = w.surface[su.BEGIN]
     low, _ = su.height(w.surface, w.surface[su.COUNT], scales[at.ORIGIN])
@@ -54,7 +65,7 @@ def begin(m, w):
     scales[at.SMALL_FORCE] = 1e-7 * reduced * v_n / t_ref
     scales[at.AHEAD] = 1e-6 * t_ref
     scales[at.SPRING_FORCE] = tolerance * reduced * v_n / t_ref
-    scales[at.BITE] = 0.1 * math.sqrt(tolerance)
+    scales[at.BITE], scales[at.LEAP] = 0.1 * math.sqrt(tolerance), 0.3 * tolerance ** (1.0 / 3.0)
     # Yield begins within the first step: the finer the tolerance, the less may be skipped.
     scales[at.FIRST_STEP] = 0.15 * math.sqrt(t_ref) * min(1.0, (tolerance / 1e-7) ** 0.25)
     arm, scale = math.sqrt(inertia / mass), w.scale

@@ -44,16 +44,25 @@ from .motion import (
 )
 
 
-def oracle_impact(scene: Scene, settings: Settings = Settings()) -> Impact:  # noqa: B008
-    """Integrate one impact with the library's integrator; only the budgets of `settings` count."""
-    return _Walk(scene, arrays_of(scene, settings), settings).run()
+def oracle_impact(
+    scene: Scene,
+    settings: Settings = Settings(),  # noqa: B008
+    *,
+    tolerance: float = 1e-11,
+) -> Impact:
+    """Integrate one impact with the library's integrator to a relative `tolerance`.
+
+    Of `settings` only the budgets count.
+    """
+    return _Walk(scene, arrays_of(scene, settings), settings, tolerance).run()
 
 
 class _Walk:
     """Goes from event to event."""
 
-    def __init__(self, scene: Scene, a: Arrays, settings: Settings) -> None:
+    def __init__(self, scene: Scene, a: Arrays, settings: Settings, tolerance: float) -> None:
         self.motion, self.a, self.settings = Motion(scene, a), a, settings
+        self.rtol, self.small_share = tolerance, 0.1 * tolerance
         self.surface = a.spot.copy()
 
     def run(self) -> Impact:
@@ -225,8 +234,8 @@ class _Walk:
             function.__dict__.update(terminal=True, direction=-1.0)
         sol = solve_ivp(
             lambda _t, y: mo.derivative(y, k), (t, t + 1e4 * self.t_ref), z, method="DOP853",
-            rtol=1e-11, atol=1e-12 * scale, events=[function for _, function in active],
-            first_step=1e-4 * self.t_ref, max_step=self.longest(),
+            rtol=self.rtol, atol=self.small_share * scale, max_step=self.longest(),
+            events=[function for _, function in active], first_step=1e-4 * self.t_ref,
         )  # fmt: skip
         if sol.status != 1:
             self.ending = c.NOT_FINITE if sol.status < 0 else c.STEP_BUDGET
@@ -262,8 +271,8 @@ class _Walk:
         while t < horizon and not self.is_clear(z):
             end = min(t + slow, horizon)
             sol = solve_ivp(
-                lambda _t, y: mo.derivative(y, k), (t, end), z, method="DOP853", rtol=1e-11,
-                atol=1e-12 * scale, events=[gap, free], max_step=quick,
+                lambda _t, y: mo.derivative(y, k), (t, end), z, method="DOP853", rtol=self.rtol,
+                atol=self.small_share * scale, events=[gap, free], max_step=quick,
                 first_step=min(1e-3 * quick, 0.5 * (end - t)),
             )  # fmt: skip
             if len(sol.t_events[1]):
@@ -364,7 +373,7 @@ class _Walk:
             return (*part, end)
         sol = solve_ivp(
             lambda _t, y: self.motion.derivative(y, k),
-            (start, short), z, method="DOP853", rtol=1e-11, atol=1e-12 * scale,
+            (start, short), z, method="DOP853", rtol=self.rtol, atol=self.small_share * scale,
             events=[function for _, function in others], max_step=self.longest(),
             first_step=min(1e-4 * self.t_ref, 0.5 * (short - start)),
         )  # fmt: skip
@@ -385,7 +394,7 @@ class _Walk:
             return z, start
         sol = solve_ivp(
             lambda _t, y: self.motion.derivative(y, k),
-            (start, end), z, method="DOP853", rtol=1e-11, atol=1e-12 * scale,
+            (start, end), z, method="DOP853", rtol=self.rtol, atol=self.small_share * scale,
             first_step=min(1e-4 * self.t_ref, 0.5 * (end - start)), max_step=self.longest(),
         )  # fmt: skip
         z = sol.y[:, -1].copy()

@@ -28,6 +28,7 @@ from dentscope.models.published.ghaednia import GHAEDNIA
 from dentscope.models.published.hertz import HERTZ
 from dentscope.models.published.jackson_green import JACKSON_GREEN
 from dentscope.models.published.kogut_etsion import KOGUT_ETSION
+from dentscope.models.published.stronge import STRONGE
 from dentscope.studies.oracle import oracle_impact
 
 LAWS = (HERTZ, JACKSON_GREEN, GHAEDNIA)
@@ -118,6 +119,16 @@ def test_integrators_agree_on_contacts_that_give_way_sideways() -> None:
         assert_agree(
             scene.with_(law=law, friction=yielding), 1e-8, settings=Settings(tolerance=1e-11)
         )
+
+
+@pytest.mark.parametrize("tolerance", [1e-10, 1e-12, 3e-13])
+def test_a_second_touch_may_turn_near_the_end_of_its_bed(tolerance: float) -> None:
+    """A ball on a spring comes back before it leaves; there the depth cannot carry the motion."""
+    scene = scene_of(
+        STRONGE, sphere=STEEL, flat=IRON, striker=Striker(mass=0.5396, tip_radius=0.02484),
+        approach=Approach(0.1255), friction=Friction(0.1), support=Support(1.0, 1e8),
+    )  # fmt: skip
+    assert_agree(scene, 1e-8, settings=Settings(tolerance=tolerance))
 
 
 def test_integrators_agree_on_a_vibrating_rod_with_several_contacts() -> None:

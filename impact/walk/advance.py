@@ -1,0 +1,134 @@
+"""One step of the walk: as long as it may be, accepted as far as it holds no event."""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+from numba import boolean, float64, int64, njit
+
+from .. import force as fo
+from . import layout as at
+from .land import AGAIN, NONE, find_event
+from .layout import MODEL, PLAIN, WORK
+from .step import STAGES, step
+
+# fmt: off
+
+
+@njit(inline="always", **PLAIN)
+def _fit_step(m, w):
+    """Shorten the next step to the longest allowed, to a border, or to the end of its variable."""
+    now, seen = w.now, w.seen
+    variable, place, h = now[at.VARIABLE], now[at.AT], now[at.STEP]
+    longest = m.body[at.LONGEST]
+    if longest < math.inf:
+        if variable == at.BY_TIME:
+            h = min(h, longest)
+        elif variable == at.BY_ROOT_TIME:
+            h = min(h, math.sqrt(place * place + longest) - place)
+        elif variable == at.BY_RATE:
+            h = max(h, longest * seen[at.ACCELERATION])
+        else:
+            most = longest * abs(seen[at.RATE])
+            most = most / place if place * place > most else math.sqrt(most)
+            h = min(max(h, -most), most)
+    # On loading by depth a step can end on the border of a stretch.
+    pressing = variable == at.BY_ROOT_DEPTH and now[at.PHASE] == at.LOAD
+    bordering = False
+    if pressing:
+        if seen[at.ACCELERATION] < 0.0:
+            room = -0.3 * seen[at.RATE] ** 2 / seen[at.ACCELERATION]
+            h = min(h, math.sqrt(place * place + room) - place)
+        border = math.sqrt(w.branch[fo.SEGMENT_HIGH])
+        bordering = place + 1.02 * h >= border
+        h = border - place if bordering else h
+    landing = variable >= at.BY_ROOT_DEPTH and place + h <= 0.02 * place
+    now[at.PRESSING], now[at.BORDERING] = float64(pressing), float64(bordering)
+    now[at.LANDING] = float64(landing)
+    now[at.STEP] = -place if landing else h
+
+
+@njit(boolean(MODEL, WORK, float64), cache=True, **PLAIN)
+def _give_way(m, w, error):
+    """Shorten a step that failed, or change its variable; False: no step is left."""
+    now = w.now
+    if not math.isfinite(error):
+        # what is no number in the lanes that only fill the state up would stay there
+        springs = 1 if m.body[at.COMPLIANCE] < math.inf else 0
+        for i in range(len(w.stages)):
+            for j in range(int(m.sums[at.SIZE]) - springs, len(w.z) - springs):
+                w.stages[i, j] = 0.0
+    h, variable, place, t_ref = now[at.STEP], now[at.VARIABLE], now[at.AT], w.scales[at.T_REF]
+    h *= max(0.2, 0.9 * error**-0.125) if math.isfinite(error) else 0.1
+    now[at.STEP] = h
+    pressing = now[at.PRESSING] > 0.0
+    lost = variable == at.BY_RATE and -h < 1e-4 * place
+    lost = lost or (pressing and h < 1e-5 * max(place, 1e-3 * math.sqrt(w.scales[at.D_REF])))
+    # The tip no longer leaves: depth cannot carry the motion any further.
+    stays = variable == at.BY_ROOT_DEPTH and not pressing and -h < 1e-5 * place
+    if lost or stays:
+        now[at.VARIABLE], now[at.FRESH], now[at.STEP] = at.BY_TIME, 1.0, 1e-3 * t_ref
+        if stays:
+            now[at.SIMPLE] = 0.0
+        else:
+            now[at.TURNING] = 0.0
+    return not (variable < at.BY_ROOT_DEPTH and h < 1e-14 * t_ref)
+
+
+@njit(inline="always", **PLAIN)
+def _go_on(w, grown):
+    """Carry the end of a step over as the beginning of the next one."""
+    now, seen, variable = w.now, w.seen, w.now[at.VARIABLE]
+    now[at.STEP] = grown
+    for j in range(len(w.z)):
+        w.stages[0, j] = w.stages[STAGES, j]
+    for j in range(at.N_SEEN):
+        seen[j] = w.seen_new[j]
+    for event in range(at.N_EVENTS):
+        w.values[event] = w.values_new[event]
+    approaching, pressing = now[at.APPROACHING] > 0.0, now[at.PRESSING] > 0.0
+    if now[at.PHASE] == at.UNLOAD and now[at.SIMPLE] > 0.0 and variable == at.BY_TIME:
+        now[at.FRESH] = float64(not approaching)
+    if now[at.TURNING] > 0.0 and approaching and (variable < at.BY_ROOT_DEPTH or pressing):
+        span = grown if variable == at.BY_TIME else grown * (2.0 * now[at.AT] + grown)
+        span = span / seen[at.RATE] if pressing else span
+        near, speed = -1.2 * seen[at.ACCELERATION] * span, w.scales[at.SPEED]
+        close = seen[at.RATE] < (0.6 * speed if pressing else min(0.45 * speed, near))
+        now[at.FRESH] = now[at.TO_RATE] = float64(close)
+
+
+@njit(int64(MODEL, WORK), cache=True, **PLAIN)
+def advance(m, w):
+    """Take one step and accept what of it holds no event; return the event, NONE or AGAIN."""
+    now, tally = w.now, w.tally
+    _fit_step(m, w)
+    error = step(m, w, now[at.STEP])
+    tally[at.STEPS] += 1.0
+    if not error <= 1.0:
+        if not _give_way(m, w, error):
+            tally[at.ENDING] = at.NOT_FINITE
+        return AGAIN
+    h = now[at.STEP]
+    grown = h * min(6.0, 0.9 * max(error, 1e-12) ** -0.125)
+    event = find_event(m, w)
+    if event == AGAIN:
+        return AGAIN
+    now[at.AT] += now[at.TAKEN]
+    for j in range(len(w.z)):
+        w.z[j] = w.z_new[j]
+    if now[at.SIDE] == 0.0:
+        now[at.SIDE] = np.sign(w.seen_new[at.SLIDING])
+    # A force that depends on the rate may be largest between events.
+    rated = m.force[fo.DAMPING] != 0.0 or m.force[fo.RADIATION] != 0.0
+    if (event >= 0 or rated) and w.seen_new[at.FORCE] > tally[at.TOP_FORCE]:
+        tally[at.TOP_FORCE] = w.seen_new[at.FORCE]
+    if event == NONE:
+        _go_on(w, grown)
+    else:
+        now[at.FRESH] = 1.0
+        if now[at.PRESSING] > 0.0:
+            now[at.STEP] = grown
+        elif now[at.VARIABLE] < at.BY_ROOT_DEPTH:
+            now[at.STEP] = min(grown, max(now[at.TAKEN], 0.5 * h))
+    return event
