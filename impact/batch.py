@@ -14,6 +14,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from ..core.approach import speeds_at_touch
 from ..core.errors import Ending, InputError
 from ..core.observables import OBSERVABLES as MEASURED
 from ..models.base import ContactLaw
@@ -142,9 +143,8 @@ def _conditions(
             wrong = found[key][~(good & np.isfinite(found[key]))][0]
             raise InputError(f"{wrong:g}", key=key, allowed=allowed)
     if sphere and angles is not None and tangential is None:
-        slanted = np.abs(found["angle"] - 0.5 * math.pi) > 1e-12
-        along = -found["speed"] / np.tan(found["angle"])
-        found["tangential"] = np.where(slanted, along, 0.0)
+        speed, angle = found["speed"], found["angle"]
+        _, found["tangential"] = speeds_at_touch(speed, np.nan, angle, False, gravity=scene.gravity)
     return found
 
 

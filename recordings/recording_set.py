@@ -14,6 +14,7 @@ from pathlib import Path
 import numpy as np
 import numpy.typing as npt
 
+from ..core.approach import speeds_at_touch
 from ..core.errors import InputError, InputErrors
 from ..core.observables import RELATIVE_SUFFIX, RIG_NOISE, TRACE_NOISE
 from ..core.output import finish, locked, write_files
@@ -140,14 +141,13 @@ class RecordingSet:
         trials, g = self.trials, self.setup.gravity_m_s2
         rod = np.array([s.shape == "rod" for s in self.strikers()], dtype=bool)
         angle = np.radians(trials.angle_deg)
-        fall = np.sqrt(2.0 * g.value * trials.drop_height_m) * np.where(rod, 1.0, np.sin(angle))
-        timed = ~np.isnan(trials.impact_speed_m_s)
-        normal = np.where(timed, trials.impact_speed_m_s, fall)
+        normal, along = speeds_at_touch(
+            trials.impact_speed_m_s, trials.drop_height_m, angle, rod, gravity=g.value
+        )
         fraction = self.setup.noise.get("impact_speed" + RELATIVE_SUFFIX, np.nan)
         std = np.where(
             np.isnan(trials.impact_speed_m_s_std), fraction * normal, trials.impact_speed_m_s_std
         )
-        along = np.where(rod | (trials.angle_deg == 90.0), 0.0, -normal / np.tan(angle))
         given = trials.approach_tangential_m_s
         return Approach(
             normal=normal,

@@ -9,6 +9,7 @@ from typing import Any, Literal
 
 from pydantic import Field
 
+from ...core.approach import speeds_at_touch
 from ...core.errors import InputError, InputErrors
 from ...core.rig import Positive, Quantity, Rig, value_of
 from ...core.toml_input import InputTable, parse_model, read_toml
@@ -190,16 +191,11 @@ def _scene(found: SetupFile, law: ContactLaw, *, source: str, speed: float | Non
 def _approach(impact: ImpactTable, gravity: float, *, rod: bool, speed: float | None) -> Approach:
     """The motion at touch; a sphere's angle is that of its velocity, a rod's that of its axis."""
     angle = math.radians(impact.angle_deg)
-    if speed is not None:
-        normal = speed
-    elif impact.impact_speed_m_s is not None:
-        normal = impact.impact_speed_m_s.value
-    else:
-        height = value_of(impact.drop_height_m)
-        normal = math.sqrt(2.0 * gravity * height) * (1.0 if rod else math.sin(angle))
-    upright = rod or impact.angle_deg == 90.0
-    along = 0.0 if upright else -normal / math.tan(angle)
+    stated = value_of(impact.impact_speed_m_s) if speed is None else speed
+    normal, along = speeds_at_touch(
+        stated, value_of(impact.drop_height_m), angle, rod, gravity=gravity
+    )
     return Approach(
-        normal, angle if rod else math.pi / 2.0, value_of(impact.approach_tangential_m_s, along),
-        impact.approach_spin_rad_s.value,
+        float(normal), angle if rod else math.pi / 2.0,
+        value_of(impact.approach_tangential_m_s, float(along)), impact.approach_spin_rad_s.value,
     )  # fmt: skip
