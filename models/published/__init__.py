@@ -48,6 +48,20 @@ UNAVAILABLE: dict[str, str] = {
     "from a pressure distribution fitted to their finite elements, whose constants stand in the "
     "paper only, and no public text or code that quotes them was found; thornton is the model that "
     "it corrects",
+    "wu": "Wu, Li and Thornton 2003: section 1.3.2 names them among finite-element studies and "
+    "gives no equation; the paper, on the rebound of plastic spheres, was not read",
+    "bartier": "Bartier and others: section 1.3.1 names the paper as a comparison of models for "
+    "the real contact radius; it is no law of its own",
+    "komvopoulos-layered": "Komvopoulos, and Ye and Komvopoulos 2003, for layered flats: "
+    "section 1.3.1 gives no equation for a layer, and the papers were not read; the flats here "
+    "have one metal, for which ye-komvopoulos and kogut-komvopoulos are offered",
+    "zhao-maietta-chang": "Zhao, Maietta and Chang 2000: not in the text of the thesis at hand; "
+    "the paper, on contacts of asperities, was not read",
+    "brake-2015-friction": "the friction of Brake 2015 for oblique impacts: section 1.3.1 says "
+    "that the paper has one and gives no equation; brake-2015 is its normal law, tangential "
+    "laws at hand are Coulomb's and the tangential-compliance of a diagnosis",
+    "cross-grip": "Cross's grip and multiple reversal of friction: section 1.1 says that the "
+    "papers give no analytical model; reversal by elastic sticking is tangential-compliance",
     "wadwalkar": "Wadwalkar, Jackson and Kogut 2010 (large deformation): section 1.2 gives no "
     "equation, and the paper's fits were found in no public text or code; up to a/R = 1 "
     "jackson-green-2007 has a hardness that falls to S, as theirs, but its force is a fit up to "
