@@ -55,9 +55,12 @@ def check_seal(image: bytes, path: Path, *, allowed: str = "") -> None:
         It is another kind of file, or was changed.
     """
     if not is_sealed(image):
-        known = image[:8] == b"\x89HDF\r\n\x1a\n"
-        what = "of an older format, without a digest" if known else "not a file of dentscope's"
-        raise InputError(what, source=str(path), allowed=allowed)
+        if image[:8] != b"\x89HDF\r\n\x1a\n":
+            raise InputError(
+                "not a campaign file, or its head is damaged", source=str(path),
+                allowed="a file that `dentscope campaign` wrote",
+            )  # fmt: skip
+        raise InputError("of an older format, without a digest", source=str(path), allowed=allowed)
     if image[:SEALED_FROM] != seal(image):
         raise InputError(
             "damaged: its bytes are not those that were written", source=str(path), allowed=allowed

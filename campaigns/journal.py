@@ -28,11 +28,9 @@ from ..core.output import write_file
 from .contents import SEALED_FROM, check_seal, seal
 
 PAGE = 4096
-_SECTOR = 512  # what a disk writes whole
 _MAGIC = b"dentscope-journal-2\n"
 _NUMBER = 8  # bytes of a number in the journal
 _DIGEST = 32
-_SHORT = 8  # bytes of a sector's digest
 _LAYOUT = ("v110", "v110")  # of HDF5: the first whose headers carry checksums at no cost of room
 PATIENCE_S = 300.0
 """How long to wait for another process that has the file open; ours have it for moments only."""
@@ -132,7 +130,7 @@ class Change:
     after
         Digest of the file when the change is complete.
     pages
-        Place, digests of the sectors before, and content of each changed page.
+        Place, content before and content after of each changed page.
     """
 
     size_before: int
@@ -160,8 +158,7 @@ def journalled(before: bytes, after: bytes) -> bytes:
     for at in range(0, len(after), PAGE):
         old, new = before[at : at + PAGE], after[at : at + PAGE]
         if old != new:
-            sectors = b"".join(_short(s) for s in _sectors(old.ljust(PAGE, b"\0")))
-            pages.append(_number(at) + sectors + new.ljust(PAGE, b"\0"))
+            pages.append(_number(at) + old.ljust(PAGE, b"\0") + new.ljust(PAGE, b"\0"))
             blank[at : at + PAGE] = bytes(len(old))
     body = b"".join(
         (
@@ -241,7 +238,7 @@ def _read_journal(journal: Path) -> Change:
     before, size, count = (_value(body, at - k * _NUMBER) for k in (3, 2, 1))
     rest, after = (body[at + k * _DIGEST : at + (k + 1) * _DIGEST] for k in range(2))
     at += 2 * _DIGEST
-    split = _NUMBER + _SHORT * (PAGE // _SECTOR)
+    split = _NUMBER + PAGE
     step = split + PAGE
     pages = tuple(
         (_value(body, k), body[k + _NUMBER : k + split], body[k + split : k + step])
@@ -251,20 +248,11 @@ def _read_journal(journal: Path) -> Change:
 
 
 def _in_between(found: bytes, before: bytes, content: bytes) -> bool:
-    """Whether each sector of a page is as it was, or as it will be; none yet counts as zeros."""
-    sectors = zip(_sectors(found.ljust(PAGE, b"\0")), _sectors(content), strict=True)
-    return all(
-        old_or_new == new or _short(old_or_new) == before[k * _SHORT : (k + 1) * _SHORT]
-        for k, (old_or_new, new) in enumerate(sectors)
+    """Whether each byte of a page is as it was, or as it will be; none yet counts as zero."""
+    page = found.ljust(PAGE, b"\0")
+    return page in (before, content) or all(
+        byte in (old, new) for byte, old, new in zip(page, before, content, strict=True)
     )
-
-
-def _sectors(page: bytes) -> list[bytes]:
-    return [page[k : k + _SECTOR] for k in range(0, PAGE, _SECTOR)]
-
-
-def _short(sector: bytes) -> bytes:
-    return hashlib.blake2b(sector, digest_size=_SHORT).digest()
 
 
 def _number(value: int) -> bytes:

@@ -31,6 +31,9 @@ app = typer.Typer(
     context_settings={"help_option_names": ["-h", "--help"]},
 )
 
+_MOST_LINES = 20
+"""Mistakes that are told one by one."""
+
 # typer ships its own copy of click in newer versions and uses the installed one in older ones;
 # the base class of its usage errors is reached through a name that both export.
 _UsageError: type[Exception] = typer.BadParameter.__mro__[1]
@@ -103,6 +106,15 @@ def run(arguments: list[str] | None = None) -> int:
     return result if isinstance(result, int) else 0
 
 
-def _refused(line: str) -> int:
-    sys.stderr.write(f"{line}\n")
+def _refused(told: str) -> int:
+    lines = told.splitlines()
+    for line in lines[:_MOST_LINES]:
+        sys.stderr.write(f"{_shown(line)}\n")
+    if len(lines) > _MOST_LINES:
+        sys.stderr.write(f"... and {len(lines) - _MOST_LINES} more of this kind\n")
     return EXIT_INPUT_ERROR
+
+
+def _shown(line: str) -> str:
+    """The line, control characters escaped: a name in a file must not command the terminal."""
+    return "".join(c if c.isprintable() else repr(c)[1:-1] for c in line)

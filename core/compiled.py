@@ -10,9 +10,13 @@ from __future__ import annotations
 import hashlib
 import os
 import re
+import stat
+import tempfile
+from contextlib import suppress
 from pathlib import Path
 
 _STAGES = ("core", "fem", "models", "impact", "discrepancy", "studies")
+_MOST_NAMES = 20
 _VARIABLE = "NUMBA_CACHE_DIR"
 _RELATIVE = re.compile(r"^from (\.+)([\w.]+) import ", re.MULTILINE)
 
@@ -53,6 +57,31 @@ def keep_compiled_code() -> None:
     """
     if os.environ.get(_VARIABLE):
         return
-    base = os.environ.get("XDG_CACHE_HOME") or str(Path.home() / ".cache")
+    base = Path(os.environ.get("XDG_CACHE_HOME") or Path.home() / ".cache")
     digest = source_digest(Path(__file__).resolve().parents[1])
-    os.environ[_VARIABLE] = str(Path(base) / "dentscope" / f"compiled-{digest}")
+    os.environ[_VARIABLE] = str(_own(_own(base / "dentscope") / f"compiled-{digest}"))
+
+
+def _own(place: Path) -> Path:
+    """Return a folder that is this user's and that nobody else may write; made if there is none.
+
+    numba runs what it finds there: where the name is taken by a folder of others, or by one that
+    others may have put something into, the next name is.
+    """
+    for name in (place.name, *(f"{place.name}-{k}" for k in range(2, _MOST_NAMES))):
+        folder = place.with_name(name)
+        with suppress(OSError):
+            folder.parent.mkdir(parents=True, exist_ok=True)
+            folder.mkdir(mode=0o700)
+        with suppress(OSError):
+            about = folder.lstat()
+            if _is_own(about):
+                return folder
+    return Path(tempfile.mkdtemp(prefix="dentscope-"))
+
+
+def _is_own(about: os.stat_result) -> bool:
+    others = stat.S_IWGRP | stat.S_IWOTH
+    return (
+        stat.S_ISDIR(about.st_mode) and about.st_uid == os.geteuid() and not about.st_mode & others
+    )

@@ -69,20 +69,47 @@ class Within:
 
     accept: Callable[[float], bool]
     allowed: str
+    units: tuple[tuple[str, float], ...] = ()
 
     def __call__(self, quantity: Quantity) -> Quantity:
         """Return the quantity if it lies in the range."""
         if not self.accept(quantity.value):
-            raise ValueError(self.allowed)
+            raise ValueError(f"{self.allowed}{self._asked(quantity.value)}")
         return quantity
+
+    def _asked(self, value: float) -> str:
+        """The unit that was perhaps meant."""
+        for unit, factor in self.units:
+            if self.accept(factor * value):
+                return f"; {value:g} {unit} would be {factor * value:g}"
+        return ""
 
 
 def _within(accept: Callable[[float], bool], allowed: str) -> AfterValidator:
     return AfterValidator(Within(accept, allowed))
 
 
+def _between(low: float, high: float, **units: float) -> AfterValidator:
+    """A range that every real body keeps; a number outside it is mostly in another unit."""
+    allowed = f"a number from {low:g} to {high:g}"
+    return AfterValidator(Within(lambda x: low <= x <= high, allowed, tuple(units.items())))
+
+
 Positive = Annotated[Quantity, _within(lambda x: x > 0.0, "a number above 0")]
 NotNegative = Annotated[Quantity, _within(lambda x: x >= 0.0, "a number not below 0")]
+Modulus = Annotated[Quantity, _between(1e3, 2e12, GPa=1e9, MPa=1e6)]
+Strength = Annotated[Quantity, _between(1e3, 5e11, MPa=1e6, GPa=1e9)]
+Density = Annotated[Quantity, _between(25.0, 25e3, **{"g/cm^3": 1e3})]
+Length = Annotated[Quantity, _between(1e-9, 10.0, mm=1e-3, um=1e-6)]
+Radius = Annotated[Quantity, _between(1e-9, 3.0, mm=1e-3, um=1e-6)]
+Roughness = Annotated[Quantity, _between(0.0, 1e-3, um=1e-6, nm=1e-9)]
+Mass = Annotated[Quantity, _between(1e-18, 1e6)]
+Speed = Annotated[Quantity, _between(1e-9, 2e4, **{"mm/s": 1e-3})]
+Height = Annotated[Quantity, _between(1e-9, 200.0, mm=1e-3)]
+Temperature = Annotated[Quantity, _between(0.1, 1e4)]
+HeatCapacity = Annotated[Quantity, _between(10.0, 3e4, **{"J/(g K)": 1e3})]
+Gravity = Annotated[Quantity, _between(0.0, 1e3)]
+Friction = Annotated[Quantity, _between(0.0, 20.0)]
 Poisson = Annotated[Quantity, _within(lambda x: 0.0 <= x < 0.5, "0 <= nu < 0.5")]
 
 
@@ -94,16 +121,24 @@ class MaterialTable(InputTable):
 
     material: str = ""
     """Name of the metal, for people."""
-    E_Pa: Positive | None = None
+    E_Pa: Modulus | None = None
     """Young's modulus."""
     nu: Poisson | None = None
     """Poisson's ratio."""
-    Sy_Pa: Positive | None = None
+    Sy_Pa: Strength | None = None
     """Yield strength; left out: purely elastic."""
-    density_kg_m3: Positive | None = None
+    density_kg_m3: Density | None = None
     """Density."""
     rigid: Annotated[bool, Field(strict=True)] = False
     """Does not deform at all; then no other number is needed."""
+
+    @field_validator("Sy_Pa")
+    @classmethod
+    def _below_the_modulus(cls, given: Quantity | None, info: ValidationInfo) -> Quantity | None:
+        modulus = info.data.get("E_Pa")
+        if given is not None and modulus is not None and given.value >= modulus.value:
+            raise ValueError(f"below E_Pa = {modulus.value:g}; both in Pa")
+        return given
 
     def to_material(
         self, key: str = "", *, source: str = "", values: Mapping[str, float] | None = None,
@@ -162,13 +197,13 @@ def material_keys(body: Material) -> dict[str, float | bool]:
 class BodyTable(MaterialTable):
     """A body that strikes or is struck."""
 
-    hardness_Pa: Positive | None = None
+    hardness_Pa: Strength | None = None
     """Indentation hardness; gives the yield strength where that is left out."""
-    Ra_m: NotNegative | None = None
+    Ra_m: Roughness | None = None
     """Mean roughness of the surface."""
-    cp_J_kgK: Positive | None = None
+    cp_J_kgK: HeatCapacity | None = None
     """Specific heat."""
-    melting_K: Positive | None = None
+    melting_K: Temperature | None = None
     """Melting temperature."""
 
 
@@ -177,11 +212,11 @@ class TargetTable(BodyTable):
 
     shape: Literal["flat"] = "flat"
     """The struck body is flat."""
-    thickness_m: Positive | None = None
+    thickness_m: Length | None = None
     """Thickness of the flat."""
-    layer_thickness_m: Positive | None = None
+    layer_thickness_m: Length | None = None
     """Thickness of a surface layer."""
-    support_mass_kg: Positive | None = None
+    support_mass_kg: Mass | None = None
     """Mass that moves with the flat."""
     support_stiffness_N_m: NotNegative | None = None
     """Stiffness of what the flat rests on."""
@@ -197,13 +232,13 @@ class StrikerTable(BodyTable):
 
     shape: Literal["rod", "sphere"]
     """A rod with two round ends, or a sphere."""
-    tip_radius_m: Positive
+    tip_radius_m: Radius
     """Radius of the round tip."""
-    mass_kg: Positive
+    mass_kg: Mass
     """Mass; a sphere without it is solid."""
-    radius_m: Positive | None = Field(default=None, validate_default=True)
+    radius_m: Radius | None = Field(default=None, validate_default=True)
     """Radius of the rod's shank, or of the sphere."""
-    length_m: Positive | None = Field(default=None, validate_default=True)
+    length_m: Length | None = Field(default=None, validate_default=True)
     """Between the centres of a rod's two tip spheres."""
     tip_flat_radius_m: NotNegative | None = None
     """Radius of a flat at the end of the tip."""
@@ -264,7 +299,7 @@ class StrikerTable(BodyTable):
 class FrictionTable(InputTable):
     """`[friction]`."""
 
-    coefficient: NotNegative | None = None
+    coefficient: Friction | None = None
     """Coulomb's coefficient of friction."""
 
 
@@ -275,7 +310,7 @@ class EnvironmentTable(InputTable):
     """What is between the bodies, for example air."""
     viscosity_Pa_s: NotNegative | None = None
     """Its viscosity."""
-    temperature_K: Positive | None = None
+    temperature_K: Temperature | None = None
     """Temperature of bodies and surroundings."""
 
 
@@ -308,7 +343,7 @@ class Rig(InputTable):
     """Who measured it, where it is published."""
     licence: str = ""
     """Who may use it."""
-    gravity_m_s2: NotNegative = Quantity(value=9.81)
+    gravity_m_s2: Gravity = Quantity(value=9.81)
     """Gravity."""
     target: TargetTable
     """The flat."""

@@ -6,19 +6,45 @@ import tomllib
 from pathlib import Path
 from typing import Any, TypeVar, cast, get_args
 
-from pydantic import BaseModel, ConfigDict, ValidationError
+from pydantic import BaseModel, ConfigDict, Field, ValidationError, model_validator
 
 from .errors import InputError, InputErrors
+from .input_file import read_bytes
 
 Model = TypeVar("Model", bound=BaseModel)
 
 
+_MOST_BYTES = 4_000_000
+_LONGEST = 80  # characters of a value in an error
+
+
 class InputTable(BaseModel):
-    """Base of the tables of an input file: unknown keys and non-finite numbers are mistakes."""
+    """Base of the tables of an input file.
+
+    Unknown keys, numbers that are not finite, `true` or "0.01" for a number, and texts with control
+    characters are mistakes.
+    """
 
     model_config = ConfigDict(
-        extra="forbid", frozen=True, allow_inf_nan=False, use_attribute_docstrings=True
+        extra="forbid",
+        frozen=True,
+        allow_inf_nan=False,
+        strict=True,
+        use_attribute_docstrings=True,
     )
+
+    @model_validator(mode="before")
+    @classmethod
+    def _texts_can_be_shown(cls, given: Any) -> Any:
+        if isinstance(given, dict):
+            for text in (*given, *given.values()):
+                if isinstance(text, str) and not text.replace("\n", " ").isprintable():
+                    raise ValueError("text without control characters")
+        return given
+
+
+Listed = Field(strict=False)
+"""For a key that holds a tuple: TOML has lists. What is in it stays strict."""
 
 
 def read_toml(path: Path) -> dict[str, Any]:
@@ -29,17 +55,17 @@ def read_toml(path: Path) -> dict[str, Any]:
     InputError
         The file is missing, unreadable or not TOML.
     """
+    content = read_bytes(path, most=_MOST_BYTES, allowed="an existing TOML file")
     try:
-        with path.open("rb") as stream:
-            return tomllib.load(stream)
-    except FileNotFoundError:
-        raise InputError(
-            "no such file", source=str(path), allowed="an existing TOML file"
-        ) from None
-    except (OSError, UnicodeDecodeError) as error:
+        return tomllib.loads(content.decode())
+    except UnicodeDecodeError as error:
         raise InputError(f"cannot be read ({error})", source=str(path)) from None
     except tomllib.TOMLDecodeError as error:
         raise InputError(f"not valid TOML ({error})", source=str(path)) from None
+    except ValueError:  # Python converts no whole number of more than 4300 digits
+        raise InputError("a number of too many digits", source=str(path)) from None
+    except RecursionError:
+        raise InputError("tables or lists nested too deep", source=str(path)) from None
 
 
 def read_model(path: Path, model: type[Model]) -> Model:
@@ -76,8 +102,17 @@ def _as_input_error(item: Any, model: type[BaseModel], source: str) -> InputErro
         key = key.removesuffix(".[key]")
         return InputError("unknown key", source=source, key=key, allowed=message)
     # TOML has no null: a validator that complains of None misses the key
-    found = "missing" if item["input"] is None else f"{item['input']!r}"
+    found = "missing" if item["input"] is None else _shown(item["input"])
     return InputError(found, source=source, key=key, allowed=message)
+
+
+def _shown(value: Any) -> str:
+    """The value as Python writes it, shortened; a file may hold a number of 400 digits."""
+    try:
+        text = repr(value)
+    except (ValueError, RecursionError):  # of too many digits, or nested too deep to be written
+        text = type(value).__name__
+    return text if len(text) <= _LONGEST else f"{text[: _LONGEST - 10]}...{text[-7:]}"
 
 
 def _known_keys(model: type[BaseModel], path: tuple[Any, ...]) -> list[str]:

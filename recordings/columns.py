@@ -42,15 +42,16 @@ class Column:
     @property
     def allowed(self) -> str:
         """The range in words."""
-        if self.high < math.inf:
-            return f"a number above {self.low:g} and up to {self.high:g}"
-        if self.low == -math.inf:
+        if self.low == -math.inf and self.high == math.inf:
             return "a number"
-        return f"a number not below {self.low:g}" if self.low_allowed else "a number above 0"
+        if self.low == -math.inf:
+            return f"a number up to {self.high:g}"
+        least = f"not below {self.low:g}" if self.low_allowed else f"above {self.low:g}"
+        return f"a number {least}" + (f" and up to {self.high:g}" if self.high < math.inf else "")
 
 
-def _positive(kind: Kind, meaning: str) -> Column:
-    return Column(kind, meaning, low=0.0, low_allowed=False)
+def _positive(kind: Kind, meaning: str, *, high: float = math.inf) -> Column:
+    return Column(kind, meaning, low=0.0, low_allowed=False, high=high)
 
 
 def _not_negative(kind: Kind, meaning: str) -> Column:
@@ -63,11 +64,11 @@ CONDITIONS: dict[str, Column] = {
     "angle_deg": Column(
         "condition", "90 for a normal impact", low=0.0, high=90.0, low_allowed=False
     ),
-    "impact_speed_m_s": _positive("condition", "normal approach speed"),
-    "drop_height_m": _positive("condition", "height of fall"),
+    "impact_speed_m_s": _positive("condition", "normal approach speed", high=2e4),
+    "drop_height_m": _positive("condition", "height of fall", high=200.0),
     "angle_deg_std": _not_negative("std", "standard deviation of the angle"),
     "impact_speed_m_s_std": _not_negative("std", "standard deviation of the speed"),
-    "temperature_K": _positive("condition", "temperature of the bodies"),
+    "temperature_K": _positive("condition", "temperature of the bodies", high=1e4),
     "order": Column("condition", "place in the order of testing"),
     "spot": Column("text", "same text: same place on the flat"),
     "approach_tangential_m_s": Column("condition", "tangential speed of the centre before"),
@@ -75,8 +76,26 @@ CONDITIONS: dict[str, Column] = {
 }
 """Columns that describe a trial, in the order in which they are written."""
 
+_HIGHEST = {
+    "_rad_s": 1e7,
+    "_m_s": 2e4,
+    "_Ns": 1e6,
+    "_depth_m": 0.1,
+    "_m": 1.0,
+    "_s": 100.0,
+    "_N": 1e10,
+}
+"""Largest number that a column may hold, by its end; more is mostly another unit."""
+
+_HIGHEST_RATIO = 20.0  # of what has no unit: a friction, or a restitution written in percent
+
+
+def _highest(name: str) -> float:
+    return next((high for end, high in _HIGHEST.items() if name.endswith(end)), _HIGHEST_RATIO)
+
+
 MEASURED: dict[str, Column] = {
-    name: Column("observable", row.meaning, low=row.low, low_allowed=row.zero)
+    name: Column("observable", row.meaning, low=row.low, low_allowed=row.zero, high=_highest(name))
     for name, row in OBSERVABLES.items()
     if row.in_trials
 }

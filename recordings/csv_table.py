@@ -14,8 +14,15 @@ import numpy as np
 import numpy.typing as npt
 
 from ..core.errors import InputError
+from ..core.input_file import read_bytes
 
 Array = npt.NDArray[np.float64]
+
+MOST_BYTES = 100_000_000
+"""Largest table that is read [bytes]."""
+
+_MOST_COLUMNS = 2000
+_MOST_PROBLEMS = 1000  # that are kept one by one; nobody reads more
 
 
 @dataclass(slots=True)
@@ -24,9 +31,13 @@ class Problems:
 
     source: str
     found: list[InputError] = field(default_factory=list)
+    further: int = 0
 
     def add(self, message: str, *, row: int = 0, column: str = "", allowed: str = "") -> None:
         """Note a mistake; rows count from 1, the header's, as a spreadsheet shows them."""
+        self.further += len(self.found) >= _MOST_PROBLEMS
+        if self.further:
+            return
         parts = (f"row {row}" if row else "", f"column {column}" if column else "")
         key = ", ".join(part for part in parts if part)
         self.found.append(InputError(message, source=self.source, key=key, allowed=allowed))
@@ -64,15 +75,13 @@ def read_text_table(path: Path, known: Iterable[str], problems: Problems) -> Tex
         Where mistakes go.
     """
     try:
-        text = path.read_text(encoding="utf-8-sig")
-    except FileNotFoundError:
-        problems.add("no such file", allowed="a table of comma-separated values")
+        raw = read_bytes(path, most=MOST_BYTES, allowed="a table of comma-separated values")
+        text = raw.decode("utf-8-sig")
+    except InputError as error:
+        problems.found.append(error)
         return None
     except UnicodeDecodeError as error:
         problems.add(f"not UTF-8 text (byte {error.start})", allowed="UTF-8")
-        return None
-    except OSError as error:
-        problems.add(f"cannot be read ({error.strerror})", allowed="a file")
         return None
     try:
         lines = list(csv.reader(io.StringIO(text), strict=True))
@@ -96,6 +105,9 @@ def _header_is_sound(
 ) -> bool:
     if len(header) == 1 and (";" in header[0] or "\t" in header[0]):
         problems.add("columns are not separated by commas", row=row, allowed="commas")
+        return False
+    if len(header) > _MOST_COLUMNS:
+        problems.add(f"{len(header)} columns", row=row, allowed=f"up to {_MOST_COLUMNS}")
         return False
     before = len(problems.found)
     for place, name in enumerate(header):

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import logging
+import time
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from pathlib import Path, PurePosixPath
@@ -10,12 +11,21 @@ from typing import Annotated
 from urllib.parse import quote
 
 import pooch  # type: ignore[import-untyped]
+import requests  # type: ignore[import-untyped]
 from pydantic import AfterValidator, Field
 from requests.exceptions import RequestException
 
 from ..core.errors import InputError
-from ..core.toml_input import InputTable, read_model
+from ..core.toml_input import InputTable, Listed, read_model
 
+MOST_BYTES = 2_000_000_000
+"""Largest file that is fetched."""
+
+MOST_SECONDS = 1800.0
+"""Longest time that one file may take [s]."""
+
+_PATIENCE_S = 30.0  # for a server that says nothing
+_PIECE = 1 << 20
 _SHA256 = r"[0-9a-f]{64}"
 
 
@@ -42,13 +52,13 @@ class Source(InputTable):
     licence: str
     base: str = Field(pattern="^https?://.*/$")
     recipe: str = ""
-    files: tuple[SourceFile, ...] = Field(min_length=1)
+    files: tuple[SourceFile, ...] = Field(min_length=1, strict=False)
 
 
 class Catalogue(InputTable):
     """The whole list."""
 
-    source: tuple[Source, ...]
+    source: tuple[Source, ...] = Listed
 
 
 @dataclass(frozen=True, slots=True)
@@ -100,11 +110,35 @@ def fetch_sources(catalogue: Catalogue, out: Path, names: Sequence[str]) -> Iter
         yield Fetched(name, folder, files, source.recipe)
 
 
+def _capped(url: str, output_file: str, pooch: object) -> None:
+    """Fetch a file of a bearable size in a bearable time; the checksum is compared afterwards."""
+    until, size = time.monotonic() + MOST_SECONDS, 0
+    with (
+        requests.get(url, stream=True, timeout=_PATIENCE_S) as answer,
+        Path(output_file).open("wb") as out,
+    ):
+        answer.raise_for_status()
+        for piece in answer.iter_content(_PIECE):
+            size += len(piece)
+            if size > MOST_BYTES or time.monotonic() > until:
+                raise InputError(
+                    f"{size / 1e6:.0f} MB fetched and no end", source=url,
+                    allowed=f"a file of up to {MOST_BYTES / 1e9:g} GB, within "
+                    f"{MOST_SECONDS / 60.0:g} minutes",
+                )  # fmt: skip
+            out.write(piece)
+
+
 def _file(source: Source, item: SourceFile, folder: Path) -> Path:
     place = folder / item.to
     url = source.base + quote(item.path)
     try:
-        pooch.retrieve(url, known_hash=f"sha256:{item.sha256}", fname=place.name, path=place.parent)
+        pooch.retrieve(
+            url, known_hash=f"sha256:{item.sha256}", fname=place.name, path=place.parent,
+            downloader=_capped,
+        )  # fmt: skip
+    except InputError:
+        raise
     except RequestException as error:
         reason = type(error).__name__
         raise InputError(

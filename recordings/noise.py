@@ -84,8 +84,10 @@ def noise_of(
 def _scatter(values: Array, groups: npt.NDArray[np.intp]) -> tuple[Array, float]:
     positive = bool(np.all(values[~np.isnan(values)] > 0.0))
     squares, degrees = 0.0, 0
-    for group in np.unique(groups):
-        inside = values[(groups == group) & ~np.isnan(values)]
+    known = np.flatnonzero(~np.isnan(values))
+    order = known[np.argsort(groups[known], kind="stable")]
+    starts = np.flatnonzero(np.diff(groups[order])) + 1
+    for inside in np.split(values[order], starts):
         if inside.size >= MIN_REPEATS:
             mean = inside.mean()
             squares += float(np.sum(((inside - mean) / (mean if positive else 1.0)) ** 2))

@@ -86,7 +86,7 @@ class RecordingSet:
         """The set's name, or that of its folder."""
         return self.setup.name or (self.folder.name if self.folder else "")
 
-    @property
+    @cached_property
     def observed(self) -> tuple[str, ...]:
         """Observables with at least one value, in the order of the format."""
         found = self.trials.observables
@@ -106,10 +106,16 @@ class RecordingSet:
 
     def noise(self, name: str) -> Noise:
         """Return the standard deviation of an observable and where it comes from."""
-        return noise.noise_of(
-            name, self.values(name), self.trials.observables_std.get(name),
-            self.setup.noise, self.conditions,
-        )  # fmt: skip
+        if name not in self._noises:
+            self._noises[name] = noise.noise_of(
+                name, self.values(name), self.trials.observables_std.get(name),
+                self.setup.noise, self.conditions,
+            )  # fmt: skip
+        return self._noises[name]
+
+    @cached_property
+    def _noises(self) -> dict[str, Noise]:
+        return {}
 
     @cached_property
     def conditions(self) -> npt.NDArray[np.intp]:

@@ -167,6 +167,12 @@ def _check_texts(table: TextTable, strikers: frozenset[str], problems: Problems)
                 f"{shown(name)}", row=row, column="trial", allowed="text that can name a file"
             )
         seen.setdefault(name, row)
+    for column in ("spot", "note"):
+        for row, text in zip(table.rows, table.cells.get(column, ()), strict=False):
+            if not text.replace("\n", " ").isprintable():
+                problems.add(
+                    shown(text), row=row, column=column, allowed="text without control characters"
+                )
     for row, name in zip(table.rows, table.cells.get("striker", ()), strict=False):
         if name not in strikers:
             known = ", ".join(sorted(strikers)) or "a table [strikers.NAME] in set.toml"

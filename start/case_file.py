@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 from collections.abc import Mapping
 from pathlib import Path
-from typing import Any, Literal
+from typing import Annotated, Any, Literal
 
 from pydantic import Field
 
@@ -13,8 +13,9 @@ from ..core.errors import InputError, InputErrors
 from ..core.flow import Flow, FlowCurve, Heating, Rate, ludwik, swift, tabulated, voce
 from ..core.material import Material, Pair
 from ..core.rig import MaterialTable
-from ..core.toml_input import InputTable, read_model
+from ..core.toml_input import InputTable, Listed, read_model
 
+_SpeedRow = Annotated[tuple[float, float], Listed]
 _CURVE_COLUMNS = ("plastic_strain", "stress_Pa")
 _HARDENING = {
     "swift": ("K_Pa", "n"),
@@ -179,9 +180,9 @@ class CaseBody(MaterialTable):
 class _Load(InputTable):
     max_delta_over_R: float = Field(gt=0.0, le=0.5)
     """Largest approach over the sphere's radius."""
-    unload_from: tuple[float, ...] = ()
+    unload_from: tuple[float, ...] = Field(default=(), strict=False)
     """Approaches over R from which the sphere is drawn back."""
-    speed_m_s: float | tuple[tuple[float, float], ...] | None = None
+    speed_m_s: float | Annotated[tuple[_SpeedRow, ...], Listed] | None = None
     """Speed of the approach: one number, or rows of Delta/R and speed."""
 
     @property
@@ -202,7 +203,7 @@ class _Accuracy(InputTable):
 class CaseFile(InputTable):
     """The keys of CASE.toml."""
 
-    radius_m: float = Field(gt=0.0)
+    radius_m: float = Field(gt=0.0, le=3.0)
     """Radius of the sphere."""
     sphere: CaseBody
     """What presses."""

@@ -9,6 +9,7 @@ from typing import Annotated
 
 import typer
 
+from ...core.output import write_file
 from ..groups import group
 
 app = group("Blind proof of the diagnosis on concealed impacts.")
@@ -113,7 +114,7 @@ def _write_page(runs: list[dict[str, object]]) -> None:
     from ...studies.proof.explicit.catalogue import stored
     from ...studies.proof.run import ROOT
 
-    (ROOT / "docs" / "proof.md").write_text(pages.page(runs, impacts=stored()))
+    write_file(ROOT / "docs" / "proof.md", pages.page(runs, impacts=stored()))
 
 
 @app.command()

@@ -10,7 +10,7 @@ from typing import Literal
 from pydantic import Field
 
 from ...core.errors import InputError
-from ...core.rig import Positive, StrikerTable
+from ...core.rig import Length, Radius, StrikerTable
 from ...core.toml_input import InputTable, parse_model, read_toml
 from ..inverse import Inferred, Measured, infer
 from ..scene import Striker
@@ -22,9 +22,9 @@ class _RodTable(StrikerTable):
 
     shape: Literal["rod"] = "rod"
     """A rod with two round ends."""
-    radius_m: Positive | None = None
+    radius_m: Radius | None = None
     """Radius of the shank."""
-    length_m: Positive
+    length_m: Length
     """Between the centres of the two tip spheres."""
 
 
@@ -35,17 +35,17 @@ class _TrialTable(InputTable):
     """Name of the trial."""
     angle_deg: float = Field(gt=0.0, lt=90.0)
     """Between the rod's axis and the flat."""
-    impact_speed_m_s: float = Field(gt=0.0)
+    impact_speed_m_s: float = Field(gt=0.0, le=2e4)
     """Speed of the tip along the flat's normal."""
     rebound_m_s: float | None = None
     """Speed of the centre of mass after, where it was measured."""
-    friction_impulse_ratio: float = Field(ge=0.0)
+    friction_impulse_ratio: float = Field(ge=0.0, le=20.0)
     """Tangential over normal impulse."""
-    restitution: float = Field(ge=0.0)
+    restitution: float = Field(ge=0.0, le=2.0)
     """Rebound over approach speed of the tip."""
-    permanent_depth_m: float = Field(gt=0.0)
+    permanent_depth_m: float = Field(gt=0.0, le=0.1)
     """Depth of the crater."""
-    sliding_length_m: float = Field(gt=0.0)
+    sliding_length_m: float = Field(gt=0.0, le=1.0)
     """Length of the scar less its width."""
     printed_duration_s: float | None = None
     """A published duration to show beside."""

@@ -11,7 +11,7 @@ from pydantic import Field
 
 from ...core.approach import speeds_at_touch
 from ...core.errors import InputError, InputErrors
-from ...core.rig import Positive, Quantity, Rig, value_of
+from ...core.rig import Height, Quantity, Rig, Speed, value_of
 from ...core.toml_input import InputTable, parse_model, read_toml
 from ...models.base import ContactLaw
 from ..beam import rod_modes
@@ -33,15 +33,15 @@ class ImpactTable(InputTable):
     """Which striker; needed where there are several."""
     angle_deg: float = Field(default=90.0, gt=0.0, le=90.0)
     """Between a rod's axis, or a sphere's velocity, and the flat."""
-    impact_speed_m_s: Positive | None = None
+    impact_speed_m_s: Speed | None = None
     """Speed of the tip along the flat's normal; or drop_height_m."""
-    drop_height_m: Positive | None = None
+    drop_height_m: Height | None = None
     """Height of fall; or impact_speed_m_s."""
     approach_tangential_m_s: Quantity | None = None
     """Speed along the flat."""
     approach_spin_rad_s: Quantity = Quantity(value=0.0)
     """Spin before the touch, counter-clockwise."""
-    laws: tuple[str, ...] = DEFAULT_LAWS
+    laws: tuple[str, ...] = Field(default=DEFAULT_LAWS, strict=False)
     """Contact laws, as in `dentscope laws list`."""
     modes: int = Field(default=0, ge=0, le=60)
     """Vibrations of the rod that are simulated, lowest first; 0: a rigid rod."""

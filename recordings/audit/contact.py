@@ -8,7 +8,7 @@ from ...core.rig import Quantity, value_of
 from ..recording_set import RecordingSet
 from . import limits
 from .findings import Finding, Severity, gathered
-from .trial_view import TrialView, combined, views
+from .trial_view import TrialView, combined, plain, views
 
 UNEXPLAINED = 0.5
 """Part of the lost energy that a dent should explain at least."""
@@ -40,7 +40,7 @@ def check_energy(found: RecordingSet) -> list[Finding]:
             relative = combined(
                 2.0 * depth.relative, view.striker.tip_radius_m.relative, pressure.relative
             )
-            cost = Quantity(value=work, std=relative * work)
+            cost = plain(value=work, std=relative * work)
             if e is None:
                 findings.append(_supply(view.name, cost, brought))
             else:
@@ -57,17 +57,17 @@ def _energies(view: TrialView, e: Quantity | None) -> tuple[Quantity, Quantity]:
     """Energy that the contact point brings, v^2 / 2B, and what (1 - e^2) of it loses [J]."""
     mu = view.measured("friction_impulse_ratio")
     touch = view.touch
-    v = abs(float(touch.tip[1]))
-    brought = 0.5 * float(touch.impulse(0.0, value_of(mu, 0.0))[1]) * v
+    v = abs(touch.tip[1])
+    brought = 0.5 * touch.impulse(0.0, value_of(mu, 0.0))[1] * v
     relative = max(
         combined(2.0 * view.speed.relative, view.striker.mass_kg.relative), limits.ROUNDING
     )
-    whole = Quantity(value=brought, std=relative * brought)
+    whole = plain(value=brought, std=relative * brought)
     if e is None:
         return whole, whole
     lost = (1.0 - e.value**2) * brought
     std = combined(2.0 * e.value * e.std * brought, relative * lost)
-    return whole, Quantity(value=lost, std=max(std, limits.ROUNDING * brought))
+    return whole, plain(value=lost, std=max(std, limits.ROUNDING * brought))
 
 
 def _supply(name: str, work: Quantity, brought: Quantity) -> Finding:
@@ -186,7 +186,9 @@ def check_duration(found: RecordingSet) -> list[Finding]:
 def _pressure(view: TrialView) -> Quantity | None:
     if view.found.setup.target.law != "elastic-plastic":
         return None
-    return limits.hardness(view.found.setup.target, view.striker)
+    return view.of_striker(
+        "pressure", lambda: limits.hardness(view.found.setup.target, view.striker)
+    )
 
 
 def _force(view: TrialView) -> tuple[Quantity | None, str]:
@@ -198,7 +200,7 @@ def _force(view: TrialView) -> tuple[Quantity | None, str]:
         return None, ""
     value = pressure.value * math.pi * limits.dent_radius(view.striker, depth.value) ** 2
     relative = combined(depth.relative, pressure.relative)
-    return Quantity(value=value, std=relative * value), "needed by the dent"
+    return plain(value=value, std=relative * value), "needed by the dent"
 
 
 def _duration(view: TrialView) -> tuple[float | None, str]:
@@ -208,5 +210,5 @@ def _duration(view: TrialView) -> tuple[float | None, str]:
     pressure = _pressure(view)
     if pressure is None:
         return None, ""
-    mass = 1.0 / float(view.touch.mobility[1, 1])
+    mass = 1.0 / view.touch.along
     return limits.plastic_duration(view.striker, mass, pressure.value), "expected"

@@ -217,7 +217,7 @@ def check_impulse(found: RecordingSet) -> list[Finding]:
         force, time = view.measured("peak_force_N"), view.measured("contact_time_s")
         if e is None or force is None or time is None:
             continue
-        impulse = float(view.touch.impulse(e.value, value_of(mu, 0.0))[1])
+        impulse = view.touch.impulse(e.value, value_of(mu, 0.0))[1]
         pulse = force.value * time.value
         ratio = impulse / pulse
         relative = combined(

@@ -56,16 +56,24 @@ class Touch:
     def mobility(self) -> Array:
         """M with (velocity change of the contact point) = M (impulse), shape (2, 2) [1/kg]."""
         xx = 1.0 / self.m + self.s**2 / self.I
-        xy = -self.c * self.s / self.I
-        yy = 1.0 / self.m + self.c**2 / self.I
-        return np.array([[xx, xy], [xy, yy]])
+        return np.array([[xx, self.across], [self.across, self.along]])
 
     @property
-    def tip(self) -> Array:
-        """Velocity of the contact point before, shape (2,) [m/s]."""
-        return np.array([self.vx + self.spin * self.s, self.vy - self.spin * self.c])
+    def across(self) -> float:
+        """M_xy [1/kg]."""
+        return -self.c * self.s / self.I
 
-    def after(self, impulse: Array) -> Touch:
+    @property
+    def along(self) -> float:
+        """M_yy [1/kg]."""
+        return 1.0 / self.m + self.c**2 / self.I
+
+    @property
+    def tip(self) -> tuple[float, float]:
+        """Velocity of the contact point before, x and y [m/s]."""
+        return self.vx + self.spin * self.s, self.vy - self.spin * self.c
+
+    def after(self, impulse: Array | tuple[float, float]) -> Touch:
         """Return the motion after an impulse (P_x, P_y) [N s]; vy is then upward."""
         px, py = impulse
         return Touch(
@@ -78,18 +86,18 @@ class Touch:
         """Kinetic energy [J]."""
         return 0.5 * self.m * (self.vx**2 + self.vy**2) + 0.5 * self.I * self.spin**2
 
-    def impulse(self, e: float, mu: float) -> Array:
-        """Return the impulse that gives restitution `e` at the impulse ratio `mu`, shape (2,).
+    def impulse(self, e: float, mu: float) -> tuple[float, float]:
+        """Return the impulse that gives restitution `e` at the impulse ratio `mu`, x and y [N s].
 
         P_y = (1 + e) |v_y| / (M_yy + M_xy P_x / P_y), friction against the sliding of the tip
         (corrected Eqs. 5.5-5.8 of the thesis).
         """
-        M, tip = self.mobility, self.tip
+        across, tip = self.across, self.tip
         # a tip that starts at rest slides the way the normal impulse pushes it
-        slides = tip[0] if abs(tip[0]) > 1e-12 * abs(tip[1]) else M[0, 1]
-        ratio = -float(np.sign(slides)) * mu
-        py = (1.0 + e) * -tip[1] / (M[1, 1] + ratio * M[0, 1])
-        return np.array([ratio * py, py])
+        slides = tip[0] if abs(tip[0]) > 1e-12 * abs(tip[1]) else across
+        ratio = -math.copysign(mu, slides) if slides else 0.0
+        py = (1.0 + e) * -tip[1] / (self.along + ratio * across)
+        return ratio * py, py
 
     @property
     def stick_ratio(self) -> float:
@@ -109,7 +117,7 @@ def touch(
     return Touch(striker.mass_kg.value, striker.inertia, c, s, tangential, -normal + spin * c, spin)
 
 
-def measured_after(before: Touch, impulse: Array) -> dict[str, float]:
+def measured_after(before: Touch, impulse: Array | tuple[float, float]) -> dict[str, float]:
     """Return the observables that momentum fixes, under the names of their columns."""
     px, py = impulse
     found = before.after(impulse)
@@ -171,7 +179,7 @@ def momentum_misfit(
     mu = measured.get("friction_impulse_ratio")
     best = math.inf
     for start_mu in (value_of(mu, 0.1), 0.3):
-        start = before.impulse(e, start_mu) / (before.m * speed.value)
+        start = np.array(before.impulse(e, start_mu)) / (before.m * speed.value)
         fit = least_squares(residuals, np.array([*start, 0.0, 0.0]), method="lm")
         best = min(best, 2.0 * float(fit.cost))
     return best, degrees

@@ -16,6 +16,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from ...core.errors import InputError
+from ...core.input_file import checked_file
 from ...core.toml_input import InputTable, parse_model
 
 if TYPE_CHECKING:
@@ -32,6 +33,9 @@ KINDS = {
 """Each kind, named as its folder, and what it gives."""
 
 
+_MOST_BYTES = 20_000_000_000
+
+
 @dataclass(frozen=True)
 class Kind:
     """One way to reduce a file: its options and the function that takes them."""
@@ -45,6 +49,8 @@ class Kind:
         options = parse_model(given, self.options, source=source)
         if not path.exists():
             raise InputError("no such file", source=str(path), allowed="a raw recording")
+        if not path.is_dir():
+            checked_file(path, most=_MOST_BYTES, allowed="a raw recording")
         return self.reduce(path, options)
 
 

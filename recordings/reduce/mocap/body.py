@@ -4,12 +4,13 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 from pathlib import Path
+from typing import Annotated
 
 import numpy as np
 from pydantic import Field, field_validator
 
 from ....core.errors import InputError
-from ....core.toml_input import InputTable, read_model
+from ....core.toml_input import InputTable, Listed, read_model
 from ..measured import Array
 from .file import Markers
 from .motion import Prior
@@ -18,7 +19,7 @@ from .rigid import Poses, kabsch
 SHAPES = ("rod", "sphere", "body")
 _STRAIGHT = 1e-6
 
-Place = tuple[float, float, float]
+Place = Annotated[tuple[float, float, float], Listed]
 
 
 class BodyFile(InputTable):

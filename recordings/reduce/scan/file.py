@@ -18,6 +18,8 @@ _TEXT = (".csv",)
 _UNSEEN = ("", "nan", "-", "na")
 _ABSURD = 1e30
 _FEWEST = 100
+_MOST_POINTS = 100_000_000
+_DENSEST = 50  # points a byte of a packed file holds at most
 
 
 @dataclass(frozen=True)
@@ -125,11 +127,14 @@ def _known_format(path: Path, step: float | None) -> _Raw:
             sizes = {}
             if channel.physical_sizes is None and step is not None:
                 sizes = {"physical_sizes": tuple(float(n) for n in channel.nb_grid_pts)}
+            _check_claim(channel.nb_grid_pts, path)
             found = channel.topography(**sizes)
             z = np.ma.filled(np.ma.asarray(found.heights(), dtype=np.float64), np.nan)
             if found.dim == 1:
                 return _Raw(z, x=np.asarray(found.positions(), dtype=np.float64), unit=found.unit)
             return _Raw(z, step=np.array(found.physical_sizes) / z.shape, unit=found.unit)
+    except InputError:
+        raise
     except Exception as error:  # each of its readers raises its own kind
         text = (str(error).strip().splitlines() or [type(error).__name__])[0][:120]
         raise InputError(
@@ -137,6 +142,16 @@ def _known_format(path: Path, step: float | None) -> _Raw:
             allowed="a format of SurfaceTopography (x3p, sur, al3d, plu, opd, vk, mnt, xyz ...), "
             "or --step-m where it does not say the distance of its points",
         ) from None  # fmt: skip
+
+
+def _check_claim(points: tuple[int, ...], path: Path) -> None:
+    """Refuse a header that claims more points than the file can hold, before room is made."""
+    count, size = math.prod(int(n) for n in points), path.stat().st_size
+    if count > min(_MOST_POINTS, _DENSEST * size):
+        raise InputError(
+            f"{count} points claimed in {size} bytes", source=str(path),
+            allowed=f"up to {_MOST_POINTS:g}, and {_DENSEST} a byte",
+        )  # fmt: skip
 
 
 def _text(path: Path) -> _Raw | None:

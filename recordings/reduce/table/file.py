@@ -11,14 +11,15 @@ import re
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from pathlib import Path
-from typing import Any
 
 import numpy as np
 
-from ....core.errors import InputError, missing_extra
+from ....core.confined import confined
+from ....core.errors import InputError
 from ...csv_table import number, rows_with, selection
 from ..measured import Array
 from ..units import UNITS
+from .workbook import workbook_rows
 
 _BOOKS = (".xls", ".xlsx", ".xlsm", ".xlsb", ".ods")
 _LARGEST = 200_000_000
@@ -151,7 +152,11 @@ def read_columns(path: Path, *, sheet: str = "") -> Columns:
             f"{path.stat().st_size / 1e6:.0f} MB", source=str(path),
             allowed=f"up to {_LARGEST // 10**6} MB",
         )  # fmt: skip
-    rows = _workbook(path, sheet) if path.suffix.lower() in _BOOKS else _text(path)
+    rows = (
+        confined(workbook_rows, path, sheet, source=str(path))
+        if path.suffix.lower() in _BOOKS
+        else _text(path)
+    )
     return _columns(rows, str(path))
 
 
@@ -221,29 +226,3 @@ def _separator(lines: Sequence[str]) -> str:
 def _point(cell: str, separator: str) -> str:
     """A decimal comma becomes a point where commas do not separate."""
     return cell.replace(",", ".") if separator != "," and _DECIMAL_COMMA.fullmatch(cell) else cell
-
-
-def _workbook(path: Path, sheet: str) -> list[list[str]]:
-    try:
-        import python_calamine as calamine
-    except ImportError:
-        raise missing_extra("reading workbooks", "tables") from None
-    try:
-        book: Any = calamine.CalamineWorkbook.from_path(str(path))
-        names = book.sheet_names
-        by_name = {n.strip(): n for n in names}
-        if sheet and sheet.strip() not in by_name:
-            raise InputError(
-                f"no sheet {sheet!r}", source=str(path), key="sheet", allowed=", ".join(by_name)
-            )
-        rows = book.get_sheet_by_name(by_name.get(sheet.strip(), names[0])).to_python()
-    except (calamine.CalamineError, OSError, IndexError) as error:
-        raise InputError(
-            f"not a workbook that can be read ({error})", source=str(path),
-            allowed="XLS, XLSX or ODS without a password",
-        ) from None  # fmt: skip
-    return [[_cell(cell) for cell in row] for row in rows]
-
-
-def _cell(cell: object) -> str:
-    return repr(cell) if isinstance(cell, int | float) else str(cell).strip()

@@ -2,7 +2,9 @@
 
 `python tests/unit/campaigns/faults_campaign.py --kills 20` prints what was killed and what was
 lost. The solver is a stand-in that takes a third of a second and gives curves that follow from the
-case, so that every stored number can be checked; all else is the product's.
+case, so that every stored number can be checked; all else is the product's. With `--solver` it is
+the product's own too, at its lowest accuracy; what is stored is then compared with a run that
+nobody disturbed, bit by bit.
 """
 
 import argparse
@@ -20,9 +22,19 @@ from pathlib import Path
 import numpy as np
 from dentscope import fem
 from dentscope.campaigns import Case, Design, read_curves, run_design, standard_case
-from dentscope.campaigns.executor import LocalExecutor
+from dentscope.campaigns.executor import LocalExecutor, solve_specification
 from dentscope.core import COMPLETED, Material, Pair
 from dentscope.fem import Counters, Curve, Solution, Unloading
+
+
+def real(n):
+    """Cases that the solver itself takes about a second for."""
+    flat = Material(E=200e9, nu=0.3, Sy=3e8)
+    pairs = [Pair(Material(E=200e9, nu=0.3, Sy=4e8 + 1e7 * i), flat, 1e-3) for i in range(n)]
+    return tuple(
+        standard_case(f"c{i}", pair, deepest=3e-4, n_depths=4, accuracy=fem.Accuracy.smoke())
+        for i, pair in enumerate(pairs)
+    )
 
 
 def made(n):
@@ -59,13 +71,20 @@ def tell(line):
     sys.stdout.flush()
 
 
-def coordinate(path, n):
-    cases = made(n)
+def logged(specification, time_limit_s):
+    """The product's own work, and a line for each case that was begun."""
+    with open(os.environ["COMPUTED"], "a", encoding="utf-8") as log:
+        log.write(f"{specification['name']}\n")
+    return solve_specification(specification, time_limit_s)
+
+
+def coordinate(path, n, *, solver):
+    cases = real(n) if solver else made(n)
     run_design(
         Design("faults", "", lambda: cases),
         path,
-        executor=LocalExecutor(workers=2, work=stand_in),
-        time_limit_s=60.0,
+        executor=LocalExecutor(workers=2, work=logged if solver else stand_in),
+        time_limit_s=600.0 if solver else 60.0,
         report=lambda step: tell(f"STORED {step.case.name}"),
     )
 
@@ -73,9 +92,9 @@ def coordinate(path, n):
 class Run:
     """A coordinator in a process of its own, and what it told of stored cases."""
 
-    def __init__(self, path, n, told):
+    def __init__(self, path, n, told, options=()):
         self.process = subprocess.Popen(
-            [sys.executable, __file__, "--coordinate", str(path), "--cases", str(n)],
+            [sys.executable, __file__, "--coordinate", str(path), "--cases", str(n), *options],
             stdout=subprocess.PIPE,
             text=True,
             env={**os.environ, "COMPUTED": str(path.with_suffix(".log"))},
@@ -111,7 +130,7 @@ def still_there(workers, *, patience_s=30.0):
     return len(left)
 
 
-def inject(folder, *, kills, cases, seed, say=tell):
+def inject(folder, *, kills, cases, seed, say=tell, reference=None):
     """Kill until `kills` are done, then let it finish; return what happened.
 
     Returns
@@ -122,10 +141,11 @@ def inject(folder, *, kills, cases, seed, say=tell):
     """
     draw, path, told = random.Random(seed), folder / "c.h5", []
     count, lost, left_over = Counter(), 0, 0
-    run = Run(path, cases, told)
+    options = ["--solver"] if reference else []
+    run = Run(path, cases, told, options)
     while sum(count.values()) < kills and run.process.poll() is None:
         # a third of the kills meet the start, the others the work
-        busy = time.monotonic() + draw.choice((0.0, 60.0, 60.0))
+        busy = time.monotonic() + draw.choice((0.0, 20.0 if reference else 60.0, 60.0))
         before = len(told)
         while len(told) == before and time.monotonic() < busy and run.process.poll() is None:
             time.sleep(0.01)
@@ -144,11 +164,12 @@ def inject(folder, *, kills, cases, seed, say=tell):
             lost += len(set(told) - {record.case.name for record in read_curves(path)})
         left_over += still_there(workers)
         say(f"kill {sum(count.values())}: {len(told)} told as stored, {lost} of them lost")
-        run = Run(path, cases, told)
+        run = Run(path, cases, told, options)
     run.ended()
     computed = Counter(path.with_suffix(".log").read_text().split())
     found = {record.case.name: record for record in read_curves(path)}
-    wrong = [r for r in found.values() if not np.array_equal(r.curve["force"], expected(r.case))]
+    right = reference or {name: expected(r.case) for name, r in found.items()}
+    wrong = [n for n, r in found.items() if not np.array_equal(r.curve["force"], right[n])]
     return {
         **count,
         "stored": len(found),
@@ -160,18 +181,40 @@ def inject(folder, *, kills, cases, seed, say=tell):
     }
 
 
+def undisturbed(path, cases):
+    """Forces of every case from a run of the solver that nobody kills."""
+    run = Run(path, cases, [], ["--solver"])
+    run.ended()
+    return {record.case.name: record.curve["force"] for record in read_curves(path)}
+
+
 def main():
     parser = argparse.ArgumentParser()
     parser.add_argument("--coordinate", type=Path)
     parser.add_argument("--cases", type=int, default=200)
     parser.add_argument("--kills", type=int, default=20)
     parser.add_argument("--seed", type=int, default=1)
+    parser.add_argument("--solver", action="store_true")
+    parser.add_argument("--reference", type=Path, help="keep the undisturbed run here")
     chosen = parser.parse_args()
     if chosen.coordinate:
-        coordinate(chosen.coordinate, chosen.cases)
+        coordinate(chosen.coordinate, chosen.cases, solver=chosen.solver)
         return
     with tempfile.TemporaryDirectory() as folder:
-        tell(inject(Path(folder), kills=chosen.kills, cases=chosen.cases, seed=chosen.seed))
+        reference = None
+        if chosen.solver:
+            reference = undisturbed(chosen.reference or Path(folder) / "reference.h5", chosen.cases)
+        total = Counter()
+        while total["coordinator"] + total["worker"] < chosen.kills:
+            place = Path(folder) / str(total["rounds"])
+            place.mkdir()
+            left = chosen.kills - total["coordinator"] - total["worker"]
+            found = inject(
+                place, kills=left, cases=chosen.cases, seed=chosen.seed + total["rounds"],
+                reference=reference,
+            )  # fmt: skip
+            total += Counter(found) + Counter(rounds=1)
+            tell(dict(total))
 
 
 if __name__ == "__main__":

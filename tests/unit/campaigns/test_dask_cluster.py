@@ -4,18 +4,25 @@ The cluster lives in a process of its own: its event loop and the test runner's 
 one well.
 """
 
+import json
+import os
+import shutil
 import subprocess
 import sys
+import time
 import warnings
 from pathlib import Path
 from types import SimpleNamespace
 
 import pytest
-from dentscope.campaigns import Store, read_curves
+from dentscope.campaigns import Store, executor, read_curves
 from dentscope.campaigns.executor import DaskExecutor
 from dentscope.core import InputError
+from dentscope.core.provenance import environment
 
 pytest.importorskip("distributed")
+
+ROOT = Path(__file__).resolve().parents[3]
 
 SCRIPT = """
 import os, signal, sys
@@ -170,3 +177,129 @@ def test_a_client_that_gave_up_says_that_the_scheduler_went_away(monkeypatch):
     ended = DaskExecutor("tcp://nowhere:1", 1, closed).run({}, time_limit_s=1.0)
     with pytest.raises(InputError, match="went away"):
         next(ended)
+
+
+SUBJECT = ["-subj", "/CN=localhost"]
+CONNECT = """
+import sys
+from dentscope.campaigns.executor import DaskExecutor
+from dentscope.core import InputError
+
+if __name__ == "__main__":
+    try:
+        executor = DaskExecutor.connect(sys.argv[1], timeout_s=60.0, patience_s=float(sys.argv[2]))
+        print("CONNECTED", executor.workers, executor.client.submit(sum, [1, 2]).result())
+    except InputError as error:
+        print("TOLD", str(error).count(chr(10)), error)
+"""
+
+
+class Cluster:
+    """A scheduler and workers in processes of their own."""
+
+    def __init__(self, folder, *, protocol="tcp", environment=None):
+        self.folder, self.environment, self.processes = folder, {**os.environ}, []
+        self.environment |= environment or {}
+        self.file = folder / "scheduler.json"
+        self.start("scheduler", "--port", "0", "--protocol", protocol, "--host", "127.0.0.1")
+        until = time.monotonic() + 120.0
+        while not (self.file.exists() and self.file.read_text()) and time.monotonic() < until:
+            time.sleep(0.1)
+        self.address = json.loads(self.file.read_text())["address"]
+
+    def start(self, name, *options, **changes):
+        command = [sys.executable, "-m", f"distributed.cli.dask_{name}", *options]
+        command += ["--no-dashboard", "--scheduler-file", str(self.file)]
+        self.processes.append(
+            subprocess.Popen(
+                command, env={**self.environment, **changes}, cwd=self.folder,
+                stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL,
+            )
+        )  # fmt: skip
+
+    def worker(self, **changes):
+        self.start("worker", "--nthreads", "1", "--no-nanny", "--death-timeout", "60", **changes)
+
+    def connect(self, patience_s=120.0, **changes):
+        script = self.folder / "connect.py"
+        script.write_text(CONNECT)
+        answer = subprocess.run(
+            [sys.executable, str(script), changes.pop("address", self.address), str(patience_s)],
+            capture_output=True, text=True, timeout=300, check=False,
+            env={**self.environment, **changes},
+        )  # fmt: skip
+        return answer.stdout + answer.stderr
+
+    def __enter__(self):
+        return self
+
+    def __exit__(self, *_):
+        for process in self.processes:
+            process.kill()
+            process.wait()
+
+
+def test_a_cluster_without_workers_is_one_line(tmp_path):
+    with Cluster(tmp_path) as cluster:
+        told = cluster.connect(patience_s=1.0)
+    assert "TOLD 0 tcp://" in told
+    assert "no worker within 1 s" in told
+
+
+def test_a_worker_of_another_source_is_refused_by_name(tmp_path):
+    other = tmp_path / "other" / "dentscope"
+    for stage in ("core", "fem", "models", "campaigns"):
+        shutil.copytree(ROOT / stage, other / stage, ignore=shutil.ignore_patterns("__pycache__"))
+    shutil.copyfile(ROOT / "__init__.py", other / "__init__.py")
+    with (other / "fem" / "solve.py").open("a") as changed:
+        changed.write("# another\n")
+    with Cluster(tmp_path) as cluster:
+        cluster.worker(PYTHONPATH=str(other.parent))
+        told = cluster.connect()
+    assert "TOLD 0 tcp://" in told, told
+    assert "other versions: source of commit" in told
+
+
+def test_every_result_is_held_to_the_versions_of_its_worker():
+    mine = environment()
+    assert executor._ended("a", ("solution", mine), where="w").computed_by == mine
+    with pytest.raises(InputError, match=r"w: other versions: numpy .*, there 1\.0"):
+        executor._ended("a", ("solution", {**mine, "numpy": "1.0"}), where="w")
+
+
+def certificates(folder):
+    """An authority and one certificate that it signed; return the settings that name them."""
+    key = ["-newkey", "rsa:2048", "-nodes"]
+    made = [
+        ["req", "-x509", *key, "-keyout", "ca.key", "-out", "ca.pem", "-days", "2", *SUBJECT],
+        ["req", *key, "-keyout", "host.key", "-out", "host.csr", *SUBJECT],
+        ["x509", "-req", "-in", "host.csr", "-CA", "ca.pem", "-CAkey", "ca.key",
+         "-CAcreateserial", "-out", "host.pem", "-days", "2", "-extfile", "host.ext"],
+    ]  # fmt: skip
+    (folder / "host.ext").write_text("subjectAltName = IP:127.0.0.1\n")
+    for command in made:
+        subprocess.run(["openssl", *command], cwd=folder, check=True, capture_output=True)
+    tls = "DASK_DISTRIBUTED__COMM__TLS__"
+    host = {"CERT": str(folder / "host.pem"), "KEY": str(folder / "host.key")}
+    who = ("SCHEDULER", "WORKER", "CLIENT")
+    return {
+        "DASK_DISTRIBUTED__COMM__REQUIRE_ENCRYPTION": "true",
+        f"{tls}CA_FILE": str(folder / "ca.pem"),
+        **{f"{tls}{w}__{what}": place for w in who for what, place in host.items()},
+    }
+
+
+@pytest.mark.skipif(shutil.which("openssl") is None, reason="makes the certificates")
+def test_an_encrypted_cluster_takes_those_with_certificates_only(tmp_path):
+    settings = certificates(tmp_path)
+    with Cluster(tmp_path, protocol="tls", environment=settings) as cluster:
+        assert cluster.address.startswith("tls://")
+        cluster.worker()
+        assert "CONNECTED 1 3" in cluster.connect()
+        stranger = dict.fromkeys(settings, "")
+        stranger["DASK_DISTRIBUTED__COMM__REQUIRE_ENCRYPTION"] = "false"
+        told = cluster.connect(**stranger)
+        assert "TOLD 0 scheduler: no dask scheduler at tls://" in told, told
+        plain = cluster.address.replace("tls://", "tcp://")
+        told = cluster.connect(address=plain, **stranger)
+        assert "TOLD 0 scheduler: no dask scheduler at tcp://" in told, told

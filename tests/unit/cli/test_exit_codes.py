@@ -27,7 +27,7 @@ def dentscope(*arguments, cwd=None):
         (("campaign", "show", "zz"), "no case"),
         (("campaign", "export"), "no such file"),
         (("fit", "absent.h5"), "no such file"),
-        (("fit", "text.h5"), "not a readable HDF5 file"),
+        (("fit", "text.h5"), "not a campaign file"),
         (("impact", "absent.toml"), "no such file"),
     ],
 )

@@ -3,7 +3,6 @@
 import math
 
 import pytest
-from dentscope.cli.case_file import CaseFile
 from dentscope.core import InputError, Material
 from dentscope.core.errors import InputErrors
 from dentscope.core.rig import MaterialTable, Rig, StrikerTable, material_keys
@@ -11,6 +10,7 @@ from dentscope.core.toml_input import parse_model
 from dentscope.impact.files.bodies import bodies_of
 from dentscope.impact.files.setup import SetupFile
 from dentscope.recordings import Setup
+from dentscope.start.case_file import CaseFile
 
 BODIES = {
     "target": {"E_Pa": {"value": 2.0e11, "std": 4e9}, "nu": 0.3, "Sy_Pa": 3e8},
