@@ -51,7 +51,15 @@ class Kind:
             raise InputError("no such file", source=str(path), allowed="a raw recording")
         if not path.is_dir():
             checked_file(path, most=_MOST_BYTES, allowed="a raw recording")
-        return self.reduce(path, options)
+        from numpy.linalg import LinAlgError
+
+        try:
+            return self.reduce(path, options)
+        except (ArithmeticError, LinAlgError) as error:
+            raise InputError(
+                f"its numbers cannot be reduced ({error})", source=str(path),
+                allowed="a recording of the kind that was named",
+            ) from None  # fmt: skip
 
 
 def load_kind(name: str) -> Kind:

@@ -26,16 +26,16 @@ from dentscope.campaigns import Design, Store, publish, read_published, standard
 from dentscope.cli import fit as fit_command
 from dentscope.core import COMPLETED, InputError, Material, Pair
 from dentscope.core.disk import Disk
-from dentscope.core.output import write_file, write_files
+from dentscope.core.output import write_figure, write_file, write_files
 from dentscope.fem import Counters, Curve, Solution
-from dentscope.fitting import page as fit_page
+from dentscope.impact.columns import Impacts
 from dentscope.models import fitted
-from dentscope.models.export import write_sources
 from dentscope.recordings import read
 from dentscope.recordings.reduce.into_set import Row, store
 from dentscope.recordings.reduce.measured import Measured, Trial
 from dentscope.recordings.reduce.reduced import Reduced
 from dentscope.recordings.template import write_template
+from dentscope.studies.closed_form.page import published_section
 
 CALLS = (
     "create", "open", "write", "resize", "sync", "rename", "remove", "make_folder", "sync_folder",
@@ -389,7 +389,7 @@ def publish_fit_writer(folder):
     new["domain"]["combinations"] += 1
     page = fit_command._PAGE.read_text()
     out = folder / "out"
-    for name in ("errors", "maps"):
+    for name in ("errors", "maps", "compact-maps"):
         write_file(out / f"{name}.png", b"new picture")
 
     def begin(place):
@@ -406,7 +406,7 @@ def publish_fit_writer(folder):
         ):
             fit_command._publish(new, out)
 
-    section = fit_page.published_section(new)
+    section = published_section(new)
 
     def check(place):
         found = json.loads((place / "fitted.json").read_text())
@@ -421,27 +421,31 @@ def publish_fit_writer(folder):
     return Writer("fit --publish", begin, act, check)
 
 
-def sources_writer():
-    """The law as source in every language: the files of a report, each whole or not there."""
-    from dentscope.models import law_named
+def report_writer():
+    """The files of a sweep: table, data frame and picture, each whole or not there."""
+    from matplotlib.figure import Figure
 
-    law = law_named("fitted")
-    whole = {}
+    found = Impacts({"impact_speed_m_s": np.linspace(1.0, 2.0, 500), "restitution": np.ones(500)})
+    figure = Figure()
+    figure.subplots().plot(found["impact_speed_m_s"])
+
+    def write(folder):
+        found.to_csv(folder / "sweep.csv")
+        found.to_parquet(folder / "sweep.parquet")
+        write_figure(figure, folder / "sweep.png", dpi=40)
+
     with tempfile.TemporaryDirectory() as place:
-        for path in write_sources(law, Path(place)):
-            whole[path.name] = path.read_bytes()
-
-    def act(place):
-        write_sources(law, place / "out")
+        write(Path(place))
+        whole = {path.name: path.read_bytes() for path in Path(place).iterdir()}
 
     def check(place):
         folder = place / "out"
-        found = {p.name: p.read_bytes() for p in folder.glob("[!.]*")} if folder.exists() else {}
         # a draft that a loss of power left is hidden and bears no name of ours
-        assert all(whole[name] == content for name, content in found.items())
-        return "new" if found.keys() == whole.keys() else "old"
+        there = {p.name: p.read_bytes() for p in folder.glob("[!.]*")} if folder.exists() else {}
+        assert all(whole[name] == content for name, content in there.items())
+        return "new" if there.keys() == whole.keys() else "old"
 
-    return Writer("report files", lambda place: None, act, check)
+    return Writer("report files", lambda place: None, lambda place: write(place / "out"), check)
 
 
 def together_writer():
@@ -465,24 +469,30 @@ def together_writer():
 
 
 def writers(folder):
-    """All of them."""
+    """What makes each of them, by its name."""
     folder.mkdir(parents=True, exist_ok=True)
-    return (
-        put_writer(), first_writer(), publish_writer(folder), into_writer(folder),
-        publish_fit_writer(folder), sources_writer(), together_writer(),
-    )  # fmt: skip
+    return {
+        "put": put_writer,
+        "put, new file": first_writer,
+        "publish": lambda: publish_writer(folder),
+        "reduce --into": lambda: into_writer(folder),
+        "fit --publish": lambda: publish_fit_writer(folder),
+        "report files": report_writer,
+        "files together": together_writer,
+    }
 
 
 def main():
     parser = argparse.ArgumentParser()
     parser.add_argument("--only", default="")
     chosen = parser.parse_args()
-    with tempfile.TemporaryDirectory() as name:
-        folder = Path(name)
+    with tempfile.TemporaryDirectory() as scratch:
+        folder = Path(scratch)
         total = Counter()
-        for writer in writers(folder / "ready"):
-            if chosen.only not in writer.name:
+        for name, make in writers(folder / "ready").items():
+            if chosen.only not in name:
                 continue
+            writer = make()
             here = folder / writer.name.replace(" ", "-")
             found = faults(writer, here / "faults") + losses(writer, here / "losses")
             total += found

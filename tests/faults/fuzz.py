@@ -307,7 +307,7 @@ def child(count, seed, first, last):
     from dentscope.core import InputError
 
     for name, make in TARGETS.items():  # what is imported once is no input's time
-        with tempfile.TemporaryDirectory() as folder, suppress(InputError):
+        with tempfile.TemporaryDirectory() as folder, suppress(Exception):
             read(name, lay_out(name, make(), Path(folder)))
     for number, name, content, refuse in made_inputs(count, seed):
         if not first <= number < last:

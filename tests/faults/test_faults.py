@@ -22,20 +22,6 @@ def script(name):
     return sys.modules[name]
 
 
-def writer(name, folder):
-    faults = script("disk_faults")
-    makers = {
-        "put": faults.put_writer,
-        "put, new file": faults.first_writer,
-        "publish": lambda: faults.publish_writer(folder),
-        "reduce --into": lambda: faults.into_writer(folder),
-        "fit --publish": lambda: faults.publish_fit_writer(folder),
-        "report files": faults.sources_writer,
-        "files together": faults.together_writer,
-    }
-    return makers[name]()
-
-
 @pytest.mark.parametrize(
     ("name", "every"),
     [
@@ -44,7 +30,8 @@ def writer(name, folder):
     ],
 )  # fmt: skip
 def test_no_failed_call_and_no_loss_of_power_loses_or_changes_anything(tmp_path, name, every):
-    faults, made = script("disk_faults"), writer(name, tmp_path)
+    faults = script("disk_faults")
+    made = faults.writers(tmp_path)[name]()
     failed = faults.faults(made, tmp_path / "faults", codes=(errno.EIO,), every=every)
     lost = faults.losses(made, tmp_path / "losses", every=every)
     assert failed.total() >= 2
@@ -57,6 +44,7 @@ def test_the_model_of_a_disk_sees_a_writer_that_does_not_synchronise(tmp_path):
 
     def careless(place):
         disk = faults.Disk()
+        (place / "draft").unlink(missing_ok=True)
         file = disk.create(place / "draft")
         disk.write(file, b"2" * 5000)
         disk.close(file)

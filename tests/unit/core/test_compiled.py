@@ -1,9 +1,12 @@
 """Compiled code is kept apart for each state of the source."""
 
 import os
+import stat
 import subprocess
 import sys
+from pathlib import Path
 
+from dentscope.core import compiled
 from dentscope.core.compiled import source_digest
 
 
@@ -41,3 +44,21 @@ def test_numba_is_pointed_there_and_a_choice_of_the_user_is_kept(tmp_path):
 
     assert answer(XDG_CACHE_HOME=str(tmp_path)).startswith(str(tmp_path / "dentscope"))
     assert answer(NUMBA_CACHE_DIR="/elsewhere") == "/elsewhere"
+
+
+def test_a_folder_that_others_may_write_is_passed_over(tmp_path, monkeypatch):
+    monkeypatch.setenv("XDG_CACHE_HOME", str(tmp_path))
+    monkeypatch.delenv("NUMBA_CACHE_DIR", raising=False)
+    planted = tmp_path / "dentscope"
+    planted.mkdir()
+    planted.chmod(0o777)
+    compiled.keep_compiled_code()
+    chosen = Path(os.environ["NUMBA_CACHE_DIR"])
+    assert chosen.parent == tmp_path / "dentscope-2"
+    assert stat.S_IMODE(chosen.stat().st_mode) == 0o700
+    # a link to elsewhere is no folder of one's own either
+    monkeypatch.delenv("NUMBA_CACHE_DIR")
+    (tmp_path / "dentscope-2").rename(tmp_path / "kept")
+    (tmp_path / "dentscope-2").symlink_to(tmp_path / "kept")
+    compiled.keep_compiled_code()
+    assert Path(os.environ["NUMBA_CACHE_DIR"]).parent == tmp_path / "dentscope-3"
