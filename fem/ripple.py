@@ -25,6 +25,9 @@ BEYOND = 4
 _REACH = 0.36  # of the fit to either side, in the logarithm of the approach
 _DEGREE = 3  # of the curve within the reach
 _HARMONICS = 2  # of the part that repeats from ring to ring
+# Weight of a ripple of nothing, in steps. Where a step takes the edge one ring or half a ring on,
+# the ripple seems to stand still and could be anything; this keeps it small.
+_PRIOR = 1.0
 _ENOUGH = 2 * _HARMONICS + _DEGREE + 4  # steps within the reach, else the raw value stands
 _NAMES = ("force", "radius", "radius_last_node", "share")
 
@@ -83,6 +86,8 @@ def _weights(x: Floats, turns: Floats, here: int) -> Floats | None:
     for k in range(1, _HARMONICS + 1):
         columns += [np.cos(k * turns[near]), np.sin(k * turns[near])]
     root = np.sqrt((1.0 - np.abs(t) ** 3) ** 3)
+    prior = np.eye(2 * _HARMONICS, len(columns), _DEGREE + 1) * np.sqrt(_PRIOR)
+    rows = np.vstack([np.stack(columns, axis=1) * root[:, None], prior])
     weights = np.zeros(len(x))
-    weights[near] = np.linalg.pinv(np.stack(columns, axis=1) * root[:, None])[0] * root
+    weights[near] = np.linalg.pinv(rows)[0, : len(near)] * root
     return weights

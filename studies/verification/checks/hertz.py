@@ -174,8 +174,8 @@ def bias(bench: Bench) -> Result:
         ),
         notes=(
             "What is left is the stiffness of the bulk's elements, by their angle and by the rings "
-            "away from the contact edge, and a third of it is the finite sphere, which adds 0.26 % "
-            "of F over 1 % of a/R. Up to numerics version 4 the bias was 0.33 %: since then the "
+            "away from the contact edge, and a third of it is the finite sphere, which adds 0.24 % "
+            "of F at a/R = 0.01. Up to numerics version 4 the bias was 0.33 %: since then the "
             "gradients vary half as much within an element, which takes most of the angle's part, "
             "and the rings' width grows as the cube root of the distance, which takes most of "
             "theirs.",

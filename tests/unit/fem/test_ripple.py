@@ -50,6 +50,16 @@ def test_a_curve_without_ripple_is_left_alone():
     assert np.abs(departures(smooth, truth, "force")).max() < 1e-5
 
 
+@pytest.mark.parametrize("rings", [0.25, 0.48, 0.5, 0.52, 0.7, 0.95, 1.0])
+def test_no_length_of_the_steps_upsets_the_curve(rings):
+    """At half a ring or a whole one a step the ripple seems to stand still."""
+    ratio = 1.025 ** (2.0 * rings)
+    readings, truth = path(int(2.0 / np.log(ratio)), ratio=ratio)
+    smooth = Track(readings).smooth(readings)
+    raw = np.abs(departures(readings, truth, "force")).max()
+    assert np.abs(departures(smooth, truth, "force")).max() < 1.3 * raw
+
+
 @pytest.mark.parametrize("share", [0.0, 1.0])
 def test_the_share_of_a_rigid_body_stays_what_it_is(share):
     readings, _ = path(share=share)
