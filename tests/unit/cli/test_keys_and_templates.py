@@ -22,7 +22,7 @@ def test_every_key_says_what_it_means_and_allows(kind):
 
 def test_ranges_units_and_defaults_come_from_the_schema():
     found = {(k.table, k.name): k for k in keys_of("impact")}
-    assert found["[target]", "E_Pa"].allowed == "a quantity above 0 [Pa]"
+    assert found["[target]", "E_Pa"].allowed == "a quantity from 1000 to 2e+12 [Pa]"
     assert found["[target]", "nu"].allowed == "a quantity 0 <= nu < 0.5"
     assert found["[impact]", "angle_deg"].allowed == "a number above 0 and up to 90 [degrees]"
     assert found["[impact]", "modes"].default == "default: 0"

@@ -32,7 +32,7 @@ def test_every_public_name_has_its_place_in_the_reference(stage):
 def test_the_tables_are_made_from_the_code():
     keys, laws = GATHER["keys_page"](), GATHER["laws_page"]()
     assert "| `tip_radius_m` |" in keys
-    assert "a quantity above 0 [Pa]" in keys
+    assert "a quantity from 1000 to 2e+12 [Pa]" in keys
     assert "`kogut-etsion`" in laws
     assert all(len(row.split(" | ")) == 6 for row in laws.splitlines() if row.startswith("| `"))
 
