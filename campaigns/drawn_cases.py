@@ -97,7 +97,7 @@ def _for_judging(draw: np.ndarray[tuple[int, int], np.dtype[np.float64]]) -> lis
 
 def challenge() -> tuple[Case, ...]:
     """24 pairs drawn from the checksum of the coefficients in use, kept out of every fit."""
-    from ..models.fitted import COEFFICIENTS_FILE
+    from ..models.coefficients import COEFFICIENTS_FILE
 
     return challenge_cases(file_digest(COEFFICIENTS_FILE))
 

@@ -12,7 +12,7 @@ from typing import Annotated
 import typer
 
 from ..core.errors import EXIT_INPUT_ERROR, InputError
-from . import campaign, laws, recordings, reduce, studies
+from . import campaign, export, laws, recordings, reduce, studies
 from .case import case
 from .diagnose import diagnose
 from .doctor import doctor
@@ -40,6 +40,7 @@ _UsageError: type[Exception] = typer.BadParameter.__mro__[1]
 
 
 app.add_typer(campaign.app, name="campaign")
+app.add_typer(export.app, name="export")
 app.add_typer(laws.app, name="laws")
 app.add_typer(recordings.app, name="recordings")
 app.add_typer(reduce.app, name="reduce")

@@ -2,9 +2,9 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated, Any
+from typing import TYPE_CHECKING, Annotated, Any, NamedTuple
 
 import typer
 
@@ -19,6 +19,7 @@ if TYPE_CHECKING:
     from rich.console import Console
 
     from ..fitting import Errors, ResidualTable, Table
+    from ..fitting.report import Within
     from ..models.fitted import ClosedForm
 
 _OWN = Path("build/campaign/campaign.h5")
@@ -52,20 +53,11 @@ def fit(
             "reads; with --publish also in docs/closed-form.md."
         ),
     ] = None,
-    export: Annotated[
-        Path | None,
-        typer.Option(
-            help="Only write the law that is in use into this folder, as Python, C, Fortran and "
-            "MATLAB source, with a table for discrete-element codes."
-        ),
-    ] = None,
 ) -> int:
     """Fit the closed form; write coefficients with standard errors, and a report with pictures."""
     console = new_console()
     if publish:
         studies.needed_for("`dentscope fit --publish`")
-    if export is not None:
-        return _export(export, console)
     if judge is not None:
         return _judge(judge, console, publish=publish)
     return _refit(_files(campaigns), out, console, publish=publish, compare=compare)
@@ -75,8 +67,14 @@ def _refit(files: list[Path], out: Path, console: Console, *, publish: bool, com
     """Fit, show what came out, and write coefficients and report."""
     from ..fitting import fit_laws, read_tables
     from ..fitting.coefficients import coefficients_content, write_coefficients
-    from ..fitting.report import coefficient_rows, error_rows, uncertainty_rows, write_report
-    from ..models.fitted import laws_from
+    from ..fitting.report import (
+        coefficient_rows,
+        error_rows,
+        stated_within,
+        uncertainty_rows,
+        write_report,
+    )
+    from ..models.coefficients import laws_from
 
     table, turns = read_tables(files)
     console.print(
@@ -94,7 +92,7 @@ def _refit(files: list[Path], out: Path, console: Console, *, publish: bool, com
         *((f"{name}, validation", errors) for name, errors in validation),
     ]
     _show(console, error_rows(columns))
-    _show(console, uncertainty_rows(content))
+    _show(console, uncertainty_rows(stated_within(content)))
     more = _compared(content, table, turns, out, console) if compare else []
     page = write_report(result, content, table, turns, out, validation=validation, more=more)
     console.print(f"coefficients: {out / 'fitted.json'}; report: {page}")
@@ -126,7 +124,7 @@ def _publish(content: dict[str, Any], out: Path) -> None:
     """Put the coefficients where the laws read them, and tables and pictures into their page."""
     from ..core.output import write_file
     from ..fitting.coefficients import write_coefficients
-    from ..models.fitted import COEFFICIENTS_FILE
+    from ..models.coefficients import COEFFICIENTS_FILE
     from ..studies.closed_form.page import published_section, update_page
 
     write_coefficients(content, COEFFICIENTS_FILE)
@@ -150,27 +148,37 @@ def _files(campaigns: Sequence[Path] | None) -> list[Path]:
     return files
 
 
+class _Found(NamedTuple):
+    """What unseen pairs say of the laws."""
+
+    errors: list[tuple[str, Errors]]  # by law
+    within: Mapping[str, Within]
+    names: tuple[str, ...]  # of the cases
+
+
 def _validation(files: Sequence[Path], laws: Sequence[ClosedForm]) -> list[tuple[str, Errors]]:
     """Errors of the laws on the cases that no fit reads; none if the campaign holds none."""
     try:
-        return _judged(files, laws)[0]
+        return _judged(files, laws).errors
     except InputError:
         return []
 
 
-def _judged(
-    files: Sequence[Path], laws: Sequence[ClosedForm]
-) -> tuple[list[tuple[str, Errors]], tuple[str, ...]]:
-    """Name and errors of each law on the cases that no fit reads, and the names of these."""
+def _judged(files: Sequence[Path], laws: Sequence[ClosedForm]) -> _Found:
+    """Errors of each law on the cases that no fit reads, and how many its deviations hold."""
+    from ..fitting.calibrate import misses, within
     from ..fitting.prediction import errors_of, predict_by
     from ..fitting.table import read_tables
 
     table, turns = read_tables(files, held_out=True)
-    found = [
-        (law.name, errors_of(predict_by(law.numbers(table.bodies), table, turns), table, turns))
-        for law in laws
-    ]
-    return found, table.names
+    errors, shares = [], {}
+    for law in laws:
+        numbers = law.numbers(table.bodies)
+        p = predict_by(numbers, table, turns)
+        errors.append((law.name, errors_of(p, table, turns)))
+        if law.calibration is not None:
+            shares[law.name] = within(law.calibration, misses(p, numbers, table, turns))
+    return _Found(errors, shares, table.names)
 
 
 def _show(console: Console, rows: Sequence[Sequence[str]]) -> None:
@@ -180,23 +188,19 @@ def _show(console: Console, rows: Sequence[Sequence[str]]) -> None:
 def _judge(folder: Path, console: Console, *, publish: bool) -> int:
     """Show the errors of the laws in use on cases that no fit reads."""
     from ..core.provenance import file_digest
-    from ..fitting.report import error_rows
-    from ..models.fitted import COEFFICIENTS_FILE
+    from ..fitting.report import error_rows, uncertainty_rows
+    from ..models.coefficients import COEFFICIENTS_FILE
 
-    errors, names = _judged(_files([folder]), [_law_in_use("compact"), _law_in_use("fitted")])
-    _show(console, error_rows([(f"{name}, {len(names)} pairs", e) for name, e in errors]))
+    found = _judged(_files([folder]), [_law_in_use("compact"), _law_in_use("fitted")])
+    count = len(found.names)
+    _show(console, error_rows([(f"{name}, {count} pairs", e) for name, e in found.errors]))
+    _show(console, uncertainty_rows(found.within))
     if publish:
         from ..studies.closed_form.page import judged_section, update_page
 
-        update_page(_PAGE, judged_section(errors, names, file_digest(COEFFICIENTS_FILE)))
-    return 0
-
-
-def _export(folder: Path, console: Console) -> int:
-    from ..models.export import write_sources
-
-    for path in write_sources(_law_in_use("fitted"), folder):
-        console.print(str(path))
+        digest = file_digest(COEFFICIENTS_FILE)
+        section = judged_section(found.errors, found.names, digest, within=found.within)
+        update_page(_PAGE, section)
     return 0
 
 

@@ -15,7 +15,10 @@ from ..core.errors import InputError
 from .studies import COMMANDS as _WORKSHOP
 
 SECTIONS = (
-    ("Your own", ("impact", "diagnose", "recordings", "reduce", "case", "laws", "inverse")),
+    (
+        "Your own",
+        ("impact", "diagnose", "recordings", "reduce", "case", "laws", "export", "inverse"),
+    ),
     ("Behind the law", ("campaign", "fit")),
     ("To begin", ("examples", "keys", "doctor", "version")),
 )

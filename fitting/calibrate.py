@@ -15,7 +15,7 @@ from .table import ResidualTable, Table
 
 Floats = npt.NDArray[np.float64]
 
-_ONE_SIGMA = 0.6827
+_ONE_SIGMA, _TWO_SIGMA = 0.6827, 0.9545
 _NOISE = 2e-3  # of the finite elements, beside the law's own error
 _BEFORE_YIELD = (0.5, 4.0)  # power with which a law's error vanishes there; the dent does itself
 _RIDGE = 0.02  # of the features' weights, the constant's aside
@@ -60,7 +60,7 @@ def misses(
 
 
 def calibrate(found: dict[str, Misses]) -> Calibration:
-    """Find the weights of the features: most likely, then so scaled that 68 % lie within one."""
+    """Find the weights of the features: most likely, then scaled."""
     rows = []
     for name in Uncertainty._fields:
         features, off = found[name]
@@ -84,11 +84,15 @@ def calibrate(found: dict[str, Misses]) -> Calibration:
 
 
 def _scaled(weights: Floats, features: Floats, size: Floats) -> Floats:
-    """Return the weights at which 68 % of the errors lie within one standard deviation."""
+    """Return the weights at which 68 and 95 % lie within one and two, what one lacks the other has.
+
+    Errors have longer ends than a normal distribution, so that both can't be met.
+    """
 
     def beyond(scale: float) -> float:
-        moved = weights + scale * np.eye(len(weights))[0]
-        return float(np.mean(size <= deviation(features, moved, least=_NOISE))) - _ONE_SIGMA
+        spread = deviation(features, weights + scale * np.eye(len(weights))[0], least=_NOISE)
+        one, two = (float(np.mean(size <= k * spread)) for k in (1.0, 2.0))
+        return (one - _ONE_SIGMA) + (two - _TWO_SIGMA)
 
     if beyond(-3.0) >= 0.0:
         return weights

@@ -1,6 +1,6 @@
 """The coefficients file: values, standard errors, covariance, domain and where they come from.
 
-`fitting` writes it and `models.fitted` reads it as data; nothing else carries a coefficient.
+`fitting` writes it and `models.coefficients` reads it as data; nothing else carries a coefficient.
 """
 
 from __future__ import annotations
@@ -20,8 +20,8 @@ from ..core.output import write_file
 from ..core.provenance import environment, file_digest
 from ..fem import NUMERICS_VERSION
 from ..models.closed_form import COEFFICIENTS
+from ..models.coefficients import FORMAT
 from ..models.correction import CHANNELS, GROUPS
-from ..models.fitted import FORMAT
 from .laws import Laws
 from .table import Table
 

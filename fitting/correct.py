@@ -21,8 +21,8 @@ from .table import ResidualTable, Table
 
 Floats = npt.NDArray[np.float64]
 
-BUMPS = 60
-REACHES = np.array([1.2, 1.2, 2.2, 1.2, 3.0, 4.0])
+PAIRS_A_BUMP = 6.5
+REACHES = np.array([0.9, 2.2, 1.2, 3.0, 4.0])
 PRIOR = 2.0
 """Weight of the prior against the misfit's squares: of one shift, alone, by one unit."""
 
@@ -74,11 +74,11 @@ def correct(values: Floats, table: Table, turns: ResidualTable, ripple: Floats) 
 
 
 def _spread_out(groups: Floats) -> Floats:
-    """Return a subset of `groups` as far from each other as may be, shape (BUMPS, n_groups)."""
+    """Return a subset of `groups` as far from each other as may be, shape (m, n_groups)."""
     scaled = groups / REACHES
     chosen = [int(np.argmin(np.sum((scaled - scaled.mean(axis=0)) ** 2, axis=1)))]
     nearest = np.full(len(scaled), np.inf)
-    while len(chosen) < min(BUMPS, len(scaled)):
+    while len(chosen) < max(len(scaled) / PAIRS_A_BUMP, 1.0):
         away = np.sum((scaled - scaled[chosen[-1]]) ** 2, axis=1)
         nearest = np.minimum(nearest, away)
         chosen.append(int(np.argmax(nearest)))

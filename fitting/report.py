@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import fields
 from pathlib import Path
 from typing import Any
@@ -14,6 +14,8 @@ from .laws import Laws
 from .prediction import Errors, Prediction, errors_of
 from .ripple import ripple_of, without_ripple
 from .table import ResidualTable, Table
+
+Within = Mapping[str, Sequence[float]]
 
 MARKS: dict[str, tuple[str, float, tuple[float, float] | None]] = {
     "force": ("F [%]", 100.0, (0.4, 3.0)),
@@ -27,6 +29,11 @@ MARKS: dict[str, tuple[str, float, tuple[float, float] | None]] = {
     "given_back": ("energy given back, delta_m >= 5 delta_c [%]", 100.0, (0.5, 3.0)),
 }
 """Each quantity's name in tables, its scale, and the mean and largest error that we aim at."""
+
+
+def stated_within(content: dict[str, Any]) -> dict[str, Within]:
+    """What a coefficients file says of its own standard deviations, by law and quantity."""
+    return {law: entry["within"] for law, entry in content["uncertainty"].items()}
 
 
 def error_rows(columns: Sequence[tuple[str, Errors]]) -> list[list[str]]:
@@ -85,15 +92,21 @@ def worst_rows(p: Prediction, table: Table, *, most: int = 12) -> list[list[str]
     return [head, *(cells for _, cells in lines[:most])]
 
 
-def uncertainty_rows(content: dict[str, Any]) -> list[list[str]]:
-    """Rows of the table of standard deviations, its head first."""
+def uncertainty_rows(within: Mapping[str, Within]) -> list[list[str]]:
+    """Rows of the table of standard deviations, its head first.
+
+    Parameters
+    ----------
+    within
+        Shares of errors within one and two of them, by law and quantity.
+    """
     names = {
         "force": "F", "radius": "a", "share": "delta_s*", "dent": "residual depth",
         "given_back": "energy given back",
     }  # fmt: skip
-    rows = [["within one, two standard deviations", "compact", "fitted"]]
+    rows = [["within one, two standard deviations", *within]]
     for key, name in names.items():
-        shares = [content["uncertainty"][law]["within"][key] for law in ("compact", "fitted")]
+        shares = [of_law[key] for of_law in within.values()]
         rows.append([name, *(f"{100 * one:.1f} %, {100 * two:.1f} %" for one, two in shares)])
     return rows
 
@@ -143,7 +156,7 @@ def write_report(
         "![errors](errors.png)\n\n![maps](maps.png)\n\n![curves](curves.png)\n",
         "The compact law:\n\n![maps](compact-maps.png)\n",
         "## Uncertainty, on combinations left out\n",
-        markdown(uncertainty_rows(content)),
+        markdown(uncertainty_rows(stated_within(content))),
         "## Combinations that fit worst\n\nMean and largest, fitted law, left out.\n",
         markdown(worst_rows(shown, table)),
         "## Domain\n",

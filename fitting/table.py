@@ -136,7 +136,8 @@ def read_tables(
     Notes
     -----
     A case that the present solver made wins over one that an earlier version of it made. Cases of
-    the lowest resolution, whose force ripples by percents, count only where none is finer.
+    the lowest resolution, whose force ripples by percents, count only where none is finer. Metals
+    that harden or feel the rate are left out: the forms know neither.
 
     Raises
     ------
@@ -147,7 +148,7 @@ def read_tables(
     chosen: dict[object, CaseRecord] = {}
     found = [r for path in paths for r in read_curves(path)]
     found = [r for r in found if r.case.name.startswith(HELD_OUT) == held_out]
-    for record in _fine_ones([r for r in found if np.isfinite(r.case.pair.Sy_min)]):
+    for record in _fine_ones([r for r in found if _perfectly_plastic(r.case.pair)]):
         key = tuple(np.round(_key(record.case.pair), 9))
         if key not in chosen or is_current(record) or not is_current(chosen[key]):
             chosen[key] = record
@@ -160,6 +161,10 @@ def read_tables(
         )
     records = list(chosen.values())
     return _loading(records), _residuals(records)
+
+
+def _perfectly_plastic(pair: Pair) -> bool:
+    return bool(np.isfinite(pair.Sy_min)) and pair.sphere.flow is None and pair.flat.flow is None
 
 
 def _fine_ones(records: list[CaseRecord]) -> list[CaseRecord]:

@@ -6,7 +6,7 @@ from pathlib import Path
 
 from ..core.errors import InputError
 from .base import ContactLaw, Domain, DomainWarning, Kernels
-from .fitted import shipped_laws
+from .coefficients import shipped_laws
 from .kernel import critical_depth, critical_force, yield_constant
 from .published import PUBLISHED, RATE_MODELS, UNAVAILABLE
 from .shelf import Shelf

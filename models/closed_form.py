@@ -41,7 +41,7 @@ class Bodies(NamedTuple):
 class PairNumbers(NamedTuple):
     """What the curves need of a pair at every depth; each field a number or an array.
 
-    The first eight follow from the bodies alone; the others are what the laws differ in.
+    The first seven follow from the bodies alone; the others are what the laws differ in.
     """
 
     x_s: Any  # elastic share of the sphere (2.3)
@@ -91,7 +91,6 @@ class Groups(NamedTuple):
     """Coordinates of a pair in which the fitted law's correction varies, each about one wide."""
 
     strengths: Any  # logarithm of the strengths' ratio, finest where they are equal
-    yields: Any  # the same of the loads of first yield
     stiffness: Any  # logarithm of E' over the lower strength
     elastic_share: Any
     nu_weak: Any  # Poisson's ratio of the body that yields
@@ -181,13 +180,11 @@ def groups_of(bodies: Bodies, pair: PairNumbers) -> Groups:
     f2 = pair.j_f * pair.j_f
     part = s2 * s2 / (s2 * s2 + f2 * f2)
     strengths = log(far + sqrt(far * far + 1.0)) / 1.2
-    load = (pair.L + pair.L_C) / 0.15
-    yields = log(load + sqrt(load * load + 1.0)) / 1.2
     stiffness = (0.5 * log(pair.W) - 5.0) / 1.2
     elastic_share = (pair.x_s - 0.5) / 0.22
     nu_weak = (part * bodies.nu_s + (1.0 - part) * bodies.nu_f - 0.3) / 0.08
     nu_strong = (part * bodies.nu_f + (1.0 - part) * bodies.nu_s - 0.3) / 0.08
-    return Groups(strengths, yields, stiffness, elastic_share, nu_weak, nu_strong)
+    return Groups(strengths, stiffness, elastic_share, nu_weak, nu_strong)
 
 
 @register_jitable
@@ -241,13 +238,17 @@ def force_at(D, a, pair):
     load2 = pair.P * elastic * (pair.P * elastic)
     load4 = load2 * load2
     q = sqrt(sqrt(sqrt(1.0 + load4 * load4))) - 1.0
-    a_power = a**pair.r
-    a2 = a * a
+    # beyond a/R = 0.55, where no data reach, the pressure stays and the force goes on rising
+    a2 = a / 0.62 * (a / 0.62)
     a4 = a2 * a2
-    # bounded: beyond a/R = 0.5, where no data reach, the force must not collapse without end
-    collapse = a4 * a4 / (1.0 + 50.0 * a4 * a4)
-    J_s = pair.j_s * exp(pair.B_s * a_power + pair.B_e * collapse - pair.even * a)
-    J_f = pair.j_f * exp(pair.B_f * a_power - pair.even * a)
+    a8 = a4 * a4
+    near = a / sqrt(sqrt(sqrt(sqrt(1.0 + a8 * a8))))
+    near2 = near * near
+    near4 = near2 * near2
+    collapse = near4 * near4 / (1.0 + 50.0 * near4 * near4)
+    power = near**pair.r
+    J_s = pair.j_s * exp(pair.B_s * power + pair.B_e * collapse - pair.even * near)
+    J_f = pair.j_f * exp(pair.B_f * power - pair.even * near)
     J = J_s + J_f
     weight_s2 = J_s * J_s / (J * J)
     weight_s4 = weight_s2 * weight_s2
@@ -261,7 +262,7 @@ def force_at(D, a, pair):
     equal = weight_s16 * weight_f16 / both * (weight_s16 * weight_f16 / both)
     weak = J * sqrt(sqrt(sqrt(sqrt(sqrt(both))))) * (1.0 - 0.08664339756999316 * equal)
     q_power = (q + 1e-30) ** pair.m
-    soft = 1.0 + weak / (pair.P * pair.h) * q * q_power / (q_power + pair.k * exp(-pair.k_a * a))
+    soft = 1.0 + weak / (pair.P * pair.h) * q * q_power / (q_power + pair.k * exp(-pair.k_a * near))
     return PI * a * a * elastic / soft
 
 

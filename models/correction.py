@@ -1,6 +1,6 @@
 """What the fitted law adds to the compact one: its numbers of a pair, moved smoothly over pairs.
 
-Gaussian bumps stand over six groups of the pair; each moves every entry of `CHANNELS` by a weight.
+Gaussian bumps stand over five groups of the pair; each moves every entry of `CHANNELS` by a weight.
 They act on the numbers from which a pair's curves are drawn, never on the curves, so that limits,
 bounds, rise of the force and balance of energy stay what they are. Away from all bumps, outside the
 data, nothing moves: there the fitted law is the compact one.
@@ -27,7 +27,7 @@ Floats = npt.NDArray[np.float64]
 GROUPS = Groups._fields
 """The coordinates of a pair."""
 
-MOST = 3.0
+MOST = 4.0
 """Units by which a number may be moved; its shift is bent towards this bound."""
 
 
@@ -47,6 +47,7 @@ def _summands(**units: float) -> dict[str, Channel]:
 
 
 CHANNELS: dict[str, Channel] = {
+    **_summands(fin=0.5),
     **_factors(c=0.03, g_a=0.3, g_b=0.3, y_b=0.5),
     **_summands(z=0.2, c_s=1.0, c_f=0.7, t=0.3),
     **_factors(y_c=0.5),
@@ -71,9 +72,9 @@ class Correction:
     Parameters
     ----------
     centres
-        Of the bumps in the groups, shape (m, 6).
+        Of the bumps in the groups, shape (m, 5).
     reaches
-        Widths of the bumps, shape (6,).
+        Widths of the bumps, shape (5,).
     weights
         Shift of each channel by each bump, shape (m, n_channels).
     """
@@ -89,7 +90,7 @@ class Correction:
 
 
 def coordinates(bodies: Bodies, numbers: PairNumbers) -> Any:
-    """`Groups` of pairs side by side, shape (n, 6)."""
+    """`Groups` of pairs side by side, shape (n, 5)."""
     return np.stack(groups_of(bodies, numbers), axis=-1)
 
 

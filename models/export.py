@@ -1,4 +1,6 @@
-"""The fitted law as source code that needs nothing else: Python, C, Fortran, MATLAB or Octave.
+"""A closed form as source code that needs nothing else, in five languages.
+
+Python, C, Fortran, MATLAB or Octave, Modelica.
 
 Each file holds the coefficients and one routine from the two materials, the radius and the approach
 to force, contact radius, sphere's share, permanent depths and the exponent of the unloading. They
@@ -15,7 +17,6 @@ from pathlib import Path
 
 from ..core.output import write_file
 from .closed_form import COEFFICIENTS
-from .discrete_elements import dem_table
 from .export_tree import INPUTS, OUTPUTS, Lines, before, when_closed, when_open
 from .fitted import ClosedForm
 
@@ -98,12 +99,12 @@ class _Written(ast.NodeTransformer):
 
 
 def write_sources(law: ClosedForm, folder: Path) -> list[Path]:
-    """Write the law in every language and the table for discrete-element codes.
+    """Write the law in every language.
 
     Parameters
     ----------
     law
-        The fitted law.
+        The compact or the fitted law.
     folder
         Where the files go; made if needed.
 
@@ -118,7 +119,7 @@ def write_sources(law: ClosedForm, folder: Path) -> list[Path]:
         f"{NAME}.c": c_source(law),
         f"{NAME}.f90": fortran_source(law),
         f"{NAME}.m": matlab_source(law),
-        "dem_parameters.csv": dem_table(law),
+        f"{NAME}.mo": modelica_source(law),
     }
     return [write_file(folder / name, text.encode("ascii")) for name, text in texts.items()]
 
@@ -271,4 +272,29 @@ def matlab_source(law: ClosedForm) -> str:
 {matlab.lines(when_closed(law.correction), indent=2)}
 {by_mask}
 end
+"""
+
+
+def modelica_source(law: ClosedForm) -> str:
+    """The law as a Modelica function; a body can't be rigid there, whose modulus is infinite."""
+    modelica = Language("{target} := {value};", operators={" ** ": " ^ "})
+    first, last = before(), when_closed(law.correction)
+    coefficients = _coefficients(law)
+    outputs = [f"out_{name}" for name in OUTPUTS]
+    local = sorted({name for name, _ in (*coefficients, *first, *last)} - set(outputs))
+    return f"""function {NAME}
+{_about(law, "  // ")}
+{textwrap.indent(chr(10).join(f"input Real {name};" for name in INPUTS), "  ")}
+{textwrap.indent(chr(10).join(f"output Real {name};" for name in outputs), "  ")}
+protected
+{textwrap.indent(chr(10).join(f"Real {name};" for name in local), "  ")}
+algorithm
+{modelica.lines(coefficients, indent=2)}
+{modelica.lines(first, indent=2)}
+  if D <= 0.0 then
+{modelica.lines(when_open())}
+    return;
+  end if;
+{modelica.lines(last, indent=2)}
+end {NAME};
 """

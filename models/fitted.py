@@ -1,17 +1,15 @@
 """Our closed forms as contact laws: compact, and fitted with its correction.
 
-The arithmetic is in `closed_form` and `correction`, the numbers in data/coefficients/fitted.json,
-which `dentscope fit` writes; formulas and reasons are in docs/closed-form.md.
+The arithmetic is in `closed_form` and `correction`, the numbers come by `coefficients`; formulas
+and reasons are in docs/closed-form.md.
 """
 
 from __future__ import annotations
 
-import json
 import math
 import warnings
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
-from pathlib import Path
 from typing import Any
 
 import numpy as np
@@ -31,7 +29,7 @@ from .closed_form import (
     of_pair,
     spread_at,
 )
-from .correction import CHANNELS, GROUPS, Correction
+from .correction import Correction
 from .driver import Depths, Pairs
 from .kernel import (
     N_COMMON,
@@ -46,10 +44,6 @@ from .kernel import (
     residual_kernel,
 )
 from .uncertainty import Calibration, Uncertainty
-
-FORMAT = "dentscope-coefficients/10"
-COEFFICIENTS_FILE = Path(__file__).resolve().parents[1] / "data" / "coefficients" / "fitted.json"
-"""What the laws in use read; `dentscope fit --publish` writes it."""
 
 _FINITE = 0.01  # Delta/R at which the law says how far finite elastic strain takes it from Hertz
 
@@ -226,6 +220,8 @@ class ClosedForm(ContactLaw):
             deepest = float(np.max(d[number] if each else d, initial=0.0))
             if math.isinf(p.Sy_min):
                 continue  # elastic: Hertz
+            if p.sphere.flow is not None or p.flat.flow is not None:
+                return "knows the strength of first yield only, and a body here hardens"
             found = {
                 "Sy_ratio": (p.Sy_ratio,),
                 "E_reduced_over_Sy_min": (p.E_reduced / p.Sy_min,),
@@ -284,61 +280,3 @@ def closed_form_law(
 
 def _note(limits: Mapping[str, tuple[float, float]]) -> str:
     return ", ".join(f"{key} {low:.3g} to {high:.3g}" for key, (low, high) in limits.items())
-
-
-def read_coefficients() -> dict[str, Any] | None:
-    """Content of the shipped coefficients file; none if there is none yet."""
-    file = COEFFICIENTS_FILE
-    return json.loads(file.read_text("utf-8")) if file.is_file() else None
-
-
-def laws_from(content: Mapping[str, Any], *, source: str) -> tuple[ClosedForm, ClosedForm]:
-    """Return the compact and the fitted law of a coefficients file's content.
-
-    Raises
-    ------
-    InputError
-        The file belongs to another form, or lacks a number.
-    """
-    found = content.get("format")
-    if found != FORMAT:
-        raise InputError(
-            f"format {found!r}", source=source, key="format",
-            allowed=f"{FORMAT}; make the file anew with `dentscope fit --publish`",
-        )  # fmt: skip
-    missing = sorted(set(COEFFICIENTS) - set(content["coefficients"]))
-    if missing:
-        raise InputError(
-            f"no {', '.join(missing)}", source=source, key="coefficients",
-            allowed="every coefficient of the form; make the file anew with `dentscope fit`",
-        )  # fmt: skip
-    values = {name: float(content["coefficients"][name]["value"]) for name in COEFFICIENTS}
-    limits = {k: (float(v[0]), float(v[1])) for k, v in content["domain"]["limits"].items()}
-    spread = content["uncertainty"]
-    return (
-        closed_form_law(
-            values, limits=limits, calibration=Calibration.from_content(spread["compact"])
-        ),
-        closed_form_law(
-            values, correction=_correction(content["correction"], source), limits=limits,
-            calibration=Calibration.from_content(spread["fitted"]),
-        ),
-    )  # fmt: skip
-
-
-def _correction(content: Mapping[str, Any], source: str) -> Correction:
-    for key, names in (("channels", tuple(CHANNELS)), ("groups", GROUPS)):
-        if tuple(content[key]) != names:
-            raise InputError(
-                f"{', '.join(content[key])}", source=source, key=f"correction.{key}",
-                allowed=f"{', '.join(names)}; make the file anew with `dentscope fit`",
-            )  # fmt: skip
-    return Correction(
-        np.array(content["centres"]), np.array(content["reaches"]), np.array(content["weights"])
-    )
-
-
-def shipped_laws() -> tuple[ClosedForm, ...]:
-    """The laws with the shipped numbers; none if they were never fitted."""
-    content = read_coefficients()
-    return () if content is None else laws_from(content, source=str(COEFFICIENTS_FILE))

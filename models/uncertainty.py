@@ -19,7 +19,7 @@ from .closed_form import PairNumbers, plastic_depth, small_radius_at
 Floats = npt.NDArray[np.float64]
 
 FEATURES = (
-    "one", "yield", "depth", "equal", "taking_over", "stiffness", "elastic_share",
+    "one", "yield", "depth", "equal", "taking_over", "stiffness", "elastic_share", "unlike",
 )  # fmt: skip
 """What a standard deviation depends on; see `features_of`."""
 
@@ -76,7 +76,8 @@ def features_of(numbers: PairNumbers, D: Any) -> Floats:
     """Features at Delta/R = D, shape (..., n_features); fields of the numbers go with D.
 
     One; how far the contact has yielded (logarithm, 0 in the end); depth beyond yield; closeness of
-    the strengths; of the taking over; E'/S; the elastic share of the stiffer body.
+    the strengths; of the taking over; E'/S; the elastic share of the stiffer body; how unlike the
+    Poisson ratios are where the strengths are close.
     """
     y = plastic_depth(numbers.W * D)
     small = small_radius_at(D, y, numbers)
@@ -90,6 +91,7 @@ def features_of(numbers: PairNumbers, D: Any) -> Floats:
         turn / (1.0 + (numbers.L / 0.7) ** 2),
         (0.5 * np.log(numbers.W) - 5.0) / 1.2 + 0.0 * y,
         np.abs(numbers.x_s - 0.5) / 0.22 + 0.0 * y,
+        even * np.abs(numbers.L_C) / 0.05 + 0.0 * y,
     )
     return np.stack(columns, axis=-1)
 

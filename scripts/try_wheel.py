@@ -73,7 +73,7 @@ SOLVER = (
     Use("campaign publish --design smoke --out run --to parts", "cases are missing", 2),
     Use("campaign gallery", "checkout", 2),
     Use("campaign reproduction", "checkout", 2),
-    Use("fit --export sources", "dentscope_contact.f90"),
+    Use("export law sources", "dentscope_contact.f90"),
 )
 """Laws, solver and sweep: uses in this order, with the package's own dependencies only."""
 

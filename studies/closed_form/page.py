@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from pathlib import Path
 from typing import Any
 
@@ -10,10 +10,12 @@ from ...core.errors import InputError
 from ...fitting.prediction import Errors
 from ...fitting.report import (
     MARKS,
+    Within,
     coefficient_rows,
     domain_rows,
     error_rows,
     markdown,
+    stated_within,
     uncertainty_rows,
 )
 
@@ -43,13 +45,19 @@ def published_section(content: dict[str, Any]) -> str:
             f"{', '.join(levels)}.\n",
             markdown(coefficient_rows(content)),
             markdown(rows),
-            markdown(uncertainty_rows(content)),
+            markdown(uncertainty_rows(stated_within(content))),
             markdown(domain_rows(content, "domain")) + END,
         ]
     )
 
 
-def judged_section(errors: Sequence[tuple[str, Errors]], names: Sequence[str], digest: str) -> str:
+def judged_section(
+    errors: Sequence[tuple[str, Errors]],
+    names: Sequence[str],
+    digest: str,
+    *,
+    within: Mapping[str, Within],
+) -> str:
     """Return the part of docs/closed-form.md on pairs that no fit has read.
 
     Parameters
@@ -60,6 +68,8 @@ def judged_section(errors: Sequence[tuple[str, Errors]], names: Sequence[str], d
         Of the cases; those of a challenge carry the beginning of the checksum that drew them.
     digest
         Checksum of the coefficients in use.
+    within
+        Shares of the errors within one and two stated deviations, by law and quantity.
     """
     drawn = sorted({name.split("-")[1] for name in names if name.startswith("challenge-")})
     about = f"{len(names)} pairs, drawn from {', '.join(drawn) or 'a seed of their own'}"
@@ -68,7 +78,8 @@ def judged_section(errors: Sequence[tuple[str, Errors]], names: Sequence[str], d
     elif drawn:
         about += f": earlier coefficients; those above have {digest[:12]}"
     rows = error_rows(errors)
-    return f"{JUDGED_BEGIN}\n{about}.\n\n{markdown(rows)}{JUDGED_END}"
+    deviations = markdown(uncertainty_rows(within))
+    return f"{JUDGED_BEGIN}\n{about}.\n\n{markdown(rows)}\n{deviations}{JUDGED_END}"
 
 
 def update_page(page: Path, section: str) -> None:

@@ -209,7 +209,7 @@ fit words.h5
 fit folder
 fit --out words.txt
 fit --judge absent
-fit --export words.txt
+export law words.txt
 examples --to words.txt
 examples extra
 keys nonsense

@@ -1,8 +1,8 @@
 """The exported law is compiled or run in each language and equals the law itself."""
 
-import csv
 import ctypes
 import math
+import re
 import runpy
 import shutil
 import subprocess
@@ -12,7 +12,7 @@ import numpy as np
 import pytest
 from dentscope.core import Material, Pair
 from dentscope.models import LAWS
-from dentscope.models.export import NAME, OUTPUTS, write_sources
+from dentscope.models.export import INPUTS, NAME, OUTPUTS, write_sources
 
 INF = math.inf
 
@@ -44,8 +44,8 @@ def body(E, nu, Sy):
     return Material(E=math.nan, nu=math.nan, rigid=True) if E == INF else Material(E, nu, Sy)
 
 
-def expected(rows):
-    law = replace(LAWS["fitted"], limits={})
+def expected(rows, name):
+    law = replace(LAWS[name], limits={})
     answers = []
     for E_s, nu_s, Sy_s, E_f, nu_f, Sy_f, R, d in rows:
         pair = Pair(body(E_s, nu_s, Sy_s), body(E_f, nu_f, Sy_f), R)
@@ -72,8 +72,8 @@ def needs(program):
     return pytest.mark.skipif(shutil.which(program) is None, reason=f"{program} is not installed")
 
 
-def compare(found, rows):
-    want = expected(rows)
+def compare(found, rows, *, law="fitted"):
+    want = expected(rows, law)
     depth = np.abs([r[-1] for r in rows])
     for k, name in enumerate(OUTPUTS):
         # a residual depth is what two nearly equal numbers leave: it counts against the approach
@@ -164,16 +164,36 @@ def test_octave(sources):
     compare(read_numbers(done.stdout), rows)
 
 
-def test_table_for_discrete_elements_keeps_the_energies(sources):
-    """A spring k_loading up, k_unloading from the residual depth back: e of the linear hysteretic
-    law is sqrt(k_loading/k_unloading) times the recovered part of the depth."""
-    lines = (sources / "dem_parameters.csv").read_text().splitlines()[1:]
-    table = list(csv.DictReader(lines))
-    assert len(table) >= 30
-    for row in table:
-        r = {k: float(v) for k, v in row.items()}
-        linear = (r["F_over_E_R2"] * (1 - r["residual_over_Delta"])) ** 0.5 / (
-            r["k_loading"] * r["Delta_over_R"]
-        ) ** 0.5
-        # the unloading curve bends (N above 1), so it gives back less than a straight one
-        assert 0.8 * linear < r["restitution"] < linear
+def test_modelica(sources):
+    """Its algorithm, statement by statement: no Modelica tool is at hand that could run it."""
+    text = (sources / f"{NAME}.mo").read_text()
+    head, body = text.split("\nalgorithm\n")
+    first, rest = body.split("  if D <= 0.0 then\n")
+    when_open, last = rest.split("    return;\n  end if;\n")
+    last, end = last.rsplit("\nend ", 1)
+    assert end == f"{NAME};\n"
+    declared = set(re.findall(r"^  (?:input |output )?Real (\w+);$", head, re.MULTILINE))
+    code = [
+        compile(re.sub(r"^ +(\w+) := (.*);$", r"\1 = \2", part.replace("^", "**"), flags=re.M),
+                NAME, "exec")
+        for part in (first, when_open, last)
+    ]  # fmt: skip
+    rows = [row for row in draws() if INF not in (row[0], row[3])]
+    found = []
+    for row in rows:
+        at = {**dict(zip(INPUTS, row, strict=True)), "exp": math.exp, "log": math.log,
+              "sqrt": math.sqrt, "max": max}  # fmt: skip
+        exec(code[0], at)
+        exec(code[1] if at["D"] <= 0.0 else code[2], at)
+        found.append([at[f"out_{name}"] for name in OUTPUTS])
+    used = {name for part in code for name in part.co_names} - {"exp", "log", "sqrt", "max"}
+    assert used == declared
+    compare(np.array(found), rows)
+
+
+def test_the_compact_law_is_written_by_the_same_printer(tmp_path):
+    write_sources(LAWS["compact"], tmp_path)
+    contact = runpy.run_path(str(tmp_path / f"{NAME}.py"))["contact"]
+    rows = draws()
+    compare(np.array([contact(*row) for row in rows]), rows, law="compact")
+    assert len((tmp_path / f"{NAME}.py").read_text().splitlines()) < 250

@@ -7,6 +7,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 from dentscope.core import InputError, Material, Pair
+from dentscope.core.flow import Flow, swift
 from dentscope.fitting.coefficients import write_coefficients
 from dentscope.fitting.fit import fit_tables
 from dentscope.fitting.form import START
@@ -14,7 +15,8 @@ from dentscope.fitting.prediction import predict
 from dentscope.fitting.table import ResidualTable, Table
 from dentscope.models import LAWS, DomainWarning, critical_depth
 from dentscope.models.closed_form import COEFFICIENTS
-from dentscope.models.fitted import closed_form_law, laws_from, read_coefficients
+from dentscope.models.coefficients import laws_from, read_coefficients
+from dentscope.models.fitted import closed_form_law
 
 
 def pair_of(E_s, E_f, Sy_min, ratio, nu_s=0.3, nu_f=0.3):
@@ -165,6 +167,13 @@ def test_leaving_the_domain_names_the_bound():
         law.loading(pair_of(2e11, 2e11, 3e8, 5.0), 2e-4)
 
 
+def test_a_metal_that_hardens_is_told_that_the_law_does_not(law):
+    hard = Material(E=2e11, nu=0.3, Sy=3e8, flow=Flow(curve=swift(Sy=3e8, K=9e8, n=0.2)))
+    limited = replace(law, limits={"Sy_ratio": (0.1, 10.0)})
+    with pytest.warns(DomainWarning, match="a body here hardens"):
+        limited.loading(Pair(hard, Material(E=2e11, nu=0.3, Sy=6e8), 1e-3), 1e-5)
+
+
 def planted():
     """Tables made by the form itself with known coefficients and 0.3 % of noise."""
     truth = START | {"h": 2.9, "k1": 1.7, "z": 0.25, "s0": 0.7, "f1": 0.12}
@@ -239,7 +248,7 @@ def test_an_older_coefficients_file_is_refused_with_what_to_do():
 def test_a_correction_of_other_channels_is_refused():
     content = read_coefficients()
     other = {**content["correction"], "channels": ["g_a", "h"]}
-    with pytest.raises(InputError, match=r"correction\.channels: g_a, h \(allowed: c, g_a, "):
+    with pytest.raises(InputError, match=r"correction\.channels: g_a, h \(allowed: fin, c, g_a, "):
         laws_from({**content, "correction": other}, source="fitted.json")
 
 

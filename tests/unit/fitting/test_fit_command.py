@@ -1,5 +1,6 @@
 """`dentscope fit` as a user meets it: sources, page and coefficients in step, wrong input."""
 
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
@@ -7,11 +8,12 @@ import pytest
 from dentscope.campaigns.designs import design_named
 from dentscope.cli import fit as fit_command
 from dentscope.cli.app import run
+from dentscope.core.flow import Flow, swift
 from dentscope.fitting import table
 from dentscope.fitting.prediction import Errors
 from dentscope.fitting.report import markdown
 from dentscope.fitting.table import read_tables
-from dentscope.models.fitted import read_coefficients
+from dentscope.models.coefficients import read_coefficients
 from dentscope.studies.closed_form.page import (
     BEGIN,
     END,
@@ -23,13 +25,6 @@ from dentscope.studies.closed_form.page import (
 )
 
 PAGE = Path(__file__).resolve().parents[3] / "docs" / "closed-form.md"
-
-
-def test_export_writes_every_language(tmp_path, capsys):
-    assert run(["fit", "--export", str(tmp_path / "law")]) == 0
-    found = {path.suffix for path in (tmp_path / "law").iterdir()}
-    assert found == {".py", ".c", ".h", ".f90", ".m", ".csv"}
-    assert "dentscope_contact.f90" in capsys.readouterr().out.replace("\n", "")
 
 
 def test_publishing_outside_a_checkout_is_one_line(monkeypatch, capsys):
@@ -100,8 +95,10 @@ def test_a_challenge_of_other_coefficients_is_called_so():
     found = content["errors"]["fitted"]["left_out"]
     errors = [("fitted", Errors(**{k: tuple(v) for k, v in found.items()}))]
     names = [f"challenge-0123456789ab-{k:02}" for k in range(24)]
-    assert "coefficients above" in judged_section(errors, names, "0123456789ab" + "0" * 52)
-    assert "earlier coefficients" in judged_section(errors, names, "f" * 64)
+    assert "coefficients above" in judged_section(
+        errors, names, "0123456789ab" + "0" * 52, within={}
+    )
+    assert "earlier coefficients" in judged_section(errors, names, "f" * 64, within={})
 
 
 def test_markdown_table():
@@ -124,6 +121,16 @@ def test_cases_of_low_resolution_count_only_without_finer_ones(tmp_path, monkeyp
     assert read_tables(tmp_path)[0].names == tuple(case.name for case in fine)
     monkeypatch.setattr(table, "read_curves", lambda _: [Record(case) for case in low])
     assert len(read_tables(tmp_path)[0].pairs) == 3
+
+
+def test_metals_that_harden_are_not_fitted(tmp_path, monkeypatch):
+    plain, other = design_named("smoke").make()[:2]
+    sphere = other.pair.sphere
+    curve = swift(Sy=sphere.Sy, K=3.0 * sphere.Sy, n=0.2)
+    pair = replace(other.pair, sphere=sphere.with_(flow=Flow(curve=curve)))
+    hard = replace(other, problem=replace(other.problem, pair=pair))
+    monkeypatch.setattr(table, "read_curves", lambda _: [Record(case) for case in (plain, hard)])
+    assert read_tables(tmp_path)[0].names == (plain.name,)
 
 
 def test_held_out_cases_are_not_fitted(tmp_path, monkeypatch):

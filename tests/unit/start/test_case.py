@@ -9,6 +9,7 @@ import pytest
 from dentscope.campaigns import read_curves
 from dentscope.cli import run
 from dentscope.core import InputError
+from dentscope.models import law_named
 from dentscope.start.case_file import read_case
 
 GOOD = """
@@ -30,13 +31,13 @@ level = "smoke"
 
 
 @pytest.mark.fe
-def test_a_case_writes_its_curve_and_fields(tmp_path):
+def test_a_case_writes_its_curve_and_fields_and_is_a_law(tmp_path):
     path = tmp_path / "case.toml"
-    path.write_text(GOOD)
+    path.write_text(GOOD.replace("[3e-4]", "[1.5e-4, 2.1e-4, 3e-4]"))
     assert run(["case", str(path), "--out", str(tmp_path / "out")]) == 0
     with (tmp_path / "out" / "curve.csv").open() as stream:
         rows = list(csv.DictReader(stream))
-    assert {row["phase"] for row in rows} == {"load", "unload-1"}
+    assert {row["phase"] for row in rows} == {"load", "unload-1", "unload-2", "unload-3"}
     load = [row for row in rows if row["phase"] == "load"]
     assert float(load[-1]["delta_over_R"]) == pytest.approx(3e-4)
     # elastic start: Hertz's force at the first depth
@@ -50,7 +51,13 @@ def test_a_case_writes_its_curve_and_fields(tmp_path):
     assert all(r["force_N_uncertainty"] == "" for r in rows if r["phase"] == "unload-1")
     (stored,) = read_curves(tmp_path / "out" / "result.h5")
     assert stored.curve["force"] == pytest.approx([float(r["force_N"]) for r in load], rel=1e-12)
-    assert len(stored.unloadings) == 1
+    assert len(stored.unloadings) == 3
+    law, pair = law_named(str(tmp_path / "out")), stored.case.pair
+    depth = np.array([float(r["delta_over_R"]) for r in load]) * 0.002
+    force = np.array([float(r["force_N"]) for r in load])
+    assert law.loading(pair, depth[5:]) == pytest.approx(force[5:], rel=0.01)
+    left = stored.unloadings[-1].residual_sphere + stored.unloadings[-1].residual_flat
+    assert float(sum(law.residual(pair, 3e-4 * 0.002))) == pytest.approx(left, rel=0.01)
     assert stored.profiles["pressure"].shape[0] == 10
     fields = meshio.read(tmp_path / "out" / "fields-0.0003.vtu")
     flat = np.concatenate(fields.cell_data["body"]) == 1.0

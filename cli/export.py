@@ -1,0 +1,139 @@
+"""`dentscope export`: a law for other programs, as source or as parameters of their own laws."""
+
+from __future__ import annotations
+
+import math
+from pathlib import Path
+from typing import TYPE_CHECKING, Annotated
+
+import typer
+
+from ..core.errors import InputError
+from .groups import group
+from .places import folder_option
+from .terminal import console, show_table
+
+if TYPE_CHECKING:
+    from ..core.material import Pair
+    from ..impact.discrete_elements import Row
+
+app = group("A law for other programs: as source, or as parameters of a discrete-element code.")
+
+_SPEEDS = 7  # of a range
+
+
+@app.command("law")
+def export_law(
+    folder: Annotated[Path, typer.Argument(help="Where the sources go.")],
+    law: Annotated[str, typer.Option(help="compact or fitted.")] = "fitted",
+) -> None:
+    """Write a closed form as Python, C, Fortran, MATLAB and Modelica source."""
+    from ..models import law_named
+    from ..models.export import write_sources
+    from ..models.fitted import ClosedForm
+
+    found = law_named(law)
+    if not isinstance(found, ClosedForm):
+        raise InputError(
+            f"{law!r} is no closed form of ours", source="command line", key="--law",
+            allowed="compact, fitted",
+        )  # fmt: skip
+    for path in write_sources(found, folder):
+        typer.echo(str(path))
+
+
+@app.command("dem")
+def export_dem(
+    file: Annotated[Path, typer.Argument(help="CASE.toml: the ball and the flat.")],
+    speed: Annotated[
+        str, typer.Option(help="Speeds of the impacts: FIRST:LAST or several with commas [m/s].")
+    ] = "0.1:10",
+    mass: Annotated[
+        float | None,
+        typer.Option(help="Of the ball [kg]; otherwise sphere.density_kg_m3 must be given."),
+    ] = None,
+    law: Annotated[str, typer.Option(help="A law, or a law.json of `dentscope case`.")] = "fitted",
+    out: Annotated[Path, folder_option("Folder for the table and the fragments.")] = Path(
+        "build/dem"
+    ),
+) -> None:
+    """Give the contact laws of LAMMPS, LIGGGHTS and YADE parameters for a pair, by speed.
+
+    Each returns what our law returns; what it misses in depth, peak force and time is in the table.
+    """
+    from ..core.output import csv_text, write_file
+    from ..impact.discrete_elements import (
+        HEAD,
+        hysteretic_lines,
+        lammps_lines,
+        substitutes,
+        table,
+    )
+    from ..models import law_named
+    from ..start.case_file import read_pair
+
+    _, pair = read_pair(file)
+    rows = substitutes(law_named(law), pair, mass=_mass(mass, pair, file), speeds=_speeds(speed))
+    shown = console()
+    show_table(shown, *_misses(rows))
+    for path in (
+        write_file(out / "dem.csv", csv_text(table(rows, law=law), header=HEAD)),
+        write_file(out / "lammps.in", lammps_lines(rows, pair)),
+        write_file(out / "hysteretic.txt", hysteretic_lines(rows)),
+    ):
+        shown.print(f"written: {path}")
+
+
+def _mass(given: float | None, pair: Pair, file: Path) -> float:
+    density = pair.sphere.density
+    mass = given if given is not None else 4.0 / 3.0 * math.pi * pair.R**3 * density
+    if math.isnan(mass):
+        raise InputError(
+            "missing", source=str(file), key="sphere.density_kg_m3", allowed="a number, or --mass"
+        )
+    if not (mass > 0.0 and math.isfinite(mass)):
+        raise InputError(
+            f"{mass:g}", source="command line", key="--mass", allowed="a number above 0"
+        )
+    return mass
+
+
+def _speeds(text: str) -> list[float]:
+    """Read `0.1:10` as a range, `1,2,5` as they are.
+
+    Raises
+    ------
+    InputError
+        No numbers above 0.
+    """
+    import numpy as np
+
+    try:
+        numbers = [float(x) for x in text.replace(":", ",").split(",")]
+    except ValueError:
+        numbers = []
+    wrong = not numbers or any(not (x > 0.0 and math.isfinite(x)) for x in numbers)
+    if wrong or (":" in text and not (len(numbers) == 2 and numbers[0] < numbers[1])):
+        raise InputError(
+            f"{text!r}", source="command line", key="--speed",
+            allowed="FIRST:LAST, or numbers above 0 with commas [m/s]",
+        )  # fmt: skip
+    return np.geomspace(numbers[0], numbers[-1], _SPEEDS).tolist() if ":" in text else numbers
+
+
+def _misses(rows: list[Row]) -> tuple[list[str], list[list[str]]]:
+    head = ["speed [m/s], law", "e", "depth [um]", "peak [N]", "time [us]"]
+    lines = []
+    for row in rows:
+        b = row.law
+        lines.append(
+            [f"{b.speed:.3g}  ours", f"{b.restitution:.4f}", f"{b.depth * 1e6:.4g}",
+             f"{b.force:.4g}", f"{b.time * 1e6:.4g}"]
+        )  # fmt: skip
+        for s in row.substitutes:
+            depth, force, time, _ = (100.0 * x for x in s.missed(b))
+            lines.append(
+                [f"  {s.name}", f"{s.blow.restitution:.4f}", f"{depth:+.1f} %", f"{force:+.1f} %",
+                 f"{time:+.1f} %"]
+            )  # fmt: skip
+    return head, lines

@@ -1,0 +1,246 @@
+"""Parameters of the contact laws of discrete-element codes, for one pair, by speed.
+
+Those laws carry neither two yielding bodies nor this loading curve. Each gets the parameters at
+which it returns what our law returns for a ball on the flat at a speed; what it then misses in
+depth, force and time is stated. Two families cover what LAMMPS, LIGGGHTS and YADE offer:
+
+* Hertz with Tsuji's damping (LAMMPS `hertz ... damping tsuji`, LIGGGHTS and YADE by restitution),
+  once of the bodies' own stiffness, once so softened that the depth is right too;
+* linear with two stiffnesses (Luding; Walton and Braun): LIGGGHTS `hooke/hysteresis`, YADE
+  `LudingMat`: depth and restitution are right.
+
+References
+----------
+Y. Tsuji, T. Tanaka, T. Ishida, Powder Technol. 71 (1992) 239; LAMMPS, pair_style granular.
+S. Luding, Granular Matter 10 (2008) 235.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+from functools import cache
+from typing import NamedTuple
+
+from numpy.polynomial import polynomial
+from scipy.integrate import solve_ivp
+from scipy.optimize import brentq
+
+from ..core.errors import InputError
+from ..core.material import Pair
+from ..models.base import ContactLaw
+from .integrate import strike
+from .scene import Approach, Striker, scene_of
+
+TSUJI = (1.2728, -4.2783, 11.087, -22.348, 27.467, -18.022, 4.8218)
+"""Damping over sqrt(m k) as a polynomial of the restitution that a user enters (LAMMPS)."""
+
+_MOST_DAMPING = TSUJI[0]  # of a restitution of 0 entered
+
+
+class Blow(NamedTuple):
+    """A normal impact."""
+
+    speed: float  # [m/s]
+    depth: float  # largest approach [m]
+    force: float  # largest force [N]
+    time: float  # in contact [s]
+    restitution: float
+
+
+class Substitute(NamedTuple):
+    """A discrete-element law with its parameters and what it makes of the blow."""
+
+    name: str
+    stiffness: float  # F = stiffness depth^1.5 [N/m^1.5], or F = stiffness depth [N/m]
+    unloading: float  # stiffness of unloading [N/m]; nan for Hertz
+    entered: float  # restitution to enter; nan where the stiffnesses give it
+    blow: Blow
+
+    def missed(self, law: Blow) -> tuple[float, float, float, float]:
+        """Depth, force and time over the law's, less one; restitution less the law's."""
+        mine = self.blow
+        return (
+            mine.depth / law.depth - 1.0, mine.force / law.force - 1.0,
+            mine.time / law.time - 1.0, mine.restitution - law.restitution,
+        )  # fmt: skip
+
+
+class Row(NamedTuple):
+    """One speed: our law's blow and its substitutes."""
+
+    law: Blow
+    substitutes: tuple[Substitute, ...]
+
+
+def substitutes(law: ContactLaw, pair: Pair, *, mass: float, speeds: Sequence[float]) -> list[Row]:
+    """Return the parameters at each speed.
+
+    Parameters
+    ----------
+    law
+        Ours, or a published one.
+    pair
+        Ball and flat.
+    mass
+        Of the ball [kg]; of two balls of one kind, half of one's, with half the radius.
+    speeds
+        Of the approach [m/s].
+
+    Raises
+    ------
+    InputError
+        A speed at which nothing comes back.
+    """
+    rows = []
+    for speed in speeds:
+        found = strike(
+            scene_of(
+                law, sphere=pair.sphere, flat=pair.flat, gravity=0.0,
+                striker=Striker(mass=mass, tip_radius=pair.R), approach=Approach(speed),
+            )
+        )  # fmt: skip
+        blow = Blow(
+            speed, found.peak_depth_m, found.peak_force_N, found.contact_time_s, found.restitution
+        )
+        if not blow.restitution > 0.0:
+            raise InputError(f"nothing comes back at {speed:g} m/s", key="speed")
+        rows.append(Row(blow, _of(blow, pair, mass)))
+    return rows
+
+
+def _of(blow: Blow, pair: Pair, mass: float) -> tuple[Substitute, ...]:
+    own = 4.0 / 3.0 * pair.E_reduced * math.sqrt(pair.R)
+    damping = _damping_of(blow.restitution)
+    # at one damping the depth goes with stiffness^(-2/5)
+    soft = own * (_hertz(own, damping, mass, blow.speed).depth / blow.depth) ** 2.5
+    entered = _entered(damping)
+    hertz = [
+        Substitute(name, stiffness, math.nan, entered, _hertz(stiffness, damping, mass, blow.speed))
+        for name, stiffness in (("hertz-tsuji", own), ("hertz-tsuji-softened", soft))
+    ]
+    first = mass * (blow.speed / blow.depth) ** 2
+    second = first / blow.restitution**2
+    quarter = 0.5 * math.pi * math.sqrt(mass)
+    linear = Blow(
+        blow.speed, blow.depth, first * blow.depth,
+        quarter * (first**-0.5 + second**-0.5), blow.restitution,
+    )  # fmt: skip
+    return (*hertz, Substitute("linear-hysteretic", first, second, math.nan, linear))
+
+
+def _hertz(stiffness: float, damping: float, mass: float, speed: float) -> Blow:
+    """A blow on F = k d^(3/2) + damping sqrt(m k) d^(1/4) d', from the one of unit m, k, speed."""
+    one = _unit_blow(damping)
+    length = (mass * speed**2 / stiffness) ** 0.4
+    return Blow(
+        speed, one.depth * length, one.force * stiffness * length**1.5,
+        one.time * length / speed, one.restitution,
+    )  # fmt: skip
+
+
+@cache
+def _unit_blow(damping: float) -> Blow:
+    def force(d: float, rate: float) -> float:
+        d = max(d, 0.0)
+        return float(d**1.5 + damping * d**0.25 * rate)
+
+    def step(_time: float, state: list[float]) -> list[float]:
+        return [state[1], -force(*state)]
+
+    def left(time: float, state: list[float]) -> float:
+        return 1.0 if time < 1e-3 else state[0]
+
+    left.terminal = True  # type: ignore[attr-defined]
+    found = solve_ivp(
+        step, (0.0, 60.0), [0.0, 1.0], events=left, rtol=1e-9, atol=1e-12, max_step=0.01
+    )
+    forces = [force(d, rate) for d, rate in found.y.T]
+    return Blow(
+        1.0, float(found.y[0].max()), max(forces), float(found.t[-1]), -float(found.y[1, -1])
+    )
+
+
+@cache
+def _damping_of(restitution: float) -> float:
+    """Damping at which a ball comes back with this restitution, once its dent has closed."""
+
+    def above(damping: float) -> float:
+        return _unit_blow(damping).restitution - restitution
+
+    if restitution >= 1.0 - 1e-9:
+        return 0.0
+    if above(_MOST_DAMPING) > 0.0:
+        raise InputError(
+            f"a restitution of {restitution:.3g}", key="restitution",
+            allowed=f"above {_unit_blow(_MOST_DAMPING).restitution:.2g}, the least of this damping",
+        )  # fmt: skip
+    return float(brentq(above, 0.0, _MOST_DAMPING, xtol=1e-6))
+
+
+def _entered(damping: float) -> float:
+    """Restitution to enter for a damping; the polynomial is a fit and misses by up to 0.02."""
+    return float(brentq(lambda e: polynomial.polyval(e, TSUJI) - damping, 0.0, 1.02))
+
+
+HEAD = (
+    "model", "speed_m_s", "stiffness", "stiffness_unit", "unloading_stiffness_N_m",
+    "restitution_entered", "depth_m", "peak_force_N", "contact_time_s", "restitution",
+    "depth_missed_percent", "peak_force_missed_percent", "contact_time_missed_percent",
+    "restitution_missed",
+)  # fmt: skip
+"""Columns of the table."""
+
+
+def table(rows: Sequence[Row], *, law: str) -> list[tuple[str | float, ...]]:
+    """Rows under `HEAD`: at each speed our law, then its substitutes."""
+    out: list[tuple[str | float, ...]] = []
+    for row in rows:
+        b = row.law
+        out.append((law, b.speed, "", "", "", "", *b[1:], 0.0, 0.0, 0.0, 0.0))
+        for s in row.substitutes:
+            percent = [100.0 * x for x in s.missed(b)[:3]]
+            unit = "N/m^1.5" if math.isnan(s.unloading) else "N/m"
+            numbers = ["" if math.isnan(x) else x for x in (s.unloading, s.entered)]
+            out.append(
+                (s.name, b.speed, s.stiffness, unit, *numbers, *s.blow[1:], *percent,
+                 s.missed(b)[3])
+            )  # fmt: skip
+    return out
+
+
+def lammps_lines(rows: Sequence[Row], pair: Pair) -> str:
+    """A fragment of a LAMMPS input: `pair_coeff` of the softened Hertz law at each speed."""
+    lines = [
+        "# pair_style granular; units si. Normal contact of the ball on the flat, or of two balls",
+        "# of twice its radius; one line for a speed: take the one of your impacts.",
+    ]
+    for row in rows:
+        _, soft, _ = row.substitutes
+        depth, force, time, _ = (100.0 * x for x in soft.missed(row.law))
+        # LAMMPS multiplies by the root of the effective radius
+        k = soft.stiffness / math.sqrt(pair.R)
+        lines += [
+            f"# {row.law.speed:g} m/s: restitution {row.law.restitution:.4f}; "
+            f"depth {depth:+.1f} %, peak force {force:+.1f} %, time {time:+.1f} %",
+            f"pair_coeff * * hertz {k:.6e} {soft.entered:.6f} tangential linear_nohistory 0.0 0.0 "
+            "damping tsuji",
+        ]
+    return "\n".join(lines) + "\n"
+
+
+def hysteretic_lines(rows: Sequence[Row]) -> str:
+    """Stiffnesses for LIGGGHTS `hooke/hysteresis` and YADE `LudingMat`, a line a speed."""
+    lines = [
+        "# linear hysteretic law (Luding): loading k1, unloading k2 [N/m], no cohesion;",
+        "# LIGGGHTS hooke/hysteresis: kn2k1 = k1/k2; YADE LudingMat: k1, and kp with which k2 is",
+        "# reached at the depth.",
+    ]
+    for row in rows:
+        s = row.substitutes[-1]
+        _, force, time, _ = (100.0 * x for x in s.missed(row.law))
+        lines.append(
+            f"# {row.law.speed:g} m/s: peak force {force:+.1f} %, time {time:+.1f} %\n"
+            f"k1 = {s.stiffness:.6e}; k2 = {s.unloading:.6e}; depth_m = {s.blow.depth:.6e}"
+        )
+    return "\n".join(lines) + "\n"

