@@ -1,15 +1,25 @@
-"""Clips of a falling and rebounding rod or ball, rendered by supersampling."""
+"""Clips of a falling and rebounding rod or ball, rendered by supersampling.
+
+A rod is seen over the few milliseconds around its contact, a ball over whole flights through air
+(studies/synthetic/tracks.py). What a camera adds: optical blur that differs from top to bottom, the
+blur of motion under a shutter that does not let in light evenly, a scale that drifts with height,
+rows that are exposed one after the other, the body's reflection in the flat, frames that are shown
+twice for one that was dropped, glints that stand for the body in some frames.
+"""
 
 from __future__ import annotations
 
 from dataclasses import dataclass, replace
+from functools import cached_property
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 import numpy.typing as npt
 from scipy.ndimage import gaussian_filter1d
 
 from ...recordings.reduce.measured import Array
+from .tracks import TrackTruth, fly, random_track
 
 _SUPER = 4
 _EXPOSURES = 5
@@ -32,7 +42,8 @@ class ClipTruth:
     approach, rebound
         Speeds of the tip before and after the contact [m/s].
     contact_time
-        Duration of the contact; within it the tip follows a sine arc joined to both flights [s].
+        Duration of the contact [s]; within it the tip follows two quarters of a sine, slowed down
+        at first and then pushed up, so that its speed nowhere jumps.
     half_width, tip_radius
         Of the rod, or the ball's radius twice [pixel].
     lean
@@ -47,6 +58,21 @@ class ClipTruth:
         Grey values of background and body.
     uneven
         Light falls off towards the edges by this part.
+    ball
+        What the path is, if it is that of a ball in air; its size and scale are those of the clip.
+    drift
+        Relative change of the scale from the flat to the highest point (bend, bow).
+    line_time
+        From one row to the next of a shutter that rolls down [s].
+    mirror
+        Brightness of the reflection in the flat, in that of the body.
+    blur_tilt
+        Relative growth of the blur from the upper to the lower edge.
+    flicker
+        Spread of the slope of the light over one exposure, from frame to frame.
+    dropped, glints
+        Share of frames in which the one before is shown again; in which something bright is in the
+        way.
     """
 
     shape: str = "rod"
@@ -71,6 +97,14 @@ class ClipTruth:
     surface: float = 130.3
     middle: float = 23.6
     touch: float = 120.37
+    ball: TrackTruth | None = None
+    drift: tuple[float, float] = (0.0, 0.0)
+    line_time: float = 0.0
+    mirror: float = 0.0
+    blur_tilt: float = 0.0
+    flicker: float = 0.0
+    dropped: float = 0.0
+    glints: float = 0.0
     seed: int = 0
 
     @property
@@ -80,64 +114,120 @@ class ClipTruth:
 
     def tip(self, frame: Array) -> tuple[Array, Array]:
         """Return column and row of the tip on the axis at (fractional) frame numbers, (n,)."""
-        t = (np.asarray(frame, dtype=np.float64) - self.touch) / self.rate
-        down = np.where(
-            t < 0.0,
-            self.approach * t + 0.5 * self.gravity * t**2,
-            self._after(t),
-        )
-        drift = down * (np.tan(self.lean) if self.shape == "sphere" else 0.0)
-        return self.middle + drift / self.scale, self.surface + down / self.scale
+        row = self._row(np.asarray(frame, dtype=np.float64))
+        for _ in range(4 if self.line_time else 0):  # exposed when the shutter has come there
+            row = self._row(frame + self.line_time * self.rate * row)
+        drift = (row - self.surface) * (np.tan(self.lean) if self.shape == "sphere" else 0.0)
+        return self.middle + drift, row
 
-    def _after(self, t: Array) -> Array:
-        inside = (
-            self.approach
-            * np.clip(t, 0.0, self.contact_time)
-            * (1.0 - np.clip(t / max(self.contact_time, 1e-30), 0.0, 1.0))
-        )
+    def _row(self, frame: Array) -> Array:
+        height = self._height(frame)
+        if any(self.drift):
+            z = height / self.reach
+            height = height * (1.0 + self.drift[0] * z + self.drift[1] * z**2)
+        return np.asarray(self.surface - height / self.scale)
+
+    @cached_property
+    def _flights(self) -> list[tuple[float, float, Any]]:
+        return [] if self.ball is None else fly(self.ball)[0]
+
+    @property
+    def reach(self) -> float:
+        """Largest height above the flat [m]."""
+        if self.ball is not None:
+            return self.ball.drop
+        return self.approach * self.touch / self.rate
+
+    def _height(self, frame: Array) -> Array:
+        """Return the height above the flat at frame numbers, (n,) [m]."""
+        if self.ball is not None:
+            t = frame / self.rate
+            y = np.where(t < self.ball.held, self.ball.drop, 0.0)
+            for start, end, path in self._flights:
+                inside = (t >= start) & (t <= end)
+                if inside.any():
+                    y[inside] = path(t[inside])[0]
+            return y
+        t = (frame - self.touch) / self.rate
         late = t - self.contact_time
-        return np.where(late < 0.0, inside, -self.rebound * late + 0.5 * self.gravity * late**2)
+        falling = -self.approach * t - 0.5 * self.gravity * t**2
+        rising = self.rebound * late - 0.5 * self.gravity * late**2
+        return np.where(t < 0.0, falling, np.where(late > 0.0, rising, -self._within(t)))
+
+    def _within(self, t: Array) -> Array:
+        """Return the depth at times from the touch within the contact, (n,) [m]."""
+        down = self.contact_time * self.restitution / (1.0 + self.restitution)
+        up = self.contact_time - down
+        deepest = 2.0 * down * self.approach / np.pi
+        inside = np.clip(t, 0.0, self.contact_time)
+        phase = np.where(inside < down, inside / down - 1.0, (inside - down) / up)
+        return np.asarray(deepest * np.cos(0.5 * np.pi * phase))
 
 
 def render(truth: ClipTruth) -> npt.NDArray[np.uint8]:
     """Return the frames, (n, rows, columns)."""
     random = np.random.default_rng(truth.seed)
     light = _light(truth)
-    lens = _lens(truth.rows, truth.blur), _lens(truth.columns, truth.blur).T
+    lens = _lens(truth.rows, truth.blur, truth.blur_tilt), _lens(truth.columns, truth.blur).T
     frames = np.empty((truth.frames, truth.rows, truth.columns), dtype=np.uint8)
     for number in range(truth.frames):
-        cover = lens[0] @ _smeared(truth, number) @ lens[1]
+        if number and random.random() < truth.dropped:
+            frames[number] = frames[number - 1]
+            continue
+        cover = lens[0] @ _smeared(truth, number, random.normal(0.0, truth.flicker)) @ lens[1]
+        if random.random() < truth.glints:
+            cover = np.maximum(cover, _glint(truth, number, random))
         grey = (truth.dark + (truth.bright - truth.dark) * cover) * light
         grey += random.normal(0.0, truth.noise, grey.shape)
         frames[number] = np.clip(np.rint(grey), 0, 255)
     return frames
 
 
-def _lens(count: int, blur: float) -> Array:
+def _lens(count: int, blur: float, tilt: float = 0.0) -> Array:
     """Return the matrix that blurs fine cells and gathers them to pixels, (count, 4 count)."""
     sharp = np.eye(count * _SUPER)
-    blurred = gaussian_filter1d(sharp, blur * _SUPER, axis=0, mode="nearest")
-    return np.asarray(blurred.reshape(count, _SUPER, -1).mean(axis=1))
+    ends = [
+        gaussian_filter1d(sharp, blur * _SUPER * (1.0 + part), axis=0, mode="nearest")
+        .reshape(count, _SUPER, -1).mean(axis=1)
+        for part in ((0.0, tilt) if tilt else (0.0,))
+    ]  # fmt: skip
+    share = np.linspace(0.0, 1.0, count)[:, None]
+    return np.asarray(ends[0] * (1.0 - share) + ends[-1] * share)
 
 
-def _smeared(truth: ClipTruth, number: int) -> Array:
+def _smeared(truth: ClipTruth, number: int, slope: float) -> Array:
     """Part of each fine cell that the body covers while the shutter is open."""
-    moments = number + truth.exposure * ((np.arange(_EXPOSURES) + 0.5) / _EXPOSURES - 0.5)
-    columns, rows = truth.tip(moments)
+    place = (np.arange(_EXPOSURES) + 0.5) / _EXPOSURES - 0.5
+    columns, rows = truth.tip(number + truth.exposure * place)
     total = np.zeros((truth.rows * _SUPER, truth.columns * _SUPER))
-    for x, y in zip(columns, rows, strict=True):
-        _cover(total, truth, x, y)
-    return total / _EXPOSURES
+    for x, y, weight in zip(columns, rows, 1.0 + slope * place, strict=True):
+        _cover(total, truth, x, y, weight / _EXPOSURES)
+    if truth.mirror:
+        flat = round((truth.surface + 0.5) * _SUPER)
+        shown = total[max(2 * flat - total.shape[0], 0) : flat][::-1]
+        total[flat : flat + len(shown)] += truth.mirror * shown
+    return total
 
 
-def _cover(total: Array, truth: ClipTruth, x: float, y: float) -> None:
+def _glint(truth: ClipTruth, number: int, random: np.random.Generator) -> Array:
+    """Light of something else beside the body, (rows, columns)."""
+    x, y = (float(v[0]) for v in truth.tip(np.array([float(number)])))
+    size = random.uniform(0.2, 0.6) * truth.half_width
+    x, y = x + random.normal(0.0, truth.half_width), y + random.normal(0.0, truth.half_width)
+    rows, columns = np.ogrid[: truth.rows, : truth.columns]
+    return np.asarray(np.exp(-0.5 * ((rows - y) ** 2 + (columns - x) ** 2) / size**2))
+
+
+def _cover(total: Array, truth: ClipTruth, x: float, y: float, weight: float) -> None:
     """Add the cover of a body whose tip is at (x, y); cells below the tip stay empty."""
     low = truth.half_width * abs(np.sin(truth.lean)) + 1.0
     end = int(np.clip((y + low + 1.0) * _SUPER, 0, total.shape[0]))
     dx = ((np.arange(total.shape[1]) + 0.5) / _SUPER - 0.5 - x)[None, :]
     dy = ((np.arange(end) + 0.5) / _SUPER - 0.5 - y)[:, None]
     if truth.shape == "sphere":
-        total[:end] += _soft(truth.tip_radius - np.hypot(dx, dy + truth.tip_radius))
+        first = int(np.clip((y - 2.0 * truth.tip_radius - 2.0) * _SUPER, 0, end))
+        away = np.hypot(dx, dy[first:] + truth.tip_radius)
+        total[first:end] += weight * _soft(truth.tip_radius - away)
         return
     across = dx * np.cos(truth.lean) + dy * np.sin(truth.lean)
     cover = _soft(truth.half_width - np.abs(across))
@@ -147,7 +237,7 @@ def _cover(total: Array, truth: ClipTruth, x: float, y: float) -> None:
     up = dx * np.sin(truth.lean) - dy[first:] * np.cos(truth.lean)
     cap = np.hypot(across[first:], np.minimum(up - truth.tip_radius, 0.0))
     cover[first:] = np.minimum(cover[first:], _soft(truth.tip_radius - cap))
-    total[:end] += cover
+    total[:end] += weight * cover
 
 
 def _soft(depth: Array) -> Array:
@@ -183,6 +273,43 @@ def random_truth(seed: int, **given: object) -> ClipTruth:
         seed=seed,
     )
     return replace(truth, **given)  # type: ignore[arg-type]
+
+
+def with_faults(truth: ClipTruth) -> ClipTruth:
+    """Return a clip with every fault that a camera of its kind has, mildly and at once."""
+    random = np.random.default_rng((truth.seed, 1))
+    bend = random.uniform(-0.03, 0.03) * min(truth.reach / 0.1, 1.0)
+    return replace(
+        truth,
+        drift=(bend, random.uniform(-0.5, 0.5) * bend),
+        # the rows of a fast camera are read within a frame
+        line_time=float(random.choice([0.0, 0.0, 0.5 / truth.rate / truth.rows])),
+        mirror=random.uniform(0.0, 0.3),
+        blur_tilt=random.uniform(0.0, 0.3),
+        flicker=random.uniform(0.0, 0.3),
+        dropped=random.uniform(0.0, 0.05),
+        glints=float(random.choice([0.0, 0.02, 0.05])),
+    )
+
+
+def random_ball(seed: int) -> ClipTruth:
+    """Return a clip of a ball in air: a table-tennis ball, a marble or a rubber ball."""
+    random = np.random.default_rng((seed, 2))
+    path = random_track(
+        seed, drop=random.uniform(0.15, 0.35), span=0.9, restitution=random.uniform(0.5, 0.9),
+        held=random.uniform(0.0, 0.05),
+    )  # fmt: skip
+    rows, radius = 200, random.uniform(8.0, 13.0)
+    scale = path.drop / (0.97 * rows - 2.0 * radius - 12.0)
+    rate = float(random.choice([240.0, 300.0, 480.0]))
+    return ClipTruth(
+        shape="sphere", rows=rows, columns=64, frames=int(path.span * rate), scale=scale, rate=rate,
+        approach=1.0, rebound=path.restitution, contact_time=path.contact_time,
+        half_width=radius, tip_radius=radius, lean=np.radians(random.uniform(-2.0, 2.0)),
+        blur=random.uniform(0.5, 1.5), exposure=random.uniform(0.05, 0.3),
+        noise=random.uniform(1.0, 8.0), uneven=random.uniform(0.0, 0.1), surface=rows - 8.3,
+        middle=random.uniform(28.0, 36.0), ball=path, seed=seed,
+    )  # fmt: skip
 
 
 def write_video(

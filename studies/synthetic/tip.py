@@ -53,8 +53,8 @@ def photograph(truth: TipTruth) -> npt.NDArray[np.uint8]:
     if truth.shape == "sphere":
         bottom = truth.rows / 2.0 + truth.radius
     body = ClipTruth(
-        shape=truth.shape, rows=truth.rows, columns=truth.columns, frames=1, approach=0.0,
-        gravity=0.0, touch=0.0, half_width=truth.half_width, tip_radius=truth.radius,
+        shape=truth.shape, rows=truth.rows, columns=truth.columns, frames=1, touch=0.0,
+        half_width=truth.half_width, tip_radius=truth.radius,
         lean=truth.lean, blur=truth.blur, exposure=0.0, noise=0.0, dark=20.0, bright=215.0,
         surface=bottom, middle=middle, seed=truth.seed,
     )  # fmt: skip

@@ -20,7 +20,7 @@ from .flights import Piece
 from .joint import SHARED, Before, Solution, fit_together
 from .scale import floor_drift, scale_of
 from .sides import joined, known_before, sides_of, true_contacts
-from .touch import speeds, touch_of
+from .touch import samples_of, speeds, touch_of
 from .track import Indices, Track, on_the_body, turning_points
 from .view import Stage, View
 
@@ -50,7 +50,7 @@ def find_bounces(
         Duration of a contact [s], if it is known.
     """
     chosen = on_the_body(track)
-    body = Track(track.time[chosen], track.height[chosen], track.floor)
+    body = Track(track.time[chosen], track.height[chosen], track.floor, track.trend)
     contacts = turning_points(body)
     if not contacts:
         return None
@@ -73,7 +73,11 @@ def find_bounces(
         view = solutions[0].view
         if again:
             known = [s is not None for s in sides]
-            grown = sides_of(body, contacts, stage, view)
+            held = [
+                _held(body, turning, stage, view, pieces, places[2 * k : 2 * k + 2])
+                for k, turning in enumerate(contacts)
+            ]
+            grown = sides_of(body, contacts, stage, view, held)
             sides = [g if k else None for g, k in zip(grown, known, strict=True)]
     found = [
         _bounce(
@@ -85,6 +89,16 @@ def find_bounces(
     if not bounces:
         return None
     return _whole(bounces, chosen, stage, view, solutions, before, ball, metres)
+
+
+def _held(
+    body: Track, turning: int, stage: Stage, view: View, pieces: Sequence[Piece],
+    place: Sequence[int | None],
+) -> tuple[int, int]:  # fmt: skip
+    b, a = place
+    if b is None or a is None:
+        return 0, 0
+    return samples_of(body, stage, view, (pieces[b], pieces[a]), turning)
 
 
 def _bounce(
@@ -123,11 +137,13 @@ def _bounce(
     fall = abs(solutions[0].view.fall)
     late = [fall * e for e in touch.errors]
     gaps = (meeting - body.time[last], body.time[first] - meeting)
-    bridged = [fall * _UNEVEN * max(g - 2.0 * step, 0.0) for g in gaps]
+    bridged = [
+        math.hypot(fall * _UNEVEN * max(g - 2.0 * step, 0.0), body.trend / p.duration(body.time))
+        for g, p in zip(gaps, (before, after), strict=True)
+    ]
     more = [math.hypot(e, g) for e, g in zip(late, bridged, strict=True)]
     values = (approach.value, rebound.value)
-    # one duration moves both ends of a contact, in opposite ways
-    both = sum(e / v for e, v in zip(late, values, strict=True))
+    both = touch.ratio_error(fall, *values)
     part = ratio.value * math.hypot(both, *(g / v for g, v in zip(bridged, values, strict=True)))
     # the flights meet below the flat where a contact takes time
     height = _widened(height, sum(touch.errors) * ratio.value / (1.0 + ratio.value) * values[0])

@@ -71,8 +71,14 @@ class Piece:
         """Last sample."""
         return int(self.index[-1])
 
+    def duration(self, time: Array) -> float:
+        """Return how long its samples, of a track with these times, span [s]."""
+        return float(time[self.last] - time[self.first])
 
-def side(track: Track, contact: int, end: int, stage: Stage, view: View | None) -> Piece | None:
+
+def side(
+    track: Track, contact: int, end: int, stage: Stage, view: View | None, *, off: int = 0
+) -> Piece | None:
     """Return the flight next to sample `contact`, towards sample `end`; None where there is none.
 
     Parameters
@@ -83,9 +89,13 @@ def side(track: Track, contact: int, end: int, stage: Stage, view: View | None) 
         Turning point, and the last sample to look at on its earlier or later side.
     stage, view
         What the flights share; without a view each is a parabola of its own.
+    off
+        Samples next to the turning point that belong to the contact.
     """
     step = 1 if end > contact else -1
     order = np.arange(contact + step, end + step, step)
+    if off and order.size - off >= FEWEST:
+        order = order[off:]
     if order.size < FEWEST:
         return None
     size = min(_CORE, order.size)

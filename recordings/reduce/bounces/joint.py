@@ -29,10 +29,22 @@ _POOLED = 8
 
 @dataclass(frozen=True)
 class Before:
-    """What is known of fall and drag before the track is looked at [unit/s², 1/unit]."""
+    """What is known of a view before the track is looked at.
+
+    Parameters
+    ----------
+    fall, drag
+        [unit/s², 1/unit].
+    bends, grows
+        Drift of the scale with height and with time that is possible, in that of a body that rises
+        by 0.1 m or is seen for a second: over a path of a few millimetres that lasts milliseconds
+        neither perspective nor a body that comes nearer changes the scale much.
+    """
 
     fall: Measured
     drag: Measured
+    bends: float = 1.0
+    grows: float = 1.0
 
 
 @dataclass(frozen=True)
@@ -97,7 +109,8 @@ def _settled(
 ) -> tuple[Array, Array, float, float]:
     """Gauss-Newton: unknowns, covariance, misfit with the prior's, log of the spread of belief."""
     mean = np.array([before.fall.value, before.drag.value, 0.0, 0.0, 0.0])
-    std = np.array([before.fall.std, before.drag.std, width, width, width])
+    bends, grows = width * before.bends, width * before.grows
+    std = np.array([before.fall.std, before.drag.std, bends, bends, grows])
     x, moved = x.copy(), np.inf
     for _ in range(15):
         design, left = _system(track, pieces, stage, x)

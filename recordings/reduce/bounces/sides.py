@@ -18,6 +18,9 @@ from .view import Stage, View
 _SAME_FALL = 0.3
 """Largest relative difference of a flight's own acceleration: drag and lens make some."""
 
+_STRAIGHT = 0.1
+"""Change of a flight's speed, in the speed, below which its acceleration says nothing."""
+
 _USUAL = 6.0
 """Spread of the samples of a flight, in that of the quieter flights, beyond which it is none."""
 
@@ -30,17 +33,36 @@ _STATED = 0.02
 _FREE_DRAG = 0.1
 """Largest square of the fastest over the terminal speed of a body that is not known."""
 
+_TALL, _LONG = 0.1, 1.0
+"""Height [m] and time [s] of a track over which the whole drift of a scale is possible."""
+
 Sides = list[Piece | None]
 """Two for each contact, before and after."""
 
 
-def sides_of(body: Track, contacts: Sequence[int], stage: Stage, view: View | None) -> Sides:
-    """Return the flights before and after each turning point, in the view that all share if any."""
+def sides_of(
+    body: Track, contacts: Sequence[int], stage: Stage, view: View | None,
+    held: Sequence[tuple[int, int]] = (),
+) -> Sides:  # fmt: skip
+    """Return the flights before and after each turning point.
+
+    Parameters
+    ----------
+    body, contacts, stage
+        Heights, turning points, ranges.
+    view
+        That all flights share, if it is known.
+    held
+        Samples before and after each turning point that the contact has moved.
+    """
     edges = [-1, *contacts, body.time.size]
     found: Sides = []
     for k, contact in enumerate(contacts, start=1):
+        ends = (edges[k - 1] + 1, edges[k + 1] - 1)
+        off = held[k - 1] if held else (0, 0)
         found += [
-            side(body, contact, end, stage, view) for end in (edges[k - 1] + 1, edges[k + 1] - 1)
+            side(body, contact, end, stage, view, off=count)
+            for end, count in zip(ends, off, strict=True)
         ]
     return found
 
@@ -64,12 +86,13 @@ def known_before(
     if not known or not value > 0.0:
         return Before(fall, Measured(0.0, 1e-9 / stage.reach))
     unit = ball.fall(3.0).gravity / value
+    drifts = min(stage.reach * unit / _TALL, 1.0), min(stage.span / _LONG, 1.0)
     flight = ball.fall(0.75 * fastest * unit)
     if math.isinf(flight.terminal):
         drag = 0.5 * _FREE_DRAG * value / fastest**2
-        return Before(fall, Measured(drag, drag))
+        return Before(fall, Measured(drag, drag), *drifts)
     drag = flight.gravity / flight.terminal**2 * unit
-    return Before(fall, Measured(drag, 1.5 * DRAG_COEFFICIENT_STD * drag))
+    return Before(fall, Measured(drag, 1.5 * DRAG_COEFFICIENT_STD * drag), *drifts)
 
 
 def _shared_fall(own: Sequence[Measured]) -> float:
@@ -124,7 +147,9 @@ def _same_fall(body: Track, sides: Sides, fall: float, stage: Stage) -> Sides:
             continue
         own = own_fall(body, piece)
         allowed = max(4.0 * own.std, _SAME_FALL * abs(fall))
-        kept.append(piece if abs(own.value - fall) <= allowed else None)
+        time = body.time[piece.index[[0, -1]]]
+        straight = abs(fall) * float(np.ptp(time)) < _STRAIGHT * abs(piece.launch.speed)
+        kept.append(piece if straight or abs(own.value - fall) <= allowed else None)
     return kept
 
 

@@ -21,15 +21,27 @@ _SHORTEST, _LONGEST = 3e-5, 2e-3
 """Contacts of balls and rods, steel on steel to rubber on wood, at a few metres a second [s]; one
 that no sample shows lies between, any order of magnitude as likely as another."""
 
+_BEYOND = 0.5
+"""Part of what shows of a contact by which both of its ends reach farther: force sets in softly."""
+
 _SLOWEST = 0.02
 """Longest contact that samples can show [s]."""
 
 
 class Touch(NamedTuple):
-    """Beginning and end of a contact after its flights meet, and their errors [s]."""
+    """Beginning and end of a contact after its flights meet, and their errors [s].
+
+    `whole` where both errors are that of one duration, which moves both ends apart.
+    """
 
     offsets: tuple[float, float]
     errors: tuple[float, float]
+    whole: bool
+
+    def ratio_error(self, fall: float, approach: float, rebound: float) -> float:
+        """Return the relative error of the restitution: both speeds fall with the duration."""
+        parts = fall * self.errors[0] / approach, fall * self.errors[1] / rebound
+        return abs(parts[1] - parts[0]) if self.whole else math.hypot(*parts)
 
 
 def touch_of(
@@ -63,13 +75,35 @@ def touch_of(
             for run, way in zip(runs, (-1, 1), strict=True)
         )
         error = step / math.sqrt(12.0)
-        return Touch((float(ends[0]), float(ends[1])), (error, error))
+        return Touch((float(ends[0]), float(ends[1])), (error, error), whole=False)
     lasts = known or _unseen(moved, step)
     shares = (ratio / (1.0 + ratio), 1.0 / (1.0 + ratio))
     return Touch(
         (-lasts.value * shares[0], lasts.value * shares[1]),
         (lasts.std * shares[0], lasts.std * shares[1]),
+        whole=True,
     )
+
+
+def samples_of(
+    track: Track, stage: Stage, view: View, flights: tuple[Piece, Piece], turning: int
+) -> tuple[int, int]:
+    """Return how many samples before and after the lowest one belong to a contact.
+
+    None where fewer than four show it; else half of what shows is left out beyond each end, in
+    which the force is too small to show and yet moves the speed.
+    """
+    lowest = float(track.time[turning])
+    runs = [
+        _held(track, stage, view, piece, lowest, way)
+        for piece, way in zip(flights, (-1, 1), strict=True)
+    ]
+    shown = sum(r.size for r in runs)
+    if shown < _RESOLVED:
+        return 0, 0
+    more = math.ceil(_BEYOND * shown)
+    before, after = (int(abs(r[-1] - turning)) + more if r.size else more for r in runs)
+    return before, after
 
 
 def _held(

@@ -35,11 +35,15 @@ class Track:
         (n,), upwards [unit].
     floor
         Smallest error of a position that is believed [unit].
+    trend
+        Error of a position that grows from one end of a flight to the other, as uneven light makes
+        one of the place of an edge [unit].
     """
 
     time: Array
     height: Array
     floor: float = 0.0
+    trend: float = 0.0
 
     @cached_property
     def step(self) -> float:

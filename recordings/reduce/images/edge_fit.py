@@ -24,17 +24,26 @@ _HUBER = 2.5
 _INNER = 0.75
 """Part of the half-width from which the cap is read; the corner beyond it is left out."""
 
+_POSE = (0, 1, 2, 3, 4, 5, 6)
+_FREE = {"pose": _POSE, "shape": (*_POSE, 7, 8), "mirror": (*_POSE, 9, 10)}
+"""Places of the parameters of a rod's picture that a fit moves."""
+
 Picture = Callable[[Array], tuple[Array, Array, npt.NDArray[np.bool_]]]
 """Parameters to model grey values, their derivatives (p, ...) and the pixels that count."""
 
 
 @dataclass(frozen=True)
 class RodShape:
-    """What all frames share, in pixels: half the width, curvature of the tip, blur."""
+    """What all frames share, in pixels: half the width, curvature of the tip, blur, the flat.
+
+    The flat, at row `flat`, reflects the rod with the part `mirror` of its light.
+    """
 
     half_width: float
     curvature: float
     blur: float
+    mirror: float = 0.0
+    flat: float = 0.0
 
     @property
     def tip_radius(self) -> float:
@@ -92,7 +101,7 @@ def fit_rod(
     levels
         Grey values of background and rod.
     free
-        `"pose"`, or `"shape"` for half-width and curvature as well.
+        `"pose"`; `"shape"` for half-width and curvature, `"mirror"` for the reflection as well.
 
     Returns
     -------
@@ -104,17 +113,18 @@ def fit_rod(
         return None
     rows, columns = np.mgrid[window].astype(np.float64)
     contrast = levels[1] - levels[0]
-    start = np.array(
-        [*pose, levels[0], contrast, shape.blur, 0.0, shape.half_width, shape.curvature]
-    )
+    half, inf = shape.half_width, np.inf
+    start = np.array([
+        *pose, levels[0], contrast, shape.blur, 0.0, half, shape.curvature, shape.mirror, shape.flat
+    ])  # fmt: skip
     limits = np.array(
-        [2.0, 2.0, 0.05, np.inf, np.inf, 0.5, np.inf, 0.1 * shape.half_width, 0.3 * shape.curvature]
+        [2.0, 2.0, 0.05, inf, inf, 0.5, inf, 0.1 * half, 0.3 * shape.curvature, 0.2, 1.0]
     )
-    low = np.array([*[-np.inf] * 5, 0.25, -np.inf, 1.0, 1e-5 / shape.half_width])
-    high = np.array([*[np.inf] * 7, 2.0 * shape.half_width, 1.0 / shape.half_width])
+    low = np.array([*[-inf] * 5, 0.25, -inf, 1.0, 1e-5 / half, 0.0, -inf])
+    high = np.array([*[inf] * 7, 2.0 * half, 1.0 / half, 1.0, inf])
     settled = _settle(
-        lambda p: _rod_picture(rows, columns, p), frame[window], start,
-        free=9 if free == "shape" else 7, limits=limits, low=low, high=high,
+        lambda p: _mirrored_rod(rows, columns, p), frame[window], start,
+        free=_FREE[free], limits=limits, low=low, high=high,
     )  # fmt: skip
     if settled is None:
         return None
@@ -124,7 +134,7 @@ def fit_rod(
     chosen = [0, 1, 2, 7, 8]
     return RodPose(
         float(p[0]), float(p[1]), float(p[2]), covariance[np.ix_(chosen, chosen)],
-        RodShape(float(p[7]), float(p[8]), float(p[5])),
+        RodShape(*(float(p[k]) for k in (7, 8, 5, 9, 10))),
     )  # fmt: skip
 
 
@@ -156,7 +166,7 @@ def fit_ball(
     low = np.array([-np.inf, -np.inf, 1.5, -np.inf, -np.inf, 0.25, -np.inf, -np.inf])
     settled = _settle(
         lambda p: _ball_picture(rows, columns, p), frame[window], p0,
-        free=8, limits=limits, low=low, high=np.full(8, np.inf),
+        free=tuple(range(8)), limits=limits, low=low, high=np.full(8, np.inf),
     )  # fmt: skip
     if settled is None:
         return None
@@ -171,24 +181,24 @@ def _settle(
     values: Array,
     start: Array,
     *,
-    free: int,
+    free: tuple[int, ...],
     limits: Array,
     low: Array,
     high: Array,
 ) -> tuple[Array, Array] | None:
     """Weighted Gauss-Newton with Huber weights; parameters and covariance (p, p), or None."""
-    p = start.copy()
+    p, moved = start.copy(), list(free)
     covariance = np.zeros((p.size, p.size))
-    move = np.full(free, np.inf)
+    move = np.full(len(moved), np.inf)
     for _ in range(_ROUNDS):
         model, jacobian, zone = picture(p)
         residual = (values - model)[zone]
-        if residual.size <= free + 4:
+        if residual.size <= len(moved) + 4:
             return None
         # quantisation alone leaves 0.3 grey levels
         spread = max(robust_std(residual), 0.3)
         weight = np.minimum(1.0, _HUBER * spread / np.maximum(np.abs(residual), 1e-12))
-        active = jacobian[:free, zone]
+        active = jacobian[moved][:, zone]
         normal = (active * weight) @ active.T
         try:
             inverse = np.linalg.inv(normal)
@@ -197,15 +207,27 @@ def _settle(
         move = inverse @ (active @ (weight * residual))
         if not np.all(np.isfinite(move)):
             return None
-        p[:free] += np.clip(move, -limits[:free], limits[:free])
+        p[moved] += np.clip(move, -limits[moved], limits[moved])
         p = np.clip(p, low, high)
         if np.abs(move[:2]).max() < _SETTLED:
             break
     if np.abs(move[:2]).max() > _LAST_MOVE:
         return None
-    variance = float(np.sum(weight * residual**2) / max(weight.sum() - free, 1.0))
-    covariance[:free, :free] = variance * inverse
+    variance = float(np.sum(weight * residual**2) / max(weight.sum() - len(moved), 1.0))
+    covariance[np.ix_(moved, moved)] = variance * inverse
     return p, covariance
+
+
+def _mirrored_rod(
+    rows: Array, columns: Array, p: Array
+) -> tuple[Array, Array, npt.NDArray[np.bool_]]:
+    """A rod above a flat that reflects it; `p` ends in the share of light and the flat's row."""
+    model, jacobian, zone = _rod_picture(rows, columns, p[:9])
+    share, flat = p[9:]
+    again, slopes, _ = _rod_picture(2.0 * flat - rows, columns, p[:9])
+    again, slopes[3] = again - p[3], 0.0
+    mirror = np.stack([again, -2.0 * share * slopes[1]])
+    return model + share * again, np.concatenate([jacobian + share * slopes, mirror]), zone
 
 
 def _rod_picture(

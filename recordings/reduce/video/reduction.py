@@ -30,8 +30,9 @@ BRIGHTNESS = ("bright", "dark")
 _LEAN_FRAMES = 20
 _LEAN_LIMIT = math.radians(5.0)
 
-_POSITION_FLOOR = 1e-3
-"""No position in a picture is believed better than this [pixel]."""
+_POSITION_FLOOR, _POSITION_TREND = 1e-3, 5e-3
+"""No position in a picture is believed better than the first; by the second uneven light and a blur
+that is not the same everywhere move it from one end of a flight to the other [pixel]."""
 
 
 @dataclass(frozen=True)
@@ -215,7 +216,7 @@ def _contacts(track: dict[str, Array], half: Measured, optics: Optics, source: s
     stated = optics.scale
     if stated is None and optics.size is not None:
         stated = optics.size.over(half.scaled(2.0))
-    path = Track(time, -track["row"], floor=_POSITION_FLOOR)
+    path = Track(time, -track["row"], floor=_POSITION_FLOOR, trend=_POSITION_TREND)
     found = find_bounces(path, optics.ball, metres=stated)
     if found is None:
         raise InputError(

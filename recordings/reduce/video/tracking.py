@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from dataclasses import replace
 from typing import Any
 
 import numpy as np
@@ -15,6 +16,14 @@ from ..images.silhouette import ball_by_light, body_mask, rod_guess
 from ..measured import Array
 
 _SHAPE_FRAMES = 15
+
+_SEEN = (3.5, 1.0)
+"""Blurs above the lowest place of a tip between which it and its reflection are told apart within
+one fit; farther up the reflection does not reach into it."""
+
+_MIRROR_FRAMES = 12
+_DULL = 0.02
+"""Part of its light below which the reflection of a body does not count."""
 
 _MOSTLY = 0.8
 """Part of the frames in which the edge of the ball must be found, else its light is used."""
@@ -46,6 +55,7 @@ def track_rod(
         pose = fit_rod(grey, shape, start[1], levels=levels)
         if pose is not None:
             poses.append((number, pose))
+    poses = _without_reflection(frames, poses, shape, levels)
     if len(poses) < 10:
         raise InputError(
             f"the tip is found in only {len(poses)} frames", source=source, allowed="10 or more"
@@ -57,6 +67,42 @@ def track_rod(
         "row_std": np.array([math.sqrt(max(p.covariance[1, 1], 0.0)) for _, p in poses]),
         "lean": np.array([p.lean for _, p in poses]),
     }, shape
+
+
+def _without_reflection(
+    frames: npt.NDArray[np.uint8], poses: list[tuple[int, RodPose]], shape: RodShape,
+    levels: tuple[float, float],
+) -> list[tuple[int, RodPose]]:  # fmt: skip
+    """Fit the tip anew, with its reflection, where it is so near to the flat that both overlap."""
+    rows = np.array([p.y for _, p in poses])
+    lowest = float(rows.max(initial=0.0))
+    low, high = (lowest - n * shape.blur for n in _SEEN)
+    both = [k for k in np.flatnonzero((rows > low) & (rows < high))]
+    found = []
+    for k in both[:: max(1, len(both) // _MIRROR_FRAMES)]:
+        number, pose = poses[k]
+        start = replace(shape, mirror=0.1, flat=lowest)
+        there = fit_rod(
+            frames[number].astype(np.float64), start, (pose.x, pose.y, pose.lean), levels=levels,
+            free="mirror",
+        )  # fmt: skip
+        if there is not None:
+            found.append((there.shape.mirror, there.shape.flat))
+    if len(found) < 5:
+        return poses
+    mirror, flat = (float(v) for v in np.median(np.array(found), axis=0))
+    if mirror < _DULL:
+        return poses
+    shape = replace(shape, mirror=mirror, flat=flat)
+    again = []
+    for number, pose in poses:
+        if pose.y > low:
+            pose = fit_rod(
+                frames[number].astype(np.float64), shape, (pose.x, min(pose.y, flat), pose.lean),
+                levels=levels,
+            ) or pose  # fmt: skip
+        again.append((number, pose))
+    return again
 
 
 def _rod_shape(
