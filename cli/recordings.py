@@ -65,7 +65,7 @@ def new(
         bool, typer.Option("--sphere", help="The striker is a sphere, not a rod.")
     ] = False,
 ) -> None:
-    """Write a template to fill in: set.toml and trials.csv with one example row."""
+    """Write a set to fill in: set.toml with its open values marked, trials.csv with its header."""
     from ..recordings.template import write_template
 
     write_template(folder, shape="sphere" if sphere else "rod")

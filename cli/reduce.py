@@ -50,7 +50,9 @@ app = group(
     "Raw recordings to numbers with uncertainties, and a picture to check them by.", cls=_Kinds
 )
 
-RawFile = Annotated[Path, typer.Argument(metavar="FILE", help="The raw recording.")]
+RawFiles = Annotated[
+    list[Path], typer.Argument(metavar="FILE...", help="The raw recording, or several.")
+]
 Into = Annotated[
     Path | None, folder_option("Folder of a recording set, new or existing.", name="--into")
 ]
@@ -65,13 +67,16 @@ def _command(name: str) -> Any:
     kind = load_kind(name)
 
     def run(**given: Any) -> None:
-        file, into, out = given.pop("file"), given.pop("into"), given.pop("out")
+        files, into, out = given.pop("files"), given.pop("into"), given.pop("out")
         row = {k: given.pop(k) for k in Row.model_fields}
-        _reduce(kind, file, into, out, _set(given), _set(row))
+        if len(files) == 1:
+            _reduce(kind, files[0], into, out, _set(given), _set(row))
+        else:
+            _reduce_each(kind, files, into, out, _set(given), _set(row))
 
     keyword = inspect.Parameter.KEYWORD_ONLY
     parameters = [
-        inspect.Parameter("file", keyword, annotation=RawFile),
+        inspect.Parameter("files", keyword, annotation=RawFiles),
         inspect.Parameter("into", keyword, annotation=Into, default=None),
         *(_parameter(k, field) for k, field in kind.options.model_fields.items()),
         *(_parameter(k, field) for k, field in Row.model_fields.items()),
@@ -113,6 +118,41 @@ def _plain_type(annotation: Any) -> tuple[Any, tuple[str, ...]]:
 def _set(given: dict[str, Any]) -> dict[str, Any]:
     """What the user said; the rest is left to the defaults."""
     return {k: v for k, v in given.items() if v is not None}
+
+
+def _reduce_each(
+    kind: Kind, files: list[Path], into: Path | None, out: Path, given: dict[str, Any],
+    row: dict[str, Any],
+) -> None:  # fmt: skip
+    """Reduce several files; those that cannot be are told at the end and left out."""
+    from rich.console import Console
+    from rich.progress import track
+
+    from ..core.errors import InputError, InputErrors
+    from ..recordings.reduce.record import trial_name
+
+    if row.get("trial"):
+        raise InputError(
+            f"given for {len(files)} files", key="--trial", source="command line",
+            allowed="left out: each trial is named as its file",
+        )  # fmt: skip
+    names = [trial_name(file) for file in files]
+    twice = next((name for name in names if names.count(name) > 1), "")
+    if twice:
+        raise InputError(
+            f"two files are named {twice}", source="command line", key="FILE",
+            allowed="files of different names: they name the trials",
+        )  # fmt: skip
+    left_out: list[InputError] = []
+    failed = 0
+    for file in track(files, "reducing", console=Console(stderr=True), transient=True):
+        try:
+            _reduce(kind, file, into, out, given, row)
+        except InputErrors as several:  # the names of options are made from every mistake
+            left_out, failed = [*left_out, *several.errors], failed + 1
+    typer.echo(f"{len(files) - failed} of {len(files)} files reduced")
+    if left_out:
+        raise InputErrors(tuple(left_out))
 
 
 def _reduce(

@@ -205,6 +205,8 @@ class BodyTable(MaterialTable):
     """Specific heat."""
     melting_K: Temperature | None = None
     """Melting temperature."""
+    flow_curve: str = ""
+    """Of a recording set: file beside set.toml, true stress over plastic strain as measured."""
 
 
 class TargetTable(BodyTable):
@@ -310,6 +312,10 @@ class EnvironmentTable(InputTable):
     """What is between the bodies, for example air."""
     viscosity_Pa_s: NotNegative | None = None
     """Its viscosity."""
+    density_kg_m3: NotNegative | None = None
+    """Its density."""
+    pressure_Pa: NotNegative | None = None
+    """Its pressure."""
     temperature_K: Temperature | None = None
     """Temperature of bodies and surroundings."""
 

@@ -111,5 +111,8 @@ TRIAL_COLUMNS: dict[str, Column] = (
 )
 """Every column that trials.csv may have."""
 
+VARIED = "x_"
+"""Beginning of a column of a condition that was varied and that no simulation knows."""
+
 TRACE_COLUMNS: tuple[str, ...] = ("time_s", "tip_height_m", "force_N", "tip_x_m", "angle_rad")
 PROFILE_COLUMNS: tuple[str, ...] = ("x_m", "z_m")

@@ -62,7 +62,9 @@ class TextTable:
     cells: Mapping[str, tuple[str, ...]]
 
 
-def read_text_table(path: Path, known: Iterable[str], problems: Problems) -> TextTable | None:
+def read_text_table(
+    path: Path, known: Iterable[str], problems: Problems, *, free: str = ""
+) -> TextTable | None:
     """Read a table as text; `None` if there is nothing to go on with.
 
     Parameters
@@ -73,6 +75,8 @@ def read_text_table(path: Path, known: Iterable[str], problems: Problems) -> Tex
         Names that a column may have.
     problems
         Where mistakes go.
+    free
+        Beginning of names that any column may have.
     """
     try:
         raw = read_bytes(path, most=MOST_BYTES, allowed="a table of comma-separated values")
@@ -94,7 +98,8 @@ def read_text_table(path: Path, known: Iterable[str], problems: Problems) -> Tex
         problems.add("empty", allowed="a header line and rows")
         return None
     header_row, header = numbered[0]
-    names = tuple(known)
+    own = [name for name in header if free and name.startswith(free) and len(name) > len(free)]
+    names = (*known, *dict.fromkeys(own))
     if not _header_is_sound(header, header_row, names, problems):
         return None
     return _body(header, numbered[1:], names, problems)

@@ -18,18 +18,22 @@ from ..core.approach import speeds_at_touch
 from ..core.errors import InputError, InputErrors
 from ..core.observables import RELATIVE_SUFFIX, RIG_NOISE, TRACE_NOISE
 from ..core.output import finish, locked, write_files
-from ..core.rig import StrikerTable
+from ..core.rig import BodyTable, Quantity, StrikerTable
 from ..core.toml_input import parse_model, read_toml
 from . import noise
 from .columns import MEASURED
 from .csv_table import Array, Problems
+from .flow_curve import MeasuredFlow, read_flow_curve
 from .noise import Noise
+from .same_file import taken_twice
 from .series import read_profile, read_trace, series_in
-from .setup_file import Setup, setup_text
+from .setup_file import Setup, flowing, setup_text, without_marks
 from .trials import Trials, read_trials, trials_text
 
 _SPEED_BIN = 0.02
 _ANGLE_BIN = 1.0
+_SURE = 3.0
+"""Standard deviations by which a restitution exceeds 1 before it asks for a reason."""
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -72,6 +76,11 @@ class RecordingSet:
         Where the set was read from; `None` for one made in memory.
     notes
         Remarks of the reader that are no mistakes.
+    to_fill
+        Keys of set.toml that are still to be filled in; only a set that was read as unfinished has
+        some.
+    flows
+        Measured flow curves by the key of their body, `target` or `strikers.NAME`.
     """
 
     setup: Setup
@@ -80,6 +89,8 @@ class RecordingSet:
     profiles: Mapping[str, Path] = field(default_factory=dict)
     folder: Path | None = None
     notes: tuple[str, ...] = ()
+    to_fill: tuple[str, ...] = ()
+    flows: Mapping[str, MeasuredFlow] = field(default_factory=dict)
 
     @property
     def name(self) -> str:
@@ -122,7 +133,8 @@ class RecordingSet:
         """Number of each trial's condition, shape (n,): repeats share a number.
 
         Same striker, angle within 1 degree, approach speed within 2 percent, same tangential speed
-        and spin within 2 percent of the approach; a spot that is struck again is its own condition.
+        and spin within 2 percent of the approach, same entry in every column `x_NAME`; a spot that
+        is struck again is its own condition.
         """
         approach, trials = self.approach, self.trials
         struck: dict[str, int] = {}
@@ -138,6 +150,7 @@ class RecordingSet:
             list(noise.bins(approach.tangential / approach.normal, width=_SPEED_BIN)),
             list(noise.bins(approach.spin * sizes / approach.normal, width=_SPEED_BIN)),
             list(noise.bins(trials.temperature_K, width=_ANGLE_BIN)),
+            *trials.varied.values(),
             blow,
         )
 
@@ -183,13 +196,15 @@ class RecordingSet:
         )
 
 
-def read(folder: Path | str) -> RecordingSet:
+def read(folder: Path | str, *, unfinished: bool = False) -> RecordingSet:
     """Read a recording set.
 
     Parameters
     ----------
     folder
         The folder that holds set.toml and trials.csv.
+    unfinished
+        Whether values and noise of set.toml may still be missing; sizes to be filled in are then 1.
 
     Raises
     ------
@@ -202,28 +217,45 @@ def read(folder: Path | str) -> RecordingSet:
         raise InputError("no such folder", source=str(folder), allowed="a folder with set.toml")
     finish(folder)
     mistakes: list[InputError] = []
-    setup, strikers = _read_setup(folder / "set.toml", mistakes)
+    setup, strikers, to_fill = _read_setup(folder / "set.toml", mistakes)
+    if not unfinished:
+        mistakes += (
+            InputError(
+                "to fill in", source=str(folder / "set.toml"), key=key,
+                allowed="what was measured, or no such key if it is not known",
+            )
+            for key in to_fill
+        )  # fmt: skip
     problems = Problems(str(folder / "trials.csv"))
     trials = read_trials(folder / "trials.csv", strikers, problems)
     names = trials.trial if trials is not None else ()
     mistakes += problems.found
     traces = _checked_series(folder / "traces", names, mistakes)
     profiles = _checked_series(folder / "profiles", names, mistakes)
+    flows = _read_flows(setup, folder, mistakes) if setup is not None else {}
+    mistakes += taken_twice(folder / "reduced", names)
     if setup is None or trials is None or mistakes:
         raise InputErrors(tuple(mistakes))
-    found = RecordingSet(setup, trials, traces, profiles, folder)
-    mistakes += _without_noise(found)
+    found = RecordingSet(
+        _with_strengths(setup, flows), trials, traces, profiles, folder, (), tuple(to_fill), flows
+    )
+    mistakes += _impossible(found, problems)
+    if not unfinished:
+        mistakes += _without_noise(found)
     if mistakes:
         raise InputErrors(tuple(mistakes))
     return replace(found, notes=tuple(_notes(found)))
 
 
-def _read_setup(path: Path, mistakes: list[InputError]) -> tuple[Setup | None, frozenset[str]]:
-    """Return the set-up, and the names of its strikers even when something else is wrong."""
+def _read_setup(
+    path: Path, mistakes: list[InputError]
+) -> tuple[Setup | None, frozenset[str], list[str]]:
+    """Return the set-up, the names of its strikers even when something else is wrong, open keys."""
     content: dict[str, object] = {}
+    to_fill: list[str] = []
     setup = None
     try:
-        content = read_toml(path)
+        content, to_fill = without_marks(read_toml(path))
         setup = parse_model(content, Setup, source=str(path))
     except InputErrors as several:
         mistakes += several.errors
@@ -238,7 +270,51 @@ def _read_setup(path: Path, mistakes: list[InputError]) -> tuple[Setup | None, f
             if body.rigid
         )
     tables = content.get("strikers")
-    return setup, frozenset(tables) if isinstance(tables, dict) else frozenset()
+    return setup, frozenset(tables) if isinstance(tables, dict) else frozenset(), to_fill
+
+
+def _read_flows(setup: Setup, folder: Path, mistakes: list[InputError]) -> dict[str, MeasuredFlow]:
+    flows = {}
+    for key, body in flowing(setup).items():
+        if Path(body.flow_curve).name != body.flow_curve:
+            mistakes.append(InputError(
+                repr(body.flow_curve), source=str(folder / "set.toml"), key=f"{key}.flow_curve",
+                allowed="the name of a file beside set.toml",
+            ))  # fmt: skip
+            continue
+        try:
+            flows[key] = read_flow_curve(folder / body.flow_curve)
+        except InputErrors as several:
+            mistakes += several.errors
+    return flows
+
+
+def _with_strengths(setup: Setup, flows: Mapping[str, MeasuredFlow]) -> Setup:
+    """Read the strength of a body from its flow curve unless it is stated."""
+
+    def strong(key: str, body: BodyTable) -> BodyTable:
+        if key not in flows or body.Sy_Pa is not None:
+            return body
+        return body.model_copy(update={"Sy_Pa": Quantity(value=flows[key].strength)})
+
+    strikers = {k: strong(f"strikers.{k}", b) for k, b in setup.strikers.items()}
+    return setup.model_copy(update={"target": strong("target", setup.target), "strikers": strikers})
+
+
+def _impossible(found: RecordingSet, problems: Problems) -> list[InputError]:
+    """Return the rows that rebound faster than they came, beyond their error, without a reason."""
+    e, notes = found.trials.observables.get("restitution"), found.trials.note
+    if e is None:
+        return []
+    high = np.flatnonzero(e - 1.0 > _SURE * np.nan_to_num(found.std("restitution")))
+    return [
+        InputError(
+            f"{e[k]:g} above 1 without a reason", source=problems.source,
+            key=f"trial {found.trials.trial[k]}, column restitution",
+            allowed="0 to 1, or a reason in the column note",
+        )
+        for k in high if not notes[k]
+    ]  # fmt: skip
 
 
 def _checked_series(
@@ -315,4 +391,9 @@ def files_of(found: RecordingSet) -> dict[str, bytes | str]:
         for kind, files in (("traces", found.traces), ("profiles", found.profiles))
         for trial, path in files.items()
     }
-    return {**curves, "set.toml": setup_text(found.setup), "trials.csv": trials_text(found.trials)}
+    flows = {body.flow_curve: found.flows[key].text()
+             for key, body in flowing(found.setup).items() if key in found.flows}  # fmt: skip
+    return {
+        **curves, **flows, "set.toml": setup_text(found.setup),
+        "trials.csv": trials_text(found.trials),
+    }  # fmt: skip

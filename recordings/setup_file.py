@@ -1,18 +1,26 @@
-"""set.toml: a rig with the format of a recording set, read and written."""
+"""set.toml: a rig with the format of a recording set, read and written.
+
+Writing changes only what differs from what the file held, so that a person's comments and order
+survive. A value `"?"` is one that is still to be filled in.
+"""
 
 from __future__ import annotations
 
-import json
-import re
+from collections.abc import Mapping
 from typing import Any, Literal
 
+import tomlkit
 from pydantic import BaseModel
 
-from ..core.rig import Quantity, Rig
+from ..core.rig import BodyTable, Quantity, Rig
 
 FORMAT = "recording-set/1"
 
-_BARE = re.compile(r"[A-Za-z0-9_-]+")
+MARK = "?"
+"""Stands for a value that is still to be filled in."""
+
+_NEEDED = ("tip_radius_m", "mass_kg", "radius_m", "length_m")
+"""Sizes without which a striker cannot be read, in the order of the format."""
 
 
 class Setup(Rig):
@@ -22,47 +30,90 @@ class Setup(Rig):
     """Version of the file's format."""
 
 
-def setup_text(setup: Setup) -> str:
-    """Return set.toml; keys at their default are left out, numbers keep every digit."""
-    lines = []
-    tables: list[tuple[str, dict[str, Any]]] = []
-    for name, value in _given(setup).items():
-        if name == "strikers":
-            tables += [(f"strikers.{_key(k)}", _given(v)) for k, v in setup.strikers.items()]
-        elif isinstance(value, BaseModel) and not isinstance(value, Quantity):
-            tables.append((name, _given(value)))
-        elif isinstance(value, dict):
-            tables.append((name, value))
+def flowing(setup: Rig) -> dict[str, BodyTable]:
+    """Return the bodies that name a flow curve, by the key of their table."""
+    return {key: body for key, body in setup.bodies.items() if body.flow_curve}
+
+
+def without_marks(content: Mapping[str, Any], key: str = "") -> tuple[dict[str, Any], list[str]]:
+    """Return set.toml without the values that are to be filled in, and their keys.
+
+    Sizes that a striker must have are 1 where they are to be filled in.
+    """
+    kept: dict[str, Any] = {}
+    open_keys: list[str] = []
+    for name, value in content.items():
+        path = f"{key}.{name}" if key else name
+        if isinstance(value, Mapping):
+            kept[name], below = without_marks(value, path)
+            open_keys += below
+        elif value != MARK:
+            kept[name] = value
         else:
-            lines.append(f"{name} = {_text(value)}")
-    for name, table in tables:
-        lines += ["", f"[{name}]", *(f"{_key(k)} = {_text(v)}" for k, v in table.items())]
-    return "\n".join(lines) + "\n"
+            open_keys.append(path)
+            if name in _NEEDED:
+                kept[name] = 1.0
+    return kept, open_keys
 
 
-def _given(table: BaseModel) -> dict[str, Any]:
-    """What differs from the defaults; `format`, `shape` and `target` are always written."""
+def setup_text(setup: Setup, *, before: Setup | None = None, text: str = "") -> str:
+    """Return set.toml; keys at their default are left out, numbers keep every digit.
+
+    Parameters
+    ----------
+    setup
+        What it should say.
+    before, text
+        What the file says now; all else in it stays as it is.
+    """
+    document = tomlkit.parse(text)
+    _change(document, {} if before is None else _plain(before), _plain(setup))
+    return tomlkit.dumps(document)
+
+
+def _change(table: Any, old: Mapping[str, Any], new: Mapping[str, Any]) -> None:
+    for name, value in new.items():
+        if old.get(name) == value:
+            continue
+        if isinstance(value, dict):
+            if name not in table:
+                table[name] = tomlkit.table(is_super_table=name == "strikers")
+            _change(table[name], old.get(name, {}), value)
+        else:
+            table[name] = _number(value) if isinstance(value, Quantity) else value
+    for name in set(old) - set(new):
+        table.pop(name, None)
+
+
+def _number(quantity: Quantity) -> Any:
+    if quantity.std == 0.0:
+        return quantity.value
+    pair = tomlkit.inline_table()
+    pair.update({"value": quantity.value, "std": quantity.std})
+    return pair
+
+
+def _plain(table: BaseModel) -> dict[str, Any]:
+    """What differs from the defaults, plain keys before tables."""
     fields = type(table).model_fields
-    pairs = ((name, getattr(table, name)) for name in fields)
-    return {
-        name: value
-        for name, value in pairs
-        if fields[name].is_required() or name == "shape" or value != fields[name].get_default()
-    }
+    given = {
+        name: getattr(table, name)
+        for name, field in fields.items()
+        if field.is_required() or name == "shape" or getattr(table, name) != field.get_default(
+            call_default_factory=True
+        )
+    }  # fmt: skip
+    plain = {k: v for k, v in given.items() if not _is_table(v)}
+    for name, value in given.items():
+        if _is_table(value):
+            pairs = value.items() if isinstance(value, dict) else ()
+            plain[name] = (
+                {k: _plain(v) if isinstance(v, BaseModel) else v for k, v in pairs}
+                if isinstance(value, dict)
+                else _plain(value)
+            )
+    return plain
 
 
-def _key(name: str) -> str:
-    return name if _BARE.fullmatch(name) else _quoted(name)
-
-
-def _quoted(text: str) -> str:
-    # a JSON string is a basic TOML string but for the delete character
-    return json.dumps(text, ensure_ascii=False).replace("\x7f", "\\u007f")
-
-
-def _text(value: Any) -> str:
-    if isinstance(value, Quantity):
-        if value.std == 0.0:
-            return repr(value.value)
-        return f"{{ value = {value.value!r}, std = {value.std!r} }}"
-    return _quoted(value) if isinstance(value, str) else repr(float(value))
+def _is_table(value: Any) -> bool:
+    return isinstance(value, dict | BaseModel) and not isinstance(value, Quantity)

@@ -1,4 +1,4 @@
-"""A recording set to fill in: every key explained, the optional ones commented out."""
+"""A recording set to fill in: every key explained, what must be known marked, the rest left out."""
 
 from __future__ import annotations
 
@@ -10,8 +10,11 @@ from ..core.output import write_file
 from .columns import MEASURED
 from .setup_file import FORMAT
 
-_HEAD = f'''# A quantity is {{ value = ..., std = ... }}, or a plain number that is taken as exact.
-# Leave out what you do not know; it gets a wide prior that the report names.
+Shape = Literal["rod", "sphere"]
+
+_HEAD = f'''# "?" stands for what is to be filled in: a number, taken as exact, for example 2.0e11,
+# or {{ value = 2.0e11, std = 4.0e9 }}. A key of a body that is not known can be deleted: it gets a
+# wide prior that the report names. A line that begins with # says what else may stand here.
 format = "{FORMAT}"
 name = "NAME"
 description = "what was dropped on what, and how it was measured"
@@ -20,11 +23,11 @@ licence = "who may use it"
 gravity_m_s2 = 9.81
 
 [target]                      # the flat
-material = "low-carbon steel"
-E_Pa = {{ value = 2.0e11, std = 4.0e9 }}
-nu = 0.3
-Sy_Pa = {{ value = 3.0e8, std = 1.5e7 }}
-density_kg_m3 = 7850
+# material = "low-carbon steel"
+E_Pa = "?"
+nu = "?"
+Sy_Pa = "?"                   # or flow_curve = "FILE.csv": plastic_strain, true_stress_Pa
+density_kg_m3 = "?"
 # thickness_m = 0.03
 # hardness_Pa = 1.0e9
 # Ra_m = 0.4e-6
@@ -40,24 +43,24 @@ _STRIKER = {
     "rod": """
 [strikers.rod]
 shape = "rod"
-tip_radius_m = {{ value = 9.0e-3, std = 1.0e-4 }}
-radius_m = 9.0e-3
-length_m = 0.300              # between the centres of the two tip spheres
-mass_kg = {{ value = {mass:.4f}, std = 5.0e-4 }}
+tip_radius_m = "?"
+radius_m = "?"
+length_m = "?"                # between the centres of the two tip spheres
+mass_kg = "?"
 """,
     "sphere": """
 [strikers.ball]
 shape = "sphere"
-tip_radius_m = {{ value = 9.0e-3, std = 1.0e-5 }}
-mass_kg = {{ value = {mass:.5f}, std = 1.0e-5 }}
+tip_radius_m = "?"
+mass_kg = "?"
 """,
 }
 
-_TAIL = """material = "stainless steel"
-density_kg_m3 = 7800
-E_Pa = 2.0e11
-nu = 0.3
-Sy_Pa = 7.5e8
+_TAIL = """# material = "stainless steel"
+density_kg_m3 = "?"
+E_Pa = "?"
+nu = "?"
+Sy_Pa = "?"
 # tip_flat_radius_m = 1.0e-3
 # inertia_kg_m2 = 4.0e-3
 
@@ -65,24 +68,29 @@ Sy_Pa = 7.5e8
 # coefficient = { value = 0.15, std = 0.05 }
 
 [environment]
-# fluid = "air"
+# fluid = "air"               # "vacuum" for none
+# density_kg_m3 = 1.2
 # viscosity_Pa_s = 1.8e-5
+# pressure_Pa = 101325
 # temperature_K = 293
 
 [noise]                       # standard deviations of the columns of trials.csv
-restitution = 0.01
-permanent_depth_m = 1.0e-6
+# restitution = 0.01
+# permanent_depth_m = 1.0e-6
 # NAME_relative where it is a fraction of the value
-impact_speed_relative = 0.005
+# impact_speed_relative = 0.005
 # tip_height_m = 1.0e-5       # of traces
 # frame_rate_hz = 80000
 """
 
-_MASS = {"rod": 0.6193, "sphere": 0.02382}
+
+def template_text(shape: Shape) -> str:
+    """Return set.toml with the values of both bodies to be filled in."""
+    return _HEAD + _STRIKER[shape] + _TAIL
 
 
-def write_template(folder: Path, *, shape: Literal["rod", "sphere"]) -> None:
-    """Write set.toml and trials.csv into a folder.
+def write_template(folder: Path, *, shape: Shape) -> None:
+    """Write set.toml, and trials.csv with its header line, into a folder.
 
     Raises
     ------
@@ -94,10 +102,6 @@ def write_template(folder: Path, *, shape: Literal["rod", "sphere"]) -> None:
             raise InputError(
                 "there is one already", source=str(folder / name), allowed="a new folder"
             )
-    striker = _STRIKER[shape].format(mass=_MASS[shape])
-    name, depth = ("rod", "95e-6") if shape == "rod" else ("ball", "19e-6")
     columns = ["trial", "striker", "angle_deg", "drop_height_m", *list(MEASURED)[:2], "note"]
-    rows = [columns, ["T01", name, "90", "0.05", "0.5", depth, "an example row: replace it"]]
-    text = "\n".join(",".join(row) for row in rows) + "\n"
-    write_file(folder / "set.toml", _HEAD + striker + _TAIL)
-    write_file(folder / "trials.csv", text)
+    write_file(folder / "set.toml", template_text(shape))
+    write_file(folder / "trials.csv", ",".join(columns) + "\n")

@@ -10,7 +10,7 @@ import numpy as np
 import numpy.typing as npt
 
 from ..core.output import csv_text
-from .columns import CONDITIONS, MEASURED, STD_SUFFIX, TRIAL_COLUMNS
+from .columns import CONDITIONS, MEASURED, STD_SUFFIX, TRIAL_COLUMNS, VARIED
 from .csv_table import Array, Problems, TextTable, numbers, read_text_table, shown
 
 _TEXTS = tuple(name for name, column in TRIAL_COLUMNS.items() if column.kind == "text")
@@ -40,6 +40,8 @@ class Trials:
         Tangential speed of the centre [m/s] and angular velocity [rad/s] before.
     spot, note
         Same text: same place on the flat; free text.
+    varied
+        Columns `x_NAME` by name: conditions that no simulation knows, as they are written.
     observables
         Measured columns by name.
     observables_std
@@ -59,6 +61,7 @@ class Trials:
     approach_spin_rad_s: Array = field(default_factory=lambda: np.empty(0))
     spot: tuple[str, ...] = ()
     note: tuple[str, ...] = ()
+    varied: Mapping[str, tuple[str, ...]] = field(default_factory=dict)
     observables: Mapping[str, Array] = field(default_factory=dict)
     observables_std: Mapping[str, Array] = field(default_factory=dict)
 
@@ -86,7 +89,10 @@ class Trials:
             elif isinstance(value, np.ndarray):
                 changes[item.name] = value[index]
             else:
-                changes[item.name] = {k: v[index] for k, v in value.items()}
+                changes[item.name] = {
+                    k: v[index] if isinstance(v, np.ndarray) else tuple(v[i] for i in index)
+                    for k, v in value.items()
+                }
         return replace(self, **changes)  # type: ignore[arg-type]
 
 
@@ -112,7 +118,7 @@ def read_trials(path: Path, strikers: frozenset[str], problems: Problems) -> Tri
     problems
         Where mistakes go.
     """
-    table = read_text_table(path, TRIAL_COLUMNS, problems)
+    table = read_text_table(path, TRIAL_COLUMNS, problems, free=VARIED)
     if table is None:
         return None
     missing = [name for name in ("trial", "striker", "angle_deg") if name not in table.columns]
@@ -122,7 +128,10 @@ def read_trials(path: Path, strikers: frozenset[str], problems: Problems) -> Tri
         problems.add("no approach", row=1, allowed="a column impact_speed_m_s or drop_height_m")
     if not table.rows:
         problems.add("no trial", allowed="at least one row below the header")
-    values = {name: numbers(table, name, problems) for name in table.columns if name not in _TEXTS}
+    values = {
+        name: numbers(table, name, problems)
+        for name in table.columns if name in TRIAL_COLUMNS and name not in _TEXTS
+    }  # fmt: skip
     _check_ranges(table, values, problems)
     _check_texts(table, strikers, problems)
     _check_approach(table, values, problems)
@@ -136,6 +145,7 @@ def _as_trials(table: TextTable, values: Mapping[str, Array]) -> Trials:
     return Trials(
         **texts,  # type: ignore[arg-type]
         **{name: values[name] for name in _NUMBERS if name in values},  # type: ignore[arg-type]
+        varied={name: table.cells[name] for name in table.columns if name not in TRIAL_COLUMNS},
         observables={name: values[name] for name in MEASURED if name in values},
         observables_std={_STDS[name]: values[name] for name in _STDS if name in values},
     )
@@ -210,6 +220,7 @@ def trials_text(trials: Trials) -> str:
             columns[name] = _cells(trials.observables[name])
         if name in trials.observables_std:
             columns[name + STD_SUFFIX] = _cells(trials.observables_std[name])
+    columns |= {name: list(cells) for name, cells in trials.varied.items()}
     if any(trials.note):
         columns["note"] = list(trials.note)
     return csv_text(zip(*columns.values(), strict=True), header=columns)

@@ -142,6 +142,13 @@ def _mistakes(found: SetupFile, source: str) -> list[InputError]:
         add("impact.striker", f"no striker {impact.striker!r}", f"one of {names}")
     if (impact.impact_speed_m_s is None) == (impact.drop_height_m is None):
         add("impact.impact_speed_m_s", "give one of speed and height", "or impact.drop_height_m")
+    for key, body in found.bodies.items():
+        if body.flow_curve:
+            add(
+                f"{key}.flow_curve",
+                repr(body.flow_curve),
+                "Sy_Pa: a simulated impact takes no curve",
+            )
     if impact.support == "sprung" and found.target.support_mass_kg is None:
         add("target.support_mass_kg", "missing", "the mass of a sprung support")
     if impact.support == "plate" and found.target.thickness_m is None:

@@ -1,17 +1,19 @@
 """Reductions written into a recording set: rows, curves, and a record of where they came from.
 
 A trial that the set already has keeps what it holds, but for the columns that were measured now. A
-folder without set.toml gets the template to fill in. Nothing is written before the whole set, as it
-would be, has been read without a mistake.
+folder without set.toml gets one with the body that was measured, in which the rest is to be filled
+in; of an existing one only what was measured changes. Nothing is written before the whole set, as
+it would be, has been read without a mistake.
 """
 
 from __future__ import annotations
 
 import tempfile
+import tomllib
 from collections.abc import Callable, Iterable, Mapping
 from dataclasses import dataclass, replace
 from pathlib import Path
-from typing import Any, Literal
+from typing import Any
 
 import numpy as np
 from pydantic import Field
@@ -19,12 +21,12 @@ from pydantic import Field
 from ...core.errors import InputError
 from ...core.output import csv_text, finish_pending, locked, write_files
 from ...core.rig import Quantity
-from ...core.toml_input import InputTable, read_model
-from ..columns import CONDITIONS, MEASURED, STD_SUFFIX
+from ...core.toml_input import InputTable, parse_model, read_toml
+from ..columns import CONDITIONS, MEASURED, STD_SUFFIX, VARIED
 from ..csv_table import Array
 from ..recording_set import RecordingSet, files_of, read
-from ..setup_file import Setup, setup_text
-from ..template import write_template
+from ..setup_file import Setup, setup_text, without_marks
+from ..template import Shape, template_text
 from ..trials import Trials
 from .measured import Measured, Trial
 from .record import trial_name, write_record
@@ -50,6 +52,17 @@ class Row(InputTable):
     )
     drop_height_m: float | None = Field(default=None, gt=0.0, description="height of fall")
     spot: str = Field(default="", description="same text: same place on the flat")
+    x: str = Field(
+        default="",
+        pattern=r"^(\w+=[^,=]*(,\w+=[^,=]*)*)?$",
+        description="what else was varied, NAME=VALUE,...: columns x_NAME",
+    )
+
+    @property
+    def varied(self) -> dict[str, str]:
+        """What else was varied, by column."""
+        pairs = (pair.partition("=") for pair in self.x.split(",") if pair)
+        return {f"{VARIED}{name.strip()}": value.strip() for name, _, value in pairs}
 
 
 @dataclass(frozen=True)
@@ -84,7 +97,7 @@ def store(
     kind, options
         How it was reduced, for the record.
     setup
-        set.toml of a new set; without it a new set gets the template.
+        set.toml of a new set; without it a new set gets one to fill in.
 
     Raises
     ------
@@ -94,7 +107,8 @@ def store(
     # another reduction may write the same set: what it added must not be lost
     with locked(folder):
         finish_pending(folder)
-        before, notes = _set_before(folder, setup, shape="sphere" if kind == "sound" else "rod")
+        shape = _shape(kind, options)
+        before, text = _set_before(folder, setup, shape=shape)
         striker = _striker(before, row)
         after, curves = before, {}
         names = []
@@ -104,8 +118,13 @@ def store(
             after = _with_trial(after, name, striker, trial, row)
             curves[name] = trial
             names.append(name)
-        after = _with_setup(after, striker, reduced)
-        _write_whole(before, after, curves, folder)
+        new = not (folder / "set.toml").exists() and setup is None
+        stated = _stated_body(shape, options) if new else {}
+        after = _with_flow(_with_setup(after, striker, reduced, stated), reduced)
+        text = setup_text(after.setup, before=before.setup, text=text)
+        open_keys = without_marks(tomllib.loads(text))[1]
+        notes = (f"{folder / 'set.toml'}: to fill in: {', '.join(open_keys)}",) if open_keys else ()
+        _write_whole(after, text, curves, folder)
     record, picture = write_record(
         reduced, folder / "reduced", _name(reduced, row), kind=kind, options=options, trials=names
     )
@@ -159,23 +178,55 @@ def _name(reduced: Reduced, row: Row) -> str:
     return row.trial or trial_name(reduced.source)
 
 
-def _set_before(
-    folder: Path, setup: Setup | None, *, shape: Literal["rod", "sphere"]
-) -> tuple[RecordingSet, tuple[str, ...]]:
+def _shape(kind: str, options: Mapping[str, Any]) -> Shape:
+    """Return what struck: as the options say, else a ball where bounces are heard or timed."""
+    usual = "rod" if kind in ("video", "tip", "mocap", "scan") else "sphere"
+    return "rod" if options.get("shape", usual) == "rod" else "sphere"
+
+
+def _stated_body(shape: Shape, options: Mapping[str, Any]) -> dict[str, Measured]:
+    """Return what the options of a reduction tell of the striker."""
+
+    def told(key: str) -> Measured | None:
+        value = options.get(key)
+        return (
+            None if value is None else Measured(float(value), float(options.get(f"{key}_std", 0.0)))
+        )
+
+    size = told("diameter_m")
+    half = None if size is None else size.scaled(0.5)
+    body = {"mass_kg": told("mass_kg"), "tip_radius_m": told("tip_radius_m")}
+    if shape == "rod":
+        body |= {"radius_m": half, "length_m": told("length_m")}
+    else:
+        body["tip_radius_m"] = body["tip_radius_m"] or half
+    return {key: value for key, value in body.items() if value is not None}
+
+
+def _set_before(folder: Path, setup: Setup | None, *, shape: Shape) -> tuple[RecordingSet, str]:
+    """Return the set as it is, or an empty one, and its set.toml as text."""
     if folder.exists() and not folder.is_dir():
         raise InputError("not a folder", source=str(folder), allowed="the folder of a set")
-    if (folder / "trials.csv").exists() or ((folder / "set.toml").exists() and setup is None):
-        if not (folder / "trials.csv").exists():
-            return _empty(read_model(folder / "set.toml", Setup), folder), ()
-        found = read(folder)
-        return (found if setup is None else replace(found, setup=setup)), ()
+    file = folder / "set.toml"
+    if not file.exists():
+        if setup is not None:
+            return _empty(setup, None), setup_text(setup)
+        text = template_text(shape)
+        content = without_marks(tomllib.loads(text))[0]
+        return _empty(parse_model(content, Setup, source=str(file)), None), text
+    content, _ = without_marks(read_toml(file))
+    old = parse_model(content, Setup, source=str(file))
+    text = file.read_text(encoding="utf-8")
+    rows = (folder / "trials.csv").exists() and _has_rows(folder / "trials.csv")
+    found = read(folder, unfinished=True) if rows else _empty(old, folder)
     if setup is not None:
-        return _empty(setup, None), ()
-    with tempfile.TemporaryDirectory() as place:
-        write_template(Path(place), shape=shape)
-        template = read_model(Path(place) / "set.toml", Setup)
-    note = f"{folder / 'set.toml'} is a template: fill in the bodies before the set is used"
-    return _empty(template, None), (note,)
+        text = setup_text(setup, before=old, text=text)
+    # as the file says it: a strength read from a flow curve is not written
+    return replace(found, setup=setup or old), text
+
+
+def _has_rows(path: Path) -> bool:
+    return len([line for line in path.read_bytes().splitlines() if line.strip(b" ,")]) > 1
 
 
 def _empty(setup: Setup, folder: Path | None) -> RecordingSet:
@@ -217,6 +268,12 @@ def _with_trial(
             column[: len(old)] = values
         return column
 
+    varied = {
+        k: [*old.varied.get(k, [""] * len(old)), *([""] if new else [])]
+        for k in dict.fromkeys([*old.varied, *row.varied])
+    }
+    for key, text in row.varied.items():
+        varied[key][place] = text
     texts = {k: [*getattr(old, k), *([""] if new else [])] for k in _TEXTS}
     texts["trial"][place] = name
     texts["striker"][place] = row.striker or texts["striker"][place] or striker
@@ -241,6 +298,7 @@ def _with_trial(
         )  # fmt: skip
     trials = Trials(
         **{k: tuple(v) for k, v in texts.items()}, **numbers,  # type: ignore[arg-type]
+        varied={k: tuple(v) for k, v in varied.items()},
         observables=observables, observables_std=stds,
     )  # fmt: skip
     return replace(found, trials=trials)
@@ -252,30 +310,47 @@ def _given(row: Row) -> dict[str, Measured]:
     return {k: Measured(v, std.get(k, 0.0)) for k, v in given.items() if v is not None}
 
 
-def _with_setup(found: RecordingSet, striker: str, reduced: Reduced) -> RecordingSet:
+def _with_setup(
+    found: RecordingSet, striker: str, reduced: Reduced, stated: Mapping[str, Measured]
+) -> RecordingSet:
     noise = {**reduced.noise, **found.setup.noise}
     body = found.setup.strikers[striker]
-    measured = {k: Quantity(value=v.value, std=v.std) for k, v in reduced.striker.items()}
+    measured = {
+        k: Quantity(value=v.value, std=v.std) for k, v in {**stated, **reduced.striker}.items()
+    }
     strikers = {**found.setup.strikers, striker: body.model_copy(update=measured)}
-    if noise == found.setup.noise and not measured:
-        return found
     setup = found.setup.model_copy(update={"noise": noise, "strikers": strikers})
     return replace(found, setup=setup)
 
 
-def _write_whole(
-    before: RecordingSet, after: RecordingSet, curves: Mapping[str, Trial], folder: Path
-) -> None:
-    files = files_of(after)
+def _with_flow(found: RecordingSet, reduced: Reduced) -> RecordingSet:
+    """Put a measured flow curve beside set.toml and name it there; a stated strength stays."""
+    if reduced.flow is None:
+        return found
+    body, flow = reduced.flow
+    key = "target" if body == "target" else f"strikers.{body}"
+    if key not in found.setup.bodies:
+        raise InputError(
+            repr(body), key="body", allowed=", ".join(["target", *found.setup.strikers])
+        )
+    named = {"flow_curve": f"{body}-flow.csv"}
+    target, strikers = found.setup.target, dict(found.setup.strikers)
+    if body == "target":
+        target = target.model_copy(update=named)
+    else:
+        strikers[body] = strikers[body].model_copy(update=named)
+    setup = found.setup.model_copy(update={"target": target, "strikers": strikers})
+    return replace(found, setup=setup, flows={**found.flows, key: flow})
+
+
+def _write_whole(after: RecordingSet, text: str, curves: Mapping[str, Trial], folder: Path) -> None:
+    files = {**files_of(after), "set.toml": text}
     for name, trial in curves.items():
         for kind, columns in (("traces", trial.trace), ("profiles", trial.profile)):
             if columns:
                 files[f"{kind}/{name}.csv"] = _curve_text(columns)
-    old = folder / "set.toml"
-    if old.exists() and setup_text(before.setup) == setup_text(after.setup):
-        del files["set.toml"]  # as a person wrote it, comments and all
     if len(after.trials):
-        _read_as(folder, {**files, "set.toml": setup_text(after.setup)})
+        _read_as(folder, files)
     else:
         del files["trials.csv"]
     write_files(folder, files)
@@ -290,7 +365,7 @@ def _read_as(folder: Path, files: Mapping[str, bytes | str]) -> None:
             path.parent.mkdir(exist_ok=True)
             path.write_bytes(content.encode() if isinstance(content, str) else content)
         try:
-            read(place)
+            read(place, unfinished=True)
         except InputError as error:
             raise InputError(str(error).replace(str(place), str(folder))) from None
 

@@ -6,6 +6,7 @@ from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field
 from pathlib import Path
 
+from ..flow_curve import MeasuredFlow
 from .measured import Measured, Trial
 
 
@@ -29,6 +30,8 @@ class Reduced:
         Keys of `[strikers.NAME]` that were measured.
     noise
         Keys of `[noise]` that were measured; those that a set already has stay.
+    flow
+        `target` or the name of a striker, and its flow curve, if that was measured.
     """
 
     source: Path
@@ -38,3 +41,4 @@ class Reduced:
     notes: tuple[str, ...] = ()
     striker: Mapping[str, Measured] = field(default_factory=dict)
     noise: Mapping[str, float] = field(default_factory=dict)
+    flow: tuple[str, MeasuredFlow] | None = None

@@ -27,6 +27,8 @@ UNITS: dict[str, dict[str, float]] = {
     "speed": {"m/s": 1.0, "mm/s": 1e-3, "cm/s": 1e-2, "km/h": 1.0 / 3.6},
     "angle": {"deg": 1.0, "°": 1.0, "rad": math.degrees(1.0)},
     "spin": {"rad/s": 1.0, "deg/s": math.radians(1.0), "rpm": math.pi / 30.0, "1/s": math.tau},
+    "stress": {"Pa": 1.0, "kPa": 1e3, "MPa": 1e6, "GPa": 1e9, "N/mm2": 1e6, "psi": 6894.757293,
+               "ksi": 6894757.293},
     "temperature": {"K": 1.0},
     "number": {"": 1.0, "-": 1.0, "%": 1e-2},
 }  # fmt: skip

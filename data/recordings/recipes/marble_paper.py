@@ -29,7 +29,7 @@ OPTIONS = {
 SETUP = {
     "format": "recording-set/1",
     "name": "marble-on-paper",
-    "description": "a marble dropped on stacks of A4 paper; the trial's name tells the sheets",
+    "description": "a marble dropped on stacks of A4 paper of x_sheets sheets",
     "source": "github XS06, 2025-Projects, team 1: Bouncing on Paper",
     "licence": "none stated; not for shipping",
     "target": {"shape": "flat", "material": "stack of paper", "law": "measured-restitution"},
@@ -50,7 +50,8 @@ def reduced(file: Path) -> tuple[Reduced, Row, dict[str, Any]]:
     repeat, sheets, _ = file.stem.split("-")
     found = load_kind("table").run(file, OPTIONS, source="recipe")
     first = replace(found, trials=(replace(found.trials[0], label=""),))
-    return first, Row(striker="marble", trial=f"{sheets}-sheets-{repeat}"), OPTIONS
+    row = Row(striker="marble", trial=f"{sheets}-sheets-{repeat}", x=f"sheets={sheets}")
+    return first, row, OPTIONS
 
 
 def recipe(folder: Path, target: Path) -> tuple[int, list[str]]:

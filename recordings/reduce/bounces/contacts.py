@@ -10,6 +10,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Sequence
+from dataclasses import replace
 
 import numpy as np
 
@@ -50,7 +51,7 @@ def find_bounces(
         Duration of a contact [s], if it is known.
     """
     chosen = on_the_body(track)
-    body = Track(track.time[chosen], track.height[chosen], track.floor, track.trend)
+    body = replace(track, time=track.time[chosen], height=track.height[chosen])
     contacts = turning_points(body)
     if not contacts:
         return None
@@ -137,12 +138,14 @@ def _bounce(
     fall = abs(solutions[0].view.fall)
     late = [fall * e for e in touch.errors]
     gaps = (meeting - body.time[last], body.time[first] - meeting)
-    bridged = [
-        math.hypot(fall * _UNEVEN * max(g - 2.0 * step, 0.0), body.trend / p.duration(body.time))
-        for g, p in zip(gaps, (before, after), strict=True)
-    ]
-    more = [math.hypot(e, g) for e, g in zip(late, bridged, strict=True)]
     values = (approach.value, rebound.value)
+    bridged = []
+    for gap, piece, speed in zip(gaps, (before, after), values, strict=True):
+        lasts = piece.duration(body.time)
+        bridged.append(math.hypot(
+            fall * _UNEVEN * max(gap - 2.0 * step, 0.0), body.drift(speed * lasts) / lasts
+        ))  # fmt: skip
+    more = [math.hypot(e, g) for e, g in zip(late, bridged, strict=True)]
     both = touch.ratio_error(fall, *values)
     part = ratio.value * math.hypot(both, *(g / v for g, v in zip(bridged, values, strict=True)))
     # the flights meet below the flat where a contact takes time

@@ -27,6 +27,12 @@ _BLOCK = 0.25
 _STRAY_BLOCKS = 2
 """Blocks off the flight that are passed over where the next one lies on it again."""
 
+_TRIMS, _LEAST_BLOCK, _MEAN_LIMIT = 4, 5, 4.0
+"""Rounds and samples of a contact that only its mean shows, and how far that is off [std]."""
+
+_STRAIGHT = 0.1
+"""Change of a flight's speed, in the speed, below which it is straight."""
+
 _MOST_NOISE = 3.0
 """Spread of the samples of a flight, in that of the track, that is believed."""
 
@@ -71,6 +77,10 @@ class Piece:
         """Last sample."""
         return int(self.index[-1])
 
+    def straight(self, time: Array, fall: float) -> bool:
+        """Whether an acceleration [unit/s²] hardly changes its speed, and so says nothing of it."""
+        return abs(fall) * self.duration(time) < _STRAIGHT * abs(self.launch.speed)
+
     def duration(self, time: Array) -> float:
         """Return how long its samples, of a track with these times, span [s]."""
         return float(time[self.last] - time[self.first])
@@ -104,7 +114,32 @@ def side(
     ]
     # begun within a contact it does not reach far
     best = max(tried, key=lambda p: p.index.size)
+    if view is not None and best.straight(track.time, view.fall):
+        best = _off_the_contact(track, best, step, stage, view)
     return best if best.index.size >= FEWEST else None
+
+
+def _off_the_contact(track: Track, piece: Piece, step: int, stage: Stage, view: View) -> Piece:
+    """Leave out the samples next to a contact that lie, in their mean, off the flight of the rest.
+
+    Where a contact sets in, no single sample is off by more than its noise.
+    """
+    for _ in range(_TRIMS):
+        size = max(_LEAST_BLOCK, piece.index.size // 8)
+        if piece.index.size < 4 * size:
+            break
+        index = piece.index[::step]
+        near, rest = np.sort(index[:size]), np.sort(index[size:])
+        fit = _fitted(track, rest, stage, view)
+        time = track.time[near]
+        off = float(np.mean(track.height[near] - fit.heights(time)))
+        design = stage.launch_slopes(view, fit.launch, fit.reference, time)
+        predicted = float(fit.regression.prediction_std(design).mean())
+        if abs(off) < _MEAN_LIMIT * np.hypot(fit.sigma / np.sqrt(size), predicted):
+            break
+        used = rest[fit.regression.used]
+        piece = Piece(used, fit.reference, fit.launch, fit.regression.sigma)
+    return piece
 
 
 def _grown(

@@ -18,9 +18,6 @@ from .view import Stage, View
 _SAME_FALL = 0.3
 """Largest relative difference of a flight's own acceleration: drag and lens make some."""
 
-_STRAIGHT = 0.1
-"""Change of a flight's speed, in the speed, below which its acceleration says nothing."""
-
 _USUAL = 6.0
 """Spread of the samples of a flight, in that of the quieter flights, beyond which it is none."""
 
@@ -147,8 +144,7 @@ def _same_fall(body: Track, sides: Sides, fall: float, stage: Stage) -> Sides:
             continue
         own = own_fall(body, piece)
         allowed = max(4.0 * own.std, _SAME_FALL * abs(fall))
-        time = body.time[piece.index[[0, -1]]]
-        straight = abs(fall) * float(np.ptp(time)) < _STRAIGHT * abs(piece.launch.speed)
+        straight = piece.straight(body.time, fall)
         kept.append(piece if straight or abs(own.value - fall) <= allowed else None)
     return kept
 

@@ -17,12 +17,15 @@ from .view import Launch, Stage, View
 _RESOLVED = 4
 """Samples within a contact from which on its two ends are told apart."""
 
-_SHORTEST, _LONGEST = 3e-5, 2e-3
-"""Contacts of balls and rods, steel on steel to rubber on wood, at a few metres a second [s]; one
-that no sample shows lies between, any order of magnitude as likely as another."""
+_SHORTEST, _LONGEST = 3e-5, 4e-3
+"""Contacts of balls and rods, steel on steel to a marble on a stack of paper, at a few metres a
+second [s]; one that no sample shows lies between, any order of magnitude as likely as another."""
 
 _BEYOND = 0.5
 """Part of what shows of a contact by which both of its ends reach farther: force sets in softly."""
+
+_HIDDEN = 8.0
+"""Spreads of a sample that the path may turn within without a sample that shows the contact."""
 
 _SLOWEST = 0.02
 """Longest contact that samples can show [s]."""
@@ -76,7 +79,8 @@ def touch_of(
         )
         error = step / math.sqrt(12.0)
         return Touch((float(ends[0]), float(ends[1])), (error, error), whole=False)
-    lasts = known or _unseen(moved, step)
+    spread = max(p.sigma for p in flights)
+    lasts = known or _unseen(moved, step + _HIDDEN * spread / max(float(met[1]), 1e-12))
     shares = (ratio / (1.0 + ratio), 1.0 / (1.0 + ratio))
     return Touch(
         (-lasts.value * shares[0], lasts.value * shares[1]),
@@ -98,12 +102,16 @@ def samples_of(
         _held(track, stage, view, piece, lowest, way)
         for piece, way in zip(flights, (-1, 1), strict=True)
     ]
-    shown = sum(r.size for r in runs)
+    ratio = float(np.clip(abs(flights[1].launch.speed / flights[0].launch.speed), 0.1, 1.0))
+    # slowed down over a time, a body is pushed away over that time over the restitution
+    shown = max(sum(r.size for r in runs), math.ceil(runs[0].size * (1.0 + 1.0 / ratio)))
     if shown < _RESOLVED:
         return 0, 0
-    more = math.ceil(_BEYOND * shown)
-    before, after = (int(abs(r[-1] - turning)) + more if r.size else more for r in runs)
-    return before, after
+    before = int(turning - runs[0][-1]) if runs[0].size else 0
+    after = int(runs[1][-1] - turning) if runs[1].size else 0
+    shares = ratio / (1.0 + ratio), 1.0 / (1.0 + ratio)
+    more = [math.ceil(2.0 * _BEYOND * share * shown) for share in shares]
+    return before + more[0], max(after, math.ceil(before / ratio)) + more[1]
 
 
 def _held(
@@ -124,7 +132,10 @@ def _held(
 
 
 def _unseen(moved: int, step: float) -> Measured:
-    """Return how long a contact lasts in which `moved` samples lie, a few at the most [s]."""
+    """Return how long a contact lasts in which `moved` samples lie, a few at the most [s].
+
+    `step` is the longest time without a sample that would show it.
+    """
     if moved:
         low, high = max((moved - 1) * step, _SHORTEST), (moved + 1) * step
         return Measured(0.5 * (low + high), (high - low) / math.sqrt(12.0))

@@ -38,12 +38,23 @@ class Track:
     trend
         Error of a position that grows from one end of a flight to the other, as uneven light makes
         one of the place of an edge [unit].
+    near, unsure
+        Height above the flat below which a position is less sure, as where a body and its
+        reflection run together, and by how much it then may drift over a flight [unit].
     """
 
     time: Array
     height: Array
     floor: float = 0.0
     trend: float = 0.0
+    near: float = 0.0
+    unsure: float = 0.0
+
+    def drift(self, path: float) -> float:
+        """Return the error of a position that grows over a flight of so long a path [unit]."""
+        return (
+            self.trend + self.unsure * max(1.0 - path / self.near, 0.0) if self.near else self.trend
+        )
 
     @cached_property
     def step(self) -> float:

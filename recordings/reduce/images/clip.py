@@ -17,6 +17,7 @@ from .picture_file import (
     DOWN,
     PICTURES,
     cropped,
+    grey_picture,
     natural_order,
     one_channel,
     read_picture,
@@ -66,7 +67,7 @@ def read_clip(
     last: int | None = None,
     crop: tuple[int, int, int, int] | None = None,
 ) -> Clip:
-    """Read a video file (anything FFmpeg decodes: AVI, MP4, MOV, MKV) or a folder of pictures.
+    """Read a video (what FFmpeg decodes, a TIFF of many pages) or a folder of pictures.
 
     Parameters
     ----------
@@ -93,7 +94,12 @@ def read_clip(
             "no such file or folder", source=str(path),
             allowed="a video or a folder of pictures",
         )  # fmt: skip
-    reader = _pictures(path, channel) if path.is_dir() else _video(path, channel)
+    if path.is_dir():
+        reader = _pictures(path, channel)
+    elif path.suffix.lower() in (".tif", ".tiff"):
+        reader = _pages(path, channel)
+    else:
+        reader = _video(path, channel)
     part = islice(reader, first, None if last is None else last + 1)
     turned = ((t, cropped(np.rot90(f, DOWN[down]), crop)) for t, f in part)
     stamps, frames = _gathered(turned, first, str(path))
@@ -181,6 +187,23 @@ def _pictures(path: Path, channel: str) -> Iterator[tuple[float, Frame]]:
         raise InputError("no pictures in it", source=str(path), allowed=" ".join(PICTURES))
     for name in names:
         yield np.nan, read_picture(name, channel=channel)
+
+
+def _pages(path: Path, channel: str) -> Iterator[tuple[float, Frame]]:
+    try:
+        import tifffile
+    except ImportError:
+        raise missing_extra("reading pictures", "video") from None
+    try:
+        with tifffile.TiffFile(path) as pages:
+            for page in pages.pages:
+                yield np.nan, grey_picture(page.asarray(), channel, str(path))
+    except (tifffile.TiffFileError, OSError, ValueError, KeyError, IndexError) as error:
+        if isinstance(error, InputError):
+            raise
+        raise InputError(
+            f"cannot be read as a TIFF ({error})", source=str(path), allowed="a TIFF of many pages"
+        ) from None
 
 
 def _timing(stamps: Array) -> tuple[float, int]:

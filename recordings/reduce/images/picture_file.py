@@ -44,7 +44,18 @@ def read_picture(path: Path, *, channel: str = "grey") -> npt.NDArray[np.uint8]:
             f"cannot be read as a picture ({_first_line(error)})", source=str(path),
             allowed=" ".join(PICTURES),
         ) from None  # fmt: skip
-    return one_channel(_flat(_eight_bits(pixels, str(path)), str(path)), channel)
+    return grey_picture(pixels, channel, str(path))
+
+
+def grey_picture(pixels: npt.NDArray[Any], channel: str, source: str) -> npt.NDArray[np.uint8]:
+    """Return decoded pixels of 8 or 16 bits, grey or in colours, as grey values 0-255.
+
+    Raises
+    ------
+    InputError
+        Pixels of another kind, or more than one picture.
+    """
+    return one_channel(_flat(_eight_bits(pixels, source), source), channel)
 
 
 def _eight_bits(pixels: npt.NDArray[Any], source: str) -> npt.NDArray[np.uint8]:

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import importlib.util
+import math
 import re
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
@@ -11,6 +13,7 @@ from typing import Any
 import numpy as np
 from scipy.spatial.transform import Rotation
 
+from ....core.confined import confined
 from ....core.errors import InputError, InputErrors, missing_extra
 from ...csv_table import Problems, TextTable, numbers, read_text_table, rows_with, selection
 from ..measured import Array
@@ -141,10 +144,27 @@ def read_markers(
 
 
 def _c3d(path: Path, unit: str | None, rate: float | None) -> Markers:
-    try:
-        import ezc3d
-    except ImportError:
-        raise missing_extra("reading C3D files", "mocap") from None
+    if importlib.util.find_spec("ezc3d") is None:
+        raise missing_extra("reading C3D files", "mocap")
+    points, residuals, labels, stated, rates = confined(_c3d_content, path, source=str(path))
+    labels += [f"M{k + 1}" for k in range(len(labels), points.shape[1])]
+    said = unit or (stated[0] if stated else "")
+    factor = metres(said, source=str(path), allowed=UNITS)
+    hertz = rate or (rates[0] if rates else 0.0)
+    if not 0.0 < hertz < math.inf:
+        raise InputError(
+            "the file does not say its frame rate", source=str(path), key="frame_rate_hz",
+            allowed="frames per second",
+        )  # fmt: skip
+    position = np.moveaxis(points, 0, 2).transpose(1, 0, 2) * factor
+    position[(residuals.T < 0.0)] = np.nan
+    time = np.arange(position.shape[0]) / hertz
+    return Markers(time, tuple(labels), position, str(path))
+
+
+def _c3d_content(path: Path) -> tuple[Array, Array, list[str], list[str], list[float]]:
+    import ezc3d
+
     try:
         content = ezc3d.c3d(str(path))
         points = np.asarray(content["data"]["points"], dtype=np.float64)[:3]
@@ -157,19 +177,7 @@ def _c3d(path: Path, unit: str | None, rate: float | None) -> Markers:
         raise InputError(
             f"cannot be read as C3D ({line})", source=str(path), allowed="a C3D file"
         ) from None
-    labels += [f"M{k + 1}" for k in range(len(labels), points.shape[1])]
-    said = unit or (stated[0] if stated else "")
-    factor = metres(said, source=str(path), allowed=UNITS)
-    hertz = rate or (rates[0] if rates else 0.0)
-    if hertz <= 0.0:
-        raise InputError(
-            "the file does not say its frame rate", source=str(path), key="frame_rate_hz",
-            allowed="frames per second",
-        )  # fmt: skip
-    position = np.moveaxis(points, 0, 2).transpose(1, 0, 2) * factor
-    position[(residuals.T < 0.0)] = np.nan
-    time = np.arange(position.shape[0]) / hertz
-    return Markers(time, tuple(labels), position, str(path))
+    return points, residuals, labels, stated, rates
 
 
 def _parameter(content: Any, name: str) -> list[Any]:

@@ -1,7 +1,8 @@
-"""Tables that instruments and spreadsheets write: text with any separator, XLS, XLSX, ODS.
+"""Tables that instruments and spreadsheets write: text, workbooks, packed exports, tracks.
 
-A row is data if most of its filled cells are numbers; the last other row above
-holds the names. A column is picked by its name, by the beginning of it, or by its number.
+A row is data if most of its filled cells are numbers; the last other row above holds the names, or
+the units of the names above it. A column is picked by its name, by the beginning of it, or by its
+number.
 """
 
 from __future__ import annotations
@@ -19,11 +20,13 @@ from ....core.errors import InputError
 from ...csv_table import number, rows_with, selection
 from ..measured import Array
 from ..units import UNITS
+from .packed import packed_table, tracker_rows
 from .workbook import workbook_rows
 
 _BOOKS = (".xls", ".xlsx", ".xlsm", ".xlsb", ".ods")
 _LARGEST = 200_000_000
 _DECIMAL_COMMA = re.compile(r"[+-]?\d*,\d+([eE][+-]?\d+)?")
+_KNOWN_UNITS = {unit for units in UNITS.values() for unit in units if unit} | {"V", "mV", "px"}
 _UNIT = re.compile(r"[\[(]\s*([^\])]+?)\s*[\])]\s*$")
 
 
@@ -138,7 +141,8 @@ def read_columns(path: Path, *, sheet: str = "") -> Columns:
     path
         The file.
     sheet
-        Name of a sheet of a workbook; the first one by default.
+        Name of a sheet of a workbook, a table of a packed export, a track of a tracker's file; the
+        first or only one by default.
 
     Raises
     ------
@@ -152,15 +156,29 @@ def read_columns(path: Path, *, sheet: str = "") -> Columns:
             f"{path.stat().st_size / 1e6:.0f} MB", source=str(path),
             allowed=f"up to {_LARGEST // 10**6} MB",
         )  # fmt: skip
+    kind = path.suffix.lower()
+    if kind == ".trk":
+        names, values = tracker_rows(path, sheet)
+        return columns_of([names, *([repr(float(v)) for v in row] for row in values)], str(path))
+    if kind == ".zip":
+        text, source = packed_table(path, sheet)
+        return columns_of(text_rows(text, source), source)
     rows = (
         confined(workbook_rows, path, sheet, source=str(path))
-        if path.suffix.lower() in _BOOKS
-        else _text(path)
+        if kind in _BOOKS
+        else text_rows(path.read_bytes(), str(path))
     )
-    return _columns(rows, str(path))
+    return columns_of(rows, str(path))
 
 
-def _columns(rows: list[list[str]], source: str) -> Columns:
+def columns_of(rows: list[list[str]], source: str) -> Columns:
+    """Return the numbers in rows of cells, with the names above them.
+
+    Raises
+    ------
+    InputError
+        No row of numbers.
+    """
     data = [(k, row) for k, row in enumerate(rows) if _is_data(row)]
     if not data:
         raise InputError("no row of numbers", source=source, allowed="columns of numbers")
@@ -169,9 +187,16 @@ def _columns(rows: list[list[str]], source: str) -> Columns:
     values = np.full((len(data), width), np.nan)
     for line, (_, row) in enumerate(data):
         values[line, : len(row)] = [number(cell) for cell in row]
-    head = next((row for row in reversed(rows[:first]) if len(_filled(row)) > 1), [])
-    if not head and first > 0 and width == 1:
-        head = rows[first - 1]
+    above = rows[:first]
+    units = above.pop() if len(above) > 1 and all(map(_is_unit, _filled(above[-1]))) else []
+    head = next((row for row in reversed(above) if len(_filled(row)) > 1 or width == 1), [])
+    if units and head:
+        padded = [*units, *[""] * len(head)]
+        head = [
+            f"{name} [{unit.strip('()[] ')}]" if unit else name
+            for name, unit in zip(head, padded, strict=False)
+        ]
+    head = head or units
     names = tuple((head + [""] * width)[:width])
     cells = tuple(tuple((row + [""] * width)[:width]) for _, row in data)
     return Columns(names, values, cells, source)
@@ -187,10 +212,21 @@ def _is_data(row: Sequence[str]) -> bool:
     return bool(2 * numbers > len(filled))
 
 
-def _text(path: Path) -> list[list[str]]:
-    raw = path.read_bytes()
+def _is_unit(cell: str) -> bool:
+    bare = cell.strip("()[] ")
+    return bare in _KNOWN_UNITS or (bare != cell.strip() and len(bare) < 12)
+
+
+def text_rows(raw: bytes, source: str) -> list[list[str]]:
+    """Return the cells of a text table.
+
+    Raises
+    ------
+    InputError
+        Not text, empty, or no table.
+    """
     if b"\0" in raw[:4096] and not raw.startswith((b"\xff\xfe", b"\xfe\xff")):
-        raise InputError("not text", source=str(path), allowed="a text table, XLS, XLSX or ODS")
+        raise InputError("not text", source=source, allowed="a text table, XLS, XLSX or ODS")
     wide = raw.startswith((b"\xff\xfe", b"\xfe\xff"))
     try:
         text = raw.decode("utf-16" if wide else "utf-8-sig")
@@ -198,7 +234,7 @@ def _text(path: Path) -> list[list[str]]:
         text = raw.decode("latin-1")  # old instruments write their micro and degree signs so
     lines = [line for line in text.splitlines() if line.strip() and not line.startswith("#")]
     if not lines:
-        raise InputError("empty", source=str(path), allowed="columns of numbers")
+        raise InputError("empty", source=source, allowed="columns of numbers")
     separator = _separator(lines)
     try:
         rows = (
@@ -207,7 +243,7 @@ def _text(path: Path) -> list[list[str]]:
             else list(csv.reader(lines, delimiter=separator, skipinitialspace=True))
         )
     except csv.Error as error:
-        raise InputError(f"not a table ({error})", source=str(path), allowed="a table") from None
+        raise InputError(f"not a table ({error})", source=source, allowed="a table") from None
     return [[_point(cell.strip(), separator) for cell in row] for row in rows]
 
 

@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+import math
+from dataclasses import dataclass, replace
 
 from ..bounces.options import GRAVITY
 from ..measured import Array, Measured, Trial
@@ -29,6 +30,7 @@ def reduce_pulse(
     approach: Measured | None,
     gravity: float = GRAVITY,
     source: str,
+    scale_std: float = 0.0,
 ) -> PulseReduction:
     """Measure a pulse.
 
@@ -49,6 +51,8 @@ def reduce_pulse(
         Acceleration of the fall [m/s²].
     source
         The file.
+    scale_std
+        Relative error of the sensor's scale.
 
     Raises
     ------
@@ -56,6 +60,10 @@ def reduce_pulse(
         No pulse above the noise.
     """
     pulse = find_pulse(time, value, source=source)
+    peak, area = (
+        Measured(v.value, math.hypot(v.std, scale_std * v.value)) for v in (pulse.peak, pulse.area)
+    )
+    pulse = replace(pulse, peak=peak, area=area)
     values = {("peak_force_N" if holds == "force" else "peak_acceleration_m_s2"): pulse.peak}
     values["contact_time_s"] = pulse.duration
     row = {"contact_time_s": pulse.duration}

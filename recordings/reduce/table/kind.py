@@ -16,10 +16,13 @@ from ..time_window import TimeWindow
 from .file import Columns, read_columns
 from .force import reduce_pulse
 from .height import reduce_heights
-from .picture import draw_heights, draw_pulse, draw_times, draw_trials
-from .trials import reduce_rebounds, reduce_trials
+from .picture import draw_heights, draw_pulse, draw_tension, draw_times, draw_trials
+from .tension import reduce_tension
+from .trials import reduce_leeb, reduce_rebounds, reduce_trials
 
-Holds = Literal["force", "acceleration", "height", "bounces", "rebounds", "trials"]
+Holds = Literal[
+    "force", "acceleration", "height", "bounces", "rebounds", "leeb", "tension", "trials"
+]
 
 _FEWEST = 20
 
@@ -29,9 +32,11 @@ class Options(BounceOptions, TimeWindow):
 
     holds: Holds = Field(
         description="force, acceleration or height against time; times of bounces; rebound heights "
-        "beside drop heights; a row a trial"
+        "beside drop heights; Leeb numbers; stress over strain of a tension test; a row a trial"
     )
-    sheet: str = Field("", description="of a workbook; default: the first")
+    sheet: str = Field(
+        "", description="of a workbook, a ZIP file or a tracker's project; default: the first"
+    )
     select: str = Field("", description="COLUMN=VALUE: only these rows")
     time: str = Field("1", description="column of the time, by name or number")
     value: str = Field("2", description="column of what was measured, by name or number")
@@ -40,6 +45,22 @@ class Options(BounceOptions, TimeWindow):
     )
     value_unit: str = Field(
         "file", description="as N, kN, m/s2, g, mm, px; file: what the column's name says"
+    )
+    gain: float | None = Field(
+        None,
+        gt=0.0,
+        description="newtons or m/s2 that one of the column's unit is worth: one over "
+        "the sensitivity of a sensor read in volts",
+    )
+    gain_std: float = Field(0.0, ge=0.0, description="its standard deviation")
+    strain_is: Literal["engineering", "true"] = Field(
+        "engineering", description="of a tension test; stresses likewise"
+    )
+    E_Pa: float | None = Field(
+        None, gt=0.0, description="of the metal in tension; default: the slope of the curve"
+    )
+    body: str = Field(
+        "target", description="whose flow curve a tension test is: target, or a striker's name"
     )
     rate_hz: float | None = Field(
         None, gt=0.0, description="samples a second, where the time column counts samples"
@@ -83,6 +104,12 @@ def reduce(path: Path, options: Options) -> Reduced:
             table, value=options.value, unit=options.value_unit, std=options.value_std,
             ball=options.ball,
         )  # fmt: skip
+    elif options.holds == "leeb":
+        found = reduce_leeb(
+            table, value=options.value, std=options.value_std, speed=options.approach_speed_m_s
+        )
+    elif options.holds == "tension":
+        return _tension(path, table, options)
     else:
         found = reduce_trials(table)
     return Reduced(
@@ -93,16 +120,41 @@ def reduce(path: Path, options: Options) -> Reduced:
 
 def _pulse(path: Path, table: Columns, options: Options) -> Reduced:
     time, value, column = _series(table, options)
-    unit = table.factor(column, options.holds, given=options.value_unit, key="value_unit")
+    unit = options.gain
+    if unit is None and table.unit(column) in ("V", "mV"):
+        raise InputError(
+            f"column {table.names[column]!r} holds volts", source=str(path), key="gain",
+            allowed="newtons or m/s2 a volt, from the sensor's sheet",
+        )  # fmt: skip
+    if unit is None:
+        unit = table.factor(column, options.holds, given=options.value_unit, key="value_unit")
     speed = options.approach_speed_m_s
     found = reduce_pulse(
         time, value * unit, holds=options.holds, mass=options.mass_kg,
         approach=None if speed is None else Measured(speed, options.approach_speed_m_s_std),
         gravity=options.gravity_m_s2, source=str(path),
+        scale_std=options.gain_std / unit if options.gain else 0.0,
     )  # fmt: skip
     return Reduced(
         source=path, values=found.values, trials=(found.trial,), notes=found.notes,
         draw=lambda to: draw_pulse(found, to),
+    )  # fmt: skip
+
+
+def _tension(path: Path, table: Columns, options: Options) -> Reduced:
+    at, value = table.find(options.time, key="time"), table.find(options.value, key="value")
+    parts = 0.01 if table.unit(at) == "%" else 1.0
+    unit = table.factor(value, "stress", given=options.value_unit, key="value_unit")
+    found = reduce_tension(
+        table.values[:, at] * parts,
+        table.values[:, value] * unit,
+        strain_is=options.strain_is,
+        E=options.E_Pa,
+        source=str(path),
+    )
+    return Reduced(
+        source=path, values=found.values, trials=(), notes=found.notes,
+        draw=lambda to: draw_tension(found, to), flow=(options.body, found.flow),
     )  # fmt: skip
 
 
@@ -146,6 +198,12 @@ def _bounces(path: Path, table: Columns, options: Options) -> Reduced:
     )  # fmt: skip
 
 
+def _counts(column: Array) -> bool:
+    """Whether a column without a unit holds 0, 1, 2 ... instead of times."""
+    steps = np.diff(column[np.isfinite(column)])
+    return steps.size > 0 and bool(np.mean(steps == 1.0) > 0.9)
+
+
 def _series(table: Columns, options: Options) -> tuple[Array, Array, int]:
     """Time [s], numbers as they stand, and their column."""
     where = table.find(options.time, key="time")
@@ -153,6 +211,11 @@ def _series(table: Columns, options: Options) -> tuple[Array, Array, int]:
     second = table.factor(where, "time", given=options.time_unit, key="time_unit", default="s")
     if options.rate_hz is not None:
         second = 1.0 / options.rate_hz
+    elif options.time_unit == "file" and not table.unit(where) and _counts(table.values[:, where]):
+        raise InputError(
+            "the column counts samples", source=table.source, key="rate_hz",
+            allowed="samples a second, or time_unit if these are times",
+        )  # fmt: skip
     time, value = table.values[:, where] * second, table.values[:, column]
     whole = np.isfinite(time) & np.isfinite(value)
     time, value = time[whole], value[whole]

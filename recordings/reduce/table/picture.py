@@ -6,11 +6,13 @@ from pathlib import Path
 
 import numpy as np
 
+from ...flow_curve import PROOF_STRAIN
 from ..bounces.picture import draw_intervals, draw_restitution
 from ..bounces.times import BounceTimes
 from ..pictures import figure, save
 from .force import PulseReduction
 from .height import HeightReduction
+from .tension import TensionReduction
 from .trials import TrialsReduction
 
 
@@ -68,6 +70,26 @@ def draw_times(found: BounceTimes, path: Path) -> None:
     made, axes = figure(1, 2, size=(11.0, 4.5))
     draw_intervals(axes[0, 0], found)
     draw_restitution(axes[0, 1], found)
+    save(made, path)
+
+
+def draw_tension(found: TensionReduction, path: Path) -> None:
+    """Draw the curve with its elastic line, and the rows of the flow curve."""
+    made, axes = figure(1, 2, size=(11.0, 4.5))
+    axes[0, 0].plot(found.strain, 1e-6 * found.stress, "k-", lw=0.8)
+    top = float(found.flow.stress[0]) / found.modulus.value
+    axes[0, 0].plot([0.0, top], [0.0, 1e-6 * found.modulus.value * top], "C3", lw=1.2)
+    axes[0, 0].set(
+        xlabel="true strain",
+        ylabel="true stress [MPa]",
+        title=f"E = {found.modulus.scaled(1e-9)} GPa",
+    )
+    axes[0, 1].plot(found.flow.strain, 1e-6 * found.flow.stress, "o-", ms=3)
+    axes[0, 1].axvline(PROOF_STRAIN, color="0.6", lw=0.8)
+    axes[0, 1].set(xlabel="plastic strain", ylabel="true stress [MPa]",
+                   title=f"0.2 %: {1e-6 * found.flow.strength:.4g} MPa")  # fmt: skip
+    for axis in axes.flat:
+        axis.grid(alpha=0.3)
     save(made, path)
 
 

@@ -16,6 +16,7 @@ from scipy.signal import savgol_filter
 from ....core.errors import InputError
 from ..measured import Array, Measured
 from ..regression import robust_regression, robust_std
+from .shape import shape_of
 
 _LOW, _HIGH = 0.08, 0.45
 """Part of the peak between which the flanks are taken as straight in F^(2/3)."""
@@ -77,7 +78,7 @@ def find_pulse(time: Array, value: Array, *, source: str) -> Pulse:
     Raises
     ------
     InputError
-        Too few samples, or nothing above the noise.
+        Too few samples, nothing above the noise, or no whole pulse: what it looks like.
     """
     if time.size < 20:
         raise InputError(f"{time.size} samples", source=source, allowed="20 or more")
@@ -98,11 +99,31 @@ def find_pulse(time: Array, value: Array, *, source: str) -> Pulse:
     end, used_b = _flank(time, clear, top, +1, peak.value)
     if min(used_a, used_b) < 4:
         notes.append(f"only {min(used_a, used_b)} samples on a flank: the ends are rough")
+    shape = shape_of(time, clear, top, (start.value, end.value), source=source)
+    if shape.ringing:
+        notes.append(
+            f"rings: {shape.ringing:.0%} of the peak to the other side; peak and ends are as rough"
+        )
+        peak = Measured(peak.value, math.hypot(peak.std, 0.25 * shape.ringing * peak.value))
+        rough = 0.1 * shape.ringing * (end.value - start.value)
+        start, end = (Measured(e.value, math.hypot(e.std, rough)) for e in (start, end))
+    if shape.others:
+        when = ", ".join(f"{t:.6g}" for t in shape.others[:5])
+        notes.append(
+            f"the largest of {1 + len(shape.others)} pulses; others at {when} s: first_s and "
+            "last_s pick one"
+        )
     inside = (time >= start.value) & (time <= end.value)
     area = float(np.trapezoid(clear[inside], time[inside]))
     step = float(np.median(np.diff(time)))
     drift = noise / math.sqrt(max(before, 1)) * (end.value - start.value)
-    area_std = math.hypot(noise * step * math.sqrt(max(int(inside.sum()), 1)), drift)
+    late = 0.5 * shape.level_after * peak.value * (end.value - start.value)
+    if abs(shape.level_after) > 0.02:
+        notes.append(
+            f"the level afterwards is {shape.level_after:+.0%} of the peak: a zero that drifts"
+        )
+    scatter = noise * step * math.sqrt(max(int(inside.sum()), 1))
+    area_std = math.hypot(scatter, drift, late)
     if inside[0] and inside[-1]:
         raise InputError(
             "the record does not rise from zero and come back", source=source,

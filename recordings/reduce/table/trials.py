@@ -85,6 +85,55 @@ def reduce_rebounds(
     )  # fmt: skip
 
 
+_LEEB_SPEED = 2.05
+"""Approach of the body of a device D [m/s] (ISO 16859-1)."""
+
+
+def reduce_leeb(table: Columns, *, value: str, std: float, speed: float | None) -> TrialsReduction:
+    """Return a trial for each Leeb number, a thousand times the restitution of the device's ball.
+
+    Parameters
+    ----------
+    table
+        Numbers in the column `value` and in all after it.
+    value
+        Their first column.
+    std
+        Standard deviation of a number.
+    speed
+        Approach [m/s]; None takes that of device D.
+
+    Raises
+    ------
+    InputError
+        No number, or one that is not between 0 and 1000.
+    """
+    first = table.find(value, key="value")
+    approach = Measured(speed or _LEEB_SPEED, 0.0)
+    trials, wrong = [], []
+    for row, numbers in enumerate(table.values[:, first:], start=1):
+        for k, number in enumerate(numbers[np.isfinite(numbers)], start=1):
+            if not 0.0 < number < 1000.0:
+                wrong.append(InputError(
+                    f"{number:g}", source=table.source, key=f"row {row} of the numbers",
+                    allowed="a Leeb number between 0 and 1000",
+                ))  # fmt: skip
+            ratio = Measured(float(number) / 1e3, std / 1e3)
+            seen = {"impact_speed_m_s": approach, "restitution": ratio}
+            trials.append(Trial(seen, label=f"{row}-{k}"))
+    if wrong:
+        raise InputErrors(tuple(wrong))
+    if not trials:
+        raise InputError("no Leeb number", source=table.source, allowed="numbers of 0 to 1000")
+    ratios = np.array([t.observables["restitution"].value for t in trials])
+    spread = float(np.std(ratios, ddof=1)) if ratios.size > 1 else math.nan
+    notes = () if speed else (f"approach {_LEEB_SPEED} m/s, as of device D",)
+    return TrialsReduction(
+        {"restitution": Measured(float(ratios.mean()), spread / math.sqrt(ratios.size))},
+        tuple(trials), notes, ("number", np.arange(1.0, ratios.size + 1)), ("restitution", ratios),
+    )  # fmt: skip
+
+
 def _fall(ball: Ball, height: float) -> Fall:
     """Return the flight over a height [m], its drag taken at a typical speed."""
     return ball.fall(0.75 * math.sqrt(2.0 * ball.gravity * height))

@@ -34,6 +34,10 @@ _POSITION_FLOOR, _POSITION_TREND = 1e-3, 5e-3
 """No position in a picture is believed better than the first; by the second uneven light and a blur
 that is not the same everywhere move it from one end of a flight to the other [pixel]."""
 
+_NEAR_BLURS, _UNSURE = 3.5, 0.1
+"""Blurs above the flat within which the reflection of a rod, modelled or not, moves its tip, and by
+how much it did in rendered clips [pixel]."""
+
 
 @dataclass(frozen=True)
 class Optics:
@@ -193,30 +197,34 @@ def reduce_video(
         levels = grey_levels(frames[critical : critical + 1], clip.source)
         track, rod = track_rod(frames, critical, levels, clip.source)
         half = Measured(rod.half_width, 0.02)
-        tip_radius = rod.tip_radius
+        tip_radius, near = rod.tip_radius, _NEAR_BLURS * rod.blur
     else:
         track = track_ball(frames, levels, clip.source)
         radii = track["radius"]
         half = Measured(float(np.median(radii)), float(np.std(radii) / math.sqrt(radii.size)))
         half = Measured(half.value, max(half.std, 0.01 * half.value))
-        tip_radius = half.value
+        tip_radius, near = half.value, 0.0
     fresh = np.isin(track["frame"], clip.repeats, invert=True)
     track = {name: values[fresh] for name, values in track.items() if name != "radius"}
     notes = _timing_notes(clip, optics.rate)
     result = VideoReduction(
         **track, shape=shape, critical_frame=critical, threshold=0.5 * sum(levels), levels=levels,
         half_width=half, tip_radius=tip_radius, optics=optics,
-        found=_contacts(track, half, optics, clip.source), notes=(), source=clip.source,
+        found=_contacts(track, half, near, optics, clip.source), notes=(), source=clip.source,
     )  # fmt: skip
     return replace(result, notes=(*notes, *result.found.notes, *_flight_notes(result)))
 
 
-def _contacts(track: dict[str, Array], half: Measured, optics: Optics, source: str) -> Bounced:
+def _contacts(
+    track: dict[str, Array], half: Measured, near: float, optics: Optics, source: str
+) -> Bounced:
     time = optics.time(track["frame"].astype(np.int64), track["row"])
     stated = optics.scale
     if stated is None and optics.size is not None:
         stated = optics.size.over(half.scaled(2.0))
-    path = Track(time, -track["row"], floor=_POSITION_FLOOR, trend=_POSITION_TREND)
+    path = Track(
+        time, -track["row"], floor=_POSITION_FLOOR, trend=_POSITION_TREND, near=near, unsure=_UNSURE
+    )
     found = find_bounces(path, optics.ball, metres=stated)
     if found is None:
         raise InputError(

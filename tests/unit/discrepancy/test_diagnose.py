@@ -176,8 +176,47 @@ def test_repeats_that_scatter_beyond_their_stated_noise_are_all_kept(tmp_path: P
     assert cells.value == pytest.approx(np.mean(e), rel=1e-9)
 
 
-def test_the_template_as_it_is_written_is_too_little_to_say_anything(tmp_path: Path) -> None:
+ONE_ROD = """format = "recording-set/1"
+[target]
+E_Pa = 2.0e11
+nu = 0.3
+Sy_Pa = 3.0e8
+density_kg_m3 = 7850
+[strikers.rod]
+shape = "rod"
+tip_radius_m = 9.0e-3
+radius_m = 9.0e-3
+length_m = 0.3
+mass_kg = 0.6193
+density_kg_m3 = 7800
+E_Pa = 2.0e11
+nu = 0.3
+Sy_Pa = 7.5e8
+[noise]
+restitution = 0.01
+permanent_depth_m = 1.0e-6
+impact_speed_relative = 0.005
+"""
+
+
+def _one_rod(folder: Path, rows: str) -> None:
+    folder.mkdir()
+    (folder / "set.toml").write_text(ONE_ROD)
+    (folder / "trials.csv").write_text(rows)
+
+
+def test_a_set_to_fill_in_is_refused(tmp_path: Path) -> None:
     write_template(tmp_path / "mine", shape="rod")
+    with pytest.raises(InputError, match=r"target\.E_Pa: to fill in"):
+        diagnose(read(tmp_path / "mine"))
+
+
+def test_one_trial_is_too_little_to_say_anything(tmp_path: Path) -> None:
+    _one_rod(
+        tmp_path / "mine",
+        "trial,striker,angle_deg,drop_height_m,restitution,permanent_depth_m\n"
+        "T01,rod,90,0.05,0.5,95e-6\n",
+    )
     verdict = diagnose(read(tmp_path / "mine"))
     found = json.loads(json.dumps(verdict.to_dict(), allow_nan=False))
     assert found["verdict"] == "undetermined"
@@ -188,10 +227,7 @@ def test_the_template_as_it_is_written_is_too_little_to_say_anything(tmp_path: P
 
 
 def test_trials_without_a_measured_number_are_refused_in_one_line(tmp_path: Path) -> None:
-    write_template(tmp_path / "mine", shape="rod")
-    (tmp_path / "mine" / "trials.csv").write_text(
-        "trial,striker,angle_deg,drop_height_m\nT01,rod,90,0.05\n"
-    )
+    _one_rod(tmp_path / "mine", "trial,striker,angle_deg,drop_height_m\nT01,rod,90,0.05\n")
     with pytest.raises(InputError, match=r"no measured number .* one or more of restitution"):
         diagnose(read(tmp_path / "mine"))
 

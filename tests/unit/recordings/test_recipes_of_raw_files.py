@@ -49,7 +49,9 @@ def test_marble_recipe_leaves_out_what_shows_no_bounce(tmp_path):
     assert made == 2
     assert [line.partition(":")[0] for line in left_out] == ["3-60-M.csv"]
     # SOURCE.md: about 0.54 on 60 sheets
-    assert read(tmp_path / "set").values("restitution") == pytest.approx([0.56, 0.56], abs=0.06)
+    found = read(tmp_path / "set")
+    assert found.values("restitution") == pytest.approx([0.56, 0.56], abs=0.06)
+    assert found.trials.varied == {"x_sheets": ("60", "60")}
 
 
 def test_a_folder_without_raw_files_gives_a_line(tmp_path):

@@ -14,7 +14,6 @@ from dentscope.recordings import (
     RecordingSet,
     Setup,
     Trials,
-    audit,
     read,
     write,
 )
@@ -30,14 +29,15 @@ def run(*arguments):
     return result.output, result.exception
 
 
-@pytest.mark.parametrize("option", [[], ["--sphere"]])
-def test_template_is_a_sound_set_without_contradiction(tmp_path, option):
+@pytest.mark.parametrize(("option", "count"), [([], 12), (["--sphere"], 10)])
+def test_template_is_a_set_to_fill_in(tmp_path, option, count):
     _, failure = run("new", tmp_path / "set", *option)
     assert failure is None
-    text, failure = run("check", tmp_path / "set")
-    assert failure is None
-    assert "sound; 1 trials" in text
-    assert not audit(read(tmp_path / "set")).flagged
+    _, failure = run("check", tmp_path / "set")
+    lines = str(failure).splitlines()
+    assert sum("to fill in" in line for line in lines) == count
+    assert "no trial" in lines[-1]
+    assert len(lines) == count + 1
     _, failure = run("new", tmp_path / "set")
     assert isinstance(failure, InputError)
     assert "there is one already" in str(failure)
@@ -95,6 +95,8 @@ def test_any_sound_set_comes_back_from_its_files(data, tmp_path_factory):
         striker=(striker,) * n,
         angle_deg=np.array(data.draw(st.lists(st.floats(0.1, 90), min_size=n, max_size=n))),
         drop_height_m=np.array(data.draw(st.lists(numbers, min_size=n, max_size=n))),
+        # a restitution above 1 needs a reason
+        note=("made up",) * n,
         observables={observable: np.array(values)},
     )
     folder = tmp_path_factory.mktemp("set")

@@ -60,7 +60,7 @@ def test_force_table_into_a_set(tmp_path):
     command = ["reduce", "table", str(tmp_path / "blow.csv"), "--holds", "force", "--mass-kg"]
     command += ["0.028", "--approach-speed-m-s", "1.5", "--into", str(tmp_path / "set")]
     assert run(command) == 0
-    found = read(tmp_path / "set")
+    found = read(tmp_path / "set", unfinished=True)
     assert found.trials.observables["peak_force_N"][0] == pytest.approx(peak, rel=0.005)
     assert found.trials.observables["contact_time_s"][0] == pytest.approx(duration, rel=0.02)
     assert found.trials.observables["restitution"][0] == pytest.approx(1.0, abs=0.01)
@@ -103,7 +103,7 @@ def test_rows_of_trials_in_other_units(tmp_path):
     where = tmp_path / "set"
     given = ["reduce", "table", str(tmp_path / "rows.csv"), "--holds", "trials"]
     assert run([*given, "--into", str(where)]) == 0
-    trials = read(where).trials
+    trials = read(where, unfinished=True).trials
     assert trials.impact_speed_m_s == pytest.approx([1.5, 2.5])
     assert trials.observables["permanent_depth_m"] == pytest.approx([12.5e-6, 21e-6])
     assert trials.observables["contact_time_s"][1] == pytest.approx(151e-6)
@@ -115,7 +115,7 @@ def test_rows_of_trials_in_other_units(tmp_path):
     [
         ("a,b\n1,2\n3,4\n", ("a", "b"), [1.0, 2.0]),
         ("# note\nTime [s]\tF [N]\n0,5\t1,5\n", ("Time [s]", "F [N]"), [0.5, 1.5]),
-        ("run of May\nt;F\n(s);(N)\n0;1\n1;2\n", ("(s)", "(N)"), [0.0, 1.0]),
+        ("run of May\nt;F\n(s);(N)\n0;1\n1;2\n", ("t [s]", "F [N]"), [0.0, 1.0]),
         ("1 2\n3 4\n", ("", ""), [1.0, 2.0]),
         ("t,\xb0\n1,2\n", ("t", "\xb0"), [1.0, 2.0]),
     ],

@@ -39,12 +39,13 @@ def test_speeds_and_tip_of_a_rod(clip):
     optics = Optics(truth.rate, scale=Measured(truth.scale, 0.0))
     found = reduce_video(_no_repeats(frames), optics)
     bounce = found.bounces[0]
-    for value, known in (
-        (bounce.approach.scaled(truth.scale), truth.approach),
-        (bounce.rebound.scaled(truth.scale), truth.rebound),
+    # it rises by no more than five pixels, along which uneven light moves the tip by a hundredth
+    for value, known, mark in (
+        (bounce.approach.scaled(truth.scale), truth.approach, SPEED),
+        (bounce.rebound.scaled(truth.scale), truth.rebound, 2.0 * SPEED),
     ):
-        assert value.value == pytest.approx(known, rel=SPEED)
-        assert abs(value.value - known) < 4.0 * value.std
+        assert value.value == pytest.approx(known, rel=mark)
+        assert abs(value.value - known) < 3.0 * value.std
     _, row = truth.tip(found.frame)
     assert np.sqrt(np.mean((found.row - row) ** 2)) < PLACE
     assert np.degrees(np.median(found.lean)) == pytest.approx(np.degrees(truth.lean), abs=0.1)

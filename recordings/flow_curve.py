@@ -1,0 +1,112 @@
+"""Flow curves of a recording set: a metal's true stress over plastic strain, as it was measured."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from pathlib import Path
+
+import numpy as np
+import numpy.typing as npt
+
+from ..core.errors import InputError, InputErrors
+from ..core.output import csv_text
+from .csv_table import Array, Problems, numbers, read_text_table
+
+COLUMNS = ("plastic_strain", "true_stress_Pa", "strain_rate_per_s", "temperature_K")
+"""The last two are optional."""
+
+PROOF_STRAIN = 0.002
+
+
+@dataclass(frozen=True, eq=False)
+class MeasuredFlow:
+    """Rows of a measured flow curve, each array (n,).
+
+    Parameters
+    ----------
+    strain, stress
+        Plastic strain [-], true stress [Pa].
+    rate, temperature
+        Strain rate [1/s] and temperature [K], nan where the table does not say them.
+    """
+
+    strain: Array
+    stress: Array
+    rate: Array
+    temperature: Array
+
+    @property
+    def tests(self) -> list[npt.NDArray[np.intp]]:
+        """Rows of each test, at one rate and one temperature; the slowest first, then the coldest.
+
+        The order is that of what a handbook's strength is measured at.
+        """
+        pairs = np.stack([np.nan_to_num(self.rate), np.nan_to_num(self.temperature)], axis=1)
+        return [np.flatnonzero((pairs == pair).all(axis=1)) for pair in np.unique(pairs, axis=0)]
+
+    @property
+    def strength(self) -> float:
+        """Stress at 0.2 % plastic strain of the slowest test, its first row beyond that [Pa]."""
+        rows = self.tests[0]
+        return float(np.interp(PROOF_STRAIN, self.strain[rows], self.stress[rows]))
+
+    def text(self) -> str:
+        """Return the table as a file."""
+        columns = {
+            name: column
+            for name, column in zip(
+                COLUMNS, (self.strain, self.stress, self.rate, self.temperature), strict=True
+            )
+            if np.isfinite(column).any()
+        }
+        rows = ([f"{v:.8g}" for v in row] for row in zip(*columns.values(), strict=True))
+        return csv_text(rows, header=columns)
+
+
+def read_flow_curve(path: Path) -> MeasuredFlow:
+    """Read a flow curve: `plastic_strain`, `true_stress_Pa`, optional rate and temperature.
+
+    Raises
+    ------
+    InputErrors
+        Every mistake, a line each, with its row.
+    """
+    problems = Problems(str(path))
+    table = read_text_table(path, COLUMNS, problems)
+    if table is None:
+        raise InputErrors(tuple(problems.found))
+    for name in COLUMNS[:2]:
+        if name not in table.columns:
+            problems.add("missing", row=1, column=name, allowed=", ".join(COLUMNS))
+    empty = np.full(len(table.rows), np.nan)
+    values = [numbers(table, n, problems) if n in table.columns else empty.copy() for n in COLUMNS]
+    for name, column in zip(COLUMNS, values, strict=True):
+        if name not in table.columns:
+            continue
+        for row, cell, value in zip(table.rows, table.cells[name], column, strict=True):
+            if not cell:
+                problems.add("empty", row=row, column=name, allowed="a number")
+            elif value < 0.0 or (value == 0.0 and name != COLUMNS[0]):
+                allowed = "0 or above" if name == COLUMNS[0] else "above 0"
+                problems.add(f"{value:g}", row=row, column=name, allowed=allowed)
+    if problems.found:
+        raise InputErrors(tuple(problems.found))
+    flow = MeasuredFlow(*values)
+    for rows in flow.tests:
+        if rows.size < 2:
+            problems.add(
+                "one row at its rate and temperature", row=table.rows[int(rows[0])],
+                allowed="two or more rows of each test",
+            )  # fmt: skip
+        for k in np.flatnonzero(np.diff(flow.strain[rows]) <= 0.0)[:1]:
+            problems.add(
+                f"{flow.strain[rows[k + 1]]:g} after {flow.strain[rows[k]]:g}",
+                row=table.rows[int(rows[k + 1])], column=COLUMNS[0],
+                allowed="a strain that increases within each test",
+            )  # fmt: skip
+    if problems.found or not len(table.rows):
+        raise InputErrors(
+            tuple(problems.found)
+            or (InputError("no row", source=str(path), allowed="two or more rows"),)
+        )
+    return flow

@@ -1,0 +1,41 @@
+"""One raw file taken in twice under two names: not a repeat, but the same impact counted twice."""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Sequence
+from pathlib import Path
+from typing import Any
+
+from ..core.errors import InputError
+
+
+def taken_twice(reduced: Path, trials: Sequence[str]) -> list[InputError]:
+    """Return a mistake for each record whose raw file another one reduced in the same way.
+
+    Parameters
+    ----------
+    reduced
+        Folder of the records that reductions leave in a set.
+    trials
+        Those that the set still holds.
+    """
+    first: dict[str, str] = {}
+    mistakes = []
+    for path in sorted(reduced.glob("*.json")) if reduced.is_dir() else ():
+        try:
+            record: Any = json.loads(path.read_text(encoding="utf-8"))
+            names = [name for name in record["trials"] if name in trials]
+            what = json.dumps(
+                [record.get("sha256") or record["files"], record["kind"], record["options"]]
+            )
+        except (OSError, ValueError, KeyError, TypeError):
+            continue  # a record is for people: the set does not depend on it
+        if names and what in first:
+            mistakes.append(InputError(
+                f"the raw file of {first[what]} again, reduced in the same way", source=str(path),
+                key=f"trial {names[0]}", allowed="each raw file once: delete the trial or its twin",
+            ))  # fmt: skip
+        elif names:
+            first[what] = f"trial {names[0]}"
+    return mistakes

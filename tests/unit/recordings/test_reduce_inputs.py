@@ -1,0 +1,130 @@
+"""Files as laboratories keep them: tracker projects, packed exports, stacks of pages, strengths."""
+
+import zipfile
+
+import numpy as np
+import pytest
+from dentscope.cli import run
+from dentscope.core.errors import InputError
+from dentscope.recordings import read
+from dentscope.recordings.reduce.images.clip import read_clip
+from dentscope.recordings.reduce.table.file import read_columns
+from dentscope.recordings.reduce.table.tension import reduce_tension
+
+
+def _trk(points, *, delta_t="5.0", angle=0.0):
+    cls = "org.opensourcephysics.cabrillo.tracker.PointMass"
+    frames = "".join(
+        f'<property name="[{k}]" type="object"><object class="{cls}$FrameData">'
+        f'<property name="n" type="int">{k}</property>'
+        f'<property name="x" type="double">{x}</property>'
+        f'<property name="y" type="double">{y}</property></object></property>'
+        for k, (x, y) in points.items()
+    )
+    axes = "org.opensourcephysics.media.core.ImageCoordSystem$FrameData"
+    return (
+        '<?xml version="1.0" encoding="UTF-8"?>'
+        '<object class="org.opensourcephysics.cabrillo.tracker.TrackerPanel">'
+        f'<property name="delta_t" type="double">{delta_t}</property>'
+        f'<property name="coords"><object class="{axes}">'
+        '<property name="xorigin" type="double">100.0</property>'
+        '<property name="yorigin" type="double">200.0</property>'
+        f'<property name="angle" type="double">{angle}</property>'
+        '<property name="xscale" type="double">500.0</property>'
+        '<property name="yscale" type="double">500.0</property></object></property>'
+        f'<property name="tracks"><object class="{cls}"><property name="name">ball</property>'
+        f'<property name="framedata">{frames}</property></object></property></object>'
+    )
+
+
+def test_a_tracker_project_in_its_own_axes(tmp_path):
+    # 500 pixels a metre, origin at (100, 200), rows downwards
+    (tmp_path / "a.trk").write_text(_trk({3: (100.0, 200.0), 0: (150.0, 100.0)}))
+    table = read_columns(tmp_path / "a.trk")
+    assert table.names == ("t [s]", "x [m]", "y [m]")
+    assert table.values == pytest.approx(np.array([[0.0, 0.1, 0.2], [0.015, 0.0, 0.0]]))
+    # axes turned by 90 degrees: their x points up in the picture
+    (tmp_path / "b.trk").write_text(_trk({0: (150.0, 100.0)}, angle=90.0))
+    assert read_columns(tmp_path / "b.trk").values[0] == pytest.approx([0.0, 0.2, -0.1])
+    for text, words in (("<object>", "cannot be read"), ("<object/>", "0 tracks"),
+                        ("<!ENTITY a><object/>", "not a plain project")):  # fmt: skip
+        (tmp_path / "c.trk").write_text(text)
+        with pytest.raises(InputError, match=words):
+            read_columns(tmp_path / "c.trk")
+
+
+def test_a_packed_export(tmp_path):
+    with zipfile.ZipFile(tmp_path / "run.zip", "w") as archive:
+        archive.writestr("Raw Data.csv", "Time (s);Height (mm)\n0,0;1,5\n0,1;2,5\n")
+        archive.writestr("meta/device.csv", "property;value\n")
+    table = read_columns(tmp_path / "run.zip")
+    assert table.values[1] == pytest.approx([0.1, 2.5])
+    assert table.unit(1) == "mm"
+    with pytest.raises(InputError, match=r"no table 'x'.*Raw Data"):
+        read_columns(tmp_path / "run.zip", sheet="x")
+    (tmp_path / "bad.zip").write_bytes((tmp_path / "run.zip").read_bytes()[:60])
+    with pytest.raises(InputError, match="cannot be unpacked"):
+        read_columns(tmp_path / "bad.zip")
+
+
+def test_a_stack_of_pages_is_a_clip(tmp_path):
+    tifffile = pytest.importorskip("tifffile")
+    frames = np.random.default_rng(1).integers(0, 255, (12, 20, 16), dtype=np.uint8)
+    tifffile.imwrite(tmp_path / "a.tif", frames)
+    assert np.array_equal(read_clip(tmp_path / "a.tif").frames, frames)
+    tifffile.imwrite(tmp_path / "b.tif", frames.astype(np.uint16) * 257)
+    assert np.array_equal(read_clip(tmp_path / "b.tif").frames, frames)
+    (tmp_path / "c.tif").write_bytes(b"II*\0" + bytes(40))
+    with pytest.raises(InputError, match=r"TIFF|frames"):
+        read_clip(tmp_path / "c.tif")
+
+
+def test_a_flow_curve_of_a_known_metal_comes_back():
+    """Swift's law K (e0 + p)^n in true values, pulled and necked, as engineering values."""
+    K, n, E, Sy = 600e6, 0.2, 70e9, 200e6
+    p = np.linspace(0.0, 0.35, 4000)
+    true = np.maximum(K * ((Sy / K) ** (1.0 / n) + p) ** n, Sy)
+    elastic = np.linspace(0.0, Sy / E, 200)
+    strain = np.concatenate([elastic, true[1:] / E + p[1:]])
+    stress = np.concatenate([E * elastic, true[1:]])
+    nominal = np.expm1(strain)
+    found = reduce_tension(
+        nominal, stress / np.exp(strain), strain_is="engineering", E=None, source="test"
+    )
+    assert found.modulus.value == pytest.approx(E, rel=0.005)
+    expected = K * ((Sy / K) ** (1.0 / n) + found.flow.strain[1:]) ** n
+    assert found.flow.stress[1:] == pytest.approx(expected, rel=0.01)
+    # Considere: a specimen of this law necks at a plastic strain of about n - e0
+    assert found.flow.strain[-1] == pytest.approx(n - (Sy / K) ** (1.0 / n), abs=0.02)
+    assert any("necks" in note for note in found.notes)
+
+
+def test_tension_and_leeb_tables_into_a_set(tmp_path):
+    strain = np.concatenate([np.linspace(0, 0.15, 60), np.linspace(0.2, 8.0, 200)])
+    stress = np.minimum(200e3 * strain / 100.0, 300.0) + 5.0 * strain
+    rows = "\n".join(f"{a:.5f},{b:.4f}" for a, b in zip(strain, stress, strict=True))
+    (tmp_path / "pull.csv").write_text("strain (%),stress (MPa)\n" + rows)
+    (tmp_path / "leeb.csv").write_text("first;second;third\n780;775;782\n")
+    where = str(tmp_path / "set")
+    command = ["reduce", "table", str(tmp_path / "leeb.csv"), "--holds", "leeb", "--value", "1"]
+    assert run([*command, "--value-std", "3", "--into", where]) == 0
+    command = ["reduce", "table", str(tmp_path / "pull.csv"), "--holds", "tension"]
+    assert run([*command, "--into", where]) == 0
+    found = read(where, unfinished=True)
+    assert found.trials.observables["restitution"] == pytest.approx([0.78, 0.775, 0.782])
+    assert found.trials.impact_speed_m_s == pytest.approx([2.05] * 3)
+    assert found.flows["target"].strength == pytest.approx(310e6, rel=0.03)
+
+
+def test_several_files_in_one_call(tmp_path, capsys):
+    for name in ("a", "b"):
+        (tmp_path / f"{name}.csv").write_text(f"drop_m,{name}\n0.5,0.3\n")
+    (tmp_path / "bad.csv").write_text("nothing\n")
+    files = [str(tmp_path / f"{name}.csv") for name in ("a", "b", "bad")]
+    given = ["--holds", "rebounds", "--value", "1", "--into", str(tmp_path / "set")]
+    assert run(["reduce", "table", *files, *given]) == 2
+    said = capsys.readouterr()
+    assert "2 of 3 files reduced" in said.out
+    assert "bad.csv" in said.err
+    assert read(tmp_path / "set", unfinished=True).trials.trial == ("a-drop1-1", "b-drop1-1")
+    assert run(["reduce", "table", *files, *given, "--trial", "x"]) == 2
