@@ -22,8 +22,8 @@ from dentscope.campaigns import (
     run_design,
     standard_case,
 )
+from dentscope.campaigns.cases.pairs import pair_of
 from dentscope.campaigns.executor import LocalExecutor
-from dentscope.campaigns.pairs import pair_of
 
 CASES = 8
 DEPTH = 0.02

@@ -15,7 +15,7 @@ from dataclasses import dataclass
 
 from ..core.errors import InputError
 from .case import Case
-from .drawn_cases import (
+from .cases.drawn import (
     challenge,
     near_equal,
     robustness,
@@ -24,8 +24,8 @@ from .drawn_cases import (
     validation,
     validation_2,
 )
-from .hardening_cases import hardening, validation_hardening
-from .thesis_cases import smoke, thesis_first, thesis_second, thesis_third
+from .cases.hardening import hardening, validation_hardening
+from .cases.thesis import smoke, thesis_first, thesis_second, thesis_third
 
 
 @dataclass(frozen=True)

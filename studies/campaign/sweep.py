@@ -11,7 +11,7 @@ import numpy.typing as npt
 
 from ...campaigns import CaseRecord
 from ...campaigns.case import dimensionless_groups
-from ...campaigns.pairs import RATIOS, TABLE_2_1, pair_of
+from ...campaigns.cases.pairs import RATIOS, TABLE_2_1, pair_of
 from ...core.material import Pair
 from ..plot import Floats
 

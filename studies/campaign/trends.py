@@ -13,7 +13,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from ...campaigns import CaseRecord
-from ...campaigns.pairs import pair_of
+from ...campaigns.cases.pairs import pair_of
 from ...core.material import Pair
 from ...fem import critical_depth
 from ...models import LAWS, DomainWarning

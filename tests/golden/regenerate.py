@@ -9,7 +9,7 @@ from pathlib import Path
 
 import numpy as np
 from dentscope import fem
-from dentscope.campaigns.pairs import TABLE_2_1, pair_of
+from dentscope.campaigns.cases.pairs import TABLE_2_1, pair_of
 
 FILE = Path(__file__).with_name("curves.json")
 # Table 2.1's case and Sy*: both limits, the jump between them, unequal moduli

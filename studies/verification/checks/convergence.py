@@ -9,7 +9,7 @@ import numpy.typing as npt
 
 from .... import fem
 from ....campaigns.case import Case
-from ....campaigns.pairs import TABLE_2_1, pair_of
+from ....campaigns.cases.pairs import TABLE_2_1, pair_of
 from ....core.material import Pair
 from ..bench import Bench, Effort, Solved
 from ..curves import inner, ripple, smoothed

@@ -10,7 +10,7 @@ import numpy as np
 
 from .... import fem
 from ....campaigns.case import Case
-from ....campaigns.pairs import pair_of
+from ....campaigns.cases.pairs import pair_of
 from ....core.flow import Flow, FlowCurve, Heating, Rate, ludwik, swift, voce
 from ....core.material import Material
 from ....fem.material import EXACT, RADIAL

@@ -10,7 +10,7 @@ import numpy.typing as npt
 
 from .... import fem
 from ....campaigns.case import Case
-from ....campaigns.pairs import pair_of
+from ....campaigns.cases.pairs import pair_of
 from ..bench import Bench, Effort, Solved
 from ..calculix import Deck, Reference, load_reference, run_deck
 from ..curves import inner, smoothed

@@ -11,7 +11,7 @@ import scipy.sparse as sparse
 import scipy.sparse.linalg as sparse_linalg
 
 from .... import fem
-from ....campaigns.pairs import pair_of
+from ....campaigns.cases.pairs import pair_of
 from ....core.material import Pair
 from ....fem.assemble import bulk_forces
 from ....fem.contact import Surfaces, Triplets, contact_forces

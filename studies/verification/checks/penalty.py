@@ -6,7 +6,7 @@ import numpy as np
 
 from .... import fem
 from ....campaigns.case import Case
-from ....campaigns.pairs import pair_of
+from ....campaigns.cases.pairs import pair_of
 from ..bench import Bench
 from ..curves import inner, smoothed
 from ..result import Cell, Measurement, Result, Table

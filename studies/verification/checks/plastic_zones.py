@@ -9,7 +9,7 @@ import numpy as np
 import numpy.typing as npt
 
 from .... import fem
-from ....campaigns.pairs import pair_of
+from ....campaigns.cases.pairs import pair_of
 from ..bench import Bench, Effort
 from ..result import Measurement, Result
 

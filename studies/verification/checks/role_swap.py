@@ -6,7 +6,7 @@ import numpy as np
 
 from .... import fem
 from ....campaigns.case import Case
-from ....campaigns.pairs import pair_of
+from ....campaigns.cases.pairs import pair_of
 from ....core.material import Material, Pair
 from ..bench import Bench, Effort, Solved
 from ..curves import inner, smoothed

@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 
 from .... import fem
-from ....campaigns.pairs import pair_of
+from ....campaigns.cases.pairs import pair_of
 from ..bench import Bench
 from ..result import Measurement, Result, Table
 

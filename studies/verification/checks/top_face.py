@@ -8,7 +8,7 @@ import numpy as np
 import numpy.typing as npt
 
 from .... import fem
-from ....campaigns.pairs import pair_of
+from ....campaigns.cases.pairs import pair_of
 from ....core.material import Pair
 from ..bench import Bench
 from ..pairs import elastic_pair

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from .... import fem
-from ....campaigns.pairs import pair_of
+from ....campaigns.cases.pairs import pair_of
 from ..bench import Bench
 from ..result import Cell, Measurement, Result, Table
 

@@ -6,8 +6,8 @@ import math
 import pytest
 from dentscope import fem
 from dentscope.campaigns import DESIGNS, design_named, distinct_cases
-from dentscope.campaigns.drawn_cases import challenge_cases
-from dentscope.campaigns.pairs import RATIOS
+from dentscope.campaigns.cases.drawn import challenge_cases
+from dentscope.campaigns.cases.pairs import RATIOS
 from dentscope.core import InputError
 
 

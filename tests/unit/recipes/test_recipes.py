@@ -161,12 +161,12 @@ def toy() -> tuple[Case, ...]:
 def test_a_design(recipe):
     toy = recipe("Add a design")
     toy.change(
-        "campaigns/drawn_cases.py",
+        "campaigns/cases/drawn.py",
         ("\n\ndef _digits(", f"\n\n{DESIGN}\n\ndef _digits("),
     )
     toy.change(
         "campaigns/designs.py",
-        ("from .drawn_cases import ", "from .drawn_cases import toy, "),
+        ("from .cases.drawn import ", "from .cases.drawn import toy, "),
         (
             "    for design in (\n",
             '    for design in (\n        Design("toy", "brass and steel", toy),\n',

@@ -2,7 +2,7 @@
 
 import numpy as np
 import pytest
-from dentscope.campaigns.pairs import RATIOS
+from dentscope.campaigns.cases.pairs import RATIOS
 from dentscope.studies.campaign import claims as claims
 from dentscope.studies.campaign import trends as trends
 from dentscope.studies.campaign.sweep import Sweep

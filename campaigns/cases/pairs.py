@@ -5,9 +5,9 @@ Strengths follow the thesis: Sy_min is held and Sy* = S_ys/S_yf sets the stronge
 
 from __future__ import annotations
 
-from .. import fem
-from ..core.material import Material, Pair
-from .case import Case, standard_case
+from ... import fem
+from ...core.material import Material, Pair
+from ..case import Case, standard_case
 
 
 def pair_of(

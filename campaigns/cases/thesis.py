@@ -6,9 +6,9 @@ from collections.abc import Sequence
 from functools import cache
 from itertools import product
 
-from .. import fem
-from ..core.material import Pair
-from .case import Case, standard_case
+from ... import fem
+from ...core.material import Pair
+from ..case import Case, standard_case
 from .pairs import RATIOS, TABLE_2_1, deep_case, pair_of
 
 # those of the first part of `thesis`: both ends, equal strengths and the steep part

@@ -12,9 +12,9 @@ from functools import cache
 
 import numpy as np
 
-from ..core.flow import Flow, swift
-from ..core.material import Material, Pair
-from .case import Case
+from ...core.flow import Flow, swift
+from ...core.material import Material, Pair
+from ..case import Case
 from .pairs import deep_case
 
 _YIELD_STRAINS = (3e-4, 6e-3)  # soft copper and aluminium to spring steel and titanium
