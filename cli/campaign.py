@@ -131,15 +131,14 @@ def status(
         return
     if stored:
         typer.echo(f"Own run, {path}:")
-        for name, c in named.items():
-            typer.echo("  ".join([f"design {name}", *(f"{k} {n}" for k, n in _counts(c).items())]))
-        for summary in stored:
-            typer.echo(
-                f"{summary.id[:12]}  {summary.status:7} {summary.case.name}{remarks(summary)}"
-            )
-        tell(found)
     else:
         typer.echo(f"No run of your own in {out}: `dentscope campaign run` starts one.")
+    for name, c in named.items() if stored or design else ():
+        typer.echo("  ".join([f"design {name}", *(f"{k} {n}" for k, n in _counts(c).items())]))
+    for summary in stored:
+        typer.echo(f"{summary.id[:12]}  {summary.status:7} {summary.case.name}{remarks(summary)}")
+    if stored:
+        tell(found)
     _tell_published(published)
 
 

@@ -166,7 +166,7 @@ def test_a_design(recipe):
     )
     toy.change(
         "campaigns/designs.py",
-        ("from .cases.drawn import ", "from .cases.drawn import toy, "),
+        ("from .cases.drawn import (\n", "from .cases.drawn import (\n    toy,\n"),
         (
             "    for design in (\n",
             '    for design in (\n        Design("toy", "brass and steel", toy),\n',
