@@ -14,7 +14,7 @@ from numpy.typing import NDArray
 from ..core.observables import OBSERVABLES
 from .conditions import Condition
 from .curves import Readings
-from .drift import Drift, drift_of
+from .unknowns.drift import Drift, drift_of
 
 Array = NDArray[np.float64]
 Ints = NDArray[np.intp]

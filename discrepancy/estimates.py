@@ -11,12 +11,12 @@ from numpy.typing import NDArray
 from scipy.stats import norm
 
 from ..recordings import RecordingSet, Severity, audit
-from .calibration import Calibration
+from .choice.calibration import Calibration
+from .choice.odds import NAMED_AT, PRIORS
 from .forward import Simulator
 from .heldout import HeldOut
 from .inference.fit import Fit
 from .inference.grid import interval
-from .odds import NAMED_AT, PRIORS
 from .problem import Problem
 from .rank import Ranking
 

@@ -7,11 +7,11 @@ from dataclasses import dataclass
 from typing import Any
 
 from .. import __version__
+from .choice.decide import Choice
 from .correction import Correction
-from .decide import Choice
+from .experiments.next_experiment import Proposal
 from .inference.fit import Fit
 from .locate import Located
-from .next_experiment import Proposal
 from .problem import Problem
 from .rank import Ranking
 

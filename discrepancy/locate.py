@@ -15,10 +15,10 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ..core.observables import OBSERVABLES
-from .covariates import covariates
+from .choice.thresholds import Nulls
 from .inference.fit import Fit
 from .problem import Problem
-from .thresholds import Nulls
+from .unknowns.covariates import covariates
 
 Array = NDArray[np.float64]
 

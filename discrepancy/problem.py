@@ -22,9 +22,9 @@ from ..recordings import RecordingSet
 from .cells import NO_CELLS, Cells, Scatter, cells_of
 from .conditions import Condition, conditions_of
 from .curves import readings_of
-from .drift import Drift
-from .lawerror import NO_ERROR, LawError, law_error
-from .nuisances import ASSUMED_E, ASSUMED_NU, Nuisance, nuisances_of
+from .unknowns.drift import Drift
+from .unknowns.lawerror import NO_ERROR, LawError, law_error
+from .unknowns.nuisances import ASSUMED_E, ASSUMED_NU, Nuisance, nuisances_of
 
 Array = NDArray[np.float64]
 

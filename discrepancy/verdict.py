@@ -11,9 +11,13 @@ import math
 import numpy as np
 
 from ..recordings import RecordingSet
-from .calibration import p_fit
+from .choice.calibration import p_fit
+from .choice.decide import in_doubt, withdrawn
+from .choice.judge import Judge
+from .choice.odds import OUTSIDE
+from .choice.pairs import with_pairs
+from .choice.thresholds import null_residuals
 from .correction import correct
-from .decide import in_doubt, withdrawn
 from .estimates import (
     audit_rows,
     improvement_of,
@@ -26,18 +30,14 @@ from .estimates import (
     scores_of,
     surprises_of,
 )
+from .experiments.next_experiment import propose
 from .findings import Verdict
 from .forward import Simulator
 from .heldout import Repeated, held_out, repeated_choice
 from .inference.sampling import confirm_evidence
-from .judge import Judge
 from .locate import locate
-from .next_experiment import propose
-from .odds import OUTSIDE
-from .pairs import with_pairs
 from .problem import problem_of
 from .rank import Progress, rank
-from .thresholds import null_residuals
 
 NULLS = 500
 """Null data sets that set the thresholds of a screening."""

@@ -8,10 +8,10 @@ from collections.abc import Sequence
 import numpy as np
 from numpy.typing import NDArray
 
-from ..covariates import nearness, same_observable
 from ..forward import Point, Simulator
 from ..mechanisms.base import Constants, Mechanism
 from ..problem import Problem
+from ..unknowns.covariates import nearness, same_observable
 from .linear import Linear
 
 Array = NDArray[np.float64]

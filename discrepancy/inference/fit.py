@@ -14,9 +14,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ..forward import Point, Simulator
-from ..lawerror import SIZE_WEIGHTS, SIZES
 from ..mechanisms.base import Mechanism, Situation
 from ..problem import Problem
+from ..unknowns.lawerror import SIZE_WEIGHTS, SIZES
 from .derivatives import derivatives
 from .grid import Axis, Grid, posterior
 from .linear import Linear, Mixture

@@ -6,8 +6,8 @@ import math
 from typing import Any
 
 from ...core.observables import OBSERVABLES
+from ..choice.odds import OUTSIDE
 from ..findings import Verdict
-from ..odds import OUTSIDE
 from .wording import explanation, interval, joined, miss_sentences, percent, quantity, title_of
 
 

@@ -12,13 +12,13 @@ from typing import Any
 import numpy as np
 import pytest
 from dentscope.discrepancy.cells import Cells
+from dentscope.discrepancy.choice.thresholds import Nulls
 from dentscope.discrepancy.conditions import Condition
 from dentscope.discrepancy.inference.fit import Fit
 from dentscope.discrepancy.inference.grid import Axis, Grid, posterior
 from dentscope.discrepancy.inference.linear import Linear, Mixture
 from dentscope.discrepancy.mechanisms.base import Parameter, Surroundings
 from dentscope.discrepancy.rank import Ranking, Screened
-from dentscope.discrepancy.thresholds import Nulls
 
 NONE = np.zeros((0, 0))
 

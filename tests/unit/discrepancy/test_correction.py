@@ -10,7 +10,7 @@ import numpy as np
 import pytest
 from dentscope.discrepancy.correction import correct, widened
 from dentscope.discrepancy.inference.linear import Linear
-from dentscope.discrepancy.lawerror import FREE, LawError, Spread
+from dentscope.discrepancy.unknowns.lawerror import FREE, LawError, Spread
 from dentscope.impact.strength import NODES
 from scipy.stats import norm
 

@@ -7,7 +7,7 @@ import math
 import numpy as np
 import pytest
 from dentscope.core.material import Material, Pair
-from dentscope.discrepancy.lawerror import (
+from dentscope.discrepancy.unknowns.lawerror import (
     METAL,
     SIZE_SPREAD,
     SIZE_WEIGHTS,

@@ -5,10 +5,10 @@ from types import SimpleNamespace
 
 import numpy as np
 import pytest
+from dentscope.discrepancy.choice.odds import NAMED_AT, PRIORS
 from dentscope.discrepancy.estimates import limits_of
 from dentscope.discrepancy.inference.grid import Axis, Grid
 from dentscope.discrepancy.mechanisms.base import Parameter
-from dentscope.discrepancy.odds import NAMED_AT, PRIORS
 
 
 @pytest.mark.parametrize(

@@ -6,8 +6,8 @@ from types import SimpleNamespace
 
 import numpy as np
 import pytest
-from dentscope.discrepancy.covariates import covariates
 from dentscope.discrepancy.locate import locate
+from dentscope.discrepancy.unknowns.covariates import covariates
 
 SPEEDS = [1.0, np.e, np.e**2, np.e**3]
 UNIT = np.random.default_rng(1).standard_normal((4000, 4))

@@ -9,9 +9,9 @@ from types import SimpleNamespace
 import numpy as np
 import pytest
 from dentscope.core.rig import Quantity, StrikerTable
-from dentscope.discrepancy.feasible import candidates_of
-from dentscope.discrepancy.next_experiment import _sharper, _worth, propose, rivals_of
-from dentscope.discrepancy.odds import Odds
+from dentscope.discrepancy.choice.odds import Odds
+from dentscope.discrepancy.experiments.feasible import candidates_of
+from dentscope.discrepancy.experiments.next_experiment import _sharper, _worth, propose, rivals_of
 
 SEEN = "rebound_speed_m_s"
 

@@ -4,9 +4,9 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
+from dentscope.discrepancy.choice.pairs import PairEffect, with_pairs
 from dentscope.discrepancy.inference.grid import Grid
 from dentscope.discrepancy.inference.outliers import WIDER
-from dentscope.discrepancy.pairs import PairEffect, with_pairs
 from dentscope.discrepancy.rank import rank
 
 RISING = tuple(8.0 * (k - 3.5) for k in range(8))

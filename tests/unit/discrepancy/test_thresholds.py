@@ -6,9 +6,15 @@ import math
 
 import numpy as np
 import pytest
-from dentscope.discrepancy.calibration import ONE_IN, Calibration, calibrate, given_away, p_fit
+from dentscope.discrepancy.choice.calibration import (
+    ONE_IN,
+    Calibration,
+    calibrate,
+    given_away,
+    p_fit,
+)
+from dentscope.discrepancy.choice.odds import NAMED_AT, OUTSIDE, PRIORS
 from dentscope.discrepancy.inference.linear import Linear, Mixture
-from dentscope.discrepancy.odds import NAMED_AT, OUTSIDE, PRIORS
 
 # 2001 nulls whose first cell is -100 ... 100 and whose second is 0: quantiles are read off
 EVEN = np.stack([np.linspace(-100.0, 100.0, 2001), np.zeros(2001)], axis=1)

@@ -9,7 +9,7 @@ from typing import Protocol
 
 from scipy.special import logsumexp
 
-from .rank import Ranking
+from ..rank import Ranking
 
 OUTSIDE = "outside-library"
 PRIORS = {"baseline": 0.5, "singles": 0.34, "pairs": 0.06, OUTSIDE: 0.1}

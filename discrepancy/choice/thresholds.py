@@ -13,17 +13,17 @@ from dataclasses import dataclass, replace
 import numpy as np
 from numpy.typing import NDArray
 
-from ..impact import Scene
-from ..impact.strength import UNIT, strength_table
-from .cells import compared
-from .forward import Point, Simulator
-from .inference.fit import Fit
-from .lawerror import SIZE_SPREAD, not_given_back
-from .mechanisms.arithmetic import effective_mass
-from .nulls import Rig, discrepancies, scatter
-from .nulls.laws import Reference
-from .nulls.motion import Bodies
-from .problem import Problem
+from ...impact import Scene
+from ...impact.strength import UNIT, strength_table
+from ..cells import compared
+from ..forward import Point, Simulator
+from ..inference.fit import Fit
+from ..mechanisms.arithmetic import effective_mass
+from ..nulls import Rig, discrepancies, scatter
+from ..nulls.laws import Reference
+from ..nulls.motion import Bodies
+from ..problem import Problem
+from ..unknowns.lawerror import SIZE_SPREAD, not_given_back
 
 Array = NDArray[np.float64]
 

@@ -11,11 +11,11 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.special import logsumexp
 
-from .forward import Point, Simulator
-from .inference.fit import fit_anchored
-from .inference.grid import Grid, along_all
-from .mechanisms.base import Mechanism
-from .rank import Progress, Ranking, Screened, sharpened_leading
+from ..forward import Point, Simulator
+from ..inference.fit import fit_anchored
+from ..inference.grid import Grid, along_all
+from ..mechanisms.base import Mechanism
+from ..rank import Progress, Ranking, Screened, sharpened_leading
 
 Array = NDArray[np.float64]
 

@@ -17,14 +17,14 @@ from dataclasses import dataclass, field, replace
 import numpy as np
 from numpy.typing import NDArray
 
-from ..core.observables import OBSERVABLES
-from .cells import compared
+from ...core.observables import OBSERVABLES
+from ..cells import compared
+from ..choice.odds import Odds
+from ..forward import Point, Simulator
+from ..inference.fit import Fit
+from ..problem import Problem
+from ..rank import Ranking
 from .feasible import Candidate, candidates_of
-from .forward import Point, Simulator
-from .inference.fit import Fit
-from .odds import Odds
-from .problem import Problem
-from .rank import Ranking
 
 Array = NDArray[np.float64]
 

@@ -27,11 +27,11 @@ from functools import cached_property
 import numpy as np
 from numpy.typing import NDArray
 
-from ..impact import ForceTransform, Scene
-from ..impact.force import LOG_DEPTH_FIRST, LOG_DEPTH_LAST
-from ..impact.strength import NODES, UNIT, strength_table
-from ..models.base import DomainWarning
-from .mechanisms.arithmetic import energy
+from ...impact import ForceTransform, Scene
+from ...impact.force import LOG_DEPTH_FIRST, LOG_DEPTH_LAST
+from ...impact.strength import NODES, UNIT, strength_table
+from ...models.base import DomainWarning
+from ..mechanisms.arithmetic import energy
 
 Array = NDArray[np.float64]
 

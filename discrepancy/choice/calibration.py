@@ -16,10 +16,10 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.special import logsumexp
 
-from .inference.fit import Fit
-from .inference.linear import Mixture
+from ..inference.fit import Fit
+from ..inference.linear import Mixture
+from ..rank import Ranking
 from .odds import NAMED_AT, OUTSIDE, PRIORS
-from .rank import Ranking
 from .thresholds import Nulls
 
 Array = NDArray[np.float64]

@@ -16,13 +16,13 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.stats import norm
 
-from .cells import Scatter
-from .correction import widened
-from .covariates import nearness, same_observable
-from .drift import Drift
-from .inference.fit import Fit
-from .inference.linear import Mixture
-from .problem import Problem
+from ..cells import Scatter
+from ..correction import widened
+from ..inference.fit import Fit
+from ..inference.linear import Mixture
+from ..problem import Problem
+from ..unknowns.covariates import nearness, same_observable
+from ..unknowns.drift import Drift
 
 Array = NDArray[np.float64]
 

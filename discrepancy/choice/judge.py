@@ -8,11 +8,11 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from ..rank import Ranking
 from .calibration import Calibration, calibrate
 from .decide import Choice, decide
 from .odds import OUTSIDE, PRIORS, Odds, odds_of
 from .outside import odd_repeats, outside_of
-from .rank import Ranking
 from .thresholds import Nulls
 
 

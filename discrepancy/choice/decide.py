@@ -12,12 +12,12 @@ from collections.abc import Iterable, Sequence
 from dataclasses import dataclass, replace
 from typing import NamedTuple
 
-from ..core.observables import OBSERVABLES
-from .cells import Scatter
-from .drift import Drift
-from .inference.fit import Fit
+from ...core.observables import OBSERVABLES
+from ..cells import Scatter
+from ..inference.fit import Fit
+from ..rank import Ranking
+from ..unknowns.drift import Drift
 from .odds import OUTSIDE, Odds
-from .rank import Ranking
 
 FEWEST_CELLS, FEWEST_CONDITIONS = 6, 2
 """Numbers and conditions below which a set says nothing."""

@@ -1,0 +1,1 @@
+"""What to measure next, within what the rig can do."""
