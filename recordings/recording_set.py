@@ -32,7 +32,7 @@ from .trials import Trials, read_trials, trials_text
 
 _SPEED_BIN = 0.02
 _ANGLE_BIN = 1.0
-_SURE = 3.0
+_SURE, _SLIP = 3.0, 0.1
 """Standard deviations by which a restitution exceeds 1 before it asks for a reason."""
 
 
@@ -306,7 +306,9 @@ def _impossible(found: RecordingSet, problems: Problems) -> list[InputError]:
     e, notes = found.trials.observables.get("restitution"), found.trials.note
     if e is None:
         return []
-    high = np.flatnonzero(e - 1.0 > _SURE * np.nan_to_num(found.std("restitution")))
+    # smaller gains may be scatter that was not stated: the audit and the diagnosis name them
+    std = np.nan_to_num(found.std("restitution"))
+    high = np.flatnonzero(e - 1.0 > np.maximum(_SURE * std, _SLIP))
     return [
         InputError(
             f"{e[k]:g} above 1 without a reason", source=problems.source,

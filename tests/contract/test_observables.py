@@ -21,6 +21,7 @@ CHOICES = {
     ("recordings/reduce/mocap/reduction.py", "_NAMES"): "order of a computed vector",
     ("recordings/reduce/mocap/point.py", "_NAMES"): "order of a computed vector",
     ("impact/batch.py", "_NOTHING"): "what a normal impact without vibration lacks",
+    ("impact/discrete_elements.py", "HEAD"): "columns beside a law's parameters",
     ("impact/draw.py", "SWEPT"): "which observables a figure shows",
 }
 """Tuples that choose or order observables and say nothing of them."""

@@ -29,7 +29,7 @@ from dentscope.core.disk import Disk
 from dentscope.core.output import write_figure, write_file, write_files
 from dentscope.fem import Counters, Curve, Solution
 from dentscope.impact.columns import Impacts
-from dentscope.models import fitted
+from dentscope.models import coefficients
 from dentscope.recordings import read
 from dentscope.recordings.reduce.into_set import Row, store
 from dentscope.recordings.reduce.measured import Measured, Trial
@@ -338,7 +338,7 @@ def publish_writer(folder):
 def reduced(place, speed):
     raw = place / "raw.csv"
     if not raw.exists():
-        raw.write_text("1,2\n")
+        raw.write_text(f"1,{speed}\n")
     line = np.linspace(0.0, 1e-3, 40)
     trial = Trial(
         observables={"restitution": Measured(speed, 0.01)},
@@ -369,7 +369,7 @@ def into_writer(folder):
         add(place / "set", "second", 0.62)
 
     def check(place):
-        found = read(place / "set")
+        found = read(place / "set", unfinished=True)
         values = dict(zip(found.trials.trial, found.values("restitution"), strict=True))
         assert values["first"] == 0.61
         assert values.get("second", 0.62) == 0.62
@@ -384,7 +384,7 @@ def into_writer(folder):
 
 def publish_fit_writer(folder):
     """Coefficients, their page and its pictures in place of older ones."""
-    old = json.loads(fitted.COEFFICIENTS_FILE.read_text())
+    old = json.loads(coefficients.COEFFICIENTS_FILE.read_text())
     new = json.loads(json.dumps(old))
     new["domain"]["combinations"] += 1
     page = fit_command._PAGE.read_text()
@@ -401,7 +401,7 @@ def publish_fit_writer(folder):
 
     def act(place):
         with (
-            mock.patch.object(fitted, "COEFFICIENTS_FILE", place / "fitted.json"),
+            mock.patch.object(coefficients, "COEFFICIENTS_FILE", place / "fitted.json"),
             mock.patch.object(fit_command, "_PAGE", place / "docs" / "closed-form.md"),
         ):
             fit_command._publish(new, out)

@@ -4,7 +4,7 @@
 | --- | --- |
 | clipped | the highest samples are equal, and those beside them are far below |
 | a step | the level afterwards is another by a third of the peak or more |
-| an oscillation | four or more other half-waves beside it reach a third of the peak |
+| an oscillation | six or more other half-waves beside it reach a third of the peak |
 | a spike | fewer than three samples above half of the peak |
 
 Smaller half-waves (a plate or a sensor that rings) widen the errors of peak and duration.
@@ -28,7 +28,7 @@ _JUMP = 1.5
 """Steps of the converter by which the samples beside a clipped top lie below it."""
 
 _STEP, _SWING, _RINGS = 0.33, 0.33, 0.1
-_SWINGS = 4
+_SWINGS = 6
 _FEWEST = 3
 _AGAIN = 0.3
 """Part of the peak from which on another pulse is named."""

@@ -58,8 +58,10 @@ def test_list_names_every_set():
 
 
 numbers = st.floats(1e-6, 1.0, allow_nan=False)
+depths = st.floats(1e-6, 0.1)
+"""Within the bounds of every observable, a crater's depth too."""
 moduli = st.floats(1e7, 1e11).map(lambda value: Quantity(value=value))
-words = st.text(st.characters(exclude_categories=["Cs"]), max_size=20)
+words = st.text(st.characters(exclude_categories=["Cs", "Cc"]), max_size=20)
 names = st.text("abcdefgh 0123456789-_.", min_size=1, max_size=8).filter(
     lambda s: s == s.strip() and s not in (".", "..")
 )
@@ -90,7 +92,7 @@ def test_any_sound_set_comes_back_from_its_files(data, tmp_path_factory):
     )  # fmt: skip
     trial = data.draw(st.lists(names, min_size=1, max_size=4, unique=True))
     n = len(trial)
-    values = data.draw(st.lists(numbers | st.just(np.nan), min_size=n, max_size=n))
+    values = data.draw(st.lists(depths | st.just(np.nan), min_size=n, max_size=n))
     trials = Trials(
         trial=tuple(trial),
         striker=(striker,) * n,
