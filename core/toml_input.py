@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import tomllib
+import unicodedata
 from pathlib import Path
 from typing import Any, TypeVar, cast, get_args
 
@@ -38,9 +39,14 @@ class InputTable(BaseModel):
     def _texts_can_be_shown(cls, given: Any) -> Any:
         if isinstance(given, dict):
             for text in (*given, *given.values()):
-                if isinstance(text, str) and not text.replace("\n", " ").isprintable():
+                if isinstance(text, str) and _controls(text):
                     raise ValueError("text without control characters")
         return given
+
+
+def _controls(text: str) -> bool:
+    """Whether a text holds what moves a terminal; line ends and tabs are text."""
+    return any(unicodedata.category(one) == "Cc" and one not in "\n\t" for one in text)
 
 
 Listed = Field(strict=False)

@@ -61,7 +61,9 @@ numbers = st.floats(1e-6, 1.0, allow_nan=False)
 depths = st.floats(1e-6, 0.1)
 """Within the bounds of every observable, a crater's depth too."""
 moduli = st.floats(1e7, 1e11).map(lambda value: Quantity(value=value))
-words = st.text(st.characters(exclude_categories=["Cs", "Cc"]), max_size=20)
+words = st.text(st.characters(exclude_categories=["Cs", "Cc"]), max_size=20).filter(
+    lambda s: s != "?"  # asks to be filled in
+)
 names = st.text("abcdefgh 0123456789-_.", min_size=1, max_size=8).filter(
     lambda s: s == s.strip() and s not in (".", "..")
 )
