@@ -74,6 +74,11 @@ SOLVER = (
     Use("campaign gallery", "checkout", 2),
     Use("campaign reproduction", "checkout", 2),
     Use("export law sources", "dentscope_contact.f90"),
+    Use(
+        "export dem examples/case_steel.toml --speed 1 --mass 0.01 --out dem",
+        "linear-hysteretic",
+    ),
+    Use("fit --publish", "checkout", 2),
 )
 """Laws, solver and sweep: uses in this order, with the package's own dependencies only."""
 
