@@ -145,9 +145,11 @@ def _tension(path: Path, table: Columns, options: Options) -> Reduced:
     at, value = table.find(options.time, key="time"), table.find(options.value, key="value")
     parts = 0.01 if table.unit(at) == "%" else 1.0
     unit = table.factor(value, "stress", given=options.value_unit, key="value_unit")
+    with np.errstate(over="ignore"):  # what is too large is refused as that
+        strain, stress = table.values[:, at] * parts, table.values[:, value] * unit
     found = reduce_tension(
-        table.values[:, at] * parts,
-        table.values[:, value] * unit,
+        strain,
+        stress,
         strain_is=options.strain_is,
         E=options.E_Pa,
         source=str(path),

@@ -13,6 +13,8 @@ from ...flow_curve import PROOF_STRAIN, MeasuredFlow
 from ..measured import Array, Measured
 from ..regression import robust_regression
 
+_STRAINS, _STRESSES = 10.0, 1e12
+"""Beyond these no metal was measured: a slip of the unit, or a damaged file."""
 _FEWEST = 20
 _ELASTIC = (0.1, 0.4)
 """Parts of the largest stress between which the modulus is read."""
@@ -58,6 +60,13 @@ def reduce_tension(
     InputError
         Too few rows, no elastic part, or no yield.
     """
+    wild = np.flatnonzero((np.abs(strain) > _STRAINS) | (np.abs(stress) > _STRESSES))
+    if wild.size:
+        k = wild[0]
+        raise InputError(
+            f"strain {strain[k]:.3g}, stress {stress[k]:.3g} Pa in data row {k + 1}",
+            source=source, allowed=f"strains up to {_STRAINS:g}, stresses up to {_STRESSES:g} Pa",
+        )  # fmt: skip
     whole = np.isfinite(strain) & np.isfinite(stress)
     strain, stress = strain[whole], stress[whole]
     if strain.size < _FEWEST:
