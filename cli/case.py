@@ -48,11 +48,13 @@ def case(
         )
     from rich.progress import Progress
 
-    from ..fem.fields import draw_section, write_vtu
     from ..start.case_file import read_case
-    from ..start.pair import Steps, solved
 
     problem, accuracy = read_case(file)
+    # loaded after the file is read: a mistake in it is told at once
+    from ..fem.fields import draw_section, write_vtu
+    from ..start.pair import Steps, solved
+
     pair = problem.pair
     console = new_console()
     with Progress(console=console, disable=not console.is_terminal) as bar:

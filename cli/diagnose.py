@@ -49,11 +49,11 @@ def diagnose(
             key="FOLDER",
             allowed=f"a folder, --chapter5, or a shipped set: {', '.join(shipped_sets())}",
         )
-    from ..discrepancy import diagnose as run
-    from ..discrepancy.report import lines, write_report
     from ..recordings import read
 
     recordings = read(set_folder(folder))
+    from ..discrepancy import diagnose as run
+    from ..discrepancy.report import lines, write_report
 
     def show(step: str) -> None:
         if not quiet:

@@ -61,6 +61,10 @@ def export_dem(
 
     Each returns what our law returns; what it misses in depth, peak force and time is in the table.
     """
+    from ..start.case_file import read_pair
+
+    _, pair = read_pair(file)
+    speeds, weight = _speeds(speed), _mass(mass, pair, file)
     from ..core.output import csv_text, write_file
     from ..impact.discrete_elements import (
         HEAD,
@@ -70,10 +74,8 @@ def export_dem(
         table,
     )
     from ..models import law_named
-    from ..start.case_file import read_pair
 
-    _, pair = read_pair(file)
-    rows = substitutes(law_named(law), pair, mass=_mass(mass, pair, file), speeds=_speeds(speed))
+    rows = substitutes(law_named(law), pair, mass=weight, speeds=speeds)
     shown = console()
     show_table(shown, *_misses(rows))
     for path in (

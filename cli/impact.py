@@ -58,6 +58,9 @@ def _write_new(kind: str, path: Path | None) -> None:
 
 
 def _from_file(path: Path, names: list[str], out: Path) -> None:
+    from ..core.toml_input import read_toml
+
+    read_toml(path)  # what is no TOML is told before the simulation is loaded
     from ..impact.draw import draw_histories
     from ..impact.files.blow import blow_of
     from ..impact.files.setup import read_setup

@@ -38,6 +38,10 @@ def inverse(
     if file is None:
         studies.needed_for("`dentscope inverse` without a file")
         laws_named(law or [])
+    else:
+        from ..core.toml_input import read_toml
+
+        read_toml(file)  # what is no TOML is told before the simulation is loaded
     from ..impact.draw import draw_alpha
     from ..impact.files.inverse_file import read_inverse
     from ..impact.files.tables import write_csv

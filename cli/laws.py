@@ -139,11 +139,12 @@ def compare(
     out: Annotated[Path, folder_option("Folder for table and picture.")] = Path("build/laws"),
 ) -> None:
     """Curves of the laws for one pair, and which of them to use."""
-    from ..models import LAWS, law_named
-    from ..models.choose import demand, objection, recommended
     from ..start.case_file import read_pair
 
     content, pair = read_pair(file)
+    from ..models import LAWS, law_named
+    from ..models.choose import demand, objection, recommended
+
     last = content.load.max_delta_over_R
     laws = [law_named(name) for name in law] if law else list(LAWS.values())
     rows = curves(pair, laws, last=last)

@@ -2,11 +2,29 @@
 
 Each takes the file that the command of the same name takes, and returns something that shows
 itself in a notebook, plots itself and gives a data frame; so does `dentscope.impact(...)`.
+Each is loaded when it is first asked for: to refuse a file needs neither solver nor diagnosis.
 """
 
 from __future__ import annotations
 
-from .diagnosis import Diagnosis, diagnose
-from .pair import Solved, case
+from importlib import import_module
+from typing import TYPE_CHECKING, Any
+
+if TYPE_CHECKING:
+    from .diagnosis import Diagnosis, diagnose
+    from .pair import Solved, case
+
+_FROM = {"Diagnosis": "diagnosis", "Solved": "pair", "case": "pair", "diagnose": "diagnosis"}
 
 __all__ = ["Diagnosis", "Solved", "case", "diagnose"]
+
+
+def __getattr__(name: str) -> Any:
+    """Load a name when it is first asked for."""
+    if name in _FROM:
+        return getattr(import_module(f"{__name__}.{_FROM[name]}"), name)
+    raise AttributeError(f"module {__name__!r} has no attribute {name!r}")
+
+
+def __dir__() -> list[str]:
+    return sorted(__all__)

@@ -272,9 +272,10 @@ def read_case(file: Path, *, level: str = "") -> tuple[Any, Any]:
     InputError
         Every mistake, a line each.
     """
+    content, pair = read_pair(file)
+    # loaded after the file is read: a mistake in it is told at once
     from .. import fem
 
-    content, pair = read_pair(file)
     last = content.load.max_delta_over_R
     # recorded from below first yield; a body that yields late or never still gets two decades
     first = min(0.3 * fem.critical_depth(pair), 1e-2 * last)

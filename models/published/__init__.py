@@ -8,24 +8,29 @@ from __future__ import annotations
 
 from ..base import ContactLaw
 from .brake import BRAKE_2012, BRAKE_2015
+from .brizmer import BRIZMER
 from .ceb import CEB
 from .ghaednia import GHAEDNIA
 from .hertz import HERTZ
 from .jackson_green import JACKSON_GREEN, JACKSON_GREEN_2007
 from .johnson import JOHNSON
-from .kogut_etsion import KOGUT_ETSION
+from .kogut_etsion import KOGUT_ETSION, KOGUT_ETSION_CONTINUED
 from .kogut_komvopoulos import KOGUT_KOMVOPOULOS
 from .sinclair_follansbee import SINCLAIR_FOLLANSBEE
 from .stronge import STRONGE
 from .thornton import THORNTON, THORNTON_NING
 from .viscous import RATE_MODELS as RATE_MODELS
 from .ye_komvopoulos import YE_KOMVOPOULOS
+from .zhao_maietta_chang import ZHAO_MAIETTA_CHANG
 
 PUBLISHED: tuple[ContactLaw, ...] = (
     HERTZ,
     JOHNSON,
     CEB,
+    ZHAO_MAIETTA_CHANG,
     KOGUT_ETSION,
+    KOGUT_ETSION_CONTINUED,
+    BRIZMER,
     JACKSON_GREEN,
     JACKSON_GREEN_2007,
     THORNTON,
@@ -55,13 +60,14 @@ UNAVAILABLE: dict[str, str] = {
     "komvopoulos-layered": "Komvopoulos, and Ye and Komvopoulos 2003, for layered flats: "
     "section 1.3.1 gives no equation for a layer, and the papers were not read; the flats here "
     "have one metal, for which ye-komvopoulos and kogut-komvopoulos are offered",
-    "zhao-maietta-chang": "Zhao, Maietta and Chang 2000: not in the text of the thesis at hand; "
-    "the paper, on contacts of asperities, was not read",
     "brake-2015-friction": "the friction of Brake 2015 for oblique impacts: section 1.3.1 says "
     "that the paper has one and gives no equation; brake-2015 is its normal law, tangential "
     "laws at hand are Coulomb's and the tangential-compliance of a diagnosis",
     "cross-grip": "Cross's grip and multiple reversal of friction: section 1.1 says that the "
     "papers give no analytical model; reversal by elastic sticking is tangential-compliance",
+    "etsion-sliding": "the Etsion group's other work on slip conditions (section 1.3.2 names two "
+    "papers, the list of references is missing): no equation is given; brizmer-stick is the "
+    "group's normal law with full stick",
     "wadwalkar": "Wadwalkar, Jackson and Kogut 2010 (large deformation): section 1.2 gives no "
     "equation, and the paper's fits were found in no public text or code; up to a/R = 1 "
     "jackson-green-2007 has a hardness that falls to S, as theirs, but its force is a fit up to "

@@ -11,6 +11,7 @@ import pytest
 from dentscope.core import Material, Pair
 from dentscope.models import LAWS, law_named
 from dentscope.models.base import Standing
+from dentscope.models.published.brizmer import stick_over_slip
 
 E, NU, S, R = 200e9, 0.3, 503e6, 1e-3
 RIGID = Material(E=math.nan, nu=math.nan, rigid=True)
@@ -85,6 +86,51 @@ def test_thornton_and_ning_in_the_contact_radius(name, pressure):
     assert force(name, peak) == pytest.approx(F_m, rel=1e-12)
     R_p = 4.0 / 3.0 * E_RED * a**3 / F_m
     assert left(name, peak) == pytest.approx(a**2 * (1.0 / R - 1.0 / R_p), rel=1e-9)
+
+
+@pytest.mark.parametrize("w", [1.7, 9.0, 40.0, 53.9, 80.0])
+def test_zhao_maietta_chang_as_a_function_for_rough_surfaces_writes_it(w):
+    """The integrands of ZMC for one asperity, elastic-plastic and plastic; k is the caller's."""
+    H, k = 2.8 * S, 0.4
+    w_1 = (0.75 * math.pi * k * H / E_RED) ** 2 * R
+    w_2 = 54.0 * w_1
+    depth = w * w_1
+    if depth < w_2:
+        pressure = 1.0 - (1.0 - k) * (math.log(w_2) - math.log(depth)) / math.log(w_2 / w_1)
+        x = (depth - w_1) / (w_2 - w_1)
+        expected = math.pi * R * H * depth * pressure * (1.0 - 2.0 * x**3 + 3.0 * x**2)
+    else:
+        expected = 2.0 * math.pi * R * H * depth
+    assert force("zhao-maietta-chang", depth) == pytest.approx(expected, rel=1e-12)
+
+
+@pytest.mark.parametrize("w", [0.5, 1.5, 20.0, 109.0])
+def test_brizmers_stick_as_a_code_for_granular_particles_writes_it(w):
+    """L_c w^1.5 (1 - exp(1/(1 - w^beta))) with L_c from pi^3/6 C^3 Y (R (1 - nu^2) Y/E)^2."""
+    C = 1.234 + 1.256 * NU
+    depth_ratio = 6.82 * NU - 7.83 * (NU * NU + 0.0586)
+    load_ratio = 8.88 * NU - 10.13 * (NU * NU + 0.089)
+    strain = S * (1.0 - NU**2) / E
+    w_c = depth_ratio * (0.5 * math.pi * C * strain) ** 2 * R
+    L_c = load_ratio * math.pi**3 / 6.0 * C**3 * S * (R * strain) ** 2
+    fade = math.exp(1.0 / (1.0 - w ** (0.174 + 0.08 * NU))) if w > 1.0 else 0.0
+    expected = L_c * w**1.5 * (1.0 - fade)
+    assert force("brizmer-stick", w * w_c) == pytest.approx(expected, rel=1e-9)
+
+
+def test_stick_and_slip_are_one_where_nothing_wants_to_slide():
+    """An incompressible half-space has no tangential motion under normal pressure."""
+    assert stick_over_slip(0.5) == pytest.approx((1.0, 1.0), abs=0.01)
+
+
+def test_kogut_etsion_continued_leaves_the_other_at_110_only():
+    slope = math.pi * (0.454 + 0.41 * NU) * 2.8 * S / (2.0 * E_RED)
+    onset = slope**2 * R
+    below, above = 100.0 * onset, 500.0 * onset
+    assert force("kogut-etsion-continued", below) == force("kogut-etsion", below)
+    hertz = 4.0 / 3.0 * E_RED * math.sqrt(R) * onset**1.5
+    expected = 1.40 * 500.0**1.263 * hertz
+    assert force("kogut-etsion-continued", above) == pytest.approx(expected, rel=1e-9)
 
 
 def test_a_joined_law_stands_no_better_than_its_weaker_half():

@@ -27,6 +27,20 @@ def test_importing_loads_nothing_heavy_and_everything_is_there():
         _ = ds.nonsense
 
 
+def test_a_refused_case_has_loaded_neither_solver_nor_compiler(tmp_path):
+    (tmp_path / "bad.toml").write_text("radius_m = -1.0\n")
+    program = (
+        "import sys; from dentscope.cli import run; code = run(['case', 'bad.toml']); "
+        "print(code, 'numba' in sys.modules, 'dentscope.fem' in sys.modules)"
+    )
+    answer = subprocess.run(
+        [sys.executable, "-c", program], capture_output=True, text=True, timeout=120, check=True,
+        cwd=tmp_path,
+    )  # fmt: skip
+    assert answer.stdout.split() == ["2", "False", "False"]
+    assert "bad.toml: radius_m" in answer.stderr
+
+
 def test_a_blow_of_a_template_with_changes():
     blow = ds.impact("ball", law=["fitted", "hertz"], impact_speed_m_s=2.0)
     # elastic: all is given back; Hertz's time 2.943 d/v of a ball of 4.0841e-3 kg, 5 mm
