@@ -61,8 +61,8 @@ Out = Annotated[Path, folder_option("Without --into: folder for the numbers and 
 
 def _command(name: str) -> Any:
     """Return the command of a kind: FILE, the kind's options, the conditions of the trial."""
-    from ..recordings.reduce.into_set import Row
     from ..recordings.reduce.kinds import KINDS, load_kind
+    from ..recordings.reduce.row import Row
 
     kind = load_kind(name)
 
@@ -159,8 +159,9 @@ def _reduce(
     kind: Kind, file: Path, into: Path | None, out: Path, given: dict[str, Any], row: dict[str, Any]
 ) -> None:
     from ..core.toml_input import parse_model
-    from ..recordings.reduce.into_set import Row, store
+    from ..recordings.reduce.into_set import store
     from ..recordings.reduce.record import trial_name, write_record
+    from ..recordings.reduce.row import Row
 
     with _named_as_options():
         conditions = parse_model(row, Row, source="command line")

@@ -16,13 +16,12 @@ from pathlib import Path
 from typing import Any
 
 import numpy as np
-from pydantic import Field
 
 from ...core.errors import InputError
 from ...core.output import csv_text, finish_pending, locked, write_files
 from ...core.rig import Quantity
-from ...core.toml_input import InputTable, parse_model, read_toml
-from ..columns import CONDITIONS, MEASURED, STD_SUFFIX, VARIED
+from ...core.toml_input import parse_model, read_toml
+from ..columns import CONDITIONS, MEASURED, STD_SUFFIX
 from ..csv_table import Array
 from ..recording_set import RecordingSet, files_of, read
 from ..setup_file import Setup, setup_text, without_marks
@@ -31,38 +30,10 @@ from ..trials import Trials
 from .measured import Measured, Trial
 from .record import trial_name, write_record
 from .reduced import Reduced
+from .row import Row
 
 _TEXTS = ("trial", "striker", "spot", "note")
 _CONDITIONS = tuple(n for n in CONDITIONS if n not in _TEXTS and not n.endswith(STD_SUFFIX))
-
-
-class Row(InputTable):
-    """What the raw file does not tell about the trial."""
-
-    trial: str = Field(default="", description="name of the trial; default: the file's")
-    striker: str = Field(default="", description="name in set.toml; default: the only one")
-    angle_deg: float | None = Field(
-        default=None, gt=0.0, le=90.0, description="angle of the impact; default: 90"
-    )
-    impact_speed_m_s: float | None = Field(
-        default=None, gt=0.0, description="normal approach speed"
-    )
-    impact_speed_m_s_std: float | None = Field(
-        default=None, gt=0.0, description="its standard deviation"
-    )
-    drop_height_m: float | None = Field(default=None, gt=0.0, description="height of fall")
-    spot: str = Field(default="", description="same text: same place on the flat")
-    x: str = Field(
-        default="",
-        pattern=r"^(\w+=[^,=]*(,\w+=[^,=]*)*)?$",
-        description="what else was varied, NAME=VALUE,...: columns x_NAME",
-    )
-
-    @property
-    def varied(self) -> dict[str, str]:
-        """What else was varied, by column."""
-        pairs = (pair.partition("=") for pair in self.x.split(",") if pair)
-        return {f"{VARIED}{name.strip()}": value.strip() for name, _, value in pairs}
 
 
 @dataclass(frozen=True)

@@ -1,15 +1,14 @@
 """The kinds of raw file, in reading order, and what each of their folders offers.
 
-The folder of a kind holds `kind.py` with two names: `Options`, the table of its options (an
-`InputTable` whose fields have a description; field names end in their unit), and
-`reduce(path, options) -> Reduced`; and `picture.py`, which draws the picture to check the numbers
-by. The command line and the recipes make their options from `Options`, so that an option is
-written once.
+The folder of a kind holds `options.py` with `Options`, the table of its options (an `InputTable`
+whose fields have a description; field names end in their unit); `kind.py` with
+`reduce(path, options) -> Reduced`, loaded when a file is reduced; and `picture.py`, which draws the
+picture to check the numbers by. The command line and the recipes make their options from
+`Options`, so that an option is written once.
 """
 
 from __future__ import annotations
 
-from collections.abc import Callable
 from dataclasses import dataclass
 from importlib import import_module
 from pathlib import Path
@@ -38,11 +37,10 @@ _MOST_BYTES = 20_000_000_000
 
 @dataclass(frozen=True)
 class Kind:
-    """One way to reduce a file: its options and the function that takes them."""
+    """One way to reduce a file: its name and its options."""
 
     name: str
     options: type[InputTable]
-    reduce: Callable[[Path, Any], Reduced]
 
     def run(self, path: Path, given: dict[str, Any], *, source: str) -> Reduced:
         """Reduce a file with options that are not checked yet; `source` names where they stand."""
@@ -53,8 +51,10 @@ class Kind:
             checked_file(path, most=_MOST_BYTES, allowed="a raw recording")
         from numpy.linalg import LinAlgError
 
+        kind = import_module(f".{self.name}.kind", __package__)
         try:
-            return self.reduce(path, options)
+            reduced: Reduced = kind.reduce(path, options)
+            return reduced
         except (ArithmeticError, LinAlgError) as error:
             raise InputError(
                 f"its numbers cannot be reduced ({error})", source=str(path),
@@ -72,5 +72,4 @@ def load_kind(name: str) -> Kind:
     """
     if name not in KINDS:
         raise InputError(f"no kind {name!r}", key="kind", allowed=", ".join(KINDS))
-    module = import_module(f".{name}.kind", __package__)
-    return Kind(name, module.Options, module.reduce)
+    return Kind(name, import_module(f".{name}.options", __package__).Options)

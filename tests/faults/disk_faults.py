@@ -31,9 +31,10 @@ from dentscope.fem import Counters, Curve, Solution
 from dentscope.impact.columns import Impacts
 from dentscope.models import coefficients
 from dentscope.recordings import read
-from dentscope.recordings.reduce.into_set import Row, store
+from dentscope.recordings.reduce.into_set import store
 from dentscope.recordings.reduce.measured import Measured, Trial
 from dentscope.recordings.reduce.reduced import Reduced
+from dentscope.recordings.reduce.row import Row
 from dentscope.recordings.template import write_template
 from dentscope.studies.closed_form.page import published_section
 

@@ -2,13 +2,19 @@
 
 from __future__ import annotations
 
+from typing import TYPE_CHECKING
+
 from pydantic import Field
 
-from ....core.drag import Fluid, air
 from ....core.toml_input import InputTable
-from .fall import Ball
+
+if TYPE_CHECKING:
+    from .fall import Ball, Fall
 
 GRAVITY = 9.81
+
+_TYPICAL = 0.75
+"""Speed at which the drag coefficient of a flight is taken, in that of its launch."""
 
 
 class BallOptions(InputTable):
@@ -27,7 +33,34 @@ class BallOptions(InputTable):
 
     def ball_of(self, diameter: float | None) -> Ball:
         """Return the ball of a diameter [m], if that is known."""
+        from ....core.drag import Fluid, air
+        from .fall import Ball
+
         fluid = air()
         if self.air_density_kg_m3 is not None:
             fluid = Fluid(self.air_density_kg_m3, fluid.viscosity)
         return Ball(self.gravity_m_s2, self.mass_kg, diameter, fluid, self.drag_coefficient)
+
+
+class BounceOptions(BallOptions):
+    """What is known of a ball whose bounces are timed."""
+
+    release_height_m: float | None = Field(
+        None, gt=0.0, description="fall before the first contact, from rest, of the ball's bottom"
+    )
+    release_height_m_std: float = Field(0.0, ge=0.0, description="its standard deviation")
+    contact_time_s: float = Field(
+        0.0, ge=0.0, description="duration of a contact, which is not flight"
+    )
+    diameter_m: float | None = Field(
+        None, gt=0.0, description="of the ball; with mass_kg the drag of the air is taken off"
+    )
+
+    @property
+    def ball(self) -> Ball:
+        """What flies."""
+        return self.ball_of(self.diameter_m)
+
+    def fall_of(self, launch: float) -> Fall:
+        """Return a flight launched at about a speed [m/s]; most of the drag acts near its ends."""
+        return self.ball.fall(_TYPICAL * launch)

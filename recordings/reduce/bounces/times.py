@@ -12,40 +12,11 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
-from pydantic import Field
 
 from ....core.errors import InputError
 from ..measured import Array, Measured, Trial
 from .chain import Chain, chain_of
-from .fall import Ball, Fall
-from .options import BallOptions
-
-_TYPICAL = 0.75
-"""Speed at which the drag coefficient of a flight is taken, in that of its launch."""
-
-
-class BounceOptions(BallOptions):
-    """What is known of a ball whose bounces are timed."""
-
-    release_height_m: float | None = Field(
-        None, gt=0.0, description="fall before the first contact, from rest, of the ball's bottom"
-    )
-    release_height_m_std: float = Field(0.0, ge=0.0, description="its standard deviation")
-    contact_time_s: float = Field(
-        0.0, ge=0.0, description="duration of a contact, which is not flight"
-    )
-    diameter_m: float | None = Field(
-        None, gt=0.0, description="of the ball; with mass_kg the drag of the air is taken off"
-    )
-
-    @property
-    def ball(self) -> Ball:
-        """What flies."""
-        return self.ball_of(self.diameter_m)
-
-    def fall_of(self, launch: float) -> Fall:
-        """Return a flight launched at about a speed [m/s]; most of the drag acts near its ends."""
-        return self.ball.fall(_TYPICAL * launch)
+from .options import BounceOptions
 
 
 @dataclass(frozen=True)

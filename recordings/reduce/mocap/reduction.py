@@ -15,14 +15,13 @@ from scipy.spatial.transform import Rotation
 
 from ....core.errors import InputError
 from ...columns import TRIAL_COLUMNS
+from ..bounces.options import GRAVITY
 from ..measured import Array, Measured, Trial, propagate
 from .body import Body
 from .flight import Flights, fall_acceleration
 from .flight_search import find_flights
 from .motion import Motion
 from .rigid import Poses
-
-GRAVITY = 9.81
 
 _UPRIGHT = math.radians(1.0)
 """Lean below which the plane of motion is that of the impulse, not that of the rod."""

@@ -6,28 +6,15 @@ import math
 from pathlib import Path
 
 import numpy as np
-from pydantic import Field
 
 from ....core.errors import InputError
-from ..bounces.times import BounceOptions, reduce_bounce_times
+from ..bounces.times import reduce_bounce_times
 from ..measured import Measured
 from ..reduced import Reduced
-from ..time_window import TimeWindow
 from .file import Sound, read_sound
 from .onsets import find_onsets
+from .options import Options
 from .picture import draw_sound
-
-
-class Options(BounceOptions, TimeWindow):
-    """Options of the reduction of a sound."""
-
-    least_rise_db: float = Field(
-        12.0, gt=0.0, description="rise of the energy within a millisecond that counts as a contact"
-    )
-    least_interval_s: float = Field(
-        0.02, gt=0.0, description="shortest time between two contacts; echoes come sooner"
-    )
-    lowest_hz: float = Field(300.0, gt=0.0, description="lower frequencies are taken out")
 
 
 def reduce(path: Path, options: Options) -> Reduced:

@@ -3,83 +3,22 @@
 from __future__ import annotations
 
 from pathlib import Path
-from typing import Literal
 
 import numpy as np
-from pydantic import Field
 
 from ....core.errors import InputError
-from ..bounces.times import BounceOptions, reduce_bounce_times
+from ..bounces.times import reduce_bounce_times
 from ..measured import Array, Measured
 from ..reduced import Reduced
-from ..time_window import TimeWindow
 from .file import Columns, read_columns
 from .force import reduce_pulse
 from .height import reduce_heights
+from .options import Options
 from .picture import draw_heights, draw_pulse, draw_tension, draw_times, draw_trials
 from .tension import reduce_tension
 from .trials import reduce_leeb, reduce_rebounds, reduce_trials
 
-Holds = Literal[
-    "force", "acceleration", "height", "bounces", "rebounds", "leeb", "tension", "trials"
-]
-
 _FEWEST = 20
-
-
-class Options(BounceOptions, TimeWindow):
-    """Options of the reduction of a table."""
-
-    holds: Holds = Field(
-        description="force, acceleration or height against time; times of bounces; rebound heights "
-        "beside drop heights; Leeb numbers; stress over strain of a tension test; a row a trial"
-    )
-    sheet: str = Field(
-        "", description="of a workbook, a ZIP file or a tracker's project; default: the first"
-    )
-    select: str = Field("", description="COLUMN=VALUE: only these rows")
-    time: str = Field("1", description="column of the time, by name or number")
-    value: str = Field("2", description="column of what was measured, by name or number")
-    time_unit: Literal["file", "s", "ms", "us", "min"] = Field(
-        "file", description="file: what the column's name says, else seconds"
-    )
-    value_unit: str = Field(
-        "file", description="as N, kN, m/s2, g, mm, px; file: what the column's name says"
-    )
-    gain: float | None = Field(
-        None,
-        gt=0.0,
-        description="newtons or m/s2 that one of the column's unit is worth: one over "
-        "the sensitivity of a sensor read in volts",
-    )
-    gain_std: float = Field(0.0, ge=0.0, description="its standard deviation")
-    strain_is: Literal["engineering", "true"] = Field(
-        "engineering", description="of a tension test; stresses likewise"
-    )
-    E_Pa: float | None = Field(
-        None, gt=0.0, description="of the metal in tension; default: the slope of the curve"
-    )
-    body: str = Field(
-        "target", description="whose flow curve a tension test is: target, or a striker's name"
-    )
-    rate_hz: float | None = Field(
-        None, gt=0.0, description="samples a second, where the time column counts samples"
-    )
-    time_std_s: float | None = Field(
-        None, gt=0.0, description="of an instant of contact; default: from their scatter"
-    )
-    value_std: float = Field(
-        0.0, ge=0.0, description="standard deviation of a height, in the unit of its column"
-    )
-    upwards: Literal["up", "down"] = Field(
-        "up", description="down: the heights grow downwards, as rows of a picture do"
-    )
-    approach_speed_m_s: float | None = Field(
-        None,
-        gt=0.0,
-        description="normal speed before the pulse; with mass_kg gives the restitution",
-    )
-    approach_speed_m_s_std: float = Field(0.0, ge=0.0, description="its standard deviation")
 
 
 def reduce(path: Path, options: Options) -> Reduced:

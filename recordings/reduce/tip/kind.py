@@ -4,34 +4,16 @@ from __future__ import annotations
 
 import math
 from pathlib import Path
-from typing import Literal
 
 import numpy as np
-from pydantic import Field, model_validator
 
 from ....core.errors import InputError
-from ..images.options import PictureOptions
 from ..images.picture_file import DOWN, crop_window, cropped, read_picture
 from ..measured import Measured
 from ..reduced import Reduced
+from .options import Options
 from .picture import draw_tip
 from .reduction import TipReduction, reduce_tip
-
-
-class Options(PictureOptions):
-    """Options of the reduction of a photograph."""
-
-    shape: Literal["rod", "sphere"] = Field("rod", description="a rod, or a ball wholly in view")
-    striker_is: Literal["dark", "bright"] = Field("dark", description="against its ground")
-    tip_points: Literal["down", "left", "up", "right"] = Field(
-        "down", description="where the tip points in the picture"
-    )
-
-    @model_validator(mode="after")
-    def _diameter_of_a_rod(self) -> Options:
-        if self.diameter_m is not None and self.shape == "sphere":
-            raise ValueError("diameter_m is a rod's; give pixel_m for a ball")
-        return self
 
 
 def reduce(path: Path, options: Options) -> Reduced:

@@ -3,38 +3,15 @@
 from __future__ import annotations
 
 from pathlib import Path
-from typing import Literal
-
-from pydantic import Field
 
 from ....core.errors import InputError
-from ..bounces.options import BallOptions
 from ..images.clip import read_clip
-from ..images.options import PictureOptions
 from ..images.picture_file import crop_window
 from ..measured import Measured
 from ..reduced import Reduced
+from .options import Options
 from .picture import draw_video
 from .reduction import Optics, VideoReduction, reduce_video
-
-
-class Options(PictureOptions, BallOptions):
-    """Options of the reduction of a video."""
-
-    frame_rate_hz: float = Field(gt=0.0, description="the camera's own frames per second")
-    shape: Literal["rod", "sphere"] = Field("rod", description="of the striker")
-    line_time_s: float = Field(
-        0.0, ge=0.0, description="from one row to the next, of a shutter that rolls down"
-    )
-    striker_is: Literal["bright", "dark"] = Field("bright", description="against its ground")
-    background: Literal["none", "median"] = Field(
-        "none", description="median: subtract the median of all frames"
-    )
-    down: Literal["down", "left", "up", "right"] = Field(
-        "down", description="where gravity points in the picture"
-    )
-    first_frame: int = Field(0, ge=0, description="number of the first frame to use")
-    last_frame: int | None = Field(None, ge=0, description="number of the last one")
 
 
 def reduce(path: Path, options: Options) -> Reduced:

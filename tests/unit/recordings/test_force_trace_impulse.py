@@ -6,8 +6,8 @@ import numpy as np
 import pytest
 from dentscope.core.rig import Quantity, StrikerTable, TargetTable
 from dentscope.recordings import RecordingSet, Setup, Trials
-from dentscope.recordings.audit.findings import Severity
-from dentscope.recordings.audit.trace import check_trace
+from dentscope.recordings.checks.findings import Severity
+from dentscope.recordings.checks.trace import check_trace
 
 MASS, SPEED, TIME, E = 0.05, 2.0, 1e-4, 0.6
 

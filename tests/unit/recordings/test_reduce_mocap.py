@@ -7,7 +7,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 from dentscope.core.errors import InputError
-from dentscope.recordings.audit.rigid import Touch
+from dentscope.recordings.checks.rigid import Touch
 from dentscope.recordings.reduce.mocap.body import Body, centre_of
 from dentscope.recordings.reduce.mocap.file import read_markers
 from dentscope.recordings.reduce.mocap.kind import Options, reduce

@@ -9,7 +9,7 @@ import pytest
 from dentscope.cli import run
 from dentscope.recordings import read
 from dentscope.recordings.reduce.bounces.chain import chain_of
-from dentscope.recordings.reduce.bounces.times import Fall
+from dentscope.recordings.reduce.bounces.fall import Fall
 from dentscope.recordings.reduce.kinds import load_kind
 from dentscope.studies.synthetic.sounds import SoundTruth, bounces, record, write_wav
 from hypothesis import given, settings

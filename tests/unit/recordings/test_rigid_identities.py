@@ -7,8 +7,8 @@ import numpy as np
 import pytest
 from dentscope.core.rig import StrikerTable
 from dentscope.recordings import Severity, audit, read
-from dentscope.recordings.audit.limits import bending_period, wave_limit
-from dentscope.recordings.audit.rigid import touch
+from dentscope.recordings.checks.limits import bending_period, wave_limit
+from dentscope.recordings.checks.rigid import touch
 from hypothesis import assume, given
 from hypothesis import strategies as st
 

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from .audit import Audit, audit
 from .findings import Finding, Severity
+from .report import Audit, audit
 
 __all__ = ["Audit", "Finding", "Severity", "audit"]
