@@ -3,8 +3,9 @@
 Clips of a rod around its contact, or of a ball over whole flights in air, with drawn speeds, lean,
 tip, blur, shutter, noise and light, and with every fault of a camera at once: a scale that drifts,
 a rolling shutter, reflections in the flat, blur that is not the same everywhere, dropped frames and
-frames with something in the way. Arguments: number of clips, `rod` or `sphere`, `clean` for none of
-the faults. Printed: errors of speeds and restitution, and how honest they are.
+frames with something in the way. Arguments: number of clips, `rod` or `sphere`, the first seed,
+`clean` for none of the faults. Printed: errors of speeds and restitution, how honest they are, and
+the clips with the largest errors in what is stated.
 """
 
 import math
@@ -21,7 +22,7 @@ from dentscope.studies.synthetic.tracks import fly
 
 
 def one(seed: int, shape: str, faults: bool) -> list[list[float]]:
-    """Return approach, rebound, restitution less their truth, and their errors, a row a bounce."""
+    """Return approach, rebound and restitution less their truth, their errors, and e, by bounce."""
     truth = random_truth(seed) if shape == "rod" else random_ball(seed)
     truth = with_faults(truth) if faults else truth
     frames = render(truth)
@@ -47,13 +48,13 @@ def one(seed: int, shape: str, faults: bool) -> list[list[float]]:
         rows.append([
             approach.value / speeds[k] - 1.0, approach.std / speeds[k],
             rebound.value / (e * speeds[k]) - 1.0, rebound.std / (e * speeds[k]),
-            bounce.restitution.value - e, bounce.restitution.std,
+            bounce.restitution.value - e, bounce.restitution.std, e,
         ])  # fmt: skip
     return rows
 
 
 def report(rows: np.ndarray) -> None:
-    """Print bias, spread and honesty of each number."""
+    """Print bias, spread and honesty of each number, and the bounces furthest off."""
     for k, name in enumerate(("approach, relative", "rebound, relative", "restitution")):
         error, std = rows[:, 2 * k], rows[:, 2 * k + 1]
         pull = error / std
@@ -61,15 +62,19 @@ def report(rows: np.ndarray) -> None:
             f"{name}: bias {error.mean():+.5f} ± {error.std() / math.sqrt(error.size):.5f}, rms "
             f"{np.sqrt(np.mean(error**2)):.5f}, median {np.median(np.abs(error)):.5f}, stated "
             f"{np.median(std):.5f}; pulls: std {pull.std():.2f}, within 2: "
-            f"{np.mean(np.abs(pull) < 2.0):.1%}, largest {np.abs(pull).max():.1f}"
+            f"{np.mean(np.abs(pull) < 2.0):.1%}, largest {np.abs(pull).max():.1f}, beyond 6: "
+            f"{np.sum(np.abs(pull) > 6.0)}"
         )
+    for row in rows[np.argsort(-np.abs(rows[:, 4] / rows[:, 5]))[:8]]:
+        print(f"  seed {row[6]:.0f}: e {row[7]:.3f}, off {row[4]:+.4f} ± {row[5]:.4f}; "
+              f"approach off {row[0]:+.4f} ± {row[1]:.4f}")  # fmt: skip
 
 
-def main(count: int, shape: str, faults: bool) -> None:
+def main(count: int, shape: str, first: int, faults: bool) -> None:
     rows, refused = [], 0
-    for seed in range(count):
+    for seed in range(first, first + count):
         try:
-            rows += one(seed, shape, faults)
+            rows += [[*row, seed, e] for *row, e in one(seed, shape, faults)]
         except ValueError as error:
             refused += 1
             print(f"clip {seed}: {error}")
@@ -78,9 +83,6 @@ def main(count: int, shape: str, faults: bool) -> None:
 
 
 if __name__ == "__main__":
-    given = sys.argv[1:]
-    main(
-        int(given[0]) if given else 100,
-        given[1] if len(given) > 1 else "rod",
-        "clean" not in given,
-    )
+    given = [word for word in sys.argv[1:] if word != "clean"]
+    count, shape, first, *_ = [*given, *["100", "rod", "0"][len(given) :]]
+    main(int(count), shape, int(first), "clean" not in sys.argv)

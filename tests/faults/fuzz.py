@@ -4,7 +4,8 @@
 slices, numbers, types, nesting, sizes), reads each in a child process, and prints for each reader
 how many were refused with a line, how many were read, and what else happened: another exception,
 the end of the process, more than 20 s, more than 1 GB. Where a number of a TOML file is replaced by
-what is none (`true`, "0.01", a date, a list), reading it is a fault as well.
+what is none (`true`, "0.01", a date, a list), reading it is a fault as well. `--raw` takes raw
+recordings of every kind instead (raw_files.py) and reduces them to numbers and a picture.
 """
 
 import argparse
@@ -164,13 +165,17 @@ def c3d():
         return path.read_bytes()
 
 
+def beside(name):
+    """Return the module of a script beside this one."""
+    if name not in sys.modules:
+        spec = importlib.util.spec_from_file_location(name, Path(__file__).with_name(f"{name}.py"))
+        sys.modules[name] = importlib.util.module_from_spec(spec)
+        spec.loader.exec_module(sys.modules[name])
+    return sys.modules[name]
+
+
 def campaign():
-    spec = importlib.util.spec_from_file_location(
-        "disk_faults", Path(__file__).with_name("disk_faults.py")
-    )
-    faults = importlib.util.module_from_spec(spec)
-    sys.modules["disk_faults"] = faults
-    spec.loader.exec_module(faults)
+    faults = beside("disk_faults")
     from dentscope.campaigns import Store
 
     with tempfile.TemporaryDirectory() as folder:
@@ -221,6 +226,9 @@ TARGETS = {
 
 def read(name, path):
     """Read a file as the program does; whatever it gives is dropped."""
+    if name not in TARGETS:
+        beside("raw_files").read(name, path)
+        return
     from dentscope.recordings.reduce.kinds import load_kind
 
     def kind(which, **options):
@@ -273,6 +281,8 @@ def read(name, path):
 
 def lay_out(name, content, folder):
     """Put a file where its reader looks for it, with what belongs beside it."""
+    if name not in TARGETS:
+        return beside("raw_files").lay_out(name, content, folder)
     path = folder / name
     if name == "set.toml":
         (folder / "trials.csv").write_bytes(
@@ -288,28 +298,36 @@ def lay_out(name, content, folder):
     return path
 
 
-def made_inputs(count, seed):
+def targets(raw):
+    """Return what makes each sound file."""
+    return {k: f[1] for k, f in beside("raw_files").FILES.items()} if raw else TARGETS
+
+
+def made_inputs(count, seed, *, raw):
     """Yield (number, reader, content, must be refused); the same for the same seed."""
-    sound_ones = {}
+    sound_ones, makers = {}, targets(raw)
     for number in range(count):
         draw = random.Random(f"{seed}-{number}")
-        name = list(TARGETS)[number % len(TARGETS)]
+        name = list(makers)[number % len(makers)]
         if name not in sound_ones:
-            sound_ones[name] = TARGETS[name]()
-        content, refuse = mutated(sound_ones[name], draw)
+            sound_ones[name] = makers[name]()
+        if raw:
+            content, refuse = beside("raw_files").damaged(name, sound_ones[name], draw, mutated)
+        else:
+            content, refuse = mutated(sound_ones[name], draw)
         if name == "campaign.h5" and draw.random() < 0.5:
             content = resealed(content)
         yield number, name, content, refuse and name.endswith(".toml")
 
 
-def child(count, seed, first, last):
+def child(count, seed, first, last, *, raw):
     """Read inputs first to last; a line of JSON before and after each."""
     from dentscope.core import InputError
 
-    for name, make in TARGETS.items():  # what is imported once is no input's time
+    for name, make in targets(raw).items():  # what is imported once is no input's time
         with tempfile.TemporaryDirectory() as folder, suppress(Exception):
             read(name, lay_out(name, make(), Path(folder)))
-    for number, name, content, refuse in made_inputs(count, seed):
+    for number, name, content, refuse in made_inputs(count, seed, raw=raw):
         if not first <= number < last:
             continue
         tell({"number": number, "reader": name})
@@ -347,13 +365,15 @@ def tell(line):
     sys.stdout.flush()
 
 
-def run(count, seed, *, slow_s=SLOW_S, say=lambda line: None):
+def run(count, seed, *, raw=False, slow_s=SLOW_S, say=lambda line: None):
     """Read all inputs in children; return counts by reader, and what went wrong."""
-    counts, faults, first, most = {name: Counter() for name in TARGETS}, [], 0, 0.0
+    counts, faults, first, most = {name: Counter() for name in targets(raw)}, [], 0, 0.0
     while first < count:
         command = [sys.executable, __file__, "--child", str(first), "--inputs", str(count)]
         process = subprocess.Popen(
-            [*command, "--seed", str(seed)], stdout=subprocess.PIPE, stderr=subprocess.DEVNULL
+            [*command, "--seed", str(seed), *(["--raw"] if raw else [])],
+            stdout=subprocess.PIPE,
+            stderr=subprocess.DEVNULL,
         )
         last, reader = first - 1, ""
         for line in process.stdout:
@@ -386,13 +406,15 @@ def main():
     parser.add_argument("--inputs", type=int, default=5000)
     parser.add_argument("--seed", type=int, default=1)
     parser.add_argument("--child", type=int)
+    parser.add_argument("--raw", action="store_true")
     chosen = parser.parse_args()
     if chosen.child is not None:
-        child(chosen.inputs, chosen.seed, chosen.child, chosen.inputs)
+        child(chosen.inputs, chosen.seed, chosen.child, chosen.inputs, raw=chosen.raw)
         return
     counts, faults, most = run(
-        chosen.inputs, chosen.seed, say=lambda line: sys.stdout.write(line + "\n")
-    )
+        chosen.inputs, chosen.seed, raw=chosen.raw,
+        say=lambda line: sys.stdout.write(line + "\n"),
+    )  # fmt: skip
     for name, found in counts.items():
         sys.stdout.write(f"{name}: {dict(found)}\n")
     sys.stdout.write(f"{len(faults)} faults; most memory {most:.0f} MB\n")

@@ -5,6 +5,7 @@ import importlib.util
 import random
 import re
 import sys
+from collections import Counter
 from pathlib import Path
 
 import pytest
@@ -75,6 +76,13 @@ def test_malformed_input_is_one_line_soon_and_in_little_memory():
     assert faults == []
     assert sum(found.total() for found in counts.values()) == 102
     assert most < 1000.0
+
+
+def test_damaged_raw_recordings_are_reduced_or_refused_in_a_line():
+    counts, faults, _most = script("fuzz").run(44, 5, raw=True)
+    assert faults == []
+    assert sum(found.total() for found in counts.values()) == 44
+    assert {"read", "refused with a line"} <= set(sum(counts.values(), Counter()))
 
 
 WRITES = re.compile(
