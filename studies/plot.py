@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Any
+from typing import Any, NamedTuple
 
 import numpy as np
 import numpy.typing as npt
@@ -20,13 +20,36 @@ from ..models.base import ContactLaw
 
 Floats = npt.NDArray[np.float64]
 
-COLOURS = {
-    "hertz": "0.6", "jackson-green": "C0", "jackson-green-2007": "C0", "kogut-etsion": "C1",
-    "kogut-komvopoulos": "C2",
-    "ye-komvopoulos": "C4", "brake-2015": "C5", "brake-2012": "C6", "stronge": "C8",
-    "thornton": "C9", "thornton-ning": "C9", "ghaednia": "C3", "fitted": "k",
-}  # fmt: skip
-"""Colour of a law in every figure."""
+
+class Line(NamedTuple):
+    """How a law is drawn in every figure, also in words."""
+
+    colour: str
+    colour_told: str
+    dashes: Any
+    dashes_told: str
+    width: float = 1.4
+
+
+_DASHED, _DOTTED, _DASH_DOT = (0, (5, 2)), (0, (1.2, 1.4)), (0, (6, 1.5, 1.2, 1.5))
+LINES = {
+    "hertz": Line("0.6", "grey", "-", "solid"),
+    "jackson-green": Line("C0", "blue", _DASHED, "dashed"),
+    "jackson-green-2007": Line("C0", "blue", "-", "solid"),
+    "kogut-etsion": Line("C1", "orange", "-", "solid"),
+    "kogut-etsion-continued": Line("C1", "orange", _DASHED, "dashed"),
+    "kogut-komvopoulos": Line("C2", "green", "-", "solid"),
+    "ye-komvopoulos": Line("C4", "purple", _DASH_DOT, "dash-dotted"),
+    "brake-2015": Line("C5", "brown", "-", "solid"),
+    "brake-2012": Line("C6", "pink", _DASHED, "dashed"),
+    "stronge": Line("C8", "olive", _DOTTED, "dotted", 2.0),
+    "thornton": Line("C9", "cyan", "-", "solid"),
+    "thornton-ning": Line("C9", "cyan", _DASHED, "dashed"),
+    "ghaednia": Line("C3", "red", "-", "solid, thick", 3.2),
+    "fitted": Line("k", "black", _DASHED, "dashed", 1.6),
+}
+"""What lies under a law shows beside it or through its gaps: the thick one is drawn first, those
+that often coincide with another are broken."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -126,10 +149,19 @@ def laws(*names: str) -> list[ContactLaw]:
 
 
 def look(law: ContactLaw) -> dict[str, Any]:
-    """Colour, width and label of a law's curve."""
-    name = law.name.split("+")[0]
-    wide = name in ("ghaednia", "fitted")
-    return {"color": COLOURS.get(name, "0.4"), "lw": 2.0 if wide else 1.3, "label": law.name}
+    """Colour, dashes, width, order and label of a law's curve."""
+    line = line_of(law)
+    # thick ones below, broken ones above
+    order = 2.0 + 0.1 * (line.dashes != "-") - 0.05 * line.width
+    return {
+        "color": line.colour, "ls": line.dashes, "lw": line.width, "zorder": order,
+        "label": law.name,
+    }  # fmt: skip
+
+
+def line_of(law: ContactLaw) -> Line:
+    """How a law is drawn; a joined one as its loading."""
+    return LINES.get(law.name.split("+")[0], Line("0.4", "grey", "-", "solid"))
 
 
 TABLE_2_1 = {

@@ -15,6 +15,7 @@ from ....models.published.viscous import alpha_for, hunt_crossley, kelvin_voigt,
 from ...plot import Entry, Floats, Picture, finish, sheet
 from . import sketches
 
+_PLACES = (0.1, 0.3, 0.5)  # a/R at which a law's deviation is told
 _PLASTIC = 110.0  # w from which a contact counts as fully plastic (2.3.2)
 
 
@@ -22,8 +23,23 @@ def pictures(records: Sequence[CaseRecord]) -> list[Entry]:
     """The figures; `records` are the stored finite-element cases, possibly none."""
     return [
         *sketches.chapter_1(),
-        _hardness("1.2", "indentation", hardness.INDENTATION, records, lambda r: r > 1.7),
-        _hardness("1.3", "flattening", hardness.FLATTENING, records, lambda r: r < 0.6),
+        _hardness(
+            "1.2",
+            "indentation",
+            hardness.INDENTATION,
+            records,
+            lambda r: r > 1.7,
+            "The thesis says that its own points here are not perfectly plastic; ours are.",
+        ),
+        _hardness(
+            "1.3",
+            "flattening",
+            hardness.FLATTENING,
+            records,
+            lambda r: r < 0.6,
+            "The text calls 1.15 the improved fit. The thesis's points are adjusted for the "
+            "radius of curvature, it does not say how; ours are not.",
+        ),
         _paradox(),
     ]
 
@@ -77,6 +93,7 @@ def _hardness(
     published: dict[str, Callable[[Any], Floats]],
     records: Sequence[CaseRecord],
     belongs: Callable[[float], bool],
+    said: str,
 ) -> Picture:
     made, (axis,) = sheet()
     x = np.linspace(1e-3, 0.6, 300)
@@ -93,12 +110,26 @@ def _hardness(
             for name, function in published.items()
         }
         best = min(deviations, key=lambda name: deviations[name])
-        told = ", ".join(f"{name} {value:.1%}" for name, value in deviations.items())
-        note = f"Mean deviation from {len(radius)} of our points: {told}; the nearest is {best}."
+        told = ", ".join(
+            f"{name} {value:.1%} ({', '.join(_along(published[name], radius, pressure))})"
+            for name, value in deviations.items()
+        )
+        places = ", ".join(f"{place:g}" for place in _PLACES)
+        note = (
+            f"Mean deviation from {len(radius)} of our points of full plasticity, in brackets at "
+            f"a/R = {places}: {told}; the nearest is {best}."
+        )
     axis.set_ylim(1.0, 3.6)
     finish(axis, x="contact radius a/R", y="mean pressure p/Sy")
-    note += " 1.12 cannot be judged: the thesis does not define its L and D."
+    note += f" {said} 1.12 cannot be judged: the thesis does not define its L and D."
     return Picture(number, f"Hardness laws, {regime}", made, note)
+
+
+def _along(law: Callable[[Any], Floats], radius: Floats, pressure: Floats) -> list[str]:
+    """Mean deviation of a law from the points near each of `_PLACES`."""
+    off = law(radius) / pressure - 1.0
+    near = (np.abs(radius - place) < 0.03 for place in _PLACES)
+    return [f"{np.mean(off[here]):+.1%}" for here in near if np.any(here)]
 
 
 def _plastic(

@@ -51,12 +51,13 @@ def _chapter_3() -> Pair:
 
 @dataclass(frozen=True, slots=True)
 class Wanted:
-    """A field picture: its pair and depth, and what the thesis says of it."""
+    """A field picture: pair, depth, what the thesis says, how far the solve goes on."""
 
     title: str
     pair: Callable[[], Pair]
     depth: float
     said: str
+    last: float = 0.0
 
 
 WANTED = {
@@ -66,10 +67,11 @@ WANTED = {
                   "large parts of both bodies yield"),
     "2.4": Wanted("von Mises stress, Sy* = 10", lambda: _steels(5030e6, 503e6), 0.02,
                   "the flat yields also outside the contact, the sphere does not"),
-    "3.7": Wanted("mesh and von Mises stress of chapter 3", _chapter_3, 148e-6 / 0.1365,
-                  "no number"),
+    "3.7": Wanted("Mesh and von Mises stress of chapter 3", _chapter_3, 148e-6 / 0.1365,
+                  "", last=0.1),
 }  # fmt: skip
-"""Field pictures by figure number; the thesis gives no depth for 2.2-2.4."""
+"""Field pictures by figure number; the thesis gives no depth for 2.2-2.4. The solve of 3.7 goes on
+as far as figure 3.8 does."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -84,6 +86,8 @@ class Field:
         Whether an element is the sphere's, shape (n,).
     stress, plastic
         von Mises stress and equivalent plastic strain, shape (n,).
+    depth, force
+        Loading curve of the same solve, Delta/R and F/(E' R^2), shape (k,); empty in older files.
     origin
         Depth, contact radius, force, settings and version of the solve.
     """
@@ -92,6 +96,8 @@ class Field:
     sphere: npt.NDArray[np.bool_]
     stress: Floats
     plastic: Floats
+    depth: Floats
+    force: Floats
     origin: dict[str, Any]
 
 
@@ -106,19 +112,22 @@ def solve_field(number: str, *, folder: Path = STORE) -> Path:
     wanted, accuracy = WANTED[number], Accuracy.quick()
     pair = wanted.pair()
     first = 0.3 * critical_depth(pair)
-    problem = ContactProblem(
-        pair=pair, depths=geometric_depths(first, wanted.depth, 20), snapshots=(wanted.depth,)
-    )
+    depths = geometric_depths(first, wanted.depth, 20)
+    if wanted.last:
+        depths = (*depths, *geometric_depths(wanted.depth, wanted.last, 20)[1:])
+    problem = ContactProblem(pair=pair, depths=depths, snapshots=(wanted.depth,))
     solution = solve(problem, accuracy=accuracy)
     if not solution.snapshots:
         raise RuntimeError(str(solution.outcome))
     seen, R = solution.snapshots[-1], pair.R
-    a = float(solution.loading.radius[-1]) / R
+    curve = solution.loading
+    there = int(np.argmin(np.abs(curve.delta / R - seen.depth)))
+    a = float(curve.radius[there]) / R
     corners = ((seen.points + seen.displacement) / R)[seen.quads]
     near = np.hypot(*corners.mean(axis=1).T) < 3.2 * a
     path = folder / f"figure-{number.replace('.', '-')}.npz"
     origin = {
-        "Delta_over_R": seen.depth, "a_over_R": a, "force_N": float(solution.loading.force[-1]),
+        "Delta_over_R": seen.depth, "a_over_R": a, "force_N": float(curve.force[there]),
         "level": accuracy.level, "numerics_version": NUMERICS_VERSION,
         "elements": len(seen.quads),
     }  # fmt: skip
@@ -129,6 +138,8 @@ def solve_field(number: str, *, folder: Path = STORE) -> Path:
         sphere=(np.arange(len(seen.quads)) < seen.n_sphere_quads)[near],
         stress=(seen.von_mises[near] / pair.Sy_min).astype(np.float32),
         plastic=seen.plastic_strain[near].astype(np.float32),
+        depth=curve.delta / R,
+        force=curve.force / (pair.E_reduced * R**2),
         origin=np.array(json.dumps(origin)),
     )
     return write_file(path, stream.getvalue())
@@ -142,7 +153,10 @@ def read_field(number: str, *, folder: Path = STORE) -> Field | None:
     with np.load(path, allow_pickle=False) as data:
         return Field(
             data["corners"].astype(float), data["sphere"], data["stress"].astype(float),
-            data["plastic"].astype(float), json.loads(str(data["origin"])),
+            data["plastic"].astype(float),
+            data["depth"] if "depth" in data else np.zeros(0),
+            data["force"] if "force" in data else np.zeros(0),
+            json.loads(str(data["origin"])),
         )  # fmt: skip
 
 
@@ -154,8 +168,7 @@ def chapter_2(records: Sequence[CaseRecord]) -> list[Picture]:
 
 def chapter_3_again(records: Sequence[CaseRecord]) -> list[Picture]:
     """Figure 3.7."""
-    field = read_field("3.7")
-    return [_field("3.7", field)] if field is not None else [_mesh_of_chapter_3()]
+    return [_chapter_3_pictures(read_field("3.7"))]
 
 
 def _grid_of(pair: Pair, depth: float) -> tuple[Floats, Any]:
@@ -194,21 +207,48 @@ def _mesh() -> Picture:
     return Picture("2.1", "Mesh, whole and near the contact", made, note)
 
 
-def _mesh_of_chapter_3() -> Picture:
-    made, (axis,) = sheet(size=(4.8, 6.2))
+def _chapter_3_pictures(field: Field | None) -> Picture:
+    """Mesh, and beside it the stress where it was solved."""
+    made, axes = sheet(1 if field is None else 2, size=(5.6, 5.6))
     wanted = WANTED["3.7"]
     corners, mesh = _grid_of(wanted.pair(), wanted.depth)
-    _draw_mesh(axis, corners, mesh.n_sphere_quads, reach=0.1)
-    finish(axis, x="r/R", y="z/R")
-    note = (
-        f"(a) only: {len(mesh.quads)} elements for the chapter's pair and R = 136.5 mm; the stress "
-        "of (b) needs `dentscope figures --fields 3.7`, some minutes."
-    )
-    return Picture("3.7", "Mesh of chapter 3", made, note)
+    reach = 0.1 if field is None else 2.2 * field.origin["a_over_R"]
+    _draw_mesh(axes[0], corners, mesh.n_sphere_quads, reach=reach)
+    axes[0].set_title("(a) mesh of published results", fontsize=9)
+    finish(axes[0], x="r/R", y="z/R")
+    note = f"(a) {len(mesh.quads)} elements for the chapter's pair and R = 136.5 mm"
+    if field is None:
+        note += "; the stress of (b) needs `dentscope figures --fields 3.7`, some minutes."
+    else:
+        _draw_field(made, axes[1], field)
+        axes[1].set_title("(b) von Mises stress at 148 um", fontsize=9)
+        note += f". (b) {_told(field)}"
+    return Picture("3.7", wanted.title, made, note)
 
 
 def _field(number: str, field: Field) -> Picture:
     made, (axis,) = sheet(size=(7.2, 6.2))
+    _draw_field(made, axis, field)
+    wanted = WANTED[number]
+    return Picture(number, wanted.title, made, f"{_told(field)} The thesis: {wanted.said}.")
+
+
+def _told(field: Field) -> str:
+    a = field.origin["a_over_R"]
+    return (
+        f"Delta/R = {field.origin['Delta_over_R']:.3g}, a/R = {a:.3f}, level "
+        f"{field.origin['level']}, elements of {_smallest(field):.2f} a where they are finest. "
+        f"{_yielded(field, a)}"
+    )
+
+
+def _smallest(field: Field) -> float:
+    """Longest edge of the smallest element over the contact radius."""
+    edges = np.linalg.norm(field.corners - np.roll(field.corners, 1, axis=1), axis=2)
+    return float(edges.max(axis=1).min()) / float(field.origin["a_over_R"])
+
+
+def _draw_field(made: Any, axis: Any, field: Field) -> None:
     a = field.origin["a_over_R"]
     for side in (1.0, -1.0):
         drawn = PolyCollection(
@@ -223,12 +263,6 @@ def _field(number: str, field: Field) -> Picture:
     axis.set_aspect("equal")
     made.colorbar(drawn, ax=axis, label="von Mises stress / Sy_min", shrink=0.85, extend="max")
     finish(axis, x="r/R", y="z/R")
-    wanted = WANTED[number]
-    note = (
-        f"Delta/R = {field.origin['Delta_over_R']:.3g}, a/R = {a:.3f}, level "
-        f"{field.origin['level']}. {_yielded(field, a)} The thesis: {wanted.said}."
-    )
-    return Picture(number, wanted.title, made, note)
 
 
 def _yielded(field: Field, a: float) -> str:

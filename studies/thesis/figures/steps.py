@@ -14,7 +14,8 @@ from ....core.material import Material, Pair
 from ....models import LAWS, critical_depth
 from ....models.fitted import ClosedForm
 from ....models.published.ghaednia import share_of_sphere, updated_jackson_green
-from ...plot import Picture, at_depth, bare_sheet, finish, look, percent, sheet, table_2_1
+from ...plot import Picture, at_depth, bare_sheet, finish, look, percent, same, sheet, table_2_1
+from .claims import judged
 
 _DEPTHS = (0.01, 0.02, 0.04, 0.06, 0.08)
 _RATIOS = np.geomspace(0.1, 10.0, 121)
@@ -165,50 +166,107 @@ def _updated(records: Sequence[CaseRecord]) -> Picture:
         ours = [float(LAWS["fitted"].contact_radius(p, D * R)) / R for p in pairs]
         axis.semilogx(_RATIOS, ours, **look(LAWS["fitted"]))
     axis.axhline(truncated, color="0.5", ls=":", label="truncated, sqrt(1 - (1 - D)^2)")
+    points = _radii_of_case_4(records, D)
+    if points:
+        axis.plot(*zip(*points, strict=True), "ko", ms=4, mfc="w", label="our finite elements")
     axis.set_ylim(0.22, 0.31)
     finish(axis, x="Sy*", y="contact radius a/R")
-    off = updated / model - 1.0
-    worst = float(_RATIOS[np.argmax(np.abs(off))])
+    x, beside = (np.array(v) for v in zip(*points, strict=True)) if points else (_RATIOS, model)
+    off = np.interp(np.log(x), np.log(_RATIOS), updated) / beside - 1.0
+    worst = int(np.argmax(np.abs(off)))
+    first = plain[0] / beside[0] - 1.0
     note = (
-        f"Against the thesis's model: Jackson and Green {percent(plain[0] / model[0] - 1.0)} at "
-        f"Sy* = 0.1 (the text: less than 2 %), with delta_s* and R' at most "
-        f"{percent(float(off[np.argmax(np.abs(off))]))}, at Sy* = {worst:.2f} (the text: 3.2 % "
-        f"near 1); the truncated radius is {percent(truncated / model[0] - 1.0)}."
+        (
+            f"Against {'our finite elements' if points else 'the thesis model'}: Jackson and "
+            f"Green {percent(first)} at Sy* = {x[0]:.2g} (the text: above by less than 2 %), with "
+            f"delta_s* and R' at most {percent(float(off[worst]))}, at Sy* = {x[worst]:.2f} (the "
+            "text: 3.2 % near 1); the truncated radius is "
+            f"{percent(truncated / beside[0] - 1.0)}. "
+        )
+        + judged(
+            ("Jackson and Green is less than 2 % above", 0.0 < first < 0.02),
+            ("the updated form has the same trend with a dip near 1", 0.9 < x[worst] < 1.3),
+            ("its largest difference is 3.2 %", abs(abs(off[worst]) - 0.032) < 0.005),
+        )
+        + " The text calls this figure 2.13 once."
     )
     return Picture("2.12", "Contact radius of case 4 and the updated Jackson-Green", made, note)
+
+
+def _radii_of_case_4(records: Sequence[CaseRecord], D: float) -> list[tuple[float, float]]:
+    """Sy* and a/R of the stored cases, in order."""
+    found = []
+    for record in records:
+        pair = record.case.pair
+        if 0.05 <= pair.Sy_ratio <= 20.0 and same(record, table_2_1(4, pair.Sy_ratio)):
+            there = at_depth(record, D)
+            if there:
+                found.append((pair.Sy_ratio, there["radius"] / pair.R))
+    return sorted(found)
 
 
 def _difference(records: Sequence[CaseRecord]) -> Picture:
     made, (axis,) = sheet()
     off: list[tuple[float, float]] = []
+    ends: list[tuple[float, float]] = []
     for record in records:
         pair = record.case.pair
         if abs(math.log(max(pair.Sy_ratio, 1e-9) / 0.1)) > 0.05:
             continue
         delta, radius = record.curve["delta"], record.curve["radius"]
         keep = delta > 3.0 * critical_depth(pair)
-        found = [updated_jackson_green(pair, float(d)) for d in delta[keep]]
-        x = np.array([n for _, n in found])
-        y = 100.0 * (radius[keep] / np.array([a for a, _ in found]) - 1.0)
-        axis.semilogx(x, y, ".", ms=4, color="k", label=None if off else "our finite elements")
+        x, y = _beside_updated(pair, delta[keep], radius[keep])
+        axis.semilogx(x, y, ".", ms=3, color="0.7", zorder=1.0,
+                      label=None if off else "our finite elements, all depths")  # fmt: skip
         off += list(zip(x, y, strict=True))
+        there = at_depth(record, 0.04)
+        if there:
+            end = _beside_updated(pair, np.array([0.04 * pair.R]), np.array([there["radius"]]))
+            ends.append((float(end[0][0]), float(end[1][0])))
+    if ends:
+        axis.semilogx(*zip(*ends, strict=True), "ko", ms=4, label="the same at Delta/R = 0.04")
     n = np.geomspace(8.0, 4000.0, 300)
     axis.semilogx(n, 100.0 * (_chi(n) - 1.0), "C3", lw=2.0, label="chi of 2.23 and 2.25")
     axis.axvline(_CRITICAL, color="0.5", ls=":")
     finish(axis, x="delta_n", y="radius over the updated Jackson-Green - 1 [%]")
-    note = "The correction turns at delta_n = 408 (dotted), as the text says."
+    note = "The thesis's correction turns at delta_n = 408 (dotted)."
     if off:
-        x, y = np.array(off).T
-        told = ", ".join(
-            f"{np.mean(y[(x >= low) & (x < high)]):+.1f} % for {low:g} to {high:g}"
-            for low, high in ((2, 10), (10, 100), (100, 400), (400, 2000))
-            if np.any((x >= low) & (x < high))
-        )
+        told = _by_depth(off, ((2, 10), (10, 100), (100, 400), (400, 2000)))
+        note += f" Our finite elements of Sy* = 0.1 lie beside the updated law by {told} of delta_n"
+    if len(ends) > 3:
+        x, y = np.array(sorted(ends)).T
+        before, after = x < _CRITICAL, x > _CRITICAL
+        slopes = [
+            float(np.polyfit(np.log(x[part]), y[part], 1)[0]) if np.sum(part) > 2 else float("nan")
+            for part in (before, after)
+        ]
         note += (
-            f" Our finite elements, of Sy* = 0.1, lie beside the updated law by {told} of delta_n: "
-            "they fall throughout, while the thesis's rise to 408 first."
+            f", and the {len(ends)} of them at Delta/R = 0.04, the thesis's depth, change by "
+            f"{slopes[0]:+.1f} points for each factor e of delta_n before 408 and {slopes[1]:+.1f} "
+            "after. "
+        ) + judged(
+            ("the difference rises up to 408", slopes[0] > 0.0),
+            ("it falls beyond", slopes[1] < 0.0),
         )
+    elif off:
+        note += "."
     return Picture("2.13", "Finite elements against the updated Jackson-Green", made, note)
+
+
+def _beside_updated(pair: Pair, depths: Any, radii: Any) -> tuple[Any, Any]:
+    """delta_n, and radius over the updated Jackson and Green - 1 [%]."""
+    found = [updated_jackson_green(pair, float(d)) for d in depths]
+    x = np.array([n for _, n in found])
+    return x, 100.0 * (radii / np.array([a for a, _ in found]) - 1.0)
+
+
+def _by_depth(points: Sequence[tuple[float, float]], spans: Sequence[tuple[float, float]]) -> str:
+    x, y = np.array(points).T
+    return ", ".join(
+        f"{np.mean(y[(x >= low) & (x < high)]):+.1f} % for {low:g} to {high:g}"
+        for low, high in spans
+        if np.any((x >= low) & (x < high))
+    )
 
 
 def _chi(n: Any) -> Any:

@@ -10,7 +10,7 @@ from ....core.toml_input import read_toml
 from ....models import LAWS, critical_depth
 from ....models.base import ContactLaw
 from ....models.published.brake import brake_2015
-from ...plot import TABLE_2_1, Table, laws, look, table_2_1
+from ...plot import TABLE_2_1, Table, laws, line_of, table_2_1
 from .. import chapter5
 from ..chapter3 import REFERENCE
 
@@ -75,22 +75,19 @@ def properties(number: str) -> Table:
     )  # fmt: skip
 
 
-_WORDS = {
-    "C0": "blue", "C1": "orange", "C2": "green", "C3": "red", "C4": "purple", "C5": "brown",
-    "C6": "pink", "C8": "olive", "C9": "cyan", "k": "black",
-}  # fmt: skip
-
-
 def legend(names: tuple[str, ...]) -> Table:
     """Table 4.2: which law is which line."""
     rows = []
     for law in laws(*names):
-        rows.append([law.name, _WORDS[str(look(law)["color"])], law.title, law.equations,
-                     law.standing.told])  # fmt: skip
+        line = line_of(law)
+        rows.append([law.name, f"{line.colour_told}, {line.dashes_told}", law.title,
+                     law.equations, law.standing.told])  # fmt: skip
     return Table(
         "4.2", "Legend of figures 4.4-4.15",
-        ("law", "colour", "authors", "equations", "equations read"), rows,
-        "The thesis's nine laws and ours; in every figure a law keeps its colour.",
+        ("law", "line", "authors", "equations", "equations read"), rows,
+        "The thesis's nine laws and ours; in every figure a law keeps its line. Kogut and Etsion "
+        "is drawn as the thesis must have used it, with its powers continued beyond w = 110 (see "
+        "figure 2.20); `kogut-etsion` itself goes over to 2.8 S there.",
     )  # fmt: skip
 
 
