@@ -128,8 +128,8 @@ def _larger_or_smaller() -> str:
 
 def _figure_numbers() -> str:
     return (
-        "Section 2.4.2 says 2.13 where it describes 2.12, section 2.4.3 says 2.16 and 2.17 where it "
-        "describes 2.14 and 2.15; 2.3 says 2.3 for the contact radius, which is 2.6."
+        "Section 2.4.2 says 2.13 where it describes 2.12, section 2.4.3 says 2.16 and 2.17 where "
+        "it describes 2.14 and 2.15; 2.3 says 2.3 for the contact radius, which is 2.6."
     )
 
 
@@ -143,8 +143,8 @@ def _beyond_110() -> str:
     return (
         "The fit ends at w = 110, and the text compares it to delta_n = 14676. At Delta/R = 0.06 "
         f"of figure 2.20 its powers continued give {continued / fitted:.2f} times the force of the "
-        f"law fitted to our finite elements, 2.8 S on the area {capped / fitted:.2f} times: that it "
-        "is larger, as the text says, is so only with the powers."
+        f"law fitted to our finite elements, 2.8 S on the area {capped / fitted:.2f} times: that "
+        "it is larger, as the text says, is so only with the powers."
     )
 
 
