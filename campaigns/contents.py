@@ -26,10 +26,18 @@ SEALED_FROM = 512
 DIGEST = "digest"
 """Attribute of a case's group: the digest of its tree without this attribute."""
 
+MOST_BYTES = 2_000_000_000
+"""Largest campaign file that is read [bytes]."""
+
+DAMAGE = (
+    ArithmeticError, AttributeError, LookupError, OSError, RuntimeError, TypeError, ValueError,
+)  # fmt: skip
+"""What reading a file raises that was sealed by somebody who meant ill, or by a fault of ours."""
+
 _MAGIC = b"dentscope-sealed-1\n".ljust(32, b"\0")
 _SHA256 = 32
 _DEEPEST = 4
-_MOST_BYTES = 256_000_000  # of one dataset
+_MOST_DATA = 256_000_000  # bytes of one dataset
 _MOST_RATIO = 1100  # of deflate, which gives at most 1032 bytes for one
 _MOST_TEXT = 1_000_000
 _KINDS = "fiubSU"
@@ -65,6 +73,11 @@ def check_seal(image: bytes, path: Path, *, allowed: str = "") -> None:
         raise InputError(
             "damaged: its bytes are not those that were written", source=str(path), allowed=allowed
         )
+
+
+def damage(error: Exception) -> str:
+    """Return the words of an error in one line."""
+    return f"damaged ({' '.join(str(error).split())[:200] or type(error).__name__})"
 
 
 def open_image(image: bytes) -> h5py.File:
@@ -148,7 +161,7 @@ def read_array(data: h5py.Dataset) -> npt.NDArray[Any]:
     if data.is_virtual or data.external:
         raise ValueError(f"{data.name} lies in another file")
     stored = data.id.get_storage_size()
-    if data.nbytes > _MOST_BYTES or data.nbytes > _MOST_RATIO * stored:
+    if data.nbytes > _MOST_DATA or data.nbytes > _MOST_RATIO * stored:
         raise ValueError(f"{data.name} claims {data.nbytes} bytes and holds {stored}")
     return np.asarray(data[()])
 

@@ -24,8 +24,9 @@ import h5py
 
 from ..core.disk import DISK
 from ..core.errors import InputError
+from ..core.input_file import read_bytes
 from ..core.output import write_file
-from .contents import SEALED_FROM, check_seal, seal
+from .contents import MOST_BYTES, SEALED_FROM, check_seal, seal
 
 PAGE = 4096
 _MAGIC = b"dentscope-journal-2\n"
@@ -228,22 +229,29 @@ def _stale(journal: Path) -> InputError:
 
 
 def _read_journal(journal: Path) -> Change:
-    content = journal.read_bytes()
+    remedy = "remove it to go on without its one change"
+    content = read_bytes(journal, most=MOST_BYTES, allowed=remedy)
     body, digest = content[:-_DIGEST], content[-_DIGEST:]
+    damaged = InputError("damaged", source=str(journal), allowed=remedy)
     if not body.startswith(_MAGIC) or hashlib.sha256(body).digest() != digest:
-        raise InputError(
-            "damaged", source=str(journal), allowed="remove it to go on without its one change"
-        )
+        raise damaged
     at = len(_MAGIC) + 3 * _NUMBER
     before, size, count = (_value(body, at - k * _NUMBER) for k in (3, 2, 1))
     rest, after = (body[at + k * _DIGEST : at + (k + 1) * _DIGEST] for k in range(2))
     at += 2 * _DIGEST
     split = _NUMBER + PAGE
     step = split + PAGE
+    if len(body) != at + count * step:
+        raise damaged
     pages = tuple(
         (_value(body, k), body[k + _NUMBER : k + split], body[k + split : k + step])
         for k in range(at, at + count * step, step)
     )
+    # all that a file grows by stands in pages
+    if any(k % PAGE or k >= size for k, _, _ in pages) or size > max(
+        (before, *(k + PAGE for k, _, _ in pages))
+    ):
+        raise damaged
     return Change(before, size, rest, after, pages)
 
 

@@ -32,7 +32,7 @@ from ..core.input_file import read_bytes
 from ..core.provenance import canonical_json
 from ..fem import critical_depth
 from .case import Case
-from .contents import DIGEST, Tree, check_seal, is_sealed, open_image, read_array
+from .contents import DAMAGE, DIGEST, Tree, check_seal, damage, is_sealed, open_image, read_array
 from .journal import new_image
 from .records import CaseRecord, UnloadingRecord
 from .schema import CURVE, PROFILES, UNLOADING_PROFILES, Dataset
@@ -159,8 +159,8 @@ def opened_part(path: Path) -> Iterator[h5py.File]:
             yield file
     except InputError:
         raise
-    except (KeyError, OSError, RuntimeError, ValueError, TypeError) as error:
-        raise InputError(f"damaged ({error})", source=str(path)) from None
+    except DAMAGE as error:
+        raise InputError(damage(error), source=str(path)) from None
 
 
 def read_part(path: Path) -> list[CaseRecord]:

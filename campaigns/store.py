@@ -21,11 +21,12 @@ from typing import TypeVar
 import h5py
 
 from ..core.errors import Ending, InputError
+from ..core.input_file import checked_file, read_bytes
 from ..core.output import NO_ROOM, cannot_write, folder_for_output, write_file
 from ..core.provenance import environment
 from ..fem import Solution
 from .case import Case
-from .contents import DIGEST, check_seal, open_image, read_tree
+from .contents import DAMAGE, DIGEST, MOST_BYTES, check_seal, damage, open_image, read_tree
 from .journal import changing, journal_of, lock, new_image, recover
 from .records import CaseRecord, Summary, read_case, read_summary
 from .schema import FORMAT
@@ -207,8 +208,7 @@ def _reading(path: Path) -> Iterator[h5py.File]:
         recover(path)
     except OSError:
         pass  # where a change cannot be finished the file is still as it was
-    if not path.exists():
-        raise InputError("no such file", source=str(path), allowed="a campaign file (.h5)")
+    checked_file(path, most=MOST_BYTES, allowed="a campaign file (.h5)")
     try:
         with path.open("rb") as stream:
             lock(stream, fcntl.LOCK_SH)
@@ -218,23 +218,21 @@ def _reading(path: Path) -> Iterator[h5py.File]:
     except OSError as error:
         raise InputError(f"cannot be read ({error})", source=str(path)) from None
     with file:
-        if file.attrs.get("format") != FORMAT or "cases" not in file:
-            raise InputError(
-                f"format {file.attrs.get('format')!r}", source=str(path), allowed=FORMAT
-            )
         try:
+            if file.attrs.get("format") != FORMAT or "cases" not in file:
+                raise InputError(
+                    f"format {file.attrs.get('format')!r}", source=str(path), allowed=FORMAT
+                )
             yield file
         except InputError:
             raise
-        except (KeyError, OSError, RuntimeError, ValueError, TypeError) as error:
-            raise InputError(f"damaged ({error})", source=str(path), allowed=_REPAIR) from None
+        except DAMAGE as error:
+            raise InputError(damage(error), source=str(path), allowed=_REPAIR) from None
 
 
 def _repaired(path: Path) -> tuple[int, list[str]]:
     recover(path)
-    if not path.exists():
-        raise InputError("no such file", source=str(path), allowed="a campaign file (.h5)")
-    image = path.read_bytes()
+    image = read_bytes(path, most=MOST_BYTES, allowed="a campaign file (.h5)")
     lost: list[str] = []
     try:
         with open_image(image) as old, new_image() as new:
@@ -245,11 +243,11 @@ def _repaired(path: Path) -> tuple[int, list[str]]:
                     old.copy(old["cases"][key], cases, name=key)
                     cases[key].attrs["quality"] = json.dumps(asdict(record.quality))
                     cases[key].attrs[DIGEST] = read_tree(cases[key]).digest()
-                except (KeyError, OSError, RuntimeError, ValueError, TypeError) as error:
-                    lost.append(f"{key[:12]}: {error}")
+                except DAMAGE as error:
+                    lost.append(f"{key[:12]}: {damage(error)}")
             kept = len(cases)
-    except (KeyError, OSError, RuntimeError, ValueError) as error:
-        raise InputError(f"nothing in it can be read ({error})", source=str(path)) from None
+    except DAMAGE as error:
+        raise InputError(f"nothing in it can be read: {damage(error)}", source=str(path)) from None
     write_file(path.with_name(f"{path.name}.damaged"), image)
     write_file(path, new.sealed)
     return kept, lost

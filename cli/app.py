@@ -11,7 +11,7 @@ from typing import Annotated
 
 import typer
 
-from ..core.errors import EXIT_INPUT_ERROR, InputError
+from ..core.errors import EXIT_INPUT_ERROR, InputError, printable
 from . import campaign, export, laws, recordings, reduce, studies
 from .case import case
 from .diagnose import diagnose
@@ -110,12 +110,7 @@ def run(arguments: list[str] | None = None) -> int:
 def _refused(told: str) -> int:
     lines = told.splitlines()
     for line in lines[:_MOST_LINES]:
-        sys.stderr.write(f"{_shown(line)}\n")
+        sys.stderr.write(f"{printable(line)}\n")
     if len(lines) > _MOST_LINES:
         sys.stderr.write(f"... and {len(lines) - _MOST_LINES} more of this kind\n")
     return EXIT_INPUT_ERROR
-
-
-def _shown(line: str) -> str:
-    """The line, control characters escaped: a name in a file must not command the terminal."""
-    return "".join(c if c.isprintable() else repr(c)[1:-1] for c in line)

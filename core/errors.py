@@ -17,6 +17,23 @@ EXIT_NOT_CONVERGED = 3
 """Exit code of the command line for a computation that did not reach its end."""
 
 
+def printable(text: str) -> str:
+    r"""Return a text of one line, control characters escaped.
+
+    Names in a file must not command the terminal, nor pass for a line of their own.
+
+    Examples
+    --------
+    >>> printable("a\x1b[2J\nb")
+    'a\\x1b[2J\\nb'
+    """
+    return text if text.isprintable() else "".join(map(_printable, text))
+
+
+def _printable(character: str) -> str:
+    return character if character.isprintable() else repr(character)[1:-1]
+
+
 class InputError(ValueError):
     """A mistake in the user's input: file, key, value and what is allowed, in one line.
 
@@ -51,7 +68,7 @@ class InputError(ValueError):
         self.key = key
         self.allowed = allowed
         head = ": ".join(part for part in (source, key, message) if part)
-        super().__init__(f"{head} (allowed: {allowed})" if allowed else head)
+        super().__init__(printable(f"{head} (allowed: {allowed})" if allowed else head))
 
 
 class InputErrors(InputError):

@@ -24,6 +24,7 @@ from typing import Any
 
 from .disk import DISK
 from .errors import InputError
+from .input_file import read_bytes
 
 PENDING = ".dentscope-pending"
 PATIENCE_S = 300.0
@@ -39,6 +40,7 @@ _NO_LOCKS = (errno.EBADF, errno.ENOLCK, errno.EOPNOTSUPP, errno.EINVAL)
 
 _MAGIC = b"dentscope-pending-1\n"
 _DIGEST = 32
+_MOST_PENDING = 500_000_000
 _LONGEST_NAME = 200
 _numbers = itertools.count()
 
@@ -105,6 +107,8 @@ def write_files(folder: Path, files: Mapping[str, bytes | str]) -> None:
         They cannot be written; the folder is as it was, or is finished when it is next looked at.
     """
     contents = {k: v.encode() if isinstance(v, str) else v for k, v in files.items()}
+    for name in contents:
+        _check_inside(folder, name)
     finish_pending(folder)
     write_file(folder / PENDING, _pending(folder, contents))
     _apply(folder, contents)
@@ -128,7 +132,7 @@ def finish_pending(folder: Path) -> None:
     place = folder / PENDING
     if not place.exists():
         return
-    found = _read_pending(place.read_bytes(), place)
+    found = _read_pending(folder)
     for name, (before, content) in found.items():
         now = _digest_of(folder / name)
         if now not in (before, hashlib.sha256(content).hexdigest()):
@@ -244,19 +248,39 @@ def _pending(folder: Path, contents: Mapping[str, bytes]) -> bytes:
     return body + hashlib.sha256(body).digest()
 
 
-def _read_pending(content: bytes, place: Path) -> dict[str, tuple[str, bytes]]:
+def _read_pending(folder: Path) -> dict[str, tuple[str, bytes]]:
+    place, remedy = folder / PENDING, "remove it to go on without its one change"
+    content = read_bytes(place, most=_MOST_PENDING, allowed=remedy)
     body, digest = content[:-_DIGEST], content[-_DIGEST:]
     if not body.startswith(_MAGIC) or hashlib.sha256(body).digest() != digest:
-        raise InputError(
-            "damaged", source=str(place), allowed="remove it to go on without its one change"
-        )
+        raise InputError("damaged", source=str(place), allowed=remedy)
     at = len(_MAGIC) + 8
     end = at + int.from_bytes(body[at - 8 : at], "little")
     found: dict[str, tuple[str, bytes]] = {}
-    for name, size, before in json.loads(body[at:end]):
-        found[name] = (before, body[end : end + size])
-        end += size
+    try:
+        for name, size, before in json.loads(body[at:end]):
+            found[str(name)] = (str(before), body[end : end + size])
+            end += size
+    except (ValueError, TypeError, RecursionError):
+        raise InputError("damaged", source=str(place), allowed=remedy) from None
+    for name in found:
+        _check_inside(folder, name)
     return found
+
+
+def _check_inside(folder: Path, name: str) -> None:
+    """Refuse a name that leads out of its folder: the folder may be somebody else's."""
+    try:
+        inside = (folder / name).resolve().is_relative_to(folder.resolve())
+        (folder / name).is_file()
+    except (OSError, ValueError, RuntimeError):  # no name of a file, or a circle of links
+        inside = False
+    if not inside:
+        raise InputError(
+            f"{name[:80]!r} is no file within this folder",
+            source=str(folder),
+            allowed="a folder that writes to no other",
+        )
 
 
 def _digest_of(path: Path) -> str:

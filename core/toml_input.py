@@ -17,6 +17,7 @@ Model = TypeVar("Model", bound=BaseModel)
 
 _MOST_BYTES = 4_000_000
 _LONGEST = 80  # characters of a value in an error
+_DEEPEST = 20  # tables and lists within each other
 
 
 class InputTable(BaseModel):
@@ -63,7 +64,7 @@ def read_toml(path: Path) -> dict[str, Any]:
     """
     content = read_bytes(path, most=_MOST_BYTES, allowed="an existing TOML file")
     try:
-        return tomllib.loads(content.decode())
+        found = tomllib.loads(content.decode())
     except UnicodeDecodeError as error:
         raise InputError(f"cannot be read ({error})", source=str(path)) from None
     except tomllib.TOMLDecodeError as error:
@@ -71,7 +72,21 @@ def read_toml(path: Path) -> dict[str, Any]:
     except ValueError:  # Python converts no whole number of more than 4300 digits
         raise InputError("a number of too many digits", source=str(path)) from None
     except RecursionError:
-        raise InputError("tables or lists nested too deep", source=str(path)) from None
+        found = {}
+    else:
+        if _depth_at_most(_DEEPEST, found):
+            return found
+    raise InputError(
+        "tables or lists nested too deep", source=str(path), allowed=f"up to {_DEEPEST}"
+    )
+
+
+def _depth_at_most(most: int, content: Any) -> bool:
+    level = [content]
+    for _ in range(most):
+        inner = (x.values() if isinstance(x, dict) else x for x in level)
+        level = [x for part in inner for x in part if isinstance(x, dict | list)]
+    return not level
 
 
 def read_model(path: Path, model: type[Model]) -> Model:

@@ -3,19 +3,60 @@
 from __future__ import annotations
 
 import json
-from collections.abc import Mapping
 from pathlib import Path
-from typing import Any
+from typing import Annotated, Literal
 
 import numpy as np
+from pydantic import Field
 
 from ..core.errors import InputError
-from ..core.material import Material, Pair
+from ..core.json_input import read_json
+from ..core.material import Pair
 from ..core.output import write_file
 from ..core.rig import MaterialTable, material_keys
+from ..core.toml_input import InputTable, Listed, parse_model
 from .table import Curve, PairTable, TableLaw, Turns, table_law
 
 FORMAT = "dentscope-table/1"
+
+FEWEST_DEPTHS = 2
+"""Of a loading that is a curve."""
+
+_MOST_BYTES = 20_000_000
+_MADE = "law.json of `dentscope case`"
+_Above = Annotated[tuple[Annotated[float, Field(gt=0.0, lt=1e30)], ...], Listed]
+_Spread = Annotated[tuple[Annotated[float, Field(ge=0.0, lt=1e3)], ...], Listed]
+_Part = Annotated[tuple[Annotated[float, Field(ge=-1.0, le=2.0)], ...], Listed]
+
+
+class _Loading(InputTable):
+    """The columns of `Curve`."""
+
+    depth: _Above
+    force: _Above
+    radius: _Above
+    share: _Part
+    force_std: _Spread
+    radius_std: _Spread
+    share_std: _Spread
+
+
+class _Unloading(InputTable):
+    """The columns of `Turns`."""
+
+    depth: _Above
+    left: Annotated[tuple[Annotated[float, Field(ge=0.0, lt=1.0)], ...], Listed]
+    part: _Part
+    exponent: Annotated[tuple[Annotated[float, Field(gt=0.0, le=100.0)], ...], Listed]
+
+
+class _TableFile(InputTable):
+    format: Literal["dentscope-table/1"]
+    radius_m: float = Field(gt=0.0, le=1e6)
+    sphere: MaterialTable
+    flat: MaterialTable
+    loading: _Loading
+    unloading: _Unloading
 
 
 def write_table(table: PairTable, path: Path) -> Path:
@@ -45,45 +86,25 @@ def read_table(path: Path) -> TableLaw:
         There is none, or it is damaged.
     """
     file = path / "law.json" if path.is_dir() else path
-    if not file.is_file():
-        raise InputError("no such file", source=str(file), allowed="law.json of `dentscope case`")
-    try:
-        content = json.loads(file.read_text("utf-8"))
-        found = content.get("format") if isinstance(content, dict) else None
-    except ValueError:
-        found = None
-    if found != FORMAT:
-        raise InputError(
-            f"format {found!r}", source=str(file), key="format",
-            allowed=f"{FORMAT}, as `dentscope case` writes it",
-        )  # fmt: skip
-    return table_law([_table_from(content, source=str(file))], name=str(path))
-
-
-def _table_from(content: Mapping[str, Any], *, source: str) -> PairTable:
-    try:
-        sphere, flat = (_body(content[k], key=k, source=source) for k in ("sphere", "flat"))
-        pair = Pair(sphere, flat, float(content["radius_m"]))
-        curve = Curve(**{k: np.array(content["loading"][k], float) for k in Curve._fields})
-        turns = Turns(**{k: np.array(content["unloading"][k], float) for k in Turns._fields})
-    except (KeyError, TypeError, ValueError) as error:
-        if isinstance(error, InputError):
-            raise
-        raise InputError(
-            f"{error} is missing or no number", source=source,
-            allowed="a file as `dentscope case` writes it",
-        ) from None  # fmt: skip
+    content, source = read_json(file, most=_MOST_BYTES, allowed=_MADE), str(file)
+    if not isinstance(content, dict):
+        raise InputError("no table", source=source, allowed=_MADE)
+    found = parse_model(content, _TableFile, source=source)
+    sphere = found.sphere.to_material("sphere", source=source)
+    flat = found.flat.to_material("flat", source=source)
+    curve = Curve(**{k: np.array(v) for k, v in found.loading})
+    turns = Turns(**{k: np.array(v) for k, v in found.unloading})
     for name, part in (("loading", curve), ("unloading", turns)):
-        sizes = {len(v) for v in part}
-        if len(sizes) != 1 or not all(np.all(np.isfinite(v)) for v in part):
+        if len({len(v) for v in part}) != 1:
             raise InputError(
-                "columns of unequal length or no numbers", source=source, key=name,
-                allowed="finite numbers, as many in each",
-            )  # fmt: skip
+                "columns of unequal length", source=source, key=name, allowed="as many in each"
+            )
         if not np.all(np.diff(part.depth) > 0.0):
             raise InputError("falls", source=source, key=f"{name}.depth", allowed="rising depths")
-    return PairTable(pair, curve, turns)
-
-
-def _body(content: Any, *, key: str, source: str) -> Material:
-    return MaterialTable.model_validate(content).to_material(key, source=source)
+    if len(curve.depth) < FEWEST_DEPTHS:
+        raise InputError(
+            f"{len(curve.depth)} depths", source=source, key="loading",
+            allowed=f"{FEWEST_DEPTHS} or more",
+        )  # fmt: skip
+    pair = Pair(sphere, flat, found.radius_m)
+    return table_law([PairTable(pair, curve, turns)], name=str(path))

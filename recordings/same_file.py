@@ -8,6 +8,9 @@ from pathlib import Path
 from typing import Any
 
 from ..core.errors import InputError
+from ..core.json_input import read_json
+
+_MOST_BYTES = 10_000_000
 
 
 def taken_twice(reduced: Path, trials: Sequence[str]) -> list[InputError]:
@@ -24,12 +27,12 @@ def taken_twice(reduced: Path, trials: Sequence[str]) -> list[InputError]:
     mistakes = []
     for path in sorted(reduced.glob("*.json")) if reduced.is_dir() else ():
         try:
-            record: Any = json.loads(path.read_text(encoding="utf-8"))
+            record: Any = read_json(path, most=_MOST_BYTES, allowed="a record of a reduction")
             names = [name for name in record["trials"] if name in trials]
             what = json.dumps(
                 [record.get("sha256") or record["files"], record["kind"], record["options"]]
             )
-        except (OSError, ValueError, KeyError, TypeError):
+        except (ValueError, KeyError, TypeError):
             continue  # a record is for people: the set does not depend on it
         if names and what in first:
             mistakes.append(InputError(

@@ -35,7 +35,7 @@ class _TrialTable(InputTable):
     """Name of the trial."""
     angle_deg: float = Field(gt=0.0, lt=90.0)
     """Between the rod's axis and the flat."""
-    impact_speed_m_s: float = Field(gt=0.0, le=2e4)
+    impact_speed_m_s: float = Field(ge=1e-9, le=2e4)
     """Speed of the tip along the flat's normal."""
     rebound_m_s: float | None = None
     """Speed of the centre of mass after, where it was measured."""
@@ -43,9 +43,9 @@ class _TrialTable(InputTable):
     """Tangential over normal impulse."""
     restitution: float = Field(ge=0.0, le=2.0)
     """Rebound over approach speed of the tip."""
-    permanent_depth_m: float = Field(gt=0.0, le=0.1)
+    permanent_depth_m: float = Field(ge=1e-12, le=0.1)
     """Depth of the crater."""
-    sliding_length_m: float = Field(gt=0.0, le=1.0)
+    sliding_length_m: float = Field(ge=1e-12, le=1.0)
     """Length of the scar less its width."""
     printed_duration_s: float | None = None
     """A published duration to show beside."""

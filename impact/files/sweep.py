@@ -46,7 +46,10 @@ def _spread(given: Any) -> Any:
     whole = isinstance(given, list | tuple) and len(given) > 0
     if not whole or any(isinstance(x, bool) or not isinstance(x, int | float) for x in given):
         raise ValueError(_ALLOWED)
-    return tuple(float(x) for x in given)
+    try:
+        return tuple(float(x) for x in given)
+    except OverflowError:  # a whole number of 400 digits
+        raise ValueError(_ALLOWED) from None
 
 
 def _all(accept: Any, allowed: str) -> AfterValidator:

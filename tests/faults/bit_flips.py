@@ -7,7 +7,6 @@ many gave a wrong number or lost a case without a word.
 """
 
 import argparse
-import importlib.util
 import random
 import shutil
 import sys
@@ -16,20 +15,13 @@ from collections import Counter
 from pathlib import Path
 from unittest import mock
 
+import disk_faults as faults
 import numpy as np
 from dentscope.campaigns import Design, Store, journal, publish, read_curves
 from dentscope.core import InputError
 
 _BLOCK = 512
 ROOT = Path(__file__).resolve().parents[2]
-
-
-def _beside(name):
-    spec = importlib.util.spec_from_file_location(name, Path(__file__).with_name(f"{name}.py"))
-    module = importlib.util.module_from_spec(spec)
-    sys.modules[name] = module
-    spec.loader.exec_module(module)
-    return module
 
 
 def damaged(image, draw, *, bits, blocks):
@@ -104,7 +96,6 @@ def inspect(read, path, expected, draw, *, bits, blocks, before=lambda: None):
 
 def targets(folder):
     """What is damaged: words, reader, file, what it may give, and how its surroundings return."""
-    faults = _beside("disk_faults")
     file = folder / "c.h5"
     for case in faults.CASES[:3]:
         Store(file).put(case, faults.solved(case))

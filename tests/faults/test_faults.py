@@ -1,26 +1,25 @@
 """Injected faults, in the size of a test; each script beside this one runs them at length."""
 
 import errno
-import importlib.util
+import hashlib
+import json
+import os
 import random
 import re
-import sys
 from collections import Counter
 from pathlib import Path
 
+import bit_flips
+import disk_faults
+import fuzz
 import pytest
+from dentscope.campaigns import read_curves
+from dentscope.campaigns.journal import journalled, recover
+from dentscope.core import InputError
+from dentscope.core.output import PENDING, finish
+from dentscope.models import law_named
 
 ROOT = Path(__file__).resolve().parents[2]
-
-
-def script(name):
-    if name not in sys.modules:
-        place = Path(__file__).with_name(f"{name}.py")
-        spec = importlib.util.spec_from_file_location(name, place)
-        module = importlib.util.module_from_spec(spec)
-        sys.modules[name] = module
-        spec.loader.exec_module(module)
-    return sys.modules[name]
 
 
 @pytest.mark.parametrize(
@@ -31,20 +30,18 @@ def script(name):
     ],
 )  # fmt: skip
 def test_no_failed_call_and_no_loss_of_power_loses_or_changes_anything(tmp_path, name, every):
-    faults = script("disk_faults")
-    made = faults.writers(tmp_path)[name]()
-    failed = faults.faults(made, tmp_path / "faults", codes=(errno.EIO,), every=every)
-    lost = faults.losses(made, tmp_path / "losses", every=every)
+    made = disk_faults.writers(tmp_path)[name]()
+    failed = disk_faults.faults(made, tmp_path / "faults", codes=(errno.EIO,), every=every)
+    lost = disk_faults.losses(made, tmp_path / "losses", every=every)
     assert failed.total() >= 2
     assert lost.total() >= 10
     assert len(lost) == 5  # states that a disk may be in
 
 
 def test_the_model_of_a_disk_sees_a_writer_that_does_not_synchronise(tmp_path):
-    faults = script("disk_faults")
 
     def careless(place):
-        disk = faults.Disk()
+        disk = disk_faults.Disk()
         (place / "draft").unlink(missing_ok=True)
         file = disk.create(place / "draft")
         disk.write(file, b"2" * 5000)
@@ -56,15 +53,16 @@ def test_the_model_of_a_disk_sees_a_writer_that_does_not_synchronise(tmp_path):
         assert found in ("1" * 5000, "2" * 5000)
         return "new" if found[0] == "2" else "old"
 
-    one = faults.Writer("careless", lambda p: (p / "a").write_text("1" * 5000), careless, check)
+    one = disk_faults.Writer(
+        "careless", lambda p: (p / "a").write_text("1" * 5000), careless, check
+    )
     with pytest.raises(AssertionError):
-        faults.losses(one, tmp_path)
+        disk_faults.losses(one, tmp_path)
 
 
 def test_no_flipped_bit_and_no_blank_block_gives_a_number(tmp_path):
-    flips = script("bit_flips")
-    for words, read, path, expected, before in flips.targets(tmp_path):
-        found = flips.inspect(
+    for words, read, path, expected, before in bit_flips.targets(tmp_path):
+        found = bit_flips.inspect(
             read, path, expected, random.Random(3), bits=25, blocks=5, before=before
         )
         assert set(found) <= {"refused with a line", "all as it was"}, (words, found)
@@ -72,17 +70,55 @@ def test_no_flipped_bit_and_no_blank_block_gives_a_number(tmp_path):
 
 
 def test_malformed_input_is_one_line_soon_and_in_little_memory():
-    counts, faults, most = script("fuzz").run(102, 11)
+    counts, faults, most = fuzz.run(440, 11)
     assert faults == []
-    assert sum(found.total() for found in counts.values()) == 102
-    assert most < 1000.0
+    assert all(found.total() == 20 for found in counts.values())
+    assert most < fuzz.MEMORY_MB
 
 
 def test_damaged_raw_recordings_are_reduced_or_refused_in_a_line():
-    counts, faults, _most = script("fuzz").run(44, 5, raw=True)
+    counts, faults, _most = fuzz.run(44, 5, raw=True)
     assert faults == []
     assert sum(found.total() for found in counts.values()) == 44
     assert {"read", "refused with a line"} <= set(sum(counts.values(), Counter()))
+
+
+@pytest.mark.parametrize("name", ["../victim", "sub/../../victim", "link/victim", "\0", 400 * "x"])
+def test_a_folder_from_somebody_else_writes_nowhere_else(tmp_path, name):
+    folder, victim = tmp_path / "set", tmp_path / "victim"
+    folder.mkdir()
+    (folder / "link").symlink_to(tmp_path)
+    victim.write_text("mine")
+    head = json.dumps([[name, 5, hashlib.sha256(b"mine").hexdigest()]]).encode()
+    body = b"dentscope-pending-1\n" + len(head).to_bytes(8, "little") + head + b"yours"
+    (folder / PENDING).write_bytes(body + hashlib.sha256(body).digest())
+    with pytest.raises(InputError, match="is no file within this folder"):
+        finish(folder)
+    assert victim.read_text() == "mine"
+    assert {p.name for p in tmp_path.iterdir()} == {"set", "victim"}
+
+
+@pytest.mark.parametrize("at", [0, 1, 2])
+def test_a_journal_that_claims_more_than_it_holds_is_refused_at_once(tmp_path, at):
+    (tmp_path / "c.h5").write_bytes(b"0" * 9000)
+    journal = journalled(b"0" * 9000, b"1" * 9000)
+    body, place = bytearray(journal[:-32]), len(b"dentscope-journal-2\n") + 8 * at
+    body[place : place + 8] = (2**62).to_bytes(8, "little")
+    (tmp_path / "c.h5.journal").write_bytes(bytes(body) + hashlib.sha256(body).digest())
+    with pytest.raises(InputError, match=r"c\.h5\.journal: "):
+        recover(tmp_path / "c.h5")
+    assert (tmp_path / "c.h5").read_bytes() == b"0" * 9000
+
+
+def test_a_pipe_in_place_of_a_file_is_not_waited_for(tmp_path):
+    for name in ("c.h5", "law.json", PENDING):
+        os.mkfifo(tmp_path / name)
+    with pytest.raises(InputError, match=r"c\.h5: a pipe or a device"):
+        read_curves(tmp_path / "c.h5")
+    with pytest.raises(InputError, match=r"law\.json: a pipe or a device"):
+        law_named(str(tmp_path / "law.json"))
+    with pytest.raises(InputError, match="a pipe or a device"):
+        finish(tmp_path)
 
 
 WRITES = re.compile(

@@ -89,10 +89,13 @@ def test_it_states_the_uncertainty_of_its_solve_and_its_end(solved, file):
 @pytest.mark.parametrize(
     ("change", "told"),
     [
-        ({"format": "x"}, "format: format 'x'"),
+        ({"format": "x"}, "format: 'x'"),
         ({"sphere": {"E_Pa": 2e11}}, "sphere.nu: missing"),
-        ({"loading": {}}, "'depth' is missing"),
-        ({"radius_m": "wide"}, "could not convert"),
+        ({"loading": None}, "loading: missing"),
+        ({"radius_m": "wide"}, "radius_m: 'wide'"),
+        ({"radius_m": 10**400}, "radius_m: 1000"),
+        ({"radius_m": True}, "radius_m: True"),
+        ({"unloading": {"depth": [1], "left": [0], "part": [0], "exponent": []}}, "unequal length"),
     ],
 )
 def test_a_damaged_file_is_one_line(file, tmp_path, change, told):
