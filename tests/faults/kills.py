@@ -1,6 +1,6 @@
 """kill -9 of the coordinator and of workers at random moments, through the product's own pool.
 
-`python tests/unit/campaigns/faults_campaign.py --kills 20` prints what was killed and what was
+`python tests/faults/kills.py --kills 20` prints what was killed and what was
 lost. The solver is a stand-in that takes a third of a second and gives curves that follow from the
 case, so that every stored number can be checked; all else is the product's. With `--solver` it is
 the product's own too, at its lowest accuracy; what is stored is then compared with a run that

@@ -1,6 +1,5 @@
 """Faults that a long run meets: kills at random moments, a full disk, readers, damaged data."""
 
-import importlib.util
 import os
 import random
 import shutil
@@ -11,6 +10,7 @@ import time
 from pathlib import Path
 
 import h5py
+import kills
 import pytest
 from dentscope.campaigns import Store, read_curves
 from dentscope.core import InputError
@@ -144,17 +144,9 @@ def test_a_corrupt_dataset_is_named_in_one_line(tmp_path):
     assert "\n" not in str(caught.value)
 
 
-def faults():
-    place = Path(__file__).with_name("faults_campaign.py")
-    spec = importlib.util.spec_from_file_location("faults_campaign", place)
-    module = importlib.util.module_from_spec(spec)
-    spec.loader.exec_module(module)
-    return module
-
-
 def test_kills_of_coordinator_and_workers_lose_no_case(tmp_path):
-    # the twenty kills of docs/campaign.md: python tests/unit/campaigns/faults_campaign.py
-    found = faults().inject(tmp_path, kills=2, cases=16, seed=4, say=lambda line: None)
+    # the twenty kills of docs/campaign.md: python tests/faults/kills.py
+    found = kills.inject(tmp_path, kills=2, cases=16, seed=4, say=lambda line: None)
     assert found["stored"] == 16
     assert found["lost"] == found["wrong"] == found["told twice"] == 0
     assert found["workers left over"] == 0
