@@ -24,6 +24,8 @@ def draw_intervals(axis: Any, found: BounceTimes) -> None:
     for k in left:
         axis.axvline(times[k], color="0.7", lw=0.8, ls=":")
     axis.set(xlabel="time [s] (dotted: left out)", ylabel="interval [s]", yscale="log")
+    for which in (axis.yaxis.set_major_formatter, axis.yaxis.set_minor_formatter):
+        which("{x:.3g}")
     axis.legend()
     axis.grid(alpha=0.3, which="both")
 

@@ -25,14 +25,16 @@ def draw_crater(result: Crater, path: Path) -> None:
         axis.plot(UM * line.s, UM * line.z, colour, lw=1, label=label)
     axis.axhline(0.0, color="k", lw=0.6)
     axis.axhline(-UM * result.depth.value, color="k", lw=0.6, ls="--")
-    for line_length, colour in ((result.length, "C1"), (result.width, "C2")):
-        if np.isfinite(line_length.value):
-            axis.axvline(0.5 * UM * line_length.value, color=colour, lw=0.5, ls=":")
+    sizes = {"length": (result.length, "C1"), "width": (result.width, "C2")}
+    known = {name: one for name, one in sizes.items() if np.isfinite(one[0].value)}
+    for size, colour in known.values():
+        axis.axvline(0.5 * UM * size.value, color=colour, lw=0.5, ls=":")
+    told = ", ".join(f"{name} {size.scaled(UM)} um" for name, (size, _) in known.items())
     axis.set(
         xlim=(-1.6 * reach, 1.6 * reach), xlabel="distance from the deepest point [um]",
         ylabel="height [um]",
         title=f"depth {result.depth.scaled(UM)} um, rim {result.pile_up.scaled(UM)} um\n"
-        f"length {result.length.scaled(UM)}, width {result.width.scaled(UM)} um",
+        f"{told or 'its walls are too rough to tell its size'}",
     )  # fmt: skip
     axis.legend()
     axis.grid(alpha=0.3)
@@ -74,7 +76,9 @@ def draw_groove(result: Groove, path: Path) -> None:
     """Draw the levelled profile with depth and width, and the part it was levelled on."""
     made, axes = figure(1, 2, size=(13.0, 5.0))
     s, z = UM * result.line.s, UM * result.line.z
-    width = UM * result.width.value if np.isfinite(result.width.value) else 0.2 * np.ptp(s)
+    known = bool(np.isfinite(result.width.value))
+    width = UM * result.width.value if known else 0.2 * np.ptp(s)
+    known_width = f", width {result.width.scaled(UM)} um" if known else ""
     for axis in axes[0]:
         axis.plot(s, z, "k-", lw=0.7)
         axis.plot(s[result.clear], z[result.clear], "g.", ms=1, label="levelled on")
@@ -85,7 +89,7 @@ def draw_groove(result: Groove, path: Path) -> None:
     axes[0, 0].legend()
     axes[0, 1].set(
         xlim=(-1.5 * width, 1.5 * width),
-        title=f"depth {result.depth.scaled(UM)} um, width {result.width.scaled(UM)} um",
+        title=f"depth {result.depth.scaled(UM)} um" + known_width,
     )
     save(made, path)
 

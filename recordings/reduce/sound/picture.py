@@ -37,7 +37,10 @@ def _record(axis: Any, sound: Sound, found: BounceTimes) -> None:
     n = sound.samples.size // step * step
     blocks = sound.samples[:n].reshape(-1, step)
     time = sound.time[:n:step]
-    axis.fill_between(time, blocks.min(axis=1), blocks.max(axis=1), lw=0.3)
+    if step == 1:
+        axis.plot(time, blocks[:, 0], lw=0.4)
+    else:
+        axis.fill_between(time, blocks.min(axis=1), blocks.max(axis=1), lw=0.3)
     times = found.chain.times
     for k, at in enumerate(times):
         used = k in found.chain.kept
@@ -58,6 +61,8 @@ def _near(axis: Any, sound: Sound, found: BounceTimes) -> None:
 
 def _picks(axis: Any, found: BounceTimes) -> None:
     kept = list(found.chain.kept)
-    axis.semilogy(found.chain.times[kept], 1e3 * found.time_std[kept], "o", ms=4)
+    axis.plot(found.chain.times[kept], 1e3 * found.time_std[kept], "o", ms=4)
     axis.set(xlabel="time [s]", ylabel="standard deviation of the onset [ms]")
-    axis.grid(alpha=0.3, which="both")
+    axis.margins(y=0.2)
+    axis.set_ylim(bottom=0.0)
+    axis.grid(alpha=0.3)

@@ -34,7 +34,7 @@ def draw_pulse(found: PulseReduction, path: Path) -> None:
         axis.set(xlabel="time [ms]")
     axes[0, 1].axhline(pulse.peak.value, color="C0", lw=0.8, ls=":")
     axes[0, 1].set(ylabel=f"pulse [{found.unit}]", title=f"peak {pulse.peak} {found.unit}")
-    axes[0, 2].set(ylabel="its power 2/3: straight flanks", title=f"{pulse.duration} s")
+    axes[0, 2].set(ylabel="its power 2/3: straight flanks if elastic", title=f"{pulse.duration} s")
     for axis in axes.flat:
         axis.grid(alpha=0.3)
     save(made, path)
@@ -56,10 +56,10 @@ def draw_heights(found: HeightReduction, path: Path) -> None:
             axes[1, 0].plot(time, rest, ".", color=f"C{k % 8}", ms=3)
         axes[0, 0].annotate(
             f"e = {bounce.restitution}", (bounce.time.value, float(track.height[bounce.turning])),
-            fontsize=8, rotation=90, va="bottom",
+            (0, 8), textcoords="offset points", fontsize=8, rotation=90, va="bottom", ha="center",
         )  # fmt: skip
     axes[0, 0].set(ylabel="height [unit of the table]")
-    axes[1, 0].set(xlabel="time [s]", ylabel="residuals of the flights")
+    axes[1, 0].set(xlabel="time [s]", ylabel="residuals of the flights [same unit]")
     for axis in axes.flat:
         axis.grid(alpha=0.3)
     save(made, path)
@@ -97,6 +97,8 @@ def draw_trials(found: TrialsReduction, path: Path) -> None:
     """Draw the first measured column over the approach."""
     made, axes = figure(1, 1, size=(7.0, 5.0))
     axes[0, 0].plot(found.x[1], found.y[1], "o", ms=4)
-    axes[0, 0].set(xlabel=found.x[0], ylabel=found.y[0])
+    axes[0, 0].set(xlabel=found.x[0], ylabel=found.y[0], title=f"{len(found.trials)} trials")
+    if found.x[0] == "number":
+        axes[0, 0].xaxis.get_major_locator().set_params(integer=True)
     axes[0, 0].grid(alpha=0.3)
     save(made, path)

@@ -1,7 +1,8 @@
 """A pulse of force or acceleration: its peak, its ends, and the area under it.
 
-Where the bodies touch and part, the contact is elastic and the force follows the power 3/2 of the
-depth: F^(2/3) meets zero along a straight line, which gives both ends below the noise.
+Where the bodies touch and part the force follows a power of the time: 3/2 of an elastic sphere, 1
+of a plastic dent or of a spring. The flanks above the noise tell where it meets zero, by each power
+as far as it fits.
 """
 
 from __future__ import annotations
@@ -11,15 +12,18 @@ from dataclasses import dataclass
 
 import numpy as np
 import numpy.typing as npt
+from scipy.optimize import least_squares
 from scipy.signal import savgol_filter
 
 from ....core.errors import InputError
 from ..measured import Array, Measured
-from ..regression import robust_regression, robust_std
+from ..regression import robust_std
 from .shape import shape_of
 
-_LOW, _HIGH = 0.08, 0.45
-"""Part of the peak between which the flanks are taken as straight in F^(2/3)."""
+_LOW, _HIGH = 0.06, 0.45
+"""Part of the peak between which the flanks tell the ends."""
+
+_POWERS, _FEWEST = (1.5, 1.2, 1.0), 6
 
 _LEAST = 8.0
 """Peak in standard deviations of the noise that is still a pulse."""
@@ -172,30 +176,58 @@ def _peak(time: Array, clear: Array, top: int, noise: float) -> tuple[Measured, 
 
 
 def _flank(time: Array, clear: Array, top: int, step: int, peak: float) -> tuple[Measured, int]:
-    """Where F^(2/3) of one flank meets zero, and the number of samples that say so."""
+    """Where one flank meets zero, and the number of samples that say so."""
     k, flank = top, []
     limit = clear.size - 1 if step > 0 else 0
     while k != limit and clear[k] > _LOW * peak:
         k += step
         if _LOW * peak < clear[k] < _HIGH * peak:
             flank.append(k)
-    if len(flank) < 2:
-        # a flank between two samples: the line through them
-        outer, inner = float(time[k]), float(time[k - step])
-        low, high = max(float(clear[k]), 0.0), float(clear[k - step])
-        u, w = low ** (2 / 3), high ** (2 / 3)
-        at = outer - u * (inner - outer) / (w - u) if w > u else outer
-        return Measured(at, 0.3 * abs(inner - outer)), len(flank)
+    if len(flank) < 2:  # a flank between two samples
+        return _through(time, clear, k, k - step), len(flank)
+    if len(flank) < _FEWEST:
+        return _through(time, clear, flank[-1], flank[0]), len(flank)
     index = np.sort(np.array(flank))
-    t, y = time[index], clear[index] ** (2.0 / 3.0)
-    middle = float(t.mean())
-    design = np.stack([np.ones_like(t), t - middle], axis=1)
-    if index.size == 2:
-        c = np.linalg.solve(design, y)
-        return Measured(middle - c[0] / c[1], 0.3 * float(np.ptp(t))), 2
-    fit = robust_regression(design, y)
-    c, v = fit.coefficients, fit.covariance
-    at = -c[0] / c[1]
-    gradient = np.array([-1.0 / c[1], c[0] / c[1] ** 2])
-    std = math.sqrt(float(gradient @ v @ gradient))
-    return Measured(middle + at, max(std, 0.1 * float(np.median(np.diff(time))))), int(index.size)
+    return _meets_zero(time[index], clear[index] / peak, step), len(flank)
+
+
+def _through(time: Array, clear: Array, outer: int, inner: int) -> Measured:
+    """Where the line through two samples of an elastic flank, F^(2/3), meets zero."""
+    far, near = float(time[outer]), float(time[inner])
+    low, high = max(float(clear[outer]), 0.0) ** (2 / 3), float(clear[inner]) ** (2 / 3)
+    at = far - low * (near - far) / (high - low) if high > low else far
+    return Measured(at, 0.3 * abs(near - far))
+
+
+def _meets_zero(t: Array, force: Array, step: int) -> Measured:
+    """Mean over the powers of F = (a s (1 - b s²))^p, s from the end, each as likely as it fits.
+
+    The striker slows down away from the end: b is 1/6 of a spring, F = sin s.
+    """
+    scale = float(np.ptp(t))
+    s = -step * (t - t[0 if step < 0 else -1]) / scale  # grows from the end inwards
+    ends, variances, spreads = [], [], []
+    for power in _POWERS:
+
+        def model(s: Array, at: float, a: float, b: float, power: float = power) -> Array:
+            late = np.maximum(s - at, 0.0)
+            return np.asarray(np.maximum(a * late * (1.0 - b * late**2), 0.0) ** power)
+
+        slope, level = np.polyfit(s, force ** (1.0 / power), 1)
+        first = (float(np.clip(-level / slope, -2.0, 0.5)), slope) if slope > 0.0 else (-0.5, 1.0)
+        fit = least_squares(
+            lambda c, m=model: m(s, *c) - force, (*first, 0.0),
+            bounds=((-3.0, 0.0, -0.1), (0.9, np.inf, 0.3)), x_scale="jac", max_nfev=50,
+        )  # fmt: skip
+        sigma = max(float(np.std(fit.fun)) * math.sqrt(s.size / (s.size - 3.0)), 1e-6)
+        ends.append(float(fit.x[0]))
+        variances.append(sigma**2 * float(np.linalg.pinv(fit.jac.T @ fit.jac)[0, 0]))
+        spreads.append(sigma)
+    belief = (min(spreads) / np.array(spreads)) ** s.size
+    belief /= belief.sum()
+    at = float(belief @ ends)
+    between = np.ptp(ends) / (len(ends) - 1)  # the power lies between those that are tried
+    variance = float(belief @ (variances + (np.array(ends) - at) ** 2)) + between**2 / 12.0
+    end = t[0 if step < 0 else -1] - step * scale * at
+    rough = 0.1 * float(np.median(np.diff(t)))
+    return Measured(float(end), max(scale * math.sqrt(variance), rough))

@@ -28,7 +28,7 @@ _JUMP = 1.5
 """Steps of the converter by which the samples beside a clipped top lie below it."""
 
 _STEP, _SWING, _RINGS = 0.33, 0.33, 0.1
-_SWINGS = 6
+_SWINGS, _BESIDE = 6, 8.0
 _FEWEST = 3
 _AGAIN = 0.3
 """Part of the peak from which on another pulse is named."""
@@ -80,7 +80,7 @@ def shape_of(
     rest = float(np.median(clear[after] if after.sum() >= 5 else clear[-5:])) / peak
     if abs(rest) > _STEP:
         raise _looks_like(f"a step: {rest:+.0%} of the peak stays", source)
-    beside = (time > ends[0] - 5.0 * long) & (time < ends[1] + 5.0 * long)
+    beside = (time > ends[0] - _BESIDE * long) & (time < ends[1] + _BESIDE * long)
     below = -float(clear[beside].min()) / peak
     swings = _half_waves(clear[beside] / peak) - 1
     if below > _SWING and swings >= _SWINGS:

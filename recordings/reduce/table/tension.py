@@ -7,6 +7,7 @@ from dataclasses import dataclass
 from itertools import pairwise
 
 import numpy as np
+import numpy.typing as npt
 
 from ....core.errors import InputError
 from ...flow_curve import PROOF_STRAIN, MeasuredFlow
@@ -15,9 +16,12 @@ from ..regression import robust_regression
 
 _STRAINS, _STRESSES = 10.0, 1e12
 """Beyond these no metal was measured: a slip of the unit, or a damaged file."""
-_FEWEST = 20
-_ELASTIC = (0.1, 0.4)
-"""Parts of the largest stress between which the modulus is read."""
+_FEWEST, _FEWEST_ELASTIC = 20, 6
+_ELASTIC = (0.4, 0.3, 0.22, 0.16, 0.12, 0.09, 0.06)
+"""Parts of the largest stress up to which the modulus may be read, and from a quarter of it on."""
+
+_STRAIGHT = 0.7
+"""Slope of the upper half of an elastic rise in that of its lower half."""
 
 _ROWS = 60
 _YIELDS = 1e-4
@@ -107,9 +111,7 @@ def reduce_tension(
 
 def _modulus(strain: Array, stress: Array, source: str) -> tuple[Measured, float]:
     """Return the slope of the first rise [Pa] and the strain at which it meets zero stress."""
-    peak = float(stress.max())
-    first = int(np.argmax(stress > _ELASTIC[1] * peak)) + 1
-    rise = np.arange(first)[stress[:first] > _ELASTIC[0] * peak]
+    rise = _elastic(strain, stress)
     if rise.size < 3 or np.ptp(strain[rise]) <= 0.0:
         raise InputError(
             f"{rise.size} rows of the elastic rise", source=source,
@@ -124,6 +126,27 @@ def _modulus(strain: Array, stress: Array, source: str) -> tuple[Measured, float
     return Measured(slope, math.sqrt(float(fit.covariance[1, 1]))), middle - float(
         fit.coefficients[0]
     ) / slope
+
+
+def _elastic(strain: Array, stress: Array) -> npt.NDArray[np.intp]:
+    """Return the rows of the highest straight rise: a metal that hardens much yields low."""
+    peak, found = float(stress.max()), np.arange(0)
+    for high in _ELASTIC:
+        first = int(np.argmax(stress > high * peak)) + 1
+        rise = np.flatnonzero(stress[:first] > 0.25 * high * peak)
+        if found.size and rise.size < _FEWEST_ELASTIC:
+            break
+        found = rise
+        if rise.size < _FEWEST_ELASTIC:
+            continue
+        middle = np.median(stress[rise])
+        low, up = (
+            np.polyfit(stress[part], strain[part], 1)[0]
+            for part in (rise[stress[rise] <= middle], rise[stress[rise] >= middle])
+        )
+        if low >= _STRAIGHT * up:
+            break
+    return found
 
 
 def _rows(plastic: Array, stress: Array, source: str) -> MeasuredFlow:

@@ -7,6 +7,7 @@ from typing import Any
 
 import numpy as np
 
+from ..bounces.flights import Piece
 from ..images.clip import Clip
 from ..pictures import figure, save
 from .reduction import VideoReduction
@@ -26,20 +27,18 @@ def draw_video(result: VideoReduction, clip: Clip, path: Path) -> None:
         axis.set_title(f"frame {number}" + (" (lowest)" if index == bounce.turning else ""))
     time = 1e3 * result.time
     axes[1, 0].plot(time, -result.row, "k.", ms=2)
-    for piece, colour in ((bounce.before, "C0"), (bounce.after, "C1")):
-        span = result.time[piece.first : piece.last + 1]
-        axes[1, 0].plot(1e3 * span, result.found.heights(piece, span), colour, lw=1.5)
-        residual = -result.row[piece.first : piece.last + 1] - result.found.heights(piece, span)
-        axes[1, 1].plot(1e3 * span, residual, ".", color=colour, ms=3)
-        out = np.isin(np.arange(piece.first, piece.last + 1), piece.index, invert=True)
-        axes[1, 1].plot(1e3 * span[out], residual[out], "x", color="r", ms=4)
-    axes[1, 0].set(
-        xlabel="time [ms]",
-        ylabel="height of the tip [pixel]",
-        title=f"restitution {bounce.restitution}",
-    )
+    for number, one in enumerate(result.bounces):
+        for piece in (one.before, one.after):
+            _flight(axes[1], result, piece, f"C{number % 8}")
+        axes[1, 0].annotate(
+            f"e = {one.restitution}", (time[one.turning], -result.row[one.turning]), (0, 8),
+            textcoords="offset points", fontsize=7, rotation=90, va="bottom", ha="center",
+        )  # fmt: skip
+    axes[1, 0].set(xlabel="time [ms]", ylabel="height of the tip [pixel]")
     axes[1, 1].axhline(0.0, color="k", lw=0.5)
-    axes[1, 1].set(xlabel="time [ms]", ylabel="residual [pixel]", title="x: left out")
+    axes[1, 1].set(
+        xlabel="time [ms]", ylabel="residual of the flights [pixel]", title="crosses: left out"
+    )
     if result.shape == "rod":
         axes[1, 2].plot(time, np.degrees(result.lean), "k.", ms=2)
         axes[1, 2].set(xlabel="time [ms]", ylabel="lean [deg]")
@@ -49,6 +48,17 @@ def draw_video(result: VideoReduction, clip: Clip, path: Path) -> None:
     for axis in axes[1]:
         axis.grid(alpha=0.3)
     save(made, path)
+
+
+def _flight(axes: Any, result: VideoReduction, piece: Piece, colour: str) -> None:
+    """Draw a fitted flight, and how far the samples in it lie off."""
+    part = np.arange(piece.first, piece.last + 1)
+    span, out = result.time[part], np.isin(part, piece.index, invert=True)
+    heights = result.found.heights(piece, span)
+    residual = -result.row[part] - heights
+    axes[0].plot(1e3 * span, heights, colour, lw=1.2)
+    axes[1].plot(1e3 * span[~out], residual[~out], ".", color=colour, ms=3)
+    axes[1].plot(1e3 * span[out], residual[out], "x", color="r", ms=4)
 
 
 def _outline(axis: Any, result: VideoReduction, index: int) -> None:

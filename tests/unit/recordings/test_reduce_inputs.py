@@ -99,6 +99,19 @@ def test_a_flow_curve_of_a_known_metal_comes_back():
     assert any("necks" in note for note in found.notes)
 
 
+def test_a_metal_that_hardens_to_four_times_its_strength_keeps_its_modulus():
+    E, Sy = 190e9, 200e6
+    p = np.linspace(0.0, 0.4, 300)
+    true = Sy + 1500e6 * p
+    rise = np.linspace(0.0, Sy / E, 40)
+    strain = 0.02 + np.concatenate([rise, true[1:] / E + p[1:]])  # the machine's own zero
+    found = reduce_tension(
+        strain, np.concatenate([E * rise, true[1:]]), strain_is="true", E=None, source="test"
+    )
+    assert found.modulus.value == pytest.approx(E, rel=0.01)
+    assert found.flow.strength == pytest.approx(Sy, rel=0.03)
+
+
 def test_tension_and_leeb_tables_into_a_set(tmp_path):
     strain = np.concatenate([np.linspace(0, 0.15, 60), np.linspace(0.2, 8.0, 200)])
     stress = np.minimum(200e3 * strain / 100.0, 300.0) + 5.0 * strain

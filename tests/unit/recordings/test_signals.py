@@ -56,6 +56,18 @@ def test_a_coarse_converter_is_no_clipping():
     assert found.peak.value == pytest.approx(800.0, abs=25.0)
 
 
+@pytest.mark.parametrize("power", [1.5, 1.0])
+def test_the_ends_of_elastic_and_of_plastic_pulses_are_within_their_errors(power):
+    phase = np.clip((TIME - 0.01) / 1e-3, 0.0, 1.0)
+    record = 800.0 * np.sin(np.pi * phase) ** power
+    for seed in range(5):
+        noise = np.random.default_rng(seed).normal(0.0, 1.0, TIME.size)
+        found = find_pulse(TIME, record + noise, source="record")
+        assert abs(found.start.value - 0.01) < 3.0 * found.start.std
+        assert abs(found.duration.value - 1e-3) < 3.0 * found.duration.std
+        assert found.duration.std < 0.02e-3
+
+
 def test_ringing_widens_the_errors_and_several_pulses_are_named():
     clean = find_pulse(TIME, noisy(pulse()), source="record")
     rings = find_pulse(TIME, noisy(ringing(0.25)), source="record")
