@@ -66,6 +66,8 @@ class Case:
         more: dict[str, Any] = dict(_flow_groups(p))
         if p.snapshots:
             more["snapshots"] = [_rounded(d) for d in p.snapshots]
+        if p.friction:
+            more["friction"] = _rounded(p.friction)
         return content_id(
             {
                 "groups": self.groups,
@@ -104,6 +106,7 @@ class Case:
             "profiles": list(p.profiles),
             "snapshots": list(p.snapshots),
             "accuracy": self.accuracy.as_dict(),
+            **({"friction": p.friction} if p.friction else {}),
             **_flow_keys(p),
         }
 
@@ -118,6 +121,7 @@ class Case:
             radius_at_least=spec["radius_at_least"],
             profiles=tuple(spec.get("profiles", ())),
             snapshots=tuple(spec.get("snapshots", ())),
+            friction=spec.get("friction", 0.0),
             speeds=tuple(tuple(row) for row in spec.get("speeds", ())),
         )
         return cls(spec["name"], problem, fem.Accuracy(**spec["accuracy"]))

@@ -81,6 +81,11 @@ class Discretisation:
         return 2 * len(self.mesh.points)
 
     @property
+    def slave_radius(self) -> Floats:
+        """Radii of the slave nodes in the undeformed state, shape (n_slave,) [R]."""
+        return np.asarray(self.mesh.points[self.surfaces.slave, 0])
+
+    @property
     def free(self) -> Integers:
         """Degrees of freedom that are solved for, in increasing order."""
         mask = np.ones(self.n_dofs, dtype=bool)
@@ -130,6 +135,7 @@ def discretise(
             flat=mesh.flat_surface,
             penalty=accuracy.penalty,
             flat_is_slave=_flat_is_slave(pair),
+            friction=problem.friction,
         ),
         driven=np.unique(np.concatenate(driven)),
         held=np.unique(np.concatenate(held)),

@@ -218,7 +218,12 @@ class Loading:
         state = transfer.state(point.state, guess)
         # no time passes: what feels the rate can't flow
         solver.elements = solver.grid.elements.unhurried
-        found = solver.equilibrium(guess, state=state, delta=point.delta)
+        held = np.interp(
+            solver.grid.slave_radius, point.grid.slave_radius, point.equilibrium.contact.traction
+        )
+        found = solver.equilibrium(
+            guess, state=state, delta=point.delta, grip=solver.grip(guess, held)
+        )
         if found is None:
             self._radius = was  # it is tried again after the next step
             return point, before
@@ -231,7 +236,10 @@ class Loading:
         old = point.record
         jump = abs(reading.force / old.reading.force - 1.0)
         self.tally.jump = max(self.tally.jump, jump)
-        record = Record(reading, old.work, stored + found.contact.energy, state.dissipated)
+        rubbed = old.rubbed + found.contact.rubbed
+        record = Record(
+            reading, old.work, stored + found.contact.energy, state.dissipated + rubbed, rubbed
+        )
         moved = Point(point.delta, found, state, record, solver)
         return moved, None if before is None else transfer.displacements(before)
 

@@ -14,7 +14,7 @@ import numpy as np
 import numpy.typing as npt
 
 from .assemble import DISTORTED, bulk_forces
-from .contact import ContactState, Triplets, contact_forces
+from .contact import ContactState, Grip, Triplets, contact_forces, take_hold
 from .discretise import Discretisation
 from .elements import State
 from .linear import LinearSystem
@@ -90,15 +90,26 @@ class Solver:
         self._tangent = np.empty((n, 8, 8))
         self._triplets = Triplets.for_surfaces(self.grid.surfaces)
         self._seconds = math.inf
+        self._grip: Grip | None = None
+
+    def grip(self, u: Floats, traction: Floats) -> Grip:
+        """Return how the surfaces hold at displacements `u` and nodal tractions (n_slave,)."""
+        return take_hold(self.surfaces, self.grid.mesh.points + u.reshape(-1, 2), traction)
 
     def equilibrium(
-        self, guess: Floats, *, state: State, delta: float, seconds: float = math.inf
+        self,
+        guess: Floats,
+        *,
+        state: State,
+        delta: float,
+        seconds: float = math.inf,
+        grip: Grip | None = None,
     ) -> Equilibrium | None:
         """Equilibrium at approach `delta`, starting from displacements `guess`; none: failed.
 
-        `state` is that of the last accepted step, `seconds` ago.
+        `state` and `grip` are those of the last accepted step, `seconds` ago.
         """
-        self._seconds = seconds
+        self._seconds, self._grip = seconds, grip
         u = guess.copy()
         u[self.grid.driven] = -delta
         now = self._evaluate(u, state)
@@ -131,7 +142,9 @@ class Solver:
             return None
         bulk = force.copy()
         x = self.grid.mesh.points + u.reshape(-1, 2)
-        contact, n = contact_forces(self.surfaces, x, force=force, tangent=self._triplets)
+        contact, n = contact_forces(
+            self.surfaces, x, force=force, tangent=self._triplets, grip=self._grip
+        )
         self.timers.contact += time.process_time() - middle
         if contact is None:
             return None

@@ -29,12 +29,13 @@ _STRETCH = 2.5  # largest factor by which the last increment is extrapolated
 
 @dataclass(frozen=True)
 class Record:
-    """One accepted state with its energies (R = 1, E' = 1)."""
+    """One accepted state with its energies (R = 1, E' = 1); `dissipated` holds `rubbed` too."""
 
     reading: Reading
     work: float
     stored: float
     dissipated: float
+    rubbed: float = 0.0
 
 
 @dataclass(frozen=True)
@@ -55,7 +56,11 @@ class Point:
     def balanced(self, guess: Floats, delta: float) -> Equilibrium | None:
         """Equilibrium at `delta`, one step from here; none: not found."""
         seconds = self.grid.clock.seconds(self.delta, delta)
-        return self.solver.equilibrium(guess, state=self.state, delta=delta, seconds=seconds)
+        now = self.equilibrium
+        grip = self.solver.grip(now.u, now.contact.traction)
+        return self.solver.equilibrium(
+            guess, state=self.state, delta=delta, seconds=seconds, grip=grip
+        )
 
 
 def extrapolate(point: Point, before: Floats | None, reach: float) -> Floats:
@@ -86,7 +91,9 @@ def accept(point: Point, found: Equilibrium, delta: float) -> Point:
     # F ~ Delta^n between two points: exact for a power law, where the trapezoidal rule is not
     work = last.work + _work_between(last.reading, reading)
     stored += found.contact.energy
-    return Point(delta, found, state, Record(reading, work, stored, state.dissipated), solver)
+    rubbed = last.rubbed + found.contact.rubbed
+    record = Record(reading, work, stored, state.dissipated + rubbed, rubbed)
+    return Point(delta, found, state, record, solver)
 
 
 def _work_between(a: Reading, b: Reading) -> float:

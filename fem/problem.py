@@ -142,6 +142,8 @@ class ContactProblem:
     speeds
         Speed of the approach by depth, as in `Clock`; only a flow stress that feels the rate needs
         it.
+    friction
+        Coulomb's coefficient between sphere and flat, 0 to 20; where it is large nothing slides.
 
     Raises
     ------
@@ -158,6 +160,7 @@ class ContactProblem:
     reload: bool = False
     top: Literal["free", "held"] = "free"
     speeds: tuple[tuple[float, float], ...] = ()
+    friction: float = 0.0
 
     @property
     def clock(self) -> Clock:
@@ -181,6 +184,9 @@ class ContactProblem:
                     raise InputError(f"{depth:g}", key=name, allowed=f"Delta/R in (0, {DEEPEST:g}]")
         if not 0.0 <= self.radius_at_least <= 0.8:
             raise InputError(f"{self.radius_at_least:g}", key="radius_at_least", allowed="0 to 0.8")
+
+        if not 0.0 <= self.friction <= 20.0:
+            raise InputError(f"{self.friction:g}", key="friction", allowed="0 to 20")
 
     def _check_speeds(self) -> None:
         hurried = [body.flow and body.flow.rate for body in (self.pair.sphere, self.pair.flat)]

@@ -12,7 +12,7 @@ from pydantic import Field
 from ..core.errors import InputError, InputErrors
 from ..core.flow import Flow, FlowCurve, Heating, Rate, ludwik, swift, tabulated, voce
 from ..core.material import Material, Pair
-from ..core.rig import MaterialTable
+from ..core.rig import FrictionTable, MaterialTable
 from ..core.toml_input import InputTable, Listed, read_model
 
 _SpeedRow = Annotated[tuple[float, float], Listed]
@@ -211,6 +211,8 @@ class CaseFile(InputTable):
     """What is pressed."""
     load: _Load
     """How far, how fast, from where back."""
+    friction: FrictionTable = FrictionTable()
+    """Between the two bodies; without it they slide freely."""
     accuracy: _Accuracy = _Accuracy()
     """How finely it is solved."""
 
@@ -295,6 +297,7 @@ def read_case(file: Path, *, level: str = "") -> tuple[Any, Any]:
             depths=depths,
             unload_from=unload,
             speeds=content.load.speeds,
+            friction=rubbing.value if (rubbing := content.friction.coefficient) else 0.0,
             snapshots=(last,),
             profiles=tuple(depths[k] for k in range(5, 60, 6)),
         )

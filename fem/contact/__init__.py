@@ -1,4 +1,4 @@
-"""Frictionless contact of the two deforming surfaces by node-weighted (mortar) gaps.
+"""Contact of the two deforming surfaces by node-weighted (mortar) gaps.
 
 The surface of the weaker body is the slave side, the other's the master side: the other way round,
 steps fail and take twice the iterations. For the gap both are smoothed to C1 curves. The gap at a
@@ -10,11 +10,13 @@ exactly. The force of a point acts normal to the master curve; on each body it g
 of the straight segment, as the elements' own functions have it: a uniform pressure then gives both
 bodies the loads of a uniform pressure, whatever the size of their elements, which the weights of
 the smooth curves would not. The tangent is therefore not symmetric.
+Friction, off unless asked for, holds the surfaces by tractions along them (`friction`).
 """
 
 from __future__ import annotations
 
 from .forces import ContactState, Triplets, contact_forces
+from .friction import Grip, take_hold
 from .surfaces import POINTS, Surfaces
 
-__all__ = ["POINTS", "ContactState", "Surfaces", "Triplets", "contact_forces"]
+__all__ = ["POINTS", "ContactState", "Grip", "Surfaces", "Triplets", "contact_forces", "take_hold"]

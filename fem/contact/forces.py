@@ -1,4 +1,4 @@
-"""Pressures, forces and tangent of the contact at given positions of the nodes."""
+"""Pressures, tractions, forces and tangent of the contact at given positions of the nodes."""
 
 from __future__ import annotations
 
@@ -9,6 +9,7 @@ import numpy as np
 import numpy.typing as npt
 from numba import njit
 
+from .friction import Grip, rub, slip_of
 from .gap import SlavePoints, find_gaps
 from .point import LOCAL, Changes, new_room, point_changes
 from .surfaces import POINTS, Surfaces
@@ -35,6 +36,10 @@ class ContactState:
         Vertical contact force [E' R^2].
     energy
         Penalty energy [E' R^3].
+    traction
+        Nodal tangential tractions on the reference area, shape (n_slave,) [E'].
+    rubbed
+        Work lost in sliding since the last accepted step [E' R^3].
     """
 
     pressure: Floats
@@ -43,6 +48,8 @@ class ContactState:
     segment: Integers
     force: float
     energy: float
+    traction: Floats
+    rubbed: float
 
 
 class Triplets(NamedTuple):
@@ -60,7 +67,7 @@ class Triplets(NamedTuple):
     @classmethod
     def for_surfaces(cls, surfaces: Surfaces) -> Triplets:
         """Allocate enough for every slave node in contact."""
-        return cls.room(len(surfaces.slave) * 1500)
+        return cls.room(len(surfaces.slave) * (1500 if surfaces.friction == 0.0 else 3000))
 
 
 @njit(cache=True)
@@ -143,8 +150,26 @@ def _gather(A, s, changes, sums):
 
 
 @njit(cache=True)
-def _add_stiffness(s, pressure, changes, out, n):
-    """Append the tangent of the nodal pressures to the `n` triplets in `out`; how many now."""
+def _add_friction(A, s, grip, x, pressure, sums, m, out, n):
+    """Append the tangent of a node's traction, whose pressure depends on the `m` of `sums`."""
+    limit = s.friction * pressure[A]
+    held = grip.traction[A] + s.stiffness[A] * slip_of(A, grip, x)
+    k = s.stiffness[A] * s.mass[A]
+    sticks = abs(held) <= limit
+    pull = -k * s.friction * (1.0 if held > 0.0 else -1.0)
+    for i in range(grip.n_dofs[A]):
+        t = grip.weight[A, i]
+        for j in range(grip.n_dofs[A] if sticks else m):
+            out.row[n] = grip.dof[A, i]
+            out.col[n] = grip.dof[A, j] if sticks else sums.dof[j]
+            out.value[n] = k * t * grip.weight[A, j] if sticks else pull * t * sums.dg[j]
+            n += 1
+    return n
+
+
+@njit(cache=True)
+def _add_stiffness(s, grip, x, pressure, changes, out, n):
+    """Append the tangent of pressures and tractions to the `n` triplets in `out`; how many now."""
     sums = Changes(np.empty(_SUPPORT, np.int64), np.empty(_SUPPORT), np.empty(_SUPPORT))
     for A in range(len(pressure)):
         if pressure[A] <= 0.0:
@@ -159,15 +184,20 @@ def _add_stiffness(s, pressure, changes, out, n):
                 out.col[n] = sums.dof[j]
                 out.value[n] = k * sums.b[i] * sums.dg[j]
                 n += 1
+        if len(grip.n_dofs) > 0:
+            n = _add_friction(A, s, grip, x, pressure, sums, m, out, n)
     return n
 
 
 @njit(cache=True)
-def _evaluate(s, x, points, pressure, force, with_tangent, out):
-    """Fill points and pressures, add forces, write triplets; force, energy, how many triplets."""
+def _evaluate(s, grip, x, points, pressure, traction, force, with_tangent, out):
+    """Fill points, pressures and tractions, add forces, write triplets.
+
+    Force, energy, work lost in sliding, how many triplets.
+    """
     xm = x[s.master]
     if not find_gaps(s, x[s.slave], xm, points):
-        return 0.0, 0.0, -1
+        return 0.0, 0.0, 0.0, -1
     total, energy = _find_pressures(s, points.gap, pressure)
     n_edges = len(pressure) - 1
     changes = Changes(
@@ -176,15 +206,28 @@ def _evaluate(s, x, points, pressure, force, with_tangent, out):
         np.empty((n_edges, 3, LOCAL)),
     )
     n = _add_forces(s, xm, points, pressure, force, changes, with_tangent, out)
+    traction[:] = 0.0
+    lost = 0.0
+    if len(grip.n_dofs) > 0:
+        lift, sprung, lost = rub(s, grip, x, pressure, traction, force)
+        total += lift
+        energy += sprung
     if with_tangent:
-        n = _add_stiffness(s, pressure, changes, out, n)
-    return total, energy, n
+        n = _add_stiffness(s, grip, x, pressure, changes, out, n)
+    return total, energy, lost, n
 
 
 def contact_forces(
-    surfaces: Surfaces, x: Floats, *, force: Floats, tangent: Triplets | None = None
+    surfaces: Surfaces,
+    x: Floats,
+    *,
+    force: Floats,
+    tangent: Triplets | None = None,
+    grip: Grip | None = None,
 ) -> tuple[ContactState | None, int]:
     """Add the contact forces at the current coordinates `x` (n_nodes, 2) to `force`.
+
+    With a `grip`, those of friction too.
 
     Returns
     -------
@@ -194,9 +237,15 @@ def contact_forces(
     """
     points = SlavePoints.room(len(surfaces.slave) - 1)
     pressure = np.empty(len(surfaces.slave))
+    traction = np.empty(len(surfaces.slave))
     room = Triplets.room(0) if tangent is None else tangent
-    total, energy, n = _evaluate(surfaces, x, points, pressure, force, tangent is not None, room)
+    total, energy, lost, n = _evaluate(
+        surfaces, grip or Grip.none(), x, points, pressure, traction, force,
+        tangent is not None, room,
+    )  # fmt: skip
     if n < 0:
         return None, 0
     gap, r, segment = points.gap, points.radius, points.segment
-    return ContactState(pressure, gap, r, segment, float(total), float(energy)), n
+    return ContactState(
+        pressure, gap, r, segment, float(total), float(energy), traction, float(lost)
+    ), n

@@ -69,7 +69,8 @@ def new_room():
 
 
 @njit(cache=True)
-def _frame(k, r, xm, w):
+def frame_below(k, r, xm, w):
+    """Return the master curve's frame on segment k at radius r; `w` are its weights there."""
     mirrored = k == 0
     first = 1 if mirrored else k - 1
     sign = -1.0 if mirrored else 1.0
@@ -160,7 +161,7 @@ def point_changes(e, q, surfaces, xm, points, room, out):
         room.dslope[i] = 0.0
         room.dtau[i] = 0.0
     curve(points.position[e, q], surfaces.master_shape[k], room.w)
-    frame = _frame(k, points.radius[e, q], xm, room.w)
+    frame = frame_below(k, points.radius[e, q], xm, room.w)
     _master_gradient(k, surfaces, frame, room, out)
     s = 0.5 * (1.0 + POINTS[q])
     curve(s, surfaces.slave_shape[e], room.w)

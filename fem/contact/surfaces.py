@@ -36,6 +36,8 @@ class Surfaces(NamedTuple):
     slave_shape, master_shape
         How the slopes at the ends of a segment, in units of its length, follow from the differences
         between its four nodes, shape (n_slave - 1, 4) and (n_master - 1, 4).
+    friction
+        Coulomb's coefficient.
     """
 
     slave: Integers
@@ -46,6 +48,7 @@ class Surfaces(NamedTuple):
     slave_shape: Floats
     master_shape: Floats
     sign: float = 1.0
+    friction: float = 0.0
 
     @property
     def sphere(self) -> Integers:
@@ -66,6 +69,7 @@ class Surfaces(NamedTuple):
         flat: Integers,
         penalty: float,
         flat_is_slave: bool,
+        friction: float = 0.0,
     ) -> Surfaces:
         """Set up the two surfaces.
 
@@ -79,6 +83,8 @@ class Surfaces(NamedTuple):
             Contact stiffness in E' over the edge length.
         flat_is_slave
             Which side is which.
+        friction
+            Coulomb's coefficient.
         """
         slave, master = (flat, sphere) if flat_is_slave else (sphere, flat)
         if flat_is_slave:  # as far as the sphere's surface lies above it
@@ -93,7 +99,9 @@ class Surfaces(NamedTuple):
         edge = np.maximum(np.append(length, 0.0), np.insert(length, 0, 0.0))
         slave_shape, master_shape = _slopes(r), _slopes(points[master, 0])
         sign = -1.0 if flat_is_slave else 1.0
-        return cls(slave, master, weight, mass, penalty / edge, slave_shape, master_shape, sign)
+        return cls(
+            slave, master, weight, mass, penalty / edge, slave_shape, master_shape, sign, friction
+        )
 
 
 def _slopes(r: Floats) -> Floats:

@@ -9,6 +9,7 @@ from dentscope import fem
 from dentscope.core import InputError, Material, Pair
 from dentscope.core.flow import Flow, Rate, swift
 from dentscope.fem.newton import TOLERANCE
+from dentscope.studies.verification.checks.friction import stuck_ratios
 
 pytestmark = pytest.mark.fe
 
@@ -213,3 +214,30 @@ def test_time_limit_keeps_what_was_reached(monkeypatch):
 def test_impossible_depths_are_refused(depths):
     with pytest.raises(InputError, match="depths"):
         fem.ContactProblem(plastic_pair(), depths)
+
+
+def test_a_contact_in_which_nothing_slides_is_stiffer_and_smaller():
+    """Borodich and Keer (2004): F/F_0 = 1.0529, a/a_0 = 0.9584 at nu = 0."""
+    pair = Pair(sphere=RIGID, flat=Material(E=200e9, nu=0.0), R=5e-3)
+    depths = fem.geometric_depths(1e-5, 1e-4, 12)
+    free, held = (
+        fem.solve(
+            fem.ContactProblem(pair, depths, friction=mu), accuracy=fem.Accuracy.quick()
+        ).loading
+        for mu in (0.0, 20.0)
+    )
+    later = slice(6, None)  # the first equilibrium slides freely
+    force, radius = stuck_ratios(0.0)
+    assert (held.force / free.force)[later].mean() == pytest.approx(force, rel=0.005)
+    assert (held.radius / free.radius)[later].mean() == pytest.approx(radius, rel=0.005)
+
+
+def test_friction_keeps_the_balances_through_loading_and_unloading():
+    pair = Pair(sphere=plastic_pair().sphere, flat=RIGID, R=1e-3)
+    depths = fem.geometric_depths(1e-3, 0.01, 12)
+    problem = fem.ContactProblem(pair, depths, friction=0.05, unload_from=(0.01,))
+    solution = fem.solve(problem, accuracy=fem.Accuracy.smoke())
+    assert solution.outcome.completed
+    assert solution.unloadings[0].outcome.completed
+    assert np.abs(solution.loading.energy_defect).max() < 0.01
+    assert np.abs(solution.loading.force_defect).max() < TOLERANCE

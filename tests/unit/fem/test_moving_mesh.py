@@ -7,7 +7,7 @@ import pytest
 from dentscope import fem
 from dentscope.core import Material, Pair
 from dentscope.fem.assemble import advance, bulk_forces
-from dentscope.fem.contact import Surfaces, Triplets, contact_forces
+from dentscope.fem.contact import Surfaces, Triplets, contact_forces, take_hold
 from dentscope.fem.discretise import discretise, with_linear
 from dentscope.fem.elements import State
 from dentscope.fem.loading import Loading, Tally
@@ -193,3 +193,48 @@ def test_exchanging_slave_and_master_changes_little(monkeypatch):
     assert curves[0].sphere / curves[0].delta == pytest.approx(
         curves[1].sphere / curves[1].delta, abs=0.005
     )
+
+
+@pytest.mark.parametrize("flat_is_slave", [False, True])
+def test_friction_s_tangent_is_the_derivative_of_its_forces(grids, flat_is_slave):
+    mesh = grids[0].mesh
+    surfaces = Surfaces.build(
+        mesh.points,
+        sphere=mesh.sphere_surface,
+        flat=mesh.flat_surface,
+        penalty=10.0,
+        flat_is_slave=flat_is_slave,
+        friction=1e-3,
+    )
+    rng = np.random.default_rng(5)
+    axis = mesh.points[:, 0] == 0.0
+    before = mesh.points.copy()
+    before[: mesh.n_sphere_points, 1] -= 2e-3
+    held = rng.normal(0.0, 1e-4, len(surfaces.slave))
+    grip = take_hold(surfaces, before, held)
+    x = before + rng.normal(0.0, 1e-6, before.shape)
+    x[axis, 0] = 0.0
+    triplets = Triplets.for_surfaces(surfaces)
+    force = np.zeros(x.size)
+    contact, m = contact_forces(surfaces, x, force=force, tangent=triplets, grip=grip)
+    limit = 1e-3 * contact.pressure
+    active = contact.pressure > 0.0
+    slides = np.isclose(np.abs(contact.traction), limit, rtol=1e-12) & active
+    assert slides.any()
+    assert (active & ~slides).any()
+    # action and reaction, of each body's nodes together
+    n = 2 * mesh.n_sphere_points
+    assert force[1:n:2].sum() == pytest.approx(-force[n + 1 :: 2].sum(), rel=1e-12)
+    assert contact.force == pytest.approx(-force[1:n:2].sum(), rel=1e-12)
+    direction = rng.normal(0.0, 1.0, x.shape)
+    direction[axis, 0] = 0.0
+    change = np.zeros(x.size)
+    np.add.at(change, triplets.row[:m], triplets.value[:m] * direction.ravel()[triplets.col[:m]])
+    step = 1e-10
+    sides = []
+    for sign in (1.0, -1.0):
+        f = np.zeros(x.size)
+        contact_forces(surfaces, x + sign * step * direction, force=f, grip=grip)
+        sides.append(f)
+    numeric = (sides[0] - sides[1]) / (2.0 * step)
+    assert change == pytest.approx(numeric, abs=2e-4 * np.abs(numeric).max())
