@@ -85,6 +85,18 @@ def _stack():
     return out.getvalue()
 
 
+def _photron():
+    return b"""#Camera Information Header
+Record Rate(fps) : 1000
+Total Frame : 16
+Image Width : 48
+Image Height : 60
+Color Bit : 8
+EffectiveBit Depth : 8
+EffectiveBit Side : Lower
+"""
+
+
 def _picture(suffix, grey=None):
     from PIL import Image
 
@@ -201,6 +213,7 @@ FILES = {
                {"shows": "crater", "unit": "m", "step_m": 1e-5}),
     "video": (".avi", _video, "video", _FILM),
     "stack": (".tif", _stack, "video", _FILM),
+    "photron": (".cih", _photron, "video", _FILM),
     "frame": (".png", lambda: _picture("PNG", _frames()[3]), "video", _FILM),
     "png": (".png", lambda: _picture("PNG"), "tip", {"pixel_m": 1e-5}),
     "jpeg": (".jpg", lambda: _picture("JPEG"), "tip", {"pixel_m": 1e-5}),
@@ -209,7 +222,7 @@ FILES = {
 
 def damaged(name, content, draw, mutated):
     """Return a changed copy: its units, words or encoding, or what `mutated` does to any file."""
-    text = FILES[name][0] in (".csv", ".txt", ".trk")
+    text = FILES[name][0] in (".csv", ".txt", ".trk", ".cih")
     kind = draw.choice(("units", "words", "encoding", "any", "any") if text else ("any",))
     data = bytearray(content)
     if kind == "units":
@@ -226,10 +239,12 @@ def damaged(name, content, draw, mutated):
 
 
 def lay_out(name, content, folder):
-    """Put a raw file into a folder; a frame lies among the others of its clip."""
+    """Put a raw file into a folder, with what belongs beside it."""
     end = FILES[name][0]
     if name != "frame":
         (folder / f"raw{end}").write_bytes(content)
+        if name == "photron":
+            (folder / "raw.mraw").write_bytes(_frames().tobytes())
         return folder / f"raw{end}"
     clip = folder / "clip"
     clip.mkdir()

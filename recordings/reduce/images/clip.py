@@ -12,6 +12,7 @@ import numpy.typing as npt
 
 from ....core.errors import InputError, missing_extra
 from ..measured import Array
+from . import photron
 from .picture_file import (
     CHANNELS,
     DOWN,
@@ -67,7 +68,7 @@ def read_clip(
     last: int | None = None,
     crop: tuple[int, int, int, int] | None = None,
 ) -> Clip:
-    """Read a video (what FFmpeg decodes, a TIFF of many pages) or a folder of pictures.
+    """Read a video (what FFmpeg decodes, .mraw, a TIFF of many pages) or a folder of pictures.
 
     Parameters
     ----------
@@ -98,6 +99,8 @@ def read_clip(
         reader = _pictures(path, channel)
     elif path.suffix.lower() in (".tif", ".tiff"):
         reader = _pages(path, channel)
+    elif path.suffix.lower() in photron.ENDINGS:
+        reader = photron.photron_frames(path)
     else:
         reader = _video(path, channel)
     part = islice(reader, first, None if last is None else last + 1)
@@ -174,7 +177,9 @@ def _video(path: Path, channel: str) -> Iterator[tuple[float, Frame]]:
     except av.FFmpegError as error:
         text = getattr(error, "strerror", None) or type(error).__name__
         raise InputError(
-            f"cannot be decoded ({text})", source=str(path), allowed="an AVI, MP4, MOV or MKV file"
+            f"cannot be decoded ({text})",
+            source=str(path),
+            allowed="an AVI, MP4, MOV, MKV or CINE file",
         ) from None
 
 

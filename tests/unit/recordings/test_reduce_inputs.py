@@ -1,5 +1,6 @@
 """Files as laboratories keep them: tracker projects, packed exports, stacks of pages, strengths."""
 
+import struct
 import zipfile
 
 import numpy as np
@@ -77,6 +78,66 @@ def test_a_stack_of_pages_is_a_clip(tmp_path):
     (tmp_path / "c.tif").write_bytes(b"II*\0" + bytes(40))
     with pytest.raises(InputError, match=r"TIFF|frames"):
         read_clip(tmp_path / "c.tif")
+
+
+def _cine(frames, path, bits):
+    """Write a Phantom file: three headers, offsets, frames bottom up (Vision Research, 12-bit)."""
+    count, rows, columns = frames.shape
+    at_image, at_setup = 44, 84
+    at_offsets = at_setup + 6000
+    first = at_offsets + 8 * count
+    setup = bytearray(6000)
+    struct.pack_into("<2sH", setup, 140, b"ST", 0x163C)
+    struct.pack_into("<I", setup, 768, 5000)  # frames a second
+    struct.pack_into("<I", setup, 896, bits)
+    size = 8 + 2 * rows * columns
+    with path.open("wb") as out:
+        out.write(struct.pack("<2sHHHiIiIIIIQ", b"CI", 44, 0, 1, 0, count, 0, count,
+                              at_image, at_setup, at_offsets, 0))  # fmt: skip
+        out.write(struct.pack("<IiiHHIIiiII", 40, columns, rows, 1, 16, 0, 0, 0, 0, 0, 0))
+        out.write(setup)
+        out.write(struct.pack(f"<{count}Q", *(first + size * k for k in range(count))))
+        for frame in frames:
+            out.write(struct.pack("<II", 8, size - 8) + frame[::-1].astype("<u2").tobytes())
+
+
+def test_a_phantom_file_of_twelve_bits_is_a_clip(tmp_path):
+    pytest.importorskip("av")
+    frames = np.random.default_rng(1).integers(0, 4096, (12, 20, 16))
+    _cine(frames, tmp_path / "a.cine", 12)
+    clip = read_clip(tmp_path / "a.cine")
+    assert np.abs(clip.frames.astype(int) - frames / 4095.0 * 255.0).max() <= 1.0
+    assert clip.container_rate == pytest.approx(5000.0)
+
+
+CIHX = """junk\n<cih><recordInfo><recordRate>8000</recordRate></recordInfo>
+<frameInfo><totalFrame>12</totalFrame></frameInfo><imageDataInfo><resolution><width>16</width>
+<height>20</height></resolution><effectiveBit><depth>12</depth><side>Lower</side></effectiveBit>
+<colorInfo><bit>BITS</bit></colorInfo></imageDataInfo></cih>\nmore"""
+
+
+@pytest.mark.parametrize("bits", [16, 12])
+def test_a_photron_file_is_a_clip(tmp_path, bits):
+    frames = np.random.default_rng(1).integers(0, 4096, (12, 20, 16))
+    one, two = frames.reshape(-1, 2).T
+    packed = np.stack([one >> 4, ((one & 15) << 4) + (two >> 8), two & 255], axis=1)
+    raw = frames.astype("<u2") if bits == 16 else packed.astype(np.uint8)
+    (tmp_path / "a.mraw").write_bytes(raw.tobytes())
+    (tmp_path / "a.cihx").write_text(CIHX.replace("BITS", str(bits)))
+    for name in ("a.mraw", "a.cihx"):
+        clip = read_clip(tmp_path / name)
+        assert np.array_equal(clip.frames, frames >> 4)
+        assert clip.container_rate == pytest.approx(8000.0)
+    for wrong, words in (("24", "24 bits"), ("", "Color Bit"), ("x", "whole number")):
+        (tmp_path / "a.cihx").write_text(CIHX.replace("BITS", wrong))
+        with pytest.raises(InputError, match=words):
+            read_clip(tmp_path / "a.mraw")
+    (tmp_path / "a.cihx").write_text(CIHX.replace("BITS", str(bits)).replace(">12<", ">13<", 1))
+    with pytest.raises(InputError, match="13 frames"):
+        read_clip(tmp_path / "a.mraw")
+    (tmp_path / "a.cihx").unlink()
+    with pytest.raises(InputError, match="no header"):
+        read_clip(tmp_path / "a.mraw")
 
 
 def test_a_flow_curve_of_a_known_metal_comes_back():
