@@ -27,6 +27,9 @@ def diagnose(
         bool, typer.Option("--confirm", help="Sampled evidence and the full null ensemble.")
     ] = False,
     quiet: Annotated[bool, typer.Option("--quiet", help="No progress line.")] = False,
+    report: Annotated[
+        bool, typer.Option("--report/--no-report", help="Write report.html, or verdict.json alone.")
+    ] = True,
     chapter5: Annotated[
         bool, typer.Option("--chapter5", help="The thesis's oblique drops, nothing fitted.")
     ] = False,
@@ -64,7 +67,7 @@ def diagnose(
         typer.echo("\r\x1b[K", nl=False, err=True)
     text = json.dumps(verdict.to_dict(), indent=1, allow_nan=False)
     write_file(out / "verdict.json", text + "\n")
-    written = write_report(verdict, out / "report.html")
+    written = write_report(verdict, out / "report.html") if report else []
     for line in lines(verdict):
         typer.echo(line)
     typer.echo(f"\nwritten: {', '.join(map(str, (out / 'verdict.json', *written)))}")

@@ -105,8 +105,12 @@ class Simulator:
         problem = self.problem
         situations: list[Situation] = []
         plain: list[Situation] = []
+        # the nodes of a grid share their unknowns: one set of scenes serves them all
+        known: dict[int, list[Scene]] = {}
         for point in points:
-            for condition, scene in zip(problem.conditions, problem.scenes(point.z), strict=True):
+            if id(point.z) not in known:
+                known[id(point.z)] = problem.scenes(point.z)
+            for condition, scene in zip(problem.conditions, known[id(point.z)], strict=True):
                 if point.faster or point.steeper:
                     a = scene.approach
                     up = 1.0 + point.faster

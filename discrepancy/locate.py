@@ -52,7 +52,9 @@ class Located:
     threshold: float
 
 
-def locate(problem: Problem, base: Fit, nulls: Nulls, *, level: float = 0.95) -> Located:
+def locate(
+    problem: Problem, base: Fit, nulls: Nulls, *, level: float = 0.95, least: int = 0
+) -> Located:
     """Test every cell of observable by covariate.
 
     Parameters
@@ -65,6 +67,9 @@ def locate(problem: Problem, base: Fit, nulls: Nulls, *, level: float = 0.95) ->
         Null residuals, for the threshold.
     level
         Family-wise.
+    least
+        Number of places that are told in any case: 1 where all numbers together say that something
+        is missing, even if no contrast alone does.
     """
     names, contrasts = _contrasts(problem)
     linear = base.linear
@@ -83,7 +88,7 @@ def locate(problem: Problem, base: Fit, nulls: Nulls, *, level: float = 0.95) ->
         )
     null_max = float(np.quantile((null / spread).max(axis=1), level))
     found.sort(key=lambda m: -abs(m.z))
-    misses = tuple(m for m in found if abs(m.z) > null_max)
+    misses = tuple(m for i, m in enumerate(found) if i < least or abs(m.z) > null_max)
     return Located(misses, min(threshold, null_max))
 
 

@@ -106,6 +106,7 @@ def diagnose(
     best = choice.members[0] if choice.members else ranking.base
     proposals = propose(simulator, ranking, odds, rng)
     corrections = correct(simulator, ranking.base) if choice.verdict == OUTSIDE else ()
+    misses = int(choice.verdict not in ("adequate", "undetermined"))
     misfit = misfit_of(ranking.problem, ranking.base)
     notes = (*notes_of(ranking.problem, best), *law_notes(ranking.problem, misfit))
     return Verdict(
@@ -113,7 +114,7 @@ def diagnose(
         probabilities=dict(odds.probability), inclusion=odds.inclusion,
         scores=scores_of(ranking, {f.name: p_fit(f, nulls) for f in ranking.fits}, left_out,
                          sampled),
-        located=locate(ranking.problem, ranking.base, nulls),
+        located=locate(ranking.problem, ranking.base, nulls, least=misses),
         parameters=parameters_of(simulator, best), nuisance_pulls=pulls_of(ranking.problem, best),
         surprise=surprises_of(ranking.problem, best), excluded=ranking.excluded,
         limits=limits_of(ranking, judge.calibration),

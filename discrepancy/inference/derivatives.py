@@ -12,12 +12,16 @@ from ..forward import Point, Simulator
 from ..mechanisms.base import Constants, Mechanism
 from ..problem import Problem
 from ..unknowns.covariates import nearness, same_observable
-from .linear import Linear
+from .linear import Linear, Sizes
 
 Array = NDArray[np.float64]
 
 STEP = 0.3
 _SPEED_STEP, _ANGLE_STEP = 0.01, 0.01
+FORM_SPREAD = 0.5
+"""Standard deviation of the logarithm of how far forms differ: not known better than that."""
+FORMS = Sizes((1.0, math.exp(math.sqrt(3.0) * FORM_SPREAD)), (5 / 6, 1 / 6))
+"""Of the error of a form: the points of Gauss and Hermite, the lower one with the middle."""
 _LENGTH, _ROUGH = 2.0, 0.1  # of the error of a form: correlation length, part without one
 _JUMPS = (0.02, 0.05, 0.1)  # of the parameter: how near a jump makes a cell unsure
 

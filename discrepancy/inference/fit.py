@@ -16,8 +16,8 @@ from numpy.typing import NDArray
 from ..forward import Point, Simulator
 from ..mechanisms.base import Mechanism, Situation
 from ..problem import Problem
-from ..unknowns.lawerror import SIZE_WEIGHTS, SIZES
-from .derivatives import derivatives
+from ..unknowns.lawerror import SIZES
+from .derivatives import FORMS, derivatives
 from .grid import Axis, Grid, posterior
 from .linear import Linear, Mixture
 
@@ -216,7 +216,7 @@ def expand(
     else:
         fine = effect + (here - effect[grid.index(place)])
     r = problem.cells.value - fine + linear.J @ z
-    mixture = Mixture.of(linear, problem.n_nuisances, SIZES, SIZE_WEIGHTS)
+    mixture = Mixture.of(linear, problem.n_nuisances, SIZES, FORMS)
     log_likelihood = mixture.log_likelihood(r)
     log_evidence, weight = posterior(log_likelihood)
     log_evidence += grid.log_volume

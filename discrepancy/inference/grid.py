@@ -19,10 +19,11 @@ from ..mechanisms.base import Constants, Parameter
 Array = NDArray[np.float64]
 
 
-FINE = {1: 241, 2: 49, 3: 17, 4: 11}
-"""Points per parameter of the refined grid, by the number of parameters."""
-IN_WINDOW = {1: 5, 2: 5, 3: 3}
-"""Least nodes per parameter of a grid over a part of the prior, by the number of parameters."""
+FINE = {1: 241, 2: 49, 3: 17, 4: 11, 5: 7}
+"""Points per parameter of the refined grid, by the number of parameters; 5 for more."""
+IN_WINDOW = {1: 5, 2: 5, 3: 3, 4: 3}
+"""Least nodes per parameter of a grid over a part of the prior, by the number of parameters; 2 for
+more: over a window the response is nearly straight."""
 
 
 class Axis(NamedTuple):
@@ -61,7 +62,7 @@ class Grid:
         """Places in (0, 1) of the nodes of each axis."""
         if not self.window:
             return [np.linspace(0.0, 1.0, a.parameter.nodes) for a in self.axes]
-        least = IN_WINDOW.get(len(self.axes), 3)
+        least = IN_WINDOW.get(len(self.axes), 2)
         return [
             np.linspace(low, high, max(least, math.ceil((p.nodes - 1) * (high - low)) + 1))
             for (_, p), (low, high) in zip(self.axes, self.window, strict=True)
@@ -70,7 +71,7 @@ class Grid:
     @cached_property
     def fine(self) -> list[Array]:
         """Places of the refined grid: middles of equal shares of what it covers."""
-        n = FINE.get(len(self.axes), 9)
+        n = FINE.get(len(self.axes), 5)
         share = (np.arange(n) + 0.5) / n
         if not self.window:
             return [share for _ in self.axes]

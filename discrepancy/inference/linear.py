@@ -9,10 +9,12 @@ D(u) is the mechanism's simulated effect. The evidence is its mean over the prio
 
 from __future__ import annotations
 
+import itertools
 import math
 from collections.abc import Sequence
 from dataclasses import dataclass, field, replace
 from functools import cached_property
+from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -69,10 +71,14 @@ class Linear:
         m = len(self.noise)
         return float(2.0 * np.sum(np.log(np.diag(self.lower))) + m * math.log(2.0 * math.pi))
 
+    @cached_property
+    def whitening(self) -> Array:
+        """Transpose of the inverse of Sigma's Cholesky factor, (m, m)."""
+        return np.asarray(solve_triangular(self.lower, np.eye(len(self.noise)), lower=True).T)
+
     def white(self, r: Array) -> Array:
         """Return L^-1 r for residuals in the last axis, shape (..., m)."""
-        flat = np.asarray(r).reshape(-1, r.shape[-1]).T
-        return np.asarray(solve_triangular(self.lower, flat, lower=True).T.reshape(r.shape))
+        return np.asarray(r @ self.whitening)
 
     def log_likelihood(self, r: Array) -> Array:
         """Return ln N(r; 0, Sigma), shape (...)."""
@@ -81,7 +87,7 @@ class Linear:
     def unknowns(self, r: Array) -> tuple[Array, Array]:
         """Return posterior mean (n_z,) and covariance (n_z, n_z) of the unknowns given r."""
         prior = self.prior if self.prior.size else np.ones(self.J.shape[1])
-        half = solve_triangular(self.lower, self.scaled, lower=True)
+        half = self.whitening.T @ self.scaled
         mean = prior * (half.T @ self.white(r))
         return np.asarray(mean), (np.eye(len(prior)) - half.T @ half) * np.outer(prior, prior)
 
@@ -95,9 +101,20 @@ class Linear:
         return replace(self, noise=self.noise[np.ix_(cells, cells)], J=self.J[cells], form=form)
 
 
+class Sizes(NamedTuple):
+    """Factors on a model error whose size is not known, and their prior weights."""
+
+    factors: Sequence[float]
+    weights: Sequence[float]
+
+
+ONE = Sizes((1.0,), (1.0,))
+"""An error of known size."""
+
+
 @dataclass(frozen=True, eq=False)
 class Mixture:
-    """The same algebra with a model error of several sizes, by their prior weights.
+    """The same algebra with model errors of several sizes, by their prior weights.
 
     Parameters
     ----------
@@ -111,15 +128,30 @@ class Mixture:
     log_weight: Array
 
     @classmethod
-    def of(
-        cls, linear: Linear, fixed: int, sizes: Sequence[float], weights: Sequence[float]
-    ) -> Mixture:
-        """Return the algebra with all unknowns but the first `fixed` of several sizes."""
+    def of(cls, linear: Linear, fixed: int, sizes: Sizes, forms: Sizes = ONE) -> Mixture:
+        """Return the algebra with model errors of several sizes.
+
+        Parameters
+        ----------
+        linear
+            The algebra with all of size 1.
+        fixed
+            Number of unknowns, the first, that are no error of the law.
+        sizes, forms
+            Of the law's error, and of that of the mechanism's form.
+        """
         n = linear.J.shape[1]
         if n <= fixed:
-            return cls((linear,), np.zeros(1))
-        priors = [np.where(np.arange(n) < fixed, 1.0, size) for size in sizes]
-        return cls(tuple(replace(linear, prior=p) for p in priors), np.log(weights))
+            sizes = ONE
+        if not linear.form.size:
+            forms = ONE
+        parts, weights = [], []
+        for (size, w), (times, v) in itertools.product(zip(*sizes, strict=True),
+                                                       zip(*forms, strict=True)):  # fmt: skip
+            prior = np.where(np.arange(n) < fixed, 1.0, size)
+            parts.append(replace(linear, prior=prior, form=times * linear.form))
+            weights.append(w * v)
+        return cls(tuple(parts), np.log(weights))
 
     def each(self, r: Array) -> Array:
         """Return ln of weight times likelihood for each size, shape (sizes, ...)."""

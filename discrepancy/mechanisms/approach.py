@@ -11,6 +11,8 @@ from ...impact import Scene
 from .arithmetic import is_oblique
 from .base import Literature, Mechanism, Parameter, Situation, Surroundings, Values
 
+_BY_EYE = 5.0  # degrees: what the thesis states as its tolerance
+
 
 class ImpactSpeedLoss(Mechanism):
     """Release, guide or air take speed before the touch; only where it was not measured."""
@@ -76,10 +78,10 @@ class Tilt(Mechanism):
         return ""
 
     def ranges(self, situations: Sequence[Situation]) -> tuple[Parameter, ...]:
-        """Upright rods lean either way alike."""
+        """Upright rods lean either way alike, and no farther than an eye lets pass."""
         if any(is_oblique(s) for s, _ in situations):
             return self.parameters
-        return (replace(self.parameters[0], low=0.5),)
+        return (replace(self.parameters[0], low=0.5, high=_BY_EYE),)
 
     def attach(self, scene: Scene, values: Values, around: Surroundings) -> Scene:
         """Replace the approach."""

@@ -68,3 +68,12 @@ def slower(seen: Mapping[str, Array], restitution: Array) -> dict[str, Array]:
         "rebound_speed_m_s": seen["rebound_speed_m_s"] * ratio,
         "restitution": restitution,
     }
+
+
+def times(present: tuple[float, ...], factors: Array) -> tuple[float, ...]:
+    """Multiply two tables over the depth nodes; an empty one is neutral."""
+    if not present:
+        return tuple(float(x) for x in factors)
+    grid = np.linspace(0.0, 1.0, len(factors))
+    old = np.interp(grid, np.linspace(0.0, 1.0, len(present)), present)
+    return tuple(float(x) for x in old * factors)

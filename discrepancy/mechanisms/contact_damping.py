@@ -35,6 +35,10 @@ class ContactDamping(Mechanism):
         ),
     )  # fmt: skip
     direction: ClassVar[Mapping[str, int]] = {"restitution": -1, "permanent_depth_m": -1}
+    form: ClassVar[float] = 0.25
+    """A force in proportion to the load against one in proportion to the width, fitted to each
+    other over a decade of speed: 2 to 8 % of the effect in restitution and depth, 25 to 45 % in
+    contact time and peak force."""
 
     def attach(self, scene: Scene, values: Values, around: Surroundings) -> Scene:
         """Replace the transform of the normal force."""

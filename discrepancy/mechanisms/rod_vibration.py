@@ -16,6 +16,7 @@ from .arithmetic import density_of, is_oblique, needs_rod
 from .base import Literature, Mechanism, Parameter, Situation, Surroundings, Values
 
 _AXIAL, _BENDING = 6, 9
+_SIDEWAYS = 0.82  # tangential stiffness over 2 E' a: 2 (1 - nu)/(2 - nu), Mindlin 1949
 _LOSS = 1e-3  # of steel rods; what it takes during a contact is below a thousandth
 
 _PARTICIPATION = Parameter(
@@ -70,7 +71,10 @@ class RodFlexuralVibration(_Ringing):
 
     name = "rod-flexural-vibration"
     title = "the leaning rod bends and rings"
-    equations = "free-free Timoshenko beam and axial modes; re-contact while the tip returns"
+    equations = (
+        "free-free Timoshenko beam and axial modes; the contact gives way sideways, k_t = "
+        "0.82 2 E' a; re-contact while the tip returns"
+    )
 
     def applies(self, situations: Sequence[Situation]) -> str:
         """Needs a rod that leans."""
@@ -80,6 +84,19 @@ class RodFlexuralVibration(_Ringing):
         if not any(scene.striker.length > 0.0 and is_oblique(scene) for scene, _ in situations):
             return "every rod stands upright: a central blow along the axis does not bend it"
         return ""
+
+    def attach(self, scene: Scene, values: Values, around: Surroundings) -> Scene:
+        """Replace the rigid striker, and the rigid stick of its contact.
+
+        A tip that a bending rod drives to and fro sticks and turns; what is rigid there would
+        have to follow each mode.
+        """
+        found = super().attach(scene, values, around)
+        if found is scene:
+            return scene
+        # it gives way as far as the rod takes part
+        sideways = _SIDEWAYS / values["modal_participation"]
+        return found.with_(friction=replace(found.friction, stiffness=sideways))
 
     def modes(self, striker: Striker, body: Material) -> Modes:
         """Return the lowest axial and bending modes."""

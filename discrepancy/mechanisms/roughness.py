@@ -11,7 +11,7 @@ import numpy as np
 
 from ...impact import Scene
 from ...impact.strength import UNIT, StrengthTable, strength_table
-from .arithmetic import needs_yielding_law
+from .arithmetic import needs_yielding_law, times
 from .base import Array, Literature, Mechanism, Parameter, Situation, Surroundings, Values
 
 _POWER = 1.25
@@ -140,12 +140,3 @@ def _layer_of(scene: Scene, values: Values) -> Layer:
     return Layer.of(
         table, values["roughness_m"], values["asperity_force_ratio"], values["asperity_flattening"]
     )
-
-
-def times(present: tuple[float, ...], factors: Array) -> tuple[float, ...]:
-    """Multiply two tables over the depth nodes; an empty one is neutral."""
-    if not present:
-        return tuple(float(x) for x in factors)
-    grid = np.linspace(0.0, 1.0, len(factors))
-    old = np.interp(grid, np.linspace(0.0, 1.0, len(present)), present)
-    return tuple(float(x) for x in old * factors)

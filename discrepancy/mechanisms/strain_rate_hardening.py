@@ -2,14 +2,14 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
 from ...impact import Scene
 from ...impact.scene import FlowStress
-from ...impact.strength import StrengthTable
-from .arithmetic import energy
+from ...impact.strength import StrengthTable, strength_table
+from .arithmetic import energy, times
 from .base import Array, Literature, Parameter, Surroundings, Values
 from .flow_stress import RATE, FlowMechanism, StrengthProfile
 
@@ -38,11 +38,16 @@ class RateProfile(StrengthProfile):
 
 
 class StrainRateHardening(FlowMechanism):
-    """The flow stress rises with the strain rate, as a power (Cowper-Symonds) or a logarithm."""
+    """The flow stress rises with the strain rate, as a power (Cowper-Symonds) or a logarithm.
+
+    What a metal keeps of that strength where the striker turns is a parameter: dislocations that
+    are stored keep it (face-centred metals), thermally activated flow relaxes (body-centred ones).
+    The way back then is that of the strength that is kept.
+    """
 
     name = "strain-rate-hardening"
     title = "the metal is stronger at the rates of the impact"
-    equations = "S = S_y [1 + A (r / 1000 s^-1)^n], r = 0.4 v(delta)/a"
+    equations = "S = S_y [1 + A (r / 1000 s^-1)^n], r = 0.4 v(delta)/a; back from S_y + k (S - S_y)"
     parameters = (
         Parameter(
             "rise_at_1000_per_s", "-", 0.03, 2.5, "log", 0.0,
@@ -54,7 +59,30 @@ class StrainRateHardening(FlowMechanism):
             "Cowper-Symonds 1/q 0.1-0.25; a logarithm looks like C/A", nodes=3,
             literature=Literature(0.2, "q = 5, mild steel, Cowper and Symonds 1957"),
         ),
+        Parameter(
+            "strength_kept", "-", 0.0, 1.0, "linear", 1.0,
+            "0 for an overstress that relaxes at once (Perzyna 1966), 1 for a strength that stays "
+            "as the rate falls (strain rate history: Klepaczko 1975)", nodes=3,
+            literature=Literature(1.0, "the strength of the rate, as the law is used in statics"),
+        ),
     )  # fmt: skip
+
+    def attach(self, scene: Scene, values: Values, around: Surroundings) -> Scene:
+        """Multiply the flow stress that the scene has; take from the way back what relaxes."""
+        found = super().attach(scene, values, around)
+        kept = values["strength_kept"]
+        if kept == 1.0:
+            return found
+        table = strength_table(scene.law, scene.pair)
+        own = RateProfile(values["rise_at_1000_per_s"], values["rate_exponent"])
+        strength = own.profile(scene, table)
+        # work given back: force at the peak times the recovery
+        back, whole = (
+            np.prod(table.factors(s).reshape(2, -1), axis=0)
+            for s in (1.0 + kept * (strength - 1.0), strength)
+        )
+        less = times(scene.force.recovery_factors, back / whole)
+        return found.with_(force=replace(found.force, recovery_factors=less))
 
     def strength(self, scene: Scene, values: Values, around: Surroundings) -> FlowStress:
         """Return the profile of this mechanism."""

@@ -14,7 +14,7 @@ from .laws import Curve
 
 Array = NDArray[np.float64]
 
-_STEPS_TO_STOP = 350.0
+_STEPS_TO_STOP = 120.0  # 4e-5 in restitution, 2e-4 in force off the limit
 _MOST_STEPS = 6000
 _SMOOTH = 0.01  # of the approach speed: below it friction fades
 

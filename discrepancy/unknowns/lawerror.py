@@ -31,6 +31,7 @@ from ...impact import ForceTransform, Scene
 from ...impact.force import LOG_DEPTH_FIRST, LOG_DEPTH_LAST
 from ...impact.strength import NODES, UNIT, strength_table
 from ...models.base import DomainWarning
+from ..inference.linear import Sizes
 from ..mechanisms.arithmetic import energy
 
 Array = NDArray[np.float64]
@@ -41,9 +42,10 @@ with the measured flow curve of 6061-T6 differ from it by 1 to 2.5 % in force, 4
 2 to 4 % in the restitution, with exponents of 1.31 to 1.44; softer tempers by twice that."""
 SIZE_SPREAD = 0.4
 """Standard deviation of the logarithm of the size of all this: a metal's 3 % may be 1.5 or 6."""
-SIZES = tuple(math.exp(k * math.sqrt(3.0) * SIZE_SPREAD) for k in (-1, 0, 1))
-SIZE_WEIGHTS = (1.0 / 6.0, 2.0 / 3.0, 1.0 / 6.0)
-"""Factors on the law's error and their prior weights: the three points of Gauss and Hermite."""
+SIZES = Sizes(
+    tuple(math.exp(k * math.sqrt(3.0) * SIZE_SPREAD) for k in (-1, 0, 1)), (1 / 6, 2 / 3, 1 / 6)
+)
+"""Of the law's error: the three points of Gauss and Hermite."""
 FREE = {"force": 0.16, "recovery": 0.5, "recovery exponent": 0.5, "crater": 0.24}
 """Standard deviations of a contact law that is free: what something unknown may make of it."""
 

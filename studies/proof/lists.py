@@ -29,14 +29,14 @@ class Entry:
 
 
 def full() -> list[Entry]:
-    """The published list: 200 nulls, 100 outside, 20 of each mechanism, 40 pairs, planted errors.
+    """The published list: 150 nulls, 80 outside, 15 of each mechanism, 45 pairs, planted errors.
 
     Two sets or more of each complete series of the finite-element library are among them, at least
-    twelve in all, and 80 sets whose mass is stated 5 % off, 40 whose strength is 14 % off.
+    twelve in all, and 30 sets whose mass is stated 5 % off, 20 whose strength is 14 % off.
     """
-    wanted = [("null", "")] * 200 + [("outside", "")] * 100 + [("pair", "")] * 40
-    wanted += [("single", name) for name in EFFECTS for _ in range(20)]
-    wanted += [("mass-error", "")] * 80 + [("strength-error", "")] * 40
+    wanted = [("null", "")] * 150 + [("outside", "")] * 80 + [("pair", "")] * 45
+    wanted += [("single", name) for name in EFFECTS for _ in range(15)]
+    wanted += [("mass-error", "")] * 30 + [("strength-error", "")] * 20
     series = available()
     each = max(2, -(-_SERIES_SETS // max(len(series), 1)))
     return _entries(wanted, [s.name for s in series for _ in range(each)])

@@ -46,14 +46,14 @@ import nothing of the diagnosis, of the contact laws, of the impact or of the re
   process that is given the recordings only; verdicts are hashed before a truth is opened. The
   scorer checks the whole chain first.
 * **Size** of an effect: norm of the change of all readings over their noise, after what the
-  nuisances within their tolerance can imitate is taken out, from the generator itself. Of an effect
-  outside the library also what the nearest of the generator's own library effects imitates (draws
-  of each, the best improved by a simplex search): a layer that crushes may look like asperities
-  to every instrument of a set, and then no name is wrong. Outside truths are drawn until 10 is
-  left, if eight draws give it.
+  nuisances within their tolerance and a metal that is 5 % off elastic-perfect plasticity can
+  imitate is taken out, from the generator itself. Of an effect outside the library also what the
+  nearest of the generator's own library effects imitates (draws of each, the best improved by a
+  simplex search): a layer that crushes may look like asperities to every instrument of a set, and
+  then no name is wrong. Outside truths are drawn until 10 is left, if eight draws give it.
 * **First place**: observable and condition along which the truth's effect has the largest score,
-  noise and nuisances taken out; within a fifth of it counts. **Next experiment**: a trial within
-  the rig's speeds, angles and bodies, or one that says what to build.
+  noise, nuisances and metal taken out; within a fifth of it counts. **Next experiment**: a trial
+  within the rig's speeds, angles and bodies, or one that says what to build.
 * **Marks.** `met` or `missed` only if the whole 95 % interval (Clopper and Pearson) is on one
   side; else `not shown`.
 """

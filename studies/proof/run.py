@@ -7,13 +7,9 @@ diagnosing process is given the path of a copy of the recordings and nothing els
 from __future__ import annotations
 
 import json
-import os
-import resource
 import secrets
 import shutil
 import signal
-import subprocess
-import sys
 import tempfile
 import time
 from collections.abc import Generator
@@ -23,16 +19,13 @@ from multiprocessing import get_context
 from pathlib import Path
 from typing import Any
 
+from .apart import answer
 from .explicit.catalogue import SERIES
 from .explicit.sets import draw_explicit, write_explicit
 from .generators.folder import write_set
 from .generators.truth import Truth, draw
 from .lists import LISTS, Entry, seed_of, shuffled
 from .seal import Ledger, digest_of, tree_hash
-
-_PASSED = (
-    "PATH", "HOME", "LANG", "NUMBA_CACHE_DIR", "XDG_CACHE_HOME", "TMPDIR", "PYTHONPATH",
-)  # fmt: skip
 
 ROOT = Path(__file__).resolve().parents[2]
 
@@ -89,45 +82,23 @@ def diagnose(run: Path, name: str, limit_s: float) -> dict[str, Any]:
         The event that seals what was said: `verdict` (hash, empty if there is none), `exit`,
         `cpu_s`, `wall_s`, `message`.
     """
-    start, before = time.monotonic(), _children_cpu()
+    start = time.monotonic()
     with tempfile.TemporaryDirectory() as place:
         folder = Path(place) / name
         shutil.copytree(run / "sets" / name, folder)
         out = Path(place) / "out"
-        command = [sys.executable, "-m", "dentscope", "diagnose", str(folder), "--out", str(out)]
-        code, message = _call(command, place, limit_s)
+        told = answer(folder, out, limit_s)
         found = out / "verdict.json"
         digest = ""
-        if code == 0 and found.exists():
+        if told.code == 0 and found.exists():
             kept = run / "verdicts" / f"{name}.json"
             shutil.copyfile(found, kept)
             digest = digest_of(kept)
     return {
-        "event": "verdict", "set": name, "verdict": digest, "exit": code,
-        "cpu_s": round(_children_cpu() - before, 2),
-        "wall_s": round(time.monotonic() - start, 2), "message": message,
+        "event": "verdict", "set": name, "verdict": digest, "exit": told.code,
+        "cpu_s": round(told.cpu_s, 2), "wall_s": round(time.monotonic() - start, 2),
+        "message": told.message,
     }  # fmt: skip
-
-
-def _call(command: list[str], place: str, limit_s: float) -> tuple[int, str]:
-    plain = {
-        key: value
-        for key, value in os.environ.items()
-        if key in _PASSED or key.endswith("_NUM_THREADS")
-    }
-    try:
-        answer = subprocess.run(
-            command, cwd=place, capture_output=True, text=True, timeout=limit_s, env=plain,
-            check=False,
-        )  # fmt: skip
-    except subprocess.TimeoutExpired:
-        return 124, f"not done after {limit_s:g} s"
-    return answer.returncode, answer.stderr[-400:] if answer.returncode else ""
-
-
-def _children_cpu() -> float:
-    used = resource.getrusage(resource.RUSAGE_CHILDREN)
-    return used.ru_utime + used.ru_stime
 
 
 def local_workers(count: int) -> Executor:

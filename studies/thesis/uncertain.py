@@ -76,7 +76,9 @@ class Rod:
     def hardening(self) -> Values:
         """Cowper and Symonds's 1 + (r/D)^(1/q) in the terms of the mechanism."""
         rise = (1000.0 / self.rate) ** (1.0 / self.exponent)
-        return {"rise_at_1000_per_s": rise, "rate_exponent": 1.0 / self.exponent}
+        return {
+            "rise_at_1000_per_s": rise, "rate_exponent": 1.0 / self.exponent, "strength_kept": 1.0,
+        }  # fmt: skip
 
 
 def draw_rods(count: int, angles: int, *, seed: int = 0) -> list[Rod]:

@@ -11,9 +11,9 @@ from dataclasses import replace
 
 import numpy as np
 
-from . import parameters as at
+from .metal_kinds import MOST, kinds, numbers
 from .rig import Rig
-from .simulate import observables, rows_of
+from .simulate import how_far_off, observables, rows_of
 
 OFF = (0.03, 0.08)
 """Between which the rms change of restitution, or of the dent where that is larger, is drawn."""
@@ -36,9 +36,8 @@ def draw_metal(rng: np.random.Generator, rig: Rig, *, family: float, z: dict[str
         return rig
     wanted = float(rng.uniform(*OFF))
     strain = float(np.exp(rng.uniform(np.log(0.01), np.log(0.04))))
-    kinds = ["chord-modulus", "flow-curve"] + ["etsion-unloading"] * (family == at.CAVITY)
     found = rig
-    for kind in rng.permutation(kinds):
+    for kind in rng.permutation(kinds(family)):
         found = _this_far(rig, str(kind), strain, wanted, family=family, z=z)
         if float(found.metal_told["metal_off"]) > OFF[0]:
             break
@@ -51,28 +50,15 @@ def _this_far(
     """The bench with a metal of one kind that is so far off, or as far as real ones go."""
     size, off, changed = 0.1, 0.0, rig
     for _ in range(5):
-        changed = replace(rig, metal=_numbers(kind, size, strain))
+        changed = replace(rig, metal=numbers(kind, size, strain))
         off = _off(rig, changed, family, z)
         if abs(off / wanted - 1.0) < 0.1:
             break
-        size = float(np.clip(size * wanted / max(off, 1e-4), 1e-3, _MOST[kind]))
+        size = float(np.clip(size * wanted / max(off, 1e-4), 1e-3, MOST[kind]))
     told: dict[str, float | str] = {
         "metal": kind, "metal_size": size, "metal_strain": strain, "metal_off": off
     }  # fmt: skip
     return replace(changed, metal_told=told)
-
-
-# weight of another law, fall of the modulus, rise of a flow curve: as far as real metals go
-_MOST = {"etsion-unloading": 1.0, "chord-modulus": 0.35, "flow-curve": 0.45}
-
-
-def _numbers(kind: str, size: float, strain: float) -> dict[int, float]:
-    if kind == "etsion-unloading":
-        return {at.OTHER_UNLOADING: size}
-    if kind == "chord-modulus":
-        return {at.CHORD: size, at.CHORD_STRAIN: strain}
-    # shape of the tension test of 6061-T6 by Cady at 0.001/s: a rise that is over at 10 %
-    return {at.CURVE: size, at.CURVE_STRAIN: 0.033}
 
 
 def _off(rig: Rig, changed: Rig, family: float, z: dict[str, float]) -> float:
@@ -82,5 +68,4 @@ def _off(rig: Rig, changed: Rig, family: float, z: dict[str, float]) -> float:
                     rows_of(r, (), family=family, z=z, steps=_FEW))
         for r in (rig, changed)
     ]  # fmt: skip
-    changes = [np.log(np.maximum(seen[1][k], 1e-12) / np.maximum(seen[0][k], 1e-12)) for k in _SEEN]
-    return float(max(np.sqrt(np.mean(c**2)) for c in changes))
+    return how_far_off(*seen)

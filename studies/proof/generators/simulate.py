@@ -13,6 +13,7 @@ from scipy.optimize import minimize
 from . import dynamics
 from . import parameters as at
 from .effects import EFFECTS, OUTSIDE, Effect
+from .metal_kinds import TYPICAL, other_metals
 from .rig import COLUMNS, NUISANCES, Rig
 
 Array = NDArray[np.float64]
@@ -60,6 +61,16 @@ def observables(rig: Rig, p: Array) -> dict[str, Array]:
     return {name: out[:, COLUMNS[name]] for name in rig.noise}
 
 
+def how_far_off(plain: dict[str, Array], changed: dict[str, Array]) -> float:
+    """Largest rms logarithmic change of the restitution or the dent, of those recorded."""
+    changes = [
+        np.log(np.maximum(changed[k], 1e-12) / np.maximum(plain[k], 1e-12))
+        for k in ("restitution", "permanent_depth_m")
+        if k in plain
+    ]
+    return max((float(np.sqrt(np.mean(c**2))) for c in changes), default=0.0)
+
+
 def noise_std(rig: Rig, clean: dict[str, Array]) -> dict[str, Array]:
     """Standard deviation of the instrument at these values, by column, each (n,)."""
     return {
@@ -70,10 +81,11 @@ def noise_std(rig: Rig, clean: dict[str, Array]) -> dict[str, Array]:
 
 @dataclass(frozen=True, eq=False)
 class Visibility:
-    """How large changes of a rig's readings look, with what nuisances imitate taken out.
+    """How large changes of a rig's readings look, with what else may change them taken out.
 
     With e a change of all readings over their noise, and J their derivatives with respect to the
-    nuisances in prior standard deviations, the size is sqrt(e' (1 + J J')^-1 e).
+    nuisances and to what a metal may be off perfect plasticity, in prior standard deviations, the
+    size is sqrt(e' (1 + J J')^-1 e).
 
     Parameters
     ----------
@@ -115,6 +127,12 @@ class Visibility:
             column = (np.concatenate(high) - np.concatenate(low)) / (2.0 * step) * weight
             columns.append(np.nan_to_num(column))
         plain = np.concatenate(readings)
+        for other in other_metals(few, family):
+            changed = dict(zip(few.noise, _stacked(other, keep, family, z), strict=True))
+            off = how_far_off(clean, changed)
+            if off > 0.0:
+                change = (np.concatenate(list(changed.values())) - plain) * weight
+                columns.append(np.nan_to_num(TYPICAL / off * change))
         return cls(few, family, z, tuple(keep), plain, weight, np.stack(columns, axis=1))
 
     def change(self, effects: Sequence[Effect]) -> Array:

@@ -70,13 +70,15 @@ def test_numbers_of_one_condition_say_nothing(toy) -> None:
         (odds(a=0.96), "missing-physics", ["a"]),
         (odds(outside=0.96), OUTSIDE, []),
         (odds(a=0.5, b=0.48), "indistinguishable", ["a", "b"]),
-        (odds(a=0.93, b=0.06), "missing-physics", ["a"]),
+        (odds(a=0.95, b=0.02), "missing-physics", ["a"]),
+        (odds(a=0.93, b=0.06), "indistinguishable", ["a", "b"]),
         (odds(a=0.4, b=0.3, c=0.28), "indistinguishable", ["a", "b", "c"]),
         (odds(a=0.27, b=0.27, c=0.27, d=0.1, e=0.09), "indistinguishable", ["a", "b", "c"]),
         # more than three that differ are no finding
         (odds(a=0.17, b=0.17, c=0.17, d=0.16, e=0.16, f=0.16), "undetermined", []),
-        # what takes part in all that is likely is named, whatever acts beside it
-        (odds(a=0.4, a_b=0.3, a_c=0.28), "missing-physics", ["a"]),
+        # what takes part in all that is likely, with whatever acts beside it
+        (odds(a=0.4, a_b=0.3, a_c=0.28), "indistinguishable", ["a", "a+b", "a+c"]),
+        (odds(a=0.75, a_b=0.1, a_c=0.1), "missing-physics", ["a"]),
         (odds(a_b=0.97), "missing-physics", ["a+b"]),
     ],
 )  # fmt: skip

@@ -10,7 +10,7 @@ import pytest
 from dentscope.discrepancy.estimates import parameters_of
 from dentscope.discrepancy.inference.derivatives import form_error
 from dentscope.discrepancy.inference.grid import Axis, Grid, interval, posterior
-from dentscope.discrepancy.inference.linear import Linear, Mixture
+from dentscope.discrepancy.inference.linear import Linear, Mixture, Sizes
 from dentscope.discrepancy.mechanisms import Parameter
 from scipy.stats import beta, multivariate_normal, norm
 
@@ -111,7 +111,7 @@ def test_the_size_of_an_error_is_integrated_over() -> None:
     rng = np.random.default_rng(4)
     J, r = rng.normal(size=(6, 2)), rng.normal(size=(5, 6))
     sizes, weights = (0.5, 1.0, 2.0), (0.2, 0.5, 0.3)
-    found = Mixture.of(Linear(np.eye(6), J), 1, sizes, weights)
+    found = Mixture.of(Linear(np.eye(6), J), 1, Sizes(sizes, weights))
     dense = [
         w * multivariate_normal(np.zeros(6), np.eye(6) + scaled @ scaled.T).pdf(r)
         for s, w in zip(sizes, weights, strict=True)
@@ -133,7 +133,7 @@ def test_the_size_of_an_error_is_integrated_over() -> None:
 
 def test_without_unknowns_that_scale_there_is_one_size() -> None:
     linear = Linear(np.eye(2), np.zeros((2, 1)))
-    assert Mixture.of(linear, 1, (0.5, 1.0), (0.5, 0.5)).parts == (linear,)
+    assert len(Mixture.of(linear, 1, Sizes((0.5, 1.0), (0.5, 0.5))).parts) == 1
 
 
 def test_some_cells_alone_have_the_marginal_likelihood() -> None:

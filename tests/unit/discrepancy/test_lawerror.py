@@ -10,7 +10,6 @@ from dentscope.core.material import Material, Pair
 from dentscope.discrepancy.unknowns.lawerror import (
     METAL,
     SIZE_SPREAD,
-    SIZE_WEIGHTS,
     SIZES,
     law_error,
     not_given_back,
@@ -78,7 +77,7 @@ def test_unknowns_move_the_restitution_by_their_size() -> None:
 
 
 def test_sizes_have_the_moments_of_a_normal_logarithm() -> None:
-    x, w = np.log(SIZES), np.array(SIZE_WEIGHTS)
+    x, w = np.log(SIZES.factors), np.array(SIZES.weights)
     assert w.sum() == pytest.approx(1.0)
     assert w @ x**2 == pytest.approx(SIZE_SPREAD**2)
     assert w @ x**4 == pytest.approx(3.0 * SIZE_SPREAD**4)

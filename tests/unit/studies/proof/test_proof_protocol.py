@@ -2,11 +2,10 @@
 
 import json
 from concurrent.futures import ThreadPoolExecutor
-from pathlib import Path
 
 import numpy as np
 import pytest
-from dentscope.studies.proof import calibrated, lists, page, run, score, seal
+from dentscope.studies.proof import apart, calibrated, lists, page, run, score, seal
 from dentscope.studies.proof.case import Case, interval, open_run
 from dentscope.studies.proof.lists import Entry
 
@@ -99,10 +98,10 @@ def test_tree_hash_sees_the_tool_and_not_the_proof(tmp_path):
 def test_lists_have_the_promised_numbers():
     entries = lists.full()
     kinds = [e.kind for e in entries]
-    assert kinds.count("null") == 200
-    assert kinds.count("outside") == 100
-    assert kinds.count("pair") == 40
-    assert kinds.count("single") == 20 * 19
+    assert kinds.count("null") == 150
+    assert kinds.count("outside") == 80
+    assert kinds.count("pair") == 45
+    assert kinds.count("single") == 15 * 19
     assert kinds.count("series") >= 12
     assert len(lists.small()) <= 12
     assert len({e.name for e in entries}) == len(entries)
@@ -121,16 +120,15 @@ def test_run_goes_on_where_it_stopped(tmp_path, monkeypatch):
     monkeypatch.setitem(lists.LISTS, "small", lambda: entries)
     seen = []
 
-    def stand_in(command, place, limit_s):
-        folder, out = Path(command[4]), Path(command[6])
+    def stand_in(folder, out, limit_s):
         assert sorted(p.name for p in folder.iterdir()) == ["set.toml", "trials.csv"]
-        assert not list(Path(place).rglob("truths"))
+        assert not list(out.parent.rglob("truths"))
         seen.append(folder.name)
         out.mkdir()
         (out / "verdict.json").write_text(json.dumps({"verdict": "adequate"}))
-        return 0, ""
+        return apart.Answer(0, "", 1.0)
 
-    monkeypatch.setattr(run, "_call", stand_in)
+    monkeypatch.setattr(run, "answer", stand_in)
     monkeypatch.setattr(run, "tree_hash", lambda root: "ab" * 32)
     with ThreadPoolExecutor(2) as threads:
         assert len(list(run.carry_on(tmp_path, "small", threads, most=2))) == 2
