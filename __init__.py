@@ -5,6 +5,7 @@
     ds.impact("ball", impact_speed_m_s=2.0)    a blow, by several contact laws
     ds.diagnose("my-recordings")               what physics the simulation of them lacks
     ds.case("case.toml")                       one's own pair by finite elements
+    ds.compare_laws("case.toml")               the same by every contact law, and which to use
     ds.LAWS                                    every contact law, as a table
 
 The stages, in the order in which a result passes through them; each is loaded when it is used:
@@ -29,7 +30,7 @@ from dentscope.core.compiled import keep_compiled_code
 if TYPE_CHECKING:
     from dentscope.core import Material, Pair
     from dentscope.models import LAWS
-    from dentscope.start import case, diagnose
+    from dentscope.start import case, compare_laws, diagnose
 
 __version__ = "0.1.0"
 
@@ -38,13 +39,14 @@ _FROM = {
     "Material": "core",
     "Pair": "core",
     "case": "start",
+    "compare_laws": "start",
     "diagnose": "start",
 }
 _STAGES = (
     "core", "fem", "models", "campaigns", "fitting", "impact", "recordings", "discrepancy", "start",
 )  # fmt: skip
 
-__all__ = ["LAWS", "Material", "Pair", "case", "diagnose"]
+__all__ = ["LAWS", "Material", "Pair", "case", "compare_laws", "diagnose"]
 
 keep_compiled_code()
 

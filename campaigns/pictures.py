@@ -11,6 +11,7 @@ from ..core.output import write_figure
 from ..fem import critical_depth
 from .records import CaseRecord
 
+_NAMED = 6  # so many pairs are named one by one
 _APPROACH = r"approach over that at first yield $\delta/\delta_c$"
 
 
@@ -25,14 +26,16 @@ def draw_campaign(records: list[CaseRecord], folder: Path) -> list[Path]:
 
     figure = Figure(figsize=(10, 8), layout="constrained")
     axes = figure.subplots(2, 2)
+    many = len(records) > _NAMED
     shades = ScalarMappable(LogNorm(0.1, 10.0, clip=True), "coolwarm")
     for record in records:
         pair = record.case.pair
         c = record.curve
         w = c["delta"] / (critical_depth(pair) * pair.R)
         ratio = pair.Sy_ratio if np.isfinite(pair.Sy_ratio) else 1.0
-        style = {"color": shades.to_rgba(np.array(ratio)), "lw": 1.0}
-        axes[0, 0].loglog(w, c["force"] / _critical_force(pair), **style)
+        style = {"color": shades.to_rgba(np.array(ratio)), "lw": 1.0 if many else 1.8}
+        name = None if many else _told(pair)
+        axes[0, 0].loglog(w, c["force"] / _critical_force(pair), label=name, **style)
         axes[0, 1].plot(c["delta"] / pair.R, c["radius"] / pair.R, **style)
         axes[1, 0].semilogx(w, c["sphere"] / (c["sphere"] + c["flat"]), **style)
         if np.isfinite(pair.Sy_min):
@@ -53,8 +56,22 @@ def draw_campaign(records: list[CaseRecord], folder: Path) -> list[Path]:
     bar = figure.colorbar(shades, ax=axes, shrink=0.6, ticks=[0.1, 1.0, 10.0])
     bar.ax.set_yticklabels(["0.1\nsphere weaker:\nit flattens", "1", "10\nflat weaker:\nit dents"])
     bar.set_label("strength of the sphere over that of the flat, $S_y^*$")
-    figure.suptitle(f"{len(records)} pairs of a sphere and a flat, loading")
+    if not many:
+        axes[0, 0].legend(title="strength of sphere on flat", fontsize=8, title_fontsize=8)
+    pairs = "1 pair" if len(records) == 1 else f"{len(records)} pairs"
+    coarse = any(record.case.accuracy.level == "smoke" for record in records)
+    remark = "; level smoke: coarse, with steps in the curves" if coarse else ""
+    figure.suptitle(f"{pairs} of a sphere and a flat, pressed together{remark}")
     return [write_figure(figure, folder / "curves.png", dpi=120)]
+
+
+def _told(pair: Pair) -> str:
+    """Both strengths in words."""
+    bodies = (pair.sphere, pair.flat)
+    return " on ".join(
+        "rigid" if b.rigid else f"{b.Sy / 1e6:.0f} MPa" if np.isfinite(b.Sy) else "elastic"
+        for b in bodies
+    )
 
 
 def _critical_force(pair: Pair) -> float:

@@ -18,9 +18,9 @@ from .campaign_data import DEFAULT_DESIGN, FILE, PUBLISHED, DesignName, Out
 from .campaign_progress import Progress, duration, judged, remarks, tell
 from .groups import group
 
-# With so many cases done the pictures are drawn while a run goes on: the first three of the large
-# designs are the figures' pairs, Sy* = 0.1, 1 and 10.
-_PICTURED = frozenset(3 * 2**k for k in range(12))
+# With so many cases done the pictures are drawn while a run goes on: the first, and the first
+# three, which in the large designs are the figures' pairs, Sy* = 0.1, 1 and 10.
+_PICTURED = frozenset((1, *(3 * 2**k for k in range(12))))
 
 app = group("Sweeps of finite-element cases: run, status, show, export, publish.")
 
@@ -79,7 +79,7 @@ def run(
         progress.step(step)
         if step.done and step.status.done in _PICTURED:
             for picture in _draw(chosen, out):
-                progress.console.print(f"picture of {step.status.done} cases: {picture}")
+                progress.console.print(f"{_so_far(step.status)}: {picture}")
 
     try:
         with progress:
@@ -98,6 +98,11 @@ def run(
         return 130
     _summary(chosen, out, after, time.monotonic() - started, progress.cpu_s)
     return 0 if after.done == after.designed else EXIT_NOT_CONVERGED
+
+
+def _so_far(status: Any) -> str:
+    done = "the first case" if status.done == 1 else f"{status.done} cases"
+    return f"picture of {done}, of {status.designed}"
 
 
 @app.command()

@@ -10,7 +10,7 @@ import typer
 
 from ..core.disk import DISK
 from ..core.errors import EXIT_NOT_CONVERGED, InputError
-from ..core.output import csv_text, write_file
+from ..core.output import csv_text, write_figure, write_file
 from ..core.templates import CASE, write_new
 from .places import folder_option
 from .terminal import console as new_console
@@ -67,8 +67,11 @@ def case(
         console.print(str(solution.outcome))
         return EXIT_NOT_CONVERGED
     _show(console, solution, uncertainty)
+    if found.remark:
+        console.print(found.remark)
     for path in (
         _write_curves(solution, uncertainty, out / "curve.csv"),
+        write_figure(found.plot(), out / "curve.png", dpi=130),
         _write_result(file.stem, solution, uncertainty, out / "result.h5"),
     ):
         console.print(f"written: {path}")
@@ -79,8 +82,8 @@ def case(
         if picture:
             extent = 2.5 * float(solution.loading.radius[-1])
             strength = pair.Sy_min if pair.Sy_min < float("inf") else pair.E_reduced
-            tool = draw_section(snapshot, out / f"{name}.png", Sy_min=strength, extent=extent)
-            console.print(f"written: {out / f'{name}.png'} (drawn by {tool})")
+            drawn = draw_section(snapshot, out / f"{name}.png", Sy_min=strength, extent=extent)
+            console.print(f"written: {drawn}")
     if not solution.outcome.completed:
         console.print(str(solution.outcome))
         return EXIT_NOT_CONVERGED

@@ -1,12 +1,7 @@
-"""Fields of a solve as files and pictures: VTU through meshio, pictures through pyvista.
-
-Where pyvista cannot render (see `core.rendering`) matplotlib draws the same picture, and the caller
-is told which of the two it was.
-"""
+"""Fields of a solve as files and pictures: VTU through meshio, for ParaView, and PNG."""
 
 from __future__ import annotations
 
-import io
 import tempfile
 from pathlib import Path
 from typing import Any
@@ -15,7 +10,6 @@ import numpy as np
 import numpy.typing as npt
 
 from ..core.output import write_figure, write_file
-from ..core.rendering import offscreen_available
 from .solution import Snapshot
 
 Floats = npt.NDArray[np.float64]
@@ -54,7 +48,7 @@ def write_vtu(snapshot: Snapshot, path: Path) -> Path:
         return write_file(path, made.read_bytes())
 
 
-def draw_section(snapshot: Snapshot, path: Path, *, Sy_min: float, extent: float) -> str:
+def draw_section(snapshot: Snapshot, path: Path, *, Sy_min: float, extent: float) -> Path:
     """Draw von Mises stress over the weaker body's strength on the full deformed section.
 
     Parameters
@@ -70,77 +64,55 @@ def draw_section(snapshot: Snapshot, path: Path, *, Sy_min: float, extent: float
 
     Returns
     -------
-    str
-        What drew it, `"pyvista"` or `"matplotlib"`.
+    Path
+        The file.
     """
-    points = snapshot.points + snapshot.displacement
-    near = np.hypot(*points[snapshot.quads].mean(axis=1).T) < 2.0 * extent
-    quads, stress = snapshot.quads[near], snapshot.von_mises[near] / Sy_min
-    if offscreen_available():
-        _by_pyvista(points, quads, stress, path, extent)
-        return "pyvista"
-    _by_matplotlib(points, quads, stress, path, extent)
-    return "matplotlib"
-
-
-_LABEL = "von Mises stress / strength of the weaker body"
-
-
-def _by_pyvista(
-    points: Floats, quads: npt.NDArray[np.int64], stress: Floats, path: Path, extent: float
-) -> None:
-    import pyvista
-
-    plotter: Any = pyvista.Plotter(off_screen=True, window_size=(1200, 1000))
-    faces = np.column_stack([np.full(len(quads), 4), quads]).ravel()
-    for side in (1.0, -1.0):
-        xyz = np.column_stack([side * points[:, 0], points[:, 1], np.zeros(len(points))]) / extent
-        section = pyvista.PolyData(xyz, faces)
-        section.cell_data[_LABEL] = stress
-        plotter.add_mesh(
-            section,
-            scalars=_LABEL,
-            cmap="turbo",
-            clim=(0.0, max(1.0, float(np.quantile(stress, 0.999)))),
-            show_scalar_bar=side > 0.0,
-            scalar_bar_args={
-                "vertical": True,
-                "position_x": 0.88,
-                "position_y": 0.25,
-                "height": 0.5,
-                "color": "black",
-                "title": "Mises/Sy",
-            },
-        )
-    plotter.set_background("white")
-    plotter.view_xy()
-    plotter.enable_parallel_projection()
-    plotter.camera.parallel_scale = 1.0
-    plotter.camera.focal_point = (0.0, 0.0, 0.0)
-    plotter.camera.position = (0.0, 0.0, 5.0)
-    stream = io.BytesIO()
-    plotter.screenshot(stream)
-    plotter.close()
-    write_file(path, stream.getvalue())
-
-
-def _by_matplotlib(
-    points: Floats, quads: npt.NDArray[np.int64], stress: Floats, path: Path, extent: float
-) -> None:
     from matplotlib.collections import PolyCollection
     from matplotlib.figure import Figure
 
-    figure = Figure(figsize=(8, 7), layout="constrained")
+    points = snapshot.points + snapshot.displacement
+    near = np.hypot(*points[snapshot.quads].mean(axis=1).T) < 2.0 * extent
+    corners, stress = points[snapshot.quads[near]], snapshot.von_mises[near] / Sy_min
+    unit, scale = ("mm", 1e3) if extent >= 1e-3 else ("um", 1e6)
+    figure = Figure(figsize=(8.0, 6.6), layout="constrained")
     axis = figure.subplots()
     for side in (1.0, -1.0):
-        corners = points[quads] * np.array([side, 1.0]) * 1e3
-        collection = PolyCollection(list(corners), array=stress, cmap="turbo")
-        collection.set_clim(0.0, max(1.0, float(np.quantile(stress, 0.999))))
-        axis.add_collection(collection)
-    figure.colorbar(collection, ax=axis, label=_LABEL)
-    axis.set_xlim(-extent * 1e3, extent * 1e3)
-    axis.set_ylim(-extent * 1e3, extent * 1e3)
-    axis.set_aspect("equal")
-    axis.set_xlabel("r [mm]")
-    axis.set_ylabel("z [mm]")
-    write_figure(figure, path, dpi=140)
+        drawn = PolyCollection(
+            list(scale * corners * np.array([side, 1.0])), array=stress, cmap="turbo",
+            edgecolors="face", linewidths=0.2,
+        )  # fmt: skip
+        drawn.set_clim(0.0, max(1.0, float(np.quantile(stress, 0.999))))
+        axis.add_collection(drawn)
+    for name, mine in (("sphere", True), ("flat", False)):
+        _outline(axis, snapshot, points, scale, sphere=mine)
+        axis.text(-0.97, 0.95 if mine else -0.97, name, transform=_in_halves(axis), fontsize=11,
+                  bbox={"facecolor": "w", "alpha": 0.7, "edgecolor": "none"})  # fmt: skip
+    bar = figure.colorbar(drawn, ax=axis, extend="max")
+    bar.set_label("von Mises stress over the weaker body's strength [-]", fontsize=11)
+    half = scale * extent
+    axis.set(
+        xlim=(-half, half), ylim=(-half, half), aspect="equal", xlabel=f"radius r [{unit}]",
+        ylabel=f"height z [{unit}]",
+        title=f"approach {snapshot.depth:.3g} of the sphere's radius, deformed, to scale",
+    )  # fmt: skip
+    return write_figure(figure, path, dpi=140)
+
+
+def _in_halves(axis: Any) -> Any:
+    """Coordinates from -1 to 1 across the axes."""
+    from matplotlib.transforms import Affine2D
+
+    return Affine2D().translate(1.0, 1.0).scale(0.5) + axis.transAxes
+
+
+def _outline(axis: Any, snapshot: Snapshot, points: Floats, scale: float, *, sphere: bool) -> None:
+    """Draw the edges that belong to one element only: a body's surface."""
+    n = snapshot.n_sphere_quads
+    quads = snapshot.quads[:n] if sphere else snapshot.quads[n:]
+    edges = np.sort(np.stack([quads, np.roll(quads, -1, axis=1)], axis=2).reshape(-1, 2), axis=1)
+    alone, count = np.unique(edges, axis=0, return_counts=True)
+    for a, b in alone[count == 1]:
+        if max(abs(snapshot.points[a, 0]), abs(snapshot.points[b, 0])) == 0.0:
+            continue  # the axis of symmetry is no surface
+        for side in (1.0, -1.0):
+            axis.plot(scale * side * points[[a, b], 0], scale * points[[a, b], 1], "k", lw=0.7)

@@ -1,12 +1,12 @@
 #!/usr/bin/env bash
-# Make .venv from the lock of the running Python and check that gmsh and rendering work.
+# Make .venv from the lock of the running Python and check that gmsh works.
 # Needs only a POSIX system with Python and bash; as root it installs missing system packages.
 set -euo pipefail
 cd "$(dirname "$0")/.."
 python=${PYTHON:-python3}
 say() { printf 'install: %s\n' "$*"; }
 
-system_packages=(libgl1 libglu1-mesa libxrender1 libxcursor1 libxft2 libxinerama1 libgomp1 libegl1)
+system_packages=(libgl1 libglu1-mesa libxrender1 libxcursor1 libxft2 libxinerama1 libgomp1)
 
 apt_install() { # what it is for, then the packages
   local purpose=$1
@@ -64,13 +64,5 @@ if ! .venv/bin/python -c 'import gmsh' 2>/dev/null; then
   .venv/bin/python -c 'import gmsh'
 fi
 say "gmsh works"
-# rendering without its libraries ends in a crash, not in an exception: it is tried in a process of
-# its own
-if .venv/bin/python -m dentscope.core.rendering >/dev/null 2>&1; then
-  say "off-screen rendering works"
-else
-  say "off-screen rendering does not work here: pictures of fields are drawn by matplotlib instead"
-  say "  (the packages for it: ${system_packages[*]})"
-fi
 touch .venv/.installed
 say "ready: .venv/bin/dentscope --help"

@@ -1,4 +1,4 @@
-"""What a newcomer calls: one's own pair by finite elements, a diagnosis.
+"""What a newcomer calls: one's own pair by finite elements or by every law, a diagnosis.
 
 Each takes the file that the command of the same name takes, and returns something that shows
 itself in a notebook, plots itself and gives a data frame; so does `dentscope.impact(...)`.
@@ -11,12 +11,20 @@ from importlib import import_module
 from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
+    from .comparison import LawComparison, compare_laws
     from .diagnosis import Diagnosis, diagnose
     from .pair import Solved, case
 
-_FROM = {"Diagnosis": "diagnosis", "Solved": "pair", "case": "pair", "diagnose": "diagnosis"}
+_FROM = {
+    "Diagnosis": "diagnosis",
+    "LawComparison": "comparison",
+    "Solved": "pair",
+    "case": "pair",
+    "compare_laws": "comparison",
+    "diagnose": "diagnosis",
+}
 
-__all__ = ["Diagnosis", "Solved", "case", "diagnose"]
+__all__ = ["Diagnosis", "LawComparison", "Solved", "case", "compare_laws", "diagnose"]
 
 
 def __getattr__(name: str) -> Any:

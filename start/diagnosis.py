@@ -3,16 +3,21 @@
 from __future__ import annotations
 
 import html
+import math
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
+from ..core.observables import OBSERVABLES
 from ..core.tables import frame, html_table
 from ..discrepancy import Verdict
 from ..discrepancy import diagnose as verdict_of
 from ..discrepancy.report import Story, lines, story_of, write_report
 from ..recordings import read
 from ..recordings.shipped import set_folder
+
+if TYPE_CHECKING:
+    from matplotlib.figure import Figure
 
 
 @dataclass(frozen=True)
@@ -44,6 +49,10 @@ class Diagnosis:
         """Return measured beside simulated as a pandas data frame, in units for people."""
         return frame(point.row() for point in self.story.points)
 
+    def plot(self) -> Figure:
+        """Return measured beside simulated, a panel an observable."""
+        return _drawn(self.story)
+
     def report(self, path: str | Path = "report.html") -> Path:
         """Write the report, with its numbers as JSON and CSV beside it."""
         return write_report(self.verdict, Path(path))[0]
@@ -55,6 +64,35 @@ class Diagnosis:
         parts = ((bar.told, bar.name) for bar in self.story.parts)
         table = html_table(("probability that it takes part", ""), parts)
         return f"<p><b>{html.escape(self.finding)}</b></p>{table}"
+
+
+def _drawn(story: Story) -> Figure:
+    from matplotlib.figure import Figure
+
+    names = list(dict.fromkeys(point.observable for point in story.points))
+    columns = min(len(names), 3)
+    rows = math.ceil(len(names) / columns)
+    figure = Figure(figsize=(4.2 * columns, 3.4 * rows), layout="constrained")
+    axes = figure.subplots(rows, columns, squeeze=False)
+    for spare in axes.flat[len(names) :]:
+        spare.remove()
+    against = story.against[0]
+    for axis, name in zip(axes.flat, names, strict=False):
+        points = sorted(
+            (p for p in story.points if p.observable == name), key=lambda p: p.x[against.key]
+        )
+        x = [p.x[against.key] for p in points]
+        bars = [[p.measured - p.low for p in points], [p.high - p.measured for p in points]]
+        axis.errorbar(x, [p.measured for p in points], bars, fmt="ko", ms=4, label="measured")
+        axis.plot(x, [p.before for p in points], "C0s", ms=4, mfc="w", label="simulated")
+        if any(math.isfinite(p.after) for p in points):
+            axis.plot(x, [p.after for p in points], "C3^", ms=4, mfc="w",
+                      label="with what is missing")  # fmt: skip
+        axis.set(xlabel=against.label, ylabel=OBSERVABLES[name].axis)
+        axis.grid(alpha=0.3)
+    axes.flat[0].legend(fontsize=8)
+    figure.suptitle(story.finding, fontsize=10, wrap=True)
+    return figure
 
 
 def diagnose(folder: str | Path, *, seed: int = 0, confirm: bool = False) -> Diagnosis:

@@ -41,10 +41,20 @@ class Solved:
     uncertainty
         Of the loading, from a second solve with larger elements; none where the solve did not
         begin.
+    level
+        How finely it was solved; "smoke" is coarse, for a first look.
     """
 
     solution: fem.Solution
     uncertainty: Any
+    level: str = ""
+
+    @property
+    def remark(self) -> str:
+        """What the level of the solve means for its numbers; often nothing."""
+        if self.level != "smoke":
+            return ""
+        return "level smoke: coarse, with steps in the curves; quick or production for numbers"
 
     def rows(self) -> list[dict[str, float]]:
         """Return the loading as rows, SI, each value with its uncertainty."""
@@ -66,23 +76,36 @@ class Solved:
         return frame(self.rows())
 
     def plot(self) -> Figure:
-        """Return force and contact radius over the approach."""
+        """Return force, contact radius, the sphere's share and the mean pressure."""
         from matplotlib.figure import Figure
 
-        rows = self.rows()
-        made = Figure(figsize=(8.0, 3.4), layout="constrained")
-        x = [row["delta_over_R"] for row in rows]
-        for axis, (key, label, scale) in zip(
-            made.subplots(1, 2),
-            (("force_N", "force [N]", 1.0), ("contact_radius_m", "contact radius [mm]", 1e3)),
-            strict=True,
+        made = Figure(figsize=(9.0, 6.6), layout="constrained")
+        pair, c, u = self.solution.problem.pair, self.solution.loading, self.uncertainty
+        strength = pair.Sy_min if pair.Sy_min < float("inf") else pair.E_reduced
+        over = "weaker strength" if pair.Sy_min < float("inf") else "E'"
+        panels: tuple[tuple[Any, Any, str, list[Any]], ...] = (
+            (c.force, u.force, "force [N]", [one.curve.force for one in self.solution.unloadings]),
+            (1e3 * c.radius, 1e3 * u.radius, "contact radius [mm]",
+             [1e3 * one.curve.radius for one in self.solution.unloadings]),
+            (c.sphere_share, u.sphere_share, "sphere's share of the approach [-]", []),
+            (c.hardness / strength, u.hardness / strength, f"mean pressure over {over} [-]", []),
+        )  # fmt: skip
+        for k, (axis, (y, error, label, back)) in enumerate(
+            zip(made.subplots(2, 2).flat, panels, strict=True)
         ):
-            axis.errorbar(
-                x, [scale * row[key] for row in rows],
-                yerr=[scale * row[f"{key}_uncertainty"] for row in rows],
-            )  # fmt: skip
-            axis.set(xlabel="approach over R [-]", ylabel=label, xscale="log", yscale="log")
+            x = c.delta / pair.R
+            axis.plot(x, y, "C0", label="loading")
+            axis.fill_between(x, y - error, y + error, color="C0", alpha=0.25, lw=0.0,
+                              label="uncertainty of the mesh")  # fmt: skip
+            for n, curve in enumerate(back):
+                axis.plot(self.solution.unloadings[n].curve.delta / pair.R, curve, "C1--",
+                          label="unloading" if n == 0 else None)  # fmt: skip
+            axis.set(xlabel="approach over R [-]", ylabel=label, xscale="linear" if back else "log")
             axis.grid(alpha=0.3)
+            if k == 0:
+                axis.legend(fontsize=8)
+        if self.remark:
+            made.suptitle(self.remark, fontsize=10)
         return made
 
     def _repr_html_(self) -> str:
@@ -90,7 +113,7 @@ class Solved:
         head = tuple(rows[0]) if rows else ()
         step = max(1, len(rows) // 12)
         cells = ([f"{x:.4g}" for x in row.values()] for row in rows[::step])
-        return html_table(head, cells, title=str(self.solution.outcome))
+        return html_table(head, cells, title=f"{self.solution.outcome} {self.remark}")
 
 
 def case(file: str | Path, *, level: str = "") -> Solved:
@@ -131,5 +154,6 @@ def solved(problem: fem.ContactProblem, accuracy: fem.Accuracy, report: Report =
         progress=lambda done: report(Steps.uncertainty, done),
     )
     if len(solution.loading.delta) == 0:
-        return Solved(solution, None)
-    return Solved(solution, fem.discretisation_uncertainty(solution.loading, rough.loading))
+        return Solved(solution, None, accuracy.level)
+    found = fem.discretisation_uncertainty(solution.loading, rough.loading)
+    return Solved(solution, found, accuracy.level)

@@ -83,7 +83,7 @@ def thesis_first() -> tuple[Case, ...]:
         deep_case("chapter-3", rod, deepest=2500.0 * fem.critical_depth(rod)),
         deep_case("chapter-4-5", striker),
         deep_case("figure-2.17", large),
-        *_table_2_1(_FIRST_RATIOS),
+        *_table_2_1(coarse_to_fine(_FIRST_RATIOS)),
     )
 
 

@@ -75,3 +75,22 @@ def test_the_laws_show_themselves_as_a_table():
     assert len(lines) == 1 + len(ds.LAWS)
     assert lines[1].startswith("hertz ")
     assert ds.LAWS._repr_html_().count("<tr>") == len(lines)
+
+
+def test_laws_side_by_side_lead_with_those_to_use(tmp_path):
+    hard, soft = ds.Material(E=210e9, nu=0.3, Sy=2e9), ds.Material(E=200e9, nu=0.3, Sy=3e8)
+    found = ds.compare_laws(ds.Pair(hard, soft, 10e-3))
+    assert found.best[0] == "fitted"
+    lines = repr(found).splitlines()
+    assert lines[0].startswith("use: fitted, ghaednia")
+    assert [line.split()[0] for line in lines[3:5]] == ["fitted", "ghaednia"]
+    assert {line.split()[-1] for line in lines[3:]} == {"yes", "no"}
+    assert found._repr_html_().count("<tr>") == 1 + len(ds.LAWS)
+    # Hertz over Hertz is one at every depth
+    figure = found.plot()
+    (one,) = (line for line in figure.axes[0].lines if line.get_color() == "0.75"
+              and abs(line.get_ydata()[-1] - 1.0) < 1e-9)  # fmt: skip
+    assert one.get_ydata() == pytest.approx(1.0)
+    assert figure.axes[0].get_legend_handles_labels()[1][-1] == "fitted"
+    with pytest.raises(InputError, match="max_delta_over_R"):
+        ds.compare_laws(found.pair, max_delta_over_R=0.7)

@@ -1,0 +1,216 @@
+"""`dentscope.compare_laws(...)`: the contact laws side by side for one pair, and which to use."""
+
+from __future__ import annotations
+
+import warnings
+from collections.abc import Sequence
+from dataclasses import dataclass
+from pathlib import Path
+from typing import TYPE_CHECKING, Any, NamedTuple
+
+import numpy as np
+
+from ..core.errors import InputError
+from ..core.material import Pair
+from ..core.tables import frame, html_table
+from ..models import LAWS, DomainWarning, critical_depth, law_named
+from ..models.base import ContactLaw
+from ..models.choose import Demand, demand, objection, recommended
+from .case_file import read_pair
+
+if TYPE_CHECKING:
+    from matplotlib.figure import Figure
+
+_POINTS = 120
+_HEAD = ("law", "F [N]", "a [mm]", "p/Sy_min", "left [um]", "may be used")
+
+
+class Row(NamedTuple):
+    """One law at one depth; SI."""
+
+    law: str
+    delta_over_R: float
+    delta_m: float
+    force_N: float
+    contact_radius_m: float
+    mean_pressure_over_Symin: float
+    residual_sphere_m: float
+    residual_flat_m: float
+
+
+@dataclass(frozen=True)
+class LawComparison:
+    """Laws on one pair, those to use first.
+
+    Parameters
+    ----------
+    pair, need
+        The two bodies, and what they ask of a law at the largest depth.
+    best
+        Names of the laws to use, best first.
+    objections
+        By law, why it should not be used; empty if it may.
+    rows
+        Every law from below first yield to the largest depth.
+    """
+
+    pair: Pair
+    need: Demand
+    best: tuple[str, ...]
+    objections: dict[str, str]
+    rows: tuple[Row, ...]
+
+    @property
+    def finding(self) -> str:
+        """Which laws to use, and what the pair asks of them."""
+        last = self.rows[-1].delta_over_R
+        return (
+            f"use: {', '.join(self.best) or 'none of these laws holds here'}\n"
+            f"at Delta/R = {last:g}: {self.need.w:.4g} times the depth of first yield; regime: "
+            f"{self.need.regime}"
+        )
+
+    def last_rows(self) -> list[Row]:
+        """Each law at the largest depth, those to use first."""
+        place = {name: k for k, name in enumerate(self.best)}
+        ends = {row.law: row for row in self.rows}.values()
+        return sorted(
+            ends, key=lambda r: (place.get(r.law, len(place)), bool(self.objections[r.law]))
+        )
+
+    def table(self) -> tuple[tuple[str, ...], list[tuple[str, ...]]]:
+        """Return head and cells of the laws at the largest depth."""
+        cells: list[tuple[str, ...]] = [
+            (
+                row.law, f"{row.force_N:.4g}", f"{row.contact_radius_m * 1e3:.4g}",
+                f"{row.mean_pressure_over_Symin:.3f}",
+                f"{(row.residual_sphere_m + row.residual_flat_m) * 1e6:.4g}",
+                "no" if self.objections[row.law] else "yes",
+            )
+            for row in self.last_rows()
+        ]  # fmt: skip
+        return _HEAD, cells
+
+    def frame(self) -> Any:
+        """Return all rows as a pandas data frame, SI."""
+        return frame(row._asdict() for row in self.rows)
+
+    def plot(self) -> Figure:
+        """Return force over Hertz's, mean pressure, contact radius and residual depth."""
+        return drawn(self)
+
+    def __repr__(self) -> str:
+        head, cells = self.table()
+        first, *others = (max(map(len, column)) + 2 for column in zip(head, *cells, strict=True))
+        lines = [
+            name.ljust(first) + "".join(c.rjust(w) for c, w in zip(rest, others, strict=True))
+            for name, *rest in (head, *cells)
+        ]
+        return "\n".join([self.finding, *lines])
+
+    def _repr_html_(self) -> str:
+        return html_table(*self.table(), title=self.finding)
+
+
+def compare_laws(
+    pair: Pair | str | Path,
+    *,
+    law: str | Sequence[str] = (),
+    max_delta_over_R: float | None = None,
+) -> LawComparison:
+    """Compare contact laws on a pair of one's own.
+
+    Parameters
+    ----------
+    pair
+        The two bodies, or a CASE.toml as `dentscope case --new` writes it.
+    law
+        Name of a law, or several; by default all.
+    max_delta_over_R
+        Largest approach over R; by default the file's, and 0.01 for a pair.
+
+    Raises
+    ------
+    InputError
+        A mistake in the file, an unknown law, or a depth outside 0 to 0.5.
+
+    Examples
+    --------
+    >>> from dentscope.core import Material, Pair
+    >>> soft, hard = Material(E=200e9, nu=0.3, Sy=300e6), Material(E=200e9, nu=0.3, Sy=3e9)
+    >>> compare_laws(Pair(hard, soft, 1e-2), law=["hertz", "fitted"]).best
+    ('fitted',)
+    """
+    last = 0.01
+    if not isinstance(pair, Pair):
+        content, pair = read_pair(Path(pair))
+        last = content.load.max_delta_over_R
+    last = last if max_delta_over_R is None else max_delta_over_R
+    if not 0.0 < last <= 0.5:
+        raise InputError(f"{last:g}", key="max_delta_over_R", allowed="above 0, up to 0.5")
+    names = [law] if isinstance(law, str) and law else list(law)
+    return compared(pair, [law_named(n) for n in names] or list(LAWS.values()), last=last)
+
+
+def compared(pair: Pair, laws: Sequence[ContactLaw], *, last: float) -> LawComparison:
+    """Compare these laws up to an approach of `last` R."""
+    need = demand(pair, last * pair.R)
+    chosen = {law.name: law for law in laws}
+    return LawComparison(
+        pair, need, recommended(chosen, need),
+        {law.name: objection(law, need) for law in laws}, _rows(pair, laws, last),
+    )  # fmt: skip
+
+
+def _rows(pair: Pair, laws: Sequence[ContactLaw], last: float) -> tuple[Row, ...]:
+    deepest = last * pair.R
+    depth = np.geomspace(min(0.3 * critical_depth(pair), 1e-2 * deepest), deepest, _POINTS)
+    scale = pair.Sy_min if pair.Sy_min < float("inf") else pair.E_reduced
+    rows: list[Row] = []
+    for law in laws:
+        with warnings.catch_warnings():
+            warnings.simplefilter("ignore", DomainWarning)  # the table says what is out of range
+            force, a = law.loading(pair, depth), law.contact_radius(pair, depth)
+            pressure = law.hardness(pair, depth) / scale
+            sphere, flat = law.residual(pair, depth)
+        if not np.all(np.isfinite(force)):
+            raise InputError(f"{law.name} has no finite force for this pair", key="law")
+        columns = (depth / pair.R, depth, force, a, pressure, sphere, flat)
+        rows += [Row(law.name, *map(float, row)) for row in zip(*columns, strict=True)]
+    return tuple(rows)
+
+
+def drawn(found: LawComparison) -> Figure:
+    """Draw the laws to use in colour, the others thin and grey."""
+    from matplotlib.figure import Figure
+
+    figure = Figure(figsize=(10.0, 7.2), layout="constrained")
+    axes = figure.subplots(2, 2)
+    pair = found.pair
+    stiffness = 4.0 / 3.0 * pair.E_reduced * np.sqrt(pair.R)
+    names = list(dict.fromkeys(row.law for row in found.rows))
+    others = [name for name in names if name not in found.best]
+    for k, name in enumerate((*others, *reversed(found.best))):
+        x, d, force, a, p, s, f = np.array([r[1:] for r in found.rows if r.law == name]).T
+        best = name in found.best
+        look = (
+            {"color": f"C{found.best.index(name)}", "lw": 2.0, "label": name, "zorder": 3.0}
+            if best
+            else {"color": "0.75", "lw": 0.9, "label": "others" if k == 0 else None}
+        )
+        for axis, y in zip(
+            axes.flat, (force / (stiffness * d**1.5), p, a / pair.R, (s + f) / d), strict=True
+        ):
+            axis.semilogx(x, y, **look)
+    for axis, label, top in zip(
+        axes.flat,
+        ("force over Hertz's [-]", "mean pressure over the weaker strength [-]",
+         "contact radius over R [-]", "residual over largest depth [-]"),
+        (1.6, 5.0, None, 1.0), strict=True,
+    ):  # fmt: skip
+        axis.set(xlabel="approach over R [-]", ylabel=label, ylim=(0.0, top))
+        axis.grid(alpha=0.3)
+    handles, labels = axes[0, 0].get_legend_handles_labels()
+    axes[0, 0].legend(handles[::-1], labels[::-1], title="best first", fontsize=8, title_fontsize=8)
+    figure.suptitle(found.finding.replace("\n", "; "), fontsize=10)
+    return figure
