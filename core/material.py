@@ -11,6 +11,7 @@ from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING, Any
 
 from .errors import InputError
+from .tables import html_table
 
 if TYPE_CHECKING:  # numpy comes with it, and the command line starts without
     from .flow import Flow
@@ -143,6 +144,14 @@ class Pair:
     def weaker(self) -> Material:
         """The body of smaller strength; the sphere when they are equal."""
         return self.sphere if self.sphere.strength <= self.flat.strength else self.flat
+
+    def _repr_html_(self) -> str:
+        rows = [
+            (name, *("rigid" if b.rigid else f"{x:.4g}" for x in (b.E / 1e9, b.nu, b.Sy / 1e6)))
+            for name, b in (("sphere", self.sphere), ("flat", self.flat))
+        ]
+        told = f"R = {self.R * 1e3:g} mm, E' = {self.E_reduced / 1e9:.4g} GPa"
+        return html_table(("body", "E [GPa]", "nu", "Sy [MPa]"), rows, title=told)
 
     @property
     def elastic_share(self) -> float:

@@ -10,6 +10,7 @@ from collections.abc import Mapping
 from dataclasses import dataclass, field, replace
 from functools import cached_property
 from pathlib import Path
+from typing import TYPE_CHECKING
 
 import numpy as np
 import numpy.typing as npt
@@ -28,7 +29,11 @@ from .noise import Noise
 from .same_file import taken_twice
 from .series import read_profile, read_trace, series_in
 from .setup_file import Setup, flowing, setup_text, without_marks
+from .shown import picture_of, table_of
 from .trials import Trials, read_trials, trials_text
+
+if TYPE_CHECKING:
+    from matplotlib.figure import Figure
 
 _SPEED_BIN = 0.02
 _ANGLE_BIN = 1.0
@@ -102,6 +107,13 @@ class RecordingSet:
         """Observables with at least one value, in the order of the format."""
         found = self.trials.observables
         return tuple(k for k in MEASURED if k in found and not np.isnan(found[k]).all())
+
+    def plot(self) -> Figure:
+        """Return the observables over the speed, or over the angle where that is what varies."""
+        return picture_of(self)
+
+    def _repr_html_(self) -> str:
+        return table_of(self)
 
     def strikers(self) -> tuple[StrikerTable, ...]:
         """The striker of each trial, n of them."""

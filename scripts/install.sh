@@ -50,7 +50,7 @@ if [ "$(minor_of .venv/bin/python)" != "$minor" ] || ! .venv/bin/python -m pip -
   say "making .venv with $("$python" --version)"
   "$python" -m venv --clear .venv
 fi
-say "installing the pinned packages of $lock (1.8 GB in .venv)"
+say "installing the pinned packages of $lock (1.2 GB in .venv)"
 awk '/^[^ ]/ { wanted = /^uv==/ } wanted' "$lock" >.venv/uv.txt
 .venv/bin/python -m pip install -q --disable-pip-version-check --require-hashes -r .venv/uv.txt
 .venv/bin/uv pip install -q --python .venv/bin/python --require-hashes -r "$lock"

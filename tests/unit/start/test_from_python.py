@@ -3,10 +3,13 @@
 import math
 import subprocess
 import sys
+from pathlib import Path
 
 import dentscope as ds
 import pytest
 from dentscope.core import InputError
+from dentscope.recordings import read
+from dentscope.recordings.shipped import set_folder
 
 
 def test_importing_loads_nothing_heavy_and_everything_is_there():
@@ -94,3 +97,20 @@ def test_laws_side_by_side_lead_with_those_to_use(tmp_path):
     assert figure.axes[0].get_legend_handles_labels()[1][-1] == "fitted"
     with pytest.raises(InputError, match="max_delta_over_R"):
         ds.compare_laws(found.pair, max_delta_over_R=0.7)
+
+
+def test_a_pair_and_a_set_show_themselves():
+    soft = ds.Material(E=200e9, nu=0.3, Sy=3e8)
+    shown = ds.Pair(soft, ds.Material(E=math.nan, nu=math.nan, rigid=True), 10e-3)._repr_html_()
+    assert "R = 10 mm" in shown
+    # Young's modulus over 1 - nu^2 beside a rigid body
+    assert "219.8 GPa" in shown
+    assert shown.count("<td>rigid</td>") == 3
+    found = read(set_folder(Path("kharaz-2001-oblique")))
+    lines = found._repr_html_()
+    assert f"kharaz-2001-oblique: {len(found.trials)} trials" in lines
+    assert lines.count("<tr>") == 1 + min(len(found.trials), 12)
+    figure = found.plot()
+    assert len(figure.axes) == len(found.observed)
+    # one speed at many angles
+    assert figure.axes[0].get_xlabel() == "angle [deg]"
