@@ -33,6 +33,7 @@ KINDS = {
 
 
 _MOST_BYTES = 20_000_000_000
+_TAKE_FOLDERS = ("video",)
 
 
 @dataclass(frozen=True)
@@ -45,9 +46,7 @@ class Kind:
     def run(self, path: Path, given: dict[str, Any], *, source: str) -> Reduced:
         """Reduce a file with options that are not checked yet; `source` names where they stand."""
         options = parse_model(given, self.options, source=source)
-        if not path.exists():
-            raise InputError("no such file", source=str(path), allowed="a raw recording")
-        if not path.is_dir():
+        if not (self.name in _TAKE_FOLDERS and path.is_dir()):
             checked_file(path, most=_MOST_BYTES, allowed="a raw recording")
         from numpy.linalg import LinAlgError
 

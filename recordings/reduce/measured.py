@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Iterable, Mapping
 from dataclasses import dataclass, field
 from types import MappingProxyType
 
@@ -82,6 +82,20 @@ def propagate(
     )
     std = np.sqrt(np.einsum("ij,jk,ik->i", jacobian, covariance, jacobian))
     return tuple(Measured(float(v), float(s)) for v, s in zip(value, std, strict=True))
+
+
+def labels(count: int) -> list[str]:
+    """Return how the bounces of one file are told apart: not at all if there is one."""
+    return [""] if count == 1 else [f"bounce{k}" for k in range(1, count + 1)]
+
+
+def labelled(each: Iterable[tuple[str, Mapping[str, Measured]]]) -> dict[str, Measured]:
+    """Return the numbers of all bounces by name, each after the label of its own."""
+    return {
+        f"{label}_{name}" if label else name: value
+        for label, numbers in each
+        for name, value in numbers.items()
+    }
 
 
 @dataclass(frozen=True)

@@ -17,16 +17,13 @@ import numpy as np
 from ..measured import Array, Measured, propagate
 from .bounce import Bounce, Bounced
 from .fall import Ball
-from .flights import Piece
+from .flights import UNEVEN, Piece
 from .joint import SHARED, Before, Solution, fit_together
-from .scale import floor_drift, scale_of
+from .scale import floor_drift, frames_lost, scale_of
 from .sides import joined, known_before, sides_of, true_contacts
 from .touch import samples_of, speeds, touch_of
 from .track import Indices, Track, on_the_body, turning_points
 from .view import Stage, View
-
-_UNEVEN = 0.02
-"""Part of the fall by which the acceleration in a span without samples may be another."""
 
 _ROUNDS = 3
 
@@ -89,7 +86,7 @@ def find_bounces(
     bounces = _on_one_flat([b for b in found if b is not None], stage)
     if not bounces:
         return None
-    return _whole(bounces, chosen, stage, view, solutions, before, ball, metres)
+    return _whole(bounces, chosen, stage, view, solutions, before, ball, metres, body.step)
 
 
 def _held(
@@ -143,7 +140,7 @@ def _bounce(
     for gap, piece, speed in zip(gaps, (before, after), values, strict=True):
         lasts = piece.duration(body.time)
         bridged.append(math.hypot(
-            fall * _UNEVEN * max(gap - 2.0 * step, 0.0), body.drift(speed * lasts) / lasts
+            fall * UNEVEN * max(gap - 2.0 * step, 0.0), body.drift(speed * lasts) / lasts
         ))  # fmt: skip
     more = [math.hypot(e, g) for e, g in zip(late, bridged, strict=True)]
     both = touch.ratio_error(fall, *values)
@@ -185,11 +182,13 @@ def _widened(value: Measured, more: float) -> Measured:
 
 def _whole(
     bounces: list[Bounce], chosen: Indices, stage: Stage, view: View, solutions: Sequence[Solution],
-    before: Before, ball: Ball, metres: Measured | None,
+    before: Before, ball: Ball, metres: Measured | None, step: float,
 ) -> Bounced:  # fmt: skip
     """Take the drift of the flat off the speeds, and find the scale."""
+    fallen = solutions[0].view.fall
+    bounces = _with_lost_frames(bounces, step, fallen)
     notes = []
-    drift = floor_drift([(b.time, b.height) for b in bounces], solutions[0].view.fall)
+    drift = floor_drift([(b.time, b.height) for b in bounces], fallen)
     if abs(drift.value) > 3.0 * drift.std:
         notes.append(f"the flat drifts by {drift} units/s through the picture: taken off")
     moved = []
@@ -212,6 +211,36 @@ def _whole(
     fall = _without(own, before.fall)
     scale = scale_of(fall, ball.fall(3.0).gravity, metres)
     return Bounced(tuple(moved), stage, view, fall, scale, (*notes, *scale.notes))
+
+
+def _with_lost_frames(bounces: list[Bounce], step: float, fall: float) -> list[Bounce]:
+    """Take out what a frame that is missing in a contact without a word does to it.
+
+    The flight after it comes a frame early: both meet above the flat, and are read too late and too
+    early by parts of the frame.
+    """
+    sums = [b.approach.value + b.rebound.value for b in bounces]
+    rises = [
+        step * b.approach.value * b.rebound.value / s for b, s in zip(bounces, sums, strict=True)
+    ]
+    lost = frames_lost([(b.time, b.height) for b in bounces], rises, fall)
+    found = []
+    for b, total, rise, part in zip(bounces, sums, rises, lost, strict=True):
+        down, up = (fall * step * v.value / total for v in (b.rebound, b.approach))
+        approach, rebound = b.approach.value + down, b.rebound.value + up
+        change = rebound / approach * b.approach.value / b.rebound.value - 1.0
+        found.append(replace(
+            b, approach=_in_part(b.approach, down, part), rebound=_in_part(b.rebound, up, part),
+            restitution=_in_part(b.restitution, change * b.restitution.value, part),
+            height=_in_part(b.height, -rise, part),
+        ))  # fmt: skip
+    return found
+
+
+def _in_part(value: Measured, more: float, part: float) -> Measured:
+    """Return a value that is by `more` larger with a probability of `part`."""
+    spread = math.sqrt(part * (1.0 - part)) * more
+    return Measured(value.value + part * more, math.hypot(value.std, spread))
 
 
 def _renumbered(piece: Piece, chosen: Indices) -> Piece:

@@ -19,6 +19,9 @@ from .view import Launch, Stage, View
 FEWEST = 5
 """Samples of a flight."""
 
+UNEVEN = 0.02
+"""Part of the fall by which the acceleration in a span without samples may be another."""
+
 _CORE = 12
 """Samples with which a flight begins."""
 
@@ -112,8 +115,8 @@ def side(
     tried = [
         _grown(track, order, near, size, stage, view) for near in _clean_starts(track, order, size)
     ]
-    # begun within a contact it does not reach far
-    best = max(tried, key=lambda p: p.index.size)
+    # begun within a contact it does not reach far, and one that took in what is none is crooked
+    best, _ = min(tried, key=lambda found: found[1])
     if view is not None and best.straight(track.time, view.fall):
         best = _off_the_contact(track, best, step, stage, view)
     return best if best.index.size >= FEWEST else None
@@ -144,8 +147,14 @@ def _off_the_contact(track: Track, piece: Piece, step: int, stage: Stage, view: 
 
 def _grown(
     track: Track, order: Indices, near: int, size: int, stage: Stage, view: View | None
-) -> Piece:
-    """Let a flight grow from `size` samples, `near` samples away from its contact."""
+) -> tuple[Piece, float]:
+    """Let a flight grow from `size` samples, `near` samples away from its contact.
+
+    Returns
+    -------
+    tuple
+        The flight, and the error of the speed that it tells at the turning point [unit/s].
+    """
     used = order[near : near + size]
     far = near + size
     while True:
@@ -156,7 +165,9 @@ def _grown(
         used, far = np.concatenate([used, more]), reached
     used = np.sort(np.concatenate([_nearer(track, fit, order[:near]), used]))
     fit = _fitted(track, used, stage, view)
-    return Piece(used[fit.regression.used], fit.reference, fit.launch, fit.regression.sigma)
+    kept = used[fit.regression.used]
+    piece = Piece(kept, fit.reference, fit.launch, fit.regression.sigma)
+    return piece, fit.speed_error(float(track.time[order[0]]), track.time[kept])
 
 
 def _clean_starts(track: Track, order: Indices, size: int) -> list[int]:
@@ -208,6 +219,16 @@ class _Fit:
         predicted = self.regression.prediction_std(design) * self.sigma / self.regression.sigma
         spread = np.maximum(np.hypot(self.sigma, predicted), 1e-9 * self.stage.reach)
         return np.asarray((track.height[index] - self.heights(time)) / spread)
+
+    def speed_error(self, contact: float, time: Array) -> float:
+        """Return the error of the speed at a contact by a flight seen at some times [unit/s]."""
+        late = contact - self.reference
+        parabola = self.view is None
+        row = np.array([0.0, 1.0, 2.0 * late] if parabola else [0.0, 1.0])
+        fall = 2.0 * self.regression.coefficients[2] if self.view is None else self.view.fall
+        bridged = UNEVEN * abs(fall) * float(np.abs(time - contact).min())
+        variance = float(row @ self.regression.covariance @ row)
+        return float(np.hypot(np.sqrt(variance), bridged)) if time.size >= FEWEST else np.inf
 
 
 def _powers(tau: Array) -> Array:

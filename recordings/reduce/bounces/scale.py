@@ -12,7 +12,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from ..measured import Measured
+from ..measured import Array, Measured
 
 _AGREE = 2.0
 _KNOWN = 0.1
@@ -20,6 +20,9 @@ _KNOWN = 0.1
 
 _PRIORS = (1e-4, 1e-3, 1e-2)
 """Widths of what is believed of a drift, in units of the speed of a fall over a second."""
+
+_RARE, _TOLD = 0.02, 0.1
+"""Part of the contacts in which a frame is missing without a word, and the belief that counts."""
 
 
 @dataclass(frozen=True)
@@ -92,23 +95,62 @@ def floor_drift(contacts: Sequence[tuple[Measured, Measured]], fall: float) -> M
     """
     if len(contacts) < 2:
         return Measured(0.0, 0.0)
+    beliefs, means, variances = _drifts(contacts, fall)
+    weight = np.exp(beliefs - beliefs.max())
+    weight /= weight.sum()
+    mean = float(weight @ means)
+    variance = float(weight @ (variances + (means - mean) ** 2))
+    return Measured(mean, math.sqrt(max(variance, 0.0)))
+
+
+def frames_lost(
+    contacts: Sequence[tuple[Measured, Measured]], rises: Sequence[float], fall: float
+) -> Array:
+    """Return how likely a frame is missing in each contact, (n,); 0 where the heights tell nothing.
+
+    Parameters
+    ----------
+    contacts
+        Time [s] and height [unit] of each.
+    rises
+        By which a missing frame lifts the point where the flights of each meet [unit].
+    fall
+        Acceleration of the fall [unit/s²].
+    """
+    if len(contacts) < 2:
+        return np.zeros(len(contacts))
+    seen = [_belief(contacts, fall)]
+    for k, rise in enumerate(rises):
+        time, height = contacts[k]
+        lower = Measured(height.value - rise, height.std)
+        moved = [*contacts[:k], (time, lower), *contacts[k + 1 :]]
+        seen.append(_belief(moved, fall) + math.log(_RARE))
+    share = np.exp(np.array(seen) - max(seen))
+    share /= share.sum()
+    return np.where(share[1:] > _TOLD, share[1:], 0.0)
+
+
+def _belief(contacts: Sequence[tuple[Measured, Measured]], fall: float) -> float:
+    return float(np.logaddexp.reduce(_drifts(contacts, fall)[0]))
+
+
+def _drifts(
+    contacts: Sequence[tuple[Measured, Measured]], fall: float
+) -> tuple[Array, Array, Array]:
+    """Return, for each width of the prior, its log evidence, and mean and variance of the drift."""
     time = np.array([t.value for t, _ in contacts])
     height = np.array([h.value for _, h in contacts])
     error = np.array([h.std for _, h in contacts])
     late = time - time.mean()
     level = float(np.average(height, weights=error**-2.0))
     rest = height - level
-    beliefs, means, variances = [], [], []
+    found = []
     for width in _PRIORS:
         std = width * abs(fall)
         covariance = np.diag(error**2) + np.outer(late, late) * std**2
         size = np.linalg.slogdet(covariance)[1]
         gain = std**2 * late @ np.linalg.inv(covariance)
-        beliefs.append(-0.5 * (size + rest @ np.linalg.solve(covariance, rest)))
-        means.append(float(gain @ rest))
-        variances.append(float(std**2 * (1.0 - gain @ late)))
-    weight = np.exp(np.array(beliefs) - max(beliefs))
-    weight /= weight.sum()
-    mean = float(weight @ means)
-    variance = float(weight @ (np.array(variances) + (np.array(means) - mean) ** 2))
-    return Measured(mean, math.sqrt(max(variance, 0.0)))
+        belief = -0.5 * (size + rest @ np.linalg.solve(covariance, rest))
+        found.append((belief, gain @ rest, std**2 * (1.0 - gain @ late)))
+    beliefs, means, variances = np.array(found).T
+    return beliefs, means, variances

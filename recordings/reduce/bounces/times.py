@@ -14,7 +14,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from ....core.errors import InputError
-from ..measured import Array, Measured, Trial
+from ..measured import Array, Measured, Trial, labelled
 from .chain import Chain, chain_of
 from .options import BounceOptions
 
@@ -63,12 +63,7 @@ class BounceTimes:
 
     def values(self) -> dict[str, Measured]:
         """Return the numbers of every bounce by name."""
-        several, values = len(self.bounces) > 1, {}
-        for b in self.bounces:
-            label = f"bounce{b.number}_" if several else ""
-            values[f"{label}impact_speed_m_s"] = b.approach
-            values[f"{label}restitution"] = b.restitution
-        return values
+        return labelled((trial.label, trial.observables) for trial in self.trials())
 
 
 def reduce_bounce_times(

@@ -123,8 +123,6 @@ def read_markers(
     InputError
         The file cannot be read, or does not say its unit or its time.
     """
-    if path.is_dir():
-        raise InputError("a folder", source=str(path), allowed="a C3D file or a CSV table")
     if path.suffix.lower() == ".c3d":
         markers = _c3d(path, unit, rate)
     else:

@@ -3,19 +3,20 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Sequence
 from pathlib import Path
 
 import numpy as np
 
 from ....core.toml_input import read_model
-from ..measured import Measured
+from ..measured import Measured, labelled, labels
 from ..reduced import Reduced
 from .body import BodyFile, make_body
 from .file import Markers, read_markers
 from .options import Options
 from .picture import draw_mocap, draw_point
-from .point import reduce_point
-from .reduction import MocapReduction, Scene, reduce_mocap
+from .point import PointBounce, reduce_point
+from .reduction import Hit, MocapReduction, Scene, reduce_mocap
 from .rigid import rigid_poses
 
 
@@ -61,9 +62,7 @@ def reduce(path: Path, options: Options) -> Reduced:
 def _point(path: Path, markers: Markers, scene: Scene, options: Options) -> Reduced:
     found = reduce_point(markers, scene, spin=options.spin)
     values = {"position_noise_m": Measured(found.noise, math.nan)}
-    for k, bounce in enumerate(found.bounces, start=1):
-        label = f"bounce{k}_" if len(found.bounces) > 1 else ""
-        values |= {f"{label}{name}": value for name, value in bounce.measured.items()}
+    values |= _each(found.bounces)
     return Reduced(
         source=path, values=values, trials=found.trials(), notes=found.notes,
         draw=lambda picture: draw_point(found, picture), noise={"frame_rate_hz": markers.rate},
@@ -75,7 +74,8 @@ def _values(found: MocapReduction) -> dict[str, Measured]:
         "marker_noise_m": Measured(found.flights.sigma, math.nan),
         "fall_acceleration_m_s2": found.fall,
     }
-    for k, hit in enumerate(found.hits, start=1):
-        label = f"bounce{k}_" if len(found.hits) > 1 else ""
-        values |= {f"{label}{name}": value for name, value in hit.measured.items()}
-    return values
+    return values | _each(found.hits)
+
+
+def _each(found: Sequence[Hit | PointBounce]) -> dict[str, Measured]:
+    return labelled(zip(labels(len(found)), (one.measured for one in found), strict=True))

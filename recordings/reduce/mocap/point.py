@@ -17,7 +17,7 @@ from ..bounces.flights import Piece
 from ..bounces.sides import sides_of
 from ..bounces.track import Track, on_the_body, turning_points
 from ..bounces.view import Stage
-from ..measured import Array, Measured, Trial, propagate
+from ..measured import Array, Measured, Trial, labels, propagate
 from ..regression import robust_regression
 from .file import Markers
 from .reduction import Scene
@@ -64,13 +64,10 @@ class PointReduction:
 
     def trials(self) -> tuple[Trial, ...]:
         """Return a row of trials.csv for each bounce."""
-        several = len(self.bounces) > 1
         return tuple(
-            Trial(
-                {k: v for k, v in b.measured.items() if k not in _NOT_COLUMNS}, self.notes,
-                label=f"bounce{k}" if several else "",
-            )
-            for k, b in enumerate(self.bounces, start=1)
+            Trial({k: v for k, v in b.measured.items() if k not in _NOT_COLUMNS}, self.notes,
+                  label=label)
+            for b, label in zip(self.bounces, labels(len(self.bounces)), strict=True)
         )  # fmt: skip
 
 

@@ -16,7 +16,7 @@ from scipy.spatial.transform import Rotation
 from ....core.errors import InputError
 from ...columns import TRIAL_COLUMNS
 from ..bounces.options import GRAVITY
-from ..measured import Array, Measured, Trial, propagate
+from ..measured import Array, Measured, Trial, labels, propagate
 from .body import Body
 from .flight import Flights, fall_acceleration
 from .flight_search import find_flights
@@ -93,11 +93,11 @@ class MocapReduction:
         """Return a row of trials.csv for each impact; none for a body of no known shape."""
         if self.body.shape == "body":
             return ()
-        return tuple(self._trial(h, k) for k, h in enumerate(self.hits, start=1))
+        names = labels(len(self.hits))
+        return tuple(self._trial(h, k) for h, k in zip(self.hits, names, strict=True))
 
-    def _trial(self, hit: Hit, number: int) -> Trial:
+    def _trial(self, hit: Hit, label: str) -> Trial:
         row = {name: hit.measured[name] for name in _COLUMNS if name in hit.measured}
-        label = f"bounce{number}" if len(self.hits) > 1 else ""
         return Trial(row, self.notes, trace=self._trace(hit), label=label)
 
     def _trace(self, hit: Hit) -> dict[str, Array]:

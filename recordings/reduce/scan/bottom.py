@@ -11,6 +11,7 @@ from dataclasses import dataclass
 
 import numpy as np
 import numpy.typing as npt
+from numpy.polynomial.polynomial import polyder, polyval2d
 from scipy import ndimage
 
 from ....core.errors import InputError
@@ -157,16 +158,16 @@ def _lowest(c: Array, u: Array) -> Array:
 
 
 def _derivatives(c: Array, at: Array) -> tuple[Array, Array]:
-    x, y = at
-    slope, hessian = np.zeros(2), np.zeros((2, 2))
-    for value, (i, j) in zip(c, _POWERS, strict=True):
-        dx, dy = (i * x ** max(i - 1, 0), j * y ** max(j - 1, 0))
-        slope += value * np.array([dx * y**j, x**i * dy])
-        hessian[0, 0] += value * i * (i - 1) * x ** max(i - 2, 0) * y**j
-        hessian[1, 1] += value * j * (j - 1) * y ** max(j - 2, 0) * x**i
-        hessian[0, 1] += value * dx * dy
-    hessian[1, 0] = hessian[0, 1]
-    return slope, hessian
+    """Return slope (2,) and second derivatives (2, 2) of the quartic at a place."""
+    table = np.zeros((5, 5))
+    table[tuple(np.transpose(_POWERS))] = c
+
+    def at_place(x: int, y: int) -> float:
+        return float(polyval2d(at[0], at[1], polyder(polyder(table, x, axis=0), y, axis=1)))
+
+    mixed = at_place(1, 1)
+    slope = np.array([at_place(1, 0), at_place(0, 1)])
+    return slope, np.array([[at_place(2, 0), mixed], [mixed, at_place(0, 2)]])
 
 
 def _level_weights(found: Levelled, place: Array) -> Array:

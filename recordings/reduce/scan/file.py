@@ -67,8 +67,6 @@ def read_scan(
         The file cannot be read, has no heights, or does not say its unit or the distance of its
         points.
     """
-    if path.is_dir():
-        raise InputError("a folder", source=str(path), allowed="one profilometer file")
     found = _text(path) if path.suffix.lower() in _TEXT else None
     found = found or _known_format(path, step)
     heights = np.where(np.abs(found.z) < _ABSURD, found.z, np.nan)

@@ -51,8 +51,6 @@ def read_sound(path: Path) -> Sound:
     InputError
         No sound that can be decoded, silence, or more than ten minutes.
     """
-    if not path.is_file():
-        raise InputError("no such file", source=str(path), allowed="an audio file or a video")
     with path.open("rb") as stream:
         plain = stream.read(4) in (b"RIFF", b"RIFX") and path.suffix.lower() == ".wav"
     samples, rate = _wave(path) if plain else _decoded(path)

@@ -17,6 +17,7 @@ import numpy as np
 
 from ....core.confined import confined
 from ....core.errors import InputError
+from ....core.input_file import checked_file
 from ...csv_table import number, rows_with, selection
 from ..measured import Array
 from ..units import UNITS
@@ -149,13 +150,7 @@ def read_columns(path: Path, *, sheet: str = "") -> Columns:
     InputError
         Not a table, or no numbers in it.
     """
-    if not path.is_file():
-        raise InputError("no such file", source=str(path), allowed="a table")
-    if path.stat().st_size > _LARGEST:
-        raise InputError(
-            f"{path.stat().st_size / 1e6:.0f} MB", source=str(path),
-            allowed=f"up to {_LARGEST // 10**6} MB",
-        )  # fmt: skip
+    checked_file(path, most=_LARGEST, allowed="a table")
     kind = path.suffix.lower()
     if kind == ".trk":
         names, values = tracker_rows(path, sheet)

@@ -10,7 +10,7 @@ from ..bounces.bounce import Bounced
 from ..bounces.contacts import find_bounces
 from ..bounces.fall import Ball
 from ..bounces.track import Track
-from ..measured import Array, Measured, Trial
+from ..measured import Array, Measured, Trial, labelled, labels
 
 
 @dataclass(frozen=True)
@@ -54,10 +54,7 @@ def reduce_heights(
             allowed="heights of a body that falls, touches and rises (see --upwards, --first-s)",
         )  # fmt: skip
     trials = tuple(_trial(track, found, k) for k in range(len(found.bounces)))
-    values: dict[str, Measured] = {}
-    for trial in trials:
-        label = f"{trial.label}_" if trial.label else ""
-        values |= {label + name: v for name, v in trial.observables.items()}
+    values = labelled((trial.label, trial.observables) for trial in trials)
     if metres is None and found.scale.known:
         values["unit_m"] = found.scale.metres
     if metres is not None and math.isfinite(found.fall.value):
@@ -79,5 +76,4 @@ def _trial(track: Track, found: Bounced, k: int) -> Trial:
             "time_s": track.time[low:high] - bounce.time.value,
             "tip_height_m": (track.height[low:high] - touch) * scale.value,
         }
-    label = f"bounce{k + 1}" if len(bounces) > 1 else ""
-    return Trial(row, found.notes, trace=trace, label=label)
+    return Trial(row, found.notes, trace=trace, label=labels(len(bounces))[k])

@@ -7,7 +7,6 @@ from pathlib import Path
 
 import numpy as np
 
-from ....core.errors import InputError
 from ..images.picture_file import DOWN, crop_window, cropped, read_picture
 from ..measured import Measured
 from ..reduced import Reduced
@@ -24,8 +23,6 @@ def reduce(path: Path, options: Options) -> Reduced:
     InputError
         The picture cannot be read, or shows no tip.
     """
-    if path.is_dir():
-        raise InputError("a folder", source=str(path), allowed="one picture")
     picture = np.rot90(read_picture(path, channel=options.channel), DOWN[options.tip_points])
     picture = cropped(picture, crop_window(options.crop))
     found = reduce_tip(

@@ -7,7 +7,7 @@ from pathlib import Path
 from ....core.errors import InputError
 from ..images.clip import read_clip
 from ..images.picture_file import crop_window
-from ..measured import Measured
+from ..measured import Measured, labelled
 from ..reduced import Reduced
 from .options import Options
 from .picture import draw_video
@@ -49,7 +49,4 @@ def reduce(path: Path, options: Options) -> Reduced:
 
 def _values(found: VideoReduction) -> dict[str, Measured]:
     values = {"half_width_pixel": found.half_width, "pixel_m": found.scale}
-    for number, trial in enumerate(found.trials(), start=1):
-        label = f"bounce{number}_" if len(found.bounces) > 1 else ""
-        values |= {f"{label}{name}": value for name, value in trial.observables.items()}
-    return values
+    return values | labelled((t.label, t.observables) for t in found.trials())

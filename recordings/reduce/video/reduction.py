@@ -20,7 +20,7 @@ from ..bounces.contacts import find_bounces
 from ..bounces.fall import UNKNOWN, Ball
 from ..bounces.track import Track
 from ..images.clip import Clip
-from ..measured import Array, Measured, Trial
+from ..measured import Array, Measured, Trial, labels
 from .tracking import grey_levels, striker_bright, track_ball, track_rod
 
 SHAPES = ("rod", "sphere")
@@ -123,9 +123,10 @@ class VideoReduction:
 
     def trials(self) -> tuple[Trial, ...]:
         """Return a row of trials.csv for each contact."""
-        return tuple(self._trial(b, k) for k, b in enumerate(self.bounces, start=1))
+        names = labels(len(self.bounces))
+        return tuple(self._trial(b, k, names[k - 1]) for k, b in enumerate(self.bounces, start=1))
 
-    def _trial(self, bounce: Bounce, number: int) -> Trial:
+    def _trial(self, bounce: Bounce, number: int, label: str) -> Trial:
         row = {"restitution": bounce.restitution}
         if math.isfinite(self.scale.value):
             row["impact_speed_m_s"] = bounce.approach.times(self.scale)
@@ -135,7 +136,6 @@ class VideoReduction:
             row["angle_deg"] = Measured(
                 90.0 - math.degrees(abs(lean.value)), math.degrees(lean.std)
             )
-        label = f"bounce{number}" if len(self.bounces) > 1 else ""
         return Trial(row, self.notes, trace=self._trace(bounce, number), label=label)
 
     def _lean_before(self, bounce: Bounce) -> Measured:

@@ -80,6 +80,37 @@ def test_a_span_without_samples_is_paid_for():
     assert found[0.08].approach.std > 1.2 * found[0.0].approach.std
 
 
+def test_a_frame_that_is_missing_in_a_contact_is_found_by_where_the_flights_meet():
+    truth = TrackTruth(rate=200.0, noise=0.1, restitution=0.8, drop=0.5)
+    track = seen(truth)
+    contact = track.contacts[1]
+    gone = int(np.searchsorted(track.time, contact))
+    kept = np.arange(track.time.size) != gone
+    time = track.time - (np.arange(track.time.size) > gone) / truth.rate
+    ball = Ball(9.81, truth.mass, truth.diameter, air())
+    found = find_bounces(Track(time[kept], track.height[kept]), ball, metres=None)
+    assert len(found.bounces) >= 3
+    for bounce in found.bounces:
+        off = abs(bounce.restitution.value - truth.restitution)
+        assert off < max(3.0 * bounce.restitution.std, 0.003)
+        assert bounce.restitution.std < 0.01
+    near = min(found.bounces, key=lambda b: abs(b.time.value - contact))
+    # read as it stands, the contact is off by g/rate of both speeds: e = 0.774
+    assert near.restitution.value == pytest.approx(0.8, abs=0.006)
+
+
+def test_a_flight_that_took_in_another_is_not_chosen_for_its_length():
+    """A frame lost in mid-flight: the crooked whole is longer than its straight part."""
+    truth = random_track(731182)
+    track = seen(truth)
+    ball = Ball(9.81, truth.mass, truth.diameter, air())
+    found = find_bounces(Track(track.time, track.height), ball, metres=None)
+    for bounce in found.bounces:
+        off = abs(bounce.restitution.value - truth.restitution)
+        assert off < 3.0 * bounce.restitution.std
+        assert bounce.restitution.std < 0.004
+
+
 def test_gravity_and_a_stated_size_that_disagree_are_both_held():
     fall = Measured(12_000.0, 60.0)
     by_fall = 9.81 / 12_000.0
