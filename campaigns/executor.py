@@ -6,23 +6,19 @@ they end. A worker that dies costs its case one more try, never the run.
 
 from __future__ import annotations
 
-import multiprocessing
-import os
-import threading
 import time
 from collections.abc import Callable, Generator, Mapping
-from concurrent.futures import FIRST_COMPLETED, CancelledError, wait
+from concurrent.futures import CancelledError
+from contextlib import closing
 from dataclasses import dataclass, replace
 from typing import Any, Protocol
 
 from ..core.errors import InputError
 from ..core.provenance import differences, environment
-from ..core.threads import one_thread_each
 from ..fem import Solution, solve
 from .case import Case
+from .workers import answers
 
-_MOST_POOLS = 20  # that a run makes when workers die between cases
-_TRIES = 3
 _WINDOW = 4  # cases sent ahead to each dask worker
 _LOOK_S = 1.0  # between two looks at who is there
 PATIENCE_S = 60.0
@@ -98,63 +94,17 @@ class LocalExecutor:
 
     def run(self, cases: Mapping[str, Case], *, time_limit_s: float) -> Generator[Ended]:
         """Compute the cases; give each as it ends."""
-        from pebble import ProcessPool
-
-        # workers are spawned: the variables act before their numpy loads
-        one_thread_each()
-
-        def new_pool() -> Any:
-            return ProcessPool(
-                max_workers=self.workers,
-                context=multiprocessing.get_context("spawn"),
-                initializer=_die_with,
-                initargs=[os.getpid()],
-            )
-
-        pools = [new_pool()]
-
-        def submit(key: str) -> None:
-            try:
-                future = self._submit(pools[-1], cases[key], time_limit_s)
-            except RuntimeError:  # the pool broke a moment ago
-                pools.append(new_pool())
-                future = self._submit(pools[-1], cases[key], time_limit_s)
-            waiting[future] = (key, len(pools))
-
-        try:
-            tries = dict.fromkeys(cases, 0)
-            waiting: dict[Any, tuple[str, int]] = {}
-            for key in cases:
-                submit(key)
-            while waiting:
-                ended, _ = wait(waiting, return_when=FIRST_COMPLETED)
-                for future in ended:
-                    key, number = waiting.pop(future)
-                    if _pool_broke(future) and len(pools) < _MOST_POOLS:
-                        # a worker that dies between two cases takes pebble's whole pool with it,
-                        # which is no fault of the cases that waited there
-                        if number == len(pools):
-                            pools.append(new_pool())
-                        submit(key)
-                        continue
-                    answer = _answer(key, future)
-                    tries[key] += 1
-                    if answer is None and tries[key] < _TRIES:
-                        submit(key)
-                        continue
-                    yield answer or Ended(key, None, f"the worker died {_TRIES} times")
-        finally:
-            for pool in pools:
-                pool.stop()
-                pool.join()
-
-    def _submit(self, pool: Any, case: Case, time_limit_s: float) -> Any:
-        # the solver keeps the limit itself; the pool's is for one that hangs
-        return pool.schedule(
-            signed,
-            args=[self.work, case.specification(), time_limit_s],
-            timeout=1.5 * time_limit_s + 60.0,
-        )
+        orders = {
+            key: (self.work, case.specification(), time_limit_s) for key, case in cases.items()
+        }
+        # the solver keeps the limit itself; this one is for a solver that hangs
+        timeout_s = 1.5 * time_limit_s + 60.0
+        with closing(answers(signed, orders, workers=self.workers, timeout_s=timeout_s)) as found:
+            for key, answer in found:
+                if answer.value is None:
+                    yield Ended(key, None, answer.message)
+                else:
+                    yield _ended(key, answer.value, where="a worker of this machine")
 
 
 @dataclass(frozen=True)
@@ -313,35 +263,3 @@ class DaskExecutor:
             source=self.address,
             allowed="a running scheduler; the same command goes on from here",
         )
-
-
-def _die_with(coordinator: int) -> None:
-    """End this worker when its coordinator is gone, so that a killed run leaves nothing behind."""
-
-    def watch() -> None:
-        while os.getppid() == coordinator:
-            time.sleep(1.0)
-        os._exit(1)
-
-    threading.Thread(target=watch, daemon=True).start()
-
-
-def _pool_broke(future: Any) -> bool:
-    from concurrent.futures.process import BrokenProcessPool
-
-    return not future.cancelled() and isinstance(future.exception(), BrokenProcessPool)
-
-
-def _answer(key: str, future: Any) -> Ended | None:
-    """Return the outcome of a pool's future; none when its worker died."""
-    from pebble import ProcessExpired
-
-    try:
-        answer = future.result()
-    except ProcessExpired:
-        return None
-    except TimeoutError:
-        return Ended(key, None, "the case hung beyond its time limit")
-    except Exception as error:  # a bug in one case must not take the campaign with it
-        return Ended(key, None, f"{type(error).__name__}: {error}")
-    return _ended(key, answer, where="a worker of this machine")

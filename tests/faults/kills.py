@@ -1,220 +1,473 @@
 """kill -9 of the coordinator and of workers at random moments, through the product's own pool.
 
-`python tests/faults/kills.py --kills 20` prints what was killed and what was
-lost. The solver is a stand-in that takes a third of a second and gives curves that follow from the
-case, so that every stored number can be checked; all else is the product's. With `--solver` it is
-the product's own too, at its lowest accuracy; what is stored is then compared with a run that
-nobody disturbed, bit by bit.
+`python tests/faults/kills.py --kills 200` runs a campaign of the solver itself, at its lowest
+accuracy, and kills in turn in every phase of it: while the interpreter starts, the store is read,
+cases are solved and handed over, the image of a case is made, the journal written and renamed, the
+file written, the journal removed, a case told as stored. Each phase announces itself on a board; a
+kill waits for one and comes at a random moment after that. Calls that change files are drawn out by
+random pauses, so that kills land before, within and after them. After every kill what was told as
+stored must be there, and every number must be that of a run that nobody disturbed, bit by bit.
+
+Most coordinators and workers are forked from a process that has everything loaded; those that are
+killed in their start are new interpreters, as the product starts them. `--stand-in` takes a solver
+that waits a third of a second instead.
 """
 
 import argparse
+import multiprocessing
 import os
 import random
 import signal
 import subprocess
 import sys
 import tempfile
-import threading
 import time
+import traceback
 from collections import Counter
+from contextlib import ExitStack, suppress
+from dataclasses import dataclass, field
+from functools import cache
 from pathlib import Path
+from unittest import mock
 
+import disk_faults
 import numpy as np
 from dentscope import fem
-from dentscope.campaigns import Case, Design, read_curves, run_design, standard_case
+from dentscope.campaigns import Case, Design, Store, read_curves, run_design, standard_case
 from dentscope.campaigns.executor import LocalExecutor, solve_specification
-from dentscope.core import COMPLETED, Material, Pair
-from dentscope.fem import Counters, Curve, Solution, Unloading
+from dentscope.core import Material, Pair
+
+PAUSE_S = 0.03
+PATIENCE_S = 120.0
+BOARD, LOG = "BOARD", "COMPUTED"
+SPANS_S = {
+    "starts": 4.0, "reads": 0.05, "waits": 0.5, "makes the image": 0.03, "writes the journal": 0.3,
+    "renames the journal": 0.05, "writes the file": 0.3, "removes the journal": 0.05,
+    "tells": 0.01, "solves": 0.6, "hands over": 0.02,
+}  # fmt: skip
+"""Phases, and how long after their beginning a kill may come."""
+
+SHARES = {
+    ("coordinator", "starts"): 8, ("worker", "starts"): 4, ("coordinator", "reads"): 14,
+    ("coordinator", "waits"): 28, ("coordinator", "makes the image"): 14,
+    ("coordinator", "writes the journal"): 28, ("coordinator", "renames the journal"): 20,
+    ("coordinator", "writes the file"): 28, ("coordinator", "removes the journal"): 14,
+    ("coordinator", "tells"): 8, ("worker", "solves"): 22, ("worker", "hands over"): 12,
+}  # fmt: skip
+"""How many of 200 kills wait for each phase."""
 
 
 def real(n):
-    """Cases that the solver itself takes about a second for."""
-    flat = Material(E=200e9, nu=0.3, Sy=3e8)
-    pairs = [Pair(Material(E=200e9, nu=0.3, Sy=4e8 + 1e7 * i), flat, 1e-3) for i in range(n)]
+    """Cases that yield and that the solver takes about a second for."""
+    flat = Material(E=200e9, nu=0.3, Sy=1e8)
+    pairs = [Pair(Material(E=200e9, nu=0.3, Sy=2e8 + 1e7 * i), flat, 1e-3) for i in range(n)]
     return tuple(
-        standard_case(f"c{i}", pair, deepest=3e-4, n_depths=4, accuracy=fem.Accuracy.smoke())
+        standard_case(f"c{i}", pair, deepest=3e-5, n_depths=3, accuracy=fem.Accuracy.smoke())
         for i, pair in enumerate(pairs)
     )
 
 
 def made(n):
-    flat = Material(E=1e11, nu=0.3, Sy=3e8)
-    pairs = [Pair(Material(E=2e11, nu=0.3, Sy=4e8 + 1e6 * i), flat, 1e-3) for i in range(n)]
     return tuple(
-        standard_case(f"c{i}", pair, deepest=0.01, n_depths=48, accuracy=fem.Accuracy.smoke())
-        for i, pair in enumerate(pairs)
-    )
+        standard_case(
+            f"c{i}", Pair(Material(E=2e11, nu=0.3, Sy=4e8 + 1e6 * i),
+                          Material(E=1e11, nu=0.3, Sy=3e8), 1e-3),
+            deepest=0.01, n_depths=48, accuracy=fem.Accuracy.smoke(),
+        )
+        for i in range(n)
+    )  # fmt: skip
 
 
-def expected(case):
-    """Force of the stand-in: a number that only this case has."""
-    return case.pair.sphere.Sy * np.array(case.depths)
+# --- what the killed processes do ---
+
+
+class Board:
+    """Where each process says what it does: a file a process, named by its kind and number."""
+
+    def __init__(self, folder):
+        self.folder, self.files = folder, {}
+
+    def tell(self, kind, phase):
+        pid = os.getpid()
+        if pid not in self.files:
+            flags = os.O_CREAT | os.O_WRONLY
+            self.files = {pid: os.open(self.folder / f"{kind}-{pid}", flags)}
+        os.pwrite(self.files[pid], f"{phase:<30}".encode(), 0)
+
+    def phase(self, kind, pid):
+        """What a process said last; it starts until it says something."""
+        try:
+            return (self.folder / f"{kind}-{pid}").read_text().strip() or "starts"
+        except OSError:
+            return "starts"
+
+
+@cache
+def board():
+    return Board(Path(os.environ[BOARD]))
+
+
+def work(specification, time_limit_s):
+    """The product's own work, announced, and a line for each case that was begun."""
+    board().tell("worker", "solves")
+    with open(os.environ[LOG], "a", encoding="utf-8") as log:  # one write: never torn
+        log.write(f"{specification['name']}\n")
+    found = solve_specification(specification, time_limit_s)
+    board().tell("worker", "hands over")
+    return found
 
 
 def stand_in(specification, time_limit_s):
+    board().tell("worker", "solves")
     case = Case.from_specification(specification)
-    with open(os.environ["COMPUTED"], "a", encoding="utf-8") as log:  # one write: never torn
+    with open(os.environ[LOG], "a", encoding="utf-8") as log:
         log.write(f"{case.name}\n")
     time.sleep(random.uniform(0.1, 0.5))
-    depth = np.array(case.depths)
-    curve = Curve(**{**dict.fromkeys(Curve.__dataclass_fields__, depth), "force": expected(case)})
-    shape = np.linspace(0.0, 1.0, 200)
-    unloading = Unloading(0.01, curve, 1e-6, 1e-6, *(shape,) * 4, steps=9, outcome=COMPLETED)
-    counters = Counters(**dict.fromkeys(Counters.__dataclass_fields__, 1))
-    return Solution(
-        case.problem, case.accuracy, COMPLETED, curve, (unloading,) * 5, (), counters, "mesh"
-    )
+    board().tell("worker", "hands over")
+    return disk_faults.solved(case)
 
 
-def tell(line):
-    sys.stdout.write(f"{line}\n")
-    sys.stdout.flush()
+def _phase_of(name, target):
+    if name in ("rename", "sync_folder"):
+        return "renames the journal"
+    if name == "remove":
+        return "removes the journal"
+    return "writes the journal" if ".journal" in target.name else "writes the file"
 
 
-def logged(specification, time_limit_s):
-    """The product's own work, and a line for each case that was begun."""
-    with open(os.environ["COMPUTED"], "a", encoding="utf-8") as log:
-        log.write(f"{specification['name']}\n")
-    return solve_specification(specification, time_limit_s)
+def announced(draw):
+    """Let every call that changes a file announce its phase and take a while."""
+    paths = {}
+
+    def hook(name, call):
+        def announced_call(disk, *arguments):
+            target = paths.get(arguments[0], arguments[0])
+            board().tell("coordinator", _phase_of(name, target))
+            time.sleep(draw.uniform(0.0, PAUSE_S))
+            answer = call(disk, *arguments)
+            if name in ("create", "open"):
+                paths[answer] = target
+            time.sleep(draw.uniform(0.0, PAUSE_S))
+            return answer
+
+        return announced_call
+
+    return disk_faults.patched(hook)
 
 
-def coordinate(path, n, *, solver):
-    cases = real(n) if solver else made(n)
-    run_design(
-        Design("faults", "", lambda: cases),
-        path,
-        executor=LocalExecutor(workers=2, work=logged if solver else stand_in),
-        time_limit_s=600.0 if solver else 60.0,
-        report=lambda step: tell(f"STORED {step.case.name}"),
-    )
+class Announced:
+    """The executor of this machine, announced."""
+
+    def __init__(self, executor):
+        self.executor, self.workers = executor, executor.workers
+
+    def run(self, cases, *, time_limit_s):
+        board().tell("coordinator", "waits")
+        yield from self.executor.run(cases, time_limit_s=time_limit_s)
 
 
+def coordinate(path, cases, *, solver, forked):
+    """Run the campaign to its end; tell each stored case in a file beside it."""
+    told = os.open(path.with_suffix(".told"), os.O_CREAT | os.O_APPEND | os.O_WRONLY)
+    put = Store.put
+
+    def announced_put(store, *arguments, **options):
+        board().tell("coordinator", "makes the image")
+        put(store, *arguments, **options)
+        board().tell("coordinator", "tells")
+
+    def tell(step):
+        os.write(told, f"{step.case.name}\n".encode())
+        board().tell("coordinator", "waits")
+
+    with ExitStack() as changes:
+        board().tell("coordinator", "reads")
+        changes.enter_context(announced(random.Random(os.getpid())))
+        changes.enter_context(mock.patch.object(Store, "put", announced_put))
+        if forked:
+            context = multiprocessing.get_context("fork")
+            changes.enter_context(
+                mock.patch.object(multiprocessing, "get_context", return_value=context)
+            )
+        run_design(
+            Design("faults", "", lambda: cases), path,
+            executor=Announced(LocalExecutor(workers=2, work=work if solver else stand_in)),
+            time_limit_s=600.0, report=tell,
+        )  # fmt: skip
+
+
+# --- who kills them ---
+
+
+@dataclass
 class Run:
-    """A coordinator in a process of its own, and what it told of stored cases."""
+    """A coordinator, and the folder of its campaign."""
 
-    def __init__(self, path, n, told, options=()):
-        self.process = subprocess.Popen(
-            [sys.executable, __file__, "--coordinate", str(path), "--cases", str(n), *options],
-            stdout=subprocess.PIPE,
-            text=True,
-            env={**os.environ, "COMPUTED": str(path.with_suffix(".log"))},
-        )
-        self.told = told
-        self.reader = threading.Thread(target=self._read, daemon=True)
-        self.reader.start()
+    path: Path
+    count: int
+    solver: bool
+    pid: int = 0
+    forked: bool = False
+    code: int | None = None
 
-    def _read(self):
-        for line in self.process.stdout:
-            if line.endswith("\n"):
-                self.told.append(line.split()[1])
-
-    def workers(self):
-        pid = self.process.pid
-        children = Path(f"/proc/{pid}/task/{pid}/children").read_text().split()
-        names = {int(c): Path(f"/proc/{c}/cmdline").read_bytes() for c in children}
-        return [child for child, name in names.items() if b"spawn_main" in name]
+    def begin(self, *, forked):
+        self.forked, self.code = forked, None
+        board_folder = self.path.parent / "board"
+        board_folder.mkdir(exist_ok=True)
+        os.environ |= {BOARD: str(board_folder), LOG: str(self.path.with_suffix(".log"))}
+        if not forked:
+            options = [] if self.solver else ["--stand-in"]
+            command = [sys.executable, __file__, "--coordinate", str(self.path)]
+            self.process = subprocess.Popen([*command, "--cases", str(self.count), *options])
+            self.pid = self.process.pid
+            return
+        self.pid = os.fork()
+        if not self.pid:
+            try:
+                board.cache_clear()
+                cases = real(self.count) if self.solver else made(self.count)
+                coordinate(self.path, cases, solver=self.solver, forked=True)
+            except BaseException:
+                traceback.print_exc()
+                os._exit(1)
+            os._exit(0)
 
     def ended(self):
-        self.process.wait()
-        self.reader.join()
-        self.process.stdout.close()
+        """Whether the coordinator is gone; its exit code is kept."""
+        if self.code is None:
+            if self.forked:
+                pid, status = os.waitpid(self.pid, os.WNOHANG)
+                self.code = os.waitstatus_to_exitcode(status) if pid else None
+            else:
+                self.code = self.process.poll()
+        return self.code is not None
+
+    def workers(self):
+        """Numbers of its worker processes."""
+        found = []
+        for task in Path(f"/proc/{self.pid}/task").glob("*/children"):
+            with suppress(OSError):
+                found += map(int, task.read_text().split())
+        return [pid for pid in found if b"resource_tracker" not in _command(pid)]
+
+    def told(self):
+        file = self.path.with_suffix(".told")
+        return file.read_text().split() if file.exists() else []
+
+    def stored(self):
+        """Curves of the cases in the file, by name."""
+        journal = self.path.with_name(f"{self.path.name}.journal")
+        if not (self.path.exists() or journal.exists()):
+            return {}
+        return {record.case.name: record.curve for record in read_curves(self.path)}
 
 
-def still_there(workers, *, patience_s=30.0):
+def _command(pid):
+    with suppress(OSError):
+        return Path(f"/proc/{pid}/cmdline").read_bytes()
+    return b"resource_tracker"
+
+
+def there(pid):
+    """Whether a process runs: one that ended and that nobody asked for does not."""
+    try:
+        return Path(f"/proc/{pid}/stat").read_text().rsplit(")", 1)[1].split()[0] not in "ZX"
+    except OSError:
+        return False
+
+
+def still_there(workers, *, patience_s=60.0):
     """How many processes do not end; on a free machine they see in a second that they are alone."""
     until = time.monotonic() + patience_s
-    left = workers
-    while left and time.monotonic() < until:
-        time.sleep(0.1)
-        left = [pid for pid in left if Path(f"/proc/{pid}").exists()]
+    while (left := [pid for pid in workers if there(pid)]) and time.monotonic() < until:
+        time.sleep(0.05)
     return len(left)
 
 
-def inject(folder, *, kills, cases, seed, say=tell, reference=None):
-    """Kill until `kills` are done, then let it finish; return what happened.
+@dataclass
+class Found:
+    """What happened: kills by victim and phase, and what must be none."""
+
+    kills: Counter = field(default_factory=Counter)
+    lost: int = 0
+    wrong: int = 0
+    told_twice: int = 0
+    left_over: int = 0
+    unended: int = 0
+    stored: int = 0
+    failed: int = 0
+    computed: int = 0
+    rounds: int = 0
+
+    @property
+    def faults(self):
+        return self.lost + self.wrong + self.told_twice + self.left_over + self.unended
+
+
+def schedule(kills, seed):
+    """Victims and phases that kills wait for, in a random order."""
+    whole = sum(SHARES.values())
+    wanted = [key for key, share in SHARES.items() for _ in range(round(kills * share / whole))]
+    draw = random.Random(seed)
+    # an interpreter's start is dear: few of them are enough
+    rest = [key for key in SHARES if key[1] != "starts"]
+    wanted += draw.choices(rest, k=max(0, kills - len(wanted)))
+    draw.shuffle(wanted)
+    return wanted[:kills]
+
+
+def kill(run, who, phase, draw):
+    """Wait for a phase, and kill a little later.
 
     Returns
     -------
-    dict
-        Counts of kills, of cases told as stored, found, computed more than once after being told,
-        and wrong.
+    tuple
+        Phase of the one that died, nothing when the campaign ended before; workers at that moment.
     """
-    draw, path, told = random.Random(seed), folder / "c.h5", []
-    count, lost, left_over = Counter(), 0, 0
-    options = ["--solver"] if reference else []
-    run = Run(path, cases, told, options)
-    while sum(count.values()) < kills and run.process.poll() is None:
-        # a third of the kills meet the start, the others the work
-        busy = time.monotonic() + draw.choice((0.0, 20.0 if reference else 60.0, 60.0))
-        before = len(told)
-        while len(told) == before and time.monotonic() < busy and run.process.poll() is None:
-            time.sleep(0.01)
-        time.sleep(draw.uniform(0.0, 3.0))
-        if run.process.poll() is not None:
+    until = time.monotonic() + PATIENCE_S
+    place = board()
+    while not run.ended():
+        pids = [run.pid] if who == "coordinator" else run.workers()
+        met = [pid for pid in pids if place.phase(who, pid) == phase]
+        if met or time.monotonic() > until:
             break
-        workers = run.workers()
-        if workers and draw.random() < 0.5:
-            os.kill(draw.choice(workers), signal.SIGKILL)
-            count["worker"] += 1
-            continue
-        run.process.send_signal(signal.SIGKILL)
-        count["coordinator"] += 1
-        run.ended()
-        if path.exists():
-            lost += len(set(told) - {record.case.name for record in read_curves(path)})
-        left_over += still_there(workers)
-        say(f"kill {sum(count.values())}: {len(told)} told as stored, {lost} of them lost")
-        run = Run(path, cases, told, options)
-    run.ended()
-    computed = Counter(path.with_suffix(".log").read_text().split())
-    found = {record.case.name: record for record in read_curves(path)}
-    right = reference or {name: expected(r.case) for name, r in found.items()}
-    wrong = [n for n, r in found.items() if not np.array_equal(r.curve["force"], right[n])]
-    return {
-        **count,
-        "stored": len(found),
-        "lost": lost,
-        "told twice": len(told) - len(set(told)),
-        "wrong": len(wrong),
-        "workers left over": left_over,
-        "computed in all": sum(computed.values()),
-    }
+        time.sleep(0.001)
+    else:
+        return "", []
+    time.sleep(draw.uniform(0.0, SPANS_S[phase]))
+    pids = [pid for pid in (met or pids) if there(pid)]
+    if not pids or run.ended():
+        return "", []
+    workers = run.workers()
+    victim = draw.choice(pids)
+    with suppress(ProcessLookupError):
+        os.kill(victim, signal.SIGKILL)
+    return place.phase(who, victim), workers
 
 
-def undisturbed(path, cases):
-    """Forces of every case from a run of the solver that nobody kills."""
-    run = Run(path, cases, [], ["--solver"])
-    run.ended()
-    return {record.case.name: record.curve["force"] for record in read_curves(path)}
+def inject(folder, wanted, *, count, seed, reference, forks=True, say=lambda line: None):
+    """Do the kills that are wanted, over as many campaigns as that takes; return what happened.
+
+    Parameters
+    ----------
+    wanted
+        Victim and phase of each kill; those that are done are taken away.
+    reference
+        Curves of each case by name.
+    forks
+        Whether coordinators that are not killed in their start are forked.
+    """
+    draw, found = random.Random(seed), Found()
+    while wanted:
+        found.rounds += 1
+        place = folder / str(found.rounds)
+        place.mkdir()
+        run = Run(place / "c.h5", count, solver=reference is not None)
+        _one_campaign(run, wanted, draw, found, reference=reference, forks=forks, say=say)
+    return found
+
+
+def _one_campaign(run, wanted, draw, found, *, reference, forks, say):
+    def check():
+        stored, told = run.stored(), run.told()
+        found.lost += len(set(told) - stored.keys() - _failed(run))
+        found.told_twice += len(told) - len(set(told))
+        found.wrong += sum(
+            not (curve.keys() == right.keys() and all(
+                np.array_equal(curve[k], right[k]) for k in right
+            ))
+            for name, curve in stored.items()
+            for right in [(reference or _expected(run.count))[name]]
+        )  # fmt: skip
+
+    run.begin(forked=forks and not (wanted and wanted[0][1] == "starts"))
+    board.cache_clear()
+    while wanted and not run.ended():
+        who, phase = wanted[0]
+        died_in, workers = kill(run, who, phase, draw)
+        if not died_in:
+            break
+        wanted.pop(0)
+        found.kills[f"{who} {died_in}"] += 1
+        if who == "coordinator":
+            while not run.ended():
+                time.sleep(0.005)
+            found.left_over += still_there(workers)
+            check()
+            run.begin(forked=forks and not (wanted and wanted[0][1] == "starts"))
+        say(f"kill {found.kills.total()}: {who} {died_in} (for {phase}), {found}")
+    until = time.monotonic() + 10.0 * PATIENCE_S
+    while not run.ended():
+        if time.monotonic() > until:
+            found.unended += 1
+            os.kill(run.pid, signal.SIGKILL)
+        time.sleep(0.05)
+    if run.code:
+        found.unended += 1
+        say(f"the coordinator ended with {run.code}")
+    check()
+    found.stored += len(run.stored())
+    found.failed += len(_failed(run))
+    found.lost += run.count - len(run.stored()) - len(_failed(run))
+    found.computed += len(run.path.with_suffix(".log").read_text().split())
+
+
+def _failed(run):
+    """Names of the cases that are stored as failed, with the reason."""
+    if not run.path.exists():
+        return set()
+    records = Store(run.path).read_all()
+    return {r.case.name for r in records if r.status == "failed" and r.message}
+
+
+@cache
+def _expected(count):
+    """What the stand-in gives, as it is read."""
+    with tempfile.TemporaryDirectory() as folder:
+        store = Store(Path(folder) / "c.h5")
+        for case in made(count):
+            store.put(case, disk_faults.solved(case))
+        return {record.case.name: record.curve for record in store.read_all()}
+
+
+def undisturbed(folder, count):
+    """Curves of every case from a run of the solver that nobody kills."""
+    store = Store(folder / "undisturbed.h5")
+    for case in real(count):
+        store.put(case, solve_specification(case.specification(), 600.0))
+    return {record.case.name: record.curve for record in store.read_all()}
 
 
 def main():
     parser = argparse.ArgumentParser()
     parser.add_argument("--coordinate", type=Path)
-    parser.add_argument("--cases", type=int, default=200)
-    parser.add_argument("--kills", type=int, default=20)
+    parser.add_argument("--cases", type=int, default=8)
+    parser.add_argument("--kills", type=int, default=200)
     parser.add_argument("--seed", type=int, default=1)
-    parser.add_argument("--solver", action="store_true")
-    parser.add_argument("--reference", type=Path, help="keep the undisturbed run here")
+    parser.add_argument("--stand-in", action="store_true")
     chosen = parser.parse_args()
     if chosen.coordinate:
-        coordinate(chosen.coordinate, chosen.cases, solver=chosen.solver)
+        cases = made(chosen.cases) if chosen.stand_in else real(chosen.cases)
+        coordinate(chosen.coordinate, cases, solver=not chosen.stand_in, forked=False)
         return
-    with tempfile.TemporaryDirectory() as folder:
-        reference = None
-        if chosen.solver:
-            reference = undisturbed(chosen.reference or Path(folder) / "reference.h5", chosen.cases)
-        total = Counter()
-        while total["coordinator"] + total["worker"] < chosen.kills:
-            place = Path(folder) / str(total["rounds"])
-            place.mkdir()
-            left = chosen.kills - total["coordinator"] - total["worker"]
-            found = inject(
-                place, kills=left, cases=chosen.cases, seed=chosen.seed + total["rounds"],
-                reference=reference,
-            )  # fmt: skip
-            total += Counter(found) + Counter(rounds=1)
-            tell(dict(total))
+    begun = time.monotonic()
+
+    def say(line):
+        sys.stdout.write(f"{time.monotonic() - begun:.0f} s: {line}\n")
+        sys.stdout.flush()
+
+    with tempfile.TemporaryDirectory() as scratch:
+        folder = Path(scratch)
+        reference = None if chosen.stand_in else undisturbed(folder, chosen.cases)
+        say("begun")
+        wanted = schedule(chosen.kills, chosen.seed)
+        found = inject(
+            folder, wanted, count=chosen.cases, seed=chosen.seed, reference=reference, say=say
+        )
+    for words, number in sorted(found.kills.items()):
+        say(f"{number:4} {words}")
+    say(f"{found.kills.total()} kills, {found.faults} faults: {found}")
+    sys.exit(found.faults > 0)
 
 
 if __name__ == "__main__":

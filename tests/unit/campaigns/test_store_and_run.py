@@ -443,28 +443,3 @@ def test_a_dying_worker_costs_no_case(tmp_path):
         assert item.solution is not None, item.message
     assert killed
     assert sorted(ended) == sorted(cases)
-
-
-@pytest.mark.fe
-def test_a_pool_that_breaks_is_made_anew(monkeypatch):
-    from concurrent.futures import Future
-    from concurrent.futures.process import BrokenProcessPool
-
-    from dentscope.campaigns.executor import LocalExecutor
-
-    submit, made = LocalExecutor._submit, []
-
-    def broken_at_first(executor, pool, case, time_limit_s):
-        made.append(pool)
-        if len(made) <= 2:
-            future = Future()
-            future.set_exception(BrokenProcessPool("All workers expired"))
-            return future
-        return submit(executor, pool, case, time_limit_s)
-
-    monkeypatch.setattr(LocalExecutor, "_submit", broken_at_first)
-    cases = distinct_cases(design(2))
-    ended = list(LocalExecutor(workers=2).run(cases, time_limit_s=60.0))
-    assert sorted(item.id for item in ended) == sorted(cases)
-    assert all(item.solution is not None for item in ended)
-    assert len({id(pool) for pool in made}) == 2
