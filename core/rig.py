@@ -16,6 +16,7 @@ from pydantic import (
     AfterValidator,
     BeforeValidator,
     Field,
+    TypeAdapter,
     ValidationInfo,
     field_validator,
     model_validator,
@@ -252,11 +253,16 @@ class StrikerTable(BodyTable):
     def _mass_of_a_sphere(cls, given: Any) -> Any:
         if not isinstance(given, dict) or given.get("shape") != "sphere" or "mass_kg" in given:
             return given
-        try:
-            density = Quantity.model_validate(given["density_kg_m3"])
-            radius = Quantity.model_validate(given.get("radius_m", given["tip_radius_m"]))
-        except (KeyError, ValueError):
+        if given.get("density_kg_m3") is None:
             return given
+        try:
+            density = TypeAdapter(Density).validate_python(given["density_kg_m3"])
+            radius = TypeAdapter(Radius).validate_python(
+                given.get("radius_m", given.get("tip_radius_m"))
+            )
+        except ValueError:
+            # what it would follow from has a line of its own: none for the mass as well
+            return {**given, "mass_kg": 1.0}
         mass = 4.0 / 3.0 * math.pi * radius.value**3 * density.value
         std = mass * math.hypot(density.relative, 3.0 * radius.relative)
         return {**given, "mass_kg": {"value": mass, "std": std}}

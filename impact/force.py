@@ -13,6 +13,7 @@ import numpy as np
 from numba import float64, int64, njit, types
 
 from ..models.kernel import BRANCH_SIGNATURE, LOADING_SIGNATURE, RESIDUAL_SIGNATURE, VECTOR
+from .bits import power
 
 LOADING = types.FunctionType(LOADING_SIGNATURE)
 BRANCH = types.FunctionType(BRANCH_SIGNATURE)
@@ -182,9 +183,7 @@ def static_unloading(unloading, par, branch, depth):
         x = min((depth - branch[1] - branch[2]) / (branch[0] - branch[1] - branch[2]), 1.0)
         if branch[POWER] == 1.5:
             return branch[3] * branch[PEAK_FORCE] * (x * math.sqrt(x))
-        # quicker than the power, and right to a few units in the last place
-        fade = math.exp(branch[POWER] * math.log(x))
-        return branch[3] * branch[PEAK_FORCE] * fade
+        return branch[3] * branch[PEAK_FORCE] * power(x, branch[POWER])
     if branch[3] == 1.0 and branch[6] == 1.0 and branch[4] == branch[0]:
         return unloading(par, depth, branch[0])
     x = branch[4] - (branch[0] - depth) * branch[6]

@@ -17,7 +17,7 @@ from .result import Impact, impact_of
 from .scene import RateFree, Scene
 from .strength import NODES, strength_table
 from .walk import layout as c
-from .walk.compiled import many_impacts, one_impact
+from .walk.compiled import Given, many_impacts
 
 Array = NDArray[np.float64]
 
@@ -56,7 +56,7 @@ class Arrays:
     factors: Array
     breaks: Array
     body: Array
-    spot: Array
+    surface: Array
     omega: Array
     psi: Array
 
@@ -150,12 +150,21 @@ def strike_many(scenes: Sequence[Scene], settings: Settings = Settings()) -> lis
 
 def _struck(scene: Scene, a: Arrays, history: Array) -> tuple[Impact, int]:
     """Integrate one impact; return it and how many rows of `history` were filled."""
-    out, rows = np.zeros(c.N_OUT), np.zeros(1)
-    one_impact(
-        *kernels_of(scene.law), a.par, a.force, a.factors, a.breaks, a.body, a.spot, a.omega, a.psi,
-        out, history, rows,
-    )  # fmt: skip
-    return impact_of(out, a.spot), int(rows[0])
+    out, left = np.zeros((1, c.N_OUT)), np.zeros((1, len(a.surface)))
+    rows = many_impacts(kernels_of(scene.law), _given([a]), out, left=left, history=history)
+    return impact_of(out[0], left[0]), rows
+
+
+def _given(rows: Sequence[Arrays]) -> Given:
+    """Return scenes of one law as the compiled integrator takes them; the borders are the first's.
+
+    Factors and modes have to be of one length.
+    """
+    keys = [key for key in Given._fields if key != "breaks"]
+    return Given(
+        breaks=rows[0].breaks,
+        **{key: np.stack([getattr(a, key) for a in rows]) for key in keys},
+    )
 
 
 @dataclass(frozen=True, slots=True)
@@ -210,10 +219,7 @@ def strike_rows(scene: Scene, body: Array, settings: Settings = Settings()) -> A
     a = arrays_of(scene, settings)
     rows = np.ascontiguousarray(body, dtype=float)
     out = np.zeros((len(rows), c.N_OUT))
-    many_impacts(
-        *kernels_of(scene.law), a.par[None], a.force[None], a.factors[None], a.breaks, rows,
-        a.spot[None], a.omega[None], a.psi[None], out,
-    )  # fmt: skip
+    many_impacts(kernels_of(scene.law), _given([a])._replace(body=rows), out)
     return out
 
 
@@ -233,16 +239,8 @@ def strike_batch(scenes: Sequence[Scene], settings: Settings = Settings()) -> Ar
     for i, a in enumerate(rows):
         groups.setdefault((len(a.factors), len(a.omega)), []).append(i)
     for members in groups.values():
-        part = [rows[i] for i in members]
-        found = np.zeros((len(part), c.N_OUT))
-        many_impacts(
-            *kernels_of(scenes[0].law),
-            *(np.stack([getattr(a, key) for a in part]) for key in ("par", "force", "factors")),
-            _SMOOTH,
-            *(np.stack([getattr(a, key) for a in part]) for key in ("body", "spot")),
-            *(np.stack([getattr(a, key) for a in part]) for key in ("omega", "psi")),
-            found,
-        )
+        found = np.zeros((len(members), c.N_OUT))
+        many_impacts(kernels_of(scenes[0].law), _given([rows[i] for i in members]), found)
         out[members] = found
     return out
 

@@ -117,7 +117,9 @@ class Impact:
 
     @property
     def mean_force_N(self) -> float:
-        """Normal impulse over the time in contact [N]."""
+        """Normal impulse over the time in contact [N]; nan before the first parting."""
+        if self.touching_time_s == 0.0:
+            return math.nan
         return self.normal_impulse_Ns / self.touching_time_s
 
     @property

@@ -13,7 +13,7 @@ from dataclasses import dataclass, field
 from typing import Any
 
 import numpy as np
-from numba import njit, types
+from numba import njit
 
 from ..core.errors import InputError
 from ..core.material import Material, Pair
@@ -22,7 +22,6 @@ from .closed_form import (
     COEFFICIENTS,
     Bodies,
     Coefficients,
-    Contact,
     PairNumbers,
     contact,
     force_at,
@@ -33,7 +32,6 @@ from .correction import Correction
 from .driver import Depths, Pairs
 from .kernel import (
     N_COMMON,
-    VECTOR,
     E,
     Floats,
     R,
@@ -48,7 +46,6 @@ from .uncertainty import Calibration, Uncertainty
 _FINITE = 0.01  # Delta/R at which the law says how far finite elastic strain takes it from Hertz
 
 _pair_numbers = reader(PairNumbers, N_COMMON)  # behind the common numbers
-_CONTACT = types.NamedUniTuple(types.float64, len(Contact._fields), Contact)
 
 
 @loading_kernel
@@ -62,7 +59,7 @@ def _radius(par, depth, _peak):
     return par[R] * spread_at(depth / par[R], _pair_numbers(par)).a
 
 
-@njit(_CONTACT(VECTOR, types.float64), cache=True, _nrt=False)
+@njit(cache=True, _nrt=False)
 def contact_of(par, depth):
     """The contact at `depth`, from a parameter vector."""
     return contact(depth / par[R], _pair_numbers(par))

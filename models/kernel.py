@@ -24,11 +24,12 @@ LOADING_SIGNATURE = float64(VECTOR, float64)
 BRANCH_SIGNATURE = float64(VECTOR, float64, float64)
 RESIDUAL_SIGNATURE = types.UniTuple(float64, 2)(VECTOR, float64)
 
+# No signature: a law is compiled when it is first asked, for what it is asked with.
 # error_model: no check for a division by zero, which costs as much as the division.
 # _nrt: no reference counts, which cost as much as the arithmetic; a kernel allocates nothing.
-loading_kernel = njit(LOADING_SIGNATURE, cache=True, _nrt=False, error_model="numpy")
-branch_kernel = njit(BRANCH_SIGNATURE, cache=True, _nrt=False, error_model="numpy")
-residual_kernel = njit(RESIDUAL_SIGNATURE, cache=True, _nrt=False, error_model="numpy")
+loading_kernel = njit(cache=True, _nrt=False, error_model="numpy")
+branch_kernel = njit(cache=True, _nrt=False, error_model="numpy")
+residual_kernel = njit(cache=True, _nrt=False, error_model="numpy")
 
 
 class Common(NamedTuple):
@@ -119,7 +120,7 @@ def hertz_force(par, depth):
     return par[K_HERTZ] * depth * math.sqrt(depth)
 
 
-@njit(float64(float64, float64, float64, float64), cache=True, _nrt=False)
+@njit(cache=True, _nrt=False)
 def hertz_recovery(force_peak, depth, peak, residual):
     """Elastic recovery about the residual depth, F_m ((d - d_r)/(d_m - d_r))^(3/2) (3.5-3.6)."""
     if depth <= residual or peak <= residual:

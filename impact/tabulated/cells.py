@@ -12,15 +12,15 @@ from collections.abc import Callable
 from dataclasses import dataclass
 
 import numpy as np
-from numba import float64, int64, njit, types
+from numba import float64, int64, njit
 from numpy.typing import NDArray
 
 from ...models.kernel import VECTOR
 
 Array = NDArray[np.float64]
 
-_LOW, _BINS_PER_UNIT, _BINS, _CELLS = range(4)
-_HEAD = 4
+_LOW, _BINS_PER_UNIT, BINS, _CELLS = range(4)
+GUIDE = 4
 _ORDER = 7
 _NODES = 0.5 - 0.5 * np.cos(np.pi * np.arange(_ORDER) / (_ORDER - 1))
 _BETWEEN = np.array([0.03, 0.15, 0.37, 0.63, 0.85, 0.97])
@@ -51,7 +51,8 @@ class Cells:
 
 def cells_of(
     function: Callable[[Array], Array], low: float, high: float, *, tolerance: float,
-    least: float = 1e-12,
+    least: float = 1e-12, start: int = _START, relative: tuple[int, ...] = (),
+    bins: int = 0,
 ) -> Cells:  # fmt: skip
     """Return the table of a function: cells are halved until the tolerance holds in each.
 
@@ -65,6 +66,12 @@ def cells_of(
         Largest error of any column at the places where a cell is checked.
     least
         Cells are not halved below this width: what remains there is a jump.
+    start
+        Cells to begin with, all of one width.
+    bins
+        Bins of the guide; as many as suit the number of cells when left out.
+    relative
+        Columns whose tolerance is over their own value.
 
     Examples
     --------
@@ -73,8 +80,8 @@ def cells_of(
     >>> bool(abs(column_at(table.vector, 0, 0, 1.0) - np.sin(1.0)) < 1e-9)
     True
     """
-    left = np.linspace(low, high, _START + 1)[:-1]
-    width = np.full(_START, (high - low) / _START)
+    left = np.linspace(low, high, start + 1)[:-1]
+    width = np.full(start, (high - low) / start)
     done: list[tuple[Array, Array, Array]] = []
     error = np.zeros(1)
     while len(left):
@@ -84,7 +91,10 @@ def cells_of(
         values = function(places.ravel()).reshape(len(left), len(_NODES) + len(_BETWEEN), -1)
         nodes, between = values[:, :_ORDER], values[:, _ORDER:]
         own = np.einsum("pk,nkc->npc", _FIT, nodes)
-        off = np.abs(np.einsum("bp,npc->nbc", _CHECK, own) - between).max(axis=1)
+        off = np.abs(np.einsum("bp,npc->nbc", _CHECK, own) - between)
+        for column in relative:
+            off[..., column] /= np.abs(between[..., column])
+        off = off.max(axis=1)
         wide = width > least
         good = ~wide | (off.max(axis=1) <= tolerance)
         jump = ~wide
@@ -97,10 +107,10 @@ def cells_of(
         width = np.concatenate([halves, halves])
     lefts, widths, owns = (np.concatenate(part) for part in zip(*done, strict=True))
     order = np.argsort(lefts)
-    return Cells(_packed(lefts[order], widths[order], owns[order], high), error, len(order))
+    return Cells(_packed(lefts[order], widths[order], owns[order], high, bins), error, len(order))
 
 
-def _packed(left: Array, width: Array, own: Array, high: float) -> Array:
+def _packed(left: Array, width: Array, own: Array, high: float, bins: int) -> Array:
     """Put cells, with a linear one before and one behind, into one vector."""
     scaled = own / width[:, None, None] ** np.arange(_ORDER)[None, :, None]
     first, last = np.zeros((2, _ORDER, own.shape[2]))
@@ -110,7 +120,7 @@ def _packed(left: Array, width: Array, own: Array, high: float) -> Array:
     # the first cell counts from its right end, where it meets the second
     lefts = np.concatenate([left[:1], left, [high]])
     coefficients = np.concatenate([first[None], scaled, last[None]]).transpose(2, 0, 1)
-    bins = _BINS_PER_CELL * len(lefts)
+    bins = bins or _BINS_PER_CELL * len(lefts)
     edges = left[0] + (high - left[0]) * np.arange(bins) / bins
     guide = np.maximum(np.searchsorted(lefts[1:], edges, side="right"), 0)
     guide[0] = 0
@@ -121,20 +131,23 @@ def _packed(left: Array, width: Array, own: Array, high: float) -> Array:
 @njit(int64(VECTOR, int64, float64), cache=True, _nrt=False, error_model="numpy")
 def cell_at(table, at, x):
     """Return the cell that holds `x`, of the table that begins at `at`."""
-    bins = int(table[at + _BINS])
+    bins = int(table[at + BINS])
     place = (x - table[at + _LOW]) * table[at + _BINS_PER_UNIT]
     k = min(int(max(place, 0.0)), bins - 1)
-    cell = int(table[at + _HEAD + k])
-    first = at + _HEAD + bins
+    cell = int(table[at + GUIDE + k])
+    first = at + GUIDE + bins
     while x >= table[first + cell + 1]:
         cell += 1
     return cell
 
 
-@njit(float64(VECTOR, int64, int64, int64, float64), cache=True, _nrt=False, error_model="numpy")
+@njit(
+    float64(VECTOR, int64, int64, int64, float64),
+    cache=True, _nrt=False, error_model="numpy", forceinline=True,
+)  # fmt: skip
 def column_in(table, at, cell, column, x):
     """Return a column at `x`, which lies in `cell`."""
-    first, cells = at + _HEAD + int(table[at + _BINS]), int(table[at + _CELLS])
+    first, cells = at + GUIDE + int(table[at + BINS]), int(table[at + _CELLS])
     u = x - table[first + cell]
     k = first + cells + 1 + (column * cells + cell) * _ORDER
     u2 = u * u
@@ -146,10 +159,3 @@ def column_in(table, at, cell, column, x):
 def column_at(table, at, column, x):
     """Return a column at `x`."""
     return column_in(table, at, cell_at(table, at, x), column, x)
-
-
-@njit(types.void(VECTOR, int64, int64, VECTOR, VECTOR), cache=True, _nrt=False)
-def fill_column(table, at, column, x, out):
-    """Write a column at each of `x`, shape (n,), into `out`."""
-    for i in range(len(x)):
-        out[i] = column_in(table, at, cell_at(table, at, x[i]), column, x[i])

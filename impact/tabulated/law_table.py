@@ -1,9 +1,12 @@
 """A contact law of one pair as a table: the same answers at a hundredth of a microsecond.
 
-ln F, ln a, both residual depths over the peak depth and the exponent of the recovery are
-polynomials in ln(depth) over cells that are halved until the stated error holds; borders of a
-published law become borders of cells. The table stands in the parameter vector behind the pair's
-common numbers, so that whatever takes a law's kernels takes these.
+F/depth^(3/2), a/depth^(1/2), both residual depths over the peak depth and the exponent of the
+recovery are polynomials over cells that are halved until the stated error holds; borders of a
+published law become borders of cells. A cell is found, and the polynomial taken, by the place of
+the depth: its binary exponent and fraction, read off its bits as one number. That grows like
+log2(depth), straight within each octave, and needs no logarithm. The table stands in the
+parameter vector behind the pair's common numbers, so that whatever takes a law's kernels takes
+these.
 """
 
 from __future__ import annotations
@@ -13,7 +16,7 @@ from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
-from numba import njit, types
+from numba import int64, njit, types
 
 from ...core.errors import InputError
 from ...core.material import Pair
@@ -30,36 +33,61 @@ from ...models.kernel import (
     loading_kernel,
     residual_kernel,
 )
-from .cells import Array, Cells, cell_at, cells_of, column_at, column_in, fill_column
+from ..bits import bits_of
+from .cells import BINS, GUIDE, Array, Cells, cells_of, column_in
 
 ERROR = 1e-8
-"""Error of a table: of ln F and ln a, of residual depths over the peak, of the exponent."""
+"""Error of a table: of F and a over their own, of residual depths over the peak, of the power."""
 
 SHALLOWEST, DEEPEST = 1e-9, 1.0
-"""Depths over R between which a law is tabulated; below, it goes on as the power that it is."""
+"""Depths over R between which a law is tabulated, whole octaves; beyond, it goes on as Hertz's."""
 
 _FORCE, _RADIUS, _SPHERE, _FLAT, _EXPONENT = range(5)
 _COLUMNS = 5
 _KEPT = 200
 _TABLES: dict[tuple[str, bytes, float], Cells] = {}
 
+_OCTAVE, _OCTAVES = N_COMMON, N_COMMON + 1
+_TABLE = N_COMMON + 2
+"""Behind the common numbers: the first octave's bits and how many octaves there are, then cells."""
+_BIN = 52 - 4
+"""A bin of the cells' guide is a sixteenth of an octave: what the bits say beyond this one."""
+
+
+@njit(cache=True, _nrt=False, error_model="numpy", forceinline=True)
+def _found(par, depth):
+    """Cell of a depth, and its place in octaves from the begin of the table."""
+    ahead = bits_of(depth) - int64(par[_OCTAVE])
+    ahead = min(max(ahead, 0), int64(par[_OCTAVES]) * (1 << 52) - 1)
+    x = ahead * 2.0**-52
+    cell = int64(par[_TABLE + GUIDE + (ahead >> _BIN)])
+    first = _TABLE + GUIDE + int64(par[_TABLE + BINS])
+    while x >= par[first + cell + 1]:
+        cell += 1
+    return cell, x
+
+
+@njit(cache=True, _nrt=False, error_model="numpy", forceinline=True)
+def _column(par, column, depth):
+    cell, x = _found(par, depth)
+    return column_in(par, _TABLE, cell, column, x)
+
 
 @loading_kernel
 def _loading(par, depth):
-    return math.exp(column_at(par, N_COMMON, _FORCE, math.log(depth)))
+    return depth * math.sqrt(depth) * _column(par, _FORCE, depth)
 
 
 @branch_kernel
 def _radius(par, depth, _peak):
-    return math.exp(column_at(par, N_COMMON, _RADIUS, math.log(depth)))
+    return math.sqrt(depth) * _column(par, _RADIUS, depth)
 
 
 @residual_kernel
 def _residual(par, peak):
-    x = math.log(peak)
-    cell = cell_at(par, N_COMMON, x)
-    sphere = column_in(par, N_COMMON, cell, _SPHERE, x)
-    return max(sphere, 0.0) * peak, max(column_in(par, N_COMMON, cell, _FLAT, x), 0.0) * peak
+    cell, x = _found(par, peak)
+    sphere = column_in(par, _TABLE, cell, _SPHERE, x)
+    return max(sphere, 0.0) * peak, max(column_in(par, _TABLE, cell, _FLAT, x), 0.0) * peak
 
 
 @branch_kernel
@@ -71,7 +99,7 @@ def _unloading(par, depth, peak):
     force = _loading(par, peak)
     if depth >= peak:
         return force
-    exponent = column_at(par, N_COMMON, _EXPONENT, math.log(peak))
+    exponent = _column(par, _EXPONENT, peak)
     return force * ((depth - rest) / (peak - rest)) ** exponent
 
 
@@ -100,25 +128,9 @@ class TabulatedLaw(ContactLaw):
         return _KERNELS
 
     def parameters(self, pair: Pair) -> Array:
-        """Common numbers, then the table, shape (n,)."""
-        return np.concatenate([common_parameters(pair), self.table(pair).vector])
-
-    def loading(self, pair: Pairs, depth: Depths) -> Array:
-        """Force on first loading, shape (...) [N]; the fast way for many depths of one pair."""
-        d = np.asarray(depth, dtype=float)
-        if not isinstance(pair, Pair) or d.ndim == 0:
-            return super().loading(pair, depth)
-        if not np.all(np.isfinite(d)):
-            raise InputError("a depth is not a number", key="depth", allowed="finite depths in m")
-        flat = np.ascontiguousarray(d.ravel())
-        force = np.empty(flat.size)
-        closed = flat > 0.0
-        logs = np.log(flat, out=np.full(flat.size, math.log(pair.R)), where=closed)
-        fill_column(self.table(pair).vector, 0, _FORCE, logs, force)
-        np.exp(force, out=force)
-        force[~closed] = 0.0
-        self.warn_outside(pair, depth)
-        return force.reshape(d.shape)
+        """Common numbers, begin and length of the range, then the table, shape (n,)."""
+        head = [float(_bits(_first_octave(pair.R))), float(_octaves(pair.R))]
+        return np.concatenate([common_parameters(pair), head, self.table(pair).vector])
 
     def warn_outside(self, pair: Pairs, depth: Depths) -> None:
         """Warn where the law itself would."""
@@ -173,12 +185,37 @@ def _table(law: ContactLaw, par: Array, R: float, error: float) -> Cells:
             allowed="a law with such a recovery",
         )
 
+    first, count = _first_octave(R), _octaves(R)
+
     def columns(x: Array) -> Array:
+        octave = np.minimum(np.floor(x), count - 1)
+        depth = np.ldexp(first * (1.0 + (x - octave)), octave.astype(int))
         out = np.empty((len(x), _COLUMNS))
-        _ask(*_functions(kernels), par, x, out)
+        _ask(*_functions(kernels), par, depth, out)
         return out
 
-    return cells_of(columns, math.log(SHALLOWEST * R), math.log(DEEPEST * R), tolerance=error)
+    return cells_of(
+        columns,
+        0.0,
+        float(count),
+        tolerance=error,
+        start=count,
+        relative=(_FORCE, _RADIUS),
+        bins=16 * count,
+    )
+
+
+def _bits(number: float) -> int:
+    return int(np.float64(number).view(np.int64))
+
+
+def _first_octave(R: float) -> float:
+    """Power of two at or below the shallowest depth."""
+    return math.ldexp(0.5, math.frexp(SHALLOWEST * R)[1])
+
+
+def _octaves(R: float) -> int:
+    return math.ceil(math.log2(DEEPEST * R / _first_octave(R)))
 
 
 def _functions(kernels: Kernels) -> tuple[Any, Any, Any, Any]:
@@ -194,13 +231,13 @@ _SPLIT = types.FunctionType(RESIDUAL_SIGNATURE)
     types.void(_LOADING, _BRANCH, _BRANCH, _SPLIT, VECTOR, VECTOR, types.float64[:, ::1]),
     cache=True, _nrt=False,
 )  # fmt: skip
-def _ask(loading, radius, unloading, residual, par, x, out):
-    """Fill the columns at x = ln(depth)."""
-    for i in range(len(x)):
-        depth = math.exp(x[i])
+def _ask(loading, radius, unloading, residual, par, depths, out):
+    """Fill the columns at some depths."""
+    for i in range(len(depths)):
+        depth = depths[i]
         sphere, flat = residual(par, depth)
-        out[i, 0] = math.log(loading(par, depth))
-        out[i, 1] = math.log(radius(par, depth, depth))
+        out[i, 0] = loading(par, depth) / (depth * math.sqrt(depth))
+        out[i, 1] = radius(par, depth, depth) / math.sqrt(depth)
         out[i, 2], out[i, 3] = sphere / depth, flat / depth
         rest = sphere + flat
         out[i, 4] = 1.5

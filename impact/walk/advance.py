@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 
 import numpy as np
-from numba import boolean, float64, int64, njit
+from numba import boolean, float64, int64, njit, types
 
 from .. import force as fo
 from . import layout as at
@@ -16,7 +16,7 @@ from .step import STAGES, step
 # fmt: off
 
 
-@njit(inline="always", **PLAIN)
+@njit(types.void(MODEL, WORK), cache=True, **PLAIN)
 def _fit_step(m, w):
     """Shorten the next step to the longest allowed, to a border, or to the end of its variable."""
     now, seen = w.now, w.seen
@@ -33,6 +33,10 @@ def _fit_step(m, w):
             most = longest * abs(seen[at.RATE])
             most = most / place if place * place > most else math.sqrt(most)
             h = min(max(h, -most), most)
+    if variable == at.BY_ROOT_TIME and now[at.TURNING] > 0.0 and seen[at.ACCELERATION] < 0.0:
+        # not past the turning point, which the rate comes to in one step
+        room = -0.5 * seen[at.RATE] / seen[at.ACCELERATION]
+        h = min(h, math.sqrt(place * place + room) - place)
     # On loading by depth a step can end on the border of a stretch.
     pressing = variable == at.BY_ROOT_DEPTH and now[at.PHASE] == at.LOAD
     bordering = False
@@ -76,7 +80,7 @@ def _give_way(m, w, error):
     return not (variable < at.BY_ROOT_DEPTH and h < 1e-14 * t_ref)
 
 
-@njit(inline="always", **PLAIN)
+@njit(types.void(WORK, float64), cache=True, **PLAIN)
 def _go_on(w, grown):
     """Carry the end of a step over as the beginning of the next one."""
     now, seen, variable = w.now, w.seen, w.now[at.VARIABLE]
@@ -90,6 +94,12 @@ def _go_on(w, grown):
     approaching, pressing = now[at.APPROACHING] > 0.0, now[at.PRESSING] > 0.0
     if now[at.PHASE] == at.UNLOAD and now[at.SIMPLE] > 0.0 and variable == at.BY_TIME:
         now[at.FRESH] = float64(not approaching)
+    if variable == at.BY_ROOT_TIME and now[at.SIMPLE] == 0.0:
+        # the modes rule from here on, and they ask for even steps of time
+        span, place = grown * (2.0 * now[at.AT] - now[at.TAKEN]), 2.0 * now[at.AT]
+        now[at.VARIABLE], now[at.STEP] = at.BY_TIME, span
+        for j in range(len(w.z)):
+            w.stages[0, j] /= place
     if now[at.TURNING] > 0.0 and approaching and (variable < at.BY_ROOT_DEPTH or pressing):
         span = grown if variable == at.BY_TIME else grown * (2.0 * now[at.AT] + grown)
         span = span / seen[at.RATE] if pressing else span
@@ -111,6 +121,9 @@ def advance(m, w):
         return AGAIN
     h = now[at.STEP]
     grown = h * min(6.0, 0.9 * max(error, 1e-12) ** -0.125)
+    if now[at.VARIABLE] == at.BY_ROOT_TIME and now[at.SIMPLE] > 0.0:
+        # equal steps of the root grow in time as they come
+        grown = min(grown, h if now[at.AT] > 0.0 else 1.22 * h)
     event = find_event(m, w)
     if event == AGAIN:
         return AGAIN
@@ -130,5 +143,7 @@ def advance(m, w):
         if now[at.PRESSING] > 0.0:
             now[at.STEP] = grown
         elif now[at.VARIABLE] < at.BY_ROOT_DEPTH:
-            now[at.STEP] = min(grown, max(now[at.TAKEN], 0.5 * h))
+            # only friction and the surface bend sharply
+            smooth = now[at.VARIABLE] == at.BY_TIME and event <= at.RETURNED
+            now[at.STEP] = grown if smooth else min(grown, max(now[at.TAKEN], 0.5 * h))
     return event

@@ -152,9 +152,15 @@ def change(m, w, event):
         now[at.APPROACHING] = 0.0
         if math.isnan(tally[at.FIRST_TURN]):
             tally[at.FIRST_TURN] = z[at.TIME]
-        now[at.VARIABLE], now[at.STEP] = at.BY_TIME, 0.08 * w.scales[at.T_REF]
         if now[at.PHASE] == at.LOAD:
             _peak(m, w)
+        first, branch = 0.1 * w.scales[at.T_REF], w.branch
+        if now[at.SIMPLE] > 0.0 and w.seen_new[at.ACCELERATION] < 0.0:
+            left = branch[0] - branch[1] - branch[2]
+            first = max(0.75 * math.sqrt(-left / w.seen_new[at.ACCELERATION]), 1e-3 * first)
+        elif now[at.VARIABLE] == at.BY_TIME:
+            first = min(0.9 * now[at.STEP], first)
+        now[at.VARIABLE], now[at.STEP] = at.BY_TIME, first
     elif event == at.RETURNED:
         now[at.APPROACHING] = 1.0
     elif event == at.RELOAD:

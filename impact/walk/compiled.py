@@ -2,29 +2,36 @@
 
 from __future__ import annotations
 
+from typing import Any, NamedTuple
+
 import numpy as np
 from numba import int64, njit, types
+from numpy.typing import NDArray
 
 from ...models.kernel import VECTOR
 from .. import surface as su
 from ..force import BRANCH, DAMPING, LOADING, N_BRANCH, RADIATION, SPLIT
 from . import layout as at
 from .advance import advance
+from .bundle import bundled
 from .change import change, part
 from .events import rubbing
 from .flight import N_FAST
 from .land import AGAIN, NONE
-from .layout import MATRIX, MODEL, OBSERVABLES, PLAIN, WORK, Model, Work
+from .layout import MATRIX, MODEL, OBSERVABLES, PLAIN, WORK, WORK_TUPLE, Model, Work
 from .record import begin, finish, note, note_flight
 from .step import STAGES
 from .touch import refresh, touch
 
-__all__ = ["OBSERVABLES", "many_impacts", "one_impact"]
+__all__ = ["OBSERVABLES", "Given", "many_impacts"]
+
+Array = NDArray[np.float64]
 
 # fmt: off
 _LANES = 16
 """The state is filled up to a multiple of this: loops over it then leave no rest to do singly."""
 _MODES = types.Array(types.float64, 3, "C")
+_FLAGS, _PLACES = types.Array(types.boolean, 1, "C"), types.Array(int64, 1, "C")
 
 
 @njit(types.void(MODEL, WORK), cache=True, **PLAIN)
@@ -60,90 +67,91 @@ def walk(m, w):
     finish(m, w)
 
 
-@njit(types.UniTuple(int64, 2)(VECTOR, VECTOR, int64), cache=True, _nrt=False)
-def _size_of(force, body, n):
-    """Length of the state with n modes, as laid out and as much of it as is in use."""
-    waves = force[DAMPING] != 0.0 or force[RADIATION] != 0.0
-    held = body[at.S_MASS] == np.inf and body[at.S_PLATE] == 0.0
-    used = at.N_RIGID + 2 * n
-    if n > 0 or waves or not held:
-        used += at.N_TAIL
-    if body[at.COMPLIANCE] < np.inf:
-        used += 1
-    return -(-used // _LANES) * _LANES, used
+class Given(NamedTuple):
+    """What impacts are given, one row each or one row for all; `breaks` are one vector for all."""
+
+    par: Any
+    force: Any
+    factors: Any
+    breaks: Any
+    body: Any
+    surface: Any
+    omega: Any
+    psi: Any
 
 
-@njit(WORK(int64, int64, VECTOR, VECTOR, MATRIX), cache=True)
-def _work_of(size, n, surface, out, history):
-    """Return room for impacts with a state of length `size` and n modes."""
-    return Work(
-        np.zeros(size), np.zeros(size), np.zeros(size), np.zeros(size), np.zeros(size),
-        np.ones(size), np.zeros(N_BRANCH), surface, np.zeros(at.N_SEEN), np.zeros(at.N_SEEN),
-        np.zeros(at.N_SEEN), np.zeros(at.N_EVENTS), np.zeros(at.N_EVENTS), np.zeros(at.N_NOW),
-        np.zeros(at.N_SCALES), np.zeros(at.N_TALLY), np.zeros(su.N_IMPRINT), out,
+def many_impacts(
+    kernels: tuple[Any, ...], given: Given, out: Array, *, left: Array | None = None,
+    history: Array | None = None,
+) -> int:
+    """Integrate row after row of `given.body`; fill `out` with OBSERVABLES and COUNTS.
+
+    The surfaces that the impacts leave go into the rows of `left`, as far as there are any, states
+    of the motion into those of `history`; returned is how many of the latter the last impact took.
+    """
+    n, body = given.omega.shape[1], given.body
+    left = np.zeros((0, su.N_SURFACE)) if left is None else left
+    history = np.zeros((0, len(at.HISTORY))) if history is None else history
+    waves = (given.force[:, DAMPING] != 0.0) | (given.force[:, RADIATION] != 0.0)
+    moves = np.isfinite(body[:, at.S_MASS]) | (body[:, at.S_PLATE] != 0.0)
+    tailed = moves | waves | (n > 0)
+    used = at.N_RIGID + 2 * n + at.N_TAIL * tailed + np.isfinite(body[:, at.COMPLIANCE])
+    rows = np.zeros(1)
+    for size in np.unique(-(-used // _LANES) * _LANES):
+        own = np.flatnonzero(-(-used // _LANES) * _LANES == size)
+        work = _work_of(int(size), n, history)
+        _impacts(*kernels, *given, work, tailed, used, own, out, left, rows)
+    return int(rows[0])
+
+
+def _work_of(size: int, n: int, history: Array) -> Work:
+    """Return room for an impact with a state of length `size` and n modes."""
+    vectors = (
+        *5 * (size,), size, N_BRANCH, su.N_SURFACE, *3 * (at.N_SEEN,), *2 * (at.N_EVENTS,),
+        at.N_NOW, at.N_SCALES, at.N_TALLY, su.N_IMPRINT, at.N_OUT, at.N_SUMS)
+    rest = (
         np.zeros((STAGES + 1, size)), np.zeros((N_FAST, n)), history,
         np.zeros(at.N_EVENTS, np.bool_))
+    return Work._make([*(np.zeros(count) for count in vectors), *rest])
 
 
-@njit(types.void(VECTOR, VECTOR, VECTOR, MATRIX, VECTOR), cache=True, _nrt=False)
-def _sum_up(force, body, omega, psi, sums):
-    """Fill the sums of a model."""
-    n = len(omega)
-    sums[:] = 0.0
-    for k in range(n):
-        sums[at.S_XX] += psi[0, k] ** 2
-        sums[at.S_XY] += psi[0, k] * psi[1, k]
-        sums[at.S_XP] += psi[0, k] * psi[2, k]
+@njit(types.void(MODEL, WORK), cache=True, **PLAIN)
+def _sum_up(m, w):
+    """Fill the model's sums."""
+    sums, body = m.sums, m.body
+    for k in range(at.PER_MASS):
+        sums[k] = 0.0
+    for k in range(len(m.omega)):
+        sums[at.S_XX] += m.psi[0, k] ** 2
+        sums[at.S_XY] += m.psi[0, k] * m.psi[1, k]
+        sums[at.S_XP] += m.psi[0, k] * m.psi[2, k]
     sums[at.PER_MASS], sums[at.PER_INERTIA] = 1.0 / body[at.MASS], 1.0 / body[at.INERTIA]
-    _, used = _size_of(force, body, n)
-    springs = 1 if body[at.COMPLIANCE] < np.inf else 0
-    sums[at.HAS_TAIL] = 1.0 if used - springs > at.N_RIGID + 2 * n else 0.0
-    sums[at.SIZE] = float(used)
-
-
-@njit(
-    types.void(LOADING, BRANCH, BRANCH, SPLIT, VECTOR, VECTOR, VECTOR, VECTOR, VECTOR, VECTOR,
-               VECTOR, MATRIX, VECTOR, MATRIX, VECTOR),
-    cache=True, nogil=True,
-)
-def one_impact(loading, radius, unloading, residual, par, force, factors, breaks, body, surface,
-               omega, psi, out, history, rows):
-    """Integrate one impact; fill `out` with OBSERVABLES and COUNTS, update `surface`.
-
-    As many rows of `history` are filled as there are; `rows` takes how many.
-    """
-    size, _ = _size_of(force, body, len(omega))
-    sums = np.zeros(at.N_SUMS)
-    _sum_up(force, body, omega, psi, sums)
-    m = Model(loading, radius, unloading, residual, par, force, factors, breaks, body, omega, psi,
-              sums)
-    w = _work_of(size, len(omega), surface, out, history)
-    walk(m, w)
-    rows[0] = w.tally[at.ROWS]
 
 
 @njit(
     types.void(LOADING, BRANCH, BRANCH, SPLIT, MATRIX, MATRIX, MATRIX, VECTOR, MATRIX, MATRIX,
-               MATRIX, _MODES, MATRIX),
-    cache=True, nogil=True,
+               MATRIX, _MODES, WORK_TUPLE, _FLAGS, _PLACES, _PLACES, MATRIX, MATRIX, VECTOR),
+    cache=True, nogil=True, _nrt=False, no_cfunc_wrapper=True,
 )
-def many_impacts(loading, radius, unloading, residual, par, force, factors, breaks, body, surface,
-                 omega, psi, out):
-    """Integrate row after row; all but `breaks` and `body` hold one row or one per impact.
-
-    The surfaces stay as they are. Room is made anew only where the state has another length.
-    """
-    n = omega.shape[1]
-    sums = np.zeros(at.N_SUMS)
-    w = _work_of(0, n, np.zeros(su.N_SURFACE), np.zeros(at.N_OUT), np.zeros((0, len(at.HISTORY))))
-    for i in range(len(body)):
-        f, modes = force[min(i, len(force) - 1)], omega[min(i, len(omega) - 1)]
-        shapes = psi[min(i, len(psi) - 1)]
-        size, _ = _size_of(f, body[i], n)
-        if size != len(w.z):
-            w = _work_of(size, n, w.surface, w.out, w.history)
-        _sum_up(f, body[i], modes, shapes, sums)
-        w.surface[:] = surface[min(i, len(surface) - 1)]
-        walk(Model(loading, radius, unloading, residual, par[min(i, len(par) - 1)], f,
-                   factors[min(i, len(factors) - 1)], breaks, body[i], modes, shapes, sums), w)
-        out[i] = w.out
+def _impacts(loading, radius, unloading, residual, par, force, factors, breaks, body, surface,
+             omega, psi, work, tailed, used, own, out, left, rows):
+    """Integrate the impacts `own`, all of which have a state of one length."""
+    w = bundled(work)
+    sums, kept = work.sums, work.surface
+    for i in own:
+        m = bundled(Model(
+            loading, radius, unloading, residual, par[min(i, len(par) - 1)],
+            force[min(i, len(force) - 1)], factors[min(i, len(factors) - 1)], breaks, body[i],
+            omega[min(i, len(omega) - 1)], psi[min(i, len(psi) - 1)], sums))
+        _sum_up(m, w)
+        sums[at.HAS_TAIL], sums[at.SIZE] = 1.0 if tailed[i] else 0.0, float(used[i])
+        first = min(i, len(surface) - 1)
+        for j in range(len(kept)):
+            kept[j] = surface[first, j]
+        walk(m, w)
+        for j in range(at.N_OUT):
+            out[i, j] = work.out[j]
+        if i < len(left):
+            for j in range(len(kept)):
+                left[i, j] = kept[j]
+        rows[0] = work.tally[at.ROWS]

@@ -15,7 +15,7 @@ from .layout import MODEL, PLAIN, WORK
 # fmt: off
 
 
-@njit(types.UniTuple(float64, 2)(float64), cache=True, inline="always", **PLAIN)
+@njit(types.UniTuple(float64, 2)(float64), cache=True, forceinline=True, **PLAIN)
 def half_turn(x):
     """Sine and cosine of half a rotation; by their series where these are exact to rounding."""
     y = x * x
@@ -63,9 +63,10 @@ def _kinematics_of(m, z, seen):
     seen[at.SLIDING] = sliding
 
 
-# The bundles are handed over by value, field for field: what each stage of a step calls is inlined.
-_kinematics_inlined = njit(inline="always", **PLAIN)(_kinematics_of)
-kinematics = njit(types.void(MODEL, VECTOR, VECTOR), cache=True, **PLAIN)(_kinematics_of)
+# What each stage of a step calls is inlined there, and only there.
+_SEEN = types.void(MODEL, VECTOR, VECTOR)
+_kinematics_inlined = njit(_SEEN, cache=True, forceinline=True, **PLAIN)(_kinematics_of)
+kinematics = njit(_SEEN, cache=True, **PLAIN)(_kinematics_of)
 
 
 @njit(types.UniTuple(float64, 2)(MODEL, VECTOR), cache=True, **PLAIN)
@@ -100,8 +101,9 @@ def _penetration_of(m, w, z, seen):
         seen[at.SLOPE], seen[at.TRAVEL] = slope, speed
 
 
-_penetration_inlined = njit(inline="always", **PLAIN)(_penetration_of)
-penetration = njit(types.void(MODEL, WORK, VECTOR, VECTOR), cache=True, **PLAIN)(_penetration_of)
+_MET = types.void(MODEL, WORK, VECTOR, VECTOR)
+_penetration_inlined = njit(_MET, cache=True, forceinline=True, **PLAIN)(_penetration_of)
+penetration = njit(_MET, cache=True, **PLAIN)(_penetration_of)
 
 
 @njit(float64(MODEL, float64), cache=True, **PLAIN)
@@ -179,6 +181,6 @@ def _contact_of(m, w, z, seen):
     return f, (mu + ploughing) * f, ploughing, stiffness
 
 
-contact_inlined = njit(inline="always", **PLAIN)(_contact_of)
-contact = njit(
-    types.UniTuple(float64, 4)(MODEL, WORK, VECTOR, VECTOR), cache=True, **PLAIN)(_contact_of)
+_FORCES = types.UniTuple(float64, 4)(MODEL, WORK, VECTOR, VECTOR)
+contact_inlined = njit(_FORCES, cache=True, forceinline=True, **PLAIN)(_contact_of)
+contact = njit(_FORCES, cache=True, **PLAIN)(_contact_of)

@@ -132,7 +132,7 @@ def _yielding_values(m, w, z, seen, values):
             m, w, mode, w.scales[at.AHEAD], z, w.spare, w.moved)
 
 
-@njit(inline="always", **PLAIN)
+@njit(types.void(MODEL, WORK, VECTOR, VECTOR, VECTOR), cache=True, **PLAIN)
 def event_values(m, w, z, seen, values):
     """Write the event functions at a state: each falls through zero when its event happens.
 
@@ -150,7 +150,7 @@ def event_values(m, w, z, seen, values):
         _yielding_values(m, w, z, seen, values)
 
 
-@njit(inline="always", **PLAIN)
+@njit(types.void(MODEL, WORK), cache=True, **PLAIN)
 def mark_active(m, w):
     """Mark the events that can end the present interval."""
     now, active = w.now, w.active

@@ -8,7 +8,7 @@ from __future__ import annotations
 
 import math
 
-from numba import boolean, float64, int64, njit
+from numba import boolean, float64, int64, njit, types
 
 from .. import force as fo
 from . import layout as at
@@ -23,7 +23,7 @@ NONE, AGAIN = -1, -2
 """Beside the events: the step held none; it is to be taken anew."""
 
 
-@njit(inline="always", **PLAIN)
+@njit(types.UniTuple(float64, 2)(MODEL, WORK), cache=True, **PLAIN)
 def _first_crossing(m, w):
     """Return the event that the step crosses first, -1 for none, and its share of the step."""
     now, h = w.now, w.now[at.STEP]
@@ -132,7 +132,7 @@ def _close_in(m, w, chosen, part):
     return error
 
 
-@njit(inline="always", **PLAIN)
+@njit(int64(MODEL, WORK), cache=True, **PLAIN)
 def find_event(m, w):
     """Return the event that ends the step just taken, and end it there; NONE, or AGAIN."""
     now, h = w.now, w.now[at.STEP]

@@ -8,6 +8,7 @@ from numba import types
 
 from ...models.kernel import VECTOR
 from ..force import BRANCH, LOADING, SPLIT
+from .bundle import Bundle
 
 # The kernels take their state as plain vectors; the names stay on few lines.
 # fmt: off
@@ -15,7 +16,11 @@ MATRIX = types.Array(types.float64, 2, "C", readonly=False)
 FLAGS = types.Array(types.boolean, 1, "C", readonly=False)
 # The loops over the modes may be summed in vectors. Nothing in the walk
 # allocates: _nrt=False leaves out numba's counting of references, which took half of an impact.
-PLAIN = {"error_model": "numpy", "fastmath": {"reassoc", "contract"}, "_nrt": False}
+# Only kernels call these: wrappers for Python and C would double what is to be compiled.
+PLAIN = {
+    "error_model": "numpy", "fastmath": {"reassoc", "contract"}, "_nrt": False,
+    "no_cpython_wrapper": True, "no_cfunc_wrapper": True,
+}
 
 
 class Model(NamedTuple):
@@ -61,15 +66,17 @@ class Work(NamedTuple):
     tally: Any
     mark: Any
     out: Any
+    sums: Any
     stages: Any
     fast: Any
     history: Any
     active: Any
 
 
-MODEL = types.BaseTuple.from_types(
-    (LOADING, BRANCH, BRANCH, SPLIT, *6 * (VECTOR,), MATRIX, VECTOR), Model)
-WORK = types.BaseTuple.from_types((*18 * (VECTOR,), *3 * (MATRIX,), FLAGS), Work)
+MODEL = Bundle(types.BaseTuple.from_types(
+    (LOADING, BRANCH, BRANCH, SPLIT, *6 * (VECTOR,), MATRIX, VECTOR), Model))
+WORK_TUPLE = types.BaseTuple.from_types((*19 * (VECTOR,), *3 * (MATRIX,), FLAGS), Work)
+WORK = Bundle(WORK_TUPLE)
 
 # The state vector: rise of the centre of mass, rotation, their rates, slip and the integrals:
 # impulses along y, x and about the centre of mass, work given to the contact and to friction.

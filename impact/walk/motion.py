@@ -27,22 +27,29 @@ def pace_of(variable, place, seen):
     return 1.0 / seen[at.ACCELERATION]
 
 
-@njit(float64(VECTOR, int64, float64, VECTOR, VECTOR), cache=True, **PLAIN)
-def _tail(body, tail, f, z, dz):
-    """Write the support's part of the derivative; return the acceleration of its sinking."""
+@njit(float64(VECTOR, int64, float64, VECTOR), cache=True, **PLAIN)
+def _sinking(body, tail, f, z):
+    """Return the acceleration of the support's sinking."""
     if body[at.S_MASS] == math.inf:
-        plate = body[at.S_PLATE]
-        dz[tail + at.W], dz[tail + at.W_RATE] = plate * f, 0.0
-        dz[tail + at.WORK_S] = f * plate * f
         return 0.0
     w, rate = z[tail + at.W], z[tail + at.W_RATE]
-    sinking = (f - body[at.S_STIFF] * w - body[at.S_DAMP] * rate) / body[at.S_MASS]
-    dz[tail + at.W], dz[tail + at.W_RATE] = rate, sinking
-    dz[tail + at.WORK_S] = f * rate
-    return sinking
+    return (f - body[at.S_STIFF] * w - body[at.S_DAMP] * rate) / body[at.S_MASS]
 
 
-@njit(inline="always", **PLAIN)
+@njit(
+    types.void(VECTOR, int64, float64, VECTOR, VECTOR, float64, float64), cache=True, **PLAIN)
+def _support(body, tail, f, z, dz, sinking, pace):
+    """Write the support's part of the derivative."""
+    # a plate's surface gives way at a speed proportional to the force
+    held = body[at.S_MASS] == math.inf
+    rate = body[at.S_PLATE] * f if held else z[tail + at.W_RATE]
+    dz[tail + at.W], dz[tail + at.W_RATE] = pace * rate, pace * sinking
+    dz[tail + at.WORK_S] = pace * (f * rate)
+
+
+@njit(
+    float64(MODEL, WORK, VECTOR, VECTOR, VECTOR, float64, float64),
+    cache=True, forceinline=True, **PLAIN)
 def _held(m, w, z, dz, seen, f, stiffness):
     """Return the tangential force that holds the point, or that its spring takes at rest."""
     body, omega, sums, spin = m.body, m.omega, m.sums, z[at.SPIN]
@@ -73,8 +80,10 @@ def _held(m, w, z, dz, seen, f, stiffness):
     return need
 
 
-@njit(inline="always", **PLAIN)
-def _ring(m, z, dz, f, ft, wall):
+@njit(
+    float64(MODEL, VECTOR, VECTOR, float64, float64, float64, float64),
+    cache=True, forceinline=True, **PLAIN)
+def _ring(m, z, dz, f, ft, wall, pace):
     """Write the modes' part of the derivative; return the power that the structure loses."""
     omega, n, loss, lost = m.omega, len(m.omega), m.body[at.LOSS], 0.0
     if n > 0:
@@ -82,16 +91,17 @@ def _ring(m, z, dz, f, ft, wall):
         q, p = z[at.N_RIGID : at.N_RIGID + n], z[at.N_RIGID + n :]
         dq, dp = dz[at.N_RIGID : at.N_RIGID + n], dz[at.N_RIGID + n :]
         for k in range(n):
-            dq[k] = p[k]
+            dq[k] = pace * p[k]
             push = across[k] * ft + along[k] * f + aside[k] * wall
-            dp[k] = push - omega[k] * (omega[k] * q[k] + loss * p[k])
+            dp[k] = pace * (push - omega[k] * (omega[k] * q[k] + loss * p[k]))
         if loss > 0.0:
             for k in range(n):
                 lost += loss * omega[k] * p[k] * p[k]
     return lost
 
 
-def _derivative_of(m, w, variable, place, z, dz, seen):
+@njit(types.void(MODEL, WORK, int64, float64, VECTOR, VECTOR, VECTOR), cache=True, **PLAIN)
+def derivative(m, w, variable, place, z, dz, seen):
     """Write the state's derivative and what is seen of the contact.
 
     `variable` is the independent one and `place` its value. The normal force acts along the normal
@@ -106,32 +116,26 @@ def _derivative_of(m, w, variable, place, z, dz, seen):
     seen[at.MARGIN] = abs(need) - (body[at.MU_STATIC] + ploughing) * f
     c, rise = seen[at.ARM], seen[at.RISE]
     turning = ft * (rise + body[at.TIP]) - f * c + wall * rise
-    dz[at.X], dz[at.Y], dz[at.PHI] = z[at.VX], z[at.VY], spin
-    dz[at.VX] = (ft + wall) * sums[at.PER_MASS]
-    dz[at.VY] = f * sums[at.PER_MASS] - body[at.GRAVITY]
-    dz[at.SPIN] = turning * sums[at.PER_INERTIA]
-    dz[at.SLIP] = seen[at.SLIDING]
-    dz[at.P_N], dz[at.P_T], dz[at.P_SPIN] = f, ft + wall, turning
-    dz[at.WORK_N] = f * seen[at.RATE]
-    dz[at.WORK_T] = -ft * seen[at.SLIDING]
-    dz[at.TIME] = 1.0
-    lost, sinking = _ring(m, z, dz, f, ft, wall), 0.0
-    tail = tail_of(m.omega, sums)
+    along = (ft + wall) * sums[at.PER_MASS]
+    up = f * sums[at.PER_MASS] - body[at.GRAVITY]
+    twist = turning * sums[at.PER_INERTIA]
+    tail, sinking = tail_of(m.omega, sums), 0.0
     if tail >= 0:
-        sinking = _tail(body, tail, f, z, dz)
-        dz[tail + at.WORK_D] = lost
-        dz[tail + at.WORK_R] = seen[at.RADIATED] * seen[at.RATE]
-        dz[tail + at.WORK_C] = (f - seen[at.STATIC] - seen[at.RADIATED]) * seen[at.RATE]
+        sinking = _sinking(body, tail, f, z)
     # Only used for a body without modes, over metal that does not lean.
-    acceleration = -dz[at.VY] + dz[at.SPIN] * c - spin * spin * rise - sinking
-    seen[at.ACCELERATION] = acceleration
-    if variable != at.BY_TIME:
-        pace = pace_of(variable, place, seen)
-        for j in range(len(z)):
-            dz[j] *= pace
-
-
-derivative_inlined = njit(inline="always", **PLAIN)(_derivative_of)
-derivative = njit(
-    types.void(MODEL, WORK, int64, float64, VECTOR, VECTOR, VECTOR), cache=True, **PLAIN,
-)(_derivative_of)
+    seen[at.ACCELERATION] = twist * c - up - spin * spin * rise - sinking
+    pace = pace_of(variable, place, seen)
+    dz[at.X], dz[at.Y], dz[at.PHI] = pace * z[at.VX], pace * z[at.VY], pace * spin
+    dz[at.VX], dz[at.VY], dz[at.SPIN] = pace * along, pace * up, pace * twist
+    dz[at.SLIP], dz[at.TIME] = pace * seen[at.SLIDING], pace
+    dz[at.P_N], dz[at.P_T], dz[at.P_SPIN] = pace * f, pace * (ft + wall), pace * turning
+    dz[at.WORK_N] = pace * (f * seen[at.RATE])
+    dz[at.WORK_T] = pace * (-ft * seen[at.SLIDING])
+    lost = _ring(m, z, dz, f, ft, wall, pace)
+    if tail >= 0:
+        _support(body, tail, f, z, dz, sinking, pace)
+        dz[tail + at.WORK_D] = pace * lost
+        dz[tail + at.WORK_R] = pace * (seen[at.RADIATED] * seen[at.RATE])
+        dz[tail + at.WORK_C] = pace * ((f - seen[at.STATIC] - seen[at.RADIATED]) * seen[at.RATE])
+    if body[at.COMPLIANCE] < math.inf:
+        dz[at.SPRING] *= pace

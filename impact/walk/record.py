@@ -19,6 +19,13 @@ from .motion import derivative
 # fmt: off
 
 
+@njit(types.void(VECTOR, float64), cache=True, **PLAIN)
+def fill(vector, value):
+    """Set all entries; numba's own way with slices compiles a broadcast."""
+    for j in range(len(vector)):
+        vector[j] = value
+
+
 @njit(float64(MODEL, float64), cache=True, **PLAIN)
 def _reference_depth(m, energy):
     """Depth [m] at which about `energy` [J] has been taken up; the scale of the tolerances.
@@ -44,10 +51,10 @@ def _reference_depth(m, energy):
 def begin(m, w):
     """Put the striker at its first touch and set the impact's scales."""
     body, z, scales, tally = m.body, w.z, w.scales, w.tally
-    z[:] = 0.0
-    tally[:] = 0.0
-    w.now[:] = 0.0
-    w.branch[:] = 0.0
+    fill(z, 0.0)
+    fill(tally, 0.0)
+    fill(w.now, 0.0)
+    fill(w.branch, 0.0)
     tally[at.FIRST_TURN], tally[at.ENDING] = np.nan, at.GOING
     scales[at.ORIGIN] = w.surface[su.BEGIN]
     low, _ = su.height(w.surface, w.surface[su.COUNT], scales[at.ORIGIN])
@@ -69,7 +76,7 @@ def begin(m, w):
     # Yield begins within the first step: the finer the tolerance, the less may be skipped.
     scales[at.FIRST_STEP] = 0.15 * math.sqrt(t_ref) * min(1.0, (tolerance / 1e-7) ** 0.25)
     arm, scale = math.sqrt(inertia / mass), w.scale
-    scale[:] = 1.0
+    fill(scale, 1.0)
     scale[at.X] = tolerance * (d_ref + abs(body[at.V_X]) * t_ref)
     scale[at.SLIP] = tolerance * (d_ref + abs(v_t) * t_ref)
     scale[at.Y] = tolerance * d_ref
@@ -89,7 +96,8 @@ def begin(m, w):
     tail = tail_of(m.omega, m.sums)
     if tail >= 0:
         scale[tail + at.W], scale[tail + at.W_RATE] = tolerance * d_ref, tolerance * v_n
-        scale[tail + at.WORK_S : tail + at.N_TAIL] = scale[at.WORK_N]
+        for j in range(tail + at.WORK_S, tail + at.N_TAIL):
+            scale[j] = scale[at.WORK_N]
 
 
 @njit(types.void(MODEL, WORK), cache=True, **PLAIN)
@@ -137,7 +145,7 @@ def finish(m, w):
         for j in range(len(kept)):
             kept[j] = w.z[j]
         tally[at.T_LAST] = kept[at.TIME]
-    out[:] = np.nan
+    fill(out, np.nan)
     kinematics(m, kept, w.seen)
     c, s = w.seen[at.ARM], w.seen[at.RISE] + m.body[at.TIP]
     v_n, v_t = scales[at.SPEED], scales[at.SPEED_T]

@@ -11,7 +11,7 @@ from scipy.integrate import DOP853
 
 from . import layout as at
 from .layout import MODEL, PLAIN, WORK
-from .motion import derivative_inlined
+from .motion import derivative
 
 # fmt: off
 STAGES = int(DOP853.n_stages)
@@ -64,7 +64,7 @@ def step(m, w, h):
             else:
                 for j in range(size):
                     z_new[j] += (a0 * s0[j] + a1 * s1[j]) + (a2 * s2[j] + a3 * s3[j])
-        derivative_inlined(m, w, variable, place + _C[i] * h, z_new, stages[i], w.seen_new)
+        derivative(m, w, variable, place + _C[i] * h, z_new, stages[i], w.seen_new)
     # Row by row, so that the inner loops run over the state without a chain of sums.
     fifth, third = w.moved, w.spare
     for j in range(size):

@@ -92,7 +92,12 @@ def refresh(m, w):
     if leaving and now[at.SIMPLE] > 0.0 and left < 0.6 * (branch[0] - rest) and runs:
         now[at.VARIABLE], now[at.AT] = at.BY_ROOT_DEPTH, math.sqrt(left)
         if now[at.STEP] > 0.0:
-            now[at.STEP] = -0.4 * now[at.AT]
+            # the rest at once where it is little
+            now[at.STEP] = -now[at.AT] if left < 0.3 * (branch[0] - rest) else -0.4 * now[at.AT]
+    elif leaving and now[at.SIMPLE] > 0.0 and seen[at.RATE] < 0.0:
+        # not to the parting, where the force fades like a broken power
+        if now[at.VARIABLE] == at.BY_TIME:
+            now[at.STEP] = min(now[at.STEP], -0.6 * left / seen[at.RATE])
     if now[at.PHASE] == at.LOAD and now[at.TURNING] > 0.0 and now[at.APPROACHING] > 0.0:
         _by_depth(w)
     if now[at.TO_RATE] > 0.0 or now[at.VARIABLE] == at.BY_RATE:

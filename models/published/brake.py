@@ -15,7 +15,7 @@ import math
 
 import numpy as np
 import numpy.typing as npt
-from numba import float64, njit
+from numba import njit
 
 from ...core.errors import InputError
 from ..base import Domain, Kernels, PublishedLaw, Standing
@@ -77,10 +77,7 @@ def _numbers_2012(common: Common) -> tuple[float, ...]:
     return depth, full, slope, common.k_hertz * depth * math.sqrt(depth)
 
 
-_FIVE = float64(float64, float64, float64, float64, float64)
-
-
-@njit(_FIVE, cache=True, _nrt=False)
+@njit(cache=True, _nrt=False)
 def cubic(t, low, high, slope_low, slope_high):
     """Cubic on 0 <= t <= 1 with the values and slopes of both ends."""
     rise = high - low

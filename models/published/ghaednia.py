@@ -19,7 +19,7 @@ from __future__ import annotations
 
 import math
 
-from numba import float64, njit, types
+from numba import njit
 
 from ...core.material import Pair
 from ..base import Domain, Kernels, PublishedLaw, Standing
@@ -28,7 +28,6 @@ from ..kernel import (
     N_COMMON,
     ONSET,
     SHARE,
-    VECTOR,
     Common,
     R,
     S,
@@ -75,12 +74,7 @@ def share_numbers(q: float, ratio: float, border: float) -> tuple[float, float, 
     return scale, 0.0, 0.46 * min(ratio, _EXPONENT_MAX), math.log(math.log(held))
 
 
-@njit(
-    float64(float64, float64, float64, float64, float64, float64),
-    cache=True,
-    _nrt=False,
-    error_model="numpy",
-)
+@njit(cache=True, _nrt=False, error_model="numpy")
 def _share(D, branch, scale, phase, steep, log_log):
     """delta_s* of 2.13, 2.14 (with 1.035 pi) and 2.15-2.16."""
     log_D = math.log(D)
@@ -131,7 +125,7 @@ def _numbers(common: Common) -> tuple[float, ...]:
     )
 
 
-@njit(types.UniTuple(float64, 3)(VECTOR, float64), cache=True, _nrt=False, error_model="numpy")
+@njit(cache=True, _nrt=False, error_model="numpy")
 def _weak_body(par, depth):
     """Deformation of the weak body, updated radius R' (2.18) and delta_n (2.19, 2.26)."""
     D = depth / par[R]
@@ -146,14 +140,14 @@ def _weak_body(par, depth):
     return delta, updated, delta / (par[_SLOPE_2] * updated)
 
 
-@njit(float64(float64, float64, float64), cache=True, _nrt=False, error_model="numpy")
+@njit(cache=True, _nrt=False, error_model="numpy")
 def _smooth_step(value, low, high):
     """Rise from 0 at `low` to 1 at `high`; three derivatives vanish at either end."""
     x = (value - low) / (high - low)
     return x**4 * (35.0 + x * (-84.0 + x * (70.0 - 20.0 * x)))
 
 
-@njit(float64(VECTOR, float64, float64), cache=True, _nrt=False, error_model="numpy")
+@njit(cache=True, _nrt=False, error_model="numpy")
 def _correction_low(par, n, log_n):
     """The factors chi of 2.23 and 2.29-2.30 (with an exponent)."""
     power = par[_POWER_6]
@@ -162,7 +156,7 @@ def _correction_low(par, n, log_n):
     return 0.4 + 0.55 * math.exp(0.022 * log_n) + 0.283 / math.sqrt(n) * power
 
 
-@njit(float64(VECTOR, float64), cache=True, _nrt=False, error_model="numpy")
+@njit(cache=True, _nrt=False, error_model="numpy")
 def _correction_high(par, n):
     """The factors chi of 2.25 and 2.32-2.33 (with an exponent)."""
     beyond = n - _HIGH
@@ -174,7 +168,7 @@ def _correction_high(par, n):
     return 1.024 - 0.004 * beyond**0.3814 + (0.013 + 2.2e-5 * beyond) * power
 
 
-@njit(float64(VECTOR, float64, float64), cache=True, _nrt=False, error_model="numpy")
+@njit(cache=True, _nrt=False, error_model="numpy")
 def _correction(par, n, log_n):
     """The correction chi of the contact radius."""
     if n <= _HIGH:
@@ -185,16 +179,14 @@ def _correction(par, n, log_n):
     return (1.0 - k) * _correction_low(par, n, log_n) + k * _correction_high(par, n)
 
 
-@njit(
-    float64(VECTOR, float64, float64, float64, float64), cache=True, _nrt=False, error_model="numpy"
-)
+@njit(cache=True, _nrt=False, error_model="numpy")
 def _model_radius(par, delta, updated, n, log_n):
     """Contact radius chi sqrt(R' delta (delta_n/1.9)^B) (2.21, 2.24, 2.28, 2.31, with the root)."""
     grown = updated * delta * math.exp(par[_B] * (log_n - _LOG_ELASTIC))
     return _correction(par, n, log_n) * math.sqrt(grown)
 
 
-@njit(float64(float64, float64), cache=True, _nrt=False)
+@njit(cache=True, _nrt=False)
 def model_hardness(weight, a_over_R):
     """H/Sy_min between flattening (2.35) and indentation (2.36 with the sign of 1.13), by 2.34."""
     x = min(a_over_R, 1.0)
@@ -204,9 +196,7 @@ def model_hardness(weight, a_over_R):
     return flattening + weight * (slip_line_pressure(x) - flattening)
 
 
-@njit(
-    float64(VECTOR, float64, float64, float64, float64), cache=True, _nrt=False, error_model="numpy"
-)
+@njit(cache=True, _nrt=False, error_model="numpy")
 def _model_force(par, delta, updated, n, log_n):
     """F = W_e F_e + W_p pi a^2 H Sy_min (2.37-2.43)."""
     a = _model_radius(par, delta, updated, n, log_n)

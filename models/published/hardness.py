@@ -11,7 +11,7 @@ from collections.abc import Callable
 
 import numpy as np
 import numpy.typing as npt
-from numba import float64, njit
+from numba import njit
 
 from ...core.errors import InputError
 
@@ -51,7 +51,7 @@ def olsson_larsson(a_over_R: npt.ArrayLike, *, LD: float) -> Floats:
     return np.asarray(3.0 * (1.0 - 0.0461 * x**2.214))
 
 
-@njit(float64(float64), cache=True, _nrt=False, error_model="numpy")
+@njit(cache=True, _nrt=False, error_model="numpy")
 def slip_line_pressure(x):
     """p/S of 1.13 at x = a/R, for use inside compiled laws."""
     if x < 1e-4:  # the series replaces the difference of two equal terms

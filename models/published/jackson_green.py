@@ -13,14 +13,13 @@ import math
 from dataclasses import replace
 
 import numpy as np
-from numba import float64, njit, types
+from numba import njit
 
 from ..base import Domain, Kernels, PublishedLaw, Standing
 from ..kernel import (
     CRITICAL,
     N_COMMON,
     ONSET,
-    VECTOR,
     C,
     Common,
     R,
@@ -57,14 +56,14 @@ def _radius(par, depth, peak):
     return math.sqrt(par[R] * depth * math.exp(par[_B] * (math.log(w) - _LOG_PLASTIC)))
 
 
-@njit(types.UniTuple(float64, 2)(VECTOR, float64), cache=True, _nrt=False, error_model="numpy")
+@njit(cache=True, _nrt=False, error_model="numpy")
 def _logarithms(par, w):
     """Logarithms of w and (a/R)^2 beyond w = 1.9 (1.21)."""
     log_w = math.log(w)
     return log_w, log_w + par[_LOG_ONSET] + par[_B] * (log_w - _LOG_PLASTIC)
 
 
-@njit(float64(VECTOR, float64, float64, float64), cache=True, _nrt=False, error_model="numpy")
+@njit(cache=True, _nrt=False, error_model="numpy")
 def _force(par, w, log_w, H):
     """F of 1.20 (4.10, corrected) with the hardness H in units of the yield strength."""
     elastic = math.exp(-0.25 * math.exp(5.0 / 12.0 * log_w)) * math.sqrt(w)

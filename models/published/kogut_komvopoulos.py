@@ -10,12 +10,11 @@ from __future__ import annotations
 
 import math
 
-from numba import float64, njit, types
+from numba import njit
 
 from ..base import Domain, Kernels, PublishedLaw, Standing
 from ..kernel import (
     N_COMMON,
-    VECTOR,
     Common,
     E,
     R,
@@ -46,14 +45,14 @@ def _numbers(common: Common) -> tuple[float, ...]:
     return ELASTIC / q, 0.839 + 0.656 * log_q, 2.192 - 0.394 * log_q, top, left
 
 
-@njit(types.UniTuple(float64, 2)(VECTOR, float64), cache=True, _nrt=False, error_model="numpy")
+@njit(cache=True, _nrt=False, error_model="numpy")
 def truncated(par, depth):
     """Square of the truncated contact's radius r' [m^2], and delta/r' (4.23)."""
     square = par[R] * par[R] if depth >= par[R] else depth * (2.0 * par[R] - depth)
     return square, depth / math.sqrt(square)
 
 
-@njit(float64(VECTOR, float64, float64), cache=True, _nrt=False, error_model="numpy")
+@njit(cache=True, _nrt=False, error_model="numpy")
 def truncated_hertz(par, square, depth):
     """Elastic force (4/3) E' sqrt(R) delta^(3/2) with r' for the radius (4.20, 4.24)."""
     return 2.0 * math.sqrt(2.0) / 3.0 * par[E] * depth * math.sqrt(square)

@@ -11,9 +11,9 @@ from __future__ import annotations
 import math
 
 import numpy as np
-from numba import float64, njit, types
+from numba import njit
 
-from ..kernel import K_HERTZ, N_COMMON, RATIO, VECTOR, E, hertz_force, hertz_recovery
+from ..kernel import K_HERTZ, N_COMMON, RATIO, E, hertz_force, hertz_recovery
 
 YIELD = N_COMMON
 """Place of a law's own critical approach, first of its numbers; up to it the law is Hertz's."""
@@ -66,7 +66,7 @@ def bounded_crater(loading, radius, par, peak):
     return to_weaker(par, left)
 
 
-@njit(float64(float64), cache=True, _nrt=False)
+@njit(cache=True, _nrt=False)
 def jackson(w):
     """Jackson, Chusoipin and Green: 1.02 [1 - ((w + 5.9)/6.9)^-0.54] (4.12), below 1."""
     if w <= 1.0:
@@ -75,7 +75,7 @@ def jackson(w):
     return min(1.02 * (1.0 - ((w + 5.9) / 6.9) ** -0.54), _MOST)
 
 
-@njit(float64(float64), cache=True, _nrt=False)
+@njit(cache=True, _nrt=False)
 def ghaednia(w):
     """Fitted to the experiments of chapter 3: 0.8 [1 - ((w + 5.5)/6.5)^-2] (3.7)."""
     if w <= 1.0:
@@ -84,7 +84,7 @@ def ghaednia(w):
     return 0.8 * (1.0 - x * x)
 
 
-@njit(float64(float64), cache=True, _nrt=False)
+@njit(cache=True, _nrt=False)
 def etsion(w):
     """Etsion, Kligerman and Kadin: (1 - w^-0.28)(1 - w^-0.69) (4.18)."""
     if w <= 1.0:
@@ -92,25 +92,25 @@ def etsion(w):
     return (1.0 - w**-0.28) * (1.0 - w**-0.69)
 
 
-@njit(float64(float64), cache=True, _nrt=False)
+@njit(cache=True, _nrt=False)
 def kogut_komvopoulos(modulus_ratio):
     """Kogut and Komvopoulos: 1 - 0.591 (E'/S)^-0.156, whatever the depth (4.22)."""
     return max(1.0 - 0.591 * modulus_ratio**-0.156, 0.0)
 
 
-@njit(float64(VECTOR, float64, float64, float64), cache=True, _nrt=False)
+@njit(cache=True, _nrt=False)
 def elastic_recovery(par, force, a, peak):
     """Recovery at constant contact radius: 1 - 3 F/(4 E' a peak); 0 for Hertz."""
     return max(1.0 - 0.75 * force / (par[E] * a * peak), 0.0)
 
 
-@njit(float64(VECTOR, float64, float64), cache=True, _nrt=False)
+@njit(cache=True, _nrt=False)
 def brake(par, force, peak):
     """Brake 2015: 1 - F_m/F_Hertz(peak) (4.31, corrected)."""
     return max(1.0 - force / (par[K_HERTZ] * peak * math.sqrt(peak)), 0.0)
 
 
-@njit(types.UniTuple(float64, 2)(VECTOR, float64), cache=True, _nrt=False)
+@njit(cache=True, _nrt=False)
 def to_weaker(par, total):
     """Split a residual depth: the weaker body takes it, equal strengths take halves.
 

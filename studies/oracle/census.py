@@ -102,7 +102,7 @@ class Count:
     failures: dict[str, list[str]] = field(default_factory=dict)
     worst: dict[str, float] = field(default_factory=dict)
     contacts: dict[int, int] = field(default_factory=dict)
-    turned: list[str] = field(default_factory=list)
+    turned: dict[str, list[str]] = field(default_factory=dict)
 
     def note(self, kind: str, number: int, value: float) -> None:
         """Enter one failure."""
@@ -146,7 +146,9 @@ def judge(number: int, scene: Scene, trace: Trace, count: Count) -> None:
     if excess(scene, impact) > BALANCE:
         count.note("restitution above 1", number, impact.restitution)
     elif impact.restitution > 1.0 + BALANCE:
-        count.turned.append(f"{number} ({impact.restitution:.6f})")
+        count.turned.setdefault(turned_by(scene), []).append(f"{number} ({impact.restitution:.6f})")
+        count.largest("energetic restitution of those above 1", impact.energetic_restitution)
+        count.largest("share of the energy kept by those above 1", 1.0 + gains(impact))
     if scene.force.radiation == 0.0:
         hidden = hidden_depth(trace)
         count.largest("depth without force [m]", hidden)
@@ -166,6 +168,15 @@ def excess(scene: Scene, impact: Impact) -> float:
         return 0.0
     approach = 0.5 * scene.striker.mass * scene.approach.speed**2
     return impact.restitution**2 - 1.0 - impact.gravity_work_J / approach
+
+
+def turned_by(scene: Scene) -> str:
+    """Why a point may leave faster than it came though energy is lost."""
+    if scene.striker.length > 0.0 and scene.approach.angle < 0.5 * math.pi - 1e-9:
+        return "leaning rods, whose tip the push turns up"
+    if scene.approach.tangential != 0.0:
+        return "balls that the wall of their crater throws up out of their sliding"
+    return "several touches"
 
 
 def gains(impact: Impact) -> float:
@@ -195,10 +206,10 @@ def told(found: Count) -> str:
     """Return the count in words."""
     lines = [f"{found.impacts} impacts; contacts: {dict(sorted(found.contacts.items()))}"]
     lines += [f"  largest residual, {name}: {x:.1e}" for name, x in sorted(found.worst.items())]
-    if found.turned:
+    for why, members in sorted(found.turned.items()):
         lines.append(
-            f"  leaning rods and grazing balls that leave faster than they came, losing energy: "
-            f"{len(found.turned)}; first {', '.join(found.turned[:4])}"
+            f"  restitution above 1, losing energy, {why}: {len(members)}; "
+            f"first {', '.join(members[:4])}"
         )
     for kind, members in sorted(found.failures.items()):
         lines.append(f"  {kind}: {len(members)}; first {', '.join(members[:4])}")

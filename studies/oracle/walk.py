@@ -63,7 +63,7 @@ class _Walk:
     def __init__(self, scene: Scene, a: Arrays, settings: Settings, tolerance: float) -> None:
         self.motion, self.a, self.settings = Motion(scene, a), a, settings
         self.rtol, self.small_share = tolerance, 0.1 * tolerance
-        self.surface = a.spot.copy()
+        self.surface = a.surface.copy()
 
     def run(self) -> Impact:
         mo, b = self.motion, self.a.body
