@@ -100,3 +100,20 @@ def test_a_sphere_is_a_solid_ball():
     ball = StrikerTable.model_validate({"shape": "sphere", "tip_radius_m": 0.01, "mass_kg": 0.5})
     assert ball.inertia == pytest.approx(2e-5)
     assert ball.length == 0.0
+
+
+@pytest.mark.parametrize(
+    ("changed", "key"),
+    [
+        ({"tip_radius_m": None}, "tip_radius_m"),
+        ({"tip_radius_m": -0.005}, "tip_radius_m"),
+        ({"density_kg_m3": -1.0}, "density_kg_m3"),
+        ({"density_kg_m3": None}, "mass_kg"),
+    ],
+)
+def test_what_a_spheres_mass_follows_from_is_missed_in_one_line(changed, key) -> None:
+    stated = {"shape": "sphere", "tip_radius_m": 0.005, "density_kg_m3": 7800.0, **changed}
+    given = {name: value for name, value in stated.items() if value is not None}
+    with pytest.raises(InputErrors) as failure:
+        parse_model(given, StrikerTable, source="ball.toml")
+    assert [error.key for error in failure.value.errors] == [key]
