@@ -76,6 +76,13 @@ def test_a_case_writes_its_curve_and_fields_and_is_a_law(tmp_path):
         ("radius_m = 0.002", "", ["radius_m", "missing"]),
         ("max_delta_over_R = 3e-4", "max_delta_over_R = 3", ["load.max_delta_over_R"]),
         ("unload_from = [3e-4]", "unload_from = [0.1]", ["load.unload_from"]),
+        # legal numbers that coordinates in double precision cannot carry
+        (
+            "max_delta_over_R = 3e-4\nunload_from = [3e-4]",
+            "max_delta_over_R = 1e-12",
+            ["load.max_delta_over_R", "1e-07 to 0.5"],
+        ),
+        ("Sy_Pa = 300e6", "Sy_Pa = 1e3", ["Sy_Pa", "first yield at Delta/R = "]),
         ('level = "smoke"', 'level = "best"', ["accuracy.level", "production"]),
         ("[flat]", "[flat]\nhardness = 3", ["flat.hardness", "unknown key"]),
     ],
