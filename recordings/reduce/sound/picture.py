@@ -63,6 +63,5 @@ def _picks(axis: Any, found: BounceTimes) -> None:
     kept = list(found.chain.kept)
     axis.plot(found.chain.times[kept], 1e3 * found.time_std[kept], "o", ms=4)
     axis.set(xlabel="time [s]", ylabel="standard deviation of the onset [ms]")
-    axis.margins(y=0.2)
-    axis.set_ylim(bottom=0.0)
+    axis.set_ylim(0.0, 1.3e3 * max(float(np.nan_to_num(found.time_std[kept]).max()), 1e-9))
     axis.grid(alpha=0.3)

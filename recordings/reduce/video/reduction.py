@@ -23,10 +23,6 @@ from ..images.clip import Clip
 from ..measured import Array, Measured, Trial, labels
 from .tracking import grey_levels, striker_bright, track_ball, track_rod
 
-SHAPES = ("rod", "sphere")
-BACKGROUNDS = ("none", "median")
-BRIGHTNESS = ("bright", "dark")
-
 _LEAN_FRAMES = 20
 _LEAN_LIMIT = math.radians(5.0)
 

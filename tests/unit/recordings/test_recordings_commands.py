@@ -1,6 +1,8 @@
 """Commands of recording sets, and sets made in memory that survive the way through files."""
 
 import re
+import subprocess
+import sys
 from pathlib import Path
 
 import numpy as np
@@ -123,3 +125,10 @@ def test_the_documentation_names_every_key_and_column_and_its_block_runs(monkeyp
     names = {}
     exec(compile(block, "recording-set.md", "exec"), names)
     assert names["found"].setup.strikers["rod"].mass_kg.value == 0.4607
+
+
+def test_help_on_a_reduction_loads_nothing_that_reduces():
+    listed = "import sys; from dentscope.recordings.reduce.kinds import KINDS, load_kind; "
+    listed += "import dentscope.recordings.reduce.row; [load_kind(k) for k in KINDS]; "
+    listed += "heavy = {'scipy', 'matplotlib', 'numba', 'skimage'} & set(sys.modules); "
+    subprocess.run([sys.executable, "-c", listed + "assert not heavy, heavy"], check=True)
