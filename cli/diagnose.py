@@ -30,6 +30,9 @@ def diagnose(
     report: Annotated[
         bool, typer.Option("--report/--no-report", help="Write report.html, or verdict.json alone.")
     ] = True,
+    solve: Annotated[
+        bool, typer.Option("--solve", help="A named hardening or rate by finite elements too.")
+    ] = False,
     chapter5: Annotated[
         bool, typer.Option("--chapter5", help="The thesis's oblique drops, nothing fitted.")
     ] = False,
@@ -67,7 +70,14 @@ def diagnose(
         typer.echo("\r\x1b[K", nl=False, err=True)
     text = json.dumps(verdict.to_dict(), indent=1, allow_nan=False)
     write_file(out / "verdict.json", text + "\n")
-    written = write_report(verdict, out / "report.html") if report else []
+    written = write_report(verdict, out / "report.html") if report else ()
     for line in lines(verdict):
         typer.echo(line)
+    if solve:
+        from ..start.closing import close, closed_lines, write_closed
+
+        closed = close(verdict, progress=show)
+        written = (*written, *write_closed(closed, out))
+        for line in closed_lines(closed):
+            typer.echo(line)
     typer.echo(f"\nwritten: {', '.join(map(str, (out / 'verdict.json', *written)))}")

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from functools import cached_property
 from typing import NamedTuple
@@ -15,6 +15,7 @@ from ..core.observables import OBSERVABLES
 from .conditions import Condition
 from .curves import Readings
 from .unknowns.drift import Drift, drift_of
+from .unknowns.followed import Entries, Followed, followed_of
 
 Array = NDArray[np.float64]
 Ints = NDArray[np.intp]
@@ -73,6 +74,7 @@ class Reduced(NamedTuple):
     cells: Cells
     drifts: tuple[Drift, ...]
     scatters: tuple[Scatter, ...]
+    followed: tuple[Followed, ...]
     notes: tuple[str, ...]
 
 
@@ -87,8 +89,12 @@ class _Mean(NamedTuple):
 
 
 class _Repeats(NamedTuple):
-    """Repeats of one observable at one condition, at the condition's mean speed: (n,) each."""
+    """Repeats of one observable at one condition, at the condition's mean speed: (n,) each.
 
+    `trial` is the row of trials.csv, `place` the place in the order of testing from 0 to 1.
+    """
+
+    trial: Ints
     place: Array
     value: Array
     std: Array
@@ -109,7 +115,11 @@ def compared(name: str, values: Array) -> Array:
 
 
 def cells_of(
-    readings: Mapping[str, Readings], speeds: Array, order: Array, conditions: Sequence[Condition]
+    readings: Mapping[str, Readings],
+    speeds: Array,
+    order: Array,
+    conditions: Sequence[Condition],
+    varied: Mapping[str, Sequence[str]],
 ) -> Reduced:
     """Return the cells of a set, and what its repeats say of themselves.
 
@@ -121,13 +131,20 @@ def cells_of(
         Normal speed [m/s] and place in the order of testing of every trial, shape (n,).
     conditions
         The nominal impacts.
+    varied
+        Entries of the columns `x_NAME` over the trials, by the column's name.
     """
     place = order / np.nanmax(order) if np.isfinite(order).any() else np.full(len(speeds), np.nan)
     found = {name: _compared(name, r, speeds, place, conditions) for name, r in readings.items()}
     dropped = sum(one.dropped for one in found.values())
     text = f"{dropped} single values lie far off their repeats and were left out"
     notes = (text,) if dropped else ()
-    drifts = [drift_of(n, one.repeats, observables=len(found)) for n, one in found.items()]
+    drifts = [
+        drift_of(n, [(r.place, r.value, r.std) for r in one.repeats], observables=len(found))
+        for n, one in found.items()
+    ]
+    followed = tuple(_followed(found, varied))
+    known = {f.observable for f in followed}
     means = [mean for one in found.values() for mean in one.means]
     size = {n: _rms([m.value for m in one.means]) for n, one in found.items() if one.means}
     std = np.array([m.std for m in means])
@@ -145,8 +162,27 @@ def cells_of(
     )
     return Reduced(
         cells, tuple(d for d in drifts if d is not None),
-        tuple(one.scatter for one in found.values() if one.scatter is not None), notes,
+        tuple(
+            one.scatter
+            for name, one in found.items()
+            # what a column explains is no scatter of unknown cause
+            if one.scatter is not None and name not in known
+        ),
+        followed, notes,
     )  # fmt: skip
+
+
+def _followed(
+    found: Mapping[str, _Compared], varied: Mapping[str, Sequence[str]]
+) -> Iterator[Followed]:
+    for column, entries in varied.items():
+        for name, one in found.items():
+            repeats = [
+                Entries(tuple(entries[i] for i in r.trial), r.value, r.std) for r in one.repeats
+            ]
+            seen = followed_of(column, name, repeats, tested=len(found) * len(varied))
+            if seen is not None:
+                yield seen
 
 
 def _compared(
@@ -163,7 +199,7 @@ def _compared(
     for number, (all_of, keep) in enumerate(zip(parted, kept, strict=True)):
         if not keep.any():
             continue
-        r = _Repeats(*(part[keep] for part in all_of))
+        r = _Repeats(all_of.trial[keep], all_of.place[keep], all_of.value[keep], all_of.std[keep])
         repeats.append(r)
         weight = 1.0 / r.std**2
         mean = float(np.sum(weight * r.value) / np.sum(weight))
@@ -192,7 +228,7 @@ def _repeats(name: str, read: Readings, speeds: Array, place: Array, c: Conditio
     s = std[index] / np.abs(values[index]) if log else std[index]
     # with the power that a plastic contact has
     y = y - _power(name, y) * np.log(speeds[index] / c.speed)
-    return _Repeats(place[index], y, s)
+    return _Repeats(index, place[index], y, s)
 
 
 def _rms(values: Sequence[float]) -> float:

@@ -88,8 +88,14 @@ def locate(
         )
     null_max = float(np.quantile((null / spread).max(axis=1), level))
     found.sort(key=lambda m: -abs(m.z))
+    columns = [
+        # the deviate that a normal variable exceeds as rarely, to first order in its logarithm
+        Miss(f.observable, OBSERVABLES[f.observable].phase, f.column,
+             f"recordings differ with {f.column}", math.sqrt(-2.0 * f.log_p))
+        for f in problem.followed
+    ]  # fmt: skip
     misses = tuple(m for i, m in enumerate(found) if i < least or abs(m.z) > null_max)
-    return Located(misses, min(threshold, null_max))
+    return Located((*columns, *misses), min(threshold, null_max))
 
 
 def _contrasts(problem: Problem) -> tuple[list[tuple[str, str]], Array]:

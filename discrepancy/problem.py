@@ -23,6 +23,7 @@ from .cells import NO_CELLS, Cells, Scatter, cells_of
 from .conditions import Condition, conditions_of
 from .curves import readings_of
 from .unknowns.drift import Drift
+from .unknowns.followed import Followed
 from .unknowns.lawerror import NO_ERROR, LawError, law_error
 from .unknowns.nuisances import ASSUMED_E, ASSUMED_NU, Nuisance, nuisances_of
 
@@ -43,6 +44,7 @@ class Problem:
     notes: tuple[str, ...] = ()
     drifts: tuple[Drift, ...] = ()
     scatters: tuple[Scatter, ...] = ()
+    followed: tuple[Followed, ...] = ()
     weightless: frozenset[int] = frozenset()
     """Cells that are too far off everything else to count."""
 
@@ -138,7 +140,8 @@ def problem_of(recordings: RecordingSet) -> Problem:
     stated = problem.scenes(np.zeros(problem.n_z))
     of_trial = {i: s for c, s in zip(conditions, stated, strict=True) for i in c.trials}
     readings, unread = readings_of(recordings, [of_trial[i] for i in sorted(of_trial)])
-    seen = cells_of(readings, approach.normal, recordings.trials.order, conditions)
+    trials = recordings.trials
+    seen = cells_of(readings, approach.normal, trials.order, conditions, trials.varied)
     if len(seen.cells) == 0:
         known = ", ".join(name for name, row in OBSERVABLES.items() if row.in_trials)
         raise InputError(
@@ -150,8 +153,9 @@ def problem_of(recordings: RecordingSet) -> Problem:
     assumed = [n.note for n in nuisances if n.note]
     notes = (*recordings.notes, *later, *assumed, *unread, *seen.notes)
     return replace(
-        problem, cells=seen.cells, drifts=seen.drifts, scatters=seen.scatters, notes=notes
-    )
+        problem, cells=seen.cells, drifts=seen.drifts, scatters=seen.scatters,
+        followed=seen.followed, notes=notes,
+    )  # fmt: skip
 
 
 def _law_of(target: TargetTable) -> ContactLaw:

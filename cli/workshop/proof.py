@@ -75,8 +75,10 @@ def run(
 def score(which: _Which = "full", out: _Base = _BASE) -> None:
     """Open the truths of the sets that have a sealed verdict, score, and rewrite docs/proof.md."""
     from ...core.errors import InputError
+    from ...core.provenance import source_commit
     from ...studies.proof import page as pages
     from ...studies.proof.case import open_run
+    from ...studies.proof.follow import read_lines
     from ...studies.proof.lists import LISTS
     from ...studies.proof.run import ROOT, run_folder
     from ...studies.proof.seal import SealBroken, tree_hash
@@ -91,7 +93,7 @@ def score(which: _Which = "full", out: _Base = _BASE) -> None:
         raise InputError(str(broken), source=str(folder), allowed="unbroken seals") from broken
     entry = pages.summary(
         cases, which=which, tree=tree_hash(ROOT), date=datetime.now(UTC).date().isoformat(),
-        total=len(LISTS[which]()),
+        total=len(LISTS[which]()), commit=source_commit(), followed=read_lines(folder),
     )  # fmt: skip
     _write_page(pages.keep(entry))
     for s in entry["scores"]:

@@ -17,6 +17,7 @@ from ..cells import Scatter
 from ..inference.fit import Fit
 from ..rank import Ranking
 from ..unknowns.drift import Drift
+from ..unknowns.followed import Followed
 from .odds import OUTSIDE, Odds
 
 FEWEST_CELLS, FEWEST_CONDITIONS = 6, 2
@@ -85,7 +86,7 @@ def decide(ranking: Ranking, odds: Odds, *, drifts: Sequence[Drift] = ()) -> Cho
         Changes over the order of testing, which are said beside any verdict.
     """
     cells, conditions = ranking.problem.cells, len(set(ranking.problem.cells.condition))
-    first = [*map(_scattered, ranking.problem.scatters)]
+    first = [*map(_follows, ranking.problem.followed), *map(_scattered, ranking.problem.scatters)]
     last = [*map(_drifted, drifts)]
     if len(cells) < FEWEST_CELLS:
         text = f"too few: only {len(cells)} numbers to compare, {FEWEST_CELLS} are needed"
@@ -190,6 +191,15 @@ def _scattered(s: Scatter) -> str:
         f"repeats of {OBSERVABLES[s.observable].label} differ {s.ratio:.2g} times more than their "
         "stated noise: it is too small, or something was varied and not recorded; their own "
         "scatter is used"
+    )
+
+
+def _follows(f: Followed) -> str:
+    row = OBSERVABLES[f.observable]
+    span = f"{100.0 * math.expm1(f.span):.2g} %" if row.log else f"{f.span:.2g}"
+    return (
+        f"unmodelled-condition: {row.label} follows {f.column}, by up to {span} between trials "
+        "that are otherwise alike; no part of the simulation knows this column"
     )
 
 

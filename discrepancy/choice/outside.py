@@ -3,8 +3,8 @@
 Half of it is a contact law that is free: 16 % in force, 50 % in recovery, over the depth. The
 other half knows nothing of contacts: each observable departs from the baseline by 3, 10 or 30 %,
 smoothly over what varies in the set, or from condition to condition. What repeats say of
-themselves, whatever the simulation, speaks for it as well: a drift over the order of testing, and
-scatter beyond any noise that a laboratory misjudges.
+themselves, whatever the simulation, speaks for it as well: a drift over the order of testing, a
+column `x_NAME` that they follow, and scatter beyond any noise that a laboratory misjudges.
 """
 
 from __future__ import annotations
@@ -22,7 +22,6 @@ from ..inference.fit import Fit
 from ..inference.linear import Mixture
 from ..problem import Problem
 from ..unknowns.covariates import nearness, same_observable
-from ..unknowns.drift import Drift
 
 Array = NDArray[np.float64]
 
@@ -55,16 +54,17 @@ def outside_of(problem: Problem, base: Fit) -> Mixture:
 
 def odd_repeats(problem: Problem) -> float:
     """Ln odds, by the repeats alone, that something is outside which no simulation knows."""
-    found = [_of_drift(d) for d in problem.drifts] + [_of_scatter(s) for s in problem.scatters]
+    found = [_worth(math.log(2.0) + float(norm.logsf(abs(d.z)))) for d in problem.drifts]
+    found += [_worth(f.log_p) for f in problem.followed]
+    found += [_of_scatter(s) for s in problem.scatters]
     return max(found, default=-math.inf)
 
 
-def _of_drift(drift: Drift) -> float:
+def _worth(log_p: float) -> float:
     """Ln of the most that a p value can be worth, 1/(-e p ln p).
 
     T. Sellke, M. J. Bayarri, J. O. Berger, Am. Stat. 55 (2001) 62.
     """
-    log_p = math.log(2.0) + float(norm.logsf(abs(drift.z)))
     return -1.0 - log_p - math.log(-log_p)
 
 

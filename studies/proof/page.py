@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import json
 import math
+from collections.abc import Sequence
 from dataclasses import asdict
 from pathlib import Path
 from typing import Any
@@ -11,6 +12,7 @@ from typing import Any
 from ...core.output import write_file
 from .calibrated import calibration, coverage_by_class, inclusion
 from .case import Case, interval
+from .follow import brought
 from .score import confusion, scores
 
 _DATA = Path(__file__).resolve().parents[2] / "data" / "proof"
@@ -59,7 +61,10 @@ import nothing of the diagnosis, of the contact laws, of the impact or of the re
 """
 
 
-def summary(cases: list[Case], *, which: str, tree: str, date: str, total: int) -> dict[str, Any]:
+def summary(
+    cases: list[Case], *, which: str, tree: str, date: str, total: int, commit: str = "",
+    followed: Sequence[dict[str, Any]] = (),
+) -> dict[str, Any]:  # fmt: skip
     """What is kept of a run.
 
     Parameters
@@ -70,16 +75,21 @@ def summary(cases: list[Case], *, which: str, tree: str, date: str, total: int) 
         List, tree hash and day of the run.
     total
         Number of sets on the list.
+    commit
+        Of the tool that was judged, if known.
+    followed
+        What proposed and random trials brought, from `follow`.
     """
     wrong = [c for c in cases if _wrong(c)]
     return {
-        "list": which, "tree": tree, "date": date, "sets": len(cases), "total": total,
+        "list": which, "tree": tree, "commit": commit, "date": date,
+        "sets": len(cases), "total": total,
         "failed": sum(not c.verdict for c in cases),
         "cpu_s": round(sum(float(c.event["cpu_s"]) for c in cases) / max(len(cases), 1), 1),
         "scores": [asdict(s) for s in scores(cases)],
         "confusion": confusion(cases), "calibration": calibration(cases),
         "inclusion": inclusion(cases), "coverage": coverage_by_class(cases),
-        "by_mechanism": _by_mechanism(cases),
+        "by_mechanism": _by_mechanism(cases), "brought": brought(list(followed)),
         "failures": [_told(c) for c in wrong],
     }  # fmt: skip
 
@@ -120,7 +130,8 @@ def page(runs: list[dict[str, Any]], *, impacts: int) -> str:
 def _run_text(run: dict[str, Any]) -> list[str]:
     lines = [
         f"## The last {'full ' if run['list'] == 'full' else ''}run", "",
-        f"Tree `{run['tree'][:12]}`, {run['date']}: {run['sets']} of {run['total']} sets, "
+        f"Tree `{run['tree'][:12]}`{_commit(run)}, {run['date']}: "
+        f"{run['sets']} of {run['total']} sets, "
         f"{run['failed']} without a verdict, {run['cpu_s']} s processor time a diagnosis.", "",
         "| score | value | 95 % interval | mark | |", "| --- | --- | --- | --- | --- |",
     ]  # fmt: skip
@@ -142,6 +153,7 @@ def _run_text(run: dict[str, Any]) -> list[str]:
     ]
     lines += [f"| {low:g} to {high:g} | {r} | {n} |" for low, high, r, n in run["calibration"]]
     lines += _inclusion_rows(run.get("inclusion", []))
+    lines += _brought_lines(run.get("brought", {}))
     lines += _coverage_rows(run.get("coverage", {}))
     lines += [
         "",
@@ -154,6 +166,22 @@ def _run_text(run: dict[str, Any]) -> list[str]:
         f"| {f['set']} | {f['truth']} | {_text(f['size'])} | {f['said']} |" for f in run["failures"]
     ]
     return [*lines, ""]
+
+
+def _commit(run: dict[str, Any]) -> str:
+    return f" (commit {run['commit'][:7]})" if run.get("commit") else ""
+
+
+def _brought_lines(found: dict[str, float]) -> list[str]:
+    if not found.get("sets"):
+        return []
+    return [
+        "", "### What a proposed trial brings", "",
+        f"Three more trials of {found['sets']:.0f} sets with something to tell apart: the entropy "
+        f"of the probabilities falls by {found['proposed']:.2f} nats where they are proposed, by "
+        f"{found['random']:.2f} at random places of the same rig"
+        + ("." if math.isnan(found["ratio"] or math.nan) else f": {found['ratio']:.1f} times."),
+    ]  # fmt: skip
 
 
 def _inclusion_rows(rows: list[tuple[float, float, float, int, int]]) -> list[str]:

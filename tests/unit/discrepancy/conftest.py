@@ -54,6 +54,7 @@ class Problem:
     derivative: np.ndarray
     drifts: tuple[Any, ...] = ()
     scatters: tuple[Any, ...] = ()
+    followed: tuple[Any, ...] = ()
     weightless: tuple[int, ...] = ()
     notes: tuple[str, ...] = ()
     error: Any = field(

@@ -1,0 +1,220 @@
+"""`dentscope diagnose --solve`: a named flow of the metal taken back to the finite elements.
+
+What the diagnosis infers of work hardening and of strain rate is a relative strength over depth,
+with Tabor's strain 0.2 a/R and rate 0.4 v/a. Here the constants become a flow law of the metal
+(Ludwik's S_y (1 + K p^n); Cowper and Symonds' 1 + (r/D)^(1/q)), the pair is pressed and unloaded by
+finite elements, and the impacts of the set are made again with that table. The constants come from
+the slower conditions; the fastest ones judge.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable, Iterator
+from dataclasses import dataclass, replace
+from pathlib import Path
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from .. import fem
+from ..core.errors import InputError
+from ..core.output import csv_text, write_file
+from ..discrepancy import Verdict
+from ..discrepancy.forward import Point, Simulator
+from ..discrepancy.inference.fit import Fit
+from ..discrepancy.mechanisms.base import Constants, Mechanism
+from ..discrepancy.problem import Problem
+from ..fitting.case_table import pair_table
+from ..models.table import PairTable, table_law
+from ..models.table_file import write_table
+from .metal_press import Press, presses
+from .pair import solved
+
+Array = NDArray[np.float64]
+Mask = NDArray[np.bool_]
+
+WHICH = ("baseline", "closed_form", "finite_elements")
+"""Simulations that are set beside the recordings."""
+CARRIED = ("work-hardening", "strain-rate-hardening")
+"""Mechanisms that the finite elements can carry."""
+_FASTEST = 0.9  # of the largest speed: conditions from there on are kept out
+_FEWEST = 6  # numbers from which constants are inferred
+
+
+class Compared(NamedTuple):
+    """One recorded number beside what the simulations say, as they are compared."""
+
+    observable: str
+    striker: str
+    speed_m_s: float
+    kept_out: bool
+    recorded: float
+    std: float
+    baseline: float
+    closed_form: float
+    finite_elements: float
+
+
+@dataclass(frozen=True, eq=False)
+class Closed:
+    """What finite elements with the inferred constants say of the recordings.
+
+    Parameters
+    ----------
+    constants
+        Mechanism to its numbers, from the conditions that were kept in.
+    rows
+        Every number of the conditions that were solved.
+    tables
+        The solved pairs, usable as contact laws where no rate acts.
+    """
+
+    constants: Constants
+    rows: tuple[Compared, ...]
+    tables: tuple[PairTable, ...]
+
+    def miss(self, which: str, *, kept_out: bool) -> float:
+        """Rms distance of a simulation from the recordings, in their standard errors."""
+        found = [
+            (getattr(r, which) - r.recorded) / r.std for r in self.rows if r.kept_out == kept_out
+        ]
+        return float(np.sqrt(np.mean(np.square(found)))) if found else math.nan
+
+
+def close(
+    verdict: Verdict,
+    *,
+    accuracy: fem.Accuracy | None = None,
+    progress: Callable[[str], None] = lambda _: None,
+) -> Closed:
+    """Solve the metal that a verdict names, and compare it with the recordings.
+
+    Parameters
+    ----------
+    verdict
+        From `diagnose`.
+    accuracy
+        Of the finite elements; quick by default.
+    progress
+        Called with a line before each solve.
+
+    Raises
+    ------
+    InputError
+        The verdict names nothing that the finite elements carry.
+    """
+    best, problem = verdict.best, verdict.ranking.problem
+    carried = [m for m in best.mechanisms if m.name in CARRIED]
+    if not carried or not verdict.choice.members:
+        raise InputError(
+            f"names {' and '.join(best.names) if verdict.choice.members else 'nothing'}",
+            source=verdict.name, key="--solve", allowed=" or ".join(CARRIED),
+        )  # fmt: skip
+    out = _kept_out(problem)
+    constants, z = _inferred(best, ~out)
+    simulator = Simulator(problem)
+    named = simulator.predict(best.mechanisms, [Point(z, constants)])[0]
+    plain = simulator.predict((), [Point(_inferred(verdict.ranking.base, ~out)[1])])[0]
+    peaks = simulator.observe(best.mechanisms, [Point(z, constants)])["peak_depth_m"][0]
+    bodies = _of_the_metal(problem, z)
+    rest = tuple(m for m in best.mechanisms if m not in carried)
+    solver = fem.Accuracy.quick() if accuracy is None else accuracy
+    found, tables = np.full(len(problem.cells), np.nan), []
+    for k, press in enumerate(presses(problem, bodies, carried, constants, peaks), start=1):
+        progress(f"finite elements, press {k}")
+        one = solved(press.problem, solver)
+        if not one.solution.outcome.completed:
+            raise InputError(str(one.solution.outcome), source=verdict.name, key="--solve",
+                             allowed="a pair that can be solved")  # fmt: skip
+        table = pair_table(one.solution, one.uncertainty)
+        tables.append(table)
+        here = np.isin(problem.cells.condition, press.conditions)
+        found[here] = _struck(problem, table, press, rest, bodies, constants)[here]
+    return Closed(constants, tuple(_rows(problem, out, plain, named, found)), tuple(tables))
+
+
+def closed_lines(closed: Closed) -> Iterator[str]:
+    """Yield what a comparison shows, for people: each observable, then who predicts better."""
+    yield ""
+    yield "By finite elements with the inferred constants"
+    for name, values in closed.constants.items():
+        yield f"  {name}: " + ", ".join(f"{k} = {v:.3g}" for k, v in values.items())
+    for out, words in ((False, "conditions that the constants come from"), (True, "kept out")):
+        told = ", ".join(
+            f"{which.replace('_', ' ')} {closed.miss(which, kept_out=out):.2g}" for which in WHICH
+        )
+        if any(r.kept_out == out for r in closed.rows):
+            yield f"  miss in standard errors, {words}: {told}"
+
+
+def write_closed(closed: Closed, out: Path) -> tuple[Path, ...]:
+    """Write every number as finite_elements.csv, and a table without rate as law.json."""
+    path = out / "finite_elements.csv"
+    write_file(path, csv_text(closed.rows, header=Compared._fields))
+    if len(closed.tables) != 1 or "strain-rate-hardening" in closed.constants:
+        return (path,)
+    return path, write_table(closed.tables[0], out / "law.json")
+
+
+def _kept_out(problem: Problem) -> Mask:
+    """Cells of the fastest conditions; none where too little would be left."""
+    speed = np.array([c.speed for c in problem.conditions])
+    out = (speed > _FASTEST * speed.max())[problem.cells.condition]
+    return out if np.sum(~out) >= _FEWEST else np.zeros_like(out)
+
+
+def _inferred(fitted: Fit, kept: Mask) -> tuple[Constants, Array]:
+    """Constants and unknowns that some of the cells alone speak for."""
+    mixture = fitted.mixture.of_cells(kept)
+    left = np.atleast_2d(fitted.residuals)[:, kept]
+    best = int(np.argmax(mixture.log_likelihood(left)))
+    z, _ = mixture.unknowns(left[best])
+    if not fitted.mechanisms:
+        return {}, z
+    return fitted.grid.values(fitted.grid.places()[best]), z
+
+
+def _of_the_metal(problem: Problem, z: Array) -> Array:
+    """The unknowns without what a closed form may be off, and with all strikers as stated."""
+    kept = [not n.name.startswith("strikers.") for n in problem.nuisances]
+    kept += [False] * problem.error.count
+    return np.where(kept, z, 0.0)
+
+
+def _struck(
+    problem: Problem, table: PairTable, press: Press, rest: tuple[Mechanism, ...], z: Array,
+    constants: Constants,
+) -> Array:  # fmt: skip
+    """Predictions (m,) of the conditions of a press by its table; nan elsewhere."""
+    own = [problem.conditions[k] for k in press.conditions]
+    number = {k: i for i, k in enumerate(press.conditions)}
+    here = np.isin(problem.cells.condition, press.conditions)
+    cells = replace(
+        problem.cells,
+        condition=np.array([number[k] for k in problem.cells.condition[here]], dtype=np.intp),
+        observable=tuple(np.array(problem.cells.observable)[here].tolist()),
+        value=problem.cells.value[here], std=problem.cells.std[here],
+        count=problem.cells.count[here],
+    )  # fmt: skip
+    alone = replace(
+        problem, law=table_law([table], name="finite elements"), cells=cells,
+        conditions=tuple(replace(c, after=number.get(c.after, -1)) for c in own),
+    )  # fmt: skip
+    values = {m.name: constants[m.name] for m in rest}
+    found = np.full(len(problem.cells), np.nan)
+    found[here] = Simulator(alone).predict(rest, [Point(z, values)])[0]
+    return found
+
+
+def _rows(
+    problem: Problem, out: Mask, plain: Array, named: Array, found: Array
+) -> Iterator[Compared]:
+    cells = problem.cells
+    for i in np.flatnonzero(np.isfinite(found)):
+        c = problem.conditions[cells.condition[i]]
+        yield Compared(
+            cells.observable[i], c.striker, c.speed, bool(out[i]), float(cells.value[i]),
+            float(cells.std[i]), float(plain[i]), float(named[i]), float(found[i]),
+        )  # fmt: skip

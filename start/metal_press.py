@@ -1,0 +1,99 @@
+"""Which presses of a metal by finite elements stand for the impacts of a recording set."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+from dataclasses import replace
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from .. import fem
+from ..core.flow import Flow, Rate, ludwik
+from ..core.material import Pair
+from ..discrepancy.mechanisms.base import Constants, Mechanism
+from ..discrepancy.problem import Problem
+from ..fem.problem import DEEPEST
+
+Array = NDArray[np.float64]
+Clock = tuple[tuple[float, float], ...]
+"""Rows of Delta/R and speed [m/s]."""
+
+_DEEPER, _TURNS, _DEPTHS = 1.25, 5, 60
+_SLOW = 0.1  # of the approach speed: where the clock of a press ends
+
+
+class Press(NamedTuple):
+    """One solve, and the conditions that it is of."""
+
+    problem: fem.ContactProblem
+    conditions: tuple[int, ...]
+
+
+def presses(
+    problem: Problem, z: Array, carried: Sequence[Mechanism], constants: Constants, peaks: Array
+) -> Iterator[Press]:
+    """Yield what to solve: a pair for all its sizes, or every speed where a rate acts."""
+    scenes = problem.scenes(z)
+    depth = peaks / np.array([s.pair.R for s in scenes])
+    if any(m.name == "strain-rate-hardening" for m in carried):
+        for k in _ends(problem):
+            turns = tuple(float(x * depth[k]) for x in (0.7, 0.85, 1.0))
+            clock = _clock(depth[k], scenes[k].approach.speed)
+            yield Press(_press(scenes[k].pair, constants, turns, clock), (k,))
+        return
+    alike: dict[tuple[object, ...], list[int]] = {}
+    for k, s in enumerate(scenes):
+        alike.setdefault((s.pair.sphere, s.pair.flat), []).append(k)
+    for these in alike.values():
+        low, high = depth[these].min(), depth[these].max()
+        turns = tuple(float(x) for x in np.geomspace(min(low, 0.3 * high), high, _TURNS))
+        yield Press(_press(scenes[these[0]].pair, constants, turns, ()), tuple(these))
+
+
+def _ends(problem: Problem) -> list[int]:
+    """Slowest and fastest condition of each striker on fresh metal."""
+    found: list[int] = []
+    for name in dict.fromkeys(c.striker for c in problem.conditions):
+        own = [k for k, c in enumerate(problem.conditions) if c.striker == name and c.after < 0]
+        own.sort(key=lambda k: problem.conditions[k].speed)
+        found += dict.fromkeys([own[0], own[-1]])
+    return found
+
+
+def _clock(depth: float, speed: float) -> Clock:
+    """Rows of Delta/R and speed of a striker that a plastic contact stops at a depth."""
+    x = np.linspace(0.0, 1.0, 12)
+    slowing = np.sqrt(np.maximum(1.0 - x**2, _SLOW**2))
+    return tuple((float(a * depth), float(speed * b)) for a, b in zip(x, slowing, strict=True))
+
+
+def _press(
+    pair: Pair,
+    constants: Constants,
+    turns: tuple[float, ...],
+    clock: Clock,
+) -> fem.ContactProblem:
+    metal = _flowing(pair, constants)
+    last = min(_DEEPER * max(turns), DEEPEST)
+    first = min(0.3 * fem.critical_depth(metal), 1e-2 * last)
+    return fem.ContactProblem(
+        pair=metal, depths=fem.geometric_depths(first, last, _DEPTHS), unload_from=turns,
+        speeds=clock,
+    )  # fmt: skip
+
+
+def _flowing(pair: Pair, constants: Constants) -> Pair:
+    """The pair with the flow law in the body that yields first."""
+    weak = "flat" if pair.flat.strength <= pair.sphere.strength else "sphere"
+    body = getattr(pair, weak)
+    curve = rate = None
+    if "work-hardening" in constants:
+        k = constants["work-hardening"]
+        curve = ludwik(Sy=body.Sy, K=k["hardening_ratio"] * body.Sy, n=k["hardening_exponent"])
+    if "strain-rate-hardening" in constants:
+        k = constants["strain-rate-hardening"]
+        q = 1.0 / k["rate_exponent"]
+        rate = Rate("cowper-symonds", 1000.0 / k["rise_at_1000_per_s"] ** q, q)
+    return replace(pair, **{weak: body.with_(flow=Flow(curve=curve, rate=rate))})
