@@ -22,8 +22,9 @@ from .. import fem
 from ..core.errors import InputError
 from ..core.output import csv_text, write_file
 from ..discrepancy import Verdict
+from ..discrepancy.cells import Cells
 from ..discrepancy.forward import Point, Simulator
-from ..discrepancy.inference.fit import Fit
+from ..discrepancy.inference.fit import fit
 from ..discrepancy.mechanisms.base import Constants, Mechanism
 from ..discrepancy.problem import Problem
 from ..fitting.case_table import pair_table
@@ -113,10 +114,12 @@ def close(
             source=verdict.name, key="--solve", allowed=" or ".join(CARRIED),
         )  # fmt: skip
     out = _kept_out(problem)
-    constants, z = _inferred(best, ~out)
-    simulator = Simulator(problem)
+    simulator, slower = Simulator(problem), Simulator(_of_cells(problem, ~out))
+    base = fit(slower, (), start=verdict.ranking.base)
+    refit = fit(slower, best.mechanisms, start=best, place=best.place)
+    constants, z = refit.grid.values(refit.place), refit.z
     named = simulator.predict(best.mechanisms, [Point(z, constants)])[0]
-    plain = simulator.predict((), [Point(_inferred(verdict.ranking.base, ~out)[1])])[0]
+    plain = simulator.predict((), [Point(base.z)])[0]
     peaks = simulator.observe(best.mechanisms, [Point(z, constants)])["peak_depth_m"][0]
     bodies = _of_the_metal(problem, z)
     rest = tuple(m for m in best.mechanisms if m not in carried)
@@ -165,15 +168,14 @@ def _kept_out(problem: Problem) -> Mask:
     return out if np.sum(~out) >= _FEWEST else np.zeros_like(out)
 
 
-def _inferred(fitted: Fit, kept: Mask) -> tuple[Constants, Array]:
-    """Constants and unknowns that some of the cells alone speak for."""
-    mixture = fitted.mixture.of_cells(kept)
-    left = np.atleast_2d(fitted.residuals)[:, kept]
-    best = int(np.argmax(mixture.log_likelihood(left)))
-    z, _ = mixture.unknowns(left[best])
-    if not fitted.mechanisms:
-        return {}, z
-    return fitted.grid.values(fitted.grid.places()[best]), z
+def _of_cells(problem: Problem, kept: Mask) -> Problem:
+    """The problem with some of its cells alone; its conditions are all there."""
+    c = problem.cells
+    cells = Cells(
+        c.condition[kept], tuple(np.array(c.observable)[kept].tolist()), c.value[kept], c.std[kept],
+        c.count[kept],
+    )  # fmt: skip
+    return replace(problem, cells=cells)
 
 
 def _of_the_metal(problem: Problem, z: Array) -> Array:
@@ -188,18 +190,14 @@ def _struck(
     constants: Constants,
 ) -> Array:  # fmt: skip
     """Predictions (m,) of the conditions of a press by its table; nan elsewhere."""
-    own = [problem.conditions[k] for k in press.conditions]
     number = {k: i for i, k in enumerate(press.conditions)}
     here = np.isin(problem.cells.condition, press.conditions)
-    cells = replace(
-        problem.cells,
-        condition=np.array([number[k] for k in problem.cells.condition[here]], dtype=np.intp),
-        observable=tuple(np.array(problem.cells.observable)[here].tolist()),
-        value=problem.cells.value[here], std=problem.cells.std[here],
-        count=problem.cells.count[here],
-    )  # fmt: skip
+    some = _of_cells(problem, here)
+    place = np.array([number[k] for k in some.cells.condition], dtype=np.intp)
+    own = [problem.conditions[k] for k in press.conditions]
     alone = replace(
-        problem, law=table_law([table], name="finite elements"), cells=cells,
+        some, law=table_law([table], name="finite elements"),
+        cells=replace(some.cells, condition=place),
         conditions=tuple(replace(c, after=number.get(c.after, -1)) for c in own),
     )  # fmt: skip
     values = {m.name: constants[m.name] for m in rest}

@@ -143,7 +143,7 @@ class Mixture:
         n = linear.J.shape[1]
         if n <= fixed:
             sizes = ONE
-        if not linear.form.size:
+        if not linear.form.any():
             forms = ONE
         parts, weights = [], []
         for (size, w), (times, v) in itertools.product(zip(*sizes, strict=True),

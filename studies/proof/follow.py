@@ -97,14 +97,19 @@ def with_trials(truth: Truth, folder: Path, trial: Trial, out: Path) -> Path:
     with tempfile.TemporaryDirectory() as place:
         added = Path(place) / "set"
         write_set(replace(truth, rig=more, instrument=instrument), added, name=folder.name)
-        head, *rows = list(csv.reader((added / "trials.csv").open(encoding="utf-8")))
-    before = list(csv.reader((out / "trials.csv").open(encoding="utf-8")))
+        head, *rows = _rows(added)
+    before = _rows(out)
     assert before[0] == head
     for k, row in enumerate(rows, start=len(before)):
         row[head.index("trial")], row[head.index("order")] = f"t{k:03d}", str(k)
     with (out / "trials.csv").open("w", newline="", encoding="utf-8") as stream:
         csv.writer(stream, lineterminator="\n").writerows([*before, *rows])
     return out
+
+
+def _rows(folder: Path) -> list[list[str]]:
+    with (folder / "trials.csv").open(newline="", encoding="utf-8") as stream:
+        return list(csv.reader(stream))
 
 
 def follow(run: Path, *, most: int, limit_s: float = 900.0) -> Iterator[dict[str, Any]]:

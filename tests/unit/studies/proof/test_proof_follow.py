@@ -39,7 +39,8 @@ def test_added_trials_are_of_the_same_truth_and_the_old_ones_stay(tmp_path):
     speed = float(np.median(case.rig.speed))
     out = with_trials(case, tmp_path / "set", Trial(body, speed, angle), tmp_path / "more")
     before, after = (
-        list(csv.DictReader((p / "trials.csv").open())) for p in (tmp_path / "set", out)
+        list(csv.DictReader((p / "trials.csv").read_text().splitlines()))
+        for p in (tmp_path / "set", out)
     )
     assert after[: len(before)] == before
     added = after[len(before) :]
