@@ -25,6 +25,7 @@ from ..discrepancy import Verdict
 from ..discrepancy.cells import Cells
 from ..discrepancy.forward import Point, Simulator
 from ..discrepancy.inference.fit import fit
+from ..discrepancy.inference.window import sharpened
 from ..discrepancy.mechanisms.base import Constants, Mechanism
 from ..discrepancy.problem import Problem
 from ..fitting.case_table import pair_table
@@ -41,6 +42,7 @@ WHICH = ("baseline", "closed_form", "finite_elements")
 CARRIED = ("work-hardening", "strain-rate-hardening")
 """Mechanisms that the finite elements can carry."""
 _FASTEST = 0.9  # of the largest speed: conditions from there on are kept out
+_ROUNDS = 8  # constants far from neutral move the stated numbers far
 _FEWEST = 6  # numbers from which constants are inferred
 
 
@@ -116,7 +118,8 @@ def close(
     out = _kept_out(problem)
     simulator, slower = Simulator(problem), Simulator(_of_cells(problem, ~out))
     base = fit(slower, (), start=verdict.ranking.base)
-    refit = fit(slower, best.mechanisms, start=best, place=best.place)
+    refit = fit(slower, best.mechanisms, start=best, place=best.place, rounds=_ROUNDS)
+    refit = sharpened(slower, refit)
     constants, z = refit.grid.values(refit.place), refit.z
     named = simulator.predict(best.mechanisms, [Point(z, constants)])[0]
     plain = simulator.predict((), [Point(base.z)])[0]

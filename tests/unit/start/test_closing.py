@@ -1,9 +1,20 @@
 """A named flow of the metal, taken back to the finite elements."""
 
+from types import SimpleNamespace
+
 import numpy as np
 import pytest
-from dentscope.core import Material, Pair
+from dentscope import fem
+from dentscope.core import InputError, Material, Pair
+from dentscope.discrepancy import MECHANISMS
+from dentscope.discrepancy.forward import Simulator
+from dentscope.discrepancy.inference.fit import fit
+from dentscope.discrepancy.problem import problem_of
+from dentscope.recordings import read
+from dentscope.start.closing import close, closed_lines, write_closed
 from dentscope.start.metal_press import _clock, _flowing
+from dentscope.studies.proof.generators import truth
+from dentscope.studies.proof.generators.folder import write_set
 
 STEEL = Material(E=200e9, nu=0.3, Sy=300e6)
 HARD = Material(E=200e9, nu=0.3, Sy=2e9)
@@ -35,3 +46,46 @@ def test_the_clock_stops_where_the_striker_does():
     assert np.interp(0.02 / np.sqrt(2.0), depth, speed) == pytest.approx(
         3.0 / np.sqrt(2.0), rel=0.02
     )
+
+
+def named(folder, name):
+    """What `close` asks of a verdict, without the nulls and rivals that it does not."""
+    problem = problem_of(read(folder))
+    mechanism = next(m for m in MECHANISMS if m.name == name)
+    base = fit(Simulator(problem), ())
+    best = fit(Simulator(problem), (mechanism,), start=base)
+    ranking = SimpleNamespace(problem=problem, base=base)
+    choice = SimpleNamespace(members=(best,))
+    return SimpleNamespace(name="set", best=best, ranking=ranking, choice=choice)
+
+
+@pytest.mark.fe
+def test_a_metal_that_hardens_goes_back_to_the_finite_elements(tmp_path):
+    """Recordings of the proof's own generator: Voce's law in a row of yielding springs."""
+    case = truth.draw(np.random.default_rng([21, 2]), "single", name="work-hardening")
+    write_set(case, tmp_path / "set", name="set")
+    verdict = named(tmp_path / "set", "work-hardening")
+    closed = close(verdict, accuracy=fem.Accuracy.smoke())
+    assert len(closed.rows) == len(verdict.ranking.problem.cells)
+    # constants from the slower conditions say more of the fastest than no mechanism does
+    out = {which: closed.miss(which, kept_out=True) for which in ("baseline", "closed_form")}
+    assert out["closed_form"] < 0.7 * out["baseline"]
+    # Tabor's strain stands for the strains of the elements: to the closed form's error and smoke's
+    for row in closed.rows:
+        near = 0.05 if row.observable == "restitution" else 0.12
+        assert row.finite_elements == pytest.approx(row.closed_form, abs=near), row
+    told = "\n".join(closed_lines(closed))
+    assert "kept out: baseline" in told
+    csv, law = write_closed(closed, tmp_path)
+    assert len(csv.read_text().splitlines()) == len(closed.rows) + 1
+    assert law.name == "law.json"
+
+
+def test_what_the_finite_elements_do_not_carry_is_refused():
+    best = SimpleNamespace(mechanisms=(SimpleNamespace(name="tilt"),), names=("tilt",))
+    verdict = SimpleNamespace(
+        name="set", best=best, ranking=SimpleNamespace(problem=None),
+        choice=SimpleNamespace(members=(best,)),
+    )  # fmt: skip
+    with pytest.raises(InputError, match="names tilt"):
+        close(verdict)
