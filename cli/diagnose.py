@@ -3,8 +3,9 @@
 from __future__ import annotations
 
 import json
+from collections.abc import Callable
 from pathlib import Path
-from typing import Annotated
+from typing import TYPE_CHECKING, Annotated
 
 import typer
 
@@ -12,6 +13,9 @@ from ..core.errors import InputError
 from ..core.output import write_file
 from . import studies
 from .places import folder_option
+
+if TYPE_CHECKING:
+    from ..discrepancy import Verdict
 
 
 def diagnose(
@@ -68,16 +72,27 @@ def diagnose(
     verdict = run(recordings, seed=seed, confirm=confirm, progress=show)
     if not quiet:
         typer.echo("\r\x1b[K", nl=False, err=True)
-    text = json.dumps(verdict.to_dict(), indent=1, allow_nan=False)
-    write_file(out / "verdict.json", text + "\n")
-    written = write_report(verdict, out / "report.html") if report else ()
+    written = _written(verdict, out, report=report)
     for line in lines(verdict):
         typer.echo(line)
     if solve:
-        from ..start.closing import close, closed_lines, write_closed
+        written += _solved(verdict, out, show)
+    typer.echo(f"\nwritten: {', '.join(map(str, written))}")
 
-        closed = close(verdict, progress=show)
-        written = (*written, *write_closed(closed, out))
-        for line in closed_lines(closed):
-            typer.echo(line)
-    typer.echo(f"\nwritten: {', '.join(map(str, (out / 'verdict.json', *written)))}")
+
+def _written(verdict: Verdict, out: Path, *, report: bool) -> list[Path]:
+    from ..discrepancy.report import write_report
+
+    text = json.dumps(verdict.to_dict(), indent=1, allow_nan=False)
+    found = [write_file(out / "verdict.json", text + "\n")]
+    return [*found, *write_report(verdict, out / "report.html")] if report else found
+
+
+def _solved(verdict: Verdict, out: Path, show: Callable[[str], None]) -> list[Path]:
+    """Take what the verdict names to the finite elements, and tell what they say."""
+    from ..start.closing import close, closed_lines, write_closed
+
+    closed = close(verdict, progress=show)
+    for line in closed_lines(closed):
+        typer.echo(line)
+    return list(write_closed(closed, out))
