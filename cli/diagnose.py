@@ -63,7 +63,7 @@ def diagnose(
 
     recordings = read(set_folder(folder))
     from ..discrepancy import diagnose as run
-    from ..discrepancy.report import lines, write_report
+    from ..discrepancy.report import lines
 
     def show(step: str) -> None:
         if not quiet:
