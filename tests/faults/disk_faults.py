@@ -23,20 +23,10 @@ from unittest import mock
 import numpy as np
 from dentscope import fem
 from dentscope.campaigns import Design, Store, publish, read_published, standard_case
-from dentscope.cli import fit as fit_command
 from dentscope.core import COMPLETED, InputError, Material, Pair
 from dentscope.core.disk import Disk
 from dentscope.core.output import write_figure, write_file, write_files
 from dentscope.fem import Counters, Curve, Solution
-from dentscope.impact.columns import Impacts
-from dentscope.models import coefficients
-from dentscope.recordings import read
-from dentscope.recordings.reduce.into_set import store
-from dentscope.recordings.reduce.measured import Measured, Trial
-from dentscope.recordings.reduce.reduced import Reduced
-from dentscope.recordings.reduce.row import Row
-from dentscope.recordings.template import write_template
-from dentscope.studies.closed_form.page import published_section
 
 CALLS = (
     "create", "open", "write", "resize", "sync", "rename", "remove", "make_folder", "sync_folder",
@@ -337,6 +327,9 @@ def publish_writer(folder):
 
 
 def reduced(place, speed):
+    from dentscope.recordings.reduce.measured import Measured, Trial
+    from dentscope.recordings.reduce.reduced import Reduced
+
     raw = place / "raw.csv"
     if not raw.exists():
         raw.write_text(f"1,{speed}\n")
@@ -353,6 +346,11 @@ def reduced(place, speed):
 
 def into_writer(folder):
     """A reduction into a set that has trials already."""
+    from dentscope.recordings import read
+    from dentscope.recordings.reduce.into_set import store
+    from dentscope.recordings.reduce.row import Row
+    from dentscope.recordings.template import write_template
+
     older = folder / "set"
     write_template(older, shape="sphere")
 
@@ -385,6 +383,11 @@ def into_writer(folder):
 
 def publish_fit_writer(folder):
     """Coefficients, their page and its pictures in place of older ones."""
+    from dentscope.cli import fit as fit_command
+    from dentscope.fitting.coefficients import write_coefficients
+    from dentscope.models import coefficients
+    from dentscope.studies.closed_form.page import published_section
+
     old = json.loads(coefficients.COEFFICIENTS_FILE.read_text())
     new = json.loads(json.dumps(old))
     new["domain"]["combinations"] += 1
@@ -397,8 +400,6 @@ def publish_fit_writer(folder):
         (place / "docs").mkdir()
         (place / "docs" / "closed-form.md").write_text(page)
         write_coefficients(old, place / "fitted.json")
-
-    from dentscope.fitting.coefficients import write_coefficients
 
     def act(place):
         with (
@@ -424,6 +425,7 @@ def publish_fit_writer(folder):
 
 def report_writer():
     """The files of a sweep: table, data frame and picture, each whole or not there."""
+    from dentscope.impact.columns import Impacts
     from matplotlib.figure import Figure
 
     found = Impacts({"impact_speed_m_s": np.linspace(1.0, 2.0, 500), "restitution": np.ones(500)})

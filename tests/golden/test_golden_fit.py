@@ -1,6 +1,9 @@
 """A refit of frozen data reproduces the frozen coefficients."""
 
+import os
 import runpy
+import subprocess
+import sys
 from pathlib import Path
 
 import numpy as np
@@ -34,3 +37,25 @@ def test_a_third_of_the_rows_gives_the_law_of_all_rows(refit):
     assert np.mean(np.abs(ours.force / theirs.force - 1.0)) < 0.01
     assert np.mean(np.abs(ours.radius / theirs.radius - 1.0)) < 0.01
     assert np.mean(np.abs(ours.share - theirs.share)) < 0.01
+
+
+SAME = """
+import hashlib, runpy, sys
+from dentscope.fitting import fit_tables
+table, turns, _ = runpy.run_path(sys.argv[1])["thawed"]()
+fit = fit_tables(table, turns, change=0.05)
+print(hashlib.sha256(fit.values.tobytes() + fit.covariance.tobytes()).hexdigest())
+"""
+
+
+def test_the_fit_is_the_same_to_the_last_bit_whatever_threads_hashes_and_zone():
+    place = str(Path(__file__).with_name("regenerate_fit.py"))
+    found = set()
+    for threads, seed, zone in (("1", "0", "UTC"), ("4", "7", "Asia/Tokyo")):
+        own = {"OMP_NUM_THREADS": threads, "OPENBLAS_NUM_THREADS": threads, "TZ": zone}
+        answer = subprocess.run(
+            [sys.executable, "-c", SAME, place], capture_output=True, text=True, check=True,
+            env={**os.environ, **own, "PYTHONHASHSEED": seed},
+        )  # fmt: skip
+        found.add(answer.stdout)
+    assert len(found) == 1
