@@ -217,7 +217,7 @@ def _score_row(s: dict[str, Any]) -> str:
 
 
 def _text(value: float | None) -> str:
-    return "-" if value is None or math.isnan(value) else f"{value:.1f}"
+    return "-" if value is None or math.isnan(value) else f"{value:.3g}"
 
 
 def _confusion_rows(table: dict[str, dict[str, int]]) -> list[str]:
