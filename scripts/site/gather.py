@@ -27,6 +27,7 @@ _LINKS = (
     (r"\]\((?:\.\./)*CHANGELOG\.md\)", "](changes.md)"),
     (r"\]\(LICENSE\)", "](LICENSE.txt)"),
     (r"\]\((?:\.\./)*examples/?\)", "](examples.md)"),
+    (r"\]\((?:\.\./)*examples/(\w+\.(?:toml|csv))\)", r"](inputs/\1)"),
 )
 _TOP = {
     "README.md": "index.md", "CHANGELOG.md": "changes.md", "CONTRIBUTING.md": "contributing.md",
@@ -38,6 +39,12 @@ def main() -> None:
     """Write everything that the site's builder reads."""
     shutil.rmtree(SOURCE, ignore_errors=True)
     shutil.copytree(ROOT / "docs", SOURCE)
+    for path in SOURCE.glob("*.md"):
+        path.write_text(_relinked(path.read_text(encoding="utf-8")), encoding="utf-8")
+    (SOURCE / "inputs").mkdir()
+    for kind in ("toml", "csv"):
+        for path in (ROOT / "examples").glob(f"*.{kind}"):
+            shutil.copyfile(path, SOURCE / "inputs" / path.name)
     for name, page in _TOP.items():
         _write(page, _relinked((ROOT / name).read_text(encoding="utf-8")))
     shutil.copyfile(ROOT / "LICENSE", SOURCE / "LICENSE.txt")
