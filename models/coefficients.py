@@ -10,9 +10,11 @@ from typing import Any
 import numpy as np
 
 from ..core.errors import InputError
+from .base import ContactLaw
 from .closed_form import COEFFICIENTS
 from .correction import CHANNELS, GROUPS, Correction
 from .fitted import ClosedForm, closed_form_law
+from .hardening import hardening_law
 from .uncertainty import Calibration
 
 FORMAT = "dentscope-coefficients/10"
@@ -72,7 +74,10 @@ def _correction(content: Mapping[str, Any], source: str) -> Correction:
     )
 
 
-def shipped_laws() -> tuple[ClosedForm, ...]:
-    """The laws with the shipped numbers; none if they were never fitted."""
+def shipped_laws() -> tuple[ContactLaw, ...]:
+    """Compact, fitted and hardening, with the shipped numbers; none if they were never fitted."""
     content = read_coefficients()
-    return () if content is None else laws_from(content, source=str(COEFFICIENTS_FILE))
+    if content is None:
+        return ()
+    compact, fitted = laws_from(content, source=str(COEFFICIENTS_FILE))
+    return compact, fitted, hardening_law(fitted)

@@ -218,7 +218,7 @@ class ClosedForm(ContactLaw):
             if math.isinf(p.Sy_min):
                 continue  # elastic: Hertz
             if p.sphere.flow is not None or p.flat.flow is not None:
-                return "knows the strength of first yield only, and a body here hardens"
+                return "knows the strength of first yield only; `hardening` follows a flow curve"
             found = {
                 "Sy_ratio": (p.Sy_ratio,),
                 "E_reduced_over_Sy_min": (p.E_reduced / p.Sy_min,),

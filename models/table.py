@@ -81,12 +81,7 @@ class PairTable:
         x, force, radius = self._loading()
         grid = np.linspace(x[0], x[-1], _POINTS)
         F, a = (PchipInterpolator(x, v)(grid) for v in (force, radius))
-        left, part, exponent = self._recovery(grid, F, a)
-        rows = []
-        for values in (F, a, left, part, exponent):
-            slope = PchipInterpolator(grid, values).derivative()(grid) * (grid[1] - grid[0])
-            rows.append(np.stack([values, slope], axis=1).ravel())
-        return np.concatenate([[_POINTS, grid[0], grid[1] - grid[0]], *rows])
+        return packed_columns(grid, (F, a, *self._recovery(grid, F, a)))
 
     def _loading(self) -> tuple[Floats, Floats, Floats]:
         """Logarithms of depth, force and radius: Hertz's while elastic, then the data's."""
@@ -106,9 +101,7 @@ class PairTable:
     def _recovery(self, x: Floats, F: Floats, a: Floats) -> tuple[Floats, Floats, Floats]:
         """Permanent part, the sphere's part of it and the exponent at x, of ln F and ln a there."""
         D, force, radius = np.exp(x), np.exp(F), np.exp(a)
-        work = np.concatenate([[0.4 * force[0] * D[0]], np.zeros(len(x) - 1)])
-        work[1:] = work[0] + np.cumsum(_panels(x, F))
-        elastic = force * D / work  # N + 1 of a body that gives back all that it took
+        elastic = _elastic(x, F)
         onset, t = self.yields_at, self.turns
         if not math.isfinite(onset) or len(t.depth) == 0:
             return np.zeros_like(x), np.full_like(x, 0.5), elastic - 1.0
@@ -124,9 +117,49 @@ class PairTable:
         part = PchipInterpolator(at, np.concatenate([[t.part[0]], t.part]))(inside)
         exponent = PchipInterpolator(at, ends)(inside)
         # no cycle gives back more than was spent, between two unloadings neither
-        needed = elastic * (1.0 - left) - 1.0
-        yielded = np.where(x > at[0], np.maximum(exponent, needed), elastic - 1.0)
+        raised = recovery_exponent(x, F, left, exponent)
+        yielded = np.where(x > at[0], raised, elastic - 1.0)
         return left, part, yielded
+
+
+def packed_columns(grid: Floats, columns: Sequence[Floats]) -> Floats:
+    """Return what the kernels read behind the common numbers.
+
+    Parameters
+    ----------
+    grid
+        ln(Delta/R), evenly, shape (n,).
+    columns
+        Logarithms of F/(E' R^2) and a/R, permanent part of the approach, the sphere's part of it,
+        exponent of the unloading; each of shape (n,).
+    """
+    step = grid[1] - grid[0]
+    rows = []
+    for values in columns:
+        slope = PchipInterpolator(grid, values).derivative()(grid) * step
+        rows.append(np.stack([values, slope], axis=1).ravel())
+    return np.concatenate([[len(grid), grid[0], step], *rows])
+
+
+def recovery_exponent(x: Floats, F: Floats, left: Floats, exponent: Floats) -> Floats:
+    """Exponent of the unloading, raised where more would come back than was spent.
+
+    Parameters
+    ----------
+    x, F
+        ln(Delta/R) and ln(F/(E' R^2)) of the loading, shape (n,).
+    left, exponent
+        Permanent part of the approach, and the exponent as it is.
+    """
+    return np.maximum(exponent, _elastic(x, F) * (1.0 - left) - 1.0)
+
+
+def _elastic(x: Floats, F: Floats) -> Floats:
+    """N + 1 of a body that gives back all that it took, by ln depth and ln force."""
+    force, D = np.exp(F), np.exp(x)
+    work = np.concatenate([[0.4 * force[0] * D[0]], np.zeros(len(x) - 1)])
+    work[1:] = work[0] + np.cumsum(_panels(x, F))
+    return np.asarray(force * D / work)
 
 
 def _panels(x: Floats, F: Floats) -> Floats:

@@ -1,0 +1,68 @@
+"""The law for metals with a flow curve: its limits, and the similarity solution of power laws."""
+
+import math
+
+import numpy as np
+import pytest
+from dentscope.core import Material, Pair
+from dentscope.core.flow import Flow, swift, voce
+from dentscope.models import LAWS
+
+STEEL = Material(E=200e9, nu=0.3, Sy=503e6)
+SOFT = Material(E=71.7e9, nu=0.33, Sy=300e6)
+RIGID = Material(E=math.nan, nu=math.nan, rigid=True)
+HARDENING, FITTED = LAWS["hardening"], LAWS["fitted"]
+
+
+def power_law(body, n):
+    return body.with_(flow=Flow(swift(Sy=body.Sy, K=body.Sy * (body.E / body.Sy) ** n, n=n)))
+
+
+@pytest.mark.parametrize("pair", [Pair(STEEL, SOFT, 1e-3), Pair(SOFT, STEEL, 1e-3)])
+def test_without_a_flow_curve_it_is_the_fitted_law(pair):
+    d = np.geomspace(1e-5, 0.1, 40) * pair.R
+    assert HARDENING.loading(pair, d) == pytest.approx(FITTED.loading(pair, d), rel=3e-3)
+    assert HARDENING.contact_radius(pair, d) == pytest.approx(
+        FITTED.contact_radius(pair, d), rel=3e-3
+    )
+    assert HARDENING.share(pair, d) == pytest.approx(FITTED.share(pair, d), abs=1e-3)
+    deep = d[d > 1e-3 * pair.R]
+    left = sum(HARDENING.residual(pair, deep))
+    assert left == pytest.approx(sum(FITTED.residual(pair, deep)), rel=2e-3)
+
+
+@pytest.mark.filterwarnings("ignore::dentscope.models.base.DomainWarning")
+@pytest.mark.parametrize("n", [0.1, 0.2, 0.4])
+def test_a_power_law_flat_follows_its_similarity_solution(n):
+    """Storakers, Biwa and Larsson (1997): a^2 = 2 c^2 R Delta, F = 3 pi a^2 K (a/(6 R))^n."""
+    E, first, start = 200e9, 1.8e-5 * 200e9, 2e-4
+    K = first / start**n
+    flat = Material(E=E, nu=0.3, Sy=first, flow=Flow(swift(Sy=first, K=K, n=n)))
+    pair = Pair(RIGID, flat, 1.0)
+    d = np.geomspace(3e-4, 1.5e-3, 5)
+    a = np.sqrt(2.0 * 1.43 * math.exp(-0.97 * n) * d)
+    assert HARDENING.contact_radius(pair, d) == pytest.approx(a, rel=0.04)
+    load = 3.0 * math.pi * a**2 * K * (a / 6.0) ** n
+    assert HARDENING.loading(pair, d) == pytest.approx(load, rel=0.06)
+
+
+def test_equal_bodies_share_the_approach_however_they_harden():
+    body = power_law(STEEL, 0.3)
+    pair = Pair(body, body, 1e-3)
+    assert HARDENING.share(pair, [1e-5, 3e-5]) == pytest.approx([0.5, 0.5], abs=0.03)
+
+
+def test_the_body_that_hardens_leaves_flow_to_the_other():
+    """A weaker sphere that hardens takes less of the approach than one that does not."""
+    weak = STEEL.with_(Sy=400e6)
+    plain, hard = Pair(weak, STEEL, 1e-3), Pair(power_law(weak, 0.4), STEEL, 1e-3)
+    d = np.array([1e-5, 5e-5])
+    assert np.all(HARDENING.share(hard, d) < HARDENING.share(plain, d) - 0.1)
+    assert np.all(HARDENING.loading(hard, d) > 1.1 * HARDENING.loading(plain, d))
+
+
+def test_a_flow_stress_that_levels_off_ends_as_perfectly_plastic_at_that_stress():
+    body = SOFT.with_(flow=Flow(voce(Sy=SOFT.Sy, Q=150e6, b=2000.0)))
+    deep = 0.05 * 1e-3
+    ended = FITTED.loading(Pair(STEEL, SOFT.with_(Sy=450e6), 1e-3), deep)
+    assert HARDENING.loading(Pair(STEEL, body, 1e-3), deep) == pytest.approx(ended, rel=0.02)
