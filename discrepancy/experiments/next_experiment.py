@@ -160,25 +160,34 @@ def _sharper(problem: Problem, best: Fit) -> list[Proposal]:
     By the curvature of the likelihood at the best place; the parameters are linear over it.
     """
     slopes = _slopes(best)
-    total, noise = best.linear.total, np.diag(best.linear.noise)
+    total, noise = best.linear.total, best.linear.noise
     today = _width(slopes, total)
     names = list(dict.fromkeys(problem.cells.observable))
     found = []
     for name in names:
         here = np.array([o == name for o in problem.cells.observable])
-        less = total - np.diag(np.where(here, 0.75 * noise, 0.0))
-        share = _width(slopes, less) / today
+        share = _width(slopes, with_half_the_noise(total, noise, here)) / today
         text = f"halve the noise of {OBSERVABLES[name].label}, or repeat it four times as often"
         found.append(Proposal(text, 0.0, "noise", share))
     found.sort(key=lambda p: p.interval)
     label = best.grid.labels[0]
-    if _width(slopes, total - np.diag(0.75 * noise)) > LITTLE * today:
+    quiet = with_half_the_noise(total, noise, np.ones(len(noise), dtype=bool))
+    if _width(slopes, quiet) > LITTLE * today:
         text = (
             f"nothing more to gain for {label} from better instruments or more repeats: the errors "
             "of the contact law and of the mechanism's form rule its interval"
         )
         return [Proposal(text, 0.0, "none", 1.0), *found]
     return found
+
+
+def with_half_the_noise(total: Array, noise: Array, here: Array) -> Array:
+    """Return the covariance `total`, (m, m), where the readings `here` have half their noise.
+
+    Cells that share a reading stay as correlated as they were: what is taken off is no diagonal.
+    """
+    scale = np.where(here, 0.5, 1.0)
+    return np.asarray(total - noise + noise * np.outer(scale, scale))
 
 
 def _slopes(best: Fit) -> Array:

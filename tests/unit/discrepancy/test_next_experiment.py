@@ -11,7 +11,13 @@ import pytest
 from dentscope.core.rig import Quantity, StrikerTable
 from dentscope.discrepancy.choice.odds import Odds
 from dentscope.discrepancy.experiments.feasible import candidates_of
-from dentscope.discrepancy.experiments.next_experiment import _sharper, _worth, propose, rivals_of
+from dentscope.discrepancy.experiments.next_experiment import (
+    _sharper,
+    _worth,
+    propose,
+    rivals_of,
+    with_half_the_noise,
+)
 
 SEEN = "rebound_speed_m_s"
 
@@ -147,3 +153,17 @@ def test_where_other_errors_rule_nothing_is_to_be_gained(toy) -> None:
     first = _sharper(given, best)[0]
     assert first.kind == "none"
     assert first.change.startswith("nothing more to gain for size")
+
+
+def test_half_the_noise_of_cells_that_share_a_reading_is_still_a_covariance() -> None:
+    # three cells of one speed: all but a hundredth of their variance is common
+    noise = np.full((3, 3), 4.0) + 0.04 * np.eye(3)
+    total = noise + 0.01 * np.eye(3)
+    every = np.ones(3, dtype=bool)
+    assert with_half_the_noise(total, noise, every) == pytest.approx(
+        0.25 * noise + 0.01 * np.eye(3)
+    )
+    one = with_half_the_noise(total, noise, np.array([True, False, False]))
+    assert one[0] == pytest.approx([1.02, 2.0, 2.0])
+    assert np.linalg.eigvalsh(one).min() > 0.0
+    assert np.linalg.eigvalsh(total - np.diag(0.75 * np.diag(noise))).min() < 0.0
