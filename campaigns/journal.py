@@ -100,7 +100,12 @@ def recover(path: Path) -> None:
     journal = journal_of(path)
     if not journal.exists():
         return
-    change = _read_journal(journal)
+    try:
+        change = _read_journal(journal)
+    except InputError:
+        if journal.exists():
+            raise
+        return  # its writer has finished meanwhile
     if not path.exists():
         if change.size_before:
             raise _stale(journal)

@@ -145,8 +145,9 @@ def test_observables_move_as_declared(mechanism):
         moved |= {k for k, v in changed.items() if np.any(v != 0.0)}
         for name, sign in mechanism.direction.items():
             # what rig and mechanism leave alone (a crater in a gel) has no direction, nor has what
-            # a contact that nearly sticks changes within the integrator's accuracy
-            noise = 1e-7 * np.abs(before[name])
+            # a contact that nearly sticks changes within the integrator's accuracy: its tolerance
+            # is 1e-7 a step, of which two walks are compared
+            noise = 5e-7 * np.abs(before[name])
             assert np.all(sign * changed[name] >= -noise), (name, changed[name])
     assert moved
     assert set(mechanism.direction) <= moved

@@ -327,7 +327,7 @@ def bomb(cases, path):
 
 @pytest.mark.parametrize("trick", [linked, soft, outside, referring, absurd, bomb])
 def test_what_leads_elsewhere_or_claims_too_much_is_refused(tmp_path, trick, monkeypatch):
-    monkeypatch.setattr(contents, "_MOST_BYTES", 1_000_000)
+    monkeypatch.setattr(contents, "_MOST_DATA", 1_000_000)
     path = tmp_path / "c.h5"
     run_design(design(1), path, executor=FakeExecutor(), time_limit_s=1.0)
     with h5py.File(path.with_name("other.h5"), "w") as other:

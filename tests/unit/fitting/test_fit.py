@@ -170,7 +170,7 @@ def test_leaving_the_domain_names_the_bound():
 def test_a_metal_that_hardens_is_told_that_the_law_does_not(law):
     hard = Material(E=2e11, nu=0.3, Sy=3e8, flow=Flow(curve=swift(Sy=3e8, K=9e8, n=0.2)))
     limited = replace(law, limits={"Sy_ratio": (0.1, 10.0)})
-    with pytest.warns(DomainWarning, match="a body here hardens"):
+    with pytest.warns(DomainWarning, match="`hardening` follows a flow curve"):
         limited.loading(Pair(hard, Material(E=2e11, nu=0.3, Sy=6e8), 1e-3), 1e-5)
 
 

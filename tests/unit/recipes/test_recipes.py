@@ -97,23 +97,29 @@ def test_an_observable(recipe):
     assert code == 0, told
 
 
-KIND = '''
-"""Two heights on a line: fall and rebound."""
+OPTIONS = '''
+"""Options of the toy."""
 
-from pathlib import Path
-
-import numpy as np
 from pydantic import Field
 
 from ....core.toml_input import InputTable
-from ..measured import Measured, Trial
-from ..reduced import Reduced
 
 
 class Options(InputTable):
     """Options of the toy."""
 
     height_m_std: float = Field(0.0, ge=0.0, description="standard deviation of a height")
+'''
+KIND = '''
+"""Two heights on a line: fall and rebound."""
+
+from pathlib import Path
+
+import numpy as np
+
+from ..measured import Measured, Trial
+from ..reduced import Reduced
+from .options import Options
 
 
 def reduce(path: Path, options: Options) -> Reduced:
@@ -127,6 +133,7 @@ def reduce(path: Path, options: Options) -> Reduced:
 
 def test_an_input_format(recipe):
     toy = recipe("Add an input format")
+    toy.write("recordings/reduce/toy/options.py", OPTIONS)
     toy.write("recordings/reduce/toy/kind.py", KIND)
     toy.write("recordings/reduce/toy/__init__.py", "")
     toy.change(
