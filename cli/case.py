@@ -52,6 +52,7 @@ def case(
 
     problem, accuracy = read_case(file)
     # loaded after the file is read: a mistake in it is told at once
+    from ..fem.cutaway import draw_cutaway
     from ..fem.fields import draw_section, write_vtu
     from ..start.pair import Steps, solved
 
@@ -84,6 +85,9 @@ def case(
             strength = pair.Sy_min if pair.Sy_min < float("inf") else pair.E_reduced
             drawn = draw_section(snapshot, out / f"{name}.png", Sy_min=strength, extent=extent)
             console.print(f"written: {drawn}")
+            space = out / f"{name}-cut.png"
+            if draw_cutaway(snapshot, space, Sy_min=strength, extent=extent):
+                console.print(f"written: {space}")
     if not solution.outcome.completed:
         console.print(str(solution.outcome))
         return EXIT_NOT_CONVERGED

@@ -12,7 +12,9 @@ import typer
 
 from . import studies
 
-_SYSTEM_PACKAGES = "libgl1 libglu1-mesa libxrender1 libxcursor1 libxft2 libxinerama1 libgomp1"
+_SYSTEM_PACKAGES = (
+    "libgl1 libglu1-mesa libxrender1 libxcursor1 libxft2 libxinerama1 libgomp1 libegl1"
+)
 _REMEDY = f"sudo apt-get install --no-install-recommends {_SYSTEM_PACKAGES}"
 EXIT_ENVIRONMENT = 1
 """Exit code for an environment in which the solver cannot run."""
@@ -42,7 +44,7 @@ class Finding:
 
 
 def doctor() -> int:
-    """Check gmsh and compiled code; name what to install."""
+    """Check gmsh, rendering and compiled code; name what to install."""
     findings = examine()
     for finding in findings:
         mark = "ok" if finding.fine else ("MISSING" if finding.needed else "absent")
@@ -57,15 +59,23 @@ def doctor() -> int:
 def examine() -> tuple[Finding, ...]:
     """Look at everything that can be missing, each in the order in which a run meets it."""
     from ..core.provenance import environment
+    from ..core.rendering import offscreen_available
 
     versions = environment()
     shown = ", ".join(f"{name} {version}" for name, version in versions.items())
+    renders = offscreen_available()
     return (
         Finding("versions", shown),
         Finding("processors", str(os.cpu_count() or 1)),
         Finding("docs, examples, data", str(Path(__file__).resolve().parents[1])),
         Finding("workshop", "here" if studies.present() else studies.WHERE),
         _gmsh(),
+        Finding(
+            "off-screen pictures",
+            "pyvista renders" if renders else "no pictures in space",
+            fine=renders,
+            remedy=_REMEDY,
+        ),
         _compiled_code(),
     )
 

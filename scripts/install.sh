@@ -1,12 +1,12 @@
 #!/usr/bin/env bash
-# Make .venv from the lock of the running Python and check that gmsh works.
+# Make .venv from the lock of the running Python and check that gmsh and rendering work.
 # Needs only a POSIX system with Python and bash; as root it installs missing system packages.
 set -euo pipefail
 cd "$(dirname "$0")/.."
 python=${PYTHON:-python3}
 say() { printf 'install: %s\n' "$*"; }
 
-system_packages=(libgl1 libglu1-mesa libxrender1 libxcursor1 libxft2 libxinerama1 libgomp1)
+system_packages=(libgl1 libglu1-mesa libxrender1 libxcursor1 libxft2 libxinerama1 libgomp1 libegl1)
 
 apt_install() { # what it is for, then the packages
   local purpose=$1
@@ -50,7 +50,7 @@ if [ "$(minor_of .venv/bin/python)" != "$minor" ] || ! .venv/bin/python -m pip -
   say "making .venv with $("$python" --version)"
   "$python" -m venv --clear .venv
 fi
-say "installing the pinned packages of $lock (1.2 GB in .venv)"
+say "installing the pinned packages of $lock (1.8 GB in .venv)"
 awk '/^[^ ]/ { wanted = /^uv==/ } wanted' "$lock" >.venv/uv.txt
 .venv/bin/python -m pip install -q --disable-pip-version-check --require-hashes -r .venv/uv.txt
 .venv/bin/uv pip install -q --python .venv/bin/python --require-hashes -r "$lock"
@@ -64,5 +64,13 @@ if ! .venv/bin/python -c 'import gmsh' 2>/dev/null; then
   .venv/bin/python -c 'import gmsh'
 fi
 say "gmsh works"
+# rendering without its libraries ends in a crash, not in an exception: it is tried in a process of
+# its own
+if .venv/bin/python -m dentscope.core.rendering >/dev/null 2>&1; then
+  say "off-screen rendering works"
+else
+  say "off-screen rendering does not work here: no pictures of fields in space"
+  say "  (the packages for it: ${system_packages[*]})"
+fi
 touch .venv/.installed
 say "ready: .venv/bin/dentscope --help"

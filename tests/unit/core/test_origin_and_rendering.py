@@ -1,9 +1,11 @@
-"""Origins of results, and pairs of bodies."""
+"""Origins of results, and the question whether pictures can be rendered."""
 
 import math
+import subprocess
 import sys
 
-from dentscope.core import InputError, InputErrors, Material, Pair, provenance
+import pytest
+from dentscope.core import InputError, InputErrors, Material, Pair, provenance, rendering
 
 
 def test_digest_of_a_file_is_the_published_one(tmp_path):
@@ -39,3 +41,19 @@ def test_rigid_partner_leaves_the_whole_approach_to_the_other_body():
     assert Pair(rigid, steel, 1e-3).elastic_share == 0.0
     assert Pair(rigid, steel, 1e-3).Sy_ratio == math.inf
     assert Pair(rigid, steel, 1e-3).weaker is steel
+
+
+@pytest.mark.parametrize(("code", "expected"), [(0, True), (1, False), (-11, False)])
+def test_a_crash_of_the_probe_is_a_no(monkeypatch, code, expected):
+    monkeypatch.setattr(
+        rendering.subprocess, "run", lambda *a, **k: subprocess.CompletedProcess(a, code)
+    )
+    assert rendering.offscreen_available.__wrapped__() is expected
+
+
+def test_a_probe_that_hangs_is_a_no(monkeypatch):
+    def hang(*arguments, **options):
+        raise subprocess.TimeoutExpired("probe", options["timeout"])
+
+    monkeypatch.setattr(rendering.subprocess, "run", hang)
+    assert rendering.offscreen_available.__wrapped__() is False

@@ -1,0 +1,46 @@
+"""Whether pyvista can render off-screen here.
+
+Without its graphics libraries VTK ends the whole process, which no exception handler sees; the
+question is therefore put to a process of its own, once.
+"""
+
+from __future__ import annotations
+
+import subprocess
+import sys
+from functools import cache
+
+_TIME_LIMIT_S = 120.0
+
+
+@cache
+def offscreen_available() -> bool:
+    """Return whether a picture can be rendered in this environment.
+
+    The answer holds for the life of the process; a probe that hangs counts as a no.
+    """
+    try:
+        answer = subprocess.run(
+            [sys.executable, "-m", "dentscope.core.rendering"],
+            capture_output=True,
+            timeout=_TIME_LIMIT_S,
+            check=False,
+        )
+    except (OSError, subprocess.TimeoutExpired):
+        return False
+    return answer.returncode == 0
+
+
+def _probe() -> None:
+    import pyvista
+
+    plotter = pyvista.Plotter(off_screen=True, window_size=(64, 64))
+    plotter.add_mesh(pyvista.Sphere())
+    image = plotter.screenshot(return_img=True)
+    plotter.close()
+    if image is None or image.max() == image.min():
+        raise SystemExit(1)
+
+
+if __name__ == "__main__":
+    _probe()
