@@ -100,14 +100,8 @@ def recover(path: Path) -> None:
     journal = journal_of(path)
     if not journal.exists():
         return
-    try:
-        change = _read_journal(journal)
-    except InputError:
-        if journal.exists():
-            raise
-        return  # its writer has finished meanwhile
     if not path.exists():
-        if change.size_before:
+        if _read_journal(journal).size_before:
             raise _stale(journal)
         DISK.close(DISK.create(path))
         DISK.sync_folder(path.parent)
@@ -115,6 +109,9 @@ def recover(path: Path) -> None:
         lock(file, fcntl.LOCK_EX)
         if not journal.exists():
             return  # its writer, or another reader, was faster
+        # read under the lock: before it, this could have been the journal of an earlier change,
+        # and what is removed below the next one's, unread
+        change = _read_journal(journal)
         image = file.read()
         if hashlib.sha256(image).digest() != change.after:
             if not change.belongs_to(image):
