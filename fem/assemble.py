@@ -32,6 +32,12 @@ Floats = npt.NDArray[np.float64]
 
 _SMALLEST_DETERMINANT = 0.02  # below this an element is inverted or about to be
 
+_KEEPS = 1e-3
+"""Change of a deformation gradient within which an elastic element keeps its tangent.
+
+The forces are exact always; such a change of the tangent costs Newton's method nothing.
+"""
+
 DISTORTED = -1
 """Returned by `bulk_forces` when an element has turned inside out."""
 
@@ -136,8 +142,33 @@ def _add_point_tangent(x, e, q, F, p, A, K):
             K[2 * a + 1, 2 * b + 1] += z2 * br + z3 * bz
 
 
+@njit(cache=True, inline="always")
+def _near(F, at):
+    """Whether deformation gradients (4, 5) are within `_KEEPS` of those at the kept tangent."""
+    for q in range(4):
+        for i in range(5):
+            if not abs(F[q, i] - at[q, i]) <= _KEEPS:
+                return False
+    return True
+
+
+@njit(cache=True, inline="always")
+def _clear(g, fe):
+    for i in range(8):
+        g[i] = 0.0
+        fe[i] = 0.0
+
+
+@njit(cache=True, inline="always")
+def _add_element(nodes, fe, force):
+    for a in range(4):
+        i = 2 * nodes[a]
+        force[i] += fe[2 * a]
+        force[i + 1] += fe[2 * a + 1]
+
+
 @njit(cache=True)
-def _assemble(x, u, old, rule, seconds, with_tangent, force, tangent):
+def _assemble(x, u, old, rule, seconds, with_tangent, force, tangent, at):
     F = np.empty((4, 5))
     P = np.empty(5)
     A = np.empty((5, 5))
@@ -157,36 +188,44 @@ def _assemble(x, u, old, rule, seconds, with_tangent, force, tangent):
         if theta < 0.0:
             return DISTORTED
         p = x.K[e] * math.log(theta) / theta
-        for i in range(8):
-            g[i] = 0.0
-            fe[i] = 0.0
-            if with_tangent:
-                for j in range(8):
-                    tangent[e, i, j] = 0.0
         hard = x.law[e] >= 0
         if hard:
             law = law_of(laws, x.law[e], 2.0 * x.G[e], seconds)
             curve = laws.curve[x.law[e]]
+        flowed = 0
+        if not with_tangent or _near(F, at[e]):
+            _clear(g, fe)
+            for q in range(4):
+                step = _step(x, old, rule, e, q, F[q])
+                if hard:
+                    step = hardened(step, law, curve, old.peeq[e, q], old.work[e, q])
+                flowed += deviatoric_pk1(step, curve, x.G[e], P)
+                if with_tangent and flowed:
+                    break
+                _add_point_forces(x, e, q, F[q], P, p, g, fe)
+            if not (with_tangent and flowed):
+                n_plastic += flowed
+                _add_element(x.conn[e], fe, force)
+                continue
+        flowed = 0
+        _clear(g, fe)
+        tangent[e] = 0.0
         for q in range(4):
             step = _step(x, old, rule, e, q, F[q])
             if hard:
                 step = hardened(step, law, curve, old.peeq[e, q], old.work[e, q])
-            if with_tangent:
-                n_plastic += deviatoric_tangent(step, curve, x.G[e], P, A)
-            else:
-                n_plastic += deviatoric_pk1(step, curve, x.G[e], P)
+            flowed += deviatoric_tangent(step, curve, x.G[e], P, A)
             _add_point_forces(x, e, q, F[q], P, p, g, fe)
-            if with_tangent:
-                _add_point_tangent(x, e, q, F[q], p, A, tangent[e])
-        for a in range(4):
-            i = 2 * x.conn[e, a]
-            force[i] += fe[2 * a]
-            force[i + 1] += fe[2 * a + 1]
-        if with_tangent:
-            k = x.K[e] * (1.0 - math.log(theta)) / (theta * theta * x.volume[e])
-            for i in range(8):
-                for j in range(8):
-                    tangent[e, i, j] += k * g[i] * g[j]
+            _add_point_tangent(x, e, q, F[q], p, A, tangent[e])
+        _add_element(x.conn[e], fe, force)
+        k = x.K[e] * (1.0 - math.log(theta)) / (theta * theta * x.volume[e])
+        for i in range(8):
+            for j in range(8):
+                tangent[e, i, j] += k * g[i] * g[j]
+        n_plastic += flowed
+        at[e] = F
+        if flowed:
+            at[e] = math.nan
     return n_plastic
 
 
@@ -237,6 +276,7 @@ def bulk_forces(
     rule: int,
     force: Floats,
     tangent: Floats | None = None,
+    tangent_at: Floats | None = None,
     seconds: float = math.inf,
 ) -> int:
     """Add the internal forces at displacement `u` to `force`, and fill the element tangents.
@@ -257,14 +297,20 @@ def bulk_forces(
         Array that the forces are added to, shape (2 n_nodes,) [E' R^2].
     tangent
         Array for the element tangents, shape (n_elements, 8, 8) [E' R]; none: forces only.
+    tangent_at
+        Deformation gradients at which the tangents of elastic elements in `tangent` were found,
+        shape (n_elements, 4, 5), `nan` where there is none; elastic elements still near them keep
+        their tangent, the others change both arrays. None: all tangents are those at `u`.
 
     Returns
     -------
     int
         Number of plastic points, or `DISTORTED`.
     """
+    n = len(elements.conn)
     room = tangent if tangent is not None else np.empty((0, 8, 8))
-    return int(_assemble(elements, u, state, rule, seconds, tangent is not None, force, room))
+    at = tangent_at if tangent_at is not None else np.full((n, 4, 5), np.nan)
+    return int(_assemble(elements, u, state, rule, seconds, tangent is not None, force, room, at))
 
 
 def advance(
