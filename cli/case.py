@@ -37,7 +37,7 @@ def case(
 ) -> int:
     """Solve your own pair by finite elements: table, curves, stress fields.
 
-    Solved twice, the second time with larger elements, which gives the uncertainty.
+    The uncertainty is what the level of accuracy was found to be off on fifteen pairs.
     """
     if new:
         typer.echo(write_new(CASE, file or Path("case.toml"), command="case"))
@@ -54,15 +54,13 @@ def case(
     # loaded after the file is read: a mistake in it is told at once
     from ..fem.cutaway import draw_cutaway
     from ..fem.fields import draw_section, write_vtu
-    from ..start.pair import Steps, solved
+    from ..start.pair import solved
 
     pair = problem.pair
     console = new_console()
     with Progress(console=console, disable=not console.is_terminal) as bar:
-        tasks = [bar.add_task(name, total=1.0) for name in Steps.__members__]
-        found = solved(
-            problem, accuracy, lambda step, done: bar.update(tasks[step.value], completed=done)
-        )
+        task = bar.add_task("solving", total=1.0)
+        found = solved(problem, accuracy, lambda done: bar.update(task, completed=done))
     solution, uncertainty = found.solution, found.uncertainty
     if uncertainty is None:
         console.print(str(solution.outcome))
@@ -114,7 +112,7 @@ def _write_curves(solution: Any, uncertainty: Any, path: Path) -> Path:
     rows = []
     for phase, c in phases:
         values = _columns(c, pair.Sy_min)
-        # the second solve follows the loading only
+        # the table of mesh errors is of loading only
         errors = _columns(uncertainty, pair.Sy_min) if phase == "load" else None
         for i in range(len(c.delta)):
             row = [phase, c.delta[i] / pair.R]

@@ -15,7 +15,7 @@ load = { max_delta_over_R = 0.001, unload_from = [0.001] }
 accuracy = { level = "smoke" }
 """
 
-# %% Solve it: twice, the second time with larger elements, for the uncertainty.
+# %% Solve it; the uncertainty is what the level of accuracy was found to be off.
 with TemporaryDirectory() as folder:
     file = Path(folder) / "case.toml"
     file.write_text(TEXT)

@@ -11,9 +11,16 @@ from .problem import (
 )
 from .solution import Counters, Curve, Profile, Snapshot, Solution, Unloading
 from .solve import solve
-from .uncertainty import Uncertainty, coarser, discretisation_uncertainty
+from .uncertainty import (
+    MESH_ERRORS_FILE,
+    MESH_ERRORS_FORMAT,
+    Uncertainty,
+    discretisation_uncertainty,
+)
 
 __all__ = [
+    "MESH_ERRORS_FILE",
+    "MESH_ERRORS_FORMAT",
     "NUMERICS_VERSION",
     "Accuracy",
     "ContactProblem",
@@ -24,7 +31,6 @@ __all__ = [
     "Solution",
     "Uncertainty",
     "Unloading",
-    "coarser",
     "critical_depth",
     "discretisation_uncertainty",
     "geometric_depths",

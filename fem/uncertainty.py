@@ -1,25 +1,34 @@
-"""Discretisation uncertainty of a loading curve, from a second, coarser solve.
+"""Discretisation uncertainty of a loading curve, from a table that was measured once.
 
-The second solve has twice the element size along the path of the contact edge, larger elements
-elsewhere and longer steps, so that the difference of the two holds the mesh's and the step's part.
-Contact radius and ripple are of first order in the element size: the difference is then an estimate
-of the finer solve's own error. Because the ripple of the two crosses zero here and there, the
-estimate at a depth is the root mean square over the neighbouring depths.
+`dentscope verify --only levels` solves fifteen pairs at every level of accuracy, and at the finest
+with larger elements and longer steps besides. How far each level was off, against the depth over
+that of first yield, lies in the table; a solve states it and needs no second one. The table is of
+metals without hardening; the same check says how far two that harden are off it.
 """
 
 from __future__ import annotations
 
+import json
+import math
 from dataclasses import dataclass
+from functools import cache
+from pathlib import Path
+from typing import Any
 
 import numpy as np
 import numpy.typing as npt
 
-from .problem import Accuracy
+from .problem import Accuracy, ContactProblem, critical_depth
 from .solution import Curve
 
 Floats = npt.NDArray[np.float64]
 
-_NEIGHBOURS = 3  # depths on either side that the mean takes in
+MESH_ERRORS_FILE = (
+    Path(__file__).resolve().parents[1] / "data" / "coefficients" / "mesh_errors.json"
+)
+"""Where the table lies."""
+
+MESH_ERRORS_FORMAT = "dentscope-mesh-errors/1"
 
 
 @dataclass(frozen=True)
@@ -45,50 +54,42 @@ class Uncertainty:
     hardness: Floats
 
 
-def coarser(accuracy: Accuracy) -> Accuracy:
-    """Return the settings of the second solve, about a quarter of the first one's cost."""
-    return accuracy.with_(
-        level=f"{accuracy.level}, coarser",
-        fine=2.0 * accuracy.fine,
-        coarse=max(1.3 * accuracy.coarse, 2.0 * accuracy.fine),
-        divisions=2 * round(0.375 * accuracy.divisions),
-        step_ratio=1.0 + 1.5 * (accuracy.step_ratio - 1.0),
-    )
+@cache
+def _mesh_errors() -> dict[str, Any]:
+    return dict(json.loads(MESH_ERRORS_FILE.read_text(encoding="utf-8")))
 
 
-def discretisation_uncertainty(curve: Curve, coarse: Curve) -> Uncertainty:
-    """Compare two solves of one problem.
+def discretisation_uncertainty(
+    curve: Curve, problem: ContactProblem, accuracy: Accuracy
+) -> Uncertainty:
+    """Uncertainty that mesh and step bring at a level of accuracy.
 
     Parameters
     ----------
     curve
-        The finer solve.
-    coarse
-        The coarser one at the same depths; where it ended earlier, its last relative difference
-        is carried on.
+        A loading curve.
+    problem, accuracy
+        What was solved and how finely; one of the three levels.
 
-    Returns
-    -------
-    Uncertainty
-        Of the finer solve; nan where the coarser one has no depth at all.
+    Raises
+    ------
+    ValueError
+        Settings that were never measured.
     """
-    n = min(len(curve.delta), len(coarse.delta))
-
-    def estimate(fine_values: Floats, coarse_values: Floats, *, scale: Floats) -> Floats:
-        if n == 0:
-            return np.full(len(curve.delta), np.nan)
-        relative = (coarse_values[:n] - fine_values[:n]) / scale[:n]
-        relative = np.append(relative, np.full(len(scale) - n, relative[-1]))
-        padded = np.pad(relative**2, _NEIGHBOURS, mode="edge")
-        window = np.ones(2 * _NEIGHBOURS + 1) / (2 * _NEIGHBOURS + 1)
-        return np.asarray(np.sqrt(np.convolve(padded, window, mode="valid")) * scale)
-
+    content = _mesh_errors()
+    if accuracy.level not in content["levels"]:
+        raise ValueError(f"{accuracy.level!r}: measured are {', '.join(content['levels'])}")
+    onset = critical_depth(problem.pair) * problem.pair.R
+    # a pair that never yields is below first yield at any depth
+    x = np.log(curve.delta / onset) if math.isfinite(onset) else np.full(len(curve.delta), -np.inf)
+    knots = np.log(content["depth_over_first_yield"])
+    at = {name: np.interp(x, knots, row) for name, row in content["levels"][accuracy.level].items()}
+    # the last node that touches lies anywhere in the last ring
+    ring = accuracy.fine / math.sqrt(3.0)
     return Uncertainty(
-        **{
-            name: estimate(getattr(curve, name), getattr(coarse, name), scale=getattr(curve, name))
-            for name in ("force", "radius", "radius_last_node", "hardness")
-        },
-        sphere_share=estimate(
-            curve.sphere_share, coarse.sphere_share, scale=np.ones(len(curve.delta))
-        ),
+        force=at["force"] * curve.force,
+        radius=at["radius"] * curve.radius,
+        radius_last_node=np.hypot(at["radius"], ring) * curve.radius_last_node,
+        sphere_share=at["sphere_share"],
+        hardness=at["hardness"] * curve.hardness,
     )

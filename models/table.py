@@ -213,8 +213,8 @@ class TableLaw(ContactLaw):
     def uncertainty(self, pair: Pair, depth: Depths) -> Uncertainty:
         """What the solve says of its own elements; see `ContactLaw.uncertainty`.
 
-        Dent and energy of recovery, of which there is no second solve, are off by as much as force
-        and radius together.
+        Dent and energy of recovery, which the levels were not compared in, are off by as much as
+        force and radius together.
         """
         c, d = self._table(pair).curve, np.asarray(depth, dtype=float)
         x = np.log(np.maximum(d / pair.R, 1e-300))

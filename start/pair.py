@@ -1,10 +1,9 @@
-"""`dentscope.case(...)`: a pair solved by finite elements, twice for the uncertainty."""
+"""`dentscope.case(...)`: a pair solved by finite elements, with its uncertainty."""
 
 from __future__ import annotations
 
 from collections.abc import Callable
-from dataclasses import dataclass, replace
-from enum import Enum
+from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -16,17 +15,10 @@ if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
 
-class Steps(Enum):
-    """What a solve consists of."""
-
-    solving = 0
-    uncertainty = 1
+Report = Callable[[float], None]
 
 
-Report = Callable[[Steps, float], None]
-
-
-def _silent(step: Steps, done: float) -> None:
+def _silent(done: float) -> None:
     """Tell nobody."""
 
 
@@ -39,8 +31,7 @@ class Solved:
     solution
         Curves, unloadings, fields.
     uncertainty
-        Of the loading, from a second solve with larger elements; none where the solve did not
-        begin.
+        Of the loading, what its level is off; none where the solve did not begin.
     level
         How finely it was solved; "smoke" is coarse, for a first look.
     """
@@ -136,24 +127,17 @@ def case(file: str | Path, *, level: str = "") -> Solved:
 
 
 def solved(problem: fem.ContactProblem, accuracy: fem.Accuracy, report: Report = _silent) -> Solved:
-    """Solve a pair, and again with larger elements.
+    """Solve a pair and state its uncertainty.
 
     Parameters
     ----------
     problem, accuracy
         From `read_case`.
     report
-        Told which step is how far, from 0 to 1.
+        Told how far the solve is, from 0 to 1.
     """
-    solution = fem.solve(
-        problem, accuracy=accuracy, progress=lambda done: report(Steps.solving, done)
-    )
-    rough = fem.solve(
-        replace(problem, unload_from=(), snapshots=(), profiles=()),
-        accuracy=fem.coarser(accuracy),
-        progress=lambda done: report(Steps.uncertainty, done),
-    )
+    solution = fem.solve(problem, accuracy=accuracy, progress=report)
     if len(solution.loading.delta) == 0:
         return Solved(solution, None, accuracy.level)
-    found = fem.discretisation_uncertainty(solution.loading, rough.loading)
+    found = fem.discretisation_uncertainty(solution.loading, problem, accuracy)
     return Solved(solution, found, accuracy.level)

@@ -115,10 +115,8 @@ def run(bench: Bench) -> Result:
         edge, wave = difference(coarser, base)
         bulk, _ = difference(bulkier, base)
         step, _ = difference(bolder, base)
-        # first order in the element at the edge, where the contact opens: what halving changed is
-        # what is left; second order in the bulk and in the step
-        mesh = np.hypot(edge, bulk / (_BULK**2 - 1.0))
-        error = np.hypot(mesh, step / 3.0)
+        mesh = _of_mesh(edge, bulk)
+        error = combined(edge, bulk, step)
         total, ripples = np.vstack([total, error]), np.vstack([ripples, wave])
         rows.append(
             (f"{number}, {ratio:g}", *(_pair_of_numbers(i, mesh, step / 3.0) for i in range(4)),
@@ -139,12 +137,24 @@ def difference(other: Solved, base: Solved) -> tuple[Floats, Floats]:
     delta = delta[delta <= other["delta"][inner(other["delta"])][-1]]
     off = [
         float(np.abs(_smooth_at(delta, other, x) - _smooth_at(delta, base, y)).max())
-        for x, y in zip(_curves(other), _curves(base), strict=True)
+        for x, y in zip(curves(other), curves(base), strict=True)
     ]
-    return np.array(off), np.array([ripple(base["delta"], y) for y in _curves(base)])
+    return np.array(off), np.array([ripple(base["delta"], y) for y in curves(base)])
 
 
-def _curves(solved: Solved) -> tuple[Floats, Floats, Floats, Floats]:
+def combined(edge: Floats, bulk: Floats, step: Floats) -> Floats:
+    """Error of the base, from its differences with larger elements and longer steps."""
+    return np.hypot(_of_mesh(edge, bulk), step / 3.0)  # of second order in the step
+
+
+def _of_mesh(edge: Floats, bulk: Floats) -> Floats:
+    # first order in the element at the edge, where the contact opens: what halving changed is
+    # what is left; second order in the bulk
+    return np.hypot(edge, bulk / (_BULK**2 - 1.0))
+
+
+def curves(solved: Solved) -> tuple[Floats, Floats, Floats, Floats]:
+    """Ln F [%], ln a [%], the share and ln H [%] along a loading."""
     F, a = np.log(solved["force"]), np.log(solved["radius"])
     return 100.0 * F, 100.0 * a, solved.share, 100.0 * (F - 2.0 * a)
 

@@ -1,52 +1,51 @@
-"""Uncertainty from two solves, on curves whose difference is known."""
+"""The uncertainty that a solve states, from the table of mesh errors."""
 
 from dataclasses import replace
 
 import numpy as np
 import pytest
-from dentscope.fem import Accuracy, Curve, coarser, discretisation_uncertainty
+from dentscope import fem
+from dentscope.core.material import Material, Pair
+from dentscope.fem.uncertainty import _mesh_errors
 
-N = 20
-
-
-def curve(n=N, force=1.0, sphere=1.0):
-    line = np.geomspace(1.0, 30.0, n) if n == N else np.geomspace(1.0, 30.0, N)[:n]
-    made = Curve(**dict.fromkeys(Curve.__dataclass_fields__, line))
-    return replace(made, force=force * line, sphere=sphere * line)
+STEEL = Material(E=200e9, nu=0.3, Sy=500e6)
+PAIR = Pair(STEEL, STEEL, R=1e-3)
+LEVELS = [fem.Accuracy.production, fem.Accuracy.quick, fem.Accuracy.smoke]
 
 
-def test_a_constant_relative_difference_is_the_uncertainty():
-    made = discretisation_uncertainty(curve(), curve(force=1.02))
-    assert made.force == pytest.approx(0.02 * curve().force)
-    assert made.radius == pytest.approx(np.zeros(N))
+def stated(level, pair=PAIR, over_onset=(1.0, 1e4)):
+    problem = fem.ContactProblem(pair, (0.01,))
+    delta = np.array(over_onset) * fem.critical_depth(PAIR) * pair.R
+    ones = dict.fromkeys(fem.Curve.__dataclass_fields__, np.ones_like(delta))
+    curve = replace(fem.Curve(**ones), delta=delta, force=np.full_like(delta, 7.0))
+    return fem.discretisation_uncertainty(curve, problem, level())
 
 
-def test_the_share_differs_absolutely():
-    made = discretisation_uncertainty(curve(), curve(sphere=1.1))
-    assert made.sphere_share == pytest.approx(np.full(N, 1.1 / 2.1 - 0.5))
+@pytest.mark.parametrize("level", LEVELS)
+def test_at_a_knot_the_tables_number_times_the_value_is_stated(level):
+    row = _mesh_errors()["levels"][level().level]
+    k = _mesh_errors()["depth_over_first_yield"].index(1.0)
+    found = stated(level)
+    assert found.force[0] == pytest.approx(7.0 * row["force"][k], rel=1e-9)
+    assert found.sphere_share[0] == pytest.approx(row["sphere_share"][k], rel=1e-9)
 
 
-def test_a_ripple_that_crosses_zero_leaves_no_gap():
-    ripple = 1.0 + 0.01 * np.sin(1.3 * np.arange(N))
-    made = discretisation_uncertainty(curve(), curve(force=ripple))
-    relative = made.force / curve().force
-    assert relative[3:-3].min() > 0.004
-    assert relative.max() < 0.01
+def test_a_coarser_level_states_more():
+    force = [stated(level).force for level in LEVELS]
+    assert (force[0] < force[1]).all()
+    assert (force[1] < force[2]).all()
 
 
-def test_an_early_end_carries_the_last_difference_on():
-    made = discretisation_uncertainty(curve(), curve(n=5, force=0.97))
-    assert made.force == pytest.approx(0.03 * curve().force)
-    none = discretisation_uncertainty(curve(), curve(n=0))
-    assert np.isnan(none.force).all()
+def test_a_pair_that_never_yields_states_what_holds_below_first_yield():
+    elastic = Pair(replace(STEEL, Sy=np.inf), replace(STEEL, Sy=np.inf), R=1e-3)
+    shallow = stated(fem.Accuracy.quick, over_onset=(1e-3, 1e-2))
+    assert stated(fem.Accuracy.quick, elastic).force == pytest.approx(shallow.force)
 
 
-@pytest.mark.parametrize("level", [Accuracy.production, Accuracy.quick, Accuracy.smoke])
-def test_the_second_solve_is_coarser_in_every_respect(level):
-    fine, rough = level(), coarser(level())
-    assert rough.fine == 2.0 * fine.fine
-    assert rough.coarse >= rough.fine
-    assert rough.coarse > fine.coarse
-    assert rough.divisions < fine.divisions
-    assert rough.divisions % 2 == 0
-    assert rough.step_ratio > fine.step_ratio
+def test_settings_that_were_never_measured_are_refused():
+    with pytest.raises(ValueError, match="measured are"):
+        stated(lambda: fem.Accuracy.smoke().with_(level="my own"))
+
+
+def test_the_table_is_of_the_present_numerics():
+    assert _mesh_errors()["numerics_version"] == fem.NUMERICS_VERSION
