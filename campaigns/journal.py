@@ -13,6 +13,7 @@ from __future__ import annotations
 import fcntl
 import hashlib
 import io
+import os
 import time
 from collections.abc import Iterator
 from contextlib import contextmanager, suppress
@@ -98,26 +99,48 @@ def recover(path: Path) -> None:
         The journal is damaged, or belongs to another file.
     """
     journal = journal_of(path)
-    if not journal.exists():
-        return
-    if not path.exists():
+    while journal.exists():
+        if not path.exists():
+            _begin(path, journal)
+            continue
+        with path.open("rb") as file:
+            lock(file, fcntl.LOCK_EX)
+            # a repair may have put another file in its place meanwhile
+            if not os.path.samestat(os.fstat(file.fileno()), path.stat()):
+                continue
+            if journal.exists():  # or its writer, or another reader, was faster
+                _finish(path, journal, file.read())
+            return
+
+
+def _begin(path: Path, journal: Path) -> None:
+    """Make the empty file into which a first change is written; another process may be faster."""
+    refused = None
+    try:
         if _read_journal(journal).size_before:
-            raise _stale(journal)
-        DISK.close(DISK.create(path))
+            refused = _stale(journal)
+    except InputError as error:
+        refused = error
+    if refused and journal.exists() and not path.exists():
+        raise refused
+    if not refused:
+        with suppress(FileExistsError):
+            DISK.close(DISK.create(path))
         DISK.sync_folder(path.parent)
-    with path.open("rb") as file:
-        lock(file, fcntl.LOCK_EX)
-        if not journal.exists():
-            return  # its writer, or another reader, was faster
-        # read under the lock: before it, this could have been the journal of an earlier change,
-        # and what is removed below the next one's, unread
-        change = _read_journal(journal)
-        image = file.read()
-        if hashlib.sha256(image).digest() != change.after:
-            if not change.belongs_to(image):
-                raise _stale(journal)
-            _write_pages(path, len(image), change)
-        DISK.remove(journal)
+
+
+def _finish(path: Path, journal: Path, image: bytes) -> None:
+    """Finish a change; the caller holds the lock.
+
+    The journal is read under the lock: before it, this could have been the journal of an earlier
+    change, and what is removed here the next one's, unread.
+    """
+    change = _read_journal(journal)
+    if hashlib.sha256(image).digest() != change.after:
+        if not change.belongs_to(image):
+            raise _stale(journal)
+        _write_pages(path, len(image), change)
+    DISK.remove(journal)
 
 
 @dataclass(frozen=True)

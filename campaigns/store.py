@@ -205,16 +205,7 @@ def _appending(path: Path) -> Iterator[h5py.Group]:
 @contextmanager
 def _reading(path: Path) -> Iterator[h5py.File]:
     try:
-        recover(path)
-    except OSError:
-        pass  # where a change cannot be finished the file is still as it was
-    checked_file(path, most=MOST_BYTES, allowed="a campaign file (.h5)")
-    try:
-        with path.open("rb") as stream:
-            lock(stream, fcntl.LOCK_SH)
-            image = stream.read()
-        check_seal(image, path, allowed=_REPAIR)
-        file = open_image(image)
+        file = open_image(_image(path))
     except OSError as error:
         raise InputError(f"cannot be read ({error})", source=str(path)) from None
     with file:
@@ -228,6 +219,27 @@ def _reading(path: Path) -> Iterator[h5py.File]:
             raise
         except DAMAGE as error:
             raise InputError(damage(error), source=str(path), allowed=_REPAIR) from None
+
+
+def _image(path: Path, *, again: bool = True) -> bytes:
+    """Return the bytes of the file as a whole change left it."""
+    try:
+        recover(path)
+    except OSError:
+        pass  # where a change cannot be finished the file is still as it was
+    checked_file(path, most=MOST_BYTES, allowed="a campaign file (.h5)")
+    with path.open("rb") as stream:
+        lock(stream, fcntl.LOCK_SH)
+        image = stream.read()
+        interrupted = journal_of(path).exists()
+    try:
+        check_seal(image, path, allowed=_REPAIR)
+    except InputError:
+        # a writer may have begun a change, and died within it, since the look for one above
+        if interrupted and again:
+            return _image(path, again=False)
+        raise
+    return image
 
 
 def _repaired(path: Path) -> tuple[int, list[str]]:

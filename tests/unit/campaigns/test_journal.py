@@ -9,6 +9,7 @@ import numpy as np
 import pytest
 from dentscope.campaigns import journal
 from dentscope.core import InputError
+from dentscope.core.disk import Disk
 
 
 def write(path, name, value):
@@ -112,6 +113,66 @@ def test_a_journal_touches_no_file_but_its_own(tmp_path, monkeypatch, other):
     path.write_bytes(own)  # the file that it belongs to
     journal.recover(path)
     assert read(path) == {"w": 0, "x": 1, "y": 2}
+
+
+def died_when_journalled(path, name, value, monkeypatch):
+    with monkeypatch.context() as patch:
+        patch.setattr(journal, "recover", lambda path: None)
+        write(path, name, value)
+
+
+def test_a_first_change_that_another_process_finishes_meanwhile_is_no_fault(tmp_path, monkeypatch):
+    path = tmp_path / "a.h5"
+    died_when_journalled(path, "x", 1, monkeypatch)
+    seen = []
+
+    def read_late(place):  # the first change is done, and the next one's journal is there
+        if not seen:
+            seen.append(place)
+            journal.recover(path)
+            died_when_journalled(path, "y", 2, monkeypatch)
+        return real(place)
+
+    real = journal._read_journal
+    monkeypatch.setattr(journal, "_read_journal", read_late)
+    journal.recover(path)
+    assert read(path) == {"x": 1, "y": 2}
+    assert not journal.journal_of(path).exists()
+
+
+def test_a_file_that_another_process_makes_at_the_same_moment_is_no_fault(tmp_path, monkeypatch):
+    path = tmp_path / "a.h5"
+    died_when_journalled(path, "x", 1, monkeypatch)
+    create = Disk.create
+
+    def create_late(disk, place, *mode):
+        place.touch()
+        return create(disk, place, *mode)
+
+    monkeypatch.setattr(Disk, "create", create_late)
+    journal.recover(path)
+    assert read(path) == {"x": 1}
+
+
+def test_a_file_put_in_its_place_while_its_lock_is_awaited_is_the_one_that_counts(
+    tmp_path, monkeypatch
+):
+    path, other = tmp_path / "a.h5", tmp_path / "b.h5"
+    write(path, "x", 1)
+    write(other, "x", 2)
+    died_when_journalled(other, "y", 3, monkeypatch)
+    journal.journal_of(path).touch()  # of a change that another process finishes
+    lock = journal.lock
+
+    def lock_late(file, kind):
+        if other.exists():
+            other.rename(path)
+            journal.journal_of(other).rename(journal.journal_of(path))
+        lock(file, kind)
+
+    monkeypatch.setattr(journal, "lock", lock_late)
+    journal.recover(path)
+    assert read(path) == {"x": 2, "y": 3}
 
 
 LIMITED = """
