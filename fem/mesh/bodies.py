@@ -7,8 +7,10 @@ to its flat top face, the half-space in rings that grow out to its far boundary.
 
 from __future__ import annotations
 
+import ctypes
 import hashlib
 import math
+import signal
 from collections.abc import Iterator
 from contextlib import contextmanager
 from dataclasses import dataclass
@@ -121,7 +123,8 @@ def _session() -> Iterator[Any]:
     if started:
         # interruptible=False: gmsh would otherwise take over the signal handler, which only the
         # main thread may do
-        gmsh.initialize(interruptible=False)
+        with _broken_pipes_as_before():
+            gmsh.initialize(interruptible=False)
     gmsh.option.setNumber("General.Terminal", 0)
     gmsh.model.add("body")
     try:
@@ -130,6 +133,22 @@ def _session() -> Iterator[Any]:
         gmsh.model.remove()
         if started:
             gmsh.finalize()
+
+
+@contextmanager
+def _broken_pipes_as_before() -> Iterator[None]:
+    """Undo what gmsh does to SIGPIPE: without a word, a broken pipe would then end the process.
+
+    A coordinator whose worker was killed died of it, and so does whoever serves or asks over a
+    socket. `signal.signal` may be called by the main thread alone, and does not see gmsh's change.
+    """
+    libc = ctypes.CDLL(None)
+    libc.signal.restype, libc.signal.argtypes = ctypes.c_void_p, [ctypes.c_int, ctypes.c_void_p]
+    before = libc.signal(signal.SIGPIPE, int(signal.SIG_IGN))
+    try:
+        yield
+    finally:
+        libc.signal(signal.SIGPIPE, before)
 
 
 class _Sketch:

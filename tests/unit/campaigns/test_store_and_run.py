@@ -443,3 +443,24 @@ def test_a_dying_worker_costs_no_case(tmp_path):
         assert item.solution is not None, item.message
     assert killed
     assert sorted(ended) == sorted(cases)
+
+
+def test_a_writer_that_dies_while_a_reader_begins_is_no_damage(tmp_path, monkeypatch):
+    store = Store(tmp_path / "c.h5")
+    store.put(case("one"), solution(case("one")))
+    before, place = store.path.read_bytes(), journal.journal_of(store.path)
+    other = case("two", Sy=6e8)
+    store.put(other, solution(other))
+    after = store.path.read_bytes()
+    recover, looked = journal.recover, []
+
+    def recover_early(path):
+        if looked:
+            return recover(path)
+        looked.append(path)  # nothing to be finished yet; then a writer begins, and dies
+        place.write_bytes(journal.journalled(before, after))
+        store.path.write_bytes(after[: journal.PAGE] + before[journal.PAGE :])
+        return None
+
+    monkeypatch.setattr("dentscope.campaigns.store.recover", recover_early)
+    assert {record.case.name for record in store.read_all()} == {"one", "two"}
