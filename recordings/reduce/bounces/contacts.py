@@ -11,6 +11,7 @@ from __future__ import annotations
 import math
 from collections.abc import Sequence
 from dataclasses import replace
+from typing import NamedTuple
 
 import numpy as np
 
@@ -21,7 +22,14 @@ from .flights import UNEVEN, Piece
 from .joint import SHARED, Before, Solution, fit_together
 from .scale import floor_drift, frames_lost, scale_of
 from .sides import joined, known_before, sides_of, true_contacts
-from .touch import samples_of, speeds, touch_of
+from .touch import (
+    Mask,
+    common_durations,
+    possible_durations,
+    samples_of,
+    speeds,
+    touch_of,
+)
 from .track import Indices, Track, on_the_body, turning_points
 from .view import Stage, View
 
@@ -77,11 +85,18 @@ def find_bounces(
             ]
             grown = sides_of(body, contacts, stage, view, held)
             sides = [g if k else None for g, k in zip(grown, known, strict=True)]
-    found = [
-        _bounce(
-            body, turning, stage, pieces, (places[2 * k], places[2 * k + 1]), solutions, contact
-        )
+    meetings = [
+        _meeting(body, turning, stage, pieces, (places[2 * k], places[2 * k + 1]), solutions)
         for k, turning in enumerate(contacts)
+    ]
+    seen = [m for m in meetings if m is not None]
+    possible = common_durations([
+        possible_durations(body, stage, view, (pieces[m.before], pieces[m.after]), m.numbers)
+        for m in seen
+    ])  # fmt: skip
+    found = [
+        _bounce(body, stage, pieces, solutions, meeting, contact, durations)
+        for meeting, durations in zip(seen, possible, strict=True)
     ]
     bounces = _on_one_flat([b for b in found if b is not None], stage)
     if not bounces:
@@ -99,29 +114,56 @@ def _held(
     return samples_of(body, stage, view, (pieces[b], pieces[a]), turning)
 
 
-def _bounce(
+class _Meeting(NamedTuple):
+    """Two flights that meet in a contact."""
+
+    turning: int
+    """Index of the lowest sample."""
+    before: int
+    after: int
+    """Places of the flights among the pieces."""
+    numbers: Array
+    """What `speeds` gives where they meet."""
+    gaps: tuple[float, float]
+    """Times to the meeting from the last, and from it to the first sample of a flight [s]."""
+
+
+def _meeting(
     body: Track, turning: int, stage: Stage, pieces: Sequence[Piece],
-    place: tuple[int | None, int | None], solutions: Sequence[Solution], contact: Measured | None,
-) -> Bounce | None:  # fmt: skip
+    place: tuple[int | None, int | None], solutions: Sequence[Solution],
+) -> _Meeting | None:  # fmt: skip
     b, a = place
     if b is None or a is None:
         return None
     before, after = pieces[b], pieces[a]
-    guess = float(body.time[turning])
     last, first = _nearest(before, turning, -1), _nearest(after, turning, 1)
     if last is None or first is None:
         return None
-    index = [*range(SHARED), *(SHARED + 2 * p + j for p in (b, a) for j in (0, 1))]
+    c = solutions[0].x[_unknowns(b, a)]
+    references = before.reference, after.reference
+    start = speeds(c, stage, references, float(body.time[turning]), (0.0, 0.0))
+    gaps = float(start[0] - body.time[last]), float(body.time[first] - start[0])
+    # a contact lies between its flights: where they meet elsewhere one of them is none
+    return _Meeting(turning, b, a, start, gaps) if min(gaps) >= -body.step else None
+
+
+def _unknowns(before: int, after: int) -> list[int]:
+    return [*range(SHARED), *(SHARED + 2 * p + j for p in (before, after) for j in (0, 1))]
+
+
+def _bounce(
+    body: Track, stage: Stage, pieces: Sequence[Piece], solutions: Sequence[Solution],
+    meeting: _Meeting, contact: Measured | None, possible: Mask,
+) -> Bounce | None:  # fmt: skip
+    before, after = pieces[meeting.before], pieces[meeting.after]
+    index = _unknowns(meeting.before, meeting.after)
+    guess = float(body.time[meeting.turning])
 
     def numbers(c: Array, offsets: tuple[float, float]) -> Array:
         return speeds(c, stage, (before.reference, after.reference), guess, offsets)
 
-    start = numbers(solutions[0].x[index], (0.0, 0.0))
-    step, meeting = body.step, float(start[0])
-    # a contact lies between its flights: where they meet elsewhere one of them is none
-    if not body.time[last] - step <= meeting <= body.time[first] + step:
-        return None
-    touch = touch_of(body, stage, solutions[0].view, (before, after), start, contact)
+    view, step = solutions[0].view, body.step
+    touch = touch_of(body, stage, view, (before, after), meeting.numbers, contact, possible)
     found = [
         (s.weight, propagate(lambda c: numbers(c, touch.offsets), s.x[index],
                              s.covariance[np.ix_(index, index)]))
@@ -134,10 +176,9 @@ def _bounce(
         return None
     fall = abs(solutions[0].view.fall)
     late = [fall * e for e in touch.errors]
-    gaps = (meeting - body.time[last], body.time[first] - meeting)
     values = (approach.value, rebound.value)
     bridged = []
-    for gap, piece, speed in zip(gaps, (before, after), values, strict=True):
+    for gap, piece, speed in zip(meeting.gaps, (before, after), values, strict=True):
         lasts = piece.duration(body.time)
         bridged.append(math.hypot(
             fall * UNEVEN * max(gap - 2.0 * step, 0.0), body.drift(speed * lasts) / lasts
@@ -146,10 +187,11 @@ def _bounce(
     both = touch.ratio_error(fall, *values)
     part = ratio.value * math.hypot(both, *(g / v for g, v in zip(bridged, values, strict=True)))
     # the flights meet below the flat where a contact takes time
+    height = replace(height, value=height.value - touch.offsets[0] * approach.value)
     height = _widened(height, sum(touch.errors) * ratio.value / (1.0 + ratio.value) * values[0])
     return Bounce(
         time, _widened(approach, more[0]), _widened(rebound, more[1]), _widened(ratio, part),
-        height, turning, before, after,
+        height, meeting.turning, before, after,
     )  # fmt: skip
 
 

@@ -7,6 +7,7 @@ of a linear model with normal errors; MacKay, Information Theory, 2003, ch. 28).
 
 from __future__ import annotations
 
+import math
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
 
@@ -20,7 +21,10 @@ from .track import Track
 from .view import Launch, Stage, View
 
 SHARED = len(View._fields)
-_WIDTHS = (3e-4, 3e-3, 1e-2, 3e-2, 1e-1)
+_WIDTHS = {3e-4: 1.0, 3e-3: 1.0, 1e-2: 1.0, 3e-2: 1.0, 1e-1: 0.05}
+"""Widths, and how much each is believed beforehand: a scale that drifts by a tenth is rare and must
+show in the track, else it alone would make the error of one that does not tell."""
+
 _FIRST_WIDTH = 3e-2
 _REJECT, _TRIM = 4.0, 2.5
 _POOLED = 8
@@ -92,9 +96,9 @@ def fit_together(
         x, _, _, _ = _settled(track, pieces, stage, x, before, _FIRST_WIDTH)
         pieces = _cleaned(track, pieces, stage, x)
     found = []
-    for width in _WIDTHS:
+    for width, usual in _WIDTHS.items():
         there, covariance, misfit, spread = _settled(track, pieces, stage, x, before, width)
-        found.append((there, covariance, -0.5 * misfit - 0.5 * spread))
+        found.append((there, covariance, math.log(usual) - 0.5 * misfit - 0.5 * spread))
     best = max(f[2] for f in found)
     belief = np.exp([f[2] - best for f in found])
     belief /= belief.sum()

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Sequence
 from typing import NamedTuple
 
 import numpy as np
@@ -27,8 +28,17 @@ _BEYOND = 0.5
 _HIDDEN = 8.0
 """Spreads of a sample that the path may turn within without a sample that shows the contact."""
 
+LASTS: Array = np.geomspace(_SHORTEST, _LONGEST, 100)
+"""Durations that are tried of a contact that the samples do not resolve [s]."""
+
+_ALIKE = 1.3
+"""Ratio of the durations of a track's contacts: speeds to a quarter of the first one."""
+
 _SLOWEST = 0.02
 """Longest contact that samples can show [s]."""
+
+
+Mask = npt.NDArray[np.bool_]
 
 
 class Touch(NamedTuple):
@@ -49,7 +59,7 @@ class Touch(NamedTuple):
 
 def touch_of(
     track: Track, stage: Stage, view: View, flights: tuple[Piece, Piece], met: Array,
-    known: Measured | None,
+    known: Measured | None, possible: Mask,
 ) -> Touch:  # fmt: skip
     """Return where a contact begins and ends.
 
@@ -65,22 +75,19 @@ def touch_of(
         What `speeds` gives at the meeting of the flights.
     known
         Duration of the contact [s], if it is known.
+    possible
+        Of `LASTS`, those that the samples of this contact and of the others allow.
     """
     meeting, ratio, step = float(met[0]), float(met[3]), track.step
-    runs = [
-        _held(track, stage, view, piece, meeting, way)
-        for piece, way in zip(flights, (-1, 1), strict=True)
-    ]
-    moved = sum(r.size for r in runs)
-    if known is None and moved >= _RESOLVED:
+    runs = _both_held(track, stage, view, flights, meeting)
+    if known is None and sum(r.size for r in runs) >= _RESOLVED:
         ends = tuple(
             0.5 * (track.time[run[-1]] + track.time[run[-1] + way]) - meeting if run.size else 0.0
             for run, way in zip(runs, (-1, 1), strict=True)
         )
         error = step / math.sqrt(12.0)
         return Touch((float(ends[0]), float(ends[1])), (error, error), whole=False)
-    spread = max(p.sigma for p in flights)
-    lasts = known or _unseen(moved, step + _HIDDEN * spread / max(float(met[1]), 1e-12))
+    lasts = known or _unseen(LASTS[possible])
     shares = (ratio / (1.0 + ratio), 1.0 / (1.0 + ratio))
     return Touch(
         (-lasts.value * shares[0], lasts.value * shares[1]),
@@ -98,10 +105,7 @@ def samples_of(
     which the force is too small to show and yet moves the speed.
     """
     lowest = float(track.time[turning])
-    runs = [
-        _held(track, stage, view, piece, lowest, way)
-        for piece, way in zip(flights, (-1, 1), strict=True)
-    ]
+    runs = _both_held(track, stage, view, flights, lowest)
     ratio = float(np.clip(abs(flights[1].launch.speed / flights[0].launch.speed), 0.1, 1.0))
     # slowed down over a time, a body is pushed away over that time over the restitution
     shown = max(sum(r.size for r in runs), math.ceil(runs[0].size * (1.0 + 1.0 / ratio)))
@@ -131,20 +135,69 @@ def _held(
     return run[: count if low else 0]
 
 
-def _unseen(moved: int, step: float) -> Measured:
-    """Return how long a contact lasts in which `moved` samples lie, a few at the most [s].
+def _both_held(
+    track: Track, stage: Stage, view: View, flights: tuple[Piece, Piece], meeting: float
+) -> list[npt.NDArray[np.int_]]:
+    return [
+        _held(track, stage, view, piece, meeting, way)
+        for piece, way in zip(flights, (-1, 1), strict=True)
+    ]
 
-    `step` is the longest time without a sample that would show it.
+
+def possible_durations(
+    track: Track, stage: Stage, view: View, flights: tuple[Piece, Piece], met: Array
+) -> Mask:
+    """Return which of `LASTS` the samples next to a contact allow, (n,).
+
+    A path that bends as two quarters of a sine lies the least above the flights that it joins; one
+    that halts at once, smeared over a whole frame, the most. All are possible where nothing fits: a
+    shadow, a stray.
     """
-    if moved:
-        low, high = max((moved - 1) * step, _SHORTEST), (moved + 1) * step
-        return Measured(0.5 * (low + high), (high - low) / math.sqrt(12.0))
-    high = max(min(step, _LONGEST), 1.1 * _SHORTEST)
-    # mean and spread of a duration whose logarithm is evenly spread
-    span = math.log(high / _SHORTEST)
-    mean = (high - _SHORTEST) / span
-    square = (high**2 - _SHORTEST**2) / (2.0 * span)
-    return Measured(mean, math.sqrt(square - mean**2))
+    meeting, ratio, step = float(met[0]), float(met[3]), track.step
+    runs = _both_held(track, stage, view, flights, meeting)
+    moved = sum(r.size for r in runs)
+    spread = max(p.sigma for p in flights)
+    hidden = step + _HIDDEN * spread / max(float(met[1]), 1e-12)
+    longest = LASTS <= max((moved + 1) * hidden, 1.1 * _SHORTEST)
+    if moved >= _RESOLVED:
+        return np.ones_like(longest)
+    possible = longest.copy()
+    shares = ratio / (1.0 + ratio), 1.0 / (1.0 + ratio)
+    smeared = float(met[1] + met[2]) / (2.0 * step)
+    for piece, run, share, speed in zip(flights, runs, shares, met[1:3], strict=True):
+        near = np.abs(track.time[piece.index] - meeting).argmin()
+        for index in (*run, piece.index[near]):
+            time = track.time[index : index + 1]
+            seen = stage.seen(view, piece.launch, piece.reference, time)
+            above, gap = float(track.height[index] - seen[0]), abs(float(time[0]) - meeting)
+            side = LASTS * share
+            late = np.maximum(side - gap, 0.0)
+            least = speed * (late - side * np.sin(0.5 * np.pi * late / side) / (0.5 * np.pi))
+            most = speed * late + smeared * max(0.5 * step - gap, 0.0) ** 2
+            unsure = 0.5 * _HIDDEN * piece.sigma
+            possible &= (least <= max(above, 0.0) + unsure) & (most >= above - unsure)
+    return possible if possible.any() else longest
+
+
+def common_durations(each: Sequence[Mask]) -> list[Mask]:
+    """Return what all contacts of a track allow for each of them.
+
+    Contacts of one body last about as long; those of elastic spheres vary with the inverse fifth
+    root of the speed (H. Hertz, 1882).
+    """
+    near = np.abs(np.log(LASTS[:, None] / LASTS[None, :])) <= math.log(_ALIKE)
+    wide = [(near & mask[None, :]).any(axis=1) for mask in each]
+    found = []
+    for mask in each:
+        both = mask & np.logical_and.reduce(wide)
+        found.append(both if both.any() else mask)
+    return found
+
+
+def _unseen(lasts: Array) -> Measured:
+    """Return a duration the logarithm of which is evenly spread over those that are possible."""
+    mean = float(lasts.mean())
+    return Measured(mean, max(float(lasts.std()), 0.1 * mean))
 
 
 def speeds(
