@@ -253,7 +253,7 @@ def test_marble_on_paper_against_parabolas_within_one_flight():
     found = judge_marble(sorted(MARBLE.glob("[0-9]*-M.csv"))[::5])
     assert len(found) >= 10
     e, std, other, other_std = found.T
-    # of the files that were run 3 of 56 bounces lie beyond 3 standard deviations
+    # of all 68 files 3 of 72 bounces lie beyond 3 standard deviations
     assert np.sum(np.abs(e - other) > 3.0 * std) <= 2
     assert np.abs((e - other) / np.hypot(std, other_std)).max() < 4.0
     assert np.median(std) < 0.005
