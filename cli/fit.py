@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING, Annotated, Any, NamedTuple
 import typer
 
 from ..core.errors import EXIT_NOT_CONVERGED, InputError
+from ..core.input_file import checked_file
 from . import studies
 from .campaign_data import PUBLISHED
 from .places import folder_option
@@ -24,6 +25,7 @@ if TYPE_CHECKING:
 
 _OWN = Path("build/campaign/campaign.h5")
 _ROOT = Path(__file__).resolve().parents[1]
+_SIGNATURE = b"\x89HDF\r\n\x1a\n"
 _PAGE = _ROOT / "docs" / "closed-form.md"
 
 
@@ -145,7 +147,18 @@ def _files(campaigns: Sequence[Path] | None) -> list[Path]:
         if not found:
             raise InputError("no campaign file", source=str(path), allowed="a folder of *.h5 parts")
         files += found
+    for path in files:
+        _check_kind(path)
     return files
+
+
+def _check_kind(path: Path) -> None:
+    """Refuse what is no HDF5 file at all, before the seconds that the reader takes to load."""
+    allowed = "a file that `dentscope campaign` wrote"
+    checked_file(path, most=2**63, allowed=allowed)  # its reader says how large it may be
+    with path.open("rb") as stream:
+        if stream.read(len(_SIGNATURE)) != _SIGNATURE:
+            raise InputError("not a campaign file", source=str(path), allowed=allowed)
 
 
 class _Found(NamedTuple):
@@ -187,11 +200,12 @@ def _show(console: Console, rows: Sequence[Sequence[str]]) -> None:
 
 def _judge(folder: Path, console: Console, *, publish: bool) -> int:
     """Show the errors of the laws in use on cases that no fit reads."""
+    files = _files([folder])
     from ..core.provenance import file_digest
     from ..fitting.report import error_rows, uncertainty_rows
     from ..models.coefficients import COEFFICIENTS_FILE
 
-    found = _judged(_files([folder]), [_law_in_use("compact"), _law_in_use("fitted")])
+    found = _judged(files, [_law_in_use("compact"), _law_in_use("fitted")])
     count = len(found.names)
     _show(console, error_rows([(f"{name}, {count} pairs", e) for name, e in found.errors]))
     _show(console, uncertainty_rows(found.within))

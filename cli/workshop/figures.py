@@ -7,6 +7,10 @@ from typing import Annotated
 
 import typer
 
+from ...core.errors import InputError
+from ...studies.thesis.figures.names import CHAPTERS, FIELDS
+from ..places import folder_option
+
 
 def figures(
     chapter: Annotated[
@@ -17,20 +21,26 @@ def figures(
         list[str] | None,
         typer.Option(help="Solve the stress field of 2.2, 2.3, 2.4 or 3.7 anew (minutes) first."),
     ] = None,
-    out: Annotated[Path, typer.Option(help="Folder of the gallery.")] = Path("docs/gallery"),
+    out: Annotated[Path, folder_option("Folder of the gallery.")] = Path("docs/gallery"),
 ) -> None:
     """Draw the gallery: a picture and a computed line for every figure."""
-    from ...core.errors import InputError
-    from ...studies.thesis.figures.fields import WANTED, solve_field
-    from ...studies.thesis.figures.gallery import CHAPTERS, build
+    chosen = _known(chapter, "--chapter", CHAPTERS) or list(CHAPTERS)
+    numbers = _known(fields, "--fields", FIELDS)
+    from ...studies.thesis.figures.fields import solve_field
+    from ...studies.thesis.figures.gallery import build
 
-    for number in fields or ():
-        if number not in WANTED:
-            raise InputError(f"{number!r}", key="fields", allowed=", ".join(WANTED))
+    for number in numbers:
         typer.echo(f"written: {solve_field(number)}")
-
-    chosen = chapter or list(CHAPTERS)
     root = Path(__file__).resolve().parents[2]
     for entry in build(out, chapters=chosen, root=root):
         typer.echo(f"{entry.number:>8}  {entry.title}: {entry.note}")
     typer.echo(f"written: {out / 'README.md'}")
+
+
+def _known(asked: list[str] | None, option: str, allowed: tuple[str, ...]) -> list[str]:
+    """Return what was asked for, all of it known."""
+    for name in asked or ():
+        if name not in allowed:
+            raise InputError(repr(name), source="command line", key=option,
+                             allowed=", ".join(allowed))  # fmt: skip
+    return asked or []

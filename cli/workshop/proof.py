@@ -3,30 +3,32 @@
 from __future__ import annotations
 
 import os
+from collections.abc import Sequence
 from datetime import UTC, datetime
 from pathlib import Path
 from typing import Annotated
 
 import typer
 
+from ...core.errors import InputError
 from ...core.output import write_file
+from ...studies.proof.names import KINDS, LISTS
 from ..groups import group
+from ..places import folder_option, writable_folder
 
 app = group("Blind proof of the diagnosis on concealed impacts.")
 
 _BASE = Path("build/proof")
-_Base = Annotated[Path, typer.Option("--out", help="Folder of the runs.")]
+_Base = Annotated[Path, folder_option("Folder of the runs.")]
 _Which = Annotated[str, typer.Option("--list", help="full or small.")]
 
 
-def _checked(which: str) -> str:
-    from ...core.errors import InputError
-    from ...studies.proof.lists import LISTS
-
-    if which not in LISTS:
-        raise InputError(f"no list {which!r}", source="command line", key="--list",
-                         allowed=", ".join(LISTS))  # fmt: skip
-    return which
+def _checked(asked: str, option: str, allowed: Sequence[str]) -> str:
+    if asked not in allowed:
+        raise InputError(
+            repr(asked), source="command line", key=option, allowed=", ".join(filter(None, allowed))
+        )
+    return asked
 
 
 @app.command()
@@ -39,15 +41,16 @@ def run(
     workers: Annotated[int, typer.Option(min=1, help="Worker processes.")] = os.cpu_count() or 1,
 ) -> int:
     """Go on with the run of this source tree: draw, seal, diagnose, seal. Stop it at any time."""
+    _checked(which, "--list", LISTS)
     from rich.console import Console
     from rich.progress import Progress
 
     from ...core.threads import one_thread_each
-    from ...studies.proof.lists import LISTS
+    from ...studies.proof.lists import LISTS as made
     from ...studies.proof.run import carry_on, local_workers, run_folder, verdicts_of
 
-    folder = run_folder(out, _checked(which))
-    total, before = len(LISTS[which]()), verdicts_of(folder)
+    folder = run_folder(out, which)
+    total, before = len(made[which]()), verdicts_of(folder)
     typer.echo(
         f"{folder}: {total} sets, {before} done; {workers} workers. Ctrl-C stops, the same command "
         "goes on."
@@ -74,16 +77,16 @@ def run(
 @app.command()
 def score(which: _Which = "full", out: _Base = _BASE) -> None:
     """Open the truths of the sets that have a sealed verdict, score, and rewrite docs/proof.md."""
-    from ...core.errors import InputError
+    _checked(which, "--list", LISTS)
     from ...core.provenance import source_commit
     from ...studies.proof import page as pages
     from ...studies.proof.case import open_run
     from ...studies.proof.follow import read_lines
-    from ...studies.proof.lists import LISTS
+    from ...studies.proof.lists import LISTS as made
     from ...studies.proof.run import ROOT, run_folder
     from ...studies.proof.seal import SealBroken, tree_hash
 
-    folder = run_folder(out, _checked(which))
+    folder = run_folder(out, which)
     if not (folder / "ledger.jsonl").exists():
         raise InputError("no run of this source tree", source=str(folder),
                          allowed="dentscope proof run")  # fmt: skip
@@ -93,7 +96,7 @@ def score(which: _Which = "full", out: _Base = _BASE) -> None:
         raise InputError(str(broken), source=str(folder), allowed="unbroken seals") from broken
     entry = pages.summary(
         cases, which=which, tree=tree_hash(ROOT), date=datetime.now(UTC).date().isoformat(),
-        total=len(LISTS[which]()), commit=source_commit(), followed=read_lines(folder),
+        total=len(made[which]()), commit=source_commit(), followed=read_lines(folder),
     )  # fmt: skip
     _write_page(pages.keep(entry))
     for s in entry["scores"]:
@@ -130,16 +133,13 @@ def sample(
     seed: Annotated[int, typer.Option(help="Seed of the draw.")] = 1,
 ) -> None:
     """Write sample sets with their truths beside them."""
-    from ...core.errors import InputError
+    _checked(kind, "--kind", ("", *KINDS))
+    writable_folder(out, key="OUT")
     from ...studies.proof.generators.effects import EFFECTS, OUTSIDE
-    from ...studies.proof.sample import KINDS
     from ...studies.proof.sample import sample as samples
 
-    if kind and kind not in KINDS:
-        raise InputError(repr(kind), source="command line", key="--kind", allowed=", ".join(KINDS))
     known = EFFECTS | OUTSIDE if not kind else (EFFECTS if kind == "single" else OUTSIDE)
-    if name and name not in known:
-        raise InputError(repr(name), source="command line", key="--name", allowed=", ".join(known))
+    _checked(name, "--name", ("", *known))
     for label, record in samples(out, count=count, kind=kind, name=name, seed=seed):
         typer.echo(f"{label}  {record['kind']}")
 

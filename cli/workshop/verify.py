@@ -7,6 +7,8 @@ from typing import Annotated
 
 import typer
 
+from ..places import file_option, folder_option
+
 EXIT_MISSED = 1
 """Exit code when a mark is missed."""
 
@@ -22,10 +24,10 @@ def verify(
         bool, typer.Option("--afresh", help="Measure again what is already measured.")
     ] = False,
     known: Annotated[bool, typer.Option("--list", help="List the checks and stop.")] = False,
-    folder: Annotated[Path, typer.Option(help="Where measurements are kept.")] = Path(
+    folder: Annotated[Path, folder_option("Where measurements are kept.", name="--folder")] = Path(
         "build/verification"
     ),
-    report: Annotated[Path, typer.Option(help="The report to write.")] = Path(
+    report: Annotated[Path, file_option("The report to write.", name="--report")] = Path(
         "docs/verification.md"
     ),
 ) -> int:
@@ -34,13 +36,15 @@ def verify(
     It can be stopped and started again: every solve and every check is kept. Exit code 1 means
     that a mark is missed.
     """
-    from ...studies.verification import CHECKS, Bench, Effort, check_named, run_checks, write_report
+    from ...studies.verification.checks import CHECKS, check_named
 
     if known:
         for check in CHECKS:
             typer.echo(f"{check.name:22} {check.title}")
         return 0
     chosen = [check_named(name) for name in only] if only else list(CHECKS)
+    from ...studies.verification import Bench, Effort, run_checks, write_report
+
     bench = Bench(
         folder=folder,
         pictures=report.parent / report.stem,

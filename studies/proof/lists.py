@@ -7,6 +7,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from . import names
 from .explicit.sets import available
 from .generators.effects import EFFECTS
 
@@ -52,7 +53,7 @@ def small() -> list[Entry]:
     return _entries(wanted, [s.name for s in available()][:1])
 
 
-LISTS = {"full": full, "small": small}
+LISTS = dict(zip(names.LISTS, (full, small), strict=True))
 
 
 def _entries(wanted: list[tuple[str, str]], series: list[str]) -> list[Entry]:

@@ -17,8 +17,7 @@ import numpy as np
 from .generators.effects import EFFECTS, OUTSIDE
 from .generators.folder import write_set
 from .generators.truth import draw
-
-KINDS = ("null", "single", "pair", "outside")
+from .names import KINDS
 
 
 def sample(

@@ -6,11 +6,28 @@ one by one and keeps what it measured, `write_report` turns that into docs/verif
 
 from __future__ import annotations
 
-from .bench import Bench, Effort
-from .checks import CHECKS, Check, check_named
-from .report import write_report
-from .result import Measurement, Result, Table
-from .runner import run_checks
+from importlib import import_module
+from typing import TYPE_CHECKING, Any
+
+if TYPE_CHECKING:
+    from .bench import Bench, Effort
+    from .checks import CHECKS, Check, check_named
+    from .report import write_report
+    from .result import Measurement, Result, Table
+    from .runner import run_checks
+
+_FROM = {
+    "Bench": "bench",
+    "CHECKS": "checks",
+    "Check": "checks",
+    "Effort": "bench",
+    "Measurement": "result",
+    "Result": "result",
+    "Table": "result",
+    "check_named": "checks",
+    "run_checks": "runner",
+    "write_report": "report",
+}
 
 __all__ = [
     "Bench",
@@ -24,3 +41,10 @@ __all__ = [
     "run_checks",
     "write_report",
 ]
+
+
+def __getattr__(name: str) -> Any:
+    """Load a name when it is first asked for: the names of the checks need no solver."""
+    if name not in _FROM:
+        raise AttributeError(f"module {__name__!r} has no attribute {name!r}")
+    return getattr(import_module(f".{_FROM[name]}", __name__), name)

@@ -33,6 +33,7 @@ from ....fem.mesh import Zone
 from ....models import LAWS
 from ...plot import Floats, Picture, finish, sheet
 from .. import chapter3
+from .names import FIELDS
 
 STORE = Path(__file__).resolve().parents[3] / "docs" / "gallery" / "fields"
 _THESIS_ELEMENTS = 9784
@@ -60,16 +61,16 @@ class Wanted:
     last: float = 0.0
 
 
-WANTED = {
-    "2.2": Wanted("von Mises stress, Sy* = 0.1", lambda: _steels(503e6, 5030e6), 0.02,
-                  "the flat is still elastic"),
-    "2.3": Wanted("von Mises stress, Sy* = 1", lambda: _steels(503e6, 503e6), 0.02,
-                  "large parts of both bodies yield"),
-    "2.4": Wanted("von Mises stress, Sy* = 10", lambda: _steels(5030e6, 503e6), 0.02,
-                  "the flat yields also outside the contact, the sphere does not"),
-    "3.7": Wanted("Mesh and von Mises stress of chapter 3", _chapter_3, 148e-6 / 0.1365,
-                  "", last=0.1),
-}  # fmt: skip
+WANTED = dict(zip(FIELDS, (
+    Wanted("von Mises stress, Sy* = 0.1", lambda: _steels(503e6, 5030e6), 0.02,
+           "the flat is still elastic"),
+    Wanted("von Mises stress, Sy* = 1", lambda: _steels(503e6, 503e6), 0.02,
+           "large parts of both bodies yield"),
+    Wanted("von Mises stress, Sy* = 10", lambda: _steels(5030e6, 503e6), 0.02,
+           "the flat yields also outside the contact, the sphere does not"),
+    Wanted("Mesh and von Mises stress of chapter 3", _chapter_3, 148e-6 / 0.1365,
+           "", last=0.1),
+), strict=True))  # fmt: skip
 """Field pictures by figure number; the thesis gives no depth for 2.2-2.4. The solve of 3.7 goes on
 as far as figure 3.8 does."""
 

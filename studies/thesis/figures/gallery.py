@@ -13,15 +13,18 @@ from ....models import DomainWarning
 from ...plot import Entry, Picture, Table
 from .. import errata
 from . import chapter1, chapter2, chapter3, chapter45, outside
+from .names import CHAPTERS
 
-CHAPTERS: dict[str, Callable[[Sequence[CaseRecord]], Sequence[Entry]]] = {
-    "1": chapter1.pictures,
-    "2": chapter2.pictures,
-    "3": chapter3.pictures,
-    "4 and 5": chapter45.pictures,
-    "outside": outside.pictures,
-}
-"""Chapters in reading order; the last compares with another program's law."""
+_PICTURES: dict[str, Callable[[Sequence[CaseRecord]], Sequence[Entry]]] = dict(
+    zip(
+        CHAPTERS,
+        (
+            chapter1.pictures, chapter2.pictures, chapter3.pictures, chapter45.pictures,
+            outside.pictures,
+        ),
+        strict=True,
+    )
+)  # fmt: skip
 
 _HEAD = """# Gallery
 
@@ -70,14 +73,14 @@ def build(folder: Path, *, chapters: Sequence[str], root: Path) -> list[Entry]:
     for chapter in chapters:
         with warnings.catch_warnings():
             warnings.simplefilter("ignore", DomainWarning)  # the figures leave domains on purpose
-            entries = sorted(CHAPTERS[chapter](records), key=_order)
+            entries = sorted(_PICTURES[chapter](records), key=_order)
         for entry in entries:
             if isinstance(entry, Picture):
                 entry.save(folder)
         write_file(folder / page_of(chapter), _page(chapter, entries, rests))
         drawn += entries
     write_file(folder / "README.md", _index(folder))
-    if tuple(chapters) == tuple(CHAPTERS):
+    if tuple(chapters) == CHAPTERS:
         errata.write(root / "docs" / "errata.md")
     return drawn
 

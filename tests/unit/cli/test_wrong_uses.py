@@ -1,5 +1,7 @@
 """More than a hundred wrong uses: each one line on standard error and exit code 2, no traceback."""
 
+import subprocess
+import sys
 from pathlib import Path
 
 import pytest
@@ -219,6 +221,11 @@ verify --only nonsense
 proof nonsense
 proof run --list nonsense
 figures --chapter 9
+figures --fields 9.9
+figures --out words.txt
+verify --folder words.txt
+proof sample words.txt
+proof score --out words.txt
 """
 USES = [line.split() for line in LINES.strip().splitlines()]
 
@@ -238,3 +245,33 @@ def test_a_wrong_use_is_told_in_short(use: list[str], capsys: pytest.CaptureFixt
     assert all(len(line) > 8 for line in lines)
     assert "Traceback" not in told.out + told.err
     assert told.out == ""
+
+
+QUICK = """
+figures --chapter 9
+figures --fields 9.9
+figures --out words.txt
+verify --only nonsense
+verify --folder words.txt
+verify --report folder
+proof run --list nonsense
+proof score --out words.txt
+proof sample new --kind nonsense
+proof sample words.txt
+fit absent.h5
+fit words.h5
+fit folder
+fit --judge words.txt
+"""
+
+
+def test_what_is_wrong_is_told_before_the_solver_is_loaded():
+    # compiled kernels alone take seconds to load; a process of its own shows what was loaded
+    said = (
+        "import sys; from dentscope.cli import run\n"
+        f"for line in {QUICK.strip().splitlines()!r}:\n"
+        "    assert run(line.split()) == 2, line\n"
+        "    assert not {'numba', 'scipy'} & set(sys.modules), line\n"
+    )
+    answer = subprocess.run([sys.executable, "-c", said], capture_output=True, text=True)
+    assert answer.returncode == 0, answer.stderr
