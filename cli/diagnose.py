@@ -3,8 +3,10 @@
 from __future__ import annotations
 
 import json
+import sys
 from collections.abc import Callable
 from pathlib import Path
+from shutil import get_terminal_size
 from typing import TYPE_CHECKING, Annotated
 
 import typer
@@ -65,19 +67,31 @@ def diagnose(
     from ..discrepancy import diagnose as run
     from ..discrepancy.report import lines
 
-    def show(step: str) -> None:
-        if not quiet:
-            typer.echo(f"\r\x1b[K{step} ...", nl=False, err=True)
-
+    show = _progress(quiet=quiet)
     verdict = run(recordings, seed=seed, confirm=confirm, progress=show)
-    if not quiet:
-        typer.echo("\r\x1b[K", nl=False, err=True)
+    show("")
     written = _written(verdict, out, report=report)
     for line in lines(verdict):
         typer.echo(line)
     if solve:
         written += _solved(verdict, out, show)
     typer.echo(f"\nwritten: {', '.join(map(str, written))}")
+
+
+def _progress(*, quiet: bool) -> Callable[[str], None]:
+    """Return what tells a step: one line that changes on a terminal, a line a step in a file."""
+    live = sys.stderr.isatty()
+
+    def show(step: str) -> None:
+        told = f"{step} ..." if step else ""
+        if live and not quiet:
+            # a line that wraps could not be taken back
+            room = get_terminal_size().columns - 1
+            typer.echo(f"\r\x1b[K{told[:room]}", nl=False, err=True)
+        elif told and not quiet:
+            typer.echo(told, err=True)
+
+    return show
 
 
 def _written(verdict: Verdict, out: Path, *, report: bool) -> list[Path]:
@@ -93,6 +107,7 @@ def _solved(verdict: Verdict, out: Path, show: Callable[[str], None]) -> list[Pa
     from ..start.closing import close, closed_lines, write_closed
 
     closed = close(verdict, progress=show)
+    show("")
     for line in closed_lines(closed):
         typer.echo(line)
     return list(write_closed(closed, out))

@@ -54,7 +54,7 @@ def main() -> None:
     for stage in STAGES:
         _write(f"python/{stage}.md", reference_page(stage))
     _write("python/index.md", (ROOT / "__init__.py").read_text(encoding="utf-8").split('"""')[1])
-    for name in ("site.css", "iframe-worker.js"):
+    for name in ("site.css", "scroll.js", "iframe-worker.js"):
         shutil.copyfile(HERE / name, SOURCE / name)
     nav = "[python/index.md, " + ", ".join(f"python/{stage}.md" for stage in STAGES) + "]"
     settings = (HERE / "mkdocs.yml").read_text(encoding="utf-8")

@@ -11,6 +11,7 @@ import pytest
 import typer
 from dentscope.cli import app as assembly
 from dentscope.cli import run
+from dentscope.cli.diagnose import _progress as progress_of_diagnosis
 from dentscope.cli.terminal import parts
 from rich.console import Console
 
@@ -95,3 +96,20 @@ def test_the_shell_completes_commands():
         env={**told, "COMP_CWORD": "1"}, capture_output=True, text=True, timeout=120, check=False,
     )  # fmt: skip
     assert answer.stdout.split() == ["recordings", "reduce"]
+
+
+def test_progress_without_a_terminal_is_a_line_a_step(capsys: pytest.CaptureFixture[str]) -> None:
+    show = progress_of_diagnosis(quiet=False)
+    for step in ("auditing", "screening", ""):
+        show(step)
+    assert capsys.readouterr().err == "auditing ...\nscreening ...\n"
+
+
+def test_progress_on_a_terminal_stays_in_its_line(
+    capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(sys.stderr, "isatty", lambda: True)
+    monkeypatch.setenv("COLUMNS", "20")
+    show = progress_of_diagnosis(quiet=False)
+    show("fitting one with another")
+    assert capsys.readouterr().err == "\r\x1b[Kfitting one with an"
