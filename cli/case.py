@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterator
 from dataclasses import replace
 from pathlib import Path
 from typing import Annotated, Any
@@ -52,11 +53,8 @@ def case(
 
     problem, accuracy = read_case(file)
     # loaded after the file is read: a mistake in it is told at once
-    from ..fem.cutaway import draw_cutaway
-    from ..fem.fields import draw_section, write_vtu
     from ..start.pair import solved
 
-    pair = problem.pair
     console = new_console()
     with Progress(console=console, disable=not console.is_terminal) as bar:
         task = bar.add_task("solving", total=1.0)
@@ -75,21 +73,31 @@ def case(
     ):
         console.print(f"written: {path}")
     console.print(_write_law(solution, uncertainty, out / "law.json"))
-    for snapshot in solution.snapshots:
-        name = f"fields-{snapshot.depth:.4g}"
-        console.print(f"written: {write_vtu(snapshot, out / f'{name}.vtu')}")
-        if picture:
-            extent = 2.5 * float(solution.loading.radius[-1])
-            strength = pair.Sy_min if pair.Sy_min < float("inf") else pair.E_reduced
-            drawn = draw_section(snapshot, out / f"{name}.png", Sy_min=strength, extent=extent)
-            console.print(f"written: {drawn}")
-            space = out / f"{name}-cut.png"
-            if draw_cutaway(snapshot, space, Sy_min=strength, extent=extent):
-                console.print(f"written: {space}")
+    for told in _write_fields(solution, out, picture=picture):
+        console.print(f"written: {told}")
     if not solution.outcome.completed:
         console.print(str(solution.outcome))
         return EXIT_NOT_CONVERGED
     return 0
+
+
+def _write_fields(solution: Any, out: Path, *, picture: bool) -> Iterator[Path]:
+    """Write the fields at every depth asked for, and draw them."""
+    from ..fem.cutaway import draw_cutaway
+    from ..fem.fields import draw_section, write_vtu
+
+    pair = solution.problem.pair
+    for snapshot in solution.snapshots:
+        name = f"fields-{snapshot.depth:.4g}"
+        yield write_vtu(snapshot, out / f"{name}.vtu")
+        if not picture:
+            continue
+        extent = 2.5 * float(solution.loading.radius[-1])
+        strength = pair.Sy_min if pair.Sy_min < float("inf") else pair.E_reduced
+        yield draw_section(snapshot, out / f"{name}.png", Sy_min=strength, extent=extent)
+        space = out / f"{name}-cut.png"
+        if draw_cutaway(snapshot, space, Sy_min=strength, extent=extent):
+            yield space
 
 
 def _write_law(solution: Any, uncertainty: Any, path: Path) -> str:

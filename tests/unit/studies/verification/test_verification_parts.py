@@ -47,9 +47,17 @@ def test_a_result_survives_its_file(tmp_path):
     assert read_result(tmp_path / "r.json") == result()
 
 
+def check_of(name, measure):
+    class Own(Check):
+        def run(self, bench):
+            return measure(bench)
+
+    return Own(name, "t", "")
+
+
 def test_a_check_is_measured_once_at_each_effort(tmp_path):
     calls = []
-    check = Check("patch", "t", lambda bench: calls.append(bench.effort) or result())
+    check = check_of("patch", lambda bench: calls.append(bench.effort) or result())
     quick = Bench(tmp_path, tmp_path, Effort.QUICK)
     full = Bench(tmp_path, tmp_path, Effort.PRODUCTION)
     run_checks([check], bench=quick)
@@ -66,13 +74,13 @@ def test_a_check_is_measured_once_at_each_effort(tmp_path):
 
 
 def test_results_of_other_numerics_do_not_count(tmp_path):
-    check = Check("patch", "t", lambda bench: result())
+    check = check_of("patch", lambda bench: result())
     write_result(result(), tmp_path / "results" / "patch-quick.json")  # numerics version 0
     assert kept_result(check, folder=tmp_path) is None
 
 
 def test_the_report_shows_what_is_missed_and_what_is_absent(tmp_path):
-    check = Check("patch", "t", lambda bench: result(value=0.7))
+    check = check_of("patch", lambda bench: result(value=0.7))
     run_checks([check], bench=Bench(tmp_path, tmp_path, Effort.QUICK))
     text = write_report(tmp_path / "verification.md", folder=tmp_path).read_text()
     assert "| x | 0.7 % | at most 0.3 | **missed** | a paper |" in text
@@ -82,11 +90,11 @@ def test_the_report_shows_what_is_missed_and_what_is_absent(tmp_path):
 
 
 def test_a_report_is_renewed_check_by_check(tmp_path):
-    check = Check("patch", "t", lambda bench: result(value=0.7))
+    check = check_of("patch", lambda bench: result(value=0.7))
     report = tmp_path / "docs" / "verification.md"
     run_checks([check], bench=Bench(tmp_path / "a", tmp_path, Effort.QUICK))
     write_report(report, folder=tmp_path / "a")
-    hertz = Check("hertz", "t", lambda bench: result("hertz", 0.1))
+    hertz = check_of("hertz", lambda bench: result("hertz", 0.1))
     run_checks([hertz], bench=Bench(tmp_path / "b", tmp_path, Effort.QUICK))
     text = write_report(report, folder=tmp_path / "b").read_text()
     assert "| x | 0.7 % |" in text  # measured elsewhere, kept beside the report
