@@ -199,9 +199,13 @@ def _show(console: Any, solution: Any, uncertainty: Any) -> None:
     ]
     show_table(console, ("Delta/R", "F [N]", "a [mm]", "sphere's share", "H/Sy_min"), rows)
     for u in solution.unloadings:
+        least = 1e-9 * u.depth * pair.R  # less is round-off
+        sphere, flat = (
+            1e6 * x if abs(x) > least else 0.0 for x in (u.residual_sphere, u.residual_flat)
+        )
         console.print(
-            f"unloaded from Delta/R = {u.depth:.4g}: left in the sphere "
-            f"{u.residual_sphere * 1e6:.4g} um, in the flat {u.residual_flat * 1e6:.4g} um"
+            f"unloaded from Delta/R = {u.depth:.4g}: left in the sphere {sphere:.4g} um, "
+            f"in the flat {flat:.4g} um"
         )
     k = solution.counters
     console.print(
