@@ -8,7 +8,7 @@ representative strain as 0.2 a/R (Tabor, The Hardness of Metals, 1951).
 from __future__ import annotations
 
 import math
-from abc import abstractmethod
+from abc import ABC, abstractmethod
 from collections.abc import Mapping, Sequence
 from typing import ClassVar
 
@@ -23,7 +23,7 @@ from .base import Array, Mechanism, Situation, Surroundings, Values
 RATE, STRAIN = 0.4, 0.2  # of v/a, and of a/R
 
 
-class StrengthProfile:
+class StrengthProfile(ABC):
     """A strength that follows the depth: the stated pair, and a factor at each depth."""
 
     __slots__ = ()
@@ -32,9 +32,9 @@ class StrengthProfile:
         """Return the pair as stated."""
         return scene.pair
 
+    @abstractmethod
     def profile(self, scene: Scene, table: StrengthTable) -> Array:
         """Return relative strengths at the depths of `table`, shape (nodes,)."""
-        raise NotImplementedError
 
 
 class FlowMechanism(Mechanism):

@@ -49,3 +49,4 @@ def test_settings_that_were_never_measured_are_refused():
 
 def test_the_table_is_of_the_present_numerics():
     assert _mesh_errors()["numerics_version"] == fem.NUMERICS_VERSION
+    assert _mesh_errors()["format"] == fem.MESH_ERRORS_FORMAT
