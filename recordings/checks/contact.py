@@ -4,11 +4,10 @@ from __future__ import annotations
 
 import math
 
-from ...core.rig import Quantity, value_of
 from ..recording_set import RecordingSet
 from . import limits
 from .findings import Finding, Severity, gathered
-from .trial_view import TrialView, combined, plain, views
+from .trial_view import Reading, TrialView, combined, value_of, views
 
 UNEXPLAINED = 0.5
 """Part of the lost energy that a dent should explain at least."""
@@ -40,7 +39,7 @@ def check_energy(found: RecordingSet) -> list[Finding]:
             relative = combined(
                 2.0 * depth.relative, view.striker.tip_radius_m.relative, pressure.relative
             )
-            cost = plain(value=work, std=relative * work)
+            cost = Reading(work, relative * work)
             if e is None:
                 findings.append(_supply(view.name, cost, brought))
             else:
@@ -48,12 +47,12 @@ def check_energy(found: RecordingSet) -> list[Finding]:
     return gathered(findings)
 
 
-def _depth(view: TrialView) -> Quantity | None:
+def _depth(view: TrialView) -> Reading | None:
     depth = view.measured("permanent_depth_m")
     return depth if depth is not None and depth.value > 0.0 else None
 
 
-def _energies(view: TrialView, e: Quantity | None) -> tuple[Quantity, Quantity]:
+def _energies(view: TrialView, e: Reading | None) -> tuple[Reading, Reading]:
     """Energy that the contact point brings, v^2 / 2B, and what (1 - e^2) of it loses [J]."""
     mu = view.measured("friction_impulse_ratio")
     touch = view.touch
@@ -62,15 +61,15 @@ def _energies(view: TrialView, e: Quantity | None) -> tuple[Quantity, Quantity]:
     relative = max(
         combined(2.0 * view.speed.relative, view.striker.mass_kg.relative), limits.ROUNDING
     )
-    whole = plain(value=brought, std=relative * brought)
+    whole = Reading(brought, relative * brought)
     if e is None:
         return whole, whole
     lost = (1.0 - e.value**2) * brought
     std = combined(2.0 * e.value * e.std * brought, relative * lost)
-    return whole, plain(value=lost, std=max(std, limits.ROUNDING * brought))
+    return whole, Reading(lost, max(std, limits.ROUNDING * brought))
 
 
-def _supply(name: str, work: Quantity, brought: Quantity) -> Finding:
+def _supply(name: str, work: Reading, brought: Reading) -> Finding:
     least = DENT_RANGE[0]
     z = (least * work.value - brought.value) / math.hypot(least * work.std, brought.std)
     return Finding(
@@ -84,7 +83,7 @@ def _supply(name: str, work: Quantity, brought: Quantity) -> Finding:
     )
 
 
-def _budget(name: str, work: Quantity, lost: Quantity) -> Finding:
+def _budget(name: str, work: Reading, lost: Reading) -> Finding:
     title = f"energy of {name}"
     least, most = DENT_RANGE
     beyond = (least * work.value - lost.value) / math.hypot(least * work.std, lost.std)
@@ -183,15 +182,18 @@ def check_duration(found: RecordingSet) -> list[Finding]:
     return gathered(findings)
 
 
-def _pressure(view: TrialView) -> Quantity | None:
+def _pressure(view: TrialView) -> Reading | None:
     if view.found.setup.target.law != "elastic-plastic":
         return None
-    return view.of_striker(
-        "pressure", lambda: limits.hardness(view.found.setup.target, view.striker)
-    )
+    return view.of_striker("pressure", lambda: _hardness(view))
 
 
-def _force(view: TrialView) -> tuple[Quantity | None, str]:
+def _hardness(view: TrialView) -> Reading | None:
+    found = limits.hardness(view.found.setup.target, view.striker)
+    return None if found is None else Reading(found.value, found.std)
+
+
+def _force(view: TrialView) -> tuple[Reading | None, str]:
     force = view.measured("peak_force_N")
     if force is not None:
         return force, "measured"
@@ -200,7 +202,7 @@ def _force(view: TrialView) -> tuple[Quantity | None, str]:
         return None, ""
     value = pressure.value * math.pi * limits.dent_radius(view.striker, depth.value) ** 2
     relative = combined(depth.relative, pressure.relative)
-    return plain(value=value, std=relative * value), "needed by the dent"
+    return Reading(value, relative * value), "needed by the dent"
 
 
 def _duration(view: TrialView) -> tuple[float | None, str]:

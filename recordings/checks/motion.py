@@ -1,4 +1,4 @@
-"""Checks of what moved: mass, speed, momentum, friction, impulse."""
+"""Checks of what moved: mass, speed, friction, impulse."""
 
 from __future__ import annotations
 
@@ -8,9 +8,9 @@ import numpy as np
 from scipy.optimize import minimize_scalar
 from scipy.stats import chi2
 
-from ...core.rig import StrikerTable, value_of
+from ...core.rig import StrikerTable
 from ..recording_set import RecordingSet
-from . import limits, rigid
+from . import limits, momentum
 from .findings import (
     FALSE_ALARMS_MASS,
     FALSE_ALARMS_OTHER,
@@ -21,7 +21,7 @@ from .findings import (
     judged,
     two_sided,
 )
-from .trial_view import combined, views
+from .trial_view import combined, speed_std, value_of, views
 
 PULSE = (0.25, 1.0)
 """Impulse over peak force times duration: a rectangular pulse has 1, a ringing one may have 0.3."""
@@ -29,7 +29,6 @@ PULSE = (0.25, 1.0)
 _ALONE = 0.25
 """Part of the masses' false alarms that goes to single strikers where there are several."""
 
-_MOMENTUM_SHARE = FALSE_ALARMS_OTHER / 2.0
 _BEYOND = 4.0
 _ANGLES = 2.0
 
@@ -139,7 +138,7 @@ def check_speed(found: RecordingSet) -> list[Finding]:
     rod = np.array([s.shape == "rod" for s in found.strikers()])[both]
     share = np.where(rod, 1.0, np.sin(np.radians(trials.angle_deg[both])))
     fall = np.sqrt(2.0 * g * trials.drop_height_m[both]) * share
-    std = np.array([v.speed.std for v in views(found)])[both]
+    std = speed_std(found)[both]
     z = (speed - fall) / np.where(std > 0.0, std, limits.ROUNDING * speed)
     p = float(chi2.sf(np.sum(z**2), z.size))
     worst = int(np.argmax(np.abs(z)))
@@ -147,39 +146,11 @@ def check_speed(found: RecordingSet) -> list[Finding]:
     return [
         Finding(
             "speed against height of fall",
-            judged(p, FALSE_ALARMS_OTHER - _MOMENTUM_SHARE),
+            judged(p, FALSE_ALARMS_OTHER - momentum.SHARE),
             f"on average {mean - 1.0:+.1%} of sqrt(2 g H), at most {speed[worst]:.4g} against "
             f"{fall[worst]:.4g} m/s, {z.size} trials",
             mean,
             1.0,
-            two_sided(p),
-        )
-    ]
-
-
-def check_momentum(found: RecordingSet) -> list[Finding]:
-    """One impulse must explain every velocity, spin and impulse ratio of a trial."""
-    total, degrees, worst, most = 0.0, 0, "", 0.0
-    for view in views(found):
-        measured = {n: view.measured(n) for n in rigid.FIXED_BY_MOMENTUM}
-        known = {n: quantity for n, quantity in measured.items() if quantity is not None}
-        misfit, extra = rigid.momentum_misfit(
-            view.striker, view.touch, view.angle, view.speed, known
-        )
-        total, degrees = total + misfit, degrees + extra
-        if extra and misfit / extra > most:
-            worst, most = view.name, misfit / extra
-    if degrees == 0:
-        return []
-    p = float(chi2.sf(total, degrees))
-    return [
-        Finding(
-            "momentum",
-            judged(p, _MOMENTUM_SHARE),
-            f"one impulse a trial leaves chi squared {total:.1f} on {degrees} degrees of freedom"
-            + (f", most in {worst}" if worst else ""),
-            total,
-            float(degrees),
             two_sided(p),
         )
     ]

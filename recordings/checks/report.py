@@ -13,7 +13,8 @@ from dataclasses import dataclass
 from ..recording_set import RecordingSet
 from .contact import check_contact_size, check_duration, check_energy, check_force
 from .findings import Finding, Severity
-from .motion import check_friction, check_impulse, check_mass, check_momentum, check_speed
+from .momentum import check_momentum
+from .motion import check_friction, check_impulse, check_mass, check_speed
 from .trace import check_trace
 
 CHECKS: tuple[Callable[[RecordingSet], list[Finding]], ...] = (

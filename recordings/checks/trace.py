@@ -7,12 +7,11 @@ from collections.abc import Mapping
 
 import numpy as np
 
-from ...core.rig import value_of
 from ..csv_table import Array
 from ..recording_set import RecordingSet
 from . import limits
 from .findings import Finding, Severity, gathered
-from .trial_view import TrialView, combined, views
+from .trial_view import TrialView, combined, value_of, views
 
 _OPEN = 0.05
 """A trace whose ends lie above this share of its peak has missed a part of the impact."""

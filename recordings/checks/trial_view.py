@@ -5,9 +5,12 @@ from __future__ import annotations
 import math
 from collections.abc import Callable
 from functools import cached_property, lru_cache
-from typing import Any, TypeVar, cast
+from typing import Any, NamedTuple, TypeVar, cast
 
-from ...core.rig import Quantity, StrikerTable
+import numpy as np
+
+from ...core.rig import StrikerTable
+from ..csv_table import Array
 from ..recording_set import RecordingSet
 from . import rigid
 
@@ -15,6 +18,23 @@ Found = TypeVar("Found")
 
 UNSTATED_SPEED = 0.02
 """Relative standard deviation of an approach speed that is stated without one."""
+
+
+class Reading(NamedTuple):
+    """A number and its standard deviation, of which an audit makes many."""
+
+    value: float
+    std: float
+
+    @property
+    def relative(self) -> float:
+        """Standard deviation over value [-]."""
+        return self.std / abs(self.value) if self.value else 0.0
+
+
+def value_of(reading: Reading | None, otherwise: float) -> float:
+    """Return the value of a reading, or `otherwise` where nothing was read."""
+    return otherwise if reading is None else reading.value
 
 
 class TrialView:
@@ -32,7 +52,7 @@ class TrialView:
 
     def __init__(self, found: RecordingSet, i: int, known: dict[tuple[str, str], Any]) -> None:
         self.found, self.i, self._known = found, i, known
-        self._measured: dict[str, Quantity | None] = {}
+        self._measured: dict[str, Reading | None] = {}
 
     @property
     def name(self) -> str:
@@ -52,28 +72,23 @@ class TrialView:
         return cast("Found", self._known[key])
 
     @cached_property
-    def speed(self) -> Quantity:
+    def speed(self) -> Reading:
         """Normal approach speed [m/s]."""
-        approach = self.found.approach
-        value, std = float(approach.normal[self.i]), float(approach.normal_std[self.i])
-        return plain(value=value, std=UNSTATED_SPEED * value if math.isnan(std) else std)
+        normal = self.found.approach.normal
+        return Reading(float(normal[self.i]), float(speed_std(self.found)[self.i]))
 
     @cached_property
-    def angle(self) -> Quantity:
+    def angle(self) -> Reading:
         """Angle between a rod's axis and the flat, pi/2 for a sphere [rad]."""
-        std = math.radians(self.found.trials.angle_deg_std[self.i])
-        if self.striker.shape == "sphere":
-            std = 0.0
-        elif math.isnan(std):
-            std = rigid.DEFAULT_ANGLE_STD
-        return plain(value=float(self.found.approach.angle[self.i]), std=std)
+        angle = self.found.approach.angle
+        return Reading(float(angle[self.i]), float(angle_std(self.found)[self.i]))
 
     @cached_property
-    def touch(self) -> rigid.Touch:
+    def touch(self) -> rigid.Touch[float]:
         """The rigid body just before touch."""
         return self.touch_at(self.angle.value)
 
-    def touch_at(self, angle: float) -> rigid.Touch:
+    def touch_at(self, angle: float) -> rigid.Touch[float]:
         """Return the same with the axis at another angle [rad]."""
         approach = self.found.approach
         return rigid.touch(
@@ -84,19 +99,35 @@ class TrialView:
             spin=float(approach.spin[self.i]),
         )
 
-    def measured(self, name: str) -> Quantity | None:
+    def measured(self, name: str) -> Reading | None:
         """Return an observable and its standard deviation, `None` where not measured."""
         if name not in self._measured:
             self._measured[name] = self._read(name)
         return self._measured[name]
 
-    def _read(self, name: str) -> Quantity | None:
+    def _read(self, name: str) -> Reading | None:
         if name not in self.found.observed:
             return None
         value = float(self.found.values(name)[self.i])
         if math.isnan(value):
             return None
-        return plain(value=value, std=float(self.found.std(name)[self.i]))
+        return Reading(value, float(self.found.std(name)[self.i]))
+
+
+@lru_cache(maxsize=1)
+def speed_std(found: RecordingSet) -> Array:
+    """Standard deviations of the normal approach speeds, shape (n,) [m/s]."""
+    approach = found.approach
+    unstated = np.isnan(approach.normal_std)
+    return np.where(unstated, UNSTATED_SPEED * approach.normal, approach.normal_std)
+
+
+@lru_cache(maxsize=1)
+def angle_std(found: RecordingSet) -> Array:
+    """Standard deviations of the axes' angles, shape (n,) [rad]; a sphere has no axis."""
+    stated = np.radians(found.trials.angle_deg_std)
+    ball = np.array([striker.shape == "sphere" for striker in found.strikers()])
+    return np.where(ball, 0.0, np.where(np.isnan(stated), rigid.DEFAULT_ANGLE_STD, stated))
 
 
 @lru_cache(maxsize=1)
@@ -104,11 +135,6 @@ def views(found: RecordingSet) -> tuple[TrialView, ...]:
     """Every trial of a set in turn; the same ones for all checks of the set."""
     known: dict[tuple[str, str], Any] = {}
     return tuple(TrialView(found, i, known) for i in range(len(found.trials)))
-
-
-def plain(*, value: float, std: float) -> Quantity:
-    """Return a quantity of numbers that need no check, of which an audit makes many."""
-    return Quantity.model_construct(value=value, std=std)
 
 
 def combined(*relatives: float) -> float:
