@@ -42,6 +42,7 @@ Columns = dict[str, npt.NDArray[Any]]
 
 PART_FORMAT = "dentscope-campaign-part/2"
 _FIRST_FORMAT = "dentscope-campaign-part/1"
+_DIGEST, _NAME = re.compile(r"[0-9a-f]{64}"), re.compile(r"[A-Za-z0-9][A-Za-z0-9._-]{0,127}")
 CHECKSUMS = "SHA256SUMS"
 """Checksums of the parts of a folder."""
 
@@ -216,7 +217,8 @@ def _lines(place: Path) -> list[list[str]]:
     raw = read_bytes(place, most=10_000_000, allowed="lines of a digest and a name")
     lines = [line.split() for line in raw.decode(errors="replace").splitlines()]
     for number, line in enumerate(lines, start=1):
-        if len(line) != 2 or not re.fullmatch(r"[0-9a-f]{64}", line[0]):
+        # a name of this folder, and one that every file system takes
+        if len(line) != 2 or not _DIGEST.fullmatch(line[0]) or not _NAME.fullmatch(line[1]):
             raise InputError(
                 "damaged", source=str(place), key=f"line {number}", allowed="a digest and a name"
             )

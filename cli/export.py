@@ -24,21 +24,21 @@ _SPEEDS = 7  # of a range
 
 @app.command("law")
 def export_law(
-    folder: Annotated[Path, typer.Argument(help="Where the sources go.")],
-    law: Annotated[str, typer.Option(help="compact or fitted.")] = "fitted",
+    law: Annotated[str, typer.Argument(help="compact or fitted.")] = "fitted",
+    out: Annotated[Path, folder_option("Folder for the sources.")] = Path("build/law"),
 ) -> None:
     """Write a closed form as Python, C, Fortran, MATLAB and Modelica source."""
     from ..models import law_named
     from ..models.export import write_sources
     from ..models.fitted import ClosedForm
 
-    found = law_named(law)
+    found = law_named(law) if law in ("compact", "fitted") else None
     if not isinstance(found, ClosedForm):
         raise InputError(
-            f"{law!r} is no closed form of ours", source="command line", key="--law",
+            f"{law!r} is no closed form of ours", source="command line", key="LAW",
             allowed="compact, fitted",
         )  # fmt: skip
-    for path in write_sources(found, folder):
+    for path in write_sources(found, out):
         typer.echo(str(path))
 
 

@@ -13,10 +13,13 @@ from ..core.output import csv_text, write_figure, write_file
 from .groups import Commands, group
 from .places import folder_option
 from .terminal import console as new_console
-from .terminal import entry, show_table
+from .terminal import entry, show_table, wrapped
 
 if TYPE_CHECKING:
     from ..models.base import ContactLaw
+
+
+_YIELDS = {"flattening": "sphere", "indentation": "flat", "either": "either"}
 
 
 class _Laws(Commands):
@@ -47,23 +50,21 @@ def laws_named(names: list[str], *, source: str = "command line", key: str = "--
 
 @app.command("list")
 def list_laws() -> None:
-    """Every law: what it is for, and from where its equations were read."""
+    """Every law: for which body, and whether its equations could be read."""
     from ..models import LAWS, RATE_MODELS, UNAVAILABLE
 
-    for law in LAWS.values():
-        bodies = "both bodies" if law.regime == "either" else law.regime
-        entry(law.name, f"{law.title}. For {bodies}; {law.standing.told}: {law.read}")
-    typer.echo(
-        "\nverified second hand: read in a text or code, other than the thesis, that names the "
-        "paper. unverified: they rest on the thesis, on limits and continuity.\n"
-        "Any two can be joined, LOADING+UNLOADING: kogut-etsion+ghaednia.\n"
-        "\nModels of depth and rate that leave no dent; shown, and not computed with:"
-    )
-    for name, model in RATE_MODELS.items():
-        entry(name, f"{model.formula}; {model.objection}")
-    typer.echo("\nNot offered, and why:")
-    for name, reason in UNAVAILABLE.items():
-        entry(name, reason)
+    head = ["law", "yields", "equations"]
+    rows = [[law.name, _YIELDS[law.regime], law.standing.told] for law in LAWS.values()]
+    show_table(new_console(), head, rows, align="left")
+    for text in (
+        "verified second hand: read in a text or code, other than the thesis, that names the "
+        "paper. unverified: they rest on the thesis, on limits and continuity.",
+        "Any two can be joined, LOADING+UNLOADING: kogut-etsion+ghaednia.",
+        f"Models of depth and rate, shown and not computed with: {', '.join(RATE_MODELS)}.",
+        f"Not offered: {', '.join(UNAVAILABLE)}.",
+        "Sources, ranges and reasons: dentscope laws show NAME",
+    ):
+        typer.echo(wrapped(text))
 
 
 @app.command()

@@ -5,7 +5,7 @@ from __future__ import annotations
 import shutil
 import textwrap
 from collections.abc import Sequence
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Literal
 
 import typer
 
@@ -25,8 +25,9 @@ def console() -> Console:
 
 
 def show_table(
-    to: Console, head: Sequence[str], rows: Sequence[Sequence[str]], *, title: str = ""
-) -> None:
+    to: Console, head: Sequence[str], rows: Sequence[Sequence[str]], *, title: str = "",
+    align: Literal["left", "right"] = "right",
+) -> None:  # fmt: skip
     """Print a table, in parts where the width does not hold all columns.
 
     Parameters
@@ -36,17 +37,22 @@ def show_table(
     head
         Names of the columns; the first is repeated in every part.
     rows
-        Cells, as many as columns; numbers are aligned to the right, all but the first column.
+        Cells, as many as columns.
     title
         Line above.
+    align
+        Of all columns but the first, which is on the left: numbers right, words left.
     """
     if title:
         to.print(title)
-    for table in parts(head, rows, width=to.width):
+    for table in parts(head, rows, width=to.width, align=align):
         to.print(table)
 
 
-def parts(head: Sequence[str], rows: Sequence[Sequence[str]], *, width: int) -> list[Table]:
+def parts(
+    head: Sequence[str], rows: Sequence[Sequence[str]], *, width: int,
+    align: Literal["left", "right"] = "right",
+) -> list[Table]:  # fmt: skip
     """Return tables of as many columns as the width holds, each with the first column."""
     from rich.box import SIMPLE_HEAD
     from rich.table import Table
@@ -62,7 +68,7 @@ def parts(head: Sequence[str], rows: Sequence[Sequence[str]], *, width: int) -> 
         table = Table(box=SIMPLE_HEAD, pad_edge=False, padding=(0, 1, 0, 0), highlight=False)
         table.add_column(head[0], no_wrap=True)
         for k in taken:
-            table.add_column(head[k], justify="right", no_wrap=True)
+            table.add_column(head[k], justify=align, no_wrap=True)
         for row in rows:
             table.add_row(row[0], *(row[k] for k in taken))
         tables.append(table)
@@ -73,10 +79,14 @@ def _width(cell: str) -> int:
     return max(map(len, cell.split("\n")))
 
 
+def wrapped(text: str, indent: int = 0) -> str:
+    """Return a text in lines of the terminal's width; names are not broken."""
+    width = max(shutil.get_terminal_size().columns, NARROWEST) - indent
+    lines = textwrap.wrap(text, width, break_long_words=False, break_on_hyphens=False)
+    return "\n".join(" " * indent + line for line in lines)
+
+
 def entry(name: str, text: str) -> None:
     """Print a name, and what is said of it indented below."""
-    width = max(shutil.get_terminal_size().columns, NARROWEST)
     typer.echo(name)
-    text = f"{text.rstrip('.')}."
-    for line in textwrap.wrap(text, width - 4, break_long_words=False, break_on_hyphens=False):
-        typer.echo(f"    {line}")
+    typer.echo(wrapped(f"{text.rstrip('.')}.", indent=4))

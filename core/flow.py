@@ -103,10 +103,13 @@ def tabulated(strain: Floats, stress: Floats) -> FlowCurve:
 def swift(*, Sy: float, K: float, n: float) -> FlowCurve:
     """Swift's law K (e0 + p)^n, e0 = (Sy/K)^(1/n) (J. Mech. Phys. Solids 1 (1952) 1)."""
     start = (Sy / K) ** (1.0 / n)
+    # a small exponent takes e0 to 0, where the slope is infinite: three times the first row's mean
+    # is as steep as a cubic may begin without overshoot (Fritsch and Carlson, 1980)
+    steepest = 3.0 * (K * (start + _FIRST) ** n - Sy) / _FIRST
     return _written(
         lambda p: K * (start + p) ** n,
         lambda p: n * K * (start + p) ** (n - 1.0),
-        first=n * K * start ** (n - 1.0),
+        first=min(n * K * start ** (n - 1.0), steepest) if start else steepest,
     )
 
 

@@ -41,7 +41,7 @@ class InputTable(BaseModel):
         if isinstance(given, dict):
             for text in (*given, *given.values()):
                 if isinstance(text, str) and _controls(text):
-                    raise ValueError("text without control characters")
+                    raise ValueError("a text holds control characters")
         return given
 
 
@@ -122,6 +122,8 @@ def _as_input_error(item: Any, model: type[BaseModel], source: str) -> InputErro
     if location[-1:] == ("[key]",):
         key = key.removesuffix(".[key]")
         return InputError("unknown key", source=source, key=key, allowed=message)
+    if isinstance(item["input"], dict) and item["type"] == "value_error":
+        return InputError(message, source=source, key=key)  # of the table, not of one key
     # TOML has no null: a validator that complains of None misses the key
     found = "missing" if item["input"] is None else _shown(item["input"])
     return InputError(found, source=source, key=key, allowed=message)

@@ -159,21 +159,21 @@ def misfit_of(problem: Problem, base: Fit) -> dict[str, float]:
 def law_notes(problem: Problem, misfit: Mapping[str, float]) -> tuple[str, ...]:
     """Return how unsure the law is taken to be, by part, and how much of the misfit each took."""
     sizes = "; ".join(
-        f"{kind} {100 * law:.2g} % to finite elements, {100 * metal:.2g} % to a metal"
+        f"{kind} {100 * law:.2g} % from finite elements, {100 * metal:.2g} % from a metal"
         for kind, (law, metal) in problem.error.parts.items()
     )
     took = ", ".join(
-        f"{100 * misfit[key]:.0f} % {words}"
+        f"{words} {100 * misfit[key]:.0f} %"
         for key, words in (
-            ("sheet", "the data sheet"), ("metal", "the metal's distance from the law's"),
-            ("law", "the law's from finite elements"), ("rest", "nothing of these"),
+            ("sheet", "errors of the data sheet"), ("metal", "the metal not being the law's"),
+            ("law", "the law not being the finite elements"), ("rest", "none of these"),
         )
     )  # fmt: skip
     return (
-        f"the contact law '{problem.law.name}' is taken to be uncertain by: {sizes}; the set "
-        f"speaks for {misfit['error_size']:.2g} times that",
-        f"of the misfit as stated, {misfit['as_stated']:.0f} over {misfit['numbers']:.0f} numbers, "
-        f"this much is taken up by: {took}",
+        f"how far the contact law '{problem.law.name}' may be off: {sizes}; the recordings ask for "
+        f"{misfit['error_size']:.2g} times as much",
+        f"with every input as stated, the squared misses of {misfit['numbers']:.0f} numbers add up "
+        f"to {misfit['as_stated']:.0f} standard deviations squared; put down to: {took}",
     )
 
 

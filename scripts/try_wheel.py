@@ -73,7 +73,7 @@ SOLVER = (
     Use("campaign publish --design smoke --out run --to parts", "cases are missing", 2),
     Use("campaign gallery", "checkout", 2),
     Use("campaign reproduction", "checkout", 2),
-    Use("export law sources", "dentscope_contact.f90"),
+    Use("export law --out sources", "dentscope_contact.f90"),
     Use(
         "export dem examples/case_steel.toml --speed 1 --mass 0.01 --out dem",
         "linear-hysteretic",

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 import tomllib
-from collections.abc import Sequence
+from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -24,6 +24,7 @@ if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
 _POINTS = 200
+_ROUND_OFF = 1e-7  # of the largest number of the same unit
 _EITHER = (("impact_speed_m_s", "drop_height_m"), ("drop_height_m", "impact_speed_m_s"))
 
 
@@ -61,14 +62,14 @@ class Blow:
         list of tuple of str
             Name with unit, then the value by each law.
         """
-        found = self.impacts
+        columns = _shown(self.impacts.values())
         return [
             (
                 f"{label} [{unit}]" if unit != "-" else label,
-                *(_cell(scale * getattr(i, key)) for i in found.values()),
+                *(_cell(scale * values[key]) for values in columns),
             )
             for label, key, scale, unit in SHOWN
-            if any(abs(getattr(i, key)) > 0.0 for i in found.values())
+            if any(abs(values[key]) > 0.0 for values in columns)
         ]
 
     def frame(self) -> Any:
@@ -141,6 +142,23 @@ def blow_of(setup: Setup, laws: Sequence[ContactLaw]) -> Blow:
             # the next blow falls on the same spot: hardened crater, flattened tip
             scene = scene.with_(spot=found.spot)
     return Blow(setup.name, traces, tuple(rows))
+
+
+def _shown(impacts: Iterable[Impact]) -> list[dict[str, float]]:
+    """What is shown of each; a length or an energy that rounding alone has left is 0."""
+    columns = [{key: float(getattr(one, key)) for _, key, _, _ in SHOWN} for one in impacts]
+    largest: dict[str, float] = {}
+    for _, key, _, unit in SHOWN:
+        largest[unit] = max(largest.get(unit, 0.0), *(abs(values[key]) for values in columns))
+    return [
+        {
+            key: 0.0
+            if unit != "-" and abs(values[key]) <= _ROUND_OFF * largest[unit]
+            else values[key]
+            for _, key, _, unit in SHOWN
+        }
+        for values in columns
+    ]
 
 
 def _cell(value: float) -> str:

@@ -53,7 +53,7 @@ class Options(InputTable):
     @model_validator(mode="after")
     def _sizes(self) -> Options:
         if self.shape != "body" and self.tip_radius_m is None:
-            raise ValueError("tip_radius_m is needed, the radius of the tip or of the sphere")
+            raise ValueError("tip_radius_m is needed: the radius of the tip or of the sphere")
         if self.shape == "rod" and self.length_m is None:
             raise ValueError("length_m is needed for a rod")
         if self.axis and len(self.two_ends) != 2:

@@ -4,7 +4,9 @@ from __future__ import annotations
 
 import math
 import warnings
+from contextlib import redirect_stderr, redirect_stdout
 from dataclasses import dataclass
+from io import StringIO
 from pathlib import Path
 
 import numpy as np
@@ -119,8 +121,8 @@ def _known_format(path: Path, step: float | None) -> _Raw:
     except ImportError:
         raise missing_extra("reading profilometer files", "surface") from None
     try:
-        with warnings.catch_warnings():
-            warnings.simplefilter("ignore")
+        with warnings.catch_warnings(), redirect_stdout(StringIO()), redirect_stderr(StringIO()):
+            warnings.simplefilter("ignore")  # its readers print what they stumble over, in turn
             channel = open_topography(str(path)).default_channel
             sizes = {}
             if channel.physical_sizes is None and step is not None:

@@ -192,6 +192,16 @@ def test_an_incomplete_run_is_not_published_and_nothing_is_written_twice(tmp_pat
         published_designs(tmp_path / "data")
 
 
+@pytest.mark.parametrize("name", ["a" * 4000 + ".h5", "../c.h5", ".h5", "a/b.h5"])
+def test_a_part_of_an_impossible_name_is_one_line(tmp_path, name):
+    folder = tmp_path / "data"
+    publish(DESIGN, stored(tmp_path / "c.h5", n=6), folder)
+    sums = folder / "SHA256SUMS"
+    sums.write_text(f"{'0' * 64}  {name}\n")
+    with pytest.raises(InputError, match="SHA256SUMS: line 1: damaged"):
+        read_published(folder)
+
+
 def test_too_many_parts_leave_the_folder_as_it_was(tmp_path):
     source = stored(tmp_path / "c.h5")
     folder = tmp_path / "data"

@@ -23,13 +23,13 @@ def test_alone_they_are_listed(capsys):
 
 
 def test_list_names_every_law_and_marks_the_unverified(capsys, monkeypatch):
-    monkeypatch.setenv("COLUMNS", "20000")
+    monkeypatch.setenv("COLUMNS", "100")
     run("list")
     text = capsys.readouterr().out
     assert all(name in text for name in (*LAWS, *UNAVAILABLE))
     told = [law.standing.told for law in LAWS.values()]
-    assert text.count("; unverified") == sum(t.startswith("unverified") for t in told)
-    assert text.count("; verified") == sum(t.startswith("verified") for t in told)
+    assert text.count("  unverified") == sum(t.startswith("unverified") for t in told)
+    assert text.count("  verified") == sum(t.startswith("verified") for t in told)
     assert all(name in text for name in RATE_MODELS)
 
 

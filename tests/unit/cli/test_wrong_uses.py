@@ -211,7 +211,7 @@ fit words.h5
 fit folder
 fit --out words.txt
 fit --judge absent
-export law words.txt
+export law --out words.txt
 examples --to words.txt
 examples extra
 keys nonsense

@@ -166,3 +166,14 @@ def test_a_written_law_runs_between_its_rows_as_written():
             assert CURVES[name](strain) == pytest.approx(LAWS[name](strain), rel=2e-7)
     assert CURVES["table"](0.1) == pytest.approx(560e6)
     assert CURVES["table"](3.0) == 620e6
+
+
+@pytest.mark.parametrize("n", [1e-4, 1e-3, 0.02, 0.2, 1.0])
+def test_swifts_curve_begins_at_the_strength_and_never_overshoots(n):
+    # an exponent near 0 takes the strain before to 0, and the slope there to infinity
+    curve = swift(Sy=SY, K=900e6, n=n)
+    strain = np.linspace(0.0, 3e-6, 301)
+    stress = np.array([curve(p) for p in strain])
+    assert stress[0] == pytest.approx(SY, rel=1e-12)
+    assert (np.diff(stress) >= 0.0).all()
+    assert stress[-1] <= 900e6 * ((SY / 900e6) ** (1.0 / n) + 3e-6) ** n * 1.001
