@@ -107,7 +107,7 @@ def swift(*, Sy: float, K: float, n: float) -> FlowCurve:
     # is as steep as a cubic may begin without overshoot (Fritsch and Carlson, 1980)
     steepest = 3.0 * (K * (start + _FIRST) ** n - Sy) / _FIRST
     return _written(
-        lambda p: K * (start + p) ** n,
+        lambda p: np.maximum(K * (start + p) ** n, Sy),
         lambda p: n * K * (start + p) ** (n - 1.0),
         first=min(n * K * start ** (n - 1.0), steepest) if start else steepest,
     )
