@@ -9,6 +9,7 @@ from __future__ import annotations
 import subprocess
 import sys
 from functools import cache
+from typing import Any
 
 _TIME_LIMIT_S = 120.0
 
@@ -31,10 +32,20 @@ def offscreen_available() -> bool:
     return answer.returncode == 0
 
 
+def offscreen_plotter(width: int, height: int) -> Any:
+    """Return pyvista's plotter for a picture of this size [pixels], without VTK's own warnings."""
+    import pyvista
+    from vtkmodules.vtkCommonCore import vtkLogger
+
+    # without a screen VTK tries one, says so, and then renders without
+    vtkLogger.SetStderrVerbosity(vtkLogger.VERBOSITY_ERROR)
+    return pyvista.Plotter(off_screen=True, window_size=[width, height])
+
+
 def _probe() -> None:
     import pyvista
 
-    plotter = pyvista.Plotter(off_screen=True, window_size=(64, 64))
+    plotter = offscreen_plotter(64, 64)
     plotter.add_mesh(pyvista.Sphere())
     image = plotter.screenshot(return_img=True)
     plotter.close()

@@ -139,7 +139,7 @@ Sy_Pa = 3.0e8
 
 [load]
 max_delta_over_R = 0.01         # largest approach over the ball's radius
-unload_from = [0.01]            # approaches over R from which the ball is drawn back
+unload_from = [0.001, 0.003, 0.01]  # approaches over R from which the ball is drawn back
 # speed_m_s = 1.0               # of the approach; or [[0.0, 1.0], [0.01, 0.1]], Delta/R and speed
 
 [accuracy]

@@ -10,7 +10,7 @@ import numpy as np
 import numpy.typing as npt
 
 from ..core.output import write_file
-from ..core.rendering import offscreen_available
+from ..core.rendering import offscreen_available, offscreen_plotter
 from .solution import Snapshot
 
 Floats = npt.NDArray[np.float64]
@@ -48,7 +48,7 @@ def draw_cutaway(snapshot: Snapshot, path: Path, *, Sy_min: float, extent: float
     near = np.hypot(*points[snapshot.quads].mean(axis=1).T) < 1.0
     first = np.arange(len(snapshot.quads)) < snapshot.n_sphere_quads
     limits = (0.0, max(1.0, float(np.quantile(stress[near], 0.999))))
-    plotter: Any = pyvista.Plotter(off_screen=True, window_size=(1200, 1000))
+    plotter = offscreen_plotter(1200, 1000)
     for body in (near & first, near & ~first):
         section = _section(pyvista, points, snapshot.quads[body], stress[body])
         for face in (section, section.rotate_z(_TURN)):

@@ -36,7 +36,7 @@ def pair_table(solution: fem.Solution, uncertainty: fem.Uncertainty) -> PairTabl
     turns = np.array(sorted(row for row in rows if math.isfinite(row[-1]))).reshape(-1, 4)
     if len(turns) < FEWEST_UNLOADINGS and math.isfinite(pair.Sy_min):
         raise InputError(
-            f"{len(turns)} depths beyond first yield", key="load.unload_from",
+            f"unloaded beyond first yield: {len(turns)} times", key="load.unload_from",
             allowed=f"{FEWEST_UNLOADINGS} or more for a law of this pair",
         )  # fmt: skip
     curve = Curve(

@@ -159,12 +159,19 @@ def _draw(states: list[Drawn], path: Path) -> None:
         axis.set_xlim(-extent, extent)
         axis.set_ylim(-extent, extent)
         axis.set_aspect("equal")
+        axis.set(xlabel="r/a [-]", ylabel="z/a [-]")
+        axis.label_outer()
         axis.set_title(
             rf"figure {_FIGURES[drawn.ratio]}: $S_y^*$ = {drawn.ratio:g}, "
             rf"$\Delta/R$ = {s.depth:g}, $a/R$ = {drawn.radius * 1e3:.3f}",
             fontsize=9,
         )
-    figure.colorbar(cells, ax=axes, label="von Mises stress / 503 MPa", shrink=0.8)
+    figure.colorbar(
+        cells,
+        ax=axes,
+        label="von Mises stress over 503 MPa [-]; white: edge of the plastic zone",
+        shrink=0.8,
+    )
     figure.savefig(path, dpi=90)
     Image.open(path).convert("RGB").quantize(96).save(path, optimize=True)
 

@@ -50,8 +50,10 @@ def test_the_template_of_a_case_is_solved_as_it_is(tmp_path, capsys):
     assert run(["case", "--new", str(file)]) == 0
     assert f"dentscope case {file}" in capsys.readouterr().out
     # the same pair, less deep: a test has seconds
-    text = file.read_text().replace("= 0.01  ", "= 0.001  ").replace("[0.01]  ", "[0.001]  ")
-    assert tomllib.loads(text)["load"] == {"max_delta_over_R": 0.001, "unload_from": [0.001]}
+    turns = [2e-4, 5e-4, 1e-3]
+    text = file.read_text().replace("= 0.01  ", "= 0.001  ")
+    text = text.replace("[0.001, 0.003, 0.01]  ", f"{turns}  ")
+    assert tomllib.loads(text)["load"] == {"max_delta_over_R": 0.001, "unload_from": turns}
     file.write_text(text)
     assert run(["case", str(file), "--out", str(tmp_path / "out")]) == 0
     with (tmp_path / "out" / "curve.csv").open() as stream:
@@ -61,6 +63,7 @@ def test_the_template_of_a_case_is_solved_as_it_is(tmp_path, capsys):
     d = 0.005 * float(load[0]["delta_over_R"])
     hertz = 4.0 / 3.0 * reduced * (0.005 * d**3) ** 0.5
     assert float(load[0]["force_N"]) == pytest.approx(hertz, rel=0.01)
+    assert (tmp_path / "out" / "law.json").exists()
 
 
 def test_the_template_of_an_inverse_runs_as_it_is(tmp_path: Path, monkeypatch, capsys):
