@@ -34,6 +34,7 @@ MOST = 4
 """Rivals that are told apart."""
 LITTLE = 0.9
 """Width of an interval, over that of today, above which a change is not worth its while."""
+_DECIDES = 1.0  # standard deviations by which rivals must differ for one trial to tell much
 _SAMPLES = 12
 _BUILD = 2.0  # what is to be built must bring as many times more than what is there
 
@@ -61,6 +62,24 @@ class Proposal:
     kind: str = "trial"
     interval: float = math.nan
     trial: Mapping[str, str | float] = field(default_factory=dict)
+
+    @property
+    def gains(self) -> tuple[str, ...]:
+        """What it would tell, in words."""
+        found = []
+        apart = math.sqrt(max(self.expected_discrimination, 0.0))
+        if apart >= _DECIDES:
+            found.append(
+                f"what is still confounded would lie about {apart:.1f} standard deviations apart"
+            )
+        elif apart > 0.0:
+            found.append(
+                "once will not decide: what is still confounded would lie only "
+                f"{apart:.1g} standard deviations apart"
+            )
+        if math.isfinite(self.interval):
+            found.append(f"the interval would be {self.interval:.2g} times as wide as now")
+        return tuple(found)
 
 
 def rivals_of(ranking: Ranking, odds: Odds) -> list[tuple[Fit, float]]:

@@ -243,13 +243,5 @@ def _instructions(v: Verdict) -> list[str]:
     told = []
     for q in v.proposals:
         text = f"Strike again: {q.change}" if q.kind == "trial" else q.change
-        apart = math.sqrt(max(q.expected_discrimination, 0.0))
-        gains = []
-        if apart > 0.0:
-            gains.append(
-                f"what is still confounded would lie about {apart:.1f} standard deviations apart"
-            )
-        if math.isfinite(q.interval):
-            gains.append(f"the interval would be {q.interval:.2g} times as wide as now")
-        told.append(". ".join(f"{s[0].upper()}{s[1:]}" for s in (text, *gains)) + ".")
+        told.append(". ".join(f"{s[0].upper()}{s[1:]}" for s in (text, *q.gains)) + ".")
     return told

@@ -83,7 +83,8 @@ def lines(v: Verdict) -> list[str]:
                 f"depth of {c.depth_over_R[k]:.2g} R"
             )
     if v.proposals:
-        out += ["", "Next experiment", f"  {v.proposals[0].change}"]
+        first = v.proposals[0]
+        out += ["", "Next experiment", f"  {first.change}", *(f"  {gain}" for gain in first.gains)]
     if v.limits and v.verdict == "adequate":
         out += ["", "What would have been seen"]
         out += [f"  {k}: {x:.3g} or more" for k, x in v.limits.items()]

@@ -12,6 +12,7 @@ from dentscope.core.rig import Quantity, StrikerTable
 from dentscope.discrepancy.choice.odds import Odds
 from dentscope.discrepancy.experiments.feasible import candidates_of
 from dentscope.discrepancy.experiments.next_experiment import (
+    Proposal,
     _sharper,
     _worth,
     propose,
@@ -167,3 +168,15 @@ def test_half_the_noise_of_cells_that_share_a_reading_is_still_a_covariance() ->
     assert one[0] == pytest.approx([1.02, 2.0, 2.0])
     assert np.linalg.eigvalsh(one).min() > 0.0
     assert np.linalg.eigvalsh(total - np.diag(0.75 * np.diag(noise))).min() < 0.0
+
+
+def test_a_trial_that_would_not_decide_says_so() -> None:
+    # D is a squared distance in standard deviations
+    assert "only 0.2 standard deviations apart" in " ".join(Proposal("x", 0.04).gains)
+    assert Proposal("x", 9.0).gains == (
+        "what is still confounded would lie about 3.0 standard deviations apart",
+    )
+    assert Proposal("x", 0.0, interval=0.7).gains == (
+        "the interval would be 0.7 times as wide as now",
+    )
+    assert Proposal("x", 0.0).gains == ()
