@@ -15,6 +15,7 @@ from ..core.errors import InputError
 from ..core.output import write_file
 from . import studies
 from .places import folder_option
+from .terminal import say
 
 if TYPE_CHECKING:
     from ..discrepancy import Verdict
@@ -72,7 +73,7 @@ def diagnose(
     show("")
     written = _written(verdict, out, report=report)
     for line in lines(verdict):
-        typer.echo(line)
+        say(line)
     if solve:
         written += _solved(verdict, out, show)
     typer.echo(f"\nwritten: {', '.join(map(str, written))}")
@@ -109,5 +110,5 @@ def _solved(verdict: Verdict, out: Path, show: Callable[[str], None]) -> list[Pa
     closed = close(verdict, progress=show)
     show("")
     for line in closed_lines(closed):
-        typer.echo(line)
+        say(line)
     return list(write_closed(closed, out))

@@ -9,6 +9,7 @@ import typer
 
 from .groups import group
 from .places import folder_option
+from .terminal import say
 
 app = group("Recording sets, measured impacts: list, check, audit, new, fetch.")
 
@@ -35,7 +36,7 @@ def check(folder: SetFolder) -> None:
         if files:
             typer.echo(f"  {kind}: {len(files)}")
     for note in found.notes:
-        typer.echo(f"  note: {note}")
+        say(f"  note: {note}")
 
 
 @app.command("audit")
@@ -53,7 +54,7 @@ def audit_command(
     shown = (Severity.CONTRADICTION, Severity.CAUTION)
     for finding in found.findings:
         if everything or finding.severity in shown:
-            typer.echo(str(finding))
+            say(str(finding))
     counts = ", ".join(f"{len(found.of(s))} {s.value}" for s in Severity if found.of(s))
     typer.echo(f"{found.name}: {counts or 'nothing to check'}")
 

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import shutil
+import sys
 import textwrap
 from collections.abc import Sequence
 from typing import TYPE_CHECKING, Literal
@@ -79,11 +80,29 @@ def _width(cell: str) -> int:
     return max(map(len, cell.split("\n")))
 
 
-def wrapped(text: str, indent: int = 0) -> str:
-    """Return a text in lines of the terminal's width; names are not broken."""
-    width = max(shutil.get_terminal_size().columns, NARROWEST) - indent
-    lines = textwrap.wrap(text, width, break_long_words=False, break_on_hyphens=False)
-    return "\n".join(" " * indent + line for line in lines)
+def say(line: str) -> None:
+    """Print a line of prose: wrapped between words on a terminal, whole in a file or a pipe."""
+    if not sys.stdout.isatty() or len(line) <= _columns():
+        typer.echo(line)
+        return
+    indent = len(line) - len(line.lstrip())
+    typer.echo(wrapped(line.strip(), indent=indent, further=2))
+
+
+def _columns() -> int:
+    return max(shutil.get_terminal_size().columns, NARROWEST)
+
+
+def wrapped(text: str, indent: int = 0, further: int = 0) -> str:
+    """Return a text in lines of the terminal's width, all but the first indented `further`.
+
+    Names are not broken.
+    """
+    lines = textwrap.wrap(
+        text, _columns(), initial_indent=" " * indent, subsequent_indent=" " * (indent + further),
+        break_long_words=False, break_on_hyphens=False,
+    )  # fmt: skip
+    return "\n".join(lines)
 
 
 def entry(name: str, text: str) -> None:

@@ -12,7 +12,7 @@ import typer
 from dentscope.cli import app as assembly
 from dentscope.cli import run
 from dentscope.cli.diagnose import _progress as progress_of_diagnosis
-from dentscope.cli.terminal import parts
+from dentscope.cli.terminal import parts, say
 from rich.console import Console
 
 COMMAND = typer.main.get_command(assembly.app)
@@ -113,3 +113,16 @@ def test_progress_on_a_terminal_stays_in_its_line(
     show = progress_of_diagnosis(quiet=False)
     show("fitting one with another")
     assert capsys.readouterr().err == "\r\x1b[Kfitting one with an"
+
+
+@pytest.mark.parametrize("live", [True, False])
+def test_prose_is_wrapped_on_a_terminal_and_whole_in_a_file(monkeypatch, capsys, live):
+    monkeypatch.setenv("COLUMNS", "44")
+    monkeypatch.setattr(sys.stdout, "isatty", lambda: live)
+    line = "    61 %  roughness: asperities give way before the bulk"
+    say(line)
+    told = capsys.readouterr().out
+    if live:
+        assert told == "    61 %  roughness: asperities give way\n      before the bulk\n"
+    else:
+        assert told == f"{line}\n"
