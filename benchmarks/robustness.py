@@ -1,10 +1,10 @@
 """What the design `robustness` shows: how many random pairs are solved, and how well balanced.
 
     dentscope campaign run --design robustness --out build/robustness
-    .venv/bin/python benchmarks/robustness.py [build/robustness]
+    .venv/bin/python benchmarks/robustness.py [build/robustness [robustness-hardening]]
 
-300 pairs of a scrambled Sobol sequence with a fixed seed over the solver's stated range, at the
-level `quick`. Printed: how many reach Delta/R = 0.1, how the others end, the largest defect of each
+Pairs of a scrambled Sobol sequence with a fixed seed over the solver's stated range, at the level
+`quick`. Printed: how many reach Delta/R = 0.1, how the others end, the largest defect of each
 path's energy, and contact force against reaction from Delta/R = 1e-3 on and below it.
 """
 
@@ -19,7 +19,8 @@ from dentscope.campaigns.store import Store
 
 folder = Path(sys.argv[1] if len(sys.argv) > 1 else "build/robustness")
 store = Store(folder / "campaign.h5")
-status = status_of(design_named("robustness"), store)
+design = sys.argv[2] if len(sys.argv) > 2 else "robustness"
+status = status_of(design_named(design), store)
 records = read_curves(folder / "campaign.h5")
 rows = []
 for record in records:

@@ -24,7 +24,7 @@ from .cases.drawn import (
     validation,
     validation_2,
 )
-from .cases.hardening import hardening, validation_hardening
+from .cases.hardening import hardening, robustness_hardening, validation_hardening
 from .cases.thesis import smoke, thesis_first, thesis_second, thesis_third
 
 
@@ -78,6 +78,11 @@ DESIGNS: dict[str, Design] = {
             "robustness",
             "300 Sobol points over the solver's whole range, medium resolution",
             robustness,
+        ),
+        Design(
+            "robustness-hardening",
+            "200 Sobol points over metals that harden in three ways, medium resolution",
+            robustness_hardening,
         ),
     )
 }

@@ -12,9 +12,10 @@ from functools import cache
 
 import numpy as np
 
-from ...core.flow import Flow, swift
+from ... import fem
+from ...core.flow import Flow, FlowCurve, ludwik, swift, voce
 from ...core.material import Material, Pair
-from ..case import Case
+from ..case import Case, standard_case
 from .pairs import deep_case
 
 _YIELD_STRAINS = (3e-4, 6e-3)  # soft copper and aluminium to spring steel and titanium
@@ -36,6 +37,56 @@ def validation_hardening() -> tuple[Case, ...]:
     """24 pairs of the same ranges, kept out of every fit."""
     draw = np.random.default_rng(77005).random((24, 8))
     return tuple(deep_case(f"validation-hardening-{k:02}", _pair(u, k)) for k, u in enumerate(draw))
+
+
+@cache
+def robustness_hardening() -> tuple[Case, ...]:
+    """200 scrambled Sobol points over all metals that the solver is meant for, medium resolution.
+
+    E_s/E_f 1/6 to 6, nu 0.1 to 0.45, Sy* 0.05 to 20, E'/Sy_min 20 to 4000; the curve of each body
+    is a power of the strain with n 0.02 to 0.6, Ludwik's with K/Sy 0.1 to 5, or Voce's with Q/Sy
+    0.1 to 5.
+    """
+    from scipy.stats import qmc
+
+    points = qmc.Sobol(9, scramble=True, rng=np.random.default_rng(1952)).random_base2(8)[:200]
+    return tuple(
+        standard_case(
+            f"robustness-hardening-{k:03}", _any_pair(u), deepest=0.1, n_depths=24,
+            accuracy=fem.Accuracy.quick(),
+        )
+        for k, u in enumerate(points)
+    )  # fmt: skip
+
+
+def _any_pair(u: np.ndarray[tuple[int], np.dtype[np.float64]]) -> Pair:
+    """Pair from nine numbers in [0, 1): moduli, Poisson ratios, strengths, two of each curve."""
+    stiffness = 6.0 ** (2.0 * u[0] - 1.0)
+    E_s, E_f = _digits(100e9 * stiffness**0.5), _digits(100e9 / stiffness**0.5)
+    nu_s, nu_f = (round(float(0.1 + 0.35 * x), 3) for x in u[1:3])
+    ratio = _digits(0.05 * 400.0 ** u[3])
+    elastic = Pair(sphere=Material(E=E_s, nu=nu_s), flat=Material(E=E_f, nu=nu_f), R=1e-3)
+    weaker = _digits(elastic.E_reduced / (20.0 * 200.0 ** u[4]))
+    Sy_s, Sy_f = (weaker, weaker / ratio) if ratio < 1.0 else (weaker * ratio, weaker)
+    return replace(
+        elastic,
+        sphere=_curved(replace(elastic.sphere, Sy=Sy_s), u[5], u[6]),
+        flat=_curved(replace(elastic.flat, Sy=Sy_f), u[7], u[8]),
+    )
+
+
+def _curved(body: Material, form: float, size: float) -> Material:
+    """Give a body one of three forms of hardening, of a size; both numbers in [0, 1)."""
+    which, along = divmod(3.0 * form, 1.0)
+    high = body.Sy * 0.1 * 50.0**size
+    curve: FlowCurve
+    if which == 0.0:
+        return power_law(body, round(float(0.02 + 0.58 * size), 3))
+    if which == 1.0:
+        curve = ludwik(Sy=body.Sy, K=high, n=round(float(0.2 + 0.8 * along), 3))
+    else:
+        curve = voce(Sy=body.Sy, Q=high, b=_digits(60.0**along))
+    return replace(body, flow=Flow(curve=curve))
 
 
 def power_law(body: Material, n: float) -> Material:
