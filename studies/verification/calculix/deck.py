@@ -19,6 +19,8 @@ from ....fem.discretise import Discretisation, discretise
 Floats = npt.NDArray[np.float64]
 Integers = npt.NDArray[np.int64]
 
+_FIRST, _LAST, _ROWS = 1e-5, 5.0, 150  # plastic strains of a table
+
 
 @dataclass(frozen=True)
 class Deck:
@@ -95,8 +97,18 @@ def write_deck(deck: Deck) -> str:
 def _material(name: str, body: Material) -> list[str]:
     lines = [f"*MATERIAL, NAME=M{name}", "*ELASTIC", f"{body.E * 1e-6:.10g},{body.nu:g}"]
     if np.isfinite(body.strength):
-        lines += ["*PLASTIC", f"{body.Sy * 1e-6:.10g},0."]
+        lines.append("*PLASTIC")
+        lines += [f"{stress * 1e-6:.10g},{strain:.10g}" for strain, stress in _flow_curve(body)]
     return lines
+
+
+def _flow_curve(body: Material) -> list[tuple[float, float]]:
+    """Plastic strain and flow stress [Pa]; CalculiX is linear between rows and takes 200."""
+    curve = None if body.flow is None else body.flow.curve
+    if curve is None:
+        return [(0.0, body.Sy)]
+    strains = np.append(0.0, np.geomspace(_FIRST, _LAST, _ROWS))
+    return [(float(p), curve(float(p))) for p in strains]
 
 
 def _step(depth: float) -> list[str]:

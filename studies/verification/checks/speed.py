@@ -61,7 +61,8 @@ def run(bench: Bench) -> Result:
             f"strain, beside a tenth that knows no rate and is raised by 100^m itself; E over the "
             f"stress at the slow speed is {_E / _STRESS:.0f}, level `{accuracy.level}`, ripple "
             f"smoothed out, judged from E' a/(R sigma) = {_PLASTIC:g} on. Without elastic "
-            "strain every rate goes with the speed, every stress with its power m, and so does the force, at a contact radius and at a depth alike."
+            "strain every rate goes with the speed, every stress with its power m, and so does the "
+            "force, at a contact radius and at a depth alike."
         ),
         measurements=tuple(measurements),
         tables=(
