@@ -135,3 +135,16 @@ def test_only_kernels_go_without_types(name):
     bare = {f.name for f in functions(path) if not typed(f)}
     assert bare, f"{name} needs no exemption"
     assert bare - compiled(tree(path)) == set()
+
+
+def test_the_version_is_the_same_wherever_it_stands():
+    (version,) = (
+        node.value.value
+        for node in tree(Path("__init__.py")).body
+        if isinstance(node, ast.Assign) and node.targets[0].id == "__version__"
+    )
+    citation = (ROOT / "CITATION.cff").read_text(encoding="utf-8").splitlines()
+    assert f"version: {version}" in citation
+    changes = (ROOT / "CHANGELOG.md").read_text(encoding="utf-8").splitlines()
+    newest = next(line for line in changes if line.startswith("## "))
+    assert newest.split()[1] == version
