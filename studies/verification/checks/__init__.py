@@ -63,7 +63,7 @@ CHECKS: tuple[Check, ...] = (
     ),
     Check("indentation", "slip-line hardness and published indentation", "indentation.run"),
     Check("similarity", "power-law plasticity: Storåkers, Biwa and Larsson", "similarity.run"),
-    Check("speed", "a hundred times the speed, exactly by similarity", "speed.run"),
+    Check("speed", "a hundred times the speed, exactly by similarity", "similarity.speed"),
     Check("flattening", "Jackson and Green, Kogut and Etsion", "flattening.run"),
     Check("convergence", "mesh and step over Table 2.1 at Sy* = 0.1, 1, 10", "convergence.run"),
     Check("levels", "what production, quick and smoke state of themselves", "level_errors.run"),
