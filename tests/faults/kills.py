@@ -248,7 +248,10 @@ class Run:
         for task in Path(f"/proc/{self.pid}/task").glob("*/children"):
             with suppress(OSError):
                 found += map(int, task.read_text().split())
-        return [pid for pid in found if b"resource_tracker" not in _command(pid)]
+        if self.forked:
+            return [pid for pid in found if b"resource_tracker" not in _command(pid)]
+        # a new interpreter asks git for its commit too: that child is no worker that starts
+        return [pid for pid in found if b"spawn_main" in _command(pid)]
 
     def told(self):
         file = self.path.with_suffix(".told")
