@@ -106,5 +106,10 @@ def read_table(path: Path) -> TableLaw:
             f"{len(curve.depth)} depths", source=source, key="loading",
             allowed=f"{FEWEST_DEPTHS} or more",
         )  # fmt: skip
-    pair = Pair(sphere, flat, found.radius_m)
-    return table_law([PairTable(pair, curve, turns)], name=str(path))
+    table = PairTable(Pair(sphere, flat, found.radius_m), curve, turns)
+    if len(turns.depth) and turns.depth[0] <= table.yields_at:
+        raise InputError(
+            f"{turns.depth[0]:g}", source=source, key="unloading.depth",
+            allowed=f"beyond first yield, above {table.yields_at:.4g}",
+        )  # fmt: skip
+    return table_law([table], name=str(path))

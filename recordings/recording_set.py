@@ -251,6 +251,7 @@ def read(folder: Path | str, *, unfinished: bool = False) -> RecordingSet:
     found = RecordingSet(
         _with_strengths(setup, flows), trials, traces, profiles, folder, (), tuple(to_fill), flows
     )
+    _check_falls(found, folder / "set.toml")
     mistakes += _impossible(found, problems)
     if not unfinished:
         mistakes += _without_noise(found)
@@ -311,6 +312,19 @@ def _with_strengths(setup: Setup, flows: Mapping[str, MeasuredFlow]) -> Setup:
 
     strikers = {k: strong(f"strikers.{k}", b) for k, b in setup.strikers.items()}
     return setup.model_copy(update={"target": strong("target", setup.target), "strikers": strikers})
+
+
+def _check_falls(found: RecordingSet, path: Path) -> None:
+    """Refuse trials with a height of fall and no speed where nothing falls."""
+    fallen = np.isnan(found.trials.impact_speed_m_s) & ~np.isnan(found.trials.drop_height_m)
+    if found.setup.gravity_m_s2.value == 0.0 and fallen.any():
+        first = found.trials.trial[int(np.argmax(fallen))]
+        raise InputErrors((
+            InputError(
+                "0", source=str(path), key="gravity_m_s2",
+                allowed=f"above 0 where a trial has a height of fall and no speed, as {first}",
+            ),
+        ))  # fmt: skip
 
 
 def _impossible(found: RecordingSet, problems: Problems) -> list[InputError]:

@@ -96,6 +96,10 @@ def test_it_states_the_uncertainty_of_its_solve_and_its_end(solved, file):
         ({"radius_m": 10**400}, "radius_m: 1000"),
         ({"radius_m": True}, "radius_m: True"),
         ({"unloading": {"depth": [1], "left": [0], "part": [0], "exponent": []}}, "unequal length"),
+        (
+            {"unloading": {"depth": [1e-30], "left": [0], "part": [0], "exponent": [1]}},
+            "unloading.depth: 1e-30 (allowed: beyond first yield",
+        ),
     ],
 )
 def test_a_damaged_file_is_one_line(file, tmp_path, change, told):

@@ -67,6 +67,13 @@ CASES = {
     "true as number": (toml("nu = 0.3", "nu = true"), r"target\.nu: True"),
     "nu too large": (toml("nu = 0.3", "nu = 0.5"), r"target\.nu: 0\.5 .*< 0\.5"),
     "negative modulus": (toml("value = 2.0e11", "value = -1.0"), r"target\.E_Pa: .*from 1000 to"),
+    "no gravity, and a height of fall": (
+        {
+            "toml": SET.replace("9.81", "0.0"),
+            "trials": TRIALS.replace("impact_speed_m_s", "drop_height_m"),
+        },
+        r"gravity_m_s2: 0 .*height of fall and no speed, as a",
+    ),
     "negative std": (toml("std = 4.0e9", "std = -1.0"), r"target\.E_Pa\.std: -1\.0"),
     "infinite": (toml("mass_kg = 0.5", "mass_kg = inf"), r"mass_kg\.value: inf .*finite"),
     "nan": (toml("mass_kg = 0.5", "mass_kg = nan"), r"mass_kg\.value: nan .*finite"),
