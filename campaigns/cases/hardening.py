@@ -16,7 +16,7 @@ from ... import fem
 from ...core.flow import Flow, FlowCurve, ludwik, swift, voce
 from ...core.material import Material, Pair
 from ..case import Case, standard_case
-from .pairs import deep_case
+from .pairs import deep_case, digits, widest_pair
 
 _YIELD_STRAINS = (3e-4, 6e-3)  # soft copper and aluminium to spring steel and titanium
 _RATIOS = (0.1, 10.0)  # Sy*
@@ -43,9 +43,8 @@ def validation_hardening() -> tuple[Case, ...]:
 def robustness_hardening() -> tuple[Case, ...]:
     """200 scrambled Sobol points over all metals that the solver is meant for, medium resolution.
 
-    E_s/E_f 1/6 to 6, nu 0.1 to 0.45, Sy* 0.05 to 20, E'/Sy_min 20 to 4000; the curve of each body
-    is a power of the strain with n 0.02 to 0.6, Ludwik's with K/Sy 0.1 to 5, or Voce's with Q/Sy
-    0.1 to 5.
+    The curve of each body is a power of the strain with n 0.02 to 0.6, Ludwik's with K/Sy 0.1 to 5,
+    or Voce's with Q/Sy 0.1 to 5.
     """
     from scipy.stats import qmc
 
@@ -60,18 +59,10 @@ def robustness_hardening() -> tuple[Case, ...]:
 
 
 def _any_pair(u: np.ndarray[tuple[int], np.dtype[np.float64]]) -> Pair:
-    """Pair from nine numbers in [0, 1): moduli, Poisson ratios, strengths, two of each curve."""
-    stiffness = 6.0 ** (2.0 * u[0] - 1.0)
-    E_s, E_f = _digits(100e9 * stiffness**0.5), _digits(100e9 / stiffness**0.5)
-    nu_s, nu_f = (round(float(0.1 + 0.35 * x), 3) for x in u[1:3])
-    ratio = _digits(0.05 * 400.0 ** u[3])
-    elastic = Pair(sphere=Material(E=E_s, nu=nu_s), flat=Material(E=E_f, nu=nu_f), R=1e-3)
-    weaker = _digits(elastic.E_reduced / (20.0 * 200.0 ** u[4]))
-    Sy_s, Sy_f = (weaker, weaker / ratio) if ratio < 1.0 else (weaker * ratio, weaker)
+    """Pair from nine numbers in [0, 1): five of `widest_pair`, two of each curve."""
+    pair = widest_pair(u[:5])
     return replace(
-        elastic,
-        sphere=_curved(replace(elastic.sphere, Sy=Sy_s), u[5], u[6]),
-        flat=_curved(replace(elastic.flat, Sy=Sy_f), u[7], u[8]),
+        pair, sphere=_curved(pair.sphere, u[5], u[6]), flat=_curved(pair.flat, u[7], u[8])
     )
 
 
@@ -85,7 +76,7 @@ def _curved(body: Material, form: float, size: float) -> Material:
     if which == 1.0:
         curve = ludwik(Sy=body.Sy, K=high, n=round(float(0.2 + 0.8 * along), 3))
     else:
-        curve = voce(Sy=body.Sy, Q=high, b=_digits(60.0**along))
+        curve = voce(Sy=body.Sy, Q=high, b=digits(60.0**along))
     return replace(body, flow=Flow(curve=curve))
 
 
@@ -101,23 +92,19 @@ def _pair(u: np.ndarray[tuple[int], np.dtype[np.float64]], k: int) -> Pair:
     """Pair from eight numbers in [0, 1): moduli and Poisson ratios linear, exponents linear,
     yield strain of the weaker body and Sy* logarithmic; in every third one body alone hardens.
     """  # noqa: D205
-    E_s, E_f = (_digits(50.0 + 250.0 * x) * 1e9 for x in u[:2])
+    E_s, E_f = (digits(50.0 + 250.0 * x) * 1e9 for x in u[:2])
     nu_s, nu_f = (round(float(0.2 + 0.25 * x), 3) for x in u[2:4])
     strain = _YIELD_STRAINS[0] * (_YIELD_STRAINS[1] / _YIELD_STRAINS[0]) ** u[4]
-    ratio = _digits(_RATIOS[0] * (_RATIOS[1] / _RATIOS[0]) ** u[5])
+    ratio = digits(_RATIOS[0] * (_RATIOS[1] / _RATIOS[0]) ** u[5])
     n_s, n_f = (round(float(_LARGEST_EXPONENT * x), 3) for x in u[6:])
     if k % 6 == 4:
         n_f = 0.0
     elif k % 6 == 5:
         n_s = 0.0
-    weaker = _digits(strain * (E_s if ratio < 1.0 else E_f))
+    weaker = digits(strain * (E_s if ratio < 1.0 else E_f))
     Sy_s, Sy_f = (weaker, weaker / ratio) if ratio < 1.0 else (weaker * ratio, weaker)
     return Pair(
         sphere=power_law(Material(E=E_s, nu=nu_s, Sy=Sy_s), n_s),
         flat=power_law(Material(E=E_f, nu=nu_f, Sy=Sy_f), n_f),
         R=1e-3,
     )
-
-
-def _digits(x: float) -> float:
-    return float(f"{x:.4g}")

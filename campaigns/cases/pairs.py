@@ -5,6 +5,10 @@ Strengths follow the thesis: Sy_min is held and Sy* = S_ys/S_yf sets the stronge
 
 from __future__ import annotations
 
+from dataclasses import replace
+
+import numpy as np
+
 from ... import fem
 from ...core.material import Material, Pair
 from ..case import Case, standard_case
@@ -20,6 +24,34 @@ def pair_of(
         flat=Material(E=E_f * 1e9, nu=nu_f, Sy=f * 1e6),
         R=1e-3,
     )
+
+
+def widest_pair(u: np.ndarray[tuple[int], np.dtype[np.float64]]) -> Pair:
+    """Pair of any metals that the solver is meant for, from five numbers in [0, 1).
+
+    E_s/E_f 1/6 to 6, nu 0.1 to 0.45, Sy* 0.05 to 20 and E'/Sy_min 20 to 4000.
+    """
+    stiffness = 6.0 ** (2.0 * u[0] - 1.0)
+    nu_s, nu_f = (round(float(0.1 + 0.35 * x), 3) for x in u[1:3])
+    pair = pair_of(
+        E_s=digits(100.0 * stiffness**0.5),
+        E_f=digits(100.0 / stiffness**0.5),
+        Sy_min=1.0,
+        ratio=digits(0.05 * 400.0 ** u[3]),
+        nu_s=nu_s,
+        nu_f=nu_f,
+    )
+    strength = digits(pair.E_reduced / (20.0 * 200.0 ** u[4]))
+    return replace(
+        pair,
+        sphere=replace(pair.sphere, Sy=pair.sphere.Sy / 1e6 * strength),
+        flat=replace(pair.flat, Sy=pair.flat.Sy / 1e6 * strength),
+    )
+
+
+def digits(x: float) -> float:
+    """Round to four digits, as a table would print it."""
+    return float(f"{x:.4g}")
 
 
 # Table 2.1 of the thesis: E_s, E_f [GPa], Sy_min [MPa], nu_s, nu_f
