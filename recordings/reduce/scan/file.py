@@ -20,6 +20,7 @@ _TEXT = (".csv",)
 _UNSEEN = ("", "nan", "-", "na")
 _ABSURD = 1e30
 _FEWEST = 100
+_FARTHEST = 1e-3  # m between neighbouring points; one reader's format gives 0.3 m for 0.3 um
 _MOST_POINTS = 100_000_000
 _DENSEST = 50  # points a byte of a packed file holds at most
 
@@ -85,6 +86,8 @@ def read_scan(
         steps = found.step * _factor(unit or found.unit, path)
     if not np.all(np.isfinite(steps) & (steps > 0.0)):
         raise _no_step(path)
+    if step is None:
+        _refuse_far(float(steps.max()), path)
     return Scan(heights, steps, str(path))
 
 
@@ -109,7 +112,19 @@ def _positions(found: _Raw, unit: str | None, step: float | None, path: Path) ->
             f"the position does not increase after point {row}", source=str(path),
             allowed="increasing positions",
         )  # fmt: skip
-    return np.asarray((found.x - found.x[0]) * _factor(unit or found.unit, path))
+    x = np.asarray((found.x - found.x[0]) * _factor(unit or found.unit, path))
+    _refuse_far(float(np.median(np.diff(x))), path)
+    return x
+
+
+def _refuse_far(step: float, path: Path) -> None:
+    """Refuse points so far apart that the unit must be wrong."""
+    if step > _FARTHEST:
+        raise InputError(
+            f"its points are {step:.3g} m apart, {step / _FARTHEST:.0f} times as far as in a scan",
+            source=str(path), allowed=f"--unit or --step-m, where neighbours are {_FARTHEST:g} m "
+            "apart or less",
+        )  # fmt: skip
 
 
 def _known_format(path: Path, step: float | None) -> _Raw:

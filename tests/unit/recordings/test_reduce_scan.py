@@ -5,6 +5,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 from dentscope.cli import run
+from dentscope.core.errors import InputError
 from dentscope.recordings.reduce.scan.crater import reduce_scan
 from dentscope.recordings.reduce.scan.kind import Options, reduce
 from dentscope.studies.synthetic.scans import random_truth, render
@@ -56,6 +57,21 @@ def test_depth_of_a_measured_crater():
     found = reduce(REAL / "nms-1.nms", Options(step_m=3.125e-7))
     assert found.values["permanent_depth_m"].value == pytest.approx(0.3e-6, abs=0.03e-6)
     assert found.values["pile_up_m"].value > 0.0
+
+
+@measured
+def test_a_scan_of_a_hundred_metres_is_refused():
+    # the reader takes this header's unit for one a million times as large
+    with pytest.raises(InputError, match=r"0\.312 m apart.*--step-m"):
+        reduce(REAL / "nms-1.nms", Options())
+
+
+def test_a_line_of_metres_is_refused(tmp_path):
+    path = tmp_path / "line.csv"
+    rows = "".join(f"{0.5 * k},{0.001 * (k % 7)}\n" for k in range(200))
+    path.write_text("x_m,z_m\n" + rows)
+    with pytest.raises(InputError, match=r"0\.5 m apart"):
+        reduce(path, Options(unit="m"))
 
 
 @pytest.mark.parametrize(
