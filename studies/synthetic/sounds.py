@@ -89,8 +89,10 @@ def bounces(truth: SoundTruth) -> list[tuple[float, float, float]]:
 def _flight(speed: float, truth: SoundTruth) -> tuple[float, float]:
     """Duration of a flight and speed at its end."""
     area = 0.25 * math.pi * truth.diameter**2
-    drag = 0.5 * _AIR * _DRAG * area / truth.mass
-    weight = _GRAVITY * (1.0 - _AIR / truth.density)
+    # half of the air that it displaces moves with a sphere (potential flow)
+    mass = truth.mass * (1.0 + 0.5 * _AIR / truth.density)
+    drag = 0.5 * _AIR * _DRAG * area / mass
+    weight = _GRAVITY * (1.0 - _AIR / truth.density) * truth.mass / mass
     time, height, v = 0.0, 0.0, speed
     while True:
         middle = v - 0.5 * _STEP * (weight + drag * v * abs(v))

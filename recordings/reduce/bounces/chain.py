@@ -25,6 +25,13 @@ _MISSED_COST = 0.75
 
 _MOST = 80
 
+_SUDDEN = 0.1
+"""Largest change of the factor, in its logarithm, from the flights next to an end of the run.
+
+The steady factor may lie anywhere between those of a run, so that its ends alone could take a knock
+for a bounce. Restitution changes by some per cent from one bounce to the next, not by a tenth.
+"""
+
 _STRAY = 8.0
 """Distance from the course of the others, in their scatter, that no real bounce has."""
 
@@ -115,7 +122,25 @@ def chain_of(times: Array) -> Chain | None:
     single, stray = _without_strays(used, kept, single)
     if stray:
         notes.append(f"{stray} intervals stray from the course of the others and are left out")
+    kept, single, ends = _without_false_ends(used, kept, single)
+    if ends:
+        notes.append(f"{ends} instants at the ends of the run stray from its course: left out")
     return Chain(np.asarray(times), kept, single, _typical(used, found), tuple(notes))
+
+
+def _without_false_ends(
+    times: Array, kept: tuple[int, ...], single: tuple[bool, ...]
+) -> tuple[tuple[int, ...], tuple[bool, ...], int]:
+    """Give up a first or last instant that is a knock: its flight is too long or too short."""
+    before = len(kept)
+    for way in (-1, 1):
+        while len(kept) > 4 and all(single[::way][:3]):
+            flights = np.abs(np.diff(times[list(kept)]))[::way][:3]
+            own, next_to_it = np.diff(np.log(flights))
+            if abs(own - next_to_it) <= _SUDDEN:
+                break
+            kept, single = (kept[:-1], single[:-1]) if way < 0 else (kept[1:], single[1:])
+    return kept, single, before - len(kept)
 
 
 def _without_strays(

@@ -68,6 +68,27 @@ def test_a_run_is_found_among_echoes_and_with_one_bounce_missed(e, first, count,
     assert len(chain.kept) >= count - 2
 
 
+@pytest.mark.parametrize("place", ["first", "last"])
+@pytest.mark.parametrize("count", [5, 6, 12])
+def test_a_knock_in_place_of_a_bounce_at_an_end_of_the_run(place, count):
+    flights = 0.4 * 0.7 ** np.arange(count)
+    instants = np.concatenate([[0.0], np.cumsum(flights)])
+    k = 0 if place == "first" else -1
+    instants[k] += 0.17 * flights[k] * (1 if place == "first" else -1)
+    chain = chain_of(instants)
+    used = [a for a, one in zip(chain.kept, chain.single, strict=False) if one]
+    assert used == list(range(1, count) if place == "first" else range(count - 1))
+
+
+def test_a_run_whose_restitution_changes_as_a_real_one_keeps_its_ends():
+    # a golf ball: 0.883 to 0.898 from bounce to bounce
+    e = np.array([0.8975, 0.8941, 0.8913, 0.8832, 0.8982])
+    flights = 0.9 * np.concatenate([[1.0], np.cumprod(e)])
+    chain = chain_of(np.concatenate([[0.0], np.cumsum(flights)]))
+    assert chain.kept == tuple(range(7))
+    assert not chain.notes
+
+
 @pytest.mark.parametrize("seed", [1, 4, 7])
 def test_restitution_of_rendered_bounces(tmp_path, seed):
     truth = SoundTruth(seed=seed, restitution=0.75, knocks=1, noise=3e-3)
