@@ -10,6 +10,8 @@ LOCKS := $(wildcard requirements/py3*.txt)
 # the solver runs one case a core: more threads inside a case only disturb the others
 export OMP_NUM_THREADS ?= 1
 export OPENBLAS_NUM_THREADS ?= 1
+# some images forbid it: every command would then compile a thousand modules anew, 3 s each time
+unexport PYTHONDONTWRITEBYTECODE
 
 .DEFAULT_GOAL := help
 .PHONY: help install campaign fit impact diagnose figures recordings proof verify test check docs hooks wheel bench lock clean
