@@ -70,7 +70,8 @@ def scales(scene: Scene, peak: float) -> dict[str, float]:
     )  # fmt: skip
     speed = dict.fromkeys(
         ("rebound_speed_m_s", "tangential_rebound_m_s", "tip_rebound_m_s", "clearance_rate_m_s"),
-        v_t,
+        # A tip's velocity is what is left of the centre's and of the spin's at the tip's distance.
+        max(v_t, abs(scene.approach.spin) * 0.5 * scene.striker.length),
     )
     energy = {name: 0.5 * m * v_t**2 for name in c.OBSERVABLES if name.endswith("_J")}
     impulse = dict.fromkeys(("normal_impulse_Ns", "tangential_impulse_Ns"), m * v_t)

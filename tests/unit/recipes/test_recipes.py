@@ -169,7 +169,7 @@ def test_a_design(recipe):
     toy = recipe("Add a design")
     toy.change(
         "campaigns/cases/drawn.py",
-        ("\n\ndef _digits(", f"\n\n{DESIGN}\n\ndef _digits("),
+        ("\n\n@cache\ndef robustness(", f"\n\n{DESIGN}\n\n@cache\ndef robustness("),
     )
     toy.change(
         "campaigns/designs.py",
