@@ -21,9 +21,13 @@ from .track import Track
 from .view import Launch, Stage, View
 
 SHARED = len(View._fields)
-_WIDTHS = {3e-4: 1.0, 3e-3: 1.0, 1e-2: 1.0, 3e-2: 1.0, 1e-1: 0.05}
-"""Widths, and how much each is believed beforehand: a scale that drifts by a tenth is rare and must
-show in the track, else it alone would make the error of one that does not tell."""
+_WIDTHS = {1e-2: 1.0, 3e-2: 1.0, 1e-1: 0.05}
+"""Widths, and how much each is believed beforehand.
+
+A camera that nobody calibrated drifts by a per cent or so; a path that cannot tell, as the straight
+one of a fast rod, pays for that in its speeds. A tenth is rare and must show in the track, else it
+alone would make the error of one that does not tell.
+"""
 
 _FIRST_WIDTH = 3e-2
 _REJECT, _TRIM = 4.0, 2.5

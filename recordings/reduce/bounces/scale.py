@@ -14,7 +14,10 @@ import numpy as np
 
 from ..measured import Array, Measured
 
-_AGREE = 2.0
+_AGREE = 3.0
+"""Standard deviations by which two scales may differ; within them their scatter widens the error
+(Birge's ratio)."""
+
 _KNOWN = 0.1
 """Relative error of a fall from which on it gives no scale."""
 
@@ -67,7 +70,8 @@ def scale_of(fall: Measured, gravity: float, stated: Measured | None) -> Scale:
             return Scale(stated, "as stated")
         w = np.array([by_fall.std, stated.std]) ** -2.0
         mean = float(w @ [by_fall.value, stated.value] / w.sum())
-        return Scale(Measured(mean, float(w.sum() ** -0.5)), "gravity and what is stated")
+        std = float(w.sum() ** -0.5) * max(apart / both, 1.0)
+        return Scale(Measured(mean, std), "gravity and what is stated")
     middle = stated.value if stated.std == 0.0 else 0.5 * (by_fall.value + stated.value)
     std = max(abs(v - middle) for v in (by_fall.value, stated.value))
     note = (

@@ -157,6 +157,10 @@ def test_gravity_and_a_stated_size_that_disagree_are_both_held():
     agreed = scale_of(fall, 9.81, Measured(1.004 * by_fall, 0.005 * by_fall))
     assert not agreed.notes
     assert agreed.metres.std < 0.005 * by_fall
+    # within three standard deviations, as one of a hundred pairs: the scatter widens the error
+    apart = scale_of(fall, 9.81, Measured(1.018 * by_fall, 0.005 * by_fall))
+    assert not apart.notes
+    assert apart.metres.std > 2.0 * agreed.metres.std
     assert not scale_of(Measured(math.nan, math.nan), 9.81, None).known
 
 
