@@ -93,7 +93,7 @@ def edge_of_contact(contact: ContactState, slave_r: Floats) -> float:
         return float("nan")  # the contact has grown out of the surface that was meshed to touch
     h = float(slave_r[min(k + 1, len(slave_r) - 1)] - slave_r[max(k - 1, 0)]) * 0.5
     edges = slave_r[k] + h * np.linspace(-1.0, 1.4, _CANDIDATES)
-    misfit = np.array([_misfit(edge, r, g) for edge in edges])
+    misfit = _misfits(edges, r, g)
     best = int(misfit.argmin())
     if 0 < best < _CANDIDATES - 1:
         left, mid, right = misfit[best - 1 : best + 2]
@@ -103,20 +103,21 @@ def edge_of_contact(contact: ContactState, slave_r: Floats) -> float:
     return float(edges[best])
 
 
-def _misfit(edge: float, r: Floats, g: Floats) -> float:
-    s = np.maximum(r - edge, 0.0)
-    basis = np.stack([s, s**1.5])
+def _misfits(edges: Floats, r: Floats, g: Floats) -> Floats:
+    """Misfit of a gap that opens at each of the edges as alpha s + beta s^1.5, both positive."""
+    s = np.maximum(r - edges[:, None], 0.0)
     # relative weights: the nearest points say most about where the gap opens
-    weight = 1.0 / (s + s.max() * 0.1)
-    B = basis * weight
-    y = g * weight
-    gram = B @ B.T
-    rhs = B @ y
-    det = gram[0, 0] * gram[1, 1] - gram[0, 1] ** 2
-    alpha = (gram[1, 1] * rhs[0] - gram[0, 1] * rhs[1]) / det
-    beta = (gram[0, 0] * rhs[1] - gram[0, 1] * rhs[0]) / det
-    if alpha < 0.0:
-        alpha, beta = 0.0, rhs[1] / gram[1, 1]
-    elif beta < 0.0:
-        alpha, beta = rhs[0] / gram[0, 0], 0.0
-    return float(((alpha * B[0] + beta * B[1] - y) ** 2).sum())
+    weight = 1.0 / (s + s.max(axis=1, keepdims=True) * 0.1)
+    one, other, y = s * weight, s**1.5 * weight, g * weight
+    a, b, c = (np.sum(u * v, axis=1) for u, v in ((one, one), (one, other), (other, other)))
+    p, q = np.sum(one * y, axis=1), np.sum(other * y, axis=1)
+    det = a * c - b**2
+    alpha, beta = (c * p - b * q) / det, (a * q - b * p) / det
+    without = alpha < 0.0
+    alone = ~without & (beta < 0.0)
+    alpha, beta = (
+        np.where(without, 0.0, np.where(alone, p / a, alpha)),
+        np.where(without, q / c, np.where(alone, 0.0, beta)),
+    )
+    left = alpha[:, None] * one + beta[:, None] * other - y
+    return np.asarray(np.sum(left**2, axis=1))

@@ -52,18 +52,9 @@ def layers_of(mesh: Mesh, *, sphere: bool) -> Layers:
     inside = mine & (chord < radii[0] * (1.0 - 1e-6))
     of_body = np.arange(len(mesh.quads)) < mesh.n_sphere_quads
     ahead = np.flatnonzero((of_body == sphere) & ~inside[mesh.quads].any(axis=1))
-    by_edge: dict[tuple[int, int], list[int]] = {}
-    for quad in ahead.tolist():
-        nodes = mesh.quads[quad].tolist()
-        for a, b in zip(nodes, nodes[1:] + nodes[:1], strict=True):
-            by_edge.setdefault((min(a, b), max(a, b)), []).append(quad)
+    edges = _Edges(mesh, ahead)
     rows, quads, corners = [row], [], []
-    done: set[int] = set()
-    while True:
-        layer = _next_layer(row, by_edge, done)
-        if layer is None:
-            break
-        done.update(layer.tolist())
+    while (layer := edges.next_layer(row)) is not None:
         corner = _corners(mesh.quads[layer], row)
         nodes = np.take_along_axis(mesh.quads[layer], corner, axis=1)
         row = np.append(nodes[:, 2], nodes[-1, 3])
@@ -75,17 +66,30 @@ def layers_of(mesh: Mesh, *, sphere: bool) -> Layers:
     return Layers(np.array(rows), np.array(quads), np.array(corners), level)
 
 
-def _next_layer(
-    row: Integers, by_edge: dict[tuple[int, int], list[int]], done: set[int]
-) -> Integers | None:
-    """Elements beyond a row of nodes; none at the end of the body."""
-    layer = []
-    for a, b in zip(row[:-1].tolist(), row[1:].tolist(), strict=True):
-        fresh = [quad for quad in by_edge[min(a, b), max(a, b)] if quad not in done]
-        if not fresh:
+class _Edges:
+    """Elements by their edges; each is given away once."""
+
+    def __init__(self, mesh: Mesh, quads: Integers) -> None:
+        self._n = len(mesh.points)
+        nodes = mesh.quads[quads]
+        key = self._key(nodes.ravel(), np.roll(nodes, -1, axis=1).ravel())
+        order = np.argsort(key, kind="stable")
+        self._key_of, self._quad = key[order], np.repeat(quads, 4)[order]
+        self._given = np.zeros(len(mesh.quads), dtype=np.bool_)
+
+    def _key(self, a: Integers, b: Integers) -> Integers:
+        return np.asarray(np.minimum(a, b) * self._n + np.maximum(a, b))
+
+    def next_layer(self, row: Integers) -> Integers | None:
+        """Elements beyond a row of nodes; none at the end of the body."""
+        key = self._key(row[:-1], row[1:])
+        one = self._quad[np.searchsorted(self._key_of, key)]
+        other = self._quad[np.searchsorted(self._key_of, key, side="right") - 1]
+        layer = np.where(self._given[one], other, one)
+        if self._given[layer].any():
             return None
-        layer += fresh
-    return np.array(layer)
+        self._given[layer] = True
+        return layer
 
 
 def _corners(quads: Integers, row: Integers) -> Integers:
