@@ -54,7 +54,8 @@ def main() -> None:
     assert now is not None
     solver._direction(now)
     matrix, rhs = solver.system._matrix, np.ones(solver.system.n)
-    factors = superlu(matrix)
+    factors, fronts = superlu(matrix), solver.system._fronts
+    assert fronts is not None
     mesh = skfem.MeshQuad(grid.mesh.points.T.copy(), grid.mesh.quads.T.copy())
     basis = skfem.CellBasis(mesh, skfem.ElementVector(skfem.ElementQuad1()), intorder=2)
     form = linear_elasticity(*lame_parameters(1.0, 0.3))
@@ -66,6 +67,8 @@ def main() -> None:
         ("contact without tangent", contact),
         ("SuperLU factorisation", seconds(lambda: superlu(matrix))),
         ("SuperLU solve", seconds(lambda: factors(rhs))),
+        ("multifrontal factorisation", seconds(lambda: fronts.factorise(matrix.data))),
+        ("multifrontal solve", seconds(lambda: fronts.solve(rhs))),
         ("scikit-fem's plane linear elasticity form", plain),
     ):
         print(f"{name:42}{1e3 * value:8.2f} ms, {value / loop:6.2f} of the element loop")

@@ -1,14 +1,13 @@
 """LU factors of a matrix with a symmetric pattern, in an order of elimination that stays.
 
 The multifrontal method (Duff and Reid, ACM Trans. Math. Softw. 9 (1983) 302; Liu, SIAM Review 34
-(1992) 82): unknowns with nearly the same couplings are eliminated together in a small dense matrix,
-their front; what is left of it is added to the front of their parent in the elimination tree. The
-tree, the fronts and every entry's place in them belong to the pattern and are found once.
+(1992) 82): unknowns with nearly the same couplings, a supernode, are eliminated together in a small
+dense matrix, its front; what is left of that is added to the front of its parent in the elimination
+tree. The tree, the fronts and every entry's place in them belong to the pattern and are found once.
 
 No rows are exchanged: the tangent of two solids in contact is nearly symmetric and positive. Who
-solves looks at what is left over. It is here because it halves what a case costs: the libraries'
-solvers of a general sparse matrix spend more on the search for pivots and on small blocks than on
-arithmetic (docs/performance.md has the figures of SuperLU and PARDISO).
+solves looks at what is left over. It stands beside SuperLU because on these patterns it takes a
+third of its time, and half in a solve (benchmarks/bench_fem.py, docs/performance.md).
 """
 
 from __future__ import annotations
@@ -24,10 +23,10 @@ _BLOCK = 16
 """Columns that are eliminated before all that is right of and below them is brought up to date."""
 
 _NARROW = 8
-"""Unknowns up to which a group joins its parent's whatever zeros that fills in."""
+"""Unknowns up to which a supernode joins its parent whatever zeros that fills in."""
 
 _FILL = 8
-"""A wider group joins its parent's where at most one of so many entries becomes a filled zero."""
+"""A wider one joins its parent where at most one of so many entries becomes a filled zero."""
 
 
 @njit(cache=True)
@@ -52,6 +51,7 @@ def _tree(n, indptr, indices):
 
 @njit(cache=True)
 def _postorder(parent):
+    """Nodes of the tree, each after all of its children."""
     n = parent.shape[0]
     first = np.full(n, -1, dtype=np.int64)
     following = np.full(n, -1, dtype=np.int64)
@@ -100,8 +100,8 @@ def _counts(n, indptr, indices, parent):
 
 
 @njit(cache=True)
-def _group(parent, count):
-    """First columns of the groups that are eliminated together, (n_groups + 1,)."""
+def _supernodes(parent, count):
+    """First unknowns of the supernodes, (n_supernodes + 1,)."""
     n = parent.shape[0]
     start = np.empty(n + 1, dtype=np.int64)
     zeros = np.zeros(n, dtype=np.int64)
@@ -114,7 +114,7 @@ def _group(parent, count):
         start[n_s] = j
         zeros[n_s] = 0
         n_s += 1
-        # join the group before, a child of this one, as long as that costs little
+        # join the one before, a child of this one, as long as that costs little
         while n_s > 1 and parent[start[n_s - 1] - 1] == start[n_s - 1]:
             first, middle = start[n_s - 2], start[n_s - 1]
             more = (middle - first) * (end - middle + count[end - 1] - count[middle - 1])
@@ -130,53 +130,48 @@ def _group(parent, count):
 
 
 @njit(cache=True)
-def _structure(start, indptr, indices, count):
-    """Rows below each group, their beginnings, and the parent of each group."""
+def _add_rows(found, s, last, mark, rows, k):
+    """Append what of `found` lies beyond the supernode `s` and is not there yet."""
+    for i in found:
+        if i >= last and mark[i] != s:
+            mark[i] = s
+            rows[k] = i
+            k += 1
+    return k
+
+
+@njit(cache=True)
+def _structure(start, supernode, indptr, indices, count):
+    """Rows below each supernode, their beginnings, and the parent of each."""
     n_s = start.shape[0] - 1
-    n = start[n_s]
-    group = np.empty(n, dtype=np.int64)
-    size = 0
-    for s in range(n_s):
-        group[start[s] : start[s + 1]] = s
-        size += count[start[s + 1] - 1] + 8
-    rows = np.empty(size, dtype=np.int64)
+    rows = np.empty(count[start[1:] - 1].sum(), dtype=np.int64)
     begin = np.zeros(n_s + 1, dtype=np.int64)
     parent = np.full(n_s, -1, dtype=np.int64)
     child = np.full(n_s, -1, dtype=np.int64)
     sibling = np.full(n_s, -1, dtype=np.int64)
-    mark = np.full(n, -1, dtype=np.int64)
+    mark = np.full(start[n_s], -1, dtype=np.int64)
     for s in range(n_s):
         k = begin[s]
         last = start[s + 1]
         for j in range(start[s], last):
-            for p in range(indptr[j], indptr[j + 1]):
-                i = indices[p]
-                if i >= last and mark[i] != s:
-                    mark[i] = s
-                    rows[k] = i
-                    k += 1
+            k = _add_rows(indices[indptr[j] : indptr[j + 1]], s, last, mark, rows, k)
         c = child[s]
         while c >= 0:
-            for p in range(begin[c], begin[c + 1]):
-                i = rows[p]
-                if i >= last and mark[i] != s:
-                    mark[i] = s
-                    rows[k] = i
-                    k += 1
+            k = _add_rows(rows[begin[c] : begin[c + 1]], s, last, mark, rows, k)
             c = sibling[c]
         begin[s + 1] = k
         rows[begin[s] : k].sort()
         if k > begin[s]:
-            above = group[rows[begin[s]]]
+            above = supernode[rows[begin[s]]]
             parent[s] = above
             sibling[s] = child[above]
             child[above] = s
-    return rows[: begin[n_s]].copy(), begin, parent
+    return rows, begin, parent
 
 
 @njit(cache=True)
 def _places(start, rows, begin, parent):
-    """Places of the rows below each group in the front of its parent."""
+    """Places of the rows below each supernode in the front of its parent."""
     n_s = start.shape[0] - 1
     place = np.empty(rows.shape[0], dtype=np.int64)
     for s in range(n_s):
@@ -197,17 +192,14 @@ def _places(start, rows, begin, parent):
 
 
 @njit(cache=True)
-def _entries(start, rows, begin, indptr, indices):
-    """Entries of the matrix by the group whose front takes them, and where in it."""
+def _entries(start, supernode, rows, begin, indptr, indices):
+    """Entries of the matrix by the supernode whose front takes them, and where in it."""
     n_s = start.shape[0] - 1
     n = start[n_s]
-    group = np.empty(n, dtype=np.int64)
-    for s in range(n_s):
-        group[start[s] : start[s + 1]] = s
     first = np.zeros(n_s + 1, dtype=np.int64)
     for j in range(n):
         for p in range(indptr[j], indptr[j + 1]):
-            first[group[min(indices[p], j)] + 1] += 1
+            first[supernode[min(indices[p], j)] + 1] += 1
     for s in range(n_s):
         first[s + 1] += first[s]
     fill = first[:-1].copy()
@@ -216,7 +208,7 @@ def _entries(start, rows, begin, indptr, indices):
     for j in range(n):
         for p in range(indptr[j], indptr[j + 1]):
             i = indices[p]
-            s = group[min(i, j)]
+            s = supernode[min(i, j)]
             wide = start[s + 1] - start[s]
             m = wide + begin[s + 1] - begin[s]
             below = rows[begin[s] : begin[s + 1]]
@@ -230,6 +222,7 @@ def _entries(start, rows, begin, indptr, indices):
 
 @njit(cache=True, fastmath={"contract"}, inline="always")
 def _minus(x, a, y):
+    """Take a y off x; over slices, which the compiler finds apart in memory, in vector units."""
     for j in range(x.shape[0]):
         x[j] -= a * y[j]
 
@@ -238,12 +231,10 @@ def _minus(x, a, y):
 def _trailing(front, panel, low, high, m):
     """Take the product of the columns and rows low..high off what is right of and below them."""
     n = m - high
-    for i in range(high, m, 2):
-        both = i + 1 < m
-        one = front[i, high:m]
-        two = front[i + 1, high:m] if both else front[i, high:m]
+    for i in range(high, m - 1, 2):
+        one, two = front[i, high:m], front[i + 1, high:m]
         k = low
-        while both and k + 4 <= high:
+        while k + 4 <= high:
             p = k - low
             a0, a1, a2, a3 = panel[p, i], panel[p + 1, i], panel[p + 2, i], panel[p + 3, i]
             b0, b1 = panel[p, i + 1], panel[p + 1, i + 1]
@@ -256,9 +247,11 @@ def _trailing(front, panel, low, high, m):
             k += 4
         while k < high:
             _minus(one, panel[k - low, i], front[k, high:m])
-            if both:
-                _minus(two, panel[k - low, i + 1], front[k, high:m])
+            _minus(two, panel[k - low, i + 1], front[k, high:m])
             k += 1
+    if n % 2:
+        for k in range(low, high):
+            _minus(front[m - 1, high:m], panel[k - low, m - 1], front[k, high:m])
 
 
 @njit(cache=True, fastmath={"contract"})
@@ -297,6 +290,7 @@ def _eliminate(front, wide, m, panel, lu, left):
 
 @njit(cache=True)
 def _factorise(data, start, begin, place, first, entry, at, parent, work, stack, panel, factors):
+    """LU blocks, what L has below them and U beside them, one supernode after the other."""
     n_s = start.shape[0] - 1
     top = 0
     k = 0
@@ -341,10 +335,10 @@ def _factorise(data, start, begin, place, first, entry, at, parent, work, stack,
 
 
 @njit(cache=True, fastmath={"contract", "reassoc"})
-def _solve(x, start, rows, begin, factors, t):
-    n_s = start.shape[0] - 1
+def _forward(x, start, rows, begin, factors, t):
+    """Take L off the right-hand side `x` in place; `t` holds a front's sums."""
     k = 0
-    for s in range(n_s):
+    for s in range(start.shape[0] - 1):
         c, wide = start[s], start[s + 1] - start[s]
         below = begin[s + 1] - begin[s]
         y = x[c : c + wide]
@@ -355,45 +349,45 @@ def _solve(x, start, rows, begin, factors, t):
                 a += f[j] * y[j]
             y[i] -= a
         k += wide * wide
-        if below > 0:
-            to = rows[begin[s] : begin[s + 1]]
-            b = t[:below]
-            b[:] = 0.0
-            i = 0
-            while i + 4 <= wide:
-                y0, y1, y2, y3 = y[i], y[i + 1], y[i + 2], y[i + 3]
-                f0 = factors[k + i * below : k + (i + 1) * below]
-                f1 = factors[k + (i + 1) * below : k + (i + 2) * below]
-                f2 = factors[k + (i + 2) * below : k + (i + 3) * below]
-                f3 = factors[k + (i + 3) * below : k + (i + 4) * below]
-                for j in range(below):
-                    b[j] += f0[j] * y0 + f1[j] * y1 + f2[j] * y2 + f3[j] * y3
-                i += 4
-            while i < wide:
-                y0 = y[i]
-                f0 = factors[k + i * below : k + (i + 1) * below]
-                for j in range(below):
-                    b[j] += f0[j] * y0
-                i += 1
+        lower = factors[k : k + wide * below].reshape(wide, below)
+        b = t[:below]
+        b[:] = 0.0
+        i = 0
+        while i + 4 <= wide:
+            y0, y1, y2, y3 = y[i], y[i + 1], y[i + 2], y[i + 3]
+            f0, f1, f2, f3 = lower[i], lower[i + 1], lower[i + 2], lower[i + 3]
             for j in range(below):
-                x[to[j]] -= b[j]
+                b[j] += f0[j] * y0 + f1[j] * y1 + f2[j] * y2 + f3[j] * y3
+            i += 4
+        while i < wide:
+            _minus(b, -y[i], lower[i])
+            i += 1
+        to = rows[begin[s] : begin[s + 1]]
+        for j in range(below):
+            x[to[j]] -= b[j]
         k += 2 * wide * below
-    for s in range(n_s - 1, -1, -1):
+
+
+@njit(cache=True, fastmath={"contract", "reassoc"})
+def _backward(x, start, rows, begin, factors, t):
+    """Take U off `x` in place, from the last supernode to the first."""
+    k = factors.shape[0]
+    for s in range(start.shape[0] - 2, -1, -1):
         c, wide = start[s], start[s + 1] - start[s]
         below = begin[s + 1] - begin[s]
         y = x[c : c + wide]
         k -= wide * below
-        if below > 0:
-            to = rows[begin[s] : begin[s + 1]]
-            b = t[:below]
+        upper = factors[k : k + wide * below].reshape(wide, below)
+        to = rows[begin[s] : begin[s + 1]]
+        b = t[:below]
+        for j in range(below):
+            b[j] = x[to[j]]
+        for i in range(wide):
+            f = upper[i]
+            a = 0.0
             for j in range(below):
-                b[j] = x[to[j]]
-            for i in range(wide):
-                f0 = factors[k + i * below : k + (i + 1) * below]
-                a = 0.0
-                for j in range(below):
-                    a += f0[j] * b[j]
-                y[i] -= a
+                a += f[j] * b[j]
+            y[i] -= a
         k -= wide * below + wide * wide
         for i in range(wide - 1, -1, -1):
             f = factors[k + i * wide : k + (i + 1) * wide]
@@ -436,11 +430,15 @@ class Fronts:
         n = len(indptr) - 1
         tree = _tree(n, indptr, indices)
         count = _counts(n, indptr, indices, tree)
-        self._start = _group(tree, count)
-        self._rows, self._begin, self._parent = _structure(self._start, indptr, indices, count)
+        self._start = _supernodes(tree, count)
+        wide = np.diff(self._start)
+        supernode = np.repeat(np.arange(len(wide)), wide)
+        self._rows, self._begin, self._parent = _structure(
+            self._start, supernode, indptr, indices, count
+        )
         self._place = _places(self._start, self._rows, self._begin, self._parent)
-        self._entries = _entries(self._start, self._rows, self._begin, indptr, indices)
-        wide, below = np.diff(self._start), np.diff(self._begin)
+        self._entries = _entries(self._start, supernode, self._rows, self._begin, indptr, indices)
+        below = np.diff(self._begin)
         widest = int((wide + below).max())
         self._front = np.empty(widest**2)
         self._panel = np.empty((_BLOCK, widest))
@@ -460,7 +458,9 @@ class Fronts:
     def solve(self, rhs: Floats) -> Floats:
         """Solution for a right-hand side (n,) by the last factors."""
         x = rhs.copy()
-        _solve(x, self._start, self._rows, self._begin, self._factors, self._sums)
+        known = (self._start, self._rows, self._begin, self._factors, self._sums)
+        _forward(x, *known)
+        _backward(x, *known)
         return x
 
 

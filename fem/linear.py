@@ -7,7 +7,7 @@ order as it is, which saves the search for it.
 
 The factors of an earlier tangent precondition a few GMRES steps; only when these become many is the
 present one factorised. A Newton direction needs no more digits than the next one keeps, and a solve
-costs a twentieth of a factorisation.
+costs a twelfth of a factorisation.
 """
 
 from __future__ import annotations

@@ -30,6 +30,7 @@ Floats = npt.NDArray[np.float64]
 
 _INNER, _OUTER = 0.01, 50.0  # [a]: a rigid speck at the first point, and where nothing moves
 _FLOOR = 1e-6  # least strain and strain rate: farther out it is as good as rigid
+_ORDER = 5  # of the quadrature
 _MOST_ROUNDS = 200
 _STILL = 1e-6
 
@@ -102,11 +103,12 @@ class Die:
         places = np.stack([distance * np.sin(angle), distance * np.cos(angle)])
         places[0, angle < 1e-12] = 0.0
         mesh = skfem.MeshQuad2(places, curved.t)
-        self._v = skfem.Basis(mesh, skfem.ElementVector(skfem.ElementQuad2()), intorder=5)
+        self._v = skfem.Basis(mesh, skfem.ElementVector(skfem.ElementQuad2()), intorder=_ORDER)
         self._p = self._v.with_element(skfem.ElementQuad1())
         self.radius, depth = np.asarray(self._v.global_coordinates())
-        self._grid = _along_rays(flat, rings, rays, np.hypot(self.radius, depth))
-        self._log = np.log(np.hypot(self.radius, depth)).ravel()[self._grid]
+        self.distance = np.hypot(self.radius, depth)
+        self._grid = _along_rays(flat, rings, rays, self.distance.shape)
+        self._log = np.log(self.distance).ravel()[self._grid]
         self._hold(outer)
         self._continuity = _continuity.assemble(self._v, self._p, r=self.radius)
 
@@ -158,21 +160,21 @@ class Die:
         return float(np.trapezoid(surface / self._at**2, np.log(self._at)))
 
 
-def _along_rays(flat: Any, rings: Floats, rays: Floats, distance: Floats) -> npt.NDArray[np.int64]:
+def _along_rays(
+    flat: Any, rings: Floats, rays: Floats, shape: tuple[int, ...]
+) -> npt.NDArray[np.int64]:
     """Numbers of the quadrature points by distance and by ray, (n_distances, n_rays)."""
     middle = flat.p[:, flat.t].mean(axis=1)
     ring = np.searchsorted(rings, middle[0]) - 1
     ray = np.searchsorted(rays, middle[1]) - 1
-    n_points = distance.shape[1]
-    side = math.isqrt(n_points)
-    place = flat.mapping().F(skfem.quadrature.get_quadrature(skfem.refdom.RefQuad, 5)[0])
-    rank = [
-        np.searchsorted(np.unique(np.round(row, 9)), np.round(row, 9)) for row in place[:, 0, :]
-    ]
-    grid = np.empty(((len(rings) - 1) * side, (len(rays) - 1) * side), dtype=np.int64)
-    grid[ring[:, None] * side + rank[0], ray[:, None] * side + rank[1]] = np.arange(
-        distance.size
-    ).reshape(distance.shape)
+    # all elements count their points alike: three distances on three rays, or as many
+    place = flat.mapping().F(skfem.quadrature.get_quadrature(skfem.refdom.RefQuad, _ORDER)[0])
+    nearer, beside = (np.unique(np.round(row, 9), return_inverse=True)[1] for row in place[:, 0, :])
+    side = math.isqrt(shape[1])
+    grid = np.empty((len(rings[1:]) * side, len(rays[1:]) * side), dtype=np.int64)
+    grid[ring[:, None] * side + nearer, ray[:, None] * side + beside] = np.arange(
+        math.prod(shape)
+    ).reshape(shape)
     return grid
 
 

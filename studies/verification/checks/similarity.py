@@ -40,33 +40,31 @@ _PLASTIC = 100.0  # E' a/(R sigma) from which elastic strains count little in th
 
 def run(bench: Bench) -> Result:
     """Press a rigid sphere into three power-law flats and compare contact radius and load."""
-    quick = bench.effort is Effort.QUICK
-    accuracy = fem.Accuracy.quick() if quick else fem.Accuracy.production()
+    accuracy = fem.Accuracy.quick() if bench.effort is Effort.QUICK else fem.Accuracy.production()
     rows: list[tuple[Cell, ...]] = []
     measurements: list[Measurement] = []
     for n in _EXPONENTS:
         delta, radius, pressure = _solved(bench, n, accuracy)
-        judged = (radius > _JUDGED[0]) & (radius < _JUDGED[1])
-        delta, radius, pressure = delta[judged], radius[judged], pressure[judged]
-        alike = _alike(n, radius)
+        invariant, alike = _alike(n, radius)
         off = {
-            "load at a contact radius": pressure / (_scale(n, radius) * alike.pressure) - 1.0,
-            "contact radius at a depth": radius / np.sqrt(2.0 * alike.invariant * delta) - 1.0,
+            "load at a contact radius": pressure / alike - 1.0,
+            "contact radius at a depth": radius / np.sqrt(2.0 * invariant * delta) - 1.0,
         }
         fits = {
             "load at a contact radius": pressure / fitted_pressure(n, radius) - 1.0,
             "contact radius at a depth": radius / np.sqrt(2.0 * fitted_invariant(n) * delta) - 1.0,
         }
-        stiffness = _stiffness(n, radius)
+        judged = (radius > _JUDGED[0]) & (radius < _JUDGED[1])
+        elastic = 1.0 / _johnson(n, radius[judged])
         for name, values in off.items():
-            limit = 100.0 * float(np.polyfit(1.0 / stiffness, values, 1)[1])
+            limit = 100.0 * float(np.polyfit(elastic, values[judged], 1)[1])
             what = f"n = {n:g}: {name}, elastic strains extrapolated away"
             measurements.append(Measurement(what, limit, "%", -1.0, 1.0, _SOURCE))
         for x in (0.02, 0.03, 0.04, 0.05):
-            if radius[0] <= x * 1.05 and x <= radius[-1] * 1.05:
-                shown = [np.interp(x, radius, v) for v in (*off.values(), *fits.values())]
-                rows.append((n, x, f"{float(_stiffness(n, np.array(x))):.0f}",
-                             *(f"{100.0 * float(v):+.2f} %" for v in shown)))  # fmt: skip
+            if radius[0] < x < radius[-1]:
+                shown = [float(np.interp(x, radius, v)) for v in (*off.values(), *fits.values())]
+                rows.append((n, x, f"{float(_johnson(n, np.array(x))):.0f}",
+                             *(f"{100.0 * v:+.2f} %" for v in shown)))  # fmt: skip
     return Result(
         name="similarity",
         title="Similarity solution of power-law plasticity",
@@ -102,36 +100,33 @@ def fitted_invariant(n: float) -> float:
 
 def fitted_pressure(n: float, radius: Floats) -> Floats:
     """F/(pi a^2) [Pa] at a/R: Storåkers, Biwa, Larsson (1997), Eq. 78 without creep."""
-    return np.asarray(3.0 * _strength(n) * (radius / 6.0) ** n)
+    return 3.0 * _flow_stress(n, radius / 6.0)
 
 
-class Alike(NamedTuple):
-    """c^2 and mean pressure over K (a/R)^n at each contact radius."""
+def _alike(n: float, radius: Floats) -> tuple[Floats, Floats]:
+    """c^2 and mean pressure [Pa] of the similarity solution at each a/R.
 
-    invariant: Floats
-    pressure: Floats
-
-
-def _alike(n: float, radius: Floats) -> Alike:
-    """Solve at no, some and more of e0 over the strain, and take what lies between."""
+    Solved for with none, some and more of e0 over the strain; between them by a parabola.
+    """
     over = [0.0, *(_START * fitted_invariant(n) / x for x in (_JUDGED[1], _JUDGED[0]))]
     found = [similar(n, before=b) for b in over]
     # e0 R/a of each, by the c^2 that belongs to it
     at = [b / one.invariant for b, one in zip(over, found, strict=True)]
-    there = [
+    invariant, pressure = (
         np.asarray(np.polyval(np.polyfit(at, values, 2), _START / radius))
-        for values in zip(*((one.invariant, one.pressure) for one in found), strict=True)
-    ]
-    return Alike(*there)
+        for values in ([one.invariant for one in found], [one.pressure for one in found])
+    )
+    return invariant, pressure * _flow_stress(n, radius)
 
 
-def _scale(n: float, radius: Floats) -> Floats:
-    return np.asarray(_strength(n) * radius**n)
+def _flow_stress(n: float, strain: Floats) -> Floats:
+    """K p^n [Pa], without e0."""
+    return np.asarray(_strength(n) * strain**n)
 
 
-def _stiffness(n: float, radius: Floats) -> Floats:
-    """E' a/(R sigma), how little elastic strains count."""
-    return np.asarray(_E / (1.0 - 0.3**2) * radius / _scale(n, 0.2 * radius))
+def _johnson(n: float, radius: Floats) -> Floats:
+    """E' a/(R sigma), Johnson's parameter: how little elastic strains count."""
+    return np.asarray(_E / (1.0 - 0.3**2) * radius / _flow_stress(n, 0.2 * radius))
 
 
 def _strength(n: float) -> float:

@@ -24,8 +24,7 @@ def test_a_linear_flat_die_is_boussinesqs(die: Die) -> None:
 @pytest.mark.parametrize("power", [1.0, 3.0])
 def test_strain_gathered_along_a_ray(die: Die, power: float) -> None:
     """A rate that falls as x^-k gathers x^-k/(k + 1)."""
-    depth = np.asarray(die._v.global_coordinates())[1]
-    distance = np.hypot(die.radius, depth)
+    distance = die.distance
     gathered = die.gathered(distance**-power)
     # beyond the mesh nothing is gathered: what would be is taken off
     missing = distance * 1000.0 ** -(power + 1.0) / (power + 1.0)
