@@ -10,11 +10,13 @@ the degrees of freedom come from scikit-fem; this file only sums them up.
 from __future__ import annotations
 
 import math
+from typing import NamedTuple
 
 import numpy as np
 import numpy.typing as npt
 from numba import njit
 
+from ..core.unowned import unowned
 from .elements import Elements, State, gradient
 from .material import (
     NO_LAW,
@@ -40,6 +42,22 @@ The forces are exact always; such a change of the tangent costs Newton's method 
 
 DISTORTED = -1
 """Returned by `bulk_forces` when an element has turned inside out."""
+
+
+class _Room(NamedTuple):
+    """Working arrays of one element, which a kernel may not own itself (`unowned`)."""
+
+    F: Floats  # deformation gradients
+    P: Floats  # stress of a point
+    A: Floats  # and its tangent
+    g: Floats  # gradient of the element's volume
+    fe: Floats  # forces on its nodes
+    curve: Floats  # of a body that does not harden
+
+    @classmethod
+    def new(cls) -> _Room:
+        shapes = ((4, 5), 5, (5, 5), 8, 8, (3, 0))
+        return cls(*(np.empty(shape) for shape in shapes))
 
 
 @njit(cache=True, inline="always")
@@ -168,15 +186,13 @@ def _add_element(nodes, fe, force):
 
 
 @njit(cache=True)
-def _assemble(x, u, old, rule, seconds, with_tangent, force, tangent, at):
-    F = np.empty((4, 5))
-    P = np.empty(5)
-    A = np.empty((5, 5))
-    g = np.empty(8)
-    fe = np.empty(8)
+def _assemble(x, u, old, rule, seconds, with_tangent, force, tangent, at, room):
+    x, old, room = unowned(x), unowned(old), unowned(room)
+    u, force, tangent, at = unowned(u), unowned(force), unowned(tangent), unowned(at)
+    F, P, A, g, fe = room.F, room.P, room.A, room.g, room.fe
     laws = x.laws
     law = NO_LAW
-    curve = np.empty((3, 0))
+    curve = room.curve
     n_plastic = 0
     for e in range(x.conn.shape[0]):
         if x.linear[e] >= 0:
@@ -230,13 +246,14 @@ def _assemble(x, u, old, rule, seconds, with_tangent, force, tangent, at):
 
 
 @njit(cache=True)
-def _advance(x, u, old, rule, seconds, new):
+def _advance(x, u, old, rule, seconds, new, room):
     """Fill the arrays of the state `new`; plastic work of the step and stored energy."""
+    x, u, old, new, room = unowned(x), unowned(u), unowned(old), unowned(new), unowned(room)
     dissipated = 0.0
     stored = 0.0
     laws = x.laws
     law = NO_LAW
-    curve = np.empty((3, 0))
+    curve = room.curve
     for e in range(x.conn.shape[0]):
         J_sum = 0.0
         hard = x.law[e] >= 0
@@ -308,9 +325,12 @@ def bulk_forces(
         Number of plastic points, or `DISTORTED`.
     """
     n = len(elements.conn)
-    room = tangent if tangent is not None else np.empty((0, 8, 8))
+    into = tangent if tangent is not None else np.empty((0, 8, 8))
     at = tangent_at if tangent_at is not None else np.full((n, 4, 5), np.nan)
-    return int(_assemble(elements, u, state, rule, seconds, tangent is not None, force, room, at))
+    code = _assemble(
+        elements, u, state, rule, seconds, tangent is not None, force, into, at, _Room.new()
+    )
+    return int(code)
 
 
 def advance(
@@ -318,5 +338,5 @@ def advance(
 ) -> tuple[State, float]:
     """Return the material state at the converged displacement `u`, and the stored energy."""
     new = state.room()
-    dissipated, stored = _advance(elements, u, state, rule, seconds, new)
+    dissipated, stored = _advance(elements, u, state, rule, seconds, new, _Room.new())
     return new._replace(dissipated=state.dissipated + dissipated), float(stored)

@@ -16,6 +16,8 @@ import numpy as np
 import numpy.typing as npt
 from numba import njit
 
+from ..core.unowned import unowned
+
 Floats = npt.NDArray[np.float64]
 Integers = npt.NDArray[np.int64]
 
@@ -291,6 +293,9 @@ def _eliminate(front, wide, m, panel, lu, left):
 @njit(cache=True)
 def _factorise(data, start, begin, place, first, entry, at, parent, work, stack, panel, factors):
     """LU blocks, what L has below them and U beside them, one supernode after the other."""
+    data, start, begin, place = unowned(data), unowned(start), unowned(begin), unowned(place)
+    first, entry, at, parent = unowned(first), unowned(entry), unowned(at), unowned(parent)
+    work, stack, panel, factors = unowned(work), unowned(stack), unowned(panel), unowned(factors)
     n_s = start.shape[0] - 1
     top = 0
     k = 0
@@ -337,6 +342,8 @@ def _factorise(data, start, begin, place, first, entry, at, parent, work, stack,
 @njit(cache=True, fastmath={"contract", "reassoc"})
 def _forward(x, start, rows, begin, factors, t):
     """Take L off the right-hand side `x` in place; `t` holds a front's sums."""
+    x, start, rows, begin = unowned(x), unowned(start), unowned(rows), unowned(begin)
+    factors, t = unowned(factors), unowned(t)
     k = 0
     for s in range(start.shape[0] - 1):
         c, wide = start[s], start[s + 1] - start[s]
@@ -371,6 +378,8 @@ def _forward(x, start, rows, begin, factors, t):
 @njit(cache=True, fastmath={"contract", "reassoc"})
 def _backward(x, start, rows, begin, factors, t):
     """Take U off `x` in place, from the last supernode to the first."""
+    x, start, rows, begin = unowned(x), unowned(start), unowned(rows), unowned(begin)
+    factors, t = unowned(factors), unowned(t)
     k = factors.shape[0]
     for s in range(start.shape[0] - 2, -1, -1):
         c, wide = start[s], start[s + 1] - start[s]

@@ -9,6 +9,7 @@ import numpy as np
 import numpy.typing as npt
 from numba import njit
 
+from ...core.unowned import unowned
 from .friction import Grip, rub, slip_of
 from .gap import SlavePoints, find_gaps
 from .point import LOCAL, Changes, new_room, point_changes
@@ -195,6 +196,13 @@ def _evaluate(s, grip, x, points, pressure, traction, force, with_tangent, out):
 
     Force, energy, work lost in sliding, how many triplets.
     """
+    s, grip, points, out = unowned(s), unowned(grip), unowned(points), unowned(out)
+    x, pressure, traction, force = (
+        unowned(x),
+        unowned(pressure),
+        unowned(traction),
+        unowned(force),
+    )
     xm = x[s.master]
     if not find_gaps(s, x[s.slave], xm, points):
         return 0.0, 0.0, 0.0, -1
