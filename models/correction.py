@@ -64,6 +64,8 @@ CHANNELS: dict[str, Channel] = {
 }
 """The numbers of a pair that are moved, in the order of the weights."""
 
+_UNITS = np.array([channel.unit for channel in CHANNELS.values()])
+
 
 @dataclass(frozen=True)
 class Correction:
@@ -102,13 +104,13 @@ def bumps(groups: Any, centres: Floats, reaches: Floats) -> Any:
 
 def moved(numbers: PairNumbers, shifts: Any) -> PairNumbers:
     """Return the numbers with shifts of shape (n, n_channels) applied."""
+    bent = _UNITS * shifts / np.sqrt(1.0 + (shifts / MOST) ** 2)
     changed: Mapping[str, Any] = {
-        name: _moved(getattr(numbers, name), shifts[:, k], channel)
+        name: _moved(getattr(numbers, name), bent[:, k], channel)
         for k, (name, channel) in enumerate(CHANNELS.items())
     }
     return numbers._replace(**changed)
 
 
-def _moved(number: Any, shift: Any, channel: Channel) -> Any:
-    bent = channel.unit * shift / np.sqrt(1.0 + (shift / MOST) ** 2)
+def _moved(number: Any, bent: Any, channel: Channel) -> Any:
     return number * np.exp(bent) if channel.factor else number + bent

@@ -127,7 +127,7 @@ class ClosedForm(ContactLaw):
         """Numbers of pairs, every field of shape (n,); real or complex."""
         compact = of_pair(bodies, Coefficients(**self.coefficients))
         shape = np.shape(compact.x_s)
-        whole = PairNumbers(*(np.broadcast_to(x, shape) for x in compact))
+        whole = PairNumbers(*(x if np.shape(x) == shape else np.full(shape, x) for x in compact))
         return whole if self.correction is None else self.correction.of(bodies, whole)
 
     def share(self, pair: Pair, depth: Depths) -> Floats:
