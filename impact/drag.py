@@ -131,7 +131,7 @@ def _numbers(striker: Striker, fluid: Fluid, angle: float, gravity: float) -> Ar
     )  # fmt: skip
 
 
-@njit(types.UniTuple(float64, 2)(float64[::1], float64, float64), cache=True)
+@njit(types.UniTuple(float64, 2)(float64[::1], float64, float64), cache=True, _nrt=False)
 def _drag(p, vx, vy):
     """Force of the fluid on the striker [N]; a rod's parts along and across its axis add up."""
     d = p[_DIAMETER]
@@ -151,7 +151,9 @@ def _drag(p, vx, vy):
 
 
 @njit(
-    types.void(float64[::1], float64[::1], float64[::1], float64[::1], float64[:, ::1]), cache=True
+    types.void(float64[::1], float64[::1], float64[::1], float64[::1], float64[:, ::1]),
+    cache=True,
+    _nrt=False,
 )
 def _fly_all(p, normal, tangential, rise, out):
     """Steps of equal height, each at the acceleration that its mean velocity brings.
@@ -169,9 +171,12 @@ def _fly_all(p, normal, tangential, rise, out):
             for _ in range(6):
                 fx, fy = _drag(p, 0.5 * (vx + new_x), 0.5 * (vy + new_y))
                 w = vy * vy + 2.0 * dy * (fy - p[_WEIGHT]) / p[_MASS]
+                last_x, last_y = new_x, new_y
                 new_y = sign * math.sqrt(max(w, 0.0)) if w >= -least else math.nan
                 dt = 2.0 * dy / (vy + new_y)
                 new_x = vx + dt * fx / p[_MASS]
+                if new_x == last_x and new_y == last_y:
+                    break  # another turn would repeat this one
             vy, vx, t = new_y, new_x, t + dt
         out[i, 0], out[i, 1], out[i, 2] = vy, vx, t
         if not math.isfinite(vy + vx + t):

@@ -5,12 +5,13 @@ from __future__ import annotations
 import math
 from collections.abc import Mapping, Sequence
 from dataclasses import replace
+from functools import lru_cache
 from typing import ClassVar
 
 import numpy as np
 
 from ...core.drag import DRAG_COEFFICIENT_STD, Fluid, air
-from ...impact import Scene
+from ...impact import Scene, Striker
 from ...impact.drag import flown
 from .base import Array, Literature, Mechanism, Parameter, Situation, Surroundings, Values
 
@@ -102,13 +103,25 @@ def _arriving(scene: Scene, values: Values, around: Surroundings) -> float:
     stated, g = scene.approach.speed, scene.gravity
     whole = stated**2 / (2.0 * g) if g > 0.0 else math.inf
     fall = whole if around.from_height else min(values["reading_m"], whole)
-    start = math.sqrt(max(stated**2 - 2.0 * g * fall, 0.0))
-    arrived = flown(
-        scene.striker, _air(values, around), normal=-start, rise=-fall,
-        tangential=scene.approach.tangential, angle=scene.approach.angle, gravity=g,
-    )  # fmt: skip
+    start, a = math.sqrt(max(stated**2 - 2.0 * g * fall, 0.0)), scene.approach
+    fluid = _air(values, around)
+    arrived = _fallen(scene.striker, fluid, start, fall, a.tangential, a.angle, g)
     # one that air stops keeps a twentieth, so that there is an impact
-    return float(np.fmax(-arrived.normal, 0.05 * stated))
+    return float(np.fmax(arrived, 0.05 * stated))
+
+
+# every fall is asked for before the motion and after it
+@lru_cache(maxsize=8192)
+def _fallen(
+    striker: Striker, fluid: Fluid, start: float, fall: float, tangential: float, angle: float,
+    gravity: float,
+) -> float:  # fmt: skip
+    """Normal speed after a fall that begins with `start` [m/s]; nan where the air stops it."""
+    arrived = flown(
+        striker, fluid, normal=-start, rise=-fall, tangential=tangential, angle=angle,
+        gravity=gravity,
+    )  # fmt: skip
+    return float(-arrived.normal)
 
 
 def _read_after(scene: Scene, left: float, values: Values, around: Surroundings) -> float:
