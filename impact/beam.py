@@ -8,6 +8,7 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass
+from functools import cache
 
 import numpy as np
 from numpy.polynomial import legendre
@@ -98,13 +99,10 @@ def bending_modes(
     """
     degree = degree or 2 * count + 14
     n = degree + 1
+    weight, value, steepness, end = _polynomials(degree)
     area, second = math.pi * radius**2, math.pi * radius**4 / 4.0
     shear = shear_coefficient(material.nu) * material.E / (2.0 * (1.0 + material.nu)) * area
-    point, weight = (np.asarray(x, dtype=float) for x in legendre.leggauss(degree + 2))
-    value: Array = np.asarray(legendre.legvander(point, degree), dtype=float)
-    slope: Array = np.stack(
-        [legendre.legval(point, legendre.legder(np.eye(n)[k])) for k in range(n)], axis=1
-    ) * (2.0 / length)
+    slope = steepness * (2.0 / length)
     w = weight * length / 2.0
 
     def integral(left: Array, right: Array) -> Array:
@@ -117,9 +115,19 @@ def bending_modes(
     zero = np.zeros_like(vv)
     mass = material.density * np.block([[area * vv, zero], [zero, second * vv]])
     squared, shape = eigh(stiffness, mass, subset_by_index=[2, count + 1])
-    end = legendre.legvander(np.array([-1.0]), degree)[0]
     scale = math.sqrt(material.density * area * length)
     return np.sqrt(squared), scale * end @ shape[:n], scale * end @ shape[n:]
+
+
+@cache
+def _polynomials(degree: int) -> tuple[Array, Array, Array, Array]:
+    """Legendre's: weights of the points, values and slopes there (points, n), values at -1."""
+    point, weight = (np.asarray(x, dtype=float) for x in legendre.leggauss(degree + 2))
+    value: Array = np.asarray(legendre.legvander(point, degree), dtype=float)
+    slope: Array = np.stack(
+        [legendre.legval(point, legendre.legder(one)) for one in np.eye(degree + 1)], axis=1
+    )
+    return weight, value, slope, legendre.legvander(np.array([-1.0]), degree)[0]
 
 
 def rod_modes(

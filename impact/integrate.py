@@ -16,6 +16,7 @@ from . import force as fo
 from .result import Impact, impact_of
 from .scene import RateFree, Scene
 from .strength import NODES, strength_table
+from .surface import Spot
 from .walk import layout as c
 from .walk.compiled import Given, many_impacts
 
@@ -24,6 +25,8 @@ Array = NDArray[np.float64]
 _UNWRITTEN = np.zeros((0, len(c.HISTORY)))
 _ROWS = 4000  # of a history, beside those that were asked for
 _SMOOTH, _STILL = np.empty(0), np.empty((3, 0))
+_FRESH = Spot().row()
+_FRESH.flags.writeable = False
 
 
 @dataclass(frozen=True, slots=True)
@@ -112,7 +115,8 @@ def arrays_of(
     factors = _factors(scene, pair)
     if breaks is None:
         breaks = _breaks(law, par, force, factors)
-    return Arrays(par, force, factors, breaks, body, scene.spot.row(), omega, psi)
+    surface = _FRESH if scene.spot == Spot() else scene.spot.row()
+    return Arrays(par, force, factors, breaks, body, surface, omega, psi)
 
 
 def _factors(scene: Scene, pair: Pair) -> Array:
@@ -161,10 +165,11 @@ def _given(rows: Sequence[Arrays]) -> Given:
     Factors and modes have to be of one length.
     """
     keys = [key for key in Given._fields if key != "breaks"]
-    return Given(
-        breaks=rows[0].breaks,
-        **{key: np.stack([getattr(a, key) for a in rows]) for key in keys},
-    )
+    columns = {key: [getattr(a, key) for a in rows] for key in keys}
+    # fresh metal is one row for all
+    fresh = all(surface is _FRESH for surface in columns["surface"])
+    columns["surface"] = [_FRESH] if fresh else columns["surface"]
+    return Given(breaks=rows[0].breaks, **{key: np.stack(one) for key, one in columns.items()})
 
 
 @dataclass(frozen=True, slots=True)

@@ -10,6 +10,7 @@ from __future__ import annotations
 import math
 import warnings
 from dataclasses import dataclass, replace
+from functools import cached_property
 
 import numpy as np
 from numba import njit
@@ -72,8 +73,16 @@ class StrengthTable:
 
     def peak(self, energy: float) -> float:
         """Depth [m] at which the loading has taken up `energy` [J]."""
-        log_work = np.log(np.maximum(self.work, 1e-300))
-        return float(np.exp(np.interp(math.log(energy), log_work, np.log(self.depth))))
+        return float(np.exp(np.interp(math.log(energy), self._log_work, self.log_depth)))
+
+    @cached_property
+    def log_depth(self) -> Array:
+        """(NODES,) logarithm of `depth`."""
+        return np.log(self.depth)
+
+    @cached_property
+    def _log_work(self) -> Array:
+        return np.log(np.maximum(self.work, 1e-300))
 
 
 _TABLES: dict[tuple[int, Pair], tuple[ContactLaw, StrengthTable]] = {}
@@ -82,12 +91,13 @@ _TABLES: dict[tuple[int, Pair], tuple[ContactLaw, StrengthTable]] = {}
 def strength_table(law: ContactLaw, pair: Pair) -> StrengthTable:
     """Return the table of one law and pair; the latest answers are kept."""
     key = (id(law), pair)
-    if key not in _TABLES:
+    known = _TABLES.get(key)
+    if known is None:
         if len(_TABLES) > 2000:
             _TABLES.clear()
         # the law is kept beside its table, so that its id stays its own
-        _TABLES[key] = law, _tabulated(law, pair)
-    return _TABLES[key][1]
+        known = _TABLES[key] = law, _tabulated(law, pair)
+    return known[1]
 
 
 def _tabulated(law: ContactLaw, pair: Pair) -> StrengthTable:

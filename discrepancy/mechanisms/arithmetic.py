@@ -73,7 +73,9 @@ def slower(seen: Mapping[str, Array], restitution: Array) -> dict[str, Array]:
 def times(present: tuple[float, ...], factors: Array) -> tuple[float, ...]:
     """Multiply two tables over the depth nodes; an empty one is neutral."""
     if not present:
-        return tuple(float(x) for x in factors)
-    grid = np.linspace(0.0, 1.0, len(factors))
-    old = np.interp(grid, np.linspace(0.0, 1.0, len(present)), present)
-    return tuple(float(x) for x in old * factors)
+        return tuple(factors.tolist())
+    old = np.array(present)
+    if len(old) != len(factors):
+        grid = np.linspace(0.0, 1.0, len(factors))
+        old = np.interp(grid, np.linspace(0.0, 1.0, len(present)), old)
+    return tuple((old * factors).tolist())

@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
+from functools import lru_cache
 from typing import ClassVar
 
 import numpy as np
@@ -129,14 +130,17 @@ class Roughness(Mechanism):
         """Set the depth that stays, of bulk and layer."""
         left = []
         for (scene, _), peak in zip(situations, seen["peak_depth_m"], strict=True):
-            depth = strength_table(scene.law, scene.pair).depth
-            dent = _layer_of(scene, values).dent
-            left.append(np.interp(math.log(max(peak, depth[0])), np.log(depth), dent))
+            table, dent = strength_table(scene.law, scene.pair), _layer_of(scene, values).dent
+            left.append(np.interp(math.log(max(peak, table.depth[0])), table.log_depth, dent))
         return {**seen, "permanent_depth_m": seen["permanent_depth_m"] * np.array(left)}
 
 
 def _layer_of(scene: Scene, values: Values) -> Layer:
     table = strength_table(scene.law, scene.pair)
-    return Layer.of(
+    return _layer(
         table, values["roughness_m"], values["asperity_force_ratio"], values["asperity_flattening"]
     )
+
+
+# all impacts of a pair meet one layer, before the motion and after it
+_layer = lru_cache(maxsize=256)(Layer.of)

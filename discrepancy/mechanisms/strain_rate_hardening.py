@@ -78,7 +78,7 @@ class StrainRateHardening(FlowMechanism):
         strength = own.profile(scene, table)
         # work given back: force at the peak times the recovery
         back, whole = (
-            np.prod(table.factors(s).reshape(2, -1), axis=0)
+            np.multiply(*table.factors(s).reshape(2, -1))
             for s in (1.0 + kept * (strength - 1.0), strength)
         )
         less = times(scene.force.recovery_factors, back / whole)
