@@ -28,7 +28,7 @@ from .store import Store
 
 Floats = npt.NDArray[np.float64]
 
-MOST_PARTS = 8
+MOST_PARTS = 12
 MOST_BYTES = 10_000_000
 _ROOM = 0.93  # of the size of a part, when its cases are shared out by their mean size
 

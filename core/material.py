@@ -154,6 +154,11 @@ class Pair:
         return html_table(("body", "E [GPa]", "nu", "Sy [MPa]"), rows, title=told)
 
     @property
+    def perfectly_plastic(self) -> bool:
+        """Whether both bodies keep their strength, whatever strain, rate and heat do to metals."""
+        return self.sphere.flow is None and self.flat.flow is None
+
+    @property
     def elastic_share(self) -> float:
         """Sphere's share of the approach in the elastic limit, E'(1-nu_s^2)/E_s (Eq. 2.3)."""
         return self.E_reduced / self.sphere.plane_strain_modulus

@@ -39,7 +39,7 @@ def build(source: Path, folder: Path, *, fields: Path) -> list[Picture]:
     InputError
         The file is missing or damaged.
     """
-    records = read_curves(source)
+    records = [r for r in read_curves(source) if r.case.pair.perfectly_plastic]
     drawn = [*_fields(records, fields), *pictures(records)]
     for picture in drawn:
         picture.save(folder)

@@ -34,7 +34,7 @@ def write(source: Path, to: Path) -> list[Trend]:
     InputError
         The file is missing or damaged.
     """
-    records = read_curves(source)
+    records = [r for r in read_curves(source) if r.case.pair.perfectly_plastic]
     found = trends(records)
     write_file(to, report(records, found))
     return found

@@ -109,15 +109,8 @@ def targets(folder):
     yield "sealed part", lambda: read_curves(part), part, [records], lambda: None
 
     first = folder / "first"
-    first.mkdir()
-    for name in ("SHA256SUMS", "DIGESTS"):
-        lines = (ROOT / "data" / "campaign" / name).read_text().splitlines(keepends=True)
-        (first / name).write_text("".join(x for x in lines if name == "DIGESTS" or "smoke-1" in x))
-    shutil.copyfile(ROOT / "data" / "campaign" / "smoke-1.h5", first / "smoke-1.h5")
+    shutil.copytree(ROOT / "tests" / "data" / "campaign-format-1", first)
     known = read_curves(first)
-    ids = {record.id for record in known}
-    lines = (first / "DIGESTS").read_text().splitlines(keepends=True)
-    (first / "DIGESTS").write_text("".join(x for x in lines if x.split()[1] in ids))
     for name in ("smoke-1.h5", "SHA256SUMS", "DIGESTS"):
         yield f"format 1: {name}", lambda: read_curves(first), first / name, [known], lambda: None
 

@@ -270,15 +270,8 @@ def of_campaign(name):
 @cache
 def _first_format():
     """A part of format 1 with its lists, by their places."""
-    data = ROOT / "data" / "campaign"
-    ids = {record.id for record in read_curves(data / "smoke-1.h5")}
-    sums = (data / CHECKSUMS).read_text().splitlines(keepends=True)
-    digests = (data / DIGESTS).read_text().splitlines(keepends=True)
-    return {
-        "smoke-1.h5": (data / "smoke-1.h5").read_bytes(),
-        CHECKSUMS: "".join(line for line in sums if "smoke-1" in line).encode(),
-        DIGESTS: "".join(line for line in digests if line.split()[1] in ids).encode(),
-    }
+    data = ROOT / "tests" / "data" / "campaign-format-1"
+    return {name: (data / name).read_bytes() for name in ("smoke-1.h5", CHECKSUMS, DIGESTS)}
 
 
 def in_first_format(name):

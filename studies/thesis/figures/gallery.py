@@ -53,7 +53,8 @@ def stored_cases(root: Path) -> list[CaseRecord]:
             records = read_curves(own)
         except InputError:
             return []
-    return records
+    # the thesis's metals do not harden
+    return [record for record in records if record.case.pair.perfectly_plastic]
 
 
 def build(folder: Path, *, chapters: Sequence[str], root: Path) -> list[Entry]:

@@ -86,7 +86,7 @@ def test_a_published_case_is_shown_without_a_run(tmp_path, monkeypatch, capsys):
     assert run(["campaign", "status"]) == 0
     shown = capsys.readouterr().out
     assert "No run of your own" in shown
-    assert re.search(r"thesis-1 +50 done +1 failed", shown)
+    assert re.search(r"thesis +262 done +1 failed", shown)
 
 
 def test_the_shell_completes_commands():
