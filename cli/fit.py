@@ -22,10 +22,11 @@ if TYPE_CHECKING:
     from ..fitting import Errors, ResidualTable, Table
     from ..fitting.report import Within
     from ..models.fitted import ClosedForm
+    from ..models.hardening import HardeningLaw
 
 _OWN = Path("build/campaign/campaign.h5")
 _ROOT = Path(__file__).resolve().parents[1]
-_SIGNATURE = b"\x89HDF\r\n\x1a\n"
+_HEADS = (b"dentscope-sealed", b"\x89HDF\r\n\x1a\n")  # a sealed file's; HDF5's, of the first format
 _PAGE = _ROOT / "docs" / "closed-form.md"
 
 
@@ -68,10 +69,16 @@ def fit(
 def _refit(files: list[Path], out: Path, console: Console, *, publish: bool, compare: bool) -> int:
     """Fit, show what came out, and write coefficients and report."""
     from ..fitting import fit_laws, read_tables
-    from ..fitting.coefficients import coefficients_content, write_coefficients
+    from ..fitting.coefficients import (
+        coefficients_content,
+        hardening_content,
+        write_coefficients,
+    )
+    from ..fitting.hardening import fit_hardening, hardening_records
     from ..fitting.report import (
         coefficient_rows,
         error_rows,
+        hardening_rows,
         stated_within,
         uncertainty_rows,
         write_report,
@@ -85,6 +92,11 @@ def _refit(files: list[Path], out: Path, console: Console, *, publish: bool, com
     )
     result = fit_laws(table, turns)
     content = coefficients_content(result, table, files)
+    hard = hardening_records(files)
+    if hard:
+        console.print(f"{len(hard)} combinations that harden; fitting their law ...")
+        fitted = laws_from(content, source="this fit")[1]
+        content["hardening"] = hardening_content(fit_hardening(fitted, hard))
     write_coefficients(content, out / "fitted.json")
     _show(console, coefficient_rows(content))
     validation = _validation(files, laws_from(content, source="this fit"))
@@ -95,6 +107,8 @@ def _refit(files: list[Path], out: Path, console: Console, *, publish: bool, com
     ]
     _show(console, error_rows(columns))
     _show(console, uncertainty_rows(stated_within(content)))
+    if hard:
+        _show(console, hardening_rows({"left out": content["hardening"]["left_out"]}))
     more = _compared(content, table, turns, out, console) if compare else []
     page = write_report(result, content, table, turns, out, validation=validation, more=more)
     console.print(f"coefficients: {out / 'fitted.json'}; report: {page}")
@@ -153,11 +167,11 @@ def _files(campaigns: Sequence[Path] | None) -> list[Path]:
 
 
 def _check_kind(path: Path) -> None:
-    """Refuse what is no HDF5 file at all, before the seconds that the reader takes to load."""
+    """Refuse what is no campaign at all, before the seconds that the reader takes to load."""
     allowed = "a file that `dentscope campaign` wrote"
     checked_file(path, most=2**63, allowed=allowed)  # its reader says how large it may be
     with path.open("rb") as stream:
-        if stream.read(len(_SIGNATURE)) != _SIGNATURE:
+        if not stream.read(16).startswith(_HEADS):
             raise InputError("not a campaign file", source=str(path), allowed=allowed)
 
 
@@ -202,13 +216,19 @@ def _judge(folder: Path, console: Console, *, publish: bool) -> int:
     """Show the errors of the laws in use on cases that no fit reads."""
     files = _files([folder])
     from ..core.provenance import file_digest
-    from ..fitting.report import error_rows, uncertainty_rows
+    from ..fitting.hardening import hardening_records, judge_hardening
+    from ..fitting.report import error_rows, hardening_rows, uncertainty_rows
     from ..models.coefficients import COEFFICIENTS_FILE
 
     found = _judged(files, [_law_in_use("compact"), _law_in_use("fitted")])
     count = len(found.names)
     _show(console, error_rows([(f"{name}, {count} pairs", e) for name, e in found.errors]))
     _show(console, uncertainty_rows(found.within))
+    hard = hardening_records(files, held_out=True)
+    if hard:
+        errors, within = judge_hardening(_hardening_in_use(), hard)
+        _show(console, hardening_rows({f"{len(hard)} pairs that harden": errors}))
+        _show(console, uncertainty_rows({"hardening": within}))
     if publish:
         from ..studies.closed_form.page import judged_section, update_page
 
@@ -224,4 +244,13 @@ def _law_in_use(name: str) -> ClosedForm:
 
     law = law_named(name)
     assert isinstance(law, ClosedForm)
+    return law
+
+
+def _hardening_in_use() -> HardeningLaw:
+    from ..models import law_named
+    from ..models.hardening import HardeningLaw
+
+    law = law_named("hardening")
+    assert isinstance(law, HardeningLaw)
     return law

@@ -15,7 +15,12 @@ from .table import ResidualTable, Table
 
 Floats = npt.NDArray[np.float64]
 
-_ONE_SIGMA, _TWO_SIGMA = 0.6827, 0.9545
+SIGMAS = (0.724, 0.950)
+"""Shares within one and two standard deviations of Student's t with seven degrees of freedom.
+
+The errors have longer ends than a normal distribution, of which a deviation has to speak too.
+"""
+
 _NOISE = 2e-3  # of the finite elements, beside the law's own error
 _BEFORE_YIELD = (0.5, 4.0)  # power with which a law's error vanishes there; the dent does itself
 _RIDGE = 0.02  # of the features' weights, the constant's aside
@@ -29,7 +34,12 @@ class Misses(NamedTuple):
 
 
 def misses(
-    p: Prediction, numbers: PairNumbers, table: Table, turns: ResidualTable
+    p: Prediction,
+    numbers: PairNumbers,
+    table: Table,
+    turns: ResidualTable,
+    *,
+    alone: npt.NDArray[np.bool_] | None = None,
 ) -> dict[str, Misses]:
     """Errors of every quantity of `Uncertainty` beyond first yield, by name.
 
@@ -41,19 +51,23 @@ def misses(
         The law's numbers of every case, fields of shape (n_cases,).
     table, turns
         The rows.
+    alone
+        The cases that count, shape (n_cases,); all if not given.
     """
+    count = np.ones(len(table.pairs), dtype=bool) if alone is None else alone
 
     def at(rows: Table | ResidualTable) -> Floats:
         return features_of(PairNumbers(*(x[rows.case] for x in numbers)), rows.D)
 
     loaded, turned = at(table), at(turns)
-    seen = (table.w >= 1.0) & table.edge_seen
-    known = np.isfinite(turns.exponent)
+    yielding, turned_so = count[table.case] & (table.w >= 1.0), count[turns.case]
+    seen = yielding & table.edge_seen
+    known = np.isfinite(turns.exponent) & turned_so
     off = {
         "force": (loaded, seen, np.log(p.force / table.force)),
         "radius": (loaded, seen, np.log(p.radius / table.radius)),
-        "share": (loaded, table.w >= 1.0, p.share - table.share),
-        "dent": (turned, turns.w >= 1.0, p.total / turns.total - 1.0),
+        "share": (loaded, yielding, p.share - table.share),
+        "dent": (turned, turned_so & (turns.w >= 1.0), p.total / turns.total - 1.0),
         "given_back": (turned, known, given_back(p, turns) - 1.0),
     }
     return {name: Misses(x[m], error[m]) for name, (x, m, error) in off.items()}
@@ -84,15 +98,12 @@ def calibrate(found: dict[str, Misses]) -> Calibration:
 
 
 def _scaled(weights: Floats, features: Floats, size: Floats) -> Floats:
-    """Return the weights at which 68 and 95 % lie within one and two, what one lacks the other has.
-
-    Errors have longer ends than a normal distribution, so that both can't be met.
-    """
+    """Return the weights with the shares above; what one of them lacks the other has too much."""
 
     def beyond(scale: float) -> float:
         spread = deviation(features, weights + scale * np.eye(len(weights))[0], least=_NOISE)
         one, two = (float(np.mean(size <= k * spread)) for k in (1.0, 2.0))
-        return (one - _ONE_SIGMA) + (two - _TWO_SIGMA)
+        return (one - SIGMAS[0]) + (two - SIGMAS[1])
 
     if beyond(-3.0) >= 0.0:
         return weights

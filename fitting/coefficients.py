@@ -22,6 +22,8 @@ from ..fem import NUMERICS_VERSION
 from ..models.closed_form import COEFFICIENTS
 from ..models.coefficients import FORMAT
 from ..models.correction import CHANNELS, GROUPS
+from ..models.hardening import CORRECTED
+from .hardening import HardeningFit
 from .laws import Laws
 from .table import Table
 
@@ -73,6 +75,20 @@ def coefficients_content(laws: Laws, table: Table, campaigns: Sequence[Path]) ->
             "numerics_version": NUMERICS_VERSION,
             "environment": environment(),
         },
+    }
+
+
+def hardening_content(fit: HardeningFit) -> dict[str, Any]:
+    """Return the part of the coefficients file on metals that harden."""
+    found = fit.correction
+    return {
+        "combinations": fit.combinations,
+        "corrected": list(CORRECTED),
+        "low": found.low.tolist(),
+        "high": found.high.tolist(),
+        "weights": _digits(found.weights),
+        "spread": {name: float(f"{size:.3g}") for name, size in found.spread.items()},
+        "left_out": fit.left_out,
     }
 
 

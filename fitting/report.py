@@ -111,6 +111,28 @@ def uncertainty_rows(within: Mapping[str, Within]) -> list[list[str]]:
     return rows
 
 
+def hardening_rows(columns: Mapping[str, Mapping[str, Sequence[float]]]) -> list[list[str]]:
+    """Rows of the table of errors on metals that harden, its head first.
+
+    Parameters
+    ----------
+    columns
+        Mean and largest error by title and by the names of `Uncertainty`.
+    """
+    names = {
+        "force": ("F [%]", 100.0, "1, 5"),
+        "radius": ("a [%]", 100.0, ""),
+        "share": ("delta_s*", 1.0, ""),
+        "dent": ("residual depth, delta_m >= 5 delta_c [%]", 100.0, ""),
+        "given_back": ("energy given back, delta_m >= 5 delta_c [%]", 100.0, ""),
+    }
+    rows = [["metals that harden", *(f"{title}: mean, largest" for title in columns), "aim"]]
+    for key, (name, scale, aim) in names.items():
+        cells = [", ".join(f"{scale * x:.3g}" for x in column[key]) for column in columns.values()]
+        rows.append([name, *cells, aim])
+    return rows
+
+
 def write_report(
     laws: Laws,
     content: dict[str, Any],
@@ -157,6 +179,7 @@ def write_report(
         "The compact law:\n\n![maps](compact-maps.png)\n",
         "## Uncertainty, on combinations left out\n",
         markdown(uncertainty_rows(stated_within(content))),
+        *_about_hardening(content),
         "## Combinations that fit worst\n\nMean and largest, fitted law, left out.\n",
         markdown(worst_rows(shown, table)),
         "## Domain\n",
@@ -166,6 +189,15 @@ def write_report(
         *more,
     ]
     return write_file(folder / "report.md", "\n".join(parts))
+
+
+def _about_hardening(content: dict[str, Any]) -> list[str]:
+    found = content.get("hardening")
+    if found is None:
+        return []
+    title = f"{found['combinations']} pairs, left out"
+    rows = markdown(hardening_rows({title: found["left_out"]}))
+    return ["## Metals that harden\n", rows]
 
 
 def _about_data(laws: Laws, content: dict[str, Any], table: Table, turns: ResidualTable) -> str:

@@ -148,7 +148,7 @@ def read_tables(
     chosen: dict[object, CaseRecord] = {}
     found = [r for path in paths for r in read_curves(path)]
     found = [r for r in found if r.case.name.startswith(HELD_OUT) == held_out]
-    for record in _fine_ones([r for r in found if _perfectly_plastic(r.case.pair)]):
+    for record in _fine_ones([r for r in found if _fitted(r.case.pair)]):
         key = tuple(np.round(_key(record.case.pair), 9))
         if key not in chosen or is_current(record) or not is_current(chosen[key]):
             chosen[key] = record
@@ -163,8 +163,8 @@ def read_tables(
     return _loading(records), _residuals(records)
 
 
-def _perfectly_plastic(pair: Pair) -> bool:
-    return bool(np.isfinite(pair.Sy_min)) and pair.sphere.flow is None and pair.flat.flow is None
+def _fitted(pair: Pair) -> bool:
+    return bool(np.isfinite(pair.Sy_min)) and pair.perfectly_plastic
 
 
 def _fine_ones(records: list[CaseRecord]) -> list[CaseRecord]:

@@ -3,7 +3,7 @@
 The same text is compiled into the laws' kernels, runs on numpy arrays in the regression, on complex
 numbers for derivatives, and is translated to other languages (`models.export`). So it keeps to
 assignments of + - * / **, exp, log and sqrt of plain numbers and of the fields of the tuples below;
-a function is called with arguments of the names that it gives them itself.
+a function is called in a statement of its own.
 
 `contact` draws the curves of one pair from its numbers. The compact law has these numbers by
 `of_pair` from its coefficients; the fitted law moves them from there (`models.correction`). Limits,
@@ -55,7 +55,8 @@ class PairNumbers(NamedTuple):
     c: Any  # radius: a^2 over R Delta of full plasticity
     g_a: Any  # its transition, early
     g_b: Any  # and late
-    y_b: Any  # and between
+    g_t: Any  # by what part it rises in the end
+    y_b: Any  # and the depth of its early part
     z: Any  # its rise with the radius
     c_s: Any  # its lag where the sphere flows
     c_f: Any  # and where the flat does
@@ -68,9 +69,9 @@ class PairNumbers(NamedTuple):
     r: Any  # with this power of the radius
     B_e: Any  # collapse of a flattened sphere
     even: Any  # rise where both bodies yield
-    k: Any  # its transition: where
-    m: Any  # how sharp
-    k_a: Any  # and how much sooner at a larger radius
+    k: Any  # its rise: with the logarithm of the load
+    m: Any  # how that bends
+    k_a: Any  # and how much less it is at a larger radius
     g_0: Any  # share: sharpness of first yield
     g_2: Any  # how it grows
     g_4: Any  # what the radius takes off the flat's lead
@@ -78,7 +79,8 @@ class PairNumbers(NamedTuple):
     p: Any  # and how sharply
     f_1: Any  # elastic displacement: what plastic flow takes off it
     lag: Any  # and when
-    l_1: Any  # permanent depth: what plastic flow takes off the recovery
+    l_0: Any  # permanent depth: when plastic flow
+    l_1: Any  # takes this off the recovery
     l_2: Any  # with this power of the depth
     l_3: Any  # and what a crater gives back beside
     u_1: Any  # unloading: depth up to which the recovery stays elastic
@@ -118,7 +120,7 @@ class Contact(NamedTuple):
 
 Coefficients = namedtuple(
     "Coefficients",
-    "b0 b1 b2 b3 b4 z c_s c_f h B_s B_f B_e k0 k1 m0 g0 g2 g4 s0 s1 s2 s3 s5 p0 p1 f1 f3 l1 u2 u4",
+    "b0 b1 b2 b3 b4 z c_s c_f h B_s B_f B_e k0 k1 k2 m0 m1 g0 g2 g4 s0 s2 s3 p0 p1 f1 f3 l1 u2 u4",
 )
 """What the regression of the compact law finds, in the order of the coefficients file."""
 
@@ -156,20 +158,22 @@ def of_pair(bodies: Bodies, co: Any) -> PairNumbers:
     nu = v_s * bodies.nu_s + v_f * bodies.nu_f - 0.3
     g_a = co.b0 * exp(co.b1 * e)
     g_b = g_a * co.b2 * exp(co.b3 * e + co.b4 * nu)
-    k = co.k0 * exp(co.k1 * e)
+    k = co.k0 * exp(co.k1 * e + co.k2 * nu)
+    m = co.m0 + co.m1 * e
+    l_0 = 1.65 * exp(e + 0.6 * (e - 0.5) * (e - 0.5))
     plastic = log(1e-4 * W)
-    a_even = co.s0 * exp(-co.s3 * plastic + co.s5 * (x_s - 0.5))
+    a_even = co.s0 * exp(-co.s3 * plastic)
     lead = 0.5 * (L + sqrt(L * L + 9e-4))
-    reach = co.s1 * exp(co.s2 * log(lead)) / a_even
+    reach = exp(co.s2 * log(lead)) / a_even
     reach2 = reach * reach
     reach4 = reach2 * reach2
     grow = log(1.0 + reach4 * reach4 * reach4) / 12.0
     a_t = a_even * exp(grow)
     p = co.p0 * exp(co.p1 * grow)
     return PairNumbers(
-        x_s, W, P, j_s, j_f, L, L_C, fin, 2.8, g_a, g_b, 14.0, co.z, co.c_s, co.c_f, 2.5, 80.0, 0.0,
-        co.h, co.B_s, co.B_f, 1.75, co.B_e, 0.0, k, co.m0, 0.0, co.g0, co.g2, co.g4, a_t, p,
-        co.f1, co.f3, co.l1, 0.75, 0.0, 0.2, co.u2, co.u4, 0.25,
+        x_s, W, P, j_s, j_f, L, L_C, fin, 2.86, g_a, g_b, 2.0 * e, 6.5,
+        co.z, co.c_s, co.c_f, 2.5, 80.0, 0.0, co.h, co.B_s, co.B_f, 1.75, co.B_e, 0.0, k, m, 0.0,
+        co.g0, co.g2, co.g4, a_t, p, co.f1, co.f3, l_0, co.l1, 0.82, 0.0, 0.2, co.u2, co.u4, 0.25,
     )  # fmt: skip
 
 
@@ -198,7 +202,9 @@ def plastic_depth(w):
 @register_jitable
 def small_radius_at(D, y, pair):
     """a/R without finite deformation."""
-    g = pair.g_b + (pair.g_a - pair.g_b) / (1.0 + y / pair.y_b)
+    early = 1.0 / (1.0 + y / pair.y_b)
+    g = (pair.g_b + (pair.g_a - pair.g_b) * early) * (1.0 - 0.75 * early)
+    g = g * (1.0 + pair.g_t * y / (y + 230.0))
     return sqrt(D / (1.0 / pair.c + (1.0 - 1.0 / pair.c) / sqrt(1.0 + g * y)))
 
 
@@ -222,10 +228,20 @@ def still_flat_at(small, pair):
 
 
 @register_jitable
+def within_data(reach):
+    """A radius over R up to 0.55; beyond, where no data are, it stays, and what follows it."""
+    r2 = reach / 0.62 * (reach / 0.62)
+    r4 = r2 * r2
+    r8 = r4 * r4
+    return reach / sqrt(sqrt(sqrt(sqrt(1.0 + r8 * r8))))
+
+
+@register_jitable
 def radius_at(small, y, first, still, pair):
     """a/R from that without finite deformation."""
     zeta = pair.c_f + (pair.c_s - pair.c_f) * (1.0 - (1.0 - first) * still)
-    small_power = small**pair.t
+    near = within_data(small)
+    small_power = near**pair.t
     large = zeta * small_power / (1.0 + 2.0 * small_power) * y / (y + pair.y_c)
     crater = pair.c_m * (1.0 - still) * still * (1.0 - first)
     return small * exp(0.5 * (large + (pair.z * small - crater) * y / (y + 2.0)))
@@ -238,11 +254,7 @@ def force_at(D, a, pair):
     load2 = pair.P * elastic * (pair.P * elastic)
     load4 = load2 * load2
     q = sqrt(sqrt(sqrt(1.0 + load4 * load4))) - 1.0
-    # beyond a/R = 0.55, where no data reach, the pressure stays and the force goes on rising
-    a2 = a / 0.62 * (a / 0.62)
-    a4 = a2 * a2
-    a8 = a4 * a4
-    near = a / sqrt(sqrt(sqrt(sqrt(1.0 + a8 * a8))))
+    near = within_data(a)
     near2 = near * near
     near4 = near2 * near2
     collapse = near4 * near4 / (1.0 + 50.0 * near4 * near4)
@@ -261,9 +273,16 @@ def force_at(D, a, pair):
     both = weight_s16 * weight_s16 + weight_f16 * weight_f16
     equal = weight_s16 * weight_f16 / both * (weight_s16 * weight_f16 / both)
     weak = J * sqrt(sqrt(sqrt(sqrt(sqrt(both))))) * (1.0 - 0.08664339756999316 * equal)
-    q_power = (q + 1e-30) ** pair.m
-    soft = 1.0 + weak / (pair.P * pair.h) * q * q_power / (q_power + pair.k * exp(-pair.k_a * near))
-    return PI * a * a * elastic / soft
+    # beyond first yield the pressure rises with the logarithm of the load, up to full plasticity
+    c = pair.k * exp(-pair.k_a * near)
+    far = log(1.0 + q / c)
+    bend = sqrt(pair.m * pair.m + 4e-4)
+    slope = (1.0 + 0.25 * (bend + pair.m) * far) / (1.0 + 0.25 * (bend - pair.m) * far)
+    rising = elastic * (1.0 + c * far * slope) / (1.0 + q)
+    full2 = rising * weak / pair.h * (rising * weak / pair.h)
+    full4 = full2 * full2
+    full8 = full4 * full4
+    return PI * a * a * rising / sqrt(sqrt(sqrt(sqrt(1.0 + full8 * full8))))
 
 
 @register_jitable
@@ -280,8 +299,9 @@ def share_at(D, y, F, a, phi, pair):
 def permanent_at(D, y, F, a, phi, pair):
     """Permanent approach over the largest one."""
     l_power = (y + 1e-30) ** pair.l_2
-    recoverable = (0.75 - pair.l_1 * l_power / (l_power + pair.lag)) * F / (a * D)
-    recoverable = recoverable * exp(pair.l_3 * (1.0 - phi) * y / (y + 100.0))
+    psi = 0.75 - pair.l_1 * l_power / (l_power + pair.l_0) + 0.08 * y / (y + 160.0)
+    psi = psi * exp((pair.l_3 * (1.0 - phi) - 0.2 * phi * a) * y / (y + 100.0))
+    recoverable = psi * F / (a * D)
     return 1.0 - recoverable * exp(-0.31 * sqrt(D) - pair.fin * D)
 
 

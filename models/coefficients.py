@@ -14,10 +14,10 @@ from .base import ContactLaw
 from .closed_form import COEFFICIENTS
 from .correction import CHANNELS, GROUPS, Correction
 from .fitted import ClosedForm, closed_form_law
-from .hardening import hardening_law
+from .hardening import CORRECTED, HardeningCorrection, hardening_law
 from .uncertainty import Calibration
 
-FORMAT = "dentscope-coefficients/10"
+FORMAT = "dentscope-coefficients/11"
 COEFFICIENTS_FILE = Path(__file__).resolve().parents[1] / "data" / "coefficients" / "fitted.json"
 """What the laws in use read; `dentscope fit --publish` writes it."""
 
@@ -79,5 +79,28 @@ def shipped_laws() -> tuple[ContactLaw, ...]:
     content = read_coefficients()
     if content is None:
         return ()
-    compact, fitted = laws_from(content, source=str(COEFFICIENTS_FILE))
-    return compact, fitted, hardening_law(fitted)
+    source = str(COEFFICIENTS_FILE)
+    compact, fitted = laws_from(content, source=source)
+    return compact, fitted, hardening_law(fitted, hardening_correction(content, source=source))
+
+
+def hardening_correction(content: Mapping[str, Any], *, source: str) -> HardeningCorrection | None:
+    """Return what a coefficients file adds for metals that harden; none if it knows none.
+
+    Raises
+    ------
+    InputError
+        It corrects other quantities than this law does.
+    """
+    found = content.get("hardening")
+    if found is None:
+        return None
+    if tuple(found["corrected"]) != CORRECTED:
+        raise InputError(
+            f"{', '.join(found['corrected'])}", source=source, key="hardening.corrected",
+            allowed=f"{', '.join(CORRECTED)}; make the file anew with `dentscope fit`",
+        )  # fmt: skip
+    return HardeningCorrection(
+        np.array(found["low"]), np.array(found["high"]), np.array(found["weights"]),
+        {name: float(size) for name, size in found["spread"].items()},
+    )  # fmt: skip

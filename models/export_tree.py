@@ -8,7 +8,7 @@ from __future__ import annotations
 
 import ast
 import inspect
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 
 from . import closed_form
 from .correction import CHANNELS, MOST, Correction
@@ -110,14 +110,17 @@ def _unroll(
     lines: Lines,
     defined: set[str],
     own: Mapping[str, str],
+    arguments: Sequence[str] = (),
 ) -> None:
     """Append the lines of a function of `closed_form`, its results named `results`.
 
-    A field that is in `own` is read under the name given there.
+    A field that is in `own` is read under the name given there, a parameter under that of the
+    argument, if there are any.
     """
     (tree,) = ast.parse(inspect.getsource(getattr(closed_form, function))).body
     assert isinstance(tree, ast.FunctionDef)
     flat = _Flat(own)
+    flat.renamed.update(zip((a.arg for a in tree.args.args), arguments, strict=False))
     for node in tree.body[1:]:  # the first is the docstring
         assert isinstance(node, ast.Assign | ast.Return)
         assert node.value is not None
@@ -130,7 +133,10 @@ def _unroll(
             continue
         names = ast.unparse(node.targets[0]).strip("()").split(", ")
         if called is not None:
-            _unroll(called, tuple(names), lines, defined, own)
+            given = [ast.unparse(argument) for argument in value.args]
+            flat.renamed |= {n: _unused(n, defined) for n in names if n in defined}
+            named = tuple(flat.renamed.get(n, n) for n in names)
+            _unroll(called, named, lines, defined, own, given)
             continue
         (name,) = names
         new = _unused(name, defined)

@@ -1,4 +1,4 @@
-"""Our fitted law for metals with a flow curve: Tabor's representative flow stress.
+"""Our fitted law for metals with a flow curve: Tabor's representative flow stress, corrected.
 
 At contact radius a the plastic strain 0.2 (a - a_c)/R stands for all strains, a_c the radius at
 first yield. Each body has of it what it has of the plastic flow and is taken as perfectly plastic
@@ -7,7 +7,10 @@ other. The mean pressure is that of these perfectly plastic bodies at the same r
 then are differs, for what hardens sinks in where the other piles up. The square of the radius over
 R Delta is one in an elastic contact, whatever the exponent n, and goes with n between its plastic
 value at n = 0 and one at n = 1: its logarithm is taken to fall as 1 - n, which meets both ends.
-Nothing here is fitted.
+
+So far nothing is fitted. What finite elements of metals that harden differ from it by is a
+polynomial of second degree for each body, times what that body has of the flow, its exponent, and
+how far the contact has yielded (`features_of`): without hardening, and before yield, nothing.
 
 References
 ----------
@@ -16,31 +19,74 @@ D. Tabor, The Hardness of Metals (1951). K. L. Johnson, Contact Mechanics (1985)
 
 from __future__ import annotations
 
+import itertools
 import math
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 from functools import lru_cache
-from typing import Any
+from typing import Any, NamedTuple
 
 import numpy as np
 from scipy.interpolate import CubicHermiteSpline, PchipInterpolator
 
 from ..core.material import Material, Pair
 from .base import ContactLaw, Domain, Kernels, Standing
-from .closed_form import Bodies, contact
+from .closed_form import Bodies, PairNumbers, contact, plastic_depth
 from .driver import Depths, Pairs
 from .fitted import ClosedForm, bodies_of
 from .kernel import Floats, common_parameters, critical_depth
 from .table import packed_columns, recovery_exponent
 from .table_kernels import TABLE_KERNELS
+from .uncertainty import LEAST, Uncertainty
 
 REPRESENTATIVE = 0.2
 """Plastic strain that stands for all of them, over a/R (Tabor)."""
 
-_POINTS = 320  # of the table
+CORRECTED = ("depth", "force", "share", "part", "recovered", "exponent")
+"""What is corrected: logarithms of Delta, F, the part of Delta that recovers and N + 1; the
+sphere's share of the approach and its part of the permanent depth by the logarithm of the odds."""
+
+_COORDINATES = 5
+_FADES = 0.3  # of a coordinate's width, beyond the data
+_DEGREE = 2
+_POINTS = 240  # of the table
+_LEAST_STEP = 0.01  # of ln Delta from point to point; a quarter of the mean one
 _FIRST, _LAST = 0.01, 0.6  # equivalent depths: over the critical one, over R
-_ROUNDS = 40  # bisections of the sphere's part of the flow
-_SETTLING = 4  # rounds of the contact radius in each, which go on from the last
+_ROUNDS = 14  # for the sphere's part of the flow
+_SETTLING = 3  # of the contact radius in each, which go on from the last
+
+
+class Equivalent(NamedTuple):
+    """Points of a path, taken as perfectly plastic at their flow stresses; arrays of shape (n,)."""
+
+    D: Floats  # Delta/R of the metal that hardens, not corrected
+    at: Any  # the `Contact` of the perfectly plastic bodies
+    deeper: Floats  # D over theirs
+    numbers: PairNumbers  # of the fitted law
+    y: Floats  # their depth beyond first yield
+    n_s: Floats  # exponents of the flow curves there
+    n_f: Floats
+
+
+@dataclass(frozen=True)
+class HardeningCorrection:
+    """What finite elements add to the equivalence.
+
+    Parameters
+    ----------
+    low, high
+        Bounds of the coordinates in the data, shape (5,); beyond them the correction fades.
+    weights
+        Of the features for each of `CORRECTED`, shape (n_features, 6).
+    spread
+        How far pairs left out of the fit lay away beside the fitted law's own errors, by the names
+        of `Uncertainty`.
+    """
+
+    low: Floats
+    high: Floats
+    weights: Floats
+    spread: Mapping[str, float]
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
@@ -51,9 +97,12 @@ class HardeningLaw(ContactLaw):
     ----------
     fitted
         The law of perfectly plastic bodies.
+    correction
+        What is added to that; none: nothing is fitted.
     """
 
     fitted: ClosedForm
+    correction: HardeningCorrection | None = None
 
     @property
     def kernels(self) -> Kernels:
@@ -66,10 +115,19 @@ class HardeningLaw(ContactLaw):
 
     def share(self, pair: Pair, depth: Depths) -> Floats:
         """delta_s*, shape (...); the elastic share where the contact is open."""
-        x, at = _equivalent(self, pair)
+        x, at, _ = _path(self, pair)
         d = np.asarray(depth, dtype=float)
         inside = np.interp(np.log(np.maximum(d / pair.R, 1e-300)), x, at.share)
         return np.where(d > 0.0, inside, pair.elastic_share)
+
+    def uncertainty(self, pair: Pair, depth: Depths) -> Uncertainty:
+        """How far off the law may be, as pairs left out of the fit were; see `ContactLaw`."""
+        x, _, sizes = _path(self, pair)
+        if sizes is None:
+            return super().uncertainty(pair, depth)
+        d = np.asarray(depth, dtype=float)
+        place = np.log(np.maximum(d / pair.R, 1e-300))
+        return Uncertainty(*(np.where(d > 0.0, np.interp(place, x, size), LEAST) for size in sizes))
 
     def warn_outside(self, pair: Pairs, depth: Depths) -> None:
         """Warn as the fitted law does, by the strengths at first yield."""
@@ -77,7 +135,9 @@ class HardeningLaw(ContactLaw):
         self.fitted.warn_outside([_without_flow(p) for p in pairs], depth)
 
 
-def hardening_law(fitted: ClosedForm) -> HardeningLaw:
+def hardening_law(
+    fitted: ClosedForm, correction: HardeningCorrection | None = None
+) -> HardeningLaw:
     """Return the law that follows flow curves with `fitted`."""
     return HardeningLaw(
         name="hardening",
@@ -88,6 +148,7 @@ def hardening_law(fitted: ClosedForm) -> HardeningLaw:
         domain=Domain(note=fitted.domain.note),
         breaks=fitted.breaks,
         fitted=fitted,
+        correction=correction,
     )
 
 
@@ -96,29 +157,131 @@ def _without_flow(pair: Pair) -> Pair:
     return Pair(sphere, flat, pair.R)
 
 
-@lru_cache(maxsize=64)
-def _equivalent(law: HardeningLaw, pair: Pair) -> tuple[Floats, Any]:
-    """Return ln(Delta/R) of the points of a path, and the `Contact` there, arrays of one shape."""
+def equivalent(fitted: ClosedForm, pair: Pair, *, points: int) -> Equivalent:
+    """Return the path of a pair through perfectly plastic bodies, from far below first yield on."""
     onset = critical_depth(pair) / pair.R
     first = _FIRST * onset if math.isfinite(onset) else 1e-7
-    D = np.geomspace(min(first, 0.1 * _LAST), _LAST, _POINTS)
+    D = np.geomspace(min(first, 0.1 * _LAST), _LAST, points)
     yields_at = math.sqrt(onset) if math.isfinite(onset) else math.inf
     bodies, sphere, flat = bodies_of([pair]), _flow(pair.sphere), _flow(pair.flat)
-    a = np.sqrt(D)
-    least, most = np.zeros_like(D), np.ones_like(D)
-    for _ in range(_ROUNDS):
-        part = 0.5 * (least + most)
+
+    def taken(part: Floats, a: Floats) -> Equivalent:
+        """The points if the sphere has `part` of the strain, from a first radius on."""
         for _ in range(_SETTLING):
             p = REPRESENTATIVE * np.maximum(a - yields_at, 0.0)
             (S_s, n_s), (S_f, n_f) = sphere(part * p), flat(p - part * p)
-            at = contact(D, law.fitted.numbers(_with_strengths(bodies, S_s, S_f)))
+            numbers = fitted.numbers(_with_strengths(bodies, S_s, S_f))
+            at = contact(D, numbers)
             a = 0.5 * (a + at.a)
-        # the more the sphere flows the stronger it gets, the less of the flow is its own
-        least, most = np.where(at.phi > part, part, least), np.where(at.phi > part, most, part)
-    n = at.share * n_s + (1.0 - at.share) * n_f
-    deeper = np.maximum(at.a**2 / D, 1.0) ** n
-    left = 1.0 - (1.0 - at.left) / deeper
-    return np.log(D * deeper), at._replace(left=np.maximum(left, 0.0))
+        n = at.share * n_s + (1.0 - at.share) * n_f
+        deeper = np.maximum(at.a**2 / D, 1.0) ** n
+        return Equivalent(D * deeper, at, deeper, numbers, plastic_depth(numbers.W * D), n_s, n_f)
+
+    # the more the sphere flows the stronger it gets, the less of the flow is its own: what it has
+    # of the strain and of the flow meet once (false position; Dowell, Jarratt, BIT 11 (1971) 168)
+    low, high = np.zeros_like(D), np.ones_like(D)
+    found = taken(low, np.sqrt(D))
+    at_low = found.at.phi - low
+    at_high = taken(high, found.at.a).at.phi - high
+    side = np.zeros_like(D)
+    for _ in range(_ROUNDS):
+        part = low + (high - low) * at_low / np.maximum(at_low - at_high, 1e-300)
+        found = taken(part, found.at.a)
+        off = found.at.phi - part
+        up = off > 0.0
+        # an end that stays a second time counts half, so that it moves too
+        at_high = np.where(up, np.where(side > 0.0, 0.5 * at_high, at_high), off)
+        at_low = np.where(up, off, np.where(side < 0.0, 0.5 * at_low, at_low))
+        low, high = np.where(up, part, low), np.where(up, high, part)
+        side = np.where(up, 1.0, -1.0)
+    return found
+
+
+def coordinates_of(e: Equivalent) -> tuple[Floats, Floats]:
+    """Coordinates of the points for the sphere and for the flat, shape (n, 5) each.
+
+    Contact radius, exponent, logarithm of E' over the flow stress, elastic share of the body, and
+    logarithm of the depth beyond yield, each about one wide.
+    """
+    numbers, a, far = e.numbers, e.at.a / 0.3, np.log1p(e.y) / 2.5 - 1.0
+
+    def of(n: Floats, stiff: Floats, share: Floats) -> Floats:
+        return np.stack(
+            [a, (n - 0.2) / 0.15, (np.log(stiff) - 5.0) / 1.2, (share - 0.5) / 0.22, far], axis=-1
+        )
+
+    return of(e.n_s, numbers.j_s, numbers.x_s), of(e.n_f, numbers.j_f, 1.0 - numbers.x_s)
+
+
+def features_of(e: Equivalent, low: Floats, high: Floats) -> Floats:
+    """Features of the points, shape (n, 47): 21 monomials a body, and where both flow."""
+    yielded = e.y / (1.0 + e.y)
+    columns, fades = [], []
+    for flows, n, at in zip(
+        (e.at.phi, 1.0 - e.at.phi), (e.n_s, e.n_f), coordinates_of(e), strict=True
+    ):
+        inside = np.clip(at, low, high)
+        within = np.exp(-0.5 * np.sum(((at - inside) / _FADES) ** 2, axis=1))
+        size = 5.0 * flows * n * yielded * within
+        for degree in range(_DEGREE + 1):
+            for which in itertools.combinations_with_replacement(range(_COORDINATES), degree):
+                columns.append(size * np.prod(inside[:, list(which)], axis=1))
+        fades.append(within)
+    both = 4.0 * e.at.phi * (1.0 - e.at.phi) * yielded * fades[0] * fades[1]
+    columns += [
+        both * e.n_s, both * e.n_f, both * (e.n_s - e.n_f) ** 2,
+        both * e.n_s * e.at.a, both * e.n_f * e.at.a,
+    ]  # fmt: skip
+    return np.stack(columns, axis=-1)
+
+
+def corrected(e: Equivalent, shifts: Floats) -> tuple[Floats, Any]:
+    """Return ln(Delta/R) and the `Contact` of the points with shifts of `CORRECTED`, (n, 6)."""
+    depth, force, share, part, recovered, exponent = shifts.T
+    recovers = (1.0 - e.at.left) / e.deeper * np.exp(recovered)
+    return np.log(e.D) + depth, e.at._replace(
+        F=e.at.F * np.exp(force),
+        share=_moved_odds(e.at.share, share),
+        phi=_moved_odds(e.at.phi, part),
+        left=1.0 - np.minimum(recovers, 1.0),
+        N=(e.at.N + 1.0) * np.exp(exponent) - 1.0,
+    )
+
+
+def _moved_odds(share: Floats, shift: Floats) -> Floats:
+    grown = share * np.exp(shift)
+    return np.asarray(grown / (grown + 1.0 - share))
+
+
+@lru_cache(maxsize=64)
+def _path(law: HardeningLaw, pair: Pair) -> tuple[Floats, Any, Uncertainty | None]:
+    """Points of a path: ln(Delta/R), rising, the `Contact` there, and how far off both may be."""
+    e, correction = equivalent(law.fitted, pair, points=_POINTS), law.correction
+    if correction is None:
+        return np.log(e.D), e.at._replace(left=1.0 - (1.0 - e.at.left) / e.deeper), None
+    shifts = features_of(e, correction.low, correction.high) @ correction.weights
+    x, at = corrected(e, shifts)
+    # outside the data a correction could turn a path back
+    steps = np.maximum(np.diff(x), _LEAST_STEP)
+    x = x[0] + np.concatenate([[0.0], np.cumsum(steps)])
+    at = at._replace(F=np.maximum.accumulate(at.F), left=np.maximum(at.left, 0.0))
+    return x, at, _sizes(law, e, correction)
+
+
+def _sizes(law: HardeningLaw, e: Equivalent, correction: HardeningCorrection) -> Uncertainty | None:
+    """Standard deviations at the points: the fitted law's, and what hardening adds."""
+    if law.fitted.calibration is None:
+        return None
+    own = law.fitted.calibration.of(e.numbers, e.D / e.deeper)
+    hardens = hardening_size(e)
+    more = (correction.spread[name] * hardens for name in Uncertainty._fields)
+    return Uncertainty(*(np.hypot(a, b) for a, b in zip(own, more, strict=True)))
+
+
+def hardening_size(e: Equivalent) -> Floats:
+    """How much the points harden: nothing before yield, one far beyond it and at large n."""
+    n = e.at.phi * e.n_s + (1.0 - e.at.phi) * e.n_f
+    return np.asarray(n / np.sqrt(n * n + 0.01) * e.y / (1.0 + e.y))
 
 
 def _with_strengths(bodies: Bodies, sphere: Floats, flat: Floats) -> Bodies:
@@ -144,7 +307,7 @@ def _flow(body: Material) -> Callable[[Floats], tuple[Floats, Floats]]:
 
 @lru_cache(maxsize=64)
 def _columns(law: HardeningLaw, pair: Pair) -> Floats:
-    x, at = _equivalent(law, pair)
+    x, at, _ = _path(law, pair)
     grid = np.linspace(x[0], x[-1], _POINTS)
     F, a, left, phi, N = (
         PchipInterpolator(x, values)(grid)

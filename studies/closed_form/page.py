@@ -14,6 +14,7 @@ from ...fitting.report import (
     coefficient_rows,
     domain_rows,
     error_rows,
+    hardening_rows,
     markdown,
     stated_within,
     uncertainty_rows,
@@ -46,9 +47,18 @@ def published_section(content: dict[str, Any]) -> str:
             markdown(coefficient_rows(content)),
             markdown(rows),
             markdown(uncertainty_rows(stated_within(content))),
+            *_hardening(content),
             markdown(domain_rows(content, "domain")) + END,
         ]
     )
+
+
+def _hardening(content: dict[str, Any]) -> list[str]:
+    found = content.get("hardening")
+    if found is None:
+        return []
+    title = f"{found['combinations']} pairs, left out"
+    return [markdown(hardening_rows({title: found["left_out"]}))]
 
 
 def judged_section(

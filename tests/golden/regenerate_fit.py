@@ -1,6 +1,6 @@
 """Freeze the subset of a campaign that the golden test refits, and what its fit gave.
 
-    .venv/bin/python tests/golden/regenerate_fit.py data/campaign/{space,thesis}-1-1.h5
+    .venv/bin/python tests/golden/regenerate_fit.py data/campaign/space-{1,2}-1.h5
 
 Every third depth and every unloading of all combinations go in, rounded to six digits. Run it after
 the form or the published coefficients changed, and say why in the commit.

@@ -75,7 +75,7 @@ def test_the_law_in_use_is_judged_on_cases_that_no_fit_reads(tmp_path, monkeypat
     page = tmp_path / "page.md"
     page.write_text(f"before\n{JUDGED_BEGIN}\nold\n{JUDGED_END}\nafter\n")
     monkeypatch.setattr(fit_command, "_PAGE", page)
-    part = PAGE.parents[1] / "data" / "campaign" / "validation-1.h5"
+    part = PAGE.parents[1] / "data" / "campaign" / "validation-2-1.h5"
     assert run(["fit", "--judge", str(part), "--publish"]) == 0
     assert "48 pairs" in capsys.readouterr().out
     text = page.read_text()
@@ -142,3 +142,10 @@ def test_held_out_cases_are_not_fitted(tmp_path, monkeypatch):
     assert len(fitted.pairs) == 3
     assert len(judged.pairs) == 2
     assert not any(name.startswith("validation") for name in fitted.names)
+
+
+@pytest.mark.parametrize("name", ["data/campaign", "tests/data/campaign-format-1"])
+def test_sealed_and_older_parts_are_known_as_campaigns(name):
+    """What is no campaign is refused before the seconds that a reader takes to load."""
+    folder = PAGE.parents[1] / name
+    assert fit_command._files([folder]) == sorted(folder.glob("*.h5"))

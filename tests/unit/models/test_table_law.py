@@ -11,7 +11,7 @@ from dentscope.models import LAWS, DomainWarning, critical_depth, law_named
 from dentscope.models.table import Curve, PairTable, Turns, energy_exponent, table_law
 from dentscope.models.table_file import write_table
 
-PART = Path(__file__).resolve().parents[3] / "data" / "campaign" / "thesis-1-1.h5"
+PART = Path(__file__).resolve().parents[3] / "data" / "campaign" / "thesis-1.h5"
 
 
 @pytest.fixture(scope="module")
