@@ -31,7 +31,7 @@ def diagnose(
     ),
     seed: Annotated[int, typer.Option(help="Same seed, same answer.")] = 0,
     confirm: Annotated[
-        bool, typer.Option("--confirm", help="Sampled evidence and the full null ensemble.")
+        bool, typer.Option("--confirm", help="Sampled evidence, all nulls, the own pair solved.")
     ] = False,
     quiet: Annotated[bool, typer.Option("--quiet", help="No progress line.")] = False,
     report: Annotated[

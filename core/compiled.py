@@ -57,9 +57,14 @@ def keep_compiled_code() -> None:
     """
     if os.environ.get(_VARIABLE):
         return
-    base = Path(os.environ.get("XDG_CACHE_HOME") or Path.home() / ".cache")
     digest = source_digest(Path(__file__).resolve().parents[1])
-    os.environ[_VARIABLE] = str(_own(_own(base / "dentscope") / f"compiled-{digest}"))
+    os.environ[_VARIABLE] = str(cache_folder(f"compiled-{digest}"))
+
+
+def cache_folder(name: str) -> Path:
+    """Return the user's own folder for what can be made again; made if there is none."""
+    base = Path(os.environ.get("XDG_CACHE_HOME") or Path.home() / ".cache")
+    return _own(_own(base / "dentscope") / name)
 
 
 def _own(place: Path) -> Path:

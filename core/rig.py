@@ -223,8 +223,14 @@ class TargetTable(BodyTable):
     """Mass that moves with the flat."""
     support_stiffness_N_m: NotNegative | None = None
     """Stiffness of what the flat rests on."""
-    law: Literal["elastic-plastic", "elastic", "measured-restitution"] = "elastic-plastic"
-    """What the contact does: elastic and plastic, elastic, or a restitution to be measured."""
+    law: Literal["elastic-plastic", "table", "elastic", "measured-restitution"] = "elastic-plastic"
+    """What the contact does: elastic and plastic by the closed form, or by finite elements of the
+    set's own pair; elastic; or a restitution to be measured."""
+
+    @property
+    def yields(self) -> bool:
+        """Whether bodies of this baseline can be left with a dent."""
+        return self.law in ("elastic-plastic", "table")
 
 
 class StrikerTable(BodyTable):

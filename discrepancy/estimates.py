@@ -170,7 +170,7 @@ def law_notes(problem: Problem, misfit: Mapping[str, float]) -> tuple[str, ...]:
         )
     )  # fmt: skip
     return (
-        f"how far the contact law '{problem.law.name}' may be off: {sizes}; the recordings ask for "
+        f"how far the contact law '{problem.law_name}' may be off: {sizes}; the recordings ask for "
         f"{misfit['error_size']:.2g} times as much",
         f"with every input as stated, the squared misses of {misfit['numbers']:.0f} numbers add up "
         f"to {misfit['as_stated']:.0f} standard deviations squared; put down to: {took}",

@@ -2,10 +2,9 @@
 
 from __future__ import annotations
 
-import copy
 import math
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass, replace
-from functools import cache, lru_cache
 
 import numpy as np
 from numpy.typing import NDArray
@@ -13,15 +12,17 @@ from numpy.typing import NDArray
 from ..core.errors import InputError
 from ..core.material import Pair
 from ..core.observables import OBSERVABLES
-from ..core.rig import Rig, TargetTable
+from ..core.rig import Rig
 from ..impact import Approach, ForceTransform, Friction, Scene, Striker
 from ..impact.files.bodies import bodies_of
-from ..models import LAWS
+from ..impact.strength import strength_table
 from ..models.base import ContactLaw
 from ..recordings import RecordingSet
+from .baseline.laws import laws_of, without_curves
 from .cells import NO_CELLS, Cells, Scatter, cells_of
 from .conditions import Condition, conditions_of
 from .curves import readings_of
+from .mechanisms.arithmetic import energy
 from .unknowns.drift import Drift
 from .unknowns.followed import Followed
 from .unknowns.lawerror import NO_ERROR, LawError, law_error
@@ -35,7 +36,8 @@ class Problem:
     """Everything that a diagnosis compares: a recording set in the terms of the simulation."""
 
     name: str
-    law: ContactLaw
+    laws: Mapping[str, ContactLaw]
+    """Of every striker's contact."""
     rig: Rig
     conditions: tuple[Condition, ...]
     cells: Cells
@@ -57,6 +59,11 @@ class Problem:
     def n_z(self) -> int:
         """Length of the vector of standardised unknowns: nuisances, then the law's error."""
         return len(self.nuisances) + self.error.count
+
+    @property
+    def law_name(self) -> str:
+        """The contact laws by name."""
+        return ", ".join(dict.fromkeys(law.name for law in self.laws.values()))
 
     @property
     def without_modulus(self) -> dict[str, tuple[str, ...]]:
@@ -117,13 +124,25 @@ class Problem:
         approach = Approach(c.speed * scale, angle, c.tangential * scale, c.spin * scale)
         slides = leaning or c.tangential != 0.0 or c.spin != 0.0
         return Scene(
-            self.law, pair, striker, approach, gravity=self.rig.gravity_m_s2.value, force=force,
-            friction=friction if slides else Friction(),
+            self.laws[c.striker], pair, striker, approach, gravity=self.rig.gravity_m_s2.value,
+            force=force, friction=friction if slides else Friction(),
         )  # fmt: skip
 
 
-def problem_of(recordings: RecordingSet) -> Problem:
+def problem_of(
+    recordings: RecordingSet, *, solve: bool = False,
+    progress: Callable[[str], None] = lambda _: None,
+) -> Problem:  # fmt: skip
     """Return what there is to compare in a recording set.
+
+    Parameters
+    ----------
+    recordings
+        The set.
+    solve
+        Whether its own pair is solved by finite elements, which its target may ask for too.
+    progress
+        Called with a line before a solve.
 
     Raises
     ------
@@ -133,10 +152,12 @@ def problem_of(recordings: RecordingSet) -> Problem:
     setup, approach = recordings.setup, recordings.approach
     conditions = conditions_of(recordings)
     nuisances = nuisances_of(recordings, conditions)
-    law = _law_of(setup.target)
-    problem = Problem(
-        recordings.name, law, setup, conditions, NO_CELLS, nuisances, NO_ERROR
-    ).with_error()
+    plain = without_curves(setup.target)
+    laws = dict.fromkeys((c.striker for c in conditions), plain)
+    problem = Problem(recordings.name, laws, setup, conditions, NO_CELLS, nuisances, NO_ERROR)
+    solve = solve or setup.target.law == "table"
+    problem, told = _of_its_metal(problem, recordings, solve, progress)
+    problem = problem.with_error()
     stated = problem.scenes(np.zeros(problem.n_z))
     of_trial = {i: s for c, s in zip(conditions, stated, strict=True) for i in c.trials}
     readings, unread = readings_of(recordings, [of_trial[i] for i in sorted(of_trial)])
@@ -151,26 +172,23 @@ def problem_of(recordings: RecordingSet) -> Problem:
     again = sum(c.after >= 0 for c in conditions)
     later = [f"{again} conditions are later blows on one place: they meet its crater"] * bool(again)
     assumed = [n.note for n in nuisances if n.note]
-    notes = (*recordings.notes, *later, *assumed, *unread, *seen.notes)
+    notes = (*recordings.notes, *told, *later, *assumed, *unread, *seen.notes)
     return replace(
         problem, cells=seen.cells, drifts=seen.drifts, scatters=seen.scatters,
         followed=seen.followed, notes=notes,
     )  # fmt: skip
 
 
-def _law_of(target: TargetTable) -> ContactLaw:
-    if target.law != "elastic-plastic":
-        return _remembering("hertz")
-    return _remembering("fitted" if "fitted" in LAWS else "ghaednia")
-
-
-@cache
-def _remembering(name: str) -> ContactLaw:
-    """Return a copy of a law that keeps the numbers of the pairs it was asked for.
-
-    A fit asks for the same pair once a condition and point; working them out anew costs more than
-    the impact.
-    """
-    law = copy.copy(LAWS[name])
-    object.__setattr__(law, "parameters", lru_cache(maxsize=4096)(LAWS[name].parameters))
-    return law
+def _of_its_metal(
+    problem: Problem, recordings: RecordingSet, solve: bool, progress: Callable[[str], None]
+) -> tuple[Problem, tuple[str, ...]]:
+    """The problem with the laws of the set's own metals, and what to say of them."""
+    pairs: dict[str, Pair] = {}
+    depths: dict[str, list[float]] = {}
+    stated = problem.scenes(np.zeros(problem.n_nuisances))
+    for c, s in zip(problem.conditions, stated, strict=True):
+        pairs[c.striker] = s.pair
+        peak = strength_table(s.law, s.pair).peak(energy(s))
+        depths.setdefault(c.striker, []).append(peak / s.pair.R)
+    laws, told = laws_of(recordings, pairs, depths, solve=solve, progress=progress)
+    return replace(problem, laws=laws), told

@@ -63,7 +63,8 @@ def diagnose(
     seed
         Of every draw; the same seed gives the same verdict.
     confirm
-        Also sample the leading explanations' evidence and use the full null ensemble.
+        Also sample the leading explanations' evidence, use the full null ensemble, and solve the
+        set's own pair by finite elements.
     progress
         Called with a line before each step.
 
@@ -75,7 +76,7 @@ def diagnose(
     rng = np.random.default_rng(seed)
     progress("auditing the inputs")
     audit = audit_rows(recordings)
-    simulator = Simulator(problem_of(recordings))
+    simulator = Simulator(problem_of(recordings, solve=confirm, progress=progress))
 
     ranking = rank(simulator, progress=progress)
     simulator = simulator.of(ranking.problem)

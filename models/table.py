@@ -134,11 +134,10 @@ def packed_columns(grid: Floats, columns: Sequence[Floats]) -> Floats:
         exponent of the unloading; each of shape (n,).
     """
     step = grid[1] - grid[0]
-    rows = []
-    for values in columns:
-        slope = PchipInterpolator(grid, values).derivative()(grid) * step
-        rows.append(np.stack([values, slope], axis=1).ravel())
-    return np.concatenate([[len(grid), grid[0], step], *rows])
+    values = np.stack(columns)
+    slopes = PchipInterpolator(grid, values, axis=1).derivative()(grid) * step
+    rows = np.stack([values, slopes], axis=2)
+    return np.concatenate([[len(grid), grid[0], step], rows.ravel()])
 
 
 def recovery_exponent(x: Floats, F: Floats, left: Floats, exponent: Floats) -> Floats:

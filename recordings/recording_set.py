@@ -24,7 +24,7 @@ from ..core.toml_input import parse_model, read_toml
 from . import noise
 from .columns import MEASURED
 from .csv_table import Array, Problems
-from .flow_curve import MeasuredFlow, read_flow_curve
+from .flow_curve import SPECIMENS, MeasuredFlow, read_flow_curve
 from .noise import Noise
 from .same_file import taken_twice
 from .series import read_profile, read_trace, series_in
@@ -303,12 +303,16 @@ def _read_flows(setup: Setup, folder: Path, mistakes: list[InputError]) -> dict[
 
 
 def _with_strengths(setup: Setup, flows: Mapping[str, MeasuredFlow]) -> Setup:
-    """Read the strength of a body from its flow curve unless it is stated."""
+    """Read the strength of a body from its flow curve unless it is stated.
+
+    The piece that is struck is not the specimen that was pulled.
+    """
 
     def strong(key: str, body: BodyTable) -> BodyTable:
         if key not in flows or body.Sy_Pa is not None:
             return body
-        return body.model_copy(update={"Sy_Pa": Quantity(value=flows[key].strength)})
+        read = flows[key].strength
+        return body.model_copy(update={"Sy_Pa": Quantity(value=read, std=SPECIMENS * read)})
 
     strikers = {k: strong(f"strikers.{k}", b) for k, b in setup.strikers.items()}
     return setup.model_copy(update={"target": strong("target", setup.target), "strikers": strikers})

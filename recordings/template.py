@@ -36,7 +36,7 @@ density_kg_m3 = "?"
 # layer_thickness_m = 1.0e-4
 # support_mass_kg = 20
 # support_stiffness_N_m = 1.0e9
-# law = "elastic-plastic"     # or "elastic", "measured-restitution"
+# law = "elastic-plastic"     # or "table", "elastic", "measured-restitution"
 '''
 
 _STRIKER = {

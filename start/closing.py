@@ -199,7 +199,7 @@ def _struck(
     place = np.array([number[k] for k in some.cells.condition], dtype=np.intp)
     own = [problem.conditions[k] for k in press.conditions]
     alone = replace(
-        some, law=table_law([table], name="finite elements"),
+        some, laws=dict.fromkeys(some.laws, table_law([table], name="finite elements")),
         cells=replace(some.cells, condition=place),
         conditions=tuple(replace(c, after=number.get(c.after, -1)) for c in own),
     )  # fmt: skip

@@ -105,7 +105,8 @@ def diagnose(folder: str | Path, *, seed: int = 0, confirm: bool = False) -> Dia
     seed
         Same seed, same answer.
     confirm
-        Also sample the evidence, and use the full ensemble of sets with nothing missing.
+        Also sample the evidence, use the full ensemble of sets with nothing missing, and solve the
+        set's own pair by finite elements.
 
     Raises
     ------

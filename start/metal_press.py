@@ -10,11 +10,13 @@ import numpy as np
 from numpy.typing import NDArray
 
 from .. import fem
-from ..core.flow import Flow, Rate, ludwik
+from ..core.flow import Flow, Rate, ludwik, tabulated
 from ..core.material import Pair
 from ..discrepancy.mechanisms.base import Constants, Mechanism
 from ..discrepancy.problem import Problem
 from ..fem.problem import DEEPEST
+from ..impact import Scene
+from ..models.anchored import AnchoredLaw
 
 Array = NDArray[np.float64]
 Clock = tuple[tuple[float, float], ...]
@@ -41,7 +43,7 @@ def presses(
         for k in _ends(problem):
             turns = tuple(float(x * depth[k]) for x in (0.7, 0.85, 1.0))
             clock = _clock(depth[k], scenes[k].approach.speed)
-            yield Press(_press(scenes[k].pair, constants, turns, clock), (k,))
+            yield Press(_press(scenes[k], constants, turns, clock), (k,))
         return
     alike: dict[tuple[object, ...], list[int]] = {}
     for k, s in enumerate(scenes):
@@ -49,7 +51,7 @@ def presses(
     for these in alike.values():
         low, high = depth[these].min(), depth[these].max()
         turns = tuple(float(x) for x in np.geomspace(min(low, 0.3 * high), high, _TURNS))
-        yield Press(_press(scenes[these[0]].pair, constants, turns, ()), tuple(these))
+        yield Press(_press(scenes[these[0]], constants, turns, ()), tuple(these))
 
 
 def _ends(problem: Problem) -> list[int]:
@@ -70,12 +72,10 @@ def _clock(depth: float, speed: float) -> Clock:
 
 
 def _press(
-    pair: Pair,
-    constants: Constants,
-    turns: tuple[float, ...],
-    clock: Clock,
+    scene: Scene, constants: Constants, turns: tuple[float, ...], clock: Clock
 ) -> fem.ContactProblem:
-    metal = _flowing(pair, constants)
+    known = scene.law.metal(scene.pair) if isinstance(scene.law, AnchoredLaw) else scene.pair
+    metal = _flowing(known, scene.pair, constants)
     last = min(_DEEPER * max(turns), DEEPEST)
     first = min(0.3 * fem.critical_depth(metal), 1e-2 * last)
     return fem.ContactProblem(
@@ -84,16 +84,23 @@ def _press(
     )  # fmt: skip
 
 
-def _flowing(pair: Pair, constants: Constants) -> Pair:
-    """The pair with the flow law in the body that yields first."""
-    weak = "flat" if pair.flat.strength <= pair.sphere.strength else "sphere"
-    body = getattr(pair, weak)
-    curve = rate = None
+def _flowing(metal: Pair, stated: Pair, constants: Constants) -> Pair:
+    """The metal with the flow law in the body that yields first."""
+    weak = "flat" if stated.flat.strength <= stated.sphere.strength else "sphere"
+    body = getattr(metal, weak)
+    curve = body.flow and body.flow.curve
+    rate = None
     if "work-hardening" in constants:
         k = constants["work-hardening"]
-        curve = ludwik(Sy=body.Sy, K=k["hardening_ratio"] * body.Sy, n=k["hardening_exponent"])
+        ratio, n = k["hardening_ratio"], k["hardening_exponent"]
+        if curve is None:
+            curve = ludwik(Sy=body.Sy, K=ratio * body.Sy, n=n)
+        else:
+            # what is named acts on top of the curve that the set came with
+            p = np.array(curve.strain)
+            curve = tabulated(p, np.array(curve.stress) * (1.0 + ratio * p**n))
     if "strain-rate-hardening" in constants:
         k = constants["strain-rate-hardening"]
         q = 1.0 / k["rate_exponent"]
         rate = Rate("cowper-symonds", 1000.0 / k["rise_at_1000_per_s"] ** q, q)
-    return replace(pair, **{weak: body.with_(flow=Flow(curve=curve, rate=rate))})
+    return replace(metal, **{weak: body.with_(flow=Flow(curve=curve, rate=rate))})

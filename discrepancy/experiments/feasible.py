@@ -31,11 +31,14 @@ class Candidate:
         The impact.
     built
         Table of a striker that is to be built; none for one of the set's own.
+    like
+        The set's striker of whose metal it is; itself if nothing is built.
     """
 
     change: str
     condition: Condition
     built: StrikerTable | None = None
+    like: str = ""
 
 
 def candidates_of(problem: Problem) -> list[Candidate]:
@@ -92,11 +95,15 @@ def _built(table: StrikerTable, name: str, c: Condition) -> Iterable[Candidate]:
                 mass_kg=Quantity(value=mass * ratio**3),
             )
             text = f"build a ball like {name} with a radius of {1e3 * radius:.3g} mm"
-            yield Candidate(f"{text}, {where}", replace(c, striker=f"{name} x {ratio:g}"), changed)
+            yield Candidate(
+                f"{text}, {where}", replace(c, striker=f"{name} x {ratio:g}"), changed, name
+            )
             continue
         changed = _changed(table, tip_radius_m=Quantity(value=radius))
         text = f"build a rod like {name} with a tip radius of {1e3 * radius:.3g} mm"
-        yield Candidate(f"{text}, {where}", replace(c, striker=f"{name} R x {ratio:g}"), changed)
+        yield Candidate(
+            f"{text}, {where}", replace(c, striker=f"{name} R x {ratio:g}"), changed, name
+        )
         if table.length_m is None:
             continue
         length = table.length * ratio
@@ -107,7 +114,9 @@ def _built(table: StrikerTable, name: str, c: Condition) -> Iterable[Candidate]:
             inertia_kg_m2=None,
         )
         text = f"build a rod like {name} but {length:.3g} m long"
-        yield Candidate(f"{text}, {where}", replace(c, striker=f"{name} L x {ratio:g}"), changed)
+        yield Candidate(
+            f"{text}, {where}", replace(c, striker=f"{name} L x {ratio:g}"), changed, name
+        )
 
 
 def _changed(table: StrikerTable, **values: Quantity | None) -> StrikerTable:

@@ -126,8 +126,10 @@ def _trials(
     candidates = candidates_of(problem)
     built = {c.condition.striker: c.built for c in candidates if c.built}
     rig = problem.rig.model_copy(update={"strikers": {**problem.rig.strikers, **built}})
+    laws = {c.condition.striker: problem.laws[c.like or c.condition.striker] for c in candidates}
     conditions = tuple(c.condition for c in candidates)
-    trial = simulator.of(replace(problem, conditions=conditions, rig=rig).with_error())
+    other = replace(problem, laws=laws, conditions=conditions, rig=rig)
+    trial = simulator.of(other.with_error())
     seen = [trial.observe(f.mechanisms, p) for (f, _), p in zip(rivals, points, strict=True)]
     measured = list(dict.fromkeys(problem.cells.observable))
     weight = [p for _, p in rivals]

@@ -142,10 +142,10 @@ def _summary(v: Verdict) -> str:
     p = v.problem
     trials = sum(len(c.trials) for c in p.conditions)
     seen = joined([OBSERVABLES[o].label for o in dict.fromkeys(p.cells.observable)])
-    metal = "elastic bodies" if p.law.name == "hertz" else "a metal that knows no rate"
+    metal = "elastic bodies" if p.law_name == "hertz" else "a metal that knows no rate"
     return (
         f"{trials} trials at {len(p.conditions)} conditions, {len(p.cells)} numbers ({seen}), "
-        f"beside a rigid striker on a rigid base of {metal} (contact law: {p.law.name})."
+        f"beside a rigid striker on a rigid base of {metal} (contact law: {p.law_name})."
     )
 
 

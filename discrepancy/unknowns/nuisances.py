@@ -53,7 +53,7 @@ def nuisances_of(recordings: RecordingSet, conditions: Sequence[Condition]) -> t
     """Return the uncertain numbers of a set, stated and assumed."""
     setup = recordings.setup
     found: list[Nuisance] = []
-    found += _of_body(setup.target, "target", setup.target.law == "elastic-plastic")
+    found += _of_body(setup.target, "target", setup.target.yields)
     used = sorted({c.striker for c in conditions})
     for name in used:
         table = setup.strikers[name]

@@ -183,7 +183,7 @@ def check_duration(found: RecordingSet) -> list[Finding]:
 
 
 def _pressure(view: TrialView) -> Reading | None:
-    if view.found.setup.target.law != "elastic-plastic":
+    if not view.found.setup.target.yields:
         return None
     return view.of_striker("pressure", lambda: _hardness(view))
 

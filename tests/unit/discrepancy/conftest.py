@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from collections import defaultdict
 from collections.abc import Sequence
 from dataclasses import dataclass, field, replace
 from html.parser import HTMLParser
@@ -61,6 +62,7 @@ class Problem:
         default_factory=lambda: SimpleNamespace(freedom=np.zeros(0), count=0, parts={}, rows={})
     )
     rig: Any = None
+    laws: Any = field(default_factory=lambda: defaultdict(lambda: None))
     without_modulus: Any = field(default_factory=lambda: {"target": (), "striker": ()})
 
     @property

@@ -90,7 +90,7 @@ def test_any_sound_set_comes_back_from_its_files(data, tmp_path_factory):
         format="recording-set/1",
         description=data.draw(words),
         target=TargetTable(E_Pa=data.draw(st.none() | moduli), law=data.draw(st.sampled_from(
-            ["elastic-plastic", "elastic", "measured-restitution"]))),
+            ["elastic-plastic", "table", "elastic", "measured-restitution"]))),
         strikers={striker: rod},
         noise={observable: data.draw(numbers)},
     )  # fmt: skip

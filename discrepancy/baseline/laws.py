@@ -1,0 +1,145 @@
+"""Contact laws of a recording set's strikers: what its metals are known to do.
+
+Without more, the fitted law at the stated strength. Where a body comes with a flow curve, the law
+of metals that harden; where the set's own pair was solved by finite elements, that. Both are known
+at the stated numbers; around them the fitted law says how the contact changes (`AnchoredLaw`).
+"""
+
+from __future__ import annotations
+
+import copy
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import replace
+from functools import cache, lru_cache
+from typing import TypeVar
+
+from ...core.flow import Flow
+from ...core.material import Material, Pair
+from ...core.rig import BodyTable, TargetTable
+from ...models import LAWS
+from ...models.anchored import anchored
+from ...models.base import ContactLaw
+from ...models.fitted import ClosedForm
+from ...models.table import table_law
+from ...recordings import RecordingSet
+from .solve import solved_pair
+
+_APART = 0.02  # between a stated strength and that of the flow curve, from which a note says so
+Law = TypeVar("Law", bound=ContactLaw)
+Progress = Callable[[str], None]
+
+
+def without_curves(target: TargetTable) -> ContactLaw:
+    """Return the law of a set that says of its metals what a data sheet does."""
+    return _shared("fitted" if target.yields else "hertz")
+
+
+def laws_of(
+    recordings: RecordingSet, pairs: Mapping[str, Pair], depths: Mapping[str, Sequence[float]],
+    *, solve: bool, progress: Progress,
+) -> tuple[dict[str, ContactLaw], tuple[str, ...]]:  # fmt: skip
+    """Return the law of every striker's contact, and what a reader must know of it.
+
+    Parameters
+    ----------
+    recordings
+        The set, with the flow curves that it came with.
+    pairs
+        Striker to its two bodies as stated.
+    depths
+        Striker to Delta/R of the peaks of its impacts.
+    solve
+        Whether pairs are solved by finite elements.
+    progress
+        Called with a line before a solve.
+    """
+    target = recordings.setup.target
+    plain = without_curves(target)
+    if not isinstance(plain, ClosedForm):
+        return dict.fromkeys(pairs, plain), ()
+    notes = [line for key in recordings.flows for line in _apart(recordings, key)]
+    if solve and target.Sy_Pa is None and target.hardness_Pa is None:
+        solve = False
+        notes.append("target.Sy_Pa is not stated: the pair was not solved by finite elements")
+    alike: dict[tuple[Material, Material], list[str]] = {}
+    for name, pair in pairs.items():
+        metal = _metal(recordings, name, pair)
+        alike.setdefault((metal.sphere, metal.flat), []).append(name)
+    found: dict[str, ContactLaw] = {}
+    for names in alike.values():
+        stated = pairs[names[0]]
+        metal = _metal(recordings, names[0], stated)
+        law: ContactLaw = plain
+        if not metal.perfectly_plastic:
+            law = _anchored(plain, LAWS["hardening"], metal, stated)
+        if solve:
+            reached = [d for name in names for d in depths[name]]
+            table, told = solved_pair(recordings.name, metal, reached, progress)
+            notes += told
+            if table is not None:
+                one = table_law([table], name="finite elements of the pair")
+                law = _anchored(plain, one, metal, stated, deepest=float(table.curve.depth[-1]))
+        found |= dict.fromkeys(names, law)
+    return found, tuple(notes)
+
+
+def _metal(recordings: RecordingSet, striker: str, pair: Pair) -> Pair:
+    """The two bodies with the flow curves that the set came with."""
+    setup, flows = recordings.setup, recordings.flows
+
+    def body(key: str, table: BodyTable, plain: Material) -> Material:
+        if key not in flows or table.Sy_Pa is None:
+            return plain
+        # what a sheet states is what the piece has; the curve gives the shape
+        curve = flows[key].curve(plain.Sy)
+        return plain.with_(Sy=curve.strength, flow=Flow(curve))
+
+    key = f"strikers.{striker}"
+    return replace(
+        pair, sphere=body(key, setup.strikers[striker], pair.sphere),
+        flat=body("target", setup.target, pair.flat),
+    )  # fmt: skip
+
+
+def _apart(recordings: RecordingSet, key: str) -> list[str]:
+    body = recordings.setup.bodies[key]
+    measured = recordings.flows[key].strength
+    if body.Sy_Pa is None or abs(body.Sy_Pa.value / measured - 1.0) < _APART:
+        return []
+    return [
+        f"{key}.flow_curve reaches {measured / 1e6:.4g} MPa at 0.2 %: it is scaled to the stated "
+        f"Sy_Pa of {body.Sy_Pa.value / 1e6:.4g} MPa"
+    ]
+
+
+def _anchored(
+    plain: ClosedForm, anchor: ContactLaw, metal: Pair, stated: Pair, *, deepest: float = 0.6
+) -> ContactLaw:
+    weak = metal.sphere if stated.weaker is stated.sphere else metal.flat
+    law = anchored(
+        _plainly(plain.name), anchor, at=metal, stated=stated, deepest=deepest,
+        hardens=weak.flow is not None,
+    )  # fmt: skip
+    return _remembering(law)
+
+
+def _plainly(name: str) -> ClosedForm:
+    law = LAWS[name]
+    assert isinstance(law, ClosedForm)
+    return law
+
+
+@cache
+def _shared(name: str) -> ContactLaw:
+    return _remembering(LAWS[name])
+
+
+def _remembering(law: Law) -> Law:
+    """Return a copy of a law that keeps the numbers of the pairs it was asked for.
+
+    A fit asks for the same pair once a condition and point; working them out anew costs more than
+    the impact.
+    """
+    kept = copy.copy(law)
+    object.__setattr__(kept, "parameters", lru_cache(maxsize=4096)(law.parameters))
+    return kept
