@@ -1,0 +1,442 @@
+"""What grows with the number of cases, of recording sets and of workers, and what each costs.
+
+    .venv/bin/python benchmarks/bench_scale.py          about six minutes; 2 GB of disk, 4 of memory
+    .venv/bin/python benchmarks/bench_scale.py --quick  about one, at a tenth of the sizes
+
+Real published cases go into a store one by one through `Store.put`. The larger stores are these
+groups copied, each with a Poisson ratio smaller by up to 1e-4, its own id, name and digest, sealed
+as the store seals. Everything that is timed goes through the functions that the commands use, each
+in a process of its own for its peak of memory (what the process held before is taken off). The last
+column is the share of one case in the largest over that in the smallest, or of one call where the
+row says `one`: 1 where nothing grows. The cluster, workers and scheduler too, lies in this one
+process, over tcp, and solves nothing.
+"""
+
+from __future__ import annotations
+
+import argparse
+import json
+import multiprocessing
+import resource
+import shutil
+import tempfile
+import time
+import tracemalloc
+from collections.abc import Callable, Iterable
+from dataclasses import replace
+from pathlib import Path
+from typing import Any
+
+import h5py
+import numpy as np
+from dentscope import fem
+from dentscope.campaigns import (
+    Case,
+    CaseRecord,
+    Design,
+    Forecast,
+    Store,
+    distinct_cases,
+    publish,
+    read_curves,
+    read_published,
+    store,
+)
+from dentscope.campaigns.contents import DIGEST, SEALED_FROM, read_tree, seal
+from dentscope.campaigns.parts import CHECKSUMS, part_of
+from dentscope.campaigns.schema import FORMAT
+from dentscope.core.errors import Ending, InputError, Outcome
+from dentscope.fem.solution import Counters, Curve, Profile, Unloading
+from dentscope.recordings import read
+from dentscope.recordings.checks import audit
+from dentscope.recordings.shipped import FOLDER, shipped_sets
+
+PUBLISHED = Path("data/campaign")
+BASE = 107  # cases that are put one by one
+PUTS = 2  # timed at each size
+
+
+def solution_of(record: CaseRecord) -> fem.Solution:
+    """What a worker would hand over for a published case."""
+    done, shapes = Outcome(Ending.COMPLETED), record.profiles
+    return fem.Solution(
+        problem=record.case.problem,
+        accuracy=fem.Accuracy(**record.accuracy),
+        outcome=done,
+        loading=Curve(**record.curve),
+        unloadings=tuple(
+            Unloading(
+                u.depth, Curve(**u.curve), u.residual_sphere, u.residual_flat, **u.profiles,
+                steps=40, outcome=done,
+            )
+            for u in record.unloadings
+        ),
+        snapshots=(),
+        counters=Counters(**{k: record.counters.get(k, 0) for k in Counters.__annotations__}),
+        mesh_digest=record.mesh,
+        profiles=tuple(
+            Profile(float(depth), *(_there(shapes[n][k]) for n in shapes if n != "depth"))
+            for k, depth in enumerate(shapes["depth"])
+        ),
+    )  # fmt: skip
+
+
+def _there(row: Any) -> Any:
+    return row[np.isfinite(row)]
+
+
+def neighbour(specification: dict[str, Any], number: int) -> Case:
+    """The same case with a Poisson ratio smaller by a millionth or more: another id."""
+    spec = json.loads(json.dumps(specification))
+    body = spec["flat"] if "nu" in spec["flat"] else spec["sphere"]
+    body["nu"] -= 1e-6 * number
+    spec["name"] += f"-copy-{number}"
+    return Case.from_specification(spec)
+
+
+def apart(call: Callable[..., Any], *args: Any) -> tuple[float, float, Any]:
+    """Wall seconds, MB above what was held before, and the answer of a call in a process."""
+    context = multiprocessing.get_context("fork")
+    mine, theirs = context.Pipe(duplex=False)
+
+    def serve() -> None:
+        before = resource.getrusage(resource.RUSAGE_SELF).ru_maxrss
+        started = time.perf_counter()
+        answer = call(*args)
+        gone = time.perf_counter() - started
+        theirs.send((gone, (resource.getrusage(resource.RUSAGE_SELF).ru_maxrss - before) / 1e3,
+                     answer))  # fmt: skip
+
+    process = context.Process(target=serve)
+    process.start()
+    theirs.close()
+    found: tuple[float, float, Any] = mine.recv()
+    process.join()
+    return found
+
+
+def show(title: str, sizes: Iterable[int], rows: list[tuple[str, str, list[float]]]) -> None:
+    """Print a table: totals at each size, and how the share of one grows."""
+    sizes = list(sizes)
+    print(f"\n{title}\n{'':44}" + "".join(f"{n:>11,}" for n in sizes) + "   per one")
+    for name, unit, values in rows:
+        ones = [v if name.startswith("one ") else v / n for v, n in zip(values, sizes, strict=True)]
+        each = ones[-1] / ones[0] if ones[0] else float("nan")
+        shown = "".join(f"{v:11.4g}" for v in values)
+        print(f"{f'{name} [{unit}]':44}{shown}   x {each:.2f}", flush=True)
+
+
+def put_all(path: Path, records: list[CaseRecord]) -> list[float]:
+    """Seconds of each put."""
+    times = []
+    for record in records:
+        solution = solution_of(record)
+        started = time.perf_counter()
+        Store(path).put(record.case, solution, computed_by=record.environment)
+        times.append(time.perf_counter() - started)
+    return times
+
+
+def grow(base: Path, places: dict[int, Path]) -> None:
+    """Make stores of so many cases from one of a few."""
+    draft = base.with_suffix(".draft")
+    with h5py.File(base) as old:
+        trees = {key: read_tree(group) for key, group in old["cases"].items()}
+        made = 0
+        for size, place in places.items():
+            layout = {"libver": ("v110", "v110")}
+            new = (
+                h5py.File(draft, "r+", **layout) if made else
+                h5py.File(draft, "w", userblock_size=SEALED_FROM, **layout)
+            )  # fmt: skip
+            with new:
+                new.attrs["format"] = FORMAT
+                cases = new.require_group("cases")
+                while made < size:
+                    key = list(trees)[made % len(trees)]
+                    tree = trees[key]
+                    spec = json.loads(tree.attributes["specification"])
+                    case = neighbour(spec, 1 + made // len(trees))
+                    about = tree.attributes | {"specification": json.dumps(case.specification())}
+                    old.copy(old["cases"][key], cases, name=case.id)
+                    attributes = cases[case.id].attrs
+                    attributes["specification"] = about["specification"]
+                    attributes[DIGEST] = replace(tree, attributes=about).digest()
+                    made += 1
+            image = draft.read_bytes()
+            place.write_bytes(seal(image) + memoryview(image)[SEALED_FROM:])
+    draft.unlink()
+
+
+def stores(folder: Path, records: list[CaseRecord], sizes: list[int], base: int) -> None:
+    """What each call on a campaign file costs."""
+    step = len(records) // base
+    first, later = records[::step][:base], records[step // 2 :: step][: PUTS * len(sizes)]
+    path = folder / "base.h5"
+    _, _, times = apart(put_all, path, first)
+    early, late, size = np.mean(times[:10]), np.mean(times[-10:]), path.stat().st_size
+    print(f"\n{base} cases put into an empty store: {early:.2f} s each of the first ten, "
+          f"{late:.2f} s of the last ten, {size / base / 1e3:.0f} kB each")  # fmt: skip
+    places = {n: folder / f"{n}.h5" for n in sizes}
+    made, _, _ = apart(grow, path, places)
+    print(f"stores of {sizes} copied from them: {made:.0f} s")
+    rows: dict[str, list[float]] = {}
+    for number, (size, place) in enumerate(places.items()):
+        rows.setdefault("bytes [MB]", []).append(place.stat().st_size / 1e6)
+        wanted = next(iter(Store(place).statuses()))
+        calls: dict[str, tuple[Any, ...]] = {
+            "statuses": (Store(place).statuses,),
+            "summaries": (_counted, Store(place).summaries),
+            "one case": (_counted, Store(place).read, wanted),
+        }
+        mine = later[PUTS * number : PUTS * (number + 1)]
+        calls["one put"] = (put_all, place, mine)
+        for name, call in calls.items():
+            gone, peak, answer = apart(*call)
+            value = float(np.mean(answer)) if name == "one put" else gone
+            rows.setdefault(f"{name} [s]", []).append(value)
+            rows.setdefault(f"{name} [MB held]", []).append(peak)
+        place.unlink() if size != sizes[0] else None
+    show("A campaign file of so many cases", sizes, _rows(rows))
+    whole = {n: apart(_counted, Store(p).read_all)
+             for n, p in ((base, path), (sizes[0], places[sizes[0]]))}  # fmt: skip
+    show("Every case read from it", whole, [
+        ("read_all", "s", [found[0] for found in whole.values()]),
+        ("read_all", "MB held", [found[1] for found in whole.values()]),
+    ])  # fmt: skip
+    print("beyond the largest file:", apart(_beyond, path, later[0])[2])
+
+
+def _rows(rows: dict[str, list[float]]) -> list[tuple[str, str, list[float]]]:
+    return [(name.split(" [")[0], name.split("[")[1][:-1], values) for name, values in rows.items()]
+
+
+def _counted(call: Callable[..., Any], *args: Any) -> int:
+    kept = call(*args)
+    return len(kept) if isinstance(kept, list) else 1
+
+
+def _beyond(path: Path, record: CaseRecord) -> str:
+    """A put that takes the file over the most that is read, and what is said after it."""
+    store.MOST_BYTES = path.stat().st_size + 1000  # in place of 2 GB
+    put_all(path, [record])
+    told = ["put accepted"]
+    for name, call in (("statuses", Store(path).statuses), ("repair", Store(path).repair)):
+        try:
+            call()
+            told.append(f"{name} works")
+        except InputError as error:
+            told.append(f"{name} refused ({error.message})")
+    return "; ".join(told)
+
+
+def parts(folder: Path, records: list[CaseRecord], factors: list[int], base: int) -> None:
+    """Published parts: read, made, and how many are allowed."""
+    sums = (PUBLISHED / CHECKSUMS).read_text().splitlines()
+    found = []
+    for factor in factors:
+        place = folder / f"parts-{factor}"
+        place.mkdir()
+        lines = []
+        for line in sums:
+            digest, name = line.split()
+            for k in range(factor):
+                shutil.copyfile(PUBLISHED / name, place / f"{k}-{name}")
+                lines.append(f"{digest}  {k}-{name}\n")
+        (place / CHECKSUMS).write_text("".join(lines))
+        size = sum(p.stat().st_size for p in place.glob("*.h5")) / 1e6
+        found.append((size, *apart(_counted, read_curves, place)))
+        shutil.rmtree(place)
+    sizes = [row[3] for row in found]
+    show("Published parts of so many cases (the parts copied)", sizes, [
+        ("bytes", "MB", [row[0] for row in found]),
+        ("read_curves", "s", [row[1] for row in found]),
+        ("read_curves", "MB held", [row[2] for row in found]),
+    ])  # fmt: skip
+    some = [base, len(records)]
+    made = [apart(_part, records[:n]) for n in some]
+    show("One part made of so many cases", some, [
+        ("part_of", "s", [row[0] for row in made]),
+        ("part_of", "MB held", [row[1] for row in made]),
+        ("bytes", "MB", [row[2] / 1e6 for row in made]),
+    ])  # fmt: skip
+    print(_published_too_much(folder))
+
+
+def _published_too_much(folder: Path) -> str:
+    """Three more parts beside those of today."""
+    some, place = folder / "some.h5", folder / "published"
+    grow(folder / "base.h5", {40: some})
+    shutil.copytree(PUBLISHED, place)
+    own = Store(some).read_all()
+    design = Design("bench", "", lambda: tuple(record.case for record in own))
+    try:
+        made = publish(design, some, place, most_bytes=int(_part(own) / 2.2))
+        return f"{len(made)} more parts published beside those of today"
+    except InputError as error:
+        return f"parts published beside those of today: refused ({error.message}; {error.allowed})"
+
+
+def _part(records: list[CaseRecord]) -> int:
+    return len(part_of(records, about={"design": "bench", "numerics_version": "5"}))
+
+
+def coordinator(records: list[CaseRecord], sizes: list[int]) -> None:
+    """What the process that runs a campaign holds and computes for each case, stored or not."""
+    rows: dict[str, list[float]] = {}
+    for size in sizes:
+        specs = [record.case.specification() for record in records]
+        tracemalloc.start()
+        made = tuple(_copies(specs, size))
+        held = tracemalloc.get_traced_memory()[0]
+        orders = {case.name: case.specification() for case in made}
+        both = tracemalloc.get_traced_memory()[0]
+        tracemalloc.stop()
+        started = time.perf_counter()
+        cases = distinct_cases(Design("bench", "", lambda m=made: m))
+        gone = time.perf_counter() - started
+        rows.setdefault("ids of the cases [s]", []).append(gone)
+        rows.setdefault("held as cases [MB]", []).append(held / 1e6)
+        rows.setdefault("held as orders, own workers only [MB]", []).append((both - held) / 1e6)
+        half = list(cases.values())
+        ended = [(case, 30.0) for case in half[: size // 2]]
+        forecast = Forecast(half[size // 2 :], workers=2, ended=ended)
+        started = time.perf_counter()
+        for k in range(3):
+            forecast.end(half[size // 2 + k], 30.0 * (k + 1))
+            forecast.left_s(30.0 * (k + 1))
+        rows.setdefault("one forecast, after a case has ended [s]", []).append(
+            (time.perf_counter() - started) / 3
+        )
+        del orders
+    show("A design of so many cases in the coordinator", sizes, _rows(rows))
+
+
+def _copies(specs: list[dict[str, Any]], size: int) -> Iterable[Case]:
+    return (neighbour(specs[k % len(specs)], 1 + k // len(specs)) for k in range(size))
+
+
+def cluster(records: list[CaseRecord], crews: list[int], count: int) -> None:
+    """The campaign's own hand-out to a dask cluster whose workers answer at once."""
+    from dentscope.campaigns.executor import DaskExecutor
+    from distributed import LocalCluster
+
+    answer = solution_of(records[0])
+    made = list(_copies([r.case.specification() for r in records], count))
+    cases = {case.id: case for case in made}
+    rows: dict[str, list[float]] = {}
+    for crew in crews:
+        with LocalCluster(
+            n_workers=crew, threads_per_worker=1, processes=False, protocol="tcp://",
+            dashboard_address=None, memory_limit=None, silence_logs=50,
+        ) as there:  # fmt: skip
+            executor = replace(
+                DaskExecutor.connect(there.scheduler_address, timeout_s=60.0),
+                work=lambda _spec, _limit: answer,
+            )
+            asked = []
+            for _ in range(20):
+                started = time.perf_counter()
+                executor._worker_count()
+                asked.append(time.perf_counter() - started)
+            started, most = time.perf_counter(), 0
+            for number, _ in enumerate(executor.run(cases, time_limit_s=60.0)):
+                if number % 10 == 0:
+                    most = max(most, len(there.scheduler.tasks))
+            gone = time.perf_counter() - started
+            executor.client.close()
+        rows.setdefault("who is there, asked once, the fastest of 20 [ms]", []).append(
+            1e3 * min(asked)
+        )
+        rows.setdefault("one case handed out and back [ms]", []).append(1e3 * gone / count)
+        rows.setdefault("most tasks in the scheduler", []).append(float(most))
+    print(f"\nA dask cluster of so many workers, {count} cases that take no time\n{'':50}"
+          + "".join(f"{n:>11,}" for n in crews))  # fmt: skip
+    for name, values in rows.items():
+        print(f"{name:50}" + "".join(f"{v:11.4g}" for v in values), flush=True)
+
+
+def recordings(folder: Path, count: int, rows: list[int]) -> None:
+    """Reading and audit of many sets, and of one long one."""
+    names = shipped_sets()
+    for k in range(count):
+        shutil.copytree(FOLDER / names[k % len(names)], folder / "sets" / f"{k}")
+    few = count // 10
+    found = [apart(_audited, folder / "sets", n) for n in (few, count)]
+    show("So many recording sets read and audited", (few, count), [
+        ("all", "s", [row[0] for row in found]), ("all kept", "MB held", [row[1] for row in found]),
+    ])  # fmt: skip
+    long = []
+    for n in rows:
+        place = folder / "sets" / f"long-{n}"
+        shutil.copytree(FOLDER / "kharaz-2001-oblique", place)
+        head, *lines = (place / "trials.csv").read_text().strip().splitlines()
+        body = (f"{k}-{lines[k % len(lines)]}" for k in range(n))
+        (place / "trials.csv").write_text("\n".join((head, *body)) + "\n")
+        long.append(apart(_audited_one, place))
+    show("One set of so many trials", rows, [
+        ("read", "s", [row[2][0] for row in long]), ("audit", "s", [row[2][1] for row in long]),
+        ("both", "MB held", [row[1] for row in long]),
+    ])  # fmt: skip
+
+
+def _audited(folder: Path, count: int) -> int:
+    kept = []
+    for k in range(count):
+        found = read(folder / f"{k}")
+        kept.append((found, audit(found)))
+    return len(kept)
+
+
+def _audited_one(folder: Path) -> tuple[float, float]:
+    started = time.perf_counter()
+    found = read(folder)
+    middle = time.perf_counter()
+    audit(found)
+    return middle - started, time.perf_counter() - middle
+
+
+def ledger(folder: Path, sizes: list[int]) -> None:
+    """One more event of a proof's ledger, after so many."""
+    from dentscope.studies.proof.seal import Ledger, _chain
+
+    times = []
+    for size in sizes:
+        before, lines = "", []
+        for k in range(size):
+            event = {"event": "verdict", "set": f"set-{k}", "verdict": "0" * 64, "exit": 0,
+                     "cpu_s": 15.0, "wall_s": 20.0, "message": ""}  # fmt: skip
+            before = _chain(before, event)
+            lines.append(json.dumps(event | {"chain": before}, sort_keys=True) + "\n")
+        path = folder / f"ledger-{size}.jsonl"
+        path.write_text("".join(lines))
+        started = time.perf_counter()
+        Ledger(path).add(event="verdict", set="next")
+        times.append(time.perf_counter() - started)
+    print("\nOne event added to a proof's ledger of "
+          + ", ".join(f"{n:,}: {t:.3f} s" for n, t in zip(sizes, times, strict=True)))  # fmt: skip
+
+
+def main() -> None:
+    """Print every table."""
+    parser = argparse.ArgumentParser()
+    parser.add_argument("--quick", action="store_true")
+    quick = parser.parse_args().quick
+    started = time.perf_counter()
+    records = read_published(PUBLISHED)
+    today, base = len(records), 25 if quick else BASE
+    sizes = [today // 10, today * 3 // 10, today] if quick else [today, 3 * today, 10 * today]
+    print(f"{today} published cases; the column of today's size is {today:,}")
+    with tempfile.TemporaryDirectory() as name:
+        folder = Path(name)
+        recordings(folder, *((100, [2_000, 20_000]) if quick else (1000, [20_000, 200_000])))
+        stores(folder, records, sizes, base)
+        parts(folder, records[:: 10 if quick else 1], [1] if quick else [1, 3, 10], base)
+        coordinator(records[::10], sizes)
+        ledger(folder, [200, 2_000] if quick else [200, 2_000, 20_000])
+        cluster(records, [2, 20] if quick else [2, 20, 100], 200 if quick else 400)
+    print(f"\n{time.perf_counter() - started:.0f} s")
+
+
+if __name__ == "__main__":
+    main()
