@@ -6,6 +6,7 @@ they end. A worker that dies costs its case one more try, never the run.
 
 from __future__ import annotations
 
+import math
 import time
 from collections.abc import Callable, Generator, Mapping
 from concurrent.futures import CancelledError
@@ -190,9 +191,13 @@ class DaskExecutor:
         todo = iter(cases.items())
         running = as_completed()
         keys: dict[str, str] = {}
+        workers, counted = 0, -math.inf
 
         def fill() -> None:
-            while len(keys) < _WINDOW * max(1, self._worker_count()):
+            nonlocal workers, counted
+            if time.monotonic() - counted > _LOOK_S:
+                workers, counted = self._worker_count(), time.monotonic()
+            while len(keys) < _WINDOW * max(1, workers):
                 key, case = next(todo, ("", None))
                 if case is None:
                     return

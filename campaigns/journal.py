@@ -51,7 +51,8 @@ def changing(path: Path) -> Iterator[h5py.File]:
     ------
     InputError
         The file or its journal is damaged, or the change cannot be written, for example because
-        the disk is full; the file is as it was, or the journal holds the whole change.
+        the disk is full or the file would be larger than what is read; the file is as it was, or
+        the journal holds the whole change.
     """
     recover(path)
     before = path.read_bytes() if path.exists() else b""
@@ -59,6 +60,12 @@ def changing(path: Path) -> Iterator[h5py.File]:
         check_seal(before, path)
     with new_image(before) as changed:
         yield changed.file
+    if len(changed.sealed) > MOST_BYTES:  # nobody could read it any more
+        raise InputError(
+            f"would hold {len(changed.sealed) / 1e9:.2f} GB; all that it holds is kept",
+            source=str(path),
+            allowed=f"up to {MOST_BYTES / 1e9:g} GB; a file elsewhere goes on",
+        )
     write_file(journal_of(path), journalled(before, changed.sealed))
     recover(path)
 

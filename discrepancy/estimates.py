@@ -129,14 +129,23 @@ def notes_of(problem: Problem, best: Fit) -> tuple[str, ...]:
     return (*notes, *problem.notes)
 
 
-def misfit_of(problem: Problem, base: Fit) -> dict[str, float]:
+def misfit_of(problem: Problem, base: Fit, stated: Array) -> dict[str, float]:
     """Return the baseline's misfit before anything may move, and which part took how much of it.
 
+    Parameters
+    ----------
+    problem, base
+        What was compared, and the fit of the baseline.
+    stated
+        (m,) predictions of the cells with every input as stated.
+
+    Notes
+    -----
     With r the residual as stated, s_k what part k moves of it at the posterior mean and N the
     noise, a part took s_k^T N^-1 r / r^T N^-1 r; what no part took is `rest`. The law's error is
     shared between the finite elements and the metal by their variances.
     """
-    r, J, k = base.residual, base.linear.J, problem.n_nuisances
+    r, J, k = problem.cells.value - stated, base.linear.J, problem.n_nuisances
     by_noise = np.linalg.solve(base.linear.noise, r)
     whole = max(float(r @ by_noise), 1e-12)
     sheet = float(J[:, :k] @ base.z[:k] @ by_noise) / whole

@@ -6,6 +6,9 @@ import math
 from dataclasses import dataclass
 from typing import Any
 
+import numpy as np
+from numpy.typing import NDArray
+
 from .. import __version__
 from .choice.decide import Choice
 from .correction import Correction
@@ -36,6 +39,8 @@ class Verdict:
         By mechanism: why it was not fitted; the smallest value that would have been seen.
     misfit
         How much of the baseline's misfit the data sheet, the law and the metal took.
+    stated
+        (m,) predictions of the cells with every input as stated.
     ranking
         All fits, and the problem that they were fitted to.
     best
@@ -59,6 +64,7 @@ class Verdict:
     limits: dict[str, float]
     improvement: dict[str, float]
     misfit: dict[str, float]
+    stated: NDArray[np.float64]
     corrections: tuple[Correction, ...]
     proposals: tuple[Proposal, ...]
     notes: tuple[str, ...]

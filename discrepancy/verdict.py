@@ -32,7 +32,7 @@ from .estimates import (
 )
 from .experiments.next_experiment import propose
 from .findings import Verdict
-from .forward import Simulator
+from .forward import Point, Simulator
 from .heldout import Repeated, held_out, repeated_choice
 from .inference.sampling import confirm_evidence
 from .locate import locate
@@ -108,7 +108,8 @@ def diagnose(
     proposals = propose(simulator, ranking, odds, rng)
     corrections = correct(simulator, ranking.base) if choice.verdict == OUTSIDE else ()
     misses = int(choice.verdict not in ("adequate", "undetermined"))
-    misfit = misfit_of(ranking.problem, ranking.base)
+    stated = simulator.predict((), [Point(np.zeros(ranking.problem.n_z))])[0]
+    misfit = misfit_of(ranking.problem, ranking.base, stated)
     notes = (*notes_of(ranking.problem, best), *law_notes(ranking.problem, misfit))
     return Verdict(
         name=recordings.name, seed=seed, choice=choice, audit=audit,
@@ -120,7 +121,7 @@ def diagnose(
         surprise=surprises_of(ranking.problem, best), excluded=ranking.excluded,
         limits=limits_of(ranking, judge.calibration),
         improvement=improvement_of(base, again.score, again.same), misfit=misfit,
-        corrections=corrections, proposals=tuple(proposals[:PROPOSED]), notes=notes,
+        stated=stated, corrections=corrections, proposals=tuple(proposals[:PROPOSED]), notes=notes,
         ranking=ranking, best=best, impacts=simulator.tally.impacts,
     )  # fmt: skip
 

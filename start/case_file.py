@@ -19,6 +19,7 @@ _SpeedRow = Annotated[tuple[float, float], Listed]
 _SHALLOWEST = 1e-9
 """Least Delta/R: the force of the first depth is off by 5 % at 1e-10, by 0.2 % at 1e-8."""
 _CURVE_COLUMNS = ("plastic_strain", "stress_Pa")
+_AS_MEASURED = "true_stress_Pa"  # the same column in a recording set
 _HARDENING = {
     "swift": ("K_Pa", "n"),
     "ludwik": ("K_Pa", "n"),
@@ -222,6 +223,8 @@ class CaseFile(InputTable):
 def read_flow_curve(path: Path) -> FlowCurve:
     """Read a table of true stress over plastic strain: columns plastic_strain and stress_Pa.
 
+    The second may be called true_stress_Pa, as in a recording set.
+
     Raises
     ------
     InputError
@@ -230,14 +233,17 @@ def read_flow_curve(path: Path) -> FlowCurve:
     from ..recordings.csv_table import Problems, numbers, read_text_table
 
     problems = Problems(str(path))
-    table = read_text_table(path, _CURVE_COLUMNS, problems)
+    table = read_text_table(path, (*_CURVE_COLUMNS, _AS_MEASURED), problems)
+    columns = list(_CURVE_COLUMNS)
     if table is not None:
-        for name in _CURVE_COLUMNS:
+        if _AS_MEASURED in table.columns and columns[1] not in table.columns:
+            columns[1] = _AS_MEASURED
+        for name in columns:
             if name not in table.columns:
                 problems.add("missing", column=name, allowed=" and ".join(_CURVE_COLUMNS))
     if table is None or problems.found:
         raise InputErrors(tuple(problems.found))
-    strain, stress = (numbers(table, name, problems) for name in _CURVE_COLUMNS)
+    strain, stress = (numbers(table, name, problems) for name in columns)
     before = -math.inf
     for row, p, s in zip(table.rows, strain, stress, strict=True):
         if before == -math.inf and p != 0.0:
@@ -245,7 +251,7 @@ def read_flow_curve(path: Path) -> FlowCurve:
         elif not p > before:
             problems.add(f"{p:g}", row=row, column=_CURVE_COLUMNS[0], allowed=f"above {before:g}")
         if not s > 0.0:
-            problems.add(f"{s:g}", row=row, column=_CURVE_COLUMNS[1], allowed="above 0")
+            problems.add(f"{s:g}", row=row, column=columns[1], allowed="above 0")
         before = p
     if len(strain) < 2:
         problems.add(f"{len(strain)} rows", allowed="two or more rows")

@@ -118,11 +118,10 @@ def againsts(v: Verdict) -> tuple[Against, ...]:
 def points_of(v: Verdict) -> tuple[Point, ...]:
     """Return every number of the comparison."""
     cells, conditions = v.problem.cells, v.problem.conditions
-    base = v.ranking.base
+    base, stated = v.ranking.base, v.stated
     along = againsts(v)
     counts = np.array([i not in v.problem.weightless for i in range(len(cells))])
     std = np.where(counts, cells.std, cells.std / WIDER)
-    stated = cells.value - base.residual
     found = []
     for i, name in enumerate(cells.observable):
         row, log = OBSERVABLES[name], bool(cells.is_log[i])

@@ -33,7 +33,9 @@ def headline(v: Verdict) -> str:
             "The simulation as described fails, and nothing that dentscope knows repairs it: the "
             "cause is something else."
         )
-    return "Too few data to say."
+    if any(reason.startswith("too few") for reason in v.reasons):
+        return "Too few data to say."
+    return "These data do not say whether something is missing, or what."
 
 
 def lines(v: Verdict) -> list[str]:

@@ -93,16 +93,17 @@ def reduce_tension(
         strain, stress = sign * np.log(shrunk), stress * shrunk
     modulus, zero = _modulus(strain, stress, source)
     used = modulus.value if E is None else E
+    told = modulus if E is None else Measured(E, math.nan)
     if E is not None and abs(modulus.value / E - 1.0) > 0.2:
         notes.append(
             f"the curve rises with {modulus.value / 1e9:.3g} GPa, not {E / 1e9:.3g}: the machine "
             "gives way; the plastic strain is counted from the curve's own line"
         )
-        used = modulus.value
+        used, told = modulus.value, modulus
     plastic = strain - zero - stress / used
     flow = _rows(plastic, stress, source)
     values = {
-        "E_Pa": modulus, "Sy_Pa": Measured(flow.strength, 0.02 * flow.strength),
+        "E_Pa": told, "Sy_Pa": Measured(flow.strength, 0.02 * flow.strength),
         "largest_stress_Pa": Measured(float(flow.stress[-1]), math.nan),
         "largest_plastic_strain": Measured(float(flow.strain[-1]), math.nan),
     }  # fmt: skip

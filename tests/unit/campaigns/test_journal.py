@@ -47,6 +47,17 @@ def test_a_change_that_fails_leaves_every_byte(tmp_path):
     assert path.read_bytes() == before
 
 
+def test_a_change_beyond_what_is_read_is_refused_and_nothing_is_lost(tmp_path, monkeypatch):
+    path = tmp_path / "a.h5"
+    write(path, "x", 1)
+    before = path.read_bytes()
+    monkeypatch.setattr(journal, "MOST_BYTES", len(before) + 1000)
+    with pytest.raises(InputError, match=r"would hold .* all that it holds is kept"):
+        write(path, "y", 2)
+    assert path.read_bytes() == before
+    assert [p.name for p in tmp_path.iterdir()] == ["a.h5"]
+
+
 @pytest.mark.parametrize("torn", [0, 1, 3, 1000])
 def test_a_writer_that_dies_while_writing_is_finished_by_the_next(tmp_path, monkeypatch, torn):
     path = tmp_path / "a.h5"

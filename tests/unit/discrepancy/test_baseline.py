@@ -5,10 +5,12 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from dentscope.discrepancy import diagnose
 from dentscope.discrepancy.baseline import solve
-from dentscope.discrepancy.forward import Simulator
+from dentscope.discrepancy.forward import Point, Simulator
 from dentscope.discrepancy.inference.fit import fit
 from dentscope.discrepancy.problem import problem_of
+from dentscope.discrepancy.report.series import points_of
 from dentscope.discrepancy.unknowns.lawerror import METAL, WITH_CURVE
 from dentscope.fitting.hardening import hardening_records
 from dentscope.impact import Approach, Scene, Striker, strike
@@ -92,6 +94,20 @@ def test_a_baseline_that_follows_the_curves_meets_a_metal_that_hardens(tmp_path,
     assert misfit(curved) < 0.15 * misfit(plain)
     assert curved.error.parts["force"][1] < plain.error.parts["force"][1]
     assert WITH_CURVE["crater"] < METAL["crater"]
+
+
+def test_as_stated_is_the_simulation_and_not_a_line_through_the_fit(tmp_path, solved):
+    found = diagnose(read(set_of(tmp_path / "set", solved, curves=False)))
+    problem = found.problem
+    stated = Simulator(problem).predict((), [Point(np.zeros(problem.n_z))])[0]
+    assert np.array_equal(found.stated, stated)
+    points = {(p.observable, p.condition): p.as_stated for p in points_of(found)}
+    cells = problem.cells
+    for k, (name, c) in enumerate(zip(cells.observable, cells.condition, strict=True)):
+        if name == "restitution":
+            assert points[name, c + 1] == pytest.approx(stated[k], rel=1e-9)
+    r = (cells.value - stated) / np.sqrt(np.diag(found.ranking.base.linear.noise))
+    assert found.misfit["as_stated"] == pytest.approx(float(r @ r), rel=0.3)
 
 
 def test_a_strength_read_from_a_curve_is_that_of_a_specimen(tmp_path, solved):

@@ -173,6 +173,17 @@ def test_a_metal_that_hardens_to_four_times_its_strength_keeps_its_modulus():
     assert found.flow.strength == pytest.approx(Sy, rel=0.03)
 
 
+def test_a_stated_modulus_stays_and_one_that_the_curve_denies_does_not():
+    E, p = 70e9, np.linspace(0.0, 0.1, 200)
+    stress = 300e6 + 500e6 * p
+    rise = np.linspace(0.0, 300e6 / E, 40)
+    strain, true = np.append(rise, stress[1:] / E + p[1:]), np.append(E * rise, stress[1:])
+    for stated, kept in ((68.9e9, 68.9e9), (200e9, E)):
+        found = reduce_tension(strain, true, strain_is="true", E=stated, source="test")
+        assert found.values["E_Pa"].value == pytest.approx(kept, rel=0.01)
+        assert any("gives way" in note for note in found.notes) == (stated != kept)
+
+
 def test_tension_and_leeb_tables_into_a_set(tmp_path):
     strain = np.concatenate([np.linspace(0, 0.15, 60), np.linspace(0.2, 8.0, 200)])
     stress = np.minimum(200e3 * strain / 100.0, 300.0) + 5.0 * strain

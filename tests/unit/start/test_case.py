@@ -191,6 +191,14 @@ def test_a_mistake_in_a_flow_law_is_one_line(tmp_path, capsys, old, new, words):
         assert word in message
 
 
+def test_a_flow_curve_of_a_recording_set_is_one_of_a_case(tmp_path):
+    as_a_case, as_a_set = (
+        read(tmp_path, curve=CURVE.replace("stress_Pa", name))
+        for name in ("stress_Pa", "true_stress_Pa")
+    )
+    assert as_a_set.pair == as_a_case.pair
+
+
 @pytest.mark.parametrize(
     ("curve", "words"),
     [
