@@ -37,6 +37,7 @@ from dentscope.campaigns import (
     Forecast,
     Store,
     distinct_cases,
+    journal,
     publish,
     read_curves,
     read_published,
@@ -218,9 +219,14 @@ def _counted(call: Callable[..., Any], *args: Any) -> int:
 
 def _beyond(path: Path, record: CaseRecord) -> str:
     """A put that takes the file over the most that is read, and what is said after it."""
-    store.MOST_BYTES = path.stat().st_size + 1000  # in place of 2 GB
-    put_all(path, [record])
-    told = ["put accepted"]
+    most = path.stat().st_size + 1000  # in place of 2 GB
+    store.MOST_BYTES = journal.MOST_BYTES = most
+    told = []
+    try:
+        put_all(path, [record])
+        told.append("put accepted")
+    except InputError as error:
+        told.append(f"put refused ({error.message})")
     for name, call in (("statuses", Store(path).statuses), ("repair", Store(path).repair)):
         try:
             call()
