@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 from numpy.typing import NDArray
@@ -50,6 +50,20 @@ class Condition:
     trials: tuple[int, ...]
     around: Surroundings
     after: int = -1
+
+    @property
+    def incidence(self) -> float:
+        """Angle to the flat [rad]: a rod's lean, and where nothing leans that of the path."""
+        if self.angle < math.pi / 2.0 - 1e-9:
+            return self.angle
+        return math.atan2(self.speed, abs(self.tangential))
+
+    def inclined(self, incidence: float) -> Condition:
+        """Return the impact at another incidence [rad], of the same normal speed."""
+        if self.angle < math.pi / 2.0 - 1e-9 or self.tangential == 0.0:
+            return replace(self, angle=incidence)
+        along = math.copysign(self.speed / math.tan(incidence), self.tangential)
+        return replace(self, tangential=along)
 
 
 def conditions_of(recordings: RecordingSet) -> tuple[Condition, ...]:

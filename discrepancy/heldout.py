@@ -52,7 +52,7 @@ def groups_of(problem: Problem) -> list[NDArray[np.bool_]]:
     keys: list[list[object]] = [
         [c.striker for c in conditions],
         [round(math.log(c.speed) / 0.15) for c in conditions],
-        [round(math.degrees(c.angle) / 2.0) for c in conditions],
+        [round(math.degrees(c.incidence) / 2.0) for c in conditions],
     ]
     masks = []
     for key in keys:

@@ -22,6 +22,9 @@ from .unknowns.covariates import covariates
 
 Array = NDArray[np.float64]
 
+ORDER = "order of testing"
+"""Place of a drift, which lies along no condition."""
+
 
 @dataclass(frozen=True, slots=True)
 class Miss:
@@ -93,6 +96,11 @@ def locate(
         Miss(f.observable, OBSERVABLES[f.observable].phase, f.column,
              f"recordings differ with {f.column}", math.sqrt(-2.0 * f.log_p))
         for f in problem.followed
+    ]  # fmt: skip
+    columns += [
+        Miss(d.observable, OBSERVABLES[d.observable].phase, ORDER,
+             f"recordings {'rise' if d.z > 0 else 'fall'} with the {ORDER}", d.z)
+        for d in sorted(problem.drifts, key=lambda d: -abs(d.z))
     ]  # fmt: skip
     misses = tuple(m for i, m in enumerate(found) if i < least or abs(m.z) > null_max)
     return Located((*columns, *misses), min(threshold, null_max))

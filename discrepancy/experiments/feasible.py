@@ -51,33 +51,34 @@ def candidates_of(problem: Problem) -> list[Candidate]:
     found: list[Candidate] = []
     for name, c in sorted(first.items()):
         fresh = replace(c, after=-1)
-        upright = [_moved(fresh, float(v), c.angle) for v in places]
-        found += [Candidate(f"{name} at {x.speed:.2g} m/s{_at(x)}", x) for x in upright]
+        tried = [_moved(fresh, float(v)) for v in places]
+        found += [Candidate(f"{name} at {x.speed:.2g} m/s{_at(x)}", x) for x in tried]
         found += _angles(problem, fresh, float(np.median(speeds)))
     for name, c in sorted(first.items()):
-        at = _moved(replace(c, after=-1), float(max(speeds)), c.angle)
+        at = _moved(replace(c, after=-1), float(max(speeds)))
         found += _built(problem.rig.strikers[name], name, at)
     return found
 
 
-def _moved(c: Condition, speed: float, angle: float) -> Condition:
-    """Return the impact at another speed and angle, in the same direction of approach."""
+def _moved(c: Condition, speed: float) -> Condition:
+    """Return the impact at another speed, in the same direction of approach."""
     part = speed / c.speed
-    return replace(c, speed=speed, angle=angle, tangential=c.tangential * part, spin=c.spin * part)
+    return replace(c, speed=speed, tangential=c.tangential * part, spin=c.spin * part)
 
 
 def _at(c: Condition) -> str:
-    return "" if c.angle > math.pi / 2.0 - 1e-6 else f" and {math.degrees(c.angle):.0f} degrees"
+    upright = c.incidence > math.pi / 2.0 - 1e-6
+    return "" if upright else f" and {math.degrees(c.incidence):.0f} degrees"
 
 
 def _angles(problem: Problem, c: Condition, speed: float) -> Iterable[Candidate]:
     """Angles between those tested that are not among them."""
-    near = sorted({x.angle for x in problem.conditions if x.striker == c.striker})
+    near = sorted({x.incidence for x in problem.conditions if x.striker == c.striker})
     if len(near) < 2:
         return
     for angle in np.linspace(near[0], near[-1], 2 * _ANGLES + 1):
         if min(abs(angle - a) for a in near) > _NEAR:
-            trial = _moved(c, speed, float(angle))
+            trial = _moved(c, speed).inclined(float(angle))
             text = f"{c.striker} at {math.degrees(angle):.0f} degrees and {speed:.2g} m/s"
             yield Candidate(text, trial)
 

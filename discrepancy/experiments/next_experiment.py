@@ -145,7 +145,7 @@ def _trial(
     table = c.built or problem.rig.strikers[c.condition.striker]
     trial: dict[str, str | float] = {
         "striker": c.condition.striker, "speed_m_s": c.condition.speed,
-        "angle_deg": math.degrees(c.condition.angle), "mass_kg": table.mass_kg.value,
+        "angle_deg": math.degrees(c.condition.incidence), "mass_kg": table.mass_kg.value,
         "tip_radius_m": table.tip_radius_m.value,
     }  # fmt: skip
     kind = "build" if c.built else "trial"

@@ -82,13 +82,9 @@ def againsts(v: Verdict) -> tuple[Against, ...]:
     """Return what varies over the conditions, the speed first even if it does not."""
     c, rigs = v.problem.conditions, v.problem.rig.strikers
     total = np.array([math.hypot(one.speed, one.tangential) for one in c])
-    lean = [
-        one.angle if rigs[one.striker].length > 0.0 else math.atan2(one.speed, abs(one.tangential))
-        for one in c
-    ]
     known = (
         Against("speed_m_s", "approach speed [m/s]", np.array([one.speed for one in c])),
-        Against("angle_deg", "angle [deg]", np.degrees(lean)),
+        Against("angle_deg", "angle [deg]", np.degrees([one.incidence for one in c])),
         Against(
             "tangential_m_s", "tangential speed [m/s]", np.array([one.tangential for one in c])
         ),

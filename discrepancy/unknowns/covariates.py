@@ -2,12 +2,9 @@
 
 from __future__ import annotations
 
-import math
-
 import numpy as np
 from numpy.typing import NDArray
 
-from ..conditions import Condition
 from ..problem import Problem
 
 Array = NDArray[np.float64]
@@ -21,7 +18,7 @@ def covariates(problem: Problem) -> dict[str, Array]:
         "rod length": np.array([problem.rig.strikers[x.striker].length for x in c]),
         "tip radius": np.log([problem.rig.strikers[x.striker].tip_radius_m.value for x in c]),
         "striker mass": np.log([problem.rig.strikers[x.striker].mass_kg.value for x in c]),
-        "angle": np.array([_incidence(x) for x in c]),
+        "angle": np.array([x.incidence for x in c]),
         "tangential speed": np.array([x.tangential for x in c]),
         "temperature": np.array([x.around.temperature for x in c]),
     }
@@ -31,11 +28,6 @@ def covariates(problem: Problem) -> dict[str, Array]:
         if spread > 1e-6 * max(1.0, float(np.max(np.abs(value)))):
             found[name] = (value - value.mean()) / spread
     return found
-
-
-def _incidence(c: Condition) -> float:
-    """Angle to the flat: a rod's lean, and of a ball, which has none, that of its path [rad]."""
-    return min(c.angle, math.atan2(c.speed, abs(c.tangential)))
 
 
 def nearness(problem: Problem, length: float) -> Array:

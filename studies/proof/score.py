@@ -217,6 +217,9 @@ def located(cases: Iterable[Case]) -> list[Case]:
 def _placed(case: Case) -> bool:
     """Whether the first place of the mismatch is that where the truth shows most, or nearly."""
     said = case.verdict.get("located") or []
+    if any(effect["name"] == "drift-with-order" for effect in case.truth["effects"]):
+        # it lies along no condition
+        return bool(said) and said[0]["covariate"] == "order of testing"
     true = {(o, c): float(score) for o, c, score in case.truth["places"]}
     if not said:
         return False

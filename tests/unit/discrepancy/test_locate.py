@@ -2,12 +2,14 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from types import SimpleNamespace
 
 import numpy as np
 import pytest
-from dentscope.discrepancy.locate import locate
+from dentscope.discrepancy.locate import ORDER, locate
 from dentscope.discrepancy.unknowns.covariates import covariates
+from dentscope.discrepancy.unknowns.drift import Drift
 
 SPEEDS = [1.0, np.e, np.e**2, np.e**3]
 UNIT = np.random.default_rng(1).standard_normal((4000, 4))
@@ -65,3 +67,23 @@ def test_chance_gives_one_set_in_twenty_a_miss(located) -> None:
     draws = np.random.default_rng(2).standard_normal((1000, 4))
     seen = sum(bool(located(r).misses) for r in draws)
     assert 30 <= seen <= 75
+
+
+def test_an_oblique_ball_has_an_angle_though_it_leans_nowhere(toy) -> None:
+    tables = SimpleNamespace(
+        length=0.0, tip_radius_m=SimpleNamespace(value=0.01), mass_kg=SimpleNamespace(value=0.1)
+    )
+    given = toy.problem(
+        [0.0] * 2, speeds=[1.0, 1.0], rig=SimpleNamespace(strikers={"ball": tables})
+    )
+    paths = [replace(c, tangential=t) for c, t in zip(given.conditions, (-1.0, 0.0), strict=True)]
+    found = covariates(replace(given, conditions=tuple(paths)))
+    assert found["angle"] == pytest.approx([-1.0, 1.0])
+
+
+def test_a_drift_is_a_miss_along_the_order_of_testing(toy, located) -> None:
+    given = toy.problem([0.0] * 4, speeds=SPEEDS, drifts=(Drift("restitution", 0.1, 7.0),),
+                        rig=toy.problem([0.0] * 4).rig)  # fmt: skip
+    (miss,) = locate(given, toy.fit_of([0.0] * 4), toy.nulls_of(UNIT)).misses
+    assert (miss.observable, miss.covariate) == ("restitution", ORDER)
+    assert miss.trend == "recordings rise with the order of testing"

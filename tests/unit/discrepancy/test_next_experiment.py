@@ -89,6 +89,23 @@ def test_trials_lie_within_the_rigs_speeds_and_angles(toy) -> None:
     assert any(31.0 < a < 74.0 for a in angles)
 
 
+def test_the_next_shot_of_an_oblique_ball_says_its_angle(toy) -> None:
+    given = on_rig(toy, ball=BALL)
+    shots = [
+        replace(toy.condition(1.0), tangential=-1.0 / math.tan(math.radians(a)))
+        for a in (30.0, 75.0)
+    ]
+    found = candidates_of(replace(given, conditions=tuple(shots)))
+    assert all(" degrees" in c.change for c in found)
+    angles = [math.degrees(c.condition.incidence) for c in found]
+    assert min(angles) > 29.9
+    assert max(angles) < 75.1
+    between = [c for c in found if 31.0 < math.degrees(c.condition.incidence) < 74.0]
+    assert between
+    # a ball that turns has no lean; its path is what is inclined, to the side that was tested
+    assert all(c.condition.angle == math.pi / 2.0 and c.condition.tangential < 0.0 for c in between)
+
+
 def test_a_body_of_another_size_has_another_mass_and_is_to_be_built(toy) -> None:
     balls = [c for c in candidates_of(on_rig(toy, ball=BALL)) if c.built]
     assert sorted(c.built.mass_kg.value for c in balls) == pytest.approx([0.00375, 0.24])
