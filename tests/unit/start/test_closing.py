@@ -27,7 +27,8 @@ def test_the_inferred_constants_are_those_of_ludwik_and_of_cowper_and_symonds():
             "rise_at_1000_per_s": 1.5, "rate_exponent": 0.2, "strength_kept": 0.5,
         },
     }  # fmt: skip
-    pair = _flowing(Pair(HARD, STEEL, 5e-3), constants)
+    stated = Pair(HARD, STEEL, 5e-3)
+    pair = _flowing(stated, stated, constants)
     assert pair.sphere is HARD
     # Tabor's strain of a contact of a/R = 0.1
     assert pair.flat.flow.curve(0.02) == pytest.approx(300e6 * (1.0 + 0.8 * 0.02**0.4), rel=1e-4)
