@@ -66,9 +66,9 @@ def laws_of(
         metal = _metal(recordings, name, pair)
         alike.setdefault((metal.sphere, metal.flat), []).append(name)
     found: dict[str, ContactLaw] = {}
-    for names in alike.values():
+    for (sphere, flat), names in alike.items():
         stated = pairs[names[0]]
-        metal = _metal(recordings, names[0], stated)
+        metal = replace(stated, sphere=sphere, flat=flat)
         law: ContactLaw = plain
         if not metal.perfectly_plastic:
             law = _anchored(plain, LAWS["hardening"], metal, stated)
@@ -117,16 +117,10 @@ def _anchored(
 ) -> ContactLaw:
     weak = metal.sphere if stated.weaker is stated.sphere else metal.flat
     law = anchored(
-        _plainly(plain.name), anchor, at=metal, stated=stated, deepest=deepest,
+        plain, anchor, at=metal, stated=stated, deepest=deepest,
         hardens=weak.flow is not None,
     )  # fmt: skip
     return _remembering(law)
-
-
-def _plainly(name: str) -> ClosedForm:
-    law = LAWS[name]
-    assert isinstance(law, ClosedForm)
-    return law
 
 
 @cache

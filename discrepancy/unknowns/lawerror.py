@@ -30,6 +30,7 @@ from numpy.typing import NDArray
 from ...impact import ForceTransform, Scene
 from ...impact.force import LOG_DEPTH_FIRST, LOG_DEPTH_LAST
 from ...impact.strength import NODES, UNIT, strength_table
+from ...models.anchored import AnchoredLaw
 from ...models.base import DomainWarning
 from ..inference.linear import Sizes
 from ..mechanisms.arithmetic import energy
@@ -224,7 +225,7 @@ def _spread(scenes: Sequence[Scene]) -> Spread:
     table = strength_table(law, pair)
     lost = not_given_back(scenes[0])
     peaks = np.log([table.peak(energy(s)) / pair.R for s in scenes])
-    sizes = WITH_CURVE if getattr(law, "hardens", False) else METAL
+    sizes = WITH_CURVE if isinstance(law, AnchoredLaw) and law.hardens else METAL
     metal = {kind: size * lost for kind, size in sizes.items()}
     # a crater is all of what does not come back, however little that is
     metal["crater"] = np.where(lost > 0.0, sizes["crater"], 0.0)

@@ -19,7 +19,7 @@ from dentscope.recordings import read
 ROOT = Path(__file__).resolve().parents[2]
 RAW = ROOT.parent / "shared" / "recordings"
 PAGES = sorted((ROOT / "docs" / "tutorials").glob("*.md"))
-MOST_LINES = 135
+MOST_LINES = 132
 SOUNDS = "ball-bounce-acoustic"
 FENCE = re.compile(r"^```(\w*)\n(.*?)^```$", flags=re.DOTALL | re.MULTILINE)
 NUMBER = re.compile(r"\d+(?:\.(\d+))?(?:e[+-]?\d+)?")

@@ -93,7 +93,7 @@ def reduce_tension(
         strain, stress = sign * np.log(shrunk), stress * shrunk
     modulus, zero = _modulus(strain, stress, source)
     used = modulus.value if E is None else E
-    told = modulus if E is None else Measured(E, math.nan)
+    told = modulus if E is None else Measured(E, 0.0)
     if E is not None and abs(modulus.value / E - 1.0) > 0.2:
         notes.append(
             f"the curve rises with {modulus.value / 1e9:.3g} GPa, not {E / 1e9:.3g}: the machine "
