@@ -13,7 +13,7 @@ from .inference.fit import Fit, baseline_situations, fit, grid_of, responses_at
 from .inference.grid import Grid
 from .inference.outliers import outlying, without_weight
 from .inference.window import sharpened
-from .mechanisms import MECHANISMS
+from .mechanisms import MECHANISMS, NAMELESS
 from .mechanisms.base import Mechanism
 from .problem import Problem
 
@@ -54,6 +54,23 @@ class Screened:
 
 
 @dataclass(frozen=True, eq=False)
+class Nameless:
+    """Physics that a verdict has no name for: first pass, and its full fit where it is close.
+
+    Parameters
+    ----------
+    screened, fit
+        First pass; full fit or none.
+    log_bayes
+        ln B against the baseline, of the fit where there is one.
+    """
+
+    screened: Screened
+    fit: Fit | None
+    log_bayes: float
+
+
+@dataclass(frozen=True, eq=False)
 class Ranking:
     """All explanations.
 
@@ -69,6 +86,8 @@ class Ranking:
         Full fits, best first.
     excluded
         Mechanism to the reason why arithmetic rules it out.
+    nameless
+        What a verdict has no name for, and ln B of each against the baseline.
     """
 
     problem: Problem
@@ -77,6 +96,7 @@ class Ranking:
     singles: tuple[Fit, ...]
     pairs: tuple[Fit, ...]
     excluded: dict[str, str]
+    nameless: tuple[Nameless, ...] = ()
 
     @property
     def fits(self) -> tuple[Fit, ...]:
@@ -87,7 +107,7 @@ class Ranking:
 def rank(
     simulator: Simulator,
     *,
-    mechanisms: Sequence[Mechanism] = MECHANISMS,
+    mechanisms: Sequence[Mechanism] = (*MECHANISMS, *NAMELESS),
     progress: Progress = lambda _: None,
 ) -> Ranking:
     """Fit the baseline and every mechanism that is not excluded, by itself.
@@ -115,23 +135,34 @@ def rank(
                 screened.append(found)
                 continue
             reason = f"its largest plausible effect is {size:.1g} standard errors over all cells"
-        excluded[mechanism.name] = reason
+        if mechanism.named:
+            excluded[mechanism.name] = reason
     problem, base, screened = _cleared(simulator, base, screened)
     simulator = simulator.of(problem)
     order = sorted(screened, key=lambda s: -s.log_bayes)
     chosen = [s for i, s in enumerate(order) if i < FULL or s.log_bayes > order[0].log_bayes - NEAR]
-    singles = []
+    fits = []
     for found in chosen:
         progress(f"fitting {found.mechanism.name}")
-        singles.append(
+        fits.append(
             fit(
                 simulator, (found.mechanism,), start=base, place=found.place, rounds=3,
                 effect=found.effect,
             )
         )  # fmt: skip
     progress("sharpening the leading fits")
-    singles = sharpened_leading(simulator, singles, base)
-    return Ranking(problem, base, tuple(screened), tuple(singles), (), excluded)
+    fits = sharpened_leading(simulator, fits, base)
+    return Ranking(
+        problem, base, tuple(s for s in screened if s.mechanism.named),
+        tuple(f for f in fits if f.mechanisms[0].named), (), excluded,
+        tuple(_nameless(s, fits, base) for s in screened if not s.mechanism.named),
+    )  # fmt: skip
+
+
+def _nameless(screened: Screened, fits: Sequence[Fit], base: Fit) -> Nameless:
+    own = next((f for f in fits if f.mechanisms == (screened.mechanism,)), None)
+    gain = screened.log_bayes if own is None else own.log_evidence - base.log_evidence
+    return Nameless(screened, own, gain)
 
 
 def _without_data(mechanism: Mechanism, problem: Problem) -> str:

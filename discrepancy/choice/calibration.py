@@ -19,7 +19,7 @@ from scipy.special import logsumexp
 from ..inference.fit import Fit
 from ..inference.linear import Mixture
 from ..rank import Ranking
-from .odds import NAMED_AT, OUTSIDE, PRIORS
+from .odds import NAMED_AT, OUTSIDE, PRIORS, shares_outside
 from .thresholds import Nulls
 
 Array = NDArray[np.float64]
@@ -72,14 +72,18 @@ def calibrate(ranking: Ranking, nulls: Nulls, outside: Mixture) -> Calibration:
     base = ranking.base
     r = nulls.made_by(base)
     plain = base.mixture.log_likelihood(r)
-    names = [*(s.mechanism.name for s in ranking.screened), OUTSIDE]
-    found = [base.mixture.gain(r, thinned(s.effect, _THIN)) for s in ranking.screened]
+    nameless = [n.screened for n in ranking.nameless]
+    tried = [*ranking.screened, *nameless]
+    names = [*(s.mechanism.name for s in tried), OUTSIDE]
+    found = [base.mixture.gain(r, thinned(s.effect, _THIN)) for s in tried]
     factors = np.stack([*found, outside.log_likelihood(r) - plain], axis=1)
     offset = np.array([given_away(column) for column in factors.T])
     if ranking.singles:
         offset[-1] = max(offset[-1], _outside_beside(ranking, nulls, outside))
-    each = PRIORS["singles"] / max(len(names) - 1, 1)
-    prior = np.array([*(each for _ in names[:-1]), PRIORS[OUTSIDE]]) / PRIORS["baseline"]
+    each = PRIORS["singles"] / max(len(ranking.screened), 1)
+    free, own = shares_outside(len(nameless))
+    shares = [*(each for _ in ranking.screened), *(PRIORS[OUTSIDE] * own for _ in nameless)]
+    prior = np.array([*shares, PRIORS[OUTSIDE] * free]) / PRIORS["baseline"]
     odds = logsumexp(factors - offset + np.log(prior), axis=1)
     common = max(float(np.quantile(odds, ALARM)) - NAMED_AT, 0.0)
     return Calibration(

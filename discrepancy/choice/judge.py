@@ -4,16 +4,19 @@ from __future__ import annotations
 
 import math
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, field, replace
 
-import numpy as np
+from scipy.special import logsumexp
 
-from ..rank import Ranking
+from ..rank import Nameless, Ranking
 from .calibration import Calibration, calibrate
 from .decide import Choice, decide
-from .odds import OUTSIDE, PRIORS, Odds, odds_of
+from .odds import OUTSIDE, PRIORS, Odds, odds_of, shares_outside
 from .outside import odd_repeats, outside_of
 from .thresholds import Nulls
+
+_ALIKE = 0.5
+"""Share of what is outside the library from which one that has no name is said to be like it."""
 
 
 @dataclass(frozen=True)
@@ -26,10 +29,13 @@ class Judge:
         Nats taken off each alternative.
     outside
         Ln evidence of something outside the library over the baseline's.
+    nameless
+        Physics without a name to its share of that evidence.
     """
 
     calibration: Calibration
     outside: float
+    nameless: Mapping[str, float] = field(default_factory=dict)
 
     @classmethod
     def of(cls, ranking: Ranking, nulls: Nulls) -> Judge:
@@ -37,8 +43,17 @@ class Judge:
         free = outside_of(ranking.problem, ranking.base)
         calibration = calibrate(ranking, nulls, free)
         gained = float(free.log_likelihood(ranking.base.residual)) - ranking.base.log_evidence
-        gained -= calibration.offset[OUTSIDE]
-        return cls(calibration, float(np.logaddexp(gained, odd_repeats(ranking.problem))))
+        free, own = shares_outside(len(ranking.nameless))
+        parts = {
+            n.screened.mechanism.name: n.log_bayes + math.log(own)
+            - calibration.offset[n.screened.mechanism.name]
+            for n in ranking.nameless
+        }  # fmt: skip
+        parts[OUTSIDE] = gained + math.log(free) - calibration.offset[OUTSIDE]
+        parts["repeats"] = odd_repeats(ranking.problem)
+        whole = float(logsumexp(list(parts.values())))
+        share = {k: math.exp(v - whole) for k, v in parts.items() if k not in (OUTSIDE, "repeats")}
+        return cls(calibration, whole, share)
 
     def odds(self, ranking: Ranking, sampled: Mapping[str, float] | None = None) -> Odds:
         """Return the probabilities of the explanations of a ranking."""
@@ -46,7 +61,15 @@ class Judge:
 
     def decided(self, ranking: Ranking, sampled: Mapping[str, float]) -> Choice:
         """Return the verdict of least expected cost."""
-        return decide(ranking, self.odds(ranking, sampled), drifts=ranking.problem.drifts)
+        choice = decide(ranking, self.odds(ranking, sampled), drifts=ranking.problem.drifts)
+        alike = [n for n in ranking.nameless if self._share(n) > _ALIKE]
+        if choice.verdict != OUTSIDE or not alike:
+            return choice
+        told = (_behaves(n, self._share(n)) for n in alike)
+        return replace(choice, reasons=(*choice.reasons, *told))
+
+    def _share(self, nameless: Nameless) -> float:
+        return self.nameless[nameless.screened.mechanism.name]
 
     def log_prior(self, ranking: Ranking) -> dict[str, float]:
         """Name to ln of the prior probability, less what nulls give away, of every fit."""
@@ -57,3 +80,16 @@ class Judge:
             f.name: math.log(share[len(f.mechanisms)]) - self.calibration.off(f.names)
             for f in ranking.fits
         }
+
+
+def _behaves(nameless: Nameless, share: float) -> str:
+    fitted, mechanism = nameless.fit, nameless.screened.mechanism
+    at = ""
+    if fitted is not None:
+        values = fitted.grid.values(fitted.place)[mechanism.name]
+        at = " at " + ", ".join(f"{p.name} {values[p.name]:.2g} {p.unit}".rstrip(" -")
+                                for p in mechanism.parameters)  # fmt: skip
+    return (
+        f"it behaves as if {mechanism.title}, {mechanism.equations}{at}: {100.0 * share:.0f} % of "
+        "what is not in the library"
+    )

@@ -15,9 +15,16 @@ OUTSIDE = "outside-library"
 PRIORS = {"baseline": 0.5, "singles": 0.34, "pairs": 0.06, OUTSIDE: 0.1}
 """Before the comparison: as likely as not that nothing is missing; each single mechanism that
 could act here shares alike, and so does each pair."""
+NAMELESS_SHARE = 1.0 / 3.0
+"""Of what is outside the library, the share of known physics without a name; the rest is free."""
 SURE = 0.93
 NAMED_AT = math.log(SURE / (1.0 - SURE))
 """Ln odds of something missing from which a name costs less than silence (`decide.COSTS`)."""
+
+
+def shares_outside(nameless: int) -> tuple[float, float]:
+    """Prior shares, among what is outside the library, of the free part and of each nameless."""
+    return (1.0 - NAMELESS_SHARE, NAMELESS_SHARE / nameless) if nameless else (1.0, 0.0)
 
 
 class GivenAway(Protocol):

@@ -20,8 +20,10 @@ STEP = 0.3
 _SPEED_STEP, _ANGLE_STEP = 0.01, 0.01
 FORM_SPREAD = 0.5
 """Standard deviation of the logarithm of how far forms differ: not known better than that."""
-FORMS = Sizes((1.0, math.exp(math.sqrt(3.0) * FORM_SPREAD)), (5 / 6, 1 / 6))
-"""Of the error of a form: the points of Gauss and Hermite, the lower one with the middle."""
+FORMS = Sizes(
+    tuple(math.exp(k * math.sqrt(3.0) * FORM_SPREAD) for k in (-1, 0, 1)), (1 / 6, 2 / 3, 1 / 6)
+)
+"""Of the error of a form: the three points of Gauss and Hermite."""
 _LENGTH, _ROUGH = 2.0, 0.1  # of the error of a form: correlation length, part without one
 _JUMPS = (0.02, 0.05, 0.1)  # of the parameter: how near a jump makes a cell unsure
 
@@ -102,6 +104,7 @@ def derivatives(
             mechanisms, _effects(simulator, mechanisms, values, z, here), strict=True
         )
     ])  # fmt: skip
+    form = np.hstack([form, *_scaled(simulator, mechanisms, values, z, here)])
     wider = max(m.law_error for m in mechanisms)
     if wider > 1.0:
         form = np.hstack([form, math.sqrt(wider**2 - 1.0) * J[:, problem.n_nuisances :]])
@@ -119,6 +122,20 @@ def _effects(
     """Change of the cells (m,) by each mechanism, in the presence of the others."""
     without = [[o for o in mechanisms if o is not m] for m in mechanisms]
     return [here - simulator.predict(rest, [Point(z, values)])[0] for rest in without]
+
+
+def _scaled(
+    simulator: Simulator, mechanisms: Sequence[Mechanism], values: Constants, z: Array, here: Array
+) -> list[Array]:
+    """Change of the cells (m, 1) where what a first parameter multiplies is off, of each."""
+    found = []
+    for m in mechanisms:
+        if m.scale_error:
+            size = m.parameters[0].name
+            more = values[m.name][size] * math.exp(m.scale_error)
+            moved = {**values, m.name: {**values[m.name], size: more}}
+            found.append((simulator.predict(mechanisms, [Point(z, moved)])[0] - here)[:, None])
+    return found
 
 
 def _condensed(form: Array) -> Array:

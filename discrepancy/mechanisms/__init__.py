@@ -9,17 +9,17 @@ from .base import Mechanism, Parameter, Surroundings
 from .contact_damping import ContactDamping
 from .friction import PloughingFriction, VelocityDependentFriction
 from .half_space_waves import HalfSpaceWaves
-from .hardened_layer import HardenedLayer
+from .hardened_layer import HardenedLayer, SofterSurface
 from .rod_vibration import RodFlexuralVibration, RodLongitudinalWaves
 from .roughness import Roughness
 from .size_effect import SizeEffect
 from .squeeze_film import SqueezeFilm
-from .strain_rate_hardening import StrainRateHardening
+from .strain_rate_hardening import NegativeRateSensitivity, StrainRateHardening
 from .support_compliance import SupportCompliance
 from .tangential_compliance import TangentialCompliance
 from .thermal_softening import ThermalSoftening
 from .truncated_tip import TruncatedTip
-from .work_hardening import WorkHardening
+from .work_hardening import StrainSoftening, WorkHardening
 
 MECHANISMS: tuple[Mechanism, ...] = (
     StrainRateHardening(),
@@ -45,4 +45,8 @@ MECHANISMS: tuple[Mechanism, ...] = (
 )
 """Every mechanism by the names and in the order of docs/diagnose.md."""
 
-__all__ = ["MECHANISMS", "Mechanism", "Parameter", "Surroundings"]
+NAMELESS: tuple[Mechanism, ...] = (SofterSurface(), StrainSoftening(), NegativeRateSensitivity())
+"""Physics that a verdict has no name for, but that would pass for one of the named where nothing
+stands for it: a strength that falls."""
+
+__all__ = ["MECHANISMS", "NAMELESS", "Mechanism", "Parameter", "Surroundings"]

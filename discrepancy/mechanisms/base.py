@@ -144,9 +144,16 @@ class Mechanism(ABC):
     law_error
         How many times larger the contact law's own error is with this mechanism: above 1 where the
         law is used for a contact that it was not made for.
+    scale_error
+        Standard deviation of the logarithm of what the first parameter multiplies, where that is
+        taken from the contact law and is none of the numbers whose error the law's own holds: a
+        contact radius. The parameter is known no better.
     jumps
         Whether the outcome jumps with the first parameter, because a tip may or may not touch
         again.
+    named
+        Whether a verdict has a name for it. What has none counts as something outside the library,
+        and the report says that it behaves like this.
     rests_on
         Bodies whose elastic modulus its numbers rest on: "target", "striker". Where a set does not
         state one, the mechanism is not tried: its constants would be those of the assumption.
@@ -159,7 +166,9 @@ class Mechanism(ABC):
     direction: ClassVar[Mapping[str, int]] = {}
     form: ClassVar[float] = 0.15
     law_error: ClassVar[float] = 1.0
+    scale_error: ClassVar[float] = 0.0
     jumps: ClassVar[bool] = False
+    named: ClassVar[bool] = True
     rests_on: ClassVar[tuple[str, ...]] = ()
 
     @property

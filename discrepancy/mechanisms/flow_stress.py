@@ -10,6 +10,7 @@ from __future__ import annotations
 import math
 from abc import ABC, abstractmethod
 from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
 from typing import ClassVar
 
 import numpy as np
@@ -35,6 +36,17 @@ class StrengthProfile(ABC):
     @abstractmethod
     def profile(self, scene: Scene, table: StrengthTable) -> Array:
         """Return relative strengths at the depths of `table`, shape (nodes,)."""
+
+
+@dataclass(frozen=True, slots=True)
+class Fallen(StrengthProfile):
+    """One over another profile: a strength that falls where that one rises, and stays above 0."""
+
+    risen: StrengthProfile
+
+    def profile(self, scene: Scene, table: StrengthTable) -> Array:
+        """Return relative strengths at the depths of `table`, shape (nodes,)."""
+        return np.asarray(1.0 / self.risen.profile(scene, table))
 
 
 class FlowMechanism(Mechanism):
@@ -64,3 +76,12 @@ class FlowMechanism(Mechanism):
 def strain(scene: Scene, table: StrengthTable) -> Array:
     """Representative plastic strain at the depths of a table, 0.2 a/R with a at most R."""
     return np.asarray(STRAIN * np.minimum(table.radius / scene.pair.R, 1.0))
+
+
+class FallingStrength(FlowMechanism):
+    """A flow stress that falls: physics that a verdict has no name for."""
+
+    named = False
+    direction: ClassVar[Mapping[str, int]] = {
+        "restitution": -1, "permanent_depth_m": 1, "peak_force_N": -1,
+    }  # fmt: skip

@@ -11,7 +11,7 @@ from ...impact import Scene
 from ...impact.scene import FlowStress
 from ...impact.strength import StrengthTable
 from .base import Array, Literature, Parameter, Situation, Surroundings, Values
-from .flow_stress import FlowMechanism, StrengthProfile
+from .flow_stress import FallingStrength, FlowMechanism, StrengthProfile
 
 
 @dataclass(frozen=True, slots=True)
@@ -56,3 +56,22 @@ class HardenedLayer(FlowMechanism):
     def strength(self, scene: Scene, values: Values, around: Surroundings) -> FlowStress:
         """Return the profile of this mechanism."""
         return LayerProfile(values["layer_hardening"], values["layer_thickness_m"])
+
+
+class SofterSurface(FallingStrength):
+    """A surface softer than the bulk: decarburised, overaged, plated with a soft metal."""
+
+    name = "softer-surface"
+    title = "the surface is softer than the bulk"
+    equations = "S = S_y [1 - k exp(-a/(2 t))]"
+    parameters = (
+        Parameter(
+            "layer_softening", "-", 0.1, 0.9, "linear", 0.0,
+            "decarburised steel 30-60 % softer, tin or silver on steel by nine tenths", nodes=5,
+        ),
+        HardenedLayer.parameters[1],
+    )  # fmt: skip
+
+    def strength(self, scene: Scene, values: Values, around: Surroundings) -> FlowStress:
+        """Return the profile of this mechanism."""
+        return LayerProfile(-values["layer_softening"], values["layer_thickness_m"])

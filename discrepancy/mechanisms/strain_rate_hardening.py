@@ -11,7 +11,7 @@ from ...impact.scene import FlowStress
 from ...impact.strength import StrengthTable, strength_table
 from .arithmetic import energy, times
 from .base import Array, Literature, Parameter, Surroundings, Values
-from .flow_stress import RATE, FlowMechanism, StrengthProfile
+from .flow_stress import RATE, Fallen, FallingStrength, FlowMechanism, StrengthProfile
 
 _REFERENCE_RATE = 1000.0  # 1/s, within the rates of impacts at a few m/s
 _SLOWEST = 0.2  # the rate's memory at the turning point, of the approach speed
@@ -87,3 +87,22 @@ class StrainRateHardening(FlowMechanism):
     def strength(self, scene: Scene, values: Values, around: Surroundings) -> FlowStress:
         """Return the profile of this mechanism."""
         return RateProfile(values["rise_at_1000_per_s"], values["rate_exponent"])
+
+
+class NegativeRateSensitivity(FallingStrength):
+    """The flow stress falls with the strain rate: dynamic strain ageing (aluminium-magnesium)."""
+
+    name = "negative-rate-sensitivity"
+    title = "the metal is weaker at the rates of the impact"
+    equations = "S = S_y/[1 + A (r / 1000 s^-1)^n], r = 0.4 v(delta)/a"
+    parameters = (
+        Parameter(
+            "fall_at_1000_per_s", "-", 0.03, 1.0, "log", 0.0,
+            "a few per cent a decade where solute atoms follow the dislocations", nodes=5,
+        ),
+        Parameter("fall_exponent", "-", 0.03, 0.4, "linear", 0.0, "as of hardening", nodes=3),
+    )  # fmt: skip
+
+    def strength(self, scene: Scene, values: Values, around: Surroundings) -> FlowStress:
+        """Return the profile of this mechanism."""
+        return Fallen(RateProfile(values["fall_at_1000_per_s"], values["fall_exponent"]))

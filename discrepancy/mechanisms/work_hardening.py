@@ -10,7 +10,7 @@ from ...impact import Scene
 from ...impact.scene import FlowStress
 from ...impact.strength import StrengthTable
 from .base import Array, Literature, Parameter, Surroundings, Values
-from .flow_stress import FlowMechanism, StrengthProfile, strain
+from .flow_stress import Fallen, FallingStrength, FlowMechanism, StrengthProfile, strain
 
 
 @dataclass(frozen=True, slots=True)
@@ -33,8 +33,9 @@ class WorkHardening(FlowMechanism):
     equations = "S = S_y [1 + K (0.2 a/R)^n]"
     parameters = (
         Parameter(
-            "hardening_ratio", "-", 0.15, 6.0, "log", 0.0,
-            "B/A of Johnson and Cook's metals: 0.6 (4340) to 3.2 (OFHC copper)", nodes=7,
+            "hardening_ratio", "-", 0.15, 12.0, "log", 0.0,
+            "B/A of Johnson and Cook's metals: 0.6 (4340) to 3.2 (OFHC copper); 7 of 304 and 8 of "
+            "copper, annealed (K of W. D. Callister's tables over the yield strength)", nodes=8,
             literature=Literature(0.79, "B/A = 275/350 of 1006 steel, Johnson and Cook 1983"),
         ),
         Parameter(
@@ -47,3 +48,22 @@ class WorkHardening(FlowMechanism):
     def strength(self, scene: Scene, values: Values, around: Surroundings) -> FlowStress:
         """Return the profile of this mechanism."""
         return StrainProfile(values["hardening_ratio"], values["hardening_exponent"])
+
+
+class StrainSoftening(FallingStrength):
+    """The flow stress falls with plastic strain: cold-worked metals, glasses, many polymers."""
+
+    name = "strain-softening"
+    title = "the metal softens as it is deformed"
+    equations = "S = S_y/[1 + K (0.2 a/R)^n]"
+    parameters = (
+        Parameter(
+            "softening_ratio", "-", 0.15, 12.0, "log", 0.0,
+            "down to a half at a representative strain of 1 to 10 %", nodes=7,
+        ),
+        Parameter("softening_power", "-", 0.15, 1.0, "linear", 1.0, "as of hardening", nodes=3),
+    )  # fmt: skip
+
+    def strength(self, scene: Scene, values: Values, around: Surroundings) -> FlowStress:
+        """Return the profile of this mechanism."""
+        return Fallen(StrainProfile(values["softening_ratio"], values["softening_power"]))

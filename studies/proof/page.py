@@ -52,7 +52,10 @@ import nothing of the diagnosis, of the contact laws, of the impact or of the re
   imitate is taken out, from the generator itself. Of an effect outside the library also what the
   nearest of the generator's own library effects imitates (draws of each, the best improved by a
   simplex search): a layer that crushes may look like asperities to every instrument of a set, and
-  then no name is wrong. Outside truths are drawn until 10 is left, if eight draws give it.
+  then no name is wrong. Of one of a pair also what the other one's numbers imitate, each known to a
+  factor of e. Both are drawn until 10 is left, if eight draws give it. Three of the six kinds
+  outside (a layer that crushes, softening by strain, a strength that falls with the rate) are
+  physics that the tool knows in other forms, without a name; it knows nothing of the other three.
 * **First place**: observable and condition along which the truth's effect has the largest score,
   noise, nuisances and metal taken out; within a fifth of it counts. **Next experiment**: a trial
   within the rig's speeds, angles and bodies, or one that says what to build.

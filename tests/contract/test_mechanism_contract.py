@@ -17,7 +17,7 @@ import numpy as np
 import pytest
 from dentscope.core import Material
 from dentscope.discrepancy.forward import ACCURACY, SIMULATED
-from dentscope.discrepancy.mechanisms import MECHANISMS, Mechanism, Surroundings
+from dentscope.discrepancy.mechanisms import MECHANISMS, NAMELESS, Mechanism, Surroundings
 from dentscope.discrepancy.mechanisms.base import Constants, Situation, Values, attached, observed
 from dentscope.impact import Approach, Friction, Scene, Striker, scene_of, strike_batch
 from dentscope.impact.walk import compiled as c
@@ -89,7 +89,7 @@ def rigs_of(mechanism: Mechanism) -> dict[str, list[Situation]]:
     return {name: rig for name, rig in RIGS.items() if not mechanism.applies(rig)}
 
 
-every = pytest.mark.parametrize("mechanism", MECHANISMS, ids=lambda m: m.name)
+every = pytest.mark.parametrize("mechanism", [*MECHANISMS, *NAMELESS], ids=lambda m: m.name)
 
 
 @every
@@ -197,3 +197,12 @@ def test_names_are_the_documented_ones_in_their_order():
     table = text.split("## Mechanisms")[1].split("\n\n")[1]
     documented = re.findall(r"^\| `([a-z-]+)` \|", table, flags=re.MULTILINE)
     assert documented == [m.name for m in MECHANISMS]
+    assert all(m.named for m in MECHANISMS)
+
+
+def test_what_has_no_name_is_documented_with_its_equation():
+    text = (Path(__file__).parents[2] / "docs" / "diagnose.md").read_text(encoding="utf-8")
+    assert not any(m.named for m in NAMELESS)
+    assert not {m.name for m in NAMELESS} & {m.name for m in MECHANISMS}
+    for mechanism in NAMELESS:
+        assert f"{mechanism.title} | {mechanism.equations} |" in text

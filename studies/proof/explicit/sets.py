@@ -12,7 +12,9 @@ from numpy.typing import NDArray
 
 from ..generators.effects import EFFECTS, Effect
 from ..generators.folder import read_off, write_files
+from ..generators.parameters import FOUNDATION
 from ..generators.rig import Rig, Striker
+from ..generators.simulate import Visibility, noise_std
 from ..generators.truth import Truth, draw_instrument, draw_nuisances
 from .catalogue import FILE, SERIES, Series, impacts
 
@@ -145,10 +147,9 @@ def _misstated(rig: Rig, off: dict[str, float]) -> Rig:
 
 
 def _sizes(series: Series, rig: Rig) -> tuple[float, ...]:
-    """Size against the null series on the same strikers and metal, where there is one.
+    """Size against the null series on the same strikers and metal, where there is one; else NaN.
 
-    Strength and speed, which move every reading like powers, are projected out with their
-    tolerance; NaN where no series shows the same bench without the effect.
+    What the nuisances and another metal would change is that of a fast family on the same rig.
     """
     same = [
         s for s in SERIES
@@ -156,19 +157,12 @@ def _sizes(series: Series, rig: Rig) -> tuple[float, ...]:
     ]  # fmt: skip
     if not same:
         return tuple(math.nan for _ in series.effects)
-    with_it, without = (readings_at(s, rig, rig.speed) for s in (series, same[0]))
-    changes, columns = [], []
-    for name, (number, fraction) in rig.noise.items():
-        std = np.hypot(number, fraction * without[name])
-        changes.append((with_it[name] - without[name]) / std)
-        faster = readings_at(same[0], rig, rig.speed * 1.01)[name]
-        columns.append((faster - without[name]) / 0.01 / std)
-    e = np.concatenate(changes)
-    slope = np.concatenate(columns)
-    # an estimate: a plastic dent goes with v / sqrt(Sy), so strength acts as half as much speed
-    J = np.stack([slope * rig.tolerance["speed"], 0.5 * slope * rig.tolerance["strength"]], axis=1)
-    inner = np.linalg.solve(np.eye(2) + J.T @ J, J.T @ e)
-    return (math.sqrt(max(float(e @ e - (J.T @ e) @ inner), 0.0)),)
+    seen = Visibility.of(rig, family=FOUNDATION, z={})
+    few = seen.rig
+    with_it, without = (readings_at(s, few, few.speed) for s in (series, same[0]))
+    std = noise_std(few, without)
+    change = [(with_it[k] - without[k]) / std[k] for k in few.noise]
+    return (seen.size(math.sqrt(_REPEATS) * np.concatenate(change)),)
 
 
 assert all(set(s.effects) <= set(EFFECTS) or s.kind == "outside" for s in SERIES)

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -79,13 +79,29 @@ def noise_std(rig: Rig, clean: dict[str, Array]) -> dict[str, Array]:
     }
 
 
+UNKNOWN = 1.0
+"""Standard deviation of the logarithm of an effect's numbers, of which nobody is told."""
+_MOVED = 0.05  # of the same, for derivatives
+_COUNTS = ("elements", "seed")  # numbers that say nothing of physics
+
+
+def _numbers_moved(effects: Sequence[Effect]) -> Iterator[list[Effect]]:
+    """Yield the effects with one number a little larger each time."""
+    for i, one in enumerate(effects):
+        for key, value in one.numbers.items():
+            if key in _COUNTS or value == 0.0:
+                continue
+            more = replace(one, numbers=one.numbers | {key: value * math.exp(_MOVED)})
+            yield [*effects[:i], more, *effects[i + 1 :]]
+
+
 @dataclass(frozen=True, eq=False)
 class Visibility:
     """How large changes of a rig's readings look, with what else may change them taken out.
 
     With e a change of all readings over their noise, and J their derivatives with respect to the
-    nuisances and to what a metal may be off perfect plasticity, in prior standard deviations, the
-    size is sqrt(e' (1 + J J')^-1 e).
+    nuisances, to what a metal may be off perfect plasticity and to the numbers of what acts in all
+    impacts, in prior standard deviations, the size is sqrt(e' (1 + J J')^-1 e).
 
     Parameters
     ----------
@@ -133,6 +149,9 @@ class Visibility:
             if off > 0.0:
                 change = (np.concatenate(list(changed.values())) - plain) * weight
                 columns.append(np.nan_to_num(TYPICAL / off * change))
+        for other in _numbers_moved(keep):
+            moved = np.concatenate(_stacked(few, other, family, z))
+            columns.append(np.nan_to_num((moved - plain) * weight * UNKNOWN / _MOVED))
         return cls(few, family, z, tuple(keep), plain, weight, np.stack(columns, axis=1))
 
     def change(self, effects: Sequence[Effect]) -> Array:
@@ -189,7 +208,7 @@ def size_of(
     effects
         What acts.
     keep
-        What acts in both impacts that are compared.
+        What acts in both impacts that are compared; its numbers are unknown.
     """
     seen = Visibility.of(rig, family=family, z=z, keep=keep)
     return seen.size(seen.change(effects))
@@ -227,7 +246,7 @@ def size_beyond_library(
         for one in draws[: 1 if "elements" in draws[0].numbers else _SAMPLES]:
             tried.append((seen.size(wanted - seen.change([one])), len(tried), one))
     for size, _, one in sorted(tried)[:_POLISHED]:
-        keys = [k for k, v in one.numbers.items() if k not in ("elements", "seed") and v > 0.0]
+        keys = [k for k, v in one.numbers.items() if k not in _COUNTS and v > 0.0]
         first = np.log([one.numbers[k] for k in keys])
 
         def left(x: Array, one: Effect = one, keys: list[str] = keys) -> float:

@@ -25,7 +25,8 @@ SEEN, ENORMOUS = 4.0, 80.0
 """Sizes between which a drawn effect is kept at once; else the nearest of several draws."""
 
 BEYOND = 10.0
-"""Size of what the library cannot imitate, from which an effect outside it is kept at once."""
+"""Size of what nothing else imitates, from which an effect is kept at once: outside the library of
+what that leaves, in a pair of what the other effect's numbers leave."""
 
 PLANTED = ("mass-error", "strength-error")
 """Kinds of case in which a stated value is wrong by more than its tolerance allows."""
@@ -57,7 +58,8 @@ class Truth:
     effects
         What acts; empty for a null.
     sizes
-        Size of each effect, given the others; outside the library of what that cannot imitate.
+        Size of each effect, less what the numbers of others imitate; outside the library, less
+        what that imitates.
     family
         Base law: `cavity`, `foundation` or `explicit`.
     z
@@ -248,7 +250,7 @@ def _pair(
             for e in effects
         )
         low, high = min(sizes), max(sizes)
-        away = max(np.log(2.0 * SEEN / max(low, 1e-3)), np.log(high / ENORMOUS), 0.0)
+        away = max(np.log(BEYOND / max(low, 1e-3)), np.log(high / ENORMOUS), 0.0)
         tried.append((float(away), rig, effects, sizes))
         if away == 0.0:
             break

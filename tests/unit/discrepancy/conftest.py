@@ -33,7 +33,9 @@ class Effect:
     reason: str = ""
     form: float = 0.0
     law_error: float = 1.0
+    scale_error: float = 0.0
     jumps: bool = False
+    named: bool = True
     rests_on: tuple[str, ...] = ()
     parameters: tuple[Parameter, ...] = (
         Parameter("size", "-", 0.0, 1.0, "linear", 0.0, "", nodes=5),

@@ -26,6 +26,10 @@ probabilities scores located parameters nuisance_pulls surprise excluded limits 
 correction next_experiment notes""".split()
 
 
+SOFT = 1
+"""Seed of a set whose surface is soft."""
+
+
 def dentscope(*arguments: str) -> subprocess.CompletedProcess[str]:
     return subprocess.run(
         [sys.executable, "-m", "dentscope", *arguments], capture_output=True, text=True,
@@ -100,6 +104,15 @@ def test_strength_off_by_14_percent_is_a_stated_number_not_physics(tmp_path: Pat
     # 14 % is 2.8 of the stated 5 %
     assert abs(verdict.surprise["target.Sy_Pa"]) > 2.0
     assert any("target.Sy_Pa wants to be" in note for note in verdict.notes)
+
+
+def test_a_soft_surface_has_no_name_but_the_report_says_what_it_is_like(tmp_path: Path) -> None:
+    """Not the asperities that it passed for; the generator's layer has another shape than ours."""
+    verdict = diagnose(read(written(tmp_path, "outside", SOFT, "crushed-layer")))
+    assert verdict.verdict == "outside-library"
+    assert any("as if the surface is softer than the bulk" in text for text in verdict.reasons)
+    assert "softer-surface" not in {*verdict.inclusion, *verdict.probabilities, *verdict.excluded}
+    assert math.isclose(sum(verdict.probabilities.values()), 1.0, rel_tol=1e-6)
 
 
 def test_three_mistakes_are_three_lines_and_exit_code_2(tmp_path: Path) -> None:

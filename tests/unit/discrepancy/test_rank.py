@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 from dentscope.discrepancy.choice.pairs import PairEffect, with_pairs
@@ -49,6 +51,40 @@ def test_evidence_of_a_well_known_size_is_occams(toy, library) -> None:
     lead, size = found.singles[0], np.linalg.norm(RISING)
     gain = 0.5 * (0.5 * size) ** 2 + np.log(np.sqrt(2.0 * np.pi) / size)
     assert lead.log_evidence - found.base.log_evidence == pytest.approx(gain, abs=0.02)
+
+
+def test_what_has_no_name_is_kept_apart_with_its_evidence(toy, library) -> None:
+    nameless = toy.Effect("nameless", RISING, named=False)
+    _, found = ranked(toy, (*library[:1], *library[2:], nameless), 0.5 * np.array(RISING))
+    _, named = ranked(toy, library, 0.5 * np.array(RISING))
+    (kept,) = found.nameless
+    assert kept.log_bayes == pytest.approx(
+        named.singles[0].log_evidence - named.base.log_evidence, abs=1e-9
+    )
+    assert "nameless" not in {*found.excluded, *(f.name for f in found.fits)}
+    assert [s.mechanism.name for s in found.screened] == ["alike", "bent"]
+    _, gone = ranked(toy, (*library, replace(nameless, reason="it cannot act here")), RISING)
+    assert gone.nameless == ()
+    assert "nameless" not in gone.excluded
+
+
+def test_what_a_size_multiplies_may_be_off(toy) -> None:
+    """A size that multiplies a radius known to 10 % or so is known no better than that."""
+    data = 0.5 * np.array(RISING)
+    spreads = []
+    for error in (0.0, 0.1):
+        effect = toy.Effect("rising", RISING, scale_error=error)
+        _, found = ranked(toy, (effect,), data)
+        lead = found.singles[0]
+        places = lead.grid.places()[:, 0]
+        mean = lead.weight @ places
+        spreads.append(np.sqrt(lead.weight @ (places - mean) ** 2))
+    known = 1.0 / np.linalg.norm(RISING)
+    assert spreads[0] == pytest.approx(known, rel=0.1)
+    # exp(0.1) of a half is 0.053 more, 0.42 or 2.4 times that in one case of six each
+    times = np.exp(np.sqrt(3.0) * 0.5 * np.array([-1.0, 0.0, 1.0]))
+    off = 0.5 * np.expm1(0.1) * np.sqrt(np.array([1, 4, 1]) / 6.0 @ times**2)
+    assert spreads[1] == pytest.approx(np.hypot(known, off), rel=0.05)
 
 
 def test_what_cannot_act_or_be_seen_is_excluded_with_its_reason(toy, library) -> None:

@@ -198,6 +198,19 @@ def test_a_support_with_play_is_within_the_library_and_a_flat_that_softens_is_no
     assert 5.0 < beyond <= plain
 
 
+def test_what_another_effect_of_unknown_size_may_be_is_taken_out():
+    rig = benches.balls_normal(np.random.default_rng(3))
+    loss = effects.Effect("impact-speed-loss", "share", {"loss": 0.05})
+    less = effects.Effect("impact-speed-loss", "share", {"loss": 0.03})
+    layer = effects.Effect("hardened-layer", "exponential", {"rise": 0.5, "thickness": 1e-4})
+    alone = simulate.size_of(rig, [loss], family=LAWS[0], z={})
+    beside = simulate.size_of(rig, [loss], family=LAWS[0], z={}, keep=[layer])
+    assert 2.0 < beside < alone
+    # of two of one kind the other one, 3 % within a factor of e, is three fifths of it
+    twice = simulate.size_of(rig, [loss], family=LAWS[0], z={}, keep=[less])
+    assert twice == pytest.approx(alone / np.hypot(1.0, 0.6 * alone), rel=0.1)
+
+
 @pytest.mark.parametrize("law", list(base_laws.LAWS))
 @pytest.mark.parametrize("target", benches.TARGETS, ids=lambda metal: metal.name)
 def test_base_laws_follow_the_finite_elements_of_each_pair(target, law):
