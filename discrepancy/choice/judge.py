@@ -43,13 +43,13 @@ class Judge:
         free = outside_of(ranking.problem, ranking.base)
         calibration = calibrate(ranking, nulls, free)
         gained = float(free.log_likelihood(ranking.base.residual)) - ranking.base.log_evidence
-        free, own = shares_outside(len(ranking.nameless))
+        known_to_none, own = shares_outside(len(ranking.nameless))
         parts = {
             n.screened.mechanism.name: n.log_bayes + math.log(own)
             - calibration.offset[n.screened.mechanism.name]
             for n in ranking.nameless
         }  # fmt: skip
-        parts[OUTSIDE] = gained + math.log(free) - calibration.offset[OUTSIDE]
+        parts[OUTSIDE] = gained + math.log(known_to_none) - calibration.offset[OUTSIDE]
         parts["repeats"] = odd_repeats(ranking.problem)
         whole = float(logsumexp(list(parts.values())))
         share = {k: math.exp(v - whole) for k, v in parts.items() if k not in (OUTSIDE, "repeats")}

@@ -149,8 +149,8 @@ class Visibility:
             if off > 0.0:
                 change = (np.concatenate(list(changed.values())) - plain) * weight
                 columns.append(np.nan_to_num(TYPICAL / off * change))
-        for other in _numbers_moved(keep):
-            moved = np.concatenate(_stacked(few, other, family, z))
+        for effects in _numbers_moved(keep):
+            moved = np.concatenate(_stacked(few, effects, family, z))
             columns.append(np.nan_to_num((moved - plain) * weight * UNKNOWN / _MOVED))
         return cls(few, family, z, tuple(keep), plain, weight, np.stack(columns, axis=1))
 
