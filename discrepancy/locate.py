@@ -1,9 +1,11 @@
 """Where the baseline misses: observable by covariate, with a family-wise threshold.
 
 For each observable and each condition that varies, a contrast over the cells of that observable is
-tested: a constant, or a slope along the condition. Its score divides what the residual has along
-the contrast by what noise, nuisances and the law's error leave it. The largest score of all is
-compared with that of the null residuals.
+tested: a constant, or a slope along the condition, each cell weighted by its noise. Its score is
+what the residual has along the contrast over the standard deviation that noise, nuisances and the
+law's error give it there, by themselves: an observable that agrees has no score, though a nuisance
+that would repair another one moved it too. The largest score of all is compared with that of the
+null residuals.
 """
 
 from __future__ import annotations
@@ -76,10 +78,10 @@ def locate(
     """
     names, contrasts = _contrasts(problem)
     linear = base.linear
-    solved = linear.solve(contrasts.T)
-    size = np.sqrt(np.einsum("ij,ji->i", contrasts, solved))
-    score = base.residual @ solved / size
-    null = np.abs(nulls.made_by(base) @ solved / size)
+    weighted = contrasts / np.diag(linear.noise)
+    size = np.sqrt(np.einsum("ij,jk,ik->i", weighted, linear.total, weighted))
+    score = weighted @ base.residual / size
+    null = np.abs(nulls.made_by(base) @ weighted.T / size)
     threshold = float(np.quantile(null.max(axis=1), level))
     spread = np.maximum(null.std(axis=0) / math.sqrt(1.0 - 2.0 / math.pi), 1.0)
     found = []

@@ -9,9 +9,10 @@ import numpy as np
 from numpy.typing import NDArray
 
 from .forward import Simulator
-from .inference.fit import Fit, baseline_situations, fit, grid_of, responses_at
+from .inference.fit import Fit, baseline_situations, fit, grid_of
 from .inference.grid import Grid
 from .inference.outliers import outlying, without_weight
+from .inference.together import responses_at
 from .inference.window import sharpened
 from .mechanisms import MECHANISMS, NAMELESS
 from .mechanisms.base import Mechanism

@@ -61,11 +61,15 @@ COSTS = Costs()
 
 @dataclass(frozen=True, eq=False)
 class Choice:
-    """A verdict, the explanations that it holds (best first), and why."""
+    """A verdict, the explanations that it holds (best first), and why.
+
+    `alike` says, as clauses, what something outside the library behaves like, where that is known.
+    """
 
     verdict: str
     members: tuple[Fit, ...]
     reasons: tuple[str, ...]
+    alike: tuple[str, ...] = ()
 
 
 def in_doubt(odds: Odds) -> bool:

@@ -66,7 +66,8 @@ class Judge:
         if choice.verdict != OUTSIDE or not alike:
             return choice
         told = (_behaves(n, self._share(n)) for n in alike)
-        return replace(choice, reasons=(*choice.reasons, *told))
+        titles = tuple(n.screened.mechanism.title for n in alike)
+        return replace(choice, reasons=(*choice.reasons, *told), alike=titles)
 
     def _share(self, nameless: Nameless) -> float:
         return self.nameless[nameless.screened.mechanism.name]

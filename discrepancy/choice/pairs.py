@@ -4,16 +4,16 @@ from __future__ import annotations
 
 import itertools
 import math
-from collections.abc import Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
 from numpy.typing import NDArray
 from scipy.special import logsumexp
 
-from ..forward import Point, Simulator
+from ..forward import Simulator
 from ..inference.fit import fit_anchored
-from ..inference.grid import Grid, along_all
+from ..inference.grid import Grid
+from ..inference.together import mutual
 from ..mechanisms.base import Mechanism
 from ..rank import Progress, Ranking, Screened, sharpened_leading
 
@@ -70,6 +70,8 @@ def _leading_pairs(ranking: Ranking) -> list[tuple[Screened, Screened, Array]]:
 
 def _partners(ranking: Ranking) -> list[tuple[Screened, Screened, Array]]:
     """Return the leading mechanism with those that explain most of what it leaves."""
+    if not ranking.singles:
+        return []
     lead = ranking.singles[0]
     white = lead.linear.white(lead.residual)
     scored: list[tuple[float, int, Array]] = []
@@ -112,25 +114,6 @@ class PairEffect:
         first = self.one.grid.onto(self.one.change, grid.fine[:n])
         second = self.two.grid.onto(self.two.change, grid.fine[n:])
         total = (first[:, None, :] + second[None, :, :]).reshape(-1, first.shape[-1])
-        return np.asarray(total + self._mutual(grid, n, z, place))
-
-    def _mutual(self, grid: Grid, n: int, z: Array, place: Array) -> Array:
         count = 3 if len(place) == 2 else 2
-        axes = [np.linspace(max(x - _NEAR, 0.0), min(x + _NEAR, 1.0), count) for x in place]
-        both, plain = self._at(self.mechanisms, grid, axes, z), self._plain(z)
-        alone = self._at(self.mechanisms[:1], self.one.grid, axes[:n], z)
-        rest = self._at(self.mechanisms[1:], self.two.grid, axes[n:], z)
-        m = both.shape[-1]
-        table = both.reshape(len(alone), len(rest), m) - alone[:, None] - rest[None, :] + plain
-        table = table.reshape(*[count] * len(place), m)
-        inside = [np.clip(f, a[0], a[-1]) for f, a in zip(grid.fine, axes, strict=True)]
-        return np.asarray(along_all(axes, inside, table).reshape(-1, m))
-
-    def _plain(self, z: Array) -> Array:
-        return np.asarray(self.simulator.predict((), [Point(z)])[0])
-
-    def _at(
-        self, mechanisms: Sequence[Mechanism], grid: Grid, axes: list[Array], z: Array
-    ) -> Array:
-        places = itertools.product(*axes)
-        return self.simulator.predict(mechanisms, [Point(z, grid.values(p)) for p in places])
+        corners = [np.linspace(max(x - _NEAR, 0.0), min(x + _NEAR, 1.0), count) for x in place]
+        return total + mutual(self.simulator, self.mechanisms, grid, corners, z)

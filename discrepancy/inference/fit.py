@@ -13,13 +13,14 @@ from dataclasses import dataclass, replace
 import numpy as np
 from numpy.typing import NDArray
 
-from ..forward import Point, Simulator
+from ..forward import Simulator
 from ..mechanisms.base import Mechanism, Situation
 from ..problem import Problem
 from ..unknowns.lawerror import SIZES
 from .derivatives import FORMS, derivatives
 from .grid import Axis, Grid, posterior
 from .linear import Linear, Mixture
+from .together import refined
 
 Array = NDArray[np.float64]
 
@@ -191,13 +192,6 @@ def baseline_situations(problem: Problem) -> list[Situation]:
     return [(s, c.around) for s, c in zip(scenes, problem.conditions, strict=True)]
 
 
-def responses_at(
-    simulator: Simulator, mechanisms: Sequence[Mechanism], grid: Grid, z: Array
-) -> Array:
-    """Return predictions at every node of the grid, shape (nodes, m)."""
-    return simulator.predict(mechanisms, [Point(z, values) for values in grid.nodes()])
-
-
 def expand(
     simulator: Simulator, mechanisms: tuple[Mechanism, ...], grid: Grid, z: Array, place: Array,
     effect: Array | None,
@@ -212,7 +206,7 @@ def expand(
     if not mechanisms:
         fine = here[None]
     elif effect is None:
-        fine = grid.refine(responses_at(simulator, mechanisms, grid, z))
+        fine = refined(simulator, mechanisms, grid, z, place, here)
     else:
         fine = effect + (here - effect[grid.index(place)])
     r = problem.cells.value - fine + linear.J @ z

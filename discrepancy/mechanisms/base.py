@@ -44,8 +44,9 @@ class Parameter:
     low, high
         Range within which the source (or physics) puts it; the prior is flat over it.
     scale
-        Whether flat means in the number, in its logarithm, or in the angle whose squared sine the
-        share of the range is: `ends`, where both ends are states that occur.
+        Whether flat means in the number or in its logarithm; or `half-low`, where the low end is a
+        state that occurs: half of the prior is there, the rest flat in the angle whose squared sine
+        the share of the range is.
     neutral
         The value at which the mechanism does nothing.
     source
@@ -61,7 +62,7 @@ class Parameter:
     unit: str
     low: float
     high: float
-    scale: Literal["log", "linear", "ends"]
+    scale: Literal["log", "linear", "half-low"]
     neutral: float
     source: str
     nodes: int = 9
@@ -72,8 +73,8 @@ class Parameter:
         p = np.asarray(place, dtype=float)
         if self.scale == "log":
             return np.asarray(self.low * (self.high / self.low) ** p)
-        if self.scale == "ends":
-            p = np.sin(0.5 * np.pi * p) ** 2
+        if self.scale == "half-low":
+            p = np.sin(0.5 * np.pi * np.maximum(2.0 * p - 1.0, 0.0)) ** 2
         return np.asarray(self.low + (self.high - self.low) * p)
 
 

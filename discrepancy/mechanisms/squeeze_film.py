@@ -30,9 +30,10 @@ class SqueezeFilm(Mechanism):
             "J. Fluid Mech. 468 (2002) 107)", nodes=17,
         ),
         Parameter(
-            "film_exit_share", "-", 0.0, 1.0, "ends", 0.0,
-            "0 where the film cavitates as the bodies part, 1 where it does not (Barnocky and "
-            "Davis, Phys. Fluids 31 (1988) 1324)", nodes=5,
+            "film_exit_share", "-", 0.0, 1.0, "half-low", 0.0,
+            "0 where the film cavitates as the bodies part, the rule for a liquid that bears no "
+            "tension, so half of the prior; 1 where it does not (Barnocky and Davis, Phys. Fluids "
+            "31 (1988) 1324)", nodes=7,
         ),
     )  # fmt: skip
     direction: ClassVar[Mapping[str, int]] = {"restitution": -1, "permanent_depth_m": -1}

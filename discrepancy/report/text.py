@@ -28,6 +28,11 @@ def headline(v: Verdict) -> str:
     if v.verdict == "indistinguishable":
         rival = joined([explanation("+".join(a)) for a in (v.mechanisms, *v.alternatives)], "or")
         return f"Something is missing, and these explain it equally well: {rival}."
+    if v.verdict == OUTSIDE and v.choice.alike:
+        return (
+            "The simulation as described fails, and no mechanism that dentscope has a name for "
+            f"repairs it: it behaves as if {joined(v.choice.alike)}."
+        )
     if v.verdict == OUTSIDE:
         return (
             "The simulation as described fails, and nothing that dentscope knows repairs it: the "
@@ -73,7 +78,7 @@ def lines(v: Verdict) -> list[str]:
     out += [f"  {percent(x):>14}  {k}: {title_of(k)}" for k, x in list(part.items())[:5]]
     unknown = v.probabilities.get(OUTSIDE, 0.0)
     if unknown >= 0.01:
-        out.append(f"  {percent(unknown):>14}  something that dentscope does not know")
+        out.append(f"  {percent(unknown):>14}  something that dentscope has no name for")
     nothing = v.probabilities.get("baseline", 0.0)
     out.append(f"  {percent(nothing):>14}  nothing is missing")
     if v.corrections:

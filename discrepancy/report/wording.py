@@ -67,7 +67,7 @@ def explanation(name: str) -> str:
     if name == "baseline":
         return "nothing is missing"
     if name == "outside-library":
-        return "something that dentscope does not know"
+        return "something that dentscope has no name for"
     return " and ".join(title_of(part) for part in name.split("+"))
 
 

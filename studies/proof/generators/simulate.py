@@ -170,7 +170,8 @@ class Visibility:
         """Where a change (m,) shows: observable, condition or "overall", and score; largest first.
 
         A contrast is a constant over the readings of one observable, or a slope along a condition
-        that varies; its score is what the change has along it over what noise and nuisances have.
+        that varies; its score is what the change has along it over the standard deviation that
+        noise, nuisances and metals have there. An observable that does not change has no score.
         """
         rig, n = self.rig, len(self.rig)
         bodies = [rig.strikers[k] for k in rig.which]
@@ -181,7 +182,6 @@ class Visibility:
             "tangential speed": rig.tangential, "temperature": rig.temperature,
         }  # fmt: skip
         total = np.eye(len(e)) + self.J @ self.J.T
-        solved = np.linalg.solve(total, e)
         found = []
         for k, name in enumerate(rig.noise):
             here = slice(k * n, (k + 1) * n)
@@ -190,8 +190,8 @@ class Visibility:
             for condition, x in shapes.items():
                 contrast = np.zeros(len(e))
                 contrast[here] = x * self.weight[here]
-                size = math.sqrt(float(contrast @ np.linalg.solve(total, contrast)))
-                found.append((name, condition, abs(float(contrast @ solved)) / size))
+                size = math.sqrt(float(contrast @ total @ contrast))
+                found.append((name, condition, abs(float(contrast @ e)) / size))
         return sorted(found, key=lambda place: -place[2])
 
 

@@ -111,6 +111,9 @@ def test_a_soft_surface_has_no_name_but_the_report_says_what_it_is_like(tmp_path
     verdict = diagnose(read(written(tmp_path, "outside", SOFT, "crushed-layer")))
     assert verdict.verdict == "outside-library"
     assert any("as if the surface is softer than the bulk" in text for text in verdict.reasons)
+    finding = story_of(verdict).finding
+    assert "it behaves as if the surface is softer than the bulk" in finding
+    assert "nothing that dentscope knows" not in finding
     assert "softer-surface" not in {*verdict.inclusion, *verdict.probabilities, *verdict.excluded}
     assert math.isclose(sum(verdict.probabilities.values()), 1.0, rel_tol=1e-6)
 

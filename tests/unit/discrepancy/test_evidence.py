@@ -69,17 +69,19 @@ def test_window_and_whole_prior_give_one_evidence() -> None:
 
 def test_a_window_has_no_fewer_nodes_than_the_prior_has_there() -> None:
     fine = Parameter("a", "-", 1.0, 10.0, "log", 0.0, "", nodes=17)
-    share = Parameter("b", "-", 0.0, 1.0, "ends", 0.0, "", nodes=5)
+    share = Parameter("b", "-", 0.0, 1.0, "half-low", 0.0, "", nodes=5)
     first, second = Grid((Axis("m", fine), Axis("m", share)), ((0.1, 0.9), (0.4, 0.5))).coarse
     assert len(first) == 14  # 0.8 of 16 steps
     assert len(second) == 5
 
 
-def test_a_share_whose_ends_occur_is_flat_in_its_angle() -> None:
-    """The arcsine distribution of its quantiles: scipy's beta(1/2, 1/2)."""
-    share = Parameter("b", "-", 2.0, 4.0, "ends", 0.0, "", nodes=5)
+def test_a_state_that_occurs_has_half_of_the_prior() -> None:
+    """Above it the arcsine distribution of its quantiles: scipy's beta(1/2, 1/2)."""
+    share = Parameter("b", "-", 2.0, 4.0, "half-low", 0.0, "", nodes=5)
     place = np.linspace(0.0, 1.0, 11)
-    assert share.value(place) == pytest.approx(2.0 + 2.0 * beta(0.5, 0.5).ppf(place), abs=1e-9)
+    assert share.value(0.5 * place) == pytest.approx(2.0, abs=1e-9)
+    above = 2.0 + 2.0 * beta(0.5, 0.5).ppf(place)
+    assert share.value(0.5 + 0.5 * place) == pytest.approx(above, abs=1e-9)
 
 
 def test_interval_of_a_normal_sample() -> None:

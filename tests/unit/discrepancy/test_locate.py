@@ -7,6 +7,7 @@ from types import SimpleNamespace
 
 import numpy as np
 import pytest
+from dentscope.discrepancy.choice.thresholds import Nulls
 from dentscope.discrepancy.locate import ORDER, locate
 from dentscope.discrepancy.unknowns.covariates import covariates
 from dentscope.discrepancy.unknowns.drift import Drift
@@ -60,6 +61,18 @@ def test_a_slope_is_a_miss_along_its_condition(located) -> None:
 def test_misses_come_worst_first(located) -> None:
     found = located([0.0, 4.0, 8.0, 12.0]).misses
     assert [m.covariate for m in found] == ["overall", "impact speed"]
+
+
+def test_an_observable_that_agrees_has_no_miss_though_a_nuisance_moves_it(toy) -> None:
+    """Raising both by one number repairs the first and spoils the second: the first missed."""
+    both = toy.problem([3.0, 0.0], speeds=[1.0, 1.0], derivative=np.ones((2, 1)))
+    both = replace(both, cells=replace(both.cells, observable=("restitution", "contact_time_s")))
+    fitted = toy.fit_of([3.0, 0.0], J=np.ones((2, 1)))
+    nulls = Nulls(np.zeros((4000, 2)), UNIT[:, :2], UNIT[:, 2:3], np.zeros((4000, 2)))
+    one, two = locate(both, fitted, nulls, least=2).misses
+    # noise of 1 and a nuisance of 1
+    assert (one.observable, one.z) == ("restitution", pytest.approx(3.0 / np.sqrt(2.0), rel=0.05))
+    assert (two.observable, two.z) == ("contact_time_s", 0.0)
 
 
 def test_chance_gives_one_set_in_twenty_a_miss(located) -> None:

@@ -2,13 +2,18 @@
 
 from __future__ import annotations
 
+import math
 from dataclasses import replace
+from types import SimpleNamespace
 
 import numpy as np
 import pytest
 from dentscope.discrepancy.choice.pairs import PairEffect, with_pairs
-from dentscope.discrepancy.inference.grid import Grid
+from dentscope.discrepancy.forward import Point
+from dentscope.discrepancy.inference.grid import Axis, Grid
 from dentscope.discrepancy.inference.outliers import WIDER
+from dentscope.discrepancy.inference.together import refined
+from dentscope.discrepancy.mechanisms.base import Parameter
 from dentscope.discrepancy.rank import rank
 
 RISING = tuple(8.0 * (k - 3.5) for k in range(8))
@@ -175,3 +180,37 @@ def test_a_pair_is_found_whose_members_both_act(toy, library) -> None:
     assert pair.name == "rising+bent"
     assert pair.place == pytest.approx([0.5, 0.4], abs=0.02)
     assert pair.log_evidence > found.singles[0].log_evidence + 10.0
+
+
+def test_a_pair_of_many_parameters_costs_the_sum_of_its_nodes_not_their_product() -> None:
+    """Two effects that bend, of three parameters each, and a product of both between them."""
+    numbers = tuple(Parameter(k, "-", 0.0, 1.0, "linear", 0.0, "", nodes=9) for k in "abc")
+    one, two = SimpleNamespace(name="one"), SimpleNamespace(name="two")
+    asked = []
+
+    def predict(mechanisms, points):
+        asked.append(len(points))
+        rows = []
+        for p in points:
+            own = [sum(math.exp(0.3 * x) for x in p.values[m.name].values()) for m in mechanisms]
+            both = math.prod(own) if len(own) == 2 else 0.0
+            rows.append([sum(own), 0.1 * both])
+        return np.array(rows)
+
+    grid = Grid(
+        tuple(Axis(m.name, p) for m in (one, two) for p in numbers),
+        tuple((0.4, 0.6) for _ in range(6)),
+    )
+    place = np.full(6, 0.5)
+    here = predict((one, two), [Point(np.zeros(0), grid.values(place))])[0]
+    found = refined(SimpleNamespace(predict=predict), (one, two), grid, np.zeros(0), place, here)
+    exact = predict((one, two), [Point(np.zeros(0), grid.values(p)) for p in grid.places()])
+    assert found == pytest.approx(exact, rel=1e-3)
+    assert sum(asked[1:-1]) < 3**6
+    assert np.ptp(exact[:, 1]) > 0.05
+
+
+def test_no_pairs_where_nothing_that_has_a_name_was_fitted(toy) -> None:
+    given = toy.problem([0.0] * 8)
+    bare = toy.ranking_of(given, toy.fit_of([0.0] * 8))
+    assert with_pairs(toy.Simulator(given), bare).pairs == ()

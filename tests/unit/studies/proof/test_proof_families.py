@@ -270,3 +270,17 @@ def test_an_effect_is_placed_where_its_readings_change():
     change[depth * n : (depth + 1) * n] = 9.0 * (speed - speed.mean())
     first = seen.places(change)[0]
     assert first[:2] == ("permanent_depth_m", "impact speed")
+
+
+def test_an_effect_has_no_place_where_its_readings_do_not_change():
+    """Friction moves no restitution, though the strength that would repair a dent moves both."""
+    rng = np.random.default_rng(2)
+    rig = benches.balls_normal(rng)
+    seen = simulate.Visibility.of(rig, family=at.CAVITY, z={})
+    n = len(seen.rig)
+    change = np.zeros(len(seen.weight))
+    depth = list(rig.noise).index("permanent_depth_m")
+    change[depth * n : (depth + 1) * n] = 9.0
+    score = {(name, along): z for name, along, z in seen.places(change)}
+    assert score["permanent_depth_m", "overall"] > 1.0
+    assert max(z for (name, _), z in score.items() if name != "permanent_depth_m") == 0.0
