@@ -25,7 +25,7 @@ import h5py
 
 from ..core.disk import DISK
 from ..core.errors import InputError
-from ..core.input_file import read_bytes
+from ..core.inputs.input_file import read_bytes
 from ..core.output import write_file
 from .contents import MOST_BYTES, SEALED_FROM, check_seal, seal
 

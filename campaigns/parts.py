@@ -28,7 +28,7 @@ import numpy as np
 import numpy.typing as npt
 
 from ..core.errors import InputError
-from ..core.input_file import read_bytes
+from ..core.inputs.input_file import read_bytes
 from ..core.provenance import canonical_json
 from ..fem import critical_depth
 from .case import Case

@@ -21,7 +21,7 @@ from typing import TypeVar
 import h5py
 
 from ..core.errors import Ending, InputError
-from ..core.input_file import checked_file, read_bytes
+from ..core.inputs.input_file import checked_file, read_bytes
 from ..core.output import NO_ROOM, cannot_write, folder_for_output, write_file
 from ..core.provenance import environment
 from ..fem import Solution

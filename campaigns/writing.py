@@ -12,7 +12,7 @@ import numpy as np
 import numpy.typing as npt
 
 from ..fem import Curve, Solution
-from ..fem.fields import write_vtu
+from ..fem.results.fields import write_vtu
 from .quality import quality_of
 from .schema import CURVE, PROFILES, UNLOADING_PROFILES, Dataset
 

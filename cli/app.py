@@ -18,10 +18,10 @@ from .diagnose import diagnose
 from .doctor import doctor
 from .examples import examples
 from .fit import fit
-from .groups import Sections
 from .impact import impact
 from .inverse import inverse
-from .keys import keys
+from .shared.groups import Sections
+from .shared.keys import keys
 
 app = typer.Typer(
     name="dentscope",

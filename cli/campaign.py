@@ -16,7 +16,7 @@ from ..core.errors import EXIT_NOT_CONVERGED, InputError
 from . import campaign_data, studies
 from .campaign_data import DEFAULT_DESIGN, FILE, PUBLISHED, DesignName, Out
 from .campaign_progress import Progress, duration, judged, remarks, tell
-from .groups import group
+from .shared.groups import group
 
 # With so many cases done the pictures are drawn while a run goes on: the first, and the first
 # three, which in the large designs are the figures' pairs, Sy* = 0.1, 1 and 10.

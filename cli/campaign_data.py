@@ -11,9 +11,9 @@ import typer
 
 from ..core.errors import EXIT_NOT_CONVERGED, InputError
 from ..core.output import csv_text, write_file
-from .places import file_option, folder_option
-from .terminal import console as new_console
-from .terminal import show_table
+from .shared.places import file_option, folder_option
+from .shared.terminal import console as new_console
+from .shared.terminal import show_table
 
 FILE = "campaign.h5"
 """Name of a run's file in its folder."""

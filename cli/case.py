@@ -13,9 +13,9 @@ from ..core.disk import DISK
 from ..core.errors import EXIT_NOT_CONVERGED, InputError
 from ..core.output import csv_text, write_figure, write_file
 from ..core.templates import CASE, write_new
-from .places import folder_option
-from .terminal import console as new_console
-from .terminal import show_table
+from .shared.places import folder_option
+from .shared.terminal import console as new_console
+from .shared.terminal import show_table
 
 _COLUMNS = (
     "force_N",
@@ -83,8 +83,8 @@ def case(
 
 def _write_fields(solution: Any, out: Path, *, picture: bool) -> Iterator[Path]:
     """Write the fields at every depth asked for, and draw them."""
-    from ..fem.cutaway import draw_cutaway
-    from ..fem.fields import draw_section, write_vtu
+    from ..fem.results.cutaway import draw_cutaway
+    from ..fem.results.fields import draw_section, write_vtu
 
     pair = solution.problem.pair
     for snapshot in solution.snapshots:

@@ -14,8 +14,8 @@ import typer
 from ..core.errors import InputError
 from ..core.output import write_file
 from . import studies
-from .places import folder_option
-from .terminal import say
+from .shared.places import folder_option
+from .shared.terminal import say
 
 if TYPE_CHECKING:
     from ..discrepancy import Verdict

@@ -8,7 +8,7 @@ from typing import Annotated
 import typer
 
 from ..core.output import write_file
-from .places import folder_option
+from .shared.places import folder_option
 
 FOLDER = Path(__file__).resolve().parents[1] / "examples"
 """Where they lie."""

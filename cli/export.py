@@ -9,9 +9,9 @@ from typing import TYPE_CHECKING, Annotated
 import typer
 
 from ..core.errors import InputError
-from .groups import group
-from .places import folder_option
-from .terminal import console, show_table
+from .shared.groups import group
+from .shared.places import folder_option
+from .shared.terminal import console, show_table
 
 if TYPE_CHECKING:
     from ..core.material import Pair

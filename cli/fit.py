@@ -9,12 +9,12 @@ from typing import TYPE_CHECKING, Annotated, Any, NamedTuple
 import typer
 
 from ..core.errors import EXIT_NOT_CONVERGED, InputError
-from ..core.input_file import checked_file
+from ..core.inputs.input_file import checked_file
 from . import studies
 from .campaign_data import PUBLISHED
-from .places import folder_option
-from .terminal import console as new_console
-from .terminal import show_table
+from .shared.places import folder_option
+from .shared.terminal import console as new_console
+from .shared.terminal import show_table
 
 if TYPE_CHECKING:
     from rich.console import Console

@@ -11,9 +11,9 @@ from ..core.errors import EXIT_NOT_CONVERGED
 from ..core.templates import template, write_new
 from . import studies
 from .laws import laws_named
-from .places import folder_option
-from .terminal import console as new_console
-from .terminal import show_table
+from .shared.places import folder_option
+from .shared.terminal import console as new_console
+from .shared.terminal import show_table
 
 if TYPE_CHECKING:
     from ..core.material import Pair
@@ -58,7 +58,7 @@ def _write_new(kind: str, path: Path | None) -> None:
 
 
 def _from_file(path: Path, names: list[str], out: Path) -> None:
-    from ..core.toml_input import read_toml
+    from ..core.inputs.toml_input import read_toml
 
     read_toml(path)  # what is no TOML is told before the simulation is loaded
     from ..impact.draw import draw_histories

@@ -11,9 +11,9 @@ import typer
 from ..core.templates import INVERSE, write_new
 from . import studies
 from .laws import laws_named
-from .places import folder_option
-from .terminal import console as new_console
-from .terminal import show_table
+from .shared.places import folder_option
+from .shared.terminal import console as new_console
+from .shared.terminal import show_table
 
 
 def inverse(
@@ -39,7 +39,7 @@ def inverse(
         studies.needed_for("`dentscope inverse` without a file")
         laws_named(law or [])
     else:
-        from ..core.toml_input import read_toml
+        from ..core.inputs.toml_input import read_toml
 
         read_toml(file)  # what is no TOML is told before the simulation is loaded
     from ..impact.draw import draw_alpha

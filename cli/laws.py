@@ -10,10 +10,10 @@ import typer
 
 from ..core.errors import InputError
 from ..core.output import csv_text, write_figure, write_file
-from .groups import Commands, group
-from .places import folder_option
-from .terminal import console as new_console
-from .terminal import entry, show_table, wrapped
+from .shared.groups import Commands, group
+from .shared.places import folder_option
+from .shared.terminal import console as new_console
+from .shared.terminal import entry, show_table, wrapped
 
 if TYPE_CHECKING:
     from ..models.base import ContactLaw

@@ -7,9 +7,9 @@ from typing import Annotated
 
 import typer
 
-from .groups import group
-from .places import folder_option
-from .terminal import say
+from .shared.groups import group
+from .shared.places import folder_option
+from .shared.terminal import say
 
 app = group("Recording sets, measured impacts: list, check, audit, new, fetch.")
 

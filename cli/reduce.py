@@ -15,8 +15,8 @@ from typing import Annotated, Any
 
 import typer
 
-from .groups import Commands, group
-from .places import folder_option
+from .shared.groups import Commands, group
+from .shared.places import folder_option
 
 if typing.TYPE_CHECKING:
     from pydantic.fields import FieldInfo
@@ -158,7 +158,7 @@ def _reduce_each(
 def _reduce(
     kind: Kind, file: Path, into: Path | None, out: Path, given: dict[str, Any], row: dict[str, Any]
 ) -> None:
-    from ..core.toml_input import parse_model
+    from ..core.inputs.toml_input import parse_model
     from ..recordings.reduce.into_set import store
     from ..recordings.reduce.record import trial_name, write_record
     from ..recordings.reduce.row import Row

@@ -24,7 +24,7 @@ from typing import Any
 
 from .disk import DISK
 from .errors import InputError
-from .input_file import read_bytes
+from .inputs.input_file import read_bytes
 
 PENDING = ".dentscope-pending"
 PATIENCE_S = 300.0

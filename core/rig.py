@@ -23,9 +23,9 @@ from pydantic import (
 )
 
 from .errors import InputError
+from .inputs.toml_input import InputTable
 from .material import Material
 from .observables import NOISE_KEYS
-from .toml_input import InputTable
 
 Number = Annotated[float, Field(strict=True)]
 

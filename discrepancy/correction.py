@@ -15,10 +15,10 @@ from scipy.stats import norm
 
 from ..impact.force import LOG_DEPTH_FIRST, LOG_DEPTH_LAST
 from ..impact.strength import NODES
-from .forward import Point, Simulator
+from .comparison.forward import Point, Simulator
+from .comparison.problem import Problem
 from .inference.fit import Fit
 from .inference.linear import Linear
-from .problem import Problem
 
 Array = NDArray[np.float64]
 

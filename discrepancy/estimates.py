@@ -13,11 +13,11 @@ from scipy.stats import norm
 from ..recordings import RecordingSet, Severity, audit
 from .choice.calibration import Calibration
 from .choice.odds import NAMED_AT, PRIORS
-from .forward import Simulator
+from .comparison.forward import Simulator
+from .comparison.problem import Problem
 from .heldout import HeldOut
 from .inference.fit import Fit
 from .inference.grid import interval
-from .problem import Problem
 from .rank import Ranking
 
 Array = NDArray[np.float64]

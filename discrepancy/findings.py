@@ -11,11 +11,11 @@ from numpy.typing import NDArray
 
 from .. import __version__
 from .choice.decide import Choice
+from .comparison.problem import Problem
 from .correction import Correction
 from .experiments.next_experiment import Proposal
 from .inference.fit import Fit
 from .locate import Located
-from .problem import Problem
 from .rank import Ranking
 
 

@@ -16,8 +16,8 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.special import logsumexp
 
+from .comparison.problem import Problem
 from .inference.fit import Fit
-from .problem import Problem
 
 Array = NDArray[np.float64]
 

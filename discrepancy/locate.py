@@ -18,8 +18,8 @@ from numpy.typing import NDArray
 
 from ..core.observables import OBSERVABLES
 from .choice.thresholds import Nulls
+from .comparison.problem import Problem
 from .inference.fit import Fit
-from .problem import Problem
 from .unknowns.covariates import covariates
 
 Array = NDArray[np.float64]

@@ -10,6 +10,7 @@ import math
 
 import numpy as np
 
+from ..core.threads import in_one_thread
 from ..recordings import RecordingSet
 from .choice.calibration import p_fit
 from .choice.decide import in_doubt, withdrawn
@@ -17,6 +18,8 @@ from .choice.judge import Judge
 from .choice.odds import OUTSIDE
 from .choice.pairs import with_pairs
 from .choice.thresholds import null_residuals
+from .comparison.forward import Point, Simulator
+from .comparison.problem import problem_of
 from .correction import correct
 from .estimates import (
     audit_rows,
@@ -32,11 +35,9 @@ from .estimates import (
 )
 from .experiments.next_experiment import propose
 from .findings import Verdict
-from .forward import Point, Simulator
 from .heldout import Repeated, held_out, repeated_choice
 from .inference.sampling import confirm_evidence
 from .locate import locate
-from .problem import problem_of
 from .rank import Progress, rank
 
 NULLS = 500
@@ -47,6 +48,7 @@ PROPOSED = 5
 """Next experiments that a verdict keeps."""
 
 
+@in_one_thread
 def diagnose(
     recordings: RecordingSet,
     *,

@@ -4,9 +4,9 @@
 from dataclasses import replace
 from pathlib import Path
 
-from dentscope.discrepancy.forward import Simulator
+from dentscope.discrepancy.comparison.forward import Simulator
+from dentscope.discrepancy.comparison.problem import problem_of
 from dentscope.discrepancy.mechanisms.base import Mechanism, Parameter
-from dentscope.discrepancy.problem import problem_of
 from dentscope.discrepancy.rank import rank
 from dentscope.recordings import read
 from dentscope.recordings.shipped import set_folder

@@ -9,14 +9,14 @@ from .problem import (
     critical_depth,
     geometric_depths,
 )
-from .solution import Counters, Curve, Profile, Snapshot, Solution, Unloading
-from .solve import solve
-from .uncertainty import (
+from .results.uncertainty import (
     MESH_ERRORS_FILE,
     MESH_ERRORS_FORMAT,
     Uncertainty,
     discretisation_uncertainty,
 )
+from .solution import Counters, Curve, Profile, Snapshot, Solution, Unloading
+from .solve import solve
 
 __all__ = [
     "MESH_ERRORS_FILE",

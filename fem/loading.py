@@ -18,13 +18,13 @@ from .assemble import advance
 from .discretise import discretise
 from .elements import State
 from .material import EXACT
-from .measure import read
 from .mesh import Layers, Zone
 from .newton import Solver, Timers
 from .path import MOST_CUTS, STEP_CUT, Point, Record, accept, extrapolate
 from .problem import DEEPEST, Accuracy, ContactProblem, critical_depth
 from .remesh import Transfer
-from .ripple import BEYOND
+from .results.measure import read
+from .results.ripple import BEYOND
 
 Floats = npt.NDArray[np.float64]
 

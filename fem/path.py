@@ -13,8 +13,8 @@ import numpy.typing as npt
 from .assemble import advance
 from .discretise import Discretisation
 from .elements import State
-from .measure import Reading, read
 from .newton import Equilibrium, Solver
+from .results.measure import Reading, read
 
 Floats = npt.NDArray[np.float64]
 

@@ -18,8 +18,8 @@ from ..core.errors import COMPLETED, Ending, Outcome
 from .loading import Loading, Tally
 from .path import Point, Record
 from .problem import Accuracy, ContactProblem
-from .ripple import Track
-from .snapshot import take_profile, take_snapshot
+from .results.ripple import Track
+from .results.snapshot import take_profile, take_snapshot
 from .solution import Counters, Curve, Profile, Snapshot, Solution, Unloading
 from .unloading import curve_of, level, unload
 

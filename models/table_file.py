@@ -10,11 +10,11 @@ import numpy as np
 from pydantic import Field
 
 from ..core.errors import InputError
-from ..core.json_input import read_json
+from ..core.inputs.json_input import read_json
+from ..core.inputs.toml_input import InputTable, Listed, parse_model
 from ..core.material import Pair
 from ..core.output import write_file
 from ..core.rig import MaterialTable, material_keys
-from ..core.toml_input import InputTable, Listed, parse_model
 from .table import Curve, PairTable, TableLaw, Turns, table_law
 
 FORMAT = "dentscope-table/1"

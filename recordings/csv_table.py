@@ -14,7 +14,7 @@ import numpy as np
 import numpy.typing as npt
 
 from ..core.errors import InputError
-from ..core.input_file import read_bytes
+from ..core.inputs.input_file import read_bytes
 
 Array = npt.NDArray[np.float64]
 

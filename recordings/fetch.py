@@ -16,7 +16,7 @@ from pydantic import AfterValidator, Field
 from requests.exceptions import RequestException
 
 from ..core.errors import InputError
-from ..core.toml_input import InputTable, Listed, read_model
+from ..core.inputs.toml_input import InputTable, Listed, read_model
 
 MOST_BYTES = 2_000_000_000
 """Largest file that is fetched."""

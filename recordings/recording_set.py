@@ -17,10 +17,10 @@ import numpy.typing as npt
 
 from ..core.approach import speeds_at_touch
 from ..core.errors import InputError, InputErrors
+from ..core.inputs.toml_input import parse_model, read_toml
 from ..core.observables import RELATIVE_SUFFIX, RIG_NOISE, TRACE_NOISE
 from ..core.output import finish, locked, write_files
 from ..core.rig import BodyTable, Quantity, StrikerTable
-from ..core.toml_input import parse_model, read_toml
 from . import noise
 from .columns import MEASURED
 from .csv_table import Array, Problems

@@ -8,7 +8,7 @@ from pathlib import Path
 from typing import Any
 
 from ..core.errors import InputError
-from ..core.json_input import read_json
+from ..core.inputs.json_input import read_json
 
 _MOST_BYTES = 10_000_000
 

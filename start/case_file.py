@@ -11,9 +11,9 @@ from pydantic import Field
 
 from ..core.errors import InputError, InputErrors
 from ..core.flow import Flow, FlowCurve, Heating, Rate, ludwik, swift, tabulated, voce
+from ..core.inputs.toml_input import InputTable, Listed, read_model
 from ..core.material import Material, Pair
 from ..core.rig import FrictionTable, MaterialTable
-from ..core.toml_input import InputTable, Listed, read_model
 
 _SpeedRow = Annotated[tuple[float, float], Listed]
 _SHALLOWEST = 1e-9

@@ -22,12 +22,12 @@ from .. import fem
 from ..core.errors import InputError
 from ..core.output import csv_text, write_file
 from ..discrepancy import Verdict
-from ..discrepancy.cells import Cells
-from ..discrepancy.forward import Point, Simulator
+from ..discrepancy.comparison.cells import Cells
+from ..discrepancy.comparison.forward import Point, Simulator
+from ..discrepancy.comparison.problem import Problem
 from ..discrepancy.inference.fit import fit
 from ..discrepancy.inference.window import sharpened
 from ..discrepancy.mechanisms.base import Constants, Mechanism
-from ..discrepancy.problem import Problem
 from ..fitting.case_table import pair_table
 from ..models.table import PairTable, table_law
 from ..models.table_file import write_table

@@ -12,8 +12,8 @@ from numpy.typing import NDArray
 from .. import fem
 from ..core.flow import Flow, Rate, ludwik, tabulated
 from ..core.material import Pair
+from ..discrepancy.comparison.problem import Problem
 from ..discrepancy.mechanisms.base import Constants, Mechanism
-from ..discrepancy.problem import Problem
 from ..fem.problem import DEEPEST
 from ..impact import Scene
 from ..models.anchored import AnchoredLaw

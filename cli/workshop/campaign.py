@@ -8,7 +8,7 @@ from typing import Annotated
 import typer
 
 from ..campaign_data import FILE, PUBLISHED
-from ..places import file_option, folder_option
+from ..shared.places import file_option, folder_option
 
 _Data = Annotated[
     Path | None,

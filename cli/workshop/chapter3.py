@@ -22,8 +22,8 @@ def chapter3(names: list[str], out: Path) -> list[Impact]:
     from ...impact.files.tables import impact_row, write_csv
     from ...studies.thesis import chapter3 as thesis
     from ..laws import laws_named
-    from ..terminal import console as new_console
-    from ..terminal import show_table
+    from ..shared.terminal import console as new_console
+    from ..shared.terminal import show_table
 
     console = new_console()
     found = thesis.bench()

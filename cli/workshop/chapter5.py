@@ -9,7 +9,7 @@ from typing import Any
 import typer
 
 from ..laws import laws_named
-from ..terminal import show_table
+from ..shared.terminal import show_table
 
 
 def thesis_rows() -> Any:
@@ -21,7 +21,7 @@ def thesis_rows() -> Any:
 
 def tables(console: Any, names: list[str]) -> None:
     """Tables 5.2-5.4: our rigid impacts at the stated mass and at the mass that fits."""
-    from ...core.toml_input import read_toml
+    from ...core.inputs.toml_input import read_toml
     from ...studies.thesis.chapter3 import REFERENCE
     from ...studies.thesis.chapter5 import simulate_experiment, thesis_rod
 

@@ -9,7 +9,7 @@ import typer
 
 from ...core.errors import InputError
 from ...studies.thesis.figures.names import CHAPTERS, FIELDS
-from ..places import folder_option
+from ..shared.places import folder_option
 
 
 def figures(

@@ -13,8 +13,8 @@ import typer
 from ...core.errors import InputError
 from ...core.output import write_file
 from ...studies.proof.names import KINDS, LISTS
-from ..groups import group
-from ..places import folder_option, writable_folder
+from ..shared.groups import group
+from ..shared.places import folder_option, writable_folder
 
 app = group("Blind proof of the diagnosis on concealed impacts.")
 

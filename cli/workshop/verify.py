@@ -7,7 +7,7 @@ from typing import Annotated
 
 import typer
 
-from ..places import file_option, folder_option
+from ..shared.places import file_option, folder_option
 
 EXIT_MISSED = 1
 """Exit code when a mark is missed."""

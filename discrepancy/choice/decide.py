@@ -13,7 +13,7 @@ from dataclasses import dataclass, replace
 from typing import NamedTuple
 
 from ...core.observables import OBSERVABLES
-from ..cells import Scatter
+from ..comparison.cells import Scatter
 from ..inference.fit import Fit
 from ..rank import Ranking
 from ..unknowns.drift import Drift

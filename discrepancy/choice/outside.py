@@ -17,11 +17,11 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.stats import norm
 
-from ..cells import Scatter
+from ..comparison.cells import Scatter
+from ..comparison.problem import Problem
 from ..correction import widened
 from ..inference.fit import Fit
 from ..inference.linear import Mixture
-from ..problem import Problem
 from ..unknowns.covariates import nearness, same_observable
 
 Array = NDArray[np.float64]

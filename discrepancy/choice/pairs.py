@@ -10,7 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.special import logsumexp
 
-from ..forward import Simulator
+from ..comparison.forward import Simulator
 from ..inference.fit import fit_anchored
 from ..inference.grid import Grid
 from ..inference.together import mutual

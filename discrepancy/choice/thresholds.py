@@ -15,14 +15,14 @@ from numpy.typing import NDArray
 
 from ...impact import Scene
 from ...impact.strength import UNIT, strength_table
-from ..cells import compared
-from ..forward import Point, Simulator
+from ..comparison.cells import compared
+from ..comparison.forward import Point, Simulator
+from ..comparison.problem import Problem
 from ..inference.fit import Fit
 from ..mechanisms.arithmetic import effective_mass
 from ..nulls import Rig, discrepancies, scatter
 from ..nulls.laws import Reference
 from ..nulls.motion import Bodies
-from ..problem import Problem
 from ..unknowns.lawerror import SIZE_SPREAD, not_given_back
 
 Array = NDArray[np.float64]

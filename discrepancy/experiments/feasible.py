@@ -9,8 +9,8 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from ...core.rig import Quantity, StrikerTable
-from ..conditions import Condition
-from ..problem import Problem
+from ..comparison.conditions import Condition
+from ..comparison.problem import Problem
 
 _SPEEDS, _ANGLES = 5, 4
 """Places over the tested range of speeds and of angles."""

@@ -18,11 +18,11 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ...core.observables import OBSERVABLES
-from ..cells import compared
 from ..choice.odds import Odds
-from ..forward import Point, Simulator
+from ..comparison.cells import compared
+from ..comparison.forward import Point, Simulator
+from ..comparison.problem import Problem
 from ..inference.fit import Fit
-from ..problem import Problem
 from ..rank import Ranking
 from .feasible import Candidate, candidates_of
 

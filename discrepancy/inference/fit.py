@@ -13,9 +13,9 @@ from dataclasses import dataclass, replace
 import numpy as np
 from numpy.typing import NDArray
 
-from ..forward import Simulator
+from ..comparison.forward import Simulator
+from ..comparison.problem import Problem
 from ..mechanisms.base import Mechanism, Situation
-from ..problem import Problem
 from ..unknowns.lawerror import SIZES
 from .derivatives import FORMS, derivatives
 from .grid import Axis, Grid, posterior

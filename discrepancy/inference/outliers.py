@@ -14,7 +14,7 @@ from dataclasses import replace
 import numpy as np
 from numpy.typing import NDArray
 
-from ..problem import Problem
+from ..comparison.problem import Problem
 from .fit import Fit
 
 Array = NDArray[np.float64]

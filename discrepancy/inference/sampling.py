@@ -21,7 +21,7 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.special import logsumexp
 
-from ..forward import Point, Simulator
+from ..comparison.forward import Point, Simulator
 from ..rank import Progress
 from .fit import Fit
 

@@ -13,7 +13,7 @@ from collections.abc import Sequence
 import numpy as np
 from numpy.typing import NDArray
 
-from ..forward import Point, Simulator
+from ..comparison.forward import Point, Simulator
 from ..mechanisms.base import Mechanism
 from .grid import Grid, along_all
 
@@ -98,7 +98,7 @@ def refined(
     corners = [np.array(ends) for ends in grid.window]
     own = first[:, None, :] + second[None, :, :] - plain(simulator, z)
     fine = own.reshape(-1, own.shape[-1]) + mutual(simulator, mechanisms, grid, corners, z)
-    return fine + (here - fine[grid.index(place)])
+    return np.asarray(fine + (here - fine[grid.index(place)]))
 
 
 def responses_at(

@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import NDArray
 
-from ..forward import Simulator
+from ..comparison.forward import Simulator
 from .fit import Fit, expand, moved_towards
 from .grid import Grid
 

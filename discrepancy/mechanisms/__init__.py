@@ -9,17 +9,17 @@ from .base import Mechanism, Parameter, Surroundings
 from .contact_damping import ContactDamping
 from .friction import PloughingFriction, VelocityDependentFriction
 from .half_space_waves import HalfSpaceWaves
-from .hardened_layer import HardenedLayer, SofterSurface
 from .rod_vibration import RodFlexuralVibration, RodLongitudinalWaves
 from .roughness import Roughness
-from .size_effect import SizeEffect
 from .squeeze_film import SqueezeFilm
-from .strain_rate_hardening import NegativeRateSensitivity, StrainRateHardening
+from .strength.hardened_layer import HardenedLayer, SofterSurface
+from .strength.size_effect import SizeEffect
+from .strength.strain_rate_hardening import NegativeRateSensitivity, StrainRateHardening
+from .strength.thermal_softening import ThermalSoftening
+from .strength.work_hardening import StrainSoftening, WorkHardening
 from .support_compliance import SupportCompliance
 from .tangential_compliance import TangentialCompliance
-from .thermal_softening import ThermalSoftening
 from .truncated_tip import TruncatedTip
-from .work_hardening import StrainSoftening, WorkHardening
 
 MECHANISMS: tuple[Mechanism, ...] = (
     StrainRateHardening(),

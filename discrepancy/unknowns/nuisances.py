@@ -10,7 +10,7 @@ import numpy as np
 
 from ...core.rig import BodyTable, Quantity
 from ...recordings import RecordingSet
-from ..conditions import SPEED_FROM_HEIGHT, SPEED_MEASURED, Condition
+from ..comparison.conditions import SPEED_FROM_HEIGHT, SPEED_MEASURED, Condition
 
 ASSUMED_E, ASSUMED_NU = 2e11, 0.3
 """Modulus [Pa] and Poisson's ratio of a body of which the set says nothing."""

@@ -9,9 +9,9 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
+from ...core.inputs.toml_input import read_toml
 from ...core.tables import frame, html_table
 from ...core.templates import KINDS, template
-from ...core.toml_input import read_toml
 from ...models import law_named
 from ...models.base import ContactLaw
 from ..draw import histories

@@ -10,8 +10,8 @@ from typing import Literal
 from pydantic import Field
 
 from ...core.errors import InputError
+from ...core.inputs.toml_input import InputTable, parse_model, read_toml
 from ...core.rig import Length, Radius, StrikerTable
-from ...core.toml_input import InputTable, parse_model, read_toml
 from ..inverse import Inferred, Measured, infer
 from ..scene import Striker
 from .bodies import striker_of

@@ -11,8 +11,8 @@ from pydantic import Field
 
 from ...core.approach import speeds_at_touch
 from ...core.errors import InputError, InputErrors
+from ...core.inputs.toml_input import InputTable, parse_model, read_toml
 from ...core.rig import Height, Quantity, Rig, Speed, value_of
-from ...core.toml_input import InputTable, parse_model, read_toml
 from ...models.base import ContactLaw
 from ..beam import rod_modes
 from ..columns import Impacts

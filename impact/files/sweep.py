@@ -9,7 +9,7 @@ import numpy as np
 from pydantic import AfterValidator, BeforeValidator, Field, ValidationError
 
 from ...core.errors import InputError
-from ...core.toml_input import InputTable
+from ...core.inputs.toml_input import InputTable
 from ..batch import impacts
 from ..columns import Impacts
 from ..integrate import Settings

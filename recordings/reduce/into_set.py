@@ -18,9 +18,9 @@ from typing import Any
 import numpy as np
 
 from ...core.errors import InputError
+from ...core.inputs.toml_input import parse_model, read_toml
 from ...core.output import csv_text, finish_pending, locked, write_files
 from ...core.rig import Quantity
-from ...core.toml_input import parse_model, read_toml
 from ..columns import CONDITIONS, MEASURED, STD_SUFFIX
 from ..csv_table import Array
 from ..recording_set import RecordingSet, files_of, read

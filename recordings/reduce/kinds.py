@@ -15,8 +15,8 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from ...core.errors import InputError
-from ...core.input_file import checked_file
-from ...core.toml_input import InputTable, parse_model
+from ...core.inputs.input_file import checked_file
+from ...core.inputs.toml_input import InputTable, parse_model
 
 if TYPE_CHECKING:
     from .reduced import Reduced

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from pydantic import Field
 
-from ...core.toml_input import InputTable
+from ...core.inputs.toml_input import InputTable
 from ..columns import VARIED
 
 

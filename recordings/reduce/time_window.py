@@ -8,7 +8,7 @@ import numpy as np
 import numpy.typing as npt
 from pydantic import Field, model_validator
 
-from ...core.toml_input import InputTable
+from ...core.inputs.toml_input import InputTable
 from .measured import Array
 
 

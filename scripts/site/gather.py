@@ -11,7 +11,7 @@ import re
 import shutil
 from pathlib import Path
 
-from dentscope.cli.keys import FILES, keys_of
+from dentscope.cli.shared.keys import FILES, keys_of
 from dentscope.models import LAWS, UNAVAILABLE
 
 HERE = Path(__file__).resolve().parent

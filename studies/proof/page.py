@@ -56,9 +56,10 @@ import nothing of the diagnosis, of the contact laws, of the impact or of the re
   factor of e. Both are drawn until 10 is left, if eight draws give it. Three of the six kinds
   outside (a layer that crushes, softening by strain, a strength that falls with the rate) are
   physics that the tool knows in other forms, without a name; it knows nothing of the other three.
-* **First place**: observable and condition along which the truth's effect has the largest score,
-  noise, nuisances and metal taken out; within a fifth of it counts. **Next experiment**: a trial
-  within the rig's speeds, angles and bodies, or one that says what to build.
+* **First place**: observable and condition along which the truth's effect is largest over what
+  noise, nuisances and metal move there; within a fifth of it counts, and an observable that the
+  effect leaves alone never does. **Next experiment**: a trial within the rig's speeds, angles and
+  bodies, or one that says what to build.
 * **Marks.** `met` or `missed` only if the whole 95 % interval (Clopper and Pearson) is on one
   side; else `not shown`.
 """

@@ -11,8 +11,8 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from ...core.inputs.toml_input import read_toml
 from ...core.material import Material
-from ...core.toml_input import read_toml
 from ...impact.draw import figure, save
 from ...impact.integrate import strike
 from ...impact.result import Impact

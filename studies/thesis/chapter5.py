@@ -6,8 +6,8 @@ import math
 from collections.abc import Mapping
 from typing import Any
 
+from ...core.inputs.toml_input import read_toml
 from ...core.material import Material
-from ...core.toml_input import read_toml
 from ...impact.files.inverse_file import Row
 from ...impact.integrate import strike
 from ...impact.inverse import Measured, infer

@@ -18,11 +18,11 @@ from pathlib import Path
 import numpy as np
 from numpy.typing import NDArray
 
-from ...discrepancy.forward import ACCURACY, SIMULATED
+from ...discrepancy.comparison.forward import ACCURACY, SIMULATED
+from ...discrepancy.comparison.problem import Problem, problem_of
 from ...discrepancy.inference.fit import label
 from ...discrepancy.mechanisms import MECHANISMS, Mechanism
 from ...discrepancy.mechanisms.base import Situation, observed
-from ...discrepancy.problem import Problem, problem_of
 from ...impact import Scene, strike_batch
 from ...impact.walk import layout as c
 from ...recordings import RecordingSet, read

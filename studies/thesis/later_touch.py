@@ -7,7 +7,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from ...discrepancy.forward import ACCURACY
+from ...discrepancy.comparison.forward import ACCURACY
 from ...impact import Impact, Scene, strike
 
 _RESTITUTION = 0.6  # of the other end; the tip's return hardly hangs on it

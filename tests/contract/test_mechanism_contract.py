@@ -16,7 +16,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 from dentscope.core import Material
-from dentscope.discrepancy.forward import ACCURACY, SIMULATED
+from dentscope.discrepancy.comparison.forward import ACCURACY, SIMULATED
 from dentscope.discrepancy.mechanisms import MECHANISMS, NAMELESS, Mechanism, Surroundings
 from dentscope.discrepancy.mechanisms.base import Constants, Situation, Values, attached, observed
 from dentscope.impact import Approach, Friction, Scene, Striker, scene_of, strike_batch

@@ -6,7 +6,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 from dentscope.core.observables import OBSERVABLES
-from dentscope.discrepancy.cells import compared
+from dentscope.discrepancy.comparison.cells import compared
 from dentscope.impact.walk.layout import OBSERVABLES as SIMULATED
 from dentscope.recordings.columns import TRIAL_COLUMNS
 

@@ -181,7 +181,7 @@ def test_rod_sticks_from_the_friction_of_the_audit() -> None:
 
 def test_thesis_tables_with_the_mass_that_fits() -> None:
     """Tables 5.2 and 5.4: dents of 67 and 251 um, mean force 2571 and 11009 N (Ghaednia)."""
-    from dentscope.core.toml_input import read_toml
+    from dentscope.core.inputs.toml_input import read_toml
     from dentscope.models.published.ghaednia import GHAEDNIA
     from dentscope.studies.thesis.chapter3 import REFERENCE
     from dentscope.studies.thesis.chapter5 import simulate_experiment

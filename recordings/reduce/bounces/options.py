@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING
 
 from pydantic import Field
 
-from ....core.toml_input import InputTable
+from ....core.inputs.toml_input import InputTable
 
 if TYPE_CHECKING:
     from .fall import Ball, Fall

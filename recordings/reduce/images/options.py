@@ -6,7 +6,7 @@ from typing import Literal
 
 from pydantic import Field, field_validator, model_validator
 
-from ....core.toml_input import InputTable
+from ....core.inputs.toml_input import InputTable
 from ..measured import Measured
 from .picture_file import crop_window
 

@@ -10,7 +10,7 @@ import numpy as np
 import numpy.typing as npt
 
 from ....core.errors import InputError, missing_extra
-from ....core.input_file import checked_file
+from ....core.inputs.input_file import checked_file
 
 CHANNELS = ("grey", "red", "green", "blue")
 

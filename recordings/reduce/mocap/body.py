@@ -10,7 +10,7 @@ import numpy as np
 from pydantic import Field, field_validator
 
 from ....core.errors import InputError
-from ....core.toml_input import InputTable, Listed, read_model
+from ....core.inputs.toml_input import InputTable, Listed, read_model
 from ..measured import Array
 from .file import Markers
 from .motion import Prior

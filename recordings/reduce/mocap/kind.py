@@ -8,7 +8,7 @@ from pathlib import Path
 
 import numpy as np
 
-from ....core.toml_input import read_model
+from ....core.inputs.toml_input import read_model
 from ..measured import Measured, labelled, labels
 from ..reduced import Reduced
 from .body import BodyFile, make_body

@@ -8,7 +8,7 @@ from typing import Literal
 import numpy as np
 from pydantic import Field, model_validator
 
-from ....core.toml_input import InputTable
+from ....core.inputs.toml_input import InputTable
 from ...csv_table import number
 from ..bounces.options import GRAVITY
 from ..measured import Array

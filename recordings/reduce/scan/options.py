@@ -6,7 +6,7 @@ from typing import Literal
 
 from pydantic import Field
 
-from ....core.toml_input import InputTable
+from ....core.inputs.toml_input import InputTable
 
 
 class Options(InputTable):

@@ -17,7 +17,7 @@ import numpy as np
 
 from ....core.confined import confined
 from ....core.errors import InputError
-from ....core.input_file import checked_file
+from ....core.inputs.input_file import checked_file
 from ...csv_table import number, rows_with, selection
 from ..measured import Array
 from ..units import UNITS

@@ -158,8 +158,9 @@ def _rows(plastic: Array, stress: Array, source: str) -> MeasuredFlow:
             f"a plastic strain of {largest:.2g} at the most", source=source,
             allowed=f"a test beyond {2.0 * PROOF_STRAIN:g}",
         )  # fmt: skip
-    # what scatters about the elastic line belongs to it
-    begin = int(np.flatnonzero(plastic <= _YIELDS)[-1]) + 1 if (plastic <= _YIELDS).any() else 0
+    # what scatters about the elastic line belongs to it; a gauge that came off at the end does not
+    elastic = np.flatnonzero(plastic[: int(plastic.argmax())] <= _YIELDS)
+    begin = int(elastic[-1]) + 1 if elastic.size else 0
     plastic, stress = plastic[begin:], stress[begin:]
     edges = np.geomspace(_YIELDS, largest, _ROWS)
     means = [

@@ -8,7 +8,7 @@ from typing import Any
 
 import numpy as np
 
-from ....core.toml_input import read_toml
+from ....core.inputs.toml_input import read_toml
 from ....impact.integrate import Trace, strike, traced
 from ....impact.inverse import mobility
 from ....impact.result import Impact

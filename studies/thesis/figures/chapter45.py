@@ -7,7 +7,7 @@ from collections.abc import Sequence
 import numpy as np
 
 from ....campaigns import CaseRecord
-from ....core.toml_input import read_toml
+from ....core.inputs.toml_input import read_toml
 from ....impact.integrate import Trace, traced
 from ....impact.inverse import alpha_curve
 from ....models.base import ContactLaw

@@ -17,8 +17,8 @@ from typing import Any
 import numpy as np
 
 from ....campaigns import CaseRecord
+from ....core.inputs.toml_input import read_toml
 from ....core.material import Material
-from ....core.toml_input import read_toml
 from ....impact.integrate import strike
 from ....impact.scene import Approach, Striker, scene_of
 from ....models.base import ContactLaw

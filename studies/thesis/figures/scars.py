@@ -13,7 +13,7 @@ from typing import Any
 
 import numpy as np
 
-from ....core.toml_input import read_toml
+from ....core.inputs.toml_input import read_toml
 from ....impact.integrate import Trace
 from ....models.base import ContactLaw
 from ...plot import Floats, Picture, finish, look, sheet

@@ -6,7 +6,7 @@ import math
 from collections.abc import Mapping
 from typing import Any
 
-from ....core.toml_input import read_toml
+from ....core.inputs.toml_input import read_toml
 from ....models import LAWS, critical_depth
 from ....models.base import ContactLaw
 from ....models.published.brake import brake_2015

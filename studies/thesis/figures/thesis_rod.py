@@ -4,8 +4,8 @@ from __future__ import annotations
 
 import math
 
+from ....core.inputs.toml_input import read_toml
 from ....core.material import Material
-from ....core.toml_input import read_toml
 from ....impact.scene import Approach, Friction, Scene, scene_of
 from ....models.base import ContactLaw
 from .. import chapter5

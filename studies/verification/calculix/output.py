@@ -18,7 +18,7 @@ import numpy.typing as npt
 from ....core.errors import InputError
 from ....fem.contact import POINTS, ContactState, contact_forces
 from ....fem.discretise import Discretisation
-from ....fem.measure import edge_of_contact
+from ....fem.results.measure import edge_of_contact
 from .deck import Deck, write_deck
 
 Floats = npt.NDArray[np.float64]

@@ -6,7 +6,7 @@ from pathlib import Path
 
 import pytest
 from dentscope.cli import run
-from dentscope.cli.keys import FILES, keys_of
+from dentscope.cli.shared.keys import FILES, keys_of
 from dentscope.core.templates import CASE, INVERSE, KINDS, template
 
 

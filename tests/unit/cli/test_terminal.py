@@ -12,7 +12,7 @@ import typer
 from dentscope.cli import app as assembly
 from dentscope.cli import run
 from dentscope.cli.diagnose import _progress as progress_of_diagnosis
-from dentscope.cli.terminal import parts, say
+from dentscope.cli.shared.terminal import parts, say
 from rich.console import Console
 
 COMMAND = typer.main.get_command(assembly.app)

@@ -4,9 +4,9 @@ import math
 
 import pytest
 from dentscope.core import Ending, InputError, InputErrors, Material, Outcome, Pair
+from dentscope.core.inputs.toml_input import read_model
 from dentscope.core.provenance import canonical_json, content_id
 from dentscope.core.rig import MaterialTable
-from dentscope.core.toml_input import read_model
 
 
 @pytest.mark.parametrize(

@@ -5,8 +5,8 @@ import math
 import pytest
 from dentscope.core import InputError, Material
 from dentscope.core.errors import InputErrors
+from dentscope.core.inputs.toml_input import parse_model
 from dentscope.core.rig import MaterialTable, Rig, StrikerTable, material_keys
-from dentscope.core.toml_input import parse_model
 from dentscope.impact.files.bodies import bodies_of
 from dentscope.impact.files.setup import SetupFile
 from dentscope.recordings import Setup

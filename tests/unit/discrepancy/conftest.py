@@ -12,9 +12,9 @@ from typing import Any
 
 import numpy as np
 import pytest
-from dentscope.discrepancy.cells import Cells
 from dentscope.discrepancy.choice.thresholds import Nulls
-from dentscope.discrepancy.conditions import Condition
+from dentscope.discrepancy.comparison.cells import Cells
+from dentscope.discrepancy.comparison.conditions import Condition
 from dentscope.discrepancy.inference.fit import Fit
 from dentscope.discrepancy.inference.grid import Axis, Grid, posterior
 from dentscope.discrepancy.inference.linear import Linear, Mixture

@@ -8,9 +8,9 @@ import pytest
 from dentscope import fem
 from dentscope.discrepancy import diagnose
 from dentscope.discrepancy.baseline import solve
-from dentscope.discrepancy.forward import Point, Simulator
+from dentscope.discrepancy.comparison.forward import Point, Simulator
+from dentscope.discrepancy.comparison.problem import problem_of
 from dentscope.discrepancy.inference.fit import fit
-from dentscope.discrepancy.problem import problem_of
 from dentscope.discrepancy.report.series import points_of
 from dentscope.discrepancy.unknowns.lawerror import METAL, WITH_CURVE
 from dentscope.fitting.hardening import hardening_records

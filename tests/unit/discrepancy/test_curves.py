@@ -7,9 +7,9 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from dentscope.discrepancy.comparison.problem import problem_of
 from dentscope.discrepancy.curves.readings import readings_of, reduced
 from dentscope.discrepancy.curves.reduction import from_profile, from_trace
-from dentscope.discrepancy.problem import problem_of
 from dentscope.recordings import read
 
 T, PEAK = 2e-4, 3000.0
@@ -96,7 +96,7 @@ def traced(tmp_path: Path) -> Path:
 
 
 def test_a_set_of_traces_only_has_cells_that_the_simulation_meets(traced: Path) -> None:
-    from dentscope.discrepancy.forward import Point, Simulator
+    from dentscope.discrepancy.comparison.forward import Point, Simulator
 
     problem = problem_of(read(traced))
     assert set(problem.cells.observable) == {

@@ -6,10 +6,10 @@ import math
 from types import SimpleNamespace
 
 import pytest
-from dentscope.discrepancy.cells import Scatter
 from dentscope.discrepancy.choice.calibration import Calibration
 from dentscope.discrepancy.choice.decide import COSTS, cost_of_naming, decide, in_doubt, withdrawn
 from dentscope.discrepancy.choice.odds import NAMED_AT, OUTSIDE, PRIORS, SURE, Odds, odds_of
+from dentscope.discrepancy.comparison.cells import Scatter
 from dentscope.discrepancy.unknowns.drift import Drift
 
 CELLS = 8

@@ -14,8 +14,8 @@ import numpy as np
 import pytest
 from dentscope.core import InputError
 from dentscope.discrepancy import diagnose
-from dentscope.discrepancy.forward import Point, Simulator
-from dentscope.discrepancy.problem import problem_of
+from dentscope.discrepancy.comparison.forward import Point, Simulator
+from dentscope.discrepancy.comparison.problem import problem_of
 from dentscope.discrepancy.report import story_of
 from dentscope.recordings import read
 from dentscope.recordings.template import write_template

@@ -8,10 +8,10 @@ from pathlib import Path
 import numpy as np
 import pytest
 from dentscope.discrepancy.choice.thresholds import rig_of
+from dentscope.discrepancy.comparison.problem import problem_of
 from dentscope.discrepancy.nulls.ensemble import scatter
 from dentscope.discrepancy.nulls.laws import KINDS, Draw, Reference, curve
 from dentscope.discrepancy.nulls.motion import Bodies, collide
-from dentscope.discrepancy.problem import problem_of
 from dentscope.impact import strike_many
 from dentscope.recordings import read
 

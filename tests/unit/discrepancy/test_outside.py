@@ -7,8 +7,8 @@ from types import SimpleNamespace
 
 import numpy as np
 import pytest
-from dentscope.discrepancy.cells import Scatter
 from dentscope.discrepancy.choice.outside import AMPLITUDES, odd_repeats, outside_of
+from dentscope.discrepancy.comparison.cells import Scatter
 from dentscope.discrepancy.unknowns.drift import Drift
 
 CELLS = 8

@@ -9,7 +9,7 @@ from types import SimpleNamespace
 import numpy as np
 import pytest
 from dentscope.discrepancy.choice.pairs import PairEffect, with_pairs
-from dentscope.discrepancy.forward import Point
+from dentscope.discrepancy.comparison.forward import Point
 from dentscope.discrepancy.inference.grid import Axis, Grid
 from dentscope.discrepancy.inference.outliers import WIDER
 from dentscope.discrepancy.inference.together import refined

@@ -5,7 +5,7 @@ import pytest
 from dentscope import fem
 from dentscope.core import Material, Pair
 from dentscope.core.rendering import offscreen_available
-from dentscope.fem.cutaway import draw_cutaway
+from dentscope.fem.results.cutaway import draw_cutaway
 from matplotlib.image import imread
 
 PAIR = Pair(Material(E=200e9, nu=0.3, Sy=1e9), Material(E=200e9, nu=0.3, Sy=4e8), 1e-3)

@@ -4,8 +4,8 @@ import dataclasses
 
 import numpy as np
 import pytest
-from dentscope.fem.measure import Reading
-from dentscope.fem.ripple import Track
+from dentscope.fem.results.measure import Reading
+from dentscope.fem.results.ripple import Track
 
 
 def path(n=120, *, ratio=1.035, ripple=0.003, share=0.5):

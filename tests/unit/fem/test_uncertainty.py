@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 from dentscope import fem
 from dentscope.core.material import Material, Pair
-from dentscope.fem.uncertainty import _mesh_errors
+from dentscope.fem.results.uncertainty import _mesh_errors
 
 STEEL = Material(E=200e9, nu=0.3, Sy=500e6)
 PAIR = Pair(STEEL, STEEL, R=1e-3)

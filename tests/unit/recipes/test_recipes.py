@@ -102,7 +102,7 @@ OPTIONS = '''
 
 from pydantic import Field
 
-from ....core.toml_input import InputTable
+from ....core.inputs.toml_input import InputTable
 
 
 class Options(InputTable):

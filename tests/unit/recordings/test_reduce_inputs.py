@@ -173,6 +173,19 @@ def test_a_metal_that_hardens_to_four_times_its_strength_keeps_its_modulus():
     assert found.flow.strength == pytest.approx(Sy, rel=0.03)
 
 
+def test_a_gauge_that_comes_off_at_fracture_takes_nothing_from_the_curve():
+    E, p = 70e9, np.linspace(0.0, 0.1, 200)
+    stress = 300e6 + 500e6 * p
+    rise = np.linspace(0.0, 300e6 / E, 40)
+    strain, true = np.append(rise, stress[1:] / E + p[1:]), np.append(E * rise, stress[1:])
+    whole = reduce_tension(strain, true, strain_is="true", E=None, source="test")
+    lost = reduce_tension(
+        np.append(strain, 0.0), np.append(true, true[-1]), strain_is="true", E=None, source="test"
+    )
+    assert lost.flow.strain[-1] == pytest.approx(whole.flow.strain[-1], rel=1e-3)
+    assert lost.flow.stress == pytest.approx(whole.flow.stress, rel=1e-3)
+
+
 def test_a_stated_modulus_stays_and_one_that_the_curve_denies_does_not():
     E, p = 70e9, np.linspace(0.0, 0.1, 200)
     stress = 300e6 + 500e6 * p

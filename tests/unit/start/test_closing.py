@@ -7,9 +7,9 @@ import pytest
 from dentscope import fem
 from dentscope.core import InputError, Material, Pair
 from dentscope.discrepancy import MECHANISMS
-from dentscope.discrepancy.forward import Simulator
+from dentscope.discrepancy.comparison.forward import Simulator
+from dentscope.discrepancy.comparison.problem import problem_of
 from dentscope.discrepancy.inference.fit import fit
-from dentscope.discrepancy.problem import problem_of
 from dentscope.recordings import read
 from dentscope.start.closing import close, closed_lines, write_closed
 from dentscope.start.metal_press import _clock, _flowing

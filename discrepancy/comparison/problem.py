@@ -9,24 +9,24 @@ from dataclasses import dataclass, replace
 import numpy as np
 from numpy.typing import NDArray
 
-from ..core.errors import InputError
-from ..core.material import Pair
-from ..core.observables import OBSERVABLES
-from ..core.rig import Rig
-from ..impact import Approach, ForceTransform, Friction, Scene, Striker
-from ..impact.files.bodies import bodies_of
-from ..impact.strength import strength_table
-from ..models.base import ContactLaw
-from ..recordings import RecordingSet
-from .baseline.laws import laws_of, without_curves
+from ...core.errors import InputError
+from ...core.material import Pair
+from ...core.observables import OBSERVABLES
+from ...core.rig import Rig
+from ...impact import Approach, ForceTransform, Friction, Scene, Striker
+from ...impact.files.bodies import bodies_of
+from ...impact.strength import strength_table
+from ...models.base import ContactLaw
+from ...recordings import RecordingSet
+from ..baseline.laws import laws_of, without_curves
+from ..curves import readings_of
+from ..mechanisms.arithmetic import energy
+from ..unknowns.drift import Drift
+from ..unknowns.followed import Followed
+from ..unknowns.lawerror import NO_ERROR, LawError, law_error
+from ..unknowns.nuisances import ASSUMED_E, ASSUMED_NU, Nuisance, nuisances_of
 from .cells import NO_CELLS, Cells, Scatter, cells_of
 from .conditions import Condition, conditions_of
-from .curves import readings_of
-from .mechanisms.arithmetic import energy
-from .unknowns.drift import Drift
-from .unknowns.followed import Followed
-from .unknowns.lawerror import NO_ERROR, LawError, law_error
-from .unknowns.nuisances import ASSUMED_E, ASSUMED_NU, Nuisance, nuisances_of
 
 Array = NDArray[np.float64]
 

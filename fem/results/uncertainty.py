@@ -18,13 +18,13 @@ from typing import Any
 import numpy as np
 import numpy.typing as npt
 
-from .problem import Accuracy, ContactProblem, critical_depth
-from .solution import Curve
+from ..problem import Accuracy, ContactProblem, critical_depth
+from ..solution import Curve
 
 Floats = npt.NDArray[np.float64]
 
 MESH_ERRORS_FILE = (
-    Path(__file__).resolve().parents[1] / "data" / "coefficients" / "mesh_errors.json"
+    Path(__file__).resolve().parents[2] / "data" / "coefficients" / "mesh_errors.json"
 )
 """Where the table lies."""
 

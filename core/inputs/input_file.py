@@ -5,7 +5,7 @@ from __future__ import annotations
 import stat
 from pathlib import Path
 
-from .errors import InputError
+from ..errors import InputError
 
 
 def checked_file(path: Path, *, most: int, allowed: str) -> Path:

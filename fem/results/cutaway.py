@@ -9,9 +9,9 @@ from typing import Any
 import numpy as np
 import numpy.typing as npt
 
-from ..core.output import write_file
-from ..core.rendering import offscreen_available, offscreen_plotter
-from .solution import Snapshot
+from ...core.output import write_file
+from ...core.rendering import offscreen_available, offscreen_plotter
+from ..solution import Snapshot
 
 Floats = npt.NDArray[np.float64]
 

@@ -15,11 +15,11 @@ from typing import ClassVar
 
 import numpy as np
 
-from ...core.material import Pair
-from ...impact import Profiles, RateFree, Scene
-from ...impact.scene import FlowStress
-from ...impact.strength import StrengthTable
-from .base import Array, Mechanism, Situation, Surroundings, Values
+from ....core.material import Pair
+from ....impact import Profiles, RateFree, Scene
+from ....impact.scene import FlowStress
+from ....impact.strength import StrengthTable
+from ..base import Array, Mechanism, Situation, Surroundings, Values
 
 RATE, STRAIN = 0.4, 0.2  # of v/a, and of a/R
 

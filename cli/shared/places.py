@@ -8,7 +8,7 @@ from typing import Any
 
 import typer
 
-from ..core.errors import InputError
+from ...core.errors import InputError
 
 _LINE = "command line"
 

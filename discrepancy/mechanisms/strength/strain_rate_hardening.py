@@ -6,11 +6,11 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from ...impact import Scene
-from ...impact.scene import FlowStress
-from ...impact.strength import StrengthTable, strength_table
-from .arithmetic import energy, times
-from .base import Array, Literature, Parameter, Surroundings, Values
+from ....impact import Scene
+from ....impact.scene import FlowStress
+from ....impact.strength import StrengthTable, strength_table
+from ..arithmetic import energy, times
+from ..base import Array, Literature, Parameter, Surroundings, Values
 from .flow_stress import RATE, Fallen, FallingStrength, FlowMechanism, StrengthProfile
 
 _REFERENCE_RATE = 1000.0  # 1/s, within the rates of impacts at a few m/s

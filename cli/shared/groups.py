@@ -11,8 +11,8 @@ from typing import Any
 import typer
 from typer.core import TyperGroup
 
-from ..core.errors import InputError
-from .studies import COMMANDS as _WORKSHOP
+from ...core.errors import InputError
+from ..studies import COMMANDS as _WORKSHOP
 
 SECTIONS = (
     (

@@ -9,7 +9,7 @@ from typing import Annotated, Any, NamedTuple
 
 import typer
 
-from ..core.errors import InputError
+from ...core.errors import InputError
 from .terminal import entry
 
 if typing.TYPE_CHECKING:
@@ -76,7 +76,7 @@ def keys(
 def keys_of(kind: str) -> list[Key]:
     """Return the keys of one of `FILES`, in the order of its schema."""
     if kind == "trials":
-        from ..recordings import CONDITIONS, MEASURED
+        from ...recordings import CONDITIONS, MEASURED
 
         columns = {**CONDITIONS, **MEASURED}
         return [
@@ -94,18 +94,18 @@ def keys_of(kind: str) -> list[Key]:
 
 def _schema(kind: str) -> type[BaseModel]:
     if kind == "case":
-        from ..start.case_file import CaseFile
+        from ...start.case_file import CaseFile
 
         return CaseFile
     if kind == "impact":
-        from ..impact.files.setup import SetupFile
+        from ...impact.files.setup import SetupFile
 
         return SetupFile
     if kind == "inverse":
-        from ..impact.files.inverse_file import InverseFile
+        from ...impact.files.inverse_file import InverseFile
 
         return InverseFile
-    from ..recordings.setup_file import Setup
+    from ...recordings.setup_file import Setup
 
     return Setup
 
@@ -127,8 +127,8 @@ def _keys(model: type[BaseModel], table: str) -> Iterator[Key]:
 
 def _table_in(annotation: Any) -> tuple[type[BaseModel] | None, str]:
     """The table that a key holds, and whether there are several, `named` or `listed`."""
-    from ..core.rig import Quantity
-    from ..core.toml_input import InputTable
+    from ...core.inputs.toml_input import InputTable
+    from ...core.rig import Quantity
 
     if isinstance(annotation, type) and issubclass(annotation, InputTable):
         return (None, "") if annotation is Quantity else (annotation, "")
@@ -165,7 +165,7 @@ def _choices(annotation: Any) -> Iterator[str]:
 
 
 def _kind(annotation: Any) -> str:
-    from ..core.rig import Quantity
+    from ...core.rig import Quantity
 
     def held(part: Any) -> set[Any]:
         inner = typing.get_args(part)
@@ -185,7 +185,7 @@ def _kind(annotation: Any) -> str:
 
 
 def _default(field: FieldInfo) -> str:
-    from ..core.rig import Quantity
+    from ...core.rig import Quantity
 
     if field.is_required():
         return ""

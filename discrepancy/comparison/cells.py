@@ -11,11 +11,11 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from ..core.observables import OBSERVABLES
+from ...core.observables import OBSERVABLES
+from ..curves import Readings
+from ..unknowns.drift import Drift, drift_of
+from ..unknowns.followed import Entries, Followed, followed_of
 from .conditions import Condition
-from .curves import Readings
-from .unknowns.drift import Drift, drift_of
-from .unknowns.followed import Entries, Followed, followed_of
 
 Array = NDArray[np.float64]
 Ints = NDArray[np.intp]

@@ -15,9 +15,9 @@ from dataclasses import dataclass
 import numpy as np
 import numpy.typing as npt
 
-from .contact import ContactState
-from .discretise import Discretisation
-from .newton import Equilibrium
+from ..contact import ContactState
+from ..discretise import Discretisation
+from ..newton import Equilibrium
 
 Floats = npt.NDArray[np.float64]
 

@@ -9,8 +9,8 @@ from typing import Any
 import numpy as np
 import numpy.typing as npt
 
-from ..core.output import write_figure, write_file
-from .solution import Snapshot
+from ...core.output import write_figure, write_file
+from ..solution import Snapshot
 
 Floats = npt.NDArray[np.float64]
 

@@ -7,10 +7,10 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from ...impact import Scene
-from ...impact.scene import FlowStress
-from ...impact.strength import StrengthTable
-from .base import Array, Literature, Parameter, Situation, Surroundings, Values
+from ....impact import Scene
+from ....impact.scene import FlowStress
+from ....impact.strength import StrengthTable
+from ..base import Array, Literature, Parameter, Situation, Surroundings, Values
 from .flow_stress import FallingStrength, FlowMechanism, StrengthProfile
 
 

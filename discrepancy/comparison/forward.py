@@ -11,12 +11,12 @@ from dataclasses import dataclass, field, replace
 import numpy as np
 from numpy.typing import NDArray
 
-from ..core.observables import OBSERVABLES
-from ..impact import Scene, Settings, strike_batch, strike_many
-from ..impact.walk import compiled as c
-from ..models.base import DomainWarning
+from ...core.observables import OBSERVABLES
+from ...impact import Scene, Settings, strike_batch, strike_many
+from ...impact.walk import compiled as c
+from ...models.base import DomainWarning
+from ..mechanisms.base import Constants, Mechanism, Situation, attached, observed
 from .cells import compared
-from .mechanisms.base import Constants, Mechanism, Situation, attached, observed
 from .problem import Problem
 
 Array = NDArray[np.float64]

@@ -6,10 +6,10 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from ...impact import Scene
-from ...impact.scene import FlowStress
-from ...impact.strength import StrengthTable
-from .base import Array, Literature, Parameter, Surroundings, Values
+from ....impact import Scene
+from ....impact.scene import FlowStress
+from ....impact.strength import StrengthTable
+from ..base import Array, Literature, Parameter, Surroundings, Values
 from .flow_stress import Fallen, FallingStrength, FlowMechanism, StrengthProfile, strain
 
 

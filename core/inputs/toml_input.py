@@ -9,7 +9,7 @@ from typing import Any, TypeVar, cast, get_args
 
 from pydantic import BaseModel, ConfigDict, Field, ValidationError, model_validator
 
-from .errors import InputError, InputErrors
+from ..errors import InputError, InputErrors
 from .input_file import read_bytes
 
 Model = TypeVar("Model", bound=BaseModel)

@@ -8,10 +8,10 @@ from dataclasses import dataclass, replace
 import numpy as np
 from numpy.typing import NDArray
 
-from ..core.rig import value_of
-from ..recordings import RecordingSet
-from ..recordings.noise import bins
-from .mechanisms.base import Surroundings
+from ...core.rig import value_of
+from ...recordings import RecordingSet
+from ...recordings.noise import bins
+from ..mechanisms.base import Surroundings
 
 Ints = NDArray[np.intp]
 

@@ -4,11 +4,11 @@ from __future__ import annotations
 
 import numpy as np
 
-from ..core.material import Pair
-from .discretise import Discretisation
-from .elements import State, cauchy_stress
-from .newton import Equilibrium
-from .solution import Profile, Snapshot
+from ...core.material import Pair
+from ..discretise import Discretisation
+from ..elements import State, cauchy_stress
+from ..newton import Equilibrium
+from ..solution import Profile, Snapshot
 
 
 def take_snapshot(

@@ -1,0 +1,1 @@
+"""What the commands share: groups, keys, places of files, the terminal."""

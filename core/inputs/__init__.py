@@ -1,0 +1,1 @@
+"""Reading what people write: TOML and JSON, with one line for each mistake."""

@@ -1,0 +1,1 @@
+"""What is compared: conditions, their measured cells, and what the simulation says of them."""

@@ -1,0 +1,1 @@
+"""Mechanisms that change the strength of the metal."""

@@ -1,0 +1,1 @@
+"""What a solved path gives: forces and radii over it, fields, their uncertainty."""
