@@ -1,11 +1,11 @@
 """Where the baseline misses: observable by covariate, with a family-wise threshold.
 
 For each observable and each condition that varies, a contrast over the cells of that observable is
-tested: a constant, or a slope along the condition, each cell weighted by its noise. Its score is
-what the residual has along the contrast over the standard deviation that noise, nuisances and the
-law's error give it there, by themselves: an observable that agrees has no score, though a nuisance
-that would repair another one moved it too. The largest score of all is compared with that of the
-null residuals.
+tested: a constant, or a slope along the condition, each cell weighted by how sure it is. Its score
+is what the residual has along the contrast over the standard deviation that noise, nuisances and
+the law's error give it there, by themselves: an observable that agrees has no score, though a
+nuisance that would repair another one moved it too. The largest score of all is compared with that
+of the null residuals.
 """
 
 from __future__ import annotations
@@ -76,12 +76,11 @@ def locate(
         Number of places that are told in any case: 1 where all numbers together say that something
         is missing, even if no contrast alone does.
     """
-    names, contrasts = _contrasts(problem)
     linear = base.linear
-    weighted = contrasts / np.diag(linear.noise)
-    size = np.sqrt(np.einsum("ij,jk,ik->i", weighted, linear.total, weighted))
-    score = weighted @ base.residual / size
-    null = np.abs(nulls.made_by(base) @ weighted.T / size)
+    names, contrasts = _contrasts(problem, 1.0 / np.diag(linear.total))
+    size = np.sqrt(np.einsum("ij,jk,ik->i", contrasts, linear.total, contrasts))
+    score = contrasts @ base.residual / size
+    null = np.abs(nulls.made_by(base) @ contrasts.T / size)
     threshold = float(np.quantile(null.max(axis=1), level))
     spread = np.maximum(null.std(axis=0) / math.sqrt(1.0 - 2.0 / math.pi), 1.0)
     found = []
@@ -108,19 +107,21 @@ def locate(
     return Located((*columns, *misses), min(threshold, null_max))
 
 
-def _contrasts(problem: Problem) -> tuple[list[tuple[str, str]], Array]:
+def _contrasts(problem: Problem, sure: Array) -> tuple[list[tuple[str, str]], Array]:
+    """Names and rows (contrasts, m): means and slopes by weights (m,), a slope without a mean."""
     cells = problem.cells
     names, rows = [], []
     for observable in dict.fromkeys(cells.observable):
         here = np.array([o == observable for o in cells.observable])
+        weight = np.where(here, sure, 0.0)
         names.append((observable, "overall"))
-        rows.append(here.astype(float))
+        rows.append(weight)
         for covariate, value in covariates(problem).items():
-            slope = np.where(here, value[cells.condition], 0.0)
-            slope = np.where(here, slope - slope[here].mean(), 0.0)
+            slope = value[cells.condition]
+            slope = np.where(here, slope - weight @ slope / weight.sum(), 0.0)
             if np.linalg.norm(slope) > 1e-9:
                 names.append((observable, covariate))
-                rows.append(slope)
+                rows.append(weight * slope)
     return names, np.stack(rows)
 
 

@@ -170,8 +170,9 @@ class Visibility:
         """Where a change (m,) shows: observable, condition or "overall", and score; largest first.
 
         A contrast is a constant over the readings of one observable, or a slope along a condition
-        that varies; its score is what the change has along it over the standard deviation that
-        noise, nuisances and metals have there. An observable that does not change has no score.
+        that varies, each reading weighted by how sure it is; its score is what the change has along
+        it over the standard deviation that noise, nuisances and metals have there. An observable
+        that does not change has no score.
         """
         rig, n = self.rig, len(self.rig)
         bodies = [rig.strikers[k] for k in rig.which]
@@ -182,14 +183,18 @@ class Visibility:
             "tangential speed": rig.tangential, "temperature": rig.temperature,
         }  # fmt: skip
         total = np.eye(len(e)) + self.J @ self.J.T
+        spread = np.diag(total)
         found = []
         for k, name in enumerate(rig.noise):
             here = slice(k * n, (k + 1) * n)
+            sure = self.weight[here] ** 2 / spread[here]
             shapes = {"overall": np.ones(n)}
-            shapes |= {c: x - x.mean() for c, x in along.items() if np.ptp(x) > 1e-6}
+            shapes |= {
+                c: x - np.average(x, weights=sure) for c, x in along.items() if np.ptp(x) > 1e-6
+            }
             for condition, x in shapes.items():
                 contrast = np.zeros(len(e))
-                contrast[here] = x * self.weight[here]
+                contrast[here] = x * self.weight[here] / spread[here]
                 size = math.sqrt(float(contrast @ total @ contrast))
                 found.append((name, condition, abs(float(contrast @ e)) / size))
         return sorted(found, key=lambda place: -place[2])

@@ -15,7 +15,7 @@ from dentscope.discrepancy.nulls.motion import Bodies, collide
 from dentscope.impact import strike_many
 from dentscope.recordings import read
 
-SETS = Path(__file__).parents[3] / "data" / "recordings"
+SETS = Path(__file__).parents[4] / "data" / "recordings"
 
 R, E = 0.01, 1e11
 

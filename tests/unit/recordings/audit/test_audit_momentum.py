@@ -97,7 +97,7 @@ def test_misfit_is_the_one_that_scipy_finds(body):
 
 
 def test_an_audit_grows_no_faster_than_its_rows(tmp_path):
-    source = Path(__file__).parents[3] / "data" / "recordings" / "kharaz-2001-oblique"
+    source = Path(__file__).parents[4] / "data" / "recordings" / "kharaz-2001-oblique"
     head, *rows = (source / "trials.csv").read_text().splitlines()
     taken = []
     for n in (1000, 8000):
