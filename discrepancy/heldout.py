@@ -18,8 +18,10 @@ from scipy.special import logsumexp
 
 from .comparison.problem import Problem
 from .inference.fit import Fit
+from .inference.left_out import Whole
 
 Array = NDArray[np.float64]
+Mask = NDArray[np.bool_]
 
 _FLOOR = 0.1
 _GRID = 400  # parameter values that stand for all
@@ -46,7 +48,7 @@ class HeldOut:
     trials: int
 
 
-def groups_of(problem: Problem) -> list[NDArray[np.bool_]]:
+def groups_of(problem: Problem) -> list[Mask]:
     """Return masks (m,) of the cells of each group; a single group is split by conditions."""
     conditions = problem.conditions
     keys: list[list[object]] = [
@@ -103,31 +105,49 @@ def repeated_choice(
     chosen
         Name of the whole set's choice.
     """
+    kept = [_Kept.of(f) for f in fits]
     used = []
     for test in _folds(problem):
-        evidence = {f.name: _kept_evidence(f, ~test) + log_prior[f.name] for f in fits}
+        evidence = {k.fitted.name: k.evidence(test) + log_prior[k.fitted.name] for k in kept}
         best = max(fits, key=lambda f: evidence[f.name])
         used.append((best, test))
     same = np.mean([f.name == chosen for f, _ in used]) if used else math.nan
     return Repeated(_scored(problem, used), float(same))
 
 
-def _kept_evidence(fitted: Fit, train: NDArray[np.bool_]) -> float:
-    """Ln evidence of an explanation by some of the cells alone."""
-    few = fitted.residuals[:: max(len(fitted.residuals) // _GRID, 1), :][:, train]
-    found = fitted.mixture.of_cells(train).log_likelihood(few)
-    return float(logsumexp(found)) - math.log(len(few)) + fitted.grid.log_volume
+class _Kept(NamedTuple):
+    """Some places of an explanation's grid, with the model's error of every size."""
+
+    fitted: Fit
+    parts: tuple[Whole, ...]
+
+    @classmethod
+    def of(cls, fitted: Fit) -> _Kept:
+        few = fitted.residuals[:: max(len(fitted.residuals) // _GRID, 1)]
+        return cls(fitted, tuple(Whole.of(part, few) for part in fitted.mixture.parts))
+
+    def evidence(self, out: Mask) -> float:
+        """Ln evidence of the explanation by the cells that were kept."""
+        each = [
+            weight + part.kept_log_likelihood(out)
+            for weight, part in zip(self.fitted.mixture.log_weight, self.parts, strict=True)
+        ]
+        found = logsumexp(np.stack(each), axis=0)
+        return float(logsumexp(found)) - math.log(len(found)) + self.fitted.grid.log_volume
 
 
-def _folds(problem: Problem) -> list[NDArray[np.bool_]]:
+def _folds(problem: Problem) -> list[Mask]:
     return [test for test in groups_of(problem) if test.any() and not test.all()]
 
 
-def _scored(problem: Problem, used: Sequence[tuple[Fit, NDArray[np.bool_]]]) -> HeldOut:
+def _scored(problem: Problem, used: Sequence[tuple[Fit, Mask]]) -> HeldOut:
     """Score predictions of groups of cells by the explanation that goes with each."""
     squares, count = [], 0
+    known: dict[str, Whole] = {}
     for fitted, test in used:
-        miss = _missed(fitted, fitted.linear.total, test, ~test)
+        if fitted.name not in known:
+            known[fitted.name] = Whole.of(fitted.linear, fitted.residuals)
+        miss = _missed(known[fitted.name], test)
         noise = np.sqrt(np.diag(fitted.linear.noise))
         squares.append((miss / noise[test]) ** 2)
         count += int(np.sum(problem.cells.count[test]))
@@ -137,13 +157,9 @@ def _scored(problem: Problem, used: Sequence[tuple[Fit, NDArray[np.bool_]]]) -> 
     return HeldOut(math.sqrt(max(mean - 1.0, _FLOOR**2)), math.sqrt(mean), count)
 
 
-def _missed(fitted: Fit, total: Array, test: NDArray[np.bool_], train: NDArray[np.bool_]) -> Array:
+def _missed(whole: Whole, test: Mask) -> Array:
     """Data minus prediction of the left-out cells, over the parameters that explain the others."""
-    lower = np.linalg.cholesky(total[np.ix_(train, train)])
-    half = np.linalg.solve(lower, total[np.ix_(train, test)])
-    inside = np.linalg.solve(lower, fitted.residuals[:, train].T)
-    log_weight = -0.5 * np.sum(inside**2, axis=0)
-    keep = np.argsort(-log_weight)[:_MOST]
-    log_weight = log_weight[keep] - logsumexp(log_weight[keep])
-    miss = fitted.residuals[keep][:, test] - (half.T @ inside[:, keep]).T
-    return np.asarray(np.exp(log_weight) @ miss)
+    miss, kept = whole.missed(test)
+    best = np.argsort(kept)[:_MOST]
+    log_weight = -0.5 * kept[best]
+    return np.asarray(np.exp(log_weight - logsumexp(log_weight)) @ miss[best])

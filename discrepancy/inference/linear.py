@@ -95,11 +95,6 @@ class Linear:
         """Return Sigma^-1 b."""
         return np.asarray(cho_solve((self.lower, True), b))
 
-    def of(self, cells: NDArray[np.bool_]) -> Linear:
-        """Return the algebra of some cells alone, by a mask (m,)."""
-        form = self.form[cells] if self.form.size else self.form
-        return replace(self, noise=self.noise[np.ix_(cells, cells)], J=self.J[cells], form=form)
-
 
 class Sizes(NamedTuple):
     """Factors on a model error whose size is not known, and their prior weights."""
@@ -190,7 +185,3 @@ class Mixture:
     def gain(self, r: Array, effect: Array) -> Array:
         """Return ln of the mean likelihood over effects less that of no effect, shape (n,)."""
         return np.asarray(self.mean_likelihood(r, effect) - self.log_likelihood(r))
-
-    def of_cells(self, cells: NDArray[np.bool_]) -> Mixture:
-        """Return the algebra of some cells alone, by a mask (m,)."""
-        return replace(self, parts=tuple(p.of(cells) for p in self.parts))

@@ -10,6 +10,7 @@ import pytest
 from dentscope.discrepancy.estimates import parameters_of
 from dentscope.discrepancy.inference.derivatives import form_error
 from dentscope.discrepancy.inference.grid import Axis, Grid, interval, posterior
+from dentscope.discrepancy.inference.left_out import Whole
 from dentscope.discrepancy.inference.linear import Linear, Mixture, Sizes
 from dentscope.discrepancy.mechanisms import Parameter
 from scipy.stats import beta, multivariate_normal, norm
@@ -141,10 +142,16 @@ def test_without_unknowns_that_scale_there_is_one_size() -> None:
 def test_some_cells_alone_have_the_marginal_likelihood() -> None:
     rng = np.random.default_rng(5)
     linear = Linear(np.eye(4), rng.normal(size=(4, 2)), rng.normal(size=(4, 3)))
-    r, kept = rng.normal(size=4), np.array([True, False, True, True])
-    expected = multivariate_normal(np.zeros(3), linear.total[np.ix_(kept, kept)]).logpdf(r[kept])
-    assert Mixture((linear,), np.zeros(1)).of_cells(kept).log_likelihood(r[kept]) == pytest.approx(
-        expected
+    r, out = rng.normal(size=(3, 4)), np.array([False, True, False, True])
+    kept = linear.total[np.ix_(~out, ~out)]
+    whole = Whole.of(linear, r)
+    expected = multivariate_normal(np.zeros(2), kept).logpdf(r[:, ~out])
+    assert whole.kept_log_likelihood(out) == pytest.approx(expected)
+    foretold = r[:, ~out] @ np.linalg.solve(kept, linear.total[np.ix_(~out, out)])
+    miss, squares = whole.missed(out)
+    assert miss == pytest.approx(r[:, out] - foretold)
+    assert squares == pytest.approx(
+        np.einsum("ki,ij,kj->k", r[:, ~out], np.linalg.inv(kept), r[:, ~out])
     )
 
 
