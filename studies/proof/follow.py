@@ -25,7 +25,7 @@ from .apart import answer
 from .case import Case, open_run
 from .generators.folder import write_set
 from .generators.truth import Truth
-from .lists import LISTS, Entry
+from .lists import LISTS, Entry, shuffled
 from .run import draw_entry
 from .score import next_of
 from .seal import Ledger
@@ -51,11 +51,16 @@ def entropy(verdict: dict[str, Any]) -> float:
 
 
 def open_questions(cases: list[Case]) -> list[Case]:
-    """Cases with something to tell apart, whose proposal is a trial with the rig's own bodies."""
+    """Cases with something to tell apart, whose proposal is a trial with the rig's own bodies.
+
+    Where the verdict is that nothing is missing its rivals have a few per cent each, and no three
+    trials take them away.
+    """
     return [
         c
         for c in cases
         if c.verdict
+        and c.said != "adequate"
         and next_of(c).get("kind") == "trial"
         and c.truth["bench"] not in _APART
         and "mass_factor" not in c.truth
@@ -120,13 +125,15 @@ def follow(run: Path, *, most: int, limit_s: float = 900.0) -> Iterator[dict[str
     run
         Folder of a run.
     most
-        Number of sets, in the order of their names.
+        Number of sets, in the order of the run: a part is a fair sample.
     limit_s
         Longest time of a diagnosis [s].
     """
     begin = Ledger(run / "ledger.jsonl").events()[0]
-    entries: dict[str, Entry] = {e.name: e for e in LISTS[begin["list"]]()}
-    for case in open_questions(open_run(run))[:most]:
+    entries: dict[str, Entry] = {e.name: e for e in shuffled(LISTS[begin["list"]](), begin["tree"])}
+    order = {name: k for k, name in enumerate(entries)}
+    asked = sorted(open_questions(open_run(run)), key=lambda c: order[c.name])
+    for case in asked[:most]:
         truth = draw_entry(begin["tree"], entries[case.name])
         found: dict[str, Any] = {"set": case.name, "before": entropy(case.verdict)}
         for kind, trial in (("proposed", proposed(case)), ("random", at_random(case))):
