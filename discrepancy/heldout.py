@@ -25,7 +25,6 @@ Mask = NDArray[np.bool_]
 
 _FLOOR = 0.1
 _GRID = 400  # parameter values that stand for all
-_MOST = 40  # parameter values that carry the weight
 
 
 @dataclass(frozen=True, slots=True)
@@ -160,6 +159,5 @@ def _scored(problem: Problem, used: Sequence[tuple[Fit, Mask]]) -> HeldOut:
 def _missed(whole: Whole, test: Mask) -> Array:
     """Data minus prediction of the left-out cells, over the parameters that explain the others."""
     miss, kept = whole.missed(test)
-    best = np.argsort(kept)[:_MOST]
-    log_weight = -0.5 * kept[best]
-    return np.asarray(np.exp(log_weight - logsumexp(log_weight)) @ miss[best])
+    log_weight = -0.5 * kept
+    return np.asarray(np.exp(log_weight - logsumexp(log_weight)) @ miss)

@@ -53,14 +53,14 @@ def entropy(verdict: dict[str, Any]) -> float:
 def open_questions(cases: list[Case]) -> list[Case]:
     """Cases with something to tell apart, whose proposal is a trial with the rig's own bodies.
 
-    Where the verdict is that nothing is missing its rivals have a few per cent each, and no three
-    trials take them away.
+    Where the verdict is that nothing is missing, or one name, rivals have a few per cent each, and
+    no three trials take them away: asked are the sets that leave the choice open.
     """
     return [
         c
         for c in cases
         if c.verdict
-        and c.said != "adequate"
+        and c.said in ("undetermined", "indistinguishable")
         and next_of(c).get("kind") == "trial"
         and c.truth["bench"] not in _APART
         and "mass_factor" not in c.truth

@@ -68,6 +68,10 @@ def _wave(path: Path) -> tuple[Array, float]:
         with warnings.catch_warnings():
             warnings.simplefilter("ignore")  # chunks that are not samples
             rate, found = wavfile.read(path, mmap=False)
+    except UnboundLocalError:  # scipy's answer to a file without a header of its format
+        raise InputError(
+            "no header of its format", source=str(path), allowed="a whole WAV file"
+        ) from None
     except (ValueError, OSError, EOFError, struct.error, ZeroDivisionError, MemoryError) as error:
         raise InputError(
             f"cannot be decoded ({error})", source=str(path), allowed="a whole WAV file"

@@ -7,6 +7,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 from dentscope.cli import run
+from dentscope.core import InputError
 from dentscope.recordings import read
 from dentscope.recordings.reduce.bounces.chain import chain_of
 from dentscope.recordings.reduce.bounces.fall import Fall
@@ -106,6 +107,15 @@ def test_restitution_of_rendered_bounces(tmp_path, seed):
         assert e.value == pytest.approx(near[2], rel=5e-3)
     reduced.draw(tmp_path / "a.png")
     assert (tmp_path / "a.png").stat().st_size > 20_000
+
+
+def test_a_wave_file_without_its_header_is_refused_in_a_line(tmp_path):
+    """The file says of itself that nothing follows: scipy has no rate to give back."""
+    write_wav(record(SoundTruth()), tmp_path / "a.wav")
+    raw = (tmp_path / "a.wav").read_bytes()
+    (tmp_path / "a.wav").write_bytes(raw[:4] + bytes(4) + raw[8:])
+    with pytest.raises(InputError, match="no header of its format"):
+        load_kind("sound").run(tmp_path / "a.wav", {}, source="test")
 
 
 def test_sound_into_a_set(tmp_path, capsys):
