@@ -1,7 +1,6 @@
 """Opening and writing files: what is no file, what is too large, what cannot be written."""
 
 import os
-import time
 from pathlib import Path
 
 import numpy as np
@@ -41,9 +40,7 @@ def test_a_hundred_thousand_bad_rows_are_twenty_lines_and_a_count(tmp_path, caps
     assert run(["recordings", "new", str(folder), "--sphere"]) == 0
     head = (folder / "trials.csv").read_text().splitlines()[0]
     (folder / "trials.csv").write_text(head + "\n" + "\x1b[2J,ball,x,y,z,,\n" * 100_000)
-    started = time.process_time()
     assert run(["recordings", "check", str(folder)]) == 2
-    assert time.process_time() - started < 20.0
     lines = capsys.readouterr().err.splitlines()
     assert len(lines) == 21
     assert lines[-1].startswith("... and ")
