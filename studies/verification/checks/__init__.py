@@ -35,7 +35,7 @@ class Check:
 
     def run(self, bench: Bench) -> Result:
         """Measure it."""
-        module, function = self.home.split(".")
+        module, function = self.home.rsplit(".", 1)
         found: Result = getattr(import_module(f".{module}", __package__), function)(bench)
         return found
 
@@ -44,11 +44,17 @@ CHECKS: tuple[Check, ...] = (
     Check("patch", "uniform strain in the mesh, uniform pressure across the contact", "patch.run"),
     Check("rates", "manufactured solution and elastic contact under halved elements", "rates.run"),
     Check("locking", "plastic limit loads, nearly incompressible elasticity", "locking.run"),
-    Check("objectivity", "objectivity and yield surface of the stress update", "objectivity.run"),
-    Check("flow-laws", "exact paths of hardening, rate and heat; a balance", "flow_laws.run"),
+    Check(
+        "objectivity",
+        "objectivity and yield surface of the stress update",
+        "metals.objectivity.run",
+    ),
+    Check(
+        "flow-laws", "exact paths of hardening, rate and heat; a balance", "metals.flow_laws.run"
+    ),
     Check("hertz", "elastic contact: F, a, pressure, stresses on the axis", "hertz.run"),
     Check("elastic-bias", "where the bias of F as a/R goes to zero comes from", "hertz.bias"),
-    Check("first-yield", "depth and load at first yield", "first_yield.run"),
+    Check("first-yield", "depth and load at first yield", "metals.first_yield.run"),
     Check("friction", "full stick, Borodich and Keer; what friction adds", "friction.run"),
     Check("truncation", "truncation of the half-space", "outer_boundaries.truncation"),
     Check("scale", "scale invariance in R and in the unit of stress", "indifference.scale"),
@@ -59,11 +65,16 @@ CHECKS: tuple[Check, ...] = (
     Check(
         "plastic-zones",
         "pictures of figures 2.2 to 2.4 and what is said of them",
-        "plastic_zones.run",
+        "metals.plastic_zones.run",
     ),
     Check("indentation", "slip-line hardness and published indentation", "indentation.run"),
     Check("similarity", "power-law plasticity: Storåkers, Biwa and Larsson", "similarity.run"),
     Check("speed", "a hundred times the speed, exactly by similarity", "similarity.speed"),
+    Check(
+        "impact-strength",
+        "what hardening and rate make of an impact, beside the diagnosis",
+        "metals.impact_strength.run",
+    ),
     Check("flattening", "Jackson and Green, Kogut and Etsion", "flattening.run"),
     Check("convergence", "mesh and step over Table 2.1 at Sy* = 0.1, 1, 10", "convergence.run"),
     Check("levels", "what production, quick and smoke state of themselves", "level_errors.run"),

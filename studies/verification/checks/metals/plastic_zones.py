@@ -8,10 +8,10 @@ from pathlib import Path
 import numpy as np
 import numpy.typing as npt
 
-from .... import fem
-from ....campaigns.cases.pairs import pair_of
-from ..bench import Bench, Effort
-from ..result import Measurement, Result
+from ..... import fem
+from .....campaigns.cases.pairs import pair_of
+from ...bench import Bench, Effort
+from ...result import Measurement, Result
 
 Floats = npt.NDArray[np.float64]
 

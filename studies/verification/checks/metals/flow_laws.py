@@ -8,15 +8,15 @@ from dataclasses import replace
 
 import numpy as np
 
-from .... import fem
-from ....campaigns.case import Case
-from ....campaigns.cases.pairs import pair_of
-from ....core.flow import Flow, FlowCurve, Heating, Rate, ludwik, swift, voce
-from ....core.material import Material
-from ....fem.material import EXACT, RADIAL
-from ..bench import Bench
-from ..material_point import MaterialPoint, stretched
-from ..result import Cell, Measurement, Result, Table
+from ..... import fem
+from .....campaigns.case import Case
+from .....campaigns.cases.pairs import pair_of
+from .....core.flow import Flow, FlowCurve, Heating, Rate, ludwik, swift, voce
+from .....core.material import Material
+from .....fem.material import EXACT, RADIAL
+from ...bench import Bench
+from ...material_point import MaterialPoint, stretched
+from ...result import Cell, Measurement, Result, Table
 
 _E, _NU, _SY = 200e9, 0.3, 400e6
 _SPEED, _SECONDS, _STEPS = 30.0, 1e-3, 40

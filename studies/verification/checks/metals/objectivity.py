@@ -4,9 +4,9 @@ from __future__ import annotations
 
 import numpy as np
 
-from ....fem.material import EXACT, NO_LAW, RADIAL, Step, elastic_deviator, log_strain
-from ..bench import Bench
-from ..result import Measurement, Result
+from .....fem.material import EXACT, NO_LAW, RADIAL, Step, elastic_deviator, log_strain
+from ...bench import Bench
+from ...result import Measurement, Result
 
 _RADIUS = 0.004
 _NO_CURVE = np.empty((3, 0))

@@ -1,0 +1,1 @@
+"""What the metals do: yield, flow laws, and what they make of an impact."""
