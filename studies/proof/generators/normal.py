@@ -15,9 +15,12 @@ from . import cavity, flow, foundation
 from . import parameters as at
 
 # places in the memory of a contact: static peak depth, its force, its residual depth, its radius,
-# the last depth and force, largest layer closure, layer closure now, radius now, depth when freed
-PEAK, PEAK_F, REST, RADIUS, LAST, LAST_F, LAYER_MOST, LAYER, RADIUS_NOW, FREED, EDGE = range(11)
-N_MEMORY = 11
+# the last depth and force, largest layer closure, layer closure now, radius now, depth when freed,
+# edge of the row, rise of the flow stress where the metal flowed last
+(
+    PEAK, PEAK_F, REST, RADIUS, LAST, LAST_F, LAYER_MOST, LAYER, RADIUS_NOW, FREED, EDGE, RISE,
+) = range(12)  # fmt: skip
+N_MEMORY = 12
 
 
 @njit(cache=True)
@@ -33,9 +36,23 @@ def _left(p, depth):
     return (1.0 - x**-0.28) * (1.0 - x**-0.69)
 
 
+_SLOWEST = 0.2  # of the approach speed: the strength at this rate stays where the striker turns
+
+
 @njit(cache=True)
-def _dent(p, depth):
-    force, a, left = _perfect(p, depth)
+def _fallen(p, memory, depth, speed):
+    """Fall of the strength at the present rate: a metal that is weaker the faster it flows.
+
+    It flows on at the strength of the rate just before the turning point; one that vanished with
+    the speed would turn the effect on the restitution round.
+    """
+    a = memory[RADIUS] if memory[RADIUS] > 0.0 else math.sqrt(2.0 * p[at.TIP] * depth)
+    return flow.factor(p, 0.4 * max(speed, _SLOWEST * p[at.NORMAL_SPEED]) / a) - 1.0
+
+
+@njit(cache=True)
+def _dent(p, depth, rise):
+    force, a, left = _perfect(p, depth, rise)
     recovered = (depth - left) * (1.0 + flow.softer(p, depth))
     if p[at.OTHER_UNLOADING] != 0.0:
         other = depth * (1.0 - _left(p, depth))
@@ -44,12 +61,12 @@ def _dent(p, depth):
 
 
 @njit(cache=True)
-def _perfect(p, depth):
+def _perfect(p, depth, rise):
     return cavity.dent(
         depth,
         p[at.MODULUS],
         p[at.TIP],
-        flow.strength(p, depth),
+        flow.strength(p, depth) * (1.0 + rise),
         p[at.FLAT],
         p[at.CAVITY_LAW : at.ROW_LAW],
     )
@@ -74,7 +91,7 @@ def _recovered(p, memory, depth):
 @njit(cache=True)
 def _remember(p, memory, peak):
     memory[PEAK] = peak
-    memory[PEAK_F], memory[RADIUS], memory[REST] = _dent(p, peak)
+    memory[PEAK_F], memory[RADIUS], memory[REST] = _dent(p, peak, memory[RISE])
 
 
 @njit(cache=True)
@@ -104,6 +121,8 @@ def _cavity_force(p, memory, depth, speed, dt):
     if depth > memory[PEAK]:
         kind = p[at.RATE_KIND]
         if kind == 0.0 or kind == flow.FALLING:
+            if kind == flow.FALLING:
+                memory[RISE] = _fallen(p, memory, depth, speed)
             _remember(p, memory, depth)
         else:
             _flow_on(p, memory, depth, dt)
@@ -111,8 +130,6 @@ def _cavity_force(p, memory, depth, speed, dt):
     span = memory[PEAK] - memory[REST]
     share = min(max((depth - memory[REST]) / span, 0.0), 1.0) if span > 0.0 else 0.0
     memory[RADIUS_NOW] = memory[RADIUS] * math.sqrt(share)
-    if p[at.RATE_KIND] == flow.FALLING and memory[RADIUS_NOW] > 0.0:
-        force *= flow.factor(p, 0.4 * speed / memory[RADIUS_NOW])
     return force
 
 
@@ -126,7 +143,15 @@ def _row_force(p, memory, depth, speed, dt, plastic):
     rate = p[at.RATE_KIND] > 0.0 and p[at.RATE_KIND] != flow.FALLING
     peak = max(depth, memory[PEAK])
     Y = flow.strength(p, peak)
-    W = 0.0 if math.isinf(Y) else peak / R * (E / Y) ** 2
+    falling = p[at.RATE_KIND] == flow.FALLING
+    if growing and falling:
+        memory[RISE] = _fallen(p, memory, depth, speed)
+    # how plastic the contact is follows from the strength that the metal shows at its rate: pile-up
+    # and pressure limit are those of a harder metal
+    firm = Y * (1.0 + memory[RISE])
+    if falling:
+        Y = firm
+    W = 0.0 if math.isinf(Y) else peak / R * (E / firm) ** 2
     law = p[at.ROW_LAW : at.N_PARAMETERS]
     wide = foundation.spread(W, law) * R
     flat = p[at.FLAT]
@@ -135,6 +160,7 @@ def _row_force(p, memory, depth, speed, dt, plastic):
     # stress above the static limit goes on relaxing behind the peak
     a2 = wide * (peak if rate else max(depth, 0.0)) + flat * flat
     total, half = 0.0, 0.0
+    flowing, static = 0.0, 0.0
     n = len(plastic)
     edge = memory[EDGE]
     soft = 1.0 + flow.softer(p, peak)
@@ -167,13 +193,15 @@ def _row_force(p, memory, depth, speed, dt, plastic):
                         high = middle
                 q = 0.5 * (low + high)
                 plastic[i] = u - soft * q / E
+                flowing += q * root
+                static += cap * root
         total += q * 2.0 * root / n * edge
         half = x
+    if growing and static > 0.0:
+        memory[RISE] = flowing / static - 1.0
     memory[PEAK] = peak
     memory[RADIUS] = math.sqrt(a2_peak)
     memory[RADIUS_NOW] = min(half, math.sqrt(a2)) if half > 0.0 else 0.0
-    if p[at.RATE_KIND] == flow.FALLING and memory[RADIUS_NOW] > 0.0:
-        total *= flow.factor(p, 0.4 * speed / memory[RADIUS_NOW])
     return 2.0 * total
 
 

@@ -28,6 +28,10 @@ COLUMNS = {
 }
 """Columns of trials.csv that a bench may record, and the result that each one shows."""
 
+RATIOS = ("permanent_depth_m", "contact_time_s", "peak_force_N")
+"""Columns whose changes are read as ratios: a dent of 5 um and one of 200 um that are both a tenth
+too deep are off by the same."""
+
 NUISANCES = ("strength", "modulus", "radius", "mass", "friction", "speed", "angle")
 """What may differ from its stated value; each in units of its stated standard deviation."""
 

@@ -14,7 +14,7 @@ from . import dynamics
 from . import parameters as at
 from .effects import EFFECTS, OUTSIDE, Effect
 from .metal_kinds import TYPICAL, other_metals
-from .rig import COLUMNS, NUISANCES, Rig
+from .rig import COLUMNS, NUISANCES, RATIOS, Rig
 
 Array = NDArray[np.float64]
 
@@ -169,10 +169,10 @@ class Visibility:
     def places(self, e: Array) -> list[tuple[str, str, float]]:
         """Where a change (m,) shows: observable, condition or "overall", and score; largest first.
 
-        A contrast is a constant over the readings of one observable, or a slope along a condition
-        that varies, each reading weighted by how sure it is; its score is what the change has along
-        it over the standard deviation that noise, nuisances and metals have there. An observable
-        that does not change has no score.
+        A contrast is a constant over the readings of one observable, or over their ratios to those
+        without the effect, or a slope of these along a condition that varies, each weighted by how
+        sure it is; its score is what the change has along it over the standard deviation that
+        noise, nuisances and metals have there. An observable that does not change has no score.
         """
         rig, n = self.rig, len(self.rig)
         bodies = [rig.strikers[k] for k in rig.which]
@@ -187,14 +187,17 @@ class Visibility:
         found = []
         for k, name in enumerate(rig.noise):
             here = slice(k * n, (k + 1) * n)
-            sure = self.weight[here] ** 2 / spread[here]
+            weight = self.weight[here]
+            if name in RATIOS:
+                weight = weight * np.abs(self.plain[here])
+            sure = weight**2 / spread[here]
             shapes = {"overall": np.ones(n)}
             shapes |= {
                 c: x - np.average(x, weights=sure) for c, x in along.items() if np.ptp(x) > 1e-6
             }
             for condition, x in shapes.items():
                 contrast = np.zeros(len(e))
-                contrast[here] = x * self.weight[here] / spread[here]
+                contrast[here] = x * weight / spread[here]
                 size = math.sqrt(float(contrast @ total @ contrast))
                 found.append((name, condition, abs(float(contrast @ e)) / size))
         return sorted(found, key=lambda place: -place[2])

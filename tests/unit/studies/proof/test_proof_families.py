@@ -9,6 +9,7 @@ from dentscope.studies.proof.generators import (
     benches,
     cavity,
     effects,
+    flow,
     foundation,
     metals,
     normal,
@@ -146,6 +147,40 @@ def test_overstress_raises_force_and_cuts_depth(law):
     assert fast[at.RESTITUTION] > still[at.RESTITUTION]
 
 
+def ball(law, speed, **more):
+    """A steel ball of 8 mm on the metal of docs/verification.md, "what hardening and rate make"."""
+    mass = 7800.0 * 4.0 / 3.0 * math.pi * 8e-3**3
+    modulus = 1.0 / ((1.0 - 0.33**2) / 70e9 + (1.0 - 0.3**2) / 210e9)
+    given = {"MASS": mass, "INERTIA": 0.4 * mass * 8e-3**2, "TIP": 8e-3, "MODULUS": modulus} | more
+    out = simulate.results_of(row(law, speed=speed, length=0.0, **given))[0]
+    return np.log(out[[at.RESTITUTION, at.PEAK_FORCE, at.DEPTH]])
+
+
+@pytest.mark.parametrize("law", LAWS)
+def test_a_rate_acts_as_in_finite_elements(law):
+    """Cowper and Symonds' law, 1108 1/s and 5.94: restitution, peak force, dent at two speeds."""
+    rate = {"RATE_KIND": flow.POWER, "RATE_A": 1108.0, "RATE_B": 5.94}
+    solid = {0.67: (0.157, 0.071, -0.504), 4.5: (0.224, 0.130, -0.350)}
+    rises = []
+    for speed, wanted in solid.items():
+        change = ball(law, speed, **rate) - ball(law, speed)
+        ratio = change / np.log1p(wanted)
+        assert np.all((ratio > 0.5) & (ratio < 1.6)), ratio
+        rises.append(change[0])
+    # a contact that is nearly elastic has little to gain; a row of springs of the static pile-up
+    # and pressure limit gained most there
+    assert rises[1] > 1.2 * rises[0]
+
+
+def test_a_metal_weaker_at_a_rate_digs_deeper_and_gives_less_back_in_both_families():
+    falls = {"RATE_KIND": flow.FALLING, "RATE_A": 0.04, "RATE_B": 1.0}
+    one, other = (ball(law, 1.7, **falls) - ball(law, 1.7) for law in LAWS)
+    assert one[0] < 0.0
+    assert one[1] < 0.0
+    assert one[2] > 0.0
+    assert one == pytest.approx(other, rel=0.1)
+
+
 @pytest.mark.parametrize("family", FAMILIES)
 def test_null_has_no_effect(family):
     rig = benches.balls_normal(np.random.default_rng(3))
@@ -242,7 +277,7 @@ def test_another_unloading_is_that_of_its_source():
     p = row(at.CAVITY)[0]
     p[at.OTHER_UNLOADING] = 1.0
     first = normal._first_yield(p)
-    _, _, left = normal._dent(p, 100.0 * first)
+    _, _, left = normal._dent(p, 100.0 * first, 0.0)
     x = 100.0
     assert left / (100.0 * first) == pytest.approx((1.0 - x**-0.28) * (1.0 - x**-0.69), rel=1e-9)
     assert normal._dent(p, 0.5 * first)[2] == 0.0
