@@ -53,12 +53,15 @@ class SqueezeFilm(Mechanism):
         return ""
 
     def ranges(self, situations: Sequence[Situation]) -> tuple[Parameter, ...]:
-        """A stated viscosity leaves ln(h_0/h_1): films of 1-100 um over asperities of 0.1-1 um."""
+        """A stated viscosity leaves ln(h_0/h_1): films of 1-100 um over asperities of 0.1-1 um.
+
+        Flat in that logarithm: neither thickness has a scale of its own.
+        """
         eta = situations[0][1].viscosity
         drag, share = self.parameters
         if not eta > 0.0:
             return drag, share
-        return replace(drag, low=0.5 * eta, high=8.0 * eta), share
+        return replace(drag, low=0.7 * eta, high=7.0 * eta, scale="linear"), share
 
     def attach(self, scene: Scene, values: Values, around: Surroundings) -> Scene:
         """Slow the approach."""

@@ -40,9 +40,9 @@ class RateProfile(StrengthProfile):
 class StrainRateHardening(FlowMechanism):
     """The flow stress rises with the strain rate, as a power (Cowper-Symonds) or a logarithm.
 
-    What a metal keeps of that strength where the striker turns is a parameter: dislocations that
-    are stored keep it (face-centred metals), thermally activated flow relaxes (body-centred ones).
-    The way back then is that of the strength that is kept.
+    What a metal keeps of that strength where the striker turns is a parameter: flow that follows
+    the present rate relaxes there in part, dislocations that are stored keep it all. The way back
+    then is that of the strength that is kept.
     """
 
     name = "strain-rate-hardening"
@@ -60,9 +60,11 @@ class StrainRateHardening(FlowMechanism):
             literature=Literature(0.2, "q = 5, mild steel, Cowper and Symonds 1957"),
         ),
         Parameter(
-            "strength_kept", "-", 0.0, 1.0, "linear", 1.0,
-            "0 for an overstress that relaxes at once (Perzyna 1966), 1 for a strength that stays "
-            "as the rate falls (strain rate history: Klepaczko 1975)", nodes=3,
+            "strength_kept", "-", 0.6, 1.0, "linear", 1.0,
+            "0.83-0.88 in finite elements with Cowper and Symonds' or Johnson and Cook's law "
+            "(docs/verification.md); 1 for a strength that stays as the rate falls (strain rate "
+            "history: Klepaczko 1975)",
+            nodes=3,
             literature=Literature(1.0, "the strength of the rate, as the law is used in statics"),
         ),
     )  # fmt: skip

@@ -232,7 +232,7 @@ def _tool_change(name: str, constants: dict[str, float], R: float, speed: float)
     plain = _scene(R, speed)
     there = attached((mechanism,), plain, {name: constants}, Surroundings())
     one, other = ([getattr(strike(s), k) for k in _SEEN] for s in (there, plain))
-    return np.log(np.array(one) / np.array(other))
+    return np.asarray(np.log(np.array(one) / np.array(other)))
 
 
 def _proof_change(effect: Effect, R: float, speed: float, family: float) -> Array:
