@@ -112,28 +112,33 @@ _HARDENING = (
 )  # fmt: skip
 
 
+class Compared(NamedTuple):
+    """What the metals show: rows of the table, and what is measured of them.
+
+    Parameters
+    ----------
+    rows
+        Of the table.
+    off
+        Mechanism to what its form leaves, over the rms of each effect, (n, 3) a metal.
+    kept
+        Strength kept at the turn with the law's own rise, a rate.
+    proof
+        Effect on the restitution in the proof's two simulations over that here.
+    """
+
+    rows: list[tuple[Cell, ...]]
+    off: dict[str, list[Array]]
+    kept: list[float]
+    proof: list[float]
+
+
 def run(bench: Bench) -> Result:
     """Press every metal, fit the diagnosis's form to it, and put the proof's beside both."""
-    rows: list[tuple[Cell, ...]] = []
-    off: dict[str, list[Array]] = {"work-hardening": [], "strain-rate-hardening": []}
-    kept: list[float] = []
-    proof: list[float] = []
+    found = Compared([], {"work-hardening": [], "strain-rate-hardening": []}, [], [])
     for metal in (*_RATES, *_HARDENING):
-        sizes = (_LARGE, _SMALL) if metal in _RATES else (_LARGE,)
-        blows = [(R, v) for R in sizes for v in _SPEEDS]
-        solid = np.array([_change(bench, metal, R, v) for R, v in blows])
-        fitted, form = _fitted(metal, blows, solid)
-        off[metal.mechanism].append((form - solid) / _typical(solid))
-        if metal in _RATES:
-            kept.append(_fitted(_with_its_rise(metal), blows, solid)[0]["strength_kept"])
-        told = ", ".join(f"{k} {v:.3g}" for k, v in fitted.items())
-        for (R, v), change, said in zip(blows, solid, form, strict=True):
-            cavity, row = (_proof_change(metal.proof, R, v, f) for f in (CAVITY, FOUNDATION))
-            proof += [cavity[0] / change[0], row[0] / change[0]]
-            rows.append((metal.name, f"{1e3 * R:g} mm, {v:g} m/s", *(
-                _percents(x) for x in (change, said, cavity, row)
-            )))  # fmt: skip
-        rows.append((metal.name, "constants of the diagnosis", "", told, "", ""))
+        _compare(bench, metal, found)
+    rows, off, kept, proof = found
     return Result(
         name="impact-strength",
         title="What hardening and rate make of an impact",
@@ -174,6 +179,24 @@ def run(bench: Bench) -> Result:
             "little too fast: with the law's own rise a part of it is given up at the turn.",
         ),
     )  # fmt: skip
+
+
+def _compare(bench: Bench, metal: Metal, found: Compared) -> None:
+    """Append what one metal shows."""
+    sizes = (_LARGE, _SMALL) if metal in _RATES else (_LARGE,)
+    blows = [(R, v) for R in sizes for v in _SPEEDS]
+    solid = np.array([_change(bench, metal, R, v) for R, v in blows])
+    fitted, form = _fitted(metal, blows, solid)
+    found.off[metal.mechanism].append((form - solid) / _typical(solid))
+    if metal in _RATES:
+        found.kept.append(_fitted(_with_its_rise(metal), blows, solid)[0]["strength_kept"])
+    for (R, v), change, said in zip(blows, solid, form, strict=True):
+        cavity, row = (_proof_change(metal.proof, R, v, f) for f in (CAVITY, FOUNDATION))
+        found.proof.extend([cavity[0] / change[0], row[0] / change[0]])
+        told = map(_percents, (change, said, cavity, row))
+        found.rows.append((metal.name, f"{1e3 * R:g} mm, {v:g} m/s", *told))
+    told_constants = ", ".join(f"{k} {v:.3g}" for k, v in fitted.items())
+    found.rows.append((metal.name, "constants of the diagnosis", "", told_constants, "", ""))
 
 
 def _change(bench: Bench, metal: Metal, R: float, speed: float) -> Array:

@@ -280,7 +280,7 @@ def test_another_unloading_is_that_of_its_source():
     _, _, left = normal._dent(p, 100.0 * first, 0.0)
     x = 100.0
     assert left / (100.0 * first) == pytest.approx((1.0 - x**-0.28) * (1.0 - x**-0.69), rel=1e-9)
-    assert normal._dent(p, 0.5 * first)[2] == 0.0
+    assert normal._dent(p, 0.5 * first, 0.0)[2] == 0.0
 
 
 @pytest.mark.parametrize("law", LAWS)
