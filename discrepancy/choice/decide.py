@@ -10,6 +10,7 @@ from __future__ import annotations
 import math
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass, replace
+from itertools import combinations
 from typing import NamedTuple
 
 from ...core.observables import OBSERVABLES
@@ -57,6 +58,8 @@ class Costs(NamedTuple):
 
 
 COSTS = Costs()
+WORTH_NAMING = COSTS.more / COSTS.wrong
+"""Probability from which a further name saves more than it costs."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -128,15 +131,14 @@ def _cheapest(fits: Sequence[Fit], odds: Odds) -> Choice:
 
 
 def _named(labels: Sequence[str], odds: Odds) -> tuple[str, ...]:
-    """Labels of the set, at most `MOST`, whose naming costs least; the most probable first."""
-    chosen: tuple[str, ...] = ()
-    least = math.inf
-    while len(chosen) < min(MOST, len(labels)):
-        rest = [label for label in labels if label not in chosen]
-        cost, best = min((cost_of_naming((*chosen, label), odds), label) for label in rest)
-        if cost >= least:
-            break
-        least, chosen = cost, (*chosen, best)
+    """Labels of the set, at most `MOST`, whose naming costs least; the most probable first.
+
+    What is too improbable to be worth a place by itself is not named: a pair would else stand for
+    two singles, half of each.
+    """
+    worth = [label for label in labels if odds.probability[label] > WORTH_NAMING]
+    sets = (s for n in range(1, MOST + 1) for s in combinations(worth, n))
+    chosen = min(sets, key=lambda s: cost_of_naming(s, odds), default=())
     return tuple(sorted(chosen, key=lambda label: -odds.probability[label]))
 
 

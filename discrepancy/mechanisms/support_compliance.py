@@ -19,8 +19,8 @@ class SupportCompliance(Mechanism):
     equations = "M w'' + c w' + k w = F"
     parameters = (
         Parameter(
-            "support_stiffness_N_m", "N/m", 1e6, 1e9, "log", math.inf,
-            "blocks on foam or clamped to a bench; frames 1e8-1e10 N/m", nodes=5,
+            "support_stiffness_N_m", "N/m", 1e6, 1e10, "log", math.inf,
+            "blocks on foam or clamped to a bench; frames 1e8-1e10 N/m", nodes=9,
             literature=Literature(4e8, "a clamped plate of 30 mm and 10 kg at 1 kHz"),
         ),
         Parameter(

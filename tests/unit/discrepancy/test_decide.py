@@ -80,6 +80,11 @@ def test_numbers_of_one_condition_say_nothing(toy) -> None:
         (odds(a=0.4, a_b=0.3, a_c=0.28), "indistinguishable", ["a", "a+b", "a+c"]),
         (odds(a=0.75, a_b=0.1, a_c=0.1), "missing-physics", ["a"]),
         (odds(a_b=0.97), "missing-physics", ["a+b"]),
+        # a pair of little probability does not stand for its members, half of each
+        (odds(a=0.35, b=0.31, c=0.2, a_d=0.07, b_e=0.03, a_b=0.02), "indistinguishable",
+         ["a", "b", "c"]),
+        (odds(a=0.2, b=0.19, c=0.17, d=0.15, e=0.12, f=0.1, a_b=0.02, c_d=0.02, e_f=0.02),
+         "undetermined", []),
     ],
 )  # fmt: skip
 def test_the_cheapest_verdict_is_given(case, given, verdict, names) -> None:
