@@ -27,8 +27,8 @@ from .....models import LAWS
 from ....proof.generators.effects import Effect
 from ....proof.generators.parameters import CAVITY, FOUNDATION
 from ....proof.generators.rig import COLUMNS, NUISANCES, Rig
-from ....proof.generators.rig import Metal as Stated
-from ....proof.generators.rig import Striker as Stone
+from ....proof.generators.rig import Metal as ProofMetal
+from ....proof.generators.rig import Striker as ProofStriker
 from ....proof.generators.simulate import results_of, rows_of
 from ...bench import Bench
 from ...result import Cell, Measurement, Result, Table
@@ -260,12 +260,12 @@ def _tool_change(name: str, constants: dict[str, float], R: float, speed: float)
 
 def _proof_change(effect: Effect, R: float, speed: float, family: float) -> Array:
     steel, soft = (
-        Stated(name, m.E, m.nu, m.Sy, float(m.density))
+        ProofMetal(name, m.E, m.nu, m.Sy, float(m.density))
         for name, m in (("ball", _BALL), ("flat", _FLAT))
     )
     one = np.ones(1)
     rig = Rig(
-        "balls-normal", soft, (Stone("ball", steel, R, R),), np.zeros(1, dtype=np.intp),
+        "balls-normal", soft, (ProofStriker("ball", steel, R, R),), np.zeros(1, dtype=np.intp),
         0.5 * math.pi * one, speed * one, 0.0 * one, 293.0 * one, 0.0,
         dict.fromkeys(NUISANCES, 0.0), {},
     )  # fmt: skip
