@@ -146,7 +146,8 @@ class Verdict:
 
 def _proposed(p: Proposal) -> dict[str, Any]:
     return {
-        "change": p.change, "expected_discrimination": p.expected_discrimination, "kind": p.kind,
+        "change": p.change, "expected_discrimination": p.expected_discrimination,
+        "information_nats": p.information, "kind": p.kind,
         "interval": None if math.isnan(p.interval) else p.interval, "trial": dict(p.trial),
     }  # fmt: skip
 

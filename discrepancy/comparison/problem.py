@@ -77,14 +77,20 @@ class Problem:
         strikers = tuple(t for t in tables if t != "target")
         return {"target": flat, "striker": strikers}
 
-    def with_error(self) -> Problem:
-        """Return the same with the law's error as these conditions have it."""
+    def with_error(self, known: LawError | None = None) -> Problem:
+        """Return the same with the law's error as these conditions have it.
+
+        Of strikers whose error is known already, that stays.
+        """
         plain = replace(self, error=NO_ERROR)
         scenes: dict[str, list[Scene]] = {}
         stated = plain.scenes(np.zeros(plain.n_z))
         for c, scene in zip(self.conditions, stated, strict=True):
             scenes.setdefault(c.striker, []).append(scene)
-        return replace(self, error=law_error(scenes))
+        error = law_error(scenes)
+        if known is not None:
+            error = replace(known, spreads={**error.spreads, **known.spreads})
+        return replace(self, error=error)
 
     @property
     def fresh(self) -> Problem:

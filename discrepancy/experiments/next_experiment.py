@@ -1,15 +1,14 @@
 """What to do next: the trial, the instrument or the observable that would bring most.
 
-Rivals are the explanations that share the probability. A trial is simulated under each with its
-posterior spread; its worth is D = (mu_i - mu_j)^T (Sigma_i + Sigma_j)^-1 (mu_i - mu_j), the
-criterion of Box and Hill (Technometrics 9 (1967) 57) and of Buzzi-Ferraris and Forzatti (Chem. Eng.
-Sci. 39 (1984) 81), averaged over the pairs with the product of their probabilities. Half of it is
-about the nats by which the odds of two rivals would move.
+Rivals are the explanations that share the probability. What a trial would show is foreseen under
+each, given all that was measured; first comes what would lower the entropy of which rival is true
+by most. Told with it is D = (mu_i - mu_j)^T (Sigma_i + Sigma_j)^-1 (mu_i - mu_j), the criterion of
+Box and Hill (Technometrics 9 (1967) 57) and of Buzzi-Ferraris and Forzatti (Chem. Eng. Sci. 39
+(1984) 81), averaged over the pairs with the product of their probabilities.
 """
 
 from __future__ import annotations
 
-import itertools
 import math
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field, replace
@@ -18,15 +17,17 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ...core.observables import OBSERVABLES
+from ...core.rig import Rig
 from ..choice.odds import Odds
-from ..comparison.cells import compared
 from ..comparison.forward import Point, Simulator
 from ..comparison.problem import Problem
 from ..inference.fit import Fit
 from ..rank import Ranking
 from .feasible import Candidate, candidates_of
+from .foreseen import discrimination, foreseen, information
 
 Array = NDArray[np.float64]
+Ints = NDArray[np.intp]
 
 SHARE = 0.02
 """Probability from which an explanation is a rival."""
@@ -35,7 +36,6 @@ MOST = 4
 LITTLE = 0.9
 """Width of an interval, over that of today, above which a change is not worth its while."""
 _DECIDES = 1.0  # standard deviations by which rivals must differ for one trial to tell much
-_SAMPLES = 12
 _BUILD = 2.0  # what is to be built must bring as many times more than what is there
 
 
@@ -51,10 +51,14 @@ class Proposal:
         D averaged over the rivals; 0 where there are none.
     kind
         `trial`, `build`, `noise`, `observable` or `none`.
+    information
+        Nats by which the entropy of which rival is true is expected to fall.
     interval
         Width of the leading parameter's interval over that of today; nan where not worked out.
     trial
         Striker, speed [m/s] and angle [degrees] of a trial, and mass [kg] and tip radius [m].
+    observable
+        What to measure as well, of a proposal of that kind.
     """
 
     change: str
@@ -62,6 +66,8 @@ class Proposal:
     kind: str = "trial"
     interval: float = math.nan
     trial: Mapping[str, str | float] = field(default_factory=dict)
+    information: float = 0.0
+    observable: str = ""
 
     @property
     def gains(self) -> tuple[str, ...]:
@@ -101,14 +107,13 @@ def propose(
     ranking, odds
         The explanations and their probabilities.
     rng
-        Draws the posterior samples.
+        Draws the posterior's samples.
     """
     rivals = rivals_of(ranking, odds)
     if len(rivals) < 2:
         return []
-    points = [_samples(f, rng) for f, _ in rivals]
-    found = [*_trials(simulator, rivals, points), *_further(simulator, rivals, points)]
-    found.sort(key=lambda p: -p.expected_discrimination / (_BUILD if p.kind == "build" else 1.0))
+    found = _worth_of_each(simulator, rivals, rng)
+    found.sort(key=lambda p: -p.information / (_BUILD if p.kind == "build" else 1.0))
     best = rivals[0][0]
     if best.mechanisms:
         sharper = _sharper(simulator.problem, best)
@@ -119,60 +124,93 @@ def propose(
     return found
 
 
-def _trials(
-    simulator: Simulator, rivals: Sequence[tuple[Fit, float]], points: Sequence[list[Point]]
+def _worth_of_each(
+    simulator: Simulator, rivals: Sequence[tuple[Fit, float]], rng: np.random.Generator
 ) -> list[Proposal]:
+    """Trials and further observables, with what each would tell."""
+    options, wider = _options(simulator)
+    seen = [foreseen(simulator, wider, f, rng) for f, _ in rivals]
+    weight = [p for _, p in rivals]
+    found = []
+    for cells, proposal in options:
+        here = [s.of(cells) for s in seen]
+        found.append(
+            replace(
+                proposal, expected_discrimination=discrimination(here, weight),
+                information=information(here, weight),
+            )
+        )  # fmt: skip
+    # of what else could be measured, the condition of the set where it would tell most
+    best: dict[str, Proposal] = {}
+    for p in found:
+        name = p.observable or p.change
+        if name not in best or p.information > best[name].information:
+            best[name] = p
+    return list(best.values())
+
+
+def _options(simulator: Simulator) -> tuple[list[tuple[Ints, Proposal]], Problem]:
+    """What could be measured, each with its places among the new cells, and the wider problem."""
     problem = simulator.problem
     candidates = candidates_of(problem)
     built = {c.condition.striker: c.built for c in candidates if c.built}
     rig = problem.rig.model_copy(update={"strikers": {**problem.rig.strikers, **built}})
     laws = {c.condition.striker: problem.laws[c.like or c.condition.striker] for c in candidates}
-    conditions = tuple(c.condition for c in candidates)
-    other = replace(problem, laws=laws, conditions=conditions, rig=rig)
-    trial = simulator.of(other.with_error())
-    seen = [trial.observe(f.mechanisms, p) for (f, _), p in zip(rivals, points, strict=True)]
+    conditions = (*problem.conditions, *(c.condition for c in candidates))
     measured = list(dict.fromkeys(problem.cells.observable))
-    weight = [p for _, p in rivals]
-    return [_trial(c, k, seen, measured, weight, problem) for k, c in enumerate(candidates)]
+    noise = {name: _noise(simulator, name) for name in measured}
+    first = len(problem.conditions)
+    options: list[tuple[Ints, Proposal]] = []
+    new: list[tuple[int, str]] = []
+    for k, c in enumerate(candidates):
+        at = np.arange(len(new), len(new) + len(measured))
+        options.append((at, _proposal(c, measured, rig)))
+        new += [(first + k, name) for name in measured]
+    for name in _not_measured(problem):
+        noise[name] = _noise(simulator, name)
+        for k, one in enumerate(problem.conditions):
+            label = OBSERVABLES[name].label
+            text = f"measure {label} too, first of {one.striker} at {one.speed:.2g} m/s"
+            told = Proposal(text, 0.0, "observable", observable=name)
+            options.append((np.array([len(new)]), told))
+            new.append((k, name))
+    cells = problem.cells
+    more = replace(
+        cells, condition=np.append(cells.condition, [k for k, _ in new]).astype(np.intp),
+        observable=(*cells.observable, *(name for _, name in new)),
+        value=np.append(cells.value, np.zeros(len(new))),
+        std=np.append(cells.std, [noise[name] for _, name in new]),
+        count=np.append(cells.count, np.ones(len(new))).astype(np.intp),
+    )  # fmt: skip
+    wider = replace(
+        problem, conditions=conditions, cells=more, rig=rig, laws={**problem.laws, **laws}
+    )
+    return options, wider.with_error(problem.error)
 
 
-def _trial(
-    c: Candidate, k: int, seen: Sequence[dict[str, Array]], measured: list[str],
-    weight: Sequence[float], problem: Problem,
-) -> Proposal:  # fmt: skip
-    here = [{o: s[o][:, k] for o in measured} for s in seen]
-    text = f"{c.change}, measuring {_words(measured)}"
-    table = c.built or problem.rig.strikers[c.condition.striker]
+def _proposal(c: Candidate, measured: list[str], rig: Rig) -> Proposal:
+    table = rig.strikers[c.condition.striker]
     trial: dict[str, str | float] = {
         "striker": c.condition.striker, "speed_m_s": c.condition.speed,
         "angle_deg": math.degrees(c.condition.incidence), "mass_kg": table.mass_kg.value,
         "tip_radius_m": table.tip_radius_m.value,
     }  # fmt: skip
-    kind = "build" if c.built else "trial"
-    return Proposal(text, _worth(here, weight, problem), kind, trial=trial)
+    words = ", ".join(OBSERVABLES[n].label for n in measured)
+    return Proposal(
+        f"{c.change}, measuring {words}", 0.0, "build" if c.built else "trial", trial=trial
+    )
 
 
-def _further(
-    simulator: Simulator, rivals: Sequence[tuple[Fit, float]], points: Sequence[list[Point]]
-) -> list[Proposal]:
-    """What else could be measured, at the condition of the set where it would tell most."""
-    problem = simulator.problem
-    seen = [simulator.observe(f.mechanisms, p) for (f, _), p in zip(rivals, points, strict=True)]
-    measured = set(problem.cells.observable)
-    weight = [p for _, p in rivals]
+def _not_measured(problem: Problem) -> list[str]:
+    """Observables that a set does not have and that its trials would show."""
     slides = any(c.angle < 1.5 or c.tangential or c.spin for c in problem.conditions)
-    found = []
-    for name, row in OBSERVABLES.items():
-        if name in measured or not row.usual_noise or (row.phase == "sliding" and not slides):
-            continue
-        worth = [
-            _worth([{name: s[name][:, k]} for s in seen], weight, problem)
-            for k in range(len(problem.conditions))
-        ]
-        c = problem.conditions[int(np.argmax(worth))]
-        text = f"measure {row.label} too, first of {c.striker} at {c.speed:.2g} m/s"
-        found.append(Proposal(text, max(worth), "observable"))
-    return found
+    return [
+        name
+        for name, row in OBSERVABLES.items()
+        if name not in problem.cells.observable
+        and row.usual_noise
+        and (row.phase != "sliding" or slides)
+    ]
 
 
 def _sharper(problem: Problem, best: Fit) -> list[Proposal]:
@@ -225,38 +263,14 @@ def _width(slopes: Array, total: Array) -> float:
     return math.sqrt(float(np.linalg.inv(information)[0, 0]))
 
 
-def _words(names: Sequence[str]) -> str:
-    return ", ".join(OBSERVABLES[n].label for n in names)
-
-
-def _samples(fitted: Fit, rng: np.random.Generator) -> list[Point]:
-    lower = np.linalg.cholesky(fitted.covariance + 1e-9 * np.eye(len(fitted.z)))
-    places = fitted.grid.places() if fitted.mechanisms else np.zeros((1, 0))
-    chosen = rng.choice(len(places), size=_SAMPLES, p=fitted.weight)
-    return [
-        Point(fitted.z + lower @ rng.standard_normal(len(fitted.z)), fitted.grid.values(places[i]))
-        for i in chosen
-    ]
-
-
-def _worth(seen: Sequence[dict[str, Array]], weight: Sequence[float], problem: Problem) -> float:
-    """D of one trial, (samples,) of each observable under each rival, averaged over the pairs."""
-    names = list(seen[0])
-    noise = np.array([_noise(name, seen, problem) for name in names])
-    tables = [np.stack([compared(n, one[n]) for n in names]) for one in seen]
-    worth, whole = 0.0, 0.0
-    for (a, p), (b, q) in itertools.combinations(zip(tables, weight, strict=True), 2):
-        gap = a.mean(axis=1) - b.mean(axis=1)
-        cov = np.atleast_2d(np.cov(a)) + np.atleast_2d(np.cov(b)) + 2.0 * np.diag(noise**2)
-        worth += p * q * float(gap @ np.linalg.solve(cov, gap))
-        whole += p * q
-    return worth / whole if whole > 0.0 else 0.0
-
-
-def _noise(name: str, seen: Sequence[dict[str, Array]], problem: Problem) -> float:
+def _noise(simulator: Simulator, name: str) -> float:
+    """Standard error of a cell: the set's usual one, or what is usual for the observable."""
+    problem = simulator.problem
     here = np.array([o == name for o in problem.cells.observable])
     if here.any():
         return float(np.median(problem.cells.std[here]))
-    size = float(np.mean([np.mean(np.abs(s[name])) for s in seen]))
     row = OBSERVABLES[name]
-    return row.usual_noise * (1.0 if row.log else max(size, 1e-12))
+    if row.log:
+        return row.usual_noise
+    seen = simulator.observe((), [Point(np.zeros(problem.n_z))])[name]
+    return row.usual_noise * max(float(np.mean(np.abs(seen))), 1e-12)

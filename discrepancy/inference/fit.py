@@ -13,7 +13,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 from numpy.typing import NDArray
 
-from ..comparison.forward import Simulator
+from ..comparison.forward import Point, Simulator
 from ..comparison.problem import Problem
 from ..mechanisms.base import Mechanism, Situation
 from ..unknowns.lawerror import SIZES
@@ -27,6 +27,8 @@ Array = NDArray[np.float64]
 _ROUNDS = 4
 _SETTLED, _TURNED = 0.15, 0.08  # of the unknowns, and of the places in the priors
 _FARTHEST = 2.0  # of the unknowns within one round
+_PARTS = (0.0, 0.1, 0.25, 0.5, 1.0)  # of a step that are tried
+_LITTLE = 0.1  # of chi2, which no verdict hangs on
 
 
 @dataclass(frozen=True, eq=False)
@@ -167,17 +169,48 @@ def fit_anchored(
     return replace(found, z=z)
 
 
-def moved_towards(found: Fit, z: Array, place: Array | None = None) -> tuple[Array, bool]:
+def moved_towards(found: Fit, z: Array, place: Array) -> tuple[Array, bool]:
     """Return the unknowns of the next round, from z towards a fit, and whether they have settled.
 
     No unknown moves by more than two prior standard deviations at once; the place in the
-    mechanisms' priors must have settled as well where it is given.
+    mechanisms' priors must have settled as well.
     """
     moved = found.z - z
     shift = float(np.max(np.abs(moved), initial=0.0))
-    turned = 0.0 if place is None else float(np.max(np.abs(found.place - place), initial=0.0))
+    turned = float(np.max(np.abs(found.place - place), initial=0.0))
     after = z + moved * min(1.0, _FARTHEST / shift) if shift > 0.0 else z
     return after, shift < _SETTLED and turned < _TURNED
+
+
+def tried_steps(
+    simulator: Simulator, found: Fit, z: Array, place: Array
+) -> tuple[Array, Array, bool]:
+    """Return unknowns and place as `moved_towards` a fit, by the part of a step that fits best.
+
+    Far from the stated values responses bend, and whole steps may swing to and fro between two
+    places that both fit worse than what lies between them: the part of the step is gone that the
+    simulation itself likes best, and none where it likes none.
+
+    Parameters
+    ----------
+    simulator
+        The problem.
+    found
+        The fit expanded at z and place.
+    z, place
+        (n_z,) unknowns and (axes,) place of this round.
+    """
+    whole, settled = moved_towards(found, z, place)
+    if settled:
+        return whole, found.place, True
+    tried = [(z, place), *((z + t * (whole - z), found.place) for t in _PARTS)]
+    points = [Point(z, found.grid.values(place)) for z, place in tried]
+    r = simulator.problem.cells.value - simulator.predict(found.mechanisms, points)
+    prior = found.linear.prior if found.linear.prior.size else np.ones(len(z))
+    away = np.array([np.sum((z / prior) ** 2) for z, _ in tried])
+    badness = np.sum(r * np.linalg.solve(found.linear.measured, r.T).T, axis=1) + away
+    best = int(np.argmin(badness))
+    return *tried[best], bool(badness[0] - badness[best] < _LITTLE)
 
 
 def grid_of(problem: Problem, mechanisms: Sequence[Mechanism]) -> Grid:

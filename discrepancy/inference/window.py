@@ -6,7 +6,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ..comparison.forward import Simulator
-from .fit import Fit, expand, moved_towards
+from .fit import Fit, expand, tried_steps
 from .grid import Grid
 
 Array = NDArray[np.float64]
@@ -41,21 +41,20 @@ def sharpened(simulator: Simulator, fitted: Fit, *, rounds: int = 8) -> Fit:
         return fitted
     half = np.maximum(_WINDOW * spread, 2.5 * share)
     best = None
-    for _ in range(rounds):
+    for _ in range(max(rounds, 1)):
         low, high = np.maximum(place - half, 0.0), np.minimum(place + half, 1.0)
         window = tuple(zip(low.tolist(), high.tolist(), strict=True))
         local = Grid(grid.axes, window)
         found = expand(simulator, fitted.mechanisms, local, z, place, None)
-        # where outcomes jump, a step may fall off the branch that the data are on
+        # where outcomes bend or jump, a step may fall off the branch that the data are on
         if best is None or found.log_evidence > best.log_evidence:
             best = found
-        z, settled = moved_towards(found, z)
         wide = high - low
         outward = (
             ((found.place < low + 0.1 * wide) & (low > 0.0))
             | ((found.place > high - 0.1 * wide) & (high < 1.0))
         )  # fmt: skip
-        place = found.place
+        z, place, settled = tried_steps(simulator, found, z, place)
         narrow = _WINDOW * _spread(found)
         if not outward.any() and np.all(narrow > 0.3 * half) and settled:
             break

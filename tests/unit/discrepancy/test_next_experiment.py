@@ -11,10 +11,15 @@ import pytest
 from dentscope.core.rig import Quantity, StrikerTable
 from dentscope.discrepancy.choice.odds import Odds
 from dentscope.discrepancy.experiments.feasible import candidates_of
+from dentscope.discrepancy.experiments.foreseen import (
+    Foreseen,
+    discrimination,
+    foreseen,
+    information,
+)
 from dentscope.discrepancy.experiments.next_experiment import (
     Proposal,
     _sharper,
-    _worth,
     propose,
     rivals_of,
     with_half_the_noise,
@@ -27,17 +32,39 @@ def odds(**p: float) -> Odds:
     return Odds({k: () for k in p}, p)
 
 
-def test_worth_is_the_gap_over_what_blurs_it(toy) -> None:
-    given = toy.problem([0.0])
-    one, two = {SEEN: np.array([1.0, 3.0])}, {SEEN: np.array([6.0, 8.0])}
-    # means 2 and 7, variances 2 and 2, unit noise of each measurement: 25/(2 + 2 + 2)
-    assert _worth([one, two], [0.5, 0.5], given) == pytest.approx(25.0 / 6.0)
-    # over three rivals by the products of their probabilities: 25/6 of 0.2, 25/6 of 0.06, 0 of 0.15
-    pairs = (0.2 + 0.06) / (0.2 + 0.06 + 0.15) * 25.0 / 6.0
-    assert _worth([one, two, one], [0.5, 0.4 * 0.5 / 0.5 * 1.0, 0.3], given) != pairs
-    assert _worth([one, two, one], [0.5, 0.4, 0.15], given) == pytest.approx(
+def of_one(mean: float, variance: float) -> Foreseen:
+    return Foreseen(np.array([mean]), np.array([[variance]]))
+
+
+def test_discrimination_is_the_gap_over_what_blurs_it() -> None:
+    one, two = of_one(2.0, 3.0), of_one(7.0, 3.0)
+    assert discrimination([one, two], [0.5, 0.5]) == pytest.approx(25.0 / 6.0)
+    # over three rivals by the products of their probabilities: 25/6, 0 and 25/6
+    assert discrimination([one, two, one], [0.5, 0.4, 0.15]) == pytest.approx(
         (0.5 * 0.4 + 0.4 * 0.15) / (0.5 * 0.4 + 0.5 * 0.15 + 0.4 * 0.15) * 25.0 / 6.0
     )
+
+
+def test_information_ends_at_the_entropy_and_begins_at_nothing() -> None:
+    """Of two rivals alike nothing is learnt; of two far apart, which of them it is."""
+    alike = information([of_one(1.0, 2.0), of_one(1.0, 2.0)], [0.3, 0.7])
+    assert alike == pytest.approx(0.0, abs=1e-12)
+    apart = information([of_one(0.0, 1.0), of_one(50.0, 1.0)], [0.3, 0.7])
+    assert apart == pytest.approx(-0.3 * math.log(0.3) - 0.7 * math.log(0.7))
+    # small gaps: p (1 - p) D by the expansion, with D over twice the one variance
+    near = information([of_one(0.0, 1.0), of_one(0.2, 1.0)], [0.5, 0.5])
+    assert near == pytest.approx(0.25 * 0.2**2 / 2.0, rel=0.05)
+
+
+def test_rivals_of_one_mean_are_told_by_how_sure_they_are() -> None:
+    one, two = of_one(0.0, 1.0), of_one(0.0, 100.0)
+    assert discrimination([one, two], [0.5, 0.5]) == 0.0
+    # by quadrature of the two normal densities
+    y = np.linspace(-80.0, 80.0, 200001)
+    p = [np.exp(-0.5 * y**2 / v) / math.sqrt(2.0 * math.pi * v) for v in (1.0, 100.0)]
+    mixed = 0.5 * (p[0] + p[1])
+    exact = sum(0.5 * np.trapezoid(q * np.log(np.maximum(q, 1e-300) / mixed), y) for q in p)
+    assert information([one, two], [0.5, 0.5]) == pytest.approx(exact, rel=0.1)
 
 
 def test_rivals_are_those_that_share_the_probability(toy) -> None:
@@ -118,7 +145,7 @@ def test_a_body_of_another_size_has_another_mass_and_is_to_be_built(toy) -> None
 
 
 class Bench:
-    """A simulator in which one mechanism doubles what is seen at high speeds only."""
+    """A simulator in which one mechanism adds 2 to what is seen at high speeds only."""
 
     def __init__(self, problem):
         self.problem = problem
@@ -126,11 +153,18 @@ class Bench:
     def of(self, problem):
         return Bench(problem)
 
+    def predict(self, mechanisms, points):
+        cells = self.problem.cells
+        speed = np.array([self.problem.conditions[k].speed for k in cells.condition])
+        seen = [
+            speed + 2.0 * (speed > 1.9) * (p.values["a"]["size"] if mechanisms else 0.0)
+            for p in points
+        ]
+        return np.array(seen) + np.array([p.z.sum() for p in points])[:, None]
+
     def observe(self, mechanisms, points):
-        speed = np.array([c.speed for c in self.problem.conditions])
-        doubled = 2.0 if mechanisms else 1.0
-        seen = np.where(speed > 1.9, doubled * speed, speed)
-        return {name: np.tile(seen, (len(points), 1)) for name in [SEEN, *OTHERS]}
+        shape = (len(points), len(self.problem.conditions))
+        return {name: np.ones(shape) for name in OTHERS}
 
 
 OTHERS = ("restitution", "permanent_depth_m", "contact_time_s", "peak_force_N",
@@ -139,17 +173,35 @@ OTHERS = ("restitution", "permanent_depth_m", "contact_time_s", "peak_force_N",
 
 def test_the_trial_that_tells_rivals_apart_comes_first(toy, monkeypatch) -> None:
     given = on_rig(toy, ball=BALL)
-    monkeypatch.setattr(type(given), "with_error", lambda self: self, raising=False)
-    base, one = toy.fit_of([0.0, 0.0]), toy.fit_of([0.0, 0.0], toy.Effect("a", (0.0, 0.0)))
+    monkeypatch.setattr(type(given), "with_error", lambda self, known: self, raising=False)
+    base, one = toy.fit_of([0.0, 0.0]), toy.fit_of([0.0, 0.0], toy.Effect("a", (0.0, 2.0)))
     ranking = toy.ranking_of(given, base, singles=[one])
     shared = odds(baseline=0.5, a=0.5)
     found = propose(Bench(given), ranking, shared, np.random.default_rng(0))
     trials = [p for p in found if p.kind == "trial"]
     assert trials[0].change.startswith("ball at 2 m/s")
-    assert trials[0].expected_discrimination == pytest.approx(4.0 / 2.0)  # (4 - 2)^2 over 1 + 1
+    assert trials[0].information > 2.0 * trials[-1].information
     assert {p.kind for p in found} >= {"trial", "build", "observable"}
     alone = toy.ranking_of(given, base)
     assert propose(Bench(given), alone, odds(baseline=1.0), np.random.default_rng(0)) == []
+
+
+def test_what_was_measured_narrows_what_is_foreseen(toy) -> None:
+    """An unknown common to all cells: two of unit noise leave 1/3 of its variance, and a mean."""
+    given = toy.problem([5.0, 7.0], derivative=[[1.0], [1.0]])
+    cells = given.cells
+    more = replace(
+        cells, condition=np.append(cells.condition, 0), observable=(*cells.observable, SEEN),
+        value=np.append(cells.value, 0.0), std=np.append(cells.std, 0.5),
+        count=np.append(cells.count, 1),
+    )  # fmt: skip
+    wider = replace(given, cells=more)
+    # the bench shows 1 and 2 at 1 and 2 m/s: what is left of the data is 4 and 5
+    base = toy.fit_of([4.0, 5.0], J=[[1.0], [1.0]])
+    seen = foreseen(Bench(given), wider, base, np.random.default_rng(0))
+    assert seen.mean == pytest.approx([1.0 + (4.0 + 5.0) / 3.0])
+    assert seen.covariance == pytest.approx(np.array([[1.0 / 3.0 + 0.25]]))
+    assert seen.of(np.array([0])).mean == pytest.approx(seen.mean)
 
 
 def test_half_the_noise_brings_what_the_curvature_says(toy) -> None:

@@ -1,0 +1,145 @@
+"""What cells that were not measured would show under an explanation, given all that was.
+
+The same algebra as the fit's, over the measured cells and the new ones together: what the law, the
+nuisances and a mechanism's form may be off is shared by both, so that what the set already says
+narrows it. Of the mechanism's parameters samples of the posterior are simulated.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+from functools import cache
+
+import numpy as np
+from numpy.typing import NDArray
+from scipy.linalg import cho_factor, cho_solve
+from scipy.special import logsumexp
+from scipy.stats.qmc import MultivariateNormalQMC
+
+from ..comparison.forward import Point, Simulator
+from ..comparison.problem import Problem
+from ..inference.derivatives import FORMS, derivatives
+from ..inference.fit import Fit
+from ..inference.linear import Linear, Mixture
+from ..unknowns.lawerror import SIZES
+
+Array = NDArray[np.float64]
+Ints = NDArray[np.intp]
+
+_SAMPLES = 12
+_DRAWS = 256
+
+
+@dataclass(frozen=True, eq=False)
+class Foreseen:
+    """What new cells would show: mean (n,) and covariance (n, n), their noise in it."""
+
+    mean: Array
+    covariance: Array
+
+    def of(self, cells: Ints) -> Foreseen:
+        """Return the same of some of the cells."""
+        return Foreseen(self.mean[cells], self.covariance[np.ix_(cells, cells)])
+
+
+def foreseen(
+    simulator: Simulator, wider: Problem, fitted: Fit, rng: np.random.Generator
+) -> Foreseen:
+    """Return what the further cells of a wider problem would show under an explanation.
+
+    Parameters
+    ----------
+    simulator
+        The problem that was fitted, of m cells.
+    wider
+        The same with n more cells after its own, whose values are not looked at.
+    fitted
+        The explanation.
+    rng
+        Draws samples of the mechanisms' parameters.
+    """
+    whole, known = simulator.of(wider), len(simulator.problem.cells)
+    z, values = fitted.z, fitted.grid.values(fitted.place)
+    here, linear = derivatives(whole, fitted.mechanisms, values, z)
+    measured = simulator.problem.cells.value + linear.J[:known] @ z
+    parts = Mixture.of(linear, wider.n_nuisances, SIZES, FORMS)
+    residual = measured - here[:known]
+    said = [
+        w + _first(p, known).log_likelihood(residual)
+        for w, p in zip(parts.log_weight, parts.parts, strict=True)
+    ]
+    likeliest = parts.parts[int(np.argmax(said))]
+    total = likeliest.total
+    gain = cho_solve(cho_factor(total[:known, :known], lower=True), total[:known, known:]).T
+    seen = whole.predict(fitted.mechanisms, _samples(fitted, rng))
+    means = seen[:, known:] - linear.J[known:] @ z + (measured - seen[:, :known]) @ gain.T
+    covariance = total[known:, known:] - gain @ total[:known, known:]
+    if len(means) > 1:
+        covariance = covariance + np.atleast_2d(np.cov(means.T))
+    return Foreseen(means.mean(axis=0), np.asarray(0.5 * (covariance + covariance.T)))
+
+
+def _first(linear: Linear, known: int) -> Linear:
+    """The algebra of the first cells."""
+    form = linear.form[:known] if linear.form.size else linear.form
+    return replace(linear, noise=linear.noise[:known, :known], J=linear.J[:known], form=form)
+
+
+def _samples(fitted: Fit, rng: np.random.Generator) -> list[Point]:
+    """Samples of the mechanisms' parameters, at the fitted unknowns."""
+    if not fitted.mechanisms:
+        return [Point(fitted.z)]
+    places = fitted.grid.places()
+    chosen = rng.choice(len(places), size=_SAMPLES, p=fitted.weight)
+    return [Point(fitted.z, fitted.grid.values(places[i])) for i in chosen]
+
+
+def discrimination(seen: Sequence[Foreseen], weight: Sequence[float]) -> float:
+    """Return D of some cells, averaged over pairs of rivals by the product of their probabilities.
+
+    D = (mu_i - mu_j)^T (Sigma_i + Sigma_j)^-1 (mu_i - mu_j).
+    """
+    worth, whole = 0.0, 0.0
+    for i, (a, p) in enumerate(zip(seen, weight, strict=True)):
+        for b, q in zip(seen[i + 1 :], weight[i + 1 :], strict=True):
+            gap = a.mean - b.mean
+            worth += p * q * float(gap @ np.linalg.solve(a.covariance + b.covariance, gap))
+            whole += p * q
+    return worth / whole if whole > 0.0 else 0.0
+
+
+def information(seen: Sequence[Foreseen], weight: Sequence[float]) -> float:
+    """Return by how much some cells would lower the entropy of which rival is true, in nats.
+
+    The expected Kullback-Leibler distance of the probabilities after from those before (D. V.
+    Lindley, Ann. Math. Stat. 27 (1956) 986), over draws from each rival.
+    """
+    p = np.array(weight) / np.sum(weight)
+    lower = [np.asarray(np.linalg.cholesky(s.covariance)) for s in seen]
+    # the same draws for every candidate: what differs between two of them is no chance
+    draws = _spread_out(len(seen[0].mean))
+    worth = 0.0
+    for share, one, root in zip(p, seen, lower, strict=True):
+        y = one.mean + draws @ root.T
+        told = np.stack([_log_density(y, s, low) for s, low in zip(seen, lower, strict=True)])
+        own = _log_density(y, one, root)
+        worth += share * float(np.mean(own - logsumexp(np.log(p)[:, None] + told, axis=0)))
+    return max(worth, 0.0)
+
+
+@cache
+def _spread_out(n: int) -> Array:
+    """Standard normal draws (draws, n) without clumps."""
+    return np.asarray(
+        MultivariateNormalQMC(np.zeros(n), rng=np.random.default_rng(0)).random(_DRAWS)
+    )
+
+
+def _log_density(y: Array, seen: Foreseen, lower: Array) -> Array:
+    """Ln of the density of draws (k, n), but for a constant."""
+    white = np.linalg.solve(lower, (y - seen.mean).T)
+    return np.asarray(-0.5 * np.sum(white**2, axis=0) - np.sum(np.log(np.diag(lower))))
+
+
+__all__ = ["Foreseen", "discrimination", "foreseen", "information"]
