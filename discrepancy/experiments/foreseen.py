@@ -115,7 +115,12 @@ def information(seen: Sequence[Foreseen], weight: Sequence[float]) -> float:
     The expected Kullback-Leibler distance of the probabilities after from those before (D. V.
     Lindley, Ann. Math. Stat. 27 (1956) 986), over draws from each rival.
     """
-    p = np.array(weight) / np.sum(weight)
+    possible = np.array(weight) > 0.0
+    if np.sum(possible) < 2:
+        # one has it all, or something outside: nothing is left to tell apart
+        return 0.0
+    seen = [s for s, one in zip(seen, possible, strict=True) if one]
+    p = np.array(weight)[possible] / np.sum(weight)
     lower = [np.asarray(np.linalg.cholesky(s.covariance)) for s in seen]
     # the same draws for every candidate: what differs between two of them is no chance
     draws = _spread_out(len(seen[0].mean))

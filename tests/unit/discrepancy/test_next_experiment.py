@@ -56,6 +56,14 @@ def test_information_ends_at_the_entropy_and_begins_at_nothing() -> None:
     assert near == pytest.approx(0.25 * 0.2**2 / 2.0, rel=0.05)
 
 
+def test_rivals_without_probability_tell_nothing() -> None:
+    """Where something outside has all of it, the sum over the rivals is nought."""
+    one, two = of_one(0.0, 1.0), of_one(50.0, 1.0)
+    assert information([one, two], [0.0, 0.0]) == 0.0
+    assert information([one, two], [1.0, 0.0]) == 0.0
+    assert information([one, two, two], [0.5, 0.5, 0.0]) == information([one, two], [0.5, 0.5])
+
+
 def test_rivals_of_one_mean_are_told_by_how_sure_they_are() -> None:
     one, two = of_one(0.0, 1.0), of_one(0.0, 100.0)
     assert discrimination([one, two], [0.5, 0.5]) == 0.0
