@@ -80,11 +80,10 @@ def parameters_of(
     problem = simulator.problem
     found: dict[str, dict[str, Any]] = {}
     if fitted.mechanisms:
-        places = fitted.grid.places()
         for axis, (label, (_, p)) in enumerate(
             zip(fitted.grid.labels, fitted.grid.axes, strict=True)
         ):
-            middle, low, high = interval(places[:, axis], fitted.weight, level)
+            middle, low, high = interval(*fitted.grid.marginal(fitted.weight, axis), level)
             found[label] = {
                 "value": float(p.value(middle)), "low": float(p.value(low)),
                 "high": float(p.value(high)), "level": level, "unit": p.unit,

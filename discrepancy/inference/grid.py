@@ -97,6 +97,17 @@ class Grid:
         """Return the refined grid's places, shape (k, axes)."""
         return np.stack([g.ravel() for g in np.meshgrid(*self.fine, indexing="ij")], axis=-1)
 
+    def marginal(self, weight: Array, axis: int) -> tuple[Array, Array]:
+        """Return edges (n + 1,) of the refined cells along an axis, and the weight (n,) in them.
+
+        A grid of many axes has few places along each: an interval whose ends were places would be
+        too wide or too narrow by up to half a cell.
+        """
+        low, high = self.window[axis] if self.window else (0.0, 1.0)
+        n = len(self.fine[axis])
+        table = np.moveaxis(weight.reshape([len(f) for f in self.fine]), axis, 0)
+        return np.linspace(low, high, n + 1), table.reshape(n, -1).sum(axis=1)
+
     def index(self, place: Array) -> int:
         """Return the number of the refined grid's place nearest to one."""
         places = [int(np.argmin(np.abs(f - x))) for f, x in zip(self.fine, place, strict=True)]
@@ -134,10 +145,19 @@ def posterior(log_likelihood: Array) -> tuple[float, Array]:
     return total - math.log(len(log_likelihood)), np.exp(log_likelihood - total)
 
 
-def interval(value: Array, weight: Array, level: float = 0.90) -> tuple[float, float, float]:
-    """Return median and bounds of the central interval of a weighted sample."""
-    order = np.argsort(value)
-    x, w = value[order], weight[order]
-    reach = np.cumsum(w) - 0.5 * w
-    low, middle, high = np.interp([0.5 - level / 2, 0.5, 0.5 + level / 2], reach, x)
+def interval(edges: Array, weight: Array, level: float = 0.90) -> tuple[float, float, float]:
+    """Return median and bounds of the central interval of a density that is flat within cells.
+
+    Parameters
+    ----------
+    edges
+        (n + 1,) of the cells.
+    weight
+        (n,) in each of them.
+    level
+        Of the interval.
+    """
+    reach = np.concatenate([[0.0], np.cumsum(weight)])
+    tail = 0.5 - 0.5 * level
+    low, middle, high = np.interp([tail, 0.5, 1.0 - tail], reach / reach[-1], edges)
     return float(middle), float(low), float(high)

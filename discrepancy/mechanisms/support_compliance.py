@@ -28,6 +28,12 @@ class SupportCompliance(Mechanism):
             "from the flat alone to the bench with it", nodes=5,
             literature=Literature(10.0, "a clamped plate of 30 mm and 10 kg at 1 kHz"),
         ),
+        Parameter(
+            "support_damping_ratio", "-", 0.005, 0.5, "log", 0.0,
+            "bare metal 0.01, bolted joints 0.02-0.07 (Newmark and Hall, Earthquake Spectra and "
+            "Design, 1982), soil, rubber and foam 0.05-0.5", nodes=4,
+            literature=Literature(0.03, "a bolted frame"),
+        ),
     )  # fmt: skip
     direction: ClassVar[Mapping[str, int]] = {"restitution": -1, "permanent_depth_m": -1}
     rests_on: ClassVar[tuple[str, ...]] = ("target", "striker")
@@ -35,7 +41,7 @@ class SupportCompliance(Mechanism):
     def ranges(self, situations: Sequence[Situation]) -> tuple[Parameter, ...]:
         """Stated values narrow the ranges; the flat on one striker's mass bounds the mass."""
         around = situations[0][1]
-        k, m = self.parameters
+        k, m, loss = self.parameters
         heaviest = max(scene.striker.mass for scene, _ in situations)
         m = replace(m, low=2.0 * heaviest, high=300.0 * heaviest)
         stated = around.support_stiffness, around.support_mass
@@ -43,13 +49,13 @@ class SupportCompliance(Mechanism):
             k = replace(k, low=stated[0] / 2.0, high=stated[0] * 2.0, source="stated", nodes=3)
         if stated[1] > 0.0:
             m = replace(m, low=stated[1] / 1.5, high=stated[1] * 1.5, source="stated", nodes=3)
-        return k, m
+        return k, m, loss
 
     def attach(self, scene: Scene, values: Values, around: Surroundings) -> Scene:
         """Replace the rigid base."""
         mass = values["support_mass_kg"]
         k = values["support_stiffness_N_m"]
-        damping = 0.04 * math.sqrt(k * mass)  # 2 % of critical, as bolted frames have
+        damping = 2.0 * values["support_damping_ratio"] * math.sqrt(k * mass)
         return scene.with_(
             support=Support(mass, k, damping, plate_mobility=scene.support.plate_mobility)
         )

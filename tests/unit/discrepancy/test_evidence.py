@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from dataclasses import replace
 from types import SimpleNamespace
 
 import numpy as np
@@ -86,9 +87,24 @@ def test_a_state_that_occurs_has_half_of_the_prior() -> None:
 
 
 def test_interval_of_a_normal_sample() -> None:
-    x = np.linspace(-6.0, 6.0, 4001)
-    weight = norm.pdf(x) / norm.pdf(x).sum()
-    assert interval(x, weight) == pytest.approx((0.0, norm.ppf(0.05), norm.ppf(0.95)), abs=2e-3)
+    edges = np.linspace(-6.0, 6.0, 4002)
+    weight = np.diff(norm.cdf(edges))
+    expected = (0.0, norm.ppf(0.05), norm.ppf(0.95))
+    assert interval(edges, weight) == pytest.approx(expected, abs=1e-5)
+
+
+@pytest.mark.parametrize("centre", [0.45, 0.4829, 0.5, 0.5171])
+def test_ends_of_an_interval_are_not_bound_to_the_places_of_a_grid(centre: float) -> None:
+    """Three correlated parameters: 17 places along each, half a deviation apart."""
+    one = Parameter("a", "-", 0.0, 1.0, "linear", 0.0, "", nodes=5)
+    grid = Grid(tuple(Axis("m", replace(one, name=name)) for name in "abc"))
+    sd = 2.0 / 17.0
+    cov = sd**2 * np.array([[1.0, 0.7, 0.0], [0.7, 1.0, 0.5], [0.0, 0.5, 1.0]])
+    weight = multivariate_normal([0.5, centre, 0.5], cov).pdf(grid.places())
+    middle, low, high = interval(*grid.marginal(weight / weight.sum(), 1))
+    assert middle == pytest.approx(centre, abs=0.002)
+    reach = norm.ppf(0.95) * sd
+    assert (middle - low, high - middle) == pytest.approx((reach, reach), rel=0.05)
 
 
 def test_evidence_of_a_flat_likelihood_is_its_height() -> None:
