@@ -80,7 +80,7 @@ def rows() -> Iterable[tuple[str, str, str, str]]:
     yield "docs/gallery", digest(gallery), drawn, "figures"
     for name in ("base_laws.json", "explicit_impacts.h5"):
         made = "the solver" if name.startswith("base") else "elements of the proof's own"
-        command = "proof laws" if name.startswith("base") else "proof explicit"
+        command = "proof laws" if name.startswith("base") else "proof library"
         yield f"proof/{name}", digest([ROOT / "data" / "proof" / name]), made, command
     runs = ROOT / "data" / "proof" / "runs.json"
     full = [r for r in json.loads(runs.read_text()) if r["list"] == "full"][-1]
