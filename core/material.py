@@ -12,11 +12,13 @@ from typing import TYPE_CHECKING, Any
 
 from .errors import InputError
 from .tables import html_table
+from .unstated import unstated_equal
 
 if TYPE_CHECKING:  # numpy comes with it, and the command line starts without
     from .flow import Flow
 
 
+@unstated_equal
 @dataclass(frozen=True, slots=True)
 class Material:
     """An isotropic, elastic-perfectly-plastic body (or an elastic, a rigid, a hardening one).

@@ -11,6 +11,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ..core.material import Pair
+from ..core.unstated import unstated_equal
 from ..models.base import ContactLaw
 from . import force as fo
 from .result import Impact, impact_of
@@ -29,6 +30,7 @@ _FRESH = Spot().row()
 _FRESH.flags.writeable = False
 
 
+@unstated_equal
 @dataclass(frozen=True, slots=True)
 class Settings:
     """Accuracy and budgets of an integration.

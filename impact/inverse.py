@@ -14,6 +14,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ..core.errors import InputError
+from ..core.unstated import unstated_equal
 from .scene import Striker
 
 Array = NDArray[np.float64]
@@ -69,6 +70,7 @@ def alpha_curve(striker: Striker, angles: Array, *, mu: float) -> Array:
     return np.array([alpha(striker, float(angle), mu=mu) for angle in angles])
 
 
+@unstated_equal
 @dataclass(frozen=True, slots=True)
 class Measured:
     """What an oblique impact left behind; depth, sliding length and speeds positive, SI."""

@@ -16,6 +16,7 @@ import numpy as np
 
 from ..core.errors import InputError
 from ..core.material import Material, Pair
+from ..core.unstated import unstated_equal
 from ..models.base import ContactLaw
 from .beam import Modes
 from .strength import Array, StrengthTable
@@ -24,6 +25,7 @@ from .surface import Spot
 STANDARD_GRAVITY = 9.81
 
 
+@unstated_equal
 @dataclass(frozen=True, slots=True)
 class Striker:
     """A sphere, or a rod with two spherical tips, as a rigid body.
@@ -156,6 +158,7 @@ class ForceTransform:
     given_back: float = 1.0
 
 
+@unstated_equal
 @dataclass(frozen=True, slots=True)
 class Friction:
     """Seam: the tangential law; Coulomb friction with stick by default.

@@ -18,6 +18,7 @@ from numpy.typing import NDArray
 
 from ...core.observables import OBSERVABLES
 from ...core.rig import Rig
+from ...core.unstated import unstated_equal
 from ..choice.odds import Odds
 from ..comparison.forward import Point, Simulator
 from ..comparison.problem import Problem
@@ -39,6 +40,7 @@ _DECIDES = 1.0  # standard deviations by which rivals must differ for one trial 
 _BUILD = 2.0  # what is to be built must bring as many times more than what is there
 
 
+@unstated_equal
 @dataclass(frozen=True, slots=True)
 class Proposal:
     """What to do, how well it would discriminate, and what it would do to the interval.

@@ -17,6 +17,7 @@ from typing import ClassVar, Literal, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
+from ...core.unstated import unstated_equal
 from ...impact import Scene
 
 Array = NDArray[np.float64]
@@ -78,6 +79,7 @@ class Parameter:
         return np.asarray(self.low + (self.high - self.low) * p)
 
 
+@unstated_equal
 @dataclass(frozen=True, slots=True)
 class Surroundings:
     """What a mechanism may know of the rig besides the scene of a condition.

@@ -12,6 +12,7 @@ from pydantic import Field
 from ...core.errors import InputError
 from ...core.inputs.toml_input import InputTable, parse_model, read_toml
 from ...core.rig import Length, Radius, StrikerTable
+from ...core.unstated import unstated_equal
 from ..inverse import Inferred, Measured, infer
 from ..scene import Striker
 from .bodies import striker_of
@@ -62,6 +63,7 @@ class InverseFile(InputTable):
     """The trials: `[[trial]]`, as many as there are."""
 
 
+@unstated_equal
 @dataclass(frozen=True, slots=True)
 class Row:
     """One oblique impact: what was measured, what follows, what the thesis printed."""

@@ -9,6 +9,8 @@ from enum import Enum
 from scipy.optimize import brentq
 from scipy.stats import norm
 
+from ...core.unstated import unstated_equal
+
 FALSE_ALARMS_MASS = 0.02
 """Part of clean sets in which a mass may be called wrong, over all strikers together."""
 
@@ -25,6 +27,7 @@ class Severity(Enum):
     UNCHECKED = "not checked"
 
 
+@unstated_equal
 @dataclass(frozen=True, slots=True)
 class Finding:
     """One check of a set.

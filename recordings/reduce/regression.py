@@ -15,6 +15,9 @@ _REJECT = 4.0
 _MAD_TO_STD = 1.4826
 _ROUNDS = 40
 
+_UNSEEN = 3e-8
+"""Singular value of a design, of the largest, below which AᵀA would hold rounding errors alone."""
+
 
 @dataclass(frozen=True)
 class Regression:
@@ -69,9 +72,20 @@ def robust_regression(design: Array, observed: Array, *, floor: float = 0.0) -> 
     residual = observed[used] - scaled[used] @ coefficients
     freedom = max(int(used.sum()) - p, 1)
     sigma = max(float(np.sqrt(residual @ residual / freedom)), floor)
-    information = scaled[used].T @ scaled[used]
-    covariance = sigma**2 * np.linalg.pinv(information) * correlation_factor(residual)
+    covariance = sigma**2 * unit_covariance(scaled[used]) * correlation_factor(residual)
     return Regression(coefficients / scale, covariance / np.outer(scale, scale), sigma, used)
+
+
+def unit_covariance(design: Array) -> Array:
+    """Return (AᵀA)⁺ for a design A (n, p): the covariance of coefficients if points have std 1.
+
+    From the singular values of A itself, for no variance is negative then. Directions in which the
+    points are a thirty-millionth as telling as in the best one count as not seen, with zeros.
+    """
+    _, size, ways = np.linalg.svd(design, full_matrices=False)
+    seen = size > _UNSEEN * size[0]
+    ways = ways[seen] / size[seen, None]
+    return np.asarray(ways.T @ ways)
 
 
 def _soft_l1(design: Array, observed: Array, start: Array, spread: float) -> Array:

@@ -17,7 +17,7 @@ from scipy.signal import savgol_filter
 
 from ....core.errors import InputError
 from ..measured import Array, Measured
-from ..regression import robust_std
+from ..regression import robust_std, unit_covariance
 from .shape import shape_of
 
 _LOW, _HIGH = 0.06, 0.45
@@ -221,7 +221,7 @@ def _meets_zero(t: Array, force: Array, step: int) -> Measured:
         )  # fmt: skip
         sigma = max(float(np.std(fit.fun)) * math.sqrt(s.size / (s.size - 3.0)), 1e-6)
         ends.append(float(fit.x[0]))
-        variances.append(sigma**2 * float(np.linalg.pinv(fit.jac.T @ fit.jac)[0, 0]))
+        variances.append(sigma**2 * float(unit_covariance(fit.jac)[0, 0]))
         spreads.append(sigma)
     belief = (min(spreads) / np.array(spreads)) ** s.size
     belief /= belief.sum()

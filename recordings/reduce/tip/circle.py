@@ -10,7 +10,7 @@ from scipy.optimize import least_squares
 
 from ....core.errors import InputError
 from ..measured import Array
-from ..regression import correlation_factor, robust_std
+from ..regression import correlation_factor, robust_std, unit_covariance
 from .edge import Edge, find_edges
 
 INNER = 0.75
@@ -81,7 +81,7 @@ def radius_std(
     )
     off = reach - radius
     variance = float(off @ off) / max(off.size - 3, 1) * correlation_factor(off)
-    scatter = variance * float(np.linalg.pinv(jacobian.T @ jacobian)[2, 2])
+    scatter = variance * float(unit_covariance(jacobian)[2, 2])
     parts = np.array_split(np.arange(len(chosen)), _SECTORS)
     left = np.array([
         _least(np.delete(chosen, part, axis=0), circle, loss="linear")[2] for part in parts
