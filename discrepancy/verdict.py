@@ -12,7 +12,6 @@ import numpy as np
 
 from ..core.threads import in_one_thread
 from ..recordings import RecordingSet
-from .choice.calibration import p_fit
 from .choice.decide import in_doubt, withdrawn
 from .choice.judge import Judge
 from .choice.odds import OUTSIDE
@@ -116,7 +115,7 @@ def diagnose(
     return Verdict(
         name=recordings.name, seed=seed, choice=choice, audit=audit,
         probabilities=dict(odds.probability), inclusion=odds.inclusion,
-        scores=scores_of(ranking, {f.name: p_fit(f, nulls) for f in ranking.fits}, left_out,
+        scores=scores_of(ranking, {f.name: judge.test(f).p_value for f in ranking.fits}, left_out,
                          sampled),
         located=locate(ranking.problem, ranking.base, nulls, least=misses),
         parameters=parameters_of(simulator, best), nuisance_pulls=pulls_of(ranking.problem, best),

@@ -8,8 +8,9 @@ from dataclasses import dataclass, field, replace
 
 from scipy.special import logsumexp
 
+from ..inference.fit import Fit
 from ..rank import Nameless, Ranking
-from .calibration import Calibration, calibrate
+from .calibration import Calibration, FitTest, calibrate, fit_test
 from .decide import Choice, decide
 from .odds import OUTSIDE, PRIORS, Odds, odds_of, shares_outside
 from .outside import odd_repeats, outside_of
@@ -31,11 +32,15 @@ class Judge:
         Ln evidence of something outside the library over the baseline's.
     nameless
         Physics without a name to its share of that evidence.
+    nulls
+        Sets with nothing missing, from which each explanation's own sets are made.
     """
 
     calibration: Calibration
     outside: float
-    nameless: Mapping[str, float] = field(default_factory=dict)
+    nameless: Mapping[str, float]
+    nulls: Nulls
+    _tests: dict[str, FitTest] = field(default_factory=dict)
 
     @classmethod
     def of(cls, ranking: Ranking, nulls: Nulls) -> Judge:
@@ -53,24 +58,41 @@ class Judge:
         parts["repeats"] = odd_repeats(ranking.problem)
         whole = float(logsumexp(list(parts.values())))
         share = {k: math.exp(v - whole) for k, v in parts.items() if k not in (OUTSIDE, "repeats")}
-        return cls(calibration, whole, share)
+        return cls(calibration, whole, share, nulls)
 
     def odds(self, ranking: Ranking, sampled: Mapping[str, float] | None = None) -> Odds:
         """Return the probabilities of the explanations of a ranking."""
-        return odds_of(ranking, self.calibration, self.outside, sampled=sampled)
+        return odds_of(
+            ranking, self.calibration, self.outside, sampled=sampled,
+            beside=lambda fitted: self.test(fitted).log_odds,
+        )  # fmt: skip
+
+    def test(self, fitted: Fit) -> FitTest:
+        """Return how an explanation fits, beside the sets that it makes itself."""
+        if fitted.name not in self._tests:
+            self._tests[fitted.name] = fit_test(fitted, self.nulls)
+        return self._tests[fitted.name]
 
     def decided(self, ranking: Ranking, sampled: Mapping[str, float]) -> Choice:
         """Return the verdict of least expected cost."""
-        choice = decide(ranking, self.odds(ranking, sampled), drifts=ranking.problem.drifts)
-        alike = [n for n in ranking.nameless if self._share(n) > _ALIKE]
-        if choice.verdict != OUTSIDE or not alike:
+        odds = self.odds(ranking, sampled)
+        choice = decide(ranking, odds, drifts=ranking.problem.drifts)
+        if choice.verdict != OUTSIDE:
             return choice
-        told = (_behaves(n, self._share(n)) for n in alike)
+        near = [f for f in ranking.fits if odds.beside.get(f.name, 0.0) > _ALIKE * odds.outside]
+        free = 1.0 - sum(odds.beside.values()) / odds.outside
+        share = {n: free * self.nameless[n.screened.mechanism.name] for n in ranking.nameless}
+        alike = [n for n in ranking.nameless if share[n] > _ALIKE]
+        told = [*(self._nearest(f) for f in near), *(_behaves(n, share[n]) for n in alike)]
         titles = tuple(n.screened.mechanism.title for n in alike)
         return replace(choice, reasons=(*choice.reasons, *told), alike=titles)
 
-    def _share(self, nameless: Nameless) -> float:
-        return self.nameless[nameless.screened.mechanism.name]
+    def _nearest(self, fitted: Fit) -> str:
+        worse = 100.0 * (1.0 - self.test(fitted).p_value)
+        return (
+            f"{fitted.name} comes nearest of what has a name, but fits worse than {worse:.3g} % of "
+            "the sets that it makes itself"
+        )
 
     def log_prior(self, ranking: Ranking) -> dict[str, float]:
         """Name to ln of the prior probability, less what nulls give away, of every fit."""

@@ -3,12 +3,13 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Iterable, Mapping
-from dataclasses import dataclass
+from collections.abc import Callable, Iterable, Mapping
+from dataclasses import dataclass, field
 from typing import Protocol
 
 from scipy.special import logsumexp
 
+from ..inference.fit import Fit
 from ..rank import Ranking
 
 OUTSIDE = "outside-library"
@@ -17,6 +18,13 @@ PRIORS = {"baseline": 0.5, "singles": 0.34, "pairs": 0.06, OUTSIDE: 0.1}
 could act here shares alike, and so does each pair."""
 NAMELESS_SHARE = 1.0 / 3.0
 """Of what is outside the library, the share of known physics without a name; the rest is free."""
+BESIDE = (
+    PRIORS["pairs"] / PRIORS["singles"] * PRIORS[OUTSIDE] / (PRIORS["singles"] + PRIORS[OUTSIDE])
+)
+"""Odds that something outside the library acts beside what is named: as likely as a second
+mechanism is beside a first one, and outside as often as a first one is."""
+WORTH_TELLING = 0.01
+"""Probability of an explanation from which something may act beside it."""
 SURE = 0.93
 NAMED_AT = math.log(SURE / (1.0 - SURE))
 """Ln odds of something missing from which a name costs less than silence (`decide.COSTS`)."""
@@ -48,10 +56,14 @@ class Odds:
         Label to the mechanisms: `baseline` and `OUTSIDE` have none.
     probability
         Label to the posterior probability, most probable first.
+    beside
+        Label to the part of the probability of something outside that stems from how badly that
+        explanation fits.
     """
 
     names: Mapping[str, tuple[str, ...]]
     probability: Mapping[str, float]
+    beside: Mapping[str, float] = field(default_factory=dict)
 
     @property
     def baseline(self) -> float:
@@ -79,6 +91,7 @@ def odds_of(
     outside: float,
     *,
     sampled: Mapping[str, float] | None = None,
+    beside: Callable[[Fit], float] | None = None,
 ) -> Odds:
     """Return the probabilities of a ranking's explanations.
 
@@ -93,6 +106,9 @@ def odds_of(
         taken off.
     sampled
         Sampled ln evidence over the baseline, of the explanations that have it.
+    beside
+        Ln Bayes factor of something that acts beside a fitted explanation; asked for those that
+        have some probability.
     """
     base = ranking.base.log_evidence
     gained = {f.name: f.log_evidence - base for f in (*ranking.singles, *ranking.pairs)}
@@ -110,7 +126,16 @@ def odds_of(
         if len(names[label]) > 1:
             share = PRIORS["pairs"] / max(n * (n - 1) // 2, 1)
         log[label] = more + math.log(share) - given.off(names[label])
-    return Odds(names, _normalised(log.items()))
+    found = _normalised(log.items())
+    likely = [f for f in (*ranking.singles, *ranking.pairs) if found[f.name] > WORTH_TELLING]
+    if beside is None or not likely:
+        return Odds(names, found)
+    parts = {f.name: log[f.name] + math.log(BESIDE) + beside(f) for f in likely}
+    log[OUTSIDE] = float(logsumexp([log[OUTSIDE], *parts.values()]))
+    found = _normalised(log.items())
+    return Odds(
+        names, found, {k: found[OUTSIDE] * math.exp(x - log[OUTSIDE]) for k, x in parts.items()}
+    )
 
 
 def _normalised(logs: Iterable[tuple[str, float]]) -> dict[str, float]:

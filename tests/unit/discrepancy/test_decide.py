@@ -5,10 +5,20 @@ from __future__ import annotations
 import math
 from types import SimpleNamespace
 
+import numpy as np
 import pytest
 from dentscope.discrepancy.choice.calibration import Calibration
 from dentscope.discrepancy.choice.decide import COSTS, cost_of_naming, decide, in_doubt, withdrawn
-from dentscope.discrepancy.choice.odds import NAMED_AT, OUTSIDE, PRIORS, SURE, Odds, odds_of
+from dentscope.discrepancy.choice.judge import Judge
+from dentscope.discrepancy.choice.odds import (
+    BESIDE,
+    NAMED_AT,
+    OUTSIDE,
+    PRIORS,
+    SURE,
+    Odds,
+    odds_of,
+)
 from dentscope.discrepancy.comparison.cells import Scatter
 from dentscope.discrepancy.unknowns.drift import Drift
 
@@ -170,3 +180,48 @@ def test_a_mechanism_without_a_fit_counts_by_its_screening(toy) -> None:
     ranking = toy.ranking_of(toy.problem([0.0] * CELLS), base, screened=[screened])
     found = odds_of(ranking, Calibration(), -math.inf)
     assert found.probability["a"] / found.baseline == pytest.approx(6.0 * PRIORS["singles"] / 0.5)
+
+
+def test_what_its_own_sets_refute_gives_its_probability_to_something_outside(toy) -> None:
+    base, one, two = toy.fit_of(ZERO), toy.Effect("a", ZERO), toy.Effect("b", ZERO)
+    ranking = toy.ranking_of(
+        toy.problem([0.0] * CELLS), base,
+        singles=[toy.fit_of(ZERO, one, lift=30.0), toy.fit_of(ZERO, two)],
+        screened=[toy.screened_of(e, [ZERO]) for e in (one, two)],
+    )  # fmt: skip
+    before = odds_of(ranking, Calibration(), -math.inf)
+    asked = []
+
+    def beside(fitted):
+        asked.append(fitted.name)
+        return math.log(3.0 / BESIDE)
+
+    found = odds_of(ranking, Calibration(), -math.inf, beside=beside)
+    assert asked == ["a"]  # nothing is beside what has no probability itself
+    assert found.outside == pytest.approx(3.0 * found.probability["a"])
+    assert found.beside == pytest.approx({"a": found.outside})
+    assert found.probability["a"] == pytest.approx(before.probability["a"] / 4.0)
+    assert sum(found.probability.values()) == pytest.approx(1.0)
+
+
+def test_a_name_that_does_not_fit_is_told_beside_something_outside(toy) -> None:
+    """Two cells of 30 and -30 deviations, of which the only mechanism takes up the first."""
+    data = (30.0, -30.0, *ZERO[2:])
+    effect = toy.Effect("a", (30.0, *ZERO[1:]))
+    ranking = toy.ranking_of(
+        toy.problem(data), toy.fit_of(data), singles=[toy.fit_of(data, effect)],
+        screened=[toy.screened_of(effect, [ZERO])],
+    )  # fmt: skip
+    nulls = toy.nulls_of(np.random.default_rng(2).standard_normal((500, CELLS)))
+    found = Judge(Calibration(), -math.inf, {}, nulls).decided(ranking, {})
+    assert found.verdict == OUTSIDE
+    assert found.reasons[-1] == (
+        "a comes nearest of what has a name, but fits worse than 99.8 % of the sets that it makes "
+        "itself"
+    )
+    fits = toy.ranking_of(
+        ranking.problem, toy.fit_of((30.0, *ZERO[1:])),
+        singles=[toy.fit_of((30.0, *ZERO[1:]), effect)], screened=ranking.screened,
+    )  # fmt: skip
+    named = Judge(Calibration(), -math.inf, {}, nulls).decided(fits, {})
+    assert (named.verdict, [f.name for f in named.members]) == ("missing-physics", ["a"])

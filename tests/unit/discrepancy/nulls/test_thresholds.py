@@ -10,11 +10,12 @@ from dentscope.discrepancy.choice.calibration import (
     ONE_IN,
     Calibration,
     calibrate,
+    fit_test,
     given_away,
-    p_fit,
 )
 from dentscope.discrepancy.choice.odds import NAMED_AT, OUTSIDE, PRIORS
 from dentscope.discrepancy.inference.linear import Linear, Mixture
+from scipy.integrate import quad
 
 # 2001 nulls whose first cell is -100 ... 100 and whose second is 0: quantiles are read off
 EVEN = np.stack([np.linspace(-100.0, 100.0, 2001), np.zeros(2001)], axis=1)
@@ -91,8 +92,8 @@ def test_what_is_outside_counts_from_what_sets_of_the_lead_give_it(toy) -> None:
 def test_p_is_the_share_of_nulls_that_fit_no_better(toy) -> None:
     nulls = toy.nulls_of([[float(k)] for k in range(1, 100)])
     # 91 ... 99 have a larger square than 90.5: 9 of 99, each rank counted once more
-    assert p_fit(toy.fit_of([90.5]), nulls) == pytest.approx((9 + 1) / 100)
-    assert p_fit(toy.fit_of([0.0]), nulls) == 1.0
+    assert fit_test(toy.fit_of([90.5]), nulls).p_value == pytest.approx((9 + 1) / 100)
+    assert fit_test(toy.fit_of([0.0]), nulls).p_value == 1.0
 
 
 def test_an_explanation_is_fitted_to_each_of_its_own_sets(toy) -> None:
@@ -101,5 +102,25 @@ def test_an_explanation_is_fitted_to_each_of_its_own_sets(toy) -> None:
     data = [25.0, 3.0]
     along = toy.nulls_of([[10.0, 0.0]] * 99)
     across = toy.nulls_of([[0.0, 10.0]] * 99)
-    assert p_fit(toy.fit_of(data, size), along) == pytest.approx(1.0 / 100)
-    assert p_fit(toy.fit_of(data, size), across) == 1.0
+    assert fit_test(toy.fit_of(data, size), along).p_value == pytest.approx(1.0 / 100)
+    assert fit_test(toy.fit_of(data, size), across).p_value == 1.0
+
+
+@pytest.mark.parametrize("chi2", [0.5, 2.0, 6.0, 20.0, 60.0])
+def test_what_fits_worse_than_its_own_sets_has_something_beside_it(toy, chi2) -> None:
+    """Two cells of unit noise: chi2 is exponential of mean 2, p = exp(-chi2/2)."""
+    nulls = toy.nulls_of(np.random.default_rng(1).standard_normal((100_000, 2)))
+    found = fit_test(toy.fit_of([math.sqrt(chi2), 0.0]), nulls).log_odds
+    p = math.exp(-0.5 * chi2)
+    # p values that crowd at 0, over those that are even, for every crowding alike
+    asked, _ = quad(lambda xi: xi * p ** (xi - 1.0), 0.0, 1.0)
+    assert found == pytest.approx(math.log(asked), abs=0.02 * (1.0 + 0.5 * chi2))
+
+
+def test_a_perfect_or_a_hopeless_fit_gives_finite_odds(toy) -> None:
+    nulls = toy.nulls_of(np.random.default_rng(1).standard_normal((1000, 2)))
+    assert fit_test(toy.fit_of([0.0, 0.0]), nulls).log_odds == pytest.approx(-math.log(2.0))
+    hopeless = fit_test(toy.fit_of([1e6, 0.0]), nulls).log_odds
+    assert 600.0 < hopeless < 700.0
+    # nulls without any scatter say nothing of a fit
+    assert fit_test(toy.fit_of([3.0]), toy.nulls_of([[1.0]] * 9)).log_odds == 0.0
