@@ -1,41 +1,12 @@
 """Values that leave a number unstated are equal to their like, on every Python."""
 
-import ast
 import pickle
 from functools import lru_cache
-from pathlib import Path
 
 import pytest
 from dentscope.core import Material, Pair
 from dentscope.discrepancy.mechanisms.base import Surroundings
 from dentscope.impact.scene import Friction, Striker
-
-ROOT = Path(__file__).resolve().parents[2]
-APART = {"tests", "benchmarks", "examples", "docs", "scripts", "data", "build"}
-
-
-def name_of(node: ast.expr) -> str:
-    return ast.unparse(node.func if isinstance(node, ast.Call) else node).rsplit(".", 1)[-1]
-
-
-def classes_that_may_leave_a_number_out():
-    for path in ROOT.rglob("*.py"):
-        first = path.relative_to(ROOT).parts[0]
-        if first in APART or first.startswith("."):
-            continue
-        for node in ast.walk(ast.parse(path.read_text(encoding="utf-8"))):
-            if not isinstance(node, ast.ClassDef):
-                continue
-            decorators = {name_of(d) for d in node.decorator_list}
-            fields = [b for b in node.body if isinstance(b, ast.AnnAssign) and b.value is not None]
-            if "dataclass" in decorators and any(name_of(f.value) == "nan" for f in fields):
-                yield node.name, decorators
-
-
-def test_a_dataclass_with_an_unstated_number_compares_by_what_is_stated():
-    found = dict(classes_that_may_leave_a_number_out())
-    assert {"Material", "Striker", "Surroundings"} <= set(found)
-    assert not [name for name, decorators in found.items() if "unstated_equal" not in decorators]
 
 
 @pytest.mark.parametrize(
