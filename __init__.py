@@ -16,7 +16,8 @@ The stages, in the order in which a result passes through them; each is loaded w
     campaigns    hundreds of finite-element cases into one HDF5 file
     fitting      closed forms fitted to a campaign
     impact       a sphere or a round-ended rod striking the flat
-    recordings   measured impacts, reduced and checked
+    recordings   sets of measured impacts, checked and audited
+    reduce       raw files of instruments to numbers with errors
     discrepancy  what physics the simulation of a recording left out
     start        the calls of a newcomer, above all stages
 """
@@ -43,7 +44,8 @@ _FROM = {
     "diagnose": "start",
 }
 _STAGES = (
-    "core", "fem", "models", "campaigns", "fitting", "impact", "recordings", "discrepancy", "start",
+    "core", "fem", "models", "campaigns", "fitting", "impact", "recordings", "reduce",
+    "discrepancy", "start",
 )  # fmt: skip
 
 __all__ = ["LAWS", "Material", "Pair", "case", "compare_laws", "diagnose"]

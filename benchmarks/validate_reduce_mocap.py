@@ -8,10 +8,10 @@ number of recordings, `rod` or `ball`, and `body` to give the places of the mark
 import sys
 
 import numpy as np
-from dentscope.recordings.reduce.mocap.body import Body, centre_of
-from dentscope.recordings.reduce.mocap.motion import Prior
-from dentscope.recordings.reduce.mocap.reduction import MocapReduction, Scene, reduce_mocap
-from dentscope.recordings.reduce.mocap.rigid import kabsch, rigid_poses
+from dentscope.reduce.mocap.body import Body, centre_of
+from dentscope.reduce.mocap.motion import Prior
+from dentscope.reduce.mocap.reduction import MocapReduction, Scene, reduce_mocap
+from dentscope.reduce.mocap.rigid import kabsch, rigid_poses
 from dentscope.studies.synthetic.mocap import MocapTruth, random_ball, random_rod, simulate
 
 UP = np.array([0.0, 0.0, 1.0])

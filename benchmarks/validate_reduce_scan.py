@@ -7,8 +7,8 @@ rim, tilt, roughness, noise, spikes and holes.
 import sys
 
 import numpy as np
-from dentscope.recordings.reduce.measured import Measured
-from dentscope.recordings.reduce.scan.crater import reduce_scan
+from dentscope.reduce.measured import Measured
+from dentscope.reduce.scan.crater import reduce_scan
 from dentscope.studies.synthetic.scans import ScanTruth, random_truth, render
 
 

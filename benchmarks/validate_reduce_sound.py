@@ -12,7 +12,7 @@ from pathlib import Path
 
 import numpy as np
 from dentscope.core.errors import InputError
-from dentscope.recordings.reduce.kinds import load_kind
+from dentscope.reduce.kinds import load_kind
 from dentscope.studies.synthetic.sounds import bounces, random_bounces, record, write_wav
 
 

@@ -12,9 +12,9 @@ from collections import Counter
 
 import numpy as np
 from dentscope.core.drag import air
-from dentscope.recordings.reduce.bounces.contacts import find_bounces
-from dentscope.recordings.reduce.bounces.fall import Ball
-from dentscope.recordings.reduce.bounces.track import Track
+from dentscope.reduce.bounces.contacts import find_bounces
+from dentscope.reduce.bounces.fall import Ball
+from dentscope.reduce.bounces.track import Track
 from dentscope.studies.synthetic.tracks import random_track, seen
 
 

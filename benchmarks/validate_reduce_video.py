@@ -13,10 +13,10 @@ import sys
 
 import numpy as np
 from dentscope.core.drag import air
-from dentscope.recordings.reduce.bounces.fall import Ball
-from dentscope.recordings.reduce.images.clip import Clip, repeated_frames
-from dentscope.recordings.reduce.measured import Measured
-from dentscope.recordings.reduce.video.reduction import Optics, reduce_video
+from dentscope.reduce.bounces.fall import Ball
+from dentscope.reduce.images.clip import Clip, repeated_frames
+from dentscope.reduce.measured import Measured
+from dentscope.reduce.video.reduction import Optics, reduce_video
 from dentscope.studies.synthetic.clips import random_ball, random_truth, render, with_faults
 from dentscope.studies.synthetic.tracks import fly
 

@@ -21,7 +21,7 @@ from .shared.places import folder_option
 if typing.TYPE_CHECKING:
     from pydantic.fields import FieldInfo
 
-    from ..recordings.reduce.kinds import Kind
+    from ..reduce.kinds import Kind
 
 _SETTABLE = (float, int, bool, str, Path)
 
@@ -30,18 +30,18 @@ class _Kinds(Commands):
     """The commands of the kinds, made from their options when they are asked for."""
 
     def list_commands(self, ctx: Any) -> list[str]:
-        from ..recordings.reduce.kinds import KINDS
+        from ..reduce.kinds import KINDS
 
         return list(KINDS)
 
     def abouts(self, ctx: Any) -> dict[str, str]:
         """Kinds and what each gives, without loading any of them."""
-        from ..recordings.reduce.kinds import KINDS
+        from ..reduce.kinds import KINDS
 
         return dict(KINDS)
 
     def get_command(self, ctx: Any, cmd_name: str) -> Any:
-        from ..recordings.reduce.kinds import KINDS
+        from ..reduce.kinds import KINDS
 
         return _command(cmd_name) if cmd_name in KINDS else super().get_command(ctx, cmd_name)
 
@@ -61,8 +61,8 @@ Out = Annotated[Path, folder_option("Without --into: folder for the numbers and 
 
 def _command(name: str) -> Any:
     """Return the command of a kind: FILE, the kind's options, the conditions of the trial."""
-    from ..recordings.reduce.kinds import KINDS, load_kind
-    from ..recordings.reduce.row import Row
+    from ..reduce.kinds import KINDS, load_kind
+    from ..reduce.row import Row
 
     kind = load_kind(name)
 
@@ -129,7 +129,7 @@ def _reduce_each(
     from rich.progress import track
 
     from ..core.errors import InputError, InputErrors
-    from ..recordings.reduce.record import trial_name
+    from ..reduce.record import trial_name
 
     if row.get("trial"):
         raise InputError(
@@ -159,9 +159,9 @@ def _reduce(
     kind: Kind, file: Path, into: Path | None, out: Path, given: dict[str, Any], row: dict[str, Any]
 ) -> None:
     from ..core.inputs.toml_input import parse_model
-    from ..recordings.reduce.into_set import store
-    from ..recordings.reduce.record import trial_name, write_record
-    from ..recordings.reduce.row import Row
+    from ..reduce.into_set import store
+    from ..reduce.record import trial_name, write_record
+    from ..reduce.row import Row
 
     with _named_as_options():
         conditions = parse_model(row, Row, source="command line")

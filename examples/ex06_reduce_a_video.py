@@ -5,7 +5,7 @@ from pathlib import Path
 from tempfile import TemporaryDirectory
 
 import numpy as np
-from dentscope.recordings.reduce.kinds import load_kind
+from dentscope.reduce.kinds import load_kind
 from matplotlib.image import imsave
 
 RATE, PIXEL = 20_000.0, 2e-4  # frames a second; metres a pixel

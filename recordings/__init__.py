@@ -1,4 +1,4 @@
-"""Stage recordings: measured impacts, reduced and checked."""
+"""Stage recordings: sets of measured impacts, checked and audited."""
 
 from __future__ import annotations
 

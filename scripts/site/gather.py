@@ -18,7 +18,8 @@ HERE = Path(__file__).resolve().parent
 ROOT = Path(__file__).resolve().parents[2]
 SOURCE = ROOT / "build" / "docs-source"
 STAGES = (
-    "core", "fem", "models", "campaigns", "fitting", "impact", "recordings", "discrepancy", "start",
+    "core", "fem", "models", "campaigns", "fitting", "impact", "recordings", "reduce",
+    "discrepancy", "start",
 )  # fmt: skip
 _LINKS = (
     (r"\]\(docs/", "]("),

@@ -9,8 +9,8 @@ from pathlib import Path
 import numpy as np
 from scipy.spatial.transform import Rotation
 
-from ...recordings.reduce.measured import Array
-from ...recordings.reduce.mocap.file import Markers
+from ...reduce.measured import Array
+from ...reduce.mocap.file import Markers
 
 ROD_MARKERS = ((0.009, 0.0, 0.125), (-0.004, 0.008, 0.060), (0.002, -0.009, -0.045))
 """Three markers on the side of a rod, places from its centre of mass, the third axis along it."""

@@ -7,8 +7,8 @@ from dataclasses import dataclass
 import numpy as np
 from scipy.ndimage import gaussian_filter
 
-from ...recordings.reduce.measured import Array
-from ...recordings.reduce.scan.file import Scan
+from ...reduce.measured import Array
+from ...reduce.scan.file import Scan
 
 
 @dataclass(frozen=True)

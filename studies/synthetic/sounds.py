@@ -10,7 +10,7 @@ from pathlib import Path
 
 import numpy as np
 
-from ...recordings.reduce.measured import Array
+from ...reduce.measured import Array
 
 RATE = 44100
 _GRAVITY, _AIR, _DRAG = 9.81, 1.2, 0.45

@@ -12,14 +12,15 @@ from dentscope.recordings.columns import TRIAL_COLUMNS
 
 ROOT = Path(__file__).parents[2]
 STAGES = (
-    "core", "fem", "models", "campaigns", "fitting", "impact", "recordings", "discrepancy", "cli",
+    "core", "fem", "models", "campaigns", "fitting", "impact", "recordings", "reduce",
+    "discrepancy", "cli",
 )  # fmt: skip
 HOME = "core/observables.py"
 CHOICES = {
     ("impact/walk/layout.py", "OBSERVABLES"): "order of the integrator's row",
     ("impact/tabulated/energy_route.py", "NAMES"): "order of a computed row",
-    ("recordings/reduce/mocap/reduction.py", "_NAMES"): "order of a computed vector",
-    ("recordings/reduce/mocap/point.py", "_NAMES"): "order of a computed vector",
+    ("reduce/mocap/reduction.py", "_NAMES"): "order of a computed vector",
+    ("reduce/mocap/point.py", "_NAMES"): "order of a computed vector",
     ("impact/batch.py", "_NOTHING"): "what a normal impact without vibration lacks",
     ("impact/discrete_elements.py", "HEAD"): "columns beside a law's parameters",
     ("impact/draw.py", "SWEPT"): "which observables a figure shows",

@@ -327,8 +327,8 @@ def publish_writer(folder):
 
 
 def reduced(place, speed):
-    from dentscope.recordings.reduce.measured import Measured, Trial
-    from dentscope.recordings.reduce.reduced import Reduced
+    from dentscope.reduce.measured import Measured, Trial
+    from dentscope.reduce.reduced import Reduced
 
     raw = place / "raw.csv"
     if not raw.exists():
@@ -347,9 +347,9 @@ def reduced(place, speed):
 def into_writer(folder):
     """A reduction into a set that has trials already."""
     from dentscope.recordings import read
-    from dentscope.recordings.reduce.into_set import store
-    from dentscope.recordings.reduce.row import Row
     from dentscope.recordings.template import write_template
+    from dentscope.reduce.into_set import store
+    from dentscope.reduce.row import Row
 
     older = folder / "set"
     write_template(older, shape="sphere")

@@ -255,8 +255,8 @@ def lay_out(name, content, folder):
 
 def read(name, path):
     """Reduce a raw file to numbers, a record and a picture."""
-    from dentscope.recordings.reduce.kinds import load_kind
-    from dentscope.recordings.reduce.record import write_record
+    from dentscope.reduce.kinds import load_kind
+    from dentscope.reduce.record import write_record
 
     _end, _make, kind, options = FILES[name]
     reduced = load_kind(kind).run(path, options, source="options")

@@ -15,10 +15,10 @@ from pathlib import Path
 from typing import Any
 
 from dentscope.recordings import Setup
-from dentscope.recordings.reduce.into_set import store_each
-from dentscope.recordings.reduce.kinds import load_kind
-from dentscope.recordings.reduce.reduced import Reduced
-from dentscope.recordings.reduce.row import Row
+from dentscope.reduce.into_set import store_each
+from dentscope.reduce.kinds import load_kind
+from dentscope.reduce.reduced import Reduced
+from dentscope.reduce.row import Row
 
 SETUP = {
     "format": "recording-set/1",

@@ -14,10 +14,10 @@ import numpy as np
 
 from ....impact.integrate import strike
 from ....models import LAWS
-from ....recordings.reduce.images.clip import Clip
-from ....recordings.reduce.measured import Measured
-from ....recordings.reduce.tip.reduction import reduce_tip
-from ....recordings.reduce.video.reduction import Optics, VideoReduction, reduce_video
+from ....reduce.images.clip import Clip
+from ....reduce.measured import Measured
+from ....reduce.tip.reduction import reduce_tip
+from ....reduce.video.reduction import Optics, VideoReduction, reduce_video
 from ...plot import Floats, Picture, finish, sheet
 from ...synthetic.clips import ClipTruth, render
 from ...synthetic.tip import TipTruth, photograph

@@ -102,7 +102,7 @@ OPTIONS = '''
 
 from pydantic import Field
 
-from ....core.inputs.toml_input import InputTable
+from ...core.inputs.toml_input import InputTable
 
 
 class Options(InputTable):
@@ -133,12 +133,10 @@ def reduce(path: Path, options: Options) -> Reduced:
 
 def test_an_input_format(recipe):
     toy = recipe("Add an input format")
-    toy.write("recordings/reduce/toy/options.py", OPTIONS)
-    toy.write("recordings/reduce/toy/kind.py", KIND)
-    toy.write("recordings/reduce/toy/__init__.py", "")
-    toy.change(
-        "recordings/reduce/kinds.py", ("KINDS = {\n", 'KINDS = {\n    "toy": "two heights",\n')
-    )
+    toy.write("reduce/toy/options.py", OPTIONS)
+    toy.write("reduce/toy/kind.py", KIND)
+    toy.write("reduce/toy/__init__.py", "")
+    toy.change("reduce/kinds.py", ("KINDS = {\n", 'KINDS = {\n    "toy": "two heights",\n'))
     (toy.work / "drop.txt").write_text("1.0 0.64\n")
     assert "--height-m-std" in toy.dentscope("reduce", "toy", "--help")
     told = toy.dentscope("reduce", "toy", "drop.txt", "--height-m-std", "0.01", "--out", "out")

@@ -5,11 +5,11 @@ from dentscope.core.errors import InputError
 from dentscope.core.rig import Quantity
 from dentscope.recordings import read, write
 from dentscope.recordings.flow_curve import read_flow_curve
-from dentscope.recordings.reduce.into_set import store
-from dentscope.recordings.reduce.measured import Measured, Trial
-from dentscope.recordings.reduce.reduced import Reduced
-from dentscope.recordings.reduce.row import Row
 from dentscope.recordings.setup_file import Setup, setup_text
+from dentscope.reduce.into_set import store
+from dentscope.reduce.measured import Measured, Trial
+from dentscope.reduce.reduced import Reduced
+from dentscope.reduce.row import Row
 
 SET = """# my notes
 format = "recording-set/1"

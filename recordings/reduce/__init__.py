@@ -1,1 +1,0 @@
-"""Reductions: from raw files of an instrument to trials with uncertainties."""

@@ -1,0 +1,1 @@
+"""Stage reduce: from raw files of an instrument to trials with uncertainties."""

@@ -1,0 +1,174 @@
+"""The flights on both sides of every contact: which turning points are contacts, which flights."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+
+import numpy as np
+
+from ...core.drag import DRAG_COEFFICIENT_STD
+from ..measured import Measured
+from .fall import Ball
+from .flights import Piece, own_fall, side
+from .joint import Before
+from .track import Track
+from .view import Stage, View
+
+_SAME_FALL = 0.3
+"""Largest relative difference of a flight's own acceleration: drag and lens make some."""
+
+_USUAL = 6.0
+"""Spread of the samples of a flight, in that of the quieter flights, beyond which it is none."""
+
+_COARSE = 0.01
+"""Spread of the samples of a flight over its height that is no reason to doubt it."""
+
+_STATED = 0.02
+"""Relative error of the fall that a stated size of the unit is trusted for within a flight."""
+
+_FREE_DRAG = 0.1
+"""Largest square of the fastest over the terminal speed of a body that is not known."""
+
+_TALL, _LONG = 0.1, 1.0
+"""Height [m] and time [s] of a track over which the whole drift of a scale is possible."""
+
+Sides = list[Piece | None]
+"""Two for each contact, before and after."""
+
+
+def sides_of(
+    body: Track, contacts: Sequence[int], stage: Stage, view: View | None,
+    held: Sequence[tuple[int, int]] = (),
+) -> Sides:  # fmt: skip
+    """Return the flights before and after each turning point.
+
+    Parameters
+    ----------
+    body, contacts, stage
+        Heights, turning points, ranges.
+    view
+        That all flights share, if it is known.
+    held
+        Samples before and after each turning point that the contact has moved.
+    """
+    edges = [-1, *contacts, body.time.size]
+    found: Sides = []
+    for k, contact in enumerate(contacts, start=1):
+        ends = (edges[k - 1] + 1, edges[k + 1] - 1)
+        off = held[k - 1] if held else (0, 0)
+        found += [
+            side(body, contact, end, stage, view, off=count)
+            for end, count in zip(ends, off, strict=True)
+        ]
+    return found
+
+
+def known_before(
+    body: Track, sides: Sides, ball: Ball, metres: Measured | None, stage: Stage
+) -> Before | None:
+    """Return what is known of fall and drag; the fall by the flights where no scale is given."""
+    own = [own_fall(body, s) for s in sides if s is not None]
+    if not own:
+        return None
+    if metres is not None and math.isfinite(metres.value):
+        value = ball.fall(3.0).gravity / metres.value
+        fall = Measured(value, value * math.hypot(_STATED, metres.std / metres.value))
+    else:
+        value = _shared_fall(own)
+        fall = Measured(value, 100.0 * (abs(value) + min(f.std for f in own)))
+    known = value > 5.0 * min(f.std for f in own) or metres is not None
+    speeds = [abs(s.launch.speed) for s in sides if s is not None]
+    fastest = max(math.sqrt(2.0 * abs(value) * stage.reach), *speeds)
+    if not known or not value > 0.0:
+        return Before(fall, Measured(0.0, 1e-9 / stage.reach))
+    unit = ball.fall(3.0).gravity / value
+    drifts = min(stage.reach * unit / _TALL, 1.0), min(stage.span / _LONG, 1.0)
+    flight = ball.fall(0.75 * fastest * unit)
+    if math.isinf(flight.terminal):
+        drag = 0.5 * _FREE_DRAG * value / fastest**2
+        return Before(fall, Measured(drag, drag), *drifts)
+    drag = flight.gravity / flight.terminal**2 * unit
+    return Before(fall, Measured(drag, 1.5 * DRAG_COEFFICIENT_STD * drag), *drifts)
+
+
+def _shared_fall(own: Sequence[Measured]) -> float:
+    """Return the acceleration on which the most flights agree, the better known ones more."""
+    clear = [v for v in own if v.value > 5.0 * v.std] or list(own)
+
+    def agreement(one: Measured) -> float:
+        return sum(
+            min(abs(v.value / max(v.std, 1e-12)), 100.0)
+            for v in clear
+            if abs(v.value - one.value) < 0.5 * _SAME_FALL * abs(one.value) + one.std
+        )
+
+    return max(clear, key=agreement).value
+
+
+def true_contacts(
+    body: Track, contacts: list[int], stage: Stage, fall: float, sides: Sides
+) -> tuple[list[int], Sides]:
+    """Leave out what is no flight, and of two turning points without a flight between them one.
+
+    A run of strays turns as a contact does; the one that leaves flights on both sides is kept.
+    """
+    sides = _same_fall(body, sides, fall, stage)
+    k = 0
+    while k + 1 < len(contacts):
+        if sides[2 * k + 1] is None and sides[2 * k + 2] is None:
+            tried = []
+            for other in (k, k + 1):
+                left = [c for j, c in enumerate(contacts) if j != other]
+                found = _same_fall(body, sides_of(body, left, stage, None), fall, stage)
+                pair = found[2 * k : 2 * k + 2]
+                size = sum(p.index.size for p in pair if p) if all(pair) else 0
+                tried.append((size, left, found))
+            size, left, found = max(tried, key=lambda t: t[0])
+            if size:
+                contacts, sides = left, found
+                continue
+        k += 1
+    return contacts, sides
+
+
+def _same_fall(body: Track, sides: Sides, fall: float, stage: Stage) -> Sides:
+    """Leave out rest, rolling and what else is no flight: its acceleration is not that of all."""
+    spreads = [s.sigma for s in sides if s is not None]
+    usual = float(np.quantile(spreads, 0.25)) if spreads else 0.0
+    most = max(_USUAL * usual, _COARSE * stage.reach)
+    kept: Sides = []
+    for piece in sides:
+        if piece is None or piece.sigma > most:
+            kept.append(None)
+            continue
+        own = own_fall(body, piece)
+        allowed = max(4.0 * own.std, _SAME_FALL * abs(fall))
+        straight = piece.straight(body.time, fall)
+        kept.append(piece if straight or abs(own.value - fall) <= allowed else None)
+    return kept
+
+
+def joined(sides: Sides) -> tuple[list[Piece], list[int | None]]:
+    """Join the two sides of one flight; the pieces, and which of them each side is."""
+    pieces: list[Piece] = []
+    places: list[int | None] = []
+    for k, piece in enumerate(sides):
+        earlier = places[-1] if k % 2 == 0 and places else None
+        if piece is None:
+            places.append(None)
+            continue
+        if earlier is not None:
+            other = pieces[earlier]
+            common = np.intersect1d(other.index, piece.index).size
+            if 2 * common >= min(other.index.size, piece.index.size):
+                longer = max(other, piece, key=lambda p: p.index.size)
+                pieces[earlier] = Piece(
+                    np.union1d(other.index, piece.index), longer.reference, longer.launch,
+                    longer.sigma,
+                )  # fmt: skip
+                places.append(earlier)
+                continue
+        places.append(len(pieces))
+        pieces.append(piece)
+    return pieces, places

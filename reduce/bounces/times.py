@@ -1,0 +1,161 @@
+"""Restitution from the times at which a ball touches the flat, again and again.
+
+Between two contacts the ball flies up and falls back. The time of that flight gives the speeds at
+both of its ends, exactly v = gT/2 in a vacuum and with quadratic drag otherwise; a bounce between
+two flights has then an approach and a rebound speed.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+
+from ...core.errors import InputError
+from ..measured import Array, Measured, Trial, labelled
+from .chain import Chain, chain_of
+from .options import BounceOptions
+
+
+@dataclass(frozen=True)
+class Bounced:
+    """One bounce: which contact it was, and its speeds [m/s]."""
+
+    number: int
+    time: float
+    approach: Measured
+    rebound: Measured
+    restitution: Measured
+
+    def trial(self, several: bool, notes: tuple[str, ...]) -> Trial:
+        """Return the row of trials.csv."""
+        row = {"impact_speed_m_s": self.approach, "restitution": self.restitution}
+        return Trial(row, notes, label=f"bounce{self.number}" if several else "")
+
+
+@dataclass(frozen=True)
+class BounceTimes:
+    """Contacts that hang together, and the bounces between known flights.
+
+    Parameters
+    ----------
+    chain
+        The contacts that were used.
+    time_std
+        Standard deviation of a contact's time [s].
+    bounces
+        In the order of time.
+    notes
+        What was left out and taken for granted.
+    """
+
+    chain: Chain
+    time_std: Array
+    bounces: tuple[Bounced, ...]
+    notes: tuple[str, ...]
+
+    def trials(self) -> tuple[Trial, ...]:
+        """Return a row of trials.csv for each bounce."""
+        several = len(self.bounces) > 1
+        return tuple(b.trial(several, self.notes) for b in self.bounces)
+
+    def values(self) -> dict[str, Measured]:
+        """Return the numbers of every bounce by name."""
+        return labelled((trial.label, trial.observables) for trial in self.trials())
+
+
+def reduce_bounce_times(
+    times: Array, options: BounceOptions, *, std: Array | None, source: str
+) -> BounceTimes:
+    """Return the bounces behind a list of instants of contact.
+
+    Parameters
+    ----------
+    times
+        (n,), increasing: beginning of each contact [s]; missed and false ones are allowed.
+    options
+        What is known of the ball.
+    std
+        (n,) standard deviations of the times [s]; None takes them from the scatter of the
+        intervals about a smooth course.
+    source
+        The file.
+
+    Raises
+    ------
+    InputError
+        No three instants hang together.
+    """
+    chain = chain_of(times)
+    if chain is None:
+        raise InputError(
+            "no run of bounces: three or more instants whose intervals shrink by a steady factor",
+            source=source, allowed="the times of successive bounces",
+        )  # fmt: skip
+    notes = list(chain.notes)
+    if std is None:
+        scatter = chain.scatter()
+        if math.isnan(scatter):
+            notes.append("too few bounces to tell how well the instants are known")
+        else:
+            notes.append(f"instants ± {1e3 * scatter:.2g} ms by the scatter of the intervals")
+        std = np.full(times.size, scatter)
+    if options.mass_kg is None or options.diameter_m is None:
+        notes.append("drag of the air left out: give mass_kg and diameter_m to take it off")
+    if options.contact_time_s == 0.0:
+        notes.append("the duration of a contact counts as flight: contact_time_s = 0")
+    return BounceTimes(chain, std, _bounces(times, std, chain, options, source), tuple(notes))
+
+
+def _bounces(
+    times: Array, spread: Array, chain: Chain, options: BounceOptions, source: str
+) -> tuple[Bounced, ...]:
+    found = []
+    kept, single = chain.kept, chain.single
+    gaps = np.diff(times[list(kept)])
+    flights = gaps - options.contact_time_s
+    if (flights <= 0.0).any():
+        raise InputError(
+            f"{options.contact_time_s:g} s, and an interval of {gaps.min():.3g} s",
+            source=source, key="contact_time_s", allowed="less than every interval",
+        )  # fmt: skip
+    first = kept[0]
+    if options.release_height_m is not None and first == 0 and single[0]:
+        height = Measured(options.release_height_m, options.release_height_m_std)
+        vacuum = math.sqrt(2.0 * options.gravity_m_s2 * height.value)
+        speed = options.fall_of(vacuum).impact(height.value)
+        approach = Measured(speed, 0.5 * speed * height.std / height.value)
+        after = options.fall_of(0.5 * options.gravity_m_s2 * flights[0])
+        rebound = Measured(
+            after.launch(flights[0]),
+            0.5 * after.gravity * math.hypot(spread[kept[0]], spread[kept[1]]),
+        )
+        found.append(Bounced(1, float(times[first]), approach, rebound, rebound.over(approach)))
+    for k in range(1, len(kept) - 1):
+        if single[k - 1] and single[k]:
+            found.append(
+                _between(times, spread, kept[k - 1 : k + 2], flights[k - 1 : k + 1], options)
+            )
+    return tuple(found)
+
+
+def _between(
+    times: Array, spread: Array, three: Sequence[int], flights: Array, options: BounceOptions
+) -> Bounced:
+    before, after = float(flights[0]), float(flights[1])
+    down, up = (options.fall_of(0.5 * options.gravity_m_s2 * t) for t in (before, after))
+    approach, rebound = down.landing(down.launch(before)), up.launch(after)
+    ratio = rebound / approach
+    # the middle instant lengthens one flight and shortens the other
+    part = np.array([1.0 / before, 1.0 / before + 1.0 / after, 1.0 / after])
+    sigma = spread[list(three)]
+    half = 0.5 * down.gravity
+    return Bounced(
+        three[1] + 1,
+        float(times[three[1]]),
+        Measured(approach, half * math.hypot(sigma[0], sigma[1])),
+        Measured(rebound, half * math.hypot(sigma[1], sigma[2])),
+        Measured(ratio, ratio * float(np.linalg.norm(part * sigma))),
+    )

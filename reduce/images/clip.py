@@ -1,0 +1,220 @@
+"""High-speed clips: frames of a video file or of a folder of pictures, as grey values."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import dataclass
+from itertools import islice, pairwise
+from pathlib import Path
+
+import numpy as np
+import numpy.typing as npt
+
+from ...core.errors import InputError, missing_extra
+from ..measured import Array
+from . import photron
+from .picture_file import (
+    CHANNELS,
+    DOWN,
+    PICTURES,
+    cropped,
+    grey_picture,
+    natural_order,
+    one_channel,
+    read_picture,
+)
+
+Frame = npt.NDArray[np.uint8]
+_LARGEST = 3_000_000_000
+
+_REPEAT = 0.35
+"""Change of a frame, in that of its neighbours, below which it may repeat the one before."""
+
+_OFTEN = 0.2
+"""Part of the frames that must do so before they count as repeated."""
+
+
+@dataclass(frozen=True)
+class Clip:
+    """Frames with gravity downwards, and what the container says about their timing.
+
+    Parameters
+    ----------
+    frames
+        (n, rows, columns), grey values 0-255.
+    container_rate
+        Frames per second by the container's time stamps, nan for a folder of pictures [1/s].
+    uneven
+        Number of gaps between time stamps that differ from the usual one by more than half.
+    repeats
+        Numbers of the frames that show what their predecessor showed, (r,).
+    source
+        The file or folder.
+    """
+
+    frames: Frame
+    container_rate: float
+    uneven: int
+    repeats: npt.NDArray[np.int64]
+    source: str
+
+
+def read_clip(
+    path: Path,
+    *,
+    channel: str = "grey",
+    down: str = "down",
+    first: int = 0,
+    last: int | None = None,
+    crop: tuple[int, int, int, int] | None = None,
+) -> Clip:
+    """Read a video (what FFmpeg decodes, .mraw, a TIFF of many pages) or a folder of pictures.
+
+    Parameters
+    ----------
+    path
+        File or folder; pictures are taken in the natural order of their names.
+    channel
+        One of `CHANNELS`.
+    down
+        Where gravity points in the picture as a player shows it, one of `DOWN`.
+    first, last
+        Range of frames, both included.
+    crop
+        Rows and columns to keep (top, bottom, left, right) after turning, the ends excluded.
+
+    Raises
+    ------
+    InputError
+        The file cannot be decoded, holds too few frames, or is too large for the memory.
+    """
+    _check_choice(channel, CHANNELS, "channel")
+    _check_choice(down, tuple(DOWN), "down")
+    if not path.exists():
+        raise InputError(
+            "no such file or folder", source=str(path),
+            allowed="a video or a folder of pictures",
+        )  # fmt: skip
+    if path.is_dir():
+        reader = _pictures(path, channel)
+    elif path.suffix.lower() in (".tif", ".tiff"):
+        reader = _pages(path, channel)
+    elif path.suffix.lower() in photron.ENDINGS:
+        reader = photron.photron_frames(path)
+    else:
+        reader = _video(path, channel)
+    part = islice(reader, first, None if last is None else last + 1)
+    turned = ((t, cropped(np.rot90(f, DOWN[down]), crop)) for t, f in part)
+    stamps, frames = _gathered(turned, first, str(path))
+    stack = np.stack(frames)
+    rate, uneven = _timing(np.array(stamps))
+    return Clip(stack, rate, uneven, repeated_frames(stack), str(path))
+
+
+def _gathered(
+    reader: Iterator[tuple[float, Frame]], first: int, source: str
+) -> tuple[list[float], list[Frame]]:
+    """Take in all frames while they are of one size and fit into the memory."""
+    stamps: list[float] = []
+    frames: list[Frame] = []
+    for stamp, frame in reader:
+        if frames and frame.shape != frames[0].shape:
+            raise InputError(
+                f"frame {first + len(frames)} has {frame.shape[1]} x {frame.shape[0]} pixels, the "
+                f"first one {frames[0].shape[1]} x {frames[0].shape[0]}",
+                source=source, allowed="frames of one size",
+            )  # fmt: skip
+        if (len(frames) + 1) * frame.size > _LARGEST:
+            raise InputError(
+                f"more than {_LARGEST // 10**9} GB of frames", source=source,
+                allowed="a shorter range (--first-frame, --last-frame) or a --crop",
+            )  # fmt: skip
+        frames.append(np.ascontiguousarray(frame))
+        stamps.append(stamp)
+    if len(frames) < 10:
+        raise InputError(
+            f"{len(frames)} frames in the range", source=source, allowed="10 frames or more"
+        )
+    return stamps, frames
+
+
+def repeated_frames(frames: Frame) -> npt.NDArray[np.int64]:
+    """Return the numbers of frames that show what their predecessor showed, compressed or not.
+
+    A converter that doubles the frame rate makes every other change small; a slow striker makes
+    neighbouring changes alike.
+    """
+    step = max(1, max(frames.shape[1:]) // 250)
+    few = frames[:, ::step, ::step].astype(np.int16)
+    change = np.array([np.abs(b - a).mean() for a, b in pairwise(few)])
+    around = np.maximum(np.append(change[1:], 0.0), np.append(0.0, change[:-1]))
+    found = np.flatnonzero(change < _REPEAT * around) + 1
+    equal = np.flatnonzero(change == 0.0) + 1
+    return np.asarray(found if found.size > _OFTEN * len(frames) else equal)
+
+
+def _check_choice(value: str, allowed: tuple[str, ...], key: str) -> None:
+    if value not in allowed:
+        raise InputError(repr(value), source="command line", key=key, allowed=", ".join(allowed))
+
+
+def _video(path: Path, channel: str) -> Iterator[tuple[float, Frame]]:
+    try:
+        import av
+    except ImportError:
+        raise missing_extra("reading videos", "video") from None
+    try:
+        with av.open(str(path)) as container:
+            if not container.streams.video:
+                raise InputError("no video in it", source=str(path), allowed="a video file")
+            for frame in container.decode(video=0):
+                stamp = np.nan if frame.pts is None else float(frame.pts * frame.time_base)
+                pixels = frame.to_ndarray(format="gray" if channel == "grey" else "rgb24")
+                turned = np.rot90(
+                    one_channel(pixels, channel), int(getattr(frame, "rotation", 0)) // 90
+                )
+                yield stamp, turned
+    except av.FFmpegError as error:
+        text = getattr(error, "strerror", None) or type(error).__name__
+        raise InputError(
+            f"cannot be decoded ({text})",
+            source=str(path),
+            allowed="an AVI, MP4, MOV, MKV or CINE file",
+        ) from None
+
+
+def _pictures(path: Path, channel: str) -> Iterator[tuple[float, Frame]]:
+    names = sorted(
+        (p for p in path.iterdir() if p.suffix.lower() in PICTURES),
+        key=lambda p: natural_order(p.name),
+    )
+    if not names:
+        raise InputError("no pictures in it", source=str(path), allowed=" ".join(PICTURES))
+    for name in names:
+        yield np.nan, read_picture(name, channel=channel)
+
+
+def _pages(path: Path, channel: str) -> Iterator[tuple[float, Frame]]:
+    try:
+        import tifffile
+    except ImportError:
+        raise missing_extra("reading pictures", "video") from None
+    try:
+        with tifffile.TiffFile(path) as pages:
+            for page in pages.pages:
+                yield np.nan, grey_picture(page.asarray(), channel, str(path))
+    except (tifffile.TiffFileError, OSError, ValueError, KeyError, IndexError) as error:
+        if isinstance(error, InputError):
+            raise
+        raise InputError(
+            f"cannot be read as a TIFF ({error})", source=str(path), allowed="a TIFF of many pages"
+        ) from None
+
+
+def _timing(stamps: Array) -> tuple[float, int]:
+    gaps = np.diff(stamps)
+    if not np.all(np.isfinite(gaps)) or gaps.size == 0 or np.median(gaps) <= 0.0:
+        return float("nan"), 0
+    usual = float(np.median(gaps))
+    uneven = int(np.sum(np.abs(gaps - usual) > 0.5 * usual))
+    return float(gaps.size / (stamps[-1] - stamps[0])), uneven

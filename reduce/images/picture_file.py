@@ -1,0 +1,139 @@
+"""One picture as grey values: channels, turns and crops."""
+
+from __future__ import annotations
+
+import re
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import numpy.typing as npt
+
+from ...core.errors import InputError, missing_extra
+from ...core.inputs.input_file import checked_file
+
+CHANNELS = ("grey", "red", "green", "blue")
+
+DOWN = {"down": 0, "left": 1, "up": 2, "right": 3}
+"""Where gravity points in the picture, and the quarter turns counter-clockwise that undo it."""
+_LARGEST = 1_000_000_000
+_CROP = re.compile(r"(\d+):(\d+),(\d+):(\d+)")
+PICTURES = (".png", ".tif", ".tiff", ".bmp", ".jpg", ".jpeg", ".pgm")
+
+
+def read_picture(path: Path, *, channel: str = "grey") -> npt.NDArray[np.uint8]:
+    """Return one picture as grey values 0-255, (rows, columns).
+
+    Raises
+    ------
+    InputError
+        Not a picture that can be read.
+    """
+    try:
+        from skimage.io import imread
+    except ImportError:
+        raise missing_extra("reading pictures", "video") from None
+    checked_file(path, most=_LARGEST, allowed="a picture")
+    if path.suffix.lower() not in PICTURES:
+        raise InputError(
+            "cannot be read as a picture", source=str(path), allowed=" ".join(PICTURES)
+        )
+    try:
+        pixels = np.asarray(imread(path))
+    except Exception as error:  # every plug-in of the picture reader raises its own kind
+        raise InputError(
+            f"cannot be read as a picture ({_first_line(error)})", source=str(path),
+            allowed=" ".join(PICTURES),
+        ) from None  # fmt: skip
+    return grey_picture(pixels, channel, str(path))
+
+
+def grey_picture(pixels: npt.NDArray[Any], channel: str, source: str) -> npt.NDArray[np.uint8]:
+    """Return decoded pixels of 8 or 16 bits, grey or in colours, as grey values 0-255.
+
+    Raises
+    ------
+    InputError
+        Pixels of another kind, or more than one picture.
+    """
+    return one_channel(_flat(_eight_bits(pixels, source), source), channel)
+
+
+def _eight_bits(pixels: npt.NDArray[Any], source: str) -> npt.NDArray[np.uint8]:
+    if pixels.dtype == np.uint16:
+        return (pixels // 257).astype(np.uint8)
+    if pixels.dtype == np.bool_:
+        return pixels.astype(np.uint8) * 255
+    if pixels.dtype != np.uint8:
+        raise InputError(
+            f"pixels of type {pixels.dtype}", source=source, allowed="8 or 16 bits a pixel"
+        )
+    return pixels
+
+
+def _flat(pixels: npt.NDArray[np.uint8], source: str) -> npt.NDArray[np.uint8]:
+    """Take off a plane of transparency, and a third axis that holds one plane."""
+    if pixels.ndim == 3 and pixels.shape[2] in (2, 4):
+        pixels = pixels[:, :, :-1]
+    if pixels.ndim == 3 and pixels.shape[2] == 1:
+        pixels = pixels[:, :, 0]
+    if pixels.ndim not in (2, 3) or (pixels.ndim == 3 and pixels.shape[2] != 3):
+        raise InputError(f"shape {pixels.shape}", source=source, allowed="one flat picture")
+    return pixels
+
+
+def one_channel(pixels: npt.NDArray[np.uint8], channel: str) -> npt.NDArray[np.uint8]:
+    """Return one of `CHANNELS` of a picture in colours, (rows, columns)."""
+    if pixels.ndim == 2:
+        return pixels
+    if channel == "grey":  # luma of ITU-R BT.601
+        return np.asarray(pixels @ np.array([0.299, 0.587, 0.114]) + 0.5).astype(np.uint8)
+    return pixels[:, :, CHANNELS.index(channel) - 1]
+
+
+def crop_window(text: str) -> tuple[int, int, int, int] | None:
+    """Return the four numbers of TOP:BOTTOM,LEFT:RIGHT, None for an empty text.
+
+    Raises
+    ------
+    ValueError
+        Any other text.
+    """
+    found = _CROP.fullmatch(text)
+    if found is None:
+        if text:
+            raise ValueError("TOP:BOTTOM,LEFT:RIGHT, four whole numbers")
+        return None
+    top, bottom, left, right = map(int, found.groups())
+    return top, bottom, left, right
+
+
+def cropped(
+    frame: npt.NDArray[np.uint8], crop: tuple[int, int, int, int] | None
+) -> npt.NDArray[np.uint8]:
+    """Return the rows and columns of a crop, its ends excluded; the whole frame without one.
+
+    Raises
+    ------
+    InputError
+        The crop is not within the frame.
+    """
+    if crop is None:
+        return frame
+    top, bottom, left, right = crop
+    if not (0 <= top < bottom <= frame.shape[0] and 0 <= left < right <= frame.shape[1]):
+        raise InputError(
+            f"{top}:{bottom},{left}:{right}", source="command line", key="crop",
+            allowed=f"TOP:BOTTOM,LEFT:RIGHT within {frame.shape[0]} rows, {frame.shape[1]} columns",
+        )  # fmt: skip
+    return frame[top:bottom, left:right]
+
+
+def natural_order(name: str) -> list[tuple[int, str]]:
+    """Return a key that sorts `2.png` before `10.png`."""
+    return [(int(t), "") if t.isdigit() else (-1, t.lower()) for t in re.split(r"(\d+)", name)]
+
+
+def _first_line(error: Exception) -> str:
+    lines = str(error).strip().splitlines()
+    return lines[0][:120] if lines else type(error).__name__

@@ -1,0 +1,351 @@
+"""Reductions written into a recording set: rows, curves, and a record of where they came from.
+
+A trial that the set already has keeps what it holds, but for the columns that were measured now. A
+folder without set.toml gets one with the body that was measured, in which the rest is to be filled
+in; of an existing one only what was measured changes. Nothing is written before the whole set, as
+it would be, has been read without a mistake.
+"""
+
+from __future__ import annotations
+
+import tempfile
+import tomllib
+from collections.abc import Callable, Iterable, Mapping
+from dataclasses import dataclass, replace
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from ..core.errors import InputError
+from ..core.inputs.toml_input import parse_model, read_toml
+from ..core.output import csv_text, finish_pending, locked, write_files
+from ..core.rig import Quantity
+from ..recordings.columns import CONDITIONS, MEASURED, STD_SUFFIX
+from ..recordings.csv_table import Array
+from ..recordings.recording_set import RecordingSet, files_of, read
+from ..recordings.setup_file import Setup, setup_text, without_marks
+from ..recordings.template import Shape, template_text
+from ..recordings.trials import Trials
+from .measured import Measured, Trial
+from .record import trial_name, write_record
+from .reduced import Reduced
+from .row import Row
+
+_TEXTS = ("trial", "striker", "spot", "note")
+_CONDITIONS = tuple(n for n in CONDITIONS if n not in _TEXTS and not n.endswith(STD_SUFFIX))
+
+
+@dataclass(frozen=True)
+class Stored:
+    """What was written: rows of trials.csv, the record, the picture, and remarks."""
+
+    trials: tuple[str, ...]
+    record: Path
+    picture: Path
+    notes: tuple[str, ...]
+
+
+def store(
+    reduced: Reduced,
+    folder: Path,
+    row: Row,
+    *,
+    kind: str,
+    options: Mapping[str, Any],
+    setup: Setup | None = None,
+) -> Stored:
+    """Write a reduction into a set, new or existing.
+
+    Parameters
+    ----------
+    reduced
+        What was measured.
+    folder
+        Of the set.
+    row
+        Conditions that the raw file does not tell.
+    kind, options
+        How it was reduced, for the record.
+    setup
+        set.toml of a new set; without it a new set gets one to fill in.
+
+    Raises
+    ------
+    InputError
+        A condition is missing or the set would not be sound.
+    """
+    # another reduction may write the same set: what it added must not be lost
+    with locked(folder):
+        finish_pending(folder)
+        shape = _shape(kind, options)
+        before, text = _set_before(folder, setup, shape=shape)
+        striker = _striker(before, row)
+        after, curves = before, {}
+        names = []
+        _check_one_approach(reduced, row)
+        for trial in reduced.trials:
+            name = "-".join(filter(None, (_name(reduced, row), trial.label)))
+            after = _with_trial(after, name, striker, trial, row)
+            curves[name] = trial
+            names.append(name)
+        new = not (folder / "set.toml").exists() and setup is None
+        stated = _stated_body(shape, options) if new else {}
+        after = _with_flow(_with_setup(after, striker, reduced, stated), reduced)
+        text = setup_text(after.setup, before=before.setup, text=text)
+        open_keys = without_marks(tomllib.loads(text))[1]
+        notes = (f"{folder / 'set.toml'}: to fill in: {', '.join(open_keys)}",) if open_keys else ()
+        _write_whole(after, text, curves, folder)
+    record, picture = write_record(
+        reduced, folder / "reduced", _name(reduced, row), kind=kind, options=options, trials=names
+    )
+    return Stored(tuple(names), record, picture, notes)
+
+
+def store_each(
+    items: Iterable[tuple[str, Callable[[], tuple[Reduced, Row, Mapping[str, Any]]]]],
+    folder: Path,
+    *,
+    kind: str,
+    setup: Setup,
+) -> tuple[list[Stored], list[str]]:
+    """Write many raw files into one set, those that show nothing left out.
+
+    Parameters
+    ----------
+    items
+        Name of each raw file, and what reduces it: the reduction, the conditions that the file
+        does not tell, the options that were used.
+    folder
+        Of the set.
+    kind
+        How all of them are reduced.
+    setup
+        set.toml of the set if it is new.
+
+    Returns
+    -------
+    tuple
+        What was written, and a line for each raw file that was left out.
+    """
+    written: list[Stored] = []
+    left_out = []
+    for name, make in items:
+        try:
+            reduced, row, options = make()
+            done = store(
+                reduced, folder, row, kind=kind, options=options,
+                setup=None if written else setup,
+            )  # fmt: skip
+            written.append(done)
+        except InputError as error:
+            left_out.append(f"{name}: {error}")
+    if not written and not left_out:
+        left_out.append("no raw file of the kind that the recipe reads")
+    return written, left_out
+
+
+def _name(reduced: Reduced, row: Row) -> str:
+    return row.trial or trial_name(reduced.source)
+
+
+def _shape(kind: str, options: Mapping[str, Any]) -> Shape:
+    """Return what struck: as the options say, else a ball where bounces are heard or timed."""
+    usual = "rod" if kind in ("video", "tip", "mocap", "scan") else "sphere"
+    return "rod" if options.get("shape", usual) == "rod" else "sphere"
+
+
+def _stated_body(shape: Shape, options: Mapping[str, Any]) -> dict[str, Measured]:
+    """Return what the options of a reduction tell of the striker."""
+
+    def told(key: str) -> Measured | None:
+        value = options.get(key)
+        return (
+            None if value is None else Measured(float(value), float(options.get(f"{key}_std", 0.0)))
+        )
+
+    size = told("diameter_m")
+    half = None if size is None else size.scaled(0.5)
+    body = {"mass_kg": told("mass_kg"), "tip_radius_m": told("tip_radius_m")}
+    if shape == "rod":
+        body |= {"radius_m": half, "length_m": told("length_m")}
+    else:
+        body["tip_radius_m"] = body["tip_radius_m"] or half
+    return {key: value for key, value in body.items() if value is not None}
+
+
+def _set_before(folder: Path, setup: Setup | None, *, shape: Shape) -> tuple[RecordingSet, str]:
+    """Return the set as it is, or an empty one, and its set.toml as text."""
+    if folder.exists() and not folder.is_dir():
+        raise InputError("not a folder", source=str(folder), allowed="the folder of a set")
+    file = folder / "set.toml"
+    if not file.exists():
+        if setup is not None:
+            return _empty(setup, None), setup_text(setup)
+        text = template_text(shape)
+        content = without_marks(tomllib.loads(text))[0]
+        return _empty(parse_model(content, Setup, source=str(file)), None), text
+    content, _ = without_marks(read_toml(file))
+    old = parse_model(content, Setup, source=str(file))
+    text = file.read_text(encoding="utf-8")
+    rows = (folder / "trials.csv").exists() and _has_rows(folder / "trials.csv")
+    found = read(folder, unfinished=True) if rows else _empty(old, folder)
+    if setup is not None:
+        text = setup_text(setup, before=old, text=text)
+    # as the file says it: a strength read from a flow curve is not written
+    return replace(found, setup=setup or old), text
+
+
+def _has_rows(path: Path) -> bool:
+    return len([line for line in path.read_bytes().splitlines() if line.strip(b" ,")]) > 1
+
+
+def _empty(setup: Setup, folder: Path | None) -> RecordingSet:
+    return RecordingSet(setup, Trials((), (), np.empty(0)), folder=folder)
+
+
+def _check_one_approach(reduced: Reduced, row: Row) -> None:
+    """One approach cannot hold for several impacts that were each measured."""
+    measured = [t for t in reduced.trials if "impact_speed_m_s" in t.observables]
+    for key in ("impact_speed_m_s", "drop_height_m"):
+        if len(measured) > 1 and getattr(row, key) is not None:
+            raise InputError(
+                f"given for {len(measured)} impacts that were each measured", key=key,
+                allowed="left out (release_height_m is that of the first impact)",
+            )  # fmt: skip
+
+
+def _striker(found: RecordingSet, row: Row) -> str:
+    names = tuple(found.setup.strikers)
+    if row.striker and row.striker not in names:
+        raise InputError(repr(row.striker), key="striker", allowed=", ".join(names))
+    if not row.striker and len(names) > 1:
+        raise InputError("not given", key="striker", allowed=", ".join(names))
+    return row.striker or names[0]
+
+
+def _with_trial(
+    found: RecordingSet, name: str, striker: str, trial: Trial, row: Row
+) -> RecordingSet:
+    """Return the set with one row added, or with the measured columns of a row replaced."""
+    old = found.trials
+    new = name not in old.trial
+    n = len(old) + new
+    place = n - 1 if new else old.trial.index(name)
+
+    def grown(values: Array | None) -> Array:
+        column = np.full(n, np.nan)
+        if values is not None and values.size:
+            column[: len(old)] = values
+        return column
+
+    varied = {
+        k: [*old.varied.get(k, [""] * len(old)), *([""] if new else [])]
+        for k in dict.fromkeys([*old.varied, *row.varied])
+    }
+    for key, text in row.varied.items():
+        varied[key][place] = text
+    texts = {k: [*getattr(old, k), *([""] if new else [])] for k in _TEXTS}
+    texts["trial"][place] = name
+    texts["striker"][place] = row.striker or texts["striker"][place] or striker
+    texts["spot"][place] = row.spot or texts["spot"][place]
+    numbers = {k: grown(getattr(old, k)) for k in CONDITIONS if k not in _TEXTS}
+    observables = {k: grown(v) for k, v in old.observables.items()}
+    stds = {k: grown(v) for k, v in old.observables_std.items()}
+    for key, value in {**trial.observables, **_given(row)}.items():
+        if key in MEASURED:
+            observables.setdefault(key, grown(None))[place] = value.value
+            stds.setdefault(key, grown(None))[place] = value.std if value.std > 0.0 else np.nan
+        else:
+            numbers[key][place] = value.value
+            if key + STD_SUFFIX in numbers:
+                numbers[key + STD_SUFFIX][place] = value.std if value.std > 0.0 else np.nan
+    if np.isnan(numbers["angle_deg"][place]):
+        numbers["angle_deg"][place] = 90.0
+    if np.isnan([numbers[k][place] for k in ("impact_speed_m_s", "drop_height_m")]).all():
+        raise InputError(
+            f"the approach of trial {name!r} is not known", key="impact_speed_m_s",
+            allowed="impact_speed_m_s or drop_height_m as an option, or a trial of the set",
+        )  # fmt: skip
+    trials = Trials(
+        **{k: tuple(v) for k, v in texts.items()}, **numbers,  # type: ignore[arg-type]
+        varied={k: tuple(v) for k, v in varied.items()},
+        observables=observables, observables_std=stds,
+    )  # fmt: skip
+    return replace(found, trials=trials)
+
+
+def _given(row: Row) -> dict[str, Measured]:
+    std = {"impact_speed_m_s": row.impact_speed_m_s_std or 0.0}
+    given = {k: getattr(row, k, None) for k in _CONDITIONS}
+    return {k: Measured(v, std.get(k, 0.0)) for k, v in given.items() if v is not None}
+
+
+def _with_setup(
+    found: RecordingSet, striker: str, reduced: Reduced, stated: Mapping[str, Measured]
+) -> RecordingSet:
+    noise = {**reduced.noise, **found.setup.noise}
+    body = found.setup.strikers[striker]
+    measured = {
+        k: Quantity(value=v.value, std=v.std) for k, v in {**stated, **reduced.striker}.items()
+    }
+    strikers = {**found.setup.strikers, striker: body.model_copy(update=measured)}
+    setup = found.setup.model_copy(update={"noise": noise, "strikers": strikers})
+    return replace(found, setup=setup)
+
+
+def _with_flow(found: RecordingSet, reduced: Reduced) -> RecordingSet:
+    """Put a measured flow curve beside set.toml and name it there; a stated strength stays."""
+    if reduced.flow is None:
+        return found
+    body, flow = reduced.flow
+    key = "target" if body == "target" else f"strikers.{body}"
+    if key not in found.setup.bodies:
+        raise InputError(
+            repr(body), key="body", allowed=", ".join(["target", *found.setup.strikers])
+        )
+    named = {"flow_curve": f"{body}-flow.csv"}
+    target, strikers = found.setup.target, dict(found.setup.strikers)
+    if body == "target":
+        target = target.model_copy(update=named)
+    else:
+        strikers[body] = strikers[body].model_copy(update=named)
+    setup = found.setup.model_copy(update={"target": target, "strikers": strikers})
+    return replace(found, setup=setup, flows={**found.flows, key: flow})
+
+
+def _write_whole(after: RecordingSet, text: str, curves: Mapping[str, Trial], folder: Path) -> None:
+    files = {**files_of(after), "set.toml": text}
+    for name, trial in curves.items():
+        for kind, columns in (("traces", trial.trace), ("profiles", trial.profile)):
+            if columns:
+                files[f"{kind}/{name}.csv"] = _curve_text(columns)
+    if len(after.trials):
+        _read_as(folder, files)
+    else:
+        del files["trials.csv"]
+    write_files(folder, files)
+
+
+def _read_as(folder: Path, files: Mapping[str, bytes | str]) -> None:
+    """Read the set as it would be; a mistake names the folder that it is meant for."""
+    with tempfile.TemporaryDirectory() as made:
+        place = Path(made)
+        for name, content in files.items():
+            path = place / name
+            path.parent.mkdir(exist_ok=True)
+            path.write_bytes(content.encode() if isinstance(content, str) else content)
+        try:
+            read(place, unfinished=True)
+        except InputError as error:
+            raise InputError(str(error).replace(str(place), str(folder))) from None
+
+
+def _curve_text(columns: Mapping[str, Array]) -> str:
+    return csv_text(
+        (
+            ["" if np.isnan(v) else f"{v:.9g}" for v in point]
+            for point in zip(*columns.values(), strict=True)
+        ),
+        header=columns,
+    )

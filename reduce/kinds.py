@@ -1,0 +1,74 @@
+"""The kinds of raw file, in reading order, and what each of their folders offers.
+
+The folder of a kind holds `options.py` with `Options`, the table of its options (an `InputTable`
+whose fields have a description; field names end in their unit); `kind.py` with
+`reduce(path, options) -> Reduced`, loaded when a file is reduced; and `picture.py`, which draws the
+picture to check the numbers by. The command line and the recipes make their options from
+`Options`, so that an option is written once.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from importlib import import_module
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+from ..core.errors import InputError
+from ..core.inputs.input_file import checked_file
+from ..core.inputs.toml_input import InputTable, parse_model
+
+if TYPE_CHECKING:
+    from .reduced import Reduced
+
+KINDS = {
+    "video": "high-speed video: approach and rebound speed, lean, motion of the tip",
+    "tip": "photograph of a tip: its radius",
+    "mocap": "motion capture of markers: velocities, spin, friction",
+    "scan": "scan of a crater: depth, rim, sliding length, profile",
+    "sound": "sound of a bouncing ball: restitution of each bounce",
+    "table": "table of force, acceleration, height, bounce times or trials",
+}
+"""Each kind, named as its folder, and what it gives."""
+
+
+_MOST_BYTES = 20_000_000_000
+_TAKE_FOLDERS = ("video",)
+
+
+@dataclass(frozen=True)
+class Kind:
+    """One way to reduce a file: its name and its options."""
+
+    name: str
+    options: type[InputTable]
+
+    def run(self, path: Path, given: dict[str, Any], *, source: str) -> Reduced:
+        """Reduce a file with options that are not checked yet; `source` names where they stand."""
+        options = parse_model(given, self.options, source=source)
+        if not (self.name in _TAKE_FOLDERS and path.is_dir()):
+            checked_file(path, most=_MOST_BYTES, allowed="a raw recording")
+        from numpy.linalg import LinAlgError
+
+        kind = import_module(f".{self.name}.kind", __package__)
+        try:
+            reduced: Reduced = kind.reduce(path, options)
+            return reduced
+        except (ArithmeticError, LinAlgError) as error:
+            raise InputError(
+                f"its numbers cannot be reduced ({error})", source=str(path),
+                allowed="a recording of the kind that was named",
+            ) from None  # fmt: skip
+
+
+def load_kind(name: str) -> Kind:
+    """Return a kind by its name.
+
+    Raises
+    ------
+    InputError
+        There is no such kind.
+    """
+    if name not in KINDS:
+        raise InputError(f"no kind {name!r}", key="kind", allowed=", ".join(KINDS))
+    return Kind(name, import_module(f".{name}.options", __package__).Options)

@@ -1,0 +1,81 @@
+"""Marker tracks, read, fitted and drawn."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+from pathlib import Path
+
+import numpy as np
+
+from ...core.inputs.toml_input import read_model
+from ..measured import Measured, labelled, labels
+from ..reduced import Reduced
+from .body import BodyFile, make_body
+from .file import Markers, read_markers
+from .options import Options
+from .picture import draw_mocap, draw_point
+from .point import PointBounce, reduce_point
+from .reduction import Hit, MocapReduction, Scene, reduce_mocap
+from .rigid import rigid_poses
+
+
+def reduce(path: Path, options: Options) -> Reduced:
+    """Fit a rigid body to the markers and read its motion before and after each impact.
+
+    Raises
+    ------
+    InputError
+        The file cannot be read, or shows no body or no impact.
+    """
+    places = read_model(Path(options.body), BodyFile).markers if options.body else {}
+    markers = read_markers(
+        path, unit=None if options.unit == "file" else options.unit, rate=options.frame_rate_hz,
+        select=options.select, points=places,
+    )  # fmt: skip
+    markers = markers.part(options.first_frame, options.last_frame)
+    if options.markers:
+        markers = markers.only(tuple(n.strip() for n in options.markers.split(",")))
+    up = np.zeros(3)
+    up["xyz".index(options.up[-1])] = -1.0 if options.up.startswith("-") else 1.0
+    scene = Scene(up, options.gravity_m_s2, options.length_scale_std)
+    if options.shape == "sphere" and len(markers.names) == 1:
+        return _point(path, markers, scene, options)
+    poses = rigid_poses(markers)
+    ends = options.two_ends
+    body, remarks = make_body(
+        poses, markers, shape=options.shape, tip_radius=options.tip_radius_m or 0.0,
+        length=(options.length_m or 0.0) if options.shape == "rod" else 0.0,
+        radius=options.radius_m, file=Path(options.body) if options.body else None,
+        axis=(ends[0], ends[1]) if options.axis else None,
+    )  # fmt: skip
+    found = reduce_mocap(poses, body, scene, source=str(path))
+    missing = f"{100.0 * markers.missing:.2g} % of the marker positions are missing"
+    noise = {"frame_rate_hz": found.rate, "tip_height_m": found.flights.sigma}
+    return Reduced(
+        source=path, values=_values(found), trials=found.trials(),
+        notes=(missing, *remarks, *found.notes), noise=noise,
+        draw=lambda picture: draw_mocap(found, picture),
+    )  # fmt: skip
+
+
+def _point(path: Path, markers: Markers, scene: Scene, options: Options) -> Reduced:
+    found = reduce_point(markers, scene, spin=options.spin)
+    values = {"position_noise_m": Measured(found.noise, math.nan)}
+    values |= _each(found.bounces)
+    return Reduced(
+        source=path, values=values, trials=found.trials(), notes=found.notes,
+        draw=lambda picture: draw_point(found, picture), noise={"frame_rate_hz": markers.rate},
+    )  # fmt: skip
+
+
+def _values(found: MocapReduction) -> dict[str, Measured]:
+    values = {
+        "marker_noise_m": Measured(found.flights.sigma, math.nan),
+        "fall_acceleration_m_s2": found.fall,
+    }
+    return values | _each(found.hits)
+
+
+def _each(found: Sequence[Hit | PointBounce]) -> dict[str, Measured]:
+    return labelled(zip(labels(len(found)), (one.measured for one in found), strict=True))

@@ -1,0 +1,77 @@
+"""Options of the reduction of motion capture."""
+
+from __future__ import annotations
+
+import math
+from typing import Literal
+
+import numpy as np
+from pydantic import Field, model_validator
+
+from ...core.inputs.toml_input import InputTable
+from ...recordings.csv_table import number
+from ..bounces.options import GRAVITY
+from ..measured import Array
+
+
+def _three_numbers(text: str) -> bool:
+    return len(text.split(",")) == 3 and all(math.isfinite(number(v)) for v in text.split(","))
+
+
+class Options(InputTable):
+    """Options of the reduction of motion capture."""
+
+    shape: Literal["rod", "sphere", "body"] = Field(
+        "rod", description="of the striker; a body touches with its lowest marker"
+    )
+    tip_radius_m: float | None = Field(None, gt=0.0, description="of the tip or the sphere")
+    length_m: float | None = Field(
+        None, gt=0.0, description="of a rod between the centres of its tip spheres"
+    )
+    radius_m: float | None = Field(None, gt=0.0, description="of the rod; default: the tip's")
+    axis: str = Field("", description="two markers on a line along the rod, as A:B")
+    body: str = Field(
+        "", description="TOML file with the places of the markers from the centre of mass"
+    )
+    markers: str = Field("", description="markers on the striker, as A,B,C; default: all")
+    select: str = Field("", description="COLUMN=VALUE: only these rows of a table")
+    up: Literal["z", "-z", "y", "-y", "x", "-x"] = Field("z", description="out of the flat")
+    unit: Literal["file", "m", "cm", "mm"] = Field("file", description="file: what it says")
+    frame_rate_hz: float | None = Field(
+        None, gt=0.0, description="frames per second; default: what the file says"
+    )
+    spin_before_rad_s: str = Field(
+        "", description="of a ball followed as one point, measured otherwise, as X,Y,Z"
+    )
+    first_frame: int = Field(0, ge=0, description="number of the first frame to use")
+    last_frame: int | None = Field(None, ge=0, description="number of the last one")
+    gravity_m_s2: float = Field(GRAVITY, gt=0.0, description="acceleration of the fall")
+    length_scale_std: float = Field(
+        0.0, ge=0.0, description="relative standard deviation of the tracker's lengths"
+    )
+
+    @model_validator(mode="after")
+    def _sizes(self) -> Options:
+        if self.shape != "body" and self.tip_radius_m is None:
+            raise ValueError("tip_radius_m is needed: the radius of the tip or of the sphere")
+        if self.shape == "rod" and self.length_m is None:
+            raise ValueError("length_m is needed for a rod")
+        if self.axis and len(self.two_ends) != 2:
+            raise ValueError("axis takes two markers, as A:B")
+        if self.spin_before_rad_s and not _three_numbers(self.spin_before_rad_s):
+            raise ValueError("spin_before_rad_s takes three numbers, as X,Y,Z")
+        if self.last_frame is not None and self.last_frame < self.first_frame:
+            raise ValueError("last_frame is first_frame or more")
+        return self
+
+    @property
+    def spin(self) -> Array | None:
+        """Spin before the first bounce (3,) [rad/s], if it was given."""
+        if not self.spin_before_rad_s:
+            return None
+        return np.array([float(v) for v in self.spin_before_rad_s.split(",")])
+
+    @property
+    def two_ends(self) -> tuple[str, ...]:
+        """The two markers along the rod."""
+        return tuple(n.strip() for n in self.axis.split(":") if n.strip())

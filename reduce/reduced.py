@@ -1,0 +1,44 @@
+"""What every reduction hands on, whatever the instrument: rows, values, notes and a picture."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass, field
+from pathlib import Path
+
+from ..recordings.flow_curve import MeasuredFlow
+from .measured import Measured, Trial
+
+
+@dataclass(frozen=True)
+class Reduced:
+    """One raw file, reduced.
+
+    Parameters
+    ----------
+    source
+        The raw file (or folder of pictures).
+    values
+        Everything that was measured, by a name that ends in its unit.
+    trials
+        The rows that it makes of trials.csv; none for a file that shows no impact.
+    draw
+        Writes the picture that a person can check the numbers by.
+    notes
+        What the reader should know, a sentence each.
+    striker
+        Keys of `[strikers.NAME]` that were measured.
+    noise
+        Keys of `[noise]` that were measured; those that a set already has stay.
+    flow
+        `target` or the name of a striker, and its flow curve, if that was measured.
+    """
+
+    source: Path
+    values: Mapping[str, Measured]
+    trials: tuple[Trial, ...]
+    draw: Callable[[Path], None]
+    notes: tuple[str, ...] = ()
+    striker: Mapping[str, Measured] = field(default_factory=dict)
+    noise: Mapping[str, float] = field(default_factory=dict)
+    flow: tuple[str, MeasuredFlow] | None = None

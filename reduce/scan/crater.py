@@ -1,0 +1,156 @@
+"""Crater scans: permanent depth, pile-up, size, volume and sliding length with uncertainties."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+
+import numpy as np
+
+from ...core.errors import InputError
+from ..measured import UNITY, ZERO, Array, Measured, Trial
+from .bottom import find_bottom
+from .file import Scan
+from .level import Levelled, levelled
+from .walls import Section, opening, pile_up, section, section_covariance, without_band
+
+
+@dataclass(frozen=True)
+class Crater:
+    """A measured crater; lengths in metres.
+
+    Parameters
+    ----------
+    depth
+        Deepest point below the undisturbed surface.
+    pile_up
+        Height of the rim, mean along the edge at the distance where it is largest.
+    length, width
+        Between the walls at the level of the surface: along the scar, and across it at the
+        deepest point; nan where a wall leaves the scan.
+    sliding
+        `length - width`.
+    volume
+        Of the part below the surface [m³].
+    deepest
+        (2,) place of the deepest point.
+    direction
+        Angle of the scar in the scan [rad].
+    surface
+        The levelled scan.
+    along, across
+        Sections through the deepest point along and across the scar.
+    """
+
+    depth: Measured
+    pile_up: Measured
+    length: Measured
+    width: Measured
+    sliding: Measured
+    volume: Measured
+    deepest: Array
+    direction: float
+    surface: Levelled
+    along: Section
+    across: Section
+    notes: tuple[str, ...]
+    source: str
+
+    @property
+    def is_scar(self) -> bool:
+        """Whether the crater is longer than wide beyond what its walls are known to."""
+        return self.sliding.value > max(3.0 * self.sliding.std, 0.05 * self.width.value)
+
+    def trials(self) -> tuple[Trial, ...]:
+        """Return the observables of trials.csv and the profile along the scar."""
+        row = {"permanent_depth_m": self.depth}
+        if self.is_scar:
+            row |= {"scar_length_m": self.length, "scar_width_m": self.width}
+        profile = {"x_m": self.along.s - self.along.s[0], "z_m": self.along.z}
+        return (Trial(row, self.notes, profile=profile),)
+
+
+def reduce_scan(
+    scan: Scan,
+    *,
+    level: str = "plane",
+    height_scale: Measured = UNITY,
+    blur: Measured = ZERO,
+) -> Crater:
+    """Measure the deepest crater of a scan.
+
+    Parameters
+    ----------
+    scan
+        Heights on a grid.
+    level
+        Shape of the undisturbed surface, one of `scan_level.LEVELS`.
+    height_scale
+        Calibration of the instrument's heights: true over shown.
+    blur
+        Standard deviation of the instrument's lateral blur [m]: it lifts a floor of Laplacian q
+        by q blur²/2, which is taken off.
+
+    Raises
+    ------
+    InputError
+        There is no crater that stands out of the roughness, or no surface left around it.
+    """
+    shown = levelled(scan, level=level)
+    direction, half_width = _shape(shown)
+    bottom = find_bottom(shown, half_width, source=scan.source)
+    along = section(shown, bottom.place, direction, half_width)
+    across = section(shown, bottom.place, direction + 0.5 * math.pi, half_width)
+    covariance = section_covariance(shown, half_width)
+    length, width = (opening(s, bottom.depth.value, covariance) for s in (along, across))
+    length, width = without_band(length, width, half_width)
+    depth = _without_blur(bottom.depth, bottom.laplacian, blur)
+    cell = float(np.prod(scan.step))
+    volume = Measured(
+        -float(np.nansum(shown.z[shown.crater])) * cell,
+        bottom.depth.std * float(shown.crater.sum()) * cell,
+    )
+    return Crater(
+        depth=depth.times(height_scale), pile_up=pile_up(shown, half_width).times(height_scale),
+        length=length, width=width, sliding=length.minus(width),
+        volume=volume.times(height_scale), deepest=bottom.place, direction=direction,
+        surface=shown, along=along, across=across,
+        notes=_notes(scan, shown, depth, width, height_scale), source=scan.source,
+    )  # fmt: skip
+
+
+def _shape(found: Levelled) -> tuple[float, float]:
+    """Return the direction of the crater's longer axis [rad] and half its width [m]."""
+    cells = np.argwhere(found.crater) * found.step
+    if len(cells) < 30:
+        raise InputError(
+            f"the crater covers {len(cells)} points", allowed="30 or more: a finer scan"
+        )
+    values, vectors = np.linalg.eigh(np.cov(cells.T))
+    area = len(cells) * float(np.prod(found.step))
+    ratio = math.sqrt(values[1] / max(values[0], 1e-300))
+    return math.atan2(vectors[1, 1], vectors[0, 1]), math.sqrt(area / (math.pi * ratio))
+
+
+def _without_blur(depth: Measured, laplacian: float, blur: Measured) -> Measured:
+    lift = 0.5 * laplacian * blur.value**2
+    return Measured(depth.value + lift, math.hypot(depth.std, laplacian * blur.value * blur.std))
+
+
+def _notes(
+    scan: Scan, found: Levelled, depth: Measured, width: Measured, scale: Measured
+) -> tuple[str, ...]:
+    notes = [*scan.notes, f"roughness of the level surface {found.roughness * 1e6:.3g} um"]
+    missing = int(np.isnan(scan.z).sum())
+    if found.outliers or missing:
+        notes.append(
+            f"{100 * found.outliers / scan.z.size:.2g} % spikes taken out, "
+            f"{100 * missing / scan.z.size:.2g} % not seen"
+        )
+    if scale.std == 0.0:
+        notes.append("the calibration of the instrument's heights is taken as exact")
+    if depth.std > 0.1 * depth.value:
+        notes.append("the depth is not known to 10 %")
+    if not math.isfinite(width.value):
+        notes.append("a wall of the crater does not reach the surface within the scan")
+    return tuple(notes)

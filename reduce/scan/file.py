@@ -1,0 +1,237 @@
+"""Profilometer files: heights on a grid or along a line, in metres."""
+
+from __future__ import annotations
+
+import math
+import warnings
+from contextlib import redirect_stderr, redirect_stdout
+from dataclasses import dataclass
+from io import StringIO
+from pathlib import Path
+
+import numpy as np
+
+from ...core.errors import InputError, missing_extra
+from ...recordings.csv_table import number, shown
+from ..measured import Array
+from ..units import LENGTH, metres
+
+_TEXT = (".csv",)
+_UNSEEN = ("", "nan", "-", "na")
+_ABSURD = 1e30
+_FEWEST = 100
+_FARTHEST = 1e-3  # m between neighbouring points; one reader's format gives 0.3 m for 0.3 um
+_MOST_POINTS = 100_000_000
+_DENSEST = 50  # points a byte of a packed file holds at most
+
+
+@dataclass(frozen=True)
+class Scan:
+    """Heights on a grid: `z` (nx, ny) with NaN where nothing was seen [m], `step` (2,) [m]."""
+
+    z: Array
+    step: Array
+    source: str
+    notes: tuple[str, ...] = ()
+
+
+@dataclass(frozen=True)
+class LineScan:
+    """Heights along a line: `x`, `z`, each (n,) [m]; NaN in `z` where nothing was seen."""
+
+    x: Array
+    z: Array
+    source: str
+    notes: tuple[str, ...] = ()
+
+
+def read_scan(
+    path: Path,
+    *,
+    unit: str | None = None,
+    height_unit: str | None = None,
+    step: float | None = None,
+) -> Scan | LineScan:
+    """Read any file that SurfaceTopography knows, or comma-separated numbers.
+
+    Parameters
+    ----------
+    path
+        The file.
+    unit, height_unit
+        Units of length along the surface and of the heights, of `units.LENGTH`, for files that
+        name none or a wrong one; `height_unit` defaults to `unit`.
+    step
+        Distance between neighbouring points [m], for files whose header is wrong or silent.
+
+    Raises
+    ------
+    InputError
+        The file cannot be read, has no heights, or does not say its unit or the distance of its
+        points.
+    """
+    found = _text(path) if path.suffix.lower() in _TEXT else None
+    found = found or _known_format(path, step)
+    heights = np.where(np.abs(found.z) < _ABSURD, found.z, np.nan)
+    if heights.size < _FEWEST or np.isfinite(heights).sum() < 0.05 * heights.size:
+        raise InputError(
+            f"{int(np.isfinite(heights).sum())} heights in it", source=str(path),
+            allowed=f"{_FEWEST} or more, seen in a twentieth of the points or more",
+        )  # fmt: skip
+    heights = heights * _factor(height_unit or unit or found.unit, path)
+    if heights.ndim == 1:
+        return LineScan(_positions(found, unit, step, path), heights, str(path))
+    steps = np.full(2, step or np.nan)
+    if step is None and found.step is not None:
+        steps = found.step * _factor(unit or found.unit, path)
+    if not np.all(np.isfinite(steps) & (steps > 0.0)):
+        raise _no_step(path)
+    if step is None:
+        _refuse_far(float(steps.max()), path)
+    return Scan(heights, steps, str(path))
+
+
+@dataclass(frozen=True)
+class _Raw:
+    """What a file says, in its own unit: a grid with its step, or a line with its positions."""
+
+    z: Array
+    step: Array | None = None
+    x: Array | None = None
+    unit: str | None = None
+
+
+def _positions(found: _Raw, unit: str | None, step: float | None, path: Path) -> Array:
+    if step is not None or found.x is None:
+        if step is None:
+            raise _no_step(path)
+        return np.asarray(np.arange(found.z.size) * step)
+    if not np.all(np.diff(found.x) > 0.0):
+        row = int(np.argmin(np.diff(found.x) > 0.0)) + 1
+        raise InputError(
+            f"the position does not increase after point {row}", source=str(path),
+            allowed="increasing positions",
+        )  # fmt: skip
+    x = np.asarray((found.x - found.x[0]) * _factor(unit or found.unit, path))
+    _refuse_far(float(np.median(np.diff(x))), path)
+    return x
+
+
+def _refuse_far(step: float, path: Path) -> None:
+    """Refuse points so far apart that the unit must be wrong."""
+    if step > _FARTHEST:
+        raise InputError(
+            f"its points are {step:.3g} m apart, {step / _FARTHEST:.0f} times as far as in a scan",
+            source=str(path), allowed=f"--unit or --step-m, where neighbours are {_FARTHEST:g} m "
+            "apart or less",
+        )  # fmt: skip
+
+
+def _known_format(path: Path, step: float | None) -> _Raw:
+    """Read a file with SurfaceTopography."""
+    try:
+        with warnings.catch_warnings():
+            warnings.simplefilter("ignore")
+            from SurfaceTopography import open_topography
+    except ImportError:
+        raise missing_extra("reading profilometer files", "surface") from None
+    try:
+        with warnings.catch_warnings(), redirect_stdout(StringIO()), redirect_stderr(StringIO()):
+            warnings.simplefilter("ignore")  # its readers print what they stumble over, in turn
+            channel = open_topography(str(path)).default_channel
+            sizes = {}
+            if channel.physical_sizes is None and step is not None:
+                sizes = {"physical_sizes": tuple(float(n) for n in channel.nb_grid_pts)}
+            _check_claim(channel.nb_grid_pts, path)
+            found = channel.topography(**sizes)
+            z = np.ma.filled(np.ma.asarray(found.heights(), dtype=np.float64), np.nan)
+            if found.dim == 1:
+                return _Raw(z, x=np.asarray(found.positions(), dtype=np.float64), unit=found.unit)
+            return _Raw(z, step=np.array(found.physical_sizes) / z.shape, unit=found.unit)
+    except InputError:
+        raise
+    except Exception as error:  # each of its readers raises its own kind
+        text = (str(error).strip().splitlines() or [type(error).__name__])[0][:120]
+        raise InputError(
+            f"cannot be read as a surface scan ({text})", source=str(path),
+            allowed="a format of SurfaceTopography (x3p, sur, al3d, plu, opd, vk, mnt, xyz ...), "
+            "or --step-m where it does not say the distance of its points",
+        ) from None  # fmt: skip
+
+
+def _check_claim(points: tuple[int, ...], path: Path) -> None:
+    """Refuse a header that claims more points than the file can hold, before room is made."""
+    count, size = math.prod(int(n) for n in points), path.stat().st_size
+    if count > min(_MOST_POINTS, _DENSEST * size):
+        raise InputError(
+            f"{count} points claimed in {size} bytes", source=str(path),
+            allowed=f"up to {_MOST_POINTS:g}, and {_DENSEST} a byte",
+        )  # fmt: skip
+
+
+def _text(path: Path) -> _Raw | None:
+    """Read comma-separated numbers: a grid, two columns of a line, or three of a regular grid."""
+    try:
+        lines = path.read_text(encoding="utf-8-sig").splitlines()
+    except (UnicodeDecodeError, OSError) as error:
+        raise InputError(
+            f"cannot be read as text ({type(error).__name__})", source=str(path),
+            allowed="UTF-8, comma-separated",
+        ) from None  # fmt: skip
+    rows = [(n, line.split(",")) for n, line in enumerate(lines, 1)
+            if line.strip() and not line.startswith("#")]  # fmt: skip
+    if rows and all(math.isnan(number(c)) and c.strip() for c in rows[0][1]):
+        rows = rows[1:]  # names of the columns
+    if not rows:
+        raise InputError("empty", source=str(path), allowed="heights, one row a line")
+    width = len(rows[0][1])
+    for n, cells in rows:
+        if len(cells) != width:
+            raise InputError(
+                f"{len(cells)} cells, the first row has {width}", source=str(path),
+                key=f"row {n}", allowed="as many cells in each row",
+            )  # fmt: skip
+        for cell in cells:
+            if math.isnan(number(cell)) and cell.strip().lower() not in _UNSEEN:
+                raise InputError(
+                    shown(cell), source=str(path), key=f"row {n}",
+                    allowed="a number, or an empty cell for a point that was not seen",
+                )  # fmt: skip
+    grid = np.array([[number(c) for c in cells] for _, cells in rows])
+    if width == 2:
+        return _Raw(grid[:, 1], x=grid[:, 0])
+    if width == 3:
+        return _regular(grid, path)
+    if min(grid.shape) < 4:
+        raise InputError(
+            f"{grid.shape[0]} rows of {grid.shape[1]} numbers", source=str(path),
+            allowed="a grid of heights, or columns x, z or x, y, z",
+        )  # fmt: skip
+    return _Raw(grid.T)
+
+
+def _regular(points: Array, path: Path) -> _Raw:
+    """Put columns x, y, z on the grid that they come from."""
+    axes = [np.unique(points[:, k]) for k in (0, 1)]
+    steps = [np.diff(a) for a in axes]
+    even = all(s.size and np.ptp(s) < 0.02 * s.mean() for s in steps)
+    if not np.isfinite(points[:, :2]).all() or not even:
+        raise InputError(
+            "the points x, y do not lie on a regular grid", source=str(path),
+            allowed="equal distances along x and along y",
+        )  # fmt: skip
+    z = np.full([a.size for a in axes], np.nan)
+    index = tuple(np.searchsorted(a, points[:, k]) for k, a in enumerate(axes))
+    z[index] = points[:, 2]
+    return _Raw(z, step=np.array([s.mean() for s in steps]))
+
+
+def _factor(unit: str | None, path: Path) -> float:
+    return metres(unit or "", source=str(path), allowed=LENGTH)
+
+
+def _no_step(path: Path) -> InputError:
+    return InputError(
+        "the file does not say the distance of its points", source=str(path), key="step_m",
+        allowed="a distance above 0",
+    )  # fmt: skip

@@ -1,0 +1,92 @@
+"""A scan of a crater, a profile or a tip, read, levelled, measured and drawn."""
+
+from __future__ import annotations
+
+import math
+from pathlib import Path
+
+import numpy as np
+
+from ...core.errors import InputError
+from ..measured import Measured
+from ..reduced import Reduced
+from .ball import reduce_ball
+from .crater import Crater, reduce_scan
+from .file import LineScan, read_scan
+from .line import reduce_line
+from .options import Options
+from .picture import draw_ball, draw_crater, draw_groove
+
+
+def reduce(path: Path, options: Options) -> Reduced:
+    """Measure the deepest crater of a scan or a profile, or the radius of a ball.
+
+    Raises
+    ------
+    InputError
+        The file cannot be read, or shows no crater or no ball.
+    """
+    scan = read_scan(
+        path, unit=None if options.unit == "file" else options.unit,
+        height_unit=None if options.height_unit == "same" else options.height_unit,
+        step=options.step_m,
+    )  # fmt: skip
+    scale = Measured(options.height_scale, options.height_scale_std)
+    if options.shows == "ball":
+        return _ball(path, scan, options)
+    if isinstance(scan, LineScan):
+        line = reduce_line(scan, height_scale=scale)
+        values = {"permanent_depth_m": line.depth, "crater_width_m": line.width}
+        return Reduced(
+            source=path, values=_known(values), trials=line.trials(), notes=line.notes,
+            draw=lambda to: draw_groove(line, to),
+        )  # fmt: skip
+    found = reduce_scan(
+        scan, level=options.level, height_scale=scale,
+        blur=Measured(options.blur_m, options.blur_m_std),
+    )  # fmt: skip
+    return Reduced(
+        source=path, values=_known(_values(found)), trials=found.trials(), notes=found.notes,
+        draw=lambda to: draw_crater(found, to),
+    )  # fmt: skip
+
+
+def _ball(path: Path, scan: object, options: Options) -> Reduced:
+    if isinstance(scan, LineScan):
+        raise InputError("a line profile", source=str(path), key="shows", allowed="a map of a ball")
+    found = reduce_ball(scan, reach=options.reach_m)  # type: ignore[arg-type]
+    # a radius is a length squared over a height
+    radius = found.radius.over(Measured(options.height_scale, options.height_scale_std))
+    values = {
+        "tip_radius_m": radius,
+        "roughness_m": Measured(found.rest, math.nan),
+        "reach_m": Measured(found.reach, math.nan),
+    }
+    return Reduced(
+        source=path, values=values, trials=(), notes=found.notes,
+        draw=lambda to: draw_ball(found, to), striker={"tip_radius_m": radius},
+    )  # fmt: skip
+
+
+def _values(found: Crater) -> dict[str, Measured]:
+    values = {
+        "permanent_depth_m": found.depth,
+        "pile_up_m": found.pile_up,
+        "crater_volume_m3": found.volume,
+    }
+    if found.is_scar:
+        return values | {
+            "scar_length_m": found.length,
+            "scar_width_m": found.width,
+            "scar_excess_m": found.sliding,
+            "scar_direction_deg": Measured(np.degrees(found.direction) % 180.0, math.nan),
+        }
+    across = Measured(
+        0.5 * (found.length.value + found.width.value),
+        0.5 * math.hypot(found.length.std, found.width.std),
+    )
+    return values | {"crater_diameter_m": across, "contact_radius_m": across.scaled(0.5)}
+
+
+def _known(values: dict[str, Measured]) -> dict[str, Measured]:
+    return {k: v for k, v in values.items() if math.isfinite(v.value)}

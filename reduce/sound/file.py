@@ -1,0 +1,124 @@
+"""Sound as one channel of samples: audio files, and the sound track of a video."""
+
+from __future__ import annotations
+
+import struct
+import warnings
+from dataclasses import dataclass
+from pathlib import Path
+
+import numpy as np
+
+from ...core.errors import InputError, missing_extra
+from ..measured import Array
+
+_LONGEST = 600.0
+"""Seconds of sound that are taken in."""
+
+
+@dataclass(frozen=True)
+class Sound:
+    """One channel of sound.
+
+    Parameters
+    ----------
+    samples
+        (n,), full scale is 1.
+    rate
+        Samples per second [1/s].
+    clipped
+        Part of the samples at full scale.
+    source
+        The file.
+    """
+
+    samples: Array
+    rate: float
+    clipped: float
+    source: str
+
+    @property
+    def time(self) -> Array:
+        """Time of each sample from the beginning of the file, (n,) [s]."""
+        return np.arange(self.samples.size) / self.rate
+
+
+def read_sound(path: Path) -> Sound:
+    """Read an audio file or a video's sound: WAV by itself, else whatever FFmpeg decodes.
+
+    Raises
+    ------
+    InputError
+        No sound that can be decoded, silence, or more than ten minutes.
+    """
+    with path.open("rb") as stream:
+        plain = stream.read(4) in (b"RIFF", b"RIFX") and path.suffix.lower() == ".wav"
+    samples, rate = _wave(path) if plain else _decoded(path)
+    if samples.size == 0 or not np.isfinite(samples).all() or np.ptp(samples) == 0.0:
+        raise InputError("silence", source=str(path), allowed="the sound of bounces")
+    clipped = float(np.mean(np.abs(samples) >= 0.999 * max(1.0, float(np.abs(samples).max()))))
+    return Sound(samples, rate, clipped, str(path))
+
+
+def _wave(path: Path) -> tuple[Array, float]:
+    """Return samples and rate of a WAV file, its channels averaged, full scale 1."""
+    from scipy.io import wavfile
+
+    try:
+        with warnings.catch_warnings():
+            warnings.simplefilter("ignore")  # chunks that are not samples
+            rate, found = wavfile.read(path, mmap=False)
+    except UnboundLocalError:  # scipy's answer to a file without a header of its format
+        raise InputError(
+            "no header of its format", source=str(path), allowed="a whole WAV file"
+        ) from None
+    except (ValueError, OSError, EOFError, struct.error, ZeroDivisionError, MemoryError) as error:
+        raise InputError(
+            f"cannot be decoded ({error})", source=str(path), allowed="a whole WAV file"
+        ) from None
+    if not 0 < rate < 10_000_000:
+        raise InputError(f"{rate} samples a second", source=str(path), allowed="a WAV file")
+    _check_length(found.shape[0], rate, path)
+    samples = found.astype(np.float64)
+    if found.dtype == np.uint8:
+        samples = (samples - 128.0) / 128.0
+    elif found.dtype.kind == "i":
+        samples /= float(np.iinfo(found.dtype).max) + 1.0
+    return samples.reshape(found.shape[0], -1).mean(axis=1), float(rate)
+
+
+def _check_length(count: int, rate: float, path: Path) -> None:
+    if count > _LONGEST * rate:
+        raise InputError(
+            f"more than {_LONGEST / 60.0:g} minutes",
+            source=str(path),
+            allowed="a shorter recording",
+        )
+
+
+def _decoded(path: Path) -> tuple[Array, float]:
+    """Return samples and rate of what FFmpeg decodes."""
+    try:
+        import av
+    except ImportError:
+        raise missing_extra("reading sound other than WAV", "video") from None
+    parts: list[Array] = []
+    total = 0
+    try:
+        with av.open(str(path)) as container:
+            if not container.streams.audio:
+                raise InputError("no sound in it", source=str(path), allowed="an audio file")
+            stream = container.streams.audio[0]
+            rate = int(stream.rate)
+            mono = av.AudioResampler(format="flt", layout="mono", rate=rate)
+            for frame in container.decode(stream):
+                for piece in mono.resample(frame):
+                    parts.append(piece.to_ndarray().ravel().astype(np.float64))
+                    total += parts[-1].size
+                _check_length(total, rate, path)
+    except av.FFmpegError as error:
+        text = getattr(error, "strerror", None) or type(error).__name__
+        raise InputError(
+            f"cannot be decoded ({text})", source=str(path), allowed="WAV, FLAC, OGG, MP3, M4A"
+        ) from None
+    return np.concatenate(parts) if parts else np.empty(0), float(rate)

@@ -1,0 +1,59 @@
+"""The sound of a bouncing ball, read, timed and drawn."""
+
+from __future__ import annotations
+
+import math
+from pathlib import Path
+
+import numpy as np
+
+from ...core.errors import InputError
+from ..bounces.times import reduce_bounce_times
+from ..measured import Measured
+from ..reduced import Reduced
+from .file import Sound, read_sound
+from .onsets import find_onsets
+from .options import Options
+from .picture import draw_sound
+
+
+def reduce(path: Path, options: Options) -> Reduced:
+    """Time the contacts by their sound and return the restitution of each bounce.
+
+    Raises
+    ------
+    InputError
+        The file cannot be decoded, or no run of bounces is heard.
+    """
+    sound = _part(read_sound(path), options)
+    onsets = find_onsets(
+        sound, least_rise_db=options.least_rise_db, least_interval=options.least_interval_s,
+        lowest_hz=options.lowest_hz,
+    )  # fmt: skip
+    if onsets.time.size < 3:
+        raise InputError(
+            f"{onsets.time.size} contacts are heard", source=str(path),
+            allowed="three or more (see --least-rise-db, --lowest-hz, --first-s, --last-s)",
+        )  # fmt: skip
+    found = reduce_bounce_times(onsets.time, options, std=onsets.std, source=str(path))
+    notes = list(found.notes)
+    if sound.clipped > 1e-3:
+        notes.append(f"{100.0 * sound.clipped:.2g} % of the samples are at full scale")
+    values = found.values() | {
+        "onset_std_s": Measured(float(np.median(found.time_std)), math.nan),
+        "contacts_heard": Measured(float(onsets.time.size), math.nan),
+    }
+    return Reduced(
+        source=path, values=values, trials=found.trials(), notes=tuple(notes),
+        draw=lambda to: draw_sound(sound, onsets, found, to),
+    )  # fmt: skip
+
+
+def _part(sound: Sound, options: Options) -> Sound:
+    part = sound.samples[options.keeps(sound.time)]
+    if part.size < 0.1 * sound.rate:
+        raise InputError(
+            f"{part.size / sound.rate:.3g} s of sound", source=sound.source, key="first_s",
+            allowed="a part of 0.1 s or more",
+        )  # fmt: skip
+    return Sound(part, sound.rate, sound.clipped, sound.source)

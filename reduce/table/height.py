@@ -1,0 +1,79 @@
+"""A table of heights against time: speeds before and after each contact."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+
+from ...core.errors import InputError
+from ..bounces.bounce import Bounced
+from ..bounces.contacts import find_bounces
+from ..bounces.fall import Ball
+from ..bounces.track import Track
+from ..measured import Array, Measured, Trial, labelled, labels
+
+
+@dataclass(frozen=True)
+class HeightReduction:
+    """Contacts in a track of heights, and the rows that they make."""
+
+    track: Track
+    found: Bounced
+    values: dict[str, Measured]
+    trials: tuple[Trial, ...]
+
+
+def reduce_heights(
+    time: Array, height: Array, *, metres: float | None, std: float, ball: Ball, source: str
+) -> HeightReduction:
+    """Fit the flights of a track and read the speeds at its contacts.
+
+    Parameters
+    ----------
+    time, height
+        (n,): increasing [s], upwards [the table's unit].
+    metres
+        Size of that unit [m]; None takes it from the acceleration of the fall.
+    std
+        Standard deviation of a height that is believed at least [unit].
+    ball
+        Gravity, and the drag as far as it is known.
+    source
+        The file.
+
+    Raises
+    ------
+    InputError
+        No contact with flight on both sides.
+    """
+    track = Track(time, height, floor=std)
+    found = find_bounces(track, ball, metres=None if metres is None else Measured(metres, 0.0))
+    if found is None:
+        raise InputError(
+            "no contact with flight before and after it", source=source,
+            allowed="heights of a body that falls, touches and rises (see --upwards, --first-s)",
+        )  # fmt: skip
+    trials = tuple(_trial(track, found, k) for k in range(len(found.bounces)))
+    values = labelled((trial.label, trial.observables) for trial in trials)
+    if metres is None and found.scale.known:
+        values["unit_m"] = found.scale.metres
+    if metres is not None and math.isfinite(found.fall.value):
+        values["fall_acceleration_m_s2"] = found.fall.scaled(metres)
+    return HeightReduction(track, found, values, trials)
+
+
+def _trial(track: Track, found: Bounced, k: int) -> Trial:
+    bounces, scale = found.bounces, found.scale.metres
+    bounce = bounces[k]
+    row, trace = {"restitution": bounce.restitution}, {}
+    if found.scale.known:
+        row["impact_speed_m_s"] = bounce.approach.times(scale)
+        row["rebound_speed_m_s"] = bounce.rebound.times(scale)
+        low = 0 if k == 0 else bounces[k - 1].turning
+        high = track.time.size if k + 1 == len(bounces) else bounces[k + 1].turning
+        touch = found.stage.floor + bounce.height.value
+        trace = {
+            "time_s": track.time[low:high] - bounce.time.value,
+            "tip_height_m": (track.height[low:high] - touch) * scale.value,
+        }
+    return Trial(row, found.notes, trace=trace, label=labels(len(bounces))[k])

@@ -1,0 +1,177 @@
+"""A table of what an instrument or a person wrote down, read, measured and drawn."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import numpy as np
+
+from ...core.errors import InputError
+from ..bounces.times import reduce_bounce_times
+from ..measured import Array, Measured
+from ..reduced import Reduced
+from .file import Columns, read_columns
+from .force import reduce_pulse
+from .height import reduce_heights
+from .options import Options
+from .picture import draw_heights, draw_pulse, draw_tension, draw_times, draw_trials
+from .tension import reduce_tension
+from .trials import reduce_leeb, reduce_rebounds, reduce_trials
+
+_FEWEST = 20
+
+
+def reduce(path: Path, options: Options) -> Reduced:
+    """Measure what a table holds.
+
+    Raises
+    ------
+    InputError
+        The table cannot be read, or does not hold what it should.
+    """
+    table = read_columns(path, sheet=options.sheet)
+    if options.select:
+        table = table.select(options.select)
+    if options.holds in ("force", "acceleration"):
+        return _pulse(path, table, options)
+    if options.holds == "height":
+        return _heights(path, table, options)
+    if options.holds == "bounces":
+        return _bounces(path, table, options)
+    if options.holds == "rebounds":
+        found = reduce_rebounds(
+            table, value=options.value, unit=options.value_unit, std=options.value_std,
+            ball=options.ball,
+        )  # fmt: skip
+    elif options.holds == "leeb":
+        found = reduce_leeb(
+            table, value=options.value, std=options.value_std, speed=options.approach_speed_m_s
+        )
+    elif options.holds == "tension":
+        return _tension(path, table, options)
+    else:
+        found = reduce_trials(table)
+    return Reduced(
+        source=path, values=found.values, trials=found.trials, notes=found.notes,
+        draw=lambda to: draw_trials(found, to),
+    )  # fmt: skip
+
+
+def _pulse(path: Path, table: Columns, options: Options) -> Reduced:
+    time, value, column = _series(table, options)
+    unit = options.gain
+    if unit is None and table.unit(column) in ("V", "mV"):
+        raise InputError(
+            f"column {table.names[column]!r} holds volts", source=str(path), key="gain",
+            allowed="newtons or m/s2 a volt, from the sensor's sheet",
+        )  # fmt: skip
+    if unit is None:
+        unit = table.factor(column, options.holds, given=options.value_unit, key="value_unit")
+    speed = options.approach_speed_m_s
+    found = reduce_pulse(
+        time, value * unit, holds=options.holds, mass=options.mass_kg,
+        approach=None if speed is None else Measured(speed, options.approach_speed_m_s_std),
+        gravity=options.gravity_m_s2, source=str(path),
+        scale_std=options.gain_std / unit if options.gain else 0.0,
+    )  # fmt: skip
+    return Reduced(
+        source=path, values=found.values, trials=(found.trial,), notes=found.notes,
+        draw=lambda to: draw_pulse(found, to),
+    )  # fmt: skip
+
+
+def _tension(path: Path, table: Columns, options: Options) -> Reduced:
+    at, value = table.find(options.time, key="time"), table.find(options.value, key="value")
+    parts = 0.01 if table.unit(at) == "%" else 1.0
+    unit = table.factor(value, "stress", given=options.value_unit, key="value_unit")
+    with np.errstate(over="ignore"):  # what is too large is refused as that
+        strain, stress = table.values[:, at] * parts, table.values[:, value] * unit
+    found = reduce_tension(
+        strain,
+        stress,
+        strain_is=options.strain_is,
+        E=options.E_Pa,
+        source=str(path),
+    )
+    return Reduced(
+        source=path, values=found.values, trials=(), notes=found.notes,
+        draw=lambda to: draw_tension(found, to), flow=(options.body, found.flow),
+    )  # fmt: skip
+
+
+def _heights(path: Path, table: Columns, options: Options) -> Reduced:
+    time, value, column = _series(table, options)
+    said = table.unit(column) if options.value_unit == "file" else options.value_unit
+    metres = None
+    if said != "px":
+        metres = table.factor(column, "length", given=options.value_unit, key="value_unit")
+    found = reduce_heights(
+        time, value if options.upwards == "up" else -value, metres=metres,
+        std=options.value_std, ball=options.ball, source=str(path),
+    )  # fmt: skip
+    rate = float(1.0 / np.median(np.diff(time)))
+    return Reduced(
+        source=path, values=found.values, trials=found.trials, notes=found.found.notes,
+        draw=lambda to: draw_heights(found, to), noise={"frame_rate_hz": rate},
+    )  # fmt: skip
+
+
+def _bounces(path: Path, table: Columns, options: Options) -> Reduced:
+    column = table.find(options.time, key="time")
+    unit = table.factor(column, "time", given=options.time_unit, key="time_unit", default="s")
+    times = table.values[:, column] * unit
+    times = times[np.isfinite(times)]
+    times = times[options.keeps(times)]
+    if times.size < 3:
+        raise InputError(
+            f"{times.size} instants", source=str(path), key="time", allowed="three or more"
+        )
+    if (np.diff(times) <= 0.0).any():
+        raise InputError(
+            "the instants do not increase", source=str(path), key="time",
+            allowed="the column of the times, not of the intervals",
+        )  # fmt: skip
+    std = None if options.time_std_s is None else np.full(times.size, options.time_std_s)
+    found = reduce_bounce_times(times, options, std=std, source=str(path))
+    return Reduced(
+        source=path, values=found.values(), trials=found.trials(), notes=found.notes,
+        draw=lambda to: draw_times(found, to),
+    )  # fmt: skip
+
+
+def _counts(column: Array) -> bool:
+    """Whether a column without a unit holds 0, 1, 2 ... instead of times."""
+    steps = np.diff(column[np.isfinite(column)])
+    return steps.size > 0 and bool(np.mean(steps == 1.0) > 0.9)
+
+
+def _series(table: Columns, options: Options) -> tuple[Array, Array, int]:
+    """Time [s], numbers as they stand, and their column."""
+    where = table.find(options.time, key="time")
+    column = table.find(options.value, key="value")
+    second = table.factor(where, "time", given=options.time_unit, key="time_unit", default="s")
+    if options.rate_hz is not None:
+        second = 1.0 / options.rate_hz
+    elif options.time_unit == "file" and not table.unit(where) and _counts(table.values[:, where]):
+        raise InputError(
+            "the column counts samples", source=table.source, key="rate_hz",
+            allowed="samples a second, or time_unit if these are times",
+        )  # fmt: skip
+    time, value = table.values[:, where] * second, table.values[:, column]
+    whole = np.isfinite(time) & np.isfinite(value)
+    time, value = time[whole], value[whole]
+    part = options.keeps(time)
+    time, value = time[part], value[part]
+    # a tracker that begins anew writes its frames again further down
+    ahead = time > np.concatenate([[-np.inf], np.maximum.accumulate(time)[:-1]])
+    if time.size and ahead.sum() < 0.5 * time.size:
+        raise InputError(
+            "the times do not increase", source=table.source, key="time",
+            allowed="a column of times, or of numbers of samples with rate_hz",
+        )  # fmt: skip
+    if ahead.sum() < _FEWEST:
+        raise InputError(
+            f"{int(ahead.sum())} rows with a time and a value", source=table.source, key="value",
+            allowed=f"{_FEWEST} or more",
+        )  # fmt: skip
+    return time[ahead], value[ahead], column

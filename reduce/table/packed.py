@@ -1,0 +1,145 @@
+"""Tables within other files: a packed export of phyphox, the tracks of a Tracker project."""
+
+from __future__ import annotations
+
+import zipfile
+from pathlib import Path, PurePosixPath
+from typing import Any
+from xml.etree import ElementTree
+
+import numpy as np
+
+from ...core.errors import InputError
+
+_LARGEST = 200_000_000
+_TABLES = (".csv", ".txt", ".tsv")
+
+
+def packed_table(path: Path, member: str) -> tuple[bytes, str]:
+    """Return the text of one table of a packed export, and its name.
+
+    Parameters
+    ----------
+    path
+        A ZIP file, as phyphox writes them.
+    member
+        Name of the table with or without its ending; the only one if empty.
+
+    Raises
+    ------
+    InputError
+        Not a ZIP file, no such table, or several without a name.
+    """
+    try:
+        with zipfile.ZipFile(path) as archive:
+            tables = [
+                i for i in archive.infolist()
+                # the folder meta holds the device, not the measurement
+                if i.filename.lower().endswith(_TABLES) and "meta/" not in i.filename
+            ]  # fmt: skip
+            known = {PurePosixPath(i.filename).stem: i for i in tables}
+            wanted = PurePosixPath(member).stem if member else ""
+            if (wanted and wanted not in known) or (not wanted and len(known) != 1):
+                raise InputError(
+                    f"no table {member!r}" if member else f"{len(known)} tables", source=str(path),
+                    key="sheet", allowed=", ".join(known) or " ".join(_TABLES),
+                )  # fmt: skip
+            chosen = known[wanted] if wanted else next(iter(known.values()))
+            if chosen.file_size > _LARGEST:
+                raise InputError(
+                    f"{chosen.file_size / 1e6:.0f} MB unpacked", source=str(path),
+                    allowed=f"up to {_LARGEST // 10**6} MB",
+                )  # fmt: skip
+            return archive.read(chosen), f"{path}/{chosen.filename}"
+    except (zipfile.BadZipFile, RuntimeError, NotImplementedError, OSError, EOFError) as error:
+        raise InputError(
+            f"cannot be unpacked ({error})", source=str(path), allowed="a ZIP file without password"
+        ) from None
+    except zipfile.zlib.error as error:  # type: ignore[attr-defined]
+        raise InputError(
+            f"cannot be unpacked ({error})", source=str(path), allowed="a whole ZIP file"
+        ) from None
+
+
+def tracker_rows(path: Path, track: str) -> tuple[list[str], list[list[float]]]:
+    """Return names and rows (time, x, y) of one point mass of a Tracker project.
+
+    The places are those in the picture turned into the project's axes and scale; without a
+    calibration the scale is 1 and the unit the pixel. Without `delta_t`, the milliseconds of a
+    frame, the first column counts frames.
+
+    Raises
+    ------
+    InputError
+        Not such a file, or no such track.
+    """
+    raw = path.read_bytes()
+    if b"<!ENTITY" in raw or len(raw) > _LARGEST:
+        raise InputError("not a plain project", source=str(path), allowed="a TRK file of Tracker")
+    try:
+        root = ElementTree.fromstring(raw)
+    except (ElementTree.ParseError, ValueError, LookupError) as error:
+        raise InputError(
+            f"cannot be read ({error})", source=str(path), allowed="a TRK file of Tracker"
+        ) from None
+    masses = {
+        _text(o, "name"): o for o in root.iter("object")
+        if o.get("class", "").endswith("tracker.PointMass")
+    }  # fmt: skip
+    if (track and track not in masses) or (not track and len(masses) != 1):
+        raise InputError(
+            f"no track {track!r}" if track else f"{len(masses)} tracks", source=str(path),
+            key="sheet", allowed=", ".join(masses) or "a project with a point mass",
+        )  # fmt: skip
+    mass = masses[track] if track else next(iter(masses.values()))
+    frames = [
+        (int(p.get("name", "")[1:-1]), _number(p, "x"), _number(p, "y"))
+        for p in _property(mass, "framedata").findall("property")
+        if p.get("name", "")[1:-1].isdigit()
+    ]
+    step, axes = _number(root, "delta_t") / 1e3, _axes(root)
+    timed = step > 0.0
+    turn = np.exp(1j * np.radians(axes["angle"]))
+    rows = []
+    for frame, x, y in sorted(frames):
+        # rows of a picture grow downwards
+        place = complex(x - axes["xorigin"], axes["yorigin"] - y) / turn
+        at = [
+            frame * (step if timed else 1.0),
+            place.real / axes["xscale"],
+            place.imag / axes["yscale"],
+        ]
+        if np.isfinite(at).all():
+            rows.append(at)
+    if not rows:
+        raise InputError("no position", source=str(path), allowed="a track with positions")
+    unit = next(
+        (p.text or "m" for p in root.iter("property") if p.get("name") == "length_unit"), "m"
+    )
+    unit = "px" if axes["xscale"] == 1.0 == axes["yscale"] else unit
+    return ["t [s]" if timed else "frame", f"x [{unit}]", f"y [{unit}]"], rows
+
+
+def _property(parent: Any, name: str) -> Any:
+    found = next((p for p in parent.iter("property") if p.get("name") == name), None)
+    return ElementTree.Element("property") if found is None else found
+
+
+def _text(parent: Any, name: str) -> str:
+    return _property(parent, name).text or ""
+
+
+def _number(parent: Any, name: str, otherwise: float = np.nan) -> float:
+    try:
+        return float(_text(parent, name))
+    except ValueError:
+        return otherwise
+
+
+def _axes(root: Any) -> dict[str, float]:
+    usual = {"xorigin": 0.0, "yorigin": 0.0, "angle": 0.0, "xscale": 1.0, "yscale": 1.0}
+    first = next(
+        (o for o in root.iter("object") if "ImageCoordSystem$FrameData" in o.get("class", "")), root
+    )
+    found = {name: _number(first, name, value) for name, value in usual.items()}
+    return found if found["xscale"] and found["yscale"] else {**found, "xscale": 1.0, "yscale": 1.0}

@@ -1,0 +1,233 @@
+"""A pulse of force or acceleration: its peak, its ends, and the area under it.
+
+Where the bodies touch and part the force follows a power of the time: 3/2 of an elastic sphere, 1
+of a plastic dent or of a spring. The flanks above the noise tell where it meets zero, by each power
+as far as it fits.
+"""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+
+import numpy as np
+import numpy.typing as npt
+from scipy.optimize import least_squares
+from scipy.signal import savgol_filter
+
+from ...core.errors import InputError
+from ..measured import Array, Measured
+from ..regression import robust_std, unit_covariance
+from .shape import shape_of
+
+_LOW, _HIGH = 0.06, 0.45
+"""Part of the peak between which the flanks tell the ends."""
+
+_POWERS, _FEWEST = (1.5, 1.2, 1.0), 6
+
+_LEAST = 8.0
+"""Peak in standard deviations of the noise that is still a pulse."""
+
+
+@dataclass(frozen=True)
+class Pulse:
+    """The largest pulse of a record.
+
+    Parameters
+    ----------
+    time, value
+        (n,): the whole record, its baseline taken off and the pulse upwards [s, unit].
+    baseline, noise
+        Of the record before the pulse [unit].
+    peak, peak_time
+        Largest value [unit] and its time [s].
+    start, end
+        Where the flanks meet zero [s].
+    area
+        Under the pulse between both ends [unit s].
+    inside
+        Which samples lie between both ends, (n,).
+    notes
+        What the reader should know.
+    """
+
+    time: Array
+    value: Array
+    baseline: float
+    noise: float
+    peak: Measured
+    peak_time: float
+    start: Measured
+    end: Measured
+    area: Measured
+    inside: npt.NDArray[np.bool_]
+    notes: tuple[str, ...]
+
+    @property
+    def duration(self) -> Measured:
+        """From the first to the last end [s]."""
+        return self.end.minus(self.start)
+
+
+def find_pulse(time: Array, value: Array, *, source: str) -> Pulse:
+    """Return the largest pulse of a record, of either sign.
+
+    Parameters
+    ----------
+    time, value
+        (n,), time increasing.
+    source
+        The file.
+
+    Raises
+    ------
+    InputError
+        Too few samples, nothing above the noise, or no whole pulse: what it looks like.
+    """
+    if time.size < 20:
+        raise InputError(f"{time.size} samples", source=source, allowed="20 or more")
+    top = int(np.argmax(np.abs(value - np.median(value))))
+    baseline, noise, before = _baseline(value, top)
+    flipped = math.copysign(1.0, value[top] - baseline)
+    clear = flipped * (value - baseline)
+    if not clear[top] > _LEAST * noise:
+        raise InputError(
+            f"the largest value is {clear[top] / max(noise, 1e-300):.2g} times the noise",
+            source=source, allowed=f"a pulse of {_LEAST:g} times the noise or more",
+        )  # fmt: skip
+    notes = []
+    if before < 10:
+        notes.append("fewer than 10 samples before the pulse: its zero is taken as the record's")
+    peak, peak_time = _peak(time, clear, top, noise)
+    start, used_a = _flank(time, clear, top, -1, peak.value)
+    end, used_b = _flank(time, clear, top, +1, peak.value)
+    if min(used_a, used_b) < 4:
+        notes.append(f"only {min(used_a, used_b)} samples on a flank: the ends are rough")
+    shape = shape_of(time, clear, top, (start.value, end.value), source=source)
+    if shape.ringing:
+        notes.append(
+            f"rings: {shape.ringing:.0%} of the peak to the other side; peak and ends are as rough"
+        )
+        peak = Measured(peak.value, math.hypot(peak.std, 0.25 * shape.ringing * peak.value))
+        rough = 0.1 * shape.ringing * (end.value - start.value)
+        start, end = (Measured(e.value, math.hypot(e.std, rough)) for e in (start, end))
+    if shape.others:
+        when = ", ".join(f"{t:.6g}" for t in shape.others[:5])
+        notes.append(
+            f"the largest of {1 + len(shape.others)} pulses; others at {when} s: first_s and "
+            "last_s pick one"
+        )
+    inside = (time >= start.value) & (time <= end.value)
+    area = float(np.trapezoid(clear[inside], time[inside]))
+    step = float(np.median(np.diff(time)))
+    drift = noise / math.sqrt(max(before, 1)) * (end.value - start.value)
+    late = 0.5 * shape.level_after * peak.value * (end.value - start.value)
+    if abs(shape.level_after) > 0.02:
+        notes.append(
+            f"the level afterwards is {shape.level_after:+.0%} of the peak: a zero that drifts"
+        )
+    scatter = noise * step * math.sqrt(max(int(inside.sum()), 1))
+    area_std = math.hypot(scatter, drift, late)
+    if inside[0] and inside[-1]:
+        raise InputError(
+            "the record does not rise from zero and come back", source=source,
+            allowed="a pulse with both of its ends",
+        )  # fmt: skip
+    if inside[0] or inside[-1]:
+        notes.append("the pulse runs over an end of the record")
+    return Pulse(
+        time, clear, baseline, noise, peak, peak_time, start, end, Measured(area, area_std), inside,
+        tuple(notes),
+    )  # fmt: skip
+
+
+def _baseline(value: Array, top: int) -> tuple[float, float, int]:
+    """Level and noise before the pulse, and how many samples tell them."""
+    height = abs(value[top] - np.median(value))
+    level = float(np.median(value[: max(top // 2, 1)]))
+    high = np.flatnonzero(np.abs(value[:top] - level) > 0.02 * height)
+    # the flank itself begins a little before the last sample that is still quiet
+    quiet = high[0] if high.size else top
+    before = int(0.8 * quiet)
+    if before < 10:
+        return 0.0, robust_std(np.diff(value)) / math.sqrt(2.0), before
+    part = value[:before]
+    return float(np.mean(part)), max(float(np.std(part)), 1e-12 * height), before
+
+
+def _peak(time: Array, clear: Array, top: int, noise: float) -> tuple[Measured, float]:
+    """Peak by a local parabola over the samples above 90 % of the highest one."""
+    high = clear > 0.9 * clear[top]
+    low, up = top, top
+    while low > 0 and high[low - 1]:
+        low -= 1
+    while up + 1 < clear.size and high[up + 1]:
+        up += 1
+    if up - low < 4:
+        return Measured(float(clear[top]), max(noise, 0.02 * float(clear[top]))), float(time[top])
+    width = min(up - low + 1, 51) // 2 * 2 + 1
+    window = slice(max(low - width, 0), min(up + width + 1, clear.size))
+    smooth = savgol_filter(clear[window], min(width, clear[window].size // 2 * 2 - 1), 2)
+    best = int(np.argmax(smooth))
+    return (
+        Measured(float(smooth[best]), noise * 1.5 / math.sqrt(width)),
+        float(time[window][best]),
+    )
+
+
+def _flank(time: Array, clear: Array, top: int, step: int, peak: float) -> tuple[Measured, int]:
+    """Where one flank meets zero, and the number of samples that say so."""
+    k, flank = top, []
+    limit = clear.size - 1 if step > 0 else 0
+    while k != limit and clear[k] > _LOW * peak:
+        k += step
+        if _LOW * peak < clear[k] < _HIGH * peak:
+            flank.append(k)
+    if len(flank) < 2:  # a flank between two samples
+        return _through(time, clear, k, k - step), len(flank)
+    if len(flank) < _FEWEST:
+        return _through(time, clear, flank[-1], flank[0]), len(flank)
+    index = np.sort(np.array(flank))
+    return _meets_zero(time[index], clear[index] / peak, step), len(flank)
+
+
+def _through(time: Array, clear: Array, outer: int, inner: int) -> Measured:
+    """Where the line through two samples of an elastic flank, F^(2/3), meets zero."""
+    far, near = float(time[outer]), float(time[inner])
+    low, high = max(float(clear[outer]), 0.0) ** (2 / 3), float(clear[inner]) ** (2 / 3)
+    at = far - low * (near - far) / (high - low) if high > low else far
+    return Measured(at, 0.3 * abs(near - far))
+
+
+def _meets_zero(t: Array, force: Array, step: int) -> Measured:
+    """Mean over the powers of F = (a s (1 - b s²))^p, s from the end, each as likely as it fits.
+
+    The striker slows down away from the end: b is 1/6 of a spring, F = sin s.
+    """
+    scale = float(np.ptp(t))
+    s = -step * (t - t[0 if step < 0 else -1]) / scale  # grows from the end inwards
+    ends, variances, spreads = [], [], []
+    for power in _POWERS:
+
+        def model(s: Array, at: float, a: float, b: float, power: float = power) -> Array:
+            late = np.maximum(s - at, 0.0)
+            return np.asarray(np.maximum(a * late * (1.0 - b * late**2), 0.0) ** power)
+
+        slope, level = np.polyfit(s, force ** (1.0 / power), 1)
+        first = (float(np.clip(-level / slope, -2.0, 0.5)), slope) if slope > 0.0 else (-0.5, 1.0)
+        fit = least_squares(
+            lambda c, m=model: m(s, *c) - force, (*first, 0.0),
+            bounds=((-3.0, 0.0, -0.1), (0.9, np.inf, 0.3)), x_scale="jac", max_nfev=50,
+        )  # fmt: skip
+        sigma = max(float(np.std(fit.fun)) * math.sqrt(s.size / (s.size - 3.0)), 1e-6)
+        ends.append(float(fit.x[0]))
+        variances.append(sigma**2 * float(unit_covariance(fit.jac)[0, 0]))
+        spreads.append(sigma)
+    belief = (min(spreads) / np.array(spreads)) ** s.size
+    belief /= belief.sum()
+    at = float(belief @ ends)
+    between = np.ptp(ends) / (len(ends) - 1)  # the power lies between those that are tried
+    variance = float(belief @ (variances + (np.array(ends) - at) ** 2)) + between**2 / 12.0
+    end = t[0 if step < 0 else -1] - step * scale * at
+    rough = 0.1 * float(np.median(np.diff(t)))
+    return Measured(float(end), max(scale * math.sqrt(variance), rough))

@@ -1,0 +1,241 @@
+"""Radius of a tip from a photograph: sub-pixel edge along rays, robust circle, uncertainty.
+
+Along each ray from the middle of the circle the grey values are a blurred step between the local
+levels of body and ground, so that uneven light does not move the edge. Blur moves the edge of a
+disc inwards by σ²/(2R), which is put back.
+"""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass, replace
+
+import numpy as np
+import numpy.typing as npt
+from scipy.ndimage import binary_fill_holes
+
+from ...core.errors import InputError
+from ..images.silhouette import body_mask
+from ..measured import Array, Measured
+from ..regression import robust_regression, robust_std
+from .circle import INNER, fit_circle, radius_std
+from .edge import find_edges
+
+
+@dataclass(frozen=True)
+class TipReduction:
+    """The fitted circle, in pixels unless said otherwise.
+
+    Parameters
+    ----------
+    x, y, radius
+        Middle (column, row) and radius of the circle.
+    edge
+        (n, 2) columns and rows of the edge points.
+    used
+        (n,) points within the final fit.
+    residual
+        (n,) distance of the points outside the circle.
+    blur
+        Standard deviation of the blur.
+    arc
+        Angle that the used points span [rad].
+    sides
+        Left and right side of a rod as column = a + b row, or None.
+    width
+        Of the rod, nan for a ball.
+    scale
+        Size of a pixel [m], nan where it is not known.
+    """
+
+    x: float
+    y: float
+    radius: Measured
+    edge: Array
+    used: npt.NDArray[np.bool_]
+    residual: Array
+    blur: float
+    arc: float
+    sides: tuple[tuple[float, float], tuple[float, float]] | None
+    width: Measured
+    scale: Measured
+    notes: tuple[str, ...]
+
+    @property
+    def roundness(self) -> float:
+        """Root mean square distance of the used edge from the circle [pixel]."""
+        return float(np.sqrt(np.mean(self.residual[self.used] ** 2)))
+
+    @property
+    def tip_radius(self) -> Measured:
+        """Radius [m], with the error of the scale; nan without a scale."""
+        return self.radius.times(self.scale)
+
+
+def reduce_tip(
+    picture: npt.NDArray[np.uint8],
+    *,
+    shape: str = "rod",
+    striker_is: str = "dark",
+    scale: Measured | None = None,
+    diameter: Measured | None = None,
+    source: str = "",
+) -> TipReduction:
+    """Fit a circle to the tip of a body.
+
+    Parameters
+    ----------
+    picture
+        (rows, columns) grey values, the tip pointing down.
+    shape
+        `"rod"`, which enters from above, or `"sphere"`, wholly in view.
+    striker_is
+        `"dark"` on a bright ground, or `"bright"`.
+    scale
+        Size of a pixel [m].
+    diameter
+        Of the rod [m], from which the size of a pixel follows.
+
+    Raises
+    ------
+    InputError
+        No body, or too little of its edge.
+    """
+    grey = picture.astype(np.float64)
+    if striker_is == "dark":
+        grey = 255.0 - grey
+    mask = _mask(grey, source)
+    sides, width = None, Measured(math.nan, math.nan)
+    if shape == "rod":
+        sides, width, start, reach = _rod(grey, mask, source)
+    else:
+        start, reach = _ball(mask, source), math.inf
+    x, y, radius, edge, used = fit_circle(grey, start, reach, source)
+    points = np.stack([edge.x, edge.y], axis=1)
+    off = np.hypot(points[:, 0] - x, points[:, 1] - y) - radius
+    blur = float(np.median(edge.blur[used]))
+    std = radius_std(points, used, (x, y, radius))
+    angles = np.arctan2(points[used, 0] - x, points[used, 1] - y)
+    arc = float(np.ptp(angles))
+    true = Measured(radius + 0.5 * blur**2 / radius, std)
+    size = scale
+    if size is None and diameter is not None and math.isfinite(width.value):
+        size = diameter.over(width)
+    found = TipReduction(
+        x, y, true, points, used, off, blur, arc, sides, width,
+        size or Measured(math.nan, math.nan), (),
+    )  # fmt: skip
+    return _with_notes(found)
+
+
+def _mask(grey: Array, source: str) -> npt.NDArray[np.bool_]:
+    from skimage.filters import threshold_otsu
+
+    if np.ptp(grey) < 10.0:
+        raise InputError("the picture has no contrast", source=source, allowed="a tip in view")
+    mask = np.asarray(binary_fill_holes(body_mask(grey, float(threshold_otsu(grey)))))
+    if mask.sum() < 200:
+        raise InputError(
+            f"the largest body has {mask.sum()} pixels", source=source,
+            allowed="200 or more (see --striker-is, --crop, --channel)",
+        )  # fmt: skip
+    return mask
+
+
+def _ball(mask: npt.NDArray[np.bool_], source: str) -> tuple[float, float, float, float]:
+    if mask[0].any() or mask[-1].any() or mask[:, [0, -1]].any():
+        raise InputError(
+            "the body touches the edge of the picture", source=source, allowed="a ball wholly in it"
+        )
+    rows, columns = np.nonzero(mask)
+    return float(columns.mean()), float(rows.mean()), math.sqrt(mask.sum() / math.pi), 0.0
+
+
+def _rod(
+    grey: Array, mask: npt.NDArray[np.bool_], source: str
+) -> tuple[
+    tuple[tuple[float, float], tuple[float, float]],
+    Measured,
+    tuple[float, float, float, float],
+    float,
+]:
+    """Return sides, width, a first circle, and how far from the axis the cap is read."""
+    rows = np.flatnonzero(mask.any(axis=1))
+    if rows[0] > 1 or rows[-1] >= mask.shape[0] - 2 or rows.size < 30:
+        raise InputError(
+            "the body does not enter from above and end in the picture", source=source,
+            allowed="a rod whose tip points down (see --tip-points)",
+        )  # fmt: skip
+    widths = mask[rows].sum(axis=1)
+    full = float(np.median(widths[: max(rows.size // 4, 5)]))
+    # where the body is as wide as at the top it has straight sides
+    straight = rows[: max(int(np.argmax(widths < full - 2.0)), 0)]
+    if straight.size < 12:
+        raise InputError(
+            f"only {straight.size} rows show the sides of the rod", source=source,
+            allowed="12 or more above the tip",
+        )  # fmt: skip
+    left, right = (_side(grey, mask, straight, way) for way in (-1, 1))
+    lean = math.atan(0.5 * (left[1] + right[1]))
+    middle = float(straight.mean())
+    span = (right[0] + right[1] * middle) - (left[0] + left[1] * middle)
+    width = Measured(span * math.cos(lean), math.hypot(left[2], right[2]))
+    bottom = float(rows[-1]) + 0.5
+    half = 0.5 * width.value
+    sides = ((left[0], left[1]), (right[0], right[1]))
+    axis = 0.5 * (left[0] + right[0] + (left[1] + right[1]) * bottom)
+    radius = _first_radius(mask, half, axis, bottom, lean)
+    x, y = axis - radius * math.sin(lean), bottom - radius * math.cos(lean)
+    return sides, width, (x, y, radius, lean), half
+
+
+def _side(
+    grey: Array, mask: npt.NDArray[np.bool_], rows: npt.NDArray[np.int_], way: int
+) -> tuple[float, float, float]:
+    """Fit one side of a rod as column = a + b row; a, b and the error in the middle."""
+    first = np.argmax(mask[rows], axis=1).astype(np.float64) - 0.5
+    if way > 0:
+        first = mask.shape[1] - 0.5 - np.argmax(mask[rows, ::-1], axis=1)
+    edge = find_edges(grey, first, rows.astype(np.float64), np.full(rows.size, float(way)),
+                  np.zeros(rows.size))  # fmt: skip
+    middle = float(rows.mean())
+    row, column = rows[edge.good] - middle, edge.x[edge.good]
+    if row.size < 8:
+        return float(np.median(first)), 0.0, 0.5
+    fit = robust_regression(np.stack([np.ones_like(row), row], axis=1), column, floor=1e-3)
+    a, b = fit.coefficients
+    return float(a - b * middle), float(b), float(np.sqrt(fit.covariance[0, 0]))
+
+
+def _first_radius(
+    mask: npt.NDArray[np.bool_], half: float, axis: float, bottom: float, lean: float
+) -> float:
+    columns = np.arange(mask.shape[1])
+    ends = mask.shape[0] - 0.5 - np.argmax(mask[::-1], axis=0)
+    off = (columns - axis) * math.cos(lean) + (ends - bottom) * math.sin(lean)
+    up = (columns - axis) * math.sin(lean) - (ends - bottom) * math.cos(lean)
+    inside = mask.any(axis=0) & (np.abs(off) < INNER * half)
+    curve = np.polyfit(off[inside], up[inside], 2)[0] if inside.sum() > 5 else 0.0
+    return float(np.clip(0.5 / max(curve, 1e-9), 0.9 * half, 50.0 * half))
+
+
+def _with_notes(found: TipReduction) -> TipReduction:
+    notes = [
+        f"{int(found.used.sum())} of {found.used.size} edge points over "
+        f"{math.degrees(found.arc):.0f} deg; off the circle by {found.roundness:.3f} pixel; "
+        f"blur {found.blur:.2f} pixel"
+    ]
+    if not math.isfinite(found.scale.value):
+        notes.append("no length scale: give the size of a pixel or the diameter of the rod")
+    apex = np.abs(found.edge[:, 0] - found.x) < 0.15 * found.radius.value * found.arc / 2.0
+    apex &= found.used | (np.abs(found.residual) < 10.0)
+    if apex.sum() >= 5:
+        inside = -float(np.median(found.residual[apex]))
+        spread = robust_std(found.residual[found.used & ~apex]) or 1e-3
+        if inside > max(4.0 * spread / math.sqrt(apex.sum()), 0.1, 1.5 * spread):
+            flat = math.sqrt(2.0 * found.radius.value * inside)
+            notes.append(
+                f"the apex lies {inside:.2f} pixel inside the circle: a flat of about "
+                f"{flat:.1f} pixel radius?"
+            )
+    return replace(found, notes=tuple(notes))

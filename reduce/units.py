@@ -1,0 +1,58 @@
+"""Units that raw files may be in, each with its size in that of a recording set."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterable
+
+from ..core.errors import InputError
+
+STANDARD_GRAVITY = 9.80665
+POUND_FORCE = 4.4482216152605
+"""Both exact by definition (NIST SP 811)."""
+
+LENGTH = {
+    "m": 1.0, "cm": 1e-2, "mm": 1e-3, "um": 1e-6, "µm": 1e-6, "μm": 1e-6, "nm": 1e-9, "pm": 1e-12,
+    "Å": 1e-10, "in": 0.0254,
+}  # fmt: skip
+"""With both signs for micro."""
+TIME = {"s": 1.0, "ms": 1e-3, "us": 1e-6, "µs": 1e-6, "min": 60.0}
+UNITS: dict[str, dict[str, float]] = {
+    "time": TIME,
+    "length": LENGTH,
+    "force": {"N": 1.0, "kN": 1e3, "mN": 1e-3, "lbf": POUND_FORCE, "kgf": STANDARD_GRAVITY},
+    "acceleration": {
+        "m/s2": 1.0, "m/s^2": 1.0, "m/s²": 1.0, "g": STANDARD_GRAVITY, "kg": 1e3 * STANDARD_GRAVITY,
+    },
+    "speed": {"m/s": 1.0, "mm/s": 1e-3, "cm/s": 1e-2, "km/h": 1.0 / 3.6},
+    "angle": {"deg": 1.0, "°": 1.0, "rad": math.degrees(1.0)},
+    "spin": {"rad/s": 1.0, "deg/s": math.radians(1.0), "rpm": math.pi / 30.0, "1/s": math.tau},
+    "stress": {"Pa": 1.0, "kPa": 1e3, "MPa": 1e6, "GPa": 1e9, "N/mm2": 1e6, "psi": 6894.757293,
+               "ksi": 6894757.293},
+    "temperature": {"K": 1.0},
+    "number": {"": 1.0, "-": 1.0, "%": 1e-2},
+}  # fmt: skip
+"""Quantity, and its units in those of the recording set (kg among accelerations: 1000 g)."""
+
+
+def metres(unit: str, *, source: str, allowed: Iterable[str]) -> float:
+    """Return the size of a unit of length [m].
+
+    Parameters
+    ----------
+    unit
+        As the file or the user says it; empty if neither does.
+    source
+        The file.
+    allowed
+        Units that such a file may be in.
+
+    Raises
+    ------
+    InputError
+        No unit, or not one of the allowed.
+    """
+    if unit in LENGTH and unit in allowed:
+        return LENGTH[unit]
+    said = f"unit of length {unit!r}" if unit else "the file does not say its unit of length"
+    raise InputError(said, source=source, key="unit", allowed=", ".join(allowed))

@@ -1,0 +1,52 @@
+"""A video or a folder of pictures, read, tracked and drawn."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+from ...core.errors import InputError
+from ..images.clip import read_clip
+from ..images.picture_file import crop_window
+from ..measured import Measured, labelled
+from ..reduced import Reduced
+from .options import Options
+from .picture import draw_video
+from .reduction import Optics, VideoReduction, reduce_video
+
+
+def reduce(path: Path, options: Options) -> Reduced:
+    """Track the striker and read its speeds before and after each contact.
+
+    Raises
+    ------
+    InputError
+        The clip cannot be read, or shows no striker or no contact.
+    """
+    last = options.last_frame
+    if last is not None and last < options.first_frame:
+        raise InputError(f"{last}", key="last_frame", allowed=f"{options.first_frame} or more")
+    clip = read_clip(
+        path, channel=options.channel, down=options.down, first=options.first_frame, last=last,
+        crop=crop_window(options.crop),
+    )  # fmt: skip
+    optics = Optics(
+        rate=options.frame_rate_hz,
+        scale=options.pixel,
+        size=options.diameter,
+        ball=options.ball_of(options.diameter_m),
+        line_time=options.line_time_s,
+    )
+    found = reduce_video(
+        clip, optics, shape=options.shape, striker_is=options.striker_is,
+        background=options.background,
+    )  # fmt: skip
+    return Reduced(
+        source=path, values=_values(found), trials=found.trials(), notes=found.notes,
+        draw=lambda picture: draw_video(found, clip, picture),
+        noise={"frame_rate_hz": found.optics.rate},
+    )  # fmt: skip
+
+
+def _values(found: VideoReduction) -> dict[str, Measured]:
+    values = {"half_width_pixel": found.half_width, "pixel_m": found.scale}
+    return values | labelled((t.label, t.observables) for t in found.trials())

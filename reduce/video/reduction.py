@@ -1,0 +1,287 @@
+"""High-speed video to approach and rebound speed of a falling rod or ball.
+
+As chapter 3 of the thesis does it, with sub-pixel positions and uncertainties: the critical frame
+is the one with the fewest dark pixels, the threshold lies between the two grey levels of that
+frame, the tip is followed through all frames, the lean is checked on both sides of the contact,
+and the speeds come from robust fits of free flight. Time is the camera's, not the container's.
+"""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass, replace
+
+import numpy as np
+import numpy.typing as npt
+
+from ...core.errors import InputError
+from ..bounces.bounce import Bounce, Bounced
+from ..bounces.contacts import find_bounces
+from ..bounces.fall import UNKNOWN, Ball
+from ..bounces.track import Track
+from ..images.clip import Clip
+from ..measured import Array, Measured, Trial, labels
+from .tracking import grey_levels, striker_bright, track_ball, track_rod
+
+_LEAN_FRAMES = 20
+_LEAN_LIMIT = math.radians(5.0)
+
+_POSITION_FLOOR, _POSITION_TREND = 1e-3, 5e-3
+"""No position in a picture is believed better than the first; by the second uneven light and a blur
+that is not the same everywhere move it from one end of a flight to the other [pixel]."""
+
+_NEAR_BLURS, _UNSURE = 3.5, 0.1
+"""Blurs above the flat within which the reflection of a rod, modelled or not, moves its tip, and by
+how much it did in rendered clips [pixel]."""
+
+
+@dataclass(frozen=True)
+class Optics:
+    """How the picture becomes metres and seconds.
+
+    Parameters
+    ----------
+    rate
+        The camera's own frames per second [1/s].
+    scale
+        Size of a pixel [m], or None.
+    size
+        Diameter of the striker [m], from which the scale follows, or None.
+    ball
+        Gravity, which gives the scale where the fall is long enough, and drag as far as known.
+    line_time
+        From one row of the picture to the next, of a shutter that rolls down [s].
+    """
+
+    rate: float
+    ball: Ball = UNKNOWN
+    scale: Measured | None = None
+    size: Measured | None = None
+    line_time: float = 0.0
+
+    def time(self, frame: npt.NDArray[np.int64], row: Array) -> Array:
+        """Return when a row of a frame was exposed, (n,) [s]."""
+        return np.asarray(frame / self.rate + self.line_time * row)
+
+
+@dataclass(frozen=True)
+class VideoReduction:
+    """A tracked clip and the contacts in it.
+
+    Parameters
+    ----------
+    frame
+        (n,) numbers of the frames in which the striker was found.
+    column, row
+        (n,) tip of the rod on its axis, or centre of the ball [pixel].
+    row_std
+        (n,) standard deviation of `row` by the fit, nan for a ball [pixel].
+    lean
+        (n,) lean of the rod to the right [rad], 0 for a ball.
+    critical_frame, threshold, levels
+        Frame with the fewest dark pixels, grey level between body and background, both levels.
+    half_width
+        Half the width of the rod, or radius of the ball [pixel].
+    found
+        Contacts in pixels and seconds, and the size of a pixel [m]; nan leaves only ratios.
+    """
+
+    frame: npt.NDArray[np.int64]
+    column: Array
+    row: Array
+    row_std: Array
+    lean: Array
+    shape: str
+    critical_frame: int
+    threshold: float
+    levels: tuple[float, float]
+    half_width: Measured
+    tip_radius: float
+    optics: Optics
+    found: Bounced
+    notes: tuple[str, ...]
+    source: str
+
+    @property
+    def time(self) -> Array:
+        """Time of each tracked frame, (n,) [s]."""
+        return self.optics.time(self.frame, self.row)
+
+    @property
+    def bounces(self) -> tuple[Bounce, ...]:
+        """The contacts."""
+        return self.found.bounces
+
+    @property
+    def scale(self) -> Measured:
+        """Size of a pixel [m]."""
+        return self.found.scale.metres
+
+    def trials(self) -> tuple[Trial, ...]:
+        """Return a row of trials.csv for each contact."""
+        names = labels(len(self.bounces))
+        return tuple(self._trial(b, k, names[k - 1]) for k, b in enumerate(self.bounces, start=1))
+
+    def _trial(self, bounce: Bounce, number: int, label: str) -> Trial:
+        row = {"restitution": bounce.restitution}
+        if math.isfinite(self.scale.value):
+            row["impact_speed_m_s"] = bounce.approach.times(self.scale)
+            row["rebound_speed_m_s"] = bounce.rebound.times(self.scale)
+        if self.shape == "rod":
+            lean = self._lean_before(bounce)
+            row["angle_deg"] = Measured(
+                90.0 - math.degrees(abs(lean.value)), math.degrees(lean.std)
+            )
+        return Trial(row, self.notes, trace=self._trace(bounce, number), label=label)
+
+    def _lean_before(self, bounce: Bounce) -> Measured:
+        near = self.frame <= self.frame[bounce.near[0]]
+        last = self.lean[near][-_LEAN_FRAMES:]
+        return Measured(float(np.median(last)), float(np.std(last) / max(len(last) - 1, 1) ** 0.5))
+
+    def _trace(self, bounce: Bounce, number: int) -> dict[str, Array]:
+        if not math.isfinite(self.scale.value):
+            return {}
+        low = 0 if number == 1 else self.bounces[number - 2].turning
+        high = self.frame.size if number == len(self.bounces) else self.bounces[number].turning
+        part = slice(low, high)
+        touch = self.found.stage.floor + bounce.height.value
+        trace = {
+            "time_s": self.time[part] - bounce.time.value,
+            "tip_height_m": (-self.row[part] - touch) * self.scale.value,
+            "tip_x_m": (self.column[part] - self.column[bounce.turning]) * self.scale.value,
+        }
+        if self.shape == "rod":
+            trace["angle_rad"] = 0.5 * np.pi - np.abs(self.lean[part])
+        return trace
+
+
+def reduce_video(
+    clip: Clip,
+    optics: Optics,
+    *,
+    shape: str = "rod",
+    striker_is: str = "bright",
+    background: str = "none",
+) -> VideoReduction:
+    """Track the striker through a clip and return its contacts.
+
+    Parameters
+    ----------
+    clip
+        Frames with gravity downwards.
+    optics
+        Frame rate, and one way to the size of a pixel.
+    shape
+        `"rod"` (enters from above, straight sides, round tip) or `"sphere"` (wholly in view).
+    striker_is
+        `"bright"` on a dark ground, or `"dark"` on a bright one.
+    background
+        `"none"`, or `"median"` to subtract the median of all frames: for a striker that moves
+        over a ground of its own brightness.
+
+    Raises
+    ------
+    InputError
+        No striker, no contact or too few frames of flight in the clip.
+    """
+    frames = striker_bright(clip, striker_is, background)
+    levels = grey_levels(frames, clip.source)
+    dark_pixels = np.array([np.count_nonzero(f <= 0.5 * sum(levels)) for f in frames])
+    critical = int(np.argmin(dark_pixels))
+    if shape == "rod":
+        levels = grey_levels(frames[critical : critical + 1], clip.source)
+        track, rod = track_rod(frames, critical, levels, clip.source)
+        half = Measured(rod.half_width, 0.02)
+        tip_radius, near = rod.tip_radius, _NEAR_BLURS * rod.blur
+    else:
+        track = track_ball(frames, levels, clip.source)
+        radii = track["radius"]
+        half = Measured(float(np.median(radii)), float(np.std(radii) / math.sqrt(radii.size)))
+        half = Measured(half.value, max(half.std, 0.01 * half.value))
+        tip_radius, near = half.value, 0.0
+    fresh = np.isin(track["frame"], clip.repeats, invert=True)
+    track = {name: values[fresh] for name, values in track.items() if name != "radius"}
+    notes = _timing_notes(clip, optics.rate)
+    result = VideoReduction(
+        **track, shape=shape, critical_frame=critical, threshold=0.5 * sum(levels), levels=levels,
+        half_width=half, tip_radius=tip_radius, optics=optics,
+        found=_contacts(track, half, near, optics, clip.source), notes=(), source=clip.source,
+    )  # fmt: skip
+    return replace(result, notes=(*notes, *result.found.notes, *_flight_notes(result)))
+
+
+def _contacts(
+    track: dict[str, Array], half: Measured, near: float, optics: Optics, source: str
+) -> Bounced:
+    time = optics.time(track["frame"].astype(np.int64), track["row"])
+    stated = optics.scale
+    if stated is None and optics.size is not None:
+        stated = optics.size.over(half.scaled(2.0))
+    path = Track(
+        time, -track["row"], floor=_POSITION_FLOOR, trend=_POSITION_TREND, near=near, unsure=_UNSURE
+    )
+    found = find_bounces(path, optics.ball, metres=stated)
+    if found is None:
+        raise InputError(
+            "no contact with flight before and after it", source=source,
+            allowed="a clip that shows the striker fall, touch and rise",
+        )  # fmt: skip
+    return found
+
+
+def _timing_notes(clip: Clip, rate: float) -> list[str]:
+    notes = []
+    if math.isfinite(clip.container_rate) and abs(clip.container_rate / rate - 1.0) > 0.01:
+        notes.append(
+            f"the container plays at {clip.container_rate:.6g} frames/s; {rate:g} was used"
+        )
+    if clip.uneven:
+        notes.append(f"{clip.uneven} gaps between the container's time stamps are uneven")
+    if clip.repeats.size:
+        notes.append(
+            f"{clip.repeats.size} of {len(clip.frames)} frames repeat the one before and are left "
+            "out: the camera's own rate is lower"
+        )
+    return notes
+
+
+def _flight_notes(result: VideoReduction) -> list[str]:
+    notes = []
+    if not math.isfinite(result.scale.value):
+        notes.append("no length scale: ratios only (give the size of a pixel or the diameter)")
+    else:
+        part, origin = result.scale.std / result.scale.value, result.found.scale.origin
+        size = result.scale.value * 1e6
+        notes.append(f"pixel {size:.4g} um ± {100 * part:.2g} % from {origin}")
+    for number, bounce in enumerate(result.bounces, start=1):
+        last, first = bounce.near
+        gap = result.frame[first] - result.frame[last] - 1
+        used = [p.index.size for p in (bounce.before, bounce.after)]
+        notes.append(
+            f"contact {number}: {gap} frames left out, contact shorter than "
+            f"{(gap + 1) / result.optics.rate * 1e3:.3g} ms; flights of {used[0]} and {used[1]} "
+            "frames"
+        )
+    if result.shape == "rod":
+        notes.extend(_lean_notes(result))
+    return notes
+
+
+def _lean_notes(result: VideoReduction) -> list[str]:
+    turning = result.bounces[0].turning
+    sides = {
+        "before": result.lean[max(turning - 2 * _LEAN_FRAMES, 0) : turning][:_LEAN_FRAMES],
+        "after": result.lean[turning + _LEAN_FRAMES : turning + 2 * _LEAN_FRAMES],
+    }
+    notes = []
+    for name, lean in sides.items():
+        if lean.size == 0:
+            continue
+        angle, std = float(np.median(lean)), float(np.std(lean))
+        verdict = "" if abs(angle) <= _LEAN_LIMIT else ": not upright"
+        notes.append(
+            f"axis {name} contact {90 - math.degrees(angle):.2f} ± {math.degrees(std):.2f} deg"
+            f"{verdict}"
+        )
+    return notes

@@ -1,0 +1,256 @@
+"""Raw files and options that are no good: one line each with file or option, exit code 2."""
+
+import io
+import zipfile
+
+import numpy as np
+import pytest
+from dentscope.cli import run
+from dentscope.core.errors import InputError
+from dentscope.reduce.kinds import load_kind
+from dentscope.studies.synthetic.sounds import write_wav
+from hypothesis import HealthCheck, given, settings
+from hypothesis import strategies as st
+from scipy.io import wavfile
+
+RAMP = "time_s,force_N\n" + "".join(f"{k * 1e-4},{k % 7}\n" for k in range(60))
+PULSE = "time_s,force_N\n" + "".join(
+    f"{k * 1e-4:.4f},{100.0 * max(0.0, np.sin((k - 40) / 6.4)) if 40 < k < 60 else 0.0}\n"
+    for k in range(100)
+)
+FALL = "t_s,height_m\n" + "".join(f"{k / 100},{1.0 - 4.905 * (k / 100) ** 2}\n" for k in range(40))
+TIMES = "t (s)\n0.5\n1.0\n1.4\n1.72\n1.98\n"
+HEIGHTS = "drop_cm,up_cm\n50,20\n40,17\n"
+ROWS = "impact_speed_m_s,restitution\n1.5,0.6\n2.0,0.55\n"
+TRACK = "time_s,A_x_mm,A_y_mm,A_z_mm\n" + "".join(
+    f"{k / 100},0,0,{1000 - 4905 * (k / 100) ** 2}\n" for k in range(30)
+)
+
+CASES = {
+    # kind, bytes or text of the file, options, what the line has to name
+    "table: empty": ("table", "", ["--holds", "force"], "a.csv"),
+    "table: blank lines": ("table", "\n\n  \n", ["--holds", "force"], "a.csv"),
+    "table: words": ("table", "a,b\nc,d\n", ["--holds", "force"], "no row of numbers"),
+    "table: binary": ("table", b"\x00\x01\x02" * 50, ["--holds", "force"], "not text"),
+    "table: no contents said": ("table", PULSE, [], "--holds"),
+    "table: unknown contents": ("table", PULSE, ["--holds", "forces"], "holds"),
+    "table: no such column": ("table", PULSE, ["--holds", "force", "--value", "load"], "value"),
+    "table: column 0": ("table", PULSE, ["--holds", "force", "--value", "0"], "1 to 2"),
+    "table: column 9": ("table", PULSE, ["--holds", "force", "--value", "9"], "1 to 2"),
+    "table: time goes back": (
+        "table", "t,F\n" + "".join(f"{-k},{k}\n" for k in range(50)),
+        ["--holds", "force", "--value-unit", "N"], "do not increase",
+    ),
+    "table: too few rows": (
+        "table", "t_s,F_N\n0,0\n1,2\n2,0\n", ["--holds", "force"], "20 or more"
+    ),
+    "table: unit not said": ("table", PULSE.replace("force_N", "force"), ["--holds", "force"],
+                             "does not name its unit"),
+    "table: unit of another kind": ("table", PULSE, ["--holds", "force", "--value-unit", "mm"],
+                                    "value-unit"),
+    "table: time unit": ("table", PULSE, ["--holds", "force", "--time-unit", "hours"], "time"),
+    "table: no pulse": ("table", RAMP, ["--holds", "force"], "times the noise"),
+    "table: constant": (
+        "table", "t_s,F_N\n" + "".join(f"{k},5\n" for k in range(50)),
+        ["--holds", "force"], "comes back",
+    ),
+    "table: negative mass": ("table", PULSE, ["--holds", "force", "--mass-kg", "-1"], "mass"),
+    "table: mass in words": ("table", PULSE, ["--holds", "force", "--mass-kg", "ten"], "mass"),
+    "table: NaN mass": ("table", PULSE, ["--holds", "force", "--mass-kg", "nan"], "mass"),
+    "table: part without rows": (
+        "table", PULSE, ["--holds", "force", "--first-s", "5"], "0 rows"
+    ),
+    "table: part back to front": (
+        "table", PULSE, ["--holds", "force", "--first-s", "2", "--last-s", "1"], "last_s"
+    ),
+    "table: select without a value": (
+        "table", PULSE, ["--holds", "force", "--select", "x"], "COLUMN=VALUE"
+    ),
+    "table: select no row": (
+        "table", PULSE, ["--holds", "force", "--select", "1=ball"], "no row"
+    ),
+    "table: fall without contact": ("table", FALL, ["--holds", "height"], "no contact"),
+    "table: rate of zero": ("table", FALL, ["--holds", "height", "--rate-hz", "0"], "rate"),
+    "table: two instants": (
+        "table", "t (s)\n0.5\n1.0\n", ["--holds", "bounces"], "three or more"
+    ),
+    "table: intervals for instants": (
+        "table", "T (s)\n0.5\n0.4\n0.3\n0.2\n", ["--holds", "bounces"], "do not increase"
+    ),
+    "table: instants that grow apart": (
+        "table", "t (s)\n0\n0.1\n0.4\n1.5\n6\n", ["--holds", "bounces"], "no run of bounces"
+    ),
+    "table: contact longer than flight": (
+        "table", TIMES, ["--holds", "bounces", "--contact-time-s", "0.5"], "contact_time_s"
+    ),
+    "table: a ball lighter than air": (
+        "table", TIMES, ["--holds", "bounces", "--mass-kg", "1e-6", "--diameter-m", "0.1"], "mass"
+    ),
+    "table: rebound above its drop": (
+        "table", "drop_cm,up_cm\n50,60\n40,17\n", ["--holds", "rebounds", "--value", "1"], "row 1"
+    ),
+    "table: no rebounds": ("table", "drop_cm\n50\n40\n", ["--holds", "rebounds", "--value", "1"],
+                           "rebound heights"),
+    "table: unknown column of trials": (
+        "table", ROWS.replace("restitution", "restitutoin"), ["--holds", "trials"], "restitution?"
+    ),
+    "table: no approach": ("table", "restitution,order\n0.5,1\n", ["--holds", "trials"],
+                           "approach"),
+    "table: nothing measured": (
+        "table", "impact_speed_m_s,order\n1.5,1\n", ["--holds", "trials"], "no measured column"
+    ),
+    "table: a column twice": (
+        "table", "impact_speed_m_s,impact_speed_mm_s,restitution\n1,1000,0.5\n",
+        ["--holds", "trials"], "given twice",
+    ),
+    "sound: empty": ("sound", b"", [], "a.csv"),
+    "sound: no sound": ("sound", b"RIFF....WAVE", [], "cannot be decoded"),
+    "sound: text": ("sound", TIMES, [], "a.csv"),
+    "sound: bad end": ("sound", "wav", ["--first-s", "3", "--last-s", "2"], "last_s"),
+    "sound: nothing heard": ("sound", "wav", [], "contacts are heard"),
+    "sound: past the end": ("sound", "wav", ["--first-s", "100"], "first"),
+    "sound: silence": ("sound", "zeros", [], "silence"),
+    "video: text": ("video", TIMES, ["--frame-rate-hz", "1000"], "cannot be decoded"),
+    "video: no rate": ("video", TIMES, [], "frame-rate-hz"),
+    "video: two scales": (
+        "video", TIMES, ["--frame-rate-hz", "9", "--pixel-m", "1e-4", "--diameter-m", "0.1"],
+        "not both",
+    ),
+    "tip: text": ("tip", TIMES, ["--pixel-m", "1e-4"], "cannot be read"),
+    "mocap: no length": ("mocap", TRACK, ["--tip-radius-m", "0.01"], "length_m"),
+    "mocap: fall without contact": (
+        "mocap", TRACK, ["--shape", "sphere", "--tip-radius-m", "0.01"], "a.csv"
+    ),
+    "mocap: no such marker": (
+        "mocap", TRACK, ["--shape", "sphere", "--tip-radius-m", "0.01", "--markers", "B"], "marker"
+    ),
+    "mocap: words": ("mocap", "time_s,A_x_mm,A_y_mm,A_z_mm\nx,y,z,w\n",
+                     ["--shape", "sphere", "--tip-radius-m", "0.01"], "row 2"),
+    "scan: three heights": ("scan", "1,2,3\n4,5,6\n7,8,9\n", [], "heights"),
+    "scan: words": ("scan", "a,b\nc,d\n", ["--unit", "um", "--step-m", "1e-6"], "a.csv"),
+    "scan: step of zero": ("scan", "1,2\n3,4\n", ["--unit", "um", "--step-m", "0"], "step-m"),
+}  # fmt: skip
+
+
+def _write(path, content):
+    if content == "wav":
+        write_wav(np.random.default_rng(0).normal(0.0, 0.01, 44100), path)
+    elif content == "zeros":
+        write_wav(np.zeros(44100), path)
+    elif isinstance(content, bytes):
+        path.write_bytes(content)
+    else:
+        path.write_text(content)
+
+
+@pytest.mark.parametrize("case", CASES)
+def test_each_mistake_gives_its_line(case, tmp_path, capsys):
+    kind, content, options, said = CASES[case]
+    _write(tmp_path / "a.csv", content)
+    command = ["reduce", kind, str(tmp_path / "a.csv"), "--out", str(tmp_path / "out"), *options]
+    assert run(command) == 2
+    message = capsys.readouterr().err.strip()
+    assert said in message
+    assert "Traceback" not in message
+    assert not (tmp_path / "out").exists()
+
+
+def test_there_are_50_kinds_or_more():
+    assert len(CASES) >= 50
+
+
+def test_a_file_that_is_not_there(tmp_path, capsys):
+    for kind in ("table", "sound", "video", "tip", "scan", "mocap"):
+        options = {
+            "table": ["--holds", "force"], "video": ["--frame-rate-hz", "9"],
+            "mocap": ["--shape", "sphere", "--tip-radius-m", "1"],
+        }.get(kind, [])  # fmt: skip
+        assert run(["reduce", kind, str(tmp_path / "none.x"), *options]) == 2
+        assert "none.x" in capsys.readouterr().err
+
+
+def test_mistakes_leave_a_set_as_it_was(tmp_path, capsys):
+    where = tmp_path / "set"
+    (tmp_path / "a.csv").write_text(ROWS)
+    command = ["reduce", "table", str(tmp_path / "a.csv"), "--holds", "trials"]
+    assert run([*command, "--into", str(where)]) == 0
+    before = {p.name: p.read_bytes() for p in where.iterdir() if p.is_file()}
+    (tmp_path / "a.csv").write_text(ROWS + "3.0,-0.5\n")
+    assert run([*command, "--into", str(where)]) == 2
+    assert "restitution" in capsys.readouterr().err
+    assert {p.name: p.read_bytes() for p in where.iterdir() if p.is_file()} == before
+
+
+PULL = "strain (%),stress (MPa)\n" + "".join(
+    f"{k * 0.02:.2f},{min(200.0 * k * 0.2, 250.0 + k):.1f}\n" for k in range(90)
+)
+LEEB = "first,second\n780,775\n782,779\n"
+TRK = (
+    '<object class="org.x.tracker.TrackerPanel"><property name="delta_t">10</property>'
+    '<object class="org.x.tracker.PointMass"><property name="name">b</property>'
+    '<property name="framedata">'
+    + "".join(
+        f'<property name="[{k}]"><object><property name="x">5</property>'
+        f'<property name="y">{k * k}</property></object></property>'
+        for k in range(30)
+    )
+    + "</property></object></object>"
+)
+
+
+def _zipped(text):
+    packed = io.BytesIO()
+    with zipfile.ZipFile(packed, "w", zipfile.ZIP_DEFLATED) as archive:
+        archive.writestr("Raw Data.csv", text)
+    return packed.getvalue()
+
+
+def _sounded():
+    rng = np.random.default_rng(2)
+    heard = rng.normal(0.0, 20.0, 6000)
+    for at in (1000, 2500, 3700, 4660):
+        heard[at : at + 200] += 9000.0 * np.exp(-np.arange(200) / 40.0) * rng.normal(size=200)
+    made = io.BytesIO()
+    wavfile.write(made, 8000, heard.astype(np.int16))
+    return made.getvalue()
+
+
+SOURCES = {
+    "force": ("table", PULSE.encode(), ".csv", {"holds": "force"}),
+    "volts": ("table", PULSE.encode(), ".csv", {"holds": "acceleration", "gain": 3.0}),
+    "height": ("table", FALL.encode(), ".csv", {"holds": "height"}),
+    "bounces": ("table", TIMES.encode(), ".csv", {"holds": "bounces"}),
+    "rebounds": ("table", HEIGHTS.encode(), ".csv", {"holds": "rebounds", "value": "1"}),
+    "trials": ("table", ROWS.encode(), ".csv", {"holds": "trials"}),
+    "tension": ("table", PULL.encode(), ".csv", {"holds": "tension"}),
+    "leeb": ("table", LEEB.encode(), ".csv", {"holds": "leeb", "value": "1"}),
+    "tracker": ("table", TRK.encode(), ".trk", {"holds": "height", "value": "3"}),
+    "packed": ("table", _zipped(PULSE), ".zip", {"holds": "force"}),
+    "sound": ("sound", _sounded(), ".wav", {}),
+    "markers": ("mocap", TRACK.encode(), ".csv", {"shape": "sphere", "tip_radius_m": 0.01}),
+}
+WORDS = [b"nan", b"-inf", b"1e308", b"-1e308", b"1e-320", "µ\u202e💥".encode(), b"(furlong)", b"0",
+         b"\x00\xff", b",", b";;", b"\n\n", b"\r", b"9" * 40]  # fmt: skip
+
+
+@settings(
+    max_examples=200, deadline=None, suppress_health_check=[HealthCheck.function_scoped_fixture]
+)
+@given(data=st.data())
+def test_any_damage_to_a_raw_file_is_read_or_refused_in_lines(data, tmp_path):
+    kind, raw, end, options = SOURCES[data.draw(st.sampled_from(sorted(SOURCES)))]
+    text = bytearray(raw)
+    for _ in range(data.draw(st.integers(1, 6))):
+        place = data.draw(st.integers(0, max(len(text) - 1, 0)))
+        length = data.draw(st.integers(0, 30))
+        text[place : place + length] = data.draw(st.binary(max_size=8) | st.sampled_from(WORDS))
+    if data.draw(st.booleans()):
+        del text[data.draw(st.integers(0, len(text))) :]
+    path = tmp_path / f"t{end}"
+    path.write_bytes(bytes(text))
+    try:
+        reduced = load_kind(kind).run(path, options, source="test")
+    except InputError:
+        return
+    for trial in reduced.trials:
+        assert all(np.isfinite(m.value) for m in trial.observables.values())

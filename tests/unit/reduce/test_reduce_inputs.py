@@ -1,0 +1,228 @@
+"""Files as laboratories keep them: tracker projects, packed exports, stacks of pages, strengths."""
+
+import struct
+import zipfile
+
+import numpy as np
+import pytest
+from dentscope.cli import run
+from dentscope.core.errors import InputError
+from dentscope.recordings import read
+from dentscope.reduce.images.clip import read_clip
+from dentscope.reduce.table.file import read_columns
+from dentscope.reduce.table.tension import reduce_tension
+
+
+def _trk(points, *, delta_t="5.0", angle=0.0):
+    cls = "org.opensourcephysics.cabrillo.tracker.PointMass"
+    frames = "".join(
+        f'<property name="[{k}]" type="object"><object class="{cls}$FrameData">'
+        f'<property name="n" type="int">{k}</property>'
+        f'<property name="x" type="double">{x}</property>'
+        f'<property name="y" type="double">{y}</property></object></property>'
+        for k, (x, y) in points.items()
+    )
+    axes = "org.opensourcephysics.media.core.ImageCoordSystem$FrameData"
+    return (
+        '<?xml version="1.0" encoding="UTF-8"?>'
+        '<object class="org.opensourcephysics.cabrillo.tracker.TrackerPanel">'
+        f'<property name="delta_t" type="double">{delta_t}</property>'
+        f'<property name="coords"><object class="{axes}">'
+        '<property name="xorigin" type="double">100.0</property>'
+        '<property name="yorigin" type="double">200.0</property>'
+        f'<property name="angle" type="double">{angle}</property>'
+        '<property name="xscale" type="double">500.0</property>'
+        '<property name="yscale" type="double">500.0</property></object></property>'
+        f'<property name="tracks"><object class="{cls}"><property name="name">ball</property>'
+        f'<property name="framedata">{frames}</property></object></property></object>'
+    )
+
+
+def test_a_tracker_project_in_its_own_axes(tmp_path):
+    # 500 pixels a metre, origin at (100, 200), rows downwards
+    (tmp_path / "a.trk").write_text(_trk({3: (100.0, 200.0), 0: (150.0, 100.0)}))
+    table = read_columns(tmp_path / "a.trk")
+    assert table.names == ("t [s]", "x [m]", "y [m]")
+    assert table.values == pytest.approx(np.array([[0.0, 0.1, 0.2], [0.015, 0.0, 0.0]]))
+    # axes turned by 90 degrees: their x points up in the picture
+    (tmp_path / "b.trk").write_text(_trk({0: (150.0, 100.0)}, angle=90.0))
+    assert read_columns(tmp_path / "b.trk").values[0] == pytest.approx([0.0, 0.2, -0.1])
+    for text, words in (("<object>", "cannot be read"), ("<object/>", "0 tracks"),
+                        ("<!ENTITY a><object/>", "not a plain project")):  # fmt: skip
+        (tmp_path / "c.trk").write_text(text)
+        with pytest.raises(InputError, match=words):
+            read_columns(tmp_path / "c.trk")
+
+
+def test_a_packed_export(tmp_path):
+    with zipfile.ZipFile(tmp_path / "run.zip", "w") as archive:
+        archive.writestr("Raw Data.csv", "Time (s);Height (mm)\n0,0;1,5\n0,1;2,5\n")
+        archive.writestr("meta/device.csv", "property;value\n")
+    table = read_columns(tmp_path / "run.zip")
+    assert table.values[1] == pytest.approx([0.1, 2.5])
+    assert table.unit(1) == "mm"
+    with pytest.raises(InputError, match=r"no table 'x'.*Raw Data"):
+        read_columns(tmp_path / "run.zip", sheet="x")
+    (tmp_path / "bad.zip").write_bytes((tmp_path / "run.zip").read_bytes()[:60])
+    with pytest.raises(InputError, match="cannot be unpacked"):
+        read_columns(tmp_path / "bad.zip")
+
+
+def test_a_stack_of_pages_is_a_clip(tmp_path):
+    tifffile = pytest.importorskip("tifffile")
+    frames = np.random.default_rng(1).integers(0, 255, (12, 20, 16), dtype=np.uint8)
+    tifffile.imwrite(tmp_path / "a.tif", frames)
+    assert np.array_equal(read_clip(tmp_path / "a.tif").frames, frames)
+    tifffile.imwrite(tmp_path / "b.tif", frames.astype(np.uint16) * 257)
+    assert np.array_equal(read_clip(tmp_path / "b.tif").frames, frames)
+    (tmp_path / "c.tif").write_bytes(b"II*\0" + bytes(40))
+    with pytest.raises(InputError, match=r"TIFF|frames"):
+        read_clip(tmp_path / "c.tif")
+
+
+def _cine(frames, path, bits):
+    """Write a Phantom file: three headers, offsets, frames bottom up (Vision Research, 12-bit)."""
+    count, rows, columns = frames.shape
+    at_image, at_setup = 44, 84
+    at_offsets = at_setup + 6000
+    first = at_offsets + 8 * count
+    setup = bytearray(6000)
+    struct.pack_into("<2sH", setup, 140, b"ST", 0x163C)
+    struct.pack_into("<I", setup, 768, 5000)  # frames a second
+    struct.pack_into("<I", setup, 896, bits)
+    size = 8 + 2 * rows * columns
+    with path.open("wb") as out:
+        out.write(struct.pack("<2sHHHiIiIIIIQ", b"CI", 44, 0, 1, 0, count, 0, count,
+                              at_image, at_setup, at_offsets, 0))  # fmt: skip
+        out.write(struct.pack("<IiiHHIIiiII", 40, columns, rows, 1, 16, 0, 0, 0, 0, 0, 0))
+        out.write(setup)
+        out.write(struct.pack(f"<{count}Q", *(first + size * k for k in range(count))))
+        for frame in frames:
+            out.write(struct.pack("<II", 8, size - 8) + frame[::-1].astype("<u2").tobytes())
+
+
+def test_a_phantom_file_of_twelve_bits_is_a_clip(tmp_path):
+    pytest.importorskip("av")
+    frames = np.random.default_rng(1).integers(0, 4096, (12, 20, 16))
+    _cine(frames, tmp_path / "a.cine", 12)
+    clip = read_clip(tmp_path / "a.cine")
+    assert np.abs(clip.frames.astype(int) - frames / 4095.0 * 255.0).max() <= 1.0
+    assert clip.container_rate == pytest.approx(5000.0)
+
+
+CIHX = """junk\n<cih><recordInfo><recordRate>8000</recordRate></recordInfo>
+<frameInfo><totalFrame>12</totalFrame></frameInfo><imageDataInfo><resolution><width>16</width>
+<height>20</height></resolution><effectiveBit><depth>12</depth><side>Lower</side></effectiveBit>
+<colorInfo><bit>BITS</bit></colorInfo></imageDataInfo></cih>\nmore"""
+
+
+@pytest.mark.parametrize("bits", [16, 12])
+def test_a_photron_file_is_a_clip(tmp_path, bits):
+    frames = np.random.default_rng(1).integers(0, 4096, (12, 20, 16))
+    one, two = frames.reshape(-1, 2).T
+    packed = np.stack([one >> 4, ((one & 15) << 4) + (two >> 8), two & 255], axis=1)
+    raw = frames.astype("<u2") if bits == 16 else packed.astype(np.uint8)
+    (tmp_path / "a.mraw").write_bytes(raw.tobytes())
+    (tmp_path / "a.cihx").write_text(CIHX.replace("BITS", str(bits)))
+    for name in ("a.mraw", "a.cihx"):
+        clip = read_clip(tmp_path / name)
+        assert np.array_equal(clip.frames, frames >> 4)
+        assert clip.container_rate == pytest.approx(8000.0)
+    for wrong, words in (("24", "24 bits"), ("", "Color Bit"), ("x", "whole number")):
+        (tmp_path / "a.cihx").write_text(CIHX.replace("BITS", wrong))
+        with pytest.raises(InputError, match=words):
+            read_clip(tmp_path / "a.mraw")
+    (tmp_path / "a.cihx").write_text(CIHX.replace("BITS", str(bits)).replace(">12<", ">13<", 1))
+    with pytest.raises(InputError, match="13 frames"):
+        read_clip(tmp_path / "a.mraw")
+    (tmp_path / "a.cihx").unlink()
+    with pytest.raises(InputError, match="no header"):
+        read_clip(tmp_path / "a.mraw")
+
+
+def test_a_flow_curve_of_a_known_metal_comes_back():
+    """Swift's law K (e0 + p)^n in true values, pulled and necked, as engineering values."""
+    K, n, E, Sy = 600e6, 0.2, 70e9, 200e6
+    p = np.linspace(0.0, 0.35, 4000)
+    true = np.maximum(K * ((Sy / K) ** (1.0 / n) + p) ** n, Sy)
+    elastic = np.linspace(0.0, Sy / E, 200)
+    strain = np.concatenate([elastic, true[1:] / E + p[1:]])
+    stress = np.concatenate([E * elastic, true[1:]])
+    nominal = np.expm1(strain)
+    found = reduce_tension(
+        nominal, stress / np.exp(strain), strain_is="engineering", E=None, source="test"
+    )
+    assert found.modulus.value == pytest.approx(E, rel=0.005)
+    expected = K * ((Sy / K) ** (1.0 / n) + found.flow.strain[1:]) ** n
+    assert found.flow.stress[1:] == pytest.approx(expected, rel=0.01)
+    # Considere: a specimen of this law necks at a plastic strain of about n - e0
+    assert found.flow.strain[-1] == pytest.approx(n - (Sy / K) ** (1.0 / n), abs=0.02)
+    assert any("necks" in note for note in found.notes)
+
+
+def test_a_metal_that_hardens_to_four_times_its_strength_keeps_its_modulus():
+    E, Sy = 190e9, 200e6
+    p = np.linspace(0.0, 0.4, 300)
+    true = Sy + 1500e6 * p
+    rise = np.linspace(0.0, Sy / E, 40)
+    strain = 0.02 + np.concatenate([rise, true[1:] / E + p[1:]])  # the machine's own zero
+    found = reduce_tension(
+        strain, np.concatenate([E * rise, true[1:]]), strain_is="true", E=None, source="test"
+    )
+    assert found.modulus.value == pytest.approx(E, rel=0.01)
+    assert found.flow.strength == pytest.approx(Sy, rel=0.03)
+
+
+def test_a_gauge_that_comes_off_at_fracture_takes_nothing_from_the_curve():
+    E, p = 70e9, np.linspace(0.0, 0.1, 200)
+    stress = 300e6 + 500e6 * p
+    rise = np.linspace(0.0, 300e6 / E, 40)
+    strain, true = np.append(rise, stress[1:] / E + p[1:]), np.append(E * rise, stress[1:])
+    whole = reduce_tension(strain, true, strain_is="true", E=None, source="test")
+    lost = reduce_tension(
+        np.append(strain, 0.0), np.append(true, true[-1]), strain_is="true", E=None, source="test"
+    )
+    assert lost.flow.strain[-1] == pytest.approx(whole.flow.strain[-1], rel=1e-3)
+    assert lost.flow.stress == pytest.approx(whole.flow.stress, rel=1e-3)
+
+
+def test_a_stated_modulus_stays_and_one_that_the_curve_denies_does_not():
+    E, p = 70e9, np.linspace(0.0, 0.1, 200)
+    stress = 300e6 + 500e6 * p
+    rise = np.linspace(0.0, 300e6 / E, 40)
+    strain, true = np.append(rise, stress[1:] / E + p[1:]), np.append(E * rise, stress[1:])
+    for stated, kept in ((68.9e9, 68.9e9), (200e9, E)):
+        found = reduce_tension(strain, true, strain_is="true", E=stated, source="test")
+        assert found.values["E_Pa"].value == pytest.approx(kept, rel=0.01)
+        assert any("gives way" in note for note in found.notes) == (stated != kept)
+
+
+def test_tension_and_leeb_tables_into_a_set(tmp_path):
+    strain = np.concatenate([np.linspace(0, 0.15, 60), np.linspace(0.2, 8.0, 200)])
+    stress = np.minimum(200e3 * strain / 100.0, 300.0) + 5.0 * strain
+    rows = "\n".join(f"{a:.5f},{b:.4f}" for a, b in zip(strain, stress, strict=True))
+    (tmp_path / "pull.csv").write_text("strain (%),stress (MPa)\n" + rows)
+    (tmp_path / "leeb.csv").write_text("first;second;third\n780;775;782\n")
+    where = str(tmp_path / "set")
+    command = ["reduce", "table", str(tmp_path / "leeb.csv"), "--holds", "leeb", "--value", "1"]
+    assert run([*command, "--value-std", "3", "--into", where]) == 0
+    command = ["reduce", "table", str(tmp_path / "pull.csv"), "--holds", "tension"]
+    assert run([*command, "--into", where]) == 0
+    found = read(where, unfinished=True)
+    assert found.trials.observables["restitution"] == pytest.approx([0.78, 0.775, 0.782])
+    assert found.trials.impact_speed_m_s == pytest.approx([2.05] * 3)
+    assert found.flows["target"].strength == pytest.approx(310e6, rel=0.03)
+
+
+def test_several_files_in_one_call(tmp_path, capsys):
+    for name in ("a", "b"):
+        (tmp_path / f"{name}.csv").write_text(f"drop_m,{name}\n0.5,0.3\n")
+    (tmp_path / "bad.csv").write_text("nothing\n")
+    files = [str(tmp_path / f"{name}.csv") for name in ("a", "b", "bad")]
+    given = ["--holds", "rebounds", "--value", "1", "--into", str(tmp_path / "set")]
+    assert run(["reduce", "table", *files, *given]) == 2
+    said = capsys.readouterr()
+    assert "2 of 3 files reduced" in said.out
+    assert "bad.csv" in said.err
+    assert read(tmp_path / "set", unfinished=True).trials.trial == ("a-drop1-1", "b-drop1-1")
+    assert run(["reduce", "table", *files, *given, "--trial", "x"]) == 2

@@ -1,0 +1,245 @@
+"""Motion capture: files, rigid-body fit, flights, spin and friction of rendered recordings."""
+
+import csv
+import math
+from pathlib import Path
+
+import numpy as np
+import pytest
+from dentscope.core.errors import InputError
+from dentscope.recordings.checks.rigid import Touch
+from dentscope.reduce.mocap.body import Body, centre_of
+from dentscope.reduce.mocap.file import read_markers
+from dentscope.reduce.mocap.kind import Options, reduce
+from dentscope.reduce.mocap.reduction import Scene, reduce_mocap
+from dentscope.reduce.mocap.rigid import kabsch, rigid_poses
+from dentscope.studies.synthetic.mocap import (
+    MocapTruth,
+    random_ball,
+    random_rod,
+    simulate,
+    write_c3d,
+    write_csv,
+)
+from scipy.spatial.transform import Rotation
+
+SPIN = 0.005
+"""Relative error of the spin that is asked for."""
+
+
+def _body_file(truth: MocapTruth, folder: Path) -> Path:
+    path = folder / "body.toml"
+    places = (f"M{i + 1} = {list(p)}" for i, p in enumerate(truth.markers))
+    path.write_text("[markers]\n" + "\n".join(places) + "\n")
+    return path
+
+
+def _reduced(truth: MocapTruth, folder: Path, *, body: bool = True):
+    write_csv(simulate(truth), folder / "track.csv")
+    given = {"shape": truth.shape, "tip_radius_m": truth.tip_radius}
+    if truth.shape == "rod":
+        given["length_m"] = truth.length
+    if body:
+        given["body"] = str(_body_file(truth, folder))
+    return reduce(folder / "track.csv", Options(**given))
+
+
+def test_synthetic_impact_agrees_with_the_mobility_of_the_set_audit():
+    truth = MocapTruth(tangential=0.3, spin=2.0)
+    c, s = truth.arm
+    before = Touch(1.0, truth.inertia_over_mass, c, s, 0.3, -truth.normal + 2.0 * c, 2.0)
+    dx, dy, _ = truth.changes()
+    after = before.after(np.array([dx, dy]))
+    assert before.tip[1] == pytest.approx(-truth.normal, rel=1e-12)
+    assert after.tip[1] == pytest.approx(truth.restitution * truth.normal, rel=1e-12)
+    assert after.spin == pytest.approx(truth.values()["rebound_spin_rad_s"], rel=1e-12)
+
+
+def test_kabsch_finds_a_known_pose():
+    shape = np.array([[0.1, 0.0, 0.0], [0.0, 0.05, 0.0], [0.0, 0.0, -0.2], [0.03, 0.02, 0.01]])
+    turn = Rotation.from_euler("zyx", [0.4, -1.1, 2.0]).as_matrix()
+    origin, found = kabsch(shape, shape @ turn.T + np.array([1.0, 2.0, 3.0]))
+    np.testing.assert_allclose(found, turn, atol=1e-14)
+    np.testing.assert_allclose(origin, [1.0, 2.0, 3.0], atol=1e-14)
+
+
+def test_c3d_and_csv_hold_the_same_tracks(tmp_path):
+    pytest.importorskip("ezc3d")
+    markers = simulate(random_rod(1, missing=0.1))
+    write_csv(markers, tmp_path / "a.csv")
+    write_c3d(markers, tmp_path / "a.c3d")
+    table = read_markers(tmp_path / "a.csv", unit=None, rate=None)
+    c3d = read_markers(tmp_path / "a.c3d", unit=None, rate=None)
+    assert c3d.names == table.names == markers.names
+    assert c3d.rate == pytest.approx(500.0)
+    np.testing.assert_array_equal(np.isnan(c3d.position), np.isnan(markers.position))
+    np.testing.assert_allclose(c3d.position, markers.position, atol=1e-7)
+    np.testing.assert_allclose(table.position, markers.position, atol=1e-7)
+
+
+def test_markers_that_were_mixed_up_are_left_out():
+    clean = random_rod(4, missing=0.0, gap=(0, 0), noise=1e-4)
+    poses = rigid_poses(simulate(MocapTruth(**{**vars(clean), "mixed_up": 0.05})))
+    assert 0 < poses.dropped < 20
+    assert poses.spread < 3e-4
+
+
+@pytest.mark.parametrize("seed", [11, 12, 13])
+def test_rod_spin_speed_and_friction(seed, tmp_path):
+    truth = random_rod(seed)
+    found = _reduced(truth, tmp_path)
+    (trial,) = found.trials
+    for name, value in truth.values().items():
+        measured = trial.observables[name]
+        assert abs(measured.value - value) < 4.0 * measured.std, name
+    spin = truth.values()["rebound_spin_rad_s"]
+    assert trial.observables["rebound_spin_rad_s"].value == pytest.approx(spin, rel=SPIN)
+    angle = trial.observables["angle_deg"]
+    assert angle.value == pytest.approx(math.degrees(truth.angle), abs=5.0 * angle.std + 0.1)
+
+
+def test_ball_needs_no_body_file(tmp_path):
+    truth = random_ball(3)
+    (trial,) = _reduced(truth, tmp_path, body=False).trials
+    for name, value in truth.values().items():
+        measured = trial.observables[name]
+        assert abs(measured.value - value) < 4.0 * measured.std, name
+        assert measured.std < 0.02 * abs(value) + 0.02, name
+    slope = math.degrees(math.atan2(truth.normal, -truth.tangential))
+    assert trial.observables["angle_deg"].value == pytest.approx(slope, abs=0.1)
+
+
+def test_flights_show_the_centre_of_mass(tmp_path):
+    truth = random_rod(21, missing=0.0, gap=(0, 0))
+    markers = simulate(truth)
+    write_csv(markers, tmp_path / "track.csv")
+    given = {"tip_radius_m": truth.tip_radius, "length_m": truth.length}
+    known = reduce(tmp_path / "track.csv", Options(**given, body=str(_body_file(truth, tmp_path))))
+    ball = reduce(tmp_path / "track.csv", Options(shape="body"))
+    assert not ball.trials
+    for name in ("rebound_spin_rad_s", "rebound_speed_m_s"):
+        one, two = known.trials[0].observables[name], ball.values[name]
+        assert abs(one.value) == pytest.approx(abs(two.value), abs=4.0 * (one.std + two.std))
+
+
+@pytest.mark.parametrize("seed", [8, 144])
+def test_a_rod_without_spin_and_body_file_shows_one_impact(seed):
+    """Its flights must not fall apart although no spin shows the centre of mass."""
+    truth = random_rod(seed)
+    poses = rigid_poses(simulate(truth))
+    _, turn = kabsch(np.array(truth.markers), poses.shape)
+    axis = turn[:, 2]
+    centre = centre_of(poses, axis, truth.tip_radius, truth.tip_radius)
+    body = Body(
+        "rod", axis, truth.length, truth.tip_radius, truth.inertia_over_mass, centre, poses.shape
+    )
+    found = reduce_mocap(poses, body, Scene(np.array([0.0, 0.0, 1.0])), source="rendered")
+    (hit,) = found.hits
+    for name, value in truth.values().items():
+        assert abs(hit.measured[name].value - value) < 4.0 * hit.measured[name].std, name
+    speed = hit.measured["impact_speed_m_s"]
+    assert speed.value == pytest.approx(truth.normal, rel=0.005)
+    assert speed.std < 0.005 * truth.normal
+
+
+def test_wrong_unit_is_seen_in_the_fall(tmp_path):
+    write_csv(simulate(random_ball(5)), tmp_path / "track.csv")
+    options = Options(shape="sphere", tip_radius_m=0.03, gravity_m_s2=9.0)
+    notes = reduce(tmp_path / "track.csv", options).notes
+    assert any("check unit, rate and up" in note for note in notes)
+
+
+def test_picture_is_drawn(tmp_path):
+    found = _reduced(random_rod(11), tmp_path)
+    found.draw(tmp_path / "picture.png")
+    assert (tmp_path / "picture.png").stat().st_size > 20_000
+
+
+def _table(rows: int = 20, header: str = "time_s,A_x_mm,A_y_mm,A_z_mm,B_x_mm,B_y_mm,B_z_mm") -> str:
+    count = header.count(",")
+    lines = [header, *(f"{k / 100}" + ",1" * count for k in range(rows))]
+    return "\n".join(lines) + "\n"
+
+
+@pytest.mark.parametrize(
+    ("text", "line"),
+    [
+        ("", "empty"),
+        (_table(5), "5 frames"),
+        (_table(), "2 markers"),
+        (_table(header="time_s,A_x_mm,A_y_mm"), "marker 'A' has no z"),
+        (_table(header="time_s,A_x,A_y,A_z"), "unit of marker 'A' is not stated"),
+        (_table(header="A_x_mm,A_y_mm,A_z_mm"), "no column of time"),
+        (_table(header="time_s,height_m"), "no marker"),
+        (_table().replace("0.05,1", "0.01,1"), "does not increase"),
+        (_table().replace("0.05,1", "0.05,abc"), "'abc'"),
+        (_table().replace("0.05,", ","), "time is missing"),
+        (_table().replace("0.05,1", "0.05,1,1"), "cells under"),
+    ],
+)
+def test_mistakes_in_a_table_are_a_line(text, line, tmp_path):
+    path = tmp_path / "track.csv"
+    path.write_text(text)
+    with pytest.raises(InputError, match=line):
+        reduce(path, Options(shape="body"))
+
+
+def test_mistakes_in_a_c3d_file_and_the_options_are_a_line(tmp_path):
+    pytest.importorskip("ezc3d")
+    (tmp_path / "a.c3d").write_bytes(b"not a c3d file")
+    with pytest.raises(InputError, match="cannot be read as C3D"):
+        reduce(tmp_path / "a.c3d", Options(shape="body"))
+    write_csv(simulate(random_rod(1)), tmp_path / "a.csv")
+    sizes = {"tip_radius_m": 0.0088, "length_m": 0.3048}
+    with pytest.raises(InputError, match="axis of the rod is not known"):
+        reduce(tmp_path / "a.csv", Options(**sizes))
+    with pytest.raises(InputError, match="no marker 'Z'"):
+        reduce(tmp_path / "a.csv", Options(**sizes, axis="M1:Z"))
+    (tmp_path / "body.toml").write_text("[markers]\nX = [0, 0, 1]\nY = [0, 1, 0]\nZ = [1, 0, 0]\n")
+    with pytest.raises(InputError, match="0 of the recording's markers"):
+        reduce(tmp_path / "a.csv", Options(**sizes, body=str(tmp_path / "body.toml")))
+    with pytest.raises(InputError, match="free flights"):
+        reduce(tmp_path / "a.csv", Options(shape="body", last_frame=40))
+
+
+def test_poses_stand_for_markers(tmp_path):
+    body = tmp_path / "body.toml"
+    body.write_text("[markers]\nA = [0.1, 0, 0]\nB = [0, 0.1, 0]\nC = [0, 0, 0.1]\n")
+    rows = ["toss,time_s,x_m,y_m,z_m,qw,qx,qy,qz"]
+    half = math.sqrt(0.5)
+    rows += [f"{k % 2},{k / 200},1,2,3,{half},0,0,{half}" for k in range(40)]
+    (tmp_path / "a.csv").write_text("\n".join(rows) + "\n")
+    places = {"A": (0.1, 0.0, 0.0), "B": (0.0, 0.1, 0.0), "C": (0.0, 0.0, 0.1)}
+    found = read_markers(tmp_path / "a.csv", unit=None, rate=None, select="toss=1", points=places)
+    assert found.time.size == 20
+    # a quarter turn about z takes x to y and y to -x
+    expected = [[1.0, 2.1, 3.0], [0.9, 2.0, 3.0], [1.0, 2.0, 3.1]]
+    np.testing.assert_allclose(found.position[0], expected, atol=1e-12)
+    with pytest.raises(InputError, match="select"):
+        read_markers(tmp_path / "a.csv", unit=None, rate=None, select="drop=1", points=places)
+    with pytest.raises(InputError, match="places on the body"):
+        read_markers(tmp_path / "a.csv", unit=None, rate=None)
+
+
+TOSS = Path(__file__).parents[3] / "data" / "recordings" / "recipes" / "cube-toss"
+
+
+def test_a_tossed_cube_agrees_with_what_its_source_says():
+    body = str(TOSS / "body.toml")
+    found = reduce(TOSS / "toss-0.csv", Options(shape="body", body=body, select="toss=0"))
+    # gravity; 148 frames a second; the authors' model of the same table takes a friction of 0.18
+    assert found.values["fall_acceleration_m_s2"].value == pytest.approx(9.81, rel=0.03)
+    assert found.noise["frame_rate_hz"] == pytest.approx(148.0, rel=1e-3)
+    for k in (1, 2, 3):
+        ratio = found.values[f"bounce{k}_friction_impulse_ratio"]
+        assert ratio.value == pytest.approx(0.18, abs=0.03)
+        assert 0.0 < found.values[f"bounce{k}_restitution"].value < 0.5
+    # the authors' own velocity, smoothed, three frames before the first contact
+    with (TOSS / "toss-0.csv").open() as stream:
+        rows = list(csv.DictReader(stream))
+    time = found.values["bounce1_time_s"].value
+    row = {k: float(v) for k, v in [r for r in rows if float(r["t_s"]) < time][-4].items()}
+    speed = math.hypot(row["vx_m_s"], row["vy_m_s"])
+    assert -found.values["bounce1_approach_tangential_m_s"].value == pytest.approx(speed, rel=0.01)
+    fall = row["vz_m_s"] - 9.81 * (time - row["t_s"])
+    assert found.values["bounce1_approach_normal_m_s"].value == pytest.approx(fall, rel=0.05)

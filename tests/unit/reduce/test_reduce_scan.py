@@ -1,0 +1,99 @@
+"""Craters and scars in scans rendered with a known depth, and measured surfaces."""
+
+from pathlib import Path
+
+import numpy as np
+import pytest
+from dentscope.cli import run
+from dentscope.core.errors import InputError
+from dentscope.reduce.scan.crater import reduce_scan
+from dentscope.reduce.scan.kind import Options, reduce
+from dentscope.studies.synthetic.scans import random_truth, render
+
+EXCERPTS = Path(__file__).resolve().parents[2] / "data" / "surface-scans"
+REAL = Path(__file__).resolve().parents[4] / "shared" / "recordings" / "surface-scans"
+measured = pytest.mark.skipif(not REAL.is_dir(), reason="the measured surfaces are not here")
+
+
+@pytest.mark.parametrize("seed", [901, 902, 903])
+def test_depth_of_a_crater_within_its_uncertainty(seed):
+    truth = random_truth(seed)
+    found = reduce_scan(render(truth))
+    assert abs(found.depth.value - truth.depth) < 4.0 * found.depth.std
+    assert found.depth.value == pytest.approx(truth.depth, rel=0.02)
+    assert not found.is_scar
+
+
+def test_a_scar_has_a_sliding_length():
+    truth = random_truth(905, sliding=4e-4)
+    found = reduce_scan(render(truth))
+    assert found.is_scar
+    assert found.sliding.value == pytest.approx(truth.sliding, rel=0.05)
+    assert found.depth.value == pytest.approx(truth.depth, rel=0.02)
+
+
+def test_radius_and_depth_in_excerpts_of_measured_surfaces():
+    # 499 um and about 0.3 um with a raised rim: tests/data/surface-scans/SOURCE.md
+    ball = Options(shows="ball", unit="um", step_m=8.98562e-7, reach_m=30e-6)
+    radius = reduce(EXCERPTS / "ball.csv", ball).values["tip_radius_m"]
+    assert radius.value == pytest.approx(499e-6, rel=0.01)
+    crater = reduce(EXCERPTS / "crater.csv", Options(unit="um", step_m=6.25e-7)).values
+    assert crater["permanent_depth_m"].value == pytest.approx(0.3e-6, abs=0.03e-6)
+    assert crater["pile_up_m"].value > 0.0
+
+
+@measured
+def test_radius_of_a_measured_ball(tmp_path):
+    # a paraboloid fitted within 30 um of the middle gives 499 um: SOURCE.md of the scans
+    found = reduce(REAL / "mnt-2.mnt", Options(shows="ball", reach_m=30e-6))
+    assert found.values["tip_radius_m"].value == pytest.approx(499e-6, rel=0.01)
+    found.draw(tmp_path / "ball.png")
+    assert (tmp_path / "ball.png").stat().st_size > 10_000
+
+
+@measured
+def test_depth_of_a_measured_crater():
+    # about 0.3 um deep with a raised rim: SOURCE.md of the scans
+    found = reduce(REAL / "nms-1.nms", Options(step_m=3.125e-7))
+    assert found.values["permanent_depth_m"].value == pytest.approx(0.3e-6, abs=0.03e-6)
+    assert found.values["pile_up_m"].value > 0.0
+
+
+@measured
+def test_a_scan_of_a_hundred_metres_is_refused():
+    # the reader takes this header's unit for one a million times as large
+    with pytest.raises(InputError, match=r"0\.312 m apart.*--step-m"):
+        reduce(REAL / "nms-1.nms", Options())
+
+
+def test_a_line_of_metres_is_refused(tmp_path):
+    path = tmp_path / "line.csv"
+    rows = "".join(f"{0.5 * k},{0.001 * (k % 7)}\n" for k in range(200))
+    path.write_text("x_m,z_m\n" + rows)
+    with pytest.raises(InputError, match=r"0\.5 m apart"):
+        reduce(path, Options(unit="m"))
+
+
+@pytest.mark.parametrize(
+    ("text", "said"),
+    [
+        ("", "no"),
+        ("a,b\nc,d\n", ""),
+        ("1,2,3\n4,5\n", ""),
+    ],
+)
+def test_a_file_that_is_no_scan_is_one_line(tmp_path, capsys, text, said):
+    path = tmp_path / "scan.csv"
+    path.write_text(text)
+    assert run(["reduce", "scan", str(path), "--unit", "um", "--step-m", "1e-6"]) == 2
+    message = capsys.readouterr().err.strip()
+    assert "scan.csv" in message
+    assert said in message
+    assert "Traceback" not in message
+
+
+def test_a_level_surface_has_no_crater(tmp_path, capsys):
+    path = tmp_path / "flat.csv"
+    np.savetxt(path, np.random.default_rng(1).normal(0.0, 0.1, (80, 80)), delimiter=",")
+    assert run(["reduce", "scan", str(path), "--unit", "um", "--step-m", "1e-6"]) == 2
+    assert "no crater" in capsys.readouterr().err
