@@ -36,7 +36,7 @@ impact: $(STAMP) ## chapter 3 of the thesis: restitution and dent against drop h
 diagnose: $(STAMP) ## say what physics is missing in SET (the thesis's oblique impacts), report in build/diagnose
 	@$(BIN)/dentscope diagnose "$(SET)"
 
-figures: $(STAMP) ## redraw the thesis's figures from our own numbers into docs/gallery
+figures: $(STAMP) ## redraw the thesis's figures from our own numbers into docs/thesis
 	@$(BIN)/dentscope figures
 
 recordings: $(STAMP) ## fetch the raw recordings that may not be shipped, by address and checksum

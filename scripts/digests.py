@@ -29,7 +29,7 @@ of a SHA-256: of the file, or of the sorted names and digests of a folder's file
 """
 OUTRO = """
 Whoever changes the campaign's data fits again; whoever changes the coefficients draws the challenge
-and the gallery again; a proof belongs to the source tree that it was drawn from.
+and the figures again; a proof belongs to the source tree that it was drawn from.
 """
 
 
@@ -76,8 +76,8 @@ def rows() -> Iterable[tuple[str, str, str, str]]:
     challenge = of_folder("data/challenge", ".h5")
     drawn = f"coefficients {fitted[:SHORT]}"
     yield "challenge", digest(challenge), drawn, "campaign run --design challenge"
-    gallery = of_folder("docs/gallery", ".png", ".md")
-    yield "docs/gallery", digest(gallery), drawn, "figures"
+    figures = of_folder("docs/thesis", ".png", ".md")
+    yield "docs/thesis", digest(figures), drawn, "figures"
     for name in ("base_laws.json", "explicit_impacts.h5"):
         made = "the solver" if name.startswith("base") else "elements of the proof's own"
         command = "proof laws" if name.startswith("base") else "proof library"

@@ -22,7 +22,7 @@ def gallery(
         "build/campaign/fields"
     ),
     to: Annotated[Path, folder_option("Folder of the pictures.", name="--to")] = Path(
-        "docs/gallery/campaign"
+        "build/campaign/gallery"
     ),
 ) -> None:
     """Draw the campaign: the figures over Sy*, F/F_c of all cases, stress fields."""
@@ -35,7 +35,7 @@ def gallery(
 
 def reproduction(
     data: _Data = None,
-    to: Annotated[Path, file_option("Report to write.")] = Path("docs/reproduction.md"),
+    to: Annotated[Path, file_option("Report to write.")] = Path("docs/thesis/claims.md"),
 ) -> None:
     """Check the trends that chapter 2 of the thesis tells, one by one."""
     from ...studies.campaign.reproduction import write

@@ -21,9 +21,9 @@ def figures(
         list[str] | None,
         typer.Option(help="Solve the stress field of 2.2, 2.3, 2.4 or 3.7 anew (minutes) first."),
     ] = None,
-    out: Annotated[Path, folder_option("Folder of the gallery.")] = Path("docs/gallery"),
+    out: Annotated[Path, folder_option("Folder of the pages.")] = Path("docs/thesis"),
 ) -> None:
-    """Draw the gallery: a picture and a computed line for every figure."""
+    """Draw the thesis again: a picture and a computed line for every figure."""
     chosen = _known(chapter, "--chapter", CHAPTERS) or list(CHAPTERS)
     numbers = _known(fields, "--fields", FIELDS)
     from ...studies.thesis.figures.fields import solve_field

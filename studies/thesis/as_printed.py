@@ -1,7 +1,8 @@
 """The thesis's equations exactly as printed, where the print is wrong, to show that it is.
 
 No law of the contract uses them. Units and signs are the print's own: several results have no
-physical unit at all. Each function names the corrected one; docs/errata.md has the demonstrations.
+physical unit at all. Each function names the corrected one; docs/thesis/errata.md has the
+demonstrations.
 """
 
 from __future__ import annotations

@@ -1,4 +1,4 @@
-"""docs/errata.md: the misprints and contradictions of the thesis, written from what shows them.
+"""docs/thesis/errata.md: misprints and contradictions of the thesis, from what shows them.
 
 Nothing in that file is written by hand.
 """
@@ -21,7 +21,7 @@ corrected equations are in the functions that docs/theory.md names, the printed 
 
 
 def text() -> str:
-    """Return the content of docs/errata.md."""
+    """Return the content of docs/thesis/errata.md."""
     parts = [_HEAD, "## Misprints\n", *map(_entry, MISPRINTS)]
     return "\n".join([*parts, "## Contradictions\n", *map(_entry, CONTRADICTIONS)])
 
@@ -38,4 +38,4 @@ def write(path: Path) -> Path:
 
 
 if __name__ == "__main__":
-    write(Path(__file__).resolve().parents[2] / "docs" / "errata.md")
+    write(Path(__file__).resolve().parents[2] / "docs" / "thesis" / "errata.md")

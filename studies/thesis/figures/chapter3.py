@@ -161,7 +161,7 @@ def _heights(
         )
     note = f"Largest deviation from the measured values; {'; '.join(told)}."
     if "updated" in title:
-        note += f" {_mean_deviations(found, chosen, observable)}"
+        note = _mean_deviations(found, chosen, observable)
     if number == "3.11":
         note += f" {_depths_said(found, chosen)}"
     return Picture(
@@ -246,10 +246,11 @@ def _mean_deviations(found: chapter3.Bench, chosen: list[ContactLaw], observable
         off = {
             law.name: mean_deviation(found, law, mass=mass, observable=observable) for law in chosen
         }
-        told.append(f"{mass:g} kg: " + ", ".join(f"{n} {v:.1%}" for n, v in off.items()))
+        told.append(f"{mass:g} kg: {min(off.values()):.1%} to {max(off.values()):.1%}")
         if max(off.values()) <= 0.10:
             holds.append(f"{mass:g}")
     return (
-        f"In the mean, as the thesis measures: {'; '.join(told)}. Its statement of at most 10 % "
-        f"for every updated law holds for {', '.join(holds) or 'none'} kg."
+        f"Mean deviation, the thesis's measure, best to worst law: {'; '.join(told)}. "
+        "Its statement of at most 10 % for every updated law holds for "
+        f"{', '.join(holds) or 'none'} kg."
     )

@@ -27,7 +27,6 @@ def pictures(records: Sequence[CaseRecord]) -> list[Entry]:
         tables.properties("4.1"),
         tables.legend(chapter4.NINE),
         *chapter4.pictures(),
-        tables.properties("5.1"),
         _alpha(),
         *scars.pictures(_experiments(), chapter5.thesis_rod().tip_radius),
         _pattern(),

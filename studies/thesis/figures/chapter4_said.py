@@ -33,7 +33,10 @@ def _of(ends: Ends, read: Callable[[Impact], float]) -> dict[str, float]:
 
 
 def _told(ends: Ends, read: Callable[[Impact], float], form: str) -> str:
-    return ", ".join(f"{name} {read(impact):{form}}" for name, impact in ends.items())
+    """Smallest and largest of all laws; the curves are in the picture."""
+    found = sorted((read(impact), name) for name, impact in ends.items())
+    (low, first), (high, last) = found[0], found[-1]
+    return f"from {low:{form}} ({first}) to {high:{form}} ({last})"
 
 
 def _tip_height(ends: Ends) -> str:

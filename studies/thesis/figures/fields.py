@@ -1,7 +1,7 @@
 """Figures 2.1-2.4 and 3.7: the mesh, and von Mises fields of stored finite-element solves.
 
 The fields come from `dentscope figures --fields 2.2` (minutes), which solves the pair of a figure
-and keeps the part near the contact in `docs/gallery/fields`; drawing needs the file only.
+and keeps the part near the contact in `docs/thesis/fields`; drawing needs the file only.
 """
 
 from __future__ import annotations
@@ -35,7 +35,7 @@ from ...plot import Floats, Picture, finish, sheet
 from .. import chapter3
 from .names import FIELDS
 
-STORE = Path(__file__).resolve().parents[3] / "docs" / "gallery" / "fields"
+STORE = Path(__file__).resolve().parents[3] / "docs" / "thesis" / "fields"
 _THESIS_ELEMENTS = 9784
 
 

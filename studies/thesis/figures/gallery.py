@@ -1,7 +1,8 @@
-"""The gallery: every figure that our numbers can redraw, with a line under each."""
+"""docs/thesis: every figure that our numbers can redraw, with a line under each."""
 
 from __future__ import annotations
 
+import re
 import warnings
 from collections.abc import Callable, Sequence
 from pathlib import Path
@@ -26,12 +27,22 @@ _PICTURES: dict[str, Callable[[Sequence[CaseRecord]], Sequence[Entry]]] = dict(
     )
 )  # fmt: skip
 
-_HEAD = """# Gallery
+_HEAD = """# The thesis again
 
-The thesis's figures and tables again, from our own numbers: `make figures`, or `dentscope figures
---chapter 2` for one chapter. The line under each says whether it agrees, by how much it differs,
-and why; it is computed with the picture. A law's name is that of `dentscope laws list`; in every
-figure it keeps its colour (table 4.2).
+This work begins with the contact model of H. Ghaednia's PhD thesis, *Analytical and experimental
+analysis of the permanent deformation after collisions*. Here its figures and tables are made again
+from our own numbers, its statements are checked and its misprints listed.
+
+| page | what it holds |
+| --- | --- |
+"""
+_ALSO = """\
+| [Claims](claims.md) | what chapter 2 says, checked on our finite elements |
+| [Errata](errata.md) | misprints and contradictions, each shown with numbers |
+
+The line under each figure says whether it agrees, by how much it differs, and why; it is computed
+with the picture. A law's name is that of `dentscope laws`; in every figure it keeps its colour
+(table 4.2). `make figures` draws all of it again, `dentscope figures --chapter 2` one chapter.
 
 """
 
@@ -82,7 +93,7 @@ def build(folder: Path, *, chapters: Sequence[str], root: Path) -> list[Entry]:
         drawn += entries
     write_file(folder / "README.md", _index(folder))
     if tuple(chapters) == CHAPTERS:
-        errata.write(root / "docs" / "errata.md")
+        errata.write(folder / "errata.md")
     return drawn
 
 
@@ -112,8 +123,9 @@ def _title(chapter: str) -> str:
 def _page(chapter: str, entries: Sequence[Entry], rests: str) -> str:
     lines = [f"# {_title(chapter)}\n\nFinite elements: {rests}.\n"]
     for one in entries:
-        shown = one.markdown if isinstance(one, Table) else f"![{one.title}]({one.file})"
-        lines.append(f"## {_name(one)}: {one.title}\n\n{shown}\n\n{one.note}\n")
+        name = _name(one)
+        shown = one.markdown if isinstance(one, Table) else f"![{name}]({one.file})"
+        lines.append(f"## {name}: {one.title}\n\n{shown}\n\n{one.note}\n")
     return "\n".join(lines)
 
 
@@ -124,8 +136,11 @@ def _index(folder: Path) -> str:
         page = folder / page_of(chapter)
         if not page.exists():
             continue
-        heads = [line[3:] for line in page.read_text("utf-8").splitlines() if line[:3] == "## "]
-        parts.append(f"## [{_title(chapter)}]({page.name})\n\n")
-        parts.append("\n".join(f"- {head}" for head in heads) + "\n\n")
+        names = re.findall(r"^## (\w+ ?[\d.]*)", page.read_text("utf-8"), re.MULTILINE)
+        count = len([name for name in names if name.startswith("Figure")])
+        told = f"{count} figures" if count > 1 else "LAMMPS's elastic-plastic law beside ours"
+        tables = [name.split()[1] for name in names if name.startswith("Table")]
+        told += f", tables {', '.join(tables)}" if len(tables) > 1 else ""
+        parts.append(f"| [{_title(chapter)}]({page.name}) | {told} |\n")
     left = "\n".join(f"- {number}: {reason}" for number, reason in NOT_REDRAWN.items())
-    return "".join([*parts, "## Without the thesis's own data\n\n", left, "\n"])
+    return "".join([*parts, _ALSO, "## Without the thesis's own data\n\n", left, "\n"])

@@ -67,9 +67,9 @@ def _property_rows() -> list[list[str]]:
 
 
 def properties(number: str) -> Table:
-    """Table 4.1 or 5.1, which are the same."""
+    """Tables 4.1 and 5.1, which are the same."""
     return Table(
-        number, "Rod and flat of chapters 4 and 5",
+        number, "Rod and flat of chapters 4 and 5, as table 5.1",
         ("quantity", "printed", "used here", "check"), _property_rows(),
         "Agrees but for the units and the mass: see the errata.",
     )  # fmt: skip
@@ -131,15 +131,15 @@ def comparison(number: str, angle: float) -> Table:
     return Table(
         number, f"Experiment and laws at {angle:g} degrees",
         ("case", "whose", "dent [um]", "sliding [um]", "e", "T [ms]", "mean force [N]"), rows,
-        f"Ours over the printed simulations: {told}. {_REMARK[number]} T of the simulated rows is "
-        "the return to the undisturbed surface, their force belongs to the contact alone. Brake "
-        f"with {_MEASURED_H:g} kgf/mm^2 and n = {_MEASURED_N:g}, at which the printed rows come "
-        "out.",
+        f"Ours over the printed simulations: {told}. {_REMARK[number]}",
     )  # fmt: skip
 
 
 _REMARK = {
-    "5.2": "The measured dent is a third of any predicted, the sliding length twenty times.",
+    "5.2": "The measured dent is a third of any predicted, the sliding length twenty times. In all "
+    "three tables T of the simulated rows is the return to the undisturbed surface, their force "
+    f"belongs to the contact alone, and Brake's law has {_MEASURED_H:g} kgf/mm^2 and n = "
+    f"{_MEASURED_N:g}, at which the printed rows come out.",
     "5.3": "The printed Ghaednia row repeats dent and sliding length of table 5.2, and the sliding "
     "of -638 um contradicts 5.12.",
     "5.4": "The printed Ghaednia and Kogut-Komvopoulos rows look exchanged in T, force and dent; T "

@@ -1,4 +1,4 @@
-"""docs/errata.md holds what is computed, and the printed forms fail where it says."""
+"""docs/thesis/errata.md holds what is computed, and the printed forms fail where it says."""
 
 import math
 from pathlib import Path
@@ -17,7 +17,7 @@ DOCS = Path(__file__).parents[4] / "docs"
 
 def test_the_document_is_what_the_code_computes():
     """`python -m dentscope.studies.thesis.errata` writes it anew."""
-    assert (DOCS / "errata.md").read_text("utf-8") == text()
+    assert (DOCS / "thesis" / "errata.md").read_text("utf-8") == text()
 
 
 def test_every_misprint_of_the_equation_list_has_an_erratum():

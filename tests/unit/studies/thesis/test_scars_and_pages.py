@@ -1,4 +1,4 @@
-"""Predicted scars against geometry, tables against the thesis, pages of the gallery."""
+"""Predicted scars against geometry, tables against the thesis, pages of docs/thesis."""
 
 import json
 from types import SimpleNamespace
@@ -79,5 +79,5 @@ def test_a_chapter_gets_its_page_and_the_index_names_it(tmp_path):
     assert page.count("![") == 5
     index = (tmp_path / "README.md").read_text("utf-8")
     assert "[Chapter 1](chapter-1.md)" in index
-    assert "- Figure 1.4: " in index
+    assert "| [Chapter 1](chapter-1.md) | 4 figures |" in index
     assert "Chapter 2" not in index
