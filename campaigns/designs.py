@@ -25,6 +25,7 @@ from .cases.drawn import (
     validation_2,
 )
 from .cases.hardening import hardening, robustness_hardening, validation_hardening
+from .cases.plateau import plateau, validation_plateau
 from .cases.thesis import smoke, thesis_first, thesis_second, thesis_third
 
 
@@ -63,10 +64,16 @@ DESIGNS: dict[str, Design] = {
         Design("space-4", "its other points", lambda: space()[128:]),
         Design("near-equal", "128 Sobol points at Sy* 0.75 to 1.35", near_equal),
         Design("hardening", "96 Sobol points over metals that harden", hardening),
+        Design("plateau", "48 Sobol points over flow curves that bend: plateaus, knees", plateau),
         Design("validation", "48 pairs that no fit may use", validation),
         Design("validation-2", "48 more, half of them near equal strengths", validation_2),
         Design(
             "validation-hardening", "24 pairs that harden, for no fit either", validation_hardening
+        ),
+        Design(
+            "validation-plateau",
+            "24 pairs whose curves bend, six of measured steels, for no fit either",
+            validation_plateau,
         ),
         Design(
             "challenge",

@@ -84,8 +84,27 @@ def test_metals_that_harden_begin_at_their_yield_strain_and_rise_as_a_power(case
     assert not set(judges) & set(cases["hardening"])
 
 
+def test_curves_that_bend_have_plateaus_knees_and_upper_yield_points(cases):
+    found = [case.pair for case in cases["plateau"].values()]
+    curves = [b.flow.curve for p in found for b in (p.sphere, p.flat) if b.flow]
+    assert len(found) == 48
+    assert 60 <= len(curves) <= 80
+    plateaus = [c for c in curves if c.stress[1] == c.stress[0]]
+    assert len(plateaus) > 0.4 * len(curves)
+    assert all(0.01 <= c.strain[1] <= 0.04 for c in plateaus)
+    later = [c(c.strain[1] + 0.2) / c.strength for c in plateaus]
+    assert 1.1 <= min(later) < 1.2
+    assert 1.8 < max(later) < 2.01
+    assert any(c.stress[1] < 0.98 * c.strength for c in curves)  # upper yield
+    assert any(c(0.01) > 1.5 * c.strength for c in curves)  # knee
+    judges = cases["validation-plateau"]
+    assert len(judges) == 24
+    assert not groups(judges) & groups(cases["plateau"])
+
+
 @pytest.mark.parametrize(
-    "name", ["thesis", "space", "validation", "near-equal", "validation-2", "hardening"]
+    "name",
+    ["thesis", "space", "validation", "near-equal", "validation-2", "hardening", "plateau"],
 )
 def test_depths_and_unloadings_of_every_case(cases, name):
     for case in cases[name].values():
