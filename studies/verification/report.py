@@ -1,4 +1,4 @@
-"""docs/verification.md from what has been measured."""
+"""docs/verification.md from what has been measured, and every number of it in one file."""
 
 from __future__ import annotations
 
@@ -8,6 +8,7 @@ from pathlib import Path
 from ... import fem
 from ...core.output import write_file
 from ...core.provenance import environment
+from .bench import Effort
 from .checks import CHECKS
 from .result import Measurement, Result, Table
 from .runner import best_result, publish
@@ -28,11 +29,15 @@ _TESTS = (
 )  # fmt: skip
 
 
+SHOWN = 2
+"""Marked numbers of a check that the page shows: those nearest to their marks."""
+
+
 def write_report(path: Path, *, folder: Path) -> Path:
     """Write the report from the measurements kept in `folder`; return its path.
 
     What is not measured there is taken from the results beside the report, where all that it shows
-    is kept; so a report can be renewed check by check.
+    is kept; so a report can be renewed check by check. Every number goes to `rows.md` in `folder`.
     """
     beside = path.parent / path.stem
     known = {check.name: best_result(check, folders=(folder, beside)) for check in CHECKS}
@@ -40,9 +45,12 @@ def write_report(path: Path, *, folder: Path) -> Path:
     for result in found:
         publish(result, folder=beside)
     lines = [*_head(), *_summary(found, [name for name, r in known.items() if r is None])]
+    rows = ["# What the solver was checked against: every number", ""]
     for result in found:
         lines += _section(result, path)
+        rows += _rows(result)
     lines += _tests()
+    write_file(folder / "rows.md", "\n".join(rows).rstrip() + "\n")
     return write_file(path, "\n".join(lines).rstrip() + "\n")
 
 
@@ -52,14 +60,15 @@ def _head() -> Iterator[str]:
     yield "# What the solver was checked against"
     yield ""
     yield (
-        "Made by `dentscope verify`; `dentscope verify --list` names the checks, `--only NAME` "
-        "runs one. It can be stopped and goes on where it was. Marks are those that were set "
-        "before measuring; a missed one stands as missed. Effort `quick` solves at coarse levels, "
-        "`production` (the default) at those of published results. Processor seconds are of one "
-        "thread on a shared two-core machine."
+        "Made by `dentscope verify`, which can be stopped and goes on where it was; `--list` names "
+        "the checks, `--only NAME` runs one. Marks were set before measuring; a missed one stands "
+        "as missed. Of each check the numbers nearest to their marks are shown, at the accuracy of "
+        "published results (`production`) unless a row says otherwise; every number, with tables "
+        "and remarks, is written to `build/verification/rows.md` by any run, and lies as "
+        "data in `docs/verification/results`."
     )
     yield ""
-    yield f"Present numerics version of the solver {fem.NUMERICS_VERSION}; {packages}."
+    yield f"Numerics version of the solver {fem.NUMERICS_VERSION}; {packages}."
     yield ""
 
 
@@ -74,14 +83,10 @@ def _tests() -> Iterator[str]:
 
 
 def _summary(results: list[Result], absent: list[str]) -> Iterator[str]:
-    yield "| check | numbers with a mark | met | effort | numerics | processor s |"
-    yield "| --- | --- | --- | --- | --- | --- |"
+    yield "| check | marks met | processor s |"
+    yield "| --- | --- | --- |"
     for r in results:
-        marked = [m for m in r.measurements if m.met is not None]
-        yield (
-            f"| [{r.title}](#{_anchor(r.title)}) | {len(marked)} | {len(marked) - len(r.missed)} | "
-            f"{r.effort} | {r.numerics_version} | {r.cpu_s:.0f} |"
-        )
+        yield f"| [{r.title}](#{_anchor(r.title)}) | {_met(r)} | {r.cpu_s:.0f} |"
     yield ""
     if absent:
         yield f"Not measured yet: {', '.join(absent)}."
@@ -91,12 +96,42 @@ def _summary(results: list[Result], absent: list[str]) -> Iterator[str]:
         yield "Marks that are missed:"
         yield ""
     for r, m in missed:
-        value = f"{m.value:.3g} {m.unit}".rstrip()
-        yield f"- {r.title}: {m.what}: {value} ({m.mark})"
+        yield f"- {r.title}: {m.what}: {_value(m)} ({m.mark})"
     yield ""
 
 
+def _met(result: Result) -> str:
+    marked = sum(m.met is not None for m in result.measurements)
+    told = f"{marked - len(result.missed)} of {marked}" if marked else "none set"
+    if result.effort != Effort.PRODUCTION.value:
+        told += f", {result.effort}"
+    if result.numerics_version != fem.NUMERICS_VERSION:
+        told += f", **numerics {result.numerics_version}: stale**"
+    return told
+
+
 def _section(result: Result, path: Path) -> Iterator[str]:
+    """How a check was done, and its numbers nearest to their marks."""
+    yield f"## {result.title}"
+    yield ""
+    yield result.about
+    yield ""
+    kept = [m for m in result.measurements if m.met is not False]  # the others are listed above
+    shown = sorted(kept, key=lambda m: -m.used)[:SHOWN]
+    for m in sorted(shown, key=result.measurements.index):
+        told = "; ".join(filter(None, (m.mark, m.source)))
+        yield f"- {m.what}: {_value(m)}" + (f" ({told})" if told else "")
+    if shown:
+        yield ""
+    for name, caption in result.pictures:
+        yield f"![{result.title}]({path.stem}/{name})"
+        yield ""
+        yield caption
+        yield ""
+
+
+def _rows(result: Result) -> Iterator[str]:
+    """Everything that a check measured."""
     yield f"## {result.title}"
     yield ""
     yield result.about
@@ -109,20 +144,18 @@ def _section(result: Result, path: Path) -> Iterator[str]:
         yield ""
     for table in result.tables:
         yield from _table(table)
-    for name, caption in result.pictures:
-        yield f"![{result.title}]({path.stem}/{name})"
-        yield ""
-        yield caption
-        yield ""
     for note in result.notes:
         yield note
         yield ""
 
 
+def _value(m: Measurement) -> str:
+    return f"{m.value:.3g} {m.unit}".rstrip()
+
+
 def _measurement(m: Measurement) -> str:
     state = {True: "met", False: "**missed**", None: ""}[m.met]
-    value = f"{m.value:.3g} {m.unit}".rstrip()
-    return f"| {_cell(m.what)} | {value} | {m.mark} | {state} | {_cell(m.source)} |"
+    return f"| {_cell(m.what)} | {_value(m)} | {m.mark} | {state} | {_cell(m.source)} |"
 
 
 def _table(table: Table) -> Iterator[str]:

@@ -48,6 +48,18 @@ class Measurement:
         return math.isfinite(self.value) and above and below
 
     @property
+    def used(self) -> float:
+        """How much of what the mark allows is used: 1 at the mark, more if it is missed."""
+        if not math.isfinite(self.value) or self.met is False:
+            return math.inf
+        if self.low is not None and self.high is not None:
+            middle, half = 0.5 * (self.low + self.high), 0.5 * (self.high - self.low)
+            return abs(self.value - middle) / half
+        if self.high is not None:
+            return self.value / self.high if self.high > 0.0 else 0.0
+        return self.low / self.value if self.low and self.value else -1.0
+
+    @property
     def mark(self) -> str:
         """The mark in words."""
         if self.low is not None and self.high is not None:
