@@ -33,7 +33,7 @@ the simulation of impacts. Of the tool they use the finite elements alone.
 
 * **Simulators.** Two fast ones: an expanding cavity, and a row of yielding springs, each fitted
   pair by pair to quasi-static finite elements (force and elastic energy within 2 % rms, residual
-  depth within 3 %). The third: dynamic finite elements of bar, block and support, {impacts} impacts.
+  depth within 3 %). The third is dynamic finite elements of bar, block, support: {impacts} impacts.
 * **Effects** mostly follow other equations than the diagnosis has: overstress with relaxation,
   Zerilli and Armstrong, Voce, a chain of beam elements in place of modes. Their rates have 0.5 to
   0.9 of the effect of finite elements with the same flow law, their hardening 1.3 to 1.5 times that
