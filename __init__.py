@@ -6,6 +6,7 @@
     ds.diagnose("my-recordings")               what physics the simulation of them lacks
     ds.case("case.toml")                       one's own pair by finite elements
     ds.compare_laws("case.toml")               the same by every contact law, and which to use
+    ds.material("aluminium-6061-t6")           a metal of the table of `dentscope materials`
     ds.LAWS                                    every contact law, as a table
 
 The stages, in the order in which a result passes through them; each is loaded when it is used:
@@ -30,6 +31,7 @@ from dentscope.core.compiled import keep_compiled_code
 
 if TYPE_CHECKING:
     from dentscope.core import Material, Pair
+    from dentscope.core.materials import material
     from dentscope.models import LAWS
     from dentscope.start import case, compare_laws, diagnose
 
@@ -42,13 +44,14 @@ _FROM = {
     "case": "start",
     "compare_laws": "start",
     "diagnose": "start",
+    "material": "core.materials",
 }
 _STAGES = (
     "core", "fem", "models", "campaigns", "fitting", "impact", "recordings", "reduce",
     "discrepancy", "start",
 )  # fmt: skip
 
-__all__ = ["LAWS", "Material", "Pair", "case", "compare_laws", "diagnose"]
+__all__ = ["LAWS", "Material", "Pair", "case", "compare_laws", "diagnose", "material"]
 
 keep_compiled_code()
 

@@ -20,6 +20,7 @@ from .examples import examples
 from .fit import fit
 from .impact import impact
 from .inverse import inverse
+from .materials import show_materials
 from .shared.groups import Sections
 from .shared.keys import keys
 
@@ -49,6 +50,7 @@ app.command()(fit)
 app.command()(impact)
 app.command()(inverse)
 app.command()(diagnose)
+app.command(name="materials")(show_materials)
 app.command()(examples)
 app.command()(keys)
 app.command()(doctor)

@@ -25,6 +25,7 @@ from pydantic import (
 from .errors import InputError
 from .inputs.toml_input import InputTable
 from .material import Material
+from .materials import filled
 from .observables import NOISE_KEYS
 
 Number = Annotated[float, Field(strict=True)]
@@ -121,7 +122,7 @@ class MaterialTable(InputTable):
     """
 
     material: str = ""
-    """Name of the metal, for people."""
+    """Name of the metal; one that `dentscope materials` lists gives what is left out here."""
     E_Pa: Modulus | None = None
     """Young's modulus."""
     nu: Poisson | None = None
@@ -132,6 +133,11 @@ class MaterialTable(InputTable):
     """Density."""
     rigid: Annotated[bool, Field(strict=True)] = False
     """Does not deform at all; then no other number is needed."""
+
+    @model_validator(mode="before")
+    @classmethod
+    def _of_a_known_material(cls, given: Any) -> Any:
+        return filled(given, frozenset(cls.model_fields)) if isinstance(given, dict) else given
 
     @field_validator("Sy_Pa")
     @classmethod
@@ -259,6 +265,7 @@ class StrikerTable(BodyTable):
     def _mass_of_a_sphere(cls, given: Any) -> Any:
         if not isinstance(given, dict) or given.get("shape") != "sphere" or "mass_kg" in given:
             return given
+        given = filled(given, frozenset(cls.model_fields))  # the density of a known material
         if given.get("density_kg_m3") is None:
             return given
         try:

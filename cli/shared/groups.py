@@ -20,7 +20,7 @@ SECTIONS = (
         ("impact", "diagnose", "recordings", "reduce", "case", "laws", "export", "inverse"),
     ),
     ("Behind the law", ("campaign", "fit")),
-    ("To begin", ("examples", "keys", "doctor", "version")),
+    ("To begin", ("examples", "materials", "keys", "doctor", "version")),
 )
 """Commands as the first help shows them; what stands in none comes last, as the workshop's."""
 

@@ -1,0 +1,149 @@
+"""Metals and hard materials by name: their numbers, with spread and source.
+
+The table is `data/materials/materials.toml`. A body of any input file that names one of them with
+`material = "aluminium-6061-t6"` takes from it what the file leaves out; a stated value goes first.
+"""
+
+from __future__ import annotations
+
+import tomllib
+from collections.abc import Mapping
+from dataclasses import dataclass
+from difflib import get_close_matches
+from functools import cache
+from pathlib import Path
+from typing import Any
+
+from .errors import InputError
+from .material import Material
+
+FILE = Path(__file__).resolve().parents[1] / "data" / "materials" / "materials.toml"
+
+NUMBERS = ("E_Pa", "nu", "Sy_Pa", "hardness_Pa", "density_kg_m3")
+"""Keys of a body's table that an entry may give."""
+
+
+@dataclass(frozen=True)
+class Entry:
+    """One material of the table.
+
+    Parameters
+    ----------
+    name, title, kind, note
+        Name in files, name for people, class of material, what to beware of.
+    numbers
+        By key of `NUMBERS`: value, standard deviation, source.
+    laws
+        Hardening, rate and heat, where they were measured: the keys of a body's table `hardening`
+        or `rate`, of Johnson and Cook's softening, and the source.
+    """
+
+    name: str
+    title: str
+    kind: str
+    numbers: Mapping[str, Mapping[str, Any]]
+    laws: Mapping[str, Mapping[str, Any]]
+    note: str = ""
+
+    def quantity(self, key: str) -> dict[str, float] | None:
+        """Return value and standard deviation as a file writes them; none where unknown."""
+        found = self.numbers.get(key)
+        return None if found is None else {"value": found["value"], "std": found["std"]}
+
+
+@cache
+def materials() -> dict[str, Entry]:
+    """Return every entry of the table by its name."""
+    content = tomllib.loads(FILE.read_text(encoding="utf-8"))["materials"]
+    return {name: _entry(name, given) for name, given in content.items()}
+
+
+def sources() -> dict[str, str]:
+    """Return the sources by the short names that the entries use."""
+    found: dict[str, str] = tomllib.loads(FILE.read_text(encoding="utf-8"))["sources"]
+    return found
+
+
+def _entry(name: str, given: Mapping[str, Any]) -> Entry:
+    return Entry(
+        name, given["title"], given["kind"], {k: given[k] for k in NUMBERS if k in given},
+        {k: given[k] for k in ("hardening", "rate", "heat") if k in given}, given.get("note", ""),
+    )  # fmt: skip
+
+
+def entry_named(name: str) -> Entry:
+    """Return an entry.
+
+    Raises
+    ------
+    InputError
+        No entry has this name; the nearest ones are told.
+    """
+    known = materials()
+    if name in known:
+        return known[name]
+    near = get_close_matches(name.lower(), known, n=3, cutoff=0.5)
+    raise InputError(
+        f"no material {name!r}", key="material",
+        allowed=f"{', '.join(near)}; all of them: dentscope materials" if near
+        else "a name that dentscope materials lists",
+    )  # fmt: skip
+
+
+def material(name: str) -> Material:
+    """Return a material of the table at its listed values.
+
+    Parameters
+    ----------
+    name
+        As `dentscope materials` lists it.
+
+    Returns
+    -------
+    Material
+        Modulus, Poisson's ratio, yield strength and density in SI units. Without a listed strength
+        (ceramics, hardened balls) the body is elastic.
+
+    Raises
+    ------
+    InputError
+        The name is unknown; the nearest names are told.
+
+    Examples
+    --------
+    >>> material("aluminium-6061-t6").Sy
+    276000000.0
+    """
+    numbers = {k: v["value"] for k, v in entry_named(name).numbers.items()}
+    strength = {"Sy": numbers["Sy_Pa"]} if "Sy_Pa" in numbers else {}
+    return Material(
+        E=numbers["E_Pa"], nu=numbers["nu"], density=numbers["density_kg_m3"], name=name, **strength
+    )
+
+
+def filled(given: dict[str, Any], known: frozenset[str]) -> dict[str, Any]:
+    """Return a body's table with what it leaves out taken from the material that it names.
+
+    A stated strength or hardness keeps both of the table's out: one follows from the other.
+
+    Parameters
+    ----------
+    given
+        The table as the file has it.
+    known
+        Keys that this table may hold.
+    """
+    name = given.get("material")
+    if given.get("rigid") or not isinstance(name, str) or name not in materials():
+        return given
+    entry = materials()[name]
+    strengths = {"Sy_Pa", "hardness_Pa", "flow_curve", "hardening"}
+    stated = any(given.get(key) for key in strengths)
+    # the strength where it is listed, as it was measured, before what follows from a hardness
+    hidden = strengths if stated else {"hardness_Pa"} if "Sy_Pa" in entry.numbers else set()
+    taken = {
+        key: entry.quantity(key)
+        for key in entry.numbers
+        if key in known and key not in hidden and given.get(key) is None
+    }
+    return {**given, **taken}

@@ -1,0 +1,114 @@
+"""The table of materials: sound numbers, sources, and what a file takes from it."""
+
+import dentscope as ds
+import pytest
+from dentscope.core.errors import InputError
+from dentscope.core.inputs.toml_input import parse_model
+from dentscope.core.materials import filled, materials, sources
+from dentscope.core.rig import BodyTable, Rig
+from dentscope.start.case_file import HardeningTable, RateTable
+
+
+def run(*words):
+    from dentscope.cli import run as command
+
+    return command(list(words))
+
+
+def test_some_seventy_materials_with_a_source_for_every_number():
+    known, named = materials(), set(sources())
+    assert len(known) >= 60
+    used = {n["source"] for e in known.values() for n in (*e.numbers.values(), *e.laws.values())}
+    assert used == named
+    for entry in known.values():
+        assert {"E_Pa", "nu", "density_kg_m3"} <= set(entry.numbers)
+        assert {"Sy_Pa", "hardness_Pa"} & set(entry.numbers)
+        for key, number in entry.numbers.items():
+            assert 0.0 < number["std"] < 0.5 * number["value"], (entry.name, key)
+
+
+@pytest.mark.parametrize("name", sorted(materials()))
+def test_every_entry_makes_a_body_that_files_accept(name):
+    body = parse_model({"material": name}, BodyTable, source="a file")
+    assert body.E_Pa.value == materials()[name].numbers["E_Pa"]["value"]
+    assert body.density_kg_m3.std > 0.0
+    assert (body.Sy_Pa is None) != (body.hardness_Pa is None)
+    for key, table in (("hardening", HardeningTable), ("rate", RateTable)):
+        law = dict(materials()[name].laws.get(key, {}))
+        if law:
+            del law["source"]
+            parse_model(law, table, source="a file")
+
+
+def test_strength_and_hardness_of_the_wrought_aluminium_alloys_agree_as_tabor_has_it():
+    """H is 2.8 to 3.3 times the stress at 8 % strain, so 2.8 Sy at least (Tabor 1951)."""
+    for entry in materials().values():
+        if entry.kind == "aluminium" and {"Sy_Pa", "hardness_Pa"} <= set(entry.numbers):
+            ratio = entry.numbers["hardness_Pa"]["value"] / entry.numbers["Sy_Pa"]["value"]
+            assert 2.5 < ratio < 8.0, entry.name
+
+
+def test_a_stated_value_goes_first():
+    stated = {"material": "aluminium-6061-t6", "E_Pa": 7.2e10, "hardness_Pa": 1.05e9}
+    body = parse_model(stated, BodyTable, source="a file")
+    assert body.E_Pa.value == 7.2e10
+    assert body.E_Pa.std == 0.0
+    assert body.Sy_Pa is None
+    assert body.hardness_Pa.value == 1.05e9
+    assert body.nu.value == 0.33
+
+
+def test_other_names_and_rigid_bodies_stay_as_they_are():
+    for given in ({"material": "gouda"}, {"material": "lead", "rigid": True}, {"E_Pa": 1e9}):
+        assert filled(given, frozenset(BodyTable.model_fields)) == given
+
+
+def test_a_sphere_of_a_known_material_has_its_mass():
+    content = {
+        "target": {"material": "aluminium-7075-t6"},
+        "strikers": {
+            "ball": {"shape": "sphere", "tip_radius_m": 5e-3, "material": "soda-lime-glass"}
+        },
+    }
+    rig = parse_model(content, Rig, source="a file")
+    assert rig.strikers["ball"].mass_kg.value == pytest.approx(2500 * 4 / 3 * 3.14159265 * 5e-3**3)
+
+
+def test_from_python():
+    metal = ds.material("copper-ofhc-annealed")
+    assert (metal.E, metal.Sy, metal.density) == (129.8e9, 90e6, 8960.0)
+    with pytest.raises(InputError, match="aluminium-6061-t6"):
+        ds.material("aluminium-6061-t66")
+
+
+def test_the_commands(capsys):
+    assert run("materials") == 0
+    assert "steel-1006\n" in capsys.readouterr().out
+    assert run("materials", "steel-1006") == 0
+    told = capsys.readouterr().out
+    assert "350 +- 28 MPa: johnson-cook-1983." in told
+    assert "Proc. 7th Int. Symp. Ballistics" in told
+    assert run("materials", "steel-1106-hot-rolled") == 2
+    assert "steel-1010-hot-rolled" in capsys.readouterr().err
+
+
+def test_an_impact_of_two_named_materials(tmp_path, capsys):
+    file = tmp_path / "ball.toml"
+    file.write_text(
+        '[target]\nmaterial = "aluminium-6061-t6"\n[strikers.ball]\nshape = "sphere"\n'
+        'tip_radius_m = 0.003\nmaterial = "steel-440c-hardened"\n'
+        '[impact]\nimpact_speed_m_s = 1.0\nlaws = ["fitted"]\n'
+    )
+    assert run("impact", str(file), "--out", str(tmp_path / "out")) == 0
+    told = capsys.readouterr().out
+    stated = tmp_path / "stated.toml"
+    stated.write_text(
+        "[target]\nE_Pa = 68.9e9\nnu = 0.33\nSy_Pa = 276e6\n"
+        '[strikers.ball]\nshape = "sphere"\ntip_radius_m = 0.003\nE_Pa = 200e9\nnu = 0.283\n'
+        "density_kg_m3 = 7670\nhardness_Pa = 7.4e9\n"
+        '[impact]\nimpact_speed_m_s = 1.0\nlaws = ["fitted"]\n'
+    )
+    assert run("impact", str(stated), "--out", str(tmp_path / "out2")) == 0
+    again = capsys.readouterr().out
+    row = next(line for line in told.splitlines() if line.startswith(" restitution"))
+    assert row in again
