@@ -12,6 +12,7 @@ from typing import Literal
 
 Instrument = Literal["motion", "force", "surface"]
 Phase = Literal["loading", "unloading", "sliding", "free-flight"]
+Event = Literal["impact", "press"]
 
 RELATIVE_SUFFIX = "_relative"
 
@@ -27,8 +28,8 @@ class Observable:
     label, meaning
         Two or three words for lists and axes; one sentence for the documentation.
     instrument
-        What measures it: a camera, markers, light gates or sound (`motion`), a force sensor or an
-        electric contact (`force`), a scan of the crater (`surface`).
+        What measures it: a camera, markers, light gates or sound (`motion`), a force sensor, a
+        testing machine or an electric contact (`force`), a scan of the crater (`surface`).
     phase
         The phase of the impact that shapes it most.
     low, zero
@@ -44,6 +45,8 @@ class Observable:
     usual_noise
         Relative standard deviation of a usual instrument; 0 for what is not proposed as a further
         measurement.
+    of
+        What shows it: an impact, a quasi-static press, or either.
     """
 
     column: str
@@ -58,6 +61,7 @@ class Observable:
     simulated: str
     in_trials: bool = True
     usual_noise: float = 0.0
+    of: tuple[Event, ...] = ("impact",)
 
     @property
     def unit(self) -> str:
@@ -96,6 +100,13 @@ _ROWS = (
         column="permanent_depth_m", label="crater depth",
         meaning="depth of the crater in the flat", simulated="residual_flat_m",
         instrument="surface", phase="loading", log=True, power=1.0, usual_noise=0.03,
+        of=("impact", "press"),
+    ),
+    Observable(
+        column="dent_diameter_m", label="dent diameter", zero=False,
+        meaning="diameter of the dent in the flat, its edge as `[noise] dent_edge` says",
+        simulated="", instrument="surface", phase="loading", log=True, power=0.5, usual_noise=0.01,
+        of=("impact", "press"),
     ),
     Observable(
         column="contact_time_s", label="contact time", zero=False,
@@ -148,6 +159,16 @@ _ROWS = (
         instrument="motion", phase="free-flight", power=1.0,
     ),
     Observable(
+        column="press_depth_m", label="press depth", zero=False,
+        meaning="largest approach under the load of a press, the machine's own taken off",
+        simulated="", instrument="force", phase="loading", log=True, power=1.0, of=("press",),
+    ),
+    Observable(
+        column="recovered_depth_m", label="recovered depth", zero=False,
+        meaning="approach given back as the load of a press is taken off", simulated="",
+        instrument="force", phase="unloading", log=True, power=0.5, of=("press",),
+    ),
+    Observable(
         column="peak_depth_m", label="largest depth", in_trials=False,
         meaning="deepest place of the tip below the undisturbed flat", simulated="peak_depth_m",
         instrument="motion", phase="loading", log=True, power=1.0,
@@ -176,8 +197,13 @@ _MEASURED = tuple(row.column for row in _ROWS if row.in_trials)
 
 TRACE_NOISE = ("tip_height_m", "force_N", "force_N" + RELATIVE_SUFFIX)
 RIG_NOISE = ("impact_speed" + RELATIVE_SUFFIX, "frame_rate_hz")
+LOAD = "load_N"
+"""Column of the largest load of a quasi-static press."""
 
 NOISE_KEYS: tuple[str, ...] = (
     *_MEASURED, *(name + RELATIVE_SUFFIX for name in _MEASURED), *TRACE_NOISE, *RIG_NOISE,
+    LOAD, LOAD + RELATIVE_SUFFIX,
 )  # fmt: skip
-"""Every key that `[noise]` may have: of observables, of traces, of the approach and the camera."""
+"""Every number that `[noise]` may have: of observables, traces, approach, camera, load."""
+GAUGE_KEYS: tuple[str, ...] = (*_MEASURED, LOAD)
+"""Columns whose readings may share a scale: the keys of `[gauge]`."""

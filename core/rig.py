@@ -26,7 +26,7 @@ from .errors import InputError
 from .inputs.toml_input import InputTable
 from .material import Material
 from .materials import filled
-from .observables import NOISE_KEYS
+from .observables import GAUGE_KEYS, NOISE_KEYS
 
 Number = Annotated[float, Field(strict=True)]
 
@@ -341,7 +341,13 @@ class EnvironmentTable(InputTable):
 
 def _known_noise(key: str) -> str:
     if key not in NOISE_KEYS:
-        raise ValueError(", ".join(NOISE_KEYS))
+        raise ValueError(", ".join((*NOISE_KEYS, _EDGE)))
+    return key
+
+
+def _known_gauge(key: str) -> str:
+    if key not in GAUGE_KEYS:
+        raise ValueError(", ".join(GAUGE_KEYS))
     return key
 
 
@@ -353,6 +359,10 @@ def _plain(given: Any) -> Any:
 
 NoiseKey = Annotated[str, AfterValidator(_known_noise)]
 NoiseStd = Annotated[float, BeforeValidator(_plain), Field(strict=True, gt=0.0)]
+GaugeKey = Annotated[str, AfterValidator(_known_gauge)]
+GaugeStd = Annotated[float, Field(strict=True, gt=0.0, le=0.5)]
+DentEdge = Literal["contact", "rim"]
+_EDGE = "dent_edge"
 
 
 class Rig(InputTable):
@@ -380,6 +390,26 @@ class Rig(InputTable):
     """What is around the bodies."""
     noise: dict[NoiseKey, NoiseStd] = Field(default_factory=dict)
     """Standard deviations of the readings, by column; NAME_relative is a fraction of the value."""
+    gauge: dict[GaugeKey, GaugeStd] = Field(default_factory=dict)
+    """Relative standard deviation of a scale that all readings of a column share."""
+    dent_edge: DentEdge = "contact"
+    """In `[noise]`: what a dent's diameter is measured between, the largest contact circle or the
+    rim (crest of the pile-up, or where the surface leaves its level)."""
+
+    @model_validator(mode="before")
+    @classmethod
+    def _edge_stands_in_the_noise(cls, given: Any) -> Any:
+        if not isinstance(given, dict):
+            return given
+        if _EDGE in given:
+            raise ValueError(f"{_EDGE} stands in [noise]")
+        if not isinstance(given.get("noise"), dict):
+            return given
+        noise = dict(given["noise"])
+        if _EDGE not in noise:
+            return given
+        return {**given, "noise": {k: v for k, v in noise.items() if k != _EDGE},
+                _EDGE: noise[_EDGE]}  # fmt: skip
 
     @property
     def bodies(self) -> dict[str, BodyTable]:

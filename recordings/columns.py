@@ -73,6 +73,9 @@ CONDITIONS: dict[str, Column] = {
     "spot": Column("text", "same text: same place on the flat"),
     "approach_tangential_m_s": Column("condition", "tangential speed of the centre before"),
     "approach_spin_rad_s": Column("condition", "angular velocity before, counter-clockwise"),
+    "load_N": _positive("condition", "largest load of a quasi-static press", high=1e8),
+    "load_N_std": _not_negative("std", "standard deviation of the load"),
+    "press_rate_per_s": _positive("condition", "strain rate of a press; none if empty", high=1e4),
 }
 """Columns that describe a trial, in the order in which they are written."""
 

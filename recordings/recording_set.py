@@ -18,7 +18,7 @@ import numpy.typing as npt
 from ..core.approach import speeds_at_touch
 from ..core.errors import InputError, InputErrors
 from ..core.inputs.toml_input import parse_model, read_toml
-from ..core.observables import RELATIVE_SUFFIX, RIG_NOISE, TRACE_NOISE
+from ..core.observables import LOAD, RELATIVE_SUFFIX, RIG_NOISE, TRACE_NOISE
 from ..core.output import finish, locked, write_files
 from ..core.rig import BodyTable, Quantity, StrikerTable
 from . import noise
@@ -37,6 +37,7 @@ if TYPE_CHECKING:
 
 _SPEED_BIN = 0.02
 _ANGLE_BIN = 1.0
+_RATE_BIN = 0.5  # of ln of a press's rate: strengths differ by a few per cent a decade
 _SURE, _SLIP = 3.0, 0.1
 """Standard deviations by which a restitution exceeds 1 before it asks for a reason."""
 
@@ -49,7 +50,7 @@ class Approach:
     ----------
     normal, normal_std
         Normal approach speed and its standard deviation [m/s]; the second is NaN where the set
-        says nothing.
+        says nothing, both are of a press.
     angle
         Between axis and flat for a rod, pi/2 for a sphere [rad].
     tangential
@@ -102,6 +103,17 @@ class RecordingSet:
         """The set's name, or that of its folder."""
         return self.setup.name or (self.folder.name if self.folder else "")
 
+    @property
+    def impacts(self) -> RecordingSet:
+        """The set without its quasi-static presses."""
+        pressed = self.trials.pressed
+        return self.take(~pressed) if pressed.any() else self
+
+    @property
+    def presses(self) -> RecordingSet:
+        """The set's quasi-static presses alone."""
+        return self.take(self.trials.pressed)
+
     @cached_property
     def observed(self) -> tuple[str, ...]:
         """Observables with at least one value, in the order of the format."""
@@ -144,9 +156,9 @@ class RecordingSet:
     def conditions(self) -> npt.NDArray[np.intp]:
         """Number of each trial's condition, shape (n,): repeats share a number.
 
-        Same striker, angle within 1 degree, approach speed within 2 percent, same tangential speed
-        and spin within 2 percent of the approach, same entry in every column `x_NAME`; a spot that
-        is struck again is its own condition.
+        Same striker, angle within 1 degree, approach speed (or a press's load) within 2 percent,
+        same tangential speed and spin within 2 percent of the approach, same entry in every column
+        `x_NAME`; a spot that is struck again is its own condition.
         """
         approach, trials = self.approach, self.trials
         struck: dict[str, int] = {}
@@ -162,6 +174,8 @@ class RecordingSet:
             list(noise.bins(approach.tangential / approach.normal, width=_SPEED_BIN)),
             list(noise.bins(approach.spin * sizes / approach.normal, width=_SPEED_BIN)),
             list(noise.bins(trials.temperature_K, width=_ANGLE_BIN)),
+            list(noise.bins(np.log(trials.load_N), width=_SPEED_BIN)),
+            list(noise.bins(np.log(trials.press_rate_per_s), width=_RATE_BIN)),
             *trials.varied.values(),
             blow,
         )
@@ -180,13 +194,22 @@ class RecordingSet:
             np.isnan(trials.impact_speed_m_s_std), fraction * normal, trials.impact_speed_m_s_std
         )
         given = trials.approach_tangential_m_s
+        along = np.where(trials.pressed, 0.0, np.where(np.isnan(given), along, given))
         return Approach(
             normal=normal,
             normal_std=std,
             angle=np.where(rod, angle, np.pi / 2.0),
-            tangential=np.where(np.isnan(given), along, given),
+            tangential=along,
             spin=np.nan_to_num(trials.approach_spin_rad_s, nan=0.0),
         )
+
+    @cached_property
+    def load_std(self) -> Array:
+        """Standard deviation of the presses' loads, shape (n,) [N]; nan where it is not stated."""
+        stated, table = self.trials.load_N_std, self.setup.noise
+        parts = [table.get(LOAD, np.nan), table.get(LOAD + RELATIVE_SUFFIX, np.nan)]
+        absolute, fraction = np.nan_to_num(parts) if np.isfinite(parts).any() else parts
+        return np.where(np.isnan(stated), np.hypot(absolute, fraction * self.trials.load_N), stated)
 
     def trace(self, trial: str) -> Mapping[str, Array]:
         """Return the columns of a trial's trace, each of shape (k,)."""
@@ -382,6 +405,7 @@ def _notes(found: RecordingSet) -> list[str]:
     for key in found.setup.noise:
         column = key.removesuffix(RELATIVE_SUFFIX)
         used = column in found.observed or (key in TRACE_NOISE and bool(found.traces))
+        used |= column == LOAD and bool(found.trials.pressed.any())
         if not used and key not in RIG_NOISE:
             notes.append(f"noise.{key} is not used: the set has no values of {column}")
     columns = found.trials.observables.values()

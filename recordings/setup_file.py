@@ -67,8 +67,17 @@ def setup_text(setup: Setup, *, before: Setup | None = None, text: str = "") -> 
         What the file says now; all else in it stays as it is.
     """
     document = tomlkit.parse(text)
-    _change(document, {} if before is None else _plain(before), _plain(setup))
+    _change(document, {} if before is None else _as_written(before), _as_written(setup))
     return tomlkit.dumps(document)
+
+
+def _as_written(setup: Setup) -> dict[str, Any]:
+    """The file's keys; what a dent's edge is stands in `[noise]`."""
+    plain = _plain(setup)
+    edge = plain.pop("dent_edge", None)
+    if edge is not None:
+        plain["noise"] = {**plain.get("noise", {}), "dent_edge": edge}
+    return plain
 
 
 def _change(table: Any, old: Mapping[str, Any], new: Mapping[str, Any]) -> None:

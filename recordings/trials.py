@@ -2,13 +2,14 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field, fields, replace
 from pathlib import Path
 
 import numpy as np
 import numpy.typing as npt
 
+from ..core.observables import LOAD, OBSERVABLES
 from ..core.output import csv_text
 from .columns import CONDITIONS, MEASURED, STD_SUFFIX, TRIAL_COLUMNS, VARIED
 from .csv_table import Array, Problems, TextTable, numbers, read_text_table, shown
@@ -16,6 +17,19 @@ from .csv_table import Array, Problems, TextTable, numbers, read_text_table, sho
 _TEXTS = tuple(name for name, column in TRIAL_COLUMNS.items() if column.kind == "text")
 _NUMBERS = tuple(name for name, column in CONDITIONS.items() if column.kind != "text")
 _STDS = {name + STD_SUFFIX: name for name in MEASURED}
+_APPROACH = ("impact_speed_m_s", "drop_height_m")
+NORMAL = 90.0
+_UPRIGHT = 0.5  # degrees by which a press may be said to lean: bins of an angle are twice as wide
+_SHOWN_BY_PRESS = tuple(name for name in MEASURED if "press" in OBSERVABLES[name].of)
+_OF_PRESSES = {
+    "press_rate_per_s", "load_N_std",
+    *(name for name in MEASURED if "impact" not in OBSERVABLES[name].of),
+}  # fmt: skip
+_OF_IMPACTS = {
+    "impact_speed_m_s_std", "approach_tangential_m_s", "approach_spin_rad_s",
+    *(name for name in MEASURED if name not in _SHOWN_BY_PRESS),
+}  # fmt: skip
+"""Columns that only rows of one kind may fill."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -29,15 +43,20 @@ class Trials:
     trial, striker
         Name of the trial; name of its striker in set.toml.
     angle_deg
-        Angle [deg]: rod, between axis and flat; sphere, between velocity and flat.
+        Angle [deg]: rod, between axis and flat; sphere, between velocity and flat; 90 of a press.
     impact_speed_m_s, drop_height_m
-        As the table gives them: normal approach speed [m/s], height of fall [m]; at least one.
+        As the table gives them: normal approach speed [m/s], height of fall [m]; at least one of an
+        impact, none of a press.
     angle_deg_std, impact_speed_m_s_std
         Standard deviations [deg, m/s].
     temperature_K, order
         Temperature [K]; place in the order of testing.
     approach_tangential_m_s, approach_spin_rad_s
         Tangential speed of the centre [m/s] and angular velocity [rad/s] before.
+    load_N, load_N_std
+        Largest load of a quasi-static press and its standard deviation [N].
+    press_rate_per_s
+        Strain rate of a press [1/s].
     spot, note
         Same text: same place on the flat; free text.
     varied
@@ -59,6 +78,9 @@ class Trials:
     order: Array = field(default_factory=lambda: np.empty(0))
     approach_tangential_m_s: Array = field(default_factory=lambda: np.empty(0))
     approach_spin_rad_s: Array = field(default_factory=lambda: np.empty(0))
+    load_N: Array = field(default_factory=lambda: np.empty(0))
+    load_N_std: Array = field(default_factory=lambda: np.empty(0))
+    press_rate_per_s: Array = field(default_factory=lambda: np.empty(0))
     spot: tuple[str, ...] = ()
     note: tuple[str, ...] = ()
     varied: Mapping[str, tuple[str, ...]] = field(default_factory=dict)
@@ -77,6 +99,11 @@ class Trials:
 
     def __len__(self) -> int:
         return len(self.trial)
+
+    @property
+    def pressed(self) -> npt.NDArray[np.bool_]:
+        """Which rows are quasi-static presses, shape (n,)."""
+        return np.asarray(~np.isnan(self.load_N))
 
     def take(self, rows: npt.ArrayLike) -> Trials:
         """Return some of the rows: indices or a mask."""
@@ -121,11 +148,15 @@ def read_trials(path: Path, strikers: frozenset[str], problems: Problems) -> Tri
     table = read_text_table(path, TRIAL_COLUMNS, problems, free=VARIED)
     if table is None:
         return None
-    missing = [name for name in ("trial", "striker", "angle_deg") if name not in table.columns]
+    approached = bool(set(_APPROACH) & set(table.columns))
+    # a press is normal: presses alone need no angle
+    needed = ("trial", "striker", "angle_deg") if approached else ("trial", "striker")
+    missing = [name for name in needed if name not in table.columns]
     for name in missing:
         problems.add("missing", row=1, column=name, allowed="this column is needed")
-    if not {"impact_speed_m_s", "drop_height_m"} & set(table.columns):
-        problems.add("no approach", row=1, allowed="a column impact_speed_m_s or drop_height_m")
+    if not approached and LOAD not in table.columns:
+        problems.add("no approach", row=1, allowed=f"a column {' or '.join(_APPROACH)}; of "
+                     f"quasi-static presses {LOAD}")  # fmt: skip
     if not table.rows:
         problems.add("no trial", allowed="at least one row below the header")
     values = {
@@ -142,6 +173,10 @@ def read_trials(path: Path, strikers: frozenset[str], problems: Problems) -> Tri
 
 def _as_trials(table: TextTable, values: Mapping[str, Array]) -> Trials:
     texts = {name: table.cells[name] for name in _TEXTS if name in table.columns}
+    angle = values.get("angle_deg", np.full(len(table.rows), np.nan))
+    if LOAD in values:
+        angle = np.where(np.isnan(angle) & ~np.isnan(values[LOAD]), NORMAL, angle)
+    values = {**values, "angle_deg": angle}
     return Trials(
         **texts,  # type: ignore[arg-type]
         **{name: values[name] for name in _NUMBERS if name in values},  # type: ignore[arg-type]
@@ -191,12 +226,22 @@ def _check_texts(table: TextTable, strikers: frozenset[str], problems: Problems)
 
 def _check_approach(table: TextTable, values: Mapping[str, Array], problems: Problems) -> None:
     cells = table.cells
+    # without any such column one line has said so
+    approached = bool({*_APPROACH, LOAD} & set(cells))
     for i, row in enumerate(table.rows):
+        if _filled(cells, LOAD, i):
+            _check_press(table, i, values, problems)
+            continue
         if "angle_deg" in cells and not cells["angle_deg"][i]:
             problems.add("empty", row=row, column="angle_deg", allowed="90 for a normal impact")
-        given = [cells[k][i] for k in ("impact_speed_m_s", "drop_height_m") if k in cells]
-        if given and not any(given):
-            problems.add("no approach", row=row, allowed="impact_speed_m_s or drop_height_m")
+        if approached and not any(_filled(cells, k, i) for k in _APPROACH):
+            problems.add("no approach", row=row, allowed=" or ".join((*_APPROACH, LOAD)))
+        for name in sorted(_OF_PRESSES):
+            if _filled(cells, name, i):
+                problems.add(
+                    f"{shown(cells[name][i])} of an impact", row=row, column=name,
+                    allowed=f"empty but for a press, a row with {LOAD}",
+                )  # fmt: skip
     for name, of in _STDS.items():
         if name in values and of in values:
             for i in map(int, np.flatnonzero(~np.isnan(values[name]) & np.isnan(values[of]))):
@@ -205,6 +250,37 @@ def _check_approach(table: TextTable, values: Mapping[str, Array], problems: Pro
                         f"{of} is empty", row=table.rows[i], column=name,
                         allowed="a standard deviation only where there is a value",
                     )  # fmt: skip
+
+
+def _filled(cells: Mapping[str, Sequence[str]], name: str, i: int) -> bool:
+    return name in cells and bool(cells[name][i])
+
+
+def _check_press(table: TextTable, i: int, values: Mapping[str, Array], problems: Problems) -> None:
+    """A row with a load: normal, without approach, with what a press shows."""
+    cells, row = table.cells, table.rows[i]
+    both = [k for k in _APPROACH if _filled(cells, k, i)]
+    if both:
+        problems.add(
+            f"{LOAD} beside {both[0]}", row=row, column=LOAD,
+            allowed="a press has a load, an impact a speed or a height",
+        )  # fmt: skip
+        return
+    if (
+        "angle_deg" in values
+        and not np.isnan(values["angle_deg"][i])
+        and (abs(values["angle_deg"][i] - NORMAL) > _UPRIGHT)
+    ):
+        problems.add(
+            f"{values['angle_deg'][i]:g}", row=row, column="angle_deg",
+            allowed=f"{NORMAL:g} or empty for a press",
+        )  # fmt: skip
+    for name in sorted(_OF_IMPACTS):
+        if _filled(cells, name, i):
+            problems.add(
+                f"{shown(cells[name][i])} of a press", row=row, column=name,
+                allowed=f"empty in a row with {LOAD}: a press shows {', '.join(_SHOWN_BY_PRESS)}",
+            )  # fmt: skip
 
 
 def trials_text(trials: Trials) -> str:

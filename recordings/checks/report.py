@@ -15,10 +15,12 @@ from .contact import check_contact_size, check_duration, check_energy, check_for
 from .findings import Finding, Severity
 from .momentum import check_momentum
 from .motion import check_friction, check_impulse, check_mass, check_speed
+from .press import check_press_depths, check_press_load, check_press_recovery
 from .trace import check_trace
 
-CHECKS: tuple[Callable[[RecordingSet], list[Finding]], ...] = (
-    check_mass,
+Check = Callable[[RecordingSet], list[Finding]]
+
+CHECKS: tuple[Check, ...] = (
     check_speed,
     check_momentum,
     check_friction,
@@ -29,7 +31,10 @@ CHECKS: tuple[Callable[[RecordingSet], list[Finding]], ...] = (
     check_contact_size,
     check_duration,
 )
-"""The checks in the order in which they are made: what was stated, what moved, what it means."""
+"""The checks of impacts in the order in which they are made: what moved, what it means."""
+
+PRESS_CHECKS: tuple[Check, ...] = (check_press_load, check_press_recovery, check_press_depths)
+"""The checks of quasi-static presses."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -63,5 +68,8 @@ def audit(found: RecordingSet) -> Audit:
         A finding for each check that the set allows, also when it passes; of checks made trial by
         trial the worst, with the number of trials that share its severity.
     """
-    findings = tuple(finding for check in CHECKS for finding in check(found))
-    return Audit(found.name, findings)
+    findings = check_mass(found)
+    for rows, checks in ((found.impacts, CHECKS), (found.presses, PRESS_CHECKS)):
+        if len(rows.trials):
+            findings += [finding for check in checks for finding in check(rows)]
+    return Audit(found.name, tuple(findings))

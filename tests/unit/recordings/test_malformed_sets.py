@@ -44,6 +44,18 @@ def write(folder, *, toml=SET, trials=TRIALS, trace=TRACE, profile=PROFILE):
     return folder
 
 
+PRESSES = """trial,striker,angle_deg,impact_speed_m_s,load_N,restitution,permanent_depth_m
+a,rod,90,1.0,,0.5,1e-5
+p,rod,,,400,,2e-5
+"""
+
+
+def presses(old, new):
+    assert old in PRESSES
+    noise = SET + "permanent_depth_m = 1e-6\n"
+    return {"toml": noise, "trials": PRESSES.replace(old, new), "trace": None, "profile": None}
+
+
 def toml(old, new):
     assert old in SET
     return {"toml": SET.replace(old, new)}
@@ -166,6 +178,23 @@ CASES = {
     "trial empty": (trials("b,rod", ",rod"), r"row 3, column trial: empty"),
     "trial is a path": (trials("b,rod", "../b,rod"), r"row 3, column trial: '\.\./b'"),
     "other striker": (trials("b,rod", "b,ball"), r"row 3, column striker: no striker 'ball' .*rod"),
+    # quasi-static presses
+    "load beside a speed": (presses("90,1.0,,", "90,1.0,400,"), r"row 2, column load_N: .*a speed"),
+    "press with a restitution": (
+        presses("400,,", "400,0.5,"), r"row 3, column restitution: '0\.5' of a press .*shows perm"
+    ),
+    "press that leans": (presses("p,rod,,", "p,rod,45,"), r"column angle_deg: 45 .*90 or empty"),
+    "negative load": (presses("400", "-400"), r"row 3, column load_N: -400"),
+    "depth under load of an impact": (
+        presses("permanent_depth_m", "press_depth_m"), r"row 2, column press_depth_m: .*an impact"
+    ),
+    "neither load nor speed": (presses("400", ""), r"row 3: no approach .*load_N"),
+    "gauge of nothing": ({"toml": SET + "[gauge]\ncraters = 0.01\n"}, r"gauge\.craters: unknown"),
+    "gauge in percent": (
+        {"toml": SET + "[gauge]\nrestitution = 5.0\n"}, r"gauge\.restitution: 5\.0 .*0\.5"
+    ),
+    "other edge of a dent": ({"toml": SET + 'dent_edge = "crest"\n'}, r"dent_edge: 'crest' .*rim"),
+    "edge of a dent by itself": ({"toml": 'dent_edge = "rim"\n' + SET}, r"stands in \[noise\]"),
     # traces and profiles
     "trace without time": ({"trace": "tip_height_m\n0\n1\n"}, r"a\.csv: row 1, column time_s"),
     "trace without curve": ({"trace": "time_s\n0\n1\n"}, r"traces/a\.csv: row 1: no curve"),

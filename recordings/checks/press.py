@@ -1,0 +1,156 @@
+"""Checks of quasi-static presses: load against strength, what springs back against elasticity."""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+
+from ...core.rig import BodyTable
+from ..recording_set import RecordingSet
+from . import limits
+from .findings import Finding, Severity, gathered
+from .trial_view import Reading, TrialView, combined, views
+
+LOAD_CLASS = 0.005
+"""Relative standard deviation of a load that is stated without one: class 1 of ISO 7500-1 allows
+1 % of the indicated force."""
+
+MEAN_PRESSURE = (0.35, 1.3)
+"""Mean pressure of a press over a stated hardness: from first yield (1.1 S_y of 2.84 S_y) on, and
+of metals that harden more than the hardness test saw."""
+
+HARDENED = 4.0
+"""Hardness over 2.84 S_y where the strength alone is stated: annealed copper and 304 reach it."""
+
+RECOVERY = (0.5, 0.85)
+"""Recovered depth over F/(E' a): 1/2 of a flat punch, 3/4 of Hertz's, and a tenth above it."""
+
+_BEYOND = 4.0
+_GEOMETRY = (0.7, 1.25)
+"""Contact radius over sqrt(2 R delta) at the peak: sunk in elastically, and piled up."""
+
+
+def check_press_load(found: RecordingSet) -> list[Finding]:
+    """Mean pressure, load over the dent's area, against the strength of the flat."""
+    findings = []
+    target = found.setup.target
+    for view in views(found):
+        pressure = limits.hardness(target, view.striker) if target.yields else None
+        area = _dent_area(view)
+        if pressure is None or area is None:
+            continue
+        low, high = MEAN_PRESSURE
+        # Sy_Pa alone says little of how a metal hardens
+        high *= 1.0 if target.hardness_Pa is not None else HARDENED
+        load = _load(view)
+        p = load.value / area.value
+        std = p * combined(load.relative, area.relative, pressure.relative)
+        z = max(low * pressure.value - p, p - high * pressure.value, 0.0) / max(std, 1e-12)
+        findings.append(
+            Finding(
+                f"load of {view.name} against the strength",
+                Severity.CONTRADICTION if z > _BEYOND else Severity.CONSISTENT,
+                f"{load.value:.4g} N on the dent is a mean pressure of {p / 1e6:.4g} MPa, "
+                f"{p / pressure.value:.2g} times the flat's {pressure.value / 1e6:.4g} MPa",
+                p, pressure.value, z,
+            )
+        )  # fmt: skip
+    return gathered(findings)
+
+
+def check_press_recovery(found: RecordingSet) -> list[Finding]:
+    """What springs back against Hertz's and a punch's recovery at the same load and radius."""
+    findings = []
+    for view in views(found):
+        back, modulus = view.measured("recovered_depth_m"), _reduced(view)
+        radius = _radius(view)
+        if back is None or math.isnan(modulus) or radius is None:
+            continue
+        load = _load(view)
+        scale = load.value / (modulus * radius.value)
+        std = math.hypot(back.std, scale * combined(load.relative, radius.relative, 0.05))
+        low, high = (share * scale for share in RECOVERY)
+        z = max(low - back.value, back.value - high, 0.0) / std
+        tail = ""
+        if back.value > high and z > _BEYOND:
+            tail = ": is the machine's own compliance taken off?"
+        findings.append(
+            Finding(
+                f"recovery of {view.name} against elasticity",
+                Severity.CONTRADICTION if z > _BEYOND else Severity.CONSISTENT,
+                f"{back.value * 1e6:.4g} um spring back, elastic bodies give {low * 1e6:.4g} to "
+                f"{high * 1e6:.4g} um{tail}",
+                back.value, 0.5 * (low + high), z,
+            )
+        )  # fmt: skip
+    return gathered(findings)
+
+
+def check_press_depths(found: RecordingSet) -> list[Finding]:
+    """Depth under load against what stays and what springs back."""
+    findings = []
+    target = found.setup.target
+    for view in views(found):
+        deepest, back = view.measured("press_depth_m"), view.measured("recovered_depth_m")
+        left = view.measured("permanent_depth_m")
+        weak = target.Sy_Pa is not None and (
+            view.striker.Sy_Pa is None or target.Sy_Pa.value < 0.6 * view.striker.Sy_Pa.value
+        )
+        # a ball that is dented as well keeps a part of the approach
+        if deepest is None or back is None or left is None or not weak:
+            continue
+        z = (left.value + back.value - deepest.value) / math.hypot(left.std, back.std, deepest.std)
+        findings.append(
+            Finding(
+                f"depths of {view.name}",
+                Severity.CONTRADICTION if abs(z) > _BEYOND else Severity.CONSISTENT,
+                f"{left.value * 1e6:.4g} um stay and {back.value * 1e6:.4g} um spring back of "
+                f"{deepest.value * 1e6:.4g} um under load",
+                left.value + back.value, deepest.value, abs(z),
+            )
+        )  # fmt: skip
+    return gathered(findings)
+
+
+def _load(view: TrialView) -> Reading:
+    load, std = (float(x[view.i]) for x in (view.found.trials.load_N, view.found.load_std))
+    return Reading(load, LOAD_CLASS * load if np.isnan(std) else std)
+
+
+def _dent_area(view: TrialView) -> Reading | None:
+    """Area of the contact at the peak [m^2]: of the diameter, else of the permanent depth."""
+    diameter = view.measured("dent_diameter_m")
+    if diameter is not None:
+        area = 0.25 * math.pi * diameter.value**2
+        return Reading(area, 2.0 * diameter.relative * area)
+    depth = view.measured("permanent_depth_m")
+    if depth is None or depth.value <= 0.0:
+        return None
+    area = math.pi * limits.open_dent_radius(view.striker, depth.value) ** 2
+    # pile-up and recovery
+    return Reading(area, combined(depth.relative, 0.2) * area)
+
+
+def _radius(view: TrialView) -> Reading | None:
+    """Radius of the contact at the peak [m]."""
+    diameter = view.measured("dent_diameter_m")
+    if diameter is not None:
+        return Reading(0.5 * diameter.value, 0.5 * diameter.std)
+    deepest = view.measured("press_depth_m")
+    if deepest is None:
+        return None
+    low, high = _GEOMETRY
+    a = limits.open_dent_radius(view.striker, deepest.value)
+    return Reading(0.5 * (low + high) * a, 0.25 * (high - low) * a)
+
+
+def _reduced(view: TrialView) -> float:
+    """Reduced modulus E' of the two bodies [Pa]; nan where one of them is not stated."""
+    found = 0.0
+    bodies: tuple[BodyTable, ...] = (view.found.setup.target, view.striker)
+    for body in bodies:
+        if body.E_Pa is None or body.nu is None:
+            return math.nan
+        found += (1.0 - body.nu.value**2) / body.E_Pa.value
+    return 1.0 / found
