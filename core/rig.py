@@ -139,6 +139,11 @@ class MaterialTable(InputTable):
     def _of_a_known_material(cls, given: Any) -> Any:
         return filled(given, frozenset(cls.model_fields)) if isinstance(given, dict) else given
 
+    @property
+    def strength(self) -> Quantity | None:
+        """Yield strength as far as the file says it [Pa]."""
+        return self.Sy_Pa
+
     @field_validator("Sy_Pa")
     @classmethod
     def _below_the_modulus(cls, given: Quantity | None, info: ValidationInfo) -> Quantity | None:
@@ -165,16 +170,23 @@ class MaterialTable(InputTable):
         Raises
         ------
         InputError
-            Modulus or Poisson's ratio is missing, and nothing stands in for it.
+            Modulus or Poisson's ratio is missing and nothing stands in for it, or a number of a
+            rigid body is given.
         """
         if self.rigid:
+            for name in ("E_Pa", "nu", "Sy_Pa", "hardness_Pa"):
+                if getattr(self, name, None) is not None:
+                    raise InputError(
+                        "given beside rigid = true", source=source, key=f"{key}.{name}",
+                        allowed="left out: a rigid body does not deform",
+                    )  # fmt: skip
             return Material(E=math.nan, nu=math.nan, rigid=True, name=self.material)
 
         def number(name: str, otherwise: float | None) -> float:
             replaced = (values or {}).get(f"{key}.{name}")
             if replaced is not None:
                 return replaced
-            stated: Quantity | None = getattr(self, name)
+            stated: Quantity | None = self.strength if name == "Sy_Pa" else getattr(self, name)
             if stated is not None:
                 return stated.value
             if otherwise is None:
@@ -201,6 +213,16 @@ def material_keys(body: Material) -> dict[str, float | bool]:
     return {"E_Pa": body.E, "nu": body.nu, **strength}
 
 
+TABOR = 2.8
+"""Indentation hardness over yield strength [-] (Tabor, The Hardness of Metals, 1951)."""
+
+_TABOR_SPREAD = 0.10
+"""Relative standard deviation of `TABOR`: metals are found between 2.5 and 3.2 (Johnson, Contact
+Mechanics, 1985, 6.3)."""
+_HARDNESS_SPREAD = 0.11
+"""Relative standard deviation of a hardness that is stated without one."""
+
+
 class BodyTable(MaterialTable):
     """A body that strikes or is struck."""
 
@@ -213,7 +235,28 @@ class BodyTable(MaterialTable):
     melting_K: Temperature | None = None
     """Melting temperature."""
     flow_curve: str = ""
-    """Of a recording set: file beside set.toml, true stress over plastic strain as measured."""
+    """File beside this one: true stress over plastic strain as measured."""
+
+    @field_validator("hardness_Pa")
+    @classmethod
+    def _softer_than_elastic(cls, given: Quantity | None, info: ValidationInfo) -> Quantity | None:
+        modulus = info.data.get("E_Pa")
+        if given is not None and modulus is not None and given.value >= TABOR * modulus.value:
+            raise ValueError(f"below {TABOR:g} E_Pa = {TABOR * modulus.value:g}; both in Pa")
+        return given
+
+    @property
+    def strength(self) -> Quantity | None:
+        """Yield strength: as stated, else the hardness over `TABOR` [Pa].
+
+        The standard deviation of the second is that of the hardness, and how far metals differ in
+        the ratio.
+        """
+        if self.Sy_Pa is not None or self.hardness_Pa is None:
+            return self.Sy_Pa
+        value = self.hardness_Pa.value / TABOR
+        own = self.hardness_Pa.relative or _HARDNESS_SPREAD
+        return Quantity(value=value, std=value * math.hypot(own, _TABOR_SPREAD))
 
 
 class TargetTable(BodyTable):

@@ -11,8 +11,10 @@ import math
 from dataclasses import dataclass
 
 from ..core.material import Pair
-from .base import ContactLaw
+from .base import CombinedLaw, ContactLaw
+from .hardening import HardeningLaw
 from .kernel import critical_depth
+from .table import TableLaw
 
 FLATTENING_BELOW, INDENTATION_ABOVE = 0.6, 1.7
 _ELASTIC = 1.9
@@ -89,3 +91,10 @@ def recommended(laws: dict[str, ContactLaw], need: Demand) -> tuple[str, ...]:
     """Names of the laws to use, best first, by our finite elements and the thesis's."""
     names = (name for name in _PREFERRED[need.regime] if name in laws)
     return tuple(name for name in names if not objection(laws[name], need))
+
+
+def follows_flow(law: ContactLaw) -> bool:
+    """Whether a law follows the flow curve of a metal; others take its strength at first yield."""
+    if isinstance(law, CombinedLaw):
+        return follows_flow(law.first)
+    return isinstance(law, HardeningLaw | TableLaw)

@@ -8,8 +8,8 @@ from dataclasses import dataclass
 import numpy as np
 import numpy.typing as npt
 
+from ..core.inputs.csv_table import Array
 from ..core.observables import RELATIVE_SUFFIX
-from .csv_table import Array
 
 MIN_REPEATS = 3
 """Trials at one condition from which a noise may be taken."""

@@ -17,14 +17,14 @@ import numpy.typing as npt
 
 from ..core.approach import speeds_at_touch
 from ..core.errors import InputError, InputErrors
+from ..core.inputs.csv_table import Array, Problems
+from ..core.inputs.flow_curve import SPECIMENS, MeasuredFlow, read_flow_curve
 from ..core.inputs.toml_input import parse_model, read_toml
 from ..core.observables import LOAD, RELATIVE_SUFFIX, RIG_NOISE, TRACE_NOISE
 from ..core.output import finish, locked, write_files
 from ..core.rig import BodyTable, Quantity, StrikerTable
 from . import noise
 from .columns import MEASURED
-from .csv_table import Array, Problems
-from .flow_curve import SPECIMENS, MeasuredFlow, read_flow_curve
 from .noise import Noise
 from .same_file import taken_twice
 from .series import read_profile, read_trace, series_in

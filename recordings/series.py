@@ -8,8 +8,8 @@ from pathlib import Path
 import numpy as np
 
 from ..core.errors import InputError, InputErrors
+from ..core.inputs.csv_table import Array, Problems, numbers, read_text_table
 from .columns import PROFILE_COLUMNS, TRACE_COLUMNS
-from .csv_table import Array, Problems, numbers, read_text_table
 
 _AT_LEAST = 2
 

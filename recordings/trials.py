@@ -9,10 +9,10 @@ from pathlib import Path
 import numpy as np
 import numpy.typing as npt
 
+from ..core.inputs.csv_table import Array, Problems, TextTable, numbers, read_text_table, shown
 from ..core.observables import LOAD, OBSERVABLES
 from ..core.output import csv_text
 from .columns import CONDITIONS, MEASURED, STD_SUFFIX, TRIAL_COLUMNS, VARIED
-from .csv_table import Array, Problems, TextTable, numbers, read_text_table, shown
 
 _TEXTS = tuple(name for name, column in TRIAL_COLUMNS.items() if column.kind == "text")
 _NUMBERS = tuple(name for name, column in CONDITIONS.items() if column.kind != "text")

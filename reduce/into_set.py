@@ -18,11 +18,11 @@ from typing import Any
 import numpy as np
 
 from ..core.errors import InputError
+from ..core.inputs.csv_table import Array
 from ..core.inputs.toml_input import parse_model, read_toml
 from ..core.output import csv_text, finish_pending, locked, write_files
 from ..core.rig import Quantity
 from ..recordings.columns import CONDITIONS, MEASURED, STD_SUFFIX
-from ..recordings.csv_table import Array
 from ..recordings.recording_set import RecordingSet, files_of, read
 from ..recordings.setup_file import Setup, setup_text, without_marks
 from ..recordings.template import Shape, template_text

@@ -6,7 +6,7 @@ from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field
 from pathlib import Path
 
-from ..recordings.flow_curve import MeasuredFlow
+from ..core.inputs.flow_curve import MeasuredFlow
 from .measured import Measured, Trial
 
 

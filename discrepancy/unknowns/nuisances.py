@@ -91,11 +91,14 @@ def _of_body(table: BodyTable, key: str, yields: bool) -> list[Nuisance]:
         note = f"{key}.E_Pa is not stated: {ASSUMED_E / 1e9:.0f} GPa within 40 % is assumed"
         found.append(Nuisance(f"{key}.E_Pa", "Pa", ASSUMED_E, 0.4, stated=False, note=note))
     found += _stated(table.Sy_Pa, f"{key}.Sy_Pa", "Pa")
-    if table.Sy_Pa is None and table.hardness_Pa is not None:
-        Sy = table.hardness_Pa.value / 2.8
-        note = f"{key}.Sy_Pa is taken from the hardness: {Sy / 1e6:.0f} MPa within 15 %"
-        found.append(Nuisance(f"{key}.Sy_Pa", "Pa", Sy, 0.15, stated=False, note=note))
-    elif table.Sy_Pa is None and yields:
+    strength = table.strength
+    if table.Sy_Pa is None and strength is not None:
+        Sy, off = strength.value, strength.relative
+        note = (
+            f"{key}.Sy_Pa is taken from the hardness: {Sy / 1e6:.0f} MPa within {100.0 * off:.0f} %"
+        )
+        found.append(Nuisance(f"{key}.Sy_Pa", "Pa", Sy, off, stated=False, note=note))
+    elif strength is None and yields:
         note = f"{key}.Sy_Pa is not stated: 350 MPa within a factor of 2 is assumed"
         found.append(Nuisance(f"{key}.Sy_Pa", "Pa", 3.5e8, 0.7, stated=False, note=note))
     return found

@@ -130,7 +130,14 @@ def _changed(setup: str | Path, changes: dict[str, Any]) -> Setup:
 
 
 def blow_of(setup: Setup, laws: Sequence[ContactLaw]) -> Blow:
-    """Return the blow of a set-up by these laws, every repeat on the spot of the one before."""
+    """Return the blow of a set-up by these laws, every repeat on the spot of the one before.
+
+    Raises
+    ------
+    InputError
+        A body comes with a flow curve, and none of the laws follows one.
+    """
+    setup.check_laws(laws)
     traces: dict[str, Trace] = {}
     rows: list[dict[str, Any]] = []
     for law in laws:

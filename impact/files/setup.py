@@ -3,7 +3,8 @@
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Any, Literal
 
@@ -11,19 +12,39 @@ from pydantic import Field
 
 from ...core.approach import speeds_at_touch
 from ...core.errors import InputError, InputErrors
+from ...core.flow_tables import HardeningTable
 from ...core.inputs.toml_input import InputTable, parse_model, read_toml
-from ...core.rig import Height, Quantity, Rig, Speed, value_of
+from ...core.rig import Height, Quantity, Rig, Speed, StrikerTable, TargetTable, value_of
 from ...models.base import ContactLaw
+from ...models.choose import follows_flow
 from ..beam import rod_modes
 from ..columns import Impacts
 from ..integrate import Settings
 from ..scene import Approach, ForceTransform, Friction, Scene, Support
 from ..support import half_space_radiation, plate_support, sprung_support
-from .bodies import bodies_of
+from .bodies import bodies_of, flowing
 from .sweep import SweepTable, mistakes_in, run_sweep
+from .taken import not_taken, taken_elsewhere
 
 DEFAULT_LAWS = ("fitted", "hertz", "jackson-green", "ghaednia")
 """Ours first, then published ones beside it."""
+
+FOLLOWING = "hardening"
+"""Ours of metals with a flow curve; it comes first where there is one."""
+
+
+class FlowingTarget(TargetTable):
+    """`[target]` of an impact: also with a law of hardening."""
+
+    hardening: HardeningTable | None = None
+    """The flow stress grows with plastic strain."""
+
+
+class FlowingStriker(StrikerTable):
+    """`[strikers.NAME]` of an impact: also with a law of hardening."""
+
+    hardening: HardeningTable | None = None
+    """The flow stress grows with plastic strain."""
 
 
 class ImpactTable(InputTable):
@@ -41,8 +62,8 @@ class ImpactTable(InputTable):
     """Speed along the flat."""
     approach_spin_rad_s: Quantity = Quantity(value=0.0)
     """Spin before the touch, counter-clockwise."""
-    laws: tuple[str, ...] = Field(default=DEFAULT_LAWS, strict=False)
-    """Contact laws, as in `dentscope laws list`."""
+    laws: tuple[str, ...] = Field(default=DEFAULT_LAWS, min_length=1, strict=False)
+    """Contact laws, as in `dentscope laws list`; with a flow curve, hardening comes first."""
     modes: int = Field(default=0, ge=0, le=60)
     """Vibrations of the rod that are simulated, lowest first; 0: a rigid rod."""
     loss_factor: float = Field(default=0.0, ge=0.0, lt=1.0)
@@ -66,6 +87,10 @@ class ImpactTable(InputTable):
 class SetupFile(Rig):
     """The whole file."""
 
+    target: FlowingTarget
+    """The flat."""
+    strikers: dict[str, FlowingStriker] = Field(min_length=1)  # type: ignore[assignment]
+    """What strikes, by name: `[strikers.NAME]`."""
     impact: ImpactTable
     """The blow."""
     sweep: SweepTable = SweepTable()
@@ -82,11 +107,27 @@ class Setup:
     sweep: SweepTable
     settings: Settings
     file: SetupFile
+    content: dict[str, Any]
     source: str
 
     def scene(self, law: ContactLaw, *, speed: float | None = None) -> Scene:
         """Return the scene of one law; `speed` replaces the file's normal approach speed [m/s]."""
         return _scene(self.file, law, source=self.source, speed=speed)
+
+    def check_laws(self, laws: Sequence[ContactLaw]) -> None:
+        """Refuse a flow curve that none of the laws follows.
+
+        Raises
+        ------
+        InputError
+            There is one.
+        """
+        curves = _curves(self.file)
+        if curves and not any(follows_flow(law) for law in laws):
+            raise InputError(
+                f"none of {', '.join(law.name for law in laws)} follows it", source=self.source,
+                key=curves[0], allowed=f"{FOLLOWING} or a law.json among the laws",
+            )  # fmt: skip
 
     def swept(self, law: ContactLaw) -> Impacts:
         """Return the impacts of `[sweep]` by one law."""
@@ -115,17 +156,40 @@ def setup_of(content: dict[str, Any], *, source: str) -> Setup:
     InputErrors
         One line for each mistake: file, key, value, what is allowed.
     """
+    known = tuple(taken_elsewhere(content, source=source))
+    if known:
+        raise InputErrors(known)
     found = parse_model(content, SetupFile, source=source)
-    errors = (*_mistakes(found, source), *mistakes_in(found.sweep, source))
+    errors = (
+        *_mistakes(found, source), *not_taken(found, source=source),
+        *mistakes_in(found.sweep, source),
+    )  # fmt: skip
     if errors:
         raise InputErrors(errors)
     impact = found.impact
     flight = math.nan if impact.flight_s is None else impact.flight_s
     settings = Settings(max_steps=impact.max_steps, max_contacts=impact.max_contacts, flight=flight)
     return Setup(
-        found.name or Path(source).stem, tuple(impact.laws), impact.repeats,
-        found.sweep, settings, found, source,
+        found.name or Path(source).stem, _laws(found), impact.repeats, found.sweep, settings, found,
+        content, source,
     )  # fmt: skip
+
+
+def _laws(found: SetupFile) -> tuple[str, ...]:
+    """The laws of the file; by default with the one that follows a flow curve, if there is one."""
+    laws = tuple(found.impact.laws)
+    chosen = "laws" in found.impact.model_fields_set
+    return (FOLLOWING, *laws) if _curves(found) and not chosen else laws
+
+
+def _curves(found: SetupFile) -> list[str]:
+    """Keys that give a body a flow curve."""
+    return [
+        f"{key}.{name}"
+        for key, body in found.bodies.items()
+        for name in ("flow_curve", "hardening")
+        if getattr(body, name)
+    ]
 
 
 def _mistakes(found: SetupFile, source: str) -> list[InputError]:
@@ -142,13 +206,6 @@ def _mistakes(found: SetupFile, source: str) -> list[InputError]:
         add("impact.striker", f"no striker {impact.striker!r}", f"one of {names}")
     if (impact.impact_speed_m_s is None) == (impact.drop_height_m is None):
         add("impact.impact_speed_m_s", "give one of speed and height", "or impact.drop_height_m")
-    for key, body in found.bodies.items():
-        if body.flow_curve:
-            add(
-                f"{key}.flow_curve",
-                repr(body.flow_curve),
-                "Sy_Pa: a simulated impact takes no curve",
-            )
     if impact.support == "sprung" and found.target.support_mass_kg is None:
         add("target.support_mass_kg", "missing", "the mass of a sprung support")
     if impact.support == "plate" and found.target.thickness_m is None:
@@ -166,6 +223,17 @@ def _scene(found: SetupFile, law: ContactLaw, *, source: str, speed: float | Non
     pair, striker = bodies_of(
         found, name, source=source, values=elastic if target.law == "elastic" else None
     )
+    if target.law == "elastic" and _curves(found):
+        raise InputError(
+            "a flow curve in an elastic baseline", source=source, key=_curves(found)[0],
+            allowed='left out with target.law = "elastic"',
+        )  # fmt: skip
+    if _curves(found):
+        ball, key = found.strikers[name], f"strikers.{name}"
+        pair = replace(
+            pair, sphere=flowing(pair.sphere, ball, key, source=source),
+            flat=flowing(pair.flat, target, "target", source=source),
+        )  # fmt: skip
     support, radiation = Support(), 0.0
     if impact.support == "sprung" and target.support_mass_kg is not None:
         support = sprung_support(

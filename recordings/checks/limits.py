@@ -73,7 +73,7 @@ def hardness(target: TargetTable, striker: StrikerTable) -> Quantity | None:
         )
     else:
         return None
-    if target.Sy_Pa and striker.Sy_Pa and striker.Sy_Pa.value < target.Sy_Pa.value:
+    if target.strength and striker.strength and striker.strength.value < target.strength.value:
         return None
     return found if found.std else Quantity(value=found.value, std=UNSTATED_STRENGTH * found.value)
 

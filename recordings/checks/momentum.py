@@ -13,8 +13,8 @@ import numpy as np
 import numpy.typing as npt
 from scipy.stats import chi2
 
+from ...core.inputs.csv_table import Array
 from ...core.rig import StrikerTable
-from ..csv_table import Array
 from ..recording_set import RecordingSet
 from .findings import FALSE_ALARMS_OTHER, Finding, judged, two_sided
 from .rigid import FIXED_BY_MOMENTUM, Touch, measured_after, touch

@@ -13,9 +13,9 @@ from typing import Generic, TypeVar, cast
 
 import numpy as np
 
+from ...core.inputs.csv_table import Array
 from ...core.observables import OBSERVABLES
 from ...core.rig import StrikerTable
-from ..csv_table import Array
 
 Number = TypeVar("Number", float, Array)
 """Of one trial, or an array with one for each."""

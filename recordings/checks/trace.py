@@ -7,7 +7,7 @@ from collections.abc import Mapping
 
 import numpy as np
 
-from ..csv_table import Array
+from ...core.inputs.csv_table import Array
 from ..recording_set import RecordingSet
 from . import limits
 from .findings import Finding, Severity, gathered

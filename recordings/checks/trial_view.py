@@ -9,8 +9,8 @@ from typing import Any, NamedTuple, TypeVar, cast
 
 import numpy as np
 
+from ...core.inputs.csv_table import Array
 from ...core.rig import StrikerTable
-from ..csv_table import Array
 from ..recording_set import RecordingSet
 from . import rigid
 

@@ -15,7 +15,7 @@ from scipy.spatial.transform import Rotation
 
 from ...core.confined import confined
 from ...core.errors import InputError, InputErrors, missing_extra
-from ...recordings.csv_table import (
+from ...core.inputs.csv_table import (
     Problems,
     TextTable,
     numbers,

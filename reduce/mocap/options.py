@@ -8,8 +8,8 @@ from typing import Literal
 import numpy as np
 from pydantic import Field, model_validator
 
+from ...core.inputs.csv_table import number
 from ...core.inputs.toml_input import InputTable
-from ...recordings.csv_table import number
 from ..bounces.options import GRAVITY
 from ..measured import Array
 

@@ -12,7 +12,7 @@ from pathlib import Path
 import numpy as np
 
 from ...core.errors import InputError, missing_extra
-from ...recordings.csv_table import number, shown
+from ...core.inputs.csv_table import number, shown
 from ..measured import Array
 from ..units import LENGTH, metres
 

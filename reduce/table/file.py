@@ -17,8 +17,8 @@ import numpy as np
 
 from ...core.confined import confined
 from ...core.errors import InputError
+from ...core.inputs.csv_table import number, rows_with, selection
 from ...core.inputs.input_file import checked_file
-from ...recordings.csv_table import number, rows_with, selection
 from ..measured import Array
 from ..units import UNITS
 from .packed import packed_table, tracker_rows

@@ -6,7 +6,7 @@ from pathlib import Path
 
 import numpy as np
 
-from ...recordings.flow_curve import PROOF_STRAIN
+from ...core.inputs.flow_curve import PROOF_STRAIN
 from ..bounces.picture import draw_intervals, draw_restitution
 from ..bounces.times import BounceTimes
 from ..pictures import figure, save

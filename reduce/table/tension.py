@@ -10,7 +10,7 @@ import numpy as np
 import numpy.typing as npt
 
 from ...core.errors import InputError
-from ...recordings.flow_curve import PROOF_STRAIN, MeasuredFlow
+from ...core.inputs.flow_curve import PROOF_STRAIN, MeasuredFlow
 from ..measured import Array, Measured
 from ..regression import robust_regression
 

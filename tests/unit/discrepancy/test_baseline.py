@@ -6,6 +6,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 from dentscope import fem
+from dentscope.core.inputs.flow_curve import SPECIMENS
 from dentscope.discrepancy import diagnose
 from dentscope.discrepancy.baseline import solve
 from dentscope.discrepancy.comparison.forward import Point, Simulator
@@ -17,7 +18,6 @@ from dentscope.fitting.hardening import hardening_records
 from dentscope.impact import Approach, Scene, Striker, strike
 from dentscope.models.table import Curve, PairTable, Turns, energy_exponent, table_law
 from dentscope.recordings import read
-from dentscope.recordings.flow_curve import SPECIMENS
 
 DATA = Path(__file__).parents[3] / "data" / "campaign" / "validation-hardening-1.h5"
 BALL, FLAT = "ball.csv", "flat.csv"

@@ -7,8 +7,11 @@ from pathlib import Path
 
 import pytest
 from dentscope.cli import run
-from dentscope.core import InputErrors
-from dentscope.impact.files.setup import read_setup
+from dentscope.core import InputError, InputErrors
+from dentscope.impact import Impact
+from dentscope.impact.files.blow import blow_of
+from dentscope.impact.files.setup import DEFAULT_LAWS, read_setup
+from dentscope.models import law_named
 from dentscope.models.published.hertz import HERTZ
 
 SETUP = """
@@ -32,8 +35,6 @@ Sy_Pa = 760e6
 density_kg_m3 = 7800
 [friction]
 coefficient = 0.13
-[noise]
-restitution = 0.01
 [impact]
 angle_deg = 45
 impact_speed_m_s = 1.0
@@ -60,8 +61,10 @@ def test_keys_reach_the_scene(tmp_path: Path) -> None:
 
 
 def test_a_spheres_angle_is_that_of_its_velocity(tmp_path: Path) -> None:
-    text = SETUP.replace('shape = "rod"', 'shape = "sphere"').replace(
-        "impact_speed_m_s = 1.0", "drop_height_m = 0.2"
+    text = (
+        SETUP.replace('shape = "rod"', 'shape = "sphere"')
+        .replace("impact_speed_m_s = 1.0", "drop_height_m = 0.2")
+        .replace("length_m = 0.3048\n", "")
     )
     text = text.replace("angle_deg = 45", "angle_deg = 30")
     approach = read_setup(write(tmp_path, text)).scene(HERTZ).approach
@@ -93,6 +96,69 @@ def test_each_mistake_is_one_line(tmp_path: Path, old: str, new: str, line: str)
         read_setup(write(tmp_path, SETUP.replace(old, new, 1)))
     assert line in str(caught.value)
     assert all(row.count("\n") == 0 for row in str(caught.value).splitlines())
+
+
+PEEN = """
+gravity_m_s2 = 0
+[target]
+E_Pa = 2.05e11
+nu = 0.3
+STRENGTH
+density_kg_m3 = 7860
+[strikers.ball]
+shape = "sphere"
+tip_radius_m = 0.00029
+E_Pa = 2.05e11
+nu = 0.3
+Sy_Pa = 2.0e9
+density_kg_m3 = 7860
+[impact]
+impact_speed_m_s = 50
+laws = ["fitted"]
+"""
+
+
+def impact_of(tmp_path: Path, text: str) -> Impact:
+    setup = read_setup(write(tmp_path, text))
+    return blow_of(setup, [law_named(name) for name in setup.laws])[setup.laws[0]]
+
+
+def test_a_hardness_gives_the_strength_where_none_is_stated(tmp_path: Path) -> None:
+    """Kirk, The Shot Peener (2004): a dent of 199 um at 300 HB, 0.58 mm and 50 m/s."""
+    found, stated = (
+        impact_of(tmp_path, PEEN.replace("STRENGTH", line))
+        for line in ("hardness_Pa = 2.942e9", "Sy_Pa = 1.0507142857e9")
+    )
+    assert found.restitution == pytest.approx(stated.restitution, rel=1e-9)
+    assert found.restitution == pytest.approx(0.4764, abs=0.001)
+    assert found.residual_flat_m == pytest.approx(15.0e-6, rel=0.01)
+    assert found.scar_width_m == pytest.approx(199e-6, rel=0.1)
+
+
+def test_the_ball_on_a_metal_with_a_flow_curve(tmp_path: Path) -> None:
+    (tmp_path / "flow.csv").write_text("plastic_strain,true_stress_Pa\n0,3e8\n0.2,3e8\n")
+    base = PEEN.replace('laws = ["fitted"]\n', "")
+    ours = impact_of(tmp_path, base.replace("STRENGTH", "Sy_Pa = 3e8") + 'laws = ["fitted"]\n')
+    flat = base.replace("STRENGTH", 'flow_curve = "flow.csv"')
+    setup = read_setup(write(tmp_path, flat))
+    assert setup.laws == ("hardening", *DEFAULT_LAWS)
+    # a curve that does not rise is perfect plasticity
+    assert impact_of(tmp_path, flat).restitution == pytest.approx(ours.restitution, rel=2e-3)
+    hardens = base.replace(
+        "STRENGTH", 'Sy_Pa = 3e8\nhardening = { law = "ludwik", K_Pa = 4e8, n = 0.3 }'
+    )
+    dent = impact_of(tmp_path, hardens).residual_flat_m
+    assert dent < 0.93 * ours.residual_flat_m
+    with pytest.raises(InputError, match="none of fitted follows it"):
+        impact_of(tmp_path, hardens + 'laws = ["fitted"]\n')
+    # a stated strength is what the piece has at 0.2 %; one at which the curve begins leaves it
+    (tmp_path / "flow.csv").write_text("plastic_strain,true_stress_Pa\n0,3e8\n0.1,5e8\n")
+    strengths = [
+        read_setup(write(tmp_path, base.replace("STRENGTH", f"{line}flow_curve = 'flow.csv'")))
+        .scene(HERTZ).pair.flat.Sy
+        for line in ("", "Sy_Pa = 3e8\n", "Sy_Pa = 6.08e8\n")
+    ]  # fmt: skip
+    assert strengths == pytest.approx([3e8, 3e8, 6e8], rel=1e-6)
 
 
 def test_command_line_from_file(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:

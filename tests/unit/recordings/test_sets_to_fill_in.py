@@ -2,9 +2,9 @@
 
 import pytest
 from dentscope.core.errors import InputError
+from dentscope.core.inputs.flow_curve import read_flow_curve
 from dentscope.core.rig import Quantity
 from dentscope.recordings import read, write
-from dentscope.recordings.flow_curve import read_flow_curve
 from dentscope.recordings.setup_file import Setup, setup_text
 from dentscope.reduce.into_set import store
 from dentscope.reduce.measured import Measured, Trial

@@ -8,9 +8,9 @@ from pathlib import Path
 import numpy as np
 import numpy.typing as npt
 
-from ..core.errors import InputError, InputErrors
-from ..core.flow import FlowCurve, tabulated
-from ..core.output import csv_text
+from ..errors import InputError, InputErrors
+from ..flow import FlowCurve, tabulated
+from ..output import csv_text
 from .csv_table import Array, Problems, numbers, read_text_table
 
 COLUMNS = ("plastic_strain", "true_stress_Pa", "strain_rate_per_s", "temperature_K")

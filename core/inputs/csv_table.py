@@ -13,8 +13,8 @@ from pathlib import Path
 import numpy as np
 import numpy.typing as npt
 
-from ..core.errors import InputError
-from ..core.inputs.input_file import read_bytes
+from ..errors import InputError
+from .input_file import read_bytes
 
 Array = npt.NDArray[np.float64]
 

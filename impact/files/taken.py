@@ -1,0 +1,92 @@
+"""Keys of a set-up that an impact does not take: refused, with the way that exists.
+
+A file of an impact shares its tables with a recording set. What only a set's diagnosis reads, and
+what acts only beside another key, is a line here and never passed over in silence.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from typing import TYPE_CHECKING, Any
+
+from ...core.errors import InputError
+from ...core.rig import Quantity, TargetTable
+
+if TYPE_CHECKING:
+    from .setup import SetupFile
+
+_OF_A_SET = "left out: `dentscope diagnose` takes it, in the set.toml of a recording set"
+_OF_A_BODY = ("Ra_m", "cp_J_kgK", "melting_K", "layer_thickness_m")
+_SOLVED = "left out: `dentscope case` solves with it, and its law.json goes into impact.laws"
+_OF_A_CASE = {"rate": _SOLVED, "heating": _SOLVED}
+
+
+def not_taken(found: SetupFile, *, source: str) -> Iterator[InputError]:
+    """Yield a line for each key that is given and would do nothing."""
+
+    def line(key: str, value: Any, allowed: str) -> InputError:
+        shown = f"{value.value:g}" if isinstance(value, Quantity) else repr(value)
+        return InputError(f"{shown} does nothing here", source=source, key=key, allowed=allowed)
+
+    if found.format not in ("", "recording-set/1"):
+        yield InputError(
+            repr(found.format), source=source, key="format", allowed="recording-set/1, or left out"
+        )
+    for name, number in found.noise.items():
+        yield line(f"noise.{name}", number, _OF_A_SET)
+    for name in type(found.environment).model_fields:
+        value = getattr(found.environment, name)
+        if value not in (None, ""):
+            yield line(f"environment.{name}", value, _OF_A_SET)
+    for key, body in found.bodies.items():
+        for name in _OF_A_BODY:
+            value = getattr(body, name, None)
+            if value is not None:
+                yield line(f"{key}.{name}", value, _OF_A_SET)
+    yield from _of_the_flat(found.target, found.impact, line)
+    yield from _of_the_striker(found, line)
+
+
+def _of_the_flat(target: TargetTable, impact: Any, line: Any) -> Iterator[InputError]:
+    if target.law == "table":
+        yield line("target.law", target.law, "law.json of `dentscope case`, in impact.laws")
+    if target.law == "measured-restitution":
+        yield line("target.law", target.law, _OF_A_SET)
+    if impact.support != "sprung":
+        allowed = 'with impact.support = "sprung"'
+        for name in ("support_mass_kg", "support_stiffness_N_m"):
+            value = getattr(target, name)
+            if value is not None:
+                yield line(f"target.{name}", value, allowed)
+        if impact.support_damping_N_s_m:
+            yield line("impact.support_damping_N_s_m", impact.support_damping_N_s_m, allowed)
+    if impact.loss_factor and not impact.modes:
+        yield line("impact.loss_factor", impact.loss_factor, "with impact.modes above 0")
+
+
+def _of_the_striker(found: SetupFile, line: Any) -> Iterator[InputError]:
+    impact = found.impact
+    name = impact.striker or next(iter(found.strikers))
+    if name not in found.strikers or found.strikers[name].shape == "rod":
+        return
+    ball, allowed = found.strikers[name], "of a rod"
+    if impact.modes:
+        yield line("impact.modes", impact.modes, allowed)
+    if impact.finite_tip:
+        yield line("impact.finite_tip", True, allowed)
+    if ball.length_m is not None:
+        yield line(f"strikers.{name}.length_m", ball.length_m, allowed)
+
+
+def taken_elsewhere(content: dict[str, Any], *, source: str) -> Iterator[InputError]:
+    """Yield a line for each table of CASE.toml, which an impact has no equation for."""
+    strikers = content.get("strikers")
+    bodies = {"target": content.get("target")}
+    if isinstance(strikers, dict):
+        bodies |= {f"strikers.{name}": body for name, body in strikers.items()}
+    for key, body in bodies.items():
+        for name, allowed in _OF_A_CASE.items():
+            if isinstance(body, dict) and name in body:
+                yield InputError(
+                    "not known here", source=source, key=f"{key}.{name}", allowed=allowed
+                )
