@@ -7,9 +7,9 @@ from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
+from ..core.inputs.csv_table import Array
 from ..core.observables import OBSERVABLES
 from ..core.tables import html_table
-from .csv_table import Array
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure

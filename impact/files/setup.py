@@ -161,7 +161,7 @@ def setup_of(content: dict[str, Any], *, source: str) -> Setup:
         raise InputErrors(known)
     found = parse_model(content, SetupFile, source=source)
     errors = (
-        *_mistakes(found, source), *not_taken(found, source=source),
+        *_mistakes(found, source), *not_taken(found, content, source=source),
         *mistakes_in(found.sweep, source),
     )  # fmt: skip
     if errors:

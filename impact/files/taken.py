@@ -6,7 +6,7 @@ what acts only beside another key, is a line here and never passed over in silen
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping
 from typing import TYPE_CHECKING, Any
 
 from ...core.errors import InputError
@@ -21,8 +21,11 @@ _SOLVED = "left out: `dentscope case` solves with it, and its law.json goes into
 _OF_A_CASE = {"rate": _SOLVED, "heating": _SOLVED}
 
 
-def not_taken(found: SetupFile, *, source: str) -> Iterator[InputError]:
-    """Yield a line for each key that is given and would do nothing."""
+def not_taken(found: SetupFile, content: Mapping[str, Any], *, source: str) -> Iterator[InputError]:
+    """Yield a line for each key that is given and would do nothing.
+
+    What a named material knows beyond what an impact needs is not given by the file.
+    """
 
     def line(key: str, value: Any, allowed: str) -> InputError:
         shown = f"{value.value:g}" if isinstance(value, Quantity) else repr(value)
@@ -40,9 +43,8 @@ def not_taken(found: SetupFile, *, source: str) -> Iterator[InputError]:
             yield line(f"environment.{name}", value, _OF_A_SET)
     for key, body in found.bodies.items():
         for name in _OF_A_BODY:
-            value = getattr(body, name, None)
-            if value is not None:
-                yield line(f"{key}.{name}", value, _OF_A_SET)
+            if name in _stated(content, key):
+                yield line(f"{key}.{name}", getattr(body, name), _OF_A_SET)
     yield from _of_the_flat(found.target, found.impact, line)
     yield from _of_the_striker(found, line)
 
@@ -76,6 +78,14 @@ def _of_the_striker(found: SetupFile, line: Any) -> Iterator[InputError]:
         yield line("impact.finite_tip", True, allowed)
     if ball.length_m is not None:
         yield line(f"strikers.{name}.length_m", ball.length_m, allowed)
+
+
+def _stated(content: Mapping[str, Any], key: str) -> Mapping[str, Any]:
+    """What the file itself says in a body's table."""
+    found: Any = content
+    for part in key.split(".", 1):
+        found = found[part]
+    return dict(found)
 
 
 def taken_elsewhere(content: dict[str, Any], *, source: str) -> Iterator[InputError]:
