@@ -74,6 +74,11 @@ class FlowCurve:
         """Flow stress at first yield [Pa]."""
         return self.stress[0]
 
+    def scaled(self, factor: float) -> FlowCurve:
+        """Return the curve with so many times its stresses."""
+        stress, slope = (tuple(factor * y for y in row) for row in (self.stress, self.slope))
+        return FlowCurve(self.strain, stress, slope)
+
     def __call__(self, strain: float) -> float:
         """Flow stress at a plastic strain [Pa]."""
         if strain >= self.strain[-1]:

@@ -94,6 +94,13 @@ class Material:
         """Return a copy with some fields replaced."""
         return replace(self, **changes)
 
+    def strengthened(self, factor: float) -> Material:
+        """Return the body with so many times its strength, its flow curve with it."""
+        flow = self.flow
+        if flow is not None and flow.curve is not None:
+            flow = replace(flow, curve=flow.curve.scaled(factor))
+        return replace(self, Sy=self.Sy * factor, flow=flow)
+
 
 @dataclass(frozen=True, slots=True)
 class Pair:

@@ -31,8 +31,11 @@ SEGMENT_LOW, SEGMENT_HIGH, PEAK_FORCE, POWER, PEAK_RADIUS, RECEDING = range(7, 1
 CUT_FLAT, CUT_RADIUS, CUT_MODULUS = range(13, 16)
 N_BRANCH = 16
 
-# Nodes of the factors: ln(depth / R), equally spaced; first those of the loading force, then as
-# many of the elastic recovery.
+# What the factors multiply, column by column: loading force and contact radius at the depth; of a
+# peak at it, elastic recovery, odds of the sphere's share of what stays, exponent of the recovery.
+F_FORCE, F_RECOVERY, F_RADIUS, F_ODDS, F_POWER = range(5)
+N_FACTORS = 5
+# The nodes of each: ln(depth / R), equally spaced.
 LOG_DEPTH_FIRST, LOG_DEPTH_LAST = math.log(1e-6), 0.0
 
 PUNCH_PRESSURE = 5.69 / math.sqrt(3.0)
@@ -40,10 +43,10 @@ PUNCH_PRESSURE = 5.69 / math.sqrt(3.0)
 
 
 @njit(float64(VECTOR, int64, float64), cache=True, _nrt=False, error_model="numpy")
-def _factor(factors, half, x):
-    """Interpolate one half of the table, smooth to the first derivative (Catmull and Rom)."""
-    n = len(factors) // 2
-    first, last = half * n, n - 1
+def factor(factors, column, x):
+    """Interpolate a column of the table, smooth to the first derivative (Catmull and Rom)."""
+    n = len(factors) // N_FACTORS
+    first, last = column * n, n - 1
     place = (math.log(max(x, 1e-300)) - LOG_DEPTH_FIRST) / (LOG_DEPTH_LAST - LOG_DEPTH_FIRST)
     place = min(max(place * last, 0.0), float(last))
     i = min(int(place), last - 1)
@@ -88,8 +91,17 @@ def static_loading(loading, par, force, factors, depth):
         further = 2.0 * force[MODULUS] * force[EDGE] * (depth - force[EDGE_DEPTH])
         f = min(f + further, max(f, force[EDGE_LIMIT]))
     if len(factors) > 1:
-        f *= _factor(factors, 0, depth / force[RADIUS])
+        f *= factor(factors, F_FORCE, depth / force[RADIUS])
     return f
+
+
+@njit(float64(BRANCH, VECTOR, VECTOR, VECTOR, float64, float64), cache=True, _nrt=False)
+def law_radius(radius, par, force, factors, depth, peak):
+    """Contact radius [m] of the law at `depth`, up to `peak`, with its factor there."""
+    a = radius(par, depth, peak)
+    if len(factors) > 1:
+        a *= factor(factors, F_RADIUS, peak / force[RADIUS])
+    return a
 
 
 @njit(types.void(BRANCH, VECTOR, VECTOR), cache=True, _nrt=False)
@@ -133,12 +145,16 @@ def set_peak(loading, unloading, residual, par, force, factors, peak, branch):
     sphere, flat = residual(par, law_peak)
     law_rest = sphere + flat
     rest = max(law_rest - shift, 0.0)
-    recovery = force[RECOVERY]
+    recovery, odds, bend = force[RECOVERY], 1.0, 1.0
     if len(factors) > 1:
-        recovery *= _factor(factors, 1, peak / force[RADIUS])
+        at = peak / force[RADIUS]
+        recovery *= factor(factors, F_RECOVERY, at)
+        odds, bend = factor(factors, F_ODDS, at), factor(factors, F_POWER, at)
     if recovery != 1.0:
         rest = max(peak - recovery * (peak - rest), 0.0)
     share = 0.0 if law_rest == 0.0 else sphere / law_rest
+    if odds != 1.0:
+        share = odds * share / (odds * share + 1.0 - share)
     branch[0] = peak
     branch[1] = share * rest
     branch[2] = rest - share * rest
@@ -153,6 +169,7 @@ def set_peak(loading, unloading, residual, par, force, factors, peak, branch):
         if peak > rest:
             branch[6] = (law_peak - law_rest) / (peak - rest)
     _fit_power(unloading, par, branch)
+    branch[POWER] *= bend
     if force[SHAPE] != 0.0 and branch[POWER] > 0.0:
         branch[POWER] += force[SHAPE]
     # A cut tip whose elastic force is still the lesser one has not yielded: it gives all back.
@@ -364,16 +381,20 @@ def find_breaks(loading, par, force, factors):
     return found[:count].copy()
 
 
-def edge_depth(radius_kernel: Any, par: Any, force: Any, limit: float) -> float:
+def edge_depth(radius_kernel: Any, par: Any, force: Any, factors: Any, limit: float) -> float:
     """Depth [m] at which the contact radius reaches `limit`; infinite when it never does."""
     if not math.isfinite(limit):
         return math.inf
+
+    def radius(depth: float) -> float:
+        return float(law_radius(radius_kernel, par, force, factors, depth, depth))
+
     low, high = 0.0, 2.0 * float(force[RADIUS])
-    if radius_kernel(par, high, high) < limit:
+    if radius(high) < limit:
         return math.inf
     for _ in range(200):
         middle = 0.5 * (low + high)
-        if radius_kernel(par, middle, middle) < limit:
+        if radius(middle) < limit:
             low = middle
         else:
             high = middle

@@ -81,9 +81,12 @@ def arrays_of(
     force[fo.RECOVERY], force[fo.SHAPE] = scene.force.recovery, scene.force.shape
     force[fo.RETURN] = scene.force.given_back
     force[fo.DAMPING], force[fo.RADIATION] = scene.force.damping, scene.force.radiation
+    factors = _factors(scene, pair)
     if math.isfinite(scene.force.edge):
         force[fo.EDGE] = scene.force.edge
-        force[fo.EDGE_DEPTH] = fo.edge_depth(law.kernels.radius, par, force, scene.force.edge)
+        force[fo.EDGE_DEPTH] = fo.edge_depth(
+            law.kernels.radius, par, force, factors, scene.force.edge
+        )
         strength = min(fo.PUNCH_PRESSURE * pair.Sy_min, pair.sphere.strength)
         force[fo.EDGE_LIMIT] = strength * math.pi * scene.force.edge**2
     omega = np.asarray(scene.modes.frequencies, dtype=float)
@@ -114,7 +117,6 @@ def arrays_of(
     body[c.SCAN_STEP] = scene.instrument.scan_step
     body[c.SCAN_LEVEL] = scene.instrument.scan_height
     body[c.LONGEST] = math.inf
-    factors = _factors(scene, pair)
     if breaks is None:
         breaks = _breaks(law, par, force, factors)
     surface = _FRESH if scene.spot == Spot() else scene.spot.row()
@@ -122,7 +124,7 @@ def arrays_of(
 
 
 def _factors(scene: Scene, pair: Pair) -> Array:
-    """Return the table of factors on force and recovery; empty when both are the law's own."""
+    """Return the table of factors on what the law says; empty when all is the law's own."""
     loading = np.asarray(scene.force.factors, dtype=float)
     recovery = np.asarray(scene.force.recovery_factors, dtype=float)
     profile = None
@@ -132,16 +134,16 @@ def _factors(scene: Scene, pair: Pair) -> Array:
     if profile is None and len(loading) == len(recovery) == 0:
         return loading
     n = max(len(loading), len(recovery)) if profile is None else NODES
-    both = np.ones(2 * n)
-    for first, given in ((0, loading), (n, recovery)):
+    found = np.ones((fo.N_FACTORS, n))
+    for column, given in ((fo.F_FORCE, loading), (fo.F_RECOVERY, recovery)):
         if len(given) == n:
-            both[first : first + n] = given
+            found[column] = given
         elif len(given) > 0:
             grid = np.linspace(0.0, 1.0, n)
-            both[first : first + n] = np.interp(grid, np.linspace(0.0, 1.0, len(given)), given)
+            found[column] = np.interp(grid, np.linspace(0.0, 1.0, len(given)), given)
     if profile is not None:
-        both *= table.factors(profile)
-    return both
+        found *= table.factors(profile)
+    return found.ravel()
 
 
 def strike(scene: Scene, settings: Settings = Settings()) -> Impact:

@@ -1,84 +1,136 @@
-"""A strength that varies with depth, as factors on a law's loading force and elastic recovery.
+"""A strength that varies with depth, as factors on all that a law says of a contact.
 
 A law knows one yield strength. Where the metal's strength at the depth delta is h(delta) times the
-stated one, the force is taken from the law of a pair of that strength at that depth, and so is the
-recovery: both bodies' strengths are scaled, so that their ratio and with it the law's blend stay.
+stated one, force and contact radius at that depth are those of a pair of that strength, and so are
+recovery, its exponent and the bodies' parts of the dent where a peak lies there. Both bodies'
+strengths are scaled, so that their ratio and with it the law's blend stay.
 """
 
 from __future__ import annotations
 
 import math
 import warnings
+from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property
+from typing import NamedTuple
 
 import numpy as np
 from numba import njit
 from numpy.typing import NDArray
+from scipy.interpolate import PchipInterpolator
 
-from ..core.material import Pair
-from ..models.base import ContactLaw, DomainWarning
-from .force import LOG_DEPTH_FIRST, LOG_DEPTH_LAST
+from ..core.material import Material, Pair
+from ..models.base import ContactLaw, DomainWarning, remembering
+from .force import F_FORCE, F_POWER, F_RECOVERY, LOG_DEPTH_FIRST, LOG_DEPTH_LAST
 
 Array = NDArray[np.float64]
 
 NODES = 41
 """Nodes of the table over ln(depth / R)."""
 
-_LEVELS = np.log(np.array([0.1, 0.25, 0.5, 1.0, 2.0, 4.0, 10.0]))
-UNIT = int(np.searchsorted(_LEVELS, -1e-9))
-"""Row of a table at the stated strength."""
+_LEVELS = np.log(np.array([0.1, 0.25, 0.5, 0.7, 0.85, 1.0, 1.2, 1.5, 1.9, 2.4, 3.1, 5.0, 10.0]))
+_UNIT = int(np.searchsorted(_LEVELS, -1e-9))  # the stated strength
 
 
 @njit(cache=True)
-def _factors(strength, log_force, log_recovery):  # type: ignore[no-untyped-def]
-    n = len(strength)
-    out = np.empty(2 * n)
+def _factors(strength, logs, slopes):  # type: ignore[no-untyped-def]
+    columns, _, n = logs.shape
+    out = np.empty((columns, n))
     last = len(_LEVELS) - 2
     for k in range(n):
         level = min(max(math.log(max(strength[k], 1e-9)), _LEVELS[0]), _LEVELS[-1])
         i = 0
         while i < last and level > _LEVELS[i + 1]:
             i += 1
-        t = (level - _LEVELS[i]) / (_LEVELS[i + 1] - _LEVELS[i])
-        for half, table in enumerate((log_force, log_recovery)):
-            here = (1.0 - t) * table[i, k] + t * table[i + 1, k]
-            out[half * n + k] = math.exp(here - table[UNIT, k])
+        wide = _LEVELS[i + 1] - _LEVELS[i]
+        t = (level - _LEVELS[i]) / wide
+        for column in range(columns):
+            low, high = logs[column, i, k], logs[column, i + 1, k]
+            m0, m1 = wide * slopes[column, i, k], wide * slopes[column, i + 1, k]
+            rise = high - low
+            bend = 3.0 * rise - 2.0 * m0 - m1 + t * (m0 + m1 - 2.0 * rise)
+            out[column, k] = math.exp(low + t * (m0 + t * bend))
     return out
+
+
+class Logs(NamedTuple):
+    """Logarithms of what a law says of a pair, over the depth nodes; (levels, NODES) each.
+
+    In the order of the factors of `impact.force`.
+    """
+
+    force: Array  # [N], of loading
+    recovery: Array  # [m]
+    radius: Array  # [m]
+    odds: Array  # of the sphere's share of what stays
+    power: Array  # exponent of the recovery
 
 
 @dataclass(frozen=True, eq=False)
 class StrengthTable:
-    """What a law says of a pair at several strengths, over the depth nodes.
+    """What a law says of a pair, over the depth nodes, as stated and at other strengths.
 
     Parameters
     ----------
-    depth, radius
-        (NODES,) depth and contact radius at the stated strength [m].
-    log_force, log_recovery
-        (levels, NODES) logarithm of loading force [N] and of elastic recovery [m].
-    work
-        (NODES,) work of loading up to each depth [J].
+    law, pair
+        Law and pair.
     """
 
-    depth: Array
-    radius: Array
-    log_force: Array
-    log_recovery: Array
-    work: Array
+    law: ContactLaw
+    pair: Pair
+
+    @cached_property
+    def depth(self) -> Array:
+        """(NODES,) [m]."""
+        return self.pair.R * np.exp(np.linspace(LOG_DEPTH_FIRST, LOG_DEPTH_LAST, NODES))
+
+    @cached_property
+    def stated(self) -> Logs:
+        """What the law says at the stated strength, (NODES,) each."""
+        return Logs(*(rows[0] for rows in _logs(self.law, [self.pair], self.depth)))
+
+    @cached_property
+    def work(self) -> Array:
+        """(NODES,) work of loading up to each depth at the stated strength [J]."""
+        d, f = self.depth, np.exp(self.stated.force)
+        # exact for a power law between the nodes
+        power = np.diff(self.stated.force) / np.diff(np.log(d))
+        step = (f[1:] * d[1:] - f[:-1] * d[:-1]) / (power + 1.0)
+        return np.concatenate([[0.4 * f[0] * d[0]], 0.4 * f[0] * d[0] + np.cumsum(step)])
+
+    @cached_property
+    def radius(self) -> Array:
+        """(NODES,) contact radius at the stated strength [m]."""
+        return np.exp(self.stated.radius)
+
+    @cached_property
+    def log_depth(self) -> Array:
+        """(NODES,) logarithm of `depth`."""
+        return np.log(self.depth)
 
     def factors(self, strength: Array) -> Array:
-        """Return factors on loading force, then on recovery, (2 NODES,), for relative strengths."""
-        return np.asarray(_factors(strength, self.log_force, self.log_recovery))
+        """Return the factors of `impact.force`, (N_FACTORS, NODES), for relative strengths."""
+        return np.asarray(_factors(strength, *self._levels))
+
+    def given_back(self, strength: Array) -> Array:
+        """Return the factor on the work of the recovery, (NODES,), for relative strengths."""
+        found = self.factors(strength)
+        stated = np.exp(self.stated.power)
+        share = (1.0 + stated) / (1.0 + stated * found[F_POWER])
+        return np.asarray(found[F_FORCE] * found[F_RECOVERY] * share)
 
     def peak(self, energy: float) -> float:
         """Depth [m] at which the loading has taken up `energy` [J]."""
         return float(np.exp(np.interp(math.log(energy), self._log_work, self.log_depth)))
 
     @cached_property
-    def log_depth(self) -> Array:
-        """(NODES,) logarithm of `depth`."""
-        return np.log(self.depth)
+    def _levels(self) -> tuple[Array, Array]:
+        """Logarithms over those at the stated strength, (N_FACTORS, levels, NODES), and slopes."""
+        pairs = [_stronger(self.pair, math.exp(level)) for level in _LEVELS]
+        logs = np.stack(_logs(self.law, pairs, self.depth))
+        logs -= logs[:, _UNIT : _UNIT + 1]
+        return logs, PchipInterpolator(_LEVELS, logs, axis=1).derivative()(_LEVELS)
 
     @cached_property
     def _log_work(self) -> Array:
@@ -96,33 +148,31 @@ def strength_table(law: ContactLaw, pair: Pair) -> StrengthTable:
         if len(_TABLES) > 2000:
             _TABLES.clear()
         # the law is kept beside its table, so that its id stays its own
-        known = _TABLES[key] = law, _tabulated(law, pair)
+        known = _TABLES[key] = law, StrengthTable(remembering(law), pair)
     return known[1]
 
 
-def _tabulated(law: ContactLaw, pair: Pair) -> StrengthTable:
-    depth = pair.R * np.exp(np.linspace(LOG_DEPTH_FIRST, LOG_DEPTH_LAST, NODES))
-    pairs = [_stronger(pair, math.exp(level)) for level in _LEVELS]
-    grid = np.broadcast_to(depth, (len(pairs), NODES))
+def _logs(law: ContactLaw, pairs: Sequence[Pair], depth: Array) -> Logs:
+    grid = np.tile(depth, (len(pairs), 1))
     with warnings.catch_warnings():
         # the table's ends reach beyond what an impact will ask for
         warnings.simplefilter("ignore", DomainWarning)
         force = law.loading(pairs, grid)
     sphere, flat = law.residual(pairs, grid)
-    recovery = np.maximum(grid - sphere - flat, 1e-9 * grid)
-    f = force[UNIT]
-    # exact for a power law between the nodes
-    power = np.diff(np.log(f)) / np.diff(np.log(depth))
-    step = (f[1:] * depth[1:] - f[:-1] * depth[:-1]) / (power + 1.0)
-    work = np.concatenate([[0.4 * f[0] * depth[0]], 0.4 * f[0] * depth[0] + np.cumsum(step)])
-    return StrengthTable(
-        depth, law.contact_radius(pair, depth), np.log(force), np.log(recovery), work
-    )
+    rest = sphere + flat
+    recovery = np.maximum(grid - rest, 1e-9 * grid)
+    half = law.unloading(pairs, 0.5 * (grid + rest), grid)
+    power = np.clip(-np.log2(np.maximum(half, 1e-300) / force), 1.0, 3.0)
+    part = np.divide(sphere, rest, out=np.full_like(rest, 0.5), where=rest > 0.0)
+    part = np.clip(part, 1e-9, 1.0 - 1e-9)
+    return Logs(
+        np.log(force), np.log(recovery), np.log(law.contact_radius(pairs, grid)),
+        np.log(part / (1.0 - part)), np.log(power),
+    )  # fmt: skip
 
 
 def _stronger(pair: Pair, factor: float) -> Pair:
-    bodies = (
-        body if body.rigid else body.with_(Sy=body.Sy * factor) for body in (pair.sphere, pair.flat)
-    )
-    sphere, flat = bodies
-    return replace(pair, sphere=sphere, flat=flat)
+    def body(plain: Material) -> Material:
+        return plain if plain.rigid else plain.strengthened(factor)
+
+    return replace(pair, sphere=body(pair.sphere), flat=body(pair.flat))

@@ -16,7 +16,6 @@ from functools import cached_property
 
 import numpy as np
 
-from ..core.flow import FlowCurve
 from ..core.material import Material, Pair
 from .base import ContactLaw, Domain, DomainWarning, Kernels, Standing
 from .closed_form import contact
@@ -83,9 +82,7 @@ class AnchoredLaw(ContactLaw):
         def body(plain: Material, stated: Material, known: Material) -> Material:
             if known.flow is None or known.flow.curve is None:
                 return plain
-            curve, grown = known.flow.curve, plain.Sy / stated.Sy
-            stress, slope = (tuple(grown * y for y in v) for v in (curve.stress, curve.slope))
-            stronger = FlowCurve(curve.strain, stress, slope)
+            stronger = known.flow.curve.scaled(plain.Sy / stated.Sy)
             return plain.with_(Sy=stronger.strength, flow=replace(known.flow, curve=stronger))
 
         return Pair(

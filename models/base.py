@@ -15,12 +15,14 @@ Kernels are called with 0 < depth <= peak only; the driver answers for an open c
 
 from __future__ import annotations
 
+import copy
 import math
 from abc import ABC, abstractmethod
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from enum import IntEnum
-from typing import Any
+from functools import lru_cache
+from typing import Any, TypeVar
 
 import numpy as np
 from numba import njit
@@ -236,6 +238,23 @@ class ContactLaw(ABC):
 
     def warn_outside(self, pair: Pairs, depth: Depths) -> None:  # noqa: B027
         """Warn with `DomainWarning` if the law knows its range in numbers; most do not."""
+
+
+Law = TypeVar("Law", bound=ContactLaw)
+_REMEMBERED = 4096  # pairs
+
+
+def remembering(law: Law) -> Law:
+    """Return a copy of a law that keeps the numbers of the pairs it was asked for.
+
+    A fit asks for the same pair once a condition and point; working them out anew costs more than
+    the impact.
+    """
+    if hasattr(law.parameters, "cache_info"):
+        return law
+    kept = copy.copy(law)
+    object.__setattr__(kept, "parameters", lru_cache(maxsize=_REMEMBERED)(law.parameters))
+    return kept
 
 
 def _no_numbers(common: Common) -> Sequence[float]:

@@ -7,25 +7,22 @@ at the stated numbers; around them the fitted law says how the contact changes (
 
 from __future__ import annotations
 
-import copy
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import replace
-from functools import cache, lru_cache
-from typing import TypeVar
+from functools import cache
 
 from ...core.flow import Flow
 from ...core.material import Material, Pair
 from ...core.rig import BodyTable, TargetTable
 from ...models import LAWS
 from ...models.anchored import anchored
-from ...models.base import ContactLaw
+from ...models.base import ContactLaw, remembering
 from ...models.fitted import ClosedForm
 from ...models.table import table_law
 from ...recordings import RecordingSet
 from .solve import solved_pair
 
 _APART = 0.02  # between a stated strength and that of the flow curve, from which a note says so
-Law = TypeVar("Law", bound=ContactLaw)
 Progress = Callable[[str], None]
 
 
@@ -120,20 +117,9 @@ def _anchored(
         plain, anchor, at=metal, stated=stated, deepest=deepest,
         hardens=weak.flow is not None,
     )  # fmt: skip
-    return _remembering(law)
+    return remembering(law)
 
 
 @cache
 def _shared(name: str) -> ContactLaw:
-    return _remembering(LAWS[name])
-
-
-def _remembering(law: Law) -> Law:
-    """Return a copy of a law that keeps the numbers of the pairs it was asked for.
-
-    A fit asks for the same pair once a condition and point; working them out anew costs more than
-    the impact.
-    """
-    kept = copy.copy(law)
-    object.__setattr__(kept, "parameters", lru_cache(maxsize=4096)(law.parameters))
-    return kept
+    return remembering(LAWS[name])

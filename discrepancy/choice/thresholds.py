@@ -14,7 +14,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ...impact import Scene
-from ...impact.strength import UNIT, strength_table
+from ...impact.strength import strength_table
 from ..comparison.cells import compared
 from ..comparison.forward import Point, Simulator
 from ..comparison.problem import Problem
@@ -151,8 +151,8 @@ def _reference(scene: Scene, known: dict[tuple[float, ...], Reference]) -> Refer
         # a baseline that does not yield is compared with laws that do not yield
         strength = math.inf if law.name == "hertz" else pair.Sy_min
         known[key] = Reference(
-            pair.R, pair.E_reduced, strength, depth, np.exp(table.log_force[UNIT]),
-            np.exp(table.log_recovery[UNIT]), flat, table.radius, scene.force.given_back,
+            pair.R, pair.E_reduced, strength, depth, np.exp(table.stated.force),
+            np.exp(table.stated.recovery), flat, table.radius, scene.force.given_back,
             not_given_back(scene),
         )  # fmt: skip
     return known[key]

@@ -11,7 +11,7 @@ from typing import ClassVar
 import numpy as np
 
 from ...impact import Scene
-from ...impact.strength import UNIT, StrengthTable, strength_table
+from ...impact.strength import StrengthTable, strength_table
 from .arithmetic import needs_yielding_law, times
 from .base import Array, Literature, Mechanism, Parameter, Situation, Surroundings, Values
 
@@ -53,8 +53,8 @@ class Layer:
         kept
             Part of the closure that stays.
         """
-        depth, force = table.depth, np.exp(table.log_force[UNIT])
-        recovered = np.exp(table.log_recovery[UNIT])
+        depth, force = table.depth, np.exp(table.stated.force)
+        recovered = np.exp(table.stated.recovery)
         scale = start * math.exp(np.interp(math.log(sigma), np.log(depth), np.log(force)))
         turns = np.log1p(force / scale)
         freed = scale * np.expm1(kept * turns)

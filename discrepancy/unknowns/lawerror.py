@@ -29,7 +29,7 @@ from numpy.typing import NDArray
 
 from ...impact import ForceTransform, Scene
 from ...impact.force import LOG_DEPTH_FIRST, LOG_DEPTH_LAST
-from ...impact.strength import NODES, UNIT, strength_table
+from ...impact.strength import NODES, strength_table
 from ...models.anchored import AnchoredLaw
 from ...models.base import DomainWarning
 from ..inference.linear import Sizes
@@ -238,7 +238,7 @@ def not_given_back(scene: Scene) -> Array:
     The recovery gives back F (delta - delta_p)/(n + 1), n as Hertz's 3/2.
     """
     table = strength_table(scene.law, scene.pair)
-    back = np.exp(table.log_force[UNIT] + table.log_recovery[UNIT]) / 2.5
+    back = np.exp(table.stated.force + table.stated.recovery) / 2.5
     share = scene.force.given_back * back / np.maximum(table.work, 1e-300)
     kept = np.clip(1.0 - share, 0.0, 1.0)
     return np.where(kept < 1e-6, 0.0, kept)

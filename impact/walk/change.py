@@ -9,7 +9,7 @@ from numba import float64, int64, njit, types
 from .. import force as fo
 from .. import surface as su
 from . import layout as at
-from .contact import kinematics, loading_radius, penetration, place_of
+from .contact import kinematics, law_radius, loading_radius, penetration, place_of
 from .events import event_slope, rest_friction, rubbing, set_segment, sliding_mode
 from .flight import TOUCHED, fly
 from .layout import MODEL, PLAIN, WORK
@@ -93,7 +93,7 @@ def _peak(m, w):
         surface[su.TIP_PEAK] = max(surface[su.TIP_PEAK], depth)
     tally[at.TOP_DEPTH] = max(tally[at.TOP_DEPTH], deep)
     recovery = branch[0] - branch[1] - branch[2]
-    a = m.radius(m.par, branch[4], branch[4])
+    a = law_radius(m, branch[4], branch[4])
     here = w.scales[at.ORIGIN] + x
     mark[su.START] = mark[su.END] = mark[su.DEEPEST] = here
     mark[su.TAKEN], mark[su.PEAK], mark[su.RADIUS] = branch[2] - flat, depth, a

@@ -106,14 +106,20 @@ _penetration_inlined = njit(_MET, cache=True, forceinline=True, **PLAIN)(_penetr
 penetration = njit(_MET, cache=True, **PLAIN)(_penetration_of)
 
 
+@njit(float64(MODEL, float64, float64), cache=True, **PLAIN)
+def law_radius(m, depth, peak):
+    """Contact radius [m] of the law and the metal's strength, at a depth below a peak."""
+    return fo.law_radius(m.radius, m.par, m.force, m.factors, depth, peak)
+
+
 @njit(float64(MODEL, float64), cache=True, **PLAIN)
 def loading_radius(m, depth):
     """Contact radius [m] on loading, with a flat of the tip and the tip's edge."""
     b = m.force[fo.FLAT]
-    a = m.radius(m.par, depth, depth) if b == 0.0 else 0.0
+    a = law_radius(m, depth, depth) if b == 0.0 else 0.0
     if b > 0.0:
         x = depth + b * b / (2.0 * m.force[fo.RADIUS])
-        a = max(b, m.radius(m.par, x, x))
+        a = max(b, law_radius(m, x, x))
     return min(a, m.force[fo.EDGE])
 
 
@@ -153,7 +159,7 @@ def _contact_of(m, w, z, seen):
         a = 0.0
         if depth > 0.0:
             peak = max(depth, branch[0] if phase == at.UNLOAD else depth)
-            a = m.radius(m.par, depth, peak)
+            a = law_radius(m, depth, peak)
         ploughing = body[at.PLOUGH] * 4.0 / (3.0 * math.pi) * a / body[at.TIP]
     seen[at.STATIC] = f
     if force[fo.RADIATION] != 0.0:

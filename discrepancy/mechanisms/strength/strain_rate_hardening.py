@@ -78,11 +78,7 @@ class StrainRateHardening(FlowMechanism):
         table = strength_table(scene.law, scene.pair)
         own = RateProfile(values["rise_at_1000_per_s"], values["rate_exponent"])
         strength = own.profile(scene, table)
-        # work given back: force at the peak times the recovery
-        back, whole = (
-            np.multiply(*table.factors(s).reshape(2, -1))
-            for s in (1.0 + kept * (strength - 1.0), strength)
-        )
+        back, whole = (table.given_back(s) for s in (1.0 + kept * (strength - 1.0), strength))
         less = times(scene.force.recovery_factors, back / whole)
         return found.with_(force=replace(found.force, recovery_factors=less))
 

@@ -4,12 +4,12 @@ import numpy as np
 import pytest
 from dentscope.core.material import Material, Pair
 from dentscope.discrepancy.mechanisms.roughness import Layer
-from dentscope.impact.strength import UNIT, strength_table
+from dentscope.impact.strength import strength_table
 from dentscope.models import law_named
 
 PAIR = Pair(Material(E=208e9, nu=0.3, Sy=2e9), Material(E=69e9, nu=0.33, Sy=280e6), 1e-3)
 TABLE = strength_table(law_named("fitted"), PAIR)
-FORCE = np.exp(TABLE.log_force[UNIT])
+FORCE = np.exp(TABLE.stated.force)
 
 
 def layer(sigma=1e-6, start=0.1, kept=0.5):
@@ -41,7 +41,7 @@ def test_asperities_that_stay_flattened_give_back_less_and_leave_more():
     elastic, flat = layer(kept=0.0), layer(kept=1.0)
     assert np.all(flat.recovery <= elastic.recovery + 1e-12)
     left = {
-        name: one.dent * (TABLE.depth - one.recovery * np.exp(TABLE.log_recovery[UNIT]))
+        name: one.dent * (TABLE.depth - one.recovery * np.exp(TABLE.stated.recovery))
         for name, one in (("elastic", elastic), ("flat", flat))
     }
     middle = slice(12, 30)
