@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated
+from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
@@ -13,7 +13,7 @@ from . import studies
 from .laws import laws_named
 from .shared.places import folder_option
 from .shared.terminal import console as new_console
-from .shared.terminal import show_table
+from .shared.terminal import say, show_table
 
 if TYPE_CHECKING:
     from ..core.material import Pair
@@ -32,6 +32,9 @@ def impact(
     new: Annotated[
         str, typer.Option(help="Write a set-up to start from: ball, rod or oblique-ball.")
     ] = "",
+    exact: Annotated[
+        bool, typer.Option("--exact", help="One line a number, without standard deviations.")
+    ] = False,
     out: Annotated[Path, folder_option("Folder for figures, CSV, HDF5 and Parquet.")] = Path(
         "build/impact"
     ),
@@ -49,7 +52,7 @@ def impact(
         studies.needed_for("`dentscope impact` without a set-up file")
         leave_if_unfinished(studies.module("chapter3").chapter3(law or [], out))
     else:
-        _from_file(setup, law or [], out)
+        _from_file(setup, law or [], out, exact=exact)
 
 
 def _write_new(kind: str, path: Path | None) -> None:
@@ -57,7 +60,7 @@ def _write_new(kind: str, path: Path | None) -> None:
     typer.echo(write_new(template(kind), target, command="impact"))
 
 
-def _from_file(path: Path, names: list[str], out: Path) -> None:
+def _from_file(path: Path, names: list[str], out: Path, *, exact: bool) -> None:
     from ..core.inputs.toml_input import read_toml
 
     read_toml(path)  # what is no TOML is told before the simulation is loaded
@@ -76,19 +79,23 @@ def _from_file(path: Path, names: list[str], out: Path) -> None:
     blow = blow_of(setup, laws)
     traces, found = blow.traces, blow.impacts
     console.print(setup.name)
-    show_table(console, ("", *found), blow.table())
+    show_table(console, ("", *found), blow.table(exact=exact))
     for law in laws:
         line = _doubt(law, setup.scene(law).pair, found[law.name])
         if line:
             console.print(line, soft_wrap=True)
-    write_csv(out / f"{path.stem}.csv", blow.rows)
-    write_hdf5(out / f"{path.stem}.h5", traces)
+    for line in (*([] if exact else blow.rules()), *blow.checks()):
+        say(line)
+    write_csv(out / f"{path.stem}.csv", blow.written(exact=exact))
+    write_hdf5(out / f"{path.stem}.h5", traces, about=setup.about)
     draw_histories(list(traces.items()), out / f"{path.stem}.png")
     written = [out / f"{path.stem}{end}" for end in (".csv", ".h5", ".png")]
     unfinished = 0
     if setup.sweep.count:
-        files, unfinished = _sweep(setup, laws, out / f"{path.stem}-sweep")
+        files, unfinished, above = _sweep(setup, laws, out / f"{path.stem}-sweep")
         written += files
+        if above:
+            say(above)
     console.print("written: " + ", ".join(str(w) for w in written), soft_wrap=True)
     if unfinished:
         console.print(f"{unfinished} impacts of the sweep did not end: see the column outcome")
@@ -103,8 +110,8 @@ def _doubt(law: ContactLaw, pair: Pair, found: Impact) -> str:
     return f"{law.name}: {against}" if against else ""
 
 
-def _sweep(setup: Setup, laws: list[ContactLaw], stem: Path) -> tuple[list[Path], int]:
-    """Run `[sweep]` for each law; return the files and how many impacts did not end."""
+def _sweep(setup: Setup, laws: list[ContactLaw], stem: Path) -> tuple[list[Path], int, str]:
+    """Run `[sweep]` for each law; return the files, how many did not end, and what is above 1."""
     from importlib.util import find_spec
 
     from ..impact.draw import draw_sweep
@@ -119,7 +126,19 @@ def _sweep(setup: Setup, laws: list[ContactLaw], stem: Path) -> tuple[list[Path]
     if find_spec("pandas") and find_spec("pyarrow"):
         written.append(stem.with_suffix(".parquet"))
         first.to_parquet(written[-1])
-    return written, int((first["outcome"] != "completed").sum())
+    return written, int((first["outcome"] != "completed").sum()), _above_one(first["restitution"])
+
+
+def _above_one(restitution: Any) -> str:
+    """Say of a sweep why a tip may come back faster than it came; empty where none does."""
+    above = restitution[restitution > 1.0 + 1e-6]
+    if not len(above):
+        return ""
+    return (
+        f"{len(above)} impacts of the sweep have a restitution above 1, up to {above.max():.4g}: "
+        "motion along the flat, spin or a fall during the contact feeds the tip's rebound; "
+        "kinetic_before_J and kinetic_after_J in the table hold the whole"
+    )
 
 
 def leave_if_unfinished(impacts: list[Impact]) -> None:

@@ -10,7 +10,7 @@ from pydantic import Field
 
 from ..core.errors import InputError, InputErrors
 from ..core.flow import Flow, FlowCurve, tabulated
-from ..core.flow_tables import HardeningTable, HeatingTable, RateTable
+from ..core.inputs.flow_tables import HardeningTable, HeatingTable, RateTable
 from ..core.inputs.toml_input import InputTable, Listed, read_model
 from ..core.material import Material, Pair
 from ..core.rig import FrictionTable, MaterialTable

@@ -32,19 +32,12 @@ from ...impact.force import LOG_DEPTH_FIRST, LOG_DEPTH_LAST
 from ...impact.strength import NODES, strength_table
 from ...models.anchored import AnchoredLaw
 from ...models.base import DomainWarning
+from ...models.uncertainty import METAL, RECOVERY_EXPONENT, WITH_CURVE
 from ..inference.linear import Sizes
 from ..mechanisms.arithmetic import energy
 
 Array = NDArray[np.float64]
 
-METAL = {"force": 0.03, "recovery": 0.07, "recovery exponent": 0.05, "crater": 0.05}
-"""Standard deviations of elastic-perfect plasticity to a metal, where all is lost. Finite elements
-with the measured flow curve of 6061-T6 differ from it by 1 to 2.5 % in force, 4 % in the dent and
-2 to 4 % in the restitution, with exponents of 1.31 to 1.44; softer tempers by twice that."""
-WITH_CURVE = {"force": 0.015, "recovery": 0.05, "recovery exponent": 0.05, "crater": 0.025}
-"""The same where the baseline follows the flow curve of the body that yields first: what hardening
-does is no error any more; shape and turning of the yield surface and the unloading's modulus are.
-How strong the piece is, is an error of the data sheet."""
 SIZE_SPREAD = 0.4
 """Standard deviation of the logarithm of the size of all this: a metal's 3 % may be 1.5 or 6."""
 SIZES = Sizes(
@@ -54,7 +47,6 @@ SIZES = Sizes(
 FREE = {"force": 0.16, "recovery": 0.5, "recovery exponent": 0.5, "crater": 0.24}
 """Standard deviations of a contact law that is free: what something unknown may make of it."""
 
-_EXPONENT = 0.02  # of the recovery, of the closed form to finite elements
 _LENGTH = 2.5  # correlation length in ln(depth/R)
 _KINDS = ("force", "recovery", "recovery exponent", "crater")
 _GRID = np.linspace(LOG_DEPTH_FIRST, LOG_DEPTH_LAST, NODES)
@@ -258,6 +250,6 @@ def _of_law(scene: Scene, lost: Array) -> dict[str, Array]:
         "force": known.force,
         # no more can be wrong of what comes back than does not
         "recovery": np.minimum(known.given_back, lost),
-        "recovery exponent": _EXPONENT * lost,
+        "recovery exponent": RECOVERY_EXPONENT * lost,
         "crater": np.minimum(known.dent, METAL["crater"]),
     }

@@ -6,6 +6,7 @@ import math
 import tomllib
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
+from functools import cached_property
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -17,13 +18,17 @@ from ...models.base import ContactLaw
 from ..draw import histories
 from ..integrate import Trace, strike, traced
 from ..result import Impact
+from ..told.band import PRESSURE, Band, band_of, idle
+from ..told.checks import checks, reason_above_one
+from ..told.onset import largest_mean_pressure
 from .setup import Setup, read_setup, setup_of
-from .tables import SHOWN, impact_row
+from .tables import EXACT, SHOWN, impact_row
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
 _POINTS = 200
+_SURE = 1e-6  # relative, below which no standard deviation is shown
 _ROUND_OFF = 1e-7  # of the largest number of the same unit
 _EITHER = (("impact_speed_m_s", "drop_height_m"), ("drop_height_m", "impact_speed_m_s"))
 
@@ -40,11 +45,45 @@ class Blow:
         History of the last repeat, by law.
     rows
         Observables of every repeat by every law, SI, units in the names.
+    setup, laws
+        What was asked for.
     """
 
     name: str
     traces: dict[str, Trace]
     rows: tuple[dict[str, Any], ...]
+    setup: Setup
+    laws: tuple[ContactLaw, ...]
+
+    @cached_property
+    def bands(self) -> dict[str, Band]:
+        """How sure the last repeat's numbers are, by law; worked out when first asked for."""
+        return {law.name: band_of(self.setup, law) for law in self.laws}
+
+    def checks(self) -> list[str]:
+        """Return what speaks against the set-up by the first law, and restitutions above 1."""
+        first = self.laws[0]
+        above = {
+            law.name: reason_above_one(self.setup.scene(law), self[law.name]) for law in self.laws
+        }
+        return [
+            *checks(self.setup, first, self[first.name]),
+            *(f"{name}: {reason}" for name, reason in above.items() if reason),
+        ]
+
+    def rules(self) -> list[str]:
+        """Return what rules the bands of restitution and dent, by the first law."""
+        band, found = self.bands[self.laws[0].name], self[self.laws[0].name]
+        told = (("restitution", 1.0, "restitution"), ("residual_flat_m", 1e6, "crater depth [um]"))
+        return [
+            f"{words} {_cell(scale * getattr(found, name), scale * band.std(name))}: "
+            f"{band.rules(name)} of the variance"
+            for name, scale, words in told
+            if getattr(found, name) > 0.0 and band.rules(name)
+        ] + [
+            f"the standard deviation of {key}, {share:.2g} of it, changes nothing here"
+            for key, share in idle(self.setup, band)
+        ]
 
     @property
     def impacts(self) -> dict[str, Impact]:
@@ -54,22 +93,61 @@ class Blow:
     def __getitem__(self, law: str) -> Impact:
         return self.impacts[law]
 
-    def table(self) -> list[tuple[str, ...]]:
+    def table(self, *, exact: bool = False) -> list[tuple[str, ...]]:
         """Return the observables in units for people, a law a column; what is nothing is left out.
+
+        Parameters
+        ----------
+        exact
+            Without the standard deviations.
 
         Returns
         -------
         list of tuple of str
-            Name with unit, then the value by each law.
+            Name with unit, then the value by each law, with its standard deviation.
         """
         columns = _shown(self.impacts.values())
-        return [
+        rows = [
             (
                 f"{label} [{unit}]" if unit != "-" else label,
-                *(_cell(scale * values[key]) for values in columns),
+                *(
+                    _cell(scale * values[key], scale * self._std(law, key, exact=exact))
+                    for law, values in zip(self.traces, columns, strict=True)
+                ),
             )
             for label, key, scale, unit in SHOWN
             if any(abs(values[key]) > 0.0 for values in columns)
+        ]
+        last = {row["law"]: row[PRESSURE] for row in self.rows}
+        pressure = (
+            "largest mean pressure [MPa]",
+            *(
+                _cell(1e-6 * p, 1e-6 * self._std(law, PRESSURE, exact=exact))
+                for law, p in last.items()
+            ),
+        )
+        return [*rows, pressure]
+
+    def _std(self, law: str, key: str, *, exact: bool) -> float:
+        return 0.0 if exact or key in EXACT else self.bands[law].std(key)
+
+    def written(self, *, exact: bool = False) -> list[dict[str, Any]]:
+        """Return the rows with standard deviations, of the last repeat alone."""
+        if exact:
+            return list(self.rows)
+        last = {row["law"]: row["repeat"] for row in self.rows}
+        named = [*(key for _, key, _, _ in SHOWN if key not in EXACT), PRESSURE]
+        return [
+            {
+                **row,
+                **{
+                    f"{key}_std": self.bands[row["law"]].std(key)
+                    if row["repeat"] == last[row["law"]]
+                    else ""
+                    for key in named
+                },
+            }
+            for row in self.rows
         ]
 
     def frame(self) -> Any:
@@ -144,11 +222,17 @@ def blow_of(setup: Setup, laws: Sequence[ContactLaw]) -> Blow:
         scene = setup.scene(law)
         for number in range(1, setup.repeats + 1):
             found = strike(scene, setup.settings)
-            rows.append({"law": law.name, "repeat": number, **impact_row(found)})
+            pressure = largest_mean_pressure(scene, found)
+            rows.append(
+                {
+                    "law": law.name, "repeat": number, **impact_row(found),
+                    PRESSURE: pressure,
+                }
+            )  # fmt: skip
             traces[law.name] = traced(scene, setup.settings, points=_POINTS)
             # the next blow falls on the same spot: hardened crater, flattened tip
             scene = scene.with_(spot=found.spot)
-    return Blow(setup.name, traces, tuple(rows))
+    return Blow(setup.name, traces, tuple(rows), setup, tuple(laws))
 
 
 def _shown(impacts: Iterable[Impact]) -> list[dict[str, float]]:
@@ -168,8 +252,14 @@ def _shown(impacts: Iterable[Impact]) -> list[dict[str, float]]:
     ]
 
 
-def _cell(value: float) -> str:
+def _cell(value: float, std: float = 0.0) -> str:
     # a tip that comes straight down has no tangential speed to be given back
     if math.isnan(value):
         return "none"
+    if value != 0.0 and std > _SURE * abs(value):
+        return f"{_number(value)} ± {_number(float(f'{std:.1e}'))}"
+    return _number(value)
+
+
+def _number(value: float) -> str:
     return f"{value:.4g}" if value == 0.0 or abs(value) >= 1e-3 else f"{value:.1e}"

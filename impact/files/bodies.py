@@ -8,8 +8,8 @@ from pathlib import Path
 
 from ...core.errors import InputError
 from ...core.flow import Flow
-from ...core.flow_tables import HardeningTable
 from ...core.inputs.flow_curve import read_flow_curve
+from ...core.inputs.flow_tables import HardeningTable
 from ...core.material import Material, Pair
 from ...core.rig import BodyTable, Rig, StrikerTable, value_of
 from ..scene import Striker

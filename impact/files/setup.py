@@ -12,7 +12,7 @@ from pydantic import Field
 
 from ...core.approach import speeds_at_touch
 from ...core.errors import InputError, InputErrors
-from ...core.flow_tables import HardeningTable
+from ...core.inputs.flow_tables import HardeningTable
 from ...core.inputs.toml_input import InputTable, parse_model, read_toml
 from ...core.rig import Height, Quantity, Rig, Speed, StrikerTable, TargetTable, value_of
 from ...models.base import ContactLaw
@@ -31,6 +31,9 @@ DEFAULT_LAWS = ("fitted", "hertz", "jackson-green", "ghaednia")
 
 FOLLOWING = "hardening"
 """Ours of metals with a flow curve; it comes first where there is one."""
+
+
+_TEXTS = ("format", "name", "description", "source", "licence")
 
 
 class FlowingTarget(TargetTable):
@@ -113,6 +116,13 @@ class Setup:
     def scene(self, law: ContactLaw, *, speed: float | None = None) -> Scene:
         """Return the scene of one law; `speed` replaces the file's normal approach speed [m/s]."""
         return _scene(self.file, law, source=self.source, speed=speed)
+
+    @property
+    def about(self) -> dict[str, str]:
+        """What the file says for people."""
+        texts = {key: getattr(self.file, key) for key in _TEXTS}
+        named = {f"{key}.material": body.material for key, body in self.file.bodies.items()}
+        return {key: text for key, text in {**texts, **named}.items() if text}
 
     def check_laws(self, laws: Sequence[ContactLaw]) -> None:
         """Refuse a flow curve that none of the laws follows.

@@ -34,6 +34,9 @@ SHOWN = (
     ("momentum balance", "momentum_residual", 1.0, "-"),
 )
 
+EXACT = ("contacts", "energy_residual", "momentum_residual")
+"""What has no standard deviation: counts, and what a balance leaves over."""
+
 
 def write_csv(path: Path, rows: Sequence[Mapping[str, Any]]) -> None:
     """Write rows that share their keys; floats with all digits."""
@@ -52,12 +55,19 @@ def impact_row(impact: Impact) -> dict[str, Any]:
     }
 
 
-def write_hdf5(path: Path, traces: Mapping[str, Trace]) -> None:
-    """Write histories and observables, one group for each law; units are in the names."""
+def write_hdf5(
+    path: Path, traces: Mapping[str, Trace], *, about: Mapping[str, str] | None = None
+) -> None:
+    """Write histories and observables, one group for each law; units are in the names.
+
+    `about` are texts for people: name, materials, who measured it.
+    """
     stream = io.BytesIO()
     with h5py.File(stream, "w") as store:
         for key, value in environment().items():
             store.attrs[key] = value
+        for key, text in (about or {}).items():
+            store.attrs[key] = text
         for law, trace in traces.items():
             group = store.create_group(law)
             for i, name in enumerate(HISTORY):

@@ -35,6 +35,10 @@ def not_taken(found: SetupFile, content: Mapping[str, Any], *, source: str) -> I
         yield InputError(
             repr(found.format), source=source, key="format", allowed="recording-set/1, or left out"
         )
+    for name, number in found.gauge.items():
+        yield line(f"gauge.{name}", number, _OF_A_SET)
+    if "dent_edge" in content or "dent_edge" in content.get("noise", ()):
+        yield line("dent_edge", found.dent_edge, _OF_A_SET)
     for name, number in found.noise.items():
         yield line(f"noise.{name}", number, _OF_A_SET)
     for name in type(found.environment).model_fields:

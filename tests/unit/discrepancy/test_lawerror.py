@@ -8,7 +8,6 @@ import numpy as np
 import pytest
 from dentscope.core.material import Material, Pair
 from dentscope.discrepancy.unknowns.lawerror import (
-    METAL,
     SIZE_SPREAD,
     SIZES,
     law_error,
@@ -18,6 +17,7 @@ from dentscope.impact import Approach, ForceTransform, Scene, Striker, strike
 from dentscope.impact.force import LOG_DEPTH_FIRST, LOG_DEPTH_LAST
 from dentscope.impact.strength import NODES
 from dentscope.models import LAWS
+from dentscope.models.uncertainty import METAL
 
 HARD = Material(E=2.1e11, nu=0.3, Sy=math.inf)
 MILD = Material(E=2.06e11, nu=0.29, Sy=3e8)

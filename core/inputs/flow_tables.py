@@ -7,11 +7,11 @@ from typing import TYPE_CHECKING, Literal
 
 from pydantic import Field
 
-from .errors import InputError
-from .inputs.toml_input import InputTable
+from ..errors import InputError
+from .toml_input import InputTable
 
 if TYPE_CHECKING:  # numpy comes with it, and the command line starts without
-    from .flow import FlowCurve, Heating, Rate
+    from ..flow import FlowCurve, Heating, Rate
 
 _HARDENING = {
     "swift": ("K_Pa", "n"),
@@ -72,7 +72,7 @@ class HardeningTable(_LawTable):
 
     def curve(self, Sy: float, *, key: str, source: str) -> FlowCurve:
         """Return the law as a flow curve that begins at `Sy` [Pa]."""
-        from .flow import ludwik, swift, voce
+        from ..flow import ludwik, swift, voce
 
         first, second = self.numbers(_HARDENING, key=key, source=source)
         if self.law == "voce":
@@ -106,7 +106,7 @@ class RateTable(_LawTable):
 
     def rate(self, *, key: str, source: str) -> Rate:
         """Return the law."""
-        from .flow import Rate
+        from ..flow import Rate
 
         return Rate(self.law, *self.numbers(_RATE, key=key, source=source))
 
@@ -125,6 +125,6 @@ class HeatingTable(InputTable):
 
     def heating(self) -> Heating:
         """Return the law."""
-        from .flow import Heating
+        from ..flow import Heating
 
         return Heating(self.fraction, self.capacity_J_m3K, self.melting_rise_K, self.exponent)

@@ -1,0 +1,248 @@
+"""How sure the numbers of a blow are: inputs, contact law and metal, each with its part.
+
+The inputs' part takes every quantity that the file states with a standard deviation one of these up
+and down. The law's is how far it lies from finite elements of the same two bodies, the metal's how
+far real metals are from elastic and perfectly plastic ones: both act on force, recovery and crater
+as a diagnosis has them, and grow with the share of the work that the contact keeps.
+"""
+
+from __future__ import annotations
+
+import math
+import warnings
+from collections.abc import Iterator, Mapping
+from dataclasses import dataclass, fields, replace
+from typing import TYPE_CHECKING, Any, NamedTuple
+
+import numpy as np
+
+from ...core.errors import InputError
+from ...core.rig import BodyTable, Quantity
+from ...models.base import ContactLaw, DomainWarning
+from ...models.beside import beside_fitted
+from ...models.choose import follows_flow
+from ...models.uncertainty import METAL, RECOVERY_EXPONENT, WITH_CURVE
+from ..integrate import strike
+from ..result import Impact
+from ..scene import ForceTransform, Scene
+from ..strength import NODES
+from .onset import largest_mean_pressure
+
+if TYPE_CHECKING:
+    from ..files.setup import Setup
+
+LAW, METALS = "contact law", "metal"
+"""Names of the parts that are no input."""
+
+_HERTZ = 0.003  # of Hertz's force, which leaves out the finite depth of the contact
+_STEP = 0.02  # of a logarithm, for the slopes
+_LARGEST = 1.0  # of a logarithm: a law that is that far off is off by a factor
+_HELD = (1.0, 0.5, 0.25, 0.1)  # of a standard deviation, where a whole one leaves the range
+_NUMBERS = (*(f.name for f in fields(Impact) if f.type == "float"), "mean_force_N")
+PRESSURE = "largest_mean_pressure_Pa"
+"""The one number beside those of `Impact`."""
+
+
+class _Sizes(NamedTuple):
+    """Standard deviations of the logarithms, of the exponent absolute."""
+
+    force: float
+    recovery: float
+    exponent: float
+    crater: float
+    radius: float
+
+
+@dataclass(frozen=True)
+class Band:
+    """Standard deviations of an impact's numbers, by part and field of `Impact`.
+
+    Parameters
+    ----------
+    parts
+        Change of each field by one standard deviation of the part: keys of the file, `LAW`, then
+        `METALS`.
+    """
+
+    parts: Mapping[str, Mapping[str, float]]
+
+    def std(self, name: str) -> float:
+        """Standard deviation of one field, all parts together."""
+        return math.sqrt(sum(part.get(name, 0.0) ** 2 for part in self.parts.values()))
+
+    def rules(self, name: str) -> str:
+        """The part with the largest share, and how much of the variance it has; empty: none."""
+        whole = self.std(name)
+        if not whole > 0.0:
+            return ""
+        first = max(self.parts, key=lambda part: abs(self.parts[part].get(name, 0.0)))
+        return f"{first} {100.0 * (self.parts[first].get(name, 0.0) / whole) ** 2:.0f} %"
+
+
+def band_of(setup: Setup, law: ContactLaw) -> Band:
+    """Return the band of a set-up's last blow by one law."""
+    parts: dict[str, dict[str, float]] = {}
+    for key, share, up, down in _shifted(setup):
+        found = [last_blow(one, law) for one in (up, down)]
+        pressures = [
+            largest_mean_pressure(one.scene(law), blow)
+            for one, blow in zip((up, down), found, strict=True)
+        ]
+        ends = [{**_values(blow), PRESSURE: p} for blow, p in zip(found, pressures, strict=True)]
+        parts[key] = {n: 0.5 * (ends[0][n] - ends[1][n]) / share for n in ends[0]}
+    found_now, scene = last_blow(setup, law), setup.scene(law)
+    of_law, of_metal = _sizes(scene, found_now)
+    slopes, pressure = _slopes(setup, law), largest_mean_pressure(scene, found_now)
+    for name, sizes in ((LAW, of_law), (METALS, of_metal)):
+        parts[name] = _combined(sizes, slopes, found_now)
+        parts[name][PRESSURE] = pressure * math.hypot(sizes.force, 2.0 * sizes.radius)
+    finite = {
+        part: {n: x for n, x in changes.items() if math.isfinite(x)}
+        for part, changes in parts.items()
+    }
+    return Band(finite)
+
+
+def idle(setup: Setup, band: Band) -> list[tuple[str, float]]:
+    """Return the uncertain quantities that change nothing, and how uncertain they are."""
+    stated = {".".join(path): quantity for path, quantity in _uncertain(setup)}
+    return [
+        (key, quantity.relative)
+        for key, quantity in stated.items()
+        if not any(band.parts.get(key, {}).values())
+    ]
+
+
+def last_blow(setup: Setup, law: ContactLaw, force: ForceTransform | None = None) -> Impact:
+    """Return the last of the set-up's repeats, each on the spot of the one before.
+
+    `force` takes the place of the scene's.
+    """
+    scene = setup.scene(law)
+    if force is not None:
+        scene = scene.with_(force=force)
+    for _ in range(setup.repeats):
+        found = strike(scene, setup.settings)
+        scene = scene.with_(spot=found.spot)
+    return found
+
+
+def _values(impact: Impact) -> dict[str, float]:
+    return {name: float(getattr(impact, name)) for name in _NUMBERS}
+
+
+def _shifted(setup: Setup) -> Iterator[tuple[str, float, Setup, Setup]]:
+    """Yield key, share of a standard deviation, and the set-ups one up and one down."""
+    from ..files.setup import setup_of
+
+    for path, quantity in _uncertain(setup):
+        for share in _HELD:
+            values = [_moved(quantity, sign * share) for sign in (1.0, -1.0)]
+            try:
+                up, down = (
+                    setup_of(_with(setup.content, path, value), source=setup.source)
+                    for value in values
+                )
+            except InputError:  # a Poisson's ratio beyond 0.5
+                continue
+            yield ".".join(path), share, up, down
+            break
+
+
+def _moved(quantity: Quantity, by: float) -> float:
+    """The value `by` standard deviations off; what is positive stays so."""
+    if quantity.value > 0.0:
+        return quantity.value * math.exp(by * quantity.relative)
+    return quantity.value + by * quantity.std
+
+
+def _uncertain(setup: Setup) -> Iterator[tuple[tuple[str, ...], Quantity]]:
+    """Yield the quantities that stand with a standard deviation, and where they stand."""
+    file, content = setup.file, setup.content
+    name = file.impact.striker or next(iter(file.strikers))
+    tables: dict[tuple[str, ...], Any] = {
+        (): file, ("target",): file.target, ("strikers", name): file.strikers[name],
+        ("friction",): file.friction, ("impact",): file.impact,
+    }  # fmt: skip
+    for place, table in tables.items():
+        given = content
+        for part in place:
+            given = given.get(part, {})
+        for key in type(table).model_fields:
+            value = getattr(table, key)
+            # the mass of a solid sphere moves with its radius and density
+            derived = key == "mass_kg" and key not in given
+            follows = key == "hardness_Pa" and table.Sy_Pa is None
+            if isinstance(value, Quantity) and value.std > 0.0 and not derived and not follows:
+                yield (*place, key), value
+        if isinstance(table, BodyTable) and table.Sy_Pa is None and table.strength is not None:
+            yield (*place, "Sy_Pa"), table.strength
+
+
+def _with(content: Mapping[str, Any], path: tuple[str, ...], value: float) -> dict[str, Any]:
+    if len(path) == 1:
+        return {**content, path[0]: value}
+    return {**content, path[0]: _with(content.get(path[0], {}), path[1:], value)}
+
+
+def _sizes(scene: Scene, found: Impact) -> tuple[_Sizes, _Sizes]:
+    """How far off the law is from finite elements, and these from a metal, at this depth."""
+    pair, law = scene.pair, scene.law
+    kept = 1.0 - found.energetic_restitution**2
+    lost = min(max(kept, 0.0), 1.0) if kept > 1e-6 else 0.0
+    if not math.isfinite(pair.Sy_min):
+        return _Sizes(_HERTZ, 0.0, 0.0, 0.0, 0.0), _Sizes(0.0, 0.0, 0.0, 0.0, 0.0)
+    with warnings.catch_warnings():
+        warnings.simplefilter("ignore", DomainWarning)  # the doubt about a law has its own line
+        depth = np.array([found.peak_depth_m])
+        try:
+            known = law.uncertainty(pair, depth)
+        except InputError:
+            known = beside_fitted(law, pair, depth)
+    force, radius, dent, back = (
+        min(float(x[0]), _LARGEST)
+        for x in (known.force, known.radius, known.dent, known.given_back)
+    )
+    sizes = WITH_CURVE if follows_flow(law) and not pair.perfectly_plastic else METAL
+    # a law that leaves no crater has none that could be off
+    left = found.residual_flat_m + found.residual_sphere_m > 0.0
+    return (
+        _Sizes(force, back, RECOVERY_EXPONENT * lost, dent if left else 0.0, radius),
+        _Sizes(
+            sizes["force"] * lost, sizes["recovery"] * lost, sizes["recovery exponent"] * lost,
+            sizes["crater"] if left and lost else 0.0, 0.0,
+        ),
+    )  # fmt: skip
+
+
+def _slopes(setup: Setup, law: ContactLaw) -> list[dict[str, float]]:
+    """Change of each field by the logarithm of force and recovery, and by the exponent."""
+    stated = setup.scene(law).force
+
+    def changed(force: float, recovery: float, exponent: float) -> ForceTransform:
+        loading, back = ((math.exp(x),) * NODES for x in (force, recovery))
+        return replace(
+            stated, factors=loading, recovery_factors=back, shape=stated.shape + exponent
+        )
+
+    slopes = []
+    for k in range(3):
+        ends = []
+        for sign in (1.0, -1.0):
+            step = [0.0, 0.0, 0.0]
+            step[k] = sign * _STEP
+            ends.append(_values(last_blow(setup, law, changed(*step))))
+        slopes.append({n: (ends[0][n] - ends[1][n]) / (2.0 * _STEP) for n in _NUMBERS})
+    return slopes
+
+
+def _combined(sizes: _Sizes, slopes: list[dict[str, float]], found: Impact) -> dict[str, float]:
+    """Standard deviation of each field; force, recovery, exponent and crater are independent."""
+    by = (sizes.force, sizes.recovery, sizes.exponent)
+    out = {
+        n: math.sqrt(sum((s * slope[n]) ** 2 for s, slope in zip(by, slopes, strict=True)))
+        for n in _NUMBERS
+    }
+    for name in ("residual_flat_m", "residual_sphere_m"):
+        out[name] = math.hypot(out[name], sizes.crater * getattr(found, name))
+    return out

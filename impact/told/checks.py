@@ -1,0 +1,186 @@
+"""What speaks against a blow as it was set up, in words and with its effect in numbers.
+
+Each check simulates what the set-up leaves out, or names the rule that it is judged by.
+"""
+
+from __future__ import annotations
+
+import math
+import warnings
+from collections.abc import Iterator
+from dataclasses import replace
+from typing import TYPE_CHECKING
+
+from ...core.rig import TABOR
+from ...models.base import ContactLaw, DomainWarning
+from ...models.choose import demand, follows_flow
+from ..integrate import strike
+from ..result import Impact
+from ..scene import Scene
+from ..support import half_space_radiation, plate_support
+from .onset import effective_mass, first_yield_speed, largest_mean_pressure
+
+if TYPE_CHECKING:
+    from ..files.setup import Setup
+
+_THICK = 8.0  # thickness over the depth of a dent (ISO 6506-1, 6.3)
+_RATE = 0.4  # of v/a: strain rate of an indentation (Tabor 1951)
+_SMALL = 1e-3  # relative effect that is not worth a line
+_MASS_OFF = 0.01  # of a solid sphere's mass
+
+
+def checks(setup: Setup, law: ContactLaw, found: Impact) -> list[str]:
+    """Return a line for each check, by one law and its blow; none where that did not end."""
+    if not (found.outcome.completed and found.restitution > 0.0):
+        return []
+    scene = setup.scene(law)
+    with warnings.catch_warnings():
+        warnings.simplefilter("ignore", DomainWarning)  # the doubt about a law has its own line
+        parts = (
+            _onset(scene, found), _plate(setup, scene, found), _waves(setup, scene, found),
+            _gravity(setup, scene, found), _friction(scene), _rod(scene, found),
+            _bodies(setup, law),
+        )  # fmt: skip
+        return [line for part in parts for line in part]
+
+
+def _onset(scene: Scene, found: Impact) -> Iterator[str]:
+    pressure, pair = largest_mean_pressure(scene, found), scene.pair
+    mean = "" if math.isnan(pressure) else f"largest mean pressure {pressure / 1e6:.4g} MPa"
+    if not math.isfinite(pair.Sy_min):
+        yield f"neither body yields{': ' if mean else ''}{mean}"
+        return
+    over = f", {pressure / pair.Sy_min:.3g} times the weaker strength" if mean else ""
+    speed = first_yield_speed(scene)
+    if speed == 0.0:
+        yield "first yield at the edge of the tip's flat, at any speed"
+        return
+    regime = demand(pair, found.peak_depth_m).regime
+    yield (
+        f"first yield at {speed:.3g} m/s; here {scene.approach.speed / speed:.3g} times that "
+        f"({regime}); {mean}{over}"
+    )
+    if scene.approach.speed > speed:
+        radius = float(scene.law.contact_radius(pair, found.peak_depth_m))
+        rate = _RATE * scene.approach.speed / radius
+        yield (
+            f"strain rate about {rate:.2g} 1/s: a strength measured slowly lacks what the metal's "
+            "rate adds up to there"
+        )
+
+
+def _plate(setup: Setup, scene: Scene, found: Impact) -> Iterator[str]:
+    thickness, flat = setup.file.target.thickness_m, scene.pair.flat
+    if thickness is None:
+        return
+    h = thickness.value
+    dent = found.residual_flat_m
+    if dent > 0.0:
+        enough = "thick" if h >= _THICK * dent else "NOT thick"
+        yield (
+            f"the flat, {h * 1e3:.3g} mm, is {enough} enough for the dent: {_THICK:g} times its "
+            f"depth is {_THICK * dent * 1e3:.2g} mm (ISO 6506-1)"
+        )
+    else:
+        a = float(scene.law.contact_radius(scene.pair, found.peak_depth_m))
+        yield f"the flat, {h * 1e3:.3g} mm, is {h / a:.3g} times the contact radius thick"
+    if setup.file.impact.support == "plate" or flat.rigid or math.isnan(flat.density):
+        return
+    hung = strike(scene.with_(support=plate_support(flat, thickness=h)), setup.settings)
+    yield f"hung freely as a wide plate: {_effect(hung, found)}"
+
+
+def _waves(setup: Setup, scene: Scene, found: Impact) -> Iterator[str]:
+    flat = scene.pair.flat
+    if setup.file.impact.support != "rigid" or flat.rigid or math.isnan(flat.density):
+        return
+    radiates = replace(scene.force, radiation=half_space_radiation(flat))
+    with_waves = strike(scene.with_(force=radiates), setup.settings)
+    yield f"waves into a deep flat: {_effect(with_waves, found)}"
+
+
+def _gravity(setup: Setup, scene: Scene, found: Impact) -> Iterator[str]:
+    if scene.gravity == 0.0:
+        return
+    without = strike(scene.with_(gravity=0.0), setup.settings)
+    if abs(without.restitution / found.restitution - 1.0) > _SMALL:
+        yield (
+            f"gravity, {scene.gravity:.4g} m/s^2, acts during the contact; without: "
+            f"{_effect(without, found)}"
+        )
+
+
+def _friction(scene: Scene) -> Iterator[str]:
+    approach = scene.approach
+    upright = math.isclose(approach.angle, 0.5 * math.pi, abs_tol=1e-9)
+    straight = approach.tangential == approach.spin == 0.0 and upright
+    if straight and scene.friction.mu > 0.0:
+        yield (
+            f"friction, {scene.friction.mu:g}, does nothing in a straight blow by these laws; "
+            "dentscope case solves the contact with it"
+        )
+
+
+def _rod(scene: Scene, found: Impact) -> Iterator[str]:
+    striker, metal = scene.striker, scene.pair.sphere
+    if striker.length == 0.0 or scene.modes.frequencies or metal.rigid or math.isnan(metal.density):
+        return
+    c = math.sqrt(metal.E / metal.density)
+    there_and_back = 2.0 * (striker.length + 2.0 * striker.tip_radius) / c
+    share = there_and_back / found.contact_time_s
+    yield (
+        f"the rod is taken as rigid: a wave runs along it and back in {there_and_back * 1e6:.4g} "
+        f"us, {share:.2g} of the contact; impact.modes lets it vibrate"
+    )
+    limit = metal.density * c * scene.approach.speed * math.pi * striker.radius**2
+    if found.peak_force_N > limit:
+        yield (
+            f"upright it cannot press with more than rho c v A = {limit:.4g} N before that wave is "
+            "back"
+        )
+
+
+def _bodies(setup: Setup, law: ContactLaw) -> Iterator[str]:
+    file = setup.file
+    for key, body in file.bodies.items():
+        if body.hardness_Pa is not None and body.Sy_Pa is not None:
+            ratio = body.hardness_Pa.value / body.Sy_Pa.value
+            yield f"{key}: hardness over strength {ratio:.3g} as stated; {TABOR:g} for most metals"
+        flows = body.flow_curve or getattr(body, "hardening", None)
+        if flows and not follows_flow(law):
+            yield f"{law.name} takes the first strength of {key}; hardening follows its curve"
+    name = file.impact.striker or next(iter(file.strikers))
+    ball = file.strikers[name]
+    if ball.shape == "sphere" and ball.density_kg_m3 is not None:
+        solid = 4.0 / 3.0 * math.pi * ball.body_radius**3 * ball.density_kg_m3.value
+        if abs(ball.mass_kg.value / solid - 1.0) > _MASS_OFF:
+            yield (
+                f"strikers.{name}: {ball.mass_kg.value:.4g} kg as stated; a solid sphere of its "
+                f"radius and density has {solid:.4g} kg"
+            )
+
+
+def reason_above_one(scene: Scene, found: Impact) -> str:
+    """Say where the energy of a restitution above 1 comes from; empty where it is at most 1."""
+    if not found.restitution > 1.0 + 1e-6:
+        return ""
+    before, after = found.kinetic_before_J, found.kinetic_after_J
+    beside = before - 0.5 * effective_mass(scene) * scene.approach.speed**2
+    if after > (1.0 + 1e-6) * (before + max(found.gravity_work_J, 0.0)):
+        given = "the law gives back more than it took"
+    elif found.gravity_work_J > beside:
+        given = "the fall during the contact feeds the tip's rebound"
+    else:
+        given = "motion along the flat and spin feed the tip's rebound"
+    return (
+        f"a restitution of {found.restitution:.4g}: {given}; kinetic energy of the whole "
+        f"{before:.3g} J before, {after:.3g} J after"
+    )
+
+
+def _effect(other: Impact, found: Impact) -> str:
+    """What changes, in per cent of dent and restitution."""
+    e = f"restitution {100.0 * (other.restitution / found.restitution - 1.0):+.2g} %"
+    if not found.residual_flat_m > 0.0:
+        return e
+    return f"dent {100.0 * (other.residual_flat_m / found.residual_flat_m - 1.0):+.2g} %, {e}"

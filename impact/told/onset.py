@@ -1,0 +1,75 @@
+"""When a blow first yields, and how hard it presses: what follows from pair and mass alone."""
+
+from __future__ import annotations
+
+import math
+import warnings
+
+import numpy as np
+
+from ...core.errors import InputError
+from ...models.base import DomainWarning
+from ...models.kernel import critical_depth
+from ..result import Impact
+from ..scene import Scene
+
+_POINTS = 60  # depths at which the mean pressure is looked at
+
+
+def effective_mass(scene: Scene) -> float:
+    """Mass that the contact feels along the normal [kg].
+
+    1/m* = 1/m + c^2/I + 1/M: the striker's, its leaning (Eq. 5.1), and that of a support that is
+    free to move.
+    """
+    striker, support = scene.striker, scene.support
+    beside, _ = striker.arm(scene.approach.angle) if striker.length else (0.0, 0.0)
+    return 1.0 / (1.0 / striker.mass + beside**2 / striker.inertia + 1.0 / support.mass)
+
+
+def first_yield_speed(scene: Scene) -> float:
+    """Normal speed of approach at which the weaker body begins to yield [m/s].
+
+    Up to the critical depth the contact is Hertz's: m* v^2/2 = (8/15) E' R^(1/2) delta_c^(5/2).
+    Infinite where neither body yields, 0 for a tip with a flat, whose edge yields at once.
+
+    Examples
+    --------
+    >>> from dentscope.core import Material
+    >>> from dentscope.impact import Approach, Striker, scene_of
+    >>> from dentscope.models import LAWS
+    >>> hard, soft = Material(E=200e9, nu=0.3), Material(E=200e9, nu=0.3, Sy=1e9)
+    >>> ball = Striker(mass=7800 * 4 / 3 * 3.14159 * 0.005**3, tip_radius=0.005)
+    >>> scene = scene_of(LAWS["hertz"], sphere=hard, flat=soft, striker=ball, approach=Approach(1))
+    >>> round(first_yield_speed(scene), 3)  # 0.151 by Johnson's rounded constant (1985, 11.5)
+    0.153
+    """
+    pair = scene.pair
+    if scene.striker.tip_flat_radius > 0.0 and math.isfinite(pair.Sy_min):
+        return 0.0
+    depth = critical_depth(pair)
+    if not math.isfinite(depth):
+        return math.inf
+    work = 8.0 / 15.0 * pair.E_reduced * math.sqrt(pair.R) * depth**2.5
+    return math.sqrt(2.0 * work / effective_mass(scene))
+
+
+def largest_mean_pressure(scene: Scene, found: Impact) -> float:
+    """Largest mean pressure F/(pi a^2) on the way to the peak [Pa], by the scene's law.
+
+    nan where the tip is cut flat: the law's contact radius is not that of the contact.
+
+    Raises
+    ------
+    InputError
+        The peak is no depth.
+    """
+    if scene.striker.tip_flat_radius > 0.0:
+        return math.nan
+    peak = found.peak_depth_m
+    if not peak > 0.0:
+        raise InputError(f"{peak:g}", key="peak_depth_m", allowed="a number above 0")
+    depth = np.geomspace(1e-3 * peak, peak, _POINTS)
+    with warnings.catch_warnings():
+        warnings.simplefilter("ignore", DomainWarning)  # the doubt about a law has its own line
+        return float(np.max(scene.law.hardness(scene.pair, depth)))

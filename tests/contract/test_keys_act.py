@@ -1,0 +1,240 @@
+"""Every key of every file acts or is refused: nothing that is accepted goes without a trace.
+
+For an impact, a change of the key changes what is printed or written; for a case, what the solver
+gets or what is said beside it. A key that no context of the lists below lets act must be refused in
+one line.
+"""
+
+import tomllib
+
+import pytest
+from dentscope.cli.shared.keys import keys_of
+from dentscope.core import InputError, InputErrors
+from dentscope.impact.files.blow import blow_of
+from dentscope.impact.files.setup import setup_of
+from dentscope.models import law_named
+
+BALL = """
+name = "ball"
+[target]
+E_Pa = 2.0e11
+nu = 0.3
+Sy_Pa = 3.05e8
+density_kg_m3 = 7870
+thickness_m = 0.03
+[strikers.ball]
+shape = "sphere"
+tip_radius_m = 0.005
+E_Pa = 2.0e11
+nu = 0.3
+Sy_Pa = 1.7e9
+density_kg_m3 = 7800
+[friction]
+coefficient = 0.1
+[impact]
+angle_deg = 60
+impact_speed_m_s = 1.0
+laws = ["fitted"]
+"""
+ROD = BALL.replace('shape = "sphere"', 'shape = "rod"\nradius_m = 0.005\nlength_m = 0.1').replace(
+    "density_kg_m3 = 7800", "mass_kg = 0.06\ndensity_kg_m3 = 7800"
+)
+BARE = BALL.replace("Sy_Pa = 3.05e8\n", "").replace("angle_deg = 60\n", "")
+SPRUNG = BALL.replace("angle_deg", 'support = "sprung"\nangle_deg').replace(
+    "thickness_m", "support_mass_kg = 0.5\nsupport_stiffness_N_m = 1e6\nthickness_m"
+)
+THIN = ROD.replace("radius_m = 0.005\nlength", "radius_m = 0.0001\nlength")
+VIBRATES = ROD.replace("angle_deg", "modes = 2\nangle_deg")
+LUDWIK, JOHNSON, VOCE = (
+    '{ law = "ludwik", K_Pa = %s, n = %s }',
+    '{ law = "johnson-cook", B_Pa = %s, n = 0.3 }',
+    '{ law = "voce", Q_Pa = %s, b = %s }',
+)
+QUANTITY = "{ value = %s, std = %s }"
+
+ACTS = {
+    ("", "name"): (BALL, '"other"'),
+    ("", "format"): (BALL, '"recording-set/1"'),
+    ("", "description"): (BALL, '"a drop"'),
+    ("", "source"): (BALL, '"a paper"'),
+    ("", "licence"): (BALL, '"CC0"'),
+    ("", "gravity_m_s2"): (BALL, "300"),
+    ("[target]", "material"): (BALL, '"iron"'),
+    ("[target]", "E_Pa"): (BALL, "1e11"),
+    ("[target]", "nu"): (BALL, "0.25"),
+    ("[target]", "Sy_Pa"): (BALL, "2e8"),
+    ("[target]", "density_kg_m3"): (BALL, "3000"),
+    ("[target]", "rigid"): (BARE.replace("[target]\nE_Pa = 2.0e11\nnu = 0.3", "[target]"), "true"),
+    ("[target]", "hardness_Pa"): (BARE, "9e8"),
+    ("[target]", "thickness_m"): (BALL, "0.002"),
+    ("[target]", "support_mass_kg"): (SPRUNG, "0.1"),
+    ("[target]", "support_stiffness_N_m"): (SPRUNG, "1e8"),
+    ("[target]", "law"): (BALL, '"elastic"'),
+    ("[target.hardening]", "law"): (
+        BARE, LUDWIK % ("5e8", "0.3"), '{ law = "swift", K_Pa = 5e8, n = 0.3 }',
+    ),
+    ("[target.hardening]", "K_Pa"): (BARE, LUDWIK % ("5e8", "0.3"), LUDWIK % ("6e8", "0.3")),
+    ("[target.hardening]", "B_Pa"): (BARE, JOHNSON % "5e8", JOHNSON % "6e8"),
+    ("[target.hardening]", "Q_Pa"): (BARE, VOCE % ("2e8", "9.0"), VOCE % ("3e8", "9.0")),
+    ("[target.hardening]", "n"): (BARE, LUDWIK % ("5e8", "0.3"), LUDWIK % ("5e8", "0.2")),
+    ("[target.hardening]", "b"): (BARE, VOCE % ("2e8", "9.0"), VOCE % ("2e8", "5.0")),
+    ("[strikers.NAME]", "material"): (BALL, '"steel"'),
+    ("[strikers.NAME]", "E_Pa"): (BALL, "1e11"),
+    ("[strikers.NAME]", "nu"): (BALL, "0.25"),
+    ("[strikers.NAME]", "Sy_Pa"): (BALL, "2e8"),
+    ("[strikers.NAME]", "density_kg_m3"): (BALL, "3000"),
+    ("[strikers.NAME]", "rigid"): (BALL.replace("""
+tip_radius_m = 0.005
+E_Pa = 2.0e11
+nu = 0.3
+Sy_Pa = 1.7e9""", "\ntip_radius_m = 0.005"), "true"),
+    ("[strikers.NAME]", "hardness_Pa"): (BALL.replace("Sy_Pa = 1.7e9\n", ""), "8e8"),
+    ("[strikers.NAME]", "shape"): (BALL, '"rod"\nradius_m = 0.005\nlength_m = 0.1\nmass_kg = 0.06'),
+    ("[strikers.NAME]", "tip_radius_m"): (BALL, "0.004"),
+    ("[strikers.NAME]", "mass_kg"): (BALL, "0.002"),
+    ("[strikers.NAME]", "radius_m"): (ROD, "0.008"),
+    ("[strikers.NAME]", "length_m"): (ROD, "0.2"),
+    ("[strikers.NAME]", "tip_flat_radius_m"): (BALL, "0.0003"),
+    ("[strikers.NAME]", "inertia_kg_m2"): (ROD, "1e-3"),
+    ("[friction]", "coefficient"): (BALL, "0.2"),
+    ("[impact]", "angle_deg"): (BALL, "30"),
+    ("[impact]", "impact_speed_m_s"): (BALL, "2.0"),
+    ("[impact]", "drop_height_m"): (BALL.replace("impact_speed_m_s = 1.0\n", ""), "0.1", "0.2"),
+    ("[impact]", "approach_tangential_m_s"): (BALL, "0.3"),
+    ("[impact]", "approach_spin_rad_s"): (BALL, "100.0"),
+    ("[impact]", "laws"): (BALL, '["hertz"]'),
+    ("[impact]", "modes"): (ROD, "3"),
+    ("[impact]", "loss_factor"): (VIBRATES, "0.05"),
+    ("[impact]", "support"): (BALL, '"plate"'),
+    ("[impact]", "support_damping_N_s_m"): (SPRUNG, "3000.0"),
+    ("[impact]", "finite_tip"): (THIN, "true"),
+    ("[impact]", "repeats"): (BALL, "2"),
+    ("[impact]", "flight_s"): (VIBRATES, "0.0"),
+    ("[impact]", "max_steps"): (BALL, "12"),
+    ("[impact]", "max_contacts"): (VIBRATES, "1"),
+    ("[sweep]", "impact_speed_m_s"): (BALL, "[1.0, 2.0]"),
+    ("[sweep]", "drop_height_m"): (BALL, "[0.1, 0.2]"),
+    ("[sweep]", "angle_deg"): (BALL, "[30.0, 80.0]"),
+    ("[sweep]", "friction"): (BALL, "[0.05, 0.2]"),
+    ("[sweep]", "mass_kg"): (BALL, "[0.001, 0.002]"),
+    ("[sweep]", "approach_tangential_m_s"): (BALL, "[0.1, 0.2]"),
+    ("[sweep]", "approach_spin_rad_s"): (BALL, "[10.0, 20.0]"),
+}  # fmt: skip
+REFUSED = {
+    **dict.fromkeys([("", "noise")], "{ restitution = 0.01 }"),
+    **{(t, "Ra_m"): "1e-6" for t in ("[target]", "[strikers.NAME]")},
+    **{(t, "cp_J_kgK"): "460" for t in ("[target]", "[strikers.NAME]")},
+    **{(t, "melting_K"): "1800" for t in ("[target]", "[strikers.NAME]")},
+    ("", "gauge"): "{ permanent_depth_m = 0.02 }",
+    ("", "dent_edge"): '"rim"',
+    ("[target]", "layer_thickness_m"): "1e-4",
+    ("[environment]", "fluid"): '"air"',
+    ("[environment]", "viscosity_Pa_s"): "1.8e-5",
+    ("[environment]", "density_kg_m3"): "1.2",
+    ("[environment]", "pressure_Pa"): "1e5",
+    ("[environment]", "temperature_K"): "293",
+}
+ONE = {
+    ("[target]", "shape"), ("[impact]", "striker"), ("[target]", "flow_curve"),
+    ("[strikers.NAME]", "flow_curve"),
+}  # fmt: skip
+"""One choice alone; and what a test of its own looks at, with a file beside."""
+TWIN = "[strikers.NAME.hardening]"
+
+
+def with_key(text, table, name, value):
+    place = table.strip("[]").replace("NAME", "ball")
+    content = tomllib.loads(text)
+    table_of = content
+    for part in filter(None, place.split(".")):
+        table_of = table_of.setdefault(part, {})
+    table_of.update(tomllib.loads(f"{name} = {value}"))
+    return content
+
+
+def told(content, tmp_path):
+    """All that a user can see of an impact."""
+    setup = setup_of(content, source=str(tmp_path / "ball.toml"))
+    found = blow_of(setup, [law_named(name) for name in setup.laws[:1]])
+    swept = setup.swept(found.laws[0]).to_csv(tmp_path / "s.csv") if setup.sweep.count else None
+    text = (tmp_path / "s.csv").read_text() if setup.sweep.count else str(swept)
+    return found.name, found.table(exact=True), found.checks(), setup.about, len(found.rows), text
+
+
+@pytest.mark.parametrize("key", keys_of("impact"), ids=lambda k: f"{k.table}{k.name}")
+def test_a_key_of_an_impact_acts_or_is_refused(key, tmp_path):
+    place = (key.table, key.name)
+    if place in ONE or key.table == TWIN:
+        return
+    if place in REFUSED:
+        table = "[noise]" if key.name == "dent_edge" else key.table
+        with pytest.raises(InputErrors) as caught:
+            setup_of(with_key(BALL, table, key.name, REFUSED[place]), source="a.toml")
+        assert "does nothing here" in str(caught.value)
+        assert "dentscope diagnose" in str(caught.value)
+        return
+    base, *values = ACTS[place]
+    table = key.table
+    if table.endswith(".hardening]"):
+        base = base.replace("[strikers", "Sy_Pa = 3e8\n[strikers").replace(
+            'laws = ["fitted"]\n', ""
+        )
+        place = ("[target]", "hardening")
+    before = tomllib.loads(base) if len(values) == 1 else with_key(base, *place, values[0])
+    if key.name == "rigid":
+        before = tomllib.loads(BALL)
+    after = with_key(base, *place, values[-1])
+    assert told(before, tmp_path) != told(after, tmp_path)
+
+
+UNCERTAIN = [
+    k for k in keys_of("impact")
+    if k.allowed.startswith("a quantity") and (k.table, k.name) in ACTS
+    and k.table != "[environment]"
+]  # fmt: skip
+
+
+@pytest.mark.parametrize("key", UNCERTAIN, ids=lambda k: f"{k.table}{k.name}")
+def test_the_standard_deviation_of_a_key_widens_the_band(key):
+    base, *values = ACTS[key.table, key.name]
+    at = values[-1]
+    exact, unsure = (
+        setup_of(with_key(base, key.table, key.name, value), source="a.toml")
+        for value in (at, QUANTITY % (at, 0.2 * float(at)))
+    )
+    law = law_named("fitted")
+    before, after = blow_of(exact, [law]), blow_of(unsure, [law])
+    sharp, wide = before.bands["fitted"], after.bands["fitted"]
+    part = "Sy_Pa" if key.name == "hardness_Pa" else key.name
+    (new,) = (p for p in wide.parts if p.rpartition(".")[2] == part)
+    if not any(wide.parts[new].values()):
+        # it acts in a check alone, and that is said
+        assert any(new in line and "changes nothing" in line for line in after.rules())
+        return
+    assert sum(x * x for x in wide.parts[new].values()) > sum(
+        x * x for x in sharp.parts.get(new, {}).values()
+    )
+
+
+@pytest.mark.parametrize(
+    ("line", "words"),
+    [
+        ('[target]\nlaw = "table"', "law.json"),
+        ('[target]\nlaw = "measured-restitution"', "diagnose"),
+        ("[target]\nsupport_mass_kg = 1.0", 'impact.support = "sprung"'),
+        ("[target]\nsupport_stiffness_N_m = 1.0", 'impact.support = "sprung"'),
+        ("[impact]\nsupport_damping_N_s_m = 1.0", 'impact.support = "sprung"'),
+        ("[impact]\nloss_factor = 0.1", "impact.modes"),
+        ("[impact]\nmodes = 2", "of a rod"),
+        ("[impact]\nfinite_tip = true", "of a rod"),
+        ("[strikers.NAME]\nlength_m = 0.1", "of a rod"),
+        ("[target]\nrate = { law = 'overstress' }", "dentscope case"),
+    ],
+)
+def test_what_acts_beside_another_key_alone_names_it(line, words):
+    table, rest = line.split("\n")
+    name, value = rest.split(" = ", 1)
+    with pytest.raises(InputError) as caught:
+        setup_of(with_key(BALL, table, name, value), source="a.toml")
+    assert words in str(caught.value)
+    assert name in str(caught.value)
