@@ -10,24 +10,25 @@ from __future__ import annotations
 import csv
 import re
 from collections.abc import Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
+from itertools import pairwise
 from pathlib import Path
 
 import numpy as np
 
 from ...core.confined import confined
 from ...core.errors import InputError
-from ...core.inputs.csv_table import number, rows_with, selection
+from ...core.inputs.csv_table import rows_with, selection
 from ...core.inputs.input_file import checked_file
 from ..measured import Array
 from ..units import UNITS
+from .cells import instant, plain, since_first, value_of
+from .heading import Heading, heading_of, in_short, labview_rows
 from .packed import packed_table, tracker_rows
 from .workbook import workbook_rows
 
 _BOOKS = (".xls", ".xlsx", ".xlsm", ".xlsb", ".ods")
 _LARGEST = 200_000_000
-_DECIMAL_COMMA = re.compile(r"[+-]?\d*,\d+([eE][+-]?\d+)?")
-_KNOWN_UNITS = {unit for units in UNITS.values() for unit in units if unit} | {"V", "mV", "px"}
 _UNIT = re.compile(r"[\[(]\s*([^\])]+?)\s*[\])]\s*$")
 
 
@@ -45,12 +46,15 @@ class Columns:
         The same as text, n rows of m.
     source
         The file.
+    heading
+        What stands above the numbers.
     """
 
     names: tuple[str, ...]
     values: Array
     cells: tuple[tuple[str, ...], ...]
     source: str
+    heading: Heading = field(default_factory=Heading)
 
     def select(self, which: str) -> Columns:
         """Return the rows that `COLUMN=VALUE` picks.
@@ -93,7 +97,7 @@ class Columns:
         """Return the unit in a column's name, `x (mm)`, `x [mm]` or `x_mm`; else nothing."""
         name = self.names[place]
         found = _UNIT.search(name)
-        return found.group(1) if found else name.rsplit("_", 1)[-1] if "_" in name else ""
+        return in_short(found.group(1) if found else name.rsplit("_", 1)[-1] if "_" in name else "")
 
     def factor(
         self, place: int, quantity: str, *, given: str, key: str, default: str | None = None
@@ -127,8 +131,11 @@ class Columns:
         if said in units:
             return units[said]
         if default is None:
+            column = f"column {self.names[place] or place + 1!r}"
+            other = next((q for q, known in UNITS.items() if said and said in known), "")
+            told = f"is a {other}, in {said}" if other else "does not name its unit"
             raise InputError(
-                f"column {self.names[place] or place + 1!r} does not name its unit",
+                f"{column} {told}",
                 source=self.source, key=key, allowed=", ".join(units),
             )  # fmt: skip
         return units[default]
@@ -157,13 +164,30 @@ def read_columns(path: Path, *, sheet: str = "") -> Columns:
         return columns_of([names, *([repr(float(v)) for v in row] for row in values)], str(path))
     if kind == ".zip":
         text, source = packed_table(path, sheet)
-        return columns_of(text_rows(text, source), source)
-    rows = (
-        confined(workbook_rows, path, sheet, source=str(path))
-        if kind in _BOOKS
-        else text_rows(path.read_bytes(), str(path))
-    )
-    return columns_of(rows, str(path))
+        return text_columns(text, source)
+    if kind in _BOOKS:
+        return columns_of(confined(workbook_rows, path, sheet, source=str(path)), str(path))
+    return text_columns(path.read_bytes(), str(path))
+
+
+def text_columns(raw: bytes, source: str) -> Columns:
+    """Read the numbers of a text table.
+
+    Raises
+    ------
+    InputError
+        Not text, empty, or no table.
+    """
+    lines = text_lines(raw, source)
+    found = labview_rows(lines)
+    if found is None:
+        return columns_of(text_rows(lines, source), source)
+    body, heading = found
+    columns = columns_of(text_rows(body, source), source)
+    names = (*heading.names, *[""] * len(columns.names))[: len(columns.names)]
+    if heading.step_s is not None:
+        columns.values[:, 0] = heading.step_s * np.arange(len(columns.values))
+    return replace(columns, names=names, heading=heading)
 
 
 def columns_of(rows: list[list[str]], source: str) -> Columns:
@@ -174,51 +198,62 @@ def columns_of(rows: list[list[str]], source: str) -> Columns:
     InputError
         No row of numbers.
     """
-    data = [(k, row) for k, row in enumerate(rows) if _is_data(row)]
-    if not data:
+    first = _first(rows)
+    if first is None:
         raise InputError("no row of numbers", source=source, allowed="columns of numbers")
-    first = data[0][0]
-    width = max(len(row) for _, row in data)
-    values = np.full((len(data), width), np.nan)
-    for line, (_, row) in enumerate(data):
-        values[line, : len(row)] = [number(cell) for cell in row]
-    above = rows[:first]
-    units = above.pop() if len(above) > 1 and all(map(_is_unit, _filled(above[-1]))) else []
-    head = next((row for row in reversed(above) if len(_filled(row)) > 1 or width == 1), [])
-    if units and head:
-        padded = [*units, *[""] * len(head)]
-        head = [
-            f"{name} [{unit.strip('()[] ')}]" if unit else name
-            for name, unit in zip(head, padded, strict=False)
-        ]
-    head = head or units
-    names = tuple((head + [""] * width)[:width])
-    cells = tuple(tuple((row + [""] * width)[:width]) for _, row in data)
-    return Columns(names, values, cells, source)
+    held = [_is_number(cell) for cell in rows[first]]
+    data = [row for row in rows[first:] if _is_data(row) or _has_hole(row, held)]
+    width = max(map(len, data))
+    cells = tuple(tuple((row + [""] * width)[:width]) for row in data)
+    values = np.array([[value_of(cell) for cell in row] for row in cells])
+    heading = heading_of(rows[:first], width)
+    names = list(heading.names)
+    for place, column in enumerate(zip(*cells, strict=True)):
+        if instant(column[0]) >= 0.0:
+            values[:, place] = since_first(np.array([instant(cell) for cell in column]))
+            names[place] = f"{_UNIT.sub('', names[place]).strip() or 'time'} [s]"
+    return Columns(tuple(names), values, cells, source, heading)
 
 
 def _filled(row: Sequence[str]) -> list[str]:
     return [cell for cell in row if cell]
 
 
+def _first(rows: Sequence[Sequence[str]]) -> int | None:
+    """The first row of numbers that is not alone among the lines of a header."""
+    data = [k for k, row in enumerate(rows) if _is_data(row)]
+    filled = [k for k, row in enumerate(rows) if _filled(row)]
+    following, known = dict(pairwise(filled)), set(data)
+    together = [k for k in data if following.get(k) in known]
+    return together[0] if len(together) > 1 else data[0] if data else None
+
+
 def _is_data(row: Sequence[str]) -> bool:
+    """Whether most of a row's filled cells are numbers; an instant counts beside a number."""
     filled = _filled(row)
-    numbers = sum(np.isfinite(number(cell)) for cell in filled)
-    return bool(2 * numbers > len(filled))
+    numbers = sum(bool(np.isfinite(value_of(cell))) for cell in filled)
+    if 2 * numbers > len(filled) or numbers == 0:
+        return numbers > 0
+    return 2 * (numbers + sum(bool(np.isfinite(instant(cell))) for cell in filled)) > len(filled)
 
 
-def _is_unit(cell: str) -> bool:
-    bare = cell.strip("()[] ")
-    return bare in _KNOWN_UNITS or (bare != cell.strip() and len(bare) < 12)
+def _is_number(cell: str) -> bool:
+    return bool(np.isfinite(value_of(cell)) or np.isfinite(instant(cell)))
 
 
-def text_rows(raw: bytes, source: str) -> list[list[str]]:
-    """Return the cells of a text table.
+def _has_hole(row: Sequence[str], held: Sequence[bool]) -> bool:
+    """Whether a row of several cells misses a number and has one where the first row has it."""
+    kept = (_is_number(c) for c, h in zip(row, held, strict=False) if h)
+    return len(_filled(row)) > 1 and any(kept)
+
+
+def text_lines(raw: bytes, source: str) -> list[str]:
+    """Return the lines of a text file that hold something and are no comment.
 
     Raises
     ------
     InputError
-        Not text, empty, or no table.
+        Not text, or empty.
     """
     if b"\0" in raw[:4096] and not raw.startswith((b"\xff\xfe", b"\xfe\xff")):
         raise InputError("not text", source=source, allowed="a text table, XLS, XLSX or ODS")
@@ -230,6 +265,17 @@ def text_rows(raw: bytes, source: str) -> list[list[str]]:
     lines = [line for line in text.splitlines() if line.strip() and not line.startswith("#")]
     if not lines:
         raise InputError("empty", source=source, allowed="columns of numbers")
+    return lines
+
+
+def text_rows(lines: Sequence[str], source: str) -> list[list[str]]:
+    """Return the cells of a text table.
+
+    Raises
+    ------
+    InputError
+        No table.
+    """
     separator = _separator(lines)
     try:
         rows = (
@@ -239,7 +285,7 @@ def text_rows(raw: bytes, source: str) -> list[list[str]]:
         )
     except csv.Error as error:
         raise InputError(f"not a table ({error})", source=source, allowed="a table") from None
-    return [[_point(cell.strip(), separator) for cell in row] for row in rows]
+    return [[plain(cell.strip(), separator) for cell in row] for row in rows]
 
 
 def _separator(lines: Sequence[str]) -> str:
@@ -247,13 +293,12 @@ def _separator(lines: Sequence[str]) -> str:
     sample = lines[len(lines) // 3 :][:40] or lines
 
     def numbers(separator: str) -> int:
-        split = (line.split() if separator == " " else line.split(separator) for line in sample)
-        cells = [_point(cell.strip(), separator) for line in split for cell in line]
-        return sum(bool(np.isfinite(number(cell))) for cell in cells if cell)
+        split = (
+            (line.split() for line in sample)
+            if separator == " "
+            else csv.reader(sample, delimiter=separator, skipinitialspace=True)
+        )
+        cells = [plain(cell.strip(), separator) for line in split for cell in line]
+        return sum(bool(np.isfinite(value_of(cell))) for cell in cells if cell)
 
     return max(("\t", ";", ",", " "), key=numbers)
-
-
-def _point(cell: str, separator: str) -> str:
-    """A decimal comma becomes a point where commas do not separate."""
-    return cell.replace(",", ".") if separator != "," and _DECIMAL_COMMA.fullmatch(cell) else cell

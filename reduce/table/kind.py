@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from pathlib import Path
+from typing import NamedTuple
 
 import numpy as np
 
@@ -15,10 +16,39 @@ from .force import reduce_pulse
 from .height import reduce_heights
 from .options import Options
 from .picture import draw_heights, draw_pulse, draw_tension, draw_times, draw_trials
+from .pulse import Pulse
+from .specimen import strain_unit, stress_unit
 from .tension import reduce_tension
 from .trials import reduce_leeb, reduce_rebounds, reduce_trials
 
 _FEWEST = 20
+
+
+class Series(NamedTuple):
+    """Numbers against time.
+
+    Parameters
+    ----------
+    time, value
+        (n,): time [s], number as it stands.
+    column
+        Place of the numbers in the table.
+    missed
+        Times of the rows without a number [s].
+    marks
+        What their cells hold instead, each once.
+    """
+
+    time: Array
+    value: Array
+    column: int
+    missed: Array
+    marks: tuple[str, ...]
+
+    def told(self) -> str:
+        """Return how many cells hold no number, and what they hold."""
+        held = ", ".join(repr(mark) if mark else "nothing" for mark in self.marks[:4])
+        return f"{self.missed.size} cells hold no number but {held}"
 
 
 def reduce(path: Path, options: Options) -> Reduced:
@@ -58,7 +88,8 @@ def reduce(path: Path, options: Options) -> Reduced:
 
 
 def _pulse(path: Path, table: Columns, options: Options) -> Reduced:
-    time, value, column = _series(table, options)
+    series = _series(table, options)
+    time, value, column = series.time, series.value, series.column
     unit = options.gain
     if unit is None and table.unit(column) in ("V", "mV"):
         raise InputError(
@@ -74,16 +105,32 @@ def _pulse(path: Path, table: Columns, options: Options) -> Reduced:
         gravity=options.gravity_m_s2, source=str(path),
         scale_std=options.gain_std / unit if options.gain else 0.0,
     )  # fmt: skip
+    notes = found.notes
+    if series.missed.size:
+        _whole(found.pulse, series, str(path))
+        notes += (f"{series.told()}, none of them beside the pulse",)
     return Reduced(
-        source=path, values=found.values, trials=(found.trial,), notes=found.notes,
+        source=path, values=found.values, trials=(found.trial,), notes=notes,
         draw=lambda to: draw_pulse(found, to),
     )  # fmt: skip
 
 
+def _whole(pulse: Pulse, series: Series, source: str) -> None:
+    """Refuse a pulse with a hole in it: the largest values are missing where a range ends."""
+    near = pulse.duration.value
+    beside = (series.missed > pulse.start.value - near) & (series.missed < pulse.end.value + near)
+    if beside.any():
+        raise InputError(
+            f"{series.told()}, {int(beside.sum())} of them in or beside the pulse",
+            source=source, key="value",
+            allowed="a whole pulse: a range that it does not reach, no lost samples",
+        )  # fmt: skip
+
+
 def _tension(path: Path, table: Columns, options: Options) -> Reduced:
     at, value = table.find(options.time, key="time"), table.find(options.value, key="value")
-    parts = 0.01 if table.unit(at) == "%" else 1.0
-    unit = table.factor(value, "stress", given=options.value_unit, key="value_unit")
+    parts = strain_unit(table, at, given=options.gauge_length_mm)
+    unit = stress_unit(table, value, given=options.value_unit, area_mm2=options.area_mm2)
     with np.errstate(over="ignore"):  # what is too large is refused as that
         strain, stress = table.values[:, at] * parts, table.values[:, value] * unit
     found = reduce_tension(
@@ -100,7 +147,8 @@ def _tension(path: Path, table: Columns, options: Options) -> Reduced:
 
 
 def _heights(path: Path, table: Columns, options: Options) -> Reduced:
-    time, value, column = _series(table, options)
+    series = _series(table, options)
+    time, value, column = series.time, series.value, series.column
     said = table.unit(column) if options.value_unit == "file" else options.value_unit
     metres = None
     if said != "px":
@@ -110,8 +158,9 @@ def _heights(path: Path, table: Columns, options: Options) -> Reduced:
         std=options.value_std, ball=options.ball, source=str(path),
     )  # fmt: skip
     rate = float(1.0 / np.median(np.diff(time)))
+    lost = (f"{series.told()}: they are left out",) if series.missed.size else ()
     return Reduced(
-        source=path, values=found.values, trials=found.trials, notes=found.found.notes,
+        source=path, values=found.values, trials=found.trials, notes=found.found.notes + lost,
         draw=lambda to: draw_heights(found, to), noise={"frame_rate_hz": rate},
     )  # fmt: skip
 
@@ -145,23 +194,19 @@ def _counts(column: Array) -> bool:
     return steps.size > 0 and bool(np.mean(steps == 1.0) > 0.9)
 
 
-def _series(table: Columns, options: Options) -> tuple[Array, Array, int]:
-    """Time [s], numbers as they stand, and their column."""
-    where = table.find(options.time, key="time")
-    column = table.find(options.value, key="value")
-    second = table.factor(where, "time", given=options.time_unit, key="time_unit", default="s")
-    if options.rate_hz is not None:
-        second = 1.0 / options.rate_hz
-    elif options.time_unit == "file" and not table.unit(where) and _counts(table.values[:, where]):
-        raise InputError(
-            "the column counts samples", source=table.source, key="rate_hz",
-            allowed="samples a second, or time_unit if these are times",
-        )  # fmt: skip
-    time, value = table.values[:, where] * second, table.values[:, column]
-    whole = np.isfinite(time) & np.isfinite(value)
-    time, value = time[whole], value[whole]
-    part = options.keeps(time)
-    time, value = time[part], value[part]
+def _series(table: Columns, options: Options) -> Series:
+    """Times and numbers of the part that is used, and the cells in it that hold no number."""
+    alone = table.values.shape[1] == 1
+    chosen = "value" in options.model_fields_set or not alone
+    column = table.find(options.value, key="value") if chosen else 0
+    time = _times(table, options, alone=alone)
+    value = table.values[:, column]
+    known = np.isfinite(time)
+    part = known & options.keeps(np.where(known, time, 0.0))
+    whole = part & np.isfinite(value)
+    holes = part & ~whole
+    marks = tuple(sorted({table.cells[k][column] for k in np.flatnonzero(holes)}))
+    time, value, missed = time[whole], value[whole], time[holes]
     # a tracker that begins anew writes its frames again further down
     ahead = time > np.concatenate([[-np.inf], np.maximum.accumulate(time)[:-1]])
     if time.size and ahead.sum() < 0.5 * time.size:
@@ -174,4 +219,28 @@ def _series(table: Columns, options: Options) -> tuple[Array, Array, int]:
             f"{int(ahead.sum())} rows with a time and a value", source=table.source, key="value",
             allowed=f"{_FEWEST} or more",
         )  # fmt: skip
-    return time[ahead], value[ahead], column
+    return Series(time[ahead], value[ahead], column, missed, marks)
+
+
+def _times(table: Columns, options: Options, *, alone: bool) -> Array:
+    """Times of all rows [s]: of their column, or of rows that are as far apart as is said."""
+    rows = np.arange(table.values.shape[0], dtype=float)
+    if alone:
+        if options.rate_hz is None:
+            raise InputError(
+                "no column of the time", source=table.source, key="rate_hz",
+                allowed="samples a second",
+            )  # fmt: skip
+        return rows / options.rate_hz
+    where = table.find(options.time, key="time")
+    second = table.factor(where, "time", given=options.time_unit, key="time_unit", default="s")
+    given = table.values[:, where]
+    if options.rate_hz is not None:
+        # a clock of a computer is coarser than the samples: their number tells the time
+        return (given if _counts(given) else rows) / options.rate_hz
+    if options.time_unit == "file" and not table.unit(where) and _counts(given):
+        raise InputError(
+            "the column counts samples", source=table.source, key="rate_hz",
+            allowed="samples a second, or time_unit if these are times",
+        )  # fmt: skip
+    return np.asarray(given * second)

@@ -46,6 +46,12 @@ class Options(BounceOptions, TimeWindow):
     E_Pa: float | None = Field(
         None, gt=0.0, description="of the metal in tension; default: the slope of the curve"
     )
+    area_mm2: float | None = Field(
+        None, gt=0.0, description="of a specimen whose load was recorded; default: the header's"
+    )
+    gauge_length_mm: float | None = Field(
+        None, gt=0.0, description="of an extension that was recorded; default: the header's"
+    )
     body: str = Field(
         "target", description="whose flow curve a tension test is: target, or a striker's name"
     )

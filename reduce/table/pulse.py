@@ -17,8 +17,11 @@ from scipy.signal import savgol_filter
 
 from ...core.errors import InputError
 from ..measured import Array, Measured
-from ..regression import robust_std, unit_covariance
-from .shape import shape_of
+from ..regression import unit_covariance
+from ..rules import RULES
+from .area import area_of
+from .level import level_before
+from .shape import looks_like, shape_of
 
 _LOW, _HIGH = 0.06, 0.45
 """Part of the peak between which the flanks tell the ends."""
@@ -87,23 +90,25 @@ def find_pulse(time: Array, value: Array, *, source: str) -> Pulse:
     if time.size < 20:
         raise InputError(f"{time.size} samples", source=source, allowed="20 or more")
     top = int(np.argmax(np.abs(value - np.median(value))))
-    baseline, noise, before = _baseline(value, top)
-    flipped = math.copysign(1.0, value[top] - baseline)
-    clear = flipped * (value - baseline)
+    sign = math.copysign(1.0, value[top] - np.median(value))
+    level = level_before(sign * value, top)
+    noise, clear = level.noise, sign * value - level.mean
     if not clear[top] > _LEAST * noise:
         raise InputError(
             f"the largest value is {clear[top] / max(noise, 1e-300):.2g} times the noise",
             source=source, allowed=f"a pulse of {_LEAST:g} times the noise or more",
         )  # fmt: skip
     notes = []
-    if before < 10:
-        notes.append("fewer than 10 samples before the pulse: its zero is taken as the record's")
+    if not level.samples:
+        notes.append("no level before the pulse: the record's own zero, and its error so large")
     peak, peak_time = _peak(time, clear, top, noise)
     start, used_a = _flank(time, clear, top, -1, peak.value)
     end, used_b = _flank(time, clear, top, +1, peak.value)
+    shape = shape_of(time, clear, top, (start.value, end.value), source=source)
+    if min(used_a, used_b) == 0 and shape.above_half >= RULES.whole_flank:
+        raise looks_like("an edge: one side has no flank", source)
     if min(used_a, used_b) < 4:
         notes.append(f"only {min(used_a, used_b)} samples on a flank: the ends are rough")
-    shape = shape_of(time, clear, top, (start.value, end.value), source=source)
     if shape.ringing:
         notes.append(
             f"rings: {shape.ringing:.0%} of the peak to the other side; peak and ends are as rough"
@@ -118,41 +123,22 @@ def find_pulse(time: Array, value: Array, *, source: str) -> Pulse:
             "last_s pick one"
         )
     inside = (time >= start.value) & (time <= end.value)
-    area = float(np.trapezoid(clear[inside], time[inside]))
-    step = float(np.median(np.diff(time)))
-    drift = noise / math.sqrt(max(before, 1)) * (end.value - start.value)
-    late = 0.5 * shape.level_after * peak.value * (end.value - start.value)
+    if inside[0] or inside[-1]:
+        raise InputError(
+            "the pulse runs over an end of the record", source=source,
+            allowed="a pulse that rises from its level and comes back to it",
+        )  # fmt: skip
     if abs(shape.level_after) > 0.02:
         notes.append(
-            f"the level afterwards is {shape.level_after:+.0%} of the peak: a zero that drifts"
+            f"the level afterwards is {shape.level_after:+.0%} of the peak: the zero is the one "
+            "before"
         )
-    scatter = noise * step * math.sqrt(max(int(inside.sum()), 1))
-    area_std = math.hypot(scatter, drift, late)
-    if inside[0] and inside[-1]:
-        raise InputError(
-            "the record does not rise from zero and come back", source=source,
-            allowed="a pulse with both of its ends",
-        )  # fmt: skip
-    if inside[0] or inside[-1]:
-        notes.append("the pulse runs over an end of the record")
+    found = area_of(time, clear, level, shape, (start, end))
+    start = Measured(start.value, math.hypot(start.std, found.early))
     return Pulse(
-        time, clear, baseline, noise, peak, peak_time, start, end, Measured(area, area_std), inside,
-        tuple(notes),
+        time, clear, sign * level.mean, noise, peak, peak_time, start, end, found.area, inside,
+        (*notes, *found.notes),
     )  # fmt: skip
-
-
-def _baseline(value: Array, top: int) -> tuple[float, float, int]:
-    """Level and noise before the pulse, and how many samples tell them."""
-    height = abs(value[top] - np.median(value))
-    level = float(np.median(value[: max(top // 2, 1)]))
-    high = np.flatnonzero(np.abs(value[:top] - level) > 0.02 * height)
-    # the flank itself begins a little before the last sample that is still quiet
-    quiet = high[0] if high.size else top
-    before = int(0.8 * quiet)
-    if before < 10:
-        return 0.0, robust_std(np.diff(value)) / math.sqrt(2.0), before
-    part = value[:before]
-    return float(np.mean(part)), max(float(np.std(part)), 1e-12 * height), before
 
 
 def _peak(time: Array, clear: Array, top: int, noise: float) -> tuple[Measured, float]:

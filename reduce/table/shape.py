@@ -35,11 +35,15 @@ _AGAIN = 0.3
 
 
 class Shape(NamedTuple):
-    """What is beside a whole pulse, as parts of its peak, and when others of its sign peak [s]."""
+    """What is beside a whole pulse, as parts of its peak, and when others of its sign peak [s].
+
+    Last the number of its samples above half of the peak.
+    """
 
     ringing: float
     level_after: float
     others: tuple[float, ...]
+    above_half: int
 
 
 def shape_of(
@@ -71,25 +75,26 @@ def shape_of(
             allowed="a record whose range the pulse does not reach",
         )  # fmt: skip
     if not ends[1] > ends[0]:
-        raise _looks_like("a ramp: it ends before it begins", source)
+        raise looks_like("a ramp: it ends before it begins", source)
     half = int(_run(clear > 0.5 * peak, top).size)
     if half < _FEWEST:
-        raise _looks_like(f"a spike: {half} samples above half of its peak", source)
+        raise looks_like(f"a spike: {half} samples above half of its peak", source)
     long = ends[1] - ends[0]
     after = (time > ends[1] + 0.5 * long) & (time < ends[1] + 5.0 * long)
     rest = float(np.median(clear[after] if after.sum() >= 5 else clear[-5:])) / peak
     if abs(rest) > _STEP:
-        raise _looks_like(f"a step: {rest:+.0%} of the peak stays", source)
+        raise looks_like(f"a step: {rest:+.0%} of the peak stays", source)
     beside = (time > ends[0] - _BESIDE * long) & (time < ends[1] + _BESIDE * long)
     below = -float(clear[beside].min()) / peak
     swings = _half_waves(clear[beside] / peak) - 1
     if below > _SWING and swings >= _SWINGS:
-        raise _looks_like(f"an oscillation: {swings} other half-waves beside it", source)
+        raise looks_like(f"an oscillation: {swings} other half-waves beside it", source)
     ringing = below if below > _RINGS else 0.0
-    return Shape(ringing, rest, tuple(_others(time, clear, peak, ends)))
+    return Shape(ringing, rest, tuple(_others(time, clear, peak, ends)), half)
 
 
-def _looks_like(what: str, source: str) -> InputError:
+def looks_like(what: str, source: str) -> InputError:
+    """Return the refusal of a record that shows something else than a pulse."""
     return InputError(
         f"no impact: looks like {what}", source=source, key="value",
         allowed="a pulse that rises from zero and comes back (see --first-s, --last-s, --value)",

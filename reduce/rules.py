@@ -1,0 +1,47 @@
+"""Every tuned number of the stage: its unit, what it means, and from where it is."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+from typing import TypeVar
+
+_Number = TypeVar("_Number", int, float)
+
+
+def _rule(value: _Number, meaning: str, source: str) -> _Number:
+    """Return a number with what is said of it, for the register and its page."""
+    found: _Number = field(default=value, metadata={"meaning": meaning, "source": source})
+    return found
+
+
+@dataclass(frozen=True)
+class Rules:
+    """The register; `dataclasses.fields` tells the meaning and the source of each."""
+
+    fewest_level_samples: int = _rule(
+        10, "samples without change that tell the level before a pulse [-]",
+        "a tenth of the noise as the level's error at most a third of it",
+    )  # fmt: skip
+    level_trend: float = _rule(
+        0.01, "change over such a stretch, as a part of the pulse's height [-]",
+        "benchmarks/validate_reduce_pulse.py: levels of feet and of slow transducers",
+    )  # fmt: skip
+    foot_reach: int = _rule(
+        6, "half-widths of the pulse over which a lower level before a foot is looked for [-]",
+        "felt under a drop table: a foot of 1.2 widths (CC BY-SA data, see validate_reduce_pulse)",
+    )  # fmt: skip
+    foot_part: float = _rule(
+        0.005, "area before the flank, as a part of the pulse's, that is a foot [-]",
+        "benchmarks/validate_reduce_pulse.py: clean half-sines stay below",
+    )  # fmt: skip
+    ring_reach: float = _rule(
+        20.0, "durations after a pulse over which a ringing is averaged [-]",
+        "drop table on felt: the change of speed is level from there on",
+    )  # fmt: skip
+    whole_flank: int = _rule(
+        8, "samples above half of the peak from which on a flank has samples too [-]",
+        "of a half-sine 13 % lie on a flank between 6 and 45 %, 67 % above the half",
+    )  # fmt: skip
+
+
+RULES = Rules()

@@ -1,0 +1,112 @@
+"""Cells of a table: numbers as instruments, spreadsheets and languages write them, and clocks.
+
+| cell | is |
+| --- | --- |
+| `1 234,5`, `1.234,5`, `1'234.5`, `"1,234.5"` | a number with separators of thousands |
+| `0,25` where commas do not separate | a number |
+| `12:04:26.746`, `2024-05-17T12:04:26.746Z`, `17.05.2024 12:04:26` | an instant |
+| `OL`, `∞`, `******`, `#N/A`, `NaN`, 9.9e37 | no number: out of range, or not measured |
+"""
+
+from __future__ import annotations
+
+import re
+from datetime import date
+
+import numpy as np
+
+from ...core.inputs.csv_table import number
+from ..measured import Array
+
+OUT_OF_RANGE = 9.8e37
+"""Instruments that speak SCPI write 9.9e37 for more than they can show (SCPI-1999, 7.2.1)."""
+
+_DECIMAL_COMMA = re.compile(r"[+-]?\d*,\d+([eE][+-]?\d+)?")
+_THOUSANDS = (
+    (re.compile(r"[+-]?\d{1,3}([   '’]\d{3})+([.,]\d+)?"), "   '’"),
+    (re.compile(r"[+-]?\d{1,3}(\.\d{3})+,\d+"), "."),
+    (re.compile(r"[+-]?\d{1,3}(,\d{3})+\.\d+"), ","),
+)
+_CLOCK = re.compile(
+    r"(?:(?P<date>\d{4}[-/.]\d{1,2}[-/.]\d{1,2}|\d{1,2}[./]\d{1,2}[./]\d{4})[T ,]\s*)?"
+    r"(?P<h>\d{1,2}):(?P<m>\d{2})(?::(?P<s>\d{2}(?:[.,:]\d+)?))?\s*(?P<half>[AaPp][Mm])?"
+    r"(?:Z|[+-]\d{2}:?\d{2})?"
+)
+_DAY = 86400.0
+
+
+def plain(cell: str, separator: str) -> str:
+    """Return a number with a decimal point and without separators of thousands.
+
+    Parameters
+    ----------
+    cell
+        As the file has it.
+    separator
+        Of the file's cells; where it is a comma, a comma in a cell separates thousands.
+
+    Examples
+    --------
+    >>> [plain(c, ";") for c in ("0,25", "1.234,5", "1 234,5", "left")]
+    ['0.25', '1234.5', '1234.5', 'left']
+    """
+    for form, dividers in _THOUSANDS:
+        if form.fullmatch(cell):
+            for divider in dividers:
+                cell = cell.replace(divider, "")
+            return cell.replace(",", ".")
+    if separator != "," and _DECIMAL_COMMA.fullmatch(cell):
+        return cell.replace(",", ".")
+    return cell
+
+
+def value_of(cell: str) -> float:
+    """Return the number in a cell, NaN for what is none or stands for 'out of range'."""
+    found = number(cell)
+    return found if abs(found) < OUT_OF_RANGE else np.nan
+
+
+def instant(cell: str) -> float:
+    """Return an instant in seconds from midnight, or from the year 1 where a date stands before.
+
+    NaN for what is no clock.
+
+    Examples
+    --------
+    >>> instant("12:04:26.746")
+    43466.746
+    """
+    found = _CLOCK.fullmatch(cell)
+    if found is None:
+        return np.nan
+    hour, minute = int(found["h"]), int(found["m"])
+    second = float((found["s"] or "0").replace(",", ".").replace(":", "."))
+    if found["half"]:
+        hour = hour % 12 + 12 * (found["half"].lower() == "pm")
+    if hour > 23 or minute > 59 or second >= 61.0:
+        return np.nan
+    return _days(found["date"]) * _DAY + 3600.0 * hour + 60.0 * minute + second
+
+
+def _days(day: str | None) -> float:
+    if day is None:
+        return 0.0
+    parts = [int(p) for p in re.split(r"[-/.]", day)]
+    if parts[0] < 1000:  # day first, as where points separate; month first where it must be
+        parts = [parts[2], *((parts[1], parts[0]) if parts[1] <= 12 else (parts[0], parts[1]))]
+    try:
+        return float(date(*parts).toordinal())
+    except ValueError:
+        return np.nan
+
+
+def since_first(instants: Array) -> Array:
+    """Return instants as seconds after the first one; a clock without a date passes midnight."""
+    known = np.flatnonzero(np.isfinite(instants))
+    if known.size == 0:
+        return instants
+    after: Array = instants - instants[known[0]]
+    if np.nanmax(np.abs(instants)) <= _DAY:
+        back = np.diff(after[known], prepend=0.0) < -0.5 * _DAY
+        after[known] += _DAY * np.cumsum(back)
+    return after

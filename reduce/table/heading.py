@@ -1,0 +1,145 @@
+"""What stands above the numbers of a table: names, units, and what a header says of the record."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Sequence
+from dataclasses import dataclass, field
+
+from ..units import UNITS
+
+_KNOWN_UNITS = {unit for units in UNITS.values() for unit in units if unit} | {
+    "V", "mV", "px",
+}  # fmt: skip
+WORDS = {
+    "sec": "s", "secs": "s", "second": "s", "seconds": "s", "newton": "N", "newtons": "N",
+    "volt": "V", "volts": "V", "metre": "m", "metres": "m", "meter": "m", "meters": "m",
+    "mm/mm": "-", "m/m": "-", "in/in": "-", "kilonewtons": "kN", "millimeters": "mm",
+    "millimetres": "mm", "milliseconds": "ms", "pascal": "Pa", "degrees": "deg",
+}  # fmt: skip
+"""Units in words, as they are written in a recording set."""
+
+_ABOVE = 4
+"""Lines above the numbers among which the units are looked for."""
+
+
+@dataclass(frozen=True)
+class Heading:
+    """Names of the columns with their units, and the header's other cells.
+
+    Parameters
+    ----------
+    names
+        Of the columns, the unit in brackets where a line of its own gives it.
+    said
+        Every header line of a name, a value and perhaps a unit, in order.
+    step_s
+        Time between two rows, where the column of the time is empty [s].
+    """
+
+    names: tuple[str, ...] = ()
+    said: tuple[tuple[str, ...], ...] = field(default=())
+    step_s: float | None = None
+
+    def quantity(self, word: str) -> tuple[float, str] | None:
+        """Return number and unit of the first header line whose name begins with a word."""
+        for name, *values in self.said:
+            if name.lower().startswith(word) and values:
+                try:
+                    return float(values[0]), values[1] if len(values) > 1 else _bracketed(name)
+                except ValueError:
+                    continue
+        return None
+
+
+def _bracketed(name: str) -> str:
+    found = re.search(r"[\[(]\s*([^\])]+?)\s*[\])]", name)
+    return found.group(1) if found else ""
+
+
+def heading_of(above: Sequence[Sequence[str]], width: int) -> Heading:
+    """Return what the rows above the numbers say.
+
+    The names are the nearest row above that is none of units and has more than one cell; units may
+    stand in a row of their own, above or below the names.
+
+    Parameters
+    ----------
+    above
+        Rows above the first row of numbers.
+    width
+        Number of columns.
+    """
+    rows = [list(row) for row in above if any(row)]
+    units: list[str] = []
+    for row in reversed(rows[-_ABOVE:]):
+        filled = [cell for cell in row if cell]
+        several = len(filled) > 1 or (row is rows[-1] and len(rows) > 1)
+        if several and all(map(is_unit, filled)):
+            units = row
+            rows.remove(row)
+            break
+    head = next((r for r in reversed(rows) if len([c for c in r if c]) > 1 or width == 1), [])
+    if units and head:
+        padded = [*units, *[""] * len(head)]
+        head = [
+            f"{name} [{in_short(unit)}]" if unit else name
+            for name, unit in zip(head, padded, strict=False)
+        ]
+    head = head or units
+    said = tuple(tuple(c for c in r if c) for r in rows if r is not head and any(r))
+    return Heading(tuple((list(head) + [""] * width)[:width]), said)
+
+
+def is_unit(cell: str) -> bool:
+    """Whether a cell names a unit, `mm`, `(mm)` or `[mm]`."""
+    bare = cell.strip("()[] ")
+    return in_short(bare) in _KNOWN_UNITS | {"-"} or (bare != cell.strip() and len(bare) < 12)
+
+
+def in_short(unit: str) -> str:
+    """Return a unit as it is written in a recording set.
+
+    Examples
+    --------
+    >>> in_short("(sec)"), in_short("[mm]")
+    ('s', 'mm')
+    """
+    bare = unit.strip("()[] ")
+    return WORDS.get(bare.lower(), bare)
+
+
+_END = "***End_of_Header***"
+
+
+def labview_rows(lines: Sequence[str]) -> tuple[list[str], Heading] | None:
+    """Return the rows below the headers of a LabVIEW measurement (LVM), and its heading.
+
+    `X_Columns` says whether there is a column of the time: without one the first cell of a row is
+    blank and the header's `Delta_X` is the time between two rows.
+
+    Parameters
+    ----------
+    lines
+        Of the whole file. None is returned for any other file.
+    """
+    if not lines or not lines[0].startswith("LabVIEW Measurement"):
+        return None
+    ends = [k for k, line in enumerate(lines) if line.startswith(_END)]
+    if not ends or ends[-1] + 1 >= len(lines):
+        return None
+    said: dict[str, list[str]] = {}
+    for line in lines[: ends[-1]]:
+        name, *values = [cell.strip() for cell in line.split("\t")]
+        if values:
+            said[name] = [v for v in values if v]
+    names = [cell.strip() for cell in lines[ends[-1] + 1].split("\t")]
+    timed = said.get("X_Columns", ["One"])[0].lower() != "no"
+    units = said.get("Y_Unit_Label", [])
+    channels = [n for n in names if n and n not in ("X_Value", "Comment")]
+    told = [f"{n} [{in_short(u)}]" for n, u in zip(channels, units, strict=False)]
+    told += channels[len(told) :]
+    seconds = said.get("X_Dimension", ["Time"])[0] == "Time"
+    step = float(said["Delta_X"][0].replace(",", ".")) if said.get("Delta_X") else None
+    first = "X_Value [s]" if seconds else "X_Value"
+    return list(lines[ends[-1] + 2 :]), Heading((first, *told), (), None if timed else step)

@@ -1,0 +1,181 @@
+"""Tables as instruments write them: cells, clocks, headers, holes, levels and feet of pulses."""
+
+import numpy as np
+import pytest
+from dentscope.core.errors import InputError
+from dentscope.reduce.kinds import load_kind
+from dentscope.reduce.table.cells import instant, plain, since_first, value_of
+from dentscope.reduce.table.heading import heading_of, in_short, labview_rows
+from dentscope.reduce.table.level import level_before
+
+RATE = 10_000.0
+T = np.arange(0.0, 0.05, 1.0 / RATE)
+
+
+def half_sine(peak=800.0, long=4e-3, at=0.02, noise=1.0, seed=3):
+    s = np.clip((T - at) / long, 0.0, 1.0)
+    return peak * np.sin(np.pi * s) + np.random.default_rng(seed).normal(0.0, noise, T.size)
+
+
+def run(path, **given):
+    return load_kind("table").run(path, {"holds": "force", **given}, source="test")
+
+
+def table(path, cells, head="time_s,force_N", times=None):
+    times = [f"{t:.4f}" for t in T] if times is None else times
+    path.write_text(
+        "\n".join([head, *(f"{t},{c}" for t, c in zip(times, cells, strict=True))]), "utf-8"
+    )
+    return path
+
+
+@pytest.mark.parametrize(
+    ("cell", "separator", "number"),
+    [("1 234,5", ";", 1234.5), ("1.234,5", ";", 1234.5), ("1'234.5", ",", 1234.5),
+     ("1,234.5", ",", 1234.5), ("0,25", ";", 0.25), ("-12", ",", -12.0)],
+)  # fmt: skip
+def test_numbers_of_several_languages(cell, separator, number):
+    assert value_of(plain(cell, separator)) == number
+
+
+@pytest.mark.parametrize(
+    "cell", ["OL", "∞", "******", "#N/A", "NaN", "9.9E37", "-9.91e37", ""]
+)
+def test_marks_are_no_numbers(cell):
+    assert np.isnan(value_of(cell))
+
+
+@pytest.mark.parametrize("mark", ["OL", "", "∞", "-∞", "******", "#N/A", "NaN", "9.9E37", "+OVER"])
+def test_a_clipped_pulse_is_refused_whatever_the_mark(tmp_path, mark):
+    value = half_sine()
+    cells = [mark if v > 500.0 else f"{v:.3f}" for v in value]
+    with pytest.raises(InputError, match=r"23 cells hold no number .* in or beside the pulse"):
+        run(table(tmp_path / "a.csv", cells))
+
+
+def test_holes_far_from_the_pulse_are_told(tmp_path):
+    cells = [f"{v:.3f}" for v in half_sine()]
+    cells[20:25] = ["--"] * 5
+    found = run(table(tmp_path / "a.csv", cells))
+    assert found.values["impulse_N_s"].value == pytest.approx(2.037, abs=0.003)
+    assert "5 cells hold no number but '--', none of them beside the pulse" in found.notes
+
+
+@pytest.mark.parametrize(
+    "clock",
+    [lambda t: f"12:04:{26.746 + t:09.6f}", lambda t: f"2024-05-17T23:59:{26.7 + t:09.6f}Z",
+     lambda t: f"17.05.2024 08:59:{26.7 + t:09.6f}", lambda t: f"11:59:{59.99 + t:09.6f}"
+     if t < 0.01 else f"12:00:{t - 0.01:09.6f}"],
+)  # fmt: skip
+def test_clocks_are_times(tmp_path, clock):
+    path = table(tmp_path / "a.csv", [f"{v:.3f}" for v in half_sine()], "time,force_N",
+                 [clock(t) for t in T])  # fmt: skip
+    found = run(path).values
+    assert found["peak_force_N"].value == pytest.approx(800.0, abs=2.0)
+    assert found["contact_time_s"].value == pytest.approx(4e-3, abs=3 * found["contact_time_s"].std)
+
+
+def test_a_clock_passes_midnight():
+    told = since_first(np.array([instant(c) for c in ("23:59:59.5", "00:00:00.5", "00:00:01")]))
+    np.testing.assert_allclose(told, [0.0, 1.0, 1.5])
+    assert np.isnan(instant("25:00"))
+    assert instant("1:02:03 PM") == 13 * 3600 + 123
+
+
+def test_samples_alone_with_a_rate(tmp_path):
+    path = tmp_path / "a.txt"
+    path.write_text("force_N\n" + "\n".join(f"{v:.3f}" for v in half_sine()))
+    assert run(path, rate_hz=RATE).values["impulse_N_s"].value == pytest.approx(2.037, abs=0.003)
+    with pytest.raises(InputError, match=r"rate_hz: no column of the time"):
+        run(path)
+
+
+def labview(times):
+    value = half_sine()
+    head = ["LabVIEW Measurement\t", "Separator\tTab", f"X_Columns\t{'One' if times else 'No'}",
+            "***End_of_Header***\t", "Channels\t1", "Date\t2024/05/17", "Time\t09:51:40.7",
+            "Y_Unit_Label\tNewtons", "X_Dimension\tTime", "Delta_X\t1.0E-4",
+            "***End_of_Header***\t", "X_Value\tForce\tComment"]  # fmt: skip
+    return head + [f"{f'{t:.4f}' if times else ''}\t{v:.4f}" for t, v in zip(T, value, strict=True)]
+
+
+@pytest.mark.parametrize("times", [True, False])
+def test_labview_measurements(tmp_path, times):
+    path = tmp_path / "a.lvm"
+    path.write_text("\n".join(labview(times)))
+    for chosen in ({"value": "Force"}, {"value": "2"}, {}):
+        found = run(path, **chosen).values
+        assert found["impulse_N_s"].value == pytest.approx(2.037, abs=0.003)
+    assert labview_rows(["time,force"]) is None
+
+
+def test_quoted_decimal_commas_and_units_in_words(tmp_path):
+    rows = [f'"{t:.4f}";"{v:.3f}"'.replace(".", ",") for t, v in zip(T, half_sine(), strict=True)]
+    path = tmp_path / "a.csv"
+    path.write_text("\n".join(["Time;Force", "(sec);(N)", *rows]))
+    assert run(path).values["impulse_N_s"].value == pytest.approx(2.037, abs=0.003)
+    assert in_short("(Seconds)") == "s"
+
+
+def test_a_heading_names_units_and_says_more():
+    above = [["Area", "38.1553", "mm^2"], ["Time", "Load"], ["(s)", "(kN)"]]
+    found = heading_of(above, 2)
+    assert found.names == ("Time [s]", "Load [kN]")
+    assert found.quantity("area") == (38.1553, "mm^2")
+
+
+def test_the_zero_is_the_level_just_before(tmp_path):
+    """A body stands on the plate, flies, and lands: not the level that the record began with."""
+    value = half_sine(1500.0, 8e-3, 0.03) + np.where(T < 0.012, 450.0, 0.0)
+    found = run(table(tmp_path / "a.csv", [f"{v:.3f}" for v in value])).values
+    assert found["peak_force_N"].value == pytest.approx(1500.0, abs=3.0)
+    assert found["impulse_N_s"].value == pytest.approx(2 / np.pi * 1500 * 8e-3, abs=0.02)
+    level = level_before(value, int(np.argmax(value)))
+    assert abs(level.mean) < 3.0 * level.std + 0.2
+    assert T[level.first] > 0.0119
+
+
+def test_an_edge_is_no_pulse(tmp_path):
+    s = np.clip((T - 0.02) / 0.01, 0.0, 1.0)
+    value = np.where((s > 0.0) & (s < 1.0), 700.0 + 100.0 * s, 0.0) + half_sine(0.0)
+    with pytest.raises(InputError, match="an edge: one side has no flank"):
+        run(table(tmp_path / "a.csv", [f"{v:.3f}" for v in value]))
+
+
+def test_a_pulse_without_an_end_is_refused(tmp_path):
+    value = half_sine(at=0.048)
+    with pytest.raises(InputError, match=r"runs over an end of the record|a step|comes back"):
+        run(table(tmp_path / "a.csv", [f"{v:.3f}" for v in value]))
+
+
+def test_a_soft_foot_is_part_of_the_area_and_of_the_errors(tmp_path):
+    """The pulse of 4 ms begins with a ramp of 6 ms to 8 % of its peak."""
+    foot = 64.0 * np.clip((T - 0.014) / 6e-3, 0.0, 1.0) * (T < 0.02)
+    clean = run(table(tmp_path / "a.csv", [f"{v:.3f}" for v in half_sine()]))
+    found = run(table(tmp_path / "b.csv", [f"{v:.3f}" for v in half_sine() + foot]))
+    truth = 2 / np.pi * 800.0 * 4e-3 + 0.5 * 64.0 * 6e-3
+    impulse = found.values["impulse_N_s"]
+    assert abs(impulse.value - truth) < 2.0 * impulse.std < 0.25
+    assert found.values["contact_time_s"].std > 5.0 * clean.values["contact_time_s"].std
+    assert any("a foot before the flank" in note for note in found.notes)
+    assert not any("foot" in note for note in clean.notes)
+
+
+def test_tension_from_a_load_and_an_area(tmp_path):
+    strain = np.linspace(0.0, 0.05, 120)
+    true = np.minimum(71e9 * strain, 480e6 * np.maximum(strain / 0.00676, 1.0) ** 0.06)
+    rows = [f"{e:.6f},{1e-3 * s * 38.1553e-6:.6f}" for e, s in zip(strain, true, strict=True)]
+    text = "\n".join(["Strain,Load", "(mm/mm),(kN)", *rows])
+    named, bare = tmp_path / "a.csv", tmp_path / "b.csv"
+    named.write_text("Specimen,steel\nDiameter,6.97,mm\n" + text)
+    bare.write_text(text)
+    kind = load_kind("table")
+    given = {"holds": "tension", "time": "Strain", "value": "Load"}
+    for found in (
+        kind.run(named, given, source="test").values,
+        kind.run(bare, {**given, "area_mm2": 38.1553}, source="test").values,
+    ):
+        assert found["E_Pa"].value == pytest.approx(71e9, rel=0.02)
+        assert found["Sy_Pa"].value == pytest.approx(480e6, rel=0.04)
+    with pytest.raises(InputError, match=r"area_mm2: .*holds a load, and the file names no area"):
+        kind.run(bare, given, source="test")
