@@ -38,9 +38,7 @@ def test_numbers_of_several_languages(cell, separator, number):
     assert value_of(plain(cell, separator)) == number
 
 
-@pytest.mark.parametrize(
-    "cell", ["OL", "∞", "******", "#N/A", "NaN", "9.9E37", "-9.91e37", ""]
-)
+@pytest.mark.parametrize("cell", ["OL", "∞", "******", "#N/A", "NaN", "9.9E37", "-9.91e37", ""])
 def test_marks_are_no_numbers(cell):
     assert np.isnan(value_of(cell))
 
