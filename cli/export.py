@@ -11,10 +11,9 @@ import typer
 from ..core.errors import InputError
 from .shared.groups import group
 from .shared.places import folder_option
-from .shared.terminal import console, show_table
+from .shared.terminal import console, say, show_table
 
 if TYPE_CHECKING:
-    from ..core.material import Pair
     from ..impact.discrete_elements import Row
 
 app = group("A law for other programs: as source, or as parameters of a discrete-element code.")
@@ -44,15 +43,26 @@ def export_law(
 
 @app.command("dem")
 def export_dem(
-    file: Annotated[Path, typer.Argument(help="CASE.toml: the ball and the flat.")],
+    file: Annotated[
+        Path, typer.Argument(help="The ball and the flat: a set-up of `impact`, or CASE.toml.")
+    ],
     speed: Annotated[
-        str, typer.Option(help="Speeds of the impacts: FIRST:LAST or several with commas [m/s].")
-    ] = "0.1:10",
+        str,
+        typer.Option(
+            help="Speeds of the impacts: FIRST:LAST or several with commas [m/s]; otherwise those "
+            "of the file, or 0.1:10."
+        ),
+    ] = "",
     mass: Annotated[
-        float | None,
-        typer.Option(help="Of the ball [kg]; otherwise sphere.density_kg_m3 must be given."),
+        float | None, typer.Option(help="Of the ball [kg]; otherwise the file's.")
     ] = None,
-    law: Annotated[str, typer.Option(help="A law, or a law.json of `dentscope case`.")] = "fitted",
+    law: Annotated[
+        str,
+        typer.Option(
+            help="A law, or a law.json of `dentscope case`; otherwise fitted, with a flow curve "
+            "hardening."
+        ),
+    ] = "",
     out: Annotated[Path, folder_option("Folder for the table and the fragments.")] = Path(
         "build/dem"
     ),
@@ -61,10 +71,10 @@ def export_dem(
 
     Each returns what our law returns; what it misses in depth, peak force and time is in the table.
     """
-    from ..start.case_file import read_pair
+    from ..start.ball_file import read_ball
 
-    _, pair = read_pair(file)
-    speeds, weight = _speeds(speed), _mass(mass, pair, file)
+    ball = read_ball(file, mass=mass)
+    speeds = _speeds(speed) if speed else _of_file(ball.speeds)
     from ..core.output import csv_text, write_file
     from ..impact.discrete_elements import (
         HEAD,
@@ -72,32 +82,44 @@ def export_dem(
         lammps_lines,
         substitutes,
         table,
+        two_balls,
     )
     from ..models import law_named
 
-    rows = substitutes(law_named(law), pair, mass=weight, speeds=speeds)
-    shown = console()
+    chosen = law_named(law or ball.law)
+    rows = substitutes(chosen, ball.pair, mass=ball.mass, speeds=speeds)
+    shown, between = console(), []
     show_table(shown, *_misses(rows))
+    if ball.pair.sphere.rigid:
+        shown.print("no lines for two balls: both would be rigid")
+    else:
+        pair, half = two_balls(ball.pair, ball.mass)
+        try:
+            between = substitutes(chosen, pair, mass=half, speeds=speeds)
+        except InputError as error:
+            say(f"no lines for two balls: {error}")
+    if ball.aside:
+        say(f"not in these parameters: {', '.join(ball.aside)}; `dentscope impact` takes them")
+    cells = table(rows, law=chosen.name, contact="ball on flat")
+    cells += table(between, law=chosen.name, contact="two balls")
     for path in (
-        write_file(out / "dem.csv", csv_text(table(rows, law=law), header=HEAD)),
-        write_file(out / "lammps.in", lammps_lines(rows, pair)),
-        write_file(out / "hysteretic.txt", hysteretic_lines(rows)),
+        write_file(out / "dem.csv", csv_text(cells, header=HEAD)),
+        write_file(
+            out / "lammps.in",
+            lammps_lines(rows, ball.pair, friction=ball.friction, of_balls=between),
+        ),
+        write_file(out / "hysteretic.txt", hysteretic_lines(rows, friction=ball.friction)),
     ):
         shown.print(f"written: {path}")
 
 
-def _mass(given: float | None, pair: Pair, file: Path) -> float:
-    density = pair.sphere.density
-    mass = given if given is not None else 4.0 / 3.0 * math.pi * pair.R**3 * density
-    if math.isnan(mass):
-        raise InputError(
-            "missing", source=str(file), key="sphere.density_kg_m3", allowed="a number, or --mass"
-        )
-    if not (mass > 0.0 and math.isfinite(mass)):
-        raise InputError(
-            f"{mass:g}", source="command line", key="--mass", allowed="a number above 0"
-        )
-    return mass
+def _of_file(speeds: tuple[float, ...]) -> list[float]:
+    """The file's speeds, as many as a table shows."""
+    if not speeds:
+        return _speeds("0.1:10")
+    if len(speeds) <= _SPEEDS:
+        return list(speeds)
+    return _speeds(f"{min(speeds)!r}:{max(speeds)!r}")
 
 
 def _speeds(text: str) -> list[float]:

@@ -83,7 +83,7 @@ def substitutes(law: ContactLaw, pair: Pair, *, mass: float, speeds: Sequence[fl
     pair
         Ball and flat.
     mass
-        Of the ball [kg]; of two balls of one kind, half of one's, with half the radius.
+        Of the ball [kg]; for two balls `two_balls` gives pair and mass.
     speeds
         Of the approach [m/s].
 
@@ -180,11 +180,12 @@ def _damping_of(restitution: float) -> float:
 
 def _entered(damping: float) -> float:
     """Restitution to enter for a damping; the polynomial is a fit and misses by up to 0.02."""
-    return float(brentq(lambda e: polynomial.polyval(e, TSUJI) - damping, 0.0, 1.02))
+    found = float(brentq(lambda e: polynomial.polyval(e, TSUJI) - damping, 0.0, 1.02))
+    return min(found, 1.0)  # the polynomial reaches no damping beyond 1
 
 
 HEAD = (
-    "model", "speed_m_s", "stiffness", "stiffness_unit", "unloading_stiffness_N_m",
+    "contact", "model", "speed_m_s", "stiffness", "stiffness_unit", "unloading_stiffness_N_m",
     "restitution_entered", "depth_m", "peak_force_N", "contact_time_s", "restitution",
     "depth_missed_percent", "peak_force_missed_percent", "contact_time_missed_percent",
     "restitution_missed",
@@ -192,46 +193,108 @@ HEAD = (
 """Columns of the table."""
 
 
-def table(rows: Sequence[Row], *, law: str) -> list[tuple[str | float, ...]]:
+def table(rows: Sequence[Row], *, law: str, contact: str) -> list[tuple[str | float, ...]]:
     """Rows under `HEAD`: at each speed our law, then its substitutes."""
     out: list[tuple[str | float, ...]] = []
     for row in rows:
         b = row.law
-        out.append((law, b.speed, "", "", "", "", *b[1:], 0.0, 0.0, 0.0, 0.0))
+        out.append((contact, law, b.speed, "", "", "", "", *b[1:], 0.0, 0.0, 0.0, 0.0))
         for s in row.substitutes:
             percent = [100.0 * x for x in s.missed(b)[:3]]
             unit = "N/m^1.5" if math.isnan(s.unloading) else "N/m"
             numbers = ["" if math.isnan(x) else x for x in (s.unloading, s.entered)]
             out.append(
-                (s.name, b.speed, s.stiffness, unit, *numbers, *s.blow[1:], *percent,
+                (contact, s.name, b.speed, s.stiffness, unit, *numbers, *s.blow[1:], *percent,
                  s.missed(b)[3])
             )  # fmt: skip
     return out
 
 
-def lammps_lines(rows: Sequence[Row], pair: Pair) -> str:
-    """A fragment of a LAMMPS input: `pair_coeff` of the softened Hertz law at each speed."""
+def two_balls(pair: Pair, mass: float) -> tuple[Pair, float]:
+    """Return pair and mass of two balls like this one as a ball on a flat of the same metal.
+
+    1/R = 1/R_1 + 1/R_2 and 1/m = 1/m_1 + 1/m_2: half the radius and half the mass. Elastic balls
+    follow it exactly. Where both yield, the law is that of a sphere and a flat of equal strength.
+    """
+    return Pair(pair.sphere, pair.sphere, 0.5 * pair.R), 0.5 * mass
+
+
+def tangential_stiffness(pair: Pair) -> float:
+    """Mindlin's stiffness over the contact radius, 8 G* [Pa]; 1/G* = sum of (2 - nu)/G.
+
+    References
+    ----------
+    R. D. Mindlin, J. Appl. Mech. 16 (1949) 259. K. L. Johnson, Contact Mechanics (1985), 7.2.
+    """
+    bodies = (b for b in (pair.sphere, pair.flat) if not b.rigid)
+    return 8.0 / sum((2.0 - b.nu) * 2.0 * (1.0 + b.nu) / b.E for b in bodies)
+
+
+def lammps_lines(
+    rows: Sequence[Row], pair: Pair, *, friction: float = 0.0, of_balls: Sequence[Row] = ()
+) -> str:
+    """A fragment of a LAMMPS input: the softened Hertz law at each speed, for wall and balls.
+
+    Parameters
+    ----------
+    rows, pair
+        Of the ball on the flat.
+    friction
+        Coulomb's coefficient, of both contacts.
+    of_balls
+        Of two balls, from `two_balls`, at the same speeds.
+    """
     lines = [
-        "# pair_style granular; units si. Normal contact of the ball on the flat, or of two balls",
-        "# of twice its radius; one line for a speed: take the one of your impacts.",
+        "# pair_style granular; units si; one block for a speed: take the one of your impacts.",
+        "# fix wall/gran: the ball on the flat (here below it, at z = 0). pair_coeff: two such",
+        "# balls; where both yield, by the law of a sphere and a flat of equal strength.",
+        f"# tangential: {_tangential_told(friction)}",
     ]
-    for row in rows:
-        _, soft, _ = row.substitutes
-        depth, force, time, _ = (100.0 * x for x in soft.missed(row.law))
-        # LAMMPS multiplies by the root of the effective radius
-        k = soft.stiffness / math.sqrt(pair.R)
-        lines += [
-            f"# {row.law.speed:g} m/s: restitution {row.law.restitution:.4f}; "
-            f"depth {depth:+.1f} %, peak force {force:+.1f} %, time {time:+.1f} %",
-            f"pair_coeff * * hertz {k:.6e} {soft.entered:.6f} tangential linear_nohistory 0.0 0.0 "
-            "damping tsuji",
-        ]
+    for k, row in enumerate(rows):
+        lines.append(f"# {row.law.speed:g} m/s, the flat: {_told(row)}")
+        law = _lammps(row, pair, friction)
+        lines.append(f"fix flat all wall/gran granular {law} zplane 0.0 NULL")
+        if of_balls:
+            balls, _ = two_balls(pair, 1.0)
+            lines.append(f"# {row.law.speed:g} m/s, two balls: {_told(of_balls[k])}")
+            lines.append(f"pair_coeff * * {_lammps(of_balls[k], balls, friction)}")
     return "\n".join(lines) + "\n"
 
 
-def hysteretic_lines(rows: Sequence[Row]) -> str:
+def _told(row: Row) -> str:
+    depth, force, time, _ = (100.0 * x for x in row.substitutes[1].missed(row.law))
+    return (
+        f"restitution {row.law.restitution:.4f}; depth {depth:+.1f} %, peak force {force:+.1f} %, "
+        f"time {time:+.1f} %"
+    )
+
+
+def _tangential_told(friction: float) -> str:
+    if friction > 0.0:
+        return (
+            f"Mindlin's spring and Coulomb's {friction:g}, softened as the normal one; our own law "
+            "has no viscous part"
+        )
+    return "none, for the file states no friction.coefficient"
+
+
+def _lammps(row: Row, pair: Pair, friction: float) -> str:
+    own, soft, _ = row.substitutes
+    # LAMMPS multiplies by the root of the effective radius
+    k = soft.stiffness / math.sqrt(pair.R)
+    tangential = "linear_nohistory 0.0 0.0"
+    if friction > 0.0:
+        # softened as the normal stiffness, so that their ratio stays Mindlin's
+        kt = tangential_stiffness(pair) * soft.stiffness / own.stiffness
+        tangential = f"mindlin_rescale {kt:.6e} 0.0 {friction:g}"
+    return f"hertz {k:.6e} {soft.entered:.6f} tangential {tangential} damping tsuji"
+
+
+def hysteretic_lines(rows: Sequence[Row], *, friction: float = 0.0) -> str:
     """Stiffnesses for LIGGGHTS `hooke/hysteresis` and YADE `LudingMat`, a line a speed."""
     lines = [
+        "# of the ball on the flat; two such balls have half the mass and other stiffnesses.",
+        f"# coefficient of friction: {friction:g}",
         "# linear hysteretic law (Luding): loading k1, unloading k2 [N/m], no cohesion;",
         "# LIGGGHTS hooke/hysteresis: kn2k1 = k1/k2; YADE LudingMat: k1, and kp with which k2 is",
         "# reached at the depth.",

@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 from dentscope.cli.app import run
 from dentscope.core import InputError, Material, Pair
-from dentscope.impact.discrete_elements import _damping_of, lammps_lines, substitutes
+from dentscope.impact.discrete_elements import _damping_of, lammps_lines, substitutes, two_balls
 from dentscope.models import LAWS
 from dentscope.studies.lammps import balls_on_floor
 
@@ -66,13 +66,82 @@ def test_command_writes_table_and_fragments(tmp_path, capsys):
     assert run(["export", "dem", str(file), "--speed", "0.5,3", "--out", str(out)]) == 0
     assert "hertz-tsuji-softened" in capsys.readouterr().out
     table = list(csv.DictReader((out / "dem.csv").read_text().splitlines()))
-    assert len(table) == 2 * 4
+    assert len(table) == 2 * 2 * 4
     by_speed = [float(r["restitution"]) for r in table if r["model"] == "fitted"]
     assert by_speed[0] > by_speed[1]
-    assert (out / "lammps.in").read_text().count("pair_coeff * * hertz") == 2
+    lines = (out / "lammps.in").read_text()
+    assert lines.count("pair_coeff * * hertz") == lines.count("fix flat all wall/gran") == 2
     for line in (["--speed", "10:1"], ["--speed", "fast"], ["--mass", "-1"]):
         assert run(["export", "dem", str(file), *line]) == 2
         assert len(capsys.readouterr().err.splitlines()) == 1
+
+
+def test_two_balls_have_half_the_mass_and_half_the_radius():
+    """Hertz (Johnson 11.4) for two balls of 2.5 mm and 0.1 g: depth and time from m/2 and R/2."""
+    elastic = Material(E=70e9, nu=0.33, density=2700.0)
+    pair, mass = two_balls(Pair(elastic, HARD, 2.5e-3), 1e-4)
+    (row,) = substitutes(LAWS["hertz"], pair, mass=mass, speeds=[1.0])
+    reduced = 70e9 / (2.0 * (1.0 - 0.33**2))
+    depth = (15.0 * 0.5e-4 / (16.0 * reduced * math.sqrt(1.25e-3))) ** 0.4
+    assert row.law.depth == pytest.approx(depth, rel=1e-4)
+
+
+BALL = """
+[target]
+E_Pa = { value = 6.89e10, std = 1e9 }
+nu = 0.33
+Sy_Pa = 2.76e8
+[strikers.ball]
+shape = "sphere"
+tip_radius_m = 0.003
+E_Pa = 1.93e11
+nu = 0.29
+Sy_Pa = 7.0e8
+density_kg_m3 = 8000
+[friction]
+coefficient = 0.3
+[impact]
+impact_speed_m_s = 1.0
+support = "half-space"
+[sweep]
+impact_speed_m_s = { from = 0.1, to = 10, count = 21, spacing = "log" }
+"""
+
+
+def test_the_file_of_an_impact_gives_wall_balls_and_friction(tmp_path, capsys):
+    """LAMMPS returned 0.92622, 0.69347 and 0.45486 with these parameters."""
+    file = tmp_path / "ball.toml"
+    file.write_text(BALL.replace("[strikers", "density_kg_m3 = 2700\n[strikers"))
+    assert run(["export", "dem", str(file), "--out", str(tmp_path)]) == 0
+    told = capsys.readouterr().out
+    assert "target.E_Pa.std = 1e+09" in told
+    assert "impact.support = half-space" in told
+    table = list(csv.DictReader((tmp_path / "dem.csv").read_text().splitlines()))
+    ours = {
+        float(r["speed_m_s"]): float(r["restitution"]) for r in table
+        if r["model"] == "fitted" and r["contact"] == "ball on flat"
+    }  # fmt: skip
+    assert [ours[v] for v in sorted(ours)][::3] == pytest.approx([0.9262, 0.6935, 0.4549], abs=1e-4)
+    walls = [
+        line.split() for line in (tmp_path / "lammps.in").read_text().splitlines()
+        if line.startswith("fix")
+    ]  # fmt: skip
+    assert len(walls) == 7
+    # Mindlin's 8 G* over Hertz's (4/3) E', by hand, whatever the softening
+    shear = sum((2 - nu) * 2 * (1 + nu) / E for E, nu in ((6.89e10, 0.33), (1.93e11, 0.29)))
+    reduced = 1.0 / ((1 - 0.33**2) / 6.89e10 + (1 - 0.29**2) / 1.93e11)
+    for words in walls:
+        k, kt = float(words[words.index("hertz") + 1]), float(words[words.index("tangential") + 2])
+        assert kt / k == pytest.approx(8.0 / shear / (4.0 / 3.0 * reduced), rel=1e-6)
+        assert words[words.index("damping") - 1] == "0.3"
+        assert words[-3:] == ["zplane", "0.0", "NULL"]
+
+
+def test_a_rod_is_no_ball_of_a_discrete_element_code(tmp_path, capsys):
+    file = tmp_path / "rod.toml"
+    assert run(["impact", "--new", "rod", str(file)]) == 0
+    assert run(["export", "dem", str(file)]) == 2
+    assert 'strikers.rod.shape: a rod (allowed: "sphere")' in capsys.readouterr().err
 
 
 def test_lammps_returns_what_the_table_says(rows):
@@ -81,10 +150,7 @@ def test_lammps_returns_what_the_table_says(rows):
 
     for row in rows:
         _, soft, _ = row.substitutes
-        (given,) = (
-            line.split("* * ")[1] for line in lammps_lines([row], PAIR).splitlines()
-            if line.startswith("pair_coeff")
-        )  # fmt: skip
+        given = wall_of(lammps_lines([row], PAIR))
         try:
             e, depth, force = blow_in_lammps(given, speed=row.law.speed, time=soft.blow.time)
         except ImportError as error:
@@ -92,6 +158,12 @@ def test_lammps_returns_what_the_table_says(rows):
         assert e == pytest.approx(row.law.restitution, rel=0.01)
         assert depth == pytest.approx(row.law.depth, rel=0.02)
         assert force == pytest.approx(soft.blow.force, rel=0.02)
+
+
+def wall_of(lines):
+    """The law of the first wall in a fragment."""
+    line = next(line for line in lines.splitlines() if line.startswith("fix"))
+    return line.split("granular ")[1].split(" zplane")[0]
 
 
 def blow_in_lammps(law, *, speed, time):

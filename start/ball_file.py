@@ -1,0 +1,114 @@
+"""The ball on the flat that a discrete-element code is given: from either file that names one."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Mapping
+from pathlib import Path
+from typing import Any, NamedTuple
+
+from ..core.errors import InputError
+from ..core.inputs.left_aside import left_aside
+from ..core.inputs.toml_input import read_toml
+from ..core.material import Pair
+from ..core.rig import value_of
+from ..impact.files.setup import FOLLOWING, Setup, setup_of
+from ..models import LAWS
+from .case_file import read_pair
+
+_BODY = ("E_Pa", "nu", "Sy_Pa", "rigid", "density_kg_m3", "flow_curve", "hardening")
+_LAWS = ("law", "K_Pa", "B_Pa", "Q_Pa", "n", "b")
+
+
+def _keys(table: str, *, of_impact: bool) -> set[str]:
+    found = {f"{table}.{name}" for name in _BODY}
+    found |= {f"{table}.hardening.{name}" for name in _LAWS}
+    return found | ({f"{table}.hardness_Pa"} if of_impact else set())
+
+
+_OF_IMPACT = (
+    (_keys("target", of_impact=True) - {"target.density_kg_m3"})
+    | _keys("strikers.NAME", of_impact=True)
+    | {f"strikers.NAME.{k}" for k in ("shape", "tip_radius_m", "mass_kg", "radius_m")}
+    | {"target.shape", "target.law", "friction.coefficient", "impact.striker"}
+    | {"impact.impact_speed_m_s", "impact.drop_height_m", "sweep.impact_speed_m_s", "gravity_m_s2"}
+    | {f"sweep.impact_speed_m_s.{k}" for k in ("from", "to", "count", "spacing")}
+)
+_OF_CASE = (
+    _keys("sphere", of_impact=False) | (_keys("flat", of_impact=False) - {"flat.density_kg_m3"})
+    | {"radius_m", "friction.coefficient"}
+)  # fmt: skip
+
+
+class Ball(NamedTuple):
+    """A ball, the flat that it meets, and what a file says of their blow."""
+
+    pair: Pair
+    mass: float  # [kg]
+    friction: float  # [-]
+    speeds: tuple[float, ...]  # [m/s]; empty where the file says none
+    law: str  # of ours that knows these metals
+    aside: list[str]  # what the file says beyond this
+
+
+def read_ball(file: Path, *, mass: float | None = None) -> Ball:
+    """Read a set-up of `dentscope impact` or a CASE.toml.
+
+    Parameters
+    ----------
+    file
+        Either.
+    mass
+        Of the ball, in place of the file's [kg].
+
+    Raises
+    ------
+    InputError
+        Every mistake, a line each; what strikes is no ball, or its mass is not known.
+    """
+    content = read_toml(file)
+    of_impact = "strikers" in content or "impact" in content
+    found = _of_setup(content, file) if of_impact else _of_case(content, file)
+    weight = found.mass if mass is None else mass
+    if math.isnan(weight):
+        raise InputError(
+            "missing", source=str(file), key="sphere.density_kg_m3", allowed="a number, or --mass"
+        )
+    if not (weight > 0.0 and math.isfinite(weight)):
+        raise InputError(
+            f"{weight:g}", source="command line", key="--mass", allowed="a number above 0"
+        )
+    return found._replace(mass=weight)
+
+
+def _of_setup(content: Mapping[str, Any], file: Path) -> Ball:
+    setup = setup_of(dict(content), source=str(file))
+    name = setup.file.impact.striker or next(iter(setup.file.strikers))
+    if setup.file.strikers[name].shape != "sphere":
+        raise InputError(
+            "a rod", source=str(file), key=f"strikers.{name}.shape", allowed='"sphere"'
+        )
+    law = FOLLOWING if setup.laws[0] == FOLLOWING else "fitted"
+    scene = setup.scene(LAWS[law])
+    speeds = setup.sweep.impact_speed_m_s or (scene.approach.speed,)
+    return Ball(
+        scene.pair, scene.striker.mass, scene.friction.mu, tuple(speeds), law,
+        left_aside(content, _OF_IMPACT) + _tip(setup, name),
+    )  # fmt: skip
+
+
+def _tip(setup: Setup, name: str) -> list[str]:
+    """A ball whose tip is rounder or flatter than itself is one sphere to these codes."""
+    ball = setup.file.strikers[name]
+    radius = ball.radius_m
+    if radius is None or math.isclose(radius.value, ball.tip_radius_m.value):
+        return []
+    return [f"strikers.{name}.radius_m = {radius.value:g} beside tip_radius_m"]
+
+
+def _of_case(content: Mapping[str, Any], file: Path) -> Ball:
+    found, pair = read_pair(file)
+    mass = 4.0 / 3.0 * math.pi * pair.R**3 * pair.sphere.density
+    law = "fitted" if pair.perfectly_plastic else FOLLOWING
+    friction = value_of(found.friction.coefficient, 0.0)
+    return Ball(pair, mass, friction, (), law, left_aside(content, _OF_CASE))
