@@ -65,12 +65,44 @@ def new(
     sphere: Annotated[
         bool, typer.Option("--sphere", help="The striker is a sphere, not a rod.")
     ] = False,
+    sheet: Annotated[
+        Path | None,
+        typer.Option("--from", metavar="SHEET", help="A laboratory's sheet: XLSX, ODS, CSV."),
+    ] = None,
 ) -> None:
-    """Write a set to fill in: set.toml with its open values marked, trials.csv with its header."""
+    """Write a set to fill in: set.toml with its open values marked, trials.csv with its header.
+
+    From a sheet with a row a drop the rows are taken over; what became of each column is told.
+    """
     from ..recordings.template import write_template
 
+    if sheet is not None:
+        _new_from(sheet, folder, "sphere" if sphere else "rod")
+        return
     write_template(folder, shape="sphere" if sphere else "rod")
     typer.echo(f"{folder}: fill in set.toml and trials.csv, then: dentscope recordings check")
+
+
+def _new_from(sheet: Path, folder: Path, shape: str) -> None:
+    """Write a set with the rows of a laboratory's sheet, and tell what became of each column."""
+    from ..core.errors import InputError
+    from ..reduce.into_set import store
+    from ..reduce.row import Row
+    from ..reduce.table.sheet import read_sheet
+
+    for name in ("set.toml", "trials.csv"):
+        if (folder / name).exists():
+            raise InputError(
+                "there is one already", source=str(folder / name), allowed="a new folder"
+            )
+    found = read_sheet(sheet)
+    done = store(found.reduced(sheet), folder, Row(), kind="sheet", options={"shape": shape})
+    typer.echo(f"{sheet}: {len(found.trials)} trials")
+    for header, became in found.columns:
+        typer.echo(f"  {header!r}: {became}")
+    for line in (*found.left_out, *done.notes):
+        typer.echo(f"  note: {line}")
+    typer.echo(f"{folder}: then: dentscope recordings audit {folder}")
 
 
 @app.command("list")

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import json
 from pathlib import Path
 from typing import Literal
 
@@ -84,9 +85,9 @@ Sy_Pa = "?"
 """
 
 
-def template_text(shape: Shape) -> str:
-    """Return set.toml with the values of both bodies to be filled in."""
-    return _HEAD + _STRIKER[shape] + _TAIL
+def template_text(shape: Shape, name: str) -> str:
+    """Return set.toml with the values of both bodies to be filled in, and the set's name."""
+    return _HEAD.replace('"NAME"', json.dumps(name)) + _STRIKER[shape] + _TAIL
 
 
 def write_template(folder: Path, *, shape: Shape) -> None:
@@ -103,5 +104,5 @@ def write_template(folder: Path, *, shape: Shape) -> None:
                 "there is one already", source=str(folder / name), allowed="a new folder"
             )
     columns = ["trial", "striker", "angle_deg", "drop_height_m", *list(MEASURED)[:2], "note"]
-    write_file(folder / "set.toml", template_text(shape))
+    write_file(folder / "set.toml", template_text(shape, folder.resolve().name))
     write_file(folder / "trials.csv", ",".join(columns) + "\n")

@@ -182,7 +182,7 @@ def _set_before(folder: Path, setup: Setup | None, *, shape: Shape) -> tuple[Rec
     if not file.exists():
         if setup is not None:
             return _empty(setup, None), setup_text(setup)
-        text = template_text(shape)
+        text = template_text(shape, folder.resolve().name)
         content = without_marks(tomllib.loads(text))[0]
         return _empty(parse_model(content, Setup, source=str(file)), None), text
     content, _ = without_marks(read_toml(file))
@@ -249,6 +249,7 @@ def _with_trial(
     texts["trial"][place] = name
     texts["striker"][place] = row.striker or texts["striker"][place] or striker
     texts["spot"][place] = row.spot or texts["spot"][place]
+    texts["note"][place] = trial.note or texts["note"][place]
     numbers = {k: grown(getattr(old, k)) for k in CONDITIONS if k not in _TEXTS}
     observables = {k: grown(v) for k, v in old.observables.items()}
     stds = {k: grown(v) for k, v in old.observables_std.items()}

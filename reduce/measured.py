@@ -112,6 +112,8 @@ class Trial:
         Columns of traces/TRIAL.csv and profiles/TRIAL.csv, each (n,).
     label
         Part of the trial's name that tells several trials of one file apart.
+    note
+        What the person who measured wrote beside it.
     """
 
     observables: Mapping[str, Measured]
@@ -119,6 +121,7 @@ class Trial:
     trace: Mapping[str, Array] = field(default_factory=dict)
     profile: Mapping[str, Array] = field(default_factory=dict)
     label: str = ""
+    note: str = ""
 
     def __post_init__(self) -> None:
         for name in ("observables", "trace", "profile"):

@@ -27,7 +27,8 @@ from .heading import Heading, heading_of, in_short, labview_rows
 from .packed import packed_table, tracker_rows
 from .workbook import workbook_rows
 
-_BOOKS = (".xls", ".xlsx", ".xlsm", ".xlsb", ".ods")
+BOOKS = (".xls", ".xlsx", ".xlsm", ".xlsb", ".ods")
+"""Endings of workbooks."""
 _LARGEST = 200_000_000
 _UNIT = re.compile(r"[\[(]\s*([^\])]+?)\s*[\])]\s*$")
 
@@ -165,7 +166,7 @@ def read_columns(path: Path, *, sheet: str = "") -> Columns:
     if kind == ".zip":
         text, source = packed_table(path, sheet)
         return text_columns(text, source)
-    if kind in _BOOKS:
+    if kind in BOOKS:
         return columns_of(confined(workbook_rows, path, sheet, source=str(path)), str(path))
     return text_columns(path.read_bytes(), str(path))
 

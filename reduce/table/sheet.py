@@ -1,0 +1,316 @@
+"""A laboratory's sheet: a row a drop, headers in its own words, units in headers or cells.
+
+Every column and every cell that is not taken is told: nothing disappears without a line.
+"""
+
+from __future__ import annotations
+
+import math
+import re
+import unicodedata
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass
+from pathlib import Path
+from typing import NamedTuple
+
+import numpy as np
+
+from ...core.confined import confined
+from ...core.errors import InputError, InputErrors
+from ...core.inputs.input_file import checked_file
+from ...recordings.columns import MEASURED
+from ..measured import Measured, Trial
+from ..reduced import Reduced
+from ..units import UNITS
+from .cells import plain, value_of
+from .file import BOOKS, text_lines, text_rows
+from .heading import in_short, is_unit
+from .picture import draw_trials
+from .trials import TrialsReduction
+from .workbook import workbook_rows
+
+_LARGEST = 50_000_000
+
+REBOUND_HEIGHT, REBOUND_SPEED = "rebound_height", "rebound_speed"
+
+
+class _Kind(NamedTuple):
+    """What a column may become: name, quantity of its unit, and the words that say so."""
+
+    name: str
+    quantity: str
+    words: str
+
+
+# The first kind whose words a header holds; accents are taken off before. English, German, French,
+# Italian, Spanish.
+_KINDS = (
+    _Kind("note", "text",
+          r"note|remark|comment|bemerkung|kommentar|anmerkung|remarque|osservazion"),
+    _Kind("temperature_K", "temperature", r"temperatur"),
+    _Kind("angle_deg", "angle", r"angle|winkel|angolo|angulo"),
+    _Kind("restitution", "number", r"restitution|^e$|^cor$|stoss?zahl|restituzion|restitucion"),
+    _Kind(REBOUND_HEIGHT, "length",
+          r"(rebound|bounce|ruckprall|rucksprung|abprall|rebond|rimbalzo|rebote).*"
+          r"(height|hohe|^h|hauteur|altezza|altura)|ruckprallhohe|rucksprunghohe|sprunghohe|"
+          r"(hauteur|altezza|altura) d[ei]l? ?(rebond|rimbalzo|rebote)"),
+    _Kind(REBOUND_SPEED, "speed",
+          r"(rebound|ruckprall|rucksprung|rebond|rimbalzo|rebote).*(speed|veloc|geschw|vitesse)"),
+    _Kind("drop_height_m", "length",
+          r"(drop|fall|release|chute|caduta|caida).*(height|hohe|hauteur|altezza|altura)|fallhohe|"
+          r"(hauteur|altezza|altura) (de|di) (chute|caduta|caida)|height of fall|^drop$"),
+    _Kind("impact_speed_m_s", "speed",
+          r"(impact|approach|auf(prall|treff)|stoss?).*(speed|veloc|geschw)|vitesse d.?impact|"
+          r"velocita d.?impatto|velocidad de impacto"),
+    _Kind("dent_diameter_m", "length",
+          r"(dent|crater|indent|imprint|impression|eindruck|krater|delle|empreinte|impronta|huella)"
+          r".*(diam|durchm|dm\b|wid|breit)|durchmesser (des|der) (eindruck|krater|delle)|"
+          r"diametr?e? d.*(empreinte|impronta|huella)"),
+    _Kind("permanent_depth_m", "length",
+          r"(dent|crater|indent|residual|permanent|eindruck|krater|delle).*(depth|tiefe)|"
+          r"eindring(tiefe|ung)|profond|profund"),
+    _Kind("contact_time_s", "time",
+          r"(contact|kontakt|stoss?|impact).*(time|duration|zeit|dauer)|duree|durata|duracion"),
+    _Kind("peak_force_N", "force",
+          r"(peak|max|stoss?|impact|spitzen).*(force|kraft|forza|fuerza)|maximalkraft"),
+    _Kind("trial", "text",
+          r"^(nr|no|num|number|test|trial|versuch|messung|probe|shot|run|id|drop no|essai|prova|"
+          r"ensayo|#)\b"),
+)  # fmt: skip
+
+_UNIT_AT_END = re.compile(
+    r"[\[(,/]\s*(?P<a>[^\])(\[,/]{1,6}(?:/s|/sec)?)\s*[\])]?\s*$|\bin (?P<b>\S{1,4})$"
+)
+_CELL = re.compile(r"(?P<number>[+-]?[\d.,'’  ]*\d(?:[eE][+-]?\d+)?)\s*(?P<unit>[^\d\s].{0,5})?")
+_CELSIUS, _ICE = ("°C", "C", "degC"), 273.15
+
+
+@dataclass(frozen=True)
+class Sheet:
+    """What a sheet became.
+
+    Parameters
+    ----------
+    trials
+        Its rows.
+    columns
+        Of each column of the sheet its header and what became of it, in words.
+    left_out
+        Cells and rows that were not taken, a line each.
+    """
+
+    trials: tuple[Trial, ...]
+    columns: tuple[tuple[str, str], ...]
+    left_out: tuple[str, ...]
+
+    def reduced(self, path: Path) -> Reduced:
+        """Return it as what every reduction hands on."""
+        notes = (*(f"{header!r}: {became}" for header, became in self.columns), *self.left_out)
+        seen = self.trials[0].observables
+        across = next(n for n in ("drop_height_m", "impact_speed_m_s") if n in seen)
+        up = next(n for n in seen if n in MEASURED)
+        x, y = (
+            np.array(
+                [t.observables[n].value if n in t.observables else np.nan for t in self.trials]
+            )
+            for n in (across, up)
+        )
+        values = {"trials": Measured(float(len(self.trials)), math.nan)}
+        found = TrialsReduction(values, self.trials, notes, (across, x), (up, y))
+        return Reduced(path, values, self.trials, lambda to: draw_trials(found, to), notes)
+
+
+@dataclass
+class _Column:
+    place: int
+    header: str
+    kind: _Kind
+    unit: str | None
+    taken: int = 0
+    unitless: bool = False
+
+
+def read_sheet(path: Path, *, sheet: str = "") -> Sheet:
+    """Read a laboratory's sheet.
+
+    Drop and rebound height give the restitution, the root of their ratio; a drop height that is
+    written once for several rows holds for the rows below; several columns of one quantity are
+    repeats, each a row of its own.
+
+    Parameters
+    ----------
+    path
+        A workbook, or a text table in any usual encoding.
+    sheet
+        Of a workbook; the first by default.
+
+    Raises
+    ------
+    InputError
+        No row of headers is understood, or a column names no unit.
+    """
+    checked_file(path, most=_LARGEST, allowed="a sheet")
+    if path.suffix.lower() in BOOKS:
+        rows = confined(workbook_rows, path, sheet, source=str(path))
+    else:
+        rows = text_rows(text_lines(path.read_bytes(), str(path)), str(path))
+    top, columns, told = _headers(rows, str(path))
+    return _trials(rows, top, columns, told, str(path))
+
+
+def _bare(text: str) -> str:
+    """A header in small letters without accents, signs and line ends."""
+    spread = unicodedata.normalize("NFKD", text.lower().replace("ß", "ss"))
+    return " ".join("".join(c for c in spread if not unicodedata.combining(c)).split())
+
+
+def _kind_of(header: str) -> _Kind | None:
+    bare = _bare(re.sub(r"[\[(].*", "", header)).strip(" .:")
+    return next((kind for kind in _KINDS if re.search(kind.words, bare)), None) if bare else None
+
+
+def _headers(
+    rows: Sequence[Sequence[str]], source: str
+) -> tuple[int, list[_Column], list[tuple[str, str]]]:
+    """The first row below the headers, the columns that are understood, and the others."""
+    known = [sum(_kind_of(cell) is not None for cell in row) for row in rows[:40]]
+    best = max(range(len(known)), key=lambda k: known[k], default=0)
+    if not known or known[best] < 2:
+        raise InputError(
+            "no row of headers is understood", source=source,
+            allowed="columns such as drop height (cm), rebound height (mm), dent diameter (mm)",
+        )  # fmt: skip
+    head, top = list(rows[best]), best + 1
+    below = list(rows[top]) if top < len(rows) else []
+    filled = [cell for cell in below if cell]
+    if filled and all(is_unit(cell) or cell.strip("()[] ") in _CELSIUS for cell in filled):
+        pairs = zip(head, [*below, *[""] * len(head)], strict=False)
+        head, top = [f"{h} ({u.strip('()[] ')})" if u else h for h, u in pairs], top + 1
+    columns, told = [], []
+    for place, header in enumerate(head):
+        kind = _kind_of(header)
+        if kind is None:
+            if header or any(place < len(row) and row[place] for row in rows[top:]):
+                told.append((header or f"column {place + 1}", "left out: not understood"))
+            continue
+        columns.append(_Column(place, header, kind, _unit(header, kind)))
+    return top, columns, told
+
+
+def _unit(header: str, kind: _Kind) -> str | None:
+    """The unit in a header; None where it names none."""
+    if kind.quantity in ("text", "number"):
+        return "%" if "%" in header else ""
+    found = _UNIT_AT_END.search(header.strip())
+    said = in_short((found["a"] or found["b"]).strip()) if found else ""
+    known = said in UNITS[kind.quantity] or (kind.quantity == "temperature" and said in _CELSIUS)
+    return said if known else None
+
+
+def _trials(
+    rows: Sequence[Sequence[str]], top: int, columns: list[_Column],
+    told: list[tuple[str, str]], source: str,
+) -> Sheet:  # fmt: skip
+    left: list[str] = []
+    trials: list[Trial] = []
+    last: dict[str, float] = {}
+    from_above: list[str] = []
+    for k, row in enumerate(rows[top:], start=top + 1):
+        if not any(row):
+            continue
+        found: dict[str, list[float]] = {}
+        note = ""
+        for column in columns:
+            cell = row[column.place].strip() if column.place < len(row) else ""
+            if not cell:
+                continue
+            if column.kind.quantity == "text":
+                note = f"{note}; {cell}".strip("; ") if column.kind.name == "note" else note
+                column.taken += 1
+                continue
+            value = _value(cell, column)
+            if value is None:
+                left.append(f"row {k}, {column.header}: {cell!r} is no {column.kind.quantity}")
+            else:
+                column.taken += 1
+                found.setdefault(column.kind.name, []).append(value)
+        for name in ("drop_height_m", "impact_speed_m_s"):
+            if name in found:
+                last = {name: found[name][0]}
+        stated = last.keys() & found.keys()
+        if not found.keys() - {"drop_height_m", "impact_speed_m_s", "temperature_K", "angle_deg"}:
+            left.append(f"row {k}: nothing measured")
+            continue
+        if not last:
+            left.append(f"row {k}: no drop height or speed")
+            continue
+        from_above += [] if stated else [str(k)]
+        trials += _of_row(found, last, note, k)
+    wrong = tuple(
+        InputError(
+            "the header names no unit", source=source, key=c.header,
+            allowed=", ".join(UNITS[c.kind.quantity]),
+        )
+        for c in columns
+        if c.unitless
+    )  # fmt: skip
+    if wrong:
+        raise InputErrors(wrong)
+    if not trials:
+        raise InputError(
+            "no row with an approach and something measured", source=source,
+            allowed=left[0] if left else "a row a drop",
+        )  # fmt: skip
+    if from_above:
+        left.append(f"row {', '.join(from_above)}: the approach is that of the row above")
+    told = [(c.header, _became(c)) for c in columns] + told
+    return Sheet(tuple(trials), tuple(told), tuple(left))
+
+
+def _value(cell: str, column: _Column) -> float | None:
+    """The number in a cell in the SI, by its own unit or the column's; None where it is none."""
+    found = _CELL.fullmatch(cell)
+    if found is None:
+        return None
+    number = value_of(plain(found["number"].strip(), ";"))
+    own = in_short(found["unit"].strip()) if found["unit"] else ""
+    if math.isnan(number):
+        return None
+    unit = own or column.unit
+    if unit is None:
+        column.unitless = True
+        return None
+    if column.kind.quantity == "temperature" and unit in _CELSIUS:
+        return number + _ICE
+    size = UNITS[column.kind.quantity].get(unit)
+    return None if size is None else number * size
+
+
+def _became(column: _Column) -> str:
+    name = column.kind.name
+    words = {
+        REBOUND_HEIGHT: "restitution, the root of rebound over drop height",
+        REBOUND_SPEED: "restitution, over the impact speed", "trial": "left out: rows are numbered",
+    }  # fmt: skip
+    return f"{words.get(name, name)} ({column.taken} cells)"
+
+
+def _of_row(
+    found: dict[str, list[float]], last: dict[str, float], note: str, row: int
+) -> Iterator[Trial]:
+    """Yield the trials of one row: one, or as many as there are repeats."""
+    approach, at = next(iter(last.items()))
+    common = {
+        k: Measured(v[0], 0.0) for k, v in found.items() if k in ("temperature_K", "angle_deg")
+    }
+    measured = {k: list(v) for k, v in found.items() if k not in common and k not in last}
+    if approach == "drop_height_m" and REBOUND_HEIGHT in measured:
+        measured["restitution"] = [math.sqrt(h / at) for h in measured.pop(REBOUND_HEIGHT)]
+    if approach == "impact_speed_m_s" and REBOUND_SPEED in measured:
+        measured["restitution"] = [v / at for v in measured.pop(REBOUND_SPEED)]
+    for name in (REBOUND_HEIGHT, REBOUND_SPEED):
+        measured.pop(name, None)
+    for k in range(max(map(len, measured.values()), default=0)):
+        seen = {n: Measured(v[k], 0.0) for n, v in measured.items() if k < len(v)}
+        label = f"{row:03d}" if max(map(len, measured.values())) == 1 else f"{row:03d}-{k + 1}"
+        yield Trial({approach: Measured(at, 0.0), **common, **seen}, label=label, note=note)

@@ -1,0 +1,100 @@
+"""Sheets as laboratories have them: headers in words, units in headers or cells, nothing lost."""
+
+import math
+
+import pytest
+from dentscope.core.errors import InputError
+from dentscope.recordings import read
+from dentscope.reduce.table.sheet import read_sheet
+
+GERMAN = """Nr.;Datum;Fallhöhe (cm);Rückprallhöhe (mm);Eindruckdurchmesser (mm);Bemerkung
+1;12.03.2025;5,0;34;0,515;
+2;12.03.2025;20,0;113;752 µm;
+3;12.03.2025;2,00 m;852;;schlecht zu sehen
+4;12.03.2025;;850;k.A.;
+5;12.03.2025;60,0;;;
+"""
+
+
+def columns(sheet):
+    return dict(sheet.columns)
+
+
+def value(sheet, row, name):
+    return sheet.trials[row].observables[name].value
+
+
+def test_a_german_sheet(tmp_path):
+    path = tmp_path / "Fallversuche.csv"
+    path.write_bytes(GERMAN.encode("cp1252"))
+    found = read_sheet(path)
+    assert [t.label for t in found.trials] == ["002", "003", "004", "005"]
+    assert value(found, 1, "dent_diameter_m") == pytest.approx(752e-6)
+    assert value(found, 2, "drop_height_m") == 2.0
+    assert value(found, 2, "restitution") == pytest.approx(math.sqrt(0.426))
+    assert value(found, 3, "drop_height_m") == 2.0
+    assert found.trials[2].note == "schlecht zu sehen"
+    assert columns(found)["Datum"] == "left out: not understood"
+    assert found.left_out == (
+        "row 5, Eindruckdurchmesser (mm): 'k.A.' is no length",
+        "row 6: nothing measured",
+        "row 5: the approach is that of the row above",
+    )
+
+
+def test_an_english_sheet_with_titles_units_below_and_repeats(tmp_path):
+    path = tmp_path / "drops.csv"
+    path.write_text(
+        "Steel on brass,,,,\n,,,,\n"
+        "Impact velocity,Rebound velocity,Rebound velocity,Crater depth,Temperature\n"
+        "m/s,m/s,m/s,um,°C\n"
+        '1.0,0.62,0.61,"1,012.5",20\n2.0,0.55,,29.7,20\n'
+    )
+    found = read_sheet(path)
+    assert [t.label for t in found.trials] == ["005-1", "005-2", "006"]
+    assert [value(found, k, "restitution") for k in range(3)] == [0.62, 0.61, 0.275]
+    assert value(found, 0, "permanent_depth_m") == pytest.approx(1012.5e-6)
+    assert value(found, 0, "temperature_K") == 293.15
+    assert "permanent_depth_m" not in found.trials[1].observables
+
+
+@pytest.mark.parametrize(
+    ("header", "name"),
+    [("Drop height [m]", "drop_height_m"), ("Hauteur de chute (cm)", "drop_height_m"),
+     ("Altezza di caduta, cm", "drop_height_m"), ("Fallhöhe in mm", "drop_height_m"),
+     ("Aufprallgeschwindigkeit (m/s)", "impact_speed_m_s")],
+)  # fmt: skip
+def test_approaches_in_several_languages(tmp_path, header, name):
+    path = tmp_path / "a.csv"
+    path.write_text(f'"{header}";"Stoßzahl";"Kraterdurchmesser (mm)"\n10;0,6;0,5\n20;0,5;0,6\n')
+    found = read_sheet(path)
+    assert columns(found)[header].startswith(name)
+    assert value(found, 0, "restitution") == 0.6
+    assert value(found, 0, "dent_diameter_m") == pytest.approx(5e-4)
+
+
+def test_what_is_missing_is_asked_for(tmp_path):
+    path = tmp_path / "a.csv"
+    path.write_text("drop height;rebound height (mm)\n10;5\n20;9\n")
+    with pytest.raises(InputError, match=r"drop height: the header names no unit .*allowed: m, cm"):
+        read_sheet(path)
+    path.write_text("a;b\n10;5\n20;9\n")
+    with pytest.raises(InputError, match="no row of headers is understood"):
+        read_sheet(path)
+
+
+def test_the_command_makes_a_set(tmp_path, capsys):
+    from dentscope.cli import run
+
+    path = tmp_path / "Fallversuche.csv"
+    path.write_bytes(GERMAN.encode("cp1252"))
+    folder = tmp_path / "drops of May"
+    assert run(["recordings", "new", str(folder), "--sphere", "--from", str(path)]) == 0
+    told = capsys.readouterr().out
+    assert "'Fallhöhe (cm)': drop_height_m (4 cells)" in told
+    assert "'k.A.' is no length" in told
+    made = read(folder, unfinished=True)
+    assert made.setup.name == "drops of May"
+    assert made.trials.note[2] == "schlecht zu sehen"
+    assert run(["recordings", "new", str(folder), "--sphere", "--from", str(path)]) == 2
+    assert "there is one already" in capsys.readouterr().err
