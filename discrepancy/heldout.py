@@ -1,8 +1,8 @@
 """How well an explanation predicts conditions that were left out of its fit.
 
-Whole groups are left out: all trials of a speed, a striker, an angle. Given the other cells, the
-left-out ones follow from the joint Gaussian of the linear algebra, for every value of the
-mechanism's parameters, weighted by how well these explain the cells that were kept.
+Whole groups are left out: all trials of a speed or load, a striker, an angle. Given the other
+cells, the left-out ones follow from the joint Gaussian of the linear algebra, for every value of
+the mechanism's parameters, weighted by how well these explain the cells that were kept.
 """
 
 from __future__ import annotations
@@ -52,7 +52,7 @@ def groups_of(problem: Problem) -> list[Mask]:
     conditions = problem.conditions
     keys: list[list[object]] = [
         [c.striker for c in conditions],
-        [round(math.log(c.speed) / 0.15) for c in conditions],
+        [(c.press is not None, round(math.log(c.speed) / 0.15)) for c in conditions],
         [round(math.degrees(c.incidence) / 2.0) for c in conditions],
     ]
     masks = []

@@ -128,7 +128,7 @@ def rank(
     excluded, screened = {}, []
     for mechanism in mechanisms:
         progress(f"screening {mechanism.name}")
-        reason = _without_data(mechanism, simulator.problem) or mechanism.applies(situations)
+        reason = _without_data(mechanism, simulator.problem) or mechanism.ruled_out(situations)
         if not reason:
             found = screen(simulator, base, mechanism)
             size = visible(found, base)

@@ -24,13 +24,16 @@ from .integrate import (
     traced,
 )
 from .inverse import Inferred, Measured, infer
+from .press import Pressed, dent_radius, pressed
 from .result import Impact
 from .scene import (
+    CREEP,
     Approach,
     FlowStress,
     ForceTransform,
     Friction,
     Instrument,
+    Press,
     Profiles,
     RateFree,
     Scene,
@@ -42,6 +45,7 @@ from .surface import Imprint, Spot
 from .tabulated.law_table import tabulated
 
 __all__ = [
+    "CREEP",
     "Approach",
     "Blow",
     "FlowStress",
@@ -54,6 +58,8 @@ __all__ = [
     "Instrument",
     "Measured",
     "Modes",
+    "Press",
+    "Pressed",
     "Profiles",
     "RateFree",
     "Scene",
@@ -64,8 +70,10 @@ __all__ = [
     "Trace",
     "arrays_of",
     "blow",
+    "dent_radius",
     "impacts",
     "infer",
+    "pressed",
     "rod_modes",
     "scene_of",
     "strike",

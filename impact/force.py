@@ -104,6 +104,18 @@ def law_radius(radius, par, force, factors, depth, peak):
     return a
 
 
+@njit(float64(BRANCH, VECTOR, VECTOR, VECTOR, float64), cache=True, _nrt=False)
+def static_radius(radius, par, force, factors, depth):
+    """Contact radius [m] on loading, with a flat of the tip and the tip's edge."""
+    b = force[FLAT]
+    if b > 0.0:
+        x = depth + b * b / (2.0 * force[RADIUS])
+        a = max(b, law_radius(radius, par, force, factors, x, x))
+    else:
+        a = law_radius(radius, par, force, factors, depth, depth)
+    return min(a, force[EDGE])
+
+
 @njit(types.void(BRANCH, VECTOR, VECTOR), cache=True, _nrt=False)
 def _fit_power(unloading, par, branch):
     """Recognise a recovery F_m x^n, x from 0 at the residual depth to 1 at the peak.

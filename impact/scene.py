@@ -245,6 +245,30 @@ class Approach:
         return cls(speed=math.sqrt(2.0 * STANDARD_GRAVITY * height), **others)
 
 
+CREEP = Approach(1e-5)
+"""Approach of a quasi-static press, 0.6 mm/min; nothing follows from its size."""
+
+
+@dataclass(frozen=True, slots=True)
+class Press:
+    """Seam: the striker is pressed on the flat without impact, and taken off.
+
+    Parameters
+    ----------
+    load
+        Largest load [N].
+    rate
+        Representative strain rate of the metal under it [1/s]; 0 for none.
+    """
+
+    load: float
+    rate: float = 0.0
+
+    def __post_init__(self) -> None:
+        if not (self.load > 0.0 and math.isfinite(self.load)):
+            raise InputError(f"{self.load:g}", key="load_N", allowed="a number above 0")
+
+
 @dataclass(frozen=True, slots=True)
 class Instrument:
     """Seam: from the true observable to the recorded one; `gain * true + offset` by name.
@@ -273,7 +297,7 @@ _RIGID, _FRESH = Modes(), Spot()
 
 @dataclass(frozen=True, slots=True)
 class Scene:
-    """One impact: law, pair, striker, approach, and the seams."""
+    """One impact: law, pair, striker, approach, and the seams; or, with `press`, one press."""
 
     law: ContactLaw
     pair: Pair
@@ -287,6 +311,7 @@ class Scene:
     support: Support = Support()
     instrument: Instrument = field(default_factory=Instrument)
     spot: Spot = _FRESH
+    press: Press | None = None
 
     def __post_init__(self) -> None:
         if not math.isclose(self.pair.R, self.striker.tip_radius, rel_tol=1e-12):

@@ -44,10 +44,13 @@ def presses(
             turns = tuple(float(x * depth[k]) for x in (0.7, 0.85, 1.0))
             clock = _clock(depth[k], scenes[k].approach.speed)
             yield Press(_press(scenes[k], constants, turns, clock), (k,))
-        return
+        # what is pressed slowly needs no clock
+        numbers = [k for k, c in enumerate(problem.conditions) if c.press is not None]
+    else:
+        numbers = list(range(len(scenes)))
     alike: dict[tuple[object, ...], list[int]] = {}
-    for k, s in enumerate(scenes):
-        alike.setdefault((s.pair.sphere, s.pair.flat), []).append(k)
+    for k in numbers:
+        alike.setdefault((scenes[k].pair.sphere, scenes[k].pair.flat), []).append(k)
     for these in alike.values():
         low, high = depth[these].min(), depth[these].max()
         turns = tuple(float(x) for x in np.geomspace(min(low, 0.3 * high), high, _TURNS))
@@ -57,8 +60,9 @@ def presses(
 def _ends(problem: Problem) -> list[int]:
     """Slowest and fastest condition of each striker on fresh metal."""
     found: list[int] = []
-    for name in dict.fromkeys(c.striker for c in problem.conditions):
-        own = [k for k, c in enumerate(problem.conditions) if c.striker == name and c.after < 0]
+    struck = [(k, c) for k, c in enumerate(problem.conditions) if c.press is None]
+    for name in dict.fromkeys(c.striker for _, c in struck):
+        own = [k for k, c in struck if c.striker == name and c.after < 0]
         own.sort(key=lambda k: problem.conditions[k].speed)
         found += dict.fromkeys([own[0], own[-1]])
     return found

@@ -19,7 +19,7 @@ from ..comparison.cells import compared
 from ..comparison.forward import Point, Simulator
 from ..comparison.problem import Problem
 from ..inference.fit import Fit
-from ..mechanisms.arithmetic import effective_mass
+from ..mechanisms.arithmetic import deepest
 from ..nulls import Rig, discrepancies, scatter
 from ..nulls.laws import Reference
 from ..nulls.motion import Bodies
@@ -84,7 +84,7 @@ def null_residuals(simulator: Simulator, base: Fit, count: int, rng: np.random.G
     here = Simulator(problem.fresh).predict((), [Point(z)])[0]
     sizes = problem.error.sizes
     spread: dict[str, float] = {}
-    for kind in ("force", "recovery", "crater"):
+    for kind in ("force", "recovery", "crater", "radius"):
         known = sizes.get(kind, 0.0)
         spread |= {kind: LEVEL * known, f"{kind} slope": SLOPE * known, f"{kind} shape": known}
     spread["size"] = SIZE_SPREAD
@@ -92,7 +92,8 @@ def null_residuals(simulator: Simulator, base: Fit, count: int, rng: np.random.G
     cells = problem.cells
     law = np.empty((count, len(cells)))
     for j, name in enumerate(cells.observable):
-        law[:, j] = compared(name, seen[name][:, cells.condition[j]])
+        read = problem.scale(name, z) * seen[name][:, cells.condition[j]]
+        law[:, j] = compared(name, read)
     law -= here
     # what a condition's scatter of speed and angle does is shared by its observables
     unit = scatter(rng, law.shape)
@@ -106,10 +107,7 @@ def rig_of(problem: Problem, z: Array) -> Rig:
     scenes = problem.scenes(z)
     known: dict[tuple[float, ...], Reference] = {}
     plain = [_reference(scene, known) for scene in scenes]
-    depth = [
-        strength_table(s.law, s.pair).peak(0.5 * effective_mass(s) * s.approach.speed**2)
-        for s in scenes
-    ]
+    depth = [deepest(s) for s in scenes]
     ranged = {}
     for one in known.values():
         own = [d for r, d in zip(plain, depth, strict=True) if r is one]
@@ -130,7 +128,8 @@ def rig_of(problem: Problem, z: Array) -> Rig:
         np.array([r.given_back for r in references]),
         np.array([s.instrument.scan_height for s in scenes]),
     )
-    return Rig(bodies, references)
+    loads = np.array([s.press.load if s.press else math.nan for s in scenes])
+    return Rig(bodies, references, loads)
 
 
 def _reference(scene: Scene, known: dict[tuple[float, ...], Reference]) -> Reference:

@@ -128,7 +128,8 @@ def cells_of(
     readings
         Every observable's values over the trials.
     speeds, order
-        Normal speed [m/s] and place in the order of testing of every trial, shape (n,).
+        Normal speed [m/s] (load of a press [N]) and place in the order of testing of every trial,
+        shape (n,).
     conditions
         The nominal impacts.
     varied
@@ -227,7 +228,8 @@ def _repeats(name: str, read: Readings, speeds: Array, place: Array, c: Conditio
     y = np.log(values[index]) if log else values[index]
     s = std[index] / np.abs(values[index]) if log else std[index]
     # with the power that a plastic contact has
-    y = y - _power(name, y) * np.log(speeds[index] / c.speed)
+    mean = c.speed if c.press is None else c.press.load
+    y = y - _power(name, y) * np.log(speeds[index] / mean)
     return _Repeats(index, place[index], y, s)
 
 

@@ -9,35 +9,42 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ...core.rig import value_of
+from ...impact import Press
 from ...recordings import RecordingSet
 from ...recordings.noise import bins
 from ..mechanisms.base import Surroundings
 
 Ints = NDArray[np.intp]
 
-_SAME_SPEED = 0.05
+_SAME_SPEED, _SAME_RATE = 0.05, 0.5
 SPEED_MEASURED, SPEED_FROM_HEIGHT = 0.003, 0.005
 """Systematic relative error of a speed of approach, where nothing is stated."""
+LOAD_CLASS = 0.005
+"""The same of a press's load: class 1 of ISO 7500-1 allows 1 % of the indicated force."""
+_LOAD_REPEATS = 0.003  # relative scatter of a load, where none is stated
 
 
 @dataclass(frozen=True, slots=True)
 class Condition:
-    """One nominal impact.
+    """One nominal impact, or one quasi-static press.
 
     Parameters
     ----------
     striker
         Name of the striker.
     speed, angle, tangential, spin
-        Mean motion just before touch [m/s, rad, m/s, rad/s].
+        Mean motion just before touch [m/s, rad, m/s, rad/s]. The speed of a press is that at which
+        its striker's impact goes as deep: where conditions lie beside each other.
     speed_spread, angle_spread
-        Standard error of the mean speed (fraction) and angle [rad].
+        Standard error of the mean speed, or of a press's mean load, (fraction) and angle [rad].
     trials
         Rows of trials.csv.
     around
         What mechanisms may know.
     after
         The condition that struck the same place before; -1 on fresh metal.
+    press
+        Load and rate of a press; none of an impact.
     """
 
     striker: str
@@ -50,6 +57,14 @@ class Condition:
     trials: tuple[int, ...]
     around: Surroundings
     after: int = -1
+    press: Press | None = None
+
+    @property
+    def told(self) -> str:
+        """The condition in words, for notes and proposals."""
+        if self.press is not None:
+            return f"pressed to {self.press.load:.3g} N"
+        return f"at {self.speed:.3g} m/s"
 
     @property
     def incidence(self) -> float:
@@ -71,7 +86,9 @@ def conditions_of(recordings: RecordingSet) -> tuple[Condition, ...]:
     setup, trials, approach = recordings.setup, recordings.trials, recordings.approach
     numbers, before = _nominal(recordings)
     target, air = setup.target, setup.environment
-    timed = ~np.isnan(trials.impact_speed_m_s)
+    pressed = trials.pressed
+    # a load is measured, as a speed is
+    timed = ~np.isnan(trials.impact_speed_m_s) | pressed
     heights = np.where(timed, np.nan, trials.drop_height_m)
     highest = np.nanmax(heights) if np.isfinite(heights).any() else 1.0
     found = []
@@ -83,6 +100,11 @@ def conditions_of(recordings: RecordingSet) -> tuple[Condition, ...]:
         v = float(np.mean(approach.normal[rows]))
         relative = approach.normal_std[rows] / approach.normal[rows]
         unknown = SPEED_MEASURED if timed[first] else SPEED_FROM_HEIGHT
+        press = None
+        if pressed[first]:
+            relative, unknown = recordings.load_std[rows] / trials.load_N[rows], _LOAD_REPEATS
+            rate = float(np.nan_to_num(trials.press_rate_per_s[first]))
+            press = Press(float(np.mean(trials.load_N[rows])), rate)
         relative = np.where(np.isnan(relative), unknown, relative)
         lean = np.radians(np.nan_to_num(trials.angle_deg_std[rows], nan=0.0))
         rough = [q.value for q in (target.Ra_m, table.Ra_m) if q is not None]
@@ -108,7 +130,7 @@ def conditions_of(recordings: RecordingSet) -> tuple[Condition, ...]:
                 name, v, float(np.mean(approach.angle[rows])),
                 float(np.mean(approach.tangential[rows])), float(np.mean(approach.spin[rows])),
                 float(np.sqrt(np.mean(relative**2) / n)), float(np.sqrt(np.mean(lean**2) / n)),
-                tuple(int(r) for r in rows), around, int(before[first]),
+                tuple(int(r) for r in rows), around, int(before[first]), press,
             )
         )  # fmt: skip
     return tuple(found)
@@ -129,6 +151,8 @@ def _nominal(recordings: RecordingSet) -> tuple[Ints, Ints]:
             bins(approach.tangential / approach.normal, width=_SAME_SPEED),
             bins(approach.spin / approach.normal, width=_SAME_SPEED),
             bins(trials.temperature_K, width=1.0),
+            bins(np.log(trials.load_N), width=_SAME_SPEED),
+            bins(np.log(trials.press_rate_per_s), width=_SAME_RATE),
             strict=True,
         )
     )

@@ -12,8 +12,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ...core.observables import OBSERVABLES
-from ...impact import Scene, Settings, strike_batch, strike_many
-from ...impact.walk import compiled as c
+from ...impact import Scene, Settings, dent_radius, pressed, strike_batch, strike_many
+from ...impact.walk import layout as c
 from ...models.base import DomainWarning
 from ..mechanisms.base import Constants, Mechanism, Situation, attached, observed
 from .cells import compared
@@ -25,6 +25,8 @@ SIMULATED = {name: row.simulated for name, row in OBSERVABLES.items() if row.sim
 """Column of trials.csv to observable of the impact."""
 
 _COLUMN = {name: i for i, name in enumerate(c.OBSERVABLES)}
+_PRESS_DEPTH, _RECOVERED = c.N_OUT, c.N_OUT + 1
+"""Columns behind those of the integrator."""
 ACCURACY = Settings(tolerance=1e-6, max_steps=4000, max_contacts=30)
 _BATCH = 4000
 _WORTH = 200  # scenes from which a second thread pays
@@ -41,7 +43,7 @@ class Point:
     values
         Numbers of every mechanism.
     faster
-        Relative change of every condition's speed.
+        Relative change of every condition's speed, of a press's load.
     steeper
         Change of every condition's angle [rad].
     """
@@ -50,6 +52,23 @@ class Point:
     values: Constants = field(default_factory=dict)
     faster: float = 0.0
     steeper: float = 0.0
+
+
+def _struck_or_pressed(scenes: list[Scene]) -> Array:
+    """Rows of the integrator, those of presses with what they share, and two columns of presses."""
+    loaded = np.array([s.press is not None for s in scenes])
+    rows = np.full((len(scenes), _RECOVERED + 1), np.nan)
+    if not loaded.all():
+        rows[~loaded, :_PRESS_DEPTH] = _struck([s for s in scenes if s.press is None])
+    if loaded.any():
+        found = pressed([s for s in scenes if s.press is not None])
+        for name, column in (
+            ("residual_sphere_m", found.sphere), ("residual_flat_m", found.flat),
+            ("peak_depth_m", found.depth),
+        ):  # fmt: skip
+            rows[loaded, _COLUMN[name]] = column
+        rows[loaded, _PRESS_DEPTH], rows[loaded, _RECOVERED] = found.depth, found.recovered
+    return rows
 
 
 def _struck(scenes: list[Scene]) -> Array:
@@ -111,7 +130,10 @@ class Simulator:
             if id(point.z) not in known:
                 known[id(point.z)] = problem.scenes(point.z)
             for condition, scene in zip(problem.conditions, known[id(point.z)], strict=True):
-                if point.faster or point.steeper:
+                if point.faster and scene.press is not None:
+                    more = replace(scene.press, load=scene.press.load * (1.0 + point.faster))
+                    scene = scene.with_(press=more)
+                elif point.faster or point.steeper:
                     a = scene.approach
                     up = 1.0 + point.faster
                     angle = min(a.angle + point.steeper, np.pi / 2.0)
@@ -123,12 +145,15 @@ class Simulator:
                 scene = attached(mechanisms, scene, point.values, condition.around)
                 situations.append((scene, condition.around))
         scenes = [s for s, _ in situations]
-        rows = _struck(scenes)
+        rows = _struck_or_pressed(scenes)
         self._later_blows(scenes, rows)
         self.tally.impacts += len(rows)
         shape = (len(points), len(problem.conditions))
         seen = {k: rows[:, _COLUMN[v]].copy() for k, v in SIMULATED.items()}
-        self._crater(points, situations, seen)
+        seen["press_depth_m"] = rows[:, _PRESS_DEPTH].copy()
+        seen["recovered_depth_m"] = rows[:, _RECOVERED].copy()
+        seen["dent_diameter_m"] = self._diameters(scenes, seen["peak_depth_m"])
+        self._marks(points, situations, seen)
         # a tip that has parted still has to come out of the crater
         leaving = np.maximum(rows[:, _COLUMN["tip_rebound_m_s"]], 1e-6)
         seen["below_flat_s"] = seen["contact_time_s"] + seen["permanent_depth_m"] / leaving
@@ -137,6 +162,9 @@ class Simulator:
             here = {k: v[part] for k, v in seen.items()}
             for k, v in observed(mechanisms, plain[part], point.values, here).items():
                 seen[k][part] = v
+            # last: an instrument's scale multiplies what is there to be read
+            for k in dict.fromkeys(name for name, _ in problem.scales):
+                seen[k][part] *= problem.scale(k, point.z)
         return {k: v.reshape(shape) for k, v in seen.items()}
 
     def _later_blows(self, scenes: list[Scene], rows: Array) -> None:
@@ -149,17 +177,27 @@ class Simulator:
             earlier = strike_many(scenes[condition.after :: n], ACCURACY)
             for i, impact in enumerate(earlier):
                 scenes[k + i * n] = scenes[k + i * n].with_(spot=impact.spot)
-            rows[k::n] = strike_batch(scenes[k::n], ACCURACY)
+            rows[k::n, :_PRESS_DEPTH] = strike_batch(scenes[k::n], ACCURACY)
 
-    def _crater(
+    def _diameters(self, scenes: list[Scene], peak: Array) -> Array:
+        """Diameters of the dents, (n,); nan where the set holds none."""
+        if "dent_diameter_m" not in self.problem.cells.observable:
+            return np.full(len(scenes), np.nan)
+        return 2.0 * dent_radius(scenes, peak)
+
+    def _marks(
         self, points: Sequence[Point], situations: Sequence[Situation], seen: dict[str, Array]
     ) -> None:
-        n = len(self.problem.conditions)
-        strikers = [c.striker for c in self.problem.conditions]
+        """Put the errors of craters and dents on what stays."""
+        n, problem = len(self.problem.conditions), self.problem
+        strikers = [c.striker for c in problem.conditions]
         for i, point in enumerate(points):
             part = slice(i * n, (i + 1) * n)
-            b = point.z[self.problem.n_nuisances :]
+            b = point.z[problem.n_nuisances :]
             R = np.array([s.pair.R for s, _ in situations[part]])
             depth = seen["peak_depth_m"][part] / R
-            change = self.problem.error.crater_change(b, strikers, depth)
+            change = problem.error.crater_change(b, strikers, depth)
             seen["permanent_depth_m"][part] *= np.exp(change)
+            if problem.sees_dents:
+                wider = np.exp(problem.error.radius_change(b, strikers, depth))
+                seen["dent_diameter_m"][part] *= wider

@@ -13,18 +13,25 @@ from ...core.errors import InputError
 from ...core.material import Pair
 from ...core.observables import OBSERVABLES
 from ...core.rig import Rig
-from ...impact import Approach, ForceTransform, Friction, Scene, Striker
+from ...impact import CREEP, Approach, ForceTransform, Friction, Press, Scene, Striker
 from ...impact.files.bodies import bodies_of
-from ...impact.strength import strength_table
 from ...models.base import ContactLaw
 from ...recordings import RecordingSet
 from ..baseline.laws import laws_of, without_curves
 from ..curves import readings_of
-from ..mechanisms.arithmetic import energy
+from ..mechanisms.arithmetic import as_deep, deepest
 from ..unknowns.drift import Drift
 from ..unknowns.followed import Followed
 from ..unknowns.lawerror import NO_ERROR, LawError, law_error
-from ..unknowns.nuisances import ASSUMED_E, ASSUMED_NU, Nuisance, nuisances_of
+from ..unknowns.nuisances import (
+    ASSUMED_E,
+    ASSUMED_NU,
+    GAUGE,
+    LOAD_SCALE,
+    RIM_SCALE,
+    Nuisance,
+    nuisances_of,
+)
 from .cells import NO_CELLS, Cells, Scatter, cells_of
 from .conditions import Condition, conditions_of
 
@@ -49,6 +56,8 @@ class Problem:
     followed: tuple[Followed, ...] = ()
     weightless: frozenset[int] = frozenset()
     """Cells that are too far off everything else to count."""
+    sees_dents: bool = False
+    """Whether diameters of dents were measured, so that the contact's radius matters."""
 
     @property
     def n_nuisances(self) -> int:
@@ -87,10 +96,26 @@ class Problem:
         stated = plain.scenes(np.zeros(plain.n_z))
         for c, scene in zip(self.conditions, stated, strict=True):
             scenes.setdefault(c.striker, []).append(scene)
-        error = law_error(scenes)
+        error = law_error(scenes, dents=self.sees_dents)
         if known is not None:
             error = replace(known, spreads={**error.spreads, **known.spreads})
         return replace(self, error=error)
+
+    @property
+    def scales(self) -> tuple[tuple[str, int], ...]:
+        """Observables whose readings share a factor, and its place among the unknowns."""
+        found = []
+        for i, n in enumerate(self.nuisances):
+            if n.name == RIM_SCALE:
+                found.append(("dent_diameter_m", i))
+            elif n.name.startswith(GAUGE) and n.name != LOAD_SCALE:
+                found.append((n.name.removeprefix(GAUGE), i))
+        return tuple(found)
+
+    def scale(self, observable: str, z: Array) -> float:
+        """Return the factor that all readings of an observable share at the unknowns z, (n_z,)."""
+        places = [i for name, i in self.scales if name == observable]
+        return math.prod(self.nuisances[i].at(float(z[i])) for i in places)
 
     @property
     def fresh(self) -> Problem:
@@ -113,10 +138,23 @@ class Problem:
         scale = values.get("speed.scale", 1.0)
         turn = values.get("angle.offset", 0.0)
         mu = Friction(values.get("friction.coefficient", 0.0))
+        heavier = values.get(LOAD_SCALE, 1.0)
         return [
             self._scene(c, parts[c.striker], scale, turn, mu, forces[c.striker])
+            if c.press is None
+            else self._press(c, parts[c.striker], heavier * c.press.load, forces[c.striker])
             for c in self.conditions
         ]
+
+    def _press(
+        self, c: Condition, parts: tuple[Pair, Striker], load: float, force: ForceTransform
+    ) -> Scene:
+        pair, striker = parts
+        rate = 0.0 if c.press is None else c.press.rate
+        return Scene(
+            self.laws[c.striker], pair, striker, CREEP, gravity=self.rig.gravity_m_s2.value,
+            force=force, press=Press(load, rate),
+        )  # fmt: skip
 
     def _scene(
         self, c: Condition, parts: tuple[Pair, Striker], scale: float, turn: float,
@@ -160,7 +198,10 @@ def problem_of(
     nuisances = nuisances_of(recordings, conditions)
     plain = without_curves(setup.target)
     laws = dict.fromkeys((c.striker for c in conditions), plain)
-    problem = Problem(recordings.name, laws, setup, conditions, NO_CELLS, nuisances, NO_ERROR)
+    problem = Problem(
+        recordings.name, laws, setup, conditions, NO_CELLS, nuisances, NO_ERROR,
+        sees_dents="dent_diameter_m" in recordings.observed,
+    )  # fmt: skip
     solve = solve or setup.target.law == "table"
     problem, told = _of_its_metal(problem, recordings, solve, progress)
     problem = problem.with_error()
@@ -168,7 +209,8 @@ def problem_of(
     of_trial = {i: s for c, s in zip(conditions, stated, strict=True) for i in c.trials}
     readings, unread = readings_of(recordings, [of_trial[i] for i in sorted(of_trial)])
     trials = recordings.trials
-    seen = cells_of(readings, approach.normal, trials.order, conditions, trials.varied)
+    driven = np.where(trials.pressed, trials.load_N, approach.normal)
+    seen = cells_of(readings, driven, trials.order, problem.conditions, trials.varied)
     if len(seen.cells) == 0:
         known = ", ".join(name for name, row in OBSERVABLES.items() if row.in_trials)
         raise InputError(
@@ -194,7 +236,10 @@ def _of_its_metal(
     stated = problem.scenes(np.zeros(problem.n_nuisances))
     for c, s in zip(problem.conditions, stated, strict=True):
         pairs[c.striker] = s.pair
-        peak = strength_table(s.law, s.pair).peak(energy(s))
-        depths.setdefault(c.striker, []).append(peak / s.pair.R)
+        depths.setdefault(c.striker, []).append(deepest(s) / s.pair.R)
     laws, told = laws_of(recordings, pairs, depths, solve=solve, progress=progress)
-    return replace(problem, laws=laws), told
+    conditions = tuple(
+        c if c.press is None else replace(c, speed=as_deep(s))
+        for c, s in zip(problem.conditions, stated, strict=True)
+    )
+    return replace(problem, laws=laws, conditions=conditions), told

@@ -9,14 +9,21 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from ...core.rig import Quantity, StrikerTable
+from ...impact import CREEP, Press, Scene
+from ...impact.strength import strength_table
 from ..comparison.conditions import Condition
 from ..comparison.problem import Problem
+from ..mechanisms.arithmetic import as_deep, deepest
 
 _SPEEDS, _ANGLES = 5, 4
 """Places over the tested range of speeds and of angles."""
 _RATIO = 2.0
 """Size of a body to be built over that of the one there is, and one over it."""
 _NEAR = math.radians(4.0)
+BENCH = (20.0, 5000.0)
+"""Loads of a bench press or a small testing machine [N]."""
+_LOADS, _EACH, _WIDE = 4, 3, 1.5
+"""Loads of a series, presses at each, and the ratio of loads from which as many are worth it."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -41,13 +48,73 @@ class Candidate:
     like: str = ""
 
 
+@dataclass(frozen=True, eq=False)
+class Series:
+    """Quasi-static presses of one striker.
+
+    Parameters
+    ----------
+    change
+        In words.
+    conditions
+        One for each load.
+    each
+        Presses at each load.
+    """
+
+    change: str
+    conditions: tuple[Condition, ...]
+    each: int
+
+
+def press_series(problem: Problem) -> list[Series]:
+    """Return presses with each striker, as deep as its trials went, within what a press can do."""
+    stated = problem.scenes(np.zeros(problem.n_z))
+    own: dict[str, list[tuple[Condition, Scene]]] = {}
+    for c, scene in zip(problem.conditions, stated, strict=True):
+        own.setdefault(c.striker, []).append((c, scene))
+    found = []
+    for name, trials in sorted(own.items()):
+        c, scene = trials[0]
+        table = strength_table(scene.law, scene.pair)
+        depths = [deepest(s) for _, s in trials]
+        ends = np.exp(np.interp(np.log([min(depths), max(depths)]), table.log_depth,
+                                table.stated.force))  # fmt: skip
+        low, high = np.clip(ends, *BENCH)
+        if not ends[0] < BENCH[1] or not ends[1] > BENCH[0]:
+            continue
+        few = _LOADS if high > _WIDE * low else 2
+        loads = [_round(x) for x in np.geomspace(low if few > 2 else low / 2.0, high, few)]
+        upright = replace(c, angle=math.pi / 2.0, tangential=0.0, spin=0.0, after=-1)
+        pressed = tuple(_at_load(upright, scene, load) for load in loads)
+        told = ", ".join(f"{load:g}" for load in loads[:-1])
+        text = (
+            f"press {name} slowly on the same flat, each time on a fresh place, {_EACH} times each "
+            f"to {told} and {loads[-1]:g} N"
+        )
+        found.append(Series(text, pressed, _EACH))
+    return found
+
+
+def _at_load(c: Condition, scene: Scene, load: float) -> Condition:
+    speed = as_deep(scene.with_(approach=CREEP, press=Press(load)))
+    return replace(c, speed=speed, press=Press(load))
+
+
+def _round(load: float) -> float:
+    """Two digits: nobody sets a press finer."""
+    return float(f"{load:.2g}")
+
+
 def candidates_of(problem: Problem) -> list[Candidate]:
     """Return trials within the speeds, angles and bodies of a set, then those to be built."""
-    speeds = [c.speed for c in problem.conditions]
+    speeds = [c.speed for c in problem.conditions if c.press is None]
+    if not speeds:
+        return []
     places = np.geomspace(min(speeds), max(speeds), _SPEEDS)
     if max(speeds) < 1.05 * min(speeds):
         places = np.array([float(np.median(speeds))])
-    first = {c.striker: c for c in reversed(problem.conditions)}
+    first = {c.striker: c for c in reversed(problem.conditions) if c.press is None}
     found: list[Candidate] = []
     for name, c in sorted(first.items()):
         fresh = replace(c, after=-1)
@@ -73,7 +140,9 @@ def _at(c: Condition) -> str:
 
 def _angles(problem: Problem, c: Condition, speed: float) -> Iterable[Candidate]:
     """Angles between those tested that are not among them."""
-    near = sorted({x.incidence for x in problem.conditions if x.striker == c.striker})
+    near = sorted(
+        {x.incidence for x in problem.conditions if x.striker == c.striker and x.press is None}
+    )
     if len(near) < 2:
         return
     for angle in np.linspace(near[0], near[-1], 2 * _ANGLES + 1):

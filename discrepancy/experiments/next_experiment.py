@@ -20,11 +20,12 @@ from ...core.observables import OBSERVABLES
 from ...core.rig import Rig
 from ...core.unstated import unstated_equal
 from ..choice.odds import Odds
+from ..comparison.conditions import LOAD_CLASS
 from ..comparison.forward import Point, Simulator
 from ..comparison.problem import Problem
 from ..inference.fit import Fit
 from ..rank import Ranking
-from .feasible import Candidate, candidates_of
+from .feasible import Candidate, Series, candidates_of, press_series
 from .foreseen import discrimination, foreseen, information
 
 Array = NDArray[np.float64]
@@ -38,6 +39,11 @@ LITTLE = 0.9
 """Width of an interval, over that of today, above which a change is not worth its while."""
 _DECIDES = 1.0  # standard deviations by which rivals must differ for one trial to tell much
 _BUILD = 2.0  # what is to be built must bring as many times more than what is there
+_LARGE = ("build", "press")  # another body, or a dozen of presses, beside one more trial
+_PRESSED = {"permanent_depth_m": 0.02, "dent_diameter_m": 0.01}
+"""What is read of a proposed press, with the relative error of one reading: a stylus or a
+microscope, and a microscope with a scale."""
+_LAW_OF_RADIUS = 0.02  # of a dent's diameter, in a set whose law's error has none
 
 
 @unstated_equal
@@ -52,13 +58,14 @@ class Proposal:
     expected_discrimination
         D averaged over the rivals; 0 where there are none.
     kind
-        `trial`, `build`, `noise`, `observable` or `none`.
+        `trial`, `press`, `build`, `noise`, `observable` or `none`.
     information
         Nats by which the entropy of which rival is true is expected to fall.
     interval
         Width of the leading parameter's interval over that of today; nan where not worked out.
     trial
-        Striker, speed [m/s] and angle [degrees] of a trial, and mass [kg] and tip radius [m].
+        Striker, speed [m/s] and angle [degrees] of a trial, and mass [kg] and tip radius [m]; of
+        presses the striker, the smallest and the largest load [N], and how many.
     observable
         What to measure as well, of a proposal of that kind.
     """
@@ -115,7 +122,7 @@ def propose(
     if len(rivals) < 2:
         return []
     found = _worth_of_each(simulator, rivals, rng)
-    found.sort(key=lambda p: -p.information / (_BUILD if p.kind == "build" else 1.0))
+    found.sort(key=lambda p: -p.information / (_BUILD if p.kind in _LARGE else 1.0))
     best = rivals[0][0]
     if best.mechanisms:
         sharper = _sharper(simulator.problem, best)
@@ -159,7 +166,8 @@ def _options(simulator: Simulator) -> tuple[list[tuple[Ints, Proposal]], Problem
     rig = problem.rig.model_copy(update={"strikers": {**problem.rig.strikers, **built}})
     laws = {c.condition.striker: problem.laws[c.like or c.condition.striker] for c in candidates}
     conditions = (*problem.conditions, *(c.condition for c in candidates))
-    measured = list(dict.fromkeys(problem.cells.observable))
+    seen = list(dict.fromkeys(problem.cells.observable))
+    measured = [name for name in seen if "impact" in OBSERVABLES[name].of]
     noise = {name: _noise(simulator, name) for name in measured}
     first = len(problem.conditions)
     options: list[tuple[Ints, Proposal]] = []
@@ -171,17 +179,27 @@ def _options(simulator: Simulator) -> tuple[list[tuple[Ints, Proposal]], Problem
     for name in _not_measured(problem):
         noise[name] = _noise(simulator, name)
         for k, one in enumerate(problem.conditions):
+            if ("impact" if one.press is None else "press") not in OBSERVABLES[name].of:
+                continue
             label = OBSERVABLES[name].label
-            text = f"measure {label} too, first of {one.striker} at {one.speed:.2g} m/s"
+            text = f"measure {label} too, first of {one.striker} {one.told}"
             told = Proposal(text, 0.0, "observable", observable=name)
             options.append((np.array([len(new)]), told))
             new.append((k, name))
+    std = [noise[name] for _, name in new]
+    for series in press_series(problem):
+        first = len(conditions)
+        conditions = (*conditions, *series.conditions)
+        read = [(first + k, name) for k in range(len(series.conditions)) for name in _PRESSED]
+        options.append((np.arange(len(new), len(new) + len(read)), _pressing(series)))
+        new += read
+        std += [_press_noise(problem, name, series.each) for _, name in read]
     cells = problem.cells
     more = replace(
         cells, condition=np.append(cells.condition, [k for k, _ in new]).astype(np.intp),
         observable=(*cells.observable, *(name for _, name in new)),
         value=np.append(cells.value, np.zeros(len(new))),
-        std=np.append(cells.std, [noise[name] for _, name in new]),
+        std=np.append(cells.std, std),
         count=np.append(cells.count, np.ones(len(new))).astype(np.intp),
     )  # fmt: skip
     wider = replace(
@@ -201,6 +219,23 @@ def _proposal(c: Candidate, measured: list[str], rig: Rig) -> Proposal:
     return Proposal(
         f"{c.change}, measuring {words}", 0.0, "build" if c.built else "trial", trial=trial
     )
+
+
+def _pressing(series: Series) -> Proposal:
+    loads = [c.press.load for c in series.conditions if c.press is not None]
+    trial: dict[str, str | float] = {
+        "striker": series.conditions[0].striker, "least_load_N": min(loads),
+        "load_N": max(loads), "presses": float(series.each * len(loads)),
+    }  # fmt: skip
+    words = " and ".join(OBSERVABLES[n].label for n in _PRESSED)
+    return Proposal(f"{series.change}, measuring {words}", 0.0, "press", trial=trial)
+
+
+def _press_noise(problem: Problem, name: str, each: int) -> float:
+    """Standard error of what a series reads at one load, the load's own in it."""
+    law = _LAW_OF_RADIUS if name == "dent_diameter_m" and not problem.sees_dents else 0.0
+    load = LOAD_CLASS * OBSERVABLES[name].power
+    return math.sqrt(_PRESSED[name] ** 2 / each + law**2 + load**2)
 
 
 def _not_measured(problem: Problem) -> list[str]:
@@ -272,6 +307,8 @@ def _noise(simulator: Simulator, name: str) -> float:
     if here.any():
         return float(np.median(problem.cells.std[here]))
     row = OBSERVABLES[name]
+    if name == "dent_diameter_m":
+        return math.hypot(row.usual_noise, _LAW_OF_RADIUS)
     if row.log:
         return row.usual_noise
     seen = simulator.observe((), [Point(np.zeros(problem.n_z))])[name]

@@ -20,6 +20,7 @@ from .fit import Fit
 Array = NDArray[np.float64]
 
 LIMIT, SHARE, WIDER = 4.0, 1.0 / 16.0, 30.0
+_APART = 10.0  # between presses and impacts, which are no neighbours
 ALONE = 2.0
 """A neighbour that is as many standard deviations off to the same side speaks for a value."""
 
@@ -66,7 +67,10 @@ def _wide(i: int, own: Array) -> Array:
 def _neighbours(problem: Problem) -> list[NDArray[np.intp]]:
     """For each cell the two of the same observable and striker that are nearest in condition."""
     cells, conditions = problem.cells, problem.conditions
-    place = np.array([[np.log(c.speed), 2.0 * c.angle, c.tangential / c.speed] for c in conditions])
+    place = np.array([
+        [np.log(c.speed), 2.0 * c.angle, c.tangential / c.speed, _APART * (c.press is not None)]
+        for c in conditions
+    ])  # fmt: skip
     found = []
     for i, k in enumerate(cells.condition):
         same = np.array([
@@ -87,7 +91,7 @@ def without_weight(problem: Problem, outliers: NDArray[np.bool_]) -> Problem:
     places = []
     for i in np.flatnonzero(outliers):
         c = problem.conditions[cells.condition[i]]
-        places.append(f"{cells.observable[i]} of {c.striker} at {c.speed:.3g} m/s")
+        places.append(f"{cells.observable[i]} of {c.striker} {c.told}")
     note = f"given no weight, because far off what everything else says: {'; '.join(places)}"
     return replace(
         problem, cells=replace(cells, std=std), notes=(*problem.notes, note),

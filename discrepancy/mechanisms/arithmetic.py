@@ -9,6 +9,7 @@ import numpy as np
 
 from ...core.material import Material
 from ...impact import Scene
+from ...impact.strength import strength_table
 from .base import Array, Situation
 
 _STEEL_DENSITY = 7800.0
@@ -24,6 +25,22 @@ def effective_mass(scene: Scene) -> float:
 def energy(scene: Scene) -> float:
     """Kinetic energy that the contact must take up, m_eff v^2 / 2 [J]."""
     return 0.5 * effective_mass(scene) * scene.approach.speed**2
+
+
+def deepest(scene: Scene) -> float:
+    """Depth that the law by itself reaches: at the energy of an impact, or a press's load [m]."""
+    table = strength_table(scene.law, scene.pair)
+    if scene.press is None:
+        return table.peak(energy(scene))
+    known = np.maximum.accumulate(table.stated.force)
+    return float(np.exp(np.interp(math.log(scene.press.load), known, table.log_depth)))
+
+
+def as_deep(scene: Scene) -> float:
+    """Normal speed at which this striker's impact goes as deep as its press [m/s]."""
+    table = strength_table(scene.law, scene.pair)
+    work = np.interp(math.log(deepest(scene)), table.log_depth, np.log(table.work))
+    return math.sqrt(2.0 * math.exp(float(work)) / effective_mass(scene))
 
 
 def density_of(material: Material) -> float:

@@ -157,6 +157,8 @@ class Mechanism(ABC):
     named
         Whether a verdict has a name for it. What has none counts as something outside the library,
         and the report says that it behaves like this.
+    static
+        Whether it acts without motion, and so on a quasi-static press as well.
     rests_on
         Bodies whose elastic modulus its numbers rest on: "target", "striker". Where a set does not
         state one, the mechanism is not tried: its constants would be those of the assumption.
@@ -172,6 +174,7 @@ class Mechanism(ABC):
     scale_error: ClassVar[float] = 0.0
     jumps: ClassVar[bool] = False
     named: ClassVar[bool] = True
+    static: ClassVar[bool] = False
     rests_on: ClassVar[tuple[str, ...]] = ()
 
     @property
@@ -180,8 +183,22 @@ class Mechanism(ABC):
         known = {p.name: p.literature.value for p in self.parameters if p.literature}
         return known if len(known) == len(self.parameters) else {}
 
+    def acts_on(self, scene: Scene) -> bool:
+        """Whether it can act in a scene at all: nothing that needs motion acts in a press."""
+        return self.static or scene.press is None
+
+    def ruled_out(self, situations: Sequence[Situation]) -> str:
+        """Return why these conditions, presses among them, cannot show the mechanism, or ""."""
+        moving = [(scene, around) for scene, around in situations if self.acts_on(scene)]
+        if not moving:
+            return "every trial is a quasi-static press: nothing moves"
+        return self.applies(moving)
+
     def applies(self, situations: Sequence[Situation]) -> str:
-        """Return why arithmetic rules the mechanism out for these conditions, or ""."""
+        """Return why arithmetic rules the mechanism out for these conditions, or "".
+
+        Of presses it is asked only if it acts without motion.
+        """
         return ""
 
     def ranges(self, situations: Sequence[Situation]) -> tuple[Parameter, ...]:
@@ -212,7 +229,8 @@ def attached(
 ) -> Scene:
     """Return the scene with mechanisms attached one after the other."""
     for m in _acting(mechanisms, constants):
-        scene = m.attach(scene, constants[m.name], around)
+        if m.acts_on(scene):
+            scene = m.attach(scene, constants[m.name], around)
     return scene
 
 
@@ -227,5 +245,17 @@ def observed(
     Undone in the order of attachment: the last change of the approach was the innermost.
     """
     for m in reversed(_acting(mechanisms, constants)):
-        seen = m.after(situations, constants[m.name], seen)
+        moved = np.array([m.acts_on(scene) for scene, _ in situations])
+        if moved.all():
+            seen = m.after(situations, constants[m.name], seen)
+            continue
+        some = [one for one, here in zip(situations, moved, strict=True) if here]
+        after = m.after(some, constants[m.name], {k: v[moved] for k, v in seen.items()})
+        seen = {k: _placed(v, moved, after[k]) for k, v in seen.items()}
     return seen
+
+
+def _placed(whole: Array, here: NDArray[np.bool_], part: Array) -> Array:
+    found = whole.copy()
+    found[here] = part
+    return found

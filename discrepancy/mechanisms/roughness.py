@@ -101,6 +101,7 @@ class Roughness(Mechanism):
         ),
     )  # fmt: skip
     direction: ClassVar[Mapping[str, int]] = {"contact_time_s": 1, "peak_force_N": -1}
+    static: ClassVar[bool] = True
 
     def applies(self, situations: Sequence[Situation]) -> str:
         """Needs a metal that yields."""
@@ -132,7 +133,13 @@ class Roughness(Mechanism):
         for (scene, _), peak in zip(situations, seen["peak_depth_m"], strict=True):
             table, dent = strength_table(scene.law, scene.pair), _layer_of(scene, values).dent
             left.append(np.interp(math.log(max(peak, table.depth[0])), table.log_depth, dent))
-        return {**seen, "permanent_depth_m": seen["permanent_depth_m"] * np.array(left)}
+        stays = {**seen, "permanent_depth_m": seen["permanent_depth_m"] * np.array(left)}
+        if "recovered_depth_m" in seen:
+            # what the recovery gives back in depth is not what it gives back in energy
+            whole = seen["press_depth_m"]
+            rest = (whole - seen["recovered_depth_m"]) * np.array(left)
+            stays["recovered_depth_m"] = whole - rest
+        return stays
 
 
 def _layer_of(scene: Scene, values: Values) -> Layer:

@@ -31,6 +31,7 @@ class TruncatedTip(Mechanism):
         "peak_force_N": 1,
     }
 
+    static: ClassVar[bool] = True
     law_error: ClassVar[float] = 2.5
     """The law is that of a sphere, pressed deeper by the missing cap; about 5 % of the force."""
 

@@ -10,6 +10,7 @@ from numpy.typing import NDArray
 
 from .laws import Reference, curve, draw
 from .motion import Bodies, collide
+from .press import press
 
 Array = NDArray[np.float64]
 
@@ -24,10 +25,13 @@ class Rig:
         Strikers before touch, one a condition.
     references
         The baseline's curve of each condition.
+    loads
+        (conditions,) largest load of each press [N]; nan of an impact.
     """
 
     bodies: Bodies
     references: Sequence[Reference]
+    loads: Array
 
 
 def discrepancies(
@@ -54,8 +58,21 @@ def discrepancies(
         law = draw(rng, size)
         table = {r: curve(r, law) for r in contacts}
         curves += [table[r] for r in rig.references]
-    many = Bodies(*(np.tile(getattr(rig.bodies, k), count) for k in Bodies.__dataclass_fields__))
-    seen = collide(many, curves)
+    loads = np.tile(rig.loads, count)
+    struck = np.isnan(loads)
+    seen: dict[str, Array] = {}
+    for rows in (struck, ~struck):
+        if not rows.any():
+            continue
+        own = [c for c, here in zip(curves, rows, strict=True) if here]
+        if rows is struck:
+            fields = Bodies.__dataclass_fields__
+            many = Bodies(*(np.tile(getattr(rig.bodies, k), count)[rows] for k in fields))
+            found = collide(many, own)
+        else:
+            found = press(loads[rows], own)
+        for name, values in found.items():
+            seen.setdefault(name, np.full(len(curves), np.nan))[rows] = values
     return {k: v.reshape(count, n) for k, v in seen.items()}
 
 

@@ -97,8 +97,8 @@ class Draw:
         Offset of the recovery's exponent.
     stray
         Largest rms distance of the shapes of force and of recovery from the reference (logarithm).
-    dent
-        As `level`, of the crater.
+    dent, wide
+        As `level`, of the crater and of the contact's radius at a force.
     """
 
     kind: str
@@ -110,6 +110,7 @@ class Draw:
     power: float
     stray: tuple[float, float] = (math.inf, math.inf)
     dent: tuple[float, float] = (0.0, 0.0)
+    wide: tuple[float, float] = (0.0, 0.0)
 
 
 def draw(rng: np.random.Generator, size: dict[str, float]) -> Draw:
@@ -118,16 +119,18 @@ def draw(rng: np.random.Generator, size: dict[str, float]) -> Draw:
     a, b, c = (float(x) for x in rng.random(3))
     drawn = {
         k: float(rng.normal(0.0, size.get(k, 0.0)))
-        for kind in ("force", "recovery", "crater")
+        for kind in ("force", "recovery", "crater", "radius")
         for k in (kind, f"{kind} slope")
     }
-    level, back, dent = ((drawn[k], drawn[f"{k} slope"]) for k in ("force", "recovery", "crater"))
+    level, back, dent, wide = (
+        (drawn[k], drawn[f"{k} slope"]) for k in ("force", "recovery", "crater", "radius")
+    )
     times = math.exp(rng.normal(0.0, size.get("size", 0.0)))
     stray = size.get("force shape", math.inf), size.get("recovery shape", math.inf)
     return Draw(
         kind, a, b, c, (times * level[0], times * level[1]), (times * back[0], times * back[1]),
         float(rng.uniform(-0.1, 0.1)), (times * stray[0], times * stray[1]),
-        (times * dent[0], times * dent[1]),
+        (times * dent[0], times * dent[1]), (times * wide[0], times * wide[1]),
     )  # fmt: skip
 
 
@@ -164,6 +167,8 @@ def curve(reference: Reference, law: Draw) -> Curve:
     crater = np.maximum(d - rec, 0.0) * np.clip(crater / left, 0.0, 1.0)
     far = np.clip(x, x[inside][0], x[inside][-1]) - middle
     crater = crater * np.exp(law.dent[0] + law.dent[1] * far)
+    # at one pressure the contact that carries more is wider
+    radius = radius * np.exp(0.5 * (f - base) + law.wide[0] + law.wide[1] * far)
     return Curve(x, f, rec, crater, radius, power)
 
 

@@ -168,6 +168,7 @@ def collide(bodies: Bodies, curves: Sequence[Curve]) -> dict[str, Array]:
     return {
         "restitution": gone / bodies.normal,
         "permanent_depth_m": crater,
+        "dent_diameter_m": 2.0 * radius,
         "contact_time_s": s.time,
         "peak_force_N": s.largest_force,
         "rebound_spin_rad_s": s.spin,

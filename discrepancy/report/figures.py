@@ -57,7 +57,7 @@ def comparison(
         x = np.array([p.x[against.key] for p in points])
         positive = np.array([[p.measured, p.before] for p in points])
         _axis(upper, "y", positive, log=row.log)
-        _axis(upper, "x", x, log=against.key == "speed_m_s")
+        _axis(upper, "x", x, log=against.key in ("speed_m_s", "load_N"))
         shift = _sideways(x, log=upper.get_xscale() == "log")
         for n, p in enumerate(points):
             marker = MARKERS[strikers.index(p.striker) % len(MARKERS)]

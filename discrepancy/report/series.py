@@ -10,6 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ...core.observables import OBSERVABLES
+from ..comparison.conditions import Condition
 from ..findings import Verdict
 from ..inference.outliers import WIDER
 
@@ -79,11 +80,21 @@ class Point:
 
 
 def againsts(v: Verdict) -> tuple[Against, ...]:
-    """Return what varies over the conditions, the speed first even if it does not."""
+    """Return what varies over the conditions, the speed first even if it does not.
+
+    Presses stand at the speed at which their striker's impact goes as deep; they alone, at their
+    load.
+    """
     c, rigs = v.problem.conditions, v.problem.rig.strikers
     total = np.array([math.hypot(one.speed, one.tangential) for one in c])
+    loads = [one.press.load for one in c if one.press is not None]
+    beside = " (of presses: as deep)" if loads else ""
     known = (
-        Against("speed_m_s", "approach speed [m/s]", np.array([one.speed for one in c])),
+        Against("load_N", "load [N]", np.array(loads))
+        if len(loads) == len(c)
+        else Against(
+            "speed_m_s", f"approach speed [m/s]{beside}", np.array([one.speed for one in c])
+        ),
         Against("angle_deg", "angle [deg]", np.degrees([one.incidence for one in c])),
         Against(
             "tangential_m_s", "tangential speed [m/s]", np.array([one.tangential for one in c])
@@ -111,6 +122,11 @@ def againsts(v: Verdict) -> tuple[Against, ...]:
     return tuple(varying or known[:1])
 
 
+def series_of(c: Condition) -> str:
+    """Return what struck or pressed: a series of its own for each."""
+    return c.striker if c.press is None else f"{c.striker}, pressed"
+
+
 def points_of(v: Verdict) -> tuple[Point, ...]:
     """Return every number of the comparison."""
     cells, conditions = v.problem.cells, v.problem.conditions
@@ -128,7 +144,7 @@ def points_of(v: Verdict) -> tuple[Point, ...]:
 
         found.append(
             Point(
-                name, row.unit, conditions[k].striker, k + 1, int(cells.count[i]),
+                name, row.unit, series_of(conditions[k]), k + 1, int(cells.count[i]),
                 {a.key: float(a.values[k]) for a in along},
                 shown(cells.value[i]), shown(cells.value[i] - std[i]),
                 shown(cells.value[i] + std[i]), shown(stated[i]), shown(base.prediction[i]),

@@ -10,7 +10,7 @@ import numpy as np
 
 from ...core.observables import OBSERVABLES
 from ..findings import Verdict
-from .series import Against, Point, againsts, points_of
+from .series import Against, Point, againsts, points_of, series_of
 from .text import headline, own_parameters
 from .wording import (
     explanation,
@@ -115,7 +115,7 @@ def story_of(v: Verdict) -> Story:
         summary=_summary(v),
         points=points_of(v),
         against=againsts(v),
-        strikers=tuple(dict.fromkeys(c.striker for c in v.problem.conditions)),
+        strikers=tuple(dict.fromkeys(series_of(c) for c in v.problem.conditions)),
         misses=miss_sentences(v.located.misses[:_SHOWN], v.located.threshold),
         audit=tuple(str(a["message"]) for a in v.audit),
         reasons=v.reasons,

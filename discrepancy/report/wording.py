@@ -30,6 +30,8 @@ _KEYS = {
 _WHOLE = {
     "speed.scale": "all speeds, by one factor",
     "angle.offset": "all angles, by one shift",
+    "gauge.load_N": "all loads, by one factor",
+    "dent.rim": "rim of a dent over its contact circle",
     "friction.coefficient": "friction coefficient",
 }
 GLOSSARY = (
@@ -75,6 +77,8 @@ def number_name(key: str) -> str:
     """Return the name of a number of set.toml in words: `target.E_Pa` is Young's modulus ..."""
     if key in _WHOLE:
         return _WHOLE[key]
+    if key.startswith("gauge."):
+        return f"all readings of {OBSERVABLES[key.removeprefix('gauge.')].label}, by one factor"
     *place, last = key.split(".")
     what = _KEYS.get(last, last.replace("_", " "))
     if not place:

@@ -10,11 +10,20 @@ from ..comparison.problem import Problem
 Array = NDArray[np.float64]
 
 
+PRESSED = "press instead of impact"
+"""Of sets with both: what no mechanism that needs motion does in a press."""
+
+
 def covariates(problem: Problem) -> dict[str, Array]:
-    """Return what varies over the conditions, standardised, each of shape (conditions,)."""
+    """Return what varies over the conditions, standardised, each of shape (conditions,).
+
+    A press lies at the speed at which its striker's impact goes as deep.
+    """
     c = problem.conditions
+    pressed = np.array([x.press is not None for x in c], dtype=float)
     raw = {
-        "impact speed": np.log([x.speed for x in c]),
+        "load" if pressed.all() else "impact speed": np.log([x.speed for x in c]),
+        PRESSED: pressed,
         "rod length": np.array([problem.rig.strikers[x.striker].length for x in c]),
         "tip radius": np.log([problem.rig.strikers[x.striker].tip_radius_m.value for x in c]),
         "striker mass": np.log([problem.rig.strikers[x.striker].mass_kg.value for x in c]),
@@ -40,7 +49,8 @@ def nearness(problem: Problem, length: float) -> Array:
     length
         Correlation length, in standard deviations of each covariate.
     """
-    varied = list(covariates(problem).values())
+    # a form that is off is so in presses as well
+    varied = [x for name, x in covariates(problem).items() if name != PRESSED]
     m = len(problem.cells)
     if not varied:
         return np.ones((m, m))

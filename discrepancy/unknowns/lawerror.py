@@ -34,7 +34,7 @@ from ...models.anchored import AnchoredLaw
 from ...models.base import DomainWarning
 from ...models.uncertainty import METAL, RECOVERY_EXPONENT, WITH_CURVE
 from ..inference.linear import Sizes
-from ..mechanisms.arithmetic import energy
+from ..mechanisms.arithmetic import deepest
 
 Array = NDArray[np.float64]
 
@@ -44,11 +44,13 @@ SIZES = Sizes(
     tuple(math.exp(k * math.sqrt(3.0) * SIZE_SPREAD) for k in (-1, 0, 1)), (1 / 6, 2 / 3, 1 / 6)
 )
 """Of the law's error: the three points of Gauss and Hermite."""
-FREE = {"force": 0.16, "recovery": 0.5, "recovery exponent": 0.5, "crater": 0.24}
+FREE = {
+    "force": 0.16, "recovery": 0.5, "recovery exponent": 0.5, "crater": 0.24, "radius": 0.1,
+}  # fmt: skip
 """Standard deviations of a contact law that is free: what something unknown may make of it."""
 
 _LENGTH = 2.5  # correlation length in ln(depth/R)
-_KINDS = ("force", "recovery", "recovery exponent", "crater")
+_KINDS = ("force", "recovery", "recovery exponent", "crater", "radius")
 _GRID = np.linspace(LOG_DEPTH_FIRST, LOG_DEPTH_LAST, NODES)
 # Depths that impacts reach; outside, the components stay at their end values.
 _FIRST, _LAST = math.log(3e-5), math.log(0.2)
@@ -92,8 +94,9 @@ class LawError:
 
     Parameters
     ----------
-    force, recovery, crater
-        (k, NODES) unit components over the depth nodes.
+    force, recovery, crater, radius
+        (k, NODES) unit components over the depth nodes; none of the radius where no dent's
+        diameter was measured.
     spreads
         Striker to how unsure its contact is.
     """
@@ -102,19 +105,20 @@ class LawError:
     recovery: Array
     crater: Array
     spreads: Mapping[str, Spread] = field(default_factory=dict)
+    radius: Array = field(default_factory=lambda: np.zeros((0, NODES)))
 
     @cached_property
     def rows(self) -> dict[str, slice]:
         """Kind to its places among the unknowns."""
         counts = (len(self.force), len(self.recovery), int(len(self.recovery) > 0),
-                  len(self.crater))  # fmt: skip
+                  len(self.crater), len(self.radius))  # fmt: skip
         ends = np.cumsum(counts)
         return {k: slice(int(e - n), int(e)) for k, n, e in zip(_KINDS, counts, ends, strict=True)}
 
     @cached_property
     def count(self) -> int:
         """Number of unknowns."""
-        return int(self.rows["crater"].stop)
+        return int(self.rows["radius"].stop)
 
     @cached_property
     def parts(self) -> dict[str, tuple[float, float]]:
@@ -163,11 +167,34 @@ class LawError:
     def crater_change(self, b: Array, strikers: Sequence[str], depth_over_R: Array) -> Array:
         """Return the logarithmic change of the craters of impacts with these peak depths, (n,)."""
         curve = b[self.rows["crater"]] @ self.crater
+        return self._along(
+            {n: s.total["crater"] * curve for n, s in self.spreads.items()}, strikers, depth_over_R
+        )
+
+    def radius_change(self, b: Array, strikers: Sequence[str], depth_over_R: Array) -> Array:
+        """Return the logarithmic change of the contact's radius at these depths, (n,).
+
+        A contact that piles up more carries more at a depth, at the same pressure: half of the
+        force's change is the radius's; what is left is an error of the pressure.
+        """
+        force, own = b[self.rows["force"]] @ self.force, b[self.rows["radius"]] @ self.radius
+        return self._along(
+            {
+                n: 0.5 * s.total["force"] * force + s.total["radius"] * own
+                for n, s in self.spreads.items()
+            },
+            strikers, depth_over_R,
+        )  # fmt: skip
+
+    def _along(
+        self, curves: Mapping[str, Array], strikers: Sequence[str], depth_over_R: Array
+    ) -> Array:
+        """Read each striker's curve over the depth nodes at its own peak depths, (n,)."""
         x = np.log(np.maximum(depth_over_R, 1e-9))
         change = np.zeros(len(x))
         for name in set(strikers):
             here = np.array([s == name for s in strikers])
-            change[here] = np.interp(x[here], _GRID, self.spreads[name].total["crater"] * curve)
+            change[here] = np.interp(x[here], _GRID, curves[name])
         return change
 
 
@@ -196,27 +223,29 @@ _NONE = np.zeros((0, NODES))
 NO_ERROR = LawError(_NONE, _NONE, _NONE)
 
 
-def law_error(scenes: Mapping[str, Sequence[Scene]]) -> LawError:
+def law_error(scenes: Mapping[str, Sequence[Scene]], *, dents: bool = False) -> LawError:
     """Return the error of the law that the baseline rests on.
 
     Parameters
     ----------
     scenes
         Striker to the scenes of its impacts as stated.
+    dents
+        Whether the contact's radius is compared.
     """
     spreads = {name: _spread(found) for name, found in scenes.items()}
     smooth = components(_LENGTH)
     lost = max(float(np.max(s.metal["recovery"])) for s in spreads.values())
+    radius = smooth if dents else _NONE
     if lost == 0.0:
-        return LawError(smooth, _NONE, _NONE, spreads)
-    return LawError(smooth, smooth, smooth, spreads)
+        return LawError(smooth, _NONE, _NONE, spreads, radius)
+    return LawError(smooth, smooth, smooth, spreads, radius)
 
 
 def _spread(scenes: Sequence[Scene]) -> Spread:
     law, pair = scenes[0].law, scenes[0].pair
-    table = strength_table(law, pair)
     lost = not_given_back(scenes[0])
-    peaks = np.log([table.peak(energy(s)) / pair.R for s in scenes])
+    peaks = np.log([deepest(s) / pair.R for s in scenes])
     sizes = WITH_CURVE if isinstance(law, AnchoredLaw) and law.hardens else METAL
     metal = {kind: size * lost for kind, size in sizes.items()}
     # a crater is all of what does not come back, however little that is
@@ -252,4 +281,6 @@ def _of_law(scene: Scene, lost: Array) -> dict[str, Array]:
         "recovery": np.minimum(known.given_back, lost),
         "recovery exponent": RECOVERY_EXPONENT * lost,
         "crater": np.minimum(known.dent, METAL["crater"]),
+        # what the force's own error leaves
+        "radius": np.minimum(known.radius, METAL["radius"]),
     }

@@ -8,12 +8,20 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from ...core.observables import LOAD
 from ...core.rig import BodyTable, Quantity
 from ...recordings import RecordingSet
-from ..comparison.conditions import SPEED_FROM_HEIGHT, SPEED_MEASURED, Condition
+from ..comparison.conditions import LOAD_CLASS, SPEED_FROM_HEIGHT, SPEED_MEASURED, Condition
 
 ASSUMED_E, ASSUMED_NU = 2e11, 0.3
 """Modulus [Pa] and Poisson's ratio of a body of which the set says nothing."""
+GAUGE = "gauge."
+"""Begins the name of a scale that all readings of an observable share."""
+LOAD_SCALE = GAUGE + LOAD
+RIM_SCALE = "dent.rim"
+RIM, RIM_SPREAD = 1.05, 0.03
+"""Diameter of a dent's rim over that of its contact circle: the crest of a pile-up stands outside
+the edge. Within what finite elements of metals from perfectly plastic to n = 0.3 give."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -61,9 +69,11 @@ def nuisances_of(recordings: RecordingSet, conditions: Sequence[Condition]) -> t
         found += _of_body(table, key, False)
         found += _stated(table.tip_radius_m, f"{key}.tip_radius_m", "m")
         found += _stated(table.mass_kg, f"{key}.mass_kg", "kg")
-    measured = not any(c.around.from_height for c in conditions)
-    spread = SPEED_MEASURED if measured else SPEED_FROM_HEIGHT
-    found.append(Nuisance("speed.scale", "-", 1.0, spread, stated=False))
+    if any(c.press is None for c in conditions):
+        measured = not any(c.around.from_height for c in conditions)
+        spread = SPEED_MEASURED if measured else SPEED_FROM_HEIGHT
+        found.append(Nuisance("speed.scale", "-", 1.0, spread, stated=False))
+    found += _gauges(recordings, any(c.press is not None for c in conditions))
     leaning = [c for c in conditions if c.angle < math.pi / 2.0 - 1e-6]
     oblique = leaning or [c for c in conditions if c.tangential != 0.0 or c.spin != 0.0]
     if leaning:
@@ -83,6 +93,26 @@ def nuisances_of(recordings: RecordingSet, conditions: Sequence[Condition]) -> t
         start = 0.8 if e is None else float(np.nanmedian(e))
         found.append(Nuisance("target.restitution", "-", start, 0.5, stated=False))
     return tuple(found)
+
+
+def _gauges(recordings: RecordingSet, pressed: bool) -> list[Nuisance]:
+    """Scales that all readings of a column share."""
+    gauge = recordings.setup.gauge
+    found = [
+        Nuisance(GAUGE + name, "-", 1.0, gauge[name])
+        for name in recordings.observed
+        if name in gauge
+    ]
+    if pressed:
+        spread = gauge.get(LOAD, LOAD_CLASS)
+        found.append(Nuisance(LOAD_SCALE, "-", 1.0, spread, stated=LOAD in gauge))
+    if "dent_diameter_m" in recordings.observed and recordings.setup.dent_edge == "rim":
+        note = (
+            f"dents are measured at their rim: {RIM:g} times the contact's diameter, within "
+            f"{100.0 * RIM_SPREAD:.0f} %, is assumed"
+        )
+        found.append(Nuisance(RIM_SCALE, "-", RIM, RIM_SPREAD, stated=False, note=note))
+    return found
 
 
 def _of_body(table: BodyTable, key: str, yields: bool) -> list[Nuisance]:

@@ -115,12 +115,7 @@ def law_radius(m, depth, peak):
 @njit(float64(MODEL, float64), cache=True, **PLAIN)
 def loading_radius(m, depth):
     """Contact radius [m] on loading, with a flat of the tip and the tip's edge."""
-    b = m.force[fo.FLAT]
-    a = law_radius(m, depth, depth) if b == 0.0 else 0.0
-    if b > 0.0:
-        x = depth + b * b / (2.0 * m.force[fo.RADIUS])
-        a = max(b, law_radius(m, x, x))
-    return min(a, m.force[fo.EDGE])
+    return fo.static_radius(m.radius, m.par, m.force, m.factors, depth)
 
 
 @njit(float64(MODEL, VECTOR, float64, int64, float64), cache=True, **PLAIN)

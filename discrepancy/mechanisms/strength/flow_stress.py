@@ -52,6 +52,7 @@ class Fallen(StrengthProfile):
 class FlowMechanism(Mechanism):
     """A mechanism that changes the flow stress; subclasses say by what profile."""
 
+    static: ClassVar[bool] = True
     direction: ClassVar[Mapping[str, int]] = {
         "restitution": 1, "permanent_depth_m": -1, "contact_time_s": -1, "peak_force_N": 1,
     }  # fmt: skip

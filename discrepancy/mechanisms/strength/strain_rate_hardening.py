@@ -30,6 +30,10 @@ class RateProfile(StrengthProfile):
 
     def profile(self, scene: Scene, table: StrengthTable) -> Array:
         """Return relative strengths at the depths of `table`, shape (nodes,)."""
+        if scene.press is not None:
+            # without a stated rate a press is what the strength was measured at
+            risen = self.rise * (scene.press.rate / _REFERENCE_RATE) ** self.exponent
+            return np.full(table.depth.shape, 1.0 + risen)
         deepest = table.peak(energy(scene))
         slowing = 1.0 - (table.depth / deepest) ** 2
         speed = scene.approach.speed * np.sqrt(np.maximum(slowing, _SLOWEST**2))

@@ -81,7 +81,9 @@ def _melting(around: Surroundings) -> float:
 
 
 def _heat(scene: Scene, around: Surroundings) -> float:
-    """Warming per unit of plastic strain, 0.9 S_y/(rho c_p) [K]."""
+    """Warming per unit of plastic strain, 0.9 S_y/(rho c_p) [K]; none of a press, which is slow."""
+    if scene.press is not None:
+        return 0.0
     weak = scene.pair.weaker
     capacity = around.heat_capacity if around.heat_capacity > 0.0 else 470.0
     return 0.9 * weak.Sy / (density_of(weak) * capacity)
