@@ -24,6 +24,7 @@ BENCH = (20.0, 5000.0)
 """Loads of a bench press or a small testing machine [N]."""
 _LOADS, _EACH, _WIDE = 4, 3, 1.5
 """Loads of a series, presses at each, and the ratio of loads from which as many are worth it."""
+_BEYOND = 3.0  # of the loads that a striker was pressed to, on both sides
 
 
 @dataclass(frozen=True, eq=False)
@@ -80,6 +81,9 @@ def press_series(problem: Problem) -> list[Series]:
         depths = [deepest(s) for _, s in trials]
         ends = np.exp(np.interp(np.log([min(depths), max(depths)]), table.log_depth,
                                 table.stated.force))  # fmt: skip
+        if any(one.press is not None for one, _ in trials):
+            # pressed already: what is new lies beyond
+            ends = ends * np.array([1.0 / _BEYOND, _BEYOND])
         low, high = np.clip(ends, *BENCH)
         if not ends[0] < BENCH[1] or not ends[1] > BENCH[0]:
             continue

@@ -22,15 +22,14 @@ def press(loads: Array, curves: Sequence[Curve]) -> dict[str, Array]:
     curves
         The law of each contact, n of them.
     """
-    names = (
-        "permanent_depth_m", "dent_diameter_m", "press_depth_m", "recovered_depth_m", "peak_depth_m"
-    )  # fmt: skip
-    rows = np.empty((len(loads), len(names)))
+    x, crater, radius, back = np.empty((4, len(loads)))
     for i, (load, c) in enumerate(zip(loads, curves, strict=True)):
         rising = np.maximum.accumulate(c.log_force)
-        x = float(np.interp(np.log(load), rising, c.log_depth))
-        crater, radius, back = (
-            float(np.interp(x, c.log_depth, table)) for table in (c.crater, c.radius, c.recovery)
+        x[i] = np.interp(np.log(load), rising, c.log_depth)
+        crater[i], radius[i], back[i] = (
+            np.interp(x[i], c.log_depth, table) for table in (c.crater, c.radius, c.recovery)
         )
-        rows[i] = crater, 2.0 * radius, np.exp(x), back, np.exp(x)
-    return dict(zip(names, rows.T, strict=True))
+    return {
+        "permanent_depth_m": crater, "dent_diameter_m": 2.0 * radius, "press_depth_m": np.exp(x),
+        "recovered_depth_m": back, "peak_depth_m": np.exp(x),
+    }  # fmt: skip

@@ -1,0 +1,130 @@
+"""Quasi-static presses in a diagnosis: what acts on them, what they share with impacts."""
+
+import numpy as np
+import pytest
+from dentscope.discrepancy.comparison.forward import Point, Simulator
+from dentscope.discrepancy.comparison.problem import problem_of
+from dentscope.discrepancy.experiments.feasible import BENCH, press_series
+from dentscope.discrepancy.inference.fit import baseline_situations
+from dentscope.discrepancy.mechanisms import MECHANISMS
+from dentscope.discrepancy.nulls.laws import Curve
+from dentscope.discrepancy.nulls.press import press
+from dentscope.discrepancy.unknowns.covariates import PRESSED, covariates
+from dentscope.impact import Approach, strike
+from dentscope.recordings import read
+
+SET = """
+format = "recording-set/1"
+[target]
+E_Pa = {{ value = 2.0e11, std = 4e9 }}
+nu = 0.3
+Sy_Pa = {{ value = 3.5e8, std = 2.5e7 }}
+density_kg_m3 = 7800
+[strikers.ball]
+shape = "sphere"
+tip_radius_m = 5e-3
+mass_kg = 4.1e-3
+E_Pa = 2.1e11
+nu = 0.3
+Sy_Pa = 2e9
+[noise]
+restitution = 0.004
+permanent_depth_m_relative = 0.02
+dent_diameter_m_relative = 0.01
+{noise}
+[gauge]
+permanent_depth_m = 0.05
+"""
+HEAD = "trial,striker,angle_deg,impact_speed_m_s,load_N,press_rate_per_s,restitution,"
+HEAD += "permanent_depth_m,dent_diameter_m\n"
+IMPACTS = "a,ball,90,1.0,,,0.45,8e-6,6e-4\nb,ball,90,3.0,,,0.35,2.5e-5,1.1e-3\n"
+PRESSES = "p,ball,,,300,,,7e-6,6e-4\nq,ball,,,1200,{rate},,3e-5,1.2e-3\n"
+BY_NAME = {m.name: m for m in MECHANISMS}
+STATIC = {
+    "strain-rate-hardening", "work-hardening", "thermal-softening", "hardened-layer",
+    "size-effect", "roughness", "truncated-tip",
+}  # fmt: skip
+
+
+def problem(tmp_path, rows, *, noise=""):
+    (tmp_path / "set.toml").write_text(SET.format(noise=noise), encoding="utf-8")
+    (tmp_path / "trials.csv").write_text(HEAD + rows, encoding="utf-8")
+    return problem_of(read(tmp_path))
+
+
+def cells(given, mechanism=None, **values):
+    """Predictions by condition and observable, with a mechanism or none."""
+    acting = () if mechanism is None else (BY_NAME[mechanism],)
+    point = Point(np.zeros(given.n_z), {m.name: values for m in acting})
+    found = Simulator(given).predict(acting, [point])[0]
+    names = zip(given.cells.condition, given.cells.observable, strict=True)
+    return dict(zip(names, found, strict=True))
+
+
+def test_presses_and_impacts_share_gauge_strength_and_the_laws_error(tmp_path):
+    given = problem(tmp_path, IMPACTS + PRESSES.format(rate=""))
+    names = [n.name for n in given.nuisances]
+    plain = Simulator(given).predict((), [Point(np.zeros(given.n_z))])[0]
+    for name in ("gauge.permanent_depth_m", "target.Sy_Pa"):
+        z = np.zeros(given.n_z)
+        z[names.index(name)] = 1.0
+        moved = Simulator(given).predict((), [Point(z)])[0] - plain
+        depth = np.array([o == "permanent_depth_m" for o in given.cells.observable])
+        assert (np.abs(moved[depth]) > 0.01).all()
+        if name.startswith("gauge"):
+            assert moved[depth] == pytest.approx(np.full(4, 0.05))
+            assert np.abs(moved[~depth]).max() < 1e-12
+    # a press lies at the speed at which an impact goes as deep, where the law's error is one
+    scene = given.scenes(np.zeros(given.n_z))[0]
+    as_deep = scene.with_(approach=Approach(given.conditions[2].speed))
+    assert strike(as_deep).peak_force_N == pytest.approx(300.0, rel=0.01)
+    assert {PRESSED, "impact speed"} <= set(covariates(given))
+
+
+def test_what_needs_motion_does_nothing_in_a_press(tmp_path):
+    given = problem(tmp_path, PRESSES.format(rate=""))
+    situations = baseline_situations(given)
+    ruled_out = {m.name for m in MECHANISMS if "nothing moves" in m.ruled_out(situations)}
+    assert ruled_out == set(BY_NAME) - STATIC
+    plain = cells(given)
+    assert cells(given, "half-space-waves", wave_scale=1.0) == plain
+
+
+def test_a_rate_acts_in_a_press_by_the_stated_rate_only(tmp_path):
+    given = problem(tmp_path, IMPACTS + PRESSES.format(rate="10"))
+    rate = {"rise_at_1000_per_s": 0.5, "rate_exponent": 0.15, "strength_kept": 1.0}
+    plain, with_it = cells(given), cells(given, "strain-rate-hardening", **rate)
+    change = {k: with_it[k, o] - plain[k, o] for k, o in plain if o == "permanent_depth_m"}
+    assert change[0] < -0.2
+    assert change[1] < -0.2
+    assert change[2] == 0.0
+    assert -0.3 < change[3] < -0.1
+    hard = cells(given, "work-hardening", hardening_ratio=2.0, hardening_exponent=0.4)
+    assert all(hard[key] < value for key, value in plain.items() if key[1] != "restitution")
+
+
+def test_presses_are_proposed_within_a_bench_press_and_as_deep(tmp_path):
+    (series,) = press_series(problem(tmp_path, IMPACTS))
+    loads = [c.press.load for c in series.conditions]
+    assert len(loads) == 4
+    assert BENCH[0] <= min(loads) < max(loads) <= BENCH[1]
+    assert [c.speed for c in series.conditions][::3] == pytest.approx([1.0, 3.0], rel=0.05)
+    assert "press ball slowly" in series.change
+
+
+def test_null_laws_are_pressed_along_their_own_curve():
+    x = np.linspace(np.log(1e-6), np.log(1e-3), 50)
+    law = Curve(x, x + np.log(1e7), np.full(50, 2e-6), 0.8 * np.exp(x), np.exp(0.5 * x), 1.5)
+    found = press(np.array([100.0, 1000.0]), [law, law])
+    assert found["press_depth_m"] == pytest.approx([1e-5, 1e-4])
+    assert found["permanent_depth_m"] == pytest.approx([0.8e-5, 0.8e-4], rel=0.01)
+    assert found["recovered_depth_m"] == pytest.approx([2e-6, 2e-6])
+
+
+def test_rim_of_a_dent_is_an_unknown_of_its_own(tmp_path):
+    rows = IMPACTS + PRESSES.format(rate="")
+    edge = problem(tmp_path, rows)
+    rim = problem(tmp_path, rows, noise='dent_edge = "rim"')
+    assert "dent.rim" in [n.name for n in rim.nuisances]
+    one, two = cells(edge), cells(rim)
+    assert two[0, "dent_diameter_m"] - one[0, "dent_diameter_m"] == pytest.approx(np.log(1.05))
