@@ -49,6 +49,13 @@ def fit(
         bool,
         typer.Option("--compare", help="Also fit simpler forms and the thesis's own; a checkout."),
     ] = False,
+    only: Annotated[
+        str,
+        typer.Option(
+            help="`hardening`: fit the law of metals that harden anew and leave the other "
+            "coefficients in use as they are."
+        ),
+    ] = "",
     judge: Annotated[
         Path | None,
         typer.Option(
@@ -63,22 +70,20 @@ def fit(
         studies.needed_for("`dentscope fit --publish`")
     if judge is not None:
         return _judge(judge, console, publish=publish)
+    if only not in ("", "hardening"):
+        raise InputError(f"{only!r}", source="command line", key="--only", allowed="hardening")
+    if only:
+        return _refit_hardening(_files(campaigns), out, console, publish=publish)
     return _refit(_files(campaigns), out, console, publish=publish, compare=compare)
 
 
 def _refit(files: list[Path], out: Path, console: Console, *, publish: bool, compare: bool) -> int:
     """Fit, show what came out, and write coefficients and report."""
     from ..fitting import fit_laws, read_tables
-    from ..fitting.coefficients import (
-        coefficients_content,
-        hardening_content,
-        write_coefficients,
-    )
-    from ..fitting.hardening import fit_hardening, hardening_records
+    from ..fitting.coefficients import coefficients_content, write_coefficients
     from ..fitting.report import (
         coefficient_rows,
         error_rows,
-        hardening_rows,
         stated_within,
         uncertainty_rows,
         write_report,
@@ -92,11 +97,7 @@ def _refit(files: list[Path], out: Path, console: Console, *, publish: bool, com
     )
     result = fit_laws(table, turns)
     content = coefficients_content(result, table, files)
-    hard = hardening_records(files)
-    if hard:
-        console.print(f"{len(hard)} combinations that harden; fitting their law ...")
-        fitted = laws_from(content, source="this fit")[1]
-        content["hardening"] = hardening_content(fit_hardening(fitted, hard))
+    hardens = _with_hardening(content, files, console)
     write_coefficients(content, out / "fitted.json")
     _show(console, coefficient_rows(content))
     validation = _validation(files, laws_from(content, source="this fit"))
@@ -107,8 +108,8 @@ def _refit(files: list[Path], out: Path, console: Console, *, publish: bool, com
     ]
     _show(console, error_rows(columns))
     _show(console, uncertainty_rows(stated_within(content)))
-    if hard:
-        _show(console, hardening_rows({"left out": content["hardening"]["left_out"]}))
+    if hardens:
+        _show_hardening(console, content)
     more = _compared(content, table, turns, out, console) if compare else []
     page = write_report(result, content, table, turns, out, validation=validation, more=more)
     console.print(f"coefficients: {out / 'fitted.json'}; report: {page}")
@@ -119,6 +120,58 @@ def _refit(files: list[Path], out: Path, console: Console, *, publish: bool, com
         console.print(str(result.fit.outcome))
         return EXIT_NOT_CONVERGED
     return 0
+
+
+def _with_hardening(content: dict[str, Any], files: Sequence[Path], console: Console) -> bool:
+    """Fit the law of metals that harden to the laws of a content, and put it there."""
+    from ..fitting.coefficients import hardening_content
+    from ..fitting.hardening import fit_hardening, hardening_records, judged_designs
+    from ..models.coefficients import laws_from
+    from ..models.hardening import hardening_law
+
+    records = hardening_records(files)
+    if not records:
+        return False
+    console.print(f"{len(records)} combinations that harden; fitting their law ...")
+    fitted = laws_from(content, source="this fit")[1]
+    found = fit_hardening(fitted, records)
+    judged = judged_designs(hardening_law(fitted, found.correction), files)
+    content["hardening"] = hardening_content(found, files, judged=judged)
+    return True
+
+
+def _refit_hardening(files: list[Path], out: Path, console: Console, *, publish: bool) -> int:
+    """Fit the law of metals that harden to the other coefficients in use."""
+    from ..core.output import write_file
+    from ..fitting.coefficients import write_coefficients
+    from ..models.coefficients import COEFFICIENTS_FILE, drawn_from, read_coefficients
+
+    content = read_coefficients()
+    if content is None:
+        raise InputError("none in use", key="coefficients", allowed="`dentscope fit` first")
+    content["drawn_from"] = drawn_from()
+    if not _with_hardening(content, files, console):
+        raise InputError("no metals that harden", key="campaigns", allowed="design hardening")
+    _show_hardening(console, content)
+    text = write_coefficients(content, out / "fitted.json")
+    console.print(f"coefficients: {text}")
+    if publish:
+        from ..studies.closed_form.page import published_section, update_page
+
+        write_file(COEFFICIENTS_FILE, text.read_bytes())
+        update_page(_PAGE, published_section(content))
+        console.print("the law of metals that harden now uses these coefficients")
+    return 0
+
+
+def _show_hardening(console: Console, content: dict[str, Any]) -> None:
+    from ..fitting.report import hardening_rows, uncertainty_rows
+
+    found = content["hardening"]
+    columns = {"left out": found["left_out"]}
+    columns |= {name: one["errors"] for name, one in found["judged"].items()}
+    _show(console, hardening_rows(columns))
+    _show(console, uncertainty_rows({k: one["within"] for k, one in found["judged"].items()}))
 
 
 def _compared(
@@ -215,10 +268,9 @@ def _show(console: Console, rows: Sequence[Sequence[str]]) -> None:
 def _judge(folder: Path, console: Console, *, publish: bool) -> int:
     """Show the errors of the laws in use on cases that no fit reads."""
     files = _files([folder])
-    from ..core.provenance import file_digest
     from ..fitting.hardening import hardening_records, judge_hardening
     from ..fitting.report import error_rows, hardening_rows, uncertainty_rows
-    from ..models.coefficients import COEFFICIENTS_FILE
+    from ..models.coefficients import drawn_from
 
     found = _judged(files, [_law_in_use("compact"), _law_in_use("fitted")])
     count = len(found.names)
@@ -232,8 +284,7 @@ def _judge(folder: Path, console: Console, *, publish: bool) -> int:
     if publish:
         from ..studies.closed_form.page import judged_section, update_page
 
-        digest = file_digest(COEFFICIENTS_FILE)
-        section = judged_section(found.errors, found.names, digest, within=found.within)
+        section = judged_section(found.errors, found.names, drawn_from(), within=found.within)
         update_page(_PAGE, section)
     return 0
 

@@ -7,7 +7,7 @@ from __future__ import annotations
 
 import json
 import re
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import asdict
 from pathlib import Path
 from typing import Any
@@ -68,18 +68,32 @@ def coefficients_content(laws: Laws, table: Table, campaigns: Sequence[Path]) ->
             for name, law in judged.items()
         },
         "domain": {"limits": limits_of(table), "combinations": len(table.pairs)},
-        "provenance": {
-            "campaigns": [
-                {"sha256": file_digest(path), "accuracy": _levels(path)} for path in campaigns
-            ],
-            "numerics_version": NUMERICS_VERSION,
-            "environment": environment(),
-        },
+        "provenance": _made_from(campaigns),
     }
 
 
-def hardening_content(fit: HardeningFit) -> dict[str, Any]:
-    """Return the part of the coefficients file on metals that harden."""
+def _made_from(campaigns: Sequence[Path]) -> dict[str, Any]:
+    return {
+        "campaigns": [
+            {"sha256": file_digest(path), "accuracy": _levels(path)} for path in campaigns
+        ],
+        "numerics_version": NUMERICS_VERSION,
+        "environment": environment(),
+    }
+
+
+def hardening_content(
+    fit: HardeningFit, campaigns: Sequence[Path], *, judged: Mapping[str, Any]
+) -> dict[str, Any]:
+    """Return the part of the coefficients file on metals that harden.
+
+    Parameters
+    ----------
+    fit, campaigns
+        The regression, and the files that it was made from.
+    judged
+        Design that no fit reads to errors and shares within the stated deviations.
+    """
     found = fit.correction
     return {
         "combinations": fit.combinations,
@@ -89,6 +103,8 @@ def hardening_content(fit: HardeningFit) -> dict[str, Any]:
         "weights": _digits(found.weights),
         "spread": {name: float(f"{size:.3g}") for name, size in found.spread.items()},
         "left_out": fit.left_out,
+        "judged": judged,
+        "provenance": _made_from(campaigns),
     }
 
 
@@ -110,9 +126,9 @@ def limits_of(table: Table) -> dict[str, list[float]]:
     return {k: [float(np.min(v)), float(np.max(v))] for k, v in columns.items()}
 
 
-def write_coefficients(content: dict[str, Any], path: Path) -> None:
-    """Write the file as a whole or not at all."""
-    write_file(path, _rows_on_one_line(json.dumps(content, indent=1)) + "\n")
+def write_coefficients(content: dict[str, Any], path: Path) -> Path:
+    """Write the file as a whole or not at all; return it."""
+    return write_file(path, _rows_on_one_line(json.dumps(content, indent=1)) + "\n")
 
 
 def _rows_on_one_line(text: str) -> str:

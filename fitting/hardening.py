@@ -9,7 +9,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from pathlib import Path
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 import numpy as np
 import numpy.typing as npt
@@ -30,6 +30,7 @@ from ..models.hardening import (
     equivalent,
     features_of,
     hardening_size,
+    least_force,
 )
 from ..models.table import energy_exponent
 from ..models.uncertainty import Uncertainty
@@ -98,6 +99,26 @@ def hardening_records(paths: Sequence[Path], *, held_out: bool = False) -> list[
             if flows and plain and judges == held_out and is_current(record):
                 found[record.id] = record
     return list(found.values())
+
+
+def judged_designs(law: HardeningLaw, paths: Sequence[Path]) -> dict[str, dict[str, Any]]:
+    """Errors and shares within the stated deviations, by the design that no fit reads.
+
+    Parameters
+    ----------
+    law
+        The law for metals that harden, with its correction.
+    paths
+        Campaign files.
+    """
+    designs: dict[str, list[CaseRecord]] = {}
+    for record in hardening_records(paths, held_out=True):
+        designs.setdefault(record.case.name.rsplit("-", 1)[0], []).append(record)
+    found = {}
+    for name, records in sorted(designs.items()):
+        errors, within = judge_hardening(law, records)
+        found[name] = {"combinations": len(records), "errors": errors, "within": within}
+    return found
 
 
 def fit_hardening(fitted: ClosedForm, records: Sequence[CaseRecord]) -> HardeningFit:
@@ -246,6 +267,7 @@ def _off(fitted: ClosedForm, case: _Case, correction: HardeningCorrection) -> di
     X = features_of(path, correction.low, correction.high)
     x, at = corrected(path, X @ correction.weights)
     x = np.maximum.accumulate(x + 1e-9 * np.arange(len(x)))
+    at = at._replace(F=np.maximum(at.F, least_force(path, x)))
     assert fitted.calibration is not None
     own = fitted.calibration.of(path.numbers, path.D / path.deeper)
     hardens = hardening_size(path)

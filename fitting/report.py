@@ -121,8 +121,8 @@ def hardening_rows(columns: Mapping[str, Mapping[str, Sequence[float]]]) -> list
     """
     names = {
         "force": ("F [%]", 100.0, "1, 5"),
-        "radius": ("a [%]", 100.0, ""),
-        "share": ("delta_s*", 1.0, ""),
+        "radius": ("a [%]", 100.0, "0.6, 3"),
+        "share": ("delta_s*", 1.0, "0.015, 0.12"),
         "dent": ("residual depth, delta_m >= 5 delta_c [%]", 100.0, ""),
         "given_back": ("energy given back, delta_m >= 5 delta_c [%]", 100.0, ""),
     }
@@ -179,7 +179,8 @@ def write_report(
         "The compact law:\n\n![maps](compact-maps.png)\n",
         "## Uncertainty, on combinations left out\n",
         markdown(uncertainty_rows(stated_within(content))),
-        *_about_hardening(content),
+        "## Metals that harden\n",
+        *about_hardening(content),
         "## Combinations that fit worst\n\nMean and largest, fitted law, left out.\n",
         markdown(worst_rows(shown, table)),
         "## Domain\n",
@@ -191,13 +192,16 @@ def write_report(
     return write_file(folder / "report.md", "\n".join(parts))
 
 
-def _about_hardening(content: dict[str, Any]) -> list[str]:
+def about_hardening(content: dict[str, Any]) -> list[str]:
+    """Tables of the errors on metals that harden; none where the file knows none."""
     found = content.get("hardening")
     if found is None:
         return []
-    title = f"{found['combinations']} pairs, left out"
-    rows = markdown(hardening_rows({title: found["left_out"]}))
-    return ["## Metals that harden\n", rows]
+    judged = found["judged"]
+    columns = {f"{found['combinations']} pairs, left out": found["left_out"]}
+    columns |= {f"{one['combinations']} of {name}": one["errors"] for name, one in judged.items()}
+    within = {name: one["within"] for name, one in judged.items()}
+    return [markdown(hardening_rows(columns)), markdown(uncertainty_rows(within))]
 
 
 def _about_data(laws: Laws, content: dict[str, Any], table: Table, turns: ResidualTable) -> str:

@@ -10,6 +10,7 @@ from typing import Any
 import numpy as np
 
 from ..core.errors import InputError
+from ..core.provenance import file_digest
 from .base import ContactLaw
 from .closed_form import COEFFICIENTS
 from .correction import CHANNELS, GROUPS, Correction
@@ -17,7 +18,7 @@ from .fitted import ClosedForm, closed_form_law
 from .hardening import CORRECTED, HardeningCorrection, hardening_law
 from .uncertainty import Calibration
 
-FORMAT = "dentscope-coefficients/11"
+FORMAT = "dentscope-coefficients/12"
 COEFFICIENTS_FILE = Path(__file__).resolve().parents[1] / "data" / "coefficients" / "fitted.json"
 """What the laws in use read; `dentscope fit --publish` writes it."""
 
@@ -26,6 +27,15 @@ def read_coefficients() -> dict[str, Any] | None:
     """Content of the shipped coefficients file; none if there is none yet."""
     file = COEFFICIENTS_FILE
     return json.loads(file.read_text("utf-8")) if file.is_file() else None
+
+
+def drawn_from() -> str:
+    """Checksum by which the coefficients of perfectly plastic bodies draw pairs that judge them.
+
+    The file's own; a fit of metals that harden alone leaves those coefficients and keeps theirs.
+    """
+    kept = (read_coefficients() or {}).get("drawn_from")
+    return str(kept) if kept else file_digest(COEFFICIENTS_FILE)
 
 
 def laws_from(content: Mapping[str, Any], *, source: str) -> tuple[ClosedForm, ClosedForm]:

@@ -1,16 +1,20 @@
-"""Our fitted law for metals with a flow curve: Tabor's representative flow stress, corrected.
+"""Our fitted law for metals with a flow curve: a mean flow stress under the contact, corrected.
 
-At contact radius a the plastic strain 0.2 (a - a_c)/R stands for all strains, a_c the radius at
-first yield. Each body has of it what it has of the plastic flow and is taken as perfectly plastic
-at the stress of its flow curve there: the body that flows the more hardens and leaves flow to the
-other. The mean pressure is that of these perfectly plastic bodies at the same radius. How deep they
-then are differs, for what hardens sinks in where the other piles up. The square of the radius over
-R Delta is one in an elastic contact, whatever the exponent n, and goes with n between its plastic
-value at n = 0 and one at n = 1: its logarithm is taken to fall as 1 - n, which meets both ends.
+Strains under a contact of radius a run from nothing at the elastic border to several times Tabor's
+0.2 (a - a_c)/R, a_c the radius at first yield. The mean of the flow curve over them, `_under`, is a
+body's flow stress: a plateau governs the outer part while the inner one has hardened. Each body has
+of the strain what it has of the plastic flow and is taken as perfectly plastic at that stress: the
+body that flows the more hardens and leaves flow to the other. The mean pressure is that of these
+perfectly plastic bodies at the same radius. How deep they then are differs, for what hardens sinks
+in where the other piles up. The square of the radius over R Delta is one in an elastic contact,
+whatever the exponent n of the mean flow stress, and goes with n between its plastic value at n = 0
+and one at n = 1: its logarithm is taken to fall as 1 - n, which meets both ends.
 
 So far nothing is fitted. What finite elements of metals that harden differ from it by is a
-polynomial of second degree for each body, times what that body has of the flow, its exponent, and
-how far the contact has yielded (`features_of`): without hardening, and before yield, nothing.
+polynomial for each body, times what that body has of the flow, how far the contact has yielded, and
+its exponent (second degree) or the bend of its curve, the change of the exponent with the strain
+(first degree): see `features_of`. Without hardening, and before yield, it is nothing. The force is
+never below that of perfectly plastic bodies at the lowest stress under the contact.
 
 References
 ----------
@@ -29,6 +33,7 @@ from typing import Any, NamedTuple
 import numpy as np
 from scipy.interpolate import CubicHermiteSpline, PchipInterpolator
 
+from ..core.flow import FlowCurve
 from ..core.material import Material, Pair
 from .base import ContactLaw, Domain, Kernels, Standing
 from .closed_form import Bodies, PairNumbers, contact, plastic_depth
@@ -46,6 +51,15 @@ CORRECTED = ("depth", "force", "share", "part", "recovered", "exponent")
 """What is corrected: logarithms of Delta, F, the part of Delta that recovers and N + 1; the
 sphere's share of the approach and its part of the permanent depth by the logarithm of the odds."""
 
+_SPAN, _FALL = 3.0, 1.7
+"""Strains under a contact: `_SPAN` times the representative one times u^`_FALL`, u even in 0 to 1.
+
+By the errors of pairs left out; spans of 2.5 to 4 and powers of 1.7 to 2.2 do as well, one strain
+(0 and any) has three times the error where a curve has a plateau."""
+
+_SHARES, _STRAINS = 60, 400  # strains of a mean; means of a table
+_WEAKEST, _STRONGEST = 1e-8, 5.0  # representative strains of the table
+_APART = 1.0  # of ln p, between a strain and those whose exponents make the bend
 _COORDINATES = 5
 _FADES = 0.3  # of a coordinate's width, beyond the data
 _DEGREE = 2
@@ -56,6 +70,15 @@ _ROUNDS = 14  # for the sphere's part of the flow
 _SETTLING = 3  # of the contact radius in each, which go on from the last
 
 
+class Under(NamedTuple):
+    """A body's flow under the contact, by the representative strain; arrays of shape (n,)."""
+
+    S: Floats  # mean flow stress [Pa]
+    n: Floats  # its exponent, d ln S/d ln p
+    bend: Floats  # by how much the exponent rises with the strain
+    lowest: Floats  # lowest stress [Pa]
+
+
 class Equivalent(NamedTuple):
     """Points of a path, taken as perfectly plastic at their flow stresses; arrays of shape (n,)."""
 
@@ -64,8 +87,9 @@ class Equivalent(NamedTuple):
     deeper: Floats  # D over theirs
     numbers: PairNumbers  # of the fitted law
     y: Floats  # their depth beyond first yield
-    n_s: Floats  # exponents of the flow curves there
-    n_f: Floats
+    sphere: Under
+    flat: Under
+    weakest: PairNumbers  # of bodies at the lowest stress under the contact
 
 
 @dataclass(frozen=True)
@@ -91,7 +115,7 @@ class HardeningCorrection:
 
 @dataclass(frozen=True, kw_only=True, eq=False)
 class HardeningLaw(ContactLaw):
-    """The fitted law at the representative flow stress of each body.
+    """The fitted law at the mean flow stress of each body.
 
     Parameters
     ----------
@@ -115,14 +139,14 @@ class HardeningLaw(ContactLaw):
 
     def share(self, pair: Pair, depth: Depths) -> Floats:
         """delta_s*, shape (...); the elastic share where the contact is open."""
-        x, at, _ = _path(self, pair)
+        x, at, *_ = _path(self, pair)
         d = np.asarray(depth, dtype=float)
         inside = np.interp(np.log(np.maximum(d / pair.R, 1e-300)), x, at.share)
         return np.where(d > 0.0, inside, pair.elastic_share)
 
     def uncertainty(self, pair: Pair, depth: Depths) -> Uncertainty:
         """How far off the law may be, as pairs left out of the fit were; see `ContactLaw`."""
-        x, _, sizes = _path(self, pair)
+        x, _, sizes, _ = _path(self, pair)
         if sizes is None:
             return super().uncertainty(pair, depth)
         d = np.asarray(depth, dtype=float)
@@ -141,7 +165,7 @@ def hardening_law(
     """Return the law that follows flow curves with `fitted`."""
     return HardeningLaw(
         name="hardening",
-        title="dentscope, fitted at Tabor's flow stress",
+        title="dentscope, fitted at the mean flow stress",
         source="data/coefficients/fitted.json; Tabor, The Hardness of Metals (1951)",
         equations="docs/closed-form.md",
         standing=Standing.OWN_SOURCE,
@@ -169,13 +193,14 @@ def equivalent(fitted: ClosedForm, pair: Pair, *, points: int) -> Equivalent:
         """The points if the sphere has `part` of the strain, from a first radius on."""
         for _ in range(_SETTLING):
             p = REPRESENTATIVE * np.maximum(a - yields_at, 0.0)
-            (S_s, n_s), (S_f, n_f) = sphere(part * p), flat(p - part * p)
-            numbers = fitted.numbers(_with_strengths(bodies, S_s, S_f))
+            s, f = sphere(part * p), flat(p - part * p)
+            numbers = fitted.numbers(_with_strengths(bodies, s.S, f.S))
             at = contact(D, numbers)
             a = 0.5 * (a + at.a)
-        n = at.share * n_s + (1.0 - at.share) * n_f
+        n = at.share * s.n + (1.0 - at.share) * f.n
         deeper = np.maximum(at.a**2 / D, 1.0) ** n
-        return Equivalent(D * deeper, at, deeper, numbers, plastic_depth(numbers.W * D), n_s, n_f)
+        y = plastic_depth(numbers.W * D)
+        return Equivalent(D * deeper, at, deeper, numbers, y, s, f, numbers)
 
     # the more the sphere flows the stronger it gets, the less of the flow is its own: what it has
     # of the strain and of the flow meet once (false position; Dowell, Jarratt, BIT 11 (1971) 168)
@@ -194,7 +219,8 @@ def equivalent(fitted: ClosedForm, pair: Pair, *, points: int) -> Equivalent:
         at_low = np.where(up, off, np.where(side < 0.0, 0.5 * at_low, at_low))
         low, high = np.where(up, part, low), np.where(up, high, part)
         side = np.where(up, 1.0, -1.0)
-    return found
+    lowest = _with_strengths(bodies, found.sphere.lowest, found.flat.lowest)
+    return found._replace(weakest=fitted.numbers(lowest))
 
 
 def coordinates_of(e: Equivalent) -> tuple[Floats, Floats]:
@@ -210,27 +236,32 @@ def coordinates_of(e: Equivalent) -> tuple[Floats, Floats]:
             [a, (n - 0.2) / 0.15, (np.log(stiff) - 5.0) / 1.2, (share - 0.5) / 0.22, far], axis=-1
         )
 
-    return of(e.n_s, numbers.j_s, numbers.x_s), of(e.n_f, numbers.j_f, 1.0 - numbers.x_s)
+    return (
+        of(e.sphere.n, numbers.j_s, numbers.x_s), of(e.flat.n, numbers.j_f, 1.0 - numbers.x_s),
+    )  # fmt: skip
 
 
 def features_of(e: Equivalent, low: Floats, high: Floats) -> Floats:
-    """Features of the points, shape (n, 47): 21 monomials a body, and where both flow."""
+    """Features of the points, shape (n, 59): 21 monomials a body times its exponent, six times its
+    bend, and where both flow.
+    """  # noqa: D205
     yielded = e.y / (1.0 + e.y)
+    n_s, n_f = e.sphere.n, e.flat.n
     columns, fades = [], []
-    for flows, n, at in zip(
-        (e.at.phi, 1.0 - e.at.phi), (e.n_s, e.n_f), coordinates_of(e), strict=True
+    for flows, body, at in zip(
+        (e.at.phi, 1.0 - e.at.phi), (e.sphere, e.flat), coordinates_of(e), strict=True
     ):
         inside = np.clip(at, low, high)
         within = np.exp(-0.5 * np.sum(((at - inside) / _FADES) ** 2, axis=1))
-        size = 5.0 * flows * n * yielded * within
+        size = 5.0 * flows * yielded * within
         for degree in range(_DEGREE + 1):
             for which in itertools.combinations_with_replacement(range(_COORDINATES), degree):
-                columns.append(size * np.prod(inside[:, list(which)], axis=1))
+                columns.append(size * body.n * np.prod(inside[:, list(which)], axis=1))
+        columns += [size * body.bend, *(size * body.bend * x for x in inside.T)]
         fades.append(within)
     both = 4.0 * e.at.phi * (1.0 - e.at.phi) * yielded * fades[0] * fades[1]
     columns += [
-        both * e.n_s, both * e.n_f, both * (e.n_s - e.n_f) ** 2,
-        both * e.n_s * e.at.a, both * e.n_f * e.at.a,
+        both * n_s, both * n_f, both * (n_s - n_f) ** 2, both * n_s * e.at.a, both * n_f * e.at.a,
     ]  # fmt: skip
     return np.stack(columns, axis=-1)
 
@@ -248,24 +279,36 @@ def corrected(e: Equivalent, shifts: Floats) -> tuple[Floats, Any]:
     )
 
 
+def least_force(e: Equivalent, x: Floats) -> Floats:
+    """F/(E' R^2) at ln(Delta/R) = x of perfectly plastic bodies at the lowest stress under it."""
+    return np.asarray(contact(np.exp(x), e.weakest).F)
+
+
 def _moved_odds(share: Floats, shift: Floats) -> Floats:
     grown = share * np.exp(shift)
     return np.asarray(grown / (grown + 1.0 - share))
 
 
 @lru_cache(maxsize=64)
-def _path(law: HardeningLaw, pair: Pair) -> tuple[Floats, Any, Uncertainty | None]:
-    """Points of a path: ln(Delta/R), rising, the `Contact` there, and how far off both may be."""
+def _path(law: HardeningLaw, pair: Pair) -> tuple[Floats, Any, Uncertainty | None, Floats]:
+    """Points of a path: ln(Delta/R), rising, the `Contact` there, how far off both may be, and the
+    least force.
+    """  # noqa: D205
     e, correction = equivalent(law.fitted, pair, points=_POINTS), law.correction
     if correction is None:
-        return np.log(e.D), e.at._replace(left=1.0 - (1.0 - e.at.left) / e.deeper), None
+        x, least = np.log(e.D), least_force(e, np.log(e.D))
+        left = 1.0 - (1.0 - e.at.left) / e.deeper
+        return x, e.at._replace(F=np.maximum(e.at.F, least), left=left), None, least
     shifts = features_of(e, correction.low, correction.high) @ correction.weights
     x, at = corrected(e, shifts)
     # outside the data a correction could turn a path back
     steps = np.maximum(np.diff(x), _LEAST_STEP)
     x = x[0] + np.concatenate([[0.0], np.cumsum(steps)])
-    at = at._replace(F=np.maximum.accumulate(at.F), left=np.maximum(at.left, 0.0))
-    return x, at, _sizes(law, e, correction)
+    least = least_force(e, x)
+    at = at._replace(
+        F=np.maximum.accumulate(np.maximum(at.F, least)), left=np.maximum(at.left, 0.0)
+    )
+    return x, at, _sizes(law, e, correction), least
 
 
 def _sizes(law: HardeningLaw, e: Equivalent, correction: HardeningCorrection) -> Uncertainty | None:
@@ -279,8 +322,11 @@ def _sizes(law: HardeningLaw, e: Equivalent, correction: HardeningCorrection) ->
 
 
 def hardening_size(e: Equivalent) -> Floats:
-    """How much the points harden: nothing before yield, one far beyond it and at large n."""
-    n = e.at.phi * e.n_s + (1.0 - e.at.phi) * e.n_f
+    """How much the points harden or their curves bend: nothing before yield, one far beyond it."""
+    phi = e.at.phi
+    n = np.hypot(
+        phi * e.sphere.n + (1.0 - phi) * e.flat.n, phi * e.sphere.bend + (1.0 - phi) * e.flat.bend
+    )
     return np.asarray(n / np.sqrt(n * n + 0.01) * e.y / (1.0 + e.y))
 
 
@@ -289,29 +335,48 @@ def _with_strengths(bodies: Bodies, sphere: Floats, flat: Floats) -> Bodies:
     return Bodies(k_s, k_f, nu_s, nu_f, 1.0 / sphere, 1.0 / flat)
 
 
-def _flow(body: Material) -> Callable[[Floats], tuple[Floats, Floats]]:
-    """Flow stress by the plastic strain, and its exponent d ln S/d ln p."""
+def _flow(body: Material) -> Callable[[Floats], Under]:
+    """A body's flow under the contact, by the representative strain."""
     if body.rigid or body.flow is None or body.flow.curve is None:
-        return lambda p: (np.full(p.shape, body.strength), np.zeros(p.shape))
-    curve = body.flow.curve
-    stress = CubicHermiteSpline(curve.strain, curve.stress, curve.slope)
-    slope, last = stress.derivative(), curve.strain[-1]
 
-    def of(p: Floats) -> tuple[Floats, Floats]:
-        inside = np.minimum(p, last)
-        S = stress(inside)
-        return S, np.clip(np.where(p < last, slope(inside), 0.0) * p / S, 0.0, 1.0)
+        def plain(p: Floats) -> Under:
+            S, none = np.full(p.shape, body.strength), np.zeros(p.shape)
+            return Under(S, none, none, S)
+
+        return plain
+    x, table = _under(body.flow.curve)
+
+    def of(p: Floats) -> Under:
+        at = np.log(np.maximum(p, 1e-300))
+        return Under(*(np.interp(at, x, column) for column in table))
 
     return of
 
 
+@lru_cache(maxsize=256)
+def _under(curve: FlowCurve) -> tuple[Floats, Under]:
+    """Ln of representative strains, and a curve's flow there."""
+    stress, last = CubicHermiteSpline(curve.strain, curve.stress, curve.slope), curve.strain[-1]
+    x = np.linspace(math.log(_WEAKEST), math.log(_STRONGEST), _STRAINS)
+    shares = _SPAN * ((np.arange(_SHARES) + 0.5) / _SHARES) ** _FALL
+    stresses = stress(np.minimum(np.exp(x)[:, None] * shares, last))
+    S = np.mean(stresses, axis=1)
+    n = np.clip(np.gradient(np.log(S), x), -1.0, 1.0)
+    apart = round(_APART / (x[1] - x[0]))
+    padded = np.pad(n, apart, mode="edge")
+    lowest = np.minimum.accumulate(np.minimum(np.min(stresses, axis=1), curve.strength))
+    return x, Under(S, n, padded[2 * apart :] - padded[: -2 * apart], lowest)
+
+
 @lru_cache(maxsize=64)
 def _columns(law: HardeningLaw, pair: Pair) -> Floats:
-    x, at, _ = _path(law, pair)
+    x, at, _, least = _path(law, pair)
     grid = np.linspace(x[0], x[-1], _POINTS)
     F, a, left, phi, N = (
         PchipInterpolator(x, values)(grid)
         for values in (np.log(at.F), np.log(at.a), at.left, at.phi, at.N)
     )
+    # between points too
+    F = np.maximum(F, PchipInterpolator(x, np.log(least))(grid))
     exponent = recovery_exponent(grid, F, left, N)
     return packed_columns(grid, (F, a, left, phi, exponent))

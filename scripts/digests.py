@@ -12,6 +12,7 @@ import json
 from collections.abc import Iterable
 from pathlib import Path
 
+from dentscope.models.coefficients import drawn_from
 from dentscope.studies.proof.seal import tree_hash
 
 ROOT = Path(__file__).resolve().parents[1]
@@ -53,8 +54,9 @@ def of_folder(name: str, *endings: str) -> list[Path]:
 
 def parts_read() -> list[str]:
     """Parts of the campaign that the coefficients were fitted to or judged by."""
-    made = json.loads(COEFFICIENTS.read_text())["provenance"]["campaigns"]
-    read = {campaign["sha256"] for campaign in made}
+    content = json.loads(COEFFICIENTS.read_text())
+    parts = (content, content["hardening"])
+    read = {one["sha256"] for part in parts for one in part["provenance"]["campaigns"]}
     names = {
         hashlib.sha256(p.read_bytes()).hexdigest(): p.name
         for p in of_folder("data/campaign", ".h5")
@@ -74,7 +76,7 @@ def rows() -> Iterable[tuple[str, str, str, str]]:
     errors = ROOT / "data" / "coefficients" / "mesh_errors.json"
     yield "coefficients/mesh_errors.json", digest([errors]), "the solver", "verify --only levels"
     challenge = of_folder("data/challenge", ".h5")
-    drawn = f"coefficients {fitted[:SHORT]}"
+    drawn = f"coefficients {drawn_from()[:SHORT]}"
     yield "challenge", digest(challenge), drawn, "campaign run --design challenge"
     figures = of_folder("docs/thesis", ".png", ".md")
     yield "docs/thesis", digest(figures), drawn, "figures"

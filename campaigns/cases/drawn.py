@@ -8,7 +8,6 @@ import numpy as np
 
 from ... import fem
 from ...core.material import Pair
-from ...core.provenance import file_digest
 from ..case import Case, standard_case
 from .pairs import deep_case, digits, pair_of, widest_pair
 
@@ -96,9 +95,9 @@ def _for_judging(draw: np.ndarray[tuple[int, int], np.dtype[np.float64]]) -> lis
 
 def challenge() -> tuple[Case, ...]:
     """24 pairs drawn from the checksum of the coefficients in use, kept out of every fit."""
-    from ...models.coefficients import COEFFICIENTS_FILE
+    from ...models.coefficients import drawn_from
 
-    return challenge_cases(file_digest(COEFFICIENTS_FILE))
+    return challenge_cases(drawn_from())
 
 
 def challenge_cases(digest: str) -> tuple[Case, ...]:

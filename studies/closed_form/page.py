@@ -11,10 +11,10 @@ from ...fitting.prediction import Errors
 from ...fitting.report import (
     MARKS,
     Within,
+    about_hardening,
     coefficient_rows,
     domain_rows,
     error_rows,
-    hardening_rows,
     markdown,
     stated_within,
     uncertainty_rows,
@@ -47,18 +47,10 @@ def published_section(content: dict[str, Any]) -> str:
             markdown(coefficient_rows(content)),
             markdown(rows),
             markdown(uncertainty_rows(stated_within(content))),
-            *_hardening(content),
+            *about_hardening(content),
             markdown(domain_rows(content, "domain")) + END,
         ]
     )
-
-
-def _hardening(content: dict[str, Any]) -> list[str]:
-    found = content.get("hardening")
-    if found is None:
-        return []
-    title = f"{found['combinations']} pairs, left out"
-    return [markdown(hardening_rows({title: found["left_out"]}))]
 
 
 def judged_section(

@@ -8,13 +8,14 @@ from dentscope.fitting.hardening import fit_hardening, hardening_records, judge_
 from dentscope.models import LAWS
 from dentscope.models.hardening import HardeningCorrection, hardening_law
 
-PARTS = sorted((Path(__file__).parents[3] / "data" / "campaign").glob("*hardening-1.h5"))
+DATA = Path(__file__).parents[3] / "data" / "campaign"
+PARTS = sorted([*DATA.glob("*hardening-1.h5"), *DATA.glob("*plateau-1.h5")])
 FITTED, HARDENING = LAWS["fitted"], LAWS["hardening"]
 
 
 def test_no_fit_reads_the_pairs_for_judging():
     seen, kept = hardening_records(PARTS), hardening_records(PARTS, held_out=True)
-    assert (len(seen), len(kept)) == (96, 24)
+    assert (len(seen), len(kept)) == (96 + 48, 24 + 24)
     assert all(r.case.name.startswith("validation") for r in kept)
     assert not {r.id for r in seen} & {r.id for r in kept}
 
@@ -31,7 +32,7 @@ def test_pairs_that_no_fit_read_are_within_what_is_stated():
 def test_a_few_pairs_are_enough_to_halve_the_error_of_the_equivalence_alone():
     records = hardening_records(PARTS)
     found = fit_hardening(FITTED, records[::3])
-    assert found.combinations == 32
+    assert found.combinations == 48
     others = records[1::12]
     learned, _ = judge_hardening(hardening_law(FITTED, found.correction), others)
     none = HardeningCorrection(
