@@ -18,7 +18,6 @@ def test_the_coefficients_come_from_published_parts():
 
 def test_the_challenge_was_drawn_from_these_coefficients():
     from dentscope.campaigns import read_curves
-
     from dentscope.models.coefficients import drawn_from
 
     fitted = drawn_from()

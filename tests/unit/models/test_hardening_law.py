@@ -117,7 +117,7 @@ def test_a_constant_curve_is_perfect_plasticity():
         assert a == pytest.approx(b, rel=1e-12)
 
 
-# CalculiX 2.20, axisymmetric, finite strain, elastic ball of 1 mm on a flat with the measured curve;
+# CalculiX 2.20, axisymmetric, finite strain, elastic ball of 1 mm on a flat of the measured curve;
 # a convergence study puts these forces 0.5 to 1 % low
 CALCULIX = {
     "1016": (ASTM_1016, [1.04131e-3, 2.43456e-3, 4.73042e-3, 1.00602e-2, 1.61437e-2, 2.4e-2],
