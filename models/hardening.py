@@ -66,6 +66,7 @@ _DEGREE = 2
 _POINTS = 240  # of the table
 _LEAST_STEP = 0.01  # of ln Delta from point to point; a quarter of the mean one
 _FIRST, _LAST = 0.01, 0.6  # equivalent depths: over the critical one, over R
+_ROUNDED = 2e-3  # of ln F, where it comes down to the least force
 _ROUNDS = 14  # for the sphere's part of the flow
 _SETTLING = 3  # of the contact radius in each, which go on from the last
 
@@ -305,9 +306,10 @@ def _path(law: HardeningLaw, pair: Pair) -> tuple[Floats, Any, Uncertainty | Non
     steps = np.maximum(np.diff(x), _LEAST_STEP)
     x = x[0] + np.concatenate([[0.0], np.cumsum(steps)])
     least = least_force(e, x)
-    at = at._replace(
-        F=np.maximum.accumulate(np.maximum(at.F, least)), left=np.maximum(at.left, 0.0)
-    )
+    # the larger, rounded where the two cross: a table would undershoot at a kink
+    rise, round_ = np.log(at.F / least), _ROUNDED * hardening_size(e)
+    F = least * np.exp(0.5 * (rise + np.hypot(rise, round_)))
+    at = at._replace(F=np.maximum.accumulate(F), left=np.maximum(at.left, 0.0))
     return x, at, _sizes(law, e, correction), least
 
 
