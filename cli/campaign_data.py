@@ -39,16 +39,18 @@ def show(
     console.print(f"{record.case.name}: {record.status} {record.message}".rstrip())
     console.print(f"{source}, {record.case.id[:12]}", soft_wrap=True)
     c = record.curve
+    elastic = pair.Sy_min == float("inf")
+    scale, over = (1e6, "H [MPa]") if elastic else (pair.Sy_min, "H/Sy_min")
     rows = [
         (
             f"{c['delta'][i] / pair.R:.4g}", f"{c['force'][i]:.4g}", f"{c['radius'][i] * 1e3:.4g}",
             f"{c['sphere'][i] / (c['sphere'][i] + c['flat'][i]):.3f}",
-            f"{c['hardness'][i] / pair.Sy_min:.3f}",
+            f"{c['hardness'][i] / scale:.4g}",
         )
         for i in range(0, len(c.get("delta", ())), 3)
     ]  # fmt: skip
     if rows:
-        show_table(console, ("Delta/R", "F [N]", "a [mm]", "sphere's share", "H/Sy_min"), rows)
+        show_table(console, ("Delta/R", "F [N]", "a [mm]", "sphere's share", over), rows)
     for unloading in record.unloadings:
         console.print(
             f"unloaded from Delta/R = {unloading.depth:.4g}: left in the sphere "

@@ -13,7 +13,7 @@ from ..core.output import csv_text, write_figure, write_file
 from .shared.groups import Commands, group
 from .shared.places import folder_option
 from .shared.terminal import console as new_console
-from .shared.terminal import entry, show_table, wrapped
+from .shared.terminal import entry, say, show_table, wrapped
 
 if TYPE_CHECKING:
     from ..models.base import ContactLaw
@@ -129,8 +129,10 @@ def compare(
     from ..start.case_file import read_pair
 
     content, pair = read_pair(file)
+    from ..core.inputs.left_aside import left_aside
+    from ..core.inputs.toml_input import read_toml
     from ..models import LAWS
-    from ..start.comparison import Row, compared
+    from ..start.comparison import USED, Row, compared
 
     laws = laws_named(law) if law else list(LAWS.values())
     found = compared(pair, laws, last=content.load.max_delta_over_R)
@@ -141,9 +143,9 @@ def compare(
     console = new_console()
     console.print(found.finding)
     show_table(console, *found.table())
-    for reason in dict.fromkeys(filter(None, found.objections.values())):
-        names = ", ".join(name for name, told in found.objections.items() if told == reason)
-        console.print(f"no: {reason}: {names}")
+    aside = left_aside(read_toml(file), USED)
+    if aside:
+        say(f"not in these laws: {', '.join(aside)}; `dentscope case` and `impact` take them")
     console.print(f"written: {table_file}\nwritten: {picture}", soft_wrap=True)
 
 
