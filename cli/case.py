@@ -9,7 +9,6 @@ from typing import Annotated, Any
 
 import typer
 
-from ..core.disk import DISK
 from ..core.errors import EXIT_NOT_CONVERGED, InputError
 from ..core.output import csv_text, write_figure, write_file
 from ..core.templates import CASE, write_new
@@ -149,11 +148,11 @@ def _columns(of: Any, Sy_min: float) -> tuple[Any, ...]:
 
 
 def _write_result(name: str, solution: Any, uncertainty: Any, path: Path) -> Path:
-    """Write everything into one file: a campaign file with uncertainties and fields added."""
-    from ..campaigns import Case, Store
-    from ..campaigns.journal import journal_of
+    """Write everything into one file: a run's file of a case, with uncertainties and fields."""
+    from ..campaigns import Case
+    from ..campaigns.case_file import case_image
 
-    # the fields lie beside the case in this file, not in a campaign's own files
+    # the fields lie beside the case in this file, not in files of their own
     case = Case(name, replace(solution.problem, snapshots=()), solution.accuracy)
 
     def add(group: Any) -> None:
@@ -176,13 +175,7 @@ def _write_result(name: str, solution: Any, uncertainty: Any, path: Path) -> Pat
                 )
                 data.attrs["unit"] = unit
 
-    draft = path.with_name(f".{path.name}.draft")
-    for left_over in (draft, journal_of(draft)):
-        left_over.unlink(missing_ok=True)
-    Store(draft).put(case, replace(solution, snapshots=()), also=add)
-    DISK.rename(draft, path)
-    DISK.sync_folder(path.parent)
-    return path
+    return write_file(path, case_image(case, replace(solution, snapshots=()), also=add))
 
 
 _FIELDS = {
