@@ -11,7 +11,7 @@ from pathlib import Path
 
 from .case import Case
 from .designs import Design, distinct_cases
-from .executor import Executor
+from .executor import Ended, Executor
 from .store import Store
 
 
@@ -134,12 +134,18 @@ def run_design(
             good = solution is not None and solution.outcome.completed
             stored[ended.id] = "done" if good else "failed"
             if report is not None:
-                text = ended.message if solution is None else str(solution.outcome)
-                cpu = solution.counters.cpu_s if solution else 0.0
-                report(Step(case, good, "" if good else text, cpu, _counts(cases, stored)))
+                report(_step(case, ended, _counts(cases, stored)))
             if time.monotonic() > until:
                 break
     return status_of(design, store)
+
+
+def _step(case: Case, ended: Ended, status: Status) -> Step:
+    solution = ended.solution
+    if solution is None:
+        return Step(case, False, ended.message, 0.0, status)
+    good = solution.outcome.completed
+    return Step(case, good, "" if good else str(solution.outcome), solution.counters.cpu_s, status)
 
 
 def _counts(cases: Mapping[str, Case], stored: Mapping[str, str]) -> Status:
