@@ -77,7 +77,8 @@ def cells_of(
     --------
     >>> import numpy as np
     >>> table = cells_of(lambda x: np.stack([np.sin(x), x], axis=1), 0.0, 3.0, tolerance=1e-9)
-    >>> bool(abs(column_at(table.vector, 0, 0, 1.0) - np.sin(1.0)) < 1e-9)
+    >>> cell = cell_at(table.vector, 0, 1.0)
+    >>> bool(abs(column_in(table.vector, 0, cell, 0, 1.0) - np.sin(1.0)) < 1e-9)
     True
     """
     left = np.linspace(low, high, start + 1)[:-1]
@@ -153,9 +154,3 @@ def column_in(table, at, cell, column, x):
     u2 = u * u
     low = table[k] + u * table[k + 1] + u2 * (table[k + 2] + u * table[k + 3])
     return low + u2 * u2 * (table[k + 4] + u * table[k + 5] + u2 * table[k + 6])
-
-
-@njit(float64(VECTOR, int64, int64, float64), cache=True, _nrt=False, error_model="numpy")
-def column_at(table, at, column, x):
-    """Return a column at `x`."""
-    return column_in(table, at, cell_at(table, at, x), column, x)
