@@ -188,3 +188,9 @@ def column_in(table, at, cell, column, x):
     u2 = u * u
     low = table[k] + u * table[k + 1] + u2 * (table[k + 2] + u * table[k + 3])
     return low + u2 * u2 * (table[k + 4] + u * table[k + 5] + u2 * table[k + 6])
+
+
+@njit(float64(VECTOR, int64, int64, float64), cache=True, _nrt=False, error_model="numpy")
+def column_at(table, at, column, x):
+    """Return a column at `x`."""
+    return column_in(table, at, cell_at(table, at, x), column, x)
