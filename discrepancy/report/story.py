@@ -61,7 +61,7 @@ class Story:
         Sentences: where the simulation misses, contradictions of the inputs, how the verdict came
         about, what was assumed.
     nowhere
-        What to think of it where no place, or one that does not shake the verdict, is beyond chance.
+        What to think of it where places and verdict seem to contradict each other.
     parts, explanations
         Probability of each mechanism to take part, and of each explanation.
     found

@@ -8,7 +8,16 @@ from typing import Any
 from ...core.observables import OBSERVABLES
 from ..choice.odds import OUTSIDE
 from ..findings import Verdict
-from .wording import compared, explanation, interval, joined, miss_sentences, percent, quantity, title_of
+from .wording import (
+    compared,
+    explanation,
+    interval,
+    joined,
+    miss_sentences,
+    percent,
+    quantity,
+    title_of,
+)
 
 _LEADING = 3
 """Explanations that the finding names where nothing is decided."""
@@ -49,9 +58,7 @@ def headline(v: Verdict) -> str:
 
 
 def nowhere(v: Verdict) -> str:
-    """Return what to think of it where no place misses beyond chance, or where one does and the
-    verdict stands nevertheless; "" where places and verdict say the same.
-    """
+    """Return how places and verdict go together; "" where both say that something is missing."""
     beyond = bool(v.located.beyond_chance)
     nothing = v.probabilities.get("baseline", 0.0)
     told = percent(nothing)
@@ -59,13 +66,13 @@ def nowhere(v: Verdict) -> str:
         if nothing < 0.5:
             return ""
         return (
-            f"All numbers together still leave a probability of {told} that nothing is missing: one "
-            "set of twenty in which nothing is missing shows such a place somewhere."
+            f"All numbers together still leave a probability of {told} that nothing is missing: "
+            "one set of twenty in which nothing is missing shows such a place somewhere."
         )
     if nothing >= 0.5:
         return "Nowhere beyond what chance gives over all observables and conditions."
     if v.misfit["as_stated"] > v.misfit["numbers"] and v.misfit["rest"] < 0.5:
-        cause = "the numbers as stated do not fit, but move within their uncertainties until they do"
+        cause = "as stated the numbers do not fit, but moved within their uncertainties they do"
     else:
         cause = "each place by itself misses too little"
     return (

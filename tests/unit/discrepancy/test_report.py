@@ -69,7 +69,7 @@ def test_no_place_and_no_all_clear_says_why() -> None:
     nothing_seen = Located((), (miss(1.8),), 3.0)
     told = nowhere(said("missing-physics", 0.02, nothing_seen))
     assert "2 %" in told
-    assert "move within their uncertainties" in told
+    assert "moved within their uncertainties" in told
     told = nowhere(said("missing-physics", 0.02, nothing_seen, rest=0.8))
     assert "each place by itself misses too little" in told
     assert nowhere(said("adequate", 0.9, nothing_seen)).startswith("Nowhere beyond")
