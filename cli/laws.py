@@ -43,7 +43,7 @@ def laws_named(names: list[str], *, source: str = "command line", key: str = "--
             if error.source:
                 raise
             # a law that is known and not offered has its reason in the message
-            told = f"no law {name!r}" if error.allowed else error.message
+            told = f"no law {error.message}" if error.allowed else error.message
             raise InputError(told, source=source, key=key, allowed=error.allowed) from None
     return found
 

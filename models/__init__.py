@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from difflib import get_close_matches
+
 from ..core.errors import InputError
 from .base import ContactLaw, Domain, DomainWarning, Kernels
 from .coefficients import shipped_laws
@@ -42,7 +44,9 @@ def law_named(name: str) -> ContactLaw:
         return law_named(first).with_unloading(law_named(second))
     if name not in LAWS:
         known = f"{', '.join(LAWS)}, a law.json or a fitted.json"
-        raise InputError(f"{name!r}", key="law", allowed=known)
+        near = get_close_matches(name, LAWS, n=1)
+        meant = f"; did you mean {near[0]!r}?" if near else ""
+        raise InputError(f"{name!r}{meant}", key="law", allowed=known)
     return LAWS[name]
 
 
