@@ -2,7 +2,8 @@
 
     import dentscope as ds
 
-    ds.impact("ball", impact_speed_m_s=2.0)    a blow, by several contact laws
+    ds.impact("ball", speed=2.0)               a blow, by several contact laws; of a pair, a file,
+                                               a set-up to start from; speed=[1, 2] gives a table
     ds.diagnose("my-recordings")               what physics the simulation of them lacks
     ds.case("case.toml")                       one's own pair by finite elements
     ds.compare_laws("case.toml")               the same by every contact law, and which to use
@@ -32,6 +33,7 @@ from dentscope.core.compiled import keep_compiled_code
 if TYPE_CHECKING:
     from dentscope.core import Material, Pair
     from dentscope.core.materials import material
+    from dentscope.impact import blow as impact  # noqa: F401 - the stage itself can be called
     from dentscope.models import LAWS
     from dentscope.start import case, compare_laws, diagnose
 
@@ -39,7 +41,7 @@ __version__ = "0.2.0"
 
 _FROM = {
     "LAWS": "models",
-    "Material": "core",
+    "Material": "start",
     "Pair": "core",
     "case": "start",
     "compare_laws": "start",

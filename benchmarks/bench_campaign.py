@@ -27,7 +27,7 @@ from dentscope.campaigns.executor import LocalExecutor
 
 CASES = 8
 DEPTH = 0.02
-OWN = Path("build/campaign/campaign.h5")
+OWN = Path("build/campaign")
 
 
 def made():
@@ -44,8 +44,8 @@ def made():
 
 
 def measured(workers, folder):
-    """Wall time from the start, from the end of the first round of cases, and the file."""
-    path, design, ends = Path(folder) / f"{workers}.h5", Design("bench", "", made), []
+    """Wall time from the start, from the end of the first round of cases, and the run's folder."""
+    path, design, ends = Path(folder) / f"{workers}", Design("bench", "", made), []
     started = time.perf_counter()
     status = run_design(
         design,
@@ -112,7 +112,7 @@ def main():
         print(f"{CASES} cases of {cpu:.1f} processor s on {os.cpu_count()} cores")
         print(f"{one:.1f} s with 1 worker, {two:.1f} s with 2: {one / two:.2f}, starting included")
         print(f"scaling 1 -> 2 workers once they run: {one_steady / two_steady:.2f} (mark: 1.8)")
-        size = path.stat().st_size / CASES
+        size = sum(file.stat().st_size for file in Store(path).files()) / CASES
         put, read = store_cost(path)
     print(f"store: {size / 1e3:.0f} kB, {put * 1e3:.0f} ms to write and {read * 1e3:.0f} to read")
     projection(put)

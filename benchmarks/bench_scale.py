@@ -3,9 +3,8 @@
     .venv/bin/python benchmarks/bench_scale.py          about six minutes; 2 GB of disk, 4 of memory
     .venv/bin/python benchmarks/bench_scale.py --quick  about one, at a tenth of the sizes
 
-Real published cases go into a store one by one through `Store.put`. The larger stores are these
-groups copied, each with a Poisson ratio smaller by up to 1e-4, its own id, name and digest, sealed
-as the store seals. Everything that is timed goes through the functions that the commands use, each
+Published cases, copied with a Poisson ratio smaller by a millionth each, go into a run one by one
+through `Store.put`. Everything that is timed goes through the functions that the commands use, each
 in a process of its own for its peak of memory (what the process held before is taken off). The last
 column is the share of one case in the largest over that in the smallest, or of one call where the
 row says `one`: 1 where nothing grows. The cluster, workers and scheduler too, lies in this one
@@ -24,10 +23,10 @@ import time
 import tracemalloc
 from collections.abc import Callable, Iterable
 from dataclasses import replace
+from functools import partial
 from pathlib import Path
 from typing import Any
 
-import h5py
 import numpy as np
 from dentscope import fem
 from dentscope.campaigns import (
@@ -37,15 +36,11 @@ from dentscope.campaigns import (
     Forecast,
     Store,
     distinct_cases,
-    journal,
     publish,
     read_curves,
     read_published,
-    store,
 )
-from dentscope.campaigns.contents import DIGEST, SEALED_FROM, read_tree, seal
 from dentscope.campaigns.parts import CHECKSUMS, part_of
-from dentscope.campaigns.schema import FORMAT
 from dentscope.core.errors import Ending, InputError, Outcome
 from dentscope.fem.solution import Counters, Curve, Profile, Unloading
 from dentscope.recordings import read
@@ -53,8 +48,7 @@ from dentscope.recordings.checks import audit
 from dentscope.recordings.shipped import FOLDER, shipped_sets
 
 PUBLISHED = Path("data/campaign")
-BASE = 107  # cases that are put one by one
-PUTS = 2  # timed at each size
+BASE = 20  # cases that a run's are copies of
 
 
 def solution_of(record: CaseRecord) -> fem.Solution:
@@ -127,85 +121,48 @@ def show(title: str, sizes: Iterable[int], rows: list[tuple[str, str, list[float
         print(f"{f'{name} [{unit}]':44}{shown}   x {each:.2f}", flush=True)
 
 
-def put_all(path: Path, records: list[CaseRecord]) -> list[float]:
-    """Seconds of each put."""
-    times = []
-    for record in records:
-        solution = solution_of(record)
-        started = time.perf_counter()
-        Store(path).put(record.case, solution, computed_by=record.environment)
-        times.append(time.perf_counter() - started)
-    return times
+def put_all(folder: Path, records: list[CaseRecord], size: int, *, ends: list[int]) -> list[float]:
+    """Put so many cases; return processor seconds of one put over the last tenth before each end.
+
+    The solutions are made before: what a put costs is the store's.
+    """
+    solutions = [solution_of(record) for record in records]
+    specs = [record.case.specification() for record in records]
+    store, seconds = Store(folder), []
+    for k in range(size):
+        number = k % len(records)
+        case = neighbour(specs[number], 1 + k // len(records))
+        started = time.process_time()
+        store.put(case, solutions[number], computed_by=records[number].environment)
+        seconds.append(time.process_time() - started)
+    return [float(np.mean(seconds[end - end // 10 : end])) for end in ends]
 
 
-def grow(base: Path, places: dict[int, Path]) -> None:
-    """Make stores of so many cases from one of a few."""
-    draft = base.with_suffix(".draft")
-    with h5py.File(base) as old:
-        trees = {key: read_tree(group) for key, group in old["cases"].items()}
-        made = 0
-        for size, place in places.items():
-            layout = {"libver": ("v110", "v110")}
-            new = (
-                h5py.File(draft, "r+", **layout) if made else
-                h5py.File(draft, "w", userblock_size=SEALED_FROM, **layout)
-            )  # fmt: skip
-            with new:
-                new.attrs["format"] = FORMAT
-                cases = new.require_group("cases")
-                while made < size:
-                    key = list(trees)[made % len(trees)]
-                    tree = trees[key]
-                    spec = json.loads(tree.attributes["specification"])
-                    case = neighbour(spec, 1 + made // len(trees))
-                    about = tree.attributes | {"specification": json.dumps(case.specification())}
-                    old.copy(old["cases"][key], cases, name=case.id)
-                    attributes = cases[case.id].attrs
-                    attributes["specification"] = about["specification"]
-                    attributes[DIGEST] = replace(tree, attributes=about).digest()
-                    made += 1
-            image = draft.read_bytes()
-            place.write_bytes(seal(image) + memoryview(image)[SEALED_FROM:])
-    draft.unlink()
-
-
-def stores(folder: Path, records: list[CaseRecord], sizes: list[int], base: int) -> None:
-    """What each call on a campaign file costs."""
-    step = len(records) // base
-    first, later = records[::step][:base], records[step // 2 :: step][: PUTS * len(sizes)]
-    path = folder / "base.h5"
-    _, _, times = apart(put_all, path, first)
-    early, late, size = np.mean(times[:10]), np.mean(times[-10:]), path.stat().st_size
-    print(f"\n{base} cases put into an empty store: {early:.2f} s each of the first ten, "
-          f"{late:.2f} s of the last ten, {size / base / 1e3:.0f} kB each")  # fmt: skip
-    places = {n: folder / f"{n}.h5" for n in sizes}
-    made, _, _ = apart(grow, path, places)
-    print(f"stores of {sizes} copied from them: {made:.0f} s")
-    rows: dict[str, list[float]] = {}
-    for number, (size, place) in enumerate(places.items()):
-        rows.setdefault("bytes [MB]", []).append(place.stat().st_size / 1e6)
-        wanted = next(iter(Store(place).statuses()))
-        calls: dict[str, tuple[Any, ...]] = {
-            "statuses": (Store(place).statuses,),
-            "summaries": (_counted, Store(place).summaries),
-            "one case": (_counted, Store(place).read, wanted),
-        }
-        mine = later[PUTS * number : PUTS * (number + 1)]
-        calls["one put"] = (put_all, place, mine)
-        for name, call in calls.items():
-            gone, peak, answer = apart(*call)
-            value = float(np.mean(answer)) if name == "one put" else gone
-            rows.setdefault(f"{name} [s]", []).append(value)
-            rows.setdefault(f"{name} [MB held]", []).append(peak)
-        place.unlink() if size != sizes[0] else None
-    show("A campaign file of so many cases", sizes, _rows(rows))
-    whole = {n: apart(_counted, Store(p).read_all)
-             for n, p in ((base, path), (sizes[0], places[sizes[0]]))}  # fmt: skip
-    show("Every case read from it", whole, [
-        ("read_all", "s", [found[0] for found in whole.values()]),
-        ("read_all", "MB held", [found[1] for found in whole.values()]),
+def stores(folder: Path, records: list[CaseRecord], sizes: list[int]) -> None:
+    """What each call on a run costs."""
+    some = records[:: len(records) // BASE][:BASE]  # the same cases again and again
+    place = folder / "run"
+    wall, _, one = apart(partial(put_all, ends=sizes), place, some, sizes[-1])
+    written = sorted(Store(place).files(), key=lambda file: file.stat().st_mtime_ns)
+    print(f"\n{len(written):,} cases put in {wall:.0f} s")
+    sized = [float(np.mean([f.stat().st_size for f in written[end - end // 10 : end]])) / 1e3
+             for end in sizes]  # fmt: skip
+    show("A run of so many cases", sizes, [
+        ("one put", "processor s", one), ("one put", "kB", sized),
     ])  # fmt: skip
-    print("beyond the largest file:", apart(_beyond, path, later[0])[2])
+    wanted = next(iter(Store(place).statuses()))
+    for name, call in (
+        ("statuses", Store(place).statuses),
+        ("summaries", partial(_counted, Store(place).summaries)),
+        ("one case", partial(_counted, Store(place).read, wanted)),
+    ):
+        gone, peak, _ = apart(call)
+        print(f"{name} of {len(written):,} cases: {gone:.2f} s, {peak:.0f} MB held")
+    few = folder / "few"
+    put_all(few, some, len(some), ends=[len(some)])
+    gone, peak, _ = apart(_counted, Store(few).read_all)
+    print(f"read_all of {len(some)} cases: {gone / len(some) * 1e3:.1f} ms and "
+          f"{peak / len(some):.2f} MB each")  # fmt: skip
 
 
 def _rows(rows: dict[str, list[float]]) -> list[tuple[str, str, list[float]]]:
@@ -215,25 +172,6 @@ def _rows(rows: dict[str, list[float]]) -> list[tuple[str, str, list[float]]]:
 def _counted(call: Callable[..., Any], *args: Any) -> int:
     kept = call(*args)
     return len(kept) if isinstance(kept, list) else 1
-
-
-def _beyond(path: Path, record: CaseRecord) -> str:
-    """A put that takes the file over the most that is read, and what is said after it."""
-    most = path.stat().st_size + 1000  # in place of 2 GB
-    store.MOST_BYTES = journal.MOST_BYTES = most
-    told = []
-    try:
-        put_all(path, [record])
-        told.append("put accepted")
-    except InputError as error:
-        told.append(f"put refused ({error.message})")
-    for name, call in (("statuses", Store(path).statuses), ("repair", Store(path).repair)):
-        try:
-            call()
-            told.append(f"{name} works")
-        except InputError as error:
-            told.append(f"{name} refused ({error.message})")
-    return "; ".join(told)
 
 
 def parts(folder: Path, records: list[CaseRecord], factors: list[int], base: int) -> None:
@@ -271,8 +209,8 @@ def parts(folder: Path, records: list[CaseRecord], factors: list[int], base: int
 
 def _published_too_much(folder: Path) -> str:
     """Three more parts beside those of today."""
-    some, place = folder / "some.h5", folder / "published"
-    grow(folder / "base.h5", {40: some})
+    some, place = folder / "some", folder / "published"
+    put_all(some, read_published(PUBLISHED)[:40], 40, ends=[40])
     shutil.copytree(PUBLISHED, place)
     own = Store(some).read_all()
     design = Design("bench", "", lambda: tuple(record.case for record in own))
@@ -430,13 +368,13 @@ def main() -> None:
     quick = parser.parse_args().quick
     started = time.perf_counter()
     records = read_published(PUBLISHED)
-    today, base = len(records), 25 if quick else BASE
+    today, base = len(records), 25 if quick else 107
     sizes = [today // 10, today * 3 // 10, today] if quick else [today, 3 * today, 10 * today]
     print(f"{today} published cases; the column of today's size is {today:,}")
     with tempfile.TemporaryDirectory() as name:
         folder = Path(name)
         recordings(folder, *((100, [2_000, 20_000]) if quick else (1000, [20_000, 200_000])))
-        stores(folder, records, sizes, base)
+        stores(folder, records, [100, 300, 1000] if quick else [100, 1000, 10_000])
         parts(folder, records[:: 10 if quick else 1], [1] if quick else [1, 3, 10], base)
         coordinator(records[::10], sizes)
         ledger(folder, [200, 2_000] if quick else [200, 2_000, 20_000])

@@ -18,10 +18,10 @@ from dentscope.campaigns import design_named, read_curves, status_of
 from dentscope.campaigns.store import Store
 
 folder = Path(sys.argv[1] if len(sys.argv) > 1 else "build/robustness")
-store = Store(folder / "campaign.h5")
+store = Store(folder)
 design = sys.argv[2] if len(sys.argv) > 2 else "robustness"
 status = status_of(design_named(design), store)
-records = read_curves(folder / "campaign.h5")
+records = read_curves(folder)
 rows = []
 for record in records:
     c = record.curve

@@ -1,4 +1,4 @@
-"""Stage campaigns: hundreds of finite-element cases into one HDF5 file."""
+"""Stage campaigns: finite-element cases by the hundred, a file each; published as parts."""
 
 from __future__ import annotations
 
@@ -14,10 +14,11 @@ from .publish import (
     read_published,
 )
 from .quality import MOST_ENERGY_DEFECT, MOST_STEP, Quality, quality_of
-from .read import read_curves
+from .read import digest_of_source, read_curves
 from .records import CaseRecord, Summary, UnloadingRecord
-from .run import Status, Step, run_design, status_of
+from .run import Share, Status, Step, run_design, status_of
 from .store import Store
+from .upgrade import upgrade
 
 __all__ = [
     "DESIGNS",
@@ -30,12 +31,14 @@ __all__ = [
     "Forecast",
     "Published",
     "Quality",
+    "Share",
     "Status",
     "Step",
     "Store",
     "Summary",
     "UnloadingRecord",
     "design_named",
+    "digest_of_source",
     "distinct_cases",
     "largest_difference",
     "pace_of_this_machine",
@@ -47,4 +50,5 @@ __all__ = [
     "run_design",
     "standard_case",
     "status_of",
+    "upgrade",
 ]

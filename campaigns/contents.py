@@ -1,15 +1,17 @@
 """What an HDF5 file of ours holds: whether every byte is as it was written, and plain values only.
 
-A file is sealed: HDF5 leaves its first 512 bytes (the user block) to others, and there stands the
-SHA-256 of all that follows. It is compared before HDF5 sees a byte. A group is read as a tree of
-texts, numbers and arrays; whatever leads elsewhere (links, external storage, references) or claims
-more than it holds is refused.
+A file is made in memory and sealed: HDF5 leaves its first 512 bytes (the user block) to others, and
+there stands the SHA-256 of all that follows. It is compared before HDF5 sees a byte. A group is
+read as a tree of texts, numbers and arrays; whatever leads elsewhere (links, external storage,
+references) or claims more than it holds is refused.
 """
 
 from __future__ import annotations
 
 import hashlib
+import io
 from collections.abc import Iterator
+from contextlib import contextmanager
 from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any
@@ -24,10 +26,7 @@ SEALED_FROM = 512
 """Size of the user block."""
 
 DIGEST = "digest"
-"""Attribute of a case's group: the digest of its tree without this attribute."""
-
-MOST_BYTES = 2_000_000_000
-"""Largest campaign file that is read [bytes]."""
+"""What holds the digest of a case's tree without this name: a column of a part."""
 
 DAMAGE = (
     ArithmeticError, AttributeError, LookupError, OSError, RuntimeError, TypeError, ValueError,
@@ -35,12 +34,31 @@ DAMAGE = (
 """What reading a file raises that was sealed by somebody who meant ill, or by a fault of ours."""
 
 _MAGIC = b"dentscope-sealed-1\n".ljust(32, b"\0")
-_SHA256 = 32
+_LAYOUT = ("v110", "v110")  # of HDF5: the first whose headers carry checksums at no cost of room
 _DEEPEST = 4
 _MOST_DATA = 256_000_000  # bytes of one dataset
 _MOST_RATIO = 1100  # of deflate, which gives at most 1032 bytes for one
 _MOST_TEXT = 1_000_000
 _KINDS = "fiubSU"
+
+
+@dataclass
+class Image:
+    """A file that is made in memory: `file` while it is open, then its bytes, sealed."""
+
+    file: h5py.File
+    sealed: bytes = b""
+
+
+@contextmanager
+def new_image() -> Iterator[Image]:
+    """Make a sealed HDF5 file in memory."""
+    stream = io.BytesIO()
+    with h5py.File(stream, "w", libver=_LAYOUT, userblock_size=SEALED_FROM) as file:
+        made = Image(file)
+        yield made
+    image = stream.getvalue()
+    made.sealed = seal(image) + image[SEALED_FROM:]
 
 
 def seal(image: bytes) -> bytes:
@@ -65,10 +83,13 @@ def check_seal(image: bytes, path: Path, *, allowed: str = "") -> None:
     if not is_sealed(image):
         if image[:8] != b"\x89HDF\r\n\x1a\n":
             raise InputError(
-                "not a campaign file, or its head is damaged", source=str(path),
+                "not a file of ours, or its head is damaged", source=str(path),
                 allowed="a file that `dentscope campaign` wrote",
             )  # fmt: skip
-        raise InputError("of an older format, without a digest", source=str(path), allowed=allowed)
+        raise InputError(
+            "of an older format, without a digest", source=str(path),
+            allowed="a run's campaign.h5 after `dentscope campaign upgrade`",
+        )  # fmt: skip
     if image[:SEALED_FROM] != seal(image):
         raise InputError(
             "damaged: its bytes are not those that were written", source=str(path), allowed=allowed

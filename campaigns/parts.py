@@ -1,14 +1,14 @@
 """A published part: many cases as a few long columns, which compress and which any tool can read.
 
-A campaign file keeps each case by itself, so that a run can append it; most of its bytes are
-headers. A part holds the same cases as tables: `cases` (one row a case), `loading` (one row a
+A run keeps each case in a file of its own; most of its bytes are headers. A part holds the same
+cases as tables: `cases` (one row a case), `loading` (one row a
 depth, all cases below each other), `unloadings` (one row an unloading), `unloading_curves`,
 `craters`, `tips`, `profile_sphere` and `profile_flat`. A table's first column counts the rows of
 the table above it that its rows belong to: `case` counts rows of `cases`, `unloading` of
 `unloadings`, `profile` depths of a case. Columns of floating-point numbers of the curves and shapes
 are in single precision (relative error below 6e-8); scalars are in double precision.
 
-A part is sealed as a campaign file is, and holds a digest of each case as it is read. Parts of
+A part is sealed as a case's file is, and holds a digest of each case as it is read. Parts of
 format 1 are held to `SHA256SUMS` and `DIGESTS` beside them.
 """
 
@@ -32,8 +32,17 @@ from ..core.inputs.input_file import read_bytes
 from ..core.provenance import canonical_json
 from ..fem import critical_depth
 from .case import Case
-from .contents import DAMAGE, DIGEST, Tree, check_seal, damage, is_sealed, open_image, read_array
-from .journal import new_image
+from .contents import (
+    DAMAGE,
+    DIGEST,
+    Tree,
+    check_seal,
+    damage,
+    is_sealed,
+    new_image,
+    open_image,
+    read_array,
+)
 from .records import CaseRecord, UnloadingRecord
 from .schema import CURVE, PROFILES, UNLOADING_PROFILES, Dataset
 
@@ -414,7 +423,7 @@ def _read_profiles(file: h5py.File, n: int) -> list[dict[str, Floats]]:
 
 
 def _filled(rows: Sequence[Floats]) -> Floats:
-    """Rows of uneven length as one array, filled up with NaN as in a campaign file."""
+    """Rows of uneven length as one array, filled up with NaN as in a case's file."""
     out = np.full((len(rows), max(map(len, rows))), np.nan)
     for row, values in zip(out, rows, strict=True):
         row[: len(values)] = values

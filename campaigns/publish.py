@@ -71,7 +71,7 @@ def publish(
     design
         What is published; every one of its cases has ended in `source`.
     source
-        Campaign file of the run.
+        Folder of the run.
     folder
         Where the data set lies.
     most_bytes

@@ -1,11 +1,11 @@
-"""Stored cases as objects: what a campaign file's groups and the rows of published parts become."""
+"""Stored cases as objects: what cases' files and the rows of published parts become."""
 
 from __future__ import annotations
 
 import json
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Any, NamedTuple
+from typing import Any
 
 import h5py
 import numpy as np
@@ -13,7 +13,7 @@ import numpy.typing as npt
 
 from ..core.errors import InputError
 from .case import Case
-from .contents import DIGEST, Tree, read_tree
+from .contents import Tree, read_tree
 from .quality import Quality, quality_of
 from .schema import CURVE, PROFILES, UNLOADING_PROFILES, Dataset
 
@@ -96,45 +96,38 @@ class Summary:
         return self.id != self.case.id
 
 
-def read_summary(key: str, group: h5py.Group, path: Path) -> Summary:
+def read_summary(file: h5py.Group, _path: Path) -> Summary:
     """Read what is known of a case but its arrays."""
-    attrs, quality = group.attrs, None
-    if "quality" in attrs:
-        quality = Quality(**json.loads(attrs["quality"]))
-    elif "loading" in group:  # stored before the quality was
-        quality = read_case(key, group, path).quality
+    attrs = file.attrs
     return Summary(
-        id=key,
+        id=str(attrs["id"]),
         case=Case.from_specification(json.loads(attrs["specification"])),
         status=str(attrs["status"]),
         message=str(attrs["message"]),
         cpu_s=float(attrs.get("counter_cpu_s", 0.0)),
-        quality=quality,
+        quality=Quality(**json.loads(attrs["quality"])) if "quality" in attrs else None,
     )
 
 
-def read_case(key: str, group: h5py.Group, path: Path) -> CaseRecord:
+def read_case(file: h5py.Group, path: Path) -> CaseRecord:
     """Read a case whole.
 
     Raises
     ------
     InputError
-        Its digest is another, or a dataset is missing or in another unit.
+        A dataset is missing or in another unit.
     """
-    tree = read_tree(group)
+    tree = read_tree(file)
     attributes, prefix = tree.attributes, "counter_"
-    if DIGEST in attributes and attributes[DIGEST] != tree.digest():
-        raise InputError("its digest is another: damaged", source=str(path), key=group.name)
-    place = _Place(path, group.name)
     names = sorted((n for n in tree.groups if n.startswith("unload-")), key=lambda n: int(n[7:]))
     return CaseRecord(
-        id=key,
+        id=str(attributes["id"]),
         case=Case.from_specification(json.loads(attributes["specification"])),
         status=str(attributes["status"]),
         message=str(attributes["message"]),
-        curve=_arrays(tree, "loading", CURVE, place),
-        unloadings=tuple(_unloading(tree, name, place) for name in names),
-        profiles=_arrays(tree, "profiles", PROFILES, place),
+        curve=_arrays(tree, "loading", CURVE, path),
+        unloadings=tuple(_unloading(tree, name, path) for name in names),
+        profiles=_arrays(tree, "profiles", PROFILES, path),
         counters={
             name[len(prefix) :]: float(value)
             for name, value in attributes.items()
@@ -146,36 +139,29 @@ def read_case(key: str, group: h5py.Group, path: Path) -> CaseRecord:
     )
 
 
-class _Place(NamedTuple):
-    """File and group, for errors."""
-
-    path: Path
-    group: str
-
-
-def _unloading(case: Tree, name: str, place: _Place) -> UnloadingRecord:
+def _unloading(case: Tree, name: str, path: Path) -> UnloadingRecord:
     attributes = case.groups[name].attributes
     return UnloadingRecord(
         depth=float(attributes["depth"]),
-        curve=_arrays(case, name, CURVE, place),
+        curve=_arrays(case, name, CURVE, path),
         residual_sphere=float(attributes["residual_sphere_m"]),
         residual_flat=float(attributes["residual_flat_m"]),
-        profiles=_arrays(case, name, UNLOADING_PROFILES, place),
+        profiles=_arrays(case, name, UNLOADING_PROFILES, path),
     )
 
 
-def _arrays(case: Tree, name: str, schema: dict[str, Dataset], place: _Place) -> dict[str, Floats]:
+def _arrays(case: Tree, name: str, schema: dict[str, Dataset], path: Path) -> dict[str, Floats]:
     """Arrays of one of a case's groups; nothing where it has no such group."""
     if name not in case.groups:
         return {}
     group, out = case.groups[name], {}
     for column, about in schema.items():
-        key = f"{place.group}/{name}/{column}"
+        key = f"{name}/{column}"
         if column not in group.arrays:
-            raise InputError("missing", source=str(place.path), key=key)
+            raise InputError("missing", source=str(path), key=key)
         if group.units[column] != about.unit:
             raise InputError(
-                f"unit {group.units[column]!r}", source=str(place.path), key=key,
+                f"unit {group.units[column]!r}", source=str(path), key=key,
                 allowed=about.unit,
             )  # fmt: skip
         out[column] = np.asarray(group.arrays[column], dtype=float)

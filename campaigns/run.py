@@ -11,7 +11,7 @@ from pathlib import Path
 
 from .case import Case
 from .designs import Design, distinct_cases
-from .executor import Executor
+from .executor import Ended, Executor
 from .store import Store
 
 
@@ -45,8 +45,20 @@ def status_of(design: Design, store: Store) -> Status:
     return _counts(distinct_cases(design), store.statuses())
 
 
+@dataclass(frozen=True)
+class Share:
+    """What one of several runs of a sweep computes: every `of`-th case, from `part` = 1 on."""
+
+    part: int = 1
+    of: int = 1
+
+
 def cases_to_do(
-    design: Design, store: Store, *, again: frozenset[str] = frozenset()
+    design: Design,
+    store: Store,
+    *,
+    again: frozenset[str] = frozenset(),
+    share: Share = Share(),
 ) -> dict[str, Case]:
     """Cases that a run would compute, in its order, by their id.
 
@@ -57,39 +69,45 @@ def cases_to_do(
     again
         Statuses that are computed again. A case that failed is tried with smaller steps and
         elements; its identity stays.
+    share
+        Of the design's cases, where several runs share them.
     """
     stored = store.statuses()
+    mine = list(distinct_cases(design).items())[share.part - 1 :: share.of]
     return {
         key: case.refined() if key in stored else case
-        for key, case in distinct_cases(design).items()
+        for key, case in mine
         if key not in stored or stored[key] in again
     }
 
 
 def run_design(
     design: Design,
-    path: Path,
+    folder: Path,
     *,
     executor: Executor,
     time_limit_s: float,
     again: frozenset[str] = frozenset(),
+    share: Share = Share(),
     until: float = math.inf,
     report: Callable[[Step], None] | None = None,
 ) -> Status:
-    """Compute what a design lacks in the file at `path`.
+    """Compute what a design lacks in a run's folder; several may do so at once.
 
     Parameters
     ----------
     design
         The sweep.
-    path
-        Campaign file, made if needed; cases it already holds are not computed again.
+    folder
+        The run's folder, made if needed; cases it already holds are not computed again.
     executor
         Where to compute.
     time_limit_s
         Wall-clock limit of one case.
     again
         Statuses that are computed again, more finely, for example `{"failed"}`.
+    share
+        Of the design's cases, where several runs share them.
     until
         Value of `time.monotonic()` after which no further result is waited for.
     report
@@ -103,26 +121,31 @@ def run_design(
     Raises
     ------
     InputError
-        Another run writes the same file, or it is damaged.
+        A case cannot be written; all completed cases are kept.
     """
-    store = Store(path)
+    store = Store(folder)
     cases = distinct_cases(design)
-    with store.writing():
-        todo = cases_to_do(design, store, again=again)
-        stored = store.statuses()
-        with closing(executor.run(todo, time_limit_s=time_limit_s)) as endings:
-            for ended in endings:
-                case, solution = cases[ended.id], ended.solution
-                store.put(case, solution, message=ended.message, computed_by=ended.computed_by)
-                good = solution is not None and solution.outcome.completed
-                stored[ended.id] = "done" if good else "failed"
-                if report is not None:
-                    text = ended.message if solution is None else str(solution.outcome)
-                    cpu = solution.counters.cpu_s if solution else 0.0
-                    report(Step(case, good, "" if good else text, cpu, _counts(cases, stored)))
-                if time.monotonic() > until:
-                    break
+    todo = cases_to_do(design, store, again=again, share=share)
+    stored = store.statuses()
+    with closing(executor.run(todo, time_limit_s=time_limit_s)) as endings:
+        for ended in endings:
+            case, solution = cases[ended.id], ended.solution
+            store.put(case, solution, message=ended.message, computed_by=ended.computed_by)
+            good = solution is not None and solution.outcome.completed
+            stored[ended.id] = "done" if good else "failed"
+            if report is not None:
+                report(_step(case, ended, _counts(cases, stored)))
+            if time.monotonic() > until:
+                break
     return status_of(design, store)
+
+
+def _step(case: Case, ended: Ended, status: Status) -> Step:
+    solution = ended.solution
+    if solution is None:
+        return Step(case, False, ended.message, 0.0, status)
+    good = solution.outcome.completed
+    return Step(case, good, "" if good else str(solution.outcome), solution.counters.cpu_s, status)
 
 
 def _counts(cases: Mapping[str, Case], stored: Mapping[str, str]) -> Status:

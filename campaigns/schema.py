@@ -1,18 +1,18 @@
-"""Every dataset of a campaign file: its unit, axes and meaning.
+"""Every dataset of a case's file: its unit, axes and meaning.
 
-A file holds one group a case under `/cases/ID`. A case that ended has the attributes `status`
-(`done` or `failed`), `specification` and `environment` (JSON) and the datasets below; unloadings
-lie under `unload-1`, `unload-2`, ... in the order of their depth; contact pressure and surfaces at
-ten depths under `profiles`, in single precision and out to twice the contact radius;
-rows end with NaN where a profile has fewer nodes than the longest. The attribute `digest` is the
-SHA-256 of all that, and the file's first 512 bytes seal the rest (see `campaigns.contents`).
+A file holds one case: the attributes `id`, `status` (`done` or `failed`), `specification` and
+`environment` (JSON) and the datasets below; the loading curve under `loading`, unloadings under
+`unload-1`, `unload-2`, ... in the order of their depth; contact pressure and surfaces at ten depths
+under `profiles`, in single precision and out to twice the contact radius; rows end with NaN where a
+profile has fewer nodes than the longest. The first 512 bytes hold the SHA-256 of the rest (see
+`campaigns.contents`).
 """
 
 from __future__ import annotations
 
 from dataclasses import dataclass
 
-FORMAT = "dentscope-campaign/2"
+FORMAT = "dentscope-case/3"
 
 
 @dataclass(frozen=True)

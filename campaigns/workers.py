@@ -17,6 +17,7 @@ from dataclasses import dataclass
 from multiprocessing.connection import Connection, wait
 from typing import Any
 
+from ..core.children import keep_current_folder_out
 from ..core.threads import one_thread_each
 
 TRIES = 3
@@ -52,6 +53,7 @@ def answers(
     """
     # workers are spawned: the variables act before their numpy loads
     one_thread_each()
+    keep_current_folder_out()
     todo, tries = deque(orders), dict.fromkeys(orders, 0)
     crew: list[_Worker] = []
 

@@ -14,7 +14,7 @@ import typer
 
 from ..core.errors import EXIT_NOT_CONVERGED, InputError
 from . import campaign_data, studies
-from .campaign_data import DEFAULT_DESIGN, FILE, PUBLISHED, DesignName, Out
+from .campaign_data import DEFAULT_DESIGN, PUBLISHED, DesignName, Out
 from .campaign_progress import Progress, duration, judged, remarks, tell
 from .shared.groups import group
 
@@ -44,6 +44,9 @@ def run(
     retry: Annotated[
         str, typer.Option(help="`failed`: compute failed cases again, more finely.")
     ] = "",
+    part: Annotated[
+        str, typer.Option(help="`2/3`: of the sweep every third case from the second on.")
+    ] = "1/1",
     limit_minutes: Annotated[
         float, typer.Option(min=0.0, help="Stop at the first case that ends after this; 0: never.")
     ] = 0.0,
@@ -55,20 +58,20 @@ def run(
 
     if retry not in ("", "failed"):
         raise InputError(f"{retry!r}", source="command line", key="--retry", allowed="failed")
+    share = _share(part)
     chosen = design_named(design)
-    path = out / FILE
-    store = Store(path)
+    store = Store(out)
     again = frozenset({retry} - {""})
     before = status_of(chosen, store)
     executor: Any = DaskExecutor.connect(scheduler) if scheduler else LocalExecutor(workers=workers)
     cases = distinct_cases(chosen)
-    todo = [cases[key] for key in cases_to_do(chosen, store, again=again)]
+    todo = [cases[key] for key in cases_to_do(chosen, store, again=again, share=share)]
     forecast, slower = _forecast(todo, store, executor.workers)
     busy = f" ({slower:.1f} times slower than measured: busy, or slow)" if slower > 1.5 else ""
     typer.echo(
         f"design {design}: {before.designed} cases, {before.done} done, {before.failed} failed, "
         f"{len(todo)} to compute on {executor.workers} workers; about "
-        f"{duration(forecast.left_s())} here{busy}. Results go to {path}. Ctrl-C stops, the same "
+        f"{duration(forecast.left_s())} here{busy}. Results go to {out}. Ctrl-C stops, the same "
         "command goes on."
     )
     started = time.monotonic()
@@ -85,10 +88,11 @@ def run(
         with progress:
             after = run_design(
                 chosen,
-                path,
+                out,
                 executor=executor,
                 time_limit_s=60.0 * case_minutes,
                 again=again,
+                share=share,
                 until=until,
                 report=ended,
             )
@@ -98,6 +102,18 @@ def run(
         return 130
     _summary(chosen, out, after, time.monotonic() - started, progress.cpu_s)
     return 0 if after.done == after.designed else EXIT_NOT_CONVERGED
+
+
+def _share(part: str) -> Any:
+    from ..campaigns import Share
+
+    number, _, of = part.partition("/")
+    if not (number.isdecimal() and of.isdecimal() and 1 <= int(number) <= int(of)):
+        raise InputError(
+            f"{part!r}", source="command line", key="--part",
+            allowed="K/N, this run's number and how many share the sweep: 2/3",
+        )  # fmt: skip
+    return Share(int(number), int(of))
 
 
 def _so_far(status: Any) -> str:
@@ -116,8 +132,7 @@ def status(
     """Count done, failed and missing cases, own and published; works while the sweep runs."""
     from ..campaigns import DESIGNS, Store, design_named, published_designs, status_of
 
-    path = out / FILE
-    store = Store(path)
+    store = Store(out)
     stored = store.summaries()
     chosen = [design_named(design)] if design else list(DESIGNS.values())
     counts = {one.name: status_of(one, store) for one in chosen}
@@ -128,14 +143,14 @@ def status(
     if as_json:
         first = min(named, key=lambda k: named[k].missing)
         content = {
-            "design": first, "file": str(path), **_counts(named[first]), "quality": found,
+            "design": first, "folder": str(out), **_counts(named[first]), "quality": found,
             "designs": {k: _counts(c) for k, c in named.items()},
             "published": {one.design: asdict(one) for one in published},
         }  # fmt: skip
         typer.echo(json.dumps(content))
         return
     if stored:
-        typer.echo(f"Own run, {path}:")
+        typer.echo(f"Own run, {out}:")
     else:
         typer.echo(f"No run of your own in {out}: `dentscope campaign run` starts one.")
     for name, c in named.items() if stored or design else ():
@@ -167,6 +182,7 @@ for command in (
     campaign_data.export,
     campaign_data.publish,
     campaign_data.repair,
+    campaign_data.upgrade,
 ):
     app.command()(command)
 for _name in ("campaign gallery", "campaign reproduction"):
@@ -191,7 +207,7 @@ def _summary(design: Any, out: Path, after: Any, wall_s: float, cpu_s: float) ->
     )
     if not after.done:
         return
-    store, keys = Store(out / FILE), set(distinct_cases(design))
+    store, keys = Store(out), set(distinct_cases(design))
     tell(judged([s for s in store.summaries() if s.id in keys and s.status == "done"]))
     records = _done(design, store)
     found = largest_difference(records, read_published(PUBLISHED))
@@ -220,4 +236,4 @@ def _draw(design: Any, out: Path) -> list[Path]:
     from ..campaigns import Store
     from ..campaigns.pictures import draw_campaign
 
-    return draw_campaign(_done(design, Store(out / FILE)), out / "pictures")
+    return draw_campaign(_done(design, Store(out)), out / "pictures")

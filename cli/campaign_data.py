@@ -15,9 +15,6 @@ from .shared.places import file_option, folder_option
 from .shared.terminal import console as new_console
 from .shared.terminal import show_table
 
-FILE = "campaign.h5"
-"""Name of a run's file in its folder."""
-
 PUBLISHED = Path(__file__).parents[1] / "data" / "campaign"
 """Folder of the published data."""
 
@@ -39,16 +36,18 @@ def show(
     console.print(f"{record.case.name}: {record.status} {record.message}".rstrip())
     console.print(f"{source}, {record.case.id[:12]}", soft_wrap=True)
     c = record.curve
+    elastic = pair.Sy_min == float("inf")
+    scale, over = (1e6, "H [MPa]") if elastic else (pair.Sy_min, "H/Sy_min")
     rows = [
         (
             f"{c['delta'][i] / pair.R:.4g}", f"{c['force'][i]:.4g}", f"{c['radius'][i] * 1e3:.4g}",
             f"{c['sphere'][i] / (c['sphere'][i] + c['flat'][i]):.3f}",
-            f"{c['hardness'][i] / pair.Sy_min:.3f}",
+            f"{c['hardness'][i] / scale:.4g}",
         )
         for i in range(0, len(c.get("delta", ())), 3)
     ]  # fmt: skip
     if rows:
-        show_table(console, ("Delta/R", "F [N]", "a [mm]", "sphere's share", "H/Sy_min"), rows)
+        show_table(console, ("Delta/R", "F [N]", "a [mm]", "sphere's share", over), rows)
     for unloading in record.unloadings:
         console.print(
             f"unloaded from Delta/R = {unloading.depth:.4g}: left in the sphere "
@@ -61,9 +60,7 @@ def _found(case: str, out: Path) -> tuple[Any, str]:
     """Return a case by its name or the beginning of its id, and where it was found."""
     from ..campaigns import Store, read_published
 
-    own = Store(out / FILE)
-    records = own.read_all() if own.summaries() else []
-    for some, where in ((records, str(out / FILE)), (None, str(PUBLISHED))):
+    for some, where in ((Store(out).read_all(), str(out)), (None, str(PUBLISHED))):
         some = read_published(PUBLISHED) if some is None else some
         found = [r for r in some if r.case.name == case]
         found = found or [r for r in some if case and r.case.id.startswith(case)]
@@ -89,11 +86,11 @@ def refine(
     from ..campaigns.executor import solve_specification
     from ..campaigns.quality import steps_not_in
 
-    record = Store(out / FILE).read(case)
+    record = Store(out).read(case)
     finer = record.case.refined()
     typer.echo(f"{record.case.name}: elements {finer.accuracy.fine:g} of the contact radius")
     solution = solve_specification(finer.specification(), math.inf)
-    again = Store(out / "refined.h5")
+    again = Store(out / "refined")
     again.put(finer, solution)
     other = again.read(finer.id)
     if not solution.outcome.completed:
@@ -121,13 +118,13 @@ def export(
         "build/campaign/curves.csv"
     ),
     data: Annotated[
-        Path | None, typer.Option(help="Campaign file or folder of parts, instead of --out.")
+        Path | None, typer.Option(help="Another run, or a folder of parts, instead of --out.")
     ] = None,
 ) -> None:
     """Write all loading curves as one table: CSV, or Parquet where the name ends so."""
     from ..campaigns import read_curves
 
-    source = data or out / FILE
+    source = data or out
     records = read_curves(source)
     if not records:
         raise InputError("no completed case", source=str(source))
@@ -165,19 +162,29 @@ def publish(
     from ..campaigns import design_named
     from ..campaigns import publish as write_parts
 
-    for part in write_parts(design_named(design), out / FILE, to):
+    for part in write_parts(design_named(design), out, to):
         typer.echo(f"{part}: {part.stat().st_size / 1e6:.1f} MB")
 
 
 def repair(out: Out = Path("build/campaign")) -> int:
-    """Make a damaged run's file anew from the cases that are whole, or one of an older format."""
+    """Set damaged cases of a run aside; the next run computes them again."""
     from ..campaigns import Store
 
-    path = out / FILE
-    kept, lost = Store(path).repair()
+    kept, lost = Store(out).repair()
     for line in lost:
-        typer.echo(f"not kept: {line}")
-    typer.echo(f"{kept} cases kept in {path}; what was there is {path}.damaged")
+        typer.echo(f"set aside: {line}")
+    typer.echo(f"{kept} cases are whole in {out}")
+    return EXIT_NOT_CONVERGED if lost else 0
+
+
+def upgrade(out: Out = Path("build/campaign")) -> int:
+    """Make a run of before 0.3, all cases in campaign.h5, one of a file a case."""
+    from ..campaigns import upgrade as take_over
+
+    kept, lost = take_over(out)
+    for line in lost:
+        typer.echo(f"not taken over: {line}")
+    typer.echo(f"{kept} cases taken over; what was there is {out / 'campaign.h5.upgraded'}")
     return EXIT_NOT_CONVERGED if lost else 0
 
 

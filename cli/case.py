@@ -9,24 +9,25 @@ from typing import Annotated, Any
 
 import typer
 
-from ..core.disk import DISK
 from ..core.errors import EXIT_NOT_CONVERGED, InputError
 from ..core.output import csv_text, write_figure, write_file
 from ..core.templates import CASE, write_new
-from .shared.places import folder_option
+from .shared.places import folder_option, refuse_beside
 from .shared.terminal import console as new_console
-from .shared.terminal import show_table
+from .shared.terminal import say, show_table
 
 _COLUMNS = (
     "force_N",
     "contact_radius_m",
     "contact_radius_last_node_m",
     "sphere_share",
+    "hardness_Pa",
     "hardness_over_Symin",
 )
 
 
 def case(
+    context: typer.Context,
     file: Annotated[
         Path | None, typer.Argument(help="CASE.toml: two bodies, how far, how finely.")
     ] = None,
@@ -41,6 +42,7 @@ def case(
     The uncertainty is what the level of accuracy was found to be off on fifteen pairs.
     """
     if new:
+        refuse_beside(context, "beside --new", "out", "picture")
         typer.echo(write_new(CASE, file or Path("case.toml"), command="case"))
         return 0
     if file is None:
@@ -49,6 +51,8 @@ def case(
         )
     from rich.progress import Progress
 
+    from ..core.inputs.left_aside import left_aside
+    from ..core.inputs.toml_input import read_toml
     from ..start.case_file import read_case
 
     problem, accuracy = read_case(file)
@@ -64,6 +68,12 @@ def case(
         console.print(str(solution.outcome))
         return EXIT_NOT_CONVERGED
     _show(console, solution, uncertainty)
+    aside = [
+        one for one in left_aside(read_toml(file), ())
+        if one.partition(" = ")[0].endswith((".std", ".density_kg_m3"))
+    ]  # fmt: skip
+    if aside:
+        say(f"not in this solve: {', '.join(aside)}; `dentscope impact` takes them")
     if found.remark:
         console.print(found.remark)
     for path in (
@@ -132,15 +142,17 @@ def _write_curves(solution: Any, uncertainty: Any, path: Path) -> Path:
 
 def _columns(of: Any, Sy_min: float) -> tuple[Any, ...]:
     """The columns of `_COLUMNS`, from a curve or from its uncertainty."""
-    return (of.force, of.radius, of.radius_last_node, of.sphere_share, of.hardness / Sy_min)
+    # a pair that never yields has no strength to be measured by
+    over = [""] * len(of.hardness) if Sy_min == float("inf") else of.hardness / Sy_min
+    return (of.force, of.radius, of.radius_last_node, of.sphere_share, of.hardness, over)
 
 
 def _write_result(name: str, solution: Any, uncertainty: Any, path: Path) -> Path:
-    """Write everything into one file: a campaign file with uncertainties and fields added."""
-    from ..campaigns import Case, Store
-    from ..campaigns.journal import journal_of
+    """Write everything into one file: a run's file of a case, with uncertainties and fields."""
+    from ..campaigns import Case
+    from ..campaigns.case_file import case_image
 
-    # the fields lie beside the case in this file, not in a campaign's own files
+    # the fields lie beside the case in this file, not in files of their own
     case = Case(name, replace(solution.problem, snapshots=()), solution.accuracy)
 
     def add(group: Any) -> None:
@@ -163,13 +175,7 @@ def _write_result(name: str, solution: Any, uncertainty: Any, path: Path) -> Pat
                 )
                 data.attrs["unit"] = unit
 
-    draft = path.with_name(f".{path.name}.draft")
-    for left_over in (draft, journal_of(draft)):
-        left_over.unlink(missing_ok=True)
-    Store(draft).put(case, replace(solution, snapshots=()), also=add)
-    DISK.rename(draft, path)
-    DISK.sync_folder(path.parent)
-    return path
+    return write_file(path, case_image(case, replace(solution, snapshots=()), also=add))
 
 
 _FIELDS = {
@@ -186,6 +192,8 @@ _FIELDS = {
 def _show(console: Any, solution: Any, uncertainty: Any) -> None:
     pair, c = solution.problem.pair, solution.loading
     share = c.sphere_share
+    elastic = pair.Sy_min == float("inf")
+    scale, over = (1e6, "H [MPa]") if elastic else (pair.Sy_min, "H/Sy_min")
     u = uncertainty
     rows = [
         (
@@ -193,11 +201,11 @@ def _show(console: Any, solution: Any, uncertainty: Any) -> None:
             f"{c.force[i]:.5g} ± {u.force[i]:.1g}",
             f"{c.radius[i] * 1e3:.4g} ± {u.radius[i] * 1e3:.1g}",
             f"{share[i]:.4f} ± {u.sphere_share[i]:.1g}",
-            f"{c.hardness[i] / pair.Sy_min:.3f} ± {u.hardness[i] / pair.Sy_min:.1g}",
+            f"{c.hardness[i] / scale:.3g} ± {u.hardness[i] / scale:.1g}",
         )
         for i in range(0, len(c.delta), max(1, len(c.delta) // 12))
     ]
-    show_table(console, ("Delta/R", "F [N]", "a [mm]", "sphere's share", "H/Sy_min"), rows)
+    show_table(console, ("Delta/R", "F [N]", "a [mm]", "sphere's share", over), rows)
     for u in solution.unloadings:
         least = 1e-9 * u.depth * pair.R  # less is round-off
         sphere, flat = (

@@ -4,12 +4,12 @@ from __future__ import annotations
 
 import os
 import subprocess
-import sys
 from dataclasses import dataclass
 from pathlib import Path
 
 import typer
 
+from ..core.children import python_command
 from . import studies
 
 _SYSTEM_PACKAGES = (
@@ -83,7 +83,7 @@ def examine() -> tuple[Finding, ...]:
 def _gmsh() -> Finding:
     # asked in a process of its own: a half-loaded library would stay in this one
     answer = subprocess.run(
-        [sys.executable, "-c", "import gmsh"], capture_output=True, text=True, check=False
+        python_command("-c", "import gmsh"), capture_output=True, text=True, check=False
     )
     if answer.returncode == 0:
         return Finding("gmsh", "loads", needed=True)

@@ -23,19 +23,22 @@ _SPEEDS = 7  # of a range
 
 @app.command("law")
 def export_law(
-    law: Annotated[str, typer.Argument(help="compact or fitted.")] = "fitted",
+    law: Annotated[
+        str, typer.Argument(help="compact, fitted, or a fitted.json of `dentscope fit`.")
+    ] = "fitted",
     out: Annotated[Path, folder_option("Folder for the sources.")] = Path("build/law"),
 ) -> None:
     """Write a closed form as Python, C, Fortran, MATLAB and Modelica source."""
     from ..models import law_named
     from ..models.export import write_sources
     from ..models.fitted import ClosedForm
+    from ..models.law_file import is_file
 
-    found = law_named(law) if law in ("compact", "fitted") else None
+    found = law_named(law) if law in ("compact", "fitted") or is_file(law) else None
     if not isinstance(found, ClosedForm):
         raise InputError(
             f"{law!r} is no closed form of ours", source="command line", key="LAW",
-            allowed="compact, fitted",
+            allowed="compact, fitted, or a fitted.json of `dentscope fit`",
         )  # fmt: skip
     for path in write_sources(found, out):
         typer.echo(str(path))
@@ -59,8 +62,8 @@ def export_dem(
     law: Annotated[
         str,
         typer.Option(
-            help="A law, or a law.json of `dentscope case`; otherwise fitted, with a flow curve "
-            "hardening."
+            help="A law, or a file of `dentscope case` (law.json) or `fit`; otherwise fitted, with "
+            "a flow curve hardening."
         ),
     ] = "",
     out: Annotated[Path, folder_option("Folder for the table and the fragments.")] = Path(

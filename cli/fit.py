@@ -24,7 +24,7 @@ if TYPE_CHECKING:
     from ..models.fitted import ClosedForm
     from ..models.hardening import HardeningLaw
 
-_OWN = Path("build/campaign/campaign.h5")
+_OWN = Path("build/campaign")
 _ROOT = Path(__file__).resolve().parents[1]
 _HEADS = (b"dentscope-sealed", b"\x89HDF\r\n\x1a\n")  # a sealed file's; HDF5's, of the first format
 _PAGE = _ROOT / "docs" / "closed-form.md"
@@ -34,8 +34,8 @@ def fit(
     campaigns: Annotated[
         list[Path] | None,
         typer.Argument(
-            help="Campaign files or folders of parts; the published data set if there is one, "
-            "else build/campaign/campaign.h5."
+            help="Folders of runs or of parts; the published data set if there is one, else "
+            "build/campaign."
         ),
     ] = None,
     out: Annotated[Path, folder_option("Folder for the report.")] = Path("build/fit"),
@@ -210,10 +210,8 @@ def _files(campaigns: Sequence[Path] | None) -> list[Path]:
         return sorted(PUBLISHED.glob("*.h5")) or [_OWN]
     files: list[Path] = []
     for path in campaigns:
-        found = sorted(path.glob("*.h5")) if path.is_dir() else [path]
-        if not found:
-            raise InputError("no campaign file", source=str(path), allowed="a folder of *.h5 parts")
-        files += found
+        parts = sorted(path.glob("*.h5")) if path.is_dir() else []
+        files += parts or [path]
     for path in files:
         _check_kind(path)
     return files
@@ -221,7 +219,11 @@ def _files(campaigns: Sequence[Path] | None) -> list[Path]:
 
 def _check_kind(path: Path) -> None:
     """Refuse what is no campaign at all, before the seconds that the reader takes to load."""
-    allowed = "a file that `dentscope campaign` wrote"
+    allowed = "the folder of a run, or a part that `dentscope campaign publish` wrote"
+    if path.is_dir():
+        if not (path / "cases").is_dir():
+            raise InputError("no cases in it", source=str(path), allowed=allowed)
+        return
     checked_file(path, most=2**63, allowed=allowed)  # its reader says how large it may be
     with path.open("rb") as stream:
         if not stream.read(16).startswith(_HEADS):

@@ -11,7 +11,7 @@ from ..core.errors import EXIT_NOT_CONVERGED
 from ..core.templates import template, write_new
 from . import studies
 from .laws import laws_named
-from .shared.places import folder_option
+from .shared.places import folder_option, refuse_beside
 from .shared.terminal import console as new_console
 from .shared.terminal import say, show_table
 
@@ -23,6 +23,7 @@ if TYPE_CHECKING:
 
 
 def impact(
+    context: typer.Context,
     setup: Annotated[
         Path | None, typer.Argument(help="Set-up file (TOML); without it, chapter 3 again.")
     ] = None,
@@ -47,8 +48,10 @@ def impact(
     the measured values.
     """
     if new:
+        refuse_beside(context, "beside --new", "law", "exact", "out")
         _write_new(new, setup)
     elif setup is None:
+        refuse_beside(context, "without a set-up", "exact")
         studies.needed_for("`dentscope impact` without a set-up file")
         leave_if_unfinished(studies.module("chapter3").chapter3(law or [], out))
     else:

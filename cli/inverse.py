@@ -11,12 +11,13 @@ import typer
 from ..core.templates import INVERSE, write_new
 from . import studies
 from .laws import laws_named
-from .shared.places import folder_option
+from .shared.places import folder_option, refuse_beside
 from .shared.terminal import console as new_console
 from .shared.terminal import show_table
 
 
 def inverse(
+    context: typer.Context,
     file: Annotated[
         Path | None, typer.Argument(help="TOML with [striker] and [[trial]]; default: chapter 5.")
     ] = None,
@@ -33,12 +34,14 @@ def inverse(
 ) -> None:
     """Infer duration and mean force from depth, sliding length and restitution (chapter 5)."""
     if new:
+        refuse_beside(context, "beside --new", "law", "out")
         typer.echo(write_new(INVERSE, file or Path("inverse.toml"), command="inverse"))
         return
     if file is None:
         studies.needed_for("`dentscope inverse` without a file")
         laws_named(law or [])
     else:
+        refuse_beside(context, "with a file: what is inferred needs no contact law", "law")
         from ..core.inputs.toml_input import read_toml
 
         read_toml(file)  # what is no TOML is told before the simulation is loaded
@@ -57,9 +60,9 @@ def inverse(
     )  # fmt: skip
     cells: list[tuple[str, ...]] = [
         (
-            row.name, f"{row.inferred.alpha:.4f}", f"{row.inferred.duration * 1e3:.3f}",
-            f"{row.inferred.mean_force:.0f}", f"{row.inferred.return_duration * 1e3:.3f}",
-            f"{row.inferred.return_force:.0f}",
+            row.name, _cell(row, "alpha", 1.0, "{:.4f}"), _cell(row, "duration", 1e3, "{:.3f}"),
+            _cell(row, "mean_force", 1.0, "{:.0f}"), _cell(row, "return_duration", 1e3, "{:.3f}"),
+            _cell(row, "return_force", 1.0, "{:.0f}"),
         )
         for row in rows
     ]  # fmt: skip
@@ -90,6 +93,12 @@ def inverse(
     console.print(f"written: {out / f'{stem}.csv'}, {out / f'{stem}-alpha.png'}", soft_wrap=True)
 
 
+def _cell(row: Any, name: str, scale: float, form: str) -> str:
+    """A number, and what the standard deviations of the rod make of it."""
+    shown, std = form.format(scale * getattr(row.inferred, name)), row.std.get(name, 0.0)
+    return f"{shown} ± {scale * std:.2g}" if std > 0.0 else shown
+
+
 def _or_dash(value: float, form: str) -> str:
     return form.format(value) if value == value else "-"
 
@@ -102,5 +111,6 @@ def _csv_row(row: Any) -> dict[str, Any]:
         "sliding_length_m": m.sliding, "alpha": i.alpha, "normal_impulse_Ns": i.impulse,
         "duration_s": i.duration, "mean_force_N": i.mean_force,
         "return_duration_s": i.return_duration, "return_mean_force_N": i.return_force,
+        **{f"{name}_std": std for name, std in row.std.items()},
         "objections": "; ".join(i.objections),
     }  # fmt: skip

@@ -13,7 +13,7 @@ from ..core.output import csv_text, write_figure, write_file
 from .shared.groups import Commands, group
 from .shared.places import folder_option
 from .shared.terminal import console as new_console
-from .shared.terminal import entry, show_table, wrapped
+from .shared.terminal import entry, say, show_table, wrapped
 
 if TYPE_CHECKING:
     from ..models.base import ContactLaw
@@ -43,7 +43,7 @@ def laws_named(names: list[str], *, source: str = "command line", key: str = "--
             if error.source:
                 raise
             # a law that is known and not offered has its reason in the message
-            told = f"no law {name!r}" if error.allowed else error.message
+            told = f"no law {error.message}" if error.allowed else error.message
             raise InputError(told, source=source, key=key, allowed=error.allowed) from None
     return found
 
@@ -51,7 +51,7 @@ def laws_named(names: list[str], *, source: str = "command line", key: str = "--
 @app.command("list")
 def list_laws() -> None:
     """Every law: for which body, and whether its equations could be read."""
-    from ..models import LAWS, RATE_MODELS, UNAVAILABLE
+    from ..models import LAWS, UNAVAILABLE
 
     head = ["law", "yields", "equations"]
     rows = [[law.name, _YIELDS[law.regime], law.standing.told] for law in LAWS.values()]
@@ -60,7 +60,6 @@ def list_laws() -> None:
         "verified second hand: read in a text or code, other than the thesis, that names the "
         "paper. unverified: they rest on the thesis, on limits and continuity.",
         "Any two can be joined, LOADING+UNLOADING: kogut-etsion+ghaednia.",
-        f"Models of depth and rate, shown and not computed with: {', '.join(RATE_MODELS)}.",
         f"Not offered: {', '.join(UNAVAILABLE)}.",
         "Sources, ranges and reasons: dentscope laws show NAME",
     ):
@@ -70,11 +69,8 @@ def list_laws() -> None:
 @app.command()
 def show(law: Annotated[str, typer.Argument(help="A name of `dentscope laws list`.")]) -> None:
     """One law: source, equations, range, what was read, and what it breaks."""
-    from ..models import RATE_MODELS, law_named
+    from ..models import law_named
 
-    if law in RATE_MODELS:
-        _show_rate_model(law)
-        return
     chosen = law_named(law)
     lines = {
         "law": chosen.name,
@@ -88,27 +84,6 @@ def show(law: Annotated[str, typer.Argument(help="A name of `dentscope laws list
         "described in": _described_in(chosen),
     }
     _echo([*lines.items(), *(("breaks", f"{text}: {size:g} %") for text, size in chosen.breaks)])
-
-
-def _show_rate_model(name: str) -> None:
-    """One model of depth and rate, and for Kelvin and Voigt's an impact worked out."""
-    from ..models import RATE_MODELS
-    from ..models.published.viscous import paradox
-
-    model = RATE_MODELS[name]
-    lines = [
-        ("model", name), ("authors", model.title), ("source", model.source),
-        ("force", model.formula), ("objection", model.objection),
-    ]  # fmt: skip
-    if name == "kelvin-voigt":
-        told = paradox(mass=0.05, stiffness=2e6, damping=120.0, speed=1.3)
-        example = (
-            f"0.05 kg at 1.3 m/s on 2 MN/m with 120 N s/m: {told.force_at_touch:.0f} N at first "
-            f"touch, {told.pull_at_return:.1f} N on return; let go where the force vanishes, "
-            f"{told.depth_at_zero_force * 1e6:.0f} um stay"
-        )
-        lines.append(("example", example))
-    _echo([*lines, ("described in", "models.published.viscous")])
 
 
 def _echo(lines: Iterable[tuple[str, str]]) -> None:
@@ -129,8 +104,10 @@ def compare(
     from ..start.case_file import read_pair
 
     content, pair = read_pair(file)
+    from ..core.inputs.left_aside import left_aside
+    from ..core.inputs.toml_input import read_toml
     from ..models import LAWS
-    from ..start.comparison import Row, compared
+    from ..start.comparison import USED, Row, compared
 
     laws = laws_named(law) if law else list(LAWS.values())
     found = compared(pair, laws, last=content.load.max_delta_over_R)
@@ -141,9 +118,9 @@ def compare(
     console = new_console()
     console.print(found.finding)
     show_table(console, *found.table())
-    for reason in dict.fromkeys(filter(None, found.objections.values())):
-        names = ", ".join(name for name, told in found.objections.items() if told == reason)
-        console.print(f"no: {reason}: {names}")
+    aside = left_aside(read_toml(file), USED)
+    if aside:
+        say(f"not in these laws: {', '.join(aside)}; `dentscope case` and `impact` take them")
     console.print(f"written: {table_file}\nwritten: {picture}", soft_wrap=True)
 
 

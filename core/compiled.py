@@ -18,36 +18,48 @@ from pathlib import Path
 _STAGES = ("core", "fem", "models", "impact", "discrepancy", "studies")
 _MOST_NAMES = 20
 _VARIABLE = "NUMBA_CACHE_DIR"
-_RELATIVE = re.compile(r"^from (\.+)([\w.]+) import ", re.MULTILINE)
+_COMPILES = re.compile(r"numba|njit|_kernel\b")
+_RELATIVE = re.compile(r"^\s*from (\.+)([\w.]*) import (\([^)]*\)|.*)", re.MULTILINE)
 
 
 def source_digest(root: Path) -> str:
-    """First 16 hexadecimal digits of the SHA-256 of the sources under `root` that are compiled.
-
-    These are the files that use numba and, because compiled code freezes the constants that it
-    takes from elsewhere, the files of this package that they import from.
-    """
-    files: set[Path] = set()
-    for stage in _STAGES:
-        for path in (root / stage).rglob("*.py"):
-            text = path.read_text(encoding="utf-8")
-            if "njit" in text:
-                files |= {path, *_imported(path, text)}
+    """First 16 hexadecimal digits of the SHA-256 of the sources under `root` that are compiled."""
     digest = hashlib.sha256()
-    for path in sorted(files):
+    for path in sorted(compiled_sources(root)):
         digest.update(path.read_bytes())
     return digest.hexdigest()[:16]
 
 
-def _imported(path: Path, text: str) -> list[Path]:
-    """Files of this package that a file imports from; a package's own file for a whole package."""
-    found = []
-    for dots, name in _RELATIVE.findall(text):
-        base = path.parents[len(dots) - 1].joinpath(*name.split("."))
-        found += [
-            file for file in (base.with_suffix(".py"), base / "__init__.py") if file.is_file()
-        ]
-    return found
+def compiled_sources(root: Path) -> set[Path]:
+    """Return the files of the package at `root` whose change may change compiled code.
+
+    These are the files that compile something, by numba or by a decorator of `models.kernel`, and
+    all that they import, and so on: compiled code takes in other files' functions and constants.
+    """
+    files: set[Path] = set()
+    for stage in _STAGES:
+        for path in (root / stage).rglob("*.py"):
+            if path not in files and _COMPILES.search(path.read_text(encoding="utf-8")):
+                _add_with_imports(path, files)
+    return files
+
+
+def _add_with_imports(path: Path, files: set[Path]) -> None:
+    if path in files:
+        return
+    files.add(path)
+    for dots, name, what in _RELATIVE.findall(path.read_text(encoding="utf-8")):
+        base = path.parents[len(dots) - 1].joinpath(*filter(None, name.split(".")))
+        if (module := base.with_suffix(".py")).is_file():
+            _add_with_imports(module, files)
+            continue
+        # of a package: its modules by name, or what it re-exports
+        for word in what.partition("#")[0].strip("()").split(","):
+            module = base / f"{word.split(' as ')[0].strip()}.py"
+            for file in (module, base / "__init__.py"):
+                if file.is_file():
+                    _add_with_imports(file, files)
+                    break
 
 
 def keep_compiled_code() -> None:

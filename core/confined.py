@@ -15,6 +15,7 @@ from importlib import import_module
 from pathlib import Path
 from typing import Any, TypeVar
 
+from .children import python_command
 from .errors import InputError
 
 Result = TypeVar("Result")
@@ -41,7 +42,7 @@ def confined(work: Callable[..., Result], *arguments: Any, source: str) -> Resul
         What the work raised, or that it went beyond a limit.
     """
     order = pickle.dumps((work.__module__, work.__qualname__, arguments))
-    command = [sys.executable, "-m", __name__]
+    command = python_command("-m", __name__)
     try:
         child = subprocess.run(
             command, input=order, capture_output=True, timeout=SECONDS, check=False

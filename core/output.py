@@ -12,7 +12,6 @@ import errno
 import fcntl
 import hashlib
 import io
-import itertools
 import json
 import os
 import stat
@@ -42,7 +41,6 @@ _MAGIC = b"dentscope-pending-1\n"
 _DIGEST = 32
 _MOST_PENDING = 500_000_000
 _LONGEST_NAME = 200
-_numbers = itertools.count()
 
 
 def cannot_write(error: OSError, path: Path | str, *, allowed: str = "") -> InputError:
@@ -225,7 +223,8 @@ def _replace(path: Path, data: bytes) -> None:
         if not stat.S_ISREG(about.st_mode):
             raise OSError(errno.EINVAL, "a folder, a pipe or a device")
         mode = stat.S_IMODE(about.st_mode)
-    draft = path.with_name(f".{path.name[:_LONGEST_NAME]}.{os.getpid()}-{next(_numbers)}.part")
+    # a name that nobody else has, on whatever machine, and that no killed process left behind
+    draft = path.with_name(f".{path.name[:_LONGEST_NAME]}.{os.urandom(8).hex()}.part")
     try:
         file = DISK.create(draft, mode)
         try:

@@ -7,9 +7,10 @@ question is therefore put to a process of its own, once.
 from __future__ import annotations
 
 import subprocess
-import sys
 from functools import cache
 from typing import Any
+
+from .children import python_command
 
 _TIME_LIMIT_S = 120.0
 
@@ -22,7 +23,7 @@ def offscreen_available() -> bool:
     """
     try:
         answer = subprocess.run(
-            [sys.executable, "-m", "dentscope.core.rendering"],
+            python_command("-m", "dentscope.core.rendering"),
             capture_output=True,
             timeout=_TIME_LIMIT_S,
             check=False,

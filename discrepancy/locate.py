@@ -51,10 +51,26 @@ class Miss:
 
 @dataclass(frozen=True, slots=True)
 class Located:
-    """What misses, worst first, and the score beyond which one set in twenty has any by chance."""
+    """What misses, worst first.
 
-    misses: tuple[Miss, ...]
+    Parameters
+    ----------
+    beyond_chance
+        Places that fewer than one set in twenty with nothing missing has anywhere.
+    worst
+        The worst of the others, where all numbers together say that something is missing.
+    threshold
+        Score that one set in twenty exceeds somewhere by chance.
+    """
+
+    beyond_chance: tuple[Miss, ...]
+    worst: tuple[Miss, ...]
     threshold: float
+
+    @property
+    def misses(self) -> tuple[Miss, ...]:
+        """All places that verdict.json holds."""
+        return (*self.beyond_chance, *self.worst)
 
 
 def locate(
@@ -81,7 +97,6 @@ def locate(
     size = np.sqrt(np.einsum("ij,jk,ik->i", contrasts, linear.total, contrasts))
     score = contrasts @ base.residual / size
     null = np.abs(nulls.made_by(base) @ contrasts.T / size)
-    threshold = float(np.quantile(null.max(axis=1), level))
     spread = np.maximum(null.std(axis=0) / math.sqrt(1.0 - 2.0 / math.pi), 1.0)
     found = []
     for (observable, covariate), z in zip(names, score / spread, strict=True):
@@ -90,7 +105,7 @@ def locate(
                 observable, OBSERVABLES[observable].phase, covariate, _trend(covariate, z), float(z)
             )
         )
-    null_max = float(np.quantile((null / spread).max(axis=1), level))
+    threshold = float(np.quantile((null / spread).max(axis=1), level))
     found.sort(key=lambda m: -abs(m.z))
     columns = [
         # the deviate that a normal variable exceeds as rarely, to first order in its logarithm
@@ -103,8 +118,8 @@ def locate(
              f"recordings {'rise' if d.z > 0 else 'fall'} with the {ORDER}", d.z)
         for d in sorted(problem.drifts, key=lambda d: -abs(d.z))
     ]  # fmt: skip
-    misses = tuple(m for i, m in enumerate(found) if i < least or abs(m.z) > null_max)
-    return Located((*columns, *misses), min(threshold, null_max))
+    beyond = [m for m in found if abs(m.z) > threshold]
+    return Located((*columns, *beyond), tuple(found[len(beyond) : least]), threshold)
 
 
 def _contrasts(problem: Problem, sure: Array) -> tuple[list[tuple[str, str]], Array]:

@@ -9,10 +9,9 @@ pair = ds.Pair(sphere=hard, flat=soft, R=10e-3)
 found = ds.compare_laws(pair, max_delta_over_R=0.01)
 print(found)
 
-# %% Why a law should not be used here.
-for name, reason in found.objections.items():
-    if reason:
-        print(f"{name}: {reason}")
+# %% How far each is from finite elements in force, dent and restitution.
+for name, off in found.departures.items():
+    print(f"{name}: {off.told}")
 
 # %% The same as numbers: force, and what stays of the depth.
 best = found.best

@@ -15,9 +15,9 @@ from typing import Any
 import numpy as np
 import numpy.typing as npt
 
-from ..campaigns import read_curves
+from ..campaigns import digest_of_source, read_curves
 from ..core.output import write_file
-from ..core.provenance import environment, file_digest
+from ..core.provenance import environment
 from ..fem import NUMERICS_VERSION
 from ..models.closed_form import COEFFICIENTS
 from ..models.coefficients import FORMAT
@@ -38,7 +38,7 @@ def coefficients_content(laws: Laws, table: Table, campaigns: Sequence[Path]) ->
     table
         The rows that it was made from.
     campaigns
-        The files that these were read from.
+        The runs and parts that these were read from.
     """
     fit, correction = laws.fit, laws.correction
     judged = {"compact": laws.compact, "fitted": laws.fitted}
@@ -75,7 +75,7 @@ def coefficients_content(laws: Laws, table: Table, campaigns: Sequence[Path]) ->
 def _made_from(campaigns: Sequence[Path]) -> dict[str, Any]:
     return {
         "campaigns": [
-            {"sha256": file_digest(path), "accuracy": _levels(path)} for path in campaigns
+            {"sha256": digest_of_source(path), "accuracy": _levels(path)} for path in campaigns
         ],
         "numerics_version": NUMERICS_VERSION,
         "environment": environment(),

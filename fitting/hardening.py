@@ -86,7 +86,7 @@ def hardening_records(paths: Sequence[Path], *, held_out: bool = False) -> list[
     Parameters
     ----------
     paths
-        Campaign files.
+        Runs and published parts.
     held_out
         Those that are kept out of every fit, instead of the others.
     """

@@ -124,12 +124,12 @@ def _masked(table: Any, mask: npt.NDArray[np.bool_]) -> dict[str, Any]:
 def read_tables(
     paths: Path | Sequence[Path], *, held_out: bool = False
 ) -> tuple[Table, ResidualTable]:
-    """Read campaign files into the two tables.
+    """Read runs and published parts into the two tables.
 
     Parameters
     ----------
     paths
-        One campaign file or several; a combination in two of them counts once, the later wins.
+        One run or part, or several; a combination in two of them counts once, the later wins.
     held_out
         Read the cases that are kept out of every fit, and only those, instead of the others.
 

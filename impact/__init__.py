@@ -88,9 +88,10 @@ __all__ = [
 class _Stage(ModuleType):
     """The stage, which can be called."""
 
-    def __call__(self, *given: Any, **changes: Any) -> Blow:
+    def __call__(self, *given: Any, **changes: Any) -> Blow | Impacts:
         """Simulate a blow, as `blow` does."""
-        return blow(*given, **changes)
+        found: Blow | Impacts = blow(*given, **changes)
+        return found
 
 
 sys.modules[__name__].__class__ = _Stage

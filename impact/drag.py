@@ -89,32 +89,6 @@ def flown(
     return Flown(*(rows[:, k].reshape(up.shape) for k in range(3)))
 
 
-def terminal_speed(
-    striker: Striker, fluid: Fluid, *, angle: float = math.pi / 2.0,
-    gravity: float = STANDARD_GRAVITY,
-) -> float:  # fmt: skip
-    """Return the speed [m/s] at which drag and buoyancy carry the weight of a falling striker.
-
-    Raises
-    ------
-    InputError
-        The striker is lighter than the fluid that it displaces.
-    """
-    p = _numbers(striker, fluid, angle, gravity)
-    if p[_WEIGHT] <= 0.0:
-        raise InputError("the striker floats", key="mass_kg", allowed="more than the fluid's mass")
-    low, high = 0.0, 1e-6
-    while _drag(p, 0.0, -high)[1] < p[_WEIGHT]:
-        high *= 2.0
-    for _ in range(80):
-        middle = 0.5 * (low + high)
-        if _drag(p, 0.0, -middle)[1] < p[_WEIGHT]:
-            low = middle
-        else:
-            high = middle
-    return 0.5 * (low + high)
-
-
 _MASS, _WEIGHT, _DIAMETER, _LENGTH, _DENSITY, _VISCOSITY, _COS, _SIN = range(8)
 
 

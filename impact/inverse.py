@@ -112,6 +112,10 @@ class Inferred:
     objections: tuple[str, ...]
 
 
+INFERRED = ("alpha", "impulse", "duration", "mean_force", "return_duration", "return_force")
+"""The numbers of `Inferred`."""
+
+
 def infer(striker: Striker, measured: Measured) -> Inferred:
     """Mean force and duration from depth, sliding length and restitution (corrected 5.11, 5.14).
 
@@ -121,25 +125,30 @@ def infer(striker: Striker, measured: Measured) -> Inferred:
     Raises
     ------
     InputError
-        The tip would stick at this friction coefficient, so that it cannot have slid.
+        The tip would stick at this friction coefficient, so that it cannot have slid, or an inertia
+        leaves no finite number.
     """
     found = mobility(striker, measured.angle)
     a, b = found.tangential(measured.mu), found.normal(measured.mu)
-    if a >= 0.0:
+    if not a < 0.0:
         raise InputError(
             f"{measured.mu:g} makes the tip stick, and no sliding length follows",
             key="friction",
             allowed=f"below {found.stick_friction:.3g} at {math.degrees(measured.angle):g} degrees",
         )
-    if b <= 0.0:
+    if not b > 0.0:
         raise InputError(f"{measured.mu:g} jams the rod", key="friction", allowed="a lower value")
     ratio = a / b
     impulse = (1.0 + measured.restitution) * measured.speed / b
-    slid = measured.sliding / -ratio
+    slid = measured.sliding / -ratio if ratio else math.nan
     duration = (slid + measured.depth) / measured.speed
     back = slid / measured.speed
-    if duration <= 0.0:
-        raise InputError("no positive duration follows", key="sliding")
+    # sizes and masses of 1e-300 leave nothing to divide by
+    if not (back > 0.0 and math.isfinite(duration) and 0.0 < impulse < math.inf):
+        raise InputError(
+            "no duration and force can be worked out", key="inertia_kg_m2",
+            allowed="an inertia near m (L^2/12 + r^2/4)",
+        )  # fmt: skip
     return Inferred(
         ratio, impulse, duration, impulse / duration, back, impulse / back,
         _objections(striker, measured, duration, impulse),

@@ -113,10 +113,6 @@ class Spot:
         """Return the same metal, met `distance` [m] further along the sliding direction."""
         return replace(self, begin=self.begin + distance)
 
-    def elsewhere(self) -> Spot:
-        """Return the tip as it is, over fresh metal."""
-        return Spot(tip_peak=self.tip_peak, tip_flat=self.tip_flat)
-
     def row(self) -> NDArray[np.float64]:
         """Return the surface vector, shape (N_SURFACE,)."""
         row = np.zeros(N_SURFACE)

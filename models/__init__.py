@@ -2,15 +2,15 @@
 
 from __future__ import annotations
 
-from pathlib import Path
+from difflib import get_close_matches
 
 from ..core.errors import InputError
 from .base import ContactLaw, Domain, DomainWarning, Kernels
 from .coefficients import shipped_laws
 from .kernel import critical_depth, critical_force, yield_constant
-from .published import PUBLISHED, RATE_MODELS, UNAVAILABLE
+from .law_file import is_file, read_law
+from .published import PUBLISHED, UNAVAILABLE
 from .shelf import Shelf
-from .table_file import read_table
 from .uncertainty import Uncertainty
 
 try:
@@ -25,32 +25,33 @@ def law_named(name: str) -> ContactLaw:
     """Return the law called `name`.
 
     `one+other` is one's loading with the other's unloading; the path of a law.json, or of the
-    folder in which `dentscope case` wrote it, is the law of that pair.
+    folder in which `dentscope case` wrote it, is the law of that pair; the path of a fitted.json
+    that `dentscope fit` wrote is its law (`fitted.json:compact`, `:hardening`: the others).
 
     Raises
     ------
     InputError
         There is none; the message lists the known ones.
     """
-    if name.endswith(".json") or "/" in name:
-        return read_table(Path(name))
+    if is_file(name):
+        return read_law(name)
     if name in ("compact", "fitted") and _UNREADABLE is not None:
         raise _UNREADABLE
     if name in UNAVAILABLE:
         raise InputError(f"{name!r} is not offered: {UNAVAILABLE[name]}", key="law")
-    if name in RATE_MODELS:
-        raise InputError(f"{name!r} is no law of depth alone; it leaves no dent", key="law")
     if name.count("+") == 1:
         first, second = name.split("+")
         return law_named(first).with_unloading(law_named(second))
     if name not in LAWS:
-        raise InputError(f"{name!r}", key="law", allowed=f"{', '.join(LAWS)}, or a law.json")
+        known = f"{', '.join(LAWS)}, a law.json or a fitted.json"
+        near = get_close_matches(name, LAWS, n=1)
+        meant = f"; did you mean {near[0]!r}?" if near else ""
+        raise InputError(f"{name!r}{meant}", key="law", allowed=known)
     return LAWS[name]
 
 
 __all__ = [
     "LAWS",
-    "RATE_MODELS",
     "UNAVAILABLE",
     "Uncertainty",
     "ContactLaw",

@@ -1,4 +1,4 @@
-"""Which law to use when: what a pair and a depth ask of a law, and what each law can give.
+"""What a pair and a depth ask of a law, and what each law was made for.
 
 The borders come from the thesis's finite elements: the sphere's share of the approach and the
 contact radius no longer change below Sy* = 0.6 and above 1.7 (chapter 2), yield sets in at
@@ -77,20 +77,6 @@ def objection(law: ContactLaw, need: Demand) -> str:
     if need.a_over_R > law.domain.a_over_R_max:
         return f"a/R of about {need.a_over_R:.2g} is beyond {law.domain.a_over_R_max:g}"
     return ""
-
-
-_PREFERRED = {
-    "elastic": ("hertz",),
-    "flattening": ("fitted", "jackson-green", "jackson-green-2007", "ghaednia"),
-    "both bodies": ("fitted", "ghaednia"),
-    "indentation": ("fitted", "ghaednia", "ye-komvopoulos", "kogut-komvopoulos"),
-}
-
-
-def recommended(laws: dict[str, ContactLaw], need: Demand) -> tuple[str, ...]:
-    """Names of the laws to use, best first, by our finite elements and the thesis's."""
-    names = (name for name in _PREFERRED[need.regime] if name in laws)
-    return tuple(name for name in names if not objection(laws[name], need))
 
 
 def follows_flow(law: ContactLaw) -> bool:

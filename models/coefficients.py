@@ -80,7 +80,7 @@ def _correction(content: Mapping[str, Any], source: str) -> Correction:
                 allowed=f"{', '.join(names)}; make the file anew with `dentscope fit`",
             )  # fmt: skip
     return Correction(
-        np.array(content["centres"]), np.array(content["reaches"]), np.array(content["weights"])
+        *(np.array(content[key], dtype=float) for key in ("centres", "reaches", "weights"))
     )
 
 

@@ -2,14 +2,28 @@
 
 from __future__ import annotations
 
+from difflib import get_close_matches
+
 from ..core.tables import html_table
 from .base import ContactLaw
 
 _HEAD = ("law", "authors", "made for", "equations")
 
 
+class UnknownLaw(KeyError):
+    """No law has this name; the message says which come near."""
+
+    def __str__(self) -> str:
+        return str(self.args[0])
+
+
 class Shelf(dict[str, ContactLaw]):
     """Contact laws by name, in reading order."""
+
+    def __missing__(self, name: str) -> ContactLaw:
+        near = get_close_matches(str(name), self, n=1)
+        meant = f"did you mean {near[0]!r}? " if near else ""
+        raise UnknownLaw(f"no law {name!r}; {meant}known are {', '.join(self)}")
 
     def rows(self) -> list[tuple[str, str, str, str]]:
         """Return name, authors, the bodies it is made for, and where its equations were read."""

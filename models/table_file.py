@@ -1,4 +1,4 @@
-"""The file of a law that is a table: `dentscope case` writes it, `law_named` reads it."""
+"""The file of a law that is a table: `dentscope case` writes it, `law_file` reads it."""
 
 from __future__ import annotations
 
@@ -22,7 +22,9 @@ FORMAT = "dentscope-table/1"
 FEWEST_DEPTHS = 2
 """Of a loading that is a curve."""
 
-_MOST_BYTES = 20_000_000
+MOST_BYTES = 20_000_000
+"""Largest file of a law that is read."""
+
 _MADE = "law.json of `dentscope case`"
 _Above = Annotated[tuple[Annotated[float, Field(gt=0.0, lt=1e30)], ...], Listed]
 _Spread = Annotated[tuple[Annotated[float, Field(ge=0.0, lt=1e3)], ...], Listed]
@@ -60,7 +62,7 @@ class _TableFile(InputTable):
 
 
 def write_table(table: PairTable, path: Path) -> Path:
-    """Write a pair's table for `read_table`."""
+    """Write a pair's table for `read_table` and `law_file.read_law`."""
     content = {
         "format": FORMAT,
         "radius_m": table.pair.R,
@@ -73,20 +75,26 @@ def write_table(table: PairTable, path: Path) -> Path:
 
 
 def read_table(path: Path) -> TableLaw:
-    """Read the law that `dentscope case` wrote.
+    """Read the file that `write_table` wrote."""
+    content = read_json(path, most=MOST_BYTES, allowed=_MADE)
+    return table_from(content, source=str(path), name=str(path))
+
+
+def table_from(content: object, *, source: str, name: str) -> TableLaw:
+    """Return the law that `dentscope case` wrote.
 
     Parameters
     ----------
-    path
-        Its law.json, or the folder that holds it.
+    content
+        Of its law.json.
+    source, name
+        The file, for errors; what the law is called.
 
     Raises
     ------
     InputError
-        There is none, or it is damaged.
+        It is damaged.
     """
-    file = path / "law.json" if path.is_dir() else path
-    content, source = read_json(file, most=_MOST_BYTES, allowed=_MADE), str(file)
     if not isinstance(content, dict):
         raise InputError("no table", source=source, allowed=_MADE)
     found = parse_model(content, _TableFile, source=source)
@@ -112,4 +120,4 @@ def read_table(path: Path) -> TableLaw:
             f"{turns.depth[0]:g}", source=source, key="unloading.depth",
             allowed=f"beyond first yield, above {table.yields_at:.4g}",
         )  # fmt: skip
-    return table_law([table], name=str(path))
+    return table_law([table], name=name)

@@ -53,7 +53,7 @@ class Kind:
         kind = import_module(f".{self.name}.kind", __package__)
         try:
             reduced: Reduced = kind.reduce(path, options)
-            return reduced
+            return reduced.known()
         except (ArithmeticError, LinAlgError) as error:
             raise InputError(
                 f"its numbers cannot be reduced ({error})", source=str(path),

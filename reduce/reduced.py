@@ -2,8 +2,9 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Callable, Mapping
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from pathlib import Path
 
 from ..core.inputs.flow_curve import MeasuredFlow
@@ -42,3 +43,14 @@ class Reduced:
     striker: Mapping[str, Measured] = field(default_factory=dict)
     noise: Mapping[str, float] = field(default_factory=dict)
     flow: tuple[str, MeasuredFlow] | None = None
+
+    def known(self) -> Reduced:
+        """Return the same without values that are no number: what was not measured is not told."""
+        return replace(
+            self, values=_finite(self.values), striker=_finite(self.striker),
+            trials=tuple(replace(t, observables=_finite(t.observables)) for t in self.trials),
+        )  # fmt: skip
+
+
+def _finite(values: Mapping[str, Measured]) -> dict[str, Measured]:
+    return {name: v for name, v in values.items() if math.isfinite(v.value)}

@@ -38,6 +38,22 @@ class Rules:
         20.0, "durations after a pulse over which a ringing is averaged [-]",
         "drop table on felt: the change of speed is level from there on",
     )  # fmt: skip
+    most_given_up: float = _rule(
+        0.5, "part of a run's instants that may be given up at its ends [-]",
+        "a knock before and after a run of five is two of seven",
+    )  # fmt: skip
+    most_elastic: float = _rule(
+        0.998, "median restitution of a run above which nothing bounces: a clock [-]",
+        "hardened steel on steel, glass on glass: 0.99 at most in air",
+    )  # fmt: skip
+    least_of_all: float = _rule(
+        0.5, "part of all instants that the run must hold: fewer hang together by chance [-]",
+        "a ball with an echo of every bounce: a half",
+    )  # fmt: skip
+    run_scatter: float = _rule(
+        2.0, "scatter of a run's intervals in the error of an instant, above which it counts [-]",
+        "six flights tell a scatter to a third: twice the error is no chance",
+    )  # fmt: skip
     whole_flank: int = _rule(
         8, "samples above half of the peak from which on a flank has samples too [-]",
         "of a half-sine 13 % lie on a flank between 6 and 45 %, 67 % above the half",

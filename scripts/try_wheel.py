@@ -232,7 +232,7 @@ def first_case(environment: Path, folder: Path, use: Use) -> str:
         return ""
     program = (
         "from pathlib import Path\nfrom dentscope.campaigns import Store\n"
-        "print(Store(Path('run/campaign.h5')).summaries()[0].id)"
+        "print(Store(Path('run')).summaries()[0].id)"
     )
     return run(environment / "bin/python", "-c", program, cwd=folder)[:12]
 

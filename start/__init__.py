@@ -11,6 +11,7 @@ from importlib import import_module
 from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
+    from .checked import Material
     from .comparison import LawComparison, compare_laws
     from .diagnosis import Diagnosis, diagnose
     from .pair import Solved, case
@@ -18,13 +19,14 @@ if TYPE_CHECKING:
 _FROM = {
     "Diagnosis": "diagnosis",
     "LawComparison": "comparison",
+    "Material": "checked",
     "Solved": "pair",
     "case": "pair",
     "compare_laws": "comparison",
     "diagnose": "diagnosis",
 }
 
-__all__ = ["Diagnosis", "LawComparison", "Solved", "case", "compare_laws", "diagnose"]
+__all__ = ["Diagnosis", "LawComparison", "Material", "Solved", "case", "compare_laws", "diagnose"]
 
 
 def __getattr__(name: str) -> Any:

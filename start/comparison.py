@@ -15,14 +15,29 @@ from ..core.material import Pair
 from ..core.tables import frame, html_table
 from ..models import LAWS, DomainWarning, critical_depth, law_named
 from ..models.base import ContactLaw
-from ..models.choose import Demand, demand, objection, recommended
+from ..models.choose import Demand, demand, follows_flow
 from .case_file import read_pair
+from .judged import USABLE, Departure, Reference, judged
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
 _POINTS = 120
-_HEAD = ("law", "F [N]", "a [mm]", "p/Sy_min", "left [um]", "may be used")
+_MOST = 4  # laws that are recommended
+
+
+USED = frozenset(
+    {"radius_m", "load.max_delta_over_R"}
+    | {
+        f"{body}.{key}"
+        for body in ("sphere", "flat")
+        for key in (
+            "E_Pa", "nu", "Sy_Pa", "rigid", "flow_curve", "hardening.law", "hardening.K_Pa",
+            "hardening.B_Pa", "hardening.Q_Pa", "hardening.n", "hardening.b",
+        )
+    }
+)  # fmt: skip
+"""Keys of CASE.toml that a law answers for."""
 
 
 class Row(NamedTuple):
@@ -48,8 +63,10 @@ class LawComparison:
         The two bodies, and what they ask of a law at the largest depth.
     best
         Names of the laws to use, best first.
-    objections
-        By law, why it should not be used; empty if it may.
+    reference
+        The solved pair that they are judged by; none where nothing yields.
+    departures
+        By law, how far it is from the finite elements of that pair.
     rows
         Every law from below first yield to the largest depth.
     """
@@ -57,39 +74,50 @@ class LawComparison:
     pair: Pair
     need: Demand
     best: tuple[str, ...]
-    objections: dict[str, str]
+    reference: Reference | None
+    departures: dict[str, Departure]
     rows: tuple[Row, ...]
 
     @property
     def finding(self) -> str:
         """Which laws to use, and what the pair asks of them."""
         last = self.rows[-1].delta_over_R
+        use = ", ".join(f"{name} ({self.told(name)})" for name in self.best)
+        by = f"; judged by {self.reference.told}" if self.reference else ""
         return (
-            f"use: {', '.join(self.best) or 'none of these laws holds here'}\n"
+            f"use: {use or 'none of these laws holds here'}\n"
             f"at Delta/R = {last:g}: {self.need.w:.4g} times the depth of first yield; regime: "
-            f"{self.need.regime}"
+            f"{self.need.regime}{by}"
         )
 
+    def told(self, law: str) -> str:
+        """How far a law is from the finite elements, in words."""
+        if self.reference is None:
+            return "Hertz's while nothing yields"
+        found = self.departures.get(law)
+        return found.told if found else "of one pair, not judged"
+
     def last_rows(self) -> list[Row]:
-        """Each law at the largest depth, those to use first."""
-        place = {name: k for k, name in enumerate(self.best)}
-        ends = {row.law: row for row in self.rows}.values()
-        return sorted(
-            ends, key=lambda r: (place.get(r.law, len(place)), bool(self.objections[r.law]))
-        )
+        """Each law at the largest depth, the nearest to the finite elements first."""
+        ends = list({row.law: row for row in self.rows}.values())
+        if not self.departures:
+            return sorted(ends, key=lambda r: r.law not in self.best)
+        far = {name: one.worst for name, one in self.departures.items()}
+        return sorted(ends, key=lambda r: (round(far.get(r.law, 0.0), 3), r.law != "fitted"))
 
     def table(self) -> tuple[tuple[str, ...], list[tuple[str, ...]]]:
         """Return head and cells of the laws at the largest depth."""
+        pressure = "p/Sy_min" if np.isfinite(self.pair.Sy_min) else "p/E'"
+        head = ("law", "F [N]", "a [mm]", pressure, "left [um]", "against finite elements")
         cells: list[tuple[str, ...]] = [
             (
                 row.law, f"{row.force_N:.4g}", f"{row.contact_radius_m * 1e3:.4g}",
                 f"{row.mean_pressure_over_Symin:.3f}",
-                f"{(row.residual_sphere_m + row.residual_flat_m) * 1e6:.4g}",
-                "no" if self.objections[row.law] else "yes",
+                f"{(row.residual_sphere_m + row.residual_flat_m) * 1e6:.4g}", self.told(row.law),
             )
             for row in self.last_rows()
         ]  # fmt: skip
-        return _HEAD, cells
+        return head, cells
 
     def frame(self) -> Any:
         """Return all rows as a pandas data frame, SI."""
@@ -155,11 +183,29 @@ def compare_laws(
 def compared(pair: Pair, laws: Sequence[ContactLaw], *, last: float) -> LawComparison:
     """Compare these laws up to an approach of `last` R."""
     need = demand(pair, last * pair.R)
-    chosen = {law.name: law for law in laws}
+    reference, departures = judged(pair, laws, last=last)
     return LawComparison(
-        pair, need, recommended(chosen, need),
-        {law.name: objection(law, need) for law in laws}, _rows(pair, laws, last),
+        pair, need, _best(pair, laws, departures) if reference else _elastic(laws), reference,
+        departures, _rows(pair, laws, last),
     )  # fmt: skip
+
+
+def _best(
+    pair: Pair, laws: Sequence[ContactLaw], departures: dict[str, Departure]
+) -> tuple[str, ...]:
+    """Laws within `USABLE` of the finite elements, nearest first; ours of the same number first."""
+    # where a metal hardens, a law that does not know it is near by chance
+    known = [law.name for law in laws if pair.perfectly_plastic or follows_flow(law)]
+    near = [name for name in known if name in departures and departures[name].worst <= USABLE]
+    return tuple(
+        sorted(near, key=lambda name: (round(departures[name].worst, 3), name != "fitted"))[:_MOST]
+    )
+
+
+def _elastic(laws: Sequence[ContactLaw]) -> tuple[str, ...]:
+    """Hertz's law, of which all others are copies while nothing yields."""
+    names = [law.name for law in laws]
+    return ("hertz",) if "hertz" in names else tuple(names[:1])
 
 
 def _rows(pair: Pair, laws: Sequence[ContactLaw], last: float) -> tuple[Row, ...]:

@@ -13,6 +13,7 @@ from ..core.tables import frame, html_table
 from ..discrepancy import Verdict
 from ..discrepancy import diagnose as verdict_of
 from ..discrepancy.report import Story, lines, story_of, write_report
+from ..discrepancy.report.series import STATED, WITH, WITHOUT
 from ..recordings import read
 from ..recordings.shipped import set_folder
 
@@ -84,10 +85,10 @@ def _drawn(story: Story) -> Figure:
         x = [p.x[against.key] for p in points]
         bars = [[p.measured - p.low for p in points], [p.high - p.measured for p in points]]
         axis.errorbar(x, [p.measured for p in points], bars, fmt="ko", ms=4, label="measured")
-        axis.plot(x, [p.before for p in points], "C0s", ms=4, mfc="w", label="simulated")
-        if any(math.isfinite(p.after) for p in points):
-            axis.plot(x, [p.after for p in points], "C3^", ms=4, mfc="w",
-                      label="with what is missing")  # fmt: skip
+        axis.plot(x, [p.as_stated for p in points], ".", c="0.6", label=STATED)
+        axis.plot(x, [p.best_without for p in points], "C0s", ms=4, mfc="w", label=WITHOUT)
+        if any(math.isfinite(p.with_verdict) for p in points):
+            axis.plot(x, [p.with_verdict for p in points], "C3^", ms=4, mfc="w", label=WITH)
         axis.set(xlabel=against.label, ylabel=OBSERVABLES[name].axis)
         axis.grid(alpha=0.3)
     axes.flat[0].legend(fontsize=8)

@@ -54,3 +54,27 @@ def writable_folder(path: Path, *, key: str) -> Path:
             f"{there} may not be written", source=_LINE, key=key, allowed="a folder of your own"
         )
     return path
+
+
+def refuse_beside(context: typer.Context, option: str, *names: str) -> None:
+    """Refuse options that do nothing beside another one.
+
+    Parameters
+    ----------
+    context
+        Of the command.
+    option
+        What rules them out, as it is told.
+    names
+        Parameters of the command, as its function calls them.
+
+    Raises
+    ------
+    InputError
+        One of them is given on the command line.
+    """
+    for name in names:
+        source = context.get_parameter_source(name)
+        if source is not None and source.name == "COMMANDLINE":
+            key = f"--{name.replace('_', '-')}"
+            raise InputError(f"does nothing {option}", source=_LINE, key=key, allowed="left out")

@@ -7,12 +7,12 @@ from typing import Annotated
 
 import typer
 
-from ..campaign_data import FILE, PUBLISHED
+from ..campaign_data import PUBLISHED
 from ..shared.places import file_option, folder_option
 
 _Data = Annotated[
     Path | None,
-    typer.Option(help="Campaign file or folder of parts. Default: published, else own run."),
+    typer.Option(help="A run or a folder of parts. Default: published, else own run."),
 ]
 
 
@@ -51,4 +51,4 @@ def _data(given: Path | None) -> Path:
 
     if given is not None:
         return given
-    return PUBLISHED if (PUBLISHED / CHECKSUMS).exists() else Path("build/campaign") / FILE
+    return PUBLISHED if (PUBLISHED / CHECKSUMS).exists() else Path("build/campaign")

@@ -58,6 +58,8 @@ class Costs(NamedTuple):
 
 
 COSTS = Costs()
+ADEQUATE = 0.7
+"""Probability from which `adequate` is said: readers take it for an all-clear."""
 WORTH_NAMING = COSTS.more / COSTS.wrong
 """Probability from which a further name saves more than it costs."""
 
@@ -109,13 +111,14 @@ def _cheapest(fits: Sequence[Fit], odds: Odds) -> Choice:
     by_name = {f.name: f for f in fits}
     named = _named(tuple(by_name), odds)
     options = {
-        "adequate": COSTS.miss * (1.0 - odds.baseline),
         "undetermined": COSTS.silence,
         OUTSIDE: (
             COSTS.false_alarm * odds.baseline
             + COSTS.wrong * (1.0 - odds.baseline - odds.outside)
         ),
     }  # fmt: skip
+    if odds.baseline >= ADEQUATE:
+        options["adequate"] = COSTS.miss * (1.0 - odds.baseline)
     if named:
         options["named"] = cost_of_naming(named, odds)
     verdict = min(options, key=lambda k: options[k])

@@ -7,7 +7,7 @@ import io
 import math
 import re
 from collections.abc import Iterable, Iterator, Sequence
-from typing import Any
+from typing import Any, NamedTuple
 
 import matplotlib
 import numpy as np
@@ -18,11 +18,27 @@ from matplotlib.ticker import FuncFormatter, LogLocator, MaxNLocator, NullFormat
 
 from ...core.observables import OBSERVABLES
 from ..correction import Correction
-from .series import Against, Point
+from .series import STATED, WITH, WITHOUT, Against, Point
 
-COLOURS = {"#010101": "ink", "#020202": "faint", "#030303": "before", "#040404": "after"}
+COLOURS = {"#010101": "ink", "#020202": "faint", "#030303": "without", "#040404": "verdict"}
 """Colours that are drawn, and the variable of the page's style that takes their place."""
-_INK, _FAINT, _BEFORE, _AFTER = COLOURS
+_INK, _FAINT, _WITHOUT, _VERDICT = COLOURS
+
+
+class _Series(NamedTuple):
+    """How one of the simulations is drawn: line, own marker or the striker's, and to which side."""
+
+    line: str
+    marker: str
+    side: float
+
+
+_SERIES = {
+    _FAINT: _Series(":", ".", 0.0),
+    _WITHOUT: _Series("--", "", -1.0),
+    _VERDICT: _Series("-", "", 1.0),
+}
+"""By their colours, in the order of `_simulated`."""
 MARKERS = ("o", "s", "^", "D", "v", "P", "X", "*")
 """A striker's marker, in the order of the strikers."""
 _STYLE = {
@@ -30,13 +46,13 @@ _STYLE = {
     "text.color": _INK, "axes.labelcolor": _INK, "axes.edgecolor": _FAINT, "xtick.color": _INK,
     "ytick.color": _INK, "grid.color": _FAINT, "grid.alpha": 0.25, "axes.linewidth": 0.8,
 }  # fmt: skip
-_ASIDE = 0.012  # of the axis, between what is drawn for one number before and after
+_ASIDE = 0.012  # of the axis, between what is drawn for one number by two simulations
 
 
 def comparison(
     points: Sequence[Point], against: Against, strikers: Sequence[str], *, key: str
 ) -> str:
-    """Return measured beside simulated, and the difference below, for one observable.
+    """Return measured beside the simulations, and the differences below, for one observable.
 
     Parameters
     ----------
@@ -50,12 +66,11 @@ def comparison(
         Begins the ids of the figure's elements; no other figure of the page has it.
     """
     row = OBSERVABLES[points[0].observable]
-    extended = any(math.isfinite(p.after) for p in points)
     with matplotlib.rc_context(_STYLE):
         figure = Figure(figsize=(4.6, 4.5), layout="constrained")
         upper, lower = figure.subplots(2, 1, sharex=True, height_ratios=(1.35, 1.0))
         x = np.array([p.x[against.key] for p in points])
-        positive = np.array([[p.measured, p.before] for p in points])
+        positive = np.array([[p.measured, p.as_stated, p.best_without] for p in points])
         _axis(upper, "y", positive, log=row.log)
         _axis(upper, "x", x, log=against.key in ("speed_m_s", "load_N"))
         shift = _sideways(x, log=upper.get_xscale() == "log")
@@ -64,9 +79,11 @@ def comparison(
             _draw_point(upper, lower, p, marker, float(x[n]), shift, gid=f"{key}-{n}")
         for line in _lines(points, against):
             xs = [p.x[against.key] for p in line]
-            upper.plot(xs, [p.before for p in line], color=_BEFORE, lw=1.0, ls="--", zorder=1)
-            if extended:
-                upper.plot(xs, [p.after for p in line], color=_AFTER, lw=1.2, zorder=1)
+            for (colour, look), values in zip(
+                _SERIES.items(), np.transpose([_simulated(p) for p in line]), strict=True
+            ):
+                if np.isfinite(values).all():
+                    upper.plot(xs, values, color=colour, lw=1.1, ls=look.line, zorder=1)
         lower.axhline(0.0, color=_INK, lw=0.8)
         unit = "%" if row.log else row.unit
         shown = "" if unit == "-" else f" [{unit}]"
@@ -90,9 +107,11 @@ def _draw_point(
     upper.errorbar(x, p.measured, yerr=bars, fmt="none", ecolor=_INK, elinewidth=1.0, zorder=3)
     (dot,) = upper.plot(x, p.measured, **look, color=_INK, mfc=fill, zorder=4)
     dot.set_gid(gid)
-    for value, colour, side in ((p.before, _BEFORE, -1.0), (p.after, _AFTER, 1.0)):
+    for value, (colour, series) in zip(_simulated(p), _SERIES.items(), strict=True):
         if not math.isfinite(value):
             continue
+        side = series.side
+        look |= {"marker": series.marker or marker}
         aside = x * shift**side if upper.get_xscale() == "log" else x + side * (shift - 1.0)
         upper.plot(x, value, **look, color=colour, mfc="none", zorder=2)
         scale = 100.0 / value if OBSERVABLES[p.observable].log and value else 1.0
@@ -104,8 +123,13 @@ def _draw_point(
         lower.plot(aside, off[1], **look, color=colour, mfc=colour if p.weight else "none")
 
 
+def _simulated(p: Point) -> tuple[float, float, float]:
+    """As stated, at best without anything missing, and with the verdict."""
+    return p.as_stated, p.best_without, p.with_verdict
+
+
 def _sideways(x: np.ndarray, *, log: bool) -> float:
-    """By how much what is drawn before and after stands apart: a factor, or 1 plus a length."""
+    """By how much the fitted simulations stand apart: a factor, or 1 plus a length."""
     if log:
         return float((x.max() / x.min()) ** _ASIDE) if np.ptp(x) else 1.01
     return 1.0 + _ASIDE * float(np.ptp(x) or abs(x[0]) or 1.0)
@@ -144,10 +168,11 @@ def _told(p: Point, against: Against) -> str:
     texts = [
         f"{p.striker}, {against.label.split(' [')[0]} {p.x[against.key]:.3g}",
         f"measured {p.measured:.4g} ± {(p.high - p.low) / 2.0:.2g}{unit}, {p.trials} trials",
-        f"simulated {p.before:.4g}{unit}",
+        f"{STATED} {p.as_stated:.4g}{unit}",
+        f"{WITHOUT} {p.best_without:.4g}{unit}",
     ]
-    if math.isfinite(p.after):
-        texts.append(f"with the mechanism {p.after:.4g}{unit}")
+    if math.isfinite(p.with_verdict):
+        texts.append(f"{WITH} {p.with_verdict:.4g}{unit}")
     if not p.weight:
         texts.append("given no weight")
     return "; ".join(texts)
@@ -160,8 +185,8 @@ def correction(found: Iterable[Correction], *, key: str) -> str:
         figure = Figure(figsize=(4.6 * len(found), 3.0), layout="constrained")
         axes = figure.subplots(1, len(found), squeeze=False)[0]
         for axis, c in zip(axes, found, strict=True):
-            axis.fill_between(c.depth_over_R, c.low, c.high, color=_AFTER, alpha=0.25, lw=0)
-            axis.plot(c.depth_over_R, c.factor, color=_AFTER)
+            axis.fill_between(c.depth_over_R, c.low, c.high, color=_VERDICT, alpha=0.25, lw=0)
+            axis.plot(c.depth_over_R, c.factor, color=_VERDICT)
             axis.axhline(1.0, color=_INK, lw=0.8)
             _axis(axis, "x", np.asarray(c.depth_over_R), log=True)
             what = "loading force" if c.phase == "loading" else "elastic recovery"

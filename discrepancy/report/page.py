@@ -15,7 +15,7 @@ from ... import __version__
 from ...core.output import write_file
 from ..findings import Verdict
 from .figures import comparison, correction
-from .series import Point
+from .series import STATED, WITH, WITHOUT, Point
 from .story import Story, story_of
 from .wording import GLOSSARY
 
@@ -76,6 +76,7 @@ def page(v: Verdict, story: Story) -> str:
         observables=observables,
         corrected=correction(v.corrections, key="law") if v.corrections else "",
         mechanisms=v.mechanisms,
+        series=(STATED, WITHOUT, WITH),
         equations=[(m.title, m.equations) for m in v.best.mechanisms],
         shapes=list(zip(story.strikers, _SHAPES * len(story.strikers), strict=False)),
         weightless=any(not p.weight for p in story.points),

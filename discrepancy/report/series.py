@@ -17,6 +17,10 @@ from ..inference.outliers import WIDER
 Array = NDArray[np.float64]
 
 
+STATED, WITHOUT, WITH = "as stated", "best without anything missing", "with the verdict"
+"""The three simulations that are drawn, as every legend names them."""
+
+
 class Against(NamedTuple):
     """Something that varies over the conditions.
 
@@ -51,9 +55,9 @@ class Point:
         Mean of the repeats and its standard error on both sides.
     as_stated
         Simulated with every number as stated.
-    before
+    best_without
         Simulated with the numbers moved within their uncertainties, nothing added.
-    after
+    with_verdict
         The same with the mechanisms that are named; nan without any.
     weight
         Whether it counts: a value far off everything else does not.
@@ -69,8 +73,8 @@ class Point:
     low: float
     high: float
     as_stated: float
-    before: float
-    after: float
+    best_without: float
+    with_verdict: float
     weight: bool
 
     def row(self) -> dict[str, Any]:

@@ -11,8 +11,9 @@ import numpy as np
 from ...core.observables import OBSERVABLES
 from ..findings import Verdict
 from .series import Against, Point, againsts, points_of, series_of
-from .text import headline, own_parameters
+from .text import headline, nowhere, own_parameters
 from .wording import (
+    compared,
     explanation,
     interval,
     joined,
@@ -59,6 +60,8 @@ class Story:
     misses, audit, reasons, notes
         Sentences: where the simulation misses, contradictions of the inputs, how the verdict came
         about, what was assumed.
+    nowhere
+        What to think of it where places and verdict seem to contradict each other.
     parts, explanations
         Probability of each mechanism to take part, and of each explanation.
     found
@@ -80,6 +83,7 @@ class Story:
     against: tuple[Against, ...]
     strikers: tuple[str, ...]
     misses: tuple[str, ...]
+    nowhere: str
     audit: tuple[str, ...]
     reasons: tuple[str, ...]
     notes: tuple[str, ...]
@@ -116,7 +120,8 @@ def story_of(v: Verdict) -> Story:
         points=points_of(v),
         against=againsts(v),
         strikers=tuple(dict.fromkeys(series_of(c) for c in v.problem.conditions)),
-        misses=miss_sentences(v.located.misses[:_SHOWN], v.located.threshold),
+        misses=miss_sentences(v.located, most=_SHOWN),
+        nowhere=nowhere(v),
         audit=tuple(str(a["message"]) for a in v.audit),
         reasons=v.reasons,
         notes=tuple(n for n in v.notes if n),
@@ -170,12 +175,10 @@ def _prediction(v: Verdict) -> str:
     if math.isnan(i["held_out_extended"]):
         return "No condition could be kept out of the fit to try the prediction on."
     before, after = i["held_out_baseline"], i["held_out_extended"]
-    better = "better" if after < before else "worse, which speaks against the name"
     return (
         f"Tried on conditions that were kept out of the fit, whole speeds, strikers and angles at "
         f"a time ({i['trials']:.0f} predictions): off by {after:.1f} standard errors with it, "
-        f"{before:.1f} without; {better}. A better prediction does not prove the name: a wrong "
-        "mechanism can improve it too."
+        f"{before:.1f} without; {compared(before, after)}."
     )
 
 

@@ -8,7 +8,19 @@ from typing import Any
 from ...core.observables import OBSERVABLES
 from ..choice.odds import OUTSIDE
 from ..findings import Verdict
-from .wording import explanation, interval, joined, miss_sentences, percent, quantity, title_of
+from .wording import (
+    compared,
+    explanation,
+    interval,
+    joined,
+    miss_sentences,
+    percent,
+    quantity,
+    title_of,
+)
+
+_LEADING = 3
+"""Explanations that the finding names where nothing is decided."""
 
 
 def headline(v: Verdict) -> str:
@@ -40,7 +52,34 @@ def headline(v: Verdict) -> str:
         )
     if any(reason.startswith("too few") for reason in v.reasons):
         return "Too few data to say."
-    return "These data do not say whether something is missing, or what."
+    leads = list(v.probabilities.items())[:_LEADING]
+    likely = ", ".join(f"{explanation(name)} {percent(p)}" for name, p in leads)
+    return f"These data do not say whether something is missing, or what. What leads: {likely}."
+
+
+def nowhere(v: Verdict) -> str:
+    """Return how places and verdict go together; "" where both say that something is missing."""
+    beyond = bool(v.located.beyond_chance)
+    nothing = v.probabilities.get("baseline", 0.0)
+    told = percent(nothing)
+    if beyond:
+        if nothing < 0.5:
+            return ""
+        return (
+            f"All numbers together still leave a probability of {told} that nothing is missing: "
+            "one set of twenty in which nothing is missing shows such a place somewhere."
+        )
+    if nothing >= 0.5:
+        return "Nowhere beyond what chance gives over all observables and conditions."
+    if v.misfit["as_stated"] > v.misfit["numbers"] and v.misfit["rest"] < 0.5:
+        cause = "as stated the numbers do not fit, but moved within their uncertainties they do"
+    else:
+        cause = "each place by itself misses too little"
+    return (
+        "No single observable or condition is off by more than chance gives, and yet nothing is "
+        f"missing with a probability of {told} only: {cause}, and the explanation that leads fits "
+        "all numbers together better than they can."
+    )
 
 
 def lines(v: Verdict) -> list[str]:
@@ -58,9 +97,8 @@ def lines(v: Verdict) -> list[str]:
     if flagged:
         out += ["", "Inputs", *(f"  {m}" for m in flagged)]
     out += ["", "Where the simulation misses"]
-    out += [f"  {m}" for m in miss_sentences(v.located.misses[:4], v.located.threshold)] or [
-        "  nowhere beyond what chance gives over all observables and conditions"
-    ]
+    out += [f"  {m}" for m in miss_sentences(v.located, most=4)]
+    out += [f"  {m}" for m in [nowhere(v)] if m]
     if v.mechanisms:
         out += ["", "What explains it"]
         for name, q in own_parameters(v).items():
@@ -71,7 +109,8 @@ def lines(v: Verdict) -> list[str]:
             "  no condition could be left out of the fit to try the prediction on"
             if math.isnan(i["held_out_extended"])
             else f"  on conditions left out of the fit the miss goes from "
-            f"{i['held_out_baseline']:.1f} to {i['held_out_extended']:.1f} standard errors"
+            f"{i['held_out_baseline']:.1f} to {i['held_out_extended']:.1f} standard errors: "
+            f"{compared(i['held_out_baseline'], i['held_out_extended'])}"
         )
     part = {k: x for k, x in v.inclusion.items() if x >= 0.01}
     out += ["", "Probability that it takes part"]

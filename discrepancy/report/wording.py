@@ -8,7 +8,7 @@ from collections.abc import Sequence
 from matplotlib.ticker import EngFormatter
 
 from ...core.observables import OBSERVABLES
-from ..locate import Miss
+from ..locate import Located
 from ..mechanisms import MECHANISMS
 
 _PREFIXED = frozenset({"Pa", "m", "s", "N", "J", "Hz", "N/m", "g"})
@@ -125,6 +125,22 @@ def percent(p: float) -> str:
     return f"{100.0 * p:.0f} %"
 
 
+def compared(before: float, after: float) -> str:
+    """Return what two misses say of a mechanism, as far as their printed digits differ.
+
+    Examples
+    --------
+    >>> compared(2.9, 1.8).split(",")[0], compared(1.31, 1.29).split(",")[0], compared(1.0, 2.0)
+    ('better', 'no better', 'worse, which speaks against the name')
+    """
+    one, two = round(before, 1), round(after, 1)
+    if two < one:
+        return "better, which a wrong mechanism can be too"
+    if two == one:
+        return "no better, so this says nothing for the name"
+    return "worse, which speaks against the name"
+
+
 def joined(parts: Sequence[str], last: str = "and") -> str:
     """Return words as a list within a sentence."""
     if len(parts) < 2:
@@ -132,9 +148,10 @@ def joined(parts: Sequence[str], last: str = "and") -> str:
     return f"{', '.join(parts[:-1])} {last} {parts[-1]}"
 
 
-def miss_sentences(misses: Sequence[Miss], threshold: float) -> tuple[str, ...]:
-    """Return where the simulation misses, a sentence an observable, the worst first."""
-    found = []
+def miss_sentences(located: Located, *, most: int) -> tuple[str, ...]:
+    """Return where the simulation misses beyond chance, a sentence an observable, worst first."""
+    found, threshold = [], located.threshold
+    misses = located.beyond_chance[:most]
     for name in dict.fromkeys(m.observable for m in misses):
         own = [m for m in misses if m.observable == name]
         label, when = OBSERVABLES[name].label, _WHILE.get(own[0].phase, own[0].phase)

@@ -5,23 +5,31 @@ from __future__ import annotations
 import math
 import tomllib
 from collections.abc import Iterable, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cached_property
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, overload
 
+import numpy as np
+from numpy.typing import NDArray
+
+from ...core.errors import InputError
 from ...core.inputs.toml_input import read_toml
+from ...core.material import Material, Pair
+from ...core.rig import material_keys
 from ...core.tables import frame, html_table
 from ...core.templates import KINDS, template
 from ...models import law_named
 from ...models.base import ContactLaw
+from ..batch import impacts
+from ..columns import Impacts
 from ..draw import histories
 from ..integrate import Trace, strike, traced
 from ..result import Impact
 from ..told.band import PRESSURE, Band, band_of, idle
 from ..told.checks import checks, reason_above_one
 from ..told.onset import largest_mean_pressure
-from .setup import Setup, read_setup, setup_of
+from .setup import DEFAULT_LAWS, FOLLOWING, Setup, read_setup, setup_of
 from .tables import EXACT, SHOWN, impact_row
 
 if TYPE_CHECKING:
@@ -168,17 +176,41 @@ class Blow:
         return html_table(("", *self.traces), self.table(), title=self.name)
 
 
-def blow(setup: str | Path = "ball", *, law: str | Sequence[str] = (), **changes: Any) -> Blow:
+@overload
+def blow(
+    setup: Pair | str | Path = "ball", *, law: str | Sequence[str] = (), speed: float | None = None,
+    mass: float | None = None, **changes: Any,
+) -> Blow: ...  # fmt: skip
+@overload
+def blow(
+    setup: Pair | str | Path = "ball", *, law: str | Sequence[str] = (),
+    speed: Sequence[float] | NDArray[Any], mass: float | None = None, **changes: Any,
+) -> Impacts: ...  # fmt: skip
+def blow(
+    setup: Pair | str | Path = "ball", *, law: str | Sequence[str] = (),
+    speed: float | Sequence[float] | NDArray[Any] | None = None, mass: float | None = None,
+    **changes: Any,
+) -> Blow | Impacts:  # fmt: skip
     """Simulate a blow, a law beside the other.
 
     Parameters
     ----------
     setup
-        A set-up file, or one to start from: `ball`, `rod`, `oblique-ball`.
+        A pair, whose sphere is a ball that meets the flat; a set-up file; or one to start from:
+        `ball`, `rod`, `oblique-ball`.
     law
         Name of a contact law, or several; by default those of the set-up.
+    speed
+        Normal speed of the approach [m/s], in place of the set-up's; several give a table.
+    mass
+        Of the striker [kg]; a ball without it is solid, of its radius and density.
     **changes
         Keys of `[impact]`, for example `impact_speed_m_s=2.0` or `angle_deg=60`.
+
+    Returns
+    -------
+    Blow or Impacts
+        Of one speed everything; of several a table of observables, a law and speed a row.
 
     Raises
     ------
@@ -190,13 +222,64 @@ def blow(setup: str | Path = "ball", *, law: str | Sequence[str] = (), **changes
     >>> found = blow("ball", law="hertz", impact_speed_m_s=1.0)
     >>> round(found["hertz"].restitution, 9)  # elastic: everything is given back
     1.0
+    >>> from dentscope.core import Material
+    >>> steel = Material(E=200e9, nu=0.3, density=7800.0)
+    >>> len(blow(Pair(steel, steel, 5e-3), law="hertz", speed=[0.5, 1.0])["restitution"])
+    2
     """
-    chosen = _changed(setup, changes) if changes or setup in KINDS else read_setup(Path(setup))
+    if isinstance(speed, str):
+        raise InputError(repr(speed), key="speed", allowed="a number above 0 [m/s], or several")
+    given = None if speed is None else np.asarray(speed, dtype=float)
+    speeds = None if given is None or given.ndim == 0 else given.ravel()
+    if speeds is not None and not (speeds.size and np.all(np.isfinite(speeds) & (speeds > 0.0))):
+        raise InputError(f"{speed}", key="speed", allowed="numbers above 0 [m/s]")
+    if given is not None:
+        changes["impact_speed_m_s"] = float(given.flat[0])
+    chosen = _chosen(setup, changes, mass)
     names = [law] if isinstance(law, str) else list(law) or list(chosen.laws)
-    return blow_of(chosen, [law_named(name) for name in names])
+    laws = [law_named(name) for name in names]
+    if speeds is None:
+        return blow_of(chosen, laws)
+    chosen.check_laws(laws)
+    first, *others = (impacts(chosen.scene(one), speeds=speeds) for one in laws)
+    for other in others:
+        first = first.joined(other)
+    return first
 
 
-def _changed(setup: str | Path, changes: dict[str, Any]) -> Setup:
+def _chosen(setup: Pair | str | Path, changes: dict[str, Any], mass: float | None) -> Setup:
+    """The set-up with what is asked for in place of what it says."""
+    if isinstance(setup, Pair):
+        content = _content(setup, changes, mass)
+        return replace(setup_of(content, source="impact"), pair=setup)
+    if changes or mass is not None or setup in KINDS:
+        return _changed(setup, changes, mass)
+    return read_setup(Path(setup))
+
+
+def _content(pair: Pair, changes: dict[str, Any], mass: float | None) -> dict[str, Any]:
+    """A pair as a set-up: the sphere is a ball."""
+    ball: dict[str, Any] = {"shape": "sphere", "tip_radius_m": pair.R, **_body(pair.sphere)}
+    if mass is not None:
+        ball["mass_kg"] = float(mass)
+    elif math.isnan(pair.sphere.density):
+        raise InputError(
+            "missing", source="impact", key="mass",
+            allowed="the mass of the ball [kg], or a density of pair.sphere",
+        )  # fmt: skip
+    laws = {} if pair.perfectly_plastic else {"laws": [FOLLOWING, *DEFAULT_LAWS]}
+    return {
+        "name": "ball on a flat", "target": _body(pair.flat), "strikers": {"ball": ball},
+        "impact": {**laws, **changes},
+    }  # fmt: skip
+
+
+def _body(body: Material) -> dict[str, Any]:
+    density = {} if math.isnan(body.density) else {"density_kg_m3": body.density}
+    return {**material_keys(body), **density}
+
+
+def _changed(setup: str | Path, changes: dict[str, Any], mass: float | None) -> Setup:
     known = setup in KINDS
     content = tomllib.loads(template(str(setup))) if known else read_toml(Path(setup))
     section = {**content.get("impact", {}), **changes}
@@ -204,7 +287,14 @@ def _changed(setup: str | Path, changes: dict[str, Any]) -> Setup:
     for given, other in _EITHER:
         if given in changes and other not in changes:
             section.pop(other, None)
-    return setup_of({**content, "impact": section}, source=str(setup))
+    content = {**content, "impact": section}
+    if mass is not None:
+        strikers = content.get("strikers", {})
+        name = section.get("striker") or next(iter(strikers), "")
+        content["strikers"] = {
+            **strikers, name: {**strikers.get(name, {}), "mass_kg": float(mass)},
+        }  # fmt: skip
+    return setup_of(content, source=str(setup))
 
 
 def blow_of(setup: Setup, laws: Sequence[ContactLaw]) -> Blow:

@@ -3,30 +3,53 @@
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass
+from collections.abc import Mapping
+from dataclasses import dataclass, field
 from pathlib import Path
-from typing import Literal
+from typing import Any, Literal
 
 from pydantic import Field
 
-from ...core.errors import InputError
+from ...core.errors import InputError, InputErrors
 from ...core.inputs.toml_input import InputTable, parse_model, read_toml
-from ...core.rig import Length, Radius, StrikerTable
+from ...core.rig import Length, Mass, Positive, Radius
 from ...core.unstated import unstated_equal
-from ..inverse import Inferred, Measured, infer
+from ..inverse import INFERRED, Inferred, Measured, infer
 from ..scene import Striker
-from .bodies import striker_of
+from .setup import FlowingStriker
 
 
-class _RodTable(StrikerTable):
-    """`[striker]` of an inverse file: a rod of one radius, unless it says otherwise."""
+class _RodTable(InputTable):
+    """`[striker]` of an inverse file: a rigid rod of one radius, unless it says otherwise."""
 
     shape: Literal["rod"] = "rod"
     """A rod with two round ends."""
+    tip_radius_m: Radius
+    """Radius of the round tip."""
+    mass_kg: Mass
+    """Mass."""
     radius_m: Radius | None = None
     """Radius of the shank."""
     length_m: Length
     """Between the centres of the two tip spheres."""
+    inertia_kg_m2: Positive | None = None
+    """Moment of inertia across the axis; left out: of a rod of this mass."""
+
+    def rod(self, values: Mapping[str, float] | None = None) -> Striker:
+        """Return the rigid rod, with some of its numbers replaced."""
+        given = {
+            name: quantity.value
+            for name in _NUMBERS
+            if (quantity := getattr(self, name)) is not None
+        } | dict(values or {})
+        return Striker(
+            given["mass_kg"], given["tip_radius_m"], length=given["length_m"],
+            radius=given.get("radius_m", math.nan), inertia=given.get("inertia_kg_m2", math.nan),
+            name="rod",
+        )  # fmt: skip
+
+
+_NUMBERS = ("tip_radius_m", "mass_kg", "radius_m", "length_m", "inertia_kg_m2")
 
 
 class _TrialTable(InputTable):
@@ -73,6 +96,8 @@ class Row:
     inferred: Inferred
     printed_duration: float = math.nan
     printed_force: float = math.nan
+    std: Mapping[str, float] = field(default_factory=dict)
+    """By field of `Inferred`: what the standard deviations of the rod's numbers make of it."""
 
 
 def read_inverse(path: Path) -> tuple[Striker, list[Row]]:
@@ -84,8 +109,10 @@ def read_inverse(path: Path) -> tuple[Striker, list[Row]]:
         One line for each mistake, also for a friction coefficient at which the tip sticks.
     """
     source = str(path)
-    found = parse_model(read_toml(path), InverseFile, source=source)
-    rod = striker_of(found.striker, "rod")
+    content = read_toml(path)
+    _check_striker(content, source)
+    found = parse_model(content, InverseFile, source=source)
+    rod = found.striker.rod()
     rows = []
     for i, trial in enumerate(found.trial, start=1):
         measured = Measured(
@@ -103,6 +130,43 @@ def read_inverse(path: Path) -> tuple[Striker, list[Row]]:
             Row(
                 trial.trial or str(i), measured, inferred,
                 trial.printed_duration_s or math.nan, trial.printed_mean_force_N or math.nan,
+                _deviations(found.striker, measured),
             )
         )  # fmt: skip
     return rod, rows
+
+
+def _check_striker(content: Mapping[str, Any], source: str) -> None:
+    """Refuse what a striker has in other files: a rigid rod has no metal."""
+    table = content.get("striker")
+    known = set(FlowingStriker.model_fields) - set(_RodTable.model_fields)
+    idle = [name for name in table if name in known] if isinstance(table, dict) else []
+    allowed = "left out: the rod is rigid; `dentscope impact` takes it"
+    errors = [
+        InputError("does nothing here", source=source, key=f"striker.{name}", allowed=allowed)
+        for name in idle
+    ]
+    if errors:
+        raise InputErrors(tuple(errors))
+
+
+def _deviations(table: _RodTable, measured: Measured) -> dict[str, float]:
+    """Standard deviations of what is inferred, by those of the rod's numbers; others are exact."""
+    total = dict.fromkeys(INFERRED, 0.0)
+    for name in _NUMBERS:
+        quantity = getattr(table, name)
+        if quantity is None or not quantity.std > 0.0:
+            continue
+        try:
+            up, down = (
+                infer(
+                    table.rod({name: quantity.value * math.exp(sign * quantity.relative)}), measured
+                )
+                for sign in (1.0, -1.0)
+            )
+        except InputError:  # one of them would stick
+            return dict.fromkeys(INFERRED, math.inf)
+        for key in INFERRED:
+            change = 0.5 * (getattr(up, key) - getattr(down, key))
+            total[key] = math.hypot(total[key], change)
+    return total

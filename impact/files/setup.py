@@ -14,6 +14,7 @@ from ...core.approach import speeds_at_touch
 from ...core.errors import InputError, InputErrors
 from ...core.inputs.flow_tables import HardeningTable
 from ...core.inputs.toml_input import InputTable, parse_model, read_toml
+from ...core.material import Pair
 from ...core.rig import Height, Quantity, Rig, Speed, StrikerTable, TargetTable, value_of
 from ...models.base import ContactLaw
 from ...models.choose import follows_flow
@@ -112,10 +113,13 @@ class Setup:
     file: SetupFile
     content: dict[str, Any]
     source: str
+    pair: Pair | None = None
+    """In place of the file's two bodies."""
 
     def scene(self, law: ContactLaw, *, speed: float | None = None) -> Scene:
         """Return the scene of one law; `speed` replaces the file's normal approach speed [m/s]."""
-        return _scene(self.file, law, source=self.source, speed=speed)
+        found = _scene(self.file, law, source=self.source, speed=speed)
+        return found if self.pair is None else found.with_(pair=self.pair)
 
     @property
     def about(self) -> dict[str, str]:
@@ -133,6 +137,8 @@ class Setup:
             There is one.
         """
         curves = _curves(self.file)
+        if self.pair is not None and not self.pair.perfectly_plastic:
+            curves = ["pair.flow"]
         if curves and not any(follows_flow(law) for law in laws):
             raise InputError(
                 f"none of {', '.join(law.name for law in laws)} follows it", source=self.source,

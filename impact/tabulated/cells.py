@@ -4,6 +4,9 @@ A table is one vector, so that it can travel in a contact law's parameters: a he
 each of many equal bins the first cell that reaches into it), the cells' left ends, and for each
 column and cell the seven coefficients of a polynomial about the left end. A linear cell at either
 end carries each function on beyond the range.
+
+Cells are laid from left to right, and so many are tried and no more: a function that oscillates,
+or is no number, from somewhere on has a table up to there.
 """
 
 from __future__ import annotations
@@ -15,6 +18,7 @@ import numpy as np
 from numba import float64, int64, njit
 from numpy.typing import NDArray
 
+from ...core.errors import COMPLETED, Ending, Outcome
 from ...models.kernel import VECTOR
 
 Array = NDArray[np.float64]
@@ -27,6 +31,12 @@ _BETWEEN = np.array([0.03, 0.15, 0.37, 0.63, 0.85, 0.97])
 _FIT = np.linalg.inv(np.vander(_NODES, increasing=True))
 _CHECK = np.vander(_BETWEEN, _ORDER, increasing=True)
 _START, _BINS_PER_CELL = 24, 8
+
+MOST_CELLS = 4000
+"""Cells that are tried, halved ones counted; the smooth laws of this package take 1120 at most."""
+
+_AT_ONCE = 256
+"""Cells that are tried together."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -41,18 +51,23 @@ class Cells:
         Largest deviation from the function that was seen between the nodes, for each column; cells
         narrower than `least`, which hold a jump, are left out.
     count
-        Number of cells.
+        Number of cells; 0 where there is no table, and then no vector either.
+    high
+        Where the table ends.
+    outcome
+        Whether that is the end that was asked for.
     """
 
     vector: Array
     error: Array
     count: int
+    high: float
+    outcome: Outcome = COMPLETED
 
 
 def cells_of(
     function: Callable[[Array], Array], low: float, high: float, *, tolerance: float,
-    least: float = 1e-12, start: int = _START, relative: tuple[int, ...] = (),
-    bins: int = 0,
+    least: float = 1e-12, start: int = _START, relative: tuple[int, ...] = (), bins: int = 0,
 ) -> Cells:  # fmt: skip
     """Return the table of a function: cells are halved until the tolerance holds in each.
 
@@ -63,51 +78,71 @@ def cells_of(
     low, high
         Range.
     tolerance
-        Largest error of any column at the places where a cell is checked.
+        Largest error of any column (of those in `relative` over its own value) between the nodes.
     least
         Cells are not halved below this width: what remains there is a jump.
     start
         Cells to begin with, all of one width.
     bins
         Bins of the guide; as many as suit the number of cells when left out.
-    relative
-        Columns whose tolerance is over their own value.
 
     Examples
     --------
     >>> import numpy as np
     >>> table = cells_of(lambda x: np.stack([np.sin(x), x], axis=1), 0.0, 3.0, tolerance=1e-9)
-    >>> bool(abs(column_at(table.vector, 0, 0, 1.0) - np.sin(1.0)) < 1e-9)
+    >>> cell = cell_at(table.vector, 0, 1.0)
+    >>> bool(abs(column_in(table.vector, 0, cell, 0, 1.0) - np.sin(1.0)) < 1e-9)
     True
     """
     left = np.linspace(low, high, start + 1)[:-1]
     width = np.full(start, (high - low) / start)
+    end, tried, error = high, 0, np.zeros(1)
     done: list[tuple[Array, Array, Array]] = []
-    error = np.zeros(1)
-    while len(left):
-        places = left[:, None] + width[:, None] * np.concatenate([_NODES, _BETWEEN])
-        # a border may lie exactly on the right end: stay inside
-        places[:, _ORDER - 1] = np.nextafter(left + width, -np.inf)
+    while len(left) and tried < MOST_CELLS:
+        here, across = left[:_AT_ONCE], width[:_AT_ONCE]
+        tried += len(here)
+        own, off, known = _polynomials(function, here, across, relative)
+        wide = across > least
+        own[~wide, 1], own[~wide, 2:] = own[~wide, 1:].sum(axis=1), 0.0
+        good = known & (~wide | (off.max(axis=1) <= tolerance))
+        done.append((here[good], across[good], own[good]))
+        error = np.maximum(error, off[good & wide].max(axis=0, initial=0.0))
+        end = here[~wide & ~known].min(initial=end)
+        halves = 0.5 * across[~good]
+        pair = np.stack([here[~good], here[~good] + halves], axis=1).ravel()
+        left = np.concatenate([pair, left[_AT_ONCE:]])
+        width = np.concatenate([np.repeat(halves, 2), width[_AT_ONCE:]])[left < end]
+        left = left[left < end]
+    end = float(left.min(initial=end))
+    outcome = COMPLETED
+    if end < high:
+        outcome = Outcome(
+            Ending.STEP_LIMIT,
+            f"the table ends at {end:.6g}, short of {high:.6g}, after {tried} cells.",
+            "Beyond it ask the function itself.",
+        )
+    lefts, widths, owns = (np.concatenate(part) for part in zip(*done, strict=True))
+    kept = np.argsort(lefts)[: np.count_nonzero(lefts < end)]
+    vector = _packed(lefts[kept], widths[kept], owns[kept], end, bins) if len(kept) else lefts[:0]
+    return Cells(vector, error, len(kept), end, outcome)
+
+
+def _polynomials(
+    function: Callable[[Array], Array], left: Array, width: Array, relative: tuple[int, ...]
+) -> tuple[Array, Array, NDArray[np.bool_]]:
+    """Return each cell's polynomial, how far off it is in each column, whether it is a number."""
+    places = left[:, None] + width[:, None] * np.concatenate([_NODES, _BETWEEN])
+    # a border may lie exactly on the right end: stay inside
+    places[:, _ORDER - 1] = np.nextafter(left + width, -np.inf)
+    with np.errstate(all="ignore"):
         values = function(places.ravel()).reshape(len(left), len(_NODES) + len(_BETWEEN), -1)
         nodes, between = values[:, :_ORDER], values[:, _ORDER:]
         own = np.einsum("pk,nkc->npc", _FIT, nodes)
         off = np.abs(np.einsum("bp,npc->nbc", _CHECK, own) - between)
         for column in relative:
             off[..., column] /= np.abs(between[..., column])
-        off = off.max(axis=1)
-        wide = width > least
-        good = ~wide | (off.max(axis=1) <= tolerance)
-        jump = ~wide
-        own[jump, 1] = nodes[jump, -1] - nodes[jump, 0]
-        own[jump, 2:] = 0.0
-        done.append((left[good], width[good], own[good]))
-        error = np.maximum(error, off[good & wide].max(axis=0, initial=0.0))
-        halves = 0.5 * width[~good]
-        left = np.concatenate([left[~good], left[~good] + halves])
-        width = np.concatenate([halves, halves])
-    lefts, widths, owns = (np.concatenate(part) for part in zip(*done, strict=True))
-    order = np.argsort(lefts)
-    return Cells(_packed(lefts[order], widths[order], owns[order], high, bins), error, len(order))
+    known = np.asarray(np.isfinite(values).all(axis=(1, 2)))
+    return own, off.max(axis=1), known
 
 
 def _packed(left: Array, width: Array, own: Array, high: float, bins: int) -> Array:

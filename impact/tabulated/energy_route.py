@@ -25,7 +25,7 @@ from ...models.base import ContactLaw
 from ...models.kernel import VECTOR
 from ..scene import ForceTransform, RateFree, Scene
 from ..surface import Spot
-from .cells import Array, cell_at, column_in
+from .cells import Array, cell_at, column_at, column_in
 from .energy_table import (
     DEEPEST,
     DEPTH,
@@ -100,14 +100,16 @@ def energy_impacts(
     -------
     ndarray
         The columns `NAMES`, shape (n, len(NAMES)); a row of nan where the route does not answer:
-        deeper than `DEEPEST`, gravity above its limit, or no rebound.
+        deeper than `DEEPEST` or than the law's table, gravity above its limit, or no rebound.
     """
-    out = np.empty((len(speed), len(NAMES)))
-    table = energy_table(law, pair).vector
-    _impacts(
-        table, np.ascontiguousarray(mass, float), np.ascontiguousarray(speed, float), gravity,
-        DEEPEST * pair.R, out,
-    )  # fmt: skip
+    out = np.full((len(speed), len(NAMES)), np.nan)
+    table = energy_table(law, pair)
+    if table.count:
+        end = math.exp(column_at(table.vector, 0, DEPTH, table.high))
+        _impacts(
+            table.vector, np.ascontiguousarray(mass, float), np.ascontiguousarray(speed, float),
+            gravity, min(DEEPEST * pair.R, end), out,
+        )  # fmt: skip
     return out
 
 

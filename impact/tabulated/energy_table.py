@@ -8,6 +8,7 @@ for the recovery.
 from __future__ import annotations
 
 import math
+from dataclasses import replace
 
 import numpy as np
 from numba import float64, int64, njit, types
@@ -38,7 +39,10 @@ _TABLES: dict[tuple[str, bytes], Cells] = {}
 
 
 def energy_table(law: ContactLaw, pair: Pair) -> Cells:
-    """Return the pair's table over ln W, made at its first use and kept."""
+    """Return the pair's table over ln W, made at its first use and kept.
+
+    It ends early where the law does: where its force jumps or falls without bound, or is no number.
+    """
     par = np.ascontiguousarray(law.parameters(pair), dtype=float)
     key = (law.name, par.tobytes())
     if key not in _TABLES:
@@ -86,7 +90,10 @@ def _table(kernels: Kernels, par: Array, R: float) -> Cells:
         _log_forces(loading, par, x, out)
         return out
 
-    curve = cells_of(log_force, low, high, tolerance=ERROR).vector
+    found = cells_of(log_force, low, high, tolerance=ERROR)
+    if found.count < 2:
+        return replace(found, count=0)
+    curve = found.vector
     bins, count = int(curve[2]), int(curve[3])
     edges = np.ascontiguousarray(curve[4 + bins + 1 : 4 + bins + count])
     nodes = edges[:-1, None] + np.diff(edges)[:, None] * _WORK_NODES
@@ -106,14 +113,15 @@ def _table(kernels: Kernels, par: Array, R: float) -> Cells:
         )  # fmt: skip
         return out
 
-    start = math.log(SHALLOWEST * R)
-    inside = int(np.searchsorted(edges, start))
+    # a law may end before the shallowest depth
+    inside = min(int(np.searchsorted(edges, math.log(SHALLOWEST * R))), len(edges) - 2)
     return cells_of(
         columns, math.log(works[inside]), math.log(works[-1]) - 1e-12, tolerance=ERROR, least=1e-9
     )
 
 
-@njit(types.void(_LAW, VECTOR, VECTOR, float64[:, ::1]), cache=True, _nrt=False)
+@njit(types.void(_LAW, VECTOR, VECTOR, float64[:, ::1]), cache=True, _nrt=False,
+      error_model="numpy")  # fmt: skip
 def _log_forces(loading, par, x, out):
     for i in range(len(x)):
         out[i, 0] = math.log(loading(par, math.exp(x[i])))
@@ -140,7 +148,7 @@ def _work(edges, own, works, power, x):
 
 
 @njit(types.void(VECTOR, float64[:, ::1], VECTOR, float64, float64, int64, float64, VECTOR),
-      cache=True, _nrt=False)  # fmt: skip
+      cache=True, _nrt=False, error_model="numpy")  # fmt: skip
 def _loading_times(edges, own, works, power, x, top, work, row):
     """Time of loading over d_m sqrt(1/W), and its moments: panels of s = sqrt(1 - d/d_m)."""
     from_s = 0.0
@@ -171,7 +179,8 @@ def _loading_times(edges, own, works, power, x, top, work, row):
         end = edges[max(k + 1, 0)]
 
 
-@njit(types.void(_BRANCH, VECTOR, float64, float64, float64, VECTOR), cache=True)
+@njit(types.void(_BRANCH, VECTOR, float64, float64, float64, VECTOR), cache=True,
+      error_model="numpy")  # fmt: skip
 def _recovery(unloading, par, peak, way, work, row):
     """Returned share of the work, time of the recovery over its way sqrt(1/W_u), its moments."""
     row[RETURNED], row[RECOVERY_TIME] = 0.0, 1.0
@@ -198,7 +207,7 @@ def _recovery(unloading, par, peak, way, work, row):
 @njit(
     types.void(_LAW, _BRANCH, _SPLIT, VECTOR, VECTOR, float64[:, ::1], VECTOR, float64, VECTOR,
                float64[:, ::1]),
-    cache=True,
+    cache=True, error_model="numpy",
 )  # fmt: skip
 def _ask(loading, unloading, residual, par, edges, own, works, power, y, out):
     """Fill the columns at y = ln W."""

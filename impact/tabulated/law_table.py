@@ -142,7 +142,7 @@ class TabulatedLaw(ContactLaw):
         Raises
         ------
         InputError
-            The law recovers otherwise than by a power.
+            The law recovers otherwise than by a power, or jumps or oscillates.
         """
         par = np.ascontiguousarray(self.law.parameters(pair), dtype=float)
         key = (self.law.name, par.tobytes(), self.error)
@@ -150,7 +150,14 @@ class TabulatedLaw(ContactLaw):
             if len(_TABLES) >= _KEPT:
                 _TABLES.clear()
             _TABLES[key] = _table(self.law, par, pair.R, self.error)
-        return _TABLES[key]
+        found = _TABLES[key]
+        if not found.outcome.completed:
+            raise InputError(
+                f"{self.law.name} cannot be tabulated: {found.outcome.message}",
+                key="law",
+                allowed="a law without jumps",
+            )
+        return found
 
 
 def tabulated(law: ContactLaw, *, error: float = ERROR) -> TabulatedLaw:

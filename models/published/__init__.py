@@ -19,7 +19,6 @@ from .kogut_komvopoulos import KOGUT_KOMVOPOULOS
 from .sinclair_follansbee import SINCLAIR_FOLLANSBEE
 from .stronge import STRONGE
 from .thornton import THORNTON, THORNTON_NING
-from .viscous import RATE_MODELS as RATE_MODELS
 from .ye_komvopoulos import YE_KOMVOPOULOS
 from .zhao_maietta_chang import ZHAO_MAIETTA_CHANG
 
@@ -63,6 +62,12 @@ UNAVAILABLE: dict[str, str] = {
     "brake-2015-friction": "the friction of Brake 2015 for oblique impacts: section 1.3.1 says "
     "that the paper has one and gives no equation; brake-2015 is its normal law, tangential "
     "laws at hand are Coulomb's and the tangential-compliance of a diagnosis",
+    "kelvin-voigt": "Kelvin and Voigt (chapter 1): F = k d + c d' is a force of depth and rate and "
+    "leaves no dent; it pushes at first touch, when nothing is pressed in, and pulls before the "
+    "bodies part",
+    "hunt-crossley": "Hunt and Crossley, J. Appl. Mech. 42 (1975) 440: F = K d^n (1 + (3/2) alpha "
+    "d') is a force of depth and rate and leaves no dent; beside a law it is the mechanism "
+    "contact-damping of a diagnosis",
     "cross-grip": "Cross's grip and multiple reversal of friction: section 1.1 says that the "
     "papers give no analytical model; reversal by elastic sticking is tangential-compliance",
     "etsion-sliding": "the Etsion group's other work on slip conditions (section 1.3.2 names two "

@@ -15,6 +15,7 @@ import numpy as np
 
 from ...core.errors import InputError
 from ..measured import Array, Measured, Trial, labelled
+from ..rules import RULES
 from .chain import Chain, chain_of
 from .options import BounceOptions
 
@@ -79,7 +80,7 @@ def reduce_bounce_times(
         What is known of the ball.
     std
         (n,) standard deviations of the times [s]; None takes them from the scatter of the
-        intervals about a smooth course.
+        intervals about a smooth course, which is part of them in any case.
     source
         The file.
 
@@ -95,18 +96,37 @@ def reduce_bounce_times(
             source=source, allowed="the times of successive bounces",
         )  # fmt: skip
     notes = list(chain.notes)
+    scatter = chain.scatter()
     if std is None:
-        scatter = chain.scatter()
         if math.isnan(scatter):
             notes.append("too few bounces to tell how well the instants are known")
         else:
             notes.append(f"instants ± {1e3 * scatter:.2g} ms by the scatter of the intervals")
         std = np.full(times.size, scatter)
+    elif scatter > RULES.run_scatter * float(np.median(std)):
+        # an instant may be heard to a microsecond: what is timed is not as steady
+        notes.append(
+            f"the intervals scatter by {1e3 * scatter:.2g} ms about a smooth course: that is the "
+            "error of an instant"
+        )
+        std = np.hypot(std, scatter)
     if options.mass_kg is None or options.diameter_m is None:
         notes.append("drag of the air left out: give mass_kg and diameter_m to take it off")
     if options.contact_time_s == 0.0:
         notes.append("the duration of a contact counts as flight: contact_time_s = 0")
-    return BounceTimes(chain, std, _bounces(times, std, chain, options, source), tuple(notes))
+    bounces = _bounces(times, std, chain, options, source)
+    gained = [b for b in bounces if b.restitution.value > 1.0 + 3.0 * b.restitution.std]
+    if gained:
+        raise InputError(
+            f"contact {gained[0].number} gives {gained[0].restitution} of the speed back",
+            source=source, allowed="bounces of a ball that falls freely: none gains speed",
+        )  # fmt: skip
+    if bounces and float(np.median([b.restitution.value for b in bounces])) > RULES.most_elastic:
+        raise InputError(
+            "the intervals do not shrink", source=source,
+            allowed="bounces of a ball, each flight shorter than the one before",
+        )  # fmt: skip
+    return BounceTimes(chain, std, bounces, tuple(notes))
 
 
 def _bounces(

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import logging
 from collections.abc import Iterator
 from dataclasses import dataclass
 from itertools import islice, pairwise
@@ -18,6 +19,7 @@ from .picture_file import (
     DOWN,
     PICTURES,
     cropped,
+    first_line,
     grey_picture,
     natural_order,
     one_channel,
@@ -199,16 +201,24 @@ def _pages(path: Path, channel: str) -> Iterator[tuple[float, Frame]]:
         import tifffile
     except ImportError:
         raise missing_extra("reading pictures", "video") from None
+    # its remarks on damaged headers go to the terminal; the one line below says what matters
+    logging.getLogger("tifffile").setLevel(logging.CRITICAL)
     try:
         with tifffile.TiffFile(path) as pages:
             for page in pages.pages:
+                if page.nbytes > _LARGEST:  # what a header claims is not allocated unseen
+                    raise InputError(
+                        f"a page of {page.nbytes / 1e9:.3g} GB", source=str(path),
+                        allowed=f"pages up to {_LARGEST // 10**9} GB",
+                    )  # fmt: skip
                 yield np.nan, grey_picture(page.asarray(), channel, str(path))
-    except (tifffile.TiffFileError, OSError, ValueError, KeyError, IndexError) as error:
-        if isinstance(error, InputError):
-            raise
+    except InputError:
+        raise
+    except Exception as error:  # every codec raises its own kind
         raise InputError(
-            f"cannot be read as a TIFF ({error})", source=str(path), allowed="a TIFF of many pages"
-        ) from None
+            f"cannot be read as a TIFF ({first_line(error)})", source=str(path),
+            allowed="a TIFF of many pages, 8 or 16 bits a pixel",
+        ) from None  # fmt: skip
 
 
 def _timing(stamps: Array) -> tuple[float, int]:

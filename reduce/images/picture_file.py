@@ -42,7 +42,7 @@ def read_picture(path: Path, *, channel: str = "grey") -> npt.NDArray[np.uint8]:
         pixels = np.asarray(imread(path))
     except Exception as error:  # every plug-in of the picture reader raises its own kind
         raise InputError(
-            f"cannot be read as a picture ({_first_line(error)})", source=str(path),
+            f"cannot be read as a picture ({first_line(error)})", source=str(path),
             allowed=" ".join(PICTURES),
         ) from None  # fmt: skip
     return grey_picture(pixels, channel, str(path))
@@ -134,6 +134,7 @@ def natural_order(name: str) -> list[tuple[int, str]]:
     return [(int(t), "") if t.isdigit() else (-1, t.lower()) for t in re.split(r"(\d+)", name)]
 
 
-def _first_line(error: Exception) -> str:
+def first_line(error: Exception) -> str:
+    """Return what a library says of its failure, in one line."""
     lines = str(error).strip().splitlines()
     return lines[0][:120] if lines else type(error).__name__

@@ -25,6 +25,7 @@ from ...core.inputs.csv_table import (
 )
 from ..measured import Array
 from ..units import LENGTH, metres
+from .exports import read_export
 
 UNITS = ("m", "cm", "mm")
 """Units of length that a file may be in."""
@@ -105,7 +106,7 @@ def read_markers(
     select: str = "",
     points: Mapping[str, Sequence[float]] | None = None,
 ) -> Markers:
-    """Read marker tracks from a C3D file or a CSV table.
+    """Read marker tracks from a C3D file, a tracker's export, or a CSV table.
 
     A CSV table has one header line, a column `time_s` (or `frame`, with `rate`), and three columns
     for each marker that end in x, y, z, with or without a unit: `A_x_mm`, `A.X`, `A:z`. An empty
@@ -132,6 +133,10 @@ def read_markers(
     """
     if path.suffix.lower() == ".c3d":
         markers = _c3d(path, unit, rate)
+    elif (export := read_export(path)) is not None:
+        factor = metres(unit or export.unit, source=str(path), allowed=LENGTH)
+        time = export.time if rate is None else np.arange(export.time.size) / rate
+        markers = Markers(time, export.names, export.position * factor, str(path))
     else:
         markers = _table(path, unit, rate, select, points or {})
     if markers.time.size < _FEWEST:

@@ -9,6 +9,9 @@ from pydantic import Field
 from ..bounces.options import BallOptions
 from ..images.options import PictureOptions
 
+_MOST_FRAMES = 10**9
+"""No clip is as long."""
+
 
 class Options(PictureOptions, BallOptions):
     """Options of the reduction of a video."""
@@ -25,5 +28,9 @@ class Options(PictureOptions, BallOptions):
     down: Literal["down", "left", "up", "right"] = Field(
         "down", description="where gravity points in the picture"
     )
-    first_frame: int = Field(0, ge=0, description="number of the first frame to use")
-    last_frame: int | None = Field(None, ge=0, description="number of the last one")
+    first_frame: int = Field(
+        0, ge=0, le=_MOST_FRAMES, description="number of the first frame to use"
+    )
+    last_frame: int | None = Field(
+        None, ge=0, le=_MOST_FRAMES, description="number of the last one"
+    )

@@ -8,7 +8,7 @@ from pathlib import Path
 import numpy as np
 
 from ...campaigns import MOST_ENERGY_DEFECT, MOST_STEP, CaseRecord, read_curves
-from ...campaigns.writing import fields_of
+from ...campaigns.case_file import fields_of
 from ...core.material import Pair
 from ...core.output import write_file
 from ...fem import critical_depth
@@ -50,7 +50,7 @@ def build(source: Path, folder: Path, *, fields: Path) -> list[Picture]:
     if not any(picture.number == "2.2" for picture in drawn):
         lines.append(
             "Figures 2.2 to 2.4 are drawn where the design `thesis` was run: its first three cases "
-            "write their fields beside the campaign file.\n"
+            "write their fields beside its cases.\n"
         )
     write_file(folder / "README.md", "\n".join(lines))
     return drawn

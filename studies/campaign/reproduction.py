@@ -26,7 +26,7 @@ several alike is shown. Made by `dentscope campaign reproduction`.
 
 
 def write(source: Path, to: Path) -> list[Trend]:
-    """Test the claims on a campaign file or data set and write the report.
+    """Test the claims on a run or a data set and write the report.
 
     Raises
     ------

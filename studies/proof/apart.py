@@ -17,7 +17,10 @@ from multiprocessing.context import ForkServerContext
 from pathlib import Path
 from typing import NamedTuple
 
-_PASSED = ("PATH", "HOME", "LANG", "NUMBA_CACHE_DIR", "XDG_CACHE_HOME", "TMPDIR", "PYTHONPATH")
+from ...core.children import keep_current_folder_out
+
+_PASSED = ("PATH", "HOME", "LANG", "NUMBA_CACHE_DIR", "XDG_CACHE_HOME", "TMPDIR", "PYTHONPATH",
+           "PYTHONSAFEPATH")  # fmt: skip
 _LOADED = ["dentscope.cli.app", "dentscope.discrepancy", "dentscope.discrepancy.report"]
 
 
@@ -61,6 +64,7 @@ def answer(folder: Path, out: Path, limit_s: float) -> Answer:
 
 @cache
 def _server() -> ForkServerContext:
+    keep_current_folder_out()
     context = get_context("forkserver")
     context.set_forkserver_preload(_LOADED)
     return context

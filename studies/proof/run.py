@@ -19,6 +19,7 @@ from multiprocessing import get_context
 from pathlib import Path
 from typing import Any
 
+from ...core.children import keep_current_folder_out
 from .apart import answer
 from .explicit.catalogue import SERIES
 from .explicit.sets import draw_explicit, write_explicit
@@ -103,6 +104,7 @@ def diagnose(run: Path, name: str, limit_s: float) -> dict[str, Any]:
 
 def local_workers(count: int) -> Executor:
     """Processes of this machine that draw and diagnose; Ctrl-C is for their parent alone."""
+    keep_current_folder_out()
     return ProcessPoolExecutor(
         count, get_context("spawn"), initializer=signal.signal,
         initargs=(signal.SIGINT, signal.SIG_IGN),

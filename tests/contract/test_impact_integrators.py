@@ -231,7 +231,7 @@ def test_flattened_tip_counts_in_the_next_trial() -> None:
     first = strike(scene)
     assert first.residual_sphere_m > 0.0
     assert first.residual_flat_m == 0.0
-    moved = first.spot.elsewhere()
+    moved = Spot(first.spot.tip_peak, first.spot.tip_flat)
     total = math.sqrt(2.0 - first.restitution**2)
     single = strike(scene.with_(approach=Approach(total)))
     again = strike(scene.with_(spot=moved))

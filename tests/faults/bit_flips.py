@@ -1,9 +1,9 @@
-"""One bit flipped, or a block of zeros, anywhere in a campaign file or a published part.
+"""One bit flipped, or a block of zeros, anywhere in the file of a case or a published part.
 
-`python tests/faults/bit_flips.py` flips 2000 bits and blanks 400 blocks of each of: a campaign
-file, a part of a data set, a journal that waits to be written, and the lists of digests beside the
-parts. It prints how many were refused with one line, how many left everything as it was, and how
-many gave a wrong number or lost a case without a word.
+`python tests/faults/bit_flips.py` flips 2000 bits and blanks 400 blocks of each of: the file of a
+case, a part of a data set, and the lists of digests beside the parts. It prints how many were
+refused with one line, how many left everything as it was, and how many gave a wrong number or lost
+a case without a word.
 """
 
 import argparse
@@ -13,11 +13,10 @@ import sys
 import tempfile
 from collections import Counter
 from pathlib import Path
-from unittest import mock
 
 import disk_faults as faults
 import numpy as np
-from dentscope.campaigns import Design, Store, journal, publish, read_curves
+from dentscope.campaigns import Design, Store, publish, read_curves
 from dentscope.core import InputError
 
 _BLOCK = 512
@@ -64,7 +63,7 @@ def _equal(a, b):
     )
 
 
-def inspect(read, path, expected, draw, *, bits, blocks, before=lambda: None):
+def inspect(read, path, expected, draw, *, bits, blocks):
     """Read each damaged copy; return counts of what happened.
 
     Parameters
@@ -75,12 +74,9 @@ def inspect(read, path, expected, draw, *, bits, blocks, before=lambda: None):
         The file that is damaged.
     expected
         What it gives undamaged; several states may be right.
-    before
-        Puts what lies beside it in order again.
     """
     image, counts = path.read_bytes(), Counter()
     for changed in damaged(image, draw, bits=bits, blocks=blocks):
-        before()
         path.write_bytes(changed)
         try:
             found = read()
@@ -89,43 +85,29 @@ def inspect(read, path, expected, draw, *, bits, blocks, before=lambda: None):
             continue
         right = any(same(found, records) for records in expected)
         counts["all as it was" if right else "WRONG OR LOST"] += 1
-    before()
     path.write_bytes(image)
     return counts
 
 
 def targets(folder):
-    """What is damaged: words, reader, file, what it may give, and how its surroundings return."""
-    file = folder / "c.h5"
+    """What is damaged: words, reader, file, what it may give."""
+    run = folder / "run"
     for case in faults.CASES[:3]:
-        Store(file).put(case, faults.solved(case))
-    old = Store(file).read_all()
-    yield "campaign file", Store(file).read_all, file, [old], lambda: None
+        Store(run).put(case, faults.solved(case))
+    old = Store(run).read_all()
+    yield "case of a run", Store(run).read_all, Store(run).files()[1], [old]
 
     data = folder / "data"
-    publish(Design("trial", "", lambda: faults.CASES[:3]), file, data)
+    publish(Design("trial", "", lambda: faults.CASES[:3]), run, data)
     part = data / "trial-1.h5"
     records = read_curves(part)
-    yield "sealed part", lambda: read_curves(part), part, [records], lambda: None
+    yield "sealed part", lambda: read_curves(part), part, [records]
 
     first = folder / "first"
     shutil.copytree(ROOT / "tests" / "data" / "campaign-format-1", first)
     known = read_curves(first)
     for name in ("smoke-1.h5", "SHA256SUMS", "DIGESTS"):
-        yield f"format 1: {name}", lambda: read_curves(first), first / name, [known], lambda: None
-
-    with mock.patch.object(journal, "recover"):
-        Store(file).put(faults.CASES[3], faults.solved(faults.CASES[3]))
-    image, waiting = file.read_bytes(), journal.journal_of(file)
-    kept = waiting.read_bytes()
-    new = Store(file).read_all()
-
-    def again():
-        file.write_bytes(image)
-
-    again()
-    waiting.write_bytes(kept)
-    yield "journal", Store(file).read_all, waiting, [new], again
+        yield f"format 1: {name}", lambda: read_curves(first), first / name, [known]
 
 
 def main():
@@ -136,10 +118,8 @@ def main():
     chosen = parser.parse_args()
     draw = random.Random(chosen.seed)
     with tempfile.TemporaryDirectory() as folder:
-        for words, read, path, expected, before in targets(Path(folder)):
-            found = inspect(
-                read, path, expected, draw, bits=chosen.bits, blocks=chosen.blocks, before=before
-            )
+        for words, read, path, expected in targets(Path(folder)):
+            found = inspect(read, path, expected, draw, bits=chosen.bits, blocks=chosen.blocks)
             sys.stdout.write(f"{words} ({path.stat().st_size} bytes): {dict(found)}\n")
             sys.stdout.flush()
 

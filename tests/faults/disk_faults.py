@@ -1,6 +1,6 @@
 """Every call that changes a file fails in turn, and power is lost after each; what is left?
 
-`python tests/faults/disk_faults.py` runs the writers below (a case into a campaign file, a design
+`python tests/faults/disk_faults.py` runs the writers below (a case into a run, a design
 into a published data set, a reduction into a recording set, coefficients into use, reports) once
 for each of their calls and each kind of fault, and prints the counts. A loss of power is played on
 a model of a disk: what was written and not synchronised is lost, torn at a sector, or there though
@@ -22,7 +22,14 @@ from unittest import mock
 
 import numpy as np
 from dentscope import fem
-from dentscope.campaigns import Design, Store, publish, read_published, standard_case
+from dentscope.campaigns import (
+    Design,
+    Store,
+    publish,
+    read_published,
+    standard_case,
+    upgrade,
+)
 from dentscope.core import COMPLETED, InputError, Material, Pair
 from dentscope.core.disk import Disk
 from dentscope.core.output import write_figure, write_file, write_files
@@ -32,6 +39,7 @@ CALLS = (
     "create", "open", "write", "resize", "sync", "rename", "remove", "make_folder", "sync_folder",
 )  # fmt: skip
 _SECTOR = 512
+OLDER = Path(__file__).resolve().parents[1] / "data" / "campaign-format-2.h5"
 
 
 class Faulty:
@@ -270,17 +278,17 @@ DESIGN = Design("trial", "", lambda: CASES)
 
 
 def put_writer():
-    """The fourth case into a file of three; then the first into a file that is not there."""
+    """The fourth case into a run of three."""
 
     def begin(place):
         for case in CASES[:3]:
-            Store(place / "c.h5").put(case, solved(case))
+            Store(place / "run").put(case, solved(case))
 
     def act(place):
-        Store(place / "c.h5").put(CASES[3], solved(CASES[3]))
+        Store(place / "run").put(CASES[3], solved(CASES[3]))
 
     def check(place):
-        found = {r.id: r for r in Store(place / "c.h5").read_all()}
+        found = {r.id: r for r in Store(place / "run").read_all()}
         for case in CASES[:3]:
             assert np.array_equal(found[case.id].curve["force"], solved(case).loading.force)
         return "new" if CASES[3].id in found else "old"
@@ -289,20 +297,58 @@ def put_writer():
 
 
 def first_writer():
-    """The first case into a file that is not there yet."""
+    """The first case into a run that is not there yet."""
 
     def act(place):
-        Store(place / "run" / "c.h5").put(CASES[0], solved(CASES[0]))
+        Store(place / "out" / "run").put(CASES[0], solved(CASES[0]))
 
     def check(place):
-        return "new" if Store(place / "run" / "c.h5").statuses() else "old"
+        return "new" if Store(place / "out" / "run").read_all() else "old"
 
-    return Writer("put, new file", lambda place: None, act, check)
+    return Writer("put, new run", lambda place: None, act, check)
+
+
+def retry_writer():
+    """A case that had failed is completed."""
+
+    def begin(place):
+        Store(place / "run").put(CASES[0], None, message="lost")
+
+    def act(place):
+        Store(place / "run").put(CASES[0], solved(CASES[0]))
+
+    def check(place):
+        [record] = Store(place / "run").read_all()
+        assert record.status == "done" or record.message == "lost"
+        return "new" if record.status == "done" else "old"
+
+    return Writer("put, tried again", begin, act, check)
+
+
+def upgrade_writer():
+    """A run of before becomes one of a file a case."""
+
+    def begin(place):
+        shutil.copyfile(OLDER, place / "campaign.h5")
+
+    def act(place):
+        if (place / "campaign.h5").exists():
+            upgrade(place)
+
+    def check(place):
+        if (place / "campaign.h5").exists():
+            assert (place / "campaign.h5").read_bytes() == OLDER.read_bytes()
+            return "old"
+        names = [record.case.name for record in Store(place).read_all()]
+        assert sorted(names) == ["c0", "c1", "c2"]
+        return "new"
+
+    return Writer("upgrade", begin, act, check)
 
 
 def publish_writer(folder):
     """A design into a data set that has one already."""
-    source, older = folder / "source.h5", folder / "older"
+    source, older = folder / "source", folder / "older"
     for case in CASES:
         Store(source).put(case, solved(case))
     publish(replace(DESIGN, name="first", make=lambda: CASES[:2]), source, older)
@@ -476,7 +522,9 @@ def writers(folder):
     folder.mkdir(parents=True, exist_ok=True)
     return {
         "put": put_writer,
-        "put, new file": first_writer,
+        "put, new run": first_writer,
+        "put, tried again": retry_writer,
+        "upgrade": upgrade_writer,
         "publish": lambda: publish_writer(folder),
         "reduce --into": lambda: into_writer(folder),
         "fit --publish": lambda: publish_fit_writer(folder),

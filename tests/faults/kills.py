@@ -1,19 +1,20 @@
 """kill -9 of the coordinator and of workers at random moments, through the product's own pool.
 
 `python tests/faults/kills.py --kills 200` runs a campaign of the solver itself, at its lowest
-accuracy, and kills in turn in every phase of it: while the interpreter starts, the store is read,
-cases are solved and handed over, the image of a case is made, the journal written and renamed, the
-file written, the journal removed, a case told as stored. Each phase announces itself on a board; a
-kill waits for one and comes at a random moment after that. Calls that change files are drawn out by
-random pauses, so that kills land before, within and after them. After every kill what was told as
-stored must be there, and every number must be that of a run that nobody disturbed, bit by bit.
+accuracy, and kills in turn in every phase of it: while the interpreter starts, the run is read,
+cases are solved and handed over, the image of a case is made, its draft written and renamed, a case
+told as stored. Each phase announces itself on a board; a kill waits for one and comes at a random
+moment after that. Calls that change files are drawn out by random pauses, so that kills land
+before, within and after them. After every kill what was told as stored must be there, and every
+number must be that of a run that nobody disturbed, bit by bit.
 
 Most coordinators and workers are forked from a process that has everything loaded; those that are
 killed in their start are new interpreters, as the product starts them. `--stand-in` takes a solver
-that waits a third of a second instead.
+that waits a third of a second instead, `--dask` two workers of a dask scheduler.
 """
 
 import argparse
+import json
 import multiprocessing
 import os
 import random
@@ -24,8 +25,8 @@ import tempfile
 import time
 import traceback
 from collections import Counter
-from contextlib import ExitStack, suppress
-from dataclasses import dataclass, field
+from contextlib import ExitStack, contextmanager, suppress
+from dataclasses import dataclass, field, replace
 from functools import cache
 from pathlib import Path
 from unittest import mock
@@ -34,24 +35,22 @@ import disk_faults
 import numpy as np
 from dentscope import fem
 from dentscope.campaigns import Case, Design, Store, read_curves, run_design, standard_case
-from dentscope.campaigns.executor import LocalExecutor, solve_specification
+from dentscope.campaigns.executor import DaskExecutor, LocalExecutor, solve_specification
 from dentscope.core import Material, Pair
 
 PAUSE_S = 0.03
 PATIENCE_S = 120.0
-BOARD, LOG = "BOARD", "COMPUTED"
+BOARD, LOG, SCHEDULER = "BOARD", "COMPUTED", "SCHEDULER"
 SPANS_S = {
-    "starts": 4.0, "reads": 0.05, "waits": 0.5, "makes the image": 0.03, "writes the journal": 0.3,
-    "renames the journal": 0.05, "writes the file": 0.3, "removes the journal": 0.05,
-    "tells": 0.01, "solves": 0.6, "hands over": 0.02,
+    "starts": 4.0, "reads": 0.05, "waits": 0.5, "makes the image": 0.03, "writes the draft": 0.3,
+    "renames the draft": 0.1, "tells": 0.01, "solves": 0.6, "hands over": 0.02,
 }  # fmt: skip
 """Phases, and how long after their beginning a kill may come."""
 
 SHARES = {
     ("coordinator", "starts"): 8, ("worker", "starts"): 4, ("coordinator", "reads"): 14,
-    ("coordinator", "waits"): 28, ("coordinator", "makes the image"): 14,
-    ("coordinator", "writes the journal"): 28, ("coordinator", "renames the journal"): 20,
-    ("coordinator", "writes the file"): 28, ("coordinator", "removes the journal"): 14,
+    ("coordinator", "waits"): 28, ("coordinator", "makes the image"): 20,
+    ("coordinator", "writes the draft"): 48, ("coordinator", "renames the draft"): 36,
     ("coordinator", "tells"): 8, ("worker", "solves"): 22, ("worker", "hands over"): 12,
 }  # fmt: skip
 """How many of 200 kills wait for each phase."""
@@ -127,26 +126,18 @@ def stand_in(specification, time_limit_s):
     return disk_faults.solved(case)
 
 
-def _phase_of(name, target):
-    if name in ("rename", "sync_folder"):
-        return "renames the journal"
-    if name == "remove":
-        return "removes the journal"
-    return "writes the journal" if ".journal" in target.name else "writes the file"
+def _phase_of(name):
+    return "renames the draft" if name in ("rename", "sync_folder") else "writes the draft"
 
 
 def announced(draw):
     """Let every call that changes a file announce its phase and take a while."""
-    paths = {}
 
     def hook(name, call):
         def announced_call(disk, *arguments):
-            target = paths.get(arguments[0], arguments[0])
-            board().tell("coordinator", _phase_of(name, target))
+            board().tell("coordinator", _phase_of(name))
             time.sleep(draw.uniform(0.0, PAUSE_S))
             answer = call(disk, *arguments)
-            if name in ("create", "open"):
-                paths[answer] = target
             time.sleep(draw.uniform(0.0, PAUSE_S))
             return answer
 
@@ -164,6 +155,17 @@ class Announced:
     def run(self, cases, *, time_limit_s):
         board().tell("coordinator", "waits")
         yield from self.executor.run(cases, time_limit_s=time_limit_s)
+
+
+def executor_of(solver):
+    """Where cases are computed: two processes of this machine, or a scheduler's."""
+    # by its module's name: a dask worker imports it
+    import kills
+
+    does = kills.work if solver else kills.stand_in
+    if SCHEDULER in os.environ:
+        return replace(DaskExecutor.connect(os.environ[SCHEDULER], timeout_s=60.0), work=does)
+    return LocalExecutor(workers=2, work=does)
 
 
 def coordinate(path, cases, *, solver, forked):
@@ -191,12 +193,46 @@ def coordinate(path, cases, *, solver, forked):
             )
         run_design(
             Design("faults", "", lambda: cases), path,
-            executor=Announced(LocalExecutor(workers=2, work=work if solver else stand_in)),
+            executor=Announced(executor_of(solver)),
             time_limit_s=600.0, report=tell,
         )  # fmt: skip
 
 
 # --- who kills them ---
+
+
+def announce_at(folder):
+    """Let processes that start from here on announce their phases and cases in a folder."""
+    (folder / "board").mkdir(exist_ok=True)
+    (folder / "computed").touch()
+    os.environ |= {BOARD: str(folder / "board"), LOG: str(folder / "computed")}
+
+
+@contextmanager
+def dask_cluster(folder):
+    """A scheduler and two workers, whose nannies start them again when they are killed."""
+    file = folder / "scheduler.json"
+    os.environ["PYTHONPATH"] = str(Path(__file__).parent)
+    announce_at(folder)
+    common = ["--no-dashboard", "--scheduler-file", str(file)]
+    commands = {"scheduler": ["--port", "0", "--host", "127.0.0.1"],
+                "worker": ["--nthreads", "1", "--nworkers", "2"]}  # fmt: skip
+    processes = [
+        subprocess.Popen(
+            [sys.executable, "-m", f"distributed.cli.dask_{name}", *options, *common],
+            cwd=folder, stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL,
+        )
+        for name, options in commands.items()
+    ]  # fmt: skip
+    try:
+        while not (file.exists() and file.read_text().endswith("}")):
+            time.sleep(0.1)
+        os.environ[SCHEDULER] = json.loads(file.read_text())["address"]
+        yield
+    finally:
+        for process in reversed(processes):
+            process.terminate()
+            process.wait(timeout=60.0)
 
 
 @dataclass
@@ -212,9 +248,8 @@ class Run:
 
     def begin(self, *, forked):
         self.forked, self.code = forked, None
-        board_folder = self.path.parent / "board"
-        board_folder.mkdir(exist_ok=True)
-        os.environ |= {BOARD: str(board_folder), LOG: str(self.path.with_suffix(".log"))}
+        if SCHEDULER not in os.environ:  # whose workers outlast a campaign, with their board
+            announce_at(self.path.parent)
         if not forked:
             options = [] if self.solver else ["--stand-in"]
             command = [sys.executable, __file__, "--coordinate", str(self.path)]
@@ -244,6 +279,9 @@ class Run:
 
     def workers(self):
         """Numbers of its worker processes."""
+        if SCHEDULER in os.environ:
+            told = Path(os.environ[BOARD]).glob("worker-*")
+            return [pid for pid in (int(p.name.split("-")[1]) for p in told) if there(pid)]
         found = []
         for task in Path(f"/proc/{self.pid}/task").glob("*/children"):
             with suppress(OSError):
@@ -258,9 +296,8 @@ class Run:
         return file.read_text().split() if file.exists() else []
 
     def stored(self):
-        """Curves of the cases in the file, by name."""
-        journal = self.path.with_name(f"{self.path.name}.journal")
-        if not (self.path.exists() or journal.exists()):
+        """Curves of the stored cases, by name."""
+        if not self.path.exists():
             return {}
         return {record.case.name: record.curve for record in read_curves(self.path)}
 
@@ -307,13 +344,15 @@ class Found:
         return self.lost + self.wrong + self.told_twice + self.left_over + self.unended
 
 
-def schedule(kills, seed):
+def schedule(kills, seed, *, dask=False):
     """Victims and phases that kills wait for, in a random order."""
-    whole = sum(SHARES.values())
-    wanted = [key for key, share in SHARES.items() for _ in range(round(kills * share / whole))]
+    # a dask worker's start is its nanny's, which no campaign waits for
+    shares = {k: n for k, n in SHARES.items() if not (dask and k == ("worker", "starts"))}
+    whole = sum(shares.values())
+    wanted = [key for key, share in shares.items() for _ in range(round(kills * share / whole))]
     draw = random.Random(seed)
     # an interpreter's start is dear: few of them are enough
-    rest = [key for key in SHARES if key[1] != "starts"]
+    rest = [key for key in shares if key[1] != "starts"]
     wanted += draw.choices(rest, k=max(0, kills - len(wanted)))
     draw.shuffle(wanted)
     return wanted[:kills]
@@ -365,7 +404,7 @@ def inject(folder, wanted, *, count, seed, reference, forks=True, say=lambda lin
         found.rounds += 1
         place = folder / str(found.rounds)
         place.mkdir()
-        run = Run(place / "c.h5", count, solver=reference is not None)
+        run = Run(place / "run", count, solver=reference is not None)
         _one_campaign(run, wanted, draw, found, reference=reference, forks=forks, say=say)
     return found
 
@@ -384,6 +423,7 @@ def _one_campaign(run, wanted, draw, found, *, reference, forks, say):
         )  # fmt: skip
 
     run.begin(forked=forks and not (wanted and wanted[0][1] == "starts"))
+    computed = len(Path(os.environ[LOG]).read_text().split()) if SCHEDULER in os.environ else 0
     board.cache_clear()
     while wanted and not run.ended():
         who, phase = wanted[0]
@@ -395,7 +435,8 @@ def _one_campaign(run, wanted, draw, found, *, reference, forks, say):
         if who == "coordinator":
             while not run.ended():
                 time.sleep(0.005)
-            found.left_over += still_there(workers)
+            if SCHEDULER not in os.environ:
+                found.left_over += still_there(workers)
             check()
             run.begin(forked=forks and not (wanted and wanted[0][1] == "starts"))
         say(f"kill {found.kills.total()}: {who} {died_in} (for {phase}), {found}")
@@ -412,7 +453,7 @@ def _one_campaign(run, wanted, draw, found, *, reference, forks, say):
     found.stored += len(run.stored())
     found.failed += len(_failed(run))
     found.lost += run.count - len(run.stored()) - len(_failed(run))
-    found.computed += len(run.path.with_suffix(".log").read_text().split())
+    found.computed += len(Path(os.environ[LOG]).read_text().split()) - computed
 
 
 def _failed(run):
@@ -427,7 +468,7 @@ def _failed(run):
 def _expected(count):
     """What the stand-in gives, as it is read."""
     with tempfile.TemporaryDirectory() as folder:
-        store = Store(Path(folder) / "c.h5")
+        store = Store(Path(folder))
         for case in made(count):
             store.put(case, disk_faults.solved(case))
         return {record.case.name: record.curve for record in store.read_all()}
@@ -435,7 +476,7 @@ def _expected(count):
 
 def undisturbed(folder, count):
     """Curves of every case from a run of the solver that nobody kills."""
-    store = Store(folder / "undisturbed.h5")
+    store = Store(folder / "undisturbed")
     for case in real(count):
         store.put(case, solve_specification(case.specification(), 600.0))
     return {record.case.name: record.curve for record in store.read_all()}
@@ -448,6 +489,7 @@ def main():
     parser.add_argument("--kills", type=int, default=200)
     parser.add_argument("--seed", type=int, default=1)
     parser.add_argument("--stand-in", action="store_true")
+    parser.add_argument("--dask", action="store_true")
     chosen = parser.parse_args()
     if chosen.coordinate:
         cases = made(chosen.cases) if chosen.stand_in else real(chosen.cases)
@@ -459,11 +501,13 @@ def main():
         sys.stdout.write(f"{time.monotonic() - begun:.0f} s: {line}\n")
         sys.stdout.flush()
 
-    with tempfile.TemporaryDirectory() as scratch:
-        folder = Path(scratch)
+    with ExitStack() as held:
+        folder = Path(held.enter_context(tempfile.TemporaryDirectory()))
+        if chosen.dask:
+            held.enter_context(dask_cluster(folder))
         reference = None if chosen.stand_in else undisturbed(folder, chosen.cases)
         say("begun")
-        wanted = schedule(chosen.kills, chosen.seed)
+        wanted = schedule(chosen.kills, chosen.seed, dask=chosen.dask)
         found = inject(
             folder, wanted, count=chosen.cases, seed=chosen.seed, reference=reference, say=say
         )

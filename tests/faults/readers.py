@@ -12,8 +12,7 @@ from typing import Any
 import disk_faults
 import numpy as np
 import raw_files
-from dentscope.campaigns import Design, Store, publish, read_curves
-from dentscope.campaigns.journal import journal_of
+from dentscope.campaigns import Design, Store, publish, read_curves, upgrade
 from dentscope.campaigns.parts import CHECKSUMS, DIGESTS
 from dentscope.core.output import PENDING
 from mutations import mutated, resealed, tampered
@@ -250,21 +249,27 @@ def _read_catalogue(path):
 
 @cache
 def _published():
-    """A run's file, its journal before it is written, and a data set, by their places."""
+    """The file of a case and a data set, by their places."""
     cases = disk_faults.CASES
     with tempfile.TemporaryDirectory() as folder:
         place = Path(folder)
-        store = Store(place / "c.h5")
+        store = Store(place / "run")
         for case in cases[:2]:
             store.put(case, disk_faults.solved(case))
-        publish(Design("trial", "", lambda: cases[:2]), store.path, place)
+        publish(Design("trial", "", lambda: cases[:2]), store.folder, place)
         part = (place / "trial-1.h5").read_bytes()
         sums = (place / CHECKSUMS).read_bytes()
-        return {"c.h5": store.path.read_bytes(), "trial-1.h5": part, CHECKSUMS: sums}
+        case = store.files()[0].read_bytes()
+        return {"case.h5": case, "trial-1.h5": part, CHECKSUMS: sums}
 
 
 def of_campaign(name):
     return _published()[name]
+
+
+def _upgraded(path):
+    upgrade(path.parent)
+    Store(path.parent).read_all()
 
 
 @cache
@@ -278,34 +283,6 @@ def in_first_format(name):
     names = ("smoke-1.h5", CHECKSUMS, DIGESTS)
     files = {key: partial(_first_format().get, key) for key in names}
     return Reader(name, files[name], lambda path: read_curves(path.parent), files)
-
-
-def _journal():
-    from unittest import mock
-
-    from dentscope.campaigns import journal
-
-    with tempfile.TemporaryDirectory() as folder:
-        path = Path(folder) / "c.h5"
-        path.write_bytes(of_campaign("c.h5"))
-        case = disk_faults.CASES[2]
-        with mock.patch.object(journal, "recover"):
-            Store(path).put(case, disk_faults.solved(case))
-        return journal_of(path).read_bytes()
-
-
-def _other_journal(content, draw):
-    """Damage it; or change one number in its head, its digest made anew."""
-    body = bytearray(content[:-32])
-    if draw.random() < 0.2:
-        return mutated(content, draw)
-    if draw.random() < 0.6:
-        at = len(b"dentscope-journal-2\n") + 8 * draw.randrange(3)
-        odd = (0, 1, 2**63, 2**64 - 1, 10**9, len(body), draw.randrange(10**6))
-        body[at : at + 8] = draw.choice(odd).to_bytes(8, "little")
-    else:
-        body = bytearray(mutated(bytes(body), draw)[0])
-    return bytes(body) + hashlib.sha256(body).digest(), False
 
 
 def _broken_seal(content, draw):
@@ -356,19 +333,20 @@ READERS = {
     "fetch.toml": Reader(
         "fetch.toml", partial(_data, "data", "recordings", "fetch.toml"), _read_catalogue
     ),
-    "campaign file": Reader(
-        "c.h5", partial(of_campaign, "c.h5"), read_curves, {}, _broken_seal
+    "case's file": Reader(
+        "case.h5", partial(of_campaign, "case.h5"), read_curves, {}, _broken_seal
     ),
-    "campaign values": Reader("c.h5", partial(of_campaign, "c.h5"), read_curves, {}, tampered),
+    "case's values": Reader(
+        "case.h5", partial(of_campaign, "case.h5"), read_curves, {}, tampered
+    ),
+    "run of before": Reader(
+        "campaign.h5", disk_faults.OLDER.read_bytes, _upgraded, {}, tampered
+    ),
     "part's values": Reader(
         "trial-1.h5", partial(of_campaign, "trial-1.h5"), read_curves, {}, tampered
     ),
     "part of format 1": in_first_format("smoke-1.h5"),
     CHECKSUMS: in_first_format(CHECKSUMS),
     DIGESTS: in_first_format(DIGESTS),
-    "journal": Reader(
-        "c.h5.journal", _journal, lambda path: Store(path.with_name("c.h5")).read_all(),
-        {"c.h5": partial(of_campaign, "c.h5")}, _other_journal,
-    ),
 }  # fmt: skip
 RAW = {name: raw(name) for name in raw_files.FILES}

@@ -105,7 +105,7 @@ def test_a_second_touch_fades_from_the_old_peak_to_fresh_metal(law: object) -> N
     assert found[0][0] * first.residual_flat_m == pytest.approx(single.residual_flat_m, rel=1e-6)
     assert found[0][2] == pytest.approx(single.restitution * total, rel=1e-6)
     # s = 2 a: fresh metal, and a scar as long as both dents side by side.
-    fresh = strike(scene.with_(spot=first.spot.elsewhere()), TIGHT)
+    fresh = strike(scene.with_(spot=Spot(first.spot.tip_peak, first.spot.tip_flat)), TIGHT)
     assert found[-1][2] == pytest.approx(fresh.restitution, rel=1e-9)
     assert found[-1][0] == pytest.approx(1.0, rel=1e-3)
     assert found[-1][1] == pytest.approx(2.0 + fresh.scar_length_m / a, rel=1e-2)

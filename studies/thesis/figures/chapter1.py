@@ -11,8 +11,8 @@ import numpy as np
 
 from ....campaigns import CaseRecord
 from ....models.published import hardness
-from ....models.published.viscous import alpha_for, hunt_crossley, kelvin_voigt, paradox
 from ...plot import Entry, Floats, Picture, finish, sheet
+from ..viscous import alpha_for, hunt_crossley, kelvin_voigt, paradox
 from . import sketches
 
 _PLACES = (0.1, 0.3, 0.5)  # a/R at which a law's deviation is told

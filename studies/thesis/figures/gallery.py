@@ -58,7 +58,7 @@ NOT_REDRAWN = {
 def stored_cases(root: Path) -> list[CaseRecord]:
     """Completed cases of the published campaign, or else of a run in build/campaign."""
     records = read_published(root / "data" / "campaign")
-    own = root / "build" / "campaign" / "campaign.h5"
+    own = root / "build" / "campaign"
     if not records and own.exists():
         try:
             records = read_curves(own)

@@ -61,7 +61,7 @@ if __name__ == "__main__":
 
 @pytest.mark.fe
 def test_all_cases_arrive_though_a_worker_is_killed(tmp_path):
-    script, path = tmp_path / "cluster.py", tmp_path / "c.h5"
+    script, path = tmp_path / "cluster.py", tmp_path / "run"
     script.write_text(SCRIPT)
     answer = subprocess.run(
         [sys.executable, str(script), str(path)],
@@ -117,7 +117,7 @@ if __name__ == "__main__":
         if len(steps) == 3:
             scheduler.kill()
     try:
-        run_design(Design("lost", "", made), folder / "c.h5", executor=executor,
+        run_design(Design("lost", "", made), folder / "run", executor=executor,
                    time_limit_s=10.0, report=report)
     except InputError as error:
         print("TOLD", error, flush=True)
@@ -140,7 +140,7 @@ def test_a_scheduler_that_goes_away_fails_no_case(tmp_path):
     assert "the dask scheduler went away; all completed cases are kept" in answer.stdout
     told = int(answer.stdout.split("STORED")[1])
     assert 3 <= told < 40
-    assert len(Store(tmp_path / "c.h5").statuses()) == told
+    assert len(Store(tmp_path / "run").statuses()) == told
 
 
 @pytest.mark.parametrize("kind", ["SLURMCluster", "PBSCluster"])

@@ -78,7 +78,7 @@ def stored(path, n=6, factor=1.0):
 
 
 def test_parts_hold_every_case_once_below_their_size(tmp_path):
-    source = stored(tmp_path / "c.h5")
+    source = stored(tmp_path / "run")
     parts = publish(DESIGN, source, tmp_path / "data", most_bytes=120_000)
     assert 1 < len(parts) <= 8
     assert all(part.stat().st_size < 120_000 for part in parts)
@@ -94,7 +94,7 @@ def test_parts_hold_every_case_once_below_their_size(tmp_path):
 
 
 def test_a_part_gives_back_what_the_run_stored(tmp_path):
-    source = stored(tmp_path / "c.h5")
+    source = stored(tmp_path / "run")
     publish(DESIGN, source, tmp_path / "data")
     published = {record.id: record for record in read_published(tmp_path / "data")}
     for own in read_curves(source):
@@ -121,7 +121,7 @@ def test_a_part_gives_back_what_the_run_stored(tmp_path):
 
 
 def test_every_column_of_a_part_tells_its_unit_and_meaning(tmp_path):
-    [part] = publish(DESIGN, stored(tmp_path / "c.h5"), tmp_path / "data")
+    [part] = publish(DESIGN, stored(tmp_path / "run"), tmp_path / "data")
 
     def look(name, item):
         if isinstance(item, h5py.Dataset):
@@ -133,7 +133,7 @@ def test_every_column_of_a_part_tells_its_unit_and_meaning(tmp_path):
 
 
 def test_the_readme_of_the_data_set_names_every_column(tmp_path):
-    [part] = publish(DESIGN, stored(tmp_path / "c.h5"), tmp_path / "data")
+    [part] = publish(DESIGN, stored(tmp_path / "run"), tmp_path / "data")
     readme = (Path(__file__).parents[3] / "data" / "campaign" / "README.md").read_text()
     named = set(re.findall(r"`([\w-]+)`", readme))
     with h5py.File(part) as file:
@@ -143,7 +143,7 @@ def test_the_readme_of_the_data_set_names_every_column(tmp_path):
 
 
 def test_failed_cases_are_published_with_their_reason(tmp_path):
-    source = stored(tmp_path / "c.h5", n=5)
+    source = stored(tmp_path / "run", n=5)
     case = made()[5]
     stuck = Outcome(Ending.NOT_CONVERGED, "stuck at 0.003.", "Refine.")
     Store(source).put(case, replace(solved(case), outcome=stuck, unloadings=(), profiles=()))
@@ -158,23 +158,23 @@ def test_failed_cases_are_published_with_their_reason(tmp_path):
 
 
 def test_an_own_run_is_compared_with_what_is_published(tmp_path):
-    publish(DESIGN, stored(tmp_path / "c.h5"), tmp_path / "data")
+    publish(DESIGN, stored(tmp_path / "run"), tmp_path / "data")
     published = read_published(tmp_path / "data")
-    found = largest_difference(read_curves(stored(tmp_path / "o.h5", factor=1.02)), published)
+    found = largest_difference(read_curves(stored(tmp_path / "other", factor=1.02)), published)
     assert (found.cases, found.same) == (6, True)
     assert found.force == pytest.approx(0.02, abs=1e-6)
     assert found.radius < 1e-6
     # at another resolution it is the pair that tells what to compare
     finer = replace(made()[0], accuracy=fem.Accuracy.quick())
-    Store(tmp_path / "q.h5").put(finer, solved(finer, 0, 0.9))
-    found = largest_difference(read_curves(tmp_path / "q.h5"), published)
+    Store(tmp_path / "finer").put(finer, solved(finer, 0, 0.9))
+    found = largest_difference(read_curves(tmp_path / "finer"), published)
     assert (found.cases, found.same) == (1, False)
     assert found.force == pytest.approx(0.1, abs=1e-6)
     assert largest_difference([], published).cases == 0
 
 
 def test_an_incomplete_run_is_not_published_and_nothing_is_written_twice(tmp_path):
-    source = stored(tmp_path / "c.h5", n=5)
+    source = stored(tmp_path / "run", n=5)
     with pytest.raises(InputError, match="1 of 6 cases are missing"):
         publish(DESIGN, source, tmp_path / "data")
     stored(source)
@@ -195,7 +195,7 @@ def test_an_incomplete_run_is_not_published_and_nothing_is_written_twice(tmp_pat
 @pytest.mark.parametrize("name", ["a" * 4000 + ".h5", "../c.h5", ".h5", "a/b.h5"])
 def test_a_part_of_an_impossible_name_is_one_line(tmp_path, name):
     folder = tmp_path / "data"
-    publish(DESIGN, stored(tmp_path / "c.h5", n=6), folder)
+    publish(DESIGN, stored(tmp_path / "run", n=6), folder)
     sums = folder / "SHA256SUMS"
     sums.write_text(f"{'0' * 64}  {name}\n")
     with pytest.raises(InputError, match="SHA256SUMS: line 1: damaged"):
@@ -203,7 +203,7 @@ def test_a_part_of_an_impossible_name_is_one_line(tmp_path, name):
 
 
 def test_too_many_parts_leave_the_folder_as_it_was(tmp_path):
-    source = stored(tmp_path / "c.h5")
+    source = stored(tmp_path / "run")
     folder = tmp_path / "data"
     folder.mkdir()
     for k in range(12):
@@ -223,7 +223,7 @@ def test_publishing_a_missing_run_is_one_line(tmp_path, capsys):
 
 def test_status_without_a_run_tells_of_the_published_data(tmp_path, capsys, monkeypatch):
     monkeypatch.setattr(command, "PUBLISHED", tmp_path / "data")
-    publish(DESIGN, stored(tmp_path / "c.h5"), tmp_path / "data")
+    publish(DESIGN, stored(tmp_path / "run"), tmp_path / "data")
     assert run(["campaign", "status", "--out", str(tmp_path / "none")]) == 0
     told = capsys.readouterr().out
     assert "No run of your own" in told
@@ -250,8 +250,8 @@ def test_a_run_says_how_long_it_takes_and_how_far_it_is_from_the_published(
     monkeypatch.setattr(command, "PUBLISHED", tmp_path / "data")
     smoke = design_named("smoke")
     for case in smoke.make():
-        Store(tmp_path / "c.h5").put(case, solved(case))
-    publish(smoke, tmp_path / "c.h5", tmp_path / "data")
+        Store(tmp_path / "before").put(case, solved(case))
+    publish(smoke, tmp_path / "before", tmp_path / "data")
     given = ["--design", "smoke", "--out", str(tmp_path / "run"), "--workers", "2"]
     assert run(["campaign", "run", *given]) == 0
     first, *middle = capsys.readouterr().out.splitlines()

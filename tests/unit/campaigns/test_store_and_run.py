@@ -1,6 +1,7 @@
-"""The campaign file: identity of cases, resuming, damage, and death of workers and coordinator."""
+"""A run: identity of cases, resuming, damage, upgrade, and death of workers and coordinator."""
 
 import errno
+import fcntl
 import json
 import multiprocessing
 import os
@@ -9,6 +10,7 @@ import subprocess
 import sys
 import time
 from dataclasses import replace
+from pathlib import Path
 
 import h5py
 import meshio
@@ -19,21 +21,25 @@ from dentscope.campaigns import (
     DESIGNS,
     Case,
     Design,
+    Share,
     Store,
+    case_file,
     contents,
     distinct_cases,
-    journal,
     read_curves,
     run_design,
     standard_case,
     status_of,
-    writing,
+    upgrade,
 )
+from dentscope.campaigns.case_file import fields_of
 from dentscope.campaigns.executor import Ended
-from dentscope.campaigns.writing import fields_of
 from dentscope.core import COMPLETED, Ending, InputError, Material, Outcome, Pair
 from dentscope.core.flow import Flow, Heating, Rate, swift
+from dentscope.core.output import cannot_write
 from dentscope.fem import Counters, Curve, Profile, Snapshot, Solution
+
+OLDER = Path(__file__).resolve().parents[2] / "data" / "campaign-format-2.h5"
 
 
 def pair(scale=1.0, R=1e-3, Sy=5e8):
@@ -117,7 +123,7 @@ def test_the_smoke_design_has_twelve_distinct_cases_of_three_pairs():
 
 
 def test_a_second_run_computes_nothing(tmp_path):
-    path, first, second = tmp_path / "c.h5", FakeExecutor(), FakeExecutor()
+    path, first, second = tmp_path / "run", FakeExecutor(), FakeExecutor()
     status = run_design(design(), path, executor=first, time_limit_s=1.0)
     assert (status.designed, status.done, status.failed, status.missing) == (5, 5, 0, 0)
     run_design(design(), path, executor=second, time_limit_s=1.0)
@@ -128,7 +134,7 @@ def test_a_second_run_computes_nothing(tmp_path):
 
 
 def test_a_failed_case_is_stored_with_its_reason_and_retried_on_demand(tmp_path):
-    path = tmp_path / "c.h5"
+    path = tmp_path / "run"
     failing = FakeExecutor(Outcome(Ending.NOT_CONVERGED, "stuck at 0.003.", "Refine."))
     status = run_design(design(2), path, executor=failing, time_limit_s=1.0)
     assert (status.done, status.failed) == (0, 2)
@@ -149,8 +155,8 @@ def test_profiles_are_kept_out_to_twice_the_contact_radius(tmp_path):
     assert set(one.problem.profiles) <= set(one.depths)
     r = np.linspace(0.0, 9.0, 19)
     made = tuple(Profile(d, r, r - d, 2.0 * r, r[:10], -r[:10]) for d in one.problem.profiles)
-    Store(tmp_path / "c.h5").put(one, replace(solution(one), profiles=made))
-    kept = read_curves(tmp_path / "c.h5")[0].profiles
+    Store(tmp_path / "run").put(one, replace(solution(one), profiles=made))
+    kept = read_curves(tmp_path / "run")[0].profiles
     # the stand-in's largest contact radius is 2, so that the surface ends with the node at 4
     assert kept["depth"] == pytest.approx(one.problem.profiles, rel=1e-6)
     assert kept["sphere_z"] == pytest.approx(
@@ -175,25 +181,24 @@ def test_fields_lie_beside_the_file_and_belong_to_the_case(tmp_path, monkeypatch
     assert chosen.id != plain.id
     assert Case.from_specification(chosen.specification()) == chosen
     states = (snapshot(chosen.depths[1]),)
-    Store(tmp_path / "c.h5").put(chosen, replace(solution(chosen), snapshots=states))
-    [file] = fields_of(chosen.id, tmp_path / "fields")
+    Store(tmp_path / "run").put(chosen, replace(solution(chosen), snapshots=states))
+    [file] = fields_of(chosen.id, tmp_path / "run" / "fields")
     mesh = meshio.read(file)
     assert mesh.cell_data["von_mises_Pa"][0] == pytest.approx([3e8])
     assert mesh.points[2, :2] == pytest.approx([1.1, 1.1])
 
     # where there is no room for them the case is not stored, and nothing half written stays
-    def full(*_):
-        raise OSError(errno.ENOSPC, "No space left on device")
+    def full(_, path):
+        raise cannot_write(OSError(errno.ENOSPC, "No space left on device"), path)
 
-    monkeypatch.setattr(writing, "write_vtu", full)
-    with pytest.raises(InputError, match="the disk is full"):
-        Store(tmp_path / "d.h5").put(chosen, replace(solution(chosen), snapshots=states))
-    assert not (tmp_path / "d.h5").exists()
-    assert fields_of(chosen.id, tmp_path / "fields") == [file]
+    monkeypatch.setattr(case_file, "write_vtu", full)
+    with pytest.raises(InputError, match="the disk is full; all completed cases are kept"):
+        Store(tmp_path / "full").put(chosen, replace(solution(chosen), snapshots=states))
+    assert not (tmp_path / "full").exists()
 
 
 def test_results_of_another_numerics_version_do_not_come_twice(tmp_path, monkeypatch):
-    path = tmp_path / "c.h5"
+    path = tmp_path / "run"
     monkeypatch.setattr(fem, "NUMERICS_VERSION", -1)
     run_design(design(3), path, executor=FakeExecutor(), time_limit_s=1.0)
     old = {record.id for record in read_curves(path)}
@@ -203,37 +208,37 @@ def test_results_of_another_numerics_version_do_not_come_twice(tmp_path, monkeyp
     assert {record.id for record in read_curves(path)} == set(distinct_cases(design(2)))
 
 
-HOLDER = """
-import sys, time
-from pathlib import Path
-from dentscope.campaigns import Store
-with Store(Path(sys.argv[1])).writing():
-    print("holding", flush=True)
-    time.sleep(60)
-"""
+def test_runs_that_share_a_folder_compute_each_case_once(tmp_path):
+    path, first, second = tmp_path / "run", FakeExecutor(), FakeExecutor()
+    counts = run_design(design(), path, executor=first, time_limit_s=1.0, share=Share(1, 2))
+    assert (counts.done, counts.missing) == (3, 2)
+    run_design(design(), path, executor=second, time_limit_s=1.0, share=Share(2, 2))
+    assert sorted(first.computed + second.computed) == sorted(distinct_cases(design()))
+    assert status_of(design(), Store(path)).done == 5
 
 
-def test_two_coordinators_do_not_write_one_file(tmp_path):
-    path = tmp_path / "c.h5"
-    holder = subprocess.Popen(
-        [sys.executable, "-c", HOLDER, str(path)], stdout=subprocess.PIPE, text=True
-    )
-    try:
-        assert holder.stdout.readline() == "holding\n"
-        with pytest.raises(InputError, match=f"process {holder.pid} is writing"):
-            run_design(design(1), path, executor=FakeExecutor(), time_limit_s=1.0)
-    finally:
-        holder.kill()
-        holder.wait()
-        holder.stdout.close()
-    # the lock of a dead process is no obstacle
-    assert run_design(design(1), path, executor=FakeExecutor(), time_limit_s=1.0).done == 1
+def test_a_completed_case_is_never_replaced_by_a_failed_one(tmp_path):
+    store, one = Store(tmp_path), case()
+    store.put(one, None, message="lost")
+    assert store.statuses() == {one.id: "failed"}
+    store.put(one, solution(one))
+    store.put(one, None, message="lost")
+    assert store.statuses() == {one.id: "done"}
+    [file] = store.files()
+    assert file == tmp_path / "cases" / one.id[:2] / f"{one.id}.h5"
+    # a loss of power may leave both
+    file.with_name(f"{one.id}.failed.h5").write_bytes(b"")
+    assert [record.status for record in store.read_all()] == ["done"]
 
 
-@pytest.mark.parametrize("damage", ["truncated", "text", "other", "one bit"])
-def test_a_damaged_file_is_reported_and_left_alone(tmp_path, damage):
-    path = tmp_path / "c.h5"
-    run_design(design(2), path, executor=FakeExecutor(), time_limit_s=1.0)
+def files_of(folder):
+    return {p: p.read_bytes() for p in folder.rglob("*") if p.is_file()}
+
+
+@pytest.mark.parametrize("damage", ["truncated", "text", "other", "one bit", "another case"])
+def test_a_damaged_case_is_reported_and_left_alone(tmp_path, damage):
+    run_design(design(2), tmp_path, executor=FakeExecutor(), time_limit_s=1.0)
+    path, other = Store(tmp_path).files()
     if damage == "truncated":
         path.write_bytes(path.read_bytes()[:900])
     elif damage == "text":
@@ -242,54 +247,41 @@ def test_a_damaged_file_is_reported_and_left_alone(tmp_path, damage):
         image = bytearray(path.read_bytes())
         image[len(image) // 2] ^= 8
         path.write_bytes(image)
+    elif damage == "another case":
+        path.write_bytes(other.read_bytes())
     else:
         path.unlink()
         with h5py.File(path, "w") as file:
             file.attrs["format"] = "something else"
-    before = path.read_bytes()
-    with pytest.raises(InputError, match=r"c\.h5"):
-        run_design(design(2), path, executor=FakeExecutor(), time_limit_s=1.0)
-    assert path.read_bytes() == before
+    before = files_of(tmp_path)
+    for read in (read_curves, lambda folder: Store(folder).summaries()):
+        with pytest.raises(InputError, match=path.name):
+            read(tmp_path)
+    run_design(design(2), tmp_path, executor=FakeExecutor(), time_limit_s=1.0)
+    assert files_of(tmp_path) == before
 
 
 def changed(path, change):
     """Change a sealed file as one would who knows how to seal it."""
-    with journal.new_image(path.read_bytes()) as image:
-        change(image.file["cases"])
-    path.write_bytes(image.sealed)
+    with contents.open_image(path.read_bytes()) as old, contents.new_image() as new:
+        for name in old:
+            old.copy(name, new.file)
+        for name, value in old.attrs.items():
+            new.file.attrs[name] = value
+        change(new.file)
+    path.write_bytes(new.sealed)
 
 
 def test_a_missing_dataset_names_itself(tmp_path):
-    path = tmp_path / "c.h5"
-    run_design(design(1), path, executor=FakeExecutor(), time_limit_s=1.0)
+    run_design(design(1), tmp_path, executor=FakeExecutor(), time_limit_s=1.0)
+    [path] = Store(tmp_path).files()
 
-    def take(cases):
-        [group] = cases.values()
-        del group["loading"]["force"]
-        group.attrs["digest"] = contents.read_tree(group).digest()
+    def take(file):
+        del file["loading"]["force"]
 
     changed(path, take)
     with pytest.raises(InputError, match="loading/force"):
-        read_curves(path)
-
-
-@pytest.mark.parametrize("place", ["value", "unit", "attribute"])
-def test_a_case_is_held_to_its_own_digest(tmp_path, place):
-    path = tmp_path / "c.h5"
-    run_design(design(2), path, executor=FakeExecutor(), time_limit_s=1.0)
-
-    def alter(cases):
-        group = next(iter(cases.values()))
-        if place == "value":
-            group["loading/force"][1] *= 1.0001
-        elif place == "unit":
-            group["loading/force"].attrs["unit"] = "kN"
-        else:
-            group.attrs["mesh"] = "another"
-
-    changed(path, alter)
-    with pytest.raises(InputError, match="its digest is another"):
-        read_curves(path)
+        read_curves(tmp_path)
 
 
 def linked(cases, path):
@@ -299,7 +291,7 @@ def linked(cases, path):
 
 def soft(cases, path):
     del cases["loading/force"]
-    cases["loading/force"] = h5py.SoftLink("/cases")
+    cases["loading/force"] = h5py.SoftLink("/loading")
 
 
 def outside(cases, path):
@@ -328,51 +320,92 @@ def bomb(cases, path):
 @pytest.mark.parametrize("trick", [linked, soft, outside, referring, absurd, bomb])
 def test_what_leads_elsewhere_or_claims_too_much_is_refused(tmp_path, trick, monkeypatch):
     monkeypatch.setattr(contents, "_MOST_DATA", 1_000_000)
-    path = tmp_path / "c.h5"
-    run_design(design(1), path, executor=FakeExecutor(), time_limit_s=1.0)
+    run_design(design(1), tmp_path, executor=FakeExecutor(), time_limit_s=1.0)
+    [path] = Store(tmp_path).files()
     with h5py.File(path.with_name("other.h5"), "w") as other:
         other["x"] = np.ones(4)
-    changed(path, lambda cases: trick(next(iter(cases.values())), path))
+    changed(path, lambda file: trick(file, path))
     with pytest.raises(InputError, match=r"force (is a link|is of kind|lies in|claims)"):
-        read_curves(path)
+        Store(tmp_path).read(path.name[:64])
 
 
-def test_a_damaged_file_gives_back_its_whole_cases(tmp_path):
-    path = tmp_path / "c.h5"
-    run_design(design(4), path, executor=FakeExecutor(), time_limit_s=1.0)
-    whole = {record.id: record for record in read_curves(path)}
-    hit = min(whole)
-    with h5py.File(path) as file:
-        offset = file[f"cases/{hit}/loading/force"].id.get_chunk_info(0).byte_offset
-    image = bytearray(path.read_bytes())
-    image[offset + 512] ^= 1  # offsets count from the end of the user block
-    path.write_bytes(image)
+def test_a_damaged_case_is_set_aside_and_computed_again(tmp_path):
+    run_design(design(4), tmp_path, executor=FakeExecutor(), time_limit_s=1.0)
+    whole = {record.id: record for record in read_curves(tmp_path)}
+    hit = Store(tmp_path).files()[0]
+    image = bytearray(hit.read_bytes())
+    image[-100] ^= 1
+    hit.write_bytes(image)
     with pytest.raises(InputError, match="campaign repair"):
-        read_curves(path)
-    kept, lost = Store(path).repair()
+        read_curves(tmp_path)
+    kept, lost = Store(tmp_path).repair()
     assert kept == 3
-    assert [line.split(":")[0] for line in lost] == [hit[:12]]
-    found = {record.id: record for record in read_curves(path)}
-    assert set(found) == set(whole) - {hit}
-    assert all(np.array_equal(found[k].curve["force"], whole[k].curve["force"]) for k in found)
-    assert path.with_name("c.h5.damaged").read_bytes() == bytes(image)
-    assert run_design(design(4), path, executor=FakeExecutor(), time_limit_s=1.0).done == 4
+    assert [line.split(":")[0] for line in lost] == [min(whole)[:12]]
+    found = {record.id: record for record in read_curves(tmp_path)}
+    assert set(found) == set(whole) - {min(whole)}
+    assert hit.with_name(f"{hit.name}.damaged").read_bytes() == bytes(image)
+    assert run_design(design(4), tmp_path, executor=FakeExecutor(), time_limit_s=1.0).done == 4
 
 
-def test_a_file_of_the_first_format_is_made_anew_on_demand(tmp_path):
-    path = tmp_path / "c.h5"
-    run_design(design(2), path, executor=FakeExecutor(), time_limit_s=1.0)
-    before = read_curves(path)
-    old = tmp_path / "old.h5"
-    with contents.open_image(path.read_bytes()) as new, h5py.File(old, "w") as file:
-        file.attrs["format"] = "dentscope-campaign/1"
-        new.copy("cases", file)
-        for group in file["cases"].values():
+def older(folder, change=lambda cases: None, name="dentscope-campaign/2"):
+    """A run of before 0.3 in a folder, changed and sealed."""
+    image = OLDER.read_bytes()
+    with contents.open_image(image) as old, contents.new_image() as new:
+        old.copy("cases", new.file)
+        new.file.attrs["format"] = name
+        change(new.file["cases"])
+    folder.mkdir(exist_ok=True)
+    (folder / "campaign.h5").write_bytes(new.sealed)
+
+
+def test_a_run_of_before_is_refused_until_its_upgrade_and_keeps_every_number(tmp_path):
+    older(tmp_path)
+    for call in (Store(tmp_path).statuses, lambda: read_curves(tmp_path)):
+        with pytest.raises(InputError, match="campaign upgrade"):
+            call()
+    with pytest.raises(InputError, match="campaign upgrade"):
+        read_curves(tmp_path / "campaign.h5")
+    assert upgrade(tmp_path) == (3, [])
+    first, second, failed = Store(tmp_path).read_all()
+    assert (first.case.name, second.case.name, failed.case.name) == ("c0", "c1", "c2")
+    assert "stuck at 0.003" in failed.message
+    assert Store(tmp_path).statuses()[failed.id] == "failed"
+    assert first.curve["force"] == pytest.approx(4e8 * np.array(first.case.depths))
+    assert first.unloadings[0].residual_flat == 2e-6
+    assert first.profiles["sphere_r"].shape == (10, 10)
+    assert first.environment["commit"] == "cba9fbf"
+    assert {p.name for p in tmp_path.iterdir()} == {"campaign.h5.upgraded", "cases"}
+    assert Store(tmp_path).summaries()[0].quality.depth_reached > 0.0
+
+
+def test_an_upgrade_takes_the_cases_that_are_whole(tmp_path):
+    def alter(cases):
+        next(iter(cases.values()))["loading/force"][1] *= 1.0001
+
+    older(tmp_path, alter)
+    kept, lost = upgrade(tmp_path)
+    assert kept == 2
+    assert "its digest is another" in lost[0]
+
+
+def test_a_run_of_before_that_goes_on_is_not_upgraded(tmp_path):
+    older(tmp_path)
+    with (tmp_path / "campaign.lock").open("w") as held:
+        fcntl.flock(held, fcntl.LOCK_EX)
+        with pytest.raises(InputError, match="still goes on"):
+            upgrade(tmp_path)
+    assert upgrade(tmp_path)[0] == 3
+
+
+def test_a_run_of_the_first_format_is_upgraded_too(tmp_path):
+    def bare(cases):
+        for group in cases.values():
             del group.attrs["digest"]
-    with pytest.raises(InputError, match=r"older format, without a digest .*campaign repair"):
-        read_curves(old)
-    assert Store(old).repair() == (2, [])
-    assert [r.id for r in read_curves(old)] == [r.id for r in before]
+
+    older(tmp_path, bare, name="dentscope-campaign/1")
+    image = (tmp_path / "campaign.h5").read_bytes()
+    (tmp_path / "campaign.h5").write_bytes(bytes(512) + image[512:])  # it had no seal
+    assert upgrade(tmp_path) == (3, [])
 
 
 SCRIPT = """
@@ -400,7 +433,7 @@ if __name__ == "__main__":
 
 @pytest.mark.fe
 def test_kill_9_loses_nothing_and_computes_nothing_twice(tmp_path):
-    script, path = tmp_path / "run.py", tmp_path / "c.h5"
+    script, path = tmp_path / "run.py", tmp_path / "run"
     script.write_text(SCRIPT)
     computed = []
     for stop_after in (1, 3, None):
@@ -443,24 +476,3 @@ def test_a_dying_worker_costs_no_case(tmp_path):
         assert item.solution is not None, item.message
     assert killed
     assert sorted(ended) == sorted(cases)
-
-
-def test_a_writer_that_dies_while_a_reader_begins_is_no_damage(tmp_path, monkeypatch):
-    store = Store(tmp_path / "c.h5")
-    store.put(case("one"), solution(case("one")))
-    before, place = store.path.read_bytes(), journal.journal_of(store.path)
-    other = case("two", Sy=6e8)
-    store.put(other, solution(other))
-    after = store.path.read_bytes()
-    recover, looked = journal.recover, []
-
-    def recover_early(path):
-        if looked:
-            return recover(path)
-        looked.append(path)  # nothing to be finished yet; then a writer begins, and dies
-        place.write_bytes(journal.journalled(before, after))
-        store.path.write_bytes(after[: journal.PAGE] + before[journal.PAGE :])
-        return None
-
-    monkeypatch.setattr("dentscope.campaigns.store.recover", recover_early)
-    assert {record.case.name for record in store.read_all()} == {"one", "two"}

@@ -22,7 +22,7 @@ def stored(tmp_path):
     }
     counters = Counters(**dict.fromkeys(Counters.__dataclass_fields__, 1))
     curve = Curve(**{name: pandas.Series(column).to_numpy() for name, column in columns.items()})
-    Store(tmp_path / "campaign.h5").put(
+    Store(tmp_path).put(
         case, Solution(case.problem, case.accuracy, COMPLETED, curve, (), (), counters, "mesh")
     )
     return tmp_path, columns
@@ -49,7 +49,7 @@ def test_a_run_that_is_stopped_says_how_to_go_on_and_shows_what_is_done(
     stored, monkeypatch, capsys
 ):
     folder, _ = stored
-    cases = [record.case for record in Store(folder / "campaign.h5").read_all()]
+    cases = [record.case for record in Store(folder).read_all()]
     steel = Material(E=100e9, nu=0.3, Sy=5e8)
     other = standard_case(
         "two", Pair(steel, steel, 1e-3), deepest=0.01, n_depths=4, accuracy=fem.Accuracy.smoke()
@@ -69,7 +69,7 @@ def test_a_run_that_is_stopped_says_how_to_go_on_and_shows_what_is_done(
 
 def test_pictures_come_with_the_first_and_the_third_case(stored, monkeypatch, capsys):
     folder, _ = stored
-    (case,) = (record.case for record in Store(folder / "campaign.h5").read_all())
+    (case,) = (record.case for record in Store(folder).read_all())
     monkeypatch.setitem(DESIGNS, "small", Design("small", "", lambda: (case,)))
 
     def three(*given, report, **options):

@@ -11,7 +11,7 @@ from dentscope.core import Ending, InputError, Outcome
 
 
 def test_help_loads_no_numerics():
-    heavy = "numpy scipy numba gmsh skfem pyvista matplotlib h5py lmfit".split()
+    heavy = "numpy scipy numba gmsh skfem pyvista matplotlib h5py".split()
     program = (
         f"import sys, dentscope.cli;print(*[name for name in {heavy!r} if name in sys.modules])"
     )

@@ -1,13 +1,15 @@
 """Compiled code is kept apart for each state of the source."""
 
+import ast
 import os
+import shutil
 import stat
 import subprocess
 import sys
 from pathlib import Path
 
 from dentscope.core import compiled
-from dentscope.core.compiled import source_digest
+from dentscope.core.compiled import compiled_sources, source_digest
 
 
 def test_the_folder_follows_compiled_files_and_what_they_import(tmp_path):
@@ -27,6 +29,66 @@ def test_the_folder_follows_compiled_files_and_what_they_import(tmp_path):
     assert renewed != before
     kernel.write_text(kernel.read_text() + "# changed\n")
     assert source_digest(tmp_path) != renewed
+
+
+def test_whatever_is_compiled_is_among_the_sources():
+    root = Path(compiled.__file__).parents[1]
+    stages = ("core", "fem", "models", "impact", "fitting", "campaigns", "discrepancy", "reduce",
+              "recordings", "studies", "start", "cli")  # fmt: skip
+    files = {path for stage in stages for path in (root / stage).rglob("*.py")}
+    kernels = {path for path in files if decorators(path) & KERNELS}
+    assert {p.stem for p in kernels} > {"ceb", "stronge", "compiled", "assemble", "energy_table"}
+    assert kernels - compiled_sources(root) == set()
+    # what only tells or draws compiles nothing anew
+    assert not any(p.stem in ("draw", "report", "app") for p in compiled_sources(root))
+
+
+KERNELS = {"njit", "loading_kernel", "branch_kernel", "residual_kernel", "intrinsic"}
+
+
+def decorators(path: Path) -> set[str]:
+    """Names by which functions of a file are decorated or, as `njit(f)`, wrapped."""
+    names = (
+        name.func if isinstance(name, ast.Call) else name
+        for node in ast.walk(ast.parse(path.read_text(encoding="utf-8")))
+        for name in (getattr(node, "decorator_list", None) or [node])
+    )
+    return {name.id for name in names if isinstance(name, ast.Name)}
+
+
+def test_an_edited_law_reaches_the_law_that_takes_it_in(tmp_path):
+    root = Path(compiled.__file__).parents[1]
+    copy = tmp_path / "dentscope"
+    for stage in (".", "core", "fem", "models", "impact"):
+        for path in (root / stage).glob("*.py" if stage == "." else "**/*.py"):
+            target = copy / path.relative_to(root)
+            target.parent.mkdir(parents=True, exist_ok=True)
+            shutil.copyfile(path, target)
+    shutil.copytree(root / "data" / "coefficients", copy / "data" / "coefficients")
+    code = """
+from dentscope.core import Material, Pair
+from dentscope.models.published.stronge import STRONGE
+ball, flat = Material(E=2e11, nu=0.3), Material(E=2e11, nu=0.3, Sy=1e9)
+print(float(sum(STRONGE.residual(Pair(ball, flat, 0.01), 3e-4))))
+"""
+
+    def residual():
+        # as a user's: no other cache, sources as they are
+        env = {k: v for k, v in os.environ.items() if k != "NUMBA_CACHE_DIR"}
+        env |= {"XDG_CACHE_HOME": str(tmp_path / "cache"), "PYTHONPATH": str(tmp_path)}
+        answer = subprocess.run(
+            [sys.executable, "-c", code], env=env, cwd=tmp_path, capture_output=True, text=True,
+            check=True,
+        )  # fmt: skip
+        return float(answer.stdout)
+
+    before = residual()
+    law = copy / "models" / "published" / "ceb.py"
+    text = law.read_text()
+    radius = "math.sqrt(par[R] * (2.0"
+    assert text.count(radius) == 1
+    law.write_text(text.replace(radius, "math.sqrt(1.2 * par[R] * (2.0"))
+    assert abs(residual() / before - 1.0) > 1e-3
 
 
 def test_numba_is_pointed_there_and_a_choice_of_the_user_is_kept(tmp_path):

@@ -74,8 +74,11 @@ def test_numbers_of_one_condition_say_nothing(toy) -> None:
     ("given", "verdict", "names"),
     [
         (odds(a=0.2), "adequate", []),
+        # below 0.7 `adequate` would be read as an all-clear
+        (odds(a=0.29), "adequate", []),
+        (odds(a=0.31), "undetermined", []),
         # a name costs ten times what silence about something missing does
-        (odds(a=0.7), "adequate", []),
+        (odds(a=0.7), "undetermined", []),
         (odds(a=0.85), "undetermined", []),
         (odds(a=0.96), "missing-physics", ["a"]),
         (odds(outside=0.96), OUTSIDE, []),

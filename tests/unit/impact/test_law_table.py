@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 from dentscope.core import InputError, Material, Pair
 from dentscope.impact import Approach, Settings, Striker, scene_of, strike
-from dentscope.impact.tabulated.cells import cells_of, column_at
+from dentscope.impact.tabulated.cells import cell_at, cells_of, column_in
 from dentscope.impact.tabulated.law_table import ERROR, tabulated
 from dentscope.models import LAWS
 from dentscope.models.base import DomainWarning, Kernels, PublishedLaw
@@ -103,6 +103,10 @@ def test_cells_are_halved_until_kinks_and_jumps_are_narrow() -> None:
 
     table = cells_of(broken, 0.0, 1.0, tolerance=1e-9)
     assert table.error.max() <= 1e-9
+
+    def column_at(vector, at, column, x):
+        return column_in(vector, at, cell_at(vector, at, x), column, x)
+
     places = np.random.default_rng(1).uniform(0.0, 1.0, 2000)
     for column in (0, 1):
         found = [column_at(table.vector, 0, column, x) for x in places]

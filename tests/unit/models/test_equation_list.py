@@ -5,7 +5,7 @@ import re
 from pathlib import Path
 
 import pytest
-from dentscope.models.published.viscous import paradox
+from dentscope.studies.thesis.viscous import paradox
 
 THEORY = Path(__file__).parents[3] / "docs" / "theory.md"
 # equations of each chapter, counted in the thesis

@@ -12,7 +12,7 @@ from dentscope.recordings import read
 from dentscope.reduce.bounces.chain import chain_of
 from dentscope.reduce.bounces.fall import Fall
 from dentscope.reduce.kinds import load_kind
-from dentscope.studies.synthetic.sounds import SoundTruth, bounces, record, write_wav
+from dentscope.studies.synthetic.sounds import RATE, SoundTruth, bounces, record, write_wav
 from hypothesis import given, settings
 from hypothesis import strategies as st
 from scipy.integrate import solve_ivp
@@ -200,3 +200,32 @@ def test_a_bounce_that_the_stop_watch_missed_is_found():
     e = [t.observables["restitution"].value for t in reduced.trials]
     assert min(e) > 0.83
     assert max(e) < 0.95
+
+
+TAPS = (0.80, 0.72, 0.73, 0.60, 0.58, 0.45, 0.44, 0.36, 0.35, 0.26, 0.25, 0.18)
+
+
+@pytest.mark.parametrize(
+    ("intervals", "refused"),
+    [(TAPS, True), (TAPS[::-1], True), ((0.5,) * 6, True),
+     ((0.4, 0.31, 0.33, 0.22, 0.24, 0.16, 0.17), True)],
+)  # fmt: skip
+def test_taps_are_no_bouncing_ball(tmp_path, intervals, refused):
+    """Refused, or with errors that hold the scatter of the run: never a gain of speed."""
+    taps = np.cumsum((0.3, *intervals))
+    rate, rng = RATE, np.random.default_rng(1)
+    t = np.arange(0.0, taps[-1] + 0.5, 1.0 / rate)
+    sound = rng.normal(0.0, 1e-3, t.size)
+    for at in taps:
+        late = t - at
+        sound += 0.5 * np.exp(-np.maximum(late, 0.0) / 5e-3) * np.sin(2e4 * late) * (late > 0.0)
+    write_wav(sound, tmp_path / "taps.wav")
+    kind = load_kind("sound")
+    if refused:
+        with pytest.raises(InputError, match=r"no run of bounces|of the speed back|do not shrink"):
+            kind.run(tmp_path / "taps.wav", {}, source="test")
+        return
+    found = kind.run(tmp_path / "taps.wav", {}, source="test")
+    ratios = [v for k, v in found.values.items() if k.endswith("restitution")]
+    assert all(v.value < 1.0 + 3.0 * v.std for v in ratios)
+    assert all(v.std > 0.02 for v in ratios)

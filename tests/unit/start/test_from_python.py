@@ -6,8 +6,10 @@ import sys
 from pathlib import Path
 
 import dentscope as ds
+import numpy as np
 import pytest
 from dentscope.core import InputError
+from dentscope.core.flow import Flow, tabulated
 from dentscope.recordings import read
 from dentscope.recordings.shipped import set_folder
 
@@ -85,9 +87,9 @@ def test_laws_side_by_side_lead_with_those_to_use(tmp_path):
     found = ds.compare_laws(ds.Pair(hard, soft, 10e-3))
     assert found.best[0] == "fitted"
     lines = repr(found).splitlines()
-    assert lines[0].startswith("use: fitted, ghaednia")
-    assert [line.split()[0] for line in lines[3:5]] == ["fitted", "ghaednia"]
-    assert {line.split()[-1] for line in lines[3:]} == {"yes", "no"}
+    assert lines[0].startswith("use: fitted (within 1 %)")
+    assert [line.split()[0] for line in lines[3:5]] == ["fitted", "hardening"]
+    assert all("within" in line or "off by" in line or "knows no" in line for line in lines[3:])
     assert found._repr_html_().count("<tr>") == 1 + len(ds.LAWS)
     # Hertz over Hertz is one at every depth
     figure = found.plot()
@@ -114,3 +116,52 @@ def test_a_pair_and_a_set_show_themselves():
     assert len(figure.axes) == len(found.observed)
     # one speed at many angles
     assert figure.axes[0].get_xlabel() == "angle [deg]"
+
+
+def test_a_pair_is_struck_at_one_speed_or_several():
+    hard = ds.Material(E=210e9, nu=0.3, Sy=2e9, density=7800.0)
+    soft = ds.Material(E=200e9, nu=0.3, Sy=3e8)
+    pair = ds.Pair(hard, soft, 5e-3)
+    one = ds.impact(pair, speed=2, law="fitted")
+    assert one.impacts["fitted"].kinetic_before_J == pytest.approx(
+        0.5 * 7800.0 * 4.0 / 3.0 * math.pi * 5e-3**3 * 4.0
+    )
+    several = ds.impact(pair, speed=[1.0, 2.0], law=["fitted", "hertz"])
+    assert several["restitution"][1] == pytest.approx(one["fitted"].restitution, rel=1e-6)
+    assert several["restitution"][2:] == pytest.approx([1.0, 1.0])
+    heavier = ds.impact(pair, speed=2.0, law="fitted", mass=0.01)["fitted"]
+    assert heavier.restitution < one["fitted"].restitution
+    assert ds.impact("ball", speed=2.0, law="hertz")["hertz"].restitution == pytest.approx(1.0)
+    curve = tabulated(np.array([0.0, 0.2]), np.array([3e8, 6e8]))
+    hardens = ds.Pair(hard, soft.with_(flow=Flow(curve)), 5e-3)
+    blow = ds.impact(hardens, speed=2.0, law="hardening")
+    assert blow["hardening"].restitution > one["fitted"].restitution
+    with pytest.raises(InputError, match="none of fitted follows it"):
+        ds.impact(hardens, speed=2.0, law="fitted")
+    with pytest.raises(InputError, match="mass: missing"):
+        ds.impact(ds.Pair(soft, hard, 5e-3), speed=1.0)
+    for wrong in ([], [1.0, math.nan], "2", -1.0, 0.0):
+        with pytest.raises(InputError):
+            ds.impact(pair, speed=wrong)
+
+
+def test_magnitudes_that_no_material_has_are_asked_back():
+    with pytest.raises(InputError, match=r"E_Pa: 200.0 .*200 GPa would be 2e\+11"):
+        ds.Material(E=200, nu=0.3)
+    with pytest.raises(InputError, match="300 MPa would be 3e"):
+        ds.Material(200e9, 0.3, 300)
+    with pytest.raises(InputError, match=r"density_kg_m3.*7.8 g/cm\^3 would be 7800"):
+        ds.Material(E=200e9, nu=0.3, density=7.8)
+    with pytest.raises(InputError, match="'200 GPa'"):
+        ds.Material(E="200 GPa", nu=0.3)
+    steel = ds.Material(E=200e9, nu=0.3)
+    assert isinstance(steel, ds.Material)
+    assert type(steel).__module__ == "dentscope.core.material"
+
+
+def test_a_law_that_is_not_known_says_what_comes_near():
+    with pytest.raises(KeyError, match="did you mean 'fitted'"):
+        ds.LAWS["fited"]
+    with pytest.raises(InputError, match="did you mean 'fitted'"):
+        ds.compare_laws(ds.Pair(*[ds.Material(E=2e11, nu=0.3, Sy=3e8)] * 2, 1e-3), law="fited")
+    assert ds.LAWS.get("fited") is None

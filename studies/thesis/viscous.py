@@ -1,7 +1,7 @@
 """Kelvin-Voigt and Hunt-Crossley: the rate-dependent models that chapter 1 criticises.
 
 They are no contact laws: their force depends on the rate of penetration, they know no peak and
-leave no dent. They are listed beside the laws (`RATE_MODELS`), each with what speaks against it.
+leave no dent.
 
 The paradox of Kelvin and Voigt: F = k d + c d' is already c v at first touch, with nothing pressed
 in, and it pulls (F < 0) before the bodies part at d = 0. Whoever lets them part where the force
@@ -61,47 +61,6 @@ def alpha_for(restitution: float, *, speed: float) -> float:
 
     last = (1.0 - 1e-12) / restitution
     return float(brentq(off, 1e-6, last, xtol=1e-14) / (1.5 * speed))
-
-
-@dataclass(frozen=True, slots=True)
-class RateModel:
-    """A force that follows from depth and rate.
-
-    Parameters
-    ----------
-    title
-        Author and year.
-    source
-        Publication, or where the thesis names it.
-    formula
-        The force.
-    objection
-        What speaks against it for metals that yield.
-    """
-
-    title: str
-    source: str
-    formula: str
-    objection: str
-
-
-RATE_MODELS: dict[str, RateModel] = {
-    "kelvin-voigt": RateModel(
-        title="Kelvin and Voigt",
-        source="thesis, chapter 1",
-        formula="F = k d + c d'",
-        objection="pushes with c v at first touch, when nothing is pressed in, and pulls before "
-        "the bodies part; parted where the force vanishes, they keep a depth without any yield",
-    ),
-    "hunt-crossley": RateModel(
-        title="Hunt and Crossley 1975",
-        source="J. Appl. Mech. 42 (1975) 440",
-        formula="F = K d^n (1 + (3/2) alpha d')",
-        objection="no force at touch and parting, but no dent either; alpha is fitted to a "
-        "restitution, e = 1 - alpha v when slow, and follows from no property of the metals",
-    ),
-}
-"""Rate-dependent models by name, in the order in which one answers the other."""
 
 
 @dataclass(frozen=True)

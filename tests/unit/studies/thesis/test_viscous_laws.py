@@ -4,7 +4,7 @@ import math
 
 import pytest
 from dentscope.core import InputError
-from dentscope.models.published.viscous import alpha_for, hunt_crossley, kelvin_voigt, paradox
+from dentscope.studies.thesis.viscous import alpha_for, hunt_crossley, kelvin_voigt, paradox
 from scipy.integrate import solve_ivp
 
 MASS, STIFFNESS, DAMPING, SPEED = 0.05, 2e6, 120.0, 1.3

@@ -1,0 +1,59 @@
+"""Python processes that this one starts: none runs code of the folder that it happens to be in.
+
+A downloaded folder may hold a `numpy.py`. Python looks there first when it is started with `-m` or
+`-c`, unless told otherwise; the interpreters of multiprocessing are started like that.
+"""
+
+from __future__ import annotations
+
+import os
+import sys
+from contextlib import suppress
+from pathlib import Path
+
+_VARIABLE = "PYTHONSAFEPATH"
+
+
+def python_command(*arguments: str) -> list[str]:
+    """Return the command line of this Python with arguments, the current folder left out.
+
+    Examples
+    --------
+    >>> python_command("-m", "dentscope")[1:]
+    ['-P', '-m', 'dentscope']
+    """
+    return [sys.executable, "-P", *arguments]
+
+
+def keep_current_folder_out() -> None:
+    """Let Python processes that start from now on look for no modules in the current folder."""
+    os.environ[_VARIABLE] = "1"
+
+
+def forget_current_folder() -> None:
+    """Look for no more modules in the current folder, where `python -m` has put it first.
+
+    What was imported before is beyond reach: only `python -P -m` keeps it out from the beginning.
+    """
+    keep_current_folder_out()
+    if sys.flags.safe_path or not sys.path:
+        return
+    with suppress(OSError):  # a folder that was deleted meanwhile
+        if sys.path[0] in ("", os.getcwd()):
+            del sys.path[0]
+
+
+def plot_without_the_folders_settings() -> None:
+    """Load matplotlib such that a `matplotlibrc` of the current folder has no say.
+
+    It would come before the user's own. Pictures are drawn into files: a screen has no say either.
+    """
+    os.environ["MPLBACKEND"] = "agg"
+    if os.path.lexists("matplotlibrc"):
+        here = os.open(".", os.O_RDONLY)
+        os.chdir(Path(__file__).parent)
+        try:
+            import matplotlib  # noqa: F401
+        finally:
+            os.chdir(here)
+            os.close(here)

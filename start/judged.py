@@ -1,0 +1,228 @@
+"""How far contact laws are from finite elements: of the published pair nearest to one's own.
+
+Laws and finite elements answer for that same pair, over the depths that were asked for: force on
+loading, permanent depth and restitution, the root of the work given back over the work taken. The
+largest departure of the three is the law's number.
+"""
+
+from __future__ import annotations
+
+import math
+import warnings
+from collections.abc import Sequence
+from functools import cache
+from pathlib import Path
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ..campaigns import CaseRecord, read_curves
+from ..core.errors import InputError
+from ..core.material import Material, Pair
+from ..models import DomainWarning, critical_depth
+from ..models.base import ContactLaw
+
+FOLDER = Path(__file__).resolve().parents[1] / "data" / "campaign"
+USABLE = 0.10
+"""Largest departure of a law that may be used: that of a dent whose strength is off by a tenth."""
+
+_FAR = 0.5  # of `distance`, from which the nearest pair is called far
+_LEAST_DENT = 0.1  # of the depth: less says nothing about a law
+_NOTHING = 100.0  # times too little or too much: not to be counted in times
+_EVEN = 2.5  # ratio of strengths beyond which the stronger body hardly matters
+_STRAIN = 0.1  # plastic strain at which a curve's rise is compared
+_POINTS = 400  # of an integral of the work
+_HARDENS = ("hardening", "validation-hardening")
+_COARSE = "smoke"
+
+Array = NDArray[np.float64]
+
+
+class Departure(NamedTuple):
+    """How far a law is from finite elements: largest |ln(law/finite elements)| of each."""
+
+    force: float
+    dent: float
+    restitution: float
+
+    @property
+    def worst(self) -> float:
+        """The largest of the three; infinite where a law has no finite number."""
+        return max(x if math.isfinite(x) else math.inf for x in self)
+
+    @property
+    def told(self) -> str:
+        """In words: `within 3 %`, or by how many times and in what."""
+        if self.worst <= math.log(1.5):
+            return f"within {max(math.ceil(100.0 * math.expm1(self.worst)), 1)} %"
+        if not math.isfinite(self.worst):
+            return "no number"
+        name = self._fields[max(range(3), key=lambda k: self[k])]
+        if self.worst > math.log(_NOTHING):
+            return f"knows no {name}"
+        return f"off by {math.exp(self.worst):.2g} times in {name}"
+
+
+class Reference(NamedTuple):
+    """A solved pair, and how unlike one's own it is."""
+
+    pair: Pair
+    name: str
+    distance: float
+    depth: Array  # of loading [m]
+    force: Array  # [N]
+    turns: tuple[tuple[float, float, float], ...]  # depth [m], permanent depth [m], restitution
+
+    @property
+    def told(self) -> str:
+        """Which pair it is, in the numbers that a contact depends on."""
+        p = self.pair
+        far = "; no published pair is like yours" if self.distance > _FAR else ""
+        return (
+            f"finite elements of E'/S = {p.E_reduced / p.Sy_min:.3g}, Sy* = {p.Sy_ratio:.3g}, "
+            f"elastic share of the sphere {p.elastic_share:.2g}{far}"
+        )
+
+
+def nearest(pair: Pair, *, last: float) -> Reference | None:
+    """Return the published pair most like this one, with its results up to Delta/R = `last`.
+
+    None where nothing yields up to there: every law is then Hertz's.
+    """
+    if not critical_depth(pair) < last * pair.R:
+        return None
+    records = _published(pair.perfectly_plastic)
+    own = _groups(pair)
+    away = [float(np.linalg.norm(_groups(r.case.pair) - own)) for r in records]
+    best = int(np.argmin(away))
+    return _reference(records[best], away[best], last)
+
+
+def departure(law: ContactLaw, reference: Reference) -> Departure:
+    """Return how far a law is from the finite elements of a pair.
+
+    Raises
+    ------
+    InputError
+        The law is one of another pair.
+    """
+    pair = reference.pair
+    with warnings.catch_warnings(), np.errstate(all="ignore"):
+        warnings.simplefilter("ignore", DomainWarning)  # how far it is off is told
+        force = law.loading(pair, reference.depth)
+        peaks = np.array([turn[0] for turn in reference.turns])
+        left = np.add(*law.residual(pair, peaks))
+        back = [_restitution(law, pair, d, float(r)) for d, r in zip(peaks, left, strict=True)]
+        dents = np.array([turn[1] for turn in reference.turns])
+        seen = dents > _LEAST_DENT * peaks
+        return Departure(
+            _largest(force, reference.force), _largest(left[seen], dents[seen]),
+            _largest(np.array(back), np.array([turn[2] for turn in reference.turns])),
+        )  # fmt: skip
+
+
+def _largest(law: Array, solved: Array) -> float:
+    if not len(solved):
+        return 0.0
+    return float(np.max(np.abs(np.log(np.maximum(law, 1e-12 * solved) / solved))))
+
+
+def _restitution(law: ContactLaw, pair: Pair, peak: float, left: float) -> float:
+    taken = peak * np.linspace(0.0, 1.0, _POINTS) ** 2
+    given = left + (peak - left) * np.linspace(0.0, 1.0, _POINTS)
+    spent = np.trapezoid(law.loading(pair, taken), taken)
+    returned = np.trapezoid(law.unloading(pair, given, np.full(_POINTS, peak)), given)
+    return math.sqrt(max(float(returned / spent), 0.0))
+
+
+@cache
+def _published(perfectly_plastic: bool) -> tuple[CaseRecord, ...]:
+    """Completed cases of metals that harden, or of those that do not, none of them coarse.
+
+    Raises
+    ------
+    InputError
+        The published cases are missing or damaged.
+    """
+    parts = [
+        path for path in sorted(FOLDER.glob("*.h5"))
+        if path.name.startswith(_HARDENS) != perfectly_plastic
+        and not path.name.startswith(_COARSE)
+    ]  # fmt: skip
+    found = [
+        record for path in parts for record in read_curves(path)
+        if record.unloadings and record.case.pair.perfectly_plastic == perfectly_plastic
+        and math.isfinite(record.case.pair.Sy_min)
+    ]  # fmt: skip
+    if not found:
+        raise InputError("no published cases", source=str(FOLDER), allowed="the parts of a release")
+    return tuple(found)
+
+
+def _groups(pair: Pair) -> Array:
+    """What a contact depends on, each about one wide over the published pairs."""
+    ratio = min(max(pair.Sy_ratio, 1.0 / _EVEN), _EVEN)
+    groups = [
+        math.log(pair.E_reduced / pair.Sy_min) / 1.2, 2.0 * math.log(ratio) / 1.2,
+        (pair.elastic_share - 0.5) / 0.22, (_nu(pair.weaker) - 0.3) / 0.1, 5.0 * _rise(pair.weaker),
+    ]  # fmt: skip
+    return np.array(groups)
+
+
+def _nu(body: Material) -> float:
+    return 0.3 if body.rigid else body.nu
+
+
+def _rise(body: Material) -> float:
+    curve = body.flow.curve if body.flow else None
+    return math.log(curve(_STRAIN) / curve.strength) if curve else 0.0
+
+
+def _reference(record: CaseRecord, distance: float, last: float) -> Reference:
+    pair, c = record.case.pair, record.curve
+    inside = c["delta"] <= last * pair.R * (1.0 + 1e-9)
+    inside[: min(5, len(inside))] = True
+    yielded = [u for u in record.unloadings if u.depth * pair.R > critical_depth(pair)]
+    # one turn beyond the range where none lies in it
+    turns = [u for u in yielded if u.depth <= last * (1.0 + 1e-9)] or yielded[:1]
+    spent = _work(c["delta"], c["force"])
+    rows = []
+    for u in turns:
+        depth = u.depth * pair.R
+        delta, force = u.curve["delta"], u.curve["force"]
+        order = np.argsort(delta)
+        returned = float(np.trapezoid(force[order], delta[order]))
+        taken = float(np.interp(depth, c["delta"], spent))
+        rows.append(
+            (depth, u.residual_sphere + u.residual_flat, math.sqrt(max(returned, 0.0) / taken))
+        )
+    return Reference(
+        pair, record.case.name, distance, c["delta"][inside], c["force"][inside], tuple(rows)
+    )
+
+
+def _work(delta: Array, force: Array) -> Array:
+    """Work of loading up to each depth; a power law between the depths, Hertz's before."""
+    power = np.diff(np.log(force)) / np.diff(np.log(delta))
+    step = (force[1:] * delta[1:] - force[:-1] * delta[:-1]) / (power + 1.0)
+    spent: Array = np.concatenate([[0.0], np.cumsum(step)]) + 0.4 * force[0] * delta[0]
+    return spent
+
+
+def judged(
+    pair: Pair, laws: Sequence[ContactLaw], *, last: float
+) -> tuple[Reference | None, dict[str, Departure]]:
+    """Return the solved pair nearest to one's own, and how far each law is from it.
+
+    A law that was made for one's own pair alone (law.json) has no number.
+    """
+    reference = nearest(pair, last=last)
+    found: dict[str, Departure] = {}
+    if reference is not None:
+        for law in laws:
+            try:
+                found[law.name] = departure(law, reference)
+            except InputError:  # the table of another pair
+                continue
+    return reference, found

@@ -1,0 +1,139 @@
+"""A sweep ends whatever bodies, support and angle it is for, and its answers are those of a blow.
+
+All of them, with processor seconds and memory: python benchmarks/bench_sweeps.py.
+"""
+
+from __future__ import annotations
+
+import itertools
+import math
+from typing import Any
+
+import numpy as np
+import pytest
+from dentscope.core.errors import InputError
+from dentscope.impact import strike, tabulated
+from dentscope.impact.files.setup import DEFAULT_LAWS, setup_of
+from dentscope.impact.tabulated.cells import MOST_CELLS, cells_of
+from dentscope.impact.tabulated.energy_route import NAMES, energy_impacts
+from dentscope.impact.tabulated.energy_table import energy_table
+from dentscope.models import LAWS
+
+_STEEL = {"E_Pa": 2.0e11, "nu": 0.3, "density_kg_m3": 7800.0}
+_RIGID = {"rigid": True, "density_kg_m3": 7800.0}
+
+
+def _of(strength: float, nu: float = 0.3) -> dict[str, Any]:
+    return {**_STEEL, "nu": nu, "Sy_Pa": strength}
+
+
+BODIES = {
+    "weaker ball": (_of(1.0e9, 0.32), _of(5.0e9)),
+    "weaker flat": (_of(5.0e9), _of(1.0e9)),
+    "equal": (_of(1.0e9), _of(1.0e9)),
+    "near-equal": (_of(1.0e9), _of(1.05e9)),
+    "rigid flat": (_of(1.0e9, 0.32), _RIGID),
+    "rigid ball": (_RIGID, _of(1.0e9)),
+    "elastic": (_STEEL, _STEEL),
+}
+SUPPORTS = ("rigid", "plate", "half-space", "sprung")
+ANGLES = (90.0, 45.0)
+SPEEDS = (1.0, 2.0, 600.0)
+"""The last one presses metals in so far that no published law is meant for it."""
+
+CASES = [
+    case for case in itertools.product(BODIES, SUPPORTS, ANGLES)
+    # what does not deform carries no waves
+    if case[0] != "rigid flat" or case[1] not in ("plate", "half-space")
+]  # fmt: skip
+
+
+def setup_for(bodies: str, support: str, angle: float, laws: tuple[str, ...] = DEFAULT_LAWS) -> Any:
+    ball, flat = BODIES[bodies]
+    more = {
+        "plate": {"thickness_m": 0.02},
+        "sprung": {"support_mass_kg": 0.5, "support_stiffness_N_m": 1e6},
+    }.get(support, {})
+    content = {
+        "target": {**flat, **more},
+        "strikers": {"ball": {"shape": "sphere", "tip_radius_m": 0.01, **ball}},
+        **({"friction": {"coefficient": 0.1}} if angle < 90.0 else {}),
+        "impact": {
+            "impact_speed_m_s": 1.0, "support": support, "angle_deg": angle, "laws": list(laws)
+        },
+        "sweep": {"impact_speed_m_s": list(SPEEDS)},
+    }  # fmt: skip
+    return setup_of(content, source="sweep")
+
+
+def assert_swept(bodies: str, support: str, angle: float) -> None:
+    """Every law's sweep ends, and where it completed every number is one."""
+    setup = setup_for(bodies, support, angle)
+    for name in setup.laws:
+        found = setup.swept(LAWS[name])
+        completed = found["outcome"] == "completed"
+        assert completed[:2].all()
+        for column in ("restitution", "peak_force_N", "contact_time_s"):
+            assert np.isfinite(found[column][completed]).all()
+        single = strike(setup.scene(LAWS[name]), setup.settings)
+        assert found["restitution"][0] == pytest.approx(single.restitution, abs=2e-5)
+
+
+# every second combination, so that each body, support and angle is among them
+@pytest.mark.parametrize(("bodies", "support", "angle"), CASES[::2] + CASES[1::6])
+def test_a_sweep_ends(bodies: str, support: str, angle: float) -> None:
+    assert_swept(bodies, support, angle)
+
+
+def test_a_ball_softer_than_a_rigid_flat_by_ghaednia() -> None:
+    # single impacts, integrated in steps
+    found = setup_for("rigid flat", "rigid", 90.0).swept(LAWS["ghaednia"])
+    assert found["restitution"][:2] == pytest.approx([0.4903, 0.4578], abs=1e-4)
+    assert list(found["route"]) == ["work", "work", "steps"]
+
+
+def test_a_law_that_jumps_is_tabled_up_to_there() -> None:
+    law, scene = LAWS["ghaednia"], setup_for("rigid flat", "rigid", 90.0).scene(LAWS["ghaednia"])
+    table = energy_table(law, scene.pair)
+    assert not table.outcome.completed
+    assert table.count < MOST_CELLS
+    assert (~np.isfinite(table.vector)).sum() == 1  # behind the last cell
+    answered = np.isfinite(
+        energy_impacts(
+            law, scene.pair, np.full(3, scene.striker.mass), np.array(SPEEDS), gravity=9.81
+        )[:, NAMES.index("restitution")]
+    )
+    assert answered.tolist() == [True, True, False]
+    with pytest.raises(InputError, match="ghaednia cannot be tabulated: the table ends at"):
+        tabulated(law).table(scene.pair)
+
+
+@pytest.mark.parametrize(
+    ("rest", "end"),
+    [
+        (lambda x: np.sin(1e9 * x), 0.5),  # finer than any cell
+        (lambda x: np.full_like(x, np.nan), 0.5),
+        (lambda x: np.random.default_rng(1).normal(size=x.shape), 0.5),
+        (lambda x: 1.0 / (0.75 - x), 0.75),
+    ],
+)
+def test_cells_end_before_what_they_cannot_hold(rest: Any, end: float) -> None:
+    asked = 0
+
+    def function(x: Any) -> Any:
+        nonlocal asked
+        asked += len(x)
+        return np.where(x < 0.5, x**2, rest(x))[:, None]
+
+    table = cells_of(function, 0.0, 1.0, tolerance=1e-9)
+    assert table.high == pytest.approx(end, abs=0.05)
+    assert not table.outcome.completed
+    assert table.outcome.advice
+    assert asked < 14 * (MOST_CELLS + 256)
+    assert (~np.isfinite(table.vector)).sum() == 1  # behind the last cell
+
+
+def test_nothing_is_tabled_of_a_function_that_is_no_number() -> None:
+    table = cells_of(lambda x: np.full((len(x), 2), math.nan), 0.0, 1.0, tolerance=1e-9)
+    assert (table.count, table.high) == (0, 0.0)
+    assert not table.outcome.completed

@@ -1,0 +1,90 @@
+"""A folder from elsewhere runs no code, whatever its files are called."""
+
+import os
+import re
+import subprocess
+import sys
+from pathlib import Path
+
+import dentscope
+import pytest
+
+ROOT = Path(dentscope.__file__).parent
+TRAPS = ("numpy", "threading", "gmsh", "pyvista", "pickle", "matplotlib", "pandas", "typer", "rich")
+
+# Each way in which a command starts a process of its own.
+WAYS = {
+    "a file read within limits": """
+from dentscope.core.confined import confined
+from dentscope.core.errors import printable
+assert confined(printable, "a", source="x") == "a"
+""",
+    "a worker": """
+from dentscope.campaigns.workers import answers
+assert [a.value for _, a in answers(len, {"one": ("abc",)}, workers=1, timeout_s=100.0)] == [3]
+""",
+    "a process for a library": """
+import subprocess
+from dentscope.core.children import python_command
+subprocess.run(python_command("-c", "import numpy, pickle, threading"), check=True)
+""",
+    "help": """
+import sys
+from dentscope.__main__ import main
+sys.argv = ["dentscope", "laws", "list"]
+main()
+""",
+}
+
+
+@pytest.fixture
+def trapped(tmp_path: Path) -> Path:
+    folder = tmp_path / "downloaded"
+    (folder / "dentscope").mkdir(parents=True)
+    trap = f"open({str(tmp_path / 'ran')!r}, 'w').write(__file__)\nraise SystemExit(99)\n"
+    for name in TRAPS:
+        (folder / f"{name}.py").write_text(trap)
+    (folder / "dentscope" / "__init__.py").write_text(trap)
+    (folder / "matplotlibrc").write_text("backend: module://numpy\nnonsense\n")
+    return folder
+
+
+def _run(arguments: list[str], cwd: Path) -> subprocess.CompletedProcess[str]:
+    env = {k: v for k, v in os.environ.items() if k not in ("PYTHONSAFEPATH", "PYTHONPATH")}
+    return subprocess.run(
+        [sys.executable, *arguments], cwd=cwd, env=env, capture_output=True, text=True, check=False
+    )
+
+
+@pytest.mark.parametrize("way", WAYS)
+def test_no_child_takes_code_from_the_current_folder(trapped: Path, way: str) -> None:
+    # as the installed command: a script of another folder
+    script = trapped.parent / "bin" / "script.py"
+    script.parent.mkdir()
+    body = WAYS[way].replace("\n", "\n    ")
+    script.write_text(f"if __name__ == '__main__':\n    pass{body}\n")
+    answer = _run([str(script)], trapped)
+    assert not (trapped.parent / "ran").exists(), (trapped.parent / "ran").read_text()
+    assert answer.returncode == 0, answer.stderr
+
+
+def test_python_m_forgets_the_current_folder(trapped: Path) -> None:
+    # a package or a module of the standard library found before is beyond reach without -P
+    for name in ("dentscope/__init__", "threading", "pickle"):
+        (trapped / f"{name}.py").unlink()
+    (trapped / "dentscope").rmdir()
+    answer = _run(["-m", "dentscope", "laws", "list"], trapped)
+    assert not (trapped.parent / "ran").exists(), (trapped.parent / "ran").read_text()
+    assert answer.returncode == 0, answer.stderr
+
+
+def test_pythons_are_started_in_one_place() -> None:
+    pattern = re.compile(r"sys\.executable")
+    users = {
+        str(path.relative_to(ROOT))
+        for stage in ("core", "cli", "reduce", "recordings", "campaigns", "studies", "start", "fem",
+                      "models", "impact", "fitting", "discrepancy")
+        for path in (ROOT / stage).rglob("*.py")
+        if pattern.search(path.read_text(encoding="utf-8"))
+    }  # fmt: skip
+    assert users == {"core/children.py"}

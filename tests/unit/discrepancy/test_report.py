@@ -1,0 +1,87 @@
+"""The report draws what its legend says, and its sentences do not contradict each other."""
+
+from __future__ import annotations
+
+import math
+from types import SimpleNamespace
+from typing import Any
+
+import pytest
+from dentscope.discrepancy.locate import Located, Miss
+from dentscope.discrepancy.report.figures import comparison
+from dentscope.discrepancy.report.series import STATED, WITH, WITHOUT, Against, Point
+from dentscope.discrepancy.report.text import headline, nowhere
+from dentscope.discrepancy.report.wording import compared, miss_sentences
+
+SPEED = Against("speed_m_s", "approach speed [m/s]", None)  # type: ignore[arg-type]
+
+
+def point(speed: float, *, with_verdict: float = math.nan) -> Point:
+    return Point(
+        "restitution", "-", "ball", 1, 3, {"speed_m_s": speed}, 0.50, 0.49, 0.51, 0.80, 0.60,
+        with_verdict, weight=True,
+    )  # fmt: skip
+
+
+def miss(z: float) -> Miss:
+    return Miss("restitution", "free-flight", "overall", "recordings lie above", z)
+
+
+def said(
+    verdict: str, nothing: float, located: Located, *, rest: float = 0.0, reasons: Any = ()
+) -> Any:
+    return SimpleNamespace(
+        verdict=verdict, located=located, reasons=reasons, inclusion={},
+        probabilities={"baseline": nothing, "work-hardening": 1.0 - nothing},
+        misfit={"as_stated": 650.0, "numbers": 40.0, "rest": rest},
+        choice=SimpleNamespace(alike=()),
+    )  # fmt: skip
+
+
+def test_a_figure_draws_three_simulations_and_calls_each_by_what_it_is(page_of: Any) -> None:
+    svg = comparison([point(1.0, with_verdict=0.505), point(2.0, with_verdict=0.505)], SPEED,
+                     ["ball"], key="f")  # fmt: skip
+    for colour in ("--faint", "--without", "--verdict"):
+        assert f"var({colour})" in svg
+    assert f"{STATED} 0.8; {WITHOUT} 0.6; {WITH} 0.505" in svg
+    alone = comparison([point(1.0), point(2.0)], SPEED, ["ball"], key="f")
+    assert "var(--verdict)" not in alone
+    assert WITH not in alone
+
+
+@pytest.mark.parametrize(
+    ("before", "after", "begins"),
+    [(2.9, 1.8, "better"), (1.31, 1.29, "no better"), (1.0, 1.31, "worse")],
+)
+def test_better_is_said_only_where_the_printed_number_is(before, after, begins) -> None:
+    assert compared(before, after).startswith(begins)
+
+
+def test_a_place_below_chance_is_no_miss() -> None:
+    located = Located((), (miss(1.8),), 3.0)
+    assert located.misses == (miss(1.8),)
+    assert miss_sentences(located, most=4) == ()
+    (told,) = miss_sentences(Located((miss(6.0),), (), 3.0), most=4)
+    assert "2.0 times what chance gives" in told
+
+
+def test_no_place_and_no_all_clear_says_why() -> None:
+    nothing_seen = Located((), (miss(1.8),), 3.0)
+    told = nowhere(said("missing-physics", 0.02, nothing_seen))
+    assert "2 %" in told
+    assert "moved within their uncertainties" in told
+    told = nowhere(said("missing-physics", 0.02, nothing_seen, rest=0.8))
+    assert "each place by itself misses too little" in told
+    assert nowhere(said("adequate", 0.9, nothing_seen)).startswith("Nowhere beyond")
+
+
+def test_a_place_under_an_all_clear_says_why() -> None:
+    seen = Located((miss(3.2),), (), 3.0)
+    assert "one set of twenty" in nowhere(said("adequate", 0.9, seen))
+    assert nowhere(said("missing-physics", 0.02, seen)) == ""
+
+
+def test_undetermined_says_what_leads() -> None:
+    told = headline(said("undetermined", 0.32, Located((), (), 3.0)))
+    assert "nothing is missing 32 %" in told
+    assert "68 %" in told

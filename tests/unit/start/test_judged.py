@@ -1,0 +1,88 @@
+"""Contact laws judged by finite elements of the published pair nearest to one's own."""
+
+import math
+
+import numpy as np
+import pytest
+from dentscope.core import Material, Pair
+from dentscope.models import LAWS
+from dentscope.start.comparison import compare_laws
+from dentscope.start.judged import Departure, departure, nearest
+
+ALUMINIUM = Material(E=7.0e10, nu=0.33, Sy=3.0e8)
+STEEL = Material(E=2.1e11, nu=0.3, Sy=8.0e8)
+PAIR = Pair(ALUMINIUM, STEEL, 2.5e-3)
+
+
+@pytest.fixture(scope="module")
+def found():
+    return compare_laws(PAIR, max_delta_over_R=0.01)
+
+
+def test_what_is_recommended_lies_near_the_finite_elements(found):
+    """Finite elements of this pair have 266 N at Delta/R = 0.01; thornton says 94, stronge 312."""
+    assert found.best[0] == "fitted"
+    assert all(found.departures[name].worst <= 0.1 for name in found.best)
+    last = {row.law: row.force_N for row in found.last_rows()}
+    assert {name: last[name] for name in found.best} == pytest.approx(
+        dict.fromkeys(found.best, 266.0), rel=0.03
+    )
+    for name in ("thornton", "stronge", "ghaednia", "ceb", "hertz"):
+        assert found.departures[name].worst > math.log(1.5)
+    assert found.departures["thornton"].told == "off by 2.8 times in force"
+    assert found.told("hertz") == "knows no dent"
+
+
+def test_restitutions_of_what_is_recommended_agree(found):
+    """Side by side stood laws whose restitution is 0.926 and 0.492."""
+    from dentscope.impact import Approach, Striker, scene_of, strike
+
+    ball = Striker(mass=1.77e-4, tip_radius=PAIR.R)
+    e = [
+        strike(
+            scene_of(LAWS[name], sphere=ALUMINIUM, flat=STEEL, striker=ball, approach=Approach(1.0))
+        ).restitution
+        for name in found.best
+    ]
+    assert max(e) - min(e) < 0.03
+
+
+def test_the_nearest_pair_is_itself_where_it_was_solved():
+    own = nearest(PAIR, last=0.01).pair
+    bodies = (own.sphere.with_(E=2.0 * own.sphere.E, Sy=2.0 * own.sphere.Sy),
+              own.flat.with_(E=2.0 * own.flat.E, Sy=2.0 * own.flat.Sy))  # fmt: skip
+    again = nearest(Pair(*bodies, 7.0 * own.R), last=0.01)
+    assert again.distance == pytest.approx(0.0, abs=1e-9)
+    assert again.pair.R == own.R
+
+
+def test_a_law_that_is_twice_as_stiff_is_off_by_two():
+    reference = nearest(PAIR, last=0.01)
+    own = departure(LAWS["fitted"], reference)
+    doubled = reference._replace(force=2.0 * reference.force)
+    assert departure(LAWS["fitted"], doubled).force == pytest.approx(math.log(2.0), abs=own.force)
+    assert Departure(math.log(2.0), 0.0, 0.0).told == "off by 2 times in force"
+    assert Departure(0.028, 0.0, 0.01).told == "within 3 %"
+    assert Departure(math.nan, 0.0, 0.0).told == "no number"
+
+
+def test_the_works_of_the_reference_are_those_of_its_curves():
+    """Restitution against an integral by hand, of a path that is Hertz's below the first depth."""
+    reference = nearest(PAIR, last=0.01)
+    depth, left, e = reference.turns[-1]
+    assert 0.0 < left < depth
+    d = np.linspace(0.0, 1.0, 4000)
+    spent = np.trapezoid(LAWS["fitted"].loading(reference.pair, d * depth), d * depth)
+    x = left + (depth - left) * d
+    back = np.trapezoid(LAWS["fitted"].unloading(reference.pair, x, np.full(4000, depth)), x)
+    assert e == pytest.approx(math.sqrt(back / spent), rel=0.02)
+
+
+def test_below_first_yield_every_law_is_hertz():
+    found = compare_laws(PAIR, law=["fitted", "hertz"], max_delta_over_R=1e-5)
+    assert found.best == ("hertz",)
+    assert found.departures == {}
+    assert found.table()[0][3] == "p/Sy_min"
+    elastic = compare_laws(Pair(Material(E=7e10, nu=0.3), Material(E=2e11, nu=0.3), 1e-3))
+    assert elastic.table()[0][3] == "p/E'"
+    assert elastic.best == ("hertz",)
