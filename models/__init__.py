@@ -4,9 +4,9 @@ from __future__ import annotations
 
 from difflib import get_close_matches
 
-from ..core.added import LAWS as LAW_GROUP
-from ..core.added import added, names_added
 from ..core.errors import InputError
+from ..core.inputs.added import LAWS as LAW_GROUP
+from ..core.inputs.added import added, names_added
 from .base import ContactLaw, Domain, DomainWarning, Kernels
 from .coefficients import shipped_laws
 from .kernel import critical_depth, critical_force, yield_constant
@@ -29,7 +29,7 @@ def law_named(name: str) -> ContactLaw:
     `one+other` is one's loading with the other's unloading; the path of a law.json, or of the
     folder in which `dentscope case` wrote it, is the law of that pair; the path of a fitted.json
     that `dentscope fit` wrote is its law (`fitted.json:compact`, `:hardening`: the others).
-    Another package may add laws (`core.added`).
+    Another package may add laws (`core.inputs.added`).
 
     Raises
     ------

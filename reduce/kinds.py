@@ -5,7 +5,7 @@ whose fields have a description; field names end in their unit); `kind.py` with
 `reduce(path, options) -> Reduced`, loaded when a file is reduced; and `picture.py`, which draws the
 picture to check the numbers by. The command line and the recipes make their options from
 `Options`, so that an option is written once. Another package adds a kind as one module with `ABOUT`
-(what it gives), `Options` and `reduce` (`core.added`).
+(what it gives), `Options` and `reduce` (`core.inputs.added`).
 """
 
 from __future__ import annotations
@@ -16,8 +16,8 @@ from pathlib import Path
 from types import ModuleType
 from typing import TYPE_CHECKING, Any
 
-from ..core.added import READERS, added, names_added
 from ..core.errors import InputError
+from ..core.inputs.added import READERS, added, names_added
 from ..core.inputs.input_file import checked_file
 from ..core.inputs.toml_input import InputTable, parse_model
 

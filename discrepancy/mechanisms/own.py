@@ -4,9 +4,9 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 
-from ...core.added import MECHANISMS as GROUP
-from ...core.added import added, names_added
 from ...core.errors import InputError
+from ...core.inputs.added import MECHANISMS as GROUP
+from ...core.inputs.added import added, names_added
 from . import MECHANISMS, NAMELESS
 from .base import Mechanism
 

@@ -6,7 +6,8 @@ from types import SimpleNamespace
 
 import dentscope as ds
 import pytest
-from dentscope.core import InputError, added
+from dentscope.core import InputError
+from dentscope.core.inputs import added
 from dentscope.core.inputs.toml_input import InputTable
 from dentscope.discrepancy.mechanisms import MECHANISMS
 from dentscope.discrepancy.mechanisms.own import own_mechanisms, uncovered

@@ -13,7 +13,7 @@ from __future__ import annotations
 from importlib.metadata import EntryPoint, entry_points
 from typing import Any
 
-from .errors import InputError
+from ..errors import InputError
 
 LAWS, MECHANISMS, READERS = "dentscope.laws", "dentscope.mechanisms", "dentscope.readers"
 """Groups: a `ContactLaw`, a `Mechanism`, a module with `ABOUT`, `Options` and `reduce`."""
