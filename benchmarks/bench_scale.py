@@ -3,17 +3,18 @@
     .venv/bin/python benchmarks/bench_scale.py          about six minutes; 2 GB of disk, 4 of memory
     .venv/bin/python benchmarks/bench_scale.py --quick  about one, at a tenth of the sizes
 
-Published cases, copied with a Poisson ratio smaller by a millionth each, go into a run one by one
-through `Store.put`. Everything that is timed goes through the functions that the commands use, each
-in a process of its own for its peak of memory (what the process held before is taken off). The last
-column is the share of one case in the largest over that in the smallest, or of one call where the
-row says `one`: 1 where nothing grows. The cluster, workers and scheduler too, lies in this one
-process, over tcp, and solves nothing.
+Published cases, copied with a Poisson ratio smaller by a millionth each, go one by one through
+`Store.put` into runs that hold so many files already (links to the first few). Everything that is
+timed goes through the functions that the commands use, each in a process of its own for its peak of
+memory (what the process held before is taken off). The last column is the share of one case in the
+largest over that in the smallest, or of one call where the row says `one`: 1 where nothing grows.
+The cluster, workers and scheduler too, lies in this one process, over tcp, and solves nothing.
 """
 
 from __future__ import annotations
 
 import argparse
+import hashlib
 import json
 import multiprocessing
 import resource
@@ -23,7 +24,6 @@ import time
 import tracemalloc
 from collections.abc import Callable, Iterable
 from dataclasses import replace
-from functools import partial
 from pathlib import Path
 from typing import Any
 
@@ -41,6 +41,7 @@ from dentscope.campaigns import (
     read_published,
 )
 from dentscope.campaigns.parts import CHECKSUMS, part_of
+from dentscope.campaigns.store import file_of
 from dentscope.core.errors import Ending, InputError, Outcome
 from dentscope.fem.solution import Counters, Curve, Profile, Unloading
 from dentscope.recordings import read
@@ -121,45 +122,51 @@ def show(title: str, sizes: Iterable[int], rows: list[tuple[str, str, list[float
         print(f"{f'{name} [{unit}]':44}{shown}   x {each:.2f}", flush=True)
 
 
-def put_all(folder: Path, records: list[CaseRecord], size: int, *, ends: list[int]) -> list[float]:
-    """Put so many cases; return processor seconds of one put over the last tenth before each end.
+def put_all(folder: Path, records: list[CaseRecord], number: int = 0) -> tuple[float, float]:
+    """Put copies of some cases; return processor seconds and bytes of one put.
 
     The solutions are made before: what a put costs is the store's.
     """
     solutions = [solution_of(record) for record in records]
-    specs = [record.case.specification() for record in records]
-    store, seconds = Store(folder), []
-    for k in range(size):
-        number = k % len(records)
-        case = neighbour(specs[number], 1 + k // len(records))
-        started = time.process_time()
-        store.put(case, solutions[number], computed_by=records[number].environment)
-        seconds.append(time.process_time() - started)
-    return [float(np.mean(seconds[end - end // 10 : end])) for end in ends]
+    cases = [neighbour(record.case.specification(), 1 + number) for record in records]
+    store = Store(folder)
+    started = time.process_time()
+    for record, case, solution in zip(records, cases, solutions, strict=True):
+        store.put(case, solution, computed_by=record.environment)
+    gone = time.process_time() - started
+    sizes = [file_of(folder, case.id, "done").stat().st_size for case in cases]
+    return gone / len(records), float(np.mean(sizes))
+
+
+def filled(folder: Path, size: int) -> None:
+    """Let a run hold so many files of cases, links to those that are there."""
+    there = Store(folder).files()
+    for k in range(len(there), size):
+        name = hashlib.sha256(str(k).encode()).hexdigest()
+        place = file_of(folder, name, "done")
+        place.parent.mkdir(parents=True, exist_ok=True)
+        place.hardlink_to(there[k % len(there)])
 
 
 def stores(folder: Path, records: list[CaseRecord], sizes: list[int]) -> None:
     """What each call on a run costs."""
     some = records[:: len(records) // BASE][:BASE]  # the same cases again and again
     place = folder / "run"
-    wall, _, one = apart(partial(put_all, ends=sizes), place, some, sizes[-1])
-    written = sorted(Store(place).files(), key=lambda file: file.stat().st_mtime_ns)
-    print(f"\n{len(written):,} cases put in {wall:.0f} s")
-    sized = [float(np.mean([f.stat().st_size for f in written[end - end // 10 : end]])) / 1e3
-             for end in sizes]  # fmt: skip
-    show("A run of so many cases", sizes, [
-        ("one put", "processor s", one), ("one put", "kB", sized),
+    put_all(place, some)
+    puts = []
+    for number, size in enumerate(sizes, start=1):
+        filled(place, size)
+        puts.append(apart(put_all, place, some, number)[2])
+    show("A put where so many cases are stored", sizes, [
+        ("one put", "processor s", [put[0] for put in puts]),
+        ("one put", "kB", [put[1] / 1e3 for put in puts]),
     ])  # fmt: skip
-    wanted = next(iter(Store(place).statuses()))
-    for name, call in (
-        ("statuses", Store(place).statuses),
-        ("summaries", partial(_counted, Store(place).summaries)),
-        ("one case", partial(_counted, Store(place).read, wanted)),
-    ):
-        gone, peak, _ = apart(call)
-        print(f"{name} of {len(written):,} cases: {gone:.2f} s, {peak:.0f} MB held")
+    gone, peak, _ = apart(Store(place).statuses)
+    print(f"statuses of {sizes[-1]:,} cases: {gone:.2f} s, {peak:.0f} MB held")
     few = folder / "few"
-    put_all(few, some, len(some), ends=[len(some)])
+    put_all(few, some)
+    gone, peak, _ = apart(_counted, Store(few).summaries)
+    print(f"summaries of {len(some)} cases: {gone / len(some) * 1e3:.1f} ms each")
     gone, peak, _ = apart(_counted, Store(few).read_all)
     print(f"read_all of {len(some)} cases: {gone / len(some) * 1e3:.1f} ms and "
           f"{peak / len(some):.2f} MB each")  # fmt: skip
@@ -210,7 +217,7 @@ def parts(folder: Path, records: list[CaseRecord], factors: list[int], base: int
 def _published_too_much(folder: Path) -> str:
     """Three more parts beside those of today."""
     some, place = folder / "some", folder / "published"
-    put_all(some, read_published(PUBLISHED)[:40], 40, ends=[40])
+    put_all(some, read_published(PUBLISHED)[:40])
     shutil.copytree(PUBLISHED, place)
     own = Store(some).read_all()
     design = Design("bench", "", lambda: tuple(record.case for record in own))
@@ -374,7 +381,7 @@ def main() -> None:
     with tempfile.TemporaryDirectory() as name:
         folder = Path(name)
         recordings(folder, *((100, [2_000, 20_000]) if quick else (1000, [20_000, 200_000])))
-        stores(folder, records, [100, 300, 1000] if quick else [100, 1000, 10_000])
+        stores(folder, records, [20, 100, 1000] if quick else [20, 100, 1000, 10_000, 100_000])
         parts(folder, records[:: 10 if quick else 1], [1] if quick else [1, 3, 10], base)
         coordinator(records[::10], sizes)
         ledger(folder, [200, 2_000] if quick else [200, 2_000, 20_000])

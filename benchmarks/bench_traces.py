@@ -1,4 +1,4 @@
-"""What traces alone add to detection: the table of docs/diagnose.md.
+"""What traces alone add to detection.
 
     .venv/bin/python benchmarks/bench_traces.py
 

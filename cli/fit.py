@@ -2,9 +2,9 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Sequence
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated, Any, NamedTuple
+from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
@@ -19,8 +19,7 @@ from .shared.terminal import show_table
 if TYPE_CHECKING:
     from rich.console import Console
 
-    from ..fitting import Errors, ResidualTable, Table
-    from ..fitting.report import Within
+    from ..fitting import ResidualTable, Table
     from ..models.fitted import ClosedForm
     from ..models.hardening import HardeningLaw
 
@@ -79,8 +78,8 @@ def fit(
 
 def _refit(files: list[Path], out: Path, console: Console, *, publish: bool, compare: bool) -> int:
     """Fit, show what came out, and write coefficients and report."""
-    from ..fitting import fit_laws, read_tables
-    from ..fitting.coefficients import coefficients_content, write_coefficients
+    from ..fitting.coefficients import write_coefficients
+    from ..fitting.refit import refit
     from ..fitting.report import (
         coefficient_rows,
         error_rows,
@@ -88,30 +87,24 @@ def _refit(files: list[Path], out: Path, console: Console, *, publish: bool, com
         uncertainty_rows,
         write_report,
     )
-    from ..models.coefficients import laws_from
 
-    table, turns = read_tables(files)
-    console.print(
-        f"{', '.join(map(str, files))}: {len(table.pairs)} combinations, {len(table.D)} depths, "
-        f"{len(turns.D)} unloadings; fitting, then leaving combinations out ..."
-    )
-    result = fit_laws(table, turns)
-    content = coefficients_content(result, table, files)
-    hardens = _with_hardening(content, files, console)
+    found = refit(files, progress=console.print)
+    result, content = found.laws, found.content
     write_coefficients(content, out / "fitted.json")
     _show(console, coefficient_rows(content))
-    validation = _validation(files, laws_from(content, source="this fit"))
     columns = [
         ("compact, left out", result.compact.held_out),
         ("fitted, left out", result.fitted.held_out),
-        *((f"{name}, validation", errors) for name, errors in validation),
+        *((f"{name}, validation", errors) for name, errors in found.validation),
     ]
     _show(console, error_rows(columns))
     _show(console, uncertainty_rows(stated_within(content)))
-    if hardens:
+    if found.hardens:
         _show_hardening(console, content)
-    more = _compared(content, table, turns, out, console) if compare else []
-    page = write_report(result, content, table, turns, out, validation=validation, more=more)
+    more = _compared(content, found.table, found.turns, out, console) if compare else []
+    page = write_report(
+        result, content, found.table, found.turns, out, validation=found.validation, more=more
+    )
     console.print(f"coefficients: {out / 'fitted.json'}; report: {page}")
     if publish:
         _publish(content, out)
@@ -122,43 +115,26 @@ def _refit(files: list[Path], out: Path, console: Console, *, publish: bool, com
     return 0
 
 
-def _with_hardening(content: dict[str, Any], files: Sequence[Path], console: Console) -> bool:
-    """Fit the law of metals that harden to the laws of a content, and put it there."""
-    from ..fitting.coefficients import hardening_content
-    from ..fitting.hardening import fit_hardening, hardening_records, judged_designs
-    from ..models.coefficients import laws_from
-    from ..models.hardening import hardening_law
-
-    records = hardening_records(files)
-    if not records:
-        return False
-    console.print(f"{len(records)} combinations that harden; fitting their law ...")
-    fitted = laws_from(content, source="this fit")[1]
-    found = fit_hardening(fitted, records)
-    judged = judged_designs(hardening_law(fitted, found.correction), files)
-    content["hardening"] = hardening_content(found, files, judged=judged)
-    return True
-
-
 def _refit_hardening(files: list[Path], out: Path, console: Console, *, publish: bool) -> int:
     """Fit the law of metals that harden to the other coefficients in use."""
     from ..core.output import write_file
     from ..fitting.coefficients import write_coefficients
+    from ..fitting.refit import refit_hardening
     from ..models.coefficients import COEFFICIENTS_FILE, drawn_from, read_coefficients
 
     content = read_coefficients()
     if content is None:
         raise InputError("none in use", key="coefficients", allowed="`dentscope fit` first")
     content["drawn_from"] = drawn_from()
-    if not _with_hardening(content, files, console):
+    if not refit_hardening(content, files, progress=console.print):
         raise InputError("no metals that harden", key="campaigns", allowed="design hardening")
     _show_hardening(console, content)
-    text = write_coefficients(content, out / "fitted.json")
-    console.print(f"coefficients: {text}")
+    written = write_coefficients(content, out / "fitted.json")
+    console.print(f"coefficients: {written}")
     if publish:
         from ..studies.closed_form.page import published_section, update_page
 
-        write_file(COEFFICIENTS_FILE, text.read_bytes())
+        write_file(COEFFICIENTS_FILE, written.read_bytes())
         update_page(_PAGE, published_section(content))
         console.print("the law of metals that harden now uses these coefficients")
     return 0
@@ -230,39 +206,6 @@ def _check_kind(path: Path) -> None:
             raise InputError("not a campaign file", source=str(path), allowed=allowed)
 
 
-class _Found(NamedTuple):
-    """What unseen pairs say of the laws."""
-
-    errors: list[tuple[str, Errors]]  # by law
-    within: Mapping[str, Within]
-    names: tuple[str, ...]  # of the cases
-
-
-def _validation(files: Sequence[Path], laws: Sequence[ClosedForm]) -> list[tuple[str, Errors]]:
-    """Errors of the laws on the cases that no fit reads; none if the campaign holds none."""
-    try:
-        return _judged(files, laws).errors
-    except InputError:
-        return []
-
-
-def _judged(files: Sequence[Path], laws: Sequence[ClosedForm]) -> _Found:
-    """Errors of each law on the cases that no fit reads, and how many its deviations hold."""
-    from ..fitting.calibrate import misses, within
-    from ..fitting.prediction import errors_of, predict_by
-    from ..fitting.table import read_tables
-
-    table, turns = read_tables(files, held_out=True)
-    errors, shares = [], {}
-    for law in laws:
-        numbers = law.numbers(table.bodies)
-        p = predict_by(numbers, table, turns)
-        errors.append((law.name, errors_of(p, table, turns)))
-        if law.calibration is not None:
-            shares[law.name] = within(law.calibration, misses(p, numbers, table, turns))
-    return _Found(errors, shares, table.names)
-
-
 def _show(console: Console, rows: Sequence[Sequence[str]]) -> None:
     show_table(console, rows[0], rows[1:])
 
@@ -271,10 +214,11 @@ def _judge(folder: Path, console: Console, *, publish: bool) -> int:
     """Show the errors of the laws in use on cases that no fit reads."""
     files = _files([folder])
     from ..fitting.hardening import hardening_records, judge_hardening
+    from ..fitting.refit import judged
     from ..fitting.report import error_rows, hardening_rows, uncertainty_rows
     from ..models.coefficients import drawn_from
 
-    found = _judged(files, [_law_in_use("compact"), _law_in_use("fitted")])
+    found = judged(files, [_law_in_use("compact"), _law_in_use("fitted")])
     count = len(found.names)
     _show(console, error_rows([(f"{name}, {count} pairs", e) for name, e in found.errors]))
     _show(console, uncertainty_rows(found.within))

@@ -30,20 +30,20 @@ class _Kinds(Commands):
     """The commands of the kinds, made from their options when they are asked for."""
 
     def list_commands(self, ctx: Any) -> list[str]:
-        from ..reduce.kinds import KINDS
+        from ..reduce.kinds import all_kinds
 
-        return list(KINDS)
+        return list(all_kinds())
 
     def abouts(self, ctx: Any) -> dict[str, str]:
         """Kinds and what each gives, without loading any of them."""
-        from ..reduce.kinds import KINDS
+        from ..reduce.kinds import all_kinds
 
-        return dict(KINDS)
+        return all_kinds()
 
     def get_command(self, ctx: Any, cmd_name: str) -> Any:
-        from ..reduce.kinds import KINDS
+        from ..reduce.kinds import all_kinds
 
-        return _command(cmd_name) if cmd_name in KINDS else super().get_command(ctx, cmd_name)
+        return _command(cmd_name) if cmd_name in all_kinds() else super().get_command(ctx, cmd_name)
 
 
 app = group(
@@ -61,7 +61,7 @@ Out = Annotated[Path, folder_option("Without --into: folder for the numbers and 
 
 def _command(name: str) -> Any:
     """Return the command of a kind: FILE, the kind's options, the conditions of the trial."""
-    from ..reduce.kinds import KINDS, load_kind
+    from ..reduce.kinds import all_kinds, load_kind
     from ..reduce.row import Row
 
     kind = load_kind(name)
@@ -84,7 +84,8 @@ def _command(name: str) -> Any:
     ]
     run.__signature__ = inspect.Signature(parameters)  # type: ignore[attr-defined]
     run.__annotations__ = {p.name: p.annotation for p in parameters}
-    run.__doc__ = KINDS[name][0].upper() + KINDS[name][1:] + "."
+    about = all_kinds()[name]
+    run.__doc__ = about[0].upper() + about[1:] + "."
     alone = group("")
     alone.command(name)(run)
     return typer.main.get_command(alone)

@@ -7,6 +7,7 @@ held-out conditions -> next experiment. `Verdict.to_dict` gives verdict.json, ve
 from __future__ import annotations
 
 import math
+from collections.abc import Sequence
 
 import numpy as np
 
@@ -37,6 +38,8 @@ from .findings import Verdict
 from .heldout import Repeated, held_out, repeated_choice
 from .inference.sampling import confirm_evidence
 from .locate import locate
+from .mechanisms import MECHANISMS, NAMELESS, Mechanism
+from .mechanisms.own import own_mechanisms, uncovered
 from .rank import Progress, rank
 
 NULLS = 500
@@ -53,6 +56,7 @@ def diagnose(
     *,
     seed: int = 0,
     confirm: bool = False,
+    mechanisms: Sequence[Mechanism] = (),
     progress: Progress = lambda _: None,
 ) -> Verdict:
     """Say what physics is missing in the simulation of a recording set.
@@ -66,20 +70,23 @@ def diagnose(
     confirm
         Also sample the leading explanations' evidence, use the full null ensemble, and solve the
         set's own pair by finite elements.
+    mechanisms
+        One's own, tried beside those of the library and those that other packages add.
     progress
         Called with a line before each step.
 
     Raises
     ------
     InputError
-        The set holds nothing that can be compared.
+        The set holds nothing that can be compared, or a mechanism bears a name of the library.
     """
+    own = own_mechanisms(mechanisms)
     rng = np.random.default_rng(seed)
     progress("auditing the inputs")
     audit = audit_rows(recordings)
     simulator = Simulator(problem_of(recordings, solve=confirm, progress=progress))
 
-    ranking = rank(simulator, progress=progress)
+    ranking = rank(simulator, mechanisms=(*MECHANISMS, *NAMELESS, *own), progress=progress)
     simulator = simulator.of(ranking.problem)
     progress("simulating sets in which nothing is missing")
     nulls = null_residuals(simulator, ranking.base, CONFIRMED_NULLS if confirm else NULLS, rng)
@@ -111,7 +118,8 @@ def diagnose(
     misses = int(choice.verdict not in ("adequate", "undetermined"))
     stated = simulator.predict((), [Point(np.zeros(ranking.problem.n_z))])[0]
     misfit = misfit_of(ranking.problem, ranking.base, stated)
-    notes = (*notes_of(ranking.problem, best), *law_notes(ranking.problem, misfit))
+    notes = (*notes_of(ranking.problem, best), *law_notes(ranking.problem, misfit),
+             *uncovered(own))  # fmt: skip
     return Verdict(
         name=recordings.name, seed=seed, choice=choice, audit=audit,
         probabilities=dict(odds.probability), inclusion=odds.inclusion,

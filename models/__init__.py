@@ -5,6 +5,8 @@ from __future__ import annotations
 from difflib import get_close_matches
 
 from ..core.errors import InputError
+from ..core.inputs.added import LAWS as LAW_GROUP
+from ..core.inputs.added import added, names_added
 from .base import ContactLaw, Domain, DomainWarning, Kernels
 from .coefficients import shipped_laws
 from .kernel import critical_depth, critical_force, yield_constant
@@ -27,6 +29,7 @@ def law_named(name: str) -> ContactLaw:
     `one+other` is one's loading with the other's unloading; the path of a law.json, or of the
     folder in which `dentscope case` wrote it, is the law of that pair; the path of a fitted.json
     that `dentscope fit` wrote is its law (`fitted.json:compact`, `:hardening`: the others).
+    Another package may add laws (`core.inputs.added`).
 
     Raises
     ------
@@ -42,12 +45,18 @@ def law_named(name: str) -> ContactLaw:
     if name.count("+") == 1:
         first, second = name.split("+")
         return law_named(first).with_unloading(law_named(second))
-    if name not in LAWS:
-        known = f"{', '.join(LAWS)}, a law.json or a fitted.json"
+    if name in LAWS:
+        return LAWS[name]
+    others = names_added(LAW_GROUP)
+    if name not in others:
+        known = f"{', '.join((*LAWS, *others))}, a law.json or a fitted.json"
         near = get_close_matches(name, LAWS, n=1)
         meant = f"; did you mean {near[0]!r}?" if near else ""
         raise InputError(f"{name!r}{meant}", key="law", allowed=known)
-    return LAWS[name]
+    law = added(LAW_GROUP, name)
+    if not isinstance(law, ContactLaw):
+        raise InputError(f"{name!r} of {LAW_GROUP} is no ContactLaw", key="law")
+    return law
 
 
 __all__ = [

@@ -4,7 +4,8 @@ The folder of a kind holds `options.py` with `Options`, the table of its options
 whose fields have a description; field names end in their unit); `kind.py` with
 `reduce(path, options) -> Reduced`, loaded when a file is reduced; and `picture.py`, which draws the
 picture to check the numbers by. The command line and the recipes make their options from
-`Options`, so that an option is written once.
+`Options`, so that an option is written once. Another package adds a kind as one module with `ABOUT`
+(what it gives), `Options` and `reduce` (`core.inputs.added`).
 """
 
 from __future__ import annotations
@@ -12,9 +13,11 @@ from __future__ import annotations
 from dataclasses import dataclass
 from importlib import import_module
 from pathlib import Path
+from types import ModuleType
 from typing import TYPE_CHECKING, Any
 
 from ..core.errors import InputError
+from ..core.inputs.added import READERS, added, names_added
 from ..core.inputs.input_file import checked_file
 from ..core.inputs.toml_input import InputTable, parse_model
 
@@ -38,10 +41,11 @@ _TAKE_FOLDERS = ("video",)
 
 @dataclass(frozen=True)
 class Kind:
-    """One way to reduce a file: its name and its options."""
+    """One way to reduce a file: its name, its options, and its module where another package's."""
 
     name: str
     options: type[InputTable]
+    module: ModuleType | None = None
 
     def run(self, path: Path, given: dict[str, Any], *, source: str) -> Reduced:
         """Reduce a file with options that are not checked yet; `source` names where they stand."""
@@ -50,7 +54,7 @@ class Kind:
             checked_file(path, most=_MOST_BYTES, allowed="a raw recording")
         from numpy.linalg import LinAlgError
 
-        kind = import_module(f".{self.name}.kind", __package__)
+        kind = self.module or import_module(f".{self.name}.kind", __package__)
         try:
             reduced: Reduced = kind.reduce(path, options)
             return reduced.known()
@@ -61,6 +65,12 @@ class Kind:
             ) from None  # fmt: skip
 
 
+def all_kinds() -> dict[str, str]:
+    """Each kind, those of other packages too, and what it gives."""
+    others = {name: added(READERS, name).ABOUT for name in names_added(READERS)}
+    return others | KINDS
+
+
 def load_kind(name: str) -> Kind:
     """Return a kind by its name.
 
@@ -69,6 +79,10 @@ def load_kind(name: str) -> Kind:
     InputError
         There is no such kind.
     """
+    if name not in KINDS and name in names_added(READERS):
+        module = added(READERS, name)
+        return Kind(name, module.Options, module)
     if name not in KINDS:
-        raise InputError(f"no kind {name!r}", key="kind", allowed=", ".join(KINDS))
+        known = ", ".join((*KINDS, *names_added(READERS)))
+        raise InputError(f"no kind {name!r}", key="kind", allowed=known)
     return Kind(name, import_module(f".{name}.options", __package__).Options)

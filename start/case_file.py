@@ -72,7 +72,7 @@ class CaseBody(MaterialTable):
 
 
 class _Load(InputTable):
-    max_delta_over_R: float = Field(gt=0.0, le=0.5)
+    max_delta_over_R: float = Field(ge=1e-12, le=0.5)
     """Largest approach over the sphere's radius."""
     unload_from: tuple[float, ...] = Field(default=(), strict=False)
     """Approaches over R from which the sphere is drawn back."""
@@ -97,7 +97,7 @@ class _Accuracy(InputTable):
 class CaseFile(InputTable):
     """The keys of CASE.toml."""
 
-    radius_m: float = Field(gt=0.0, le=3.0)
+    radius_m: float = Field(ge=1e-9, le=3.0)
     """Radius of the sphere."""
     sphere: CaseBody
     """What presses."""

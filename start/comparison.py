@@ -174,8 +174,8 @@ def compare_laws(
         content, pair = read_pair(Path(pair))
         last = content.load.max_delta_over_R
     last = last if max_delta_over_R is None else max_delta_over_R
-    if not 0.0 < last <= 0.5:
-        raise InputError(f"{last:g}", key="max_delta_over_R", allowed="above 0, up to 0.5")
+    if not 1e-12 <= last <= 0.5:
+        raise InputError(f"{last:g}", key="max_delta_over_R", allowed="1e-12 to 0.5")
     names = [law] if isinstance(law, str) and law else list(law)
     return compared(pair, [law_named(n) for n in names] or list(LAWS.values()), last=last)
 

@@ -4,13 +4,14 @@ from __future__ import annotations
 
 import html
 import math
+from collections.abc import Sequence
 from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from ..core.observables import OBSERVABLES
 from ..core.tables import frame, html_table
-from ..discrepancy import Verdict
+from ..discrepancy import Mechanism, Verdict
 from ..discrepancy import diagnose as verdict_of
 from ..discrepancy.report import Story, lines, story_of, write_report
 from ..discrepancy.report.series import STATED, WITH, WITHOUT
@@ -96,7 +97,13 @@ def _drawn(story: Story) -> Figure:
     return figure
 
 
-def diagnose(folder: str | Path, *, seed: int = 0, confirm: bool = False) -> Diagnosis:
+def diagnose(
+    folder: str | Path,
+    *,
+    seed: int = 0,
+    confirm: bool = False,
+    mechanisms: Sequence[Mechanism] = (),
+) -> Diagnosis:
     """Say what physics is missing in the simulation of a recording set.
 
     Parameters
@@ -108,11 +115,14 @@ def diagnose(folder: str | Path, *, seed: int = 0, confirm: bool = False) -> Dia
     confirm
         Also sample the evidence, use the full ensemble of sets with nothing missing, and solve the
         set's own pair by finite elements.
+    mechanisms
+        One's own, tried beside those of the library; example 8 has one.
 
     Raises
     ------
     InputErrors
         One line for each mistake in the set.
     """
-    verdict = verdict_of(read(set_folder(Path(folder))), seed=seed, confirm=confirm)
+    verdict = verdict_of(read(set_folder(Path(folder))), seed=seed, confirm=confirm,
+                         mechanisms=mechanisms)  # fmt: skip
     return Diagnosis(verdict, story_of(verdict))

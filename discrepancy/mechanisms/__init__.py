@@ -43,7 +43,7 @@ MECHANISMS: tuple[Mechanism, ...] = (
     AirDrag(),
     Tilt(),
 )
-"""Every mechanism by the names and in the order of docs/diagnose.md."""
+"""Every mechanism by the names and in the order of docs/diagnose-method.md."""
 
 NAMELESS: tuple[Mechanism, ...] = (SofterSurface(), StrainSoftening(), NegativeRateSensitivity())
 """Physics that a verdict has no name for, but that would pass for one of the named where nothing

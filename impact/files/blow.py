@@ -178,16 +178,19 @@ class Blow:
 
 @overload
 def blow(
-    setup: Pair | str | Path = "ball", *, law: str | Sequence[str] = (), speed: float | None = None,
-    mass: float | None = None, **changes: Any,
+    setup: Pair | str | Path = "ball", *, law: str | Sequence[str] = (),
+    laws: Sequence[ContactLaw] = (), speed: float | None = None, mass: float | None = None,
+    **changes: Any,
 ) -> Blow: ...  # fmt: skip
 @overload
 def blow(
     setup: Pair | str | Path = "ball", *, law: str | Sequence[str] = (),
-    speed: Sequence[float] | NDArray[Any], mass: float | None = None, **changes: Any,
+    laws: Sequence[ContactLaw] = (), speed: Sequence[float] | NDArray[Any],
+    mass: float | None = None, **changes: Any,
 ) -> Impacts: ...  # fmt: skip
 def blow(
     setup: Pair | str | Path = "ball", *, law: str | Sequence[str] = (),
+    laws: Sequence[ContactLaw] = (),
     speed: float | Sequence[float] | NDArray[Any] | None = None, mass: float | None = None,
     **changes: Any,
 ) -> Blow | Impacts:  # fmt: skip
@@ -200,6 +203,8 @@ def blow(
         `ball`, `rod`, `oblique-ball`.
     law
         Name of a contact law, or several; by default those of the set-up.
+    laws
+        Laws that have no name here: one's own.
     speed
         Normal speed of the approach [m/s], in place of the set-up's; several give a table.
     mass
@@ -236,12 +241,12 @@ def blow(
     if given is not None:
         changes["impact_speed_m_s"] = float(given.flat[0])
     chosen = _chosen(setup, changes, mass)
-    names = [law] if isinstance(law, str) else list(law) or list(chosen.laws)
-    laws = [law_named(name) for name in names]
+    names = [law] if isinstance(law, str) else list(law) or list(() if laws else chosen.laws)
+    wanted = [*(law_named(name) for name in names), *laws]
     if speeds is None:
-        return blow_of(chosen, laws)
-    chosen.check_laws(laws)
-    first, *others = (impacts(chosen.scene(one), speeds=speeds) for one in laws)
+        return blow_of(chosen, wanted)
+    chosen.check_laws(wanted)
+    first, *others = (impacts(chosen.scene(one), speeds=speeds) for one in wanted)
     for other in others:
         first = first.joined(other)
     return first

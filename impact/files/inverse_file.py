@@ -157,16 +157,15 @@ def _deviations(table: _RodTable, measured: Measured) -> dict[str, float]:
         quantity = getattr(table, name)
         if quantity is None or not quantity.std > 0.0:
             continue
-        try:
-            up, down = (
-                infer(
-                    table.rod({name: quantity.value * math.exp(sign * quantity.relative)}), measured
-                )
-                for sign in (1.0, -1.0)
-            )
-        except InputError:  # one of them would stick
-            return dict.fromkeys(INFERRED, math.inf)
+        ends = []
+        for sign in (1.0, 0.0, -1.0):
+            moved = quantity.value * math.exp(sign * quantity.relative)
+            try:
+                ends.append((sign, infer(table.rod({name: moved}), measured)))
+            except InputError:  # at that end the tip would stick: the other one says how far
+                continue
+        (high, up), (low, down) = ends[0], ends[-1]
         for key in INFERRED:
-            change = 0.5 * (getattr(up, key) - getattr(down, key))
+            change = (getattr(up, key) - getattr(down, key)) / max(high - low, 1.0)
             total[key] = math.hypot(total[key], change)
     return total

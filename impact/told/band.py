@@ -80,9 +80,11 @@ class Band:
 
 
 def band_of(setup: Setup, law: ContactLaw) -> Band:
-    """Return the band of a set-up's last blow by one law."""
+    """Return the band of a set-up's last blow by one law; an empty one if that did not end."""
     parts: dict[str, dict[str, float]] = {}
-    for key, share, up, down in _shifted(setup):
+    if not last_blow(setup, law).outcome.completed:
+        return Band(parts)
+    for key, share, up, down in _shifted(setup, law):
         found = [last_blow(one, law) for one in (up, down)]
         pressures = [
             largest_mean_pressure(one.scene(law), blow)
@@ -131,7 +133,7 @@ def _values(impact: Impact) -> dict[str, float]:
     return {name: float(getattr(impact, name)) for name in _NUMBERS}
 
 
-def _shifted(setup: Setup) -> Iterator[tuple[str, float, Setup, Setup]]:
+def _shifted(setup: Setup, law: ContactLaw) -> Iterator[tuple[str, float, Setup, Setup]]:
     """Yield key, share of a standard deviation, and the set-ups one up and one down."""
     from ..files.setup import setup_of
 
@@ -143,6 +145,8 @@ def _shifted(setup: Setup) -> Iterator[tuple[str, float, Setup, Setup]]:
                     setup_of(_with(setup.content, path, value), source=setup.source)
                     for value in values
                 )
+                for moved in (up, down):
+                    moved.scene(law)
             except InputError:  # a Poisson's ratio beyond 0.5
                 continue
             yield ".".join(path), share, up, down
@@ -192,7 +196,7 @@ def _sizes(scene: Scene, found: Impact) -> tuple[_Sizes, _Sizes]:
     lost = min(max(kept, 0.0), 1.0) if kept > 1e-6 else 0.0
     if not math.isfinite(pair.Sy_min):
         return _Sizes(_HERTZ, 0.0, 0.0, 0.0, 0.0), _Sizes(0.0, 0.0, 0.0, 0.0, 0.0)
-    with warnings.catch_warnings():
+    with warnings.catch_warnings(), np.errstate(all="ignore"):
         warnings.simplefilter("ignore", DomainWarning)  # the doubt about a law has its own line
         depth = np.array([found.peak_depth_m])
         try:
@@ -200,7 +204,7 @@ def _sizes(scene: Scene, found: Impact) -> tuple[_Sizes, _Sizes]:
         except InputError:
             known = beside_fitted(law, pair, depth)
     force, radius, dent, back = (
-        min(float(x[0]), _LARGEST)
+        min(float(np.nan_to_num(x[0], nan=_LARGEST)), _LARGEST)
         for x in (known.force, known.radius, known.dent, known.given_back)
     )
     sizes = WITH_CURVE if follows_flow(law) and not pair.perfectly_plastic else METAL

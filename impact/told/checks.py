@@ -180,6 +180,8 @@ def reason_above_one(scene: Scene, found: Impact) -> str:
 
 def _effect(other: Impact, found: Impact) -> str:
     """What changes, in per cent of dent and restitution."""
+    if not other.outcome.completed:
+        return "the tip does not part within the budgets"
     e = f"restitution {100.0 * (other.restitution / found.restitution - 1.0):+.2g} %"
     if not found.residual_flat_m > 0.0:
         return e

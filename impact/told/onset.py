@@ -7,7 +7,6 @@ import warnings
 
 import numpy as np
 
-from ...core.errors import InputError
 from ...models.base import DomainWarning
 from ...models.kernel import critical_depth
 from ..result import Impact
@@ -57,18 +56,12 @@ def first_yield_speed(scene: Scene) -> float:
 def largest_mean_pressure(scene: Scene, found: Impact) -> float:
     """Largest mean pressure F/(pi a^2) on the way to the peak [Pa], by the scene's law.
 
-    nan where the tip is cut flat: the law's contact radius is not that of the contact.
-
-    Raises
-    ------
-    InputError
-        The peak is no depth.
+    nan where the tip is cut flat, for the law's contact radius is not that of the contact, and
+    where the impact ended before it had a peak.
     """
-    if scene.striker.tip_flat_radius > 0.0:
-        return math.nan
     peak = found.peak_depth_m
-    if not peak > 0.0:
-        raise InputError(f"{peak:g}", key="peak_depth_m", allowed="a number above 0")
+    if scene.striker.tip_flat_radius > 0.0 or not 0.0 < peak < math.inf:
+        return math.nan
     depth = np.geomspace(1e-3 * peak, peak, _POINTS)
     with warnings.catch_warnings():
         warnings.simplefilter("ignore", DomainWarning)  # the doubt about a law has its own line

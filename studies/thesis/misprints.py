@@ -321,6 +321,11 @@ MISPRINTS: tuple[Erratum, ...] = (
         "F_m/((4/3) E' sqrt(R) delta_m^1.5)",
         _brake_residual,
     ),
-    Erratum("4.6, 4.7, 4.32, 5.5-5.13", "i and j, lengths, places of mu", "docs/impact.md", _alpha),
+    Erratum(
+        "4.6, 4.7, 4.32, 5.5-5.13",
+        "i and j, lengths, places of mu",
+        "docs/impact-method.md",
+        _alpha,
+    ),
 )
 """Misprinted equations, in their order."""

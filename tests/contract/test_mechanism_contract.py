@@ -193,7 +193,7 @@ def test_what_is_ruled_out_comes_with_a_reason(mechanism):
 
 
 def test_names_are_the_documented_ones_in_their_order():
-    text = (Path(__file__).parents[2] / "docs" / "diagnose.md").read_text(encoding="utf-8")
+    text = (Path(__file__).parents[2] / "docs" / "diagnose-method.md").read_text(encoding="utf-8")
     table = text.split("## Mechanisms")[1].split("\n\n")[1]
     documented = re.findall(r"^\| `([a-z-]+)` \|", table, flags=re.MULTILINE)
     assert documented == [m.name for m in MECHANISMS]
@@ -201,7 +201,7 @@ def test_names_are_the_documented_ones_in_their_order():
 
 
 def test_what_has_no_name_is_documented_with_its_equation():
-    text = (Path(__file__).parents[2] / "docs" / "diagnose.md").read_text(encoding="utf-8")
+    text = (Path(__file__).parents[2] / "docs" / "diagnose-method.md").read_text(encoding="utf-8")
     assert not any(m.named for m in NAMELESS)
     assert not {m.name for m in NAMELESS} & {m.name for m in MECHANISMS}
     for mechanism in NAMELESS:

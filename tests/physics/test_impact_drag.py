@@ -34,7 +34,7 @@ def test_terminal_speed_of_a_quartz_grain_in_water() -> None:
 
 def test_terminal_speed_where_stokes_holds() -> None:
     # v = g d^2 (rho_s - rho)/(18 mu), Re = 1.5e-4
-    found = terminal_speed(sphere(5e-6, 2600.0), fall=1e-6)
+    found = terminal_speed(sphere(5e-6, 2600.0), fall=1e-9)
     assert found == pytest.approx(9.81 * 25e-12 * 1600.0 / 18e-3, rel=1e-4)
 
 

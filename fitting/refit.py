@@ -1,0 +1,141 @@
+"""The main path: a campaign's cases in, the laws and the content of their file out.
+
+tables of the cases -> regression -> correction -> left out one by one -> the law of metals that
+harden -> judged on cases that no fit reads. `coefficients.write_coefficients` writes the content;
+the file is a law wherever one is named (`models.law_file`).
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any, NamedTuple
+
+from ..core.errors import InputError
+from ..models.coefficients import laws_from
+from ..models.fitted import ClosedForm
+from ..models.hardening import hardening_law
+from .calibrate import misses, within
+from .coefficients import coefficients_content, hardening_content
+from .hardening import fit_hardening, hardening_records, judged_designs
+from .laws import Laws, fit_laws
+from .prediction import Errors, errors_of, predict_by
+from .report import Within
+from .table import ResidualTable, Table, read_tables
+
+Progress = Callable[[str], None]
+
+
+class Judged(NamedTuple):
+    """What unseen pairs say of laws.
+
+    Parameters
+    ----------
+    errors
+        Of each law, by its name.
+    within
+        Share of the misses that each law's stated deviations hold, by its name.
+    names
+        Of the cases.
+    """
+
+    errors: list[tuple[str, Errors]]
+    within: Mapping[str, Within]
+    names: tuple[str, ...]
+
+
+@dataclass(frozen=True, eq=False)
+class Refit:
+    """What a fit gives.
+
+    Parameters
+    ----------
+    laws
+        The compact and the fitted law, with their errors.
+    table, turns
+        The rows that they were fitted to.
+    content
+        Of the file of coefficients.
+    validation
+        Errors on the cases that no fit reads; empty where there are none.
+    hardens
+        Whether there were metals that harden, and `content` has their law.
+    """
+
+    laws: Laws
+    table: Table
+    turns: ResidualTable
+    content: dict[str, Any]
+    validation: list[tuple[str, Errors]]
+    hardens: bool
+
+
+def refit(sources: Sequence[Path], *, progress: Progress = lambda _: None) -> Refit:
+    """Fit the closed forms to the cases of runs and published parts.
+
+    Parameters
+    ----------
+    sources
+        Folders of runs, parts; a combination in two of them counts once, the later wins.
+    progress
+        Called with a line before each step.
+
+    Raises
+    ------
+    InputError
+        A source is missing or damaged, or they hold no completed elastic-plastic case.
+    """
+    table, turns = read_tables(sources)
+    progress(
+        f"{', '.join(map(str, sources))}: {len(table.pairs)} combinations, {len(table.D)} depths, "
+        f"{len(turns.D)} unloadings; fitting, then leaving combinations out ..."
+    )
+    laws = fit_laws(table, turns)
+    content = coefficients_content(laws, table, sources)
+    hardens = refit_hardening(content, sources, progress=progress)
+    try:
+        validation = judged(sources, laws_from(content, source="this fit")).errors
+    except InputError:  # no such case
+        validation = []
+    return Refit(laws, table, turns, content, validation, hardens)
+
+
+def refit_hardening(
+    content: dict[str, Any], sources: Sequence[Path], *, progress: Progress = lambda _: None
+) -> bool:
+    """Fit the law of metals that harden to the other laws of a content, and put it there.
+
+    Returns
+    -------
+    bool
+        Whether the sources hold metals that harden; else nothing changes.
+    """
+    records = hardening_records(sources)
+    if not records:
+        return False
+    progress(f"{len(records)} combinations that harden; fitting their law ...")
+    fitted = laws_from(content, source="this fit")[1]
+    found = fit_hardening(fitted, records)
+    unread = judged_designs(hardening_law(fitted, found.correction), sources)
+    content["hardening"] = hardening_content(found, sources, judged=unread)
+    return True
+
+
+def judged(sources: Sequence[Path], laws: Sequence[ClosedForm]) -> Judged:
+    """Return the errors of laws on the cases that no fit reads.
+
+    Raises
+    ------
+    InputError
+        The sources hold no such case.
+    """
+    table, turns = read_tables(sources, held_out=True)
+    errors, shares = [], {}
+    for law in laws:
+        numbers = law.numbers(table.bodies)
+        p = predict_by(numbers, table, turns)
+        errors.append((law.name, errors_of(p, table, turns)))
+        if law.calibration is not None:
+            shares[law.name] = within(law.calibration, misses(p, numbers, table, turns))
+    return Judged(errors, shares, table.names)

@@ -1,0 +1,97 @@
+"""What other packages add is found by its entry points; a package that fails is one line."""
+
+from importlib.metadata import EntryPoint, EntryPoints
+from pathlib import Path
+from types import SimpleNamespace
+
+import dentscope as ds
+import pytest
+from dentscope.core import InputError
+from dentscope.core.inputs import added
+from dentscope.core.inputs.toml_input import InputTable
+from dentscope.discrepancy.mechanisms import MECHANISMS
+from dentscope.discrepancy.mechanisms.own import own_mechanisms, uncovered
+from dentscope.models import LAWS, law_named
+from dentscope.reduce import kinds
+
+
+class Options(InputTable):
+    """Options of the toy."""
+
+
+TOY_LAW = LAWS["johnson"]
+TOY_READER = SimpleNamespace(
+    ABOUT="two heights", Options=Options, reduce=lambda path, options: SimpleNamespace(
+        known=lambda: path.read_text()
+    ),
+)  # fmt: skip
+
+
+class Toy(type(MECHANISMS[0])):
+    """A mechanism of another name."""
+
+    name = "toy"
+    title = "a toy"
+
+
+@pytest.fixture
+def packages(monkeypatch):
+    """An environment in which other packages add to each group."""
+
+    def install(**points):
+        found = EntryPoints(
+            EntryPoint(name, value, f"dentscope.{group}") for group, (name, value) in points.items()
+        )
+        monkeypatch.setattr(added, "entry_points", found.select)
+
+    return install
+
+
+HERE = Path(__file__).stem
+
+
+@pytest.fixture
+def importable(monkeypatch):
+    monkeypatch.syspath_prepend(str(Path(__file__).parent))
+
+
+def test_a_law_of_another_package_is_found_by_its_name(packages, importable):
+    packages(laws=("toy", f"{HERE}:TOY_LAW"))
+    assert law_named("toy").name == "johnson"
+    with pytest.raises(InputError, match=r"'other' .*toy"):
+        law_named("other")
+
+
+def test_a_package_that_fails_is_one_line(packages):
+    packages(laws=("toy", "no_such_package:LAW"))
+    with pytest.raises(InputError, match=r"'toy' .* cannot be loaded") as caught:
+        law_named("toy")
+    assert "\n" not in str(caught.value)
+
+
+def test_a_mechanism_of_another_package_is_tried_too(packages, importable):
+    packages(mechanisms=("toy", f"{HERE}:Toy"))
+    [own] = own_mechanisms(())
+    assert own.name == "toy"
+    [note] = uncovered([own])
+    assert "toy (a toy) is not of this package" in note
+    assert "neither the calibration of the probabilities nor the blind proof" in note
+
+
+@pytest.mark.parametrize("given", [[MECHANISMS[0]], [Toy(), Toy()], [3]])
+def test_what_is_no_mechanism_or_bears_a_name_of_the_library_is_refused(packages, given):
+    packages()
+    with pytest.raises(InputError, match=r"is taken|is no Mechanism"):
+        own_mechanisms(given)
+
+
+def test_a_reader_of_another_package_reduces(packages, importable, tmp_path):
+    packages(readers=("toy", f"{HERE}:TOY_READER"))
+    assert kinds.all_kinds()["toy"] == "two heights"
+    (tmp_path / "raw.txt").write_text("1 0.64")
+    assert kinds.load_kind("toy").run(tmp_path / "raw.txt", {}, source="") == "1 0.64"
+
+
+def test_a_law_of_ones_own_strikes():
+    found = ds.impact("ball", laws=[LAWS["hertz"]], impact_speed_m_s=1.0)
+    assert found["hertz"].restitution == pytest.approx(1.0, abs=1e-6)
