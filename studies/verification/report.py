@@ -29,8 +29,8 @@ _TESTS = (
 )  # fmt: skip
 
 
-SHOWN = 2
-"""Marked numbers of a check that the page shows: those nearest to their marks."""
+SHOWN = 1
+"""Marked numbers of a check that the page shows: the one nearest to its mark."""
 
 
 def write_report(path: Path, *, folder: Path) -> Path:
@@ -62,7 +62,7 @@ def _head() -> Iterator[str]:
     yield (
         "Made by `dentscope verify`, which can be stopped and goes on where it was; `--list` names "
         "the checks, `--only NAME` runs one. Marks were set before measuring; a missed one stands "
-        "as missed. Of each check the numbers nearest to their marks are shown, at the accuracy of "
+        "as missed. Of each check the number nearest to its mark is shown, at the accuracy of "
         "published results (`production`) unless a row says otherwise; every number, with tables "
         "and remarks, is written to `build/verification/rows.md` by any run, and lies as "
         "data in `docs/verification/results`."
