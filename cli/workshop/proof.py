@@ -145,6 +145,27 @@ def sample(
 
 
 @app.command()
+def peers(
+    folder: Annotated[Path, typer.Argument(help="Folder with sets/ and truths/.")],
+) -> None:
+    """Compare the diagnosis with simple rules on the same problems: who is right how often."""
+    from ...studies.peers import RULES, compared, scored
+
+    rows = []
+    for row in compared(folder):
+        rows.append(row)
+        told = "; ".join(f"{k}: {v} {' or '.join(n)}".rstrip() for k, (v, n) in row.said.items())
+        typer.echo(f"{row.name}  {'+'.join(row.truth) or 'nothing'} | {told}")
+    typer.echo(f"{'':<26} exact  in set  nulls named  outside forced  of {len(rows)}")
+    for decider in ("diagnosis", *RULES):
+        s = scored(rows, decider)
+        typer.echo(f"{decider:<26} {s.exact:>5}  {s.in_set:>6}  {s.false:>11}  {s.forced:>14}")
+    for who in ("diagnosis", "rules"):
+        mean = sum(row.seconds[who] for row in rows) / max(len(rows), 1)
+        typer.echo(f"{who}: {mean:.1f} processor seconds a set")
+
+
+@app.command()
 def library() -> None:
     """Compute the finite-element impacts that the library lacks."""
     from ...studies.proof.explicit.catalogue import fill
