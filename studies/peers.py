@@ -129,7 +129,7 @@ def _acting(problem: Problem) -> Iterator[Mechanism]:
     exact = {"form": 0.0, "scale_error": 0.0, "jumps": False, "law_error": 1.0}
     for m in MECHANISMS:
         rests = any(problem.without_modulus[body] for body in m.rests_on)
-        if not rests and not m.applies(situations):
+        if not rests and not m.ruled_out(situations):
             yield type(type(m).__name__, (type(m),), exact)()
 
 
