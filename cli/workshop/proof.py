@@ -42,9 +42,12 @@ def run(
 ) -> int:
     """Go on with the run of this source tree: draw, seal, diagnose, seal. Stop it at any time."""
     _checked(which, "--list", LISTS)
+    from multiprocessing import active_children
+
     from rich.console import Console
     from rich.progress import Progress
 
+    from ...core.stopping import heard
     from ...core.threads import one_thread_each
     from ...studies.proof.lists import LISTS as made
     from ...studies.proof.run import carry_on, local_workers, run_folder, verdicts_of
@@ -67,6 +70,9 @@ def run(
                 state = "sealed" if event["verdict"] else f"no verdict ({event['exit']})"
                 console.print(f"  {name}  {state}  {event['wall_s']:.0f} s", highlight=False)
     except KeyboardInterrupt:
+        heard()
+        for worker in active_children():
+            worker.terminate()  # a diagnosis may take minutes, and is begun anew
         typer.echo("stopped; the same command goes on from here")
         return 130
     finally:
