@@ -5,6 +5,7 @@ from __future__ import annotations
 import sys
 
 from .core.children import forget_current_folder, plot_without_the_folders_settings
+from .core.streams import left_with, steady_streams
 from .core.threads import one_thread_each
 
 
@@ -13,9 +14,10 @@ def main() -> None:
     forget_current_folder()
     one_thread_each()  # before numpy is loaded
     plot_without_the_folders_settings()
+    steady_streams()
     from .cli import run
 
-    sys.exit(run())
+    sys.exit(left_with(run()))
 
 
 if __name__ == "__main__":

@@ -9,7 +9,6 @@ from __future__ import annotations
 import multiprocessing
 import os
 import signal
-import threading
 import time
 from collections import deque
 from collections.abc import Callable, Generator, Mapping
@@ -17,7 +16,8 @@ from dataclasses import dataclass
 from multiprocessing.connection import Connection, wait
 from typing import Any
 
-from ..core.children import keep_current_folder_out
+from ..core.children import die_with, keep_current_folder_out
+from ..core.stopping import heard
 from ..core.threads import one_thread_each
 
 TRIES = 3
@@ -100,6 +100,7 @@ def answers(
                     employ()
                 yield key, answer
     finally:
+        heard()  # workers are ended in peace
         for worker in crew:
             worker.stop()
 
@@ -144,7 +145,7 @@ class _Worker:
 def _serve(pipe: Connection, work: Callable[..., Any], coordinator: int) -> None:
     """Do the orders that come through a pipe, until it ends."""
     signal.signal(signal.SIGINT, signal.SIG_IGN)  # Ctrl-C is the coordinator's
-    _die_with(coordinator)
+    die_with(coordinator)
     while True:
         try:
             order = pipe.recv()
@@ -156,14 +157,3 @@ def _serve(pipe: Connection, work: Callable[..., Any], coordinator: int) -> None
             return
         except Exception as error:  # a bug in one order must not take the others with it
             pipe.send(Answer(message=f"{type(error).__name__}: {error}"))
-
-
-def _die_with(coordinator: int) -> None:
-    """End this worker when its coordinator is gone, so that a killed run leaves nothing behind."""
-
-    def watch() -> None:
-        while os.getppid() == coordinator:
-            time.sleep(1.0)
-        os._exit(1)
-
-    threading.Thread(target=watch, daemon=True).start()

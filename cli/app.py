@@ -12,6 +12,7 @@ from typing import Annotated
 import typer
 
 from ..core.errors import EXIT_INPUT_ERROR, InputError, printable
+from ..core.stopping import listening
 from . import campaign, export, laws, recordings, reduce, studies
 from .case import case
 from .diagnose import diagnose
@@ -91,16 +92,16 @@ def run(arguments: list[str] | None = None) -> int:
         What follows `dentscope` on the command line; by default the process's own arguments.
     """
     try:
-        result = app(args=arguments, standalone_mode=False, prog_name="dentscope")
+        with listening():
+            result = app(args=arguments, standalone_mode=False, prog_name="dentscope")
     except InputError as error:
         return _refused(str(error))
     except _UsageError as error:
         return _refused(f"command line: {getattr(error, 'format_message', error.__str__)()}")
     except OSError as error:
         # what only shows while a file is read or written: no room, no permission, no file
-        if error.filename is None:
-            raise
-        return _refused(f"{error.filename}: {error.strerror}")
+        told = error.strerror or str(error) or type(error).__name__
+        return _refused(f"{error.filename}: {told}" if error.filename is not None else told)
     except typer.Exit as stop:
         return int(stop.exit_code)
     except (typer.Abort, KeyboardInterrupt):

@@ -13,6 +13,7 @@ from typing import Annotated, Any
 import typer
 
 from ..core.errors import EXIT_NOT_CONVERGED, InputError
+from ..core.stopping import heard
 from . import campaign_data, studies
 from .campaign_data import DEFAULT_DESIGN, PUBLISHED, DesignName, Out
 from .campaign_progress import Progress, duration, judged, remarks, tell
@@ -97,6 +98,7 @@ def run(
                 report=ended,
             )
     except KeyboardInterrupt:
+        heard()
         typer.echo("stopped; the same command goes on from here")
         _summary(chosen, out, status_of(chosen, store), time.monotonic() - started, progress.cpu_s)
         return 130

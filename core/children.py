@@ -1,4 +1,6 @@
-"""Python processes that this one starts: none runs code of the folder that it happens to be in.
+"""Python processes that this one starts: what they may load, and that they end when it does.
+
+None runs code of the folder that it happens to be in.
 
 A downloaded folder may hold a `numpy.py`. Python looks there first when it is started with `-m` or
 `-c`, unless told otherwise; the interpreters of multiprocessing are started like that.
@@ -8,10 +10,14 @@ from __future__ import annotations
 
 import os
 import sys
+import threading
+import time
 from contextlib import suppress
 from pathlib import Path
 
 _VARIABLE = "PYTHONSAFEPATH"
+_LOOKS_S = 0.5
+"""How often a process looks whether its parent is still there."""
 
 
 def python_command(*arguments: str) -> list[str]:
@@ -57,3 +63,20 @@ def plot_without_the_folders_settings() -> None:
         finally:
             os.chdir(here)
             os.close(here)
+
+
+def die_with(parent: int) -> None:
+    """End this process when the one that started it is gone: a killed run leaves nothing behind.
+
+    Parameters
+    ----------
+    parent
+        Its number, as `os.getppid()` gives it.
+    """
+
+    def watch() -> None:
+        while os.getppid() == parent:
+            time.sleep(_LOOKS_S)
+        os._exit(1)
+
+    threading.Thread(target=watch, daemon=True).start()

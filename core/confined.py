@@ -6,6 +6,7 @@ They run in a child with a limit of memory and of time; what it does not survive
 
 from __future__ import annotations
 
+import os
 import pickle
 import resource
 import subprocess
@@ -15,7 +16,7 @@ from importlib import import_module
 from pathlib import Path
 from typing import Any, TypeVar
 
-from .children import python_command
+from .children import die_with, python_command
 from .errors import InputError
 
 Result = TypeVar("Result")
@@ -63,6 +64,7 @@ def confined(work: Callable[..., Result], *arguments: Any, source: str) -> Resul
 
 
 def _child() -> None:
+    die_with(os.getppid())
     module, name, arguments = pickle.load(sys.stdin.buffer)
     work = getattr(import_module(module), name)
     pages = int(Path("/proc/self/statm").read_text().split()[0])

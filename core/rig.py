@@ -23,6 +23,7 @@ from pydantic import (
 )
 
 from .errors import InputError
+from .inputs.names import FileName
 from .inputs.toml_input import InputTable
 from .material import Material
 from .materials import filled
@@ -425,7 +426,7 @@ class Rig(InputTable):
     """Gravity."""
     target: TargetTable
     """The flat."""
-    strikers: dict[str, StrikerTable] = Field(min_length=1)
+    strikers: dict[FileName, StrikerTable] = Field(min_length=1)
     """What strikes, by name: `[strikers.NAME]`."""
     friction: FrictionTable = FrictionTable()
     """Friction between tip and flat."""

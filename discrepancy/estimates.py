@@ -11,7 +11,6 @@ from numpy.typing import NDArray
 from scipy.stats import norm
 
 from ..recordings import RecordingSet, Severity, audit
-from .choice.calibration import Calibration
 from .choice.odds import NAMED_AT, PRIORS
 from .comparison.forward import Simulator
 from .comparison.problem import Problem
@@ -19,6 +18,7 @@ from .heldout import HeldOut
 from .inference.fit import Fit
 from .inference.grid import interval
 from .rank import Ranking
+from .rules import RULES
 
 Array = NDArray[np.float64]
 
@@ -185,13 +185,13 @@ def law_notes(problem: Problem, misfit: Mapping[str, float]) -> tuple[str, ...]:
     )
 
 
-def limits_of(ranking: Ranking, calibration: Calibration) -> dict[str, float]:
+def limits_of(ranking: Ranking) -> dict[str, float]:
     """Smallest value of each first parameter whose effect would have been named."""
     base = ranking.base
     found = {}
     prior = math.log(PRIORS["baseline"] * max(len(ranking.screened), 1) / PRIORS["singles"])
     for s in ranking.screened:
-        nats = NAMED_AT + prior + calibration.off((s.mechanism.name,))
+        nats = NAMED_AT + prior + RULES.penalty
         # three nats are what not knowing the parameters costs
         needed = math.sqrt(2.0 * (nats + 3.0))
         p = s.grid.axes[0].parameter
@@ -207,13 +207,9 @@ def limits_of(ranking: Ranking, calibration: Calibration) -> dict[str, float]:
     return found
 
 
-def improvement_of(base: HeldOut, chosen: HeldOut, same: float) -> dict[str, float]:
-    """Return how well left-out conditions are predicted, before and after.
-
-    `same` is the share of the groups left out whose rest chooses as the whole set does.
-    """
+def improvement_of(base: HeldOut, chosen: HeldOut) -> dict[str, float]:
+    """Return how well left-out conditions are predicted by the baseline and by the best."""
     return {
         "held_out_baseline": base.score, "held_out_extended": chosen.score,
         "raw_baseline": base.raw, "raw_extended": chosen.raw, "trials": base.trials,
-        "same_choice": same,
     }  # fmt: skip

@@ -8,9 +8,8 @@ the mechanism's parameters, weighted by how well these explain the cells that we
 from __future__ import annotations
 
 import math
-from collections.abc import Mapping, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass
-from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -24,7 +23,6 @@ Array = NDArray[np.float64]
 Mask = NDArray[np.bool_]
 
 _FLOOR = 0.1
-_GRID = 400  # parameter values that stand for all
 
 
 @dataclass(frozen=True, slots=True)
@@ -70,84 +68,20 @@ def groups_of(problem: Problem) -> list[Mask]:
 
 def held_out(problem: Problem, fitted: Fit) -> HeldOut:
     """Score an explanation with each group left out in turn."""
-    return _scored(problem, [(fitted, test) for test in _folds(problem)])
-
-
-class Repeated(NamedTuple):
-    """The whole choice made again on what was kept, group by group.
-
-    Parameters
-    ----------
-    score
-        Of the explanation that each group's rest would choose, on that group.
-    same
-        Share of the groups whose rest chooses as the whole set does.
-    """
-
-    score: HeldOut
-    same: float
-
-
-def repeated_choice(
-    problem: Problem, fits: Sequence[Fit], log_prior: Mapping[str, float], chosen: str
-) -> Repeated:
-    """Leave out each group in turn, choose by what was kept, and predict the group by that.
-
-    Parameters
-    ----------
-    problem
-        What was compared.
-    fits
-        All explanations, the baseline included.
-    log_prior
-        Name to ln of the prior probability less what nulls give away.
-    chosen
-        Name of the whole set's choice.
-    """
-    kept = [_Kept.of(f) for f in fits]
-    used = []
-    for test in _folds(problem):
-        evidence = {k.fitted.name: k.evidence(test) + log_prior[k.fitted.name] for k in kept}
-        best = max(fits, key=lambda f: evidence[f.name])
-        used.append((best, test))
-    same = np.mean([f.name == chosen for f, _ in used]) if used else math.nan
-    return Repeated(_scored(problem, used), float(same))
-
-
-class _Kept(NamedTuple):
-    """Some places of an explanation's grid, with the model's error of every size."""
-
-    fitted: Fit
-    parts: tuple[Whole, ...]
-
-    @classmethod
-    def of(cls, fitted: Fit) -> _Kept:
-        few = fitted.residuals[:: max(len(fitted.residuals) // _GRID, 1)]
-        return cls(fitted, tuple(Whole.of(part, few) for part in fitted.mixture.parts))
-
-    def evidence(self, out: Mask) -> float:
-        """Ln evidence of the explanation by the cells that were kept."""
-        each = [
-            weight + part.kept_log_likelihood(out)
-            for weight, part in zip(self.fitted.mixture.log_weight, self.parts, strict=True)
-        ]
-        found = logsumexp(np.stack(each), axis=0)
-        return float(logsumexp(found)) - math.log(len(found)) + self.fitted.grid.log_volume
+    return _scored(problem, fitted, _folds(problem))
 
 
 def _folds(problem: Problem) -> list[Mask]:
     return [test for test in groups_of(problem) if test.any() and not test.all()]
 
 
-def _scored(problem: Problem, used: Sequence[tuple[Fit, Mask]]) -> HeldOut:
-    """Score predictions of groups of cells by the explanation that goes with each."""
+def _scored(problem: Problem, fitted: Fit, folds: Sequence[Mask]) -> HeldOut:
+    """Score predictions of groups of cells."""
     squares, count = [], 0
-    known: dict[str, Whole] = {}
-    for fitted, test in used:
-        if fitted.name not in known:
-            known[fitted.name] = Whole.of(fitted.linear, fitted.residuals)
-        miss = _missed(known[fitted.name], test)
-        noise = np.sqrt(np.diag(fitted.linear.noise))
+    whole = Whole.of(fitted.linear, fitted.residuals)
+    noise = np.sqrt(np.diag(fitted.linear.noise))
+    for test in folds:
+        miss = _missed(whole, test)
         squares.append((miss / noise[test]) ** 2)
         count += int(np.sum(problem.cells.count[test]))
     if not squares:

@@ -1,19 +1,17 @@
 """The main path: a recording set in, a verdict out.
 
-audit -> calibrate the nuisances -> locate the mismatch -> rank the explanations -> decide ->
+audit -> calibrate the nuisances -> rank the explanations -> decide -> locate the mismatch ->
 held-out conditions -> next experiment. `Verdict.to_dict` gives verdict.json, version 1.
 """
 
 from __future__ import annotations
 
-import math
 from collections.abc import Sequence
 
 import numpy as np
 
 from ..core.threads import in_one_thread
 from ..recordings import RecordingSet
-from .choice.decide import in_doubt, withdrawn
 from .choice.judge import Judge
 from .choice.odds import OUTSIDE
 from .choice.pairs import with_pairs
@@ -35,7 +33,7 @@ from .estimates import (
 )
 from .experiments.next_experiment import propose
 from .findings import Verdict
-from .heldout import Repeated, held_out, repeated_choice
+from .heldout import held_out
 from .inference.sampling import confirm_evidence
 from .locate import locate
 from .mechanisms import MECHANISMS, NAMELESS, Mechanism
@@ -91,7 +89,7 @@ def diagnose(
     progress("simulating sets in which nothing is missing")
     nulls = null_residuals(simulator, ranking.base, CONFIRMED_NULLS if confirm else NULLS, rng)
     judge = Judge.of(ranking, nulls)
-    if in_doubt(judge.odds(ranking)):
+    if judge.wants_second(ranking):
         ranking = with_pairs(simulator, ranking, progress=progress)
 
     progress("deciding")
@@ -104,13 +102,6 @@ def diagnose(
     odds = judge.odds(ranking, sampled)
     progress("predicting conditions that were left out")
     left_out = {f.name: held_out(ranking.problem, f) for f in ranking.fits}
-    base = left_out[ranking.base.name]
-    again = Repeated(base, math.nan)
-    if choice.members:
-        name = choice.members[0].name
-        prior = judge.log_prior(ranking)
-        again = repeated_choice(ranking.problem, ranking.fits, prior, name)
-        choice = withdrawn(choice, (base.score, again.score.score), name)
     progress("looking for the next experiment")
     best = choice.members[0] if choice.members else ranking.base
     proposals = propose(simulator, ranking, odds, rng)
@@ -128,8 +119,9 @@ def diagnose(
         located=locate(ranking.problem, ranking.base, nulls, least=misses),
         parameters=parameters_of(simulator, best), nuisance_pulls=pulls_of(ranking.problem, best),
         surprise=surprises_of(ranking.problem, best), excluded=ranking.excluded,
-        limits=limits_of(ranking, judge.calibration),
-        improvement=improvement_of(base, again.score, again.same), misfit=misfit,
+        limits=limits_of(ranking),
+        improvement=improvement_of(left_out[ranking.base.name], left_out[best.name]),
+        misfit=misfit,
         stated=stated, corrections=corrections, proposals=tuple(proposals[:PROPOSED]), notes=notes,
         ranking=ranking, best=best, impacts=simulator.tally.impacts,
     )  # fmt: skip

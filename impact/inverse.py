@@ -1,8 +1,8 @@
 """Chapter 5's inverse: duration and mean force of an oblique impact from what it left behind.
 
 The printed equations 5.5-5.12 are damaged; these are the exact rigid-body relations (see
-docs/impact-method.md). They hold for one contact, during which the tip slides to -x throughout under a
-constant friction coefficient, at an angle that does not change.
+docs/impact-method.md). They hold for one contact, during which the tip slides to -x throughout
+under a constant friction coefficient, at an angle that does not change.
 """
 
 from __future__ import annotations

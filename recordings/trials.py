@@ -10,6 +10,7 @@ import numpy as np
 import numpy.typing as npt
 
 from ..core.inputs.csv_table import Array, Problems, TextTable, numbers, read_text_table, shown
+from ..core.inputs.names import ALLOWED, names_a_file
 from ..core.observables import LOAD, OBSERVABLES
 from ..core.output import csv_text
 from .columns import CONDITIONS, MEASURED, STD_SUFFIX, TRIAL_COLUMNS, VARIED
@@ -207,10 +208,8 @@ def _check_texts(table: TextTable, strikers: frozenset[str], problems: Problems)
                 f"{shown(name)} is also in row {seen[name]}", row=row, column="trial",
                 allowed="each name once",
             )  # fmt: skip
-        elif any(c in '/\\:*?"<>|' or not c.isprintable() for c in name) or name in (".", ".."):
-            problems.add(
-                f"{shown(name)}", row=row, column="trial", allowed="text that can name a file"
-            )
+        elif not names_a_file(name):
+            problems.add(f"{shown(name)}", row=row, column="trial", allowed=ALLOWED)
         seen.setdefault(name, row)
     for column in ("spot", "note"):
         for row, text in zip(table.rows, table.cells.get(column, ()), strict=False):

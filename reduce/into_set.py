@@ -19,6 +19,7 @@ import numpy as np
 
 from ..core.errors import InputError
 from ..core.inputs.csv_table import Array
+from ..core.inputs.names import ALLOWED, names_a_file
 from ..core.inputs.toml_input import parse_model, read_toml
 from ..core.output import csv_text, finish_pending, locked, write_files
 from ..core.rig import Quantity
@@ -86,6 +87,8 @@ def store(
         _check_one_approach(reduced, row)
         for trial in reduced.trials:
             name = "-".join(filter(None, (_name(reduced, row), trial.label)))
+            if not names_a_file(name):  # a label may be the raw file's own
+                raise InputError(repr(name), key="trial", allowed=ALLOWED)
             after = _with_trial(after, name, striker, trial, row)
             curves[name] = trial
             names.append(name)

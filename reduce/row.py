@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from pydantic import Field
 
+from ..core.inputs.names import FileNameIfAny
 from ..core.inputs.toml_input import InputTable
 from ..recordings.columns import VARIED
 
@@ -11,7 +12,7 @@ from ..recordings.columns import VARIED
 class Row(InputTable):
     """What the raw file does not tell about the trial."""
 
-    trial: str = Field(default="", description="name of the trial; default: the file's")
+    trial: FileNameIfAny = Field(default="", description="name of the trial; default: the file's")
     striker: str = Field(default="", description="name in set.toml; default: the only one")
     angle_deg: float | None = Field(
         default=None, gt=0.0, le=90.0, description="angle of the impact; default: 90"

@@ -42,9 +42,12 @@ def run(
 ) -> int:
     """Go on with the run of this source tree: draw, seal, diagnose, seal. Stop it at any time."""
     _checked(which, "--list", LISTS)
+    from multiprocessing import active_children
+
     from rich.console import Console
     from rich.progress import Progress
 
+    from ...core.stopping import heard
     from ...core.threads import one_thread_each
     from ...studies.proof.lists import LISTS as made
     from ...studies.proof.run import carry_on, local_workers, run_folder, verdicts_of
@@ -67,6 +70,9 @@ def run(
                 state = "sealed" if event["verdict"] else f"no verdict ({event['exit']})"
                 console.print(f"  {name}  {state}  {event['wall_s']:.0f} s", highlight=False)
     except KeyboardInterrupt:
+        heard()
+        for worker in active_children():
+            worker.terminate()  # a diagnosis may take minutes, and is begun anew
         typer.echo("stopped; the same command goes on from here")
         return 130
     finally:
@@ -142,6 +148,27 @@ def sample(
     _checked(name, "--name", ("", *known))
     for label, record in samples(out, count=count, kind=kind, name=name, seed=seed):
         typer.echo(f"{label}  {record['kind']}")
+
+
+@app.command()
+def peers(
+    folder: Annotated[Path, typer.Argument(help="Folder with sets/ and truths/.")],
+) -> None:
+    """Compare the diagnosis with simple rules on the same problems: who is right how often."""
+    from ...studies.peers import RULES, compared, scored
+
+    rows = []
+    for row in compared(folder):
+        rows.append(row)
+        told = "; ".join(f"{k}: {v} {' or '.join(n)}".rstrip() for k, (v, n) in row.said.items())
+        typer.echo(f"{row.name}  {'+'.join(row.truth) or 'nothing'} | {told}")
+    typer.echo(f"{'':<26} exact  in set  nulls named  outside forced  of {len(rows)}")
+    for decider in ("diagnosis", *RULES):
+        s = scored(rows, decider)
+        typer.echo(f"{decider:<26} {s.exact:>5}  {s.in_set:>6}  {s.false:>11}  {s.forced:>14}")
+    for who in ("diagnosis", "rules"):
+        mean = sum(row.seconds[who] for row in rows) / max(len(rows), 1)
+        typer.echo(f"{who}: {mean:.1f} processor seconds a set")
 
 
 @app.command()

@@ -1,8 +1,7 @@
 """Decide: the verdict whose expected cost is least, by the probabilities of the explanations.
 
-No rule names what the probabilities deny. Two checks stand beside them: numbers too few to say
-anything, and a name under which conditions kept out of the fit are predicted worse, which is
-withdrawn.
+No rule names what the probabilities deny; numbers too few to say anything are the one check
+beside them.
 """
 
 from __future__ import annotations
@@ -17,6 +16,7 @@ from ...core.observables import OBSERVABLES
 from ..comparison.cells import Scatter
 from ..inference.fit import Fit
 from ..rank import Ranking
+from ..rules import RULES
 from ..unknowns.drift import Drift
 from ..unknowns.followed import Followed
 from .odds import OUTSIDE, Odds
@@ -25,8 +25,6 @@ FEWEST_CELLS, FEWEST_CONDITIONS = 6, 2
 """Numbers and conditions below which a set says nothing."""
 MOST = 3
 """Explanations that are reported as indistinguishable; with more the set says too little."""
-IN_DOUBT = 0.3
-"""Probability of something missing from which pairs are worth fitting."""
 
 
 class Costs(NamedTuple):
@@ -58,8 +56,6 @@ class Costs(NamedTuple):
 
 
 COSTS = Costs()
-ADEQUATE = 0.7
-"""Probability from which `adequate` is said: readers take it for an all-clear."""
 WORTH_NAMING = COSTS.more / COSTS.wrong
 """Probability from which a further name saves more than it costs."""
 
@@ -75,11 +71,6 @@ class Choice:
     members: tuple[Fit, ...]
     reasons: tuple[str, ...]
     alike: tuple[str, ...] = ()
-
-
-def in_doubt(odds: Odds) -> bool:
-    """Whether the baseline is in doubt, so that pairs are worth fitting."""
-    return 1.0 - odds.baseline > IN_DOUBT
 
 
 def decide(ranking: Ranking, odds: Odds, *, drifts: Sequence[Drift] = ()) -> Choice:
@@ -117,7 +108,7 @@ def _cheapest(fits: Sequence[Fit], odds: Odds) -> Choice:
             + COSTS.wrong * (1.0 - odds.baseline - odds.outside)
         ),
     }  # fmt: skip
-    if odds.baseline >= ADEQUATE:
+    if odds.baseline >= RULES.adequate:
         options["adequate"] = COSTS.miss * (1.0 - odds.baseline)
     if named:
         options["named"] = cost_of_naming(named, odds)
@@ -156,28 +147,6 @@ def cost_of_naming(labels: Sequence[str], odds: Odds) -> float:
         near = any(true & one for one in named)
         cost += p * (COSTS.half if near else COSTS.wrong)
     return cost
-
-
-def withdrawn(choice: Choice, kept_out: tuple[float, float], name: str) -> Choice:
-    """Return the choice without its names, if held-out conditions speak against them.
-
-    Parameters
-    ----------
-    choice
-        Of the whole set.
-    kept_out
-        Miss of the baseline and of the repeated choice on conditions kept out.
-    name
-        What had been named.
-    """
-    base, chosen = kept_out
-    if not choice.members or not chosen > base:
-        return choice
-    text = (
-        f"{name} is withdrawn: with it conditions kept out of the fit are missed by {chosen:.2f} "
-        f"standard errors, without by {base:.2f}"
-    )
-    return Choice("undetermined", (), (*choice.reasons, text))
 
 
 def _odds_told(odds: Odds) -> Iterable[str]:

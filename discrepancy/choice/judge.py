@@ -10,10 +10,11 @@ from scipy.special import logsumexp
 
 from ..inference.fit import Fit
 from ..rank import Nameless, Ranking
-from .calibration import Calibration, FitTest, calibrate, fit_test
+from ..rules import RULES
 from .decide import Choice, decide
-from .odds import OUTSIDE, PRIORS, Odds, odds_of, shares_outside
+from .odds import OUTSIDE, Odds, odds_of, shares_outside
 from .outside import odd_repeats, outside_of
+from .own_sets import FitTest, fit_test
 from .thresholds import Nulls
 
 _ALIKE = 0.5
@@ -22,21 +23,18 @@ _ALIKE = 0.5
 
 @dataclass(frozen=True)
 class Judge:
-    """What nulls of a set give away, and what speaks for something outside.
+    """What speaks for something outside, and how each explanation fits its own sets.
 
     Parameters
     ----------
-    calibration
-        Nats taken off each alternative.
     outside
-        Ln evidence of something outside the library over the baseline's.
+        Ln evidence of something outside the library over the baseline's, less the penalty.
     nameless
         Physics without a name to its share of that evidence.
     nulls
         Sets with nothing missing, from which each explanation's own sets are made.
     """
 
-    calibration: Calibration
     outside: float
     nameless: Mapping[str, float]
     nulls: Nulls
@@ -44,26 +42,25 @@ class Judge:
 
     @classmethod
     def of(cls, ranking: Ranking, nulls: Nulls) -> Judge:
-        """Put sets with nothing missing through the comparison."""
+        """Weigh what is outside the library."""
         free = outside_of(ranking.problem, ranking.base)
-        calibration = calibrate(ranking, nulls, free)
         gained = float(free.log_likelihood(ranking.base.residual)) - ranking.base.log_evidence
         known_to_none, own = shares_outside(len(ranking.nameless))
         parts = {
-            n.screened.mechanism.name: n.log_bayes + math.log(own)
-            - calibration.offset[n.screened.mechanism.name]
+            n.screened.mechanism.name: n.log_bayes + math.log(own) - RULES.penalty
             for n in ranking.nameless
-        }  # fmt: skip
-        parts[OUTSIDE] = gained + math.log(known_to_none) - calibration.offset[OUTSIDE]
+        }
+        parts[OUTSIDE] = gained + math.log(known_to_none) - RULES.penalty
+        # what repeats are worth is bounded already
         parts["repeats"] = odd_repeats(ranking.problem)
         whole = float(logsumexp(list(parts.values())))
         share = {k: math.exp(v - whole) for k, v in parts.items() if k not in (OUTSIDE, "repeats")}
-        return cls(calibration, whole, share, nulls)
+        return cls(whole, share, nulls)
 
     def odds(self, ranking: Ranking, sampled: Mapping[str, float] | None = None) -> Odds:
         """Return the probabilities of the explanations of a ranking."""
         return odds_of(
-            ranking, self.calibration, self.outside, sampled=sampled,
+            ranking, self.outside, sampled=sampled,
             beside=lambda fitted: self.test(fitted).log_odds,
         )  # fmt: skip
 
@@ -72,6 +69,10 @@ class Judge:
         if fitted.name not in self._tests:
             self._tests[fitted.name] = fit_test(fitted, self.nulls)
         return self._tests[fitted.name]
+
+    def wants_second(self, ranking: Ranking) -> bool:
+        """Whether the leading single does not fit, so that a second mechanism is worth trying."""
+        return any(self.test(f).p_value < RULES.refuted for f in ranking.singles[:1])
 
     def decided(self, ranking: Ranking, sampled: Mapping[str, float]) -> Choice:
         """Return the verdict of least expected cost."""
@@ -93,16 +94,6 @@ class Judge:
             f"{fitted.name} comes nearest of what has a name, but fits worse than {worse:.3g} % of "
             "the sets that it makes itself"
         )
-
-    def log_prior(self, ranking: Ranking) -> dict[str, float]:
-        """Name to ln of the prior probability, less what nulls give away, of every fit."""
-        n = max(len(ranking.screened), 1)
-        share = {0: PRIORS["baseline"], 1: PRIORS["singles"] / n}
-        share[2] = PRIORS["pairs"] / max(n * (n - 1) // 2, 1)
-        return {
-            f.name: math.log(share[len(f.mechanisms)]) - self.calibration.off(f.names)
-            for f in ranking.fits
-        }
 
 
 def _behaves(nameless: Nameless, share: float) -> str:

@@ -1,16 +1,16 @@
-"""How probable each explanation is: prior, evidence, and what nulls give away taken off."""
+"""How probable each explanation is: prior times evidence, and a penalty on all but the baseline."""
 
 from __future__ import annotations
 
 import math
 from collections.abc import Callable, Iterable, Mapping
 from dataclasses import dataclass, field
-from typing import Protocol
 
 from scipy.special import logsumexp
 
 from ..inference.fit import Fit
 from ..rank import Ranking
+from ..rules import RULES
 
 OUTSIDE = "outside-library"
 PRIORS = {"baseline": 0.5, "singles": 0.34, "pairs": 0.06, OUTSIDE: 0.1}
@@ -33,17 +33,6 @@ NAMED_AT = math.log(SURE / (1.0 - SURE))
 def shares_outside(nameless: int) -> tuple[float, float]:
     """Prior shares, among what is outside the library, of the free part and of each nameless."""
     return (1.0 - NAMELESS_SHARE, NAMELESS_SHARE / nameless) if nameless else (1.0, 0.0)
-
-
-class GivenAway(Protocol):
-    """Nats that are taken off what is something else than the baseline."""
-
-    @property
-    def common(self) -> float:
-        """Nats taken off every alternative."""
-
-    def off(self, names: tuple[str, ...]) -> float:
-        """Return the nats taken off an explanation of these mechanisms, common ones included."""
 
 
 @dataclass(frozen=True)
@@ -87,7 +76,6 @@ class Odds:
 
 def odds_of(
     ranking: Ranking,
-    given: GivenAway,
     outside: float,
     *,
     sampled: Mapping[str, float] | None = None,
@@ -99,11 +87,8 @@ def odds_of(
     ----------
     ranking
         All fits; a mechanism without a full fit counts by its screening.
-    given
-        What nulls give away.
     outside
-        Ln evidence of something outside the library over the baseline's, what nulls give it
-        taken off.
+        Ln evidence of something outside the library over the baseline's, less the penalty.
     sampled
         Sampled ln evidence over the baseline, of the explanations that have it.
     beside
@@ -118,14 +103,14 @@ def odds_of(
     alone = [s.mechanism.name for s in ranking.screened]
     n = max(len(alone), 1)
     log = {"baseline": math.log(PRIORS["baseline"])}
-    log[OUTSIDE] = outside + math.log(PRIORS[OUTSIDE]) - given.common
+    log[OUTSIDE] = outside + math.log(PRIORS[OUTSIDE])
     names: dict[str, tuple[str, ...]] = {"baseline": (), OUTSIDE: ()}
     for label, more in gained.items():
         names[label] = tuple(label.split("+"))
         share = PRIORS["singles"] / n
         if len(names[label]) > 1:
             share = PRIORS["pairs"] / max(n * (n - 1) // 2, 1)
-        log[label] = more + math.log(share) - given.off(names[label])
+        log[label] = more + math.log(share) - RULES.penalty
     found = _normalised(log.items())
     likely = [f for f in (*ranking.singles, *ranking.pairs) if found[f.name] > WORTH_TELLING]
     if beside is None or not likely:

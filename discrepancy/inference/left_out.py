@@ -1,8 +1,7 @@
 """Cells that are left out, from the algebra of all: no group needs a factorisation of its own.
 
 With Q = Sigma^-1 and g = Q r, the cells t miss what the others foretell by Q_tt^-1 g_t, with the
-covariance Q_tt^-1, so that the others' r^T Sigma^-1 r is r^T g less g_t^T Q_tt^-1 g_t and their
-ln det Sigma is that of all plus ln det Q_tt.
+covariance Q_tt^-1, so that the others' r^T Sigma^-1 r is r^T g less g_t^T Q_tt^-1 g_t.
 
 References
 ----------
@@ -11,7 +10,6 @@ C. E. Rasmussen, C. K. I. Williams, Gaussian Processes for Machine Learning (MIT
 
 from __future__ import annotations
 
-import math
 from dataclasses import dataclass
 
 import numpy as np
@@ -35,14 +33,11 @@ class Whole:
         Q r, (k, m).
     squares
         r^T Q r, (k,).
-    log_det
-        Ln det(2 pi Sigma).
     """
 
     precision: Array
     solved: Array
     squares: Array
-    log_det: float
 
     @classmethod
     def of(cls, linear: Linear, residuals: Array) -> Whole:
@@ -50,7 +45,7 @@ class Whole:
         white = linear.whitening
         precision = white @ white.T
         solved = residuals @ precision
-        return cls(precision, solved, np.sum(residuals * solved, axis=1), linear.log_det)
+        return cls(precision, solved, np.sum(residuals * solved, axis=1))
 
     def missed(self, out: Mask) -> tuple[Array, Array]:
         """Return data minus prediction of the left-out cells by the others, (k, left out).
@@ -60,10 +55,3 @@ class Whole:
         g = self.solved[:, out]
         miss = np.linalg.solve(self.precision[np.ix_(out, out)], g.T).T
         return np.asarray(miss), np.asarray(self.squares - np.sum(g * miss, axis=1))
-
-    def kept_log_likelihood(self, out: Mask) -> Array:
-        """Return ln of the likelihood of the other cells alone, (k,)."""
-        _, squares = self.missed(out)
-        _, log_det = np.linalg.slogdet(self.precision[np.ix_(out, out)])
-        gone = float(log_det) - int(np.sum(out)) * math.log(2.0 * math.pi)
-        return np.asarray(-0.5 * (squares + self.log_det + gone))

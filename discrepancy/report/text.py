@@ -54,7 +54,10 @@ def headline(v: Verdict) -> str:
         return "Too few data to say."
     leads = list(v.probabilities.items())[:_LEADING]
     likely = ", ".join(f"{explanation(name)} {percent(p)}" for name, p in leads)
-    return f"These data do not say whether something is missing, or what. What leads: {likely}."
+    return (
+        "These data do not say whether something is missing, or what. What leads, by probability: "
+        f"{likely}."
+    )
 
 
 def nowhere(v: Verdict) -> str:

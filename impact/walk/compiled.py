@@ -30,6 +30,8 @@ Array = NDArray[np.float64]
 # fmt: off
 _LANES = 16
 """The state is filled up to a multiple of this: loops over it then leave no rest to do singly."""
+_AT_ONCE = 200
+"""Impacts of one compiled call, which Ctrl-C has to wait for: a second where they vibrate."""
 _MODES = types.Array(types.float64, 3, "C")
 _FLAGS, _PLACES = types.Array(types.boolean, 1, "C"), types.Array(int64, 1, "C")
 
@@ -100,7 +102,9 @@ def many_impacts(
     for size in np.unique(-(-used // _LANES) * _LANES):
         own = np.flatnonzero(-(-used // _LANES) * _LANES == size)
         work = _work_of(int(size), n, history)
-        _impacts(*kernels, *given, work, tailed, used, own, out, left, rows)
+        for first in range(0, len(own), _AT_ONCE):
+            some = own[first : first + _AT_ONCE]
+            _impacts(*kernels, *given, work, tailed, used, some, out, left, rows)
     return int(rows[0])
 
 

@@ -54,7 +54,7 @@ def main() -> None:
     _write("examples.md", examples_page())
     for stage in STAGES:
         _write(f"python/{stage}.md", reference_page(stage))
-    _write("python/index.md", (ROOT / "__init__.py").read_text(encoding="utf-8").split('"""')[1])
+    _write("python/index.md", names_page())
     for name in ("site.css", "scroll.js", "iframe-worker.js"):
         shutil.copyfile(HERE / name, SOURCE / name)
     nav = "[python/index.md, " + ", ".join(f"python/{stage}.md" for stage in STAGES) + "]"
@@ -125,14 +125,32 @@ def examples_page() -> str:
     return "\n\n".join(out) + "\n"
 
 
+def public_names(tree: ast.Module) -> list[str]:
+    """Return what a module offers by `__all__`; a stage that is used by its command has none."""
+    for node in tree.body:
+        if isinstance(node, ast.Assign) and ast.unparse(node.targets[0]) == "__all__":
+            return list(ast.literal_eval(node.value))
+    return []
+
+
+def names_page() -> str:
+    """Return the page of `import dentscope as ds`: what it says, and every name of it."""
+    tree = ast.parse((ROOT / "__init__.py").read_text(encoding="utf-8"))
+    told = (ast.get_docstring(tree) or "").split("\n\n")
+    calls, stages = told[2], told[4]
+    names = [name for name in public_names(tree) if name != "LAWS"]
+    parts = "\n\n".join(f"::: dentscope.{name}" for name in names)
+    return (
+        "# The names of `import dentscope as ds`\n\n"
+        f"```\n{calls}\n```\n\n{told[3]}\n\n```\n{stages}\n```\n\n"
+        f"## ds.LAWS\n\nEvery contact law by its name: [laws](../laws.md).\n\n{parts}\n"
+    )
+
+
 def reference_page(stage: str) -> str:
     """Return the page of a stage: what it says of itself, and every public name of it."""
     tree = ast.parse((ROOT / stage / "__init__.py").read_text(encoding="utf-8"))
-    (names,) = (
-        ast.literal_eval(node.value)
-        for node in tree.body
-        if isinstance(node, ast.Assign) and ast.unparse(node.targets[0]) == "__all__"
-    )
+    names = public_names(tree)
     about = ast.get_docstring(tree) or ""
     parts = (f"::: dentscope.{stage}.{name}" for name in names)
     return f"# {stage}\n\n{about}\n\n" + "\n\n".join(parts) + "\n"

@@ -17,7 +17,7 @@ from multiprocessing.context import ForkServerContext
 from pathlib import Path
 from typing import NamedTuple
 
-from ...core.children import keep_current_folder_out
+from ...core.children import die_with, keep_current_folder_out
 
 _PASSED = ("PATH", "HOME", "LANG", "NUMBA_CACHE_DIR", "XDG_CACHE_HOME", "TMPDIR", "PYTHONPATH",
            "PYTHONSAFEPATH")  # fmt: skip
@@ -71,6 +71,7 @@ def _server() -> ForkServerContext:
 
 
 def _diagnose(folder: Path, out: Path, ours: Connection) -> None:
+    die_with(os.getppid())
     # by its name, as a shell reaches it: the proof imports nothing of the tool
     run = import_module("dentscope.cli.app").run
     for key in list(os.environ):

@@ -7,6 +7,7 @@ diagnosing process is given the path of a copy of the recordings and nothing els
 from __future__ import annotations
 
 import json
+import os
 import secrets
 import shutil
 import signal
@@ -19,7 +20,7 @@ from multiprocessing import get_context
 from pathlib import Path
 from typing import Any
 
-from ...core.children import keep_current_folder_out
+from ...core.children import die_with, keep_current_folder_out
 from .apart import answer
 from .explicit.catalogue import SERIES
 from .explicit.sets import draw_explicit, write_explicit
@@ -106,9 +107,13 @@ def local_workers(count: int) -> Executor:
     """Processes of this machine that draw and diagnose; Ctrl-C is for their parent alone."""
     keep_current_folder_out()
     return ProcessPoolExecutor(
-        count, get_context("spawn"), initializer=signal.signal,
-        initargs=(signal.SIGINT, signal.SIG_IGN),
-    )  # fmt: skip
+        count, get_context("spawn"), initializer=_begin_worker, initargs=(os.getpid(),)
+    )
+
+
+def _begin_worker(parent: int) -> None:
+    signal.signal(signal.SIGINT, signal.SIG_IGN)
+    die_with(parent)
 
 
 def carry_on(

@@ -41,7 +41,7 @@ class Effect:
         Parameter("size", "-", 0.0, 1.0, "linear", 0.0, "", nodes=5),
     )
 
-    def applies(self, situations: Any) -> str:
+    def ruled_out(self, situations: Any) -> str:
         return self.reason
 
     def ranges(self, situations: Any) -> tuple[Parameter, ...]:

@@ -7,8 +7,7 @@ from types import SimpleNamespace
 
 import numpy as np
 import pytest
-from dentscope.discrepancy.choice.calibration import Calibration
-from dentscope.discrepancy.choice.decide import COSTS, cost_of_naming, decide, in_doubt, withdrawn
+from dentscope.discrepancy.choice.decide import COSTS, cost_of_naming, decide
 from dentscope.discrepancy.choice.judge import Judge
 from dentscope.discrepancy.choice.odds import (
     BESIDE,
@@ -20,6 +19,7 @@ from dentscope.discrepancy.choice.odds import (
     odds_of,
 )
 from dentscope.discrepancy.comparison.cells import Scatter
+from dentscope.discrepancy.rules import RULES
 from dentscope.discrepancy.unknowns.drift import Drift
 
 CELLS = 8
@@ -126,15 +126,6 @@ def test_the_odds_at_which_a_name_is_cheaper_than_silence() -> None:
     assert math.log(SURE / (1.0 - SURE)) == pytest.approx(NAMED_AT)
 
 
-def test_a_name_that_predicts_worse_is_withdrawn(case) -> None:
-    choice = case(odds(a=0.99))
-    gone = withdrawn(choice, (7.6, 44.6), "a")
-    assert (gone.verdict, named(gone)) == ("undetermined", [])
-    assert "a is withdrawn" in gone.reasons[-1]
-    assert withdrawn(choice, (7.6, 7.5), "a") is choice
-    assert withdrawn(choice, (math.nan, math.nan), "a") is choice
-
-
 def test_scatter_beyond_the_noise_is_said_first(case) -> None:
     found = case(odds(), scatters=(Scatter("restitution", 78.0, 40),))
     assert found.reasons[0].startswith("repeats of restitution differ 78 times more than")
@@ -148,12 +139,7 @@ def test_a_drift_is_said_beside_any_verdict(case) -> None:
     assert "peak_force_N: repeats of one condition change by +10.0 %" in found.reasons[-1]
 
 
-def test_pairs_are_worth_fitting_where_the_baseline_is_in_doubt() -> None:
-    assert not in_doubt(odds(a=0.29))
-    assert in_doubt(odds(a=0.31))
-
-
-def test_probabilities_are_prior_times_evidence_less_what_nulls_give(toy) -> None:
+def test_probabilities_are_prior_times_evidence_less_a_penalty(toy) -> None:
     base, one, two = toy.fit_of(ZERO), toy.Effect("a", ZERO), toy.Effect("b", ZERO)
     singles = [toy.fit_of(ZERO, one, lift=math.log(4.0)), toy.fit_of(ZERO, two)]
     ranking = toy.ranking_of(
@@ -161,28 +147,27 @@ def test_probabilities_are_prior_times_evidence_less_what_nulls_give(toy) -> Non
         pairs=[toy.fit_of(ZERO, one, two, lift=math.log(2.0))],
         screened=[toy.screened_of(e, [ZERO]) for e in (one, two)],
     )  # fmt: skip
-    found = odds_of(ranking, Calibration(), math.log(3.0))
+    found = odds_of(ranking, math.log(3.0))
     weight = {
         "baseline": PRIORS["baseline"], OUTSIDE: 3.0 * PRIORS[OUTSIDE],
         "a": 4.0 * PRIORS["singles"] / 2, "b": PRIORS["singles"] / 2, "a+b": 2.0 * PRIORS["pairs"],
     }  # fmt: skip
+    for name in ("a", "b", "a+b"):
+        weight[name] *= math.exp(-RULES.penalty)
     total = sum(weight.values())
     assert dict(found.probability) == pytest.approx({k: w / total for k, w in weight.items()})
-    assert next(iter(found.probability)) == "a"
+    assert next(iter(found.probability)) == "baseline"
     assert found.inclusion["a"] == pytest.approx((weight["a"] + weight["a+b"]) / total)
-    less = odds_of(ranking, Calibration({"a": math.log(2.0)}, math.log(5.0)), math.log(3.0))
-    ratio = less.probability["a"] / less.baseline
-    assert ratio == pytest.approx(weight["a"] / weight["baseline"] / 10.0)
-    outside = less.outside / less.baseline
-    assert outside == pytest.approx(weight[OUTSIDE] / weight["baseline"] / 5.0)
 
 
 def test_a_mechanism_without_a_fit_counts_by_its_screening(toy) -> None:
     base, one = toy.fit_of(ZERO), toy.Effect("a", ZERO)
     screened = SimpleNamespace(mechanism=one, log_bayes=math.log(6.0))
     ranking = toy.ranking_of(toy.problem([0.0] * CELLS), base, screened=[screened])
-    found = odds_of(ranking, Calibration(), -math.inf)
-    assert found.probability["a"] / found.baseline == pytest.approx(6.0 * PRIORS["singles"] / 0.5)
+    found = odds_of(ranking, -math.inf)
+    assert found.probability["a"] / found.baseline == pytest.approx(
+        6.0 * PRIORS["singles"] / 0.5 * math.exp(-RULES.penalty)
+    )
 
 
 def test_what_its_own_sets_refute_gives_its_probability_to_something_outside(toy) -> None:
@@ -192,14 +177,14 @@ def test_what_its_own_sets_refute_gives_its_probability_to_something_outside(toy
         singles=[toy.fit_of(ZERO, one, lift=30.0), toy.fit_of(ZERO, two)],
         screened=[toy.screened_of(e, [ZERO]) for e in (one, two)],
     )  # fmt: skip
-    before = odds_of(ranking, Calibration(), -math.inf)
+    before = odds_of(ranking, -math.inf)
     asked = []
 
     def beside(fitted):
         asked.append(fitted.name)
         return math.log(3.0 / BESIDE)
 
-    found = odds_of(ranking, Calibration(), -math.inf, beside=beside)
+    found = odds_of(ranking, -math.inf, beside=beside)
     assert asked == ["a"]  # nothing is beside what has no probability itself
     assert found.outside == pytest.approx(3.0 * found.probability["a"])
     assert found.beside == pytest.approx({"a": found.outside})
@@ -216,7 +201,7 @@ def test_a_name_that_does_not_fit_is_told_beside_something_outside(toy) -> None:
         screened=[toy.screened_of(effect, [ZERO])],
     )  # fmt: skip
     nulls = toy.nulls_of(np.random.default_rng(2).standard_normal((500, CELLS)))
-    found = Judge(Calibration(), -math.inf, {}, nulls).decided(ranking, {})
+    found = Judge(-math.inf, {}, nulls).decided(ranking, {})
     assert found.verdict == OUTSIDE
     assert found.reasons[-1] == (
         "a comes nearest of what has a name, but fits worse than 99.8 % of the sets that it makes "
@@ -226,5 +211,5 @@ def test_a_name_that_does_not_fit_is_told_beside_something_outside(toy) -> None:
         ranking.problem, toy.fit_of((30.0, *ZERO[1:])),
         singles=[toy.fit_of((30.0, *ZERO[1:]), effect)], screened=ranking.screened,
     )  # fmt: skip
-    named = Judge(Calibration(), -math.inf, {}, nulls).decided(fits, {})
+    named = Judge(-math.inf, {}, nulls).decided(fits, {})
     assert (named.verdict, [f.name for f in named.members]) == ("missing-physics", ["a"])

@@ -7,7 +7,7 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from dentscope.discrepancy.heldout import groups_of, held_out, repeated_choice
+from dentscope.discrepancy.heldout import groups_of, held_out
 
 
 def test_whole_strikers_speeds_and_angles_are_left_out(toy) -> None:
@@ -57,18 +57,3 @@ def test_sizes_count_by_how_well_they_explain_what_was_kept(toy) -> None:
     data, effect = [0.8, 1.6], toy.Effect("a", (40.0, 80.0))
     # shown one cell, the size is known to 1/80 or 1/40 of its range: 2 standard errors at the most
     assert held_out(toy.problem(data), toy.fit_of(data, effect)).raw < 1.5
-
-
-def test_the_whole_choice_is_made_again_on_what_is_kept(toy) -> None:
-    """Steps of 8 standard errors at three speeds: two show the slope that foretells the third."""
-    data, even = [20.0, 40.0, 60.0], {"baseline": 0.0, "a": 0.0}
-    effect = toy.Effect("a", (40.0, 80.0, 120.0))
-    fits = [toy.fit_of(data), toy.fit_of(data, effect)]
-    given = toy.problem(data)
-    found = repeated_choice(given, fits, even, "a")
-    assert found.same == 1.0
-    assert found.score.raw == pytest.approx(held_out(given, fits[1]).raw)
-    # where the rest would not choose it, the baseline must predict
-    never = repeated_choice(given, fits, even | {"a": -1e6}, "a")
-    assert never.same == 0.0
-    assert never.score.raw == pytest.approx(held_out(given, fits[0]).raw)

@@ -5,7 +5,6 @@ from types import SimpleNamespace
 
 import numpy as np
 import pytest
-from dentscope.discrepancy.choice.odds import NAMED_AT, PRIORS
 from dentscope.discrepancy.estimates import limits_of
 from dentscope.discrepancy.inference.grid import Axis, Grid
 from dentscope.discrepancy.mechanisms.base import Parameter
@@ -31,10 +30,6 @@ def test_limit_is_the_value_nearest_to_doing_nothing(low, high, scale, neutral, 
                     effect=effect(own.value(grid.places()[:, 0]))[:, None],
                 )
             ],
-        ),
-        # one nat is needed in all
-        SimpleNamespace(
-            off=lambda names: 1.0 - NAMED_AT - math.log(PRIORS["baseline"] / PRIORS["singles"])
         ),
     )  # fmt: skip
     step = (own.value(1.0 / len(grid.fine[0])) / low) if scale == "log" else 1.0

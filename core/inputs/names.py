@@ -1,0 +1,42 @@
+"""Names that become names of files: those of trials, strikers and others that a user chooses.
+
+A name is looked at where it is read, from a file or an option; a writer may then rely on it.
+"""
+
+from __future__ import annotations
+
+from typing import Annotated
+
+from pydantic import AfterValidator
+
+ALLOWED = "text that can name a file"
+
+_NEVER = frozenset('/\\:*?"<>|')
+_LONGEST = 200
+"""Bytes; what is written beside a trial gets up to 55 more."""
+
+
+def names_a_file(text: str) -> bool:
+    r"""Whether a text can name a file here and elsewhere, and names no other folder.
+
+    Examples
+    --------
+    >>> [names_a_file(text) for text in ("drop 3", "../x", "a\\b", "..", "")]
+    [True, False, False, False, False]
+    """
+    return (
+        0 < len(text.encode(errors="replace")) <= _LONGEST
+        and text.isprintable()
+        and not _NEVER & set(text)
+        and text not in (".", "..")
+    )
+
+
+def _checked(text: str) -> str:
+    if not names_a_file(text):
+        raise ValueError(ALLOWED)
+    return text
+
+
+FileName = Annotated[str, AfterValidator(_checked)]
+FileNameIfAny = Annotated[str, AfterValidator(lambda text: text and _checked(text))]

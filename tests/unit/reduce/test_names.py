@@ -1,0 +1,50 @@
+"""The name of a trial or a striker never leads to another folder."""
+
+from pathlib import Path
+
+import pytest
+from dentscope.cli import run
+from dentscope.core.errors import InputError
+from dentscope.core.inputs.toml_input import parse_model
+from dentscope.core.rig import Rig
+from dentscope.recordings.recording_set import read
+
+TABLE = "drop_height_m,rebound_height_m\n0.5,0.2\n0.4,0.15\n"
+PATHS = ("../x", "/tmp/x", "a/b", "..", "a\\b", "C:x", "x\x00y", "x" * 201)
+
+
+@pytest.mark.parametrize("name", [n for n in PATHS if "\x00" not in n])
+@pytest.mark.parametrize("place", ["--out", "--into"])
+def test_an_option_names_no_other_folder(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str], name: str, place: str
+) -> None:
+    raw = tmp_path / "raw.csv"
+    raw.write_text(TABLE)
+    code = run(
+        ["reduce", "table", str(raw), "--holds", "trials", "--trial", name, place,
+         str(tmp_path / "o" / "o")]
+    )  # fmt: skip
+    told = capsys.readouterr().err
+    assert code == 2, told
+    assert "trial" in told
+    assert "text that can name a file" in told
+    assert sorted(p.name for p in tmp_path.iterdir()) == ["raw.csv"]
+
+
+@pytest.mark.parametrize("name", PATHS)
+def test_a_striker_of_a_file_names_no_other_folder(name: str) -> None:
+    steel = {"E_Pa": 2e11, "nu": 0.3}
+    ball = {"shape": "sphere", "tip_radius_m": 0.01, **steel}
+    with pytest.raises(InputError, match="text that can name a file"):
+        parse_model({"target": steel, "strikers": {name: ball}}, Rig, source="set.toml")
+
+
+def test_a_trial_of_a_set_names_no_other_folder(tmp_path: Path) -> None:
+    run(["recordings", "new", str(tmp_path / "set")])
+    file = tmp_path / "set" / "trials.csv"
+    head, *_ = file.read_text().splitlines()
+    cells = ["" for _ in head.split(",")]
+    cells[head.split(",").index("trial")] = "../../x"
+    file.write_text(f"{head}\n{','.join(cells)}\n")
+    with pytest.raises(InputError, match=r"trial.*'\.\./\.\./x'.*text that can name a file"):
+        read(tmp_path / "set")
