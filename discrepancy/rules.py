@@ -24,6 +24,10 @@ class Rules:
         0.05, "share of a single's own sets that fit no better, below which pairs are tried [-]",
         "a second mechanism where the first does not fit; 0.02 to 0.5 tried on the same sets",
     )  # fmt: skip
+    supported: float = _rule(
+        0.002, "probability below which, or nearer to 1 than which, none is printed [-]",
+        "one of the 500 sets with nothing missing that are drawn",
+    )  # fmt: skip
     adequate: float = _rule(
         0.7, "probability of the baseline from which `adequate` is said [-]",
         "readers take the word for an all-clear",

@@ -19,7 +19,7 @@ from ..rank import Ranking
 from ..rules import RULES
 from ..unknowns.drift import Drift
 from ..unknowns.followed import Followed
-from .odds import OUTSIDE, Odds
+from .odds import OUTSIDE, SURE, Odds
 
 FEWEST_CELLS, FEWEST_CONDITIONS = 6, 2
 """Numbers and conditions below which a set says nothing."""
@@ -90,10 +90,10 @@ def decide(ranking: Ranking, odds: Odds, *, drifts: Sequence[Drift] = ()) -> Cho
     last = [*map(_drifted, drifts)]
     if len(cells) < FEWEST_CELLS:
         text = f"too few: only {len(cells)} numbers to compare, {FEWEST_CELLS} are needed"
-        return Choice("undetermined", (), (*first, text, *last))
+        return Choice("undetermined", (), (*first, text, *_nevertheless(odds), *last))
     if conditions < FEWEST_CONDITIONS:
         text = "too few: all numbers are of one condition; nothing can follow from what varies"
-        return Choice("undetermined", (), (*first, text, *last))
+        return Choice("undetermined", (), (*first, text, *_nevertheless(odds), *last))
     choice = _cheapest(ranking.fits[1:], odds)
     return replace(choice, reasons=(*first, *_odds_told(odds), *choice.reasons, *last))
 
@@ -149,6 +149,15 @@ def cost_of_naming(labels: Sequence[str], odds: Odds) -> float:
     return cost
 
 
+def _nevertheless(odds: Odds) -> Iterable[str]:
+    """What few numbers say all the same: that something is missing, not what."""
+    if 1.0 - odds.baseline > SURE:
+        yield (
+            f"something is missing with a probability of {_percent(1.0 - odds.baseline)}; the "
+            "numbers are too few to say what"
+        )
+
+
 def _odds_told(odds: Odds) -> Iterable[str]:
     yield (
         f"something is missing with a probability of {_percent(1.0 - odds.baseline)}; something "
@@ -192,4 +201,9 @@ def _drifted(d: Drift) -> str:
 
 
 def _percent(p: float) -> str:
+    """Return a probability, no surer than the sets that were drawn can support."""
+    if p < RULES.supported:
+        return f"less than {100.0 * RULES.supported:.1g} %"
+    if p > 1.0 - RULES.supported:
+        return f"more than {100.0 * (1.0 - RULES.supported):.1f} %"
     return f"{100.0 * p:.1f} %" if p < 0.1 or p > 0.9 else f"{100.0 * p:.0f} %"

@@ -6,7 +6,7 @@ import math
 from typing import Any
 
 from ...core.observables import OBSERVABLES
-from ..choice.odds import OUTSIDE
+from ..choice.odds import OUTSIDE, SURE
 from ..findings import Verdict
 from .wording import (
     compared,
@@ -51,6 +51,9 @@ def headline(v: Verdict) -> str:
             "cause is something else."
         )
     if any(reason.startswith("too few") for reason in v.reasons):
+        missing = 1.0 - v.probabilities["baseline"]
+        if missing > SURE:
+            return f"Something is missing ({percent(missing)}), but too few data to say what."
         return "Too few data to say."
     leads = list(v.probabilities.items())[:_LEADING]
     likely = ", ".join(f"{explanation(name)} {percent(p)}" for name, p in leads)

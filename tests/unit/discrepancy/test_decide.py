@@ -62,6 +62,21 @@ def test_too_few_numbers_or_conditions_say_nothing(case) -> None:
     assert case(odds(a=1.0), cells=6).verdict == "missing-physics"
 
 
+def test_few_numbers_may_say_that_something_is_missing_but_not_what(case) -> None:
+    told = case(odds(a=0.9, outside=0.0995), cells=4).reasons
+    assert told[1] == (
+        "something is missing with a probability of more than 99.8 %; the numbers are too few to "
+        "say what"
+    )
+    assert len(case(odds(a=0.9), cells=4).reasons) == 1
+
+
+def test_no_probability_is_told_beyond_what_the_nulls_support(case) -> None:
+    told = case(odds(a=0.9999999)).reasons[0]
+    assert "missing with a probability of more than 99.8 %" in told
+    assert "not in the library with less than 0.2 %" in told
+
+
 def test_numbers_of_one_condition_say_nothing(toy) -> None:
     given = toy.problem([0.0] * CELLS)
     given.cells.condition[:] = 0

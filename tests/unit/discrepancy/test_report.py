@@ -81,6 +81,14 @@ def test_a_place_under_an_all_clear_says_why() -> None:
     assert nowhere(said("missing-physics", 0.02, seen)) == ""
 
 
+def test_too_few_numbers_may_still_miss_something() -> None:
+    few = ("too few: only 4 numbers to compare, 6 are needed",)
+    told = headline(said("undetermined", 0.001, Located((), (), 3.0), reasons=few))
+    assert told == "Something is missing (more than 99 %), but too few data to say what."
+    told = headline(said("undetermined", 0.4, Located((), (), 3.0), reasons=few))
+    assert told == "Too few data to say."
+
+
 def test_undetermined_says_what_leads() -> None:
     told = headline(said("undetermined", 0.32, Located((), (), 3.0)))
     assert "nothing is missing 32 %" in told
