@@ -81,6 +81,8 @@ def hardening(draw, strength):
     """A law of hardening of a strength."""
     law = draw.choice(("swift", "ludwik", "voce", "johnson-cook"))
     size = strength * draw.choice((1e-3, 0.3, 1.5, 10.0, 1e3))
+    if law == "swift":
+        size = max(size, 1.001 * strength)  # it has to begin at the strength
     if law == "voce":
         return {"law": law, "Q_Pa": size, "b": some(draw, 1e-6, 1e6, 10.0)}
     name = "B_Pa" if law == "johnson-cook" else "K_Pa"
@@ -93,7 +95,8 @@ def impact(draw):
     target = body(draw) | maybe(draw, 0.3, thickness_m=quantity(draw, 1e-9, 10.0, 0.01))
     striker = body(draw) | {"shape": "rod" if rod else "sphere"}
     striker["tip_radius_m"] = quantity(draw, 1e-9, 3.0, 5e-3, 5e-3, 1e-3)
-    striker |= maybe(draw, 1.0 if rod else 0.4, mass_kg=quantity(draw, 1e-18, 1e6, 4e-3, 0.5))
+    heavy = rod or "density_kg_m3" not in striker or draw.random() < 0.3
+    striker |= maybe(draw, float(heavy), mass_kg=quantity(draw, 1e-18, 1e6, 4e-3, 0.5))
     if rod:
         striker["radius_m"] = some(draw, 1e-9, 3.0, 5e-3)
         striker["length_m"] = some(draw, 1e-9, 10.0, 0.1, 0.3)
@@ -114,6 +117,16 @@ def impact(draw):
     blow |= maybe(draw, 0.1, max_contacts=draw.choice((1, 5)))
     blow |= maybe(draw, 0.1, flight_s=some(draw, 0.0, 1.0, 1e-3))
     support = draw.choice(("rigid",) * 6 + ("sprung", "plate", "half-space"))
+    if target.get("rigid") and striker.get("rigid"):
+        del striker["rigid"]
+        striker |= {"E_Pa": 2e11, "nu": 0.3}
+    if support in ("plate", "half-space") and target.get("rigid"):
+        support = "rigid"
+    if support in ("plate", "half-space"):
+        target.setdefault("density_kg_m3", 7800.0)
+        target.setdefault("thickness_m", 0.01)
+    if "hardening" in target or "hardening" in striker:
+        blow["laws"] = ["hardening", *blow["laws"][:1]]
     blow["support"] = support
     if support == "sprung":
         target["support_mass_kg"] = some(draw, 1e-18, 1e6, 1.0)
@@ -121,6 +134,7 @@ def impact(draw):
         blow |= maybe(draw, 0.3, support_damping_N_s_m=some(draw, 0.0, 1e6, 100.0))
     if rod and draw.random() < 0.3:
         blow["modes"] = draw.choice((1, 2, 5))
+        striker.setdefault("density_kg_m3", 7800.0)
         blow |= maybe(draw, 0.3, loss_factor=some(draw, 0.0, 0.99, 0.01))
     content = {
         "target": target, "strikers": {"ball": striker}, "impact": blow,
@@ -153,6 +167,10 @@ def case(draw):
     load = {"max_delta_over_R": last}
     load |= maybe(draw, 0.4, unload_from=[last * draw.choice((0.1, 0.5, 1.0))])
     bodies = {k: body(draw, of_case=True) for k in ("sphere", "flat")}
+    if all(table.get("rigid") for table in bodies.values()):
+        bodies["flat"] = {"E_Pa": 2e11, "nu": 0.3, "Sy_Pa": 3e8}
+    if not bodies["sphere"].get("rigid"):
+        bodies["sphere"].setdefault("density_kg_m3", 7800.0)
     return {
         "radius_m": some(draw, 1e-9, 3.0, 5e-3), **bodies, "load": load,
         "accuracy": {"level": "smoke"}, **maybe(draw, 0.2, friction={"coefficient": 0.2}),
