@@ -22,6 +22,7 @@ from .fit import fit
 from .impact import impact
 from .inverse import inverse
 from .materials import show_materials
+from .metal import metal
 from .shared.groups import Sections
 from .shared.keys import keys
 
@@ -51,6 +52,7 @@ app.command()(fit)
 app.command()(impact)
 app.command()(inverse)
 app.command()(diagnose)
+app.command()(metal)
 app.command(name="materials")(show_materials)
 app.command()(examples)
 app.command()(keys)

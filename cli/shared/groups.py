@@ -17,7 +17,17 @@ from ..studies import COMMANDS as _WORKSHOP
 SECTIONS = (
     (
         "Your own",
-        ("impact", "diagnose", "recordings", "reduce", "case", "laws", "export", "inverse"),
+        (
+            "impact",
+            "diagnose",
+            "metal",
+            "recordings",
+            "reduce",
+            "case",
+            "laws",
+            "export",
+            "inverse",
+        ),
     ),
     ("Behind the law", ("campaign", "fit")),
     ("To begin", ("examples", "materials", "keys", "doctor", "version")),

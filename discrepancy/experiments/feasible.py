@@ -70,12 +70,8 @@ class Series:
 
 def press_series(problem: Problem) -> list[Series]:
     """Return presses with each striker, as deep as its trials went, within what a press can do."""
-    stated = problem.scenes(np.zeros(problem.n_z))
-    own: dict[str, list[tuple[Condition, Scene]]] = {}
-    for c, scene in zip(problem.conditions, stated, strict=True):
-        own.setdefault(c.striker, []).append((c, scene))
     found = []
-    for name, trials in sorted(own.items()):
+    for name, trials in sorted(_by_striker(problem).items()):
         c, scene = trials[0]
         table = strength_table(scene.law, scene.pair)
         depths = [deepest(s) for _, s in trials]
@@ -89,8 +85,7 @@ def press_series(problem: Problem) -> list[Series]:
             continue
         few = _LOADS if high > _WIDE * low else 2
         loads = [_round(x) for x in np.geomspace(low if few > 2 else low / 2.0, high, few)]
-        upright = replace(c, angle=math.pi / 2.0, tangential=0.0, spin=0.0, after=-1)
-        pressed = tuple(_at_load(upright, scene, load) for load in loads)
+        pressed = tuple(at_load(c, scene, load) for load in loads)
         told = ", ".join(f"{load:g}" for load in loads[:-1])
         text = (
             f"press {name} slowly on the same flat, each time on a fresh place, {_EACH} times each "
@@ -100,9 +95,24 @@ def press_series(problem: Problem) -> list[Series]:
     return found
 
 
-def _at_load(c: Condition, scene: Scene, load: float) -> Condition:
+def _by_striker(problem: Problem) -> dict[str, list[tuple[Condition, Scene]]]:
+    stated = problem.scenes(np.zeros(problem.n_z))
+    own: dict[str, list[tuple[Condition, Scene]]] = {}
+    for c, scene in zip(problem.conditions, stated, strict=True):
+        own.setdefault(c.striker, []).append((c, scene))
+    return own
+
+
+def strikers_scenes(problem: Problem) -> list[tuple[Condition, Scene]]:
+    """Return a condition of each striker with its scene as stated."""
+    return [trials[0] for _, trials in sorted(_by_striker(problem).items())]
+
+
+def at_load(c: Condition, scene: Scene, load: float) -> Condition:
+    """Return a press of a condition's striker, on fresh metal."""
     speed = as_deep(scene.with_(approach=CREEP, press=Press(load)))
-    return replace(c, speed=speed, press=Press(load))
+    upright = replace(c, angle=math.pi / 2.0, tangential=0.0, spin=0.0, after=-1)
+    return replace(upright, speed=speed, press=Press(load))
 
 
 def _round(load: float) -> float:

@@ -1,0 +1,327 @@
+"""From a recording set to the flow curve of the body that its marks are in.
+
+Gauss-Newton in the curve, the rate law, the nuisances and the law's error, all with normal priors;
+the three sizes of the law's error are weighed by their evidence. Only marks take part: what a
+rebound loses elsewhere says nothing of the metal.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+from functools import cached_property
+
+import numpy as np
+from numpy.typing import NDArray
+from scipy.special import logsumexp
+from scipy.stats import norm
+
+from ...core.errors import InputError
+from ...core.inputs.flow_curve import SPECIMENS
+from ...impact import dent_radius
+from ...recordings import RecordingSet
+from ..comparison.forward import Point, Simulator
+from ..comparison.problem import Problem, problem_of
+from ..experiments.feasible import BENCH
+from ..inference.derivatives import measured_covariance
+from ..mechanisms.base import Constants, Mechanism, attached
+from ..mechanisms.strength.strain_rate_hardening import StrainRateHardening
+from ..unknowns.lawerror import SIZES
+from .flow import STRAINS, FlowCurveOfMarks, curve_values
+from .next_mark import NextMark, next_mark, with_marks
+
+Array = NDArray[np.float64]
+
+MARKS = ("permanent_depth_m", "dent_diameter_m", "press_depth_m", "recovered_depth_m")
+LEVEL = 0.90
+"""Probability of the intervals."""
+EXPONENT, EXPONENT_SPREAD, EXPONENT_LENGTH = 0.12, 0.12, 1.5
+"""Prior of d ln stress/d ln strain: none (cold-worked) to 0.4 (annealed copper, 304), and the
+distance in ln strain over which it changes."""
+RATE = {"rise_at_1000_per_s": (0.3, 0.4), "rate_exponent": (0.15, 0.08),
+        "strength_kept": (0.87, 0.08)}  # fmt: skip
+"""Priors of the rate law, mean and standard deviation: C of Johnson and Cook gives rises of 0.1 to
+0.4, Cowper and Symonds' mild steel 1.9; what is kept is the range of strain-rate-hardening."""
+VAGUE = 0.15
+"""Standard deviation of ln stress, and of the rise, from which a set does not identify it."""
+
+_STEP, _ROUNDS, _FARTHEST, _SETTLED = 0.1, 12, 1.0, 0.02
+_FROZEN = 1e-9  # prior deviation of what the curve itself stands for
+_FASTER = 0.01
+
+
+@dataclass(frozen=True, eq=False)
+class Metal:
+    """The flow curve of a body from its marks.
+
+    Parameters
+    ----------
+    name, body
+        Of the set; key of the body's table.
+    strength
+        As stated [Pa]: the curve's unit.
+    mean, covariance
+        (n,) and (n, n) posterior of what the fit moves: logarithm of stress over `strength` at 0.2
+        %, exponents at the nodes, the rate law where impacts left marks, then the nuisances.
+    map
+        (nodes, n) from these to the logarithms at the nodes.
+    rated
+        Whether impacts left marks.
+    pressed, struck
+        How many numbers came from presses and from impacts.
+    strain, stress, error, press
+        (m,) of every mark: representative strain, the stress [Pa] at which it lies on the law, its
+        relative error by the reading alone, and whether it is a press's.
+    next
+        The press that would narrow the stresses most; none where nothing would.
+    notes
+        What a reader must know.
+    """
+
+    name: str
+    body: str
+    strength: float
+    mean: Array
+    covariance: Array
+    map: Array
+    rated: bool
+    pressed: int
+    struck: int
+    strain: Array
+    stress: Array
+    error: Array
+    press: NDArray[np.bool_]
+    next: NextMark | None
+    notes: tuple[str, ...]
+
+    def log_stress(self, strains: Sequence[float] | Array) -> tuple[Array, Array]:
+        """Return ln stress [ln Pa], (k,), and its covariance (k, k) at plastic strains."""
+        rows = weights(strains) @ self.map
+        return (
+            math.log(self.strength) + rows @ self.mean, rows @ self.covariance @ rows.T
+        )  # fmt: skip
+
+    def stress_at(self, strain: float) -> tuple[float, float, float]:
+        """Return the stress at a plastic strain and its 90 % interval [Pa]."""
+        mean, cov = self.log_stress([strain])
+        reach = norm.ppf(0.5 + 0.5 * LEVEL) * math.sqrt(cov[0, 0])
+        middle, low, high = (float(np.exp(mean[0] + k * reach)) for k in (0.0, -1.0, 1.0))
+        return middle, low, high
+
+    def spread_at(self, strain: float) -> float:
+        """Standard deviation of ln stress at a plastic strain."""
+        return math.sqrt(self.log_stress([strain])[1][0, 0])
+
+    @cached_property
+    def rise(self) -> tuple[float, float, float]:
+        """Rise of the strength at 1000 1/s over the static one and its interval; nan unrated."""
+        if not self.rated:
+            return math.nan, math.nan, math.nan
+        k = 1 + len(STRAINS)
+        reach = norm.ppf(0.5 + 0.5 * LEVEL) * math.sqrt(self.covariance[k, k])
+        middle = float(self.mean[k])
+        return middle, middle - reach, middle + reach
+
+    @property
+    def covered(self) -> tuple[float, float]:
+        """Smallest and largest strain of a mark."""
+        return float(self.strain.min()), float(self.strain.max())
+
+
+def weights(strains: Sequence[float] | Array) -> Array:
+    """Return what interpolates logarithms at the nodes, (k, nodes)."""
+    x, nodes = np.log(np.asarray(strains, dtype=float)), np.log(STRAINS)
+    return np.stack([np.interp(x, nodes, row) for row in np.eye(len(nodes))], axis=1)
+
+
+def metal_of(recordings: RecordingSet) -> Metal:
+    """Return the flow curve that a set's marks speak for.
+
+    Parameters
+    ----------
+    recordings
+        The set; a flow curve that it states is not used.
+
+    Raises
+    ------
+    InputError
+        No marks, or a metal that does not yield.
+    """
+    if not recordings.setup.target.yields:
+        raise InputError("a baseline that does not yield", source=recordings.name,
+                         key="target.law", allowed="elastic-plastic")  # fmt: skip
+    problem = _of_marks(problem_of(replace(recordings, flows={})))
+    known = len(problem.cells)
+    wider = with_marks(problem, BENCH)
+    fit = _Fit.of(wider, known)
+    mean, covariance, J = fit.posterior()
+    body = _dented(problem)
+    strain, back = _marks(wider, fit, mean, J)
+    pressed = np.array([problem.conditions[k].press is not None for k in problem.cells.condition])
+    best = next_mark(wider, known, fit, covariance, J)
+    table = problem.rig.bodies[body]
+    stated = _strength(problem, body)
+    source = "stated" if table.Sy_Pa is not None else "taken from the hardness, or assumed"
+    return Metal(
+        recordings.name, body, stated, mean, covariance, fit.map, fit.rated, int(pressed.sum()),
+        int((~pressed).sum()), strain, stated * np.exp(back[0]), back[1], pressed, best,
+        (f"{body}.Sy_Pa, {source}, counts as the stress at 0.2 % within "
+         f"{100.0 * fit.first:.0f} %",),
+    )  # fmt: skip
+
+
+def _of_marks(problem: Problem) -> Problem:
+    kept = np.array([name in MARKS for name in problem.cells.observable])
+    if not kept.any():
+        raise InputError("no marks", source=problem.name, key="trials.csv",
+                         allowed=f"one or more of {', '.join(MARKS)}")  # fmt: skip
+    c = problem.cells
+    cells = replace(
+        c, condition=c.condition[kept],
+        observable=tuple(n for n, here in zip(c.observable, kept, strict=True) if here),
+        value=c.value[kept], std=c.std[kept], count=c.count[kept],
+    )  # fmt: skip
+    # a press that is proposed leaves a diameter, whatever was read before
+    return replace(problem, cells=cells, sees_dents=True).with_error()
+
+
+def _dented(problem: Problem) -> str:
+    """Key of the body that yields first."""
+    pair = problem.scenes(np.zeros(problem.n_z))[0].pair
+    return "target" if pair.weaker is pair.flat else f"strikers.{problem.conditions[0].striker}"
+
+
+def _strength(problem: Problem, body: str) -> float:
+    pair = problem.scenes(np.zeros(problem.n_z))[0].pair
+    return pair.flat.Sy if body == "target" else pair.sphere.Sy
+
+
+@dataclass(frozen=True, eq=False)
+class _Fit:
+    """What is fitted: a problem, of whose cells the first count, and the priors."""
+
+    problem: Problem
+    known: int
+    prior: Array
+    spread: Array
+    """(n, n) covariance of the priors."""
+    map: Array
+    rated: bool
+    first: float
+
+    @classmethod
+    def of(cls, problem: Problem, known: int) -> _Fit:
+        nodes = np.log(STRAINS)
+        n = len(nodes)
+        body = f"{_dented(problem)}.Sy_Pa"
+        own = [m.spread for m in problem.nuisances if m.name == body]
+        first = own[0] if own else SPECIMENS
+        seen = {problem.cells.condition[i] for i in range(known)}
+        rated = any(problem.conditions[k].press is None for k in seen)
+        rate = np.array(list(RATE.values())) if rated else np.zeros((0, 2))
+        prior = np.concatenate([[0.0], np.full(n, EXPONENT), rate[:, 0], np.zeros(problem.n_z)])
+        alike = np.exp(-0.5 * ((nodes[:, None] - nodes[None, :]) / EXPONENT_LENGTH) ** 2)
+        sheet = [_FROZEN if m.name == body else 1.0 for m in problem.nuisances]
+        spread = np.diag(np.concatenate([
+            [first**2], np.zeros(n), rate[:, 1] ** 2, np.square(sheet),
+            np.ones(problem.error.count),
+        ]))  # fmt: skip
+        spread[1 : n + 1, 1 : n + 1] = EXPONENT_SPREAD**2 * alike
+        # the logarithm of stress is the integral of its exponent
+        step = 0.5 * np.diff(nodes)
+        integral = np.zeros((n, n))
+        for k in range(1, n):
+            integral[k] = integral[k - 1]
+            integral[k, k - 1] += step[k - 1]
+            integral[k, k] += step[k - 1]
+        mapped = np.hstack([np.ones((n, 1)), integral, np.zeros((n, len(prior) - 1 - n))])
+        return cls(problem, known, prior, spread, mapped, rated, first)
+
+    @property
+    def mechanisms(self) -> tuple[Mechanism, ...]:
+        """The curve, and the rate where impacts left marks."""
+        curve = FlowCurveOfMarks()
+        return (curve, StrainRateHardening()) if self.rated else (curve,)
+
+    def constants(self, u: Array) -> Constants:
+        """Return the numbers of the mechanisms at the unknowns (n,)."""
+        found = {FlowCurveOfMarks.name: curve_values(self.map @ u)}
+        if self.rated:
+            at = 1 + len(STRAINS)
+            found[StrainRateHardening.name] = dict(
+                zip(RATE, u[at : at + len(RATE)].tolist(), strict=True)
+            )
+        return found
+
+    def point(self, u: Array, *, faster: float = 0.0) -> Point:
+        """Return where to predict."""
+        return Point(u[len(u) - self.problem.n_z :], self.constants(u), faster=faster)
+
+    def linear(self, u: Array) -> tuple[Array, Array, Array]:
+        """Return predictions (m,), derivatives (m, n) and noise (m, m) at the unknowns."""
+        size = _STEP * np.sqrt(np.diag(self.spread))
+        moved = u + np.diag(size)
+        points = [self.point(u), self.point(u, faster=_FASTER), *map(self.point, moved)]
+        found = Simulator(self.problem).predict(self.mechanisms, points)
+        J = ((found[2:] - found[0]) / size[:, None]).T
+        by_drive = (found[1] - found[0]) / _FASTER
+        noise = measured_covariance(self.problem, by_drive, np.zeros_like(by_drive))
+        return found[0], J, noise
+
+    def posterior(self) -> tuple[Array, Array, Array]:
+        """Return mean (n,), covariance (n, n) and derivatives (m, n) of all cells."""
+        u, k = self.prior.copy(), self.known
+        sd = np.sqrt(np.diag(self.spread))
+        for _ in range(_ROUNDS):
+            here, J, noise = self.linear(u)
+            r = self.problem.cells.value[:k] - here[:k] + J[:k] @ (u - self.prior)
+            found = [_update(self.sized(s), J[:k], noise[:k, :k], r) for s in SIZES.factors]
+            said = np.array([f[2] for f in found]) + np.log(SIZES.weights)
+            share = np.exp(said - logsumexp(said))
+            step = sum(w * f[0] for w, f in zip(share, found, strict=True)) + self.prior - u
+            far = float(np.max(np.abs(step) / sd))
+            u = u + step * min(1.0, _FARTHEST / far)
+            if far < _SETTLED:
+                break
+        middle = u - self.prior
+        cov = sum(
+            w * (f[1] + np.outer(f[0] - middle, f[0] - middle))
+            for w, f in zip(share, found, strict=True)
+        )
+        return u, np.asarray(cov), J
+
+    def sized(self, factor: float) -> Array:
+        """Return the priors' covariance with the law's error of another size."""
+        scale = np.ones(len(self.prior))
+        scale[len(scale) - self.problem.error.count :] = factor
+        return self.spread * np.outer(scale, scale)
+
+
+def _update(spread: Array, J: Array, noise: Array, r: Array) -> tuple[Array, Array, float]:
+    """Posterior mean less the prior's, its covariance, and ln evidence."""
+    total = J @ spread @ J.T + noise
+    gain = np.linalg.solve(total, J @ spread).T
+    log_det = float(np.linalg.slogdet(total)[1])
+    evidence = -0.5 * (float(r @ np.linalg.solve(total, r)) + log_det)
+    return gain @ r, spread - gain @ J @ spread, evidence
+
+
+def _marks(problem: Problem, fit: _Fit, u: Array, J: Array) -> tuple[Array, tuple[Array, Array]]:
+    """Strain of every mark, and ln stress (over the stated) where it lies, with its own error."""
+    point = fit.point(u)
+    scenes = [
+        attached(fit.mechanisms[:1], scene, point.values, c.around)
+        for scene, c in zip(problem.scenes(point.z), problem.conditions, strict=True)
+    ]
+    simulator = Simulator(problem)
+    peak = simulator.observe(fit.mechanisms, [point])["peak_depth_m"][0]
+    R = np.array([s.pair.R for s in scenes])
+    strain = 0.2 * np.minimum(dent_radius(scenes, peak) / R, 1.0)
+    cells, k = problem.cells, fit.known
+    here = strain[cells.condition[:k]]
+    at = weights(here) @ fit.map @ u
+    # by a change of the whole curve: the first unknown moves all of it
+    slope = J[:k, 0]
+    residual = cells.value[:k] - simulator.predict(fit.mechanisms, [point])[0][:k]
+    return here, (at + residual / slope, cells.std[:k] / np.abs(slope))

@@ -1,0 +1,73 @@
+"""A flow curve as what a fit moves: stresses at a few strains, straight between over logarithms.
+
+A mark is compared with the contact of a metal of that curve (`models.hardening`): one that hardens
+sinks in where another piles up, so that a depth under load says less of it than a diameter.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Mapping
+from dataclasses import replace
+from functools import lru_cache
+from typing import TYPE_CHECKING, ClassVar, cast
+
+import numpy as np
+
+from ...core.flow import Flow, tabulated
+from ...core.material import Pair
+from ...impact import Scene
+from ...models import LAWS
+from ...models.anchored import anchored
+from ...models.base import ContactLaw, remembering
+from ..mechanisms.base import Array, Mechanism, Parameter, Surroundings, Values
+
+if TYPE_CHECKING:
+    from ...models.fitted import ClosedForm
+
+STRAINS = np.geomspace(0.002, 0.15, 7)
+"""Representative strains of the curve's nodes: the proof strain's, to where a ball is half sunk."""
+
+_DEEPEST = 0.6  # Delta/R to which the law of metals that harden is followed
+_FITTED = cast("ClosedForm", LAWS["fitted"])
+_NAMES = tuple(f"log_stress_{k}" for k in range(len(STRAINS)))
+
+
+class FlowCurveOfMarks(Mechanism):
+    """The flow curve that marks are fitted with; no explanation of a diagnosis."""
+
+    name = "flow-curve"
+    title = "the metal follows a flow curve of its own"
+    equations = "S(p), straight between nodes over logarithms, in the body that yields first"
+    # infinite at neutral: the curve always acts
+    parameters = tuple(
+        Parameter(name, "-", -2.0, 3.0, "linear", math.inf, "a node of the curve")
+        for name in _NAMES
+    )
+    direction: ClassVar[Mapping[str, int]] = {}
+    static: ClassVar[bool] = True
+
+    def attach(self, scene: Scene, values: Values, around: Surroundings) -> Scene:
+        """Give the body that yields first the curve, and the contact its law."""
+        logs = tuple(values[name] for name in _NAMES)
+        return scene.with_(law=_law_of(scene.pair, logs))
+
+
+@lru_cache(maxsize=256)
+def _law_of(pair: Pair, logs: tuple[float, ...]) -> ContactLaw:
+    """The law of a pair whose weaker body follows the curve; a rate moves it as the fitted law."""
+    in_flat = pair.weaker is pair.flat
+    plain = pair.flat if in_flat else pair.sphere
+    stress = plain.Sy * np.exp(logs)
+    # up to the first node and beyond the last one the stress stays
+    curve = tabulated(np.append(0.0, STRAINS), np.append(stress[0], stress))
+    body = plain.with_(Sy=curve.strength, flow=Flow(curve))
+    metal = replace(pair, flat=body) if in_flat else replace(pair, sphere=body)
+    return remembering(
+        anchored(_FITTED, LAWS["hardening"], at=metal, stated=pair, deepest=_DEEPEST, hardens=True)
+    )
+
+
+def curve_values(logs: Array) -> Values:
+    """Return the numbers of `FlowCurveOfMarks` for logarithms (nodes,) of relative stress."""
+    return dict(zip(_NAMES, logs.tolist(), strict=True))

@@ -1,0 +1,81 @@
+"""Which further press would narrow the flow curve most."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass, replace
+from typing import TYPE_CHECKING
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ..comparison.problem import Problem
+from ..experiments.feasible import at_load, strikers_scenes
+
+if TYPE_CHECKING:
+    from .estimate import _Fit
+
+Array = NDArray[np.float64]
+
+TOLD = (0.02, 0.05, 0.10)
+"""Plastic strains at which the stress is told."""
+_READ = {"permanent_depth_m": 0.02, "dent_diameter_m": 0.01}
+_LOADS, _DEEPEST = 8, 0.3  # presses that are tried with each striker, to this Delta/R
+_WORTH = 0.9  # of the summed variances: less of a gain is not worth a press
+
+
+@dataclass(frozen=True, slots=True)
+class NextMark:
+    """A press, and the relative error of the stresses that are told, before and after."""
+
+    striker: str
+    load: float
+    before: tuple[float, ...]
+    after: tuple[float, ...]
+
+
+def with_marks(problem: Problem, bench: tuple[float, float]) -> Problem:
+    """Return the problem with presses that could be made behind its own cells."""
+    conditions, new = list(problem.conditions), []
+    for c, scene in strikers_scenes(problem):
+        for load in np.geomspace(*bench, _LOADS):
+            one = at_load(c, scene, float(f"{load:.2g}"))
+            new += [(len(conditions), name) for name in _READ]
+            conditions.append(one)
+    cells = problem.cells
+    more = replace(
+        cells, condition=np.append(cells.condition, [k for k, _ in new]).astype(np.intp),
+        observable=(*cells.observable, *(name for _, name in new)),
+        value=np.append(cells.value, np.zeros(len(new))),
+        std=np.append(cells.std, [_READ[name] for _, name in new]),
+        count=np.append(cells.count, np.ones(len(new))).astype(np.intp),
+    )  # fmt: skip
+    return replace(problem, conditions=tuple(conditions), cells=more)
+
+
+def next_mark(
+    problem: Problem, known: int, fit: _Fit, covariance: Array, J: Array
+) -> NextMark | None:
+    """Return the press whose marks would lower the errors of the told stresses most."""
+    from .estimate import weights
+
+    rows = weights(TOLD) @ fit.map
+    before = np.einsum("ij,jk,ik->i", rows, covariance, rows)
+    best: tuple[float, NextMark] | None = None
+    numbers = problem.cells.condition[known:]
+    for k in dict.fromkeys(numbers.tolist()):
+        press = problem.conditions[k].press
+        here = known + np.flatnonzero(numbers == k)
+        if press is None or not np.isfinite(J[here]).all():
+            continue
+        noise = np.diag(problem.cells.std[here] ** 2)
+        cross = covariance @ J[here].T
+        after = covariance - cross @ np.linalg.solve(J[here] @ cross + noise, cross.T)
+        left = np.einsum("ij,jk,ik->i", rows, after, rows)
+        if best is None or left.sum() < best[0]:
+            told = NextMark(
+                problem.conditions[k].striker, press.load, tuple(map(math.sqrt, before)),
+                tuple(map(math.sqrt, np.maximum(left, 0.0))),
+            )  # fmt: skip
+            best = float(left.sum()), told
+    return best[1] if best is not None and best[0] < _WORTH * before.sum() else None

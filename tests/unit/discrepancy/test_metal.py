@@ -1,0 +1,132 @@
+"""A metal from its marks: a planted curve and rate come back, what is not identified is said."""
+
+import json
+
+import numpy as np
+import pytest
+from dentscope.core import Material
+from dentscope.core.errors import InputError
+from dentscope.core.flow import Flow, swift
+from dentscope.core.inputs.flow_curve import read_flow_curve
+from dentscope.discrepancy.mechanisms.base import Surroundings
+from dentscope.discrepancy.mechanisms.strength.strain_rate_hardening import StrainRateHardening
+from dentscope.discrepancy.metal import lines, metal_of, write_metal
+from dentscope.discrepancy.metal.estimate import weights
+from dentscope.discrepancy.metal.flow import STRAINS
+from dentscope.impact import (
+    CREEP,
+    Approach,
+    Press,
+    Striker,
+    dent_radius,
+    pressed,
+    scene_of,
+    strike,
+)
+from dentscope.models import LAWS
+from dentscope.recordings import read
+
+CURVE = swift(Sy=350e6, K=900e6, n=0.2)
+PLATE = Material(E=200e9, nu=0.3, Sy=350e6, flow=Flow(CURVE))
+BALL = Material(E=210e9, nu=0.3, Sy=2e9)
+RISE = 0.3
+RATE = {"rise_at_1000_per_s": RISE, "rate_exponent": 0.15, "strength_kept": 0.9}
+SET = """
+format = "recording-set/1"
+name = "marks"
+[target]
+E_Pa = 2.0e11
+nu = 0.3
+Sy_Pa = { value = 3.5e8, std = 2.5e7 }
+[strikers.ball]
+shape = "sphere"
+tip_radius_m = 5e-3
+mass_kg = 4.1e-3
+E_Pa = 2.1e11
+nu = 0.3
+Sy_Pa = 2e9
+[noise]
+restitution = 0.004
+permanent_depth_m_relative = 0.02
+dent_diameter_m_relative = 0.01
+"""
+HEAD = "trial,striker,angle_deg,impact_speed_m_s,load_N,restitution,permanent_depth_m,"
+
+
+def scene(**given):
+    made = scene_of(
+        LAWS["hardening"], sphere=BALL, flat=PLATE, striker=Striker(mass=4.1e-3, tip_radius=5e-3),
+        **{"approach": CREEP, **given},
+    )  # fmt: skip
+    return StrainRateHardening().attach(made, RATE, Surroundings())
+
+
+def folder_of(tmp_path, *, presses=True, impacts=True):
+    rows = [HEAD + "dent_diameter_m"]
+    for v in (0.7, 1.5, 3.0, 5.0) * impacts:
+        one = scene(approach=Approach(v))
+        found = strike(one)
+        wide = 2.0 * dent_radius([one], np.array([found.peak_depth_m]))[0]
+        rows.append(f"i{v},ball,90,{v},,{found.restitution},{found.residual_flat_m},{wide}")
+    for load in (200.0, 600.0, 1500.0, 4000.0) * presses:
+        found = pressed([scene(press=Press(load))])
+        rows.append(f"p{load},ball,,,{load},,{found.flat[0]},{2.0 * found.radius[0]}")
+    (tmp_path / "set.toml").write_text(SET, encoding="utf-8")
+    (tmp_path / "trials.csv").write_text("\n".join(rows) + "\n", encoding="utf-8")
+    return tmp_path
+
+
+def test_curve_and_rate_that_made_the_marks_come_back(tmp_path):
+    metal = metal_of(read(folder_of(tmp_path)))
+    for strain in (0.02, 0.03):
+        true = CURVE(strain)
+        value, low, high = metal.stress_at(strain)
+        assert value == pytest.approx(true, rel=0.03)
+        assert low < true < high
+    value, low, high = metal.rise
+    assert value == pytest.approx(RISE, abs=0.06)
+    assert low < RISE < high
+    assert metal.covered[0] < 0.012 < 0.035 < metal.covered[1]
+
+
+def test_files_are_a_curve_that_a_set_takes_and_its_covariance(tmp_path):
+    metal = metal_of(read(folder_of(tmp_path, impacts=False)))
+    write_metal(metal, tmp_path / "out")
+    curve = read_flow_curve(tmp_path / "out" / "flow_curve.csv")
+    assert np.all(np.diff(curve.strain) > 0.0)
+    assert curve.stress[0] == pytest.approx(350e6, rel=0.25)
+    cov = np.loadtxt(tmp_path / "out" / "flow_curve_covariance.csv", delimiter=",", skiprows=1)
+    assert cov.shape == (len(curve.strain),) * 2
+    assert np.linalg.eigvalsh(cov).min() > -1e-9
+    told = json.loads((tmp_path / "out" / "metal.json").read_text(encoding="utf-8"))
+    assert told["rise_at_1000_per_s"] is None
+    assert "rate: not identified" in "\n".join(lines(metal))
+    (tmp_path / "set.toml").write_text(
+        SET.replace("nu = 0.3\nSy_Pa = {", 'nu = 0.3\nflow_curve = "out.csv"\nSy_Pa = {', 1),
+        encoding="utf-8",
+    )
+    (tmp_path / "out.csv").write_text((tmp_path / "out" / "flow_curve.csv").read_text())
+    assert "target" in read(tmp_path).flows
+
+
+def test_impacts_alone_do_not_part_strength_from_rate(tmp_path):
+    metal = metal_of(read(folder_of(tmp_path, presses=False)))
+    told = "\n".join(lines(metal))
+    assert "not identified; quasi-static presses" in told
+    assert "Next mark: press ball" in told
+
+
+def test_a_set_without_marks_is_refused(tmp_path):
+    folder = folder_of(tmp_path, presses=False)
+    text = (folder / "trials.csv").read_text(encoding="utf-8").splitlines()
+    cut = [",".join(row.split(",")[:6]) for row in text]
+    (folder / "trials.csv").write_text("\n".join(cut) + "\n", encoding="utf-8")
+    with pytest.raises(InputError, match=r"no marks .*permanent_depth_m, dent_diameter_m"):
+        metal_of(read(folder))
+
+
+def test_interpolation_between_nodes_is_straight_over_logarithms():
+    middle = np.sqrt(STRAINS[1] * STRAINS[2])
+    row = weights([middle])[0]
+    assert row[1:3] == pytest.approx([0.5, 0.5])
+    assert row.sum() == pytest.approx(1.0)
