@@ -19,7 +19,8 @@ unexport PYTHONDONTWRITEBYTECODE
 help: ## list the targets
 	@grep -hE '^[a-z]+:.*## ' $(MAKEFILE_LIST) | sed -E 's/^([a-z]+):.*## /\1\t/' | expand -t 12
 
-install: $(STAMP) ## make .venv with the pinned packages and the command dentscope, and check it
+install: $(STAMP) ## make .venv with the pinned packages and the command dentscope, check it, compile
+	@bash scripts/compile.sh
 
 $(STAMP): pyproject.toml $(LOCKS) scripts/install.sh
 	@PYTHON="$(PYTHON)" bash scripts/install.sh

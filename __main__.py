@@ -4,8 +4,8 @@ from __future__ import annotations
 
 import sys
 
-from .core.children import forget_current_folder, plot_without_the_folders_settings
-from .core.streams import left_with, steady_streams
+from .core.processes.children import forget_current_folder, plot_without_the_folders_settings
+from .core.processes.streams import left_with, steady_streams
 from .core.threads import one_thread_each
 
 

@@ -16,8 +16,8 @@ from dataclasses import dataclass
 from multiprocessing.connection import Connection, wait
 from typing import Any
 
-from ..core.children import die_with, keep_current_folder_out
-from ..core.stopping import heard
+from ..core.processes.children import die_with, keep_current_folder_out
+from ..core.processes.stopping import heard
 from ..core.threads import one_thread_each
 
 TRIES = 3

@@ -12,7 +12,7 @@ from typing import Annotated
 import typer
 
 from ..core.errors import EXIT_INPUT_ERROR, InputError, printable
-from ..core.stopping import listening
+from ..core.processes.stopping import listening
 from . import campaign, export, laws, recordings, reduce, studies
 from .case import case
 from .diagnose import diagnose

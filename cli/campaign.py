@@ -13,7 +13,7 @@ from typing import Annotated, Any
 import typer
 
 from ..core.errors import EXIT_NOT_CONVERGED, InputError
-from ..core.stopping import heard
+from ..core.processes.stopping import heard
 from . import campaign_data, studies
 from .campaign_data import DEFAULT_DESIGN, PUBLISHED, DesignName, Out
 from .campaign_progress import Progress, duration, judged, remarks, tell

@@ -14,6 +14,7 @@ import typer
 from ..core.errors import InputError
 from ..core.output import write_file
 from . import studies
+from .shared.first_use import tell_first_use
 from .shared.places import folder_option
 from .shared.terminal import say
 
@@ -69,6 +70,8 @@ def diagnose(
     from ..discrepancy.report import lines
 
     show = _progress(quiet=quiet)
+    if not quiet:
+        tell_first_use()
     verdict = run(recordings, seed=seed, confirm=confirm, progress=show)
     show("")
     written = _written(verdict, out, report=report)

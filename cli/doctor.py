@@ -9,7 +9,7 @@ from pathlib import Path
 
 import typer
 
-from ..core.children import python_command
+from ..core.processes.children import python_command
 from . import studies
 
 _SYSTEM_PACKAGES = (

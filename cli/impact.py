@@ -11,6 +11,7 @@ from ..core.errors import EXIT_NOT_CONVERGED
 from ..core.templates import template, write_new
 from . import studies
 from .laws import laws_named
+from .shared.first_use import tell_first_use
 from .shared.places import folder_option, refuse_beside
 from .shared.terminal import console as new_console
 from .shared.terminal import say, show_table
@@ -74,6 +75,7 @@ def _from_file(path: Path, names: list[str], out: Path, *, exact: bool) -> None:
 
     console = new_console()
     setup = read_setup(path)
+    tell_first_use()
     laws = (
         laws_named(names)
         if names

@@ -10,7 +10,7 @@ import subprocess
 from functools import cache
 from typing import Any
 
-from .children import python_command
+from .processes.children import python_command
 
 _TIME_LIMIT_S = 120.0
 

@@ -47,7 +47,7 @@ def run(
     from rich.console import Console
     from rich.progress import Progress
 
-    from ...core.stopping import heard
+    from ...core.processes.stopping import heard
     from ...core.threads import one_thread_each
     from ...studies.proof.lists import LISTS as made
     from ...studies.proof.run import carry_on, local_workers, run_folder, verdicts_of

@@ -13,7 +13,6 @@ from typing import Any
 import numpy as np
 from scipy.spatial.transform import Rotation
 
-from ...core.confined import confined
 from ...core.errors import InputError, InputErrors, missing_extra
 from ...core.inputs.csv_table import (
     Problems,
@@ -23,6 +22,7 @@ from ...core.inputs.csv_table import (
     rows_with,
     selection,
 )
+from ...core.processes.confined import confined
 from ..measured import Array
 from ..units import LENGTH, metres
 from .exports import read_export

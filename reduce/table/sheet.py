@@ -15,9 +15,9 @@ from typing import NamedTuple
 
 import numpy as np
 
-from ...core.confined import confined
 from ...core.errors import InputError, InputErrors
 from ...core.inputs.input_file import checked_file
+from ...core.processes.confined import confined
 from ...recordings.columns import MEASURED
 from ..measured import Measured, Trial
 from ..reduced import Reduced

@@ -1,4 +1,4 @@
-"""Cells of a workbook: XLS, XLSX or ODS; read in a process of its own (see `core.confined`)."""
+"""Cells of a workbook: XLS, XLSX or ODS; read in a process of its own (`core.processes`)."""
 
 from __future__ import annotations
 

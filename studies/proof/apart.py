@@ -17,7 +17,7 @@ from multiprocessing.context import ForkServerContext
 from pathlib import Path
 from typing import NamedTuple
 
-from ...core.children import die_with, keep_current_folder_out
+from ...core.processes.children import die_with, keep_current_folder_out
 
 _PASSED = ("PATH", "HOME", "LANG", "NUMBA_CACHE_DIR", "XDG_CACHE_HOME", "TMPDIR", "PYTHONPATH",
            "PYTHONSAFEPATH")  # fmt: skip

@@ -20,7 +20,7 @@ from multiprocessing import get_context
 from pathlib import Path
 from typing import Any
 
-from ...core.children import die_with, keep_current_folder_out
+from ...core.processes.children import die_with, keep_current_folder_out
 from .apart import answer
 from .explicit.catalogue import SERIES
 from .explicit.sets import draw_explicit, write_explicit

@@ -10,7 +10,7 @@ import weakref
 from pathlib import Path
 
 import pytest
-from dentscope.core.stopping import AGAIN_S, heard, listening
+from dentscope.core.processes.stopping import AGAIN_S, heard, listening
 
 # A worker that computes for ever, told of by its number.
 ENDLESS = """

@@ -15,7 +15,7 @@ TRAPS = ("numpy", "threading", "gmsh", "pyvista", "pickle", "matplotlib", "panda
 # Each way in which a command starts a process of its own.
 WAYS = {
     "a file read within limits": """
-from dentscope.core.confined import confined
+from dentscope.core.processes.confined import confined
 from dentscope.core.errors import printable
 assert confined(printable, "a", source="x") == "a"
 """,
@@ -25,7 +25,7 @@ assert [a.value for _, a in answers(len, {"one": ("abc",)}, workers=1, timeout_s
 """,
     "a process for a library": """
 import subprocess
-from dentscope.core.children import python_command
+from dentscope.core.processes.children import python_command
 subprocess.run(python_command("-c", "import numpy, pickle, threading"), check=True)
 """,
     "help": """
@@ -87,4 +87,4 @@ def test_pythons_are_started_in_one_place() -> None:
         for path in (ROOT / stage).rglob("*.py")
         if pattern.search(path.read_text(encoding="utf-8"))
     }  # fmt: skip
-    assert users == {"core/children.py"}
+    assert users == {"core/processes/children.py"}

@@ -7,10 +7,10 @@ import numpy as np
 import pytest
 from dentscope.cli import run
 from dentscope.core import InputError
-from dentscope.core.confined import confined
 from dentscope.core.inputs.input_file import read_bytes
 from dentscope.core.inputs.toml_input import read_toml
 from dentscope.core.output import locked, write_file
+from dentscope.core.processes.confined import confined
 
 
 def test_a_pipe_a_device_and_a_large_file_are_a_line_each(tmp_path):

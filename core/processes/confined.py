@@ -16,8 +16,8 @@ from importlib import import_module
 from pathlib import Path
 from typing import Any, TypeVar
 
+from ..errors import InputError
 from .children import die_with, python_command
-from .errors import InputError
 
 Result = TypeVar("Result")
 

@@ -9,7 +9,7 @@ import sys
 import warnings
 from pathlib import Path
 
-from .errors import EXIT_INPUT_ERROR
+from ..errors import EXIT_INPUT_ERROR
 
 
 class _Output(io.RawIOBase):
