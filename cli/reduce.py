@@ -160,13 +160,22 @@ def _reduce(
     kind: Kind, file: Path, into: Path | None, out: Path, given: dict[str, Any], row: dict[str, Any]
 ) -> None:
     from ..core.inputs.toml_input import parse_model
+    from ..reduce.gates import Refused
     from ..reduce.into_set import store
     from ..reduce.record import trial_name, write_record
     from ..reduce.row import Row
 
     with _named_as_options():
         conditions = parse_model(row, Row, source="command line")
-        reduced = kind.run(file, given, source="command line")
+        try:
+            reduced = kind.run(file, given, source="command line")
+        except Refused as refused:
+            if refused.draw is not None:
+                name = f"{conditions.trial or trial_name(file)}-{kind.name}-refused.png"
+                picture = (out if into is None else into / "reduced") / name
+                refused.draw(picture)
+                typer.echo(f"picture of what was refused: {picture}", err=True)
+            raise
         if into is None:
             name = conditions.trial or trial_name(file)
             written = write_record(reduced, out, name, kind=kind.name, options=given)

@@ -3,12 +3,14 @@
 from __future__ import annotations
 
 from pathlib import Path
+from textwrap import wrap
 from typing import Any
 
 from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.figure import Figure
 
 from ..core.output import write_figure
+from .measured import Array
 
 
 def figure(rows: int, columns: int, *, size: tuple[float, float]) -> tuple[Figure, Any]:
@@ -21,3 +23,13 @@ def figure(rows: int, columns: int, *, size: tuple[float, float]) -> tuple[Figur
 def save(made: Figure, path: Path) -> None:
     """Write the picture, making its folder."""
     write_figure(made, path, dpi=110)
+
+
+def draw_refused(x: Array, y: Array, path: Path, reason: str, *, axes: tuple[str, str]) -> None:
+    """Draw a record that gave no number, the reason above it."""
+    made, grid = figure(1, 1, size=(10.0, 5.0))
+    grid[0, 0].plot(x, y, lw=0.7, marker=".", ms=2)
+    grid[0, 0].set(xlabel=axes[0], ylabel=axes[1])
+    grid[0, 0].set_title("\n".join(wrap(f"no number: {reason}", 90)), fontsize=9, color="C3")
+    grid[0, 0].grid(alpha=0.3)
+    save(made, path)

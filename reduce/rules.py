@@ -58,6 +58,58 @@ class Rules:
         8, "samples above half of the peak from which on a flank has samples too [-]",
         "of a half-sine 13 % lie on a flank between 6 and 45 %, 67 % above the half",
     )  # fmt: skip
+    hole: float = _rule(
+        0.1, "longest time between two samples of a pulse, in its duration [-]",
+        "a half-sine loses 1 % of its area there at most",
+    )  # fmt: skip
+    pulse_over_noise: float = _rule(
+        8.0, "peak of a pulse over the noise before it [-]",
+        "of a million samples of normal noise none is higher than 5",
+    )  # fmt: skip
+    flat_samples: int = _rule(
+        4, "equal samples at the top that are more than chance [-]", "chance: one in 10 000",
+    )  # fmt: skip
+    plateau: float = _rule(
+        0.65, "width at 95 % of the peak, in that at half of it, of a cut pulse [-]",
+        "0.30 of a half-sine, 0.27 of elastic spheres; a half-sine cut at 78 %: 0.65",
+    )  # fmt: skip
+    fewest_above_half: int = _rule(
+        3, "samples above half of the peak [-]", "fewer do not tell a pulse from a disturbance",
+    )  # fmt: skip
+    lopsided: float = _rule(
+        12.0, "time of a flank in that of the other [-]",
+        "the flanks of an impact are as 1 to its restitution or less: 0.1 at least",
+    )  # fmt: skip
+    duration_error: float = _rule(
+        0.5, "standard deviation of a contact time, in itself [-]", "beyond it nothing is measured",
+    )  # fmt: skip
+    step: float = _rule(
+        0.33, "level after a pulse, in its peak [-]", "benchmarks/validate_reduce_pulse.py",
+    )  # fmt: skip
+    swings: int = _rule(
+        6, "other half-waves above a third of the peak [-]", "benchmarks/validate_reduce_pulse.py",
+    )  # fmt: skip
+    ringing: float = _rule(
+        0.1, "half-wave of the other sign, in the peak [-]", "benchmarks/validate_reduce_pulse.py",
+    )  # fmt: skip
+    train: int = _rule(
+        4, "other pulses of more than half of the peak beside it [-]",
+        "steps of a walk and taps: benchmarks/validate_reduce_refusals.py",
+    )  # fmt: skip
+    outside_restitution: float = _rule(
+        3.0, "standard deviations below 0 or above 1 [-]", "normal errors: one in 700",
+    )  # fmt: skip
+    fall_off: float = _rule(
+        0.3, "acceleration in flight off gravity, in gravity [-]",
+        "drag and buoyancy of a table-tennis ball at its terminal speed are less",
+    )  # fmt: skip
+    not_rigid: float = _rule(
+        0.05, "distance of markers from one rigid shape, in its extent [-]",
+        "an acrylic cube: 0.002; a walking person: 0.1",
+    )  # fmt: skip
+    longest_contact: float = _rule(
+        0.02, "longest contact of a body that bounces [s]", "a basketball: 0.009 to 0.016",
+    )  # fmt: skip
 
 
 RULES = Rules()

@@ -23,9 +23,8 @@ from .joint import SHARED, Before, Solution, fit_together
 from .scale import floor_drift, frames_lost, scale_of
 from .sides import joined, known_before, sides_of, true_contacts
 from .touch import (
-    Mask,
     common_durations,
-    possible_durations,
+    likely_durations,
     samples_of,
     speeds,
     touch_of,
@@ -91,7 +90,7 @@ def find_bounces(
     ]
     seen = [m for m in meetings if m is not None]
     possible = common_durations([
-        possible_durations(body, stage, view, (pieces[m.before], pieces[m.after]), m.numbers)
+        likely_durations(body, stage, view, (pieces[m.before], pieces[m.after]), m.numbers)
         for m in seen
     ])  # fmt: skip
     found = [
@@ -153,7 +152,7 @@ def _unknowns(before: int, after: int) -> list[int]:
 
 def _bounce(
     body: Track, stage: Stage, pieces: Sequence[Piece], solutions: Sequence[Solution],
-    meeting: _Meeting, contact: Measured | None, possible: Mask,
+    meeting: _Meeting, contact: Measured | None, likely: Array,
 ) -> Bounce | None:  # fmt: skip
     before, after = pieces[meeting.before], pieces[meeting.after]
     index = _unknowns(meeting.before, meeting.after)
@@ -163,7 +162,7 @@ def _bounce(
         return speeds(c, stage, (before.reference, after.reference), guess, offsets)
 
     view, step = solutions[0].view, body.step
-    touch = touch_of(body, stage, view, (before, after), meeting.numbers, contact, possible)
+    touch = touch_of(body, stage, view, (before, after), meeting.numbers, contact, likely)
     found = [
         (s.weight, propagate(lambda c: numbers(c, touch.offsets), s.x[index],
                              s.covariance[np.ix_(index, index)]))

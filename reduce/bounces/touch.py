@@ -10,6 +10,7 @@ import numpy as np
 import numpy.typing as npt
 
 from ..measured import Array, Measured
+from ..rules import RULES
 from .flights import Piece
 from .joint import SHARED
 from .track import Track
@@ -18,27 +19,27 @@ from .view import Launch, Stage, View
 _RESOLVED = 4
 """Samples within a contact from which on its two ends are told apart."""
 
-_SHORTEST, _LONGEST = 3e-5, 4e-3
+_SHORTEST, _HARD, _RARER = 3e-5, 4e-3, 1.0
 """Contacts of balls and rods, steel on steel to a marble on a stack of paper, at a few metres a
-second [s]; one that no sample shows lies between, any order of magnitude as likely as another."""
+second [s]; one that no sample shows lies between, any order of magnitude as likely as another.
+Longer ones, of soft balls, are the rarer the longer, by that power."""
+
+_SOFTER, _STIFFER = 0.85, 1.3
+"""Between which parts of the bend of a spring that of a soft contact lies: of elastic spheres it is
+0.88, of a spring with as much damping as lets it back with a half of its speed 1.2."""
+
+_NEAREST, _STRAY = 6, 12.0
+"""Samples of a flight next to a contact that are looked at, and what one of them may say at most
+[logarithm of a likelihood]."""
 
 _BEYOND = 0.5
 """Part of what shows of a contact by which both of its ends reach farther: force sets in softly."""
 
-_HIDDEN = 8.0
-"""Spreads of a sample that the path may turn within without a sample that shows the contact."""
-
-LASTS: Array = np.geomspace(_SHORTEST, _LONGEST, 100)
+LASTS: Array = np.geomspace(_SHORTEST, RULES.longest_contact, 130)
 """Durations that are tried of a contact that the samples do not resolve [s]."""
 
 _ALIKE = 1.3
 """Ratio of the durations of a track's contacts: speeds to a quarter of the first one."""
-
-_SLOWEST = 0.02
-"""Longest contact that samples can show [s]."""
-
-
-Mask = npt.NDArray[np.bool_]
 
 
 class Touch(NamedTuple):
@@ -59,7 +60,7 @@ class Touch(NamedTuple):
 
 def touch_of(
     track: Track, stage: Stage, view: View, flights: tuple[Piece, Piece], met: Array,
-    known: Measured | None, possible: Mask,
+    known: Measured | None, likely: Array,
 ) -> Touch:  # fmt: skip
     """Return where a contact begins and ends.
 
@@ -75,19 +76,19 @@ def touch_of(
         What `speeds` gives at the meeting of the flights.
     known
         Duration of the contact [s], if it is known.
-    possible
-        Of `LASTS`, those that the samples of this contact and of the others allow.
+    likely
+        How likely the samples of this contact and of the others make each of `LASTS`.
     """
     meeting, ratio, step = float(met[0]), float(met[3]), track.step
     runs = _both_held(track, stage, view, flights, meeting)
-    if known is None and sum(r.size for r in runs) >= _RESOLVED:
+    if known is None and sum(r.size for r in runs) >= _RESOLVED and step < _HARD / _RESOLVED:
         ends = tuple(
             0.5 * (track.time[run[-1]] + track.time[run[-1] + way]) - meeting if run.size else 0.0
             for run, way in zip(runs, (-1, 1), strict=True)
         )
         error = step / math.sqrt(12.0)
         return Touch((float(ends[0]), float(ends[1])), (error, error), whole=False)
-    lasts = known or _unseen(LASTS[possible])
+    lasts = known or _unseen(likely)
     shares = (ratio / (1.0 + ratio), 1.0 / (1.0 + ratio))
     return Touch(
         (-lasts.value * shares[0], lasts.value * shares[1]),
@@ -124,7 +125,7 @@ def _held(
     """Return the samples from the meeting outwards that the flat holds above a flight."""
     start = int(np.searchsorted(track.time, meeting))
     run = np.arange(start, track.time.size - 1) if way > 0 else np.arange(start - 1, 0, -1)
-    run = run[: 1 + int(_SLOWEST / track.step)]
+    run = run[: 1 + int(RULES.longest_contact / track.step)]
     seen = stage.seen(view, piece.launch, piece.reference, track.time[run])
     above = track.height[run] - seen > 4.0 * piece.sigma
     if above.all():
@@ -144,60 +145,57 @@ def _both_held(
     ]
 
 
-def possible_durations(
+def likely_durations(
     track: Track, stage: Stage, view: View, flights: tuple[Piece, Piece], met: Array
-) -> Mask:
-    """Return which of `LASTS` the samples next to a contact allow, (n,).
+) -> Array:
+    """Return how likely the samples next to a contact make each of `LASTS`, (n,) logarithms.
 
     A path that bends as two quarters of a sine lies the least above the flights that it joins; one
-    that halts at once, smeared over a whole frame, the most. All are possible where nothing fits: a
-    shadow, a stray.
+    that halts at once, smeared over a whole frame, the most. A contact of more than some
+    milliseconds is soft and bends as a spring does.
     """
     meeting, ratio, step = float(met[0]), float(met[3]), track.step
     runs = _both_held(track, stage, view, flights, meeting)
-    moved = sum(r.size for r in runs)
-    spread = max(p.sigma for p in flights)
-    hidden = step + _HIDDEN * spread / max(float(met[1]), 1e-12)
-    longest = LASTS <= max((moved + 1) * hidden, 1.1 * _SHORTEST)
-    if moved >= _RESOLVED:
-        return np.ones_like(longest)
-    possible = longest.copy()
     shares = ratio / (1.0 + ratio), 1.0 / (1.0 + ratio)
     smeared = float(met[1] + met[2]) / (2.0 * step)
+    found = -_RARER * np.maximum(np.log(LASTS / _HARD), 0.0)
     for piece, run, share, speed in zip(flights, runs, shares, met[1:3], strict=True):
-        near = np.abs(track.time[piece.index] - meeting).argmin()
-        for index in (*run, piece.index[near]):
+        order = np.argsort(np.abs(track.time[piece.index] - meeting))[:_NEAREST]
+        for index in (*run, *piece.index[order]):
             time = track.time[index : index + 1]
             seen = stage.seen(view, piece.launch, piece.reference, time)
             above, gap = float(track.height[index] - seen[0]), abs(float(time[0]) - meeting)
             side = LASTS * share
             late = np.maximum(side - gap, 0.0)
-            least = speed * (late - side * np.sin(0.5 * np.pi * late / side) / (0.5 * np.pi))
-            most = speed * late + smeared * max(0.5 * step - gap, 0.0) ** 2
-            unsure = 0.5 * _HIDDEN * piece.sigma
-            possible &= (least <= max(above, 0.0) + unsure) & (most >= above - unsure)
-    return possible if possible.any() else longest
+            soft = speed * (late - side * np.sin(0.5 * np.pi * late / side) / (0.5 * np.pi))
+            most = np.where(LASTS > _HARD, np.minimum(_STIFFER * soft, speed * late), speed * late)
+            most = most + smeared * max(0.5 * step - gap, 0.0) ** 2
+            off = np.maximum(np.maximum(_SOFTER * soft - above, above - most), 0.0)
+            # a shadow or a stray beside the contact says little
+            found -= np.minimum(0.5 * (off / piece.sigma) ** 2, _STRAY)
+    return np.asarray(found - found.max())
 
 
-def common_durations(each: Sequence[Mask]) -> list[Mask]:
-    """Return what all contacts of a track allow for each of them.
+def common_durations(each: Sequence[Array]) -> list[Array]:
+    """Return the likelihoods of all contacts of a track together, for each of them, (n,) weights.
 
     Contacts of one body last about as long; those of elastic spheres vary with the inverse fifth
     root of the speed (H. Hertz, 1882).
     """
     near = np.abs(np.log(LASTS[:, None] / LASTS[None, :])) <= math.log(_ALIKE)
-    wide = [(near & mask[None, :]).any(axis=1) for mask in each]
+    wide = [np.where(near, one[None, :], -np.inf).max(axis=1) for one in each]
     found = []
-    for mask in each:
-        both = mask & np.logical_and.reduce(wide)
-        found.append(both if both.any() else mask)
+    for k, one in enumerate(each):
+        both = one + sum(w for j, w in enumerate(wide) if j != k)
+        found.append(np.exp(both - both.max()))
     return found
 
 
-def _unseen(lasts: Array) -> Measured:
-    """Return a duration the logarithm of which is evenly spread over those that are possible."""
-    mean = float(lasts.mean())
-    return Measured(mean, max(float(lasts.std()), 0.1 * mean))
+def _unseen(weight: Array) -> Measured:
+    """Return a duration the logarithm of which is evenly spread, as far as each is likely."""
+    part = weight / weight.sum()
+    mean = float(part @ LASTS)
+    return Measured(mean, max(math.sqrt(float(part @ (LASTS - mean) ** 2)), 0.1 * mean))
 
 
 def speeds(

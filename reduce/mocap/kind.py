@@ -9,7 +9,9 @@ from pathlib import Path
 import numpy as np
 
 from ...core.inputs.toml_input import read_model
+from ..gates import drawn
 from ..measured import Measured, labelled, labels
+from ..pictures import draw_refused
 from ..reduced import Reduced
 from .body import BodyFile, make_body
 from .file import Markers, read_markers
@@ -49,7 +51,10 @@ def reduce(path: Path, options: Options) -> Reduced:
         radius=options.radius_m, file=Path(options.body) if options.body else None,
         axis=(ends[0], ends[1]) if options.axis else None,
     )  # fmt: skip
-    found = reduce_mocap(poses, body, scene, source=str(path))
+    height = np.nanmean(markers.position @ up, axis=1)
+    axes = ("time [s]", "mean height of the markers [m]")
+    with drawn(lambda to, why: draw_refused(markers.time, height, to, why, axes=axes)):
+        found = reduce_mocap(poses, body, scene, source=str(path))
     missing = f"{100.0 * markers.missing:.2g} % of the marker positions are missing"
     noise = {"frame_rate_hz": found.rate, "tip_height_m": found.flights.sigma}
     return Reduced(

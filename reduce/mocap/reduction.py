@@ -18,6 +18,7 @@ from ...recordings.columns import TRIAL_COLUMNS
 from ..bounces.options import GRAVITY
 from ..measured import Array, Measured, Trial, labels, propagate
 from .body import Body
+from .checks import check_fall, check_shape, possible, widened
 from .flight import Flights, fall_acceleration
 from .flight_search import find_flights
 from .motion import Motion
@@ -152,12 +153,19 @@ def reduce_mocap(poses: Poses, body: Body, scene: Scene, *, source: str) -> Moca
         if gap <= _LONGEST_GAP:
             hits.append(_hit(poses, flights, f, gap, body, scene))
     hits = [h for h in hits if h.measured["impact_speed_m_s"].value > 0.0]
+    fall = fall_acceleration(poses, flights)
+    check_fall(fall, scene.gravity, source)
+    check_shape(poses, source)
+    hits = [
+        replace(h, measured=widened(h.measured, poses, flights, fall, scene.gravity))
+        for h in hits
+        if possible(h.measured["restitution"], body)
+    ]
     if not hits:
         raise InputError(
             "no impact with a free flight just before and just after it", source=source,
             allowed="frames of free flight on both sides, without a second contact",
         )  # fmt: skip
-    fall = fall_acceleration(poses, flights)
     notes = (*_flight_notes(poses, flights, fall, scene), *_hit_notes(hits, body, rate))
     return MocapReduction(poses, flights, body, scene, tuple(hits), fall, rate, notes)
 

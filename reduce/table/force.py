@@ -6,7 +6,9 @@ import math
 from dataclasses import dataclass, replace
 
 from ..bounces.options import GRAVITY
+from ..gates import Refused
 from ..measured import Array, Measured, Trial
+from ..rules import RULES
 from .pulse import Pulse, find_pulse
 
 
@@ -87,16 +89,22 @@ def reduce_pulse(
         values["impact_speed_m_s"] = row["impact_speed_m_s"] = approach
         if change is not None:
             restitution = _restitution(change, approach, gravity * pulse.duration.value)
-            if 0.0 <= restitution.value <= 1.0:
-                values["restitution"] = row["restitution"] = restitution
-            else:
-                notes += (
-                    f"the impulse asks for a restitution of {restitution}: scale of the record, "
-                    "mass or speed are off, or the striker is not free",
-                )
+            values["restitution"] = row["restitution"] = _possible(restitution, source)
     trace = {} if force is None else {"time_s": time - pulse.start.value, "force_N": force}
     unit = "N" if holds == "force" else "m/s²"
     return PulseReduction(pulse, unit, values, Trial(row, notes, trace=trace), notes)
+
+
+def _possible(restitution: Measured, source: str) -> Measured:
+    """Return the restitution within 0 to 1, its error so much wider; refuse what is far outside."""
+    off = max(-restitution.value, restitution.value - 1.0, 0.0)
+    if off > RULES.outside_restitution * restitution.std:
+        raise Refused(
+            "restitution", f"the impulse asks for a restitution of {restitution}", source=source,
+            key="approach_speed_m_s", allowed="0 to 1: scale of the record, mass and speed that "
+            "fit, of a striker that is free; without the speed the impulse alone is told",
+        )  # fmt: skip
+    return Measured(min(max(restitution.value, 0.0), 1.0), math.hypot(restitution.std, off))
 
 
 def _restitution(change: Measured, approach: Measured, fall: float) -> Measured:

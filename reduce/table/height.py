@@ -24,7 +24,14 @@ class HeightReduction:
 
 
 def reduce_heights(
-    time: Array, height: Array, *, metres: float | None, std: float, ball: Ball, source: str
+    time: Array,
+    height: Array,
+    *,
+    metres: float | None,
+    std: float,
+    ball: Ball,
+    source: str,
+    contact: Measured | None = None,
 ) -> HeightReduction:
     """Fit the flights of a track and read the speeds at its contacts.
 
@@ -38,6 +45,8 @@ def reduce_heights(
         Standard deviation of a height that is believed at least [unit].
     ball
         Gravity, and the drag as far as it is known.
+    contact
+        Duration of a contact [s], if it is known.
     source
         The file.
 
@@ -47,7 +56,8 @@ def reduce_heights(
         No contact with flight on both sides.
     """
     track = Track(time, height, floor=std)
-    found = find_bounces(track, ball, metres=None if metres is None else Measured(metres, 0.0))
+    scale = None if metres is None else Measured(metres, 0.0)
+    found = find_bounces(track, ball, metres=scale, contact=contact)
     if found is None:
         raise InputError(
             "no contact with flight before and after it", source=source,

@@ -9,8 +9,11 @@ import numpy as np
 
 from ...core.errors import InputError
 from ..bounces.times import reduce_bounce_times
+from ..gates import Refused, drawn
 from ..measured import Array, Measured
+from ..pictures import draw_refused
 from ..reduced import Reduced
+from ..rules import RULES
 from .file import Columns, read_columns
 from .force import reduce_pulse
 from .height import reduce_heights
@@ -99,15 +102,17 @@ def _pulse(path: Path, table: Columns, options: Options) -> Reduced:
     if unit is None:
         unit = table.factor(column, options.holds, given=options.value_unit, key="value_unit")
     speed = options.approach_speed_m_s
-    found = reduce_pulse(
-        time, value * unit, holds=options.holds, mass=options.mass_kg,
-        approach=None if speed is None else Measured(speed, options.approach_speed_m_s_std),
-        gravity=options.gravity_m_s2, source=str(path),
-        scale_std=options.gain_std / unit if options.gain else 0.0,
-    )  # fmt: skip
+    axes = ("time [s]", options.holds)
+    with drawn(lambda to, why: draw_refused(time, value * unit, to, why, axes=axes)):
+        found = reduce_pulse(
+            time, value * unit, holds=options.holds, mass=options.mass_kg,
+            approach=None if speed is None else Measured(speed, options.approach_speed_m_s_std),
+            gravity=options.gravity_m_s2, source=str(path),
+            scale_std=options.gain_std / unit if options.gain else 0.0,
+        )  # fmt: skip
+        _whole(found.pulse, series, str(path))
     notes = found.notes
     if series.missed.size:
-        _whole(found.pulse, series, str(path))
         notes += (f"{series.told()}, none of them beside the pulse",)
     return Reduced(
         source=path, values=found.values, trials=(found.trial,), notes=notes,
@@ -120,10 +125,17 @@ def _whole(pulse: Pulse, series: Series, source: str) -> None:
     near = pulse.duration.value
     beside = (series.missed > pulse.start.value - near) & (series.missed < pulse.end.value + near)
     if beside.any():
-        raise InputError(
-            f"{series.told()}, {int(beside.sum())} of them in or beside the pulse",
-            source=source, key="value",
+        raise Refused(
+            "hole", f"{series.told()}, {int(beside.sum())} of them in or beside the pulse",
+            source=source,
             allowed="a whole pulse: a range that it does not reach, no lost samples",
+        )  # fmt: skip
+    longest = float(np.diff(pulse.time[pulse.inside]).max(initial=0.0))
+    usual = float(np.median(np.diff(pulse.time)))
+    if longest > max(RULES.hole * pulse.duration.value, 2.5 * usual):
+        raise Refused(
+            "hole", f"no sample for {longest:.3g} s within a pulse of {pulse.duration.value:.3g} s",
+            source=source, allowed="a whole pulse: no lost samples",
         )  # fmt: skip
 
 
@@ -156,6 +168,7 @@ def _heights(path: Path, table: Columns, options: Options) -> Reduced:
     found = reduce_heights(
         time, value if options.upwards == "up" else -value, metres=metres,
         std=options.value_std, ball=options.ball, source=str(path),
+        contact=Measured(lasts, 0.0) if (lasts := options.contact_time_s) else None,
     )  # fmt: skip
     rate = float(1.0 / np.median(np.diff(time)))
     lost = (f"{series.told()}: they are left out",) if series.missed.size else ()

@@ -16,6 +16,7 @@ from scipy.optimize import least_squares
 from scipy.signal import savgol_filter
 
 from ...core.errors import InputError
+from ..gates import Refused
 from ..measured import Array, Measured
 from ..regression import unit_covariance
 from ..rules import RULES
@@ -27,9 +28,6 @@ _LOW, _HIGH = 0.06, 0.45
 """Part of the peak between which the flanks tell the ends."""
 
 _POWERS, _FEWEST = (1.5, 1.2, 1.0), 6
-
-_LEAST = 8.0
-"""Peak in standard deviations of the noise that is still a pulse."""
 
 
 @dataclass(frozen=True)
@@ -93,10 +91,10 @@ def find_pulse(time: Array, value: Array, *, source: str) -> Pulse:
     sign = math.copysign(1.0, value[top] - np.median(value))
     level = level_before(sign * value, top)
     noise, clear = level.noise, sign * value - level.mean
-    if not clear[top] > _LEAST * noise:
-        raise InputError(
-            f"the largest value is {clear[top] / max(noise, 1e-300):.2g} times the noise",
-            source=source, allowed=f"a pulse of {_LEAST:g} times the noise or more",
+    if not clear[top] > RULES.pulse_over_noise * noise:
+        raise Refused(
+            "noise", f"the largest value is {clear[top] / max(noise, 1e-300):.2g} times the noise",
+            source=source, allowed=f"a pulse of {RULES.pulse_over_noise:g} times the noise or more",
         )  # fmt: skip
     notes = []
     if not level.samples:
@@ -106,7 +104,13 @@ def find_pulse(time: Array, value: Array, *, source: str) -> Pulse:
     end, used_b = _flank(time, clear, top, +1, peak.value)
     shape = shape_of(time, clear, top, (start.value, end.value), source=source)
     if min(used_a, used_b) == 0 and shape.above_half >= RULES.whole_flank:
-        raise looks_like("an edge: one side has no flank", source)
+        raise looks_like("edge", "an edge: one side has no flank", source)
+    flanks = sorted((peak_time - start.value, end.value - peak_time))
+    if shape.above_half >= RULES.whole_flank and flanks[1] > RULES.lopsided * max(flanks[0], 0.0):
+        raise looks_like(
+            "lopsided", f"an edge: one flank takes {flanks[1] / max(flanks[0], 1e-300):.2g} times "
+            "as long as the other", source,
+        )  # fmt: skip
     if min(used_a, used_b) < 4:
         notes.append(f"only {min(used_a, used_b)} samples on a flank: the ends are rough")
     if shape.ringing:
@@ -124,8 +128,8 @@ def find_pulse(time: Array, value: Array, *, source: str) -> Pulse:
         )
     inside = (time >= start.value) & (time <= end.value)
     if inside[0] or inside[-1]:
-        raise InputError(
-            "the pulse runs over an end of the record", source=source,
+        raise Refused(
+            "ends", "the pulse runs over an end of the record", source=source,
             allowed="a pulse that rises from its level and comes back to it",
         )  # fmt: skip
     if abs(shape.level_after) > 0.02:
@@ -133,12 +137,22 @@ def find_pulse(time: Array, value: Array, *, source: str) -> Pulse:
             f"the level afterwards is {shape.level_after:+.0%} of the peak: the zero is the one "
             "before"
         )
+    _timed(start, end, source)
     found = area_of(time, clear, level, shape, (start, end))
     start = Measured(start.value, math.hypot(start.std, found.early))
     return Pulse(
         time, clear, sign * level.mean, noise, peak, peak_time, start, end, found.area, inside,
         (*notes, *found.notes),
     )  # fmt: skip
+
+
+def _timed(start: Measured, end: Measured, source: str) -> None:
+    """Refuse a pulse whose ends are not known."""
+    lasts = end.minus(start)
+    if lasts.std > RULES.duration_error * lasts.value:
+        raise Refused(
+            "duration", f"a contact of {lasts} s", source=source, allowed="ends that can be seen"
+        )
 
 
 def _peak(time: Array, clear: Array, top: int, noise: float) -> tuple[Measured, float]:

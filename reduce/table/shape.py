@@ -18,18 +18,14 @@ from typing import NamedTuple
 import numpy as np
 import numpy.typing as npt
 
-from ...core.errors import InputError
+from ..gates import Refused
 from ..measured import Array
-
-_FLAT = 4
-"""Equal samples at the top that are more than chance."""
+from ..rules import RULES
 
 _JUMP = 1.5
 """Steps of the converter by which the samples beside a clipped top lie below it."""
 
-_STEP, _SWING, _RINGS = 0.33, 0.33, 0.1
-_SWINGS, _BESIDE = 6, 8.0
-_FEWEST = 3
+_SWING, _BESIDE = 0.33, 8.0
 _AGAIN = 0.3
 """Part of the peak from which on another pulse is named."""
 
@@ -70,33 +66,68 @@ def shape_of(
     peak = float(clear[top])
     flat = _flat_top(clear, top)
     if flat:
-        raise InputError(
-            f"clipped: {flat} samples stand at the largest value", source=source, key="value",
+        raise Refused(
+            "clipped", f"clipped: {flat} samples stand at the largest value", source=source,
             allowed="a record whose range the pulse does not reach",
         )  # fmt: skip
     if not ends[1] > ends[0]:
-        raise looks_like("a ramp: it ends before it begins", source)
+        raise looks_like("ends", "a ramp: it ends before it begins", source)
     half = int(_run(clear > 0.5 * peak, top).size)
-    if half < _FEWEST:
-        raise looks_like(f"a spike: {half} samples above half of its peak", source)
+    if half < RULES.fewest_above_half:
+        raise looks_like("spike", f"a spike: {half} samples above half of its peak", source)
     long = ends[1] - ends[0]
     after = (time > ends[1] + 0.5 * long) & (time < ends[1] + 5.0 * long)
     rest = float(np.median(clear[after] if after.sum() >= 5 else clear[-5:])) / peak
-    if abs(rest) > _STEP:
-        raise looks_like(f"a step: {rest:+.0%} of the peak stays", source)
+    soon = (time > ends[1]) & (time < ends[1] + long)
+    if soon.sum() >= RULES.fewest_level_samples:  # what comes later is another event
+        rest = min(rest, float(np.median(clear[soon])) / peak, key=abs)
+    if abs(rest) > RULES.step:
+        raise looks_like("step", f"a step: {rest:+.0%} of the peak stays", source)
+    wide = _wide(clear, top)
+    if half >= RULES.whole_flank and wide > RULES.plateau:
+        raise Refused(
+            "plateau", f"its top is flat over {wide:.0%} of its width at half of the peak: clipped",
+            source=source, allowed="a record whose range the pulse does not reach",
+        )  # fmt: skip
     beside = (time > ends[0] - _BESIDE * long) & (time < ends[1] + _BESIDE * long)
     below = -float(clear[beside].min()) / peak
     swings = _half_waves(clear[beside] / peak) - 1
-    if below > _SWING and swings >= _SWINGS:
-        raise looks_like(f"an oscillation: {swings} other half-waves beside it", source)
-    ringing = below if below > _RINGS else 0.0
-    return Shape(ringing, rest, tuple(_others(time, clear, peak, ends)), half)
+    if below > _SWING and swings >= RULES.swings:
+        raise looks_like("swings", f"an oscillation: {swings} other half-waves beside it", source)
+    ringing = below if below > RULES.ringing else 0.0
+    others = tuple(_others(time, clear, peak, ends))
+    _single(time, clear, others, ends, source)
+    return Shape(ringing, rest, others, half)
 
 
-def looks_like(what: str, source: str) -> InputError:
+def _single(
+    time: Array, clear: Array, others: tuple[float, ...], ends: tuple[float, float], source: str
+) -> None:
+    """Refuse a train of like pulses: steps of a walk, taps, a machine; a bounce comes back lower.
+
+    A first, smaller one is no bounce either, unless it is far smaller.
+    """
+    heights = np.interp(others, time, clear) / clear.max()
+    high = [t for t, h in zip(others, heights, strict=True) if h > 0.5]
+    before = [t for t in high if t < ends[0]]
+    if len(high) >= RULES.train and len(before) >= 2:
+        raise looks_like("train", f"{len(high) + 1} like pulses, {len(before)} before the largest",
+                         source)  # fmt: skip
+
+
+def _wide(clear: Array, top: int) -> float:
+    """Return the width at 95 % of the peak in that at half of it, in a mean over the noise."""
+    half = _run(clear > 0.5 * clear[top], top)
+    ordered = np.sort(clear[half])
+    # the highest samples are the noise's: a tenth of them is left out of the peak
+    peak = float(ordered[-1 - half.size // 10])
+    return float(np.mean(ordered > 0.95 * peak))
+
+
+def looks_like(gate: str, what: str, source: str) -> Refused:
     """Return the refusal of a record that shows something else than a pulse."""
-    return InputError(
-        f"no impact: looks like {what}", source=source, key="value",
+    return Refused(
+        gate, f"no impact: looks like {what}", source=source,
         allowed="a pulse that rises from zero and comes back (see --first-s, --last-s, --value)",
     )  # fmt: skip
 
@@ -119,7 +150,7 @@ def _flat_top(clear: Array, top: int) -> int:
     run = _run(clear >= clear[top] * (1.0 - 1e-9), top)
     steps = np.diff(np.unique(clear))
     steps = steps[steps > 1e-9 * clear[top]]
-    if run.size < _FLAT or steps.size == 0 or run[0] == 0 or run[-1] == clear.size - 1:
+    if run.size < RULES.flat_samples or steps.size == 0 or run[0] == 0 or run[-1] == clear.size - 1:
         return 0
     # a converter's smallest step makes a round top flat too, but its neighbours are one step below
     smallest = float(steps.min())
@@ -135,5 +166,5 @@ def _others(time: Array, clear: Array, peak: float, ends: tuple[float, float]) -
         (clear > _AGAIN * peak) & ((time < ends[0] - long) | (time > ends[1] + long))
     )
     for run in np.split(high, np.flatnonzero(np.diff(time[high]) > long) + 1):
-        if run.size >= _FEWEST:
+        if run.size >= RULES.fewest_above_half:
             yield float(time[run[np.argmax(clear[run])]])

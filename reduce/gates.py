@@ -1,0 +1,111 @@
+"""The gates between a reduction and its numbers: what is looked at, and what follows from it.
+
+Every check that a reduction makes passes, widens the stated error by what it means, or refuses with
+the reason and a picture of the record. None is only a note.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
+from dataclasses import fields
+from pathlib import Path
+from typing import NamedTuple
+
+from ..core.errors import InputError
+from .rules import RULES
+
+
+class Gate(NamedTuple):
+    """One gate.
+
+    Parameters
+    ----------
+    kind
+        What is reduced.
+    looks_at
+        What is checked.
+    limit
+        Name in `rules.RULES` of the number that decides; empty where none does.
+    effect
+        What follows beyond it.
+    """
+
+    kind: str
+    looks_at: str
+    limit: str
+    effect: str
+
+
+GATES = {
+    "hole": Gate("pulse", "cells without a number, or missing rows, in or beside it", "hole",
+                 "refuses"),
+    "noise": Gate("pulse", "its peak over the noise before it", "pulse_over_noise", "refuses"),
+    "clipped": Gate("pulse", "equal samples at its top", "flat_samples", "refuses"),
+    "plateau": Gate("pulse", "width near its top, in its width at half of the peak", "plateau",
+                    "refuses"),
+    "spike": Gate("pulse", "samples above half of its peak", "fewest_above_half", "refuses"),
+    "edge": Gate("pulse", "a flank without samples on a pulse that has many", "whole_flank",
+                 "refuses"),
+    "lopsided": Gate("pulse", "time of one flank in that of the other", "lopsided", "refuses"),
+    "ends": Gate("pulse", "both of its ends within the record", "", "refuses"),
+    "duration": Gate("pulse", "standard deviation of the contact time, in itself",
+                     "duration_error", "refuses"),
+    "step": Gate("pulse", "level afterwards, in its peak", "step", "refuses"),
+    "level": Gate("pulse", "level just after it, in its peak", "", "widens the area"),
+    "swings": Gate("pulse", "half-waves beside it above a third of the peak", "swings", "refuses"),
+    "train": Gate("pulse", "other pulses of half its peak or more before it, or many beside it",
+                  "train", "refuses"),
+    "ringing": Gate("pulse", "largest half-wave of the other sign, in its peak", "ringing",
+                    "widens peak and ends; the area is the mean over the swings"),
+    "foot": Gate("pulse", "area before its flank, in its own", "foot_part",
+                 "is part of the area, widens area and beginning"),
+    "restitution": Gate("every kind", "standard deviations of the restitution beyond 0 to 1",
+                        "outside_restitution", "refuses the impact"),
+    "fall": Gate("track, markers", "acceleration in flight off gravity, in gravity", "fall_off",
+                 "refuses; below it widens the speeds"),
+    "shape": Gate("markers", "distance of the markers from one rigid shape, in its extent",
+                  "not_rigid", "refuses; below it widens all numbers"),
+    "plane": Gate("markers", "impulse out of the plane of motion, in the normal one", "",
+                  "widens the friction"),
+    "contact": Gate("track", "contact time that the samples near it allow", "longest_contact",
+                    "widens speeds and restitution"),
+    "course": Gate("times, sound", "scatter of the intervals about their smooth course, in them",
+                   "", "widens speeds and restitution"),
+    "scale": Gate("video", "size of a pixel as stated and by the fall", "",
+                  "widens the speeds by the difference"),
+}  # fmt: skip
+
+
+class Refused(InputError):
+    """A record that gives no number: the gate that it did not pass, and how it is drawn."""
+
+    def __init__(
+        self, gate: str, found: str, *, source: str, allowed: str, key: str = "value"
+    ) -> None:
+        super().__init__(found, source=source, key=key, allowed=allowed)
+        self.gate = GATES[gate]
+        self.draw: Callable[[Path], None] | None = None
+
+
+@contextmanager
+def drawn(draw: Callable[[Path, str], None]) -> Iterator[None]:
+    """Give a refusal from within the picture of what was refused; `draw` takes path and reason."""
+    try:
+        yield
+    except Refused as refused:
+        reason = refused.message
+        if refused.draw is None:
+            refused.draw = lambda to: draw(to, reason)
+        raise
+
+
+def table_of_gates() -> str:
+    """Return the gates as a table in Markdown, the limits and their sources from the register."""
+    about = {f.name: f.metadata for f in fields(RULES)}
+    rows = ["| of | looked at | limit | effect | source |", "| --- | --- | --- | --- | --- |"]
+    for gate in GATES.values():
+        limit = f"{getattr(RULES, gate.limit):g}" if gate.limit else "-"
+        source = about[gate.limit]["source"] if gate.limit else "what is found itself"
+        rows.append(f"| {gate.kind} | {gate.looks_at} | {limit} | {gate.effect} | {source} |")
+    return "\n".join(rows)
