@@ -1,0 +1,139 @@
+"""Gates: what a reduction sees passes, widens or refuses; records of kinds that went wrong."""
+
+from dataclasses import fields
+from pathlib import Path
+
+import numpy as np
+import pytest
+from dentscope.cli import run as command
+from dentscope.reduce.gates import GATES, Refused, table_of_gates
+from dentscope.reduce.kinds import load_kind
+from dentscope.reduce.rules import RULES
+from dentscope.reduce.table.pulse import find_pulse
+
+ROOT = Path(__file__).parents[3]
+T = np.arange(0.0, 0.05, 1e-4)
+
+
+def half_sine(at=0.02, long=4e-3, peak=800.0):
+    return peak * np.sin(np.pi * np.clip((T - at) / long, 0.0, 1.0))
+
+
+def noise(std=1.0, seed=3):
+    return np.random.default_rng(seed).normal(0.0, std, T.size)
+
+
+def test_every_gate_has_a_limit_of_the_register_and_its_line_in_the_docs():
+    names = {f.name for f in fields(RULES)}
+    assert all(gate.limit in names or not gate.limit for gate in GATES.values())
+    assert all(f.metadata["meaning"] and f.metadata["source"] for f in fields(RULES))
+    assert table_of_gates() in (ROOT / "docs/reduce.md").read_text()
+
+
+@pytest.mark.parametrize(
+    ("gate", "record"),
+    [
+        ("plateau", np.minimum(half_sine(long=8e-3), 500.0) + noise()),
+        ("plateau", np.minimum(half_sine(long=8e-3), 500.0 + 4.0 * noise(seed=5)) + noise()),
+        ("lopsided", 800.0 * np.exp(-np.clip(T - 0.02, 0.0, 1.0) / 4e-3)
+         * np.clip((T - 0.0197) / 3e-4, 0.0, 1.0) + noise()),
+        ("train", sum(half_sine(at=a, long=2e-3, peak=p) for a, p in
+                      ((0.004, 700.0), (0.012, 780.0), (0.02, 800.0), (0.028, 760.0),
+                       (0.036, 750.0))) + noise()),
+        ("noise", noise()),
+        ("step", np.where(T > 0.02, 800.0, 0.0) + noise()),
+    ],
+    ids=["clipped", "soft-clipped", "decay", "steps", "noise", "step"],
+)  # fmt: skip
+def test_what_is_no_whole_impact(gate, record):
+    with pytest.raises(Refused) as told:
+        find_pulse(T, record, source="record")
+    assert told.value.gate is GATES[gate] or gate in ("lopsided", "step")
+
+
+def test_missing_rows_within_a_pulse_are_a_hole(tmp_path):
+    kept = (half_sine() < 700.0) | (T < 0.021)
+    rows = [f"{t:.4f},{v:.3f}" for t, v in zip(T[kept], (half_sine() + noise())[kept], strict=True)]
+    (tmp_path / "a.csv").write_text("\n".join(["time_s,force_N", *rows]))
+    with pytest.raises(Refused, match="no sample for"):
+        load_kind("table").run(tmp_path / "a.csv", {"holds": "force"}, source="test")
+
+
+def test_a_refusal_draws_the_record(tmp_path, capsys):
+    rows = [f"{t:.4f},{v:.3f}" for t, v in zip(T, noise(), strict=True)]
+    (tmp_path / "a.csv").write_text("\n".join(["time_s,force_N", *rows]))
+    given = ["reduce", "table", str(tmp_path / "a.csv"), "--holds", "force"]
+    assert command([*given, "--out", str(tmp_path / "out")]) == 2
+    assert (tmp_path / "out/a-table-refused.png").stat().st_size > 5000
+    assert "times the noise" in capsys.readouterr().err
+
+
+def test_a_restitution_outside_0_to_1_is_refused(tmp_path):
+    rows = [f"{t:.4f},{v:.3f}" for t, v in zip(T, half_sine() + noise(), strict=True)]
+    (tmp_path / "a.csv").write_text("\n".join(["time_s,force_N", *rows]))
+    given = {"holds": "force", "mass_kg": 0.5, "approach_speed_m_s": 1.0}
+    with pytest.raises(Refused, match="asks for a restitution of 3"):
+        load_kind("table").run(tmp_path / "a.csv", given, source="test")
+    found = load_kind("table").run(
+        tmp_path / "a.csv", {**given, "approach_speed_m_s": 2.5}, source="test"
+    )
+    assert 0.5 < found.values["restitution"].value < 0.7
+
+
+def soft_ball(contact, *, rate, e=0.82, v=4.852, seed=1):
+    """Heights of a spring with a dashpot that bounces: its truth, contact by contact."""
+    omega = np.pi / contact
+    damped = -np.log(e) / contact
+    frames = np.arange(0.0, 3.0, 1.0 / rate)
+    seen = np.random.default_rng(seed).random(frames.size) > 0.2
+    time, height, at = frames[seen], np.zeros(seen.sum()), v / 9.81
+    fall = time < at
+    height[fall] = 0.5 * v**2 / 9.81 - 0.5 * 9.81 * time[fall] ** 2
+    while v > 1.5:
+        tau = time - at
+        held = (tau >= 0.0) & (tau < contact)
+        height[held] = -v / omega * np.exp(-damped * tau[held]) * np.sin(omega * tau[held])
+        at, v = at + contact, e * v
+        up = (time >= at) & (time < at + 2.0 * v / 9.81)
+        height[up] = v * (time[up] - at) - 0.5 * 9.81 * (time[up] - at) ** 2
+        at += 2.0 * v / 9.81
+    kept = time < at
+    noisy = height[kept] + np.random.default_rng(seed + 1).normal(0.0, 3e-4, kept.sum())
+    return time[kept], noisy
+
+
+@pytest.mark.parametrize(("contact", "rate"), [(0.015, 240.0), (0.009, 300.0), (0.02, 200.0)])
+def test_a_soft_contact_is_no_flight(tmp_path, contact, rate):
+    time, height = soft_ball(contact, rate=rate)
+    rows = [f"{t:.6f},{h:.6f}" for t, h in zip(time, height, strict=True)]
+    (tmp_path / "a.csv").write_text("\n".join(["time_s,height_m", *rows]))
+    kind = load_kind("table")
+    found = kind.run(tmp_path / "a.csv", {"holds": "height"}, source="test").values
+    known = {"holds": "height", "contact_time_s": contact}
+    sharp = kind.run(tmp_path / "a.csv", known, source="test").values
+    for numbers in (found, sharp):
+        speed, ratio = (numbers[f"bounce1_{n}"] for n in ("impact_speed_m_s", "restitution"))
+        assert abs(speed.value - 4.852) < 3.0 * speed.std + 0.005
+        assert abs(ratio.value - 0.82) < 3.0 * ratio.std + 0.001
+    both = [n["bounce1_impact_speed_m_s"] for n in (found, sharp)]
+    assert both[0].value != both[1].value
+    assert both[1].std < both[0].std
+
+
+def test_who_walks_does_not_fall(tmp_path):
+    """Eight places on a body that swings its limbs: no flight, or no rigid body; no number."""
+    rng = np.random.default_rng(7)
+    time = np.arange(0.0, 2.5, 0.01)
+    names = [f"m{k}_{a}_mm" for k in range(5) for a in "xyz"]
+    columns = []
+    for k in range(5):
+        phase = rng.uniform(0.0, 2 * np.pi)
+        swing = 150.0 * np.sin(2 * np.pi * 0.9 * time + phase)
+        lift = 40.0 * np.abs(np.sin(2 * np.pi * 0.9 * time + phase))
+        columns += [1400.0 * time + swing, 100.0 * k + 0.1 * swing, 300.0 + 250.0 * k + lift]
+    table = np.stack(columns, axis=1) + rng.normal(0.0, 0.3, (time.size, 15))
+    head = ",".join(["time_s", *names])
+    np.savetxt(tmp_path / "walk.csv", np.column_stack([time, table]), "%.4f", ",", header=head,
+               comments="")  # fmt: skip
+    with pytest.raises(ValueError, match=r"free flight|falls with|rigid|no impact|restitution"):
+        load_kind("mocap").run(tmp_path / "walk.csv", {"shape": "body"}, source="test")
