@@ -8,7 +8,10 @@ from dataclasses import replace
 from typing import ClassVar
 
 from ...impact import Scene, Support
+from .arithmetic import density_of
 from .base import Literature, Mechanism, Parameter, Situation, Surroundings, Values
+
+_DECADE = 10.0  # least span of the mass: a block, and the bench that it stands on
 
 
 class SupportCompliance(Mechanism):
@@ -39,11 +42,17 @@ class SupportCompliance(Mechanism):
     rests_on: ClassVar[tuple[str, ...]] = ("target", "striker")
 
     def ranges(self, situations: Sequence[Situation]) -> tuple[Parameter, ...]:
-        """Stated values narrow the ranges; the flat on one striker's mass bounds the mass."""
+        """Stated values narrow the ranges; strikers, and the stated thickness, bound the mass.
+
+        What moves with a flat of thickness h is at least as wide as thick: rho h^3.
+        """
         around = situations[0][1]
         k, m, loss = self.parameters
         heaviest = max(scene.striker.mass for scene, _ in situations)
-        m = replace(m, low=2.0 * heaviest, high=300.0 * heaviest)
+        low, high = 2.0 * heaviest, 300.0 * heaviest
+        if around.thickness > 0.0:
+            low = max(low, density_of(situations[0][0].pair.flat) * around.thickness**3)
+        m = replace(m, low=low, high=max(high, _DECADE * low))
         stated = around.support_stiffness, around.support_mass
         if stated[0] > 0.0:
             k = replace(k, low=stated[0] / 2.0, high=stated[0] * 2.0, source="stated", nodes=3)

@@ -41,7 +41,7 @@ def test_a_drop_loses_speed_and_keeps_its_restitution() -> None:
 
 def test_a_ball_has_no_cut_tip() -> None:
     cut = named("truncated-tip")
-    ball = scene().with_(striker=Striker(mass=0.2, tip_radius=0.0088))
+    light = scene().with_(striker=Striker(mass=0.2, tip_radius=0.0088))
     assert "ball" in cut.applies([(ball, AROUND)])
     assert cut.attach(ball, {"flat_radius_over_R": 0.05}, AROUND) == ball
     assert cut.applies([(ball, AROUND), (scene(), AROUND)]) == ""
@@ -87,7 +87,7 @@ def test_one_more_influence_on_the_flow_stress_multiplies() -> None:
 
 def test_air_takes_from_a_light_ball_and_not_from_a_rod() -> None:
     drag = named("air-drag")
-    ball = scene().with_(
+    light = scene().with_(
         striker=Striker(mass=0.0027, tip_radius=0.02), pair=replace(scene().pair, R=0.02),
         approach=Approach(math.sqrt(2.0 * 9.81 * 0.5)),
     )  # fmt: skip
@@ -107,3 +107,14 @@ def test_air_takes_from_a_light_ball_and_not_from_a_rod() -> None:
     assert "at most" in drag.applies([(scene(), AROUND)])
     assert "oil" in drag.applies([(ball, Surroundings(fluid="oil"))])
     assert drag.applies([(ball, dropped)]) == ""
+
+
+def test_a_support_is_no_lighter_than_a_block_as_wide_as_the_flat_is_thick() -> None:
+    """A striker of 0.1 g on 30 mm of iron: 7870 * 0.03^3 kg, not twice the striker."""
+    light = scene().with_(striker=replace(ROD, mass=1e-4))
+    support = named("support-compliance")
+    _, mass, _ = support.ranges([(light, AROUND)])
+    assert mass.low == pytest.approx(7870.0 * 0.03**3)
+    assert mass.high == pytest.approx(10.0 * mass.low)
+    _, mass, _ = support.ranges([(light, Surroundings())])
+    assert (mass.low, mass.high) == pytest.approx((2e-4, 3e-2))
