@@ -41,7 +41,7 @@ def test_a_drop_loses_speed_and_keeps_its_restitution() -> None:
 
 def test_a_ball_has_no_cut_tip() -> None:
     cut = named("truncated-tip")
-    light = scene().with_(striker=Striker(mass=0.2, tip_radius=0.0088))
+    ball = scene().with_(striker=Striker(mass=0.2, tip_radius=0.0088))
     assert "ball" in cut.applies([(ball, AROUND)])
     assert cut.attach(ball, {"flat_radius_over_R": 0.05}, AROUND) == ball
     assert cut.applies([(ball, AROUND), (scene(), AROUND)]) == ""
@@ -87,7 +87,7 @@ def test_one_more_influence_on_the_flow_stress_multiplies() -> None:
 
 def test_air_takes_from_a_light_ball_and_not_from_a_rod() -> None:
     drag = named("air-drag")
-    light = scene().with_(
+    ball = scene().with_(
         striker=Striker(mass=0.0027, tip_radius=0.02), pair=replace(scene().pair, R=0.02),
         approach=Approach(math.sqrt(2.0 * 9.81 * 0.5)),
     )  # fmt: skip
