@@ -13,17 +13,17 @@ from .publish import (
     published_designs,
     read_published,
 )
-from .quality import MOST_ENERGY_DEFECT, MOST_STEP, Quality, quality_of
+from .quality import Quality, quality_of
 from .read import digest_of_source, read_curves
 from .records import CaseRecord, Summary, UnloadingRecord
+from .rules import RULES
 from .run import Share, Status, Step, run_design, status_of
 from .store import Store
 from .upgrade import upgrade
 
 __all__ = [
     "DESIGNS",
-    "MOST_ENERGY_DEFECT",
-    "MOST_STEP",
+    "RULES",
     "Case",
     "CaseRecord",
     "Design",

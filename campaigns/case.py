@@ -21,9 +21,7 @@ from ..core.flow import Flow
 from ..core.material import Material, Pair
 from ..core.provenance import content_id
 from ..core.rig import MaterialTable, material_keys
-
-_PROFILES = 10  # depths at which pressure and surfaces are kept
-_DIGITS = 12  # groups are rounded to this many digits, so that round-off makes no new case
+from .rules import RULES
 
 
 @dataclass(frozen=True)
@@ -179,7 +177,7 @@ def standard_case(
         d for d in {*(w * onset for w in unload_w), *unload_depths} if first < d <= deepest
     )
     depths = _through(fem.geometric_depths(first, deepest, n_depths), through)
-    kept = np.unique(np.linspace(0, n_depths - 1, _PROFILES).round().astype(int))
+    kept = np.unique(np.linspace(0, n_depths - 1, RULES.profile_depths).round().astype(int))
     problem = fem.ContactProblem(
         pair=pair,
         depths=depths,
@@ -207,7 +205,7 @@ def _body(body: Material, unit: float) -> Any:
 
 
 def _rounded(x: float) -> float:
-    return float(f"{x:.{_DIGITS}g}")
+    return float(f"{x:.{RULES.group_digits}g}")
 
 
 def _flow_keys(problem: fem.ContactProblem) -> dict[str, Any]:

@@ -18,11 +18,11 @@ from ..fem.results.fields import write_vtu
 from .case import Case
 from .contents import new_image
 from .quality import quality_of
+from .rules import RULES
 from .schema import CURVE, FORMAT, PROFILES, UNLOADING_PROFILES, Dataset
 
 Floats = npt.NDArray[np.float64]
 
-_PROFILE_REACH = 2.0  # profiles are kept out to this many contact radii
 _WORTH_COMPRESSING = 512  # values; below it compression saves nothing
 
 
@@ -126,7 +126,7 @@ def _put_solution(file: h5py.Group, solution: Solution) -> None:
 
 
 def _put_profiles(group: h5py.Group, solution: Solution) -> None:
-    reach = _PROFILE_REACH * np.nanmax(solution.loading.radius)
+    reach = RULES.profile_reach * np.nanmax(solution.loading.radius)
     for name, about in PROFILES.items():
         columns = [getattr(p, name) for p in solution.profiles]
         if about.axes[-1] != "node":

@@ -15,6 +15,7 @@ import numpy as np
 import numpy.typing as npt
 
 from .case import Case
+from .rules import RULES
 
 Floats = npt.NDArray[np.float64]
 
@@ -23,9 +24,7 @@ Floats = npt.NDArray[np.float64]
 _BASE_S = {"smoke": 16.0, "quick": 26.0, "production": 90.0}
 _DEEP = 0.1
 _SLOPES = (0.5, 0.35, -0.5)
-_FIRM = np.array([0.05, 1.0, 1.0, 1.0])  # weight of that against finished cases
 _REFERENCE_S = 0.042  # of `_benchmark`, on the machine where _BASE_S was measured
-_AT_LEAST = 0.15  # of its foreseen time that a case under way still takes, however long it has
 
 
 class Forecast:
@@ -74,7 +73,7 @@ class Forecast:
     def left_s(self, gone_s: float = 0.0) -> float:
         """Wall time left, `gone_s` seconds after the start [s]."""
         foreseen = [(self.cost_s(case), gone_s - since) for case, since in self._begun.values()]
-        under_way = [max(whole - gone, _AT_LEAST * whole) for whole, gone in foreseen]
+        under_way = [max(whole - gone, RULES.still_to_go * whole) for whole, gone in foreseen]
         waiting = [self.cost_s(case) for case in self._waiting.values()]
         both = [*under_way, *waiting]
         return max(sum(both) / self._workers, *both) if both else 0.0
@@ -97,7 +96,7 @@ class Forecast:
         A = np.array([_features(case) for case, _ in self._seen])
         y = np.log([s / self._pace for _, s in self._seen])
         y = y - [_measured(case) for case, _ in self._seen]
-        self._bend = np.linalg.solve(A.T @ A + np.diag(_FIRM), A.T @ y)
+        self._bend = np.linalg.solve(A.T @ A + np.diag(RULES.cost_prior), A.T @ y)
         self._scatter = min(float((y - A @ self._bend).std()), 0.5)
 
 

@@ -18,10 +18,9 @@ from ..core.errors import InputError
 from ..core.provenance import differences, environment
 from ..fem import Solution, solve
 from .case import Case
+from .rules import RULES
 from .workers import answers
 
-_WINDOW = 4  # cases sent ahead to each dask worker
-_LOOK_S = 1.0  # between two looks at who is there
 PATIENCE_S = 60.0
 """How long a run on a cluster goes on without any worker."""
 
@@ -195,9 +194,9 @@ class DaskExecutor:
 
         def fill() -> None:
             nonlocal workers, counted
-            if time.monotonic() - counted > _LOOK_S:
+            if time.monotonic() - counted > RULES.look_s:
                 workers, counted = self._worker_count(), time.monotonic()
-            while len(keys) < _WINDOW * max(1, workers):
+            while len(keys) < RULES.ahead * max(1, workers):
                 key, case = next(todo, ("", None))
                 if case is None:
                     return
@@ -225,7 +224,7 @@ class DaskExecutor:
         looked = time.monotonic()
         while not running.has_ready():
             time.sleep(0.02)
-            if time.monotonic() - looked > _LOOK_S:
+            if time.monotonic() - looked > RULES.look_s:
                 if not self._worker_count():
                     self._wait_for_worker()
                 looked = time.monotonic()

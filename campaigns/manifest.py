@@ -14,7 +14,7 @@ import numpy as np
 import numpy.typing as npt
 
 from .contents import open_image, read_array
-from .quality import MOST_ENERGY_DEFECT, MOST_STEP
+from .rules import RULES
 
 MANIFEST = "PARTS.md"
 
@@ -51,7 +51,7 @@ def manifest(folder: Path, names: Iterable[str], made: Mapping[str, bytes]) -> s
     text += "| part | energy defect, median and largest | above the mark | "
     text += "step, median and largest | above the mark |\n| --- | --- | --- | --- | --- |\n"
     text += "".join(map(_quality, parts))
-    text += f"\nMarks: energy defect {MOST_ENERGY_DEFECT:.1%}, step {MOST_STEP:.0%}.\n"
+    text += f"\nMarks: energy defect {RULES.energy_defect:.1%}, step {RULES.step:.0%}.\n"
     text += "\n## Failures\n\n" + ("".join(map(_failures, parts)) or "None.\n")
     text += "\n## Computed with\n\n" + "".join(map(_versions, parts))
     text += "\n## SHA-256\n\n"
@@ -99,8 +99,8 @@ def _quality(part: Part) -> str:
     steps = np.nanmax([part.cases[name][done] for name in names], axis=0)
     return (
         f"| `{part.name}` | {np.median(energy):.2%}, {energy.max():.2%} | "
-        f"{int((energy > MOST_ENERGY_DEFECT).sum())} | "
-        f"{np.median(steps):.2%}, {steps.max():.2%} | {int((steps > MOST_STEP).sum())} |\n"
+        f"{int((energy > RULES.energy_defect).sum())} | "
+        f"{np.median(steps):.2%}, {steps.max():.2%} | {int((steps > RULES.step).sum())} |\n"
     )
 
 

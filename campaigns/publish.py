@@ -23,14 +23,11 @@ from .designs import Design, distinct_cases
 from .manifest import MANIFEST, manifest
 from .parts import CHECKSUMS, checksums, opened_part, part_of, read_part, texts_of
 from .records import CaseRecord
+from .rules import RULES
 from .run import status_of
 from .store import Store
 
 Floats = npt.NDArray[np.float64]
-
-MOST_PARTS = 12
-MOST_BYTES = 10_000_000
-_ROOM = 0.93  # of the size of a part, when its cases are shared out by their mean size
 
 
 @dataclass(frozen=True)
@@ -62,7 +59,7 @@ class Published:
 
 
 def publish(
-    design: Design, source: Path, folder: Path, *, most_bytes: int = MOST_BYTES
+    design: Design, source: Path, folder: Path, *, most_bytes: int = RULES.part_bytes
 ) -> list[Path]:
     """Write a complete design as parts into `folder`; parts that exist are never touched.
 
@@ -108,9 +105,9 @@ def publish(
             )
         stored = {record.id: record for record in store.read_all()}
         made = _made_parts([stored[key] for key in wanted], design.name, most_bytes)
-        if len(list(folder.glob("*.h5"))) + len(made) > MOST_PARTS:
+        if len(list(folder.glob("*.h5"))) + len(made) > RULES.parts:
             raise InputError(
-                f"{len(made)} more parts", source=str(folder), allowed=f"{MOST_PARTS} in all"
+                f"{len(made)} more parts", source=str(folder), allowed=f"{RULES.parts} in all"
             )
         parts = {f"{design.name}-{k}.h5": part for k, part in enumerate(made, start=1)}
         sums = checksums(folder) | {k: sha256(v).hexdigest() for k, v in parts.items()}
@@ -249,8 +246,8 @@ def _made_parts(records: list[CaseRecord], design: str, most_bytes: int) -> list
     whole = part_of(records, about=about)
     if len(whole) < most_bytes:
         return [whole]
-    count = int(np.ceil(len(whole) / (_ROOM * most_bytes)))
-    while count <= max(MOST_PARTS, len(records)):
+    count = int(np.ceil(len(whole) / (RULES.part_fill * most_bytes)))
+    while count <= max(RULES.parts, len(records)):
         shares = np.array_split(np.arange(len(records)), count)
         parts = [part_of([records[i] for i in share], about=about) for share in shares]
         if all(len(part) < most_bytes for part in parts):

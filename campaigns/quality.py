@@ -9,16 +9,9 @@ from dataclasses import dataclass
 import numpy as np
 import numpy.typing as npt
 
+from .rules import RULES
+
 Floats = npt.NDArray[np.float64]
-
-MOST_ENERGY_DEFECT = 0.005
-"""Energy balance defect that a published case should keep."""
-
-MOST_STEP = 0.01
-"""Step of F, a and the share along a case, over the local value, that it should keep."""
-
-_WINDOW = 7  # recorded depths that a local cubic is fitted to
-_SEEN_OF_A_STEP = 0.667  # of a single step's height; the cubic follows it with the rest
 
 
 @dataclass(frozen=True)
@@ -120,13 +113,15 @@ def largest_step(depth: Floats, values: Floats) -> float:
     >>> round(largest_step(depth, depth**1.2 * np.where(depth > 1e-3, 1.02, 1.0)), 3)
     0.02
     """
-    if len(depth) < _WINDOW + 1 or not (np.all(values > 0.0) and np.all(np.isfinite(values))):
+    if len(depth) < RULES.smooth_window + 1 or not (
+        np.all(values > 0.0) and np.all(np.isfinite(values))
+    ):
         return math.nan
     x, y = np.log(depth), np.log(values)
     departure = np.empty_like(y)
     for i in range(len(x)):
-        start = min(max(i - _WINDOW // 2, 0), len(x) - _WINDOW)
-        near = slice(start, start + _WINDOW)
+        start = min(max(i - RULES.smooth_window // 2, 0), len(x) - RULES.smooth_window)
+        near = slice(start, start + RULES.smooth_window)
         at = (x[near] - x[i]) / (x[near][-1] - x[near][0])
         departure[i] = y[i] - np.polyfit(at, y[near], 3)[-1]
-    return float(np.abs(np.diff(departure)).max()) / _SEEN_OF_A_STEP
+    return float(np.abs(np.diff(departure)).max()) / RULES.step_seen

@@ -19,10 +19,7 @@ from typing import Any
 from ..core.processes.children import die_with, keep_current_folder_out
 from ..core.processes.stopping import heard
 from ..core.threads import one_thread_each
-
-TRIES = 3
-_END_S = 5.0
-"""How long a process may take to end before it is killed."""
+from .rules import RULES
 
 Order = tuple[Any, ...]
 
@@ -71,7 +68,7 @@ def answers(
         """Dismiss a worker that ended; whether its order gets another try."""
         crew.remove(worker)
         worker.stop()
-        if tries[worker.key] >= TRIES:
+        if tries[worker.key] >= RULES.tries:
             return False
         todo.appendleft(worker.key)
         return True
@@ -89,7 +86,7 @@ def answers(
                     answer = worker.answer()
                     if answer is None and again(worker):
                         continue
-                    answer = answer or Answer(message=f"the worker died {TRIES} times")
+                    answer = answer or Answer(message=f"the worker died {RULES.tries} times")
                 elif time.monotonic() > worker.until:
                     crew.remove(worker)
                     worker.stop()
@@ -136,7 +133,7 @@ class _Worker:
         self.pipe.close()
         if self.key:
             self.process.terminate()
-        self.process.join(_END_S)
+        self.process.join(RULES.end_s)
         self.process.kill()
         self.process.join()
         self.process.close()

@@ -71,23 +71,23 @@ def duration(seconds: float) -> str:
 
 def remarks(summary: Any) -> str:
     """Return what is to be said of one case: why it failed, or which mark it misses."""
-    from ..campaigns import MOST_ENERGY_DEFECT, MOST_STEP
+    from ..campaigns import RULES
 
     if summary.status != "done":
         return f"  {summary.message}"
     if summary.stale:
         return "  (stale: another version of the numerics)"
     quality, told = summary.quality, []
-    if quality.energy_defect > MOST_ENERGY_DEFECT:
+    if quality.energy_defect > RULES.energy_defect:
         told.append(f"energy defect {quality.energy_defect:.2%}")
-    if quality.largest_step > MOST_STEP:
+    if quality.largest_step > RULES.step:
         told.append(f"step of {quality.largest_step:.1%}")
     return f"  ({', '.join(told)})" if told else ""
 
 
 def judged(done: list[Any]) -> dict[str, float]:
     """Return what the completed cases keep: reach, energy balance, smoothness."""
-    from ..campaigns import MOST_ENERGY_DEFECT, MOST_STEP
+    from ..campaigns import RULES
 
     if not done:
         return {}
@@ -96,16 +96,16 @@ def judged(done: list[Any]) -> dict[str, float]:
         "cases": len(done),
         "least_depth": min(q.depth_reached for q in qualities),
         "energy_defect": max(q.energy_defect for q in qualities),
-        "energy_defect_above_mark": sum(q.energy_defect > MOST_ENERGY_DEFECT for q in qualities),
+        "energy_defect_above_mark": sum(q.energy_defect > RULES.energy_defect for q in qualities),
         "largest_step": max(q.largest_step for q in qualities),
-        "steps_above_mark": sum(q.largest_step > MOST_STEP for q in qualities),
+        "steps_above_mark": sum(q.largest_step > RULES.step for q in qualities),
         "cpu_s_a_case": sum(summary.cpu_s for summary in done) / len(done),
     }
 
 
 def tell(found: dict[str, float]) -> None:
     """Print what `judged` found."""
-    from ..campaigns import MOST_ENERGY_DEFECT, MOST_STEP
+    from ..campaigns import RULES
 
     if not found:
         return
@@ -113,6 +113,6 @@ def tell(found: dict[str, float]) -> None:
         f"{found['cases']} completed cases, {found['cpu_s_a_case']:.0f} processor seconds each: "
         f"every one reaches Delta/R = {found['least_depth']:.3g}; largest energy defect "
         f"{found['energy_defect']:.2%} ({found['energy_defect_above_mark']} cases above "
-        f"{MOST_ENERGY_DEFECT:.1%}); largest step of F, a or delta_s* along a case "
-        f"{found['largest_step']:.1%} ({found['steps_above_mark']} cases above {MOST_STEP:.0%})"
+        f"{RULES.energy_defect:.1%}); largest step of F, a or delta_s* along a case "
+        f"{found['largest_step']:.1%} ({found['steps_above_mark']} cases above {RULES.step:.0%})"
     )

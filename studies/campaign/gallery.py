@@ -7,7 +7,7 @@ from pathlib import Path
 
 import numpy as np
 
-from ...campaigns import MOST_ENERGY_DEFECT, MOST_STEP, CaseRecord, read_curves
+from ...campaigns import RULES, CaseRecord, read_curves
 from ...campaigns.case_file import fields_of
 from ...core.material import Pair
 from ...core.output import write_file
@@ -121,16 +121,16 @@ def _quality(records: Sequence[CaseRecord]) -> Picture:
     quality = [record.quality for record in records]
     soft = [_softness(record.case.pair) for record in records]
     for axis, name, mark, words in (
-        (axes[0], "energy_defect", MOST_ENERGY_DEFECT, "largest energy defect"),
-        (axes[1], "largest_step", MOST_STEP, "largest step of F, a or delta_s*"),
+        (axes[0], "energy_defect", RULES.energy_defect, "largest energy defect"),
+        (axes[1], "largest_step", RULES.step, "largest step of F, a or delta_s*"),
     ):
         values = [getattr(one, name) for one in quality]
         axis.loglog(soft, values, "k.", ms=4)
         axis.axhline(mark, color="C3", lw=1.0, label=f"mark, {mark:.1%}")
         finish(axis, x="E'/Sy_min", y=words)
     over = [
-        sum(one.energy_defect > MOST_ENERGY_DEFECT for one in quality),
-        sum(one.largest_step > MOST_STEP for one in quality),
+        sum(one.energy_defect > RULES.energy_defect for one in quality),
+        sum(one.largest_step > RULES.step for one in quality),
     ]
     note = f"Above the marks: {over[0]} and {over[1]} of {len(records)} cases."
     return Picture("quality", "Energy balance and smoothness of every case", made, note)

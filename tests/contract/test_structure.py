@@ -54,6 +54,11 @@ def lengths(*, tool_only: bool) -> dict[str, int]:
     }
 
 
+def test_the_root_holds_the_packages_own_modules_alone():
+    """The root is the package: any other module there would ship in the wheel."""
+    assert {p.name for p in ROOT.glob("*.py")} == {"__init__.py", "__main__.py"}
+
+
 def test_no_circle_of_imports():
     graph = grimp.build_graph("dentscope", exclude_type_checking_imports=True, cache_dir=None)
     names = sorted(n for n in graph.modules if n.split(".")[1:2] not in [[a] for a in APART])

@@ -7,6 +7,7 @@ import os
 import signal
 import threading
 import time
+from dataclasses import replace
 
 import pytest
 from dentscope.campaigns import workers
@@ -14,7 +15,7 @@ from dentscope.campaigns.workers import answers
 
 
 def test_each_order_has_its_answer_and_its_own_death(monkeypatch):
-    monkeypatch.setattr(workers, "TRIES", 1)
+    monkeypatch.setattr(workers, "RULES", replace(workers.RULES, tries=1))
     orders = {
         "kills": (signal.raise_signal, signal.SIGKILL),
         "root": (math.sqrt, 9.0),
