@@ -22,7 +22,7 @@ from ..regression import unit_covariance
 from ..rules import RULES
 from .area import area_of
 from .level import level_before
-from .shape import looks_like, shape_of
+from .shape import Shape, looks_like, shape_of
 
 _LOW, _HIGH = 0.06, 0.45
 """Part of the peak between which the flanks tell the ends."""
@@ -103,14 +103,7 @@ def find_pulse(time: Array, value: Array, *, source: str) -> Pulse:
     start, used_a = _flank(time, clear, top, -1, peak.value)
     end, used_b = _flank(time, clear, top, +1, peak.value)
     shape = shape_of(time, clear, top, (start.value, end.value), source=source)
-    if min(used_a, used_b) == 0 and shape.above_half >= RULES.whole_flank:
-        raise looks_like("edge", "an edge: one side has no flank", source)
-    flanks = sorted((peak_time - start.value, end.value - peak_time))
-    if shape.above_half >= RULES.whole_flank and flanks[1] > RULES.lopsided * max(flanks[0], 0.0):
-        raise looks_like(
-            "lopsided", f"an edge: one flank takes {flanks[1] / max(flanks[0], 1e-300):.2g} times "
-            "as long as the other", source,
-        )  # fmt: skip
+    _both_flanks(shape, (used_a, used_b), (peak_time - start.value, end.value - peak_time), source)
     if min(used_a, used_b) < 4:
         notes.append(f"only {min(used_a, used_b)} samples on a flank: the ends are rough")
     if shape.ringing:
@@ -144,6 +137,20 @@ def find_pulse(time: Array, value: Array, *, source: str) -> Pulse:
         time, clear, sign * level.mean, noise, peak, peak_time, start, end, found.area, inside,
         (*notes, *found.notes),
     )  # fmt: skip
+
+
+def _both_flanks(
+    shape: Shape, used: tuple[int, int], times: tuple[float, float], source: str
+) -> None:
+    """Refuse an edge: a side without samples, or that takes no time beside the other."""
+    if min(used) == 0 and shape.above_half >= RULES.whole_flank:
+        raise looks_like("edge", "an edge: one side has no flank", source)
+    flanks = sorted(times)
+    if shape.above_half >= RULES.whole_flank and flanks[1] > RULES.lopsided * max(flanks[0], 0.0):
+        raise looks_like(
+            "lopsided", f"an edge: one flank takes {flanks[1] / max(flanks[0], 1e-300):.2g} times "
+            "as long as the other", source,
+        )  # fmt: skip
 
 
 def _timed(start: Measured, end: Measured, source: str) -> None:
