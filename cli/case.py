@@ -51,8 +51,6 @@ def case(
         )
     from rich.progress import Progress
 
-    from ..core.inputs.left_aside import left_aside
-    from ..core.inputs.toml_input import read_toml
     from ..start.case_file import read_case
 
     problem, accuracy = read_case(file)
@@ -68,12 +66,7 @@ def case(
         console.print(str(solution.outcome))
         return EXIT_NOT_CONVERGED
     _show(console, solution, uncertainty)
-    aside = [
-        one for one in left_aside(read_toml(file), ())
-        if one.partition(" = ")[0].endswith((".std", ".density_kg_m3"))
-    ]  # fmt: skip
-    if aside:
-        say(f"not in this solve: {', '.join(aside)}; `dentscope impact` takes them")
+    _tell_aside(file)
     if found.remark:
         console.print(found.remark)
     for path in (
@@ -89,6 +82,19 @@ def case(
         console.print(str(solution.outcome))
         return EXIT_NOT_CONVERGED
     return 0
+
+
+def _tell_aside(file: Path) -> None:
+    """Say what the file states and a solve has no use for."""
+    from ..core.inputs.left_aside import left_aside
+    from ..core.inputs.toml_input import read_toml
+
+    aside = [
+        one for one in left_aside(read_toml(file), ())
+        if one.partition(" = ")[0].endswith((".std", ".density_kg_m3"))
+    ]  # fmt: skip
+    if aside:
+        say(f"not in this solve: {', '.join(aside)}; `dentscope impact` takes them")
 
 
 def _write_fields(solution: Any, out: Path, *, picture: bool) -> Iterator[Path]:

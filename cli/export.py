@@ -15,6 +15,8 @@ from .shared.terminal import console, say, show_table
 
 if TYPE_CHECKING:
     from ..impact.discrete_elements import Row
+    from ..models.base import ContactLaw
+    from ..start.ball_file import Ball
 
 app = group("A law for other programs: as source, or as parameters of a discrete-element code.")
 
@@ -72,7 +74,7 @@ def export_dem(
 ) -> None:
     """Give the contact laws of LAMMPS, LIGGGHTS and YADE parameters for a pair, by speed.
 
-    Each returns what our law returns; what it misses in depth, peak force and time is in the table.
+    Each returns what our law returns; the table says what it misses in depth, force and time.
     """
     from ..start.ball_file import read_ball
 
@@ -85,22 +87,14 @@ def export_dem(
         lammps_lines,
         substitutes,
         table,
-        two_balls,
     )
     from ..models import law_named
 
     chosen = law_named(law or ball.law)
     rows = substitutes(chosen, ball.pair, mass=ball.mass, speeds=speeds)
-    shown, between = console(), []
+    shown = console()
     show_table(shown, *_misses(rows))
-    if ball.pair.sphere.rigid:
-        shown.print("no lines for two balls: both would be rigid")
-    else:
-        pair, half = two_balls(ball.pair, ball.mass)
-        try:
-            between = substitutes(chosen, pair, mass=half, speeds=speeds)
-        except InputError as error:
-            say(f"no lines for two balls: {error}")
+    between = _between(ball, chosen, speeds)
     if ball.aside:
         say(f"not in these parameters: {', '.join(ball.aside)}; `dentscope impact` takes them")
     cells = table(rows, law=chosen.name, contact="ball on flat")
@@ -114,6 +108,21 @@ def export_dem(
         write_file(out / "hysteretic.txt", hysteretic_lines(rows, friction=ball.friction)),
     ):
         shown.print(f"written: {path}")
+
+
+def _between(ball: Ball, law: ContactLaw, speeds: list[float]) -> list[Row]:
+    """Parameters for two such balls; none, with a line, where there are none."""
+    from ..impact.discrete_elements import substitutes, two_balls
+
+    if ball.pair.sphere.rigid:
+        say("no lines for two balls: both would be rigid")
+        return []
+    pair, half = two_balls(ball.pair, ball.mass)
+    try:
+        return substitutes(law, pair, mass=half, speeds=speeds)
+    except InputError as error:
+        say(f"no lines for two balls: {error}")
+        return []
 
 
 def _of_file(speeds: tuple[float, ...]) -> list[float]:
