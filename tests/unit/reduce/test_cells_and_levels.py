@@ -177,3 +177,41 @@ def test_tension_from_a_load_and_an_area(tmp_path):
         assert found["Sy_Pa"].value == pytest.approx(480e6, rel=0.04)
     with pytest.raises(InputError, match=r"area_mm2: .*holds a load, and the file names no area"):
         kind.run(bare, given, source="test")
+
+
+def soft_ball(path, *, last, rate, e=0.82, fall=0.98, g=9.81, bounces=4):
+    """Heights of a ball on a spring: half a sine of `last` seconds at every contact."""
+    speed, at, pieces = np.sqrt(2.0 * g * fall), np.sqrt(2.0 * fall / g), []
+    t = np.arange(0.0, 3.2, 1.0 / rate)
+    pieces.append((-np.inf, at, lambda s: fall - 0.5 * g * s**2))
+    for _ in range(bounces):
+        up, turn = e * speed, last / np.pi
+        sink = np.sqrt(speed * up) * turn
+        pieces.append((at, at + last, lambda s, a=at, d=sink, w=turn: -d * np.sin((s - a) / w)))
+        at += last
+        pieces.append(
+            (at, at + 2 * up / g, lambda s, a=at, v=up: v * (s - a) - 0.5 * g * (s - a) ** 2)
+        )
+        at, speed = at + 2.0 * up / g, up
+    h = np.zeros_like(t)
+    for low, high, path_of in pieces:
+        part = (t >= low) & (t < high)
+        h[part] = path_of(t[part])
+    keep = t < at
+    rng = np.random.default_rng(7)
+    lines = [f"{a:.6f},{b:.6f}" for a, b in zip(t, h + rng.normal(0.0, 3e-4, t.size), strict=True)]
+    path.write_text(
+        "\n".join(["time_s,height_m", *(x for x, k in zip(lines, keep, strict=True) if k)])
+    )
+    return path
+
+
+def test_a_stated_contact_time_acts_on_heights(tmp_path):
+    path = soft_ball(tmp_path / "a.csv", last=0.012, rate=240.0)
+    kind = load_kind("table")
+    alone = kind.run(path, {"holds": "height"}, source="test").values
+    told = kind.run(path, {"holds": "height", "contact_time_s": 0.012}, source="test").values
+    speed = told["bounce1_impact_speed_m_s"]
+    assert abs(speed.value - np.sqrt(2.0 * 9.81 * 0.98)) < 3.0 * speed.std < 0.05
+    assert speed.std < alone["bounce1_impact_speed_m_s"].std
+    assert abs(told["bounce1_restitution"].value - 0.82) < 3.0 * told["bounce1_restitution"].std
