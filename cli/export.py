@@ -92,9 +92,8 @@ def export_dem(
 
     chosen = law_named(law or ball.law)
     rows = substitutes(chosen, ball.pair, mass=ball.mass, speeds=speeds)
-    shown = console()
+    shown, between = console(), _between(ball, chosen, speeds)
     show_table(shown, *_misses(rows))
-    between = _between(ball, chosen, speeds)
     if ball.aside:
         say(f"not in these parameters: {', '.join(ball.aside)}; `dentscope impact` takes them")
     cells = table(rows, law=chosen.name, contact="ball on flat")

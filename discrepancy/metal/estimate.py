@@ -29,7 +29,7 @@ from ..mechanisms.base import Constants, Mechanism, attached
 from ..mechanisms.strength.strain_rate_hardening import StrainRateHardening
 from ..unknowns.lawerror import SIZES
 from .flow import STRAINS, FlowCurveOfMarks, curve_values
-from .next_mark import NextMark, next_mark, with_marks
+from .next_mark import TOLD, NextMark, next_mark, with_marks
 
 Array = NDArray[np.float64]
 
@@ -160,7 +160,7 @@ def metal_of(recordings: RecordingSet) -> Metal:
     body = _dented(problem)
     strain, back = _marks(wider, fit, mean, J)
     pressed = np.array([problem.conditions[k].press is not None for k in problem.cells.condition])
-    best = next_mark(wider, known, fit, covariance, J)
+    best = next_mark(wider, known, weights(TOLD) @ fit.map, covariance, J)
     table = problem.rig.bodies[body]
     stated = _strength(problem, body)
     source = "stated" if table.Sy_Pa is not None else "taken from the hardness, or assumed"

@@ -4,16 +4,12 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass, replace
-from typing import TYPE_CHECKING
 
 import numpy as np
 from numpy.typing import NDArray
 
 from ..comparison.problem import Problem
 from ..experiments.feasible import at_load, strikers_scenes
-
-if TYPE_CHECKING:
-    from .estimate import _Fit
 
 Array = NDArray[np.float64]
 
@@ -54,12 +50,19 @@ def with_marks(problem: Problem, bench: tuple[float, float]) -> Problem:
 
 
 def next_mark(
-    problem: Problem, known: int, fit: _Fit, covariance: Array, J: Array
+    problem: Problem, known: int, rows: Array, covariance: Array, J: Array
 ) -> NextMark | None:
-    """Return the press whose marks would lower the errors of the told stresses most."""
-    from .estimate import weights
+    """Return the press whose marks would lower the errors of the told stresses most.
 
-    rows = weights(TOLD) @ fit.map
+    Parameters
+    ----------
+    problem, known
+        From `with_marks`, and how many of its cells were measured.
+    rows
+        (3, n) from the unknowns to the logarithms of the stresses that are told.
+    covariance, J
+        Of the unknowns (n, n), and what they do to all cells (m, n).
+    """
     before = np.einsum("ij,jk,ik->i", rows, covariance, rows)
     best: tuple[float, NextMark] | None = None
     numbers = problem.cells.condition[known:]
