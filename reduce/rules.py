@@ -28,7 +28,7 @@ class Rules:
     )  # fmt: skip
     foot_reach: int = _rule(
         6, "half-widths of the pulse over which a lower level before a foot is looked for [-]",
-        "felt under a drop table: a foot of 1.2 widths (CC BY-SA data, see validate_reduce_pulse)",
+        "felt under a drop table: a foot of 1.2 widths (Dataset-11 of the High-Rate SHM group)",
     )  # fmt: skip
     foot_part: float = _rule(
         0.005, "area before the flank, as a part of the pulse's, that is a foot [-]",
@@ -57,6 +57,10 @@ class Rules:
     whole_flank: int = _rule(
         8, "samples above half of the peak from which on a flank has samples too [-]",
         "of a half-sine 13 % lie on a flank between 6 and 45 %, 67 % above the half",
+    )  # fmt: skip
+    form: float = _rule(
+        1e-3, "error of peak and area by the form of a pulse, in themselves [-]",
+        "benchmarks/validate_reduce_pulse.py: powers of a sine from 1 to 1.5",
     )  # fmt: skip
     hole: float = _rule(
         0.1, "longest time between two samples of a pulse, in its duration [-]",
@@ -94,7 +98,7 @@ class Rules:
     )  # fmt: skip
     train: int = _rule(
         4, "other pulses of more than half of the peak beside it [-]",
-        "steps of a walk and taps: benchmarks/validate_reduce_refusals.py",
+        "steps of a walk and taps: benchmarks/validate_reduce_pulse.py",
     )  # fmt: skip
     outside_restitution: float = _rule(
         3.0, "standard deviations below 0 or above 1 [-]", "normal errors: one in 700",

@@ -47,7 +47,7 @@ def area_of(
     core = float(np.trapezoid(clear[inside], time[inside]))
     scatter = level.noise * step * math.sqrt(max(int(inside.sum()), 1))
     drift, late = level.std * long, 0.5 * shape.level_after * abs(clear.max()) * long
-    area, std = core, math.hypot(scatter, drift, late)
+    area, std = core, math.hypot(scatter, drift, late, RULES.form * core)
     notes: list[str] = []
     early, foot = 0.0, 0.0
     if level.samples and level.last < time.size and time[level.last] < start:

@@ -57,7 +57,7 @@ def level_before(up: Array, top: int) -> Level:
     height = float(up[top]) - low
     below = np.flatnonzero(up[:top] < low + 0.5 * height)
     edge = int(below[-1]) + 1 if below.size else 0
-    width = max(int(0.5 * _wide(up, top, low + 0.5 * height)), RULES.fewest_level_samples)
+    width = max(int(0.5 * wide(up, top, low + 0.5 * height)), RULES.fewest_level_samples)
     found = _quiet(up[:edge], width, noise, height, low)
     if found is None:
         few = up[: max(edge // 2, 1)]
@@ -71,8 +71,8 @@ def level_before(up: Array, top: int) -> Level:
     return Level(float(part.mean()), std, spread, first, last)
 
 
-def _wide(up: Array, top: int, half: float) -> int:
-    """Samples around the top that lie above a value."""
+def wide(up: Array, top: int, half: float) -> int:
+    """Return how many samples around the top lie above a value."""
     under = np.flatnonzero(up < half)
     left = under[under < top].max(initial=-1)
     return int(under[under > top].min(initial=up.size) - left)
@@ -92,6 +92,9 @@ def _quiet(up: Array, width: int, noise: float, height: float, low: float) -> in
             lower = mean < mean_of_best - max(known, 0.2 * RULES.level_trend * height)
             if best is not None and not lower:
                 since += 1
+            if best is None:
+                if _is_level(up[slice(*_stretch(up, first, width, noise, height))], width, noise):
+                    return first
             if best is None or lower:
                 best, mean_of_best, since = first, mean, 0
         elif best is not None:
@@ -99,6 +102,12 @@ def _quiet(up: Array, width: int, noise: float, height: float, low: float) -> in
         if best is not None and since > 4 * RULES.foot_reach:
             break
     return best
+
+
+def _is_level(part: Array, width: int, noise: float) -> bool:
+    """Whether a stretch is longer than a foot and does not rise as a foot does."""
+    rise = float(np.polyfit(np.linspace(-0.5, 0.5, part.size), part, 1)[0])
+    return part.size > 2 * width and abs(rise) < 4.0 * noise * math.sqrt(12.0 / part.size)
 
 
 def _stretch(up: Array, first: int, width: int, noise: float, height: float) -> tuple[int, int]:

@@ -21,7 +21,7 @@ from ..measured import Array, Measured
 from ..regression import unit_covariance
 from ..rules import RULES
 from .area import area_of
-from .level import level_before
+from .level import Level, level_before, wide
 from .shape import Shape, looks_like, shape_of
 
 _LOW, _HIGH = 0.06, 0.45
@@ -87,9 +87,7 @@ def find_pulse(time: Array, value: Array, *, source: str) -> Pulse:
     """
     if time.size < 20:
         raise InputError(f"{time.size} samples", source=source, allowed="20 or more")
-    top = int(np.argmax(np.abs(value - np.median(value))))
-    sign = math.copysign(1.0, value[top] - np.median(value))
-    level = level_before(sign * value, top)
+    sign, top, level = _largest(value)
     noise, clear = level.noise, sign * value - level.mean
     if not clear[top] > RULES.pulse_over_noise * noise:
         raise Refused(
@@ -139,6 +137,20 @@ def find_pulse(time: Array, value: Array, *, source: str) -> Pulse:
     )  # fmt: skip
 
 
+def _largest(value: Array) -> tuple[float, int, Level]:
+    """Sign, highest sample and level before it of the pulse that rises farthest above its own."""
+    both = []
+    for sign in (1.0, -1.0):
+        top = int(np.argmax(sign * value))
+        level = level_before(sign * value, top)
+        height = float(sign * value[top] - level.mean)
+        # the top of a pulse is no level for what follows it
+        lasts = wide(sign * value, top, level.mean + 0.5 * height)
+        both.append((height if level.samples >= lasts else 0.5 * height, sign, top, level))
+    _, sign, top, level = max(both, key=lambda one: one[0])
+    return sign, top, level
+
+
 def _both_flanks(
     shape: Shape, used: tuple[int, int], times: tuple[float, float], source: str
 ) -> None:
@@ -177,7 +189,10 @@ def _peak(time: Array, clear: Array, top: int, noise: float) -> tuple[Measured, 
     smooth = savgol_filter(clear[window], min(width, clear[window].size // 2 * 2 - 1), 2)
     best = int(np.argmax(smooth))
     return (
-        Measured(float(smooth[best]), noise * 1.5 / math.sqrt(width)),
+        Measured(
+            float(smooth[best]),
+            math.hypot(noise * 1.5 / math.sqrt(width), RULES.form * float(smooth[best])),
+        ),
         float(time[window][best]),
     )
 
