@@ -51,7 +51,10 @@ def reduce(path: Path, options: Options) -> Reduced:
         radius=options.radius_m, file=Path(options.body) if options.body else None,
         axis=(ends[0], ends[1]) if options.axis else None,
     )  # fmt: skip
-    height = np.nanmean(markers.position @ up, axis=1)
+    heights = markers.position @ up
+    seen = np.isfinite(heights).any(axis=1)
+    height = np.full(seen.size, np.nan)
+    height[seen] = np.nanmean(heights[seen], axis=1)
     axes = ("time [s]", "mean height of the markers [m]")
     with drawn(lambda to, why: draw_refused(markers.time, height, to, why, axes=axes)):
         found = reduce_mocap(poses, body, scene, source=str(path))

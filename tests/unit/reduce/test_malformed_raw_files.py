@@ -49,7 +49,7 @@ CASES = {
     "table: unit of another kind": ("table", PULSE, ["--holds", "force", "--value-unit", "mm"],
                                     "value-unit"),
     "table: time unit": ("table", PULSE, ["--holds", "force", "--time-unit", "hours"], "time"),
-    "table: no pulse": ("table", RAMP, ["--holds", "force"], "times the noise"),
+    "table: no pulse": ("table", RAMP, ["--holds", "force"], "no impact"),
     "table: constant": (
         "table", "t_s,F_N\n" + "".join(f"{k},5\n" for k in range(50)),
         ["--holds", "force"], "comes back",
@@ -152,7 +152,8 @@ def test_each_mistake_gives_its_line(case, tmp_path, capsys):
     message = capsys.readouterr().err.strip()
     assert said in message
     assert "Traceback" not in message
-    assert not (tmp_path / "out").exists()
+    # what is refused for what it shows is drawn, and nothing else is written
+    assert all(p.name.endswith("-refused.png") for p in (tmp_path / "out").glob("*"))
 
 
 def test_there_are_50_kinds_or_more():

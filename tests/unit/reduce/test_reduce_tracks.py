@@ -144,7 +144,7 @@ def test_a_flight_that_took_in_another_is_not_chosen_for_its_length():
     for bounce in found.bounces:
         off = abs(bounce.restitution.value - truth.restitution)
         assert off < 3.0 * bounce.restitution.std
-        assert bounce.restitution.std < 0.004
+        assert bounce.restitution.std < 0.006  # a contact of up to 20 ms is possible
 
 
 def test_gravity_and_a_stated_size_that_disagree_are_both_held():
