@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import io
 import json
 import math
 from pathlib import Path
@@ -13,7 +12,7 @@ from matplotlib.figure import Figure
 from scipy.stats import norm
 
 from ...core.inputs.flow_curve import COLUMNS
-from ...core.output import csv_text, write_file
+from ...core.output import csv_text, write_figure, write_file
 from .estimate import LEVEL, Metal
 from .flow import STRAINS
 from .next_mark import TOLD
@@ -53,8 +52,6 @@ def write_metal(metal: Metal, out: Path) -> list[Path]:
     mean, cov = metal.log_stress(strains)
     rows = [[f"{x:.6g}", f"{math.exp(y):.6g}"] for x, y in zip(strains, mean, strict=True)]
     head = [f"{x:.6g}" for x in strains]
-    picture = io.BytesIO()
-    picture_of(metal).savefig(picture, dpi=150)
     return [
         write_file(out / "flow_curve.csv", csv_text(rows, header=COLUMNS[:2])),
         write_file(
@@ -62,7 +59,7 @@ def write_metal(metal: Metal, out: Path) -> list[Path]:
             csv_text([[f"{x:.15g}" for x in row] for row in cov], header=head),
         ),
         write_file(out / "metal.json", json.dumps(content_of(metal), indent=1) + "\n"),
-        write_file(out / "metal.png", picture.getvalue()),
+        write_figure(picture_of(metal), out / "metal.png", dpi=150),
     ]
 
 

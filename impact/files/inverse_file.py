@@ -27,7 +27,7 @@ class _RodTable(InputTable):
     tip_radius_m: Radius
     """Radius of the round tip."""
     mass_kg: Mass
-    """Mass."""
+    """Mass of the rod."""
     radius_m: Radius | None = None
     """Radius of the shank."""
     length_m: Length

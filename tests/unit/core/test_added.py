@@ -58,7 +58,7 @@ def importable(monkeypatch):
 def test_a_law_of_another_package_is_found_by_its_name(packages, importable):
     packages(laws=("toy", f"{HERE}:TOY_LAW"))
     assert law_named("toy").name == "johnson"
-    with pytest.raises(InputError, match=r"'other' .*toy"):
+    with pytest.raises(InputError, match=r"'other'.*toy"):
         law_named("other")
 
 
