@@ -16,4 +16,4 @@ print(found.story.next_step)
 
 # %% Measured beside simulated, as a table; `found.report("report.html")` writes the page.
 table = found.frame()
-print(table[["angle_deg", "observable", "measured", "before", "after"]].head())
+print(table[["angle_deg", "observable", "measured", "as_stated", "with_verdict"]].head())
