@@ -120,9 +120,9 @@ def pressed(scenes: Sequence[Scene]) -> Pressed:
     ...                 press=Press(100.0))
     >>> found = pressed([ball])
     >>> round(float(found.depth[0]) * 1e6, 3), float(found.flat[0])
-    (4.545, 0.0)
+    (4.533, 0.0)
     """
-    loads = np.array([_load(scene) for scene in scenes])
+    loads = np.array([_load(scene) for scene in scenes], dtype=float)
     out = np.empty((len(scenes), len(Pressed._fields)))
     for kernels, members, arrays in _groups(scenes):
         found = np.empty((len(members), out.shape[1]))
