@@ -22,6 +22,7 @@ CHOICES = {
     ("reduce/mocap/reduction.py", "_NAMES"): "order of a computed vector",
     ("reduce/mocap/point.py", "_NAMES"): "order of a computed vector",
     ("impact/batch.py", "_NOTHING"): "what a normal impact without vibration lacks",
+    ("discrepancy/metal/estimate.py", "MARKS"): "which observables are marks left in a metal",
     ("impact/discrete_elements.py", "HEAD"): "columns beside a law's parameters",
     ("impact/draw.py", "SWEPT"): "which observables a figure shows",
 }

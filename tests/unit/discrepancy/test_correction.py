@@ -15,7 +15,8 @@ from dentscope.impact.strength import NODES
 from scipy.stats import norm
 
 KNOWN = 0.02
-NONE = dict.fromkeys(("force", "recovery", "recovery exponent", "crater"), np.zeros(NODES))
+KINDS = ("force", "recovery", "recovery exponent", "crater", "radius")
+NONE = dict.fromkeys(KINDS, np.zeros(NODES))
 ERROR = LawError(
     np.ones((1, NODES)), np.zeros((0, NODES)), np.zeros((0, NODES)),
     {"ball": Spread(NONE, NONE | {"force": np.full(NODES, KNOWN)}, np.array([-5.0]))},

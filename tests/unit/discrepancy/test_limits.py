@@ -5,17 +5,23 @@ from types import SimpleNamespace
 
 import numpy as np
 import pytest
+from dentscope.discrepancy.choice.odds import NAMED_AT, PRIORS
 from dentscope.discrepancy.estimates import limits_of
 from dentscope.discrepancy.inference.grid import Axis, Grid
 from dentscope.discrepancy.mechanisms.base import Parameter
+from dentscope.discrepancy.rules import RULES
+
+# Standard errors that one alternative has to win to be named, and three nats for its parameter.
+PRIOR = math.log(PRIORS["baseline"] / PRIORS["singles"])
+NEEDED = math.sqrt(2.0 * (NAMED_AT + PRIOR + RULES.penalty + 3.0))
 
 
 @pytest.mark.parametrize(
     ("low", "high", "scale", "neutral", "effect", "value"),
     [
-        (-8.0, 8.0, "linear", 0.0, lambda x: x, 2.9),
-        (1e-3, 1e1, "log", 0.0, lambda x: 10.0 * x, 0.29),
-        (1e5, 1e9, "log", math.inf, lambda x: 1e8 / x, 1e8 / 2.9),
+        (-8.0, 8.0, "linear", 0.0, lambda x: x, NEEDED),
+        (1e-3, 1e1, "log", 0.0, lambda x: 10.0 * x, NEEDED / 10.0),
+        (1e5, 1e9, "log", math.inf, lambda x: 1e8 / x, 1e8 / NEEDED),
     ],
 )
 def test_limit_is_the_value_nearest_to_doing_nothing(low, high, scale, neutral, effect, value):
@@ -32,6 +38,7 @@ def test_limit_is_the_value_nearest_to_doing_nothing(low, high, scale, neutral, 
             ],
         ),
     )  # fmt: skip
-    step = (own.value(1.0 / len(grid.fine[0])) / low) if scale == "log" else 1.0
-    assert abs(found["m"]) == pytest.approx(value, rel=max(step - 1.0, 0.4))
-    assert np.abs(effect(found["m"])) > math.sqrt(8.0)
+    n = len(grid.fine[0])
+    step = (high / low) ** (1.0 / n) - 1.0 if scale == "log" else (high - low) / n / value
+    assert abs(found["m"]) == pytest.approx(value, rel=step)
+    assert np.abs(effect(found["m"])) > NEEDED
