@@ -147,8 +147,11 @@ def _largest(value: Array) -> tuple[float, int, Level]:
         # the top of a pulse is no level for what follows it
         lasts = wide(sign * value, top, level.mean + 0.5 * height)
         both.append((height if level.samples >= lasts else 0.5 * height, sign, top, level))
-    _, sign, top, level = max(both, key=lambda one: one[0])
-    return sign, top, level
+    middle = float(np.median(value))
+    usual = 0 if value.max() - middle >= middle - value.min() else 1
+    # the sign that leaves the record's middle farthest, unless the other rises much higher
+    chosen = both[usual] if both[1 - usual][0] < 1.5 * both[usual][0] else both[1 - usual]
+    return chosen[1], chosen[2], chosen[3]
 
 
 def _both_flanks(
