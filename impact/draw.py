@@ -36,6 +36,15 @@ SWEPT = (
 """Observables that the picture of a sweep shows, where they are anything."""
 
 
+CONDITIONS = {
+    "impact_speed_m_s": "impact speed [m/s]", "drop_height_m": "drop height [m]",
+    "angle_deg": "angle [degrees]", "friction": "friction [-]", "mass_kg": "mass [kg]",
+    "approach_tangential_m_s": "tangential speed before [m/s]",
+    "approach_spin_rad_s": "spin before [rad/s]",
+}  # fmt: skip
+"""What may be swept, in words."""
+
+
 def figure(rows: int, columns: int, *, size: tuple[float, float]) -> tuple[Figure, Any]:
     """Return an off-screen figure and its axes."""
     made = Figure(figsize=size, layout="constrained")
@@ -44,8 +53,8 @@ def figure(rows: int, columns: int, *, size: tuple[float, float]) -> tuple[Figur
 
 
 def _panels(count: int) -> tuple[Figure, list[Any]]:
-    """Return a figure of `count` panels, three a row, and no empty one."""
-    columns = min(count, 3)
+    """Return a figure of `count` panels and no empty one, two or three a row."""
+    columns = 2 if count in (2, 4) else min(count, 3)
     rows = math.ceil(count / columns)
     made, axes = figure(rows, columns, size=(4.4 * columns, 3.6 * rows))
     for spare in axes.flat[count:]:
@@ -99,16 +108,26 @@ def draw_sweep(
         if any(np.nanmax(np.abs(found[name][rows]), initial=0.0) > 0.0 for found in curves.values())
     ]
     made, axes = _panels(len(shown))
+    scale = "log" if _by_ratio(swept[across]) else "linear"
     for axis, name in zip(axes, shown, strict=True):
         told = OBSERVABLES[name]
         for law, found in curves.items():
             axis.plot(swept[across], told.scale * found[name][rows], label=law)
-        axis.set(xlabel=across, ylabel=told.axis)
+        axis.set(xlabel=CONDITIONS[across], ylabel=told.axis, xscale=scale)
         axis.grid(alpha=0.3)
-    fixed = ", ".join(f"{name} = {v[0]:g}" for name, v in swept.items() if name != across)
+    fixed = ", ".join(f"{CONDITIONS[k]} = {v[0]:g}" for k, v in swept.items() if k != across)
     made.suptitle(fixed, fontsize=9)
     axes[0].legend(fontsize=7)
     save(made, path)
+
+
+def _by_ratio(values: Sequence[float]) -> bool:
+    """Whether values grow by one factor over a decade or more."""
+    given = np.asarray(values, dtype=float)
+    if given.size < 3 or given.min() <= 0.0 or given.max() < 10.0 * given.min():
+        return False
+    steps = np.diff(np.log(given))
+    return bool(np.ptp(steps) < 0.05 * abs(steps.mean()))
 
 
 def draw_alpha(striker: Striker, frictions: Sequence[float], path: Path) -> None:

@@ -1,0 +1,30 @@
+"""Pictures of impacts: words and units on every axis, logarithms where values grow by a factor."""
+
+import numpy as np
+import pytest
+from dentscope.impact import draw
+from dentscope.impact.files.sweep import SweepTable
+
+
+@pytest.mark.parametrize(
+    ("values", "scale"),
+    [(np.geomspace(0.01, 1.0, 7), "log"), (np.linspace(0.01, 1.0, 7), "linear"),
+     (np.geomspace(1.0, 2.0, 7), "linear"), ([0.5], "linear")],
+)  # fmt: skip
+def test_a_sweep_has_words_on_its_axes_and_no_empty_panel(monkeypatch, tmp_path, values, scale):
+    kept = []
+    monkeypatch.setattr(draw, "save", lambda made, path: kept.append(made))
+    some = dict.fromkeys(draw.SWEPT[:4], np.ones(2 * len(values)))
+    none = dict.fromkeys(draw.SWEPT[4:], np.zeros(2 * len(values)))
+    swept = {"drop_height_m": list(values), "friction": [0.1, 0.2]}
+    swept = swept if len(values) > 2 else {"drop_height_m": list(values)}
+    draw.draw_sweep(swept, {"fitted": some | none}, tmp_path / "a.png")
+    (made,) = kept
+    assert len(made.axes) == 4
+    assert {a.get_xlabel() for a in made.axes} == {"drop height [m]"}
+    assert {a.get_xscale() for a in made.axes} == {scale}
+    assert made.get_suptitle() == ("friction [-] = 0.1" if len(values) > 2 else "")
+
+
+def test_whatever_may_be_swept_has_words():
+    assert set(draw.CONDITIONS) == set(SweepTable.model_fields)
