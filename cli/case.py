@@ -2,10 +2,11 @@
 
 from __future__ import annotations
 
+import json
 from collections.abc import Iterator
 from dataclasses import replace
 from pathlib import Path
-from typing import Annotated, Any
+from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
@@ -15,6 +16,9 @@ from ..core.templates import CASE, write_new
 from .shared.places import folder_option, refuse_beside
 from .shared.terminal import console as new_console
 from .shared.terminal import say, show_table
+
+if TYPE_CHECKING:
+    from ..start.measured import Measured
 
 _COLUMNS = (
     "force_N",
@@ -35,9 +39,9 @@ def case(
         bool, typer.Option("--new", help="Write a file to start from, case.toml by default.")
     ] = False,
     out: Annotated[Path, folder_option("Folder for results.")] = Path("build/case"),
-    picture: Annotated[bool, typer.Option("--picture", help="Draw the stresses too.")] = False,
+    picture: Annotated[bool, typer.Option("--picture", help="Draw the bodies cut open.")] = False,
 ) -> int:
-    """Solve your own pair by finite elements: table, curves, stress fields.
+    """Solve your own pair by finite elements: curves, pressures, dent, stress fields.
 
     The uncertainty is what the level of accuracy was found to be off on fifteen pairs.
     """
@@ -51,7 +55,7 @@ def case(
         )
     from rich.progress import Progress
 
-    from ..start.case_file import read_case
+    from ..start.case_file import ball_mass, read_case
 
     problem, accuracy = read_case(file)
     # loaded after the file is read: a mistake in it is told at once
@@ -66,18 +70,23 @@ def case(
         console.print(str(solution.outcome))
         return EXIT_NOT_CONVERGED
     _show(console, solution, uncertainty)
+    told = found.measured
+    for line in told.lines(ball_mass(file)):
+        console.print(line)
     _tell_aside(file)
     if found.remark:
         console.print(found.remark)
     for path in (
         _write_curves(solution, uncertainty, out / "curve.csv"),
         write_figure(found.plot(), out / "curve.png", dpi=130),
+        write_file(out / "measured.json", json.dumps(told.to_dict(), indent=1) + "\n"),
+        *_write_dent(solution, told, out),
         _write_result(file.stem, solution, uncertainty, out / "result.h5"),
     ):
         console.print(f"written: {path}")
     console.print(_write_law(solution, uncertainty, out / "law.json"))
-    for told in _write_fields(solution, out, picture=picture):
-        console.print(f"written: {told}")
+    for path in _write_fields(solution, out, picture=picture):
+        console.print(f"written: {path}")
     if not solution.outcome.completed:
         console.print(str(solution.outcome))
         return EXIT_NOT_CONVERGED
@@ -91,7 +100,7 @@ def _tell_aside(file: Path) -> None:
 
     aside = [
         one for one in left_aside(read_toml(file), ())
-        if one.partition(" = ")[0].endswith((".std", ".density_kg_m3"))
+        if one.partition(" = ")[0].endswith((".std", "flat.density_kg_m3"))
     ]  # fmt: skip
     if aside:
         say(f"not in this solve: {', '.join(aside)}; `dentscope impact` takes them")
@@ -106,14 +115,24 @@ def _write_fields(solution: Any, out: Path, *, picture: bool) -> Iterator[Path]:
     for snapshot in solution.snapshots:
         name = f"fields-{snapshot.depth:.4g}"
         yield write_vtu(snapshot, out / f"{name}.vtu")
-        if not picture:
-            continue
         extent = 2.5 * float(solution.loading.radius[-1])
         strength = pair.Sy_min if pair.Sy_min < float("inf") else pair.E_reduced
         yield draw_section(snapshot, out / f"{name}.png", Sy_min=strength, extent=extent)
         space = out / f"{name}-cut.png"
-        if draw_cutaway(snapshot, space, Sy_min=strength, extent=extent):
+        if picture and draw_cutaway(snapshot, space, Sy_min=strength, extent=extent):
             yield space
+
+
+def _write_dent(solution: Any, told: Measured, out: Path) -> Iterator[Path]:
+    """Write and draw the surfaces that the last unloading leaves."""
+    from ..fem.results.dent import draw_dent, write_dent
+
+    if not solution.unloadings:
+        return
+    last, R = solution.unloadings[-1], solution.problem.pair.R
+    loaded = next((one.profile for one in solution.snapshots if one.depth == last.depth), None)
+    yield write_dent(last, out / "dent.csv")
+    yield draw_dent(last, out / "dent.png", R=R, under_load=loaded, rim=told.dents[-1].rim_diameter)
 
 
 def _write_law(solution: Any, uncertainty: Any, path: Path) -> str:
@@ -212,15 +231,6 @@ def _show(console: Any, solution: Any, uncertainty: Any) -> None:
         for i in range(0, len(c.delta), max(1, len(c.delta) // 12))
     ]
     show_table(console, ("Delta/R", "F [N]", "a [mm]", "sphere's share", over), rows)
-    for u in solution.unloadings:
-        least = 1e-9 * u.depth * pair.R  # less is round-off
-        sphere, flat = (
-            1e6 * x if abs(x) > least else 0.0 for x in (u.residual_sphere, u.residual_flat)
-        )
-        console.print(
-            f"unloaded from Delta/R = {u.depth:.4g}: left in the sphere {sphere:.4g} um, "
-            f"in the flat {flat:.4g} um"
-        )
     k = solution.counters
     console.print(
         f"{k.dofs} unknowns, {k.steps} steps, {k.iterations} iterations, {k.cpu_s:.0f} processor "

@@ -115,6 +115,7 @@ radius_m = 0.005                # of the ball
 E_Pa = 2.1e11                   # Young's modulus
 nu = 0.3
 Sy_Pa = 2.0e9                   # yield strength; left out: purely elastic
+density_kg_m3 = 7800            # of the ball, for its speed at first yield
 # rigid = true                  # instead of the three: does not deform at all
 
 [flat]

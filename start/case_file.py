@@ -165,6 +165,21 @@ def read_pair(file: Path) -> tuple[CaseFile, Pair]:
     return content, Pair(sphere, flat, content.radius_m)
 
 
+def ball_mass(file: Path) -> float:
+    """Mass of the sphere of CASE.toml [kg], nan where no density of it is stated.
+
+    Raises
+    ------
+    InputError
+        Every mistake, a line each.
+    """
+    content, _ = read_pair(file)
+    density = content.sphere.density_kg_m3
+    if density is None:
+        return math.nan
+    return 4.0 / 3.0 * math.pi * content.radius_m**3 * density.value
+
+
 def _check_first(first: float, onset: float, last: float, *, source: str) -> None:
     """Refuse what the round-off of coordinates of the order of R would hide."""
     if first >= _SHALLOWEST:
@@ -197,7 +212,8 @@ def read_case(file: Path, *, level: str = "") -> tuple[Any, Any]:
     onset = fem.critical_depth(pair)
     first = min(0.3 * onset, 1e-2 * last)
     _check_first(first, onset, last, source=str(file))
-    unload = tuple(sorted(content.load.unload_from))
+    # what the deepest approach leaves is asked of every case
+    unload = tuple(sorted({*content.load.unload_from, last}))
     for depth in unload:
         if not first < depth <= last:
             raise InputError(

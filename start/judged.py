@@ -22,6 +22,7 @@ from ..core.errors import InputError
 from ..core.material import Material, Pair
 from ..models import DomainWarning, critical_depth
 from ..models.base import ContactLaw
+from .measured import loading_work
 
 FOLDER = Path(__file__).resolve().parents[1] / "data" / "campaign"
 USABLE = 0.10
@@ -186,7 +187,7 @@ def _reference(record: CaseRecord, distance: float, last: float) -> Reference:
     yielded = [u for u in record.unloadings if u.depth * pair.R > critical_depth(pair)]
     # one turn beyond the range where none lies in it
     turns = [u for u in yielded if u.depth <= last * (1.0 + 1e-9)] or yielded[:1]
-    spent = _work(c["delta"], c["force"])
+    spent = loading_work(c["delta"], c["force"])
     rows = []
     for u in turns:
         depth = u.depth * pair.R
@@ -200,14 +201,6 @@ def _reference(record: CaseRecord, distance: float, last: float) -> Reference:
     return Reference(
         pair, record.case.name, distance, c["delta"][inside], c["force"][inside], tuple(rows)
     )
-
-
-def _work(delta: Array, force: Array) -> Array:
-    """Work of loading up to each depth; a power law between the depths, Hertz's before."""
-    power = np.diff(np.log(force)) / np.diff(np.log(delta))
-    step = (force[1:] * delta[1:] - force[:-1] * delta[:-1]) / (power + 1.0)
-    spent: Array = np.concatenate([[0.0], np.cumsum(step)]) + 0.4 * force[0] * delta[0]
-    return spent
 
 
 def judged(

@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING, Any
 from .. import fem
 from ..core.tables import frame, html_table
 from .case_file import read_case
+from .measured import Measured, measured
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
@@ -39,6 +40,11 @@ class Solved:
     solution: fem.Solution
     uncertainty: Any
     level: str = ""
+
+    @property
+    def measured(self) -> Measured:
+        """What people measure: first yield, pressures, what every unloading leaves."""
+        return measured(self.solution)
 
     @property
     def remark(self) -> str:

@@ -49,12 +49,12 @@ def write_vtu(snapshot: Snapshot, path: Path) -> Path:
 
 
 def draw_section(snapshot: Snapshot, path: Path, *, Sy_min: float, extent: float) -> Path:
-    """Draw von Mises stress over the weaker body's strength on the full deformed section.
+    """Draw the deformed section: von Mises stress to the left, plastic strain to the right.
 
     Parameters
     ----------
     snapshot
-        The fields.
+        The fields; where nothing flows the stress is on both sides.
     path
         PNG file.
     Sy_min
@@ -67,35 +67,53 @@ def draw_section(snapshot: Snapshot, path: Path, *, Sy_min: float, extent: float
     Path
         The file.
     """
-    from matplotlib.collections import PolyCollection
     from matplotlib.figure import Figure
 
-    points = snapshot.points + snapshot.displacement
-    near = np.hypot(*points[snapshot.quads].mean(axis=1).T) < 2.0 * extent
-    corners, stress = points[snapshot.quads[near]], snapshot.von_mises[near] / Sy_min
     unit, scale = ("mm", 1e3) if extent >= 1e-3 else ("um", 1e6)
-    figure = Figure(figsize=(8.0, 6.6), layout="constrained")
+    points = scale * (snapshot.points + snapshot.displacement)
+    figure = Figure(figsize=(8.4, 6.4), layout="constrained")
     axis = figure.subplots()
-    for side in (1.0, -1.0):
-        drawn = PolyCollection(
-            list(scale * corners * np.array([side, 1.0])), array=stress, cmap="turbo",
-            edgecolors="face", linewidths=0.2,
-        )  # fmt: skip
-        drawn.set_clim(0.0, max(1.0, float(np.quantile(stress, 0.999))))
-        axis.add_collection(drawn)
+    stress, strain = snapshot.von_mises / Sy_min, 100.0 * snapshot.plastic_strain
+    flows = bool((strain > 0.0).any())
+    sides = [(-1.0, stress, "turbo", "von Mises stress over the weaker body's strength [-]")]
+    sides += [(1.0, strain, "magma_r", "equivalent plastic strain [%]") if flows
+              else (1.0, *sides[0][1:])]  # fmt: skip
+    near = np.hypot(*points[snapshot.quads].mean(axis=1).T) < 2.0 * scale * extent
+    first = np.arange(len(snapshot.quads)) < snapshot.n_sphere_quads
+    for side, values, colours, label in sides:
+        seen = values[near & (values > 0.0)]
+        most = float(np.quantile(seen, 0.995)) if len(seen) else 1.0
+        for body in (near & first, near & ~first):
+            drawn = _shaded(axis, points * [side, 1.0], snapshot.quads[body], values[body])
+            drawn.set(cmap=colours, clim=(0.0, most))
+        if side < 0.0 or flows:
+            place = "left" if flows and side < 0.0 else "right"
+            bar = figure.colorbar(drawn, ax=axis, extend="max", location=place, shrink=0.85)
+            bar.set_label(label, fontsize=10)
     for name, mine in (("sphere", True), ("flat", False)):
-        _outline(axis, snapshot, points, scale, sphere=mine)
+        _outline(axis, snapshot, points, sphere=mine)
         axis.text(-0.97, 0.95 if mine else -0.97, name, transform=_in_halves(axis), fontsize=11,
                   bbox={"facecolor": "w", "alpha": 0.7, "edgecolor": "none"})  # fmt: skip
-    bar = figure.colorbar(drawn, ax=axis, extend="max")
-    bar.set_label("von Mises stress over the weaker body's strength [-]", fontsize=11)
     half = scale * extent
+    axis.axvline(0.0, color="w", lw=0.8)
     axis.set(
         xlim=(-half, half), ylim=(-half, half), aspect="equal", xlabel=f"radius r [{unit}]",
         ylabel=f"height z [{unit}]",
         title=f"approach {snapshot.depth:.3g} of the sphere's radius, deformed, to scale",
     )  # fmt: skip
     return write_figure(figure, path, dpi=140)
+
+
+def _shaded(axis: Any, points: Floats, quads: npt.NDArray[np.int64], values: Floats) -> Any:
+    """Draw one body's values, means at the nodes, without steps from element to element."""
+    nodes, corners = np.unique(quads, return_inverse=True)
+    corners = corners.reshape(quads.shape)
+    total, count = (
+        np.bincount(corners.ravel(), weights=np.repeat(w, 4))
+        for w in (values, np.ones_like(values))
+    )
+    triangles = np.concatenate([corners[:, [0, 1, 2]], corners[:, [0, 2, 3]]])
+    return axis.tripcolor(*points[nodes].T, triangles, total / count, shading="gouraud")
 
 
 def _in_halves(axis: Any) -> Any:
@@ -105,7 +123,7 @@ def _in_halves(axis: Any) -> Any:
     return Affine2D().translate(1.0, 1.0).scale(0.5) + axis.transAxes
 
 
-def _outline(axis: Any, snapshot: Snapshot, points: Floats, scale: float, *, sphere: bool) -> None:
+def _outline(axis: Any, snapshot: Snapshot, points: Floats, *, sphere: bool) -> None:
     """Draw the edges that belong to one element only: a body's surface."""
     n = snapshot.n_sphere_quads
     quads = snapshot.quads[:n] if sphere else snapshot.quads[n:]
@@ -115,4 +133,4 @@ def _outline(axis: Any, snapshot: Snapshot, points: Floats, scale: float, *, sph
         if max(abs(snapshot.points[a, 0]), abs(snapshot.points[b, 0])) == 0.0:
             continue  # the axis of symmetry is no surface
         for side in (1.0, -1.0):
-            axis.plot(scale * side * points[[a, b], 0], scale * points[[a, b], 1], "k", lw=0.7)
+            axis.plot(side * points[[a, b], 0], points[[a, b], 1], "k", lw=0.7)

@@ -4,15 +4,49 @@ from __future__ import annotations
 
 import math
 import warnings
+from dataclasses import dataclass
 
 import numpy as np
 
+from ...core.material import Pair
 from ...models.base import DomainWarning
-from ...models.kernel import critical_depth
+from ...models.kernel import critical_depth, critical_force
 from ..result import Impact
 from ..scene import Scene
 
 _POINTS = 60  # depths at which the mean pressure is looked at
+
+
+@dataclass(frozen=True)
+class FirstYield:
+    """Where the weaker body begins to yield: Hertz up to the critical depth (Eqs. 1.16, 1.19).
+
+    Parameters
+    ----------
+    depth
+        Approach [m].
+    load
+        Force [N].
+    work
+        Work to there [J].
+    """
+
+    depth: float
+    load: float
+    work: float
+
+    def speed(self, mass: float) -> float:
+        """Normal speed at which an effective mass [kg] just makes it yield [m/s]."""
+        return math.sqrt(2.0 * self.work / mass)
+
+
+def first_yield(pair: Pair) -> FirstYield | None:
+    """Return where a pair first yields; none where neither body ever does."""
+    depth = critical_depth(pair)
+    if not math.isfinite(depth):
+        return None
+    load = critical_force(pair)
+    return FirstYield(depth, load, 0.4 * load * depth)
 
 
 def effective_mass(scene: Scene) -> float:
@@ -29,7 +63,6 @@ def effective_mass(scene: Scene) -> float:
 def first_yield_speed(scene: Scene) -> float:
     """Normal speed of approach at which the weaker body begins to yield [m/s].
 
-    Up to the critical depth the contact is Hertz's: m* v^2/2 = (8/15) E' R^(1/2) delta_c^(5/2).
     Infinite where neither body yields, 0 for a tip with a flat, whose edge yields at once.
 
     Examples
@@ -46,11 +79,8 @@ def first_yield_speed(scene: Scene) -> float:
     pair = scene.pair
     if scene.striker.tip_flat_radius > 0.0 and math.isfinite(pair.Sy_min):
         return 0.0
-    depth = critical_depth(pair)
-    if not math.isfinite(depth):
-        return math.inf
-    work = 8.0 / 15.0 * pair.E_reduced * math.sqrt(pair.R) * depth**2.5
-    return math.sqrt(2.0 * work / effective_mass(scene))
+    onset = first_yield(pair)
+    return math.inf if onset is None else onset.speed(effective_mass(scene))
 
 
 def largest_mean_pressure(scene: Scene, found: Impact) -> float:

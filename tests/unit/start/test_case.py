@@ -1,8 +1,10 @@
 """`dentscope case`: what it writes, and how it answers mistakes."""
 
 import csv
+import json
 from pathlib import Path
 
+import matplotlib.image as mpimg
 import meshio
 import numpy as np
 import pytest
@@ -10,7 +12,8 @@ from dentscope.campaigns import read_curves
 from dentscope.cli import run
 from dentscope.core import InputError
 from dentscope.models import law_named
-from dentscope.start.case_file import read_case
+from dentscope.start.case_file import ball_mass, read_case
+from dentscope.start.measured import brinell, loading_work
 
 GOOD = """
 radius_m = 0.002
@@ -64,6 +67,28 @@ def test_a_case_writes_its_curve_and_fields_and_is_a_law(tmp_path):
     mises = np.concatenate(fields.cell_data["von_mises_Pa"])
     assert mises[flat].max() == pytest.approx(300e6, rel=0.02)
     assert mises[~flat].max() < 900e6
+    told = json.loads((tmp_path / "out" / "measured.json").read_text())
+    first, at, dent = told["first_yield"], told["pressed"], told["dents"][-1]
+    # the curve is Hertz's up to first yield
+    assert first["load"] == pytest.approx(np.interp(first["depth"], depth, force), rel=0.02)
+    # 2.9 to 1.6 strengths: between first yield and full plasticity, Hertz's ratio at most
+    mean = float(load[-1]["hardness_Pa"])
+    assert at["mean_pressure"] == pytest.approx(mean)
+    assert 1.0 < at["largest_pressure"] / mean < 1.5
+    # what is neither dissipated nor stored comes back
+    turned = next(r for r in rows if r["phase"] == "unload-3")
+    assert dent["load"] == pytest.approx(float(turned["force_N"]))
+    work = np.trapezoid(np.append(0.0, force), np.append(0.0, depth))
+    lost = 1.0 - stored.curve["dissipated"][-1] / work
+    assert dent["energy_returned"] == pytest.approx(lost, abs=0.03)
+    with (tmp_path / "out" / "dent.csv").open() as stream:
+        surfaces = list(csv.DictReader(stream))
+    z = [float(r["z_m"]) for r in surfaces if r["body"] == "flat"]
+    assert -z[0] == pytest.approx(dent["left_flat"])
+    assert dent["rim_height"] == pytest.approx(max(z), abs=1e-3 * abs(z[0]))
+    for name in ("fields-0.0003.png", "dent.png"):
+        picture = mpimg.imread(tmp_path / "out" / name)
+        assert picture.std() > 0.05
 
 
 @pytest.mark.parametrize(
@@ -221,3 +246,22 @@ def test_a_mistake_in_a_flow_curve_names_its_row(tmp_path, curve, words):
 def test_the_example_files_are_sound(name):
     problem, _ = read_case(Path(__file__).parents[3] / "examples" / f"{name}.toml")
     assert problem.pair.flat.flow.curve(0.1) > problem.pair.flat.Sy
+
+
+def test_brinell_is_the_load_over_the_surface_of_the_dent():
+    # ISO 6506: 3000 kgf, ball of 10 mm, dent of 4 mm: HB 229
+    assert brinell(3000.0 * 9.80665, 10e-3, 4e-3) == pytest.approx(229.0, abs=0.5)
+    assert np.isnan(brinell(1.0, 1e-3, 1e-3))
+
+
+def test_the_work_of_a_loading_is_exact_for_hertz():
+    d = np.geomspace(1e-6, 1e-4, 7)
+    assert loading_work(d, d**1.5) == pytest.approx(0.4 * d**2.5, rel=1e-12)
+
+
+def test_the_mass_of_the_ball_is_that_of_its_density(tmp_path):
+    path = tmp_path / "case.toml"
+    path.write_text(GOOD.replace("[flat]", "density_kg_m3 = 7800\n[flat]"))
+    assert ball_mass(path) == pytest.approx(4.0 / 3.0 * np.pi * 0.002**3 * 7800.0)
+    path.write_text(GOOD)
+    assert np.isnan(ball_mass(path))

@@ -1,0 +1,231 @@
+"""What people measure of a pressed pair: pressures, the dent, what comes back of the energy."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterator
+from dataclasses import asdict, dataclass
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+import numpy.typing as npt
+
+from ..impact.told.onset import FirstYield, first_yield
+
+if TYPE_CHECKING:
+    from ..fem.solution import Solution, Unloading
+
+Floats = npt.NDArray[np.float64]
+
+_STANDARD_GRAVITY = 9.80665  # m/s2; hardness after Brinell is in kgf/mm2
+_ROUND_OFF = 1e-9  # of the permanent approach
+_BALL_KEEPS = 0.05  # of the permanent approach; beyond it the dent is not that of a ball
+
+
+@dataclass(frozen=True)
+class Pressed:
+    """The contact at the deepest approach whose pressure was kept.
+
+    Parameters
+    ----------
+    depth
+        Delta/R.
+    mean_pressure, largest_pressure
+        F/(pi a^2) and the largest over the contact [Pa].
+    largest_at
+        Radius where the largest is [m].
+    """
+
+    depth: float
+    mean_pressure: float
+    largest_pressure: float
+    largest_at: float
+
+
+@dataclass(frozen=True)
+class Dent:
+    """What one unloading leaves.
+
+    Parameters
+    ----------
+    depth
+        Delta/R from which it was unloaded.
+    load
+        Force there [N].
+    left_sphere, left_flat
+        Permanent displacement of the pole, and of the flat below it [m].
+    contact_diameter
+        Of the contact under the load [m].
+    rim_diameter, rim_height
+        Of the highest circle of the flat around the dent, and how far it stands above the flat
+        that was [m]; nan and 0 where the flat sinks in and has no rim.
+    brinell_by_contact, brinell_by_rim
+        Hardness after Brinell by either diameter [kgf/mm2]; nan where the ball keeps more than 5 %
+        of the permanent approach, or there is no such diameter.
+    energy_returned
+        Work on the way back over that on the way in [-].
+    """
+
+    depth: float
+    load: float
+    left_sphere: float
+    left_flat: float
+    contact_diameter: float
+    rim_diameter: float
+    rim_height: float
+    brinell_by_contact: float
+    brinell_by_rim: float
+    energy_returned: float
+
+    def lines(self) -> Iterator[str]:
+        """Yield what there is to say, for people."""
+        least = _ROUND_OFF * (abs(self.left_sphere) + abs(self.left_flat))
+        sphere, flat = (
+            1e6 * x if abs(x) > least else 0.0 for x in (self.left_sphere, self.left_flat)
+        )
+        yield (
+            f"unloaded from Delta/R = {self.depth:.4g}: left in the sphere {sphere:.4g} um, in the "
+            f"flat {flat:.4g} um; {self.energy_returned:.1%} of the energy returned"
+        )
+        rim = (
+            "no rim"
+            if math.isnan(self.rim_diameter)
+            else (f"{_length(self.rim_diameter)} by rim, {1e6 * self.rim_height:.3g} um high")
+        )
+        hardness = [
+            f"HB {x:.0f} by {name}"
+            for name, x in (("contact", self.brinell_by_contact), ("rim", self.brinell_by_rim))
+            if not math.isnan(x)
+        ]
+        words = (f"{_length(self.contact_diameter)} by contact", rim, *hardness)
+        yield f"  diameter {', '.join(words)}"
+
+
+@dataclass(frozen=True)
+class Measured:
+    """What people measure of a solved pair.
+
+    Parameters
+    ----------
+    first_yield
+        Where the weaker body begins to yield; none where neither does.
+    pressed
+        The pressures at the deepest approach; none where it was not reached.
+    dents
+        What every unloading leaves.
+    """
+
+    first_yield: FirstYield | None
+    pressed: Pressed | None
+    dents: tuple[Dent, ...]
+
+    def to_dict(self) -> dict[str, Any]:
+        """Return everything in SI units, Brinell's hardness in kgf/mm2; None for what is not."""
+        return {
+            "first_yield": self.first_yield and _numbers(self.first_yield),
+            "pressed": self.pressed and _numbers(self.pressed),
+            "dents": [_numbers(one) for one in self.dents],
+        }
+
+    def lines(self, mass: float = math.nan) -> Iterator[str]:
+        """Yield what there is to say, for people; with the sphere's mass [kg] a speed too."""
+        first, at = self.first_yield, self.pressed
+        if first is None:
+            yield "neither body yields"
+        else:
+            speed = (
+                ""
+                if math.isnan(mass)
+                else (f", {first.speed(mass):.3g} m/s for the ball's {1e3 * mass:.4g} g")
+            )
+            yield f"first yield: {1e6 * first.depth:.3g} um, {first.load:.3g} N{speed}"
+        if at is not None:
+            yield (
+                f"pressure at Delta/R = {at.depth:.4g}: mean {1e-6 * at.mean_pressure:.4g} MPa, "
+                f"largest {1e-6 * at.largest_pressure:.4g} MPa at r = {_length(at.largest_at)}"
+            )
+        for dent in self.dents:
+            yield from dent.lines()
+
+
+def measured(solution: Solution) -> Measured:
+    """Return what people measure, from a solve."""
+    dents = tuple(_dent(solution, one) for one in solution.unloadings)
+    return Measured(first_yield(solution.problem.pair), _pressed(solution), dents)
+
+
+def _pressed(solution: Solution) -> Pressed | None:
+    """Return the pressures at the deepest picture of a solve; none without one.
+
+    The largest is of running medians of three nodes: at the edge of contact single ones alternate.
+    """
+    if not solution.snapshots:
+        return None
+    profile, c = solution.snapshots[-1].profile, solution.loading
+    p = profile.pressure
+    smooth = np.median(np.stack([p[:-2], p[1:-1], p[2:]]), axis=0)
+    k = int(smooth.argmax())
+    mean = float(np.interp(profile.depth, c.delta / solution.problem.pair.R, c.hardness))
+    return Pressed(profile.depth, mean, float(smooth[k]), float(profile.sphere_r[k + 1]))
+
+
+def brinell(load: float, ball: float, dent: float) -> float:
+    """Hardness after Brinell, 0.102 F over the dent's spherical surface (ISO 6506-1) [kgf/mm2].
+
+    Parameters
+    ----------
+    load
+        Force [N].
+    ball, dent
+        Diameters of the ball and of the dent [m]; nan for a dent that is no smaller.
+    """
+    if not dent < ball:
+        return math.nan
+    area = 0.5 * math.pi * ball * (ball - math.sqrt(ball**2 - dent**2))
+    return load / _STANDARD_GRAVITY / (1e6 * area)
+
+
+def _dent(solution: Solution, u: Unloading) -> Dent:
+    R, load = solution.problem.pair.R, float(u.curve.force[0])
+    contact = 2.0 * float(u.curve.radius[0])
+    top = int(u.crater_z.argmax())
+    # what sinks in rises towards the edge of the mesh, where the flat is as it was
+    rises = u.crater_z[top] > 1e-3 * abs(u.residual_flat) and u.residual_flat > 0.0
+    rim = 2.0 * float(u.crater_r[top]) if rises else math.nan
+    of_the_flat = u.residual > 0.0 and u.residual_sphere <= _BALL_KEEPS * u.residual
+    by_contact, by_rim = (
+        brinell(load, 2.0 * R, d) if of_the_flat else math.nan for d in (contact, rim)
+    )
+    return Dent(
+        depth=u.depth, load=load, left_sphere=u.residual_sphere, left_flat=u.residual_flat,
+        contact_diameter=contact, rim_diameter=rim,
+        rim_height=float(u.crater_z[top]) if rises else 0.0,
+        brinell_by_contact=by_contact, brinell_by_rim=by_rim,
+        energy_returned=_returned(solution, u),
+    )  # fmt: skip
+
+
+def loading_work(delta: Floats, force: Floats) -> Floats:
+    """Work of loading up to each depth [J]; a power law between the depths, Hertz's before."""
+    power = np.diff(np.log(force)) / np.diff(np.log(delta))
+    step = np.diff(force * delta) / (power + 1.0)
+    return np.asarray(np.concatenate([[0.0], np.cumsum(step)]) + 0.4 * force[0] * delta[0])
+
+
+def _numbers(part: FirstYield | Pressed | Dent) -> dict[str, float | None]:
+    return {k: None if math.isnan(x) else float(x) for k, x in asdict(part).items()}
+
+
+def _length(x: float) -> str:
+    return f"{1e3 * x:.4g} mm" if x >= 1e-3 else f"{1e6 * x:.4g} um"
+
+
+def _returned(solution: Solution, u: Unloading) -> float:
+    """Work of an unloading over that of the loading before it."""
+    c = solution.loading
+    before = c.delta < u.curve.delta[0]
+    d, F = (
+        np.append(x[before], y[0]) for x, y in ((c.delta, u.curve.delta), (c.force, u.curve.force))
+    )
+    back = np.append(u.curve.delta, u.residual), np.append(u.curve.force, 0.0)
+    return float(np.trapezoid(back[1][::-1], back[0][::-1]) / loading_work(d, F)[-1])
