@@ -208,13 +208,14 @@ def _sizes(scene: Scene, found: Impact) -> tuple[_Sizes, _Sizes]:
         for x in (known.force, known.radius, known.dent, known.given_back)
     )
     sizes = WITH_CURVE if follows_flow(law) and not pair.perfectly_plastic else METAL
-    # a law that leaves no crater has none that could be off
-    left = found.residual_flat_m + found.residual_sphere_m > 0.0
+    if not found.residual_flat_m + found.residual_sphere_m > 0.0:
+        # a law that leaves no crater has none that could be off, nor a recovery of its own
+        return _Sizes(force, 0.0, 0.0, 0.0, radius), _Sizes(0.0, 0.0, 0.0, 0.0, 0.0)
     return (
-        _Sizes(force, back, RECOVERY_EXPONENT * lost, dent if left else 0.0, radius),
+        _Sizes(force, back, RECOVERY_EXPONENT * lost, dent, radius),
         _Sizes(
             sizes["force"] * lost, sizes["recovery"] * lost, sizes["recovery exponent"] * lost,
-            sizes["crater"] if left and lost else 0.0, 0.0,
+            sizes["crater"] if lost else 0.0, 0.0,
         ),
     )  # fmt: skip
 

@@ -63,6 +63,15 @@ def test_first_yield_is_where_johnson_has_it():
     assert first_yield_speed(elastic) == math.inf
 
 
+def test_a_law_that_cannot_lose_has_no_band_of_restitution(brass):
+    blow = blow_of(brass.setup, [LAWS["hertz"]])
+    cells = {row[0]: row[1] for row in blow.table()}
+    assert cells["restitution"] == "1"
+    assert "±" in cells["peak force [kN]"]
+    assert blow.bands["hertz"].std("restitution") < 1e-6
+    assert brass.bands["fitted"].std("restitution") > 0.0
+
+
 def test_a_free_support_yields_later(brass):
     scene = brass.setup.scene(LAWS["fitted"])
     freed = scene.with_(support=replace(scene.support, mass=scene.striker.mass))
