@@ -35,6 +35,7 @@ def test_a_nan_with_exit_code_0_is_a_fault(out, told):
 
 def test_faults_are_told_from_refusals():
     assert fuzz.judged("impact", 2, "", "a.toml: target.nu: 0.7\n") == "refused"
-    assert fuzz.judged("impact", 2, "", "") == "NO LINE"
+    assert fuzz.judged("impact", 2, "", "") == "UNSAID"
+    assert fuzz.judged("impact", 2, "", "depth: a depth is not a number") == "UNSAID"
     assert fuzz.judged("impact", 1, "", "Traceback (most recent call last)") == "TRACEBACK"
     assert fuzz.judged("impact", 3, "", "budget") == "not ended"
