@@ -38,13 +38,14 @@ _X, _W = np.polynomial.legendre.leggauss(12)
 
 
 def _answers(law: ContactLaw, pair: Pair, d: Floats) -> tuple[Floats, Floats, Floats, Floats]:
-    """Force, radius, dent and energy given back over force and depth, each above zero."""
+    """Force, radius, dent and energy given back over force and depth: above zero, or NaN."""
     closed = np.maximum(d, 1e-12 * pair.R)
     force = law.loading(pair, closed)
     left = np.asarray(sum(law.residual(pair, closed)))
+    from_ = np.where(np.isfinite(left), left, closed)  # far beyond its range a law says nothing
     back = np.zeros_like(closed)
     for x, w in zip(0.5 * (_X + 1.0), 0.5 * _W, strict=True):
-        back += w * law.unloading(pair, left + x * (closed - left), closed)
+        back += w * law.unloading(pair, from_ + x * (closed - from_), closed)
     back *= (closed - left) / (force * closed)
     # a dent below a hundredth of a per mille of the depth is none
     return (

@@ -222,6 +222,12 @@ def _mistakes(found: SetupFile, source: str) -> list[InputError]:
         add("impact.striker", f"no striker {impact.striker!r}", f"one of {names}")
     if (impact.impact_speed_m_s is None) == (impact.drop_height_m is None):
         add("impact.impact_speed_m_s", "give one of speed and height", "or impact.drop_height_m")
+    if found.gravity_m_s2.value == 0.0:
+        heights = (("impact", impact.drop_height_m), ("sweep", found.sweep.drop_height_m or None))
+        for table, height in heights:
+            if height is not None:
+                add(f"{table}.drop_height_m", "nothing falls where gravity_m_s2 is 0",
+                    "impact_speed_m_s")  # fmt: skip
     if impact.support == "sprung" and found.target.support_mass_kg is None:
         add("target.support_mass_kg", "missing", "the mass of a sprung support")
     if impact.support == "plate" and found.target.thickness_m is None:
