@@ -12,7 +12,7 @@ from typing import Annotated
 import typer
 
 from ..core.errors import EXIT_INPUT_ERROR, InputError, printable
-from ..core.processes.stopping import listening
+from ..core.processes.stopping import STOPS, listening, stopped
 from . import campaign, export, laws, recordings, reduce, studies
 from .case import case
 from .diagnose import diagnose
@@ -106,9 +106,9 @@ def run(arguments: list[str] | None = None) -> int:
         return _refused(f"{error.filename}: {told}" if error.filename is not None else told)
     except typer.Exit as stop:
         return int(stop.exit_code)
-    except (typer.Abort, KeyboardInterrupt):
+    except (typer.Abort, *STOPS) as stop:
         sys.stderr.write("stopped\n")
-        return 130
+        return stopped(stop)
     return result if isinstance(result, int) else 0
 
 

@@ -13,7 +13,7 @@ from typing import Annotated, Any
 import typer
 
 from ..core.errors import EXIT_NOT_CONVERGED, InputError
-from ..core.processes.stopping import heard
+from ..core.processes.stopping import STOPS, stopped
 from . import campaign_data, studies
 from .campaign_data import DEFAULT_DESIGN, PUBLISHED, DesignName, Out
 from .campaign_progress import Progress, duration, judged, remarks, tell
@@ -97,11 +97,11 @@ def run(
                 until=until,
                 report=ended,
             )
-    except KeyboardInterrupt:
-        heard()
+    except STOPS as stop:
+        code = stopped(stop)
         typer.echo("stopped; the same command goes on from here")
         _summary(chosen, out, status_of(chosen, store), time.monotonic() - started, progress.cpu_s)
-        return 130
+        return code
     _summary(chosen, out, after, time.monotonic() - started, progress.cpu_s)
     return 0 if after.done == after.designed else EXIT_NOT_CONVERGED
 

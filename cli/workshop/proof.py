@@ -47,7 +47,7 @@ def run(
     from rich.console import Console
     from rich.progress import Progress
 
-    from ...core.processes.stopping import heard
+    from ...core.processes.stopping import STOPS, stopped
     from ...core.threads import one_thread_each
     from ...studies.proof.lists import LISTS as made
     from ...studies.proof.run import carry_on, local_workers, run_folder, verdicts_of
@@ -69,12 +69,12 @@ def run(
                 bar.advance(task)
                 state = "sealed" if event["verdict"] else f"no verdict ({event['exit']})"
                 console.print(f"  {name}  {state}  {event['wall_s']:.0f} s", highlight=False)
-    except KeyboardInterrupt:
-        heard()
+    except STOPS as stop:
+        code = stopped(stop)
         for worker in active_children():
             worker.terminate()  # a diagnosis may take minutes, and is begun anew
         typer.echo("stopped; the same command goes on from here")
-        return 130
+        return code
     finally:
         pool.shutdown(cancel_futures=True)
     return 0

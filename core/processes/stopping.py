@@ -1,8 +1,8 @@
-"""Ctrl-C ends a command, wherever it is.
+"""Ctrl-C and SIGTERM end a command, wherever it is.
 
-Python turns it into an exception once. Where that falls into a callback of a library, as a weak
-reference's or one that C code calls, it is printed or lost, and the command goes on. Here it comes
-again until the command has taken notice.
+Python turns Ctrl-C into an exception once. Where that falls into a callback of a library, as a weak
+reference's or one that C code calls, it is printed or lost, and the command goes on. Here both
+signals raise it, and it comes again until the command has taken notice.
 """
 
 from __future__ import annotations
@@ -12,25 +12,48 @@ import threading
 from collections.abc import Iterator
 from contextlib import contextmanager
 from types import FrameType
+from typing import Any
 
 AGAIN_S = 0.5
 """After how long an interruption that nobody has heard comes again."""
 
+_DEFAULT: dict[int, Any] = {
+    signal.SIGINT: signal.default_int_handler, signal.SIGTERM: signal.SIG_DFL,
+}  # fmt: skip
+
+
+class Stopped(BaseException):
+    """The user or the system asks the command to end; no library takes it for a Ctrl-C of its own.
+
+    Parameters
+    ----------
+    number
+        Of the signal.
+    """
+
+    def __init__(self, number: int = signal.SIGINT) -> None:
+        super().__init__()
+        self.number = number
+
+
+STOPS = (KeyboardInterrupt, Stopped)
+"""What ends a command early: a user's own handler of Ctrl-C raises the first."""
+
 
 @contextmanager
 def listening() -> Iterator[None]:
-    """Let the first Ctrl-C end what runs inside; a handler of the user's own stays."""
+    """Let the first Ctrl-C or SIGTERM end what runs inside; handlers of the user's own stay."""
     main = threading.current_thread() is threading.main_thread()
-    before = signal.getsignal(signal.SIGINT)
-    if not main or before is not signal.default_int_handler:
-        yield
-        return
-    signal.signal(signal.SIGINT, _interrupt)
+    ours = [n for n, plain in _DEFAULT.items() if main and signal.getsignal(n) is plain]
+    for number in ours:
+        signal.signal(number, _stop)
     try:
         yield
     finally:
-        heard()
-        signal.signal(signal.SIGINT, before)
+        if ours:
+            heard()
+        for number in ours:
+            signal.signal(number, _DEFAULT[number])
 
 
 def heard() -> None:
@@ -39,7 +62,22 @@ def heard() -> None:
         signal.setitimer(signal.ITIMER_REAL, 0.0)
 
 
-def _interrupt(_number: int, _frame: FrameType | None) -> None:
-    signal.signal(signal.SIGALRM, _interrupt)
+def stopped(stop: BaseException) -> int:
+    """Take notice of an interruption; return the exit code, as a shell has it.
+
+    Examples
+    --------
+    >>> stopped(KeyboardInterrupt()), stopped(Stopped(signal.SIGTERM))
+    (130, 143)
+    """
+    heard()
+    return 128 + getattr(stop, "number", signal.SIGINT)
+
+
+def _stop(number: int, _frame: FrameType | None) -> None:
+    def again(_number: int, frame: FrameType | None) -> None:
+        _stop(number, frame)
+
+    signal.signal(signal.SIGALRM, again)
     signal.setitimer(signal.ITIMER_REAL, AGAIN_S)
-    raise KeyboardInterrupt
+    raise Stopped(number)

@@ -7,6 +7,7 @@ draws nothing and is told of no truth.
 from __future__ import annotations
 
 import os
+import signal
 import time
 import traceback
 from functools import cache
@@ -71,6 +72,7 @@ def _server() -> ForkServerContext:
 
 
 def _diagnose(folder: Path, out: Path, ours: Connection) -> None:
+    signal.signal(signal.SIGINT, signal.SIG_IGN)  # Ctrl-C is for the run, not for a verdict
     die_with(os.getppid())
     # by its name, as a shell reaches it: the proof imports nothing of the tool
     run = import_module("dentscope.cli.app").run
