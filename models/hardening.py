@@ -182,6 +182,28 @@ def _without_flow(pair: Pair) -> Pair:
     return Pair(sphere, flat, pair.R)
 
 
+def representative_strain(a: Floats, yields_at: float) -> Floats:
+    """Plastic strain that stands for those under a contact of radius a/R, first yield at another.
+
+    Parameters
+    ----------
+    a, yields_at
+        Contact radius, and that at first yield, over R; shape (...).
+    """
+    return np.asarray(REPRESENTATIVE * np.maximum(a - yields_at, 0.0))
+
+
+def mean_over_strains(n: float) -> float:
+    """Mean of the n-th power of the strains under a contact, over that of the representative one.
+
+    Examples
+    --------
+    >>> mean_over_strains(0.0), round(mean_over_strains(0.3), 3)
+    (1.0, 0.921)
+    """
+    return float(_SPAN**n / (1.0 + _FALL * n))
+
+
 def equivalent(fitted: ClosedForm, pair: Pair, *, points: int) -> Equivalent:
     """Return the path of a pair through perfectly plastic bodies, from far below first yield on."""
     onset = critical_depth(pair) / pair.R
@@ -193,7 +215,7 @@ def equivalent(fitted: ClosedForm, pair: Pair, *, points: int) -> Equivalent:
     def taken(part: Floats, a: Floats) -> Equivalent:
         """The points if the sphere has `part` of the strain, from a first radius on."""
         for _ in range(_SETTLING):
-            p = REPRESENTATIVE * np.maximum(a - yields_at, 0.0)
+            p = representative_strain(a, yields_at)
             s, f = sphere(part * p), flat(p - part * p)
             numbers = fitted.numbers(_with_strengths(bodies, s.S, f.S))
             at = contact(D, numbers)

@@ -1,10 +1,10 @@
 """`dentscope diagnose --solve`: a named flow of the metal taken back to the finite elements.
 
-What the diagnosis infers of work hardening and of strain rate is a relative strength over depth,
-with Tabor's strain 0.2 a/R and rate 0.4 v/a. Here the constants become a flow law of the metal
-(Ludwik's S_y (1 + K p^n); Cowper and Symonds' 1 + (r/D)^(1/q)), the pair is pressed and unloaded by
-finite elements, and the impacts of the set are made again with that table. The constants come from
-the slower conditions; the fastest ones judge.
+What the diagnosis infers of work hardening and of strain rate is a relative strength over depth, by
+the strains under the contact and the rate 0.4 v/a. Here the constants become a flow law of the
+metal (Ludwik's S_y (1 + K p^n); Cowper and Symonds' 1 + (r/D)^(1/q)), the pair is pressed and
+unloaded by finite elements, and the impacts of the set are made again with that table. The
+constants come from the slower conditions; the fastest ones judge.
 """
 
 from __future__ import annotations

@@ -1,15 +1,19 @@
 """What mechanisms of the flow stress share: a relative strength over the depth.
 
 Each gives the metal's strength relative to the stated one; the law then answers for a pair of that
-strength (`impact.strength`). The strain rate of an indentation is taken as 0.4 v/a and its
-representative strain as 0.2 a/R (Tabor, The Hardness of Metals, 1951).
+strength (`impact.strength`). The strain rate of an indentation is taken as 0.4 v/a, its
+representative strain as 0.2 (a - a_c)/R, as the law of metals that harden has it.
+
+References
+----------
+D. Tabor, The Hardness of Metals (1951).
 """
 
 from __future__ import annotations
 
 import math
 from abc import ABC, abstractmethod
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 from typing import ClassVar
 
@@ -17,11 +21,16 @@ import numpy as np
 
 from ....core.material import Pair
 from ....impact import Profiles, RateFree, Scene
+from ....impact.force import F_RADIUS
 from ....impact.scene import FlowStress
 from ....impact.strength import StrengthTable
+from ....models import critical_depth
+from ....models.hardening import REPRESENTATIVE, representative_strain
 from ..base import Array, Mechanism, Situation, Surroundings, Values
 
-RATE, STRAIN = 0.4, 0.2  # of v/a, and of a/R
+RATE = 0.4  # of v/a
+STRAIN = REPRESENTATIVE  # of (a - a_c)/R
+_SETTLING = 3  # of the radius of a contact whose strength follows its radius
 
 
 class StrengthProfile(ABC):
@@ -74,9 +83,29 @@ class FlowMechanism(Mechanism):
         return scene.with_(flow=own if alone else Profiles((scene.flow, own)))
 
 
-def strain(scene: Scene, table: StrengthTable) -> Array:
-    """Representative plastic strain at the depths of a table, 0.2 a/R with a at most R."""
-    return np.asarray(STRAIN * np.minimum(table.radius / scene.pair.R, 1.0))
+def strain(scene: Scene, table: StrengthTable, strength: Array | None = None) -> Array:
+    """Representative plastic strain at the depths of a table, 0.2 (a - a_c)/R with a at most R.
+
+    Parameters
+    ----------
+    scene, table
+        The impact and the table of its contact.
+    strength
+        Relative strengths at the depths, which move the radius; none: as stated.
+    """
+    pair, radius = scene.pair, table.radius
+    if strength is not None:
+        radius = radius * table.factors(strength)[F_RADIUS]
+    at_yield = math.sqrt(critical_depth(pair) / pair.R)
+    return representative_strain(np.minimum(radius / pair.R, 1.0), at_yield)
+
+
+def settled_strain(scene: Scene, table: StrengthTable, strength: Callable[[Array], Array]) -> Array:
+    """Return the strain at which the contact has the radius that its strength there gives it."""
+    p = strain(scene, table)
+    for _ in range(_SETTLING):
+        p = strain(scene, table, strength(p))
+    return p
 
 
 class FallingStrength(FlowMechanism):

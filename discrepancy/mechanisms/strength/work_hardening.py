@@ -9,20 +9,26 @@ import numpy as np
 from ....impact import Scene
 from ....impact.scene import FlowStress
 from ....impact.strength import StrengthTable
+from ....models.hardening import mean_over_strains
 from ..base import Array, Literature, Parameter, Surroundings, Values
-from .flow_stress import Fallen, FallingStrength, FlowMechanism, StrengthProfile, strain
+from .flow_stress import Fallen, FallingStrength, FlowMechanism, StrengthProfile, settled_strain
 
 
 @dataclass(frozen=True, slots=True)
 class StrainProfile(StrengthProfile):
-    """1 + K (0.2 a/R)^n."""
+    """Mean of 1 + K p^n over the strains under the contact, as the law of metals that harden."""
 
     rise: float
     exponent: float
 
     def profile(self, scene: Scene, table: StrengthTable) -> Array:
         """Return relative strengths at the depths of `table`, shape (nodes,)."""
-        return np.asarray(1.0 + self.rise * strain(scene, table) ** self.exponent)
+        rise = self.rise * mean_over_strains(self.exponent)
+
+        def strength(p: Array) -> Array:
+            return np.asarray(1.0 + rise * p**self.exponent)
+
+        return strength(settled_strain(scene, table, strength))
 
 
 class WorkHardening(FlowMechanism):
@@ -30,7 +36,7 @@ class WorkHardening(FlowMechanism):
 
     name = "work-hardening"
     title = "the metal hardens as it is deformed"
-    equations = "S = S_y [1 + K (0.2 a/R)^n]"
+    equations = "S = S_y (1 + K p^n)"
     parameters = (
         Parameter(
             "hardening_ratio", "-", 0.15, 12.0, "log", 0.0,
@@ -55,7 +61,7 @@ class StrainSoftening(FallingStrength):
 
     name = "strain-softening"
     title = "the metal softens as it is deformed"
-    equations = "S = S_y/[1 + K (0.2 a/R)^n]"
+    equations = "S = S_y/(1 + K p^n)"
     parameters = (
         Parameter(
             "softening_ratio", "-", 0.15, 12.0, "log", 0.0,

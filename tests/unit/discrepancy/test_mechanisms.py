@@ -7,9 +7,12 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from dentscope.core import Material
+from dentscope.core import Material, Pair
+from dentscope.core.flow import Flow, ludwik
 from dentscope.discrepancy.mechanisms import MECHANISMS, Mechanism, Surroundings
 from dentscope.impact import Approach, Friction, Scene, Striker, scene_of, strike
+from dentscope.impact.force import F_FORCE
+from dentscope.impact.strength import strength_table
 from dentscope.models import LAWS
 
 STEEL = Material(E=200e9, nu=0.3, Sy=760e6, density=7800.0)
@@ -77,12 +80,28 @@ def test_one_more_influence_on_the_flow_stress_multiplies() -> None:
     harder = two.attach(scene(), {"size_length_m": 3.0 * R}, AROUND)  # sqrt(1 + 3) = 2
     both = one.attach(harder, {"hardening_ratio": 1.0, "hardening_exponent": 0.3}, AROUND)
     alone = one.attach(scene(), {"hardening_ratio": 1.0, "hardening_exponent": 0.3}, AROUND)
-    from dentscope.impact.strength import strength_table
-
     table = strength_table(scene().law, scene().pair)
     assert both.flow.profile(scene(), table) == pytest.approx(
         2.0 * alone.flow.profile(scene(), table), rel=1e-12
     )
+
+
+@pytest.mark.parametrize(("K", "n"), [(0.3, 0.36), (0.8, 0.2), (0.8, 0.36), (0.8, 0.7)])
+def test_hardening_is_that_of_the_law_of_metals_that_harden(K: float, n: float) -> None:
+    hard, soft = Material(E=210e9, nu=0.3, Sy=2e9), Material(E=200e9, nu=0.3, Sy=3e8)
+    curve = ludwik(Sy=3e8, K=K * 3e8, n=n)
+    pair, metal = (
+        Pair(hard, flat, ROD.tip_radius) for flat in (soft, soft.with_(flow=Flow(curve)))
+    )
+    table = strength_table(LAWS["fitted"], pair)
+    values = {"hardening_ratio": K, "hardening_exponent": n}
+    harder = named("work-hardening").attach(scene().with_(pair=pair), values, AROUND)
+    profile = harder.flow.profile(scene().with_(pair=pair), table)
+    seen = (table.depth > 3e-4 * pair.R) & (table.depth < 0.05 * pair.R)
+    force = np.exp(table.stated.force) * table.factors(profile)[F_FORCE]
+    off = np.abs(np.log(force[seen] / LAWS["hardening"].loading(metal, table.depth[seen])))
+    assert off.mean() < 0.016
+    assert off.max() < 0.026
 
 
 def test_air_takes_from_a_light_ball_and_not_from_a_rod() -> None:

@@ -1,9 +1,10 @@
 """What hardening and strain rate make of an impact: finite elements beside the diagnosis.
 
-The diagnosis takes both as a relative strength over depth, with Tabor's strain 0.2 a/R and rate
-0.4 v/a. Here the same flow laws act in every point of the metal: a ball is pressed as deep as its
-energy goes, with the clock of its speed, and unloaded. The rows of the proof's two simulations
-stand beside them; they share nothing with the diagnosis, so this is where both meet a third.
+The diagnosis takes both as a relative strength over depth, by the strains under the contact and
+the rate 0.4 v/a. Here the same flow laws act in every point of the metal: a ball is pressed as deep
+as its energy goes, with the clock of its speed, and unloaded. The rows of the proof's two
+simulations stand beside them; they share nothing with the diagnosis, so this is where both meet a
+third.
 """
 
 from __future__ import annotations
