@@ -5,7 +5,9 @@ Strains under a contact of radius a run from nothing at the elastic border to se
 body's flow stress: a plateau governs the outer part while the inner one has hardened. Each body has
 of the strain what it has of the plastic flow and is taken as perfectly plastic at that stress: the
 body that flows the more hardens and leaves flow to the other. The mean pressure is that of these
-perfectly plastic bodies at the same radius. How deep they then are differs, for what hardens sinks
+perfectly plastic bodies at the same radius; far beyond yield, that at the flow stress of Tabor's
+strain, as the similarity solution of power laws has it (B. Storakers, S. Biwa and P.-L. Larsson,
+Int. J. Solids Structures 34 (1997) 3061). How deep they then are differs, for what hardens sinks
 in where the other piles up. The square of the radius over R Delta is one in an elastic contact,
 whatever the exponent n of the mean flow stress, and goes with n between its plastic value at n = 0
 and one at n = 1: its logarithm is taken to fall as 1 - n, which meets both ends.
@@ -243,7 +245,18 @@ def equivalent(fitted: ClosedForm, pair: Pair, *, points: int) -> Equivalent:
         low, high = np.where(up, part, low), np.where(up, high, part)
         side = np.where(up, 1.0, -1.0)
     lowest = _with_strengths(bodies, found.sphere.lowest, found.flat.lowest)
-    return found._replace(weakest=fitted.numbers(lowest))
+    at = found.at._replace(F=found.at.F * _fuller(found))
+    return found._replace(at=at, weakest=fitted.numbers(lowest))
+
+
+def _fuller(e: Equivalent) -> Floats:
+    """Mean pressure far beyond yield over that at the mean flow stress.
+
+    There it is the one at Tabor's strain: of a power law the mean is span^n/(1 + fall n) of that.
+    """
+    phi = e.at.phi
+    n = phi * e.sphere.n + (1.0 - phi) * e.flat.n
+    return np.asarray(((1.0 + _FALL * n) / _SPAN**n) ** (e.y / (1.0 + e.y)))
 
 
 def coordinates_of(e: Equivalent) -> tuple[Floats, Floats]:
