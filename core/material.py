@@ -7,7 +7,7 @@ law itself owns no material number.
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 from typing import TYPE_CHECKING, Any
 
 from .errors import InputError
@@ -54,8 +54,11 @@ class Material:
     density: float = math.nan
     name: str = ""
     flow: Flow | None = None
+    strength: float = field(init=False, repr=False, compare=False)
+    """Yield strength [Pa]; infinite for an elastic or a rigid body."""
 
     def __post_init__(self) -> None:
+        object.__setattr__(self, "strength", math.inf if self.rigid else self.Sy)
         if self.rigid:
             return
         if not (self.E > 0.0 and math.isfinite(self.E)):
@@ -84,11 +87,6 @@ class Material:
     def plane_strain_modulus(self) -> float:
         """E / (1 - nu^2) [Pa]; infinite for a rigid body."""
         return math.inf if self.rigid else self.E / (1.0 - self.nu**2)
-
-    @property
-    def strength(self) -> float:
-        """Yield strength [Pa]; infinite for an elastic or a rigid body."""
-        return math.inf if self.rigid else self.Sy
 
     def with_(self, **changes: Any) -> Material:
         """Return a copy with some fields replaced."""
@@ -122,8 +120,11 @@ class Pair:
     sphere: Material
     flat: Material
     R: float
+    Sy_min: float = field(init=False, repr=False, compare=False)
+    """Yield strength of the weaker body [Pa]; infinite if neither yields."""
 
     def __post_init__(self) -> None:
+        object.__setattr__(self, "Sy_min", min(self.sphere.strength, self.flat.strength))
         if not (self.R > 0.0 and math.isfinite(self.R)):
             raise InputError(f"{self.R:g} is no radius", key="radius_m", allowed="a number above 0")
         if self.sphere.rigid and self.flat.rigid:
@@ -133,11 +134,6 @@ class Pair:
     def E_reduced(self) -> float:
         """Reduced modulus E' [Pa], 1/E' = (1-nu_s^2)/E_s + (1-nu_f^2)/E_f (Eq. 1.7)."""
         return 1.0 / (1.0 / self.sphere.plane_strain_modulus + 1.0 / self.flat.plane_strain_modulus)
-
-    @property
-    def Sy_min(self) -> float:
-        """Yield strength of the weaker body [Pa]; infinite if neither yields."""
-        return min(self.sphere.strength, self.flat.strength)
 
     @property
     def Sy_ratio(self) -> float:

@@ -8,8 +8,9 @@ speak the same language. A value that the file leaves out is `None`.
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Mapping
+from collections.abc import Callable
 from dataclasses import dataclass
+from types import MappingProxyType
 from typing import Annotated, Any, Literal
 
 from pydantic import (
@@ -28,6 +29,7 @@ from .inputs.toml_input import InputTable
 from .material import Material
 from .materials import filled
 from .observables import GAUGE_KEYS, NOISE_KEYS
+from .rig_numbers import RigNumbers, solid_inertia
 
 Number = Annotated[float, Field(strict=True)]
 
@@ -64,6 +66,12 @@ class Quantity(InputTable):
 def value_of(quantity: Quantity | None, otherwise: float = math.nan) -> float:
     """Return the value of a quantity, or `otherwise` where the file leaves it out."""
     return otherwise if quantity is None else quantity.value
+
+
+def quantities(table: InputTable, prefix: str = "") -> dict[str, float]:
+    """Return the values of a table's quantities, each under its key behind `prefix`."""
+    given = {name: getattr(table, name) for name in type(table).model_fields}
+    return {f"{prefix}{k}": q.value for k, q in given.items() if isinstance(q, Quantity)}
 
 
 @dataclass(frozen=True)
@@ -153,26 +161,18 @@ class MaterialTable(InputTable):
             raise ValueError(f"below E_Pa = {modulus.value:g}; both in Pa")
         return given
 
-    def to_material(
-        self, key: str = "", *, source: str = "", values: Mapping[str, float] | None = None,
-        E: float | None = None, nu: float | None = None,
-    ) -> Material:  # fmt: skip
-        """Return the `Material` at the stated values.
+    def numbers(self, key: str, *, source: str = "") -> dict[str, float]:
+        """Return the numbers of this table by their keys, of what is not stated those that follow.
 
         Parameters
         ----------
         key, source
             Table and file that an error names.
-        values
-            Numbers that replace stated ones, by `KEY.NAME`, for example `target.E_Pa`.
-        E, nu
-            What to take where the file says nothing [Pa, -].
 
         Raises
         ------
         InputError
-            Modulus or Poisson's ratio is missing and nothing stands in for it, or a number of a
-            rigid body is given.
+            A number of a rigid body's metal is given.
         """
         if self.rigid:
             for name in ("E_Pa", "nu", "Sy_Pa", "hardness_Pa"):
@@ -181,29 +181,24 @@ class MaterialTable(InputTable):
                         "given beside rigid = true", source=source, key=f"{key}.{name}",
                         allowed="left out: a rigid body does not deform",
                     )  # fmt: skip
-            return Material(E=math.nan, nu=math.nan, rigid=True, name=self.material)
+        return {**quantities(self, f"{key}."), f"{key}.Sy_Pa": value_of(self.strength, math.inf)}
 
-        def number(name: str, otherwise: float | None) -> float:
-            replaced = (values or {}).get(f"{key}.{name}")
-            if replaced is not None:
-                return replaced
-            stated: Quantity | None = self.strength if name == "Sy_Pa" else getattr(self, name)
-            if stated is not None:
-                return stated.value
-            if otherwise is None:
-                raise InputError(
-                    "missing", source=source, key=f"{key}.{name}",
-                    allowed="a number (or rigid = true)",
-                )  # fmt: skip
-            return otherwise
+    def to_material(self, key: str = "", *, source: str = "") -> Material:
+        """Return the `Material` at the stated values.
 
-        return Material(
-            E=number("E_Pa", E),
-            nu=number("nu", nu),
-            Sy=number("Sy_Pa", math.inf),
-            density=number("density_kg_m3", math.nan),
-            name=self.material,
-        )
+        Parameters
+        ----------
+        key, source
+            Table and file that an error names.
+
+        Raises
+        ------
+        InputError
+            Modulus or Poisson's ratio is missing, or a number of a rigid body is given.
+        """
+        numbers = self.numbers(key, source=source)
+        rigid = frozenset({key} if self.rigid else ())
+        return RigNumbers(numbers, rigid, {key: self.material}).material(key, source=source)
 
 
 def material_keys(body: Material) -> dict[str, float | bool]:
@@ -357,8 +352,22 @@ class StrikerTable(BodyTable):
         """
         if self.inertia_kg_m2 is not None:
             return self.inertia_kg_m2.value
-        m, r, L = self.mass_kg.value, self.body_radius, self.length
-        return m * (L**2 / 12.0 + r**2 / 4.0) if self.shape == "rod" else 0.4 * m * r**2
+        return solid_inertia(self.mass_kg.value, self.body_radius, self.length)
+
+    def numbers(self, key: str, *, source: str = "") -> dict[str, float]:
+        """Return the numbers of this table by their keys, of what is not stated those that follow.
+
+        The length of a sphere is 0; its radius, where that is left out, its tip's.
+
+        Raises
+        ------
+        InputError
+            A number of a rigid body's metal is given.
+        """
+        return {
+            **super().numbers(key, source=source), f"{key}.radius_m": self.body_radius,
+            f"{key}.length_m": self.length, f"{key}.inertia_kg_m2": self.inertia,
+        }  # fmt: skip
 
 
 class FrictionTable(InputTable):
@@ -459,3 +468,20 @@ class Rig(InputTable):
     def bodies(self) -> dict[str, BodyTable]:
         """Every body by the key of its table."""
         return {"target": self.target, **{f"strikers.{k}": t for k, t in self.strikers.items()}}
+
+    def numbers(self, *, source: str = "") -> RigNumbers:
+        """Return every number as stated, or as it follows; `source` names the file in errors.
+
+        Raises
+        ------
+        InputError
+            A number of a rigid body is given.
+        """
+        of = {**quantities(self), **quantities(self.friction, "friction."),
+              **quantities(self.environment, "environment.")}  # fmt: skip
+        for key, table in self.bodies.items():
+            of |= table.numbers(key, source=source)
+        return RigNumbers(
+            MappingProxyType(of), frozenset(k for k, t in self.bodies.items() if t.rigid),
+            {k: t.material for k, t in self.bodies.items()},
+        )  # fmt: skip

@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 from ...core.errors import InputError
 from ...core.material import Pair
 from ...core.observables import OBSERVABLES
-from ...core.rig import Rig
+from ...core.rig_numbers import RigNumbers
 from ...impact import CREEP, Approach, ForceTransform, Friction, Press, Scene, Striker
 from ...impact.files.bodies import bodies_of
 from ...models.base import ContactLaw
@@ -45,7 +45,7 @@ class Problem:
     name: str
     laws: Mapping[str, ContactLaw]
     """Of every striker's contact."""
-    rig: Rig
+    rig: RigNumbers
     conditions: tuple[Condition, ...]
     cells: Cells
     nuisances: tuple[Nuisance, ...]
@@ -56,6 +56,8 @@ class Problem:
     followed: tuple[Followed, ...] = ()
     weightless: frozenset[int] = frozenset()
     """Cells that are too far off everything else to count."""
+    baseline: str = "elastic-plastic"
+    """What the set takes its contact to do: `law` of its target."""
     sees_dents: bool = False
     """Whether diameters of dents were measured, so that the contact's radius matters."""
 
@@ -124,21 +126,23 @@ class Problem:
 
     def scenes(self, z: Array) -> list[Scene]:
         """Return the baseline scene of every condition at the unknowns z, shape (n_z,)."""
-        values = {n.name: n.at(float(x)) for n, x in zip(self.nuisances, z, strict=False)}
+        # written out: a method would be called for every number of every scene
+        moved = {
+            n.name: n.value * math.exp(n.spread * x) if n.log else n.value + n.spread * x
+            for n, x in zip(self.nuisances, z.tolist(), strict=False)
+        }
+        rig = self.rig.with_(moved)
         used = {c.striker for c in self.conditions}
         b = z[self.n_nuisances :]
         forces = {name: self.error.transform(b, name) for name in used}
-        if self.rig.target.law == "measured-restitution":
-            back = values["target.restitution"] ** 2
+        if self.baseline == "measured-restitution":
+            back = rig.of["target.restitution"] ** 2
             forces = {name: replace(f, given_back=back) for name, f in forces.items()}
-        parts = {
-            name: bodies_of(self.rig, name, values=values, E=ASSUMED_E, nu=ASSUMED_NU)
-            for name in used
-        }
-        scale = values.get("speed.scale", 1.0)
-        turn = values.get("angle.offset", 0.0)
-        mu = Friction(values.get("friction.coefficient", 0.0))
-        heavier = values.get(LOAD_SCALE, 1.0)
+        parts = {name: bodies_of(rig, name) for name in used}
+        scale = rig.of.get("speed.scale", 1.0)
+        turn = rig.of.get("angle.offset", 0.0)
+        mu = Friction(rig.of.get("friction.coefficient", 0.0))
+        heavier = rig.of.get(LOAD_SCALE, 1.0)
         return [
             self._scene(c, parts[c.striker], scale, turn, mu, forces[c.striker])
             if c.press is None
@@ -152,7 +156,7 @@ class Problem:
         pair, striker = parts
         rate = 0.0 if c.press is None else c.press.rate
         return Scene(
-            self.laws[c.striker], pair, striker, CREEP, gravity=self.rig.gravity_m_s2.value,
+            self.laws[c.striker], pair, striker, CREEP, gravity=self.rig.of["gravity_m_s2"],
             force=force, press=Press(load, rate),
         )  # fmt: skip
 
@@ -168,7 +172,7 @@ class Problem:
         approach = Approach(c.speed * scale, angle, c.tangential * scale, c.spin * scale)
         slides = leaning or c.tangential != 0.0 or c.spin != 0.0
         return Scene(
-            self.laws[c.striker], pair, striker, approach, gravity=self.rig.gravity_m_s2.value,
+            self.laws[c.striker], pair, striker, approach, gravity=self.rig.of["gravity_m_s2"],
             force=force, friction=friction if slides else Friction(),
         )  # fmt: skip
 
@@ -198,9 +202,10 @@ def problem_of(
     nuisances = nuisances_of(recordings, conditions)
     plain = without_curves(setup.target)
     laws = dict.fromkeys((c.striker for c in conditions), plain)
+    rig = setup.numbers(source=recordings.name).assuming(E_Pa=ASSUMED_E, nu=ASSUMED_NU)
     problem = Problem(
-        recordings.name, laws, setup, conditions, NO_CELLS, nuisances, NO_ERROR,
-        sees_dents="dent_diameter_m" in recordings.observed,
+        recordings.name, laws, rig, conditions, NO_CELLS, nuisances, NO_ERROR,
+        baseline=setup.target.law, sees_dents="dent_diameter_m" in recordings.observed,
     )  # fmt: skip
     solve = solve or setup.target.law == "table"
     problem, told = _of_its_metal(problem, recordings, solve, progress)

@@ -3,12 +3,12 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Iterable
+from collections.abc import Iterable, Mapping
 from dataclasses import dataclass, replace
 
 import numpy as np
 
-from ...core.rig import Quantity, StrikerTable
+from ...core.rig_numbers import solid_inertia
 from ...impact import CREEP, Press, Scene
 from ...impact.strength import strength_table
 from ..comparison.conditions import Condition
@@ -38,14 +38,14 @@ class Candidate:
     condition
         The impact.
     built
-        Table of a striker that is to be built; none for one of the set's own.
+        Numbers of a striker that is to be built; none for one of the set's own.
     like
         The set's striker of whose metal it is; itself if nothing is built.
     """
 
     change: str
     condition: Condition
-    built: StrikerTable | None = None
+    built: Mapping[str, float] | None = None
     like: str = ""
 
 
@@ -137,7 +137,7 @@ def candidates_of(problem: Problem) -> list[Candidate]:
         found += _angles(problem, fresh, float(np.median(speeds)))
     for name, c in sorted(first.items()):
         at = _moved(replace(c, after=-1), float(max(speeds)))
-        found += _built(problem.rig.strikers[name], name, at)
+        found += _built(problem.rig.striker(name), name, at)
     return found
 
 
@@ -166,42 +166,26 @@ def _angles(problem: Problem, c: Condition, speed: float) -> Iterable[Candidate]
             yield Candidate(text, trial)
 
 
-def _built(table: StrikerTable, name: str, c: Condition) -> Iterable[Candidate]:
+def _built(striker: Mapping[str, float], name: str, c: Condition) -> Iterable[Candidate]:
     """A rod of another length, a ball or a tip of another radius, with its own mass."""
     where = f"at {c.speed:.2g} m/s{_at(c)}"
+    mass, length, shank = striker["mass_kg"], striker["length_m"], striker["radius_m"]
     for ratio in (1.0 / _RATIO, _RATIO):
-        radius, mass = table.tip_radius_m.value * ratio, table.mass_kg.value
-        if table.length == 0.0:
-            changed = _changed(
-                table,
-                tip_radius_m=Quantity(value=radius),
-                inertia_kg_m2=None,
-                mass_kg=Quantity(value=mass * ratio**3),
-            )
+        radius = striker["tip_radius_m"] * ratio
+        tip = {**striker, "tip_radius_m": radius}
+        if length == 0.0:
+            m = mass * ratio**3
+            ball = {**tip, "radius_m": radius, "mass_kg": m,
+                    "inertia_kg_m2": solid_inertia(m, radius, 0.0)}  # fmt: skip
             text = f"build a ball like {name} with a radius of {1e3 * radius:.3g} mm"
             yield Candidate(
-                f"{text}, {where}", replace(c, striker=f"{name} x {ratio:g}"), changed, name
+                f"{text}, {where}", replace(c, striker=f"{name} x {ratio:g}"), ball, name
             )
             continue
-        changed = _changed(table, tip_radius_m=Quantity(value=radius))
         text = f"build a rod like {name} with a tip radius of {1e3 * radius:.3g} mm"
-        yield Candidate(
-            f"{text}, {where}", replace(c, striker=f"{name} R x {ratio:g}"), changed, name
-        )
-        if table.length_m is None:
-            continue
-        length = table.length * ratio
-        changed = _changed(
-            table,
-            length_m=Quantity(value=length),
-            mass_kg=Quantity(value=mass * ratio),
-            inertia_kg_m2=None,
-        )
-        text = f"build a rod like {name} but {length:.3g} m long"
-        yield Candidate(
-            f"{text}, {where}", replace(c, striker=f"{name} L x {ratio:g}"), changed, name
-        )
-
-
-def _changed(table: StrikerTable, **values: Quantity | None) -> StrikerTable:
-    return table.model_copy(update=values)
+        yield Candidate(f"{text}, {where}", replace(c, striker=f"{name} R x {ratio:g}"), tip, name)
+        m, long = mass * ratio, length * ratio
+        rod = {**striker, "length_m": long, "mass_kg": m,
+               "inertia_kg_m2": solid_inertia(m, shank, long)}  # fmt: skip
+        text = f"build a rod like {name} but {long:.3g} m long"
+        yield Candidate(f"{text}, {where}", replace(c, striker=f"{name} L x {ratio:g}"), rod, name)

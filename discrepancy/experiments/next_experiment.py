@@ -17,7 +17,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ...core.observables import OBSERVABLES
-from ...core.rig import Rig
+from ...core.rig_numbers import RigNumbers
 from ...core.unstated import unstated_equal
 from ..choice.odds import Odds
 from ..comparison.conditions import LOAD_CLASS
@@ -162,8 +162,10 @@ def _options(simulator: Simulator) -> tuple[list[tuple[Ints, Proposal]], Problem
     """What could be measured, each with its places among the new cells, and the wider problem."""
     problem = simulator.problem
     candidates = candidates_of(problem)
-    built = {c.condition.striker: c.built for c in candidates if c.built}
-    rig = problem.rig.model_copy(update={"strikers": {**problem.rig.strikers, **built}})
+    rig = problem.rig
+    for c in candidates:
+        if c.built:
+            rig = rig.with_striker(c.condition.striker, c.like, c.built)
     laws = {c.condition.striker: problem.laws[c.like or c.condition.striker] for c in candidates}
     conditions = (*problem.conditions, *(c.condition for c in candidates))
     seen = list(dict.fromkeys(problem.cells.observable))
@@ -208,12 +210,12 @@ def _options(simulator: Simulator) -> tuple[list[tuple[Ints, Proposal]], Problem
     return options, wider.with_error(problem.error)
 
 
-def _proposal(c: Candidate, measured: list[str], rig: Rig) -> Proposal:
-    table = rig.strikers[c.condition.striker]
+def _proposal(c: Candidate, measured: list[str], rig: RigNumbers) -> Proposal:
+    striker = rig.striker(c.condition.striker)
     trial: dict[str, str | float] = {
         "striker": c.condition.striker, "speed_m_s": c.condition.speed,
-        "angle_deg": math.degrees(c.condition.incidence), "mass_kg": table.mass_kg.value,
-        "tip_radius_m": table.tip_radius_m.value,
+        "angle_deg": math.degrees(c.condition.incidence), "mass_kg": striker["mass_kg"],
+        "tip_radius_m": striker["tip_radius_m"],
     }  # fmt: skip
     words = ", ".join(OBSERVABLES[n].label for n in measured)
     return Proposal(

@@ -161,7 +161,7 @@ def metal_of(recordings: RecordingSet) -> Metal:
     strain, back = _marks(wider, fit, mean, J)
     pressed = np.array([problem.conditions[k].press is not None for k in problem.cells.condition])
     best = next_mark(wider, known, weights(TOLD) @ fit.map, covariance, J)
-    table = problem.rig.bodies[body]
+    table = recordings.setup.bodies[body]
     stated = _strength(problem, body)
     source = "stated" if table.Sy_Pa is not None else "taken from the hardness, or assumed"
     return Metal(

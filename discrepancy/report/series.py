@@ -89,7 +89,7 @@ def againsts(v: Verdict) -> tuple[Against, ...]:
     Presses stand at the speed at which their striker's impact goes as deep; they alone, at their
     load.
     """
-    c, rigs = v.problem.conditions, v.problem.rig.strikers
+    c, of = v.problem.conditions, v.problem.rig.of
     total = np.array([math.hypot(one.speed, one.tangential) for one in c])
     loads = [one.press.load for one in c if one.press is not None]
     beside = " (of presses: as deep)" if loads else ""
@@ -105,15 +105,15 @@ def againsts(v: Verdict) -> tuple[Against, ...]:
         ),
         Against(
             "tip_radius_mm", "radius of the tip [mm]",
-            np.array([1e3 * rigs[one.striker].tip_radius_m.value for one in c]),
+            np.array([1e3 * of[f"strikers.{one.striker}.tip_radius_m"] for one in c]),
         ),
         Against(
             "length_mm", "length of the rod [mm]",
-            np.array([1e3 * rigs[one.striker].length for one in c]),
+            np.array([1e3 * of[f"strikers.{one.striker}.length_m"] for one in c]),
         ),
         Against(
             "mass_g", "mass of the striker [g]",
-            np.array([1e3 * rigs[one.striker].mass_kg.value for one in c]),
+            np.array([1e3 * of[f"strikers.{one.striker}.mass_kg"] for one in c]),
         ),
         Against(
             "temperature_K", "temperature [K]", np.array([one.around.temperature for one in c])

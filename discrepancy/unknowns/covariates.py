@@ -19,14 +19,14 @@ def covariates(problem: Problem) -> dict[str, Array]:
 
     A press lies at the speed at which its striker's impact goes as deep.
     """
-    c = problem.conditions
+    c, of = problem.conditions, problem.rig.of
     pressed = np.array([x.press is not None for x in c], dtype=float)
     raw = {
         "load" if pressed.all() else "impact speed": np.log([x.speed for x in c]),
         PRESSED: pressed,
-        "rod length": np.array([problem.rig.strikers[x.striker].length for x in c]),
-        "tip radius": np.log([problem.rig.strikers[x.striker].tip_radius_m.value for x in c]),
-        "striker mass": np.log([problem.rig.strikers[x.striker].mass_kg.value for x in c]),
+        "rod length": np.array([of[f"strikers.{x.striker}.length_m"] for x in c]),
+        "tip radius": np.log([of[f"strikers.{x.striker}.tip_radius_m"] for x in c]),
+        "striker mass": np.log([of[f"strikers.{x.striker}.mass_kg"] for x in c]),
         "angle": np.array([x.incidence for x in c]),
         "tangential speed": np.array([x.tangential for x in c]),
         "temperature": np.array([x.around.temperature for x in c]),

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Mapping
 from pathlib import Path
 
 from ...core.errors import InputError
@@ -11,56 +10,42 @@ from ...core.flow import Flow
 from ...core.inputs.flow_curve import read_flow_curve
 from ...core.inputs.flow_tables import HardeningTable
 from ...core.material import Material, Pair
-from ...core.rig import BodyTable, Rig, StrikerTable, value_of
+from ...core.rig import BodyTable
+from ...core.rig_numbers import RigNumbers
 from ..scene import Striker
 
 _SAME = 1e-3  # between a stated strength and a curve's first stress, that is then the strength
 
 
-def bodies_of(
-    rig: Rig, name: str, *, source: str = "", values: Mapping[str, float] | None = None,
-    E: float | None = None, nu: float | None = None,
-) -> tuple[Pair, Striker]:  # fmt: skip
+def bodies_of(rig: RigNumbers, name: str, *, source: str = "") -> tuple[Pair, Striker]:
     """Return pair and striker of a rig.
 
     Parameters
     ----------
     rig, name
-        The rig and one of its strikers.
+        The rig's numbers and one of its strikers.
     source
         File that an error names.
-    values
-        Numbers that replace stated ones, by key, for example `strikers.ball.mass_kg`.
-    E, nu
-        What to take where the rig says nothing [Pa, -].
 
     Raises
     ------
     InputError
-        A modulus or Poisson's ratio is missing, and nothing stands in for it.
+        A modulus or Poisson's ratio is missing.
     """
-    table, key = rig.strikers[name], f"strikers.{name}"
-    body = table.to_material(key, source=source, values=values, E=E, nu=nu)
-    flat = rig.target.to_material("target", source=source, values=values, E=E, nu=nu)
-    striker = striker_of(table, name, values)
-    return Pair(body, flat, striker.tip_radius), striker
+    body = rig.material(f"strikers.{name}", source=source)
+    striker = striker_of(rig, name)
+    return Pair(body, rig.material("target", source=source), striker.tip_radius), striker
 
 
-def striker_of(
-    table: StrikerTable, name: str, values: Mapping[str, float] | None = None
-) -> Striker:
-    """Return the rigid body of a striker; a mass among `values` scales the inertia with it."""
-    values, stated = values or {}, table.mass_kg.value
-    mass = values.get(f"strikers.{name}.mass_kg")
+def striker_of(rig: RigNumbers, name: str) -> Striker:
+    """Return the rigid body of a striker."""
+    of, key = rig.of, f"strikers.{name}"
     return Striker(
-        mass=stated if mass is None else mass,
-        tip_radius=values.get(f"strikers.{name}.tip_radius_m", table.tip_radius_m.value),
-        length=table.length,
-        radius=table.body_radius,
-        inertia=table.inertia if mass is None else table.inertia * mass / stated,
-        tip_flat_radius=value_of(table.tip_flat_radius_m, 0.0),
+        mass=of[f"{key}.mass_kg"], tip_radius=of[f"{key}.tip_radius_m"],
+        length=of[f"{key}.length_m"], radius=of[f"{key}.radius_m"],
+        inertia=of[f"{key}.inertia_kg_m2"], tip_flat_radius=of.get(f"{key}.tip_flat_radius_m", 0.0),
         name=name,
-    )
+    )  # fmt: skip
 
 
 def flowing(metal: Material, table: BodyTable, key: str, *, source: str) -> Material:

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Any, Literal
@@ -15,7 +15,8 @@ from ...core.errors import InputError, InputErrors
 from ...core.inputs.flow_tables import HardeningTable
 from ...core.inputs.toml_input import InputTable, parse_model, read_toml
 from ...core.material import Pair
-from ...core.rig import Height, Quantity, Rig, Speed, StrikerTable, TargetTable, value_of
+from ...core.rig import Height, Quantity, Rig, Speed, StrikerTable, TargetTable, quantities
+from ...core.rig_numbers import RigNumbers
 from ...models.base import ContactLaw
 from ...models.choose import follows_flow
 from ..beam import rod_modes
@@ -113,12 +114,13 @@ class Setup:
     file: SetupFile
     content: dict[str, Any]
     source: str
+    numbers: RigNumbers
     pair: Pair | None = None
     """In place of the file's two bodies."""
 
     def scene(self, law: ContactLaw, *, speed: float | None = None) -> Scene:
         """Return the scene of one law; `speed` replaces the file's normal approach speed [m/s]."""
-        found = _scene(self.file, law, source=self.source, speed=speed)
+        found = _scene(self.file, self.numbers, law, source=self.source, speed=speed)
         return found if self.pair is None else found.with_(pair=self.pair)
 
     @property
@@ -187,8 +189,17 @@ def setup_of(content: dict[str, Any], *, source: str) -> Setup:
     settings = Settings(max_steps=impact.max_steps, max_contacts=impact.max_contacts, flight=flight)
     return Setup(
         found.name or Path(source).stem, _laws(found), impact.repeats, found.sweep, settings, found,
-        content, source,
+        content, source, _numbers(found, source),
     )  # fmt: skip
+
+
+def _numbers(found: SetupFile, source: str) -> RigNumbers:
+    """The file's numbers, those of the blow among them; nothing yields in an elastic baseline."""
+    numbers = found.numbers(source=source)
+    elastic = found.bodies if found.target.law == "elastic" else ()
+    return numbers.with_(
+        {**quantities(found.impact, "impact."), **{f"{k}.Sy_Pa": math.inf for k in elastic}}
+    )
 
 
 def _laws(found: SetupFile) -> tuple[str, ...]:
@@ -237,14 +248,13 @@ def _mistakes(found: SetupFile, source: str) -> list[InputError]:
     return errors
 
 
-def _scene(found: SetupFile, law: ContactLaw, *, source: str, speed: float | None) -> Scene:
-    impact, target = found.impact, found.target
+def _scene(
+    found: SetupFile, numbers: RigNumbers, law: ContactLaw, *, source: str, speed: float | None
+) -> Scene:
+    impact, target, of = found.impact, found.target, numbers.of
     name = impact.striker or next(iter(found.strikers))
     rod = found.strikers[name].shape == "rod"
-    elastic = dict.fromkeys((f"{key}.Sy_Pa" for key in found.bodies), math.inf)
-    pair, striker = bodies_of(
-        found, name, source=source, values=elastic if target.law == "elastic" else None
-    )
+    pair, striker = bodies_of(numbers, name, source=source)
     if target.law == "elastic" and _curves(found):
         raise InputError(
             "a flow curve in an elastic baseline", source=source, key=_curves(found)[0],
@@ -257,14 +267,13 @@ def _scene(found: SetupFile, law: ContactLaw, *, source: str, speed: float | Non
             flat=flowing(pair.flat, target, "target", source=source),
         )  # fmt: skip
     support, radiation = Support(), 0.0
-    if impact.support == "sprung" and target.support_mass_kg is not None:
+    if impact.support == "sprung":
         support = sprung_support(
-            target.support_mass_kg.value,
-            value_of(target.support_stiffness_N_m, 0.0),
+            of["target.support_mass_kg"], of.get("target.support_stiffness_N_m", 0.0),
             damping=impact.support_damping_N_s_m,
-        )
-    elif impact.support == "plate" and target.thickness_m is not None:
-        support = plate_support(pair.flat, thickness=target.thickness_m.value)
+        )  # fmt: skip
+    elif impact.support == "plate":
+        support = plate_support(pair.flat, thickness=of["target.thickness_m"])
     elif impact.support == "half-space":
         radiation = half_space_radiation(pair.flat)
     edge = striker.radius if impact.finite_tip and rod else math.inf
@@ -277,22 +286,23 @@ def _scene(found: SetupFile, law: ContactLaw, *, source: str, speed: float | Non
         raise InputError(
             error.message, source=source, key="impact.modes", allowed=error.allowed
         ) from None
-    gravity = found.gravity_m_s2.value
     return Scene(
-        law, pair, striker, _approach(impact, gravity, rod=rod, speed=speed), gravity=gravity,
-        friction=Friction(value_of(found.friction.coefficient, 0.0)),
+        law, pair, striker, _approach(impact, of, rod=rod, speed=speed),
+        gravity=of["gravity_m_s2"], friction=Friction(of.get("friction.coefficient", 0.0)),
         force=ForceTransform(radiation=radiation, edge=edge), modes=modes, support=support,
     )  # fmt: skip
 
 
-def _approach(impact: ImpactTable, gravity: float, *, rod: bool, speed: float | None) -> Approach:
+def _approach(
+    impact: ImpactTable, of: Mapping[str, float], *, rod: bool, speed: float | None
+) -> Approach:
     """The motion at touch; a sphere's angle is that of its velocity, a rod's that of its axis."""
     angle = math.radians(impact.angle_deg)
-    stated = value_of(impact.impact_speed_m_s) if speed is None else speed
+    stated = of.get("impact.impact_speed_m_s", math.nan) if speed is None else speed
     normal, along = speeds_at_touch(
-        stated, value_of(impact.drop_height_m), angle, rod, gravity=gravity
+        stated, of.get("impact.drop_height_m", math.nan), angle, rod, gravity=of["gravity_m_s2"]
     )
     return Approach(
         float(normal), angle if rod else math.pi / 2.0,
-        value_of(impact.approach_tangential_m_s, float(along)), impact.approach_spin_rad_s.value,
+        of.get("impact.approach_tangential_m_s", float(along)), of["impact.approach_spin_rad_s"],
     )  # fmt: skip

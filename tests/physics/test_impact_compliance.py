@@ -115,7 +115,7 @@ def test_measured_spin_of_ceramic_balls() -> None:
     Nearer to the normal, psi < 3, one spring gives back too much of the tangential motion.
     """
     found = read(Path(__file__).resolve().parents[2] / "data/recordings/kharaz-2001-oblique")
-    pair, ball = bodies_of(found.setup, "ball")
+    pair, ball = bodies_of(found.setup.numbers(), "ball")
     # 1/G* = (2 - nu_1)/G_1 + (2 - nu_2)/G_2; k_t/k_n = 4 G*/E*
     soft = sum((2.0 - b.nu) * 2.0 * (1.0 + b.nu) / b.E for b in (pair.sphere, pair.flat))
     mu = value_of(found.setup.friction.coefficient)

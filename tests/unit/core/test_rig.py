@@ -59,13 +59,13 @@ def test_a_mistake_reads_the_same_in_every_file(model, place):
 
 def test_a_rig_gives_the_bodies_of_a_scene():
     rig = parse_model(BODIES, Rig, source="a.toml")
-    pair, rod = bodies_of(rig, "rod")
+    pair, rod = bodies_of(rig.numbers(), "rod")
     assert (pair.flat.E, pair.flat.Sy, pair.R) == (2.0e11, 3e8, 0.01)
     assert (pair.sphere.E, pair.sphere.Sy, pair.sphere.density) == (7e10, math.inf, 2700.0)
     # m (L^2/12 + r^2/4) by hand: 0.5 (0.0075 + 0.000016)
     assert rod.inertia == pytest.approx(0.003758, rel=1e-12)
     values = {"strikers.rod.mass_kg": 1.0, "target.E_Pa": 1e11, "strikers.rod.tip_radius_m": 0.02}
-    pair, heavy = bodies_of(rig, "rod", values=values)
+    pair, heavy = bodies_of(rig.numbers().with_(values), "rod")
     assert (pair.flat.E, pair.R, heavy.mass) == (1e11, 0.02, 1.0)
     assert heavy.inertia == pytest.approx(2.0 * rod.inertia, rel=1e-12)
     assert heavy.radius == rod.radius
@@ -74,8 +74,8 @@ def test_a_rig_gives_the_bodies_of_a_scene():
 def test_what_is_not_stated_is_a_mistake_unless_something_stands_in():
     rig = parse_model(changed(BODIES, ("target", "E_Pa"), None), Rig, source="a.toml")
     with pytest.raises(InputError, match=r"a\.toml: target\.E_Pa: missing"):
-        bodies_of(rig, "rod", source="a.toml")
-    assert bodies_of(rig, "rod", E=1e11)[0].flat.E == 1e11
+        bodies_of(rig.numbers(), "rod", source="a.toml")
+    assert bodies_of(rig.numbers().assuming(E_Pa=1e11), "rod")[0].flat.E == 1e11
 
 
 def test_a_case_takes_the_quantities_of_a_set():
@@ -117,3 +117,31 @@ def test_what_a_spheres_mass_follows_from_is_missed_in_one_line(changed, key) ->
     with pytest.raises(InputErrors) as failure:
         parse_model(given, StrikerTable, source="ball.toml")
     assert [error.key for error in failure.value.errors] == [key]
+
+
+def test_one_number_of_a_rig_is_replaced_and_the_rest_is_shared():
+    stated = parse_model(BODIES, Rig, source="a.toml").numbers()
+    assert stated.of["target.Sy_Pa"] == 3e8
+    assert (stated.of["strikers.rod.length_m"], stated.of["gravity_m_s2"]) == (0.3, 9.81)
+    other = stated.with_({"target.Sy_Pa": 4e8})
+    assert {k: x for k, x in other.of.items() if x != stated.of[k]} == {"target.Sy_Pa": 4e8}
+    assert stated.of["target.Sy_Pa"] == 3e8
+    with pytest.raises(TypeError):
+        stated.of["target.Sy_Pa"] = 1.0
+
+
+def test_a_strength_follows_from_the_hardness_and_a_rigid_body_has_no_number():
+    hard = changed(changed(BODIES, ("target", "Sy_Pa"), None), ("target", "hardness_Pa"), 2.8e9)
+    found = parse_model(hard, Rig, source="a.toml").numbers()
+    assert found.of["target.Sy_Pa"] == pytest.approx(1e9, rel=1e-12)
+    rigid = parse_model({**BODIES, "target": {"rigid": True}}, Rig, source="a.toml").numbers()
+    assert rigid.assuming(E_Pa=2e11, nu=0.3).material("target").rigid
+    assert "target.E_Pa" not in rigid.assuming(E_Pa=2e11).of
+
+
+def test_a_further_striker_is_of_the_metal_of_another():
+    stated = parse_model(BODIES, Rig, source="a.toml").numbers()
+    more = stated.with_striker("heavy", "rod", {**stated.striker("rod"), "mass_kg": 2.0})
+    assert more.material("strikers.heavy") == stated.material("strikers.rod")
+    assert bodies_of(more, "heavy")[1].mass == 2.0
+    assert "strikers.heavy.mass_kg" not in stated.of

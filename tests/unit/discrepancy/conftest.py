@@ -12,6 +12,7 @@ from typing import Any
 
 import numpy as np
 import pytest
+from dentscope.core.rig_numbers import RigNumbers
 from dentscope.discrepancy.choice.thresholds import Nulls
 from dentscope.discrepancy.comparison.cells import Cells
 from dentscope.discrepancy.comparison.conditions import Condition
@@ -102,6 +103,15 @@ def condition(speed: float = 1.0, striker: str = "ball", angle: float = math.pi 
     return Condition(striker, speed, angle, 0.0, 0.0, 0.0, 0.0, (0,), Surroundings())
 
 
+def rig_of(**strikers: dict[str, float]) -> RigNumbers:
+    """Return a rig of strikers by name, of one metal."""
+    return RigNumbers(
+        {f"strikers.{name}.{k}": x for name, numbers in strikers.items()
+         for k, x in numbers.items()},
+        metals={f"strikers.{name}": "" for name in strikers},
+    )  # fmt: skip
+
+
 def problem(
     value: Sequence[float], *, speeds: Sequence[float] = (), observable: str = "rebound_speed_m_s",
     derivative: Any = None, **more: Any,
@@ -114,10 +124,7 @@ def problem(
         np.ones(m, dtype=np.intp),
     )  # fmt: skip
     J = np.zeros((m, 0)) if derivative is None else np.array(derivative, dtype=float)
-    ball = SimpleNamespace(
-        length=0.0, tip_radius_m=SimpleNamespace(value=0.01), mass_kg=SimpleNamespace(value=0.03)
-    )
-    more.setdefault("rig", SimpleNamespace(strikers={"ball": ball}))
+    more.setdefault("rig", rig_of(ball={"length_m": 0.0, "tip_radius_m": 0.01, "mass_kg": 0.03}))
     return Problem(tuple(condition(v) for v in speeds), cells, J, **more)
 
 
@@ -159,6 +166,7 @@ def ranking_of(given: Problem, base: Fit, *, singles=(), pairs=(), screened=()) 
 @pytest.fixture(scope="session")
 def toy() -> SimpleNamespace:
     return SimpleNamespace(
+        rig_of=rig_of,
         Effect=Effect, Simulator=Simulator, condition=condition, problem=problem, fit_of=fit_of,
         screened_of=screened_of, nulls_of=nulls_of, ranking_of=ranking_of,
     )  # fmt: skip

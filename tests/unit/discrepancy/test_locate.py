@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from dataclasses import replace
-from types import SimpleNamespace
 
 import numpy as np
 import pytest
@@ -13,15 +12,13 @@ from dentscope.discrepancy.unknowns.covariates import covariates
 from dentscope.discrepancy.unknowns.drift import Drift
 
 SPEEDS = [1.0, np.e, np.e**2, np.e**3]
+BALL = {"length_m": 0.0, "tip_radius_m": 0.01, "mass_kg": 0.1}
 UNIT = np.random.default_rng(1).standard_normal((4000, 4))
 
 
 @pytest.fixture
 def located(toy):
-    tables = SimpleNamespace(
-        length=0.0, tip_radius_m=SimpleNamespace(value=0.01), mass_kg=SimpleNamespace(value=0.1)
-    )
-    rig = SimpleNamespace(strikers={"ball": tables})
+    rig = toy.rig_of(ball=BALL)
 
     def found(residual, level=0.95):
         given = toy.problem(residual, speeds=SPEEDS, rig=rig)
@@ -31,10 +28,7 @@ def located(toy):
 
 
 def test_only_what_varies_is_a_covariate(toy, located) -> None:
-    tables = SimpleNamespace(
-        length=0.0, tip_radius_m=SimpleNamespace(value=0.01), mass_kg=SimpleNamespace(value=0.1)
-    )
-    rig = SimpleNamespace(strikers={"ball": tables})
+    rig = toy.rig_of(ball=BALL)
     found = covariates(toy.problem([0.0] * 4, speeds=SPEEDS, rig=rig))
     # ln v = 0 ... 3: mean 3/2, standard deviation sqrt(5)/2
     assert list(found) == ["impact speed"]
@@ -83,12 +77,7 @@ def test_chance_gives_one_set_in_twenty_a_miss(located) -> None:
 
 
 def test_an_oblique_ball_has_an_angle_though_it_leans_nowhere(toy) -> None:
-    tables = SimpleNamespace(
-        length=0.0, tip_radius_m=SimpleNamespace(value=0.01), mass_kg=SimpleNamespace(value=0.1)
-    )
-    given = toy.problem(
-        [0.0] * 2, speeds=[1.0, 1.0], rig=SimpleNamespace(strikers={"ball": tables})
-    )
+    given = toy.problem([0.0] * 2, speeds=[1.0, 1.0], rig=toy.rig_of(ball=BALL))
     paths = [replace(c, tangential=t) for c, t in zip(given.conditions, (-1.0, 0.0), strict=True)]
     found = covariates(replace(given, conditions=tuple(paths)))
     assert found["angle"] == pytest.approx([-1.0, 1.0])

@@ -4,11 +4,9 @@ from __future__ import annotations
 
 import math
 from dataclasses import replace
-from types import SimpleNamespace
 
 import numpy as np
 import pytest
-from dentscope.core.rig import Quantity, StrikerTable
 from dentscope.discrepancy.choice.odds import Odds
 from dentscope.discrepancy.experiments.feasible import candidates_of
 from dentscope.discrepancy.experiments.foreseen import (
@@ -93,16 +91,14 @@ def test_rivals_are_those_that_share_the_probability(toy) -> None:
     assert names(a=0.99, b=0.01) == ["a", "b"]
 
 
-BALL = StrikerTable(shape="sphere", tip_radius_m=Quantity(value=0.01), mass_kg=Quantity(value=0.03))
-ROD = StrikerTable(
-    shape="rod", tip_radius_m=Quantity(value=0.01), mass_kg=Quantity(value=0.5),
-    length_m=Quantity(value=0.3), radius_m=Quantity(value=0.01),
-)  # fmt: skip
+BALL = {"tip_radius_m": 0.01, "mass_kg": 0.03, "length_m": 0.0, "radius_m": 0.01,
+        "inertia_kg_m2": 1.2e-6}  # fmt: skip
+ROD = {"tip_radius_m": 0.01, "mass_kg": 0.5, "length_m": 0.3, "radius_m": 0.01,
+       "inertia_kg_m2": 0.0037625}  # fmt: skip
 
 
 def on_rig(toy, **strikers):
-    rig = SimpleNamespace(strikers=strikers, model_copy=lambda update: SimpleNamespace(**update))
-    return toy.problem([0.0, 0.0], speeds=[0.5, 2.0], rig=rig)
+    return toy.problem([0.0, 0.0], speeds=[0.5, 2.0], rig=toy.rig_of(**strikers))
 
 
 def test_trials_lie_within_the_rigs_speeds_and_angles(toy) -> None:
@@ -143,13 +139,16 @@ def test_the_next_shot_of_an_oblique_ball_says_its_angle(toy) -> None:
 
 def test_a_body_of_another_size_has_another_mass_and_is_to_be_built(toy) -> None:
     balls = [c for c in candidates_of(on_rig(toy, ball=BALL)) if c.built]
-    assert sorted(c.built.mass_kg.value for c in balls) == pytest.approx([0.00375, 0.24])
+    assert sorted(c.built["mass_kg"] for c in balls) == pytest.approx([0.00375, 0.24])
     assert all(c.change.startswith("build a ball") for c in balls)
     rods = candidates_of(on_rig(toy, ball=ROD))
     longer = next(c for c in rods if "0.6 m long" in c.change)
-    assert longer.built.mass_kg.value == pytest.approx(1.0)
+    assert longer.built["mass_kg"] == pytest.approx(1.0)
     tip = next(c for c in rods if "tip radius of 20 mm" in c.change)
-    assert tip.built.mass_kg.value == 0.5
+    assert tip.built["mass_kg"] == 0.5
+    # m (L^2/12 + r^2/4), and 2/5 m r^2
+    assert longer.built["inertia_kg_m2"] == pytest.approx(1.0 * (0.03 + 2.5e-5))
+    assert {round(c.built["inertia_kg_m2"] / c.built["mass_kg"] * 1e6) for c in balls} == {10, 160}
 
 
 class Bench:
