@@ -70,8 +70,7 @@ def test_a_metal_that_hardens_goes_back_to_the_finite_elements(tmp_path):
     assert len(closed.rows) == len(verdict.ranking.problem.cells)
     # constants from the slower conditions say more of the fastest than no mechanism does
     out = {which: closed.miss(which, kept_out=True) for which in ("baseline", "closed_form")}
-    # (0.74 of the baseline's misses, which knows how hardened metals widen their contacts)
-    assert out["closed_form"] < 0.8 * out["baseline"]
+    assert out["closed_form"] < 0.7 * out["baseline"]
     # Tabor's strain stands for the strains of the elements: to the closed form's error and smoke's
     for row in closed.rows:
         near = 0.05 if row.observable == "restitution" else 0.12
