@@ -88,6 +88,11 @@ def _of_setup(content: Mapping[str, Any], file: Path) -> Ball:
         raise InputError(
             "a rod", source=str(file), key=f"strikers.{name}.shape", allowed='"sphere"'
         )
+    if setup.second is not None:
+        raise InputError(
+            "a second sphere", source=str(file), key="target.shape",
+            allowed='"flat": the fragments are for a ball on a flat and for two such balls',
+        )  # fmt: skip
     law = FOLLOWING if setup.laws[0] == FOLLOWING else "fitted"
     scene = setup.scene(LAWS[law])
     speeds = setup.sweep.impact_speed_m_s or (scene.approach.speed,)

@@ -3,10 +3,10 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 from pathlib import Path
-from typing import Any, Literal
+from typing import Annotated, Any, Literal
 
 from pydantic import Field
 
@@ -15,7 +15,17 @@ from ...core.errors import InputError, InputErrors
 from ...core.inputs.flow_tables import HardeningTable
 from ...core.inputs.toml_input import InputTable, parse_model, read_toml
 from ...core.material import Pair
-from ...core.rig import Height, Quantity, Rig, Speed, StrikerTable, TargetTable, quantities
+from ...core.rig import (
+    Height,
+    Mass,
+    Quantity,
+    Rig,
+    Speed,
+    StrikerTable,
+    TargetTable,
+    Within,
+    quantities,
+)
 from ...core.rig_numbers import RigNumbers
 from ...models.base import ContactLaw
 from ...models.choose import follows_flow
@@ -23,6 +33,7 @@ from ..beam import rod_modes
 from ..columns import Impacts
 from ..integrate import Settings
 from ..scene import Approach, ForceTransform, Friction, Scene, Support
+from ..second import SecondSphere
 from ..support import half_space_radiation, plate_support, sprung_support
 from .bodies import bodies_of, flowing
 from .sweep import SweepTable, mistakes_in, run_sweep
@@ -35,14 +46,24 @@ FOLLOWING = "hardening"
 """Ours of metals with a flow curve; it comes first where there is one."""
 
 
+def _is_radius(x: float) -> bool:
+    return 1e-9 <= abs(x) <= 1e3
+
+
 _TEXTS = ("format", "name", "description", "source", "licence")
 
 
 class FlowingTarget(TargetTable):
-    """`[target]` of an impact: also with a law of hardening."""
+    """`[target]` of an impact: also with a law of hardening, and a sphere in place of the flat."""
 
     hardening: HardeningTable | None = None
     """The flow stress grows with plastic strain."""
+    shape: Literal["flat", "sphere"] = "flat"  # type: ignore[assignment]
+    """The struck body is flat, or a second sphere."""
+    radius_m: Annotated[Quantity, Within(_is_radius, "a radius, or below 0 a seat's")] | None = None
+    """Radius of a second sphere; below 0 of a concave seat."""
+    mass_kg: Mass | None = None
+    """Mass of a second sphere that is free; left out: it is held."""
 
 
 class FlowingStriker(StrikerTable):
@@ -122,6 +143,11 @@ class Setup:
         """Return the scene of one law; `speed` replaces the file's normal approach speed [m/s]."""
         found = _scene(self.file, self.numbers, law, source=self.source, speed=speed)
         return found if self.pair is None else found.with_(pair=self.pair)
+
+    @property
+    def second(self) -> SecondSphere | None:
+        """The second sphere, where one is struck."""
+        return _second_of(self.numbers)
 
     @property
     def about(self) -> dict[str, str]:
@@ -245,7 +271,42 @@ def _mistakes(found: SetupFile, source: str) -> list[InputError]:
         add("target.thickness_m", "missing", "the thickness of the plate")
     if impact.support in ("plate", "half-space") and found.target.density_kg_m3 is None:
         add("target.density_kg_m3", "missing", "the density of a support that carries waves off")
+    errors += _of_a_second_sphere(found, source)
     return errors
+
+
+def _of_a_second_sphere(found: SetupFile, source: str) -> Iterator[InputError]:
+    """Yield what a second sphere needs, and what only a flat has."""
+    target, impact = found.target, found.impact
+    name = impact.striker or next(iter(found.strikers))
+    two = target.shape == "sphere"
+    rod = name in found.strikers and found.strikers[name].shape == "rod"
+    wrong = (
+        (two and target.radius_m is None, "target.radius_m", "missing", "of the second sphere"),
+        (two and rod, f"strikers.{name}.shape", "a rod on a sphere", '"sphere"'),
+        (two and impact.support != "rigid", "impact.support", repr(impact.support),
+         '"rigid": a second sphere is held, or free with target.mass_kg'),
+        (two and target.thickness_m is not None, "target.thickness_m", "of a sphere", "of a flat"),
+        (two and bool(found.sweep.mass_kg), "sweep.mass_kg", "with two spheres",
+         "strikers.NAME.mass_kg"),
+        (two and bool(found.sweep.approach_spin_rad_s), "sweep.approach_spin_rad_s",
+         "with two spheres", "impact.approach_spin_rad_s"),
+        (not two and target.radius_m is not None, "target.radius_m", "of a flat",
+         'with target.shape = "sphere"'),
+        (not two and target.mass_kg is not None, "target.mass_kg", "of a flat",
+         'with target.shape = "sphere"; support_mass_kg of a sprung support'),
+    )  # fmt: skip
+    for amiss, key, message, allowed in wrong:
+        if amiss:
+            yield InputError(message, source=source, key=key, allowed=allowed)
+
+
+def _second_of(numbers: RigNumbers) -> SecondSphere | None:
+    """Return the second sphere; none where a flat is struck."""
+    radius = numbers.of.get("target.radius_m")
+    if radius is None:
+        return None
+    return SecondSphere(radius, numbers.of.get("target.mass_kg", math.inf))
 
 
 def _scene(
@@ -286,11 +347,18 @@ def _scene(
         raise InputError(
             error.message, source=source, key="impact.modes", allowed=error.allowed
         ) from None
-    return Scene(
+    scene = Scene(
         law, pair, striker, _approach(impact, of, rod=rod, speed=speed),
         gravity=of["gravity_m_s2"], friction=Friction(of.get("friction.coefficient", 0.0)),
         force=ForceTransform(radiation=radiation, edge=edge), modes=modes, support=support,
     )  # fmt: skip
+    second = _second_of(numbers)
+    try:
+        return scene if second is None else second.facing(scene)
+    except InputError as error:
+        raise InputError(
+            error.message, source=source, key=error.key, allowed=error.allowed
+        ) from None
 
 
 def _approach(

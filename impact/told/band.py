@@ -25,6 +25,7 @@ from ...models.uncertainty import METAL, RECOVERY_EXPONENT, WITH_CURVE
 from ..integrate import strike
 from ..result import Impact
 from ..scene import ForceTransform, Scene
+from ..second import mirror_error
 from ..strength import NODES
 from .onset import largest_mean_pressure
 
@@ -94,6 +95,9 @@ def band_of(setup: Setup, law: ContactLaw) -> Band:
         parts[key] = {n: 0.5 * (ends[0][n] - ends[1][n]) / share for n in ends[0]}
     found_now, scene = last_blow(setup, law), setup.scene(law)
     of_law, of_metal = _sizes(scene, found_now)
+    if setup.second is not None and math.isfinite(scene.pair.Sy_min):
+        off = abs(float(mirror_error(scene.pair, found_now.peak_depth_m)))
+        of_law = of_law._replace(force=math.hypot(of_law.force, off))
     slopes, pressure = _slopes(setup, law), largest_mean_pressure(scene, found_now)
     for name, sizes in ((LAW, of_law), (METALS, of_metal)):
         parts[name] = _combined(sizes, slopes, found_now)

@@ -17,6 +17,7 @@ from ...models.choose import demand, follows_flow
 from ..integrate import strike
 from ..result import Impact
 from ..scene import Scene
+from ..second import mirror_error
 from ..support import half_space_radiation, plate_support
 from .onset import effective_mass, first_yield_speed, largest_mean_pressure
 
@@ -39,7 +40,7 @@ def checks(setup: Setup, law: ContactLaw, found: Impact) -> list[str]:
         parts = (
             _onset(scene, found), _plate(setup, scene, found), _waves(setup, scene, found),
             _gravity(setup, scene, found), _friction(scene), _rod(scene, found),
-            _bodies(setup, law),
+            _second(setup, scene, found), _bodies(setup, law),
         )  # fmt: skip
         return [line for part in parts for line in part]
 
@@ -92,7 +93,8 @@ def _plate(setup: Setup, scene: Scene, found: Impact) -> Iterator[str]:
 
 def _waves(setup: Setup, scene: Scene, found: Impact) -> Iterator[str]:
     flat = scene.pair.flat
-    if setup.file.impact.support != "rigid" or flat.rigid or math.isnan(flat.density):
+    held = setup.file.impact.support == "rigid" and setup.second is None
+    if not held or flat.rigid or math.isnan(flat.density):
         return
     radiates = replace(scene.force, radiation=half_space_radiation(flat))
     with_waves = strike(scene.with_(force=radiates), setup.settings)
@@ -137,6 +139,30 @@ def _rod(scene: Scene, found: Impact) -> Iterator[str]:
         yield (
             f"upright it cannot press with more than rho c v A = {limit:.4g} N before that wave is "
             "back"
+        )
+
+
+def _second(setup: Setup, scene: Scene, found: Impact) -> Iterator[str]:
+    second = setup.second
+    if second is None:
+        return
+    file = setup.file
+    ball = file.strikers[file.impact.striker or next(iter(file.strikers))]
+    yield (
+        f"two spheres: R = {scene.pair.R * 1e3:.4g} mm by 1/R = 1/R_1 + 1/R_2, mass "
+        f"{scene.striker.mass:.4g} kg; speeds and depths are those of one relative to the other"
+    )
+    if math.isfinite(second.mass):
+        own, other = second.parted(ball.mass_kg.value, scene.approach.speed, found.restitution)
+        yield (
+            f"along the approach the striker goes on with {own:.4g} m/s, the struck sphere leaves "
+            f"with {other:.4g} m/s"
+        )
+    if math.isfinite(scene.pair.Sy_min):
+        off = float(mirror_error(scene.pair, found.peak_depth_m))
+        yield (
+            f"where both yield 1/R is an approximation: two equal spheres carry {100.0 * off:+.1f} "
+            "% of force here, by their mirror; it is in the band"
         )
 
 

@@ -43,6 +43,7 @@ BARE = BALL.replace("Sy_Pa = 3.05e8\n", "").replace("angle_deg = 60\n", "")
 SPRUNG = BALL.replace("angle_deg", 'support = "sprung"\nangle_deg').replace(
     "thickness_m", "support_mass_kg = 0.5\nsupport_stiffness_N_m = 1e6\nthickness_m"
 )
+TWO = BALL.replace("thickness_m = 0.03", 'shape = "sphere"\nradius_m = 0.01\nmass_kg = 0.02')
 THIN = ROD.replace("radius_m = 0.005\nlength", "radius_m = 0.0001\nlength")
 VIBRATES = ROD.replace("angle_deg", "modes = 2\nangle_deg")
 LUDWIK, JOHNSON, VOCE = (
@@ -69,6 +70,10 @@ ACTS = {
     ("[target]", "thickness_m"): (BALL, "0.002"),
     ("[target]", "support_mass_kg"): (SPRUNG, "0.1"),
     ("[target]", "support_stiffness_N_m"): (SPRUNG, "1e8"),
+    ("[target]", "shape"): (TWO.replace('shape = "sphere"\nradius_m = 0.01\nmass_kg = 0.02', ""),
+                            '"sphere"\nradius_m = 0.01'),
+    ("[target]", "radius_m"): (TWO, "0.02"),
+    ("[target]", "mass_kg"): (TWO, "0.001"),
     ("[target]", "law"): (BALL, '"elastic"'),
     ("[target.hardening]", "law"): (
         BARE, LUDWIK % ("5e8", "0.3"), '{ law = "swift", K_Pa = 5e8, n = 0.3 }',
@@ -135,7 +140,7 @@ REFUSED = {
     ("[environment]", "temperature_K"): "293",
 }
 ONE = {
-    ("[target]", "shape"), ("[impact]", "striker"), ("[target]", "flow_curve"),
+    ("[impact]", "striker"), ("[target]", "flow_curve"),
     ("[strikers.NAME]", "flow_curve"),
 }  # fmt: skip
 """One choice alone; and what a test of its own looks at, with a file beside."""

@@ -1,0 +1,116 @@
+"""A second sphere in place of the flat: the one sphere on a flat that answers for both.
+
+Of two spheres the distance of their surfaces and the motion along them follow the same equations as
+of one sphere of radius R, 1/R = 1/R_1 + 1/R_2 (Hertz), and mass m, 1/m = 1/m_1 + 1/m_2: along the
+normal exactly, along the tangent for solid spheres, whose 1/m + r^2/I is 7/(2 m) whatever their
+size. A seat is a sphere of negative radius; a body that is held has no mass of its own.
+
+How far 1/R holds where both yield is known in one case: two equal spheres are each other's mirror,
+and so each is a sphere of its own on a rigid flat that is pressed half as deep. Finite elements of
+that sphere carry 3 % more at an approach of 0.02 R and 26 % more at 0.1 R than those of a sphere on
+a flat of its metal (E/341); the fitted law, which both sides are taken from, says so within 1.5 %.
+"""
+
+from __future__ import annotations
+
+import math
+import warnings
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from ..core.errors import InputError
+from ..core.material import Pair
+from ..models import LAWS
+from ..models.base import DomainWarning
+from .scene import Scene, Striker
+from .strength import Array
+
+
+@dataclass(frozen=True, slots=True)
+class SecondSphere:
+    """A sphere that is struck.
+
+    Parameters
+    ----------
+    radius
+        [m]; negative for a concave seat.
+    mass
+        [kg]; infinite where it is held.
+    """
+
+    radius: float
+    mass: float = math.inf
+
+    def facing(self, scene: Scene) -> Scene:
+        """Return the impact of one sphere on a flat that is this one's.
+
+        Parameters
+        ----------
+        scene
+            The striking sphere on a flat.
+
+        Raises
+        ------
+        InputError
+            The seat is no wider than the sphere.
+        """
+        striker = scene.striker
+        curvature = 1.0 / striker.tip_radius + 1.0 / self.radius
+        if not curvature > 0.0:
+            raise InputError(
+                f"{self.radius:g}", key="target.radius_m",
+                allowed=f"a seat wider than the sphere, below -{striker.tip_radius:g}, or above 0",
+            )  # fmt: skip
+        R = 1.0 / curvature
+        free = math.isfinite(self.mass)
+        # spin turns the surface as fast as before: r w
+        spin = scene.approach.spin * striker.tip_radius / R
+        return scene.with_(
+            pair=replace(scene.pair, R=R), gravity=0.0 if free else scene.gravity,
+            striker=Striker(mass=self.reduced(striker.mass), tip_radius=R, name=striker.name),
+            approach=replace(scene.approach, spin=spin),
+        )  # fmt: skip
+
+    def reduced(self, mass: float) -> float:
+        """Return m_1 m_2/(m_1 + m_2) [kg]; the striker's own where this one is held."""
+        return mass / (1.0 + mass / self.mass)
+
+    def parted(self, mass: float, speed: float, restitution: float) -> tuple[float, float]:
+        """Return the normal speeds after, along the approach: the striker's, this one's [m/s].
+
+        Momentum is kept, and the relative speed turns round: v_1 - v_2 = -e v.
+        """
+        share = 0.0 if math.isinf(self.mass) else mass / (mass + self.mass)
+        own = speed * share * (1.0 + restitution)
+        return own - restitution * speed, own
+
+
+def mirror_error(pair: Pair, delta: float | Array) -> Array:
+    """Return how much more two equal spheres carry than one on a flat is said to, relative, (...).
+
+    Parameters
+    ----------
+    pair
+        Sphere and flat of radius R; both are taken to be of the weaker metal.
+    delta
+        (...) approach of both [m].
+    """
+    law, body = LAWS["fitted"], pair.weaker
+    both = Pair(body, body, pair.R)
+    depth = np.asarray(delta, dtype=float)
+    with warnings.catch_warnings():
+        # a rigid partner is beyond the strengths that were fitted
+        warnings.simplefilter("ignore", DomainWarning)
+        return np.asarray(law.loading(mirrored(both), 0.5 * depth) / law.loading(both, depth) - 1.0)
+
+
+def mirrored(pair: Pair) -> Pair:
+    """Return the sphere on a rigid flat that is one half of two equal spheres.
+
+    Parameters
+    ----------
+    pair
+        Equal materials; R is that of both, half of one sphere's.
+    """
+    return Pair(pair.sphere, pair.flat.with_(rigid=True), 2.0 * pair.R)

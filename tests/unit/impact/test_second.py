@@ -1,0 +1,130 @@
+"""Two spheres: what the equivalent sphere on a flat must answer, and how far it holds."""
+
+import math
+import tomllib
+
+import numpy as np
+import pytest
+from dentscope.core import InputError, InputErrors, Material, Pair
+from dentscope.impact import Approach, Friction, Scene, Striker, strike
+from dentscope.impact.files.setup import setup_of
+from dentscope.impact.second import SecondSphere, mirror_error
+from dentscope.models import LAWS
+
+STEEL = Material(E=205e9, nu=0.3, Sy=600e6, density=7800.0)
+HARD = Material(E=205e9, nu=0.3, density=7800.0)
+BALL = Striker(mass=4.084e-3, tip_radius=5e-3)
+
+TWO = """
+gravity_m_s2 = 0
+[target]
+shape = "sphere"
+radius_m = 0.005
+mass_kg = 0.004084070449666731
+E_Pa = 2.05e11
+nu = 0.3
+Sy_Pa = 6.0e8
+density_kg_m3 = 7800
+[strikers.ball]
+shape = "sphere"
+tip_radius_m = 0.005
+mass_kg = 0.004084070449666731
+E_Pa = 2.05e11
+nu = 0.3
+Sy_Pa = 6.0e8
+density_kg_m3 = 7800
+[impact]
+impact_speed_m_s = 1
+laws = ["fitted"]
+"""
+ON_FLAT = TWO.replace(
+    'shape = "sphere"\nradius_m = 0.005\nmass_kg = 0.004084070449666731\n', "", 1
+)
+
+
+def scene(flat=STEEL, *, speed=1.0, law="fitted", angle=0.5 * math.pi, mu=0.0, spin=0.0):
+    pair = Pair(flat, flat, BALL.tip_radius)
+    approach = Approach(speed * math.sin(angle), tangential=speed * math.cos(angle), spin=spin)
+    return Scene(LAWS[law], pair, BALL, approach, gravity=0.0, friction=Friction(mu))
+
+
+def test_elastic_spheres_touch_for_as_long_as_hertz_says():
+    """T = 2.868 (m^2/(R E'^2 v))^(1/5), of two spheres with their reduced mass and radius."""
+    second = SecondSphere(3e-3, 2e-3)
+    found = strike(second.facing(scene(HARD, law="hertz")))
+    R, m = 1.0 / (1.0 / 5e-3 + 1.0 / 3e-3), 1.0 / (1.0 / 4.084e-3 + 1.0 / 2e-3)
+    expected = 2.8683 * (m**2 / (R * Pair(HARD, HARD, R).E_reduced ** 2 * 1.0)) ** 0.2
+    assert found.contact_time_s == pytest.approx(expected, rel=1e-3)
+    assert found.restitution == pytest.approx(1.0, abs=1e-9)
+
+
+@pytest.mark.parametrize("mass", [1e-3, 4.084e-3, math.inf])
+def test_momentum_and_energy_are_kept(mass):
+    second = SecondSphere(3e-3, mass)
+    for e in (0.0, 0.4, 1.0):
+        own, other = second.parted(BALL.mass, 2.0, e)
+        assert own - other == pytest.approx(-2.0 * e, abs=1e-12)
+        if math.isinf(mass):
+            assert other == 0.0
+            continue
+        assert BALL.mass * own + mass * other == pytest.approx(BALL.mass * 2.0, rel=1e-12)
+        before, after = BALL.mass * 4.0, BALL.mass * own**2 + mass * other**2
+        lost = second.reduced(BALL.mass) * 4.0 * (1.0 - e * e)
+        assert before - after == pytest.approx(lost, rel=1e-12, abs=1e-15)
+
+
+def test_a_huge_held_sphere_is_a_flat():
+    flat, near = strike(scene()), strike(SecondSphere(1e6).facing(scene()))
+    for name in ("restitution", "peak_depth_m", "peak_force_N", "contact_time_s"):
+        assert getattr(near, name) == pytest.approx(getattr(flat, name), rel=1e-6)
+
+
+def test_a_seat_has_to_be_wider_than_the_sphere():
+    wide = SecondSphere(-6e-3).facing(scene())
+    assert wide.pair.R == pytest.approx(30e-3)
+    with pytest.raises(InputError, match="wider than the sphere"):
+        SecondSphere(-4e-3).facing(scene())
+
+
+def test_spheres_that_slide_on_each_other_keep_the_impulse_of_friction():
+    """Sliding throughout takes mu (1 + e) v of the speed of one along the other."""
+    two = SecondSphere(BALL.tip_radius, BALL.mass).facing(
+        scene(HARD, law="hertz", angle=math.radians(20.0), speed=2.0, mu=0.05)
+    )
+    found = strike(two)
+    v = 2.0 * math.sin(math.radians(20.0))
+    lost = 2.0 * math.cos(math.radians(20.0)) - found.tangential_rebound_m_s
+    assert lost == pytest.approx(0.05 * 2.0 * v, rel=1e-3)
+
+
+def test_two_equal_spheres_are_each_others_mirror():
+    """Each is a sphere on a rigid flat at half the depth: finite elements of that, level quick."""
+    body = Material(E=205e9, nu=0.3, Sy=205e9 / 341.0)
+    deep = np.array([1e-3, 3e-3, 0.01, 0.02, 0.04, 0.08, 0.1])
+    solved = np.array([0.001, 0.0, 0.007, 0.027, 0.071, 0.178, 0.261])
+    off = mirror_error(Pair(body, body, 2.5e-3), deep * 2.5e-3)
+    assert off == pytest.approx(solved, abs=0.015)
+    assert mirror_error(Pair(HARD, HARD, 2.5e-3), 1e-9) == pytest.approx(0.0, abs=1e-4)
+
+
+def test_two_balls_lose_more_than_one_on_a_flat():
+    """17 % at 10 m/s; 19 % where all is plastic (Weir, Tallon, Chem. Eng. Sci. 60 (2005) 3637)."""
+    both = [setup_of(tomllib.loads(text), source="file") for text in (TWO, ON_FLAT)]
+    for speed, low, high in ((1.0, 0.08, 0.12), (10.0, 0.15, 0.20)):
+        two, one = (strike(s.scene(LAWS["fitted"], speed=speed)).restitution for s in both)
+        assert low < 1.0 - two / one < high
+
+
+def test_what_only_one_shape_has_is_refused_for_the_other():
+    rigid = 'laws = ["fitted"]\nsupport = "half-space"\n'
+    for text, key in (
+        (TWO.replace("radius_m = 0.005\n", "", 1), "target.radius_m"),
+        (ON_FLAT.replace("[target]", "[target]\nradius_m = 0.01"), "target.radius_m"),
+        (ON_FLAT.replace("[target]", "[target]\nmass_kg = 0.01"), "target.mass_kg"),
+        (TWO.replace("[target]", "[target]\nthickness_m = 0.01"), "target.thickness_m"),
+        (TWO.replace('laws = ["fitted"]\n', rigid), "impact.support"),
+        (TWO.replace("radius_m = 0.005\n", "radius_m = -0.004\n", 1), "target.radius_m"),
+    ):
+        with pytest.raises((InputError, InputErrors)) as told:
+            setup_of(tomllib.loads(text), source="file").scene(LAWS["fitted"])
+        assert key in str(told.value)
