@@ -37,9 +37,7 @@ density_kg_m3 = 7800
 impact_speed_m_s = 1
 laws = ["fitted"]
 """
-ON_FLAT = TWO.replace(
-    'shape = "sphere"\nradius_m = 0.005\nmass_kg = 0.004084070449666731\n', "", 1
-)
+ON_FLAT = TWO.replace('shape = "sphere"\nradius_m = 0.005\nmass_kg = 0.004084070449666731\n', "", 1)
 
 
 def scene(flat=STEEL, *, speed=1.0, law="fitted", angle=0.5 * math.pi, mu=0.0, spin=0.0):
