@@ -20,6 +20,7 @@ from .shared.terminal import say
 
 if TYPE_CHECKING:
     from ..discrepancy import Verdict
+    from ..discrepancy.baseline.laws import LawChoice
 
 
 def diagnose(
@@ -34,6 +35,12 @@ def diagnose(
     confirm: Annotated[
         bool, typer.Option("--confirm", help="Sampled evidence, all nulls, the own pair solved.")
     ] = False,
+    law: Annotated[
+        str | None,
+        typer.Option(
+            help="fitted, or table: the own pair solved; left out: solved if it has a flow curve."
+        ),
+    ] = None,
     quiet: Annotated[bool, typer.Option("--quiet", help="No progress line.")] = False,
     report: Annotated[
         bool, typer.Option("--report/--no-report", help="Write report.html, or verdict.json alone.")
@@ -72,7 +79,7 @@ def diagnose(
     show = _progress(quiet=quiet)
     if not quiet:
         tell_first_use()
-    verdict = run(recordings, seed=seed, confirm=confirm, progress=show)
+    verdict = run(recordings, seed=seed, confirm=confirm, law=_law(law), progress=show)
     show("")
     written = _written(verdict, out, report=report)
     for line in lines(verdict):
@@ -80,6 +87,19 @@ def diagnose(
     if solve:
         written += _solved(verdict, out, show)
     typer.echo(f"\nwritten: {', '.join(map(str, written))}")
+
+
+def _law(given: str | None) -> LawChoice | None:
+    from ..discrepancy.baseline.laws import LAW_CHOICES
+
+    if given is None:
+        return None
+    found = next((known for known in LAW_CHOICES if known == given), None)
+    if found is None:
+        raise InputError(
+            repr(given), source="command line", key="--law", allowed=", ".join(LAW_CHOICES)
+        )
+    return found
 
 
 def _progress(*, quiet: bool) -> Callable[[str], None]:

@@ -12,6 +12,7 @@ import numpy as np
 
 from ..core.threads import in_one_thread
 from ..recordings import RecordingSet
+from .baseline.laws import LawChoice
 from .choice.judge import Judge
 from .choice.odds import OUTSIDE
 from .choice.pairs import with_pairs
@@ -54,6 +55,7 @@ def diagnose(
     *,
     seed: int = 0,
     confirm: bool = False,
+    law: LawChoice | None = None,
     mechanisms: Sequence[Mechanism] = (),
     progress: Progress = lambda _: None,
 ) -> Verdict:
@@ -67,7 +69,10 @@ def diagnose(
         Of every draw; the same seed gives the same verdict.
     confirm
         Also sample the leading explanations' evidence, use the full null ensemble, and solve the
-        set's own pair by finite elements.
+        set's own pair by finite elements, unless `law` says otherwise.
+    law
+        Contact law of the baseline: `fitted`, or `table` for finite elements of the set's own pair.
+        None: `table` with `confirm`, where a body has a flow curve or the target asks for it.
     mechanisms
         One's own, tried beside those of the library and those that other packages add.
     progress
@@ -82,7 +87,8 @@ def diagnose(
     rng = np.random.default_rng(seed)
     progress("auditing the inputs")
     audit = audit_rows(recordings)
-    simulator = Simulator(problem_of(recordings, solve=confirm, progress=progress))
+    chosen = law or ("table" if confirm else None)
+    simulator = Simulator(problem_of(recordings, law=chosen, progress=progress))
 
     ranking = rank(simulator, mechanisms=(*MECHANISMS, *NAMELESS, *own), progress=progress)
     simulator = simulator.of(ranking.problem)

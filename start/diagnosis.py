@@ -21,6 +21,8 @@ from ..recordings.shipped import set_folder
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
+    from ..discrepancy.baseline.laws import LawChoice
+
 
 @dataclass(frozen=True)
 class Diagnosis:
@@ -102,6 +104,7 @@ def diagnose(
     *,
     seed: int = 0,
     confirm: bool = False,
+    law: LawChoice | None = None,
     mechanisms: Sequence[Mechanism] = (),
 ) -> Diagnosis:
     """Say what physics is missing in the simulation of a recording set.
@@ -115,6 +118,9 @@ def diagnose(
     confirm
         Also sample the evidence, use the full ensemble of sets with nothing missing, and solve the
         set's own pair by finite elements.
+    law
+        `fitted`, or `table` for finite elements of the set's own pair. Left out: `table` where a
+        body has a flow curve, with `confirm`, or where the set asks for it.
     mechanisms
         One's own, tried beside those of the library; example 8 has one.
 
@@ -124,5 +130,5 @@ def diagnose(
         One line for each mistake in the set.
     """
     verdict = verdict_of(read(set_folder(Path(folder))), seed=seed, confirm=confirm,
-                         mechanisms=mechanisms)  # fmt: skip
+                         law=law, mechanisms=mechanisms)  # fmt: skip
     return Diagnosis(verdict, story_of(verdict))

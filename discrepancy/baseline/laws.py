@@ -10,6 +10,7 @@ from __future__ import annotations
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import replace
 from functools import cache
+from typing import Literal, get_args
 
 from ...core.flow import Flow
 from ...core.material import Material, Pair
@@ -19,11 +20,15 @@ from ...models.anchored import anchored
 from ...models.base import ContactLaw, remembering
 from ...models.fitted import ClosedForm
 from ...models.table import table_law
+from ...models.uncertainty import METAL, WITH_CURVE
 from ...recordings import RecordingSet
 from .solve import solved_pair
 
 _APART = 0.02  # between a stated strength and that of the flow curve, from which a note says so
 Progress = Callable[[str], None]
+LawChoice = Literal["fitted", "table"]
+"""The fitted law, or finite elements of the set's own pair."""
+LAW_CHOICES: tuple[LawChoice, ...] = get_args(LawChoice)
 
 
 def without_curves(target: TargetTable) -> ContactLaw:
@@ -71,7 +76,10 @@ def laws_of(
             law = _anchored(plain, LAWS["hardening"], metal, stated)
         if solve:
             reached = [d for name in names for d in depths[name]]
-            table, told = solved_pair(recordings.name, metal, reached, progress)
+            known = METAL if metal.perfectly_plastic else WITH_CURVE
+            table, told = solved_pair(
+                recordings.name, metal, reached, progress, metal_error=known["force"]
+            )
             notes += told
             if table is not None:
                 one = table_law([table], name="finite elements of the pair")

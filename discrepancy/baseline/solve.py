@@ -16,14 +16,19 @@ from ...core.material import Pair
 from ...models.table import PairTable
 from ...models.table_file import read_table, write_table
 
+_WORTH = 0.25
+"""Of the metal's own error in force: what the mesh may be off. Less is lost in that."""
+_TOLD = 0.2  # of a solve, between two lines of progress
 _DEEPER = 1.3  # than the deepest impact: what a stated number that is off may add
 _TURNS, _DEPTHS = 5, 60
+_SOLVING = "solving the set's own pair by finite elements, kept for the next time"
 _DIGITS = 2  # of the depths: sets of one pair that go as deep share a solve
 
 
 def solved_pair(
-    name: str, pair: Pair, depths: Sequence[float], progress: Callable[[str], None]
-) -> tuple[PairTable | None, tuple[str, ...]]:
+    name: str, pair: Pair, depths: Sequence[float], progress: Callable[[str], None], *,
+    metal_error: float,
+) -> tuple[PairTable | None, tuple[str, ...]]:  # fmt: skip
     """Return the table of a pair, and why there is none where it could not be made.
 
     Parameters
@@ -35,25 +40,42 @@ def solved_pair(
     depths
         Delta/R of the peaks of the impacts.
     progress
-        Called with a line before a solve.
+        Called with a line before a solve, and as it goes on.
+    metal_error
+        Relative standard deviation of the force, of the metal to what is solved; the level of
+        accuracy is the coarsest that is off by less than a quarter of it.
     """
     low, high = (_rounded(d, math.ceil) for d in (min(depths), max(depths)))
-    path = cache_folder("pairs") / f"{_digest(pair, low, high)}.json"
+    level = _level(pair, high, metal_error)
+    path = cache_folder("pairs") / f"{_digest(pair, low, high, level)}.json"
     if path.exists():
         try:
             return replace(read_table(path).tables[0], pair=pair), ()
         except InputError:  # cut short or of an older form: made again
             path.unlink()
-    progress("solving the set's own pair by finite elements, kept for the next time")
+    progress(_SOLVING)
     try:
-        table = _solved(pair, low, high)
+        table = _solved(pair, low, high, level, progress)
     except InputError as error:
         return None, (f"the pair of {name} was not solved by finite elements: {error}",)
     write_table(table, path)
     return table, ()
 
 
-def _solved(pair: Pair, low: float, high: float) -> PairTable:
+def _level(pair: Pair, high: float, metal_error: float) -> str:
+    """The coarsest level whose stated error of the force is small beside the metal's."""
+    from ...fem.results.uncertainty import largest_force_error
+
+    deepest = _DEEPER * high
+    for level in ("quick", "production"):
+        if largest_force_error(level, pair, deepest) <= _WORTH * metal_error:
+            return level
+    return "production"
+
+
+def _solved(
+    pair: Pair, low: float, high: float, level: str, progress: Callable[[str], None]
+) -> PairTable:
     # loaded when there is something to solve: most diagnoses need none of it
     from ... import fem
     from ...fem.problem import DEEPEST
@@ -70,8 +92,16 @@ def _solved(pair: Pair, low: float, high: float) -> PairTable:
     problem = fem.ContactProblem(
         pair=pair, depths=fem.geometric_depths(first, last, _DEPTHS), unload_from=turns
     )
-    accuracy = fem.Accuracy.production()
-    solution = fem.solve(problem, accuracy=accuracy)
+    accuracy = {"quick": fem.Accuracy.quick, "production": fem.Accuracy.production}[level]()
+    told = 0.0
+
+    def tell(done: float) -> None:
+        nonlocal told
+        if done >= told + _TOLD:
+            told = done
+            progress(f"{_SOLVING}: {done:.0%}")
+
+    solution = fem.solve(problem, accuracy=accuracy, progress=tell)
     reached = solution.loading.delta[-1] / pair.R if len(solution.loading.delta) else 0.0
     if reached < high:
         raise InputError(str(solution.outcome), key="law", allowed="a pair that can be solved")
@@ -83,12 +113,12 @@ def _rounded(x: float, way: Callable[[float], int]) -> float:
     return float(way(x / unit) * unit)
 
 
-def _digest(pair: Pair, low: float, high: float) -> str:
+def _digest(pair: Pair, low: float, high: float, level: str) -> str:
     from ...fem.problem import NUMERICS_VERSION
 
     bodies = [
         {"E": b.E, "nu": b.nu, "Sy": b.Sy, "flow": b.flow and asdict(b.flow)}
         for b in (pair.sphere, pair.flat)
     ]
-    told = json.dumps([NUMERICS_VERSION, _TURNS, _DEPTHS, low, high, bodies], sort_keys=True)
+    told = json.dumps([NUMERICS_VERSION, level, _TURNS, _DEPTHS, low, high, bodies], sort_keys=True)
     return hashlib.sha256(told.encode()).hexdigest()[:24]

@@ -17,7 +17,7 @@ from ...impact import CREEP, Approach, ForceTransform, Friction, Press, Scene, S
 from ...impact.files.bodies import bodies_of
 from ...models.base import ContactLaw
 from ...recordings import RecordingSet
-from ..baseline.laws import laws_of, without_curves
+from ..baseline.laws import LawChoice, laws_of, without_curves
 from ..curves import readings_of
 from ..mechanisms.arithmetic import as_deep, deepest
 from ..unknowns.drift import Drift
@@ -178,7 +178,7 @@ class Problem:
 
 
 def problem_of(
-    recordings: RecordingSet, *, solve: bool = False,
+    recordings: RecordingSet, *, law: LawChoice | None = None,
     progress: Callable[[str], None] = lambda _: None,
 ) -> Problem:  # fmt: skip
     """Return what there is to compare in a recording set.
@@ -187,8 +187,9 @@ def problem_of(
     ----------
     recordings
         The set.
-    solve
-        Whether its own pair is solved by finite elements, which its target may ask for too.
+    law
+        Contact law of the baseline. None: finite elements of the set's own pair where a body has a
+        flow curve or the target asks for them, else the fitted law.
     progress
         Called with a line before a solve.
 
@@ -207,7 +208,8 @@ def problem_of(
         recordings.name, laws, rig, conditions, NO_CELLS, nuisances, NO_ERROR,
         baseline=setup.target.law, sees_dents="dent_diameter_m" in recordings.observed,
     )  # fmt: skip
-    solve = solve or setup.target.law == "table"
+    asked = setup.target.law == "table" or bool(recordings.flows)
+    solve = law == "table" or (law is None and asked)
     problem, told = _of_its_metal(problem, recordings, solve, progress)
     problem = problem.with_error()
     stated = problem.scenes(np.zeros(problem.n_z))

@@ -18,6 +18,7 @@ from typing import Any
 import numpy as np
 import numpy.typing as npt
 
+from ...core.material import Pair
 from ..problem import Accuracy, ContactProblem, critical_depth
 from ..solution import Curve
 
@@ -57,6 +58,16 @@ class Uncertainty:
 @cache
 def _mesh_errors() -> dict[str, Any]:
     return dict(json.loads(MESH_ERRORS_FILE.read_text(encoding="utf-8")))
+
+
+def largest_force_error(level: str, pair: Pair, depth: float) -> float:
+    """Largest relative uncertainty of the force up to Delta/R = depth at a level of accuracy."""
+    content = _mesh_errors()
+    knots = np.array(content["depth_over_first_yield"])
+    last = max(depth / critical_depth(pair), knots[0])
+    row = np.array(content["levels"][level]["force"])
+    reached = np.append(row[knots <= last], np.interp(math.log(last), np.log(knots), row))
+    return float(reached.max())
 
 
 def discretisation_uncertainty(

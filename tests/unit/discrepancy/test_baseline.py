@@ -5,7 +5,6 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from dentscope import fem
 from dentscope.core.inputs.flow_curve import SPECIMENS
 from dentscope.discrepancy import diagnose
 from dentscope.discrepancy.baseline import solve
@@ -89,7 +88,7 @@ def misfit(problem) -> float:
 
 def test_a_baseline_that_follows_the_curves_meets_a_metal_that_hardens(tmp_path, solved):
     plain = problem_of(read(set_of(tmp_path / "plain", solved, curves=False)))
-    curved = problem_of(read(set_of(tmp_path / "curved", solved, curves=True)))
+    curved = problem_of(read(set_of(tmp_path / "curved", solved, curves=True)), law="fitted")
     assert plain.law_name == "fitted"
     assert curved.law_name == "fitted, at hardening"
     assert misfit(curved) < 0.15 * misfit(plain)
@@ -119,7 +118,8 @@ def test_a_strength_read_from_a_curve_is_that_of_a_specimen(tmp_path, solved):
 
 
 def test_a_curve_is_scaled_to_a_stated_strength_and_a_note_says_so(tmp_path, solved):
-    problem = problem_of(read(set_of(tmp_path / "off", solved, curves=True, stated=1.2)))
+    found = read(set_of(tmp_path / "off", solved, curves=True, stated=1.2))
+    problem = problem_of(found, law="fitted")
     assert any("scaled to the stated" in note for note in problem.notes)
     law = problem.laws["ball"]
     curve = solved.pair.flat.flow.curve
@@ -131,38 +131,52 @@ def test_the_own_pair_is_solved_once_and_kept(tmp_path, solved, monkeypatch):
     monkeypatch.setenv("XDG_CACHE_HOME", str(tmp_path / "cache"))
     asked = []
 
-    def of_the_elements(pair, low, high):
-        asked.append((low, high))
+    def of_the_elements(pair, low, high, level, progress):
+        asked.append(level)
         return PairTable(pair, solved.curve, solved.turns)
 
     monkeypatch.setattr(solve, "_solved", of_the_elements)
-    problem = problem_of(found, solve=True)
+    # a flow curve is enough to have the pair solved
+    problem = problem_of(found)
     assert problem.law_name.endswith("finite elements of the pair")
     # what is left is that these turning points are two, not five
     assert misfit(problem) < 2.0
     assert problem.error.parts["force"][0] < 2e-3
-    again = problem_of(found, solve=True)
-    assert len(asked) == 1
+    again = problem_of(found, law="table")
+    assert asked == ["quick"]
     assert misfit(again) == pytest.approx(misfit(problem), rel=1e-6)
     kept = next((tmp_path / "cache").rglob("pairs/*.json"))
     kept.write_text(kept.read_text()[:500])
-    problem_of(found, solve=True)
+    problem_of(found)
+    assert len(asked) == 2
+    assert problem_of(found, law="fitted").law_name == "fitted, at hardening"
     assert len(asked) == 2
 
 
 def test_a_strength_that_is_assumed_is_not_worth_a_solve(tmp_path, solved, monkeypatch):
     monkeypatch.setattr(solve, "_solved", lambda *_: pytest.fail("solved"))
     folder = set_of(tmp_path / "bare", solved, curves=False, stated=0.0)
-    problem = problem_of(read(folder), solve=True)
+    problem = problem_of(read(folder), law="table")
     assert problem.law_name == "fitted"
     assert any("target.Sy_Pa is not stated" in note for note in problem.notes)
+
+
+def test_the_level_is_the_coarsest_that_is_small_beside_the_metal(solved):
+    pair, onset = solved.pair, solved.yields_at
+    levels = [solve._level(pair, 0.02, error) for error in (WITH_CURVE["force"], METAL["force"])]
+    assert levels == ["quick", "quick"]
+    assert solve._level(pair, 0.02, 0.005) == "production"
+    # just beyond first yield both are as good
+    assert solve._level(pair, 2.0 * onset, 0.01) == "quick"
 
 
 @pytest.mark.fe
 def test_finite_elements_take_the_place_of_the_closed_form(tmp_path, solved, monkeypatch):
     """Solved here, quickly, for the depths of the set; the published solve recorded it finely."""
-    monkeypatch.setattr(fem.Accuracy, "production", fem.Accuracy.quick)
     monkeypatch.setenv("XDG_CACHE_HOME", str(tmp_path / "cache"))
-    problem = problem_of(read(set_of(tmp_path / "fe", solved, curves=True)), solve=True)
+    said = []
+    found = read(set_of(tmp_path / "fe", solved, curves=True))
+    problem = problem_of(found, progress=said.append)
+    assert any(line.endswith("%") for line in said)
     assert not any("not solved" in note for note in problem.notes)
     assert misfit(problem) < 2.5
