@@ -75,7 +75,7 @@ def draw_section(snapshot: Snapshot, path: Path, *, Sy_min: float, extent: float
     axis = figure.subplots()
     stress, strain = snapshot.von_mises / Sy_min, 100.0 * snapshot.plastic_strain
     flows = bool((strain > 0.0).any())
-    sides = [(-1.0, stress, "turbo", "von Mises stress over the weaker body's strength [-]")]
+    sides = [(-1.0, stress, "turbo", "von Mises stress over the weaker strength [-]")]
     sides += [(1.0, strain, "magma_r", "equivalent plastic strain [%]") if flows
               else (1.0, *sides[0][1:])]  # fmt: skip
     near = np.hypot(*points[snapshot.quads].mean(axis=1).T) < 2.0 * scale * extent
@@ -101,7 +101,7 @@ def draw_section(snapshot: Snapshot, path: Path, *, Sy_min: float, extent: float
         ylabel=f"height z [{unit}]",
         title=f"approach {snapshot.depth:.3g} of the sphere's radius, deformed, to scale",
     )  # fmt: skip
-    return write_figure(figure, path, dpi=140)
+    return write_figure(figure, path, dpi=140, bbox_inches="tight")
 
 
 def _shaded(axis: Any, points: Floats, quads: npt.NDArray[np.int64], values: Floats) -> Any:

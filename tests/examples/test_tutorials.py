@@ -154,3 +154,14 @@ def test_indentation_from_tension(followed: Callable[[str], dict[str, Any]]) -> 
     radius = names["radius"]
     height = 5.0 - math.sqrt(25.0 - radius**2)
     assert names["brinell"] == pytest.approx(500.0 / (math.pi * 10.0 * height), rel=0.002)
+
+
+def test_three_questions(followed: Callable[[str], dict[str, Any]]) -> None:
+    """The sheet's effect was made: nothing but the rate, or what looks the same, may lead."""
+    followed("three-questions")
+    assert "fix wall/gran" in Path("build/dem/lammps.in").read_text()
+    verdict = json.loads(Path("build/diagnose/verdict.json").read_text())
+    named = {tuple(verdict["mechanisms"]), *map(tuple, verdict["alternatives"])}
+    assert ("strain-rate-hardening",) in named
+    assert len(named) <= 3
+    assert "press" in json.dumps(verdict["next_experiment"])
