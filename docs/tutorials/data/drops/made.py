@@ -2,13 +2,12 @@
 
     python made.py | iconv -f utf8 -t cp1252 > Fallversuche.csv
 
-The flat's strength is 250 MPa times 1 + (r/40 s)^(1/5) (Cowper and Symonds, mild steel), one factor a
-blow from its mean rate 0.4 v/a; noise of 1.5 % in the rebound height, 1 % in the diameter.
+The flat's strength is 250 MPa times 1 + (r/40 s)^(1/5) (Cowper and Symonds, mild steel), one
+factor a blow from its mean rate 0.4 v/a; noise of 1.5 % in the rebound height, 1 % in the diameter.
 """
 
-import numpy as np
-
 import dentscope as ds
+import numpy as np
 
 RADIUS, GRAVITY = 5e-3, 9.81
 BALL = ds.Material(E=210e9, nu=0.3, Sy=2.2e9, density=7800)
