@@ -33,7 +33,7 @@ from dentscope.core.compiled import keep_compiled_code
 if TYPE_CHECKING:
     from dentscope.core import Material, Pair
     from dentscope.core.materials import material
-    from dentscope.impact import blow as impact  # noqa: F401 - the stage itself can be called
+    from dentscope.impact import blow as impact  # the stage itself can be called
     from dentscope.models import LAWS
     from dentscope.start import case, compare_laws, diagnose
 
@@ -53,7 +53,7 @@ _STAGES = (
     "discrepancy", "start",
 )  # fmt: skip
 
-__all__ = ["LAWS", "Material", "Pair", "case", "compare_laws", "diagnose", "material"]
+__all__ = ["LAWS", "Material", "Pair", "case", "compare_laws", "diagnose", "impact", "material"]
 
 keep_compiled_code()
 
