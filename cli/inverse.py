@@ -54,27 +54,7 @@ def inverse(
         rod, rows = studies.module("chapter5").thesis_rows()
     else:
         rod, rows = read_inverse(file)
-    head: tuple[str, ...] = (
-        "trial", "alpha", "to last\nparting [ms]", "mean\nforce [N]",
-        "back at\nsurface [ms]", "mean\nforce [N]",
-    )  # fmt: skip
-    cells: list[tuple[str, ...]] = [
-        (
-            row.name, _cell(row, "alpha", 1.0, "{:.4f}"), _cell(row, "duration", 1e3, "{:.3f}"),
-            _cell(row, "mean_force", 1.0, "{:.0f}"), _cell(row, "return_duration", 1e3, "{:.3f}"),
-            _cell(row, "return_force", 1.0, "{:.0f}"),
-        )
-        for row in rows
-    ]  # fmt: skip
-    if any(math.isfinite(row.printed_duration) for row in rows):
-        head = (*head, "printed [ms]", "printed [N]")
-        cells = [
-            (
-                *cell, _or_dash(row.printed_duration * 1e3, "{:.2f}"),
-                _or_dash(row.printed_force, "{:.0f}"),
-            )
-            for cell, row in zip(cells, rows, strict=True)
-        ]  # fmt: skip
+    head, cells = _shown(rows)
     show_table(
         console, head, cells,
         title="duration and mean force from depth, sliding length and restitution",
@@ -91,6 +71,32 @@ def inverse(
     if file is None:
         studies.module("chapter5").tables(console, law or ["ghaednia"])
     console.print(f"written: {out / f'{stem}.csv'}, {out / f'{stem}-alpha.png'}", soft_wrap=True)
+
+
+def _shown(rows: list[Any]) -> tuple[tuple[str, ...], list[tuple[str, ...]]]:
+    """The table: what is inferred, and what was printed beside where a trial says that."""
+    head: tuple[str, ...] = (
+        "trial", "alpha", "to last\nparting [ms]", "mean\nforce [N]",
+        "back at\nsurface [ms]", "mean\nforce [N]",
+    )  # fmt: skip
+    cells: list[tuple[str, ...]] = [
+        (
+            row.name, _cell(row, "alpha", 1.0, "{:.4f}"), _cell(row, "duration", 1e3, "{:.3f}"),
+            _cell(row, "mean_force", 1.0, "{:.0f}"), _cell(row, "return_duration", 1e3, "{:.3f}"),
+            _cell(row, "return_force", 1.0, "{:.0f}"),
+        )
+        for row in rows
+    ]  # fmt: skip
+    if any(math.isfinite(x) for row in rows for x in (row.printed_duration, row.printed_force)):
+        head = (*head, "printed [ms]", "printed [N]")
+        cells = [
+            (
+                *cell, _or_dash(row.printed_duration * 1e3, "{:.2f}"),
+                _or_dash(row.printed_force, "{:.0f}"),
+            )
+            for cell, row in zip(cells, rows, strict=True)
+        ]  # fmt: skip
+    return head, cells
 
 
 def _cell(row: Any, name: str, scale: float, form: str) -> str:

@@ -28,6 +28,9 @@ def check(folder: SetFolder) -> None:
     found = read(set_folder(folder))
     strikers = ", ".join(found.setup.strikers)
     typer.echo(f"{folder}: sound; {len(found.trials)} trials of {strikers}")
+    for name in ("description", "source", "licence"):
+        if text := getattr(found.setup, name):
+            say(f"  {name}: {text}")
     for name in found.observed:
         noise = found.noise(name)
         count = int((found.values(name) == found.values(name)).sum())

@@ -96,9 +96,11 @@ def _of_setup(content: Mapping[str, Any], file: Path) -> Ball:
     law = FOLLOWING if setup.laws[0] == FOLLOWING else "fitted"
     scene = setup.scene(LAWS[law])
     speeds = setup.sweep.impact_speed_m_s or (scene.approach.speed,)
+    falls = setup.file.impact.drop_height_m is not None
+    used = _OF_IMPACT if falls else _OF_IMPACT - {"gravity_m_s2"}
     return Ball(
         scene.pair, scene.striker.mass, scene.friction.mu, tuple(speeds), law,
-        left_aside(content, _OF_IMPACT) + _tip(setup, name),
+        left_aside(content, used) + _tip(setup, name),
     )  # fmt: skip
 
 

@@ -97,6 +97,8 @@ def conditions_of(recordings: RecordingSet) -> tuple[Condition, ...]:
         first, n = rows[0], len(rows)
         name = trials.striker[first]
         table = setup.strikers[name]
+        strengths = [value_of(body.strength, math.inf) for body in (target, table)]
+        weaker = target if strengths[0] <= strengths[1] else table
         v = float(np.mean(approach.normal[rows]))
         relative = approach.normal_std[rows] / approach.normal[rows]
         unknown = SPEED_MEASURED if timed[first] else SPEED_FROM_HEIGHT
@@ -116,9 +118,11 @@ def conditions_of(recordings: RecordingSet) -> tuple[Condition, ...]:
             support_stiffness=value_of(target.support_stiffness_N_m),
             roughness=math.hypot(*rough) if rough else math.nan,
             viscosity=value_of(air.viscosity_Pa_s),
+            density=value_of(air.density_kg_m3),
+            pressure=value_of(air.pressure_Pa),
             fluid=air.fluid,
-            heat_capacity=value_of(target.cp_J_kgK),
-            melting=value_of(target.melting_K),
+            heat_capacity=value_of(weaker.cp_J_kgK),
+            melting=value_of(weaker.melting_K),
             temperature=ambient if math.isnan(temperature) else float(temperature),
             ambient=ambient,
             layer_thickness=value_of(target.layer_thickness_m),

@@ -55,6 +55,8 @@ class AirDrag(Mechanism):
         around = situations[0][1]
         if around.fluid.strip().lower() not in _GASES:
             return f"the fluid is stated as {around.fluid.strip()}, not air"
+        if 0.0 in (around.pressure, around.density):
+            return "there is no air, as stated"
         most = {p.name: p.high for p in self.parameters}
         seen = {"restitution": np.ones(len(situations)), "rebound_speed_m_s": np.ones(1)}
         taken = float(np.max(1.0 - self.after(situations, most, seen)["restitution"]))
@@ -94,8 +96,10 @@ class AirDrag(Mechanism):
 
 def _air(values: Values, around: Surroundings) -> Fluid:
     """Air whose drag is `drag` times the standard one: density scaled, Reynolds number kept."""
-    still = air(around.ambient)
-    return Fluid(values["drag"] * still.density, values["drag"] * still.viscosity)
+    still = air(around.ambient, *([around.pressure] if around.pressure > 0.0 else []))
+    density = around.density if around.density > 0.0 else still.density
+    viscosity = around.viscosity if around.viscosity > 0.0 else still.viscosity
+    return Fluid(values["drag"] * density, values["drag"] * viscosity)
 
 
 def _arriving(scene: Scene, values: Values, around: Surroundings) -> float:

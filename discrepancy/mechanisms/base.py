@@ -92,8 +92,8 @@ class Surroundings:
         As stated [kg, N/m]; nan when not.
     roughness
         Ra of the two surfaces together [m]; nan when not stated.
-    viscosity, fluid
-        Of what is between the bodies [Pa s]; nan and "" when not stated.
+    viscosity, density, pressure, fluid
+        Of what is between and around the bodies [Pa s, kg/m^3, Pa]; nan and "" when not stated.
     heat_capacity, melting
         Of the weaker body [J/(kg K), K]; nan when not stated.
     temperature, ambient
@@ -111,6 +111,8 @@ class Surroundings:
     support_stiffness: float = math.nan
     roughness: float = math.nan
     viscosity: float = math.nan
+    density: float = math.nan
+    pressure: float = math.nan
     fluid: str = ""
     heat_capacity: float = math.nan
     melting: float = math.nan

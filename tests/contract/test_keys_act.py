@@ -8,11 +8,13 @@ one line.
 import tomllib
 
 import pytest
+import tomlkit
 from dentscope.cli.shared.keys import keys_of
 from dentscope.core import InputError, InputErrors
 from dentscope.impact.files.blow import blow_of
 from dentscope.impact.files.setup import setup_of
 from dentscope.models import law_named
+from dentscope.start.ball_file import read_ball
 
 BALL = """
 name = "ball"
@@ -144,6 +146,7 @@ ONE = {
     ("[strikers.NAME]", "flow_curve"),
 }  # fmt: skip
 """One choice alone; and what a test of its own looks at, with a file beside."""
+_TEXTS = ("name", "format", "description", "source", "licence", "material")
 TWIN = "[strikers.NAME.hardening]"
 
 
@@ -243,3 +246,30 @@ def test_what_acts_beside_another_key_alone_names_it(line, words):
         setup_of(with_key(BALL, table, name, value), source="a.toml")
     assert words in str(caught.value)
     assert name in str(caught.value)
+
+
+@pytest.mark.parametrize("key", keys_of("impact"), ids=lambda k: f"{k.table}{k.name}")
+def test_a_key_of_an_impact_acts_on_what_a_discrete_element_code_gets(key, tmp_path):
+    """Or stands among what these parameters leave aside; texts for people are no number."""
+    place = (key.table, key.name)
+    if place in ONE | REFUSED.keys() or key.table == TWIN or key.name in _TEXTS:
+        return
+    base, *values = ACTS[place]
+    table, name = place
+    if table.endswith(".hardening]"):
+        base = base.replace("[strikers", "Sy_Pa = 3e8\n[strikers").replace(
+            'laws = ["fitted"]\n', ""
+        )
+        table, name = "[target]", "hardening"
+    before = tomllib.loads(base) if len(values) == 1 else with_key(base, table, name, values[0])
+    if key.name == "rigid":
+        before = tomllib.loads(BALL)
+    told = []
+    for content in (before, with_key(base, table, name, values[-1])):
+        file = tmp_path / "ball.toml"
+        file.write_text(tomlkit.dumps(content))
+        try:
+            told.append(repr(read_ball(file)))
+        except InputError as error:
+            told.append(str(error))
+    assert told[0] != told[1] or "a rod" in told[0]

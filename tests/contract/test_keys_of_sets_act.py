@@ -1,0 +1,211 @@
+"""Every key of set.toml acts: it changes what a command prints, or what a diagnosis compares.
+
+Of a diagnosis: the numbers that are compared and their uncertainties, the notes, which mechanisms
+arithmetic leaves and why, and what each of those changes in the middle of its ranges.
+"""
+
+import math
+import tomllib
+import warnings
+from contextlib import redirect_stdout
+from functools import cache
+from io import StringIO
+
+import numpy as np
+import pytest
+import tomlkit
+from dentscope.cli import run
+from dentscope.cli.shared.keys import keys_of
+from dentscope.core import InputError
+from dentscope.discrepancy.comparison.forward import Point, Simulator
+from dentscope.discrepancy.comparison.problem import problem_of
+from dentscope.discrepancy.mechanisms import MECHANISMS
+from dentscope.discrepancy.rank import baseline_situations
+from dentscope.recordings import read
+
+ROD = """
+format = "recording-set/1"
+name = "rods"
+[target]
+E_Pa = { value = 2.0e11, std = 4e9 }
+nu = 0.3
+Sy_Pa = { value = 3.05e8, std = 3e7 }
+density_kg_m3 = 7870
+thickness_m = 0.03
+[strikers.one]
+shape = "rod"
+tip_radius_m = 0.0088
+radius_m = 0.0088
+length_m = 0.3
+mass_kg = 0.567
+E_Pa = 2.0e11
+nu = 0.3
+Sy_Pa = { value = 1.7e9, std = 1e8 }
+density_kg_m3 = 7800
+[friction]
+coefficient = { value = 0.15, std = 0.05 }
+[environment]
+[noise]
+restitution = 0.01
+permanent_depth_m = 1e-6
+dent_diameter_m = 1e-5
+"""
+ROD_TRIALS = """trial,striker,angle_deg,drop_height_m,restitution,permanent_depth_m,dent_diameter_m
+1,one,90,0.05,0.53,4.9e-5,1.9e-3
+2,one,60,0.20,0.46,8.5e-5,2.5e-3
+3,one,60,0.45,0.42,1.2e-4,3.0e-3
+"""
+BALL = (
+    ROD.replace('shape = "rod"', 'shape = "sphere"').replace('"rods"', '"balls"')
+    .replace("length_m = 0.3\n", "").replace("radius_m = 0.0088\nmass_kg = 0.567\n", "")
+)  # fmt: skip
+HIDDEN = ROD.replace("Sy_Pa = { value = 1.7e9, std = 1e8 }", "Sy_Pa = { value = 1e8, std = 1e7 }")
+TRIALS_OF_A_BALL = """trial,striker,angle_deg,impact_speed_m_s,restitution,permanent_depth_m
+1,one,90,1.0,0.53,1.4e-5
+2,one,60,4.0,0.40,4.5e-5
+3,one,90,8.0,0.33,8.2e-5
+"""
+BARE = ROD.replace("Sy_Pa = { value = 3.05e8, std = 3e7 }\n", "")
+BARE_STRIKER = ROD.replace("Sy_Pa = { value = 1.7e9, std = 1e8 }\n", "")
+
+CHANGED = {
+    ("", "name"): (ROD, '"others"'),
+    ("", "description"): (ROD, '"a drop"'),
+    ("", "source"): (ROD, '"a paper"'),
+    ("", "licence"): (ROD, '"CC0"'),
+    ("", "gravity_m_s2"): (ROD, "9.0"),
+    ("", "noise"): (
+        ROD, "{ restitution = 0.02, permanent_depth_m = 1e-6, dent_diameter_m = 9e-6 }",
+    ),
+    ("", "gauge"): (ROD, "{ permanent_depth_m = 0.05 }"),
+    ("", "dent_edge"): (ROD, '"rim"'),
+    ("[target]", "E_Pa"): (ROD, "1.0e11"),
+    ("[target]", "nu"): (ROD, "0.2"),
+    ("[target]", "Sy_Pa"): (ROD, "2e8"),
+    ("[target]", "density_kg_m3"): (ROD, "4000"),
+    ("[target]", "material"): (BARE, '"aluminium-6061-t6"'),
+    ("[target]", "hardness_Pa"): (BARE, "1.0e9", "1.2e9"),
+    ("[target]", "Ra_m"): (BALL, "3e-6"),
+    ("[target]", "cp_J_kgK"): (BALL, "200", "100"),
+    ("[target]", "melting_K"): (BALL, "900", "500"),
+    ("[target]", "thickness_m"): (BALL, "0.003"),
+    ("[target]", "layer_thickness_m"): (ROD, "1e-4"),
+    ("[target]", "support_mass_kg"): (ROD, "3.0"),
+    ("[target]", "support_stiffness_N_m"): (ROD, "1e7"),
+    ("[target]", "law"): (ROD, '"elastic"'),
+    ("[strikers.NAME]", "E_Pa"): (ROD, "1.0e11"),
+    ("[strikers.NAME]", "nu"): (ROD, "0.2"),
+    ("[strikers.NAME]", "Sy_Pa"): (ROD, "4e8"),
+    ("[strikers.NAME]", "density_kg_m3"): (ROD, "3000"),
+    ("[strikers.NAME]", "material"): (BARE_STRIKER, '"aluminium-6061-t6"'),
+    ("[strikers.NAME]", "hardness_Pa"): (BARE_STRIKER, "1.0e9", "1.2e9"),
+    ("[strikers.NAME]", "Ra_m"): (BALL, "3e-6"),
+    ("[strikers.NAME]", "cp_J_kgK"): (HIDDEN, "200", "100"),
+    ("[strikers.NAME]", "melting_K"): (HIDDEN, "900", "500"),
+    ("[strikers.NAME]", "shape"): (BALL, '"rod"\nlength_m = 0.1\nradius_m = 0.0088\nmass_kg = 0.1'),
+    ("[strikers.NAME]", "tip_radius_m"): (ROD, "0.008"),
+    ("[strikers.NAME]", "mass_kg"): (ROD, "0.5"),
+    ("[strikers.NAME]", "radius_m"): (ROD, "0.0088", "0.0095"),
+    ("[strikers.NAME]", "length_m"): (ROD, "0.35"),
+    ("[strikers.NAME]", "tip_flat_radius_m"): (ROD, "1e-3"),
+    ("[strikers.NAME]", "inertia_kg_m2"): (ROD, "2e-3"),
+    ("[friction]", "coefficient"): (ROD, "0.3"),
+    ("[environment]", "fluid"): (BALL, '"oil"'),
+    ("[environment]", "viscosity_Pa_s"): (BALL, "0.01"),
+    ("[environment]", "density_kg_m3"): (BALL, "6.0"),
+    ("[environment]", "pressure_Pa"): (BALL, "5e5"),
+    ("[environment]", "temperature_K"): (BALL, "330"),
+}  # fmt: skip
+METAL = ("E_Pa", "nu", "Sy_Pa")
+REFUSED = {("[target]", "rigid"), ("[strikers.NAME]", "rigid")}
+ONE = {("", "format"), ("[target]", "shape")}
+"""One choice alone."""
+BESIDE = {("[target]", "flow_curve"), ("[strikers.NAME]", "flow_curve")}
+"""Names of files, which tests of their own look at."""
+
+
+def changed(text, table, name, value):
+    content = tomlkit.parse(text)
+    table_of = content
+    for part in filter(None, table.strip("[]").replace("NAME", "one").split(".")):
+        table_of = table_of[part]
+    for key, found in tomllib.loads(f"{name} = {value}").items():
+        table_of[key] = found
+    return tomlkit.dumps(content)
+
+
+def write(text, folder):
+    folder.mkdir(exist_ok=True)
+    (folder / "set.toml").write_text(text)
+    ball = 'name = "balls"' in text
+    (folder / "trials.csv").write_text(TRIALS_OF_A_BALL if ball else ROD_TRIALS)
+
+
+@cache
+def told(text, folder):
+    """All that comes of a set: what is printed, what is compared, what could be missing."""
+    write(text, folder)
+    with redirect_stdout(StringIO()) as printed:
+        assert run(["recordings", "check", str(folder)]) == 0
+        assert run(["recordings", "audit", str(folder), "--all"]) == 0
+    with warnings.catch_warnings():
+        warnings.simplefilter("ignore")
+        problem = problem_of(read(folder))
+        simulator = Simulator(problem)
+        rest = Point(np.zeros(problem.n_z))
+        numbers = [simulator.predict((), [rest])]
+        situations = baseline_situations(problem)
+        reasons = []
+        for mechanism in MECHANISMS:
+            reason = mechanism.ruled_out(situations)
+            ranges = mechanism.ranges(situations)
+            reasons.append((reason, str(ranges)))
+            if not reason:
+                middle = {p.name: float(p.value(0.5)) for p in ranges}
+                one = Point(np.zeros(problem.n_z), {mechanism.name: middle})
+                numbers.append(simulator.predict((mechanism,), [one]))
+    unsure = [(n.name, n.at(0.0), n.at(1.0)) for n in problem.nuisances]
+    cells = problem.cells
+    measured = [np.asarray(x) for x in (cells.value, cells.std)]
+    return (
+        printed.getvalue(),
+        reasons,
+        unsure,
+        problem.notes,
+        str(problem.error.spreads),
+        numbers,
+        measured,
+    )
+
+
+def same(one, other):
+    if isinstance(one, np.ndarray):
+        return one.shape == other.shape and np.array_equal(one, other, equal_nan=True)
+    if isinstance(one, list | tuple):
+        return len(one) == len(other) and all(map(same, one, other))
+    nans = isinstance(one, float) and isinstance(other, float) and math.isnan(one)
+    return one == other or (nans and math.isnan(other))
+
+
+@pytest.fixture(scope="module")
+def folder(tmp_path_factory):
+    return tmp_path_factory.mktemp("set")
+
+
+@pytest.mark.parametrize("key", keys_of("set"), ids=lambda k: f"{k.table}{k.name}")
+def test_a_key_of_a_set_acts_or_is_refused(key, folder):
+    place = (key.table, key.name)
+    if place in ONE | BESIDE:
+        return
+    if place in REFUSED:
+        bare = "\n".join(x for x in ROD.splitlines() if x.split(" ")[0] not in METAL)
+        write(changed(bare, *place, "true"), folder)
+        with pytest.raises(InputError, match="a body that gives way"):
+            read(folder)
+        return
+    base, *values = CHANGED[place]
+    table = "[noise]" if key.name == "dent_edge" else key.table
+    before = base if len(values) == 1 else changed(base, table, key.name, values[0])
+    after = changed(base, table, key.name, values[-1])
+    found = [told(text, folder) for text in (before, after)]
+    assert not same(*found)
