@@ -39,8 +39,8 @@ impact_speed_m_s = 3.0
 """
 SWEEP = """laws = ["fitted", "stronge", "thornton"]
 [sweep]
-impact_speed_m_s = { from = 0.01, to = 50.0, count = 4000, spacing = "log" }
-angle_deg = { from = 5.0, to = 90.0, count = 100 }
+impact_speed_m_s = { from = 0.01, to = 50.0, count = 1000, spacing = "log" }
+angle_deg = { from = 5.0, to = 90.0, count = 60 }
 """
 COMMANDS = {
     "impact sweep": (6, "impact sweep.toml --out out"),
@@ -119,10 +119,10 @@ def cpu_s(fields):
     return (int(fields[11]) + int(fields[12])) / os.sysconf("SC_CLK_TCK")
 
 
-def ended(process):
+def ended(process, within_s=PATIENCE_S):
     """Wait for the end of a process; return its output, or None."""
     try:
-        return process.communicate(timeout=PATIENCE_S)
+        return process.communicate(timeout=within_s)
     except subprocess.TimeoutExpired:
         process.kill()
         process.communicate()
@@ -213,7 +213,7 @@ def main():
                     f"processor {cpu:.2f}{'; ' + '; '.join(faults) if faults else ''}")  # fmt: skip
             if name not in FOR_EVER:
                 process = begun(command, folder)
-                told = ended(process)
+                told = ended(process, 1200.0)
                 counts["gone on"] += bool(told) and process.returncode == 0
                 say(f"{name}: undisturbed, exit code {process.returncode}")
     took, cpu = zip(*times, strict=True)

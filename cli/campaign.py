@@ -18,6 +18,7 @@ from . import campaign_data, studies
 from .campaign_data import DEFAULT_DESIGN, PUBLISHED, DesignName, Out
 from .campaign_progress import Progress, duration, judged, remarks, tell
 from .shared.groups import group
+from .shared.places import refuse_beside
 
 # With so many cases done the pictures are drawn while a run goes on: the first, and the first
 # three, which in the large designs are the figures' pairs, Sy* = 0.1, 1 and 10.
@@ -37,6 +38,7 @@ def designs() -> None:
 
 @app.command()
 def run(
+    context: typer.Context,
     design: DesignName = DEFAULT_DESIGN,
     out: Out = Path("build/campaign"),
     workers: Annotated[int, typer.Option(min=1, help="Worker processes.")] = os.cpu_count() or 1,
@@ -57,6 +59,8 @@ def run(
     from ..campaigns.executor import DaskExecutor, LocalExecutor
     from ..campaigns.run import cases_to_do
 
+    if scheduler:
+        refuse_beside(context, "beside --scheduler: it has the workers", "workers")
     if retry not in ("", "failed"):
         raise InputError(f"{retry!r}", source="command line", key="--retry", allowed="failed")
     share = _share(part)

@@ -15,7 +15,7 @@ from ..core.errors import InputError
 from ..core.output import write_file
 from . import studies
 from .shared.first_use import tell_first_use
-from .shared.places import folder_option
+from .shared.places import folder_option, refuse_beside
 from .shared.terminal import say
 
 if TYPE_CHECKING:
@@ -24,6 +24,7 @@ if TYPE_CHECKING:
 
 
 def diagnose(
+    context: typer.Context,
     folder: Annotated[
         Path | None,
         typer.Argument(help="Recording set: a folder with set.toml, or a shipped name."),
@@ -58,6 +59,7 @@ def diagnose(
     finding.
     """
     if chapter5:
+        refuse_beside(context, "beside --chapter5", "folder", "confirm", "quiet", "report", "solve")
         studies.needed_for("`dentscope diagnose --chapter5`")
         studies.module("chapter5").demonstration(out, seed)
         return

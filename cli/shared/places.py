@@ -57,7 +57,7 @@ def writable_folder(path: Path, *, key: str) -> Path:
 
 
 def refuse_beside(context: typer.Context, option: str, *names: str) -> None:
-    """Refuse options that do nothing beside another one.
+    """Refuse options and arguments that do nothing beside another one.
 
     Parameters
     ----------
@@ -73,8 +73,8 @@ def refuse_beside(context: typer.Context, option: str, *names: str) -> None:
     InputError
         One of them is given on the command line.
     """
-    for name in names:
-        source = context.get_parameter_source(name)
-        if source is not None and source.name == "COMMANDLINE":
-            key = f"--{name.replace('_', '-')}"
+    for parameter in context.command.params:
+        source = context.get_parameter_source(parameter.name or "")
+        if parameter.name in names and source is not None and source.name == "COMMANDLINE":
+            key = parameter.opts[0] if parameter.opts[0].startswith("-") else parameter.name.upper()
             raise InputError(f"does nothing {option}", source=_LINE, key=key, allowed="left out")

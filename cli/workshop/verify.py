@@ -7,13 +7,14 @@ from typing import Annotated
 
 import typer
 
-from ..shared.places import file_option, folder_option
+from ..shared.places import file_option, folder_option, refuse_beside
 
 EXIT_MISSED = 1
 """Exit code when a mark is missed."""
 
 
 def verify(
+    context: typer.Context,
     only: Annotated[
         list[str] | None, typer.Option(help="Name of a check; can be given more than once.")
     ] = None,
@@ -39,6 +40,7 @@ def verify(
     from ...studies.verification.checks import CHECKS, check_named
 
     if known:
+        refuse_beside(context, "beside --list", "only", "quick", "afresh", "folder", "report")
         for check in CHECKS:
             typer.echo(f"{check.name:22} {check.title}")
         return 0
