@@ -25,11 +25,11 @@ from pydantic import (
 
 from .errors import InputError
 from .inputs.names import FileName
+from .inputs.rig_numbers import RigNumbers, solid_inertia
 from .inputs.toml_input import InputTable
 from .material import Material
 from .materials import filled
 from .observables import GAUGE_KEYS, NOISE_KEYS
-from .rig_numbers import RigNumbers, solid_inertia
 
 Number = Annotated[float, Field(strict=True)]
 

@@ -10,9 +10,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ...core.errors import InputError
+from ...core.inputs.rig_numbers import RigNumbers
 from ...core.material import Pair
 from ...core.observables import OBSERVABLES
-from ...core.rig_numbers import RigNumbers
 from ...impact import CREEP, Approach, ForceTransform, Friction, Press, Scene, Striker
 from ...impact.files.bodies import bodies_of
 from ...models.base import ContactLaw

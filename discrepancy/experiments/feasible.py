@@ -8,7 +8,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from ...core.rig_numbers import solid_inertia
+from ...core.inputs.rig_numbers import solid_inertia
 from ...impact import CREEP, Press, Scene
 from ...impact.strength import strength_table
 from ..comparison.conditions import Condition

@@ -16,8 +16,8 @@ from dataclasses import dataclass, field, replace
 import numpy as np
 from numpy.typing import NDArray
 
+from ...core.inputs.rig_numbers import RigNumbers
 from ...core.observables import OBSERVABLES
-from ...core.rig_numbers import RigNumbers
 from ...core.unstated import unstated_equal
 from ..choice.odds import Odds
 from ..comparison.conditions import LOAD_CLASS

@@ -9,9 +9,9 @@ from ...core.errors import InputError
 from ...core.flow import Flow
 from ...core.inputs.flow_curve import read_flow_curve
 from ...core.inputs.flow_tables import HardeningTable
+from ...core.inputs.rig_numbers import RigNumbers
 from ...core.material import Material, Pair
 from ...core.rig import BodyTable
-from ...core.rig_numbers import RigNumbers
 from ..scene import Striker
 
 _SAME = 1e-3  # between a stated strength and a curve's first stress, that is then the strength

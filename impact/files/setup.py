@@ -13,6 +13,7 @@ from pydantic import Field
 from ...core.approach import speeds_at_touch
 from ...core.errors import InputError, InputErrors
 from ...core.inputs.flow_tables import HardeningTable
+from ...core.inputs.rig_numbers import RigNumbers
 from ...core.inputs.toml_input import InputTable, parse_model, read_toml
 from ...core.material import Pair
 from ...core.rig import (
@@ -26,16 +27,15 @@ from ...core.rig import (
     Within,
     quantities,
 )
-from ...core.rig_numbers import RigNumbers
 from ...models.base import ContactLaw
 from ...models.choose import follows_flow
 from ..beam import rod_modes
 from ..columns import Impacts
 from ..integrate import Settings
 from ..scene import Approach, ForceTransform, Friction, Scene, Support
-from ..second import SecondSphere
 from ..support import half_space_radiation, plate_support, sprung_support
 from .bodies import bodies_of, flowing
+from .second import SecondSphere
 from .sweep import SweepTable, mistakes_in, run_sweep
 from .taken import not_taken, taken_elsewhere
 

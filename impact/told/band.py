@@ -22,10 +22,10 @@ from ...models.base import ContactLaw, DomainWarning
 from ...models.beside import beside_fitted
 from ...models.choose import follows_flow
 from ...models.uncertainty import METAL, RECOVERY_EXPONENT, WITH_CURVE
+from ..files.second import mirror_error
 from ..integrate import strike
 from ..result import Impact
 from ..scene import ForceTransform, Scene
-from ..second import mirror_error
 from ..strength import NODES
 from .onset import largest_mean_pressure
 

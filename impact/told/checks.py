@@ -14,10 +14,10 @@ from typing import TYPE_CHECKING
 from ...core.rig import TABOR
 from ...models.base import ContactLaw, DomainWarning
 from ...models.choose import demand, follows_flow
+from ..files.second import mirror_error
 from ..integrate import strike
 from ..result import Impact
 from ..scene import Scene
-from ..second import mirror_error
 from ..support import half_space_radiation, plate_support
 from .onset import effective_mass, first_yield_speed, largest_mean_pressure
 

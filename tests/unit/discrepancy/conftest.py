@@ -12,7 +12,7 @@ from typing import Any
 
 import numpy as np
 import pytest
-from dentscope.core.rig_numbers import RigNumbers
+from dentscope.core.inputs.rig_numbers import RigNumbers
 from dentscope.discrepancy.choice.thresholds import Nulls
 from dentscope.discrepancy.comparison.cells import Cells
 from dentscope.discrepancy.comparison.conditions import Condition

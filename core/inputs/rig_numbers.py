@@ -11,8 +11,8 @@ from collections.abc import Mapping
 from dataclasses import dataclass, field, replace
 from types import MappingProxyType
 
-from .errors import InputError
-from .material import Material
+from ..errors import InputError
+from ..material import Material
 
 
 @dataclass(frozen=True, eq=False)
