@@ -71,8 +71,7 @@ def case(
         return EXIT_NOT_CONVERGED
     _show(console, solution, uncertainty)
     told = found.measured
-    for line in told.lines(ball_mass(file)):
-        console.print(line)
+    console.print("\n".join(told.lines(ball_mass(file))))
     _tell_aside(file)
     if found.remark:
         console.print(found.remark)

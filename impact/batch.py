@@ -104,8 +104,7 @@ def impacts(
     upright = replace(scene.approach, angle=0.5 * math.pi, tangential=0.0, spin=0.0)
     if normal.any() and not why_not(scene.with_(approach=upright)):
         _by_work(scene, given, normal, values, route)
-    rest = np.flatnonzero(route == BY_STEPS)
-    if len(rest):
+    if len(rest := np.flatnonzero(route == BY_STEPS)):
         _by_steps(scene, {k: v[rest] for k, v in given.items()}, rest, values, settings)
     return _named(scene, given, values, route)
 
