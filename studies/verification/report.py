@@ -71,6 +71,12 @@ def _summary(results: list[Result], absent: list[str]) -> Iterator[str]:
     for r, m in missed:
         yield f"- {r.title}: {m.what}: {_value(m)} ({m.mark})"
     yield ""
+    names = {r.name for r, _ in missed}
+    for check in CHECKS:
+        if check.missed and check.name in names:
+            title = next(r.title for r in results if r.name == check.name)
+            yield f"{title}. {check.missed}"
+            yield ""
 
 
 def _met(result: Result) -> str:

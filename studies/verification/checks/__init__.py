@@ -27,11 +27,14 @@ class Check:
         As the command and the report show them.
     home
         Module of this folder and its function, `module.function`.
+    missed
+        Why marks of it stand missed, and what was tried.
     """
 
     name: str
     title: str
     home: str
+    missed: str = ""
 
     def run(self, bench: Bench) -> Result:
         """Measure it."""
@@ -54,7 +57,14 @@ CHECKS: tuple[Check, ...] = (
     ),
     Check("hertz", "elastic contact: F, a, pressure, stresses on the axis", "hertz.run"),
     Check("elastic-bias", "where the bias of F as a/R goes to zero comes from", "hertz.bias"),
-    Check("first-yield", "depth and load at first yield", "metals.first_yield.run"),
+    Check(
+        "first-yield",
+        "depth and load at first yield",
+        "metals.first_yield.run",
+        "The load goes as the depth to the power 1.5: its mark asks for the depth within 0.67 %; "
+        "integration points scatter about their element's mean by more. The means meet both marks. "
+        "Tried: half the elements, extrapolated; both meshes then yield at one depth.",
+    ),
     Check("friction", "full stick, Borodich and Keer; what friction adds", "friction.run"),
     Check("truncation", "truncation of the half-space", "outer_boundaries.truncation"),
     Check("scale", "scale invariance in R and in the unit of stress", "indifference.scale"),
@@ -76,10 +86,26 @@ CHECKS: tuple[Check, ...] = (
         "metals.impact_strength.run",
     ),
     Check("flattening", "Jackson and Green, Kogut and Etsion", "flattening.run"),
-    Check("convergence", "mesh and step over Table 2.1 at Sy* = 0.1, 1, 10", "convergence.run"),
+    Check(
+        "convergence",
+        "mesh and step over Table 2.1 at Sy* = 0.1, 1, 10",
+        "convergence.run",
+        "What is left goes with the edge's elements: 0.5 to 0.6 % of a in every case, 0.2 to 0.5 % "
+        "of F, to which steps add 0.15 to 0.4 % of F and less than 0.1 % of a. Twice the elements "
+        "alone bring F by this estimate to 0.49 % at worst, a to 0.3 %, H to 0.62 %, for two to "
+        "three times the cost; not run.",
+    ),
     Check("levels", "what production, quick and smoke state of themselves", "level_errors.run"),
     Check("independent-code", "the same cases in CalculiX", "independent_code.run"),
-    Check("balances", "energy and force of every kept solve", "balances.run"),
+    Check(
+        "balances",
+        "energy and force of every kept solve",
+        "balances.run",
+        "Energy: only solves with elements twice as large exceed the mark; with production's the "
+        "largest is 0.26 %. It falls with the edge's elements (0.57 to 0.20 % in the median), not "
+        "with the step. Force: round-off. It is as large with any mesh and step, above and below "
+        "1e-3; a residual of displacement gradients without the identity was not tried.",
+    ),
 )
 """In the order of the report."""
 
