@@ -97,7 +97,7 @@ def _from_file(path: Path, names: list[str], out: Path, *, exact: bool) -> None:
     written = [out / f"{path.stem}{end}" for end in (".csv", ".h5", ".png")]
     unfinished = 0
     if setup.sweep.count:
-        files, unfinished, above = _sweep(setup, laws, out / f"{path.stem}-sweep")
+        files, unfinished, above = _sweep(setup, laws, out / f"{path.stem}-sweep", exact=exact)
         written += files
         if above:
             say(above)
@@ -115,19 +115,24 @@ def _doubt(law: ContactLaw, pair: Pair, found: Impact) -> str:
     return f"{law.name}: {against}" if against else ""
 
 
-def _sweep(setup: Setup, laws: list[ContactLaw], stem: Path) -> tuple[list[Path], int, str]:
+def _sweep(
+    setup: Setup, laws: list[ContactLaw], stem: Path, *, exact: bool
+) -> tuple[list[Path], int, str]:
     """Run `[sweep]` for each law; return the files, how many did not end, and what is above 1."""
     from importlib.util import find_spec
 
     from ..impact.draw import draw_sweep
+    from ..impact.told.band import MOST_SWEPT, swept_stds
 
     curves = {law.name: setup.swept(law) for law in laws}
     first, *others = curves.values()
+    stds = {} if exact or len(first) > MOST_SWEPT else swept_stds(setup, laws[0], first)
     for other in others:
         first = first.joined(other)
+    first = first.with_stds(stds)
     written = [stem.with_suffix(".csv"), stem.with_suffix(".png")]
     first.to_csv(written[0])
-    draw_sweep(setup.sweep.swept, curves, written[1])
+    draw_sweep(setup.sweep.swept, curves, written[1], stds=stds)
     if find_spec("pandas") and find_spec("pyarrow"):
         written.append(stem.with_suffix(".parquet"))
         first.to_parquet(written[-1])

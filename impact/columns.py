@@ -45,6 +45,17 @@ class Impacts:
         """Return these rows and those of `other`, which has the same columns."""
         return Impacts({k: np.concatenate([v, other[k]]) for k, v in self.columns.items()})
 
+    def with_stds(self, stds: Mapping[str, NDArray[np.float64]]) -> Impacts:
+        """Return the columns with `NAME_std` behind each NAME; nan where there is none."""
+        columns: dict[str, NDArray[Any]] = {}
+        for name, values in self.columns.items():
+            columns[name] = values
+            if name in stds:
+                columns[f"{name}_std"] = np.pad(
+                    stds[name], (0, len(self) - len(stds[name])), constant_values=np.nan
+                )
+        return Impacts(columns)
+
     def to_csv(self, path: Path | str) -> None:
         """Write a CSV file, floats with all digits; an empty cell where there is no number."""
         rows = (["" if x != x else x for x in row.values()] for row in self.rows())

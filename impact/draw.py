@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 from collections.abc import Mapping, Sequence
 from pathlib import Path
+from types import MappingProxyType
 from typing import Any
 
 import numpy as np
@@ -92,11 +93,13 @@ def histories(traces: Sequence[tuple[str, Trace]]) -> Figure:
 
 
 def draw_sweep(
-    swept: Mapping[str, Sequence[float]], curves: Mapping[str, Impacts], path: Path
-) -> None:
+    swept: Mapping[str, Sequence[float]], curves: Mapping[str, Impacts], path: Path, *,
+    stds: Mapping[str, np.ndarray] = MappingProxyType({}),
+) -> None:  # fmt: skip
     """Observables against the condition with the most values, one curve a law.
 
-    Where several conditions are swept, the others stand at their first values.
+    Where several conditions are swept, the others stand at their first values. `stds` are standard
+    deviations of the first law's numbers, drawn as a band.
     """
     across = max(swept, key=lambda name: len(swept[name]))
     lengths = [len(v) for v in swept.values()]
@@ -108,11 +111,24 @@ def draw_sweep(
         if any(np.nanmax(np.abs(found[name][rows]), initial=0.0) > 0.0 for found in curves.values())
     ]
     made, axes = _panels(len(shown))
+    first = next(iter(curves.values()))
     scale = "log" if _by_ratio(swept[across]) else "linear"
     for axis, name in zip(axes, shown, strict=True):
         told = OBSERVABLES[name]
         for law, found in curves.items():
-            axis.plot(swept[across], told.scale * found[name][rows], label=law)
+            values = told.scale * found[name][rows]
+            (drawn,) = axis.plot(swept[across], values, label=law)
+            if name in stds and found is first:
+                off = told.scale * stds[name][rows]
+                axis.fill_between(
+                    swept[across],
+                    values - off,
+                    values + off,
+                    color=drawn.get_color(),
+                    alpha=0.2,
+                    lw=0.0,
+                    label="its standard deviation",
+                )
         axis.set(xlabel=CONDITIONS[across], ylabel=told.axis, xscale=scale)
         axis.grid(alpha=0.3)
     fixed = ", ".join(f"{CONDITIONS[k]} = {v[0]:g}" for k, v in swept.items() if k != across)

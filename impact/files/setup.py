@@ -173,10 +173,11 @@ class Setup:
                 key=curves[0], allowed=f"{FOLLOWING} or a law.json among the laws",
             )  # fmt: skip
 
-    def swept(self, law: ContactLaw) -> Impacts:
-        """Return the impacts of `[sweep]` by one law."""
+    def swept(self, law: ContactLaw, *, force: ForceTransform | None = None) -> Impacts:
+        """Return the impacts of `[sweep]` by one law; `force` takes the place of the scene's."""
+        scene = self.scene(law)
         return run_sweep(
-            self.sweep, self.scene(law), self.settings,
+            self.sweep, scene if force is None else scene.with_(force=force), self.settings,
             angle=math.radians(self.file.impact.angle_deg),
         )  # fmt: skip
 

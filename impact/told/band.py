@@ -12,6 +12,7 @@ import math
 import warnings
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, fields, replace
+from types import SimpleNamespace
 from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
@@ -22,11 +23,12 @@ from ...models.base import ContactLaw, DomainWarning
 from ...models.beside import beside_fitted
 from ...models.choose import follows_flow
 from ...models.uncertainty import METAL, RECOVERY_EXPONENT, WITH_CURVE
+from ..columns import Impacts
 from ..files.second import mirror_error
 from ..integrate import strike
 from ..result import Impact
 from ..scene import ForceTransform, Scene
-from ..strength import NODES
+from ..strength import NODES, Array
 from .onset import largest_mean_pressure
 
 if TYPE_CHECKING:
@@ -40,6 +42,11 @@ _STEP = 0.02  # of a logarithm, for the slopes
 _LARGEST = 1.0  # of a logarithm: a law that is that far off is off by a factor
 _HELD = (1.0, 0.5, 0.25, 0.1)  # of a standard deviation, where a whole one leaves the range
 _NUMBERS = (*(f.name for f in fields(Impact) if f.type == "float"), "mean_force_N")
+_CRATER = "permanent_depth_m"
+SWEPT = ("restitution", _CRATER, "contact_time_s", "peak_force_N")
+"""The numbers of a sweep that have a band."""
+MOST_SWEPT = 400
+"""Conditions up to which a sweep has one: each takes some ten impacts in steps."""
 PRESSURE = "largest_mean_pressure_Pa"
 """The one number beside those of `Impact`."""
 
@@ -94,10 +101,7 @@ def band_of(setup: Setup, law: ContactLaw) -> Band:
         ends = [{**_values(blow), PRESSURE: p} for blow, p in zip(found, pressures, strict=True)]
         parts[key] = {n: 0.5 * (ends[0][n] - ends[1][n]) / share for n in ends[0]}
     found_now, scene = last_blow(setup, law), setup.scene(law)
-    of_law, of_metal = _sizes(scene, found_now)
-    if setup.second is not None and math.isfinite(scene.pair.Sy_min):
-        off = abs(float(mirror_error(scene.pair, found_now.peak_depth_m)))
-        of_law = of_law._replace(force=math.hypot(of_law.force, off))
+    of_law, of_metal = _sizes_of(setup, scene, found_now)
     slopes, pressure = _slopes(setup, law), largest_mean_pressure(scene, found_now)
     for name, sizes in ((LAW, of_law), (METALS, of_metal)):
         parts[name] = _combined(sizes, slopes, found_now)
@@ -193,8 +197,20 @@ def _with(content: Mapping[str, Any], path: tuple[str, ...], value: float) -> di
     return {**content, path[0]: _with(content.get(path[0], {}), path[1:], value)}
 
 
-def _sizes(scene: Scene, found: Impact) -> tuple[_Sizes, _Sizes]:
-    """How far off the law is from finite elements, and these from a metal, at this depth."""
+def _sizes_of(setup: Setup, scene: Scene, found: Any) -> tuple[_Sizes, _Sizes]:
+    """`_sizes`, and what the flat in place of a second sphere adds."""
+    of_law, of_metal = _sizes(scene, found)
+    if setup.second is not None and math.isfinite(scene.pair.Sy_min):
+        off = abs(float(mirror_error(scene.pair, found.peak_depth_m)))
+        of_law = of_law._replace(force=math.hypot(of_law.force, off))
+    return of_law, of_metal
+
+
+def _sizes(scene: Scene, found: Any) -> tuple[_Sizes, _Sizes]:
+    """How far off the law is from finite elements, and these from a metal, at this depth.
+
+    `found` has the observables of an impact as attributes.
+    """
     pair, law = scene.pair, scene.law
     kept = 1.0 - found.energetic_restitution**2
     lost = min(max(kept, 0.0), 1.0) if kept > 1e-6 else 0.0
@@ -224,25 +240,54 @@ def _sizes(scene: Scene, found: Impact) -> tuple[_Sizes, _Sizes]:
     )  # fmt: skip
 
 
+def _changed(stated: ForceTransform, k: int, step: float) -> ForceTransform:
+    """Move the logarithm of the force, of the recovery, or the recovery's exponent by `step`."""
+    by = [0.0, 0.0, 0.0]
+    by[k] = step
+    loading, back = ((math.exp(x),) * NODES for x in by[:2])
+    return replace(stated, factors=loading, recovery_factors=back, shape=stated.shape + by[2])
+
+
 def _slopes(setup: Setup, law: ContactLaw) -> list[dict[str, float]]:
     """Change of each field by the logarithm of force and recovery, and by the exponent."""
-    stated = setup.scene(law).force
-
-    def changed(force: float, recovery: float, exponent: float) -> ForceTransform:
-        loading, back = ((math.exp(x),) * NODES for x in (force, recovery))
-        return replace(
-            stated, factors=loading, recovery_factors=back, shape=stated.shape + exponent
-        )
-
-    slopes = []
+    stated, slopes = setup.scene(law).force, []
     for k in range(3):
-        ends = []
-        for sign in (1.0, -1.0):
-            step = [0.0, 0.0, 0.0]
-            step[k] = sign * _STEP
-            ends.append(_values(last_blow(setup, law, changed(*step))))
+        ends = [
+            _values(last_blow(setup, law, _changed(stated, k, step))) for step in (_STEP, -_STEP)
+        ]
         slopes.append({n: (ends[0][n] - ends[1][n]) / (2.0 * _STEP) for n in _NUMBERS})
     return slopes
+
+
+def swept_stds(setup: Setup, law: ContactLaw, found: Impacts) -> dict[str, Array]:
+    """Return standard deviations along a sweep by one law, (n,) each, as those of a blow.
+
+    Parameters
+    ----------
+    setup, law
+        The set-up with its sweep.
+    found
+        What the sweep gave by this law.
+    """
+    variance = {name: np.zeros(len(found)) for name in SWEPT}
+    for _, share, up, down in _shifted(setup, law):
+        ends = up.swept(law), down.swept(law)
+        for name in SWEPT:
+            variance[name] += (0.5 * (ends[0][name] - ends[1][name]) / share) ** 2
+    scene, slopes = setup.scene(law), []
+    for k in range(3):
+        one, two = (
+            setup.swept(law, force=_changed(scene.force, k, step)) for step in (_STEP, -_STEP)
+        )
+        slopes.append({name: (one[name] - two[name]) / (2.0 * _STEP) for name in SWEPT})
+    for row, values in enumerate(found.rows()):
+        blow = SimpleNamespace(**values, residual_flat_m=values[_CRATER])
+        for sizes in _sizes_of(setup, scene, blow):
+            for name in SWEPT:
+                by = (s * slope[name][row] for s, slope in zip(sizes, slopes, strict=False))
+                variance[name][row] += sum(x * x for x in by)
+            variance[_CRATER][row] += (sizes.crater * values[_CRATER]) ** 2
+    return {name: np.sqrt(x) for name, x in variance.items()}
 
 
 def _combined(sizes: _Sizes, slopes: list[dict[str, float]], found: Impact) -> dict[str, float]:

@@ -10,7 +10,7 @@ from dentscope.core import Material, Pair
 from dentscope.impact import Approach, Scene, Striker, strike
 from dentscope.impact.files.blow import blow_of
 from dentscope.impact.files.setup import setup_of
-from dentscope.impact.told.band import LAW, METALS
+from dentscope.impact.told.band import LAW, METALS, SWEPT, band_of, swept_stds
 from dentscope.impact.told.checks import reason_above_one
 from dentscope.impact.told.onset import first_yield_speed, largest_mean_pressure
 from dentscope.models import LAWS
@@ -160,3 +160,15 @@ laws = ["fitted", "hertz"]
     assert impact.kinetic_after_J < impact.kinetic_before_J
     central = setup.scene(LAWS["hertz"]).with_(approach=Approach(1.0))
     assert reason_above_one(central, strike(central)) == ""
+
+
+def test_a_sweep_has_the_bands_of_its_blows():
+    file = BRASS + "[sweep]\nimpact_speed_m_s = [0.5, 3.0]\n"
+    setup, law = setup_of(tomllib.loads(file), source="brass.toml"), LAWS["fitted"]
+    stds = swept_stds(setup, law, setup.swept(law))
+    fields = ("restitution", "residual_flat_m", "contact_time_s", "peak_force_N")
+    for row, speed in enumerate((0.5, 3.0)):
+        one = setup_of(tomllib.loads(BRASS.replace("= 3.0", f"= {speed}")), source="brass.toml")
+        blow = band_of(one, law)
+        for name, field in zip(SWEPT, fields, strict=True):
+            assert stds[name][row] == pytest.approx(blow.std(field), rel=0.01), (name, speed)
