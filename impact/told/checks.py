@@ -11,6 +11,8 @@ from collections.abc import Iterator
 from dataclasses import replace
 from typing import TYPE_CHECKING
 
+from ...core.errors import InputError
+from ...core.inputs.flow_curve import SPECIMENS
 from ...core.rig import TABOR
 from ...models.base import ContactLaw, DomainWarning
 from ...models.choose import demand, follows_flow
@@ -27,6 +29,7 @@ if TYPE_CHECKING:
 _THICK = 8.0  # thickness over the depth of a dent (ISO 6506-1, 6.3)
 _RATE = 0.4  # of v/a: strain rate of an indentation (Tabor 1951)
 _SMALL = 1e-3  # relative effect that is not worth a line
+_MAY = 0.25  # of the dent, that one specimen or the next moves from body to body
 _MASS_OFF = 0.01  # of a solid sphere's mass
 
 
@@ -38,9 +41,9 @@ def checks(setup: Setup, law: ContactLaw, found: Impact) -> list[str]:
     with warnings.catch_warnings():
         warnings.simplefilter("ignore", DomainWarning)  # the doubt about a law has its own line
         parts = (
-            _onset(scene, found), _plate(setup, scene, found), _waves(setup, scene, found),
-            _gravity(setup, scene, found), _friction(scene), _rod(scene, found),
-            _second(setup, scene, found), _bodies(setup, law),
+            _onset(scene, found), _either(scene, found), _plate(setup, scene, found),
+            _waves(setup, scene, found), _gravity(setup, scene, found), _friction(scene),
+            _rod(scene, found), _second(setup, scene, found), _bodies(setup, law),
         )  # fmt: skip
         return [line for part in parts for line in part]
 
@@ -67,6 +70,27 @@ def _onset(scene: Scene, found: Impact) -> Iterator[str]:
         yield (
             f"strain rate about {rate:.2g} 1/s: a strength measured slowly lacks what the metal's "
             "rate adds up to there"
+        )
+
+
+def _either(scene: Scene, found: Impact) -> Iterator[str]:
+    """Where specimens of one bar decide which body the dent is in."""
+    pair = scene.pair
+    if not (math.isfinite(pair.sphere.Sy) and math.isfinite(pair.flat.Sy)):
+        return
+    parts = []
+    for factor in (1.0 / (1.0 + SPECIMENS), 1.0 + SPECIMENS):
+        other = replace(pair, sphere=pair.sphere.strengthened(factor))
+        try:
+            sphere, flat = (float(x) for x in scene.law.residual(other, found.peak_depth_m))
+        except InputError:  # the table of one pair knows no other
+            return
+        parts.append(sphere / (sphere + flat) if sphere + flat > 0.0 else 0.5)
+    if max(parts) - min(parts) > _MAY:
+        yield (
+            f"either body may take the dent: {100.0 * min(parts):.0f} to {100.0 * max(parts):.0f} "
+            f"% of it is the sphere's where a strength is off by {100.0 * SPECIMENS:.0f} %, as "
+            "specimens of one bar are"
         )
 
 

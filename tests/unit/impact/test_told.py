@@ -72,6 +72,17 @@ def test_a_law_that_cannot_lose_has_no_band_of_restitution(brass):
     assert brass.bands["fitted"].std("restitution") > 0.0
 
 
+def test_near_equal_strengths_may_dent_either_body(brass):
+    def said(strength: str) -> list[str]:
+        text = BRASS.replace("Sy_Pa = 2.2e9", f"Sy_Pa = {strength}")
+        blow = blow_of(setup_of(tomllib.loads(text), source="b.toml"), [LAWS["fitted"]])
+        return [line for line in blow.checks() if "either body" in line]
+
+    assert len(said("2.5e8")) == 1
+    assert not said("6e8")
+    assert not [line for line in brass.checks() if "either body" in line]
+
+
 def test_a_free_support_yields_later(brass):
     scene = brass.setup.scene(LAWS["fitted"])
     freed = scene.with_(support=replace(scene.support, mass=scene.striker.mass))
