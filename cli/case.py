@@ -78,8 +78,7 @@ def case(
     for path in (
         _write_curves(solution, uncertainty, out / "curve.csv"),
         write_figure(found.plot(), out / "curve.png", dpi=130),
-        write_file(out / "measured.json", json.dumps(told.to_dict(), indent=1) + "\n"),
-        *_write_dent(solution, told, out),
+        *_write_measured(solution, told, out),
         _write_result(file.stem, solution, uncertainty, out / "result.h5"),
     ):
         console.print(f"written: {path}")
@@ -122,10 +121,11 @@ def _write_fields(solution: Any, out: Path, *, picture: bool) -> Iterator[Path]:
             yield space
 
 
-def _write_dent(solution: Any, told: Measured, out: Path) -> Iterator[Path]:
-    """Write and draw the surfaces that the last unloading leaves."""
+def _write_measured(solution: Any, told: Measured, out: Path) -> Iterator[Path]:
+    """Write what people measure; write and draw the surfaces that the last unloading leaves."""
     from ..fem.results.dent import draw_dent, write_dent
 
+    yield write_file(out / "measured.json", json.dumps(told.to_dict(), indent=1) + "\n")
     if not solution.unloadings:
         return
     last, R = solution.unloadings[-1], solution.problem.pair.R

@@ -7,7 +7,7 @@ import sys
 from collections.abc import Callable
 from pathlib import Path
 from shutil import get_terminal_size
-from typing import TYPE_CHECKING, Annotated
+from typing import TYPE_CHECKING, Annotated, Literal
 
 import typer
 
@@ -20,7 +20,6 @@ from .shared.terminal import say
 
 if TYPE_CHECKING:
     from ..discrepancy import Verdict
-    from ..discrepancy.baseline.laws import LawChoice
 
 
 def diagnose(
@@ -37,10 +36,8 @@ def diagnose(
         bool, typer.Option("--confirm", help="Sampled evidence, all nulls, the own pair solved.")
     ] = False,
     law: Annotated[
-        str | None,
-        typer.Option(
-            help="fitted, or table: the own pair solved; left out: solved if it has a flow curve."
-        ),
+        Literal["fitted", "table"] | None,
+        typer.Option(help="Fitted, or the own pair solved; else solved if it has a flow curve."),
     ] = None,
     quiet: Annotated[bool, typer.Option("--quiet", help="No progress line.")] = False,
     report: Annotated[
@@ -59,7 +56,9 @@ def diagnose(
     finding.
     """
     if chapter5:
-        refuse_beside(context, "beside --chapter5", "folder", "confirm", "quiet", "report", "solve")
+        refuse_beside(
+            context, "beside --chapter5", "folder", "confirm", "law", "quiet", "report", "solve"
+        )
         studies.needed_for("`dentscope diagnose --chapter5`")
         studies.module("chapter5").demonstration(out, seed)
         return
@@ -67,11 +66,9 @@ def diagnose(
 
     if folder is None:
         raise InputError(
-            "no recording set",
-            source="command line",
-            key="FOLDER",
+            "no recording set", source="command line", key="FOLDER",
             allowed=f"a folder, --chapter5, or a shipped set: {', '.join(shipped_sets())}",
-        )
+        )  # fmt: skip
     from ..recordings import read
 
     recordings = read(set_folder(folder))
@@ -81,7 +78,7 @@ def diagnose(
     show = _progress(quiet=quiet)
     if not quiet:
         tell_first_use()
-    verdict = run(recordings, seed=seed, confirm=confirm, law=_law(law), progress=show)
+    verdict = run(recordings, seed=seed, confirm=confirm, law=law, progress=show)
     show("")
     written = _written(verdict, out, report=report)
     for line in lines(verdict):
@@ -89,19 +86,6 @@ def diagnose(
     if solve:
         written += _solved(verdict, out, show)
     typer.echo(f"\nwritten: {', '.join(map(str, written))}")
-
-
-def _law(given: str | None) -> LawChoice | None:
-    from ..discrepancy.baseline.laws import LAW_CHOICES
-
-    if given is None:
-        return None
-    found = next((known for known in LAW_CHOICES if known == given), None)
-    if found is None:
-        raise InputError(
-            repr(given), source="command line", key="--law", allowed=", ".join(LAW_CHOICES)
-        )
-    return found
 
 
 def _progress(*, quiet: bool) -> Callable[[str], None]:

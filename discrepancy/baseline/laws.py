@@ -10,7 +10,7 @@ from __future__ import annotations
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import replace
 from functools import cache
-from typing import Literal, get_args
+from typing import Literal
 
 from ...core.flow import Flow
 from ...core.material import Material, Pair
@@ -28,7 +28,6 @@ _APART = 0.02  # between a stated strength and that of the flow curve, from whic
 Progress = Callable[[str], None]
 LawChoice = Literal["fitted", "table"]
 """The fitted law, or finite elements of the set's own pair."""
-LAW_CHOICES: tuple[LawChoice, ...] = get_args(LawChoice)
 
 
 def without_curves(target: TargetTable) -> ContactLaw:

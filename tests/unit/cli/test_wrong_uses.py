@@ -145,6 +145,7 @@ diagnose half-set
 diagnose words.txt
 diagnose kharaz-2001-oblique --out words.txt
 diagnose kharaz-2001-oblique --seed many
+diagnose kharaz-2001-oblique --law hertz
 diagnose kharaz-2001-oblique --seed 1.5
 diagnose kharaz-2001-oblique liquidmetal-bounces
 recordings nonsense
