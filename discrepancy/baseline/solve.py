@@ -55,7 +55,7 @@ def solved_pair(
             path.unlink()
     progress(_SOLVING)
     try:
-        table = _solved(pair, low, high, level, progress)
+        table = solved_table(pair, low, high, level=level, progress=progress)
     except InputError as error:
         return None, (f"the pair of {name} was not solved by finite elements: {error}",)
     write_table(table, path)
@@ -73,9 +73,17 @@ def _level(pair: Pair, high: float, metal_error: float) -> str:
     return "production"
 
 
-def _solved(
-    pair: Pair, low: float, high: float, level: str, progress: Callable[[str], None]
-) -> PairTable:
+def solved_table(
+    pair: Pair, low: float, high: float, *, level: str,
+    progress: Callable[[str], None] = lambda _: None,
+) -> PairTable:  # fmt: skip
+    """Solve a pair for impacts whose peaks reach Delta/R from `low` to `high`.
+
+    Raises
+    ------
+    InputError
+        It hardly yields there, or the solve does not reach that far.
+    """
     # loaded when there is something to solve: most diagnoses need none of it
     from ... import fem
     from ...fem.problem import DEEPEST

@@ -131,11 +131,11 @@ def test_the_own_pair_is_solved_once_and_kept(tmp_path, solved, monkeypatch):
     monkeypatch.setenv("XDG_CACHE_HOME", str(tmp_path / "cache"))
     asked = []
 
-    def of_the_elements(pair, low, high, level, progress):
+    def of_the_elements(pair, low, high, *, level, progress):
         asked.append(level)
         return PairTable(pair, solved.curve, solved.turns)
 
-    monkeypatch.setattr(solve, "_solved", of_the_elements)
+    monkeypatch.setattr(solve, "solved_table", of_the_elements)
     # a flow curve is enough to have the pair solved
     problem = problem_of(found)
     assert problem.law_name.endswith("finite elements of the pair")
@@ -154,7 +154,7 @@ def test_the_own_pair_is_solved_once_and_kept(tmp_path, solved, monkeypatch):
 
 
 def test_a_strength_that_is_assumed_is_not_worth_a_solve(tmp_path, solved, monkeypatch):
-    monkeypatch.setattr(solve, "_solved", lambda *_: pytest.fail("solved"))
+    monkeypatch.setattr(solve, "solved_table", lambda *_, **__: pytest.fail("solved"))
     folder = set_of(tmp_path / "bare", solved, curves=False, stated=0.0)
     problem = problem_of(read(folder), law="table")
     assert problem.law_name == "fitted"
