@@ -15,8 +15,10 @@ import tempfile
 from contextlib import suppress
 from pathlib import Path
 
+from .rules import RULES
+
 _STAGES = ("core", "fem", "models", "impact", "discrepancy", "studies")
-_MOST_NAMES = 20
+_MOST_NAMES = RULES.cache_names
 _VARIABLE = "NUMBA_CACHE_DIR"
 _COMPILES = re.compile(r"numba|njit|_kernel\b")
 _RELATIVE = re.compile(r"^\s*from (\.+)([\w.]*) import (\([^)]*\)|.*)", re.MULTILINE)

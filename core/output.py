@@ -24,10 +24,9 @@ from typing import Any
 from .disk import DISK
 from .errors import InputError
 from .inputs.input_file import read_bytes
+from .rules import RULES
 
 PENDING = ".dentscope-pending"
-PATIENCE_S = 300.0
-"""How long to wait for another process that changes the same folder."""
 
 NO_ROOM = {
     errno.ENOSPC: "the disk is full",
@@ -39,8 +38,6 @@ _NO_LOCKS = (errno.EBADF, errno.ENOLCK, errno.EOPNOTSUPP, errno.EINVAL)
 
 _MAGIC = b"dentscope-pending-1\n"
 _DIGEST = 32
-_MOST_PENDING = 500_000_000
-_LONGEST_NAME = 200
 
 
 def cannot_write(error: OSError, path: Path | str, *, allowed: str = "") -> InputError:
@@ -149,14 +146,14 @@ def locked(folder: Path) -> Iterator[None]:
     Raises
     ------
     InputError
-        It cannot be locked, or another process holds it for longer than `PATIENCE_S`.
+        It cannot be locked, or another process holds it for longer than `RULES.folder_wait_s`.
     """
     # what lies in it may still be refused, and then nothing new should lie anywhere: the lock is
     # one of the folder around it, and leaves no file
     place = folder_for_output(folder.resolve().parent)
     handle = os.open(place, os.O_RDONLY | os.O_DIRECTORY | os.O_CLOEXEC)
     try:
-        until = time.monotonic() + PATIENCE_S
+        until = time.monotonic() + RULES.folder_wait_s
         while not _taken(handle):
             if time.monotonic() > until:
                 raise InputError(
@@ -224,7 +221,7 @@ def _replace(path: Path, data: bytes) -> None:
             raise OSError(errno.EINVAL, "a folder, a pipe or a device")
         mode = stat.S_IMODE(about.st_mode)
     # a name that nobody else has, on whatever machine, and that no killed process left behind
-    draft = path.with_name(f".{path.name[:_LONGEST_NAME]}.{os.urandom(8).hex()}.part")
+    draft = path.with_name(f".{path.name[: RULES.output_name_bytes]}.{os.urandom(8).hex()}.part")
     try:
         file = DISK.create(draft, mode)
         try:
@@ -249,7 +246,7 @@ def _pending(folder: Path, contents: Mapping[str, bytes]) -> bytes:
 
 def _read_pending(folder: Path) -> dict[str, tuple[str, bytes]]:
     place, remedy = folder / PENDING, "remove it to go on without its one change"
-    content = read_bytes(place, most=_MOST_PENDING, allowed=remedy)
+    content = read_bytes(place, most=RULES.pending_bytes, allowed=remedy)
     body, digest = content[:-_DIGEST], content[-_DIGEST:]
     if not body.startswith(_MAGIC) or hashlib.sha256(body).digest() != digest:
         raise InputError("damaged", source=str(place), allowed=remedy)

@@ -11,8 +11,7 @@ from functools import cache
 from typing import Any
 
 from .processes.children import python_command
-
-_TIME_LIMIT_S = 120.0
+from .rules import RULES
 
 
 @cache
@@ -25,7 +24,7 @@ def offscreen_available() -> bool:
         answer = subprocess.run(
             python_command("-m", "dentscope.core.rendering"),
             capture_output=True,
-            timeout=_TIME_LIMIT_S,
+            timeout=RULES.render_s,
             check=False,
         )
     except (OSError, subprocess.TimeoutExpired):

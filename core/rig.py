@@ -30,6 +30,7 @@ from .inputs.toml_input import InputTable
 from .material import Material
 from .materials import filled
 from .observables import GAUGE_KEYS, NOISE_KEYS
+from .rules import RULES
 
 Number = Annotated[float, Field(strict=True)]
 
@@ -212,12 +213,6 @@ def material_keys(body: Material) -> dict[str, float | bool]:
 TABOR = 2.8
 """Indentation hardness over yield strength [-] (Tabor, The Hardness of Metals, 1951)."""
 
-_TABOR_SPREAD = 0.10
-"""Relative standard deviation of `TABOR`: metals are found between 2.5 and 3.2 (Johnson, Contact
-Mechanics, 1985, 6.3)."""
-_HARDNESS_SPREAD = 0.11
-"""Relative standard deviation of a hardness that is stated without one."""
-
 
 class BodyTable(MaterialTable):
     """A body that strikes or is struck."""
@@ -251,8 +246,8 @@ class BodyTable(MaterialTable):
         if self.Sy_Pa is not None or self.hardness_Pa is None:
             return self.Sy_Pa
         value = self.hardness_Pa.value / TABOR
-        own = self.hardness_Pa.relative or _HARDNESS_SPREAD
-        return Quantity(value=value, std=value * math.hypot(own, _TABOR_SPREAD))
+        own = self.hardness_Pa.relative or RULES.hardness_spread
+        return Quantity(value=value, std=value * math.hypot(own, RULES.tabor_spread))
 
 
 class TargetTable(BodyTable):

@@ -29,16 +29,13 @@ from .material import (
     law_of,
 )
 from .material.tensor import norm
+from .rules import RULES
 
 Floats = npt.NDArray[np.float64]
 
-_SMALLEST_DETERMINANT = 0.02  # below this an element is inverted or about to be
+_SMALLEST_DETERMINANT = RULES.least_determinant
 
-_KEEPS = 1e-3
-"""Change of a deformation gradient within which an elastic element keeps its tangent.
-
-The forces are exact always; such a change of the tangent costs Newton's method nothing.
-"""
+_KEEPS = RULES.tangent_kept
 
 DISTORTED = -1
 """Returned by `bulk_forces` when an element has turned inside out."""

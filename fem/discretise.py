@@ -18,18 +18,11 @@ from .laws import laws_of
 from .material import EXACT
 from .mesh import Mesh, Zone, contact_mesh, ladder_rings, outer_rings
 from .problem import Accuracy, Clock, ContactProblem
+from .rules import RULES
 
 Floats = npt.NDArray[np.float64]
 Integers = npt.NDArray[np.int64]
 
-_CORE = 0.12  # radius of the innermost block over that where the fine zone begins
-# Beyond this distance [R] the half-space is linear: strains there stay below 1e-4 at a/R = 0.5, and
-# the round-off of 1 + grad u in elements of this size is what would rule the residual.
-_LINEAR = 4.0
-# Factor on the part of the gradients that varies within an element. At 1 the force of a light
-# elastic contact is 0.1 % higher, by the angle of the elements; far below a half, elements could
-# take shapes that cost no energy.
-_BENDING = 0.5
 _GAUSS = 0.5 / math.sqrt(3.0)
 
 
@@ -123,7 +116,7 @@ def discretise(
     index = np.flatnonzero(deforms)
     elements = _elements(mesh, index, pair.sphere, pair.flat, pair.E_reduced)
     reach = np.hypot(*np.moveaxis(mesh.points[elements.conn], -1, 0)).min(axis=1)
-    elements = with_linear(elements, reach > _LINEAR)
+    elements = with_linear(elements, reach > RULES.linear_beyond)
     slope = np.abs(elements.grad).sum(axis=(2, 3)) * (elements.linear < 0)[:, None]
     return Discretisation(
         mesh=mesh,
@@ -168,7 +161,7 @@ def _mesh(problem: ContactProblem, accuracy: Accuracy, zone: Zone) -> Mesh:
     # the gap beside the contact is read over some elements beyond its edge
     end = min(max(0.65, (1.0 + 6.0 * accuracy.fine) * _last_radius(problem)), 0.93)
     rings = ladder_rings(
-        zone, core=_CORE * zone.low, end=end, fine=accuracy.fine, coarse=accuracy.coarse
+        zone, core=RULES.core_radius * zone.low, end=end, fine=accuracy.fine, coarse=accuracy.coarse
     )
     far = outer_rings(end, accuracy.flat_radius, coarse=accuracy.coarse)
     return contact_mesh(
@@ -217,14 +210,14 @@ def _elements(
 
 
 def _softened(grad: Floats, dV: Floats) -> Floats:
-    """Gradients whose departure from the element's mean is smaller by `_BENDING`.
+    """Gradients whose departure from the element's mean is smaller by `RULES.bending`.
 
     A uniform gradient stays what it is and the mean is taken over the volume, so patch tests hold;
     an element bends more easily, which is what four nodes make too stiff (the points move nearer to
     the middle of the element, Belytschko and Bindeman 1991).
     """
     mean = np.einsum("eqad,eq->ead", grad, dV / dV.sum(axis=1, keepdims=True))[:, None]
-    return np.asarray(mean + _BENDING * (grad - mean))
+    return np.asarray(mean + RULES.bending * (grad - mean))
 
 
 def _constants(

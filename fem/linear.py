@@ -23,17 +23,18 @@ from numba import njit
 
 from .contact import ContactState, Surfaces, Triplets
 from .factors import Fronts, postorder
+from .rules import RULES
 
 Floats = npt.NDArray[np.float64]
 Integers = npt.NDArray[np.int64]
 Solve = Callable[[Floats], Floats]
 
-_FORCING = 0.005  # relative correction that a direction may lack
-_RESIDUAL = 0.2  # relative residual that it may leave
-_KRYLOV = 12  # most GMRES steps
-_PATIENCE = 7  # after so many, the next matrix is factorised anew
-_LEFT = 0.02  # relative residual of fresh factors beyond which rows are exchanged; 1e-3 was seen
-_REACH = 3  # master nodes beyond the segments in use that the pattern already couples
+_FORCING = RULES.forcing
+_RESIDUAL = RULES.krylov_residual
+_KRYLOV = RULES.krylov_steps
+_PATIENCE = RULES.refactor_after
+_LEFT = RULES.pivoting_from
+_REACH = RULES.pattern_reach
 
 
 def superlu(matrix: sparse.csc_matrix) -> Solve:

@@ -25,21 +25,9 @@ from .problem import DEEPEST, Accuracy, ContactProblem, critical_depth
 from .remesh import Transfer
 from .results.measure import read
 from .results.ripple import BEYOND
+from .rules import RULES
 
 Floats = npt.NDArray[np.float64]
-
-# After a step in so many Newton iterations the next may be longer by the factor (of its logarithm).
-_REGROW = ((5, 1.5), (8, 1.15))
-_BELOW_YIELD = 0.8  # elastic step ratio up to this fraction of the critical depth
-_LEAD_IN = 0.75  # the path begins at this fraction of the first depth, for the smooth curve there
-_LEAST_RATIO = 1.0 + 1e-6  # of a step: below it the path stands still, whatever still converges
-_SOFT_START = (1e-3, 1e-2, 1e-1, 1.0)  # contact stiffness on the way to the first equilibrium
-# The fine zone of a mesh made for the contact radius a reaches from _BEHIND a to _AHEAD a, and
-# serves until the radius has grown by _SERVES: the gap is read and plastic flow runs ahead of it.
-_BEHIND, _AHEAD, _SERVES = 0.85, 1.6, 1.35
-# The mesh that would have to serve beyond this radius [R] is the last one: where strains are of the
-# order of one, a change of mesh would upset the state (the force drops by 1 to 2 %).
-_LAST = 0.2
 
 
 @dataclass
@@ -142,7 +130,7 @@ class Loading:
         return radius >= self.problem.radius_at_least or point.delta >= DEEPEST
 
     def _limit(self, point: Point) -> float:
-        elastic = point.delta < _BELOW_YIELD * self._onset
+        elastic = point.delta < RULES.elastic_until * self._onset
         return self.accuracy.elastic_step_ratio if elastic else self.accuracy.step_ratio
 
     def _stuck(self, point: Point) -> Outcome:
@@ -154,8 +142,10 @@ class Loading:
         )
 
     def _solver(self) -> Solver:
-        last = _SERVES * self._radius > _LAST
-        zone = Zone(_BEHIND * self._radius, 1.0 if last else _AHEAD * self._radius)
+        last = RULES.zone_serves * self._radius > RULES.last_mesh
+        zone = Zone(
+            RULES.zone_behind * self._radius, 1.0 if last else RULES.zone_ahead * self._radius
+        )
         grid = discretise(self.problem, self.accuracy, zone)
         return Solver(grid, rule=EXACT, timers=self.tally.timers)
 
@@ -172,7 +162,7 @@ class Loading:
         # push as an overlap under the full stiffness would crush the innermost elements.
         solver.elements = grid.elements.elastic
         found = None
-        for softness in _SOFT_START:
+        for softness in RULES.soft_start:
             solver.surfaces = grid.surfaces._replace(stiffness=grid.surfaces.stiffness * softness)
             found = solver.equilibrium(guess, state=virgin, delta=delta)
             if found is None:
@@ -193,7 +183,7 @@ class Loading:
     ) -> tuple[Point | None, float]:
         """Advance by at most `ratio` towards `goal`; the ratio that worked comes back."""
         for _ in range(MOST_CUTS):
-            if ratio < _LEAST_RATIO:
+            if ratio < RULES.least_step_ratio:
                 break
             n = max(1, int(np.ceil(np.log(goal / point.delta) / np.log(ratio) - 1e-9)))
             delta = goal if n == 1 else point.delta * (goal / point.delta) ** (1.0 / n)
@@ -209,7 +199,10 @@ class Loading:
     def _follow(self, point: Point, before: Floats | None) -> tuple[Point, Floats | None]:
         """The same point on a mesh made for its contact radius, where the old one is outgrown."""
         radius = point.record.reading.radius
-        if radius < _SERVES * self._radius or _SERVES * self._radius > _LAST:
+        if (
+            radius < RULES.zone_serves * self._radius
+            or RULES.zone_serves * self._radius > RULES.last_mesh
+        ):
             return point, before
         was, self._radius = self._radius, radius
         solver = self._solver()
@@ -245,11 +238,13 @@ class Loading:
 
 
 def _growth(point: Point) -> float:
-    return next((factor for most, factor in _REGROW if point.equilibrium.iterations <= most), 1.0)
+    return next(
+        (factor for most, factor in RULES.regrowth if point.equilibrium.iterations <= most), 1.0
+    )
 
 
 def _stops(problem: ContactProblem, onset: float) -> list[float]:
     """Depths that are hit exactly, and one well below first yield to start from."""
     depths = {*problem.depths, *problem.unload_from, *problem.snapshots, *problem.profiles}
-    start = _LEAD_IN * min(min(depths), 0.3 * onset)
+    start = RULES.lead_in * min(min(depths), 0.3 * onset)
     return sorted({start, *depths})

@@ -18,26 +18,18 @@ from .contact import ContactState, Grip, Triplets, contact_forces, take_hold
 from .discretise import Discretisation
 from .elements import State
 from .linear import LinearSystem
+from .rules import RULES
 
 Floats = npt.NDArray[np.float64]
 
-TOLERANCE = 1e-4
+TOLERANCE = RULES.residual
 """Accepted sum of residual forces over the contact force.
 
 Newton's last step leaves far less: contact force and reaction agree to 1e-5. A hundredth of it
 moves no force by 0.01 % and costs a quarter more.
 """
 
-# Where the residual is small, or down at the round-off of the largest elements far from the
-# contact, the corrections may decide instead: largest accepted next one over the approach, the next
-# one estimated from the last two in geometric progression (Newton's are faster).
-_STILL = 1e-8
-_SMALL = 5.0 * TOLERANCE
-_ROUND_OFF = 0.05  # of the grid's bound; a fifth of this was seen
-_MOST_ITERATIONS = 18
-_HOPELESS = 8  # after so many, a residual that has not halved will not converge
-_BACKTRACKS = 5
-_SECANTS = 3
+_SMALL = 5.0 * TOLERANCE  # up to it the corrections may decide instead
 
 
 @dataclass
@@ -115,14 +107,14 @@ class Solver:
         u[self.grid.driven] = -delta
         now = self._evaluate(u, state)
         moved, next_move, first = np.inf, np.inf, np.inf
-        for iteration in range(_MOST_ITERATIONS):
+        for iteration in range(RULES.iterations):
             if now is None:
                 return None
             if iteration and self._converged(now, next_move, delta):
                 return Equilibrium(u, now.contact, self._reaction(now), iteration)
             if iteration == 0:
                 first = self._unbalanced(now)
-            elif iteration == _HOPELESS and self._unbalanced(now) > 0.5 * first:
+            elif iteration == RULES.hopeless_after and self._unbalanced(now) > 0.5 * first:
                 return None
             direction = self._direction(now)
             u, now, alpha = self._search(u, now, direction, state)
@@ -164,7 +156,9 @@ class Solver:
         unbalanced = self._unbalanced(now)
         if unbalanced < TOLERANCE * force:
             return True
-        return next_move < _STILL * delta and unbalanced < max(_SMALL * force, self.grid.round_off)
+        return next_move < RULES.still_correction * delta and unbalanced < max(
+            _SMALL * force, self.grid.round_off
+        )
 
     def _direction(self, now: Evaluation) -> Floats:
         start = time.process_time()
@@ -186,7 +180,7 @@ class Solver:
     ) -> tuple[Floats, Evaluation | None, float]:
         alpha = 1.0
         new = self._evaluate(u + direction, state)
-        for _ in range(_BACKTRACKS):
+        for _ in range(RULES.backtracks):
             if new is not None:
                 break
             alpha *= 0.5
@@ -196,7 +190,7 @@ class Solver:
         s0 = float(direction @ now.residual)
         s = float(direction @ new.residual)
         low, s_low, high, s_high = 0.0, s0, alpha, s
-        for _ in range(_SECANTS):
+        for _ in range(RULES.secants):
             if abs(s_high) < 0.7 * abs(s0) or s_low * s_high > 0.0:
                 break
             alpha = high - s_high * (high - low) / (s_high - s_low)

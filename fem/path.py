@@ -15,16 +15,15 @@ from .discretise import Discretisation
 from .elements import State
 from .newton import Equilibrium, Solver
 from .results.measure import Reading, read
+from .rules import RULES
 
 Floats = npt.NDArray[np.float64]
 
-STEP_CUT = 0.4
+STEP_CUT = RULES.step_cut
 """A failed step is tried again with this fraction of its logarithm."""
 
-MOST_CUTS = 7
+MOST_CUTS = RULES.step_cuts
 """So often, then the path ends."""
-
-_STRETCH = 2.5  # largest factor by which the last increment is extrapolated
 
 
 @dataclass(frozen=True)
@@ -76,7 +75,7 @@ def extrapolate(point: Point, before: Floats | None, reach: float) -> Floats:
     u = point.equilibrium.u
     if before is None:
         return u * reach
-    return np.asarray(u + min(reach, _STRETCH) * (u - before))
+    return np.asarray(u + min(reach, RULES.stretch) * (u - before))
 
 
 def accept(point: Point, found: Equilibrium, delta: float) -> Point:

@@ -10,11 +10,12 @@ import numpy as np
 
 from ..core.errors import InputError
 from ..core.material import Pair
+from .rules import RULES
 
 NUMERICS_VERSION = 5
 """Raised only when results change; stored with every case."""
 
-DEEPEST = 0.5
+DEEPEST = RULES.deepest
 """Largest Delta/R that can be asked for."""
 
 

@@ -10,11 +10,10 @@ import numpy.typing as npt
 from ..core.errors import COMPLETED, Ending, Outcome
 from .path import MOST_CUTS, STEP_CUT, Point, Record, accept, extrapolate
 from .problem import ContactProblem
+from .rules import RULES
 from .solution import Curve, Unloading
 
 Floats = npt.NDArray[np.float64]
-
-_MOST_STEPS = 60
 
 
 def unload(point: Point, problem: ContactProblem) -> Unloading:
@@ -73,7 +72,7 @@ def _back(point: Point, records: list[Record]) -> tuple[Point, Outcome, int]:
                 break
             step *= STEP_CUT
         steps += 1
-        if found is None or steps > _MOST_STEPS:
+        if found is None or steps > RULES.unloading_steps:
             stopped = Outcome(
                 Ending.NOT_CONVERGED,
                 f"unloading from Delta/R = {point.delta:.4g} stopped at F/F_m = "

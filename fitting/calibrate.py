@@ -11,19 +11,16 @@ from scipy.optimize import brentq, minimize
 from ..models.closed_form import PairNumbers
 from ..models.uncertainty import FEATURES, Calibration, Uncertainty, deviation, features_of
 from .prediction import Prediction, given_back
+from .rules import RULES
 from .table import ResidualTable, Table
 
 Floats = npt.NDArray[np.float64]
 
-SIGMAS = (0.724, 0.950)
+SIGMAS = RULES.coverage
 """Shares within one and two standard deviations of Student's t with seven degrees of freedom.
 
 The errors have longer ends than a normal distribution, of which a deviation has to speak too.
 """
-
-_NOISE = 2e-3  # of the finite elements, beside the law's own error
-_BEFORE_YIELD = (0.5, 4.0)  # power with which a law's error vanishes there; the dent does itself
-_RIDGE = 0.02  # of the features' weights, the constant's aside
 
 
 class Misses(NamedTuple):
@@ -82,16 +79,18 @@ def calibrate(found: dict[str, Misses]) -> Calibration:
 
         def surprise(weights: Floats, features: Floats = features, size: Floats = size) -> float:
             # of a distribution with long ends: some combinations are worse than any rule says
-            spread = deviation(features, weights, least=_NOISE)
+            spread = deviation(features, weights, least=RULES.element_noise)
             loss = np.log(spread) + 2.5 * np.log1p((size / spread) ** 2 / 4.0)
-            return float(np.mean(loss)) + _RIDGE * float(np.sum(weights[1:] ** 2)) / len(FEATURES)
+            return float(np.mean(loss)) + RULES.feature_ridge * float(
+                np.sum(weights[1:] ** 2)
+            ) / len(FEATURES)
 
         first = np.zeros(len(FEATURES))
         first[0] = np.log(np.mean(size) + 1e-4)
         first[1] = 1.0
         bounds: list[tuple[float | None, float | None]] = [(None, None)] * len(FEATURES)
         if name != "dent":
-            bounds[1] = _BEFORE_YIELD
+            bounds[1] = RULES.before_yield
         weights = minimize(surprise, first, method="L-BFGS-B", bounds=bounds).x
         rows.append(_scaled(weights, features, size))
     return Calibration(np.array(rows))
@@ -101,7 +100,9 @@ def _scaled(weights: Floats, features: Floats, size: Floats) -> Floats:
     """Return the weights with the shares above; what one of them lacks the other has too much."""
 
     def beyond(scale: float) -> float:
-        spread = deviation(features, weights + scale * np.eye(len(weights))[0], least=_NOISE)
+        spread = deviation(
+            features, weights + scale * np.eye(len(weights))[0], least=RULES.element_noise
+        )
         one, two = (float(np.mean(size <= k * spread)) for k in (1.0, 2.0))
         return (one - SIGMAS[0]) + (two - SIGMAS[1])
 
@@ -114,6 +115,8 @@ def within(calibration: Calibration, found: dict[str, Misses]) -> dict[str, tupl
     """Shares of the errors within one and two standard deviations, by quantity."""
     result = {}
     for weights, name in zip(calibration.weights, Uncertainty._fields, strict=True):
-        ratio = np.abs(found[name].off) / deviation(found[name].features, weights, least=_NOISE)
+        ratio = np.abs(found[name].off) / deviation(
+            found[name].features, weights, least=RULES.element_noise
+        )
         result[name] = (float(np.mean(ratio <= 1.0)), float(np.mean(ratio <= 2.0)))
     return result

@@ -17,23 +17,12 @@ from scipy.linalg import cho_factor, cho_solve
 from ..models.closed_form import Coefficients, PairNumbers, of_pair
 from ..models.correction import CHANNELS, Correction, bumps, coordinates, moved
 from .prediction import Prediction, given_back, predict_by
+from .rules import RULES
 from .table import ResidualTable, Table
 
 Floats = npt.NDArray[np.float64]
 
-PAIRS_A_BUMP = 6.5
 REACHES = np.array([0.9, 2.2, 1.2, 3.0, 4.0])
-PRIOR = 2.0
-"""Weight of the prior against the misfit's squares: of one shift, alone, by one unit."""
-
-_EVERY = 4  # depths; neighbours say nearly the same
-_STEPS = 25
-_FARTHEST = 1.5  # change of a shift in one step
-_CHANGE = 2e-3  # relative change of the objective at which the regression ends
-_OUTLIER = 4.0  # misfit from which on it counts linearly
-_UNIT = 0.003  # a misfit of one: 0.3 % of F and a, 0.003 of the share
-_UNIT_LEFT = (4e-4, 6e-3)  # of the permanent approach: of Delta_m, and of itself
-_UNIT_EXPONENT, _UNIT_BACK = 0.015, 0.008
 
 
 def corrected_prediction(
@@ -61,9 +50,9 @@ def correct(values: Floats, table: Table, turns: ResidualTable, ripple: Floats) 
     ripple
         Of ln F and ln a of each row's case, shape (2, n); a case whose mesh ripples says less.
     """
-    thin = np.arange(len(table.D)) % _EVERY == 0
+    thin = np.arange(len(table.D)) % RULES.every_depth == 0
     numbers = compact_numbers(values, table)
-    units = np.hypot(_UNIT, ripple)
+    units = np.hypot(RULES.unit, ripple)
     groups = coordinates(table.bodies, numbers)
     centres = _spread_out(groups[np.unique(table.case)])
     alike = bumps(centres, centres, REACHES) + 1e-4 * np.eye(len(centres))
@@ -78,7 +67,7 @@ def _spread_out(groups: Floats) -> Floats:
     scaled = groups / REACHES
     chosen = [int(np.argmin(np.sum((scaled - scaled.mean(axis=0)) ** 2, axis=1)))]
     nearest = np.full(len(scaled), np.inf)
-    while len(chosen) < max(len(scaled) / PAIRS_A_BUMP, 1.0):
+    while len(chosen) < max(len(scaled) / RULES.pairs_a_bump, 1.0):
         away = np.sum((scaled - scaled[chosen[-1]]) ** 2, axis=1)
         nearest = np.minimum(nearest, away)
         chosen.append(int(np.argmax(nearest)))
@@ -103,17 +92,17 @@ class _Rows(NamedTuple):
             [
                 np.where(t.edge_seen, np.log(p.force / t.force), 0.0) / self.unit_F,
                 np.where(t.edge_seen, np.log(p.radius / t.radius), 0.0) / self.unit_a,
-                (p.share - t.share) / _UNIT,
+                (p.share - t.share) / RULES.unit,
             ]
         )
-        unit_left = _UNIT_LEFT[0] + _UNIT_LEFT[1] * u.total
+        unit_left = RULES.unit_left[0] + RULES.unit_left[1] * u.total
         exponent = np.where(known, u.exponent, 0.0)
         unloading = np.stack(
             [
                 (p.total - u.total) / unit_left,
-                (p.sphere - u.sphere_part * u.total) / (10.0 * _UNIT_LEFT[0]),
-                np.where(known, p.exponent - exponent, 0.0) / _UNIT_EXPONENT,
-                np.where(known, np.log(given_back(p, u)), 0.0) / _UNIT_BACK,
+                (p.sphere - u.sphere_part * u.total) / (10.0 * RULES.unit_left[0]),
+                np.where(known, p.exponent - exponent, 0.0) / RULES.unit_exponent,
+                np.where(known, np.log(given_back(p, u)), 0.0) / RULES.unit_back,
             ]
         )
         return loading, unloading
@@ -122,8 +111,8 @@ class _Rows(NamedTuple):
         """Sum of the squares, of outliers less; infinite where a curve can't be drawn."""
         with np.errstate(all="ignore"):
             parts = self.misfit(shifts)
-            total = sum(float(np.sum(np.sqrt(1.0 + (r / _OUTLIER) ** 2) - 1.0)) for r in parts)
-        return _OUTLIER**2 * total if np.isfinite(total) else math.inf
+            total = sum(float(np.sum(np.sqrt(1.0 + (r / RULES.outlier) ** 2) - 1.0)) for r in parts)
+        return RULES.outlier**2 * total if np.isfinite(total) else math.inf
 
     def normal(self, shifts: Floats) -> tuple[Floats, Floats]:
         """Each case's normal matrix, shape (n_cases, k, k), and gradient, shape (n_cases, k)."""
@@ -137,7 +126,7 @@ class _Rows(NamedTuple):
         cases_of = (self.table.case, self.turns.case)
         for side, (misfit, number) in enumerate(zip(self.misfit(shifts), cases_of, strict=True)):
             slope = np.stack([s[side] for s in slopes])  # (k, quantities, rows)
-            weight = 1.0 / np.sqrt(1.0 + (misfit / _OUTLIER) ** 2)
+            weight = 1.0 / np.sqrt(1.0 + (misfit / RULES.outlier) ** 2)
             for case in np.unique(number):
                 m = number == case
                 J = slope[:, :, m].reshape(k, -1)
@@ -153,24 +142,26 @@ def _descend(rows: _Rows, basis: Floats) -> Floats:
     weights, damping = np.zeros((m, k)), 1e-2
 
     def objective(at: Floats) -> float:
-        return rows.cost(basis @ at) + 0.5 * PRIOR * float(np.sum(at**2))
+        return rows.cost(basis @ at) + 0.5 * RULES.shift_prior * float(np.sum(at**2))
 
     best = objective(weights)
-    for _ in range(_STEPS):
+    for _ in range(RULES.regression_steps):
         matrix, gradient = rows.normal(basis @ weights)
         whole = np.einsum("nm,nkl,np->mkpl", basis, matrix, basis, optimize=True)
         whole = whole.reshape(m * k, m * k)
-        slope = np.einsum("nm,nk->mk", basis, gradient).ravel() + PRIOR * weights.ravel()
+        slope = (
+            np.einsum("nm,nk->mk", basis, gradient).ravel() + RULES.shift_prior * weights.ravel()
+        )
         before = best
         for _ in range(8):
-            damped = whole + PRIOR * (1.0 + damping) * np.eye(m * k)
+            damped = whole + RULES.shift_prior * (1.0 + damping) * np.eye(m * k)
             step = -cho_solve(cho_factor(damped), slope).reshape(m, k)
-            step *= min(1.0, _FARTHEST / float(np.abs(basis @ step).max()))
+            step *= min(1.0, RULES.farthest_shift / float(np.abs(basis @ step).max()))
             value = objective(weights + step)
             if value < best:
                 weights, best, damping = weights + step, value, damping / 4.0
                 break
             damping = max(5.0 * damping, 1.0)
-        if before - best < _CHANGE * before:
+        if before - best < RULES.regression_settled * before:
             break
     return weights

@@ -21,14 +21,12 @@ from ..models.fitted import ClosedForm, closed_form_law
 from .form import LIMITS, START
 from .prediction import Errors, errors_of, given_back, predict
 from .ripple import ripple_of
+from .rules import RULES
 from .table import ResidualTable, Table
 
 Floats = npt.NDArray[np.float64]
 
-_UNIT = 0.01  # a residual of one: 1 % in F and a, 0.01 in the shares
-_UNIT_EXPONENT = 0.03  # of N; 0.03 is about 1 % of F_m in the force on unloading
-_UNIT_GIVEN_BACK = 0.02  # of the energy; 1 % of a restitution
-ENOUGH = 1e-5
+ENOUGH = RULES.form_settled
 """Relative change of the misfit at which a fit for comparison or cross-validation ends."""
 
 
@@ -142,7 +140,7 @@ def _misfit_of(
     known = np.isfinite(turns.exponent)
     exponent = np.where(known, turns.exponent, 0.0)
     # a case whose mesh ripples says less about the curve than one that does not
-    unit_F, unit_a = (np.hypot(_UNIT, ripple) for ripple in ripple_of(table))
+    unit_F, unit_a = (np.hypot(RULES.form_unit, ripple) for ripple in ripple_of(table))
 
     def misfit(x: Any) -> Any:
         values = first.astype(np.result_type(x, float))
@@ -152,11 +150,11 @@ def _misfit_of(
             [
                 np.where(table.edge_seen, np.log(p.force / table.force), 0.0) / unit_F,
                 np.where(table.edge_seen, np.log(p.radius / table.radius), 0.0) / unit_a,
-                (p.share - table.share) / _UNIT,
-                (p.total - turns.total) / _UNIT,
-                (p.sphere - turns.sphere_part * turns.total) / _UNIT,
-                np.where(known, p.exponent - exponent, 0.0) / _UNIT_EXPONENT,
-                np.where(known, np.log(given_back(p, turns)), 0.0) / _UNIT_GIVEN_BACK,
+                (p.share - table.share) / RULES.form_unit,
+                (p.total - turns.total) / RULES.form_unit,
+                (p.sphere - turns.sphere_part * turns.total) / RULES.form_unit,
+                np.where(known, p.exponent - exponent, 0.0) / RULES.form_unit_exponent,
+                np.where(known, np.log(given_back(p, turns)), 0.0) / RULES.form_unit_back,
             ]
         )
 

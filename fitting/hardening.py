@@ -35,19 +35,10 @@ from ..models.hardening import (
 from ..models.table import energy_exponent
 from ..models.uncertainty import Uncertainty
 from .calibrate import SIGMAS
+from .rules import RULES
 from .table import HELD_OUT, is_current
 
 Floats = npt.NDArray[np.float64]
-
-PRIOR = 300.0
-"""Weight of the prior against squares of a misfit of 1 %; thirty does as well."""
-
-_FOLDS = 8
-_POINTS = 64  # of a pair's path
-_EVERY = 3  # depths; neighbours say nearly the same
-_UNIT = 0.01
-_DEEPEST_RADIUS = 0.5  # a/R
-_DEEP = 5.0  # critical depths from which on permanent depths count
 
 
 class _Case(NamedTuple):
@@ -132,7 +123,7 @@ def fit_hardening(fitted: ClosedForm, records: Sequence[CaseRecord]) -> Hardenin
         From `hardening_records`.
     """
     cases = [_case(fitted, record) for record in records]
-    fold = np.random.default_rng(1).permutation(len(cases)) % min(_FOLDS, len(cases))
+    fold = np.random.default_rng(1).permutation(len(cases)) % min(RULES.hardening_folds, len(cases))
     found: list[dict[str, _Off]] = []
     for number in np.unique(fold):
         without = _regress([c for c, k in zip(cases, fold, strict=True) if k != number])
@@ -181,10 +172,10 @@ def _case(fitted: ClosedForm, record: CaseRecord) -> _Case:
     onset = critical_depth(pair)
     seen = (
         (c["delta"] >= onset)
-        & (c["radius"] <= _DEEPEST_RADIUS * pair.R)
+        & (c["radius"] <= RULES.hardening_radius * pair.R)
         & (c["radius"] != c["radius_last_node"])
     )
-    rows = np.flatnonzero(seen)[::-_EVERY]
+    rows = np.flatnonzero(seen)[:: -RULES.hardening_every]
     loading = np.stack(
         [
             np.log(c["force"] / (pair.E_reduced * pair.R**2)),
@@ -196,12 +187,15 @@ def _case(fitted: ClosedForm, record: CaseRecord) -> _Case:
     turns = []
     for u in record.unloadings:
         total, depth = u.residual_sphere + u.residual_flat, u.depth * pair.R
-        if depth >= _DEEP * onset and u.curve["radius"][0] <= _DEEPEST_RADIUS * pair.R:
+        if (
+            depth >= RULES.hardening_deep * onset
+            and u.curve["radius"][0] <= RULES.hardening_radius * pair.R
+        ):
             N = energy_exponent(u.curve["delta"], u.curve["force"], total)
             turns.append((np.log(u.depth), total / depth, u.residual_sphere / total, N))
     turned = np.array(turns).reshape(-1, 4)
     return _Case(
-        pair, equivalent(fitted, pair, points=_POINTS), np.log(c["delta"][rows] / pair.R),
+        pair, equivalent(fitted, pair, points=RULES.path_points), np.log(c["delta"][rows] / pair.R),
         loading[rows], turned[:, 0], turned[:, 1:],
     )  # fmt: skip
 
@@ -257,8 +251,10 @@ def _odds(share: Floats) -> Floats:
 
 
 def _solved(features: Floats, off: Floats) -> Floats:
-    matrix = features.T @ features / _UNIT**2 + PRIOR * np.eye(features.shape[1])
-    return np.asarray(np.linalg.solve(matrix, features.T @ off / _UNIT**2))
+    matrix = features.T @ features / RULES.hardening_unit**2 + RULES.hardening_prior * np.eye(
+        features.shape[1]
+    )
+    return np.asarray(np.linalg.solve(matrix, features.T @ off / RULES.hardening_unit**2))
 
 
 def _off(fitted: ClosedForm, case: _Case, correction: HardeningCorrection) -> dict[str, _Off]:

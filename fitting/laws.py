@@ -20,13 +20,12 @@ from .correct import compact_numbers, correct, corrected_prediction
 from .fit import ENOUGH, Fit, fit_tables
 from .prediction import Errors, Prediction, errors_of, predict
 from .ripple import ripple_of
+from .rules import RULES
 from .table import ResidualTable, Table
 
 Floats = npt.NDArray[np.float64]
 
-_FOLDS = 8
 _DRAWN = ("space", "near-equal", "survey")
-_EVERY = 4  # depths that a refit without some combinations looks at
 
 
 @dataclass(frozen=True)
@@ -76,7 +75,7 @@ def fit_laws(table: Table, turns: ResidualTable) -> Laws:
 
     def anew(rest: npt.NDArray[np.bool_], rest_turns: npt.NDArray[np.bool_]) -> list[Prediction]:
         fewer, turned = table.rows(rest), turns.rows(rest_turns)
-        thin = fewer.rows(np.arange(len(fewer.D)) % _EVERY == 0)
+        thin = fewer.rows(np.arange(len(fewer.D)) % RULES.refit_every == 0)
         values = fit_tables(thin, turned, start=start, change=ENOUGH).values
         found = correct(values, fewer, turned, ripple[:, rest])
         return [predict(values, table, turns), corrected_prediction(values, found, table, turns)]
@@ -89,7 +88,7 @@ def fit_laws(table: Table, turns: ResidualTable) -> Laws:
     alone = stands_alone(table)
     sides = zip(
         own,
-        left_out(anew, table, turns, folds=_FOLDS),
+        left_out(anew, table, turns, folds=RULES.folds),
         (numbers, correction.of(table.bodies, numbers)),
         strict=True,
     )

@@ -9,11 +9,10 @@ import numpy as np
 import numpy.typing as npt
 
 from ..models.closed_form import Coefficients, PairNumbers, contact, of_pair
+from .rules import RULES
 from .table import ResidualTable, Table
 
 Floats = npt.NDArray[np.float64]
-
-_DEEP = 5.0  # delta_m/delta_c from which residual depths are judged relatively
 
 
 @dataclass(frozen=True)
@@ -106,7 +105,7 @@ def errors_of(p: Prediction, table: Table, turns: ResidualTable) -> Errors:
     yielding = table.w >= 1.0
     seen = yielding & table.edge_seen
     F, a = p.force / table.force, p.radius / table.radius
-    deep = turns.w >= _DEEP
+    deep = turns.w >= RULES.relative_from
     known = np.isfinite(turns.exponent)
     sphere = p.sphere - turns.sphere_part * turns.total
     return Errors(

@@ -11,12 +11,10 @@ from dataclasses import replace
 import numpy as np
 import numpy.typing as npt
 
+from .rules import RULES
 from .table import Table
 
 Floats = npt.NDArray[np.float64]
-
-_REACH = 1.0  # half-width of the neighbourhood in ln Delta: several periods of a coarse mesh
-_FEWEST = 6
 
 
 def without_ripple(table: Table) -> Table:
@@ -52,7 +50,7 @@ def _smoothed(table: Table, value: Floats) -> Floats:
     for number in range(len(table.pairs)):
         rows = np.flatnonzero((table.case == number) & table.edge_seen)
         for k in rows:
-            near = rows[np.abs(x[rows] - x[k]) <= _REACH]
-            if len(near) >= _FEWEST:
+            near = rows[np.abs(x[rows] - x[k]) <= RULES.smooth_reach]
+            if len(near) >= RULES.smooth_points:
                 out[k] = np.polyfit(x[near] - x[k], value[near], 3)[-1]
     return out

@@ -17,6 +17,7 @@ from ..models import critical_depth
 from ..models.closed_form import Bodies
 from ..models.fitted import bodies_of
 from ..models.table import energy_exponent
+from .rules import RULES
 
 Floats = npt.NDArray[np.float64]
 
@@ -24,7 +25,6 @@ HELD_OUT = ("validation", "challenge")
 """Cases whose name begins so are for judging a finished fit; no fit reads them."""
 
 _COARSEST = "smoke"
-_DEEPEST_RADIUS = 0.55  # a/R up to which the form is meant, with some margin
 
 
 @dataclass(frozen=True)
@@ -185,7 +185,7 @@ def _loading(records: list[CaseRecord]) -> Table:
     columns: list[list[Floats]] = [[] for _ in range(7)]
     for number, record in enumerate(records):
         p, c = record.case.pair, record.curve
-        usable = c["radius"] <= _DEEPEST_RADIUS * p.R
+        usable = c["radius"] <= RULES.form_radius * p.R
         values = (
             np.full(len(c["delta"]), float(number)),
             c["delta"] / p.R,
@@ -224,7 +224,7 @@ def _residuals(records: list[CaseRecord]) -> ResidualTable:
         for u in record.unloadings:
             total = u.residual_sphere + u.residual_flat
             depth = u.depth * p.R
-            if not 0.0 < total < depth or u.curve["radius"][0] > _DEEPEST_RADIUS * p.R:
+            if not 0.0 < total < depth or u.curve["radius"][0] > RULES.form_radius * p.R:
                 continue
             exponent = energy_exponent(u.curve["delta"], u.curve["force"], total)
             rows.append(

@@ -22,10 +22,11 @@ from numpy.typing import ArrayLike
 
 from ..core.drag import Fluid, drag_force, rod_drag_across, rod_drag_along
 from ..core.errors import InputError
+from .rules import RULES
 from .scene import STANDARD_GRAVITY, Striker
 from .tabulated.cells import Array
 
-_STEPS = 128
+_STEPS = RULES.fall_steps
 
 
 @dataclass(frozen=True, slots=True)

@@ -14,6 +14,7 @@ from numba import float64, int64, njit, types
 
 from ..models.kernel import BRANCH_SIGNATURE, LOADING_SIGNATURE, RESIDUAL_SIGNATURE, VECTOR
 from .bits import power
+from .rules import RULES
 
 LOADING = types.FunctionType(LOADING_SIGNATURE)
 BRANCH = types.FunctionType(BRANCH_SIGNATURE)
@@ -219,7 +220,7 @@ def static_unloading(unloading, par, branch, depth):
     return branch[3] * unloading(par, x, branch[4])
 
 
-_SLOPE_STEP = 1e-4  # of the depth, for differences of a force that is smooth between its borders
+_SLOPE_STEP = RULES.slope_step
 _WINDOW = types.UniTuple(float64, 2)
 
 

@@ -15,6 +15,7 @@ from ..core.unstated import unstated_equal
 from ..models.base import ContactLaw
 from . import force as fo
 from .result import Impact, impact_of
+from .rules import RULES
 from .scene import RateFree, Scene
 from .strength import NODES, strength_table
 from .surface import Spot
@@ -24,7 +25,6 @@ from .walk.compiled import Given, many_impacts
 Array = NDArray[np.float64]
 
 _UNWRITTEN = np.zeros((0, len(c.HISTORY)))
-_ROWS = 4000  # of a history, beside those that were asked for
 _SMOOTH, _STILL = np.empty(0), np.empty((3, 0))
 _FRESH = Spot().row()
 _FRESH.flags.writeable = False
@@ -210,7 +210,7 @@ def traced(scene: Scene, settings: Settings = Settings(), *, points: int = 200) 
     if span > 0.0:
         a.body[c.LONGEST] = span / max(points, 1)
         a.body[c.MAX_STEPS] += 100.0 * points
-    history = np.empty((_ROWS + 40 * points, len(c.HISTORY)))
+    history = np.empty((RULES.history_rows + 40 * points, len(c.HISTORY)))
     impact, rows = _struck(scene, a, history)
     return Trace(impact, history[:rows].copy())
 

@@ -23,10 +23,11 @@ from scipy.interpolate import PchipInterpolator
 from ..core.material import Material, Pair
 from ..models.base import ContactLaw, DomainWarning, remembering
 from .force import F_FORCE, F_POWER, F_RECOVERY, LOG_DEPTH_FIRST, LOG_DEPTH_LAST
+from .rules import RULES
 
 Array = NDArray[np.float64]
 
-NODES = 41
+NODES = RULES.strength_nodes
 """Nodes of the table over ln(depth / R)."""
 
 _LEVELS = np.log(np.array([0.1, 0.25, 0.5, 0.7, 0.85, 1.0, 1.2, 1.5, 1.9, 2.4, 3.1, 5.0, 10.0]))

@@ -36,6 +36,7 @@ from numba import float64, int64, njit, types
 from numpy.typing import NDArray
 
 from ..models.kernel import VECTOR
+from .rules import RULES
 
 # fmt: off
 # The surface vector: peak and flattening of the tip, where the next impact begins, number of
@@ -46,11 +47,11 @@ N_HEAD = 5
 # took off, the law's depth at its peak, the radius of contact there, the share q.
 START, END, FIRST, LAST, DEEPEST, TAKEN, PEAK, RADIUS, GIVE = range(9)
 N_IMPRINT = 9
-MOST = 24
+MOST = RULES.imprints
 """Imprints that are kept apart; beyond it the two nearest become one."""
 N_SURFACE = N_HEAD + MOST * N_IMPRINT
 
-_STEEPEST = 0.3  # a wall is at least this share of the radius wide
+_STEEPEST = RULES.steepest_wall
 _PLAIN = {"cache": True, "_nrt": False, "error_model": "numpy"}
 _PAIR = types.UniTuple(float64, 2)
 

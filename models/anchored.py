@@ -22,12 +22,10 @@ from .closed_form import contact
 from .driver import Depths
 from .fitted import ClosedForm, bodies_of
 from .kernel import Floats, common_parameters, critical_depth
+from .rules import RULES
 from .table import packed_columns, recovery_exponent
 from .table_kernels import TABLE_KERNELS
 from .uncertainty import Uncertainty
-
-_POINTS = 240
-_FIRST, _LAST = 0.01, 0.6  # depths of the table: over the critical one, over R
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
@@ -62,7 +60,7 @@ class AnchoredLaw(ContactLaw):
 
     def parameters(self, pair: Pair) -> Floats:
         """Common numbers, then the table of the pair; shape (n,)."""
-        x = _grid(pair, _LAST)
+        x = _grid(pair, RULES.anchor_last)
         force, radius, recovers, part, exponent = (
             np.interp(x, self._distance[0], shift) for shift in self._distance[1]
         )
@@ -111,8 +109,8 @@ class AnchoredLaw(ContactLaw):
 
 
 def anchored(
-    fitted: ClosedForm, anchor: ContactLaw, *, at: Pair, stated: Pair, deepest: float = _LAST,
-    hardens: bool,
+    fitted: ClosedForm, anchor: ContactLaw, *, at: Pair, stated: Pair,
+    deepest: float = RULES.anchor_last, hardens: bool,
 ) -> AnchoredLaw:  # fmt: skip
     """Return `fitted`, shifted onto `anchor` at a pair; parameters as in `AnchoredLaw`."""
     return AnchoredLaw(
@@ -130,8 +128,8 @@ def anchored(
 def _grid(pair: Pair, last: float) -> Floats:
     """ln(Delta/R) from far below first yield, evenly."""
     onset = critical_depth(pair) / pair.R
-    first = min(_FIRST * onset, 0.1 * last) if math.isfinite(onset) else 1e-7
-    return np.linspace(math.log(first), math.log(last), _POINTS)
+    first = min(RULES.anchor_first * onset, 0.1 * last) if math.isfinite(onset) else 1e-7
+    return np.linspace(math.log(first), math.log(last), RULES.anchor_points)
 
 
 def _columns(law: ContactLaw, pair: Pair, D: Floats) -> tuple[Floats, ...]:

@@ -38,6 +38,7 @@ from .kernel import (
     Floats,
     common_parameters,
 )
+from .rules import RULES
 from .uncertainty import Uncertainty
 
 CLAUSES = (
@@ -241,7 +242,7 @@ class ContactLaw(ABC):
 
 
 Law = TypeVar("Law", bound=ContactLaw)
-_REMEMBERED = 4096  # pairs
+_REMEMBERED = RULES.pairs_kept
 
 
 def remembering(law: Law) -> Law:

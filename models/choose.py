@@ -14,10 +14,8 @@ from ..core.material import Pair
 from .base import CombinedLaw, ContactLaw
 from .hardening import HardeningLaw
 from .kernel import critical_depth
+from .rules import RULES
 from .table import TableLaw
-
-FLATTENING_BELOW, INDENTATION_ABOVE = 0.6, 1.7
-_ELASTIC = 1.9
 
 
 @dataclass(frozen=True, slots=True)
@@ -54,9 +52,9 @@ def demand(pair: Pair, depth: float) -> Demand:
     ratio = pair.Sy_ratio
     if w <= 1.0:
         regime = "elastic"
-    elif ratio < FLATTENING_BELOW:
+    elif ratio < RULES.flattening_below:
         regime = "flattening"
-    elif ratio > INDENTATION_ABOVE:
+    elif ratio > RULES.indentation_above:
         regime = "indentation"
     else:
         regime = "both bodies"
@@ -68,7 +66,7 @@ def objection(law: ContactLaw, need: Demand) -> str:
     if need.regime == "elastic":
         return ""
     if law.name == "hertz":
-        return "" if need.w <= _ELASTIC else "elastic only"
+        return "" if need.w <= RULES.elastic_depth else "elastic only"
     other = {"flattening": "indentation", "indentation": "flattening"}.get(need.regime)
     if law.regime == other:
         return f"made for {law.regime}"

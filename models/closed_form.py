@@ -22,9 +22,11 @@ from typing import Any, NamedTuple
 from numba.extending import register_jitable
 from numpy import exp, log, sqrt
 
+from .rules import RULES
+
 PI = 3.141592653589793
-TINY = 1e-9  # keeps the strengths' ratio defined when a body does not yield
-SHARPEST = 20.0  # of the taking over: over a tenth of the depth, as wide as the data can tell
+TINY = RULES.strength_floor
+SHARPEST = RULES.sharpest
 
 
 class Bodies(NamedTuple):

@@ -21,13 +21,14 @@ import numpy as np
 import numpy.typing as npt
 
 from .closed_form import Bodies, Groups, PairNumbers, groups_of
+from .rules import RULES
 
 Floats = npt.NDArray[np.float64]
 
 GROUPS = Groups._fields
 """The coordinates of a pair."""
 
-MOST = 4.0
+MOST = RULES.shift_bound
 """Units by which a number may be moved; its shift is bent towards this bound."""
 
 

@@ -41,9 +41,10 @@ from .kernel import (
     reader,
     residual_kernel,
 )
+from .rules import RULES
 from .uncertainty import Calibration, Uncertainty
 
-_FINITE = 0.01  # Delta/R at which the law says how far finite elastic strain takes it from Hertz
+_FINITE = RULES.finite_strain_depth
 
 _pair_numbers = reader(PairNumbers, N_COMMON)  # behind the common numbers
 

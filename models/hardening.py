@@ -42,35 +42,18 @@ from .closed_form import Bodies, PairNumbers, contact, plastic_depth
 from .driver import Depths, Pairs
 from .fitted import ClosedForm, bodies_of
 from .kernel import Floats, common_parameters, critical_depth
+from .rules import RULES
 from .table import packed_columns, recovery_exponent
 from .table_kernels import TABLE_KERNELS
 from .uncertainty import LEAST, Uncertainty
 
-REPRESENTATIVE = 0.2
+REPRESENTATIVE = RULES.representative
 """Plastic strain that stands for all of them, over a/R (Tabor)."""
 
 CORRECTED = ("depth", "force", "share", "part", "recovered", "exponent")
 """What is corrected: logarithms of Delta, F, the part of Delta that recovers and N + 1; the
 sphere's share of the approach and its part of the permanent depth by the logarithm of the odds."""
-
-_SPAN, _FALL = 3.0, 1.7
-"""Strains under a contact: `_SPAN` times the representative one times u^`_FALL`, u even in 0 to 1.
-
-By the errors of pairs left out; spans of 2.5 to 4 and powers of 1.7 to 2.2 do as well, one strain
-(0 and any) has three times the error where a curve has a plateau."""
-
-_SHARES, _STRAINS = 60, 400  # strains of a mean; means of a table
-_WEAKEST, _STRONGEST = 1e-8, 5.0  # representative strains of the table
-_APART = 1.0  # of ln p, between a strain and those whose exponents make the bend
 _COORDINATES = 5
-_FADES = 0.3  # of a coordinate's width, beyond the data
-_DEGREE = 2
-_POINTS = 240  # of the table
-_LEAST_STEP = 0.01  # of ln Delta from point to point; a quarter of the mean one
-_FIRST, _LAST = 0.01, 0.6  # equivalent depths: over the critical one, over R
-_ROUNDED = 2e-3  # of ln F, where it comes down to the least force
-_ROUNDS = 14  # for the sphere's part of the flow
-_SETTLING = 3  # of the contact radius in each, which go on from the last
 
 
 class Under(NamedTuple):
@@ -203,20 +186,20 @@ def mean_over_strains(n: float) -> float:
     >>> mean_over_strains(0.0), round(mean_over_strains(0.3), 3)
     (1.0, 0.921)
     """
-    return float(_SPAN**n / (1.0 + _FALL * n))
+    return float(RULES.mean_span**n / (1.0 + RULES.mean_fall * n))
 
 
 def equivalent(fitted: ClosedForm, pair: Pair, *, points: int) -> Equivalent:
     """Return the path of a pair through perfectly plastic bodies, from far below first yield on."""
     onset = critical_depth(pair) / pair.R
-    first = _FIRST * onset if math.isfinite(onset) else 1e-7
-    D = np.geomspace(min(first, 0.1 * _LAST), _LAST, points)
+    first = RULES.hardening_first * onset if math.isfinite(onset) else 1e-7
+    D = np.geomspace(min(first, 0.1 * RULES.hardening_last), RULES.hardening_last, points)
     yields_at = math.sqrt(onset) if math.isfinite(onset) else math.inf
     bodies, sphere, flat = bodies_of([pair]), _flow(pair.sphere), _flow(pair.flat)
 
     def taken(part: Floats, a: Floats) -> Equivalent:
         """The points if the sphere has `part` of the strain, from a first radius on."""
-        for _ in range(_SETTLING):
+        for _ in range(RULES.radius_rounds):
             p = representative_strain(a, yields_at)
             s, f = sphere(part * p), flat(p - part * p)
             numbers = fitted.numbers(_with_strengths(bodies, s.S, f.S))
@@ -234,7 +217,7 @@ def equivalent(fitted: ClosedForm, pair: Pair, *, points: int) -> Equivalent:
     at_low = found.at.phi - low
     at_high = taken(high, found.at.a).at.phi - high
     side = np.zeros_like(D)
-    for _ in range(_ROUNDS):
+    for _ in range(RULES.flow_rounds):
         part = low + (high - low) * at_low / np.maximum(at_low - at_high, 1e-300)
         found = taken(part, found.at.a)
         off = found.at.phi - part
@@ -256,7 +239,7 @@ def _fuller(e: Equivalent) -> Floats:
     """
     phi = e.at.phi
     n = phi * e.sphere.n + (1.0 - phi) * e.flat.n
-    return np.asarray(((1.0 + _FALL * n) / _SPAN**n) ** (e.y / (1.0 + e.y)))
+    return np.asarray(((1.0 + RULES.mean_fall * n) / RULES.mean_span**n) ** (e.y / (1.0 + e.y)))
 
 
 def coordinates_of(e: Equivalent) -> tuple[Floats, Floats]:
@@ -288,9 +271,9 @@ def features_of(e: Equivalent, low: Floats, high: Floats) -> Floats:
         (e.at.phi, 1.0 - e.at.phi), (e.sphere, e.flat), coordinates_of(e), strict=True
     ):
         inside = np.clip(at, low, high)
-        within = np.exp(-0.5 * np.sum(((at - inside) / _FADES) ** 2, axis=1))
+        within = np.exp(-0.5 * np.sum(((at - inside) / RULES.fades) ** 2, axis=1))
         size = 5.0 * flows * yielded * within
-        for degree in range(_DEGREE + 1):
+        for degree in range(RULES.correction_degree + 1):
             for which in itertools.combinations_with_replacement(range(_COORDINATES), degree):
                 columns.append(size * body.n * np.prod(inside[:, list(which)], axis=1))
         columns += [size * body.bend, *(size * body.bend * x for x in inside.T)]
@@ -330,7 +313,7 @@ def _path(law: HardeningLaw, pair: Pair) -> tuple[Floats, Any, Uncertainty | Non
     """Points of a path: ln(Delta/R), rising, the `Contact` there, how far off both may be, and the
     least force.
     """  # noqa: D205
-    e, correction = equivalent(law.fitted, pair, points=_POINTS), law.correction
+    e, correction = equivalent(law.fitted, pair, points=RULES.hardening_points), law.correction
     if correction is None:
         x, least = np.log(e.D), least_force(e, np.log(e.D))
         left = 1.0 - (1.0 - e.at.left) / e.deeper
@@ -338,11 +321,11 @@ def _path(law: HardeningLaw, pair: Pair) -> tuple[Floats, Any, Uncertainty | Non
     shifts = features_of(e, correction.low, correction.high) @ correction.weights
     x, at = corrected(e, shifts)
     # outside the data a correction could turn a path back
-    steps = np.maximum(np.diff(x), _LEAST_STEP)
+    steps = np.maximum(np.diff(x), RULES.least_step)
     x = x[0] + np.concatenate([[0.0], np.cumsum(steps)])
     least = least_force(e, x)
     # the larger, rounded where the two cross: a table would undershoot at a kink
-    rise, round_ = np.log(at.F / least), _ROUNDED * hardening_size(e)
+    rise, round_ = np.log(at.F / least), RULES.rounded * hardening_size(e)
     F = least * np.exp(0.5 * (rise + np.hypot(rise, round_)))
     at = at._replace(F=np.maximum.accumulate(F), left=np.maximum(at.left, 0.0))
     return x, at, _sizes(law, e, correction), least
@@ -394,12 +377,15 @@ def _flow(body: Material) -> Callable[[Floats], Under]:
 def _under(curve: FlowCurve) -> tuple[Floats, Under]:
     """Ln of representative strains, and a curve's flow there."""
     stress, last = CubicHermiteSpline(curve.strain, curve.stress, curve.slope), curve.strain[-1]
-    x = np.linspace(math.log(_WEAKEST), math.log(_STRONGEST), _STRAINS)
-    shares = _SPAN * ((np.arange(_SHARES) + 0.5) / _SHARES) ** _FALL
+    x = np.linspace(math.log(RULES.least_strain), math.log(RULES.largest_strain), RULES.mean_table)
+    shares = (
+        RULES.mean_span
+        * ((np.arange(RULES.mean_strains) + 0.5) / RULES.mean_strains) ** RULES.mean_fall
+    )
     stresses = stress(np.minimum(np.exp(x)[:, None] * shares, last))
     S = np.mean(stresses, axis=1)
     n = np.clip(np.gradient(np.log(S), x), -1.0, 1.0)
-    apart = round(_APART / (x[1] - x[0]))
+    apart = round(RULES.bend_apart / (x[1] - x[0]))
     padded = np.pad(n, apart, mode="edge")
     lowest = np.minimum.accumulate(np.minimum(np.min(stresses, axis=1), curve.strength))
     return x, Under(S, n, padded[2 * apart :] - padded[: -2 * apart], lowest)
@@ -408,7 +394,7 @@ def _under(curve: FlowCurve) -> tuple[Floats, Under]:
 @lru_cache(maxsize=64)
 def _columns(law: HardeningLaw, pair: Pair) -> Floats:
     x, at, _, least = _path(law, pair)
-    grid = np.linspace(x[0], x[-1], _POINTS)
+    grid = np.linspace(x[0], x[-1], RULES.hardening_points)
     F, a, left, phi, N = (
         PchipInterpolator(x, values)(grid)
         for values in (np.log(at.F), np.log(at.a), at.left, at.phi, at.N)

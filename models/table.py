@@ -27,14 +27,11 @@ from ..core.material import Pair
 from .base import ContactLaw, Domain, DomainWarning, Kernels, Standing
 from .driver import Depths, Pairs
 from .kernel import Floats, common_parameters, critical_depth
+from .rules import RULES
 from .table_kernels import TABLE_KERNELS
 from .uncertainty import LEAST, Uncertainty
 
-FEWEST_UNLOADINGS = 3
-_POINTS = 240  # of the table, even in ln(depth)
-# depths over the critical one at which the law is Hertz's, and from which the data count
-_ELASTIC = (0.02, 0.05, 0.1, 0.2, 0.4, 0.5, 0.6)
-_JOINED = 0.8
+FEWEST_UNLOADINGS = RULES.unloadings
 
 
 class Curve(NamedTuple):
@@ -79,7 +76,7 @@ class PairTable:
     def numbers(self) -> Floats:
         """What the kernels read behind the common numbers."""
         x, force, radius = self._loading()
-        grid = np.linspace(x[0], x[-1], _POINTS)
+        grid = np.linspace(x[0], x[-1], RULES.table_points)
         F, a = (PchipInterpolator(x, v)(grid) for v in (force, radius))
         return packed_columns(grid, (F, a, *self._recovery(grid, F, a)))
 
@@ -88,7 +85,7 @@ class PairTable:
         c = self.curve
         onset = self.yields_at
         if math.isfinite(onset):
-            early, seen = np.array(_ELASTIC) * onset, c.depth >= _JOINED * onset
+            early, seen = np.array(RULES.joining_depths) * onset, c.depth >= RULES.joined * onset
         else:
             early, seen = np.geomspace(1e-3, 0.3, 5) * c.depth[0], c.depth > 0.0
         depth = np.concatenate([early, c.depth[seen]])

@@ -15,14 +15,13 @@ from ..core.inputs.toml_input import InputTable, Listed, parse_model
 from ..core.material import Pair
 from ..core.output import write_file
 from ..core.rig import MaterialTable, material_keys
+from .rules import RULES
 from .table import Curve, PairTable, TableLaw, Turns, table_law
 
 FORMAT = "dentscope-table/1"
 
-FEWEST_DEPTHS = 2
-"""Of a loading that is a curve."""
 
-MOST_BYTES = 20_000_000
+MOST_BYTES = RULES.law_bytes
 """Largest file of a law that is read."""
 
 _MADE = "law.json of `dentscope case`"
@@ -109,10 +108,10 @@ def table_from(content: object, *, source: str, name: str) -> TableLaw:
             )
         if not np.all(np.diff(part.depth) > 0.0):
             raise InputError("falls", source=source, key=f"{name}.depth", allowed="rising depths")
-    if len(curve.depth) < FEWEST_DEPTHS:
+    if len(curve.depth) < RULES.law_depths:
         raise InputError(
             f"{len(curve.depth)} depths", source=source, key="loading",
-            allowed=f"{FEWEST_DEPTHS} or more",
+            allowed=f"{RULES.law_depths} or more",
         )  # fmt: skip
     table = PairTable(Pair(sphere, flat, found.radius_m), curve, turns)
     if len(turns.depth) and turns.depth[0] <= table.yields_at:

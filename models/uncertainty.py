@@ -15,6 +15,7 @@ import numpy as np
 import numpy.typing as npt
 
 from .closed_form import PairNumbers, plastic_depth, small_radius_at
+from .rules import RULES
 
 Floats = npt.NDArray[np.float64]
 
@@ -23,7 +24,7 @@ FEATURES = (
 )  # fmt: skip
 """What a standard deviation depends on; see `features_of`."""
 
-LEAST = 1e-3
+LEAST = RULES.least_error
 """Standard deviation that no law goes below."""
 
 METAL = {
@@ -39,7 +40,7 @@ WITH_CURVE = {
 does is no error any more; shape and turning of the yield surface and the unloading's modulus are.
 How strong the piece is, is an error of the data sheet. `radius` is the contact's at one force,
 from Tabor's constraint, 2.8 within 4 to 5 % of metals; with a curve half of it."""
-RECOVERY_EXPONENT = 0.02
+RECOVERY_EXPONENT = RULES.exponent_error
 """Standard deviation of the recovery's exponent, of the closed form to finite elements."""
 
 

@@ -7,6 +7,7 @@ from dataclasses import dataclass
 from typing import Literal
 
 from ..core.observables import OBSERVABLES
+from .rules import RULES
 
 Kind = Literal["text", "condition", "observable", "std"]
 
@@ -90,11 +91,9 @@ _HIGHEST = {
 }
 """Largest number that a column may hold, by its end; more is mostly another unit."""
 
-_HIGHEST_RATIO = 20.0  # of what has no unit: a friction, or a restitution written in percent
-
 
 def _highest(name: str) -> float:
-    return next((high for end, high in _HIGHEST.items() if name.endswith(end)), _HIGHEST_RATIO)
+    return next((high for end, high in _HIGHEST.items() if name.endswith(end)), RULES.highest_ratio)
 
 
 MEASURED: dict[str, Column] = {

@@ -17,14 +17,8 @@ from requests.exceptions import RequestException
 
 from ..core.errors import InputError
 from ..core.inputs.toml_input import InputTable, Listed, read_model
+from .rules import RULES
 
-MOST_BYTES = 2_000_000_000
-"""Largest file that is fetched."""
-
-MOST_SECONDS = 1800.0
-"""Longest time that one file may take [s]."""
-
-_PATIENCE_S = 30.0  # for a server that says nothing
 _PIECE = 1 << 20
 _SHA256 = r"[0-9a-f]{64}"
 
@@ -112,19 +106,19 @@ def fetch_sources(catalogue: Catalogue, out: Path, names: Sequence[str]) -> Iter
 
 def _capped(url: str, output_file: str, pooch: object) -> None:
     """Fetch a file of a bearable size in a bearable time; the checksum is compared afterwards."""
-    until, size = time.monotonic() + MOST_SECONDS, 0
+    until, size = time.monotonic() + RULES.fetched_s, 0
     with (
-        requests.get(url, stream=True, timeout=_PATIENCE_S) as answer,
+        requests.get(url, stream=True, timeout=RULES.server_s) as answer,
         Path(output_file).open("wb") as out,
     ):
         answer.raise_for_status()
         for piece in answer.iter_content(_PIECE):
             size += len(piece)
-            if size > MOST_BYTES or time.monotonic() > until:
+            if size > RULES.fetched_bytes or time.monotonic() > until:
                 raise InputError(
                     f"{size / 1e6:.0f} MB fetched and no end", source=url,
-                    allowed=f"a file of up to {MOST_BYTES / 1e9:g} GB, within "
-                    f"{MOST_SECONDS / 60.0:g} minutes",
+                    allowed=f"a file of up to {RULES.fetched_bytes / 1e9:g} GB, within "
+                    f"{RULES.fetched_s / 60.0:g} minutes",
                 )  # fmt: skip
             out.write(piece)
 

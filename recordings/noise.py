@@ -10,8 +10,9 @@ import numpy.typing as npt
 
 from ..core.inputs.csv_table import Array
 from ..core.observables import RELATIVE_SUFFIX
+from .rules import RULES
 
-MIN_REPEATS = 3
+MIN_REPEATS = RULES.repeats
 """Trials at one condition from which a noise may be taken."""
 
 

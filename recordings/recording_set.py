@@ -26,6 +26,7 @@ from ..core.rig import BodyTable, Quantity, StrikerTable
 from . import noise
 from .columns import MEASURED
 from .noise import Noise
+from .rules import RULES
 from .same_file import taken_twice
 from .series import read_profile, read_trace, series_in
 from .setup_file import Setup, flowing, setup_text, without_marks
@@ -34,12 +35,6 @@ from .trials import Trials, read_trials, trials_text
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
-
-_SPEED_BIN = 0.02
-_ANGLE_BIN = 1.0
-_RATE_BIN = 0.5  # of ln of a press's rate: strengths differ by a few per cent a decade
-_SURE, _SLIP = 3.0, 0.1
-"""Standard deviations by which a restitution exceeds 1 before it asks for a reason."""
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -169,13 +164,13 @@ class RecordingSet:
         sizes = np.array([s.length / 2.0 or s.body_radius for s in self.strikers()])
         return noise.numbered(
             trials.striker,
-            list(noise.bins(np.asarray(trials.angle_deg), width=_ANGLE_BIN)),
-            list(noise.bins(np.log(approach.normal), width=_SPEED_BIN)),
-            list(noise.bins(approach.tangential / approach.normal, width=_SPEED_BIN)),
-            list(noise.bins(approach.spin * sizes / approach.normal, width=_SPEED_BIN)),
-            list(noise.bins(trials.temperature_K, width=_ANGLE_BIN)),
-            list(noise.bins(np.log(trials.load_N), width=_SPEED_BIN)),
-            list(noise.bins(np.log(trials.press_rate_per_s), width=_RATE_BIN)),
+            list(noise.bins(np.asarray(trials.angle_deg), width=RULES.angle_bin)),
+            list(noise.bins(np.log(approach.normal), width=RULES.speed_bin)),
+            list(noise.bins(approach.tangential / approach.normal, width=RULES.speed_bin)),
+            list(noise.bins(approach.spin * sizes / approach.normal, width=RULES.speed_bin)),
+            list(noise.bins(trials.temperature_K, width=RULES.angle_bin)),
+            list(noise.bins(np.log(trials.load_N), width=RULES.speed_bin)),
+            list(noise.bins(np.log(trials.press_rate_per_s), width=RULES.rate_bin)),
             *trials.varied.values(),
             blow,
         )
@@ -361,7 +356,9 @@ def _impossible(found: RecordingSet, problems: Problems) -> list[InputError]:
         return []
     # smaller gains may be scatter that was not stated: the audit and the diagnosis name them
     std = np.nan_to_num(found.std("restitution"))
-    high = np.flatnonzero(e - 1.0 > np.maximum(_SURE * std, _SLIP))
+    high = np.flatnonzero(
+        e - 1.0 > np.maximum(RULES.restitution_beyond * std, RULES.restitution_slip)
+    )
     return [
         InputError(
             f"{e[k]:g} above 1 without a reason", source=problems.source,

@@ -14,13 +14,13 @@ from ..core.inputs.names import ALLOWED, names_a_file
 from ..core.observables import LOAD, OBSERVABLES
 from ..core.output import csv_text
 from .columns import CONDITIONS, MEASURED, STD_SUFFIX, TRIAL_COLUMNS, VARIED
+from .rules import RULES
 
 _TEXTS = tuple(name for name, column in TRIAL_COLUMNS.items() if column.kind == "text")
 _NUMBERS = tuple(name for name, column in CONDITIONS.items() if column.kind != "text")
 _STDS = {name + STD_SUFFIX: name for name in MEASURED}
 _APPROACH = ("impact_speed_m_s", "drop_height_m")
 NORMAL = 90.0
-_UPRIGHT = 0.5  # degrees by which a press may be said to lean: bins of an angle are twice as wide
 _SHOWN_BY_PRESS = tuple(name for name in MEASURED if "press" in OBSERVABLES[name].of)
 _OF_PRESSES = {
     "press_rate_per_s", "load_N_std",
@@ -268,7 +268,7 @@ def _check_press(table: TextTable, i: int, values: Mapping[str, Array], problems
     if (
         "angle_deg" in values
         and not np.isnan(values["angle_deg"][i])
-        and (abs(values["angle_deg"][i] - NORMAL) > _UPRIGHT)
+        and (abs(values["angle_deg"][i] - NORMAL) > RULES.press_lean)
     ):
         problems.add(
             f"{values['angle_deg'][i]:g}", row=row, column="angle_deg",

@@ -2,118 +2,111 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, field
-from typing import TypeVar
+from dataclasses import dataclass
 
-_Number = TypeVar("_Number", int, float)
-
-
-def _rule(value: _Number, meaning: str, source: str) -> _Number:
-    """Return a number with what is said of it, for the register and its page."""
-    found: _Number = field(default=value, metadata={"meaning": meaning, "source": source})
-    return found
+from ..core.rules import rule
 
 
 @dataclass(frozen=True)
-class Rules:
+class ReductionRules:
     """The register; `dataclasses.fields` tells the meaning and the source of each."""
 
-    fewest_level_samples: int = _rule(
+    fewest_level_samples: int = rule(
         10, "samples without change that tell the level before a pulse [-]",
         "a tenth of the noise as the level's error at most a third of it",
     )  # fmt: skip
-    level_trend: float = _rule(
+    level_trend: float = rule(
         0.01, "change over such a stretch, as a part of the pulse's height [-]",
         "benchmarks/validate_reduce_pulse.py: levels of feet and of slow transducers",
     )  # fmt: skip
-    foot_reach: int = _rule(
+    foot_reach: int = rule(
         6, "half-widths of the pulse over which a lower level before a foot is looked for [-]",
         "felt under a drop table: a foot of 1.2 widths (Dataset-11 of the High-Rate SHM group)",
     )  # fmt: skip
-    foot_part: float = _rule(
+    foot_part: float = rule(
         0.005, "area before the flank, as a part of the pulse's, that is a foot [-]",
         "benchmarks/validate_reduce_pulse.py: clean half-sines stay below",
     )  # fmt: skip
-    ring_reach: float = _rule(
+    ring_reach: float = rule(
         20.0, "durations after a pulse over which a ringing is averaged [-]",
         "drop table on felt: the change of speed is level from there on",
     )  # fmt: skip
-    most_given_up: float = _rule(
+    most_given_up: float = rule(
         0.5, "part of a run's instants that may be given up at its ends [-]",
         "a knock before and after a run of five is two of seven",
     )  # fmt: skip
-    most_elastic: float = _rule(
+    most_elastic: float = rule(
         0.998, "median restitution of a run above which nothing bounces: a clock [-]",
         "hardened steel on steel, glass on glass: 0.99 at most in air",
     )  # fmt: skip
-    least_of_all: float = _rule(
+    least_of_all: float = rule(
         0.5, "part of all instants that the run must hold: fewer hang together by chance [-]",
         "a ball with an echo of every bounce: a half",
     )  # fmt: skip
-    run_scatter: float = _rule(
+    run_scatter: float = rule(
         2.0, "scatter of a run's intervals in the error of an instant, above which it counts [-]",
         "six flights tell a scatter to a third: twice the error is no chance",
     )  # fmt: skip
-    whole_flank: int = _rule(
+    whole_flank: int = rule(
         8, "samples above half of the peak from which on a flank has samples too [-]",
         "of a half-sine 13 % lie on a flank between 6 and 45 %, 67 % above the half",
     )  # fmt: skip
-    form: float = _rule(
+    form: float = rule(
         1e-3, "error of peak and area by the form of a pulse, in themselves [-]",
         "benchmarks/validate_reduce_pulse.py: powers of a sine from 1 to 1.5",
     )  # fmt: skip
-    hole: float = _rule(
+    hole: float = rule(
         0.1, "longest time between two samples of a pulse, in its duration [-]",
         "a half-sine loses 1 % of its area there at most",
     )  # fmt: skip
-    pulse_over_noise: float = _rule(
+    pulse_over_noise: float = rule(
         8.0, "peak of a pulse over the noise before it [-]",
         "of a million samples of normal noise none is higher than 5",
     )  # fmt: skip
-    flat_samples: int = _rule(
+    flat_samples: int = rule(
         4, "equal samples at the top that are more than chance [-]", "chance: one in 10 000",
     )  # fmt: skip
-    plateau: float = _rule(
+    plateau: float = rule(
         0.65, "width at 95 % of the peak, in that at half of it, of a cut pulse [-]",
         "0.30 of a half-sine, 0.27 of elastic spheres; a half-sine cut at 78 %: 0.65",
     )  # fmt: skip
-    fewest_above_half: int = _rule(
+    fewest_above_half: int = rule(
         3, "samples above half of the peak [-]", "fewer do not tell a pulse from a disturbance",
     )  # fmt: skip
-    lopsided: float = _rule(
+    lopsided: float = rule(
         12.0, "time of a flank in that of the other [-]",
         "the flanks of an impact are as 1 to its restitution or less: 0.1 at least",
     )  # fmt: skip
-    duration_error: float = _rule(
+    duration_error: float = rule(
         0.5, "standard deviation of a contact time, in itself [-]", "beyond it nothing is measured",
     )  # fmt: skip
-    step: float = _rule(
+    step: float = rule(
         0.33, "level after a pulse, in its peak [-]", "benchmarks/validate_reduce_pulse.py",
     )  # fmt: skip
-    swings: int = _rule(
+    swings: int = rule(
         6, "other half-waves above a third of the peak [-]", "benchmarks/validate_reduce_pulse.py",
     )  # fmt: skip
-    ringing: float = _rule(
+    ringing: float = rule(
         0.1, "half-wave of the other sign, in the peak [-]", "benchmarks/validate_reduce_pulse.py",
     )  # fmt: skip
-    train: int = _rule(
+    train: int = rule(
         4, "other pulses of more than half of the peak beside it [-]",
         "steps of a walk and taps: benchmarks/validate_reduce_pulse.py",
     )  # fmt: skip
-    outside_restitution: float = _rule(
+    outside_restitution: float = rule(
         3.0, "standard deviations below 0 or above 1 [-]", "normal errors: one in 700",
     )  # fmt: skip
-    fall_off: float = _rule(
+    fall_off: float = rule(
         0.3, "acceleration in flight off gravity, in gravity [-]",
         "drag and buoyancy of a table-tennis ball at its terminal speed are less",
     )  # fmt: skip
-    not_rigid: float = _rule(
+    not_rigid: float = rule(
         0.05, "distance of markers from one rigid shape, in its extent [-]",
         "an acrylic cube: 0.002; a walking person: 0.1",
     )  # fmt: skip
-    longest_contact: float = _rule(
+    longest_contact: float = rule(
         0.02, "longest contact of a body that bounces [s]", "a basketball: 0.009 to 0.016",
     )  # fmt: skip
 
 
-RULES = Rules()
+RULES = ReductionRules()

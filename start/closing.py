@@ -33,6 +33,7 @@ from ..models.table import PairTable, table_law
 from ..models.table_file import write_table
 from .metal_press import Press, presses
 from .pair import solved
+from .rules import RULES
 
 Array = NDArray[np.float64]
 Mask = NDArray[np.bool_]
@@ -41,9 +42,6 @@ WHICH = ("baseline", "closed_form", "finite_elements")
 """Simulations that are set beside the recordings."""
 CARRIED = ("work-hardening", "strain-rate-hardening")
 """Mechanisms that the finite elements can carry."""
-_FASTEST = 0.9  # of the largest speed: conditions from there on are kept out
-_ROUNDS = 8  # constants far from neutral move the stated numbers far
-_FEWEST = 6  # numbers from which constants are inferred
 
 
 class Compared(NamedTuple):
@@ -118,7 +116,7 @@ def close(
     out = _kept_out(problem)
     simulator, slower = Simulator(problem), Simulator(_of_cells(problem, ~out))
     base = fit(slower, (), start=verdict.ranking.base)
-    refit = fit(slower, best.mechanisms, start=best, place=best.place, rounds=_ROUNDS)
+    refit = fit(slower, best.mechanisms, start=best, place=best.place, rounds=RULES.closing_rounds)
     refit = sharpened(slower, refit)
     constants, z = refit.grid.values(refit.place), refit.z
     named = simulator.predict(best.mechanisms, [Point(z, constants)])[0]
@@ -167,8 +165,8 @@ def write_closed(closed: Closed, out: Path) -> tuple[Path, ...]:
 def _kept_out(problem: Problem) -> Mask:
     """Cells of the fastest conditions; none where too little would be left."""
     speed = np.array([c.speed for c in problem.conditions])
-    out = (speed > _FASTEST * speed.max())[problem.cells.condition]
-    return out if np.sum(~out) >= _FEWEST else np.zeros_like(out)
+    out = (speed > RULES.kept_out * speed.max())[problem.cells.condition]
+    return out if np.sum(~out) >= RULES.closing_numbers else np.zeros_like(out)
 
 
 def _of_cells(problem: Problem, kept: Mask) -> Problem:

@@ -18,12 +18,10 @@ from ..models.base import ContactLaw
 from ..models.choose import Demand, demand, follows_flow
 from .case_file import read_pair
 from .judged import USABLE, Departure, Reference, judged
+from .rules import RULES
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
-
-_POINTS = 120
-_MOST = 4  # laws that are recommended
 
 
 USED = frozenset(
@@ -198,7 +196,9 @@ def _best(
     known = [law.name for law in laws if pair.perfectly_plastic or follows_flow(law)]
     near = [name for name in known if name in departures and departures[name].worst <= USABLE]
     return tuple(
-        sorted(near, key=lambda name: (round(departures[name].worst, 3), name != "fitted"))[:_MOST]
+        sorted(near, key=lambda name: (round(departures[name].worst, 3), name != "fitted"))[
+            : RULES.recommended
+        ]
     )
 
 
@@ -210,7 +210,9 @@ def _elastic(laws: Sequence[ContactLaw]) -> tuple[str, ...]:
 
 def _rows(pair: Pair, laws: Sequence[ContactLaw], last: float) -> tuple[Row, ...]:
     deepest = last * pair.R
-    depth = np.geomspace(min(0.3 * critical_depth(pair), 1e-2 * deepest), deepest, _POINTS)
+    depth = np.geomspace(
+        min(0.3 * critical_depth(pair), 1e-2 * deepest), deepest, RULES.curve_points
+    )
     scale = pair.Sy_min if pair.Sy_min < float("inf") else pair.E_reduced
     rows: list[Row] = []
     for law in laws:

@@ -23,17 +23,12 @@ from ..core.material import Material, Pair
 from ..models import DomainWarning, critical_depth
 from ..models.base import ContactLaw
 from .measured import loading_work
+from .rules import RULES
 
 FOLDER = Path(__file__).resolve().parents[1] / "data" / "campaign"
-USABLE = 0.10
+USABLE = RULES.usable
 """Largest departure of a law that may be used: that of a dent whose strength is off by a tenth."""
 
-_FAR = 0.5  # of `distance`, from which the nearest pair is called far
-_LEAST_DENT = 0.1  # of the depth: less says nothing about a law
-_NOTHING = 100.0  # times too little or too much: not to be counted in times
-_EVEN = 2.5  # ratio of strengths beyond which the stronger body hardly matters
-_STRAIN = 0.1  # plastic strain at which a curve's rise is compared
-_POINTS = 400  # of an integral of the work
 _HARDENS = ("hardening", "validation-hardening")
 _COARSE = "smoke"
 
@@ -60,7 +55,7 @@ class Departure(NamedTuple):
         if not math.isfinite(self.worst):
             return "no number"
         name = self._fields[max(range(3), key=lambda k: self[k])]
-        if self.worst > math.log(_NOTHING):
+        if self.worst > math.log(RULES.no_factor):
             return f"knows no {name}"
         return f"off by {math.exp(self.worst):.2g} times in {name}"
 
@@ -79,7 +74,7 @@ class Reference(NamedTuple):
     def told(self) -> str:
         """Which pair it is, in the numbers that a contact depends on."""
         p = self.pair
-        far = "; no published pair is like yours" if self.distance > _FAR else ""
+        far = "; no published pair is like yours" if self.distance > RULES.far else ""
         return (
             f"finite elements of E'/S = {p.E_reduced / p.Sy_min:.3g}, Sy* = {p.Sy_ratio:.3g}, "
             f"elastic share of the sphere {p.elastic_share:.2g}{far}"
@@ -116,7 +111,7 @@ def departure(law: ContactLaw, reference: Reference) -> Departure:
         left = np.add(*law.residual(pair, peaks))
         back = [_restitution(law, pair, d, float(r)) for d, r in zip(peaks, left, strict=True)]
         dents = np.array([turn[1] for turn in reference.turns])
-        seen = dents > _LEAST_DENT * peaks
+        seen = dents > RULES.least_dent * peaks
         return Departure(
             _largest(force, reference.force), _largest(left[seen], dents[seen]),
             _largest(np.array(back), np.array([turn[2] for turn in reference.turns])),
@@ -130,10 +125,10 @@ def _largest(law: Array, solved: Array) -> float:
 
 
 def _restitution(law: ContactLaw, pair: Pair, peak: float, left: float) -> float:
-    taken = peak * np.linspace(0.0, 1.0, _POINTS) ** 2
-    given = left + (peak - left) * np.linspace(0.0, 1.0, _POINTS)
+    taken = peak * np.linspace(0.0, 1.0, RULES.work_points) ** 2
+    given = left + (peak - left) * np.linspace(0.0, 1.0, RULES.work_points)
     spent = np.trapezoid(law.loading(pair, taken), taken)
-    returned = np.trapezoid(law.unloading(pair, given, np.full(_POINTS, peak)), given)
+    returned = np.trapezoid(law.unloading(pair, given, np.full(RULES.work_points, peak)), given)
     return math.sqrt(max(float(returned / spent), 0.0))
 
 
@@ -163,7 +158,7 @@ def _published(perfectly_plastic: bool) -> tuple[CaseRecord, ...]:
 
 def _groups(pair: Pair) -> Array:
     """What a contact depends on, each about one wide over the published pairs."""
-    ratio = min(max(pair.Sy_ratio, 1.0 / _EVEN), _EVEN)
+    ratio = min(max(pair.Sy_ratio, 1.0 / RULES.uneven_strengths), RULES.uneven_strengths)
     groups = [
         math.log(pair.E_reduced / pair.Sy_min) / 1.2, 2.0 * math.log(ratio) / 1.2,
         (pair.elastic_share - 0.5) / 0.22, (_nu(pair.weaker) - 0.3) / 0.1, 5.0 * _rise(pair.weaker),
@@ -177,7 +172,7 @@ def _nu(body: Material) -> float:
 
 def _rise(body: Material) -> float:
     curve = body.flow.curve if body.flow else None
-    return math.log(curve(_STRAIN) / curve.strength) if curve else 0.0
+    return math.log(curve(RULES.rise_strain) / curve.strength) if curve else 0.0
 
 
 def _reference(record: CaseRecord, distance: float, last: float) -> Reference:

@@ -17,13 +17,11 @@ from ..discrepancy.mechanisms.base import Constants, Mechanism
 from ..fem.problem import DEEPEST
 from ..impact import Scene
 from ..models.anchored import AnchoredLaw
+from .rules import RULES
 
 Array = NDArray[np.float64]
 Clock = tuple[tuple[float, float], ...]
 """Rows of Delta/R and speed [m/s]."""
-
-_DEEPER, _TURNS, _DEPTHS = 1.25, 5, 60
-_SLOW = 0.1  # of the approach speed: where the clock of a press ends
 
 
 class Press(NamedTuple):
@@ -53,7 +51,7 @@ def presses(
         alike.setdefault((scenes[k].pair.sphere, scenes[k].pair.flat), []).append(k)
     for these in alike.values():
         low, high = depth[these].min(), depth[these].max()
-        turns = tuple(float(x) for x in np.geomspace(min(low, 0.3 * high), high, _TURNS))
+        turns = tuple(float(x) for x in np.geomspace(min(low, 0.3 * high), high, RULES.press_turns))
         yield Press(_press(scenes[these[0]], constants, turns, ()), tuple(these))
 
 
@@ -71,7 +69,7 @@ def _ends(problem: Problem) -> list[int]:
 def _clock(depth: float, speed: float) -> Clock:
     """Rows of Delta/R and speed of a striker that a plastic contact stops at a depth."""
     x = np.linspace(0.0, 1.0, 12)
-    slowing = np.sqrt(np.maximum(1.0 - x**2, _SLOW**2))
+    slowing = np.sqrt(np.maximum(1.0 - x**2, RULES.clock_end**2))
     return tuple((float(a * depth), float(speed * b)) for a, b in zip(x, slowing, strict=True))
 
 
@@ -80,10 +78,10 @@ def _press(
 ) -> fem.ContactProblem:
     known = scene.law.metal(scene.pair) if isinstance(scene.law, AnchoredLaw) else scene.pair
     metal = _flowing(known, scene.pair, constants)
-    last = min(_DEEPER * max(turns), DEEPEST)
+    last = min(RULES.press_deeper * max(turns), DEEPEST)
     first = min(0.3 * fem.critical_depth(metal), 1e-2 * last)
     return fem.ContactProblem(
-        pair=metal, depths=fem.geometric_depths(first, last, _DEPTHS), unload_from=turns,
+        pair=metal, depths=fem.geometric_depths(first, last, RULES.press_depths), unload_from=turns,
         speeds=clock,
     )  # fmt: skip
 

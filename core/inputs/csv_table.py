@@ -14,15 +14,10 @@ import numpy as np
 import numpy.typing as npt
 
 from ..errors import InputError
+from ..rules import RULES
 from .input_file import read_bytes
 
 Array = npt.NDArray[np.float64]
-
-MOST_BYTES = 100_000_000
-"""Largest table that is read [bytes]."""
-
-_MOST_COLUMNS = 2000
-_MOST_PROBLEMS = 1000  # that are kept one by one; nobody reads more
 
 
 @dataclass(slots=True)
@@ -35,7 +30,7 @@ class Problems:
 
     def add(self, message: str, *, row: int = 0, column: str = "", allowed: str = "") -> None:
         """Note a mistake; rows count from 1, the header's, as a spreadsheet shows them."""
-        self.further += len(self.found) >= _MOST_PROBLEMS
+        self.further += len(self.found) >= RULES.problems_kept
         if self.further:
             return
         parts = (f"row {row}" if row else "", f"column {column}" if column else "")
@@ -79,7 +74,7 @@ def read_text_table(
         Beginning of names that any column may have.
     """
     try:
-        raw = read_bytes(path, most=MOST_BYTES, allowed="a table of comma-separated values")
+        raw = read_bytes(path, most=RULES.table_bytes, allowed="a table of comma-separated values")
         text = raw.decode("utf-8-sig")
     except InputError as error:
         problems.found.append(error)
@@ -111,8 +106,8 @@ def _header_is_sound(
     if len(header) == 1 and (";" in header[0] or "\t" in header[0]):
         problems.add("columns are not separated by commas", row=row, allowed="commas")
         return False
-    if len(header) > _MOST_COLUMNS:
-        problems.add(f"{len(header)} columns", row=row, allowed=f"up to {_MOST_COLUMNS}")
+    if len(header) > RULES.table_columns:
+        problems.add(f"{len(header)} columns", row=row, allowed=f"up to {RULES.table_columns}")
         return False
     before = len(problems.found)
     for place, name in enumerate(header):

@@ -11,6 +11,7 @@ import numpy.typing as npt
 from ..errors import InputError, InputErrors
 from ..flow import FlowCurve, tabulated
 from ..output import csv_text
+from ..rules import RULES
 from .csv_table import Array, Problems, numbers, read_text_table
 
 COLUMNS = ("plastic_strain", "true_stress_Pa", "strain_rate_per_s", "temperature_K")
@@ -18,12 +19,9 @@ COLUMNS = ("plastic_strain", "true_stress_Pa", "strain_rate_per_s", "temperature
 
 PROOF_STRAIN = 0.002
 
-SPECIMENS = 0.07
+SPECIMENS = RULES.specimens
 """Standard deviation between specimens of one metal, of the stress at 0.2 %: 0.070 and 0.068 in 15
 and 9 tensions of one bar of 304L at 1e-4 and 1e-2 1/s (sandialabs/matcal, BSD)."""
-
-_PER_DECADE = 8  # rows of a curve
-_ELASTIC = 1e-4  # plastic strain below which a test shows none
 
 
 @dataclass(frozen=True, eq=False)
@@ -66,7 +64,9 @@ class MeasuredFlow:
         """
         rows = self.tests[0]
         p, S = self.strain[rows], self.stress[rows] * (strength / self.strength)
-        cell = np.floor(_PER_DECADE * np.log10(np.maximum(p, _ELASTIC))).astype(int)
+        cell = np.floor(RULES.rows_a_decade * np.log10(np.maximum(p, RULES.strain_seen))).astype(
+            int
+        )
         _, part = np.unique(cell, return_inverse=True)
         count = np.bincount(part)
         p, S = np.bincount(part, p) / count, np.bincount(part, S) / count

@@ -9,11 +9,11 @@ from typing import Annotated
 
 from pydantic import AfterValidator
 
+from ..rules import RULES
+
 ALLOWED = "text that can name a file"
 
 _NEVER = frozenset('/\\:*?"<>|')
-_LONGEST = 200
-"""Bytes; what is written beside a trial gets up to 55 more."""
 
 
 def names_a_file(text: str) -> bool:
@@ -25,7 +25,7 @@ def names_a_file(text: str) -> bool:
     [True, False, False, False, False]
     """
     return (
-        0 < len(text.encode(errors="replace")) <= _LONGEST
+        0 < len(text.encode(errors="replace")) <= RULES.name_bytes
         and text.isprintable()
         and not _NEVER & set(text)
         and text not in (".", "..")

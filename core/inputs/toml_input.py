@@ -10,14 +10,10 @@ from typing import Any, TypeVar, cast, get_args
 from pydantic import BaseModel, ConfigDict, Field, ValidationError, model_validator
 
 from ..errors import InputError, InputErrors
+from ..rules import RULES
 from .input_file import read_bytes
 
 Model = TypeVar("Model", bound=BaseModel)
-
-
-_MOST_BYTES = 4_000_000
-_LONGEST = 80  # characters of a value in an error
-_DEEPEST = 20  # tables and lists within each other
 
 
 class InputTable(BaseModel):
@@ -62,7 +58,7 @@ def read_toml(path: Path) -> dict[str, Any]:
     InputError
         The file is missing, unreadable or not TOML.
     """
-    content = read_bytes(path, most=_MOST_BYTES, allowed="an existing TOML file")
+    content = read_bytes(path, most=RULES.toml_bytes, allowed="an existing TOML file")
     try:
         found = tomllib.loads(content.decode())
     except UnicodeDecodeError as error:
@@ -74,10 +70,10 @@ def read_toml(path: Path) -> dict[str, Any]:
     except RecursionError:
         found = {}
     else:
-        if _depth_at_most(_DEEPEST, found):
+        if _depth_at_most(RULES.toml_depth, found):
             return found
     raise InputError(
-        "tables or lists nested too deep", source=str(path), allowed=f"up to {_DEEPEST}"
+        "tables or lists nested too deep", source=str(path), allowed=f"up to {RULES.toml_depth}"
     )
 
 
@@ -135,7 +131,11 @@ def _shown(value: Any) -> str:
         text = repr(value)
     except (ValueError, RecursionError):  # of too many digits, or nested too deep to be written
         text = type(value).__name__
-    return text if len(text) <= _LONGEST else f"{text[: _LONGEST - 10]}...{text[-7:]}"
+    return (
+        text
+        if len(text) <= RULES.value_shown
+        else f"{text[: RULES.value_shown - 10]}...{text[-7:]}"
+    )
 
 
 def _known_keys(model: type[BaseModel], path: tuple[Any, ...]) -> list[str]:

@@ -15,9 +15,9 @@ import time
 from contextlib import suppress
 from pathlib import Path
 
+from ..rules import RULES
+
 _VARIABLE = "PYTHONSAFEPATH"
-_LOOKS_S = 0.5
-"""How often a process looks whether its parent is still there."""
 
 
 def python_command(*arguments: str) -> list[str]:
@@ -76,7 +76,7 @@ def die_with(parent: int) -> None:
 
     def watch() -> None:
         while os.getppid() == parent:
-            time.sleep(_LOOKS_S)
+            time.sleep(RULES.parent_look_s)
         os._exit(1)
 
     threading.Thread(target=watch, daemon=True).start()

@@ -14,7 +14,9 @@ from contextlib import contextmanager
 from types import FrameType
 from typing import Any
 
-AGAIN_S = 0.5
+from ..rules import RULES
+
+AGAIN_S = RULES.stop_again_s
 """After how long an interruption that nobody has heard comes again."""
 
 _DEFAULT: dict[int, Any] = {

@@ -13,14 +13,16 @@ import numpy as np
 import numpy.typing as npt
 from numba import njit
 
+from ..rules import RULES
+
 Floats = npt.NDArray[np.float64]
 
 NO_RATE, COWPER_SYMONDS, JOHNSON_COOK, OVERSTRESS = range(4)
 
 _ROOT = math.sqrt(2.0 / 3.0)
-_WEAKEST = 0.01  # of the strength that heat leaves
-_ROUND_OFF = 3e-15  # of the radius: the root is found to this
-_MOST = 80
+_WEAKEST = RULES.least_strength_hot
+_ROUND_OFF = RULES.root_round_off
+_MOST = RULES.root_rounds
 
 
 class Laws(NamedTuple):

@@ -14,6 +14,7 @@ import numpy as np
 import numpy.typing as npt
 from numba import njit
 
+from ..rules import RULES
 from .tensor import dot, norm
 
 Four = tuple[float, float, float, float] | npt.NDArray[np.float64]
@@ -25,7 +26,7 @@ RADIAL = 0
 EXACT = 1
 """Exact integration along a constant strain-rate direction."""
 
-_STILL = 1e-24  # a smaller increment (squared, over the radius) has no direction: radial return
+_STILL = RULES.still_increment
 
 
 class Slide(NamedTuple):

@@ -14,6 +14,7 @@ import numpy as np
 import numpy.typing as npt
 from numba import njit
 
+from ..rules import RULES
 from .flow import Law, at_point, circle_of, perfect
 from .slide import RADIAL, Four, elastic_part, find_slide, is_directed, slid, slid_far, turned
 from .tensor import log_strain, norm
@@ -22,7 +23,7 @@ Five = tuple[float, float, float, float, float] | npt.NDArray[np.float64]
 """A deformation gradient, (rr, rz, zr, zz, tt)."""
 
 # keeps round-off from calling converged plastic points plastic again on unloading
-MARGIN = 1.0 + 1e-10
+MARGIN = RULES.yield_margin
 
 
 class Step(NamedTuple):

@@ -20,12 +20,10 @@ import numpy as np
 import numpy.typing as npt
 
 from ...core.errors import InputError
+from ..rules import RULES
 
 Floats = npt.NDArray[np.float64]
 Integers = npt.NDArray[np.int64]
-
-_AXIS = 1e-13  # coordinates below this are on the axis [R]
-_INNER_RINGS = 3
 
 
 @dataclass(frozen=True)
@@ -252,10 +250,10 @@ def _inner_block(k: _Sketch, r0: float, layers: _Layers) -> _Edge:
     ob, bm = k.surface(k.origin, b, half, 1.0 / q), k.line(b, m, half, q)
     mc, co = k.line(m, c, half, q), k.line(c, k.origin, half, 1.0 / q)
     k.patch([ob, bm, mc, co], [k.origin, b, m, c])
-    bb, outer1 = k.surface(b, b2, _INNER_RINGS), k.arc(b2, k.origin, m2, half, q)
-    mm = k.line(m, m2, _INNER_RINGS)
+    bb, outer1 = k.surface(b, b2, RULES.inner_rings), k.arc(b2, k.origin, m2, half, q)
+    mm = k.line(m, m2, RULES.inner_rings)
     k.patch([bb, outer1, -mm, -bm], [b, b2, m2, m])
-    outer2, cc = k.arc(m2, k.origin, c2, half, q), k.line(c, c2, _INNER_RINGS)
+    outer2, cc = k.arc(m2, k.origin, c2, half, q), k.line(c, c2, RULES.inner_rings)
     k.patch([mm, outer2, -cc, -mc], [m, m2, c2, c])
     return _Edge(b2, c2, [outer1, outer2])
 
@@ -306,7 +304,7 @@ def _points_and_quads(gmsh: Any) -> tuple[Floats, Integers]:
     place = np.full(int(tags.max()) + 1, -1)
     place[tags.astype(np.int64)] = np.arange(len(tags))
     points = xyz.reshape(-1, 3)[place[used], :2].copy()
-    points[np.abs(points) < _AXIS] = 0.0
+    points[np.abs(points) < RULES.on_axis] = 0.0
     number = np.full(int(tags.max()) + 1, -1)
     number[used] = np.arange(len(used))
     quads = number[nodes[0].astype(np.int64)].reshape(-1, 4)

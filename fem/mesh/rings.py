@@ -13,6 +13,8 @@ from dataclasses import dataclass
 import numpy as np
 import numpy.typing as npt
 
+from ..rules import RULES
+
 Floats = npt.NDArray[np.float64]
 
 
@@ -30,15 +32,10 @@ class Zone:
         if r > self.high:
             return max(fine, coarse * widening(r / self.high))
         inside = self.low / r
-        twice, all_coarse = _INSIDE
+        twice, all_coarse = RULES.inside_zone
         if inside <= twice:
             return min(2.0 * fine, coarse)
         return coarse if inside <= all_coarse else 2.0 * coarse
-
-
-# Within the contact the rings are at most twice as wide as in the zone up to the first factor away
-# from it, up to the second one coarse: strains vary there over the contact radius, not the ring's.
-_INSIDE = (1.5, 4.0)
 
 
 def widening(x: float) -> float:
@@ -48,10 +45,6 @@ def widening(x: float) -> float:
     stiffness as h^2 of that: least in sum, for so many rings, where h grows as r^(1/3).
     """
     return min(0.4 * math.cbrt(x), 1.2)
-
-
-_RUNGS = 4  # in a fine ring
-_GROWTH = 1.25  # of neighbouring rings; an abrupt change shows in the contact pressure
 
 
 def ladder_rings(zone: Zone, *, core: float, end: float, fine: float, coarse: float) -> Floats:
@@ -71,17 +64,23 @@ def ladder_rings(zone: Zone, *, core: float, end: float, fine: float, coarse: fl
     ndarray
         Increasing radii, shape (n,) [R].
     """
-    rung = math.log1p(fine) / _RUNGS
+    rung = math.log1p(fine) / RULES.ring_divisions
     first = math.floor(math.log(core / end) / rung)
-    low = max(_RUNGS * math.floor(math.log(zone.low / end) / (rung * _RUNGS)), first)
-    high = min(_RUNGS * math.ceil(math.log(zone.high / end) / (rung * _RUNGS)), 0)
+    low = max(
+        RULES.ring_divisions * math.floor(math.log(zone.low / end) / (rung * RULES.ring_divisions)),
+        first,
+    )
+    high = min(
+        RULES.ring_divisions * math.ceil(math.log(zone.high / end) / (rung * RULES.ring_divisions)),
+        0,
+    )
 
     def strides(start: int, stop: int, direction: int) -> list[int]:
-        k, stride, found = start, _RUNGS, []
+        k, stride, found = start, RULES.ring_divisions, []
         while k * direction < stop * direction:
             width = zone.allowed(end * math.exp(rung * k), fine=fine, coarse=coarse)
-            widest = max(_RUNGS, int(width / fine * _RUNGS * 1.001))
-            stride = min(max(stride + 1, int(_GROWTH * stride)), widest)
+            widest = max(RULES.ring_divisions, int(width / fine * RULES.ring_divisions * 1.001))
+            stride = min(max(stride + 1, int(RULES.ring_growth * stride)), widest)
             k += direction * stride
             found.append(k)
         if found:  # the last ring ends where it must; a thin one is joined to its neighbour
@@ -91,7 +90,7 @@ def ladder_rings(zone: Zone, *, core: float, end: float, fine: float, coarse: fl
         return found
 
     inside = strides(low, first, -1)[::-1]
-    middle = [*range(low, high, _RUNGS), high]
+    middle = [*range(low, high, RULES.ring_divisions), high]
     rungs = np.array(inside + middle + strides(high, 0, 1), dtype=float)
     return np.asarray(end * np.exp(rung * rungs))
 

@@ -18,11 +18,9 @@ import numpy.typing as npt
 from ..contact import ContactState
 from ..discretise import Discretisation
 from ..newton import Equilibrium
+from ..rules import RULES
 
 Floats = npt.NDArray[np.float64]
-
-_EDGES = 5  # open surface elements that the fit of the gap looks at
-_CANDIDATES = 161
 
 
 @dataclass(frozen=True)
@@ -87,15 +85,15 @@ def edge_of_contact(contact: ContactState, slave_r: Floats) -> float:
     k = int(active[-1])
     # the element beyond the last active node is partly closed: the fit starts at the next one
     first = min(k + 1, len(contact.gap) - 1)
-    r = contact.r[first : first + _EDGES].ravel()
-    g = contact.gap[first : first + _EDGES].ravel()
+    r = contact.r[first : first + RULES.gap_edges].ravel()
+    g = contact.gap[first : first + RULES.gap_edges].ravel()
     if len(r) < 6:
         return float("nan")  # the contact has grown out of the surface that was meshed to touch
     h = float(slave_r[min(k + 1, len(slave_r) - 1)] - slave_r[max(k - 1, 0)]) * 0.5
-    edges = slave_r[k] + h * np.linspace(-1.0, 1.4, _CANDIDATES)
+    edges = slave_r[k] + h * np.linspace(-1.0, 1.4, RULES.edge_candidates)
     misfit = _misfits(edges, r, g)
     best = int(misfit.argmin())
-    if 0 < best < _CANDIDATES - 1:
+    if 0 < best < RULES.edge_candidates - 1:
         left, mid, right = misfit[best - 1 : best + 2]
         curvature = left - 2.0 * mid + right
         shift = 0.5 * (left - right) / curvature if curvature > 0.0 else 0.0

@@ -15,20 +15,17 @@ from dataclasses import dataclass, field, replace
 import numpy as np
 import numpy.typing as npt
 
+from ..rules import RULES
 from .measure import Reading
 
 Floats = npt.NDArray[np.float64]
 
-BEYOND = 4
+BEYOND = RULES.steps_beyond
 """So many steps past the last depth make the fit there two-sided."""
 
-_REACH = 0.36  # of the fit to either side, in the logarithm of the approach
-_DEGREE = 3  # of the curve within the reach
-_HARMONICS = 2  # of the part that repeats from ring to ring
-# Weight of a ripple of nothing, in steps. Where a step takes the edge one ring or half a ring on,
-# the ripple seems to stand still and could be anything; this keeps it small.
-_PRIOR = 1.0
-_ENOUGH = 2 * _HARMONICS + _DEGREE + 4  # steps within the reach, else the raw value stands
+_ENOUGH = (
+    2 * RULES.harmonics + RULES.ripple_degree + 4
+)  # steps within the reach, else the raw value stands
 _NAMES = ("force", "radius", "radius_last_node", "share")
 
 
@@ -77,16 +74,18 @@ def _mean(values: Floats, weights: Floats, here: int) -> float:
 
 def _weights(x: Floats, turns: Floats, here: int) -> Floats | None:
     """Weights of the steps in the smooth value at step `here`; none: too few steps about it."""
-    t = (x - x[here]) / _REACH
+    t = (x - x[here]) / RULES.ripple_reach
     near = np.flatnonzero(np.abs(t) < 1.0)
     if len(near) < _ENOUGH:
         return None
     t = t[near]
-    columns = [t**k for k in range(_DEGREE + 1)]
-    for k in range(1, _HARMONICS + 1):
+    columns = [t**k for k in range(RULES.ripple_degree + 1)]
+    for k in range(1, RULES.harmonics + 1):
         columns += [np.cos(k * turns[near]), np.sin(k * turns[near])]
     root = np.sqrt((1.0 - np.abs(t) ** 3) ** 3)
-    prior = np.eye(2 * _HARMONICS, len(columns), _DEGREE + 1) * np.sqrt(_PRIOR)
+    prior = np.eye(2 * RULES.harmonics, len(columns), RULES.ripple_degree + 1) * np.sqrt(
+        RULES.ripple_prior
+    )
     rows = np.vstack([np.stack(columns, axis=1) * root[:, None], prior])
     weights = np.zeros(len(x))
     weights[near] = np.linalg.pinv(rows)[0, : len(near)] * root

@@ -26,6 +26,7 @@ from ..columns import Impacts
 from ..draw import histories
 from ..integrate import Trace, strike, traced
 from ..result import Impact
+from ..rules import RULES
 from ..told.band import PRESSURE, Band, band_of, idle
 from ..told.checks import checks, reason_above_one
 from ..told.onset import largest_mean_pressure
@@ -35,9 +36,6 @@ from .tables import EXACT, SHOWN, impact_row
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
-_POINTS = 200
-_SURE = 1e-6  # relative, below which no standard deviation is shown
-_ROUND_OFF = 1e-7  # of the largest number of the same unit
 _EITHER = (("impact_speed_m_s", "drop_height_m"), ("drop_height_m", "impact_speed_m_s"))
 
 
@@ -320,7 +318,7 @@ def blow_of(setup: Setup, laws: Sequence[ContactLaw]) -> Blow:
                     PRESSURE: pressure,
                 }
             )  # fmt: skip
-            traces[law.name] = traced(scene, setup.settings, points=_POINTS)
+            traces[law.name] = traced(scene, setup.settings, points=RULES.history_points)
             # the next blow falls on the same spot: hardened crater, flattened tip
             scene = scene.with_(spot=found.spot)
     return Blow(setup.name, traces, tuple(rows), setup, tuple(laws))
@@ -335,7 +333,7 @@ def _shown(impacts: Iterable[Impact]) -> list[dict[str, float]]:
     return [
         {
             key: 0.0
-            if unit != "-" and abs(values[key]) <= _ROUND_OFF * largest[unit]
+            if unit != "-" and abs(values[key]) <= RULES.shown_round_off * largest[unit]
             else values[key]
             for _, key, _, unit in SHOWN
         }
@@ -347,7 +345,7 @@ def _cell(value: float, std: float = 0.0) -> str:
     # a tip that comes straight down has no tangential speed to be given back
     if math.isnan(value):
         return "none"
-    if value != 0.0 and std > _SURE * abs(value):
+    if value != 0.0 and std > RULES.sure * abs(value):
         return f"{_number(value)} ± {_number(float(f'{std:.1e}'))}"
     return _number(value)
 

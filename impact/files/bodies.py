@@ -12,9 +12,8 @@ from ...core.inputs.flow_tables import HardeningTable
 from ...core.inputs.rig_numbers import RigNumbers
 from ...core.material import Material, Pair
 from ...core.rig import BodyTable
+from ..rules import RULES
 from ..scene import Striker
-
-_SAME = 1e-3  # between a stated strength and a curve's first stress, that is then the strength
 
 
 def bodies_of(rig: RigNumbers, name: str, *, source: str = "") -> tuple[Pair, Striker]:
@@ -82,6 +81,6 @@ def flowing(metal: Material, table: BodyTable, key: str, *, source: str) -> Mate
     measured = read_flow_curve(Path(source).parent / table.flow_curve)
     own = measured.strength
     first = measured.curve(own).strength
-    stated = math.isfinite(metal.Sy) and abs(metal.Sy / first - 1.0) > _SAME
+    stated = math.isfinite(metal.Sy) and abs(metal.Sy / first - 1.0) > RULES.same_strength
     curve = measured.curve(metal.Sy if stated else own)
     return metal.with_(Sy=curve.strength, flow=Flow(curve))

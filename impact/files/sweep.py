@@ -13,11 +13,9 @@ from ...core.inputs.toml_input import InputTable
 from ..batch import impacts
 from ..columns import Impacts
 from ..integrate import Settings
+from ..rules import RULES
 from ..scene import Scene
 from ..tabulated.cells import Array
-
-MOST = 10_000_000
-"""Largest number of combinations."""
 
 _ALLOWED = (
     'a list of numbers, or { from = ..., to = ..., count = ..., spacing = "linear" or "log" }'
@@ -104,10 +102,13 @@ def mistakes_in(sweep: SweepTable, source: str) -> list[InputError]:
                 allowed="impact_speed_m_s or drop_height_m",
             )
         )  # fmt: skip
-    if sweep.count > MOST:
+    if sweep.count > RULES.combinations:
         found.append(
             InputError(
-                f"{sweep.count} combinations", source=source, key="sweep", allowed=f"up to {MOST}"
+                f"{sweep.count} combinations",
+                source=source,
+                key="sweep",
+                allowed=f"up to {RULES.combinations}",
             )
         )
     return found

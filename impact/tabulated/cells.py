@@ -20,6 +20,7 @@ from numpy.typing import NDArray
 
 from ...core.errors import COMPLETED, Ending, Outcome
 from ...models.kernel import VECTOR
+from ..rules import RULES
 
 Array = NDArray[np.float64]
 
@@ -32,11 +33,10 @@ _FIT = np.linalg.inv(np.vander(_NODES, increasing=True))
 _CHECK = np.vander(_BETWEEN, _ORDER, increasing=True)
 _START, _BINS_PER_CELL = 24, 8
 
-MOST_CELLS = 4000
+MOST_CELLS = RULES.cells
 """Cells that are tried, halved ones counted; the smooth laws of this package take 1120 at most."""
 
-_AT_ONCE = 256
-"""Cells that are tried together."""
+_AT_ONCE = RULES.cells_at_once
 
 
 @dataclass(frozen=True, slots=True)

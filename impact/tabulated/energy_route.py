@@ -23,6 +23,7 @@ from numba import float64, int64, njit, types
 from ...core.material import Pair
 from ...models.base import ContactLaw
 from ...models.kernel import VECTOR
+from ..rules import RULES
 from ..scene import ForceTransform, RateFree, Scene
 from ..surface import Spot
 from .cells import Array, cell_at, column_at, column_in
@@ -39,7 +40,7 @@ from .energy_table import (
     energy_table,
 )  # fmt: skip
 
-GRAVITY_LIMIT = 0.1
+GRAVITY_LIMIT = RULES.gravity_limit
 """Largest work of gravity over the work of a branch; the series is cut after its fourth power."""
 
 NAMES = (

@@ -16,12 +16,14 @@ from numba import float64, int64, njit, types
 from ...core.material import Pair
 from ...models.base import ContactLaw, Kernels
 from ...models.kernel import BRANCH_SIGNATURE, LOADING_SIGNATURE, RESIDUAL_SIGNATURE, VECTOR
+from ..rules import RULES
 from .cells import Array, Cells, cells_of
 
-ERROR = 1e-8
+ERROR = RULES.energy_error
 """Error of the table; restitution and times come out within ten times this of the integral."""
 
-SHALLOWEST, DEEPEST = 1e-8, 0.5
+SHALLOWEST = RULES.energy_shallowest
+DEEPEST = RULES.energy_deepest
 """Peak depths over R that the route answers for."""
 
 # Columns of the table: ln(d_m), ln(F_m), returned share of the work, residual depths over d_m, then
@@ -34,7 +36,7 @@ COLUMNS = RECOVERY_TIME + TERMS
 _LAW = types.FunctionType(LOADING_SIGNATURE)
 _BRANCH = types.FunctionType(BRANCH_SIGNATURE)
 _SPLIT = types.FunctionType(RESIDUAL_SIGNATURE)
-_KEPT = 200
+_KEPT = RULES.energy_tables
 _TABLES: dict[tuple[str, bytes], Cells] = {}
 
 

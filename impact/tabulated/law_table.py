@@ -34,17 +34,19 @@ from ...models.kernel import (
     residual_kernel,
 )
 from ..bits import bits_of
+from ..rules import RULES
 from .cells import BINS, GUIDE, Array, Cells, cells_of, column_in
 
-ERROR = 1e-8
+ERROR = RULES.law_error
 """Error of a table: of F and a over their own, of residual depths over the peak, of the power."""
 
-SHALLOWEST, DEEPEST = 1e-9, 1.0
+SHALLOWEST = RULES.law_shallowest
+DEEPEST = RULES.law_deepest
 """Depths over R between which a law is tabulated, whole octaves; beyond, it goes on as Hertz's."""
 
 _FORCE, _RADIUS, _SPHERE, _FLAT, _EXPONENT = range(5)
 _COLUMNS = 5
-_KEPT = 200
+_KEPT = RULES.law_tables
 _TABLES: dict[tuple[str, bytes, float], Cells] = {}
 
 _OCTAVE, _OCTAVES = N_COMMON, N_COMMON + 1

@@ -27,6 +27,7 @@ from ..columns import Impacts
 from ..files.second import mirror_error
 from ..integrate import strike
 from ..result import Impact
+from ..rules import RULES
 from ..scene import ForceTransform, Scene
 from ..strength import NODES, Array
 from .onset import largest_mean_pressure
@@ -37,15 +38,11 @@ if TYPE_CHECKING:
 LAW, METALS = "contact law", "metal"
 """Names of the parts that are no input."""
 
-_HERTZ = 0.003  # of Hertz's force, which leaves out the finite depth of the contact
-_STEP = 0.02  # of a logarithm, for the slopes
-_LARGEST = 1.0  # of a logarithm: a law that is that far off is off by a factor
-_HELD = (1.0, 0.5, 0.25, 0.1)  # of a standard deviation, where a whole one leaves the range
 _NUMBERS = (*(f.name for f in fields(Impact) if f.type == "float"), "mean_force_N")
 _CRATER = "permanent_depth_m"
 SWEPT = ("restitution", _CRATER, "contact_time_s", "peak_force_N")
 """The numbers of a sweep that have a band."""
-MOST_SWEPT = 400
+MOST_SWEPT = RULES.band_conditions
 """Conditions up to which a sweep has one: each takes some ten impacts in steps."""
 PRESSURE = "largest_mean_pressure_Pa"
 """The one number beside those of `Impact`."""
@@ -146,7 +143,7 @@ def _shifted(setup: Setup, law: ContactLaw) -> Iterator[tuple[str, float, Setup,
     from ..files.setup import setup_of
 
     for path, quantity in _uncertain(setup):
-        for share in _HELD:
+        for share in RULES.held:
             values = [_moved(quantity, sign * share) for sign in (1.0, -1.0)]
             try:
                 up, down = (
@@ -215,7 +212,7 @@ def _sizes(scene: Scene, found: Any) -> tuple[_Sizes, _Sizes]:
     kept = 1.0 - found.energetic_restitution**2
     lost = min(max(kept, 0.0), 1.0) if kept > 1e-6 else 0.0
     if not math.isfinite(pair.Sy_min):
-        return _Sizes(_HERTZ, 0.0, 0.0, 0.0, 0.0), _Sizes(0.0, 0.0, 0.0, 0.0, 0.0)
+        return _Sizes(RULES.hertz_error, 0.0, 0.0, 0.0, 0.0), _Sizes(0.0, 0.0, 0.0, 0.0, 0.0)
     with warnings.catch_warnings(), np.errstate(all="ignore"):
         warnings.simplefilter("ignore", DomainWarning)  # the doubt about a law has its own line
         depth = np.array([found.peak_depth_m])
@@ -224,7 +221,7 @@ def _sizes(scene: Scene, found: Any) -> tuple[_Sizes, _Sizes]:
         except InputError:
             known = beside_fitted(law, pair, depth)
     force, radius, dent, back = (
-        min(float(np.nan_to_num(x[0], nan=_LARGEST)), _LARGEST)
+        min(float(np.nan_to_num(x[0], nan=RULES.largest_error)), RULES.largest_error)
         for x in (known.force, known.radius, known.dent, known.given_back)
     )
     sizes = WITH_CURVE if follows_flow(law) and not pair.perfectly_plastic else METAL
@@ -253,9 +250,9 @@ def _slopes(setup: Setup, law: ContactLaw) -> list[dict[str, float]]:
     stated, slopes = setup.scene(law).force, []
     for k in range(3):
         ends = [
-            _values(last_blow(setup, law, _changed(stated, k, step))) for step in (_STEP, -_STEP)
+            _values(last_blow(setup, law, _changed(stated, k, step))) for step in (RULES.band_step, -RULES.band_step)
         ]
-        slopes.append({n: (ends[0][n] - ends[1][n]) / (2.0 * _STEP) for n in _NUMBERS})
+        slopes.append({n: (ends[0][n] - ends[1][n]) / (2.0 * RULES.band_step) for n in _NUMBERS})
     return slopes
 
 
@@ -277,9 +274,9 @@ def swept_stds(setup: Setup, law: ContactLaw, found: Impacts) -> dict[str, Array
     scene, slopes = setup.scene(law), []
     for k in range(3):
         one, two = (
-            setup.swept(law, force=_changed(scene.force, k, step)) for step in (_STEP, -_STEP)
+            setup.swept(law, force=_changed(scene.force, k, step)) for step in (RULES.band_step, -RULES.band_step)
         )
-        slopes.append({name: (one[name] - two[name]) / (2.0 * _STEP) for name in SWEPT})
+        slopes.append({name: (one[name] - two[name]) / (2.0 * RULES.band_step) for name in SWEPT})
     for row, values in enumerate(found.rows()):
         blow = SimpleNamespace(**values, residual_flat_m=values[_CRATER])
         for sizes in _sizes_of(setup, scene, blow):

@@ -19,18 +19,13 @@ from ...models.choose import demand, follows_flow
 from ..files.second import mirror_error
 from ..integrate import strike
 from ..result import Impact
+from ..rules import RULES
 from ..scene import Scene
 from ..support import half_space_radiation, plate_support
 from .onset import effective_mass, first_yield_speed, largest_mean_pressure
 
 if TYPE_CHECKING:
     from ..files.setup import Setup
-
-_THICK = 8.0  # thickness over the depth of a dent (ISO 6506-1, 6.3)
-_RATE = 0.4  # of v/a: strain rate of an indentation (Tabor 1951)
-_SMALL = 1e-3  # relative effect that is not worth a line
-_MAY = 0.25  # of the dent, that one specimen or the next moves from body to body
-_MASS_OFF = 0.01  # of a solid sphere's mass
 
 
 def checks(setup: Setup, law: ContactLaw, found: Impact) -> list[str]:
@@ -66,7 +61,7 @@ def _onset(scene: Scene, found: Impact) -> Iterator[str]:
     )
     if scene.approach.speed > speed:
         radius = float(scene.law.contact_radius(pair, found.peak_depth_m))
-        rate = _RATE * scene.approach.speed / radius
+        rate = RULES.indentation_rate * scene.approach.speed / radius
         yield (
             f"strain rate about {rate:.2g} 1/s: a strength measured slowly lacks what the metal's "
             "rate adds up to there"
@@ -86,7 +81,7 @@ def _either(scene: Scene, found: Impact) -> Iterator[str]:
         except InputError:  # the table of one pair knows no other
             return
         parts.append(sphere / (sphere + flat) if sphere + flat > 0.0 else 0.5)
-    if max(parts) - min(parts) > _MAY:
+    if max(parts) - min(parts) > RULES.may_matter:
         yield (
             f"either body may take the dent: {100.0 * min(parts):.0f} to {100.0 * max(parts):.0f} "
             f"% of it is the sphere's where a strength is off by {100.0 * SPECIMENS:.0f} %, as "
@@ -101,10 +96,10 @@ def _plate(setup: Setup, scene: Scene, found: Impact) -> Iterator[str]:
     h = thickness.value
     dent = found.residual_flat_m
     if dent > 0.0:
-        enough = "thick" if h >= _THICK * dent else "NOT thick"
+        enough = "thick" if h >= RULES.thick * dent else "NOT thick"
         yield (
-            f"the flat, {h * 1e3:.3g} mm, is {enough} enough for the dent: {_THICK:g} times its "
-            f"depth is {_THICK * dent * 1e3:.2g} mm (ISO 6506-1)"
+            f"the flat, {h * 1e3:.3g} mm, is {enough} enough for the dent: {RULES.thick:g} times "
+            f"its depth is {RULES.thick * dent * 1e3:.2g} mm (ISO 6506-1)"
         )
     else:
         a = float(scene.law.contact_radius(scene.pair, found.peak_depth_m))
@@ -129,7 +124,7 @@ def _gravity(setup: Setup, scene: Scene, found: Impact) -> Iterator[str]:
     if scene.gravity == 0.0:
         return
     without = strike(scene.with_(gravity=0.0), setup.settings)
-    if abs(without.restitution / found.restitution - 1.0) > _SMALL:
+    if abs(without.restitution / found.restitution - 1.0) > RULES.worth_a_line:
         yield (
             f"gravity, {scene.gravity:.4g} m/s^2, acts during the contact; without: "
             f"{_effect(without, found)}"
@@ -203,7 +198,7 @@ def _bodies(setup: Setup, law: ContactLaw) -> Iterator[str]:
     ball = file.strikers[name]
     if ball.shape == "sphere" and ball.density_kg_m3 is not None:
         solid = 4.0 / 3.0 * math.pi * ball.body_radius**3 * ball.density_kg_m3.value
-        if abs(ball.mass_kg.value / solid - 1.0) > _MASS_OFF:
+        if abs(ball.mass_kg.value / solid - 1.0) > RULES.mass_off:
             yield (
                 f"strikers.{name}: {ball.mass_kg.value:.4g} kg as stated; a solid sphere of its "
                 f"radius and density has {solid:.4g} kg"

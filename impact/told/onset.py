@@ -12,9 +12,8 @@ from ...core.material import Pair
 from ...models.base import DomainWarning
 from ...models.kernel import critical_depth, critical_force
 from ..result import Impact
+from ..rules import RULES
 from ..scene import Scene
-
-_POINTS = 60  # depths at which the mean pressure is looked at
 
 
 @dataclass(frozen=True)
@@ -92,7 +91,7 @@ def largest_mean_pressure(scene: Scene, found: Impact) -> float:
     peak = found.peak_depth_m
     if scene.striker.tip_flat_radius > 0.0 or not 0.0 < peak < math.inf:
         return math.nan
-    depth = np.geomspace(1e-3 * peak, peak, _POINTS)
+    depth = np.geomspace(1e-3 * peak, peak, RULES.pressure_points)
     with warnings.catch_warnings():
         warnings.simplefilter("ignore", DomainWarning)  # the doubt about a law has its own line
         return float(np.max(scene.law.hardness(scene.pair, depth)))

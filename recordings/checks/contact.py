@@ -5,21 +5,10 @@ from __future__ import annotations
 import math
 
 from ..recording_set import RecordingSet
+from ..rules import RULES
 from . import limits
 from .findings import Finding, Severity, gathered
 from .trial_view import Reading, TrialView, combined, value_of, views
-
-UNEXPLAINED = 0.5
-"""Part of the lost energy that a dent should explain at least."""
-
-DENT_RANGE = (0.55, 1.1)
-"""True work of a dent over p pi R d^2: barely plastic, and hardened."""
-
-LONG_ENOUGH = 3.0
-"""Periods of a vibration that a contact should last for the body to act as rigid."""
-
-_BEYOND = 4.0
-_BOUND_STD = 0.05
 
 
 def check_energy(found: RecordingSet) -> list[Finding]:
@@ -28,7 +17,7 @@ def check_energy(found: RecordingSet) -> list[Finding]:
     for view in views(found):
         e, depth, pressure = view.measured("restitution"), _depth(view), _pressure(view)
         brought, lost = _energies(view, e)
-        if e is not None and lost.value < -_BEYOND * lost.std and view.touch.c == 0.0:
+        if e is not None and lost.value < -RULES.contact_beyond * lost.std and view.touch.c == 0.0:
             text = f"restitution {e.value:.3g} is a gain of {-lost.value:.3g} J"
             z = -lost.value / lost.std
             findings.append(
@@ -70,11 +59,11 @@ def _energies(view: TrialView, e: Reading | None) -> tuple[Reading, Reading]:
 
 
 def _supply(name: str, work: Reading, brought: Reading) -> Finding:
-    least = DENT_RANGE[0]
+    least = RULES.dent_work[0]
     z = (least * work.value - brought.value) / math.hypot(least * work.std, brought.std)
     return Finding(
         f"energy of {name} against all that was brought",
-        Severity.CONTRADICTION if z > _BEYOND else Severity.CONSISTENT,
+        Severity.CONTRADICTION if z > RULES.contact_beyond else Severity.CONSISTENT,
         f"the dent takes {work.value:.3g} J of {brought.value:.3g} J brought "
         f"({work.value / brought.value:.0%})",
         work.value,
@@ -85,14 +74,14 @@ def _supply(name: str, work: Reading, brought: Reading) -> Finding:
 
 def _budget(name: str, work: Reading, lost: Reading) -> Finding:
     title = f"energy of {name}"
-    least, most = DENT_RANGE
+    least, most = RULES.dent_work
     beyond = (least * work.value - lost.value) / math.hypot(least * work.std, lost.std)
-    missing = (UNEXPLAINED * lost.value - most * work.value) / math.hypot(
-        most * work.std, UNEXPLAINED * lost.std
+    missing = (RULES.unexplained * lost.value - most * work.value) / math.hypot(
+        most * work.std, RULES.unexplained * lost.std
     )
     share = f" ({work.value / lost.value:.0%})" if lost.value > 0.0 else ""
     text = f"the dent takes {work.value:.3g} J of {lost.value:.3g} J lost{share}"
-    if beyond > _BEYOND:
+    if beyond > RULES.contact_beyond:
         return Finding(title, Severity.CONTRADICTION, text, work.value, lost.value, beyond)
     if missing > 2.0:
         text += ": look for a sink outside the contact"
@@ -116,11 +105,11 @@ def check_force(found: RecordingSet) -> list[Finding]:
         for what, bound in bounds.items():
             if math.isnan(bound):
                 continue
-            z = (force.value - bound) / math.hypot(force.std, _BOUND_STD * bound)
+            z = (force.value - bound) / math.hypot(force.std, RULES.bound_std * bound)
             findings.append(
                 Finding(
                     f"force of {view.name} against {what}",
-                    wrong if z > _BEYOND else Severity.CONSISTENT,
+                    wrong if z > RULES.contact_beyond else Severity.CONSISTENT,
                     f"{force.value:.4g} N {word}, {bound:.4g} N ({force.value / bound:.2g} times)",
                     force.value,
                     bound,
@@ -167,7 +156,7 @@ def check_duration(found: RecordingSet) -> list[Finding]:
             periods["first bending period"] = limits.bending_period(striker)
         for what, period in periods.items():
             severity, tail = Severity.CONSISTENT, ""
-            if time < LONG_ENOUGH * period:
+            if time < RULES.rigid_periods * period:
                 severity, tail = Severity.CAUTION, ": the rod may not act as rigid"
             findings.append(
                 Finding(

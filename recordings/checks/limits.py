@@ -6,14 +6,13 @@ import math
 from dataclasses import dataclass
 
 from ...core.rig import Quantity, StrikerTable, TargetTable
+from ..rules import RULES
 
 FULLY_PLASTIC = 2.84
 """Contact pressure of a fully developed dent over the yield strength (Tabor; thesis 1.2)."""
 
-UNSTATED_STRENGTH = 0.15
-"""Relative standard deviation of a strength that is stated without one (a handbook's)."""
 
-ROUNDING = 0.003
+ROUNDING = RULES.rounding
 """Relative standard deviation when mass, density and size are all stated as exact."""
 
 FIRST_BENDING = 4.730041
@@ -75,7 +74,11 @@ def hardness(target: TargetTable, striker: StrikerTable) -> Quantity | None:
         return None
     if target.strength and striker.strength and striker.strength.value < target.strength.value:
         return None
-    return found if found.std else Quantity(value=found.value, std=UNSTATED_STRENGTH * found.value)
+    return (
+        found
+        if found.std
+        else Quantity(value=found.value, std=RULES.unstated_strength * found.value)
+    )
 
 
 def rod_area(striker: StrikerTable) -> float:

@@ -16,6 +16,7 @@ from scipy.stats import chi2
 from ...core.inputs.csv_table import Array
 from ...core.rig import StrikerTable
 from ..recording_set import RecordingSet
+from ..rules import RULES
 from .findings import FALSE_ALARMS_OTHER, Finding, judged, two_sided
 from .rigid import FIXED_BY_MOMENTUM, Touch, measured_after, touch
 from .trial_view import angle_std, speed_std
@@ -23,15 +24,11 @@ from .trial_view import angle_std, speed_std
 SHARE = FALSE_ALARMS_OTHER / 2.0
 """This check's part of the false alarms."""
 
-MODEL_TOLERANCE = 0.005
+MODEL_TOLERANCE = RULES.frozen_angle
 """Part of the approach speed by which a frozen angle and a fixed contact point may err."""
 
 Rows = npt.NDArray[np.intp]
 Residuals = Callable[[Array, Rows], Array]
-
-_STEPS = 60
-_SMALL = 1e-10
-"""Relative fall of the sum of squares below which a trial is done."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -198,7 +195,7 @@ def least_squares(residuals: Residuals, start: Array) -> Array:
     r = residuals(x, at)
     cost = np.sum(r**2, axis=1)
     damping = np.full(len(x), 1e-3)
-    for _ in range(_STEPS):
+    for _ in range(RULES.momentum_steps):
         J = _jacobian(residuals, x[at], at, r[at])
         H, g = J.swapaxes(1, 2) @ J, np.einsum("nmp,nm->np", J, r[at])
         weight = damping[at, None, None] * H
@@ -209,7 +206,9 @@ def least_squares(residuals: Residuals, start: Array) -> Array:
         tried = residuals(new, at)
         sums = np.sum(tried**2, axis=1)
         better = sums < cost[at]
-        done = np.where(better, cost[at] - sums <= _SMALL * (1.0 + sums), damping[at] > 1e6)
+        done = np.where(
+            better, cost[at] - sums <= RULES.momentum_settled * (1.0 + sums), damping[at] > 1e6
+        )
         x[at[better]], r[at[better]], cost[at[better]] = new[better], tried[better], sums[better]
         damping[at] *= np.where(better, 0.1, 10.0)
         at = at[~done]

@@ -10,6 +10,7 @@ from scipy.stats import chi2
 
 from ...core.rig import StrikerTable
 from ..recording_set import RecordingSet
+from ..rules import RULES
 from . import limits, momentum
 from .findings import (
     FALSE_ALARMS_MASS,
@@ -22,15 +23,6 @@ from .findings import (
     two_sided,
 )
 from .trial_view import combined, speed_std, value_of, views
-
-PULSE = (0.25, 1.0)
-"""Impulse over peak force times duration: a rectangular pulse has 1, a ringing one may have 0.3."""
-
-_ALONE = 0.25
-"""Part of the masses' false alarms that goes to single strikers where there are several."""
-
-_BEYOND = 4.0
-_ANGLES = 2.0
 
 
 def check_mass(found: RecordingSet) -> list[Finding]:
@@ -49,7 +41,7 @@ def check_mass(found: RecordingSet) -> list[Finding]:
         if name not in known
     ]
     rods = sum(mass.high > mass.low for mass in known.values())
-    alone = FALSE_ALARMS_MASS if len(known) < 2 else _ALONE * FALSE_ALARMS_MASS
+    alone = FALSE_ALARMS_MASS if len(known) < 2 else RULES.alone * FALSE_ALARMS_MASS
     for name, mass in known.items():
         stated, relative = strikers[name].mass_kg.value, _mass_relative(strikers[name], mass)
         expected = _expected(mass, part)
@@ -79,7 +71,7 @@ def _masses_together(bodies: list[tuple[StrikerTable, limits.Range]]) -> Finding
     factor = _factor(bodies, part)
     plain = _misfit(bodies, _part_of_the_ends(bodies))
     gain = max(plain - _misfit(bodies, part, factor), 0.0)
-    wrong = float(chi2.sf(gain, 1)) < (1.0 - _ALONE) * FALSE_ALARMS_MASS
+    wrong = float(chi2.sf(gain, 1)) < (1.0 - RULES.alone) * FALSE_ALARMS_MASS
     return Finding(
         "mass of all strikers together",
         Severity.CONTRADICTION if wrong else Severity.CONSISTENT,
@@ -163,10 +155,10 @@ def check_friction(found: RecordingSet) -> list[Finding]:
         ratio, touch = view.measured("friction_impulse_ratio"), view.touch
         if ratio is None or touch.c == 0.0 or touch.vx or touch.spin:
             continue
-        leaning = max(view.angle.value - _ANGLES * view.angle.std, 0.0)
+        leaning = max(view.angle.value - RULES.angles_apart * view.angle.std, 0.0)
         limit = max(touch.stick_ratio, view.touch_at(leaning).stick_ratio)
         z = (ratio.value - limit) / ratio.std
-        stuck = z > _BEYOND
+        stuck = z > RULES.motion_beyond
         findings.append(
             Finding(
                 f"friction of {view.name}",
@@ -194,12 +186,12 @@ def check_impulse(found: RecordingSet) -> list[Finding]:
         relative = combined(
             force.relative, time.relative, view.speed.relative, view.striker.mass_kg.relative
         )
-        z = (ratio - PULSE[1]) / (max(relative, limits.ROUNDING) * ratio)
-        severity = Severity.CONSISTENT if ratio > PULSE[0] else Severity.CAUTION
+        z = (ratio - RULES.pulse[1]) / (max(relative, limits.ROUNDING) * ratio)
+        severity = Severity.CONSISTENT if ratio > RULES.pulse[0] else Severity.CAUTION
         findings.append(
             Finding(
                 f"impulse of {view.name}",
-                Severity.CONTRADICTION if z > _BEYOND else severity,
+                Severity.CONTRADICTION if z > RULES.motion_beyond else severity,
                 f"{impulse:.4g} N s from the motion, {pulse:.4g} N s peak force times duration "
                 f"(ratio {ratio:.2g}, at most 1)",
                 impulse,

@@ -8,27 +8,14 @@ import numpy as np
 
 from ...core.rig import BodyTable
 from ..recording_set import RecordingSet
+from ..rules import RULES
 from . import limits
 from .findings import Finding, Severity, gathered
 from .trial_view import Reading, TrialView, combined, views
 
-LOAD_CLASS = 0.005
+LOAD_CLASS = RULES.load_class
 """Relative standard deviation of a load that is stated without one: class 1 of ISO 7500-1 allows
 1 % of the indicated force."""
-
-MEAN_PRESSURE = (0.35, 1.3)
-"""Mean pressure of a press over a stated hardness: from first yield (1.1 S_y of 2.84 S_y) on, and
-of metals that harden more than the hardness test saw."""
-
-HARDENED = 4.0
-"""Hardness over 2.84 S_y where the strength alone is stated: annealed copper and 304 reach it."""
-
-RECOVERY = (0.5, 0.85)
-"""Recovered depth over F/(E' a): 1/2 of a flat punch, 3/4 of Hertz's, and a tenth above it."""
-
-_BEYOND = 4.0
-_GEOMETRY = (0.7, 1.25)
-"""Contact radius over sqrt(2 R delta) at the peak: sunk in elastically, and piled up."""
 
 
 def check_press_load(found: RecordingSet) -> list[Finding]:
@@ -40,9 +27,9 @@ def check_press_load(found: RecordingSet) -> list[Finding]:
         area = _dent_area(view)
         if pressure is None or area is None:
             continue
-        low, high = MEAN_PRESSURE
+        low, high = RULES.mean_pressure
         # Sy_Pa alone says little of how a metal hardens
-        high *= 1.0 if target.hardness_Pa is not None else HARDENED
+        high *= 1.0 if target.hardness_Pa is not None else RULES.hardened
         load = _load(view)
         p = load.value / area.value
         std = p * combined(load.relative, area.relative, pressure.relative)
@@ -50,7 +37,7 @@ def check_press_load(found: RecordingSet) -> list[Finding]:
         findings.append(
             Finding(
                 f"load of {view.name} against the strength",
-                Severity.CONTRADICTION if z > _BEYOND else Severity.CONSISTENT,
+                Severity.CONTRADICTION if z > RULES.press_beyond else Severity.CONSISTENT,
                 f"{load.value:.4g} N on the dent is a mean pressure of {p / 1e6:.4g} MPa, "
                 f"{p / pressure.value:.2g} times the flat's {pressure.value / 1e6:.4g} MPa",
                 p, pressure.value, z,
@@ -70,15 +57,15 @@ def check_press_recovery(found: RecordingSet) -> list[Finding]:
         load = _load(view)
         scale = load.value / (modulus * radius.value)
         std = math.hypot(back.std, scale * combined(load.relative, radius.relative, 0.05))
-        low, high = (share * scale for share in RECOVERY)
+        low, high = (share * scale for share in RULES.recovery)
         z = max(low - back.value, back.value - high, 0.0) / std
         tail = ""
-        if back.value > high and z > _BEYOND:
+        if back.value > high and z > RULES.press_beyond:
             tail = ": is the machine's own compliance taken off?"
         findings.append(
             Finding(
                 f"recovery of {view.name} against elasticity",
-                Severity.CONTRADICTION if z > _BEYOND else Severity.CONSISTENT,
+                Severity.CONTRADICTION if z > RULES.press_beyond else Severity.CONSISTENT,
                 f"{back.value * 1e6:.4g} um spring back, elastic bodies give {low * 1e6:.4g} to "
                 f"{high * 1e6:.4g} um{tail}",
                 back.value, 0.5 * (low + high), z,
@@ -104,7 +91,7 @@ def check_press_depths(found: RecordingSet) -> list[Finding]:
         findings.append(
             Finding(
                 f"depths of {view.name}",
-                Severity.CONTRADICTION if abs(z) > _BEYOND else Severity.CONSISTENT,
+                Severity.CONTRADICTION if abs(z) > RULES.press_beyond else Severity.CONSISTENT,
                 f"{left.value * 1e6:.4g} um stay and {back.value * 1e6:.4g} um spring back of "
                 f"{deepest.value * 1e6:.4g} um under load",
                 left.value + back.value, deepest.value, abs(z),
@@ -140,7 +127,7 @@ def _radius(view: TrialView) -> Reading | None:
     deepest = view.measured("press_depth_m")
     if deepest is None:
         return None
-    low, high = _GEOMETRY
+    low, high = RULES.press_geometry
     a = limits.open_dent_radius(view.striker, deepest.value)
     return Reading(0.5 * (low + high) * a, 0.25 * (high - low) * a)
 

@@ -9,16 +9,12 @@ import numpy as np
 
 from ...core.inputs.csv_table import Array
 from ..recording_set import RecordingSet
+from ..rules import RULES
 from . import limits
 from .findings import Finding, Severity, gathered
 from .trial_view import TrialView, combined, value_of, views
 
-_OPEN = 0.05
-"""A trace whose ends lie above this share of its peak has missed a part of the impact."""
-
-_BEYOND = 4.0
 _ELASTIC, _PLASTIC = 1.0, 0.0
-_LEAST = 5
 
 
 def check_trace(found: RecordingSet) -> list[Finding]:
@@ -41,11 +37,11 @@ def _compared(found: RecordingSet, view: TrialView, trace: Mapping[str, Array]) 
     name = f"impulse of {view.name} against its force trace"
     known = np.isfinite(trace["force_N"])
     time, force = trace["time_s"][known], trace["force_N"][known]
-    if time.size < _LEAST:
+    if time.size < RULES.trace_samples:
         return Finding(name, Severity.UNCHECKED, f"the trace has {time.size} forces")
     peak, lasts = float(np.max(force)), float(time[-1] - time[0])
     ends = max(abs(float(force[0])), abs(float(force[-1])))
-    if ends > _OPEN * peak:
+    if ends > RULES.open_ends * peak:
         message = f"the trace begins or ends at {ends / peak:.0%} of its peak of {peak:.4g} N"
         return Finding(name, Severity.UNCHECKED, message)
     traced = float(np.trapezoid(force, time))
@@ -69,7 +65,7 @@ def _compared(found: RecordingSet, view: TrialView, trace: Mapping[str, Array]) 
     span = f"{low:.4g}" + (f" to {high:.4g}" if high > low else "")
     return Finding(
         name,
-        Severity.CONTRADICTION if z > _BEYOND else Severity.CONSISTENT,
+        Severity.CONTRADICTION if z > RULES.trace_beyond else Severity.CONSISTENT,
         f"{traced:.4g} N s under the trace, {span} N s from the motion "
         f"({traced / expected - 1.0:+.1%})",
         traced,
@@ -80,5 +76,5 @@ def _compared(found: RecordingSet, view: TrialView, trace: Mapping[str, Array]) 
 
 def _duration(time: Array, force: Array) -> float:
     """How long the force is above the share of the peak that counts as open [s]."""
-    pressed = np.flatnonzero(force > _OPEN * np.max(force))
+    pressed = np.flatnonzero(force > RULES.open_ends * np.max(force))
     return float(time[pressed[-1]] - time[pressed[0]])

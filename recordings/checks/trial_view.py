@@ -12,12 +12,10 @@ import numpy as np
 from ...core.inputs.csv_table import Array
 from ...core.rig import StrikerTable
 from ..recording_set import RecordingSet
+from ..rules import RULES
 from . import rigid
 
 Found = TypeVar("Found")
-
-UNSTATED_SPEED = 0.02
-"""Relative standard deviation of an approach speed that is stated without one."""
 
 
 class Reading(NamedTuple):
@@ -119,7 +117,7 @@ def speed_std(found: RecordingSet) -> Array:
     """Standard deviations of the normal approach speeds, shape (n,) [m/s]."""
     approach = found.approach
     unstated = np.isnan(approach.normal_std)
-    return np.where(unstated, UNSTATED_SPEED * approach.normal, approach.normal_std)
+    return np.where(unstated, RULES.unstated_speed * approach.normal, approach.normal_std)
 
 
 @lru_cache(maxsize=1)

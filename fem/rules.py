@@ -1,0 +1,223 @@
+"""Tuned numbers of the finite elements: what each means [unit], and from where it is."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+from ..core.rules import rule
+
+
+@dataclass(frozen=True)
+class FemRules:
+    """The register; `dataclasses.fields` tells the meaning and the source of each."""
+
+    least_determinant: float = rule(
+        0.02,
+        "determinant of the deformation gradient below which an element is as good as inverted "
+        "[-]",
+        "chosen; no measurement is kept",
+    )  # fmt: skip
+    tangent_kept: float = rule(
+        1e-3,
+        "change of a deformation gradient within which an elastic element keeps its tangent [-]",
+        "chosen; no measurement is kept",
+    )  # fmt: skip
+    core_radius: float = rule(
+        0.12, "radius of the innermost block over that where the fine zone begins [-]",
+        "chosen; no measurement is kept",
+    )  # fmt: skip
+    linear_beyond: float = rule(
+        4.0, "distance beyond which the half-space is linear [R]",
+        "strains stay below 1e-4 there at a/R = 0.5; round-off of 1 + grad u would rule the "
+        "residual",
+    )  # fmt: skip
+    bending: float = rule(
+        0.5, "factor on the part of the gradients that varies within an element [-]",
+        "at 1 a light elastic contact is 0.1 % too stiff; far below a half shapes cost no energy",
+    )  # fmt: skip
+    forcing: float = rule(
+        0.005, "relative correction that a direction may lack [-]",
+        "chosen; no measurement is kept",
+    )  # fmt: skip
+    krylov_residual: float = rule(
+        0.2, "relative residual that a direction may leave [-]",
+        "chosen; no measurement is kept",
+    )  # fmt: skip
+    krylov_steps: int = rule(
+        12, "most steps of GMRES with old factors [-]",
+        "chosen; no measurement is kept",
+    )  # fmt: skip
+    refactor_after: int = rule(
+        7, "steps of GMRES after which the next matrix is factorised anew [-]",
+        "chosen; no measurement is kept",
+    )  # fmt: skip
+    pivoting_from: float = rule(
+        0.02, "relative residual of fresh factors beyond which rows are exchanged [-]",
+        "1e-3 is the most that was seen of sound factors",
+    )  # fmt: skip
+    pattern_reach: int = rule(
+        3, "master nodes beyond the segments in use that the matrix already couples [-]",
+        "chosen; no measurement is kept",
+    )  # fmt: skip
+    regrowth: tuple[tuple[int, float], tuple[int, float]] = rule(
+        ((5, 1.5), (8, 1.15)),
+        "Newton iterations of a step, and the power of its length that the next may have [-]",
+        "chosen; no measurement is kept",
+    )  # fmt: skip
+    elastic_until: float = rule(
+        0.8, "elastic step ratio up to this part of the critical depth [-]",
+        "first yield is then met by a step of its own",
+    )  # fmt: skip
+    lead_in: float = rule(
+        0.75, "beginning of the path, as a part of the first depth [-]",
+        "makes the smooth curve there two-sided",
+    )  # fmt: skip
+    least_step_ratio: float = rule(
+        1.0 + 1e-6, "ratio of depths below which the path stands still, whatever converges [-]",
+        "a million steps would follow",
+    )  # fmt: skip
+    soft_start: tuple[float, ...] = rule(
+        (1e-3, 1e-2, 1e-1, 1.0),
+        "contact stiffness on the way to the first equilibrium, over its own [-]",
+        "chosen; no measurement is kept",
+    )  # fmt: skip
+    zone_behind: float = rule(
+        0.85, "inner end of the fine zone over the contact radius it is made for [-]",
+        "chosen; no measurement is kept",
+    )  # fmt: skip
+    zone_ahead: float = rule(
+        1.6, "outer end of the fine zone over the contact radius it is made for [-]",
+        "chosen; no measurement is kept",
+    )  # fmt: skip
+    zone_serves: float = rule(
+        1.35, "growth of the contact radius for which a mesh serves [-]",
+        "chosen; no measurement is kept",
+    )  # fmt: skip
+    last_mesh: float = rule(
+        0.2, "contact radius beyond which the mesh is changed no more [R]",
+        "strains of the order of one: a change drops the force by 1 to 2 %",
+    )  # fmt: skip
+    least_strength_hot: float = rule(
+        0.01, "part of the strength that heat leaves at the least [-]",
+        "a metal at its melting point keeps none: keeps the root defined",
+    )  # fmt: skip
+    root_round_off: float = rule(
+        3e-15, "size of the yield circle's radius to which its root is found [-]",
+        "ten units of the last digit",
+    )  # fmt: skip
+    root_rounds: int = rule(
+        80, "most rounds of that root [-]",
+        "chosen; no measurement is kept",
+    )  # fmt: skip
+    still_increment: float = rule(
+        1e-24, "squared strain increment over the squared radius that has no direction [-]",
+        "round-off of the increment",
+    )  # fmt: skip
+    yield_margin: float = rule(
+        1.0 + 1e-10, "stress over strength at which a point becomes plastic [-]",
+        "round-off would call converged points plastic again on unloading",
+    )  # fmt: skip
+    on_axis: float = rule(
+        1e-13, "coordinates below this lie on the axis [R]",
+        "round-off",
+    )  # fmt: skip
+    inner_rings: int = rule(
+        3, "rings within the innermost block [-]",
+        "chosen; no measurement is kept",
+    )  # fmt: skip
+    inside_zone: tuple[float, ...] = rule(
+        (1.5, 4.0),
+        "distances from the fine zone, over its radius, up to which rings are twice as wide, and "
+        "coarse [-]",
+        "chosen; no measurement is kept",
+    )  # fmt: skip
+    ring_divisions: int = rule(
+        4, "divisions of a fine ring [-]",
+        "chosen; no measurement is kept",
+    )  # fmt: skip
+    ring_growth: float = rule(
+        1.25, "widths of neighbouring rings [-]",
+        "an abrupt change shows in the contact pressure",
+    )  # fmt: skip
+    residual: float = rule(
+        1e-4, "accepted sum of residual forces over the contact force [-]",
+        "a hundredth of it moves no force by 0.01 % and costs a quarter more",
+    )  # fmt: skip
+    still_correction: float = rule(
+        1e-8,
+        "largest accepted next correction over the approach, where round-off rules the residual "
+        "[-]",
+        "Newton's corrections fall faster than it is estimated",
+    )  # fmt: skip
+    grid_round_off: float = rule(
+        0.05, "round-off of the residual over the grid's bound of it [-]",
+        "a fifth of this was seen",
+    )  # fmt: skip
+    iterations: int = rule(
+        18, "most iterations of a step [-]",
+        "chosen; no measurement is kept",
+    )  # fmt: skip
+    hopeless_after: int = rule(
+        8, "iterations after which a residual that has not halved will not converge [-]",
+        "chosen; no measurement is kept",
+    )  # fmt: skip
+    backtracks: int = rule(
+        5, "halvings of a correction [-]",
+        "chosen; no measurement is kept",
+    )  # fmt: skip
+    secants: int = rule(
+        3, "secant steps of a line search [-]",
+        "chosen; no measurement is kept",
+    )  # fmt: skip
+    step_cut: float = rule(
+        0.4, "part of its logarithm with which a failed step is tried again [-]",
+        "chosen; no measurement is kept",
+    )  # fmt: skip
+    step_cuts: int = rule(
+        7, "cuts after which the path ends [-]",
+        "chosen; no measurement is kept",
+    )  # fmt: skip
+    stretch: float = rule(
+        2.5, "largest factor by which the last increment is extrapolated [-]",
+        "chosen; no measurement is kept",
+    )  # fmt: skip
+    deepest: float = rule(
+        0.5, "largest approach that can be asked for [R]",
+        "chosen; no measurement is kept",
+    )  # fmt: skip
+    gap_edges: int = rule(
+        5, "open surface elements that the fit of the gap looks at [-]",
+        "chosen; no measurement is kept",
+    )  # fmt: skip
+    edge_candidates: int = rule(
+        161, "places of the contact edge that the fit of the gap tries [-]",
+        "chosen; no measurement is kept",
+    )  # fmt: skip
+    steps_beyond: int = rule(
+        4, "steps past the last depth [-]",
+        "the fit there is then two-sided",
+    )  # fmt: skip
+    ripple_reach: float = rule(
+        0.36, "reach of the fit to either side in ln approach [-]",
+        "chosen; no measurement is kept",
+    )  # fmt: skip
+    ripple_degree: int = rule(
+        3, "degree of the curve within the reach [-]",
+        "chosen; no measurement is kept",
+    )  # fmt: skip
+    harmonics: int = rule(
+        2, "harmonics of the part that repeats from ring to ring [-]",
+        "chosen; no measurement is kept",
+    )  # fmt: skip
+    ripple_prior: float = rule(
+        1.0, "weight of a ripple of nothing [steps]",
+        "where a step takes the edge half a ring on, a ripple could be anything",
+    )  # fmt: skip
+    unloading_steps: int = rule(
+        60, "most steps of an unloading [-]",
+        "chosen; no measurement is kept",
+    )  # fmt: skip
+
+
+RULES = FemRules()
+"""Every tuned number of the stage."""

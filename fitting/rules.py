@@ -1,0 +1,145 @@
+"""Tuned numbers of the fits: what each means [unit], and from where it is."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+from ..core.rules import rule
+
+
+@dataclass(frozen=True)
+class FittingRules:
+    """The register; `dataclasses.fields` tells the meaning and the source of each."""
+
+    coverage: tuple[float, ...] = rule(
+        (0.724, 0.950), "shares within one and two stated standard deviations [-]",
+        "Student's t with seven degrees of freedom: the errors have longer ends than a normal",
+    )  # fmt: skip
+    element_noise: float = rule(
+        2e-3, "relative error of the finite elements beside a law's own [-]",
+        "chosen; no measurement is kept",
+    )  # fmt: skip
+    before_yield: tuple[float, float] = rule(
+        (0.5, 4.0), "bounds of the power with which a law's error vanishes before yield [-]",
+        "chosen; no measurement is kept",
+    )  # fmt: skip
+    feature_ridge: float = rule(
+        0.02, "penalty of the features' weights, the constant's aside [-]",
+        "chosen; no measurement is kept",
+    )  # fmt: skip
+    pairs_a_bump: float = rule(
+        6.5, "pairs for each bump of the correction [-]",
+        "chosen; no measurement is kept",
+    )  # fmt: skip
+    shift_prior: float = rule(
+        2.0, "weight of the prior against the misfit's squares, of one shift by one unit [-]",
+        "chosen; no measurement is kept",
+    )  # fmt: skip
+    every_depth: int = rule(
+        4, "of so many depths one is looked at [-]",
+        "neighbours say nearly the same",
+    )  # fmt: skip
+    regression_steps: int = rule(
+        25, "most steps of the regression [-]",
+        "chosen; no measurement is kept",
+    )  # fmt: skip
+    farthest_shift: float = rule(
+        1.5, "change of a shift in one step [units]",
+        "chosen; no measurement is kept",
+    )  # fmt: skip
+    regression_settled: float = rule(
+        2e-3, "relative change of the objective at which the regression ends [-]",
+        "chosen; no measurement is kept",
+    )  # fmt: skip
+    outlier: float = rule(
+        4.0, "misfit from which on it counts linearly [units]",
+        "chosen; no measurement is kept",
+    )  # fmt: skip
+    unit: float = rule(
+        0.003, "a misfit of one in F, a and share [-]",
+        "chosen; no measurement is kept",
+    )  # fmt: skip
+    unit_left: tuple[float, ...] = rule(
+        (4e-4, 6e-3), "a misfit of one in the permanent approach: of Delta_m, and of itself [-]",
+        "chosen; no measurement is kept",
+    )  # fmt: skip
+    unit_exponent: float = rule(
+        0.015, "a misfit of one in the exponent of unloading [-]",
+        "chosen; no measurement is kept",
+    )  # fmt: skip
+    unit_back: float = rule(
+        0.008, "a misfit of one in the energy given back [-]",
+        "chosen; no measurement is kept",
+    )  # fmt: skip
+    form_unit: float = rule(
+        0.01, "a residual of one in F, a and the shares [-]",
+        "chosen; no measurement is kept",
+    )  # fmt: skip
+    form_unit_exponent: float = rule(
+        0.03, "a residual of one in the exponent [-]",
+        "about 1 % of F_m on unloading",
+    )  # fmt: skip
+    form_unit_back: float = rule(
+        0.02, "a residual of one in the energy given back [-]",
+        "1 % of a restitution",
+    )  # fmt: skip
+    form_settled: float = rule(
+        1e-5, "relative change of the misfit at which a fit for comparison ends [-]",
+        "chosen; no measurement is kept",
+    )  # fmt: skip
+    hardening_prior: float = rule(
+        300.0, "weight of the prior against squares of a misfit of 1 % [-]",
+        "thirty does as well",
+    )  # fmt: skip
+    hardening_folds: int = rule(
+        8, "folds of the cross-validation [-]",
+        "chosen; no measurement is kept",
+    )  # fmt: skip
+    path_points: int = rule(
+        64, "points of a pair's path [-]",
+        "chosen; no measurement is kept",
+    )  # fmt: skip
+    hardening_every: int = rule(
+        3, "of so many depths one is looked at [-]",
+        "neighbours say nearly the same",
+    )  # fmt: skip
+    hardening_unit: float = rule(
+        0.01, "a misfit of one [-]",
+        "chosen; no measurement is kept",
+    )  # fmt: skip
+    hardening_radius: float = rule(
+        0.5, "largest a/R that is fitted [-]",
+        "beyond it the sphere's shape counts",
+    )  # fmt: skip
+    hardening_deep: float = rule(
+        5.0, "depth from which permanent depths count [critical depths]",
+        "before it they vanish",
+    )  # fmt: skip
+    folds: int = rule(
+        8, "folds of the cross-validation [-]",
+        "chosen; no measurement is kept",
+    )  # fmt: skip
+    refit_every: int = rule(
+        4, "of so many depths one is looked at by a refit without some combinations [-]",
+        "neighbours say nearly the same",
+    )  # fmt: skip
+    relative_from: float = rule(
+        5.0, "depth from which residual depths are judged relatively [critical depths]",
+        "before it they vanish",
+    )  # fmt: skip
+    smooth_reach: float = rule(
+        1.0, "half-width of the neighbourhood in ln Delta [-]",
+        "several periods of a coarse mesh",
+    )  # fmt: skip
+    smooth_points: int = rule(
+        6, "points from which a neighbourhood is smoothed [-]",
+        "a cubic and two more",
+    )  # fmt: skip
+    form_radius: float = rule(
+        0.55, "largest a/R that the form is fitted to [-]",
+        "its domain, with a margin",
+    )  # fmt: skip
+
+
+RULES = FittingRules()
+"""Every tuned number of the stage."""

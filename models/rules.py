@@ -1,0 +1,162 @@
+"""Tuned numbers of the contact laws: what each means [unit], and from where it is."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+from ..core.rules import rule
+
+
+@dataclass(frozen=True)
+class ModelRules:
+    """The register; `dataclasses.fields` tells the meaning and the source of each."""
+
+    anchor_points: int = rule(
+        240, "points of a law that goes through a known one [-]",
+        "chosen; no measurement is kept",
+    )  # fmt: skip
+    anchor_first: float = rule(
+        0.01, "first depth of that table [critical depths]",
+        "elastic",
+    )  # fmt: skip
+    anchor_last: float = rule(
+        0.6, "last depth of that table [R]",
+        "chosen; no measurement is kept",
+    )  # fmt: skip
+    pairs_kept: int = rule(
+        4096, "pairs whose numbers a law keeps [-]",
+        "a sweep's chunk",
+    )  # fmt: skip
+    flattening_below: float = rule(
+        0.6, "ratio of strengths below which the sphere alone is said to yield [-]",
+        "chosen; no measurement is kept",
+    )  # fmt: skip
+    indentation_above: float = rule(
+        1.7, "ratio of strengths above which the flat alone is said to yield [-]",
+        "chosen; no measurement is kept",
+    )  # fmt: skip
+    elastic_depth: float = rule(
+        1.9, "depth up to which a contact is called elastic [critical depths]",
+        "Jackson and Green 2005, Eq. 9",
+    )  # fmt: skip
+    strength_floor: float = rule(
+        1e-9, "keeps the strengths' ratio defined when a body does not yield [-]",
+        "no effect on any real pair",
+    )  # fmt: skip
+    sharpest: float = rule(
+        20.0, "steepest taking over between two regimes [-]",
+        "over a tenth of the depth, as wide as the data can tell",
+    )  # fmt: skip
+    shift_bound: float = rule(
+        4.0, "bound of the shift of a number [units]",
+        "chosen; no measurement is kept",
+    )  # fmt: skip
+    finite_strain_depth: float = rule(
+        0.01, "depth at which the law says how far finite elastic strain takes it from Hertz [R]",
+        "chosen; no measurement is kept",
+    )  # fmt: skip
+    representative: float = rule(
+        0.2, "plastic strain that stands for all of them, over a/R [-]",
+        "Tabor 1951",
+    )  # fmt: skip
+    mean_span: float = rule(
+        3.0, "strain at the axis over the representative one [-]",
+        "by the errors of pairs left out of the fit; 2.5 to 4 do as well",
+    )  # fmt: skip
+    mean_fall: float = rule(
+        1.7, "power with which strains fall to the elastic border [-]",
+        "by the errors of pairs left out of the fit; 1.7 to 2.2 do as well",
+    )  # fmt: skip
+    mean_strains: int = rule(
+        60, "strains of a mean [-]",
+        "chosen; no measurement is kept",
+    )  # fmt: skip
+    mean_table: int = rule(
+        400, "means of a table [-]",
+        "chosen; no measurement is kept",
+    )  # fmt: skip
+    least_strain: float = rule(
+        1e-8, "first representative strain of the table [-]",
+        "chosen; no measurement is kept",
+    )  # fmt: skip
+    largest_strain: float = rule(
+        5.0, "last representative strain of the table [-]",
+        "chosen; no measurement is kept",
+    )  # fmt: skip
+    bend_apart: float = rule(
+        1.0, "distance in ln p of the strains whose exponents make the bend [-]",
+        "chosen; no measurement is kept",
+    )  # fmt: skip
+    fades: float = rule(
+        0.3, "part of a coordinate's width over which the correction fades beyond the data [-]",
+        "chosen; no measurement is kept",
+    )  # fmt: skip
+    correction_degree: int = rule(
+        2, "degree of the correction [-]",
+        "chosen; no measurement is kept",
+    )  # fmt: skip
+    hardening_points: int = rule(
+        240, "points of the table [-]",
+        "chosen; no measurement is kept",
+    )  # fmt: skip
+    least_step: float = rule(
+        0.01, "step of ln Delta from point to point at the least [-]",
+        "a quarter of the mean one",
+    )  # fmt: skip
+    hardening_first: float = rule(
+        0.01, "first equivalent depth [critical depths]",
+        "elastic",
+    )  # fmt: skip
+    hardening_last: float = rule(
+        0.6, "last equivalent depth [R]",
+        "chosen; no measurement is kept",
+    )  # fmt: skip
+    rounded: float = rule(
+        2e-3, "width in ln F where it comes down to the least force [-]",
+        "chosen; no measurement is kept",
+    )  # fmt: skip
+    flow_rounds: int = rule(
+        14, "rounds for the sphere's part of the flow [-]",
+        "chosen; no measurement is kept",
+    )  # fmt: skip
+    radius_rounds: int = rule(
+        3, "rounds of the contact radius in each [-]",
+        "they go on from the last",
+    )  # fmt: skip
+    unloadings: int = rule(
+        3, "unloadings that a law from a pair's own solve needs [-]",
+        "two ends and what bends between",
+    )  # fmt: skip
+    table_points: int = rule(
+        240, "points of such a law, even in ln depth [-]",
+        "chosen; no measurement is kept",
+    )  # fmt: skip
+    joining_depths: tuple[float, ...] = rule(
+        (0.02, 0.05, 0.1, 0.2, 0.4, 0.5, 0.6),
+        "depths over the critical one at which such a law may leave Hertz's [-]",
+        "yield begins at 1",
+    )  # fmt: skip
+    joined: float = rule(
+        0.8, "depth over the critical one from which the solve alone counts [-]",
+        "yield begins at 1",
+    )  # fmt: skip
+    law_depths: int = rule(
+        2, "depths of a loading that is a curve [-]",
+        "fewer are a point",
+    )  # fmt: skip
+    law_bytes: int = rule(
+        20_000_000, "largest file of a law that is read [bytes]",
+        "memory of a small machine",
+    )  # fmt: skip
+    least_error: float = rule(
+        1e-3, "standard deviation that no law goes below [-]",
+        "chosen; no measurement is kept",
+    )  # fmt: skip
+    exponent_error: float = rule(
+        0.02, "standard deviation of the recovery's exponent [-]",
+        "chosen; no measurement is kept",
+    )  # fmt: skip
+
+
+RULES = ModelRules()
+"""Every tuned number of the stage."""

@@ -1,0 +1,177 @@
+"""Tuned numbers of recording sets: what each means [unit], and from where it is."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+from ..core.rules import rule
+
+
+@dataclass(frozen=True)
+class RecordingRules:
+    """The register; `dataclasses.fields` tells the meaning and the source of each."""
+
+    unexplained: float = rule(
+        0.5, "part of the lost energy that a dent should explain at least [-]",
+        "chosen; no measurement is kept",
+    )  # fmt: skip
+    dent_work: tuple[float, ...] = rule(
+        (0.55, 1.1), "true work of a dent over p pi R d^2, least and most [-]",
+        "barely plastic, and hardened",
+    )  # fmt: skip
+    rigid_periods: float = rule(
+        3.0, "periods of a vibration that a contact should last for the body to act as rigid [-]",
+        "one spring under a half-sine",
+    )  # fmt: skip
+    contact_beyond: float = rule(
+        4.0, "standard deviations beyond a bound of energy that are a mistake [-]",
+        "one in 15 000",
+    )  # fmt: skip
+    bound_std: float = rule(
+        0.05, "relative standard deviation of such a bound [-]",
+        "what its formulas leave out",
+    )  # fmt: skip
+    false_alarms_mass: float = rule(
+        0.02, "part of clean sets in which a mass may be called wrong, over all strikers [-]",
+        "chosen: one set in fifty",
+    )  # fmt: skip
+    false_alarms: float = rule(
+        0.005, "the same of all other statistical checks of a set together [-]",
+        "chosen: one set in two hundred",
+    )  # fmt: skip
+    unstated_strength: float = rule(
+        0.15, "relative standard deviation of a strength stated without one [-]",
+        "a handbook's",
+    )  # fmt: skip
+    rounding: float = rule(
+        0.003, "relative standard deviation where mass, density and size are all exact [-]",
+        "three digits",
+    )  # fmt: skip
+    frozen_angle: float = rule(
+        0.005, "part of the approach speed by which a frozen angle may err [-]",
+        "chosen; no measurement is kept",
+    )  # fmt: skip
+    momentum_steps: int = rule(
+        60, "most steps of the least squares [-]",
+        "chosen; no measurement is kept",
+    )  # fmt: skip
+    momentum_settled: float = rule(
+        1e-10, "relative fall of the sum of squares below which a trial is done [-]",
+        "round-off",
+    )  # fmt: skip
+    pulse: tuple[float, ...] = rule(
+        (0.25, 1.0), "impulse over peak force times duration, least and most [-]",
+        "a rectangular pulse has 1, a ringing one may have 0.3",
+    )  # fmt: skip
+    alone: float = rule(
+        0.25, "part of the masses' false alarms that goes to single strikers [-]",
+        "chosen; no measurement is kept",
+    )  # fmt: skip
+    motion_beyond: float = rule(
+        4.0, "standard deviations that are a mistake [-]",
+        "one in 15 000",
+    )  # fmt: skip
+    angles_apart: float = rule(
+        2.0, "standard deviations between two readings of an angle [-]",
+        "one in twenty",
+    )  # fmt: skip
+    load_class: float = rule(
+        0.005, "relative standard deviation of a load that is stated without one [-]",
+        "class 1 of ISO 7500-1: 1 % of the indicated force",
+    )  # fmt: skip
+    mean_pressure: tuple[float, ...] = rule(
+        (0.35, 1.3), "mean pressure of a press over a stated hardness, least and most [-]",
+        "from first yield (1.1 S_y of 2.84 S_y) to metals that harden more than the test saw",
+    )  # fmt: skip
+    hardened: float = rule(
+        4.0, "hardness over 2.84 S_y where the strength alone is stated [-]",
+        "annealed copper and 304 reach it",
+    )  # fmt: skip
+    recovery: tuple[float, ...] = rule(
+        (0.5, 0.85), "recovered depth over F/(E' a), least and most [-]",
+        "1/2 of a flat punch, 3/4 of Hertz's, and a tenth above it",
+    )  # fmt: skip
+    press_beyond: float = rule(
+        4.0, "standard deviations that are a mistake [-]",
+        "one in 15 000",
+    )  # fmt: skip
+    press_geometry: tuple[float, ...] = rule(
+        (0.7, 1.25), "contact radius over sqrt(2 R delta) at the peak, least and most [-]",
+        "sunk in elastically, and piled up",
+    )  # fmt: skip
+    open_ends: float = rule(
+        0.05, "level of a trace's ends in its peak above which a part of the impact is missed [-]",
+        "chosen; no measurement is kept",
+    )  # fmt: skip
+    trace_beyond: float = rule(
+        4.0, "standard deviations that are a mistake [-]",
+        "one in 15 000",
+    )  # fmt: skip
+    trace_samples: int = rule(
+        5, "samples of a contact from which an impulse is taken [-]",
+        "chosen; no measurement is kept",
+    )  # fmt: skip
+    unstated_speed: float = rule(
+        0.02, "relative standard deviation of an approach speed stated without one [-]",
+        "chosen; no measurement is kept",
+    )  # fmt: skip
+    highest_ratio: float = rule(
+        20.0, "largest number of a column without a unit [-]",
+        "a restitution written in percent is beyond",
+    )  # fmt: skip
+    fetched_bytes: int = rule(
+        2_000_000_000, "largest file that is fetched [bytes]",
+        "chosen; no measurement is kept",
+    )  # fmt: skip
+    fetched_s: float = rule(
+        1800.0, "longest time that one file may take [s]",
+        "a slow line",
+    )  # fmt: skip
+    server_s: float = rule(
+        30.0, "wait for a server that says nothing [s]",
+        "a slow line",
+    )  # fmt: skip
+    repeats: int = rule(
+        3, "trials at one condition from which a noise may be taken [-]",
+        "two degrees of freedom",
+    )  # fmt: skip
+    speed_bin: float = rule(
+        0.02, "relative width within which speeds are one condition [-]",
+        "a drop's repeats",
+    )  # fmt: skip
+    angle_bin: float = rule(
+        1.0, "width within which angles are one condition [degrees]",
+        "a protractor's",
+    )  # fmt: skip
+    rate_bin: float = rule(
+        0.5, "width in ln of a press's rate within which presses are one condition [-]",
+        "strengths differ by a few per cent a decade",
+    )  # fmt: skip
+    restitution_beyond: float = rule(
+        3.0, "standard deviations by which a restitution exceeds 1 before it asks for a reason [-]",
+        "one in 700",
+    )  # fmt: skip
+    restitution_slip: float = rule(
+        0.1, "excess of a restitution over 1 without a standard deviation that asks for one [-]",
+        "chosen; no measurement is kept",
+    )  # fmt: skip
+    compared_bytes: int = rule(
+        10_000_000, "largest record that is compared with others [bytes]",
+        "every record but a film",
+    )  # fmt: skip
+    trace_rows: int = rule(
+        2, "rows of a trace at least [-]",
+        "one is no trace",
+    )  # fmt: skip
+    rows_shown: int = rule(
+        12, "trials that a notebook shows [-]",
+        "a screen",
+    )  # fmt: skip
+    press_lean: float = rule(
+        0.5, "angle by which a press may be said to lean [degrees]",
+        "bins of an angle are twice as wide",
+    )  # fmt: skip
+
+
+RULES = RecordingRules()
+"""Every tuned number of the stage."""

@@ -1,0 +1,85 @@
+"""Tuned numbers of a first look: what each means [unit], and from where it is."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+from ..core.rules import rule
+
+
+@dataclass(frozen=True)
+class StartRules:
+    """The register; `dataclasses.fields` tells the meaning and the source of each."""
+
+    shallowest: float = rule(
+        1e-9, "least approach of a case [R]",
+        "the force of the first depth is off by 5 % at 1e-10, by 0.2 % at 1e-8",
+    )  # fmt: skip
+    kept_out: float = rule(
+        0.9, "part of the largest speed from which conditions are kept out [-]",
+        "chosen: they judge what the rest inferred",
+    )  # fmt: skip
+    closing_rounds: int = rule(
+        8, "rounds between constants and the stated numbers [-]",
+        "constants far from neutral move them far",
+    )  # fmt: skip
+    closing_numbers: int = rule(
+        6, "numbers from which constants are inferred [-]",
+        "as a diagnosis names from",
+    )  # fmt: skip
+    curve_points: int = rule(
+        120, "points of a law's curve [-]",
+        "a figure's width",
+    )  # fmt: skip
+    recommended: int = rule(
+        4, "laws that are recommended [-]",
+        "chosen; no measurement is kept",
+    )  # fmt: skip
+    usable: float = rule(
+        0.10, "largest departure of a law that may be used [-]",
+        "that of a dent whose strength is off by a tenth",
+    )  # fmt: skip
+    far: float = rule(
+        0.5, "distance from which the nearest pair is called far [-]",
+        "chosen; no measurement is kept",
+    )  # fmt: skip
+    least_dent: float = rule(
+        0.1, "part of the depth below which a dent says nothing about a law [-]",
+        "chosen; no measurement is kept",
+    )  # fmt: skip
+    no_factor: float = rule(
+        100.0, "times too little or too much that are not told in times [-]",
+        "chosen; no measurement is kept",
+    )  # fmt: skip
+    uneven_strengths: float = rule(
+        2.5, "ratio of strengths beyond which the stronger body hardly matters [-]",
+        "chosen; no measurement is kept",
+    )  # fmt: skip
+    rise_strain: float = rule(
+        0.1, "plastic strain at which a curve's rise is compared [-]",
+        "what a dent of a/R = 0.5 strains",
+    )  # fmt: skip
+    work_points: int = rule(
+        400, "points of an integral of the work [-]",
+        "chosen; no measurement is kept",
+    )  # fmt: skip
+    press_deeper: float = rule(
+        1.25, "depth of the solve over the deepest press [-]",
+        "room for a stated number that is off",
+    )  # fmt: skip
+    press_turns: int = rule(
+        5, "unloadings of the solve [-]",
+        "chosen; no measurement is kept",
+    )  # fmt: skip
+    press_depths: int = rule(
+        60, "depths of the solve [-]",
+        "chosen; no measurement is kept",
+    )  # fmt: skip
+    clock_end: float = rule(
+        0.1, "part of the approach speed at which the clock of a press ends [-]",
+        "a half-sine's slow end",
+    )  # fmt: skip
+
+
+RULES = StartRules()
+"""Every tuned number of the stage."""
