@@ -7,7 +7,7 @@ import sys
 from .core.processes.children import forget_current_folder, plot_without_the_folders_settings
 from .core.processes.stopping import STOPS, listening, stopped
 from .core.processes.streams import left_with, steady_streams
-from .core.threads import one_thread_each
+from .core.processes.threads import one_thread_each
 
 
 def main() -> None:

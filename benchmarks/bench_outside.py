@@ -25,7 +25,7 @@ from dentscope.impact import (
     strike_rows,
     tabulated,
 )
-from dentscope.impact.discrete_elements import lammps_lines, substitutes
+from dentscope.impact.told.discrete_elements import lammps_lines, substitutes
 from dentscope.impact.walk import layout as c
 from dentscope.models import LAWS
 from dentscope.studies.lammps import balls_on_floor, elastic_plastic

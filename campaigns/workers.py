@@ -18,7 +18,7 @@ from typing import Any
 
 from ..core.processes.children import die_with, keep_current_folder_out
 from ..core.processes.stopping import heard
-from ..core.threads import one_thread_each
+from ..core.processes.threads import one_thread_each
 from .rules import RULES
 
 Order = tuple[Any, ...]

@@ -14,7 +14,7 @@ from .shared.places import folder_option
 from .shared.terminal import console, say, show_table
 
 if TYPE_CHECKING:
-    from ..impact.discrete_elements import Row
+    from ..impact.told.discrete_elements import Row
     from ..models.base import ContactLaw
     from ..start.ball_file import Ball
 
@@ -81,7 +81,7 @@ def export_dem(
     ball = read_ball(file, mass=mass)
     speeds = _speeds(speed) if speed else _of_file(ball.speeds)
     from ..core.output import csv_text, write_file
-    from ..impact.discrete_elements import (
+    from ..impact.told.discrete_elements import (
         HEAD,
         hysteretic_lines,
         lammps_lines,
@@ -111,7 +111,7 @@ def export_dem(
 
 def _between(ball: Ball, law: ContactLaw, speeds: list[float]) -> list[Row]:
     """Parameters for two such balls; none, with a line, where there are none."""
-    from ..impact.discrete_elements import substitutes, two_balls
+    from ..impact.told.discrete_elements import substitutes, two_balls
 
     if ball.pair.sphere.rigid:
         say("no lines for two balls: both would be rigid")

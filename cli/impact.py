@@ -68,10 +68,10 @@ def _from_file(path: Path, names: list[str], out: Path, *, exact: bool) -> None:
     from ..core.inputs.toml_input import read_toml
 
     read_toml(path)  # what is no TOML is told before the simulation is loaded
-    from ..impact.draw import draw_histories
     from ..impact.files.blow import blow_of
     from ..impact.files.setup import read_setup
     from ..impact.files.tables import write_csv, write_hdf5
+    from ..impact.told.draw import draw_histories
 
     console = new_console()
     setup = read_setup(path)
@@ -121,8 +121,8 @@ def _sweep(
     """Run `[sweep]` for each law; return the files, how many did not end, and what is above 1."""
     from importlib.util import find_spec
 
-    from ..impact.draw import draw_sweep
     from ..impact.told.band import MOST_SWEPT, swept_stds
+    from ..impact.told.draw import draw_sweep
 
     curves = {law.name: setup.swept(law) for law in laws}
     first, *others = curves.values()

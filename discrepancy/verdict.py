@@ -10,7 +10,7 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from ..core.threads import in_one_thread
+from ..core.processes.threads import in_one_thread
 from ..recordings import RecordingSet
 from .baseline.laws import LawChoice
 from .choice.judge import Judge

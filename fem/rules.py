@@ -149,10 +149,6 @@ class FemRules:
         "[-]",
         "Newton's corrections fall faster than it is estimated",
     )  # fmt: skip
-    grid_round_off: float = rule(
-        0.05, "round-off of the residual over the grid's bound of it [-]",
-        "a fifth of this was seen",
-    )  # fmt: skip
     iterations: int = rule(
         18, "most iterations of a step [-]",
         "chosen; no measurement is kept",

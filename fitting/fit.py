@@ -15,7 +15,7 @@ import numpy.typing as npt
 from scipy.optimize import least_squares
 
 from ..core.errors import COMPLETED, Ending, Outcome
-from ..core.threads import in_one_thread
+from ..core.processes.threads import in_one_thread
 from ..models.closed_form import COEFFICIENTS
 from ..models.fitted import ClosedForm, closed_form_law
 from .form import LIMITS, START

@@ -21,7 +21,7 @@ from numpy.typing import NDArray
 from scipy.stats import chi2
 
 from ..core.inputs.toml_input import read_toml
-from ..core.threads import in_one_thread
+from ..core.processes.threads import in_one_thread
 from ..discrepancy import diagnose
 from ..discrepancy.choice.odds import OUTSIDE
 from ..discrepancy.comparison.forward import Simulator

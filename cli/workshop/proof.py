@@ -48,7 +48,7 @@ def run(
     from rich.progress import Progress
 
     from ...core.processes.stopping import STOPS, stopped
-    from ...core.threads import one_thread_each
+    from ...core.processes.threads import one_thread_each
     from ...studies.proof.lists import LISTS as made
     from ...studies.proof.run import carry_on, local_workers, run_folder, verdicts_of
 

@@ -23,12 +23,12 @@ from ...models import law_named
 from ...models.base import ContactLaw
 from ..batch import impacts
 from ..columns import Impacts
-from ..draw import histories
 from ..integrate import Trace, strike, traced
 from ..result import Impact
 from ..rules import RULES
 from ..told.band import PRESSURE, Band, band_of, idle
 from ..told.checks import checks, reason_above_one
+from ..told.draw import histories
 from ..told.onset import largest_mean_pressure
 from .setup import DEFAULT_LAWS, FOLLOWING, Setup, read_setup, setup_of
 from .tables import EXACT, SHOWN, impact_row

@@ -20,7 +20,6 @@ import numpy as np
 from ...core.errors import InputError
 from ...core.rig import BodyTable, Quantity
 from ...models.base import ContactLaw, DomainWarning
-from ...models.beside import beside_fitted
 from ...models.choose import follows_flow
 from ...models.uncertainty import METAL, RECOVERY_EXPONENT, WITH_CURVE
 from ..columns import Impacts
@@ -30,6 +29,7 @@ from ..result import Impact
 from ..rules import RULES
 from ..scene import ForceTransform, Scene
 from ..strength import NODES, Array
+from .beside import beside_fitted
 from .onset import largest_mean_pressure
 
 if TYPE_CHECKING:

@@ -13,10 +13,10 @@ from numpy.typing import NDArray
 
 from ...core.inputs.toml_input import read_toml
 from ...core.material import Material
-from ...impact.draw import figure, save
 from ...impact.integrate import strike
 from ...impact.result import Impact
 from ...impact.scene import Approach, Scene, Striker, scene_of
+from ...impact.told.draw import figure, save
 from ...models.base import ContactLaw
 
 REFERENCE = Path(__file__).resolve().parents[2] / "data" / "reference"

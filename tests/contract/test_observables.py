@@ -23,8 +23,8 @@ CHOICES = {
     ("reduce/mocap/point.py", "_NAMES"): "order of a computed vector",
     ("impact/batch.py", "_NOTHING"): "what a normal impact without vibration lacks",
     ("discrepancy/metal/estimate.py", "MARKS"): "which observables are marks left in a metal",
-    ("impact/discrete_elements.py", "HEAD"): "columns beside a law's parameters",
-    ("impact/draw.py", "SWEPT"): "which observables a figure shows",
+    ("impact/told/discrete_elements.py", "HEAD"): "columns beside a law's parameters",
+    ("impact/told/draw.py", "SWEPT"): "which observables a figure shows",
 }
 """Tuples that choose or order observables and say nothing of them."""
 

@@ -7,7 +7,12 @@ import numpy as np
 import pytest
 from dentscope.cli.app import run
 from dentscope.core import InputError, Material, Pair
-from dentscope.impact.discrete_elements import _damping_of, lammps_lines, substitutes, two_balls
+from dentscope.impact.told.discrete_elements import (
+    _damping_of,
+    lammps_lines,
+    substitutes,
+    two_balls,
+)
 from dentscope.models import LAWS
 from dentscope.studies.lammps import balls_on_floor
 

@@ -2,8 +2,8 @@
 
 import numpy as np
 import pytest
-from dentscope.impact import draw
 from dentscope.impact.files.sweep import SweepTable
+from dentscope.impact.told import draw
 
 
 @pytest.mark.parametrize(

@@ -9,8 +9,8 @@ from dentscope.core import InputError, Material, Pair
 from dentscope.fitting import read_tables
 from dentscope.fitting.calibrate import misses, within
 from dentscope.fitting.prediction import predict_by
+from dentscope.impact.told.beside import beside_fitted
 from dentscope.models import LAWS, Uncertainty, critical_depth
-from dentscope.models.beside import beside_fitted
 
 DATA = Path(__file__).resolve().parents[3] / "data"
 PAIR = Pair(Material(E=71.7e9, nu=0.33, Sy=300e6), Material(E=200e9, nu=0.3, Sy=500e6), 1e-3)

@@ -26,11 +26,11 @@ from numpy.polynomial import polynomial
 from scipy.integrate import solve_ivp
 from scipy.optimize import brentq
 
-from ..core.errors import InputError
-from ..core.material import Pair
-from ..models.base import ContactLaw
-from .integrate import strike
-from .scene import Approach, Striker, scene_of
+from ...core.errors import InputError
+from ...core.material import Pair
+from ...models.base import ContactLaw
+from ..integrate import strike
+from ..scene import Approach, Striker, scene_of
 
 TSUJI = (1.2728, -4.2783, 11.087, -22.348, 27.467, -18.022, 4.8218)
 """Damping over sqrt(m k) as a polynomial of the restitution that a user enters (LAMMPS)."""

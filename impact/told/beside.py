@@ -5,11 +5,11 @@ from __future__ import annotations
 import numpy as np
 import numpy.typing as npt
 
-from ..core.material import Pair
-from . import law_named
-from .base import ContactLaw
-from .fitted import ClosedForm
-from .uncertainty import Uncertainty
+from ...core.material import Pair
+from ...models import law_named
+from ...models.base import ContactLaw
+from ...models.fitted import ClosedForm
+from ...models.uncertainty import Uncertainty
 
 Floats = npt.NDArray[np.float64]
 

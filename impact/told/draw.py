@@ -12,12 +12,12 @@ import numpy as np
 from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.figure import Figure
 
-from ..core.observables import OBSERVABLES
-from ..core.output import write_figure
-from .columns import Impacts
-from .integrate import Trace
-from .inverse import alpha_curve
-from .scene import Striker
+from ...core.observables import OBSERVABLES
+from ...core.output import write_figure
+from ..columns import Impacts
+from ..integrate import Trace
+from ..inverse import alpha_curve
+from ..scene import Striker
 
 LOOP = ("penetration_m", "depth [um]", 1e6, "normal_force_N", "normal force [kN]", 1e-3)
 AGAINST_TIME = (
