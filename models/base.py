@@ -208,8 +208,8 @@ class ContactLaw(ABC):
         Raises
         ------
         InputError
-            The law states none, as published ones: `models.beside.beside_fitted` says by how much
-            such a law misses the fitted one.
+            The law states none, as published ones: `impact.told.beside.beside_fitted` says by how
+            much such a law misses the fitted one.
         """
         raise InputError(
             f"{self.name} states no error", key="law", allowed="compact, fitted or a solved pair"

@@ -250,7 +250,8 @@ def _slopes(setup: Setup, law: ContactLaw) -> list[dict[str, float]]:
     stated, slopes = setup.scene(law).force, []
     for k in range(3):
         ends = [
-            _values(last_blow(setup, law, _changed(stated, k, step))) for step in (RULES.band_step, -RULES.band_step)
+            _values(last_blow(setup, law, _changed(stated, k, step)))
+            for step in (RULES.band_step, -RULES.band_step)
         ]
         slopes.append({n: (ends[0][n] - ends[1][n]) / (2.0 * RULES.band_step) for n in _NUMBERS})
     return slopes
@@ -274,7 +275,8 @@ def swept_stds(setup: Setup, law: ContactLaw, found: Impacts) -> dict[str, Array
     scene, slopes = setup.scene(law), []
     for k in range(3):
         one, two = (
-            setup.swept(law, force=_changed(scene.force, k, step)) for step in (RULES.band_step, -RULES.band_step)
+            setup.swept(law, force=_changed(scene.force, k, step))
+            for step in (RULES.band_step, -RULES.band_step)
         )
         slopes.append({name: (one[name] - two[name]) / (2.0 * RULES.band_step) for name in SWEPT})
     for row, values in enumerate(found.rows()):
