@@ -74,12 +74,13 @@ def _command(name: str) -> Any:
         else:
             _reduce_each(kind, files, into, out, _set(given), _set(row))
 
+    # a reader of another package may have taken `Row` for its options
+    fields = {**kind.options.model_fields, **Row.model_fields}
     keyword = inspect.Parameter.KEYWORD_ONLY
     parameters = [
         inspect.Parameter("files", keyword, annotation=RawFiles),
         inspect.Parameter("into", keyword, annotation=Into, default=None),
-        *(_parameter(k, field) for k, field in kind.options.model_fields.items()),
-        *(_parameter(k, field) for k, field in Row.model_fields.items()),
+        *(_parameter(k, field) for k, field in fields.items()),
         inspect.Parameter("out", keyword, annotation=Out, default=Path("build/reduce")),
     ]
     run.__signature__ = inspect.Signature(parameters)  # type: ignore[attr-defined]

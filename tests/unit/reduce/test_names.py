@@ -8,6 +8,10 @@ from dentscope.core.errors import InputError
 from dentscope.core.inputs.toml_input import parse_model
 from dentscope.core.rig import Rig
 from dentscope.recordings.recording_set import read
+from dentscope.reduce.into_set import store
+from dentscope.reduce.measured import Measured, Trial
+from dentscope.reduce.reduced import Reduced
+from dentscope.reduce.row import Row
 
 TABLE = "drop_height_m,rebound_height_m\n0.5,0.2\n0.4,0.15\n"
 PATHS = ("../x", "/tmp/x", "a/b", "..", "a\\b", "C:x", "x\x00y", "x" * 201)
@@ -48,3 +52,16 @@ def test_a_trial_of_a_set_names_no_other_folder(tmp_path: Path) -> None:
     file.write_text(f"{head}\n{','.join(cells)}\n")
     with pytest.raises(InputError, match=r"trial.*'\.\./\.\./x'.*text that can name a file"):
         read(tmp_path / "set")
+
+
+def test_trials_without_a_label_keep_a_row_each(tmp_path: Path) -> None:
+    """A reader of another package need not label what it reads."""
+    run(["recordings", "new", str(tmp_path / "set")])
+    blows = [Trial({"restitution": Measured(e, 0.01)}) for e in (0.8, 0.7)]
+    (tmp_path / "gates.txt").write_text("1.0 0.8\n1.0 0.7\n")
+    reduced = Reduced(tmp_path / "gates.txt", {}, tuple(blows), lambda to: None)
+    row = Row(striker="rod", impact_speed_m_s=1.0)
+    found = store(reduced, tmp_path / "set", row, kind="gates", options={})
+    assert found.trials == ("gates-1", "gates-2")
+    rows = (tmp_path / "set" / "trials.csv").read_text().splitlines()
+    assert [line.split(",")[0] for line in rows[-2:]] == ["gates-1", "gates-2"]
