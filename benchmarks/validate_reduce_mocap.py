@@ -10,7 +10,7 @@ import sys
 import numpy as np
 from dentscope.reduce.mocap.body import Body, centre_of
 from dentscope.reduce.mocap.motion import Prior
-from dentscope.reduce.mocap.reduction import MocapReduction, Scene, reduce_mocap
+from dentscope.reduce.mocap.reduction import MocapReduction, MocapScene, reduce_mocap
 from dentscope.reduce.mocap.rigid import kabsch, rigid_poses
 from dentscope.studies.synthetic.mocap import MocapTruth, random_ball, random_rod, simulate
 
@@ -30,7 +30,7 @@ def reduced(truth: MocapTruth, *, known: bool) -> MocapReduction:
         truth.shape, axis, truth.length, truth.tip_radius, truth.inertia_over_mass, centre,
         poses.shape,
     )  # fmt: skip
-    return reduce_mocap(poses, body, Scene(UP), source=f"recording {truth.seed}")
+    return reduce_mocap(poses, body, MocapScene(UP), source=f"recording {truth.seed}")
 
 
 def main(count: int, shape: str, *, known: bool) -> None:

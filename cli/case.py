@@ -18,7 +18,7 @@ from .shared.terminal import console as new_console
 from .shared.terminal import say, show_table
 
 if TYPE_CHECKING:
-    from ..start.measured import Measured
+    from ..start.measured import MeasuredContact
 
 _COLUMNS = (
     "force_N",
@@ -121,7 +121,7 @@ def _write_fields(solution: Any, out: Path, *, picture: bool) -> Iterator[Path]:
             yield space
 
 
-def _write_measured(solution: Any, told: Measured, out: Path) -> Iterator[Path]:
+def _write_measured(solution: Any, told: MeasuredContact, out: Path) -> Iterator[Path]:
     """Write what people measure; write and draw the surfaces that the last unloading leaves."""
     from ..fem.results.dent import draw_dent, write_dent
 

@@ -21,7 +21,7 @@ EXIT_ENVIRONMENT = 1
 
 
 @dataclass(frozen=True, slots=True)
-class Finding:
+class EnvironmentFinding:
     """One thing looked at.
 
     Parameters
@@ -56,7 +56,7 @@ def doctor() -> int:
     return 0
 
 
-def examine() -> tuple[Finding, ...]:
+def examine() -> tuple[EnvironmentFinding, ...]:
     """Look at everything that can be missing, each in the order in which a run meets it."""
     from ..core.provenance import environment
     from ..core.rendering import offscreen_available
@@ -65,12 +65,12 @@ def examine() -> tuple[Finding, ...]:
     shown = ", ".join(f"{name} {version}" for name, version in versions.items())
     renders = offscreen_available()
     return (
-        Finding("versions", shown),
-        Finding("processors", str(os.cpu_count() or 1)),
-        Finding("docs, examples, data", str(Path(__file__).resolve().parents[1])),
-        Finding("workshop", "here" if studies.present() else studies.WHERE),
+        EnvironmentFinding("versions", shown),
+        EnvironmentFinding("processors", str(os.cpu_count() or 1)),
+        EnvironmentFinding("docs, examples, data", str(Path(__file__).resolve().parents[1])),
+        EnvironmentFinding("workshop", "here" if studies.present() else studies.WHERE),
         _gmsh(),
-        Finding(
+        EnvironmentFinding(
             "off-screen pictures",
             "pyvista renders" if renders else "no pictures in space",
             fine=renders,
@@ -80,23 +80,25 @@ def examine() -> tuple[Finding, ...]:
     )
 
 
-def _gmsh() -> Finding:
+def _gmsh() -> EnvironmentFinding:
     # asked in a process of its own: a half-loaded library would stay in this one
     answer = subprocess.run(
         python_command("-c", "import gmsh"), capture_output=True, text=True, check=False
     )
     if answer.returncode == 0:
-        return Finding("gmsh", "loads", needed=True)
+        return EnvironmentFinding("gmsh", "loads", needed=True)
     last = (answer.stderr.strip().splitlines() or ["ended without a message"])[-1]
-    return Finding("gmsh", last, fine=False, needed=True, remedy=_REMEDY)
+    return EnvironmentFinding("gmsh", last, fine=False, needed=True, remedy=_REMEDY)
 
 
-def _compiled_code() -> Finding:
+def _compiled_code() -> EnvironmentFinding:
     """Say where numba keeps compiled code: beside the source, or in the user's cache folder."""
     remedy = "name a writable folder in the environment variable NUMBA_CACHE_DIR"
     try:
         from ..fem import assemble
     except RuntimeError as error:  # numba found no folder that it may write to
-        return Finding("compiled code", str(error), fine=False, needed=True, remedy=remedy)
+        return EnvironmentFinding(
+            "compiled code", str(error), fine=False, needed=True, remedy=remedy
+        )
     kernels = (value for value in vars(assemble).values() if hasattr(value, "stats"))
-    return Finding("compiled code", f"kept in {next(kernels).stats.cache_path}")
+    return EnvironmentFinding("compiled code", f"kept in {next(kernels).stats.cache_path}")

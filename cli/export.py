@@ -14,9 +14,9 @@ from .shared.places import folder_option
 from .shared.terminal import console, say, show_table
 
 if TYPE_CHECKING:
-    from ..impact.told.discrete_elements import Row
+    from ..impact.told.discrete_elements import ExportedRow
     from ..models.base import ContactLaw
-    from ..start.ball_file import Ball
+    from ..start.ball_file import ExportedBall
 
 app = group("A law for other programs: as source, or as parameters of a discrete-element code.")
 
@@ -109,7 +109,7 @@ def export_dem(
         shown.print(f"written: {path}")
 
 
-def _between(ball: Ball, law: ContactLaw, speeds: list[float]) -> list[Row]:
+def _between(ball: ExportedBall, law: ContactLaw, speeds: list[float]) -> list[ExportedRow]:
     """Parameters for two such balls; none, with a line, where there are none."""
     from ..impact.told.discrete_elements import substitutes, two_balls
 
@@ -156,7 +156,7 @@ def _speeds(text: str) -> list[float]:
     return np.geomspace(numbers[0], numbers[-1], _SPEEDS).tolist() if ":" in text else numbers
 
 
-def _misses(rows: list[Row]) -> tuple[list[str], list[list[str]]]:
+def _misses(rows: list[ExportedRow]) -> tuple[list[str], list[list[str]]]:
     head = ["speed [m/s], law", "e", "depth [um]", "peak [N]", "time [us]"]
     lines = []
     for row in rows:

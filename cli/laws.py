@@ -107,12 +107,12 @@ def compare(
     from ..core.inputs.left_aside import left_aside
     from ..core.inputs.toml_input import read_toml
     from ..models import LAWS
-    from ..start.comparison import USED, Row, compared
+    from ..start.comparison import USED, LawRow, compared
 
     laws = laws_named(law) if law else list(LAWS.values())
     found = compared(pair, laws, last=content.load.max_delta_over_R)
     table_file, picture = out / "curves.csv", out / "curves.png"
-    write_file(table_file, csv_text(found.rows, header=Row._fields))
+    write_file(table_file, csv_text(found.rows, header=LawRow._fields))
     write_figure(found.plot(), picture, dpi=130)
 
     console = new_console()

@@ -18,7 +18,7 @@ from ..core.errors import COMPLETED, Ending, Outcome
 from .loading import Loading, Tally
 from .path import Point, Record
 from .problem import Accuracy, ContactProblem
-from .results.ripple import Track
+from .results.ripple import RippleTrack
 from .results.snapshot import take_profile, take_snapshot
 from .solution import Counters, Curve, Profile, Snapshot, Solution, Unloading
 from .unloading import curve_of, level, unload
@@ -94,7 +94,7 @@ class _Found:
     """What is kept of the points of the path, as the problem asks."""
 
     problem: ContactProblem
-    track: Track = field(default_factory=Track)
+    track: RippleTrack = field(default_factory=RippleTrack)
     loading: list[Record] = field(default_factory=list)
     unloadings: list[Unloading] = field(default_factory=list)
     snapshots: list[Snapshot] = field(default_factory=list)

@@ -8,7 +8,7 @@ import numpy as np
 
 from .. import fem
 from ..core.errors import InputError
-from ..models.table import FEWEST_UNLOADINGS, Curve, PairTable, Turns, energy_exponent
+from ..models.table import FEWEST_UNLOADINGS, LoadingCurve, PairTable, Turns, energy_exponent
 
 
 def pair_table(solution: fem.Solution, uncertainty: fem.Uncertainty) -> PairTable:
@@ -39,7 +39,7 @@ def pair_table(solution: fem.Solution, uncertainty: fem.Uncertainty) -> PairTabl
             f"unloaded beyond first yield: {len(turns)} times", key="load.unload_from",
             allowed=f"{FEWEST_UNLOADINGS} or more for a law of this pair",
         )  # fmt: skip
-    curve = Curve(
+    curve = LoadingCurve(
         depth=c.delta / pair.R,
         force=c.force / (pair.E_reduced * pair.R**2),
         radius=c.radius / pair.R,

@@ -15,7 +15,7 @@ import numpy.typing as npt
 from scipy.linalg import cho_factor, cho_solve
 
 from ..models.closed_form import Coefficients, PairNumbers, of_pair
-from ..models.correction import CHANNELS, Correction, bumps, coordinates, moved
+from ..models.correction import CHANNELS, PairCorrection, bumps, coordinates, moved
 from .prediction import Prediction, given_back, predict_by
 from .rules import RULES
 from .table import ResidualTable, Table
@@ -26,7 +26,7 @@ REACHES = np.array([0.9, 2.2, 1.2, 3.0, 4.0])
 
 
 def corrected_prediction(
-    values: Floats, correction: Correction, table: Table, turns: ResidualTable
+    values: Floats, correction: PairCorrection, table: Table, turns: ResidualTable
 ) -> Prediction:
     """Every row by the compact law of these values with a correction."""
     return predict_by(correction.of(table.bodies, compact_numbers(values, table)), table, turns)
@@ -38,7 +38,7 @@ def compact_numbers(values: Floats, table: Table) -> PairNumbers:
     return PairNumbers(*(np.broadcast_to(x, len(table.pairs)) for x in numbers))
 
 
-def correct(values: Floats, table: Table, turns: ResidualTable, ripple: Floats) -> Correction:
+def correct(values: Floats, table: Table, turns: ResidualTable, ripple: Floats) -> PairCorrection:
     """Find the correction to the compact law for the cases that have rows.
 
     Parameters
@@ -59,7 +59,7 @@ def correct(values: Floats, table: Table, turns: ResidualTable, ripple: Floats) 
     white = np.linalg.inv(np.linalg.cholesky(alike)).T
     rows = _Rows(numbers, table.rows(thin), turns, *units[:, thin])
     basis = bumps(groups, centres, REACHES) @ white
-    return Correction(centres, REACHES, white @ _descend(rows, basis))
+    return PairCorrection(centres, REACHES, white @ _descend(rows, basis))
 
 
 def _spread_out(groups: Floats) -> Floats:

@@ -13,7 +13,7 @@ import numpy as np
 import numpy.typing as npt
 
 from ..models.closed_form import Coefficients
-from ..models.correction import Correction
+from ..models.correction import PairCorrection
 from ..models.uncertainty import Calibration
 from .calibrate import Misses, calibrate, misses, within
 from .correct import compact_numbers, correct, corrected_prediction
@@ -29,7 +29,7 @@ _DRAWN = ("space", "near-equal", "survey")
 
 
 @dataclass(frozen=True)
-class Judged:
+class JudgedLaws:
     """A law and what pairs say of it that its fit had not seen.
 
     Parameters
@@ -56,9 +56,9 @@ class Laws:
     """Result of both regressions: the compact law, the correction that makes the fitted one."""
 
     fit: Fit
-    correction: Correction
-    compact: Judged
-    fitted: Judged
+    correction: PairCorrection
+    compact: JudgedLaws
+    fitted: JudgedLaws
 
 
 def fit_laws(table: Table, turns: ResidualTable) -> Laws:
@@ -145,9 +145,9 @@ def _judged(
     found: dict[str, Misses],
     table: Table,
     turns: ResidualTable,
-) -> Judged:
+) -> JudgedLaws:
     calibration = calibrate(found)
-    return Judged(
+    return JudgedLaws(
         errors_of(seen, table, turns), errors_of(unseen, table, turns), unseen, calibration,
         within(calibration, found),
     )  # fmt: skip

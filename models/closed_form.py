@@ -101,7 +101,7 @@ class Groups(NamedTuple):
     nu_strong: Any  # and of the other
 
 
-class Spread(NamedTuple):
+class StrengthSpread(NamedTuple):
     """How far the contact has spread at one depth."""
 
     y: Any  # depth beyond first yield, in its own units
@@ -354,7 +354,7 @@ def spread_at(D, pair):
     still = still_flat_at(small, pair)
     phi = 1.0 - (1.0 - first) * still
     a = radius_at(small, y, first, still, pair)
-    return Spread(y, phi, a)
+    return StrengthSpread(y, phi, a)
 
 
 @register_jitable

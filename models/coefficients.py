@@ -13,7 +13,7 @@ from ..core.errors import InputError
 from ..core.provenance import file_digest
 from .base import ContactLaw
 from .closed_form import COEFFICIENTS
-from .correction import CHANNELS, GROUPS, Correction
+from .correction import CHANNELS, GROUPS, PairCorrection
 from .fitted import ClosedForm, closed_form_law
 from .hardening import CORRECTED, HardeningCorrection, hardening_law
 from .uncertainty import Calibration
@@ -72,14 +72,14 @@ def laws_from(content: Mapping[str, Any], *, source: str) -> tuple[ClosedForm, C
     )  # fmt: skip
 
 
-def _correction(content: Mapping[str, Any], source: str) -> Correction:
+def _correction(content: Mapping[str, Any], source: str) -> PairCorrection:
     for key, names in (("channels", tuple(CHANNELS)), ("groups", GROUPS)):
         if tuple(content[key]) != names:
             raise InputError(
                 f"{', '.join(content[key])}", source=source, key=f"correction.{key}",
                 allowed=f"{', '.join(names)}; make the file anew with `dentscope fit`",
             )  # fmt: skip
-    return Correction(
+    return PairCorrection(
         *(np.array(content[key], dtype=float) for key in ("centres", "reaches", "weights"))
     )
 

@@ -69,7 +69,7 @@ _UNITS = np.array([channel.unit for channel in CHANNELS.values()])
 
 
 @dataclass(frozen=True)
-class Correction:
+class PairCorrection:
     """Bumps and weights.
 
     Parameters

@@ -11,7 +11,7 @@ import inspect
 from collections.abc import Mapping, Sequence
 
 from . import closed_form
-from .correction import CHANNELS, MOST, Correction
+from .correction import CHANNELS, MOST, PairCorrection
 
 INPUTS = ("E_s", "nu_s", "Sy_s", "E_f", "nu_f", "Sy_f", "R", "depth")
 OUTPUTS = ("force", "contact_radius", "share", "residual_s", "residual_f", "exponent")
@@ -56,7 +56,7 @@ def when_open() -> Lines:
     return _parsed(_OPEN)
 
 
-def when_closed(correction: Correction | None) -> Lines:
+def when_closed(correction: PairCorrection | None) -> Lines:
     """The closed form, and the outputs from what it gives."""
     lines: Lines = []
     defined = {*INPUTS, *(target for target, _ in before())}
@@ -71,7 +71,7 @@ def when_closed(correction: Correction | None) -> Lines:
     return [*used, *_parsed(_TO_OUTPUTS)]
 
 
-def _corrected(correction: Correction) -> Lines:
+def _corrected(correction: PairCorrection) -> Lines:
     """What `Correction.of` does to the pair's numbers, bump by bump and channel by channel."""
     text = []
     for number, centre in enumerate(correction.centres.tolist()):

@@ -28,7 +28,7 @@ from .closed_form import (
     of_pair,
     spread_at,
 )
-from .correction import Correction
+from .correction import PairCorrection
 from .driver import Depths, Pairs
 from .kernel import (
     N_COMMON,
@@ -110,7 +110,7 @@ class ClosedForm(ContactLaw):
     """
 
     coefficients: Mapping[str, float] = field(default_factory=dict)
-    correction: Correction | None = None
+    correction: PairCorrection | None = None
     limits: Mapping[str, tuple[float, float]] = field(default_factory=dict)
     calibration: Calibration | None = None
 
@@ -251,7 +251,7 @@ def _body(body: Material) -> tuple[float, float, float]:
 def closed_form_law(
     coefficients: Mapping[str, float],
     *,
-    correction: Correction | None = None,
+    correction: PairCorrection | None = None,
     limits: Mapping[str, tuple[float, float]] | None = None,
     calibration: Calibration | None = None,
 ) -> ClosedForm:

@@ -34,7 +34,7 @@ from .uncertainty import LEAST, Uncertainty
 FEWEST_UNLOADINGS = RULES.unloadings
 
 
-class Curve(NamedTuple):
+class LoadingCurve(NamedTuple):
     """Loading of a pair, arrays of shape (n,), dimensionless, with standard deviations."""
 
     depth: Floats  # Delta/R, rising
@@ -60,7 +60,7 @@ class PairTable:
     """What the finite elements say of one pair."""
 
     pair: Pair
-    curve: Curve
+    curve: LoadingCurve
     turns: Turns
 
     @property

@@ -16,7 +16,7 @@ from ..core.material import Pair
 from ..core.output import write_file
 from ..core.rig import MaterialTable, material_keys
 from .rules import RULES
-from .table import Curve, PairTable, TableLaw, Turns, table_law
+from .table import LoadingCurve, PairTable, TableLaw, Turns, table_law
 
 FORMAT = "dentscope-table/1"
 
@@ -31,7 +31,7 @@ _Part = Annotated[tuple[Annotated[float, Field(ge=-1.0, le=2.0)], ...], Listed]
 
 
 class _Loading(InputTable):
-    """The columns of `Curve`."""
+    """The columns of `LoadingCurve`."""
 
     depth: _Above
     force: _Above
@@ -99,7 +99,7 @@ def table_from(content: object, *, source: str, name: str) -> TableLaw:
     found = parse_model(content, _TableFile, source=source)
     sphere = found.sphere.to_material("sphere", source=source)
     flat = found.flat.to_material("flat", source=source)
-    curve = Curve(**{k: np.array(v) for k, v in found.loading})
+    curve = LoadingCurve(**{k: np.array(v) for k, v in found.loading})
     turns = Turns(**{k: np.array(v) for k, v in found.unloading})
     for name, part in (("loading", curve), ("unloading", turns)):
         if len({len(v) for v in part}) != 1:

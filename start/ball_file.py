@@ -40,7 +40,7 @@ _OF_CASE = (
 )  # fmt: skip
 
 
-class Ball(NamedTuple):
+class ExportedBall(NamedTuple):
     """A ball, the flat that it meets, and what a file says of their blow."""
 
     pair: Pair
@@ -51,7 +51,7 @@ class Ball(NamedTuple):
     aside: list[str]  # what the file says beyond this
 
 
-def read_ball(file: Path, *, mass: float | None = None) -> Ball:
+def read_ball(file: Path, *, mass: float | None = None) -> ExportedBall:
     """Read a set-up of `dentscope impact` or a CASE.toml.
 
     Parameters
@@ -81,7 +81,7 @@ def read_ball(file: Path, *, mass: float | None = None) -> Ball:
     return found._replace(mass=weight)
 
 
-def _of_setup(content: Mapping[str, Any], file: Path) -> Ball:
+def _of_setup(content: Mapping[str, Any], file: Path) -> ExportedBall:
     setup = setup_of(dict(content), source=str(file))
     name = setup.file.impact.striker or next(iter(setup.file.strikers))
     if setup.file.strikers[name].shape != "sphere":
@@ -98,7 +98,7 @@ def _of_setup(content: Mapping[str, Any], file: Path) -> Ball:
     speeds = setup.sweep.impact_speed_m_s or (scene.approach.speed,)
     falls = setup.file.impact.drop_height_m is not None
     used = _OF_IMPACT if falls else _OF_IMPACT - {"gravity_m_s2"}
-    return Ball(
+    return ExportedBall(
         scene.pair, scene.striker.mass, scene.friction.mu, tuple(speeds), law,
         left_aside(content, used) + _tip(setup, name),
     )  # fmt: skip
@@ -113,9 +113,9 @@ def _tip(setup: Setup, name: str) -> list[str]:
     return [f"strikers.{name}.radius_m = {radius.value:g} beside tip_radius_m"]
 
 
-def _of_case(content: Mapping[str, Any], file: Path) -> Ball:
+def _of_case(content: Mapping[str, Any], file: Path) -> ExportedBall:
     found, pair = read_pair(file)
     mass = 4.0 / 3.0 * math.pi * pair.R**3 * pair.sphere.density
     law = "fitted" if pair.perfectly_plastic else FOLLOWING
     friction = value_of(found.friction.coefficient, 0.0)
-    return Ball(pair, mass, friction, (), law, left_aside(content, _OF_CASE))
+    return ExportedBall(pair, mass, friction, (), law, left_aside(content, _OF_CASE))

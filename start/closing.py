@@ -31,7 +31,7 @@ from ..discrepancy.mechanisms.base import Constants, Mechanism
 from ..fitting.case_table import pair_table
 from ..models.table import PairTable, table_law
 from ..models.table_file import write_table
-from .metal_press import Press, presses
+from .metal_press import MetalPress, presses
 from .pair import solved
 from .rules import RULES
 
@@ -187,7 +187,7 @@ def _of_the_metal(problem: Problem, z: Array) -> Array:
 
 
 def _struck(
-    problem: Problem, table: PairTable, press: Press, rest: tuple[Mechanism, ...], z: Array,
+    problem: Problem, table: PairTable, press: MetalPress, rest: tuple[Mechanism, ...], z: Array,
     constants: Constants,
 ) -> Array:  # fmt: skip
     """Predictions (m,) of the conditions of a press by its table; nan elsewhere."""

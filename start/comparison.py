@@ -38,7 +38,7 @@ USED = frozenset(
 """Keys of CASE.toml that a law answers for."""
 
 
-class Row(NamedTuple):
+class LawRow(NamedTuple):
     """One law at one depth; SI."""
 
     law: str
@@ -74,7 +74,7 @@ class LawComparison:
     best: tuple[str, ...]
     reference: Reference | None
     departures: dict[str, Departure]
-    rows: tuple[Row, ...]
+    rows: tuple[LawRow, ...]
 
     @property
     def finding(self) -> str:
@@ -95,7 +95,7 @@ class LawComparison:
         found = self.departures.get(law)
         return found.told if found else "of one pair, not judged"
 
-    def last_rows(self) -> list[Row]:
+    def last_rows(self) -> list[LawRow]:
         """Each law at the largest depth, the nearest to the finite elements first."""
         ends = list({row.law: row for row in self.rows}.values())
         if not self.departures:
@@ -208,13 +208,13 @@ def _elastic(laws: Sequence[ContactLaw]) -> tuple[str, ...]:
     return ("hertz",) if "hertz" in names else tuple(names[:1])
 
 
-def _rows(pair: Pair, laws: Sequence[ContactLaw], last: float) -> tuple[Row, ...]:
+def _rows(pair: Pair, laws: Sequence[ContactLaw], last: float) -> tuple[LawRow, ...]:
     deepest = last * pair.R
     depth = np.geomspace(
         min(0.3 * critical_depth(pair), 1e-2 * deepest), deepest, RULES.curve_points
     )
     scale = pair.Sy_min if pair.Sy_min < float("inf") else pair.E_reduced
-    rows: list[Row] = []
+    rows: list[LawRow] = []
     for law in laws:
         with warnings.catch_warnings():
             warnings.simplefilter("ignore", DomainWarning)  # the table says what is out of range
@@ -224,7 +224,7 @@ def _rows(pair: Pair, laws: Sequence[ContactLaw], last: float) -> tuple[Row, ...
         if not np.all(np.isfinite(force)):
             raise InputError(f"{law.name} has no finite force for this pair", key="law")
         columns = (depth / pair.R, depth, force, a, pressure, sphere, flat)
-        rows += [Row(law.name, *map(float, row)) for row in zip(*columns, strict=True)]
+        rows += [LawRow(law.name, *map(float, row)) for row in zip(*columns, strict=True)]
     return tuple(rows)
 
 

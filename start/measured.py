@@ -23,7 +23,7 @@ _BALL_KEEPS = 0.05  # of the permanent approach; beyond it the dent is not that 
 
 
 @dataclass(frozen=True)
-class Pressed:
+class PressedContact:
     """The contact at the deepest approach whose pressure was kept.
 
     Parameters
@@ -102,7 +102,7 @@ class Dent:
 
 
 @dataclass(frozen=True)
-class Measured:
+class MeasuredContact:
     """What people measure of a solved pair.
 
     Parameters
@@ -116,7 +116,7 @@ class Measured:
     """
 
     first_yield: FirstYield | None
-    pressed: Pressed | None
+    pressed: PressedContact | None
     dents: tuple[Dent, ...]
 
     def to_dict(self) -> dict[str, Any]:
@@ -148,13 +148,13 @@ class Measured:
             yield from dent.lines()
 
 
-def measured(solution: Solution) -> Measured:
+def measured(solution: Solution) -> MeasuredContact:
     """Return what people measure, from a solve."""
     dents = tuple(_dent(solution, one) for one in solution.unloadings)
-    return Measured(first_yield(solution.problem.pair), _pressed(solution), dents)
+    return MeasuredContact(first_yield(solution.problem.pair), _pressed(solution), dents)
 
 
-def _pressed(solution: Solution) -> Pressed | None:
+def _pressed(solution: Solution) -> PressedContact | None:
     """Return the pressures at the deepest picture of a solve; none without one.
 
     The largest is of running medians of three nodes: at the edge of contact single ones alternate.
@@ -166,7 +166,7 @@ def _pressed(solution: Solution) -> Pressed | None:
     smooth = np.median(np.stack([p[:-2], p[1:-1], p[2:]]), axis=0)
     k = int(smooth.argmax())
     mean = float(np.interp(profile.depth, c.delta / solution.problem.pair.R, c.hardness))
-    return Pressed(profile.depth, mean, float(smooth[k]), float(profile.sphere_r[k + 1]))
+    return PressedContact(profile.depth, mean, float(smooth[k]), float(profile.sphere_r[k + 1]))
 
 
 def brinell(load: float, ball: float, dent: float) -> float:
@@ -212,7 +212,7 @@ def loading_work(delta: Floats, force: Floats) -> Floats:
     return np.asarray(np.concatenate([[0.0], np.cumsum(step)]) + 0.4 * force[0] * delta[0])
 
 
-def _numbers(part: FirstYield | Pressed | Dent) -> dict[str, float | None]:
+def _numbers(part: FirstYield | PressedContact | Dent) -> dict[str, float | None]:
     return {k: None if math.isnan(x) else float(x) for k, x in asdict(part).items()}
 
 

@@ -24,7 +24,7 @@ Clock = tuple[tuple[float, float], ...]
 """Rows of Delta/R and speed [m/s]."""
 
 
-class Press(NamedTuple):
+class MetalPress(NamedTuple):
     """One solve, and the conditions that it is of."""
 
     problem: fem.ContactProblem
@@ -33,7 +33,7 @@ class Press(NamedTuple):
 
 def presses(
     problem: Problem, z: Array, carried: Sequence[Mechanism], constants: Constants, peaks: Array
-) -> Iterator[Press]:
+) -> Iterator[MetalPress]:
     """Yield what to solve: a pair for all its sizes, or every speed where a rate acts."""
     scenes = problem.scenes(z)
     depth = peaks / np.array([s.pair.R for s in scenes])
@@ -41,7 +41,7 @@ def presses(
         for k in _ends(problem):
             turns = tuple(float(x * depth[k]) for x in (0.7, 0.85, 1.0))
             clock = _clock(depth[k], scenes[k].approach.speed)
-            yield Press(_press(scenes[k], constants, turns, clock), (k,))
+            yield MetalPress(_press(scenes[k], constants, turns, clock), (k,))
         # what is pressed slowly needs no clock
         numbers = [k for k, c in enumerate(problem.conditions) if c.press is not None]
     else:
@@ -52,7 +52,7 @@ def presses(
     for these in alike.values():
         low, high = depth[these].min(), depth[these].max()
         turns = tuple(float(x) for x in np.geomspace(min(low, 0.3 * high), high, RULES.press_turns))
-        yield Press(_press(scenes[these[0]], constants, turns, ()), tuple(these))
+        yield MetalPress(_press(scenes[these[0]], constants, turns, ()), tuple(these))
 
 
 def _ends(problem: Problem) -> list[int]:

@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Any
 from .. import fem
 from ..core.tables import frame, html_table
 from .case_file import read_case
-from .measured import Measured, measured
+from .measured import MeasuredContact, measured
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
@@ -42,7 +42,7 @@ class Solved:
     level: str = ""
 
     @property
-    def measured(self) -> Measured:
+    def measured(self) -> MeasuredContact:
         """What people measure: first yield, pressures, what every unloading leaves."""
         return measured(self.solution)
 

@@ -21,8 +21,8 @@ from ..comparison.problem import Problem
 from ..inference.fit import Fit
 from ..mechanisms.arithmetic import deepest
 from ..nulls import Rig, discrepancies, scatter
-from ..nulls.laws import Reference
-from ..nulls.motion import Bodies
+from ..nulls.laws import NullReference
+from ..nulls.motion import NullBodies
 from ..unknowns.lawerror import SIZE_SPREAD, not_given_back
 
 Array = NDArray[np.float64]
@@ -105,7 +105,7 @@ def null_residuals(simulator: Simulator, base: Fit, count: int, rng: np.random.G
 def rig_of(problem: Problem, z: Array) -> Rig:
     """Return the rig at the unknowns z, as plain numbers for the null generators."""
     scenes = problem.scenes(z)
-    known: dict[tuple[float, ...], Reference] = {}
+    known: dict[tuple[float, ...], NullReference] = {}
     plain = [_reference(scene, known) for scene in scenes]
     depth = [deepest(s) for s in scenes]
     ranged = {}
@@ -115,7 +115,7 @@ def rig_of(problem: Problem, z: Array) -> Rig:
     references = [ranged[id(r)] for r in plain]
     arms = [s.striker.arm(s.approach.angle) for s in scenes]
     upright = [abs(s.approach.angle - math.pi / 2.0) < 1e-9 for s in scenes]
-    bodies = Bodies(
+    bodies = NullBodies(
         np.array([s.striker.mass for s in scenes]),
         np.array([s.striker.inertia for s in scenes]),
         np.array([0.0 if up else a[0] for a, up in zip(arms, upright, strict=True)]),
@@ -132,7 +132,7 @@ def rig_of(problem: Problem, z: Array) -> Rig:
     return Rig(bodies, references, loads)
 
 
-def _reference(scene: Scene, known: dict[tuple[float, ...], Reference]) -> Reference:
+def _reference(scene: Scene, known: dict[tuple[float, ...], NullReference]) -> NullReference:
     pair, law = scene.pair, scene.law
     key: tuple[float, ...] = (
         pair.R,
@@ -149,7 +149,7 @@ def _reference(scene: Scene, known: dict[tuple[float, ...], Reference]) -> Refer
         _, flat = law.residual(pair, depth)
         # a baseline that does not yield is compared with laws that do not yield
         strength = math.inf if law.name == "hertz" else pair.Sy_min
-        known[key] = Reference(
+        known[key] = NullReference(
             pair.R, pair.E_reduced, strength, depth, np.exp(table.stated.force),
             np.exp(table.stated.recovery), flat, table.radius, scene.force.given_back,
             not_given_back(scene),

@@ -68,7 +68,7 @@ class Scatter(NamedTuple):
     degrees: int
 
 
-class Reduced(NamedTuple):
+class ReducedRepeats(NamedTuple):
     """What the readings come to: the cells, what is odd about the repeats, and notes."""
 
     cells: Cells
@@ -120,7 +120,7 @@ def cells_of(
     order: Array,
     conditions: Sequence[Condition],
     varied: Mapping[str, Sequence[str]],
-) -> Reduced:
+) -> ReducedRepeats:
     """Return the cells of a set, and what its repeats say of themselves.
 
     Parameters
@@ -161,7 +161,7 @@ def cells_of(
         np.hypot(std, floor),
         np.array([m.trials for m in means], dtype=np.intp),
     )
-    return Reduced(
+    return ReducedRepeats(
         cells, tuple(d for d in drifts if d is not None),
         tuple(
             one.scatter

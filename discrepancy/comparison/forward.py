@@ -86,7 +86,7 @@ def _struck(scenes: list[Scene]) -> Array:
 
 
 @dataclass(eq=False)
-class Tally:
+class SimulationTally:
     """Impacts that were simulated, over all problems that share the count."""
 
     impacts: int = 0
@@ -97,7 +97,7 @@ class Simulator:
     """Predicts the cells of a problem, and counts the impacts that it takes."""
 
     problem: Problem
-    tally: Tally = field(default_factory=Tally)
+    tally: SimulationTally = field(default_factory=SimulationTally)
 
     def of(self, problem: Problem) -> Simulator:
         """Return the simulator of another problem, with the same tally."""

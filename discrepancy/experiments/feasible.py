@@ -50,7 +50,7 @@ class Candidate:
 
 
 @dataclass(frozen=True, eq=False)
-class Series:
+class PressSeries:
     """Quasi-static presses of one striker.
 
     Parameters
@@ -68,7 +68,7 @@ class Series:
     each: int
 
 
-def press_series(problem: Problem) -> list[Series]:
+def press_series(problem: Problem) -> list[PressSeries]:
     """Return presses with each striker, as deep as its trials went, within what a press can do."""
     found = []
     for name, trials in sorted(_by_striker(problem).items()):
@@ -91,7 +91,7 @@ def press_series(problem: Problem) -> list[Series]:
             f"press {name} slowly on the same flat, each time on a fresh place, {_EACH} times each "
             f"to {told} and {loads[-1]:g} N"
         )
-        found.append(Series(text, pressed, _EACH))
+        found.append(PressSeries(text, pressed, _EACH))
     return found
 
 

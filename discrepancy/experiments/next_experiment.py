@@ -25,7 +25,7 @@ from ..comparison.forward import Point, Simulator
 from ..comparison.problem import Problem
 from ..inference.fit import Fit
 from ..rank import Ranking
-from .feasible import Candidate, Series, candidates_of, press_series
+from .feasible import Candidate, PressSeries, candidates_of, press_series
 from .foreseen import discrimination, foreseen, information
 
 Array = NDArray[np.float64]
@@ -223,7 +223,7 @@ def _proposal(c: Candidate, measured: list[str], rig: RigNumbers) -> Proposal:
     )
 
 
-def _pressing(series: Series) -> Proposal:
+def _pressing(series: PressSeries) -> Proposal:
     loads = [c.press.load for c in series.conditions if c.press is not None]
     trial: dict[str, str | float] = {
         "striker": series.conditions[0].striker, "least_load_N": min(loads),

@@ -8,8 +8,8 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from .laws import Reference, curve, draw
-from .motion import Bodies, collide
+from .laws import NullReference, curve, draw
+from .motion import NullBodies, collide
 from .press import press
 
 Array = NDArray[np.float64]
@@ -29,8 +29,8 @@ class Rig:
         (conditions,) largest load of each press [N]; nan of an impact.
     """
 
-    bodies: Bodies
-    references: Sequence[Reference]
+    bodies: NullBodies
+    references: Sequence[NullReference]
     loads: Array
 
 
@@ -66,8 +66,8 @@ def discrepancies(
             continue
         own = [c for c, here in zip(curves, rows, strict=True) if here]
         if rows is struck:
-            fields = Bodies.__dataclass_fields__
-            many = Bodies(*(np.tile(getattr(rig.bodies, k), count)[rows] for k in fields))
+            fields = NullBodies.__dataclass_fields__
+            many = NullBodies(*(np.tile(getattr(rig.bodies, k), count)[rows] for k in fields))
             found = collide(many, own)
         else:
             found = press(loads[rows], own)

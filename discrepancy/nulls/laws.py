@@ -26,7 +26,7 @@ _GRID = 120
 
 
 @dataclass(frozen=True, eq=False)
-class Curve:
+class NullCurve:
     """A law of one contact as tables over the depth, for fast evaluation of many impacts.
 
     Parameters
@@ -49,7 +49,7 @@ class Curve:
 
 
 @dataclass(frozen=True, eq=False)
-class Reference:
+class NullReference:
     """The baseline's curve of one contact: what a law is levelled to.
 
     Parameters
@@ -134,7 +134,7 @@ def draw(rng: np.random.Generator, size: dict[str, float]) -> Draw:
     )  # fmt: skip
 
 
-def curve(reference: Reference, law: Draw) -> Curve:
+def curve(reference: NullReference, law: Draw) -> NullCurve:
     """Tabulate a law for one contact, levelled to the reference over its range of depths."""
     low, high = reference.low, reference.high
     x = np.linspace(math.log(low) - 6.0, math.log(high) + 1.0, _GRID)
@@ -150,7 +150,7 @@ def curve(reference: Reference, law: Draw) -> Curve:
     if math.isinf(reference.Y):
         f = _levelled(base, base, x, inside, middle, law.level, math.inf)
         # without yield the way back is the way in
-        return Curve(x, f, recovery, crater, radius, 1.5 + law.level[1])
+        return NullCurve(x, f, recovery, crater, radius, 1.5 + law.level[1])
     force, power, rec = _shape(reference, law, d)
     f = _levelled(np.log(force), base, x, inside, middle, law.level, law.stray[0])
     own = _levelled(np.log(rec), np.log(recovery), x, inside, middle, law.back, law.stray[1])
@@ -169,7 +169,7 @@ def curve(reference: Reference, law: Draw) -> Curve:
     crater = crater * np.exp(law.dent[0] + law.dent[1] * far)
     # at one pressure the contact that carries more is wider
     radius = radius * np.exp(0.5 * (f - base) + law.wide[0] + law.wide[1] * far)
-    return Curve(x, f, rec, crater, radius, power)
+    return NullCurve(x, f, rec, crater, radius, power)
 
 
 def _levelled(
@@ -186,7 +186,7 @@ def _levelled(
     return np.asarray(base + shape + offset[0] + offset[1] * far)
 
 
-def _shape(reference: Reference, law: Draw, d: Array) -> tuple[Array, float, Array]:
+def _shape(reference: NullReference, law: Draw, d: Array) -> tuple[Array, float, Array]:
     """Return loading force, exponent and recovery of a law before levelling."""
     R, E, Y = reference.R, reference.E, reference.Y
     hertz = 4.0 / 3.0 * E * math.sqrt(R) * d**1.5

@@ -10,7 +10,7 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from .laws import Curve
+from .laws import NullCurve
 
 Array = NDArray[np.float64]
 
@@ -20,7 +20,7 @@ _SMOOTH = 0.01  # of the approach speed: below it friction fades
 
 
 @dataclass(frozen=True, eq=False)
-class Bodies:
+class NullBodies:
     """Strikers just before touch, arrays of shape (n,), SI.
 
     Parameters
@@ -67,7 +67,7 @@ class _Contacts:
     given_back: Array
 
     @classmethod
-    def of(cls, curves: Sequence[Curve], given_back: Array) -> _Contacts:
+    def of(cls, curves: Sequence[NullCurve], given_back: Array) -> _Contacts:
         """Stack the tables of the curves."""
         return cls(
             np.array([c.log_depth[0] for c in curves]),
@@ -137,7 +137,7 @@ class _State(NamedTuple):
     live: NDArray[np.bool_]
 
     @classmethod
-    def touching(cls, bodies: Bodies) -> _State:
+    def touching(cls, bodies: NullBodies) -> _State:
         """Return the state at first touch."""
         n = len(bodies.mass)
         zero = np.zeros(n)
@@ -148,7 +148,7 @@ class _State(NamedTuple):
         )  # fmt: skip
 
 
-def collide(bodies: Bodies, curves: Sequence[Curve]) -> dict[str, Array]:
+def collide(bodies: NullBodies, curves: Sequence[NullCurve]) -> dict[str, Array]:
     """Return the observables of n impacts, each of shape (n,)."""
     contacts = _Contacts.of(curves, bodies.given_back)
     reduced = 1.0 / (1.0 / bodies.mass + bodies.beside * bodies.beside / bodies.inertia)
@@ -186,7 +186,7 @@ def collide(bodies: Bodies, curves: Sequence[Curve]) -> dict[str, Array]:
     }
 
 
-def _stepped(s: _State, bodies: Bodies, contacts: _Contacts, h: Array) -> _State:
+def _stepped(s: _State, bodies: NullBodies, contacts: _Contacts, h: Array) -> _State:
     """Return the state after a step h; those that have parted stay as they are."""
     m, inertia, beside, above = bodies.mass, bodies.inertia, bodies.beside, bodies.above
     mu, eps = bodies.friction, _SMOOTH * bodies.normal

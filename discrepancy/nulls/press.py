@@ -7,12 +7,12 @@ from collections.abc import Sequence
 import numpy as np
 from numpy.typing import NDArray
 
-from .laws import Curve
+from .laws import NullCurve
 
 Array = NDArray[np.float64]
 
 
-def press(loads: Array, curves: Sequence[Curve]) -> dict[str, Array]:
+def press(loads: Array, curves: Sequence[NullCurve]) -> dict[str, Array]:
     """Return the observables of n presses, each of shape (n,).
 
     Parameters

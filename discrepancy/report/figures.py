@@ -18,7 +18,7 @@ from matplotlib.ticker import FuncFormatter, LogLocator, MaxNLocator, NullFormat
 
 from ...core.observables import OBSERVABLES
 from ..correction import Correction
-from .series import STATED, WITH, WITHOUT, Against, Point
+from .series import STATED, WITH, WITHOUT, Against, SeriesPoint
 
 COLOURS = {"#010101": "ink", "#020202": "faint", "#030303": "without", "#040404": "verdict"}
 """Colours that are drawn, and the variable of the page's style that takes their place."""
@@ -50,7 +50,7 @@ _ASIDE = 0.012  # of the axis, between what is drawn for one number by two simul
 
 
 def comparison(
-    points: Sequence[Point], against: Against, strikers: Sequence[str], *, key: str
+    points: Sequence[SeriesPoint], against: Against, strikers: Sequence[str], *, key: str
 ) -> str:
     """Return measured beside the simulations, and the differences below, for one observable.
 
@@ -99,7 +99,7 @@ def comparison(
 
 
 def _draw_point(
-    upper: Axes, lower: Axes, p: Point, marker: str, x: float, shift: float, *, gid: str
+    upper: Axes, lower: Axes, p: SeriesPoint, marker: str, x: float, shift: float, *, gid: str
 ) -> None:
     fill = _INK if p.weight else "none"
     bars = [[p.measured - p.low], [p.high - p.measured]]
@@ -123,7 +123,7 @@ def _draw_point(
         lower.plot(aside, off[1], **look, color=colour, mfc=colour if p.weight else "none")
 
 
-def _simulated(p: Point) -> tuple[float, float, float]:
+def _simulated(p: SeriesPoint) -> tuple[float, float, float]:
     """As stated, at best without anything missing, and with the verdict."""
     return p.as_stated, p.best_without, p.with_verdict
 
@@ -151,9 +151,9 @@ def _axis(axis: Axes, which: str, values: np.ndarray, *, log: bool) -> None:
     chosen.set_minor_formatter(NullFormatter())
 
 
-def _lines(points: Sequence[Point], against: Against) -> Iterator[list[Point]]:
+def _lines(points: Sequence[SeriesPoint], against: Against) -> Iterator[list[SeriesPoint]]:
     """Return the simulated points that differ in nothing but what the axis shows, in its order."""
-    groups: dict[tuple[object, ...], list[Point]] = {}
+    groups: dict[tuple[object, ...], list[SeriesPoint]] = {}
     for p in points:
         rest = tuple(f"{x:.3g}" for k, x in p.x.items() if k != against.key)
         groups.setdefault((p.striker, rest), []).append(p)
@@ -163,7 +163,7 @@ def _lines(points: Sequence[Point], against: Against) -> Iterator[list[Point]]:
             yield group
 
 
-def _told(p: Point, against: Against) -> str:
+def _told(p: SeriesPoint, against: Against) -> str:
     unit = "" if p.unit == "-" else f" {p.unit}"
     texts = [
         f"{p.striker}, {against.label.split(' [')[0]} {p.x[against.key]:.3g}",

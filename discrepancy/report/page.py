@@ -15,7 +15,7 @@ from ... import __version__
 from ...core.output import write_file
 from ..findings import Verdict
 from .figures import comparison, correction
-from .series import STATED, WITH, WITHOUT, Point
+from .series import STATED, WITH, WITHOUT, SeriesPoint
 from .story import Story, story_of
 from .wording import GLOSSARY
 
@@ -102,13 +102,13 @@ def panels_of(story: Story) -> tuple[Panel, ...]:
     return tuple(found)
 
 
-def _label(point: Point) -> str:
+def _label(point: SeriesPoint) -> str:
     from ...core.observables import OBSERVABLES
 
     return OBSERVABLES[point.observable].label
 
 
-def table(points: tuple[Point, ...]) -> str:
+def table(points: tuple[SeriesPoint, ...]) -> str:
     """Return every number of the figures as CSV."""
     rows = [p.row() for p in points]
     stream = io.StringIO()

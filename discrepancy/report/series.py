@@ -40,7 +40,7 @@ class Against(NamedTuple):
 
 
 @dataclass(frozen=True, slots=True)
-class Point:
+class SeriesPoint:
     """One number of the comparison, in the units that people read.
 
     Parameters
@@ -131,7 +131,7 @@ def series_of(c: Condition) -> str:
     return c.striker if c.press is None else f"{c.striker}, pressed"
 
 
-def points_of(v: Verdict) -> tuple[Point, ...]:
+def points_of(v: Verdict) -> tuple[SeriesPoint, ...]:
     """Return every number of the comparison."""
     cells, conditions = v.problem.cells, v.problem.conditions
     base, stated = v.ranking.base, v.stated
@@ -147,7 +147,7 @@ def points_of(v: Verdict) -> tuple[Point, ...]:
             return scale * (math.exp(x) if log else float(x))
 
         found.append(
-            Point(
+            SeriesPoint(
                 name, row.unit, series_of(conditions[k]), k + 1, int(cells.count[i]),
                 {a.key: float(a.values[k]) for a in along},
                 shown(cells.value[i]), shown(cells.value[i] - std[i]),

@@ -10,7 +10,7 @@ import numpy as np
 
 from ...core.observables import OBSERVABLES
 from ..findings import Verdict
-from .series import Against, Point, againsts, points_of, series_of
+from .series import Against, SeriesPoint, againsts, points_of, series_of
 from .text import headline, nowhere, own_parameters
 from .wording import (
     compared,
@@ -40,7 +40,7 @@ class Bar(NamedTuple):
         return percent(self.share)
 
 
-class Cells(NamedTuple):
+class ToldCells(NamedTuple):
     """A table: names of the columns, and rows of texts."""
 
     head: tuple[str, ...]
@@ -79,7 +79,7 @@ class Story:
     name: str
     finding: str
     summary: str
-    points: tuple[Point, ...]
+    points: tuple[SeriesPoint, ...]
     against: tuple[Against, ...]
     strikers: tuple[str, ...]
     misses: tuple[str, ...]
@@ -89,13 +89,13 @@ class Story:
     notes: tuple[str, ...]
     parts: tuple[Bar, ...]
     explanations: tuple[Bar, ...]
-    found: Cells
+    found: ToldCells
     prediction: str
     doubt: tuple[Bar, ...]
-    numbers: Cells
-    scores: Cells
-    excluded: Cells
-    limits: Cells
+    numbers: ToldCells
+    scores: ToldCells
+    excluded: ToldCells
+    limits: ToldCells
     next_step: str
     further: tuple[str, ...]
 
@@ -134,7 +134,7 @@ def story_of(v: Verdict) -> Story:
         doubt=_doubt(v),
         numbers=_numbers(v),
         scores=_scores(v),
-        excluded=Cells(
+        excluded=ToldCells(
             ("what", "why not"), tuple((title_of(k), why) for k, why in v.excluded.items())
         ),
         limits=_limits(v),
@@ -154,7 +154,7 @@ def _summary(v: Verdict) -> str:
     )
 
 
-def _found(v: Verdict) -> Cells:
+def _found(v: Verdict) -> ToldCells:
     rows = []
     if v.mechanisms:
         axes = v.best.grid.axes
@@ -165,7 +165,9 @@ def _found(v: Verdict) -> Cells:
                     interval(q["low"], q["high"], q["unit"]), axis.parameter.source,
                 )
             )  # fmt: skip
-    return Cells(("number", "value", "90 % interval", "where its range comes from"), tuple(rows))
+    return ToldCells(
+        ("number", "value", "90 % interval", "where its range comes from"), tuple(rows)
+    )
 
 
 def _prediction(v: Verdict) -> str:
@@ -198,7 +200,7 @@ def _doubt(v: Verdict) -> tuple[Bar, ...]:
     return tuple(b for b in sorted(bars, key=lambda b: -b.share) if b.share >= 0.01)
 
 
-def _numbers(v: Verdict) -> Cells:
+def _numbers(v: Verdict) -> ToldCells:
     rows = []
     for n in v.problem.nuisances:
         q = v.parameters[n.name]
@@ -211,10 +213,10 @@ def _numbers(v: Verdict) -> Cells:
             )
         )  # fmt: skip
     head = ("number of set.toml", "stated", "found", "90 % interval", "shift", "surprise")
-    return Cells(head, tuple(rows))
+    return ToldCells(head, tuple(rows))
 
 
-def _scores(v: Verdict) -> Cells:
+def _scores(v: Verdict) -> ToldCells:
     rows = tuple(
         (
             explanation(name), f"{s['evidence']:+.1f}", f"{s['p_value']:.3f}",
@@ -228,17 +230,17 @@ def _scores(v: Verdict) -> Cells:
         "share of its own sets that fit no better", "miss on trials kept out [standard errors]",
         "probability",
     )  # fmt: skip
-    return Cells(head, rows)
+    return ToldCells(head, rows)
 
 
-def _limits(v: Verdict) -> Cells:
+def _limits(v: Verdict) -> ToldCells:
     units = {s.mechanism.name: s.mechanism.parameters[0] for s in v.ranking.screened}
     rows = tuple(
         (title_of(k), units[k].name if k in units else "", quantity(x, units[k].unit))
         for k, x in v.limits.items()
         if k in units
     )
-    return Cells(("what", "number", "would have been seen from"), rows)
+    return ToldCells(("what", "number", "would have been seen from"), rows)
 
 
 def _instructions(v: Verdict) -> list[str]:

@@ -30,7 +30,7 @@ _NAMES = ("force", "radius", "radius_last_node", "share")
 
 
 @dataclass
-class Track:
+class RippleTrack:
     """All steps of a loading path: what the smooth curves are made from."""
 
     readings: list[Reading] = field(default_factory=list)

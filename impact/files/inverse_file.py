@@ -88,7 +88,7 @@ class InverseFile(InputTable):
 
 @unstated_equal
 @dataclass(frozen=True, slots=True)
-class Row:
+class InverseRow:
     """One oblique impact: what was measured, what follows, what the thesis printed."""
 
     name: str
@@ -100,7 +100,7 @@ class Row:
     """By field of `Inferred`: what the standard deviations of the rod's numbers make of it."""
 
 
-def read_inverse(path: Path) -> tuple[Striker, list[Row]]:
+def read_inverse(path: Path) -> tuple[Striker, list[InverseRow]]:
     """Read an inverse file and infer each trial.
 
     Raises
@@ -127,7 +127,7 @@ def read_inverse(path: Path) -> tuple[Striker, list[Row]]:
                 error.message, source=source, key=f"trial {i}.{error.key}", allowed=error.allowed
             ) from None
         rows.append(
-            Row(
+            InverseRow(
                 trial.trial or str(i), measured, inferred,
                 trial.printed_duration_s or math.nan, trial.printed_mean_force_N or math.nan,
                 _deviations(found.striker, measured),

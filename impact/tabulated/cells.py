@@ -40,7 +40,7 @@ _AT_ONCE = RULES.cells_at_once
 
 
 @dataclass(frozen=True, slots=True)
-class Cells:
+class TableCells:
     """Columns over cells.
 
     Parameters
@@ -68,7 +68,7 @@ class Cells:
 def cells_of(
     function: Callable[[Array], Array], low: float, high: float, *, tolerance: float,
     least: float = 1e-12, start: int = _START, relative: tuple[int, ...] = (), bins: int = 0,
-) -> Cells:  # fmt: skip
+) -> TableCells:  # fmt: skip
     """Return the table of a function: cells are halved until the tolerance holds in each.
 
     Parameters
@@ -124,7 +124,7 @@ def cells_of(
     lefts, widths, owns = (np.concatenate(part) for part in zip(*done, strict=True))
     kept = np.argsort(lefts)[: np.count_nonzero(lefts < end)]
     vector = _packed(lefts[kept], widths[kept], owns[kept], end, bins) if len(kept) else lefts[:0]
-    return Cells(vector, error, len(kept), end, outcome)
+    return TableCells(vector, error, len(kept), end, outcome)
 
 
 def _polynomials(

@@ -17,7 +17,7 @@ from ...core.material import Pair
 from ...models.base import ContactLaw, Kernels
 from ...models.kernel import BRANCH_SIGNATURE, LOADING_SIGNATURE, RESIDUAL_SIGNATURE, VECTOR
 from ..rules import RULES
-from .cells import Array, Cells, cells_of
+from .cells import Array, TableCells, cells_of
 
 ERROR = RULES.energy_error
 """Error of the table; restitution and times come out within ten times this of the integral."""
@@ -37,10 +37,10 @@ _LAW = types.FunctionType(LOADING_SIGNATURE)
 _BRANCH = types.FunctionType(BRANCH_SIGNATURE)
 _SPLIT = types.FunctionType(RESIDUAL_SIGNATURE)
 _KEPT = RULES.energy_tables
-_TABLES: dict[tuple[str, bytes], Cells] = {}
+_TABLES: dict[tuple[str, bytes], TableCells] = {}
 
 
-def energy_table(law: ContactLaw, pair: Pair) -> Cells:
+def energy_table(law: ContactLaw, pair: Pair) -> TableCells:
     """Return the pair's table over ln W, made at its first use and kept.
 
     It ends early where the law does: where its force jumps or falls without bound, or is no number.
@@ -83,7 +83,7 @@ _X, _LEFT, _SLOPE, _TO_PEAK = _recovery_rule(32)
 _WHOLE = 0.5 * np.polynomial.legendre.leggauss(32)[1]
 
 
-def _table(kernels: Kernels, par: Array, R: float) -> Cells:
+def _table(kernels: Kernels, par: Array, R: float) -> TableCells:
     loading = kernels.loading
     low, high = math.log(0.1 * SHALLOWEST * R), math.log(2.0 * DEEPEST * R)
 

@@ -35,7 +35,7 @@ from ...models.kernel import (
 )
 from ..bits import bits_of
 from ..rules import RULES
-from .cells import BINS, GUIDE, Array, Cells, cells_of, column_in
+from .cells import BINS, GUIDE, Array, TableCells, cells_of, column_in
 
 ERROR = RULES.law_error
 """Error of a table: of F and a over their own, of residual depths over the peak, of the power."""
@@ -47,7 +47,7 @@ DEEPEST = RULES.law_deepest
 _FORCE, _RADIUS, _SPHERE, _FLAT, _EXPONENT = range(5)
 _COLUMNS = 5
 _KEPT = RULES.law_tables
-_TABLES: dict[tuple[str, bytes, float], Cells] = {}
+_TABLES: dict[tuple[str, bytes, float], TableCells] = {}
 
 _OCTAVE, _OCTAVES = N_COMMON, N_COMMON + 1
 _TABLE = N_COMMON + 2
@@ -138,7 +138,7 @@ class TabulatedLaw(ContactLaw):
         """Warn where the law itself would."""
         self.law.warn_outside(pair, depth)
 
-    def table(self, pair: Pair) -> Cells:
+    def table(self, pair: Pair) -> TableCells:
         """Return the pair's table.
 
         Raises
@@ -185,7 +185,7 @@ def tabulated(law: ContactLaw, *, error: float = ERROR) -> TabulatedLaw:
     )  # fmt: skip
 
 
-def _table(law: ContactLaw, par: Array, R: float, error: float) -> Cells:
+def _table(law: ContactLaw, par: Array, R: float, error: float) -> TableCells:
     kernels = law.kernels
     if not _recovers_by_power(kernels.unloading, kernels.residual, par, R):
         raise InputError(

@@ -38,7 +38,7 @@ TSUJI = (1.2728, -4.2783, 11.087, -22.348, 27.467, -18.022, 4.8218)
 _MOST_DAMPING = TSUJI[0]  # of a restitution of 0 entered
 
 
-class Blow(NamedTuple):
+class ExportedBlow(NamedTuple):
     """A normal impact."""
 
     speed: float  # [m/s]
@@ -55,9 +55,9 @@ class Substitute(NamedTuple):
     stiffness: float  # F = stiffness depth^1.5 [N/m^1.5], or F = stiffness depth [N/m]
     unloading: float  # stiffness of unloading [N/m]; nan for Hertz
     entered: float  # restitution to enter; nan where the stiffnesses give it
-    blow: Blow
+    blow: ExportedBlow
 
-    def missed(self, law: Blow) -> tuple[float, float, float, float]:
+    def missed(self, law: ExportedBlow) -> tuple[float, float, float, float]:
         """Depth, force and time over the law's, less one; restitution less the law's."""
         mine = self.blow
         return (
@@ -66,14 +66,16 @@ class Substitute(NamedTuple):
         )  # fmt: skip
 
 
-class Row(NamedTuple):
+class ExportedRow(NamedTuple):
     """One speed: our law's blow and its substitutes."""
 
-    law: Blow
+    law: ExportedBlow
     substitutes: tuple[Substitute, ...]
 
 
-def substitutes(law: ContactLaw, pair: Pair, *, mass: float, speeds: Sequence[float]) -> list[Row]:
+def substitutes(
+    law: ContactLaw, pair: Pair, *, mass: float, speeds: Sequence[float]
+) -> list[ExportedRow]:
     """Return the parameters at each speed.
 
     Parameters
@@ -100,16 +102,16 @@ def substitutes(law: ContactLaw, pair: Pair, *, mass: float, speeds: Sequence[fl
                 striker=Striker(mass=mass, tip_radius=pair.R), approach=Approach(speed),
             )
         )  # fmt: skip
-        blow = Blow(
+        blow = ExportedBlow(
             speed, found.peak_depth_m, found.peak_force_N, found.contact_time_s, found.restitution
         )
         if not blow.restitution > 0.0:
             raise InputError(f"nothing comes back at {speed:g} m/s", key="speed")
-        rows.append(Row(blow, _of(blow, pair, mass)))
+        rows.append(ExportedRow(blow, _of(blow, pair, mass)))
     return rows
 
 
-def _of(blow: Blow, pair: Pair, mass: float) -> tuple[Substitute, ...]:
+def _of(blow: ExportedBlow, pair: Pair, mass: float) -> tuple[Substitute, ...]:
     own = 4.0 / 3.0 * pair.E_reduced * math.sqrt(pair.R)
     damping = _damping_of(blow.restitution)
     # at one damping the depth goes with stiffness^(-2/5)
@@ -122,25 +124,25 @@ def _of(blow: Blow, pair: Pair, mass: float) -> tuple[Substitute, ...]:
     first = mass * (blow.speed / blow.depth) ** 2
     second = first / blow.restitution**2
     quarter = 0.5 * math.pi * math.sqrt(mass)
-    linear = Blow(
+    linear = ExportedBlow(
         blow.speed, blow.depth, first * blow.depth,
         quarter * (first**-0.5 + second**-0.5), blow.restitution,
     )  # fmt: skip
     return (*hertz, Substitute("linear-hysteretic", first, second, math.nan, linear))
 
 
-def _hertz(stiffness: float, damping: float, mass: float, speed: float) -> Blow:
+def _hertz(stiffness: float, damping: float, mass: float, speed: float) -> ExportedBlow:
     """A blow on F = k d^(3/2) + damping sqrt(m k) d^(1/4) d', from the one of unit m, k, speed."""
     one = _unit_blow(damping)
     length = (mass * speed**2 / stiffness) ** 0.4
-    return Blow(
+    return ExportedBlow(
         speed, one.depth * length, one.force * stiffness * length**1.5,
         one.time * length / speed, one.restitution,
     )  # fmt: skip
 
 
 @cache
-def _unit_blow(damping: float) -> Blow:
+def _unit_blow(damping: float) -> ExportedBlow:
     def force(d: float, rate: float) -> float:
         d = max(d, 0.0)
         return float(d**1.5 + damping * d**0.25 * rate)
@@ -156,7 +158,7 @@ def _unit_blow(damping: float) -> Blow:
         step, (0.0, 60.0), [0.0, 1.0], events=left, rtol=1e-9, atol=1e-12, max_step=0.01
     )
     forces = [force(d, rate) for d, rate in found.y.T]
-    return Blow(
+    return ExportedBlow(
         1.0, float(found.y[0].max()), max(forces), float(found.t[-1]), -float(found.y[1, -1])
     )
 
@@ -193,7 +195,7 @@ HEAD = (
 """Columns of the table."""
 
 
-def table(rows: Sequence[Row], *, law: str, contact: str) -> list[tuple[str | float, ...]]:
+def table(rows: Sequence[ExportedRow], *, law: str, contact: str) -> list[tuple[str | float, ...]]:
     """Rows under `HEAD`: at each speed our law, then its substitutes."""
     out: list[tuple[str | float, ...]] = []
     for row in rows:
@@ -231,7 +233,11 @@ def tangential_stiffness(pair: Pair) -> float:
 
 
 def lammps_lines(
-    rows: Sequence[Row], pair: Pair, *, friction: float = 0.0, of_balls: Sequence[Row] = ()
+    rows: Sequence[ExportedRow],
+    pair: Pair,
+    *,
+    friction: float = 0.0,
+    of_balls: Sequence[ExportedRow] = (),
 ) -> str:
     """A fragment of a LAMMPS input: the softened Hertz law at each speed, for wall and balls.
 
@@ -261,7 +267,7 @@ def lammps_lines(
     return "\n".join(lines) + "\n"
 
 
-def _told(row: Row) -> str:
+def _told(row: ExportedRow) -> str:
     depth, force, time, _ = (100.0 * x for x in row.substitutes[1].missed(row.law))
     return (
         f"restitution {row.law.restitution:.4f}; depth {depth:+.1f} %, peak force {force:+.1f} %, "
@@ -278,7 +284,7 @@ def _tangential_told(friction: float) -> str:
     return "none, for the file states no friction.coefficient"
 
 
-def _lammps(row: Row, pair: Pair, friction: float) -> str:
+def _lammps(row: ExportedRow, pair: Pair, friction: float) -> str:
     own, soft, _ = row.substitutes
     # LAMMPS multiplies by the root of the effective radius
     k = soft.stiffness / math.sqrt(pair.R)
@@ -290,7 +296,7 @@ def _lammps(row: Row, pair: Pair, friction: float) -> str:
     return f"hertz {k:.6e} {soft.entered:.6f} tangential {tangential} damping tsuji"
 
 
-def hysteretic_lines(rows: Sequence[Row], *, friction: float = 0.0) -> str:
+def hysteretic_lines(rows: Sequence[ExportedRow], *, friction: float = 0.0) -> str:
     """Stiffnesses for LIGGGHTS `hooke/hysteresis` and YADE `LudingMat`, a line a speed."""
     lines = [
         "# of the ball on the flat; two such balls have half the mass and other stiffnesses.",

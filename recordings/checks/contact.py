@@ -8,7 +8,7 @@ from ..recording_set import RecordingSet
 from ..rules import RULES
 from . import limits
 from .findings import Finding, Severity, gathered
-from .trial_view import Reading, TrialView, combined, value_of, views
+from .trial_view import TrialReading, TrialView, combined, value_of, views
 
 
 def check_energy(found: RecordingSet) -> list[Finding]:
@@ -28,7 +28,7 @@ def check_energy(found: RecordingSet) -> list[Finding]:
             relative = combined(
                 2.0 * depth.relative, view.striker.tip_radius_m.relative, pressure.relative
             )
-            cost = Reading(work, relative * work)
+            cost = TrialReading(work, relative * work)
             if e is None:
                 findings.append(_supply(view.name, cost, brought))
             else:
@@ -36,12 +36,12 @@ def check_energy(found: RecordingSet) -> list[Finding]:
     return gathered(findings)
 
 
-def _depth(view: TrialView) -> Reading | None:
+def _depth(view: TrialView) -> TrialReading | None:
     depth = view.measured("permanent_depth_m")
     return depth if depth is not None and depth.value > 0.0 else None
 
 
-def _energies(view: TrialView, e: Reading | None) -> tuple[Reading, Reading]:
+def _energies(view: TrialView, e: TrialReading | None) -> tuple[TrialReading, TrialReading]:
     """Energy that the contact point brings, v^2 / 2B, and what (1 - e^2) of it loses [J]."""
     mu = view.measured("friction_impulse_ratio")
     touch = view.touch
@@ -50,15 +50,15 @@ def _energies(view: TrialView, e: Reading | None) -> tuple[Reading, Reading]:
     relative = max(
         combined(2.0 * view.speed.relative, view.striker.mass_kg.relative), limits.ROUNDING
     )
-    whole = Reading(brought, relative * brought)
+    whole = TrialReading(brought, relative * brought)
     if e is None:
         return whole, whole
     lost = (1.0 - e.value**2) * brought
     std = combined(2.0 * e.value * e.std * brought, relative * lost)
-    return whole, Reading(lost, max(std, limits.ROUNDING * brought))
+    return whole, TrialReading(lost, max(std, limits.ROUNDING * brought))
 
 
-def _supply(name: str, work: Reading, brought: Reading) -> Finding:
+def _supply(name: str, work: TrialReading, brought: TrialReading) -> Finding:
     least = RULES.dent_work[0]
     z = (least * work.value - brought.value) / math.hypot(least * work.std, brought.std)
     return Finding(
@@ -72,7 +72,7 @@ def _supply(name: str, work: Reading, brought: Reading) -> Finding:
     )
 
 
-def _budget(name: str, work: Reading, lost: Reading) -> Finding:
+def _budget(name: str, work: TrialReading, lost: TrialReading) -> Finding:
     title = f"energy of {name}"
     least, most = RULES.dent_work
     beyond = (least * work.value - lost.value) / math.hypot(least * work.std, lost.std)
@@ -171,18 +171,18 @@ def check_duration(found: RecordingSet) -> list[Finding]:
     return gathered(findings)
 
 
-def _pressure(view: TrialView) -> Reading | None:
+def _pressure(view: TrialView) -> TrialReading | None:
     if not view.found.setup.target.yields:
         return None
     return view.of_striker("pressure", lambda: _hardness(view))
 
 
-def _hardness(view: TrialView) -> Reading | None:
+def _hardness(view: TrialView) -> TrialReading | None:
     found = limits.hardness(view.found.setup.target, view.striker)
-    return None if found is None else Reading(found.value, found.std)
+    return None if found is None else TrialReading(found.value, found.std)
 
 
-def _force(view: TrialView) -> tuple[Reading | None, str]:
+def _force(view: TrialView) -> tuple[TrialReading | None, str]:
     force = view.measured("peak_force_N")
     if force is not None:
         return force, "measured"
@@ -191,7 +191,7 @@ def _force(view: TrialView) -> tuple[Reading | None, str]:
         return None, ""
     value = pressure.value * math.pi * limits.dent_radius(view.striker, depth.value) ** 2
     relative = combined(depth.relative, pressure.relative)
-    return Reading(value, relative * value), "needed by the dent"
+    return TrialReading(value, relative * value), "needed by the dent"
 
 
 def _duration(view: TrialView) -> tuple[float | None, str]:

@@ -18,7 +18,7 @@ from ...core.rig import StrikerTable
 from ..recording_set import RecordingSet
 from ..rules import RULES
 from .findings import FALSE_ALARMS_OTHER, Finding, judged, two_sided
-from .rigid import FIXED_BY_MOMENTUM, Touch, measured_after, touch
+from .rigid import FIXED_BY_MOMENTUM, RigidTouch, measured_after, touch
 from .trial_view import angle_std, speed_std
 
 SHARE = FALSE_ALARMS_OTHER / 2.0
@@ -32,7 +32,7 @@ Residuals = Callable[[Array, Rows], Array]
 
 
 @dataclass(frozen=True, slots=True)
-class Trials:
+class MomentumTrials:
     """The trials of one striker, `n` of them.
 
     Parameters
@@ -56,7 +56,7 @@ class Trials:
     spin: Array
     measured: Mapping[str, Array]
 
-    def before(self, speed: Array | float = 0.0, angle: Array | float = 0.0) -> Touch[Array]:
+    def before(self, speed: Array | float = 0.0, angle: Array | float = 0.0) -> RigidTouch[Array]:
         """Return the motion before, speed and angle off by that many standard deviations."""
         stretch = 1.0 + speed * self.speed[:, 1] / self.speed[:, 0]
         return touch(
@@ -67,9 +67,9 @@ class Trials:
             spin=self.spin,
         )
 
-    def only(self, rows: Rows) -> Trials:
+    def only(self, rows: Rows) -> MomentumTrials:
         """Return some of the trials, by number or by a mask."""
-        return Trials(
+        return MomentumTrials(
             self.striker, self.angle[rows], self.speed[rows], self.tangential[rows],
             self.spin[rows], {name: both[rows] for name, both in self.measured.items()},
         )  # fmt: skip
@@ -102,9 +102,9 @@ def check_momentum(found: RecordingSet) -> list[Finding]:
     ]
 
 
-def _trials(found: RecordingSet, striker: str, rows: Rows) -> Trials:
+def _trials(found: RecordingSet, striker: str, rows: Rows) -> MomentumTrials:
     approach = found.approach
-    return Trials(
+    return MomentumTrials(
         found.setup.strikers[striker],
         np.stack([approach.angle, angle_std(found)], axis=1)[rows],
         np.stack([approach.normal, speed_std(found)], axis=1)[rows],
@@ -118,7 +118,7 @@ def _trials(found: RecordingSet, striker: str, rows: Rows) -> Trials:
     )
 
 
-def momentum_misfit(trials: Trials) -> tuple[Array, Array]:
+def momentum_misfit(trials: MomentumTrials) -> tuple[Array, Array]:
     """Return chi squared and degrees of freedom of the one impulse that fits each trial best.
 
     Both are of shape (n,). Every observable beyond two is a test. Unknown are the two components of
@@ -134,7 +134,7 @@ def momentum_misfit(trials: Trials) -> tuple[Array, Array]:
     return misfit, degrees
 
 
-def _best(trials: Trials) -> Array:
+def _best(trials: MomentumTrials) -> Array:
     """Sum of squares of each trial; friction against the tip's sliding, or with it.
 
     An elastic grip throws a tip back, so that both signs occur; |P_x| has a minimum on each side.
@@ -161,7 +161,7 @@ def _best(trials: Trials) -> Array:
     return np.asarray(np.minimum(*(least_squares(residuals, start) for start in starts)))
 
 
-def _measured(trials: Trials, name: str, otherwise: float) -> Array:
+def _measured(trials: MomentumTrials, name: str, otherwise: float) -> Array:
     unknown = np.full(len(trials.speed), otherwise)
     if name not in trials.measured:
         return unknown
@@ -169,7 +169,7 @@ def _measured(trials: Trials, name: str, otherwise: float) -> Array:
     return np.where(np.isfinite(value), value, unknown)
 
 
-def _unit(name: str, trials: Trials) -> Array:
+def _unit(name: str, trials: MomentumTrials) -> Array:
     """What the model tolerance is a part of: 1, a speed, or a speed over an arm."""
     speed = trials.speed[:, 0]
     if name == "rebound_spin_rad_s":

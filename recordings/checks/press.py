@@ -11,7 +11,7 @@ from ..recording_set import RecordingSet
 from ..rules import RULES
 from . import limits
 from .findings import Finding, Severity, gathered
-from .trial_view import Reading, TrialView, combined, views
+from .trial_view import TrialReading, TrialView, combined, views
 
 LOAD_CLASS = RULES.load_class
 """Relative standard deviation of a load that is stated without one: class 1 of ISO 7500-1 allows
@@ -100,36 +100,36 @@ def check_press_depths(found: RecordingSet) -> list[Finding]:
     return gathered(findings)
 
 
-def _load(view: TrialView) -> Reading:
+def _load(view: TrialView) -> TrialReading:
     load, std = (float(x[view.i]) for x in (view.found.trials.load_N, view.found.load_std))
-    return Reading(load, LOAD_CLASS * load if np.isnan(std) else std)
+    return TrialReading(load, LOAD_CLASS * load if np.isnan(std) else std)
 
 
-def _dent_area(view: TrialView) -> Reading | None:
+def _dent_area(view: TrialView) -> TrialReading | None:
     """Area of the contact at the peak [m^2]: of the diameter, else of the permanent depth."""
     diameter = view.measured("dent_diameter_m")
     if diameter is not None:
         area = 0.25 * math.pi * diameter.value**2
-        return Reading(area, 2.0 * diameter.relative * area)
+        return TrialReading(area, 2.0 * diameter.relative * area)
     depth = view.measured("permanent_depth_m")
     if depth is None or depth.value <= 0.0:
         return None
     area = math.pi * limits.open_dent_radius(view.striker, depth.value) ** 2
     # pile-up and recovery
-    return Reading(area, combined(depth.relative, 0.2) * area)
+    return TrialReading(area, combined(depth.relative, 0.2) * area)
 
 
-def _radius(view: TrialView) -> Reading | None:
+def _radius(view: TrialView) -> TrialReading | None:
     """Radius of the contact at the peak [m]."""
     diameter = view.measured("dent_diameter_m")
     if diameter is not None:
-        return Reading(0.5 * diameter.value, 0.5 * diameter.std)
+        return TrialReading(0.5 * diameter.value, 0.5 * diameter.std)
     deepest = view.measured("press_depth_m")
     if deepest is None:
         return None
     low, high = RULES.press_geometry
     a = limits.open_dent_radius(view.striker, deepest.value)
-    return Reading(0.5 * (low + high) * a, 0.25 * (high - low) * a)
+    return TrialReading(0.5 * (low + high) * a, 0.25 * (high - low) * a)
 
 
 def _reduced(view: TrialView) -> float:

@@ -30,7 +30,7 @@ FIXED_BY_MOMENTUM = tuple(
 
 
 @dataclass(frozen=True, slots=True)
-class Touch(Generic[Number]):
+class RigidTouch(Generic[Number]):
     """Striker and motion just before touch, of one trial or, in arrays, of many.
 
     Parameters
@@ -72,10 +72,10 @@ class Touch(Generic[Number]):
         """Velocity of the contact point before, x and y [m/s]."""
         return self.vx + self.spin * self.s, self.vy - self.spin * self.c
 
-    def after(self, impulse: tuple[Number, Number]) -> Touch[Number]:
+    def after(self, impulse: tuple[Number, Number]) -> RigidTouch[Number]:
         """Return the motion after an impulse (P_x, P_y) [N s]; vy is then upward."""
         px, py = impulse
-        return Touch(
+        return RigidTouch(
             self.m, self.I, self.c, self.s, self.vx + px / self.m, self.vy + py / self.m,
             self.spin + (self.s * px - self.c * py) / self.I,
         )  # fmt: skip
@@ -106,15 +106,17 @@ class Touch(Generic[Number]):
 
 def touch(
     striker: StrikerTable, *, angle: Number, normal: Number, tangential: Number, spin: Number
-) -> Touch[Number]:
-    """Return the `Touch` of a striker; `angle` of the axis [rad], speeds [m/s, rad/s]."""
+) -> RigidTouch[Number]:
+    """Return the `RigidTouch` of a striker; `angle` of the axis [rad], speeds [m/s, rad/s]."""
     half = striker.length / 2.0  # 0 for a sphere
     c, s = half * np.cos(angle), half * np.sin(angle) + striker.tip_radius_m.value
     # `normal` is the approach of the contact point, which a starting spin moves too
-    return Touch(striker.mass_kg.value, striker.inertia, c, s, tangential, -normal + spin * c, spin)
+    return RigidTouch(
+        striker.mass_kg.value, striker.inertia, c, s, tangential, -normal + spin * c, spin
+    )
 
 
-def measured_after(before: Touch[Number], impulse: tuple[Number, Number]) -> dict[str, Number]:
+def measured_after(before: RigidTouch[Number], impulse: tuple[Number, Number]) -> dict[str, Number]:
     """Return the observables that momentum fixes, under the names of their columns."""
     px, py = impulse
     found = before.after(impulse)

@@ -18,7 +18,7 @@ from . import rigid
 Found = TypeVar("Found")
 
 
-class Reading(NamedTuple):
+class TrialReading(NamedTuple):
     """A number and its standard deviation, of which an audit makes many."""
 
     value: float
@@ -30,7 +30,7 @@ class Reading(NamedTuple):
         return self.std / abs(self.value) if self.value else 0.0
 
 
-def value_of(reading: Reading | None, otherwise: float) -> float:
+def value_of(reading: TrialReading | None, otherwise: float) -> float:
     """Return the value of a reading, or `otherwise` where nothing was read."""
     return otherwise if reading is None else reading.value
 
@@ -50,7 +50,7 @@ class TrialView:
 
     def __init__(self, found: RecordingSet, i: int, known: dict[tuple[str, str], Any]) -> None:
         self.found, self.i, self._known = found, i, known
-        self._measured: dict[str, Reading | None] = {}
+        self._measured: dict[str, TrialReading | None] = {}
 
     @property
     def name(self) -> str:
@@ -70,23 +70,23 @@ class TrialView:
         return cast("Found", self._known[key])
 
     @cached_property
-    def speed(self) -> Reading:
+    def speed(self) -> TrialReading:
         """Normal approach speed [m/s]."""
         normal = self.found.approach.normal
-        return Reading(float(normal[self.i]), float(speed_std(self.found)[self.i]))
+        return TrialReading(float(normal[self.i]), float(speed_std(self.found)[self.i]))
 
     @cached_property
-    def angle(self) -> Reading:
+    def angle(self) -> TrialReading:
         """Angle between a rod's axis and the flat, pi/2 for a sphere [rad]."""
         angle = self.found.approach.angle
-        return Reading(float(angle[self.i]), float(angle_std(self.found)[self.i]))
+        return TrialReading(float(angle[self.i]), float(angle_std(self.found)[self.i]))
 
     @cached_property
-    def touch(self) -> rigid.Touch[float]:
+    def touch(self) -> rigid.RigidTouch[float]:
         """The rigid body just before touch."""
         return self.touch_at(self.angle.value)
 
-    def touch_at(self, angle: float) -> rigid.Touch[float]:
+    def touch_at(self, angle: float) -> rigid.RigidTouch[float]:
         """Return the same with the axis at another angle [rad]."""
         approach = self.found.approach
         return rigid.touch(
@@ -97,19 +97,19 @@ class TrialView:
             spin=float(approach.spin[self.i]),
         )
 
-    def measured(self, name: str) -> Reading | None:
+    def measured(self, name: str) -> TrialReading | None:
         """Return an observable and its standard deviation, `None` where not measured."""
         if name not in self._measured:
             self._measured[name] = self._read(name)
         return self._measured[name]
 
-    def _read(self, name: str) -> Reading | None:
+    def _read(self, name: str) -> TrialReading | None:
         if name not in self.found.observed:
             return None
         value = float(self.found.values(name)[self.i])
         if math.isnan(value):
             return None
-        return Reading(value, float(self.found.std(name)[self.i]))
+        return TrialReading(value, float(self.found.std(name)[self.i]))
 
 
 @lru_cache(maxsize=1)

@@ -19,7 +19,7 @@ from ..measured import Array, Measured, propagate
 from .bounce import Bounce, Bounced
 from .fall import Ball
 from .flights import UNEVEN, Piece
-from .joint import SHARED, Before, Solution, fit_together
+from .joint import SHARED, Before, JointSolution, fit_together
 from .scale import floor_drift, frames_lost, scale_of
 from .sides import joined, known_before, sides_of, true_contacts
 from .touch import (
@@ -129,7 +129,7 @@ class _Meeting(NamedTuple):
 
 def _meeting(
     body: Track, turning: int, stage: Stage, pieces: Sequence[Piece],
-    place: tuple[int | None, int | None], solutions: Sequence[Solution],
+    place: tuple[int | None, int | None], solutions: Sequence[JointSolution],
 ) -> _Meeting | None:  # fmt: skip
     b, a = place
     if b is None or a is None:
@@ -151,7 +151,7 @@ def _unknowns(before: int, after: int) -> list[int]:
 
 
 def _bounce(
-    body: Track, stage: Stage, pieces: Sequence[Piece], solutions: Sequence[Solution],
+    body: Track, stage: Stage, pieces: Sequence[Piece], solutions: Sequence[JointSolution],
     meeting: _Meeting, contact: Measured | None, likely: Array,
 ) -> Bounce | None:  # fmt: skip
     before, after = pieces[meeting.before], pieces[meeting.after]
@@ -222,8 +222,9 @@ def _widened(value: Measured, more: float) -> Measured:
 
 
 def _whole(
-    bounces: list[Bounce], chosen: Indices, stage: Stage, view: View, solutions: Sequence[Solution],
-    before: Before, ball: Ball, metres: Measured | None, step: float,
+    bounces: list[Bounce], chosen: Indices, stage: Stage, view: View,
+    solutions: Sequence[JointSolution], before: Before, ball: Ball,
+    metres: Measured | None, step: float,
 ) -> Bounced:  # fmt: skip
     """Take the drift of the flat off the speeds, and find the scale."""
     fallen = solutions[0].view.fall

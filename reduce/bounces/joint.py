@@ -56,7 +56,7 @@ class Before:
 
 
 @dataclass(frozen=True)
-class Solution:
+class JointSolution:
     """One fit: shared unknowns and launches in a row, their covariance, its share of belief."""
 
     x: Array
@@ -76,7 +76,7 @@ class Solution:
 
 def fit_together(
     track: Track, pieces: Sequence[Piece], stage: Stage, view: View, before: Before
-) -> tuple[list[Piece], list[Solution]]:
+) -> tuple[list[Piece], list[JointSolution]]:
     """Fit all pieces with one view.
 
     Parameters
@@ -106,7 +106,7 @@ def fit_together(
     best = max(f[2] for f in found)
     belief = np.exp([f[2] - best for f in found])
     belief /= belief.sum()
-    solutions = [Solution(f[0], f[1], float(w)) for f, w in zip(found, belief, strict=True)]
+    solutions = [JointSolution(f[0], f[1], float(w)) for f, w in zip(found, belief, strict=True)]
     solutions.sort(key=lambda s: -s.weight)
     launches = [solutions[0].launch(k) for k in range(len(pieces))]
     return [replace(p, launch=q) for p, q in zip(pieces, launches, strict=True)], solutions

@@ -21,7 +21,7 @@ from .options import BounceOptions
 
 
 @dataclass(frozen=True)
-class Bounced:
+class BouncedTimes:
     """One bounce: which contact it was, and its speeds [m/s]."""
 
     number: int
@@ -54,7 +54,7 @@ class BounceTimes:
 
     chain: Chain
     time_std: Array
-    bounces: tuple[Bounced, ...]
+    bounces: tuple[BouncedTimes, ...]
     notes: tuple[str, ...]
 
     def trials(self) -> tuple[Trial, ...]:
@@ -131,7 +131,7 @@ def reduce_bounce_times(
 
 def _bounces(
     times: Array, spread: Array, chain: Chain, options: BounceOptions, source: str
-) -> tuple[Bounced, ...]:
+) -> tuple[BouncedTimes, ...]:
     found = []
     kept, single = chain.kept, chain.single
     gaps = np.diff(times[list(kept)])
@@ -152,7 +152,9 @@ def _bounces(
             after.launch(flights[0]),
             0.5 * after.gravity * math.hypot(spread[kept[0]], spread[kept[1]]),
         )
-        found.append(Bounced(1, float(times[first]), approach, rebound, rebound.over(approach)))
+        found.append(
+            BouncedTimes(1, float(times[first]), approach, rebound, rebound.over(approach))
+        )
     for k in range(1, len(kept) - 1):
         if single[k - 1] and single[k]:
             found.append(
@@ -163,7 +165,7 @@ def _bounces(
 
 def _between(
     times: Array, spread: Array, three: Sequence[int], flights: Array, options: BounceOptions
-) -> Bounced:
+) -> BouncedTimes:
     before, after = float(flights[0]), float(flights[1])
     down, up = (options.fall_of(0.5 * options.gravity_m_s2 * t) for t in (before, after))
     approach, rebound = down.landing(down.launch(before)), up.launch(after)
@@ -172,7 +174,7 @@ def _between(
     part = np.array([1.0 / before, 1.0 / before + 1.0 / after, 1.0 / after])
     sigma = spread[list(three)]
     half = 0.5 * down.gravity
-    return Bounced(
+    return BouncedTimes(
         three[1] + 1,
         float(times[three[1]]),
         Measured(approach, half * math.hypot(sigma[0], sigma[1])),

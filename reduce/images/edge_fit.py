@@ -72,7 +72,7 @@ class RodPose:
 
 
 @dataclass(frozen=True)
-class Ball:
+class BallEdge:
     """Centre of a ball (column, row), its radius [pixel], standard deviation of the row, grey."""
 
     x: float
@@ -140,7 +140,7 @@ def fit_rod(
 
 def fit_ball(
     frame: Array, start: tuple[float, float, float], *, levels: tuple[float, float]
-) -> Ball | None:
+) -> BallEdge | None:
     """Fit centre and radius of a bright disc whose light may fall off linearly.
 
     Parameters
@@ -173,7 +173,9 @@ def fit_ball(
     p, covariance = settled
     if not (0.3 * contrast < p[4] < 2.0 * contrast and p[5] < 0.3 * p[2]):
         return None
-    return Ball(float(p[0]), float(p[1]), float(p[2]), float(np.sqrt(covariance[1, 1])), levels[1])
+    return BallEdge(
+        float(p[0]), float(p[1]), float(p[2]), float(np.sqrt(covariance[1, 1])), levels[1]
+    )
 
 
 def _settle(

@@ -7,7 +7,7 @@ import numpy.typing as npt
 from scipy.ndimage import binary_dilation
 
 from ..measured import Array
-from .edge_fit import Ball, RodShape
+from .edge_fit import BallEdge, RodShape
 
 Mask = npt.NDArray[np.bool_]
 
@@ -52,7 +52,7 @@ def rod_guess(mask: Mask) -> tuple[RodShape, tuple[float, float, float]] | None:
     return RodShape(half, curvature, 1.0), (x, bottom + 0.5, float(np.arctan(-slope)))
 
 
-def ball_by_light(frame: Array, *, levels: tuple[float, float]) -> Ball | None:
+def ball_by_light(frame: Array, *, levels: tuple[float, float]) -> BallEdge | None:
     """Return the centroid of the light of the brightest body, which no blur moves.
 
     Parameters
@@ -85,7 +85,7 @@ def ball_by_light(frame: Array, *, levels: tuple[float, float]) -> Ball | None:
     if total <= 0.0:
         return None
     rows, columns = np.nonzero(around)
-    return Ball(
+    return BallEdge(
         float(light @ columns) / total, float(light @ rows) / total, float(np.sqrt(total / np.pi)),
         float("nan"), bright,
     )  # fmt: skip

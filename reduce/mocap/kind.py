@@ -18,7 +18,7 @@ from .file import Markers, read_markers
 from .options import Options
 from .picture import draw_mocap, draw_point
 from .point import PointBounce, reduce_point
-from .reduction import Hit, MocapReduction, Scene, reduce_mocap
+from .reduction import Hit, MocapReduction, MocapScene, reduce_mocap
 from .rigid import rigid_poses
 
 
@@ -40,7 +40,7 @@ def reduce(path: Path, options: Options) -> Reduced:
         markers = markers.only(tuple(n.strip() for n in options.markers.split(",")))
     up = np.zeros(3)
     up["xyz".index(options.up[-1])] = -1.0 if options.up.startswith("-") else 1.0
-    scene = Scene(up, options.gravity_m_s2, options.length_scale_std)
+    scene = MocapScene(up, options.gravity_m_s2, options.length_scale_std)
     if options.shape == "sphere" and len(markers.names) == 1:
         return _point(path, markers, scene, options)
     poses = rigid_poses(markers)
@@ -67,7 +67,7 @@ def reduce(path: Path, options: Options) -> Reduced:
     )  # fmt: skip
 
 
-def _point(path: Path, markers: Markers, scene: Scene, options: Options) -> Reduced:
+def _point(path: Path, markers: Markers, scene: MocapScene, options: Options) -> Reduced:
     found = reduce_point(markers, scene, spin=options.spin)
     values = {"position_noise_m": Measured(found.noise, math.nan)}
     values |= _each(found.bounces)

@@ -20,7 +20,7 @@ from ..bounces.view import Stage
 from ..measured import Array, Measured, Trial, labels, propagate
 from ..regression import robust_regression
 from .file import Markers
-from .reduction import Scene
+from .reduction import MocapScene
 
 _NEAR = 0.15
 """Time next to the contact in which drag and lift count as even [s]."""
@@ -71,7 +71,7 @@ class PointReduction:
         )  # fmt: skip
 
 
-def reduce_point(markers: Markers, scene: Scene, *, spin: Array | None) -> PointReduction:
+def reduce_point(markers: Markers, scene: MocapScene, *, spin: Array | None) -> PointReduction:
     """Return the bounces of a ball whose centre is followed.
 
     Parameters
@@ -164,7 +164,9 @@ def _side(
     return side, float(np.mean([f.sigma for f in fits]))
 
 
-def _measured(sides: tuple[Side, Side], scene: Scene, spin: Array | None) -> dict[str, Measured]:
+def _measured(
+    sides: tuple[Side, Side], scene: MocapScene, spin: Array | None
+) -> dict[str, Measured]:
     up = scene.up
     before, after = (s.velocity for s in sides)
     flat = before - (before @ up) * up

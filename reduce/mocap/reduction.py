@@ -41,7 +41,7 @@ _COLUMNS = tuple(n for n in _NAMES if n in TRIAL_COLUMNS)
 
 
 @dataclass(frozen=True)
-class Scene:
+class MocapScene:
     """What the markers do not tell.
 
     Parameters
@@ -80,7 +80,7 @@ class MocapReduction:
     poses: Poses
     flights: Flights
     body: Body
-    scene: Scene
+    scene: MocapScene
     hits: tuple[Hit, ...]
     fall: Measured
     rate: float
@@ -121,7 +121,7 @@ class MocapReduction:
         return trace
 
 
-def reduce_mocap(poses: Poses, body: Body, scene: Scene, *, source: str) -> MocapReduction:
+def reduce_mocap(poses: Poses, body: Body, scene: MocapScene, *, source: str) -> MocapReduction:
     """Return every impact between two free flights of a body.
 
     Parameters
@@ -170,7 +170,7 @@ def reduce_mocap(poses: Poses, body: Body, scene: Scene, *, source: str) -> Moca
     return MocapReduction(poses, flights, body, scene, tuple(hits), fall, rate, notes)
 
 
-def _hit(poses: Poses, flights: Flights, f: int, gap: int, body: Body, scene: Scene) -> Hit:
+def _hit(poses: Poses, flights: Flights, f: int, gap: int, body: Body, scene: MocapScene) -> Hit:
     before, after = flights.motions[f], flights.motions[f + 1]
     guess = 0.5 * (poses.time[flights.spans[f][1]] + poses.time[flights.spans[f + 1][0]])
     extent = max(poses.extent, 1e-3)
@@ -264,7 +264,7 @@ def _numbers(
     ])  # fmt: skip
 
 
-def _flight_notes(poses: Poses, flights: Flights, fall: Measured, scene: Scene) -> list[str]:
+def _flight_notes(poses: Poses, flights: Flights, fall: Measured, scene: MocapScene) -> list[str]:
     lengths = ", ".join(str(b - a + 1) for a, b in flights.spans)
     notes = [
         f"flights of {lengths} frames; marker error {flights.sigma * 1e3:.3g} mm by the motion, "

@@ -18,7 +18,7 @@ _FEWEST = 200
 
 
 @dataclass(frozen=True)
-class Ball:
+class ScannedBall:
     """A sphere fitted to a scan; lengths in metres.
 
     Parameters
@@ -45,7 +45,7 @@ class Ball:
     notes: tuple[str, ...]
 
 
-def reduce_ball(scan: Scan, *, reach: float | None = None) -> Ball:
+def reduce_ball(scan: Scan, *, reach: float | None = None) -> ScannedBall:
     """Fit a sphere to the points within `reach` of the top; default: as far as the scan goes.
 
     The standard deviation is what leaving out eighths of the points around the top in turn gives:
@@ -78,7 +78,7 @@ def reduce_ball(scan: Scan, *, reach: float | None = None) -> Ball:
     std = float(np.sqrt((_SECTORS - 1) / _SECTORS * np.sum((parts - np.mean(parts)) ** 2)))
     missing = 100.0 * float(np.mean(~np.isfinite(scan.z)))
     notes = (*scan.notes, f"{missing:.2g} % not seen") if missing else scan.notes
-    return Ball(
+    return ScannedBall(
         Measured(1.0 / float(fit[3]), std), fit[:2] * limit + top, limit, robust_std(off), x, y,
         off, notes,
     )  # fmt: skip

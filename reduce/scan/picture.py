@@ -8,7 +8,7 @@ from typing import Any
 import numpy as np
 
 from ..pictures import figure, save
-from .ball import Ball
+from .ball import ScannedBall
 from .crater import Crater
 from .line import Groove
 
@@ -94,7 +94,7 @@ def draw_groove(result: Groove, path: Path) -> None:
     save(made, path)
 
 
-def draw_ball(result: Ball, path: Path) -> None:
+def draw_ball(result: ScannedBall, path: Path) -> None:
     """Draw what is left of the heights when the sphere is taken off."""
     made, axes = figure(1, 2, size=(12.0, 5.5))
     nm = 1e9

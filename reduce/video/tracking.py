@@ -11,7 +11,7 @@ import numpy.typing as npt
 
 from ...core.errors import InputError
 from ..images.clip import Clip
-from ..images.edge_fit import Ball, RodPose, RodShape, fit_ball, fit_rod
+from ..images.edge_fit import BallEdge, RodPose, RodShape, fit_ball, fit_rod
 from ..images.silhouette import ball_by_light, body_mask, rod_guess
 from ..measured import Array
 
@@ -161,7 +161,7 @@ def track_ball(
     }
 
 
-def _ball_edge(grey: Array, ball: Ball, dark: float) -> Ball | None:
+def _ball_edge(grey: Array, ball: BallEdge, dark: float) -> BallEdge | None:
     return fit_ball(grey, (ball.x, ball.y, ball.radius), levels=(dark, ball.bright))
 
 

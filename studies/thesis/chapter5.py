@@ -8,7 +8,7 @@ from typing import Any
 
 from ...core.inputs.toml_input import read_toml
 from ...core.material import Material
-from ...impact.files.inverse_file import Row
+from ...impact.files.inverse_file import InverseRow
 from ...impact.integrate import strike
 from ...impact.inverse import Measured, infer
 from ...impact.result import Impact
@@ -27,7 +27,7 @@ def thesis_rod(*, mass: float | None = None) -> Striker:
     )  # fmt: skip
 
 
-def thesis_rows(*, mass: float | None = None) -> tuple[Striker, list[Row]]:
+def thesis_rows(*, mass: float | None = None) -> tuple[Striker, list[InverseRow]]:
     """Infer chapter 5's three experiments from their measured values."""
     rod = thesis_rod(mass=mass)
     rows = []
@@ -37,7 +37,7 @@ def thesis_rows(*, mass: float | None = None) -> tuple[Striker, list[Row]]:
             -e["depth_m"], -e["sliding_m"], e["rebound_m_s"],
         )  # fmt: skip
         rows.append(
-            Row(
+            InverseRow(
                 f"{e['angle_deg']} degrees", measured, infer(rod, measured),
                 e["printed_duration_s"], e["printed_mean_force_N"],
             )

@@ -9,7 +9,7 @@ from dentscope.core import InputError, Material, Pair
 from dentscope.models import LAWS, critical_depth, critical_force, law_named
 from dentscope.models.base import CLAUSES
 from dentscope.models.published import hardness
-from dentscope.models.table import Curve, PairTable, Turns, table_law
+from dentscope.models.table import LoadingCurve, PairTable, Turns, table_law
 
 # the clauses hold beyond the data that a law was fitted to, too
 pytestmark = pytest.mark.filterwarnings("ignore::dentscope.models.base.DomainWarning")
@@ -33,7 +33,7 @@ def sampled(pair):
     left = np.array([law.residual(pair, x) for x in turn]).sum(axis=1)
     part = np.array([float(law.residual(pair, x)[0]) for x in turn]) / np.maximum(left, 1e-300)
     none = np.zeros_like(d)
-    curve = Curve(
+    curve = LoadingCurve(
         d / pair.R, law.loading(pair, d) / (pair.E_reduced * pair.R**2),
         law.contact_radius(pair, d) / pair.R, law.share(pair, d), none, none, none,
     )  # fmt: skip

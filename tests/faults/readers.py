@@ -216,13 +216,13 @@ def _read_inverse(path):
 
 def _law():
     from dentscope.core.material import Material, Pair
-    from dentscope.models.table import Curve, PairTable, Turns
+    from dentscope.models.table import LoadingCurve, PairTable, Turns
     from dentscope.models.table_file import write_table
 
     d = np.geomspace(1e-4, 0.05, 30)
     spread = np.full(30, 0.003)
     pair = Pair(Material(E=2e11, nu=0.3, Sy=8e8), Material(E=2e11, nu=0.3, Sy=3e8), 0.01)
-    curve = Curve(d, 4 / 3 * d**1.5, np.sqrt(d), np.full(30, 0.4), spread, spread, spread)
+    curve = LoadingCurve(d, 4 / 3 * d**1.5, np.sqrt(d), np.full(30, 0.4), spread, spread, spread)
     turns = Turns(d[[15, 20, 29]], *(np.full(3, v) for v in (0.6, 0.3, 1.4)))
     with tempfile.TemporaryDirectory() as folder:
         return write_table(PairTable(pair, curve, turns), Path(folder) / "law.json").read_bytes()

@@ -8,7 +8,7 @@ from dentscope.cli import run as dentscope
 from dentscope.cli.laws import app
 from dentscope.core import InputError
 from dentscope.models import LAWS, UNAVAILABLE
-from dentscope.start.comparison import Row
+from dentscope.start.comparison import LawRow
 
 CASE = Path(__file__).parents[3] / "examples" / "case_steel.toml"
 
@@ -59,7 +59,7 @@ def test_compare_writes_table_and_picture_for_the_users_pair(tmp_path, capsys):
     run("compare", str(CASE), "--law", "hertz", "--law", "ghaednia", "--out", str(tmp_path))
     with (tmp_path / "curves.csv").open() as stream:
         rows = list(csv.DictReader(stream))
-    assert tuple(rows[0]) == Row._fields
+    assert tuple(rows[0]) == LawRow._fields
     assert {row["law"] for row in rows} == {"hertz", "ghaednia"}
     last = rows[119]
     # (4/3) E' R^2 (Delta/R)^1.5 with 1/E' = (1 - 0.09)(1/210e9 + 1/200e9), R = 10 mm, 0.01

@@ -6,7 +6,7 @@ import sys
 import pytest
 from dentscope.cli import app as assembly
 from dentscope.cli import doctor
-from dentscope.cli.doctor import Finding
+from dentscope.cli.doctor import EnvironmentFinding
 from dentscope.core import Ending, InputError, Outcome
 
 
@@ -63,8 +63,10 @@ def test_a_case_that_does_not_converge_ends_with_its_reason_and_code_3(
 
 @pytest.mark.parametrize(("needed", "code"), [(True, doctor.EXIT_ENVIRONMENT), (False, 0)])
 def test_doctor_names_the_remedy(monkeypatch, capsys, needed, code):
-    lack = Finding("gmsh", "no libGLU", fine=False, needed=needed, remedy="install libglu1-mesa")
-    monkeypatch.setattr(doctor, "examine", lambda: (Finding("processors", "2"), lack))
+    lack = EnvironmentFinding(
+        "gmsh", "no libGLU", fine=False, needed=needed, remedy="install libglu1-mesa"
+    )
+    monkeypatch.setattr(doctor, "examine", lambda: (EnvironmentFinding("processors", "2"), lack))
     assert doctor.doctor() == code
     assert "-> install libglu1-mesa" in capsys.readouterr().out
 

@@ -14,7 +14,7 @@ from dentscope.discrepancy.inference.fit import fit
 from dentscope.discrepancy.report.series import points_of
 from dentscope.fitting.hardening import hardening_records
 from dentscope.impact import Approach, Scene, Striker, strike
-from dentscope.models.table import Curve, PairTable, Turns, energy_exponent, table_law
+from dentscope.models.table import LoadingCurve, PairTable, Turns, energy_exponent, table_law
 from dentscope.models.uncertainty import METAL, WITH_CURVE
 from dentscope.recordings import read
 
@@ -36,7 +36,7 @@ def solved() -> PairTable:
         exponent = energy_exponent(u.curve["delta"], u.curve["force"], left)
         rows.append((u.depth, left / (u.depth * pair.R), u.residual_sphere / left, exponent))
     exact = np.full(len(c["delta"]), 1e-3)
-    curve = Curve(c["delta"] / pair.R, c["force"] / (pair.E_reduced * pair.R**2),
+    curve = LoadingCurve(c["delta"] / pair.R, c["force"] / (pair.E_reduced * pair.R**2),
                   c["radius"] / pair.R, 0.5 + 0.0 * exact, exact, exact, exact)  # fmt: skip
     return PairTable(pair, curve, Turns(*np.array(sorted(rows)).T))
 

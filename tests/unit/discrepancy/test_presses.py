@@ -7,7 +7,7 @@ from dentscope.discrepancy.comparison.problem import problem_of
 from dentscope.discrepancy.experiments.feasible import BENCH, press_series
 from dentscope.discrepancy.inference.fit import baseline_situations
 from dentscope.discrepancy.mechanisms import MECHANISMS
-from dentscope.discrepancy.nulls.laws import Curve
+from dentscope.discrepancy.nulls.laws import NullCurve
 from dentscope.discrepancy.nulls.press import press
 from dentscope.discrepancy.unknowns.covariates import PRESSED, covariates
 from dentscope.impact import Approach, strike
@@ -114,7 +114,7 @@ def test_presses_are_proposed_within_a_bench_press_and_as_deep(tmp_path):
 
 def test_null_laws_are_pressed_along_their_own_curve():
     x = np.linspace(np.log(1e-6), np.log(1e-3), 50)
-    law = Curve(x, x + np.log(1e7), np.full(50, 2e-6), 0.8 * np.exp(x), np.exp(0.5 * x), 1.5)
+    law = NullCurve(x, x + np.log(1e7), np.full(50, 2e-6), 0.8 * np.exp(x), np.exp(0.5 * x), 1.5)
     found = press(np.array([100.0, 1000.0]), [law, law])
     assert found["press_depth_m"] == pytest.approx([1e-5, 1e-4])
     assert found["permanent_depth_m"] == pytest.approx([0.8e-5, 0.8e-4], rel=0.01)

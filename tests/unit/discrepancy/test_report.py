@@ -9,15 +9,15 @@ from typing import Any
 import pytest
 from dentscope.discrepancy.locate import Located, Miss
 from dentscope.discrepancy.report.figures import comparison
-from dentscope.discrepancy.report.series import STATED, WITH, WITHOUT, Against, Point
+from dentscope.discrepancy.report.series import STATED, WITH, WITHOUT, Against, SeriesPoint
 from dentscope.discrepancy.report.text import headline, nowhere
 from dentscope.discrepancy.report.wording import compared, miss_sentences
 
 SPEED = Against("speed_m_s", "approach speed [m/s]", None)  # type: ignore[arg-type]
 
 
-def point(speed: float, *, with_verdict: float = math.nan) -> Point:
-    return Point(
+def point(speed: float, *, with_verdict: float = math.nan) -> SeriesPoint:
+    return SeriesPoint(
         "restitution", "-", "ball", 1, 3, {"speed_m_s": speed}, 0.50, 0.49, 0.51, 0.80, 0.60,
         with_verdict, weight=True,
     )  # fmt: skip

@@ -5,7 +5,7 @@ import dataclasses
 import numpy as np
 import pytest
 from dentscope.fem.results.measure import Reading
-from dentscope.fem.results.ripple import Track
+from dentscope.fem.results.ripple import RippleTrack
 
 
 def path(n=120, *, ratio=1.035, ripple=0.003, share=0.5):
@@ -36,7 +36,7 @@ def departures(smooth, truth, name):
 
 def test_the_ripple_goes_and_the_curve_stays():
     readings, truth = path()
-    smooth = Track(readings).smooth(readings)
+    smooth = RippleTrack(readings).smooth(readings)
     before, after = (departures(r, truth, "force")[8:-8] for r in (readings, smooth))
     assert np.std(before) > 1e-3
     assert np.std(after) < 0.1 * np.std(before)
@@ -46,7 +46,7 @@ def test_the_ripple_goes_and_the_curve_stays():
 
 def test_a_curve_without_ripple_is_left_alone():
     readings, truth = path(ripple=0.0)
-    smooth = Track(readings).smooth(readings)
+    smooth = RippleTrack(readings).smooth(readings)
     assert np.abs(departures(smooth, truth, "force")).max() < 1e-5
 
 
@@ -55,7 +55,7 @@ def test_no_length_of_the_steps_upsets_the_curve(rings):
     """At half a ring or a whole one a step the ripple seems to stand still."""
     ratio = 1.025 ** (2.0 * rings)
     readings, truth = path(int(2.0 / np.log(ratio)), ratio=ratio)
-    smooth = Track(readings).smooth(readings)
+    smooth = RippleTrack(readings).smooth(readings)
     raw = np.abs(departures(readings, truth, "force")).max()
     assert np.abs(departures(smooth, truth, "force")).max() < 1.3 * raw
 
@@ -63,11 +63,11 @@ def test_no_length_of_the_steps_upsets_the_curve(rings):
 @pytest.mark.parametrize("share", [0.0, 1.0])
 def test_the_share_of_a_rigid_body_stays_what_it_is(share):
     readings, _ = path(share=share)
-    for reading in Track(readings).smooth(readings):
+    for reading in RippleTrack(readings).smooth(readings):
         assert reading.sphere == pytest.approx(share, abs=1e-12)
         assert reading.flat == pytest.approx(1.0 - share, abs=1e-12)
 
 
 def test_few_steps_are_not_smoothed():
     readings, _ = path(20, ratio=1.3)
-    assert Track(readings).smooth(readings) == readings
+    assert RippleTrack(readings).smooth(readings) == readings

@@ -8,7 +8,7 @@ import pytest
 from dentscope.campaigns import read_curves
 from dentscope.core import InputError, Material, Pair
 from dentscope.models import LAWS, DomainWarning, critical_depth, law_named
-from dentscope.models.table import Curve, PairTable, Turns, energy_exponent, table_law
+from dentscope.models.table import LoadingCurve, PairTable, Turns, energy_exponent, table_law
 from dentscope.models.table_file import write_table
 
 PART = Path(__file__).resolve().parents[3] / "data" / "campaign" / "thesis-1.h5"
@@ -25,7 +25,7 @@ def solved():
         total = u.residual_sphere + u.residual_flat
         exponent = energy_exponent(u.curve["delta"], u.curve["force"], total)
         rows.append((u.depth, total / u.depth / pair.R, u.residual_sphere / total, exponent))
-    curve = Curve(
+    curve = LoadingCurve(
         c["delta"] / pair.R, c["force"] / (pair.E_reduced * pair.R**2), c["radius"] / pair.R,
         c["sphere"] / (c["sphere"] + c["flat"]), few, few, few,
     )  # fmt: skip
@@ -118,7 +118,7 @@ def test_an_elastic_pair_gives_back_all_that_it_took():
     pair = Pair(body, body, 1e-2)
     D = np.geomspace(1e-6, 1e-2, 40)
     none = np.zeros_like(D)
-    curve = Curve(D, 4.0 / 3.0 * D**1.5, np.sqrt(D), 0.5 + none, none, none, none)
+    curve = LoadingCurve(D, 4.0 / 3.0 * D**1.5, np.sqrt(D), 0.5 + none, none, none, none)
     law = table_law([PairTable(pair, curve, Turns(*np.zeros((4, 0))))], name="elastic")
     peak = 5e-3 * pair.R
     grid = np.linspace(0.0, peak, 4001)

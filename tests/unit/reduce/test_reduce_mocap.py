@@ -7,11 +7,11 @@ from pathlib import Path
 import numpy as np
 import pytest
 from dentscope.core.errors import InputError
-from dentscope.recordings.checks.rigid import Touch
+from dentscope.recordings.checks.rigid import RigidTouch
 from dentscope.reduce.mocap.body import Body, centre_of
 from dentscope.reduce.mocap.file import read_markers
 from dentscope.reduce.mocap.kind import Options, reduce
-from dentscope.reduce.mocap.reduction import Scene, reduce_mocap
+from dentscope.reduce.mocap.reduction import MocapScene, reduce_mocap
 from dentscope.reduce.mocap.rigid import kabsch, rigid_poses
 from dentscope.studies.synthetic.mocap import (
     MocapTruth,
@@ -47,7 +47,7 @@ def _reduced(truth: MocapTruth, folder: Path, *, body: bool = True):
 def test_synthetic_impact_agrees_with_the_mobility_of_the_set_audit():
     truth = MocapTruth(tangential=0.3, spin=2.0)
     c, s = truth.arm
-    before = Touch(1.0, truth.inertia_over_mass, c, s, 0.3, -truth.normal + 2.0 * c, 2.0)
+    before = RigidTouch(1.0, truth.inertia_over_mass, c, s, 0.3, -truth.normal + 2.0 * c, 2.0)
     dx, dy, _ = truth.changes()
     after = before.after(np.array([dx, dy]))
     assert before.tip[1] == pytest.approx(-truth.normal, rel=1e-12)
@@ -133,7 +133,7 @@ def test_a_rod_without_spin_and_body_file_shows_one_impact(seed):
     body = Body(
         "rod", axis, truth.length, truth.tip_radius, truth.inertia_over_mass, centre, poses.shape
     )
-    found = reduce_mocap(poses, body, Scene(np.array([0.0, 0.0, 1.0])), source="rendered")
+    found = reduce_mocap(poses, body, MocapScene(np.array([0.0, 0.0, 1.0])), source="rendered")
     (hit,) = found.hits
     for name, value in truth.values().items():
         assert abs(hit.measured[name].value - value) < 4.0 * hit.measured[name].std, name

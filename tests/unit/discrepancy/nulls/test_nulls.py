@@ -10,8 +10,8 @@ import pytest
 from dentscope.discrepancy.choice.thresholds import rig_of
 from dentscope.discrepancy.comparison.problem import problem_of
 from dentscope.discrepancy.nulls.ensemble import scatter
-from dentscope.discrepancy.nulls.laws import KINDS, Draw, Reference, curve
-from dentscope.discrepancy.nulls.motion import Bodies, collide
+from dentscope.discrepancy.nulls.laws import KINDS, Draw, NullReference, curve
+from dentscope.discrepancy.nulls.motion import NullBodies, collide
 from dentscope.impact import strike_many
 from dentscope.recordings import read
 
@@ -20,20 +20,20 @@ SETS = Path(__file__).parents[4] / "data" / "recordings"
 R, E = 0.01, 1e11
 
 
-def reference(Y: float) -> Reference:
+def reference(Y: float) -> NullReference:
     depth = np.geomspace(1e-9, 1e-2, 60)
     force = 4.0 / 3.0 * E * math.sqrt(R) * depth**1.5
     if math.isfinite(Y):
         force = (force**-2 + (2.0 * math.pi * R * 3.0 * Y * depth) ** -2) ** -0.5
     recovery = np.minimum(0.75 * force / (E * np.sqrt(1.5 * R * depth)), depth)
-    return Reference(
+    return NullReference(
         R, E, Y, depth, force, recovery, depth - recovery, np.sqrt(R * depth), low=5e-6, high=3e-4
     )
 
 
-def bodies(n: int, speed: float, *, beside: float = 0.0, mu: float = 0.0) -> Bodies:
+def bodies(n: int, speed: float, *, beside: float = 0.0, mu: float = 0.0) -> NullBodies:
     one = np.ones(n)
-    return Bodies(
+    return NullBodies(
         0.1 * one, 1e-4 * one, beside * one, 0.02 * one, R * one, speed * one, 0 * one, 0 * one,
         mu * one, one, 4e-7 * one,
     )  # fmt: skip
@@ -42,7 +42,7 @@ def bodies(n: int, speed: float, *, beside: float = 0.0, mu: float = 0.0) -> Bod
 def test_elastic_impact_is_hertzs() -> None:
     plain = Draw("cut-off", 0.5, 0.5, 0.5, (0.0, 0.0), (0.0, 0.0), 0.0)
     ref = reference(math.inf)
-    elastic = Reference(
+    elastic = NullReference(
         R,
         E,
         math.inf,
@@ -65,7 +65,7 @@ def test_elastic_impact_is_hertzs() -> None:
 
 def test_a_null_law_without_yield_gives_everything_back() -> None:
     ref = reference(math.inf)
-    elastic = Reference(
+    elastic = NullReference(
         R,
         E,
         math.inf,

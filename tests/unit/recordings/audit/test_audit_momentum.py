@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 from dentscope.core.rig import StrikerTable
 from dentscope.recordings import audit, read
-from dentscope.recordings.checks.momentum import MODEL_TOLERANCE, Trials, momentum_misfit
+from dentscope.recordings.checks.momentum import MODEL_TOLERANCE, MomentumTrials, momentum_misfit
 from scipy.optimize import least_squares
 
 ROD = StrikerTable(
@@ -62,7 +62,7 @@ def test_misfit_is_the_one_that_scipy_finds(body):
         value[rng.random(n) < 0.25] = np.nan
         measured[name] = np.stack([value, std], axis=1)
     found, degrees = momentum_misfit(
-        Trials(
+        MomentumTrials(
             body, np.stack([angle, angle_std], 1), np.stack([normal, 0.02 * normal], 1),
             tangential, spin, measured,
         )
