@@ -129,7 +129,7 @@ Coefficients = namedtuple(
 COEFFICIENTS = Coefficients._fields
 """Name of every coefficient."""
 
-TUPLES = ("PairNumbers", "Groups", "Spread", "Contact")
+TUPLES = ("PairNumbers", "Groups", "StrengthSpread", "Contact")
 ELEMENTARY = ("exp", "log", "sqrt")
 """What the functions below may return, and what they may call beside each other."""
 
