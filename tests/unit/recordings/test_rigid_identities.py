@@ -1,12 +1,14 @@
 """Rigid-body identities of the audit, and its verdict on the thesis's own sets."""
 
 import math
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
 import pytest
-from dentscope.core.rig import StrikerTable
+from dentscope.core.rig import Quantity, StrikerTable
 from dentscope.recordings import Severity, audit, read
+from dentscope.recordings.checks.contact import check_duration
 from dentscope.recordings.checks.limits import bending_period, wave_limit
 from dentscope.recordings.checks.rigid import touch
 from hypothesis import assume, given
@@ -78,6 +80,26 @@ def test_thesis_audit_names_the_open_questions():
     upright = "\n".join(str(f) for f in audit(read(DATA / "thesis-chapter-3")).findings)
     assert "the contact reaches the edge" in upright
     assert "wave limit" in upright
+
+
+@pytest.mark.parametrize(("trips", "rigid"), [(2.9, False), (3.1, True)])
+def test_a_rod_is_rigid_from_three_round_trips_of_a_wave_on(trips, rigid):
+    stated = read(DATA / "thesis-chapter-5")
+    (name, rod), *_ = stated.setup.strikers.items()
+
+    def durations(modulus):
+        body = rod.model_copy(update={"E_Pa": Quantity(value=modulus)})
+        strikers = {**stated.setup.strikers, name: body}
+        setup = stated.setup.model_copy(update={"strikers": strikers})
+        found = check_duration(replace(stated, setup=setup))
+        return [f for f in found if "round trip" in f.check]
+
+    first = durations(rod.E_Pa.value)[0]
+    # the round trip goes as one over the root of the modulus; the contact times are measured
+    moved = rod.E_Pa.value * (trips * first.expected / first.value) ** 2
+    again = durations(moved)[0]
+    assert again.value / again.expected == pytest.approx(trips, rel=1e-6)
+    assert (again.severity is Severity.CONSISTENT) == rigid
 
 
 @pytest.mark.parametrize("folder", sorted(p.parent.name for p in DATA.glob("*/set.toml")))
