@@ -17,7 +17,7 @@ from typing import Any
 
 import numpy as np
 
-from ..core.errors import InputError
+from ..core.errors import InputError, InputErrors
 from ..core.inputs.csv_table import Array
 from ..core.inputs.names import ALLOWED, names_a_file
 from ..core.inputs.toml_input import parse_model, read_toml
@@ -145,7 +145,7 @@ def store_each(
             )  # fmt: skip
             written.append(done)
         except InputError as error:
-            left_out.append(f"{name}: {error}")
+            left_out += [f"{name}: {line}" for line in str(error).splitlines()]
     if not written and not left_out:
         left_out.append("no raw file of the kind that the recipe reads")
     return written, left_out
@@ -345,7 +345,8 @@ def _read_as(folder: Path, files: Mapping[str, bytes | str]) -> None:
         try:
             read(place, unfinished=True)
         except InputError as error:
-            raise InputError(str(error).replace(str(place), str(folder))) from None
+            lines = str(error).replace(str(place), str(folder)).splitlines()
+            raise InputErrors(tuple(map(InputError, lines))) from None
 
 
 def _curve_text(columns: Mapping[str, Array]) -> str:

@@ -6,9 +6,10 @@ import zipfile
 import numpy as np
 import pytest
 from dentscope.cli import run
-from dentscope.core.errors import InputError
+from dentscope.core.errors import InputError, InputErrors
 from dentscope.recordings import read
 from dentscope.reduce.images.clip import read_clip
+from dentscope.reduce.into_set import _read_as
 from dentscope.reduce.table.file import read_columns
 from dentscope.reduce.table.tension import reduce_tension
 
@@ -226,3 +227,14 @@ def test_several_files_in_one_call(tmp_path, capsys):
     assert "bad.csv" in said.err
     assert read(tmp_path / "set", unfinished=True).trials.trial == ("a-drop1-1", "b-drop1-1")
     assert run(["reduce", "table", *files, *given, "--trial", "x"]) == 2
+
+
+def test_many_mistakes_of_the_set_that_a_reduction_would_write_are_many_lines(tmp_path):
+    """A set whose own files are wrong, each mistake by a line of its own that names the folder."""
+    text = 'format = "recording-set/1"\nname = "a"\n[target]\nE_Pa = 2\nnu = 0.7\n'
+    with pytest.raises(InputErrors) as caught:
+        _read_as(tmp_path / "set", {"set.toml": text, "trials.csv": "trial\n"})
+    lines = str(caught.value).splitlines()
+    assert len(lines) >= 2
+    assert all(line.startswith(str(tmp_path / "set")) for line in lines)
+    assert "\\n" not in str(caught.value)
