@@ -121,7 +121,7 @@ def _session() -> Iterator[Any]:
     if started:
         # interruptible=False: gmsh would otherwise take over the signal handler, which only the
         # main thread may do
-        with _broken_pipes_as_before():
+        with _signals_as_before():
             gmsh.initialize(interruptible=False)
     gmsh.option.setNumber("General.Terminal", 0)
     gmsh.model.add("body")
@@ -134,19 +134,24 @@ def _session() -> Iterator[Any]:
 
 
 @contextmanager
-def _broken_pipes_as_before() -> Iterator[None]:
-    """Undo what gmsh does to SIGPIPE: without a word, a broken pipe would then end the process.
+def _signals_as_before() -> Iterator[None]:
+    """Undo what gmsh does to SIGPIPE and SIGTERM: it lets both end the process without a word.
 
-    A coordinator whose worker was killed died of it, and so does whoever serves or asks over a
-    socket. `signal.signal` may be called by the main thread alone, and does not see gmsh's change.
+    A coordinator whose worker was killed died of the first, and so does whoever serves or asks over
+    a socket; with the second a command leaves its workers behind. `signal.signal` may be called by
+    the main thread alone, and does not see gmsh's change.
     """
     libc = ctypes.CDLL(None)
     libc.signal.restype, libc.signal.argtypes = ctypes.c_void_p, [ctypes.c_int, ctypes.c_void_p]
-    before = libc.signal(signal.SIGPIPE, int(signal.SIG_IGN))
+    before = {n: libc.signal(n, int(signal.SIG_IGN)) for n in (signal.SIGPIPE, signal.SIGTERM)}
+    for number, handler in before.items():
+        libc.signal(number, handler)  # none is lost meanwhile
     try:
         yield
     finally:
-        libc.signal(signal.SIGPIPE, before)
+        for number, handler in before.items():
+            libc.signal(number, handler)
+            signal.siginterrupt(number, True)  # a wait ends, as with Python's own handlers
 
 
 class _Sketch:

@@ -12,6 +12,7 @@ from pathlib import Path
 
 import pytest
 from dentscope.core.processes.stopping import AGAIN_S, Stopped, heard, listening
+from dentscope.fem.mesh.bodies import _session
 
 # A worker that computes for ever, told of by its number.
 ENDLESS = """
@@ -56,6 +57,19 @@ def test_an_interruption_that_a_callback_swallows_comes_again() -> None:
         work()
     assert time.monotonic() - start < 10.0
     assert signal.getsignal(signal.SIGINT) is before
+
+
+def test_a_mesh_leaves_signals_as_they_were() -> None:
+    """The library of meshes lets SIGTERM end the process without a word."""
+    told = []
+    before = signal.signal(signal.SIGTERM, lambda *_: told.append(True))
+    try:
+        with _session():
+            os.kill(os.getpid(), signal.SIGTERM)
+        os.kill(os.getpid(), signal.SIGTERM)
+    finally:
+        signal.signal(signal.SIGTERM, before)
+    assert told == [True, True]
 
 
 def test_what_is_tidied_up_is_left_in_peace() -> None:
