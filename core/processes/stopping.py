@@ -2,7 +2,8 @@
 
 Python turns Ctrl-C into an exception once. Where that falls into a callback of a library, as a weak
 reference's or one that C code calls, it is printed or lost, and the command goes on. Here both
-signals raise it, and it comes again until the command has taken notice.
+signals raise it, and it comes again until the command has taken notice; what else a command fails
+of after that is the interruption, which a library turned into an error of its own.
 """
 
 from __future__ import annotations
@@ -18,6 +19,9 @@ from ..rules import RULES
 
 AGAIN_S = RULES.stop_again_s
 """After how long an interruption that nobody has heard comes again."""
+
+_asked: list[int] = []
+"""Signals that nobody has taken notice of."""
 
 _DEFAULT: dict[int, Any] = {
     signal.SIGINT: signal.default_int_handler, signal.SIGTERM: signal.SIG_DFL,
@@ -51,6 +55,10 @@ def listening() -> Iterator[None]:
         signal.signal(number, _stop)
     try:
         yield
+    except Exception:
+        if _asked:
+            raise Stopped(_asked[-1]) from None
+        raise
     finally:
         if ours:
             heard()
@@ -62,6 +70,7 @@ def heard() -> None:
     """Say that the interruption has arrived; what is still to be tidied up is left in peace."""
     if threading.current_thread() is threading.main_thread():
         signal.setitimer(signal.ITIMER_REAL, 0.0)
+        _asked.clear()
 
 
 def stopped(stop: BaseException) -> int:
@@ -80,6 +89,7 @@ def _stop(number: int, _frame: FrameType | None) -> None:
     def again(_number: int, frame: FrameType | None) -> None:
         _stop(number, frame)
 
+    _asked.append(number)
     signal.signal(signal.SIGALRM, again)
     signal.setitimer(signal.ITIMER_REAL, AGAIN_S)
     raise Stopped(number)

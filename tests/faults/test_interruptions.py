@@ -59,6 +59,17 @@ def test_an_interruption_that_a_callback_swallows_comes_again() -> None:
     assert signal.getsignal(signal.SIGINT) is before
 
 
+@pytest.mark.filterwarnings("ignore::pytest.PytestUnraisableExceptionWarning")
+def test_an_interruption_that_a_library_turns_into_an_error_is_one() -> None:
+    def work() -> None:
+        with listening():
+            _lost()
+            raise RuntimeError("no compiled object yet")
+
+    with pytest.raises(Stopped):
+        work()
+
+
 def test_a_mesh_leaves_signals_as_they_were() -> None:
     """The library of meshes lets SIGTERM end the process without a word."""
     told = []
