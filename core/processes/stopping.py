@@ -9,6 +9,7 @@ of after that is the interruption, which a library turned into an error of its o
 from __future__ import annotations
 
 import signal
+import sys
 import threading
 from collections.abc import Iterator
 from contextlib import contextmanager
@@ -53,6 +54,9 @@ def listening() -> Iterator[None]:
     ours = [n for n, plain in _DEFAULT.items() if main and signal.getsignal(n) is plain]
     for number in ours:
         signal.signal(number, _stop)
+    hook = sys.unraisablehook
+    if ours:  # one that a callback swallows comes again: no word of it
+        sys.unraisablehook = lambda lost: None if lost.exc_type is Stopped else hook(lost)
     try:
         yield
     except Exception:
@@ -62,6 +66,7 @@ def listening() -> Iterator[None]:
     finally:
         if ours:
             heard()
+            sys.unraisablehook = hook
         for number in ours:
             signal.signal(number, _DEFAULT[number])
 
