@@ -16,6 +16,7 @@ import json
 import os
 import stat
 import time
+import warnings
 from collections.abc import Iterable, Iterator, Mapping
 from contextlib import contextmanager, suppress
 from pathlib import Path
@@ -188,7 +189,9 @@ def csv_text(rows: Iterable[Iterable[Any]], *, header: Iterable[str]) -> str:
 def write_figure(figure: Any, path: Path, *, dpi: float, **options: Any) -> Path:
     """Write a matplotlib figure as PNG, whole or not at all."""
     stream = io.BytesIO()
-    figure.savefig(stream, format="png", dpi=dpi, **options)
+    with warnings.catch_warnings():
+        warnings.simplefilter("ignore", UserWarning)  # of matplotlib, on how long a legend takes
+        figure.savefig(stream, format="png", dpi=dpi, **options)
     return write_file(path, stream.getvalue())
 
 
