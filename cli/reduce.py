@@ -21,6 +21,7 @@ from .shared.places import folder_option
 if typing.TYPE_CHECKING:
     from pydantic.fields import FieldInfo
 
+    from ..reduce.batch import Job
     from ..reduce.kinds import Kind
 
 _SETTABLE = (float, int, bool, str, Path)
@@ -51,7 +52,12 @@ app = group(
 )
 
 RawFiles = Annotated[
-    list[Path], typer.Argument(metavar="FILE...", help="The raw recording, or several.")
+    list[Path] | None,
+    typer.Argument(metavar="FILE...", help="The raw recording, several, or a folder of them."),
+]
+Listed = Annotated[
+    Path | None,
+    typer.Option("--list", help="Table of raw files: column file, and options of each alone."),
 ]
 Into = Annotated[
     Path | None, folder_option("Folder of a recording set, new or existing.", name="--into")
@@ -61,24 +67,28 @@ Out = Annotated[Path, folder_option("Without --into: folder for the numbers and 
 
 def _command(name: str) -> Any:
     """Return the command of a kind: FILE, the kind's options, the conditions of the trial."""
+    from ..reduce.batch import jobs_of
     from ..reduce.kinds import all_kinds, load_kind
     from ..reduce.row import Row
 
     kind = load_kind(name)
 
     def run(**given: Any) -> None:
-        files, into, out = given.pop("files"), given.pop("into"), given.pop("out")
+        files, listed = given.pop("files"), given.pop("listed")
+        into, out = given.pop("into"), given.pop("out")
         row = {k: given.pop(k) for k in Row.model_fields}
-        if len(files) == 1:
-            _reduce(kind, files[0], into, out, _set(given), _set(row))
+        jobs = jobs_of(kind, files or [], listed, _set(given))
+        if len(jobs) == 1:
+            _reduce(kind, jobs[0], into, out, _set(row), {})
         else:
-            _reduce_each(kind, files, into, out, _set(given), _set(row))
+            _reduce_each(kind, jobs, into, out, _set(row))
 
     # a reader of another package may have taken `Row` for its options
     fields = {**kind.options.model_fields, **Row.model_fields}
     keyword = inspect.Parameter.KEYWORD_ONLY
     parameters = [
-        inspect.Parameter("files", keyword, annotation=RawFiles),
+        inspect.Parameter("files", keyword, annotation=RawFiles, default=None),
+        inspect.Parameter("listed", keyword, annotation=Listed, default=None),
         inspect.Parameter("into", keyword, annotation=Into, default=None),
         *(_parameter(k, field) for k, field in fields.items()),
         inspect.Parameter("out", keyword, annotation=Out, default=Path("build/reduce")),
@@ -95,12 +105,12 @@ def _command(name: str) -> Any:
 def _parameter(name: str, field: FieldInfo) -> inspect.Parameter:
     """Return the option of one field; the range is checked by the field itself, in one line."""
     plain, choices = _plain_type(field.annotation)
-    words = (field.description or "", f"({', '.join(choices)})" if choices else "")
+    needed = "(needed, here or in the list)" if field.is_required() else ""
+    words = (field.description or "", f"({', '.join(choices)})" if choices else "", needed)
     option = typer.Option("--" + name.replace("_", "-"), help=" ".join(filter(None, words)))
-    default = inspect.Parameter.empty if field.is_required() else field.default
-    if field.is_required() or default is None:
-        default = inspect.Parameter.empty if field.is_required() else None
-        plain = plain if field.is_required() else typing.Optional[plain]  # noqa: UP045
+    default = None if field.is_required() else field.default
+    if default is None:
+        plain = typing.Optional[plain]  # noqa: UP045
     return inspect.Parameter(
         name, inspect.Parameter.KEYWORD_ONLY, annotation=Annotated[plain, option], default=default
     )
@@ -123,43 +133,45 @@ def _set(given: dict[str, Any]) -> dict[str, Any]:
 
 
 def _reduce_each(
-    kind: Kind, files: list[Path], into: Path | None, out: Path, given: dict[str, Any],
-    row: dict[str, Any],
-) -> None:  # fmt: skip
+    kind: Kind, jobs: list[Job], into: Path | None, out: Path, row: dict[str, Any]
+) -> None:
     """Reduce several files; those that cannot be are told at the end and left out."""
     from rich.console import Console
     from rich.progress import track
 
     from ..core.errors import InputError, InputErrors
-    from ..reduce.record import trial_name
+    from ..reduce.batch import draw_page
 
     if row.get("trial"):
         raise InputError(
-            f"given for {len(files)} files", key="--trial", source="command line",
+            f"given for {len(jobs)} files", key="--trial", source="command line",
             allowed="left out: each trial is named as its file",
         )  # fmt: skip
-    names = [trial_name(file) for file in files]
-    twice = next((name for name in names if names.count(name) > 1), "")
-    if twice:
-        raise InputError(
-            f"two files are named {twice}", source="command line", key="FILE",
-            allowed="files of different names: they name the trials",
-        )  # fmt: skip
     left_out: list[InputError] = []
-    failed = 0
-    for file in track(files, "reducing", console=Console(stderr=True), transient=True):
+    failed, pictures = 0, dict[str, Path]()
+    for job in track(jobs, "reducing", console=Console(stderr=True), transient=True):
         try:
-            _reduce(kind, file, into, out, given, row)
+            _reduce(kind, job, into, out, row, pictures)
         except InputErrors as several:  # the names of options are made from every mistake
             left_out, failed = [*left_out, *several.errors], failed + 1
-    typer.echo(f"{len(files) - failed} of {len(files)} files reduced")
+    typer.echo(f"{len(jobs) - failed} of {len(jobs)} files reduced")
+    if pictures:
+        page = _pictures_of(into, out) / f"all-{kind.name}.png"
+        draw_page(pictures, page)
+        typer.echo(f"all pictures: {page}")
     if left_out:
         raise InputErrors(tuple(left_out))
 
 
+def _pictures_of(into: Path | None, out: Path) -> Path:
+    return out if into is None else into / "reduced"
+
+
 def _reduce(
-    kind: Kind, file: Path, into: Path | None, out: Path, given: dict[str, Any], row: dict[str, Any]
-) -> None:
+    kind: Kind, job: Job, into: Path | None, out: Path, row: dict[str, Any],
+    pictures: dict[str, Path],
+) -> None:  # fmt: skip
+    """Reduce one file; its picture, or that of what was refused, is added to `pictures`."""
     from ..core.inputs.toml_input import parse_model
     from ..reduce.gates import Refused
     from ..reduce.into_set import store
@@ -168,25 +180,26 @@ def _reduce(
 
     with _named_as_options():
         conditions = parse_model(row, Row, source="command line")
+        name = conditions.trial or trial_name(job.file)
         try:
-            reduced = kind.run(file, given, source="command line")
+            reduced = kind.run(job.file, job.options, source=job.source)
         except Refused as refused:
             if refused.draw is not None:
-                name = f"{conditions.trial or trial_name(file)}-{kind.name}-refused.png"
-                picture = (out if into is None else into / "reduced") / name
+                picture = _pictures_of(into, out) / f"{name}-{kind.name}-refused.png"
                 refused.draw(picture)
+                pictures[name] = picture
                 typer.echo(f"picture of what was refused: {picture}", err=True)
             raise
         if into is None:
-            name = conditions.trial or trial_name(file)
-            written = write_record(reduced, out, name, kind=kind.name, options=given)
+            written = write_record(reduced, out, name, kind=kind.name, options=job.options)
             lines = []
         else:
-            done = store(reduced, into, conditions, kind=kind.name, options=given)
+            done = store(reduced, into, conditions, kind=kind.name, options=job.options)
             written = (done.record, done.picture)
             lines = [f"  rows of {into}: {', '.join(done.trials)}"] if done.trials else []
             lines += [f"note: {note}" for note in done.notes]
-    _print(file, reduced)
+    pictures[name] = written[1]
+    _print(job.file, reduced)
     for line in lines:
         typer.echo(line)
     typer.echo(f"written: {written[0]}, {written[1]}")

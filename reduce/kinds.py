@@ -47,10 +47,15 @@ class Kind:
     options: type[InputTable]
     module: ModuleType | None = None
 
+    @property
+    def takes_folders(self) -> bool:
+        """Whether a folder may be one recording."""
+        return self.name in _TAKE_FOLDERS
+
     def run(self, path: Path, given: dict[str, Any], *, source: str) -> Reduced:
         """Reduce a file with options that are not checked yet; `source` names where they stand."""
         options = parse_model(given, self.options, source=source)
-        if not (self.name in _TAKE_FOLDERS and path.is_dir()):
+        if not (self.takes_folders and path.is_dir()):
             checked_file(path, most=_MOST_BYTES, allowed="a raw recording")
         from numpy.linalg import LinAlgError
 

@@ -1,0 +1,69 @@
+"""Several raw files in one call: folders, a list with options of each, one page of pictures."""
+
+import json
+
+import numpy as np
+import pytest
+from dentscope.cli import run
+
+T = np.arange(0.0, 0.03, 1e-4)
+
+
+def pulse(path, *, gain=1.0):
+    value = gain * 800.0 * np.sin(np.pi * np.clip((T - 0.01) / 4e-3, 0.0, 1.0))
+    value = value + gain * np.random.default_rng(1).normal(0.0, 1.0, T.size)
+    rows = [f"{t:.4f},{v:.4f}" for t, v in zip(T, value, strict=True)]
+    path.write_text("\n".join(["time_s,force_N", *rows]))
+
+
+def peak(out, name):
+    return json.loads((out / f"{name}-table.json").read_text())["values"]["peak_force_N"]["value"]
+
+
+def test_a_folder_is_reduced_file_by_file_onto_one_page(tmp_path, capsys):
+    raw, out = tmp_path / "raw", tmp_path / "out"
+    raw.mkdir()
+    for name in ("b10", "b9"):
+        pulse(raw / f"{name}.csv")
+    (raw / "flat.csv").write_text("time_s,force_N\n" + "".join(f"{t:.4f},0\n" for t in T))
+    assert run(["reduce", "table", str(raw), "--holds", "force", "--out", str(out)]) == 2
+    told = capsys.readouterr()
+    assert "2 of 3 files reduced" in told.out
+    assert told.out.index("b9.csv") < told.out.index("b10.csv")
+    assert "flat.csv" in told.err
+    assert peak(out, "b9") == pytest.approx(800.0, rel=0.01)
+    assert (out / "all-table.png").stat().st_size > 10_000
+
+
+def test_a_list_gives_each_file_its_own_options(tmp_path, capsys):
+    for name, gain in (("a", 1.0), ("b", 0.1)):
+        pulse(tmp_path / f"{name}.csv", gain=gain)
+    (tmp_path / "list.csv").write_text("file,gain,mass_kg\na.csv,2,\nb.csv,20,0.5\n")
+    given = ["reduce", "table", "--list", str(tmp_path / "list.csv"), "--holds", "force"]
+    assert run([*given, "--out", str(tmp_path / "out")]) == 0
+    assert "2 of 2 files reduced" in capsys.readouterr().out
+    assert [peak(tmp_path / "out", n) for n in "ab"] == pytest.approx([1600.0] * 2, rel=0.01)
+    record = json.loads((tmp_path / "out/b-table.json").read_text())
+    assert record["options"]["mass_kg"] == 0.5
+    assert "speed_change_m_s" in record["values"]
+
+
+@pytest.mark.parametrize(
+    ("text", "words"),
+    [("file,gian\na.csv,2\n", "gian"), ("name\na.csv\n", "name"), ("gain\n2\n", "file"),
+     ("file,gain\na.csv,-2\n", "row 2"), ("file,gain\nnone.csv,2\n", "none.csv")],
+)  # fmt: skip
+def test_a_wrong_list_is_told(tmp_path, capsys, text, words):
+    pulse(tmp_path / "a.csv")
+    (tmp_path / "list.csv").write_text(text)
+    given = ["reduce", "table", "--list", str(tmp_path / "list.csv"), "--holds", "force"]
+    assert run([*given, "--out", str(tmp_path / "out")]) == 2
+    assert words in capsys.readouterr().err
+
+
+def test_nothing_to_reduce_is_told(tmp_path, capsys):
+    assert run(["reduce", "table", "--holds", "force"]) == 2
+    assert "--list" in capsys.readouterr().err
+    (tmp_path / "empty").mkdir()
+    assert run(["reduce", "sound", str(tmp_path / "empty")]) == 2
+    assert "no raw file" in capsys.readouterr().err
