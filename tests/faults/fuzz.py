@@ -3,13 +3,15 @@
 `python tests/faults/fuzz.py --inputs 5000` makes that many files from sound ones by a seed, reads
 them one after the other in a child that stays, and prints for each reader how many were refused
 with a line, how many were read, and what else happened: another exception, a line that is several,
-a file outside the folder, the end of the process, more than 20 s of it, more than 1 GB. Where a
-number of a TOML file is replaced by what is none (`true`, "0.01", a date, a list), reading it is a
-fault as well. `--raw` takes raw recordings of every kind instead and reduces them to numbers and a
-picture.
+a file outside the folder, words on the terminal, the end of the process, more than 20 s of it, more
+than 1 GB. Where a number of a TOML file is replaced by what is none (`true`, "0.01", a date, a
+list), reading it is a fault as well. `--raw` takes raw recordings of every kind instead and reduces
+them to numbers and a picture.
 """
 
 import argparse
+import contextlib
+import io
 import json
 import os
 import random
@@ -20,7 +22,7 @@ import sys
 import tempfile
 import time
 import traceback
-from collections import Counter
+from collections import Counter, defaultdict
 from pathlib import Path
 
 from dentscope.core import InputError
@@ -58,9 +60,10 @@ def child(seed, first, last, readers):
             path = lay_out(readers[name], content, Path(folder) / "set")
             tell({"number": number, "reader": name})
             forget_peak()
-            started, where = time.process_time(), ""
+            started, where, printed = time.process_time(), "", io.StringIO()
             try:
-                readers[name].read(path)
+                with contextlib.redirect_stdout(printed):
+                    readers[name].read(path)
                 told = "NONSENSE READ" if refuse else "read"
             except InputError as error:
                 lines = str(error).splitlines()
@@ -73,13 +76,15 @@ def child(seed, first, last, readers):
             seconds = time.process_time() - started
             if os.listdir(folder) != ["set"]:
                 told = "WROTE OUTSIDE"
+            if printed.getvalue():
+                told, where = "PRINTED", printed.getvalue()[:500]
         shown = content[:300].decode("latin-1") if told[0].isupper() else ""
         tell({"told": told, "where": where, "seconds": seconds, "MB": peak_mb(), "content": shown})
 
 
 def tell(line):
-    sys.stdout.write(json.dumps(line) + "\n")
-    sys.stdout.flush()
+    sys.__stdout__.write(json.dumps(line) + "\n")
+    sys.__stdout__.flush()
 
 
 def forget_peak():
@@ -111,8 +116,8 @@ def cpu_s(pid):
 class Watched:
     """A child that reads inputs; it is ended when one takes too long or too much."""
 
-    def __init__(self, seed, first, last, *, raw):
-        command = [sys.executable, __file__, "--child", str(first), "--inputs", str(last)]
+    def __init__(self, seed, first, last, *, raw, script):
+        command = [sys.executable, script, "--child", str(first), "--inputs", str(last)]
         command += ["--raw"] if raw else []
         self.process = subprocess.Popen(
             [*command, "--seed", str(seed)], stdout=subprocess.PIPE, stderr=subprocess.PIPE
@@ -151,12 +156,15 @@ class Watched:
         self.process.kill()
 
 
-def run(count, seed, *, first=0, raw=False, say=lambda line: None):
-    """Read all inputs; return counts by reader, what went wrong, and the largest memory [MB]."""
-    counts = {name: Counter() for name in (RAW if raw else READERS)}
+def run(count, seed, *, first=0, raw=False, script=__file__, say=lambda line: None):
+    """Read all inputs; return counts by reader, what went wrong, and the largest memory [MB].
+
+    `script` is what is run with `--child`: this one, or another that calls `child`.
+    """
+    counts = defaultdict(Counter)
     faults, most = [], 0.0
     while first < count:
-        watched, last, reader = Watched(seed, first, count, raw=raw), first - 1, ""
+        watched, last, reader = Watched(seed, first, count, raw=raw, script=script), first - 1, ""
         for said in watched.lines():
             if "number" in said:
                 last, reader = said["number"], said["reader"]

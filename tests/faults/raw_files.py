@@ -254,11 +254,16 @@ def lay_out(name, content, folder):
 
 
 def read(name, path):
-    """Reduce a raw file to numbers, a record and a picture."""
+    """Reduce a raw file of `FILES`."""
+    _end, _make, kind, options = FILES[name]
+    reduce_whole(kind, path, options)
+
+
+def reduce_whole(kind, path, options):
+    """Reduce a file to numbers, a record and a picture."""
     from dentscope.reduce.kinds import load_kind
     from dentscope.reduce.record import write_record
 
-    _end, _make, kind, options = FILES[name]
     reduced = load_kind(kind).run(path, options, source="options")
     for trial in reduced.trials:
         for key, value in trial.observables.items():
