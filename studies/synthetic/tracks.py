@@ -121,6 +121,17 @@ def fly(truth: TrackTruth) -> tuple[list[tuple[float, float, object]], Array, Ar
     return flights, np.array(contacts), np.array(speeds)
 
 
+def _dent(late: Array, speed: float, truth: TrackTruth) -> Array:
+    """Return the height below the flat, (n,) [m], of a spring with damping that lasts as long.
+
+    y = -(v/w) exp(-b t) sin(w t), b so that the body leaves with its restitution.
+    """
+    w = math.pi / truth.contact_time
+    b = -math.log(truth.restitution) / truth.contact_time
+    late = np.clip(late, 0.0, truth.contact_time)
+    return -speed / w * np.exp(-b * late) * np.sin(w * late)
+
+
 def seen(truth: TrackTruth) -> SeenTrack:
     """Return the track as the tracker gives it."""
     random = np.random.default_rng(truth.seed)
@@ -128,6 +139,8 @@ def seen(truth: TrackTruth) -> SeenTrack:
 
     def height(t: Array) -> Array:
         y = np.where(t < truth.held, truth.drop, 0.0)
+        for middle, speed in zip(contacts, speeds, strict=True):
+            y += _dent(t - middle + 0.5 * truth.contact_time, speed, truth)
         for start, end, path in flights:
             inside = (t >= start) & (t <= end)
             if inside.any():
