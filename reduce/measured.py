@@ -53,6 +53,10 @@ class Measured:
         """Return the difference to an independent value."""
         return Measured(self.value - other.value, math.hypot(self.std, other.std))
 
+    def widened(self, more: float) -> Measured:
+        """Return the value with another, independent error."""
+        return Measured(self.value, math.hypot(self.std, more))
+
 
 UNITY = Measured(1.0, 0.0)
 """The scale of an instrument that is taken as exact."""

@@ -66,6 +66,10 @@ class ReductionRules:
     flat_samples: int = rule(
         4, "equal samples at the top that are more than chance [-]", "chance: one in 10 000",
     )  # fmt: skip
+    flat_top: float = rule(
+        1.7, "equal samples at the top, in those within a converter's step of a round one [-]",
+        "a half-sine of 8 bits cut at 90 % with noise before the converter: 1.8",
+    )  # fmt: skip
     plateau: float = rule(
         0.65, "width at 95 % of the peak, in that at half of it, of a cut pulse [-]",
         "0.30 of a half-sine, 0.27 of elastic spheres; a half-sine cut at 78 %: 0.65",
@@ -90,7 +94,7 @@ class ReductionRules:
         0.1, "half-wave of the other sign, in the peak [-]", "benchmarks/validate_reduce_pulse.py",
     )  # fmt: skip
     train: int = rule(
-        4, "other pulses of more than half of the peak beside it [-]",
+        2, "other pulses of more than half of the peak that do not fade as bounces do [-]",
         "steps of a walk and taps: benchmarks/validate_reduce_pulse.py",
     )  # fmt: skip
     outside_restitution: float = rule(
@@ -103,6 +107,27 @@ class ReductionRules:
     not_rigid: float = rule(
         0.05, "distance of markers from one rigid shape, in its extent [-]",
         "an acrylic cube: 0.002; a walking person: 0.1",
+    )  # fmt: skip
+    full_scale: float = rule(
+        0.2, "part of a sound's samples at full scale [-]",
+        "contacts of a bouncing ball fill less of a record: it is cut between them too",
+    )  # fmt: skip
+    depth_error: float = rule(
+        0.5, "standard deviation of a crater's depth, in itself [-]",
+        "beyond it nothing is measured",
+    )  # fmt: skip
+    shortest_contact: float = rule(
+        3e-5, "shortest contact of a body that bounces [s]",
+        "steel on steel at a few metres a second (H. Hertz, 1882)",
+    )  # fmt: skip
+    hard_contact: float = rule(
+        4e-3, "longest contact of a hard body, any order of magnitude below as likely [s]",
+        "a marble on a stack of paper at a few metres a second",
+    )  # fmt: skip
+    soft_rarer: float = rule(
+        2.0, "power by which longer ones, of soft balls, are rarer [-]",
+        "benchmarks/validate_reduce_tracks.py: with 1 errors of hard balls at 120 frames a second "
+        "grow by a quarter",
     )  # fmt: skip
     longest_contact: float = rule(
         0.02, "longest contact of a body that bounces [s]", "a basketball: 0.009 to 0.016",

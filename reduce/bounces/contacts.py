@@ -15,12 +15,13 @@ from typing import NamedTuple
 
 import numpy as np
 
+from ...core.errors import InputError
 from ..measured import Array, Measured, propagate
 from .bounce import Bounce, Bounced
 from .fall import Ball
 from .flights import UNEVEN, Piece
 from .joint import SHARED, Before, JointSolution, fit_together
-from .scale import floor_drift, frames_lost, scale_of
+from .scale import check_scale, floor_drift, frames_lost, scale_of
 from .sides import joined, known_before, sides_of, true_contacts
 from .touch import (
     common_durations,
@@ -36,6 +37,30 @@ _ROUNDS = 3
 
 _SAME_FLAT = 0.05
 """Part of the largest height by which the contacts of a track may differ in theirs."""
+
+
+def told_bounces(
+    track: Track, ball: Ball, *, metres: Measured | None, contact: Measured | None = None,
+    source: str, allowed: str,
+) -> Bounced:  # fmt: skip
+    """Return what `find_bounces` finds.
+
+    Raises
+    ------
+    Refused
+        The unit or the rate contradicts gravity: the values that would fit.
+    InputError
+        No contact with flight on both sides.
+    """
+    found = find_bounces(track, ball, metres=metres, contact=contact)
+    if found is not None:
+        check_scale(found.scale, source=source)
+        return found
+    # a fall that is not the stated one hides every flight
+    alone = None if metres is None else find_bounces(track, ball, metres=None, contact=contact)
+    if alone is not None:
+        check_scale(scale_of(alone.fall, ball.fall(3.0).gravity, metres), source=source)
+    raise InputError("no contact with flight before and after it", source=source, allowed=allowed)
 
 
 def find_bounces(
@@ -187,9 +212,9 @@ def _bounce(
     part = ratio.value * math.hypot(both, *(g / v for g, v in zip(bridged, values, strict=True)))
     # the flights meet below the flat where a contact takes time
     height = replace(height, value=height.value - touch.offsets[0] * approach.value)
-    height = _widened(height, sum(touch.errors) * ratio.value / (1.0 + ratio.value) * values[0])
+    height = height.widened(sum(touch.errors) * ratio.value / (1.0 + ratio.value) * values[0])
     return Bounce(
-        time, _widened(approach, more[0]), _widened(rebound, more[1]), _widened(ratio, part),
+        time, approach.widened(more[0]), rebound.widened(more[1]), ratio.widened(part),
         height, meeting.turning, before, after,
     )  # fmt: skip
 
@@ -215,10 +240,6 @@ def _mixed(values: Sequence[tuple[float, Measured]]) -> Measured:
     mean = sum(w * v.value for w, v in values) / weight
     variance = sum(w * (v.std**2 + (v.value - mean) ** 2) for w, v in values) / weight
     return Measured(mean, math.sqrt(variance))
-
-
-def _widened(value: Measured, more: float) -> Measured:
-    return Measured(value.value, math.hypot(value.std, more))
 
 
 def _whole(

@@ -12,7 +12,9 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from ..gates import Refused
 from ..measured import Array, Measured
+from ..rules import RULES
 
 _AGREE = 3.0
 """Standard deviations by which two scales may differ; within them their scatter widens the error
@@ -35,6 +37,8 @@ class Scale:
     metres: Measured
     origin: str
     notes: tuple[str, ...] = ()
+    off: float = 0.0
+    """By which the fall asks for another unit than what is stated, in it; 0 within its error."""
 
     @property
     def known(self) -> bool:
@@ -74,14 +78,32 @@ def scale_of(fall: Measured, gravity: float, stated: Measured | None) -> Scale:
         return Scale(Measured(mean, std), "gravity and what is stated")
     middle = stated.value if stated.std == 0.0 else 0.5 * (by_fall.value + stated.value)
     std = max(abs(v - middle) for v in (by_fall.value, stated.value))
+    off = by_fall.value / stated.value - 1.0
     note = (
         f"the stated unit {stated} m and that of the fall, {by_fall} m, differ by "
-        f"{100.0 * (by_fall.value / stated.value - 1.0):+.2g} %: check unit, rate, plane of the "
-        "scale; the error of the speeds holds both"
+        f"{100.0 * off:+.2g} %: check unit, rate, plane of the scale; the error of the speeds "
+        "holds both"
     )
     return Scale(
-        Measured(middle, math.hypot(std, both)), "what is stated, against gravity", (note,)
+        Measured(middle, math.hypot(std, both)), "what is stated, against gravity", (note,), off
     )
+
+
+def check_scale(scale: Scale, *, source: str) -> None:
+    """Refuse a track whose unit or rate contradicts gravity, with the values that would fit.
+
+    Raises
+    ------
+    Refused
+        The fall is off by more than drag and buoyancy make.
+    """
+    if abs(1.0 / (1.0 + scale.off) - 1.0) > RULES.fall_off:
+        ratio = 1.0 + scale.off
+        raise Refused(
+            "fall", f"it falls with {1.0 / ratio:.3g} times gravity", source=source,
+            allowed=f"a fall: the unit or the stated size times {ratio:.4g} would fit, or the "
+            f"rate times {math.sqrt(ratio):.4g}, or another gravity_m_s2",
+        )  # fmt: skip
 
 
 def floor_drift(contacts: Sequence[tuple[Measured, Measured]], fall: float) -> Measured:

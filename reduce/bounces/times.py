@@ -9,7 +9,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
@@ -112,9 +112,10 @@ def reduce_bounce_times(
         std = np.hypot(std, scatter)
     if options.mass_kg is None or options.diameter_m is None:
         notes.append("drag of the air left out: give mass_kg and diameter_m to take it off")
-    if options.contact_time_s == 0.0:
-        notes.append("the duration of a contact counts as flight: contact_time_s = 0")
     bounces = _bounces(times, std, chain, options, source)
+    if options.contact_time_s == 0.0:
+        notes.append("a contact counts as flight, the errors hold that: contact_time_s = 0")
+        bounces = tuple(_unsure_contact(b, options.gravity_m_s2) for b in bounces)
     gained = [b for b in bounces if b.restitution.value > 1.0 + 3.0 * b.restitution.std]
     if gained:
         raise InputError(
@@ -161,6 +162,21 @@ def _bounces(
                 _between(times, spread, kept[k - 1 : k + 2], flights[k - 1 : k + 1], options)
             )
     return tuple(found)
+
+
+def _unsure_contact(bounce: Bounced, gravity: float) -> Bounced:
+    """Return a bounce with the error of a contact that is not known, which shortens both flights.
+
+    Its root mean square where any order of magnitude is as likely.
+    """
+    low, high = RULES.shortest_contact, RULES.hard_contact
+    slower = 0.5 * gravity * math.sqrt((high**2 - low**2) / (2.0 * math.log(high / low)))
+    e = bounce.restitution
+    part = slower / bounce.rebound.value - slower / bounce.approach.value
+    return replace(
+        bounce, approach=bounce.approach.widened(slower), rebound=bounce.rebound.widened(slower),
+        restitution=e.widened(e.value * part),
+    )  # fmt: skip
 
 
 def _between(

@@ -19,11 +19,6 @@ from .view import Launch, Stage, View
 _RESOLVED = 4
 """Samples within a contact from which on its two ends are told apart."""
 
-_SHORTEST, _HARD, _RARER = 3e-5, 4e-3, 1.0
-"""Contacts of balls and rods, steel on steel to a marble on a stack of paper, at a few metres a
-second [s]; one that no sample shows lies between, any order of magnitude as likely as another.
-Longer ones, of soft balls, are the rarer the longer, by that power."""
-
 _SOFTER, _STIFFER = 0.85, 1.3
 """Between which parts of the bend of a spring that of a soft contact lies: of elastic spheres it is
 0.88, of a spring with as much damping as lets it back with a half of its speed 1.2."""
@@ -35,7 +30,7 @@ _NEAREST, _STRAY = 6, 12.0
 _BEYOND = 0.5
 """Part of what shows of a contact by which both of its ends reach farther: force sets in softly."""
 
-LASTS: Array = np.geomspace(_SHORTEST, RULES.longest_contact, 130)
+LASTS: Array = np.geomspace(RULES.shortest_contact, RULES.longest_contact, 130)
 """Durations that are tried of a contact that the samples do not resolve [s]."""
 
 _ALIKE = 1.3
@@ -81,7 +76,11 @@ def touch_of(
     """
     meeting, ratio, step = float(met[0]), float(met[3]), track.step
     runs = _both_held(track, stage, view, flights, meeting)
-    if known is None and sum(r.size for r in runs) >= _RESOLVED and step < _HARD / _RESOLVED:
+    if (
+        known is None
+        and sum(r.size for r in runs) >= _RESOLVED
+        and step < RULES.hard_contact / _RESOLVED
+    ):
         ends = tuple(
             0.5 * (track.time[run[-1]] + track.time[run[-1] + way]) - meeting if run.size else 0.0
             for run, way in zip(runs, (-1, 1), strict=True)
@@ -158,7 +157,7 @@ def likely_durations(
     runs = _both_held(track, stage, view, flights, meeting)
     shares = ratio / (1.0 + ratio), 1.0 / (1.0 + ratio)
     smeared = float(met[1] + met[2]) / (2.0 * step)
-    found = -_RARER * np.maximum(np.log(LASTS / _HARD), 0.0)
+    found = -RULES.soft_rarer * np.maximum(np.log(LASTS / RULES.hard_contact), 0.0)
     for piece, run, share, speed in zip(flights, runs, shares, met[1:3], strict=True):
         order = np.argsort(np.abs(track.time[piece.index] - meeting))[:_NEAREST]
         for index in (*run, *piece.index[order]):
@@ -168,7 +167,9 @@ def likely_durations(
             side = LASTS * share
             late = np.maximum(side - gap, 0.0)
             soft = speed * (late - side * np.sin(0.5 * np.pi * late / side) / (0.5 * np.pi))
-            most = np.where(LASTS > _HARD, np.minimum(_STIFFER * soft, speed * late), speed * late)
+            most = np.where(
+                LASTS > RULES.hard_contact, np.minimum(_STIFFER * soft, speed * late), speed * late
+            )
             most = most + smeared * max(0.5 * step - gap, 0.0) ** 2
             off = np.maximum(np.maximum(_SOFTER * soft - above, above - most), 0.0)
             # a shadow or a stray beside the contact says little

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import logging
+import math
 from collections.abc import Iterator
 from dataclasses import dataclass
 from itertools import islice, pairwise
@@ -52,6 +53,8 @@ class Clip:
         Numbers of the frames that show what their predecessor showed, (r,).
     source
         The file or folder.
+    stamps
+        (n,) the container's time stamps [s], or None.
     """
 
     frames: Frame
@@ -59,6 +62,7 @@ class Clip:
     uneven: int
     repeats: npt.NDArray[np.int64]
     source: str
+    stamps: Array | None = None
 
 
 def read_clip(
@@ -109,8 +113,10 @@ def read_clip(
     turned = ((t, cropped(np.rot90(f, DOWN[down]), crop)) for t, f in part)
     stamps, frames = _gathered(turned, first, str(path))
     stack = np.stack(frames)
-    rate, uneven = _timing(np.array(stamps))
-    return Clip(stack, rate, uneven, repeated_frames(stack), str(path))
+    times = np.array(stamps)
+    rate, uneven = _timing(times)
+    known = times if math.isfinite(rate) else None
+    return Clip(stack, rate, uneven, repeated_frames(stack), str(path), known)
 
 
 def _gathered(

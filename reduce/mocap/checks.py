@@ -65,8 +65,9 @@ def widened(
     """Return the numbers of an impact with errors that hold what its own checks say.
 
     A fall that is not that of gravity means lengths or times that are as wrong; markers that lie
-    farther off their shape than off their motion move the body as a whole; an impulse out of the
-    plane of motion is friction too.
+    farther off their shape than off their motion move the body as a whole; a spin that changes by
+    something else than the momentum at the contact is as wrong; an impulse out of the plane of
+    motion is friction too.
     """
     loose = max(poses.spread / max(2.0 * flights.sigma, 1e-12), 1.0)
     off = abs(fall.value / gravity - 1.0)
@@ -75,6 +76,11 @@ def widened(
     for name, value in measured.items():
         more = off * abs(value.value) if name.endswith("_m_s") else 0.0
         found[name] = Measured(value.value, math.hypot(loose * value.std, more))
+    if "spin_change_by_momentum_rad_s" in found:
+        spin, asked = found["rebound_spin_rad_s"], found["spin_change_by_momentum_rad_s"]
+        apart = spin.minus(found["approach_spin_rad_s"]).minus(asked)
+        if abs(apart.value) > 3.0 * apart.std:
+            found["rebound_spin_rad_s"] = spin.widened(apart.value)
     friction, out = found["friction_impulse_ratio"], found["out_of_plane_ratio"]
     beside = math.hypot(friction.value, out.value) - friction.value
     found["friction_impulse_ratio"] = Measured(friction.value, math.hypot(friction.std, beside))

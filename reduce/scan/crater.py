@@ -8,7 +8,9 @@ from dataclasses import dataclass
 import numpy as np
 
 from ...core.errors import InputError
+from ..gates import Refused
 from ..measured import UNITY, ZERO, Array, Measured, Trial
+from ..rules import RULES
 from .bottom import find_bottom
 from .file import Scan
 from .level import Levelled, levelled
@@ -105,6 +107,11 @@ def reduce_scan(
     length, width = (opening(s, bottom.depth.value, covariance) for s in (along, across))
     length, width = without_band(length, width, half_width)
     depth = _without_blur(bottom.depth, bottom.laplacian, blur)
+    if not depth.std < RULES.depth_error * depth.value:
+        raise Refused(
+            "depth", f"a crater {1e6 * depth.value:.3g} um deep +- {1e6 * depth.std:.3g} um",
+            source=scan.source, allowed="a depth that the roughness lets see, a finer scan",
+        )  # fmt: skip
     cell = float(np.prod(scan.step))
     volume = Measured(
         -float(np.nansum(shown.z[shown.crater])) * cell,
@@ -115,7 +122,7 @@ def reduce_scan(
         length=length, width=width, sliding=length.minus(width),
         volume=volume.times(height_scale), deepest=bottom.place, direction=direction,
         surface=shown, along=along, across=across,
-        notes=_notes(scan, shown, depth, width, height_scale), source=scan.source,
+        notes=_notes(scan, shown, width, height_scale), source=scan.source,
     )  # fmt: skip
 
 
@@ -137,9 +144,7 @@ def _without_blur(depth: Measured, laplacian: float, blur: Measured) -> Measured
     return Measured(depth.value + lift, math.hypot(depth.std, laplacian * blur.value * blur.std))
 
 
-def _notes(
-    scan: Scan, found: Levelled, depth: Measured, width: Measured, scale: Measured
-) -> tuple[str, ...]:
+def _notes(scan: Scan, found: Levelled, width: Measured, scale: Measured) -> tuple[str, ...]:
     notes = [*scan.notes, f"roughness of the level surface {found.roughness * 1e6:.3g} um"]
     missing = int(np.isnan(scan.z).sum())
     if found.outliers or missing:
@@ -149,8 +154,6 @@ def _notes(
         )
     if scale.std == 0.0:
         notes.append("the calibration of the instrument's heights is taken as exact")
-    if depth.std > 0.1 * depth.value:
-        notes.append("the depth is not known to 10 %")
     if not math.isfinite(width.value):
         notes.append("a wall of the crater does not reach the surface within the scan")
     return tuple(notes)

@@ -9,8 +9,10 @@ import numpy as np
 
 from ...core.errors import InputError
 from ..bounces.times import reduce_bounce_times
+from ..gates import Refused
 from ..measured import Measured
 from ..reduced import Reduced
+from ..rules import RULES
 from .file import Sound, read_sound
 from .onsets import find_onsets
 from .options import Options
@@ -26,6 +28,7 @@ def reduce(path: Path, options: Options) -> Reduced:
         The file cannot be decoded, or no run of bounces is heard.
     """
     sound = _part(read_sound(path), options)
+    check_level(sound)
     onsets = find_onsets(
         sound, least_rise_db=options.least_rise_db, least_interval=options.least_interval_s,
         lowest_hz=options.lowest_hz,
@@ -36,17 +39,29 @@ def reduce(path: Path, options: Options) -> Reduced:
             allowed="three or more (see --least-rise-db, --lowest-hz, --first-s, --last-s)",
         )  # fmt: skip
     found = reduce_bounce_times(onsets.time, options, std=onsets.std, source=str(path))
-    notes = list(found.notes)
-    if sound.clipped > 1e-3:
-        notes.append(f"{100.0 * sound.clipped:.2g} % of the samples are at full scale")
     values = found.values() | {
         "onset_std_s": Measured(float(np.median(found.time_std)), math.nan),
         "contacts_heard": Measured(float(onsets.time.size), math.nan),
     }
     return Reduced(
-        source=path, values=values, trials=found.trials(), notes=tuple(notes),
+        source=path, values=values, trials=found.trials(), notes=found.notes,
         draw=lambda to: draw_sound(sound, onsets, found, to),
     )  # fmt: skip
+
+
+def check_level(sound: Sound) -> None:
+    """Refuse a recording that is at full scale between the contacts too.
+
+    Raises
+    ------
+    Refused
+        More of it is than the contacts of a ball fill.
+    """
+    if sound.clipped > RULES.full_scale:
+        raise Refused(
+            "full-scale", f"{sound.clipped:.0%} of the samples are at full scale",
+            source=sound.source, allowed="a recording that only contacts drive there: less gain",
+        )  # fmt: skip
 
 
 def _part(sound: Sound, options: Options) -> Sound:

@@ -5,9 +5,8 @@ from __future__ import annotations
 import math
 from dataclasses import dataclass
 
-from ...core.errors import InputError
 from ..bounces.bounce import Bounced
-from ..bounces.contacts import find_bounces
+from ..bounces.contacts import told_bounces
 from ..bounces.fall import Ball
 from ..bounces.track import Track
 from ..measured import Array, Measured, Trial, labelled, labels
@@ -53,16 +52,14 @@ def reduce_heights(
     Raises
     ------
     InputError
-        No contact with flight on both sides.
+        No contact with flight on both sides, or no fall by gravity.
     """
     track = Track(time, height, floor=std)
     scale = None if metres is None else Measured(metres, 0.0)
-    found = find_bounces(track, ball, metres=scale, contact=contact)
-    if found is None:
-        raise InputError(
-            "no contact with flight before and after it", source=source,
-            allowed="heights of a body that falls, touches and rises (see --upwards, --first-s)",
-        )  # fmt: skip
+    found = told_bounces(
+        track, ball, metres=scale, contact=contact, source=source,
+        allowed="heights of a body that falls, touches and rises (see --upwards, --first-s)",
+    )  # fmt: skip
     trials = tuple(_trial(track, found, k) for k in range(len(found.bounces)))
     values = labelled((trial.label, trial.observables) for trial in trials)
     if metres is None and found.scale.known:

@@ -165,11 +165,13 @@ def _heights(path: Path, table: Columns, options: Options) -> Reduced:
     metres = None
     if said != "px":
         metres = table.factor(column, "length", given=options.value_unit, key="value_unit")
-    found = reduce_heights(
-        time, value if options.upwards == "up" else -value, metres=metres,
-        std=options.value_std, ball=options.ball, source=str(path),
-        contact=Measured(lasts, 0.0) if (lasts := options.contact_time_s) else None,
-    )  # fmt: skip
+    axes = ("time [s]", "height")
+    with drawn(lambda to, why: draw_refused(time, value, to, why, axes=axes)):
+        found = reduce_heights(
+            time, value if options.upwards == "up" else -value, metres=metres,
+            std=options.value_std, ball=options.ball, source=str(path),
+            contact=Measured(lasts, 0.0) if (lasts := options.contact_time_s) else None,
+        )  # fmt: skip
     rate = float(1.0 / np.median(np.diff(time)))
     lost = (f"{series.told()}: they are left out",) if series.missed.size else ()
     return Reduced(

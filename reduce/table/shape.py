@@ -2,7 +2,7 @@
 
 | what it looks like | how it is told |
 | --- | --- |
-| clipped | the highest samples are equal, and those beside them are far below |
+| clipped | more samples at the largest value than the converter's steps leave on a round top |
 | a step | the level afterwards is another by a third of the peak or more |
 | an oscillation | six or more other half-waves beside it reach a third of the peak |
 | a spike | fewer than three samples above half of the peak |
@@ -12,6 +12,7 @@ Smaller half-waves (a plate or a sensor that rings) widen the errors of peak and
 
 from __future__ import annotations
 
+import math
 from collections.abc import Iterator
 from typing import NamedTuple
 
@@ -22,12 +23,15 @@ from ..gates import Refused
 from ..measured import Array
 from ..rules import RULES
 
-_JUMP = 1.5
-"""Steps of the converter by which the samples beside a clipped top lie below it."""
+_TOP = 0.1
+"""Part of the peak below it within which a round top is a parabola."""
 
 _SWING, _BESIDE = 0.33, 8.0
 _AGAIN = 0.3
 """Part of the peak from which on another pulse is named."""
+
+_SAME_TIME, _SAME_HEIGHT = 1.05, 0.1
+"""A flight in the one before it, and a peak less that before it [largest one], that are alike."""
 
 
 class Shape(NamedTuple):
@@ -103,16 +107,20 @@ def shape_of(
 def _single(
     time: Array, clear: Array, others: tuple[float, ...], ends: tuple[float, float], source: str
 ) -> None:
-    """Refuse a train of like pulses: steps of a walk, taps, a machine; a bounce comes back lower.
+    """Refuse a train of like pulses: steps of a walk, taps, a machine.
 
-    A first, smaller one is no bounce either, unless it is far smaller.
+    Bounces come back lower and sooner, every time.
     """
-    heights = np.interp(others, time, clear) / clear.max()
-    high = [t for t, h in zip(others, heights, strict=True) if h > 0.5]
-    before = [t for t in high if t < ends[0]]
-    if len(high) >= RULES.train and len(before) >= 2:
-        raise looks_like("train", f"{len(high) + 1} like pulses, {len(before)} before the largest",
-                         source)  # fmt: skip
+    at = np.array(sorted([*others, 0.5 * (ends[0] + ends[1])]))
+    heights = np.interp(at, time, clear) / clear.max()
+    at, heights = at[heights > 0.5], heights[heights > 0.5]
+    if at.size <= RULES.train:
+        return
+    flights = np.diff(at)
+    longer = flights[1:] > _SAME_TIME * flights[:-1]
+    regular = flights[-1] > flights[0] / _SAME_TIME
+    if regular or longer.any() or (np.diff(heights) > _SAME_HEIGHT).any():
+        raise looks_like("train", f"{at.size} like pulses that fade as no bounces do", source)
 
 
 def _wide(clear: Array, top: int) -> float:
@@ -146,17 +154,21 @@ def _run(chosen: npt.NDArray[np.bool_], at: int) -> npt.NDArray[np.intp]:
 
 
 def _flat_top(clear: Array, top: int) -> int:
-    """Return how many samples are cut off at the top, 0 if it is round."""
-    run = _run(clear >= clear[top] * (1.0 - 1e-9), top)
+    """Return how many samples stand at the largest value, 0 if its top is round.
+
+    Of a round top those lie within one step of the converter that a parabola leaves there; with
+    noise before the converter the cut ones are no unbroken run.
+    """
+    peak = float(clear[top])
     steps = np.diff(np.unique(clear))
-    steps = steps[steps > 1e-9 * clear[top]]
-    if run.size < RULES.flat_samples or steps.size == 0 or run[0] == 0 or run[-1] == clear.size - 1:
+    steps = steps[steps > 1e-9 * peak]
+    near = _run(clear > (1.0 - _TOP) * peak, top)
+    if steps.size == 0 or near[0] == 0 or near[-1] == clear.size - 1:
         return 0
-    # a converter's smallest step makes a round top flat too, but its neighbours are one step below
-    smallest = float(steps.min())
-    coarse = np.abs(steps / smallest - np.round(steps / smallest)).max() < 0.02
-    beside = clear[top] - max(clear[run[0] - 1], clear[run[-1] + 1])
-    return 0 if coarse and beside <= _JUMP * smallest else int(run.size)
+    step = float(np.percentile(steps, 10.0))
+    equal = int(np.count_nonzero(clear[near] >= peak - 0.01 * step))
+    round_top = near.size * math.sqrt(min(step / (_TOP * peak), 1.0))
+    return equal if equal >= max(RULES.flat_samples, RULES.flat_top * round_top) else 0
 
 
 def _others(time: Array, clear: Array, peak: float, ends: tuple[float, float]) -> Iterator[float]:
@@ -166,5 +178,7 @@ def _others(time: Array, clear: Array, peak: float, ends: tuple[float, float]) -
         (clear > _AGAIN * peak) & ((time < ends[0] - long) | (time > ends[1] + long))
     )
     for run in np.split(high, np.flatnonzero(np.diff(time[high]) > long) + 1):
-        if run.size >= RULES.fewest_above_half:
+        if run.size < RULES.fewest_above_half:
+            continue
+        if run[0] > 0 and run[-1] < clear.size - 1:  # else a level, as of who stands on a plate
             yield float(time[run[np.argmax(clear[run])]])

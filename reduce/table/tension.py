@@ -99,7 +99,7 @@ def reduce_tension(
             f"the curve rises with {modulus.value / 1e9:.3g} GPa, not {E / 1e9:.3g}: the machine "
             "gives way; the plastic strain is counted from the curve's own line"
         )
-        used, told = modulus.value, modulus
+        used, told = modulus.value, modulus.widened(modulus.value - E)
     plastic = strain - zero - stress / used
     flow = _rows(plastic, stress, source)
     values = {

@@ -227,6 +227,7 @@ def _with_notes(found: TipReduction) -> TipReduction:
     ]
     if not math.isfinite(found.scale.value):
         notes.append("no length scale: give the size of a pixel or the diameter of the rod")
+    radius = found.radius
     apex = np.abs(found.edge[:, 0] - found.x) < 0.15 * found.radius.value * found.arc / 2.0
     apex &= found.used | (np.abs(found.residual) < 10.0)
     if apex.sum() >= 5:
@@ -238,4 +239,8 @@ def _with_notes(found: TipReduction) -> TipReduction:
                 f"the apex lies {inside:.2f} pixel inside the circle: a flat of about "
                 f"{flat:.1f} pixel radius?"
             )
-    return replace(found, notes=tuple(notes))
+            # the curvature of the apex alone, by its sag over the part that is looked at
+            reach = 0.15 * radius.value * found.arc / 2.0
+            bent = 2.0 * inside * radius.value / reach**2
+            radius = radius.widened(radius.value * min(bent, 1.0))
+    return replace(found, radius=radius, notes=tuple(notes))

@@ -14,9 +14,8 @@ from dataclasses import dataclass, replace
 import numpy as np
 import numpy.typing as npt
 
-from ...core.errors import InputError
 from ..bounces.bounce import Bounce, Bounced
-from ..bounces.contacts import find_bounces
+from ..bounces.contacts import told_bounces
 from ..bounces.fall import UNKNOWN, Ball
 from ..bounces.track import Track
 from ..images.clip import Clip
@@ -24,7 +23,9 @@ from ..measured import Array, Measured, Trial, labels
 from .tracking import grey_levels, striker_bright, track_ball, track_rod
 
 _LEAN_FRAMES = 20
-_LEAN_LIMIT = math.radians(5.0)
+
+_SAME_RATE = 0.01
+"""Part by which a container's mean rate may differ from the camera's and be its own."""
 
 _POSITION_FLOOR, _POSITION_TREND = 1e-3, 5e-3
 """No position in a picture is believed better than the first; by the second uneven light and a blur
@@ -51,6 +52,8 @@ class Optics:
         Gravity, which gives the scale where the fall is long enough, and drag as far as known.
     line_time
         From one row of the picture to the next, of a shutter that rolls down [s].
+    stamps
+        (n,) times of the frames where they are not evenly spaced (a phone's) [s].
     """
 
     rate: float
@@ -58,10 +61,12 @@ class Optics:
     scale: Measured | None = None
     size: Measured | None = None
     line_time: float = 0.0
+    stamps: Array | None = None
 
     def time(self, frame: npt.NDArray[np.int64], row: Array) -> Array:
         """Return when a row of a frame was exposed, (n,) [s]."""
-        return np.asarray(frame / self.rate + self.line_time * row)
+        begun = frame / self.rate if self.stamps is None else self.stamps[frame]
+        return np.asarray(begun + self.line_time * row)
 
 
 @dataclass(frozen=True)
@@ -202,7 +207,7 @@ def reduce_video(
         tip_radius, near = half.value, 0.0
     fresh = np.isin(track["frame"], clip.repeats, invert=True)
     track = {name: values[fresh] for name, values in track.items() if name != "radius"}
-    notes = _timing_notes(clip, optics.rate)
+    optics, notes = _timed(clip, optics)
     result = VideoReduction(
         **track, shape=shape, critical_frame=critical, threshold=0.5 * sum(levels), levels=levels,
         half_width=half, tip_radius=tip_radius, optics=optics,
@@ -221,29 +226,30 @@ def _contacts(
     path = Track(
         time, -track["row"], floor=_POSITION_FLOOR, trend=_POSITION_TREND, near=near, unsure=_UNSURE
     )
-    found = find_bounces(path, optics.ball, metres=stated)
-    if found is None:
-        raise InputError(
-            "no contact with flight before and after it", source=source,
-            allowed="a clip that shows the striker fall, touch and rise",
-        )  # fmt: skip
-    return found
+    return told_bounces(
+        path, optics.ball, metres=stated, source=source,
+        allowed="a clip that shows the striker fall, touch and rise",
+    )  # fmt: skip
 
 
-def _timing_notes(clip: Clip, rate: float) -> list[str]:
-    notes = []
-    if math.isfinite(clip.container_rate) and abs(clip.container_rate / rate - 1.0) > 0.01:
+def _timed(clip: Clip, optics: Optics) -> tuple[Optics, list[str]]:
+    """Take the container's time stamps where it was written as it was filmed, and unevenly."""
+    notes, rate = [], optics.rate
+    if math.isfinite(clip.container_rate) and abs(clip.container_rate / rate - 1.0) > _SAME_RATE:
         notes.append(
             f"the container plays at {clip.container_rate:.6g} frames/s; {rate:g} was used"
         )
-    if clip.uneven:
-        notes.append(f"{clip.uneven} gaps between the container's time stamps are uneven")
+    elif clip.uneven and clip.stamps is not None:
+        optics = replace(optics, stamps=clip.stamps - clip.stamps[0])
+        notes.append(
+            f"{clip.uneven} gaps between the container's time stamps are uneven: they tell the time"
+        )
     if clip.repeats.size:
         notes.append(
             f"{clip.repeats.size} of {len(clip.frames)} frames repeat the one before and are left "
             "out: the camera's own rate is lower"
         )
-    return notes
+    return optics, notes
 
 
 def _flight_notes(result: VideoReduction) -> list[str]:
@@ -279,9 +285,7 @@ def _lean_notes(result: VideoReduction) -> list[str]:
         if lean.size == 0:
             continue
         angle, std = float(np.median(lean)), float(np.std(lean))
-        verdict = "" if abs(angle) <= _LEAN_LIMIT else ": not upright"
         notes.append(
             f"axis {name} contact {90 - math.degrees(angle):.2f} ± {math.degrees(std):.2f} deg"
-            f"{verdict}"
         )
     return notes

@@ -7,26 +7,7 @@ from dentscope.reduce.kinds import load_kind
 from dentscope.reduce.table.cells import instant, plain, since_first, value_of
 from dentscope.reduce.table.heading import heading_of, in_short, labview_rows
 from dentscope.reduce.table.level import level_before
-
-RATE = 10_000.0
-T = np.arange(0.0, 0.05, 1.0 / RATE)
-
-
-def half_sine(peak=800.0, long=4e-3, at=0.02, noise=1.0, seed=3):
-    s = np.clip((T - at) / long, 0.0, 1.0)
-    return peak * np.sin(np.pi * s) + np.random.default_rng(seed).normal(0.0, noise, T.size)
-
-
-def run(path, **given):
-    return load_kind("table").run(path, {"holds": "force", **given}, source="test")
-
-
-def table(path, cells, head="time_s,force_N", times=None):
-    times = [f"{t:.4f}" for t in T] if times is None else times
-    path.write_text(
-        "\n".join([head, *(f"{t},{c}" for t, c in zip(times, cells, strict=True))]), "utf-8"
-    )
-    return path
+from made_records import RATE, T, half_sine, run, table
 
 
 @pytest.mark.parametrize(

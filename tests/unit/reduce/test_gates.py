@@ -10,13 +10,10 @@ from dentscope.reduce.gates import GATES, Refused, table_of_gates
 from dentscope.reduce.kinds import load_kind
 from dentscope.reduce.rules import RULES
 from dentscope.reduce.table.pulse import find_pulse
+from made_records import T, half_sine, recorded, run
 
 ROOT = Path(__file__).parents[3]
-T = np.arange(0.0, 0.05, 1e-4)
-
-
-def half_sine(at=0.02, long=4e-3, peak=800.0):
-    return peak * np.sin(np.pi * np.clip((T - at) / long, 0.0, 1.0))
+WIDE = half_sine(long=8e-3, noise=0.0)
 
 
 def noise(std=1.0, seed=3):
@@ -33,11 +30,11 @@ def test_every_gate_has_a_limit_of_the_register_and_its_line_in_the_docs():
 @pytest.mark.parametrize(
     ("gate", "record"),
     [
-        ("plateau", np.minimum(half_sine(long=8e-3), 500.0) + noise()),
-        ("plateau", np.minimum(half_sine(long=8e-3), 500.0 + 4.0 * noise(seed=5)) + noise()),
+        ("plateau", np.minimum(WIDE, 500.0) + noise()),
+        ("plateau", np.minimum(WIDE, 500.0 + 4.0 * noise(seed=5)) + noise()),
         ("lopsided", 800.0 * np.exp(-np.clip(T - 0.02, 0.0, 1.0) / 4e-3)
          * np.clip((T - 0.0197) / 3e-4, 0.0, 1.0) + noise()),
-        ("train", sum(half_sine(at=a, long=2e-3, peak=p) for a, p in
+        ("train", sum(half_sine(at=a, long=2e-3, peak=p, noise=0.0) for a, p in
                       ((0.004, 700.0), (0.012, 780.0), (0.02, 800.0), (0.028, 760.0),
                        (0.036, 750.0))) + noise()),
         ("noise", noise()),
@@ -52,31 +49,27 @@ def test_what_is_no_whole_impact(gate, record):
 
 
 def test_missing_rows_within_a_pulse_are_a_hole(tmp_path):
-    kept = (half_sine() < 700.0) | (T < 0.021)
-    rows = [f"{t:.4f},{v:.3f}" for t, v in zip(T[kept], (half_sine() + noise())[kept], strict=True)]
+    value = half_sine()
+    kept = (value < 700.0) | (T < 0.021)
+    rows = [f"{t:.4f},{v:.3f}" for t, v in zip(T[kept], value[kept], strict=True)]
     (tmp_path / "a.csv").write_text("\n".join(["time_s,force_N", *rows]))
     with pytest.raises(Refused, match="no sample for"):
-        load_kind("table").run(tmp_path / "a.csv", {"holds": "force"}, source="test")
+        run(tmp_path / "a.csv")
 
 
 def test_a_refusal_draws_the_record(tmp_path, capsys):
-    rows = [f"{t:.4f},{v:.3f}" for t, v in zip(T, noise(), strict=True)]
-    (tmp_path / "a.csv").write_text("\n".join(["time_s,force_N", *rows]))
-    given = ["reduce", "table", str(tmp_path / "a.csv"), "--holds", "force"]
+    path = recorded(tmp_path / "a.csv", noise())
+    given = ["reduce", "table", str(path), "--holds", "force"]
     assert command([*given, "--out", str(tmp_path / "out")]) == 2
     assert (tmp_path / "out/a-table-refused.png").stat().st_size > 5000
     assert "times the noise" in capsys.readouterr().err
 
 
 def test_a_restitution_outside_0_to_1_is_refused(tmp_path):
-    rows = [f"{t:.4f},{v:.3f}" for t, v in zip(T, half_sine() + noise(), strict=True)]
-    (tmp_path / "a.csv").write_text("\n".join(["time_s,force_N", *rows]))
-    given = {"holds": "force", "mass_kg": 0.5, "approach_speed_m_s": 1.0}
+    path = recorded(tmp_path / "a.csv", half_sine())
     with pytest.raises(Refused, match="asks for a restitution of 3"):
-        load_kind("table").run(tmp_path / "a.csv", given, source="test")
-    found = load_kind("table").run(
-        tmp_path / "a.csv", {**given, "approach_speed_m_s": 2.5}, source="test"
-    )
+        run(path, mass_kg=0.5, approach_speed_m_s=1.0)
+    found = run(path, mass_kg=0.5, approach_speed_m_s=2.5)
     assert 0.5 < found.values["restitution"].value < 0.7
 
 

@@ -1,0 +1,170 @@
+"""More records of each kind that was once read wrongly: right now, or refused for the reason."""
+
+import numpy as np
+import pytest
+from dentscope.core.errors import InputError
+from dentscope.reduce.gates import Refused
+from dentscope.reduce.kinds import load_kind
+from dentscope.reduce.sound.file import Sound
+from dentscope.reduce.sound.kind import check_level
+from made_records import T, half_sine, recorded, run, table
+
+AREA = 2 / np.pi * 800.0 * 4e-3
+"""Of the pulse alone [N s]."""
+
+
+def after(at):
+    return np.maximum(T - at, 0.0)
+
+
+@pytest.mark.parametrize(
+    "edge",
+    [
+        700.0 * (T > 0.02) * (T < 0.03) * (1.0 - after(0.02) / 0.02),  # a reset, and a slow decay
+        700.0 * np.clip(after(0.02) / 0.01, 0.0, 1.0) * (T < 0.03),  # a ramp that is cut off
+        700.0 * (T > 0.02) * np.exp(-after(0.02) / 3e-3),  # a filter that settles
+    ],
+    ids=["reset", "ramp", "settling"],
+)
+def test_edges_are_no_pulses(tmp_path, edge):
+    with pytest.raises(Refused, match="edge"):
+        run(recorded(tmp_path / "a.csv", edge + half_sine(0.0)))
+
+
+@pytest.mark.parametrize(
+    ("between", "end", "head"),
+    [("\t", "\n", "Zeit (s)\tKraft (N)"), (";", "\r\n", '"Czas [s]";"Siła [N]"'),
+     (";", "\n", "Temps;Force\n(s);(N)")],
+)  # fmt: skip
+def test_quoted_commas_of_other_programs(tmp_path, between, end, head):
+    rows = [f'"{t:.4f}"{between}"{v:.2f}"' for t, v in zip(T, half_sine(), strict=True)]
+    text = end.join([head, *(row.replace(".", ",") for row in rows)])
+    (tmp_path / "a.csv").write_bytes(text.encode("utf-8-sig"))
+    assert run(tmp_path / "a.csv").values["impulse_N_s"].value == pytest.approx(AREA, abs=0.003)
+
+
+@pytest.mark.parametrize(
+    "level",
+    [
+        np.where(T < 0.01, 600.0, 0.0) + np.where(T > 0.04, 600.0, 0.0),  # stands, hops, stands
+        np.where(T < 0.008, -98.1, 0.0),  # a logger at rest that then falls
+        np.where(T < 0.012, 300.0 * np.cos(80.0 * T), 0.0),  # a swing before it lets go
+    ],
+    ids=["hop", "logger", "swing"],
+)
+def test_the_zero_is_that_just_before_whatever_came_first(tmp_path, level):
+    found = run(recorded(tmp_path / "a.csv", half_sine() + level)).values
+    assert abs(found["peak_force_N"].value - 800.0) < 3.0 * found["peak_force_N"].std + 1.0
+    assert abs(found["impulse_N_s"].value - AREA) < 3.0 * found["impulse_N_s"].std + 0.002
+
+
+@pytest.mark.parametrize(("reach", "part"), [(3e-3, 0.05), (8e-3, 0.06), (2e-3, 0.1)])
+def test_feet_of_other_lengths_are_within_the_error(tmp_path, reach, part):
+    foot = part * 800.0 * np.clip((T - 0.02 + reach) / reach, 0.0, 1.0) * (T < 0.02)
+    found = run(recorded(tmp_path / "a.csv", half_sine() + foot)).values["impulse_N_s"]
+    assert abs(found.value - AREA - 0.5 * part * 800.0 * reach) < 2.5 * found.std < 0.1 * AREA
+
+
+@pytest.mark.parametrize(
+    ("names", "strain_in", "load_in", "given"),
+    [
+        ("Extension,Load\n(mm),(N)", 50.0, 20.0, {"gauge_length_mm": 50.0, "area_mm2": 20.0}),
+        ("Strain,Stress\n(%),(MPa)", 100.0, 1.0, {}),
+        ("Strain (%),Load (kN)", 100.0, 0.02, {"area_mm2": 20.0}),
+    ],
+)
+def test_tension_in_what_a_machine_writes(tmp_path, names, strain_in, load_in, given):
+    strain = np.linspace(0.0, 0.05, 120)
+    stress = np.minimum(200e3 * strain, 300.0 * np.maximum(strain / 1.5e-3, 1.0) ** 0.1)  # MPa
+    rows = [f"{strain_in * e:.6f},{load_in * s:.6f}" for e, s in zip(strain, stress, strict=True)]
+    (tmp_path / "a.csv").write_text("\n".join([names, *rows]))
+    found = run(tmp_path / "a.csv", holds="tension", **given).values
+    assert found["E_Pa"].value == pytest.approx(200e9, rel=0.03)
+    assert found["Sy_Pa"].value == pytest.approx(329e6, rel=0.02)
+
+
+def test_a_machine_that_gives_way_is_in_the_modulus(tmp_path):
+    strain = np.linspace(0.0, 0.05, 120)
+    stress = np.minimum(60e3 * strain, 300.0 + 100.0 * strain)
+    rows = [f"{e:.6f},{s:.6f}" for e, s in zip(strain, stress, strict=True)]
+    (tmp_path / "a.csv").write_text("\n".join(["strain,stress (MPa)", *rows]))
+    found = run(tmp_path / "a.csv", holds="tension", E_Pa=200e9).values["E_Pa"]
+    assert found.value == pytest.approx(60e9, rel=0.02)
+    assert found.std == pytest.approx(140e9, rel=0.02)
+
+
+@pytest.mark.parametrize("bits", [8, 12, 16])
+@pytest.mark.parametrize("cut", [0.55, 0.9])
+def test_a_converter_that_is_full_is_seen_through_the_noise(tmp_path, bits, cut):
+    value, step = half_sine(long=8e-3, noise=2.0), 1600.0 * cut / 2**bits
+    cells = np.round(np.minimum(np.round(value / step), 2 ** (bits - 1) - 1) * step, 4)
+    with pytest.raises(Refused, match="clipped"):
+        run(recorded(tmp_path / "a.csv", cells))
+    whole = np.round(value / step) * step
+    assert run(recorded(tmp_path / "b.csv", whole)).values["peak_force_N"].std < 20.0
+
+
+def train(times, peaks):
+    pulses = zip(times, peaks, strict=True)
+    return half_sine(0.0) + sum(half_sine(p, 1e-3, t, noise=0.0) for t, p in pulses)
+
+
+@pytest.mark.parametrize(
+    ("times", "peaks"),
+    [((0.005, 0.015, 0.025, 0.035), (800, 760, 700, 640)),  # a machine that runs down
+     ((0.005, 0.015, 0.022, 0.038), (800, 700, 780, 660)),  # taps
+     ((0.005, 0.02, 0.035), (700, 800, 750))],  # steps
+)  # fmt: skip
+def test_trains_are_no_impact(tmp_path, times, peaks):
+    with pytest.raises(Refused, match="like pulses"):
+        run(recorded(tmp_path / "a.csv", train(times, peaks)))
+
+
+def test_a_ball_that_bounces_on_is_an_impact(tmp_path):
+    value = train((0.005, 0.019, 0.0295, 0.0374, 0.0433), (800, 580, 450, 330, 240))
+    found = run(recorded(tmp_path / "a.csv", value)).values
+    assert found["impulse_N_s"].value == pytest.approx(2 / np.pi * 800.0 * 1e-3, rel=0.02)
+
+
+@pytest.mark.parametrize(("unit", "rate"), [(1.0, 2.0), (0.5, 1.0), (3.0, 1.0)])
+def test_heights_that_do_not_fall_name_what_would_fit(tmp_path, unit, rate):
+    time = np.arange(0.0, 0.75, 0.004)
+    height = np.abs(1.0 - 4.905 * time**2) * np.where(time < 0.4515, 1.0, 0.0)
+    late = time - 0.4515
+    height = np.where(late > 0.0, 0.8 * 4.429 * late - 4.905 * late**2, height)
+    height += np.random.default_rng(2).normal(0.0, 3e-4, time.size)
+    cells = [f"{unit * h:.6f}" for h in height]
+    path = table(tmp_path / "a.csv", cells, "time_s,height_m", [f"{t / rate:.5f}" for t in time])
+    with pytest.raises(Refused, match="falls with") as told:
+        run(path, holds="height")
+    size = float(told.value.allowed.split("times ")[1].split()[0])
+    assert size == pytest.approx(1.0 / (unit * rate**2), rel=0.02)
+
+
+@pytest.mark.parametrize("kind", ["runs", "waves", "sits down"])
+def test_people_are_no_falling_bodies(tmp_path, kind):
+    rng, time = np.random.default_rng(4), np.arange(0.0, 1.2, 0.01)
+    columns = []
+    for k in range(4):
+        swing = np.sin(2.0 * np.pi * 1.6 * time + rng.uniform(0.0, 6.0))
+        x, lift = {
+            "runs": (3000.0 * time + 250.0 * swing, 90.0 * np.abs(swing)),
+            "waves": (40.0 * swing, 60.0 * k * swing),
+            "sits down": (
+                10.0 * swing,
+                -450.0 / (1.0 + np.exp(-(time - 0.6) / 0.1)) + 4.0 * swing,
+            ),
+        }[kind]
+        columns += [x, 90.0 * k + 0.1 * swing, 400.0 + 300.0 * k + lift]
+    cells = np.column_stack([time, *columns])
+    cells[:, 1:] += rng.normal(0.0, 0.3, (time.size, 12))
+    head = ",".join(["time_s", *(f"m{k}_{a}_mm" for k in range(4) for a in "xyz")])
+    np.savetxt(tmp_path / "a.csv", cells, "%.4f", ",", header=head, comments="")
+    with pytest.raises(InputError, match=r"free flight|falls with|rigid|no impact"):
+        load_kind("mocap").run(tmp_path / "a.csv", {"shape": "body"}, source="test")
+
+
+def test_a_sound_at_full_scale_throughout_is_refused():
+    check_level(Sound(np.zeros(10), 8000.0, 0.05, "a.wav"))
+    with pytest.raises(Refused, match="full scale"):
+        check_level(Sound(np.zeros(10), 8000.0, 0.4, "a.wav"))
