@@ -21,8 +21,8 @@ from .shared.places import folder_option
 if typing.TYPE_CHECKING:
     from pydantic.fields import FieldInfo
 
-    from ..reduce.batch import Job
     from ..reduce.kinds import Kind
+    from .shared.batch import Job
 
 _SETTABLE = (float, int, bool, str, Path)
 
@@ -67,9 +67,9 @@ Out = Annotated[Path, folder_option("Without --into: folder for the numbers and 
 
 def _command(name: str) -> Any:
     """Return the command of a kind: FILE, the kind's options, the conditions of the trial."""
-    from ..reduce.batch import jobs_of
     from ..reduce.kinds import all_kinds, load_kind
     from ..reduce.row import Row
+    from .shared.batch import jobs_of
 
     kind = load_kind(name)
 
@@ -140,7 +140,7 @@ def _reduce_each(
     from rich.progress import track
 
     from ..core.errors import InputError, InputErrors
-    from ..reduce.batch import draw_page
+    from .shared.batch import draw_page
 
     if row.get("trial"):
         raise InputError(

@@ -8,11 +8,11 @@ from collections.abc import Mapping, Sequence
 from pathlib import Path
 from typing import Any, NamedTuple
 
-from ..core.errors import InputError, InputErrors
-from ..core.inputs.csv_table import Problems, read_text_table
-from .images.picture_file import PICTURES, natural_order
-from .kinds import Kind
-from .record import trial_name
+from ...core.errors import InputError, InputErrors
+from ...core.inputs.csv_table import Problems, read_text_table
+from ...reduce.images.picture_file import PICTURES, natural_order
+from ...reduce.kinds import Kind
+from ...reduce.record import trial_name
 
 _FILE = "file"
 
@@ -107,7 +107,7 @@ def draw_page(pictures: Mapping[str, Path], path: Path) -> None:
     """Draw small copies of all pictures on one page, named, for a look at all of them."""
     from matplotlib.image import imread
 
-    from .pictures import figure, save
+    from ...reduce.pictures import figure, save
 
     columns = min(4, len(pictures))
     rows = math.ceil(len(pictures) / columns)
