@@ -164,7 +164,7 @@ def _bounces(
     return tuple(found)
 
 
-def _unsure_contact(bounce: Bounced, gravity: float) -> Bounced:
+def _unsure_contact(bounce: BouncedTimes, gravity: float) -> BouncedTimes:
     """Return a bounce with the error of a contact that is not known, which shortens both flights.
 
     Its root mean square where any order of magnitude is as likely.
