@@ -11,6 +11,7 @@ from numpy.typing import NDArray
 from scipy.stats import norm
 
 from ..recordings import RecordingSet, Severity, audit
+from .choice.apart import apart
 from .choice.odds import NAMED_AT, PRIORS
 from .comparison.forward import Simulator
 from .comparison.problem import Problem
@@ -189,13 +190,15 @@ def limits_of(ranking: Ranking) -> dict[str, float]:
     """Smallest value of each first parameter whose effect would have been named."""
     base = ranking.base
     found = {}
+    forms = (base.linear, apart(base.linear, base, ranking.problem))
     prior = math.log(PRIORS["baseline"] * max(len(ranking.screened), 1) / PRIORS["singles"])
     for s in ranking.screened:
         nats = NAMED_AT + prior + RULES.penalty
         # three nats are what not knowing the parameters costs
         needed = math.sqrt(2.0 * (nats + 3.0))
         p = s.grid.axes[0].parameter
-        size = np.linalg.norm(base.linear.white(s.effect), axis=1)
+        # seen with the law's error in both of its forms
+        size = np.min([np.linalg.norm(a.white(s.effect), axis=1) for a in forms], axis=0)
         n = len(s.grid.fine[0])
         # over the other parameters the typical size
         along = np.median(size.reshape(n, -1), axis=1)

@@ -12,9 +12,17 @@ class DiagnosisRules:
     """The register; `dataclasses.fields` tells the meaning and the source of each."""
 
     penalty: float = rule(
-        3.0, "taken off the ln evidence of every alternative to the baseline [nat]",
-        "Bayes factors up to 20 are what nulls may show; 0 to 4 tried on sets of another make "
-        "(docs/diagnose-method.md, what each stage wins)",
+        1.5, "taken off the ln evidence of every alternative to the baseline [nat]",
+        "0 to 3 tried on 55 sets of another make and 18 of the generators of the proof: between 1 "
+        "and 2 the probabilities hold and no `adequate` is false (docs/diagnose-method.md)",
+    )  # fmt: skip
+    misfit: float = rule(
+        0.01, "share by chi2, the law's error apart, below which a leader does not fit [-]",
+        "the usual level; of the textbook rule that the diagnosis is compared with",
+    )  # fmt: skip
+    kept: float = rule(
+        0.2, "part of its probability that such a leader keeps, the rest goes outside [-]",
+        "0.1 to 0.6 tried on the same sets: no name from outside the library up to 0.2",
     )  # fmt: skip
     refuted: float = rule(
         0.05, "share of a single's own sets that fit no better, below which pairs are tried [-]",

@@ -12,7 +12,7 @@ from ..inference.fit import Fit
 from ..rank import Nameless, Ranking
 from ..rules import RULES
 from .decide import Choice, decide
-from .odds import OUTSIDE, Odds, odds_of, shares_outside
+from .odds import OUTSIDE, Odds, odds_apart, odds_of, pooled, shares_outside
 from .outside import odd_repeats, outside_of
 from .own_sets import FitTest, fit_test
 from .thresholds import Nulls
@@ -58,11 +58,15 @@ class Judge:
         return cls(whole, share, nulls)
 
     def odds(self, ranking: Ranking, sampled: Mapping[str, float] | None = None) -> Odds:
-        """Return the probabilities of the explanations of a ranking."""
-        return odds_of(
+        """Return the probabilities of the explanations of a ranking.
+
+        The mean over two forms of the law's error: inside the law, and apart in every number.
+        """
+        inside = odds_of(
             ranking, self.outside, sampled=sampled,
             beside=lambda fitted: self.test(fitted).log_odds,
         )  # fmt: skip
+        return pooled(inside, odds_apart(ranking))
 
     def test(self, fitted: Fit) -> FitTest:
         """Return how an explanation fits, beside the sets that it makes itself."""
@@ -80,7 +84,7 @@ class Judge:
         choice = decide(ranking, odds, drifts=ranking.problem.drifts)
         if choice.verdict != OUTSIDE:
             return choice
-        near = [f for f in ranking.fits if odds.beside.get(f.name, 0.0) > _ALIKE * odds.outside]
+        near = [f for f in ranking.fits[1:] if odds.beside.get(f.name, 0.0) > _ALIKE * odds.outside]
         free = 1.0 - sum(odds.beside.values()) / odds.outside
         share = {n: free * self.nameless[n.screened.mechanism.name] for n in ranking.nameless}
         alike = [n for n in ranking.nameless if share[n] > _ALIKE]

@@ -11,6 +11,7 @@ from scipy.special import logsumexp
 from ..inference.fit import Fit
 from ..rank import Ranking
 from ..rules import RULES
+from .apart import weighed
 
 OUTSIDE = "outside-library"
 PRIORS = {"baseline": 0.5, "singles": 0.34, "pairs": 0.06, OUTSIDE: 0.1}
@@ -23,6 +24,8 @@ BESIDE = (
 )
 """Odds that something outside the library acts beside what is named: as likely as a second
 mechanism is beside a first one, and outside as often as a first one is."""
+ALONE = PRIORS[OUTSIDE] / PRIORS["baseline"]
+"""The same beside nothing: odds of something outside where no mechanism is named."""
 WORTH_TELLING = 0.01
 """Probability of an explanation from which something may act beside it."""
 SURE = 0.93
@@ -96,31 +99,65 @@ def odds_of(
         have some probability.
     """
     base = ranking.base.log_evidence
-    gained = {f.name: f.log_evidence - base for f in (*ranking.singles, *ranking.pairs)}
-    for s in ranking.screened:
-        gained.setdefault(s.mechanism.name, s.log_bayes)
+    gained = {s.mechanism.name: s.log_bayes for s in ranking.screened}
+    gained |= {f.name: f.log_evidence - base for f in ranking.fits}
     gained |= {k: v for k, v in (sampled or {}).items() if k in gained}
-    alone = [s.mechanism.name for s in ranking.screened]
-    n = max(len(alone), 1)
-    log = {"baseline": math.log(PRIORS["baseline"])}
+    log, names = _weights(ranking, gained)
     log[OUTSIDE] = outside + math.log(PRIORS[OUTSIDE])
-    names: dict[str, tuple[str, ...]] = {"baseline": (), OUTSIDE: ()}
-    for label, more in gained.items():
-        names[label] = tuple(label.split("+"))
-        share = PRIORS["singles"] / n
-        if len(names[label]) > 1:
-            share = PRIORS["pairs"] / max(n * (n - 1) // 2, 1)
-        log[label] = more + math.log(share) - RULES.penalty
     found = _normalised(log.items())
-    likely = [f for f in (*ranking.singles, *ranking.pairs) if found[f.name] > WORTH_TELLING]
+    likely = [f for f in ranking.fits if found[f.name] > WORTH_TELLING]
     if beside is None or not likely:
         return Odds(names, found)
-    parts = {f.name: log[f.name] + math.log(BESIDE) + beside(f) for f in likely}
+    parts = {
+        f.name: log[f.name] + math.log(BESIDE if f.mechanisms else ALONE) + beside(f)
+        for f in likely
+    }
     log[OUTSIDE] = float(logsumexp([log[OUTSIDE], *parts.values()]))
     found = _normalised(log.items())
     return Odds(
         names, found, {k: found[OUTSIDE] * math.exp(x - log[OUTSIDE]) for k, x in parts.items()}
     )
+
+
+def odds_apart(ranking: Ranking) -> Odds:
+    """Return the same with the law's error apart in every number (`apart`).
+
+    Something outside has its prior, and most where what leads does not fit.
+    """
+    each = weighed(ranking)
+    base = each["baseline"].log_evidence
+    log, names = _weights(ranking, {k: w.log_evidence - base for k, w in each.items()})
+    found = _normalised(log.items())
+    inside = 1.0 - PRIORS[OUTSIDE]
+    if each[next(iter(found))].log_p < math.log(RULES.misfit):
+        inside *= RULES.kept
+    found = {k: inside * p for k, p in found.items()} | {OUTSIDE: 1.0 - inside}
+    return Odds(names, found)
+
+
+def pooled(one: Odds, other: Odds) -> Odds:
+    """Return the mean of two, which are as likely to be right."""
+    mean = {k: 0.5 * (p + other.probability[k]) for k, p in one.probability.items()}
+    mean = dict(sorted(mean.items(), key=lambda item: -item[1]))
+    return Odds(one.names, mean, {k: 0.5 * p for k, p in one.beside.items()})
+
+
+def _weights(
+    ranking: Ranking, gained: Mapping[str, float]
+) -> tuple[dict[str, float], dict[str, tuple[str, ...]]]:
+    """Ln of prior times evidence, less the penalty, and the mechanisms of each label."""
+    n = max(len(ranking.screened), 1)
+    log = {"baseline": math.log(PRIORS["baseline"])}
+    names: dict[str, tuple[str, ...]] = {"baseline": (), OUTSIDE: ()}
+    for label, more in gained.items():
+        if label == "baseline":
+            continue
+        names[label] = tuple(label.split("+"))
+        share = PRIORS["singles"] / n
+        if len(names[label]) > 1:
+            share = PRIORS["pairs"] / max(n * (n - 1) // 2, 1)
+        log[label] = more + math.log(share) - RULES.penalty
+    return log, names
 
 
 def _normalised(logs: Iterable[tuple[str, float]]) -> dict[str, float]:

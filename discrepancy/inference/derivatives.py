@@ -18,8 +18,8 @@ Array = NDArray[np.float64]
 
 STEP = 0.3
 _SPEED_STEP, _ANGLE_STEP = 0.01, 0.01
-FORM_SPREAD = 0.5
-"""Standard deviation of the logarithm of how far forms differ: not known better than that."""
+FORM_SPREAD = 0.8
+"""Standard deviation of the logarithm of how far forms differ: a quarter of it or four times."""
 FORMS = Sizes(
     tuple(math.exp(k * math.sqrt(3.0) * FORM_SPREAD) for k in (-1, 0, 1)), (1 / 6, 2 / 3, 1 / 6)
 )

@@ -1,4 +1,4 @@
-"""A flat, worn or cut, ends the tip's curvature."""
+"""A flat at the tip's end, or an edge around it, ends the tip's curvature."""
 
 from __future__ import annotations
 
@@ -13,16 +13,24 @@ from .base import Literature, Mechanism, Parameter, Situation, Surroundings, Val
 
 
 class TruncatedTip(Mechanism):
-    """A flat, worn or cut, ends the tip's curvature."""
+    """A flat at the tip's end, or an edge around it, ends the tip's curvature."""
 
     name = "truncated-tip"
-    title = "the tip is flat at its end"
-    equations = "a (a^2 - b^2)^(1/2) = R d elastically; the law at d + b^2/(2R) once it yields"
+    title = "the tip is flat at its end, or its curvature stops at an edge"
+    equations = (
+        "a (a^2 - b^2)^(1/2) = R d elastically; the law at d + b^2/(2R) once it yields; a <= c, "
+        "beyond it dF/dd = 2 E' c up to a punch's plastic limit"
+    )
     parameters = (
         Parameter(
             "flat_radius_over_R", "-", 0.003, 0.12, "log", 0.0,
-            "0.05-1 mm on tips of 9 mm: handling wear to a turned-off centre",
+            "0.05-1 mm on tips of 9 mm: handling wear to a turned-off centre", nodes=5,
             literature=Literature(0.03, "the middle of that range"),
+        ),
+        Parameter(
+            "edge_radius_over_radius", "-", 0.1, 1.0, "log", math.inf,
+            "of the rod's radius: from a narrow land left by turning to no chamfer at all", nodes=5,
+            literature=Literature(1.0, "a tip that reaches the rod's side"),
         ),
     )  # fmt: skip
     direction: ClassVar[Mapping[str, int]] = {
@@ -47,4 +55,8 @@ class TruncatedTip(Mechanism):
         if scene.striker.length == 0.0:
             return scene
         flat = math.hypot(b, scene.striker.tip_flat_radius)
-        return scene.with_(striker=replace(scene.striker, tip_flat_radius=flat))
+        edge = min(scene.force.edge, values["edge_radius_over_radius"] * scene.striker.radius)
+        return scene.with_(
+            striker=replace(scene.striker, tip_flat_radius=flat),
+            force=replace(scene.force, edge=edge),
+        )

@@ -50,17 +50,18 @@ def headline(v: Verdict) -> str:
             "The simulation as described fails, and nothing that dentscope knows repairs it: the "
             "cause is something else."
         )
+    missing = 1.0 - v.probabilities["baseline"]
+    sure = f"Something is missing ({percent(missing)}), but " if missing > SURE else ""
     if any(reason.startswith("too few") for reason in v.reasons):
-        missing = 1.0 - v.probabilities["baseline"]
-        if missing > SURE:
-            return f"Something is missing ({percent(missing)}), but too few data to say what."
-        return "Too few data to say."
+        return f"{sure}too few data to say what." if sure else "Too few data to say."
     leads = list(v.probabilities.items())[:_LEADING]
     likely = ", ".join(f"{explanation(name)} {percent(p)}" for name, p in leads)
-    return (
-        "These data do not say whether something is missing, or what. What leads, by probability: "
-        f"{likely}."
+    unclear = (
+        f"{sure}these data do not say what."
+        if sure
+        else "These data do not say whether something is missing, or what."
     )
+    return f"{unclear} What leads, by probability: {likely}."
 
 
 def nowhere(v: Verdict) -> str:

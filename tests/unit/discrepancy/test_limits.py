@@ -8,6 +8,7 @@ import pytest
 from dentscope.discrepancy.choice.odds import NAMED_AT, PRIORS
 from dentscope.discrepancy.estimates import limits_of
 from dentscope.discrepancy.inference.grid import Axis, Grid
+from dentscope.discrepancy.inference.linear import Linear
 from dentscope.discrepancy.mechanisms.base import Parameter
 from dentscope.discrepancy.rules import RULES
 
@@ -29,7 +30,8 @@ def test_limit_is_the_value_nearest_to_doing_nothing(low, high, scale, neutral, 
     grid = Grid((Axis("m", own),))
     found = limits_of(
         SimpleNamespace(
-            base=SimpleNamespace(linear=SimpleNamespace(white=lambda e: e)),
+            base=SimpleNamespace(linear=Linear(np.eye(1), np.zeros((1, 0)))),
+            problem=SimpleNamespace(n_nuisances=0),
             screened=[
                 SimpleNamespace(
                     mechanism=SimpleNamespace(name="m", parameters=(None,)), grid=grid,

@@ -93,3 +93,9 @@ def test_undetermined_says_what_leads() -> None:
     told = headline(said("undetermined", 0.32, Located((), (), 3.0)))
     assert "nothing is missing 32 %" in told
     assert "68 %" in told
+
+
+def test_what_is_missing_for_sure_is_said_though_not_what() -> None:
+    told = headline(said("undetermined", 0.001, Located((), (), 3.0)))
+    assert told.startswith("Something is missing (more than 99 %), but these data do not say what.")
+    assert "What leads, by probability: " in told

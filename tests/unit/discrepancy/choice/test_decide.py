@@ -207,6 +207,15 @@ def test_what_its_own_sets_refute_gives_its_probability_to_something_outside(toy
     assert sum(found.probability.values()) == pytest.approx(1.0)
 
 
+def test_the_baseline_is_asked_as_what_is_named_is(toy) -> None:
+    """A baseline that its own sets refute says that something outside acts."""
+    base = toy.fit_of(ZERO)
+    ranking = toy.ranking_of(toy.problem([0.0] * CELLS), base)
+    found = odds_of(ranking, -math.inf, beside=lambda fitted: math.log(3.0))
+    asked = 3.0 * PRIORS[OUTSIDE]
+    assert found.outside == pytest.approx(asked / (asked + PRIORS["baseline"]))
+
+
 def test_a_name_that_does_not_fit_is_told_beside_something_outside(toy) -> None:
     """Two cells of 30 and -30 deviations, of which the only mechanism takes up the first."""
     data = (30.0, -30.0, *ZERO[2:])
