@@ -5,7 +5,7 @@ reduces each to numbers, a record and a picture in a child that is watched (test
 a traceback, a number that is none, more than 20 s of the processor or more than 1 GB is a fault.
 Where `fuzz.py --raw` damages sound files, here the grammar is drawn: separators, marks of
 decimals, headers, clocks, cells that are no number, exports of trackers, widths and rates of
-sounds, sizes and depths of pictures. The seeded short form is in tests/faults/test_faults.py.
+sounds, sizes and depths of pictures.
 """
 
 import argparse

@@ -12,7 +12,6 @@ from pathlib import Path
 import bit_flips
 import disk_faults
 import fuzz
-import fuzz_raw
 import pytest
 from dentscope.campaigns import read_curves
 from dentscope.core import InputError
@@ -79,15 +78,6 @@ def test_damaged_raw_recordings_are_reduced_or_refused_in_a_line():
     assert faults == []
     assert sum(found.total() for found in counts.values()) == 46
     assert {"read", "refused with a line"} <= set(sum(counts.values(), Counter()))
-
-
-def test_raw_files_of_a_drawn_grammar_are_reduced_or_refused_in_a_line():
-    counts, faults, most = fuzz_raw.run(44, 3)
-    assert faults == []
-    assert {name: found.total() for name, found in counts.items()} == dict.fromkeys(
-        fuzz_raw.FILES, 4
-    )
-    assert most < fuzz.MEMORY_MB
 
 
 @pytest.mark.parametrize("name", ["../victim", "sub/../../victim", "link/victim", "\0", 400 * "x"])
