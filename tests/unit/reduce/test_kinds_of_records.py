@@ -2,9 +2,7 @@
 
 import numpy as np
 import pytest
-from dentscope.core.errors import InputError
 from dentscope.reduce.gates import Refused
-from dentscope.reduce.kinds import load_kind
 from dentscope.reduce.sound.file import Sound
 from dentscope.reduce.sound.kind import check_level
 from made_records import T, half_sine, recorded, run, table
@@ -139,29 +137,6 @@ def test_heights_that_do_not_fall_name_what_would_fit(tmp_path, unit, rate):
         run(path, holds="height")
     size = float(told.value.allowed.split("times ")[1].split()[0])
     assert size == pytest.approx(1.0 / (unit * rate**2), rel=0.02)
-
-
-@pytest.mark.parametrize("kind", ["runs", "waves", "sits down"])
-def test_people_are_no_falling_bodies(tmp_path, kind):
-    rng, time = np.random.default_rng(4), np.arange(0.0, 1.2, 0.01)
-    columns = []
-    for k in range(4):
-        swing = np.sin(2.0 * np.pi * 1.6 * time + rng.uniform(0.0, 6.0))
-        x, lift = {
-            "runs": (3000.0 * time + 250.0 * swing, 90.0 * np.abs(swing)),
-            "waves": (40.0 * swing, 60.0 * k * swing),
-            "sits down": (
-                10.0 * swing,
-                -450.0 / (1.0 + np.exp(-(time - 0.6) / 0.1)) + 4.0 * swing,
-            ),
-        }[kind]
-        columns += [x, 90.0 * k + 0.1 * swing, 400.0 + 300.0 * k + lift]
-    cells = np.column_stack([time, *columns])
-    cells[:, 1:] += rng.normal(0.0, 0.3, (time.size, 12))
-    head = ",".join(["time_s", *(f"m{k}_{a}_mm" for k in range(4) for a in "xyz")])
-    np.savetxt(tmp_path / "a.csv", cells, "%.4f", ",", header=head, comments="")
-    with pytest.raises(InputError, match=r"free flight|falls with|rigid|no impact"):
-        load_kind("mocap").run(tmp_path / "a.csv", {"shape": "body"}, source="test")
 
 
 def test_a_sound_at_full_scale_throughout_is_refused():
