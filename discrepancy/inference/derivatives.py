@@ -104,7 +104,8 @@ def derivatives(
             mechanisms, _effects(simulator, mechanisms, values, z, here), strict=True
         )
     ])  # fmt: skip
-    form = np.hstack([form, *_scaled(simulator, mechanisms, values, z, here)])
+    # of known size, other than what the forms may be off
+    noise = noise + sum(x @ x.T for x in _scaled(simulator, mechanisms, values, z, here))
     wider = max(m.law_error for m in mechanisms)
     if wider > 1.0:
         form = np.hstack([form, math.sqrt(wider**2 - 1.0) * J[:, problem.n_nuisances :]])

@@ -24,6 +24,7 @@ CHOICES = {
     ("impact/batch.py", "_NOTHING"): "what a normal impact without vibration lacks",
     ("discrepancy/metal/estimate.py", "MARKS"): "which observables are marks left in a metal",
     ("impact/told/discrete_elements.py", "HEAD"): "columns beside a law's parameters",
+    ("impact/told/band.py", "SWEPT"): "which numbers of a sweep have a band",
     ("impact/told/draw.py", "SWEPT"): "which observables a figure shows",
 }
 """Tuples that choose or order observables and say nothing of them."""

@@ -78,12 +78,15 @@ def test_kogut_and_etsion_meet_hertz_at_first_yield_and_their_own_branches():
 
 
 def test_the_command_measures_writes_and_answers_with_its_exit_code(tmp_path, capsys):
-    from dentscope.cli.workshop.verify import EXIT_MISSED, verify
+    from dentscope.cli import run
+    from dentscope.cli.workshop.verify import EXIT_MISSED
     from dentscope.studies.verification import Measurement, Result
     from dentscope.studies.verification.result import write_result
 
     folder, report = tmp_path / "build", tmp_path / "docs" / "verification.md"
-    assert verify(["objectivity"], True, False, False, folder, report) == 0
+    asked = ["verify", "--only", "objectivity", "--quick", "--folder", str(folder)]
+    asked += ["--report", str(report)]
+    assert run(asked) == 0
     assert "Objectivity" in report.read_text()
     missed = Result(
         name="objectivity", title="t", about="a", effort="quick",
@@ -91,5 +94,5 @@ def test_the_command_measures_writes_and_answers_with_its_exit_code(tmp_path, ca
         measurements=(Measurement("x", 2.0, "", None, 1.0),),
     )  # fmt: skip
     write_result(missed, folder / "results" / "objectivity-quick.json")
-    assert verify(["objectivity"], True, False, False, folder, report) == EXIT_MISSED
+    assert run(asked) == EXIT_MISSED
     assert "missed: objectivity: x: 2" in capsys.readouterr().out
