@@ -108,6 +108,11 @@ class ImpactRules:
         0.02, "step of a logarithm for the slopes [-]",
         "chosen; no measurement is kept",
     )  # fmt: skip
+    band_steps: int = rule(
+        4000, "most steps of a blow that is made for a band alone [-]",
+        "usual blows take some 200, a vibrating rod 2000; benchmarks/fuzz_keys.py ended in no "
+        "30 s with five times that",
+    )  # fmt: skip
     largest_error: float = rule(
         1.0, "largest error of a law, of a logarithm [-]",
         "beyond it a law is off by a factor",

@@ -141,13 +141,20 @@ def _polynomials(
         off = np.abs(np.einsum("bp,npc->nbc", _CHECK, own) - between)
         for column in relative:
             off[..., column] /= np.abs(between[..., column])
-    known = np.asarray(np.isfinite(values).all(axis=(1, 2)))
+        # a cell too narrow for its powers holds nothing
+        whole = np.isfinite(_scaled(own, width)).all(axis=(1, 2))
+    known = np.asarray(np.isfinite(values).all(axis=(1, 2)) & whole)
     return own, off.max(axis=1), known
+
+
+def _scaled(own: Array, width: Array) -> Array:
+    """Coefficients by the distance from a cell's left end, in place of parts of its width."""
+    return np.asarray(own / width[:, None, None] ** np.arange(_ORDER)[None, :, None])
 
 
 def _packed(left: Array, width: Array, own: Array, high: float, bins: int) -> Array:
     """Put cells, with a linear one before and one behind, into one vector."""
-    scaled = own / width[:, None, None] ** np.arange(_ORDER)[None, :, None]
+    scaled = _scaled(own, width)
     first, last = np.zeros((2, _ORDER, own.shape[2]))
     first[:2] = scaled[0, :2]
     last[0] = own[-1].sum(axis=0)

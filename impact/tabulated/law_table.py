@@ -200,7 +200,10 @@ def _table(law: ContactLaw, par: Array, R: float, error: float) -> TableCells:
         octave = np.minimum(np.floor(x), count - 1)
         depth = np.ldexp(first * (1.0 + (x - octave)), octave.astype(int))
         out = np.empty((len(x), _COLUMNS))
-        _ask(*_functions(kernels), par, depth, out)
+        try:
+            _ask(*_functions(kernels), par, depth, out)
+        except ZeroDivisionError:  # beyond what the law has a number for
+            out[:] = np.nan
         return out
 
     return cells_of(

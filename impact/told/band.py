@@ -10,7 +10,7 @@ from __future__ import annotations
 
 import math
 import warnings
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, fields, replace
 from types import SimpleNamespace
 from typing import TYPE_CHECKING, Any, NamedTuple
@@ -99,7 +99,8 @@ def band_of(setup: Setup, law: ContactLaw) -> Band:
         parts[key] = {n: 0.5 * (ends[0][n] - ends[1][n]) / share for n in ends[0]}
     found_now, scene = last_blow(setup, law), setup.scene(law)
     of_law, of_metal = _sizes_of(setup, scene, found_now)
-    slopes, pressure = _slopes(setup, law), largest_mean_pressure(scene, found_now)
+    slopes = _slopes(setup, law, _acting([(of_law, of_metal)]))
+    pressure = largest_mean_pressure(scene, found_now)
     for name, sizes in ((LAW, of_law), (METALS, of_metal)):
         parts[name] = _combined(sizes, slopes, found_now)
         parts[name][PRESSURE] = pressure * math.hypot(sizes.force, 2.0 * sizes.radius)
@@ -123,13 +124,15 @@ def idle(setup: Setup, band: Band) -> list[tuple[str, float]]:
 def last_blow(setup: Setup, law: ContactLaw, force: ForceTransform | None = None) -> Impact:
     """Return the last of the set-up's repeats, each on the spot of the one before.
 
-    `force` takes the place of the scene's.
+    `force` takes the place of the scene's; such a blow, for a band, has fewer steps to end in.
     """
     scene = setup.scene(law)
+    settings = setup.settings
     if force is not None:
-        scene = scene.with_(force=force)
+        steps = min(settings.max_steps, RULES.band_steps)
+        scene, settings = scene.with_(force=force), replace(settings, max_steps=steps)
     for _ in range(setup.repeats):
-        found = strike(scene, setup.settings)
+        found = strike(scene, settings)
         scene = scene.with_(spot=found.spot)
     return found
 
@@ -245,14 +248,26 @@ def _changed(stated: ForceTransform, k: int, step: float) -> ForceTransform:
     return replace(stated, factors=loading, recovery_factors=back, shape=stated.shape + by[2])
 
 
-def _slopes(setup: Setup, law: ContactLaw) -> list[dict[str, float]]:
+def _acting(sizes: Sequence[tuple[_Sizes, _Sizes]]) -> tuple[bool, ...]:
+    """Which of force, recovery and exponent are off at all."""
+    return tuple(any(one[k] > 0.0 for both in sizes for one in both) for k in range(3))
+
+
+def _slopes(setup: Setup, law: ContactLaw, acting: Sequence[bool]) -> list[dict[str, float]]:
     """Change of each field by the logarithm of force and recovery, and by the exponent."""
     stated, slopes = setup.scene(law).force, []
     for k in range(3):
-        ends = [
-            _values(last_blow(setup, law, _changed(stated, k, step)))
+        if not acting[k]:
+            slopes.append(dict.fromkeys(_NUMBERS, 0.0))
+            continue
+        blows = [
+            last_blow(setup, law, _changed(stated, k, step))
             for step in (RULES.band_step, -RULES.band_step)
         ]
+        if not all(blow.outcome.completed for blow in blows):
+            slopes.append(dict.fromkeys(_NUMBERS, math.nan))
+            continue
+        ends = [_values(blow) for blow in blows]
         slopes.append({n: (ends[0][n] - ends[1][n]) / (2.0 * RULES.band_step) for n in _NUMBERS})
     return slopes
 
@@ -265,27 +280,35 @@ def swept_stds(setup: Setup, law: ContactLaw, found: Impacts) -> dict[str, Array
     setup, law
         The set-up with its sweep.
     found
-        What the sweep gave by this law.
+        What the sweep gave by this law; without one that did not end, there is none.
     """
+    if not all(found["outcome"] == "completed"):
+        return {}
     variance = {name: np.zeros(len(found)) for name in SWEPT}
     for _, share, up, down in _shifted(setup, law):
         ends = up.swept(law), down.swept(law)
         for name in SWEPT:
             variance[name] += (0.5 * (ends[0][name] - ends[1][name]) / share) ** 2
-    scene, slopes = setup.scene(law), []
-    for k in range(3):
+    scene, slopes, rows = setup.scene(law), [], list(found.rows())
+    sizes = [
+        _sizes_of(setup, scene, SimpleNamespace(**values, residual_flat_m=values[_CRATER]))
+        for values in rows
+    ]
+    for k, acts in enumerate(_acting(sizes)):
+        if not acts:
+            slopes.append({name: np.zeros(len(rows)) for name in SWEPT})
+            continue
         one, two = (
             setup.swept(law, force=_changed(scene.force, k, step))
             for step in (RULES.band_step, -RULES.band_step)
         )
         slopes.append({name: (one[name] - two[name]) / (2.0 * RULES.band_step) for name in SWEPT})
-    for row, values in enumerate(found.rows()):
-        blow = SimpleNamespace(**values, residual_flat_m=values[_CRATER])
-        for sizes in _sizes_of(setup, scene, blow):
+    for row, values in enumerate(rows):
+        for part in sizes[row]:
             for name in SWEPT:
-                by = (s * slope[name][row] for s, slope in zip(sizes, slopes, strict=False))
+                by = (s * slope[name][row] for s, slope in zip(part, slopes, strict=False))
                 variance[name][row] += sum(x * x for x in by)
-            variance[_CRATER][row] += (sizes.crater * values[_CRATER]) ** 2
+            variance[_CRATER][row] += (part.crater * values[_CRATER]) ** 2
     return {name: np.sqrt(x) for name, x in variance.items()}
 
 

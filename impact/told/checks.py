@@ -59,8 +59,8 @@ def _onset(scene: Scene, found: Impact) -> Iterator[str]:
         f"first yield at {speed:.3g} m/s; here {scene.approach.speed / speed:.3g} times that "
         f"({regime}); {mean}{over}"
     )
-    if scene.approach.speed > speed:
-        radius = float(scene.law.contact_radius(pair, found.peak_depth_m))
+    radius = float(scene.law.contact_radius(pair, found.peak_depth_m))
+    if scene.approach.speed > speed and radius > 0.0:
         rate = RULES.indentation_rate * scene.approach.speed / radius
         yield (
             f"strain rate about {rate:.2g} 1/s: a strength measured slowly lacks what the metal's "
