@@ -108,6 +108,10 @@ class ImpactRules:
         0.02, "step of a logarithm for the slopes [-]",
         "chosen; no measurement is kept",
     )  # fmt: skip
+    scan_samples: float = rule(
+        1e6, "most samples of a scan across a dent [-]",
+        "3 m at the usual step; a law that is far out of its range may give a dent without end",
+    )  # fmt: skip
     band_steps: int = rule(
         4000, "most steps of a blow that is made for a band alone [-]",
         "usual blows take some 200, a vibrating rod 2000; benchmarks/fuzz_keys.py ended in no "

@@ -51,6 +51,7 @@ MOST = RULES.imprints
 """Imprints that are kept apart; beyond it the two nearest become one."""
 N_SURFACE = N_HEAD + MOST * N_IMPRINT
 
+_SAMPLES = RULES.scan_samples
 _STEEPEST = RULES.steepest_wall
 _PLAIN = {"cache": True, "_nrt": False, "error_model": "numpy"}
 _PAIR = types.UniTuple(float64, 2)
@@ -322,6 +323,7 @@ def scar(surface, step, level):
         last = max(last, surface[at + LAST], surface[at + END] + _STEEPEST * radius)
         wide = max(wide, radius)
     far = last - first
+    step = max(step, far / _SAMPLES)
     length = far - _edge(surface, first, 0.0, -step, 0.0, far, level)
     length -= _edge(surface, last, 0.0, step, 0.0, far, level)
     width = 2.0 * (wide - _edge(surface, place, wide, 0.0, step, wide, level))
