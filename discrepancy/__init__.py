@@ -5,8 +5,8 @@
 
 from __future__ import annotations
 
+from ..impact.mechanisms import MECHANISMS, Mechanism, Parameter
 from .findings import Verdict
-from .mechanisms import MECHANISMS, Mechanism, Parameter
 from .verdict import diagnose
 
 __all__ = ["MECHANISMS", "Mechanism", "Parameter", "Verdict", "diagnose"]

@@ -8,6 +8,8 @@ from dataclasses import dataclass, replace
 import numpy as np
 from numpy.typing import NDArray
 
+from ..impact.mechanisms import MECHANISMS, NAMELESS
+from ..impact.mechanisms.base import Mechanism
 from .comparison.forward import Simulator
 from .comparison.problem import Problem
 from .inference.fit import Fit, baseline_situations, fit, grid_of
@@ -15,8 +17,6 @@ from .inference.grid import Grid
 from .inference.outliers import outlying, without_weight
 from .inference.together import responses_at
 from .inference.window import sharpened
-from .mechanisms import MECHANISMS, NAMELESS
-from .mechanisms.base import Mechanism
 
 Array = NDArray[np.float64]
 Progress = Callable[[str], None]

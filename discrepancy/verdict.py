@@ -11,6 +11,8 @@ from collections.abc import Sequence
 import numpy as np
 
 from ..core.processes.threads import in_one_thread
+from ..impact.mechanisms import MECHANISMS, NAMELESS, Mechanism
+from ..impact.mechanisms.own import own_mechanisms, uncovered
 from ..recordings import RecordingSet
 from .baseline.laws import LawChoice
 from .choice.judge import Judge
@@ -37,8 +39,6 @@ from .findings import Verdict
 from .heldout import held_out
 from .inference.sampling import confirm_evidence
 from .locate import locate
-from .mechanisms import MECHANISMS, NAMELESS, Mechanism
-from .mechanisms.own import own_mechanisms, uncovered
 from .rank import Progress, rank
 
 NULLS = 500

@@ -27,9 +27,9 @@ from ..discrepancy.choice.odds import OUTSIDE
 from ..discrepancy.comparison.forward import Simulator
 from ..discrepancy.comparison.problem import Problem, problem_of
 from ..discrepancy.inference.fit import Fit, baseline_situations, fit
-from ..discrepancy.mechanisms import MECHANISMS, Mechanism
 from ..discrepancy.rank import screen
 from ..discrepancy.unknowns.lawerror import NO_ERROR
+from ..impact.mechanisms import MECHANISMS, Mechanism
 from ..recordings import RecordingSet, read
 
 Array = NDArray[np.float64]

@@ -10,11 +10,11 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.special import logsumexp
 
+from ...impact.mechanisms.base import Mechanism
 from ..comparison.forward import Simulator
 from ..inference.fit import fit_anchored
 from ..inference.grid import Grid
 from ..inference.together import mutual
-from ..mechanisms.base import Mechanism
 from ..rank import Progress, Ranking, Screened, sharpened_leading
 
 Array = NDArray[np.float64]

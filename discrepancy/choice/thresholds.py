@@ -14,12 +14,12 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ...impact import Scene
+from ...impact.mechanisms.arithmetic import deepest
 from ...impact.strength import strength_table
 from ..comparison.cells import compared
 from ..comparison.forward import Point, Simulator
 from ..comparison.problem import Problem
 from ..inference.fit import Fit
-from ..mechanisms.arithmetic import deepest
 from ..nulls import Rig, discrepancies, scatter
 from ..nulls.laws import NullReference
 from ..nulls.motion import NullBodies

@@ -10,9 +10,9 @@ from numpy.typing import NDArray
 
 from ...core.rig import value_of
 from ...impact import Press
+from ...impact.mechanisms.base import Surroundings
 from ...recordings import RecordingSet
 from ...recordings.noise import bins
-from ..mechanisms.base import Surroundings
 
 Ints = NDArray[np.intp]
 

@@ -13,9 +13,9 @@ from numpy.typing import NDArray
 
 from ...core.observables import OBSERVABLES
 from ...impact import Scene, Settings, dent_radius, pressed, strike_batch, strike_many
+from ...impact.mechanisms.base import Constants, Mechanism, Situation, attached, observed
 from ...impact.walk import layout as c
 from ...models.base import DomainWarning
-from ..mechanisms.base import Constants, Mechanism, Situation, attached, observed
 from .cells import compared
 from .problem import Problem
 

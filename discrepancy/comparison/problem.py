@@ -15,11 +15,11 @@ from ...core.material import Pair
 from ...core.observables import OBSERVABLES
 from ...impact import CREEP, Approach, ForceTransform, Friction, Press, Scene, Striker
 from ...impact.files.bodies import bodies_of
+from ...impact.mechanisms.arithmetic import as_deep, deepest
 from ...models.base import ContactLaw
 from ...recordings import RecordingSet
 from ..baseline.laws import LawChoice, laws_of, without_curves
 from ..curves import readings_of
-from ..mechanisms.arithmetic import as_deep, deepest
 from ..unknowns.drift import Drift
 from ..unknowns.followed import Followed
 from ..unknowns.lawerror import NO_ERROR, LawError, law_error

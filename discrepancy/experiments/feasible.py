@@ -10,10 +10,10 @@ import numpy as np
 
 from ...core.inputs.rig_numbers import solid_inertia
 from ...impact import CREEP, Press, Scene
+from ...impact.mechanisms.arithmetic import as_deep, deepest
 from ...impact.strength import strength_table
 from ..comparison.conditions import Condition
 from ..comparison.problem import Problem
-from ..mechanisms.arithmetic import as_deep, deepest
 
 _SPEEDS, _ANGLES = 5, 4
 """Places over the tested range of speeds and of angles."""

@@ -8,9 +8,9 @@ from collections.abc import Sequence
 import numpy as np
 from numpy.typing import NDArray
 
+from ...impact.mechanisms.base import Constants, Mechanism
 from ..comparison.forward import Point, Simulator
 from ..comparison.problem import Problem
-from ..mechanisms.base import Constants, Mechanism
 from ..unknowns.covariates import nearness, same_observable
 from .linear import Linear, Sizes
 

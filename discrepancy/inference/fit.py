@@ -13,9 +13,9 @@ from dataclasses import dataclass, replace
 import numpy as np
 from numpy.typing import NDArray
 
+from ...impact.mechanisms.base import Mechanism, Situation
 from ..comparison.forward import Point, Simulator
 from ..comparison.problem import Problem
-from ..mechanisms.base import Mechanism, Situation
 from ..unknowns.lawerror import SIZES
 from .derivatives import FORMS, derivatives
 from .grid import Axis, Grid, posterior

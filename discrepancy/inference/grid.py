@@ -14,7 +14,7 @@ from numpy.typing import NDArray
 from scipy.interpolate import CubicSpline
 from scipy.special import logsumexp
 
-from ..mechanisms.base import Constants, Parameter
+from ...impact.mechanisms.base import Constants, Parameter
 
 Array = NDArray[np.float64]
 

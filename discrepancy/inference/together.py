@@ -13,8 +13,8 @@ from collections.abc import Sequence
 import numpy as np
 from numpy.typing import NDArray
 
+from ...impact.mechanisms.base import Mechanism
 from ..comparison.forward import Point, Simulator
-from ..mechanisms.base import Mechanism
 from .grid import Grid, along_all
 
 Array = NDArray[np.float64]

@@ -20,13 +20,13 @@ from scipy.stats import norm
 from ...core.errors import InputError
 from ...core.inputs.flow_curve import SPECIMENS
 from ...impact import dent_radius
+from ...impact.mechanisms.base import Constants, Mechanism, attached
+from ...impact.mechanisms.strength.strain_rate_hardening import StrainRateHardening
 from ...recordings import RecordingSet
 from ..comparison.forward import Point, Simulator
 from ..comparison.problem import Problem, problem_of
 from ..experiments.feasible import BENCH
 from ..inference.derivatives import measured_covariance
-from ..mechanisms.base import Constants, Mechanism, attached
-from ..mechanisms.strength.strain_rate_hardening import StrainRateHardening
 from ..unknowns.lawerror import SIZES
 from .flow import STRAINS, FlowCurveOfMarks, curve_values
 from .next_mark import TOLD, NextMark, next_mark, with_marks

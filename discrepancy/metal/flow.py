@@ -17,10 +17,10 @@ import numpy as np
 from ...core.flow import Flow, tabulated
 from ...core.material import Pair
 from ...impact import Scene
+from ...impact.mechanisms.base import Array, Mechanism, Parameter, Surroundings, Values
 from ...models import LAWS
 from ...models.anchored import anchored
 from ...models.base import ContactLaw, remembering
-from ..mechanisms.base import Array, Mechanism, Parameter, Surroundings, Values
 
 if TYPE_CHECKING:
     from ...models.fitted import ClosedForm

@@ -8,8 +8,8 @@ from collections.abc import Sequence
 from matplotlib.ticker import EngFormatter
 
 from ...core.observables import OBSERVABLES
+from ...impact.mechanisms import MECHANISMS
 from ..locate import Located
-from ..mechanisms import MECHANISMS
 
 _PREFIXED = frozenset({"Pa", "m", "s", "N", "J", "Hz", "N/m", "g"})
 _TITLES = {m.name: m.title for m in MECHANISMS}

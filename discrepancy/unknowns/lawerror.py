@@ -29,12 +29,12 @@ from numpy.typing import NDArray
 
 from ...impact import ForceTransform, Scene
 from ...impact.force import LOG_DEPTH_FIRST, LOG_DEPTH_LAST
+from ...impact.mechanisms.arithmetic import deepest
 from ...impact.strength import NODES, strength_table
 from ...models.anchored import AnchoredLaw
 from ...models.base import DomainWarning
 from ...models.uncertainty import METAL, RECOVERY_EXPONENT, WITH_CURVE
 from ..inference.linear import Sizes
-from ..mechanisms.arithmetic import deepest
 
 Array = NDArray[np.float64]
 

@@ -21,9 +21,9 @@ from numpy.typing import NDArray
 from ...discrepancy.comparison.forward import ACCURACY, SIMULATED
 from ...discrepancy.comparison.problem import Problem, problem_of
 from ...discrepancy.inference.fit import label
-from ...discrepancy.mechanisms import MECHANISMS, Mechanism
-from ...discrepancy.mechanisms.base import Situation, observed
 from ...impact import Scene, strike_batch
+from ...impact.mechanisms import MECHANISMS, Mechanism
+from ...impact.mechanisms.base import Situation, observed
 from ...impact.walk import layout as c
 from ...recordings import RecordingSet, read
 from ...recordings.shipped import set_folder

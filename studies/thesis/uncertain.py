@@ -10,9 +10,9 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.stats import qmc
 
-from ...discrepancy.mechanisms import Mechanism, Surroundings
-from ...discrepancy.mechanisms.base import Constants, Values, attached
 from ...impact import Friction, Scene, Striker
+from ...impact.mechanisms import Mechanism, Surroundings
+from ...impact.mechanisms.base import Constants, Values, attached
 
 Array = NDArray[np.float64]
 

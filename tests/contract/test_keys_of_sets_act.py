@@ -19,8 +19,8 @@ from dentscope.cli.shared.keys import keys_of
 from dentscope.core import InputError
 from dentscope.discrepancy.comparison.forward import Point, Simulator
 from dentscope.discrepancy.comparison.problem import problem_of
-from dentscope.discrepancy.mechanisms import MECHANISMS
 from dentscope.discrepancy.rank import baseline_situations
+from dentscope.impact.mechanisms import MECHANISMS
 from dentscope.recordings import read
 
 ROD = """

@@ -5,7 +5,7 @@ from functools import lru_cache
 
 import pytest
 from dentscope.core import Material, Pair
-from dentscope.discrepancy.mechanisms.base import Surroundings
+from dentscope.impact.mechanisms.base import Surroundings
 from dentscope.impact.scene import Friction, Striker
 
 

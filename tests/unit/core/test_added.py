@@ -9,8 +9,8 @@ import pytest
 from dentscope.core import InputError
 from dentscope.core.inputs import added
 from dentscope.core.inputs.toml_input import InputTable
-from dentscope.discrepancy.mechanisms import MECHANISMS
-from dentscope.discrepancy.mechanisms.own import own_mechanisms, uncovered
+from dentscope.impact.mechanisms import MECHANISMS
+from dentscope.impact.mechanisms.own import own_mechanisms, uncovered
 from dentscope.models import LAWS, law_named
 from dentscope.reduce import kinds
 

@@ -19,8 +19,8 @@ from dentscope.discrepancy.comparison.conditions import Condition
 from dentscope.discrepancy.inference.fit import Fit
 from dentscope.discrepancy.inference.grid import Axis, Grid, posterior
 from dentscope.discrepancy.inference.linear import Linear, Mixture
-from dentscope.discrepancy.mechanisms.base import Parameter, Surroundings
 from dentscope.discrepancy.rank import Ranking, Screened
+from dentscope.impact.mechanisms.base import Parameter, Surroundings
 
 NONE = np.zeros((0, 0))
 

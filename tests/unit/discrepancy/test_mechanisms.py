@@ -9,9 +9,9 @@ import numpy as np
 import pytest
 from dentscope.core import Material, Pair
 from dentscope.core.flow import Flow, ludwik
-from dentscope.discrepancy.mechanisms import MECHANISMS, Mechanism, Surroundings
 from dentscope.impact import Approach, Friction, Scene, Striker, scene_of, strike
 from dentscope.impact.force import F_FORCE
+from dentscope.impact.mechanisms import MECHANISMS, Mechanism, Surroundings
 from dentscope.impact.strength import strength_table
 from dentscope.models import LAWS
 

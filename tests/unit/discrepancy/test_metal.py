@@ -8,8 +8,6 @@ from dentscope.core import Material
 from dentscope.core.errors import InputError
 from dentscope.core.flow import Flow, swift
 from dentscope.core.inputs.flow_curve import read_flow_curve
-from dentscope.discrepancy.mechanisms.base import Surroundings
-from dentscope.discrepancy.mechanisms.strength.strain_rate_hardening import StrainRateHardening
 from dentscope.discrepancy.metal import lines, metal_of, write_metal
 from dentscope.discrepancy.metal.estimate import weights
 from dentscope.discrepancy.metal.flow import STRAINS
@@ -23,6 +21,8 @@ from dentscope.impact import (
     scene_of,
     strike,
 )
+from dentscope.impact.mechanisms.base import Surroundings
+from dentscope.impact.mechanisms.strength.strain_rate_hardening import StrainRateHardening
 from dentscope.models import LAWS
 from dentscope.recordings import read
 

@@ -6,11 +6,11 @@ from dentscope.discrepancy.comparison.forward import Point, Simulator
 from dentscope.discrepancy.comparison.problem import problem_of
 from dentscope.discrepancy.experiments.feasible import BENCH, press_series
 from dentscope.discrepancy.inference.fit import baseline_situations
-from dentscope.discrepancy.mechanisms import MECHANISMS
 from dentscope.discrepancy.nulls.laws import NullCurve
 from dentscope.discrepancy.nulls.press import press
 from dentscope.discrepancy.unknowns.covariates import PRESSED, covariates
 from dentscope.impact import Approach, strike
+from dentscope.impact.mechanisms import MECHANISMS
 from dentscope.recordings import read
 
 SET = """

@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 from dentscope.core.material import Material, Pair
-from dentscope.discrepancy.mechanisms.roughness import Layer
+from dentscope.impact.mechanisms.roughness import Layer
 from dentscope.impact.strength import strength_table
 from dentscope.models import law_named
 

@@ -57,15 +57,15 @@ def test_a_law(recipe):
 def test_a_mechanism(recipe):
     toy = recipe("Add a mechanism")
     toy.write(
-        "discrepancy/mechanisms/toy.py",
+        "impact/mechanisms/toy.py",
         neighbour(
-            "discrepancy/mechanisms/tangential_compliance.py",
+            "impact/mechanisms/tangential_compliance.py",
             ("TangentialCompliance", "Toy"),
             ('name = "tangential-compliance"', 'name = "toy"'),
         ),
     )
     toy.change(
-        "discrepancy/mechanisms/__init__.py",
+        "impact/mechanisms/__init__.py",
         ("from .truncated_tip", "from .toy import Toy\nfrom .truncated_tip"),
         ("    Tilt(),\n", "    Tilt(),\n    Toy(),\n"),
     )

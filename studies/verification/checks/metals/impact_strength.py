@@ -21,9 +21,9 @@ from ..... import fem
 from .....campaigns.case import Case
 from .....core.flow import Flow, Rate, swift, voce
 from .....core.material import Material, Pair
-from .....discrepancy.mechanisms import MECHANISMS, Surroundings
-from .....discrepancy.mechanisms.base import attached
 from .....impact import Approach, Scene, Striker, scene_of, strike
+from .....impact.mechanisms import MECHANISMS, Surroundings
+from .....impact.mechanisms.base import attached
 from .....models import LAWS
 from ....proof.generators.effects import Effect
 from ....proof.generators.parameters import CAVITY, FOUNDATION

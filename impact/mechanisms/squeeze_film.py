@@ -9,7 +9,7 @@ from typing import ClassVar
 
 import numpy as np
 
-from ...impact import Scene
+from ..scene import Scene
 from .arithmetic import effective_mass, slower
 from .base import Array, Mechanism, Parameter, Situation, Surroundings, Values
 

@@ -8,7 +8,7 @@ from typing import ClassVar
 
 import numpy as np
 
-from ...impact import Scene
+from ..scene import Scene
 from .arithmetic import energy, slower
 from .base import Array, Mechanism, Parameter, Situation, Surroundings, Values
 

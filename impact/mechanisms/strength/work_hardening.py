@@ -6,10 +6,9 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from ....impact import Scene
-from ....impact.scene import FlowStress
-from ....impact.strength import StrengthTable
 from ....models.hardening import mean_over_strains
+from ...scene import FlowStress, Scene
+from ...strength import StrengthTable
 from ..base import Array, Literature, Parameter, Surroundings, Values
 from .flow_stress import Fallen, FallingStrength, FlowMechanism, StrengthProfile, settled_strain
 

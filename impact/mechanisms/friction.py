@@ -6,7 +6,7 @@ from collections.abc import Mapping, Sequence
 from dataclasses import replace
 from typing import ClassVar
 
-from ...impact import Scene
+from ..scene import Scene
 from .arithmetic import needs_sliding
 from .base import Literature, Mechanism, Parameter, Situation, Surroundings, Values
 

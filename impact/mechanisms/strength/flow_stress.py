@@ -20,12 +20,11 @@ from typing import ClassVar
 import numpy as np
 
 from ....core.material import Pair
-from ....impact import Profiles, RateFree, Scene
-from ....impact.force import F_RADIUS
-from ....impact.scene import FlowStress
-from ....impact.strength import StrengthTable
 from ....models import critical_depth
 from ....models.hardening import REPRESENTATIVE, representative_strain
+from ...force import F_RADIUS
+from ...scene import FlowStress, Profiles, RateFree, Scene
+from ...strength import StrengthTable
 from ..base import Array, Mechanism, Situation, Surroundings, Values
 
 RATE = 0.4  # of v/a

@@ -9,8 +9,8 @@ from functools import lru_cache
 from typing import ClassVar
 
 from ...core.material import Material
-from ...impact import Scene
-from ...impact.support import half_space_radiation, plate_support
+from ..scene import Scene
+from ..support import half_space_radiation, plate_support
 from .arithmetic import density_of, effective_mass
 from .base import Literature, Mechanism, Parameter, Surroundings, Values
 

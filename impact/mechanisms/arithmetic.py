@@ -8,8 +8,8 @@ from collections.abc import Mapping, Sequence
 import numpy as np
 
 from ...core.material import Material
-from ...impact import Scene
-from ...impact.strength import strength_table
+from ..scene import Scene
+from ..strength import strength_table
 from .base import Array, Situation
 
 _STEEL_DENSITY = 7800.0

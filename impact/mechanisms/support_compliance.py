@@ -7,7 +7,7 @@ from collections.abc import Mapping, Sequence
 from dataclasses import replace
 from typing import ClassVar
 
-from ...impact import Scene, Support
+from ..scene import Scene, Support
 from .arithmetic import density_of
 from .base import Literature, Mechanism, Parameter, Situation, Surroundings, Values
 

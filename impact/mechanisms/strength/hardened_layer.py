@@ -7,9 +7,8 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from ....impact import Scene
-from ....impact.scene import FlowStress
-from ....impact.strength import StrengthTable
+from ...scene import FlowStress, Scene
+from ...strength import StrengthTable
 from ..base import Array, Literature, Parameter, Situation, Surroundings, Values
 from .flow_stress import FallingStrength, FlowMechanism, StrengthProfile
 

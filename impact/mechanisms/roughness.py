@@ -10,8 +10,8 @@ from typing import ClassVar
 
 import numpy as np
 
-from ...impact import Scene
-from ...impact.strength import StrengthTable, strength_table
+from ..scene import Scene
+from ..strength import StrengthTable, strength_table
 from .arithmetic import needs_yielding_law, times
 from .base import Array, Literature, Mechanism, Parameter, Situation, Surroundings, Values
 

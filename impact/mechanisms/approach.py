@@ -7,7 +7,7 @@ from collections.abc import Mapping, Sequence
 from dataclasses import replace
 from typing import ClassVar
 
-from ...impact import Scene
+from ..scene import Scene
 from .arithmetic import is_oblique
 from .base import Literature, Mechanism, Parameter, Situation, Surroundings, Values
 

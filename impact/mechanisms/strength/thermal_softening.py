@@ -9,9 +9,8 @@ from typing import ClassVar
 
 import numpy as np
 
-from ....impact import Scene
-from ....impact.scene import FlowStress
-from ....impact.strength import StrengthTable
+from ...scene import FlowStress, Scene
+from ...strength import StrengthTable
 from ..arithmetic import density_of, energy
 from ..base import Array, Literature, Parameter, Situation, Surroundings, Values
 from .flow_stress import STRAIN, FlowMechanism, StrengthProfile, strain

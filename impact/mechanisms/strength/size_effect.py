@@ -8,9 +8,8 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from ....impact import Scene
-from ....impact.scene import FlowStress
-from ....impact.strength import StrengthTable
+from ...scene import FlowStress, Scene
+from ...strength import StrengthTable
 from ..base import Array, Parameter, Situation, Surroundings, Values
 from .flow_stress import FlowMechanism, StrengthProfile
 

@@ -6,8 +6,8 @@ from collections.abc import Mapping
 from dataclasses import replace
 from typing import ClassVar
 
-from ...impact import Scene
-from ...impact.strength import strength_table
+from ..scene import Scene
+from ..strength import strength_table
 from .arithmetic import energy
 from .base import Literature, Mechanism, Parameter, Surroundings, Values
 

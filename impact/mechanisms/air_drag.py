@@ -11,8 +11,8 @@ from typing import ClassVar
 import numpy as np
 
 from ...core.drag import DRAG_COEFFICIENT_STD, Fluid, air
-from ...impact import Scene, Striker
-from ...impact.drag import flown
+from ..drag import flown
+from ..scene import Scene, Striker
 from .base import Array, Literature, Mechanism, Parameter, Situation, Surroundings, Values
 
 _GASES = ("", "air", "none", "dry", "nitrogen")

@@ -10,8 +10,8 @@ from functools import lru_cache
 from typing import ClassVar
 
 from ...core.material import Material
-from ...impact import Modes, Scene, Striker, rod_modes
-from ...impact.beam import axial_frequencies
+from ..beam import Modes, axial_frequencies, rod_modes
+from ..scene import Scene, Striker
 from .arithmetic import density_of, is_oblique, needs_rod
 from .base import Literature, Mechanism, Parameter, Situation, Surroundings, Values
 

@@ -18,7 +18,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ...core.unstated import unstated_equal
-from ...impact import Scene
+from ..scene import Scene
 
 Array = NDArray[np.float64]
 Values = Mapping[str, float]

@@ -6,9 +6,8 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from ....impact import Scene
-from ....impact.scene import FlowStress
-from ....impact.strength import StrengthTable, strength_table
+from ...scene import FlowStress, Scene
+from ...strength import StrengthTable, strength_table
 from ..arithmetic import energy, times
 from ..base import Array, Literature, Parameter, Surroundings, Values
 from .flow_stress import RATE, Fallen, FallingStrength, FlowMechanism, StrengthProfile
