@@ -1,4 +1,4 @@
-"""Air brakes the striker in flight, before the contact and after it."""
+"""Air, or the liquid that is stated, brakes the striker before the contact and after it."""
 
 from __future__ import annotations
 
@@ -29,7 +29,7 @@ class AirDrag(Mechanism):
     """
 
     name = "air-drag"
-    title = "air brakes the striker between reading and contact"
+    title = "air, or the liquid around, brakes the striker between reading and contact"
     equations = (
         "(m + m_a) v' = -(m - rho V) g - k C_D(Re) A rho v |v|/2 from release, or from a distance "
         "s above the flat, to the contact and back over s"
@@ -51,10 +51,14 @@ class AirDrag(Mechanism):
     form: ClassVar[float] = 0.05
 
     def applies(self, situations: Sequence[Situation]) -> str:
-        """Needs a light or a fast striker in air."""
+        """Needs a light or a fast striker in air, or a liquid of which all is stated."""
         around = situations[0][1]
-        if around.fluid.strip().lower() not in _GASES:
-            return f"the fluid is stated as {around.fluid.strip()}, not air"
+        liquid = around.fluid.strip().lower() not in _GASES
+        if liquid and not (around.density > 0.0 and around.viscosity > 0.0):
+            return (
+                f"the fluid is stated as {around.fluid.strip()}, without both density_kg_m3 and "
+                "viscosity_Pa_s"
+            )
         if 0.0 in (around.pressure, around.density):
             return "there is no air, as stated"
         most = {p.name: p.high for p in self.parameters}
@@ -62,10 +66,11 @@ class AirDrag(Mechanism):
         taken = float(np.max(1.0 - self.after(situations, most, seen)["restitution"]))
         before = max(1.0 - _arriving(s, most, a) / s.approach.speed for s, a in situations)
         largest = max(taken, before)
+        what = around.fluid.strip() if liquid else "air"
         if largest < _VISIBLE:
-            return f"air takes at most {largest:.1e} of a speed"
+            return f"{what} takes at most {largest:.1e} of a speed"
         if largest > _STOPPED:
-            return f"air takes {largest:.0%} of a speed: no flight under gravity was read"
+            return f"{what} takes {largest:.0%} of a speed: no flight under gravity was read"
         return ""
 
     def attach(self, scene: Scene, values: Values, around: Surroundings) -> Scene:

@@ -22,8 +22,8 @@ class ImpactSpeedLoss(Mechanism):
     equations = "v = sqrt(2 g H) (1 - zeta)^((H/H_max)^p)"
     parameters = (
         Parameter(
-            "speed_loss", "-", 0.01, 0.6, "log", 0.0,
-            "at the largest height: guides and releases take 1-30 %, air more of a light body",
+            "speed_loss", "-", 0.01, 0.3, "log", 0.0,
+            "at the largest height: guides and releases take 1-30 %; what air takes is `air-drag`",
             nodes=7,
         ),
         Parameter(

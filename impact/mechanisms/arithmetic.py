@@ -43,6 +43,22 @@ def as_deep(scene: Scene) -> float:
     return math.sqrt(2.0 * math.exp(float(work)) / effective_mass(scene))
 
 
+def shortest_contact(scene: Scene) -> float:
+    """Time of the shortest contact there is [s]: on a fully plastic dent until the striker stops.
+
+    Its stiffness is 2 pi R 2.8 S_y; the strength of a metal that does not yield is a hundredth of
+    its modulus.
+    """
+    strength = min(scene.pair.Sy_min, 0.01 * scene.pair.E_reduced)
+    stiffness = 2.0 * math.pi * scene.pair.R * 2.8 * strength
+    return 0.5 * math.pi * math.sqrt(effective_mass(scene) / stiffness)
+
+
+def wave_speed(material: Material) -> float:
+    """Speed of a wave that spreads into a flat, sqrt(E/((1 - nu^2) rho)) [m/s]."""
+    return math.sqrt(material.plane_strain_modulus / density_of(material))
+
+
 def density_of(material: Material) -> float:
     """Density as stated, else that of steel [kg/m^3]."""
     return material.density if math.isfinite(material.density) else _STEEL_DENSITY

@@ -35,6 +35,7 @@ class ContactDamping(Mechanism):
         ),
     )  # fmt: skip
     direction: ClassVar[Mapping[str, int]] = {"restitution": -1, "permanent_depth_m": -1}
+    rests_on: ClassVar[tuple[str, ...]] = ("target", "striker")
     form: ClassVar[float] = 0.25
     """A force in proportion to the load against one in proportion to the width, fitted to each
     other over a decade of speed: 2 to 8 % of the effect in restitution and depth, 25 to 45 % in

@@ -11,7 +11,7 @@ from typing import ClassVar
 from ...core.material import Material
 from ..scene import Scene
 from ..support import half_space_radiation, plate_support
-from .arithmetic import density_of, effective_mass
+from .arithmetic import density_of, shortest_contact, wave_speed
 from .base import Literature, Mechanism, Parameter, Surroundings, Values
 
 
@@ -54,13 +54,8 @@ def _is_plate(scene: Scene, around: Surroundings) -> bool:
     """Whether waves cross the thickness at least twice there and back within the contact."""
     if not around.thickness > 0.0:
         return False
-    flat = scene.pair.flat
-    speed = math.sqrt(flat.plane_strain_modulus / density_of(flat))
-    # the shortest contact there is: half a period on a fully plastic dent, 2.8 S_y over 2 pi R d
-    strength = min(scene.pair.Sy_min, 0.01 * scene.pair.E_reduced)
-    stiffness = 2.0 * math.pi * scene.pair.R * 2.8 * strength
-    contact = 0.5 * math.pi * math.sqrt(effective_mass(scene) / stiffness)
-    return 4.0 * around.thickness < speed * contact
+    crossed = wave_speed(scene.pair.flat) * shortest_contact(scene)
+    return 4.0 * around.thickness < crossed
 
 
 @lru_cache(maxsize=256)

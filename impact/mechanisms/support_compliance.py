@@ -8,10 +8,11 @@ from dataclasses import replace
 from typing import ClassVar
 
 from ..scene import Scene, Support
-from .arithmetic import density_of
+from .arithmetic import density_of, shortest_contact, wave_speed
 from .base import Literature, Mechanism, Parameter, Situation, Surroundings, Values
 
 _DECADE = 10.0  # least span of the mass: a block, and the bench that it stands on
+_BLOCK = 0.1  # [kg]: the lightest block that is taken for a half-space without a word
 
 
 class SupportCompliance(Mechanism):
@@ -42,16 +43,21 @@ class SupportCompliance(Mechanism):
     rests_on: ClassVar[tuple[str, ...]] = ("target", "striker")
 
     def ranges(self, situations: Sequence[Situation]) -> tuple[Parameter, ...]:
-        """Stated values narrow the ranges; strikers, and the stated thickness, bound the mass.
+        """Stated values narrow the ranges; strikers, thickness and the pulse bound the mass.
 
-        What moves with a flat of thickness h is at least as wide as thick: rho h^3.
+        What moves with a flat of thickness h is at least as wide as thick: rho h^3. A flat of which
+        no thickness is stated is at least what a wave reaches and comes back from, or a block.
         """
         around = situations[0][1]
         k, m, loss = self.parameters
         heaviest = max(scene.striker.mass for scene, _ in situations)
         low, high = 2.0 * heaviest, 300.0 * heaviest
+        flat = situations[0][0].pair.flat
         if around.thickness > 0.0:
-            low = max(low, density_of(situations[0][0].pair.flat) * around.thickness**3)
+            low = max(low, density_of(flat) * around.thickness**3)
+        elif not flat.rigid:
+            reach = 0.5 * wave_speed(flat) * max(shortest_contact(scene) for scene, _ in situations)
+            low = max(low, min(density_of(flat) * reach**3, _BLOCK))
         m = replace(m, low=low, high=max(high, _DECADE * low))
         stated = around.support_stiffness, around.support_mass
         if stated[0] > 0.0:

@@ -9,9 +9,13 @@ from dataclasses import dataclass
 import numpy as np
 
 from ...scene import FlowStress, Scene
-from ...strength import StrengthTable
+from ...strength import StrengthTable, strength_table
+from ..arithmetic import deepest
 from ..base import Array, Parameter, Situation, Surroundings, Values
 from .flow_stress import FlowMechanism, StrengthProfile
+
+_LARGEST = 3e-4
+"""Contact radius [m] beyond which hardness does not depend on size: ten times some tens of um."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -40,7 +44,7 @@ class SizeEffect(FlowMechanism):
     )  # fmt: skip
 
     def applies(self, situations: Sequence[Situation]) -> str:
-        """Needs a metal that yields, and tips of different radius."""
+        """Needs a metal that yields, tips of different radius, and small contacts."""
         reason = super().applies(situations)
         if reason:
             return reason
@@ -50,8 +54,20 @@ class SizeEffect(FlowMechanism):
                 "all tips have nearly one radius: a size effect is then the same as another "
                 "yield strength"
             )
+        contacts = [_contact(scene) for scene, _ in situations]
+        if min(contacts) > _LARGEST:
+            return (
+                f"the smallest contact has a radius of {1e6 * min(contacts):.0f} um: the effect is "
+                "that of tens of um"
+            )
         return ""
 
     def strength(self, scene: Scene, values: Values, around: Surroundings) -> FlowStress:
         """Return the profile of this mechanism."""
         return SizeProfile(values["size_length_m"])
+
+
+def _contact(scene: Scene) -> float:
+    """Largest radius of the contact [m]."""
+    table = strength_table(scene.law, scene.pair)
+    return float(np.interp(math.log(deepest(scene)), table.log_depth, table.radius))

@@ -2,15 +2,45 @@
 
 from __future__ import annotations
 
+import math
+from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
 
+from ....models.anchored import AnchoredLaw
 from ....models.hardening import mean_over_strains
 from ...scene import FlowStress, Scene
-from ...strength import StrengthTable
-from ..base import Array, Literature, Parameter, Surroundings, Values
-from .flow_stress import Fallen, FallingStrength, FlowMechanism, StrengthProfile, settled_strain
+from ...strength import StrengthTable, strength_table
+from ..arithmetic import deepest
+from ..base import Array, Literature, Parameter, Situation, Surroundings, Values
+from .flow_stress import (
+    Fallen,
+    FallingStrength,
+    FlowMechanism,
+    StrengthProfile,
+    settled_strain,
+    strain,
+)
+
+
+def measured_further(situations: Sequence[Situation]) -> str:
+    """Return why the flow curve that the law follows leaves nothing to add, or ""."""
+    reached, known = 0.0, math.inf
+    for scene, _ in situations:
+        law = scene.law
+        if not (isinstance(law, AnchoredLaw) and law.hardens):
+            return ""
+        weak = law.at.sphere if law.stated.weaker is law.stated.sphere else law.at.flat
+        curve = weak.flow.curve if weak.flow is not None else None
+        table = strength_table(law, scene.pair)
+        at = float(np.interp(math.log(deepest(scene)), table.log_depth, strain(scene, table)))
+        reached, known = max(reached, at), min(known, curve.strain[-1] if curve else 0.0)
+    if not reached < known:
+        return ""
+    return (
+        f"the flow curve is measured to a strain of {known:.2g}; the contacts reach {reached:.2g}"
+    )
 
 
 @dataclass(frozen=True, slots=True)
@@ -50,6 +80,10 @@ class WorkHardening(FlowMechanism):
         ),
     )  # fmt: skip
 
+    def applies(self, situations: Sequence[Situation]) -> str:
+        """Needs a metal that yields, and no flow curve that says what it does."""
+        return super().applies(situations) or measured_further(situations)
+
     def strength(self, scene: Scene, values: Values, around: Surroundings) -> FlowStress:
         """Return the profile of this mechanism."""
         return StrainProfile(values["hardening_ratio"], values["hardening_exponent"])
@@ -68,6 +102,10 @@ class StrainSoftening(FallingStrength):
         ),
         Parameter("softening_power", "-", 0.15, 1.0, "linear", 1.0, "as of hardening", nodes=3),
     )  # fmt: skip
+
+    def applies(self, situations: Sequence[Situation]) -> str:
+        """Needs a metal that yields, and no flow curve that says what it does."""
+        return super().applies(situations) or measured_further(situations)
 
     def strength(self, scene: Scene, values: Values, around: Surroundings) -> FlowStress:
         """Return the profile of this mechanism."""

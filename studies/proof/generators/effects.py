@@ -183,8 +183,12 @@ def _flexural(rng: np.random.Generator, rig: Rig, family: float) -> Effect:
     return Effect("rod-flexural-vibration", "beam-elements", numbers)
 
 
+_BLOCK = 0.1  # [kg]
+
+
 def _support(rng: np.random.Generator, rig: Rig, family: float) -> Effect:
-    mass = max(s.mass for s in rig.strikers) * _log(rng, 4.0, 60.0)
+    # a flat of which no thickness is told is a block at least
+    mass = max(max(s.mass for s in rig.strikers) * _log(rng, 4.0, 60.0), _BLOCK)
     period = 2e-4 * _log(rng, 0.5, 6.0)
     stiffness = mass * (2.0 * math.pi / period) ** 2
     loss = 2.0 * _log(rng, 0.01, 0.3) * math.sqrt(stiffness * mass)

@@ -8,12 +8,13 @@ from dataclasses import replace
 import numpy as np
 import pytest
 from dentscope.core import Material, Pair
-from dentscope.core.flow import Flow, ludwik
+from dentscope.core.flow import Flow, ludwik, tabulated
 from dentscope.impact import Approach, Friction, Scene, Striker, scene_of, strike
 from dentscope.impact.force import F_FORCE
-from dentscope.impact.mechanisms import MECHANISMS, Mechanism, Surroundings
+from dentscope.impact.mechanisms import MECHANISMS, NAMELESS, Mechanism, Surroundings
 from dentscope.impact.strength import strength_table
 from dentscope.models import LAWS
+from dentscope.models.anchored import anchored
 
 STEEL = Material(E=200e9, nu=0.3, Sy=760e6, density=7800.0)
 IRON = Material(E=200e9, nu=0.3, Sy=305e6, density=7870.0)
@@ -124,7 +125,18 @@ def test_air_takes_from_a_light_ball_and_not_from_a_rod() -> None:
     assert 0.02 < 1.0 - after["restitution"][0] / 0.9 < 0.04
     assert seen["restitution"][0] == 0.9
     assert "at most" in drag.applies([(scene(), AROUND)])
+    # a liquid of which density and viscosity are stated brakes as air does
     assert "oil" in drag.applies([(ball, Surroundings(fluid="oil"))])
+    dense = scene().with_(
+        striker=Striker(mass=0.0327, tip_radius=0.01), pair=replace(scene().pair, R=0.01),
+        approach=Approach(1.0),
+    )  # fmt: skip
+    oil = Surroundings(from_height=True, fluid="oil", density=900.0, viscosity=0.1)
+    assert drag.applies([(dense, oil)]) == ""
+    sunk = drag.attach(dense, {"drag": 1.0, "reading_m": 1e-3}, oil).approach.speed
+    # buoyancy and added mass alone: sqrt((m - rho V)/(m + rho V/2))
+    pushed = 900.0 * 4.0 / 3.0 * math.pi * 0.01**3
+    assert 0.7 < sunk < math.sqrt((0.0327 - pushed) / (0.0327 + 0.5 * pushed))
     assert drag.applies([(ball, dropped)]) == ""
 
 
@@ -135,5 +147,70 @@ def test_a_support_is_no_lighter_than_a_block_as_wide_as_the_flat_is_thick() -> 
     _, mass, _ = support.ranges([(light, AROUND)])
     assert mass.low == pytest.approx(7870.0 * 0.03**3)
     assert mass.high == pytest.approx(10.0 * mass.low)
-    _, mass, _ = support.ranges([(light, Surroundings())])
-    assert (mass.low, mass.high) == pytest.approx((2e-4, 3e-2))
+
+
+def test_a_flat_of_which_nothing_is_stated_weighs_what_its_pulse_reaches() -> None:
+    """A ball of 0.2 g on iron: not the plate of 0.4 g that would stand for whatever is lost."""
+    ball = scene().with_(
+        striker=Striker(mass=2e-4, tip_radius=1.8e-3), pair=replace(scene().pair, R=1.8e-3)
+    )
+    support = named("support-compliance")
+    # 2 pi R 2.8 S_y is 9.7 MN/m, a quarter period 7.1 us, there and back 19 mm at 5.3 km/s
+    reach = (
+        0.5
+        * math.sqrt(200e9 / (1.0 - 0.09) / 7870.0)
+        * 0.5
+        * math.pi
+        * math.sqrt(2e-4 / (2.0 * math.pi * 1.8e-3 * 2.8 * 305e6))
+    )
+    _, mass, _ = support.ranges([(ball, Surroundings())])
+    assert mass.low == pytest.approx(7870.0 * reach**3, rel=1e-6)
+    assert 0.03 < mass.low < 0.1
+    # a long pulse reaches tonnes: a block of 0.1 kg may be all there is
+    slow = scene().with_(striker=replace(ROD, mass=0.03))
+    assert support.ranges([(slow, Surroundings())])[1].low == pytest.approx(0.1)
+    # what is stated goes before
+    thin = support.ranges([(ball, Surroundings(thickness=3e-3))])[1]
+    assert thin.low == pytest.approx(4e-4)
+    stated = support.ranges([(ball, Surroundings(support_mass=0.01))])[1]
+    assert (stated.low, stated.high) == pytest.approx((0.01 / 1.5, 0.015))
+
+
+def test_a_size_effect_needs_small_contacts() -> None:
+    """Balls of 5 and 20 mm dent metal over millimetres, a ball of 0.25 mm over tens of um."""
+    effect = named("size-effect")
+
+    def dropped(R: float, v: float) -> tuple[Scene, Surroundings]:
+        mass = 4.0 / 3.0 * math.pi * R**3 * 7800.0
+        return scene().with_(
+            striker=Striker(mass=mass, tip_radius=R), pair=replace(scene().pair, R=R),
+            approach=Approach(v),
+        ), AROUND  # fmt: skip
+
+    assert "that of tens of um" in effect.applies([dropped(0.005, 3.0), dropped(0.02, 3.0)])
+    assert effect.applies([dropped(0.25e-3, 3.0), dropped(0.02, 3.0)]) == ""
+    assert "nearly one radius" in effect.applies([dropped(0.25e-3, 3.0)])
+
+
+@pytest.mark.parametrize("name", ["work-hardening", "strain-softening"])
+def test_a_measured_curve_leaves_no_hardening_within_its_strains(name: str) -> None:
+    mechanism = next(m for m in (*MECHANISMS, *NAMELESS) if m.name == name)
+    plain = scene()
+
+    def followed(last: float) -> Scene:
+        curve = tabulated(np.array([0.0, last]), np.array([305e6, 400e6]))
+        metal = replace(plain.pair, flat=IRON.with_(flow=Flow(curve)))
+        law = anchored(LAWS["fitted"], LAWS["hardening"], at=metal, stated=plain.pair, hardens=True)
+        return plain.with_(law=law)
+
+    assert "measured to a strain of 0.2" in mechanism.applies([(followed(0.2), AROUND)])
+    assert mechanism.applies([(followed(0.002), AROUND)]) == ""
+    assert mechanism.applies([(plain, AROUND)]) == ""
+
+
+def test_damping_rests_on_moduli() -> None:
+    assert named("contact-damping").rests_on == ("target", "striker")
+
+
+def test_a_guide_takes_no_more_than_guides_take() -> None:
+    assert named("impact-speed-loss").parameters[0].high == 0.3
