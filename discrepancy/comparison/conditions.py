@@ -99,6 +99,7 @@ def conditions_of(recordings: RecordingSet) -> tuple[Condition, ...]:
         table = setup.strikers[name]
         strengths = [value_of(body.strength, math.inf) for body in (target, table)]
         weaker = target if strengths[0] <= strengths[1] else table
+        flow = recordings.flows.get("target" if weaker is target else f"striker.{name}")
         v = float(np.mean(approach.normal[rows]))
         relative = approach.normal_std[rows] / approach.normal[rows]
         unknown = SPEED_MEASURED if timed[first] else SPEED_FROM_HEIGHT
@@ -128,6 +129,7 @@ def conditions_of(recordings: RecordingSet) -> tuple[Condition, ...]:
             layer_thickness=value_of(target.layer_thickness_m),
             from_height=not timed[first],
             height_share=1.0 if timed[first] else float(heights[first] / highest),
+            rises=() if flow is None else flow.rises,
         )
         found.append(
             Condition(

@@ -18,10 +18,10 @@ from scipy.special import logsumexp
 from scipy.stats import norm
 
 from ...core.errors import InputError
-from ...core.inputs.flow_curve import SPECIMENS
+from ...core.inputs.flow_curve import SPECIMENS, Rise
 from ...impact import dent_radius
 from ...impact.mechanisms.base import Constants, Mechanism, attached
-from ...impact.mechanisms.strength.strain_rate_hardening import StrainRateHardening
+from ...impact.mechanisms.strength.strain_rate_hardening import StrainRateHardening, tested
 from ...recordings import RecordingSet
 from ..comparison.forward import Point, Simulator
 from ..comparison.problem import Problem, problem_of
@@ -198,6 +198,26 @@ def _strength(problem: Problem, body: str) -> float:
     return pair.flat.Sy if body == "target" else pair.sphere.Sy
 
 
+def rate_prior(rises: Sequence[Rise]) -> Array:
+    """Mean and standard deviation of the rate law's numbers, (3, 2), after curves at several rates.
+
+    The prior of those numbers without such curves is `RATE`; what is kept at the turn is its own.
+    """
+    prior = np.array(list(RATE.values()))
+    if not rises:
+        return prior
+    of = {p.name: p for p in StrainRateHardening.parameters}
+    axes = [np.linspace(of[name].low, of[name].high, 200) for name in list(RATE)[:2]]
+    at = np.array(np.meshgrid(*axes, indexing="ij"))
+    away = (at - prior[:2, 0, None, None]) / prior[:2, 1, None, None]
+    weight = np.exp(-0.5 * (tested(rises, *at) + (away**2).sum(axis=0)))
+    mean = (weight * at).sum(axis=(1, 2)) / weight.sum()
+    apart = at - mean[:, None, None]
+    prior[:2, 0] = mean
+    prior[:2, 1] = np.sqrt((weight * apart**2).sum(axis=(1, 2)) / weight.sum())
+    return prior
+
+
 @dataclass(frozen=True, eq=False)
 class _Fit:
     """What is fitted: a problem, of whose cells the first count, and the priors."""
@@ -220,7 +240,7 @@ class _Fit:
         first = own[0] if own else SPECIMENS
         seen = {problem.cells.condition[i] for i in range(known)}
         rated = any(problem.conditions[k].press is None for k in seen)
-        rate = np.array(list(RATE.values())) if rated else np.zeros((0, 2))
+        rate = rate_prior(problem.conditions[0].around.rises) if rated else np.zeros((0, 2))
         prior = np.concatenate([[0.0], np.full(n, EXPONENT), rate[:, 0], np.zeros(problem.n_z)])
         alike = np.exp(-0.5 * ((nodes[:, None] - nodes[None, :]) / EXPONENT_LENGTH) ** 2)
         sheet = [_FROZEN if m.name == body else 1.0 for m in problem.nuisances]

@@ -17,6 +17,7 @@ from typing import ClassVar, Literal, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
+from ...core.inputs.flow_curve import Rise
 from ...core.unstated import unstated_equal
 from ..scene import Scene
 
@@ -104,6 +105,9 @@ class Surroundings:
         Whether the speed of this condition was computed from a height of fall.
     height_share
         Height of fall over the largest of the set.
+    rises
+        How the weaker body's stress rises with the rate of strain, where its flow curve was
+        measured at several.
     """
 
     thickness: float = math.nan
@@ -121,6 +125,7 @@ class Surroundings:
     layer_thickness: float = math.nan
     from_height: bool = False
     height_share: float = 1.0
+    rises: tuple[Rise, ...] = ()
 
 
 Situation = tuple[Scene, Surroundings]

@@ -2,18 +2,21 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
 
+from ....core.inputs.flow_curve import SPECIMENS, Rise
 from ...scene import FlowStress, Scene
 from ...strength import StrengthTable, strength_table
 from ..arithmetic import energy, times
-from ..base import Array, Literature, Parameter, Surroundings, Values
+from ..base import Array, Literature, Parameter, Situation, Surroundings, Values
 from .flow_stress import RATE, Fallen, FallingStrength, FlowMechanism, StrengthProfile
 
 _REFERENCE_RATE = 1000.0  # 1/s, within the rates of impacts at a few m/s
 _SLOWEST = 0.2  # the rate's memory at the turning point, of the approach speed
+_APART = 4.0  # chi-squared: two standard deviations
 
 
 @dataclass(frozen=True, slots=True)
@@ -38,6 +41,19 @@ class RateProfile(StrengthProfile):
         speed = scene.approach.speed * np.sqrt(np.maximum(slowing, _SLOWEST**2))
         rate = RATE * speed / table.radius
         return np.asarray(1.0 + self.rise * (rate / _REFERENCE_RATE) ** self.exponent)
+
+
+def tested(rises: Sequence[Rise], rise: Array, exponent: Array) -> Array:
+    """Chi-squared of 1 + A (r/1000)^n against flow curves at several rates, broadcast over A and n.
+
+    Specimens of one metal differ; the slowest one is in every ratio.
+    """
+    shape = (-1, *(1 for _ in np.broadcast_shapes(np.shape(rise), np.shape(exponent))))
+    rate, ratio = (np.array(x).reshape(shape) for x in zip(*rises, strict=True))
+    off = np.log1p(rise * (rate / _REFERENCE_RATE) ** exponent) - np.log(ratio)
+    n = len(rises)
+    cause = np.linalg.inv(SPECIMENS**2 * (np.eye(n) + 1.0))
+    return np.asarray(np.einsum("i...,ij,j...->...", off, cause, off))
 
 
 class StrainRateHardening(FlowMechanism):
@@ -71,6 +87,22 @@ class StrainRateHardening(FlowMechanism):
             literature=Literature(1.0, "the strength of the rate, as the law is used in statics"),
         ),
     )  # fmt: skip
+
+    def ranges(self, situations: Sequence[Situation]) -> tuple[Parameter, ...]:
+        """Flow curves at several rates leave the rises within two deviations of the best."""
+        rise, exponent, kept = self.parameters
+        rises = situations[0][1].rises
+        if not rises:
+            return self.parameters
+        places = np.linspace(0.0, 1.0, 241)
+        sizes = rise.value(places)
+        # of each rise the exponent counts that fits best
+        misfit = tested(rises, sizes[:, None], exponent.value(places)).min(axis=1)
+        left = sizes[misfit <= misfit.min() + _APART]
+        found = replace(
+            rise, low=float(left[0]), high=float(left[-1]), source="flow curves at several rates"
+        )
+        return found, exponent, kept
 
     def attach(self, scene: Scene, values: Values, around: Surroundings) -> Scene:
         """Multiply the flow stress that the scene has; take from the way back what relaxes."""

@@ -9,6 +9,7 @@ import numpy as np
 import pytest
 from dentscope.core import Material, Pair
 from dentscope.core.flow import Flow, ludwik, tabulated
+from dentscope.core.inputs.flow_curve import Rise
 from dentscope.impact import Approach, Friction, Scene, Striker, scene_of, strike
 from dentscope.impact.force import F_FORCE
 from dentscope.impact.mechanisms import MECHANISMS, NAMELESS, Mechanism, Surroundings
@@ -214,3 +215,24 @@ def test_damping_rests_on_moduli() -> None:
 
 def test_a_guide_takes_no_more_than_guides_take() -> None:
     assert named("impact-speed-loss").parameters[0].high == 0.3
+    _, mass, _ = support.ranges([(light, Surroundings())])
+    assert (mass.low, mass.high) == pytest.approx((2e-4, 3e-2))
+
+
+@pytest.mark.parametrize(
+    ("rises", "low", "high"),
+    [
+        # two specimens of a metal differ by 0.07 sqrt(2) each way: exp(0.3) - 1 and 0.03 at least
+        ((Rise(1000.0, math.exp(0.1)),), 0.03, 0.35),
+        ((Rise(1000.0, math.exp(0.5)),), math.exp(0.302) - 1.0, math.exp(0.698) - 1.0),
+        # no rise: 0 within two deviations of 0.099, above the least that the range has
+        ((Rise(1000.0, 1.0),), 0.03, math.exp(2.0 * 0.07 * math.sqrt(2.0)) - 1.0),
+        # 1 + A/1000^n at 1 per second: with n of 0.03 to 0.4 a rise of 5 % says little
+        ((Rise(1.0, 1.05),), 0.03, 2.5),
+    ],
+)
+def test_flow_curves_at_several_rates_bound_the_rate_law(rises, low, high) -> None:
+    rate = named("strain-rate-hardening")
+    rise, *others = rate.ranges([(scene(), Surroundings(rises=rises))])
+    assert (rise.low, rise.high) == pytest.approx((low, high), rel=0.03)
+    assert others == list(rate.parameters[1:])

@@ -111,6 +111,9 @@ def test_a_flow_curve_gives_the_strength_and_comes_along(folder, tmp_path):
     assert found.setup.target.Sy_Pa.value == pytest.approx(3.1e8)
     assert [t.tolist() for t in found.flows["target"].tests] == [[0, 1], [2, 3]]
     write(found, tmp_path / "copy")
+    (rise,) = found.flows["target"].rises
+    # 353 over 310 MPa at 0.2 %, 356 over 320 at 0.4 %, the last that both reach
+    assert rise == pytest.approx((1000.0, 1.126), rel=2e-3)
     assert read(tmp_path / "copy").flows["target"].stress == pytest.approx([3e8, 3.2e8, 3.5e8, 5e8])
 
 
