@@ -215,8 +215,6 @@ def test_damping_rests_on_moduli() -> None:
 
 def test_a_guide_takes_no_more_than_guides_take() -> None:
     assert named("impact-speed-loss").parameters[0].high == 0.3
-    _, mass, _ = support.ranges([(light, Surroundings())])
-    assert (mass.low, mass.high) == pytest.approx((2e-4, 3e-2))
 
 
 @pytest.mark.parametrize(
