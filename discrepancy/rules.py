@@ -36,6 +36,14 @@ class DiagnosisRules:
         0.7, "probability of the baseline from which `adequate` is said [-]",
         "readers take the word for an all-clear",
     )  # fmt: skip
+    derived: float = rule(
+        0.2, "rms of a column less what others give, in its noise, below which it is derived [-]",
+        "two instruments differ by their noise: of four trials one in a thousand agrees so well",
+    )  # fmt: skip
+    derived_trials: int = rule(
+        3, "trials from which a column may be called derived [-]",
+        "by chance one in a hundred of three agrees so well",
+    )  # fmt: skip
 
 
 RULES = DiagnosisRules()

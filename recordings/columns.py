@@ -67,6 +67,7 @@ CONDITIONS: dict[str, Column] = {
     ),
     "impact_speed_m_s": _positive("condition", "normal approach speed", high=2e4),
     "drop_height_m": _positive("condition", "height of fall", high=200.0),
+    "drop_height_m_std": _not_negative("std", "of a height; all its trials share it"),
     "angle_deg_std": _not_negative("std", "standard deviation of the angle"),
     "impact_speed_m_s_std": _not_negative("std", "standard deviation of the speed"),
     "temperature_K": _positive("condition", "temperature of the bodies", high=1e4),

@@ -27,7 +27,7 @@ _OF_PRESSES = {
     *(name for name in MEASURED if "impact" not in OBSERVABLES[name].of),
 }  # fmt: skip
 _OF_IMPACTS = {
-    "impact_speed_m_s_std", "approach_tangential_m_s", "approach_spin_rad_s",
+    "impact_speed_m_s_std", "drop_height_m_std", "approach_tangential_m_s", "approach_spin_rad_s",
     *(name for name in MEASURED if name not in _SHOWN_BY_PRESS),
 }  # fmt: skip
 """Columns that only rows of one kind may fill."""
@@ -48,8 +48,8 @@ class Trials:
     impact_speed_m_s, drop_height_m
         As the table gives them: normal approach speed [m/s], height of fall [m]; at least one of an
         impact, none of a press.
-    angle_deg_std, impact_speed_m_s_std
-        Standard deviations [deg, m/s].
+    angle_deg_std, impact_speed_m_s_std, drop_height_m_std
+        Standard deviations [deg, m/s, m]; that of a height is common to all trials of it.
     temperature_K, order
         Temperature [K]; place in the order of testing.
     approach_tangential_m_s, approach_spin_rad_s
@@ -75,6 +75,7 @@ class Trials:
     drop_height_m: Array = field(default_factory=lambda: np.empty(0))
     angle_deg_std: Array = field(default_factory=lambda: np.empty(0))
     impact_speed_m_s_std: Array = field(default_factory=lambda: np.empty(0))
+    drop_height_m_std: Array = field(default_factory=lambda: np.empty(0))
     temperature_K: Array = field(default_factory=lambda: np.empty(0))
     order: Array = field(default_factory=lambda: np.empty(0))
     approach_tangential_m_s: Array = field(default_factory=lambda: np.empty(0))

@@ -12,6 +12,8 @@ from dataclasses import dataclass, replace
 from itertools import combinations
 from typing import NamedTuple
 
+import numpy as np
+
 from ...core.observables import OBSERVABLES
 from ..comparison.cells import Scatter
 from ..inference.fit import Fit
@@ -21,8 +23,8 @@ from ..unknowns.drift import Drift
 from ..unknowns.followed import Followed
 from .odds import OUTSIDE, SURE, Odds
 
-FEWEST_CELLS, FEWEST_CONDITIONS = 6, 2
-"""Numbers and conditions below which a set says nothing."""
+FEWEST, FEWEST_CONDITIONS = 6, 2
+"""Readings and conditions below which a set says nothing."""
 MOST = 3
 """Explanations that are reported as indistinguishable; with more the set says too little."""
 
@@ -88,8 +90,9 @@ def decide(ranking: Ranking, odds: Odds, *, drifts: Sequence[Drift] = ()) -> Cho
     cells, conditions = ranking.problem.cells, len(set(ranking.problem.cells.condition))
     first = [*map(_follows, ranking.problem.followed), *map(_scattered, ranking.problem.scatters)]
     last = [*map(_drifted, drifts)]
-    if len(cells) < FEWEST_CELLS:
-        text = f"too few: only {len(cells)} numbers to compare, {FEWEST_CELLS} are needed"
+    readings = int(np.sum(cells.count))
+    if readings < FEWEST:
+        text = f"too few: only {readings} numbers to compare, {FEWEST} are needed"
         return Choice("undetermined", (), (*first, text, *_nevertheless(odds), *last))
     if conditions < FEWEST_CONDITIONS:
         text = "too few: all numbers are of one condition; nothing can follow from what varies"

@@ -45,6 +45,9 @@ class Condition:
         The condition that struck the same place before; -1 on fresh metal.
     press
         Load and rate of a press; none of an impact.
+    setting, setting_spread
+        What was set once for all its trials, a height of fall, and the relative error of the speed
+        that follows from it: shared by all conditions of that setting.
     """
 
     striker: str
@@ -58,6 +61,8 @@ class Condition:
     around: Surroundings
     after: int = -1
     press: Press | None = None
+    setting: str = ""
+    setting_spread: float = 0.0
 
     @property
     def told(self) -> str:
@@ -109,6 +114,7 @@ def conditions_of(recordings: RecordingSet) -> tuple[Condition, ...]:
             rate = float(np.nan_to_num(trials.press_rate_per_s[first]))
             press = Press(float(np.mean(trials.load_N[rows])), rate)
         relative = np.where(np.isnan(relative), unknown, relative)
+        set_once = 0.5 * trials.drop_height_m_std[first] / heights[first]
         lean = np.radians(np.nan_to_num(trials.angle_deg_std[rows], nan=0.0))
         rough = [q.value for q in (target.Ra_m, table.Ra_m) if q is not None]
         temperature = trials.temperature_K[first]
@@ -137,6 +143,7 @@ def conditions_of(recordings: RecordingSet) -> tuple[Condition, ...]:
                 float(np.mean(approach.tangential[rows])), float(np.mean(approach.spin[rows])),
                 float(np.sqrt(np.mean(relative**2) / n)), float(np.sqrt(np.mean(lean**2) / n)),
                 tuple(int(r) for r in rows), around, int(before[first]), press,
+                f"{heights[first]:g} m", float(np.nan_to_num(set_once)),
             )
         )  # fmt: skip
     return tuple(found)

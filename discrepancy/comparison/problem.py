@@ -34,6 +34,7 @@ from ..unknowns.nuisances import (
 )
 from .cells import NO_CELLS, Cells, Scatter, cells_of
 from .conditions import Condition, conditions_of
+from .derived import derived_columns
 
 Array = NDArray[np.float64]
 
@@ -215,6 +216,8 @@ def problem_of(
     stated = problem.scenes(np.zeros(problem.n_z))
     of_trial = {i: s for c, s in zip(conditions, stated, strict=True) for i in c.trials}
     readings, unread = readings_of(recordings, [of_trial[i] for i in sorted(of_trial)])
+    again = derived_columns(recordings, readings)
+    readings = {name: r for name, r in readings.items() if name not in again}
     trials = recordings.trials
     driven = np.where(trials.pressed, trials.load_N, approach.normal)
     seen = cells_of(readings, driven, trials.order, problem.conditions, trials.varied)
@@ -224,10 +227,10 @@ def problem_of(
             "no measured number to compare with the simulation", source=recordings.name,
             key="trials.csv", allowed=f"one or more of {known}",
         )  # fmt: skip
-    again = sum(c.after >= 0 for c in conditions)
-    later = [f"{again} conditions are later blows on one place: they meet its crater"] * bool(again)
+    later = sum(c.after >= 0 for c in conditions)
+    blows = [f"{later} conditions are later blows on one place: they meet its crater"] * bool(later)
     assumed = [n.note for n in nuisances if n.note]
-    notes = (*recordings.notes, *told, *later, *assumed, *unread, *seen.notes)
+    notes = (*recordings.notes, *told, *blows, *assumed, *unread, *again.values(), *seen.notes)
     return replace(
         problem, cells=seen.cells, drifts=seen.drifts, scatters=seen.scatters,
         followed=seen.followed, notes=notes,

@@ -144,7 +144,9 @@ def candidates_of(problem: Problem) -> list[Candidate]:
 def _moved(c: Condition, speed: float) -> Condition:
     """Return the impact at another speed, in the same direction of approach."""
     part = speed / c.speed
-    return replace(c, speed=speed, tangential=c.tangential * part, spin=c.spin * part)
+    return replace(
+        c, speed=speed, tangential=c.tangential * part, spin=c.spin * part, setting_spread=0.0
+    )
 
 
 def _at(c: Condition) -> str:

@@ -29,7 +29,7 @@ _JUMPS = (0.02, 0.05, 0.1)  # of the parameter: how near a jump makes a cell uns
 
 
 def measured_covariance(problem: Problem, by_speed: Array, by_angle: Array) -> Array:
-    """Noise of the cells, with what the scatter of speed and angle adds, shape (m, m).
+    """Noise of the cells, with what errors of speed, angle and setting add, shape (m, m).
 
     Parameters
     ----------
@@ -43,9 +43,14 @@ def measured_covariance(problem: Problem, by_speed: Array, by_angle: Array) -> A
     speed = np.array([c.speed_spread for c in problem.conditions])[k]
     angle = np.array([c.angle_spread for c in problem.conditions])[k]
     total = np.diag(problem.cells.std**2)
-    for derivative, spread in ((by_speed, speed), (by_angle, angle)):
+    setting = np.array([c.setting for c in problem.conditions])[k]
+    set_once = np.array([c.setting_spread for c in problem.conditions])[k]
+    for derivative, spread, alike in (
+        (by_speed, speed, same), (by_angle, angle, same),
+        (by_speed, set_once, setting[:, None] == setting[None, :]),
+    ):  # fmt: skip
         column = derivative * spread
-        total = total + np.where(same, column[:, None] * column[None, :], 0.0)
+        total = total + np.where(alike, column[:, None] * column[None, :], 0.0)
     return np.asarray(total)
 
 

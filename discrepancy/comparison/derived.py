@@ -1,0 +1,75 @@
+"""Columns that were worked out from others: one reading that stands in two columns, counted once.
+
+Two instruments differ by their noise. Where a column agrees with what others of the same trial give
+to a small part of its stated noise, trial after trial, it was computed from them.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ...recordings import RecordingSet
+from ..curves import Readings
+from ..rules import RULES
+
+Array = NDArray[np.float64]
+
+
+class _Relation(NamedTuple):
+    """A column, what it would be by others, and how that is said."""
+
+    column: str
+    value: Array
+    words: str
+
+
+def derived_columns(recordings: RecordingSet, readings: Mapping[str, Readings]) -> dict[str, str]:
+    """Return the columns that say again what others do, and a note on each.
+
+    Parameters
+    ----------
+    recordings
+        The set.
+    readings
+        Every observable's values over the trials.
+    """
+    found = {}
+    for relation in _relations(recordings, readings):
+        own = readings[relation.column]
+        apart = (own.value - relation.value) / own.std
+        apart = apart[np.isfinite(apart)]
+        if len(apart) < RULES.derived_trials:
+            continue
+        if float(np.sqrt(np.mean(apart**2))) < RULES.derived:
+            found[relation.column] = (
+                f"{relation.column} is {relation.words} in {len(apart)} trials, far within its "
+                "noise: one reading, counted once"
+            )
+    return found
+
+
+def _relations(recordings: RecordingSet, readings: Mapping[str, Readings]) -> Iterator[_Relation]:
+    seen = {name: r.value for name, r in readings.items()}
+    approach = recordings.approach
+    strikers = recordings.strikers()
+    ball = np.array([s.shape == "sphere" for s in strikers])
+    upright = ball | (approach.angle > 0.5 * np.pi - 1e-6)
+    if {"restitution", "rebound_speed_m_s"} <= seen.keys():
+        value = np.where(upright, seen["restitution"] * approach.normal, np.nan)
+        yield _Relation("rebound_speed_m_s", value, "restitution times the speed of approach")
+    if {"dent_diameter_m", "permanent_depth_m"} <= seen.keys():
+        radius = np.array([s.tip_radius_m.value for s in strikers])
+        value = seen["dent_diameter_m"] ** 2 / (8.0 * radius)
+        yield _Relation("permanent_depth_m", value, "the cap of the dent's diameter")
+    if {"restitution", "tangential_rebound_m_s", "friction_impulse_ratio"} <= seen.keys():
+        along = np.abs(seen["tangential_rebound_m_s"] - approach.tangential)
+        value = along / ((1.0 + seen["restitution"]) * approach.normal)
+        words = "the change of tangential over that of normal speed"
+        yield _Relation("friction_impulse_ratio", np.where(ball, value, np.nan), words)
+
+
+__all__ = ["derived_columns"]
