@@ -65,7 +65,8 @@ def _relations(recordings: RecordingSet, readings: Mapping[str, Readings]) -> It
         radius = np.array([s.tip_radius_m.value for s in strikers])
         value = seen["dent_diameter_m"] ** 2 / (8.0 * radius)
         yield _Relation("permanent_depth_m", value, "the cap of the dent's diameter")
-    if {"restitution", "tangential_rebound_m_s", "friction_impulse_ratio"} <= seen.keys():
+    speeds = {"restitution", "tangential_rebound_m_s"}
+    if "friction_impulse_ratio" in seen and speeds <= seen.keys():
         along = np.abs(seen["tangential_rebound_m_s"] - approach.tangential)
         value = along / ((1.0 + seen["restitution"]) * approach.normal)
         words = "the change of tangential over that of normal speed"
