@@ -88,9 +88,8 @@ class Condition:
 
 def conditions_of(recordings: RecordingSet) -> tuple[Condition, ...]:
     """Return the conditions of a set, in the order in which they were first tested."""
-    setup, trials, approach = recordings.setup, recordings.trials, recordings.approach
+    trials, approach = recordings.trials, recordings.approach
     numbers, before = _nominal(recordings)
-    target, air = setup.target, setup.environment
     pressed = trials.pressed
     # a load is measured, as a speed is
     timed = ~np.isnan(trials.impact_speed_m_s) | pressed
@@ -101,10 +100,6 @@ def conditions_of(recordings: RecordingSet) -> tuple[Condition, ...]:
         rows = np.flatnonzero(numbers == number)
         first, n = rows[0], len(rows)
         name = trials.striker[first]
-        table = setup.strikers[name]
-        strengths = [value_of(body.strength, math.inf) for body in (target, table)]
-        weaker = target if strengths[0] <= strengths[1] else table
-        flow = recordings.flows.get("target" if weaker is target else f"striker.{name}")
         v = float(np.mean(approach.normal[rows]))
         relative = approach.normal_std[rows] / approach.normal[rows]
         unknown = SPEED_MEASURED if timed[first] else SPEED_FROM_HEIGHT
@@ -116,27 +111,11 @@ def conditions_of(recordings: RecordingSet) -> tuple[Condition, ...]:
         relative = np.where(np.isnan(relative), unknown, relative)
         set_once = 0.5 * trials.drop_height_m_std[first] / heights[first]
         lean = np.radians(np.nan_to_num(trials.angle_deg_std[rows], nan=0.0))
-        rough = [q.value for q in (target.Ra_m, table.Ra_m) if q is not None]
-        temperature = trials.temperature_K[first]
-        ambient = value_of(air.temperature_K, 293.0)
-        around = Surroundings(
-            thickness=value_of(target.thickness_m),
-            support_mass=value_of(target.support_mass_kg),
-            support_stiffness=value_of(target.support_stiffness_N_m),
-            roughness=math.hypot(*rough) if rough else math.nan,
-            viscosity=value_of(air.viscosity_Pa_s),
-            density=value_of(air.density_kg_m3),
-            pressure=value_of(air.pressure_Pa),
-            fluid=air.fluid,
-            heat_capacity=value_of(weaker.cp_J_kgK),
-            melting=value_of(weaker.melting_K),
-            temperature=ambient if math.isnan(temperature) else float(temperature),
-            ambient=ambient,
-            layer_thickness=value_of(target.layer_thickness_m),
-            from_height=not timed[first],
-            height_share=1.0 if timed[first] else float(heights[first] / highest),
-            rises=() if flow is None else flow.rises,
-        )
+        share = 1.0 if timed[first] else float(heights[first] / highest)
+        around = replace(
+            _surroundings(recordings, name, float(trials.temperature_K[first])),
+            from_height=not timed[first], height_share=share,
+        )  # fmt: skip
         found.append(
             Condition(
                 name, v, float(np.mean(approach.angle[rows])),
@@ -147,6 +126,33 @@ def conditions_of(recordings: RecordingSet) -> tuple[Condition, ...]:
             )
         )  # fmt: skip
     return tuple(found)
+
+
+def _surroundings(recordings: RecordingSet, striker: str, temperature: float) -> Surroundings:
+    """What is stated around a striker's impacts at a temperature [K]; nan: the surroundings'."""
+    setup = recordings.setup
+    target, air, table = setup.target, setup.environment, setup.strikers[striker]
+    strengths = [value_of(body.strength, math.inf) for body in (target, table)]
+    key = "target" if strengths[0] <= strengths[1] else f"strikers.{striker}"
+    weaker, flow = setup.bodies[key], recordings.flows.get(key)
+    rough = [q.value for q in (target.Ra_m, table.Ra_m) if q is not None]
+    ambient = value_of(air.temperature_K, 293.0)
+    return Surroundings(
+        thickness=value_of(target.thickness_m),
+        support_mass=value_of(target.support_mass_kg),
+        support_stiffness=value_of(target.support_stiffness_N_m),
+        roughness=math.hypot(*rough) if rough else math.nan,
+        viscosity=value_of(air.viscosity_Pa_s),
+        density=value_of(air.density_kg_m3),
+        pressure=value_of(air.pressure_Pa),
+        fluid=air.fluid,
+        heat_capacity=value_of(weaker.cp_J_kgK),
+        melting=value_of(weaker.melting_K),
+        temperature=ambient if math.isnan(temperature) else temperature,
+        ambient=ambient,
+        layer_thickness=value_of(target.layer_thickness_m),
+        rises=() if flow is None else flow.rises,
+    )
 
 
 def _nominal(recordings: RecordingSet) -> tuple[Ints, Ints]:
