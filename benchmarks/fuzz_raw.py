@@ -29,13 +29,22 @@ UNITS = ("s", "ms", "N", "kN", "g", "m/s2", "mm", "V", "%", "MPa", "", "furlong"
 WORDS = ("time", "Zeit", "force", "Kraft", "X", "a", "height", "Höhe", "load", "strain", "Ch 1", "")
 
 
-def wave(draw, rng, count):
-    """Numbers of a channel: pulses, bounces, a level, a count, noise, at any size."""
+def wave(draw, rng, count, like=()):
+    """Numbers of a channel: pulses, bounces, a level, a count, noise, at any size.
+
+    `like` names what a channel usually shows; one in five shows anything.
+    """
+    like = like if draw.random() < 0.8 else ()
     t = np.linspace(0.0, 1.0, count)
-    kind = draw.choice(("pulse", "bounces", "level", "count", "noise", "steps", "square"))
-    size = draw.choice((1.0, 1.0, 1e3, 1e-6, 1e300, 1e-300, -1.0))
-    if kind == "pulse":
-        at, wide = draw.random(), 10 ** draw.uniform(-3.0, 0.0)
+    kind = draw.choice(like or ("pulse", "bounces", "level", "count", "noise", "steps", "square"))
+    size = draw.choice(5 * (1.0,) + (1e3, 1e-6, 1e300, 1e-300, -1.0))
+    if kind == "ball":
+        times, heights = raw_files._bouncing()
+        y = np.interp(t * times[-1], times, heights)
+    elif kind == "press":
+        y = np.interp(t, (0.0, 0.1, 0.6, 0.7, 1.0), (0.0, 0.0, 1.0, 1.0, draw.choice((0.0, 0.5))))
+    elif kind == "pulse":
+        at, wide = draw.uniform(0.1, 0.8), 10 ** draw.uniform(-2.0, -0.7)
         y = np.sin(np.pi * np.clip((t - at) / wide, 0.0, 1.0))
     elif kind == "bounces":
         y = np.abs(np.sin(np.pi * t * draw.uniform(0.5, 9.0))) * np.exp(-draw.uniform(0.0, 5.0) * t)
@@ -56,17 +65,21 @@ def stamp(draw):
     ))  # fmt: skip
 
 
-def table(draw):
-    """A table as text: its header, separators, cells and encoding are drawn."""
+def table(draw, like=("pulse",), rates=(0.0, 6.0), units=UNITS):
+    """A table as text: its header, separators, cells and encoding are drawn.
+
+    What stands in it is usually `like` a sound one, so that odd cells and forms reach the numbers.
+    """
     rng = np.random.default_rng(draw.randrange(2**32))
-    count, columns = draw.choice((0, 1, 3, 25, 300, 3000)), draw.choice((1, 2, 2, 3, 8))
-    rate = 10 ** draw.uniform(0.0, 6.0)
-    write = stamp(draw)
+    count = draw.choice((0, 1, 3, 25) + 4 * (300, 3000))
+    columns = draw.choice((1, 3, 8) + 8 * (2,))
+    rate = 10 ** draw.uniform(*rates)
+    write = stamp(draw) if draw.random() < 0.3 else "{:.6f}".format
     cells = [[write(k / rate) for k in range(count)]]
     form = draw.choice(("{:.6g}", "{:.3f}", "{:e}", "{:,.2f}", "{!r}"))
     for _ in range(columns - 1):
-        cells.append([form.format(float(v)) for v in wave(draw, rng, count)])
-    for _ in range(draw.choice((0, 0, 1, 30)) if count else 0):
+        cells.append([form.format(float(v)) for v in wave(draw, rng, count, like)])
+    for _ in range(draw.choice((0, 0, 0, 0, 1, 30)) if count else 0):
         draw.choice(cells)[draw.randrange(count)] = draw.choice(MARKS)
     comma, between = draw.choice(((".", ","), (".", "\t"), (",", ";"), (",", ","), (".", "  ")))
     quote = draw.choice(("", "", '"'))
@@ -74,7 +87,8 @@ def table(draw):
              .format(draw.choice(("", "1e-5", "-1", "nan", "1000", 300 * "x")))
              for _ in range(draw.choice((0, 0, 2, 40)))]  # fmt: skip
     names = [f"{draw.choice(WORDS)}{draw.choice((' ({})', '_{}', ' [{}]')).format(u)}"
-             for u in (draw.choice(UNITS) for _ in range(columns))]  # fmt: skip
+             for u in (draw.choice(units if draw.random() < 0.8 else UNITS)
+                       for _ in range(columns))]  # fmt: skip
     lines += draw.choice(([], [between.join(names)], [between.join(names)] * 2))
     for row in zip(*cells, strict=True):
         lines.append(between.join(f"{quote}{c.replace('.', comma)}{quote}" for c in row))
@@ -86,8 +100,9 @@ def packed(draw):
     """Tables in an archive."""
     out = io.BytesIO()
     with zipfile.ZipFile(out, "w") as archive:
-        for k in range(draw.choice((0, 1, 3))):
-            archive.writestr(draw.choice((f"{k}.csv", "../a.csv", "meta/b.csv")), table(draw))
+        names = ((), ("0.csv",), ("../a.csv",), ("meta/b.csv", "1.csv"), ("a.csv", "b.csv"))
+        for name in draw.choice(names):
+            archive.writestr(name, table(draw))
     return out.getvalue()
 
 
@@ -97,10 +112,11 @@ def book(draw):
 
     made = openpyxl.Workbook()
     rng = np.random.default_rng(draw.randrange(2**32))
-    values = wave(draw, rng, draw.choice((0, 2, 40, 300)))
-    made.active.append([draw.choice(WORDS), f"{draw.choice(WORDS)} ({draw.choice(UNITS)})"])
+    values = wave(draw, rng, draw.choice((0, 2, 300, 300, 300)), ("pulse",))
+    made.active.append([draw.choice(WORDS), f"{draw.choice(WORDS)} ({draw.choice(('N', *UNITS))})"])
+    often = draw.choice((0.0, 0.0, 0.01, 0.3))
     for k, v in enumerate(values):
-        odd = draw.random() < 0.05
+        odd = draw.random() < often
         made.active.append([k / 1e3, draw.choice(("=A1", "x", None, True, "1,5")) if odd else v])
     out = io.BytesIO()
     made.save(out)
@@ -110,8 +126,9 @@ def book(draw):
 def markers(draw):
     """Positions of markers as one of the trackers writes them, some not seen."""
     rng = np.random.default_rng(draw.randrange(2**32))
-    count, many = draw.choice((1, 20, 200)), draw.choice((1, 3, 5))
-    at = np.stack([wave(draw, rng, count) for _ in range(3 * many)], axis=1)
+    count, many = draw.choice((1, 20, 200, 200, 200)), draw.choice((1, 3, 5))
+    at = np.stack([wave(draw, rng, count, ("level",)) for _ in range(3 * many)], axis=1)
+    at[:, 2::3] += wave(draw, rng, count, ("ball",))[:, None]
     names = [draw.choice(("A", "B", "Ball:1", "", "M {}")).format(k) for k in range(many)]
     rows = [[f"{v:.4f}" if rng.random() > 0.02 else "" for v in row] for row in at]
     kind = draw.choice(("plain", "motive", "vicon", "qualisys"))
@@ -119,7 +136,7 @@ def markers(draw):
         head = ["time_s," + ",".join(f"{n}_{a}_mm" for n in names for a in "xyz")]
         lines = [f"{k / 200}," + ",".join(row) for k, row in enumerate(rows)]
     elif kind == "motive":
-        rate = draw.choice(("240.0", "0", "nan", ""))
+        rate = draw.choice(4 * ("240.0",) + ("0", "nan", ""))
         head = [f"Format Version,1.23,Export Frame Rate,{rate},Length Units,Meters", "",
                 ",Type" + ",Marker" * 3 * many,
                 ",Name," + ",".join(n for n in names for _ in "xyz"),
@@ -127,13 +144,14 @@ def markers(draw):
                 "Frame,Time (Seconds)" + ",X,Y,Z" * many]  # fmt: skip
         lines = [f"{k},{k / 240}," + ",".join(row) for k, row in enumerate(rows)]
     elif kind == "vicon":
-        head = ["Trajectories", draw.choice(("250", "-1", "x")), ",," + ",,,".join(names),
+        head = ["Trajectories", draw.choice(4 * ("250",) + ("-1", "x")), ",," + ",,,".join(names),
                 "Frame,Sub Frame" + ",X,Y,Z" * many,
                 ",," + ",".join(["mm"] * 3 * many)]  # fmt: skip
         lines = [f"{k + 1},0," + ",".join(row) for k, row in enumerate(rows)]
     else:
-        head = [f"NO_OF_FRAMES\t{draw.choice((count, 7, -1))}", f"NO_OF_MARKERS\t{many}",
-                f"FREQUENCY\t{draw.choice((100, 0))}", "DATA_INCLUDED\t3D",
+        said = draw.choice((count, count, count, 7, -1))
+        head = [f"NO_OF_FRAMES\t{said}", f"NO_OF_MARKERS\t{many}",
+                f"FREQUENCY\t{draw.choice((100, 100, 100, 0))}", "DATA_INCLUDED\t3D",
                 "MARKER_NAMES\t" + "\t".join(names)]  # fmt: skip
         lines = ["\t".join(row) for row in rows]
     return "\n".join(head + lines[: draw.choice((count, count, 3))]).encode()
@@ -145,12 +163,20 @@ def sound(draw):
 
     rng = np.random.default_rng(draw.randrange(2**32))
     channels = draw.choice((1, 1, 2))
-    heard = np.stack([wave(draw, rng, draw.choice((10, 3000, 60_000))) for _ in range(1)], axis=1)
-    heard = np.repeat(np.clip(np.nan_to_num(heard), -1.0, 1.0), channels, axis=1)
+    rate = draw.choice((1, 192_000) + 4 * (8000, 44_100))
+    if draw.random() < 0.7:  # contacts that come sooner every time
+        heard = rng.normal(0.0, 1e-3, 2 * rate)
+        at, gap = int(0.2 * rate), draw.uniform(0.02, 0.4) * rate
+        while at + 40 < heard.size and gap > 30:
+            heard[at : at + 30] += draw.uniform(0.05, 0.9) * rng.normal(size=30)
+            at, gap = int(at + gap), draw.choice((0.8, 0.8, 0.8, 1.0, 0.3)) * gap
+    else:
+        heard = wave(draw, rng, draw.choice((10, 3000, 60_000)))
+    heard = np.repeat(np.clip(np.nan_to_num(heard), -1.0, 1.0)[:, None], channels, axis=1)
     kind = draw.choice((np.int16, np.int32, np.uint8, np.float32))
     top = 1.0 if kind is np.float32 else np.iinfo(kind).max
     out = io.BytesIO()
-    wavfile.write(out, draw.choice((1, 8000, 44_100, 192_000)), (top * heard).astype(kind))
+    wavfile.write(out, rate, (top * heard).astype(kind))
     return out.getvalue()
 
 
@@ -159,13 +185,15 @@ def stack(draw):
     import tifffile
 
     rng = np.random.default_rng(draw.randrange(2**32))
-    count, rows, columns = draw.choice((1, 12, 30)), draw.choice((1, 40, 64)), draw.choice((2, 48))
+    count, rows = draw.choice((1, 12, 30, 30, 30)), draw.choice((1, 40, 64, 64))
+    columns = draw.choice((2, 48, 48, 48))
     y, x = np.mgrid[:rows, :columns]
-    place = np.abs(wave(draw, rng, count)).clip(0.0, rows)
-    frames = np.array([np.hypot(x - 20, y - r) < 8 for r in place]) * draw.choice((0, 1, 200))
+    place = rows * (0.9 - np.abs(wave(draw, rng, count, ("ball",)))).clip(0.0, 1.0)
+    frames = np.array([(9.0 - np.hypot(x - 20, y - r)).clip(0.0, 1.0) for r in place])
+    frames = frames * draw.choice((0, 1, 200, 200, 200))
     frames = frames + draw.choice((0.0, 3.0)) * rng.random(frames.shape)
     out = io.BytesIO()
-    kind = draw.choice((np.uint8, np.uint16, np.float32, bool))
+    kind = draw.choice(4 * (np.uint8, np.uint16) + (np.float32, bool))
     tifffile.imwrite(out, frames.astype(kind), photometric="minisblack")
     return out.getvalue()
 
@@ -173,8 +201,9 @@ def stack(draw):
 def photograph(draw):
     """A picture of a round body, of a side, or of nothing."""
     rng = np.random.default_rng(draw.randrange(2**32))
-    y, x = np.mgrid[: draw.choice((1, 60, 200)), : draw.choice((1, 80, 150))]
-    inside = np.hypot(x - 40, y - draw.choice((0, 20, 1000))) < draw.choice((0, 15, 30, 990))
+    y, x = np.mgrid[: draw.choice((1, 60, 200, 200)), : draw.choice((1, 80, 150, 150))]
+    inside = np.hypot(x - 40, y - draw.choice((0, 10, 10, 20, 1000))) < draw.choice((0, 15, 30, 30))
+    inside |= (np.abs(x - 40) < 30) & (y < 10) & (draw.random() < 0.7)
     grey = 200.0 * ~inside + draw.choice((0.0, 2.0, 60.0)) * rng.random(inside.shape)
     return raw_files._picture("PNG", grey.astype(np.uint8))
 
@@ -182,28 +211,42 @@ def photograph(draw):
 def surface(draw):
     """A grid of heights, some not seen."""
     rng = np.random.default_rng(draw.randrange(2**32))
-    y, x = np.mgrid[-1 : 1 : draw.choice((1, 5, 48)) * 1j, -1 : 1 : draw.choice((2, 40)) * 1j]
-    z = -draw.choice((0.0, 1e-5, 1e200)) * np.maximum(0.0, draw.uniform(0.0, 2.0) - x**2 - y**2)
-    z = z + draw.choice((0.0, 1e-8, 1e-4)) * rng.normal(size=z.shape)
-    z[rng.random(z.shape) < draw.choice((0.0, 0.05, 1.0))] = np.nan
-    between = draw.choice((",", "\t", ";", " "))
+    y, x = np.mgrid[-1 : 1 : draw.choice((1, 5, 48, 48, 48)) * 1j,
+                    -1 : 1 : draw.choice((2, 40, 40, 40)) * 1j]  # fmt: skip
+    deep = draw.choice((0.0, 1e-5, 1e-5, 1e-5, 1e200))
+    z = -deep * np.maximum(0.0, draw.choice((0.3, 0.3, 0.3, 2.0)) - x**2 - y**2)
+    z = z + draw.choice((0.0, 1e-8, 1e-8, 1e-4)) * rng.normal(size=z.shape)
+    z[rng.random(z.shape) < draw.choice((0.0, 0.0, 0.05, 1.0))] = np.nan
+    between = draw.choice((",", ",", "\t", ";", " "))
     return "\n".join(between.join(f"{v:.3e}" for v in row) for row in z).encode()
+
+
+def of_press(draw):
+    """Load against depth in a machine's words."""
+    return table(draw, ("press",), (0.0, 2.0), ("N", "mm", "um", "kN", ""))
+
+
+def of_height(draw):
+    """Heights of a ball."""
+    return table(draw, ("ball",), (2.3, 2.5), ("mm", "m", ""))
 
 
 FILES = {
     # ending, what writes it, kind, options that are always given
     "table": (".csv", table, "table", {}),
     "text": (".lvm", table, "table", {"holds": "force", "value_unit": "N"}),
-    "height": (".txt", table, "table", {"holds": "height", "value_unit": "mm"}),
-    "archive": (".zip", packed, "table", {"holds": "force"}),
-    "book": (".xlsx", book, "table", {}),
-    "markers": (".csv", markers, "mocap", {}),
+    "height": (".txt", of_height, "table", {"holds": "height", "value_unit": "m"}),
+    "archive": (".zip", packed, "table", {"holds": "force", "value_unit": "N"}),
+    "book": (".xlsx", book, "table", {"holds": "force", "value_unit": "N"}),
+    "press": (".csv", of_press, "press", {"depth": "1", "load": "2", "load_unit": "N",
+                                          "depth_unit": "um"}),
+    "markers": (".csv", markers, "mocap", {"shape": "sphere", "tip_radius_m": 0.02}),
     "tsv": (".tsv", markers, "mocap", {"shape": "sphere", "tip_radius_m": 0.02}),
     "sound": (".wav", sound, "sound", {}),
-    "stack": (".tif", stack, "video", {"frame_rate_hz": 1000.0}),
+    "stack": (".tif", stack, "video", {"frame_rate_hz": 100.0, "shape": "sphere"}),
     "tip": (".png", photograph, "tip", {"pixel_m": 1e-5}),
     "grid": (".csv", surface, "scan", {"unit": "m", "step_m": 1e-5}),
-}
+}  # fmt: skip
 
 
 def options(draw, kind, given):
@@ -212,7 +255,7 @@ def options(draw, kind, given):
 
     found = dict(given)
     for name, field in load_kind(kind).options.model_fields.items():
-        if name in found or not (field.is_required() or draw.random() < 0.08):
+        if name in found or not (field.is_required() or draw.random() < 0.02):
             continue
         found[name] = _option(draw, field.annotation)
     return found
@@ -253,7 +296,7 @@ def read(name, path):
 
 
 SOUND = dict(
-    table="force", text="force", height="height", archive="packed", book="workbook",
+    table="force", text="force", height="height", archive="packed", book="workbook", press="press",
     markers="markers", tsv="markers", sound="sound", stack="stack", tip="png", grid="grid",
 )  # fmt: skip
 """What is read first, of `raw_files.FILES`: it imports and compiles."""

@@ -89,8 +89,8 @@ def new(
 def _new_from(sheet: Path, folder: Path, shape: str) -> None:
     """Write a set with the rows of a laboratory's sheet, and tell what became of each column."""
     from ..core.errors import InputError
-    from ..reduce.into_set import store
-    from ..reduce.row import Row
+    from ..reduce.output.into_set import store
+    from ..reduce.output.row import Row
     from ..reduce.table.sheet import read_sheet
 
     for name in ("set.toml", "trials.csv"):

@@ -68,7 +68,7 @@ Out = Annotated[Path, folder_option("Without --into: folder for the numbers and 
 def _command(name: str) -> Any:
     """Return the command of a kind: FILE, the kind's options, the conditions of the trial."""
     from ..reduce.kinds import all_kinds, load_kind
-    from ..reduce.row import Row
+    from ..reduce.output.row import Row
     from .shared.batch import jobs_of
 
     kind = load_kind(name)
@@ -174,9 +174,9 @@ def _reduce(
     """Reduce one file; its picture, or that of what was refused, is added to `pictures`."""
     from ..core.inputs.toml_input import parse_model
     from ..reduce.gates import Refused
-    from ..reduce.into_set import store
-    from ..reduce.record import trial_name, write_record
-    from ..reduce.row import Row
+    from ..reduce.output.into_set import store
+    from ..reduce.output.record import trial_name, write_record
+    from ..reduce.output.row import Row
 
     with _named_as_options():
         conditions = parse_model(row, Row, source="command line")

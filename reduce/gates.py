@@ -38,9 +38,10 @@ class Gate(NamedTuple):
 
 
 GATES = {
-    "hole": Gate("pulse", "cells without a number, or missing rows, in or beside it", "hole",
-                 "refuses"),
-    "noise": Gate("pulse", "its peak over the noise before it", "pulse_over_noise", "refuses"),
+    "hole": Gate("pulse, press", "cells without a number, or missing rows, in or beside it",
+                 "hole", "refuses"),
+    "noise": Gate("pulse, press", "its peak over the noise before it", "pulse_over_noise",
+                  "refuses"),
     "clipped": Gate("pulse", "equal samples at its top", "flat_samples", "refuses"),
     "plateau": Gate("pulse", "width near its top, in its width at half of the peak", "plateau",
                     "refuses"),
@@ -81,6 +82,15 @@ GATES = {
     "full-scale": Gate("sound", "part of the samples at full scale", "full_scale", "refuses"),
     "apex": Gate("tip", "distance of the apex from the circle", "", "widens the radius"),
     "depth": Gate("scan", "standard deviation of the depth, in itself", "depth_error", "refuses"),
+    "rows": Gate("press", "rows with a load and a depth", "fewest_press_rows", "refuses"),
+    "cell": Gate("press", "depth that grows under equal loads, in the whole", "clipped_depth",
+                 "refuses"),
+    "unloaded": Gate("press", "load to which it falls again, in the largest", "least_unloaded",
+                     "refuses; what is not unloaded widens depths"),
+    "preload": Gate("press", "depth before the first load that is seen, in itself", "preload_part",
+                    "widens the zero of contact"),
+    "compliance": Gate("press", "the machine's own compliance, stated or seen in cycles",
+                       "fewest_cycles", "keeps depths under load out of the row"),
     "modulus": Gate("tension", "slope of the first rise and the stated modulus", "",
                     "counts plastic strain from the slope, widens the modulus"),
 }  # fmt: skip

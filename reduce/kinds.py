@@ -30,6 +30,7 @@ KINDS = {
     "mocap": "motion capture of markers: velocities, spin, friction",
     "scan": "scan of a crater: depth, rim, sliding length, profile",
     "sound": "sound of a bouncing ball: restitution of each bounce",
+    "press": "load against depth of a testing machine or an indenter: depths, stiffness",
     "table": "table of force, acceleration, height, bounce times or trials",
 }
 """Each kind, named as its folder, and what it gives."""

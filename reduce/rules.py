@@ -132,6 +132,60 @@ class ReductionRules:
     longest_contact: float = rule(
         0.02, "longest contact of a body that bounces [s]", "a basketball: 0.009 to 0.016",
     )  # fmt: skip
+    largest_number: float = rule(
+        1e20, "largest number of a column [its unit]", "no record in any unit: a damaged file",
+    )  # fmt: skip
+    farthest_marker: float = rule(
+        1e3, "distance of a marker from the origin [m]", "a stadium: millimetres taken for metres",
+    )  # fmt: skip
+    fewest_press_rows: int = rule(
+        20, "rows of a press with a load and a depth [-]", "a zero, a turn and a slope of six each",
+    )  # fmt: skip
+    cycle_depth: float = rule(
+        0.05, "fall of the load that ends a cycle, in the largest load [-]",
+        "partial unloadings take off a third and more (ISO 14577-1); controls swing by 1 %",
+    )  # fmt: skip
+    held: float = rule(
+        0.01, "part of the load by which it may vary in a hold [-]",
+        "class 1 of ISO 7500-1",
+    )  # fmt: skip
+    clipped_depth: float = rule(
+        0.03, "depth that grows under a load that is equal to the last digit, in the whole [-]",
+        "creep of a metal in a hold: 1 to 2 %, and a load cell's last digit moves",
+    )  # fmt: skip
+    least_unloaded: float = rule(
+        0.8, "least load after the largest one, in it, that still shows unloading [-]",
+        "ISO 14577-1 fits the upper half; less than a fifth does not tell a slope",
+    )  # fmt: skip
+    zero_reach: tuple[float, ...] = rule(
+        (0.05, 0.1, 0.2, 0.45, 1.0), "loads up to which a flank tells its zero, in the largest [-]",
+        "benchmarks/validate_reduce_press.py; of a blunt pyramid the first tenth is a sphere",
+    )  # fmt: skip
+    zero_span: float = rule(
+        2.5, "largest in least load of that flank [-]", "benchmarks/validate_reduce_press.py",
+    )  # fmt: skip
+    preload_part: float = rule(
+        0.1, "error of the zero that a preload hides, in the depth that is made up [-]",
+        "benchmarks/validate_reduce_press.py",
+    )  # fmt: skip
+    stiffness_from: tuple[float, ...] = rule(
+        (0.5, 0.7), "loads down to which the slope of unloading is read, in the largest [-]",
+        "ISO 14577-1, A.4: from 98 % down to 50 or 70 %",
+    )  # fmt: skip
+    stiffness_to: float = rule(
+        0.98, "load from which on it is [-]", "ISO 14577-1, A.4",
+    )  # fmt: skip
+    fewest_cycles: int = rule(
+        4, "cycles that tell the machine's compliance [-]", "two unknowns and their error",
+    )  # fmt: skip
+    cycle_ratio: float = rule(
+        2.0, "largest in smallest load of these cycles [-]",
+        "the contact's own compliance changes by a third",
+    )  # fmt: skip
+    meyer: tuple[float, ...] = rule(
+        (2.0, 2.4), "Meyer's index between which a metal's lies [-]",
+        "2 of cold-worked, 2.2 to 2.4 of annealed metals (D. Tabor, The Hardness of Metals, 1951)",
+    )  # fmt: skip
 
 
 RULES = ReductionRules()

@@ -20,7 +20,10 @@ TIME = {"s": 1.0, "ms": 1e-3, "us": 1e-6, "µs": 1e-6, "min": 60.0}
 UNITS: dict[str, dict[str, float]] = {
     "time": TIME,
     "length": LENGTH,
-    "force": {"N": 1.0, "kN": 1e3, "mN": 1e-3, "lbf": POUND_FORCE, "kgf": STANDARD_GRAVITY},
+    "force": {
+        "N": 1.0, "kN": 1e3, "MN": 1e6, "mN": 1e-3, "uN": 1e-6, "µN": 1e-6, "μN": 1e-6,
+        "lbf": POUND_FORCE, "kgf": STANDARD_GRAVITY, "gf": 1e-3 * STANDARD_GRAVITY,
+    },
     "acceleration": {
         "m/s2": 1.0, "m/s^2": 1.0, "m/s²": 1.0, "g": STANDARD_GRAVITY, "kg": 1e3 * STANDARD_GRAVITY,
     },
@@ -29,6 +32,7 @@ UNITS: dict[str, dict[str, float]] = {
     "spin": {"rad/s": 1.0, "deg/s": math.radians(1.0), "rpm": math.pi / 30.0, "1/s": math.tau},
     "stress": {"Pa": 1.0, "kPa": 1e3, "MPa": 1e6, "GPa": 1e9, "N/mm2": 1e6, "psi": 6894.757293,
                "ksi": 6894757.293},
+    "stiffness": {"N/m": 1.0, "N/mm": 1e3, "mN/nm": 1e6, "N/um": 1e6, "N/µm": 1e6, "kN/mm": 1e6},
     "temperature": {"K": 1.0},
     "number": {"": 1.0, "-": 1.0, "%": 1e-2},
 }  # fmt: skip

@@ -12,7 +12,7 @@ from ...core.errors import InputError, InputErrors
 from ...core.inputs.csv_table import Problems, read_text_table
 from ...reduce.images.picture_file import PICTURES, natural_order
 from ...reduce.kinds import Kind
-from ...reduce.record import trial_name
+from ...reduce.output.record import trial_name
 
 _FILE = "file"
 

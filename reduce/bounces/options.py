@@ -29,7 +29,7 @@ class BallOptions(InputTable):
     air_density_kg_m3: float | None = Field(
         None, ge=0.0, description="of the air; default: that at 20 °C"
     )
-    gravity_m_s2: float = Field(GRAVITY, gt=0.0, description="acceleration of the fall")
+    gravity_m_s2: float = Field(GRAVITY, ge=0.01, le=1e4, description="acceleration of the fall")
 
     def ball_of(self, diameter: float | None) -> Ball:
         """Return the ball of a diameter [m], if that is known."""

@@ -24,6 +24,7 @@ from ...core.inputs.csv_table import (
 )
 from ...core.processes.confined import confined
 from ..measured import Array
+from ..rules import RULES
 from ..units import LENGTH, metres
 from .exports import read_export
 
@@ -143,6 +144,12 @@ def read_markers(
         raise InputError(
             f"{markers.time.size} frames", source=str(path), allowed=f"{_FEWEST} or more"
         )
+    farthest = float(np.nanmax(np.abs(markers.position), initial=0.0))
+    if farthest > RULES.farthest_marker:
+        raise InputError(
+            f"a marker {farthest:.3g} m from the origin", source=str(path), key="unit",
+            allowed=f"up to {RULES.farthest_marker:g} m",
+        )  # fmt: skip
     if not np.all(np.diff(markers.time) > 0.0):
         row = int(np.argmin(np.diff(markers.time) > 0.0)) + 1
         raise InputError(

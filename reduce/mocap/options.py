@@ -45,7 +45,7 @@ class Options(InputTable):
     )
     first_frame: int = Field(0, ge=0, description="number of the first frame to use")
     last_frame: int | None = Field(None, ge=0, description="number of the last one")
-    gravity_m_s2: float = Field(GRAVITY, gt=0.0, description="acceleration of the fall")
+    gravity_m_s2: float = Field(GRAVITY, ge=0.01, le=1e4, description="acceleration of the fall")
     length_scale_std: float = Field(
         0.0, ge=0.0, description="relative standard deviation of the tracker's lengths"
     )

@@ -14,6 +14,7 @@ import numpy as np
 from ...core.errors import InputError, missing_extra
 from ...core.inputs.csv_table import number, shown
 from ..measured import Array
+from ..table.file import numbered_lines, text_rows
 from ..units import LENGTH, metres
 
 _TEXT = (".csv",)
@@ -170,17 +171,13 @@ def _check_claim(points: tuple[int, ...], path: Path) -> None:
 
 
 def _text(path: Path) -> _Raw | None:
-    """Read comma-separated numbers: a grid, two columns of a line, or three of a regular grid."""
-    try:
-        lines = path.read_text(encoding="utf-8-sig").splitlines()
-    except (UnicodeDecodeError, OSError) as error:
-        raise InputError(
-            f"cannot be read as text ({type(error).__name__})", source=str(path),
-            allowed="UTF-8, comma-separated",
-        ) from None  # fmt: skip
-    rows = [(n, line.split(",")) for n, line in enumerate(lines, 1)
-            if line.strip() and not line.startswith("#")]  # fmt: skip
-    if rows and all(math.isnan(number(c)) and c.strip() for c in rows[0][1]):
+    """Read a table of numbers: a grid, two columns of a line, or three of a regular grid."""
+    lines = numbered_lines(path.read_bytes(), str(path))
+    table = text_rows([line for _, line in lines], str(path))
+    while all(len(row) > 1 and not row[-1] for row in table):
+        table = [row[:-1] for row in table]  # a separator at the end of every line
+    rows = [(k, row) for (k, _), row in zip(lines, table, strict=True)]
+    if all(math.isnan(number(c)) and c.lower() not in _UNSEEN for c in rows[0][1]):
         rows = rows[1:]  # names of the columns
     if not rows:
         raise InputError("empty", source=str(path), allowed="heights, one row a line")

@@ -23,6 +23,7 @@ from ...core.processes.confined import confined
 from ..measured import Array
 from ..units import UNITS
 from .cells import instant, plain, since_first, value_of
+from .channels import CHANNELS, Shown, channels_of
 from .heading import Heading, heading_of, in_short, labview_rows
 from .packed import packed_table, tracker_rows
 from .workbook import workbook_rows
@@ -53,7 +54,7 @@ class Columns:
 
     names: tuple[str, ...]
     values: Array
-    cells: tuple[tuple[str, ...], ...]
+    cells: Sequence[tuple[str, ...]]
     source: str
     heading: Heading = field(default_factory=Heading)
 
@@ -134,7 +135,7 @@ class Columns:
         if default is None:
             column = f"column {self.names[place] or place + 1!r}"
             other = next((q for q, known in UNITS.items() if said and said in known), "")
-            told = f"is a {other}, in {said}" if other else "does not name its unit"
+            told = f"is of {other}, in {said}" if other else "does not name its unit"
             raise InputError(
                 f"{column} {told}",
                 source=self.source, key=key, allowed=", ".join(units),
@@ -166,6 +167,9 @@ def read_columns(path: Path, *, sheet: str = "") -> Columns:
     if kind == ".zip":
         text, source = packed_table(path, sheet)
         return text_columns(text, source)
+    if kind in CHANNELS:
+        names, numbers = confined(channels_of, path, sheet, source=str(path))
+        return Columns(tuple(names), numbers, Shown(numbers), str(path))
     if kind in BOOKS:
         return columns_of(confined(workbook_rows, path, sheet, source=str(path)), str(path))
     return text_columns(path.read_bytes(), str(path))
@@ -203,7 +207,7 @@ def columns_of(rows: list[list[str]], source: str) -> Columns:
     if first is None:
         raise InputError("no row of numbers", source=source, allowed="columns of numbers")
     held = [_is_number(cell) for cell in rows[first]]
-    data = [row for row in rows[first:] if _is_data(row) or _has_hole(row, held)]
+    data = [row for row in rows[first:] if is_data(row) or _has_hole(row, held)]
     width = max(map(len, data))
     cells = tuple(tuple((row + [""] * width)[:width]) for row in data)
     values = np.array([[value_of(cell) for cell in row] for row in cells])
@@ -222,14 +226,14 @@ def _filled(row: Sequence[str]) -> list[str]:
 
 def _first(rows: Sequence[Sequence[str]]) -> int | None:
     """The first row of numbers that is not alone among the lines of a header."""
-    data = [k for k, row in enumerate(rows) if _is_data(row)]
+    data = [k for k, row in enumerate(rows) if is_data(row)]
     filled = [k for k, row in enumerate(rows) if _filled(row)]
     following, known = dict(pairwise(filled)), set(data)
     together = [k for k in data if following.get(k) in known]
     return together[0] if len(together) > 1 else data[0] if data else None
 
 
-def _is_data(row: Sequence[str]) -> bool:
+def is_data(row: Sequence[str]) -> bool:
     """Whether most of a row's filled cells are numbers; an instant counts beside a number."""
     filled = _filled(row)
     numbers = sum(bool(np.isfinite(value_of(cell))) for cell in filled)
@@ -256,6 +260,17 @@ def text_lines(raw: bytes, source: str) -> list[str]:
     InputError
         Not text, or empty.
     """
+    return [line for _number, line in numbered_lines(raw, source)]
+
+
+def numbered_lines(raw: bytes, source: str) -> list[tuple[int, str]]:
+    """Return the same with the number of each line in the file, from 1.
+
+    Raises
+    ------
+    InputError
+        Not text, or empty.
+    """
     if b"\0" in raw[:4096] and not raw.startswith((b"\xff\xfe", b"\xfe\xff")):
         raise InputError("not text", source=source, allowed="a text table, XLS, XLSX or ODS")
     wide = raw.startswith((b"\xff\xfe", b"\xfe\xff"))
@@ -263,7 +278,8 @@ def text_lines(raw: bytes, source: str) -> list[str]:
         text = raw.decode("utf-16" if wide else "utf-8-sig")
     except UnicodeDecodeError:
         text = raw.decode("latin-1")  # old instruments write their micro and degree signs so
-    lines = [line for line in text.splitlines() if line.strip() and not line.startswith("#")]
+    each = enumerate(text.splitlines(), start=1)
+    lines = [(k, line) for k, line in each if line.strip() and not line.startswith("#")]
     if not lines:
         raise InputError("empty", source=source, allowed="columns of numbers")
     return lines

@@ -220,8 +220,14 @@ def _series(table: Columns, options: Options) -> Series:
     part = known & options.keeps(np.where(known, time, 0.0))
     whole = part & np.isfinite(value)
     holes = part & ~whole
-    marks = tuple(sorted({table.cells[k][column] for k in np.flatnonzero(holes)}))
+    marks = tuple(sorted({table.cells[int(k)][column] for k in np.flatnonzero(holes)}))
     time, value, missed = time[whole], value[whole], time[holes]
+    largest = float(np.abs([time, value]).max(initial=0.0))
+    if largest > RULES.largest_number:
+        raise InputError(
+            f"a number of {largest:.3g}", source=table.source, key="value",
+            allowed=f"up to {RULES.largest_number:g}",
+        )  # fmt: skip
     # a tracker that begins anew writes its frames again further down
     ahead = time > np.concatenate([[-np.inf], np.maximum.accumulate(time)[:-1]])
     if time.size and ahead.sum() < 0.5 * time.size:

@@ -12,13 +12,12 @@ from dataclasses import dataclass
 
 import numpy as np
 import numpy.typing as npt
-from scipy.optimize import least_squares
 from scipy.signal import savgol_filter
 
 from ...core.errors import InputError
+from ..flank import meets_zero
 from ..gates import Refused
 from ..measured import Array, Measured
-from ..regression import unit_covariance
 from ..rules import RULES
 from .area import area_of
 from .level import Level, level_before, wide
@@ -27,7 +26,7 @@ from .shape import Shape, looks_like, shape_of
 _LOW, _HIGH = 0.06, 0.45
 """Part of the peak between which the flanks tell the ends."""
 
-_POWERS, _FEWEST = (1.5, 1.2, 1.0), 6
+_FEWEST = 6
 
 
 @dataclass(frozen=True)
@@ -213,7 +212,7 @@ def _flank(time: Array, clear: Array, top: int, step: int, peak: float) -> tuple
     if len(flank) < _FEWEST:
         return _through(time, clear, flank[-1], flank[0]), len(flank)
     index = np.sort(np.array(flank))
-    return _meets_zero(time[index], clear[index] / peak, step), len(flank)
+    return meets_zero(time[index], clear[index] / peak, step), len(flank)
 
 
 def _through(time: Array, clear: Array, outer: int, inner: int) -> Measured:
@@ -222,37 +221,3 @@ def _through(time: Array, clear: Array, outer: int, inner: int) -> Measured:
     low, high = max(float(clear[outer]), 0.0) ** (2 / 3), float(clear[inner]) ** (2 / 3)
     at = far - low * (near - far) / (high - low) if high > low else far
     return Measured(at, 0.3 * abs(near - far))
-
-
-def _meets_zero(t: Array, force: Array, step: int) -> Measured:
-    """Mean over the powers of F = (a s (1 - b s²))^p, s from the end, each as likely as it fits.
-
-    The striker slows down away from the end: b is 1/6 of a spring, F = sin s.
-    """
-    scale = float(np.ptp(t))
-    s = -step * (t - t[0 if step < 0 else -1]) / scale  # grows from the end inwards
-    ends, variances, spreads = [], [], []
-    for power in _POWERS:
-
-        def model(s: Array, at: float, a: float, b: float, power: float = power) -> Array:
-            late = np.maximum(s - at, 0.0)
-            return np.asarray(np.maximum(a * late * (1.0 - b * late**2), 0.0) ** power)
-
-        slope, level = np.polyfit(s, force ** (1.0 / power), 1)
-        first = (float(np.clip(-level / slope, -2.0, 0.5)), slope) if slope > 0.0 else (-0.5, 1.0)
-        fit = least_squares(
-            lambda c, m=model: m(s, *c) - force, (*first, 0.0),
-            bounds=((-3.0, 0.0, -0.1), (0.9, np.inf, 0.3)), x_scale="jac", max_nfev=50,
-        )  # fmt: skip
-        sigma = max(float(np.std(fit.fun)) * math.sqrt(s.size / (s.size - 3.0)), 1e-6)
-        ends.append(float(fit.x[0]))
-        variances.append(sigma**2 * float(unit_covariance(fit.jac)[0, 0]))
-        spreads.append(sigma)
-    belief = (min(spreads) / np.array(spreads)) ** s.size
-    belief /= belief.sum()
-    at = float(belief @ ends)
-    between = np.ptp(ends) / (len(ends) - 1)  # the power lies between those that are tried
-    variance = float(belief @ (variances + (np.array(ends) - at) ** 2)) + between**2 / 12.0
-    end = t[0 if step < 0 else -1] - step * scale * at
-    rough = 0.1 * float(np.median(np.diff(t)))
-    return Measured(float(end), max(scale * math.sqrt(variance), rough))

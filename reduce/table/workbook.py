@@ -2,10 +2,24 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterator
+from contextlib import contextmanager
 from pathlib import Path
 from typing import Any
 
 from ...core.errors import InputError, missing_extra
+
+
+def sheets_of(path: Path) -> tuple[str, ...]:
+    """Return the names of a workbook's sheets.
+
+    Raises
+    ------
+    InputError
+        Not a workbook.
+    """
+    with _opened(path) as book:
+        return tuple(book.sheet_names)
 
 
 def workbook_rows(path: Path, sheet: str) -> list[list[str]]:
@@ -16,25 +30,30 @@ def workbook_rows(path: Path, sheet: str) -> list[list[str]]:
     InputError
         Not a workbook, or no such sheet.
     """
+    with _opened(path) as book:
+        by_name = {n.strip(): n for n in book.sheet_names}
+        if sheet and sheet.strip() not in by_name:
+            raise InputError(
+                f"no sheet {sheet!r}", source=str(path), key="sheet", allowed=", ".join(by_name)
+            )
+        name = by_name.get(sheet.strip(), book.sheet_names[0])
+        rows = book.get_sheet_by_name(name).to_python()
+    return [[_cell(cell) for cell in row] for row in rows]
+
+
+@contextmanager
+def _opened(path: Path) -> Iterator[Any]:
     try:
         import python_calamine as calamine
     except ImportError:
         raise missing_extra("reading workbooks", "tables") from None
     try:
-        book: Any = calamine.CalamineWorkbook.from_path(str(path))
-        names = book.sheet_names
-        by_name = {n.strip(): n for n in names}
-        if sheet and sheet.strip() not in by_name:
-            raise InputError(
-                f"no sheet {sheet!r}", source=str(path), key="sheet", allowed=", ".join(by_name)
-            )
-        rows = book.get_sheet_by_name(by_name.get(sheet.strip(), names[0])).to_python()
+        yield calamine.CalamineWorkbook.from_path(str(path))
     except (calamine.CalamineError, OSError, IndexError) as error:
         raise InputError(
             f"not a workbook that can be read ({error})", source=str(path),
             allowed="XLS, XLSX or ODS without a password",
         ) from None  # fmt: skip
-    return [[_cell(cell) for cell in row] for row in rows]
 
 
 def _cell(cell: object) -> str:

@@ -12,7 +12,7 @@ import typer.main
 from dentscope.cli import run
 from dentscope.cli.app import app
 from dentscope.core.templates import CASE, INVERSE, template
-from dentscope.reduce.row import Row
+from dentscope.reduce.output.row import Row
 
 
 def commands(command, name=""):

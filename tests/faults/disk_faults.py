@@ -394,8 +394,8 @@ def into_writer(folder):
     """A reduction into a set that has trials already."""
     from dentscope.recordings import read
     from dentscope.recordings.template import write_template
-    from dentscope.reduce.into_set import store
-    from dentscope.reduce.row import Row
+    from dentscope.reduce.output.into_set import store
+    from dentscope.reduce.output.row import Row
 
     older = folder / "set"
     write_template(older, shape="sphere")

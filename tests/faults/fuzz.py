@@ -11,7 +11,6 @@ them to numbers and a picture.
 
 import argparse
 import contextlib
-import io
 import json
 import os
 import random
@@ -23,6 +22,7 @@ import tempfile
 import time
 import traceback
 from collections import Counter, defaultdict
+from functools import partial
 from pathlib import Path
 
 from dentscope.core import InputError
@@ -53,6 +53,9 @@ def read_sound_files(readers):
 def child(seed, first, last, readers):
     """Read inputs first to last; a line of JSON before and after each."""
     resource.setrlimit(resource.RLIMIT_CORE, (0, 0))
+    told_to = os.fdopen(os.dup(1), "w")  # what a library prints is not among what is told
+    os.dup2(2, 1)
+    tell = partial(_tell, told_to)
     read_sound_files(readers)
     for number in range(first, last):
         name, content, refuse = made_input(number, seed, readers)
@@ -60,9 +63,9 @@ def child(seed, first, last, readers):
             path = lay_out(readers[name], content, Path(folder) / "set")
             tell({"number": number, "reader": name})
             forget_peak()
-            started, where, printed = time.process_time(), "", io.StringIO()
+            started, where, printed = time.process_time(), "", []
             try:
-                with contextlib.redirect_stdout(printed):
+                with screened(printed):
                     readers[name].read(path)
                 told = "NONSENSE READ" if refuse else "read"
             except InputError as error:
@@ -76,15 +79,35 @@ def child(seed, first, last, readers):
             seconds = time.process_time() - started
             if os.listdir(folder) != ["set"]:
                 told = "WROTE OUTSIDE"
-            if printed.getvalue():
-                told, where = "PRINTED", printed.getvalue()[:500]
+            if printed:
+                told, where = "PRINTED", "".join(printed)[:500]
         shown = content[:300].decode("latin-1") if told[0].isupper() else ""
         tell({"told": told, "where": where, "seconds": seconds, "MB": peak_mb(), "content": shown})
 
 
-def tell(line):
-    sys.__stdout__.write(json.dumps(line) + "\n")
-    sys.__stdout__.flush()
+@contextlib.contextmanager
+def screened(printed):
+    """Keep words on the terminal, those too that compiled libraries write past `sys.stdout`."""
+    sys.stdout.flush()
+    kept = [os.dup(stream) for stream in (1, 2)]
+    with tempfile.TemporaryFile() as screen:
+        for stream in (1, 2):
+            os.dup2(screen.fileno(), stream)
+        try:
+            yield
+        finally:
+            sys.stdout.flush()
+            sys.stderr.flush()
+            for stream, was in zip((1, 2), kept, strict=True):
+                os.dup2(was, stream)
+                os.close(was)
+            screen.seek(0)
+            printed += filter(None, [screen.read().decode("latin-1")])
+
+
+def _tell(to, line):
+    to.write(json.dumps(line) + "\n")
+    to.flush()
 
 
 def forget_peak():
@@ -119,9 +142,7 @@ class Watched:
     def __init__(self, seed, first, last, *, raw, script):
         command = [sys.executable, script, "--child", str(first), "--inputs", str(last)]
         command += ["--raw"] if raw else []
-        self.process = subprocess.Popen(
-            [*command, "--seed", str(seed)], stdout=subprocess.PIPE, stderr=subprocess.PIPE
-        )
+        self.process = subprocess.Popen([*command, "--seed", str(seed)], stdout=subprocess.PIPE)
         self.why = ""
 
     def lines(self):
@@ -149,7 +170,6 @@ class Watched:
                 yield said
         self.process.wait()
         out.close()
-        self.process.stderr.close()
 
     def _end(self, why):
         self.why = self.why or why

@@ -180,6 +180,16 @@ def _book():
     return out.getvalue()
 
 
+def _pressed():
+    """Load against depth: an approach, a loading, an unloading."""
+    rng = np.random.default_rng(4)
+    load = np.concatenate([np.zeros(40), np.linspace(0.0, 800.0, 150), np.linspace(800.0, 0.0, 90)])
+    back = 9.0 * (1.0 - (load[190:] / 800.0) ** 0.7)
+    depth = np.concatenate([np.linspace(-5.0, 0.0, 40), 60.0 * load[40:190] / 800.0, 60.0 - back])
+    noise = rng.normal(size=(2, load.size))
+    return _table("depth_um,load_N", depth + 0.05 * noise[0], load + 0.5 * noise[1])
+
+
 def _force():
     return _table("time_s,force_N", *_pulse())
 
@@ -191,6 +201,7 @@ FILES = {
     # ending of the file, what makes it, kind of reduction, options
     "force": (".csv", _force, "table", {"holds": "force", "mass_kg": 0.1}),
     "volts": (".txt", _force, "table", {"holds": "acceleration", "gain": 3.0}),
+    "press": (".csv", _pressed, "press", {}),
     "height": (".csv", lambda: _table("t_s,h_m", *_bouncing()), "table", {"holds": "height"}),
     "bounces": (".csv", lambda: b"t (s)\n0.5\n1.0\n1.4\n1.72\n1.98\n2.18\n2.34\n", "table",
                 {"holds": "bounces"}),
@@ -262,7 +273,7 @@ def read(name, path):
 def reduce_whole(kind, path, options):
     """Reduce a file to numbers, a record and a picture."""
     from dentscope.reduce.kinds import load_kind
-    from dentscope.reduce.record import write_record
+    from dentscope.reduce.output.record import write_record
 
     reduced = load_kind(kind).run(path, options, source="options")
     for trial in reduced.trials:

@@ -15,10 +15,10 @@ from pathlib import Path
 from typing import Any
 
 from dentscope.recordings import Setup
-from dentscope.reduce.into_set import store_each
 from dentscope.reduce.kinds import load_kind
+from dentscope.reduce.output.into_set import store_each
+from dentscope.reduce.output.row import Row
 from dentscope.reduce.reduced import Reduced
-from dentscope.reduce.row import Row
 
 OPTIONS = {
     "holds": "height",

@@ -11,9 +11,9 @@ import sys
 from pathlib import Path
 
 from dentscope.recordings import Setup
-from dentscope.reduce.into_set import Stored, store
 from dentscope.reduce.kinds import load_kind
-from dentscope.reduce.row import Row
+from dentscope.reduce.output.into_set import Stored, store
+from dentscope.reduce.output.row import Row
 
 OPTIONS = {
     "frame_rate_hz": 60.0,

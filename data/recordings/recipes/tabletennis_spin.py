@@ -18,10 +18,10 @@ from typing import Any
 
 from dentscope.core.errors import InputError
 from dentscope.recordings import Setup
-from dentscope.reduce.into_set import store_each
 from dentscope.reduce.kinds import load_kind
+from dentscope.reduce.output.into_set import store_each
+from dentscope.reduce.output.row import Row
 from dentscope.reduce.reduced import Reduced
-from dentscope.reduce.row import Row
 
 NEAR = 0.03
 """How far from z = 0, the centre of the ball at contact, a bounce may be found [m]."""

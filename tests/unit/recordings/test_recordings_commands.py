@@ -130,6 +130,6 @@ def test_the_documentation_names_every_key_and_column_and_its_block_runs(monkeyp
 
 def test_help_on_a_reduction_loads_nothing_that_reduces():
     listed = "import sys; from dentscope.reduce.kinds import KINDS, load_kind; "
-    listed += "import dentscope.reduce.row; [load_kind(k) for k in KINDS]; "
+    listed += "import dentscope.reduce.output.row; [load_kind(k) for k in KINDS]; "
     listed += "heavy = {'scipy', 'matplotlib', 'numba', 'skimage'} & set(sys.modules); "
     subprocess.run([sys.executable, "-c", listed + "assert not heavy, heavy"], check=True)

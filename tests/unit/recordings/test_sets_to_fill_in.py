@@ -6,10 +6,10 @@ from dentscope.core.inputs.flow_curve import read_flow_curve
 from dentscope.core.rig import Quantity
 from dentscope.recordings import read, write
 from dentscope.recordings.setup_file import Setup, setup_text
-from dentscope.reduce.into_set import store
 from dentscope.reduce.measured import Measured, Trial
+from dentscope.reduce.output.into_set import store
+from dentscope.reduce.output.row import Row
 from dentscope.reduce.reduced import Reduced
-from dentscope.reduce.row import Row
 
 SET = """# my notes
 format = "recording-set/1"

@@ -1,17 +1,9 @@
 """Raw files and options that are no good: one line each with file or option, exit code 2."""
 
-import io
-import zipfile
-
 import numpy as np
 import pytest
 from dentscope.cli import run
-from dentscope.core.errors import InputError
-from dentscope.reduce.kinds import load_kind
 from dentscope.studies.synthetic.sounds import write_wav
-from hypothesis import HealthCheck, given, settings
-from hypothesis import strategies as st
-from scipy.io import wavfile
 
 RAMP = "time_s,force_N\n" + "".join(f"{k * 1e-4},{k % 7}\n" for k in range(60))
 PULSE = "time_s,force_N\n" + "".join(
@@ -180,78 +172,3 @@ def test_mistakes_leave_a_set_as_it_was(tmp_path, capsys):
     assert run([*command, "--into", str(where)]) == 2
     assert "restitution" in capsys.readouterr().err
     assert {p.name: p.read_bytes() for p in where.iterdir() if p.is_file()} == before
-
-
-PULL = "strain (%),stress (MPa)\n" + "".join(
-    f"{k * 0.02:.2f},{min(200.0 * k * 0.2, 250.0 + k):.1f}\n" for k in range(90)
-)
-LEEB = "first,second\n780,775\n782,779\n"
-TRK = (
-    '<object class="org.x.tracker.TrackerPanel"><property name="delta_t">10</property>'
-    '<object class="org.x.tracker.PointMass"><property name="name">b</property>'
-    '<property name="framedata">'
-    + "".join(
-        f'<property name="[{k}]"><object><property name="x">5</property>'
-        f'<property name="y">{k * k}</property></object></property>'
-        for k in range(30)
-    )
-    + "</property></object></object>"
-)
-
-
-def _zipped(text):
-    packed = io.BytesIO()
-    with zipfile.ZipFile(packed, "w", zipfile.ZIP_DEFLATED) as archive:
-        archive.writestr("Raw Data.csv", text)
-    return packed.getvalue()
-
-
-def _sounded():
-    rng = np.random.default_rng(2)
-    heard = rng.normal(0.0, 20.0, 6000)
-    for at in (1000, 2500, 3700, 4660):
-        heard[at : at + 200] += 9000.0 * np.exp(-np.arange(200) / 40.0) * rng.normal(size=200)
-    made = io.BytesIO()
-    wavfile.write(made, 8000, heard.astype(np.int16))
-    return made.getvalue()
-
-
-SOURCES = {
-    "force": ("table", PULSE.encode(), ".csv", {"holds": "force"}),
-    "volts": ("table", PULSE.encode(), ".csv", {"holds": "acceleration", "gain": 3.0}),
-    "height": ("table", FALL.encode(), ".csv", {"holds": "height"}),
-    "bounces": ("table", TIMES.encode(), ".csv", {"holds": "bounces"}),
-    "rebounds": ("table", HEIGHTS.encode(), ".csv", {"holds": "rebounds", "value": "1"}),
-    "trials": ("table", ROWS.encode(), ".csv", {"holds": "trials"}),
-    "tension": ("table", PULL.encode(), ".csv", {"holds": "tension"}),
-    "leeb": ("table", LEEB.encode(), ".csv", {"holds": "leeb", "value": "1"}),
-    "tracker": ("table", TRK.encode(), ".trk", {"holds": "height", "value": "3"}),
-    "packed": ("table", _zipped(PULSE), ".zip", {"holds": "force"}),
-    "sound": ("sound", _sounded(), ".wav", {}),
-    "markers": ("mocap", TRACK.encode(), ".csv", {"shape": "sphere", "tip_radius_m": 0.01}),
-}
-WORDS = [b"nan", b"-inf", b"1e308", b"-1e308", b"1e-320", "µ\u202e💥".encode(), b"(furlong)", b"0",
-         b"\x00\xff", b",", b";;", b"\n\n", b"\r", b"9" * 40]  # fmt: skip
-
-
-@settings(
-    max_examples=200, deadline=None, suppress_health_check=[HealthCheck.function_scoped_fixture]
-)
-@given(data=st.data())
-def test_any_damage_to_a_raw_file_is_read_or_refused_in_lines(data, tmp_path):
-    kind, raw, end, options = SOURCES[data.draw(st.sampled_from(sorted(SOURCES)))]
-    text = bytearray(raw)
-    for _ in range(data.draw(st.integers(1, 6))):
-        place = data.draw(st.integers(0, max(len(text) - 1, 0)))
-        length = data.draw(st.integers(0, 30))
-        text[place : place + length] = data.draw(st.binary(max_size=8) | st.sampled_from(WORDS))
-    if data.draw(st.booleans()):
-        del text[data.draw(st.integers(0, len(text))) :]
-    path = tmp_path / f"t{end}"
-    path.write_bytes(bytes(text))
-    try:
-        reduced = load_kind(kind).run(path, options, source="test")
-    except InputError:
-        return
-    for trial in reduced.trials:
-        assert all(np.isfinite(m.value) for m in trial.observables.values())

@@ -8,10 +8,10 @@ from dentscope.core.errors import InputError
 from dentscope.core.inputs.toml_input import parse_model
 from dentscope.core.rig import Rig
 from dentscope.recordings.recording_set import read
-from dentscope.reduce.into_set import store
 from dentscope.reduce.measured import Measured, Trial
+from dentscope.reduce.output.into_set import store
+from dentscope.reduce.output.row import Row
 from dentscope.reduce.reduced import Reduced
-from dentscope.reduce.row import Row
 
 TABLE = "drop_height_m,rebound_height_m\n0.5,0.2\n0.4,0.15\n"
 PATHS = ("../x", "/tmp/x", "a/b", "..", "a\\b", "C:x", "x\x00y", "x" * 201)

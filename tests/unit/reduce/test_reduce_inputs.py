@@ -9,7 +9,7 @@ from dentscope.cli import run
 from dentscope.core.errors import InputError, InputErrors
 from dentscope.recordings import read
 from dentscope.reduce.images.clip import read_clip
-from dentscope.reduce.into_set import _read_as
+from dentscope.reduce.output.into_set import _read_as
 from dentscope.reduce.table.file import read_columns
 from dentscope.reduce.table.tension import reduce_tension
 

@@ -97,3 +97,18 @@ def test_a_level_surface_has_no_crater(tmp_path, capsys):
     np.savetxt(path, np.random.default_rng(1).normal(0.0, 0.1, (80, 80)), delimiter=",")
     assert run(["reduce", "scan", str(path), "--unit", "um", "--step-m", "1e-6"]) == 2
     assert "no crater" in capsys.readouterr().err
+
+
+@pytest.mark.parametrize(
+    ("between", "comma", "end"),
+    [(" ", ".", ""), ("\t", ".", "\t"), (";", ",", ""), (",", ".", ",")],
+)
+def test_a_grid_is_read_with_any_separator(tmp_path, between, comma, end):
+    y, x = np.mgrid[-1:1:48j, -1:1:40j]
+    z = -1e-5 * np.maximum(0.0, 0.3 - x**2 - y**2)
+    z += np.random.default_rng(3).normal(0.0, 2e-8, z.shape)
+    rows = [between.join(f"{v:.4e}".replace(".", comma) for v in row) + end for row in z]
+    path = tmp_path / "grid.csv"
+    path.write_text("\n".join(rows))
+    found = reduce(path, Options(unit="m", step_m=1e-5)).values["permanent_depth_m"]
+    assert abs(found.value - 3e-6) < 3.0 * found.std

@@ -17,20 +17,21 @@ from typing import Any
 
 import numpy as np
 
-from ..core.errors import InputError, InputErrors
-from ..core.inputs.csv_table import Array
-from ..core.inputs.names import ALLOWED, names_a_file
-from ..core.inputs.toml_input import parse_model, read_toml
-from ..core.output import csv_text, finish_pending, locked, write_files
-from ..core.rig import Quantity
-from ..recordings.columns import CONDITIONS, MEASURED, STD_SUFFIX
-from ..recordings.recording_set import RecordingSet, files_of, read
-from ..recordings.setup_file import Setup, setup_text, without_marks
-from ..recordings.template import Shape, template_text
-from ..recordings.trials import Trials
-from .measured import Measured, Trial
+from ...core.errors import InputError, InputErrors
+from ...core.inputs.csv_table import Array
+from ...core.inputs.names import ALLOWED, names_a_file
+from ...core.inputs.toml_input import parse_model, read_toml
+from ...core.observables import LOAD
+from ...core.output import csv_text, finish_pending, locked, write_files
+from ...core.rig import Quantity
+from ...recordings.columns import CONDITIONS, MEASURED, STD_SUFFIX
+from ...recordings.recording_set import RecordingSet, files_of, read
+from ...recordings.setup_file import Setup, setup_text, without_marks
+from ...recordings.template import Shape, template_text
+from ...recordings.trials import Trials
+from ..measured import Measured, Trial
+from ..reduced import Reduced
 from .record import trial_name, write_record
-from .reduced import Reduced
 from .row import Row
 
 _TEXTS = ("trial", "striker", "spot", "note")
@@ -269,7 +270,7 @@ def _with_trial(
                 numbers[key + STD_SUFFIX][place] = value.std if value.std > 0.0 else np.nan
     if np.isnan(numbers["angle_deg"][place]):
         numbers["angle_deg"][place] = 90.0
-    if np.isnan([numbers[k][place] for k in ("impact_speed_m_s", "drop_height_m")]).all():
+    if np.isnan([numbers[k][place] for k in ("impact_speed_m_s", "drop_height_m", LOAD)]).all():
         raise InputError(
             f"the approach of trial {name!r} is not known", key="impact_speed_m_s",
             allowed="impact_speed_m_s or drop_height_m as an option, or a trial of the set",

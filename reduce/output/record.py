@@ -9,10 +9,10 @@ from collections.abc import Mapping
 from pathlib import Path
 from typing import Any
 
-from ..core.output import write_file
-from ..core.provenance import file_digest
-from .measured import Measured
-from .reduced import Reduced
+from ...core.output import write_file
+from ...core.provenance import file_digest
+from ..measured import Measured
+from ..reduced import Reduced
 
 
 def write_record(

@@ -14,7 +14,7 @@ from dentscope.reduce.table.file import read_columns
 from dentscope.reduce.table.pulse import find_pulse
 from scipy.integrate import solve_ivp
 
-REAL = Path(__file__).parents[4] / "shared" / "recordings"
+REAL = Path(__file__).parents[5] / "shared" / "recordings"
 measured = pytest.mark.skipif(not REAL.exists(), reason="the recordings are not here")
 
 

@@ -4,9 +4,9 @@ from __future__ import annotations
 
 from pydantic import Field
 
-from ..core.inputs.names import FileNameIfAny
-from ..core.inputs.toml_input import InputTable
-from ..recordings.columns import VARIED
+from ...core.inputs.names import FileNameIfAny
+from ...core.inputs.toml_input import InputTable
+from ...recordings.columns import VARIED
 
 
 class Row(InputTable):

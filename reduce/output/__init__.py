@@ -1,0 +1,1 @@
+"""What a reduction leaves behind: rows of a recording set, its record and picture."""

@@ -1,0 +1,191 @@
+"""Which columns of a machine's file hold load, depth and time, and what its header states."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass
+from pathlib import Path
+
+import numpy as np
+
+from ...core.errors import InputError
+from ...core.inputs.input_file import checked_file
+from ...core.processes.confined import confined
+from ..measured import Array
+from ..table.channels import CHANNELS
+from ..table.file import (
+    BOOKS,
+    Columns,
+    columns_of,
+    is_data,
+    read_columns,
+    text_lines,
+    text_rows,
+)  # fmt: skip
+from ..table.workbook import sheets_of
+from ..units import LENGTH, UNITS
+from .options import Options
+
+_LARGEST = 200_000_000
+_LOADS = (r"(load|force|.*kraft|last|fn|p|f)\b", r".*(load|force|kraft|charge|forza|fuerza)")
+_DEPTHS = (
+    r"(depth|.*eindring\w*|.*tiefe|indentation|penetration|pd|h)\b",
+    r"(disp|displacement)\b", r".*(standardweg|extenso|lvdt|gauge)", r".*(displacement|depth|disp)",
+    r".*(extension|weg|stroke|travel|crosshead|position)",
+)  # fmt: skip
+_TIMES = (r"(time|.*zeit|t|temps|tempo|tiempo)\b", r".*time")
+"""Words of Zwick, Instron, MTS, Bruker and Hysitron, Agilent and Keysight, Anton Paar and CSM,
+Fischer, the best first."""
+
+_STATED = re.compile(
+    r"(?P<of>machine|frame|instrument|system)\W*(?P<what>compliance|comp|stiffness)\b[^:=;,\d]*"
+    r"[:=;,\s]\s*(?P<number>[\d.]+(?:[eE][+-]?\d+)?)\s*[\[(]?(?P<unit>[^\s\])]+/[^\s\])]+)", re.I
+)  # fmt: skip
+
+
+@dataclass(frozen=True)
+class PressRecord:
+    """Load against depth, in the order of time.
+
+    Parameters
+    ----------
+    load, depth, time
+        (n,) [N, m, s]; the load upwards, the depth growing with it; without a column of the time it
+        counts rows.
+    timed
+        Whether there is a column of the time.
+    missed
+        How many rows hold no number.
+    gap
+        (n,): how many rows just before this one hold none.
+    stated
+        Compliance of the machine that the file states [m/N]; none if it does not.
+    """
+
+    load: Array
+    depth: Array
+    time: Array
+    timed: bool
+    missed: int
+    gap: Array
+    stated: float | None
+    source: str
+
+
+def read_press(path: Path, options: Options) -> PressRecord:
+    """Read load and depth of a machine's file.
+
+    Raises
+    ------
+    InputError
+        Not a table, no load or depth in it, or units that are not known.
+    """
+    tables = list(_tables(path, options))
+    found = next((t for t in tables if _has_both(t, options)), tables[0])
+    load, depth = (_column(found, *which, path, options) for which in _wanted(options))
+    columns = [
+        found.values[:, load] * found.factor(load, "force", given=options.load_unit,
+                                             key="load_unit"),
+        found.values[:, depth] * found.factor(depth, "length", given=options.depth_unit,
+                                              key="depth_unit"),
+    ]  # fmt: skip
+    clock = found.find(options.time, key="time") if options.time else _named(found, _TIMES, "time")
+    rows = np.arange(float(len(found.values)))
+    time = rows
+    if clock is not None:
+        unit = found.factor(clock, "time", given=options.time_unit, key="time_unit", default="s")
+        time = found.values[:, clock] * unit
+    known = np.isfinite(columns[0]) & np.isfinite(columns[1]) & np.isfinite(time)
+    used = known & options.keeps(np.where(known, time, 0.0))
+    gap = np.diff(rows[used], prepend=-1.0) - 1.0
+    p, h = (c[used] for c in columns)
+    if p.size:
+        p = p * np.sign(p[np.argmax(np.abs(p))])
+        top = int(np.argmax(p))
+        h = h * (-1.0 if h[top] < np.median(h[: max(top // 5, 1)]) else 1.0)
+    return PressRecord(
+        p, h, time[used], clock is not None, int((~known).sum()), gap, _compliance(tables),
+        str(path),
+    )  # fmt: skip
+
+
+def _wanted(options: Options) -> tuple[tuple[str, str, tuple[str, ...], str], ...]:
+    return ("load", options.load, _LOADS, "force"), ("depth", options.depth, _DEPTHS, "length")
+
+
+def _tables(path: Path, options: Options) -> Iterator[Columns]:
+    """Yield the tables of a file: instruments write several below each other into one text."""
+    checked_file(path, most=_LARGEST, allowed="a table of load against depth")
+    if path.suffix.lower() in (*BOOKS, *CHANNELS, ".zip"):
+        yield read_columns(path, sheet=options.sheet)
+        return
+    rows = text_rows(text_lines(path.read_bytes(), str(path)), str(path))
+    data = [is_data(row) for row in rows]
+    begins = [0]
+    for k in range(1, len(rows)):
+        head = not data[k - 1] and data[k] and len([c for c in rows[k - 1] if c]) > 1
+        first = k - 1
+        while first > 0 and not data[first - 1]:
+            first -= 1
+        if head and first > 0 and len(rows[first - 1]) > 1:
+            begins.append(first)
+    for begin, end in zip(begins, [*begins[1:], len(rows)], strict=True):
+        yield columns_of(rows[begin:end], str(path))
+
+
+def _has_both(table: Columns, options: Options) -> bool:
+    return all(
+        given or _named(table, words, quantity) is not None
+        for _key, given, words, quantity in _wanted(options)
+    )
+
+
+def _named(table: Columns, words: Sequence[str], quantity: str) -> int | None:
+    """The column that is named so, in a unit of that kind; the first of the best words."""
+    units = UNITS[quantity]
+    for word in words:
+        for k, name in enumerate(table.names):
+            bare = re.sub(r"[\[(_].*", "", name).strip().lower()
+            said = table.unit(k)
+            if re.match(word, bare) and (said in units or not said or said.lower() == bare):
+                return k
+    return None
+
+
+def _column(
+    table: Columns, key: str, given: str, words: Sequence[str], quantity: str, path: Path,
+    options: Options,
+) -> int:  # fmt: skip
+    if given:
+        return table.find(given, key=key)
+    found = _named(table, words, quantity)
+    if found is not None:
+        return found
+    sheets: tuple[str, ...] = ()
+    if path.suffix.lower() in BOOKS and not options.sheet:
+        sheets = confined(sheets_of, path, source=str(path))
+    known = ", ".join(filter(None, table.names[:12]))
+    raise InputError(
+        f"no column is named as a {key}", source=str(path), key=key,
+        allowed=f"--sheet, one of {', '.join(sheets[:20])}" if len(sheets) > 1
+        else f"a name or number of {len(table.names)} columns{f': {known}' if known else ''}",
+    )  # fmt: skip
+
+
+def _compliance(tables: Sequence[Columns]) -> float | None:
+    """The machine's compliance as the headers state it [m/N]; one of 0 states nothing."""
+    for table in tables:
+        for cells in table.heading.said:
+            found = _STATED.search(" ".join(cells))
+            if found is None:
+                continue
+            number = float(found["number"])
+            above, _, below = found["unit"].partition("/")
+            stiff = found["what"].lower() == "stiffness"
+            over = (below, above) if stiff else (above, below)
+            if over[0] not in LENGTH or over[1] not in UNITS["force"] or not number > 0.0:
+                continue
+            size = LENGTH[over[0]] / UNITS["force"][over[1]]
+            return size / number if stiff else size * number
+    return None

@@ -1,0 +1,227 @@
+"""A press from load and depth: its depths and its stiffness, each with what it assumed."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+
+import numpy as np
+
+from ...core.errors import InputError
+from ..measured import ZERO, Array, Measured, Trial
+from ..regression import unit_covariance
+from ..rules import RULES
+from .columns import PressRecord
+from .curve import contact_zero, left_depth, stiffness
+from .cycles import Cycle, cycles_of, noise_of
+
+
+@dataclass(frozen=True)
+class Press:
+    """One press.
+
+    Parameters
+    ----------
+    cycle
+        Its loading and unloading.
+    load
+        Largest load [N].
+    left, deepest
+        Depth that stays and depth under the largest load, from the zero of contact [m].
+    recovered
+        What the unloading gives back [m].
+    stiffness
+        Slope of the unloading where it begins, the machine's taken off as far as known [N/m].
+    crept
+        Depth that came while the load was held [m].
+    """
+
+    cycle: Cycle
+    load: Measured
+    left: Measured
+    deepest: Measured
+    recovered: Measured
+    stiffness: Measured
+    crept: float
+
+    def values(self) -> dict[str, Measured]:
+        """What was measured, by name."""
+        return {
+            "load_N": self.load, "permanent_depth_m": self.left, "press_depth_m": self.deepest,
+            "recovered_depth_m": self.recovered, "unloading_stiffness_N_m": self.stiffness,
+        }  # fmt: skip
+
+
+@dataclass(frozen=True)
+class PressReduction:
+    """All presses of a record.
+
+    Parameters
+    ----------
+    record
+        What was read.
+    depth
+        (n,) the machine's compliance taken off [m]; zero as the record has it.
+    zero
+        Depth of the first contact in it [m].
+    compliance
+        Of the machine [m/N]; none where nothing tells it.
+    presses
+        In the order of time.
+    notes
+        What was assumed.
+    """
+
+    record: PressRecord
+    depth: Array
+    zero: Measured
+    compliance: Measured | None
+    presses: tuple[Press, ...]
+    notes: tuple[str, ...]
+
+    @property
+    def largest(self) -> Press:
+        """The press with the largest load."""
+        return max(self.presses, key=lambda p: p.load.value)
+
+    def trial(self, press: Press, label: str) -> Trial:
+        """Return the row of a press: what hangs on an unknown compliance is left out of it."""
+        seen = {"load_N": press.load}
+        stays = press.left.value > 2.0 * press.left.std
+        if stays:
+            seen["permanent_depth_m"] = press.left
+        if self.compliance is not None:
+            seen |= {"press_depth_m": press.deepest, "recovered_depth_m": press.recovered}
+        return Trial(seen, self.notes, label=label)
+
+
+def reduce_press(
+    record: PressRecord, *, compliance: Measured | None, load_std: float
+) -> PressReduction:
+    """Return what a record shows of each press.
+
+    Parameters
+    ----------
+    record
+        Load and depth.
+    compliance
+        Of the machine, still in the depth [m/N]; none takes the file's, or that of several cycles.
+    load_std
+        Of the largest load [N].
+
+    Raises
+    ------
+    InputError
+        The record shows no whole press.
+    """
+    load, noise = record.load, noise_of(record.load)
+    cycles = cycles_of(record)
+    notes = []
+    slopes = [stiffness(load, record.depth, c) for c in cycles]
+    whole = min((1.0 / s.value for s in slopes if s.value > 0.0), default=math.inf)
+    if compliance is not None and not compliance.value < whole:
+        raise InputError(
+            f"{compliance.value:g} m/N, and all that is pressed gives way by {whole:.3g} m/N",
+            source=record.source, key="machine_compliance_m_N",
+            allowed="less than the whole; 0 where the machine has taken it off",
+        )  # fmt: skip
+    if compliance is None and record.stated is not None:
+        said = f"the file states a machine compliance of {record.stated:.4g} m/N"
+        if record.stated < whole:
+            compliance = Measured(record.stated, 0.0)
+            notes.append(f"{said}: taken off (--machine-compliance-m-N 0 if it has been)")
+        else:
+            notes.append(f"{said}, and all gives way by {whole:.4g} m/N: not in it, or wrong")
+    if compliance is None:
+        compliance = _from_cycles(cycles, slopes)
+        if compliance is not None:
+            notes.append(
+                f"machine compliance {compliance} m/N from the slopes of {len(cycles)} cycles: "
+                "taken off; the mean pressure is the same in all, or rises as Meyer's index says"
+            )
+    if compliance is None:
+        notes.append(
+            "the machine's own compliance is not known: press_depth_m, recovered_depth_m and the "
+            "stiffness hold it and make no row; --machine-compliance-m-N states it (0: taken off)"
+        )
+    own = compliance or ZERO
+    depth = record.depth - own.value * load
+    zero = contact_zero(load, depth, max(cycles, key=lambda c: c.peak), noise)
+    notes.append(f"contact begins {zero.scaled(1e6)} um after the record's zero of depth")
+    presses = tuple(
+        _press(load, depth, c, s, zero, own, load_std * c.peak / max(load), noise)
+        for c, s in zip(cycles, slopes, strict=True)
+    )
+    notes += _told(record, presses)
+    return PressReduction(record, depth, zero, compliance, presses, tuple(notes))
+
+
+def _press(
+    load: Array, depth: Array, cycle: Cycle, slope: Measured, zero: Measured, own: Measured,
+    load_std: float, noise: float,
+) -> Press:  # fmt: skip
+    top = slice(cycle.begin, max(cycle.turn, cycle.begin) + 1)
+    scatter = noise_of(depth)
+    under = Measured(float(depth[top].max()), scatter)
+    end = left_depth(load, depth, cycle, noise)
+    # what the machine's error moves, it moves in proportion to the load
+    machine = own.std * cycle.peak
+    contact = slope
+    if own.value and slope.value > 0.0 and 1.0 / slope.value > own.value:
+        soft = Measured(1.0 / slope.value, slope.std / slope.value**2).minus(own)
+        contact = Measured(1.0, 0.0).over(soft)
+    return Press(
+        cycle, Measured(cycle.peak, load_std), end.minus(zero),
+        under.minus(zero).widened(machine), under.minus(end).widened(machine), contact,
+        float(depth[cycle.turn] - depth[cycle.begin]),
+    )  # fmt: skip
+
+
+def _from_cycles(cycles: tuple[Cycle, ...], slopes: list[Measured]) -> Measured | None:
+    """Return the machine's compliance from cycles of several loads [m/N].
+
+    1/S = C + c P^(-1/m): a contact is as stiff as it is wide, and P is as a^m (Oliver and Pharr,
+    eq. 15, with Meyer's index m for the 2 of a pyramid).
+    """
+    whole = [
+        (c.peak, s.value) for c, s in zip(cycles, slopes, strict=True)
+        if c.beyond and s.value > 0.0 and s.std < 0.1 * s.value
+    ]  # fmt: skip
+    if len(whole) < RULES.fewest_cycles:
+        return None
+    peak, slope = np.array(whole).T
+    if peak.max() < RULES.cycle_ratio * peak.min():
+        return None
+    found = []
+    for index in RULES.meyer:
+        design = np.stack([np.ones(peak.size), peak ** (-1.0 / index)], axis=1)
+        weight = slope[:, None]  # slopes are as good as each other in parts of themselves
+        best = np.linalg.lstsq(design * weight, np.ones(peak.size), rcond=None)[0]
+        rest = design @ best * slope - 1.0
+        sigma = math.sqrt(float(rest @ rest) / (peak.size - 2))
+        found.append((best[0], sigma * math.sqrt(unit_covariance(design * weight)[0, 0])))
+    (first, first_std), (second, second_std) = found
+    middle = 0.5 * (first + second)
+    return Measured(
+        max(float(middle), 0.0), math.hypot(max(first_std, second_std), 0.5 * (first - second))
+    )
+
+
+def _told(record: PressRecord, presses: tuple[Press, ...]) -> list[str]:
+    largest = max(presses, key=lambda p: p.load.value)
+    told = []
+    if record.missed:
+        told.append(f"{record.missed} rows without a load or a depth are left out")
+    if len(presses) > 1:
+        told.append(
+            f"{len(presses)} cycles; what the row says is of the largest, as if it were the only: "
+            "earlier, smaller ones leave no trace in it where nothing creeps"
+        )
+    least = largest.cycle.least
+    if least > RULES.zero_reach[0]:
+        told.append(f"unloaded to {least:.0%} of the load: the rest is made up from the unloading")
+    if abs(largest.crept) > 0.005 * largest.deepest.value:
+        told.append(f"{largest.crept * 1e6:.3g} um came while the load was held: part of the depth")
+    if not largest.left.value > 2.0 * largest.left.std:
+        told.append(f"no depth that stays is seen: {largest.left.scaled(1e6)} um")
+    return told
