@@ -19,7 +19,7 @@ _SPEEDS, _ANGLES = 5, 4
 """Places over the tested range of speeds and of angles."""
 _RATIO = 2.0
 """Size of a body to be built over that of the one there is, and one over it."""
-_NEAR = math.radians(4.0)
+_NEAR, _SAME = math.radians(4.0), 1.05  # of angles and speeds that are one condition
 BENCH = (20.0, 5000.0)
 """Loads of a bench press or a small testing machine [N]."""
 _LOADS, _EACH, _WIDE = 4, 3, 1.5
@@ -71,6 +71,8 @@ class PressSeries:
 def press_series(problem: Problem) -> list[PressSeries]:
     """Return presses with each striker, as deep as its trials went, within what a press can do."""
     found = []
+    if leaves_no_mark(problem):
+        return []
     for name, trials in sorted(_by_striker(problem).items()):
         c, scene = trials[0]
         table = strength_table(scene.law, scene.pair)
@@ -93,6 +95,11 @@ def press_series(problem: Problem) -> list[PressSeries]:
         )
         found.append(PressSeries(text, pressed, _EACH))
     return found
+
+
+def leaves_no_mark(problem: Problem) -> bool:
+    """Whether the bodies are taken to be elastic, so that there is nothing to scan."""
+    return problem.baseline in ("elastic", "measured-restitution")
 
 
 def _by_striker(problem: Problem) -> dict[str, list[tuple[Condition, Scene]]]:
@@ -122,23 +129,41 @@ def _round(load: float) -> float:
 
 def candidates_of(problem: Problem) -> list[Candidate]:
     """Return trials within the speeds, angles and bodies of a set, then those to be built."""
-    speeds = [c.speed for c in problem.conditions if c.press is None]
-    if not speeds:
+    own: dict[str, list[Condition]] = {}
+    for c in problem.conditions:
+        if c.press is None:
+            own.setdefault(c.striker, []).append(c)
+    if not own:
         return []
+    speeds = [c.speed for tested in own.values() for c in tested]
     places = np.geomspace(min(speeds), max(speeds), _SPEEDS)
-    if max(speeds) < 1.05 * min(speeds):
-        places = np.array([float(np.median(speeds))])
-    first = {c.striker: c for c in reversed(problem.conditions) if c.press is None}
+    fallen = any(c.around.from_height for c in problem.conditions)
+    if not fallen and all(
+        max(c.speed for c in x) < _SAME * min(c.speed for c in x) for x in own.values()
+    ):
+        # each striker has one speed, and no height that could be another: a spring gives it
+        places = np.zeros(0)
+    first = {name: tested[0] for name, tested in own.items()}
     found: list[Candidate] = []
     for name, c in sorted(first.items()):
         fresh = replace(c, after=-1)
         tried = [_moved(fresh, float(v)) for v in places]
-        found += [Candidate(f"{name} at {x.speed:.2g} m/s{_at(x)}", x) for x in tried]
+        found += [
+            Candidate(f"{name} at {x.speed:.2g} m/s{_at(x)}", x)
+            for x in tried
+            if not any(_alike(x, there) for there in own[name])
+        ]
         found += _angles(problem, fresh, float(np.median(speeds)))
     for name, c in sorted(first.items()):
         at = _moved(replace(c, after=-1), float(max(speeds)))
         found += _built(problem.rig.striker(name), name, at)
     return found
+
+
+def _alike(one: Condition, other: Condition) -> bool:
+    """Whether a trial would repeat a condition."""
+    near = abs(math.log(one.speed / other.speed)) < math.log(_SAME)
+    return near and abs(one.incidence - other.incidence) < _NEAR
 
 
 def _moved(c: Condition, speed: float) -> Condition:

@@ -25,7 +25,7 @@ from ..comparison.forward import Point, Simulator
 from ..comparison.problem import Problem
 from ..inference.fit import Fit
 from ..rank import Ranking
-from .feasible import Candidate, PressSeries, candidates_of, press_series
+from .feasible import Candidate, PressSeries, candidates_of, leaves_no_mark, press_series
 from .foreseen import discrimination, foreseen, information
 
 Array = NDArray[np.float64]
@@ -249,6 +249,7 @@ def _not_measured(problem: Problem) -> list[str]:
         if name not in problem.cells.observable
         and row.usual_noise
         and (row.phase != "sliding" or slides)
+        and not (row.instrument == "surface" and leaves_no_mark(problem))
     ]
 
 

@@ -65,6 +65,7 @@ class Problem:
         default_factory=lambda: SimpleNamespace(freedom=np.zeros(0), count=0, parts={}, rows={})
     )
     rig: Any = None
+    baseline: str = "elastic-plastic"
     laws: Any = field(default_factory=lambda: defaultdict(lambda: None))
     without_modulus: Any = field(default_factory=lambda: {"target": (), "striker": ()})
 

@@ -8,7 +8,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 from dentscope.discrepancy.choice.odds import Odds
-from dentscope.discrepancy.experiments.feasible import candidates_of
+from dentscope.discrepancy.experiments.feasible import candidates_of, press_series
 from dentscope.discrepancy.experiments.foreseen import (
     Foreseen,
     discrimination,
@@ -17,11 +17,13 @@ from dentscope.discrepancy.experiments.foreseen import (
 )
 from dentscope.discrepancy.experiments.next_experiment import (
     Proposal,
+    _not_measured,
     _sharper,
     propose,
     rivals_of,
     with_half_the_noise,
 )
+from dentscope.impact.mechanisms import Surroundings
 
 SEEN = "rebound_speed_m_s"
 
@@ -120,6 +122,28 @@ def test_trials_lie_within_the_rigs_speeds_and_angles(toy) -> None:
     assert any(31.0 < a < 74.0 for a in angles)
 
 
+def test_nothing_is_proposed_that_is_there_already_or_that_a_spring_cannot_do(toy) -> None:
+    """Half and 2 m/s are tested; devices D and G know one speed each, as rebound testers do."""
+    given = on_rig(toy, ball=BALL)
+    own = [c.condition.speed for c in candidates_of(given) if not c.built]
+    assert own == pytest.approx([2.0**-0.5, 1.0, 2.0**0.5])
+    devices = [toy.condition(2.0, "D"), toy.condition(3.0, "G")]
+    shot = replace(on_rig(toy, D=BALL, G=BALL), conditions=tuple(devices))
+    assert [c for c in candidates_of(shot) if not c.built] == []
+    high = Surroundings(from_height=True)
+    dropped = replace(shot, conditions=tuple(replace(c, around=high) for c in devices))
+    assert [c for c in candidates_of(dropped) if not c.built]
+
+
+def test_bodies_that_do_not_yield_leave_nothing_to_scan(toy) -> None:
+    """No crater of a golf ball."""
+    elastic = replace(on_rig(toy, ball=BALL), baseline="elastic")
+    assert not {"permanent_depth_m", "dent_diameter_m"} & set(_not_measured(elastic))
+    assert "contact_time_s" in _not_measured(elastic)
+    assert press_series(elastic) == []
+    assert {"permanent_depth_m", "dent_diameter_m"} <= set(_not_measured(on_rig(toy, ball=BALL)))
+
+
 def test_the_next_shot_of_an_oblique_ball_says_its_angle(toy) -> None:
     given = on_rig(toy, ball=BALL)
     shots = [
@@ -164,7 +188,7 @@ class Bench:
         cells = self.problem.cells
         speed = np.array([self.problem.conditions[k].speed for k in cells.condition])
         seen = [
-            speed + 2.0 * (speed > 1.9) * (p.values["a"]["size"] if mechanisms else 0.0)
+            speed + 2.0 * (speed > 1.4) * (p.values["a"]["size"] if mechanisms else 0.0)
             for p in points
         ]
         return np.array(seen) + np.array([p.z.sum() for p in points])[:, None]
@@ -188,7 +212,7 @@ def test_the_trial_that_tells_rivals_apart_comes_first(toy, monkeypatch) -> None
     shared = odds(baseline=0.5, a=0.5)
     found = propose(Bench(given), ranking, shared, np.random.default_rng(0))
     trials = [p for p in found if p.kind == "trial"]
-    assert trials[0].change.startswith("ball at 2 m/s")
+    assert trials[0].change.startswith("ball at 1.4 m/s")
     assert trials[0].information > 2.0 * trials[-1].information
     assert {p.kind for p in found} >= {"trial", "build", "observable"}
     alone = toy.ranking_of(given, base)
