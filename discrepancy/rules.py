@@ -44,6 +44,14 @@ class DiagnosisRules:
         3, "trials from which a column may be called derived [-]",
         "by chance one in a hundred of three agrees so well",
     )  # fmt: skip
+    scaled: float = rule(
+        0.3, "standard deviation of a factor on all readings of one observable (logarithm) [-]",
+        "a depth from another plane, a diameter at the rim, a charge amplifier's range",
+    )  # fmt: skip
+    scaled_cells: int = rule(
+        3, "numbers of an observable from which it may have a factor of its own [-]",
+        "two are a slope",
+    )  # fmt: skip
 
 
 RULES = DiagnosisRules()

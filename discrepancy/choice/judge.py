@@ -12,6 +12,7 @@ from ..inference.fit import Fit
 from ..rank import Nameless, Ranking
 from ..rules import RULES
 from .decide import Choice, decide
+from .gauge import Scaled, scaled_observables
 from .odds import OUTSIDE, Odds, odds_apart, odds_of, pooled, shares_outside
 from .outside import odd_repeats, outside_of
 from .own_sets import FitTest, fit_test
@@ -30,14 +31,17 @@ class Judge:
     outside
         Ln evidence of something outside the library over the baseline's, less the penalty.
     nameless
-        Physics without a name to its share of that evidence.
+        Physics without a name, and observables with a factor, to their share of that evidence.
     nulls
         Sets with nothing missing, from which each explanation's own sets are made.
+    scaled
+        What a factor on one observable would explain, the most first.
     """
 
     outside: float
     nameless: Mapping[str, float]
     nulls: Nulls
+    scaled: tuple[Scaled, ...] = ()
     _tests: dict[str, FitTest] = field(default_factory=dict)
 
     @classmethod
@@ -45,17 +49,19 @@ class Judge:
         """Weigh what is outside the library."""
         free = outside_of(ranking.problem, ranking.base)
         gained = float(free.log_likelihood(ranking.base.residual)) - ranking.base.log_evidence
-        known_to_none, own = shares_outside(len(ranking.nameless))
+        scaled = scaled_observables(ranking.problem, ranking.base)
+        known_to_none, own, factor = shares_outside(len(ranking.nameless), len(scaled))
         parts = {
             n.screened.mechanism.name: n.log_bayes + math.log(own) - RULES.penalty
             for n in ranking.nameless
         }
+        parts |= {s.told: s.gain + math.log(factor) - RULES.penalty for s in scaled}
         parts[OUTSIDE] = gained + math.log(known_to_none) - RULES.penalty
         # what repeats are worth is bounded already
         parts["repeats"] = odd_repeats(ranking.problem)
         whole = float(logsumexp(list(parts.values())))
         share = {k: math.exp(v - whole) for k, v in parts.items() if k not in (OUTSIDE, "repeats")}
-        return cls(whole, share, nulls)
+        return cls(whole, share, nulls, scaled)
 
     def odds(self, ranking: Ranking, sampled: Mapping[str, float] | None = None) -> Odds:
         """Return the probabilities of the explanations of a ranking.
@@ -83,14 +89,25 @@ class Judge:
         odds = self.odds(ranking, sampled)
         choice = decide(ranking, odds, drifts=ranking.problem.drifts)
         if choice.verdict != OUTSIDE:
-            return choice
+            return replace(choice, reasons=(*choice.reasons, *self.factors_told(ranking)))
         near = [f for f in ranking.fits[1:] if odds.beside.get(f.name, 0.0) > _ALIKE * odds.outside]
         free = 1.0 - sum(odds.beside.values()) / odds.outside
-        share = {n: free * self.nameless[n.screened.mechanism.name] for n in ranking.nameless}
-        alike = [n for n in ranking.nameless if share[n] > _ALIKE]
-        told = [*(self._nearest(f) for f in near), *(_behaves(n, share[n]) for n in alike)]
-        titles = tuple(n.screened.mechanism.title for n in alike)
+        share = {name: free * part for name, part in self.nameless.items()}
+        alike = [n for n in ranking.nameless if share[n.screened.mechanism.name] > _ALIKE]
+        factors = [s for s in self.scaled if share[s.told] > _ALIKE]
+        told = [
+            *(self._nearest(f) for f in near),
+            *(_behaves(n, share[n.screened.mechanism.name]) for n in alike),
+            *(s.told for s in factors),
+        ]
+        titles = (*(n.screened.mechanism.title for n in alike), *(s.told for s in factors))
         return replace(choice, reasons=(*choice.reasons, *told), alike=titles)
+
+    def factors_told(self, ranking: Ranking) -> tuple[str, ...]:
+        """What a factor on one observable explains as well as the leading mechanism does."""
+        best = max((f.log_evidence for f in ranking.fits), default=0.0)
+        least = max(best - ranking.base.log_evidence, -math.log(RULES.supported))
+        return tuple(s.told for s in self.scaled[:1] if s.gain >= least)
 
     def _nearest(self, fitted: Fit) -> str:
         worse = 100.0 * (1.0 - self.test(fitted).p_value)

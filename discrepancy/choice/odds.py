@@ -17,8 +17,9 @@ OUTSIDE = "outside-library"
 PRIORS = {"baseline": 0.5, "singles": 0.34, "pairs": 0.06, OUTSIDE: 0.1}
 """Before the comparison: as likely as not that nothing is missing; each single mechanism that
 could act here shares alike, and so does each pair."""
-NAMELESS_SHARE = 1.0 / 3.0
-"""Of what is outside the library, the share of known physics without a name; the rest is free."""
+NAMELESS_SHARE, SCALED_SHARE = 1.0 / 3.0, 1.0 / 6.0
+"""Of what is outside the library, the shares of known physics without a name and of an observable
+with a factor of its own; the rest is free."""
 BESIDE = (
     PRIORS["pairs"] / PRIORS["singles"] * PRIORS[OUTSIDE] / (PRIORS["singles"] + PRIORS[OUTSIDE])
 )
@@ -33,9 +34,11 @@ NAMED_AT = math.log(SURE / (1.0 - SURE))
 """Ln odds of something missing from which a name costs less than silence (`decide.COSTS`)."""
 
 
-def shares_outside(nameless: int) -> tuple[float, float]:
-    """Prior shares, among what is outside the library, of the free part and of each nameless."""
-    return (1.0 - NAMELESS_SHARE, NAMELESS_SHARE / nameless) if nameless else (1.0, 0.0)
+def shares_outside(nameless: int, scaled: int) -> tuple[float, float, float]:
+    """Prior shares, among what is outside the library: free, each nameless, each scaled."""
+    own = NAMELESS_SHARE / nameless if nameless else 0.0
+    factor = SCALED_SHARE / scaled if scaled else 0.0
+    return 1.0 - own * nameless - factor * scaled, own, factor
 
 
 @dataclass(frozen=True)
@@ -138,8 +141,16 @@ def odds_apart(ranking: Ranking) -> Odds:
 def pooled(one: Odds, other: Odds) -> Odds:
     """Return the mean of two, which are as likely to be right."""
     mean = {k: 0.5 * (p + other.probability[k]) for k, p in one.probability.items()}
-    mean = dict(sorted(mean.items(), key=lambda item: -item[1]))
+    mean = _supported(dict(sorted(mean.items(), key=lambda item: -item[1])))
     return Odds(one.names, mean, {k: 0.5 * p for k, p in one.beside.items()})
+
+
+def _supported(found: dict[str, float]) -> dict[str, float]:
+    """Return probabilities of which the baseline's is no surer than the sets drawn can support."""
+    nothing = found["baseline"]
+    told = min(max(nothing, RULES.supported), 1.0 - RULES.supported)
+    rest = (1.0 - told) / (1.0 - nothing)
+    return {k: told if k == "baseline" else rest * p for k, p in found.items()}
 
 
 def _weights(
