@@ -23,8 +23,6 @@ from .schema import CURVE, FORMAT, PROFILES, UNLOADING_PROFILES, Dataset
 
 Floats = npt.NDArray[np.float64]
 
-_WORTH_COMPRESSING = 512  # values; below it compression saves nothing
-
 
 def case_image(
     case: Case,
@@ -152,7 +150,7 @@ def _put_curve(group: h5py.Group, curve: Curve) -> None:
 def _put_array(
     group: h5py.Group, name: str, values: Floats | npt.NDArray[np.float32], about: Dataset
 ) -> None:
-    packed = {"compression": "gzip", "shuffle": True} if values.size > _WORTH_COMPRESSING else {}
+    packed = {"compression": "gzip", "shuffle": True} if values.size > RULES.compressed_from else {}
     if values.size:  # HDF5 has no chunk of nothing, and so no checksum of it
         packed |= {"chunks": values.shape, "fletcher32": True}
     data = group.create_dataset(name, data=values, **packed)

@@ -21,6 +21,7 @@ import numpy as np
 import numpy.typing as npt
 
 from ..core.errors import InputError
+from .rules import RULES
 
 SEALED_FROM = 512
 """Size of the user block."""
@@ -35,10 +36,8 @@ DAMAGE = (
 
 _MAGIC = b"dentscope-sealed-1\n".ljust(32, b"\0")
 _LAYOUT = ("v110", "v110")  # of HDF5: the first whose headers carry checksums at no cost of room
-_DEEPEST = 4
-_MOST_DATA = 256_000_000  # bytes of one dataset
+_MOST_DATA = RULES.dataset_bytes
 _MOST_RATIO = 1100  # of deflate, which gives at most 1032 bytes for one
-_MOST_TEXT = 1_000_000
 _KINDS = "fiubSU"
 
 
@@ -152,7 +151,7 @@ def read_tree(group: h5py.Group, *, depth: int = 0) -> Tree:
     ValueError
         Something leads elsewhere, claims more than it holds, or is of a kind that we never write.
     """
-    if depth > _DEEPEST:
+    if depth > RULES.groups_deep:
         raise ValueError(f"{group.name} lies too deep")
     tree = Tree(attributes={name: _attribute(group, name) for name in group.attrs})
     for name in group:
@@ -195,6 +194,6 @@ def _attribute(item: Any, name: str) -> Any:
     value = item.attrs[name]
     if isinstance(value, bytes):
         value = value.decode()
-    if isinstance(value, str) and len(value) > _MOST_TEXT:
+    if isinstance(value, str) and len(value) > RULES.text_bytes:
         raise ValueError(f"attribute {name} of {item.name} has {len(value)} characters")
     return value.item() if isinstance(value, np.generic) else value

@@ -21,10 +21,7 @@ Floats = npt.NDArray[np.float64]
 
 # processor seconds of a deep case with E'/Sy_min = 300 and Sy* = 1: measured on 44 cases with
 # numerics version 3, over the 2.3 by which version 4 is faster
-_BASE_S = {"smoke": 16.0, "quick": 26.0, "production": 90.0}
-_DEEP = 0.1
-_SLOPES = (0.5, 0.35, -0.5)
-_REFERENCE_S = 0.042  # of `_benchmark`, on the machine where _BASE_S was measured
+_BASE_S = dict(RULES.cost_base_s)
 
 
 class Forecast:
@@ -111,7 +108,7 @@ def pace_of_this_machine() -> float:
         started = time.perf_counter()
         _factorise(matrix)
         times.append(time.perf_counter() - started)
-    return float(np.median(times)) / _REFERENCE_S
+    return float(np.median(times)) / RULES.cost_reference_s
 
 
 def _laplacian(n: int) -> object:
@@ -129,9 +126,9 @@ def _factorise(matrix: object) -> None:
 
 def _measured(case: Case) -> float:
     """Logarithm of the processor seconds measured before, by resolution, depth and pair."""
-    deep = float(np.sqrt(min(case.depths[-1] / _DEEP, 1.0)))
+    deep = float(np.sqrt(min(case.depths[-1] / RULES.cost_depth, 1.0)))
     base = _BASE_S.get(case.accuracy.level.split(",")[0], _BASE_S["production"])
-    return float(np.log(base * deep) + _features(case)[1:] @ _SLOPES)
+    return float(np.log(base * deep) + _features(case)[1:] @ RULES.cost_slopes)
 
 
 def _features(case: Case) -> Floats:

@@ -21,9 +21,6 @@ from .case import Case
 from .rules import RULES
 from .workers import answers
 
-PATIENCE_S = 60.0
-"""How long a run on a cluster goes on without any worker."""
-
 
 @dataclass(frozen=True)
 class Ended:
@@ -129,11 +126,11 @@ class DaskExecutor:
     workers: int
     client: Any
     work: Work = solve_specification
-    patience_s: float = PATIENCE_S
+    patience_s: float = RULES.patience_s
 
     @classmethod
     def connect(
-        cls, address: str, *, timeout_s: float = 10.0, patience_s: float = PATIENCE_S
+        cls, address: str, *, timeout_s: float = 10.0, patience_s: float = RULES.patience_s
     ) -> DaskExecutor:
         """Connect to a scheduler, wait for a worker, and see that all are of this source.
 

@@ -44,6 +44,7 @@ from .contents import (
     read_array,
 )
 from .records import CaseRecord, UnloadingRecord
+from .rules import RULES
 from .schema import CURVE, PROFILES, UNLOADING_PROFILES, Dataset
 
 Floats = npt.NDArray[np.float64]
@@ -58,7 +59,6 @@ CHECKSUMS = "SHA256SUMS"
 DIGESTS = "DIGESTS"
 """Digest and id of each case of the parts of format 1 in a folder."""
 
-_MOST_BYTES = 100_000_000
 _ROW = Dataset("1", ("row",), "row of the table above that this row belongs to")
 SCALARS: dict[str, Dataset] = {
     "E_s": Dataset("Pa", ("case",), "Young's modulus of the sphere"),
@@ -149,7 +149,7 @@ def opened_part(path: Path) -> Iterator[h5py.File]:
     InputError
         The file is damaged, is no part, or nothing beside it says what it should be.
     """
-    image = read_bytes(path, most=_MOST_BYTES, allowed="a published part")
+    image = read_bytes(path, most=RULES.read_part_bytes, allowed="a published part")
     if is_sealed(image):
         check_seal(image, path)
     elif hashlib.sha256(image).hexdigest() != checksums(path.parent).get(path.name):

@@ -10,8 +10,8 @@ from ..core.material import Pair
 from ..core.output import write_figure
 from ..fem import critical_depth
 from .records import CaseRecord
+from .rules import RULES
 
-_NAMED = 6  # so many pairs are named one by one
 _APPROACH = r"approach over that at first yield $\delta/\delta_c$"
 
 
@@ -26,7 +26,7 @@ def draw_campaign(records: list[CaseRecord], folder: Path) -> list[Path]:
 
     figure = Figure(figsize=(10, 8), layout="constrained")
     axes = figure.subplots(2, 2)
-    many = len(records) > _NAMED
+    many = len(records) > RULES.pairs_named
     shades = ScalarMappable(LogNorm(0.1, 10.0, clip=True), "coolwarm")
     for record in records:
         pair = record.case.pair

@@ -27,6 +27,7 @@ from .case import Case
 from .case_file import case_image, write_fields
 from .contents import DAMAGE, check_seal, damage, open_image
 from .records import CaseRecord, Summary, read_case, read_summary
+from .rules import RULES
 from .schema import FORMAT
 
 Read = TypeVar("Read")
@@ -37,8 +38,6 @@ CASES, FIELDS = "cases", "fields"
 OLDER = "campaign.h5"
 """All cases of a run of before 0.3; see `campaigns.upgrade`."""
 
-MOST_BYTES = 500_000_000
-"""Largest file of one case that is read [bytes]; one with its fields takes some megabytes."""
 
 _ENDS = {"done": ".h5", "failed": ".failed.h5"}
 _REPAIR = "`dentscope campaign repair` sets it aside, and the next run computes its case again"
@@ -192,7 +191,7 @@ def opened_case(path: Path) -> Iterator[h5py.File]:
     InputError
         It is damaged, or no file of a case.
     """
-    image = read_bytes(path, most=MOST_BYTES, allowed="a file of one case (.h5)")
+    image = read_bytes(path, most=RULES.case_bytes, allowed="a file of one case (.h5)")
     check_seal(image, path, allowed=_REPAIR)
     try:
         with open_image(image) as file:

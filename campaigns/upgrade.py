@@ -20,11 +20,11 @@ from ..core.inputs.input_file import checked_file
 from ..core.output import write_file
 from .contents import DAMAGE, DIGEST, damage, new_image, open_image, read_tree
 from .records import read_case
+from .rules import RULES
 from .schema import FORMAT
 from .store import OLDER, file_of
 
 _FORMATS = ("dentscope-campaign/1", "dentscope-campaign/2")
-_MOST_BYTES = 2_000_000_000
 
 
 def upgrade(folder: Path) -> tuple[int, list[str]]:
@@ -77,7 +77,7 @@ def upgrade(folder: Path) -> tuple[int, list[str]]:
 
 def _image(older: Path) -> bytes:
     """Return the bytes of the file while no run of before writes it."""
-    checked_file(older, most=_MOST_BYTES, allowed="a run of before 0.3")
+    checked_file(older, most=RULES.old_run_bytes, allowed="a run of before 0.3")
     with ExitStack() as held:
         for place in (older.with_suffix(".lock"), older):
             if place.exists():

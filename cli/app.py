@@ -13,6 +13,7 @@ import typer
 
 from ..core.errors import EXIT_INPUT_ERROR, InputError, printable
 from ..core.processes.stopping import STOPS, listening, stopped
+from ..core.rules import RULES as CORE
 from . import campaign, export, laws, recordings, reduce, studies
 from .case import case
 from .diagnose import diagnose
@@ -34,8 +35,6 @@ app = typer.Typer(
     context_settings={"help_option_names": ["-h", "--help"]},
 )
 
-_MOST_LINES = 20
-"""Mistakes that are told one by one."""
 
 # typer ships its own copy of click in newer versions and uses the installed one in older ones;
 # the base class of its usage errors is reached through a name that both export.
@@ -114,8 +113,8 @@ def run(arguments: list[str] | None = None) -> int:
 
 def _refused(told: str) -> int:
     lines = told.splitlines()
-    for line in lines[:_MOST_LINES]:
+    for line in lines[: CORE.mistakes_told]:
         sys.stderr.write(f"{printable(line)}\n")
-    if len(lines) > _MOST_LINES:
-        sys.stderr.write(f"... and {len(lines) - _MOST_LINES} more of this kind\n")
+    if len(lines) > CORE.mistakes_told:
+        sys.stderr.write(f"... and {len(lines) - CORE.mistakes_told} more of this kind\n")
     return EXIT_INPUT_ERROR

@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING, Annotated
 import typer
 
 from ..core.errors import InputError
+from ..core.rules import RULES as CORE
 from .shared.groups import group
 from .shared.places import folder_option
 from .shared.terminal import console, say, show_table
@@ -19,8 +20,6 @@ if TYPE_CHECKING:
     from ..start.ball_file import ExportedBall
 
 app = group("A law for other programs: as source, or as parameters of a discrete-element code.")
-
-_SPEEDS = 7  # of a range
 
 
 @app.command("law")
@@ -128,7 +127,7 @@ def _of_file(speeds: tuple[float, ...]) -> list[float]:
     """The file's speeds, as many as a table shows."""
     if not speeds:
         return _speeds("0.1:10")
-    if len(speeds) <= _SPEEDS:
+    if len(speeds) <= CORE.speeds_exported:
         return list(speeds)
     return _speeds(f"{min(speeds)!r}:{max(speeds)!r}")
 
@@ -153,7 +152,11 @@ def _speeds(text: str) -> list[float]:
             f"{text!r}", source="command line", key="--speed",
             allowed="FIRST:LAST, or numbers above 0 with commas [m/s]",
         )  # fmt: skip
-    return np.geomspace(numbers[0], numbers[-1], _SPEEDS).tolist() if ":" in text else numbers
+    return (
+        np.geomspace(numbers[0], numbers[-1], CORE.speeds_exported).tolist()
+        if ":" in text
+        else numbers
+    )
 
 
 def _misses(rows: list[ExportedRow]) -> tuple[list[str], list[list[str]]]:

@@ -15,10 +15,9 @@ import numpy as np
 import numpy.typing as npt
 
 from .errors import InputError
+from .rules import RULES
 
 Floats = npt.NDArray[np.float64]
-
-_FIRST, _LAST, _ROWS = 1e-6, 10.0, 200  # plastic strains of a written law's table
 
 
 @dataclass(frozen=True, slots=True)
@@ -110,7 +109,7 @@ def swift(*, Sy: float, K: float, n: float) -> FlowCurve:
     start = (Sy / K) ** (1.0 / n)
     # a small exponent takes e0 to 0, where the slope is infinite: three times the first row's mean
     # is as steep as a cubic may begin without overshoot (Fritsch and Carlson, 1980)
-    steepest = 3.0 * (K * (start + _FIRST) ** n - Sy) / _FIRST
+    steepest = 3.0 * (K * (start + RULES.flow_first) ** n - Sy) / RULES.flow_first
     return _written(
         lambda p: np.maximum(K * (start + p) ** n, Sy),
         lambda p: n * K * (start + p) ** (n - 1.0),
@@ -122,7 +121,9 @@ def ludwik(*, Sy: float, K: float, n: float) -> FlowCurve:
     """Ludwik's law Sy + K p^n (1909); with K = B also Johnson and Cook's at rest and cold."""
     # it leaves the origin vertically: a straight line up to the second row
     return _written(
-        lambda p: Sy + K * p**n, lambda p: n * K * p ** (n - 1.0), first=K * _FIRST ** (n - 1.0)
+        lambda p: Sy + K * p**n,
+        lambda p: n * K * p ** (n - 1.0),
+        first=K * RULES.flow_first ** (n - 1.0),
     )
 
 
@@ -136,7 +137,7 @@ def voce(*, Sy: float, Q: float, b: float) -> FlowCurve:
 def _written(
     stress: Callable[[Floats], Floats], slope: Callable[[Floats], Floats], *, first: float
 ) -> FlowCurve:
-    strain = np.append(0.0, np.geomspace(_FIRST, _LAST, _ROWS))
+    strain = np.append(0.0, np.geomspace(RULES.flow_first, RULES.flow_last, RULES.flow_rows))
     values = stress(strain)
     slopes = np.append(first, slope(strain[1:]))
     return FlowCurve(*(tuple(x.tolist()) for x in (strain, values, slopes)))

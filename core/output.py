@@ -224,7 +224,7 @@ def _replace(path: Path, data: bytes) -> None:
             raise OSError(errno.EINVAL, "a folder, a pipe or a device")
         mode = stat.S_IMODE(about.st_mode)
     # a name that nobody else has, on whatever machine, and that no killed process left behind
-    draft = path.with_name(f".{path.name[: RULES.output_name_bytes]}.{os.urandom(8).hex()}.part")
+    draft = path.with_name(f".{path.name[: RULES.name_bytes]}.{os.urandom(8).hex()}.part")
     try:
         file = DISK.create(draft, mode)
         try:

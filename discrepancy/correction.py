@@ -19,12 +19,9 @@ from .comparison.forward import Point, Simulator
 from .comparison.problem import Problem
 from .inference.fit import Fit
 from .inference.linear import Linear
+from .rules import RULES
 
 Array = NDArray[np.float64]
-
-LEVEL = 0.90
-"""Probability of the band of a correction."""
-_SHOWN = 12
 
 
 @dataclass(frozen=True, eq=False)
@@ -71,9 +68,9 @@ def correct(simulator: Simulator, base: Fit) -> tuple[Correction, ...]:
     mean, cov = widened(problem, base).unknowns(base.residual)
     mean, cov = mean[k:], cov[k:, k:]
     error = problem.error
-    beyond = norm.ppf(0.5 + 0.5 * LEVEL)
+    beyond = norm.ppf(0.5 + 0.5 * RULES.level)
     grid = np.linspace(LOG_DEPTH_FIRST, LOG_DEPTH_LAST, NODES)
-    at = np.linspace(math.log(0.3 * shallowest), math.log(deepest), _SHOWN)
+    at = np.linspace(math.log(0.3 * shallowest), math.log(deepest), RULES.corrections_shown)
     found = []
     for phase, kind in (("loading", "force"), ("unloading", "recovery")):
         rows = error.rows[kind]

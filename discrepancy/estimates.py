@@ -23,8 +23,6 @@ from .rules import RULES
 
 Array = NDArray[np.float64]
 
-_PULLED = 2.0
-
 
 def audit_rows(recordings: RecordingSet) -> tuple[dict[str, Any], ...]:
     """Contradictions and cautions, the contradictions first."""
@@ -120,8 +118,10 @@ def notes_of(problem: Problem, best: Fit) -> tuple[str, ...]:
     surprises = surprises_of(problem, best)
     for i, n in enumerate(problem.nuisances):
         z, surprise = float(best.z[i]), abs(surprises[n.name])
-        if surprise > _PULLED:
-            chance = "" if abs(z) > _PULLED else f", {surprise:.1f} times what chance would move it"
+        if surprise > RULES.pulled:
+            chance = (
+                "" if abs(z) > RULES.pulled else f", {surprise:.1f} times what chance would move it"
+            )
             notes.append(
                 f"{n.name} wants to be {n.at(z):.4g} {n.unit}, {'above' if z > 0 else 'below'} the "
                 f"stated {n.value:.4g}: a pull of {abs(z):.1f} stated standard deviations{chance}"

@@ -18,11 +18,10 @@ from scipy.special import logsumexp
 from .comparison.problem import Problem
 from .inference.fit import Fit
 from .inference.left_out import Whole
+from .rules import RULES
 
 Array = NDArray[np.float64]
 Mask = NDArray[np.bool_]
-
-_FLOOR = 0.1
 
 
 @dataclass(frozen=True, slots=True)
@@ -87,7 +86,7 @@ def _scored(problem: Problem, fitted: Fit, folds: Sequence[Mask]) -> HeldOut:
     if not squares:
         return HeldOut(math.nan, math.nan, 0)
     mean = float(np.mean(np.concatenate(squares)))
-    return HeldOut(math.sqrt(max(mean - 1.0, _FLOOR**2)), math.sqrt(mean), count)
+    return HeldOut(math.sqrt(max(mean - 1.0, RULES.heldout_floor**2)), math.sqrt(mean), count)
 
 
 def _missed(whole: Whole, test: Mask) -> Array:

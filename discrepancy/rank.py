@@ -17,15 +17,10 @@ from .inference.grid import Grid
 from .inference.outliers import outlying, without_weight
 from .inference.together import responses_at
 from .inference.window import sharpened
+from .rules import RULES
 
 Array = NDArray[np.float64]
 Progress = Callable[[str], None]
-
-FULL, NEAR = 4, 12.0
-"""Mechanisms that are fitted in full: at least the first few, and all within some nats of them."""
-_INVISIBLE = 1.0
-_CLEAR, _RIVAL = 10.0, 0.6  # nats, and part of the leading gain, from which a fit is sharpened
-_LEADS = 3.0  # nats from which outliers are judged under the leading mechanism
 
 
 @dataclass(frozen=True, eq=False)
@@ -132,7 +127,7 @@ def rank(
         if not reason:
             found = screen(simulator, base, mechanism)
             size = visible(found, base)
-            if size >= _INVISIBLE:
+            if size >= RULES.invisible:
                 screened.append(found)
                 continue
             reason = f"its largest plausible effect is {size:.1g} standard errors over all cells"
@@ -141,7 +136,11 @@ def rank(
     problem, base, screened = _cleared(simulator, base, screened)
     simulator = simulator.of(problem)
     order = sorted(screened, key=lambda s: -s.log_bayes)
-    chosen = [s for i, s in enumerate(order) if i < FULL or s.log_bayes > order[0].log_bayes - NEAR]
+    chosen = [
+        s
+        for i, s in enumerate(order)
+        if i < RULES.full or s.log_bayes > order[0].log_bayes - RULES.near
+    ]
     fits = []
     for found in chosen:
         progress(f"fitting {found.mechanism.name}")
@@ -199,7 +198,7 @@ def _cleared(
     """Take the weight from outliers, and fit and screen again what that changes."""
     judge = base
     lead = max(screened, key=lambda s: s.log_bayes, default=None)
-    if lead is not None and lead.log_bayes > _LEADS:
+    if lead is not None and lead.log_bayes > RULES.leads:
         # a large effect moves the derivatives: judge single values by its own fit
         judge = fit(
             simulator, (lead.mechanism,), start=base, place=lead.place, rounds=2, effect=lead.effect
@@ -219,12 +218,12 @@ def _cleared(
 
 
 def sharpened_leading(
-    simulator: Simulator, fits: list[Fit], base: Fit, *, most: int = FULL, rounds: int = 8
+    simulator: Simulator, fits: list[Fit], base: Fit, *, most: int = RULES.full, rounds: int = 8
 ) -> list[Fit]:
     """Sharpen fits that gain much, the leading and its rivals; best first."""
     fits = sorted(fits, key=lambda f: -f.log_evidence)
     best = fits[0].log_evidence - base.log_evidence if fits else 0.0
-    enough = max(_CLEAR, _RIVAL * best)
+    enough = max(RULES.clear, RULES.near_leader * best)
     found = [
         sharpened(simulator, f, rounds=rounds)
         if i < most and f.log_evidence - base.log_evidence > enough

@@ -1,10 +1,10 @@
-"""Tuned numbers of the decision: what each means, and which measurement chose it."""
+"""Tuned numbers of the diagnosis: what each means [unit], and from where it is."""
 
 from __future__ import annotations
 
 from dataclasses import dataclass
 
-from ..core.rules import rule
+from ..core.rules import limit, rule
 
 
 @dataclass(frozen=True)
@@ -51,6 +51,551 @@ class DiagnosisRules:
     scaled_cells: int = rule(
         3, "numbers of an observable from which it may have a factor of its own [-]",
         "two are a slope",
+    )  # fmt: skip
+    curve_apart: float = rule(
+        0.02, "strength stated beside a flow curve's own, over it, from which a note says so [-]",
+        "two digits of a sheet",
+    )  # fmt: skip
+    mesh_share: float = rule(
+        0.25, "error of the mesh in the metal's own error in force [-]",
+        "added in squares it is 3 %",
+    )  # fmt: skip
+    told_of_solve: float = limit(
+        0.2, "part of a solve between two lines of progress [-]",
+        "five lines a solve",
+    )  # fmt: skip
+    solve_deeper: float = rule(
+        1.3, "depth of the solve over the deepest impact [-]",
+        "room for a stated number that is off",
+    )  # fmt: skip
+    solve_turns: int = rule(
+        5, "unloadings of the solve [-]",
+        "chosen: a law needs three, two between show the bend",
+    )  # fmt: skip
+    solve_depths: int = rule(
+        60, "depths of the solve [-]",
+        "chosen; no measurement is kept",
+    )  # fmt: skip
+    solve_digits: int = limit(
+        2, "digits of a depth [-]",
+        "sets of one pair that go as deep share a solve",
+    )  # fmt: skip
+    fewest_cells: int = rule(
+        6, "readings below which a set says nothing [-]",
+        "a mechanism's size, and five that can contradict it",
+    )  # fmt: skip
+    fewest_conditions: int = rule(
+        2, "conditions below which a set says nothing [-]",
+        "one has no trend",
+    )  # fmt: skip
+    alike: int = rule(
+        3, "explanations that are reported as indistinguishable at most [-]",
+        "with more the set says too little",
+    )  # fmt: skip
+    resembles: float = rule(
+        0.5, "share of what is outside from which one without a name is said to be like it [-]",
+        "more likely than not",
+    )  # fmt: skip
+    nameless: float = rule(
+        1.0 / 3.0, "part of what is outside that is known physics without a name [-]",
+        "chosen: the rest is free",
+    )  # fmt: skip
+    beside: float = rule(
+        0.01, "probability of an explanation from which something may act beside it [-]",
+        "less moves no probability that is printed",
+    )  # fmt: skip
+    sure: float = rule(
+        0.93, "probability of something missing from which a name costs less than silence [-]",
+        "the costs of a wrong name and of silence (`decide.COSTS`)",
+    )  # fmt: skip
+    amplitudes: tuple[float, ...] = rule(
+        (0.03, 0.1, 0.3), "departures that no law is behind, as logarithms [-]",
+        "from what four observables just show to the gross",
+    )  # fmt: skip
+    misjudged: float = rule(
+        0.5, "standard deviation of the logarithm of a stated noise [-]",
+        "by so much do laboratories misjudge it",
+    )  # fmt: skip
+    widest: float = rule(
+        5.0, "logarithm of the largest scatter over the stated noise by something varied [-]",
+        "e^5, 150 times the noise, is a gross departure",
+    )  # fmt: skip
+    smooth: float = rule(
+        1.0, "correlation length of what is outside [standard deviations of each covariate]",
+        "a trend over the set, not a wiggle from one condition to the next",
+    )  # fmt: skip
+    thinned: int = rule(
+        400, "places of a grid that stand for all [-]",
+        "memory",
+    )  # fmt: skip
+    paired: int = rule(
+        4, "leading pairs that are fitted, by the sum of their effects [-]",
+        "chosen; no measurement is kept",
+    )  # fmt: skip
+    partners: int = rule(
+        3, "partners of the leading mechanism that are fitted with it [-]",
+        "chosen; no measurement is kept",
+    )  # fmt: skip
+    pair_places: int = rule(
+        48, "places of each mechanism in the search for pairs [-]",
+        "chosen: a pair takes their square",
+    )  # fmt: skip
+    pair_step: float = rule(
+        0.12,
+        "step at which the mutual effect of two mechanisms is simulated [widths of the prior]",
+        "beyond the round-off of two simulations, within what is straight",
+    )  # fmt: skip
+    gauge_floor: float = rule(
+        0.004, "part of a value that repeats cannot average away [-]",
+        "gauges and definitions: three digits",
+    )  # fmt: skip
+    noise_floor: float = rule(
+        0.5, "part of one reading's noise that repeats cannot average away [-]",
+        "four repeats are worth as many; more are not",
+    )  # fmt: skip
+    wild: float = rule(
+        0.1, "part of all repeats beyond which those far off their median are no slips [-]",
+        "one in ten is a slip, more are the noise",
+    )  # fmt: skip
+    own_scatter: int = rule(
+        8, "repeats beyond the first from which their own scatter is trusted [-]",
+        "eight degrees of freedom tell a scatter to a quarter",
+    )  # fmt: skip
+    same_speed: float = rule(
+        0.05, "width in ln speed within which impacts are one condition [-]",
+        "chosen; no measurement is kept",
+    )  # fmt: skip
+    speed_measured: float = rule(
+        0.003, "systematic relative error of a measured speed where none is stated [-]",
+        "chosen; no measurement is kept",
+    )  # fmt: skip
+    speed_from_height: float = rule(
+        0.005, "the same of a speed from a height [-]",
+        "a hundredth of the height: a millimetre of ten centimetres",
+    )  # fmt: skip
+    load_repeats: float = rule(
+        0.003, "relative scatter of a load where none is stated [-]",
+        "half of class 1 of ISO 7500-1",
+    )  # fmt: skip
+    batch: int = limit(
+        4000, "scenes that are simulated together [-]",
+        "memory",
+    )  # fmt: skip
+    thread_from: int = limit(
+        200, "scenes from which a second thread pays [-]",
+        "starting one costs as much as some ten",
+    )  # fmt: skip
+    level: float = rule(
+        0.90, "probability of bands and intervals [-]",
+        "usual",
+    )  # fmt: skip
+    corrections_shown: int = limit(
+        12, "rows of a correction that are shown [-]",
+        "half a screen",
+    )  # fmt: skip
+    trace_points: int = rule(
+        200, "points of a simulated trace [-]",
+        "chosen; no measurement is kept",
+    )  # fmt: skip
+    trace_copies: int = rule(
+        40, "copies of a curve with fresh noise [-]",
+        "tell a standard deviation to a tenth",
+    )  # fmt: skip
+    trace_scale: float = rule(
+        0.01, "relative error of a length's scale without a column of its own [-]",
+        "a ruler in a picture",
+    )  # fmt: skip
+    reduction_left: float = rule(
+        0.25, "share of a reduction's error that its correction leaves [-]",
+        "chosen; no measurement is kept",
+    )  # fmt: skip
+    reduction_least: float = rule(
+        0.003, "least relative error of a reduction [-]",
+        "three digits",
+    )  # fmt: skip
+    reduction_most: float = rule(
+        0.25, "largest relative error of a reduction that is corrected [-]",
+        "beyond it the number says nothing",
+    )  # fmt: skip
+    instants: tuple[float, ...] = rule(
+        (-0.4, -0.2, 0.0, 0.2, 0.4), "touch before or after the one found [samples]",
+        "a trace does not know it better",
+    )  # fmt: skip
+    speeds_tried: int = rule(
+        5, "speeds over the tested range [-]",
+        "both ends, the middle and between",
+    )  # fmt: skip
+    angles_tried: int = rule(
+        4, "angles over the tested range [-]",
+        "both ends and two between",
+    )  # fmt: skip
+    build_ratio: float = rule(
+        2.0, "size of a body to be built over that of the one there is, and one over it [-]",
+        "chosen: one size up or down makes a difference",
+    )  # fmt: skip
+    bench: tuple[float, float] = rule(
+        (20.0, 5000.0), "loads of a bench press or a small testing machine [N]",
+        "hand lever to 5 kN, the usual frame",
+    )  # fmt: skip
+    press_loads: int = rule(
+        4, "loads of a series of presses [-]",
+        "chosen: both ends and two between",
+    )  # fmt: skip
+    press_each: int = rule(
+        3, "presses at each load [-]",
+        "two repeats tell the scatter",
+    )  # fmt: skip
+    press_wide: float = rule(
+        1.5, "ratio of loads from which a series is worth it [-]",
+        "chosen: the depths then differ by half",
+    )  # fmt: skip
+    press_beyond: float = rule(
+        3.0, "loads over those that a striker was pressed to, and one over them [-]",
+        "half a decade",
+    )  # fmt: skip
+    rival_samples: int = rule(
+        12, "draws of each rival's parameters [-]",
+        "chosen; no measurement is kept",
+    )  # fmt: skip
+    noise_draws: int = rule(
+        256, "draws of the noise of a proposed trial [-]",
+        "an expected entropy to 6 %",
+    )  # fmt: skip
+    rival: float = rule(
+        0.02, "probability from which an explanation is a rival [-]",
+        "less is told apart already",
+    )  # fmt: skip
+    rivals: int = rule(
+        4, "rivals that are told apart [-]",
+        "a verdict lists three, and one behind them",
+    )  # fmt: skip
+    worth_less: float = rule(
+        0.9,
+        "part of an uncertainty that is left from which a measurement is not worth it [-]",
+        "a tenth is no reason to go back to the rig",
+    )  # fmt: skip
+    decides: float = rule(
+        1.0, "standard deviations by which rivals differ for one trial to tell much [-]",
+        "half a nat",
+    )  # fmt: skip
+    build_worth: float = rule(
+        2.0, "gain of what is to be built over that of what is there [-]",
+        "a week against an hour",
+    )  # fmt: skip
+    dent_law_error: float = rule(
+        0.02, "relative error of a dent's diameter where the law's error has none [-]",
+        "chosen; no measurement is kept",
+    )  # fmt: skip
+    heldout_floor: float = rule(
+        0.1, "part of the mean variance that every kept-out number has at least [-]",
+        "one exact number would rule the score",
+    )  # fmt: skip
+    step: float = rule(
+        0.3, "step of derivatives [standard deviations]",
+        "straight within it, beyond the round-off of simulations",
+    )  # fmt: skip
+    setting_step: float = rule(
+        0.01,
+        "step of a speed in itself [-], and of an angle [rad]",
+        "beyond round-off, within the errors of both",
+    )  # fmt: skip
+    form_spread: float = rule(
+        0.8, "standard deviation of the logarithm of how far forms differ [-]",
+        "a quarter of it or four times",
+    )  # fmt: skip
+    form_length: float = rule(
+        2.0, "correlation length of a form's error [standard deviations of each covariate]",
+        "longer than that of what is outside",
+    )  # fmt: skip
+    form_rough: float = rule(
+        0.1, "part of a form's error without correlation [-]",
+        "a tenth, so that no covariance is singular",
+    )  # fmt: skip
+    jumps: tuple[float, ...] = rule(
+        (0.02, 0.05, 0.1), "how near a jump makes a cell unsure, in the parameter [-]",
+        "three sizes: a jump has no derivative",
+    )  # fmt: skip
+    fit_rounds: int = rule(
+        4, "rounds of linearising [-]",
+        "the last moves little; beyond it the fit stands where it is",
+    )  # fmt: skip
+    fit_settled: float = rule(
+        0.15, "change of the unknowns at which a fit ends [standard deviations]",
+        "no probability that is printed hangs on less",
+    )  # fmt: skip
+    fit_turned: float = rule(
+        0.08, "the same of places in the priors [-]",
+        "no probability that is printed hangs on less",
+    )  # fmt: skip
+    fit_farthest: float = rule(
+        2.0, "change of the unknowns within one round [standard deviations]",
+        "as far as a response is nearly straight",
+    )  # fmt: skip
+    fit_parts: tuple[float, ...] = rule(
+        (0.0, 0.1, 0.25, 0.5, 1.0), "parts of a step that are tried [-]",
+        "halving, and none",
+    )  # fmt: skip
+    fit_little: float = rule(
+        0.1, "fall of chi2 that is none [-]",
+        "no verdict hangs on it",
+    )  # fmt: skip
+    outlier: float = rule(
+        4.0, "distance from which a value may be a slip [standard deviations]",
+        "one in 15 000",
+    )  # fmt: skip
+    outlier_share: float = rule(
+        1.0 / 16.0, "part of all values that may be slips [-]",
+        "one in sixteen; more are no slips",
+    )  # fmt: skip
+    outlier_wider: float = rule(
+        30.0, "factor on the deviation of a slip [-]",
+        "it then says nothing",
+    )  # fmt: skip
+    press_apart: float = rule(
+        10.0, "distance between presses and impacts [standard deviations of each covariate]",
+        "no neighbours",
+    )  # fmt: skip
+    alone: float = rule(
+        2.0, "deviations by which a neighbour to the same side speaks for a value [-]",
+        "one in forty by chance",
+    )  # fmt: skip
+    tensor: int = rule(
+        4, "parameters of a pair up to which all nodes of both are simulated [-]",
+        "beyond it thousands of scenes",
+    )  # fmt: skip
+    resolved: float = rule(
+        2.0, "places of a refined grid in a standard deviation that need no window [-]",
+        "chosen; no measurement is kept",
+    )  # fmt: skip
+    window: float = rule(
+        4.0, "half width of a window [standard deviations]",
+        "beyond it one in 15 000",
+    )  # fmt: skip
+    node_apart: float = rule(
+        0.25, "part of a prior's range between nodes from which a response counts as bent [-]",
+        "nodes farther apart stand for one that is nearly straight",
+    )  # fmt: skip
+    exponent: float = rule(
+        0.12, "prior mean of d ln stress/d ln strain [-]",
+        "none of cold-worked metals to 0.4 of annealed copper and 304",
+    )  # fmt: skip
+    exponent_spread: float = rule(
+        0.12, "its standard deviation [-]",
+        "the same metals",
+    )  # fmt: skip
+    exponent_length: float = rule(
+        1.5, "correlation length of the exponent [ln strain]",
+        "a plateau or a knee within a factor of four in strain",
+    )  # fmt: skip
+    vague: float = rule(
+        0.15,
+        "standard deviation of ln stress, and of the rise, from which a set does not identify it "
+        "[-]",
+        "a handbook knows as much",
+    )  # fmt: skip
+    metal_step: float = rule(
+        0.1, "step of derivatives [prior deviations]",
+        "straight within it",
+    )  # fmt: skip
+    metal_rounds: int = rule(
+        10, "rounds of linearising at most [-]",
+        "chosen; no measurement is kept",
+    )  # fmt: skip
+    metal_farthest: float = rule(
+        2.5, "change within one round [prior deviations]",
+        "as far as a response is nearly straight",
+    )  # fmt: skip
+    metal_settled: float = rule(
+        0.03, "change at which it ends [prior deviations]",
+        "chosen; no measurement is kept",
+    )  # fmt: skip
+    metal_near: float = rule(
+        0.4, "change below which the derivatives stay [prior deviations]",
+        "straight within it",
+    )  # fmt: skip
+    rate_step: float = rule(
+        0.01, "step of the logarithm of a rate [-]",
+        "beyond round-off",
+    )  # fmt: skip
+    curve_rows: int = limit(
+        12, "rows of an inferred curve in a file [-]",
+        "a screen",
+    )  # fmt: skip
+    strains_told: tuple[float, ...] = limit(
+        (0.02, 0.05, 0.10), "plastic strains at which the stress is told [-]",
+        "of tension tests, to their usual end",
+    )  # fmt: skip
+    mark_loads: int = rule(
+        8, "presses that are tried with each striker [-]",
+        "chosen; no measurement is kept",
+    )  # fmt: skip
+    full: int = rule(
+        4, "mechanisms that are fitted in full at the least [-]",
+        "64 best names of 89 sets with all in full, 66 with these",
+    )  # fmt: skip
+    near: float = rule(
+        12.0, "nats behind the leader within which they are too [-]",
+        "one in 160 000",
+    )  # fmt: skip
+    invisible: float = rule(
+        1.0, "largest effect, in standard deviations, of what cannot be seen [-]",
+        "chi2 changes by one",
+    )  # fmt: skip
+    clear: float = rule(
+        10.0, "nats over the baseline from which a fit is sharpened [-]",
+        "one in 20 000",
+    )  # fmt: skip
+    near_leader: float = rule(
+        0.6, "part of the leading gain from which a fit is sharpened [-]",
+        "chosen; no measurement is kept",
+    )  # fmt: skip
+    leads: float = rule(
+        3.0, "nats from which outliers are judged under the leading mechanism [-]",
+        "twenty to one",
+    )  # fmt: skip
+    drawn_apart: float = limit(
+        0.012, "distance of two simulations of one number in a figure [axis]",
+        "a marker's half",
+    )  # fmt: skip
+    story_rows: int = limit(
+        8, "explanations of a picture [-]",
+        "a screen",
+    )  # fmt: skip
+    story_least: float = limit(
+        0.005, "probability from which one has a line [-]",
+        "half a per cent is printed as one",
+    )  # fmt: skip
+    named_leading: int = limit(
+        3, "explanations that the finding names where nothing is decided [-]",
+        "a line",
+    )  # fmt: skip
+    false_alarms: float = rule(
+        1e-3, "part of sets in which a drift, or an effect of a column, is seen by chance [-]",
+        "one in a thousand: it changes the noise of all",
+    )  # fmt: skip
+    drift_readings: int = rule(
+        6, "readings that tell a drift [-]",
+        "a slope and four that can contradict it",
+    )  # fmt: skip
+    size_spread: float = rule(
+        0.4, "standard deviation of the logarithm of the size of a law's error [-]",
+        "a metal's 3 % may be 1.5 or 6",
+    )  # fmt: skip
+    law_length: float = rule(
+        2.5, "correlation length of a law's error [ln(depth/R)]",
+        "chosen; no measurement is kept",
+    )  # fmt: skip
+    nulls: int = rule(
+        500, "null sets that set the thresholds of a screening [-]",
+        "probabilities of 0.002 are told",
+    )  # fmt: skip
+    confirmed_nulls: int = rule(
+        2000, "the same with `confirm` [-]",
+        "a level of 0.05 to a tenth",
+    )  # fmt: skip
+    proposed: int = limit(
+        5, "next experiments that a verdict keeps [-]",
+        "a screen",
+    )  # fmt: skip
+    particles: int = rule(
+        160, "particles of a sampled evidence [-]",
+        "chosen; no measurement is kept",
+    )  # fmt: skip
+    moves: int = rule(
+        3, "moves of each at each temperature [-]",
+        "chosen; no measurement is kept",
+    )  # fmt: skip
+    sample_step: float = rule(
+        0.5, "width of a move over that of the particles [-]",
+        "chosen; no measurement is kept",
+    )  # fmt: skip
+    sample_left: float = rule(
+        0.5, "part of the particles that still count after a step of temperature [-]",
+        "usual in sequential Monte Carlo (Del Moral and others 2006)",
+    )  # fmt: skip
+    null_level: float = rule(
+        1.0, "standard deviation of a null law's level over the law's error [-]",
+        "chosen; no measurement is kept",
+    )  # fmt: skip
+    null_slope: float = rule(
+        0.4, "the same of its slope over ln(depth) [-]",
+        "chosen; no measurement is kept",
+    )  # fmt: skip
+    rim: float = rule(
+        1.05, "diameter of a dent's rim over that of its contact circle [-]",
+        "within what finite elements of metals from perfectly plastic to n = 0.3 give",
+    )  # fmt: skip
+    rim_spread: float = rule(
+        0.03, "standard deviation of the same [-]",
+        "within what those finite elements give",
+    )  # fmt: skip
+    null_grid: int = rule(
+        120, "depths of a null law [-]",
+        "chosen; no measurement is kept",
+    )  # fmt: skip
+    null_steps: float = rule(
+        120.0, "time steps of a null impact to its turning point [-]",
+        "4e-5 in restitution, 2e-4 in force off the limit",
+    )  # fmt: skip
+    null_most_steps: int = limit(
+        6000, "its steps at most [-]",
+        "fifty times as many as to the turning point",
+    )  # fmt: skip
+    null_smooth: float = rule(
+        0.01, "part of the approach speed below which friction fades [-]",
+        "chosen; no measurement is kept",
+    )  # fmt: skip
+    pulled: float = rule(
+        2.0, "deviations of a stated number that a verdict tells [-]",
+        "one in twenty",
+    )  # fmt: skip
+    assumed_modulus: float = rule(
+        2e11, "modulus of a body of which the set says nothing [Pa]",
+        "steel's",
+    )  # fmt: skip
+    assumed_poisson: float = rule(
+        0.3, "its Poisson's ratio [-]",
+        "steel's",
+    )  # fmt: skip
+    priors: tuple[tuple[str, float], ...] = rule(
+        (("baseline", 0.5), ("singles", 0.34), ("pairs", 0.06), ("outside-library", 0.1)),
+        "probabilities before the comparison, shared alike within each kind [-]",
+        "as likely as not that nothing is missing",
+    )  # fmt: skip
+    grid_places: tuple[tuple[int, int], ...] = rule(
+        ((1, 241), (2, 49), (3, 17), (4, 11), (5, 7)),
+        "places per parameter of a refined grid, by the number of parameters [-]",
+        "chosen: some thousands in all",
+    )  # fmt: skip
+    window_nodes: tuple[tuple[int, int], ...] = rule(
+        ((1, 5), (2, 5), (3, 3), (4, 3)),
+        "least nodes per parameter of a grid over a part of the prior [-]",
+        "over a window the response is nearly straight",
+    )  # fmt: skip
+    free_law: tuple[tuple[str, float], ...] = rule(
+        (("force", 0.16), ("recovery", 0.5), ("recovery exponent", 0.5), ("crater", 0.24),
+         ("radius", 0.1)),
+        "relative standard deviations of a contact law that is free [-]",
+        "chosen: what something unknown may make of it",
+    )  # fmt: skip
+    press_reading: tuple[tuple[str, float], ...] = rule(
+        (("permanent_depth_m", 0.02), ("dent_diameter_m", 0.01)),
+        "relative error of one reading of a proposed press [-]",
+        "a stylus or a microscope, and a microscope with a scale",
+    )  # fmt: skip
+    rate_priors: tuple[tuple[str, tuple[float, float]], ...] = rule(
+        (("rise_at_1000_per_s", (0.3, 0.4)), ("rate_exponent", (0.15, 0.08)),
+         ("strength_kept", (0.87, 0.08))),
+        "priors of the rate law, mean and standard deviation [-]",
+        "C of Johnson and Cook gives rises of 0.1 to 0.4, Cowper and Symonds' mild steel 1.9",
+    )  # fmt: skip
+    scaled_share: float = rule(
+        1.0 / 6.0, "part of what is outside that is an observable with a factor of its own [-]",
+        "chosen: half of that of physics without a name",
+    )  # fmt: skip
+    same_condition: float = rule(
+        1.05, "ratio of speeds that are one condition [-]",
+        "as of the conditions themselves",
     )  # fmt: skip
 
 

@@ -40,13 +40,7 @@ from .heldout import held_out
 from .inference.sampling import confirm_evidence
 from .locate import locate
 from .rank import Progress, rank
-
-NULLS = 500
-"""Null data sets that set the thresholds of a screening."""
-CONFIRMED_NULLS = 2000
-"""Null data sets with `confirm`."""
-PROPOSED = 5
-"""Next experiments that a verdict keeps."""
+from .rules import RULES
 
 
 @in_one_thread
@@ -93,7 +87,9 @@ def diagnose(
     ranking = rank(simulator, mechanisms=(*MECHANISMS, *NAMELESS, *own), progress=progress)
     simulator = simulator.of(ranking.problem)
     progress("simulating sets in which nothing is missing")
-    nulls = null_residuals(simulator, ranking.base, CONFIRMED_NULLS if confirm else NULLS, rng)
+    nulls = null_residuals(
+        simulator, ranking.base, RULES.confirmed_nulls if confirm else RULES.nulls, rng
+    )
     judge = Judge.of(ranking, nulls)
     if judge.wants_second(ranking):
         ranking = with_pairs(simulator, ranking, progress=progress)
@@ -128,8 +124,8 @@ def diagnose(
         limits=limits_of(ranking),
         improvement=improvement_of(left_out[ranking.base.name], left_out[best.name]),
         misfit=misfit,
-        stated=stated, corrections=corrections, proposals=tuple(proposals[:PROPOSED]), notes=notes,
-        ranking=ranking, best=best, impacts=simulator.tally.impacts,
+        stated=stated, corrections=corrections, proposals=tuple(proposals[: RULES.proposed]),
+        notes=notes, ranking=ranking, best=best, impacts=simulator.tally.impacts,
     )  # fmt: skip
 
 

@@ -17,17 +17,18 @@ import numpy.typing as npt
 from numba import njit
 
 from ..core.unowned import unowned
+from .rules import RULES
 
 Floats = npt.NDArray[np.float64]
 Integers = npt.NDArray[np.int64]
 
-_BLOCK = 16
+_BLOCK = RULES.block
 """Columns that are eliminated before all that is right of and below them is brought up to date."""
 
-_NARROW = 8
+_NARROW = RULES.narrow
 """Unknowns up to which a supernode joins its parent whatever zeros that fills in."""
 
-_FILL = 8
+_FILL = RULES.fill
 """A wider one joins its parent where at most one of so many entries becomes a filled zero."""
 
 

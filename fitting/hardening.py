@@ -123,7 +123,7 @@ def fit_hardening(fitted: ClosedForm, records: Sequence[CaseRecord]) -> Hardenin
         From `hardening_records`.
     """
     cases = [_case(fitted, record) for record in records]
-    fold = np.random.default_rng(1).permutation(len(cases)) % min(RULES.hardening_folds, len(cases))
+    fold = np.random.default_rng(1).permutation(len(cases)) % min(RULES.folds, len(cases))
     found: list[dict[str, _Off]] = []
     for number in np.unique(fold):
         without = _regress([c for c, k in zip(cases, fold, strict=True) if k != number])
@@ -188,7 +188,7 @@ def _case(fitted: ClosedForm, record: CaseRecord) -> _Case:
     for u in record.unloadings:
         total, depth = u.residual_sphere + u.residual_flat, u.depth * pair.R
         if (
-            depth >= RULES.hardening_deep * onset
+            depth >= RULES.relative_from * onset
             and u.curve["radius"][0] <= RULES.hardening_radius * pair.R
         ):
             N = energy_exponent(u.curve["delta"], u.curve["force"], total)
@@ -251,10 +251,10 @@ def _odds(share: Floats) -> Floats:
 
 
 def _solved(features: Floats, off: Floats) -> Floats:
-    matrix = features.T @ features / RULES.hardening_unit**2 + RULES.hardening_prior * np.eye(
+    matrix = features.T @ features / RULES.form_unit**2 + RULES.hardening_prior * np.eye(
         features.shape[1]
     )
-    return np.asarray(np.linalg.solve(matrix, features.T @ off / RULES.hardening_unit**2))
+    return np.asarray(np.linalg.solve(matrix, features.T @ off / RULES.form_unit**2))
 
 
 def _off(fitted: ClosedForm, case: _Case, correction: HardeningCorrection) -> dict[str, _Off]:

@@ -75,7 +75,7 @@ def fit_laws(table: Table, turns: ResidualTable) -> Laws:
 
     def anew(rest: npt.NDArray[np.bool_], rest_turns: npt.NDArray[np.bool_]) -> list[Prediction]:
         fewer, turned = table.rows(rest), turns.rows(rest_turns)
-        thin = fewer.rows(np.arange(len(fewer.D)) % RULES.refit_every == 0)
+        thin = fewer.rows(np.arange(len(fewer.D)) % RULES.every_depth == 0)
         values = fit_tables(thin, turned, start=start, change=ENOUGH).values
         found = correct(values, fewer, turned, ripple[:, rest])
         return [predict(values, table, turns), corrected_prediction(values, found, table, turns)]

@@ -91,10 +91,6 @@ class FittingRules:
         300.0, "weight of the prior against squares of a misfit of 1 % [-]",
         "thirty does as well",
     )  # fmt: skip
-    hardening_folds: int = rule(
-        8, "folds of the cross-validation [-]",
-        "chosen; no measurement is kept",
-    )  # fmt: skip
     path_points: int = rule(
         64, "points of a pair's path [-]",
         "chosen; no measurement is kept",
@@ -103,25 +99,13 @@ class FittingRules:
         3, "of so many depths one is looked at [-]",
         "neighbours say nearly the same",
     )  # fmt: skip
-    hardening_unit: float = rule(
-        0.01, "a misfit of one [-]",
-        "chosen; no measurement is kept",
-    )  # fmt: skip
     hardening_radius: float = rule(
         0.5, "largest a/R that is fitted [-]",
         "beyond it the sphere's shape counts",
     )  # fmt: skip
-    hardening_deep: float = rule(
-        5.0, "depth from which permanent depths count [critical depths]",
-        "before it they vanish",
-    )  # fmt: skip
     folds: int = rule(
         8, "folds of the cross-validation [-]",
         "chosen; no measurement is kept",
-    )  # fmt: skip
-    refit_every: int = rule(
-        4, "of so many depths one is looked at by a refit without some combinations [-]",
-        "neighbours say nearly the same",
     )  # fmt: skip
     relative_from: float = rule(
         5.0, "depth from which residual depths are judged relatively [critical depths]",

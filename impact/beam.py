@@ -17,12 +17,9 @@ from scipy.linalg import eigh
 
 from ..core.errors import InputError
 from ..core.material import Material
+from .rules import RULES
 
 Array = NDArray[np.float64]
-
-_MOST_SLENDER = 3000.0
-"""Length over radius, up to which round-off moves no frequency by more than 0.5 %: shear against
-bending leaves only (radius/length)^2 of the stiffness; at 10 000 it is 3.5 %, at 100 000 all."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -160,10 +157,10 @@ def rod_modes(
             key="modes",
             allowed="0, or length_m, E_Pa and density_kg_m3 of the striker",
         )
-    if length > _MOST_SLENDER * radius:
+    if length > RULES.slender * radius:
         raise InputError(
             f"vibration modes of a rod {length / radius:.3g} radii long", key="modes",
-            allowed=f"0, or a rod of at most {_MOST_SLENDER:g} radii",
+            allowed=f"0, or a rod of at most {RULES.slender:g} radii",
         )  # fmt: skip
     axial = axial_frequencies(length, material, count=count)
     bending, transverse, slope = bending_modes(length, radius, material, count=count)

@@ -17,13 +17,16 @@ from numpy.typing import NDArray
 from ..models.kernel import VECTOR
 from . import force as fo
 from .integrate import Settings, arrays_of, kernels_of
+from .rules import RULES
 from .scene import Scene
 
 Array = NDArray[np.float64]
 
-_SHALLOWEST, _DEEPEST = 1e-9, 1.0  # depths over R between which a load is looked for
+_SHALLOWEST = RULES.law_shallowest
+_DEEPEST = RULES.law_deepest
 _SMOOTH = np.empty(0)
-_CLOSE, _MOST = 1e-12, 100
+_CLOSE = RULES.press_settled
+_MOST = RULES.press_rounds
 _VARIED = ("par", "force", "factors")
 
 

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
-from ..core.rules import rule
+from ..core.rules import limit, rule
 
 
 @dataclass(frozen=True)
@@ -15,15 +15,15 @@ class ImpactRules:
         128, "steps of a fall with drag [-]",
         "chosen; no measurement is kept",
     )  # fmt: skip
-    history_points: int = rule(
+    history_points: int = limit(
         200, "points of a history that is written [-]",
         "a figure's width",
     )  # fmt: skip
-    sure: float = rule(
+    sure: float = limit(
         1e-6, "relative standard deviation below which none is shown [-]",
         "round-off of the slopes",
     )  # fmt: skip
-    shown_round_off: float = rule(
+    shown_round_off: float = limit(
         1e-7, "numbers below this part of the largest of their unit are shown as 0 [-]",
         "round-off of the integral",
     )  # fmt: skip
@@ -31,7 +31,7 @@ class ImpactRules:
         1e-3, "difference of a stated strength from a curve's first stress that is none [-]",
         "three digits of a sheet",
     )  # fmt: skip
-    combinations: int = rule(
+    combinations: int = limit(
         10_000_000, "largest number of combinations [-]",
         "chosen; no measurement is kept",
     )  # fmt: skip
@@ -39,7 +39,7 @@ class ImpactRules:
         1e-4, "step of differences of a force that is smooth between its borders [depth]",
         "chosen; no measurement is kept",
     )  # fmt: skip
-    history_rows: int = rule(
+    history_rows: int = limit(
         4000, "rows of a history beside those asked for [-]",
         "memory of a long vibration",
     )  # fmt: skip
@@ -59,7 +59,7 @@ class ImpactRules:
         4000, "cells that are tried, halved ones counted [-]",
         "the smooth laws of this package take 1120 at most",
     )  # fmt: skip
-    cells_at_once: int = rule(
+    cells_at_once: int = limit(
         256, "cells that are tried together [-]",
         "chosen; no measurement is kept",
     )  # fmt: skip
@@ -67,26 +67,15 @@ class ImpactRules:
         0.1, "largest work of gravity over that of a branch [-]",
         "the series is cut after its fourth power",
     )  # fmt: skip
-    energy_error: float = rule(
-        1e-8, "error of the table [-]",
-        "restitution and times come out within ten times this of the integral",
-    )  # fmt: skip
     energy_shallowest: float = rule(
         1e-8, "least peak depth that the route answers for [R]",
         "dust",
     )  # fmt: skip
-    energy_deepest: float = rule(
-        0.5, "largest peak depth that the route answers for [R]",
-        "the finite elements' own limit",
-    )  # fmt: skip
-    energy_tables: int = rule(
-        200, "tables that are kept [-]",
-        "chosen; no measurement is kept",
-    )  # fmt: skip
-    law_error: float = rule(
+    table_error: float = rule(
         1e-8,
-        "error of a law's table: of F and a over their own, of residual depths over the peak [-]",
-        "chosen; no measurement is kept",
+        "error of a table: of F, a and energies over their own, of residual depths over the "
+        "peak [-]",
+        "restitution and times come out within ten times this of the integral",
     )  # fmt: skip
     law_shallowest: float = rule(
         1e-9, "least depth that is tabulated [R]",
@@ -96,9 +85,10 @@ class ImpactRules:
         1.0, "largest depth that is tabulated [R]",
         "beyond it a law goes on as Hertz's",
     )  # fmt: skip
-    law_tables: int = rule(
-        200, "tables that are kept [-]",
-        "chosen; no measurement is kept",
+    tables_kept: int = limit(
+        200,
+        "tables that are kept [-]",
+        "memory",
     )  # fmt: skip
     hertz_error: float = rule(
         0.003, "error of Hertz's force, which leaves out the finite depth [-]",
@@ -108,7 +98,7 @@ class ImpactRules:
         0.02, "step of a logarithm for the slopes [-]",
         "chosen; no measurement is kept",
     )  # fmt: skip
-    scan_samples: float = rule(
+    scan_samples: float = limit(
         1e6, "most samples of a scan across a dent [-]",
         "3 m at the usual step; a law that is far out of its range may give a dent without end",
     )  # fmt: skip
@@ -134,7 +124,7 @@ class ImpactRules:
         0.4, "strain rate of an indentation over v/a [-]",
         "Tabor 1951",
     )  # fmt: skip
-    worth_a_line: float = rule(
+    worth_a_line: float = limit(
         1e-3, "relative effect that is worth a line [-]",
         "chosen; no measurement is kept",
     )  # fmt: skip
@@ -146,19 +136,19 @@ class ImpactRules:
         60, "depths at which the mean pressure is looked at [-]",
         "chosen; no measurement is kept",
     )  # fmt: skip
-    impacts_at_once: int = rule(
+    impacts_at_once: int = limit(
         200, "impacts of one compiled call, which Ctrl-C has to wait for [-]",
         "a second where they vibrate",
     )  # fmt: skip
-    break_gap: float = rule(
+    break_gap: float = limit(
         1e-13, "depth to either side of a border of the law [depth]",
         "round-off",
     )  # fmt: skip
-    looks: int = rule(
+    looks: int = limit(
         100_000, "looks at the gap in one flight [-]",
         "beyond it the flight ends unfinished",
     )  # fmt: skip
-    bites: int = rule(
+    bites: int = limit(
         40, "trials of a landing step [-]",
         "chosen; no measurement is kept",
     )  # fmt: skip
@@ -166,9 +156,73 @@ class ImpactRules:
         0.25, "part of the dent that one specimen or the next moves, from which it is told [-]",
         "chosen; no measurement is kept",
     )  # fmt: skip
-    band_conditions: int = rule(
+    band_conditions: int = limit(
         400, "conditions up to which a sweep has a band [-]",
         "each takes some ten impacts in steps",
+    )  # fmt: skip
+    slender: float = rule(
+        3000.0, "length over radius of a rod at most [-]",
+        "up to it round-off moves no frequency by more than 0.5 %",
+    )  # fmt: skip
+    press_settled: float = limit(
+        1e-12, "relative step at which the depth of a load is found [-]",
+        "round-off",
+    )  # fmt: skip
+    press_rounds: int = limit(
+        100, "rounds of that search at most [-]",
+        "bisection of a double takes 60",
+    )  # fmt: skip
+    visible: float = rule(
+        5e-4, "smallest change of a speed that motion was ever read with [-]",
+        "chosen: a camera over a hundred frames",
+    )  # fmt: skip
+    stopped: float = rule(
+        0.8, "part of a speed that a fluid may take for a fall to be one [-]",
+        "chosen; no measurement is kept",
+    )  # fmt: skip
+    by_eye: float = rule(
+        5.0, "tolerance of an angle set by eye [degrees]",
+        "as the thesis states",
+    )  # fmt: skip
+    axial_modes: int = rule(
+        6, "axial vibrations of a rod [-]",
+        "chosen; no measurement is kept",
+    )  # fmt: skip
+    bending_modes: int = rule(
+        9, "bending vibrations of a rod [-]",
+        "chosen; no measurement is kept",
+    )  # fmt: skip
+    rod_loss: float = rule(
+        1e-3, "loss factor of a rod [-]",
+        "of steel rods; what it takes during a contact is below a thousandth",
+    )  # fmt: skip
+    rough_power: float = rule(
+        1.25, "exponent of a recovery for the share of a layer of asperities alone [-]",
+        "between Hertz's 3/2 and a flat punch's 1",
+    )  # fmt: skip
+    radius_rounds: int = rule(
+        3, "rounds for the radius of a contact whose strength follows it [-]",
+        "the strength hardly moves it",
+    )  # fmt: skip
+    slowest: float = rule(
+        0.2, "rate at the turning point, over that of the approach [-]",
+        "ln 5 times C of Johnson and Cook, 0.01 to 0.03, is lost there",
+    )  # fmt: skip
+    rate_law_apart: float = rule(
+        4.0, "chi-squared by which a rate law may be off flow curves at several rates [-]",
+        "two standard deviations",
+    )  # fmt: skip
+    support_span: float = rule(
+        10.0, "least span of the mass of a support [-]",
+        "a block, and the bench that it stands on",
+    )  # fmt: skip
+    block_mass: float = rule(
+        0.1, "lightest block that is taken for a half-space without a word [kg]",
+        "chosen; no measurement is kept",
+    )  # fmt: skip
+    size_largest: float = rule(
+        3e-4, "contact radius beyond which hardness does not depend on size [m]",
+        "ten times some tens of um",
     )  # fmt: skip
 
 

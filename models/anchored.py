@@ -60,7 +60,7 @@ class AnchoredLaw(ContactLaw):
 
     def parameters(self, pair: Pair) -> Floats:
         """Common numbers, then the table of the pair; shape (n,)."""
-        x = _grid(pair, RULES.anchor_last)
+        x = _grid(pair, RULES.law_last)
         force, radius, recovers, part, exponent = (
             np.interp(x, self._distance[0], shift) for shift in self._distance[1]
         )
@@ -110,7 +110,7 @@ class AnchoredLaw(ContactLaw):
 
 def anchored(
     fitted: ClosedForm, anchor: ContactLaw, *, at: Pair, stated: Pair,
-    deepest: float = RULES.anchor_last, hardens: bool,
+    deepest: float = RULES.law_last, hardens: bool,
 ) -> AnchoredLaw:  # fmt: skip
     """Return `fitted`, shifted onto `anchor` at a pair; parameters as in `AnchoredLaw`."""
     return AnchoredLaw(
@@ -128,8 +128,8 @@ def anchored(
 def _grid(pair: Pair, last: float) -> Floats:
     """ln(Delta/R) from far below first yield, evenly."""
     onset = critical_depth(pair) / pair.R
-    first = min(RULES.anchor_first * onset, 0.1 * last) if math.isfinite(onset) else 1e-7
-    return np.linspace(math.log(first), math.log(last), RULES.anchor_points)
+    first = min(RULES.law_first * onset, 0.1 * last) if math.isfinite(onset) else 1e-7
+    return np.linspace(math.log(first), math.log(last), RULES.points)
 
 
 def _columns(law: ContactLaw, pair: Pair, D: Floats) -> tuple[Floats, ...]:

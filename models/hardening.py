@@ -192,8 +192,8 @@ def mean_over_strains(n: float) -> float:
 def equivalent(fitted: ClosedForm, pair: Pair, *, points: int) -> Equivalent:
     """Return the path of a pair through perfectly plastic bodies, from far below first yield on."""
     onset = critical_depth(pair) / pair.R
-    first = RULES.hardening_first * onset if math.isfinite(onset) else 1e-7
-    D = np.geomspace(min(first, 0.1 * RULES.hardening_last), RULES.hardening_last, points)
+    first = RULES.law_first * onset if math.isfinite(onset) else 1e-7
+    D = np.geomspace(min(first, 0.1 * RULES.law_last), RULES.law_last, points)
     yields_at = math.sqrt(onset) if math.isfinite(onset) else math.inf
     bodies, sphere, flat = bodies_of([pair]), _flow(pair.sphere), _flow(pair.flat)
 
@@ -313,7 +313,7 @@ def _path(law: HardeningLaw, pair: Pair) -> tuple[Floats, Any, Uncertainty | Non
     """Points of a path: ln(Delta/R), rising, the `Contact` there, how far off both may be, and the
     least force.
     """  # noqa: D205
-    e, correction = equivalent(law.fitted, pair, points=RULES.hardening_points), law.correction
+    e, correction = equivalent(law.fitted, pair, points=RULES.points), law.correction
     if correction is None:
         x, least = np.log(e.D), least_force(e, np.log(e.D))
         left = 1.0 - (1.0 - e.at.left) / e.deeper
@@ -394,7 +394,7 @@ def _under(curve: FlowCurve) -> tuple[Floats, Under]:
 @lru_cache(maxsize=64)
 def _columns(law: HardeningLaw, pair: Pair) -> Floats:
     x, at, _, least = _path(law, pair)
-    grid = np.linspace(x[0], x[-1], RULES.hardening_points)
+    grid = np.linspace(x[0], x[-1], RULES.points)
     F, a, left, phi, N = (
         PchipInterpolator(x, values)(grid)
         for values in (np.log(at.F), np.log(at.a), at.left, at.phi, at.N)

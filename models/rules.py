@@ -4,26 +4,14 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
-from ..core.rules import rule
+from ..core.rules import limit, rule
 
 
 @dataclass(frozen=True)
 class ModelRules:
     """The register; `dataclasses.fields` tells the meaning and the source of each."""
 
-    anchor_points: int = rule(
-        240, "points of a law that goes through a known one [-]",
-        "chosen; no measurement is kept",
-    )  # fmt: skip
-    anchor_first: float = rule(
-        0.01, "first depth of that table [critical depths]",
-        "elastic",
-    )  # fmt: skip
-    anchor_last: float = rule(
-        0.6, "last depth of that table [R]",
-        "chosen; no measurement is kept",
-    )  # fmt: skip
-    pairs_kept: int = rule(
+    pairs_kept: int = limit(
         4096, "pairs whose numbers a law keeps [-]",
         "a sweep's chunk",
     )  # fmt: skip
@@ -39,7 +27,7 @@ class ModelRules:
         1.9, "depth up to which a contact is called elastic [critical depths]",
         "Jackson and Green 2005, Eq. 9",
     )  # fmt: skip
-    strength_floor: float = rule(
+    strength_floor: float = limit(
         1e-9, "keeps the strengths' ratio defined when a body does not yield [-]",
         "no effect on any real pair",
     )  # fmt: skip
@@ -95,20 +83,18 @@ class ModelRules:
         2, "degree of the correction [-]",
         "chosen; no measurement is kept",
     )  # fmt: skip
-    hardening_points: int = rule(
-        240, "points of the table [-]",
-        "chosen; no measurement is kept",
-    )  # fmt: skip
     least_step: float = rule(
         0.01, "step of ln Delta from point to point at the least [-]",
         "a quarter of the mean one",
     )  # fmt: skip
-    hardening_first: float = rule(
-        0.01, "first equivalent depth [critical depths]",
+    law_first: float = rule(
+        0.01,
+        "first depth of such a law [critical depths]",
         "elastic",
     )  # fmt: skip
-    hardening_last: float = rule(
-        0.6, "last equivalent depth [R]",
+    law_last: float = rule(
+        0.6,
+        "its last depth [R]",
         "chosen; no measurement is kept",
     )  # fmt: skip
     rounded: float = rule(
@@ -127,8 +113,9 @@ class ModelRules:
         3, "unloadings that a law from a pair's own solve needs [-]",
         "two ends and what bends between",
     )  # fmt: skip
-    table_points: int = rule(
-        240, "points of such a law, even in ln depth [-]",
+    points: int = rule(
+        240,
+        "points of a law that is a table, even in ln depth [-]",
         "chosen; no measurement is kept",
     )  # fmt: skip
     joining_depths: tuple[float, ...] = rule(
@@ -140,11 +127,7 @@ class ModelRules:
         0.8, "depth over the critical one from which the solve alone counts [-]",
         "yield begins at 1",
     )  # fmt: skip
-    law_depths: int = rule(
-        2, "depths of a loading that is a curve [-]",
-        "fewer are a point",
-    )  # fmt: skip
-    law_bytes: int = rule(
+    law_bytes: int = limit(
         20_000_000, "largest file of a law that is read [bytes]",
         "memory of a small machine",
     )  # fmt: skip
@@ -155,6 +138,22 @@ class ModelRules:
     exponent_error: float = rule(
         0.02, "standard deviation of the recovery's exponent [-]",
         "chosen; no measurement is kept",
+    )  # fmt: skip
+    most_left: float = limit(
+        0.999, "part of the approach that can be left at most [-]",
+        "nothing can be left that was not pressed in",
+    )  # fmt: skip
+    metal_error: tuple[tuple[str, float], ...] = rule(
+        (("force", 0.03), ("recovery", 0.07), ("recovery exponent", 0.05), ("crater", 0.05),
+         ("radius", 0.02)),
+        "relative standard deviations of elastic-perfect plasticity to a metal [-]",
+        "finite elements with measured flow curves (`models/uncertainty.py`)",
+    )  # fmt: skip
+    metal_error_with_curve: tuple[tuple[str, float], ...] = rule(
+        (("force", 0.015), ("recovery", 0.05), ("recovery exponent", 0.05), ("crater", 0.025),
+         ("radius", 0.01)),
+        "the same where the flow curve is known [-]",
+        "shape of the yield surface and modulus of unloading are left (the same)",
     )  # fmt: skip
 
 

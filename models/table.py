@@ -76,7 +76,7 @@ class PairTable:
     def numbers(self) -> Floats:
         """What the kernels read behind the common numbers."""
         x, force, radius = self._loading()
-        grid = np.linspace(x[0], x[-1], RULES.table_points)
+        grid = np.linspace(x[0], x[-1], RULES.points)
         F, a = (PchipInterpolator(x, v)(grid) for v in (force, radius))
         return packed_columns(grid, (F, a, *self._recovery(grid, F, a)))
 

@@ -108,10 +108,10 @@ def table_from(content: object, *, source: str, name: str) -> TableLaw:
             )
         if not np.all(np.diff(part.depth) > 0.0):
             raise InputError("falls", source=source, key=f"{name}.depth", allowed="rising depths")
-    if len(curve.depth) < RULES.law_depths:
+    if len(curve.depth) < 2:
         raise InputError(
             f"{len(curve.depth)} depths", source=source, key="loading",
-            allowed=f"{RULES.law_depths} or more",
+            allowed="2 or more",
         )  # fmt: skip
     table = PairTable(Pair(sphere, flat, found.radius_m), curve, turns)
     if len(turns.depth) and turns.depth[0] <= table.yields_at:

@@ -27,15 +27,11 @@ FEATURES = (
 LEAST = RULES.least_error
 """Standard deviation that no law goes below."""
 
-METAL = {
-    "force": 0.03, "recovery": 0.07, "recovery exponent": 0.05, "crater": 0.05, "radius": 0.02,
-}  # fmt: skip
+METAL = dict(RULES.metal_error)
 """Standard deviations of elastic-perfect plasticity to a metal, where all is lost. Finite elements
 with the measured flow curve of 6061-T6 differ from it by 1 to 2.5 % in force, 4 % in the dent and
 2 to 4 % in the restitution, with exponents of 1.31 to 1.44; softer tempers by twice that."""
-WITH_CURVE = {
-    "force": 0.015, "recovery": 0.05, "recovery exponent": 0.05, "crater": 0.025, "radius": 0.01,
-}  # fmt: skip
+WITH_CURVE = dict(RULES.metal_error_with_curve)
 """The same where the baseline follows the flow curve of the body that yields first: what hardening
 does is no error any more; shape and turning of the yield surface and the unloading's modulus are.
 How strong the piece is, is an error of the data sheet. `radius` is the contact's at one force,

@@ -81,15 +81,7 @@ CONDITIONS: dict[str, Column] = {
 }
 """Columns that describe a trial, in the order in which they are written."""
 
-_HIGHEST = {
-    "_rad_s": 1e7,
-    "_m_s": 2e4,
-    "_Ns": 1e6,
-    "_depth_m": 0.1,
-    "_m": 1.0,
-    "_s": 100.0,
-    "_N": 1e10,
-}
+_HIGHEST = dict(RULES.highest)
 """Largest number that a column may hold, by its end; more is mostly another unit."""
 
 

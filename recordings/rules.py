@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
-from ..core.rules import rule
+from ..core.rules import limit, rule
 
 
 @dataclass(frozen=True)
@@ -22,10 +22,6 @@ class RecordingRules:
     rigid_periods: float = rule(
         3.0, "periods of a vibration that a contact should last for the body to act as rigid [-]",
         "one spring under a half-sine",
-    )  # fmt: skip
-    contact_beyond: float = rule(
-        4.0, "standard deviations beyond a bound of energy that are a mistake [-]",
-        "one in 15 000",
     )  # fmt: skip
     bound_std: float = rule(
         0.05, "relative standard deviation of such a bound [-]",
@@ -51,11 +47,11 @@ class RecordingRules:
         0.005, "part of the approach speed by which a frozen angle may err [-]",
         "chosen; no measurement is kept",
     )  # fmt: skip
-    momentum_steps: int = rule(
+    momentum_steps: int = limit(
         60, "most steps of the least squares [-]",
         "chosen; no measurement is kept",
     )  # fmt: skip
-    momentum_settled: float = rule(
+    momentum_settled: float = limit(
         1e-10, "relative fall of the sum of squares below which a trial is done [-]",
         "round-off",
     )  # fmt: skip
@@ -66,10 +62,6 @@ class RecordingRules:
     alone: float = rule(
         0.25, "part of the masses' false alarms that goes to single strikers [-]",
         "chosen; no measurement is kept",
-    )  # fmt: skip
-    motion_beyond: float = rule(
-        4.0, "standard deviations that are a mistake [-]",
-        "one in 15 000",
     )  # fmt: skip
     angles_apart: float = rule(
         2.0, "standard deviations between two readings of an angle [-]",
@@ -91,10 +83,6 @@ class RecordingRules:
         (0.5, 0.85), "recovered depth over F/(E' a), least and most [-]",
         "1/2 of a flat punch, 3/4 of Hertz's, and a tenth above it",
     )  # fmt: skip
-    press_beyond: float = rule(
-        4.0, "standard deviations that are a mistake [-]",
-        "one in 15 000",
-    )  # fmt: skip
     press_geometry: tuple[float, ...] = rule(
         (0.7, 1.25), "contact radius over sqrt(2 R delta) at the peak, least and most [-]",
         "sunk in elastically, and piled up",
@@ -103,8 +91,9 @@ class RecordingRules:
         0.05, "level of a trace's ends in its peak above which a part of the impact is missed [-]",
         "chosen; no measurement is kept",
     )  # fmt: skip
-    trace_beyond: float = rule(
-        4.0, "standard deviations that are a mistake [-]",
+    beyond: float = rule(
+        4.0,
+        "standard deviations that are a mistake [-]",
         "one in 15 000",
     )  # fmt: skip
     trace_samples: int = rule(
@@ -119,15 +108,15 @@ class RecordingRules:
         20.0, "largest number of a column without a unit [-]",
         "a restitution written in percent is beyond",
     )  # fmt: skip
-    fetched_bytes: int = rule(
+    fetched_bytes: int = limit(
         2_000_000_000, "largest file that is fetched [bytes]",
         "chosen; no measurement is kept",
     )  # fmt: skip
-    fetched_s: float = rule(
+    fetched_s: float = limit(
         1800.0, "longest time that one file may take [s]",
         "a slow line",
     )  # fmt: skip
-    server_s: float = rule(
+    server_s: float = limit(
         30.0, "wait for a server that says nothing [s]",
         "a slow line",
     )  # fmt: skip
@@ -155,21 +144,23 @@ class RecordingRules:
         0.1, "excess of a restitution over 1 without a standard deviation that asks for one [-]",
         "chosen; no measurement is kept",
     )  # fmt: skip
-    compared_bytes: int = rule(
+    compared_bytes: int = limit(
         10_000_000, "largest record that is compared with others [bytes]",
         "every record but a film",
     )  # fmt: skip
-    trace_rows: int = rule(
-        2, "rows of a trace at least [-]",
-        "one is no trace",
-    )  # fmt: skip
-    rows_shown: int = rule(
+    rows_shown: int = limit(
         12, "trials that a notebook shows [-]",
         "a screen",
     )  # fmt: skip
     press_lean: float = rule(
         0.5, "angle by which a press may be said to lean [degrees]",
         "bins of an angle are twice as wide",
+    )  # fmt: skip
+    highest: tuple[tuple[str, float], ...] = rule(
+        (("_rad_s", 1e7), ("_m_s", 2e4), ("_Ns", 1e6), ("_depth_m", 0.1), ("_m", 1.0),
+         ("_s", 100.0), ("_N", 1e10)),
+        "largest number of a column by its unit [that unit]",
+        "beyond it a slip of the unit",
     )  # fmt: skip
 
 

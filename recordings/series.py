@@ -10,7 +10,6 @@ import numpy as np
 from ..core.errors import InputError, InputErrors
 from ..core.inputs.csv_table import Array, Problems, numbers, read_text_table
 from .columns import PROFILE_COLUMNS, TRACE_COLUMNS
-from .rules import RULES
 
 
 def read_trace(path: Path) -> Mapping[str, Array]:
@@ -47,8 +46,8 @@ def _read(
         if one_of and not set(one_of) & set(table.columns):
             problems.add("no curve", row=1, allowed=" or ".join(one_of))
         columns = {name: numbers(table, name, problems) for name in table.columns}
-        if len(table.rows) < RULES.trace_rows:
-            problems.add(f"{len(table.rows)} points", allowed=f"at least {RULES.trace_rows}")
+        if len(table.rows) < 2:
+            problems.add(f"{len(table.rows)} points", allowed="at least 2")
         for name in (n for n in needed if n in columns):
             empty = [r for r, c in zip(table.rows, table.cells[name], strict=True) if not c]
             for row in empty:

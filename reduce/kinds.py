@@ -20,6 +20,7 @@ from ..core.errors import InputError
 from ..core.inputs.added import READERS, added, names_added
 from ..core.inputs.input_file import checked_file
 from ..core.inputs.toml_input import InputTable, parse_model
+from .rules import RULES
 
 if TYPE_CHECKING:
     from .reduced import Reduced
@@ -36,7 +37,6 @@ KINDS = {
 """Each kind, named as its folder, and what it gives."""
 
 
-_MOST_BYTES = 20_000_000_000
 _TAKE_FOLDERS = ("video",)
 
 
@@ -57,7 +57,7 @@ class Kind:
         """Reduce a file with options that are not checked yet; `source` names where they stand."""
         options = parse_model(given, self.options, source=source)
         if not (self.takes_folders and path.is_dir()):
-            checked_file(path, most=_MOST_BYTES, allowed="a raw recording")
+            checked_file(path, most=RULES.raw_bytes, allowed="a raw recording")
         from numpy.linalg import LinAlgError
 
         kind = self.module or import_module(f".{self.name}.kind", __package__)

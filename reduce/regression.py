@@ -8,15 +8,9 @@ import numpy as np
 import numpy.typing as npt
 
 from .measured import Array
-
-_REJECT = 4.0
-"""Residuals beyond this many robust standard deviations are left out of the final fit."""
+from .rules import RULES
 
 _MAD_TO_STD = 1.4826
-_ROUNDS = 40
-
-_UNSEEN = 3e-8
-"""Singular value of a design, of the largest, below which AᵀA would hold rounding errors alone."""
 
 
 @dataclass(frozen=True)
@@ -64,7 +58,7 @@ def robust_regression(design: Array, observed: Array, *, floor: float = 0.0) -> 
     spread = max(robust_std(observed - scaled @ start), floor, _tiny(observed))
     bulk = _soft_l1(scaled, observed, start, spread)
     residual = observed - scaled @ bulk
-    limit = _REJECT * max(robust_std(residual, lost=p), floor, _tiny(observed))
+    limit = RULES.no_chance * max(robust_std(residual, lost=p), floor, _tiny(observed))
     used = np.abs(residual) <= limit
     if used.sum() <= p:
         used = np.ones(n, dtype=np.bool_)
@@ -83,7 +77,7 @@ def unit_covariance(design: Array) -> Array:
     points are a thirty-millionth as telling as in the best one count as not seen, with zeros.
     """
     _, size, ways = np.linalg.svd(design, full_matrices=False)
-    seen = size > _UNSEEN * size[0]
+    seen = size > RULES.unseen * size[0]
     ways = ways[seen] / size[seen, None]
     return np.asarray(ways.T @ ways)
 
@@ -91,7 +85,7 @@ def unit_covariance(design: Array) -> Array:
 def _soft_l1(design: Array, observed: Array, start: Array, spread: float) -> Array:
     """Minimise the sum of sqrt(1 + z²) over residuals z in units of `spread`, by reweighting."""
     c: Array = start
-    for _ in range(_ROUNDS):
+    for _ in range(RULES.regression_rounds):
         weight = (1.0 + ((observed - design @ c) / spread) ** 2) ** -0.25
         there = np.linalg.lstsq(design * weight[:, None], observed * weight, rcond=None)[0]
         moved = float(np.abs(design @ (there - c)).max())

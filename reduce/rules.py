@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
-from ..core.rules import rule
+from ..core.rules import limit, rule
 
 
 @dataclass(frozen=True)
@@ -185,6 +185,507 @@ class ReductionRules:
     meyer: tuple[float, ...] = rule(
         (2.0, 2.4), "Meyer's index between which a metal's lies [-]",
         "2 of cold-worked, 2.2 to 2.4 of annealed metals (D. Tabor, The Hardness of Metals, 1951)",
+    )  # fmt: skip
+    chain_off: float = rule(
+        0.2, "change of an interval off the steady factor at most [ln]",
+        "restitution changes by some per cent; a missed bounce halves or doubles",
+    )  # fmt: skip
+    missed_bounce: float = rule(
+        0.75, "instants that a run gains before a missed bounce in it is believed [-]",
+        "chosen: one more instant is no chance",
+    )  # fmt: skip
+    instants_tried: int = limit(
+        80, "instants that runs are looked for among [-]",
+        "their pairs' work",
+    )  # fmt: skip
+    sudden: float = rule(
+        0.1, "change of the factor from the flights next to an end of the run at most [ln]",
+        "restitution changes by some per cent from one bounce to the next, not by a tenth",
+    )  # fmt: skip
+    stray: float = rule(
+        8.0,
+        "distance from the course of the others, in their scatter, that no real bounce has [-]",
+        "one in 10^15 by chance",
+    )  # fmt: skip
+    contact_rounds: int = rule(
+        3, "rounds between the heights of contacts and the flights [-]",
+        "chosen; no measurement is kept",
+    )  # fmt: skip
+    same_flat: float = rule(
+        0.05, "difference of the contacts' heights in the largest height at most [-]",
+        "chosen; no measurement is kept",
+    )  # fmt: skip
+    flight_samples: int = rule(
+        5, "samples of a flight at least [-]",
+        "a parabola and two that can contradict it",
+    )  # fmt: skip
+    uneven_fall: float = rule(
+        0.02, "change of the acceleration over a span without samples, in the fall [-]",
+        "chosen: what drag of a light ball may do",
+    )  # fmt: skip
+    flight_core: int = rule(
+        12, "samples with which a flight begins [-]",
+        "chosen; no measurement is kept",
+    )  # fmt: skip
+    flight_far: float = rule(
+        3.5, "the same far from its core [-]",
+        "one in 2000: the curve is less sure there",
+    )  # fmt: skip
+    flight_block: float = rule(
+        0.25, "part of a flight that is taken in at once [-]",
+        "chosen; no measurement is kept",
+    )  # fmt: skip
+    stray_blocks: int = rule(
+        2, "blocks off a flight that are passed over where the next one lies on it again [-]",
+        "chosen; no measurement is kept",
+    )  # fmt: skip
+    trim_rounds: int = rule(
+        4, "rounds in which a contact's samples are cut off [-]",
+        "chosen; no measurement is kept",
+    )  # fmt: skip
+    straight: float = rule(
+        0.1, "change of a flight's speed, in the speed, below which it is straight [-]",
+        "chosen; no measurement is kept",
+    )  # fmt: skip
+    flight_noise: float = rule(
+        3.0, "spread of a flight's samples, in that of the track, that is believed [-]",
+        "chosen; no measurement is kept",
+    )  # fmt: skip
+    mostly: float = rule(
+        0.6, "part of a block that lies on the flight [-]",
+        "chosen: more than half",
+    )  # fmt: skip
+    flight_reach: int = rule(
+        2, "lengths of a flight's first part within which it is looked for next to the contact [-]",
+        "chosen; no measurement is kept",
+    )  # fmt: skip
+    scale_width: float = rule(
+        3e-2, "width of what is believed of a scale's drift at first [-]",
+        "chosen; no measurement is kept",
+    )  # fmt: skip
+    no_chance: float = rule(
+        4.0,
+        "standard deviations that are no chance [-]",
+        "one in 15 000",
+    )  # fmt: skip
+    doubtful: float = rule(
+        2.5,
+        "standard deviations from which a sample next to a contact, or a frame of a flight, "
+        "is left out [-]",
+        "one in 80",
+    )  # fmt: skip
+    pooled: int = rule(
+        8, "samples for which the spread of all flights counts in that of one [-]",
+        "chosen; no measurement is kept",
+    )  # fmt: skip
+    drag_speed: float = rule(
+        0.75, "speed at which the drag coefficient is taken, in that of the launch [-]",
+        "mean over a flight up and down",
+    )  # fmt: skip
+    fall_known: float = rule(
+        0.1, "relative error of a fall from which it gives no scale [-]",
+        "chosen: a tenth of the scale says nothing of it",
+    )  # fmt: skip
+    drift_widths: tuple[float, ...] = rule(
+        (1e-4, 1e-3, 1e-2),
+        "widths of what is believed of a drift [speeds of a fall over a second]",
+        "three decades",
+    )  # fmt: skip
+    missing_frame: float = rule(
+        0.02, "part of the contacts in which a frame is missing without a word [-]",
+        "chosen; no measurement is kept",
+    )  # fmt: skip
+    missing_told: float = rule(
+        0.1, "belief in a missing frame that counts [-]",
+        "chosen; no measurement is kept",
+    )  # fmt: skip
+    coarse: float = rule(
+        0.01, "spread of a flight over its height that is no reason to doubt it [-]",
+        "chosen; no measurement is kept",
+    )  # fmt: skip
+    stated_size: float = rule(
+        0.02, "relative error of the fall that a stated size of the unit is trusted for [-]",
+        "chosen; no measurement is kept",
+    )  # fmt: skip
+    free_drag: float = rule(
+        0.1, "square of the fastest over the terminal speed of a body not known, at most [-]",
+        "a table-tennis ball after a fall of a metre",
+    )  # fmt: skip
+    drift_height: float = rule(
+        0.1, "height of a track over which the whole drift of a scale is possible [m]",
+        "a metre's tenth, a usual picture",
+    )  # fmt: skip
+    drift_time: float = rule(
+        1.0, "time over which the whole drift of a scale is possible [s]",
+        "a usual clip",
+    )  # fmt: skip
+    resolved: int = rule(
+        4, "samples within a contact from which its two ends are told apart [-]",
+        "a curve and one that can contradict it",
+    )  # fmt: skip
+    soft_bend: float = rule(
+        0.85, "bend of a soft contact over that of a spring at least [-]",
+        "0.88 of elastic spheres",
+    )  # fmt: skip
+    stiff_bend: float = rule(
+        1.3, "the same at most [-]",
+        "1.2 of a spring with as much damping as lets back a half of the speed",
+    )  # fmt: skip
+    touch_stray: float = rule(
+        12.0, "what one of them may say at most [ln likelihood]",
+        "five standard deviations",
+    )  # fmt: skip
+    soft_ends: float = rule(
+        0.5, "part of what shows of a contact by which both ends reach farther [-]",
+        "force sets in softly",
+    )  # fmt: skip
+    contacts_alike: float = rule(
+        1.3, "ratio of the durations of a track's contacts [-]",
+        "v^(-1/5) of Hertz, for speeds to a quarter of the first one",
+    )  # fmt: skip
+    impossible: float = rule(
+        3.0, "speed between two samples, in the nine tenths quantile of all, that no body has [-]",
+        "chosen; no measurement is kept",
+    )  # fmt: skip
+    clip_bytes: int = limit(
+        3_000_000_000, "memory that a clip may take [bytes]",
+        "memory of a small machine",
+    )  # fmt: skip
+    repeated: float = rule(
+        0.35,
+        "change of a frame, in that of its neighbours, below which it may repeat the one before "
+        "[-]",
+        "chosen; no measurement is kept",
+    )  # fmt: skip
+    often_repeated: float = rule(
+        0.2, "part of the frames that do so before they count as repeated [-]",
+        "chosen; no measurement is kept",
+    )  # fmt: skip
+    edge_rounds: int = rule(
+        10, "rounds of the fit of an edge at most [-]",
+        "chosen; no measurement is kept",
+    )  # fmt: skip
+    edge_settled: float = rule(
+        1e-4, "move at which it ends [pixel]",
+        "a tenth of the floor of a position",
+    )  # fmt: skip
+    edge_last: float = rule(
+        0.02, "move of the last round that is still a fit [pixel]",
+        "chosen; no measurement is kept",
+    )  # fmt: skip
+    huber: float = rule(
+        2.5, "deviations from which a residual counts linearly [-]",
+        "chosen; Huber's own is 1.345",
+    )  # fmt: skip
+    cap: float = rule(
+        0.75, "part of the half-width of a rod from which the cap is read [-]",
+        "the edge of the cap is chamfered",
+    )  # fmt: skip
+    header_bytes: int = limit(
+        10_000_000, "largest header of a clip [bytes]",
+        "a thousand times the usual one",
+    )  # fmt: skip
+    picture_bytes: int = limit(
+        1_000_000_000, "memory that a picture may take [bytes]",
+        "memory of a small machine",
+    )  # fmt: skip
+    own_level: float = rule(
+        1.3, "contrast of a ball, in that of the clip, from which its own grey level is used [-]",
+        "chosen; no measurement is kept",
+    )  # fmt: skip
+    raw_bytes: int = limit(
+        20_000_000_000, "largest raw file [bytes]",
+        "the longest clips of the cameras that are read",
+    )  # fmt: skip
+    unit_turn: float = limit(
+        1e-6, "departure of a stated direction from a unit vector [-]",
+        "round-off of six digits",
+    )  # fmt: skip
+    table_bytes: int = limit(
+        500_000_000, "largest table of numbers [bytes]",
+        "memory of a small machine",
+    )  # fmt: skip
+    mocap_frames: int = rule(
+        10, "frames of a recording at least [-]",
+        "two flights of a parabola each",
+    )  # fmt: skip
+    motion_steps: int = rule(
+        20, "steps of the fit of a motion at most [-]",
+        "chosen; no measurement is kept",
+    )  # fmt: skip
+    motion_settled: float = rule(
+        1e-3, "part of the misfit that a step may still promise when it ends [-]",
+        "a thirtieth of a standard deviation",
+    )  # fmt: skip
+    window: int = rule(
+        8, "frames in which a flight is looked for; contacts closer are not told apart [-]",
+        "chosen; no measurement is kept",
+    )  # fmt: skip
+    clean: float = rule(
+        3.0, "usual residuals below which a window fits free flight [-]",
+        "chosen; no measurement is kept",
+    )  # fmt: skip
+    stands_out: float = rule(
+        1.5, "usual residuals of the worst window at which a span is cut [-]",
+        "chosen; no measurement is kept",
+    )  # fmt: skip
+    broken: float = rule(
+        5.0, "limits of the span as one flight at which it is cut [-]",
+        "chosen; no measurement is kept",
+    )  # fmt: skip
+    drag_even: float = rule(
+        0.15, "time next to the contact in which drag and lift count as even [s]",
+        "chosen; no measurement is kept",
+    )  # fmt: skip
+    fewest: int = rule(
+        6,
+        "samples from which a piece is judged by itself [-]",
+        "a parabola and three that can contradict it",
+    )  # fmt: skip
+    longest_gap: int = rule(
+        8, "frames between two flights beyond which more than one contact may lie there [-]",
+        "chosen; no measurement is kept",
+    )  # fmt: skip
+    rigid_rounds: int = rule(
+        8, "rounds of the shape of the markers [-]",
+        "chosen; no measurement is kept",
+    )  # fmt: skip
+    collinear: float = rule(
+        0.01, "second over first extent of a shape below which its markers lie on one line [-]",
+        "no turn about it is then read",
+    )  # fmt: skip
+    regression_rounds: int = limit(
+        40, "rounds of leaving out at most [-]",
+        "it ends by itself",
+    )  # fmt: skip
+    unseen: float = limit(
+        3e-8,
+        "singular value of a design, of the largest, below which it holds round-off alone [-]",
+        "root of the last digit of a double, twice",
+    )  # fmt: skip
+    ball_points: int = limit(
+        20_000, "points of a scan of a ball that are fitted [-]",
+        "memory; more move no radius",
+    )  # fmt: skip
+    sectors: int = rule(
+        8, "sectors of a shape that are left out in turn [-]",
+        "one that is not round shows in their spread",
+    )  # fmt: skip
+    ball_fewest: int = rule(
+        200, "points of a scan of a ball at least [-]",
+        "chosen; no measurement is kept",
+    )  # fmt: skip
+    bottom_large: float = rule(
+        0.75, "larger of two fits at the bottom of a crater, in half-widths [-]",
+        "chosen; no measurement is kept",
+    )  # fmt: skip
+    bottom_small: float = rule(
+        0.5, "the smaller [-]",
+        "their difference tells the error of the form",
+    )  # fmt: skip
+    bottom_points: int = rule(
+        45, "points of the smaller one at least [-]",
+        "three for each of fifteen coefficients",
+    )  # fmt: skip
+    absurd: float = rule(
+        1e30, "number beyond which a height is no measurement [-]",
+        "codes of instruments",
+    )  # fmt: skip
+    scan_points: int = rule(
+        100, "points of a scan at least [-]",
+        "chosen; no measurement is kept",
+    )  # fmt: skip
+    scan_step: float = rule(
+        1e-3, "distance of neighbouring points at most [m]",
+        "one reader's format gives 0.3 m for 0.3 um",
+    )  # fmt: skip
+    scan_most: int = limit(
+        100_000_000, "points of a scan at most [-]",
+        "memory of a small machine",
+    )  # fmt: skip
+    packed_points: int = limit(
+        50, "points a byte of a packed file at most [-]",
+        "what compression gives of a level plane",
+    )  # fmt: skip
+    foreign: float = rule(
+        6.0,
+        "robust standard deviations of what belongs to something else [-]",
+        "one in 10^9 by chance",
+    )  # fmt: skip
+    clearance: float = rule(
+        1.9, "part around a crater that levelling leaves out [crater radii]",
+        "the rim decays within it",
+    )  # fmt: skip
+    level_points: float = rule(
+        0.05, "part of the points that is left to level on [-]",
+        "chosen; no measurement is kept",
+    )  # fmt: skip
+    line_clearance: float = rule(
+        0.9, "part beside a crater that levelling a line leaves out [half-widths]",
+        "the rim decays within it",
+    )  # fmt: skip
+    line_points: int = rule(
+        12, "points of the smaller fit on a line at least [-]",
+        "chosen; no measurement is kept",
+    )  # fmt: skip
+    lag_pairs: int = rule(
+        30, "pairs of points that a lag of the autocovariance needs [-]",
+        "tell it to a fifth",
+    )  # fmt: skip
+    wall_from: float = rule(
+        0.08, "depth, in the whole, from which a wall is followed to the surface [-]",
+        "chosen; no measurement is kept",
+    )  # fmt: skip
+    wall_to: float = rule(
+        0.45, "depth to which it is followed [-]",
+        "chosen; no measurement is kept",
+    )  # fmt: skip
+    wall_end: float = rule(
+        0.14, "what a wall's end misses [steps of the scan]",
+        "rendered craters without noise: its parabola, and interpolation",
+    )  # fmt: skip
+    wall_sectors: int = rule(
+        12, "directions in which walls are read [-]",
+        "chosen; no measurement is kept",
+    )  # fmt: skip
+    sound_s: float = limit(
+        600.0, "sound that is taken in [s]",
+        "memory of a small machine",
+    )  # fmt: skip
+    onset_after: float = rule(
+        1e-3, "time after an onset in which its rise is fitted [s]",
+        "chosen; no measurement is kept",
+    )  # fmt: skip
+    onset_before: float = rule(
+        15e-3, "time before it in which the level is taken [s]",
+        "chosen; no measurement is kept",
+    )  # fmt: skip
+    onset_search: tuple[float, float] = rule(
+        (6e-3, 2e-3), "time before and after the steepest rise in which the onset is sought [s]",
+        "chosen; no measurement is kept",
+    )  # fmt: skip
+    lines_above: int = rule(
+        4, "lines above the numbers among which units are looked for [-]",
+        "headers of five oscilloscopes",
+    )  # fmt: skip
+    table_rows: int = rule(
+        20, "rows of numbers against time at least [-]",
+        "ten of the level and a pulse",
+    )  # fmt: skip
+    flank_low: float = rule(
+        0.06, "part of the peak from which flanks tell the ends [-]",
+        "above the noise and the foot",
+    )  # fmt: skip
+    flank_high: float = rule(
+        0.45, "part of the peak to which they do [-]",
+        "below it a half-sine and elastic spheres part",
+    )  # fmt: skip
+    flank_powers: tuple[float, ...] = rule(
+        (1.5, 1.2, 1.0), "powers of time that a flank may rise with [-]",
+        "1.5 of elastic spheres to 1 of plastic ones",
+    )  # fmt: skip
+    round_top: float = rule(
+        0.1, "part of the peak below it within which a top is a parabola [-]",
+        "a half-sine's next term is 1 % of that",
+    )  # fmt: skip
+    again: float = rule(
+        0.3, "part of the peak from which another pulse is named [-]",
+        "chosen; no measurement is kept",
+    )  # fmt: skip
+    same_time: float = rule(
+        1.05, "a flight in the one before it that is alike [-]",
+        "bounces fade",
+    )  # fmt: skip
+    same_height: float = rule(
+        0.1, "difference of peaks, in the largest, that are alike [-]",
+        "bounces fade",
+    )  # fmt: skip
+    absurd_strain: float = rule(
+        10.0, "strain that no metal was measured at [-]",
+        "a slip of the unit",
+    )  # fmt: skip
+    absurd_stress: float = rule(
+        1e12, "stress that no metal was measured at [Pa]",
+        "a slip of the unit",
+    )  # fmt: skip
+    elastic_parts: tuple[float, ...] = rule(
+        (0.4, 0.3, 0.22, 0.16, 0.12, 0.09, 0.06),
+        "parts of the largest stress up to which the modulus may be read [-]",
+        "chosen; no measurement is kept",
+    )  # fmt: skip
+    elastic_straight: float = rule(
+        0.7, "slope of the upper half of an elastic rise in that of the lower [-]",
+        "chosen; no measurement is kept",
+    )  # fmt: skip
+    tension_kept: int = limit(
+        60, "rows of a curve that is written [-]",
+        "a screen or two",
+    )  # fmt: skip
+    yields: float = rule(
+        1e-4, "plastic strain from which the metal yields [-]",
+        "a twentieth of the proof strain",
+    )  # fmt: skip
+    edge_step: float = rule(
+        0.25, "step along an edge [pixel]",
+        "a quarter",
+    )  # fmt: skip
+    tip_rounds: int = rule(
+        12, "rounds of the edge and the circle at most [-]",
+        "chosen; no measurement is kept",
+    )  # fmt: skip
+    most_frames: int = limit(
+        10**9, "frames of a clip [-]",
+        "none is as long",
+    )  # fmt: skip
+    lean_frames: int = rule(
+        20, "frames from which the lean of a rod is read [-]",
+        "chosen; no measurement is kept",
+    )  # fmt: skip
+    same_rate: float = rule(
+        0.01, "part by which a container's mean rate differs from the camera's and is its own [-]",
+        "rates of 29.97 and 30",
+    )  # fmt: skip
+    position_floor: float = rule(
+        1e-3, "error of a position at least [pixel]",
+        "none in a picture is believed better",
+    )  # fmt: skip
+    position_trend: float = rule(
+        5e-3, "move from one end of a flight to the other [pixel]",
+        "uneven light, and a blur that is not the same everywhere",
+    )  # fmt: skip
+    mirror_reach: float = rule(
+        3.5, "blurs above the flat within which a rod's reflection moves its tip [-]",
+        "rendered clips",
+    )  # fmt: skip
+    mirror_move: float = rule(
+        0.1, "by how much it does [pixel]",
+        "rendered clips",
+    )  # fmt: skip
+    shape_frames: int = rule(
+        15, "frames from which the shape of a tip is read [-]",
+        "chosen; no measurement is kept",
+    )  # fmt: skip
+    mirror_blurs: tuple[float, float] = rule(
+        (3.5, 1.0),
+        "blurs above the lowest place between which a tip and its reflection are told apart [-]",
+        "farther up the reflection does not reach into it",
+    )  # fmt: skip
+    mirror_frames: int = rule(
+        12, "frames from which a reflection's light is read [-]",
+        "chosen; no measurement is kept",
+    )  # fmt: skip
+    dull: float = rule(
+        0.02, "part of its light below which a reflection does not count [-]",
+        "chosen; no measurement is kept",
+    )  # fmt: skip
+    mostly_found: float = rule(
+        0.8, "part of the frames in which a ball's edge is found, else its light is used [-]",
+        "chosen; no measurement is kept",
+    )  # fmt: skip
+    scale_widths: tuple[tuple[float, float], ...] = rule(
+        ((1e-2, 1.0), (3e-2, 1.0), (1e-1, 0.05)),
+        "widths of a camera's drift, and how much each is believed beforehand [-]",
+        "one that nobody calibrated drifts by a per cent or so; a tenth is rare",
     )  # fmt: skip
 
 

@@ -11,6 +11,7 @@ import numpy as np
 import numpy.typing as npt
 
 from ..impact.told.onset import FirstYield, first_yield
+from .rules import RULES
 
 if TYPE_CHECKING:
     from ..fem.solution import Solution, Unloading
@@ -18,8 +19,6 @@ if TYPE_CHECKING:
 Floats = npt.NDArray[np.float64]
 
 _STANDARD_GRAVITY = 9.80665  # m/s2; hardness after Brinell is in kgf/mm2
-_ROUND_OFF = 1e-9  # of the permanent approach
-_BALL_KEEPS = 0.05  # of the permanent approach; beyond it the dent is not that of a ball
 
 
 @dataclass(frozen=True)
@@ -79,7 +78,7 @@ class Dent:
 
     def lines(self) -> Iterator[str]:
         """Yield what there is to say, for people."""
-        least = _ROUND_OFF * (abs(self.left_sphere) + abs(self.left_flat))
+        least = RULES.kept_round_off * (abs(self.left_sphere) + abs(self.left_flat))
         sphere, flat = (
             1e6 * x if abs(x) > least else 0.0 for x in (self.left_sphere, self.left_flat)
         )
@@ -192,7 +191,7 @@ def _dent(solution: Solution, u: Unloading) -> Dent:
     # what sinks in rises towards the edge of the mesh, where the flat is as it was
     rises = u.crater_z[top] > 1e-3 * abs(u.residual_flat) and u.residual_flat > 0.0
     rim = 2.0 * float(u.crater_r[top]) if rises else math.nan
-    of_the_flat = u.residual > 0.0 and u.residual_sphere <= _BALL_KEEPS * u.residual
+    of_the_flat = u.residual > 0.0 and u.residual_sphere <= RULES.ball_keeps * u.residual
     by_contact, by_rim = (
         brinell(load, 2.0 * R, d) if of_the_flat else math.nan for d in (contact, rim)
     )

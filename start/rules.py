@@ -4,17 +4,13 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
-from ..core.rules import rule
+from ..core.rules import limit, rule
 
 
 @dataclass(frozen=True)
 class StartRules:
     """The register; `dataclasses.fields` tells the meaning and the source of each."""
 
-    shallowest: float = rule(
-        1e-9, "least approach of a case [R]",
-        "the force of the first depth is off by 5 % at 1e-10, by 0.2 % at 1e-8",
-    )  # fmt: skip
     kept_out: float = rule(
         0.9, "part of the largest speed from which conditions are kept out [-]",
         "chosen: they judge what the rest inferred",
@@ -27,11 +23,11 @@ class StartRules:
         6, "numbers from which constants are inferred [-]",
         "as a diagnosis names from",
     )  # fmt: skip
-    curve_points: int = rule(
+    curve_points: int = limit(
         120, "points of a law's curve [-]",
         "a figure's width",
     )  # fmt: skip
-    recommended: int = rule(
+    recommended: int = limit(
         4, "laws that are recommended [-]",
         "chosen; no measurement is kept",
     )  # fmt: skip
@@ -47,7 +43,7 @@ class StartRules:
         0.1, "part of the depth below which a dent says nothing about a law [-]",
         "chosen; no measurement is kept",
     )  # fmt: skip
-    no_factor: float = rule(
+    no_factor: float = limit(
         100.0, "times too little or too much that are not told in times [-]",
         "chosen; no measurement is kept",
     )  # fmt: skip
@@ -78,6 +74,14 @@ class StartRules:
     clock_end: float = rule(
         0.1, "part of the approach speed at which the clock of a press ends [-]",
         "a half-sine's slow end",
+    )  # fmt: skip
+    kept_round_off: float = limit(
+        1e-9, "part of the approach below which nothing is permanent [-]",
+        "round-off",
+    )  # fmt: skip
+    ball_keeps: float = rule(
+        0.05, "part of the permanent approach that the ball may keep [-]",
+        "beyond it the dent is not that of a ball",
     )  # fmt: skip
 
 

@@ -22,9 +22,9 @@ from ...models.fitted import ClosedForm
 from ...models.table import table_law
 from ...models.uncertainty import METAL, WITH_CURVE
 from ...recordings import RecordingSet
+from ..rules import RULES
 from .solve import solved_pair
 
-_APART = 0.02  # between a stated strength and that of the flow curve, from which a note says so
 Progress = Callable[[str], None]
 LawChoice = Literal["fitted", "table"]
 """The fitted law, or finite elements of the set's own pair."""
@@ -108,7 +108,7 @@ def _metal(recordings: RecordingSet, striker: str, pair: Pair) -> Pair:
 def _apart(recordings: RecordingSet, key: str) -> list[str]:
     body = recordings.setup.bodies[key]
     measured = recordings.flows[key].strength
-    if body.Sy_Pa is None or abs(body.Sy_Pa.value / measured - 1.0) < _APART:
+    if body.Sy_Pa is None or abs(body.Sy_Pa.value / measured - 1.0) < RULES.curve_apart:
         return []
     return [
         f"{key}.flow_curve reaches {measured / 1e6:.4g} MPa at 0.2 %: it is scaled to the stated "

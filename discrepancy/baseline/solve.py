@@ -15,14 +15,9 @@ from ...core.errors import InputError
 from ...core.material import Pair
 from ...models.table import PairTable
 from ...models.table_file import read_table, write_table
+from ..rules import RULES
 
-_WORTH = 0.25
-"""Of the metal's own error in force: what the mesh may be off. Less is lost in that."""
-_TOLD = 0.2  # of a solve, between two lines of progress
-_DEEPER = 1.3  # than the deepest impact: what a stated number that is off may add
-_TURNS, _DEPTHS = 5, 60
 _SOLVING = "solving the set's own pair by finite elements, kept for the next time"
-_DIGITS = 2  # of the depths: sets of one pair that go as deep share a solve
 
 
 def solved_pair(
@@ -66,9 +61,9 @@ def _level(pair: Pair, high: float, metal_error: float) -> str:
     """The coarsest level whose stated error of the force is small beside the metal's."""
     from ...fem.results.uncertainty import largest_force_error
 
-    deepest = _DEEPER * high
+    deepest = RULES.solve_deeper * high
     for level in ("quick", "production"):
-        if largest_force_error(level, pair, deepest) <= _WORTH * metal_error:
+        if largest_force_error(level, pair, deepest) <= RULES.mesh_share * metal_error:
             return level
     return "production"
 
@@ -90,22 +85,22 @@ def solved_table(
     from ...fitting.case_table import pair_table
 
     onset = fem.critical_depth(pair)
-    last = min(_DEEPER * high, DEEPEST)
+    last = min(RULES.solve_deeper * high, DEEPEST)
     if last < 2.0 * onset:
         raise InputError(f"Delta/R to {last:.2g}", key="depth",
                          allowed=f"well beyond first yield at {onset:.2g}")  # fmt: skip
     first = min(0.3 * onset, 1e-2 * last)
     shallowest = max(min(low, 0.3 * high), 1.3 * onset)
-    turns = tuple(map(float, np.geomspace(shallowest, last, _TURNS)))
+    turns = tuple(map(float, np.geomspace(shallowest, last, RULES.solve_turns)))
     problem = fem.ContactProblem(
-        pair=pair, depths=fem.geometric_depths(first, last, _DEPTHS), unload_from=turns
+        pair=pair, depths=fem.geometric_depths(first, last, RULES.solve_depths), unload_from=turns
     )
     accuracy = {"quick": fem.Accuracy.quick, "production": fem.Accuracy.production}[level]()
     told = 0.0
 
     def tell(done: float) -> None:
         nonlocal told
-        if done >= told + _TOLD:
+        if done >= told + RULES.told_of_solve:
             told = done
             progress(f"{_SOLVING}: {done:.0%}")
 
@@ -117,7 +112,7 @@ def solved_table(
 
 
 def _rounded(x: float, way: Callable[[float], int]) -> float:
-    unit = 10.0 ** (math.floor(math.log10(x)) - _DIGITS + 1)
+    unit = 10.0 ** (math.floor(math.log10(x)) - RULES.solve_digits + 1)
     return float(way(x / unit) * unit)
 
 
@@ -128,5 +123,8 @@ def _digest(pair: Pair, low: float, high: float, level: str) -> str:
         {"E": b.E, "nu": b.nu, "Sy": b.Sy, "flow": b.flow and asdict(b.flow)}
         for b in (pair.sphere, pair.flat)
     ]
-    told = json.dumps([NUMERICS_VERSION, level, _TURNS, _DEPTHS, low, high, bodies], sort_keys=True)
+    told = json.dumps(
+        [NUMERICS_VERSION, level, RULES.solve_turns, RULES.solve_depths, low, high, bodies],
+        sort_keys=True,
+    )
     return hashlib.sha256(told.encode()).hexdigest()[:24]

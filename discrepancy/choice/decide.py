@@ -23,11 +23,6 @@ from ..unknowns.drift import Drift
 from ..unknowns.followed import Followed
 from .odds import OUTSIDE, SURE, Odds
 
-FEWEST, FEWEST_CONDITIONS = 6, 2
-"""Readings and conditions below which a set says nothing."""
-MOST = 3
-"""Explanations that are reported as indistinguishable; with more the set says too little."""
-
 
 class Costs(NamedTuple):
     """What a wrong verdict costs, in units of something missing that is not seen.
@@ -91,10 +86,10 @@ def decide(ranking: Ranking, odds: Odds, *, drifts: Sequence[Drift] = ()) -> Cho
     first = [*map(_follows, ranking.problem.followed), *map(_scattered, ranking.problem.scatters)]
     last = [*map(_drifted, drifts)]
     readings = int(np.sum(cells.count))
-    if readings < FEWEST:
-        text = f"too few: only {readings} numbers to compare, {FEWEST} are needed"
+    if readings < RULES.fewest_cells:
+        text = f"too few: only {readings} numbers to compare, {RULES.fewest_cells} are needed"
         return Choice("undetermined", (), (*first, text, *_nevertheless(odds), *last))
-    if conditions < FEWEST_CONDITIONS:
+    if conditions < RULES.fewest_conditions:
         text = "too few: all numbers are of one condition; nothing can follow from what varies"
         return Choice("undetermined", (), (*first, text, *_nevertheless(odds), *last))
     choice = _cheapest(ranking.fits[1:], odds)
@@ -128,13 +123,13 @@ def _cheapest(fits: Sequence[Fit], odds: Odds) -> Choice:
 
 
 def _named(labels: Sequence[str], odds: Odds) -> tuple[str, ...]:
-    """Labels of the set, at most `MOST`, whose naming costs least; the most probable first.
+    """Labels of the set, at most `RULES.alike`, whose naming costs least; the most probable first.
 
     What is too improbable to be worth a place by itself is not named: a pair would else stand for
     two singles, half of each.
     """
     worth = [label for label in labels if odds.probability[label] > WORTH_NAMING]
-    sets = (s for n in range(1, MOST + 1) for s in combinations(worth, n))
+    sets = (s for n in range(1, RULES.alike + 1) for s in combinations(worth, n))
     chosen = min(sets, key=lambda s: cost_of_naming(s, odds), default=())
     return tuple(sorted(chosen, key=lambda label: -odds.probability[label]))
 

@@ -18,9 +18,6 @@ from .outside import odd_repeats, outside_of
 from .own_sets import FitTest, fit_test
 from .thresholds import Nulls
 
-_ALIKE = 0.5
-"""Share of what is outside the library from which one that has no name is said to be like it."""
-
 
 @dataclass(frozen=True)
 class Judge:
@@ -90,11 +87,15 @@ class Judge:
         choice = decide(ranking, odds, drifts=ranking.problem.drifts)
         if choice.verdict != OUTSIDE:
             return replace(choice, reasons=(*choice.reasons, *self.factors_told(ranking)))
-        near = [f for f in ranking.fits[1:] if odds.beside.get(f.name, 0.0) > _ALIKE * odds.outside]
+        near = [
+            f
+            for f in ranking.fits[1:]
+            if odds.beside.get(f.name, 0.0) > RULES.resembles * odds.outside
+        ]
         free = 1.0 - sum(odds.beside.values()) / odds.outside
         share = {name: free * part for name, part in self.nameless.items()}
-        alike = [n for n in ranking.nameless if share[n.screened.mechanism.name] > _ALIKE]
-        factors = [s for s in self.scaled if share[s.told] > _ALIKE]
+        alike = [n for n in ranking.nameless if share[n.screened.mechanism.name] > RULES.resembles]
+        factors = [s for s in self.scaled if share[s.told] > RULES.resembles]
         told = [
             *(self._nearest(f) for f in near),
             *(_behaves(n, share[n.screened.mechanism.name]) for n in alike),

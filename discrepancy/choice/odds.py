@@ -14,12 +14,9 @@ from ..rules import RULES
 from .apart import weighed
 
 OUTSIDE = "outside-library"
-PRIORS = {"baseline": 0.5, "singles": 0.34, "pairs": 0.06, OUTSIDE: 0.1}
+PRIORS = dict(RULES.priors)
 """Before the comparison: as likely as not that nothing is missing; each single mechanism that
 could act here shares alike, and so does each pair."""
-NAMELESS_SHARE, SCALED_SHARE = 1.0 / 3.0, 1.0 / 6.0
-"""Of what is outside the library, the shares of known physics without a name and of an observable
-with a factor of its own; the rest is free."""
 BESIDE = (
     PRIORS["pairs"] / PRIORS["singles"] * PRIORS[OUTSIDE] / (PRIORS["singles"] + PRIORS[OUTSIDE])
 )
@@ -27,17 +24,15 @@ BESIDE = (
 mechanism is beside a first one, and outside as often as a first one is."""
 ALONE = PRIORS[OUTSIDE] / PRIORS["baseline"]
 """The same beside nothing: odds of something outside where no mechanism is named."""
-WORTH_TELLING = 0.01
-"""Probability of an explanation from which something may act beside it."""
-SURE = 0.93
+SURE = RULES.sure
 NAMED_AT = math.log(SURE / (1.0 - SURE))
 """Ln odds of something missing from which a name costs less than silence (`decide.COSTS`)."""
 
 
 def shares_outside(nameless: int, scaled: int) -> tuple[float, float, float]:
     """Prior shares, among what is outside the library: free, each nameless, each scaled."""
-    own = NAMELESS_SHARE / nameless if nameless else 0.0
-    factor = SCALED_SHARE / scaled if scaled else 0.0
+    own = RULES.nameless / nameless if nameless else 0.0
+    factor = RULES.scaled_share / scaled if scaled else 0.0
     return 1.0 - own * nameless - factor * scaled, own, factor
 
 
@@ -108,7 +103,7 @@ def odds_of(
     log, names = _weights(ranking, gained)
     log[OUTSIDE] = outside + math.log(PRIORS[OUTSIDE])
     found = _normalised(log.items())
-    likely = [f for f in ranking.fits if found[f.name] > WORTH_TELLING]
+    likely = [f for f in ranking.fits if found[f.name] > RULES.beside]
     if beside is None or not likely:
         return Odds(names, found)
     parts = {

@@ -22,17 +22,13 @@ from ..comparison.problem import Problem
 from ..correction import widened
 from ..inference.fit import Fit
 from ..inference.linear import Mixture
+from ..rules import RULES
 from ..unknowns.covariates import nearness, same_observable
 
 Array = NDArray[np.float64]
 
-AMPLITUDES = (0.03, 0.1, 0.3)
+AMPLITUDES = RULES.amplitudes
 """Of departures that no law is behind: from what four observables just show to the gross."""
-MISJUDGED = 0.5
-"""Standard deviation of the logarithm of a stated noise: by so much do laboratories misjudge it."""
-WIDEST = 5.0
-"""Logarithm of the largest scatter over the stated noise that something varied may give."""
-_SMOOTH = 1.0  # correlation length in standard deviations of each covariate
 
 
 def outside_of(problem: Problem, base: Fit) -> Mixture:
@@ -44,7 +40,7 @@ def outside_of(problem: Problem, base: Fit) -> Mixture:
     for name in set(cells.observable):
         here = np.array([o == name for o in cells.observable]) & ~cells.is_log
         scale[here] = np.sqrt(np.mean(cells.value[here] ** 2)) if here.any() else 1.0
-    alike = same_observable(problem) * nearness(problem, _SMOOTH)
+    alike = same_observable(problem) * nearness(problem, RULES.smooth)
     for shape in (alike, np.eye(len(cells))):
         for amplitude in AMPLITUDES:
             more = amplitude**2 * np.outer(scale, scale) * shape
@@ -70,6 +66,6 @@ def _worth(log_p: float) -> float:
 
 
 def _of_scatter(scatter: Scatter) -> float:
-    """Ln odds of a scatter that was varied, up to `WIDEST`, against a noise misjudged."""
+    """Ln odds of a scatter that was varied, up to `RULES.widest`, against a noise misjudged."""
     times = math.log(scatter.ratio)
-    return -math.log(WIDEST) - float(norm.logpdf(times, 0.0, MISJUDGED))
+    return -math.log(RULES.widest) - float(norm.logpdf(times, 0.0, RULES.misjudged))

@@ -16,14 +16,9 @@ from ..inference.fit import fit_anchored
 from ..inference.grid import Grid
 from ..inference.together import mutual
 from ..rank import Progress, Ranking, Screened, sharpened_leading
+from ..rules import RULES
 
 Array = NDArray[np.float64]
-
-PAIRED, PARTNERS = 4, 3
-"""Pairs that are fitted: the leading by the sum of their effects, and of the leading mechanism with
-those that explain most of what it leaves."""
-_FEW = 48  # places of each mechanism that stand for all in the search for pairs
-_NEAR = 0.12  # of the prior's width: where the mutual effect of two mechanisms is simulated
 
 
 def with_pairs(
@@ -50,7 +45,10 @@ def _leading_pairs(ranking: Ranking) -> list[tuple[Screened, Screened, Array]]:
     """Return the best pairs by the sum of their effects, and where in their priors they fit."""
     base = ranking.base
     w = base.linear.white(base.residual)
-    thin = [np.arange(0, len(s.effect), max(len(s.effect) // _FEW, 1)) for s in ranking.screened]
+    thin = [
+        np.arange(0, len(s.effect), max(len(s.effect) // RULES.pair_places, 1))
+        for s in ranking.screened
+    ]
     whites = [base.linear.white(s.effect[t]) for s, t in zip(ranking.screened, thin, strict=True)]
     scored = []
     for i, j in itertools.combinations(range(len(whites)), 2):
@@ -61,7 +59,7 @@ def _leading_pairs(ranking: Ranking) -> list[tuple[Screened, Screened, Array]]:
         scored.append((evidence, i, j, np.unravel_index(int(np.argmax(ratio)), ratio.shape)))
     scored.sort(key=lambda x: -x[0])
     found = []
-    for _, i, j, (p, q) in scored[:PAIRED]:
+    for _, i, j, (p, q) in scored[: RULES.paired]:
         one, two = ranking.screened[i], ranking.screened[j]
         place = np.concatenate([one.grid.places()[thin[i][p]], two.grid.places()[thin[j][q]]])
         found.append((one, two, place))
@@ -85,7 +83,7 @@ def _partners(ranking: Ranking) -> list[tuple[Screened, Screened, Array]]:
             (float(logsumexp(ratio)) - math.log(len(e)), i, s.grid.places()[ratio.argmax()])
         )
     found = []
-    for _, i, place in sorted(scored, key=lambda x: -x[0])[:PARTNERS]:
+    for _, i, place in sorted(scored, key=lambda x: -x[0])[: RULES.partners]:
         (j, one), (k, two) = sorted([(i, place), (first, lead.place)], key=lambda x: x[0])
         found.append((ranking.screened[j], ranking.screened[k], np.concatenate([one, two])))
     return found
@@ -115,5 +113,8 @@ class PairEffect:
         second = self.two.grid.onto(self.two.change, grid.fine[n:])
         total = (first[:, None, :] + second[None, :, :]).reshape(-1, first.shape[-1])
         count = 3 if len(place) == 2 else 2
-        corners = [np.linspace(max(x - _NEAR, 0.0), min(x + _NEAR, 1.0), count) for x in place]
+        corners = [
+            np.linspace(max(x - RULES.pair_step, 0.0), min(x + RULES.pair_step, 1.0), count)
+            for x in place
+        ]
         return total + mutual(self.simulator, self.mechanisms, grid, corners, z)

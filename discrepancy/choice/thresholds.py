@@ -23,13 +23,10 @@ from ..inference.fit import Fit
 from ..nulls import Rig, discrepancies, scatter
 from ..nulls.laws import NullReference
 from ..nulls.motion import NullBodies
+from ..rules import RULES
 from ..unknowns.lawerror import SIZE_SPREAD, not_given_back
 
 Array = NDArray[np.float64]
-
-LEVEL, SLOPE = 1.0, 0.4
-"""Standard deviations of a null law's level and of its slope over ln(depth), relative to the
-baseline's, in units of the error that the baseline is assumed to have."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -86,7 +83,11 @@ def null_residuals(simulator: Simulator, base: Fit, count: int, rng: np.random.G
     spread: dict[str, float] = {}
     for kind in ("force", "recovery", "crater", "radius"):
         known = sizes.get(kind, 0.0)
-        spread |= {kind: LEVEL * known, f"{kind} slope": SLOPE * known, f"{kind} shape": known}
+        spread |= {
+            kind: RULES.null_level * known,
+            f"{kind} slope": RULES.null_slope * known,
+            f"{kind} shape": known,
+        }
     spread["size"] = SIZE_SPREAD
     seen = discrepancies(rig_of(problem, z), count, rng, spread)
     cells = problem.cells

@@ -13,17 +13,13 @@ from numpy.typing import NDArray
 
 from ...core.observables import OBSERVABLES
 from ..curves import Readings
+from ..rules import RULES
 from ..unknowns.drift import Drift, drift_of
 from ..unknowns.followed import Entries, Followed, followed_of
 from .conditions import Condition
 
 Array = NDArray[np.float64]
 Ints = NDArray[np.intp]
-
-# what repeats cannot average away: gauges, definitions; of the value, and of one reading's noise
-_FLOOR, _FLOOR_OF_NOISE = 0.004, 0.5
-_WILD = 0.1  # part of all repeats beyond which those far off their median are no slips
-_ENOUGH = 8  # repeats beyond the first from which their own scatter is trusted
 
 
 @dataclass(frozen=True, eq=False)
@@ -150,10 +146,11 @@ def cells_of(
     size = {n: _rms([m.value for m in one.means]) for n, one in found.items() if one.means}
     std = np.array([m.std for m in means])
     of_value = np.array([
-        _FLOOR * (1.0 if OBSERVABLES[m.observable].log else size[m.observable]) for m in means
+        RULES.gauge_floor * (1.0 if OBSERVABLES[m.observable].log else size[m.observable])
+        for m in means
     ])  # fmt: skip
     one_reading = std * np.sqrt([m.trials for m in means])
-    floor = np.minimum(of_value, _FLOOR_OF_NOISE * one_reading)
+    floor = np.minimum(of_value, RULES.noise_floor * one_reading)
     cells = Cells(
         np.array([m.condition for m in means], dtype=np.intp),
         tuple(m.observable for m in means),
@@ -192,7 +189,7 @@ def _compared(
     parted = [_repeats(name, read, speeds, place, c) for c in conditions]
     kept = [_kept(r.value, r.std) for r in parted]
     total, dropped = sum(len(k) for k in kept), sum(int(np.sum(~k)) for k in kept)
-    if dropped > max(1.0, _WILD * total):
+    if dropped > max(1.0, RULES.wild * total):
         # so many are no slips: their scatter is the noise
         kept, dropped = [np.ones(len(k), dtype=bool) for k in kept], 0
     means, repeats = [], []
@@ -208,7 +205,7 @@ def _compared(
         degrees += len(keep[keep]) - 1
         std = float(np.sum(weight) ** -0.5)
         means.append(_Mean(number, name, mean, std, int(keep.sum())))
-    ratio = squares / degrees if degrees >= _ENOUGH else 1.0
+    ratio = squares / degrees if degrees >= RULES.own_scatter else 1.0
     if ratio <= 1.0 + 3.0 * math.sqrt(2.0 / max(degrees, 1)):
         return _Compared(means, repeats, dropped, None)
     times = math.sqrt(ratio)

@@ -13,15 +13,16 @@ from ...impact import Press
 from ...impact.mechanisms.base import Surroundings
 from ...recordings import RecordingSet
 from ...recordings.noise import bins
+from ...recordings.rules import RULES as RECORDINGS
+from ..rules import RULES
 
 Ints = NDArray[np.intp]
 
-_SAME_SPEED, _SAME_RATE = 0.05, 0.5
-SPEED_MEASURED, SPEED_FROM_HEIGHT = 0.003, 0.005
+SPEED_MEASURED = RULES.speed_measured
+SPEED_FROM_HEIGHT = RULES.speed_from_height
 """Systematic relative error of a speed of approach, where nothing is stated."""
-LOAD_CLASS = 0.005
+LOAD_CLASS = RECORDINGS.load_class
 """The same of a press's load: class 1 of ISO 7500-1 allows 1 % of the indicated force."""
-_LOAD_REPEATS = 0.003  # relative scatter of a load, where none is stated
 
 
 @dataclass(frozen=True, slots=True)
@@ -105,7 +106,7 @@ def conditions_of(recordings: RecordingSet) -> tuple[Condition, ...]:
         unknown = SPEED_MEASURED if timed[first] else SPEED_FROM_HEIGHT
         press = None
         if pressed[first]:
-            relative, unknown = recordings.load_std[rows] / trials.load_N[rows], _LOAD_REPEATS
+            relative, unknown = recordings.load_std[rows] / trials.load_N[rows], RULES.load_repeats
             rate = float(np.nan_to_num(trials.press_rate_per_s[first]))
             press = Press(float(np.mean(trials.load_N[rows])), rate)
         relative = np.where(np.isnan(relative), unknown, relative)
@@ -166,12 +167,12 @@ def _nominal(recordings: RecordingSet) -> tuple[Ints, Ints]:
         zip(
             trials.striker,
             bins(np.asarray(trials.angle_deg), width=1.0),
-            bins(np.log(approach.normal), width=_SAME_SPEED),
-            bins(approach.tangential / approach.normal, width=_SAME_SPEED),
-            bins(approach.spin / approach.normal, width=_SAME_SPEED),
+            bins(np.log(approach.normal), width=RULES.same_speed),
+            bins(approach.tangential / approach.normal, width=RULES.same_speed),
+            bins(approach.spin / approach.normal, width=RULES.same_speed),
             bins(trials.temperature_K, width=1.0),
-            bins(np.log(trials.load_N), width=_SAME_SPEED),
-            bins(np.log(trials.press_rate_per_s), width=_SAME_RATE),
+            bins(np.log(trials.load_N), width=RULES.same_speed),
+            bins(np.log(trials.press_rate_per_s), width=RECORDINGS.rate_bin),
             strict=True,
         )
     )

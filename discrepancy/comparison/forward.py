@@ -16,6 +16,7 @@ from ...impact import Scene, Settings, dent_radius, pressed, strike_batch, strik
 from ...impact.mechanisms.base import Constants, Mechanism, Situation, attached, observed
 from ...impact.walk import layout as c
 from ...models.base import DomainWarning
+from ..rules import RULES
 from .cells import compared
 from .problem import Problem
 
@@ -28,8 +29,6 @@ _COLUMN = {name: i for i, name in enumerate(c.OBSERVABLES)}
 _PRESS_DEPTH, _RECOVERED = c.N_OUT, c.N_OUT + 1
 """Columns behind those of the integrator."""
 ACCURACY = Settings(tolerance=1e-6, max_steps=4000, max_contacts=30)
-_BATCH = 4000
-_WORTH = 200  # scenes from which a second thread pays
 
 
 @dataclass(frozen=True, slots=True)
@@ -73,7 +72,7 @@ def _struck_or_pressed(scenes: list[Scene]) -> Array:
 
 def _struck(scenes: list[Scene]) -> Array:
     """Integrate in two threads: the compiled impacts run free of the interpreter."""
-    if len(scenes) < _WORTH or (os.cpu_count() or 1) < 2:
+    if len(scenes) < RULES.thread_from or (os.cpu_count() or 1) < 2:
         return strike_batch(scenes, ACCURACY)
     # every other scene: neighbours cost alike. The filter is set here, because inside a thread
     # the law's own one would race; tables reach beyond the data that the law was fitted to.
@@ -116,7 +115,7 @@ class Simulator:
     def observe(self, mechanisms: Sequence[Mechanism], points: Sequence[Point]) -> dict[str, Array]:
         """Return every observable of every condition, each of shape (points, conditions)."""
         n = len(self.problem.conditions)
-        per = max(_BATCH // n, 1)
+        per = max(RULES.batch // n, 1)
         parts = [self._batch(mechanisms, points[i : i + per]) for i in range(0, len(points), per)]
         return {k: np.concatenate([p[k] for p in parts]) for k in parts[0]}
 

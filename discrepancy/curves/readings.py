@@ -22,18 +22,12 @@ from numpy.typing import NDArray
 from ...core.observables import OBSERVABLES
 from ...impact import Scene, Settings, traced
 from ...recordings import RecordingSet
+from ..rules import RULES
 from .reduction import Numbers, foot, from_profile, from_trace, roughness
 
 Array = NDArray[np.float64]
 
-_ACCURACY, _POINTS = Settings(tolerance=1e-7), 200
-_AGAIN = 40  # copies of a curve with fresh noise
-_SCALE = 0.01
-"""Error of a length's scale, as a fraction, where a column of its own would state it."""
-_LEFT, _LEAST, _MOST = 0.25, 0.003, 0.25
-"""Of a reduction's own error: share that stays, least that stays, most that is corrected."""
-_INSTANTS = (-0.4, -0.2, 0.0, 0.2, 0.4)
-"""Touch before or after the one found, in samples: the trace itself does not know it better."""
+_ACCURACY = Settings(tolerance=1e-7)
 
 
 @dataclass(frozen=True, eq=False)
@@ -86,7 +80,7 @@ def readings_of(
             table = found.setdefault(name, Readings(np.full(n, np.nan), np.full(n, np.nan)))
             if math.isnan(table.value[i]):
                 table.value[i] = value
-                scale = _SCALE if name.endswith("_m") else 0.0
+                scale = RULES.trace_scale if name.endswith("_m") else 0.0
                 table.std[i] = math.hypot(std, scale * abs(value))
     notes = []
     if coarse:
@@ -111,13 +105,16 @@ def own_errors(trace: Mapping[str, Array], scene: Scene) -> dict[str, tuple[floa
     model = _Model.of(scene)
     sample = float(np.median(np.diff(t)))
     ratios: dict[str, list[float]] = {}
-    for shift in _INSTANTS:
+    for shift in RULES.instants:
         for name, value in from_trace(model.read(t - start + shift * sample, trace)).items():
             ratios.setdefault(name, []).append(value / model.exact[name])
     return {
-        name: (float(np.mean(r)), math.hypot(float(np.std(r)), _LEFT * abs(np.mean(r) - 1.0)))
+        name: (
+            float(np.mean(r)),
+            math.hypot(float(np.std(r)), RULES.reduction_left * abs(np.mean(r) - 1.0)),
+        )
         for name, r in ratios.items()
-        if len(r) == len(_INSTANTS)
+        if len(r) == len(RULES.instants)
     }
 
 
@@ -127,8 +124,11 @@ def _corrected(
     found = {}
     for name, (value, std) in numbers.items():
         ratio, spread = errors.get(name, (math.nan, 0.0))
-        if abs(ratio - 1.0) < _MOST and spread < _MOST:
-            found[name] = (value / ratio, math.hypot(std, max(spread, _LEAST) * value) / ratio)
+        if abs(ratio - 1.0) < RULES.reduction_most and spread < RULES.reduction_most:
+            found[name] = (
+                value / ratio,
+                math.hypot(std, max(spread, RULES.reduction_least) * value) / ratio,
+            )
     return found
 
 
@@ -145,7 +145,7 @@ class _Model:
 
     @classmethod
     def of(cls, scene: Scene) -> _Model:
-        trace = traced(scene, _ACCURACY, points=_POINTS)
+        trace = traced(scene, _ACCURACY, points=RULES.trace_points)
         t, order = np.unique(trace.column("time_s"), return_index=True)
         e, impact = trace.impact.restitution, trace.impact
         leaving = e * scene.approach.speed
@@ -215,7 +215,7 @@ def reduced(
         return {}
     rng = np.random.default_rng(seed)
     copies: dict[str, list[float]] = {name: [] for name in best}
-    for _ in range(_AGAIN):
+    for _ in range(RULES.trace_copies):
         noisy = {k: v + noise.get(k, 0.0) * rng.standard_normal(len(v)) for k, v in curve.items()}
         for name, value in reduce(noisy).items():
             if name in copies:
@@ -224,7 +224,7 @@ def reduced(
     return {
         name: (best[name], float(np.std(values)))
         for name, values in copies.items()
-        if len(values) > 0.8 * _AGAIN
+        if len(values) > 0.8 * RULES.trace_copies
     }
 
 

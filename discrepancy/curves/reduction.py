@@ -8,11 +8,10 @@ from collections.abc import Mapping
 import numpy as np
 from numpy.typing import NDArray
 
+from ...recordings.rules import RULES as RECORDINGS
+
 Array = NDArray[np.float64]
 Numbers = dict[str, float]
-
-FEWEST = 5
-"""Samples within the contact that a number of the contact needs."""
 
 
 def from_trace(trace: Mapping[str, Array]) -> Numbers:
@@ -36,15 +35,15 @@ def _from_height(t: Array, h: Array) -> Numbers:
     before = np.flatnonzero(free & (np.arange(len(t)) < lowest))
     after = np.flatnonzero(free & (np.arange(len(t)) > lowest))
     found: Numbers = {}
-    if len(before) >= FEWEST and len(after) >= FEWEST:
+    if len(before) >= RECORDINGS.trace_samples and len(after) >= RECORDINGS.trace_samples:
         down, up = np.polyfit(t[before], h[before], 1), np.polyfit(t[after], h[after], 1)
         if down[0] < 0.0:
             found["restitution"] = float(-up[0] / down[0])
-            if len(inside) >= FEWEST:
+            if len(inside) >= RECORDINGS.trace_samples:
                 found["below_flat_s"] = float(-up[1] / up[0] + down[1] / down[0])
-    if len(inside) >= FEWEST:
+    if len(inside) >= RECORDINGS.trace_samples:
         near = inside[h[inside] < -0.6 * depth]
-        if len(near) >= FEWEST:
+        if len(near) >= RECORDINGS.trace_samples:
             found["peak_depth_m"] = -_extremum(t[near], h[near])[1]
     return found
 
@@ -57,11 +56,15 @@ def _from_force(t: Array, f: Array) -> Numbers:
         first -= 1
     while last < len(f) - 1 and f[last + 1] > level:
         last += 1
-    if last - first + 1 < FEWEST or first == 0 or last == len(f) - 1:
+    if last - first + 1 < RECORDINGS.trace_samples or first == 0 or last == len(f) - 1:
         return {}
     near = np.flatnonzero(f > 0.85 * f[top])
     near = near[(near >= first) & (near <= last)]
-    at, peak = _extremum(t[near], f[near]) if len(near) >= FEWEST else (t[top], float(f[top]))
+    at, peak = (
+        _extremum(t[near], f[near])
+        if len(near) >= RECORDINGS.trace_samples
+        else (t[top], float(f[top]))
+    )
     # yield makes the rise straight soon after the touch; the end is that of an elastic recovery
     start = foot(t[: top + 1], f[: top + 1], peak, power=1.0)
     end = foot(t[top:][::-1], f[top:][::-1], peak, power=2.0 / 3.0)
@@ -114,7 +117,7 @@ def from_profile(profile: Mapping[str, Array]) -> Numbers:
     level = z - np.polyval(line, x)
     low = int(np.argmin(level))
     near = np.flatnonzero(level < 0.7 * level[low])
-    if len(near) < FEWEST or level[low] >= 0.0:
+    if len(near) < RECORDINGS.trace_samples or level[low] >= 0.0:
         return {}
     return {"permanent_depth_m": -_extremum(x[near], level[near])[1]}
 

@@ -14,17 +14,11 @@ from ...impact.mechanisms.arithmetic import as_deep, deepest
 from ...impact.strength import strength_table
 from ..comparison.conditions import Condition
 from ..comparison.problem import Problem
+from ..rules import RULES
 
-_SPEEDS, _ANGLES = 5, 4
-"""Places over the tested range of speeds and of angles."""
-_RATIO = 2.0
-"""Size of a body to be built over that of the one there is, and one over it."""
-_NEAR, _SAME = math.radians(4.0), 1.05  # of angles and speeds that are one condition
-BENCH = (20.0, 5000.0)
+_NEAR = math.radians(4.0)  # of angles that are one condition
+BENCH = RULES.bench
 """Loads of a bench press or a small testing machine [N]."""
-_LOADS, _EACH, _WIDE = 4, 3, 1.5
-"""Loads of a series, presses at each, and the ratio of loads from which as many are worth it."""
-_BEYOND = 3.0  # of the loads that a striker was pressed to, on both sides
 
 
 @dataclass(frozen=True, eq=False)
@@ -81,19 +75,19 @@ def press_series(problem: Problem) -> list[PressSeries]:
                                 table.stated.force))  # fmt: skip
         if any(one.press is not None for one, _ in trials):
             # pressed already: what is new lies beyond
-            ends = ends * np.array([1.0 / _BEYOND, _BEYOND])
+            ends = ends * np.array([1.0 / RULES.press_beyond, RULES.press_beyond])
         low, high = np.clip(ends, *BENCH)
         if not ends[0] < BENCH[1] or not ends[1] > BENCH[0]:
             continue
-        few = _LOADS if high > _WIDE * low else 2
+        few = RULES.press_loads if high > RULES.press_wide * low else 2
         loads = [_round(x) for x in np.geomspace(low if few > 2 else low / 2.0, high, few)]
         pressed = tuple(at_load(c, scene, load) for load in loads)
         told = ", ".join(f"{load:g}" for load in loads[:-1])
         text = (
-            f"press {name} slowly on the same flat, each time on a fresh place, {_EACH} times each "
-            f"to {told} and {loads[-1]:g} N"
+            f"press {name} slowly on the same flat, each time on a fresh place, "
+            f"{RULES.press_each} times each to {told} and {loads[-1]:g} N"
         )
-        found.append(PressSeries(text, pressed, _EACH))
+        found.append(PressSeries(text, pressed, RULES.press_each))
     return found
 
 
@@ -136,10 +130,11 @@ def candidates_of(problem: Problem) -> list[Candidate]:
     if not own:
         return []
     speeds = [c.speed for tested in own.values() for c in tested]
-    places = np.geomspace(min(speeds), max(speeds), _SPEEDS)
+    places = np.geomspace(min(speeds), max(speeds), RULES.speeds_tried)
     fallen = any(c.around.from_height for c in problem.conditions)
     if not fallen and all(
-        max(c.speed for c in x) < _SAME * min(c.speed for c in x) for x in own.values()
+        max(c.speed for c in x) < RULES.same_condition * min(c.speed for c in x)
+        for x in own.values()
     ):
         # each striker has one speed, and no height that could be another: a spring gives it
         places = np.zeros(0)
@@ -162,7 +157,7 @@ def candidates_of(problem: Problem) -> list[Candidate]:
 
 def _alike(one: Condition, other: Condition) -> bool:
     """Whether a trial would repeat a condition."""
-    near = abs(math.log(one.speed / other.speed)) < math.log(_SAME)
+    near = abs(math.log(one.speed / other.speed)) < math.log(RULES.same_condition)
     return near and abs(one.incidence - other.incidence) < _NEAR
 
 
@@ -186,7 +181,7 @@ def _angles(problem: Problem, c: Condition, speed: float) -> Iterable[Candidate]
     )
     if len(near) < 2:
         return
-    for angle in np.linspace(near[0], near[-1], 2 * _ANGLES + 1):
+    for angle in np.linspace(near[0], near[-1], 2 * RULES.angles_tried + 1):
         if min(abs(angle - a) for a in near) > _NEAR:
             trial = _moved(c, speed).inclined(float(angle))
             text = f"{c.striker} at {math.degrees(angle):.0f} degrees and {speed:.2g} m/s"
@@ -197,7 +192,7 @@ def _built(striker: Mapping[str, float], name: str, c: Condition) -> Iterable[Ca
     """A rod of another length, a ball or a tip of another radius, with its own mass."""
     where = f"at {c.speed:.2g} m/s{_at(c)}"
     mass, length, shank = striker["mass_kg"], striker["length_m"], striker["radius_m"]
-    for ratio in (1.0 / _RATIO, _RATIO):
+    for ratio in (1.0 / RULES.build_ratio, RULES.build_ratio):
         radius = striker["tip_radius_m"] * ratio
         tip = {**striker, "tip_radius_m": radius}
         if length == 0.0:

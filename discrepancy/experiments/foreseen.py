@@ -22,13 +22,11 @@ from ..comparison.problem import Problem
 from ..inference.derivatives import FORMS, derivatives
 from ..inference.fit import Fit
 from ..inference.linear import Linear, Mixture
+from ..rules import RULES
 from ..unknowns.lawerror import SIZES
 
 Array = NDArray[np.float64]
 Ints = NDArray[np.intp]
-
-_SAMPLES = 12
-_DRAWS = 256
 
 
 @dataclass(frozen=True, eq=False)
@@ -91,7 +89,7 @@ def _samples(fitted: Fit, rng: np.random.Generator) -> list[Point]:
     if not fitted.mechanisms:
         return [Point(fitted.z)]
     places = fitted.grid.places()
-    chosen = rng.choice(len(places), size=_SAMPLES, p=fitted.weight)
+    chosen = rng.choice(len(places), size=RULES.rival_samples, p=fitted.weight)
     return [Point(fitted.z, fitted.grid.values(places[i])) for i in chosen]
 
 
@@ -137,7 +135,7 @@ def information(seen: Sequence[Foreseen], weight: Sequence[float]) -> float:
 def _spread_out(n: int) -> Array:
     """Standard normal draws (draws, n) without clumps."""
     return np.asarray(
-        MultivariateNormalQMC(np.zeros(n), rng=np.random.default_rng(0)).random(_DRAWS)
+        MultivariateNormalQMC(np.zeros(n), rng=np.random.default_rng(0)).random(RULES.noise_draws)
     )
 
 

@@ -25,25 +25,17 @@ from ..comparison.forward import Point, Simulator
 from ..comparison.problem import Problem
 from ..inference.fit import Fit
 from ..rank import Ranking
+from ..rules import RULES
 from .feasible import Candidate, PressSeries, candidates_of, leaves_no_mark, press_series
 from .foreseen import discrimination, foreseen, information
 
 Array = NDArray[np.float64]
 Ints = NDArray[np.intp]
 
-SHARE = 0.02
-"""Probability from which an explanation is a rival."""
-MOST = 4
-"""Rivals that are told apart."""
-LITTLE = 0.9
-"""Width of an interval, over that of today, above which a change is not worth its while."""
-_DECIDES = 1.0  # standard deviations by which rivals must differ for one trial to tell much
-_BUILD = 2.0  # what is to be built must bring as many times more than what is there
 _LARGE = ("build", "press")  # another body, or a dozen of presses, beside one more trial
-_PRESSED = {"permanent_depth_m": 0.02, "dent_diameter_m": 0.01}
+_PRESSED = dict(RULES.press_reading)
 """What is read of a proposed press, with the relative error of one reading: a stylus or a
 microscope, and a microscope with a scale."""
-_LAW_OF_RADIUS = 0.02  # of a dent's diameter, in a set whose law's error has none
 
 
 @unstated_equal
@@ -83,7 +75,7 @@ class Proposal:
         """What it would tell, in words."""
         found = []
         apart = math.sqrt(max(self.expected_discrimination, 0.0))
-        if apart >= _DECIDES:
+        if apart >= RULES.decides:
             found.append(
                 f"what is still confounded would lie about {apart:.1f} standard deviations apart"
             )
@@ -101,7 +93,7 @@ def rivals_of(ranking: Ranking, odds: Odds) -> list[tuple[Fit, float]]:
     """Return the explanations that share the probability, most probable first, and their shares."""
     shared = [(f, odds.probability[f.name]) for f in ranking.fits]
     shared = sorted(shared, key=lambda item: -item[1])
-    return [(f, p) for i, (f, p) in enumerate(shared[:MOST]) if i < 2 or p > SHARE]
+    return [(f, p) for i, (f, p) in enumerate(shared[: RULES.rivals]) if i < 2 or p > RULES.rival]
 
 
 def propose(
@@ -122,11 +114,11 @@ def propose(
     if len(rivals) < 2:
         return []
     found = _worth_of_each(simulator, rivals, rng)
-    found.sort(key=lambda p: -p.information / (_BUILD if p.kind in _LARGE else 1.0))
+    found.sort(key=lambda p: -p.information / (RULES.build_worth if p.kind in _LARGE else 1.0))
     best = rivals[0][0]
     if best.mechanisms:
         sharper = _sharper(simulator.problem, best)
-        if 1.0 - rivals[0][1] < SHARE:
+        if 1.0 - rivals[0][1] < RULES.rival:
             # nothing left to tell apart: what is left is to know the numbers better
             return [*sharper, *found]
         found += sharper
@@ -235,7 +227,7 @@ def _pressing(series: PressSeries) -> Proposal:
 
 def _press_noise(problem: Problem, name: str, each: int) -> float:
     """Standard error of what a series reads at one load, the load's own in it."""
-    law = _LAW_OF_RADIUS if name == "dent_diameter_m" and not problem.sees_dents else 0.0
+    law = RULES.dent_law_error if name == "dent_diameter_m" and not problem.sees_dents else 0.0
     load = LOAD_CLASS * OBSERVABLES[name].power
     return math.sqrt(_PRESSED[name] ** 2 / each + law**2 + load**2)
 
@@ -271,7 +263,7 @@ def _sharper(problem: Problem, best: Fit) -> list[Proposal]:
     found.sort(key=lambda p: p.interval)
     label = best.grid.labels[0]
     quiet = with_half_the_noise(total, noise, np.ones(len(noise), dtype=bool))
-    if _width(slopes, quiet) > LITTLE * today:
+    if _width(slopes, quiet) > RULES.worth_less * today:
         text = (
             f"nothing more to gain for {label} from better instruments or more repeats: the errors "
             "of the contact law and of the mechanism's form rule its interval"
@@ -311,7 +303,7 @@ def _noise(simulator: Simulator, name: str) -> float:
         return float(np.median(problem.cells.std[here]))
     row = OBSERVABLES[name]
     if name == "dent_diameter_m":
-        return math.hypot(row.usual_noise, _LAW_OF_RADIUS)
+        return math.hypot(row.usual_noise, RULES.dent_law_error)
     if row.log:
         return row.usual_noise
     seen = simulator.observe((), [Point(np.zeros(problem.n_z))])[name]

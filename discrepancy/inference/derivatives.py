@@ -11,21 +11,17 @@ from numpy.typing import NDArray
 from ...impact.mechanisms.base import Constants, Mechanism
 from ..comparison.forward import Point, Simulator
 from ..comparison.problem import Problem
+from ..rules import RULES
 from ..unknowns.covariates import nearness, same_observable
 from .linear import Linear, Sizes
 
 Array = NDArray[np.float64]
 
-STEP = 0.3
-_SPEED_STEP, _ANGLE_STEP = 0.01, 0.01
-FORM_SPREAD = 0.8
-"""Standard deviation of the logarithm of how far forms differ: a quarter of it or four times."""
 FORMS = Sizes(
-    tuple(math.exp(k * math.sqrt(3.0) * FORM_SPREAD) for k in (-1, 0, 1)), (1 / 6, 2 / 3, 1 / 6)
+    tuple(math.exp(k * math.sqrt(3.0) * RULES.form_spread) for k in (-1, 0, 1)),
+    (1 / 6, 2 / 3, 1 / 6),
 )
 """Of the error of a form: the three points of Gauss and Hermite."""
-_LENGTH, _ROUGH = 2.0, 0.1  # of the error of a form: correlation length, part without one
-_JUMPS = (0.02, 0.05, 0.1)  # of the parameter: how near a jump makes a cell unsure
 
 
 def measured_covariance(problem: Problem, by_speed: Array, by_angle: Array) -> Array:
@@ -70,8 +66,8 @@ def form_error(problem: Problem, effect: Array, share: float) -> Array:
     share
         Standard deviation, as a share of the effect.
     """
-    smooth = (1.0 - _ROUGH) * nearness(problem, _LENGTH)
-    alike = smooth * (0.5 + 0.5 * same_observable(problem)) + _ROUGH * np.eye(len(effect))
+    smooth = (1.0 - RULES.form_rough) * nearness(problem, RULES.form_length)
+    alike = smooth * (0.5 + 0.5 * same_observable(problem)) + RULES.form_rough * np.eye(len(effect))
     lower = np.linalg.cholesky(alike + 1e-9 * np.eye(len(effect)))
     return np.asarray(share * effect[:, None] * lower)
 
@@ -82,24 +78,24 @@ def derivatives(
     """Return prediction (m,) at z, and the algebra there."""
     problem = simulator.problem
     leaning = any(c.angle_spread > 0.0 for c in problem.conditions)
-    points = [Point(z, values), Point(z, values, faster=_SPEED_STEP)]
+    points = [Point(z, values), Point(z, values, faster=RULES.setting_step)]
     if leaning:
-        points.append(Point(z, values, steeper=-_ANGLE_STEP))
+        points.append(Point(z, values, steeper=-RULES.setting_step))
     first = len(points)
     # away from the bounds of the priors the sign of the step does not matter
     sign = np.where(z > 0.0, -1.0, 1.0)
     for i in range(len(z)):
         moved = z.copy()
-        moved[i] += STEP * sign[i]
+        moved[i] += RULES.step * sign[i]
         points.append(Point(moved, values))
     beside = len(points)
     points += [Point(z, v) for v in _beside(mechanisms, values)]
     found = simulator.predict(mechanisms, points)
     found, around = found[:beside], found[beside:]
     here = found[0]
-    by_speed = (found[1] - here) / _SPEED_STEP
-    by_angle = (found[2] - here) / -_ANGLE_STEP if leaning else np.zeros_like(here)
-    J = ((found[first:] - here) / (STEP * sign[:, None])).T
+    by_speed = (found[1] - here) / RULES.setting_step
+    by_angle = (found[2] - here) / -RULES.setting_step if leaning else np.zeros_like(here)
+    J = ((found[first:] - here) / (RULES.step * sign[:, None])).T
     noise = measured_covariance(problem, by_speed, by_angle)
     if not mechanisms:
         return here, Linear(noise, J)
@@ -158,7 +154,7 @@ def _beside(mechanisms: Sequence[Mechanism], values: Constants) -> list[Constant
     if not jumping:
         return []
     found: list[Constants] = []
-    for side in (sign * jump for jump in _JUMPS for sign in (-1.0, 1.0)):
+    for side in (sign * jump for jump in RULES.jumps for sign in (-1.0, 1.0)):
         moved = {m: {**values[m], p: values[m][p] * (1.0 + side)} for m, p in jumping}
         found.append({**values, **moved})
     return found

@@ -16,6 +16,7 @@ from numpy.typing import NDArray
 from ...impact.mechanisms.base import Mechanism, Situation
 from ..comparison.forward import Point, Simulator
 from ..comparison.problem import Problem
+from ..rules import RULES
 from ..unknowns.lawerror import SIZES
 from .derivatives import FORMS, derivatives
 from .grid import Axis, Grid, posterior
@@ -23,12 +24,6 @@ from .linear import Linear, Mixture
 from .together import refined
 
 Array = NDArray[np.float64]
-
-_ROUNDS = 4
-_SETTLED, _TURNED = 0.15, 0.08  # of the unknowns, and of the places in the priors
-_FARTHEST = 2.0  # of the unknowns within one round
-_PARTS = (0.0, 0.1, 0.25, 0.5, 1.0)  # of a step that are tried
-_LITTLE = 0.1  # of chi2, which no verdict hangs on
 
 
 @dataclass(frozen=True, eq=False)
@@ -106,7 +101,7 @@ def fit(
     *,
     start: Fit | None = None,
     place: Array | None = None,
-    rounds: int = _ROUNDS,
+    rounds: int = RULES.fit_rounds,
     effect: Array | None = None,
 ) -> Fit:
     """Fit an explanation.
@@ -178,8 +173,8 @@ def moved_towards(found: Fit, z: Array, place: Array) -> tuple[Array, bool]:
     moved = found.z - z
     shift = float(np.max(np.abs(moved), initial=0.0))
     turned = float(np.max(np.abs(found.place - place), initial=0.0))
-    after = z + moved * min(1.0, _FARTHEST / shift) if shift > 0.0 else z
-    return after, shift < _SETTLED and turned < _TURNED
+    after = z + moved * min(1.0, RULES.fit_farthest / shift) if shift > 0.0 else z
+    return after, shift < RULES.fit_settled and turned < RULES.fit_turned
 
 
 def tried_steps(
@@ -203,14 +198,14 @@ def tried_steps(
     whole, settled = moved_towards(found, z, place)
     if settled:
         return whole, found.place, True
-    tried = [(z, place), *((z + t * (whole - z), found.place) for t in _PARTS)]
+    tried = [(z, place), *((z + t * (whole - z), found.place) for t in RULES.fit_parts)]
     points = [Point(z, found.grid.values(place)) for z, place in tried]
     r = simulator.problem.cells.value - simulator.predict(found.mechanisms, points)
     prior = found.linear.prior if found.linear.prior.size else np.ones(len(z))
     away = np.array([np.sum((z / prior) ** 2) for z, _ in tried])
     badness = np.sum(r * np.linalg.solve(found.linear.measured, r.T).T, axis=1) + away
     best = int(np.argmin(badness))
-    return *tried[best], bool(badness[0] - badness[best] < _LITTLE)
+    return *tried[best], bool(badness[0] - badness[best] < RULES.fit_little)
 
 
 def grid_of(problem: Problem, mechanisms: Sequence[Mechanism]) -> Grid:

@@ -15,13 +15,14 @@ from scipy.interpolate import CubicSpline
 from scipy.special import logsumexp
 
 from ...impact.mechanisms.base import Constants, Parameter
+from ..rules import RULES
 
 Array = NDArray[np.float64]
 
 
-FINE = {1: 241, 2: 49, 3: 17, 4: 11, 5: 7}
+FINE = dict(RULES.grid_places)
 """Points per parameter of the refined grid, by the number of parameters; 5 for more."""
-IN_WINDOW = {1: 5, 2: 5, 3: 3, 4: 3}
+IN_WINDOW = dict(RULES.window_nodes)
 """Least nodes per parameter of a grid over a part of the prior, by the number of parameters; 2 for
 more: over a window the response is nearly straight."""
 

@@ -15,14 +15,12 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ..comparison.problem import Problem
+from ..rules import RULES
 from .fit import Fit
 
 Array = NDArray[np.float64]
 
-LIMIT, SHARE, WIDER = 4.0, 1.0 / 16.0, 30.0
-_APART = 10.0  # between presses and impacts, which are no neighbours
-ALONE = 2.0
-"""A neighbour that is as many standard deviations off to the same side speaks for a value."""
+WIDER = RULES.outlier_wider
 
 
 def outlying(problem: Problem, judge: Fit) -> NDArray[np.bool_]:
@@ -40,18 +38,18 @@ def outlying(problem: Problem, judge: Fit) -> NDArray[np.bool_]:
     backed = np.zeros(len(residual), dtype=bool)
     own = np.diag(judge.linear.noise)
     near = _neighbours(problem)
-    most = max(int(SHARE * len(residual)), 1)
+    most = max(int(RULES.outlier_share * len(residual)), 1)
     while found.sum() < most:
         inverse = np.linalg.inv(total + np.diag(np.where(found, WIDER**2 * own, 0.0)))
         score = inverse @ residual / np.sqrt(np.diag(inverse))
         worst = int(np.argmax(np.where(found | backed, 0.0, np.abs(score))))
-        if abs(score[worst]) < LIMIT or found[worst] or backed[worst]:
+        if abs(score[worst]) < RULES.outlier or found[worst] or backed[worst]:
             break
         # without this value: do its neighbours lean the same way?
         without = np.linalg.inv(total + np.diag(np.where(found, WIDER**2 * own, 0.0))
                                 + _wide(worst, own))  # fmt: skip
         others = without @ residual / np.sqrt(np.diag(without)) * np.sign(score[worst])
-        if np.any(others[near[worst]] > ALONE):
+        if np.any(others[near[worst]] > RULES.alone):
             backed[worst] = True
         else:
             found[worst] = True
@@ -68,7 +66,10 @@ def _neighbours(problem: Problem) -> list[NDArray[np.intp]]:
     """For each cell the two of the same observable and striker that are nearest in condition."""
     cells, conditions = problem.cells, problem.conditions
     place = np.array([
-        [np.log(c.speed), 2.0 * c.angle, c.tangential / c.speed, _APART * (c.press is not None)]
+        [
+            np.log(c.speed), 2.0 * c.angle, c.tangential / c.speed,
+            RULES.press_apart * (c.press is not None),
+        ]
         for c in conditions
     ])  # fmt: skip
     found = []

@@ -23,12 +23,10 @@ from scipy.special import logsumexp
 
 from ..comparison.forward import Point, Simulator
 from ..rank import Progress
+from ..rules import RULES
 from .fit import Fit
 
 Array = NDArray[np.float64]
-
-PARTICLES, MOVES = 160, 3
-_STEP, _LEAST = 0.5, 0.5
 
 
 @dataclass(eq=False)
@@ -88,29 +86,29 @@ def sampled_evidence(simulator: Simulator, fitted: Fit, rng: np.random.Generator
         return np.asarray(np.nan_to_num(log_p - log_q + constant, nan=-1e9))
 
     n = len(lower)
-    index = rng.choice(len(places), size=PARTICLES, p=fitted.weight)
-    offset = rng.standard_normal((PARTICLES, n))
+    index = rng.choice(len(places), size=RULES.particles, p=fitted.weight)
+    offset = rng.standard_normal((RULES.particles, n))
     swarm = _Swarm(index, offset, log_ratio(index, offset))
     done, total = 0.0, 0.0
     while done < 1.0:
         step = _next_step(swarm.log_ratio, 1.0 - done)
         weight = step * swarm.log_ratio
-        total += float(logsumexp(weight)) - math.log(PARTICLES)
+        total += float(logsumexp(weight)) - math.log(RULES.particles)
         done += step
         chosen = _resample(weight, rng)
         swarm = _Swarm(swarm.index[chosen], swarm.offset[chosen], swarm.log_ratio[chosen])
         if done >= 1.0:
             break
-        for move in range(MOVES):
+        for move in range(RULES.moves):
             fresh = move == 0 and len(places) > 1
             index, offset = swarm.index, swarm.offset
             if fresh:
-                index = rng.choice(len(places), size=PARTICLES, p=fitted.weight)
+                index = rng.choice(len(places), size=RULES.particles, p=fitted.weight)
             else:
-                kick = rng.standard_normal((PARTICLES, n))
-                offset = math.sqrt(1.0 - _STEP**2) * offset + _STEP * kick
+                kick = rng.standard_normal((RULES.particles, n))
+                offset = math.sqrt(1.0 - RULES.sample_step**2) * offset + RULES.sample_step * kick
             ratio = log_ratio(index, offset)
-            take = np.log(rng.random(PARTICLES)) < done * (ratio - swarm.log_ratio)
+            take = np.log(rng.random(RULES.particles)) < done * (ratio - swarm.log_ratio)
             swarm = _Swarm(
                 np.where(take, index, swarm.index),
                 np.where(take[:, None], offset, swarm.offset),
@@ -128,12 +126,12 @@ def _next_step(log_ratio: Array, most: float) -> float:
         w = step * log_ratio
         return math.exp(2.0 * float(logsumexp(w)) - float(logsumexp(2.0 * w))) / len(w)
 
-    if effective(most) >= _LEAST:
+    if effective(most) >= RULES.sample_left:
         return most
     low, high = 0.0, most
     for _ in range(40):
         middle = 0.5 * (low + high)
-        low, high = (middle, high) if effective(middle) >= _LEAST else (low, middle)
+        low, high = (middle, high) if effective(middle) >= RULES.sample_left else (low, middle)
     return max(low, 1e-4)
 
 

@@ -15,12 +15,10 @@ from numpy.typing import NDArray
 
 from ...impact.mechanisms.base import Mechanism
 from ..comparison.forward import Point, Simulator
+from ..rules import RULES
 from .grid import Grid, along_all
 
 Array = NDArray[np.float64]
-
-TENSOR = 4
-"""Parameters of a pair up to which all nodes of both are simulated."""
 
 
 def split(grid: Grid, mechanisms: Sequence[Mechanism]) -> tuple[Grid, Grid]:
@@ -79,8 +77,9 @@ def refined(
 ) -> Array:  # fmt: skip
     """Return predictions over the refined grid, (k, m), from simulated nodes.
 
-    Of two mechanisms with more than `TENSOR` parameters over a window, each is simulated at its own
-    nodes and both at the window's corners; the sum is brought to the prediction at the place.
+    Of two mechanisms with more than `RULES.tensor` parameters over a window, each is simulated at
+    its own nodes and both at the window's corners; the sum is brought to the prediction at the
+    place.
 
     Parameters
     ----------
@@ -89,7 +88,7 @@ def refined(
     place, here
         A place (axes,), and the prediction there (m,).
     """
-    if len(mechanisms) != 2 or len(grid.axes) <= TENSOR or not grid.window:
+    if len(mechanisms) != 2 or len(grid.axes) <= RULES.tensor or not grid.window:
         return grid.refine(responses_at(simulator, mechanisms, grid, z))
     one, two = split(grid, mechanisms)
     n = len(one.axes)

@@ -6,14 +6,11 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ..comparison.forward import Simulator
+from ..rules import RULES
 from .fit import Fit, expand, tried_steps
 from .grid import Grid
 
 Array = NDArray[np.float64]
-
-# places of the refined grid in a standard deviation that need no window; its half width, in those
-_RESOLVED, _WINDOW = 2.0, 4.0
-_NODE = 0.25  # of a prior's range: nodes farther apart stand for a response that is nearly straight
 
 
 def sharpened(simulator: Simulator, fitted: Fit, *, rounds: int = 8) -> Fit:
@@ -35,11 +32,11 @@ def sharpened(simulator: Simulator, fitted: Fit, *, rounds: int = 8) -> Fit:
     grid, z, place = fitted.grid, fitted.z, fitted.place
     spread = _spread(fitted)
     share = np.array([1.0 / len(f) for f in grid.fine])
-    node = np.array([min(1.0 / (len(c) - 1), _NODE) for c in grid.coarse])
+    node = np.array([min(1.0 / (len(c) - 1), RULES.node_apart) for c in grid.coarse])
     jumps = any(m.jumps for m in fitted.mechanisms)
-    if np.all(spread > np.maximum(_RESOLVED * share, node)) and not jumps:
+    if np.all(spread > np.maximum(RULES.resolved * share, node)) and not jumps:
         return fitted
-    half = np.maximum(_WINDOW * spread, 2.5 * share)
+    half = np.maximum(RULES.window * spread, 2.5 * share)
     best = None
     for _ in range(max(rounds, 1)):
         low, high = np.maximum(place - half, 0.0), np.minimum(place + half, 1.0)
@@ -55,7 +52,7 @@ def sharpened(simulator: Simulator, fitted: Fit, *, rounds: int = 8) -> Fit:
             | ((found.place > high - 0.1 * wide) & (high < 1.0))
         )  # fmt: skip
         z, place, settled = tried_steps(simulator, found, z, place)
-        narrow = _WINDOW * _spread(found)
+        narrow = RULES.window * _spread(found)
         if not outward.any() and np.all(narrow > 0.3 * half) and settled:
             break
         half = np.where(outward, 1.6 * half, np.clip(narrow, 0.1 * half, half))

@@ -27,6 +27,7 @@ from ..comparison.forward import Point, Simulator
 from ..comparison.problem import Problem, problem_of
 from ..experiments.feasible import BENCH
 from ..inference.derivatives import measured_covariance
+from ..rules import RULES
 from ..unknowns.lawerror import SIZES
 from .flow import STRAINS, FlowCurveOfMarks, curve_values
 from .next_mark import TOLD, NextMark, next_mark, with_marks
@@ -34,22 +35,15 @@ from .next_mark import TOLD, NextMark, next_mark, with_marks
 Array = NDArray[np.float64]
 
 MARKS = ("permanent_depth_m", "dent_diameter_m", "press_depth_m", "recovered_depth_m")
-LEVEL = 0.90
+LEVEL = RULES.level
 """Probability of the intervals."""
-EXPONENT, EXPONENT_SPREAD, EXPONENT_LENGTH = 0.12, 0.12, 1.5
-"""Prior of d ln stress/d ln strain: none (cold-worked) to 0.4 (annealed copper, 304), and the
-distance in ln strain over which it changes."""
-RATE = {"rise_at_1000_per_s": (0.3, 0.4), "rate_exponent": (0.15, 0.08),
-        "strength_kept": (0.87, 0.08)}  # fmt: skip
+RATE = dict(RULES.rate_priors)
 """Priors of the rate law, mean and standard deviation: C of Johnson and Cook gives rises of 0.1 to
 0.4, Cowper and Symonds' mild steel 1.9; what is kept is the range of strain-rate-hardening."""
-VAGUE = 0.15
+VAGUE = RULES.vague
 """Standard deviation of ln stress, and of the rise, from which a set does not identify it."""
 
-_STEP, _ROUNDS, _FARTHEST, _SETTLED = 0.1, 10, 2.5, 0.03
-_NEAR = 0.4  # prior deviations of a step below which the derivatives stay
 _FROZEN = 1e-9  # prior deviation of what the curve itself stands for
-_FASTER = 0.01
 
 
 @dataclass(frozen=True, eq=False)
@@ -241,14 +235,16 @@ class _Fit:
         seen = {problem.cells.condition[i] for i in range(known)}
         rated = any(problem.conditions[k].press is None for k in seen)
         rate = rate_prior(problem.conditions[0].around.rises) if rated else np.zeros((0, 2))
-        prior = np.concatenate([[0.0], np.full(n, EXPONENT), rate[:, 0], np.zeros(problem.n_z)])
-        alike = np.exp(-0.5 * ((nodes[:, None] - nodes[None, :]) / EXPONENT_LENGTH) ** 2)
+        prior = np.concatenate(
+            [[0.0], np.full(n, RULES.exponent), rate[:, 0], np.zeros(problem.n_z)]
+        )
+        alike = np.exp(-0.5 * ((nodes[:, None] - nodes[None, :]) / RULES.exponent_length) ** 2)
         sheet = [_FROZEN if m.name == body else 1.0 for m in problem.nuisances]
         spread = np.diag(np.concatenate([
             [first**2], np.zeros(n), rate[:, 1] ** 2, np.square(sheet),
             np.ones(problem.error.count),
         ]))  # fmt: skip
-        spread[1 : n + 1, 1 : n + 1] = EXPONENT_SPREAD**2 * alike
+        spread[1 : n + 1, 1 : n + 1] = RULES.exponent_spread**2 * alike
         # the logarithm of stress is the integral of its exponent
         step = 0.5 * np.diff(nodes)
         integral = np.zeros((n, n))
@@ -281,12 +277,12 @@ class _Fit:
 
     def linear(self, u: Array) -> tuple[Array, Array, Array]:
         """Return predictions (m,), derivatives (m, n) and noise (m, m) at the unknowns."""
-        size = _STEP * np.sqrt(np.diag(self.spread))
+        size = RULES.metal_step * np.sqrt(np.diag(self.spread))
         moved = u + np.diag(size)
-        points = [self.point(u), self.point(u, faster=_FASTER), *map(self.point, moved)]
+        points = [self.point(u), self.point(u, faster=RULES.rate_step), *map(self.point, moved)]
         found = Simulator(self.problem).predict(self.mechanisms, points)
         J = ((found[2:] - found[0]) / size[:, None]).T
-        by_drive = (found[1] - found[0]) / _FASTER
+        by_drive = (found[1] - found[0]) / RULES.rate_step
         noise = measured_covariance(self.problem, by_drive, np.zeros_like(by_drive))
         return found[0], J, noise
 
@@ -295,8 +291,8 @@ class _Fit:
         u, k = self.prior.copy(), self.known
         sd = np.sqrt(np.diag(self.spread))
         far = math.inf
-        for _ in range(_ROUNDS):
-            if far > _NEAR:
+        for _ in range(RULES.metal_rounds):
+            if far > RULES.metal_near:
                 here, J, noise = self.linear(u)
             else:
                 here = Simulator(self.problem).predict(self.mechanisms, [self.point(u)])[0]
@@ -306,8 +302,8 @@ class _Fit:
             share = np.exp(said - logsumexp(said))
             step = sum(w * f[0] for w, f in zip(share, found, strict=True)) + self.prior - u
             far = float(np.max(np.abs(step) / sd))
-            u = u + step * min(1.0, _FARTHEST / far)
-            if far < _SETTLED:
+            u = u + step * min(1.0, RULES.metal_farthest / far)
+            if far < RULES.metal_settled:
                 break
         middle = u - self.prior
         cov = sum(

@@ -13,16 +13,15 @@ from scipy.stats import norm
 
 from ...core.inputs.flow_curve import COLUMNS
 from ...core.output import csv_text, write_figure, write_file
+from ..rules import RULES
 from .estimate import LEVEL, Metal
 from .flow import STRAINS
 from .next_mark import TOLD
 
-_ROWS = 12
-
 
 def curve_strains(metal: Metal) -> np.ndarray:
     """Return the plastic strains of the written curve: from 0.2 % to the deepest mark."""
-    return np.geomspace(STRAINS[0], max(metal.covered[1], 2.0 * STRAINS[0]), _ROWS)
+    return np.geomspace(STRAINS[0], max(metal.covered[1], 2.0 * STRAINS[0]), RULES.curve_rows)
 
 
 def content_of(metal: Metal) -> dict[str, Any]:

@@ -21,6 +21,7 @@ from ...impact.mechanisms.base import Array, Mechanism, Parameter, Surroundings,
 from ...models import LAWS
 from ...models.anchored import anchored
 from ...models.base import ContactLaw, remembering
+from ...models.rules import RULES as MODELS
 
 if TYPE_CHECKING:
     from ...models.fitted import ClosedForm
@@ -28,7 +29,6 @@ if TYPE_CHECKING:
 STRAINS = np.geomspace(0.002, 0.15, 7)
 """Representative strains of the curve's nodes: the proof strain's, to where a ball is half sunk."""
 
-_DEEPEST = 0.6  # Delta/R to which the law of metals that harden is followed
 _FITTED = cast("ClosedForm", LAWS["fitted"])
 _NAMES = tuple(f"log_stress_{k}" for k in range(len(STRAINS)))
 
@@ -64,7 +64,14 @@ def _law_of(pair: Pair, logs: tuple[float, ...]) -> ContactLaw:
     body = plain.with_(Sy=curve.strength, flow=Flow(curve))
     metal = replace(pair, flat=body) if in_flat else replace(pair, sphere=body)
     return remembering(
-        anchored(_FITTED, LAWS["hardening"], at=metal, stated=pair, deepest=_DEEPEST, hardens=True)
+        anchored(
+            _FITTED,
+            LAWS["hardening"],
+            at=metal,
+            stated=pair,
+            deepest=MODELS.law_last,
+            hardens=True,
+        )
     )
 
 

@@ -10,14 +10,13 @@ from numpy.typing import NDArray
 
 from ..comparison.problem import Problem
 from ..experiments.feasible import at_load, strikers_scenes
+from ..rules import RULES
 
 Array = NDArray[np.float64]
 
-TOLD = (0.02, 0.05, 0.10)
+TOLD = RULES.strains_told
 """Plastic strains at which the stress is told."""
-_READ = {"permanent_depth_m": 0.02, "dent_diameter_m": 0.01}
-_LOADS, _DEEPEST = 8, 0.3  # presses that are tried with each striker, to this Delta/R
-_WORTH = 0.9  # of the summed variances: less of a gain is not worth a press
+_READ = dict(RULES.press_reading)
 
 
 @dataclass(frozen=True, slots=True)
@@ -34,7 +33,7 @@ def with_marks(problem: Problem, bench: tuple[float, float]) -> Problem:
     """Return the problem with presses that could be made behind its own cells."""
     conditions, new = list(problem.conditions), []
     for c, scene in strikers_scenes(problem):
-        for load in np.geomspace(*bench, _LOADS):
+        for load in np.geomspace(*bench, RULES.mark_loads):
             one = at_load(c, scene, float(f"{load:.2g}"))
             new += [(len(conditions), name) for name in _READ]
             conditions.append(one)
@@ -81,4 +80,4 @@ def next_mark(
                 tuple(map(math.sqrt, np.maximum(left, 0.0))),
             )  # fmt: skip
             best = float(left.sum()), told
-    return best[1] if best is not None and best[0] < _WORTH * before.sum() else None
+    return best[1] if best is not None and best[0] < RULES.worth_less * before.sum() else None

@@ -10,13 +10,10 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
+from ..rules import RULES
 from .laws import NullCurve
 
 Array = NDArray[np.float64]
-
-_STEPS_TO_STOP = 120.0  # 4e-5 in restitution, 2e-4 in force off the limit
-_MOST_STEPS = 6000
-_SMOOTH = 0.01  # of the approach speed: below it friction fades
 
 
 @dataclass(frozen=True, eq=False)
@@ -152,9 +149,9 @@ def collide(bodies: NullBodies, curves: Sequence[NullCurve]) -> dict[str, Array]
     """Return the observables of n impacts, each of shape (n,)."""
     contacts = _Contacts.of(curves, bodies.given_back)
     reduced = 1.0 / (1.0 / bodies.mass + bodies.beside * bodies.beside / bodies.inertia)
-    h = contacts.stopping_depth(reduced, bodies.normal) / bodies.normal * (1.6 / _STEPS_TO_STOP)
+    h = contacts.stopping_depth(reduced, bodies.normal) / bodies.normal * (1.6 / RULES.null_steps)
     s = _State.touching(bodies)
-    for _ in range(_MOST_STEPS):
+    for _ in range(RULES.null_most_steps):
         s = _stepped(s, bodies, contacts, h)
         if not s.live.any():
             break
@@ -189,7 +186,7 @@ def collide(bodies: NullBodies, curves: Sequence[NullCurve]) -> dict[str, Array]
 def _stepped(s: _State, bodies: NullBodies, contacts: _Contacts, h: Array) -> _State:
     """Return the state after a step h; those that have parted stay as they are."""
     m, inertia, beside, above = bodies.mass, bodies.inertia, bodies.beside, bodies.above
-    mu, eps = bodies.friction, _SMOOTH * bodies.normal
+    mu, eps = bodies.friction, RULES.null_smooth * bodies.normal
     # the forces in the middle of the step, from a half step ahead
     half = 0.5 * h * s.live
     middle = s.depth + half * (-s.vy + s.spin * beside)

@@ -18,6 +18,7 @@ from matplotlib.ticker import FuncFormatter, LogLocator, MaxNLocator, NullFormat
 
 from ...core.observables import OBSERVABLES
 from ..correction import Correction
+from ..rules import RULES
 from .series import STATED, WITH, WITHOUT, Against, SeriesPoint
 
 COLOURS = {"#010101": "ink", "#020202": "faint", "#030303": "without", "#040404": "verdict"}
@@ -46,7 +47,6 @@ _STYLE = {
     "text.color": _INK, "axes.labelcolor": _INK, "axes.edgecolor": _FAINT, "xtick.color": _INK,
     "ytick.color": _INK, "grid.color": _FAINT, "grid.alpha": 0.25, "axes.linewidth": 0.8,
 }  # fmt: skip
-_ASIDE = 0.012  # of the axis, between what is drawn for one number by two simulations
 
 
 def comparison(
@@ -131,8 +131,8 @@ def _simulated(p: SeriesPoint) -> tuple[float, float, float]:
 def _sideways(x: np.ndarray, *, log: bool) -> float:
     """By how much the fitted simulations stand apart: a factor, or 1 plus a length."""
     if log:
-        return float((x.max() / x.min()) ** _ASIDE) if np.ptp(x) else 1.01
-    return 1.0 + _ASIDE * float(np.ptp(x) or abs(x[0]) or 1.0)
+        return float((x.max() / x.min()) ** RULES.drawn_apart) if np.ptp(x) else 1.01
+    return 1.0 + RULES.drawn_apart * float(np.ptp(x) or abs(x[0]) or 1.0)
 
 
 def _axis(axis: Axes, which: str, values: np.ndarray, *, log: bool) -> None:

@@ -10,6 +10,7 @@ import numpy as np
 
 from ...core.observables import OBSERVABLES
 from ..findings import Verdict
+from ..rules import RULES
 from .series import Against, SeriesPoint, againsts, points_of, series_of
 from .text import headline, nowhere, own_parameters
 from .wording import (
@@ -23,9 +24,6 @@ from .wording import (
     quantity,
     title_of,
 )
-
-_SHOWN = 8
-_LEAST = 0.005  # a probability below this is not worth a line
 
 
 class Bar(NamedTuple):
@@ -120,14 +118,16 @@ def story_of(v: Verdict) -> Story:
         points=points_of(v),
         against=againsts(v),
         strikers=tuple(dict.fromkeys(series_of(c) for c in v.problem.conditions)),
-        misses=miss_sentences(v.located, most=_SHOWN),
+        misses=miss_sentences(v.located, most=RULES.story_rows),
         nowhere=nowhere(v),
         audit=tuple(str(a["message"]) for a in v.audit),
         reasons=v.reasons,
         notes=tuple(n for n in v.notes if n),
-        parts=tuple(Bar(f"{title_of(k)} ({k})", p) for k, p in v.inclusion.items() if p >= _LEAST),
+        parts=tuple(
+            Bar(f"{title_of(k)} ({k})", p) for k, p in v.inclusion.items() if p >= RULES.story_least
+        ),
         explanations=tuple(
-            Bar(explanation(k), p) for k, p in v.probabilities.items() if p >= _LEAST
+            Bar(explanation(k), p) for k, p in v.probabilities.items() if p >= RULES.story_least
         ),
         found=_found(v),
         prediction=_prediction(v),

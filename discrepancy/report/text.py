@@ -8,6 +8,7 @@ from typing import Any
 from ...core.observables import OBSERVABLES
 from ..choice.odds import OUTSIDE, SURE
 from ..findings import Verdict
+from ..rules import RULES
 from .wording import (
     compared,
     explanation,
@@ -18,9 +19,6 @@ from .wording import (
     quantity,
     title_of,
 )
-
-_LEADING = 3
-"""Explanations that the finding names where nothing is decided."""
 
 
 def headline(v: Verdict) -> str:
@@ -54,7 +52,7 @@ def headline(v: Verdict) -> str:
     sure = f"Something is missing ({percent(missing)}), but " if missing > SURE else ""
     if any(reason.startswith("too few") for reason in v.reasons):
         return f"{sure}too few data to say what." if sure else "Too few data to say."
-    leads = list(v.probabilities.items())[:_LEADING]
+    leads = list(v.probabilities.items())[: RULES.named_leading]
     likely = ", ".join(f"{explanation(name)} {percent(p)}" for name, p in leads)
     unclear = (
         f"{sure}these data do not say what."

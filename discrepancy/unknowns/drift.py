@@ -15,12 +15,9 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.stats import t as student
 
+from ..rules import RULES
+
 Array = NDArray[np.float64]
-
-FALSE_ALARMS = 1e-3
-"""Part of sets without a drift in which one is seen, over all observables."""
-
-_FEWEST = 6
 
 
 @dataclass(frozen=True, slots=True)
@@ -65,7 +62,7 @@ def drift_of(
         y.append(value - np.average(value, weights=weight))
         s.append(std)
     free = sum(len(one) - 1 for one in x) - 1
-    if free < _FEWEST:
+    if free < RULES.drift_readings:
         return None
     place, change, std = np.concatenate(x), np.concatenate(y), np.concatenate(s)
     spread = float(np.sum((place / std) ** 2))
@@ -74,5 +71,5 @@ def drift_of(
     slope = float(np.sum(place * change / std**2)) / spread
     scatter = float(np.sum(((change - slope * place) / std) ** 2)) / free
     z = slope * math.sqrt(spread / max(scatter, 1.0))
-    sure = 2.0 * float(student.sf(abs(z), free)) < FALSE_ALARMS / observables
+    sure = 2.0 * float(student.sf(abs(z), free)) < RULES.false_alarms / observables
     return Drift(observable, slope, z) if sure else None

@@ -16,9 +16,11 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.stats import f as fisher
 
+from ..rules import RULES
+
 Array = NDArray[np.float64]
 
-FALSE_ALARMS = 1e-3
+FALSE_ALARMS = RULES.false_alarms
 """Part of sets in which one is seen by chance, over all observables and columns."""
 
 _SURE_OF = 10**6  # degrees of freedom of a stated noise where entries have no repeats of their own

@@ -35,21 +35,19 @@ from ...models.anchored import AnchoredLaw
 from ...models.base import DomainWarning
 from ...models.uncertainty import METAL, RECOVERY_EXPONENT, WITH_CURVE
 from ..inference.linear import Sizes
+from ..rules import RULES
 
 Array = NDArray[np.float64]
 
-SIZE_SPREAD = 0.4
+SIZE_SPREAD = RULES.size_spread
 """Standard deviation of the logarithm of the size of all this: a metal's 3 % may be 1.5 or 6."""
 SIZES = Sizes(
     tuple(math.exp(k * math.sqrt(3.0) * SIZE_SPREAD) for k in (-1, 0, 1)), (1 / 6, 2 / 3, 1 / 6)
 )
 """Of the law's error: the three points of Gauss and Hermite."""
-FREE = {
-    "force": 0.16, "recovery": 0.5, "recovery exponent": 0.5, "crater": 0.24, "radius": 0.1,
-}  # fmt: skip
+FREE = dict(RULES.free_law)
 """Standard deviations of a contact law that is free: what something unknown may make of it."""
 
-_LENGTH = 2.5  # correlation length in ln(depth/R)
 _KINDS = ("force", "recovery", "recovery exponent", "crater", "radius")
 _GRID = np.linspace(LOG_DEPTH_FIRST, LOG_DEPTH_LAST, NODES)
 # Depths that impacts reach; outside, the components stay at their end values.
@@ -234,7 +232,7 @@ def law_error(scenes: Mapping[str, Sequence[Scene]], *, dents: bool = False) -> 
         Whether the contact's radius is compared.
     """
     spreads = {name: _spread(found) for name, found in scenes.items()}
-    smooth = components(_LENGTH)
+    smooth = components(RULES.law_length)
     lost = max(float(np.max(s.metal["recovery"])) for s in spreads.values())
     radius = smooth if dents else _NONE
     if lost == 0.0:

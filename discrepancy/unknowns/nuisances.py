@@ -12,16 +12,15 @@ from ...core.observables import LOAD
 from ...core.rig import BodyTable, Quantity
 from ...recordings import RecordingSet
 from ..comparison.conditions import LOAD_CLASS, SPEED_FROM_HEIGHT, SPEED_MEASURED, Condition
+from ..rules import RULES
 
-ASSUMED_E, ASSUMED_NU = 2e11, 0.3
+ASSUMED_E = RULES.assumed_modulus
+ASSUMED_NU = RULES.assumed_poisson
 """Modulus [Pa] and Poisson's ratio of a body of which the set says nothing."""
 GAUGE = "gauge."
 """Begins the name of a scale that all readings of an observable share."""
 LOAD_SCALE = GAUGE + LOAD
 RIM_SCALE = "dent.rim"
-RIM, RIM_SPREAD = 1.05, 0.03
-"""Diameter of a dent's rim over that of its contact circle: the crest of a pile-up stands outside
-the edge. Within what finite elements of metals from perfectly plastic to n = 0.3 give."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -108,10 +107,10 @@ def _gauges(recordings: RecordingSet, pressed: bool) -> list[Nuisance]:
         found.append(Nuisance(LOAD_SCALE, "-", 1.0, spread, stated=LOAD in gauge))
     if "dent_diameter_m" in recordings.observed and recordings.setup.dent_edge == "rim":
         note = (
-            f"dents are measured at their rim: {RIM:g} times the contact's diameter, within "
-            f"{100.0 * RIM_SPREAD:.0f} %, is assumed"
+            f"dents are measured at their rim: {RULES.rim:g} times the contact's diameter, within "
+            f"{100.0 * RULES.rim_spread:.0f} %, is assumed"
         )
-        found.append(Nuisance(RIM_SCALE, "-", RIM, RIM_SPREAD, stated=False, note=note))
+        found.append(Nuisance(RIM_SCALE, "-", RULES.rim, RULES.rim_spread, stated=False, note=note))
     return found
 
 

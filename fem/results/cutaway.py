@@ -11,12 +11,11 @@ import numpy.typing as npt
 
 from ...core.output import write_file
 from ...core.rendering import offscreen_available, offscreen_plotter
+from ..rules import RULES
 from ..solution import Snapshot
 
 Floats = npt.NDArray[np.float64]
 
-_TURN = 270.0  # degrees that are left of the bodies
-_STEPS = 90
 _LABEL = "von Mises stress over the weaker body's strength"
 
 
@@ -51,7 +50,7 @@ def draw_cutaway(snapshot: Snapshot, path: Path, *, Sy_min: float, extent: float
     plotter = offscreen_plotter(1200, 1000)
     for body in (near & first, near & ~first):
         section = _section(pyvista, points, snapshot.quads[body], stress[body])
-        for face in (section, section.rotate_z(_TURN)):
+        for face in (section, section.rotate_z(RULES.turn_left)):
             plotter.add_mesh(
                 face, scalars=_LABEL, cmap="turbo", clim=limits, lighting=False,
                 scalar_bar_args={
@@ -61,7 +60,9 @@ def draw_cutaway(snapshot: Snapshot, path: Path, *, Sy_min: float, extent: float
                 },
             )  # fmt: skip
         skin = section.extract_feature_edges(feature_edges=False, manifold_edges=False)
-        turned = skin.extrude_rotate(resolution=_STEPS, angle=_TURN, capping=False)
+        turned = skin.extrude_rotate(
+            resolution=RULES.turn_steps, angle=RULES.turn_left, capping=False
+        )
         plotter.add_mesh(turned, color="lightgrey", smooth_shading=True)
     plotter.set_background("white")
     plotter.camera_position = [(3.9, -2.5, 2.0), (0.0, 0.0, -0.2), (0.0, 0.0, 1.0)]

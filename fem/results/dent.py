@@ -8,9 +8,8 @@ from typing import Any
 import numpy as np
 
 from ...core.output import csv_text, write_figure, write_file
+from ..rules import RULES
 from ..solution import Profile, Unloading
-
-_LEAST = 1e-3  # of the permanent approach: a body that keeps less shows nothing
 
 
 def write_dent(unloading: Unloading, path: Path) -> Path:
@@ -49,8 +48,8 @@ def draw_dent(
 
     u = unloading
     keeps = {
-        "flat": u.residual_flat > _LEAST * u.residual,
-        "sphere": u.residual_sphere > _LEAST * u.residual,
+        "flat": u.residual_flat > RULES.least_dent * u.residual,
+        "sphere": u.residual_sphere > RULES.least_dent * u.residual,
     }
     bodies = [name for name, kept in keeps.items() if kept] or ["flat"]
     figure = Figure(figsize=(8.0, 3.6 * len(bodies)), layout="constrained")

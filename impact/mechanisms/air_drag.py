@@ -12,13 +12,11 @@ import numpy as np
 
 from ...core.drag import DRAG_COEFFICIENT_STD, Fluid, air
 from ..drag import flown
+from ..rules import RULES
 from ..scene import Scene, Striker
 from .base import Array, Literature, Mechanism, Parameter, Situation, Surroundings, Values
 
 _GASES = ("", "air", "none", "dry", "nitrogen")
-_VISIBLE = 5e-4
-"""Smallest change of a speed that motion was ever read with."""
-_STOPPED = 0.8
 
 
 class AirDrag(Mechanism):
@@ -67,9 +65,9 @@ class AirDrag(Mechanism):
         before = max(1.0 - _arriving(s, most, a) / s.approach.speed for s, a in situations)
         largest = max(taken, before)
         what = around.fluid.strip() if liquid else "air"
-        if largest < _VISIBLE:
+        if largest < RULES.visible:
             return f"{what} takes at most {largest:.1e} of a speed"
-        if largest > _STOPPED:
+        if largest > RULES.stopped:
             return f"{what} takes {largest:.0%} of a speed: no flight under gravity was read"
         return ""
 

@@ -7,11 +7,10 @@ from collections.abc import Mapping, Sequence
 from dataclasses import replace
 from typing import ClassVar
 
+from ..rules import RULES
 from ..scene import Scene
 from .arithmetic import is_oblique
 from .base import Literature, Mechanism, Parameter, Situation, Surroundings, Values
-
-_BY_EYE = 5.0  # degrees: what the thesis states as its tolerance
 
 
 class ImpactSpeedLoss(Mechanism):
@@ -81,7 +80,7 @@ class Tilt(Mechanism):
         """Upright rods lean either way alike, and no farther than an eye lets pass."""
         if any(is_oblique(s) for s, _ in situations):
             return self.parameters
-        return (replace(self.parameters[0], low=0.5, high=_BY_EYE),)
+        return (replace(self.parameters[0], low=0.5, high=RULES.by_eye),)
 
     def attach(self, scene: Scene, values: Values, around: Surroundings) -> Scene:
         """Replace the approach."""

@@ -11,13 +11,12 @@ from typing import ClassVar
 
 from ...core.material import Material
 from ..beam import Modes, axial_frequencies, rod_modes
+from ..rules import RULES
 from ..scene import Scene, Striker
 from .arithmetic import density_of, is_oblique, needs_rod
 from .base import Literature, Mechanism, Parameter, Situation, Surroundings, Values
 
-_AXIAL, _BENDING = 6, 9
 _SIDEWAYS = 0.82  # tangential stiffness over 2 E' a: 2 (1 - nu)/(2 - nu), Mindlin 1949
-_LOSS = 1e-3  # of steel rods; what it takes during a contact is below a thousandth
 
 _PARTICIPATION = Parameter(
     "modal_participation", "-", 0.5, 1.5, "linear", 0.0,
@@ -106,15 +105,17 @@ class RodFlexuralVibration(_Ringing):
 @lru_cache(maxsize=256)
 def axial_modes(length: float, material: Material, mass: float) -> Modes:
     """Return the lowest axial modes of a free rod with the stated mass."""
-    omega = axial_frequencies(length, material, count=_AXIAL)
-    ends = tuple([math.sqrt(2.0 / mass)] * _AXIAL)
-    none = (0.0,) * _AXIAL
-    return Modes(tuple(float(w) for w in omega), ends, none, none, _LOSS)
+    omega = axial_frequencies(length, material, count=RULES.axial_modes)
+    ends = tuple([math.sqrt(2.0 / mass)] * RULES.axial_modes)
+    none = (0.0,) * RULES.axial_modes
+    return Modes(tuple(float(w) for w in omega), ends, none, none, RULES.rod_loss)
 
 
 @lru_cache(maxsize=256)
 def _all_modes(length: float, radius: float, material: Material, mass: float) -> Modes:
-    return rod_modes(length, radius, material, mass=mass, count=_BENDING, loss_factor=_LOSS)
+    return rod_modes(
+        length, radius, material, mass=mass, count=RULES.bending_modes, loss_factor=RULES.rod_loss
+    )
 
 
 def _scaled(modes: Modes, share: float) -> Modes:

@@ -10,13 +10,11 @@ from typing import ClassVar
 
 import numpy as np
 
+from ..rules import RULES
 from ..scene import Scene
 from ..strength import StrengthTable, strength_table
 from .arithmetic import needs_yielding_law, times
 from .base import Array, Literature, Mechanism, Parameter, Situation, Surroundings, Values
-
-_POWER = 1.25
-"""Exponent of a recovery, between Hertz's 3/2 and a flat punch's 1: for the layer's share alone."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -59,7 +57,7 @@ class Layer:
         turns = np.log1p(force / scale)
         freed = scale * np.expm1(kept * turns)
         given = sigma * (force - freed - scale * (1.0 - kept) * turns)
-        back = recovered + (1.0 + _POWER) * given / force
+        back = recovered + (1.0 + RULES.rough_power) * given / force
         total = depth + sigma * turns
 
         def at_nodes(value: Array) -> Array:

@@ -7,12 +7,10 @@ from collections.abc import Mapping, Sequence
 from dataclasses import replace
 from typing import ClassVar
 
+from ..rules import RULES
 from ..scene import Scene, Support
 from .arithmetic import density_of, shortest_contact, wave_speed
 from .base import Literature, Mechanism, Parameter, Situation, Surroundings, Values
-
-_DECADE = 10.0  # least span of the mass: a block, and the bench that it stands on
-_BLOCK = 0.1  # [kg]: the lightest block that is taken for a half-space without a word
 
 
 class SupportCompliance(Mechanism):
@@ -57,8 +55,8 @@ class SupportCompliance(Mechanism):
             low = max(low, density_of(flat) * around.thickness**3)
         elif not flat.rigid:
             reach = 0.5 * wave_speed(flat) * max(shortest_contact(scene) for scene, _ in situations)
-            low = max(low, min(density_of(flat) * reach**3, _BLOCK))
-        m = replace(m, low=low, high=max(high, _DECADE * low))
+            low = max(low, min(density_of(flat) * reach**3, RULES.block_mass))
+        m = replace(m, low=low, high=max(high, RULES.support_span * low))
         stated = around.support_stiffness, around.support_mass
         if stated[0] > 0.0:
             k = replace(k, low=stated[0] / 2.0, high=stated[0] * 2.0, source="stated", nodes=3)

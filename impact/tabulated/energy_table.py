@@ -14,16 +14,17 @@ import numpy as np
 from numba import float64, int64, njit, types
 
 from ...core.material import Pair
+from ...fem.rules import RULES as FEM
 from ...models.base import ContactLaw, Kernels
 from ...models.kernel import BRANCH_SIGNATURE, LOADING_SIGNATURE, RESIDUAL_SIGNATURE, VECTOR
 from ..rules import RULES
 from .cells import Array, TableCells, cells_of
 
-ERROR = RULES.energy_error
+ERROR = RULES.table_error
 """Error of the table; restitution and times come out within ten times this of the integral."""
 
 SHALLOWEST = RULES.energy_shallowest
-DEEPEST = RULES.energy_deepest
+DEEPEST = FEM.deepest
 """Peak depths over R that the route answers for."""
 
 # Columns of the table: ln(d_m), ln(F_m), returned share of the work, residual depths over d_m, then
@@ -36,7 +37,7 @@ COLUMNS = RECOVERY_TIME + TERMS
 _LAW = types.FunctionType(LOADING_SIGNATURE)
 _BRANCH = types.FunctionType(BRANCH_SIGNATURE)
 _SPLIT = types.FunctionType(RESIDUAL_SIGNATURE)
-_KEPT = RULES.energy_tables
+_KEPT = RULES.tables_kept
 _TABLES: dict[tuple[str, bytes], TableCells] = {}
 
 

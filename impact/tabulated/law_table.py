@@ -37,7 +37,7 @@ from ..bits import bits_of
 from ..rules import RULES
 from .cells import BINS, GUIDE, Array, TableCells, cells_of, column_in
 
-ERROR = RULES.law_error
+ERROR = RULES.table_error
 """Error of a table: of F and a over their own, of residual depths over the peak, of the power."""
 
 SHALLOWEST = RULES.law_shallowest
@@ -46,7 +46,7 @@ DEEPEST = RULES.law_deepest
 
 _FORCE, _RADIUS, _SPHERE, _FLAT, _EXPONENT = range(5)
 _COLUMNS = 5
-_KEPT = RULES.law_tables
+_KEPT = RULES.tables_kept
 _TABLES: dict[tuple[str, bytes, float], TableCells] = {}
 
 _OCTAVE, _OCTAVES = N_COMMON, N_COMMON + 1

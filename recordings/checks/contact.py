@@ -17,7 +17,7 @@ def check_energy(found: RecordingSet) -> list[Finding]:
     for view in views(found):
         e, depth, pressure = view.measured("restitution"), _depth(view), _pressure(view)
         brought, lost = _energies(view, e)
-        if e is not None and lost.value < -RULES.contact_beyond * lost.std and view.touch.c == 0.0:
+        if e is not None and lost.value < -RULES.beyond * lost.std and view.touch.c == 0.0:
             text = f"restitution {e.value:.3g} is a gain of {-lost.value:.3g} J"
             z = -lost.value / lost.std
             findings.append(
@@ -63,7 +63,7 @@ def _supply(name: str, work: TrialReading, brought: TrialReading) -> Finding:
     z = (least * work.value - brought.value) / math.hypot(least * work.std, brought.std)
     return Finding(
         f"energy of {name} against all that was brought",
-        Severity.CONTRADICTION if z > RULES.contact_beyond else Severity.CONSISTENT,
+        Severity.CONTRADICTION if z > RULES.beyond else Severity.CONSISTENT,
         f"the dent takes {work.value:.3g} J of {brought.value:.3g} J brought "
         f"({work.value / brought.value:.0%})",
         work.value,
@@ -81,7 +81,7 @@ def _budget(name: str, work: TrialReading, lost: TrialReading) -> Finding:
     )
     share = f" ({work.value / lost.value:.0%})" if lost.value > 0.0 else ""
     text = f"the dent takes {work.value:.3g} J of {lost.value:.3g} J lost{share}"
-    if beyond > RULES.contact_beyond:
+    if beyond > RULES.beyond:
         return Finding(title, Severity.CONTRADICTION, text, work.value, lost.value, beyond)
     if missing > 2.0:
         text += ": look for a sink outside the contact"
@@ -109,7 +109,7 @@ def check_force(found: RecordingSet) -> list[Finding]:
             findings.append(
                 Finding(
                     f"force of {view.name} against {what}",
-                    wrong if z > RULES.contact_beyond else Severity.CONSISTENT,
+                    wrong if z > RULES.beyond else Severity.CONSISTENT,
                     f"{force.value:.4g} N {word}, {bound:.4g} N ({force.value / bound:.2g} times)",
                     force.value,
                     bound,

@@ -158,7 +158,7 @@ def check_friction(found: RecordingSet) -> list[Finding]:
         leaning = max(view.angle.value - RULES.angles_apart * view.angle.std, 0.0)
         limit = max(touch.stick_ratio, view.touch_at(leaning).stick_ratio)
         z = (ratio.value - limit) / ratio.std
-        stuck = z > RULES.motion_beyond
+        stuck = z > RULES.beyond
         findings.append(
             Finding(
                 f"friction of {view.name}",
@@ -191,7 +191,7 @@ def check_impulse(found: RecordingSet) -> list[Finding]:
         findings.append(
             Finding(
                 f"impulse of {view.name}",
-                Severity.CONTRADICTION if z > RULES.motion_beyond else severity,
+                Severity.CONTRADICTION if z > RULES.beyond else severity,
                 f"{impulse:.4g} N s from the motion, {pulse:.4g} N s peak force times duration "
                 f"(ratio {ratio:.2g}, at most 1)",
                 impulse,

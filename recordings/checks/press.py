@@ -37,7 +37,7 @@ def check_press_load(found: RecordingSet) -> list[Finding]:
         findings.append(
             Finding(
                 f"load of {view.name} against the strength",
-                Severity.CONTRADICTION if z > RULES.press_beyond else Severity.CONSISTENT,
+                Severity.CONTRADICTION if z > RULES.beyond else Severity.CONSISTENT,
                 f"{load.value:.4g} N on the dent is a mean pressure of {p / 1e6:.4g} MPa, "
                 f"{p / pressure.value:.2g} times the flat's {pressure.value / 1e6:.4g} MPa",
                 p, pressure.value, z,
@@ -60,12 +60,12 @@ def check_press_recovery(found: RecordingSet) -> list[Finding]:
         low, high = (share * scale for share in RULES.recovery)
         z = max(low - back.value, back.value - high, 0.0) / std
         tail = ""
-        if back.value > high and z > RULES.press_beyond:
+        if back.value > high and z > RULES.beyond:
             tail = ": is the machine's own compliance taken off?"
         findings.append(
             Finding(
                 f"recovery of {view.name} against elasticity",
-                Severity.CONTRADICTION if z > RULES.press_beyond else Severity.CONSISTENT,
+                Severity.CONTRADICTION if z > RULES.beyond else Severity.CONSISTENT,
                 f"{back.value * 1e6:.4g} um spring back, elastic bodies give {low * 1e6:.4g} to "
                 f"{high * 1e6:.4g} um{tail}",
                 back.value, 0.5 * (low + high), z,
@@ -91,7 +91,7 @@ def check_press_depths(found: RecordingSet) -> list[Finding]:
         findings.append(
             Finding(
                 f"depths of {view.name}",
-                Severity.CONTRADICTION if abs(z) > RULES.press_beyond else Severity.CONSISTENT,
+                Severity.CONTRADICTION if abs(z) > RULES.beyond else Severity.CONSISTENT,
                 f"{left.value * 1e6:.4g} um stay and {back.value * 1e6:.4g} um spring back of "
                 f"{deepest.value * 1e6:.4g} um under load",
                 left.value + back.value, deepest.value, abs(z),

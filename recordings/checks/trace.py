@@ -65,7 +65,7 @@ def _compared(found: RecordingSet, view: TrialView, trace: Mapping[str, Array]) 
     span = f"{low:.4g}" + (f" to {high:.4g}" if high > low else "")
     return Finding(
         name,
-        Severity.CONTRADICTION if z > RULES.trace_beyond else Severity.CONSISTENT,
+        Severity.CONTRADICTION if z > RULES.beyond else Severity.CONSISTENT,
         f"{traced:.4g} N s under the trace, {span} N s from the motion "
         f"({traced / expected - 1.0:+.1%})",
         traced,

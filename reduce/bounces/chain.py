@@ -17,24 +17,7 @@ from ..measured import Array
 from ..regression import robust_regression, robust_std
 from ..rules import RULES
 
-_TOLERANCE = 0.2
-"""Largest change of an interval, in its logarithm, against the steady factor."""
-
 _FACTORS = np.exp(np.arange(math.log(0.1), 0.0, 0.08))
-_MISSED_COST = 0.75
-"""Instants that a run has to gain before a missed bounce in it is believed."""
-
-_MOST = 80
-
-_SUDDEN = 0.1
-"""Largest change of the factor, in its logarithm, from the flights next to an end of the run.
-
-The steady factor may lie anywhere between those of a run, so that its ends alone could take a knock
-for a bounce. Restitution changes by some per cent from one bounce to the next, not by a tenth.
-"""
-
-_STRAY = 8.0
-"""Distance from the course of the others, in their scatter, that no real bounce has."""
 
 
 @dataclass(frozen=True)
@@ -98,7 +81,7 @@ def chain_of(times: Array) -> Chain | None:
     times
         (n,), increasing [s]; the first 80 are looked at.
     """
-    used = np.asarray(times[:_MOST], dtype=np.float64)
+    used = np.asarray(times[: RULES.instants_tried], dtype=np.float64)
     if used.size < 3:
         return None
     found = max((_longest(used, factor) for factor in _FACTORS), key=lambda c: c[0])
@@ -142,7 +125,7 @@ def _without_false_ends(
         while len(kept) > 4 and all(single[::way][:3]):
             flights = np.abs(np.diff(times[list(kept)]))[::way][:3]
             own, next_to_it = np.diff(np.log(flights))
-            if abs(own - next_to_it) <= _SUDDEN:
+            if abs(own - next_to_it) <= RULES.sudden:
                 break
             kept, single = (kept[:-1], single[:-1]) if way < 0 else (kept[1:], single[1:])
     return kept, single, before - len(kept)
@@ -155,7 +138,7 @@ def _without_strays(
     rest = _rests(times, kept, single)
     if rest is None:
         return single, 0
-    limit = _STRAY * robust_std(rest[np.array(single)], lost=3)
+    limit = RULES.stray * robust_std(rest[np.array(single)], lost=3)
     kept_ones = tuple(bool(s and abs(r) <= limit) for s, r in zip(single, rest, strict=True))
     return kept_ones, sum(single) - sum(kept_ones)
 
@@ -192,7 +175,7 @@ def _longest(times: Array, factor: float) -> _Run:
     gap = times[None, :] - times[:, None]
     first = np.stack([gap, gap / (1.0 + factor)], axis=2)  # first flight within the gap
     last = np.stack([gap, gap * factor / (1.0 + factor)], axis=2)
-    cost = np.array([0.0, _MISSED_COST])
+    cost = np.array([0.0, RULES.missed_bounce])
     score = np.full((n, n, 2), -np.inf)
     back: dict[tuple[int, int, int], tuple[int, int]] = {}
     rows, columns = np.triu_indices(n, 1)
@@ -206,7 +189,7 @@ def _longest(times: Array, factor: float) -> _Run:
             for m in (0, 1):
                 off = np.abs(log_first[j, k, m] - incoming)
                 # a small price for disorder picks the smoother of two runs of one length
-                gain = np.where(off <= _TOLERANCE, score[:j, j] - 0.5 * off, -np.inf)
+                gain = np.where(off <= RULES.chain_off, score[:j, j] - 0.5 * off, -np.inf)
                 best = int(np.argmax(gain))
                 value = float(gain.flat[best]) + 1.0 - cost[m]
                 if value > score[j, k, m]:

@@ -17,6 +17,7 @@ import numpy as np
 
 from ...core.errors import InputError
 from ..measured import Array, Measured, propagate
+from ..rules import RULES
 from .bounce import Bounce, Bounced
 from .fall import Ball
 from .flights import UNEVEN, Piece
@@ -32,11 +33,6 @@ from .touch import (
 )
 from .track import Indices, Track, on_the_body, turning_points
 from .view import Stage, View
-
-_ROUNDS = 3
-
-_SAME_FLAT = 0.05
-"""Part of the largest height by which the contacts of a track may differ in theirs."""
 
 
 def told_bounces(
@@ -95,7 +91,7 @@ def find_bounces(
         return None
     view = View(before.fall.value, before.drag.value, 0.0, 0.0, 0.0)
     contacts, sides = true_contacts(body, contacts, stage, before.fall.value, sides)
-    for again in reversed(range(_ROUNDS)):
+    for again in reversed(range(RULES.contact_rounds)):
         pieces, places = joined(sides)
         if not pieces:
             return None
@@ -224,7 +220,7 @@ def _on_one_flat(bounces: list[Bounce], stage: Stage) -> list[Bounce]:
     if not bounces:
         return []
     level = float(np.median([b.height.value for b in bounces]))
-    limit = _SAME_FLAT * stage.reach
+    limit = RULES.same_flat * stage.reach
     return [b for b in bounces if abs(b.height.value - level) <= limit + 4.0 * b.height.std]
 
 

@@ -13,40 +13,15 @@ import numpy as np
 
 from ..measured import Array, Measured
 from ..regression import Regression, robust_regression
+from ..rules import RULES
 from .track import Indices, Track
 from .view import Launch, Stage, View
 
-FEWEST = 5
+FEWEST = RULES.flight_samples
 """Samples of a flight."""
 
-UNEVEN = 0.02
+UNEVEN = RULES.uneven_fall
 """Part of the fall by which the acceleration in a span without samples may be another."""
-
-_CORE = 12
-"""Samples with which a flight begins."""
-
-_NEAR_LIMIT, _FAR_LIMIT = 4.0, 3.5
-_BLOCK = 0.25
-_STRAY_BLOCKS = 2
-"""Blocks off the flight that are passed over where the next one lies on it again."""
-
-_TRIMS, _LEAST_BLOCK, _MEAN_LIMIT = 4, 5, 4.0
-"""Rounds and samples of a contact that only its mean shows, and how far that is off [std]."""
-
-_STRAIGHT = 0.1
-"""Change of a flight's speed, in the speed, below which it is straight."""
-
-_MOST_NOISE = 3.0
-"""Spread of the samples of a flight, in that of the track, that is believed."""
-
-_MOSTLY = 0.6
-"""Part of a block that must lie on the flight."""
-
-_FARTHEST = 2
-"""Lengths of the first part of a flight, in which it is looked for next to the contact."""
-
-_UPWARDS = 4.0
-"""Standard deviations of upward curvature that show a contact, not a flight."""
 
 
 @dataclass(frozen=True)
@@ -82,7 +57,7 @@ class Piece:
 
     def straight(self, time: Array, fall: float) -> bool:
         """Whether an acceleration [unit/s²] hardly changes its speed, and so says nothing of it."""
-        return abs(fall) * self.duration(time) < _STRAIGHT * abs(self.launch.speed)
+        return abs(fall) * self.duration(time) < RULES.straight * abs(self.launch.speed)
 
     def duration(self, time: Array) -> float:
         """Return how long its samples, of a track with these times, span [s]."""
@@ -111,7 +86,7 @@ def side(
         order = order[off:]
     if order.size < FEWEST:
         return None
-    size = min(_CORE, order.size)
+    size = min(RULES.flight_core, order.size)
     tried = [
         _grown(track, order, near, size, stage, view) for near in _clean_starts(track, order, size)
     ]
@@ -127,8 +102,8 @@ def _off_the_contact(track: Track, piece: Piece, step: int, stage: Stage, view: 
 
     Where a contact sets in, no single sample is off by more than its noise.
     """
-    for _ in range(_TRIMS):
-        size = max(_LEAST_BLOCK, piece.index.size // 8)
+    for _ in range(RULES.trim_rounds):
+        size = max(RULES.flight_samples, piece.index.size // 8)
         if piece.index.size < 4 * size:
             break
         index = piece.index[::step]
@@ -138,7 +113,7 @@ def _off_the_contact(track: Track, piece: Piece, step: int, stage: Stage, view: 
         off = float(np.mean(track.height[near] - fit.heights(time)))
         design = stage.launch_slopes(view, fit.launch, fit.reference, time)
         predicted = float(fit.regression.prediction_std(design).mean())
-        if abs(off) < _MEAN_LIMIT * np.hypot(fit.sigma / np.sqrt(size), predicted):
+        if abs(off) < RULES.no_chance * np.hypot(fit.sigma / np.sqrt(size), predicted):
             break
         used = rest[fit.regression.used]
         piece = Piece(used, fit.reference, fit.launch, fit.regression.sigma)
@@ -175,9 +150,9 @@ def _clean_starts(track: Track, order: Indices, size: int) -> list[int]:
     offsets, spreads = [], []
     offset = 0
     # farther out lie rest and other flights, which may be quieter
-    while offset + size <= order.size and offset <= _FARTHEST * size:
+    while offset + size <= order.size and offset <= RULES.flight_reach * size:
         fit = _parabola(track, order[offset : offset + size])
-        upward = fit.coefficients[2] > _UPWARDS * np.sqrt(fit.covariance[2, 2])
+        upward = fit.coefficients[2] > RULES.no_chance * np.sqrt(fit.covariance[2, 2])
         spreads.append(np.inf if upward else fit.sigma)
         offsets.append(offset)
         offset += max(1, offset // 2)
@@ -252,7 +227,9 @@ def _fitted(track: Track, index: Indices, stage: Stage, view: View | None) -> _F
             fit = robust_regression(design, left, floor=tiny)
             launch = Launch(*(float(v) for v in np.add(launch, fit.coefficients)))
     # a flight that has taken in what is none would take in more
-    return _Fit(stage, view, reference, launch, fit, min(fit.sigma, _MOST_NOISE * track.noise))
+    return _Fit(
+        stage, view, reference, launch, fit, min(fit.sigma, RULES.flight_noise * track.noise)
+    )
 
 
 def own_fall(track: Track, piece: Piece) -> Measured:
@@ -265,8 +242,8 @@ def _next_blocks(
     track: Track, fit: _Fit, order: Indices, far: int, size: int
 ) -> tuple[Indices, int]:
     """Return the next samples away from the contact that lie on the flight, and how far they go."""
-    width = max(3, int(_BLOCK * size))
-    for skipped in range(_STRAY_BLOCKS + 1):
+    width = max(3, int(RULES.flight_block * size))
+    for skipped in range(RULES.stray_blocks + 1):
         start = far + skipped * width
         block = order[start : start + width]
         if block.size < min(3, width) and block.size < order.size - far:
@@ -275,8 +252,11 @@ def _next_blocks(
             break
         z = fit.deviations(track, block)
         # a block off the flight has a middle that its own noise does not explain
-        limit = _FAR_LIMIT
-        if abs(float(np.median(z))) < limit and np.mean(np.abs(z) < _NEAR_LIMIT) >= _MOSTLY:
+        limit = RULES.flight_far
+        if (
+            abs(float(np.median(z))) < limit
+            and np.mean(np.abs(z) < RULES.no_chance) >= RULES.mostly
+        ):
             return block, start + block.size
     return order[:0], far
 
@@ -286,8 +266,8 @@ def _nearer(track: Track, fit: _Fit, rest: Indices) -> Indices:
     if rest.size == 0:
         return rest
     z = np.abs(fit.deviations(track, rest))
-    off = np.flatnonzero(z > _NEAR_LIMIT)
+    off = np.flatnonzero(z > RULES.no_chance)
     # an isolated stray is the regression's business; contact is two in a row or the very end
-    contact = [i for i in off if i == 0 or z[i - 1] > _NEAR_LIMIT]
+    contact = [i for i in off if i == 0 or z[i - 1] > RULES.no_chance]
     first = int(contact[-1]) + 1 if contact else 0
     return rest[first:]

@@ -16,23 +16,19 @@ import numpy.typing as npt
 
 from ..measured import Array, Measured
 from ..regression import long_run_factor, robust_std
+from ..rules import RULES
 from .flights import FEWEST, Piece
 from .track import Track
 from .view import Launch, Stage, View
 
 SHARED = len(View._fields)
-_WIDTHS = {1e-2: 1.0, 3e-2: 1.0, 1e-1: 0.05}
+_WIDTHS = dict(RULES.scale_widths)
 """Widths, and how much each is believed beforehand.
 
 A camera that nobody calibrated drifts by a per cent or so; a path that cannot tell, as the straight
 one of a fast rod, pays for that in its speeds. A tenth is rare and must show in the track, else it
 alone would make the error of one that does not tell.
 """
-
-_FIRST_WIDTH = 3e-2
-_REJECT, _TRIM = 4.0, 2.5
-_POOLED = 8
-"""Samples for which the spread of all flights counts in that of one."""
 
 
 @dataclass(frozen=True)
@@ -97,7 +93,7 @@ def fit_together(
     pieces = list(pieces)
     x = np.concatenate([view, *(p.launch for p in pieces)])
     for _ in range(3):
-        x, _, _, _ = _settled(track, pieces, stage, x, before, _FIRST_WIDTH)
+        x, _, _, _ = _settled(track, pieces, stage, x, before, RULES.scale_width)
         pieces = _cleaned(track, pieces, stage, x)
     found = []
     for width, usual in _WIDTHS.items():
@@ -168,7 +164,7 @@ def _cleaned(track: Track, pieces: Sequence[Piece], stage: Stage, x: Array) -> l
             view, launch, piece.reference, track.time[piece.index]
         )
         usual = max(robust_std(left, lost=2), track.floor, 1e-9 * stage.reach)
-        good = np.abs(left - np.median(left)) <= _REJECT * usual
+        good = np.abs(left - np.median(left)) <= RULES.no_chance * usual
         good &= _untrimmed(left / usual)
         if good.sum() < FEWEST:
             good = np.ones(left.size, dtype=np.bool_)
@@ -178,7 +174,9 @@ def _cleaned(track: Track, pieces: Sequence[Piece], stage: Stage, x: Array) -> l
     pooled = float(np.median([s / f for s, f in zip(squares, freedom, strict=True)]))
     result = []
     for (piece, launch, left, index), s, f in zip(kept, squares, freedom, strict=True):
-        variance = (s + _POOLED * pooled) / (f + _POOLED) * long_run_factor(left, lost=2.5)
+        variance = (
+            (s + RULES.pooled * pooled) / (f + RULES.pooled) * long_run_factor(left, lost=2.5)
+        )
         sigma = max(float(np.sqrt(variance)), track.floor, 1e-9 * stage.reach)
         result.append(replace(piece, index=index, launch=launch, sigma=sigma))
     return result
@@ -189,6 +187,6 @@ def _untrimmed(z: Array) -> npt.NDArray[np.bool_]:
     kept = np.ones(z.size, dtype=np.bool_)
     most = z.size // 4
     for way in (1, -1):
-        off = np.abs(z[::way][: most + 1]) > _TRIM
+        off = np.abs(z[::way][: most + 1]) > RULES.doubtful
         kept[::way][: int(np.argmin(off)) if not off.all() else most] = False
     return kept

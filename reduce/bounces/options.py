@@ -7,14 +7,12 @@ from typing import TYPE_CHECKING
 from pydantic import Field
 
 from ...core.inputs.toml_input import InputTable
+from ..rules import RULES
 
 if TYPE_CHECKING:
     from .fall import Ball, Fall
 
 GRAVITY = 9.81
-
-_TYPICAL = 0.75
-"""Speed at which the drag coefficient of a flight is taken, in that of its launch."""
 
 
 class BallOptions(InputTable):
@@ -63,4 +61,4 @@ class BounceOptions(BallOptions):
 
     def fall_of(self, launch: float) -> Fall:
         """Return a flight launched at about a speed [m/s]; most of the drag acts near its ends."""
-        return self.ball.fall(_TYPICAL * launch)
+        return self.ball.fall(RULES.drag_speed * launch)

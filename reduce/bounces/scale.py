@@ -16,19 +16,6 @@ from ..gates import Refused
 from ..measured import Array, Measured
 from ..rules import RULES
 
-_AGREE = 3.0
-"""Standard deviations by which two scales may differ; within them their scatter widens the error
-(Birge's ratio)."""
-
-_KNOWN = 0.1
-"""Relative error of a fall from which on it gives no scale."""
-
-_PRIORS = (1e-4, 1e-3, 1e-2)
-"""Widths of what is believed of a drift, in units of the speed of a fall over a second."""
-
-_RARE, _TOLD = 0.02, 0.1
-"""Part of the contacts in which a frame is missing without a word, and the belief that counts."""
-
 
 @dataclass(frozen=True)
 class Scale:
@@ -59,7 +46,7 @@ def scale_of(fall: Measured, gravity: float, stated: Measured | None) -> Scale:
         Size of the unit [m], or None.
     """
     by_fall = None
-    if fall.value > 0.0 and fall.std < _KNOWN * fall.value:
+    if fall.value > 0.0 and fall.std < RULES.fall_known * fall.value:
         by_fall = Measured(gravity / fall.value, gravity * fall.std / fall.value**2)
     if stated is None:
         if by_fall is None:
@@ -69,7 +56,7 @@ def scale_of(fall: Measured, gravity: float, stated: Measured | None) -> Scale:
         return Scale(stated, "as stated")
     both = math.hypot(by_fall.std, stated.std)
     apart = abs(by_fall.value - stated.value)
-    if apart <= _AGREE * both:
+    if apart <= RULES.outside_restitution * both:
         if stated.std == 0.0:
             return Scale(stated, "as stated")
         w = np.array([by_fall.std, stated.std]) ** -2.0
@@ -150,10 +137,10 @@ def frames_lost(
         time, height = contacts[k]
         lower = Measured(height.value - rise, height.std)
         moved = [*contacts[:k], (time, lower), *contacts[k + 1 :]]
-        seen.append(_belief(moved, fall) + math.log(_RARE))
+        seen.append(_belief(moved, fall) + math.log(RULES.missing_frame))
     share = np.exp(np.array(seen) - max(seen))
     share /= share.sum()
-    return np.where(share[1:] > _TOLD, share[1:], 0.0)
+    return np.where(share[1:] > RULES.missing_told, share[1:], 0.0)
 
 
 def _belief(contacts: Sequence[tuple[Measured, Measured]], fall: float) -> float:
@@ -171,7 +158,7 @@ def _drifts(
     level = float(np.average(height, weights=error**-2.0))
     rest = height - level
     found = []
-    for width in _PRIORS:
+    for width in RULES.drift_widths:
         std = width * abs(fall)
         covariance = np.diag(error**2) + np.outer(late, late) * std**2
         size = np.linalg.slogdet(covariance)[1]

@@ -9,29 +9,12 @@ import numpy as np
 
 from ...core.drag import DRAG_COEFFICIENT_STD
 from ..measured import Measured
+from ..rules import RULES
 from .fall import Ball
 from .flights import Piece, own_fall, side
 from .joint import Before
 from .track import Track
 from .view import Stage, View
-
-_SAME_FALL = 0.3
-"""Largest relative difference of a flight's own acceleration: drag and lens make some."""
-
-_USUAL = 6.0
-"""Spread of the samples of a flight, in that of the quieter flights, beyond which it is none."""
-
-_COARSE = 0.01
-"""Spread of the samples of a flight over its height that is no reason to doubt it."""
-
-_STATED = 0.02
-"""Relative error of the fall that a stated size of the unit is trusted for within a flight."""
-
-_FREE_DRAG = 0.1
-"""Largest square of the fastest over the terminal speed of a body that is not known."""
-
-_TALL, _LONG = 0.1, 1.0
-"""Height [m] and time [s] of a track over which the whole drift of a scale is possible."""
 
 Sides = list[Piece | None]
 """Two for each contact, before and after."""
@@ -73,7 +56,7 @@ def known_before(
         return None
     if metres is not None and math.isfinite(metres.value):
         value = ball.fall(3.0).gravity / metres.value
-        fall = Measured(value, value * math.hypot(_STATED, metres.std / metres.value))
+        fall = Measured(value, value * math.hypot(RULES.stated_size, metres.std / metres.value))
     else:
         value = _shared_fall(own)
         fall = Measured(value, 100.0 * (abs(value) + min(f.std for f in own)))
@@ -83,10 +66,13 @@ def known_before(
     if not known or not value > 0.0:
         return Before(fall, Measured(0.0, 1e-9 / stage.reach))
     unit = ball.fall(3.0).gravity / value
-    drifts = min(stage.reach * unit / _TALL, 1.0), min(stage.span / _LONG, 1.0)
+    drifts = (
+        min(stage.reach * unit / RULES.drift_height, 1.0),
+        min(stage.span / RULES.drift_time, 1.0),
+    )
     flight = ball.fall(0.75 * fastest * unit)
     if math.isinf(flight.terminal):
-        drag = 0.5 * _FREE_DRAG * value / fastest**2
+        drag = 0.5 * RULES.free_drag * value / fastest**2
         return Before(fall, Measured(drag, drag), *drifts)
     drag = flight.gravity / flight.terminal**2 * unit
     return Before(fall, Measured(drag, 1.5 * DRAG_COEFFICIENT_STD * drag), *drifts)
@@ -100,7 +86,7 @@ def _shared_fall(own: Sequence[Measured]) -> float:
         return sum(
             min(abs(v.value / max(v.std, 1e-12)), 100.0)
             for v in clear
-            if abs(v.value - one.value) < 0.5 * _SAME_FALL * abs(one.value) + one.std
+            if abs(v.value - one.value) < 0.5 * RULES.fall_off * abs(one.value) + one.std
         )
 
     return max(clear, key=agreement).value
@@ -136,14 +122,14 @@ def _same_fall(body: Track, sides: Sides, fall: float, stage: Stage) -> Sides:
     """Leave out rest, rolling and what else is no flight: its acceleration is not that of all."""
     spreads = [s.sigma for s in sides if s is not None]
     usual = float(np.quantile(spreads, 0.25)) if spreads else 0.0
-    most = max(_USUAL * usual, _COARSE * stage.reach)
+    most = max(RULES.foreign * usual, RULES.coarse * stage.reach)
     kept: Sides = []
     for piece in sides:
         if piece is None or piece.sigma > most:
             kept.append(None)
             continue
         own = own_fall(body, piece)
-        allowed = max(4.0 * own.std, _SAME_FALL * abs(fall))
+        allowed = max(4.0 * own.std, RULES.fall_off * abs(fall))
         straight = piece.straight(body.time, fall)
         kept.append(piece if straight or abs(own.value - fall) <= allowed else None)
     return kept

@@ -16,25 +16,8 @@ from .joint import SHARED
 from .track import Track
 from .view import Launch, Stage, View
 
-_RESOLVED = 4
-"""Samples within a contact from which on its two ends are told apart."""
-
-_SOFTER, _STIFFER = 0.85, 1.3
-"""Between which parts of the bend of a spring that of a soft contact lies: of elastic spheres it is
-0.88, of a spring with as much damping as lets it back with a half of its speed 1.2."""
-
-_NEAREST, _STRAY = 6, 12.0
-"""Samples of a flight next to a contact that are looked at, and what one of them may say at most
-[logarithm of a likelihood]."""
-
-_BEYOND = 0.5
-"""Part of what shows of a contact by which both of its ends reach farther: force sets in softly."""
-
 LASTS: Array = np.geomspace(RULES.shortest_contact, RULES.longest_contact, 130)
 """Durations that are tried of a contact that the samples do not resolve [s]."""
-
-_ALIKE = 1.3
-"""Ratio of the durations of a track's contacts: speeds to a quarter of the first one."""
 
 
 class Touch(NamedTuple):
@@ -78,8 +61,8 @@ def touch_of(
     runs = _both_held(track, stage, view, flights, meeting)
     if (
         known is None
-        and sum(r.size for r in runs) >= _RESOLVED
-        and step < RULES.hard_contact / _RESOLVED
+        and sum(r.size for r in runs) >= RULES.resolved
+        and step < RULES.hard_contact / RULES.resolved
     ):
         ends = tuple(
             0.5 * (track.time[run[-1]] + track.time[run[-1] + way]) - meeting if run.size else 0.0
@@ -109,12 +92,12 @@ def samples_of(
     ratio = float(np.clip(abs(flights[1].launch.speed / flights[0].launch.speed), 0.1, 1.0))
     # slowed down over a time, a body is pushed away over that time over the restitution
     shown = max(sum(r.size for r in runs), math.ceil(runs[0].size * (1.0 + 1.0 / ratio)))
-    if shown < _RESOLVED:
+    if shown < RULES.resolved:
         return 0, 0
     before = int(turning - runs[0][-1]) if runs[0].size else 0
     after = int(runs[1][-1] - turning) if runs[1].size else 0
     shares = ratio / (1.0 + ratio), 1.0 / (1.0 + ratio)
-    more = [math.ceil(2.0 * _BEYOND * share * shown) for share in shares]
+    more = [math.ceil(2.0 * RULES.soft_ends * share * shown) for share in shares]
     return before + more[0], max(after, math.ceil(before / ratio)) + more[1]
 
 
@@ -159,7 +142,7 @@ def likely_durations(
     smeared = float(met[1] + met[2]) / (2.0 * step)
     found = -RULES.soft_rarer * np.maximum(np.log(LASTS / RULES.hard_contact), 0.0)
     for piece, run, share, speed in zip(flights, runs, shares, met[1:3], strict=True):
-        order = np.argsort(np.abs(track.time[piece.index] - meeting))[:_NEAREST]
+        order = np.argsort(np.abs(track.time[piece.index] - meeting))[: RULES.fewest]
         for index in (*run, *piece.index[order]):
             time = track.time[index : index + 1]
             seen = stage.seen(view, piece.launch, piece.reference, time)
@@ -168,12 +151,14 @@ def likely_durations(
             late = np.maximum(side - gap, 0.0)
             soft = speed * (late - side * np.sin(0.5 * np.pi * late / side) / (0.5 * np.pi))
             most = np.where(
-                LASTS > RULES.hard_contact, np.minimum(_STIFFER * soft, speed * late), speed * late
+                LASTS > RULES.hard_contact,
+                np.minimum(RULES.stiff_bend * soft, speed * late),
+                speed * late,
             )
             most = most + smeared * max(0.5 * step - gap, 0.0) ** 2
-            off = np.maximum(np.maximum(_SOFTER * soft - above, above - most), 0.0)
+            off = np.maximum(np.maximum(RULES.soft_bend * soft - above, above - most), 0.0)
             # a shadow or a stray beside the contact says little
-            found -= np.minimum(0.5 * (off / piece.sigma) ** 2, _STRAY)
+            found -= np.minimum(0.5 * (off / piece.sigma) ** 2, RULES.touch_stray)
     return np.asarray(found - found.max())
 
 
@@ -183,7 +168,7 @@ def common_durations(each: Sequence[Array]) -> list[Array]:
     Contacts of one body last about as long; those of elastic spheres vary with the inverse fifth
     root of the speed (H. Hertz, 1882).
     """
-    near = np.abs(np.log(LASTS[:, None] / LASTS[None, :])) <= math.log(_ALIKE)
+    near = np.abs(np.log(LASTS[:, None] / LASTS[None, :])) <= math.log(RULES.contacts_alike)
     wide = [np.where(near, one[None, :], -np.inf).max(axis=1) for one in each]
     found = []
     for k, one in enumerate(each):

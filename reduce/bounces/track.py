@@ -13,14 +13,9 @@ from scipy.signal import find_peaks
 
 from ..measured import Array
 from ..regression import robust_std
+from ..rules import RULES
 
 Indices = npt.NDArray[np.int_]
-
-_IMPOSSIBLE = 3.0
-"""Speed between two samples, in the nine tenths quantile of all, that no body has."""
-
-_FEWEST = 6
-"""Samples that a part between two impossible steps must have to be the body's own."""
 
 
 @dataclass(frozen=True)
@@ -75,13 +70,13 @@ def on_the_body(track: Track) -> Indices:
     """
     speed = np.abs(np.diff(track.height)) / np.diff(track.time)
     noise = robust_std(np.diff(track.height, 2)) / np.sqrt(6.0) / track.step
-    limit = _IMPOSSIBLE * float(np.quantile(speed, 0.9)) + 6.0 * noise
+    limit = RULES.impossible * float(np.quantile(speed, 0.9)) + 6.0 * noise
     kept = np.arange(track.time.size)
     for _ in range(4):
         time, height = track.time[kept], track.height[kept]
         cuts = np.flatnonzero(np.abs(np.diff(height)) > limit * np.diff(time)) + 1
         parts = np.split(np.arange(kept.size), cuts)
-        good = [p for p in parts if p.size >= _FEWEST]
+        good = [p for p in parts if p.size >= RULES.fewest]
         if len(good) == len(parts) or not good:
             break
         kept = kept[np.concatenate(good)]

@@ -14,6 +14,7 @@ import numpy.typing as npt
 
 from ...core.errors import InputError, missing_extra
 from ..measured import Array
+from ..rules import RULES
 from . import photron
 from .picture_file import (
     CHANNELS,
@@ -28,13 +29,6 @@ from .picture_file import (
 )
 
 Frame = npt.NDArray[np.uint8]
-_LARGEST = 3_000_000_000
-
-_REPEAT = 0.35
-"""Change of a frame, in that of its neighbours, below which it may repeat the one before."""
-
-_OFTEN = 0.2
-"""Part of the frames that must do so before they count as repeated."""
 
 
 @dataclass(frozen=True)
@@ -132,9 +126,9 @@ def _gathered(
                 f"first one {frames[0].shape[1]} x {frames[0].shape[0]}",
                 source=source, allowed="frames of one size",
             )  # fmt: skip
-        if (len(frames) + 1) * frame.size > _LARGEST:
+        if (len(frames) + 1) * frame.size > RULES.clip_bytes:
             raise InputError(
-                f"more than {_LARGEST // 10**9} GB of frames", source=source,
+                f"more than {RULES.clip_bytes // 10**9} GB of frames", source=source,
                 allowed="a shorter range (--first-frame, --last-frame) or a --crop",
             )  # fmt: skip
         frames.append(np.ascontiguousarray(frame))
@@ -156,9 +150,9 @@ def repeated_frames(frames: Frame) -> npt.NDArray[np.int64]:
     few = frames[:, ::step, ::step].astype(np.int16)
     change = np.array([np.abs(b - a).mean() for a, b in pairwise(few)])
     around = np.maximum(np.append(change[1:], 0.0), np.append(0.0, change[:-1]))
-    found = np.flatnonzero(change < _REPEAT * around) + 1
+    found = np.flatnonzero(change < RULES.repeated * around) + 1
     equal = np.flatnonzero(change == 0.0) + 1
-    return np.asarray(found if found.size > _OFTEN * len(frames) else equal)
+    return np.asarray(found if found.size > RULES.often_repeated * len(frames) else equal)
 
 
 def _check_choice(value: str, allowed: tuple[str, ...], key: str) -> None:
@@ -212,10 +206,10 @@ def _pages(path: Path, channel: str) -> Iterator[tuple[float, Frame]]:
     try:
         with tifffile.TiffFile(path) as pages:
             for page in pages.pages:
-                if page.nbytes > _LARGEST:  # what a header claims is not allocated unseen
+                if page.nbytes > RULES.clip_bytes:  # what a header claims is not allocated unseen
                     raise InputError(
                         f"a page of {page.nbytes / 1e9:.3g} GB", source=str(path),
-                        allowed=f"pages up to {_LARGEST // 10**9} GB",
+                        allowed=f"pages up to {RULES.clip_bytes // 10**9} GB",
                     )  # fmt: skip
                 yield np.nan, grey_picture(page.asarray(), channel, str(path))
     except InputError:

@@ -17,12 +17,7 @@ from scipy.special import ndtr
 
 from ..measured import Array
 from ..regression import robust_std
-
-_ROUNDS = 10
-_SETTLED, _LAST_MOVE = 1e-4, 0.02
-_HUBER = 2.5
-_INNER = 0.75
-"""Part of the half-width from which the cap is read; the corner beyond it is left out."""
+from ..rules import RULES
 
 _POSE = (0, 1, 2, 3, 4, 5, 6)
 _FREE = {"pose": _POSE, "shape": (*_POSE, 7, 8), "mirror": (*_POSE, 9, 10)}
@@ -192,14 +187,14 @@ def _settle(
     p, moved = start.copy(), list(free)
     covariance = np.zeros((p.size, p.size))
     move = np.full(len(moved), np.inf)
-    for _ in range(_ROUNDS):
+    for _ in range(RULES.edge_rounds):
         model, jacobian, zone = picture(p)
         residual = (values - model)[zone]
         if residual.size <= len(moved) + 4:
             return None
         # quantisation alone leaves 0.3 grey levels
         spread = max(robust_std(residual), 0.3)
-        weight = np.minimum(1.0, _HUBER * spread / np.maximum(np.abs(residual), 1e-12))
+        weight = np.minimum(1.0, RULES.huber * spread / np.maximum(np.abs(residual), 1e-12))
         active = jacobian[moved][:, zone]
         normal = (active * weight) @ active.T
         try:
@@ -211,9 +206,9 @@ def _settle(
             return None
         p[moved] += np.clip(move, -limits[moved], limits[moved])
         p = np.clip(p, low, high)
-        if np.abs(move[:2]).max() < _SETTLED:
+        if np.abs(move[:2]).max() < RULES.edge_settled:
             break
-    if np.abs(move[:2]).max() > _LAST_MOVE:
+    if np.abs(move[:2]).max() > RULES.edge_last:
         return None
     variance = float(np.sum(weight * residual**2) / max(weight.sum() - len(moved), 1.0))
     covariance[np.ix_(moved, moved)] = variance * inverse
@@ -266,7 +261,7 @@ def _rod_picture(
     ])  # fmt: skip
     cap_height = radius - np.sqrt(max(radius**2 - half**2, 0.0))
     zone = (np.abs(across) < half + 4.0 * blur + 2.0) & (up > -(4.0 * blur + 2.0))
-    zone &= (np.abs(across) < _INNER * half) | (up > cap_height + 4.0 * blur + 1.0)
+    zone &= (np.abs(across) < RULES.cap * half) | (up > cap_height + 4.0 * blur + 1.0)
     return dark + light * step, jacobian, zone
 
 

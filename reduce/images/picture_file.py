@@ -11,12 +11,12 @@ import numpy.typing as npt
 
 from ...core.errors import InputError, missing_extra
 from ...core.inputs.input_file import checked_file
+from ..rules import RULES
 
 CHANNELS = ("grey", "red", "green", "blue")
 
 DOWN = {"down": 0, "left": 1, "up": 2, "right": 3}
 """Where gravity points in the picture, and the quarter turns counter-clockwise that undo it."""
-_LARGEST = 1_000_000_000
 _CROP = re.compile(r"(\d+):(\d+),(\d+):(\d+)")
 PICTURES = (".png", ".tif", ".tiff", ".bmp", ".jpg", ".jpeg", ".pgm")
 
@@ -33,7 +33,7 @@ def read_picture(path: Path, *, channel: str = "grey") -> npt.NDArray[np.uint8]:
         from skimage.io import imread
     except ImportError:
         raise missing_extra("reading pictures", "video") from None
-    checked_file(path, most=_LARGEST, allowed="a picture")
+    checked_file(path, most=RULES.picture_bytes, allowed="a picture")
     if path.suffix.lower() not in PICTURES:
         raise InputError(
             "cannot be read as a picture", source=str(path), allowed=" ".join(PICTURES)

@@ -7,12 +7,10 @@ import numpy.typing as npt
 from scipy.ndimage import binary_dilation
 
 from ..measured import Array
+from ..rules import RULES
 from .edge_fit import BallEdge, RodShape
 
 Mask = npt.NDArray[np.bool_]
-
-_OWN_LEVEL = 1.3
-"""Contrast of a ball, in that of the clip, from which its own grey level is used."""
 
 
 def body_mask(frame: Array, level: float) -> Mask:
@@ -71,7 +69,7 @@ def ball_by_light(frame: Array, *, levels: tuple[float, float]) -> BallEdge | No
     mask = body_mask(frame, 0.5 * (levels[0] + levels[1]))
     # other things that move pull the level of the clip; the ball has its own
     bright = float(np.median(frame[mask])) if mask.any() else levels[1]
-    if bright > _OWN_LEVEL * levels[1] - (_OWN_LEVEL - 1.0) * levels[0]:
+    if bright > RULES.own_level * levels[1] - (RULES.own_level - 1.0) * levels[0]:
         mask = body_mask(frame, 0.5 * (levels[0] + bright))
     else:
         bright = levels[1]

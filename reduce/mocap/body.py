@@ -12,12 +12,12 @@ from pydantic import Field, field_validator
 from ...core.errors import InputError
 from ...core.inputs.toml_input import InputTable, Listed, read_model
 from ..measured import Array
+from ..rules import RULES
 from .file import Markers
 from .motion import Prior
 from .rigid import Poses, kabsch
 
 SHAPES = ("rod", "sphere", "body")
-_STRAIGHT = 1e-6
 
 Place = Annotated[tuple[float, float, float], Listed]
 
@@ -36,7 +36,7 @@ class BodyFile(InputTable):
     @field_validator("axis")
     @classmethod
     def _has_length(cls, given: Place) -> Place:
-        if not np.linalg.norm(given) > _STRAIGHT:
+        if not np.linalg.norm(given) > RULES.unit_turn:
             raise ValueError("a direction")
         return given
 

@@ -19,9 +19,9 @@ from ...core.errors import InputError
 from ...core.inputs.csv_table import number
 from ...core.inputs.input_file import read_bytes
 from ..measured import Array
+from ..rules import RULES
 from ..units import LENGTH
 
-_MOST_BYTES = 500_000_000
 _IN_WORDS = {"meters": "m", "millimeters": "mm", "centimeters": "cm", "inches": "in"}
 
 
@@ -67,7 +67,7 @@ def read_export(path: Path) -> Export | None:
 
 
 def _rows(path: Path) -> list[list[str]]:
-    raw = read_bytes(path, most=_MOST_BYTES, allowed="a tracker's export")
+    raw = read_bytes(path, most=RULES.table_bytes, allowed="a tracker's export")
     lines = raw.decode("utf-8-sig", errors="replace").splitlines()
     separator = "\t" if lines[0].count("\t") else ","
     return [[c.strip() for c in row] for row in csv.reader(lines, delimiter=separator)]

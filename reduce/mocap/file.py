@@ -37,7 +37,6 @@ _COORDINATE = re.compile(
 _TIME = re.compile(r"(?:t|time)(?:[ _]?[\[(]?(?P<unit>s|ms)[\])]?)?", re.IGNORECASE)
 _FRAME = re.compile(r"frame", re.IGNORECASE)
 _TURN = ("qw", "qx", "qy", "qz")
-_FEWEST = 10
 
 
 @dataclass(frozen=True)
@@ -91,10 +90,10 @@ class Markers:
     def part(self, first: int, last: int | None) -> Markers:
         """Return frames `first` to `last`, both included."""
         stop = None if last is None else last + 1
-        if self.time[first:stop].size < _FEWEST:
+        if self.time[first:stop].size < RULES.mocap_frames:
             raise InputError(
                 f"{self.time[first:stop].size} frames in the range", source=self.source,
-                allowed=f"{_FEWEST} frames or more",
+                allowed=f"{RULES.mocap_frames} frames or more",
             )  # fmt: skip
         return replace(self, time=self.time[first:stop], position=self.position[first:stop])
 
@@ -140,9 +139,9 @@ def read_markers(
         markers = Markers(time, export.names, export.position * factor, str(path))
     else:
         markers = _table(path, unit, rate, select, points or {})
-    if markers.time.size < _FEWEST:
+    if markers.time.size < RULES.mocap_frames:
         raise InputError(
-            f"{markers.time.size} frames", source=str(path), allowed=f"{_FEWEST} or more"
+            f"{markers.time.size} frames", source=str(path), allowed=f"{RULES.mocap_frames} or more"
         )
     farthest = float(np.nanmax(np.abs(markers.position), initial=0.0))
     if farthest > RULES.farthest_marker:

@@ -12,12 +12,9 @@ import numpy as np
 
 from ..measured import Array, Measured
 from ..regression import robust_regression, robust_std
+from ..rules import RULES
 from .motion import OWN, SHARED, Motion, Prior, deviations, first_guess, jacobian
 from .rigid import Poses
-
-_MOST_STEPS = 20
-_SETTLED = 1e-3
-"""Part of the misfit that a step may still promise when the fit of a motion ends."""
 
 
 @dataclass(frozen=True)
@@ -63,7 +60,7 @@ def fit_flights(
         prior.value.copy(),
         1e-4,
     )
-    for _ in range(_MOST_STEPS):
+    for _ in range(RULES.motion_steps):
         weight = max(sigma, 1e-7)
         motions, offset, left, settled = _gauss_newton(poses, spans, motions, offset, prior, weight)
         sigma = robust_std(left)
@@ -152,7 +149,7 @@ def alone(
     motions, offset = [first_guess(poses, span, gravity)], prior.value.copy()
     # the prior of b only keeps what no spin shows from running away
     weight = 1e-4
-    for _ in range(_MOST_STEPS):
+    for _ in range(RULES.motion_steps):
         motions, offset, _, settled = _gauss_newton(poses, [span], motions, offset, prior, weight)
         if settled:
             break
@@ -188,5 +185,5 @@ def _gauss_newton(
     for part in (1.0, 0.5, 0.2, 0.05):
         there = _moved(motions, offset, part * step)
         if misfit(*there) < before:
-            return *there, left, bool(before - left @ left < _SETTLED * before)
+            return *there, left, bool(before - left @ left < RULES.motion_settled * before)
     return motions, offset, left, True

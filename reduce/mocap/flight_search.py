@@ -6,25 +6,10 @@ import numpy as np
 
 from ..measured import Array
 from ..regression import robust_std
+from ..rules import RULES
 from .flight import Flights, alone, fall_acceleration, fit_flights
 from .motion import Prior, deviations
 from .rigid import Poses
-
-WINDOW = 8
-"""Frames in which a flight is looked for; contacts closer than this are not told apart."""
-
-_CLEAN = 3.0
-"""A window fits free flight if its residual is below this many usual ones."""
-
-_STANDS_OUT, _BROKEN = 1.5, 5.0
-"""A span of clean windows is cut at its worst if that is so many usual ones, and the span as one
-flight so many limits."""
-
-_OFF = 2.5
-"""Root mean square deviation, in standard deviations, at which a frame ends the flight."""
-
-_FALL = 0.3
-"""Part of gravity by which a flight's own acceleration may differ; drag of a light ball is less."""
 
 
 def find_flights(poses: Poses, gravity: Array, prior: Prior) -> Flights | None:
@@ -55,32 +40,32 @@ def _falls(poses: Poses, span: tuple[int, int], gravity: Array, prior: Prior) ->
     if alone is None:
         return False
     own, g = fall_acceleration(poses, alone), float(np.linalg.norm(gravity))
-    return abs(own.value - g) < max(4.0 * own.std, _FALL * g)
+    return abs(own.value - g) < max(4.0 * own.std, RULES.fall_off * g)
 
 
 def _spans(poses: Poses, gravity: Array, prior: Prior) -> list[tuple[int, int]]:
     """Return runs of poses in which every window fits a free flight."""
     n = poses.time.size
-    if n < WINDOW:
+    if n < RULES.window:
         return []
     usual = float(np.median(np.diff(poses.time)))
-    rms = np.full(n - WINDOW + 1, np.inf)
+    rms = np.full(n - RULES.window + 1, np.inf)
     for k in range(rms.size):
-        if poses.time[k + WINDOW - 1] - poses.time[k] < 2.0 * WINDOW * usual:
-            rms[k] = alone(poses, (k, k + WINDOW - 1), gravity, prior)[1]
+        if poses.time[k + RULES.window - 1] - poses.time[k] < 2.0 * RULES.window * usual:
+            rms[k] = alone(poses, (k, k + RULES.window - 1), gravity, prior)[1]
     # a body at rest fits worse than one in flight: the best windows tell the error of a marker
-    limit = _CLEAN * max(1.2 * float(np.quantile(rms, 0.05)), _noise(poses))
+    limit = RULES.clean * max(1.2 * float(np.quantile(rms, 0.05)), _noise(poses))
     clean = rms < limit
     while True:
         edges = np.flatnonzero(np.diff(np.concatenate([[False], clean, [False]]).astype(int)))
         runs = edges.reshape(-1, 2)
-        spans = [(int(a), int(b) + WINDOW - 2) for a, b in runs]
+        spans = [(int(a), int(b) + RULES.window - 2) for a, b in runs]
         # a contact that b can pass for within a window shows over the whole span
         hidden = [
             a + int(np.argmax(rms[a:b]))
             for (a, b), span in zip(runs, spans, strict=True)
-            if rms[a:b].max() > _STANDS_OUT * np.median(rms[a:b])
-            and alone(poses, span, gravity, prior)[1] > _BROKEN * limit
+            if rms[a:b].max() > RULES.stands_out * np.median(rms[a:b])
+            and alone(poses, span, gravity, prior)[1] > RULES.broken * limit
         ]
         if not hidden:
             return spans
@@ -93,7 +78,7 @@ def _noise(poses: Poses) -> float:
     0 where too few frames follow each other without a gap.
     """
     even = np.flatnonzero(poses.frame[4:] - poses.frame[:-4] == 4)
-    if even.size < 2 * WINDOW:
+    if even.size < 2 * RULES.window:
         return 0.0
     fourth = np.diff(poses.origin, 4, axis=0)[even] / np.sqrt(70.0)
     spread = np.sqrt(np.mean([robust_std(c) ** 2 for c in fourth.T]))
@@ -123,14 +108,14 @@ def _grown(
 ) -> tuple[int, int]:  # fmt: skip
     """Move both ends of a flight to where the first frame leaves it, less a margin of one."""
     first, last = span
-    inner = 2 if last - first >= WINDOW + 3 else 0
+    inner = 2 if last - first >= RULES.window + 3 else 0
     core = (first + inner, last - inner)
     (motion, offset), rms = alone(poses, core, gravity, prior)
-    limit = _OFF * max(sigma, rms)
+    limit = RULES.doubtful * max(sigma, rms)
 
     def reach(start: int, step: int) -> int:
         k, end = start, start
-        while 0 <= k < poses.time.size and abs(k - start) <= WINDOW + inner:
+        while 0 <= k < poses.time.size and abs(k - start) <= RULES.window + inner:
             off = deviations(poses, np.array([k]), motion, offset)
             if np.sqrt(np.mean(off**2)) > limit:
                 return end - step

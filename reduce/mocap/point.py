@@ -19,13 +19,10 @@ from ..bounces.track import Track, on_the_body, turning_points
 from ..bounces.view import Stage
 from ..measured import Array, Measured, Trial, labels, propagate
 from ..regression import robust_regression
+from ..rules import RULES
 from .file import Markers
 from .reduction import MocapScene
 
-_NEAR = 0.15
-"""Time next to the contact in which drag and lift count as even [s]."""
-
-_FEWEST = 6
 _NOT_COLUMNS = ("out_of_plane_ratio", "contact_height_m")
 _NAMES = (
     "angle_deg", "impact_speed_m_s", "approach_tangential_m_s", "restitution",
@@ -90,10 +87,10 @@ def reduce_point(markers: Markers, scene: MocapScene, *, spin: Array | None) -> 
     """
     seen = np.isfinite(markers.position[:, 0]).all(axis=1)
     time, position = markers.time[seen], markers.position[seen, 0]
-    if time.size < 2 * _FEWEST:
+    if time.size < 2 * RULES.fewest:
         raise InputError(
             f"the ball is seen in {time.size} frames", source=markers.source,
-            allowed=f"{2 * _FEWEST} or more",
+            allowed=f"{2 * RULES.fewest} or more",
         )  # fmt: skip
     measured, noise = [], []
     for number, (instant, flights) in enumerate(_contacts(time, position @ scene.up)):
@@ -110,7 +107,8 @@ def reduce_point(markers: Markers, scene: MocapScene, *, spin: Array | None) -> 
     if not measured:
         raise InputError(
             "no bounce with a flight before and after it", source=markers.source,
-            allowed=f"{_FEWEST} frames or more on both sides, and the right direction of up",
+            allowed=f"{RULES.fewest} frames or more on both sides, and the right direction "
+            "of up",
         )  # fmt: skip
     notes = (f"one point: no spin is measured; position error {np.mean(noise) * 1e3:.2g} mm",)
     return PointReduction(time, position, tuple(measured), float(np.mean(noise)), notes)
@@ -134,7 +132,9 @@ def _contacts(time: Array, height: Array) -> Iterator[tuple[float, tuple[Piece, 
         if before is None or after is None:
             continue
         at = float(track.time[contact])
-        near = [p.index[np.abs(track.time[p.index] - at) < _NEAR] for p in (before, after)]
+        near = [
+            p.index[np.abs(track.time[p.index] - at) < RULES.drag_even] for p in (before, after)
+        ]
         if min(n.size for n in near) < 3:
             continue
         one, two = (np.polyfit(track.time[n] - at, track.height[n], 2) for n in near)
@@ -152,8 +152,8 @@ def _side(
     """Fit the flight next to a contact; the frame nearest to it may be within it."""
     tau = time - instant
     index = flight.index
-    index = index[(way * tau[index] > 0.0) & (np.abs(tau[index]) < _NEAR)]
-    if index.size < _FEWEST:
+    index = index[(way * tau[index] > 0.0) & (np.abs(tau[index]) < RULES.drag_even)]
+    if index.size < RULES.fewest:
         return None
     design = np.stack([np.ones(index.size), tau[index], tau[index] ** 2], axis=1)
     fits = [robust_regression(design, position[index, k]) for k in range(3)]

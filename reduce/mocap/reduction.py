@@ -17,6 +17,7 @@ from ...core.errors import InputError
 from ...recordings.columns import TRIAL_COLUMNS
 from ..bounces.options import GRAVITY
 from ..measured import Array, Measured, Trial, labels, propagate
+from ..rules import RULES
 from .body import Body
 from .checks import check_fall, check_shape, possible, widened
 from .flight import Flights, fall_acceleration
@@ -27,8 +28,6 @@ from .rigid import Poses
 _UPRIGHT = math.radians(1.0)
 """Lean below which the plane of motion is that of the impulse, not that of the rod."""
 
-_LONGEST_GAP = 8
-"""Frames between two flights beyond which more than one contact may lie between them."""
 
 _NAMES = (
     "time_s", "angle_deg", "impact_speed_m_s", "approach_tangential_m_s", "approach_normal_m_s",
@@ -150,7 +149,7 @@ def reduce_mocap(poses: Poses, body: Body, scene: MocapScene, *, source: str) ->
     hits = []
     for f in range(len(flights.spans) - 1):
         gap = int(poses.frame[flights.spans[f + 1][0]] - poses.frame[flights.spans[f][1]]) - 1
-        if gap <= _LONGEST_GAP:
+        if gap <= RULES.longest_gap:
             hits.append(_hit(poses, flights, f, gap, body, scene))
     hits = [h for h in hits if h.measured["impact_speed_m_s"].value > 0.0]
     fall = fall_acceleration(poses, flights)

@@ -16,16 +16,10 @@ from scipy.spatial.transform import Rotation
 
 from ...core.errors import InputError
 from ..measured import Array
+from ..rules import RULES
 from .file import Markers
 
 Seen = npt.NDArray[np.bool_]
-
-_ROUNDS = 8
-_COLLINEAR = 0.01
-"""Second over first extent of a shape below which its markers lie on one line."""
-
-_MISFIT = 6.0
-"""A marker this many times further off than usual is taken for another object or a mix-up."""
 
 
 @dataclass(frozen=True)
@@ -142,7 +136,7 @@ def _mean_shape(points: Array, seen: Seen, source: str) -> Array:
     nearest = np.argmin(np.abs(distance - np.median(distance, axis=0)).sum(axis=(1, 2)))
     shape = points[whole[nearest]] - points[whole[nearest]].mean(axis=0)
     usable = np.flatnonzero(seen.sum(axis=1) >= 3)
-    for _ in range(_ROUNDS):
+    for _ in range(RULES.rigid_rounds):
         back = np.full((usable.size, *shape.shape), np.nan)
         for row, k in enumerate(usable):
             origin, turn = kabsch(shape[seen[k]], points[k, seen[k]])
@@ -164,7 +158,7 @@ def _without_misfits(shape: Array, points: Array, seen: Seen) -> tuple[Seen, int
     for k in usable:
         off[k, seen[k]] = _distances(shape[seen[k]], points[k, seen[k]])
     rms = np.sqrt((off[usable] ** 2).sum(axis=1) / seen[usable].sum(axis=1))
-    limit = _MISFIT * max(float(np.median(rms)) if rms.size else 0.0, 1e-9)
+    limit = RULES.foreign * max(float(np.median(rms)) if rms.size else 0.0, 1e-9)
     kept, dropped = seen.copy(), 0
     for k in np.flatnonzero(off.max(axis=1) > limit):
         while kept[k].sum() >= 3 and _distances(shape[kept[k]], points[k, kept[k]]).max() > limit:
@@ -211,7 +205,7 @@ def cross_matrices(vectors: Array) -> Array:
 
 def _is_line(shape: Array) -> bool:
     extents = np.linalg.svd(shape, compute_uv=False)
-    return bool(extents[1] < _COLLINEAR * extents[0])
+    return bool(extents[1] < RULES.collinear * extents[0])
 
 
 def _direction(shape: Array) -> Array:

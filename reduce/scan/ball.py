@@ -10,11 +10,8 @@ from scipy.optimize import least_squares
 from ...core.errors import InputError
 from ..measured import Array, Measured
 from ..regression import robust_std
+from ..rules import RULES
 from .file import Scan
-
-_MOST = 20_000
-_SECTORS = 8
-_FEWEST = 200
 
 
 @dataclass(frozen=True)
@@ -62,20 +59,24 @@ def reduce_ball(scan: Scan, *, reach: float | None = None) -> ScannedBall:
     extent = (np.array(scan.z.shape) - 1) * scan.step
     limit = reach or float(min(np.min(top), np.min(extent - top)))
     near = np.flatnonzero(np.hypot(x - top[0], y - top[1]) <= limit)
-    if near.size < _FEWEST:
+    if near.size < RULES.ball_fewest:
         raise InputError(
             f"{near.size} points within {limit:.3g} m of the top", source=scan.source,
-            key="reach_m", allowed=f"{_FEWEST} or more points",
+            key="reach_m", allowed=f"{RULES.ball_fewest} or more points",
         )  # fmt: skip
-    near = near[:: max(1, near.size // _MOST)]
+    near = near[:: max(1, near.size // RULES.ball_points)]
     x, y, z = x[near], y[near], z[near]
     fit, off = _sphere(x, y, z, top, limit)
-    sector = ((np.arctan2(y - top[1], x - top[0]) + np.pi) / (2 * np.pi) * _SECTORS).astype(int)
+    sector = ((np.arctan2(y - top[1], x - top[0]) + np.pi) / (2 * np.pi) * RULES.sectors).astype(
+        int
+    )
     parts = []
-    for left_out in range(_SECTORS):
-        keep = sector % _SECTORS != left_out
+    for left_out in range(RULES.sectors):
+        keep = sector % RULES.sectors != left_out
         parts.append(1.0 / _sphere(x[keep], y[keep], z[keep], top, limit)[0][3])
-    std = float(np.sqrt((_SECTORS - 1) / _SECTORS * np.sum((parts - np.mean(parts)) ** 2)))
+    std = float(
+        np.sqrt((RULES.sectors - 1) / RULES.sectors * np.sum((parts - np.mean(parts)) ** 2))
+    )
     missing = 100.0 * float(np.mean(~np.isfinite(scan.z)))
     notes = (*scan.notes, f"{missing:.2g} % not seen") if missing else scan.notes
     return ScannedBall(
@@ -85,7 +86,7 @@ def reduce_ball(scan: Scan, *, reach: float | None = None) -> ScannedBall:
 
 
 def _paraboloid_top(x: Array, y: Array, z: Array, scan: Scan) -> Array:
-    thin = slice(None, None, max(1, x.size // _MOST))
+    thin = slice(None, None, max(1, x.size // RULES.ball_points))
     size = float(np.hypot(np.ptp(x), np.ptp(y)))
     u, v = x[thin] / size, y[thin] / size
     design = np.stack([np.ones_like(u), u, v, u * u, u * v, v * v], axis=1)

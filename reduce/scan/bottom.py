@@ -17,15 +17,11 @@ from scipy import ndimage
 from ...core.errors import InputError
 from ..measured import Array, Measured
 from ..regression import robust_std
+from ..rules import RULES
 from .level import Levelled, filled
 from .noise import autocovariance, variance
 
-_LARGE, _SMALL = 0.75, 0.5
-"""Radii of the two discs in half-widths of the crater."""
-
 _POWERS = [(i, k - i) for k in range(5) for i in range(k + 1)]
-_REJECT = 4.0
-_FEWEST = 45
 
 
 @dataclass(frozen=True)
@@ -67,10 +63,11 @@ def find_bottom(found: Levelled, half_width: float, *, source: str) -> Bottom:
     smooth = ndimage.gaussian_filter(filled(found.z), 0.2 * half_width / found.step)
     start = np.unravel_index(int(np.argmin(np.where(found.crater, smooth, np.inf))), smooth.shape)
     large, small = (
-        _floor(found, np.array(start), part * half_width, source) for part in (_LARGE, _SMALL)
+        _floor(found, np.array(start), part * half_width, source)
+        for part in (RULES.bottom_large, RULES.bottom_small)
     )
     reach = np.minimum(
-        np.ceil(2.0 * _LARGE * half_width / found.step), np.array(found.z.shape) // 2
+        np.ceil(2.0 * RULES.bottom_large * half_width / found.step), np.array(found.z.shape) // 2
     ).astype(int)
     covariance = autocovariance(found.z, found.clear, reach)
     noise = variance(large.weights + _level_weights(found, large.place), covariance)
@@ -87,10 +84,10 @@ def _floor(found: Levelled, start: Array, radius: float, source: str) -> _Floor:
         index = start + offsets
         ok = np.all((index >= 0) & (index < found.z.shape), axis=1)
         ok[ok] = np.isfinite(found.z[tuple(index[ok].T)])
-        if ok.sum() < _FEWEST:
+        if ok.sum() < RULES.bottom_points:
             raise InputError(
                 f"{int(ok.sum())} points on the floor of the crater", source=source,
-                allowed=f"{_FEWEST} or more: a finer scan",
+                allowed=f"{RULES.bottom_points} or more: a finer scan",
             )  # fmt: skip
         z = found.z[tuple(index[ok].T)]
         c, used = _clipped_fit(_design(u[ok]), z)
@@ -135,8 +132,8 @@ def _clipped_fit(design: Array, z: Array) -> tuple[Array, npt.NDArray[np.bool_]]
     for _ in range(3):
         c = np.linalg.lstsq(design[used], z[used], rcond=None)[0]
         off = np.abs(z - design @ c)
-        new = off <= _REJECT * max(robust_std(off * np.sign(z - design @ c)), 1e-15)
-        if new.sum() < _FEWEST or np.array_equal(new, used):
+        new = off <= RULES.no_chance * max(robust_std(off * np.sign(z - design @ c)), 1e-15)
+        if new.sum() < RULES.bottom_points or np.array_equal(new, used):
             break
         used = new
     return np.asarray(np.linalg.lstsq(design[used], z[used], rcond=None)[0]), used

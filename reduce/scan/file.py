@@ -14,16 +14,12 @@ import numpy as np
 from ...core.errors import InputError, missing_extra
 from ...core.inputs.csv_table import number, shown
 from ..measured import Array
+from ..rules import RULES
 from ..table.file import numbered_lines, text_rows
 from ..units import LENGTH, metres
 
 _TEXT = (".csv",)
 _UNSEEN = ("", "nan", "-", "na")
-_ABSURD = 1e30
-_FEWEST = 100
-_FARTHEST = 1e-3  # m between neighbouring points; one reader's format gives 0.3 m for 0.3 um
-_MOST_POINTS = 100_000_000
-_DENSEST = 50  # points a byte of a packed file holds at most
 
 
 @dataclass(frozen=True)
@@ -73,11 +69,11 @@ def read_scan(
     """
     found = _text(path) if path.suffix.lower() in _TEXT else None
     found = found or _known_format(path, step)
-    heights = np.where(np.abs(found.z) < _ABSURD, found.z, np.nan)
-    if heights.size < _FEWEST or np.isfinite(heights).sum() < 0.05 * heights.size:
+    heights = np.where(np.abs(found.z) < RULES.absurd, found.z, np.nan)
+    if heights.size < RULES.scan_points or np.isfinite(heights).sum() < 0.05 * heights.size:
         raise InputError(
             f"{int(np.isfinite(heights).sum())} heights in it", source=str(path),
-            allowed=f"{_FEWEST} or more, seen in a twentieth of the points or more",
+            allowed=f"{RULES.scan_points} or more, seen in a twentieth of the points or more",
         )  # fmt: skip
     heights = heights * _factor(height_unit or unit or found.unit, path)
     if heights.ndim == 1:
@@ -120,11 +116,12 @@ def _positions(found: _Raw, unit: str | None, step: float | None, path: Path) ->
 
 def _refuse_far(step: float, path: Path) -> None:
     """Refuse points so far apart that the unit must be wrong."""
-    if step > _FARTHEST:
+    if step > RULES.scan_step:
         raise InputError(
-            f"its points are {step:.3g} m apart, {step / _FARTHEST:.0f} times as far as in a scan",
-            source=str(path), allowed=f"--unit or --step-m, where neighbours are {_FARTHEST:g} m "
-            "apart or less",
+            f"its points are {step:.3g} m apart, {step / RULES.scan_step:.0f} times as far as in a "
+            "scan",
+            source=str(path),
+            allowed=f"--unit or --step-m, where neighbours are {RULES.scan_step:g} m apart or less",
         )  # fmt: skip
 
 
@@ -163,10 +160,10 @@ def _known_format(path: Path, step: float | None) -> _Raw:
 def _check_claim(points: tuple[int, ...], path: Path) -> None:
     """Refuse a header that claims more points than the file can hold, before room is made."""
     count, size = math.prod(int(n) for n in points), path.stat().st_size
-    if count > min(_MOST_POINTS, _DENSEST * size):
+    if count > min(RULES.scan_most, RULES.packed_points * size):
         raise InputError(
             f"{count} points claimed in {size} bytes", source=str(path),
-            allowed=f"up to {_MOST_POINTS:g}, and {_DENSEST} a byte",
+            allowed=f"up to {RULES.scan_most:g}, and {RULES.packed_points} a byte",
         )  # fmt: skip
 
 

@@ -16,21 +16,13 @@ from scipy import ndimage
 from ...core.errors import InputError
 from ..measured import Array
 from ..regression import robust_regression, robust_std
+from ..rules import RULES
 from .file import Scan
 
 Mask = npt.NDArray[np.bool_]
 
 LEVELS = {"plane": 1, "paraboloid": 2}
 """Shape of the undisturbed surface, and its polynomial degree."""
-
-_SPIKE = 6.0
-"""Robust standard deviations from the median of the neighbours that make a spike."""
-
-_CLEARANCE = 1.9
-"""Part around the crater that levelling leaves out, in crater radii: the rim decays within it."""
-
-_LEAST = 0.05
-"""Part of the points that has to be left to level on."""
 
 
 @dataclass(frozen=True)
@@ -102,7 +94,7 @@ def filled(z: Array) -> Array:
 
 def _without_spikes(z: Array) -> tuple[Array, int]:
     off = z - ndimage.median_filter(filled(z), size=5, mode="nearest")
-    spike = np.abs(off) > _SPIKE * max(robust_std(off[np.isfinite(off)]), 1e-15)
+    spike = np.abs(off) > RULES.foreign * max(robust_std(off[np.isfinite(off)]), 1e-15)
     return np.where(spike, np.nan, z), int(spike.sum())
 
 
@@ -139,8 +131,8 @@ def _crater_of(smooth: Array, clear: Mask, scan: Scan) -> Mask:
 def _outside(crater: Mask, scan: Scan) -> Mask:
     radius = math.sqrt(float(crater.sum()) / math.pi)
     away = ndimage.distance_transform_edt(~crater)
-    outside = np.asarray(away > (_CLEARANCE - 1.0) * max(radius, 2.0))
-    if (outside & np.isfinite(scan.z)).sum() < _LEAST * crater.size:
+    outside = np.asarray(away > (RULES.clearance - 1.0) * max(radius, 2.0))
+    if (outside & np.isfinite(scan.z)).sum() < RULES.level_points * crater.size:
         raise InputError(
             "the crater leaves no undisturbed surface to level on", source=scan.source,
             allowed="a scan some 4 crater widths wide",

@@ -11,17 +11,10 @@ import numpy.typing as npt
 from ...core.errors import InputError
 from ..measured import UNITY, Array, Measured, Trial
 from ..regression import robust_regression, robust_std
+from ..rules import RULES
 from .file import LineScan
 from .noise import autocovariance, variance
 from .walls import Section, opening
-
-_CLEARANCE = 0.9
-"""Part beside the crater that levelling leaves out, in half-widths."""
-
-_LARGE, _SMALL = 0.75, 0.5
-"""Lengths of the two fits at the bottom in half-widths."""
-
-_FEWEST = 12
 
 
 @dataclass(frozen=True)
@@ -68,11 +61,11 @@ def reduce_line(scan: LineScan, *, height_scale: Measured = UNITY) -> Groove:
     covariance = autocovariance(
         z[:, None],
         clear[:, None],
-        np.array([min(int(2 * _LARGE * half / step) + 1, x.size // 2), 0]),
+        np.array([min(int(2 * RULES.bottom_large * half / step) + 1, x.size // 2), 0]),
     )
     start = int(np.argmin(np.where(crater, z, np.inf)))
-    low, at, weights = _bottom(x, z, start, _LARGE * half, scan.source)
-    other, _, inner = _bottom(x, z, start, _SMALL * half, scan.source)
+    low, at, weights = _bottom(x, z, start, RULES.bottom_large * half, scan.source)
+    other, _, inner = _bottom(x, z, start, RULES.bottom_small * half, scan.source)
     level = np.stack([np.ones_like(x), x], axis=1)
     drawn = np.zeros_like(x)
     drawn[clear] = level[clear] @ np.linalg.solve(level[clear].T @ level[clear], [1.0, at])
@@ -113,10 +106,10 @@ def _levelled(
         right = ends[ends > bottom].min(initial=x.size)
         found = np.zeros_like(crater)
         found[left:right] = True
-        gap = int((0.5 + 0.5 * _CLEARANCE) * (right - left))
+        gap = int((0.5 + 0.5 * RULES.line_clearance) * (right - left))
         clear = np.ones_like(crater)
         clear[max(left - gap, 0) : right + gap] = False
-        if clear.sum() < max(_FEWEST, 0.05 * x.size):
+        if clear.sum() < max(RULES.line_points, 0.05 * x.size):
             raise InputError(
                 "the crater leaves no undisturbed line to level on", source=source,
                 allowed="a profile some 4 crater widths long",
@@ -134,10 +127,10 @@ def _bottom(
     middle = float(x[start])
     for _ in range(8):
         near = np.abs(x - middle) <= reach
-        if near.sum() < _FEWEST:
+        if near.sum() < RULES.line_points:
             raise InputError(
                 f"{int(near.sum())} points on the floor of the crater", source=source,
-                allowed=f"{_FEWEST} or more: a finer profile",
+                allowed=f"{RULES.line_points} or more: a finer profile",
             )  # fmt: skip
         u = (x[near] - middle) / reach
         solver = np.linalg.pinv(np.vander(u, 5, increasing=True))

@@ -11,9 +11,7 @@ import numpy as np
 import numpy.typing as npt
 
 from ..measured import Array
-
-_FEWEST = 30
-"""Pairs of points that a lag of the autocovariance needs."""
+from ..rules import RULES
 
 
 def autocovariance(z: Array, clear: npt.NDArray[np.bool_], reach: npt.NDArray[np.int_]) -> Array:
@@ -31,7 +29,7 @@ def autocovariance(z: Array, clear: npt.NDArray[np.bool_], reach: npt.NDArray[np
     weights = clear.astype(np.float64)
     sums = _correlation(np.where(clear, z, 0.0), reach)
     pairs = np.rint(_correlation(weights, reach))
-    return np.where(pairs >= _FEWEST, sums / np.maximum(pairs, 1.0), 0.0)
+    return np.where(pairs >= RULES.lag_pairs, sums / np.maximum(pairs, 1.0), 0.0)
 
 
 def variance(weights: Array, covariance: Array) -> float:

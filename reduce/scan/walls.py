@@ -9,19 +9,11 @@ import numpy as np
 from scipy import ndimage
 
 from ..measured import Array, Measured
+from ..rules import RULES
 from .level import Levelled, filled
-
-_EDGE_FROM, _EDGE_TO = 0.08, 0.45
-"""Depths, as parts of the whole, between which a wall is followed up to the surface."""
-
-_GRID = 0.14
-"""What a wall's end misses on rendered craters without noise, in steps of the scan: its parabola,
-and the interpolation between points."""
 
 _BAND = np.linspace(-0.08, 0.08, 7)
 """Lines that are averaged into a section, from its middle, in halves of the crater's width."""
-
-_SECTORS = 12
 
 
 @dataclass(frozen=True)
@@ -95,8 +87,8 @@ def _wall_end(outward: Array, z: Array, depth: float, covariance: Array) -> Meas
     if not out.size:
         return None
     smooth = ndimage.uniform_filter1d(height, max(out.size // 60, 1))
-    over = np.flatnonzero(smooth > -_EDGE_FROM * depth)
-    deep = np.flatnonzero(smooth[: over[0]] < -_EDGE_TO * depth) if over.size else over
+    over = np.flatnonzero(smooth > -RULES.wall_from * depth)
+    deep = np.flatnonzero(smooth[: over[0]] < -RULES.wall_to * depth) if over.size else over
     if not over.size or not deep.size or over[0] - deep[-1] < 5:
         return None
     wall = slice(int(deep[-1]) + 1, int(over[0]))
@@ -116,7 +108,7 @@ def _wall_end(outward: Array, z: Array, depth: float, covariance: Array) -> Meas
     weights = np.array([1.0, end, end * end]) @ solver
     std = math.sqrt(max(float(weights @ noise @ weights), 0.0)) / abs(slope) * scale
     step = scale / (u.size - 1)
-    return Measured(middle + end * scale, math.hypot(std, _GRID * step))
+    return Measured(middle + end * scale, math.hypot(std, RULES.wall_end * step))
 
 
 def pile_up(found: Levelled, half_width: float) -> Measured:
@@ -125,14 +117,18 @@ def pile_up(found: Levelled, half_width: float) -> Measured:
     width = max(0.06 * half_width, float(found.step.max()))
     middle = np.argwhere(found.crater).mean(0)[:, None, None]
     angle = np.arctan2(*(np.indices(found.crater.shape) - middle))
-    sector = ((angle + np.pi) / (2.0 * np.pi) * _SECTORS).astype(int).clip(0, _SECTORS - 1)
+    sector = (
+        ((angle + np.pi) / (2.0 * np.pi) * RULES.wall_sectors)
+        .astype(int)
+        .clip(0, RULES.wall_sectors - 1)
+    )
     best = Measured(0.0, 0.0)
     for number in range(int(1.2 * half_width / width)):
         ring = (away > number * width) & (away <= (number + 1) * width) & np.isfinite(found.z)
-        if ring.sum() < 2 * _SECTORS:
+        if ring.sum() < 2 * RULES.wall_sectors:
             continue
-        sums = np.bincount(sector[ring], found.z[ring], minlength=_SECTORS)
-        counts = np.bincount(sector[ring], minlength=_SECTORS)
+        sums = np.bincount(sector[ring], found.z[ring], minlength=RULES.wall_sectors)
+        counts = np.bincount(sector[ring], minlength=RULES.wall_sectors)
         means = sums[counts > 0] / counts[counts > 0]
         mean = float(found.z[ring].mean())
         if (mean > best.value or number == 0) and len(means) > 1:

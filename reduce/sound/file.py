@@ -11,9 +11,7 @@ import numpy as np
 
 from ...core.errors import InputError, missing_extra
 from ..measured import Array
-
-_LONGEST = 600.0
-"""Seconds of sound that are taken in."""
+from ..rules import RULES
 
 
 @dataclass(frozen=True)
@@ -88,9 +86,9 @@ def _wave(path: Path) -> tuple[Array, float]:
 
 
 def _check_length(count: int, rate: float, path: Path) -> None:
-    if count > _LONGEST * rate:
+    if count > RULES.sound_s * rate:
         raise InputError(
-            f"more than {_LONGEST / 60.0:g} minutes",
+            f"more than {RULES.sound_s / 60.0:g} minutes",
             source=str(path),
             allowed="a shorter recording",
         )

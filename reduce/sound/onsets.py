@@ -13,12 +13,8 @@ import numpy as np
 from scipy.signal import butter, find_peaks, sosfilt
 
 from ..measured import Array
+from ..rules import RULES
 from .file import Sound
-
-_AFTER = 1e-3
-_BEFORE = 15e-3
-_SEARCH = (6e-3, 2e-3)
-"""How far before and after the steepest rise the onset is sought [s]."""
 
 
 @dataclass(frozen=True)
@@ -71,7 +67,10 @@ def _rise_db(heard: Array, rate: float) -> Array:
     """Energy just after each sample over that just before, (n,) [dB]."""
     total = np.concatenate([[0.0], np.cumsum(heard**2)])
     n = heard.size
-    after, before = max(2, round(_AFTER * rate)), max(4, round(_BEFORE * rate))
+    after, before = (
+        max(2, round(RULES.onset_after * rate)),
+        max(4, round(RULES.onset_before * rate)),
+    )
     here = np.arange(n)
     ahead, behind = np.minimum(here + after, n), np.maximum(here - before, 0)
     energy = (total[ahead] - total[here]) / np.maximum(ahead - here, 1)
@@ -85,13 +84,13 @@ def _rise_db(heard: Array, rate: float) -> Array:
 
 def _pick(heard: Array, peak: int, rate: float) -> tuple[float, float]:
     """Onset near a sample and its standard deviation [s]."""
-    first = max(peak - round(_SEARCH[0] * rate), 0)
-    last = min(peak + round(_SEARCH[1] * rate), heard.size)
+    first = max(peak - round(RULES.onset_search[0] * rate), 0)
+    last = min(peak + round(RULES.onset_search[1] * rate), heard.size)
     part = heard[first:last]
     n = part.size
     k = np.arange(4, n - 4)
     if k.size < 4:
-        return peak / rate, _AFTER
+        return peak / rate, RULES.onset_after
     sums, squares = np.cumsum(part), np.cumsum(part**2)
     tiny = 1e-12 * squares[-1] / n + 1e-300
     left = squares[k - 1] / k - (sums[k - 1] / k) ** 2

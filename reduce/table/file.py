@@ -21,6 +21,7 @@ from ...core.inputs.csv_table import rows_with, selection
 from ...core.inputs.input_file import checked_file
 from ...core.processes.confined import confined
 from ..measured import Array
+from ..rules import RULES
 from ..units import UNITS
 from .cells import instant, plain, since_first, value_of
 from .channels import CHANNELS, Shown, channels_of
@@ -30,7 +31,6 @@ from .workbook import workbook_rows
 
 BOOKS = (".xls", ".xlsx", ".xlsm", ".xlsb", ".ods")
 """Endings of workbooks."""
-_LARGEST = 200_000_000
 _UNIT = re.compile(r"[\[(]\s*([^\])]+?)\s*[\])]\s*$")
 
 
@@ -159,7 +159,7 @@ def read_columns(path: Path, *, sheet: str = "") -> Columns:
     InputError
         Not a table, or no numbers in it.
     """
-    checked_file(path, most=_LARGEST, allowed="a table")
+    checked_file(path, most=RULES.table_bytes, allowed="a table")
     kind = path.suffix.lower()
     if kind == ".trk":
         names, values = tracker_rows(path, sheet)

@@ -6,6 +6,7 @@ import re
 from collections.abc import Sequence
 from dataclasses import dataclass, field
 
+from ..rules import RULES
 from ..units import UNITS
 
 _KNOWN_UNITS = {unit for units in UNITS.values() for unit in units if unit} | {
@@ -18,9 +19,6 @@ WORDS = {
     "millimetres": "mm", "milliseconds": "ms", "pascal": "Pa", "degrees": "deg",
 }  # fmt: skip
 """Units in words, as they are written in a recording set."""
-
-_ABOVE = 4
-"""Lines above the numbers among which the units are looked for."""
 
 
 @dataclass(frozen=True)
@@ -72,7 +70,7 @@ def heading_of(above: Sequence[Sequence[str]], width: int) -> Heading:
     """
     rows = [list(row) for row in above if any(row)]
     units: list[str] = []
-    for row in reversed(rows[-_ABOVE:]):
+    for row in reversed(rows[-RULES.lines_above :]):
         filled = [cell for cell in row if cell]
         several = len(filled) > 1 or (row is rows[-1] and len(rows) > 1)
         if several and all(map(is_unit, filled)):

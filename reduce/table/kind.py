@@ -24,8 +24,6 @@ from .specimen import strain_unit, stress_unit
 from .tension import reduce_tension
 from .trials import reduce_leeb, reduce_rebounds, reduce_trials
 
-_FEWEST = 20
-
 
 class Series(NamedTuple):
     """Numbers against time.
@@ -235,10 +233,10 @@ def _series(table: Columns, options: Options) -> Series:
             "the times do not increase", source=table.source, key="time",
             allowed="a column of times, or of numbers of samples with rate_hz",
         )  # fmt: skip
-    if ahead.sum() < _FEWEST:
+    if ahead.sum() < RULES.table_rows:
         raise InputError(
             f"{int(ahead.sum())} rows with a time and a value", source=table.source, key="value",
-            allowed=f"{_FEWEST} or more",
+            allowed=f"{RULES.table_rows} or more",
         )  # fmt: skip
     return Series(time[ahead], value[ahead], column, missed, marks)
 

@@ -23,11 +23,6 @@ from .area import area_of
 from .level import Level, level_before, wide
 from .shape import Shape, looks_like, shape_of
 
-_LOW, _HIGH = 0.06, 0.45
-"""Part of the peak between which the flanks tell the ends."""
-
-_FEWEST = 6
-
 
 @dataclass(frozen=True)
 class Pulse:
@@ -203,13 +198,13 @@ def _flank(time: Array, clear: Array, top: int, step: int, peak: float) -> tuple
     """Where one flank meets zero, and the number of samples that say so."""
     k, flank = top, []
     limit = clear.size - 1 if step > 0 else 0
-    while k != limit and clear[k] > _LOW * peak:
+    while k != limit and clear[k] > RULES.flank_low * peak:
         k += step
-        if _LOW * peak < clear[k] < _HIGH * peak:
+        if RULES.flank_low * peak < clear[k] < RULES.flank_high * peak:
             flank.append(k)
     if len(flank) < 2:  # a flank between two samples
         return _through(time, clear, k, k - step), len(flank)
-    if len(flank) < _FEWEST:
+    if len(flank) < RULES.fewest:
         return _through(time, clear, flank[-1], flank[0]), len(flank)
     index = np.sort(np.array(flank))
     return meets_zero(time[index], clear[index] / peak, step), len(flank)

@@ -23,16 +23,6 @@ from ..gates import Refused
 from ..measured import Array
 from ..rules import RULES
 
-_TOP = 0.1
-"""Part of the peak below it within which a round top is a parabola."""
-
-_SWING, _BESIDE = 0.33, 8.0
-_AGAIN = 0.3
-"""Part of the peak from which on another pulse is named."""
-
-_SAME_TIME, _SAME_HEIGHT = 1.05, 0.1
-"""A flight in the one before it, and a peak less that before it [largest one], that are alike."""
-
 
 class Shape(NamedTuple):
     """What is beside a whole pulse, as parts of its peak, and when others of its sign peak [s].
@@ -93,10 +83,12 @@ def shape_of(
             "plateau", f"its top is flat over {wide:.0%} of its width at half of the peak: clipped",
             source=source, allowed="a record whose range the pulse does not reach",
         )  # fmt: skip
-    beside = (time > ends[0] - _BESIDE * long) & (time < ends[1] + _BESIDE * long)
+    beside = (time > ends[0] - RULES.pulse_over_noise * long) & (
+        time < ends[1] + RULES.pulse_over_noise * long
+    )
     below = -float(clear[beside].min()) / peak
     swings = _half_waves(clear[beside] / peak) - 1
-    if below > _SWING and swings >= RULES.swings:
+    if below > RULES.step and swings >= RULES.swings:
         raise looks_like("swings", f"an oscillation: {swings} other half-waves beside it", source)
     ringing = below if below > RULES.ringing else 0.0
     others = tuple(_others(time, clear, peak, ends))
@@ -117,9 +109,9 @@ def _single(
     if at.size <= RULES.train:
         return
     flights = np.diff(at)
-    longer = flights[1:] > _SAME_TIME * flights[:-1]
-    regular = flights[-1] > flights[0] / _SAME_TIME
-    if regular or longer.any() or (np.diff(heights) > _SAME_HEIGHT).any():
+    longer = flights[1:] > RULES.same_time * flights[:-1]
+    regular = flights[-1] > flights[0] / RULES.same_time
+    if regular or longer.any() or (np.diff(heights) > RULES.same_height).any():
         raise looks_like("train", f"{at.size} like pulses that fade as no bounces do", source)
 
 
@@ -142,7 +134,7 @@ def looks_like(gate: str, what: str, source: str) -> Refused:
 
 def _half_waves(part: Array) -> int:
     """Return how many times a record swings beyond a third of its peak, to either side in turn."""
-    sides = np.sign(part[np.abs(part) > _SWING])
+    sides = np.sign(part[np.abs(part) > RULES.step])
     return 1 + int(np.count_nonzero(np.diff(sides)))
 
 
@@ -162,12 +154,12 @@ def _flat_top(clear: Array, top: int) -> int:
     peak = float(clear[top])
     steps = np.diff(np.unique(clear))
     steps = steps[steps > 1e-9 * peak]
-    near = _run(clear > (1.0 - _TOP) * peak, top)
+    near = _run(clear > (1.0 - RULES.round_top) * peak, top)
     if steps.size == 0 or near[0] == 0 or near[-1] == clear.size - 1:
         return 0
     step = float(np.percentile(steps, 10.0))
     equal = int(np.count_nonzero(clear[near] >= peak - 0.01 * step))
-    round_top = near.size * math.sqrt(min(step / (_TOP * peak), 1.0))
+    round_top = near.size * math.sqrt(min(step / (RULES.round_top * peak), 1.0))
     return equal if equal >= max(RULES.flat_samples, RULES.flat_top * round_top) else 0
 
 
@@ -175,7 +167,7 @@ def _others(time: Array, clear: Array, peak: float, ends: tuple[float, float]) -
     """Yield when other pulses of the record peak [s]."""
     long = ends[1] - ends[0]
     high = np.flatnonzero(
-        (clear > _AGAIN * peak) & ((time < ends[0] - long) | (time > ends[1] + long))
+        (clear > RULES.again * peak) & ((time < ends[0] - long) | (time > ends[1] + long))
     )
     for run in np.split(high, np.flatnonzero(np.diff(time[high]) > long) + 1):
         if run.size < RULES.fewest_above_half:

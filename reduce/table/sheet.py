@@ -21,6 +21,7 @@ from ...core.processes.confined import confined
 from ...recordings.columns import MEASURED
 from ..measured import Measured, Trial
 from ..reduced import Reduced
+from ..rules import RULES
 from ..units import UNITS
 from .cells import plain, value_of
 from .file import BOOKS, text_lines, text_rows
@@ -28,8 +29,6 @@ from .heading import in_short, is_unit
 from .picture import draw_trials
 from .trials import TrialsReduction
 from .workbook import workbook_rows
-
-_LARGEST = 50_000_000
 
 REBOUND_HEIGHT, REBOUND_SPEED = "rebound_height", "rebound_speed"
 
@@ -149,7 +148,7 @@ def read_sheet(path: Path, *, sheet: str = "") -> Sheet:
     InputError
         No row of headers is understood, or a column names no unit.
     """
-    checked_file(path, most=_LARGEST, allowed="a sheet")
+    checked_file(path, most=RULES.table_bytes, allowed="a sheet")
     if path.suffix.lower() in BOOKS:
         rows = confined(workbook_rows, path, sheet, source=str(path))
     else:

@@ -13,19 +13,7 @@ from ...core.errors import InputError
 from ...core.inputs.flow_curve import PROOF_STRAIN, MeasuredFlow
 from ..measured import Array, Measured
 from ..regression import robust_regression
-
-_STRAINS, _STRESSES = 10.0, 1e12
-"""Beyond these no metal was measured: a slip of the unit, or a damaged file."""
-_FEWEST, _FEWEST_ELASTIC = 20, 6
-_ELASTIC = (0.4, 0.3, 0.22, 0.16, 0.12, 0.09, 0.06)
-"""Parts of the largest stress up to which the modulus may be read, and from a quarter of it on."""
-
-_STRAIGHT = 0.7
-"""Slope of the upper half of an elastic rise in that of its lower half."""
-
-_ROWS = 60
-_YIELDS = 1e-4
-"""Plastic strain from which on the metal yields."""
+from ..rules import RULES
 
 
 @dataclass(frozen=True)
@@ -64,18 +52,23 @@ def reduce_tension(
     InputError
         Too few rows, no elastic part, or no yield.
     """
-    wild = np.flatnonzero((np.abs(strain) > _STRAINS) | (np.abs(stress) > _STRESSES))
+    wild = np.flatnonzero(
+        (np.abs(strain) > RULES.absurd_strain) | (np.abs(stress) > RULES.absurd_stress)
+    )
     if wild.size:
         k = wild[0]
         raise InputError(
             f"strain {strain[k]:.3g}, stress {stress[k]:.3g} Pa in data row {k + 1}",
-            source=source, allowed=f"strains up to {_STRAINS:g}, stresses up to {_STRESSES:g} Pa",
+            source=source, allowed=f"strains up to {RULES.absurd_strain:g}, "
+            f"stresses up to {RULES.absurd_stress:g} Pa",
         )  # fmt: skip
     whole = np.isfinite(strain) & np.isfinite(stress)
     strain, stress = strain[whole], stress[whole]
-    if strain.size < _FEWEST:
+    if strain.size < RULES.table_rows:
         raise InputError(
-            f"{strain.size} rows", source=source, allowed=f"{_FEWEST} or more of strain and stress"
+            f"{strain.size} rows",
+            source=source,
+            allowed=f"{RULES.table_rows} or more of strain and stress",
         )
     sign = math.copysign(1.0, float(stress[np.argmax(np.abs(stress))]))
     strain, stress = sign * strain, sign * stress
@@ -132,20 +125,20 @@ def _modulus(strain: Array, stress: Array, source: str) -> tuple[Measured, float
 def _elastic(strain: Array, stress: Array) -> npt.NDArray[np.intp]:
     """Return the rows of the highest straight rise: a metal that hardens much yields low."""
     peak, found = float(stress.max()), np.arange(0)
-    for high in _ELASTIC:
+    for high in RULES.elastic_parts:
         first = int(np.argmax(stress > high * peak)) + 1
         rise = np.flatnonzero(stress[:first] > 0.25 * high * peak)
-        if found.size and rise.size < _FEWEST_ELASTIC:
+        if found.size and rise.size < RULES.fewest:
             break
         found = rise
-        if rise.size < _FEWEST_ELASTIC:
+        if rise.size < RULES.fewest:
             continue
         middle = np.median(stress[rise])
         low, up = (
             np.polyfit(stress[part], strain[part], 1)[0]
             for part in (rise[stress[rise] <= middle], rise[stress[rise] >= middle])
         )
-        if low >= _STRAIGHT * up:
+        if low >= RULES.elastic_straight * up:
             break
     return found
 
@@ -159,10 +152,10 @@ def _rows(plastic: Array, stress: Array, source: str) -> MeasuredFlow:
             allowed=f"a test beyond {2.0 * PROOF_STRAIN:g}",
         )  # fmt: skip
     # what scatters about the elastic line belongs to it; a gauge that came off at the end does not
-    elastic = np.flatnonzero(plastic[: int(plastic.argmax())] <= _YIELDS)
+    elastic = np.flatnonzero(plastic[: int(plastic.argmax())] <= RULES.yields)
     begin = int(elastic[-1]) + 1 if elastic.size else 0
     plastic, stress = plastic[begin:], stress[begin:]
-    edges = np.geomspace(_YIELDS, largest, _ROWS)
+    edges = np.geomspace(RULES.yields, largest, RULES.tension_kept)
     means = [
         (float(np.mean(plastic[there])), float(np.median(stress[there])))
         for low, high in pairwise(edges)

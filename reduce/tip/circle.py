@@ -11,15 +11,11 @@ from scipy.optimize import least_squares
 from ...core.errors import InputError
 from ..measured import Array
 from ..regression import correlation_factor, robust_std, unit_covariance
+from ..rules import RULES
 from .edge import Edge, find_edges
 
-INNER = 0.75
+INNER = RULES.cap
 """Part of the half-width of a rod from which the cap is read: the edge of the cap is chamfered."""
-
-_REJECT = 4.0
-
-_SECTORS = 8
-"""Parts of the arc that are left out in turn: a tip that is not round shows in their spread."""
 
 
 def fit_circle(
@@ -49,7 +45,7 @@ def _fit(
     """Robust circle through points: soft-L1 for the bulk, then least squares on what is near."""
     bulk = _least(points[good], start, loss="soft_l1")
     off = _off(points, bulk)
-    limit = _REJECT * max(robust_std(off[good]), 0.02)
+    limit = RULES.no_chance * max(robust_std(off[good]), 0.02)
     used = good & (np.abs(off) < limit)
     x, y, radius = _least(points[used], tuple(bulk), loss="linear")
     return (float(x), float(y), float(radius)), used
@@ -82,9 +78,9 @@ def radius_std(
     off = reach - radius
     variance = float(off @ off) / max(off.size - 3, 1) * correlation_factor(off)
     scatter = variance * float(unit_covariance(jacobian)[2, 2])
-    parts = np.array_split(np.arange(len(chosen)), _SECTORS)
+    parts = np.array_split(np.arange(len(chosen)), RULES.sectors)
     left = np.array([
         _least(np.delete(chosen, part, axis=0), circle, loss="linear")[2] for part in parts
     ])  # fmt: skip
-    sectors = (_SECTORS - 1) / _SECTORS * float(np.sum((left - left.mean()) ** 2))
+    sectors = (RULES.sectors - 1) / RULES.sectors * float(np.sum((left - left.mean()) ** 2))
     return math.sqrt(max(scatter, sectors))

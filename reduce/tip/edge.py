@@ -11,9 +11,7 @@ from scipy.ndimage import map_coordinates
 from scipy.special import ndtr
 
 from ..measured import Array
-
-_STEP = 0.25
-_ROUNDS = 12
+from ..rules import RULES
 
 
 @dataclass(frozen=True)
@@ -30,7 +28,7 @@ def find_edges(grey: Array, x: Array, y: Array, dx: Array, dy: Array) -> Edge:
     """Find the edge near points (x, y) along outward directions (dx, dy), all (n,)."""
     reach = 9.0
     for _ in range(2):
-        t = np.arange(-reach, reach + 0.5 * _STEP, _STEP)
+        t = np.arange(-reach, reach + 0.5 * RULES.edge_step, RULES.edge_step)
         places = [y[:, None] + t * dy[:, None], x[:, None] + t * dx[:, None]]
         values = map_coordinates(grey, places, order=1, mode="nearest")
         p, settled = _steps(values, t)
@@ -50,10 +48,11 @@ def _steps(values: Array, t: Array) -> tuple[Array, npt.NDArray[np.bool_]]:
     low, high = values[:, -4:].mean(axis=1), values[:, :4].mean(axis=1)
     bright = np.clip((values - low[:, None]) / np.maximum(high - low, 1.0)[:, None], 0.0, 1.0)
     p = np.stack(
-        [t[0] + bright.sum(axis=1) * _STEP, low, high - low, np.full(len(low), 1.5)], axis=1
+        [t[0] + bright.sum(axis=1) * RULES.edge_step, low, high - low, np.full(len(low), 1.5)],
+        axis=1,
     )
     move = np.full(len(p), np.inf)
-    for _ in range(_ROUNDS):
+    for _ in range(RULES.tip_rounds):
         z = (p[:, :1] - t) / p[:, 3:]
         step = ndtr(z)
         slope = p[:, 2:3] * np.exp(-0.5 * z**2) / (math.sqrt(2.0 * math.pi) * p[:, 3:])

@@ -8,9 +8,7 @@ from pydantic import Field
 
 from ..bounces.options import BallOptions
 from ..images.options import PictureOptions
-
-_MOST_FRAMES = 10**9
-"""No clip is as long."""
+from ..rules import RULES
 
 
 class Options(PictureOptions, BallOptions):
@@ -29,8 +27,8 @@ class Options(PictureOptions, BallOptions):
         "down", description="where gravity points in the picture"
     )
     first_frame: int = Field(
-        0, ge=0, le=_MOST_FRAMES, description="number of the first frame to use"
+        0, ge=0, le=RULES.most_frames, description="number of the first frame to use"
     )
     last_frame: int | None = Field(
-        None, ge=0, le=_MOST_FRAMES, description="number of the last one"
+        None, ge=0, le=RULES.most_frames, description="number of the last one"
     )

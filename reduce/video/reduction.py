@@ -20,20 +20,8 @@ from ..bounces.fall import UNKNOWN, Ball
 from ..bounces.track import Track
 from ..images.clip import Clip
 from ..measured import Array, Measured, Trial, labels
+from ..rules import RULES
 from .tracking import grey_levels, striker_bright, track_ball, track_rod
-
-_LEAN_FRAMES = 20
-
-_SAME_RATE = 0.01
-"""Part by which a container's mean rate may differ from the camera's and be its own."""
-
-_POSITION_FLOOR, _POSITION_TREND = 1e-3, 5e-3
-"""No position in a picture is believed better than the first; by the second uneven light and a blur
-that is not the same everywhere move it from one end of a flight to the other [pixel]."""
-
-_NEAR_BLURS, _UNSURE = 3.5, 0.1
-"""Blurs above the flat within which the reflection of a rod, modelled or not, moves its tip, and by
-how much it did in rendered clips [pixel]."""
 
 
 @dataclass(frozen=True)
@@ -141,7 +129,7 @@ class VideoReduction:
 
     def _lean_before(self, bounce: Bounce) -> Measured:
         near = self.frame <= self.frame[bounce.near[0]]
-        last = self.lean[near][-_LEAN_FRAMES:]
+        last = self.lean[near][-RULES.lean_frames :]
         return Measured(float(np.median(last)), float(np.std(last) / max(len(last) - 1, 1) ** 0.5))
 
     def _trace(self, bounce: Bounce, number: int) -> dict[str, Array]:
@@ -198,7 +186,7 @@ def reduce_video(
         levels = grey_levels(frames[critical : critical + 1], clip.source)
         track, rod = track_rod(frames, critical, levels, clip.source)
         half = Measured(rod.half_width, 0.02)
-        tip_radius, near = rod.tip_radius, _NEAR_BLURS * rod.blur
+        tip_radius, near = rod.tip_radius, RULES.mirror_reach * rod.blur
     else:
         track = track_ball(frames, levels, clip.source)
         radii = track["radius"]
@@ -224,7 +212,12 @@ def _contacts(
     if stated is None and optics.size is not None:
         stated = optics.size.over(half.scaled(2.0))
     path = Track(
-        time, -track["row"], floor=_POSITION_FLOOR, trend=_POSITION_TREND, near=near, unsure=_UNSURE
+        time,
+        -track["row"],
+        floor=RULES.position_floor,
+        trend=RULES.position_trend,
+        near=near,
+        unsure=RULES.mirror_move,
     )
     return told_bounces(
         path, optics.ball, metres=stated, source=source,
@@ -235,7 +228,10 @@ def _contacts(
 def _timed(clip: Clip, optics: Optics) -> tuple[Optics, list[str]]:
     """Take the container's time stamps where it was written as it was filmed, and unevenly."""
     notes, rate = [], optics.rate
-    if math.isfinite(clip.container_rate) and abs(clip.container_rate / rate - 1.0) > _SAME_RATE:
+    if (
+        math.isfinite(clip.container_rate)
+        and abs(clip.container_rate / rate - 1.0) > RULES.same_rate
+    ):
         notes.append(
             f"the container plays at {clip.container_rate:.6g} frames/s; {rate:g} was used"
         )
@@ -277,8 +273,10 @@ def _flight_notes(result: VideoReduction) -> list[str]:
 def _lean_notes(result: VideoReduction) -> list[str]:
     turning = result.bounces[0].turning
     sides = {
-        "before": result.lean[max(turning - 2 * _LEAN_FRAMES, 0) : turning][:_LEAN_FRAMES],
-        "after": result.lean[turning + _LEAN_FRAMES : turning + 2 * _LEAN_FRAMES],
+        "before": result.lean[max(turning - 2 * RULES.lean_frames, 0) : turning][
+            : RULES.lean_frames
+        ],
+        "after": result.lean[turning + RULES.lean_frames : turning + 2 * RULES.lean_frames],
     }
     notes = []
     for name, lean in sides.items():

@@ -14,19 +14,7 @@ from ..images.clip import Clip
 from ..images.edge_fit import BallEdge, RodPose, RodShape, fit_ball, fit_rod
 from ..images.silhouette import ball_by_light, body_mask, rod_guess
 from ..measured import Array
-
-_SHAPE_FRAMES = 15
-
-_SEEN = (3.5, 1.0)
-"""Blurs above the lowest place of a tip between which it and its reflection are told apart within
-one fit; farther up the reflection does not reach into it."""
-
-_MIRROR_FRAMES = 12
-_DULL = 0.02
-"""Part of its light below which the reflection of a body does not count."""
-
-_MOSTLY = 0.8
-"""Part of the frames in which the edge of the ball must be found, else its light is used."""
+from ..rules import RULES
 
 
 def track_rod(
@@ -76,10 +64,10 @@ def _without_reflection(
     """Fit the tip anew, with its reflection, where it is so near to the flat that both overlap."""
     rows = np.array([p.y for _, p in poses])
     lowest = float(rows.max(initial=0.0))
-    low, high = (lowest - n * shape.blur for n in _SEEN)
+    low, high = (lowest - n * shape.blur for n in RULES.mirror_blurs)
     both = [k for k in np.flatnonzero((rows > low) & (rows < high))]
     found = []
-    for k in both[:: max(1, len(both) // _MIRROR_FRAMES)]:
+    for k in both[:: max(1, len(both) // RULES.mirror_frames)]:
         number, pose = poses[k]
         start = replace(shape, mirror=0.1, flat=lowest)
         there = fit_rod(
@@ -91,7 +79,7 @@ def _without_reflection(
     if len(found) < 5:
         return poses
     mirror, flat = (float(v) for v in np.median(np.array(found), axis=0))
-    if mirror < _DULL:
+    if mirror < RULES.dull:
         return poses
     shape = replace(shape, mirror=mirror, flat=flat)
     again = []
@@ -109,9 +97,9 @@ def _rod_shape(
     frames: npt.NDArray[np.uint8], critical: int, levels: tuple[float, float]
 ) -> RodShape | None:
     """Median shape from frames around the critical one, in which most of the rod is seen."""
-    reach = max(len(frames) // 8, _SHAPE_FRAMES)
+    reach = max(len(frames) // 8, RULES.shape_frames)
     first, last = max(critical - reach, 0), min(critical + reach, len(frames) - 1)
-    chosen = np.unique(np.linspace(first, last, 2 * _SHAPE_FRAMES).astype(int))
+    chosen = np.unique(np.linspace(first, last, 2 * RULES.shape_frames).astype(int))
     found = []
     for number in chosen:
         grey = frames[number].astype(np.float64)
@@ -150,7 +138,7 @@ def track_ball(
     edges = [(n, _ball_edge(frames[n].astype(np.float64), b, levels[0])) for n, b in light]
     sharp = [(n, b) for n, b in edges if b is not None]
     # one kind of position for the whole clip: the two differ by a constant under uneven light
-    found = sharp if len(sharp) > _MOSTLY * len(light) else light
+    found = sharp if len(sharp) > RULES.mostly_found * len(light) else light
     return {
         "frame": np.array([n for n, _ in found]),
         "column": np.array([b.x for _, b in found]),

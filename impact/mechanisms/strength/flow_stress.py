@@ -23,13 +23,13 @@ from ....core.material import Pair
 from ....models import critical_depth
 from ....models.hardening import REPRESENTATIVE, representative_strain
 from ...force import F_RADIUS
+from ...rules import RULES
 from ...scene import FlowStress, Profiles, RateFree, Scene
 from ...strength import StrengthTable
 from ..base import Array, Mechanism, Situation, Surroundings, Values
 
-RATE = 0.4  # of v/a
+RATE = RULES.indentation_rate
 STRAIN = REPRESENTATIVE  # of (a - a_c)/R
-_SETTLING = 3  # of the radius of a contact whose strength follows its radius
 
 
 class StrengthProfile(ABC):
@@ -102,7 +102,7 @@ def strain(scene: Scene, table: StrengthTable, strength: Array | None = None) ->
 def settled_strain(scene: Scene, table: StrengthTable, strength: Callable[[Array], Array]) -> Array:
     """Return the strain at which the contact has the radius that its strength there gives it."""
     p = strain(scene, table)
-    for _ in range(_SETTLING):
+    for _ in range(RULES.radius_rounds):
         p = strain(scene, table, strength(p))
     return p
 

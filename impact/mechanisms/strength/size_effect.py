@@ -8,14 +8,12 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from ...rules import RULES
 from ...scene import FlowStress, Scene
 from ...strength import StrengthTable, strength_table
 from ..arithmetic import deepest
 from ..base import Array, Parameter, Situation, Surroundings, Values
 from .flow_stress import FlowMechanism, StrengthProfile
-
-_LARGEST = 3e-4
-"""Contact radius [m] beyond which hardness does not depend on size: ten times some tens of um."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -55,7 +53,7 @@ class SizeEffect(FlowMechanism):
                 "yield strength"
             )
         contacts = [_contact(scene) for scene, _ in situations]
-        if min(contacts) > _LARGEST:
+        if min(contacts) > RULES.size_largest:
             return (
                 f"the smallest contact has a radius of {1e6 * min(contacts):.0f} um: the effect is "
                 "that of tens of um"

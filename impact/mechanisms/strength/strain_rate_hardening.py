@@ -8,6 +8,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from ....core.inputs.flow_curve import SPECIMENS, Rise
+from ...rules import RULES
 from ...scene import FlowStress, Scene
 from ...strength import StrengthTable, strength_table
 from ..arithmetic import energy, times
@@ -15,8 +16,6 @@ from ..base import Array, Literature, Parameter, Situation, Surroundings, Values
 from .flow_stress import RATE, Fallen, FallingStrength, FlowMechanism, StrengthProfile
 
 _REFERENCE_RATE = 1000.0  # 1/s, within the rates of impacts at a few m/s
-_SLOWEST = 0.2  # the rate's memory at the turning point, of the approach speed
-_APART = 4.0  # chi-squared: two standard deviations
 
 
 @dataclass(frozen=True, slots=True)
@@ -38,7 +37,7 @@ class RateProfile(StrengthProfile):
             return np.full(table.depth.shape, 1.0 + risen)
         deepest = table.peak(energy(scene))
         slowing = 1.0 - (table.depth / deepest) ** 2
-        speed = scene.approach.speed * np.sqrt(np.maximum(slowing, _SLOWEST**2))
+        speed = scene.approach.speed * np.sqrt(np.maximum(slowing, RULES.slowest**2))
         rate = RATE * speed / table.radius
         return np.asarray(1.0 + self.rise * (rate / _REFERENCE_RATE) ** self.exponent)
 
@@ -98,7 +97,7 @@ class StrainRateHardening(FlowMechanism):
         sizes = rise.value(places)
         # of each rise the exponent counts that fits best
         misfit = tested(rises, sizes[:, None], exponent.value(places)).min(axis=1)
-        left = sizes[misfit <= misfit.min() + _APART]
+        left = sizes[misfit <= misfit.min() + RULES.rate_law_apart]
         found = replace(
             rise, low=float(left[0]), high=float(left[-1]), source="flow curves at several rates"
         )
