@@ -11,6 +11,7 @@ import h5py
 import numpy as np
 import numpy.typing as npt
 
+from ..core.arrays import Array
 from ..core.errors import Ending
 from ..core.provenance import environment
 from ..fem import Curve, Solution
@@ -20,8 +21,6 @@ from .contents import new_image
 from .quality import quality_of
 from .rules import RULES
 from .schema import CURVE, FORMAT, PROFILES, UNLOADING_PROFILES, Dataset
-
-Floats = npt.NDArray[np.float64]
 
 
 def case_image(
@@ -148,7 +147,7 @@ def _put_curve(group: h5py.Group, curve: Curve) -> None:
 
 
 def _put_array(
-    group: h5py.Group, name: str, values: Floats | npt.NDArray[np.float32], about: Dataset
+    group: h5py.Group, name: str, values: Array | npt.NDArray[np.float32], about: Dataset
 ) -> None:
     packed = {"compression": "gzip", "shuffle": True} if values.size > RULES.compressed_from else {}
     if values.size:  # HDF5 has no chunk of nothing, and so no checksum of it

@@ -12,12 +12,10 @@ import time
 from collections.abc import Sequence
 
 import numpy as np
-import numpy.typing as npt
 
+from ..core.arrays import Array
 from .case import Case
 from .rules import RULES
-
-Floats = npt.NDArray[np.float64]
 
 # processor seconds of a deep case with E'/Sy_min = 300 and Sy* = 1: measured on 44 cases with
 # numerics version 3, over the 2.3 by which version 4 is faster
@@ -131,7 +129,7 @@ def _measured(case: Case) -> float:
     return float(np.log(base * deep) + _features(case)[1:] @ RULES.cost_slopes)
 
 
-def _features(case: Case) -> Floats:
+def _features(case: Case) -> Array:
     pair = case.pair
     soft = np.log(pair.E_reduced / pair.Sy_min / 300.0) if np.isfinite(pair.Sy_min) else 0.0
     s = np.log(np.clip(pair.Sy_ratio, 1e-3, 1e3)) if np.isfinite(pair.Sy_ratio) else 0.0

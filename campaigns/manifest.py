@@ -11,8 +11,8 @@ from typing import Any, NamedTuple
 
 import h5py
 import numpy as np
-import numpy.typing as npt
 
+from ..core.arrays import Mask
 from .contents import open_image, read_array
 from .rules import RULES
 
@@ -67,7 +67,7 @@ class Part(NamedTuple):
     cases: dict[str, Any]
 
     @property
-    def done(self) -> npt.NDArray[np.bool_]:
+    def done(self) -> Mask:
         """Which cases are complete, (n,)."""
         return np.array([status == "done" for status in self.cases["status"]])
 

@@ -27,6 +27,7 @@ import h5py
 import numpy as np
 import numpy.typing as npt
 
+from ..core.arrays import Array
 from ..core.errors import InputError
 from ..core.inputs.input_file import read_bytes
 from ..core.provenance import canonical_json
@@ -47,7 +48,6 @@ from .records import CaseRecord, UnloadingRecord
 from .rules import RULES
 from .schema import CURVE, PROFILES, UNLOADING_PROFILES, Dataset
 
-Floats = npt.NDArray[np.float64]
 Columns = dict[str, npt.NDArray[Any]]
 
 PART_FORMAT = "dentscope-campaign-part/2"
@@ -405,11 +405,11 @@ def _read_unloadings(file: h5py.File, n: int) -> list[list[UnloadingRecord]]:
     return out
 
 
-def _read_profiles(file: h5py.File, n: int) -> list[dict[str, Floats]]:
+def _read_profiles(file: h5py.File, n: int) -> list[dict[str, Array]]:
     owner, depth = (read_array(file["profiles"][name]) for name in ("case", "depth"))
     spheres = _split(file["profile_sphere"], "profile", len(owner), _ON_SPHERE)
     flats = _split(file["profile_flat"], "profile", len(owner), _ON_FLAT)
-    out: list[dict[str, Floats]] = []
+    out: list[dict[str, Array]] = []
     for k in range(n):
         rows = np.flatnonzero(owner == k)
         states = [{**spheres[row], **flats[row]} for row in rows]
@@ -422,7 +422,7 @@ def _read_profiles(file: h5py.File, n: int) -> list[dict[str, Floats]]:
     return out
 
 
-def _filled(rows: Sequence[Floats]) -> Floats:
+def _filled(rows: Sequence[Array]) -> Array:
     """Rows of uneven length as one array, filled up with NaN as in a case's file."""
     out = np.full((len(rows), max(map(len, rows))), np.nan)
     for row, values in zip(out, rows, strict=True):
@@ -432,7 +432,7 @@ def _filled(rows: Sequence[Floats]) -> Floats:
 
 def _split(
     group: h5py.Group, parent: str, n: int, columns: dict[str, Dataset]
-) -> list[dict[str, Floats]]:
+) -> list[dict[str, Array]]:
     """Cut a table's columns into the pieces of its `n` owners, whose rows lie together."""
     ends = np.searchsorted(read_array(group[parent]), np.arange(n), side="right")
     starts = np.concatenate([[0], ends[:-1]]) if n else ends

@@ -13,9 +13,9 @@ from hashlib import sha256
 from pathlib import Path
 
 import numpy as np
-import numpy.typing as npt
 
 from .. import fem
+from ..core.arrays import Array
 from ..core.errors import InputError
 from ..core.output import finish, finish_pending, locked, write_files
 from ..core.provenance import file_digest
@@ -26,8 +26,6 @@ from .records import CaseRecord
 from .rules import RULES
 from .run import status_of
 from .store import Store
-
-Floats = npt.NDArray[np.float64]
 
 
 @dataclass(frozen=True)
@@ -232,7 +230,7 @@ def _differences(a: CaseRecord, b: CaseRecord) -> tuple[float, float, float]:
     return force, radius, share
 
 
-def _scaled(record: CaseRecord) -> tuple[Floats, Floats, Floats, Floats]:
+def _scaled(record: CaseRecord) -> tuple[Array, Array, Array, Array]:
     """Delta/R, F/(E' R^2), a/R and delta_s*."""
     pair, c = record.case.pair, record.curve
     share = c["sphere"] / (c["sphere"] + c["flat"])

@@ -7,11 +7,9 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 
 import numpy as np
-import numpy.typing as npt
 
+from ..core.arrays import Array
 from .rules import RULES
-
-Floats = npt.NDArray[np.float64]
 
 
 @dataclass(frozen=True)
@@ -46,7 +44,7 @@ class Quality:
         return float(np.nanmax([0.0, self.force_step, self.radius_step, self.share_step]))
 
 
-def quality_of(curve: Mapping[str, Floats], R: float) -> Quality:
+def quality_of(curve: Mapping[str, Array], R: float) -> Quality:
     """Judge a loading curve.
 
     Parameters
@@ -71,7 +69,7 @@ def quality_of(curve: Mapping[str, Floats], R: float) -> Quality:
 
 
 def steps_not_in(
-    curve: Mapping[str, Floats], finer: Mapping[str, Floats]
+    curve: Mapping[str, Array], finer: Mapping[str, Array]
 ) -> tuple[float, float, float]:
     """Largest steps of F, a and delta_s* that a finer solve of the same case does not show.
 
@@ -92,12 +90,12 @@ def steps_not_in(
     return out[0], out[1], out[2]
 
 
-def _judged(curve: Mapping[str, Floats]) -> tuple[Floats, Floats, Floats]:
+def _judged(curve: Mapping[str, Array]) -> tuple[Array, Array, Array]:
     share = curve["sphere"] / (curve["sphere"] + curve["flat"])
     return curve["force"], curve["radius"], share
 
 
-def largest_step(depth: Floats, values: Floats) -> float:
+def largest_step(depth: Array, values: Array) -> float:
     """Largest step of positive values along a curve, over the local value.
 
     Parameters

@@ -9,15 +9,13 @@ from typing import Any
 
 import h5py
 import numpy as np
-import numpy.typing as npt
 
+from ..core.arrays import Array
 from ..core.errors import InputError
 from .case import Case
 from .contents import Tree, read_tree
 from .quality import Quality, quality_of
 from .schema import CURVE, PROFILES, UNLOADING_PROFILES, Dataset
-
-Floats = npt.NDArray[np.float64]
 
 
 @dataclass(frozen=True)
@@ -25,10 +23,10 @@ class UnloadingRecord:
     """One stored unloading; see `campaigns.schema` for units."""
 
     depth: float
-    curve: dict[str, Floats]
+    curve: dict[str, Array]
     residual_sphere: float
     residual_flat: float
-    profiles: dict[str, Floats]
+    profiles: dict[str, Array]
 
 
 @dataclass(frozen=True)
@@ -65,9 +63,9 @@ class CaseRecord:
     case: Case
     status: str
     message: str
-    curve: dict[str, Floats]
+    curve: dict[str, Array]
     unloadings: tuple[UnloadingRecord, ...]
-    profiles: dict[str, Floats]
+    profiles: dict[str, Array]
     counters: dict[str, float]
     accuracy: dict[str, Any]
     environment: dict[str, str]
@@ -150,7 +148,7 @@ def _unloading(case: Tree, name: str, path: Path) -> UnloadingRecord:
     )
 
 
-def _arrays(case: Tree, name: str, schema: dict[str, Dataset], path: Path) -> dict[str, Floats]:
+def _arrays(case: Tree, name: str, schema: dict[str, Dataset], path: Path) -> dict[str, Array]:
     """Arrays of one of a case's groups; nothing where it has no such group."""
     if name not in case.groups:
         return {}

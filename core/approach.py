@@ -5,13 +5,13 @@ from __future__ import annotations
 import numpy as np
 import numpy.typing as npt
 
-Floats = npt.NDArray[np.float64]
+from .arrays import Array
 
 
 def speeds_at_touch(
     speed: npt.ArrayLike, height: npt.ArrayLike, angle: npt.ArrayLike, rod: npt.ArrayLike, *,
     gravity: float,
-) -> tuple[Floats, Floats]:  # fmt: skip
+) -> tuple[Array, Array]:  # fmt: skip
     """Return the speeds of the contact point along the flat's normal and along the flat.
 
     A rod's angle is that of its axis, and it falls straight; a sphere's is that of its velocity,

@@ -12,12 +12,10 @@ from dataclasses import asdict, dataclass
 from typing import Any, Literal
 
 import numpy as np
-import numpy.typing as npt
 
+from .arrays import Array
 from .errors import InputError
 from .rules import RULES
-
-Floats = npt.NDArray[np.float64]
 
 
 @dataclass(frozen=True, slots=True)
@@ -87,7 +85,7 @@ class FlowCurve:
         return float(CubicHermiteSpline(self.strain, self.stress, self.slope)(strain))
 
 
-def tabulated(strain: Floats, stress: Floats) -> FlowCurve:
+def tabulated(strain: Array, stress: Array) -> FlowCurve:
     """Flow curve through measured rows, smooth and without overshoot (Fritsch and Butland, 1984).
 
     Parameters
@@ -135,7 +133,7 @@ def voce(*, Sy: float, Q: float, b: float) -> FlowCurve:
 
 
 def _written(
-    stress: Callable[[Floats], Floats], slope: Callable[[Floats], Floats], *, first: float
+    stress: Callable[[Array], Array], slope: Callable[[Array], Array], *, first: float
 ) -> FlowCurve:
     strain = np.append(0.0, np.geomspace(RULES.flow_first, RULES.flow_last, RULES.flow_rows))
     values = stress(strain)

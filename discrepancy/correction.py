@@ -10,9 +10,9 @@ import math
 from dataclasses import dataclass, replace
 
 import numpy as np
-from numpy.typing import NDArray
 from scipy.stats import norm
 
+from ..core.arrays import Array
 from ..impact.force import LOG_DEPTH_FIRST, LOG_DEPTH_LAST
 from ..impact.strength import NODES
 from .comparison.forward import Point, Simulator
@@ -20,8 +20,6 @@ from .comparison.problem import Problem
 from .inference.fit import Fit
 from .inference.linear import Linear
 from .rules import RULES
-
-Array = NDArray[np.float64]
 
 
 @dataclass(frozen=True, eq=False)

@@ -7,9 +7,9 @@ from collections.abc import Mapping
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 from scipy.stats import norm
 
+from ..core.arrays import Array
 from ..recordings import RecordingSet, Severity, audit
 from .choice.apart import apart
 from .choice.odds import NAMED_AT, PRIORS
@@ -20,8 +20,6 @@ from .inference.fit import Fit
 from .inference.grid import interval
 from .rank import Ranking
 from .rules import RULES
-
-Array = NDArray[np.float64]
 
 
 def audit_rows(recordings: RecordingSet) -> tuple[dict[str, Any], ...]:

@@ -6,10 +6,8 @@ import math
 from dataclasses import dataclass
 from typing import Any
 
-import numpy as np
-from numpy.typing import NDArray
-
 from .. import __version__
+from ..core.arrays import Array
 from .choice.decide import Choice
 from .comparison.problem import Problem
 from .correction import Correction
@@ -64,7 +62,7 @@ class Verdict:
     limits: dict[str, float]
     improvement: dict[str, float]
     misfit: dict[str, float]
-    stated: NDArray[np.float64]
+    stated: Array
     corrections: tuple[Correction, ...]
     proposals: tuple[Proposal, ...]
     notes: tuple[str, ...]

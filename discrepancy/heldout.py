@@ -12,16 +12,13 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 from scipy.special import logsumexp
 
+from ..core.arrays import Array, Mask
 from .comparison.problem import Problem
 from .inference.fit import Fit
 from .inference.left_out import Whole
 from .rules import RULES
-
-Array = NDArray[np.float64]
-Mask = NDArray[np.bool_]
 
 
 @dataclass(frozen=True, slots=True)

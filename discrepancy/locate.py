@@ -14,15 +14,13 @@ import math
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
+from ..core.arrays import Array
 from ..core.observables import OBSERVABLES
 from .choice.thresholds import Nulls
 from .comparison.problem import Problem
 from .inference.fit import Fit
 from .unknowns.covariates import covariates
-
-Array = NDArray[np.float64]
 
 ORDER = "order of testing"
 """Place of a drift, which lies along no condition."""

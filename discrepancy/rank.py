@@ -6,8 +6,8 @@ from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
-from numpy.typing import NDArray
 
+from ..core.arrays import Array
 from ..impact.mechanisms import MECHANISMS, NAMELESS
 from ..impact.mechanisms.base import Mechanism
 from .comparison.forward import Simulator
@@ -19,7 +19,6 @@ from .inference.together import responses_at
 from .inference.window import sharpened
 from .rules import RULES
 
-Array = NDArray[np.float64]
 Progress = Callable[[str], None]
 
 

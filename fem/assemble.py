@@ -13,9 +13,9 @@ import math
 from typing import NamedTuple
 
 import numpy as np
-import numpy.typing as npt
 from numba import njit
 
+from ..core.arrays import Array
 from ..core.unowned import unowned
 from .elements import Elements, State, gradient
 from .material import (
@@ -31,8 +31,6 @@ from .material import (
 from .material.tensor import norm
 from .rules import RULES
 
-Floats = npt.NDArray[np.float64]
-
 _SMALLEST_DETERMINANT = RULES.least_determinant
 
 _KEEPS = RULES.tangent_kept
@@ -44,12 +42,12 @@ DISTORTED = -1
 class _Room(NamedTuple):
     """Working arrays of one element, which a kernel may not own itself (`unowned`)."""
 
-    F: Floats  # deformation gradients
-    P: Floats  # stress of a point
-    A: Floats  # and its tangent
-    g: Floats  # gradient of the element's volume
-    fe: Floats  # forces on its nodes
-    curve: Floats  # of a body that does not harden
+    F: Array  # deformation gradients
+    P: Array  # stress of a point
+    A: Array  # and its tangent
+    g: Array  # gradient of the element's volume
+    fe: Array  # forces on its nodes
+    curve: Array  # of a body that does not harden
 
     @classmethod
     def new(cls) -> _Room:
@@ -284,13 +282,13 @@ def _advance(x, u, old, rule, seconds, new, room):
 
 def bulk_forces(
     elements: Elements,
-    u: Floats,
+    u: Array,
     *,
     state: State,
     rule: int,
-    force: Floats,
-    tangent: Floats | None = None,
-    tangent_at: Floats | None = None,
+    force: Array,
+    tangent: Array | None = None,
+    tangent_at: Array | None = None,
     seconds: float = math.inf,
 ) -> int:
     """Add the internal forces at displacement `u` to `force`, and fill the element tangents.
@@ -331,7 +329,7 @@ def bulk_forces(
 
 
 def advance(
-    elements: Elements, u: Floats, *, state: State, rule: int, seconds: float = math.inf
+    elements: Elements, u: Array, *, state: State, rule: int, seconds: float = math.inf
 ) -> tuple[State, float]:
     """Return the material state at the converged displacement `u`, and the stored energy."""
     new = state.room()

@@ -7,9 +7,9 @@ from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
-import numpy.typing as npt
 import skfem
 
+from ..core.arrays import Array, Integers, Mask
 from ..core.material import Material, Pair
 from .assemble import bulk_forces
 from .contact import Surfaces
@@ -19,9 +19,6 @@ from .material import EXACT
 from .mesh import Mesh, Zone, contact_mesh, ladder_rings, outer_rings
 from .problem import Accuracy, Clock, ContactProblem
 from .rules import RULES
-
-Floats = npt.NDArray[np.float64]
-Integers = npt.NDArray[np.int64]
 
 _GAUSS = 0.5 / math.sqrt(3.0)
 
@@ -74,7 +71,7 @@ class Discretisation:
         return 2 * len(self.mesh.points)
 
     @property
-    def slave_radius(self) -> Floats:
+    def slave_radius(self) -> Array:
         """Radii of the slave nodes in the undeformed state, shape (n_slave,) [R]."""
         return np.asarray(self.mesh.points[self.surfaces.slave, 0])
 
@@ -169,7 +166,7 @@ def _mesh(problem: ContactProblem, accuracy: Accuracy, zone: Zone) -> Mesh:
     )
 
 
-def with_linear(elements: Elements, mask: npt.NDArray[np.bool_]) -> Elements:
+def with_linear(elements: Elements, mask: Mask) -> Elements:
     """Make the elements of `mask` linear: their stiffness is that of the undeformed state."""
     n = len(mask)
     tangent = np.empty((n, 8, 8))
@@ -209,7 +206,7 @@ def _elements(
     )
 
 
-def _softened(grad: Floats, dV: Floats) -> Floats:
+def _softened(grad: Array, dV: Array) -> Array:
     """Gradients whose departure from the element's mean is smaller by `RULES.bending`.
 
     A uniform gradient stays what it is and the mean is taken over the volume, so patch tests hold;
@@ -220,9 +217,7 @@ def _softened(grad: Floats, dV: Floats) -> Floats:
     return np.asarray(mean + RULES.bending * (grad - mean))
 
 
-def _constants(
-    is_sphere: npt.NDArray[np.bool_], sphere: Material, flat: Material, unit: float
-) -> dict[str, Any]:
+def _constants(is_sphere: Mask, sphere: Material, flat: Material, unit: float) -> dict[str, Any]:
     G, K, radius = (np.empty(len(is_sphere)) for _ in range(3))
     law = np.full(len(is_sphere), -1)
     flows: list[tuple[Material, float]] = []

@@ -5,13 +5,11 @@ from __future__ import annotations
 from typing import NamedTuple
 
 import numpy as np
-import numpy.typing as npt
 from numba import njit
 
+from ..core.arrays import Array, Integers
 from .material import Laws, law_of
 from .material.flow import NO_RATE, at_point
-
-Floats = npt.NDArray[np.float64]
 
 
 class Elements(NamedTuple):
@@ -46,18 +44,18 @@ class Elements(NamedTuple):
         The flow laws.
     """
 
-    conn: npt.NDArray[np.int64]
-    grad: Floats
-    value: Floats
-    r: Floats
-    dV: Floats
-    volume: Floats
-    G: Floats
-    K: Floats
-    radius: Floats
-    stiffness: Floats
-    linear: npt.NDArray[np.int64]
-    law: npt.NDArray[np.int64]
+    conn: Integers
+    grad: Array
+    value: Array
+    r: Array
+    dV: Array
+    volume: Array
+    G: Array
+    K: Array
+    radius: Array
+    stiffness: Array
+    linear: Integers
+    law: Integers
     laws: Laws
 
     @property
@@ -98,11 +96,11 @@ class State(NamedTuple):
         Plastic work so far, summed over the mesh.
     """
 
-    F: Floats
-    b: Floats
-    strain: Floats
-    peeq: Floats
-    work: Floats
+    F: Array
+    b: Array
+    strain: Array
+    peeq: Array
+    work: Array
     dissipated: float
 
     @classmethod
@@ -172,7 +170,7 @@ def deformation(elements, u):
     return F
 
 
-def cauchy_stress(elements: Elements, state: State) -> tuple[Floats, Floats]:
+def cauchy_stress(elements: Elements, state: State) -> tuple[Array, Array]:
     """Cauchy stress deviator (rr, zz, rz, tt) at the points and pressure of the elements.
 
     Returns

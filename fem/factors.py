@@ -13,14 +13,11 @@ third of its time, and half in a solve (benchmarks/bench_fem.py, docs/performanc
 from __future__ import annotations
 
 import numpy as np
-import numpy.typing as npt
 from numba import njit
 
+from ..core.arrays import Array, Integers
 from ..core.unowned import unowned
 from .rules import RULES
-
-Floats = npt.NDArray[np.float64]
-Integers = npt.NDArray[np.int64]
 
 _BLOCK = RULES.block
 """Columns that are eliminated before all that is right of and below them is brought up to date."""
@@ -456,7 +453,7 @@ class Fronts:
         self._stack = np.empty(_stack_size(below, self._parent))
         self._factors = np.empty(int(np.sum(wide * (wide + 2 * below))))
 
-    def factorise(self, data: Floats) -> bool:
+    def factorise(self, data: Array) -> bool:
         """Factorise the matrix with these entries, in the pattern's order; false: a zero pivot."""
         return bool(
             _factorise(
@@ -465,7 +462,7 @@ class Fronts:
             )
         )  # fmt: skip
 
-    def solve(self, rhs: Floats) -> Floats:
+    def solve(self, rhs: Array) -> Array:
         """Solution for a right-hand side (n,) by the last factors."""
         x = rhs.copy()
         known = (self._start, self._rows, self._begin, self._factors, self._sums)

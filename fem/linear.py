@@ -16,18 +16,16 @@ from collections.abc import Callable
 from typing import cast
 
 import numpy as np
-import numpy.typing as npt
 import scipy.sparse as sparse
 import scipy.sparse.linalg as sparse_linalg
 from numba import njit
 
+from ..core.arrays import Array, Integers
 from .contact import ContactState, Surfaces, Triplets
 from .factors import Fronts, postorder
 from .rules import RULES
 
-Floats = npt.NDArray[np.float64]
-Integers = npt.NDArray[np.int64]
-Solve = Callable[[Floats], Floats]
+Solve = Callable[[Array], Array]
 
 _FORCING = RULES.forcing
 _RESIDUAL = RULES.krylov_residual
@@ -125,7 +123,7 @@ class LinearSystem:
 
     def fill(
         self,
-        tangent: Floats,
+        tangent: Array,
         *,
         triplets: Triplets,
         n_triplets: int,
@@ -138,7 +136,7 @@ class LinearSystem:
             if not self._fill(tangent, triplets, n_triplets):
                 raise AssertionError("contact couplings outside a fresh pattern")
 
-    def _fill(self, tangent: Floats, triplets: Triplets, n: int) -> bool:
+    def _fill(self, tangent: Array, triplets: Triplets, n: int) -> bool:
         assert self._matrix is not None
         m = self._matrix
         m.data[:] = 0.0
@@ -198,7 +196,7 @@ class LinearSystem:
             cols.append(np.tile(dofs, len(dofs)))
         return self._keys(np.concatenate(rows), np.concatenate(cols))
 
-    def solve(self, rhs: Floats) -> Floats:
+    def solve(self, rhs: Array) -> Array:
         """Solution of K x = rhs over the free degrees of freedom, in their own order."""
         assert self._matrix is not None
         permuted = np.empty(self.n)
@@ -208,7 +206,7 @@ class LinearSystem:
             x = self._factorised(permuted)
         return np.asarray(x[self._order])
 
-    def _factorised(self, rhs: Floats) -> Floats:
+    def _factorised(self, rhs: Array) -> Array:
         """Solve with fresh factors; they are SuperLU's where rows have to be exchanged."""
         matrix, fronts = self._matrix, self._fronts
         assert matrix is not None
@@ -223,7 +221,7 @@ class LinearSystem:
         self._factors = superlu(matrix)
         return np.asarray(self._factors(rhs))
 
-    def _iterate(self, rhs: Floats) -> Floats | None:
+    def _iterate(self, rhs: Array) -> Array | None:
         """Solve with the factors of an earlier matrix as preconditioner; none: not good enough.
 
         The preconditioner stands on the left, so that the criterion is one on the correction
@@ -235,7 +233,7 @@ class LinearSystem:
         assert factors is not None
         self._n_last = 0
 
-        def preconditioned(v: Floats) -> Floats:
+        def preconditioned(v: Array) -> Array:
             self._n_last += 1
             return np.asarray(factors(matrix @ v))
 

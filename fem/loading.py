@@ -11,8 +11,8 @@ from collections.abc import Iterator
 from dataclasses import dataclass, field
 
 import numpy as np
-import numpy.typing as npt
 
+from ..core.arrays import Array
 from ..core.errors import Ending, Outcome
 from .assemble import advance
 from .discretise import discretise
@@ -26,8 +26,6 @@ from .remesh import Transfer
 from .results.measure import read
 from .results.ripple import BEYOND
 from .rules import RULES
-
-Floats = npt.NDArray[np.float64]
 
 
 @dataclass
@@ -86,7 +84,7 @@ class Loading:
                 "Start from a smaller first depth.",
             )
             return
-        before: Floats | None = None
+        before: Array | None = None
         last_step = point.delta
         ratio = self.accuracy.elastic_step_ratio
         target = 1
@@ -179,7 +177,7 @@ class Loading:
         return Point(delta, found, state, record, solver)
 
     def _step(
-        self, point: Point, before: Floats | None, last_step: float, *, goal: float, ratio: float
+        self, point: Point, before: Array | None, last_step: float, *, goal: float, ratio: float
     ) -> tuple[Point | None, float]:
         """Advance by at most `ratio` towards `goal`; the ratio that worked comes back."""
         for _ in range(MOST_CUTS):
@@ -196,7 +194,7 @@ class Loading:
             ratio = 1.0 + (min(ratio, delta / point.delta) - 1.0) * STEP_CUT
         return None, ratio
 
-    def _follow(self, point: Point, before: Floats | None) -> tuple[Point, Floats | None]:
+    def _follow(self, point: Point, before: Array | None) -> tuple[Point, Array | None]:
         """The same point on a mesh made for its contact radius, where the old one is outgrown."""
         radius = point.record.reading.radius
         if (

@@ -11,16 +11,14 @@ import time
 from dataclasses import dataclass, field
 
 import numpy as np
-import numpy.typing as npt
 
+from ..core.arrays import Array
 from .assemble import DISTORTED, bulk_forces
 from .contact import ContactState, Grip, Triplets, contact_forces, take_hold
 from .discretise import Discretisation
 from .elements import State
 from .linear import LinearSystem
 from .rules import RULES
-
-Floats = npt.NDArray[np.float64]
 
 TOLERANCE = RULES.residual
 """Accepted sum of residual forces over the contact force.
@@ -46,7 +44,7 @@ class Timers:
 class Equilibrium:
     """A converged state: displacements, contact and reaction."""
 
-    u: Floats
+    u: Array
     contact: ContactState
     reaction: float
     iterations: int
@@ -56,8 +54,8 @@ class Equilibrium:
 class Evaluation:
     """Residual at one displacement."""
 
-    residual: Floats
-    bulk: Floats
+    residual: Array
+    bulk: Array
     contact: ContactState
     n_triplets: int
 
@@ -85,13 +83,13 @@ class Solver:
         self._seconds = math.inf
         self._grip: Grip | None = None
 
-    def grip(self, u: Floats, traction: Floats) -> Grip:
+    def grip(self, u: Array, traction: Array) -> Grip:
         """Return how the surfaces hold at displacements `u` and nodal tractions (n_slave,)."""
         return take_hold(self.surfaces, self.grid.mesh.points + u.reshape(-1, 2), traction)
 
     def equilibrium(
         self,
-        guess: Floats,
+        guess: Array,
         *,
         state: State,
         delta: float,
@@ -122,7 +120,7 @@ class Solver:
             next_move = moved * min(moved / before, 1.0) if np.isfinite(before) else moved
         return None
 
-    def _evaluate(self, u: Floats, state: State) -> Evaluation | None:
+    def _evaluate(self, u: Array, state: State) -> Evaluation | None:
         start = time.process_time()
         force = np.zeros(self.grid.n_dofs)
         code = bulk_forces(
@@ -160,7 +158,7 @@ class Solver:
             _SMALL * force, self.grid.round_off
         )
 
-    def _direction(self, now: Evaluation) -> Floats:
+    def _direction(self, now: Evaluation) -> Array:
         start = time.process_time()
         self.system.fill(
             self._tangent,
@@ -176,8 +174,8 @@ class Solver:
         return direction
 
     def _search(
-        self, u: Floats, now: Evaluation, direction: Floats, state: State
-    ) -> tuple[Floats, Evaluation | None, float]:
+        self, u: Array, now: Evaluation, direction: Array, state: State
+    ) -> tuple[Array, Evaluation | None, float]:
         alpha = 1.0
         new = self._evaluate(u + direction, state)
         for _ in range(RULES.backtracks):

@@ -8,16 +8,14 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import numpy as np
-import numpy.typing as npt
 
+from ..core.arrays import Array
 from .assemble import advance
 from .discretise import Discretisation
 from .elements import State
 from .newton import Equilibrium, Solver
 from .results.measure import Reading, read
 from .rules import RULES
-
-Floats = npt.NDArray[np.float64]
 
 STEP_CUT = RULES.step_cut
 """A failed step is tried again with this fraction of its logarithm."""
@@ -52,7 +50,7 @@ class Point:
         """The discretisation that the point stands on."""
         return self.solver.grid
 
-    def balanced(self, guess: Floats, delta: float) -> Equilibrium | None:
+    def balanced(self, guess: Array, delta: float) -> Equilibrium | None:
         """Equilibrium at `delta`, one step from here; none: not found."""
         seconds = self.grid.clock.seconds(self.delta, delta)
         now = self.equilibrium
@@ -62,7 +60,7 @@ class Point:
         )
 
 
-def extrapolate(point: Point, before: Floats | None, reach: float) -> Floats:
+def extrapolate(point: Point, before: Array | None, reach: float) -> Array:
     """First guess of the displacements after a step from `point`.
 
     Parameters

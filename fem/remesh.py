@@ -17,17 +17,14 @@ import math
 from collections.abc import Sequence
 
 import numpy as np
-import numpy.typing as npt
 from numba import njit
 from scipy.interpolate import Akima1DInterpolator, CubicSpline
 
+from ..core.arrays import Array, Integers, Mask
 from .discretise import Discretisation
 from .elements import State, deformation, radius_at_rest
 from .material import exponential, log_strain
 from .mesh import Layers, Mesh, layers_of
-
-Floats = npt.NDArray[np.float64]
-Integers = npt.NDArray[np.int64]
 
 _INNER, _OUTER = 0.5 - 0.5 / math.sqrt(3.0), 0.5 + 0.5 / math.sqrt(3.0)
 _BODIES = (True, False)
@@ -58,7 +55,7 @@ class Transfer:
         before = before or [layers_of(old.mesh, sphere=sphere) for sphere in _BODIES]
         self._layers = list(zip(before, self.after, strict=True))
 
-    def displacements(self, u: Floats) -> Floats:
+    def displacements(self, u: Array) -> Array:
         """Displacements (2 n_nodes,) on the new mesh."""
         was = u.reshape(-1, 2)
         now = np.empty(self.new.mesh.points.shape)
@@ -76,7 +73,7 @@ class Transfer:
             now[core] = _cubic(lines, spline(level), place)
         return now.reshape(-1)
 
-    def state(self, state: State, u: Floats) -> State:
+    def state(self, state: State, u: Array) -> State:
         """Material state on the new mesh, at whose nodes the displacements are `u`."""
         x = self.new.elements
         strain, peeq, work = self._interpolated(state)
@@ -85,7 +82,7 @@ class Transfer:
         _settle(F, radius_at_rest(x, peeq, work), strain, peeq, b)
         return State(F, b, strain, peeq, work, state.dissipated)
 
-    def _interpolated(self, state: State) -> tuple[Floats, Floats, Floats]:
+    def _interpolated(self, state: State) -> tuple[Array, Array, Array]:
         scalars = np.stack([state.peeq, state.work], axis=-1)
         data = np.concatenate([state.strain, scalars], axis=-1).reshape(-1, 6)
         out = np.empty((4 * len(self.new.elements.conn), 6))
@@ -116,21 +113,21 @@ def _lines_of_points(layers: Layers, place: Integers) -> Integers:
     return first.reshape(n_layers, divisions, 2, 2).swapaxes(1, 2).reshape(2 * n_layers, -1)
 
 
-def _linear(x: Floats, values: Floats, at: Floats) -> Floats:
+def _linear(x: Array, values: Array, at: Array) -> Array:
     """Linear interpolation along the first axis, constant beyond the ends."""
     k, t = _between_knots(x, at)
     t = t.reshape(-1, *[1] * (values.ndim - 1))
     return np.asarray((1.0 - t) * values[k] + t * values[k + 1])
 
 
-def _linear_each(x: Floats, values: Floats, at: Floats) -> Floats:
+def _linear_each(x: Array, values: Array, at: Array) -> Array:
     """The same along the second axis, each row of `values` at its own place: (n, m) from n."""
     k, t = _between_knots(x, at)
     row = np.arange(len(at))
     return np.asarray((1.0 - t[:, None]) * values[row, k] + t[:, None] * values[row, k + 1])
 
 
-def _between_knots(x: Floats, at: Floats) -> tuple[Integers, Floats]:
+def _between_knots(x: Array, at: Array) -> tuple[Integers, Array]:
     """Knot before each place and how far it is to the next, 0 to 1.
 
     The ends of an interval are met exactly, so that a weight of 0 or 1 copies: plastic strain must
@@ -142,7 +139,7 @@ def _between_knots(x: Floats, at: Floats) -> tuple[Integers, Floats]:
     return k, t
 
 
-def _cubic(x: Floats, values: Floats, at: Floats) -> Floats:
+def _cubic(x: Array, values: Array, at: Array) -> Array:
     """Cubic splines through the rows of `values` (n, n_knots, m), each at its own place `at`."""
     pieces = CubicSpline(x, values, axis=1).c
     k = np.clip(np.searchsorted(x, at) - 1, 0, len(x) - 2)
@@ -151,7 +148,7 @@ def _cubic(x: Floats, values: Floats, at: Floats) -> Floats:
     return np.asarray(((c[0] * t + c[1]) * t + c[2]) * t + c[3])
 
 
-def _polar(points: Floats, sphere: bool) -> tuple[Floats, Floats]:
+def _polar(points: Array, sphere: bool) -> tuple[Array, Array]:
     """Distance from the pole and angle from the surface (0) to the axis (1)."""
     rho = np.hypot(*points.T)
     angle = np.arctan2(np.abs(points[:, 1]), points[:, 0])
@@ -159,7 +156,7 @@ def _polar(points: Floats, sphere: bool) -> tuple[Floats, Floats]:
     return rho, np.clip((angle - start) / (0.5 * math.pi - start), 0.0, 1.0)
 
 
-def _places(mesh: Mesh, layers: Layers, sphere: bool) -> Floats:
+def _places(mesh: Mesh, layers: Layers, sphere: bool) -> Array:
     """Angles of the lines of nodes, as `_polar` counts them, shape (divisions + 1,)."""
     return _polar(mesh.points[layers.nodes[0]], sphere)[1]
 
@@ -174,17 +171,17 @@ def _core_nodes(mesh: Mesh, layers: Layers, sphere: bool) -> Integers:
     return np.setdiff1d(body, layers.nodes.ravel())
 
 
-def _is_sphere(grid: Discretisation) -> npt.NDArray[np.bool_]:
+def _is_sphere(grid: Discretisation) -> Mask:
     return np.asarray(grid.element_index < grid.mesh.n_sphere_quads)
 
 
-def _between(level: Floats) -> Floats:
+def _between(level: Array) -> Array:
     """Coordinates of the material points along the layers, shape (2 n_layers,)."""
     step = np.diff(level)
     return np.stack([level[:-1] + _INNER * step, level[:-1] + _OUTER * step], axis=1).ravel()
 
 
-def _common(old: Floats, new: Floats) -> tuple[Integers, Integers]:
+def _common(old: Array, new: Array) -> tuple[Integers, Integers]:
     """Indices of the levels that both meshes have."""
     k = np.clip(np.searchsorted(old, new), 1, len(old) - 1)
     k -= new - old[k - 1] < old[k] - new
@@ -199,7 +196,7 @@ def _place(grid: Discretisation) -> Integers:
     return place
 
 
-def _points(grid: Discretisation) -> Floats:
+def _points(grid: Discretisation) -> Array:
     """Reference coordinates of the material points, shape (4 n_elements, 2)."""
     corners = grid.mesh.points[grid.elements.conn]
     return np.asarray(np.einsum("qa,eax->eqx", grid.elements.value, corners).reshape(-1, 2))

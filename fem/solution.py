@@ -5,12 +5,10 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import numpy as np
-import numpy.typing as npt
 
+from ..core.arrays import Array, Integers
 from ..core.errors import Outcome
 from .problem import Accuracy, ContactProblem
-
-Floats = npt.NDArray[np.float64]
 
 
 @dataclass(frozen=True)
@@ -40,19 +38,19 @@ class Curve:
         Plastic work so far [J].
     """
 
-    delta: Floats
-    force: Floats
-    radius: Floats
-    radius_last_node: Floats
-    sphere: Floats
-    flat: Floats
-    hardness: Floats
-    force_defect: Floats
-    energy_defect: Floats
-    dissipated: Floats
+    delta: Array
+    force: Array
+    radius: Array
+    radius_last_node: Array
+    sphere: Array
+    flat: Array
+    hardness: Array
+    force_defect: Array
+    energy_defect: Array
+    dissipated: Array
 
     @property
-    def sphere_share(self) -> Floats:
+    def sphere_share(self) -> Array:
         """delta_s* = delta_s/(delta_s + delta_f) (Eq. 2.2) [-]."""
         return np.asarray(self.sphere / (self.sphere + self.flat))
 
@@ -85,10 +83,10 @@ class Unloading:
     curve: Curve
     residual_sphere: float
     residual_flat: float
-    crater_r: Floats
-    crater_z: Floats
-    tip_r: Floats
-    tip_z: Floats
+    crater_r: Array
+    crater_z: Array
+    tip_r: Array
+    tip_z: Array
     steps: int
     outcome: Outcome
     reload: Curve | None = None
@@ -116,11 +114,11 @@ class Profile:
     """
 
     depth: float
-    sphere_r: Floats
-    sphere_z: Floats
-    pressure: Floats
-    flat_r: Floats
-    flat_z: Floats
+    sphere_r: Array
+    sphere_z: Array
+    pressure: Array
+    flat_r: Array
+    flat_z: Array
 
 
 @dataclass(frozen=True)
@@ -151,14 +149,14 @@ class Snapshot:
     """
 
     depth: float
-    points: Floats
-    quads: npt.NDArray[np.int64]
+    points: Array
+    quads: Integers
     n_sphere_quads: int
-    displacement: Floats
-    von_mises: Floats
-    plastic_strain: Floats
-    mean_stress: Floats
-    stress: Floats
+    displacement: Array
+    von_mises: Array
+    plastic_strain: Array
+    mean_stress: Array
+    stress: Array
     profile: Profile
 
 

@@ -5,15 +5,13 @@ from __future__ import annotations
 from dataclasses import replace
 
 import numpy as np
-import numpy.typing as npt
 
+from ..core.arrays import Array
 from ..core.errors import COMPLETED, Ending, Outcome
 from .path import MOST_CUTS, STEP_CUT, Point, Record, accept, extrapolate
 from .problem import ContactProblem
 from .rules import RULES
 from .solution import Curve, Unloading
-
-Floats = npt.NDArray[np.float64]
 
 
 def unload(point: Point, problem: ContactProblem) -> Unloading:
@@ -103,14 +101,14 @@ def _reload(here: Point, depths: list[float], pair_R: float) -> Curve:
     return curve_of(records, here.grid.stress_unit, pair_R, energy=False)
 
 
-def _guess(here: Point, behind: Point | None, delta: float) -> Floats:
+def _guess(here: Point, behind: Point | None, delta: float) -> Array:
     if behind is None:
         return here.equilibrium.u
     reach = (delta - here.delta) / (here.delta - behind.delta)
     return extrapolate(here, behind.equilibrium.u, reach)
 
 
-def _lift(here: Point) -> Floats | None:
+def _lift(here: Point) -> Array | None:
     """Displacements with the surfaces just apart, where the force is zero exactly."""
     grid, now = here.grid, here.record.reading
     # Hertz's way back from this force is 3/4 F/(E' a): it is long where little has yielded
@@ -146,7 +144,7 @@ def level(unloading: Unloading, *, force: float, radius: float) -> Unloading:
 def curve_of(records: list[Record], stress: float, R: float, *, energy: bool) -> Curve:
     """Columns of a list of records, in SI units; `stress` is E' [Pa], `energy` its balance too."""
 
-    def column(name: str) -> Floats:
+    def column(name: str) -> Array:
         return np.array([getattr(r.reading, name) for r in records], dtype=float)
 
     force, radius = column("force") * stress * R**2, column("radius") * R

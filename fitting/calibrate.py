@@ -5,16 +5,14 @@ from __future__ import annotations
 from typing import NamedTuple
 
 import numpy as np
-import numpy.typing as npt
 from scipy.optimize import brentq, minimize
 
+from ..core.arrays import Array, Mask
 from ..models.closed_form import PairNumbers
 from ..models.uncertainty import FEATURES, Calibration, Uncertainty, deviation, features_of
 from .prediction import Prediction, given_back
 from .rules import RULES
 from .table import ResidualTable, Table
-
-Floats = npt.NDArray[np.float64]
 
 SIGMAS = RULES.coverage
 """Shares within one and two standard deviations of Student's t with seven degrees of freedom.
@@ -26,8 +24,8 @@ The errors have longer ends than a normal distribution, of which a deviation has
 class Misses(NamedTuple):
     """Errors of one quantity and the features of where they were made."""
 
-    features: Floats  # shape (n, n_features)
-    off: Floats  # shape (n,)
+    features: Array  # shape (n, n_features)
+    off: Array  # shape (n,)
 
 
 def misses(
@@ -36,7 +34,7 @@ def misses(
     table: Table,
     turns: ResidualTable,
     *,
-    alone: npt.NDArray[np.bool_] | None = None,
+    alone: Mask | None = None,
 ) -> dict[str, Misses]:
     """Errors of every quantity of `Uncertainty` beyond first yield, by name.
 
@@ -53,7 +51,7 @@ def misses(
     """
     count = np.ones(len(table.pairs), dtype=bool) if alone is None else alone
 
-    def at(rows: Table | ResidualTable) -> Floats:
+    def at(rows: Table | ResidualTable) -> Array:
         return features_of(PairNumbers(*(x[rows.case] for x in numbers)), rows.D)
 
     loaded, turned = at(table), at(turns)
@@ -77,7 +75,7 @@ def calibrate(found: dict[str, Misses]) -> Calibration:
         features, off = found[name]
         size = np.maximum(np.abs(off), 1e-6)
 
-        def surprise(weights: Floats, features: Floats = features, size: Floats = size) -> float:
+        def surprise(weights: Array, features: Array = features, size: Array = size) -> float:
             # of a distribution with long ends: some combinations are worse than any rule says
             spread = deviation(features, weights, least=RULES.element_noise)
             loss = np.log(spread) + 2.5 * np.log1p((size / spread) ** 2 / 4.0)
@@ -96,7 +94,7 @@ def calibrate(found: dict[str, Misses]) -> Calibration:
     return Calibration(np.array(rows))
 
 
-def _scaled(weights: Floats, features: Floats, size: Floats) -> Floats:
+def _scaled(weights: Array, features: Array, size: Array) -> Array:
     """Return the weights with the shares above; what one of them lacks the other has too much."""
 
     def beyond(scale: float) -> float:

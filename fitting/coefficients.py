@@ -13,9 +13,9 @@ from pathlib import Path
 from typing import Any
 
 import numpy as np
-import numpy.typing as npt
 
 from ..campaigns import digest_of_source, read_curves
+from ..core.arrays import Array
 from ..core.output import write_file
 from ..core.provenance import environment
 from ..fem import NUMERICS_VERSION
@@ -108,7 +108,7 @@ def hardening_content(
     }
 
 
-def _digits(rows: npt.NDArray[np.float64]) -> list[list[float]]:
+def _digits(rows: Array) -> list[list[float]]:
     return [[float(f"{x:.6g}") for x in row] for row in rows]
 
 

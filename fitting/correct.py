@@ -11,34 +11,32 @@ import math
 from typing import Any, NamedTuple
 
 import numpy as np
-import numpy.typing as npt
 from scipy.linalg import cho_factor, cho_solve
 
+from ..core.arrays import Array
 from ..models.closed_form import Coefficients, PairNumbers, of_pair
 from ..models.correction import CHANNELS, PairCorrection, bumps, coordinates, moved
 from .prediction import Prediction, given_back, predict_by
 from .rules import RULES
 from .table import ResidualTable, Table
 
-Floats = npt.NDArray[np.float64]
-
 REACHES = np.array([0.9, 2.2, 1.2, 3.0, 4.0])
 
 
 def corrected_prediction(
-    values: Floats, correction: PairCorrection, table: Table, turns: ResidualTable
+    values: Array, correction: PairCorrection, table: Table, turns: ResidualTable
 ) -> Prediction:
     """Every row by the compact law of these values with a correction."""
     return predict_by(correction.of(table.bodies, compact_numbers(values, table)), table, turns)
 
 
-def compact_numbers(values: Floats, table: Table) -> PairNumbers:
+def compact_numbers(values: Array, table: Table) -> PairNumbers:
     """The compact law's numbers of every case, each of shape (n_cases,)."""
     numbers = of_pair(table.bodies, Coefficients(*values))
     return PairNumbers(*(np.broadcast_to(x, len(table.pairs)) for x in numbers))
 
 
-def correct(values: Floats, table: Table, turns: ResidualTable, ripple: Floats) -> PairCorrection:
+def correct(values: Array, table: Table, turns: ResidualTable, ripple: Array) -> PairCorrection:
     """Find the correction to the compact law for the cases that have rows.
 
     Parameters
@@ -62,7 +60,7 @@ def correct(values: Floats, table: Table, turns: ResidualTable, ripple: Floats) 
     return PairCorrection(centres, REACHES, white @ _descend(rows, basis))
 
 
-def _spread_out(groups: Floats) -> Floats:
+def _spread_out(groups: Array) -> Array:
     """Return a subset of `groups` as far from each other as may be, shape (m, n_groups)."""
     scaled = groups / REACHES
     chosen = [int(np.argmin(np.sum((scaled - scaled.mean(axis=0)) ** 2, axis=1)))]
@@ -80,8 +78,8 @@ class _Rows(NamedTuple):
     numbers: PairNumbers
     table: Table
     turns: ResidualTable
-    unit_F: Floats
-    unit_a: Floats
+    unit_F: Array
+    unit_a: Array
 
     def misfit(self, shifts: Any) -> tuple[Any, Any]:
         """Misfits in their units of loading, shape (3, n), and of unloading, shape (4, n)."""
@@ -107,14 +105,14 @@ class _Rows(NamedTuple):
         )
         return loading, unloading
 
-    def cost(self, shifts: Floats) -> float:
+    def cost(self, shifts: Array) -> float:
         """Sum of the squares, of outliers less; infinite where a curve can't be drawn."""
         with np.errstate(all="ignore"):
             parts = self.misfit(shifts)
             total = sum(float(np.sum(np.sqrt(1.0 + (r / RULES.outlier) ** 2) - 1.0)) for r in parts)
         return RULES.outlier**2 * total if np.isfinite(total) else math.inf
 
-    def normal(self, shifts: Floats) -> tuple[Floats, Floats]:
+    def normal(self, shifts: Array) -> tuple[Array, Array]:
         """Each case's normal matrix, shape (n_cases, k, k), and gradient, shape (n_cases, k)."""
         cases, k = shifts.shape
         slopes = []
@@ -136,12 +134,12 @@ class _Rows(NamedTuple):
         return matrix, gradient
 
 
-def _descend(rows: _Rows, basis: Floats) -> Floats:
+def _descend(rows: _Rows, basis: Array) -> Array:
     """Weights of the basis, shape (m, k), by damped steps of Gauss and Newton from none."""
     m, k = basis.shape[1], len(CHANNELS)
     weights, damping = np.zeros((m, k)), 1e-2
 
-    def objective(at: Floats) -> float:
+    def objective(at: Array) -> float:
         return rows.cost(basis @ at) + 0.5 * RULES.shift_prior * float(np.sum(at**2))
 
     best = objective(weights)

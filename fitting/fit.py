@@ -11,9 +11,9 @@ from dataclasses import dataclass, field
 from typing import Any
 
 import numpy as np
-import numpy.typing as npt
 from scipy.optimize import least_squares
 
+from ..core.arrays import Array, Integers, Mask
 from ..core.errors import COMPLETED, Ending, Outcome
 from ..core.processes.threads import in_one_thread
 from ..models.closed_form import COEFFICIENTS
@@ -23,8 +23,6 @@ from .prediction import Errors, errors_of, given_back, predict
 from .ripple import ripple_of
 from .rules import RULES
 from .table import ResidualTable, Table
-
-Floats = npt.NDArray[np.float64]
 
 ENOUGH = RULES.form_settled
 """Relative change of the misfit at which a fit for comparison or cross-validation ends."""
@@ -48,9 +46,9 @@ class Fit:
         How the regression ended.
     """
 
-    values: Floats
-    standard_errors: Floats
-    covariance: Floats
+    values: Array
+    standard_errors: Array
+    covariance: Array
     errors: Errors
     outcome: Outcome
     held: Mapping[str, float] = field(default_factory=dict)
@@ -105,11 +103,11 @@ def fit_tables(
 def _regress(
     table: Table,
     turns: ResidualTable,
-    first: Floats,
-    free: npt.NDArray[np.bool_],
+    first: Array,
+    free: Mask,
     *,
     change: float = 1e-8,
-) -> tuple[Floats, Floats, Floats, bool]:
+) -> tuple[Array, Array, Array, bool]:
     """Minimise until the misfit changes by less than `change`, relatively."""
     low, high = np.array([LIMITS[name] for name in COEFFICIENTS]).T
     inside = np.clip(first, low + 1e-9 * np.abs(low), high - 1e-9 * np.abs(high))
@@ -131,7 +129,7 @@ def _regress(
 
 
 def _misfit_of(
-    table: Table, turns: ResidualTable, first: Floats, free: npt.NDArray[np.bool_]
+    table: Table, turns: ResidualTable, first: Array, free: Mask
 ) -> Callable[[Any], Any]:
     """Weighted misfit, form minus data.
 
@@ -161,7 +159,7 @@ def _misfit_of(
     return misfit
 
 
-def _complex_step(function: Callable[[Any], Any], x: Floats) -> Floats:
+def _complex_step(function: Callable[[Any], Any], x: Array) -> Array:
     columns = []
     for k, value in enumerate(x):
         moved = x.astype(complex)
@@ -170,7 +168,7 @@ def _complex_step(function: Callable[[Any], Any], x: Floats) -> Floats:
     return np.stack(columns, axis=1)
 
 
-def covariance_of(jacobian: Floats, misfit: Floats, clusters: npt.NDArray[np.int64]) -> Floats:
+def covariance_of(jacobian: Array, misfit: Array, clusters: Integers) -> Array:
     """Covariance with the larger of two standard errors for each coefficient.
 
     The sandwich clustered by combination allows for rows that move together, but is too small when

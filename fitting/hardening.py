@@ -12,11 +12,11 @@ from pathlib import Path
 from typing import Any, NamedTuple
 
 import numpy as np
-import numpy.typing as npt
 from scipy.interpolate import PchipInterpolator
 from scipy.optimize import brentq
 
 from ..campaigns import CaseRecord, read_curves
+from ..core.arrays import Array
 from ..core.material import Pair
 from ..models import critical_depth
 from ..models.fitted import ClosedForm
@@ -38,18 +38,16 @@ from .calibrate import SIGMAS
 from .rules import RULES
 from .table import HELD_OUT, is_current
 
-Floats = npt.NDArray[np.float64]
-
 
 class _Case(NamedTuple):
     """One pair: its path, and what finite elements say; rows of loading, rows of unloading."""
 
     pair: Pair
     path: Equivalent
-    depth: Floats  # ln(Delta/R) of loading
-    loading: Floats  # ln F, ln a, share; shape (n, 3)
-    turn: Floats  # ln(Delta/R) of unloading
-    unloading: Floats  # permanent part, the sphere's part of it, N; shape (m, 3)
+    depth: Array  # ln(Delta/R) of loading
+    loading: Array  # ln F, ln a, share; shape (n, 3)
+    turn: Array  # ln(Delta/R) of unloading
+    unloading: Array  # permanent part, the sphere's part of it, N; shape (m, 3)
 
 
 @dataclass(frozen=True)
@@ -162,9 +160,9 @@ def judge_hardening(
 class _Off(NamedTuple):
     """Errors of one quantity, the fitted law's own deviation there, how much the points harden."""
 
-    error: Floats
-    own: Floats
-    hardens: Floats
+    error: Array
+    own: Array
+    hardens: Array
 
 
 def _case(fitted: ClosedForm, record: CaseRecord) -> _Case:
@@ -222,7 +220,7 @@ def _regress(cases: Sequence[_Case]) -> HardeningCorrection:
     return HardeningCorrection(low, high, weights, {})
 
 
-def _missing(case: _Case, X: Floats, weights: Floats, quantity: int) -> tuple[Floats, Floats]:
+def _missing(case: _Case, X: Array, weights: Array, quantity: int) -> tuple[Array, Array]:
     """Features and what is missing of a quantity at a case's rows, both times the rows' weight."""
     x, at = corrected(case.path, X @ weights)
     x = np.maximum.accumulate(x + 1e-9 * np.arange(len(x)))
@@ -245,12 +243,12 @@ def _missing(case: _Case, X: Floats, weights: Floats, quantity: int) -> tuple[Fl
     return (features * weight[:, None])[known], (off * weight)[known]
 
 
-def _odds(share: Floats) -> Floats:
+def _odds(share: Array) -> Array:
     inside = np.clip(share, 1e-4, 1.0 - 1e-4)
     return np.asarray(np.log(inside / (1.0 - inside)))
 
 
-def _solved(features: Floats, off: Floats) -> Floats:
+def _solved(features: Array, off: Array) -> Array:
     matrix = features.T @ features / RULES.form_unit**2 + RULES.hardening_prior * np.eye(
         features.shape[1]
     )
@@ -295,6 +293,6 @@ def _spread(off: _Off) -> float:
     return 0.0 if beyond(0.0) >= 0.0 else float(brentq(beyond, 0.0, 1.0, xtol=1e-5))
 
 
-def _size(error: Floats) -> tuple[float, float]:
+def _size(error: Array) -> tuple[float, float]:
     size = np.abs(error)
     return float(size.mean()), float(size.max())

@@ -10,8 +10,8 @@ from collections.abc import Callable
 from dataclasses import dataclass
 
 import numpy as np
-import numpy.typing as npt
 
+from ..core.arrays import Mask
 from ..models.closed_form import Coefficients
 from ..models.correction import PairCorrection
 from ..models.uncertainty import Calibration
@@ -22,8 +22,6 @@ from .prediction import Errors, Prediction, errors_of, predict
 from .ripple import ripple_of
 from .rules import RULES
 from .table import ResidualTable, Table
-
-Floats = npt.NDArray[np.float64]
 
 _DRAWN = ("space", "near-equal", "survey")
 
@@ -73,7 +71,7 @@ def fit_laws(table: Table, turns: ResidualTable) -> Laws:
     correction = correct(fit.values, table, turns, ripple)
     start = dict(zip(Coefficients._fields, fit.values.tolist(), strict=True))
 
-    def anew(rest: npt.NDArray[np.bool_], rest_turns: npt.NDArray[np.bool_]) -> list[Prediction]:
+    def anew(rest: Mask, rest_turns: Mask) -> list[Prediction]:
         fewer, turned = table.rows(rest), turns.rows(rest_turns)
         thin = fewer.rows(np.arange(len(fewer.D)) % RULES.every_depth == 0)
         values = fit_tables(thin, turned, start=start, change=ENOUGH).values
@@ -99,7 +97,7 @@ def fit_laws(table: Table, turns: ResidualTable) -> Laws:
     return Laws(fit, correction, compact, fitted)
 
 
-def stands_alone(table: Table) -> npt.NDArray[np.bool_]:
+def stands_alone(table: Table) -> Mask:
     """Whether each case is of a design drawn over the space, where no two pairs are near twins.
 
     A case of Table 2.1 has one at the next Sy*, and a law that was fitted to that looks better than

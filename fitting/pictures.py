@@ -6,13 +6,10 @@ from pathlib import Path
 from typing import Any
 
 import numpy as np
-import numpy.typing as npt
 
 from ..core.output import write_figure
 from .prediction import Prediction
 from .table import ResidualTable, Table
-
-Floats = npt.NDArray[np.float64]
 
 
 def _figure(rows: int, columns: int, size: tuple[float, float]) -> tuple[Any, Any]:

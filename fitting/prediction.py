@@ -6,13 +6,11 @@ from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
-import numpy.typing as npt
 
+from ..core.arrays import Array
 from ..models.closed_form import Coefficients, PairNumbers, contact, of_pair
 from .rules import RULES
 from .table import ResidualTable, Table
-
-Floats = npt.NDArray[np.float64]
 
 
 @dataclass(frozen=True)
@@ -121,6 +119,6 @@ def errors_of(p: Prediction, table: Table, turns: ResidualTable) -> Errors:
     )
 
 
-def _size(part: Floats) -> tuple[float, float]:
+def _size(part: Array) -> tuple[float, float]:
     part = np.abs(part)
     return (float(part.mean()), float(part.max())) if part.size else (0.0, 0.0)

@@ -9,12 +9,10 @@ from __future__ import annotations
 from dataclasses import replace
 
 import numpy as np
-import numpy.typing as npt
 
+from ..core.arrays import Array
 from .rules import RULES
 from .table import Table
-
-Floats = npt.NDArray[np.float64]
 
 
 def without_ripple(table: Table) -> Table:
@@ -26,12 +24,12 @@ def without_ripple(table: Table) -> Table:
     )
 
 
-def ripple_of(table: Table) -> tuple[Floats, Floats]:
+def ripple_of(table: Table) -> tuple[Array, Array]:
     """Rms ripple of ln F and ln a of each row's case beyond first yield, shape (n,) each."""
     smooth = without_ripple(table)
     yielding = (table.w >= 1.0) & table.edge_seen
 
-    def of(off: Floats) -> Floats:
+    def of(off: Array) -> Array:
         rms = np.zeros(len(table.pairs))
         for number in range(len(table.pairs)):
             m = yielding & (table.case == number)
@@ -44,7 +42,7 @@ def ripple_of(table: Table) -> tuple[Floats, Floats]:
     )
 
 
-def _smoothed(table: Table, value: Floats) -> Floats:
+def _smoothed(table: Table, value: Array) -> Array:
     out = value.copy()
     x = np.log(table.D)
     for number in range(len(table.pairs)):

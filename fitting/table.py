@@ -8,9 +8,9 @@ from pathlib import Path
 from typing import Any
 
 import numpy as np
-import numpy.typing as npt
 
 from ..campaigns import CaseRecord, read_curves
+from ..core.arrays import Array, Integers, Mask
 from ..core.errors import InputError
 from ..core.material import Pair
 from ..models import critical_depth
@@ -18,8 +18,6 @@ from ..models.closed_form import Bodies
 from ..models.fitted import bodies_of
 from ..models.table import energy_exponent
 from .rules import RULES
-
-Floats = npt.NDArray[np.float64]
 
 HELD_OUT = ("validation", "challenge")
 """Cases whose name begins so are for judging a finished fit; no fit reads them."""
@@ -53,13 +51,13 @@ class Table:
         Pair and name of each case, length n_cases.
     """
 
-    case: npt.NDArray[np.int64]
-    D: Floats
-    w: Floats
-    force: Floats
-    radius: Floats
-    share: Floats
-    edge_seen: npt.NDArray[np.bool_]
+    case: Integers
+    D: Array
+    w: Array
+    force: Array
+    radius: Array
+    share: Array
+    edge_seen: Mask
     pairs: tuple[Pair, ...]
     names: tuple[str, ...]
 
@@ -69,12 +67,12 @@ class Table:
         return bodies_of(self.pairs)
 
     @property
-    def hardness(self) -> Floats:
+    def hardness(self) -> Array:
         """Mean pressure over Sy_min."""
         modulus = np.array([p.E_reduced / p.Sy_min for p in self.pairs])
         return np.asarray(self.force / (np.pi * self.radius**2) * modulus[self.case])
 
-    def rows(self, mask: npt.NDArray[np.bool_]) -> Table:
+    def rows(self, mask: Mask) -> Table:
         """Return the rows of `mask`; the cases keep their numbers."""
         return replace(self, **_masked(self, mask))
 
@@ -97,12 +95,12 @@ class ResidualTable:
         As in `Table`.
     """
 
-    case: npt.NDArray[np.int64]
-    D: Floats
-    w: Floats
-    total: Floats
-    sphere_part: Floats
-    exponent: Floats
+    case: Integers
+    D: Array
+    w: Array
+    total: Array
+    sphere_part: Array
+    exponent: Array
     pairs: tuple[Pair, ...]
     names: tuple[str, ...]
 
@@ -111,12 +109,12 @@ class ResidualTable:
         """What the closed form needs of each case's bodies, every field of shape (n_cases,)."""
         return bodies_of(self.pairs)
 
-    def rows(self, mask: npt.NDArray[np.bool_]) -> ResidualTable:
+    def rows(self, mask: Mask) -> ResidualTable:
         """Return the rows of `mask`; the cases keep their numbers."""
         return replace(self, **_masked(self, mask))
 
 
-def _masked(table: Any, mask: npt.NDArray[np.bool_]) -> dict[str, Any]:
+def _masked(table: Any, mask: Mask) -> dict[str, Any]:
     columns = {f.name: getattr(table, f.name) for f in fields(table)}
     return {k: v[mask] for k, v in columns.items() if isinstance(v, np.ndarray)}
 
@@ -176,13 +174,13 @@ def is_current(record: CaseRecord) -> bool:
     return record.id == record.case.id
 
 
-def _key(pair: Pair) -> Floats:
+def _key(pair: Pair) -> Array:
     E, b = pair.E_reduced, bodies_of([pair])
     return np.ravel([b.k_s * E, b.nu_s, b.nu_f, b.q_s * E, b.q_f * E, b.k_f * E])
 
 
 def _loading(records: list[CaseRecord]) -> Table:
-    columns: list[list[Floats]] = [[] for _ in range(7)]
+    columns: list[list[Array]] = [[] for _ in range(7)]
     for number, record in enumerate(records):
         p, c = record.case.pair, record.curve
         usable = c["radius"] <= RULES.form_radius * p.R

@@ -15,13 +15,13 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from ..core.approach import speeds_at_touch
+from ..core.arrays import Array, Integers, Mask
 from ..core.errors import Ending, InputError
 from ..core.observables import OBSERVABLES as MEASURED
 from ..models.base import ContactLaw
 from .columns import Impacts
 from .integrate import Settings, arrays_of, strike_rows
 from .scene import Friction, Scene, Striker
-from .tabulated.cells import Array
 from .tabulated.energy_route import NAMES, energy_impacts, why_not
 from .tabulated.law_table import tabulated
 from .walk import layout as c
@@ -148,7 +148,7 @@ def _conditions(
 
 
 def _by_work(
-    scene: Scene, given: Mapping[str, Array], normal: NDArray[np.bool_],
+    scene: Scene, given: Mapping[str, Array], normal: Mask,
     values: Mapping[str, Array], route: NDArray[Any],
 ) -> None:  # fmt: skip
     """Fill the rows that the work alone settles."""
@@ -188,7 +188,7 @@ def _crater_width(scene: Scene, depth: Array, peak: Array) -> Array:
 
 
 def _by_steps(
-    scene: Scene, given: Mapping[str, Array], rows: NDArray[np.int64],
+    scene: Scene, given: Mapping[str, Array], rows: Integers,
     values: Mapping[str, Array], settings: Settings,
 ) -> None:  # fmt: skip
     """Fill the other rows: those of one angle, mass and friction share all but their speeds."""

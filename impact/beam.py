@@ -12,14 +12,12 @@ from functools import cache
 
 import numpy as np
 from numpy.polynomial import legendre
-from numpy.typing import NDArray
 from scipy.linalg import eigh
 
+from ..core.arrays import Array
 from ..core.errors import InputError
 from ..core.material import Material
 from .rules import RULES
-
-Array = NDArray[np.float64]
 
 
 @dataclass(frozen=True, slots=True)

@@ -11,6 +11,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from ..core.arrays import Array
 from ..core.errors import InputError
 from ..core.output import csv_text, write_file
 
@@ -45,7 +46,7 @@ class Impacts:
         """Return these rows and those of `other`, which has the same columns."""
         return Impacts({k: np.concatenate([v, other[k]]) for k, v in self.columns.items()})
 
-    def with_stds(self, stds: Mapping[str, NDArray[np.float64]]) -> Impacts:
+    def with_stds(self, stds: Mapping[str, Array]) -> Impacts:
         """Return the columns with `NAME_std` behind each NAME; nan where there is none."""
         columns: dict[str, NDArray[Any]] = {}
         for name, values in self.columns.items():

@@ -20,11 +20,11 @@ import numpy as np
 from numba import float64, njit, types
 from numpy.typing import ArrayLike
 
+from ..core.arrays import Array
 from ..core.drag import Fluid, drag_force, rod_drag_across, rod_drag_along
 from ..core.errors import InputError
 from .rules import RULES
 from .scene import STANDARD_GRAVITY, Striker
-from .tabulated.cells import Array
 
 _STEPS = RULES.fall_steps
 

@@ -8,8 +8,8 @@ from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
+from ..core.arrays import Array
 from ..core.material import Pair
 from ..core.unstated import unstated_equal
 from ..models.base import ContactLaw
@@ -21,8 +21,6 @@ from .strength import NODES, strength_table
 from .surface import Spot
 from .walk import layout as c
 from .walk.compiled import Given, many_impacts
-
-Array = NDArray[np.float64]
 
 _UNWRITTEN = np.zeros((0, len(c.HISTORY)))
 _SMOOTH, _STILL = np.empty(0), np.empty((3, 0))

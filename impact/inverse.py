@@ -11,13 +11,11 @@ import math
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
+from ..core.arrays import Array
 from ..core.errors import InputError
 from ..core.unstated import unstated_equal
 from .scene import Striker
-
-Array = NDArray[np.float64]
 
 
 @dataclass(frozen=True, slots=True)

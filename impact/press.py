@@ -12,15 +12,13 @@ from typing import Any, NamedTuple
 
 import numpy as np
 from numba import float64, njit, types
-from numpy.typing import NDArray
 
+from ..core.arrays import Array
 from ..models.kernel import VECTOR
 from . import force as fo
 from .integrate import Settings, arrays_of, kernels_of
 from .rules import RULES
 from .scene import Scene
-
-Array = NDArray[np.float64]
 
 _SHALLOWEST = RULES.law_shallowest
 _DEEPEST = RULES.law_deepest

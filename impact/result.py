@@ -5,9 +5,7 @@ from __future__ import annotations
 import math
 from dataclasses import dataclass, fields
 
-import numpy as np
-from numpy.typing import NDArray
-
+from ..core.arrays import Array
 from ..core.errors import COMPLETED, Ending, Outcome
 from .surface import Spot
 from .walk.layout import CONTACT_BUDGET, COUNTS, DONE, FLIGHT_BUDGET, OBSERVABLES, STEP_BUDGET
@@ -136,7 +134,7 @@ class Impact:
         return {name: float(getattr(self, name)) for name in OBSERVABLES}
 
 
-def impact_of(row: NDArray[np.float64], spot: NDArray[np.float64]) -> Impact:
+def impact_of(row: Array, spot: Array) -> Impact:
     """Return the `Impact` of one output row and spot of the compiled integrator."""
     values = dict(zip(OBSERVABLES + COUNTS, (float(x) for x in row), strict=True))
     ending = values.pop("ending")

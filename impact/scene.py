@@ -14,12 +14,13 @@ from typing import Any, Protocol
 
 import numpy as np
 
+from ..core.arrays import Array
 from ..core.errors import InputError
 from ..core.material import Material, Pair
 from ..core.unstated import unstated_equal
 from ..models.base import ContactLaw
 from .beam import Modes
-from .strength import Array, StrengthTable
+from .strength import StrengthTable
 from .surface import Spot
 
 STANDARD_GRAVITY = 9.81

@@ -17,15 +17,13 @@ from typing import NamedTuple
 
 import numpy as np
 from numba import njit
-from numpy.typing import NDArray
 from scipy.interpolate import PchipInterpolator
 
+from ..core.arrays import Array
 from ..core.material import Material, Pair
 from ..models.base import ContactLaw, DomainWarning, remembering
 from .force import F_FORCE, F_POWER, F_RECOVERY, LOG_DEPTH_FIRST, LOG_DEPTH_LAST
 from .rules import RULES
-
-Array = NDArray[np.float64]
 
 NODES = RULES.strength_nodes
 """Nodes of the table over ln(depth / R)."""

@@ -33,8 +33,8 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 from numba import float64, int64, njit, types
-from numpy.typing import NDArray
 
+from ..core.arrays import Array
 from ..models.kernel import VECTOR
 from .rules import RULES
 
@@ -115,7 +115,7 @@ class Spot:
         """Return the same metal, met `distance` [m] further along the sliding direction."""
         return replace(self, begin=self.begin + distance)
 
-    def row(self) -> NDArray[np.float64]:
+    def row(self) -> Array:
         """Return the surface vector, shape (N_SURFACE,)."""
         row = np.zeros(N_SURFACE)
         row[:N_HEAD] = (self.tip_peak, self.tip_flat, self.begin, len(self.imprints), 0.0)
@@ -126,7 +126,7 @@ class Spot:
         return row
 
     @classmethod
-    def of(cls, row: NDArray[np.float64]) -> Spot:
+    def of(cls, row: Array) -> Spot:
         """Return the spot of a surface vector."""
         cells = row[N_HEAD : N_HEAD + int(row[COUNT]) * N_IMPRINT].reshape(-1, N_IMPRINT)
         imprints = tuple(Imprint(*(float(x) for x in cell)) for cell in cells)

@@ -16,12 +16,13 @@ from functools import cached_property
 
 import numpy as np
 
+from ..core.arrays import Array
 from ..core.material import Material, Pair
 from .base import ContactLaw, Domain, DomainWarning, Kernels, Standing
 from .closed_form import contact
 from .driver import Depths
 from .fitted import ClosedForm, bodies_of
-from .kernel import Floats, common_parameters, critical_depth
+from .kernel import common_parameters, critical_depth
 from .rules import RULES
 from .table import packed_columns, recovery_exponent
 from .table_kernels import TABLE_KERNELS
@@ -58,7 +59,7 @@ class AnchoredLaw(ContactLaw):
         """The compiled functions, those of a table."""
         return TABLE_KERNELS
 
-    def parameters(self, pair: Pair) -> Floats:
+    def parameters(self, pair: Pair) -> Array:
         """Common numbers, then the table of the pair; shape (n,)."""
         x = _grid(pair, RULES.law_last)
         force, radius, recovers, part, exponent = (
@@ -94,7 +95,7 @@ class AnchoredLaw(ContactLaw):
         return self.anchor.uncertainty(self.at, over * self.at.R)
 
     @cached_property
-    def _distance(self) -> tuple[Floats, Floats]:
+    def _distance(self) -> tuple[Array, Array]:
         """ln(Delta/R), shape (n,), and the shifts of the five columns there, (5, n)."""
         x = _grid(self.at, self.deepest)
         here = _columns(self.anchor, self.at, np.exp(x))
@@ -125,14 +126,14 @@ def anchored(
     )  # fmt: skip
 
 
-def _grid(pair: Pair, last: float) -> Floats:
+def _grid(pair: Pair, last: float) -> Array:
     """ln(Delta/R) from far below first yield, evenly."""
     onset = critical_depth(pair) / pair.R
     first = min(RULES.law_first * onset, 0.1 * last) if math.isfinite(onset) else 1e-7
     return np.linspace(math.log(first), math.log(last), RULES.points)
 
 
-def _columns(law: ContactLaw, pair: Pair, D: Floats) -> tuple[Floats, ...]:
+def _columns(law: ContactLaw, pair: Pair, D: Array) -> tuple[Array, ...]:
     """F/(E' R^2), a/R, permanent part, the sphere's part of it, exponent of unloading at D."""
     depth = D * pair.R
     with warnings.catch_warnings():
@@ -149,6 +150,6 @@ def _columns(law: ContactLaw, pair: Pair, D: Floats) -> tuple[Floats, ...]:
     )  # fmt: skip
 
 
-def _log_odds(part: Floats) -> Floats:
+def _log_odds(part: Array) -> Array:
     inside = np.clip(part, 1e-9, 1.0 - 1e-9)
     return np.asarray(np.log(inside / (1.0 - inside)))

@@ -27,6 +27,7 @@ from typing import Any, TypeVar
 import numpy as np
 from numba import njit
 
+from ..core.arrays import Array
 from ..core.errors import InputError
 from ..core.material import Pair
 from .driver import Depths, Pairs, map_branch, map_loading, map_residual, rows_of
@@ -35,7 +36,6 @@ from .kernel import (
     LOADING_SIGNATURE,
     RESIDUAL_SIGNATURE,
     Common,
-    Floats,
     common_parameters,
 )
 from .rules import RULES
@@ -136,7 +136,7 @@ class ContactLaw(ABC):
     def kernels(self) -> Kernels:
         """The compiled functions."""
 
-    def parameters(self, pair: Pair) -> Floats:
+    def parameters(self, pair: Pair) -> Array:
         """Return the numbers that the kernels take, shape (n,)."""
         return np.array(common_parameters(pair))
 
@@ -145,7 +145,7 @@ class ContactLaw(ABC):
         sizes = (size for text, size in self.breaks if text.startswith(clause))
         return max(sizes, default=0.0) / 100.0
 
-    def loading(self, pair: Pairs, depth: Depths) -> Floats:
+    def loading(self, pair: Pairs, depth: Depths) -> Array:
         """Force on first loading.
 
         Parameters
@@ -166,22 +166,22 @@ class ContactLaw(ABC):
         self.warn_outside(pair, depth)
         return out.reshape(shape)
 
-    def contact_radius(self, pair: Pairs, depth: Depths, peak: Depths | None = None) -> Floats:
+    def contact_radius(self, pair: Pairs, depth: Depths, peak: Depths | None = None) -> Array:
         """Contact radius, shape (...) [m]; `peak` defaults to `depth`, which means loading."""
         return self._branch(self.kernels.radius, pair, depth, depth if peak is None else peak)
 
-    def unloading(self, pair: Pairs, depth: Depths, peak: Depths) -> Floats:
+    def unloading(self, pair: Pairs, depth: Depths, peak: Depths) -> Array:
         """Force at `depth` after a largest approach of `peak`, shape (...) [N]."""
         return self._branch(self.kernels.unloading, pair, depth, peak)
 
-    def residual(self, pair: Pairs, peak: Depths) -> tuple[Floats, Floats]:
+    def residual(self, pair: Pairs, peak: Depths) -> tuple[Array, Array]:
         """Permanent depth of sphere and flat after a largest approach of `peak` [m]."""
         par, row, d, shape = rows_of(self.parameters, pair, peak)
         sphere, flat = np.zeros(d.size), np.zeros(d.size)
         map_residual(self.kernels.residual, par, row, d, sphere, flat)
         return sphere.reshape(shape), flat.reshape(shape)
 
-    def hardness(self, pair: Pairs, depth: Depths) -> Floats:
+    def hardness(self, pair: Pairs, depth: Depths) -> Array:
         """Mean pressure F/(pi a^2) on loading, shape (...) [Pa]; zero when open."""
         force, a = self.loading(pair, depth), self.contact_radius(pair, depth)
         area = np.pi * a**2
@@ -230,7 +230,7 @@ class ContactLaw(ABC):
             second=other,
         )
 
-    def _branch(self, kernel: Any, pair: Pairs, depth: Depths, peak: Depths) -> Floats:
+    def _branch(self, kernel: Any, pair: Pairs, depth: Depths, peak: Depths) -> Array:
         par, row, d, shape = rows_of(self.parameters, pair, depth)
         p = np.ascontiguousarray(np.broadcast_to(np.asarray(peak, float), shape).ravel())
         out = np.zeros(d.size)
@@ -282,7 +282,7 @@ class PublishedLaw(ContactLaw):
         """The compiled functions."""
         return self.own
 
-    def parameters(self, pair: Pair) -> Floats:
+    def parameters(self, pair: Pair) -> Array:
         """Common numbers and the law's own, shape (n,)."""
         common = common_parameters(pair)
         return np.array([*common, *self.numbers(common)], dtype=float)
@@ -300,7 +300,7 @@ class CombinedLaw(ContactLaw):
         """Loading and radius of the first law, residual and recovery of the second."""
         return _combined_kernels(self.first, self.second)
 
-    def parameters(self, pair: Pair) -> Floats:
+    def parameters(self, pair: Pair) -> Array:
         """Both laws' numbers, the first law's first, and where the second's start."""
         one, two = self.first.parameters(pair), self.second.parameters(pair)
         return np.concatenate([one, two, [float(len(one))]])

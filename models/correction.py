@@ -18,12 +18,10 @@ from dataclasses import dataclass
 from typing import Any, NamedTuple
 
 import numpy as np
-import numpy.typing as npt
 
+from ..core.arrays import Array
 from .closed_form import Bodies, Groups, PairNumbers, groups_of
 from .rules import RULES
-
-Floats = npt.NDArray[np.float64]
 
 GROUPS = Groups._fields
 """The coordinates of a pair."""
@@ -82,9 +80,9 @@ class PairCorrection:
         Shift of each channel by each bump, shape (m, n_channels).
     """
 
-    centres: Floats
-    reaches: Floats
-    weights: Floats
+    centres: Array
+    reaches: Array
+    weights: Array
 
     def of(self, bodies: Bodies, numbers: PairNumbers) -> PairNumbers:
         """Return the numbers moved; fields of shape (n,), real or complex."""
@@ -97,7 +95,7 @@ def coordinates(bodies: Bodies, numbers: PairNumbers) -> Any:
     return np.stack(groups_of(bodies, numbers), axis=-1)
 
 
-def bumps(groups: Any, centres: Floats, reaches: Floats) -> Any:
+def bumps(groups: Any, centres: Array, reaches: Array) -> Any:
     """Value of every bump at every pair, shape (n, m)."""
     away = (groups[:, None, :] - centres) / reaches
     return np.exp(-0.5 * np.sum(away * away, axis=-1))

@@ -9,9 +9,10 @@ import numpy as np
 import numpy.typing as npt
 from numba import float64, njit, types
 
+from ..core.arrays import Array, Integers
 from ..core.errors import InputError
 from ..core.material import Pair
-from .kernel import BRANCH_SIGNATURE, LOADING_SIGNATURE, RESIDUAL_SIGNATURE, Floats
+from .kernel import BRANCH_SIGNATURE, LOADING_SIGNATURE, RESIDUAL_SIGNATURE
 
 Depths = npt.ArrayLike
 Pairs = Pair | Sequence[Pair]
@@ -64,13 +65,13 @@ def map_residual(kernel, par, row, peak, sphere, flat):
 class Rows(NamedTuple):
     """A call taken apart: what each entry of the answer needs."""
 
-    table: Floats  # vectors of the pairs, shape (n_pairs, n)
-    row: npt.NDArray[np.int64]  # which of them, shape (n,)
-    depth: Floats  # shape (n,) [m]
+    table: Array  # vectors of the pairs, shape (n_pairs, n)
+    row: Integers  # which of them, shape (n,)
+    depth: Array  # shape (n,) [m]
     shape: tuple[int, ...]  # of the answer
 
 
-def rows_of(parameters: Callable[[Pair], Floats], pair: Pairs, depth: Depths) -> Rows:
+def rows_of(parameters: Callable[[Pair], Array], pair: Pairs, depth: Depths) -> Rows:
     """Take a call apart; `parameters` is the law's own method of that name.
 
     Raises

@@ -15,6 +15,7 @@ from typing import Any
 import numpy as np
 from numba import njit
 
+from ..core.arrays import Array
 from ..core.errors import InputError
 from ..core.material import Material, Pair
 from .base import ContactLaw, Domain, DomainWarning, Kernels, Standing
@@ -33,7 +34,6 @@ from .driver import Depths, Pairs
 from .kernel import (
     N_COMMON,
     E,
-    Floats,
     R,
     branch_kernel,
     common_parameters,
@@ -119,7 +119,7 @@ class ClosedForm(ContactLaw):
         """The compiled functions, the same for both laws."""
         return _KERNELS
 
-    def parameters(self, pair: Pair) -> Floats:
+    def parameters(self, pair: Pair) -> Array:
         """Common numbers, then those of the pair; shape (n,)."""
         own = np.ravel(self.numbers(bodies_of([pair])))
         return np.array([*common_parameters(pair), *own])
@@ -131,11 +131,11 @@ class ClosedForm(ContactLaw):
         whole = PairNumbers(*(x if np.shape(x) == shape else np.full(shape, x) for x in compact))
         return whole if self.correction is None else self.correction.of(bodies, whole)
 
-    def share(self, pair: Pair, depth: Depths) -> Floats:
+    def share(self, pair: Pair, depth: Depths) -> Array:
         """delta_s*, shape (...); the elastic share where the contact is open."""
         return self._each(pair, depth, "share", pair.elastic_share)
 
-    def unloading_exponent(self, pair: Pair, peak: Depths) -> Floats:
+    def unloading_exponent(self, pair: Pair, peak: Depths) -> Array:
         """Exponent N of F/F_m = ((Delta - Delta_r)/(Delta_m - Delta_r))^N, shape (...)."""
         return self._each(pair, peak, "N", 1.5)
 
@@ -146,7 +146,7 @@ class ClosedForm(ContactLaw):
         numbers = PairNumbers(*(x[0] for x in self.numbers(bodies_of([pair]))))
         return self.calibration.of(numbers, np.asarray(depth, dtype=float) / pair.R)
 
-    def gradient(self, pair: Pair, depth: Depths) -> dict[str, Floats]:
+    def gradient(self, pair: Pair, depth: Depths) -> dict[str, Array]:
         """Derivatives of the loading force, exact to round-off (complex steps).
 
         Parameters
@@ -196,7 +196,7 @@ class ClosedForm(ContactLaw):
         alone = PairNumbers(*(x[0] for x in numbers))
         return contact(depth / R, alone).F * R**2 / (k_s + k_f)
 
-    def _each(self, pair: Pair, depth: Depths, which: str, open_value: float) -> Floats:
+    def _each(self, pair: Pair, depth: Depths, which: str, open_value: float) -> Array:
         par, d = self.parameters(pair), np.asarray(depth, dtype=float)
         out = np.full(d.shape, open_value)
         closed = d > 0.0

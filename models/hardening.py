@@ -35,13 +35,14 @@ from typing import Any, NamedTuple
 import numpy as np
 from scipy.interpolate import CubicHermiteSpline, PchipInterpolator
 
+from ..core.arrays import Array
 from ..core.flow import FlowCurve
 from ..core.material import Material, Pair
 from .base import ContactLaw, Domain, Kernels, Standing
 from .closed_form import Bodies, PairNumbers, contact, plastic_depth
 from .driver import Depths, Pairs
 from .fitted import ClosedForm, bodies_of
-from .kernel import Floats, common_parameters, critical_depth
+from .kernel import common_parameters, critical_depth
 from .rules import RULES
 from .table import packed_columns, recovery_exponent
 from .table_kernels import TABLE_KERNELS
@@ -59,20 +60,20 @@ _COORDINATES = 5
 class Under(NamedTuple):
     """A body's flow under the contact, by the representative strain; arrays of shape (n,)."""
 
-    S: Floats  # mean flow stress [Pa]
-    n: Floats  # its exponent, d ln S/d ln p
-    bend: Floats  # by how much the exponent rises with the strain
-    lowest: Floats  # lowest stress [Pa]
+    S: Array  # mean flow stress [Pa]
+    n: Array  # its exponent, d ln S/d ln p
+    bend: Array  # by how much the exponent rises with the strain
+    lowest: Array  # lowest stress [Pa]
 
 
 class Equivalent(NamedTuple):
     """Points of a path, taken as perfectly plastic at their flow stresses; arrays of shape (n,)."""
 
-    D: Floats  # Delta/R of the metal that hardens, not corrected
+    D: Array  # Delta/R of the metal that hardens, not corrected
     at: Any  # the `Contact` of the perfectly plastic bodies
-    deeper: Floats  # D over theirs
+    deeper: Array  # D over theirs
     numbers: PairNumbers  # of the fitted law
-    y: Floats  # their depth beyond first yield
+    y: Array  # their depth beyond first yield
     sphere: Under
     flat: Under
     weakest: PairNumbers  # of bodies at the lowest stress under the contact
@@ -93,9 +94,9 @@ class HardeningCorrection:
         of `Uncertainty`.
     """
 
-    low: Floats
-    high: Floats
-    weights: Floats
+    low: Array
+    high: Array
+    weights: Array
     spread: Mapping[str, float]
 
 
@@ -119,11 +120,11 @@ class HardeningLaw(ContactLaw):
         """The compiled functions, those of a table."""
         return TABLE_KERNELS
 
-    def parameters(self, pair: Pair) -> Floats:
+    def parameters(self, pair: Pair) -> Array:
         """Common numbers, then the table of the pair; shape (n,)."""
         return np.concatenate([common_parameters(pair), _columns(self, pair)])
 
-    def share(self, pair: Pair, depth: Depths) -> Floats:
+    def share(self, pair: Pair, depth: Depths) -> Array:
         """delta_s*, shape (...); the elastic share where the contact is open."""
         x, at, *_ = _path(self, pair)
         d = np.asarray(depth, dtype=float)
@@ -167,7 +168,7 @@ def _without_flow(pair: Pair) -> Pair:
     return Pair(sphere, flat, pair.R)
 
 
-def representative_strain(a: Floats, yields_at: float) -> Floats:
+def representative_strain(a: Array, yields_at: float) -> Array:
     """Plastic strain that stands for those under a contact of radius a/R, first yield at another.
 
     Parameters
@@ -197,7 +198,7 @@ def equivalent(fitted: ClosedForm, pair: Pair, *, points: int) -> Equivalent:
     yields_at = math.sqrt(onset) if math.isfinite(onset) else math.inf
     bodies, sphere, flat = bodies_of([pair]), _flow(pair.sphere), _flow(pair.flat)
 
-    def taken(part: Floats, a: Floats) -> Equivalent:
+    def taken(part: Array, a: Array) -> Equivalent:
         """The points if the sphere has `part` of the strain, from a first radius on."""
         for _ in range(RULES.radius_rounds):
             p = representative_strain(a, yields_at)
@@ -232,7 +233,7 @@ def equivalent(fitted: ClosedForm, pair: Pair, *, points: int) -> Equivalent:
     return found._replace(at=at, weakest=fitted.numbers(lowest))
 
 
-def _fuller(e: Equivalent) -> Floats:
+def _fuller(e: Equivalent) -> Array:
     """Mean pressure far beyond yield over that at the mean flow stress.
 
     There it is the one at Tabor's strain: of a power law the mean is span^n/(1 + fall n) of that.
@@ -242,7 +243,7 @@ def _fuller(e: Equivalent) -> Floats:
     return np.asarray(((1.0 + RULES.mean_fall * n) / RULES.mean_span**n) ** (e.y / (1.0 + e.y)))
 
 
-def coordinates_of(e: Equivalent) -> tuple[Floats, Floats]:
+def coordinates_of(e: Equivalent) -> tuple[Array, Array]:
     """Coordinates of the points for the sphere and for the flat, shape (n, 5) each.
 
     Contact radius, exponent, logarithm of E' over the flow stress, elastic share of the body, and
@@ -250,7 +251,7 @@ def coordinates_of(e: Equivalent) -> tuple[Floats, Floats]:
     """
     numbers, a, far = e.numbers, e.at.a / 0.3, np.log1p(e.y) / 2.5 - 1.0
 
-    def of(n: Floats, stiff: Floats, share: Floats) -> Floats:
+    def of(n: Array, stiff: Array, share: Array) -> Array:
         return np.stack(
             [a, (n - 0.2) / 0.15, (np.log(stiff) - 5.0) / 1.2, (share - 0.5) / 0.22, far], axis=-1
         )
@@ -260,7 +261,7 @@ def coordinates_of(e: Equivalent) -> tuple[Floats, Floats]:
     )  # fmt: skip
 
 
-def features_of(e: Equivalent, low: Floats, high: Floats) -> Floats:
+def features_of(e: Equivalent, low: Array, high: Array) -> Array:
     """Features of the points, shape (n, 59): 21 monomials a body times its exponent, six times its
     bend, and where both flow.
     """  # noqa: D205
@@ -285,7 +286,7 @@ def features_of(e: Equivalent, low: Floats, high: Floats) -> Floats:
     return np.stack(columns, axis=-1)
 
 
-def corrected(e: Equivalent, shifts: Floats) -> tuple[Floats, Any]:
+def corrected(e: Equivalent, shifts: Array) -> tuple[Array, Any]:
     """Return ln(Delta/R) and the `Contact` of the points with shifts of `CORRECTED`, (n, 6)."""
     depth, force, share, part, recovered, exponent = shifts.T
     recovers = (1.0 - e.at.left) / e.deeper * np.exp(recovered)
@@ -298,18 +299,18 @@ def corrected(e: Equivalent, shifts: Floats) -> tuple[Floats, Any]:
     )
 
 
-def least_force(e: Equivalent, x: Floats) -> Floats:
+def least_force(e: Equivalent, x: Array) -> Array:
     """F/(E' R^2) at ln(Delta/R) = x of perfectly plastic bodies at the lowest stress under it."""
     return np.asarray(contact(np.exp(x), e.weakest).F)
 
 
-def _moved_odds(share: Floats, shift: Floats) -> Floats:
+def _moved_odds(share: Array, shift: Array) -> Array:
     grown = share * np.exp(shift)
     return np.asarray(grown / (grown + 1.0 - share))
 
 
 @lru_cache(maxsize=64)
-def _path(law: HardeningLaw, pair: Pair) -> tuple[Floats, Any, Uncertainty | None, Floats]:
+def _path(law: HardeningLaw, pair: Pair) -> tuple[Array, Any, Uncertainty | None, Array]:
     """Points of a path: ln(Delta/R), rising, the `Contact` there, how far off both may be, and the
     least force.
     """  # noqa: D205
@@ -341,7 +342,7 @@ def _sizes(law: HardeningLaw, e: Equivalent, correction: HardeningCorrection) ->
     return Uncertainty(*(np.hypot(a, b) for a, b in zip(own, more, strict=True)))
 
 
-def hardening_size(e: Equivalent) -> Floats:
+def hardening_size(e: Equivalent) -> Array:
     """How much the points harden or their curves bend: nothing before yield, one far beyond it."""
     phi = e.at.phi
     n = np.hypot(
@@ -350,23 +351,23 @@ def hardening_size(e: Equivalent) -> Floats:
     return np.asarray(n / np.sqrt(n * n + 0.01) * e.y / (1.0 + e.y))
 
 
-def _with_strengths(bodies: Bodies, sphere: Floats, flat: Floats) -> Bodies:
+def _with_strengths(bodies: Bodies, sphere: Array, flat: Array) -> Bodies:
     k_s, k_f, nu_s, nu_f = (np.broadcast_to(x, sphere.shape) for x in bodies[:4])
     return Bodies(k_s, k_f, nu_s, nu_f, 1.0 / sphere, 1.0 / flat)
 
 
-def _flow(body: Material) -> Callable[[Floats], Under]:
+def _flow(body: Material) -> Callable[[Array], Under]:
     """A body's flow under the contact, by the representative strain."""
     if body.rigid or body.flow is None or body.flow.curve is None:
 
-        def plain(p: Floats) -> Under:
+        def plain(p: Array) -> Under:
             S, none = np.full(p.shape, body.strength), np.zeros(p.shape)
             return Under(S, none, none, S)
 
         return plain
     x, table = _under(body.flow.curve)
 
-    def of(p: Floats) -> Under:
+    def of(p: Array) -> Under:
         at = np.log(np.maximum(p, 1e-300))
         return Under(*(np.interp(at, x, column) for column in table))
 
@@ -374,7 +375,7 @@ def _flow(body: Material) -> Callable[[Floats], Under]:
 
 
 @lru_cache(maxsize=256)
-def _under(curve: FlowCurve) -> tuple[Floats, Under]:
+def _under(curve: FlowCurve) -> tuple[Array, Under]:
     """Ln of representative strains, and a curve's flow there."""
     stress, last = CubicHermiteSpline(curve.strain, curve.stress, curve.slope), curve.strain[-1]
     x = np.linspace(math.log(RULES.least_strain), math.log(RULES.largest_strain), RULES.mean_table)
@@ -392,7 +393,7 @@ def _under(curve: FlowCurve) -> tuple[Floats, Under]:
 
 
 @lru_cache(maxsize=64)
-def _columns(law: HardeningLaw, pair: Pair) -> Floats:
+def _columns(law: HardeningLaw, pair: Pair) -> Array:
     x, at, _, least = _path(law, pair)
     grid = np.linspace(x[0], x[-1], RULES.points)
     F, a, left, phi, N = (

@@ -9,15 +9,11 @@ from __future__ import annotations
 import math
 from typing import Any, NamedTuple
 
-import numpy as np
-import numpy.typing as npt
 from numba import float64, njit, types
 from numba.core import cgutils
 from numba.extending import intrinsic
 
 from ..core.material import Pair
-
-Floats = npt.NDArray[np.float64]
 
 VECTOR = types.Array(types.float64, 1, "C")
 LOADING_SIGNATURE = float64(VECTOR, float64)

@@ -22,11 +22,12 @@ from typing import NamedTuple
 import numpy as np
 from scipy.interpolate import PchipInterpolator
 
+from ..core.arrays import Array
 from ..core.errors import InputError
 from ..core.material import Pair
 from .base import ContactLaw, Domain, DomainWarning, Kernels, Standing
 from .driver import Depths, Pairs
-from .kernel import Floats, common_parameters, critical_depth
+from .kernel import common_parameters, critical_depth
 from .rules import RULES
 from .table_kernels import TABLE_KERNELS
 from .uncertainty import LEAST, Uncertainty
@@ -37,22 +38,22 @@ FEWEST_UNLOADINGS = RULES.unloadings
 class LoadingCurve(NamedTuple):
     """Loading of a pair, arrays of shape (n,), dimensionless, with standard deviations."""
 
-    depth: Floats  # Delta/R, rising
-    force: Floats  # over E' R^2
-    radius: Floats  # over R
-    share: Floats  # delta_s*
-    force_std: Floats  # relative
-    radius_std: Floats  # relative
-    share_std: Floats
+    depth: Array  # Delta/R, rising
+    force: Array  # over E' R^2
+    radius: Array  # over R
+    share: Array  # delta_s*
+    force_std: Array  # relative
+    radius_std: Array  # relative
+    share_std: Array
 
 
 class Turns(NamedTuple):
     """Unloadings of a pair, arrays of shape (m,), dimensionless."""
 
-    depth: Floats  # Delta/R of the turning point, rising
-    left: Floats  # permanent approach over the largest one
-    part: Floats  # the sphere's part of it
-    exponent: Floats  # of the power law that gives back the same energy
+    depth: Array  # Delta/R of the turning point, rising
+    left: Array  # permanent approach over the largest one
+    part: Array  # the sphere's part of it
+    exponent: Array  # of the power law that gives back the same energy
 
 
 @dataclass(frozen=True, eq=False)
@@ -73,14 +74,14 @@ class PairTable:
         ours, theirs = _groups(self.pair), _groups(pair)
         return bool(np.allclose(ours, theirs, rtol=1e-6, atol=1e-12))
 
-    def numbers(self) -> Floats:
+    def numbers(self) -> Array:
         """What the kernels read behind the common numbers."""
         x, force, radius = self._loading()
         grid = np.linspace(x[0], x[-1], RULES.points)
         F, a = (PchipInterpolator(x, v)(grid) for v in (force, radius))
         return packed_columns(grid, (F, a, *self._recovery(grid, F, a)))
 
-    def _loading(self) -> tuple[Floats, Floats, Floats]:
+    def _loading(self) -> tuple[Array, Array, Array]:
         """Logarithms of depth, force and radius: Hertz's while elastic, then the data's."""
         c = self.curve
         onset = self.yields_at
@@ -95,7 +96,7 @@ class PairTable:
         force, radius = (np.maximum.accumulate(v) for v in (force, radius))
         return np.log(depth), np.log(force), np.log(radius)
 
-    def _recovery(self, x: Floats, F: Floats, a: Floats) -> tuple[Floats, Floats, Floats]:
+    def _recovery(self, x: Array, F: Array, a: Array) -> tuple[Array, Array, Array]:
         """Permanent part, the sphere's part of it and the exponent at x, of ln F and ln a there."""
         D, force, radius = np.exp(x), np.exp(F), np.exp(a)
         elastic = _elastic(x, F)
@@ -119,7 +120,7 @@ class PairTable:
         return left, part, yielded
 
 
-def packed_columns(grid: Floats, columns: Sequence[Floats]) -> Floats:
+def packed_columns(grid: Array, columns: Sequence[Array]) -> Array:
     """Return what the kernels read behind the common numbers.
 
     Parameters
@@ -137,7 +138,7 @@ def packed_columns(grid: Floats, columns: Sequence[Floats]) -> Floats:
     return np.concatenate([[len(grid), grid[0], step], rows.ravel()])
 
 
-def recovery_exponent(x: Floats, F: Floats, left: Floats, exponent: Floats) -> Floats:
+def recovery_exponent(x: Array, F: Array, left: Array, exponent: Array) -> Array:
     """Exponent of the unloading, raised where more would come back than was spent.
 
     Parameters
@@ -150,7 +151,7 @@ def recovery_exponent(x: Floats, F: Floats, left: Floats, exponent: Floats) -> F
     return np.maximum(exponent, _elastic(x, F) * (1.0 - left) - 1.0)
 
 
-def _elastic(x: Floats, F: Floats) -> Floats:
+def _elastic(x: Array, F: Array) -> Array:
     """N + 1 of a body that gives back all that it took, by ln depth and ln force."""
     force, D = np.exp(F), np.exp(x)
     work = np.concatenate([[0.4 * force[0] * D[0]], np.zeros(len(x) - 1)])
@@ -158,7 +159,7 @@ def _elastic(x: Floats, F: Floats) -> Floats:
     return np.asarray(force * D / work)
 
 
-def _panels(x: Floats, F: Floats) -> Floats:
+def _panels(x: Array, F: Array) -> Array:
     """Work over each interval of ln depth, of a force that is a power of the depth there."""
     power = np.diff(F) / np.diff(x) + 1.0
     return np.asarray((np.exp(F[1:] + x[1:]) - np.exp(F[:-1] + x[:-1])) / power)
@@ -190,7 +191,7 @@ class TableLaw(ContactLaw):
         """The compiled functions, the same for every table."""
         return TABLE_KERNELS
 
-    def parameters(self, pair: Pair) -> Floats:
+    def parameters(self, pair: Pair) -> Array:
         """Common numbers, then the table of the pair.
 
         Raises
@@ -200,7 +201,7 @@ class TableLaw(ContactLaw):
         """
         return np.concatenate([common_parameters(pair), _numbers(self._table(pair))])
 
-    def share(self, pair: Pair, depth: Depths) -> Floats:
+    def share(self, pair: Pair, depth: Depths) -> Array:
         """delta_s*, shape (...); the elastic share where the contact is open."""
         c, d = self._table(pair).curve, np.asarray(depth, dtype=float)
         x = np.log(np.maximum(d / pair.R, 1e-300))
@@ -243,7 +244,7 @@ class TableLaw(ContactLaw):
 
 
 @lru_cache(maxsize=64)
-def _numbers(table: PairTable) -> Floats:
+def _numbers(table: PairTable) -> Array:
     return table.numbers()
 
 
@@ -255,7 +256,7 @@ def _told(pair: Pair) -> str:
     )  # fmt: skip
 
 
-def energy_exponent(depth: Floats, force: Floats, residual: float) -> float:
+def energy_exponent(depth: Array, force: Array, residual: float) -> float:
     """Exponent of the power law that gives back the same energy, F_m (Delta_m - Delta_r)/(N + 1).
 
     The unloading is no exact power law; a slope fitted to its logarithms, which look at small

@@ -12,12 +12,10 @@ from dataclasses import dataclass
 from typing import Any, NamedTuple
 
 import numpy as np
-import numpy.typing as npt
 
+from ..core.arrays import Array
 from .closed_form import PairNumbers, plastic_depth, small_radius_at
 from .rules import RULES
-
-Floats = npt.NDArray[np.float64]
 
 FEATURES = (
     "one", "yield", "depth", "equal", "taking_over", "stiffness", "elastic_share", "unlike",
@@ -47,11 +45,11 @@ class Uncertainty(NamedTuple):
     by unloading from this depth; `given_back` the energy of that unloading at equal peak force.
     """
 
-    force: Floats
-    radius: Floats
-    share: Floats
-    dent: Floats
-    given_back: Floats
+    force: Array
+    radius: Array
+    share: Array
+    dent: Array
+    given_back: Array
 
 
 @dataclass(frozen=True)
@@ -64,9 +62,9 @@ class Calibration:
         One row for each field of `Uncertainty`, shape (5, n_features).
     """
 
-    weights: Floats
+    weights: Array
 
-    def of(self, numbers: PairNumbers, D: Floats) -> Uncertainty:
+    def of(self, numbers: PairNumbers, D: Array) -> Uncertainty:
         """Return the standard deviations of one pair at Delta/R = D, shape (...)."""
         features = features_of(numbers, np.maximum(D, 1e-12))
         sizes = (deviation(features, row) for row in self.weights)
@@ -85,7 +83,7 @@ class Calibration:
         }
 
 
-def features_of(numbers: PairNumbers, D: Any) -> Floats:
+def features_of(numbers: PairNumbers, D: Any) -> Array:
     """Features at Delta/R = D, shape (..., n_features); fields of the numbers go with D.
 
     One; how far the contact has yielded (logarithm, 0 in the end); depth beyond yield; closeness of
@@ -109,7 +107,7 @@ def features_of(numbers: PairNumbers, D: Any) -> Floats:
     return np.stack(columns, axis=-1)
 
 
-def deviation(features: Floats, weights: Floats, *, least: float = LEAST) -> Floats:
+def deviation(features: Array, weights: Array, *, least: float = LEAST) -> Array:
     """Standard deviation, shape (...): at least `least`, hardly above 1."""
     log_size = np.minimum(features @ weights, 0.0)
     return np.asarray(np.hypot(least, np.exp(log_size)))

@@ -6,9 +6,8 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 
 import numpy as np
-import numpy.typing as npt
 
-from ..core.inputs.csv_table import Array
+from ..core.arrays import Array, Indices
 from ..core.observables import RELATIVE_SUFFIX
 from .rules import RULES
 
@@ -31,7 +30,7 @@ class Noise:
 
 def noise_of(
     name: str, values: Array, stated: Array | None, table: Mapping[str, float],
-    groups: npt.NDArray[np.intp],
+    groups: Indices,
 ) -> Noise:  # fmt: skip
     """Return the noise of one observable: column, then set.toml, then repeats.
 
@@ -82,7 +81,7 @@ def noise_of(
     return Noise(std, " and ".join(origins) or "unknown", degrees)
 
 
-def _scatter(values: Array, groups: npt.NDArray[np.intp]) -> tuple[Array, float]:
+def _scatter(values: Array, groups: Indices) -> tuple[Array, float]:
     positive = bool(np.all(values[~np.isnan(values)] > 0.0))
     squares, degrees = 0.0, 0
     known = np.flatnonzero(~np.isnan(values))
@@ -99,7 +98,7 @@ def _scatter(values: Array, groups: npt.NDArray[np.intp]) -> tuple[Array, float]
     return (std * np.abs(values) if positive else np.full(values.shape, std)), float(degrees)
 
 
-def bins(values: Array, *, width: float) -> npt.NDArray[np.intp]:
+def bins(values: Array, *, width: float) -> Indices:
     """Number the values so that those of one bin differ by at most `width`, shape (n,).
 
     Bins are opened from the smallest value upward; every NaN is in bin -1.
@@ -115,7 +114,7 @@ def bins(values: Array, *, width: float) -> npt.NDArray[np.intp]:
     return numbers
 
 
-def numbered(*columns: Sequence[object]) -> npt.NDArray[np.intp]:
+def numbered(*columns: Sequence[object]) -> Indices:
     """Number the distinct combinations of some columns of n entries each, shape (n,)."""
     places: dict[tuple[object, ...], int] = {}
     rows = zip(*columns, strict=True)

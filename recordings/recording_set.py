@@ -16,8 +16,9 @@ import numpy as np
 import numpy.typing as npt
 
 from ..core.approach import speeds_at_touch
+from ..core.arrays import Array, Indices
 from ..core.errors import InputError, InputErrors
-from ..core.inputs.csv_table import Array, Problems
+from ..core.inputs.csv_table import Problems
 from ..core.inputs.flow_curve import SPECIMENS, MeasuredFlow, read_flow_curve
 from ..core.inputs.toml_input import parse_model, read_toml
 from ..core.observables import LOAD, RELATIVE_SUFFIX, RIG_NOISE, TRACE_NOISE
@@ -148,7 +149,7 @@ class RecordingSet:
         return {}
 
     @cached_property
-    def conditions(self) -> npt.NDArray[np.intp]:
+    def conditions(self) -> Indices:
         """Number of each trial's condition, shape (n,): repeats share a number.
 
         Same striker, angle within 1 degree, approach speed (or a press's load) within 2 percent,

@@ -7,8 +7,9 @@ from pathlib import Path
 
 import numpy as np
 
+from ..core.arrays import Array
 from ..core.errors import InputError, InputErrors
-from ..core.inputs.csv_table import Array, Problems, numbers, read_text_table
+from ..core.inputs.csv_table import Problems, numbers, read_text_table
 from .columns import PROFILE_COLUMNS, TRACE_COLUMNS
 
 

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
-from ..core.inputs.csv_table import Array
+from ..core.arrays import Array
 from ..core.observables import OBSERVABLES
 from ..core.tables import html_table
 from .rules import RULES

@@ -9,7 +9,8 @@ from pathlib import Path
 import numpy as np
 import numpy.typing as npt
 
-from ..core.inputs.csv_table import Array, Problems, TextTable, numbers, read_text_table, shown
+from ..core.arrays import Array, Mask
+from ..core.inputs.csv_table import Problems, TextTable, numbers, read_text_table, shown
 from ..core.inputs.names import ALLOWED, names_a_file
 from ..core.observables import LOAD, OBSERVABLES
 from ..core.output import csv_text
@@ -103,7 +104,7 @@ class Trials:
         return len(self.trial)
 
     @property
-    def pressed(self) -> npt.NDArray[np.bool_]:
+    def pressed(self) -> Mask:
         """Which rows are quasi-static presses, shape (n,)."""
         return np.asarray(~np.isnan(self.load_N))
 

@@ -12,7 +12,8 @@ import math
 import numpy as np
 from scipy.optimize import least_squares
 
-from .measured import Array, Measured
+from ..core.arrays import Array
+from .measured import Measured
 from .regression import unit_covariance
 
 IMPACT = (1.5, 1.2, 1.0)

@@ -9,8 +9,8 @@ from typing import Any
 from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.figure import Figure
 
+from ..core.arrays import Array
 from ..core.output import write_figure
-from .measured import Array
 
 
 def figure(rows: int, columns: int, *, size: tuple[float, float]) -> tuple[Figure, Any]:

@@ -5,9 +5,8 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import numpy as np
-import numpy.typing as npt
 
-from .measured import Array
+from ..core.arrays import Array, Mask
 from .rules import RULES
 
 _MAD_TO_STD = 1.4826
@@ -20,7 +19,7 @@ class Regression:
     coefficients: Array
     covariance: Array
     sigma: float
-    used: npt.NDArray[np.bool_]
+    used: Mask
 
     def predict(self, design: Array) -> Array:
         """Return the fitted values for a design matrix (m, p)."""

@@ -5,11 +5,10 @@ from __future__ import annotations
 from typing import Any
 
 import numpy as np
-import numpy.typing as npt
 from pydantic import Field, model_validator
 
+from ..core.arrays import Array, Mask
 from ..core.inputs.toml_input import InputTable
-from .measured import Array
 
 
 class TimeWindow(InputTable):
@@ -24,7 +23,7 @@ class TimeWindow(InputTable):
             raise ValueError("last_s is later than first_s")
         return self
 
-    def keeps(self, time: Array) -> npt.NDArray[np.bool_]:
+    def keeps(self, time: Array) -> Mask:
         """Whether each instant, (n,) [s], lies in the part."""
         first = -np.inf if self.first_s is None else self.first_s
         last = np.inf if self.last_s is None else self.last_s

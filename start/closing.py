@@ -16,9 +16,9 @@ from pathlib import Path
 from typing import NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
 
 from .. import fem
+from ..core.arrays import Array, Mask
 from ..core.errors import InputError
 from ..core.output import csv_text, write_file
 from ..discrepancy import Verdict
@@ -34,9 +34,6 @@ from ..models.table_file import write_table
 from .metal_press import MetalPress, presses
 from .pair import solved
 from .rules import RULES
-
-Array = NDArray[np.float64]
-Mask = NDArray[np.bool_]
 
 WHICH = ("baseline", "closed_form", "finite_elements")
 """Simulations that are set beside the recordings."""

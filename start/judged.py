@@ -15,9 +15,9 @@ from pathlib import Path
 from typing import NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
 
 from ..campaigns import CaseRecord, read_curves
+from ..core.arrays import Array
 from ..core.errors import InputError
 from ..core.material import Material, Pair
 from ..models import DomainWarning, critical_depth
@@ -31,8 +31,6 @@ USABLE = RULES.usable
 
 _HARDENS = ("hardening", "validation-hardening")
 _COARSE = "smoke"
-
-Array = NDArray[np.float64]
 
 
 class Departure(NamedTuple):

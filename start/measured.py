@@ -8,15 +8,14 @@ from dataclasses import asdict, dataclass
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
-import numpy.typing as npt
 
+from ..core.arrays import Array
 from ..impact.told.onset import FirstYield, first_yield
 from .rules import RULES
 
 if TYPE_CHECKING:
     from ..fem.solution import Solution, Unloading
 
-Floats = npt.NDArray[np.float64]
 
 _STANDARD_GRAVITY = 9.80665  # m/s2; hardness after Brinell is in kgf/mm2
 
@@ -204,7 +203,7 @@ def _dent(solution: Solution, u: Unloading) -> Dent:
     )  # fmt: skip
 
 
-def loading_work(delta: Floats, force: Floats) -> Floats:
+def loading_work(delta: Array, force: Array) -> Array:
     """Work of loading up to each depth [J]; a power law between the depths, Hertz's before."""
     power = np.diff(np.log(force)) / np.diff(np.log(delta))
     step = np.diff(force * delta) / (power + 1.0)

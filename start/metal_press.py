@@ -7,9 +7,9 @@ from dataclasses import replace
 from typing import NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
 
 from .. import fem
+from ..core.arrays import Array
 from ..core.flow import Flow, Rate, ludwik, tabulated
 from ..core.material import Pair
 from ..discrepancy.comparison.problem import Problem
@@ -19,7 +19,6 @@ from ..impact.mechanisms.base import Constants, Mechanism
 from ..models.anchored import AnchoredLaw
 from .rules import RULES
 
-Array = NDArray[np.float64]
 Clock = tuple[tuple[float, float], ...]
 """Rows of Delta/R and speed [m/s]."""
 

@@ -17,9 +17,9 @@ from pathlib import Path
 from typing import NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
 from scipy.stats import chi2
 
+from ..core.arrays import Array
 from ..core.inputs.toml_input import read_toml
 from ..core.processes.threads import in_one_thread
 from ..discrepancy import diagnose
@@ -31,8 +31,6 @@ from ..discrepancy.rank import screen
 from ..discrepancy.unknowns.lawerror import NO_ERROR
 from ..impact.mechanisms import MECHANISMS, Mechanism
 from ..recordings import RecordingSet, read
-
-Array = NDArray[np.float64]
 
 FLOOR = 0.03
 """Share of every number that a simple rule takes the model to be off by, independently."""

@@ -8,7 +8,6 @@ from pathlib import Path
 from typing import Any, NamedTuple
 
 import numpy as np
-import numpy.typing as npt
 from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.figure import Figure
 
@@ -17,8 +16,6 @@ from ..core.material import Material, Pair
 from ..core.output import write_figure
 from ..models import LAWS
 from ..models.base import ContactLaw
-
-Floats = npt.NDArray[np.float64]
 
 
 class Line(NamedTuple):

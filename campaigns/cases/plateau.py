@@ -13,14 +13,12 @@ from dataclasses import replace
 from functools import cache
 
 import numpy as np
-import numpy.typing as npt
 
+from ...core.arrays import Array
 from ...core.flow import Flow, FlowCurve, tabulated
 from ...core.material import Material, Pair
 from ..case import Case
 from .pairs import deep_case, digits
-
-Floats = npt.NDArray[np.float64]
 
 _YIELD_STRAINS = (4e-4, 4e-3)
 _RATIOS = (0.1, 10.0)  # Sy*
@@ -89,7 +87,7 @@ def _measured_pairs() -> list[Pair]:
     return [Pair(sphere=sphere, flat=flat, R=1e-3) for sphere, flat in both]
 
 
-def _pair(u: Floats, k: int) -> Pair:
+def _pair(u: Array, k: int) -> Pair:
     """Pair from 14 numbers in [0, 1): moduli and Poisson ratios linear, yield strain of the weaker
     body and Sy* logarithmic, then four of each curve; in every third one body alone has a curve.
     """  # noqa: D205
@@ -106,7 +104,7 @@ def _pair(u: Floats, k: int) -> Pair:
     )
 
 
-def _curve(Sy: float, u: Floats) -> FlowCurve:
+def _curve(Sy: float, u: Array) -> FlowCurve:
     """Curve from four numbers in [0, 1): which kind, and three of its measures."""
     if u[0] < 0.5:
         return _plateau(Sy, u[1:])
@@ -117,14 +115,14 @@ def _curve(Sy: float, u: Floats) -> FlowCurve:
     return _saturation(Sy, u[1:])
 
 
-def _plateau(Sy: float, u: Floats) -> FlowCurve:
+def _plateau(Sy: float, u: Array) -> FlowCurve:
     """Plateau to a strain of 0.01 to 0.04, 1.1 to 2 times as much 0.2 later, by Swift's law."""
     end = round(float(0.01 + 0.03 * u[0]), 4)
     later, S = _swift_after(end, 1.1 + 0.9 * u[1], _between((0.01, 0.06), u[2]))
     return _table(np.append([0.0, end], later), Sy * np.append([1.0, 1.0], S))
 
 
-def _upper_yield(Sy: float, u: Floats) -> FlowCurve:
+def _upper_yield(Sy: float, u: Array) -> FlowCurve:
     """An upper yield point 3 to 15 % above the plateau, which is reached at a strain of 0.004."""
     end = round(float(0.01 + 0.03 * u[0]), 4)
     lower = 1.0 / (1.03 + 0.12 * u[1])
@@ -134,28 +132,28 @@ def _upper_yield(Sy: float, u: Floats) -> FlowCurve:
     )
 
 
-def _knee(Sy: float, u: Floats) -> FlowCurve:
+def _knee(Sy: float, u: Array) -> FlowCurve:
     """Rises 1.15 to 2.2 times within strains of 0.0005 to 0.01, then with n 0.02 to 0.2."""
     rise, width, n = 0.15 + 1.05 * u[0], _between((5e-4, 0.01), u[1]), 0.02 + 0.18 * u[2]
     p = np.append(0.0, np.geomspace(0.2 * width, _LAST, _ROWS))
     return _table(p, Sy * (1.0 - rise * np.expm1(-p / width)) * (1.0 + p / 0.01) ** n)
 
 
-def _saturation(Sy: float, u: Floats) -> FlowCurve:
+def _saturation(Sy: float, u: Array) -> FlowCurve:
     """Voce's law, 1.1 to 2.5 times in the end, within strains of 0.01 to 0.2."""
     rise, width = 0.1 + 1.4 * u[0], _between((0.01, 0.2), u[1])
     p = np.append(0.0, np.geomspace(0.05 * width, _LAST, _ROWS))
     return _table(p, Sy * (1.0 - rise * np.expm1(-p / width)))
 
 
-def _swift_after(end: float, ratio: float, start: float) -> tuple[Floats, Floats]:
+def _swift_after(end: float, ratio: float, start: float) -> tuple[Array, Array]:
     """Strains past a plateau's end, and the stresses there over the plateau's."""
     past = np.geomspace(0.1 * start, _LAST, _ROWS)
     n = math.log(ratio) / math.log1p(_AFTER / start)
     return end + past, (1.0 + past / start) ** n
 
 
-def _table(strain: Floats, stress: Floats) -> FlowCurve:
+def _table(strain: Array, stress: Array) -> FlowCurve:
     return tabulated(*(np.array([digits(x) for x in row]) for row in (strain, stress)))
 
 

@@ -11,13 +11,11 @@ from difflib import get_close_matches
 from pathlib import Path
 
 import numpy as np
-import numpy.typing as npt
 
+from ..arrays import Array
 from ..errors import InputError
 from ..rules import RULES
 from .input_file import read_bytes
-
-Array = npt.NDArray[np.float64]
 
 
 @dataclass(slots=True)

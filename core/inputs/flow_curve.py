@@ -7,13 +7,13 @@ from pathlib import Path
 from typing import NamedTuple
 
 import numpy as np
-import numpy.typing as npt
 
+from ..arrays import Array, Indices
 from ..errors import InputError, InputErrors
 from ..flow import FlowCurve, tabulated
 from ..output import csv_text
 from ..rules import RULES
-from .csv_table import Array, Problems, numbers, read_text_table
+from .csv_table import Problems, numbers, read_text_table
 
 COLUMNS = ("plastic_strain", "true_stress_Pa", "strain_rate_per_s", "temperature_K")
 """The last two are optional."""
@@ -51,7 +51,7 @@ class MeasuredFlow:
     temperature: Array
 
     @property
-    def tests(self) -> list[npt.NDArray[np.intp]]:
+    def tests(self) -> list[Indices]:
         """Rows of each test, at one rate and one temperature; the slowest first, then the coldest.
 
         The order is that of what a handbook's strength is measured at.

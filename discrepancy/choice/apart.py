@@ -13,16 +13,14 @@ from dataclasses import replace
 from typing import NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
 from scipy.special import logsumexp
 from scipy.stats import chi2
 
+from ...core.arrays import Array
 from ..comparison.problem import Problem
 from ..inference.fit import Fit
 from ..inference.linear import Linear
 from ..rank import Ranking
-
-Array = NDArray[np.float64]
 
 
 class Weighed(NamedTuple):

@@ -14,7 +14,6 @@ import math
 from dataclasses import replace
 
 import numpy as np
-from numpy.typing import NDArray
 from scipy.stats import norm
 
 from ..comparison.cells import Scatter
@@ -24,8 +23,6 @@ from ..inference.fit import Fit
 from ..inference.linear import Mixture
 from ..rules import RULES
 from ..unknowns.covariates import nearness, same_observable
-
-Array = NDArray[np.float64]
 
 AMPLITUDES = RULES.amplitudes
 """Of departures that no law is behind: from what four observables just show to the gross."""

@@ -6,14 +6,11 @@ import math
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 from scipy.stats import gamma
 
 from ..inference.fit import Fit
 from ..rules import RULES
 from .thresholds import Nulls
-
-Array = NDArray[np.float64]
 
 _LEAST_LOG_P = -700.0  # what a float holds
 

@@ -7,9 +7,9 @@ import math
 from dataclasses import dataclass, replace
 
 import numpy as np
-from numpy.typing import NDArray
 from scipy.special import logsumexp
 
+from ...core.arrays import Array
 from ...impact.mechanisms.base import Mechanism
 from ..comparison.forward import Simulator
 from ..inference.fit import fit_anchored
@@ -17,8 +17,6 @@ from ..inference.grid import Grid
 from ..inference.together import mutual
 from ..rank import Progress, Ranking, Screened, sharpened_leading
 from ..rules import RULES
-
-Array = NDArray[np.float64]
 
 
 def with_pairs(

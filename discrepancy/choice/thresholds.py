@@ -11,8 +11,8 @@ import math
 from dataclasses import dataclass, replace
 
 import numpy as np
-from numpy.typing import NDArray
 
+from ...core.arrays import Array
 from ...impact import Scene
 from ...impact.mechanisms.arithmetic import deepest
 from ...impact.strength import strength_table
@@ -25,8 +25,6 @@ from ..nulls.laws import NullReference
 from ..nulls.motion import NullBodies
 from ..rules import RULES
 from ..unknowns.lawerror import SIZE_SPREAD, not_given_back
-
-Array = NDArray[np.float64]
 
 
 @dataclass(frozen=True, eq=False)

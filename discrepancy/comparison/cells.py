@@ -9,17 +9,14 @@ from functools import cached_property
 from typing import NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
 
+from ...core.arrays import Array, Indices, Mask
 from ...core.observables import OBSERVABLES
 from ..curves import Readings
 from ..rules import RULES
 from ..unknowns.drift import Drift, drift_of
 from ..unknowns.followed import Entries, Followed, followed_of
 from .conditions import Condition
-
-Array = NDArray[np.float64]
-Ints = NDArray[np.intp]
 
 
 @dataclass(frozen=True, eq=False)
@@ -36,17 +33,17 @@ class Cells:
         Trials behind it.
     """
 
-    condition: Ints
+    condition: Indices
     observable: tuple[str, ...]
     value: Array
     std: Array
-    count: Ints
+    count: Indices
 
     def __len__(self) -> int:
         return len(self.value)
 
     @cached_property
-    def is_log(self) -> NDArray[np.bool_]:
+    def is_log(self) -> Mask:
         """Whether each cell is a logarithm."""
         return np.array([OBSERVABLES[name].log for name in self.observable], dtype=bool)
 
@@ -90,7 +87,7 @@ class _Repeats(NamedTuple):
     `trial` is the row of trials.csv, `place` the place in the order of testing from 0 to 1.
     """
 
-    trial: Ints
+    trial: Indices
     place: Array
     value: Array
     std: Array
@@ -240,7 +237,7 @@ def _power(name: str, y: Array) -> Array:
     return np.full(y.shape, row.power) if row.log else row.power * y
 
 
-def _kept(y: Array, s: Array) -> NDArray[np.bool_]:
+def _kept(y: Array, s: Array) -> Mask:
     """Repeats (three or more) that lie within 5 standard deviations of their median.
 
     Where most of four or more do not, the stated noise is too small and says nothing of single

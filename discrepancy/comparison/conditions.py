@@ -6,8 +6,8 @@ import math
 from dataclasses import dataclass, replace
 
 import numpy as np
-from numpy.typing import NDArray
 
+from ...core.arrays import Indices
 from ...core.rig import value_of
 from ...impact import Press
 from ...impact.mechanisms.base import Surroundings
@@ -15,8 +15,6 @@ from ...recordings import RecordingSet
 from ...recordings.noise import bins
 from ...recordings.rules import RULES as RECORDINGS
 from ..rules import RULES
-
-Ints = NDArray[np.intp]
 
 SPEED_MEASURED = RULES.speed_measured
 SPEED_FROM_HEIGHT = RULES.speed_from_height
@@ -156,7 +154,7 @@ def _surroundings(recordings: RecordingSet, striker: str, temperature: float) ->
     )
 
 
-def _nominal(recordings: RecordingSet) -> tuple[Ints, Ints]:
+def _nominal(recordings: RecordingSet) -> tuple[Indices, Indices]:
     """Number of each trial's nominal condition, and of the one that struck its place before.
 
     Repeats share one simulation. Their speeds may differ by 5 %: the mean of the repeats is

@@ -10,13 +10,11 @@ from collections.abc import Iterator, Mapping
 from typing import NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
 
+from ...core.arrays import Array
 from ...recordings import RecordingSet
 from ..curves import Readings
 from ..rules import RULES
-
-Array = NDArray[np.float64]
 
 
 class _Relation(NamedTuple):

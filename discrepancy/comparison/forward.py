@@ -9,8 +9,8 @@ from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass, field, replace
 
 import numpy as np
-from numpy.typing import NDArray
 
+from ...core.arrays import Array
 from ...core.observables import OBSERVABLES
 from ...impact import Scene, Settings, dent_radius, pressed, strike_batch, strike_many
 from ...impact.mechanisms.base import Constants, Mechanism, Situation, attached, observed
@@ -19,8 +19,6 @@ from ...models.base import DomainWarning
 from ..rules import RULES
 from .cells import compared
 from .problem import Problem
-
-Array = NDArray[np.float64]
 
 SIMULATED = {name: row.simulated for name, row in OBSERVABLES.items() if row.simulated}
 """Column of trials.csv to observable of the impact."""

@@ -7,8 +7,8 @@ from collections.abc import Callable, Mapping
 from dataclasses import dataclass, replace
 
 import numpy as np
-from numpy.typing import NDArray
 
+from ...core.arrays import Array
 from ...core.errors import InputError
 from ...core.inputs.rig_numbers import RigNumbers
 from ...core.material import Pair
@@ -35,8 +35,6 @@ from ..unknowns.nuisances import (
 from .cells import NO_CELLS, Cells, Scatter, cells_of
 from .conditions import Condition, conditions_of
 from .derived import derived_columns
-
-Array = NDArray[np.float64]
 
 
 @dataclass(frozen=True, eq=False)

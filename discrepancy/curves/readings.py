@@ -17,15 +17,13 @@ from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
+from ...core.arrays import Array
 from ...core.observables import OBSERVABLES
 from ...impact import Scene, Settings, traced
 from ...recordings import RecordingSet
 from ..rules import RULES
 from .reduction import Numbers, foot, from_profile, from_trace, roughness
-
-Array = NDArray[np.float64]
 
 _ACCURACY = Settings(tolerance=1e-7)
 

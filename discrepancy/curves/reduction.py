@@ -6,11 +6,10 @@ import math
 from collections.abc import Mapping
 
 import numpy as np
-from numpy.typing import NDArray
 
+from ...core.arrays import Array
 from ...recordings.rules import RULES as RECORDINGS
 
-Array = NDArray[np.float64]
 Numbers = dict[str, float]
 
 

@@ -12,11 +12,11 @@ from dataclasses import dataclass, replace
 from functools import cache
 
 import numpy as np
-from numpy.typing import NDArray
 from scipy.linalg import cho_factor, cho_solve
 from scipy.special import logsumexp
 from scipy.stats.qmc import MultivariateNormalQMC
 
+from ...core.arrays import Array, Indices
 from ..comparison.forward import Point, Simulator
 from ..comparison.problem import Problem
 from ..inference.derivatives import FORMS, derivatives
@@ -24,9 +24,6 @@ from ..inference.fit import Fit
 from ..inference.linear import Linear, Mixture
 from ..rules import RULES
 from ..unknowns.lawerror import SIZES
-
-Array = NDArray[np.float64]
-Ints = NDArray[np.intp]
 
 
 @dataclass(frozen=True, eq=False)
@@ -36,7 +33,7 @@ class Foreseen:
     mean: Array
     covariance: Array
 
-    def of(self, cells: Ints) -> Foreseen:
+    def of(self, cells: Indices) -> Foreseen:
         """Return the same of some of the cells."""
         return Foreseen(self.mean[cells], self.covariance[np.ix_(cells, cells)])
 

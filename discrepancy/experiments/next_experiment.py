@@ -14,8 +14,8 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field, replace
 
 import numpy as np
-from numpy.typing import NDArray
 
+from ...core.arrays import Array, Indices
 from ...core.inputs.rig_numbers import RigNumbers
 from ...core.observables import OBSERVABLES
 from ...core.unstated import unstated_equal
@@ -28,9 +28,6 @@ from ..rank import Ranking
 from ..rules import RULES
 from .feasible import Candidate, PressSeries, candidates_of, leaves_no_mark, press_series
 from .foreseen import discrimination, foreseen, information
-
-Array = NDArray[np.float64]
-Ints = NDArray[np.intp]
 
 _LARGE = ("build", "press")  # another body, or a dozen of presses, beside one more trial
 _PRESSED = dict(RULES.press_reading)
@@ -150,7 +147,7 @@ def _worth_of_each(
     return list(best.values())
 
 
-def _options(simulator: Simulator) -> tuple[list[tuple[Ints, Proposal]], Problem]:
+def _options(simulator: Simulator) -> tuple[list[tuple[Indices, Proposal]], Problem]:
     """What could be measured, each with its places among the new cells, and the wider problem."""
     problem = simulator.problem
     candidates = candidates_of(problem)
@@ -164,7 +161,7 @@ def _options(simulator: Simulator) -> tuple[list[tuple[Ints, Proposal]], Problem
     measured = [name for name in seen if "impact" in OBSERVABLES[name].of]
     noise = {name: _noise(simulator, name) for name in measured}
     first = len(problem.conditions)
-    options: list[tuple[Ints, Proposal]] = []
+    options: list[tuple[Indices, Proposal]] = []
     new: list[tuple[int, str]] = []
     for k, c in enumerate(candidates):
         at = np.arange(len(new), len(new) + len(measured))

@@ -6,16 +6,14 @@ import math
 from collections.abc import Sequence
 
 import numpy as np
-from numpy.typing import NDArray
 
+from ...core.arrays import Array
 from ...impact.mechanisms.base import Constants, Mechanism
 from ..comparison.forward import Point, Simulator
 from ..comparison.problem import Problem
 from ..rules import RULES
 from ..unknowns.covariates import nearness, same_observable
 from .linear import Linear, Sizes
-
-Array = NDArray[np.float64]
 
 FORMS = Sizes(
     tuple(math.exp(k * math.sqrt(3.0) * RULES.form_spread) for k in (-1, 0, 1)),

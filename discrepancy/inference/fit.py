@@ -11,8 +11,8 @@ from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
-from numpy.typing import NDArray
 
+from ...core.arrays import Array
 from ...impact.mechanisms.base import Mechanism, Situation
 from ..comparison.forward import Point, Simulator
 from ..comparison.problem import Problem
@@ -22,8 +22,6 @@ from .derivatives import FORMS, derivatives
 from .grid import Axis, Grid, posterior
 from .linear import Linear, Mixture
 from .together import refined
-
-Array = NDArray[np.float64]
 
 
 @dataclass(frozen=True, eq=False)

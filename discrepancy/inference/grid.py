@@ -10,15 +10,12 @@ from functools import cached_property
 from typing import NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
 from scipy.interpolate import CubicSpline
 from scipy.special import logsumexp
 
+from ...core.arrays import Array
 from ...impact.mechanisms.base import Constants, Parameter
 from ..rules import RULES
-
-Array = NDArray[np.float64]
-
 
 FINE = dict(RULES.grid_places)
 """Points per parameter of the refined grid, by the number of parameters; 5 for more."""

@@ -17,11 +17,10 @@ from functools import cached_property
 from typing import NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
 from scipy.linalg import cho_solve, solve_triangular
 from scipy.special import logsumexp
 
-Array = NDArray[np.float64]
+from ...core.arrays import Array
 
 
 @dataclass(frozen=True, eq=False)

@@ -12,18 +12,16 @@ from __future__ import annotations
 from dataclasses import replace
 
 import numpy as np
-from numpy.typing import NDArray
 
+from ...core.arrays import Array, Indices, Mask
 from ..comparison.problem import Problem
 from ..rules import RULES
 from .fit import Fit
 
-Array = NDArray[np.float64]
-
 WIDER = RULES.outlier_wider
 
 
-def outlying(problem: Problem, judge: Fit) -> NDArray[np.bool_]:
+def outlying(problem: Problem, judge: Fit) -> Mask:
     """Return the mask (m,) of the values that an explanation cannot hold one by one.
 
     Parameters
@@ -62,7 +60,7 @@ def _wide(i: int, own: Array) -> Array:
     return extra
 
 
-def _neighbours(problem: Problem) -> list[NDArray[np.intp]]:
+def _neighbours(problem: Problem) -> list[Indices]:
     """For each cell the two of the same observable and striker that are nearest in condition."""
     cells, conditions = problem.cells, problem.conditions
     place = np.array([
@@ -85,7 +83,7 @@ def _neighbours(problem: Problem) -> list[NDArray[np.intp]]:
     return found
 
 
-def without_weight(problem: Problem, outliers: NDArray[np.bool_]) -> Problem:
+def without_weight(problem: Problem, outliers: Mask) -> Problem:
     """Return the problem with the outliers' standard errors made so large that they say nothing."""
     cells = problem.cells
     std = np.where(outliers, WIDER * cells.std, cells.std)

@@ -18,22 +18,20 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 from scipy.special import logsumexp
 
+from ...core.arrays import Array, Indices
 from ..comparison.forward import Point, Simulator
 from ..rank import Progress
 from ..rules import RULES
 from .fit import Fit
-
-Array = NDArray[np.float64]
 
 
 @dataclass(eq=False)
 class _Swarm:
     """Particles: index into the grid, offset of z from its mean there, and ln p/q."""
 
-    index: NDArray[np.intp]
+    index: Indices
     offset: Array
     log_ratio: Array
 
@@ -76,7 +74,7 @@ def sampled_evidence(simulator: Simulator, fitted: Fit, rng: np.random.Generator
     constant -= float(np.sum(np.log(prior)))
     constant -= 0.5 * len(cells) * math.log(2.0 * math.pi)
 
-    def log_ratio(index: NDArray[np.intp], offset: Array) -> Array:
+    def log_ratio(index: Indices, offset: Array) -> Array:
         z = means[index] + offset @ lower.T
         points = [Point(z[i], fitted.grid.values(places[k])) for i, k in enumerate(index)]
         miss = cells.value - simulator.predict(fitted.mechanisms, points)
@@ -135,7 +133,7 @@ def _next_step(log_ratio: Array, most: float) -> float:
     return max(low, 1e-4)
 
 
-def _resample(weight: Array, rng: np.random.Generator) -> NDArray[np.intp]:
+def _resample(weight: Array, rng: np.random.Generator) -> Indices:
     share = np.exp(weight - logsumexp(weight))
     ticks = (rng.random() + np.arange(len(share))) / len(share)
     return np.minimum(np.searchsorted(np.cumsum(share), ticks), len(share) - 1).astype(np.intp)

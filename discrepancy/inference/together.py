@@ -11,14 +11,12 @@ import itertools
 from collections.abc import Sequence
 
 import numpy as np
-from numpy.typing import NDArray
 
+from ...core.arrays import Array
 from ...impact.mechanisms.base import Mechanism
 from ..comparison.forward import Point, Simulator
 from ..rules import RULES
 from .grid import Grid, along_all
-
-Array = NDArray[np.float64]
 
 
 def split(grid: Grid, mechanisms: Sequence[Mechanism]) -> tuple[Grid, Grid]:

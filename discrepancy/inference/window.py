@@ -3,14 +3,12 @@
 from __future__ import annotations
 
 import numpy as np
-from numpy.typing import NDArray
 
+from ...core.arrays import Array
 from ..comparison.forward import Simulator
 from ..rules import RULES
 from .fit import Fit, expand, tried_steps
 from .grid import Grid
-
-Array = NDArray[np.float64]
 
 
 def sharpened(simulator: Simulator, fitted: Fit, *, rounds: int = 8) -> Fit:

@@ -13,10 +13,10 @@ from dataclasses import dataclass, replace
 from functools import cached_property
 
 import numpy as np
-from numpy.typing import NDArray
 from scipy.special import logsumexp
 from scipy.stats import norm
 
+from ...core.arrays import Array, Mask
 from ...core.errors import InputError
 from ...core.inputs.flow_curve import SPECIMENS, Rise
 from ...impact import dent_radius
@@ -31,8 +31,6 @@ from ..rules import RULES
 from ..unknowns.lawerror import SIZES
 from .flow import STRAINS, FlowCurveOfMarks, curve_values
 from .next_mark import TOLD, NextMark, next_mark, with_marks
-
-Array = NDArray[np.float64]
 
 MARKS = ("permanent_depth_m", "dent_diameter_m", "press_depth_m", "recovered_depth_m")
 LEVEL = RULES.level
@@ -86,7 +84,7 @@ class Metal:
     strain: Array
     stress: Array
     error: Array
-    press: NDArray[np.bool_]
+    press: Mask
     next: NextMark | None
     notes: tuple[str, ...]
 

@@ -6,13 +6,11 @@ import math
 from dataclasses import dataclass, replace
 
 import numpy as np
-from numpy.typing import NDArray
 
+from ...core.arrays import Array
 from ..comparison.problem import Problem
 from ..experiments.feasible import at_load, strikers_scenes
 from ..rules import RULES
-
-Array = NDArray[np.float64]
 
 TOLD = RULES.strains_told
 """Plastic strains at which the stress is told."""

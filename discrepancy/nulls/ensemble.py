@@ -6,13 +6,11 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
+from ...core.arrays import Array
 from .laws import NullReference, curve, draw
 from .motion import NullBodies, collide
 from .press import press
-
-Array = NDArray[np.float64]
 
 
 @dataclass(frozen=True, eq=False)

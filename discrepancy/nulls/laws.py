@@ -17,11 +17,9 @@ import math
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
+from ...core.arrays import Array, Mask
 from ..rules import RULES
-
-Array = NDArray[np.float64]
 
 KINDS = ("cut-off", "logarithmic", "series")
 
@@ -174,7 +172,7 @@ def curve(reference: NullReference, law: Draw) -> NullCurve:
 
 
 def _levelled(
-    own: Array, base: Array, x: Array, inside: NDArray[np.bool_], middle: float,
+    own: Array, base: Array, x: Array, inside: Mask, middle: float,
     offset: tuple[float, float], stray: float,
 ) -> Array:  # fmt: skip
     """Turn a logarithmic curve so that it follows the base but for the offset and its shape."""

@@ -8,12 +8,10 @@ from dataclasses import dataclass
 from typing import NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
 
+from ...core.arrays import Array, Mask
 from ..rules import RULES
 from .laws import NullCurve
-
-Array = NDArray[np.float64]
 
 
 @dataclass(frozen=True, eq=False)
@@ -131,7 +129,7 @@ class _State(NamedTuple):
     loading: Array
     rate: Array
     gone: Array
-    live: NDArray[np.bool_]
+    live: Mask
 
     @classmethod
     def touching(cls, bodies: NullBodies) -> _State:

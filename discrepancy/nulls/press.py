@@ -5,11 +5,9 @@ from __future__ import annotations
 from collections.abc import Sequence
 
 import numpy as np
-from numpy.typing import NDArray
 
+from ...core.arrays import Array
 from .laws import NullCurve
-
-Array = NDArray[np.float64]
 
 
 def press(loads: Array, curves: Sequence[NullCurve]) -> dict[str, Array]:

@@ -7,15 +7,12 @@ from dataclasses import asdict, dataclass
 from typing import Any, NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
 
+from ...core.arrays import Array
 from ...core.observables import OBSERVABLES
 from ..comparison.conditions import Condition
 from ..findings import Verdict
 from ..inference.outliers import WIDER
-
-Array = NDArray[np.float64]
-
 
 STATED, WITHOUT, WITH = "as stated", "best without anything missing", "with the verdict"
 """The three simulations that are drawn, as every legend names them."""

@@ -3,12 +3,9 @@
 from __future__ import annotations
 
 import numpy as np
-from numpy.typing import NDArray
 
+from ...core.arrays import Array
 from ..comparison.problem import Problem
-
-Array = NDArray[np.float64]
-
 
 PRESSED = "press instead of impact"
 """Of sets with both: what no mechanism that needs motion does in a press."""

@@ -12,12 +12,10 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 from scipy.stats import t as student
 
+from ...core.arrays import Array
 from ..rules import RULES
-
-Array = NDArray[np.float64]
 
 
 @dataclass(frozen=True, slots=True)

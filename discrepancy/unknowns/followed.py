@@ -13,12 +13,10 @@ from dataclasses import dataclass
 from typing import NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
 from scipy.stats import f as fisher
 
+from ...core.arrays import Array
 from ..rules import RULES
-
-Array = NDArray[np.float64]
 
 FALSE_ALARMS = RULES.false_alarms
 """Part of sets in which one is seen by chance, over all observables and columns."""

@@ -25,8 +25,8 @@ from dataclasses import dataclass, field
 from functools import cached_property
 
 import numpy as np
-from numpy.typing import NDArray
 
+from ...core.arrays import Array
 from ...impact import ForceTransform, Scene
 from ...impact.force import LOG_DEPTH_FIRST, LOG_DEPTH_LAST
 from ...impact.mechanisms.arithmetic import deepest
@@ -36,8 +36,6 @@ from ...models.base import DomainWarning
 from ...models.uncertainty import METAL, RECOVERY_EXPONENT, WITH_CURVE
 from ..inference.linear import Sizes
 from ..rules import RULES
-
-Array = NDArray[np.float64]
 
 SIZE_SPREAD = RULES.size_spread
 """Standard deviation of the logarithm of the size of all this: a metal's 3 % may be 1.5 or 6."""

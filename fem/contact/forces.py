@@ -6,17 +6,14 @@ from dataclasses import dataclass
 from typing import NamedTuple
 
 import numpy as np
-import numpy.typing as npt
 from numba import njit
 
+from ...core.arrays import Array, Integers
 from ...core.unowned import unowned
 from .friction import Grip, rub, slip_of
 from .gap import SlavePoints, find_gaps
 from .point import LOCAL, Changes, new_room, point_changes
 from .surfaces import POINTS, Surfaces
-
-Floats = npt.NDArray[np.float64]
-Integers = npt.NDArray[np.int64]
 
 _SUPPORT = 96  # room for the degrees of freedom that a node's weighted gap depends on
 
@@ -43,13 +40,13 @@ class ContactState:
         Work lost in sliding since the last accepted step [E' R^3].
     """
 
-    pressure: Floats
-    gap: Floats
-    r: Floats
+    pressure: Array
+    gap: Array
+    r: Array
     segment: Integers
     force: float
     energy: float
-    traction: Floats
+    traction: Array
     rubbed: float
 
 
@@ -58,7 +55,7 @@ class Triplets(NamedTuple):
 
     row: Integers
     col: Integers
-    value: Floats
+    value: Array
 
     @classmethod
     def room(cls, n: int) -> Triplets:
@@ -227,9 +224,9 @@ def _evaluate(s, grip, x, points, pressure, traction, force, with_tangent, out):
 
 def contact_forces(
     surfaces: Surfaces,
-    x: Floats,
+    x: Array,
     *,
-    force: Floats,
+    force: Array,
     tangent: Triplets | None = None,
     grip: Grip | None = None,
 ) -> tuple[ContactState | None, int]:

@@ -12,15 +12,12 @@ from __future__ import annotations
 from typing import NamedTuple
 
 import numpy as np
-import numpy.typing as npt
 from numba import njit
 
+from ...core.arrays import Array, Integers
 from .gap import SlavePoints, curve, find_gaps, new_weights
 from .point import frame_below
 from .surfaces import POINTS, Surfaces
-
-Floats = npt.NDArray[np.float64]
-Integers = npt.NDArray[np.int64]
 
 _SUPPORT = 96  # room for the degrees of freedom that the slip of a node depends on
 
@@ -41,10 +38,10 @@ class Grip(NamedTuple):
     """
 
     dof: Integers
-    weight: Floats
+    weight: Array
     n_dofs: Integers
-    x: Floats
-    traction: Floats
+    x: Array
+    traction: Array
 
     @classmethod
     def none(cls) -> Grip:
@@ -55,7 +52,7 @@ class Grip(NamedTuple):
         )  # fmt: skip
 
 
-def take_hold(surfaces: Surfaces, x: Floats, traction: Floats) -> Grip:
+def take_hold(surfaces: Surfaces, x: Array, traction: Array) -> Grip:
     """Return the grip at coordinates `x` (n_nodes, 2) and nodal tractions (n_slave,)."""
     if surfaces.friction == 0.0:
         return Grip.none()

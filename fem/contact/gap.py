@@ -9,21 +9,18 @@ from __future__ import annotations
 from typing import NamedTuple
 
 import numpy as np
-import numpy.typing as npt
 from numba import njit
 
+from ...core.arrays import Array, Integers
 from .surfaces import POINTS
-
-Floats = npt.NDArray[np.float64]
-Integers = npt.NDArray[np.int64]
 
 
 class Weights(NamedTuple):
     """Weights of four nodes in a point of the curve, and their two derivatives by t, (4,) each."""
 
-    value: Floats
-    first: Floats
-    second: Floats
+    value: Array
+    first: Array
+    second: Array
 
 
 class SlavePoints(NamedTuple):
@@ -38,9 +35,9 @@ class SlavePoints(NamedTuple):
     """
 
     segment: Integers
-    position: Floats
-    gap: Floats
-    radius: Floats
+    position: Array
+    gap: Array
+    radius: Array
 
     @classmethod
     def room(cls, n_edges: int) -> SlavePoints:

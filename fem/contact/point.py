@@ -8,14 +8,11 @@ from __future__ import annotations
 from typing import NamedTuple
 
 import numpy as np
-import numpy.typing as npt
 from numba import njit
 
+from ...core.arrays import Array, Integers
 from .gap import Weights, curve, new_weights
 from .surfaces import POINTS
-
-Floats = npt.NDArray[np.float64]
-Integers = npt.NDArray[np.int64]
 
 LOCAL = 16
 """Degrees of freedom that a slave point's gap depends on."""
@@ -35,8 +32,8 @@ class Changes(NamedTuple):
     """
 
     dof: Integers
-    dg: Floats
-    b: Floats
+    dg: Array
+    b: Array
 
 
 class Room(NamedTuple):
@@ -45,9 +42,9 @@ class Room(NamedTuple):
     """  # noqa: D205
 
     w: Weights
-    dslope: Floats
-    dtau: Floats
-    db: Floats
+    dslope: Array
+    dtau: Array
+    db: Array
 
 
 class _Frame(NamedTuple):

@@ -6,10 +6,8 @@ import math
 from typing import NamedTuple
 
 import numpy as np
-import numpy.typing as npt
 
-Floats = npt.NDArray[np.float64]
-Integers = npt.NDArray[np.int64]
+from ...core.arrays import Array, Integers
 
 POINTS = np.array([-math.sqrt(0.6), 0.0, math.sqrt(0.6)])
 """Points of a slave edge, from -1 to 1."""
@@ -42,11 +40,11 @@ class Surfaces(NamedTuple):
 
     slave: Integers
     master: Integers
-    weight: Floats
-    mass: Floats
-    stiffness: Floats
-    slave_shape: Floats
-    master_shape: Floats
+    weight: Array
+    mass: Array
+    stiffness: Array
+    slave_shape: Array
+    master_shape: Array
     sign: float = 1.0
     friction: float = 0.0
 
@@ -63,7 +61,7 @@ class Surfaces(NamedTuple):
     @classmethod
     def build(
         cls,
-        points: Floats,
+        points: Array,
         *,
         sphere: Integers,
         flat: Integers,
@@ -104,7 +102,7 @@ class Surfaces(NamedTuple):
         )
 
 
-def _slopes(r: Floats) -> Floats:
+def _slopes(r: Array) -> Array:
     """Weights of the node differences in the segments' end slopes: exact for a parabola in r."""
     length = np.diff(r)
     before = np.insert(length[:-1], 0, length[0])  # the mirror image beyond the axis

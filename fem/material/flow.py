@@ -10,12 +10,10 @@ import math
 from typing import NamedTuple
 
 import numpy as np
-import numpy.typing as npt
 from numba import njit
 
+from ...core.arrays import Array, Integers
 from ..rules import RULES
-
-Floats = npt.NDArray[np.float64]
 
 NO_RATE, COWPER_SYMONDS, JOHNSON_COOK, OVERSTRESS = range(4)
 
@@ -42,13 +40,13 @@ class Laws(NamedTuple):
         Of the softening [-].
     """
 
-    curve: Floats
-    rate: npt.NDArray[np.int64]
-    reference: Floats
-    number: Floats
-    overstress: Floats
-    rise: Floats
-    exponent: Floats
+    curve: Array
+    rate: Integers
+    reference: Array
+    number: Array
+    overstress: Array
+    rise: Array
+    exponent: Array
 
 
 class Law(NamedTuple):

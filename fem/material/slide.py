@@ -10,14 +10,13 @@ from __future__ import annotations
 import math
 from typing import NamedTuple
 
-import numpy as np
-import numpy.typing as npt
 from numba import njit
 
+from ...core.arrays import Array
 from ..rules import RULES
 from .tensor import dot, norm
 
-Four = tuple[float, float, float, float] | npt.NDArray[np.float64]
+Four = tuple[float, float, float, float] | Array
 """A symmetric tensor, (rr, zz, rz, tt)."""
 
 RADIAL = 0

@@ -10,16 +10,15 @@ from __future__ import annotations
 import math
 from typing import NamedTuple
 
-import numpy as np
-import numpy.typing as npt
 from numba import njit
 
+from ...core.arrays import Array
 from ..rules import RULES
 from .flow import Law, at_point, circle_of, perfect
 from .slide import RADIAL, Four, elastic_part, find_slide, is_directed, slid, slid_far, turned
 from .tensor import log_strain, norm
 
-Five = tuple[float, float, float, float, float] | npt.NDArray[np.float64]
+Five = tuple[float, float, float, float, float] | Array
 """A deformation gradient, (rr, rz, zr, zz, tt)."""
 
 # keeps round-off from calling converged plastic points plastic again on unloading

@@ -17,13 +17,10 @@ from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
-import numpy.typing as npt
 
+from ...core.arrays import Array, Integers
 from ...core.errors import InputError
 from ..rules import RULES
-
-Floats = npt.NDArray[np.float64]
-Integers = npt.NDArray[np.int64]
 
 
 @dataclass(frozen=True)
@@ -46,7 +43,7 @@ class Mesh:
         Radii of the rings of both bodies, and of the half-space beyond them [R].
     """
 
-    points: Floats
+    points: Array
     quads: Integers
     n_sphere_points: int
     n_sphere_quads: int
@@ -54,8 +51,8 @@ class Mesh:
     flat_surface: Integers
     top: Integers
     far: Integers
-    rings: Floats
-    far_rings: Floats
+    rings: Array
+    far_rings: Array
 
     @property
     def digest(self) -> str:
@@ -65,9 +62,7 @@ class Mesh:
         return text.hexdigest()
 
 
-def contact_mesh(
-    *, rings: Floats, far_rings: Floats, divisions: int, crowding: float = 1.0
-) -> Mesh:
+def contact_mesh(*, rings: Array, far_rings: Array, divisions: int, crowding: float = 1.0) -> Mesh:
     """Mesh both bodies.
 
     Parameters
@@ -220,7 +215,7 @@ class _Layers:
         return float((self.ratio**self.half - 1.0) / (self.ratio**self.divisions - 1.0))
 
 
-def _body(radii: Floats, layers: _Layers, *, sphere: bool) -> tuple[Floats, Integers]:
+def _body(radii: Array, layers: _Layers, *, sphere: bool) -> tuple[Array, Integers]:
     with _session() as gmsh:
         sketch = _Sketch(gmsh, sphere)
         edge = _inner_block(sketch, radii[0], layers)
@@ -300,7 +295,7 @@ def _growth(total: float, n: int) -> float:
     return 0.5 * (low + high)
 
 
-def _points_and_quads(gmsh: Any) -> tuple[Floats, Integers]:
+def _points_and_quads(gmsh: Any) -> tuple[Array, Integers]:
     tags, xyz, _ = gmsh.model.mesh.getNodes()
     kinds, _, nodes = gmsh.model.mesh.getElements(2)
     if list(kinds) != [3]:

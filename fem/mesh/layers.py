@@ -9,12 +9,9 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import numpy as np
-import numpy.typing as npt
 
+from ...core.arrays import Array, Integers
 from .bodies import Mesh
-
-Floats = npt.NDArray[np.float64]
-Integers = npt.NDArray[np.int64]
 
 
 @dataclass(frozen=True)
@@ -39,7 +36,7 @@ class Layers:
     nodes: Integers
     quads: Integers
     corners: Integers
-    level: Floats
+    level: Array
 
 
 def layers_of(mesh: Mesh, *, sphere: bool) -> Layers:

@@ -11,11 +11,9 @@ import math
 from dataclasses import dataclass
 
 import numpy as np
-import numpy.typing as npt
 
+from ...core.arrays import Array
 from ..rules import RULES
-
-Floats = npt.NDArray[np.float64]
 
 
 @dataclass(frozen=True)
@@ -47,7 +45,7 @@ def widening(x: float) -> float:
     return min(0.4 * math.cbrt(x), 1.2)
 
 
-def ladder_rings(zone: Zone, *, core: float, end: float, fine: float, coarse: float) -> Floats:
+def ladder_rings(zone: Zone, *, core: float, end: float, fine: float, coarse: float) -> Array:
     """Ring radii from about `core` to `end`.
 
     Parameters
@@ -95,7 +93,7 @@ def ladder_rings(zone: Zone, *, core: float, end: float, fine: float, coarse: fl
     return np.asarray(end * np.exp(rung * rungs))
 
 
-def outer_rings(start: float, end: float, *, coarse: float) -> Floats:
+def outer_rings(start: float, end: float, *, coarse: float) -> Array:
     """Ring radii from `start` (included) to `end`, their relative width growing outwards.
 
     The deepest contacts reach nearly up to `start`, hence the same law, a half wider.

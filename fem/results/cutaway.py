@@ -7,14 +7,12 @@ from pathlib import Path
 from typing import Any
 
 import numpy as np
-import numpy.typing as npt
 
+from ...core.arrays import Array, Integers
 from ...core.output import write_file
 from ...core.rendering import offscreen_available, offscreen_plotter
 from ..rules import RULES
 from ..solution import Snapshot
-
-Floats = npt.NDArray[np.float64]
 
 _LABEL = "von Mises stress over the weaker body's strength"
 
@@ -72,7 +70,7 @@ def draw_cutaway(snapshot: Snapshot, path: Path, *, Sy_min: float, extent: float
     return write_file(path, stream.getvalue())
 
 
-def _section(pyvista: Any, points: Floats, quads: npt.NDArray[np.int64], stress: Floats) -> Any:
+def _section(pyvista: Any, points: Array, quads: Integers, stress: Array) -> Any:
     """One half of a meridian section, in the plane y = 0."""
     used, place = np.unique(quads, return_inverse=True)
     corners = place.reshape(quads.shape)

@@ -7,12 +7,10 @@ from pathlib import Path
 from typing import Any
 
 import numpy as np
-import numpy.typing as npt
 
+from ...core.arrays import Array, Integers
 from ...core.output import write_figure, write_file
 from ..solution import Snapshot
-
-Floats = npt.NDArray[np.float64]
 
 
 def write_vtu(snapshot: Snapshot, path: Path) -> Path:
@@ -104,7 +102,7 @@ def draw_section(snapshot: Snapshot, path: Path, *, Sy_min: float, extent: float
     return write_figure(figure, path, dpi=140, bbox_inches="tight")
 
 
-def _shaded(axis: Any, points: Floats, quads: npt.NDArray[np.int64], values: Floats) -> Any:
+def _shaded(axis: Any, points: Array, quads: Integers, values: Array) -> Any:
     """Draw one body's values, means at the nodes, without steps from element to element."""
     nodes, corners = np.unique(quads, return_inverse=True)
     corners = corners.reshape(quads.shape)
@@ -123,7 +121,7 @@ def _in_halves(axis: Any) -> Any:
     return Affine2D().translate(1.0, 1.0).scale(0.5) + axis.transAxes
 
 
-def _outline(axis: Any, snapshot: Snapshot, points: Floats, *, sphere: bool) -> None:
+def _outline(axis: Any, snapshot: Snapshot, points: Array, *, sphere: bool) -> None:
     """Draw the edges that belong to one element only: a body's surface."""
     n = snapshot.n_sphere_quads
     quads = snapshot.quads[:n] if sphere else snapshot.quads[n:]

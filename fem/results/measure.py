@@ -13,14 +13,12 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import numpy as np
-import numpy.typing as npt
 
+from ...core.arrays import Array
 from ..contact import ContactState
 from ..discretise import Discretisation
 from ..newton import Equilibrium
 from ..rules import RULES
-
-Floats = npt.NDArray[np.float64]
 
 
 @dataclass(frozen=True)
@@ -62,14 +60,14 @@ def read(grid: Discretisation, state: Equilibrium, delta: float) -> Reading:
     )
 
 
-def _place(grid: Discretisation, x: Floats, radius: float) -> float:
+def _place(grid: Discretisation, x: Array, radius: float) -> float:
     """Where the edge of contact stands on the slave's surface, counted in fine rings."""
     slave = grid.surfaces.slave[1:]
     ring = np.log(np.hypot(*grid.mesh.points[slave].T) / grid.mesh.rings[-1])
     return float(np.interp(radius, x[slave, 0], ring) / np.log1p(grid.fine))
 
 
-def edge_of_contact(contact: ContactState, slave_r: Floats) -> float:
+def edge_of_contact(contact: ContactState, slave_r: Array) -> float:
     """Radius at which the gap opens, from the shape of the gap just outside the contact.
 
     Parameters
@@ -101,7 +99,7 @@ def edge_of_contact(contact: ContactState, slave_r: Floats) -> float:
     return float(edges[best])
 
 
-def _misfits(edges: Floats, r: Floats, g: Floats) -> Floats:
+def _misfits(edges: Array, r: Array, g: Array) -> Array:
     """Misfit of a gap that opens at each of the edges as alpha s + beta s^1.5, both positive."""
     s = np.maximum(r - edges[:, None], 0.0)
     # relative weights: the nearest points say most about where the gap opens

@@ -13,12 +13,10 @@ from collections.abc import Sequence
 from dataclasses import dataclass, field, replace
 
 import numpy as np
-import numpy.typing as npt
 
+from ...core.arrays import Array
 from ..rules import RULES
 from .measure import Reading
-
-Floats = npt.NDArray[np.float64]
 
 BEYOND = RULES.steps_beyond
 """So many steps past the last depth make the fit there two-sided."""
@@ -63,7 +61,7 @@ class RippleTrack:
         return out
 
 
-def _mean(values: Floats, weights: Floats, here: int) -> float:
+def _mean(values: Array, weights: Array, here: int) -> float:
     """Weighted mean of the logarithms, of the values themselves where one is not above 0."""
     near = values[weights != 0.0]
     weights = weights[weights != 0.0]
@@ -72,7 +70,7 @@ def _mean(values: Floats, weights: Floats, here: int) -> float:
     return float(values[here] * np.exp(weights @ np.log(near / values[here])))
 
 
-def _weights(x: Floats, turns: Floats, here: int) -> Floats | None:
+def _weights(x: Array, turns: Array, here: int) -> Array | None:
     """Weights of the steps in the smooth value at step `here`; none: too few steps about it."""
     t = (x - x[here]) / RULES.ripple_reach
     near = np.flatnonzero(np.abs(t) < 1.0)

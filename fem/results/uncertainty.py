@@ -16,13 +16,11 @@ from pathlib import Path
 from typing import Any
 
 import numpy as np
-import numpy.typing as npt
 
+from ...core.arrays import Array
 from ...core.material import Pair
 from ..problem import Accuracy, ContactProblem, critical_depth
 from ..solution import Curve
-
-Floats = npt.NDArray[np.float64]
 
 MESH_ERRORS_FILE = (
     Path(__file__).resolve().parents[2] / "data" / "coefficients" / "mesh_errors.json"
@@ -48,11 +46,11 @@ class Uncertainty:
         [Pa].
     """
 
-    force: Floats
-    radius: Floats
-    radius_last_node: Floats
-    sphere_share: Floats
-    hardness: Floats
+    force: Array
+    radius: Array
+    radius_last_node: Array
+    sphere_share: Array
+    hardness: Array
 
 
 @cache

@@ -19,12 +19,12 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
+from ...core.arrays import Array
 from ...core.errors import InputError
 from ...core.material import Pair
 from ...models import LAWS
 from ...models.base import DomainWarning
 from ..scene import Scene, Striker
-from ..strength import Array
 
 
 @dataclass(frozen=True, slots=True)

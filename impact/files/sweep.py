@@ -8,6 +8,7 @@ from typing import Annotated, Any, Literal
 import numpy as np
 from pydantic import AfterValidator, BeforeValidator, Field, ValidationError
 
+from ...core.arrays import Array
 from ...core.errors import InputError
 from ...core.inputs.toml_input import InputTable
 from ..batch import impacts
@@ -15,7 +16,6 @@ from ..columns import Impacts
 from ..integrate import Settings
 from ..rules import RULES
 from ..scene import Scene
-from ..tabulated.cells import Array
 
 _ALLOWED = (
     'a list of numbers, or { from = ..., to = ..., count = ..., spacing = "linear" or "log" }'

@@ -8,9 +8,10 @@ from typing import ClassVar
 
 import numpy as np
 
+from ...core.arrays import Array
 from ..scene import Scene
 from .arithmetic import energy, slower
-from .base import Array, Mechanism, Parameter, Situation, Surroundings, Values
+from .base import Mechanism, Parameter, Situation, Surroundings, Values
 
 
 class Adhesion(Mechanism):

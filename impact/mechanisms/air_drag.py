@@ -10,11 +10,12 @@ from typing import ClassVar
 
 import numpy as np
 
+from ...core.arrays import Array
 from ...core.drag import DRAG_COEFFICIENT_STD, Fluid, air
 from ..drag import flown
 from ..rules import RULES
 from ..scene import Scene, Striker
-from .base import Array, Literature, Mechanism, Parameter, Situation, Surroundings, Values
+from .base import Literature, Mechanism, Parameter, Situation, Surroundings, Values
 
 _GASES = ("", "air", "none", "dry", "nitrogen")
 

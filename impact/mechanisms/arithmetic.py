@@ -7,10 +7,11 @@ from collections.abc import Mapping, Sequence
 
 import numpy as np
 
+from ...core.arrays import Array
 from ...core.material import Material
 from ..scene import Scene
 from ..strength import strength_table
-from .base import Array, Situation
+from .base import Situation
 
 _STEEL_DENSITY = 7800.0
 

@@ -15,13 +15,12 @@ from dataclasses import dataclass
 from typing import ClassVar, Literal, NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
 
+from ...core.arrays import Array, Mask
 from ...core.inputs.flow_curve import Rise
 from ...core.unstated import unstated_equal
 from ..scene import Scene
 
-Array = NDArray[np.float64]
 Values = Mapping[str, float]
 """Numbers of one mechanism, by the names of its parameters."""
 Constants = Mapping[str, Values]
@@ -262,7 +261,7 @@ def observed(
     return seen
 
 
-def _placed(whole: Array, here: NDArray[np.bool_], part: Array) -> Array:
+def _placed(whole: Array, here: Mask, part: Array) -> Array:
     found = whole.copy()
     found[here] = part
     return found

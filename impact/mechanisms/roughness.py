@@ -10,11 +10,12 @@ from typing import ClassVar
 
 import numpy as np
 
+from ...core.arrays import Array
 from ..rules import RULES
 from ..scene import Scene
 from ..strength import StrengthTable, strength_table
 from .arithmetic import needs_yielding_law, times
-from .base import Array, Literature, Mechanism, Parameter, Situation, Surroundings, Values
+from .base import Literature, Mechanism, Parameter, Situation, Surroundings, Values
 
 
 @dataclass(frozen=True, slots=True)

@@ -9,9 +9,10 @@ from typing import ClassVar
 
 import numpy as np
 
+from ...core.arrays import Array
 from ..scene import Scene
 from .arithmetic import effective_mass, slower
-from .base import Array, Mechanism, Parameter, Situation, Surroundings, Values
+from .base import Mechanism, Parameter, Situation, Surroundings, Values
 
 
 class SqueezeFilm(Mechanism):

@@ -16,13 +16,11 @@ from dataclasses import dataclass
 
 import numpy as np
 from numba import float64, int64, njit
-from numpy.typing import NDArray
 
+from ...core.arrays import Array, Mask
 from ...core.errors import COMPLETED, Ending, Outcome
 from ...models.kernel import VECTOR
 from ..rules import RULES
-
-Array = NDArray[np.float64]
 
 _LOW, _BINS_PER_UNIT, BINS, _CELLS = range(4)
 GUIDE = 4
@@ -129,7 +127,7 @@ def cells_of(
 
 def _polynomials(
     function: Callable[[Array], Array], left: Array, width: Array, relative: tuple[int, ...]
-) -> tuple[Array, Array, NDArray[np.bool_]]:
+) -> tuple[Array, Array, Mask]:
     """Return each cell's polynomial, how far off it is in each column, whether it is a number."""
     places = left[:, None] + width[:, None] * np.concatenate([_NODES, _BETWEEN])
     # a border may lie exactly on the right end: stay inside

@@ -20,13 +20,14 @@ import math
 import numpy as np
 from numba import float64, int64, njit, types
 
+from ...core.arrays import Array
 from ...core.material import Pair
 from ...models.base import ContactLaw
 from ...models.kernel import VECTOR
 from ..rules import RULES
 from ..scene import ForceTransform, RateFree, Scene
 from ..surface import Spot
-from .cells import Array, cell_at, column_at, column_in
+from .cells import cell_at, column_at, column_in
 from .energy_table import (
     DEEPEST,
     DEPTH,

@@ -13,12 +13,13 @@ from dataclasses import replace
 import numpy as np
 from numba import float64, int64, njit, types
 
+from ...core.arrays import Array
 from ...core.material import Pair
 from ...fem.rules import RULES as FEM
 from ...models.base import ContactLaw, Kernels
 from ...models.kernel import BRANCH_SIGNATURE, LOADING_SIGNATURE, RESIDUAL_SIGNATURE, VECTOR
 from ..rules import RULES
-from .cells import Array, TableCells, cells_of
+from .cells import TableCells, cells_of
 
 ERROR = RULES.table_error
 """Error of the table; restitution and times come out within ten times this of the integral."""

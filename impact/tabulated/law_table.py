@@ -18,6 +18,7 @@ from typing import Any
 import numpy as np
 from numba import int64, njit, types
 
+from ...core.arrays import Array
 from ...core.errors import InputError
 from ...core.material import Pair
 from ...models.base import ContactLaw, Kernels
@@ -35,7 +36,7 @@ from ...models.kernel import (
 )
 from ..bits import bits_of
 from ..rules import RULES
-from .cells import BINS, GUIDE, Array, TableCells, cells_of, column_in
+from .cells import BINS, GUIDE, TableCells, cells_of, column_in
 
 ERROR = RULES.table_error
 """Error of a table: of F and a over their own, of residual depths over the peak, of the power."""

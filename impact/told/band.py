@@ -17,6 +17,7 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
 
+from ...core.arrays import Array
 from ...core.errors import InputError
 from ...core.rig import BodyTable, Quantity
 from ...models.base import ContactLaw, DomainWarning
@@ -28,7 +29,7 @@ from ..integrate import strike
 from ..result import Impact
 from ..rules import RULES
 from ..scene import ForceTransform, Scene
-from ..strength import NODES, Array
+from ..strength import NODES
 from .beside import beside_fitted
 from .onset import largest_mean_pressure
 

@@ -5,13 +5,12 @@ from __future__ import annotations
 import numpy as np
 import numpy.typing as npt
 
+from ...core.arrays import Array
 from ...core.material import Pair
 from ...models import law_named
 from ...models.base import ContactLaw
 from ...models.fitted import ClosedForm
 from ...models.uncertainty import Uncertainty
-
-Floats = npt.NDArray[np.float64]
 
 
 def beside_fitted(law: ContactLaw, pair: Pair, depth: npt.ArrayLike) -> Uncertainty:
@@ -37,7 +36,7 @@ def beside_fitted(law: ContactLaw, pair: Pair, depth: npt.ArrayLike) -> Uncertai
 _X, _W = np.polynomial.legendre.leggauss(12)
 
 
-def _answers(law: ContactLaw, pair: Pair, d: Floats) -> tuple[Floats, Floats, Floats, Floats]:
+def _answers(law: ContactLaw, pair: Pair, d: Array) -> tuple[Array, Array, Array, Array]:
     """Force, radius, dent and energy given back over force and depth: above zero, or NaN."""
     closed = np.maximum(d, 1e-12 * pair.R)
     force = law.loading(pair, closed)

@@ -6,8 +6,8 @@ from typing import Any, NamedTuple
 
 import numpy as np
 from numba import int64, njit, types
-from numpy.typing import NDArray
 
+from ...core.arrays import Array
 from ...models.kernel import VECTOR
 from .. import surface as su
 from ..force import BRANCH, DAMPING, LOADING, N_BRANCH, RADIATION, SPLIT
@@ -26,7 +26,6 @@ from .touch import refresh, touch
 
 __all__ = ["OBSERVABLES", "Given", "many_impacts"]
 
-Array = NDArray[np.float64]
 
 # fmt: off
 _LANES = 16

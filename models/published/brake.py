@@ -13,8 +13,6 @@ from __future__ import annotations
 import functools
 import math
 
-import numpy as np
-import numpy.typing as npt
 from numba import njit
 
 from ...core.errors import InputError
@@ -29,8 +27,6 @@ from ..kernel import (
 )
 from .johnson import HARDNESS
 from .residual import YIELD, bounded, brake, crater, recover, to_weaker
-
-Floats = npt.NDArray[np.float64]
 
 _FULL_PLASTICITY = 40.0  # E' a/(R S) where the 2012 law is fully plastic
 _FULL, _SLOPE, _FORCE = range(YIELD + 1, YIELD + 4)

@@ -10,10 +10,9 @@ from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 
 import numpy as np
-import numpy.typing as npt
 from scipy.stats import chi2
 
-from ...core.inputs.csv_table import Array
+from ...core.arrays import Array, Indices
 from ...core.rig import StrikerTable
 from ..recording_set import RecordingSet
 from ..rules import RULES
@@ -27,8 +26,7 @@ SHARE = FALSE_ALARMS_OTHER / 2.0
 MODEL_TOLERANCE = RULES.frozen_angle
 """Part of the approach speed by which a frozen angle and a fixed contact point may err."""
 
-Rows = npt.NDArray[np.intp]
-Residuals = Callable[[Array, Rows], Array]
+Residuals = Callable[[Array, Indices], Array]
 
 
 @dataclass(frozen=True, slots=True)
@@ -67,7 +65,7 @@ class MomentumTrials:
             spin=self.spin,
         )
 
-    def only(self, rows: Rows) -> MomentumTrials:
+    def only(self, rows: Indices) -> MomentumTrials:
         """Return some of the trials, by number or by a mask."""
         return MomentumTrials(
             self.striker, self.angle[rows], self.speed[rows], self.tangential[rows],
@@ -102,7 +100,7 @@ def check_momentum(found: RecordingSet) -> list[Finding]:
     ]
 
 
-def _trials(found: RecordingSet, striker: str, rows: Rows) -> MomentumTrials:
+def _trials(found: RecordingSet, striker: str, rows: Indices) -> MomentumTrials:
     approach = found.approach
     return MomentumTrials(
         found.setup.strikers[striker],
@@ -142,7 +140,7 @@ def _best(trials: MomentumTrials) -> Array:
     momentum = trials.striker.mass_kg.value * trials.speed[:, 0]
     unit = {name: _unit(name, trials) for name in trials.measured}
 
-    def residuals(x: Array, rows: Rows) -> Array:
+    def residuals(x: Array, rows: Indices) -> Array:
         some = trials.only(rows)
         px, py = x[:, :2].T * momentum[rows]
         after = measured_after(some.before(x[:, 2], x[:, 3]), (px, py))
@@ -217,7 +215,7 @@ def least_squares(residuals: Residuals, start: Array) -> Array:
     return np.asarray(cost)
 
 
-def _jacobian(residuals: Residuals, x: Array, rows: Rows, at: Array) -> Array:
+def _jacobian(residuals: Residuals, x: Array, rows: Indices, at: Array) -> Array:
     """Derivatives (k, m, p) of the residuals by forward differences."""
     columns = []
     for i in range(x.shape[1]):

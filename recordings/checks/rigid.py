@@ -13,7 +13,7 @@ from typing import Generic, TypeVar, cast
 
 import numpy as np
 
-from ...core.inputs.csv_table import Array
+from ...core.arrays import Array
 from ...core.observables import OBSERVABLES
 from ...core.rig import StrikerTable
 

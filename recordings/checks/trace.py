@@ -7,7 +7,7 @@ from collections.abc import Mapping
 
 import numpy as np
 
-from ...core.inputs.csv_table import Array
+from ...core.arrays import Array
 from ..recording_set import RecordingSet
 from ..rules import RULES
 from . import limits

@@ -9,7 +9,7 @@ from typing import Any, NamedTuple, TypeVar, cast
 
 import numpy as np
 
-from ...core.inputs.csv_table import Array
+from ...core.arrays import Array
 from ...core.rig import StrikerTable
 from ..recording_set import RecordingSet
 from ..rules import RULES

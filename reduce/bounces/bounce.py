@@ -4,7 +4,8 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
-from ..measured import Array, Measured
+from ...core.arrays import Array
+from ..measured import Measured
 from .flights import Piece
 from .scale import Scale
 from .view import Stage, View

@@ -13,7 +13,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from ..measured import Array
+from ...core.arrays import Array
 from ..regression import robust_regression, robust_std
 from ..rules import RULES
 

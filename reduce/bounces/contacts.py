@@ -15,8 +15,9 @@ from typing import NamedTuple
 
 import numpy as np
 
+from ...core.arrays import Array, Indices
 from ...core.errors import InputError
-from ..measured import Array, Measured, propagate
+from ..measured import Measured, propagate
 from ..rules import RULES
 from .bounce import Bounce, Bounced
 from .fall import Ball
@@ -31,7 +32,7 @@ from .touch import (
     speeds,
     touch_of,
 )
-from .track import Indices, Track, on_the_body, turning_points
+from .track import Track, on_the_body, turning_points
 from .view import Stage, View
 
 

@@ -8,9 +8,9 @@ from dataclasses import dataclass
 import numpy as np
 from scipy.optimize import brentq
 
+from ...core.arrays import Array
 from ...core.drag import Fluid, air, drag_coefficient
 from ...core.errors import InputError
-from ..measured import Array
 
 _SMALL = 0.05
 """Argument below which the logarithms of cosh and cos are summed as series."""

@@ -11,10 +11,11 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from ..measured import Array, Measured
+from ...core.arrays import Array, Indices
+from ..measured import Measured
 from ..regression import Regression, robust_regression
 from ..rules import RULES
-from .track import Indices, Track
+from .track import Track
 from .view import Launch, Stage, View
 
 FEWEST = RULES.flight_samples

@@ -12,9 +12,9 @@ from collections.abc import Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
-import numpy.typing as npt
 
-from ..measured import Array, Measured
+from ...core.arrays import Array, Mask
+from ..measured import Measured
 from ..regression import long_run_factor, robust_std
 from ..rules import RULES
 from .flights import FEWEST, Piece
@@ -182,7 +182,7 @@ def _cleaned(track: Track, pieces: Sequence[Piece], stage: Stage, x: Array) -> l
     return result
 
 
-def _untrimmed(z: Array) -> npt.NDArray[np.bool_]:
+def _untrimmed(z: Array) -> Mask:
     """Leave out samples at both ends that hang off together: a shadow, a touch, a hand."""
     kept = np.ones(z.size, dtype=np.bool_)
     most = z.size // 4

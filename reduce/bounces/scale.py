@@ -12,8 +12,9 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from ...core.arrays import Array
 from ..gates import Refused
-from ..measured import Array, Measured
+from ..measured import Measured
 from ..rules import RULES
 
 

@@ -13,8 +13,9 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
+from ...core.arrays import Array
 from ...core.errors import InputError
-from ..measured import Array, Measured, Trial, labelled
+from ..measured import Measured, Trial, labelled
 from ..rules import RULES
 from .chain import Chain, chain_of
 from .options import BounceOptions

@@ -7,9 +7,9 @@ from collections.abc import Sequence
 from typing import NamedTuple
 
 import numpy as np
-import numpy.typing as npt
 
-from ..measured import Array, Measured
+from ...core.arrays import Array, Indices
+from ..measured import Measured
 from ..rules import RULES
 from .flights import Piece
 from .joint import SHARED
@@ -103,7 +103,7 @@ def samples_of(
 
 def _held(
     track: Track, stage: Stage, view: View, piece: Piece, meeting: float, way: int
-) -> npt.NDArray[np.int_]:
+) -> Indices:
     """Return the samples from the meeting outwards that the flat holds above a flight."""
     start = int(np.searchsorted(track.time, meeting))
     run = np.arange(start, track.time.size - 1) if way > 0 else np.arange(start - 1, 0, -1)
@@ -120,7 +120,7 @@ def _held(
 
 def _both_held(
     track: Track, stage: Stage, view: View, flights: tuple[Piece, Piece], meeting: float
-) -> list[npt.NDArray[np.int_]]:
+) -> list[Indices]:
     return [
         _held(track, stage, view, piece, meeting, way)
         for piece, way in zip(flights, (-1, 1), strict=True)

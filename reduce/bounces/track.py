@@ -7,15 +7,12 @@ from dataclasses import dataclass
 from functools import cached_property
 
 import numpy as np
-import numpy.typing as npt
 from scipy.ndimage import median_filter
 from scipy.signal import find_peaks
 
-from ..measured import Array
+from ...core.arrays import Array, Indices
 from ..regression import robust_std
 from ..rules import RULES
-
-Indices = npt.NDArray[np.int_]
 
 
 @dataclass(frozen=True)

@@ -7,7 +7,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from ..measured import Array
+from ...core.arrays import Array
 from .fall import flight
 
 

@@ -12,8 +12,8 @@ from pathlib import Path
 import numpy as np
 import numpy.typing as npt
 
+from ...core.arrays import Array, Integers
 from ...core.errors import InputError, missing_extra
-from ..measured import Array
 from ..rules import RULES
 from . import photron
 from .picture_file import (
@@ -54,7 +54,7 @@ class Clip:
     frames: Frame
     container_rate: float
     uneven: int
-    repeats: npt.NDArray[np.int64]
+    repeats: Integers
     source: str
     stamps: Array | None = None
 
@@ -140,7 +140,7 @@ def _gathered(
     return stamps, frames
 
 
-def repeated_frames(frames: Frame) -> npt.NDArray[np.int64]:
+def repeated_frames(frames: Frame) -> Integers:
     """Return the numbers of frames that show what their predecessor showed, compressed or not.
 
     A converter that doubles the frame rate makes every other change small; a slow striker makes

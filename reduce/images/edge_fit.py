@@ -12,10 +12,9 @@ from collections.abc import Callable
 from dataclasses import dataclass
 
 import numpy as np
-import numpy.typing as npt
 from scipy.special import ndtr
 
-from ..measured import Array
+from ...core.arrays import Array, Mask
 from ..regression import robust_std
 from ..rules import RULES
 
@@ -23,7 +22,7 @@ _POSE = (0, 1, 2, 3, 4, 5, 6)
 _FREE = {"pose": _POSE, "shape": (*_POSE, 7, 8), "mirror": (*_POSE, 9, 10)}
 """Places of the parameters of a rod's picture that a fit moves."""
 
-Picture = Callable[[Array], tuple[Array, Array, npt.NDArray[np.bool_]]]
+Picture = Callable[[Array], tuple[Array, Array, Mask]]
 """Parameters to model grey values, their derivatives (p, ...) and the pixels that count."""
 
 
@@ -215,9 +214,7 @@ def _settle(
     return p, covariance
 
 
-def _mirrored_rod(
-    rows: Array, columns: Array, p: Array
-) -> tuple[Array, Array, npt.NDArray[np.bool_]]:
+def _mirrored_rod(rows: Array, columns: Array, p: Array) -> tuple[Array, Array, Mask]:
     """A rod above a flat that reflects it; `p` ends in the share of light and the flat's row."""
     model, jacobian, zone = _rod_picture(rows, columns, p[:9])
     share, flat = p[9:]
@@ -227,9 +224,7 @@ def _mirrored_rod(
     return model + share * again, np.concatenate([jacobian + share * slopes, mirror]), zone
 
 
-def _rod_picture(
-    rows: Array, columns: Array, p: Array
-) -> tuple[Array, Array, npt.NDArray[np.bool_]]:
+def _rod_picture(rows: Array, columns: Array, p: Array) -> tuple[Array, Array, Mask]:
     x, y, lean, dark, contrast, blur, fall, half, curvature = p
     sin, cos = np.sin(lean), np.cos(lean)
     radius = 1.0 / curvature
@@ -265,9 +260,7 @@ def _rod_picture(
     return dark + light * step, jacobian, zone
 
 
-def _ball_picture(
-    rows: Array, columns: Array, p: Array
-) -> tuple[Array, Array, npt.NDArray[np.bool_]]:
+def _ball_picture(rows: Array, columns: Array, p: Array) -> tuple[Array, Array, Mask]:
     x, y, radius, dark, contrast, blur, fall_x, fall_y = p
     dx, dy = columns - x, rows - y
     reach = np.maximum(np.hypot(dx, dy), 1e-9)

@@ -3,14 +3,11 @@
 from __future__ import annotations
 
 import numpy as np
-import numpy.typing as npt
 from scipy.ndimage import binary_dilation
 
-from ..measured import Array
+from ...core.arrays import Array, Mask
 from ..rules import RULES
 from .edge_fit import BallEdge, RodShape
-
-Mask = npt.NDArray[np.bool_]
 
 
 def body_mask(frame: Array, level: float) -> Mask:

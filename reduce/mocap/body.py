@@ -9,9 +9,9 @@ from typing import Annotated
 import numpy as np
 from pydantic import Field, field_validator
 
+from ...core.arrays import Array
 from ...core.errors import InputError
 from ...core.inputs.toml_input import InputTable, Listed, read_model
-from ..measured import Array
 from ..rules import RULES
 from .file import Markers
 from .motion import Prior

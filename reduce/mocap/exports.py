@@ -15,10 +15,10 @@ from pathlib import Path
 
 import numpy as np
 
+from ...core.arrays import Array
 from ...core.errors import InputError
 from ...core.inputs.csv_table import number
 from ...core.inputs.input_file import read_bytes
-from ..measured import Array
 from ..rules import RULES
 from ..units import LENGTH
 

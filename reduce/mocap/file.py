@@ -13,6 +13,7 @@ from typing import Any
 import numpy as np
 from scipy.spatial.transform import Rotation
 
+from ...core.arrays import Array
 from ...core.errors import InputError, InputErrors, missing_extra
 from ...core.inputs.csv_table import (
     Problems,
@@ -23,7 +24,6 @@ from ...core.inputs.csv_table import (
     selection,
 )
 from ...core.processes.confined import confined
-from ..measured import Array
 from ..rules import RULES
 from ..units import LENGTH, metres
 from .exports import read_export

@@ -10,7 +10,8 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from ..measured import Array, Measured
+from ...core.arrays import Array
+from ..measured import Measured
 from ..regression import robust_regression, robust_std
 from ..rules import RULES
 from .motion import OWN, SHARED, Motion, Prior, deviations, first_guess, jacobian

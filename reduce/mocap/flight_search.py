@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from ..measured import Array
+from ...core.arrays import Array
 from ..regression import robust_std
 from ..rules import RULES
 from .flight import Flights, alone, fall_acceleration, fit_flights

@@ -11,10 +11,9 @@ import math
 from dataclasses import dataclass, field
 
 import numpy as np
-import numpy.typing as npt
 from scipy.spatial.transform import Rotation
 
-from ..measured import Array
+from ...core.arrays import Array, Indices
 from .rigid import Poses, cross_matrices
 
 SHARED, OWN = 3, 12
@@ -85,7 +84,7 @@ class Motion:
         )  # fmt: skip
 
 
-def deviations(poses: Poses, index: npt.NDArray[np.int_], motion: Motion, offset: Array) -> Array:
+def deviations(poses: Poses, index: Indices, motion: Motion, offset: Array) -> Array:
     """Return the whitened deviation of poses from a motion, (n, 6), in metres of a marker."""
     time = poses.time[index]
     turn = motion.turn_at(time)
@@ -95,7 +94,7 @@ def deviations(poses: Poses, index: npt.NDArray[np.int_], motion: Motion, offset
     return np.asarray(np.einsum("kij,kj->ki", poses.whiten[index], off))
 
 
-def jacobian(poses: Poses, index: npt.NDArray[np.int_], motion: Motion, offset: Array) -> Array:
+def jacobian(poses: Poses, index: Indices, motion: Motion, offset: Array) -> Array:
     """Return the whitened derivatives of a pose by b and the twelve parameters, (n, 6, 15)."""
     n = index.size
     time = poses.time[index]

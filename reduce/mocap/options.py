@@ -8,10 +8,10 @@ from typing import Literal
 import numpy as np
 from pydantic import Field, model_validator
 
+from ...core.arrays import Array
 from ...core.inputs.csv_table import number
 from ...core.inputs.toml_input import InputTable
 from ..bounces.options import GRAVITY
-from ..measured import Array
 
 
 def _three_numbers(text: str) -> bool:

@@ -8,7 +8,7 @@ from typing import Any
 import numpy as np
 from scipy.spatial.transform import Rotation
 
-from ..measured import Array
+from ...core.arrays import Array
 from ..pictures import figure, save
 from .motion import deviations
 from .point import PointReduction

@@ -12,12 +12,13 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
+from ...core.arrays import Array
 from ...core.errors import InputError
 from ..bounces.flights import Piece
 from ..bounces.sides import sides_of
 from ..bounces.track import Track, on_the_body, turning_points
 from ..bounces.view import Stage
-from ..measured import Array, Measured, Trial, labels, propagate
+from ..measured import Measured, Trial, labels, propagate
 from ..regression import robust_regression
 from ..rules import RULES
 from .file import Markers

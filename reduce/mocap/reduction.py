@@ -13,10 +13,11 @@ from dataclasses import dataclass, replace
 import numpy as np
 from scipy.spatial.transform import Rotation
 
+from ...core.arrays import Array
 from ...core.errors import InputError
 from ...recordings.columns import TRIAL_COLUMNS
 from ..bounces.options import GRAVITY
-from ..measured import Array, Measured, Trial, labels, propagate
+from ..measured import Measured, Trial, labels, propagate
 from ..rules import RULES
 from .body import Body
 from .checks import check_fall, check_shape, possible, widened

@@ -11,15 +11,12 @@ import warnings
 from dataclasses import dataclass
 
 import numpy as np
-import numpy.typing as npt
 from scipy.spatial.transform import Rotation
 
+from ...core.arrays import Array, Integers, Mask
 from ...core.errors import InputError
-from ..measured import Array
 from ..rules import RULES
 from .file import Markers
-
-Seen = npt.NDArray[np.bool_]
 
 
 @dataclass(frozen=True)
@@ -49,7 +46,7 @@ class Poses:
         Number of marker positions left out because they do not fit the body.
     """
 
-    frame: npt.NDArray[np.int64]
+    frame: Integers
     time: Array
     origin: Array
     turn: Array
@@ -89,7 +86,7 @@ def rigid_poses(markers: Markers) -> Poses:
         Fewer than three markers, or too few frames in which three are seen.
     """
     points = markers.position
-    seen: Seen = np.asarray(np.isfinite(points).all(axis=2))
+    seen: Mask = np.asarray(np.isfinite(points).all(axis=2))
     if points.shape[1] < 3:
         raise InputError(
             f"{points.shape[1]} markers", source=markers.source, allowed="three or more on the body"
@@ -122,7 +119,7 @@ def rigid_poses(markers: Markers) -> Poses:
     )  # fmt: skip
 
 
-def _mean_shape(points: Array, seen: Seen, source: str) -> Array:
+def _mean_shape(points: Array, seen: Mask, source: str) -> Array:
     """Generalised Procrustes: the shape that fits all frames best, markers missing or not."""
     whole = np.flatnonzero(seen.all(axis=1))
     if whole.size == 0:
@@ -151,7 +148,7 @@ def _mean_shape(points: Array, seen: Seen, source: str) -> Array:
     return np.asarray(shape)
 
 
-def _without_misfits(shape: Array, points: Array, seen: Seen) -> tuple[Seen, int]:
+def _without_misfits(shape: Array, points: Array, seen: Mask) -> tuple[Mask, int]:
     """Take out markers that do not fit the body; with three of them the whole frame goes."""
     off = np.zeros(seen.shape)
     usable = np.flatnonzero(seen.sum(axis=1) >= 3)
@@ -170,7 +167,7 @@ def _without_misfits(shape: Array, points: Array, seen: Seen) -> tuple[Seen, int
     return kept, dropped
 
 
-def _worst(shape: Array, points: Array, kept: Seen) -> int:
+def _worst(shape: Array, points: Array, kept: Mask) -> int:
     """Return the marker without which the others fit best."""
     index = np.flatnonzero(kept)
     if index.size == 3:

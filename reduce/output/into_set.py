@@ -17,8 +17,8 @@ from typing import Any
 
 import numpy as np
 
+from ...core.arrays import Array
 from ...core.errors import InputError, InputErrors
-from ...core.inputs.csv_table import Array
 from ...core.inputs.names import ALLOWED, names_a_file
 from ...core.inputs.toml_input import parse_model, read_toml
 from ...core.observables import LOAD

@@ -9,10 +9,10 @@ from pathlib import Path
 
 import numpy as np
 
+from ...core.arrays import Array
 from ...core.errors import InputError
 from ...core.inputs.input_file import checked_file
 from ...core.processes.confined import confined
-from ..measured import Array
 from ..table.channels import CHANNELS
 from ..table.file import (
     BOOKS,

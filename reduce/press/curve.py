@@ -7,11 +7,12 @@ import math
 import numpy as np
 from scipy.optimize import least_squares
 
+from ...core.arrays import Array, Indices
 from ..flank import meets_zero
-from ..measured import Array, Measured
+from ..measured import Measured
 from ..regression import unit_covariance
 from ..rules import RULES
-from .cycles import Cycle, Rows, virgin
+from .cycles import Cycle, virgin
 
 _LOADING = (2.0, 1.5, 1.2, 1.0)
 _UNLOADING = (2.0, 1.5, 1.25, 1.0)
@@ -102,6 +103,6 @@ def _slope(load: Array, depth: Array, cycle: Cycle, low: float) -> Measured:
     return Measured(float(fit.x[1]), std).scaled(cycle.peak / span)
 
 
-def rows_of(load: Array, cycle: Cycle) -> Rows:
+def rows_of(load: Array, cycle: Cycle) -> Indices:
     """Return the rows of a cycle's loading and unloading, for a picture."""
     return np.concatenate([virgin(load, cycle.turn + 1), cycle.unloading])

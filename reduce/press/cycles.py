@@ -12,16 +12,13 @@ from collections.abc import Sequence
 from typing import NamedTuple
 
 import numpy as np
-import numpy.typing as npt
 from scipy.signal import find_peaks
 
+from ...core.arrays import Array, Indices
 from ..gates import Refused
-from ..measured import Array
 from ..regression import robust_std
 from ..rules import RULES
 from .columns import PressRecord
-
-Rows = npt.NDArray[np.intp]
 
 
 class Cycle(NamedTuple):
@@ -36,7 +33,7 @@ class Cycle(NamedTuple):
     turn
         Row in which unloading begins.
     unloading
-        Rows from there to the least load.
+        Indices from there to the least load.
     least
         Load there, as a part of the largest.
     beyond
@@ -46,7 +43,7 @@ class Cycle(NamedTuple):
     peak: float
     begin: int
     turn: int
-    unloading: Rows
+    unloading: Indices
     least: float
     beyond: bool
 
@@ -134,7 +131,7 @@ def _check(record: PressRecord, found: Sequence[Cycle]) -> None:
         )  # fmt: skip
 
 
-def virgin(load: Array, stop: int) -> Rows:
-    """Rows up to one that load the metal further than all before."""
+def virgin(load: Array, stop: int) -> Indices:
+    """Indices up to one that load the metal further than all before."""
     before = np.maximum.accumulate(np.concatenate([[-np.inf], load[:stop]]))[:-1]
     return np.flatnonzero(load[:stop] > before)

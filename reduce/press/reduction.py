@@ -7,8 +7,9 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from ...core.arrays import Array
 from ...core.errors import InputError
-from ..measured import ZERO, Array, Measured, Trial
+from ..measured import ZERO, Measured, Trial
 from ..regression import unit_covariance
 from ..rules import RULES
 from .columns import PressRecord

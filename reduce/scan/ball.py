@@ -7,8 +7,9 @@ from dataclasses import dataclass
 import numpy as np
 from scipy.optimize import least_squares
 
+from ...core.arrays import Array
 from ...core.errors import InputError
-from ..measured import Array, Measured
+from ..measured import Measured
 from ..regression import robust_std
 from ..rules import RULES
 from .file import Scan

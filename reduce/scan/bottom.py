@@ -10,12 +10,12 @@ import math
 from dataclasses import dataclass
 
 import numpy as np
-import numpy.typing as npt
 from numpy.polynomial.polynomial import polyder, polyval2d
 from scipy import ndimage
 
+from ...core.arrays import Array, Indices, Mask
 from ...core.errors import InputError
-from ..measured import Array, Measured
+from ..measured import Measured
 from ..regression import robust_std
 from ..rules import RULES
 from .level import Levelled, filled
@@ -113,7 +113,7 @@ def _as_floor(
     return _Floor(float(around[4]), place, laplacian, weights)
 
 
-def _disc(step: Array, radius: float) -> tuple[npt.NDArray[np.int_], Array]:
+def _disc(step: Array, radius: float) -> tuple[Indices, Array]:
     """Offsets (m, 2) of the points within `radius`, whole and in units of the radius."""
     reach = (radius / step).astype(int)
     i, j = np.mgrid[-reach[0] : reach[0] + 1, -reach[1] : reach[1] + 1]
@@ -127,7 +127,7 @@ def _design(u: Array) -> Array:
     return np.stack([u[:, 0] ** i * u[:, 1] ** j for i, j in _POWERS], axis=1)
 
 
-def _clipped_fit(design: Array, z: Array) -> tuple[Array, npt.NDArray[np.bool_]]:
+def _clipped_fit(design: Array, z: Array) -> tuple[Array, Mask]:
     used = np.ones(z.size, dtype=np.bool_)
     for _ in range(3):
         c = np.linalg.lstsq(design[used], z[used], rcond=None)[0]

@@ -7,9 +7,10 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from ...core.arrays import Array
 from ...core.errors import InputError
 from ..gates import Refused
-from ..measured import UNITY, ZERO, Array, Measured, Trial
+from ..measured import UNITY, ZERO, Measured, Trial
 from ..rules import RULES
 from .bottom import find_bottom
 from .file import Scan

@@ -11,9 +11,9 @@ from pathlib import Path
 
 import numpy as np
 
+from ...core.arrays import Array
 from ...core.errors import InputError, missing_extra
 from ...core.inputs.csv_table import number, shown
-from ..measured import Array
 from ..rules import RULES
 from ..table.file import numbered_lines, text_rows
 from ..units import LENGTH, metres

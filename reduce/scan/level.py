@@ -10,16 +10,13 @@ import math
 from dataclasses import dataclass
 
 import numpy as np
-import numpy.typing as npt
 from scipy import ndimage
 
+from ...core.arrays import Array, Mask
 from ...core.errors import InputError
-from ..measured import Array
 from ..regression import robust_regression, robust_std
 from ..rules import RULES
 from .file import Scan
-
-Mask = npt.NDArray[np.bool_]
 
 LEVELS = {"plane": 1, "paraboloid": 2}
 """Shape of the undisturbed surface, and its polynomial degree."""

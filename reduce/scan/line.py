@@ -6,10 +6,10 @@ import math
 from dataclasses import dataclass
 
 import numpy as np
-import numpy.typing as npt
 
+from ...core.arrays import Array, Mask
 from ...core.errors import InputError
-from ..measured import UNITY, Array, Measured, Trial
+from ..measured import UNITY, Measured, Trial
 from ..regression import robust_regression, robust_std
 from ..rules import RULES
 from .file import LineScan
@@ -34,7 +34,7 @@ class Groove:
     depth: Measured
     width: Measured
     line: Section
-    clear: npt.NDArray[np.bool_]
+    clear: Mask
     notes: tuple[str, ...]
     source: str
 
@@ -84,9 +84,7 @@ def reduce_line(scan: LineScan, *, height_scale: Measured = UNITY) -> Groove:
     )  # fmt: skip
 
 
-def _levelled(
-    x: Array, z: Array, source: str
-) -> tuple[Array, npt.NDArray[np.bool_], npt.NDArray[np.bool_]]:
+def _levelled(x: Array, z: Array, source: str) -> tuple[Array, Mask, Mask]:
     design = np.stack([np.ones_like(x), x - x.mean()], axis=1)
     clear, crater = np.ones(x.size, dtype=np.bool_), np.zeros(x.size, dtype=np.bool_)
     for _ in range(8):

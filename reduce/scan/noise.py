@@ -8,13 +8,12 @@ undisturbed surface; so waviness counts as what it is, and so does the error of 
 from __future__ import annotations
 
 import numpy as np
-import numpy.typing as npt
 
-from ..measured import Array
+from ...core.arrays import Array, Indices, Mask
 from ..rules import RULES
 
 
-def autocovariance(z: Array, clear: npt.NDArray[np.bool_], reach: npt.NDArray[np.int_]) -> Array:
+def autocovariance(z: Array, clear: Mask, reach: Indices) -> Array:
     """Return the autocovariance of the clear points by lag, (2 rx + 1, 2 ry + 1) [m²].
 
     Parameters
@@ -48,7 +47,7 @@ def variance(weights: Array, covariance: Array) -> float:
     return max(float(np.sum(_correlation(weights, reach) * covariance)), floor)
 
 
-def _correlation(field: Array, reach: npt.NDArray[np.int_]) -> Array:
+def _correlation(field: Array, reach: Indices) -> Array:
     """Return the sums of products of points `lag` apart, lags from -reach to reach."""
     size = [int(n + r) for n, r in zip(field.shape, reach, strict=True)]
     spectrum = np.fft.rfft2(field, size)

@@ -8,7 +8,8 @@ from dataclasses import dataclass
 import numpy as np
 from scipy import ndimage
 
-from ..measured import Array, Measured
+from ...core.arrays import Array
+from ..measured import Measured
 from ..rules import RULES
 from .level import Levelled, filled
 

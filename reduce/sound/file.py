@@ -9,8 +9,8 @@ from pathlib import Path
 
 import numpy as np
 
+from ...core.arrays import Array
 from ...core.errors import InputError, missing_extra
-from ..measured import Array
 from ..rules import RULES
 
 

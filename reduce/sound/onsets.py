@@ -12,7 +12,7 @@ from dataclasses import dataclass
 import numpy as np
 from scipy.signal import butter, find_peaks, sosfilt
 
-from ..measured import Array
+from ...core.arrays import Array
 from ..rules import RULES
 from .file import Sound
 

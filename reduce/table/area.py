@@ -13,7 +13,8 @@ from typing import NamedTuple
 import numpy as np
 from scipy.integrate import cumulative_trapezoid
 
-from ..measured import Array, Measured
+from ...core.arrays import Array
+from ..measured import Measured
 from ..rules import RULES
 from .level import Level
 from .shape import Shape

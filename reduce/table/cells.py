@@ -15,8 +15,8 @@ from datetime import date
 
 import numpy as np
 
+from ...core.arrays import Array
 from ...core.inputs.csv_table import number
-from ..measured import Array
 
 OUT_OF_RANGE = 9.8e37
 """Instruments that speak SCPI write 9.9e37 for more than they can show (SCPI-1999, 7.2.1)."""

@@ -12,8 +12,8 @@ from typing import Any, overload
 
 import numpy as np
 
+from ...core.arrays import Array
 from ...core.errors import InputError, missing_extra
-from ..measured import Array
 from .heading import in_short
 
 CHANNELS = (".tdms", ".h5", ".hdf5", ".hdf")

@@ -16,11 +16,11 @@ from pathlib import Path
 
 import numpy as np
 
+from ...core.arrays import Array
 from ...core.errors import InputError
 from ...core.inputs.csv_table import rows_with, selection
 from ...core.inputs.input_file import checked_file
 from ...core.processes.confined import confined
-from ..measured import Array
 from ..rules import RULES
 from ..units import UNITS
 from .cells import instant, plain, since_first, value_of

@@ -5,9 +5,10 @@ from __future__ import annotations
 import math
 from dataclasses import dataclass, replace
 
+from ...core.arrays import Array
 from ..bounces.options import GRAVITY
 from ..gates import Refused
-from ..measured import Array, Measured, Trial
+from ..measured import Measured, Trial
 from ..rules import RULES
 from .pulse import Pulse, find_pulse
 

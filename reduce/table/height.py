@@ -5,11 +5,12 @@ from __future__ import annotations
 import math
 from dataclasses import dataclass
 
+from ...core.arrays import Array
 from ..bounces.bounce import Bounced
 from ..bounces.contacts import told_bounces
 from ..bounces.fall import Ball
 from ..bounces.track import Track
-from ..measured import Array, Measured, Trial, labelled, labels
+from ..measured import Measured, Trial, labelled, labels
 
 
 @dataclass(frozen=True)

@@ -7,10 +7,11 @@ from typing import NamedTuple
 
 import numpy as np
 
+from ...core.arrays import Array
 from ...core.errors import InputError
 from ..bounces.times import reduce_bounce_times
 from ..gates import Refused, drawn
-from ..measured import Array, Measured
+from ..measured import Measured
 from ..pictures import draw_refused
 from ..reduced import Reduced
 from ..rules import RULES

@@ -12,7 +12,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from ..measured import Array
+from ...core.arrays import Array
 from ..regression import robust_std
 from ..rules import RULES
 

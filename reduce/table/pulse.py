@@ -11,13 +11,13 @@ import math
 from dataclasses import dataclass
 
 import numpy as np
-import numpy.typing as npt
 from scipy.signal import savgol_filter
 
+from ...core.arrays import Array, Mask
 from ...core.errors import InputError
 from ..flank import meets_zero
 from ..gates import Refused
-from ..measured import Array, Measured
+from ..measured import Measured
 from ..rules import RULES
 from .area import area_of
 from .level import Level, level_before, wide
@@ -55,7 +55,7 @@ class Pulse:
     start: Measured
     end: Measured
     area: Measured
-    inside: npt.NDArray[np.bool_]
+    inside: Mask
     notes: tuple[str, ...]
 
     @property

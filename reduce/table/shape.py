@@ -17,10 +17,9 @@ from collections.abc import Iterator
 from typing import NamedTuple
 
 import numpy as np
-import numpy.typing as npt
 
+from ...core.arrays import Array, Indices, Mask
 from ..gates import Refused
-from ..measured import Array
 from ..rules import RULES
 
 
@@ -138,7 +137,7 @@ def _half_waves(part: Array) -> int:
     return 1 + int(np.count_nonzero(np.diff(sides)))
 
 
-def _run(chosen: npt.NDArray[np.bool_], at: int) -> npt.NDArray[np.intp]:
+def _run(chosen: Mask, at: int) -> Indices:
     """Return the unbroken run of chosen samples around one of them."""
     out = np.flatnonzero(~chosen)
     low = out[out < at].max(initial=-1)

@@ -7,11 +7,11 @@ from dataclasses import dataclass
 from itertools import pairwise
 
 import numpy as np
-import numpy.typing as npt
 
+from ...core.arrays import Array, Indices
 from ...core.errors import InputError
 from ...core.inputs.flow_curve import PROOF_STRAIN, MeasuredFlow
-from ..measured import Array, Measured
+from ..measured import Measured
 from ..regression import robust_regression
 from ..rules import RULES
 
@@ -122,7 +122,7 @@ def _modulus(strain: Array, stress: Array, source: str) -> tuple[Measured, float
     ) / slope
 
 
-def _elastic(strain: Array, stress: Array) -> npt.NDArray[np.intp]:
+def _elastic(strain: Array, stress: Array) -> Indices:
     """Return the rows of the highest straight rise: a metal that hardens much yields low."""
     peak, found = float(stress.max()), np.arange(0)
     for high in RULES.elastic_parts:

@@ -9,10 +9,11 @@ from difflib import get_close_matches
 
 import numpy as np
 
+from ...core.arrays import Array
 from ...core.errors import InputError, InputErrors
 from ...recordings.columns import CONDITIONS, MEASURED, STD_SUFFIX
 from ..bounces.fall import Ball, Fall
-from ..measured import Array, Measured, Trial
+from ..measured import Measured, Trial
 from ..units import UNITS
 from .file import Columns
 

@@ -5,11 +5,10 @@ from __future__ import annotations
 import math
 
 import numpy as np
-import numpy.typing as npt
 from scipy.optimize import least_squares
 
+from ...core.arrays import Array, Mask
 from ...core.errors import InputError
-from ..measured import Array
 from ..regression import correlation_factor, robust_std, unit_covariance
 from ..rules import RULES
 from .edge import Edge, find_edges
@@ -20,7 +19,7 @@ INNER = RULES.cap
 
 def fit_circle(
     grey: Array, start: tuple[float, float, float, float], reach: float, source: str
-) -> tuple[float, float, float, Edge, npt.NDArray[np.bool_]]:
+) -> tuple[float, float, float, Edge, Mask]:
     """Alternate between edge points on rays and the circle through them."""
     x, y, radius, lean = start
     for _ in range(3):
@@ -40,8 +39,8 @@ def fit_circle(
 
 
 def _fit(
-    points: Array, good: npt.NDArray[np.bool_], start: tuple[float, float, float]
-) -> tuple[tuple[float, float, float], npt.NDArray[np.bool_]]:
+    points: Array, good: Mask, start: tuple[float, float, float]
+) -> tuple[tuple[float, float, float], Mask]:
     """Robust circle through points: soft-L1 for the bulk, then least squares on what is near."""
     bulk = _least(points[good], start, loss="soft_l1")
     off = _off(points, bulk)
@@ -65,9 +64,7 @@ def _off(points: Array, circle: Array) -> Array:
     return np.asarray(np.hypot(points[:, 0] - circle[0], points[:, 1] - circle[1]) - circle[2])
 
 
-def radius_std(
-    points: Array, used: npt.NDArray[np.bool_], circle: tuple[float, float, float]
-) -> float:
+def radius_std(points: Array, used: Mask, circle: tuple[float, float, float]) -> float:
     """Return the larger of the error by the points' scatter and by leaving out sectors."""
     chosen = points[used]
     x, y, radius = circle

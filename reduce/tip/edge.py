@@ -6,11 +6,10 @@ import math
 from dataclasses import dataclass
 
 import numpy as np
-import numpy.typing as npt
 from scipy.ndimage import map_coordinates
 from scipy.special import ndtr
 
-from ..measured import Array
+from ...core.arrays import Array, Mask
 from ..rules import RULES
 
 
@@ -21,7 +20,7 @@ class Edge:
     x: Array
     y: Array
     blur: Array
-    good: npt.NDArray[np.bool_]
+    good: Mask
 
 
 def find_edges(grey: Array, x: Array, y: Array, dx: Array, dy: Array) -> Edge:
@@ -43,7 +42,7 @@ def find_edges(grey: Array, x: Array, y: Array, dx: Array, dy: Array) -> Edge:
     return Edge(x + p[:, 0] * dx, y + p[:, 0] * dy, p[:, 3], good)
 
 
-def _steps(values: Array, t: Array) -> tuple[Array, npt.NDArray[np.bool_]]:
+def _steps(values: Array, t: Array) -> tuple[Array, Mask]:
     """Fit place, ground, contrast, blur of falling steps (n, s) by Gauss-Newton, all at once."""
     low, high = values[:, -4:].mean(axis=1), values[:, :4].mean(axis=1)
     bright = np.clip((values - low[:, None]) / np.maximum(high - low, 1.0)[:, None], 0.0, 1.0)

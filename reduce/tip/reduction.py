@@ -14,9 +14,10 @@ import numpy as np
 import numpy.typing as npt
 from scipy.ndimage import binary_fill_holes
 
+from ...core.arrays import Array, Indices, Mask
 from ...core.errors import InputError
 from ..images.silhouette import body_mask
-from ..measured import Array, Measured
+from ..measured import Measured
 from ..regression import robust_regression, robust_std
 from .circle import INNER, fit_circle, radius_std
 from .edge import find_edges
@@ -52,7 +53,7 @@ class TipReduction:
     y: float
     radius: Measured
     edge: Array
-    used: npt.NDArray[np.bool_]
+    used: Mask
     residual: Array
     blur: float
     arc: float
@@ -128,7 +129,7 @@ def reduce_tip(
     return _with_notes(found)
 
 
-def _mask(grey: Array, source: str) -> npt.NDArray[np.bool_]:
+def _mask(grey: Array, source: str) -> Mask:
     from skimage.filters import threshold_otsu
 
     if np.ptp(grey) < 10.0:
@@ -142,7 +143,7 @@ def _mask(grey: Array, source: str) -> npt.NDArray[np.bool_]:
     return mask
 
 
-def _ball(mask: npt.NDArray[np.bool_], source: str) -> tuple[float, float, float, float]:
+def _ball(mask: Mask, source: str) -> tuple[float, float, float, float]:
     if mask[0].any() or mask[-1].any() or mask[:, [0, -1]].any():
         raise InputError(
             "the body touches the edge of the picture", source=source, allowed="a ball wholly in it"
@@ -152,7 +153,7 @@ def _ball(mask: npt.NDArray[np.bool_], source: str) -> tuple[float, float, float
 
 
 def _rod(
-    grey: Array, mask: npt.NDArray[np.bool_], source: str
+    grey: Array, mask: Mask, source: str
 ) -> tuple[
     tuple[tuple[float, float], tuple[float, float]],
     Measured,
@@ -189,9 +190,7 @@ def _rod(
     return sides, width, (x, y, radius, lean), half
 
 
-def _side(
-    grey: Array, mask: npt.NDArray[np.bool_], rows: npt.NDArray[np.int_], way: int
-) -> tuple[float, float, float]:
+def _side(grey: Array, mask: Mask, rows: Indices, way: int) -> tuple[float, float, float]:
     """Fit one side of a rod as column = a + b row; a, b and the error in the middle."""
     first = np.argmax(mask[rows], axis=1).astype(np.float64) - 0.5
     if way > 0:
@@ -207,9 +206,7 @@ def _side(
     return float(a - b * middle), float(b), float(np.sqrt(fit.covariance[0, 0]))
 
 
-def _first_radius(
-    mask: npt.NDArray[np.bool_], half: float, axis: float, bottom: float, lean: float
-) -> float:
+def _first_radius(mask: Mask, half: float, axis: float, bottom: float, lean: float) -> float:
     columns = np.arange(mask.shape[1])
     ends = mask.shape[0] - 0.5 - np.argmax(mask[::-1], axis=0)
     off = (columns - axis) * math.cos(lean) + (ends - bottom) * math.sin(lean)

@@ -12,14 +12,14 @@ import math
 from dataclasses import dataclass, replace
 
 import numpy as np
-import numpy.typing as npt
 
+from ...core.arrays import Array, Integers
 from ..bounces.bounce import Bounce, Bounced
 from ..bounces.contacts import told_bounces
 from ..bounces.fall import UNKNOWN, Ball
 from ..bounces.track import Track
 from ..images.clip import Clip
-from ..measured import Array, Measured, Trial, labels
+from ..measured import Measured, Trial, labels
 from ..rules import RULES
 from .tracking import grey_levels, striker_bright, track_ball, track_rod
 
@@ -51,7 +51,7 @@ class Optics:
     line_time: float = 0.0
     stamps: Array | None = None
 
-    def time(self, frame: npt.NDArray[np.int64], row: Array) -> Array:
+    def time(self, frame: Integers, row: Array) -> Array:
         """Return when a row of a frame was exposed, (n,) [s]."""
         begun = frame / self.rate if self.stamps is None else self.stamps[frame]
         return np.asarray(begun + self.line_time * row)
@@ -79,7 +79,7 @@ class VideoReduction:
         Contacts in pixels and seconds, and the size of a pixel [m]; nan leaves only ratios.
     """
 
-    frame: npt.NDArray[np.int64]
+    frame: Integers
     column: Array
     row: Array
     row_std: Array

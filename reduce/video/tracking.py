@@ -9,11 +9,11 @@ from typing import Any
 import numpy as np
 import numpy.typing as npt
 
+from ...core.arrays import Array
 from ...core.errors import InputError
 from ..images.clip import Clip
 from ..images.edge_fit import BallEdge, RodPose, RodShape, fit_ball, fit_rod
 from ..images.silhouette import ball_by_light, body_mask, rod_guess
-from ..measured import Array
 from ..rules import RULES
 
 

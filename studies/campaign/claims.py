@@ -10,7 +10,7 @@ from collections.abc import Callable
 
 import numpy as np
 
-from ..plot import Floats
+from ...core.arrays import Array
 from .sweep import Sweep
 
 Finding = tuple[bool, str]
@@ -20,7 +20,7 @@ FEWEST = 3
 """Points that a stretch of Sy* needs before anything is said of it."""
 
 
-def _spread(values: Floats) -> float:
+def _spread(values: Array) -> float:
     """Largest departure from the middle of a stretch, over its mean."""
     return float((values.max() - values.min()) / 2.0 / values.mean())
 
@@ -81,7 +81,7 @@ def _falls_slower_and_slower(sweep: Sweep) -> Finding | None:
     return bool(np.all(slope < 0.0)) and flatter, f"slope {slope[0]:.2f} to {slope[-1]:.2f}"
 
 
-def _inner_extreme(sweep: Sweep, values: Floats, low: float, high: float) -> tuple[float, float]:
+def _inner_extreme(sweep: Sweep, values: Array, low: float, high: float) -> tuple[float, float]:
     """Place and value of the largest of `values` between two ratios, by a parabola through three.
 
     Returns nan as place where the largest lies at an end of the stretch.

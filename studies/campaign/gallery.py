@@ -9,10 +9,11 @@ import numpy as np
 
 from ...campaigns import RULES, CaseRecord, read_curves
 from ...campaigns.case_file import fields_of
+from ...core.arrays import Array
 from ...core.material import Pair
 from ...core.output import write_file
 from ...fem import critical_depth
-from ..plot import Floats, Picture, finish, sheet
+from ..plot import Picture, finish, sheet
 from .sweep import DEPTH, Sweep, sweeps
 
 _HEAD = """# Gallery of the campaign
@@ -107,7 +108,7 @@ def _all_forces(records: Sequence[CaseRecord]) -> Picture:
     return Picture("all", "Force of all cases over the depth", made, note)
 
 
-def _reduced(record: CaseRecord) -> tuple[Floats, Floats]:
+def _reduced(record: CaseRecord) -> tuple[Array, Array]:
     """delta/delta_c and F/F_c; a body that never yields is scaled with Delta/R = 1e-4."""
     pair, curve = record.case.pair, record.curve
     onset = critical_depth(pair)

@@ -7,13 +7,12 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
-import numpy.typing as npt
 
 from ...campaigns import CaseRecord
 from ...campaigns.case import dimensionless_groups
 from ...campaigns.cases.pairs import RATIOS, TABLE_2_1, pair_of
+from ...core.arrays import Array, Integers
 from ...core.material import Pair
-from ..plot import Floats
 
 DEPTH = 0.04
 """Delta/R of the thesis's figures over Sy*."""
@@ -40,11 +39,11 @@ class Sweep:
     """
 
     number: int
-    ratio: Floats
-    share: Floats
-    radius: Floats
-    pressure: Floats
-    force: Floats
+    ratio: Array
+    share: Array
+    radius: Array
+    pressure: Array
+    force: Array
     records: tuple[CaseRecord, ...]
 
     def at(self, ratio: float) -> int | None:
@@ -52,7 +51,7 @@ class Sweep:
         found = np.flatnonzero(np.abs(np.log(self.ratio / ratio)) < 1e-6)
         return int(found[0]) if len(found) else None
 
-    def between(self, low: float, high: float) -> npt.NDArray[np.int64]:
+    def between(self, low: float, high: float) -> Integers:
         """Places of the ratios from `low` to `high`, both included."""
         inside = (self.ratio > low * (1 - 1e-6)) & (self.ratio < high * (1 + 1e-6))
         return np.asarray(np.flatnonzero(inside), dtype=np.int64)

@@ -6,15 +6,13 @@ import math
 from dataclasses import dataclass, field
 
 import numpy as np
-from numpy.typing import NDArray
 
+from ...core.arrays import Array
 from ...impact import force as fo
 from ...impact import surface as su
 from ...impact.integrate import Arrays, kernels_of
 from ...impact.scene import Scene
 from ...impact.walk import layout as c
-
-Array = NDArray[np.float64]
 
 LOADING, UNLOADING, FLIGHT = "loading", "unloading", "flight"
 

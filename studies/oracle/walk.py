@@ -8,6 +8,7 @@ from typing import Any
 import numpy as np
 from scipy.integrate import solve_ivp
 
+from ...core.arrays import Array
 from ...impact import force as fo
 from ...impact import surface as su
 from ...impact.integrate import Arrays, Settings, arrays_of
@@ -33,7 +34,6 @@ from .motion import (
     WS,
     WT,
     WV,
-    Array,
     Contact,
     Motion,
     Q,

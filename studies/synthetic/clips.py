@@ -18,7 +18,7 @@ import numpy as np
 import numpy.typing as npt
 from scipy.ndimage import gaussian_filter1d
 
-from ...reduce.measured import Array
+from ...core.arrays import Array
 from .tracks import TrackTruth, fly, random_track
 
 _SUPER = 4

@@ -9,7 +9,7 @@ from pathlib import Path
 import numpy as np
 from scipy.spatial.transform import Rotation
 
-from ...reduce.measured import Array
+from ...core.arrays import Array
 from ...reduce.mocap.file import Markers
 
 ROD_MARKERS = ((0.009, 0.0, 0.125), (-0.004, 0.008, 0.060), (0.002, -0.009, -0.045))

@@ -7,7 +7,7 @@ from dataclasses import dataclass
 import numpy as np
 from scipy.ndimage import gaussian_filter
 
-from ...reduce.measured import Array
+from ...core.arrays import Array
 from ...reduce.scan.file import Scan
 
 

@@ -10,7 +10,7 @@ from pathlib import Path
 
 import numpy as np
 
-from ...reduce.measured import Array
+from ...core.arrays import Array
 
 RATE = 44100
 _GRAVITY, _AIR, _DRAG = 9.81, 1.2, 0.45

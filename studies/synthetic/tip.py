@@ -7,6 +7,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 import numpy.typing as npt
 
+from ...core.arrays import Array
 from .clips import ClipTruth, render
 
 
@@ -73,7 +74,7 @@ def photograph(truth: TipTruth) -> npt.NDArray[np.uint8]:
     return np.asarray(np.clip(np.rint(dark), 0, 255).astype(np.uint8))
 
 
-def _worn(grey: npt.NDArray[np.float64], truth: TipTruth, bottom: float) -> npt.NDArray[np.float64]:
+def _worn(grey: Array, truth: TipTruth, bottom: float) -> Array:
     """Cut the apex off to a flat of the given radius, blurred like the rest."""
     from scipy.special import ndtr
 

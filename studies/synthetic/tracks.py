@@ -15,8 +15,8 @@ from dataclasses import dataclass, replace
 import numpy as np
 from scipy.integrate import solve_ivp
 
+from ...core.arrays import Array
 from ...core.drag import air, drag_force
-from ...reduce.measured import Array
 
 _GRAVITY = 9.81
 _BALLS = ((2.7e-3, 0.04, 4e-4, 1.2e-3), (5.5e-3, 0.016, 5e-5, 3e-4), (0.045, 0.045, 1e-3, 2e-3))

@@ -12,10 +12,9 @@ import math
 import numpy as np
 import numpy.typing as npt
 
+from ...core.arrays import Array
 from ...core.material import Pair
 from ...models.kernel import common_parameters
-
-Floats = npt.NDArray[np.float64]
 
 
 def critical_area_1_18(E: float, S: float, R: float, C: float) -> float:
@@ -57,7 +56,7 @@ def chi_2_32(n: float, ratio: float) -> float:
     return float(1.024 - 0.004 * beyond**0.3814 + (0.013 + 2.2e-5 * beyond) * ratio * exponent)
 
 
-def slip_line_2_36(x: npt.ArrayLike) -> Floats:
+def slip_line_2_36(x: npt.ArrayLike) -> Array:
     """H_i with -(1 - acos(a/R)); corrected: -(1 + acos(a/R)) as in 1.13 (`hardness.slip_line`)."""
     x = np.asarray(x, float)
     arc = (1.0 - np.arccos(x)) * (1.0 - x * x) ** 1.5
@@ -65,7 +64,7 @@ def slip_line_2_36(x: npt.ArrayLike) -> Floats:
     return np.asarray(4.0 / (3.0 * math.sqrt(3.0)) / x**2 * bracket)
 
 
-def jackson_green_4_10(w: npt.ArrayLike, C: float, hardness: float = 2.84) -> Floats:
+def jackson_green_4_10(w: npt.ArrayLike, C: float, hardness: float = 2.84) -> Array:
     """F/F_c with misplaced brackets; corrected: `jackson_green`."""
     w = np.asarray(w, float)
     first = np.exp(-0.25 * w) * w ** (5.0 / 12.0) * w**1.5
@@ -113,7 +112,7 @@ def alpha_5_12(
     return above / (below * mu)
 
 
-def ghaednia_force(pair: Pair, depth: npt.ArrayLike) -> Floats:
+def ghaednia_force(pair: Pair, depth: npt.ArrayLike) -> Array:
     """The force of 2.13-2.43 read to the letter, shape (...); its unit depends on the branch.
 
     delta_s* of 2.13 up to Sy* = 1, 2.14 and 2.15 beyond; R' with delta_s* itself (2.18); no roots

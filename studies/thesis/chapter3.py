@@ -9,8 +9,8 @@ from pathlib import Path
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
+from ...core.arrays import Array
 from ...core.inputs.toml_input import read_toml
 from ...core.material import Material
 from ...impact.integrate import strike
@@ -58,7 +58,7 @@ class Curve:
 
     law: ContactLaw
     mass: float
-    heights: NDArray[np.float64]
+    heights: Array
     impacts: tuple[Impact, ...]
 
 

@@ -16,8 +16,8 @@ from dataclasses import dataclass
 from pathlib import Path
 
 import numpy as np
-from numpy.typing import NDArray
 
+from ...core.arrays import Array
 from ...discrepancy.comparison.forward import ACCURACY, SIMULATED
 from ...discrepancy.comparison.problem import Problem, problem_of
 from ...discrepancy.inference.fit import label
@@ -29,8 +29,6 @@ from ...recordings import RecordingSet, read
 from ...recordings.shipped import set_folder
 from .later_touch import Later, later_touch
 from .uncertain import Rod, draw_rods, scenes_of
-
-Array = NDArray[np.float64]
 
 BENDING, RATE = "rod-flexural-vibration", "strain-rate-hardening"
 SHOWN = ("baseline", BENDING, RATE, f"{RATE}+{BENDING}")

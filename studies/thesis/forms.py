@@ -11,11 +11,10 @@ from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
-import numpy.typing as npt
 
+from ...core.arrays import Array, Integers, Mask
 from ...models.published.hardness import jackson_green_2007, slip_line
 
-Floats = npt.NDArray[np.float64]
 Values = Mapping[str, Any]
 
 BORDER = 1.07  # Sy* at which the weak body changes
@@ -27,21 +26,21 @@ _HIGH = 408.0
 class Rows:
     """What the forms take, each of shape (n,)."""
 
-    case: npt.NDArray[np.int64]
-    D: Floats
-    w: Floats
-    q: Floats
-    ratio: Floats
-    share: Floats
-    radius: Floats
-    force: Floats
-    stiff: Floats
-    n: Floats
-    delta: Floats
-    updated: Floats
-    total: Floats
+    case: Integers
+    D: Array
+    w: Array
+    q: Array
+    ratio: Array
+    share: Array
+    radius: Array
+    force: Array
+    stiff: Array
+    n: Array
+    delta: Array
+    updated: Array
+    total: Array
 
-    def of(self, mask: npt.NDArray[np.bool_]) -> Rows:
+    def of(self, mask: Mask) -> Rows:
         """Return the rows of `mask`."""
         return Rows(**{k: v[mask] for k, v in vars(self).items()})
 
@@ -68,7 +67,7 @@ class ThesisForm:
 
     title: str
     printed: Values
-    applies: Callable[[Rows], npt.NDArray[np.bool_]]
+    applies: Callable[[Rows], Mask]
     value: Callable[[Rows, Values], Any]
     target: str
     relative: bool
@@ -138,7 +137,7 @@ def _left(r: Rows, k: Values) -> Any:
     return k["C1"] * (1.0 - ((r.w + k["C2"]) / (1.0 + k["C2"])) ** -k["C3"])
 
 
-def _flattening(r: Rows) -> npt.NDArray[np.bool_]:
+def _flattening(r: Rows) -> Mask:
     return r.ratio <= BORDER
 
 

@@ -11,16 +11,14 @@ from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
-import numpy.typing as npt
 from scipy.optimize import least_squares
 
+from ...core.arrays import Array
 from ...fitting.fit import covariance_of
 from ...fitting.report import markdown
 from ...fitting.table import ResidualTable, Table
 from ...models import yield_constant
 from .forms import BORDER, LOADING_FORMS, UNLOADING_FORM, Rows, ThesisForm
-
-Floats = npt.NDArray[np.float64]
 
 
 @dataclass(frozen=True)
@@ -52,7 +50,7 @@ def _refit(form: ThesisForm, rows: Rows) -> Refit | None:
     target = getattr(rows, form.target)
     scale = target if form.relative else np.ones_like(target)
 
-    def misfit(x: Floats) -> Any:
+    def misfit(x: Array) -> Any:
         with np.errstate(all="ignore"):
             off = (form.value(rows, dict(zip(names, x, strict=True))) - target) / scale
         return np.clip(np.nan_to_num(off, nan=10.0), -10.0, 10.0) / 0.01
@@ -75,7 +73,7 @@ def _refit(form: ThesisForm, rows: Rows) -> Refit | None:
     )
 
 
-def _size(error: Floats) -> tuple[float, float]:
+def _size(error: Array) -> tuple[float, float]:
     return float(error.mean()), float(error.max())
 
 
@@ -90,7 +88,7 @@ def _turning_points(turns: ResidualTable) -> Rows:
 
 
 def _assemble(
-    t: Table | ResidualTable, *, share: Floats, radius: Floats, force: Floats, total: Floats
+    t: Table | ResidualTable, *, share: Array, radius: Array, force: Array, total: Array
 ) -> Rows:
     q, ratio, stiff, slope = np.array(
         [

@@ -7,14 +7,12 @@ from dataclasses import dataclass, replace
 from typing import NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
 from scipy.stats import qmc
 
+from ...core.arrays import Array
 from ...impact import Friction, Scene, Striker
 from ...impact.mechanisms import Mechanism, Surroundings
 from ...impact.mechanisms.base import Constants, Values, attached
-
-Array = NDArray[np.float64]
 
 
 class Range(NamedTuple):

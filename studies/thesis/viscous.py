@@ -18,14 +18,13 @@ from dataclasses import dataclass
 import numpy as np
 import numpy.typing as npt
 
+from ...core.arrays import Array
 from ...core.errors import InputError
-
-Floats = npt.NDArray[np.float64]
 
 
 def kelvin_voigt(
     depth: npt.ArrayLike, rate: npt.ArrayLike, *, stiffness: float, damping: float
-) -> Floats:
+) -> Array:
     """F = k d + c d', shape (...) [N]; k [N/m], c [N s/m]."""
     return stiffness * np.asarray(depth, float) + damping * np.asarray(rate, float)
 
@@ -37,7 +36,7 @@ def hunt_crossley(
     stiffness: float,
     alpha: float,
     exponent: float = 1.5,
-) -> Floats:
+) -> Array:
     """F = K d^n (1 + (3/2) alpha d'), shape (...) [N]; K [N/m^n], alpha [s/m]."""
     d = np.maximum(np.asarray(depth, float), 0.0)
     return np.asarray(stiffness * d**exponent * (1.0 + 1.5 * alpha * np.asarray(rate, float)))

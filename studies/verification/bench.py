@@ -11,15 +11,13 @@ from pathlib import Path
 from typing import Any
 
 import numpy as np
-import numpy.typing as npt
 
 from ... import fem
 from ...campaigns.case import Case
+from ...core.arrays import Array
 from ...core.material import Material, Pair
 from ...core.output import write_file
 from .result import Result
-
-Floats = npt.NDArray[np.float64]
 
 _COLUMNS = (
     "delta",
@@ -46,7 +44,7 @@ class Effort(Enum):
 class Branch:
     """Curves of one branch in SI units, each of shape (n,), and what was left after unloading."""
 
-    curve: dict[str, Floats]
+    curve: dict[str, Array]
     depth: float = 0.0
     residual_sphere: float = 0.0
     residual_flat: float = 0.0
@@ -65,12 +63,12 @@ class Solved:
     completed: bool
     message: str
 
-    def __getitem__(self, name: str) -> Floats:
+    def __getitem__(self, name: str) -> Array:
         """Column of the loading curve by its name in `fem.Curve`."""
         return self.loading.curve[name]
 
     @property
-    def share(self) -> Floats:
+    def share(self) -> Array:
         """delta_s* along the loading curve."""
         return np.asarray(self["sphere"] / (self["sphere"] + self["flat"]))
 

@@ -7,17 +7,14 @@ from collections.abc import Callable
 from dataclasses import dataclass
 
 import numpy as np
-import numpy.typing as npt
 import scipy.sparse as sparse
 import scipy.sparse.linalg as sparse_linalg
 import skfem
 
+from ...core.arrays import Array, Integers
 from ...fem.assemble import advance, bulk_forces
 from ...fem.elements import Elements, State
 from ...fem.material import EXACT, no_laws
-
-Floats = npt.NDArray[np.float64]
-Integers = npt.NDArray[np.int64]
 
 _GAUSS = 0.5 / math.sqrt(3.0)
 _POINTS = np.array(
@@ -45,7 +42,7 @@ class Block:
     elements: Elements
 
     @property
-    def points(self) -> Floats:
+    def points(self) -> Array:
         """Node coordinates, shape (n_nodes, 2)."""
         return np.ascontiguousarray(self.mesh.p.T)
 
@@ -87,7 +84,7 @@ def block(mesh: skfem.MeshQuad, *, nu: float, yield_strain: float = math.inf) ->
     )
 
 
-def rectangle(r: Floats, z: Floats, *, distortion: float = 0.0) -> skfem.MeshQuad:
+def rectangle(r: Array, z: Array, *, distortion: float = 0.0) -> skfem.MeshQuad:
     """Rectangle with the given grid lines; `distortion` moves the inner nodes by a smooth field."""
     mesh = skfem.MeshQuad.init_tensor(r, z)
     p = mesh.p.copy()
@@ -99,7 +96,7 @@ def rectangle(r: Floats, z: Floats, *, distortion: float = 0.0) -> skfem.MeshQua
     return skfem.MeshQuad(p, mesh.t)
 
 
-def stiffness(body: Block, u: Floats, *, state: State) -> tuple[Floats, sparse.csr_matrix]:
+def stiffness(body: Block, u: Array, *, state: State) -> tuple[Array, sparse.csr_matrix]:
     """Internal forces and tangent at displacement `u`, shapes (n_dofs,) and (n_dofs, n_dofs)."""
     force, tangent = np.zeros(u.size), np.empty((len(body.elements.conn), 8, 8))
     bulk_forces(body.elements, u, state=state, rule=EXACT, force=force, tangent=tangent)
@@ -111,7 +108,7 @@ def stiffness(body: Block, u: Floats, *, state: State) -> tuple[Floats, sparse.c
     return force, matrix
 
 
-def equilibrium(body: Block, guess: Floats, *, fixed: Integers, state: State) -> Floats:
+def equilibrium(body: Block, guess: Array, *, fixed: Integers, state: State) -> Array:
     """Displacements in equilibrium, those of `fixed` as they are in `guess`.
 
     Raises
@@ -131,11 +128,11 @@ def equilibrium(body: Block, guess: Floats, *, fixed: Integers, state: State) ->
 
 def walk(
     body: Block,
-    steps: Floats,
+    steps: Array,
     *,
     fixed: Integers,
-    imposed: Callable[[float], Floats],
-) -> list[tuple[Floats, Floats, State]]:
+    imposed: Callable[[float], Array],
+) -> list[tuple[Array, Array, State]]:
     """Displacements, forces and state after each step of an imposed displacement field.
 
     Parameters

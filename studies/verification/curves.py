@@ -3,14 +3,13 @@
 from __future__ import annotations
 
 import numpy as np
-import numpy.typing as npt
 
-Floats = npt.NDArray[np.float64]
+from ...core.arrays import Array, Mask
 
 _WINDOW = 0.45  # half width of the local fit in ln Delta: several surface elements
 
 
-def smoothed(delta: Floats, values: Floats) -> Floats:
+def smoothed(delta: Array, values: Array) -> Array:
     """Local quadratic in ln Delta over +-0.45, shape (n,); a positive quantity is best given as ln.
 
     Parameters
@@ -26,12 +25,12 @@ def smoothed(delta: Floats, values: Floats) -> Floats:
     return out
 
 
-def ripple(delta: Floats, values: Floats) -> float:
+def ripple(delta: Array, values: Array) -> float:
     """Rms deviation from the local quadratic."""
     return float(np.sqrt(np.mean((values - smoothed(delta, values)) ** 2)))
 
 
-def inner(delta: Floats) -> npt.NDArray[np.bool_]:
+def inner(delta: Array) -> Mask:
     """Points at least half a window from the ends, where the local fit is one-sided and noisy."""
     x = np.log(delta)
     return np.asarray((x - x[0] > 0.5 * _WINDOW) & (x[-1] - x > 0.5 * _WINDOW))

@@ -20,13 +20,12 @@ from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
-import numpy.typing as npt
 import scipy.sparse as sparse
 import scipy.sparse.linalg as sparse_linalg
 import skfem
 from skfem.helpers import grad
 
-Floats = npt.NDArray[np.float64]
+from ...core.arrays import Array, Integers
 
 _INNER, _OUTER = 0.01, 50.0  # [a]: a rigid speck at the first point, and where nothing moves
 _FLOOR = 1e-6  # least strain and strain rate: farther out it is as good as rigid
@@ -79,7 +78,7 @@ def similar(n: float, *, before: float = 0.0, growth: float = 1.4, largest: floa
     raise ArithmeticError(f"velocities under the die still change after {_MOST_ROUNDS} rounds")
 
 
-def _graded(growth: float, largest: float, end: float) -> Floats:
+def _graded(growth: float, largest: float, end: float) -> Array:
     """From 0 to an end, finest at 0."""
     places, size = [0.0], 1e-4
     while places[-1] < end:
@@ -128,7 +127,7 @@ class Die:
         self._outside = outside[np.argsort(distance[outside])]
         self._at = distance[self._outside]
 
-    def velocities(self, viscosity: Floats) -> tuple[float, Floats, Floats]:
+    def velocities(self, viscosity: Array) -> tuple[float, Array, Array]:
         """Force on the die, speeds of the surface beside it (n,), strain rates at the points."""
         stiffness = _stiffness.assemble(self._v, viscosity=viscosity, r=self.radius)
         n_p = self._p.N
@@ -145,7 +144,7 @@ class Die:
         rate = np.sqrt(2.0 / 3.0 * (rr**2 + zz**2 + hoop**2 + 0.5 * (rz + zr) ** 2))
         return force, x[self._outside], np.maximum(rate, _FLOOR)
 
-    def gathered(self, rate: Floats) -> Floats:
+    def gathered(self, rate: Array) -> Array:
         """E, from the strain rates along each ray."""
         share = rate.ravel()[self._grid] * np.exp(-self._log)
         steps = 0.5 * (share[1:] + share[:-1]) * np.diff(self._log, axis=0)
@@ -155,14 +154,12 @@ class Die:
         strain[self._grid] = np.exp(self._log) * beyond
         return np.maximum(strain.reshape(rate.shape), _FLOOR)
 
-    def sunk(self, surface: Floats) -> float:
+    def sunk(self, surface: Array) -> float:
         """Integral of s v(1/s) ds over s from 0 to 1."""
         return float(np.trapezoid(surface / self._at**2, np.log(self._at)))
 
 
-def _along_rays(
-    flat: Any, rings: Floats, rays: Floats, shape: tuple[int, ...]
-) -> npt.NDArray[np.int64]:
+def _along_rays(flat: Any, rings: Array, rays: Array, shape: tuple[int, ...]) -> Integers:
     """Numbers of the quadrature points by distance and by ray, (n_distances, n_rays)."""
     middle = flat.p[:, flat.t].mean(axis=1)
     ring = np.searchsorted(rings, middle[0]) - 1

@@ -5,8 +5,8 @@ from __future__ import annotations
 import math
 
 import numpy as np
-import numpy.typing as npt
 
+from ...core.arrays import Array
 from ...core.material import Material
 from ...fem.laws import laws_of
 from ...fem.material import (
@@ -20,8 +20,6 @@ from ...fem.material import (
     hardened,
     law_of,
 )
-
-Floats = npt.NDArray[np.float64]
 
 IDENTITY = np.array([1.0, 0.0, 0.0, 1.0, 1.0])
 
@@ -51,14 +49,14 @@ class MaterialPoint:
         )  # fmt: skip
         self.strain, self.work = 0.0, 0.0
 
-    def step(self, F: Floats) -> Step:
+    def step(self, F: Array) -> Step:
         """The step from where the point is to a deformation gradient (5,)."""
         step: Step = hardened(
             self._last._replace(F=F), self._law, self.curve, self.strain, self.work
         )
         return step
 
-    def walk(self, F: Floats) -> Updated:
+    def walk(self, F: Array) -> Updated:
         """Take that step."""
         done: Updated = elastic_deviator(self.step(F), self.curve)
         self._last = self._last._replace(
@@ -68,7 +66,7 @@ class MaterialPoint:
         self.work += 2.0 * self.G * done.worked * done.slip
         return done
 
-    def stress(self, F: Floats) -> Floats:
+    def stress(self, F: Array) -> Array:
         """Deviatoric first Piola-Kirchhoff stress after that step, shape (5,) [E]."""
         P = np.empty(5)
         deviatoric_pk1(self.step(F), self.curve, self.G, P)
@@ -81,7 +79,7 @@ class MaterialPoint:
         return float(2.0 * self.shear * math.sqrt(1.5 * square))
 
 
-def stretched(strain: float) -> Floats:
+def stretched(strain: float) -> Array:
     """Isochoric tension along z by a logarithmic strain."""
     across = math.exp(-0.5 * strain)
     return np.array([across, 0.0, 0.0, math.exp(strain), across])

@@ -19,6 +19,7 @@ from typing import ClassVar
 
 import numpy as np
 
+from ....core.arrays import Array
 from ....core.material import Pair
 from ....models import critical_depth
 from ....models.hardening import REPRESENTATIVE, representative_strain
@@ -26,7 +27,7 @@ from ...force import F_RADIUS
 from ...rules import RULES
 from ...scene import FlowStress, Profiles, RateFree, Scene
 from ...strength import StrengthTable
-from ..base import Array, Mechanism, Situation, Surroundings, Values
+from ..base import Mechanism, Situation, Surroundings, Values
 
 RATE = RULES.indentation_rate
 STRAIN = REPRESENTATIVE  # of (a - a_c)/R

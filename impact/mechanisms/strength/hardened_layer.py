@@ -7,9 +7,10 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
+from ....core.arrays import Array
 from ...scene import FlowStress, Scene
 from ...strength import StrengthTable
-from ..base import Array, Literature, Parameter, Situation, Surroundings, Values
+from ..base import Literature, Parameter, Situation, Surroundings, Values
 from .flow_stress import FallingStrength, FlowMechanism, StrengthProfile
 
 

@@ -8,11 +8,12 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from ....core.arrays import Array
 from ...rules import RULES
 from ...scene import FlowStress, Scene
 from ...strength import StrengthTable, strength_table
 from ..arithmetic import deepest
-from ..base import Array, Parameter, Situation, Surroundings, Values
+from ..base import Parameter, Situation, Surroundings, Values
 from .flow_stress import FlowMechanism, StrengthProfile
 
 

@@ -7,12 +7,13 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
+from ....core.arrays import Array
 from ....core.inputs.flow_curve import SPECIMENS, Rise
 from ...rules import RULES
 from ...scene import FlowStress, Scene
 from ...strength import StrengthTable, strength_table
 from ..arithmetic import energy, times
-from ..base import Array, Literature, Parameter, Situation, Surroundings, Values
+from ..base import Literature, Parameter, Situation, Surroundings, Values
 from .flow_stress import RATE, Fallen, FallingStrength, FlowMechanism, StrengthProfile
 
 _REFERENCE_RATE = 1000.0  # 1/s, within the rates of impacts at a few m/s

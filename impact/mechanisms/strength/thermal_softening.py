@@ -9,10 +9,11 @@ from typing import ClassVar
 
 import numpy as np
 
+from ....core.arrays import Array
 from ...scene import FlowStress, Scene
 from ...strength import StrengthTable
 from ..arithmetic import density_of, energy
-from ..base import Array, Literature, Parameter, Situation, Surroundings, Values
+from ..base import Literature, Parameter, Situation, Surroundings, Values
 from .flow_stress import STRAIN, FlowMechanism, StrengthProfile, strain
 
 

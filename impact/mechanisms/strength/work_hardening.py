@@ -8,12 +8,13 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from ....core.arrays import Array
 from ....models.anchored import AnchoredLaw
 from ....models.hardening import mean_over_strains
 from ...scene import FlowStress, Scene
 from ...strength import StrengthTable, strength_table
 from ..arithmetic import deepest
-from ..base import Array, Literature, Parameter, Situation, Surroundings, Values
+from ..base import Literature, Parameter, Situation, Surroundings, Values
 from .flow_stress import (
     Fallen,
     FallingStrength,

@@ -6,10 +6,8 @@ import math
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
-Array = NDArray[np.float64]
-Index = NDArray[np.int64]
+from ....core.arrays import Array, Integers
 
 
 @dataclass(frozen=True)
@@ -31,11 +29,11 @@ class Mesh:
     """
 
     x: Array
-    quads: Index
-    body: Index
-    tip: Index
-    top: Index
-    held: Index
+    quads: Integers
+    body: Integers
+    tip: Integers
+    top: Integers
+    held: Integers
 
 
 def graded(fine: float, flat: float, end: float, growth: float) -> Array:
@@ -50,7 +48,7 @@ def graded(fine: float, flat: float, end: float, growth: float) -> Array:
     return np.append(grid[keep], end)
 
 
-def _grid(r: Array, z: Array) -> tuple[Array, Index]:
+def _grid(r: Array, z: Array) -> tuple[Array, Integers]:
     nr, nz = len(r), len(z)
     x = np.stack(np.meshgrid(r, z, indexing="xy"), axis=-1).reshape(-1, 2)
     i, j = np.meshgrid(np.arange(nr - 1), np.arange(nz - 1), indexing="xy")

@@ -8,8 +8,8 @@ from pathlib import Path
 
 import h5py
 import numpy as np
-from numpy.typing import NDArray
 
+from ....core.arrays import Array
 from ..generators.effects import EFFECTS, Effect
 from ..generators.folder import read_off, write_files
 from ..generators.parameters import FOUNDATION
@@ -17,8 +17,6 @@ from ..generators.rig import Rig, Striker
 from ..generators.simulate import Visibility, noise_std
 from ..generators.truth import Truth, draw_instrument, draw_nuisances
 from .catalogue import FILE, SERIES, Series, impacts
-
-Array = NDArray[np.float64]
 
 _READ = ("restitution", "permanent_depth_m", "contact_time_s", "peak_force_N")
 _REPEATS = 4

@@ -17,17 +17,16 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
-from numpy.typing import NDArray
 from scipy.optimize import least_squares
 
 from .... import fem
+from ....core.arrays import Array
 from ....core.material import Material, Pair
 from . import cavity, foundation
 
 if TYPE_CHECKING:
     from .rig import Metal
 
-Array = NDArray[np.float64]
 
 FILE = Path(__file__).resolve().parents[3] / "data" / "proof" / "base_laws.json"
 

@@ -13,13 +13,11 @@ from typing import NamedTuple
 
 import numpy as np
 from numba import njit
-from numpy.typing import NDArray
 
+from ....core.arrays import Array
 from . import chain, foundation
 from . import parameters as at
 from .normal import EDGE, FREED, LAST, LAYER_MOST, N_MEMORY, PEAK, RADIUS_NOW, normal_force
-
-Array = NDArray[np.float64]
 
 _BUDGET = 4000000
 """Most steps of an impact."""

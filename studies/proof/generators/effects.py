@@ -11,13 +11,12 @@ from collections.abc import Callable
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
+from ....core.arrays import Array, Indices
 from . import flow
 from . import parameters as at
 from .rig import Rig
 
-Array = NDArray[np.float64]
 Numbers = dict[str, float]
 
 
@@ -430,7 +429,7 @@ def _order(rng: np.random.Generator, rig: Rig, family: float) -> Effect:
     return Effect("drift-with-order", "linear", numbers)
 
 
-def order_of(rig: Rig, seed: float) -> NDArray[np.intp]:
+def order_of(rig: Rig, seed: float) -> Indices:
     """Order in which the trials were made, a shuffle, shape (n,)."""
     return np.random.default_rng(int(seed)).permutation(len(rig))
 

@@ -7,14 +7,12 @@ import math
 from pathlib import Path
 
 import numpy as np
-from numpy.typing import NDArray
 
+from ....core.arrays import Array, Indices
 from .effects import order_of
 from .rig import Metal, Rig, Striker
 from .simulate import noise_std, observables, rows_of
 from .truth import FAMILIES, Truth, readings_noise
-
-Array = NDArray[np.float64]
 
 # resolution of the instruments' displays
 _LEAST = {
@@ -134,7 +132,7 @@ def write_files(
             writer.writerow(cells)
 
 
-def _order(truth: Truth) -> NDArray[np.intp]:
+def _order(truth: Truth) -> Indices:
     for effect in truth.effects:
         if effect.name == "drift-with-order":
             return order_of(truth.rig, effect.numbers["seed"])

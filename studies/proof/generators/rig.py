@@ -9,12 +9,10 @@ import math
 from dataclasses import dataclass, field
 
 import numpy as np
-from numpy.typing import NDArray
 
+from ....core.arrays import Array, Indices
 from . import parameters as at
 from .base_laws import constants
-
-Array = NDArray[np.float64]
 
 COLUMNS = {
     "restitution": at.RESTITUTION,
@@ -110,7 +108,7 @@ class Rig:
     bench: str
     target: Metal
     strikers: tuple[Striker, ...]
-    which: NDArray[np.intp]
+    which: Indices
     angle: Array
     speed: Array
     tangential: Array

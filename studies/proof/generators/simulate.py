@@ -7,16 +7,14 @@ from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
-from numpy.typing import NDArray
 from scipy.optimize import minimize
 
+from ....core.arrays import Array
 from . import dynamics
 from . import parameters as at
 from .effects import EFFECTS, OUTSIDE, Effect
 from .metal_kinds import TYPICAL, other_metals
 from .rig import COLUMNS, NUISANCES, RATIOS, Rig
-
-Array = NDArray[np.float64]
 
 
 def rows_of(

@@ -7,8 +7,8 @@ from dataclasses import dataclass, field, replace
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
+from ....core.arrays import Array
 from .benches import BENCHES
 from .effects import EFFECTS, OUTSIDE, Effect, Kind
 from .metals import draw_metal
@@ -258,7 +258,7 @@ def _pair(
     return rig, effects, sizes
 
 
-def readings_noise(rng: np.random.Generator, shape: str, count: int) -> NDArray[np.float64]:
+def readings_noise(rng: np.random.Generator, shape: str, count: int) -> Array:
     """Noise of unit variance and zero mean, shape (count,): gaussian, skewed or heavy-tailed."""
     if shape == "skewed":
         k = 3.0

@@ -10,8 +10,9 @@ from typing import Any
 import numpy as np
 
 from ....campaigns import CaseRecord
+from ....core.arrays import Array
 from ....models.published import hardness
-from ...plot import Entry, Floats, Picture, finish, sheet
+from ...plot import Entry, Picture, finish, sheet
 from ..viscous import alpha_for, hunt_crossley, kelvin_voigt, paradox
 from . import sketches
 
@@ -72,11 +73,11 @@ def _paradox() -> Picture:
     return Picture("viscous", "The paradox of Kelvin and Voigt", made, note)
 
 
-def _impact(force: Callable[[Any, Any], Floats], *, mass: float, speed: float) -> list[Floats]:
+def _impact(force: Callable[[Any, Any], Array], *, mass: float, speed: float) -> list[Array]:
     """Depth and rate of an impact from first touch until the depth is zero again."""
     from scipy.integrate import solve_ivp
 
-    def back(_t: float, y: Floats) -> float:
+    def back(_t: float, y: Array) -> float:
         return float(y[0])
 
     back.terminal, back.direction = True, -1.0  # type: ignore[attr-defined]
@@ -90,7 +91,7 @@ def _impact(force: Callable[[Any, Any], Floats], *, mass: float, speed: float) -
 def _hardness(
     number: str,
     regime: str,
-    published: dict[str, Callable[[Any], Floats]],
+    published: dict[str, Callable[[Any], Array]],
     records: Sequence[CaseRecord],
     belongs: Callable[[float], bool],
     said: str,
@@ -125,7 +126,7 @@ def _hardness(
     return Picture(number, f"Hardness laws, {regime}", made, note)
 
 
-def _along(law: Callable[[Any], Floats], radius: Floats, pressure: Floats) -> list[str]:
+def _along(law: Callable[[Any], Array], radius: Array, pressure: Array) -> list[str]:
     """Mean deviation of a law from the points near each of `_PLACES`."""
     off = law(radius) / pressure - 1.0
     near = (np.abs(radius - place) < 0.03 for place in _PLACES)
@@ -134,7 +135,7 @@ def _along(law: Callable[[Any], Floats], radius: Floats, pressure: Floats) -> li
 
 def _plastic(
     records: Sequence[CaseRecord], belongs: Callable[[float], bool]
-) -> tuple[Floats, Floats]:
+) -> tuple[Array, Array]:
     from ....models import critical_depth
 
     xs, ys = [], []

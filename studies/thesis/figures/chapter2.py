@@ -7,19 +7,12 @@ from collections.abc import Callable, Sequence
 import numpy as np
 
 from ....campaigns import CaseRecord
+from ....core.arrays import Array
 from ....core.material import Pair
 from ....models import LAWS, critical_depth
 from ....models.published import hardness
 from ....models.published.ghaednia import share_of_sphere
-from ...plot import (
-    Entry,
-    Floats,
-    Picture,
-    at_depth,
-    finish,
-    sheet,
-    table_2_1,
-)
+from ...plot import Entry, Picture, at_depth, finish, sheet, table_2_1
 from . import compared, fields, steps, tables
 from .claims import judged
 from .quantities import (
@@ -132,7 +125,7 @@ def _hardness_over_radius(records: Sequence[CaseRecord]) -> Picture:
     for name, function in {**hardness.FLATTENING, **hardness.INDENTATION}.items():
         axis.plot(x, function(x), label=name)
     axis.axhline(2.8, color="0.4", ls=":", label="Kogut and Etsion, 2.8")
-    found: dict[float, list[Floats]] = {0.1: [], 1.0: [], 10.0: []}
+    found: dict[float, list[Array]] = {0.1: [], 1.0: [], 10.0: []}
     for record in records:
         pair, curve = record.case.pair, record.curve
         ratio = min(found, key=lambda s: abs(np.log(max(pair.Sy_ratio, 1e-9) / s)))
@@ -166,7 +159,7 @@ _GOOD = 0.03  # mean deviation that still is a good agreement, as the thesis say
 _DOTS = {0.1: "#9ecae1", 1.0: "0.75", 10.0: "#f4a6a6"}
 
 
-def _off(law: Callable[[Floats], Floats], points: Floats) -> float:
+def _off(law: Callable[[Array], Array], points: Array) -> float:
     return float(np.mean(np.abs(law(points[0]) / points[1] - 1.0)))
 
 

@@ -7,15 +7,15 @@ from typing import Any
 
 import numpy as np
 
+from ....core.arrays import Array
 from ....impact.result import Impact
-from ...plot import Floats
 from .claims import judged, ranked
 
 Ends = Mapping[str, Impact]
 """By law, one impact at 45 degrees and 1 m/s."""
 Swept = Mapping[str, Sequence[Impact]]
 """By law, an impact at each speed."""
-Values = dict[str, Floats]
+Values = dict[str, Array]
 """By law, one quantity over the speeds."""
 
 _JG, _OWN, _KE, _KK, _YK = (

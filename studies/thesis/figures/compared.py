@@ -7,8 +7,9 @@ from collections.abc import Sequence
 import numpy as np
 
 from ....campaigns import CaseRecord
+from ....core.arrays import Array
 from ....core.material import Material, Pair
-from ...plot import Floats, Picture, finish, laws, look, same, sheet
+from ...plot import Picture, finish, laws, look, same, sheet
 from .claims import apart, judged
 from .quantities import (
     DEPTH,
@@ -116,7 +117,7 @@ def _over_ratio(
     return Picture(number, f"{title}, case {case}, Delta/R = 0.04", made, note)
 
 
-Off = dict[str, Floats]
+Off = dict[str, Array]
 
 
 def _off(points: Sequence[tuple[float, float, Pair]], quantity: Quantity) -> Off:
@@ -128,7 +129,7 @@ def _off(points: Sequence[tuple[float, float, Pair]], quantity: Quantity) -> Off
     }
 
 
-def _radius_said(ratio: Floats, off: Off) -> str:
+def _radius_said(ratio: Array, off: Off) -> str:
     mean = {name: float(np.mean(values)) for name, values in off.items()}
     size = {name: float(np.mean(np.abs(values))) for name, values in off.items()}
     four = (_JG, _KE, _KK, _YK)
@@ -143,7 +144,7 @@ def _radius_said(ratio: Floats, off: Off) -> str:
     )  # fmt: skip
 
 
-def _force_said(ratio: Floats, off: Off) -> str:
+def _force_said(ratio: Array, off: Off) -> str:
     soft, hard = ratio < 1.0, ratio > 1.0
     flat = float(np.mean(np.abs(off[_JG][soft])))
     return judged(

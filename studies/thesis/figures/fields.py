@@ -14,10 +14,10 @@ from pathlib import Path
 from typing import Any
 
 import numpy as np
-import numpy.typing as npt
 from matplotlib.collections import PolyCollection
 
 from ....campaigns import CaseRecord
+from ....core.arrays import Array, Mask
 from ....core.material import Material, Pair
 from ....core.output import write_file
 from ....fem import (
@@ -31,7 +31,7 @@ from ....fem import (
 from ....fem.discretise import discretise
 from ....fem.mesh import Zone
 from ....models import LAWS
-from ...plot import Floats, Picture, finish, sheet
+from ...plot import Picture, finish, sheet
 from .. import chapter3
 from .names import FIELDS
 
@@ -93,12 +93,12 @@ class Field:
         Depth, contact radius, force, settings and version of the solve.
     """
 
-    corners: Floats
-    sphere: npt.NDArray[np.bool_]
-    stress: Floats
-    plastic: Floats
-    depth: Floats
-    force: Floats
+    corners: Array
+    sphere: Mask
+    stress: Array
+    plastic: Array
+    depth: Array
+    force: Array
     origin: dict[str, Any]
 
 
@@ -172,7 +172,7 @@ def chapter_3_again(records: Sequence[CaseRecord]) -> list[Picture]:
     return [_chapter_3_pictures(read_field("3.7"))]
 
 
-def _grid_of(pair: Pair, depth: float) -> tuple[Floats, Any]:
+def _grid_of(pair: Pair, depth: float) -> tuple[Array, Any]:
     """Mesh of published results when the contact has reached Delta/R = `depth`."""
     problem = ContactProblem(
         pair=pair, depths=geometric_depths(0.3 * critical_depth(pair), depth, 20)
@@ -182,7 +182,7 @@ def _grid_of(pair: Pair, depth: float) -> tuple[Floats, Any]:
     return np.asarray(mesh.points[mesh.quads]), mesh
 
 
-def _draw_mesh(axis: Any, corners: Floats, spheres: int, *, reach: float) -> None:
+def _draw_mesh(axis: Any, corners: Array, spheres: int, *, reach: float) -> None:
     for part, colour in ((corners[:spheres], "C0"), (corners[spheres:], "C1")):
         near = np.max(np.abs(part.mean(axis=1)), axis=1) < 1.3 * reach
         axis.add_collection(

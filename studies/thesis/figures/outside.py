@@ -16,13 +16,14 @@ from typing import Any
 import numpy as np
 
 from ....campaigns import CaseRecord
+from ....core.arrays import Array
 from ....core.inputs.toml_input import read_toml
 from ....core.material import Material
 from ....impact.integrate import strike
 from ....impact.scene import Approach, Striker, scene_of
 from ....models.base import ContactLaw
 from ...lammps import balls_on_floor, elastic_plastic
-from ...plot import Floats, Picture, finish, laws, look, sheet
+from ...plot import Picture, finish, laws, look, sheet
 from ..chapter3 import REFERENCE
 
 _STEPS_PER_RISE = 2000  # time steps while the ball comes to rest
@@ -61,7 +62,7 @@ def reference() -> dict[str, Any]:
     return read_toml(REFERENCE / "mdr.toml")
 
 
-def restitutions(law: ContactLaw, data: dict[str, Any]) -> Floats:
+def restitutions(law: ContactLaw, data: dict[str, Any]) -> Array:
     """Restitution of one of our laws for the same ball at the same speeds."""
     ball, R = data["ball"], data["ball"]["radius_m"]
     body = Material(E=ball["E_Pa"], nu=ball["nu"], Sy=ball["Sy_Pa"], density=ball["density_kg_m3"])
@@ -79,7 +80,7 @@ def restitutions(law: ContactLaw, data: dict[str, Any]) -> Floats:
     )  # fmt: skip
 
 
-def slope(speeds: Floats, e: Floats) -> float:
+def slope(speeds: Array, e: Array) -> float:
     """Exponent of e ~ v^n over the last decade of the speeds."""
     keep = speeds >= 0.1 * speeds[-1]
     return float(np.polyfit(np.log(speeds[keep]), np.log(e[keep]), 1)[0])

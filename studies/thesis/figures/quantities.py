@@ -7,29 +7,30 @@ from collections.abc import Callable, Sequence
 import numpy as np
 
 from ....campaigns import CaseRecord
+from ....core.arrays import Array
 from ....core.material import Pair
 from ....models.base import ContactLaw
-from ...plot import Floats, at_depth, laws, same, table_2_1
+from ...plot import at_depth, laws, same, table_2_1
 
 DEPTH = 0.04
 """Delta/R of the thesis's comparisons."""
 RATIOS = np.geomspace(0.1, 10.0, 241)
 """Sy* of its curves."""
 
-Quantity = Callable[[ContactLaw, Pair, Floats], Floats]
+Quantity = Callable[[ContactLaw, Pair, Array], Array]
 
 
-def radius(law: ContactLaw, pair: Pair, D: Floats) -> Floats:
+def radius(law: ContactLaw, pair: Pair, D: Array) -> Array:
     """Contact radius over R."""
     return law.contact_radius(pair, D * pair.R) / pair.R
 
 
-def force(law: ContactLaw, pair: Pair, D: Floats) -> Floats:
+def force(law: ContactLaw, pair: Pair, D: Array) -> Array:
     """Force over E' R^2."""
     return law.loading(pair, D * pair.R) / (pair.E_reduced * pair.R**2)
 
 
-def pressure(law: ContactLaw, pair: Pair, D: Floats) -> Floats:
+def pressure(law: ContactLaw, pair: Pair, D: Array) -> Array:
     """Mean pressure over Sy_min."""
     return law.hardness(pair, D * pair.R) / pair.Sy_min
 
@@ -56,7 +57,7 @@ def case_records(records: Sequence[CaseRecord], number: int) -> list[tuple[float
     return sorted(found, key=lambda item: item[0])
 
 
-def along(law: ContactLaw, number: int, quantity: Quantity) -> Floats:
+def along(law: ContactLaw, number: int, quantity: Quantity) -> Array:
     """A quantity over `RATIOS` for case `number` of table 2.1."""
     D = np.array([DEPTH])
     return np.array([float(quantity(law, table_2_1(number, s), D)[0]) for s in RATIOS])

@@ -12,13 +12,14 @@ from typing import Any
 
 import numpy as np
 
+from ....core.arrays import Array
 from ....impact.integrate import strike
 from ....models import LAWS
 from ....reduce.images.clip import Clip
 from ....reduce.measured import Measured
 from ....reduce.tip.reduction import reduce_tip
 from ....reduce.video.reduction import Optics, VideoReduction, reduce_video
-from ...plot import Floats, Picture, finish, sheet
+from ...plot import Picture, finish, sheet
 from ...synthetic.clips import ClipTruth, render
 from ...synthetic.tip import TipTruth, photograph
 from .. import chapter3
@@ -41,7 +42,7 @@ def _tip_truth(seed: int) -> TipTruth:
     )
 
 
-def _edge(grey: Floats, half: float) -> tuple[Floats, Floats]:
+def _edge(grey: Array, half: float) -> tuple[Array, Array]:
     """Columns near the middle, and the row at which each crosses half grey."""
     middle = 0.5 * grey.shape[1]
     columns = np.arange(int(middle - half), int(middle + half) + 1)
@@ -50,7 +51,7 @@ def _edge(grey: Floats, half: float) -> tuple[Floats, Floats]:
     return columns.astype(float), rows.astype(float)
 
 
-def _polynomial_radius(columns: Floats, rows: Floats, order: int = 8) -> float:
+def _polynomial_radius(columns: Array, rows: Array, order: int = 8) -> float:
     """Mean radius of curvature of a polynomial through the edge, over its points [pixel]."""
     x = (columns - columns.mean()) / np.ptp(columns)
     fit = np.polynomial.Polynomial.fit(x, rows, order)

@@ -13,10 +13,11 @@ from typing import Any
 
 import numpy as np
 
+from ....core.arrays import Array
 from ....core.inputs.toml_input import read_toml
 from ....impact.integrate import Trace
 from ....models.base import ContactLaw
-from ...plot import Floats, Picture, finish, look, sheet
+from ...plot import Picture, finish, look, sheet
 from ..chapter3 import REFERENCE
 
 _GRID = 241
@@ -34,9 +35,9 @@ class Scar:
         Permanent depth, shape (m, n) [m].
     """
 
-    x: Floats
-    y: Floats
-    depth: Floats
+    x: Array
+    y: Array
+    depth: Array
 
     @property
     def deepest(self) -> float:

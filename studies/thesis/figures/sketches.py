@@ -9,9 +9,10 @@ from typing import Any
 import numpy as np
 from matplotlib.patches import Arc, Circle, Polygon, Rectangle
 
+from ....core.arrays import Array
 from ....impact.inverse import mobility
 from ....impact.scene import Striker
-from ...plot import Floats, Picture, sheet
+from ...plot import Picture, sheet
 from .. import chapter3, chapter5
 
 _METAL, _FLAT, _INK = "#c9d6e8", "#e6dccb", "0.15"
@@ -105,7 +106,7 @@ def _indentation(number: str, title: str) -> Picture:
     return Picture(number, title, made, note)
 
 
-def _body(axis: Any, x: Floats, z: Floats, *, floor: float) -> None:
+def _body(axis: Any, x: Array, z: Array, *, floor: float) -> None:
     """Half-space below the surface (x, z), drawn on both sides of the axis."""
     right = np.column_stack([x, z])
     left = np.column_stack([-x[::-1], z[::-1]])
@@ -150,7 +151,7 @@ def _flattening(number: str, title: str) -> Picture:
     return Picture(number, title, made, note)
 
 
-def _capsule(rod: Striker, angle: float) -> Floats:
+def _capsule(rod: Striker, angle: float) -> Array:
     """Outline of a round-ended rod that touches the origin, shape (n, 2) [m]."""
     R, L = rod.tip_radius, rod.length
     t = np.linspace(0.5 * math.pi, 1.5 * math.pi, 60)

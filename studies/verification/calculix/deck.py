@@ -10,14 +10,11 @@ from collections.abc import Iterable, Iterator
 from dataclasses import dataclass
 
 import numpy as np
-import numpy.typing as npt
 
 from .... import fem
+from ....core.arrays import Array, Integers
 from ....core.material import Material
 from ....fem.discretise import Discretisation, discretise
-
-Floats = npt.NDArray[np.float64]
-Integers = npt.NDArray[np.int64]
 
 _FIRST, _LAST, _ROWS = 1e-5, 5.0, 150  # plastic strains of a table
 
@@ -143,14 +140,14 @@ def _surface(name: str, quads: Integers, nodes: Integers) -> Iterator[str]:
 
 def _with_middle_nodes(
     grid: Discretisation,
-) -> tuple[Floats, Integers, dict[tuple[int, int], int]]:
+) -> tuple[Array, Integers, dict[tuple[int, int], int]]:
     """Eight-node elements: a node on the middle of every edge, of the sphere's on the sphere."""
     points, quads = grid.mesh.points, grid.mesh.quads
     n = len(points)
     ball = np.abs(np.hypot(points[:, 0], points[:, 1] - 1.0) - 1.0) < 1e-9
     ball &= np.arange(n) < grid.mesh.n_sphere_points
     middle: dict[tuple[int, int], int] = {}
-    added: list[Floats] = []
+    added: list[Array] = []
     rows = []
     for quad in quads:
         row = list(quad)

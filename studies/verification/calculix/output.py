@@ -13,15 +13,13 @@ from dataclasses import dataclass, replace
 from pathlib import Path
 
 import numpy as np
-import numpy.typing as npt
 
+from ....core.arrays import Array
 from ....core.errors import InputError
 from ....fem.contact import POINTS, ContactState, contact_forces
 from ....fem.discretise import Discretisation
 from ....fem.results.measure import edge_of_contact
 from .deck import Deck, write_deck
-
-Floats = npt.NDArray[np.float64]
 
 _WEDGE = 180.0  # CalculiX turns axisymmetric elements into a wedge of 2 degrees
 
@@ -49,10 +47,10 @@ class Reference:
     version: str
     cpu_s: float
     unknowns: int
-    delta: Floats
-    force: Floats
-    radius: Floats
-    share: Floats
+    delta: Array
+    force: Array
+    radius: Array
+    share: Array
 
 
 def run_deck(deck: Deck, *, name: str, command: str = "ccx") -> Reference:
@@ -128,7 +126,7 @@ def measure(deck: Deck, printed: str, *, cpu_s: float = 0.0, version: str = "") 
     return Reference(deck.element, version, cpu_s, 2 * nodes, *columns)
 
 
-def _touching(grid: Discretisation, contact: ContactState, x: Floats) -> ContactState:
+def _touching(grid: Discretisation, contact: ContactState, x: Array) -> ContactState:
     """Contact state whose active nodes are those from the axis on that touch within the mesh.
 
     Two surfaces of straight edges that touch everywhere are up to h^2/(8 R) apart between their
@@ -147,10 +145,10 @@ def _touching(grid: Discretisation, contact: ContactState, x: Floats) -> Contact
     return replace(contact, pressure=(np.arange(len(gap)) < last).astype(float))
 
 
-def _blocks(printed: str) -> list[tuple[float, dict[int, Floats]]]:
+def _blocks(printed: str) -> list[tuple[float, dict[int, Array]]]:
     """Reaction of the top and displacements by node of every step."""
-    steps: list[tuple[float, dict[int, Floats]]] = []
-    moved: dict[int, Floats] = {}
+    steps: list[tuple[float, dict[int, Array]]] = []
+    moved: dict[int, Array] = {}
     reaction = 0.0
     kind = ""
     for line in printed.splitlines():

@@ -5,17 +5,15 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import numpy as np
-import numpy.typing as npt
 
 from .... import fem
 from ....campaigns.case import Case
 from ....campaigns.cases.pairs import TABLE_2_1, pair_of
+from ....core.arrays import Array
 from ....core.material import Pair
 from ..bench import Bench, Effort, Solved
 from ..curves import inner, ripple, smoothed
 from ..result import Cell, Measurement, Result, Table
-
-Floats = npt.NDArray[np.float64]
 
 _RATIOS = (0.1, 1.0, 10.0)
 # F [%], a [%], delta_s*, H [%]
@@ -128,7 +126,7 @@ def run(bench: Bench) -> Result:
     return found
 
 
-def difference(other: Solved, base: Solved) -> tuple[Floats, Floats]:
+def difference(other: Solved, base: Solved) -> tuple[Array, Array]:
     """Largest smoothed differences of F, a, delta_s*, H (in %, share absolute), and base's ripple.
 
     Depths that both reached, but for the ends, where smoothing is one-sided.
@@ -142,30 +140,30 @@ def difference(other: Solved, base: Solved) -> tuple[Floats, Floats]:
     return np.array(off), np.array([ripple(base["delta"], y) for y in curves(base)])
 
 
-def combined(edge: Floats, bulk: Floats, step: Floats) -> Floats:
+def combined(edge: Array, bulk: Array, step: Array) -> Array:
     """Error of the base, from its differences with larger elements and longer steps."""
     return np.hypot(_of_mesh(edge, bulk), step / 3.0)  # of second order in the step
 
 
-def _of_mesh(edge: Floats, bulk: Floats) -> Floats:
+def _of_mesh(edge: Array, bulk: Array) -> Array:
     # first order in the element at the edge, where the contact opens: what halving changed is
     # what is left; second order in the bulk
     return np.hypot(edge, bulk / (_BULK**2 - 1.0))
 
 
-def curves(solved: Solved) -> tuple[Floats, Floats, Floats, Floats]:
+def curves(solved: Solved) -> tuple[Array, Array, Array, Array]:
     """Ln F [%], ln a [%], the share and ln H [%] along a loading."""
     F, a = np.log(solved["force"]), np.log(solved["radius"])
     return 100.0 * F, 100.0 * a, solved.share, 100.0 * (F - 2.0 * a)
 
 
-def _smooth_at(delta: Floats, solved: Solved, values: Floats) -> Floats:
+def _smooth_at(delta: Array, solved: Solved, values: Array) -> Array:
     own = solved["delta"]
     return np.interp(np.log(delta), np.log(own), smoothed(own, values))
 
 
 def _result(
-    plan: Plan, rows: list[tuple[Cell, ...]], total: Floats, ripples: Floats, done: int, of: int
+    plan: Plan, rows: list[tuple[Cell, ...]], total: Array, ripples: Array, done: int, of: int
 ) -> Result:
     worst = total.max(axis=0)
     waves = ripples.max(axis=0)
@@ -213,7 +211,7 @@ def _result(
     )  # fmt: skip
 
 
-def _pair_of_numbers(i: int, mesh: Floats, step: Floats) -> str:
+def _pair_of_numbers(i: int, mesh: Array, step: Array) -> str:
     digits = 4 if _NAMES[i] == "delta_s*" else 2
     return f"{mesh[i]:.{digits}f} + {step[i]:.{digits}f}"
 

@@ -6,10 +6,10 @@ import math
 import warnings
 
 import numpy as np
-import numpy.typing as npt
 
 from .... import fem
 from ....campaigns.case import Case
+from ....core.arrays import Array, Mask
 from ....core.material import Material, Pair
 from ....models.published.hardness import jackson_green_2007
 from ....models.published.jackson_green import JACKSON_GREEN
@@ -17,8 +17,6 @@ from ..bench import Bench, Effort
 from ..curves import smoothed
 from ..pairs import RIGID, R
 from ..result import Cell, Measurement, Result, Table
-
-Floats = npt.NDArray[np.float64]
 
 _STEEL = Material(E=200e9, nu=0.32, Sy=619e6)
 _DEEPEST = 0.05
@@ -83,14 +81,12 @@ def run(bench: Bench) -> Result:
     )  # fmt: skip
 
 
-def _measured(
-    what: str, ratio: Floats, where: npt.NDArray[np.bool_], mark: float, source: str
-) -> Measurement:
+def _measured(what: str, ratio: Array, where: Mask, mark: float, source: str) -> Measurement:
     value = float(np.abs(ratio[where] - 1.0).mean()) if where.any() else math.nan
     return Measurement(f"{what}, mean absolute difference", 100.0 * value, "%", None, mark, source)
 
 
-def _kogut_etsion(pair: Pair, delta: Floats) -> tuple[Floats, Floats, Floats]:
+def _kogut_etsion(pair: Pair, delta: Array) -> tuple[Array, Array, Array]:
     """Force, contact radius and interference over their critical one; power laws to 6 and 110."""
     nu, S = pair.sphere.nu, pair.sphere.Sy
     critical = (math.pi * (0.454 + 0.41 * nu) * 2.8 * S / (2.0 * pair.E_reduced)) ** 2 * R

@@ -5,8 +5,6 @@ from __future__ import annotations
 import math
 from dataclasses import replace
 
-import numpy as np
-import numpy.typing as npt
 from scipy.integrate import quad
 
 from .... import fem
@@ -15,8 +13,6 @@ from ....core.material import Material, Pair
 from ..bench import Bench, Effort, Solved
 from ..pairs import RIGID, R
 from ..result import Cell, Measurement, Result, Table
-
-Floats = npt.NDArray[np.float64]
 
 _STUCK = 20.0
 _SOURCE = "Borodich and Keer, Proc. R. Soc. A 460 (2004) 507"

@@ -5,7 +5,6 @@ from __future__ import annotations
 import math
 
 import numpy as np
-import numpy.typing as npt
 
 from .... import fem
 from ....campaigns.case import Case
@@ -13,8 +12,6 @@ from ....core.material import Pair
 from ..bench import Bench
 from ..pairs import R, axis_stresses, elastic_pair, hertz_force
 from ..result import Cell, Measurement, Result, Table
-
-Floats = npt.NDArray[np.float64]
 
 _DEPTHS = (1e-6, 3e-6, 1e-5, 2e-5, 5e-5, 1e-4, 2e-4, 5e-4, 1e-3)
 _LOOKED_AT = 1e-5

@@ -5,7 +5,6 @@ from __future__ import annotations
 import math
 
 import numpy as np
-import numpy.typing as npt
 
 from .... import fem
 from ....campaigns.case import Case
@@ -15,8 +14,6 @@ from ..bench import Bench, Effort
 from ..curves import smoothed
 from ..pairs import RIGID, R
 from ..result import Cell, Measurement, Result, Table
-
-Floats = npt.NDArray[np.float64]
 
 # the material of Code_Aster's test SSNV506; E'/Sy = 4615
 _STEEL = Material(E=210e9, nu=0.3, Sy=50e6)

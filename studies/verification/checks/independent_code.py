@@ -6,19 +6,17 @@ import shutil
 from dataclasses import dataclass, replace
 
 import numpy as np
-import numpy.typing as npt
 
 from .... import fem
 from ....campaigns.case import Case
 from ....campaigns.cases.hardening import power_law
 from ....campaigns.cases.pairs import pair_of
+from ....core.arrays import Array
 from ....core.material import Pair
 from ..bench import Bench, Effort, Solved
 from ..calculix import Deck, Reference, load_reference, run_deck
 from ..curves import inner, smoothed
 from ..result import Cell, Measurement, Result, Table
-
-Floats = npt.NDArray[np.float64]
 
 _DEEPEST = 0.1
 _RADII = 0.01  # Delta/R up to which the faceted surfaces of both codes show where they part
@@ -63,10 +61,10 @@ class Theirs:
         The two runs.
     """
 
-    force: Floats
-    radius: Floats
-    share: Floats
-    increment: Floats
+    force: Array
+    radius: Array
+    share: Array
+    increment: Array
     runs: tuple[Reference, Reference]
 
 
@@ -161,7 +159,7 @@ def _theirs(bench: Bench, twin: Twin) -> Theirs | None:
     coarse, fine = runs
     n = min(len(coarse.delta), (len(fine.delta) - 1) // _FINER + 1)
 
-    def limit(values: str) -> Floats:
+    def limit(values: str) -> Array:
         few, many = getattr(coarse, values)[:n], getattr(fine, values)[::_FINER][:n]
         return np.asarray(many + (many - few) / (_FINER - 1.0))
 
@@ -213,5 +211,5 @@ def _compared(twin: Twin, ours: Solved, theirs: Theirs) -> tuple[tuple[Measureme
     return measurements, table
 
 
-def _rms(x: Floats) -> float:
+def _rms(x: Array) -> float:
     return float(np.sqrt(np.mean(x**2)))

@@ -8,17 +8,15 @@ from dataclasses import dataclass, replace
 from pathlib import Path
 
 import numpy as np
-import numpy.typing as npt
 
 from .... import fem
 from ....campaigns.case import Case
 from ....campaigns.cases.hardening import validation_hardening
+from ....core.arrays import Array
 from ....core.output import write_file
 from ..bench import Bench, Effort, Solved
 from ..result import Cell, Measurement, Result, Table
 from . import convergence
-
-Floats = npt.NDArray[np.float64]
 
 _KNOTS = np.log([0.3, 1.0, 2.0, 4.0, 10.0, 30.0, 100.0, 1e3, 1e4, 1e5])  # of Delta/delta_c
 _REACH = (
@@ -49,8 +47,8 @@ class Off:
 
     name: str
     equal: bool
-    w: Floats
-    error: Floats
+    w: Array
+    error: Array
 
 
 def run(bench: Bench) -> Result:
@@ -95,17 +93,17 @@ def _against(solved: Solved, base: Solved, own: Off) -> Off:
     return replace(own, w=w, error=np.hypot(_difference(solved, base, delta), finest))
 
 
-def _common(first: Solved, *others: Solved) -> Floats:
+def _common(first: Solved, *others: Solved) -> Array:
     """Depths of the first that all reached [m]."""
     last = min(solved["delta"][-1] for solved in (first, *others))
     return np.asarray(first["delta"][first["delta"] <= last * (1.0 + 1e-9)])
 
 
-def _over_onset(solved: Solved, delta: Floats) -> Floats:
+def _over_onset(solved: Solved, delta: Array) -> Array:
     return np.asarray(delta / (fem.critical_depth(solved.pair) * solved.pair.R))
 
 
-def _difference(other: Solved, base: Solved, delta: Floats) -> Floats:
+def _difference(other: Solved, base: Solved, delta: Array) -> Array:
     """Of ln F, ln a, share and ln H as they are, ripple and all; shape (4, n)."""
     there, here = (
         np.array([np.interp(np.log(delta), np.log(solved["delta"]), y) for y in curves])
@@ -114,14 +112,14 @@ def _difference(other: Solved, base: Solved, delta: Floats) -> Floats:
     return np.asarray(_UNITS[:, None] * (there - here))
 
 
-def _table(offs: Iterable[Off]) -> Floats:
+def _table(offs: Iterable[Off]) -> Array:
     """Standard uncertainty at the knots, shape (4, n_knots): the worse of the two classes."""
     offs = list(offs)
     classes = [[off for off in offs if off.equal is kind] for kind in (True, False)]
     return np.asarray(np.max([_rms(chosen) for chosen in classes if chosen], axis=0))
 
 
-def _rms(offs: list[Off]) -> Floats:
+def _rms(offs: list[Off]) -> Array:
     x = np.concatenate([np.log(off.w) for off in offs])
     square = np.concatenate([off.error**2 for off in offs], axis=1)
     nearest = np.abs(x[:, None] - _KNOTS).argmin(axis=1)
@@ -136,11 +134,11 @@ def _rms(offs: list[Off]) -> Floats:
     return out
 
 
-def _stated(table: Floats, w: Floats) -> Floats:
+def _stated(table: Array, w: Array) -> Array:
     return np.asarray([np.interp(np.log(w), _KNOTS, row) for row in table])
 
 
-def _covered(offs: list[Off], within: float) -> Floats:
+def _covered(offs: list[Off], within: float) -> Array:
     """Share of depths within so many stated uncertainties of a table made without the case."""
     inside = []
     for k, off in enumerate(offs):
@@ -149,7 +147,7 @@ def _covered(offs: list[Off], within: float) -> Floats:
     return np.asarray(np.mean(inside, axis=0))
 
 
-def _hardening(bench: Bench, k: int, table: Floats) -> tuple[Cell, ...]:
+def _hardening(bench: Bench, k: int, table: Array) -> tuple[Cell, ...]:
     """One pair that harden, `quick` against `production`: the table knows no hardening."""
     case = validation_hardening()[k]
     problem = replace(case.problem, unload_from=(), radius_at_least=0.0)
@@ -163,7 +161,7 @@ def _hardening(bench: Bench, k: int, table: Floats) -> tuple[Cell, ...]:
     return (case.name, *(round(float(pull), 2) for pull in pulls))
 
 
-def _write(table: dict[str, Floats]) -> Path:
+def _write(table: dict[str, Array]) -> Path:
     content = {
         "format": fem.MESH_ERRORS_FORMAT,
         "numerics_version": fem.NUMERICS_VERSION,
@@ -182,7 +180,7 @@ def _write(table: dict[str, Floats]) -> Path:
 
 
 def _result(
-    found: dict[str, list[Off]], table: dict[str, Floats], hardening: list[tuple[Cell, ...]]
+    found: dict[str, list[Off]], table: dict[str, Array], hardening: list[tuple[Cell, ...]]
 ) -> Result:
     measurements = [
         Measurement(

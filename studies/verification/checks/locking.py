@@ -5,17 +5,15 @@ from __future__ import annotations
 import math
 
 import numpy as np
-import numpy.typing as npt
 import skfem
 
 from .... import fem
+from ....core.arrays import Array
 from ....core.material import Material, Pair
 from ..bench import Bench
 from ..blocks import block, rectangle, walk
 from ..pairs import RIGID, R, hertz_force
 from ..result import Measurement, Result, Table
-
-Floats = npt.NDArray[np.float64]
 
 _YIELD = 1e-4  # Sy/E: small enough that the change of shape does not count
 _HILL = "Hill, The Mathematical Theory of Plasticity (1950), chapter V"
@@ -54,7 +52,7 @@ def run(bench: Bench) -> Result:
     )  # fmt: skip
 
 
-def _steps(first: float) -> Floats:
+def _steps(first: float) -> Array:
     return np.concatenate([first * np.linspace(0.5, 3.0, 11), first * np.array([4.0, 6.0, 10.0])])
 
 

@@ -5,16 +5,14 @@ from __future__ import annotations
 from dataclasses import replace
 
 import numpy as np
-import numpy.typing as npt
 
 from .... import fem
 from ....campaigns.cases.pairs import pair_of
+from ....core.arrays import Array
 from ....core.material import Pair
 from ..bench import Bench
 from ..pairs import R, elastic_pair
 from ..result import Cell, Measurement, Result, Table
-
-Floats = npt.NDArray[np.float64]
 
 _RADII = (3.0, 10.0, 30.0, 100.0, 200.0, 1000.0)
 _DEPTHS = (1e-4, 1e-3, 1e-2)
@@ -95,13 +93,13 @@ def top_face(bench: Bench) -> Result:
     )  # fmt: skip
 
 
-def _both(pair: Pair) -> tuple[dict[str, Floats], dict[str, Floats]]:
+def _both(pair: Pair) -> tuple[dict[str, Array], dict[str, Array]]:
     depths = fem.geometric_depths(min(_AT) / 2.0, max(_AT), 24)
     free = fem.ContactProblem(pair, depths)
     return _curves(free), _curves(replace(free, top="held"))
 
 
-def _curves(problem: fem.ContactProblem) -> dict[str, Floats]:
+def _curves(problem: fem.ContactProblem) -> dict[str, Array]:
     c = fem.solve(problem, accuracy=fem.Accuracy.smoke()).loading
     return {
         "delta": c.delta / problem.pair.R,

@@ -6,12 +6,12 @@ import math
 from itertools import pairwise
 
 import numpy as np
-import numpy.typing as npt
 import scipy.sparse as sparse
 import scipy.sparse.linalg as sparse_linalg
 
 from .... import fem
 from ....campaigns.cases.pairs import pair_of
+from ....core.arrays import Array, Integers, Mask
 from ....core.material import Pair
 from ....fem.assemble import bulk_forces
 from ....fem.contact import Surfaces, Triplets, contact_forces
@@ -22,8 +22,6 @@ from ..bench import Bench
 from ..blocks import Block, block, rectangle, stiffness
 from ..pairs import elastic_pair
 from ..result import Measurement, Result
-
-Floats = npt.NDArray[np.float64]
 
 _PRESSURE = 1e-5
 _PENALTY = 20.0
@@ -69,7 +67,7 @@ def _unbalanced(pair: Pair, strain: float) -> float:
     return float((np.abs(force) / _parts(grid, strain))[_inner_dofs(grid)].max())
 
 
-def _parts(grid: Discretisation, strain: float) -> Floats:
+def _parts(grid: Discretisation, strain: float) -> Array:
     """Sum of the sizes of the contributions to each nodal force, shape (n_dofs,)."""
     x = grid.elements
     size = np.linalg.norm(x.grad, axis=-1) * x.dV[:, :, None]
@@ -78,7 +76,7 @@ def _parts(grid: Discretisation, strain: float) -> Floats:
     return np.repeat(parts, 2)
 
 
-def _inner_dofs(grid: Discretisation) -> npt.NDArray[np.bool_]:
+def _inner_dofs(grid: Discretisation) -> Mask:
     """Not on a boundary; on the axis the axial ones count."""
     quads = grid.mesh.quads
     edges = np.sort(np.stack([quads, np.roll(quads, -1, axis=1)], axis=2).reshape(-1, 2), axis=1)
@@ -156,14 +154,14 @@ def _pressed(upper: Block, lower: Block) -> list[tuple[float, float]]:
     return [_errors(body, part) for body, part in ((upper, u[: 2 * n]), (lower, u[2 * n :]))]
 
 
-def _errors(body: Block, u: Floats) -> tuple[float, float]:
+def _errors(body: Block, u: Array) -> tuple[float, float]:
     error = np.abs(_axial(body, u) / -_PRESSURE - 1.0)
     r, z = body.points[body.elements.conn].mean(axis=1).T
     inner = (r > 0.3) & (r < 0.7) & (np.abs(z) > 0.5)
     return float(error.max()), float(error[inner].max())
 
 
-def _ring_load(points: Floats, master: npt.NDArray[np.int64]) -> Floats:
+def _ring_load(points: Array, master: Integers) -> Array:
     """Forces of the uniform pressure on the lower block outside the upper one."""
     load = np.zeros(2 * len(points))
     for a, b in pairwise(master):
@@ -175,7 +173,7 @@ def _ring_load(points: Floats, master: npt.NDArray[np.int64]) -> Floats:
     return load
 
 
-def _axial(body: Block, u: Floats) -> Floats:
+def _axial(body: Block, u: Array) -> Array:
     """Axial stress at the element centres by small strain, shape (n_elements,)."""
     x = body.elements
     ue = u.reshape(-1, 2)[x.conn]

@@ -3,18 +3,16 @@
 from __future__ import annotations
 
 import numpy as np
-import numpy.typing as npt
 import scipy.sparse.linalg as sparse_linalg
 import skfem
 
 from .... import fem
+from ....core.arrays import Array
 from ....fem.elements import State
 from ..bench import Bench
 from ..blocks import block, rectangle, stiffness
 from ..pairs import R, elastic_pair, hertz_force
 from ..result import Cell, Measurement, Result, Table
-
-Floats = npt.NDArray[np.float64]
 
 _DIVISIONS = (8, 16, 32, 64)
 _LEVELS = (0.2, 0.1, 0.05, 0.025)
@@ -70,7 +68,7 @@ def run(bench: Bench) -> Result:
     )  # fmt: skip
 
 
-def _exact(x: Floats) -> tuple[Floats, Floats]:
+def _exact(x: Array) -> tuple[Array, Array]:
     """Displacement (2, ...) and gradient (rr, rz, zr, zz, tt) of the manufactured field."""
     r, z = x
     a, c = 1.0 - 0.3 * r * r, 1.0 + 0.4 * r * r

@@ -6,10 +6,10 @@ import math
 from typing import NamedTuple
 
 import numpy as np
-import numpy.typing as npt
 
 from .... import fem
 from ....campaigns.case import Case
+from ....core.arrays import Array, Mask
 from ....core.flow import Flow, Rate, swift, tabulated
 from ....core.material import Material, Pair
 from ..bench import Bench, Effort
@@ -17,8 +17,6 @@ from ..curves import smoothed
 from ..flat_die import similar
 from ..pairs import RIGID, R
 from ..result import Cell, Measurement, Result, Table
-
-Floats = npt.NDArray[np.float64]
 
 _E = 200e9
 _FIRST = 1.8e-5 * _E  # flow stress at first yield: the path begins where round-off still allows
@@ -98,12 +96,12 @@ def fitted_invariant(n: float) -> float:
     return 1.43 * math.exp(-0.97 * n)
 
 
-def fitted_pressure(n: float, radius: Floats) -> Floats:
+def fitted_pressure(n: float, radius: Array) -> Array:
     """F/(pi a^2) [Pa] at a/R: Storåkers, Biwa, Larsson (1997), Eq. 78 without creep."""
     return 3.0 * _flow_stress(n, radius / 6.0)
 
 
-def _alike(n: float, radius: Floats) -> tuple[Floats, Floats]:
+def _alike(n: float, radius: Array) -> tuple[Array, Array]:
     """c^2 and mean pressure [Pa] of the similarity solution at each a/R.
 
     Solved for with none, some and more of e0 over the strain; between them by a parabola.
@@ -119,12 +117,12 @@ def _alike(n: float, radius: Floats) -> tuple[Floats, Floats]:
     return invariant, pressure * _flow_stress(n, radius)
 
 
-def _flow_stress(n: float, strain: Floats) -> Floats:
+def _flow_stress(n: float, strain: Array) -> Array:
     """K p^n [Pa], without e0."""
     return np.asarray(_strength(n) * strain**n)
 
 
-def _johnson(n: float, radius: Floats) -> Floats:
+def _johnson(n: float, radius: Array) -> Array:
     """E' a/(R sigma), Johnson's parameter: how little elastic strains count."""
     return np.asarray(_E / (1.0 - 0.3**2) * radius / _flow_stress(n, 0.2 * radius))
 
@@ -134,7 +132,7 @@ def _strength(n: float) -> float:
     return float(_FIRST / _START**n)
 
 
-def _solved(bench: Bench, n: float, accuracy: fem.Accuracy) -> tuple[Floats, Floats, Floats]:
+def _solved(bench: Bench, n: float, accuracy: fem.Accuracy) -> tuple[Array, Array, Array]:
     """Delta/R, a/R and mean pressure [Pa] without ripple."""
     law = Flow(swift(Sy=_FIRST, K=_strength(n), n=n))
     depths = fem.geometric_depths(_DEEPEST / 20.0, _DEEPEST, 80)
@@ -196,7 +194,7 @@ def speed(bench: Bench) -> Result:
     )
 
 
-def _is_plastic(radius: Floats, m: float) -> npt.NDArray[np.bool_]:
+def _is_plastic(radius: Array, m: float) -> Mask:
     """Where the faster contact is plastic, sigma its flow stress at the rate 0.4 v/a."""
     stress = _FASTER**m * (_AT_REST + _STRESS * (0.1 / radius) ** m)
     return np.asarray(_E / (1.0 - 0.3**2) * radius / stress >= _PLASTIC)
@@ -205,8 +203,8 @@ def _is_plastic(radius: Floats, m: float) -> npt.NDArray[np.bool_]:
 class Curves(NamedTuple):
     """a/R and F [N] over the depths, without ripple."""
 
-    radius: Floats
-    force: Floats
+    radius: Array
+    force: Array
 
 
 def _curves(bench: Bench, m: float, faster: float, accuracy: fem.Accuracy) -> Curves:

@@ -14,11 +14,11 @@ from collections.abc import Callable, Sequence
 from typing import NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
 from scipy.optimize import least_squares
 
 from ..... import fem
 from .....campaigns.case import Case
+from .....core.arrays import Array
 from .....core.flow import Flow, Rate, swift, voce
 from .....core.material import Material, Pair
 from .....impact import Approach, Scene, Striker, scene_of, strike
@@ -33,8 +33,6 @@ from ....proof.generators.rig import Striker as ProofStriker
 from ....proof.generators.simulate import results_of, rows_of
 from ...bench import Bench
 from ...result import Cell, Measurement, Result, Table
-
-Array = NDArray[np.float64]
 
 _BALL = Material(210e9, 0.3, 1e11, density=7800.0)
 _FLAT = Material(70e9, 0.33, 300e6, density=2700.0)

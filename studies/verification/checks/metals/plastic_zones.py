@@ -6,14 +6,12 @@ from dataclasses import dataclass
 from pathlib import Path
 
 import numpy as np
-import numpy.typing as npt
 
 from ..... import fem
 from .....campaigns.cases.pairs import pair_of
+from .....core.arrays import Array, Integers, Mask
 from ...bench import Bench, Effort
 from ...result import Measurement, Result
-
-Floats = npt.NDArray[np.float64]
 
 _RATIOS = (0.1, 1.0, 10.0)
 _FIGURES = {0.1: "2.2", 1.0: "2.3", 10.0: "2.4"}
@@ -99,7 +97,7 @@ def _as_described(last: dict[float, Drawn]) -> tuple[Measurement, ...]:
     )  # fmt: skip
 
 
-def _body(drawn: Drawn, *, sphere: bool) -> npt.NDArray[np.int64]:
+def _body(drawn: Drawn, *, sphere: bool) -> Integers:
     n = drawn.snapshot.n_sphere_quads
     return np.arange(n) if sphere else np.arange(n, len(drawn.snapshot.quads))
 
@@ -108,7 +106,7 @@ def _strain(drawn: Drawn, *, sphere: bool) -> float:
     return float(drawn.snapshot.plastic_strain[_body(drawn, sphere=sphere)].max())
 
 
-def _surface(drawn: Drawn, *, sphere: bool) -> tuple[Floats, Floats, Floats]:
+def _surface(drawn: Drawn, *, sphere: bool) -> tuple[Array, Array, Array]:
     """Current radius, von Mises stress and plastic strain of the elements along a surface."""
     s = drawn.snapshot
     x = s.points[s.quads]
@@ -176,9 +174,7 @@ def _draw(states: list[Drawn], path: Path) -> None:
     Image.open(path).convert("RGB").quantize(96).save(path, optimize=True)
 
 
-def _edge(
-    s: fem.Snapshot, points: Floats, near: npt.NDArray[np.bool_], side: float
-) -> list[Floats]:
+def _edge(s: fem.Snapshot, points: Array, near: Mask, side: float) -> list[Array]:
     """Element edges between plastic and elastic elements."""
     quads, plastic = s.quads[near], s.plastic_strain[near] > 0.0
     sides = np.sort(np.stack([quads, np.roll(quads, -1, axis=1)], axis=2).reshape(-1, 2), axis=1)
