@@ -20,7 +20,7 @@ _STAGES = ("core", "fem", "models", "campaigns")
 def canonical_json(value: Any) -> str:
     """Serialise `value` so that equal content gives equal text on every machine.
 
-    Array are written with `float.hex`, keys are sorted, tuples become lists.
+    Floats are written with `float.hex`, keys are sorted, tuples become lists.
 
     Raises
     ------

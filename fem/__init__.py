@@ -12,7 +12,7 @@ from .problem import (
 from .results.uncertainty import (
     MESH_ERRORS_FILE,
     MESH_ERRORS_FORMAT,
-    Uncertainty,
+    CurveUncertainty,
     discretisation_uncertainty,
 )
 from .solution import Counters, Curve, Profile, Snapshot, Solution, Unloading
@@ -29,7 +29,7 @@ __all__ = [
     "Profile",
     "Snapshot",
     "Solution",
-    "Uncertainty",
+    "CurveUncertainty",
     "Unloading",
     "critical_depth",
     "discretisation_uncertainty",

@@ -20,7 +20,7 @@ from ..core.unowned import unowned
 from .elements import Elements, State, gradient
 from .material import (
     NO_LAW,
-    Step,
+    MaterialStep,
     deviatoric_pk1,
     deviatoric_tangent,
     elastic_deviator,
@@ -81,7 +81,7 @@ def _mean_dilatation(x, u, e, F):
 def _step(x, old, rule, e, q, F):
     # tuples of numbers: arrays in them would be counted at every call
     G, b, s = old.F[e, q], old.b[e, q], old.strain[e, q]
-    return Step(
+    return MaterialStep(
         (F[0], F[1], F[2], F[3], F[4]),
         (G[0], G[1], G[2], G[3], G[4]),
         (b[0], b[1], b[2], b[3]),

@@ -8,7 +8,7 @@ import numpy as np
 from numba import njit
 
 from ..core.arrays import Array, Integers
-from .material import Laws, law_of
+from .material import FlowLaws, law_of
 from .material.flow import NO_RATE, at_point
 
 
@@ -56,7 +56,7 @@ class Elements(NamedTuple):
     stiffness: Array
     linear: Integers
     law: Integers
-    laws: Laws
+    laws: FlowLaws
 
     @property
     def elastic(self) -> Elements:

@@ -9,7 +9,7 @@ import numpy as np
 
 from ..core.flow import Flow, Heating, Rate
 from ..core.material import Material
-from .material import Laws, no_laws
+from .material import FlowLaws, no_laws
 from .material.flow import COWPER_SYMONDS, JOHNSON_COOK, NO_RATE, OVERSTRESS
 
 _RATES = {
@@ -21,7 +21,7 @@ _SLOW = Rate("overstress", 1.0, 1.0)
 _COLD = Heating(0.0, 1.0, 1.0)
 
 
-def laws_of(bodies: Sequence[tuple[Material, float]], unit: float) -> Laws:
+def laws_of(bodies: Sequence[tuple[Material, float]], unit: float) -> FlowLaws:
     """Laws of bodies that have one, each with its shear modulus [Pa]; `unit` is E' [Pa]."""
     if not bodies:
         return no_laws()
@@ -30,7 +30,7 @@ def laws_of(bodies: Sequence[tuple[Material, float]], unit: float) -> Laws:
     rates = [flow.rate or _SLOW for flow in flows]
     heats = [flow.heating or _COLD for flow in flows]
     most = max(2 if flow.curve is None else len(flow.curve.strain) for flow in flows)
-    return Laws(
+    return FlowLaws(
         curve=np.array(
             [_table(body, scale, most) for (body, _), scale in zip(bodies, per_stress, strict=True)]
         ),

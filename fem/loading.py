@@ -20,7 +20,7 @@ from .elements import State
 from .material import EXACT
 from .mesh import Layers, Zone
 from .newton import Solver, Timers
-from .path import MOST_CUTS, STEP_CUT, Point, Record, accept, extrapolate
+from .path import MOST_CUTS, STEP_CUT, PathPoint, Record, accept, extrapolate
 from .problem import DEEPEST, Accuracy, ContactProblem, critical_depth
 from .remesh import Transfer
 from .results.measure import read
@@ -71,7 +71,7 @@ class Loading:
         self._layers: list[Layers] = []  # of that mesh, once a transfer has walked through it
         self._beyond = 0  # steps past the end
 
-    def points(self) -> Iterator[Point | Outcome]:
+    def points(self) -> Iterator[PathPoint | Outcome]:
         """Give every accepted point; an `Outcome` ends the path early.
 
         A few points follow past the end, for the smooth curve at the last depth (`past_end`).
@@ -123,15 +123,15 @@ class Loading:
         """Whether the last point lies past the end."""
         return self._beyond > 0
 
-    def _deep_enough(self, point: Point) -> bool:
+    def _deep_enough(self, point: PathPoint) -> bool:
         radius = point.record.reading.radius
         return radius >= self.problem.radius_at_least or point.delta >= DEEPEST
 
-    def _limit(self, point: Point) -> float:
+    def _limit(self, point: PathPoint) -> float:
         elastic = point.delta < RULES.elastic_until * self._onset
         return self.accuracy.elastic_step_ratio if elastic else self.accuracy.step_ratio
 
-    def _stuck(self, point: Point) -> Outcome:
+    def _stuck(self, point: PathPoint) -> Outcome:
         return Outcome(
             Ending.NOT_CONVERGED,
             f"no equilibrium beyond Delta/R = {point.delta:.4g} (a/R = "
@@ -147,7 +147,7 @@ class Loading:
         grid = discretise(self.problem, self.accuracy, zone)
         return Solver(grid, rule=EXACT, timers=self.tally.timers)
 
-    def _first_contact(self) -> Point | None:
+    def _first_contact(self) -> PathPoint | None:
         """Equilibrium at the first depth, started from the rigid push of the sphere."""
         delta = self._stops[0]
         solver = self._solver()
@@ -174,11 +174,11 @@ class Loading:
         # below first yield F ~ Delta^(3/2), so the work so far is 2/5 F Delta
         stored += found.contact.energy
         record = Record(reading, 0.4 * reading.force * delta, stored, state.dissipated)
-        return Point(delta, found, state, record, solver)
+        return PathPoint(delta, found, state, record, solver)
 
     def _step(
-        self, point: Point, before: Array | None, last_step: float, *, goal: float, ratio: float
-    ) -> tuple[Point | None, float]:
+        self, point: PathPoint, before: Array | None, last_step: float, *, goal: float, ratio: float
+    ) -> tuple[PathPoint | None, float]:
         """Advance by at most `ratio` towards `goal`; the ratio that worked comes back."""
         for _ in range(MOST_CUTS):
             if ratio < RULES.least_step_ratio:
@@ -194,7 +194,7 @@ class Loading:
             ratio = 1.0 + (min(ratio, delta / point.delta) - 1.0) * STEP_CUT
         return None, ratio
 
-    def _follow(self, point: Point, before: Array | None) -> tuple[Point, Array | None]:
+    def _follow(self, point: PathPoint, before: Array | None) -> tuple[PathPoint, Array | None]:
         """The same point on a mesh made for its contact radius, where the old one is outgrown."""
         radius = point.record.reading.radius
         if (
@@ -231,11 +231,11 @@ class Loading:
         record = Record(
             reading, old.work, stored + found.contact.energy, state.dissipated + rubbed, rubbed
         )
-        moved = Point(point.delta, found, state, record, solver)
+        moved = PathPoint(point.delta, found, state, record, solver)
         return moved, None if before is None else transfer.displacements(before)
 
 
-def _growth(point: Point) -> float:
+def _growth(point: PathPoint) -> float:
     return next(
         (factor for most, factor in RULES.regrowth if point.equilibrium.iterations <= most), 1.0
     )

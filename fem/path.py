@@ -36,7 +36,7 @@ class Record:
 
 
 @dataclass(frozen=True)
-class Point:
+class PathPoint:
     """Where a path stands: equilibrium, material state and energies, on the mesh of `solver`."""
 
     delta: float
@@ -60,7 +60,7 @@ class Point:
         )
 
 
-def extrapolate(point: Point, before: Array | None, reach: float) -> Array:
+def extrapolate(point: PathPoint, before: Array | None, reach: float) -> Array:
     """First guess of the displacements after a step from `point`.
 
     Parameters
@@ -76,7 +76,7 @@ def extrapolate(point: Point, before: Array | None, reach: float) -> Array:
     return np.asarray(u + min(reach, RULES.stretch) * (u - before))
 
 
-def accept(point: Point, found: Equilibrium, delta: float) -> Point:
+def accept(point: PathPoint, found: Equilibrium, delta: float) -> PathPoint:
     """Return the point after `point`, with the equilibrium `found` at `delta`."""
     solver, grid = point.solver, point.grid
     seconds = grid.clock.seconds(point.delta, delta)
@@ -90,7 +90,7 @@ def accept(point: Point, found: Equilibrium, delta: float) -> Point:
     stored += found.contact.energy
     rubbed = last.rubbed + found.contact.rubbed
     record = Record(reading, work, stored, state.dissipated + rubbed, rubbed)
-    return Point(delta, found, state, record, solver)
+    return PathPoint(delta, found, state, record, solver)
 
 
 def _work_between(a: Reading, b: Reading) -> float:

@@ -16,7 +16,7 @@ import numpy as np
 
 from ..core.errors import COMPLETED, Ending, Outcome
 from .loading import Loading, Tally
-from .path import Point, Record
+from .path import PathPoint, Record
 from .problem import Accuracy, ContactProblem
 from .results.ripple import RippleTrack
 from .results.snapshot import take_profile, take_snapshot
@@ -53,7 +53,7 @@ def solve(
     tally = Tally()
     found = _Found(problem)
     outcome = COMPLETED
-    last: Point | None = None
+    last: PathPoint | None = None
     path = Loading(problem, accuracy, tally)
     for item in path.points():
         if isinstance(item, Outcome):
@@ -100,7 +100,7 @@ class _Found:
     snapshots: list[Snapshot] = field(default_factory=list)
     profiles: list[Profile] = field(default_factory=list)
 
-    def take(self, point: Point) -> None:
+    def take(self, point: PathPoint) -> None:
         """Record, unload from and picture a point where its depth asks for it."""
         wanted, delta = self.problem, point.delta
         if _among(delta, wanted.depths) or delta > wanted.depths[-1]:
@@ -156,7 +156,7 @@ def _among(delta: float, depths: tuple[float, ...]) -> bool:
     return any(abs(delta - depth) <= 1e-12 * depth for depth in depths)
 
 
-def _fraction(point: Point, problem: ContactProblem) -> float:
+def _fraction(point: PathPoint, problem: ContactProblem) -> float:
     first, last = problem.depths[0], problem.depths[-1]
     done = np.log(point.delta / (0.3 * first)) / np.log(last / (0.3 * first))
     return float(min(max(done, 0.0), 1.0))

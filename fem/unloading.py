@@ -8,13 +8,13 @@ import numpy as np
 
 from ..core.arrays import Array
 from ..core.errors import COMPLETED, Ending, Outcome
-from .path import MOST_CUTS, STEP_CUT, Point, Record, accept, extrapolate
+from .path import MOST_CUTS, STEP_CUT, PathPoint, Record, accept, extrapolate
 from .problem import ContactProblem
 from .rules import RULES
 from .solution import Curve, Unloading
 
 
-def unload(point: Point, problem: ContactProblem) -> Unloading:
+def unload(point: PathPoint, problem: ContactProblem) -> Unloading:
     """Follow the contact back to zero force, then lift the sphere off and read what is left."""
     grid, pair_R = point.grid, problem.pair.R
     records = [point.record]
@@ -52,11 +52,11 @@ def unload(point: Point, problem: ContactProblem) -> Unloading:
     )
 
 
-def _back(point: Point, records: list[Record]) -> tuple[Point, Outcome, int]:
+def _back(point: PathPoint, records: list[Record]) -> tuple[PathPoint, Outcome, int]:
     """Walk back until next to no force is left: last state, how it ended, steps; fill `records`."""
     start = point.record.reading
     here = point
-    behind: Point | None = None
+    behind: PathPoint | None = None
     steps = 0
     # a flat punch of the final radius recovers F/(2 E' a): the scale of the first step
     step = 0.05 * start.force / (2.0 * max(start.radius, 1e-12))
@@ -87,10 +87,10 @@ def _back(point: Point, records: list[Record]) -> tuple[Point, Outcome, int]:
     return here, COMPLETED, steps
 
 
-def _reload(here: Point, depths: list[float], pair_R: float) -> Curve:
+def _reload(here: PathPoint, depths: list[float], pair_R: float) -> Curve:
     """Load again through `depths`; the curve ends early where no equilibrium is found."""
     records = [here.record]
-    behind: Point | None = None
+    behind: PathPoint | None = None
     for delta in depths:
         guess = _guess(here, behind, delta)
         found = here.balanced(guess, delta)
@@ -101,14 +101,14 @@ def _reload(here: Point, depths: list[float], pair_R: float) -> Curve:
     return curve_of(records, here.grid.stress_unit, pair_R, energy=False)
 
 
-def _guess(here: Point, behind: Point | None, delta: float) -> Array:
+def _guess(here: PathPoint, behind: PathPoint | None, delta: float) -> Array:
     if behind is None:
         return here.equilibrium.u
     reach = (delta - here.delta) / (here.delta - behind.delta)
     return extrapolate(here, behind.equilibrium.u, reach)
 
 
-def _lift(here: Point) -> Array | None:
+def _lift(here: PathPoint) -> Array | None:
     """Displacements with the surfaces just apart, where the force is zero exactly."""
     grid, now = here.grid, here.record.reading
     # Hertz's way back from this force is 3/4 F/(E' a): it is long where little has yielded

@@ -2,15 +2,15 @@
 
 from __future__ import annotations
 
-from .fit import Fit, fit_tables
-from .laws import Laws, fit_laws
+from .fit import FormFit, fit_tables
+from .laws import FittedLaws, fit_laws
 from .prediction import Errors
 from .table import ResidualTable, Table, read_tables
 
 __all__ = [
     "Errors",
-    "Fit",
-    "Laws",
+    "FormFit",
+    "FittedLaws",
     "ResidualTable",
     "Table",
     "fit_laws",

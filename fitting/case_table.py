@@ -11,7 +11,7 @@ from ..core.errors import InputError
 from ..models.table import FEWEST_UNLOADINGS, LoadingCurve, PairTable, Turns, energy_exponent
 
 
-def pair_table(solution: fem.Solution, uncertainty: fem.Uncertainty) -> PairTable:
+def pair_table(solution: fem.Solution, uncertainty: fem.CurveUncertainty) -> PairTable:
     """Return what a law needs of a solve.
 
     Parameters

@@ -24,11 +24,13 @@ from ..models.coefficients import FORMAT
 from ..models.correction import CHANNELS, GROUPS
 from ..models.hardening import CORRECTED
 from .hardening import HardeningFit
-from .laws import Laws
+from .laws import FittedLaws
 from .table import Table
 
 
-def coefficients_content(laws: Laws, table: Table, campaigns: Sequence[Path]) -> dict[str, Any]:
+def coefficients_content(
+    laws: FittedLaws, table: Table, campaigns: Sequence[Path]
+) -> dict[str, Any]:
     """Return the content of the coefficients file.
 
     Parameters

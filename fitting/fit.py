@@ -29,7 +29,7 @@ ENOUGH = RULES.form_settled
 
 
 @dataclass(frozen=True)
-class Fit:
+class FormFit:
     """Result of the regression.
 
     Parameters
@@ -67,7 +67,7 @@ def fit_tables(
     held: Mapping[str, float] | None = None,
     start: Mapping[str, float] | None = None,
     change: float = 1e-8,
-) -> Fit:
+) -> FormFit:
     """Fit the compact law to a campaign.
 
     Parameters
@@ -88,7 +88,7 @@ def fit_tables(
     clusters = np.concatenate([np.tile(table.case, 3), np.tile(turns.case, 4)])
     covariance = np.zeros((len(values), len(values)))
     covariance[np.ix_(free, free)] = covariance_of(jacobian, misfit, clusters)
-    return Fit(
+    return FormFit(
         values=values,
         standard_errors=np.sqrt(np.maximum(np.diag(covariance), 0.0)),
         covariance=covariance,

@@ -17,7 +17,7 @@ from ..models.correction import PairCorrection
 from ..models.uncertainty import Calibration
 from .calibrate import Misses, calibrate, misses, within
 from .correct import compact_numbers, correct, corrected_prediction
-from .fit import ENOUGH, Fit, fit_tables
+from .fit import ENOUGH, FormFit, fit_tables
 from .prediction import Errors, Prediction, errors_of, predict
 from .ripple import ripple_of
 from .rules import RULES
@@ -50,16 +50,16 @@ class JudgedLaws:
 
 
 @dataclass(frozen=True)
-class Laws:
+class FittedLaws:
     """Result of both regressions: the compact law, the correction that makes the fitted one."""
 
-    fit: Fit
+    fit: FormFit
     correction: PairCorrection
     compact: JudgedLaws
     fitted: JudgedLaws
 
 
-def fit_laws(table: Table, turns: ResidualTable) -> Laws:
+def fit_laws(table: Table, turns: ResidualTable) -> FittedLaws:
     """Fit both laws, and judge them on combinations left out.
 
     Parameters
@@ -94,7 +94,7 @@ def fit_laws(table: Table, turns: ResidualTable) -> Laws:
         _judged(seen, unseen, misses(unseen, of_pair, table, turns, alone=alone), table, turns)
         for seen, unseen, of_pair in sides
     )
-    return Laws(fit, correction, compact, fitted)
+    return FittedLaws(fit, correction, compact, fitted)
 
 
 def stands_alone(table: Table) -> Mask:

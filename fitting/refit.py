@@ -19,7 +19,7 @@ from ..models.hardening import hardening_law
 from .calibrate import misses, within
 from .coefficients import coefficients_content, hardening_content
 from .hardening import fit_hardening, hardening_records, judged_designs
-from .laws import Laws, fit_laws
+from .laws import FittedLaws, fit_laws
 from .prediction import Errors, errors_of, predict_by
 from .report import Within
 from .table import ResidualTable, Table, read_tables
@@ -63,7 +63,7 @@ class Refit:
         Whether there were metals that harden, and `content` has their law.
     """
 
-    laws: Laws
+    laws: FittedLaws
     table: Table
     turns: ResidualTable
     content: dict[str, Any]

@@ -10,7 +10,7 @@ from typing import Any
 import numpy as np
 
 from ..core.output import write_file
-from .laws import Laws
+from .laws import FittedLaws
 from .prediction import Errors, Prediction, errors_of
 from .ripple import ripple_of, without_ripple
 from .table import ResidualTable, Table
@@ -134,7 +134,7 @@ def hardening_rows(columns: Mapping[str, Mapping[str, Sequence[float]]]) -> list
 
 
 def write_report(
-    laws: Laws,
+    laws: FittedLaws,
     content: dict[str, Any],
     table: Table,
     turns: ResidualTable,
@@ -204,7 +204,9 @@ def about_hardening(content: dict[str, Any]) -> list[str]:
     return [markdown(hardening_rows(columns)), markdown(uncertainty_rows(within))]
 
 
-def _about_data(laws: Laws, content: dict[str, Any], table: Table, turns: ResidualTable) -> str:
+def _about_data(
+    laws: FittedLaws, content: dict[str, Any], table: Table, turns: ResidualTable
+) -> str:
     """How many rows there are, how fine the finite elements, and how much their curves ripple."""
     levels = "; ".join(", ".join(c["accuracy"]) for c in content["provenance"]["campaigns"])
     ripple_F, ripple_a = (100.0 * float(np.median(r)) for r in ripple_of(table))

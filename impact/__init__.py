@@ -23,7 +23,7 @@ from .integrate import (
     strike_rows,
     traced,
 )
-from .inverse import Inferred, Measured, infer
+from .inverse import Inferred, MeasuredScar, infer
 from .press import Pressed, dent_radius, pressed
 from .result import Impact
 from .scene import (
@@ -56,7 +56,7 @@ __all__ = [
     "Imprint",
     "Inferred",
     "Instrument",
-    "Measured",
+    "MeasuredScar",
     "Modes",
     "Press",
     "Pressed",

@@ -70,7 +70,7 @@ def alpha_curve(striker: Striker, angles: Array, *, mu: float) -> Array:
 
 @unstated_equal
 @dataclass(frozen=True, slots=True)
-class Measured:
+class MeasuredScar:
     """What an oblique impact left behind; depth, sliding length and speeds positive, SI."""
 
     angle: float
@@ -114,7 +114,7 @@ INFERRED = ("alpha", "impulse", "duration", "mean_force", "return_duration", "re
 """The numbers of `Inferred`."""
 
 
-def infer(striker: Striker, measured: Measured) -> Inferred:
+def infer(striker: Striker, measured: MeasuredScar) -> Inferred:
     """Mean force and duration from depth, sliding length and restitution (corrected 5.11, 5.14).
 
     x_T(T) = alpha (delta_p - v_i T) with x_T = -L_s gives T; P_y = (1 + e) abs(v_i) / B and
@@ -154,7 +154,7 @@ def infer(striker: Striker, measured: Measured) -> Inferred:
 
 
 def _objections(
-    striker: Striker, measured: Measured, duration: float, impulse: float
+    striker: Striker, measured: MeasuredScar, duration: float, impulse: float
 ) -> tuple[str, ...]:
     """Check the assumptions against the inputs; each failure is one line with its number."""
     found = []

@@ -9,12 +9,12 @@ if TYPE_CHECKING:
     from .checks import Audit, Finding, Severity, audit
     from .columns import CONDITIONS, MEASURED
     from .noise import Noise
-    from .recording_set import Approach, RecordingSet, read, write
-    from .setup_file import FORMAT, Setup
+    from .recording_set import ApproachMotion, RecordingSet, read, write
+    from .setup_file import FORMAT, SetFile
     from .trials import Trials
 
 _FROM = {
-    "Approach": "recording_set",
+    "ApproachMotion": "recording_set",
     "Audit": "checks",
     "CONDITIONS": "columns",
     "FORMAT": "setup_file",
@@ -22,7 +22,7 @@ _FROM = {
     "MEASURED": "columns",
     "Noise": "noise",
     "RecordingSet": "recording_set",
-    "Setup": "setup_file",
+    "SetFile": "setup_file",
     "Severity": "checks",
     "Trials": "trials",
     "audit": "checks",
@@ -34,12 +34,12 @@ __all__ = [
     "CONDITIONS",
     "FORMAT",
     "MEASURED",
-    "Approach",
+    "ApproachMotion",
     "Audit",
     "Finding",
     "Noise",
     "RecordingSet",
-    "Setup",
+    "SetFile",
     "Severity",
     "Trials",
     "audit",

@@ -30,7 +30,7 @@ from .noise import Noise
 from .rules import RULES
 from .same_file import taken_twice
 from .series import read_profile, read_trace, series_in
-from .setup_file import Setup, flowing, setup_text, without_marks
+from .setup_file import SetFile, flowing, setup_text, without_marks
 from .shown import picture_of, table_of
 from .trials import Trials, read_trials, trials_text
 
@@ -39,7 +39,7 @@ if TYPE_CHECKING:
 
 
 @dataclass(frozen=True, slots=True, eq=False)
-class Approach:
+class ApproachMotion:
     """The motion just before touch, each array of shape (n,).
 
     Parameters
@@ -85,7 +85,7 @@ class RecordingSet:
         Measured flow curves by the key of their body, `target` or `strikers.NAME`.
     """
 
-    setup: Setup
+    setup: SetFile
     trials: Trials
     traces: Mapping[str, Path] = field(default_factory=dict)
     profiles: Mapping[str, Path] = field(default_factory=dict)
@@ -177,7 +177,7 @@ class RecordingSet:
         )
 
     @cached_property
-    def approach(self) -> Approach:
+    def approach(self) -> ApproachMotion:
         """The motion just before touch, from speed or height of fall, angle, and the columns."""
         trials, g = self.trials, self.setup.gravity_m_s2
         rod = np.array([s.shape == "rod" for s in self.strikers()], dtype=bool)
@@ -191,7 +191,7 @@ class RecordingSet:
         )
         given = trials.approach_tangential_m_s
         along = np.where(trials.pressed, 0.0, np.where(np.isnan(given), along, given))
-        return Approach(
+        return ApproachMotion(
             normal=normal,
             normal_std=std,
             angle=np.where(rod, angle, np.pi / 2.0),
@@ -281,14 +281,14 @@ def read(folder: Path | str, *, unfinished: bool = False) -> RecordingSet:
 
 def _read_setup(
     path: Path, mistakes: list[InputError]
-) -> tuple[Setup | None, frozenset[str], list[str]]:
+) -> tuple[SetFile | None, frozenset[str], list[str]]:
     """Return the set-up, the names of its strikers even when something else is wrong, open keys."""
     content: dict[str, object] = {}
     to_fill: list[str] = []
     setup = None
     try:
         content, to_fill = without_marks(read_toml(path))
-        setup = parse_model(content, Setup, source=str(path))
+        setup = parse_model(content, SetFile, source=str(path))
     except InputErrors as several:
         mistakes += several.errors
     except InputError as error:
@@ -305,7 +305,9 @@ def _read_setup(
     return setup, frozenset(tables) if isinstance(tables, dict) else frozenset(), to_fill
 
 
-def _read_flows(setup: Setup, folder: Path, mistakes: list[InputError]) -> dict[str, MeasuredFlow]:
+def _read_flows(
+    setup: SetFile, folder: Path, mistakes: list[InputError]
+) -> dict[str, MeasuredFlow]:
     flows = {}
     for key, body in flowing(setup).items():
         if Path(body.flow_curve).name != body.flow_curve:
@@ -321,7 +323,7 @@ def _read_flows(setup: Setup, folder: Path, mistakes: list[InputError]) -> dict[
     return flows
 
 
-def _with_strengths(setup: Setup, flows: Mapping[str, MeasuredFlow]) -> Setup:
+def _with_strengths(setup: SetFile, flows: Mapping[str, MeasuredFlow]) -> SetFile:
     """Read the strength of a body from its flow curve unless it is stated.
 
     The piece that is struck is not the specimen that was pulled.

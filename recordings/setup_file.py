@@ -23,7 +23,7 @@ _NEEDED = ("tip_radius_m", "mass_kg", "radius_m", "length_m")
 """Sizes without which a striker cannot be read, in the order of the format."""
 
 
-class Setup(Rig):
+class SetFile(Rig):
     """All of set.toml."""
 
     format: Literal["recording-set/1"]
@@ -56,7 +56,7 @@ def without_marks(content: Mapping[str, Any], key: str = "") -> tuple[dict[str, 
     return kept, open_keys
 
 
-def setup_text(setup: Setup, *, before: Setup | None = None, text: str = "") -> str:
+def setup_text(setup: SetFile, *, before: SetFile | None = None, text: str = "") -> str:
     """Return set.toml; keys at their default are left out, numbers keep every digit.
 
     Parameters
@@ -71,7 +71,7 @@ def setup_text(setup: Setup, *, before: Setup | None = None, text: str = "") -> 
     return tomlkit.dumps(document)
 
 
-def _as_written(setup: Setup) -> dict[str, Any]:
+def _as_written(setup: SetFile) -> dict[str, Any]:
     """The file's keys; what a dent's edge is stands in `[noise]`."""
     plain = _plain(setup)
     edge = plain.pop("dent_edge", None)

@@ -29,7 +29,7 @@ class _Checked(type):
         return isinstance(instance, Body)
 
 
-class Material(metaclass=_Checked):
+class CheckedMaterial(metaclass=_Checked):
     """A material in SI units, of magnitudes that a file would be allowed to state.
 
     Takes what `core.Material` takes and returns one. That one knows no units: its numbers may be
@@ -47,3 +47,7 @@ class Material(metaclass=_Checked):
     dentscope.core.errors.InputErrors: Material: E_Pa: 200.0 (allowed: a number from 1000 to \
 2e+12; 200 GPa would be 2e+11)
     """
+
+
+Material = CheckedMaterial
+"""The name that `dentscope` gives it."""

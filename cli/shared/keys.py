@@ -105,9 +105,9 @@ def _schema(kind: str) -> type[BaseModel]:
         from ...impact.files.inverse_file import InverseFile
 
         return InverseFile
-    from ...recordings.setup_file import Setup
+    from ...recordings.setup_file import SetFile
 
-    return Setup
+    return SetFile
 
 
 def _keys(model: type[BaseModel], table: str) -> Iterator[Key]:

@@ -20,7 +20,7 @@ from ..comparison.cells import compared
 from ..comparison.forward import Point, Simulator
 from ..comparison.problem import Problem
 from ..inference.fit import Fit
-from ..nulls import Rig, discrepancies, scatter
+from ..nulls import NullRig, discrepancies, scatter
 from ..nulls.laws import NullReference
 from ..nulls.motion import NullBodies
 from ..rules import RULES
@@ -101,7 +101,7 @@ def null_residuals(simulator: Simulator, base: Fit, count: int, rng: np.random.G
     return Nulls(law, unit, unknown, form)
 
 
-def rig_of(problem: Problem, z: Array) -> Rig:
+def rig_of(problem: Problem, z: Array) -> NullRig:
     """Return the rig at the unknowns z, as plain numbers for the null generators."""
     scenes = problem.scenes(z)
     known: dict[tuple[float, ...], NullReference] = {}
@@ -128,7 +128,7 @@ def rig_of(problem: Problem, z: Array) -> Rig:
         np.array([s.instrument.scan_height for s in scenes]),
     )
     loads = np.array([s.press.load if s.press else math.nan for s in scenes])
-    return Rig(bodies, references, loads)
+    return NullRig(bodies, references, loads)
 
 
 def _reference(scene: Scene, known: dict[tuple[float, ...], NullReference]) -> NullReference:

@@ -7,6 +7,6 @@ baseline's curve comes in as plain numbers, to which each law is levelled.
 
 from __future__ import annotations
 
-from .ensemble import Rig, discrepancies, scatter
+from .ensemble import NullRig, discrepancies, scatter
 
-__all__ = ["Rig", "discrepancies", "scatter"]
+__all__ = ["NullRig", "discrepancies", "scatter"]

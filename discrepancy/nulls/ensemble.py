@@ -14,7 +14,7 @@ from .press import press
 
 
 @dataclass(frozen=True, eq=False)
-class Rig:
+class NullRig:
     """Conditions in plain numbers.
 
     Parameters
@@ -33,7 +33,7 @@ class Rig:
 
 
 def discrepancies(
-    rig: Rig, count: int, rng: np.random.Generator, size: dict[str, float]
+    rig: NullRig, count: int, rng: np.random.Generator, size: dict[str, float]
 ) -> dict[str, Array]:
     """Return observables of `count` null laws, each of shape (count, conditions).
 

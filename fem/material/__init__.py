@@ -9,19 +9,19 @@ with heat (`flow`).
 
 from __future__ import annotations
 
-from .flow import NO_LAW, Law, Laws, law_of, no_laws
+from .flow import NO_LAW, FlowLaws, Law, law_of, no_laws
 from .slide import EXACT, RADIAL
 from .tangent import deviatoric_tangent
 from .tensor import exponential, log_strain
-from .update import Step, Updated, deviatoric_pk1, elastic_deviator, hardened
+from .update import MaterialStep, Updated, deviatoric_pk1, elastic_deviator, hardened
 
 __all__ = [
     "EXACT",
     "NO_LAW",
     "RADIAL",
     "Law",
-    "Laws",
-    "Step",
+    "FlowLaws",
+    "MaterialStep",
     "Updated",
     "deviatoric_pk1",
     "deviatoric_tangent",

@@ -23,7 +23,7 @@ _ROUND_OFF = RULES.root_round_off
 _MOST = RULES.root_rounds
 
 
-class Laws(NamedTuple):
+class FlowLaws(NamedTuple):
     """The flow laws of a solve, one row each (R = 1, E' = 1).
 
     Parameters
@@ -50,12 +50,12 @@ class Laws(NamedTuple):
 
 
 class Law(NamedTuple):
-    """One point's law in one step: numbers of `Laws`, and where the step starts.
+    """One point's law in one step: numbers of `FlowLaws`, and where the step starts.
 
     Parameters
     ----------
     rate, reference, number, overstress, rise, exponent
-        As in `Laws`.
+        As in `FlowLaws`.
     strain, work
         Plastic strain and plastic work so far [-, E'].
     static
@@ -156,10 +156,10 @@ def table(curve, p):
     return value, grow / h
 
 
-def no_laws() -> Laws:
+def no_laws() -> FlowLaws:
     """Laws of a solve in which all is perfectly plastic."""
     none = np.empty(0)
-    return Laws(np.empty((0, 3, 0)), np.empty(0, np.int64), *[none] * 5)
+    return FlowLaws(np.empty((0, 3, 0)), np.empty(0, np.int64), *[none] * 5)
 
 
 @njit(cache=True)

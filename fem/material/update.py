@@ -25,7 +25,7 @@ Five = tuple[float, float, float, float, float] | Array
 MARGIN = RULES.yield_margin
 
 
-class Step(NamedTuple):
+class MaterialStep(NamedTuple):
     """One step of a material point.
 
     Parameters
@@ -81,7 +81,7 @@ class Updated(NamedTuple):
 def hardened(step, law, curve, strain, work):
     """The same step of a point that follows `law`, after a plastic strain and work."""
     here, radius = at_point(law, curve, strain, work)
-    return Step(step.F, step.F_old, step.b_old, step.e_old, radius, step.rule, True, here)
+    return MaterialStep(step.F, step.F_old, step.b_old, step.e_old, radius, step.rule, True, here)
 
 
 @njit(cache=True)

@@ -31,7 +31,7 @@ MESH_ERRORS_FORMAT = "dentscope-mesh-errors/1"
 
 
 @dataclass(frozen=True)
-class Uncertainty:
+class CurveUncertainty:
     """Standard uncertainty of a loading curve's columns, each of shape (n,).
 
     Parameters
@@ -70,7 +70,7 @@ def largest_force_error(level: str, pair: Pair, depth: float) -> float:
 
 def discretisation_uncertainty(
     curve: Curve, problem: ContactProblem, accuracy: Accuracy
-) -> Uncertainty:
+) -> CurveUncertainty:
     """Uncertainty that mesh and step bring at a level of accuracy.
 
     Parameters
@@ -95,7 +95,7 @@ def discretisation_uncertainty(
     at = {name: np.interp(x, knots, row) for name, row in content["levels"][accuracy.level].items()}
     # the last node that touches lies anywhere in the last ring
     ring = accuracy.fine / math.sqrt(3.0)
-    return Uncertainty(
+    return CurveUncertainty(
         force=at["force"] * curve.force,
         radius=at["radius"] * curve.radius,
         radius_last_node=np.hypot(at["radius"], ring) * curve.radius_last_node,

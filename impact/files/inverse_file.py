@@ -14,7 +14,7 @@ from ...core.errors import InputError, InputErrors
 from ...core.inputs.toml_input import InputTable, parse_model, read_toml
 from ...core.rig import Length, Mass, Positive, Radius
 from ...core.unstated import unstated_equal
-from ..inverse import INFERRED, Inferred, Measured, infer
+from ..inverse import INFERRED, Inferred, MeasuredScar, infer
 from ..scene import Striker
 from .setup import FlowingStriker
 
@@ -92,7 +92,7 @@ class InverseRow:
     """One oblique impact: what was measured, what follows, what the thesis printed."""
 
     name: str
-    measured: Measured
+    measured: MeasuredScar
     inferred: Inferred
     printed_duration: float = math.nan
     printed_force: float = math.nan
@@ -115,7 +115,7 @@ def read_inverse(path: Path) -> tuple[Striker, list[InverseRow]]:
     rod = found.striker.rod()
     rows = []
     for i, trial in enumerate(found.trial, start=1):
-        measured = Measured(
+        measured = MeasuredScar(
             math.radians(trial.angle_deg), trial.impact_speed_m_s, trial.friction_impulse_ratio,
             trial.restitution, trial.permanent_depth_m, trial.sliding_length_m,
             math.nan if trial.rebound_m_s is None else trial.rebound_m_s,
@@ -150,7 +150,7 @@ def _check_striker(content: Mapping[str, Any], source: str) -> None:
         raise InputErrors(tuple(errors))
 
 
-def _deviations(table: _RodTable, measured: Measured) -> dict[str, float]:
+def _deviations(table: _RodTable, measured: MeasuredScar) -> dict[str, float]:
     """Standard deviations of what is inferred, by those of the rod's numbers; others are exact."""
     total = dict.fromkeys(INFERRED, 0.0)
     for name in _NUMBERS:

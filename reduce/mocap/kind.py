@@ -15,14 +15,14 @@ from ..pictures import draw_refused
 from ..reduced import Reduced
 from .body import BodyFile, make_body
 from .file import Markers, read_markers
-from .options import Options
+from .options import MocapOptions
 from .picture import draw_mocap, draw_point
 from .point import PointBounce, reduce_point
 from .reduction import Hit, MocapReduction, MocapScene, reduce_mocap
 from .rigid import rigid_poses
 
 
-def reduce(path: Path, options: Options) -> Reduced:
+def reduce(path: Path, options: MocapOptions) -> Reduced:
     """Fit a rigid body to the markers and read its motion before and after each impact.
 
     Raises
@@ -67,7 +67,7 @@ def reduce(path: Path, options: Options) -> Reduced:
     )  # fmt: skip
 
 
-def _point(path: Path, markers: Markers, scene: MocapScene, options: Options) -> Reduced:
+def _point(path: Path, markers: Markers, scene: MocapScene, options: MocapOptions) -> Reduced:
     found = reduce_point(markers, scene, spin=options.spin)
     values = {"position_noise_m": Measured(found.noise, math.nan)}
     values |= _each(found.bounces)

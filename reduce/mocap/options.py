@@ -18,7 +18,7 @@ def _three_numbers(text: str) -> bool:
     return len(text.split(",")) == 3 and all(math.isfinite(number(v)) for v in text.split(","))
 
 
-class Options(InputTable):
+class MocapOptions(InputTable):
     """Options of the reduction of motion capture."""
 
     shape: Literal["rod", "sphere", "body"] = Field(
@@ -51,7 +51,7 @@ class Options(InputTable):
     )
 
     @model_validator(mode="after")
-    def _sizes(self) -> Options:
+    def _sizes(self) -> MocapOptions:
         if self.shape != "body" and self.tip_radius_m is None:
             raise ValueError("tip_radius_m is needed: the radius of the tip or of the sphere")
         if self.shape == "rod" and self.length_m is None:

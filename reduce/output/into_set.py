@@ -26,7 +26,7 @@ from ...core.output import csv_text, finish_pending, locked, write_files
 from ...core.rig import Quantity
 from ...recordings.columns import CONDITIONS, MEASURED, STD_SUFFIX
 from ...recordings.recording_set import RecordingSet, files_of, read
-from ...recordings.setup_file import Setup, setup_text, without_marks
+from ...recordings.setup_file import SetFile, setup_text, without_marks
 from ...recordings.template import Shape, template_text
 from ...recordings.trials import Trials
 from ..measured import Measured, Trial
@@ -55,7 +55,7 @@ def store(
     *,
     kind: str,
     options: Mapping[str, Any],
-    setup: Setup | None = None,
+    setup: SetFile | None = None,
 ) -> Stored:
     """Write a reduction into a set, new or existing.
 
@@ -114,7 +114,7 @@ def store_each(
     folder: Path,
     *,
     kind: str,
-    setup: Setup,
+    setup: SetFile,
 ) -> tuple[list[Stored], list[str]]:
     """Write many raw files into one set, those that show nothing left out.
 
@@ -181,7 +181,7 @@ def _stated_body(shape: Shape, options: Mapping[str, Any]) -> dict[str, Measured
     return {key: value for key, value in body.items() if value is not None}
 
 
-def _set_before(folder: Path, setup: Setup | None, *, shape: Shape) -> tuple[RecordingSet, str]:
+def _set_before(folder: Path, setup: SetFile | None, *, shape: Shape) -> tuple[RecordingSet, str]:
     """Return the set as it is, or an empty one, and its set.toml as text."""
     if folder.exists() and not folder.is_dir():
         raise InputError("not a folder", source=str(folder), allowed="the folder of a set")
@@ -191,9 +191,9 @@ def _set_before(folder: Path, setup: Setup | None, *, shape: Shape) -> tuple[Rec
             return _empty(setup, None), setup_text(setup)
         text = template_text(shape, folder.resolve().name)
         content = without_marks(tomllib.loads(text))[0]
-        return _empty(parse_model(content, Setup, source=str(file)), None), text
+        return _empty(parse_model(content, SetFile, source=str(file)), None), text
     content, _ = without_marks(read_toml(file))
-    old = parse_model(content, Setup, source=str(file))
+    old = parse_model(content, SetFile, source=str(file))
     text = file.read_text(encoding="utf-8")
     rows = (folder / "trials.csv").exists() and _has_rows(folder / "trials.csv")
     found = read(folder, unfinished=True) if rows else _empty(old, folder)
@@ -207,7 +207,7 @@ def _has_rows(path: Path) -> bool:
     return len([line for line in path.read_bytes().splitlines() if line.strip(b" ,")]) > 1
 
 
-def _empty(setup: Setup, folder: Path | None) -> RecordingSet:
+def _empty(setup: SetFile, folder: Path | None) -> RecordingSet:
     return RecordingSet(setup, Trials((), (), np.empty(0)), folder=folder)
 
 

@@ -14,11 +14,11 @@ from .ball import reduce_ball
 from .crater import Crater, reduce_scan
 from .file import LineScan, read_scan
 from .line import reduce_line
-from .options import Options
+from .options import ScanOptions
 from .picture import draw_ball, draw_crater, draw_groove
 
 
-def reduce(path: Path, options: Options) -> Reduced:
+def reduce(path: Path, options: ScanOptions) -> Reduced:
     """Measure the deepest crater of a scan or a profile, or the radius of a ball.
 
     Raises
@@ -51,7 +51,7 @@ def reduce(path: Path, options: Options) -> Reduced:
     )  # fmt: skip
 
 
-def _ball(path: Path, scan: object, options: Options) -> Reduced:
+def _ball(path: Path, scan: object, options: ScanOptions) -> Reduced:
     if isinstance(scan, LineScan):
         raise InputError("a line profile", source=str(path), key="shows", allowed="a map of a ball")
     found = reduce_ball(scan, reach=options.reach_m)  # type: ignore[arg-type]

@@ -9,7 +9,7 @@ from pydantic import Field
 from ...core.inputs.toml_input import InputTable
 
 
-class Options(InputTable):
+class ScanOptions(InputTable):
     """Options of the reduction of a scan."""
 
     shows: Literal["crater", "ball"] = Field(

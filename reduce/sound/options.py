@@ -8,7 +8,7 @@ from ..bounces.options import BounceOptions
 from ..time_window import TimeWindow
 
 
-class Options(BounceOptions, TimeWindow):
+class SoundOptions(BounceOptions, TimeWindow):
     """Options of the reduction of a sound."""
 
     least_rise_db: float = Field(

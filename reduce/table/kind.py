@@ -18,7 +18,7 @@ from ..rules import RULES
 from .file import Columns, read_columns
 from .force import reduce_pulse
 from .height import reduce_heights
-from .options import Options
+from .options import TableOptions
 from .picture import draw_heights, draw_pulse, draw_tension, draw_times, draw_trials
 from .pulse import Pulse
 from .specimen import strain_unit, stress_unit
@@ -53,7 +53,7 @@ class Series(NamedTuple):
         return f"{self.missed.size} cells hold no number but {held}"
 
 
-def reduce(path: Path, options: Options) -> Reduced:
+def reduce(path: Path, options: TableOptions) -> Reduced:
     """Measure what a table holds.
 
     Raises
@@ -89,7 +89,7 @@ def reduce(path: Path, options: Options) -> Reduced:
     )  # fmt: skip
 
 
-def _pulse(path: Path, table: Columns, options: Options) -> Reduced:
+def _pulse(path: Path, table: Columns, options: TableOptions) -> Reduced:
     series = _series(table, options)
     time, value, column = series.time, series.value, series.column
     unit = options.gain
@@ -138,7 +138,7 @@ def _whole(pulse: Pulse, series: Series, source: str) -> None:
         )  # fmt: skip
 
 
-def _tension(path: Path, table: Columns, options: Options) -> Reduced:
+def _tension(path: Path, table: Columns, options: TableOptions) -> Reduced:
     at, value = table.find(options.time, key="time"), table.find(options.value, key="value")
     parts = strain_unit(table, at, given=options.gauge_length_mm)
     unit = stress_unit(table, value, given=options.value_unit, area_mm2=options.area_mm2)
@@ -157,7 +157,7 @@ def _tension(path: Path, table: Columns, options: Options) -> Reduced:
     )  # fmt: skip
 
 
-def _heights(path: Path, table: Columns, options: Options) -> Reduced:
+def _heights(path: Path, table: Columns, options: TableOptions) -> Reduced:
     series = _series(table, options)
     time, value, column = series.time, series.value, series.column
     said = table.unit(column) if options.value_unit == "file" else options.value_unit
@@ -179,7 +179,7 @@ def _heights(path: Path, table: Columns, options: Options) -> Reduced:
     )  # fmt: skip
 
 
-def _bounces(path: Path, table: Columns, options: Options) -> Reduced:
+def _bounces(path: Path, table: Columns, options: TableOptions) -> Reduced:
     column = table.find(options.time, key="time")
     unit = table.factor(column, "time", given=options.time_unit, key="time_unit", default="s")
     times = table.values[:, column] * unit
@@ -208,7 +208,7 @@ def _counts(column: Array) -> bool:
     return steps.size > 0 and bool(np.mean(steps == 1.0) > 0.9)
 
 
-def _series(table: Columns, options: Options) -> Series:
+def _series(table: Columns, options: TableOptions) -> Series:
     """Times and numbers of the part that is used, and the cells in it that hold no number."""
     alone = table.values.shape[1] == 1
     chosen = "value" in options.model_fields_set or not alone
@@ -242,7 +242,7 @@ def _series(table: Columns, options: Options) -> Series:
     return Series(time[ahead], value[ahead], column, missed, marks)
 
 
-def _times(table: Columns, options: Options, *, alone: bool) -> Array:
+def _times(table: Columns, options: TableOptions, *, alone: bool) -> Array:
     """Times of all rows [s]: of their column, or of rows that are as far apart as is said."""
     rows = np.arange(table.values.shape[0], dtype=float)
     if alone:

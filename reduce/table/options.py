@@ -14,7 +14,7 @@ Holds = Literal[
 ]
 
 
-class Options(BounceOptions, TimeWindow):
+class TableOptions(BounceOptions, TimeWindow):
     """Options of the reduction of a table."""
 
     holds: Holds = Field(

@@ -11,7 +11,7 @@ from ..images.options import PictureOptions
 from ..rules import RULES
 
 
-class Options(PictureOptions, BallOptions):
+class VideoOptions(PictureOptions, BallOptions):
     """Options of the reduction of a video."""
 
     frame_rate_hz: float = Field(gt=0.0, description="the camera's own frames per second")

@@ -10,7 +10,7 @@ from ...core.inputs.toml_input import read_toml
 from ...core.material import Material
 from ...impact.files.inverse_file import InverseRow
 from ...impact.integrate import strike
-from ...impact.inverse import Measured, infer
+from ...impact.inverse import MeasuredScar, infer
 from ...impact.result import Impact
 from ...impact.scene import Approach, Friction, Striker, scene_of
 from ...models.base import ContactLaw
@@ -32,7 +32,7 @@ def thesis_rows(*, mass: float | None = None) -> tuple[Striker, list[InverseRow]
     rod = thesis_rod(mass=mass)
     rows = []
     for e in read_toml(REFERENCE / "chapter45.toml")["experiment"]:
-        measured = Measured(
+        measured = MeasuredScar(
             math.radians(e["angle_deg"]), -e["approach_m_s"], e["friction"], e["restitution"],
             -e["depth_m"], -e["sliding_m"], e["rebound_m_s"],
         )  # fmt: skip

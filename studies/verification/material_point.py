@@ -12,7 +12,7 @@ from ...fem.laws import laws_of
 from ...fem.material import (
     EXACT,
     NO_LAW,
-    Step,
+    MaterialStep,
     Updated,
     deviatoric_pk1,
     elastic_deviator,
@@ -43,15 +43,15 @@ class MaterialPoint:
         laws = laws_of([(metal, self.shear)], metal.E)
         self.curve = laws.curve[0]
         self._law = law_of(laws, 0, 2.0 * self.G, seconds)
-        self._last = Step(
+        self._last = MaterialStep(
             IDENTITY, IDENTITY, np.array([1.0, 1.0, 0.0, 1.0]), np.zeros(4),
             float(self.curve[1, 0]), rule, False, NO_LAW,
         )  # fmt: skip
         self.strain, self.work = 0.0, 0.0
 
-    def step(self, F: Array) -> Step:
+    def step(self, F: Array) -> MaterialStep:
         """The step from where the point is to a deformation gradient (5,)."""
-        step: Step = hardened(
+        step: MaterialStep = hardened(
             self._last._replace(F=F), self._law, self.curve, self.strain, self.work
         )
         return step

@@ -59,6 +59,25 @@ def test_the_root_holds_the_packages_own_modules_alone():
     assert {p.name for p in ROOT.glob("*.py")} == {"__init__.py", "__main__.py"}
 
 
+def test_a_public_class_has_a_name_of_its_own():
+    places: dict[str, list[str]] = {}
+    for path in (p for p in sources() if p.parts[0] != "studies"):
+        for node in tree(path).body:
+            if isinstance(node, ast.ClassDef) and not node.name.startswith("_"):
+                places.setdefault(node.name, []).append(str(path))
+    assert not {name: found for name, found in places.items() if len(found) > 1}
+
+
+def test_each_kind_of_array_has_one_name():
+    named = [
+        str(path)
+        for path in sources()
+        for kind in ("float64", "int64", "intp", "int_", "bool_")
+        if f"NDArray[np.{kind}]" in (ROOT / path).read_text(encoding="utf-8")
+    ]
+    assert set(named) == {"core/arrays.py"}
+
+
 def test_no_circle_of_imports():
     graph = grimp.build_graph("dentscope", exclude_type_checking_imports=True, cache_dir=None)
     names = sorted(n for n in graph.modules if n.split(".")[1:2] not in [[a] for a in APART])

@@ -11,7 +11,7 @@ from dentscope.fem.material import (
     EXACT,
     NO_LAW,
     RADIAL,
-    Step,
+    MaterialStep,
     deviatoric_tangent,
     elastic_deviator,
     no_laws,
@@ -124,7 +124,7 @@ def plain_scikit_fem(mesh, u, state, radius, rule):
         for q in range(4):
             f = F[e, q]
             old = (state.F[e, q], state.b[e, q], state.strain[e, q])
-            step = Step(f, *old, radius, rule, False, NO_LAW)
+            step = MaterialStep(f, *old, radius, rule, False, NO_LAW)
             s0, s1, s2, s3 = elastic_deviator(step, NO_CURVE).e
             tau = 2.0 * G * np.array([[s0, s2], [s2, s1]])
             P[e, q, :4] = (tau @ np.linalg.inv(f[:4].reshape(2, 2)).T).ravel()
@@ -182,7 +182,7 @@ def point_tangents(F, state, radius, rule):
     for e in range(F.shape[0]):
         for q in range(4):
             old = (state.F[e, q], state.b[e, q], state.strain[e, q])
-            step = Step(F[e, q], *old, radius, rule, False, NO_LAW)
+            step = MaterialStep(F[e, q], *old, radius, rule, False, NO_LAW)
             deviatoric_tangent(step, NO_CURVE, G, P, A[e, q])
     return A
 

@@ -10,7 +10,7 @@ left out. The ball is out of the ruler's plane, so that the size of a pixel come
 import sys
 from pathlib import Path
 
-from dentscope.recordings import Setup
+from dentscope.recordings import SetFile
 from dentscope.reduce.kinds import load_kind
 from dentscope.reduce.output.into_set import Stored, store
 from dentscope.reduce.output.row import Row
@@ -46,7 +46,7 @@ SETUP = {
 def recipe(video: Path, folder: Path) -> Stored:
     """Write the set."""
     reduced = load_kind("video").run(video, OPTIONS, source="recipe")
-    setup = Setup.model_validate(SETUP)
+    setup = SetFile.model_validate(SETUP)
     return store(reduced, folder, Row(striker="ball"), kind="video", options=OPTIONS, setup=setup)
 
 

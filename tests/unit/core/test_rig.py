@@ -9,7 +9,7 @@ from dentscope.core.inputs.toml_input import parse_model
 from dentscope.core.rig import MaterialTable, Rig, StrikerTable, material_keys
 from dentscope.impact.files.bodies import bodies_of
 from dentscope.impact.files.setup import SetupFile
-from dentscope.recordings import Setup
+from dentscope.recordings import SetFile
 from dentscope.start.case_file import CaseFile
 
 BODIES = {
@@ -23,7 +23,7 @@ BODIES = {
 }  # fmt: skip
 FILES = {
     Rig: {},
-    Setup: {"format": "recording-set/1"},
+    SetFile: {"format": "recording-set/1"},
     SetupFile: {"impact": {"impact_speed_m_s": 1.0}},
 }
 MISTAKES = {

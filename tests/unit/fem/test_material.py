@@ -6,7 +6,7 @@ from dentscope.fem.material import (
     EXACT,
     NO_LAW,
     RADIAL,
-    Step,
+    MaterialStep,
     deviatoric_pk1,
     deviatoric_tangent,
     elastic_deviator,
@@ -39,7 +39,7 @@ def path(t):
 
 
 def first_step(F, rule=EXACT):
-    return Step(F, IDENTITY, UNSTRAINED, NO_STRAIN, RADIUS, rule, False, NO_LAW)
+    return MaterialStep(F, IDENTITY, UNSTRAINED, NO_STRAIN, RADIUS, rule, False, NO_LAW)
 
 
 def follow(steps, rule):

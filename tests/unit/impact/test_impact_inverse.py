@@ -9,7 +9,7 @@ import pytest
 from dentscope.cli import run
 from dentscope.core import InputError
 from dentscope.impact.files.inverse_file import read_inverse
-from dentscope.impact.inverse import Measured, alpha, infer, mobility
+from dentscope.impact.inverse import MeasuredScar, alpha, infer, mobility
 from dentscope.studies.thesis.chapter5 import thesis_rod, thesis_rows
 
 
@@ -45,7 +45,7 @@ def test_mean_force_with_the_impulse() -> None:
 
 def test_friction_that_sticks_is_a_mistake() -> None:
     with pytest.raises(InputError, match="stick"):
-        infer(thesis_rod(), Measured(math.radians(70), 3.0, 0.5, 0.4, 1e-4, 2e-4))
+        infer(thesis_rod(), MeasuredScar(math.radians(70), 3.0, 0.5, 0.4, 1e-4, 2e-4))
 
 
 FILE = """

@@ -5,7 +5,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 from dentscope.core.rig import Quantity, StrikerTable, TargetTable
-from dentscope.recordings import RecordingSet, Setup, Trials
+from dentscope.recordings import RecordingSet, SetFile, Trials
 from dentscope.recordings.checks.findings import Severity
 from dentscope.recordings.checks.trace import check_trace
 
@@ -25,7 +25,7 @@ def recorded(folder: Path, *, scale: float, restitution: float | None, upto: flo
         mass_kg=Quantity(value=MASS, std=1e-5), E_Pa=Quantity(value=2e11, std=0.0), nu=0.3,
         Sy_Pa=Quantity(value=7e8, std=0.0),
     )  # fmt: skip
-    setup = Setup(
+    setup = SetFile(
         format="recording-set/1", target=TargetTable(E_Pa=2e11, nu=0.3, Sy_Pa=3e8),
         strikers={"ball": ball},
         noise={"impact_speed_relative": 0.005, "force_N_relative": 0.005, "restitution": 0.005},
@@ -75,7 +75,7 @@ def test_set_without_force_traces_says_nothing(tmp_path):
         shape="sphere", tip_radius_m=Quantity(value=0.0115, std=0.0),
         mass_kg=Quantity(value=MASS, std=1e-5), E_Pa=Quantity(value=2e11, std=0.0), nu=0.3,
     )  # fmt: skip
-    setup = Setup(
+    setup = SetFile(
         format="recording-set/1", target=TargetTable(E_Pa=2e11, nu=0.3, Sy_Pa=3e8),
         strikers={"ball": ball},
     )  # fmt: skip

@@ -15,7 +15,7 @@ from dentscope.recordings import (
     CONDITIONS,
     MEASURED,
     RecordingSet,
-    Setup,
+    SetFile,
     Trials,
     read,
     write,
@@ -87,7 +87,7 @@ def test_any_sound_set_comes_back_from_its_files(data, tmp_path_factory):
     )
     observable = data.draw(st.sampled_from([k for k in MEASURED if "impact" in OBSERVABLES[k].of]))
     striker = data.draw(names)
-    setup = Setup(
+    setup = SetFile(
         format="recording-set/1",
         description=data.draw(words),
         target=TargetTable(E_Pa=data.draw(st.none() | moduli), law=data.draw(st.sampled_from(

@@ -5,7 +5,7 @@ from dentscope.core.errors import InputError
 from dentscope.core.inputs.flow_curve import read_flow_curve
 from dentscope.core.rig import Quantity
 from dentscope.recordings import read, write
-from dentscope.recordings.setup_file import Setup, setup_text
+from dentscope.recordings.setup_file import SetFile, setup_text
 from dentscope.reduce.measured import Measured, Trial
 from dentscope.reduce.output.into_set import store
 from dentscope.reduce.output.row import Row
@@ -141,7 +141,7 @@ def test_an_environment_of_its_own(folder):
 
 
 def test_writing_changes_only_what_differs():
-    setup = Setup.model_validate({
+    setup = SetFile.model_validate({
         "format": "recording-set/1", "target": {},
         "strikers": {"b": {"shape": "sphere", "tip_radius_m": 0.01, "mass_kg": 0.02}},
     })  # fmt: skip

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from .....fem.material import EXACT, NO_LAW, RADIAL, Step, elastic_deviator, log_strain
+from .....fem.material import EXACT, NO_LAW, RADIAL, MaterialStep, elastic_deviator, log_strain
 from ...bench import Bench
 from ...result import Measurement, Result
 
@@ -23,7 +23,7 @@ def run(bench: Bench) -> Result:
             b = _elastic_b(rng)
             strain = np.array(log_strain(b)[0])
             new = _after(_gradient(rng, 0.03), old)
-            step = Step(new, old, b, strain, _RADIUS, rule, False, NO_LAW)
+            step = MaterialStep(new, old, b, strain, _RADIUS, rule, False, NO_LAW)
             e, mean, plastic, *_ = elastic_deviator(step, _NO_CURVE)
             angle = rng.uniform(-np.pi, np.pi)
             turned, *_ = elastic_deviator(step._replace(F=_rotated(new, angle)), _NO_CURVE)

@@ -15,7 +15,7 @@ from dentscope.core.rig import Quantity, StrikerTable, TargetTable
 from dentscope.impact import Approach, Friction, scene_of, strike_many
 from dentscope.impact import Striker as Body
 from dentscope.models import LAWS
-from dentscope.recordings import RecordingSet, Setup, Trials, audit
+from dentscope.recordings import RecordingSet, SetFile, Trials, audit
 
 SETS = 120
 SPREAD = {
@@ -79,7 +79,7 @@ def one_set(rng, *, mass_error):
         Sy_Pa=quantity(2.5 * Sy, 0.05, rng),
         **extra,
     )
-    setup = Setup(
+    setup = SetFile(
         format="recording-set/1",
         target=TargetTable(E_Pa=E, nu=0.3, Sy_Pa=quantity(Sy, 0.05, rng)),
         strikers={"body": stated},
@@ -131,7 +131,7 @@ def test_thick_rods_of_several_lengths_tell_their_ends(ends, error, wrong):
                 mass_kg=quantity(m * (1.0 + (error if k < wrong else 0.0)), 0.001, rng),
                 density_kg_m3=quantity(7800.0, 0.002, rng),
             )
-        setup = Setup(format="recording-set/1", target=TargetTable(), strikers=rods)
+        setup = SetFile(format="recording-set/1", target=TargetTable(), strikers=rods)
         trials = Trials(("a",), ("rod0",), np.array([90.0]), np.array([1.0]))
         flagged += audit(RecordingSet(setup, trials)).flagged
     assert flagged >= 57 if error else flagged <= 3
