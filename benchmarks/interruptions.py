@@ -65,7 +65,7 @@ FOR_EVER = ("campaign run", "proof run", "fit", "verify", "diagnose --confirm", 
 def inputs(folder):
     """Write what the commands read."""
     import numpy as np
-    from dentscope.core.templates import CASE
+    from dentscope.core.inputs.templates import CASE
     from matplotlib.image import imsave
 
     (folder / "ball.toml").write_text(RIG)

@@ -11,8 +11,8 @@ from typing import TYPE_CHECKING, Annotated, Any
 import typer
 
 from ..core.errors import EXIT_NOT_CONVERGED, InputError
+from ..core.inputs.templates import CASE, write_new
 from ..core.output import csv_text, write_figure, write_file
-from ..core.templates import CASE, write_new
 from .shared.places import folder_option, refuse_beside
 from .shared.terminal import console as new_console
 from .shared.terminal import say, show_table

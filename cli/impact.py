@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Annotated, Any
 import typer
 
 from ..core.errors import EXIT_NOT_CONVERGED
-from ..core.templates import template, write_new
+from ..core.inputs.templates import template, write_new
 from . import studies
 from .laws import laws_named
 from .shared.first_use import tell_first_use

@@ -8,7 +8,7 @@ from typing import Annotated, Any
 
 import typer
 
-from ..core.templates import INVERSE, write_new
+from ..core.inputs.templates import INVERSE, write_new
 from . import studies
 from .laws import laws_named
 from .shared.places import folder_option, refuse_beside

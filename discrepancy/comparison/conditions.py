@@ -89,9 +89,8 @@ def conditions_of(recordings: RecordingSet) -> tuple[Condition, ...]:
     """Return the conditions of a set, in the order in which they were first tested."""
     trials, approach = recordings.trials, recordings.approach
     numbers, before = _nominal(recordings)
-    pressed = trials.pressed
     # a load is measured, as a speed is
-    timed = ~np.isnan(trials.impact_speed_m_s) | pressed
+    timed = ~np.isnan(trials.impact_speed_m_s) | trials.pressed
     heights = np.where(timed, np.nan, trials.drop_height_m)
     highest = np.nanmax(heights) if np.isfinite(heights).any() else 1.0
     found = []
@@ -103,7 +102,7 @@ def conditions_of(recordings: RecordingSet) -> tuple[Condition, ...]:
         relative = approach.normal_std[rows] / approach.normal[rows]
         unknown = SPEED_MEASURED if timed[first] else SPEED_FROM_HEIGHT
         press = None
-        if pressed[first]:
+        if trials.pressed[first]:
             relative, unknown = recordings.load_std[rows] / trials.load_N[rows], RULES.load_repeats
             rate = float(np.nan_to_num(trials.press_rate_per_s[first]))
             press = Press(float(np.mean(trials.load_N[rows])), rate)

@@ -14,11 +14,11 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ...core.errors import InputError
+from ...core.inputs.templates import KINDS, template
 from ...core.inputs.toml_input import read_toml
 from ...core.material import Material, Pair
 from ...core.rig import material_keys
 from ...core.tables import frame, html_table
-from ...core.templates import KINDS, template
 from ...models import law_named
 from ...models.base import ContactLaw
 from ..batch import impacts

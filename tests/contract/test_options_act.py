@@ -11,7 +11,7 @@ import pytest
 import typer.main
 from dentscope.cli import run
 from dentscope.cli.app import app
-from dentscope.core.templates import CASE, INVERSE, template
+from dentscope.core.inputs.templates import CASE, INVERSE, template
 from dentscope.reduce.output.row import Row
 
 

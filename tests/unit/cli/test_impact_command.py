@@ -7,7 +7,7 @@ from pathlib import Path
 
 import pytest
 from dentscope.cli import run
-from dentscope.core.templates import KINDS
+from dentscope.core.inputs.templates import KINDS
 from dentscope.impact.files.setup import read_setup
 from dentscope.models.published.hertz import HERTZ
 

@@ -7,7 +7,7 @@ from pathlib import Path
 import pytest
 from dentscope.cli import run
 from dentscope.cli.shared.keys import FILES, keys_of
-from dentscope.core.templates import CASE, INVERSE, KINDS, template
+from dentscope.core.inputs.templates import CASE, INVERSE, KINDS, template
 
 
 @pytest.mark.parametrize("kind", FILES)

@@ -51,8 +51,8 @@ def test_departures_from_a_law_are_3_10_and_30_per_cent_a_deviation_of_the_covar
 
 
 def test_forms_differ_fourfold_and_laws_twofold() -> None:
-    assert max(FORMS.sizes) == pytest.approx(4.0, rel=1e-3)
-    assert max(SIZES.sizes) == pytest.approx(2.0, rel=1e-3)
+    assert max(FORMS.factors) == pytest.approx(4.0, rel=1e-3)
+    assert max(SIZES.factors) == pytest.approx(2.0, rel=1e-3)
     assert (FREE["force"], FREE["crater"], FREE["radius"]) == (0.16, 0.24, 0.1)
 
 
@@ -133,7 +133,7 @@ def test_a_drift_needs_eight_repeats_and_one_in_a_thousand() -> None:
 
 
 def test_a_column_is_followed_from_one_in_a_thousand_on() -> None:
-    """Two entries, five repeats each at a noise of 1 that is stated: F with 1 and 10^6 degrees."""
+    """Two entries, five repeats each: F = 2.5 of the offset squared, beyond 25.4 one in 1000."""
     entries = ("a",) * 5 + ("b",) * 5
 
     def followed(apart: float):
@@ -141,8 +141,8 @@ def test_a_column_is_followed_from_one_in_a_thousand_on() -> None:
         repeats = [Entries(entries, value, np.ones(10))]
         return followed_of("x_operator", "restitution", repeats, tested=1)
 
-    assert followed(1.0) is None
-    assert followed(3.0) is not None
+    assert followed(3.1) is None
+    assert followed(3.3) is not None
 
 
 def test_repeats_do_not_average_a_gauge_away(toy) -> None:

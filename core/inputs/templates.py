@@ -7,8 +7,8 @@ from __future__ import annotations
 
 from pathlib import Path
 
-from .errors import InputError
-from .output import write_file
+from ..errors import InputError
+from ..output import write_file
 
 _METALS = {
     "target": """E_Pa = 2.0e11                 # Young's modulus
