@@ -15,12 +15,12 @@ from scipy.optimize import least_squares
 from ..core.arrays import Array
 from .measured import Measured
 from .regression import unit_covariance
-
-IMPACT = (1.5, 1.2, 1.0)
-"""Powers of an impact's flanks."""
+from .rules import RULES
 
 
-def meets_zero(t: Array, force: Array, step: int, powers: tuple[float, ...] = IMPACT) -> Measured:
+def meets_zero(
+    t: Array, force: Array, step: int, powers: tuple[float, ...] = RULES.flank_powers
+) -> Measured:
     """Mean over the powers of F = (a s (1 - b s²))^p, s from the end, each as likely as it fits.
 
     Against time the striker slows down away from the end: b is 1/6 of a spring, F = sin s.

@@ -687,6 +687,22 @@ class ReductionRules:
         "widths of a camera's drift, and how much each is believed beforehand [-]",
         "one that nobody calibrated drifts by a per cent or so; a tenth is rare",
     )  # fmt: skip
+    press_loading: tuple[float, ...] = rule(
+        (2.0, 1.5, 1.2, 1.0), "powers of depth that a loading may have [-]",
+        "2 of a pyramid, 1.5 of Hertz's sphere, 1 of a flat punch",
+    )  # fmt: skip
+    press_unloading: tuple[float, ...] = rule(
+        (2.0, 1.5, 1.25, 1.0), "powers of depth that an unloading may have [-]",
+        "between a pyramid's and a flat punch's",
+    )  # fmt: skip
+    press_bins: int = rule(
+        60, "parts of the depth in which a curve's noise is read [-]",
+        "chosen; no measurement is kept",
+    )  # fmt: skip
+    channel_samples: int = limit(
+        50_000_000, "numbers of a file of channels at most [-]",
+        "memory of a small machine",
+    )  # fmt: skip
 
 
 RULES = ReductionRules()

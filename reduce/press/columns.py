@@ -13,6 +13,7 @@ from ...core.arrays import Array
 from ...core.errors import InputError
 from ...core.inputs.input_file import checked_file
 from ...core.processes.confined import confined
+from ..rules import RULES
 from ..table.channels import CHANNELS
 from ..table.file import (
     BOOKS,
@@ -25,9 +26,8 @@ from ..table.file import (
 )  # fmt: skip
 from ..table.workbook import sheets_of
 from ..units import LENGTH, UNITS
-from .options import Options
+from .options import PressOptions
 
-_LARGEST = 200_000_000
 _LOADS = (r"(load|force|.*kraft|last|fn|p|f)\b", r".*(load|force|kraft|charge|forza|fuerza)")
 _DEPTHS = (
     r"(depth|.*eindring\w*|.*tiefe|indentation|penetration|pd|h)\b",
@@ -73,7 +73,7 @@ class PressRecord:
     source: str
 
 
-def read_press(path: Path, options: Options) -> PressRecord:
+def read_press(path: Path, options: PressOptions) -> PressRecord:
     """Read load and depth of a machine's file.
 
     Raises
@@ -110,13 +110,13 @@ def read_press(path: Path, options: Options) -> PressRecord:
     )  # fmt: skip
 
 
-def _wanted(options: Options) -> tuple[tuple[str, str, tuple[str, ...], str], ...]:
+def _wanted(options: PressOptions) -> tuple[tuple[str, str, tuple[str, ...], str], ...]:
     return ("load", options.load, _LOADS, "force"), ("depth", options.depth, _DEPTHS, "length")
 
 
-def _tables(path: Path, options: Options) -> Iterator[Columns]:
+def _tables(path: Path, options: PressOptions) -> Iterator[Columns]:
     """Yield the tables of a file: instruments write several below each other into one text."""
-    checked_file(path, most=_LARGEST, allowed="a table of load against depth")
+    checked_file(path, most=RULES.table_bytes, allowed="a table of load against depth")
     if path.suffix.lower() in (*BOOKS, *CHANNELS, ".zip"):
         yield read_columns(path, sheet=options.sheet)
         return
@@ -134,7 +134,7 @@ def _tables(path: Path, options: Options) -> Iterator[Columns]:
         yield columns_of(rows[begin:end], str(path))
 
 
-def _has_both(table: Columns, options: Options) -> bool:
+def _has_both(table: Columns, options: PressOptions) -> bool:
     return all(
         given or _named(table, words, quantity) is not None
         for _key, given, words, quantity in _wanted(options)
@@ -155,7 +155,7 @@ def _named(table: Columns, words: Sequence[str], quantity: str) -> int | None:
 
 def _column(
     table: Columns, key: str, given: str, words: Sequence[str], quantity: str, path: Path,
-    options: Options,
+    options: PressOptions,
 ) -> int:  # fmt: skip
     if given:
         return table.find(given, key=key)

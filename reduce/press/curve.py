@@ -14,14 +14,6 @@ from ..regression import unit_covariance
 from ..rules import RULES
 from .cycles import Cycle, virgin
 
-_LOADING = (2.0, 1.5, 1.2, 1.0)
-_UNLOADING = (2.0, 1.5, 1.25, 1.0)
-"""Powers of the load over the depth: 2 of a pyramid, 3/2 of an elastic sphere, 1 of a fully plastic
-one; of unloading 1.2 to 1.6 (W. Oliver, G. Pharr, J. Mater. Res. 7 (1992) 1564, table I), 1 of a
-flat punch."""
-
-_BINS, _FEWEST = 60, 6
-
 
 def contact_zero(load: Array, depth: Array, cycle: Cycle, noise: float) -> Measured:
     """Return the depth at which the load of the loading meets zero [m].
@@ -32,7 +24,7 @@ def contact_zero(load: Array, depth: Array, cycle: Cycle, noise: float) -> Measu
     low = RULES.pulse_over_noise * noise
     seen = bool((load[rows] < low).any())
     rows = rows[load[rows] >= low]
-    found = _zero(load[rows] / cycle.peak, depth[rows], _LOADING)
+    found = _zero(load[rows] / cycle.peak, depth[rows], RULES.press_loading)
     # below a preload nothing tells how the contact began
     return found if seen else found.widened(RULES.preload_part * (depth[rows[0]] - found.value))
 
@@ -43,7 +35,7 @@ def left_depth(load: Array, depth: Array, cycle: Cycle, noise: float) -> Measure
     rows = rows[load[rows] >= max(RULES.pulse_over_noise * noise, float(load[rows[-1]]))]
     if rows.size < 2:
         return Measured(math.nan, math.nan)
-    return _zero(load[rows] / cycle.peak, depth[rows], _UNLOADING)
+    return _zero(load[rows] / cycle.peak, depth[rows], RULES.press_unloading)
 
 
 def _zero(part: Array, depth: Array, powers: tuple[float, ...]) -> Measured:
@@ -56,8 +48,8 @@ def _zero(part: Array, depth: Array, powers: tuple[float, ...]) -> Measured:
     for reach in RULES.zero_reach:
         use = part <= max(reach, RULES.zero_span * least)
         order = np.flatnonzero(use)[np.argsort(part[use])]
-        bins = np.array_split(order, min(_BINS, max(order.size // 2, 1)))
-        if len(bins) < _FEWEST:
+        bins = np.array_split(order, min(RULES.press_bins, max(order.size // 2, 1)))
+        if len(bins) < RULES.fewest:
             continue
         x, y = (np.array([float(np.mean(v[b])) for b in bins]) for v in (depth, part))
         if np.ptp(x) > 0.0 and y[-1] > y[0]:
@@ -83,7 +75,7 @@ def stiffness(load: Array, depth: Array, cycle: Cycle) -> Measured:
 def _slope(load: Array, depth: Array, cycle: Cycle, low: float) -> Measured:
     rows = cycle.unloading
     part = rows[(load[rows] <= RULES.stiffness_to * cycle.peak) & (load[rows] >= low * cycle.peak)]
-    if part.size < _FEWEST:
+    if part.size < RULES.fewest:
         return Measured(math.nan, math.nan)
     x, y = depth[part], load[part] / cycle.peak
     line = np.polyfit(y, x, 1)

@@ -9,12 +9,12 @@ from ..measured import Measured, labelled
 from ..pictures import draw_refused
 from ..reduced import Reduced
 from .columns import read_press
-from .options import Options
+from .options import PressOptions
 from .picture import draw_press
 from .reduction import reduce_press
 
 
-def reduce(path: Path, options: Options) -> Reduced:
+def reduce(path: Path, options: PressOptions) -> Reduced:
     """Measure the presses of a record.
 
     Raises

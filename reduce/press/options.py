@@ -9,7 +9,7 @@ from pydantic import Field
 from ..time_window import TimeWindow
 
 
-class Options(TimeWindow):
+class PressOptions(TimeWindow):
     """Options of the reduction of a press."""
 
     load: str = Field(

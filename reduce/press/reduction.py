@@ -18,7 +18,7 @@ from .cycles import Cycle, cycles_of, noise_of
 
 
 @dataclass(frozen=True)
-class Press:
+class ReducedPress:
     """One press.
 
     Parameters
@@ -77,15 +77,15 @@ class PressReduction:
     depth: Array
     zero: Measured
     compliance: Measured | None
-    presses: tuple[Press, ...]
+    presses: tuple[ReducedPress, ...]
     notes: tuple[str, ...]
 
     @property
-    def largest(self) -> Press:
+    def largest(self) -> ReducedPress:
         """The press with the largest load."""
         return max(self.presses, key=lambda p: p.load.value)
 
-    def trial(self, press: Press, label: str) -> Trial:
+    def trial(self, press: ReducedPress, label: str) -> Trial:
         """Return the row of a press: what hangs on an unknown compliance is left out of it."""
         seen = {"load_N": press.load}
         stays = press.left.value > 2.0 * press.left.std
@@ -160,7 +160,7 @@ def reduce_press(
 def _press(
     load: Array, depth: Array, cycle: Cycle, slope: Measured, zero: Measured, own: Measured,
     load_std: float, noise: float,
-) -> Press:  # fmt: skip
+) -> ReducedPress:  # fmt: skip
     top = slice(cycle.begin, max(cycle.turn, cycle.begin) + 1)
     scatter = noise_of(depth)
     under = Measured(float(depth[top].max()), scatter)
@@ -171,7 +171,7 @@ def _press(
     if own.value and slope.value > 0.0 and 1.0 / slope.value > own.value:
         soft = Measured(1.0 / slope.value, slope.std / slope.value**2).minus(own)
         contact = Measured(1.0, 0.0).over(soft)
-    return Press(
+    return ReducedPress(
         cycle, Measured(cycle.peak, load_std), end.minus(zero),
         under.minus(zero).widened(machine), under.minus(end).widened(machine), contact,
         float(depth[cycle.turn] - depth[cycle.begin]),
@@ -208,7 +208,7 @@ def _from_cycles(cycles: tuple[Cycle, ...], slopes: list[Measured]) -> Measured 
     )
 
 
-def _told(record: PressRecord, presses: tuple[Press, ...]) -> list[str]:
+def _told(record: PressRecord, presses: tuple[ReducedPress, ...]) -> list[str]:
     largest = max(presses, key=lambda p: p.load.value)
     told = []
     if record.missed:

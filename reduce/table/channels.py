@@ -14,6 +14,7 @@ import numpy as np
 
 from ...core.arrays import Array
 from ...core.errors import InputError, missing_extra
+from ..rules import RULES
 from .heading import in_short
 
 CHANNELS = (".tdms", ".h5", ".hdf5", ".hdf")
@@ -22,7 +23,6 @@ CHANNELS = (".tdms", ".h5", ".hdf5", ".hdf")
 _STEPS = ("wf_increment", "dt", "sample_interval", "time_step")
 _RATES = ("sampling_rate", "sample_rate", "fs", "rate")
 _UNITS = ("unit_string", "units", "unit")
-_MOST = 50_000_000
 
 
 class Shown(Sequence[tuple[str, ...]]):
@@ -156,9 +156,11 @@ def _datasets(file: Any, h5py: Any) -> Iterator[tuple[str, Any]]:
 
 
 def _read(data: Any, size: int, path: Path) -> Array:
-    if size > _MOST:
+    if size > RULES.channel_samples:
         raise InputError(
-            f"{size} samples in one channel", source=str(path), allowed=f"up to {_MOST}"
+            f"{size} samples in one channel",
+            source=str(path),
+            allowed=f"up to {RULES.channel_samples}",
         )
     return np.asarray(data[:])
 

@@ -29,7 +29,7 @@ def test_priors_are_even_and_outside_is_a_tenth() -> None:
     # 0.06/0.34 as for a second mechanism, of 0.1 beside the 0.34 that are single
     assert pytest.approx(0.06 / 0.34 * 0.1 / 0.44) == BESIDE
     assert pytest.approx(math.log(0.93 / 0.07)) == NAMED_AT
-    assert shares_outside(2) == pytest.approx((2.0 / 3.0, 1.0 / 6.0))
+    assert shares_outside(2, 1) == pytest.approx((0.5, 1.0 / 6.0, 1.0 / 6.0))
 
 
 def test_a_scatter_of_e_times_the_noise_is_a_little_more_likely_varied_than_misjudged() -> None:
