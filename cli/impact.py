@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated, Any
+from typing import TYPE_CHECKING, Annotated
 
 import typer
 
@@ -122,6 +122,7 @@ def _sweep(
     from importlib.util import find_spec
 
     from ..impact.told.band import MOST_SWEPT, swept_stds
+    from ..impact.told.checks import swept_above_one
     from ..impact.told.draw import draw_sweep
 
     curves = {law.name: setup.swept(law) for law in laws}
@@ -136,19 +137,7 @@ def _sweep(
     if find_spec("pandas") and find_spec("pyarrow"):
         written.append(stem.with_suffix(".parquet"))
         first.to_parquet(written[-1])
-    return written, int((first["outcome"] != "completed").sum()), _above_one(first["restitution"])
-
-
-def _above_one(restitution: Any) -> str:
-    """Say of a sweep why a tip may come back faster than it came; empty where none does."""
-    above = restitution[restitution > 1.0 + 1e-6]
-    if not len(above):
-        return ""
-    return (
-        f"{len(above)} impacts of the sweep have a restitution above 1, up to {above.max():.4g}: "
-        "motion along the flat, spin or a fall during the contact feeds the tip's rebound; "
-        "kinetic_before_J and kinetic_after_J in the table hold the whole"
-    )
+    return written, int((first["outcome"] != "completed").sum()), "\n".join(swept_above_one(first))
 
 
 def leave_if_unfinished(impacts: list[Impact]) -> None:

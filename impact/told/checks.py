@@ -9,7 +9,9 @@ import math
 import warnings
 from collections.abc import Iterator
 from dataclasses import replace
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
 
 from ...core.errors import InputError
 from ...core.inputs.flow_curve import SPECIMENS
@@ -25,6 +27,7 @@ from ..support import half_space_radiation, plate_support
 from .onset import effective_mass, first_yield_speed, largest_mean_pressure
 
 if TYPE_CHECKING:
+    from ..columns import Impacts
     from ..files.setup import Setup
 
 
@@ -36,18 +39,20 @@ def checks(setup: Setup, law: ContactLaw, found: Impact) -> list[str]:
     with warnings.catch_warnings():
         warnings.simplefilter("ignore", DomainWarning)  # the doubt about a law has its own line
         parts = (
-            _onset(scene, found), _either(scene, found), _plate(setup, scene, found),
+            _onset(setup, scene, found), _either(scene, found), _plate(setup, scene, found),
             _waves(setup, scene, found), _gravity(setup, scene, found), _friction(scene),
             _rod(scene, found), _second(setup, scene, found), _bodies(setup, law),
         )  # fmt: skip
         return [line for part in parts for line in part]
 
 
-def _onset(scene: Scene, found: Impact) -> Iterator[str]:
+def _onset(setup: Setup, scene: Scene, found: Impact) -> Iterator[str]:
     pressure, pair = largest_mean_pressure(scene, found), scene.pair
     mean = "" if math.isnan(pressure) else f"largest mean pressure {pressure / 1e6:.4g} MPa"
     if not math.isfinite(pair.Sy_min):
-        yield f"neither body yields{': ' if mean else ''}{mean}"
+        asked = setup.file.target.law == "elastic"
+        what = "elastic, as target.law has it" if asked else "neither body yields"
+        yield f"{what}{': ' if mean else ''}{mean}"
         return
     over = f", {pressure / pair.Sy_min:.3g} times the weaker strength" if mean else ""
     speed = first_yield_speed(scene)
@@ -205,14 +210,19 @@ def _bodies(setup: Setup, law: ContactLaw) -> Iterator[str]:
             )
 
 
+_GIVES_BACK = "the law gives back more than it took"
+_SHOWN = 1.0 + 5e-4
+"""A restitution that four digits show to be above 1."""
+
+
 def reason_above_one(scene: Scene, found: Impact) -> str:
     """Say where the energy of a restitution above 1 comes from; empty where it is at most 1."""
-    if not found.restitution > 1.0 + 1e-6:
+    if not found.restitution > _SHOWN:
         return ""
     before, after = found.kinetic_before_J, found.kinetic_after_J
     beside = before - 0.5 * effective_mass(scene) * scene.approach.speed**2
-    if after > (1.0 + 1e-6) * (before + max(found.gravity_work_J, 0.0)):
-        given = "the law gives back more than it took"
+    if _made_by_the_law(before, after, found.gravity_work_J):
+        given = _GIVES_BACK
     elif found.gravity_work_J > beside:
         given = "the fall during the contact feeds the tip's rebound"
     else:
@@ -221,6 +231,34 @@ def reason_above_one(scene: Scene, found: Impact) -> str:
         f"a restitution of {found.restitution:.4g}: {given}; kinetic energy of the whole "
         f"{before:.3g} J before, {after:.3g} J after"
     )
+
+
+def swept_above_one(swept: Impacts) -> Iterator[str]:
+    """Say of a sweep where the energy of restitutions above 1 comes from, a line for each way."""
+    above = swept["restitution"] > _SHOWN
+    made = above & _made_by_the_law(
+        swept["kinetic_before_J"], swept["kinetic_after_J"], swept["gravity_work_J"]
+    )
+    ways = {
+        f"{law}: {{}}: {_GIVES_BACK}; it is far beyond what it was made for": made
+        & (swept["law"] == law)
+        for law in dict.fromkeys(swept["law"][made])
+    }
+    ways[
+        "{}: motion along the flat, spin or a fall during the contact feeds the tip's rebound; "
+        "kinetic_before_J and kinetic_after_J in the table hold the whole"
+    ] = above & ~made
+    for text, rows in ways.items():
+        if rows.any():
+            yield text.format(
+                f"{rows.sum()} impacts of the sweep have a restitution above 1, up to "
+                f"{swept['restitution'][rows].max():.4g}"
+            )
+
+
+def _made_by_the_law(before: Any, after: Any, fall: Any) -> Any:
+    """Whether a blow returns more than it had and its fall during the contact [J] gave."""
+    return after > (1.0 + 1e-6) * (before + np.maximum(fall, 0.0))
 
 
 def _effect(other: Impact, found: Impact) -> str:

@@ -85,6 +85,65 @@ def test_a_sweep_ends(bodies: str, support: str, angle: float) -> None:
     assert_swept(bodies, support, angle)
 
 
+_SOFT = {"shape": "sphere", "tip_radius_m": 0.005, **_of(3e8)}
+SWEEPS: dict[str, tuple[dict[str, Any], dict[str, Any], dict[str, Any], dict[str, Any]]] = {
+    "heights": (
+        _SOFT, _of(5e9), {"drop_height_m": 0.1}, {"drop_height_m": [1e-3, 0.1, 150.0]},
+    ),
+    "masses": (_SOFT, _of(5e9), {}, {"mass_kg": [1e-9, 1e-3, 10.0]}),
+    "grazing": (_SOFT, _of(5e9), {"angle_deg": 5.0}, {"angle_deg": [0.1, 5.0, 89.9]}),
+    "friction": (_SOFT, _of(5e9), {"angle_deg": 30.0}, {"friction": [0.0, 0.3, 10.0]}),
+    "repeats": (_SOFT, _of(5e9), {"repeats": 5}, {"impact_speed_m_s": [0.01, 1.0]}),
+    "a hardness": (
+        _SOFT, {**_STEEL, "hardness_Pa": 6e9}, {},
+        {"impact_speed_m_s": {"from": 1e-4, "to": 100.0, "count": 20, "spacing": "log"}},
+    ),
+    "a ball that hardens": (
+        {**_SOFT, "hardening": {"law": "ludwik", "K_Pa": 5e8, "n": 0.4}}, _STEEL,
+        {"laws": ["hardening", *DEFAULT_LAWS]}, {"impact_speed_m_s": [0.01, 1.0, 30.0]},
+    ),
+    "rubber": (
+        {**_SOFT, "E_Pa": 1e6, "nu": 0.499, "Sy_Pa": 1e5, "density_kg_m3": 1000.0}, _of(5e9), {},
+        {"impact_speed_m_s": [0.01, 1.0, 10.0]},
+    ),
+    "a tip with a flat": (
+        {**_SOFT, "tip_flat_radius_m": 5e-4}, _of(5e9), {},
+        {"impact_speed_m_s": [0.01, 1.0, 30.0]},
+    ),
+    "a second ball": (
+        _SOFT, {**_of(5e9), "shape": "sphere", "radius_m": 1e-3}, {},
+        {"impact_speed_m_s": [0.01, 1.0, 3.0]},
+    ),
+}  # fmt: skip
+
+
+@pytest.mark.parametrize(("ball", "flat", "blow", "swept"), SWEEPS.values(), ids=SWEEPS)
+def test_a_sweep_of_anything_ends(
+    ball: dict[str, Any], flat: dict[str, Any], blow: dict[str, Any], swept: dict[str, Any]
+) -> None:
+    content = {
+        "gravity_m_s2": 0.0, "target": flat, "strikers": {"ball": ball},
+        "friction": {"coefficient": 0.1},
+        "impact": {
+            **({} if "drop_height_m" in blow else {"impact_speed_m_s": 1.0}),
+            "laws": list(DEFAULT_LAWS), **blow,
+        },
+        "sweep": swept,
+    }  # fmt: skip
+    if "drop_height_m" in blow:
+        del content["gravity_m_s2"]  # a fall needs it
+    setup = setup_of(content, source="sweep")
+    for name in setup.laws:
+        found = setup.swept(LAWS[name])
+        assert (found["outcome"] == "completed").all()
+        e = found["restitution"]
+        assert np.isfinite(e).all()
+        upright = found["angle_deg"] == 90.0
+        assert (e[upright] <= 1.0 + 1e-4).all()
+        assert (e > 0.0).all()
+        assert (found["kinetic_after_J"] <= found["kinetic_before_J"] * (1.0 + 1e-4)).all()
+
+
 def test_a_ball_softer_than_a_rigid_flat_by_ghaednia() -> None:
     # single impacts, integrated in steps
     found = setup_for("rigid flat", "rigid", 90.0).swept(LAWS["ghaednia"])

@@ -5,6 +5,7 @@ import math
 
 import numpy as np
 import pytest
+import tomlkit
 from dentscope.cli.app import run
 from dentscope.core import InputError, Material, Pair
 from dentscope.impact.told.discrete_elements import (
@@ -15,6 +16,7 @@ from dentscope.impact.told.discrete_elements import (
 )
 from dentscope.models import LAWS
 from dentscope.studies.lammps import balls_on_floor
+from scipy.integrate import solve_ivp
 
 STEEL = Material(E=200e9, nu=0.3, Sy=600e6, density=7800.0)
 HARD = Material(E=210e9, nu=0.3, Sy=1500e6)
@@ -140,6 +142,81 @@ def test_the_file_of_an_impact_gives_wall_balls_and_friction(tmp_path, capsys):
         assert kt / k == pytest.approx(8.0 / shear / (4.0 / 3.0 * reduced), rel=1e-6)
         assert words[words.index("damping") - 1] == "0.3"
         assert words[-3:] == ["zplane", "0.0", "NULL"]
+
+
+def lammps_blow(coefficients, *, R, mass, speed):
+    """Restitution and depth of LAMMPS's `hertz K E ... damping tsuji`, from its manual.
+
+    F = K R^(1/2) d^(3/2) + eta d', eta = alpha(E) (m F_e/d)^(1/2); no force where d < 0.
+    """
+    k, entered = coefficients
+    powers = (1.2728, -4.2783, 11.087, -22.348, 27.467, -18.022, 4.8218)
+    alpha = sum(c * entered**n for n, c in enumerate(powers))
+    k *= math.sqrt(R)
+    scale = (mass * speed**2 / k) ** 0.4  # of depth; time in scale/speed
+
+    def rates(_t, state):
+        x, v = max(state[0], 0.0), state[1]
+        return [v, -(x**1.5) - alpha * x**0.25 * v]
+
+    def parts(_t, state):
+        return state[0]
+
+    parts.terminal, parts.direction = True, -1.0
+    found = solve_ivp(rates, (0.0, 1e3), [1e-12, 1.0], events=parts, rtol=1e-9, atol=1e-12)
+    return -found.y[1, -1], scale * found.y[0].max()
+
+
+ELASTIC = {"E_Pa": 2e11, "nu": 0.3}
+GRAINS = {
+    "a rigid wall": ({"rigid": True}, {**ELASTIC, "Sy_Pa": 4e8}, 3e-3, 7800.0, 2.0),
+    "a softer ball": ({**ELASTIC, "Sy_Pa": 2e9}, {**ELASTIC, "Sy_Pa": 3e8}, 3e-3, 7800.0, 2.0),
+    "equal bodies": ({**ELASTIC, "Sy_Pa": 4e8}, {**ELASTIC, "Sy_Pa": 4e8}, 3e-3, 7800.0, 1.0),
+    "elastic": (ELASTIC, ELASTIC, 3e-3, 7800.0, 1.0),
+    "dust": ({**ELASTIC, "Sy_Pa": 1e9}, ELASTIC, 5e-7, 7800.0, 30.0),
+    "a boulder": ({"E_Pa": 5e10, "nu": 0.2, "Sy_Pa": 2e8}, {"E_Pa": 5e10, "nu": 0.2}, 1.0, 2700.0,
+                  5.0),
+    "rubber": (ELASTIC, {"E_Pa": 2e6, "nu": 0.49, "Sy_Pa": 4e5}, 0.02, 1100.0, 3.0),
+    "barely yielding": ({**ELASTIC, "Sy_Pa": 1e9}, ELASTIC, 5e-3, 7800.0, 0.2),
+    "fast": ({"E_Pa": 7e10, "nu": 0.33, "Sy_Pa": 1e8}, ELASTIC, 2e-3, 7800.0, 50.0),
+}  # fmt: skip
+
+
+@pytest.mark.parametrize(("flat", "ball", "R", "density", "speed"), GRAINS.values(), ids=GRAINS)
+def test_what_lammps_makes_of_the_lines(flat, ball, R, density, speed, tmp_path):
+    content = {
+        "gravity_m_s2": 0.0, "target": flat,
+        "strikers": {
+            "ball": {"shape": "sphere", "tip_radius_m": R, "density_kg_m3": density, **ball}
+        },
+        "impact": {"impact_speed_m_s": speed},
+    }  # fmt: skip
+    file = tmp_path / "ball.toml"
+    file.write_text(tomlkit.dumps(content))
+    assert run(["export", "dem", str(file), "--out", str(tmp_path)]) == 0
+    mass = 4.0 / 3.0 * math.pi * R**3 * density
+    table = list(csv.DictReader((tmp_path / "dem.csv").read_text().splitlines()))
+    lines = (tmp_path / "lammps.in").read_text().splitlines()
+    seen = 0
+    for line in lines:
+        wall = line.startswith("fix")
+        if not (wall or line.startswith("pair_coeff")):
+            continue
+        words = line.split()
+        at = words.index("hertz") + 1
+        half = 1.0 if wall else 0.5
+        e, depth = lammps_blow(
+            [float(x) for x in words[at : at + 2]], R=half * R, mass=half * mass, speed=speed
+        )
+        place = "ball on flat" if wall else "two balls"
+        (law,) = (
+            r for r in table
+            if r["model"] in ("fitted", "jackson-green") and r["contact"] == place
+        )  # fmt: skip
+        assert e == pytest.approx(float(law["restitution"]), abs=2e-3)
+        assert depth == pytest.approx(float(law["depth_m"]), rel=1e-2)
+        seen += 1
+    assert seen == 2
 
 
 def test_a_rod_is_no_ball_of_a_discrete_element_code(tmp_path, capsys):

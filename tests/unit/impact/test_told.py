@@ -11,7 +11,7 @@ from dentscope.impact import Approach, Scene, Striker, strike
 from dentscope.impact.files.blow import blow_of
 from dentscope.impact.files.setup import setup_of
 from dentscope.impact.told.band import LAW, METALS, SWEPT, band_of, swept_stds
-from dentscope.impact.told.checks import reason_above_one
+from dentscope.impact.told.checks import reason_above_one, swept_above_one
 from dentscope.impact.told.onset import first_yield_speed, largest_mean_pressure
 from dentscope.models import LAWS
 
@@ -63,6 +63,34 @@ def test_first_yield_is_where_johnson_has_it():
     assert first_yield_speed(elastic) == math.inf
 
 
+YIELDS = {
+    "aluminium ball": ((7e10, 0.33, 2e8, 2700.0), (2e11, 0.3, math.inf), 0.003),
+    "rubber ball": ((2e6, 0.49, 2e5, 1100.0), (2e11, 0.3, math.inf), 0.02),
+    "rigid ball": ((math.inf, 0.0, math.inf, 15e3), (1.1e11, 0.34, 3e8), 0.01),
+    "glass on glass": ((7e10, 0.22, 3.5e9, 2500.0), (7e10, 0.22, 3.5e9), 1e-4),
+    "grain of dust": ((2e11, 0.3, 1e9, 7800.0), (2e11, 0.3, 2e9), 1e-7),
+    "cannon ball": ((2e11, 0.3, 9e8, 7800.0), (3e10, 0.2, 2e7), 0.5),
+    "lead on steel": ((1.6e10, 0.44, 1.2e7, 11340.0), (2e11, 0.3, 1e9), 0.004),
+    "ice": ((2e11, 0.3, math.inf, 7800.0), (9e9, 0.33, 2.5e7), 0.01),
+    "ceramic": ((3.8e11, 0.22, math.inf, 3900.0), (2e11, 0.3, 1.5e9), 0.003),
+}
+
+
+@pytest.mark.parametrize(("ball", "flat", "radius"), YIELDS.values(), ids=YIELDS)
+def test_first_yield_by_hand_whatever_yields(ball, flat, radius):
+    """W_y = (8/15) (E'/R) (pi C Y R/(2 E'))^5 of Hertz's work, C = 1.295 exp(0.736 nu)."""
+    E, nu, Sy, density = ball
+    of_ball = Material(E=E, nu=nu, Sy=Sy, rigid=E == math.inf)
+    pair = Pair(of_ball, Material(E=flat[0], nu=flat[1], Sy=flat[2]), radius)
+    mass = 4.0 / 3.0 * math.pi * radius**3 * density
+    scene = Scene(LAWS["fitted"], pair, Striker(mass, radius), Approach(1.0), gravity=0.0)
+    reduced = 1.0 / ((0.0 if E == math.inf else (1 - nu**2) / E) + (1 - flat[1] ** 2) / flat[0])
+    weak_nu, weak = (nu, Sy) if flat[2] >= Sy else (flat[1], flat[2])
+    slope = math.pi * 1.295 * math.exp(0.736 * weak_nu) * weak / (2.0 * reduced)
+    work = 8.0 / 15.0 * reduced * radius**3 * slope**5
+    assert first_yield_speed(scene) == pytest.approx(math.sqrt(2.0 * work / mass), rel=1e-6)
+
+
 def test_a_law_that_cannot_lose_has_no_band_of_restitution(brass):
     blow = blow_of(brass.setup, [LAWS["hertz"]])
     cells = {row[0]: row[1] for row in blow.table()}
@@ -102,6 +130,57 @@ def test_the_checks_say_what_a_thin_plate_and_friction_do(brass):
     thin["target"]["thickness_m"] = 0.0002
     thinner = blow_of(setup_of(thin, source="a.toml"), [LAWS["fitted"]]).checks()
     assert any("NOT thick enough" in line for line in thinner)
+
+
+ASKED = {
+    "a sheet": ({"target": {"thickness_m": 2e-4}}, "NOT thick enough for the dent"),
+    "a wall that is bolted on": (
+        {"impact": {"support": "sprung"},
+         "target": {"support_mass_kg": 0.2, "support_stiffness_N_m": 1e6}},
+        "is thick enough for the dent",
+    ),
+    "a ball of the same bar": (
+        {"strikers": {"ball": {"Sy_Pa": 2.5e8}}}, "either body may take the dent: 31 to 58 %"
+    ),
+    "in a centrifuge": (
+        {"gravity_m_s2": 1000.0, "impact": {"impact_speed_m_s": 0.05}},
+        "gravity, 1000 m/s^2, acts during the contact",
+    ),
+    "friction, upright": ({}, "friction, 0.2, does nothing in a straight blow"),
+    "a hardness beside a strength": (
+        {"target": {"hardness_Pa": 7e8}}, "target: hardness over strength 2.8 as stated"
+    ),
+    "nothing may yield": ({"target": {"law": "elastic"}}, "elastic, as target.law has it"),
+    "a rod": (
+        {"strikers": {"ball": {"shape": "rod", "radius_m": 0.01, "length_m": 0.1,
+                               "mass_kg": 0.245}}},
+        "a wave runs along it and back in 46.28 us",  # 2 (0.1 + 2 * 0.01) m over root(E/rho)
+    ),
+    "two balls": (
+        {"target": {"shape": "sphere", "radius_m": 0.01, "mass_kg": 0.035, "thickness_m": None},
+         "strikers": {"ball": {"mass_kg": 0.0327}}},
+        "two spheres: R = 5 mm",
+    ),
+}  # fmt: skip
+
+
+@pytest.mark.parametrize(("changes", "words"), ASKED.values(), ids=ASKED)
+def test_what_a_user_should_know_of_a_blow_is_said(changes, words):
+    content = merged(tomllib.loads(BRASS), changes)
+    found = blow_of(setup_of(content, source="asked.toml"), [LAWS["fitted"]])
+    assert words in "\n".join(found.checks())
+
+
+def merged(content, changes):
+    """The content with changes in its tables; None takes a key away."""
+    for key, value in changes.items():
+        if isinstance(value, dict):
+            merged(content.setdefault(key, {}), value)
+        elif value is None:
+            content.pop(key, None)
+        else:
+            content[key] = value
+    return content
 
 
 def test_the_band_of_the_inputs_holds_the_draws(brass):
@@ -171,6 +250,40 @@ laws = ["fitted", "hertz"]
     assert impact.kinetic_after_J < impact.kinetic_before_J
     central = setup.scene(LAWS["hertz"]).with_(approach=Approach(1.0))
     assert reason_above_one(central, strike(central)) == ""
+
+
+SOFT = """
+gravity_m_s2 = 0.0
+[target]
+E_Pa = 2e11
+nu = 0.3
+Sy_Pa = 2e9
+[strikers.ball]
+shape = "sphere"
+tip_radius_m = 0.005
+E_Pa = 2e11
+nu = 0.3
+Sy_Pa = 3e8
+density_kg_m3 = 7800
+[impact]
+impact_speed_m_s = 1.0
+[sweep]
+impact_speed_m_s = SPEEDS
+"""
+
+
+def test_a_law_that_makes_energy_is_told_from_motion_that_feeds_the_rebound():
+    """Beyond a dent of 0.4 R the force of ghaednia jumps: its recovery returns what none gave."""
+    fast, slow = (
+        setup_of(tomllib.loads(SOFT.replace("SPEEDS", speeds)), source="soft.toml")
+        for speeds in ("[1.0, 150.0]", "[1e-3, 1.0]")
+    )
+    swept = fast.swept(LAWS["ghaednia"])
+    assert swept["kinetic_after_J"][1] > 2.0 * swept["kinetic_before_J"][1]
+    (line,) = swept_above_one(swept.joined(fast.swept(LAWS["hertz"])))
+    assert line.startswith("ghaednia: 1 impacts")
+    assert "gives back more than it took" in line
+    assert list(swept_above_one(slow.swept(LAWS["fitted"]))) == []
 
 
 def test_a_sweep_has_the_bands_of_its_blows():

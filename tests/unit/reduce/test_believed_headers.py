@@ -39,7 +39,12 @@ def patched(path, tag, value):
     ("tag", "value", "words"),
     [("ImageLength", 60_000, "a page of|cannot be read as a TIFF"),
      ("BitsPerSample", 14, "cannot be read as a TIFF"),
-     ("BitsPerSample", 12, "cannot be read as a TIFF")],
+     ("BitsPerSample", 12, "cannot be read as a TIFF"),
+     ("ImageWidth", 0, "one flat picture"),
+     ("ImageLength", 0, "one flat picture"),
+     ("SamplesPerPixel", 77, "cannot be read as a TIFF"),
+     ("Compression", 65000, "cannot be read as a TIFF"),
+     ("StripOffsets", 2**31, "cannot be read as a TIFF")],
 )  # fmt: skip
 def test_a_header_that_lies_is_one_line(tmp_path, tag, value, words, caplog):
     path = clip(tmp_path / "clip.tif")
@@ -58,12 +63,31 @@ def test_a_page_larger_than_the_memory_is_not_allocated(tmp_path, monkeypatch):
 
 
 @pytest.mark.parametrize(
-    ("option", "value"),
-    [("first_frame", 10**21), ("last_frame", 10**21), ("first_frame", -1),
-     ("pixel_m", float("nan")), ("frame_rate_hz", float("inf"))],
+    "cut",
+    [lambda raw: b"", lambda raw: raw[:8], lambda raw: raw[: len(raw) // 2], lambda raw: raw[::-1],
+     lambda raw: b"time,height\n0,1\n"],
+    ids=["empty", "a header alone", "half", "backwards", "a table"],
 )  # fmt: skip
-def test_options_beyond_all_clips_are_refused(tmp_path, option, value):
-    with pytest.raises(InputError, match=option):
+def test_a_file_that_is_no_clip_is_one_line(tmp_path, cut):
+    path = clip(tmp_path / "clip.tif")
+    path.write_bytes(cut(path.read_bytes()))
+    with pytest.raises(InputError, match=r"clip\.tif: ") as told:
+        load_kind("video").run(path, GIVEN, source="test")
+    assert "\n" not in str(told.value)
+
+
+@pytest.mark.parametrize(
+    ("option", "value", "words"),
+    [("first_frame", 10**21, "first_frame"), ("last_frame", 10**21, "last_frame"),
+     ("first_frame", -1, "first_frame"), ("pixel_m", float("nan"), "pixel_m"),
+     ("frame_rate_hz", float("inf"), "frame_rate_hz"), ("last_frame", 0, "1 frames in the range"),
+     ("pixel_m", -1e-4, "pixel_m"), ("frame_rate_hz", 0.0, "frame_rate_hz"),
+     ("diameter_m", 0.0, "diameter_m"), ("crop", "0,0,1e9,1e9", "crop"),
+     ("crop", "5,5,5,5", "crop"),
+     ("channel", "ultraviolet", "channel"), ("down", "sideways", "down")],
+)  # fmt: skip
+def test_options_beyond_all_clips_are_refused(tmp_path, option, value, words):
+    with pytest.raises(InputError, match=words):
         load_kind("video").run(clip(tmp_path / "c.tif"), {**GIVEN, option: value}, source="test")
 
 
