@@ -6,7 +6,7 @@ STAMP := $(VENV)/.installed
 DESIGN ?= full
 SET ?= thesis-chapter-5
 WORKERS ?=
-LOCKS := $(wildcard requirements/py3*.txt)
+LOCKS := $(wildcard tools/requirements/py3*.txt)
 # the solver runs one case a core: more threads inside a case only disturb the others
 export OMP_NUM_THREADS ?= 1
 export OPENBLAS_NUM_THREADS ?= 1
@@ -20,10 +20,10 @@ help: ## list the targets
 	@grep -hE '^[a-z]+:.*## ' $(MAKEFILE_LIST) | sed -E 's/^([a-z]+):.*## /\1\t/' | expand -t 12
 
 install: $(STAMP) ## make .venv with the pinned packages and the command dentscope, check it, compile
-	@bash scripts/compile.sh
+	@bash tools/compile.sh
 
-$(STAMP): pyproject.toml $(LOCKS) scripts/install.sh
-	@PYTHON="$(PYTHON)" bash scripts/install.sh
+$(STAMP): pyproject.toml $(LOCKS) tools/install.sh
+	@PYTHON="$(PYTHON)" bash tools/install.sh
 
 campaign: $(STAMP) ## solve the finite-element cases of DESIGN into build/campaign; goes on where it stopped
 	@$(BIN)/dentscope campaign run --design "$(DESIGN)" $(if $(WORKERS),--workers $(WORKERS))
@@ -60,13 +60,13 @@ check: $(STAMP) ## lint, formatting, types, import order
 	@$(BIN)/lint-imports
 
 docs: .venv-docs/.installed ## build the documentation site into build/docs; it needs no server and no network
-	@$(BIN)/python scripts/site/gather.py
+	@$(BIN)/python tools/site/gather.py
 	@NO_MKDOCS_2_WARNING=1 .venv-docs/bin/mkdocs build -q --strict -f build/mkdocs.yml
 	@echo "docs: build/docs/index.html"
 
-.venv-docs/.installed: $(STAMP) requirements/docs.txt
+.venv-docs/.installed: $(STAMP) tools/requirements/docs.txt
 	@$(BIN)/uv venv -q --clear --python $(BIN)/python .venv-docs
-	@$(BIN)/uv pip install -q --python .venv-docs/bin/python --require-hashes -r requirements/docs.txt
+	@$(BIN)/uv pip install -q --python .venv-docs/bin/python --require-hashes -r tools/requirements/docs.txt
 	@touch $@
 
 hooks: $(STAMP) ## the other checks of a commit: blanks, ends of files, marks of a merge
@@ -74,19 +74,19 @@ hooks: $(STAMP) ## the other checks of a commit: blanks, ends of files, marks of
 	  else SKIP=ruff,ruff-format,mypy,import-order $(BIN)/pre-commit run --all-files; fi
 
 wheel: $(STAMP) ## build the package, install it elsewhere, use every command there once
-	@$(BIN)/python scripts/try_wheel.py
+	@$(BIN)/python tools/try_wheel.py
 
 bench: $(STAMP) ## measure the speed of solver and impact, as ratios within one run
-	@for file in benchmarks/bench_*.py; do echo "== $$file"; $(BIN)/python $$file || exit 1; done
+	@for file in tools/benchmarks/bench_*.py; do echo "== $$file"; $(BIN)/python $$file || exit 1; done
 
 lock: $(STAMP) ## pin all packages anew for every supported Python
 	@for minor in 11 12 13 14; do \
 	  $(BIN)/uv pip compile -q pyproject.toml --extra dev --extra cluster --extra video --extra mocap --extra surface \
 	    --extra tables --extra bayes --generate-hashes \
 	    --python-version 3.$$minor --no-emit-index-url --no-header --no-annotate --upgrade \
-	    -o requirements/py3$$minor.txt; done
+	    -o tools/requirements/py3$$minor.txt; done
 	@$(BIN)/uv pip compile -q --group docs --generate-hashes --universal \
-	  --python-version 3.11 --no-emit-index-url --no-header --no-annotate --upgrade -o requirements/docs.txt
+	  --python-version 3.11 --no-emit-index-url --no-header --no-annotate --upgrade -o tools/requirements/docs.txt
 
 clean: ## remove what was built; the environment and data/ stay
 	@rm -rf build .pytest_cache .mypy_cache .ruff_cache .hypothesis .benchmarks

@@ -86,12 +86,12 @@ class CampaignRules:
     ahead: int = limit(
         4,
         "cases sent ahead to each dask worker [-]",
-        "none waits while one is on its way (benchmarks/bench_scale.py)",
+        "none waits while one is on its way (tools/benchmarks/bench_scale.py)",
     )  # fmt: skip
     look_s: float = limit(
         1.0,
         "between two looks at which dask workers are there [s]",
-        "benchmarks/bench_scale.py",
+        "tools/benchmarks/bench_scale.py",
     )  # fmt: skip
     compressed_from: int = limit(
         512, "values of an array that is compressed [-]",

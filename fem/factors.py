@@ -7,7 +7,7 @@ tree. The tree, the fronts and every entry's place in them belong to the pattern
 
 No rows are exchanged: the tangent of two solids in contact is nearly symmetric and positive. Who
 solves looks at what is left over. It stands beside SuperLU because on these patterns it takes a
-third of its time, and half in a solve (benchmarks/bench_fem.py, docs/performance.md).
+third of its time, and half in a solve (tools/benchmarks/bench_fem.py, docs/performance.md).
 """
 
 from __future__ import annotations

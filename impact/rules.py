@@ -104,7 +104,8 @@ class ImpactRules:
     )  # fmt: skip
     band_steps: int = rule(
         4000, "most steps of a blow that is made for a band alone [-]",
-        "usual blows take some 200, a vibrating rod 2000; benchmarks/fuzz_keys.py ended in no "
+        "usual blows take some 200, a vibrating rod 2000; tools/benchmarks/fuzz_keys.py ended in "
+        "no "
         "30 s with five times that",
     )  # fmt: skip
     largest_error: float = rule(

@@ -17,7 +17,7 @@ class ReductionRules:
     )  # fmt: skip
     level_trend: float = rule(
         0.01, "change over such a stretch, as a part of the pulse's height [-]",
-        "benchmarks/validate_reduce_pulse.py: levels of feet and of slow transducers",
+        "tools/benchmarks/validate_reduce_pulse.py: levels of feet and of slow transducers",
     )  # fmt: skip
     foot_reach: int = rule(
         6, "half-widths of the pulse over which a lower level before a foot is looked for [-]",
@@ -25,7 +25,7 @@ class ReductionRules:
     )  # fmt: skip
     foot_part: float = rule(
         0.005, "area before the flank, as a part of the pulse's, that is a foot [-]",
-        "benchmarks/validate_reduce_pulse.py: clean half-sines stay below",
+        "tools/benchmarks/validate_reduce_pulse.py: clean half-sines stay below",
     )  # fmt: skip
     ring_reach: float = rule(
         20.0, "durations after a pulse over which a ringing is averaged [-]",
@@ -53,7 +53,7 @@ class ReductionRules:
     )  # fmt: skip
     form: float = rule(
         1e-3, "error of peak and area by the form of a pulse, in themselves [-]",
-        "benchmarks/validate_reduce_pulse.py: powers of a sine from 1 to 1.5",
+        "tools/benchmarks/validate_reduce_pulse.py: powers of a sine from 1 to 1.5",
     )  # fmt: skip
     hole: float = rule(
         0.1, "longest time between two samples of a pulse, in its duration [-]",
@@ -85,17 +85,20 @@ class ReductionRules:
         0.5, "standard deviation of a contact time, in itself [-]", "beyond it nothing is measured",
     )  # fmt: skip
     step: float = rule(
-        0.33, "level after a pulse, in its peak [-]", "benchmarks/validate_reduce_pulse.py",
+        0.33, "level after a pulse, in its peak [-]",
+        "tools/benchmarks/validate_reduce_pulse.py",
     )  # fmt: skip
     swings: int = rule(
-        6, "other half-waves above a third of the peak [-]", "benchmarks/validate_reduce_pulse.py",
+        6, "other half-waves above a third of the peak [-]",
+        "tools/benchmarks/validate_reduce_pulse.py",
     )  # fmt: skip
     ringing: float = rule(
-        0.1, "half-wave of the other sign, in the peak [-]", "benchmarks/validate_reduce_pulse.py",
+        0.1, "half-wave of the other sign, in the peak [-]",
+        "tools/benchmarks/validate_reduce_pulse.py",
     )  # fmt: skip
     train: int = rule(
         2, "other pulses of more than half of the peak that do not fade as bounces do [-]",
-        "steps of a walk and taps: benchmarks/validate_reduce_pulse.py",
+        "steps of a walk and taps: tools/benchmarks/validate_reduce_pulse.py",
     )  # fmt: skip
     outside_restitution: float = rule(
         3.0, "standard deviations below 0 or above 1 [-]", "normal errors: one in 700",
@@ -126,7 +129,8 @@ class ReductionRules:
     )  # fmt: skip
     soft_rarer: float = rule(
         2.0, "power by which longer ones, of soft balls, are rarer [-]",
-        "benchmarks/validate_reduce_tracks.py: with 1 errors of hard balls at 120 frames a second "
+        "tools/benchmarks/validate_reduce_tracks.py: with 1 errors of hard balls at 120 frames a "
+        "second "
         "grow by a quarter",
     )  # fmt: skip
     longest_contact: float = rule(
@@ -159,14 +163,14 @@ class ReductionRules:
     )  # fmt: skip
     zero_reach: tuple[float, ...] = rule(
         (0.05, 0.1, 0.2, 0.45, 1.0), "loads up to which a flank tells its zero, in the largest [-]",
-        "benchmarks/validate_reduce_press.py; of a blunt pyramid the first tenth is a sphere",
+        "tools/benchmarks/validate_reduce_press.py; of a blunt pyramid the first tenth is a sphere",
     )  # fmt: skip
     zero_span: float = rule(
-        2.5, "largest in least load of that flank [-]", "benchmarks/validate_reduce_press.py",
+        2.5, "largest in least load of that flank [-]", "tools/benchmarks/validate_reduce_press.py",
     )  # fmt: skip
     preload_part: float = rule(
         0.1, "error of the zero that a preload hides, in the depth that is made up [-]",
-        "benchmarks/validate_reduce_press.py",
+        "tools/benchmarks/validate_reduce_press.py",
     )  # fmt: skip
     stiffness_from: tuple[float, ...] = rule(
         (0.5, 0.7), "loads down to which the slope of unloading is read, in the largest [-]",

@@ -12,7 +12,7 @@ import json
 from pathlib import Path
 from typing import Any
 
-_APART = ("studies/", "tests/", "docs/", "benchmarks/", "build/", "examples/", "scripts/")
+_APART = ("studies/", "tests/", "docs/", "tools/", "build/", "examples/")
 _DATA = ("data/coefficients", "discrepancy")
 _DATA_ENDINGS = {".json", ".toml", ".npz", ".h5"}
 

@@ -4,12 +4,12 @@ import runpy
 from pathlib import Path
 
 ROOT = Path(__file__).resolve().parents[2]
-DIGESTS = runpy.run_path(str(ROOT / "scripts" / "digests.py"))
+DIGESTS = runpy.run_path(str(ROOT / "tools" / "digests.py"))
 
 
 def test_the_page_of_digests_is_what_the_files_say():
     told, found = DIGESTS["PAGE"].read_text(), DIGESTS["page"]()
-    assert told == found, "run `python scripts/digests.py`, after making anew what it names"
+    assert told == found, "run `python tools/digests.py`, after making anew what it names"
 
 
 def test_the_coefficients_come_from_published_parts():

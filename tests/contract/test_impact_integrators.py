@@ -101,7 +101,7 @@ def assert_agree(scene: Scene, tolerance: float, *, settings: Settings) -> None:
 
 
 def test_compiled_and_library_integrator_agree() -> None:
-    """1e-8 in every observable, events included; benchmarks/bench_impact.py runs 1,000."""
+    """1e-8 in every observable, events included; tools/benchmarks/bench_impact.py runs 1,000."""
     rng = np.random.default_rng(7)
     for number in range(40):
         scene = random_scene(rng, number)

@@ -16,7 +16,7 @@ from scipy.sparse.csgraph import connected_components
 
 ROOT = Path(__file__).resolve().parents[2]
 PROJECT = tomllib.loads((ROOT / "pyproject.toml").read_text(encoding="utf-8"))
-APART = {"tests", "benchmarks", "examples", "docs", "scripts", "data", "build"}
+APART = {"tests", "examples", "docs", "tools", "data", "build"}
 WORKSHOP = (Path("studies"), Path("cli/workshop"))
 KERNELS_KEY = "disallow_untyped_defs"
 

@@ -36,10 +36,10 @@ def test_there_are_nine_and_each_is_short() -> None:
 
 @pytest.mark.parametrize("name", SCRIPTS)
 def test_a_notebook_is_its_script(name: str) -> None:
-    made = runpy.run_path(str(ROOT / "scripts" / "notebooks.py"))["notebook"]
+    made = runpy.run_path(str(ROOT / "tools" / "notebooks.py"))["notebook"]
     script = (EXAMPLES / f"{name}.py").read_text(encoding="utf-8")
     stored = (EXAMPLES / f"{name}.ipynb").read_text(encoding="utf-8")
-    assert made(script) == stored, "run scripts/notebooks.py"
+    assert made(script) == stored, "run tools/notebooks.py"
 
 
 def test_drop_a_ball() -> None:

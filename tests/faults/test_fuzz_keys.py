@@ -1,11 +1,11 @@
-"""The seeded short form of `benchmarks/fuzz_keys.py`: legal but extreme files to every command."""
+"""The short form of `tools/benchmarks/fuzz_keys.py`: legal but extreme files to every command."""
 
 import importlib.util
 from pathlib import Path
 
 import pytest
 
-_FILE = Path(__file__).parents[2] / "benchmarks" / "fuzz_keys.py"
+_FILE = Path(__file__).parents[2] / "tools" / "benchmarks" / "fuzz_keys.py"
 _SPEC = importlib.util.spec_from_file_location("fuzz_keys", _FILE)
 fuzz = importlib.util.module_from_spec(_SPEC)
 _SPEC.loader.exec_module(fuzz)

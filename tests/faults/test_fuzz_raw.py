@@ -1,4 +1,4 @@
-"""The seeded short form of `benchmarks/fuzz_raw.py`: files of a drawn grammar, reduced or refused.
+"""The short form of `tools/benchmarks/fuzz_raw.py`: files of a drawn grammar, reduced or refused.
 
 What damages sound files is `fuzz.py --raw`.
 """
@@ -12,7 +12,7 @@ import fuzz
 import pytest
 from dentscope.core import InputError
 
-_FILE = Path(__file__).parents[2] / "benchmarks" / "fuzz_raw.py"
+_FILE = Path(__file__).parents[2] / "tools" / "benchmarks" / "fuzz_raw.py"
 _SPEC = importlib.util.spec_from_file_location("fuzz_raw", _FILE)
 raw = importlib.util.module_from_spec(_SPEC)
 _SPEC.loader.exec_module(raw)

@@ -1,6 +1,6 @@
 """A sweep ends whatever bodies, support and angle it is for, and its answers are those of a blow.
 
-All of them, with processor seconds and memory: python benchmarks/bench_sweeps.py.
+All of them, with processor seconds and memory: python tools/benchmarks/bench_sweeps.py.
 """
 
 from __future__ import annotations

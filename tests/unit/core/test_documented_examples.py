@@ -49,7 +49,7 @@ def test_the_lock_of_every_supported_python_pins_each_dependency_with_hashes():
     declared = (ROOT / "pyproject.toml").read_text(encoding="utf-8")
     direct = re.search(r"^dependencies = \[(.*?)\]", declared, flags=re.MULTILINE | re.DOTALL)
     names = re.findall(r'"([A-Za-z0-9-]+)', direct.group(1))
-    locks = sorted((ROOT / "requirements").glob("py3*.txt"))
+    locks = sorted((ROOT / "tools" / "requirements").glob("py3*.txt"))
     assert [lock.stem for lock in locks] == ["py311", "py312", "py313", "py314"]
     for lock in locks:
         blocks = re.split(r"\n(?=\S)", lock.read_text(encoding="utf-8"))

@@ -8,12 +8,12 @@ from pathlib import Path
 import pytest
 
 ROOT = Path(__file__).resolve().parents[3]
-GATHER = runpy.run_path(str(ROOT / "scripts" / "site" / "gather.py"))
+GATHER = runpy.run_path(str(ROOT / "tools" / "site" / "gather.py"))
 MADE = {"index.md", "changes.md", "contributing.md", "keys.md", "laws.md", "examples.md"}
 
 
 def test_every_page_is_in_the_menu():
-    menu = (ROOT / "scripts" / "site" / "mkdocs.yml").read_text().split("nav:")[1]
+    menu = (ROOT / "tools" / "site" / "mkdocs.yml").read_text().split("nav:")[1]
     named = set(re.findall(r"[\w/-]+\.md", menu))
     docs = ROOT / "docs"
     pages = {str(p.relative_to(docs)) for p in docs.rglob("*.md")}

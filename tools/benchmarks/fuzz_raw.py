@@ -1,6 +1,7 @@
 """Raw files as instruments and people write them, with legal but extreme numbers and options.
 
-`python benchmarks/fuzz_raw.py --inputs 1000` writes that many files by a seed, no two alike, and
+`python tools/benchmarks/fuzz_raw.py --inputs 1000` writes that many files by a seed, no two alike,
+and
 reduces each to numbers, a record and a picture in a child that is watched (tests/faults/fuzz.py):
 a traceback, a number that is none, more than 20 s of the processor or more than 1 GB is a fault.
 Where `fuzz.py --raw` damages sound files, here the grammar is drawn: separators, marks of
@@ -19,7 +20,7 @@ from typing import Literal, get_args, get_origin
 
 import numpy as np
 
-sys.path.insert(0, str(Path(__file__).parents[1] / "tests" / "faults"))
+sys.path.insert(0, str(Path(__file__).parents[2] / "tests" / "faults"))
 import fuzz
 import raw_files
 from readers import Reader

@@ -1,7 +1,7 @@
 """What grows with the number of cases, of recording sets and of workers, and what each costs.
 
-    .venv/bin/python benchmarks/bench_scale.py          about six minutes; 2 GB of disk, 4 of memory
-    .venv/bin/python benchmarks/bench_scale.py --quick  about one, at a tenth of the sizes
+    .venv/bin/python tools/benchmarks/bench_scale.py    about six minutes; 2 GB of disk, 4 of memory
+    .venv/bin/python tools/benchmarks/bench_scale.py --quick   about one, at a tenth of the sizes
 
 Published cases, copied with a Poisson ratio smaller by a millionth each, go one by one through
 `Store.put` into runs that hold so many files already (links to the first few). Everything that is

@@ -1,7 +1,7 @@
-"""Prove the crater reduction on rendered scans: `python benchmarks/validate_reduce_scan.py 200`.
+"""Prove the reduction of scans on rendered ones.
 
-Prints error and coverage of depth, and of the sliding length of scars, over scans with drawn size,
-rim, tilt, roughness, noise, spikes and holes.
+`python tools/benchmarks/validate_reduce_scan.py 200` prints error and coverage of depth, and of the
+sliding length of scars, over scans with drawn size, rim, tilt, roughness, noise, spikes and holes.
 """
 
 import sys

@@ -1,9 +1,9 @@
 """Speed of the compiled impact integrator, and its agreement with the library's on many impacts.
 
-python benchmarks/bench_impact.py            impacts a second, on one core
-python benchmarks/bench_impact.py rates      the marks: steps, work and table, beside Hertz
-python benchmarks/bench_impact.py agree 1000 largest difference to the reference integrator
-python benchmarks/bench_impact.py agree 1000 300 the same from number 300 on
+python tools/benchmarks/bench_impact.py            impacts a second, on one core
+python tools/benchmarks/bench_impact.py rates      the marks: steps, work and table, beside Hertz
+python tools/benchmarks/bench_impact.py agree 1000 largest difference to the reference integrator
+python tools/benchmarks/bench_impact.py agree 1000 300 the same from number 300 on
 """
 
 from __future__ import annotations

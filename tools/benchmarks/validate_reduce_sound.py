@@ -1,6 +1,6 @@
 """Reduce rendered recordings of bouncing balls and compare with what they were made of.
 
-    python benchmarks/validate_reduce_sound.py [COUNT]
+    python tools/benchmarks/validate_reduce_sound.py [COUNT]
 
 Each record has a ball whose restitution falls with speed, drag, ringing at each contact, an echo,
 noise at a drawn level, up to two knocks that belong to nothing, and clipping in some.

@@ -1,6 +1,6 @@
 """Write data/README.md: what is published, its digest, and what it was made from.
 
-    python scripts/digests.py
+    python tools/digests.py
 
 `tests/contract/test_digests.py` compares the page with the files.
 """
@@ -22,7 +22,7 @@ SHORT = 12
 
 INTRO = """# What is published
 
-Written by `python scripts/digests.py`; a test compares it with the files. A digest is the beginning
+Written by `python tools/digests.py`; a test compares it with the files. A digest is the beginning
 of a SHA-256: of the file, or of the sorted names and digests of a folder's files.
 
 | what | digest | made from | by |

@@ -1,10 +1,10 @@
 """Legal but extreme files to every command: no hang, no traceback, no nan with exit code 0.
 
-`python benchmarks/fuzz_keys.py --inputs 4000` makes that many files by a seed from the grammar of
-keys below, each value within what `dentscope keys` allows, runs the command in a child that stays,
-and prints for each command how many were answered, refused with a line, ended with exit code 3, and
-what else happened. A child that takes more than 30 s of its processor over one file is ended: a
-hang. `--first 2000` goes on at that file, `--only 17` shows one. The seeded short form is
+`python tools/benchmarks/fuzz_keys.py --inputs 4000` makes that many files by a seed from the
+grammar of keys below, each value within what `dentscope keys` allows, runs the command in a child
+that stays, and prints for each command how many were answered, refused with a line, ended with exit
+code 3, and what else happened. A child that takes more than 30 s of its processor over one file is
+ended: a hang. `--first 2000` goes on at that file, `--only 17` shows one. The seeded short form is
 `tests/faults/test_fuzz_keys.py`.
 """
 

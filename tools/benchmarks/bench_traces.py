@@ -1,6 +1,6 @@
 """What traces alone add to detection.
 
-    .venv/bin/python benchmarks/bench_traces.py
+    .venv/bin/python tools/benchmarks/bench_traces.py
 
 Sixteen impacts of two steel balls (8 and 18 mm, 0.4 to 3.2 m/s) on mild steel, recorded by 40
 samples a contact of the tip's height (0.5 um), with and without the force (1 %), and by nothing

@@ -1,6 +1,6 @@
 """Processor seconds and memory of a sweep, over bodies, supports and angles, by the default laws.
 
-python benchmarks/bench_sweeps.py
+python tools/benchmarks/bench_sweeps.py
 
 Each combination of tests/physics/test_impact_sweeps_end.py in a process of its own; what takes more
 than 20 s of processor or 600 MB, or does not end as it should, is marked.
@@ -15,7 +15,7 @@ from pathlib import Path
 
 SECONDS, BYTES = 20.0, 600e6
 
-_FILE = Path(__file__).parents[1] / "tests/physics/test_impact_sweeps_end.py"
+_FILE = Path(__file__).parents[2] / "tests/physics/test_impact_sweeps_end.py"
 _SPEC = spec_from_file_location("sweeps", _FILE)
 assert _SPEC is not None
 assert _SPEC.loader is not None

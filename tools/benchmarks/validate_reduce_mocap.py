@@ -1,4 +1,4 @@
-"""Prove the motion-capture reduction: `python benchmarks/validate_reduce_mocap.py 200 rod`.
+"""Prove the motion-capture reduction: `python tools/benchmarks/validate_reduce_mocap.py 200 rod`.
 
 Prints the errors of speeds, spin, restitution and friction over recordings with drawn motion,
 markers, noise and gaps, and how often the truth lies within the stated uncertainty. Arguments:

@@ -1,7 +1,7 @@
 """What the design `robustness` shows: how many random pairs are solved, and how well balanced.
 
     dentscope campaign run --design robustness --out build/robustness
-    .venv/bin/python benchmarks/robustness.py [build/robustness [robustness-hardening]]
+    .venv/bin/python tools/benchmarks/robustness.py [build/robustness [robustness-hardening]]
 
 Pairs of a scrambled Sobol sequence with a fixed seed over the solver's stated range, at the level
 `quick`. Printed: how many reach Delta/R = 0.1, how the others end, the largest defect of each

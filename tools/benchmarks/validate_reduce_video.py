@@ -1,4 +1,6 @@
-"""Prove the reduction of clips on rendered ones: `python benchmarks/validate_reduce_video.py 100`.
+"""Prove the reduction of clips on rendered ones.
+
+`python tools/benchmarks/validate_reduce_video.py 100` does so.
 
 Clips of a rod around its contact, or of a ball over whole flights in air, with drawn speeds, lean,
 tip, blur, shutter, noise and light, and with every fault of a camera at once: a scale that drifts,

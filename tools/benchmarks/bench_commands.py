@@ -1,7 +1,7 @@
 """Processor seconds until each command's help is shown, and until a wrong use of it is refused.
 
-python benchmarks/bench_commands.py          every command, slowest first
-python benchmarks/bench_commands.py reduce   those that begin so
+python tools/benchmarks/bench_commands.py          every command, slowest first
+python tools/benchmarks/bench_commands.py reduce   those that begin so
 """
 
 from __future__ import annotations

@@ -1,6 +1,6 @@
 """Cost of the solver's parts as ratios within one run, on the production mesh.
 
-python benchmarks/bench_fem.py
+python tools/benchmarks/bench_fem.py
 """
 
 from __future__ import annotations

@@ -25,7 +25,7 @@ from dentscope.studies.synthetic.tip import TipTruth, photograph
 from matplotlib.image import imsave
 
 ROOT = Path(__file__).resolve().parents[1]
-LOCK = ROOT / "requirements" / f"py3{sys.version_info.minor}.txt"
+LOCK = ROOT / "tools" / "requirements" / f"py3{sys.version_info.minor}.txt"
 UV = Path(sys.executable).parent / "uv"
 EXTRAS = "video,mocap,surface,tables"
 

@@ -1,6 +1,6 @@
 """Speed and soundness of the fitted law: a ratio within one run, and a million random draws.
 
-    .venv/bin/python benchmarks/bench_fitted_law.py
+    .venv/bin/python tools/benchmarks/bench_fitted_law.py
 
 Times are processor seconds on one core, the best of several runs; the ratio to Jackson and Green's
 formula in the same run is what can be compared between machines.

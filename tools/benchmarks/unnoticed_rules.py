@@ -1,8 +1,8 @@
 """Which tuned numbers no unit test notices: each is changed by a factor while its tests run.
 
-    python benchmarks/unnoticed_rules.py              # every number, halved and doubled: hours
-    python benchmarks/unnoticed_rules.py --random 11 --factor 3
-    python benchmarks/unnoticed_rules.py --stage recordings
+    python tools/benchmarks/unnoticed_rules.py           # every number, halved and doubled: hours
+    python tools/benchmarks/unnoticed_rules.py --random 11 --factor 3
+    python tools/benchmarks/unnoticed_rules.py --stage recordings
 
 Limits, which no result hangs on, are left out. A number counts as noticed by the first unit test of
 its stage that fails; without a change all of them pass. Numbers that compiled code takes in are
@@ -20,7 +20,7 @@ from dataclasses import fields
 from importlib import import_module
 from pathlib import Path
 
-ROOT = Path(__file__).resolve().parents[1]
+ROOT = Path(__file__).resolve().parents[2]
 STAGES = sorted(path.parent.name for path in ROOT.glob("*/rules.py"))
 
 

@@ -36,9 +36,9 @@ if ! "$python" -c 'import sys; raise SystemExit(sys.version_info < (3, 11))'; th
   exit 2
 fi
 minor=$(minor_of "$python")
-lock=requirements/py$minor.txt
+lock=tools/requirements/py$minor.txt
 if [ ! -f "$lock" ]; then
-  say "no pinned packages for this Python; there are: $(cd requirements && echo py*.txt)"
+  say "no pinned packages for this Python; there are: $(cd tools/requirements && echo py*.txt)"
   exit 2
 fi
 
@@ -56,8 +56,12 @@ awk '/^[^ ]/ { wanted = /^uv==/ } wanted' "$lock" >.venv/uv.txt
 .venv/bin/uv pip install -q --python .venv/bin/python --require-hashes -r "$lock"
 # the build tool is pinned too: nothing outside the lock is fetched
 .venv/bin/uv pip install -q --python .venv/bin/python --no-deps --no-build-isolation -e .
-# mypy and editors find the package by its name through this link, whatever the clone is called
-mkdir -p .typing && ln -sfn .. .typing/dentscope
+# mypy and editors find the package by its name through these links, whatever the clone is called;
+# a link to the root itself would hold itself
+rm -rf .typing && mkdir -p .typing/dentscope
+for part in __init__.py __main__.py py.typed */__init__.py; do
+  ln -s "../../${part%/__init__.py}" ".typing/dentscope/${part%/__init__.py}"
+done
 
 if ! .venv/bin/python -c 'import gmsh' 2>/dev/null; then
   apt_install "gmsh" "${system_packages[@]}" || exit 2

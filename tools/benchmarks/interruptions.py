@@ -1,6 +1,7 @@
 """Ctrl-C and SIGTERM at random moments of every long command: how soon it stops, what it leaves.
 
-`python benchmarks/interruptions.py --stops 60` starts the commands below in turn, each over and
+`python tools/benchmarks/interruptions.py --stops 60` starts the commands below in turn, each over
+and
 over in a folder of its own, so that it goes on from what the interruptions before have left. Ctrl-C
 goes to all processes of the command, as from a terminal, SIGTERM to the first alone. Looked at: the
 processor seconds and the time until it ended, whether it was inside a compiled call meanwhile, exit

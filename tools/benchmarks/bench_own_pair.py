@@ -2,7 +2,7 @@
 
 A hard ball on a mild steel with a yield plateau is solved as a diagnosis solves it; then the same
 with the steel 10 % stronger, and 5 % less stiff. The law that is anchored at the first solve is
-compared with the other two. Minutes: python benchmarks/bench_own_pair.py
+compared with the other two. Minutes: python tools/benchmarks/bench_own_pair.py
 """
 
 from __future__ import annotations

@@ -1,6 +1,6 @@
 """Reduce rendered tracks of bouncing balls and compare with what they were made of.
 
-    python benchmarks/validate_reduce_tracks.py [COUNT] [FIRST] [soft]
+    python tools/benchmarks/validate_reduce_tracks.py [COUNT] [FIRST] [soft]
 
 Each track has drag, a scale that drifts with height and time, a picture that is not level, a
 rolling shutter in some, dropped frames, a share of positions that are something else's, and a dip

@@ -1,6 +1,6 @@
 """Cost of an impact and of a force beside what others offer: ratios of one run.
 
-    .venv/bin/python benchmarks/bench_outside.py
+    .venv/bin/python tools/benchmarks/bench_outside.py
 
 Balls of steel straight on a harder flat, each at a speed of its own: our law by work and by steps,
 the thesis's law and Jackson and Green's by steps, and LAMMPS with its granular laws, all balls in

@@ -1,6 +1,6 @@
 """Reduce made-up pulses of force, and records that are no pulse, and compare with what they are.
 
-    python benchmarks/validate_reduce_pulse.py [COUNT]
+    python tools/benchmarks/validate_reduce_pulse.py [COUNT]
 
 COUNT whole pulses (half-sines and elastic spheres, clean, on another level before, with a soft
 foot, with a ringing after) and COUNT records that should be refused: noise, clipped ones, holes,

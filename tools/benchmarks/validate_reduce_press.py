@@ -1,6 +1,6 @@
 """Reduce made-up presses of load against depth, and records that are none; compare with the truth.
 
-    python benchmarks/validate_reduce_press.py [COUNT]
+    python tools/benchmarks/validate_reduce_press.py [COUNT]
 
 COUNT presses: loadings of drawn powers (spheres to blunt pyramids) after an approach or from a
 preload, one cycle or eight, unloadings of drawn powers to nothing or to a rest, a hold that creeps,
