@@ -1,10 +1,10 @@
 """The kinds of raw file, in reading order, and what each of their folders offers.
 
-The folder of a kind holds `options.py` with the table of its options, `SoundOptions` say (an
-`InputTable` whose fields have a description; field names end in their unit); `kind.py` with
+The folder of a kind holds `options.py` with `Options`, the table of its options (an `InputTable`
+whose fields have a description; field names end in their unit); `kind.py` with
 `reduce(path, options) -> Reduced`, loaded when a file is reduced; and `picture.py`, which draws the
-picture to check the numbers by. The command line and the recipes make their options from it, so
-that an option is written once. Another package adds a kind as one module with `ABOUT`
+picture to check the numbers by. The command line and the recipes make their options from
+`Options`, so that an option is written once. Another package adds a kind as one module with `ABOUT`
 (what it gives), `Options` and `reduce` (`core.inputs.added`).
 """
 
@@ -91,5 +91,4 @@ def load_kind(name: str) -> Kind:
     if name not in KINDS:
         known = ", ".join((*KINDS, *names_added(READERS)))
         raise InputError(f"no kind {name!r}", key="kind", allowed=known)
-    options = import_module(f".{name}.options", __package__)
-    return Kind(name, getattr(options, f"{name.capitalize()}Options"))
+    return Kind(name, import_module(f".{name}.options", __package__).Options)

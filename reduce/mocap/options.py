@@ -75,3 +75,7 @@ class MocapOptions(InputTable):
     def two_ends(self) -> tuple[str, ...]:
         """The two markers along the rod."""
         return tuple(n.strip() for n in self.axis.split(":") if n.strip())
+
+
+Options = MocapOptions
+"""By this name a kind is found."""

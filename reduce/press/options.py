@@ -33,3 +33,7 @@ class PressOptions(TimeWindow):
         0.0, ge=0.0, description="standard deviation of the load cell at the largest load"
     )
     tip_radius_m: float | None = Field(None, gt=0.0, description="of the ball, for a new set")
+
+
+Options = PressOptions
+"""By this name a kind is found."""

@@ -36,3 +36,7 @@ class ScanOptions(InputTable):
     reach_m: float | None = Field(
         None, gt=0.0, description="of a ball: distance from the top that is used; default: all"
     )
+
+
+Options = ScanOptions
+"""By this name a kind is found."""

@@ -18,3 +18,7 @@ class SoundOptions(BounceOptions, TimeWindow):
         0.02, gt=0.0, description="shortest time between two contacts; echoes come sooner"
     )
     lowest_hz: float = Field(300.0, gt=0.0, description="lower frequencies are taken out")
+
+
+Options = SoundOptions
+"""By this name a kind is found."""

@@ -23,3 +23,7 @@ class TipOptions(PictureOptions):
         if self.diameter_m is not None and self.shape == "sphere":
             raise ValueError("diameter_m is a rod's; give pixel_m for a ball")
         return self
+
+
+Options = TipOptions
+"""By this name a kind is found."""

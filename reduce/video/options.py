@@ -32,3 +32,7 @@ class VideoOptions(PictureOptions, BallOptions):
     last_frame: int | None = Field(
         None, ge=0, le=RULES.most_frames, description="number of the last one"
     )
+
+
+Options = VideoOptions
+"""By this name a kind is found."""

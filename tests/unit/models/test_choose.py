@@ -40,3 +40,19 @@ def test_a_law_beyond_its_contact_radius_is_objected_to():
     need = demand(PAIRS["flattening"], 1.5e-3)  # a/R about sqrt(0.3) = 0.55
     assert need.a_over_R == pytest.approx(math.sqrt(0.3))
     assert "0.41" in objection(LAWS["jackson-green"], need)
+
+
+@pytest.mark.parametrize(
+    ("ratio", "regime"),
+    [(0.59, "flattening"), (0.61, "both bodies"), (1.69, "both bodies"), (1.71, "indentation")],
+)
+def test_one_body_is_said_to_yield_where_the_other_is_two_thirds_stronger(ratio, regime):
+    sphere = Material(E=200e9, nu=0.3, Sy=ratio * 300e6)
+    assert demand(Pair(sphere, SOFT, 1e-2), 1e-4).regime == regime
+
+
+def test_hertz_may_be_used_up_to_19_critical_depths():
+    pair = PAIRS["both bodies"]
+    onset = 1e-4 / demand(pair, 1e-4).w
+    assert objection(LAWS["hertz"], demand(pair, 1.88 * onset)) == ""
+    assert objection(LAWS["hertz"], demand(pair, 1.92 * onset)) == "elastic only"

@@ -10,7 +10,8 @@ from dentscope.core.errors import InputError
 from dentscope.recordings.checks.rigid import RigidTouch
 from dentscope.reduce.mocap.body import Body, centre_of
 from dentscope.reduce.mocap.file import read_markers
-from dentscope.reduce.mocap.kind import Options, reduce
+from dentscope.reduce.mocap.kind import reduce
+from dentscope.reduce.mocap.options import Options
 from dentscope.reduce.mocap.reduction import MocapScene, reduce_mocap
 from dentscope.reduce.mocap.rigid import kabsch, rigid_poses
 from dentscope.studies.synthetic.mocap import (

@@ -7,7 +7,8 @@ import numpy as np
 import pytest
 from dentscope.core.errors import InputError
 from dentscope.recordings import audit, read
-from dentscope.reduce.mocap.kind import Options, reduce
+from dentscope.reduce.mocap.kind import reduce
+from dentscope.reduce.mocap.options import Options
 
 ROOT = Path(__file__).parents[3]
 RAW = ROOT.parent / "shared" / "recordings" / "tabletennis-spin-bounce" / "trajectories.zip"

@@ -7,7 +7,8 @@ import pytest
 from dentscope.cli import run
 from dentscope.core.errors import InputError
 from dentscope.reduce.scan.crater import reduce_scan
-from dentscope.reduce.scan.kind import Options, reduce
+from dentscope.reduce.scan.kind import reduce
+from dentscope.reduce.scan.options import Options
 from dentscope.studies.synthetic.scans import random_truth, render
 
 EXCERPTS = Path(__file__).resolve().parents[2] / "data" / "surface-scans"

@@ -4,7 +4,8 @@ import numpy as np
 import pytest
 from dentscope.core.errors import InputError
 from dentscope.reduce.measured import Measured
-from dentscope.reduce.tip.kind import Options, reduce
+from dentscope.reduce.tip.kind import reduce
+from dentscope.reduce.tip.options import Options
 from dentscope.reduce.tip.reduction import reduce_tip
 from dentscope.studies.synthetic.tip import TipTruth, photograph, random_tip
 

@@ -11,7 +11,8 @@ from dentscope.core.errors import InputError
 from dentscope.recordings import audit, read
 from dentscope.reduce.images.clip import Clip, read_clip, repeated_frames
 from dentscope.reduce.measured import Measured
-from dentscope.reduce.video.kind import Options, reduce
+from dentscope.reduce.video.kind import reduce
+from dentscope.reduce.video.options import Options
 from dentscope.reduce.video.reduction import Optics, reduce_video
 from dentscope.studies.synthetic.clips import random_truth, render, write_pictures, write_video
 

@@ -7,7 +7,7 @@ import pytest
 from dentscope.core import Material, Pair
 from dentscope.models import LAWS
 from dentscope.start.comparison import compare_laws
-from dentscope.start.judged import Departure, departure, nearest
+from dentscope.start.judged import USABLE, Departure, _groups, departure, nearest
 
 ALUMINIUM = Material(E=7.0e10, nu=0.33, Sy=3.0e8)
 STEEL = Material(E=2.1e11, nu=0.3, Sy=8.0e8)
@@ -86,3 +86,18 @@ def test_below_first_yield_every_law_is_hertz():
     elastic = compare_laws(Pair(Material(E=7e10, nu=0.3), Material(E=2e11, nu=0.3), 1e-3))
     assert elastic.table()[0][3] == "p/E'"
     assert elastic.best == ("hertz",)
+
+
+def test_a_departure_is_told_in_per_cent_then_in_times_then_not_at_all():
+    assert Departure(math.log(1.49), 0.0, 0.0).told == "within 49 %"
+    assert Departure(0.0, math.log(99.0), 0.0).told == "off by 99 times in dent"
+    assert Departure(0.0, 0.0, math.log(101.0)).told == "knows no restitution"
+    assert USABLE == 0.1
+
+
+def test_strengths_more_than_two_and_a_half_apart_are_alike():
+    """The stronger body then hardly matters: nor does the pair's distance to a published one."""
+    near, far = (Pair(Material(E=7e10, nu=0.33, Sy=s * 3e8), ALUMINIUM, 1e-3) for s in (2.6, 9.0))
+    less = Pair(Material(E=7e10, nu=0.33, Sy=2.4 * 3e8), ALUMINIUM, 1e-3)
+    assert _groups(near)[1] == _groups(far)[1] == pytest.approx(2.0 * math.log(2.5) / 1.2)
+    assert _groups(less)[1] == pytest.approx(2.0 * math.log(2.4) / 1.2)

@@ -1,0 +1,55 @@
+"""Tuned numbers of the solver where they act, in cases that are worked out by hand."""
+
+from __future__ import annotations
+
+from types import SimpleNamespace
+
+import numpy as np
+import pytest
+from dentscope import fem
+from dentscope.core import Material, Pair
+from dentscope.fem.discretise import discretise
+from dentscope.fem.loading import _growth, _stops
+from dentscope.fem.mesh import Zone
+from dentscope.fem.path import extrapolate
+
+STEEL = Material(E=200e9, nu=0.3, Sy=500e6)
+
+
+def test_a_guess_goes_on_by_two_and_a_half_of_the_last_increment_at_most() -> None:
+    before, now = np.array([1.0, 2.0]), np.array([2.0, 5.0])
+    point = SimpleNamespace(equilibrium=SimpleNamespace(u=now))
+    assert extrapolate(point, before, 2.0).tolist() == [4.0, 11.0]
+    assert extrapolate(point, before, 9.0).tolist() == [4.5, 12.5]
+    assert extrapolate(point, None, 9.0).tolist() == [18.0, 45.0]
+
+
+@pytest.mark.parametrize(("iterations", "power"), [(5, 1.5), (6, 1.15), (8, 1.15), (9, 1.0)])
+def test_a_step_that_was_easy_lets_the_next_be_longer(iterations, power) -> None:
+    point = SimpleNamespace(equilibrium=SimpleNamespace(iterations=iterations))
+    assert _growth(point) == power
+
+
+def test_a_path_begins_three_quarters_of_its_first_depth_in() -> None:
+    problem = fem.ContactProblem(Pair(STEEL, STEEL, 1e-3), (1e-4, 0.04))
+    assert _stops(problem, 1.0)[0] == pytest.approx(0.75e-4)
+    # well below first yield, where that comes sooner
+    assert _stops(problem, 1e-4)[0] == pytest.approx(0.75 * 0.3e-4)
+
+
+def test_rings_inside_the_zone_widen_in_three_steps() -> None:
+    zone = Zone(0.1, 0.3)
+    inside = [zone.allowed(0.1 / x, fine=0.02, coarse=0.1) for x in (1.4, 1.6, 3.9, 4.1)]
+    assert inside == [0.04, 0.1, 0.1, 0.2]
+    assert zone.allowed(0.2, fine=0.02, coarse=0.1) == 0.02
+
+
+def test_the_first_ring_and_the_linear_half_space_lie_where_they_are_said() -> None:
+    problem = fem.ContactProblem(Pair(STEEL, STEEL, 1e-3), (1e-4, 0.04))
+    grid = discretise(problem, fem.Accuracy.smoke(), Zone(0.02, 0.06))
+    # 0.12 of the zone's inner end, moved to the rung below, a hundredth or so
+    assert grid.mesh.rings[0] == pytest.approx(0.12 * 0.02, rel=0.02)
+    place = grid.mesh.points[grid.elements.conn]
+    reach = np.hypot(*np.moveaxis(place, -1, 0)).min(axis=1)
+    assert reach[grid.elements.linear >= 0].min() > 4.0
+    assert reach[grid.elements.linear < 0].max() < 4.0
