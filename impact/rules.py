@@ -225,6 +225,10 @@ class ImpactRules:
         3e-4, "contact radius beyond which hardness does not depend on size [m]",
         "ten times some tens of um",
     )  # fmt: skip
+    above_one: float = rule(
+        1.0 + 5e-4, "restitution from which it is told to be above 1 [-]",
+        "half of its last digit shown",
+    )  # fmt: skip
 
 
 RULES = ImpactRules()

@@ -211,13 +211,11 @@ def _bodies(setup: Setup, law: ContactLaw) -> Iterator[str]:
 
 
 _GIVES_BACK = "the law gives back more than it took"
-_SHOWN = 1.0 + 5e-4
-"""A restitution that four digits show to be above 1."""
 
 
 def reason_above_one(scene: Scene, found: Impact) -> str:
     """Say where the energy of a restitution above 1 comes from; empty where it is at most 1."""
-    if not found.restitution > _SHOWN:
+    if not found.restitution > RULES.above_one:
         return ""
     before, after = found.kinetic_before_J, found.kinetic_after_J
     beside = before - 0.5 * effective_mass(scene) * scene.approach.speed**2
@@ -235,7 +233,7 @@ def reason_above_one(scene: Scene, found: Impact) -> str:
 
 def swept_above_one(swept: Impacts) -> Iterator[str]:
     """Say of a sweep where the energy of restitutions above 1 comes from, a line for each way."""
-    above = swept["restitution"] > _SHOWN
+    above = swept["restitution"] > RULES.above_one
     made = above & _made_by_the_law(
         swept["kinetic_before_J"], swept["kinetic_after_J"], swept["gravity_work_J"]
     )
