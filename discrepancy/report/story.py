@@ -12,7 +12,7 @@ from ...core.observables import OBSERVABLES
 from ..findings import Verdict
 from ..rules import RULES
 from .series import Against, SeriesPoint, againsts, points_of, series_of
-from .text import headline, nowhere, own_parameters
+from .text import headline, nowhere, own_parameters, why
 from .wording import (
     compared,
     explanation,
@@ -51,8 +51,8 @@ class Story:
 
     Parameters
     ----------
-    name, finding, summary
-        The set, the finding in one sentence, and what was compared.
+    name, finding, why, summary
+        The set, the finding in one sentence, why in three, and what was compared.
     points, against, strikers
         What is drawn, against what, and who struck.
     misses, audit, reasons, notes
@@ -76,6 +76,7 @@ class Story:
 
     name: str
     finding: str
+    why: str
     summary: str
     points: tuple[SeriesPoint, ...]
     against: tuple[Against, ...]
@@ -114,6 +115,7 @@ def story_of(v: Verdict) -> Story:
     return Story(
         name=v.name,
         finding=headline(v),
+        why=why(v),
         summary=_summary(v),
         points=points_of(v),
         against=againsts(v),

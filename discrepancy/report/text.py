@@ -62,6 +62,32 @@ def headline(v: Verdict) -> str:
     return f"{unclear} What leads, by probability: {likely}."
 
 
+def why(v: Verdict) -> str:
+    """Return why, in three sentences: where it misses, what leads and how clearly, its rivals."""
+    where = "No observable by itself is off by more than chance gives."
+    if v.located.misses:
+        worst = v.located.misses[0]
+        label = OBSERVABLES[worst.observable].label
+        where = f"The simulation misses most in {label}: {worst.trend}."
+    (lead, p), *others = v.probabilities.items()
+    best = f"Most probable: {explanation(lead)} ({percent(p)})"
+    if lead in v.scores and lead != "baseline":
+        times = _times(v.scores[lead]["evidence"])
+        best += f", with which the readings are {times} as probable as with nothing missing"
+    rivals = [f"{explanation(k)} ({percent(q)})" for k, q in others if q >= RULES.story_least]
+    beside = "Nothing else has a share."
+    if rivals:
+        beside = f"Beside it stand {joined(rivals[: RULES.named_leading])}."
+    return f"{where} {best}. {beside}"
+
+
+def _times(nats: float) -> str:
+    """Return a ratio of probabilities in words."""
+    if nats > math.log(1e6):
+        return "more than a million times"
+    return f"{float(f'{math.exp(nats):.2g}'):,.4g} times"
+
+
 def nowhere(v: Verdict) -> str:
     """Return how places and verdict go together; "" where both say that something is missing."""
     beyond = bool(v.located.beyond_chance)

@@ -10,7 +10,7 @@ import pytest
 from dentscope.discrepancy.locate import Located, Miss
 from dentscope.discrepancy.report.figures import comparison
 from dentscope.discrepancy.report.series import STATED, WITH, WITHOUT, Against, SeriesPoint
-from dentscope.discrepancy.report.text import headline, nowhere
+from dentscope.discrepancy.report.text import headline, nowhere, why
 from dentscope.discrepancy.report.wording import compared, miss_sentences
 
 SPEED = Against("speed_m_s", "approach speed [m/s]", None)  # type: ignore[arg-type]
@@ -99,3 +99,23 @@ def test_what_is_missing_for_sure_is_said_though_not_what() -> None:
     told = headline(said("undetermined", 0.001, Located((), (), 3.0)))
     assert told.startswith("Something is missing (more than 99 %), but these data do not say what.")
     assert "What leads, by probability: " in told
+
+
+def test_why_is_three_sentences_with_the_rivals_of_a_name() -> None:
+    seen = Located((miss(6.0),), (), 3.0)
+    v = said("missing-physics", 0.1, seen)
+    v.probabilities = {"work-hardening": 0.84, "baseline": 0.1, "outside-library": 0.06}
+    v.scores = {"work-hardening": {"evidence": math.log(40.0)}}
+    where, leads, beside = why(v).split(". ")
+    assert where == "The simulation misses most in restitution: recordings lie above"
+    assert "the metal hardens as it is deformed (84 %)" in leads
+    assert "40 times as probable as with nothing missing" in leads
+    assert beside == (
+        "Beside it stand nothing is missing (10 %) and something that dentscope has no name for "
+        "(6 %)."
+    )
+    v.scores = {"work-hardening": {"evidence": 50.0}}
+    assert "more than a million times" in why(v)
+    v.probabilities = {"baseline": 0.998, "work-hardening": 0.002}
+    told = why(v)
+    assert "Most probable: nothing is missing (more than 99 %). Nothing else has a share." in told
