@@ -78,6 +78,62 @@ def test_python_m_forgets_the_current_folder(trapped: Path) -> None:
     assert answer.returncode == 0, answer.stderr
 
 
+LINES = (
+    """
+version|keys impact|materials|doctor|laws list|laws show hertz|impact --new ball
+impact ball.toml --law hertz --exact --out o|case --new|case none.toml
+laws compare case.toml --law hertz --out o2|export law fitted
+export dem case.toml --speed 1 --out o3|inverse --new|inverse inverse.toml --out o4|examples --to ex
+recordings list|recordings new mine --sphere|recordings check kharaz-2001-oblique
+recordings audit kharaz-2001-oblique|recordings fetch nosuch
+reduce table pulse.csv --holds force --mass-kg 1 --out r1
+reduce video pulse.csv --frame-rate-hz 1000 --shape sphere --out r2|reduce sound pulse.csv --out r3
+reduce scan pulse.csv --unit um --step-m 1e-6 --out r4|reduce tip pulse.csv --out r5
+reduce mocap pulse.csv --shape sphere --out r6|diagnose nosuch|metal nosuch|fit nosuch
+figures --chapter 9|verify --list|campaign designs|campaign run --design nosuch|campaign status
+campaign show nosuch|campaign refine nosuch|campaign export|campaign publish --design nosuch
+campaign repair|campaign upgrade|campaign gallery --data nosuch
+campaign reproduction --data nosuch|proof run --list nosuch|proof score --list nosuch
+proof page nosuch|proof sample s --kind nosuch|proof peers nosuch|proof library nosuch
+proof laws nosuch
+""".strip()
+    .replace("\n", "|")
+    .split("|")
+)
+"""A use of every command: to its end where that is soon, else to where the first name is wrong."""
+
+ALL = f"""
+import sys, typer.main
+from dentscope.cli import run
+from dentscope.cli.app import app
+
+def commands(command, name=""):
+    last = getattr(command, "commands", {{}})
+    return [c for k in last for c in commands(last[k], name + k + " ")] if last else [name]
+
+if __name__ == "__main__":
+    lines = {LINES!r}
+    missing = [c for c in commands(typer.main.get_command(app))
+               if not any((line + " ").startswith(c) for line in lines)]
+    assert not missing, missing
+    codes = [run(line.split()) for line in lines]
+    assert set(codes) == {{0, 2}}, dict(zip(lines, codes))
+"""
+
+
+def test_no_command_takes_code_from_the_current_folder(trapped: Path) -> None:
+    pulse = "".join(f"{1e-5 * k},{300.0 * (50 < k < 150)}\n" for k in range(400))
+    (trapped / "pulse.csv").write_text("time_s,force_N\n" + pulse)
+    script = trapped.parent / "bin" / "script.py"
+    script.parent.mkdir()
+    script.write_text(ALL)
+    answer = _run([str(script)], trapped)
+    assert not (trapped.parent / "ran").exists(), (trapped.parent / "ran").read_text()
+    assert answer.returncode == 0, answer.stderr
+    assert "Traceback" not in answer.stderr
+    assert "Warning" not in answer.stderr
+
+
 def test_pythons_are_started_in_one_place() -> None:
     pattern = re.compile(r"sys\.executable")
     users = {
