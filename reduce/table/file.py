@@ -286,7 +286,19 @@ def numbered_lines(raw: bytes, source: str) -> list[tuple[int, str]]:
 
 
 def text_rows(lines: Sequence[str], source: str) -> list[list[str]]:
-    """Return the cells of a text table.
+    """Return the cells of a text table, its numbers with decimal points.
+
+    Raises
+    ------
+    InputError
+        No table.
+    """
+    separator, rows = cells_of(lines, source)
+    return [[plain(cell, separator) for cell in row] for row in rows]
+
+
+def cells_of(lines: Sequence[str], source: str) -> tuple[str, list[list[str]]]:
+    """Return the separator of a text table and its cells as they are written.
 
     Raises
     ------
@@ -302,7 +314,7 @@ def text_rows(lines: Sequence[str], source: str) -> list[list[str]]:
         )
     except csv.Error as error:
         raise InputError(f"not a table ({error})", source=source, allowed="a table") from None
-    return [[plain(cell.strip(), separator) for cell in row] for row in rows]
+    return separator, [[cell.strip() for cell in row] for row in rows]
 
 
 def _separator(lines: Sequence[str]) -> str:

@@ -24,12 +24,13 @@ from ..reduced import Reduced
 from ..rules import RULES
 from ..units import UNITS
 from .cells import plain, value_of
-from .file import BOOKS, text_lines, text_rows
+from .file import BOOKS, cells_of, text_lines
 from .heading import in_short, is_unit
 from .picture import draw_trials
 from .trials import TrialsReduction
 from .workbook import workbook_rows
 
+_APPROACH = ("drop_height_m", "impact_speed_m_s")
 REBOUND_HEIGHT, REBOUND_SPEED = "rebound_height", "rebound_speed"
 
 
@@ -40,6 +41,8 @@ class _Kind(NamedTuple):
     quantity: str
     words: str
 
+
+_IN = r"( in \S+)?"  # a unit that follows the name
 
 # The first kind whose words a header holds; accents are taken off before. English, German, French,
 # Italian, Spanish.
@@ -57,14 +60,16 @@ _KINDS = (
           r"(rebound|ruckprall|rucksprung|rebond|rimbalzo|rebote).*(speed|veloc|geschw|vitesse)"),
     _Kind("drop_height_m", "length",
           r"(drop|fall|release|chute|caduta|caida).*(height|hohe|hauteur|altezza|altura)|fallhohe|"
-          r"(hauteur|altezza|altura) (de|di) (chute|caduta|caida)|height of fall|^drop$"),
+          r"(hauteur|altezza|altura) (de|di) (chute|caduta|caida)|height of fall|^drop$|"
+          rf"^(h|height|hohe|hauteur|altezza|altura){_IN}$"),
     _Kind("impact_speed_m_s", "speed",
           r"(impact|approach|auf(prall|treff)|stoss?).*(speed|veloc|geschw)|vitesse d.?impact|"
-          r"velocita d.?impatto|velocidad de impacto"),
+          r"velocita d.?impatto|velocidad de impacto|"
+          rf"^(v|speed|velocity|geschwindigkeit|vitesse|velocita|velocidad){_IN}$"),
     _Kind("dent_diameter_m", "length",
           r"(dent|crater|indent|imprint|impression|eindruck|krater|delle|empreinte|impronta|huella)"
           r".*(diam|durchm|dm\b|wid|breit)|durchmesser (des|der) (eindruck|krater|delle)|"
-          r"diametr?e? d.*(empreinte|impronta|huella)"),
+          r"diametr?[eo]? .*(empreinte|impronta|huella)"),
     _Kind("permanent_depth_m", "length",
           r"(dent|crater|indent|residual|permanent|eindruck|krater|delle).*(depth|tiefe)|"
           r"eindring(tiefe|ung)|profond|profund"),
@@ -81,6 +86,9 @@ _UNIT_AT_END = re.compile(
     r"[\[(,/]\s*(?P<a>[^\])(\[,/]{1,6}(?:/s|/sec)?)\s*[\])]?\s*$|\bin (?P<b>\S{1,4})$"
 )
 _CELL = re.compile(r"(?P<number>[+-]?[\d.,'’  ]*\d(?:[eE][+-]?\d+)?)\s*(?P<unit>[^\d\s].{0,5})?")
+_GROUPED = re.compile(r"[+-]?[1-9]\d{0,2}([.,]\d{3})+")
+"""What may be thousands or a number with three decimals: 1.000."""
+_DECIMAL = re.compile(r"[+-]?\d+([.,])(\d{1,2}|\d{4,})(?!\d)|[+-]?0([.,])\d+")
 _CELSIUS, _ICE = ("°C", "C", "degC"), 273.15
 
 
@@ -106,7 +114,7 @@ class Sheet:
         """Return it as what every reduction hands on."""
         notes = (*(f"{header!r}: {became}" for header, became in self.columns), *self.left_out)
         seen = self.trials[0].observables
-        across = next(n for n in ("drop_height_m", "impact_speed_m_s") if n in seen)
+        across = next(n for n in _APPROACH if n in seen)
         up = next(n for n in seen if n in MEASURED)
         x, y = (
             np.array(
@@ -152,7 +160,7 @@ def read_sheet(path: Path, *, sheet: str = "") -> Sheet:
     if path.suffix.lower() in BOOKS:
         rows = confined(workbook_rows, path, sheet, source=str(path))
     else:
-        rows = text_rows(text_lines(path.read_bytes(), str(path)), str(path))
+        _, rows = cells_of(text_lines(path.read_bytes(), str(path)), str(path))
     top, columns, told = _headers(rows, str(path))
     return _trials(rows, top, columns, told, str(path))
 
@@ -185,7 +193,12 @@ def _headers(
     if filled and all(is_unit(cell) or cell.strip("()[] ") in _CELSIUS for cell in filled):
         pairs = zip(head, [*below, *[""] * len(head)], strict=False)
         head, top = [f"{h} ({u.strip('()[] ')})" if u else h for h, u in pairs], top + 1
-    columns, told = [], []
+    columns = []
+    told = [
+        (" ".join(filter(None, row)), f"row {k}, left out: above the headers")
+        for k, row in enumerate(rows[:best], start=1)
+        if any(row)
+    ]
     for place, header in enumerate(head):
         kind = _kind_of(header)
         if kind is None:
@@ -214,30 +227,19 @@ def _trials(
     trials: list[Trial] = []
     last: dict[str, float] = {}
     from_above: list[str] = []
+    decimals = _decimals(rows[top:], columns)
     for k, row in enumerate(rows[top:], start=top + 1):
         if not any(row):
             continue
-        found: dict[str, list[float]] = {}
-        note = ""
-        for column in columns:
-            cell = row[column.place].strip() if column.place < len(row) else ""
-            if not cell:
-                continue
-            if column.kind.quantity == "text":
-                note = f"{note}; {cell}".strip("; ") if column.kind.name == "note" else note
-                column.taken += 1
-                continue
-            value = _value(cell, column)
-            if value is None:
-                left.append(f"row {k}, {column.header}: {cell!r} is no {column.kind.quantity}")
-            else:
-                column.taken += 1
-                found.setdefault(column.kind.name, []).append(value)
-        for name in ("drop_height_m", "impact_speed_m_s"):
+        found, note, unread = _read(row, k, columns, decimals, left)
+        for name in _APPROACH:
             if name in found:
                 last = {name: found[name][0]}
+        if unread and not any(name in found for name in _APPROACH):
+            left.append(f"row {k}: left out, its drop height or speed is not read")
+            continue
         stated = last.keys() & found.keys()
-        if not found.keys() - {"drop_height_m", "impact_speed_m_s", "temperature_K", "angle_deg"}:
+        if not found.keys() - {*_APPROACH, "temperature_K", "angle_deg"}:
             left.append(f"row {k}: nothing measured")
             continue
         if not last:
@@ -266,12 +268,62 @@ def _trials(
     return Sheet(tuple(trials), tuple(told), tuple(left))
 
 
-def _value(cell: str, column: _Column) -> float | None:
-    """The number in a cell in the SI, by its own unit or the column's; None where it is none."""
+def _read(
+    row: Sequence[str], k: int, columns: Sequence[_Column], decimals: str, left: list[str]
+) -> tuple[dict[str, list[float]], str, bool]:
+    """Numbers of a row by kind, its note, and whether an approach is written but not read."""
+    found: dict[str, list[float]] = {}
+    note, unread = "", False
+    for column in columns:
+        cell = row[column.place].strip() if column.place < len(row) else ""
+        if not cell:
+            continue
+        if column.kind.quantity == "text":
+            note = f"{note}; {cell}".strip("; ") if column.kind.name == "note" else note
+            column.taken += 1
+            continue
+        value = _value(cell, column, decimals)
+        unread |= value is None and column.kind.name in _APPROACH
+        if value is not None:
+            column.taken += 1
+            found.setdefault(column.kind.name, []).append(value)
+        elif decimals == "" and _grouped(cell):
+            left.append(f"row {k}, {column.header}: {cell!r}: of thousands, or of decimals?")
+        else:
+            left.append(f"row {k}, {column.header}: {cell!r} is no {column.kind.quantity}")
+    return found, note, unread
+
+
+def _decimals(rows: Sequence[Sequence[str]], columns: Sequence[_Column]) -> str:
+    """The sign before the decimals in the sheet's numbers; empty where none, or both, show it."""
+    cells = (
+        _CELL.fullmatch(row[c.place].strip()) for row in rows for c in columns
+        if c.place < len(row) and c.kind.quantity != "text"
+    )  # fmt: skip
+    numbers = (found["number"].strip() for found in cells if found)
+    signs = {m[1] or m[3] for m in map(_DECIMAL.fullmatch, numbers) if m}
+    return signs.pop() if len(signs) == 1 else ""
+
+
+def _grouped(cell: str) -> bool:
+    found = _CELL.fullmatch(cell)
+    return found is not None and _GROUPED.fullmatch(found["number"].strip()) is not None
+
+
+def _value(cell: str, column: _Column, decimals: str) -> float | None:
+    """The number in a cell in the SI, by its own unit or the column's; None where it is none.
+
+    1.000 is a thousand where other cells have decimal commas, and no number where none has any.
+    """
     found = _CELL.fullmatch(cell)
     if found is None:
         return None
-    number = value_of(plain(found["number"].strip(), ";"))
+    text = found["number"].strip()
+    if _grouped(cell) and decimals not in text:
+        text = re.sub("[.,]", "", text)
+    elif _grouped(cell) and not decimals:
+        return None
+    number = value_of(plain(text, ";"))
     own = in_short(found["unit"].strip()) if found["unit"] else ""
     if math.isnan(number):
         return None

@@ -98,3 +98,48 @@ def test_the_command_makes_a_set(tmp_path, capsys):
     assert made.trials.note[2] == "schlecht zu sehen"
     assert run(["recordings", "new", str(folder), "--sphere", "--from", str(path)]) == 2
     assert "there is one already" in capsys.readouterr().err
+
+
+def heights(sheet):
+    return [t.observables["drop_height_m"].value for t in sheet.trials]
+
+
+@pytest.mark.parametrize(
+    ("text", "found"),
+    [
+        ("Fallhöhe (mm);Stoßzahl\n500;0,5\n1.000;0,45\n", [0.5, 1.0]),
+        ("drop height (mm);e\n500;0.5\n1,000;0.45\n0.750;0.4\n", [0.5, 1.0, 0.00075]),
+        ("Höhe in mm;Dellentiefe in µm\n500;55,1\n2.000;121,0\n", [0.5, 2.0]),
+    ],
+)
+def test_a_point_before_three_digits_is_what_the_other_numbers_say(tmp_path, text, found):
+    file = tmp_path / "a.csv"
+    file.write_text(text, encoding="utf-8")
+    assert heights(read_sheet(file)) == pytest.approx(found)
+
+
+def test_a_number_that_may_be_a_thousand_is_told_and_its_row_left_out(tmp_path):
+    """Nothing says so: the row takes no height of another."""
+    file = tmp_path / "a.csv"
+    file.write_text("drop height (mm);dent depth (um)\n500;55\n1.000;80\n2000;90\n")
+    sheet = read_sheet(file)
+    assert heights(sheet) == [0.5, 2.0]
+    assert "row 3, drop height (mm): '1.000': of thousands, or of decimals?" in sheet.left_out
+    assert "row 3: left out, its drop height or speed is not read" in sheet.left_out
+
+
+def test_a_title_above_the_headers_is_told(tmp_path):
+    file = tmp_path / "a.csv"
+    file.write_text("Fallversuche;\nHöhe (cm);Stoßzahl\n50;0,5\n", encoding="utf-8")
+    assert ("Fallversuche", "row 1, left out: above the headers") in read_sheet(file).columns
+
+
+@pytest.mark.parametrize(
+    "header", ["Geschwindigkeit in m/s", "speed (m/s)", "v [m/s]", "Aufprallgeschwindigkeit (m/s)"]
+)
+def test_a_speed_by_its_bare_name_is_that_of_the_approach(tmp_path, header):
+    file = tmp_path / "a.csv"
+    file.write_text(f"{header};Diamètre empreinte (mm)\n2;1,5\n", encoding="utf-8")
+    (trial,) = read_sheet(file).trials
+    assert trial.observables["impact_speed_m_s"].value == 2.0
+    assert trial.observables["dent_diameter_m"].value == pytest.approx(1.5e-3)
