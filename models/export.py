@@ -172,7 +172,16 @@ typedef struct {{
 #ifdef __cplusplus
 extern "C" {{
 #endif
-dentscope_result {NAME}({", ".join(f"double {name}" for name in INPUTS)});
+dentscope_result {NAME}({_c_inputs()});
+
+/* What a contact keeps of its deepest approach; all 0 at the touch. */
+typedef struct {{
+    double depth, force, residual, exponent;
+}} dentscope_history;
+
+/* Normal force [N] in a time step: on loading the law, on the way back and again up to the deepest
+   approach F_m ((depth - residual)/(depth_m - residual))^N. */
+double dentscope_force({_c_inputs()}, dentscope_history *history);
 #ifdef __cplusplus
 }}
 #endif
@@ -190,7 +199,7 @@ def c_source(law: ClosedForm) -> str:
 
 {replace(local, line="static " + local.line).lines(_coefficients(law), indent=0)}
 
-dentscope_result {NAME}({", ".join(f"double {name}" for name in INPUTS)})
+dentscope_result {NAME}({_c_inputs()})
 {{
 {local.lines(before())}
     if (D <= 0.0) {{
@@ -202,7 +211,27 @@ dentscope_result {NAME}({", ".join(f"double {name}" for name in INPUTS)})
     const dentscope_result result = {{{", ".join(f"out_{name}" for name in OUTPUTS)}}};
     return result;
 }}
+
+double dentscope_force({_c_inputs()}, dentscope_history *history)
+{{
+    if (depth >= history->depth) {{
+        const dentscope_result r = {NAME}({", ".join(INPUTS)});
+        history->depth = depth;
+        history->force = r.force;
+        history->residual = r.residual_s + r.residual_f;
+        history->exponent = r.exponent;
+        return r.force;
+    }}
+    if (depth <= history->residual)
+        return 0.0;
+    const double share = (depth - history->residual) / (history->depth - history->residual);
+    return history->force * pow(share, history->exponent);
+}}
 """
+
+
+def _c_inputs() -> str:
+    return ", ".join(f"double {name}" for name in INPUTS)
 
 
 def _fortran_name(name: str) -> str:

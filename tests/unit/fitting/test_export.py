@@ -11,6 +11,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 from dentscope.core import Material, Pair
+from dentscope.impact import Approach, Striker, scene_of, strike
 from dentscope.models import LAWS
 from dentscope.models.export import INPUTS, NAME, OUTPUTS, write_sources
 
@@ -197,3 +198,61 @@ def test_the_compact_law_is_written_by_the_same_printer(tmp_path):
     rows = draws()
     compare(np.array([contact(*row) for row in rows]), rows, law="compact")
     assert len((tmp_path / f"{NAME}.py").read_text().splitlines()) < 250
+
+
+DRIVER = f"""
+#include "{NAME}.h"
+#include <stdio.h>
+#include <stdlib.h>
+
+/* A ball on a flat by velocity Verlet: mass, speed, time step and the seven inputs. */
+int main(int argc, char **argv)
+{{
+    double in[10];
+    for (int k = 0; k < argc - 1; k++)
+        in[k] = atof(argv[k + 1]);
+    const double mass = in[0], dt = in[2], *p = in + 3;
+    double v = in[1], x = 0.0, f = 0.0, deepest = 0.0, largest = 0.0;
+    dentscope_history history = {{0.0, 0.0, 0.0, 0.0}};
+    do {{
+        v -= 0.5 * dt * f / mass;
+        x += dt * v;
+        f = dentscope_force(p[0], p[1], p[2], p[3], p[4], p[5], p[6], x, &history);
+        v -= 0.5 * dt * f / mass;
+        deepest = x > deepest ? x : deepest;
+        largest = f > largest ? f : largest;
+    }} while (f > 0.0);
+    printf("%.17g %.17g %.17g %.17g\\n", v, deepest, largest, history.residual);
+    return 0;
+}}
+"""
+
+
+@needs("gcc")
+def test_one_collision_by_the_exported_force_is_ours(sources):
+    """The force with its history in a time-stepping program: restitution, depth, force, dent."""
+    (sources / "driver.c").write_text(DRIVER)
+    flags = ["-std=c99", "-O2", "-Wall", "-Wextra", "-Werror"]
+    program = sources / "driver"
+    files = [sources / "driver.c", sources / f"{NAME}.c"]
+    subprocess.run(["gcc", *flags, "-o", program, *files, "-lm"], check=True, timeout=120)
+    ball, flat = Material(193e9, 0.29, 7e8, density=8000.0), Material(68.9e9, 0.33, 2.76e8)
+    R = 3e-3
+    mass = 4.0 / 3.0 * math.pi * R**3 * ball.density
+    for speed in (0.1, 1.0, 10.0):
+        ours = strike(
+            scene_of(
+                LAWS["fitted"], sphere=ball, flat=flat, gravity=0.0,
+                striker=Striker(mass=mass, tip_radius=R), approach=Approach(speed),
+            )
+        )  # fmt: skip
+        step = ours.contact_time_s / 5000.0
+        inputs = (mass, speed, step, ball.E, ball.nu, ball.Sy, flat.E, flat.nu, flat.Sy, R)
+        out = subprocess.run(
+            [program, *map(repr, inputs)], check=True, timeout=60, capture_output=True, text=True
+        ).stdout
+        back, deepest, largest, residual = map(float, out.split())
+        assert -back / speed == pytest.approx(ours.restitution, rel=1e-3)
+        assert deepest == pytest.approx(ours.peak_depth_m, rel=1e-3)
+        assert largest == pytest.approx(ours.peak_force_N, rel=1e-3)
+        assert residual == pytest.approx(ours.residual_m, rel=1e-3)
