@@ -71,18 +71,23 @@ def export_dem(
         "build/dem"
     ),
 ) -> None:
-    """Give the contact laws of LAMMPS, LIGGGHTS and YADE parameters for a pair, by speed.
+    """Give the contact laws of other programs parameters for a pair, by speed.
 
-    Each returns what our law returns; the table says what it misses in depth, force and time.
+    LAMMPS, LIGGGHTS, YADE, MercuryDPM, MuJoCo, Drake, Chrono, Newton, and a formula of the
+    restitution. Each returns what our law returns; the table says what it misses in depth, force
+    and time.
     """
     from ..start.ball_file import read_ball
 
     ball = read_ball(file, mass=mass)
-    speeds = _speeds(speed) if speed else _of_file(ball.speeds)
+    _write_dem(ball, law, _speeds(speed) if speed else _of_file(ball.speeds), out)
+
+
+def _write_dem(ball: ExportedBall, law: str, speeds: list[float], out: Path) -> None:
+    """Show what each law of other programs misses, and write its parameters."""
     from ..core.output import csv_text, write_file
     from ..impact.told.discrete_elements import (
         HEAD,
-        hysteretic_lines,
         lammps_lines,
         substitutes,
         table,
@@ -95,23 +100,45 @@ def export_dem(
     show_table(shown, *_misses(rows))
     if ball.aside:
         say(f"not in these parameters: {', '.join(ball.aside)}; `dentscope impact` takes them")
-    cells = table(rows, law=chosen.name, contact="ball on flat")
+    two = ball.second is not None
+    cells = table(rows, law=chosen.name, contact="two spheres" if two else "ball on flat")
     cells += table(between, law=chosen.name, contact="two balls")
-    for path in (
-        write_file(out / "dem.csv", csv_text(cells, header=HEAD)),
-        write_file(
-            out / "lammps.in",
-            lammps_lines(rows, ball.pair, friction=ball.friction, of_balls=between),
-        ),
-        write_file(out / "hysteretic.txt", hysteretic_lines(rows, friction=ball.friction)),
-    ):
-        shown.print(f"written: {path}")
+    lammps = lammps_lines(rows, ball.pair, friction=ball.friction, of_balls=between, spheres=two)
+    files = {"dem.csv": csv_text(cells, header=HEAD), "lammps.in": lammps}
+    if ball.second is not None and ball.second.radius < 0.0:
+        files.pop("lammps.in")
+    for name, text in (files | _fragments(ball, chosen, rows)).items():
+        shown.print(f"written: {write_file(out / name, text)}")
+
+
+def _fragments(ball: ExportedBall, law: ContactLaw, rows: list[ExportedRow]) -> dict[str, str]:
+    """The lines of the other programs, by file."""
+    from ..impact.scene import Approach, Striker, scene_of
+    from ..impact.told import simulators as s
+
+    contact = s.Contact(ball.pair.R, ball.mass, ball.friction)
+    scene = scene_of(
+        law, sphere=ball.pair.sphere, flat=ball.pair.flat, gravity=0.0,
+        striker=Striker(mass=ball.mass, tip_radius=ball.pair.R), approach=Approach(1.0),
+    )  # fmt: skip
+    formula = s.formula_of(law, scene, [row.law.speed for row in rows])
+    return {
+        "hysteretic.txt": s.hysteretic_lines(rows, contact),
+        "mujoco.xml": s.mujoco_lines(rows, contact),
+        "drake.py": s.drake_lines(rows, contact),
+        "chrono.txt": s.chrono_lines(rows, contact),
+        "formula.txt": s.formula_lines(formula),
+    }
 
 
 def _between(ball: ExportedBall, law: ContactLaw, speeds: list[float]) -> list[ExportedRow]:
     """Parameters for two such balls; none, with a line, where there are none."""
     from ..impact.told.discrete_elements import substitutes, two_balls
 
+    if ball.second is not None:
+        if ball.second.radius < 0.0:
+            say("no lines for LAMMPS: it knows no concave seat")
+        return []
     if ball.pair.sphere.rigid:
         say("no lines for two balls: both would be rigid")
         return []

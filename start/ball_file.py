@@ -12,6 +12,7 @@ from ..core.inputs.left_aside import left_aside
 from ..core.inputs.toml_input import read_toml
 from ..core.material import Pair
 from ..core.rig import value_of
+from ..impact.files.second import SecondSphere
 from ..impact.files.setup import FOLLOWING, Setup, setup_of
 from ..models import LAWS
 from .case_file import read_pair
@@ -41,7 +42,7 @@ _OF_CASE = (
 
 
 class ExportedBall(NamedTuple):
-    """A ball, the flat that it meets, and what a file says of their blow."""
+    """A ball, the flat or sphere that it meets, and what a file says of their blow."""
 
     pair: Pair
     mass: float  # [kg]
@@ -49,6 +50,7 @@ class ExportedBall(NamedTuple):
     speeds: tuple[float, ...]  # [m/s]; empty where the file says none
     law: str  # of ours that knows these metals
     aside: list[str]  # what the file says beyond this
+    second: SecondSphere | None = None  # in place of the flat; pair and mass are those of both
 
 
 def read_ball(file: Path, *, mass: float | None = None) -> ExportedBall:
@@ -70,6 +72,11 @@ def read_ball(file: Path, *, mass: float | None = None) -> ExportedBall:
     of_impact = "strikers" in content or "impact" in content
     found = _of_setup(content, file) if of_impact else _of_case(content, file)
     weight = found.mass if mass is None else mass
+    if mass is not None and found.second is not None:
+        raise InputError(
+            f"{mass:g}", source="command line", key="--mass",
+            allowed="strikers.NAME.mass_kg and target.mass_kg of two spheres, in the file",
+        )  # fmt: skip
     if math.isnan(weight):
         raise InputError(
             "missing", source=str(file), key="sphere.density_kg_m3", allowed="a number, or --mass"
@@ -88,19 +95,16 @@ def _of_setup(content: Mapping[str, Any], file: Path) -> ExportedBall:
         raise InputError(
             "a rod", source=str(file), key=f"strikers.{name}.shape", allowed='"sphere"'
         )
-    if setup.second is not None:
-        raise InputError(
-            "a second sphere", source=str(file), key="target.shape",
-            allowed='"flat": the fragments are for a ball on a flat and for two such balls',
-        )  # fmt: skip
     law = FOLLOWING if setup.laws[0] == FOLLOWING else "fitted"
-    scene = setup.scene(LAWS[law])
+    scene = setup.plain(LAWS[law])
     speeds = setup.sweep.impact_speed_m_s or (scene.approach.speed,)
     falls = setup.file.impact.drop_height_m is not None
     used = _OF_IMPACT if falls else _OF_IMPACT - {"gravity_m_s2"}
+    if setup.second is not None:
+        used = used | {"target.radius_m", "target.mass_kg", "target.density_kg_m3"}
     return ExportedBall(
         scene.pair, scene.striker.mass, scene.friction.mu, tuple(speeds), law,
-        left_aside(content, used) + _tip(setup, name),
+        left_aside(content, used) + _tip(setup, name), setup.second,
     )  # fmt: skip
 
 

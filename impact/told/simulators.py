@@ -1,0 +1,186 @@
+"""Lines for MuJoCo, Drake, Chrono, Newton, YADE, LIGGGHTS and MercuryDPM, and a formula of e.
+
+Each program joins the numbers of two bodies in its own way; the lines give both bodies the same, so
+that the contact has what the table says.
+
+References
+----------
+MuJoCo, Computation, solver parameters: with negative `solref` the acceleration of the contact is
+-stiffness r - damping v, whatever masses and `solimp` are. Drake, compliant point contact:
+k_1 k_2/(k_1 + k_2) and k x max(1 + d x', 0). Chrono, ChSystemSMC: Hooke of user coefficients,
+kn d - m gn d'. MercuryDPM, LinearPlasticViscoelasticInteraction; YADE, LudingPM: S. Luding,
+Granular Matter 10 (2008) 235, Eqs. 6 to 8.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable, Sequence
+from typing import NamedTuple
+
+import numpy as np
+from scipy.optimize import least_squares
+
+from ...models.base import ContactLaw
+from ..batch import impacts
+from ..scene import Scene
+from .collisions import DASHPOT, HUNT
+from .discrete_elements import ExportedRow, Substitute
+
+_STEPS = 50  # of the program, in one contact
+
+
+class Contact(NamedTuple):
+    """What the lines need beside the rows."""
+
+    radius: float  # effective [m]
+    mass: float  # effective [kg]
+    friction: float  # [-]
+
+
+def mujoco_lines(rows: Sequence[ExportedRow], contact: Contact) -> str:
+    """A fragment of MJCF: one class of geoms for each speed."""
+    lines = [
+        "<!-- take the class of your impacts for both geoms. solref below 0: stiffness and damping",
+        "     over the effective mass. The contact lets go where it would pull. -->",
+        "<default>",
+    ]
+    for row in rows:
+        s = row.named(DASHPOT.name)
+        k, b = s.stiffness / contact.mass, s.damping / contact.mass
+        lines += [
+            f"  <!-- {_told(row, s)}; timestep {_timestep(s)} -->",
+            f'  <default class="v{row.law.speed:g}"><geom solref="{-k:.6e} {-b:.6e}" '
+            f'solimp="0.9999 0.9999 0.001 0.5 2" friction="{contact.friction:g} 0 0"/></default>',
+        ]
+    return "\n".join([*lines, "</default>"]) + "\n"
+
+
+def drake_lines(rows: Sequence[ExportedRow], contact: Contact) -> str:
+    """Python for Drake's point contact, of both bodies."""
+    mu = f"CoulombFriction({contact.friction:g}, {contact.friction:g})"
+
+    def line(s: Substitute) -> str:
+        # two bodies in series halve the stiffness, and keep one dissipation
+        return (
+            f"AddContactMaterial(dissipation={s.damping:.6e}, point_stiffness="
+            f"{2.0 * s.stiffness:.6e}, friction={mu}, properties=props)"
+        )
+
+    return _each(rows, HUNT.name, "# pydrake.geometry; the same properties for both bodies.", line)
+
+
+def chrono_lines(rows: Sequence[ExportedRow], contact: Contact) -> str:
+    """Lines for Chrono's smooth contacts, and the same numbers for Newton."""
+
+    def line(s: Substitute) -> str:
+        return (
+            f"material.SetKn({s.stiffness:.6e}); material.SetGn({s.damping / contact.mass:.6e}); "
+            f"material.SetFriction({contact.friction:g})\n"
+            f"# Newton (semi-implicit): ShapeConfig(ke={s.stiffness:.6e}, kd={s.damping:.6e}, "
+            f"mu={contact.friction:g})"
+        )
+
+    head = (
+        "# ChSystemSMC: UseMaterialProperties(false), SetContactForceModel(Hooke); the same\n"
+        "# material for both bodies."
+    )
+    return _each(rows, DASHPOT.name, head, line)
+
+
+def hysteretic_lines(rows: Sequence[ExportedRow], contact: Contact) -> str:
+    """The linear hysteretic law (Luding) for MercuryDPM, YADE and LIGGGHTS."""
+
+    def line(s: Substitute) -> str:
+        k1, k2, depth = s.stiffness, s.unloading, s.blow.depth
+        phi = depth * (1.0 - k1 / k2) / (2.0 * contact.radius) if k2 > k1 else 0.0
+        # a body's half: two in series have what the contact has
+        return (
+            f"k1 = {k1:.6e}; k2 = {k2:.6e}; depth_m = {depth:.6e}\n"
+            f"MercuryDPM: species->setPlasticParameters({k1:.6e}, {k2:.6e}, 0.0, {phi:.6e});\n"
+            f"YADE: LudingMat(k1={2 * k1:.6e}, kp={2 * k2:.6e}, kc=0, PhiF={2 * phi:.6e}, G0=0, "
+            f"frictionAngle={math.atan(contact.friction):.6g})\n"
+            f"LIGGGHTS hooke/hysteresis: kn2k1 = {k1 / k2:.6f}"
+        )
+
+    head = (
+        "# loading k1 and unloading k2 [N/m] that is reached at the depth, no cohesion.\n"
+        "# MercuryDPM: LinearPlasticViscoelasticFrictionSpecies. YADE: for both bodies.\n"
+        f"# coefficient of friction: {contact.friction:g}"
+    )
+    return _each(rows, "linear-hysteretic", head, line)
+
+
+def _each(
+    rows: Sequence[ExportedRow], name: str, head: str, line: Callable[[Substitute], str]
+) -> str:
+    lines = [head]
+    for row in rows:
+        s = row.named(name)
+        lines += [f"# {_told(row, s)}; timestep {_timestep(s)}", line(s)]
+    return "\n".join(lines) + "\n"
+
+
+def _told(row: ExportedRow, s: Substitute) -> str:
+    depth, force, time, _ = (100.0 * x for x in s.missed(row.law))
+    return (
+        f"{row.law.speed:g} m/s: restitution {row.law.restitution:.4f}; depth {depth:+.1f} %, peak "
+        f"force {force:+.1f} %, time {time:+.1f} %"
+    )
+
+
+def _timestep(s: Substitute) -> str:
+    return f"{s.blow.time / _STEPS:.1e} s"
+
+
+class Formula(NamedTuple):
+    """e(v) = (1 + (v/v_0)^a)^(-b) between two speeds."""
+
+    v0: float  # [m/s]
+    a: float
+    b: float
+    first: float  # [m/s]
+    last: float  # [m/s]
+    missed: float  # largest difference of a restitution
+
+    def __call__(self, speed: float) -> float:
+        """Return the restitution."""
+        return float((1.0 + (speed / self.v0) ** self.a) ** -self.b)
+
+
+def formula_of(law: ContactLaw, scene: Scene, speeds: Sequence[float]) -> Formula:
+    """Fit the formula to a law's restitution between the first and the last speed.
+
+    Parameters
+    ----------
+    law, scene
+        Ours, and the ball on the flat.
+    speeds
+        Of the table; around a single one a factor of three either way.
+    """
+    first, last = min(speeds), max(speeds)
+    if last < 1.5 * first:
+        first, last = first / 3.0, 3.0 * last
+    v = np.geomspace(first, last, 25)
+    e = np.asarray(impacts(scene.with_(law=law), speeds=v)["restitution"], dtype=float)
+
+    def of(x: np.ndarray) -> np.ndarray:
+        return np.asarray((1.0 + (v / np.exp(x[0])) ** np.exp(x[1])) ** -np.exp(x[2]))
+
+    middle = math.log(float(v[12]))
+    fits = [
+        least_squares(lambda x: of(x) - e, [start, 0.0, -1.0])
+        for start in (middle - 4.0, middle, middle + 4.0)
+    ]
+    best = min(fits, key=lambda one: one.cost)
+    v0, a, b = (float(x) for x in np.exp(best.x))
+    return Formula(v0, a, b, first, last, float(np.max(np.abs(of(best.x) - e))))
+
+
+def formula_lines(found: Formula) -> str:
+    """The formula in words."""
+    return (
+        "e(v) = (1 + (v/v0)^a)^(-b)\n"
+        f"v0 = {found.v0:.6g} m/s; a = {found.a:.6g}; b = {found.b:.6g}\n"
+        f"from {found.first:g} to {found.last:g} m/s within {found.missed:.1e}\n"
+    )

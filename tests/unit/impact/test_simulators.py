@@ -1,0 +1,158 @@
+"""Lines for other programs, judged by MuJoCo and Drake themselves where they are installed."""
+
+import math
+import re
+import xml.etree.ElementTree as ET
+
+import numpy as np
+import pytest
+from dentscope.core import Material, Pair
+from dentscope.impact.scene import Approach, Striker, scene_of
+from dentscope.impact.told.collisions import DASHPOT, HUNT, blow_on, damping_for
+from dentscope.impact.told.discrete_elements import substitutes
+from dentscope.impact.told.simulators import (
+    Contact,
+    chrono_lines,
+    drake_lines,
+    formula_of,
+    hysteretic_lines,
+    mujoco_lines,
+)
+from dentscope.models import LAWS
+
+STEEL = Material(E=193e9, nu=0.29, Sy=700e6, density=8000.0)
+ALLOY = Material(E=68.9e9, nu=0.33, Sy=276e6)
+PAIR = Pair(STEEL, ALLOY, 3e-3)
+MASS = 4.0 / 3.0 * math.pi * PAIR.R**3 * 8000.0
+CONTACT = Contact(PAIR.R, MASS, 0.3)
+SPEEDS = [0.1, 1.0, 10.0]
+
+
+@pytest.fixture(scope="module")
+def rows():
+    return substitutes(LAWS["fitted"], PAIR, mass=MASS, speeds=SPEEDS)
+
+
+def test_a_dashpot_that_lets_go_returns_schwager_and_poeschels_formula():
+    """exp(-b/w (pi - arctan(2 b w/(w^2 - b^2)))) below the critical damping (Eq. 21)."""
+    for c in (0.1, 0.5, 1.0):
+        b = 0.5 * c
+        w = math.sqrt(1.0 - b * b)
+        turn = math.atan2(2.0 * b * w, w * w - b * b)
+        found = blow_on(DASHPOT, 1.0, c, 1.0, 1.0)
+        assert found.restitution == pytest.approx(math.exp(-b / w * (math.pi - turn)), rel=1e-6)
+
+
+def test_hunt_and_crossleys_ball_obeys_its_own_integral():
+    """What the damping takes: (e + 1) x = ln((1 + x)/(1 - e x)) with x = chi v, exactly."""
+    for x in (0.05, 0.5, 3.0):
+        e = blow_on(HUNT, 1.0, x, 1.0, 1.0).restitution
+        assert (1.0 + e) * x == pytest.approx(math.log((1.0 + x) / (1.0 - e * x)), rel=1e-5)
+
+
+def test_each_program_gets_the_restitution_and_the_depth(rows):
+    for row in rows:
+        for law in (DASHPOT, HUNT):
+            s = row.named(law.name)
+            assert s.blow.restitution == pytest.approx(row.law.restitution, abs=1e-4)
+            assert s.blow.depth == pytest.approx(row.law.depth, rel=1e-6)
+        assert damping_for(DASHPOT, row.law.restitution) < 2.0
+
+
+def test_mujoco_returns_what_the_table_says(rows):
+    """A ball on a plane in MuJoCo itself, with the very fragment."""
+    mujoco = pytest.importorskip("mujoco")
+    lines = mujoco_lines(rows, CONTACT)
+    for row in rows:
+        s = row.named(DASHPOT.name)
+        name = f"v{row.law.speed:g}"
+        model = mujoco.MjModel.from_xml_string(
+            f'<mujoco><option timestep="{s.blow.time / 2000}" gravity="0 0 0" integrator="RK4"/>'
+            f'{lines}<worldbody><geom class="{name}" type="plane" size="1 1 1"/>'
+            f'<body pos="0 0 {PAIR.R}"><freejoint/><geom class="{name}" type="sphere" '
+            f'size="{PAIR.R}" mass="{MASS}"/></body></worldbody></mujoco>'
+        )
+        data = mujoco.MjData(model)
+        data.qvel[2] = -row.law.speed
+        low, speed = 0.0, -row.law.speed
+        for _ in range(4000):
+            mujoco.mj_step(model, data)
+            low, before, speed = max(low, PAIR.R - data.qpos[2]), speed, data.qvel[2]
+            if speed > 0.0 and speed == before:
+                break
+        assert speed / row.law.speed == pytest.approx(row.law.restitution, rel=0.01)
+        assert low == pytest.approx(row.law.depth, rel=0.01)
+
+
+def test_drake_returns_what_the_table_says(rows):
+    """A ball on a half-space in Drake itself, with the numbers of the fragment."""
+    pytest.importorskip("pydrake")
+    from pydrake.geometry import AddContactMaterial, HalfSpace, ProximityProperties, Sphere
+    from pydrake.math import RigidTransform
+    from pydrake.multibody.plant import AddMultibodyPlantSceneGraph, CoulombFriction
+    from pydrake.multibody.tree import SpatialInertia
+    from pydrake.systems.analysis import Simulator
+    from pydrake.systems.framework import DiagramBuilder
+
+    row = rows[1]
+    s = row.named(HUNT.name)
+    line = drake_lines([row], CONTACT).splitlines()[-1]
+    props = ProximityProperties()
+    eval(line, {"AddContactMaterial": AddContactMaterial, "props": props,
+                "CoulombFriction": CoulombFriction})  # fmt: skip
+    builder = DiagramBuilder()
+    plant, _ = AddMultibodyPlantSceneGraph(builder, time_step=0.0)
+    ball = plant.AddRigidBody("ball", SpatialInertia.SolidSphereWithMass(MASS, PAIR.R))
+    plant.RegisterCollisionGeometry(ball, RigidTransform(), Sphere(PAIR.R), "ball", props)
+    floor = plant.world_body()
+    plant.RegisterCollisionGeometry(floor, RigidTransform(), HalfSpace(), "floor", props)
+    plant.mutable_gravity_field().set_gravity_vector([0.0, 0.0, 0.0])
+    plant.Finalize()
+    diagram = builder.Build()
+    simulator = Simulator(diagram)
+    context = plant.GetMyMutableContextFromRoot(simulator.get_mutable_context())
+    plant.SetFreeBodyPose(context, ball, RigidTransform([0.0, 0.0, PAIR.R * (1.0 + 1e-9)]))
+    velocity = np.zeros(6)
+    velocity[5] = -row.law.speed
+    plant.SetVelocities(context, velocity)
+    integrator = simulator.get_mutable_integrator()
+    integrator.request_initial_step_size_target(s.blow.time / 500)
+    integrator.set_maximum_step_size(s.blow.time / 500)
+    simulator.AdvanceTo(1.5 * s.blow.time)
+    back = plant.GetVelocities(context)[5] / row.law.speed
+    assert back == pytest.approx(row.law.restitution, rel=0.01)
+
+
+def test_the_hysteretic_lines_give_each_program_its_own_numbers(rows):
+    """Both programs' plastic limit (Luding 2008, Eq. 7) lies at the depth of the blow."""
+    text = hysteretic_lines(rows, CONTACT)
+    number = r"([-+.e0-9]+)"
+    mercury = re.findall(rf"setPlasticParameters\({number}, {number}, 0.0, {number}\)", text)
+    yade = re.findall(rf"k1={number}, kp={number}, kc=0, PhiF={number}", text)
+    for row, one, two in zip(rows, mercury, yade, strict=True):
+        k1, k2, phi = map(float, one)
+        assert phi * 2.0 * PAIR.R * k2 / (k2 - k1) == pytest.approx(row.law.depth, rel=1e-4)
+        assert math.sqrt(k1 / k2) == pytest.approx(row.law.restitution, rel=1e-5)
+        assert [float(x) for x in two] == pytest.approx([2 * k1, 2 * k2, 2 * phi], rel=1e-5)
+
+
+def test_chrono_divides_its_damping_by_the_mass(rows):
+    gn = [float(x) for x in re.findall(r"SetGn\(([-+.e0-9]+)\)", chrono_lines(rows, CONTACT))]
+    kd = [float(x) for x in re.findall(r"kd=([-+.e0-9]+)", chrono_lines(rows, CONTACT))]
+    assert np.asarray(gn) * MASS == pytest.approx(kd, rel=1e-5)
+
+
+def test_mujocos_fragment_is_well_formed(rows):
+    tree = ET.fromstring(mujoco_lines(rows, CONTACT))
+    assert [one.get("class") for one in tree] == ["v0.1", "v1", "v10"]
+
+
+def test_the_formula_holds_as_far_as_it_says():
+    scene = scene_of(
+        LAWS["fitted"], sphere=STEEL, flat=ALLOY, gravity=0.0,
+        striker=Striker(mass=MASS, tip_radius=PAIR.R), approach=Approach(1.0),
+    )  # fmt: skip
+    found = formula_of(LAWS["fitted"], scene, SPEEDS)
+    (row,) = substitutes(LAWS["fitted"], PAIR, mass=MASS, speeds=[2.5])
+    assert found(2.5) == pytest.approx(row.law.restitution, abs=1.5 * found.missed)
+    assert found.missed < 0.015
