@@ -7,7 +7,7 @@ all others by the time steps, there too with the law from its table.
 from __future__ import annotations
 
 import math
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 from dataclasses import replace
 from typing import Any
 
@@ -20,14 +20,24 @@ from ..core.errors import Ending, InputError
 from ..core.observables import OBSERVABLES as MEASURED
 from ..models.base import ContactLaw
 from .columns import Impacts
-from .integrate import Settings, arrays_of, strike_rows
-from .scene import Friction, Scene, Striker
+from .integrate import Settings, arrays_of, strike_batch, strike_rows
+from .mechanisms.asked import NONE_ASKED, SIMULATED, Asked
+from .scene import Approach, ForceTransform, Friction, Scene, Striker
 from .tabulated.energy_route import NAMES, energy_impacts, why_not
 from .tabulated.law_table import tabulated
 from .walk import layout as c
 
 BY_WORK, BY_STEPS = "work", "steps"
 """What the column `route` says."""
+
+_BROADCAST = ("speeds", "angles", "friction", "masses", "tangential", "spins")
+Change = Callable[[ForceTransform], ForceTransform]
+
+
+def unchanged(force: ForceTransform) -> ForceTransform:
+    """Return what is done to the force as it is."""
+    return force
+
 
 QUICK = Settings(tolerance=1e-8)
 """Accuracy of the time steps of a batch."""
@@ -51,7 +61,7 @@ def impacts(
     scene: Scene, *, speeds: ArrayLike | None = None, angles: ArrayLike | None = None,
     friction: ArrayLike | None = None, masses: ArrayLike | None = None,
     tangential: ArrayLike | None = None, spins: ArrayLike | None = None,
-    settings: Settings = QUICK,
+    settings: Settings = QUICK, asked: Asked = NONE_ASKED, change: Change = unchanged,
 ) -> Impacts:  # fmt: skip
     """Simulate impacts of a scene over arrays of conditions, which are broadcast.
 
@@ -72,6 +82,10 @@ def impacts(
         Of the approach [m/s, rad/s].
     settings
         Of the time steps.
+    asked
+        Mechanisms that act beside the law.
+    change
+        What is done to the force of each impact, with the mechanisms' part in it.
 
     Returns
     -------
@@ -96,6 +110,15 @@ def impacts(
     (['work', 'work', 'work'], True)
     """
     given = _conditions(scene, speeds, angles, friction, masses, tangential, spins)
+    if asked:
+        return _with_mechanisms(scene, given, settings, asked, change)
+    if change is not unchanged:
+        scene = scene.with_(force=change(scene.force))
+    return _quickest(scene, given, settings)
+
+
+def _quickest(scene: Scene, given: Mapping[str, Array], settings: Settings) -> Impacts:
+    """Simulate each row by work alone where that answers it, else by steps."""
     values = {name: np.full(len(given["speed"]), np.nan) for name in c.OBSERVABLES + c.COUNTS}
     route = np.full(len(given["speed"]), BY_STEPS, dtype="<U5")
     normal = (given["tangential"] == 0.0) & (given["spin"] == 0.0) & (given["friction"] >= 0.0)
@@ -107,6 +130,42 @@ def impacts(
     if len(rest := np.flatnonzero(route == BY_STEPS)):
         _by_steps(scene, {k: v[rest] for k, v in given.items()}, rest, values, settings)
     return _named(scene, given, values, route)
+
+
+def scenes_over(scene: Scene, **conditions: Any) -> list[Scene]:
+    """Return the scene of each row of `impacts`, which says what its conditions are."""
+    given = _conditions(scene, *(conditions[name] for name in _BROADCAST))
+    return [_one(scene, {k: float(v[i]) for k, v in given.items()}) for i in range(_rows(given))]
+
+
+def _rows(given: Mapping[str, Array]) -> int:
+    return len(given["speed"])
+
+
+def _one(scene: Scene, at: Mapping[str, float]) -> Scene:
+    approach = Approach(
+        at["speed"], at["angle"] if scene.striker.length > 0.0 else 0.5 * math.pi,
+        at["tangential"], at["spin"],
+    )  # fmt: skip
+    return scene.with_(
+        striker=_of_mass(scene.striker, at["mass"]), approach=approach,
+        friction=_friction(scene.friction, at["friction"]),
+    )  # fmt: skip
+
+
+def _with_mechanisms(
+    scene: Scene, given: Mapping[str, Array], settings: Settings, asked: Asked, change: Change
+) -> Impacts:
+    """Simulate each row as a scene of its own: a mechanism may follow speed, mass and angle."""
+    plain = [_one(scene, {k: float(v[i]) for k, v in given.items()}) for i in range(_rows(given))]
+    acting = asked.without(*asked.idle(plain))
+    scenes = [s.with_(force=change(s.force)) for s in acting.attached(plain)]
+    found = strike_batch(scenes, settings)
+    values = {name: found[:, j].copy() for j, name in enumerate(c.OBSERVABLES + c.COUNTS)}
+    seen = {column: values[name] for column, name in SIMULATED.items()}
+    for column, read in acting.observed(plain, seen).items():
+        values[SIMULATED[column]] = np.asarray(read)
+    return _named(scene, given, values, np.full(_rows(given), BY_STEPS))
 
 
 def _conditions(

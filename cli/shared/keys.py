@@ -201,6 +201,8 @@ def _default(field: FieldInfo) -> str:
 
 
 def _with_unit(text: str, name: str) -> str:
+    if text.endswith("]"):
+        return text
     unit = next((u for end, u in _UNITS.items() if name.endswith(f"_{end}")), "")
     return f"{text} [{unit}]" if unit else text
 

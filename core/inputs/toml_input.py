@@ -142,7 +142,7 @@ def _known_keys(model: type[BaseModel], path: tuple[Any, ...]) -> list[str]:
     found: Any = model
     for part in path:
         if _is_table(found) and str(part) in found.model_fields:
-            found = _table_in(found.model_fields[str(part)].annotation) or found
+            found = table_in(found.model_fields[str(part)].annotation) or found
     return list(found.model_fields)
 
 
@@ -150,9 +150,9 @@ def _is_table(annotation: Any) -> bool:
     return isinstance(annotation, type) and issubclass(annotation, BaseModel)
 
 
-def _table_in(annotation: Any) -> type[BaseModel] | None:
-    """The table that an annotation such as `dict[str, Table]` or `Table | None` holds."""
+def table_in(annotation: Any) -> type[BaseModel] | None:
+    """Return the table that an annotation such as `dict[str, Table]` or `Table | None` holds."""
     if _is_table(annotation):
         return cast("type[BaseModel]", annotation)
-    inner = (_table_in(part) for part in get_args(annotation))
+    inner = (table_in(part) for part in get_args(annotation))
     return next((table for table in inner if table is not None), None)

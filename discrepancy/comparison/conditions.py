@@ -8,8 +8,8 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from ...core.arrays import Indices
-from ...core.rig import value_of
 from ...impact import Press
+from ...impact.mechanisms.around import surroundings_of, weaker_table
 from ...impact.mechanisms.base import Surroundings
 from ...recordings import RecordingSet
 from ...recordings.noise import bins
@@ -87,7 +87,7 @@ class Condition:
 
 def conditions_of(recordings: RecordingSet) -> tuple[Condition, ...]:
     """Return the conditions of a set, in the order in which they were first tested."""
-    trials, approach = recordings.trials, recordings.approach
+    setup, trials, approach = recordings.setup, recordings.trials, recordings.approach
     numbers, before = _nominal(recordings)
     # a load is measured, as a speed is
     timed = ~np.isnan(trials.impact_speed_m_s) | trials.pressed
@@ -109,10 +109,12 @@ def conditions_of(recordings: RecordingSet) -> tuple[Condition, ...]:
         relative = np.where(np.isnan(relative), unknown, relative)
         set_once = 0.5 * trials.drop_height_m_std[first] / heights[first]
         lean = np.radians(np.nan_to_num(trials.angle_deg_std[rows], nan=0.0))
-        share = 1.0 if timed[first] else float(heights[first] / highest)
-        around = replace(
-            _surroundings(recordings, name, float(trials.temperature_K[first])),
-            from_height=not timed[first], height_share=share,
+        flow = recordings.flows.get(weaker_table(setup, name))
+        around = surroundings_of(
+            setup, name, temperature=float(trials.temperature_K[first]),
+            from_height=not timed[first],
+            height_share=1.0 if timed[first] else float(heights[first] / highest),
+            rises=() if flow is None else flow.rises,
         )  # fmt: skip
         found.append(
             Condition(
@@ -124,33 +126,6 @@ def conditions_of(recordings: RecordingSet) -> tuple[Condition, ...]:
             )
         )  # fmt: skip
     return tuple(found)
-
-
-def _surroundings(recordings: RecordingSet, striker: str, temperature: float) -> Surroundings:
-    """What is stated around a striker's impacts at a temperature [K]; nan: the surroundings'."""
-    setup = recordings.setup
-    target, air, table = setup.target, setup.environment, setup.strikers[striker]
-    strengths = [value_of(body.strength, math.inf) for body in (target, table)]
-    key = "target" if strengths[0] <= strengths[1] else f"strikers.{striker}"
-    weaker, flow = setup.bodies[key], recordings.flows.get(key)
-    rough = [q.value for q in (target.Ra_m, table.Ra_m) if q is not None]
-    ambient = value_of(air.temperature_K, 293.0)
-    return Surroundings(
-        thickness=value_of(target.thickness_m),
-        support_mass=value_of(target.support_mass_kg),
-        support_stiffness=value_of(target.support_stiffness_N_m),
-        roughness=math.hypot(*rough) if rough else math.nan,
-        viscosity=value_of(air.viscosity_Pa_s),
-        density=value_of(air.density_kg_m3),
-        pressure=value_of(air.pressure_Pa),
-        fluid=air.fluid,
-        heat_capacity=value_of(weaker.cp_J_kgK),
-        melting=value_of(weaker.melting_K),
-        temperature=ambient if math.isnan(temperature) else temperature,
-        ambient=ambient,
-        layer_thickness=value_of(target.layer_thickness_m),
-        rises=() if flow is None else flow.rises,
-    )
 
 
 def _nominal(recordings: RecordingSet) -> tuple[Indices, Indices]:

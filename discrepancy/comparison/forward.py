@@ -11,17 +11,14 @@ from dataclasses import dataclass, field, replace
 import numpy as np
 
 from ...core.arrays import Array
-from ...core.observables import OBSERVABLES
 from ...impact import Scene, Settings, dent_radius, pressed, strike_batch, strike_many
+from ...impact.mechanisms.asked import SIMULATED
 from ...impact.mechanisms.base import Constants, Mechanism, Situation, attached, observed
 from ...impact.walk import layout as c
 from ...models.base import DomainWarning
 from ..rules import RULES
 from .cells import compared
 from .problem import Problem
-
-SIMULATED = {name: row.simulated for name, row in OBSERVABLES.items() if row.simulated}
-"""Column of trials.csv to observable of the impact."""
 
 _COLUMN = {name: i for i, name in enumerate(c.OBSERVABLES)}
 _PRESS_DEPTH, _RECOVERED = c.N_OUT, c.N_OUT + 1

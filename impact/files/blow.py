@@ -240,7 +240,9 @@ def blow(
     if speeds is None:
         return blow_of(chosen, wanted)
     chosen.check_laws(wanted)
-    first, *others = (impacts(chosen.scene(one), speeds=speeds) for one in wanted)
+    first, *others = (
+        impacts(chosen.plain(one), speeds=speeds, asked=chosen.asked) for one in wanted
+    )
     for other in others:
         first = first.joined(other)
     return first
@@ -310,17 +312,18 @@ def blow_of(setup: Setup, laws: Sequence[ContactLaw]) -> Blow:
     for law in laws:
         scene = setup.scene(law)
         for number in range(1, setup.repeats + 1):
-            found = strike(scene, setup.settings)
-            pressure = largest_mean_pressure(scene, found)
+            struck = strike(scene, setup.settings)
+            pressure, found = largest_mean_pressure(scene, struck), setup.read(law, struck)
             rows.append(
                 {
                     "law": law.name, "repeat": number, **impact_row(found),
                     PRESSURE: pressure,
                 }
             )  # fmt: skip
-            traces[law.name] = traced(scene, setup.settings, points=RULES.history_points)
+            history = traced(scene, setup.settings, points=RULES.history_points)
+            traces[law.name] = replace(history, impact=setup.read(law, history.impact))
             # the next blow falls on the same spot: hardened crater, flattened tip
-            scene = scene.with_(spot=found.spot)
+            scene = scene.with_(spot=struck.spot)
     return Blow(setup.name, traces, tuple(rows), setup, tuple(laws))
 
 

@@ -10,11 +10,10 @@ from typing import Annotated, Any, Literal
 
 from pydantic import Field
 
-from ...core.approach import speeds_at_touch
 from ...core.errors import InputError, InputErrors
 from ...core.inputs.flow_tables import HardeningTable
 from ...core.inputs.rig_numbers import RigNumbers
-from ...core.inputs.toml_input import InputTable, parse_model, read_toml
+from ...core.inputs.toml_input import InputTable, parse_model, read_toml, table_in
 from ...core.material import Pair
 from ...core.rig import (
     Height,
@@ -24,19 +23,22 @@ from ...core.rig import (
     Speed,
     StrikerTable,
     TargetTable,
+    Temperature,
     Within,
     quantities,
 )
 from ...models.base import ContactLaw
 from ...models.choose import follows_flow
-from ..beam import rod_modes
+from ..batch import Change, unchanged
 from ..columns import Impacts
 from ..integrate import Settings
-from ..scene import Approach, ForceTransform, Friction, Scene, Support
-from ..support import half_space_radiation, plate_support, sprung_support
-from .bodies import bodies_of, flowing
+from ..mechanisms.asked import Asked
+from ..result import Impact
+from ..scene import Scene
+from .mechanism_tables import MechanismsTable, asked_in, mistakes_of
+from .scenes import curves_in, scene_in, second_of
 from .second import SecondSphere
-from .sweep import SweepTable, mistakes_in, run_sweep
+from .sweep import SweepTable, mistakes_in, run_sweep, swept_scenes
 from .taken import not_taken, taken_elsewhere
 
 DEFAULT_LAWS = ("fitted", "hertz", "jackson-green", "ghaednia")
@@ -104,6 +106,8 @@ class ImpactTable(InputTable):
     """Blows on the same spot."""
     flight_s: float | None = Field(default=None, ge=0.0)
     """How long a flight between two touches may last."""
+    temperature_K: Temperature | None = None
+    """Of the bodies, whose strength is that at environment.temperature_K; for thermal-softening."""
     max_steps: int = Field(default=20_000, ge=10)
     """Steps after which an impact is given up."""
     max_contacts: int = Field(default=50, ge=1)
@@ -121,6 +125,8 @@ class SetupFile(Rig):
     """The blow."""
     sweep: SweepTable = SweepTable()
     """Conditions that run through values; every combination is simulated."""
+    mechanisms: MechanismsTable = MechanismsTable()
+    """Physics beyond the laws, by the names of a verdict: true, or a table of its numbers."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -139,15 +145,53 @@ class Setup:
     pair: Pair | None = None
     """In place of the file's two bodies."""
 
-    def scene(self, law: ContactLaw, *, speed: float | None = None) -> Scene:
+    def plain(self, law: ContactLaw, *, speed: float | None = None) -> Scene:
         """Return the scene of one law; `speed` replaces the file's normal approach speed [m/s]."""
-        found = _scene(self.file, self.numbers, law, source=self.source, speed=speed)
+        found = scene_in(self.file, self.numbers, law, source=self.source, speed=speed)
         return found if self.pair is None else found.with_(pair=self.pair)
+
+    def scene(self, law: ContactLaw, *, speed: float | None = None) -> Scene:
+        """Return the scene of `plain` with the mechanisms that act in it."""
+        plain = self.plain(law, speed=speed)
+        (scene,) = self.acting(plain).attached([plain])
+        return scene
+
+    def acting(self, *plain: Scene) -> Asked:
+        """Return the mechanisms asked for, without those that change nothing of these scenes."""
+        return self.asked.without(*self.asked.idle(plain))
+
+    def read(self, law: ContactLaw, found: Impact) -> Impact:
+        """Return an impact of `scene` as it is read: with what a mechanism takes after it."""
+        if not self.asked:
+            return found
+        plain = self.plain(law)
+        return self.acting(plain).read(plain, found)
+
+    def with_mechanism(self, name: str, numbers: Mapping[str, float] | None) -> Setup:
+        """Return the same with these numbers of a mechanism, or without it."""
+        table = None
+        if numbers is not None:
+            kind = table_in(MechanismsTable.model_fields[name].annotation)
+            assert kind is not None
+            stated: dict[str, Any] = {k: Quantity(value=x) for k, x in numbers.items()}
+            table = kind.model_construct(**stated)
+        mechanisms = self.file.mechanisms.model_copy(update={name: table})
+        return replace(self, file=self.file.model_copy(update={"mechanisms": mechanisms}))
+
+    @property
+    def striker(self) -> str:
+        """Name of the striker."""
+        return self.file.impact.striker or next(iter(self.file.strikers))
+
+    @property
+    def asked(self) -> Asked:
+        """The mechanisms of the file."""
+        return asked_in(self.file, self.striker)
 
     @property
     def second(self) -> SecondSphere | None:
         """The second sphere, where one is struck."""
-        return _second_of(self.numbers)
+        return second_of(self.numbers)
 
     @property
     def about(self) -> dict[str, str]:
@@ -157,14 +201,14 @@ class Setup:
         return {key: text for key, text in {**texts, **named}.items() if text}
 
     def check_laws(self, laws: Sequence[ContactLaw]) -> None:
-        """Refuse a flow curve that none of the laws follows.
+        """Refuse a flow curve that none of the laws follows, a mechanism that acts by none.
 
         Raises
         ------
-        InputError
+        InputErrors
             There is one.
         """
-        curves = _curves(self.file)
+        curves = curves_in(self.file)
         if self.pair is not None and not self.pair.perfectly_plastic:
             curves = ["pair.flow"]
         if curves and not any(follows_flow(law) for law in laws):
@@ -172,14 +216,33 @@ class Setup:
                 f"none of {', '.join(law.name for law in laws)} follows it", source=self.source,
                 key=curves[0], allowed=f"{FOLLOWING} or a law.json among the laws",
             )  # fmt: skip
+        self._check_mechanisms(laws)
 
-    def swept(self, law: ContactLaw, *, force: ForceTransform | None = None) -> Impacts:
-        """Return the impacts of `[sweep]` by one law; `force` takes the place of the scene's."""
-        scene = self.scene(law)
+    def _check_mechanisms(self, laws: Sequence[ContactLaw]) -> None:
+        if not self.asked:
+            return
+        reasons = [
+            self.asked.idle(swept_scenes(self.sweep, plain, angle=self._angle))
+            for plain in (self.plain(law) for law in laws)
+        ]
+        everywhere = set.intersection(*(set(one) for one in reasons))
+        if everywhere:
+            raise InputErrors(tuple(
+                InputError(reasons[0][name], source=self.source, key=f"mechanisms.{name}",
+                           allowed="left out")
+                for name in sorted(everywhere)
+            ))  # fmt: skip
+
+    @property
+    def _angle(self) -> float:
+        return math.radians(self.file.impact.angle_deg)
+
+    def swept(self, law: ContactLaw, *, change: Change = unchanged) -> Impacts:
+        """Return the impacts of `[sweep]` by one law, what is done to the force changed."""
+        plain = self.plain(law)
         return run_sweep(
-            self.sweep, scene if force is None else scene.with_(force=force), self.settings,
-            angle=math.radians(self.file.impact.angle_deg),
-        )  # fmt: skip
+            self.sweep, plain, self.settings, angle=self._angle, asked=self.asked, change=change
+        )
 
 
 def read_setup(path: Path) -> Setup:
@@ -233,17 +296,7 @@ def _laws(found: SetupFile) -> tuple[str, ...]:
     """The laws of the file; by default with the one that follows a flow curve, if there is one."""
     laws = tuple(found.impact.laws)
     chosen = "laws" in found.impact.model_fields_set
-    return (FOLLOWING, *laws) if _curves(found) and not chosen else laws
-
-
-def _curves(found: SetupFile) -> list[str]:
-    """Keys that give a body a flow curve."""
-    return [
-        f"{key}.{name}"
-        for key, body in found.bodies.items()
-        for name in ("flow_curve", "hardening")
-        if getattr(body, name)
-    ]
+    return (FOLLOWING, *laws) if curves_in(found) and not chosen else laws
 
 
 def _mistakes(found: SetupFile, source: str) -> list[InputError]:
@@ -273,6 +326,8 @@ def _mistakes(found: SetupFile, source: str) -> list[InputError]:
     if impact.support in ("plate", "half-space") and found.target.density_kg_m3 is None:
         add("target.density_kg_m3", "missing", "the density of a support that carries waves off")
     errors += _of_a_second_sphere(found, source)
+    if not impact.striker or impact.striker in found.strikers:
+        errors += mistakes_of(found, impact.striker or next(iter(found.strikers)), source)
     return errors
 
 
@@ -300,78 +355,3 @@ def _of_a_second_sphere(found: SetupFile, source: str) -> Iterator[InputError]:
     for amiss, key, message, allowed in wrong:
         if amiss:
             yield InputError(message, source=source, key=key, allowed=allowed)
-
-
-def _second_of(numbers: RigNumbers) -> SecondSphere | None:
-    """Return the second sphere; none where a flat is struck."""
-    radius = numbers.of.get("target.radius_m")
-    if radius is None:
-        return None
-    return SecondSphere(radius, numbers.of.get("target.mass_kg", math.inf))
-
-
-def _scene(
-    found: SetupFile, numbers: RigNumbers, law: ContactLaw, *, source: str, speed: float | None
-) -> Scene:
-    impact, target, of = found.impact, found.target, numbers.of
-    name = impact.striker or next(iter(found.strikers))
-    rod = found.strikers[name].shape == "rod"
-    pair, striker = bodies_of(numbers, name, source=source)
-    if target.law == "elastic" and _curves(found):
-        raise InputError(
-            "a flow curve in an elastic baseline", source=source, key=_curves(found)[0],
-            allowed='left out with target.law = "elastic"',
-        )  # fmt: skip
-    if _curves(found):
-        ball, key = found.strikers[name], f"strikers.{name}"
-        pair = replace(
-            pair, sphere=flowing(pair.sphere, ball, key, source=source),
-            flat=flowing(pair.flat, target, "target", source=source),
-        )  # fmt: skip
-    support, radiation = Support(), 0.0
-    if impact.support == "sprung":
-        support = sprung_support(
-            of["target.support_mass_kg"], of.get("target.support_stiffness_N_m", 0.0),
-            damping=impact.support_damping_N_s_m,
-        )  # fmt: skip
-    elif impact.support == "plate":
-        support = plate_support(pair.flat, thickness=of["target.thickness_m"])
-    elif impact.support == "half-space":
-        radiation = half_space_radiation(pair.flat)
-    edge = striker.radius if impact.finite_tip and rod else math.inf
-    try:
-        modes = rod_modes(
-            striker.length, striker.radius, pair.sphere, mass=striker.mass, count=impact.modes,
-            loss_factor=impact.loss_factor,
-        )  # fmt: skip
-    except InputError as error:
-        raise InputError(
-            error.message, source=source, key="impact.modes", allowed=error.allowed
-        ) from None
-    scene = Scene(
-        law, pair, striker, _approach(impact, of, rod=rod, speed=speed),
-        gravity=of["gravity_m_s2"], friction=Friction(of.get("friction.coefficient", 0.0)),
-        force=ForceTransform(radiation=radiation, edge=edge), modes=modes, support=support,
-    )  # fmt: skip
-    second = _second_of(numbers)
-    try:
-        return scene if second is None else second.facing(scene)
-    except InputError as error:
-        raise InputError(
-            error.message, source=source, key=error.key, allowed=error.allowed
-        ) from None
-
-
-def _approach(
-    impact: ImpactTable, of: Mapping[str, float], *, rod: bool, speed: float | None
-) -> Approach:
-    """The motion at touch; a sphere's angle is that of its velocity, a rod's that of its axis."""
-    angle = math.radians(impact.angle_deg)
-    stated = of.get("impact.impact_speed_m_s", math.nan) if speed is None else speed
-    normal, along = speeds_at_touch(
-        stated, of.get("impact.drop_height_m", math.nan), angle, rod, gravity=of["gravity_m_s2"]
-    )
-    return Approach(
-        float(normal), angle if rod else math.pi / 2.0,
-        of.get("impact.approach_tangential_m_s", float(along)), of["impact.approach_spin_rad_s"],
-    )  # fmt: skip

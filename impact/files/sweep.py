@@ -11,9 +11,10 @@ from pydantic import AfterValidator, BeforeValidator, Field, ValidationError
 from ...core.arrays import Array
 from ...core.errors import InputError
 from ...core.inputs.toml_input import InputTable
-from ..batch import impacts
+from ..batch import Change, impacts, scenes_over, unchanged
 from ..columns import Impacts
 from ..integrate import Settings
+from ..mechanisms.asked import NONE_ASKED, Asked
 from ..rules import RULES
 from ..scene import Scene
 
@@ -114,18 +115,36 @@ def mistakes_in(sweep: SweepTable, source: str) -> list[InputError]:
     return found
 
 
-def run_sweep(sweep: SweepTable, scene: Scene, settings: Settings, *, angle: float) -> Impacts:
+def run_sweep(
+    sweep: SweepTable, plain: Scene, settings: Settings, *, angle: float,
+    asked: Asked = NONE_ASKED, change: Change = unchanged,
+) -> Impacts:  # fmt: skip
     """Simulate every combination; what is not swept is the scene's.
 
     Parameters
     ----------
     sweep
         At least one condition.
-    scene, settings
-        The set-up's.
+    plain, settings
+        The set-up's, without mechanisms.
     angle
         Stated angle [rad]: of a rod's axis or of a sphere's velocity.
+    asked, change
+        Mechanisms, and what is done to the force of each impact.
     """
+    given = _given(sweep, plain, angle)
+    return impacts(plain, **given, settings=settings, asked=asked, change=change)
+
+
+def swept_scenes(sweep: SweepTable, plain: Scene, *, angle: float) -> list[Scene]:
+    """Return the scene, and that of every combination."""
+    if not sweep.count:
+        return [plain]
+    return [plain, *scenes_over(plain, **_given(sweep, plain, angle))]
+
+
+def _given(sweep: SweepTable, scene: Scene, angle: float) -> dict[str, Any]:
+    """The arrays of `impacts`."""
     names = list(sweep.swept)
     grid = np.meshgrid(*sweep.swept.values(), indexing="ij")
     given: dict[str, Array] = {name: g.ravel() for name, g in zip(names, grid, strict=True)}
@@ -140,8 +159,8 @@ def run_sweep(sweep: SweepTable, scene: Scene, settings: Settings, *, angle: flo
     slanted = not rod and "angle_deg" not in given and math.isclose(angle, 0.5 * math.pi)
     if tangential is None and (rod or slanted):
         tangential = np.asarray(scene.approach.tangential)
-    return impacts(
-        scene, speeds=speeds, angles=angles, friction=given.get("friction"),
-        masses=given.get("mass_kg"), tangential=tangential, spins=given.get("approach_spin_rad_s"),
-        settings=settings,
-    )  # fmt: skip
+    return {
+        "speeds": speeds, "angles": angles, "friction": given.get("friction"),
+        "masses": given.get("mass_kg"), "tangential": tangential,
+        "spins": given.get("approach_spin_rad_s"),
+    }  # fmt: skip

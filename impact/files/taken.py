@@ -11,12 +11,17 @@ from typing import TYPE_CHECKING, Any
 
 from ...core.errors import InputError
 from ...core.rig import Quantity, TargetTable
+from ..mechanisms import MECHANISMS
+from ..mechanisms.around import weaker_table
+from .mechanism_tables import read_by
 
 if TYPE_CHECKING:
     from .setup import SetupFile
 
 _OF_A_SET = "left out: `dentscope diagnose` takes it, in the set.toml of a recording set"
 _OF_A_BODY = ("Ra_m", "cp_J_kgK", "melting_K", "layer_thickness_m")
+_OF_THE_WEAKER = ("cp_J_kgK", "melting_K")
+_TEMPERATURE = "impact.temperature_K"
 _SOLVED = "left out: `dentscope case` solves with it, and its law.json goes into impact.laws"
 _OF_A_CASE = {"rate": _SOLVED, "heating": _SOLVED}
 
@@ -41,16 +46,37 @@ def not_taken(found: SetupFile, content: Mapping[str, Any], *, source: str) -> I
         yield line("dent_edge", found.dent_edge, _OF_A_SET)
     for name, number in found.noise.items():
         yield line(f"noise.{name}", number, _OF_A_SET)
-    for name in type(found.environment).model_fields:
-        value = getattr(found.environment, name)
-        if value not in (None, ""):
-            yield line(f"environment.{name}", value, _OF_A_SET)
-    for key, body in found.bodies.items():
-        for name in _OF_A_BODY:
-            if name in _stated(content, key):
-                yield line(f"{key}.{name}", getattr(body, name), _OF_A_SET)
+    yield from _of_mechanisms(found, content, line)
     yield from _of_the_flat(found.target, found.impact, line)
     yield from _of_the_striker(found, line)
+
+
+def _of_mechanisms(found: SetupFile, content: Mapping[str, Any], line: Any) -> Iterator[InputError]:
+    """Yield what only a mechanism reads, where none that is asked for does."""
+    read = read_by(found)
+    for name in type(found.environment).model_fields:
+        value = getattr(found.environment, name)
+        key = f"environment.{name}"
+        if value not in (None, "") and key not in read:
+            yield line(key, value, _with_a_mechanism(key))
+    if found.impact.temperature_K is not None and _TEMPERATURE not in read:
+        yield line(_TEMPERATURE, found.impact.temperature_K, _with_a_mechanism(_TEMPERATURE))
+    name = found.impact.striker or next(iter(found.strikers))
+    weaker = weaker_table(found, name) if name in found.strikers else ""
+    for key, body in found.bodies.items():
+        for name in _OF_A_BODY:
+            if name not in _stated(content, key):
+                continue
+            if name not in read:
+                yield line(f"{key}.{name}", getattr(body, name), _with_a_mechanism(name))
+            elif name in _OF_THE_WEAKER and key != weaker:
+                allowed = f"{weaker}.{name}: heat softens the body that yields first"
+                yield line(f"{key}.{name}", getattr(body, name), allowed)
+
+
+def _with_a_mechanism(key: str) -> str:
+    by = [f"mechanisms.{m.name}" for m in MECHANISMS if key in m.reads]
+    return f"with {' or '.join(by)}; {_OF_A_SET}" if by else _OF_A_SET
 
 
 def _of_the_flat(target: TargetTable, impact: Any, line: Any) -> Iterator[InputError]:

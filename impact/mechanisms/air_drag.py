@@ -48,6 +48,10 @@ class AirDrag(Mechanism):
     )  # fmt: skip
     direction: ClassVar[Mapping[str, int]] = {"restitution": -1, "permanent_depth_m": -1}
     form: ClassVar[float] = 0.05
+    reads: ClassVar[tuple[str, ...]] = tuple(
+        f"environment.{name}"
+        for name in ("fluid", "viscosity_Pa_s", "density_kg_m3", "pressure_Pa", "temperature_K")
+    )
 
     def applies(self, situations: Sequence[Situation]) -> str:
         """Needs a light or a fast striker in air, or a liquid of which all is stated."""

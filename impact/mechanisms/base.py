@@ -168,6 +168,9 @@ class Mechanism(ABC):
     rests_on
         Bodies whose elastic modulus its numbers rest on: "target", "striker". Where a set does not
         state one, the mechanism is not tried: its constants would be those of the assumption.
+    reads
+        Keys of a set-up, beyond those of the bodies' motion, that it takes numbers from: with a
+        table in front (`environment.pressure_Pa`), or of the bodies.
     """
 
     name: str
@@ -182,6 +185,7 @@ class Mechanism(ABC):
     named: ClassVar[bool] = True
     static: ClassVar[bool] = False
     rests_on: ClassVar[tuple[str, ...]] = ()
+    reads: ClassVar[tuple[str, ...]] = ()
 
     @property
     def literature(self) -> Values:
@@ -206,6 +210,17 @@ class Mechanism(ABC):
         Of presses it is asked only if it acts without motion.
         """
         return ""
+
+    def idle(self, situations: Sequence[Situation]) -> str:
+        """Return why it would change nothing of these conditions, or "".
+
+        What only comparing trials with each other rules out is no reason here.
+        """
+        return self.ruled_out(situations)
+
+    def stated(self, around: Surroundings) -> Values:
+        """Return the parameters that the rig itself states."""
+        return {}
 
     def ranges(self, situations: Sequence[Situation]) -> tuple[Parameter, ...]:
         """Return the parameters with the ranges that this rig allows."""

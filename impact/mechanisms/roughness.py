@@ -101,6 +101,12 @@ class Roughness(Mechanism):
     )  # fmt: skip
     direction: ClassVar[Mapping[str, int]] = {"contact_time_s": 1, "peak_force_N": -1}
     static: ClassVar[bool] = True
+    reads: ClassVar[tuple[str, ...]] = ("Ra_m",)
+
+    def stated(self, around: Surroundings) -> Values:
+        """Heights that fall off exponentially with the mean sigma have Ra = 2 sigma/e."""
+        Ra = around.roughness
+        return {"roughness_m": 0.5 * math.e * Ra} if Ra > 0.0 else {}
 
     def applies(self, situations: Sequence[Situation]) -> str:
         """Needs a metal that yields."""

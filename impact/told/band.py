@@ -23,9 +23,12 @@ from ...core.rig import BodyTable, Quantity
 from ...models.base import ContactLaw, DomainWarning
 from ...models.choose import follows_flow
 from ...models.uncertainty import METAL, RECOVERY_EXPONENT, WITH_CURVE
+from ..batch import Change, unchanged
 from ..columns import Impacts
+from ..files.mechanism_tables import asked_of
 from ..files.second import mirror_error
 from ..integrate import strike
+from ..mechanisms.arithmetic import times
 from ..result import Impact
 from ..rules import RULES
 from ..scene import ForceTransform, Scene
@@ -122,20 +125,20 @@ def idle(setup: Setup, band: Band) -> list[tuple[str, float]]:
     ]
 
 
-def last_blow(setup: Setup, law: ContactLaw, force: ForceTransform | None = None) -> Impact:
+def last_blow(setup: Setup, law: ContactLaw, change: Change = unchanged) -> Impact:
     """Return the last of the set-up's repeats, each on the spot of the one before.
 
-    `force` takes the place of the scene's; such a blow, for a band, has fewer steps to end in.
+    `change` is done to the scene's force; such a blow, for a band, has fewer steps to end in.
     """
     scene = setup.scene(law)
     settings = setup.settings
-    if force is not None:
+    if change is not unchanged:
         steps = min(settings.max_steps, RULES.band_steps)
-        scene, settings = scene.with_(force=force), replace(settings, max_steps=steps)
+        scene, settings = scene.with_(force=change(scene.force)), replace(settings, max_steps=steps)
     for _ in range(setup.repeats):
         found = strike(scene, settings)
         scene = scene.with_(spot=found.spot)
-    return found
+    return setup.read(law, found)
 
 
 def _values(impact: Impact) -> dict[str, float]:
@@ -176,11 +179,13 @@ def _uncertain(setup: Setup) -> Iterator[tuple[tuple[str, ...], Quantity]]:
     tables: dict[tuple[str, ...], Any] = {
         (): file, ("target",): file.target, ("strikers", name): file.strikers[name],
         ("friction",): file.friction, ("impact",): file.impact,
+        ("environment",): file.environment,
+        **{("mechanisms", name): table for name, table in asked_of(file).items()},
     }  # fmt: skip
     for place, table in tables.items():
         given = content
         for part in place:
-            given = given.get(part, {})
+            given = given.get(part, {}) if isinstance(given, dict) else {}
         for key in type(table).model_fields:
             value = getattr(table, key)
             # the mass of a solid sphere moves with its radius and density
@@ -241,12 +246,19 @@ def _sizes(scene: Scene, found: Any) -> tuple[_Sizes, _Sizes]:
     )  # fmt: skip
 
 
-def _changed(stated: ForceTransform, k: int, step: float) -> ForceTransform:
+def _moving(k: int, step: float) -> Change:
     """Move the logarithm of the force, of the recovery, or the recovery's exponent by `step`."""
     by = [0.0, 0.0, 0.0]
     by[k] = step
-    loading, back = ((math.exp(x),) * NODES for x in by[:2])
-    return replace(stated, factors=loading, recovery_factors=back, shape=stated.shape + by[2])
+
+    def change(stated: ForceTransform) -> ForceTransform:
+        loading, back = (
+            times(now, np.full(NODES, math.exp(x)))
+            for now, x in zip((stated.factors, stated.recovery_factors), by[:2], strict=True)
+        )
+        return replace(stated, factors=loading, recovery_factors=back, shape=stated.shape + by[2])
+
+    return change
 
 
 def _acting(sizes: Sequence[tuple[_Sizes, _Sizes]]) -> tuple[bool, ...]:
@@ -256,14 +268,13 @@ def _acting(sizes: Sequence[tuple[_Sizes, _Sizes]]) -> tuple[bool, ...]:
 
 def _slopes(setup: Setup, law: ContactLaw, acting: Sequence[bool]) -> list[dict[str, float]]:
     """Change of each field by the logarithm of force and recovery, and by the exponent."""
-    stated, slopes = setup.scene(law).force, []
+    slopes: list[dict[str, float]] = []
     for k in range(3):
         if not acting[k]:
             slopes.append(dict.fromkeys(_NUMBERS, 0.0))
             continue
         blows = [
-            last_blow(setup, law, _changed(stated, k, step))
-            for step in (RULES.band_step, -RULES.band_step)
+            last_blow(setup, law, _moving(k, step)) for step in (RULES.band_step, -RULES.band_step)
         ]
         if not all(blow.outcome.completed for blow in blows):
             slopes.append(dict.fromkeys(_NUMBERS, math.nan))
@@ -300,7 +311,7 @@ def swept_stds(setup: Setup, law: ContactLaw, found: Impacts) -> dict[str, Array
             slopes.append({name: np.zeros(len(rows)) for name in SWEPT})
             continue
         one, two = (
-            setup.swept(law, force=_changed(scene.force, k, step))
+            setup.swept(law, change=_moving(k, step))
             for step in (RULES.band_step, -RULES.band_step)
         )
         slopes.append({name: (one[name] - two[name]) / (2.0 * RULES.band_step) for name in SWEPT})

@@ -24,6 +24,9 @@ from ..result import Impact
 from ..rules import RULES
 from ..scene import Scene
 from ..support import half_space_radiation, plate_support
+from .band import last_blow
+from .effect import effect
+from .flow import flow_checks
 from .onset import effective_mass, first_yield_speed, largest_mean_pressure
 
 if TYPE_CHECKING:
@@ -33,15 +36,19 @@ if TYPE_CHECKING:
 
 def checks(setup: Setup, law: ContactLaw, found: Impact) -> list[str]:
     """Return a line for each check, by one law and its blow; none where that did not end."""
-    if not (found.outcome.completed and found.restitution > 0.0):
+    if not found.outcome.completed:
         return []
+    if not found.restitution > 0.0:
+        return list(_mechanisms(setup, law, found))  # what has made it stay
     scene = setup.scene(law)
     with warnings.catch_warnings():
         warnings.simplefilter("ignore", DomainWarning)  # the doubt about a law has its own line
         parts = (
-            _onset(setup, scene, found), _either(scene, found), _plate(setup, scene, found),
-            _waves(setup, scene, found), _gravity(setup, scene, found), _friction(scene),
-            _rod(scene, found), _second(setup, scene, found), _bodies(setup, law),
+            _onset(setup, scene, found), flow_checks(setup, scene, found), _either(scene, found),
+            _plate(setup, scene, found), _waves(setup, scene, found),
+            _gravity(setup, scene, found), _friction(setup, scene, found), _rod(scene, found),
+            _edge(setup, scene, found), _second(setup, scene, found), _bodies(setup, law),
+            _mechanisms(setup, law, found),
         )  # fmt: skip
         return [line for part in parts for line in part]
 
@@ -64,13 +71,6 @@ def _onset(setup: Setup, scene: Scene, found: Impact) -> Iterator[str]:
         f"first yield at {speed:.3g} m/s; here {scene.approach.speed / speed:.3g} times that "
         f"({regime}); {mean}{over}"
     )
-    radius = float(scene.law.contact_radius(pair, found.peak_depth_m))
-    if scene.approach.speed > speed and radius > 0.0:
-        rate = RULES.indentation_rate * scene.approach.speed / radius
-        yield (
-            f"strain rate about {rate:.2g} 1/s: a strength measured slowly lacks what the metal's "
-            "rate adds up to there"
-        )
 
 
 def _either(scene: Scene, found: Impact) -> Iterator[str]:
@@ -111,32 +111,33 @@ def _plate(setup: Setup, scene: Scene, found: Impact) -> Iterator[str]:
         yield f"the flat, {h * 1e3:.3g} mm, is {h / a:.3g} times the contact radius thick"
     if setup.file.impact.support == "plate" or flat.rigid or math.isnan(flat.density):
         return
-    hung = strike(scene.with_(support=plate_support(flat, thickness=h)), setup.settings)
-    yield f"hung freely as a wide plate: {_effect(hung, found)}"
+    hung = _struck(setup, scene.with_(support=plate_support(flat, thickness=h)))
+    yield f"hung freely as a wide plate: {effect(hung, found)}"
 
 
 def _waves(setup: Setup, scene: Scene, found: Impact) -> Iterator[str]:
     flat = scene.pair.flat
     held = setup.file.impact.support == "rigid" and setup.second is None
-    if not held or flat.rigid or math.isnan(flat.density):
+    asked = any(m.name == "half-space-waves" for m in setup.asked.mechanisms)
+    if asked or not held or flat.rigid or math.isnan(flat.density):
         return
     radiates = replace(scene.force, radiation=half_space_radiation(flat))
-    with_waves = strike(scene.with_(force=radiates), setup.settings)
-    yield f"waves into a deep flat: {_effect(with_waves, found)}"
+    with_waves = _struck(setup, scene.with_(force=radiates))
+    yield f"waves into a deep flat: {effect(with_waves, found)}"
 
 
 def _gravity(setup: Setup, scene: Scene, found: Impact) -> Iterator[str]:
     if scene.gravity == 0.0:
         return
-    without = strike(scene.with_(gravity=0.0), setup.settings)
+    without = _struck(setup, scene.with_(gravity=0.0))
     if abs(without.restitution / found.restitution - 1.0) > RULES.worth_a_line:
         yield (
             f"gravity, {scene.gravity:.4g} m/s^2, acts during the contact; without: "
-            f"{_effect(without, found)}"
+            f"{effect(without, found)}"
         )
 
 
-def _friction(scene: Scene) -> Iterator[str]:
+def _friction(setup: Setup, scene: Scene, found: Impact) -> Iterator[str]:
     approach = scene.approach
     upright = math.isclose(approach.angle, 0.5 * math.pi, abs_tol=1e-9)
     straight = approach.tangential == approach.spin == 0.0 and upright
@@ -145,6 +146,13 @@ def _friction(scene: Scene) -> Iterator[str]:
             f"friction, {scene.friction.mu:g}, does nothing in a straight blow by these laws; "
             "dentscope case solves the contact with it"
         )
+    elif not straight and scene.friction.mu > 0.0:
+        without = _struck(
+            setup, scene.with_(friction=replace(scene.friction, mu=0.0, mu_static=0.0))
+        )
+        yield f"without friction: {effect(without, found)}"
+    elif not straight:
+        yield "friction.coefficient is not stated: nothing acts along the flat"
 
 
 def _rod(scene: Scene, found: Impact) -> Iterator[str]:
@@ -163,6 +171,19 @@ def _rod(scene: Scene, found: Impact) -> Iterator[str]:
         yield (
             f"upright it cannot press with more than rho c v A = {limit:.4g} N before that wave is "
             "back"
+        )
+
+
+def _edge(setup: Setup, scene: Scene, found: Impact) -> Iterator[str]:
+    """Whether the curvature of a rod's tip ends before the contact does."""
+    if scene.striker.length == 0.0 or math.isfinite(scene.force.edge):
+        return
+    ends = replace(scene.force, edge=scene.striker.radius)
+    ended = _struck(setup, scene.with_(force=ends))
+    if abs(ended.restitution / found.restitution - 1.0) > RULES.worth_a_line:
+        yield (
+            f"the tip's curvature is taken to go on; ended at the rod's side (impact.finite_tip): "
+            f"{effect(ended, found)}"
         )
 
 
@@ -188,6 +209,17 @@ def _second(setup: Setup, scene: Scene, found: Impact) -> Iterator[str]:
             f"where both yield 1/R is an approximation: two equal spheres carry {100.0 * off:+.1f} "
             "% of force here, by their mirror; it is in the band"
         )
+
+
+def _mechanisms(setup: Setup, law: ContactLaw, found: Impact) -> Iterator[str]:
+    """What each mechanism of the file does to the blow, against the blow with all but it."""
+    plain = setup.plain(law)
+    idle = setup.asked.idle([plain])
+    for name, reason in idle.items():
+        yield f"{name} changes nothing here: {reason}"
+    for m in setup.acting(plain).mechanisms:
+        without = last_blow(setup.with_mechanism(m.name, None), law)
+        yield f"{m.name} ({m.title}): {effect(found, without)}"
 
 
 def _bodies(setup: Setup, law: ContactLaw) -> Iterator[str]:
@@ -259,11 +291,13 @@ def _made_by_the_law(before: Any, after: Any, fall: Any) -> Any:
     return after > (1.0 + 1e-6) * (before + np.maximum(fall, 0.0))
 
 
-def _effect(other: Impact, found: Impact) -> str:
-    """What changes, in per cent of dent and restitution."""
-    if not other.outcome.completed:
-        return "the tip does not part within the budgets"
-    e = f"restitution {100.0 * (other.restitution / found.restitution - 1.0):+.2g} %"
-    if not found.residual_flat_m > 0.0:
-        return e
-    return f"dent {100.0 * (other.residual_flat_m / found.residual_flat_m - 1.0):+.2g} %, {e}"
+def _struck(setup: Setup, scene: Scene) -> Impact:
+    """The last impact of a scene's repeats, read as the set-up's."""
+    return setup.read(scene.law, _last(setup, scene))
+
+
+def _last(setup: Setup, scene: Scene) -> Impact:
+    for _ in range(setup.repeats):
+        found = strike(scene, setup.settings)
+        scene = scene.with_(spot=found.spot)
+    return found

@@ -11,9 +11,11 @@ import numpy as np
 from ...core.material import Pair
 from ...models.base import DomainWarning
 from ...models.kernel import critical_depth, critical_force
+from ..force import F_FORCE, F_RADIUS
 from ..result import Impact
 from ..rules import RULES
 from ..scene import Scene
+from ..strength import Array, strength_table
 
 
 @dataclass(frozen=True)
@@ -86,7 +88,8 @@ def largest_mean_pressure(scene: Scene, found: Impact) -> float:
     """Largest mean pressure F/(pi a^2) on the way to the peak [Pa], by the scene's law.
 
     nan where the tip is cut flat, for the law's contact radius is not that of the contact, and
-    where the impact ended before it had a peak.
+    where the impact ended before it had a peak. Of a strength that varies with depth the law
+    answers at each depth for a pair of that strength.
     """
     peak = found.peak_depth_m
     if scene.striker.tip_flat_radius > 0.0 or not 0.0 < peak < math.inf:
@@ -94,4 +97,16 @@ def largest_mean_pressure(scene: Scene, found: Impact) -> float:
     depth = np.geomspace(1e-3 * peak, peak, RULES.pressure_points)
     with warnings.catch_warnings():
         warnings.simplefilter("ignore", DomainWarning)  # the doubt about a law has its own line
-        return float(np.max(scene.law.hardness(scene.pair, depth)))
+        stated = scene.law.hardness(scene.pair, depth)
+        return float(np.max(stated * _harder(scene, depth)))
+
+
+def _harder(scene: Scene, depth: Array) -> Array:
+    """Mean pressure over that at the stated strength, at these depths."""
+    table = strength_table(scene.law, scene.pair)
+    strength = scene.flow.profile(scene, table)
+    if strength is None:
+        return np.ones_like(depth)
+    found = table.factors(strength)
+    ratio = np.log(found[F_FORCE]) - 2.0 * np.log(found[F_RADIUS])
+    return np.asarray(np.exp(np.interp(np.log(depth), table.log_depth, ratio)))

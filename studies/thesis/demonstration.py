@@ -18,11 +18,12 @@ from pathlib import Path
 import numpy as np
 
 from ...core.arrays import Array
-from ...discrepancy.comparison.forward import ACCURACY, SIMULATED
+from ...discrepancy.comparison.forward import ACCURACY
 from ...discrepancy.comparison.problem import Problem, problem_of
 from ...discrepancy.inference.fit import label
 from ...impact import Scene, strike_batch
 from ...impact.mechanisms import MECHANISMS, Mechanism
+from ...impact.mechanisms.asked import SIMULATED
 from ...impact.mechanisms.base import Situation, observed
 from ...impact.walk import layout as c
 from ...recordings import RecordingSet, read

@@ -13,6 +13,7 @@ from dentscope.cli.shared.keys import keys_of
 from dentscope.core import InputError, InputErrors
 from dentscope.impact.files.blow import blow_of
 from dentscope.impact.files.setup import setup_of
+from dentscope.impact.mechanisms import MECHANISMS
 from dentscope.models import law_named
 from dentscope.start.ball_file import read_ball
 
@@ -127,6 +128,66 @@ Sy_Pa = 1.7e9""", "\ntip_radius_m = 0.005"), "true"),
     ("[sweep]", "approach_tangential_m_s"): (BALL, "[0.1, 0.2]"),
     ("[sweep]", "approach_spin_rad_s"): (BALL, "[10.0, 20.0]"),
 }  # fmt: skip
+OIL = BALL + '[environment]\nfluid = "oil"\n'
+HOT = BALL.replace("angle_deg", "temperature_K = 600.0\nangle_deg")
+EDGED = ROD.replace("radius_m = 0.005\nlength", "radius_m = 0.0006\nlength")
+DROPPED = BALL.replace("impact_speed_m_s = 1.0", "drop_height_m = 0.3")
+FALLS = DROPPED + "[sweep]\ndrop_height_m = [0.1, 0.3]\n"
+LIGHT = DROPPED.replace("0.005", "0.02").replace("density_kg_m3 = 7800", "mass_kg = 0.0027")
+STICKS = BALL.replace("coefficient = 0.1", "coefficient = 0.4")
+BEAD = """
+[target]
+E_Pa = 2e9
+nu = 0.3
+density_kg_m3 = 1000
+[strikers.ball]
+shape = "sphere"
+tip_radius_m = 1e-6
+E_Pa = 2e9
+nu = 0.3
+mass_kg = 4e-15
+[impact]
+impact_speed_m_s = 10.0
+laws = ["fitted"]
+"""
+MEETS = {
+    "thermal-softening": HOT, "rod-longitudinal-waves": ROD, "rod-flexural-vibration": ROD,
+    "truncated-tip": EDGED, "adhesion": BEAD, "squeeze-film": OIL, "impact-speed-loss": FALLS,
+    "air-drag": LIGHT, "tangential-compliance": STICKS,
+}  # fmt: skip
+"""Where a mechanism acts; elsewhere than on an oblique ball."""
+
+
+def _with_mechanism(mechanism, text):
+    """The file with a number from within each parameter's range."""
+    numbers = [f"{p.name} = {float(p.value(0.6))!r}" for p in mechanism.parameters]
+    return "\n".join([text, f"[mechanisms.{mechanism.name}]", *numbers, ""])
+
+
+def _moving(mechanism, parameter):
+    text = _with_mechanism(mechanism, MEETS.get(mechanism.name, BALL))
+    return text, *(repr(float(parameter.value(place))) for place in (0.3, 0.65))
+
+
+ACTS |= {
+    (f"[mechanisms.{m.name}]", p.name): _moving(m, p) for m in MECHANISMS for p in m.parameters
+}
+READ = {
+    ("[target]", "Ra_m"): (BALL + "[mechanisms.roughness]\n", "1e-6", "3e-6"),
+    ("[strikers.NAME]", "Ra_m"): (BALL + "[mechanisms.roughness]\n", "1e-6", "3e-6"),
+    ("[target]", "layer_thickness_m"): (BALL + "[mechanisms.hardened-layer]\n", "1e-4", "4e-4"),
+    **{("[target]", name): (HOT + "[mechanisms.thermal-softening]\n", *two)
+       for name, two in (("cp_J_kgK", ("400", "900")), ("melting_K", ("900", "1800")))},
+    ("[impact]", "temperature_K"): (HOT + "[mechanisms.thermal-softening]\n", "600", "700"),
+    ("[environment]", "temperature_K"): (
+        HOT + "[mechanisms.thermal-softening]\n", "293", "350",
+    ),
+    ("[environment]", "fluid"): (LIGHT + "[mechanisms.air-drag]\n", '"air"', '"oil"'),
+    **{("[environment]", name): (LIGHT + "[mechanisms.air-drag]\n", *two)
+       for name, two in (("density_kg_m3", ("1.0", "1.3")), ("pressure_Pa", ("5e4", "1e5")),
+                         ("viscosity_Pa_s", ("1e-5", "1e-3")))},
+}  # fmt: skip
+"""What a mechanism alone reads, and with which it acts."""
 REFUSED = {
     **dict.fromkeys([("", "noise")], "{ restitution = 0.01 }"),
     **{(t, "Ra_m"): "1e-6" for t in ("[target]", "[strikers.NAME]")},
@@ -140,6 +201,7 @@ REFUSED = {
     ("[environment]", "density_kg_m3"): "1.2",
     ("[environment]", "pressure_Pa"): "1e5",
     ("[environment]", "temperature_K"): "293",
+    ("[impact]", "temperature_K"): "400",
 }
 ONE = {
     ("[impact]", "striker"), ("[target]", "flow_curve"),
@@ -193,6 +255,40 @@ def test_a_key_of_an_impact_acts_or_is_refused(key, tmp_path):
         before = tomllib.loads(BALL)
     after = with_key(base, *place, values[-1])
     assert told(before, tmp_path) != told(after, tmp_path)
+
+
+@pytest.mark.parametrize("place", READ, ids="".join)
+def test_a_key_that_only_a_mechanism_reads_acts_with_it(place, tmp_path):
+    base, *values = READ[place]
+    found = []
+    for value in values:
+        try:
+            found.append(told(with_key(base, *place, value), tmp_path))
+        except InputErrors as error:
+            found.append(str(error))
+    assert found[0] != found[1]
+
+
+@pytest.mark.parametrize("mechanism", MECHANISMS, ids=lambda m: m.name)
+def test_a_mechanism_is_told_with_its_effect_or_refused_where_it_cannot_act(mechanism, tmp_path):
+    text = _with_mechanism(mechanism, MEETS.get(mechanism.name, BALL))
+    lines = told(tomllib.loads(text), tmp_path)[2]
+    assert any(line.startswith(f"{mechanism.name} ({mechanism.title}): ") for line in lines)
+    out = _with_mechanism(mechanism, BALL).replace(
+        f"{mechanism.parameters[0].name} = ", f"{mechanism.parameters[0].name} = -1e9  # "
+    )
+    with pytest.raises(InputErrors) as caught:
+        setup_of(tomllib.loads(out), source="a.toml")
+    assert f"mechanisms.{mechanism.name}.{mechanism.parameters[0].name}" in str(caught.value)
+    assert f"[{mechanism.parameters[0].unit}]" in str(caught.value)
+    for other in (BALL, ROD, BEAD):
+        if mechanism.name == "impact-speed-loss":
+            continue  # one height alone is refused before any scene
+        setup = setup_of(tomllib.loads(_with_mechanism(mechanism, other)), source="a.toml")
+        plain = setup.plain(law_named("fitted"))
+        if setup.asked.idle([plain]):
+            with pytest.raises(InputErrors, match=f"mechanisms.{mechanism.name}"):
+                setup.check_laws([law_named("fitted")])
 
 
 UNCERTAIN = [

@@ -16,9 +16,10 @@ from pathlib import Path
 import numpy as np
 import pytest
 from dentscope.core import Material
-from dentscope.discrepancy.comparison.forward import ACCURACY, SIMULATED
+from dentscope.discrepancy.comparison.forward import ACCURACY
 from dentscope.impact import Approach, Friction, Scene, Striker, scene_of, strike_batch
 from dentscope.impact.mechanisms import MECHANISMS, NAMELESS, Mechanism, Surroundings
+from dentscope.impact.mechanisms.asked import SIMULATED
 from dentscope.impact.mechanisms.base import Constants, Situation, Values, attached, observed
 from dentscope.impact.walk import compiled as c
 from dentscope.models import LAWS

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
+from typing import ClassVar
 
 import numpy as np
 
@@ -44,6 +45,13 @@ class HardenedLayer(FlowMechanism):
             literature=Literature(1.5e-4, "a machined skin"),
         ),
     )  # fmt: skip
+
+    reads: ClassVar[tuple[str, ...]] = ("layer_thickness_m",)
+
+    def stated(self, around: Surroundings) -> Values:
+        """Return the thickness of the layer."""
+        t = around.layer_thickness
+        return {"layer_thickness_m": t} if t > 0.0 else {}
 
     def ranges(self, situations: Sequence[Situation]) -> tuple[Parameter, ...]:
         """A stated thickness narrows the range to a factor of two."""

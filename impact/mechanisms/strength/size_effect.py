@@ -61,6 +61,10 @@ class SizeEffect(FlowMechanism):
             )
         return ""
 
+    def idle(self, situations: Sequence[Situation]) -> str:
+        """One radius is enough to be told of."""
+        return super().applies(situations)
+
     def strength(self, scene: Scene, values: Values, around: Surroundings) -> FlowStress:
         """Return the profile of this mechanism."""
         return SizeProfile(values["size_length_m"])

@@ -48,6 +48,9 @@ class ThermalSoftening(FlowMechanism):
         ),
     )  # fmt: skip
     direction: ClassVar[Mapping[str, int]] = {"restitution": -1, "permanent_depth_m": 1}
+    reads: ClassVar[tuple[str, ...]] = (
+        "cp_J_kgK", "melting_K", "environment.temperature_K", "impact.temperature_K",
+    )  # fmt: skip
 
     def applies(self, situations: Sequence[Situation]) -> str:
         """Compare the heat of deformation with the way to melting."""

@@ -1,0 +1,163 @@
+"""`[mechanisms]` of a set-up: the physics that a diagnosis can name, asked for with its numbers."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator
+from typing import TYPE_CHECKING, Annotated, Any
+
+from pydantic import AfterValidator, Field, create_model, model_validator
+
+from ...core.errors import InputError
+from ...core.inputs.toml_input import InputTable
+from ...core.rig import Quantity, Within
+from ..mechanisms import MECHANISMS
+from ..mechanisms.around import surroundings_of
+from ..mechanisms.asked import NONE_ASKED, Asked
+from ..mechanisms.base import Mechanism, Parameter, Surroundings, Values
+from .scenes import curves_in
+
+if TYPE_CHECKING:
+    from .setup import SetupFile
+
+
+class MechanismTable(InputTable):
+    """The numbers of one mechanism; `true` takes those that its source has for usual rigs."""
+
+    @model_validator(mode="before")
+    @classmethod
+    def _as_its_source_has_it(cls, given: Any) -> Any:
+        if not (given is True or isinstance(given, dict)):
+            raise ValueError("true, or a table of its numbers")
+        return {} if given is True else given
+
+
+def _range(one: Parameter) -> AfterValidator:
+    return AfterValidator(
+        Within(lambda x: one.low <= x <= one.high, f"{one.low:g} to {one.high:g} [{one.unit}]")
+    )
+
+
+def _meaning(mechanism: Mechanism, one: Parameter) -> str:
+    of = f"{mechanism.title[:1].upper()}{mechanism.title[1:]}: {mechanism.equations}; "
+    known = f"; left out: {one.literature.value:g}" if one.literature else ""
+    return f"{of if one is mechanism.parameters[0] else ''}{one.source}{known}."
+
+
+def _table(mechanism: Mechanism) -> type[MechanismTable]:
+    fields: dict[str, Any] = {
+        p.name: (
+            Annotated[Quantity, _range(p)] | None,
+            Field(default=None, description=_meaning(mechanism, p)),
+        )
+        for p in mechanism.parameters
+    }
+    return create_model(mechanism.name, __base__=MechanismTable, **fields)
+
+
+_FIELDS: dict[str, Any] = {
+    m.name: (_table(m) | None, Field(default=None, description=m.title)) for m in MECHANISMS
+}
+if TYPE_CHECKING:
+
+    class MechanismsTable(InputTable):
+        """`[mechanisms]`: one table a mechanism, by the names of a verdict."""
+
+else:
+    MechanismsTable = create_model("mechanisms", __base__=InputTable, **_FIELDS)
+
+_ALONE: dict[str, tuple[str, Callable[[SetupFile], bool]]] = {
+    "support-compliance": ("impact.support", lambda file: file.impact.support == "sprung"),
+    "half-space-waves": (
+        "impact.support", lambda file: file.impact.support in ("plate", "half-space"),
+    ),
+    "rod-longitudinal-waves": ("impact.modes", lambda file: file.impact.modes > 0),
+    "rod-flexural-vibration": ("impact.modes", lambda file: file.impact.modes > 0),
+    "truncated-tip": ("impact.finite_tip", lambda file: file.impact.finite_tip),
+    "work-hardening": ("flow_curve or hardening", lambda file: bool(curves_in(file))),
+}  # fmt: skip
+"""What else of a set-up says the same."""
+
+
+def asked_of(file: SetupFile) -> dict[str, InputTable]:
+    """Return the tables that a set-up holds, by mechanism."""
+    given = {m.name: getattr(file.mechanisms, m.name) for m in MECHANISMS}
+    return {name: table for name, table in given.items() if table is not None}
+
+
+def read_by(file: SetupFile) -> frozenset[str]:
+    """Return the keys of the set-up that the mechanisms asked for take numbers from."""
+    names = asked_of(file)
+    return frozenset(key for m in MECHANISMS if m.name in names for key in m.reads)
+
+
+def asked_in(file: SetupFile, striker: str) -> Asked:
+    """Return the mechanisms that a set-up asks for; a number that is left out is its source's."""
+    tables = asked_of(file)
+    if not tables:
+        return NONE_ASKED
+    temperature = file.impact.temperature_K
+    around = surroundings_of(
+        file, striker, temperature=float("nan") if temperature is None else temperature.value,
+        from_height=_falls(file),
+        height_share=1.0,
+    )  # fmt: skip
+    mechanisms = tuple(m for m in MECHANISMS if m.name in tables)
+    constants = {m.name: _values(m, tables[m.name], around) for m in mechanisms}
+    return Asked(mechanisms, constants, around)
+
+
+def _falls(file: SetupFile) -> bool:
+    """Whether speeds follow from heights of fall."""
+    if file.sweep.impact_speed_m_s:
+        return False
+    return file.impact.drop_height_m is not None or bool(file.sweep.drop_height_m)
+
+
+def _values(mechanism: Mechanism, table: InputTable, around: Surroundings) -> Values:
+    stated = mechanism.stated(around)
+    return {p.name: _value(p, getattr(table, p.name), stated) for p in mechanism.parameters}
+
+
+def _value(one: Parameter, given: Quantity | None, stated: Values) -> float:
+    if given is not None:
+        return given.value
+    usual = one.neutral if one.literature is None else one.literature.value
+    return stated.get(one.name, usual)
+
+
+def mistakes_of(file: SetupFile, striker: str, source: str) -> Iterator[InputError]:
+    """Yield what the single keys of `[mechanisms]` cannot show."""
+    tables = asked_of(file)
+    for name, (other, given) in _ALONE.items():
+        if name in tables and given(file):
+            yield InputError(
+                f"given beside {other}, which says the same", source=source,
+                key=f"mechanisms.{name}", allowed="one of the two",
+            )  # fmt: skip
+    if {"rod-longitudinal-waves", "rod-flexural-vibration"} <= tables.keys():
+        yield InputError(
+            "given beside mechanisms.rod-flexural-vibration, which rings along the axis as well",
+            source=source, key="mechanisms.rod-longitudinal-waves", allowed="one of the two",
+        )  # fmt: skip
+    loss = getattr(tables.get("impact-speed-loss"), "loss_growth", None)
+    if loss is not None and not file.sweep.drop_height_m:
+        yield InputError(
+            f"{loss.value:g} does nothing at one height", source=source,
+            key="mechanisms.impact-speed-loss.loss_growth", allowed="with sweep.drop_height_m",
+        )  # fmt: skip
+    asked = asked_in(file, striker)
+    for m in asked.mechanisms:
+        size = m.parameters[0]
+        if asked.constants[m.name][size.name] == size.neutral:
+            stated = getattr(tables[m.name], size.name) is not None
+            yield InputError(
+                f"{size.neutral:g} does nothing here" if stated else "missing", source=source,
+                key=f"mechanisms.{m.name}.{size.name}",
+                allowed=f"{size.low:g} to {size.high:g} [{size.unit}]",
+            )  # fmt: skip
+        for name in m.stated(asked.around):
+            if getattr(tables[m.name], name) is not None:
+                yield InputError(
+                    f"given beside {' and '.join(m.reads)}", source=source,
+                    key=f"mechanisms.{m.name}.{name}", allowed="one of the two",
+                )  # fmt: skip

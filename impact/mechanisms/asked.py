@@ -1,0 +1,86 @@
+"""Mechanisms that a simulation takes in: forward, with numbers that are stated."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, field, replace
+from typing import Any
+
+import numpy as np
+
+from ...core.observables import OBSERVABLES
+from ..result import Impact
+from ..scene import Scene
+from .base import Array, Constants, Mechanism, Situation, Surroundings, attached, observed
+
+SIMULATED = {name: row.simulated for name, row in OBSERVABLES.items() if row.simulated}
+"""Column of trials.csv to number of the impact."""
+
+
+@dataclass(frozen=True)
+class Asked:
+    """Mechanisms with their numbers; without any, an impact is the baseline's.
+
+    Parameters
+    ----------
+    mechanisms, constants
+        In the order of the library, and all their parameters.
+    around
+        What they may know of the rig besides the scene.
+    """
+
+    mechanisms: tuple[Mechanism, ...] = ()
+    constants: Constants = field(default_factory=dict)
+    around: Surroundings = field(default_factory=Surroundings)
+
+    def __bool__(self) -> bool:
+        return bool(self.mechanisms)
+
+    def situations(self, plain: Sequence[Scene]) -> list[Situation]:
+        """Return these impacts with what is around each, by its height over the largest."""
+        if not self.around.from_height:
+            return [(scene, self.around) for scene in plain]
+        fallen = [_head(scene) for scene in plain]
+        return [
+            (scene, replace(self.around, height_share=one / max(fallen)))
+            for scene, one in zip(plain, fallen, strict=True)
+        ]
+
+    def idle(self, plain: Sequence[Scene]) -> dict[str, str]:
+        """Return why, by name, for those that would change nothing of these impacts."""
+        here = self.situations(plain)
+        found = {m.name: m.idle(here) for m in self.mechanisms}
+        return {name: reason for name, reason in found.items() if reason}
+
+    def without(self, *names: str) -> Asked:
+        """Return the others."""
+        return replace(self, mechanisms=tuple(m for m in self.mechanisms if m.name not in names))
+
+    def attached(self, plain: Sequence[Scene]) -> list[Scene]:
+        """Return the scenes with them."""
+        return [
+            attached(self.mechanisms, scene, self.constants, around)
+            for scene, around in self.situations(plain)
+        ]
+
+    def observed(self, plain: Sequence[Scene], seen: Mapping[str, Array]) -> Mapping[str, Array]:
+        """Return observables of impacts, arrays by column, as they are read with them."""
+        return observed(self.mechanisms, self.situations(plain), self.constants, seen)
+
+    def read(self, plain: Scene, found: Impact) -> Impact:
+        """Return an impact of the scene with them as it is read."""
+        seen = {k: np.array([getattr(found, name)]) for k, name in SIMULATED.items()}
+        after = self.observed([plain], seen)
+        changed: dict[str, Any] = {
+            SIMULATED[k]: float(after[k][0]) for k in SIMULATED if after[k] is not seen[k]
+        }
+        return replace(found, **changed)
+
+
+NONE_ASKED = Asked()
+
+
+def _head(scene: Scene) -> float:
+    """Square of the speed that a fall gives: a rod's along the flat is not the fall's."""
+    along = 0.0 if scene.striker.length > 0.0 else scene.approach.tangential
+    return scene.approach.speed**2 + along**2

@@ -1,0 +1,97 @@
+"""What the metal's rate and hardening would do to a blow whose file says nothing of them.
+
+The constants are those of the metal that a body names, or of the metals of about its modulus and
+strength in the materials table: the least and the most of them.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterator, Mapping
+from typing import TYPE_CHECKING, Any
+
+from ...core.materials import materials
+from ...core.rig import BodyTable, value_of
+from ...models.choose import follows_flow
+from ..mechanisms.around import weaker_table
+from ..result import Impact
+from ..rules import RULES
+from ..scene import Scene
+from .band import last_blow
+from .effect import effect
+from .onset import first_yield_speed
+
+if TYPE_CHECKING:
+    from ..files.setup import Setup
+
+_STATED = 1000.0  # [1/s], at which strain-rate-hardening states its rise
+
+
+def flow_checks(setup: Setup, scene: Scene, found: Impact) -> Iterator[str]:
+    """Yield the strain rate, and what rate and hardening would change where none is asked for."""
+    radius = float(scene.law.contact_radius(scene.pair, found.peak_depth_m))
+    if not (scene.approach.speed > first_yield_speed(scene) and radius > 0.0):
+        return
+    rate = RULES.indentation_rate * scene.approach.speed / radius
+    asked = {m.name for m in setup.asked.mechanisms}
+    body = setup.file.bodies[weaker_table(setup.file, setup.striker)]
+    if "strain-rate-hardening" in asked:
+        yield f"strain rate about {rate:.2g} 1/s"
+    else:
+        told = _range_of("rate", "strain-rate-hardening", setup, scene, found, body)
+        yield (
+            f"strain rate about {rate:.2g} 1/s: a strength measured slowly lacks what the metal's "
+            f"rate adds up to there{told and f'; {told}'}"
+        )
+    follows = follows_flow(scene.law) and not scene.pair.perfectly_plastic
+    if not (follows or "work-hardening" in asked):
+        told = _range_of("hardening", "work-hardening", setup, scene, found, body)
+        if told:
+            yield f"no hardening is stated; {told}"
+
+
+def _range_of(
+    what: str, mechanism: str, setup: Setup, scene: Scene, found: Impact, body: BodyTable
+) -> str:
+    """The effect by the metal's own constants, or the least and the most of its class."""
+    named = materials().get(body.material)
+    own = named is not None and what in named.laws
+    chosen = [named] if named is not None and own else _class_of(body)
+    sizes = sorted(
+        (numbers for e in chosen if what in e.laws for numbers in [_numbers(e, what)]),
+        key=lambda one: next(iter(one.values())),
+    )
+    if not sizes:
+        return ""
+    ends = [sizes[0]] if sizes[0] == sizes[-1] else [sizes[0], sizes[-1]]
+    told = [
+        effect(last_blow(setup.with_mechanism(mechanism, one), scene.law), found) for one in ends
+    ]
+    whose = body.material if own else f"the table's metals of its class ({len(sizes)})"
+    return f"with that of {whose}: {' to '.join(told)}"
+
+
+def _class_of(body: BodyTable) -> list[Any]:
+    """Entries of about the modulus and strength of a body."""
+    E, S = value_of(body.E_Pa), value_of(body.strength)
+    return [
+        e
+        for e in materials().values()
+        if "Sy_Pa" in e.numbers
+        and abs(math.log(e.numbers["E_Pa"]["value"] / E)) < RULES.like_modulus
+        and abs(math.log(e.numbers["Sy_Pa"]["value"] / S)) < RULES.like_strength
+    ]
+
+
+def _numbers(entry: Any, what: str) -> Mapping[str, float]:
+    """An entry's constants as those of the mechanism."""
+    law = entry.laws[what]
+    if what == "hardening":
+        S = entry.numbers["Sy_Pa"]["value"]
+        return {"hardening_ratio": law["B_Pa"] / S, "hardening_exponent": law["n"]}
+    if law["law"] == "cowper-symonds":
+        n = 1.0 / law["q"]
+        return {"rise_at_1000_per_s": (_STATED / law["D_1_s"]) ** n, "rate_exponent": n}
+    # a logarithm has at this rate the slope of a power of 1/ln(r/r_0)
+    turns = math.log(_STATED / law["rate_0_1_s"])
+    return {"rise_at_1000_per_s": law["C"] * turns, "rate_exponent": 1.0 / turns}

@@ -1,0 +1,127 @@
+"""`[mechanisms]` of an impact file: the mechanisms of a diagnosis, forward."""
+
+import math
+import tomllib
+
+import pytest
+from dentscope.core import InputErrors
+from dentscope.impact.files.blow import blow_of
+from dentscope.impact.files.setup import setup_of
+from dentscope.models import LAWS
+
+LAW = LAWS["fitted"]
+BALL = """
+[target]
+E_Pa = 2.0e11
+nu = 0.3
+Sy_Pa = 3.05e8
+density_kg_m3 = 7870
+[strikers.ball]
+shape = "sphere"
+tip_radius_m = 0.005
+E_Pa = 2.0e11
+nu = 0.3
+Sy_Pa = 1.7e9
+density_kg_m3 = 7800
+[impact]
+impact_speed_m_s = 1.0
+laws = ["fitted"]
+"""
+
+
+def setup(text):
+    return setup_of(tomllib.loads(text), source="ball.toml")
+
+
+def blow(text):
+    return blow_of(setup(text), [LAW])
+
+
+def test_waves_asked_for_are_those_of_the_support_of_that_name():
+    by_name = blow(BALL + "[mechanisms]\nhalf-space-waves = true\n")["fitted"]
+    by_key = blow(BALL.replace("laws", 'support = "half-space"\nlaws'))["fitted"]
+    assert by_name.restitution == pytest.approx(by_key.restitution, rel=1e-12)
+    assert by_name.radiated_J == pytest.approx(by_key.radiated_J, rel=1e-9)
+
+
+def test_a_strength_that_is_constant_is_a_flat_of_that_strength():
+    """A size effect at one radius: sqrt(1 + R*/R) times the strength, of both bodies."""
+    length = 2e-4
+    factor = math.sqrt(1.0 + length / 0.005)
+    asked = blow(BALL + f"[mechanisms.size-effect]\nsize_length_m = {length}\n")["fitted"]
+    stronger = BALL.replace("3.05e8", repr(3.05e8 * factor)).replace("1.7e9", repr(1.7e9 * factor))
+    stated = blow(stronger)["fitted"]
+    assert asked.restitution == pytest.approx(stated.restitution, rel=2e-3)
+    assert asked.residual_flat_m == pytest.approx(stated.residual_flat_m, rel=5e-3)
+
+
+def test_a_sweep_takes_the_mechanism_at_each_speed_as_single_blows_do():
+    text = BALL + (
+        "[sweep]\nimpact_speed_m_s = [0.3, 3.0]\n"
+        "[mechanisms.strain-rate-hardening]\nrise_at_1000_per_s = 0.4\nrate_exponent = 0.3\n"
+    )
+    found = setup(text).swept(LAW)
+    for k, speed in enumerate((0.3, 3.0)):
+        alone = text.split("[sweep]")[0] + text.partition("3.0]\n")[2]
+        one = blow(alone.replace("impact_speed_m_s = 1.0", f"impact_speed_m_s = {speed}"))
+        assert found["restitution"][k] == pytest.approx(one["fitted"].restitution, rel=1e-4)
+        dent = one["fitted"].residual_flat_m
+        assert found["permanent_depth_m"][k] == pytest.approx(dent, rel=1e-4)
+
+
+def test_the_effect_is_that_against_the_blow_without_it():
+    found = blow(BALL + "[mechanisms]\ncontact-damping = { damping_s_m = 0.1 }\n")
+    plain = blow(BALL)["fitted"]
+    e = 100.0 * (found["fitted"].restitution / plain.restitution - 1.0)
+    dent = 100.0 * (found["fitted"].residual_flat_m / plain.residual_flat_m - 1.0)
+    (line,) = (one for one in found.checks() if one.startswith("contact-damping"))
+    assert line.endswith(f"dent {dent:+.2g} %, restitution {e:+.2g} %")
+    assert e < -1.0
+
+
+def test_a_standard_deviation_of_a_mechanism_enters_the_band():
+    key = "mechanisms.contact-damping.damping_s_m"
+    text = BALL + "[mechanisms]\ncontact-damping = { damping_s_m = { value = 0.1, std = 0.05 } }\n"
+    band = blow(text).bands["fitted"]
+    half, twice = (
+        blow(BALL + f"[mechanisms]\ncontact-damping = {{ damping_s_m = {x} }}\n")["fitted"]
+        for x in (0.05, 0.15)
+    )
+    wide = 0.5 * abs(half.restitution - twice.restitution)
+    assert abs(band.parts[key]["restitution"]) == pytest.approx(wide, rel=0.15)
+
+
+@pytest.mark.parametrize(
+    ("lines", "words"),
+    [
+        ("contact-damping = 0.1", "true, or a table of its numbers"),
+        ("contact-damping = { damping_s_m = 3.0 }", r"0.003 to 0.3 \[s/m\]"),
+        ("contact-damping = { damping = 0.1 }", "unknown key"),
+        ("damping = true", "contact-damping"),
+        ("adhesion = true", "missing"),
+        ("half-space-waves = true\n[target]\n", ""),
+    ],
+)
+def test_a_wrong_mechanism_is_one_line(lines, words):
+    if not words:
+        text = BALL.replace("laws", 'support = "half-space"\nlaws')
+        with pytest.raises(InputErrors, match=r"mechanisms.half-space-waves: given beside"):
+            setup(text + "[mechanisms]\nhalf-space-waves = true\n")
+        return
+    with pytest.raises(InputErrors, match=words):
+        setup(BALL + "[mechanisms]\n" + lines + "\n")
+
+
+def test_what_changes_nothing_by_any_law_is_refused_with_the_reason():
+    file = setup(BALL + "[mechanisms.adhesion]\nwork_of_adhesion_J_m2 = 0.1\n")
+    with pytest.raises(InputErrors, match=r"mechanisms.adhesion: pulling the bodies apart takes"):
+        file.check_laws([LAW])
+
+
+def test_what_changes_nothing_by_one_law_of_several_is_told():
+    """Roughness takes no energy of bodies that do not yield, so Hertz's law has none."""
+    file = setup(BALL + "[mechanisms]\nroughness = true\n")
+    file.check_laws([LAWS["hertz"], LAW])
+    told = blow_of(file, [LAWS["hertz"], LAW])
+    assert told["hertz"].restitution == pytest.approx(1.0, abs=1e-9)
+    assert any(one.startswith("roughness changes nothing here: ") for one in told.checks())
