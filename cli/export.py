@@ -116,7 +116,7 @@ def _fragments(ball: ExportedBall, law: ContactLaw, rows: list[ExportedRow]) -> 
     from ..impact.scene import Approach, Striker, scene_of
     from ..impact.told import simulators as s
 
-    contact = s.Contact(ball.pair.R, ball.mass, ball.friction)
+    contact = s.BodiesMet(ball.pair.R, ball.mass, ball.friction)
     scene = scene_of(
         law, sphere=ball.pair.sphere, flat=ball.pair.flat, gravity=0.0,
         striker=Striker(mass=ball.mass, tip_radius=ball.pair.R), approach=Approach(1.0),

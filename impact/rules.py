@@ -157,14 +157,6 @@ class ImpactRules:
         0.25, "part of the dent that one specimen or the next moves, from which it is told [-]",
         "chosen; no measurement is kept",
     )  # fmt: skip
-    like_modulus: float = rule(
-        0.15, "difference of the logarithms of two moduli of one class of metals [-]",
-        "the alloys of a class in the materials table",
-    )  # fmt: skip
-    like_strength: float = rule(
-        0.7, "the same of two strengths, and of a class's rate or hardening [-]",
-        "a factor of two: a metal's states in the materials table",
-    )  # fmt: skip
     band_conditions: int = limit(
         400, "conditions up to which a sweep has a band [-]",
         "each takes some ten impacts in steps",

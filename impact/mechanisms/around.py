@@ -8,8 +8,6 @@ from ...core.inputs.flow_curve import Rise
 from ...core.rig import Rig, value_of
 from .base import Surroundings
 
-ROOM_K = 293.0
-
 
 def weaker_table(rig: Rig, striker: str) -> str:
     """Return the table of the body that yields first; the flat's where neither does."""
@@ -34,7 +32,7 @@ def surroundings_of(
     target, ball, air = rig.target, rig.strikers[striker], rig.environment
     weaker = rig.bodies[weaker_table(rig, striker)]
     rough = [q.value for q in (target.Ra_m, ball.Ra_m) if q is not None]
-    ambient = value_of(air.temperature_K, ROOM_K)
+    ambient = value_of(air.temperature_K, Surroundings().ambient)
     return Surroundings(
         thickness=value_of(target.thickness_m),
         support_mass=value_of(target.support_mass_kg),

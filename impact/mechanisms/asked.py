@@ -8,10 +8,11 @@ from typing import Any
 
 import numpy as np
 
+from ...core.arrays import Array
 from ...core.observables import OBSERVABLES
 from ..result import Impact
 from ..scene import Scene
-from .base import Array, Constants, Mechanism, Situation, Surroundings, attached, observed
+from .base import Constants, Mechanism, Situation, Surroundings, attached, observed
 
 SIMULATED = {name: row.simulated for name, row in OBSERVABLES.items() if row.simulated}
 """Column of trials.csv to number of the impact."""

@@ -1,19 +1,20 @@
 """What the metal's rate and hardening would do to a blow whose file says nothing of them.
 
-The constants are those of the metal that a body names, or of the metals of about its modulus and
-strength in the materials table: the least and the most of them.
+The constants are those of the metal that a body names, or the least and the most of the kind in the
+materials table that comes nearest in modulus and strength.
 """
 
 from __future__ import annotations
 
 import math
 from collections.abc import Iterator, Mapping
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
-from ...core.materials import materials
+from ...core.materials import Entry, materials
 from ...core.rig import BodyTable, value_of
 from ...models.choose import follows_flow
 from ..mechanisms.around import weaker_table
+from ..mechanisms.strength.strain_rate_hardening import REFERENCE_RATE
 from ..result import Impact
 from ..rules import RULES
 from ..scene import Scene
@@ -23,8 +24,6 @@ from .onset import first_yield_speed
 
 if TYPE_CHECKING:
     from ..files.setup import Setup
-
-_STATED = 1000.0  # [1/s], at which strain-rate-hardening states its rise
 
 
 def flow_checks(setup: Setup, scene: Scene, found: Impact) -> Iterator[str]:
@@ -56,34 +55,36 @@ def _range_of(
     """The effect by the metal's own constants, or the least and the most of its class."""
     named = materials().get(body.material)
     own = named is not None and what in named.laws
-    chosen = [named] if named is not None and own else _class_of(body)
-    sizes = sorted(
-        (numbers for e in chosen if what in e.laws for numbers in [_numbers(e, what)]),
-        key=lambda one: next(iter(one.values())),
-    )
+    chosen = [named] if named is not None and own else _class_of(body, what)
+    sizes = sorted((_numbers(e, what) for e in chosen), key=lambda one: next(iter(one.values())))
     if not sizes:
         return ""
     ends = [sizes[0]] if sizes[0] == sizes[-1] else [sizes[0], sizes[-1]]
     told = [
         effect(last_blow(setup.with_mechanism(mechanism, one), scene.law), found) for one in ends
     ]
-    whose = body.material if own else f"the table's metals of its class ({len(sizes)})"
+    kind = chosen[0].kind
+    whose = body.material if own else f"the table's {kind} ({len(sizes)} metals)"
     return f"with that of {whose}: {' to '.join(told)}"
 
 
-def _class_of(body: BodyTable) -> list[Any]:
-    """Entries of about the modulus and strength of a body."""
+def _class_of(body: BodyTable, what: str) -> list[Entry]:
+    """Entries of the kind whose modulus and strength come nearest; none outside the metals."""
     E, S = value_of(body.E_Pa), value_of(body.strength)
-    return [
-        e
-        for e in materials().values()
-        if "Sy_Pa" in e.numbers
-        and abs(math.log(e.numbers["E_Pa"]["value"] / E)) < RULES.like_modulus
-        and abs(math.log(e.numbers["Sy_Pa"]["value"] / S)) < RULES.like_strength
-    ]
+    known = [e for e in materials().values() if what in e.laws and "Sy_Pa" in e.numbers]
+    moduli = [e.numbers["E_Pa"]["value"] for e in known]
+    if not min(moduli) <= E <= max(moduli):
+        return []
+
+    def apart(e: Entry) -> float:
+        numbers = e.numbers["E_Pa"]["value"] / E, e.numbers["Sy_Pa"]["value"] / S
+        return math.hypot(*map(math.log, numbers))
+
+    nearest = min(known, key=apart)
+    return [e for e in known if e.kind == nearest.kind]
 
 
-def _numbers(entry: Any, what: str) -> Mapping[str, float]:
+def _numbers(entry: Entry, what: str) -> Mapping[str, float]:
     """An entry's constants as those of the mechanism."""
     law = entry.laws[what]
     if what == "hardening":
@@ -91,7 +92,7 @@ def _numbers(entry: Any, what: str) -> Mapping[str, float]:
         return {"hardening_ratio": law["B_Pa"] / S, "hardening_exponent": law["n"]}
     if law["law"] == "cowper-symonds":
         n = 1.0 / law["q"]
-        return {"rise_at_1000_per_s": (_STATED / law["D_1_s"]) ** n, "rate_exponent": n}
+        return {"rise_at_1000_per_s": (REFERENCE_RATE / law["D_1_s"]) ** n, "rate_exponent": n}
     # a logarithm has at this rate the slope of a power of 1/ln(r/r_0)
-    turns = math.log(_STATED / law["rate_0_1_s"])
+    turns = math.log(REFERENCE_RATE / law["rate_0_1_s"])
     return {"rise_at_1000_per_s": law["C"] * turns, "rate_exponent": 1.0 / turns}

@@ -8,6 +8,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from ...core.arrays import Array
 from ...core.material import Pair
 from ...models.base import DomainWarning
 from ...models.kernel import critical_depth, critical_force
@@ -15,7 +16,7 @@ from ..force import F_FORCE, F_RADIUS
 from ..result import Impact
 from ..rules import RULES
 from ..scene import Scene
-from ..strength import Array, strength_table
+from ..strength import strength_table
 
 
 @dataclass(frozen=True)

@@ -27,10 +27,8 @@ from ..scene import Scene
 from .collisions import DASHPOT, HUNT
 from .discrete_elements import ExportedRow, Substitute
 
-_STEPS = 50  # of the program, in one contact
 
-
-class Contact(NamedTuple):
+class BodiesMet(NamedTuple):
     """What the lines need beside the rows."""
 
     radius: float  # effective [m]
@@ -38,7 +36,7 @@ class Contact(NamedTuple):
     friction: float  # [-]
 
 
-def mujoco_lines(rows: Sequence[ExportedRow], contact: Contact) -> str:
+def mujoco_lines(rows: Sequence[ExportedRow], contact: BodiesMet) -> str:
     """A fragment of MJCF: one class of geoms for each speed."""
     lines = [
         "<!-- take the class of your impacts for both geoms. solref below 0: stiffness and damping",
@@ -49,14 +47,14 @@ def mujoco_lines(rows: Sequence[ExportedRow], contact: Contact) -> str:
         s = row.named(DASHPOT.name)
         k, b = s.stiffness / contact.mass, s.damping / contact.mass
         lines += [
-            f"  <!-- {_told(row, s)}; timestep {_timestep(s)} -->",
+            f"  <!-- {_told(row, s)}; {_lasting(s)} -->",
             f'  <default class="v{row.law.speed:g}"><geom solref="{-k:.6e} {-b:.6e}" '
             f'solimp="0.9999 0.9999 0.001 0.5 2" friction="{contact.friction:g} 0 0"/></default>',
         ]
     return "\n".join([*lines, "</default>"]) + "\n"
 
 
-def drake_lines(rows: Sequence[ExportedRow], contact: Contact) -> str:
+def drake_lines(rows: Sequence[ExportedRow], contact: BodiesMet) -> str:
     """Python for Drake's point contact, of both bodies."""
     mu = f"CoulombFriction({contact.friction:g}, {contact.friction:g})"
 
@@ -70,7 +68,7 @@ def drake_lines(rows: Sequence[ExportedRow], contact: Contact) -> str:
     return _each(rows, HUNT.name, "# pydrake.geometry; the same properties for both bodies.", line)
 
 
-def chrono_lines(rows: Sequence[ExportedRow], contact: Contact) -> str:
+def chrono_lines(rows: Sequence[ExportedRow], contact: BodiesMet) -> str:
     """Lines for Chrono's smooth contacts, and the same numbers for Newton."""
 
     def line(s: Substitute) -> str:
@@ -88,7 +86,7 @@ def chrono_lines(rows: Sequence[ExportedRow], contact: Contact) -> str:
     return _each(rows, DASHPOT.name, head, line)
 
 
-def hysteretic_lines(rows: Sequence[ExportedRow], contact: Contact) -> str:
+def hysteretic_lines(rows: Sequence[ExportedRow], contact: BodiesMet) -> str:
     """The linear hysteretic law (Luding) for MercuryDPM, YADE and LIGGGHTS."""
 
     def line(s: Substitute) -> str:
@@ -117,7 +115,7 @@ def _each(
     lines = [head]
     for row in rows:
         s = row.named(name)
-        lines += [f"# {_told(row, s)}; timestep {_timestep(s)}", line(s)]
+        lines += [f"# {_told(row, s)}; {_lasting(s)}", line(s)]
     return "\n".join(lines) + "\n"
 
 
@@ -129,8 +127,8 @@ def _told(row: ExportedRow, s: Substitute) -> str:
     )
 
 
-def _timestep(s: Substitute) -> str:
-    return f"{s.blow.time / _STEPS:.1e} s"
+def _lasting(s: Substitute) -> str:
+    return f"contact {s.blow.time:.2e} s: several tens of time steps"
 
 
 class Formula(NamedTuple):

@@ -16,7 +16,7 @@ from ..arithmetic import energy, times
 from ..base import Literature, Parameter, Situation, Surroundings, Values
 from .flow_stress import RATE, Fallen, FallingStrength, FlowMechanism, StrengthProfile
 
-_REFERENCE_RATE = 1000.0  # 1/s, within the rates of impacts at a few m/s
+REFERENCE_RATE = 1000.0  # 1/s, within the rates of impacts at a few m/s
 
 
 @dataclass(frozen=True, slots=True)
@@ -34,13 +34,13 @@ class RateProfile(StrengthProfile):
         """Return relative strengths at the depths of `table`, shape (nodes,)."""
         if scene.press is not None:
             # without a stated rate a press is what the strength was measured at
-            risen = self.rise * (scene.press.rate / _REFERENCE_RATE) ** self.exponent
+            risen = self.rise * (scene.press.rate / REFERENCE_RATE) ** self.exponent
             return np.full(table.depth.shape, 1.0 + risen)
         deepest = table.peak(energy(scene))
         slowing = 1.0 - (table.depth / deepest) ** 2
         speed = scene.approach.speed * np.sqrt(np.maximum(slowing, RULES.slowest**2))
         rate = RATE * speed / table.radius
-        return np.asarray(1.0 + self.rise * (rate / _REFERENCE_RATE) ** self.exponent)
+        return np.asarray(1.0 + self.rise * (rate / REFERENCE_RATE) ** self.exponent)
 
 
 def tested(rises: Sequence[Rise], rise: Array, exponent: Array) -> Array:
@@ -50,7 +50,7 @@ def tested(rises: Sequence[Rise], rise: Array, exponent: Array) -> Array:
     """
     shape = (-1, *(1 for _ in np.broadcast_shapes(np.shape(rise), np.shape(exponent))))
     rate, ratio = (np.array(x).reshape(shape) for x in zip(*rises, strict=True))
-    off = np.log1p(rise * (rate / _REFERENCE_RATE) ** exponent) - np.log(ratio)
+    off = np.log1p(rise * (rate / REFERENCE_RATE) ** exponent) - np.log(ratio)
     n = len(rises)
     cause = np.linalg.inv(SPECIMENS**2 * (np.eye(n) + 1.0))
     return np.asarray(np.einsum("i...,ij,j...->...", off, cause, off))

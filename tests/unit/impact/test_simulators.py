@@ -11,7 +11,7 @@ from dentscope.impact.scene import Approach, Striker, scene_of
 from dentscope.impact.told.collisions import DASHPOT, HUNT, blow_on, damping_for
 from dentscope.impact.told.discrete_elements import substitutes
 from dentscope.impact.told.simulators import (
-    Contact,
+    BodiesMet,
     chrono_lines,
     drake_lines,
     formula_of,
@@ -24,7 +24,7 @@ STEEL = Material(E=193e9, nu=0.29, Sy=700e6, density=8000.0)
 ALLOY = Material(E=68.9e9, nu=0.33, Sy=276e6)
 PAIR = Pair(STEEL, ALLOY, 3e-3)
 MASS = 4.0 / 3.0 * math.pi * PAIR.R**3 * 8000.0
-CONTACT = Contact(PAIR.R, MASS, 0.3)
+CONTACT = BodiesMet(PAIR.R, MASS, 0.3)
 SPEEDS = [0.1, 1.0, 10.0]
 
 
