@@ -17,7 +17,6 @@ from .shared.terminal import console as new_console
 from .shared.terminal import say, show_table
 
 if TYPE_CHECKING:
-    from ..core.material import Pair
     from ..impact.files.setup import Setup
     from ..impact.result import Impact
     from ..models.base import ContactLaw
@@ -85,15 +84,13 @@ def _from_file(path: Path, names: list[str], out: Path, *, exact: bool) -> None:
     traces, found = blow.traces, blow.impacts
     console.print(setup.name)
     show_table(console, ("", *found), blow.table(exact=exact))
-    for law in laws:
-        line = _doubt(law, setup.scene(law).pair, found[law.name])
-        if line:
-            console.print(line, soft_wrap=True)
+    for name, against in blow.doubts.items():
+        console.print(f"{name}: {against}", soft_wrap=True)
     for line in (*([] if exact else blow.rules()), *blow.checks()):
         say(line)
     write_csv(out / f"{path.stem}.csv", blow.written(exact=exact))
     write_hdf5(out / f"{path.stem}.h5", traces, about=setup.about)
-    draw_histories(list(traces.items()), out / f"{path.stem}.png")
+    draw_histories(list(traces.items()), out / f"{path.stem}.png", doubts=blow.doubts)
     written = [out / f"{path.stem}{end}" for end in (".csv", ".h5", ".png")]
     unfinished = 0
     if setup.sweep.count:
@@ -105,14 +102,6 @@ def _from_file(path: Path, names: list[str], out: Path, *, exact: bool) -> None:
     if unfinished:
         console.print(f"{unfinished} impacts of the sweep did not end: see the column outcome")
     leave_if_unfinished(list(found.values()))
-
-
-def _doubt(law: ContactLaw, pair: Pair, found: Impact) -> str:
-    """Say what speaks against a law at this depth; empty if nothing does."""
-    from ..models.choose import demand, objection
-
-    against = objection(law, demand(pair, found.peak_depth_m))
-    return f"{law.name}: {against}" if against else ""
 
 
 def _sweep(

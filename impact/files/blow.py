@@ -21,6 +21,7 @@ from ...core.rig import material_keys
 from ...core.tables import frame, html_table
 from ...models import law_named
 from ...models.base import ContactLaw
+from ...models.choose import demand, objection
 from ..batch import impacts
 from ..columns import Impacts
 from ..integrate import Trace, strike, traced
@@ -90,6 +91,17 @@ class Blow:
             f"the standard deviation of {key}, {share:.2g} of it, changes nothing here"
             for key, share in idle(self.setup, band)
         ]
+
+    @cached_property
+    def doubts(self) -> dict[str, str]:
+        """What speaks against a law at the depth of its blow, by its name."""
+        told = {
+            law.name: objection(
+                law, demand(self.setup.scene(law).pair, self[law.name].peak_depth_m)
+            )
+            for law in self.laws
+        }
+        return {name: against for name, against in told.items() if against}
 
     @property
     def impacts(self) -> dict[str, Impact]:
@@ -162,7 +174,7 @@ class Blow:
 
     def plot(self) -> Figure:
         """Return force over depth, and what moves against time."""
-        return histories(list(self.traces.items()))
+        return histories(list(self.traces.items()), doubts=self.doubts)
 
     def __repr__(self) -> str:
         return "\n".join([

@@ -37,6 +37,8 @@ SWEPT = (
 """Observables that the picture of a sweep shows, where they are anything."""
 
 
+NO_DOUBTS: Mapping[str, str] = MappingProxyType({})
+
 CONDITIONS = {
     "impact_speed_m_s": "impact speed [m/s]", "drop_height_m": "drop height [m]",
     "angle_deg": "angle [degrees]", "friction": "friction [-]", "mass_kg": "mass [kg]",
@@ -63,13 +65,20 @@ def _panels(count: int) -> tuple[Figure, list[Any]]:
     return made, list(axes.flat[:count])
 
 
-def draw_histories(traces: Sequence[tuple[str, Trace]], path: Path) -> None:
+def draw_histories(
+    traces: Sequence[tuple[str, Trace]], path: Path, *, doubts: Mapping[str, str] = NO_DOUBTS
+) -> None:
     """Write the picture of `histories`."""
-    save(histories(traces), path)
+    save(histories(traces, doubts=doubts), path)
 
 
-def histories(traces: Sequence[tuple[str, Trace]]) -> Figure:
-    """Return force over depth, and against time whatever moves at all, a curve a law."""
+def histories(
+    traces: Sequence[tuple[str, Trace]], *, doubts: Mapping[str, str] = NO_DOUBTS
+) -> Figure:
+    """Return force over depth, and against time whatever moves at all, a curve a law.
+
+    `doubts` is what speaks against a law at this depth, by its name: it is drawn grey and dashed.
+    """
     shown = [
         panel
         for panel in AGAINST_TIME
@@ -78,11 +87,14 @@ def histories(traces: Sequence[tuple[str, Trace]]) -> Figure:
     made, axes = _panels(1 + len(shown))
     depth, depth_label, depth_scale, force, force_label, force_scale = LOOP
     for law, trace in traces:
+        style: dict[str, Any] = {"color": "0.65", "ls": "--", "zorder": 1} if law in doubts else {}
+        label = f"{law}: {doubts[law]}" if law in doubts else law
         axes[0].plot(
-            depth_scale * trace.column(depth), force_scale * trace.column(force), label=law
-        )
+            depth_scale * trace.column(depth), force_scale * trace.column(force), label=label,
+            **style,
+        )  # fmt: skip
         for axis, (name, _, scale, _) in zip(axes[1:], shown, strict=True):
-            axis.plot(1e3 * trace.column("time_s"), scale * trace.column(name))
+            axis.plot(1e3 * trace.column("time_s"), scale * trace.column(name), **style)
     axes[0].set(xlabel=depth_label, ylabel=force_label)
     for axis, (_, label, _, _) in zip(axes[1:], shown, strict=True):
         axis.set(xlabel="time [ms]", ylabel=label)

@@ -1,9 +1,13 @@
 """Pictures of impacts: words and units on every axis, logarithms where values grow by a factor."""
 
+import warnings
+
 import numpy as np
 import pytest
+from dentscope.impact.files.blow import blow
 from dentscope.impact.files.sweep import SweepTable
 from dentscope.impact.told import draw
+from dentscope.models.base import DomainWarning
 
 
 @pytest.mark.parametrize(
@@ -28,3 +32,16 @@ def test_a_sweep_has_words_on_its_axes_and_no_empty_panel(monkeypatch, tmp_path,
 
 def test_whatever_may_be_swept_has_words():
     assert set(draw.CONDITIONS) == set(SweepTable.model_fields)
+
+
+def test_a_law_that_something_speaks_against_is_grey_in_every_panel():
+    with warnings.catch_warnings():
+        warnings.simplefilter("ignore", DomainWarning)
+        found = blow("ball", law=["fitted", "hertz"])
+        made = found.plot()
+    assert found.doubts == {"hertz": "elastic only"}
+    for axis in made.axes:
+        ours, theirs = axis.get_lines()
+        assert theirs.get_color() == "0.65"
+        assert ours.get_color() != "0.65"
+    assert made.axes[0].get_lines()[1].get_label() == "hertz: elastic only"
