@@ -47,6 +47,7 @@ def surroundings_of(
         temperature=ambient if math.isnan(temperature) else temperature,
         ambient=ambient,
         layer_thickness=value_of(target.layer_thickness_m),
+        moduli_stated=None not in (target.E_Pa, ball.E_Pa),
         from_height=from_height,
         height_share=height_share,
         rises=rises,

@@ -100,6 +100,8 @@ class Surroundings:
         Of the bodies in this condition, and the reference [K].
     layer_thickness
         Stated thickness of a surface layer [m]; nan when not.
+    moduli_stated
+        Whether the set gives Young's modulus of both bodies.
     from_height
         Whether the speed of this condition was computed from a height of fall.
     height_share
@@ -122,6 +124,7 @@ class Surroundings:
     temperature: float = 293.0
     ambient: float = 293.0
     layer_thickness: float = math.nan
+    moduli_stated: bool = True
     from_height: bool = False
     height_share: float = 1.0
     rises: tuple[Rise, ...] = ()

@@ -2,14 +2,14 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import replace
 from typing import ClassVar
 
 from ..scene import Scene
 from ..strength import strength_table
 from .arithmetic import energy
-from .base import Literature, Mechanism, Parameter, Surroundings, Values
+from .base import Literature, Mechanism, Parameter, Situation, Surroundings, Values
 
 _REFERENCE_DEPTH = 1e-5  # [m], at which the damping is stated
 
@@ -35,11 +35,17 @@ class ContactDamping(Mechanism):
         ),
     )  # fmt: skip
     direction: ClassVar[Mapping[str, int]] = {"restitution": -1, "permanent_depth_m": -1}
-    rests_on: ClassVar[tuple[str, ...]] = ("target", "striker")
     form: ClassVar[float] = 0.25
     """A force in proportion to the load against one in proportion to the width, fitted to each
     other over a decade of speed: 2 to 8 % of the effect in restitution and depth, 25 to 45 % in
     contact time and peak force."""
+
+    def ranges(self, situations: Sequence[Situation]) -> tuple[Parameter, ...]:
+        """Where a modulus is not stated, the loss follows the speed alone: a depth rests on it."""
+        chi, exponent = self.parameters
+        if all(around.moduli_stated for _, around in situations):
+            return self.parameters
+        return chi, replace(exponent, high=exponent.low, nodes=2)
 
     def attach(self, scene: Scene, values: Values, around: Surroundings) -> Scene:
         """Replace the transform of the normal force."""

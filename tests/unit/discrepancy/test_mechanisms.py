@@ -209,8 +209,26 @@ def test_a_measured_curve_leaves_no_hardening_within_its_strains(name: str) -> N
     assert mechanism.applies([(plain, AROUND)]) == ""
 
 
-def test_damping_rests_on_moduli() -> None:
-    assert named("contact-damping").rests_on == ("target", "striker")
+def test_damping_rests_on_no_modulus_that_is_not_stated() -> None:
+    """Hunt and Crossley's e = 1 - 2/3 chi v is that of any stiffness; a depth is not."""
+    damping = named("contact-damping")
+    assert damping.ranges([(scene(), AROUND)]) == damping.parameters
+    unknown = replace(AROUND, moduli_stated=False)
+    chi, exponent = damping.ranges([(scene(), unknown)])
+    assert chi == damping.parameters[0]
+    assert (exponent.low, exponent.high) == (0.0, 0.0)
+    values = {"damping_s_m": 0.03, "damping_depth_exponent": 0.0}
+
+    def lost(E: float) -> float:
+        ball = Material(E=E, nu=0.3)
+        elastic = scene_of(
+            LAWS["hertz"], sphere=ball, flat=ball, striker=Striker(mass=0.05, tip_radius=0.02),
+            approach=Approach(2.0),
+        )  # fmt: skip
+        return 1.0 - strike(damping.attach(elastic, values, unknown)).restitution
+
+    assert lost(2e11) == pytest.approx(lost(2e9), rel=0.01)
+    assert lost(2e11) == pytest.approx(2.0 / 3.0 * 0.03 * 2.0, rel=0.05)
 
 
 def test_a_guide_takes_no_more_than_guides_take() -> None:
