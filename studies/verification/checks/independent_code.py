@@ -11,7 +11,9 @@ from .... import fem
 from ....campaigns.case import Case
 from ....campaigns.cases.hardening import power_law
 from ....campaigns.cases.pairs import pair_of
+from ....campaigns.cases.plateau import ASTM_1016, measured
 from ....core.arrays import Array
+from ....core.flow import Flow
 from ....core.material import Pair
 from ..bench import Bench, Effort, Solved
 from ..calculix import Deck, Reference, load_reference, run_deck
@@ -76,11 +78,13 @@ def twins_of(effort: Effort) -> tuple[Twin, ...]:
     )
     both = replace(equal, sphere=power_law(equal.sphere, 0.2), flat=power_law(equal.flat, 0.2))
     flat = replace(strong, flat=power_law(strong.flat, 0.35))
+    steel = measured(ASTM_1016)
+    plateau = replace(strong, flat=replace(strong.flat, Sy=steel.strength, flow=Flow(steel)))
     return tuple(
         Twin(f"{name}-{accuracy.level}", pair, accuracy, 80)
         for name, pair in (
             ("equal-strengths", equal), ("strong-sphere", strong),
-            ("both-harden", both), ("flat-hardens", flat),
+            ("both-harden", both), ("flat-hardens", flat), ("flat-has-a-plateau", plateau),
         )
     )  # fmt: skip
 
@@ -114,9 +118,10 @@ def run(bench: Bench) -> Result:
         about=(
             "E = 200 GPa, nu = 0.3, weaker body 503 MPa, to Delta/R = 0.1: perfectly plastic pairs "
             "of equal strengths and with a sphere ten times as strong, and the same with hardening "
-            "S = Sy (1 + E p/Sy)^n, both bodies with n = 0.2 or the flat with n = 0.35, as tables. "
-            "Our mesh, fine all along the path, written out as a deck: four-node "
-            "elements (CAX4), face-to-face penalty contact without smoothing, automatic "
+            "S = Sy (1 + E p/Sy)^n, both bodies with n = 0.2 or the flat with n = 0.35, as "
+            "tables; and a flat of hot-rolled steel, ASTM 1016, whose tension curve has a plateau, "
+            "under the strong sphere. Our mesh, fine all along the path, written out as a deck: "
+            "four-node elements (CAX4), face-to-face penalty contact without smoothing, automatic "
             "sub-steps. Contact radius and shares are measured from the printed displacements in "
             "the same way as ours. Decks (`*.inp.gz`) and printed output (`*.dat.gz`) are in "
             "data/reference/calculix."
