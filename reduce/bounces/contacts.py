@@ -96,7 +96,11 @@ def find_bounces(
         pieces, places = joined(sides)
         if not pieces:
             return None
-        pieces, solutions = fit_together(body, pieces, stage, view, before)
+        try:
+            with np.errstate(over="raise", invalid="raise", divide="raise"):
+                pieces, solutions = fit_together(body, pieces, stage, view, before)
+        except (FloatingPointError, np.linalg.LinAlgError):  # no fall, no drag makes them flights
+            return None
         view = solutions[0].view
         if again:
             known = [s is not None for s in sides]

@@ -99,23 +99,38 @@ def true_contacts(
 
     A run of strays turns as a contact does; the one that leaves flights on both sides is kept.
     """
-    sides = _same_fall(body, sides, fall, stage)
+    every = sides
+    sides = _same_fall(body, every, fall, stage)
     k = 0
     while k + 1 < len(contacts):
         if sides[2 * k + 1] is None and sides[2 * k + 2] is None:
             tried = []
             for other in (k, k + 1):
-                left = [c for j, c in enumerate(contacts) if j != other]
-                found = _same_fall(body, sides_of(body, left, stage, None), fall, stage)
+                left, kept = _without(body, contacts, every, other, stage)
+                found = _same_fall(body, kept, fall, stage)
                 pair = found[2 * k : 2 * k + 2]
                 size = sum(p.index.size for p in pair if p) if all(pair) else 0
-                tried.append((size, left, found))
-            size, left, found = max(tried, key=lambda t: t[0])
+                tried.append((size, left, kept, found))
+            size, left, kept, found = max(tried, key=lambda t: t[0])
             if size:
-                contacts, sides = left, found
+                contacts, every, sides = left, kept, found
                 continue
         k += 1
     return contacts, sides
+
+
+def _without(
+    body: Track, contacts: list[int], sides: Sides, other: int, stage: Stage
+) -> tuple[list[int], Sides]:
+    """Leave out one turning point: only the flights beside it reach farther then."""
+    left = contacts[:other] + contacts[other + 1 :]
+    kept = sides[: 2 * other] + sides[2 * other + 2 :]
+    edges = [-1, *left, body.time.size]
+    if other > 0:
+        kept[2 * other - 1] = side(body, left[other - 1], edges[other + 1] - 1, stage, None)
+    if other < len(left):
+        kept[2 * other] = side(body, left[other], edges[other] + 1, stage, None)
+    return left, kept
 
 
 def _same_fall(body: Track, sides: Sides, fall: float, stage: Stage) -> Sides:

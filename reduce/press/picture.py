@@ -6,6 +6,7 @@ from pathlib import Path
 
 import numpy as np
 
+from ..measured import Measured
 from ..pictures import figure, save
 from .reduction import PressReduction
 
@@ -20,14 +21,16 @@ def draw_press(found: PressReduction, path: Path) -> None:
     curve = axes[0, 0]
     curve.plot(h, p, "k-", lw=0.7)
     for at, color, label in (
-        (found.zero.minus(found.zero), "C0", "contact begins"),
+        (Measured(0.0, found.zero.std), "C0", "contact begins"),
         (largest.left, "C3", "stays"),
         (largest.deepest, "C2", "under load"),
     ):
-        std = found.zero.std if label == "contact begins" else at.std
         curve.axvline(size * at.value, color=color, lw=1.0, label=f"{label}: {at.scaled(size)}")
         curve.axvspan(
-            size * (at.value - 2.0 * std), size * (at.value + 2.0 * std), color=color, alpha=0.15
+            size * (at.value - 2.0 * at.std),
+            size * (at.value + 2.0 * at.std),
+            color=color,
+            alpha=0.15,
         )
     machine = "machine taken off" if found.compliance is not None else "with the machine's own"
     curve.set(xlabel=f"depth [{unit}], {machine}", ylabel=f"load [{load_unit}]")

@@ -174,8 +174,14 @@ def _press(
     return ReducedPress(
         cycle, Measured(cycle.peak, load_std), end.minus(zero),
         under.minus(zero).widened(machine), under.minus(end).widened(machine), contact,
-        float(depth[cycle.turn] - depth[cycle.begin]),
+        _crept(load[top], depth[top], cycle.peak - 4.0 * noise),
     )  # fmt: skip
+
+
+def _crept(load: Array, depth: Array, held: float) -> float:
+    """Depth that came between the first and the last row that hold the load [m]."""
+    rows = np.flatnonzero(load >= held)
+    return float(depth[rows[-1]] - depth[rows[0]]) if rows.size > 1 else 0.0
 
 
 def _from_cycles(cycles: tuple[Cycle, ...], slopes: list[Measured]) -> Measured | None:

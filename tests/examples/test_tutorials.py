@@ -128,6 +128,17 @@ def test_drop_with_drag(followed: Callable[[str], dict[str, Any]]) -> None:
     assert off.mean() == pytest.approx(sum(seen) / len(seen), abs=0.004)
 
 
+def test_curve_from_presses(followed: Callable[[str], dict[str, Any]]) -> None:
+    names = followed("curve-from-presses")
+    assert names["found"]["value"] == pytest.approx(341.1e6, rel=0.03)  # the tension test
+    assert names["found"]["low"] < 341.1e6 < names["found"]["high"]
+    pressed = read("ball")
+    assert pressed.trials.pressed.all()
+    # the finite elements that the file is made from
+    for name, true in (("press_depth_m", 250e-6), ("permanent_depth_m", 208.2e-6)):
+        assert abs(pressed.values(name)[-1] - true) < 2.0 * pressed.std(name)[-1]
+
+
 def test_oblique_balls(followed: Callable[[str], dict[str, Any]]) -> None:
     names = followed("oblique-balls")
     verdict = json.loads(Path("build/diagnose/verdict.json").read_text(encoding="utf-8"))
