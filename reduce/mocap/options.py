@@ -38,7 +38,7 @@ class MocapOptions(InputTable):
     up: Literal["z", "-z", "y", "-y", "x", "-x"] = Field("z", description="out of the flat")
     unit: Literal["file", "m", "cm", "mm"] = Field("file", description="file: what it says")
     frame_rate_hz: float | None = Field(
-        None, gt=0.0, description="frames per second; default: what the file says"
+        None, ge=1e-3, le=1e10, description="frames per second; default: what the file says"
     )
     spin_before_rad_s: str = Field(
         "", description="of a ball followed as one point, measured otherwise, as X,Y,Z"

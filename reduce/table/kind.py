@@ -1,29 +1,29 @@
-"""A table of what an instrument or a person wrote down, read, measured and drawn."""
+"""A table of what an instrument or a person wrote down, read, measured and drawn.
+
+What one kind of table needs is imported where it is read: the drag of a flight and the tools of
+signals take longer to load than a small file to reduce.
+"""
 
 from __future__ import annotations
 
 from pathlib import Path
-from typing import NamedTuple
+from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
 from ...core.arrays import Array
 from ...core.errors import InputError
-from ..bounces.times import reduce_bounce_times
 from ..gates import Refused, drawn
 from ..measured import Measured
 from ..pictures import draw_refused
 from ..reduced import Reduced
 from ..rules import RULES
 from .file import Columns, read_columns
-from .force import reduce_pulse
-from .height import reduce_heights
 from .options import TableOptions
 from .picture import draw_heights, draw_pulse, draw_tension, draw_times, draw_trials
-from .pulse import Pulse
-from .specimen import strain_unit, stress_unit
-from .tension import reduce_tension
-from .trials import reduce_leeb, reduce_rebounds, reduce_trials
+
+if TYPE_CHECKING:
+    from .pulse import Pulse
 
 
 class Series(NamedTuple):
@@ -70,6 +70,10 @@ def reduce(path: Path, options: TableOptions) -> Reduced:
         return _heights(path, table, options)
     if options.holds == "bounces":
         return _bounces(path, table, options)
+    if options.holds == "tension":
+        return _tension(path, table, options)
+    from .trials import reduce_leeb, reduce_rebounds, reduce_trials
+
     if options.holds == "rebounds":
         found = reduce_rebounds(
             table, value=options.value, unit=options.value_unit, std=options.value_std,
@@ -79,8 +83,6 @@ def reduce(path: Path, options: TableOptions) -> Reduced:
         found = reduce_leeb(
             table, value=options.value, std=options.value_std, speed=options.approach_speed_m_s
         )
-    elif options.holds == "tension":
-        return _tension(path, table, options)
     else:
         found = reduce_trials(table)
     return Reduced(
@@ -90,6 +92,8 @@ def reduce(path: Path, options: TableOptions) -> Reduced:
 
 
 def _pulse(path: Path, table: Columns, options: TableOptions) -> Reduced:
+    from .force import reduce_pulse
+
     series = _series(table, options)
     time, value, column = series.time, series.value, series.column
     unit = options.gain
@@ -139,6 +143,9 @@ def _whole(pulse: Pulse, series: Series, source: str) -> None:
 
 
 def _tension(path: Path, table: Columns, options: TableOptions) -> Reduced:
+    from .specimen import strain_unit, stress_unit
+    from .tension import reduce_tension
+
     at, value = table.find(options.time, key="time"), table.find(options.value, key="value")
     parts = strain_unit(table, at, given=options.gauge_length_mm)
     unit = stress_unit(table, value, given=options.value_unit, area_mm2=options.area_mm2)
@@ -158,6 +165,8 @@ def _tension(path: Path, table: Columns, options: TableOptions) -> Reduced:
 
 
 def _heights(path: Path, table: Columns, options: TableOptions) -> Reduced:
+    from .height import reduce_heights
+
     series = _series(table, options)
     time, value, column = series.time, series.value, series.column
     said = table.unit(column) if options.value_unit == "file" else options.value_unit
@@ -180,6 +189,8 @@ def _heights(path: Path, table: Columns, options: TableOptions) -> Reduced:
 
 
 def _bounces(path: Path, table: Columns, options: TableOptions) -> Reduced:
+    from ..bounces.times import reduce_bounce_times
+
     column = table.find(options.time, key="time")
     unit = table.factor(column, "time", given=options.time_unit, key="time_unit", default="s")
     times = table.values[:, column] * unit

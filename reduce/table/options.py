@@ -56,7 +56,7 @@ class TableOptions(BounceOptions, TimeWindow):
         "target", description="whose flow curve a tension test is: target, or a striker's name"
     )
     rate_hz: float | None = Field(
-        None, gt=0.0, description="samples a second, where the time column counts samples"
+        None, ge=1e-3, le=1e10, description="samples a second, where the time column counts samples"
     )
     time_std_s: float | None = Field(
         None, gt=0.0, description="of an instant of contact; default: from their scatter"

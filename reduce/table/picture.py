@@ -3,17 +3,19 @@
 from __future__ import annotations
 
 from pathlib import Path
+from typing import TYPE_CHECKING
 
 import numpy as np
 
 from ...core.inputs.flow_curve import PROOF_STRAIN
-from ..bounces.picture import draw_intervals, draw_restitution
-from ..bounces.times import BounceTimes
 from ..pictures import figure, save
-from .force import PulseReduction
-from .height import HeightReduction
-from .tension import TensionReduction
-from .trials import TrialsReduction
+
+if TYPE_CHECKING:
+    from ..bounces.times import BounceTimes
+    from .force import PulseReduction
+    from .height import HeightReduction
+    from .tension import TensionReduction
+    from .trials import TrialsReduction
 
 
 def draw_pulse(found: PulseReduction, path: Path) -> None:
@@ -67,6 +69,8 @@ def draw_heights(found: HeightReduction, path: Path) -> None:
 
 def draw_times(found: BounceTimes, path: Path) -> None:
     """Draw intervals and restitution of timed bounces."""
+    from ..bounces.picture import draw_intervals, draw_restitution
+
     made, axes = figure(1, 2, size=(11.0, 4.5))
     draw_intervals(axes[0, 0], found)
     draw_restitution(axes[0, 1], found)

@@ -11,7 +11,6 @@ import math
 from dataclasses import dataclass
 
 import numpy as np
-from scipy.signal import savgol_filter
 
 from ...core.arrays import Array, Mask
 from ...core.errors import InputError
@@ -183,14 +182,17 @@ def _peak(time: Array, clear: Array, top: int, noise: float) -> tuple[Measured, 
         return Measured(float(clear[top]), max(noise, 0.02 * float(clear[top]))), float(time[top])
     width = min(up - low + 1, 51) // 2 * 2 + 1
     window = slice(max(low - width, 0), min(up + width + 1, clear.size))
-    smooth = savgol_filter(clear[window], min(width, clear[window].size // 2 * 2 - 1), 2)
+    half = min(width, clear[window].size // 2 * 2 - 1) // 2
+    # the middle of a parabola through each sample and its neighbours (A. Savitzky, M. Golay, 1964)
+    weight = np.linalg.pinv(np.vander(np.arange(-half, half + 1.0), 3))[-1]
+    smooth = np.convolve(clear[window], weight, "valid")
     best = int(np.argmax(smooth))
     return (
         Measured(
             float(smooth[best]),
             math.hypot(noise * 1.5 / math.sqrt(width), RULES.form * float(smooth[best])),
         ),
-        float(time[window][best]),
+        float(time[window][best + half]),
     )
 
 

@@ -14,7 +14,7 @@ from ..rules import RULES
 class VideoOptions(PictureOptions, BallOptions):
     """Options of the reduction of a video."""
 
-    frame_rate_hz: float = Field(gt=0.0, description="the camera's own frames per second")
+    frame_rate_hz: float = Field(ge=1e-3, le=1e10, description="the camera's own frames per second")
     shape: Literal["rod", "sphere"] = Field("rod", description="of the striker")
     line_time_s: float = Field(
         0.0, ge=0.0, description="from one row to the next, of a shutter that rolls down"

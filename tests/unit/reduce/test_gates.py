@@ -113,17 +113,22 @@ def test_a_soft_contact_is_no_flight(tmp_path, contact, rate):
     assert both[1].std < both[0].std
 
 
-def test_who_walks_does_not_fall(tmp_path):
-    """Eight places on a body that swings its limbs: no flight, or no rigid body; no number."""
+@pytest.mark.parametrize(
+    ("forwards", "steps", "lift"),
+    [(1400.0, 0.9, 40.0), (0.0, 0.6, 250.0), (2800.0, 1.4, 90.0), (900.0, 0.0, 0.0)],
+    ids=["walks", "squats", "runs", "rides"],
+)
+def test_who_walks_does_not_fall(tmp_path, forwards, steps, lift):
+    """Places on a body that swings its limbs: no flight, or no rigid body; no number."""
     rng = np.random.default_rng(7)
     time = np.arange(0.0, 2.5, 0.01)
     names = [f"m{k}_{a}_mm" for k in range(5) for a in "xyz"]
     columns = []
     for k in range(5):
-        phase = rng.uniform(0.0, 2 * np.pi)
-        swing = 150.0 * np.sin(2 * np.pi * 0.9 * time + phase)
-        lift = 40.0 * np.abs(np.sin(2 * np.pi * 0.9 * time + phase))
-        columns += [1400.0 * time + swing, 100.0 * k + 0.1 * swing, 300.0 + 250.0 * k + lift]
+        turn = 2 * np.pi * steps * time + rng.uniform(0.0, 2 * np.pi)
+        swing = 150.0 * np.sin(turn)
+        up = 300.0 + 250.0 * k + lift * np.abs(np.sin(turn))
+        columns += [forwards * time + swing, 100.0 * k + 0.1 * swing, up]
     table = np.stack(columns, axis=1) + rng.normal(0.0, 0.3, (time.size, 15))
     head = ",".join(["time_s", *names])
     np.savetxt(tmp_path / "walk.csv", np.column_stack([time, table]), "%.4f", ",", header=head,

@@ -88,6 +88,21 @@ def test_labview_measurements(tmp_path, times):
     assert labview_rows(["time,force"]) is None
 
 
+def test_labview_with_decimal_commas_or_another_channel_first(tmp_path):
+    commas = [line.replace(".", ",") for line in labview(False)]
+    lines = labview(False)
+    top = lines.index("X_Value\tForce\tComment")
+    two = [*lines[:top], "X_Value\tTrigger\tForce\tComment"]
+    two += ["\t0.5" + line for line in lines[top + 1 :]]
+    two[two.index("Y_Unit_Label\tNewtons")] = "Y_Unit_Label\tVolts\tNewtons"
+    scaled = [line.replace("1.0E-4", "1.0E-1") for line in lines]
+    scaled[scaled.index("Y_Unit_Label\tNewtons")] = "Y_Unit_Label\tkN"
+    for content, impulse in ((commas, 2.037), (two, 2.037), (scaled, 2.037e6)):
+        (tmp_path / "a.lvm").write_text("\n".join(content))
+        found = run(tmp_path / "a.lvm", value="Force").values["impulse_N_s"]
+        assert found.value == pytest.approx(impulse, rel=0.002)
+
+
 def test_quoted_decimal_commas_and_units_in_words(tmp_path):
     rows = [f'"{t:.4f}";"{v:.3f}"'.replace(".", ",") for t, v in zip(T, half_sine(), strict=True)]
     path = tmp_path / "a.csv"
@@ -185,6 +200,17 @@ def soft_ball(path, *, last, rate, e=0.82, fall=0.98, g=9.81, bounces=4):
         "\n".join(["time_s,height_m", *(x for x, k in zip(lines, keep, strict=True) if k)])
     )
     return path
+
+
+@pytest.mark.parametrize(
+    ("last", "rate", "e"), [(0.004, 360.0, 0.7), (0.009, 200.0, 0.85), (0.018, 500.0, 0.6)]
+)
+def test_soft_contacts_are_within_the_error(tmp_path, last, rate, e):
+    path = soft_ball(tmp_path / "a.csv", last=last, rate=rate, e=e)
+    found = load_kind("table").run(path, {"holds": "height"}, source="test").values
+    ratio, speed = (found[f"bounce1_{n}"] for n in ("restitution", "impact_speed_m_s"))
+    assert abs(ratio.value - e) < 3.0 * ratio.std
+    assert abs(speed.value - np.sqrt(2.0 * 9.81 * 0.98)) < 3.0 * speed.std
 
 
 def test_a_stated_contact_time_acts_on_heights(tmp_path):
