@@ -188,7 +188,7 @@ def text_columns(raw: bytes, source: str) -> Columns:
     if found is None:
         return columns_of(text_rows(lines, source), source)
     body, heading = found
-    columns = columns_of(text_rows(body, source), source)
+    columns = columns_of(text_rows(body, source, separator=heading.separator), source)
     names = (*heading.names, *[""] * len(columns.names))[: len(columns.names)]
     if heading.step_s is not None:
         columns.values[:, 0] = heading.step_s * np.arange(len(columns.values))
@@ -285,19 +285,23 @@ def numbered_lines(raw: bytes, source: str) -> list[tuple[int, str]]:
     return lines
 
 
-def text_rows(lines: Sequence[str], source: str) -> list[list[str]]:
+def text_rows(lines: Sequence[str], source: str, *, separator: str = "") -> list[list[str]]:
     """Return the cells of a text table, its numbers with decimal points.
+
+    `separator` is known, or that which fits best.
 
     Raises
     ------
     InputError
         No table.
     """
-    separator, rows = cells_of(lines, source)
+    separator, rows = cells_of(lines, source, separator=separator)
     return [[plain(cell, separator) for cell in row] for row in rows]
 
 
-def cells_of(lines: Sequence[str], source: str) -> tuple[str, list[list[str]]]:
+def cells_of(
+    lines: Sequence[str], source: str, *, separator: str = ""
+) -> tuple[str, list[list[str]]]:
     """Return the separator of a text table and its cells as they are written.
 
     Raises
@@ -305,7 +309,7 @@ def cells_of(lines: Sequence[str], source: str) -> tuple[str, list[list[str]]]:
     InputError
         No table.
     """
-    separator = _separator(lines)
+    separator = separator or _separator(lines)
     try:
         rows = (
             [line.split() for line in lines]

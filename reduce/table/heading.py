@@ -33,11 +33,14 @@ class Heading:
         Every header line of a name, a value and perhaps a unit, in order.
     step_s
         Time between two rows, where the column of the time is empty [s].
+    separator
+        Of the cells, where the header names it.
     """
 
     names: tuple[str, ...] = ()
     said: tuple[tuple[str, ...], ...] = field(default=())
     step_s: float | None = None
+    separator: str = ""
 
     def quantity(self, word: str) -> tuple[float, str] | None:
         """Return number and unit of the first header line whose name begins with a word."""
@@ -140,4 +143,7 @@ def labview_rows(lines: Sequence[str]) -> tuple[list[str], Heading] | None:
     seconds = said.get("X_Dimension", ["Time"])[0] == "Time"
     step = float(said["Delta_X"][0].replace(",", ".")) if said.get("Delta_X") else None
     first = "X_Value [s]" if seconds else "X_Value"
-    return list(lines[ends[-1] + 2 :]), Heading((first, *told), (), None if timed else step)
+    between = {"Tab": "\t", "Comma": ","}.get(said.get("Separator", ["Tab"])[0], "\t")
+    return list(lines[ends[-1] + 2 :]), Heading(
+        (first, *told), (), None if timed else step, between
+    )
