@@ -140,7 +140,7 @@ def likely_durations(
     runs = _both_held(track, stage, view, flights, meeting)
     shares = ratio / (1.0 + ratio), 1.0 / (1.0 + ratio)
     smeared = float(met[1] + met[2]) / (2.0 * step)
-    found = -RULES.soft_rarer * np.maximum(np.log(LASTS / RULES.hard_contact), 0.0)
+    found = np.zeros_like(LASTS)
     for piece, run, share, speed in zip(flights, runs, shares, met[1:3], strict=True):
         order = np.argsort(np.abs(track.time[piece.index] - meeting))[: RULES.fewest]
         for index in (*run, *piece.index[order]):
@@ -166,13 +166,15 @@ def common_durations(each: Sequence[Array]) -> list[Array]:
     """Return the likelihoods of all contacts of a track together, for each of them, (n,) weights.
 
     Contacts of one body last about as long; those of elastic spheres vary with the inverse fifth
-    root of the speed (H. Hertz, 1882).
+    root of the speed (H. Hertz, 1882). Soft bodies are rarer.
     """
     near = np.abs(np.log(LASTS[:, None] / LASTS[None, :])) <= math.log(RULES.contacts_alike)
     wide = [np.where(near, one[None, :], -np.inf).max(axis=1) for one in each]
+    # whether a body is soft is one question, however often it bounces
+    rare = -RULES.soft_rarer * np.maximum(np.log(LASTS / RULES.hard_contact), 0.0)
     found = []
     for k, one in enumerate(each):
-        both = one + sum(w for j, w in enumerate(wide) if j != k)
+        both = rare + one + sum(w for j, w in enumerate(wide) if j != k)
         found.append(np.exp(both - both.max()))
     return found
 
