@@ -26,7 +26,6 @@ from ...models.uncertainty import METAL, RECOVERY_EXPONENT, WITH_CURVE
 from ..batch import Change, unchanged
 from ..columns import Impacts
 from ..files.mechanism_tables import asked_of
-from ..files.second import mirror_error
 from ..integrate import strike
 from ..mechanisms.arithmetic import times
 from ..result import Impact
@@ -207,7 +206,7 @@ def _sizes_of(setup: Setup, scene: Scene, found: Any) -> tuple[_Sizes, _Sizes]:
     """`_sizes`, and what the flat in place of a second sphere adds."""
     of_law, of_metal = _sizes(scene, found)
     if setup.second is not None and math.isfinite(scene.pair.Sy_min):
-        off = abs(float(mirror_error(scene.pair, found.peak_depth_m)))
+        off = setup.second.departure(scene.pair, found.peak_depth_m)
         of_law = of_law._replace(force=math.hypot(of_law.force, off))
     return of_law, of_metal
 

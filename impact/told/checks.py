@@ -18,7 +18,6 @@ from ...core.inputs.flow_curve import SPECIMENS
 from ...core.rig import TABOR
 from ...models.base import ContactLaw, DomainWarning
 from ...models.choose import demand, follows_flow
-from ..files.second import mirror_error
 from ..integrate import strike
 from ..result import Impact
 from ..rules import RULES
@@ -204,10 +203,10 @@ def _second(setup: Setup, scene: Scene, found: Impact) -> Iterator[str]:
             f"with {other:.4g} m/s"
         )
     if math.isfinite(scene.pair.Sy_min):
-        off = float(mirror_error(scene.pair, found.peak_depth_m))
+        off = second.departure(scene.pair, found.peak_depth_m)
         yield (
-            f"where both yield 1/R is an approximation: two equal spheres carry {100.0 * off:+.1f} "
-            "% of force here, by their mirror; it is in the band"
+            f"where both yield 1/R is an approximation, off by some {100.0 * off:.1f} % of the "
+            "force here, as finite elements have it; it is in the band"
         )
 
 
