@@ -77,7 +77,7 @@ def why(v: Verdict) -> str:
     rivals = [f"{explanation(k)} ({percent(q)})" for k, q in others if q >= RULES.story_least]
     beside = "Nothing else has a share."
     if rivals:
-        beside = f"Beside it stand {joined(rivals[: RULES.named_leading])}."
+        beside = f"Beside it: {joined(rivals[: RULES.named_leading])}."
     return f"{where} {best}. {beside}"
 
 

@@ -111,8 +111,7 @@ def test_why_is_three_sentences_with_the_rivals_of_a_name() -> None:
     assert "the metal hardens as it is deformed (84 %)" in leads
     assert "40 times as probable as with nothing missing" in leads
     assert beside == (
-        "Beside it stand nothing is missing (10 %) and something that dentscope has no name for "
-        "(6 %)."
+        "Beside it: nothing is missing (10 %) and something that dentscope has no name for (6 %)."
     )
     v.scores = {"work-hardening": {"evidence": 50.0}}
     assert "more than a million times" in why(v)
