@@ -26,8 +26,7 @@ _HEAD = """# Proof
 
 Can the diagnosis be believed? `make proof` makes up recordings in which a known effect is
 concealed, lets the diagnosis say what is missing, and only then looks at the truth. The generators,
-`studies/proof`, share nothing with what is tested: neither the diagnosis, nor the contact laws, nor
-the simulation of impacts. Of the tool they use the finite elements alone.
+`studies/proof`, share nothing with what is tested but the finite elements.
 
 ## How it is done
 
@@ -40,16 +39,14 @@ the simulation of impacts. Of the tool they use the finite elements alone.
   ([verification](verification.md#what-hardening-and-rate-make-of-an-impact)).
 * **Nulls** are sets in which nothing is missing. In half of all sets the metal is 3 to 8 % off
   elastic-perfect plasticity, and in half the stated numbers are off within what the data sheet
-  says: neither is missing physics. Noise is Gaussian, skewed or heavy-tailed, with outliers and
-  empty cells.
+  says. Noise is Gaussian, skewed or heavy-tailed, with outliers and empty cells.
 * **Outside** are six effects that have no name in the library; it knows other forms of three.
-* **Seals.** The seed is the digest of the source tree, so that any change of the tool draws new
-  truths. Truths and recordings are hashed into a chained ledger before the diagnosis runs, verdicts
-  before a truth is opened; the scorer checks the chain.
+* **Seals.** The seed is the digest of the source tree: any change of the tool draws new truths.
+  Truths and recordings are hashed into a chained ledger before the diagnosis runs, verdicts before
+  a truth is opened.
 * **Size** of an effect: change of all readings over their noise, less what the stated tolerances, a
   metal 5 % off and, of a pair, the other effect can imitate.
-* **First place** is the observable and condition along which the effect is largest; within a fifth
-  of that counts.
+* **First place** is where the effect is largest, in observable and condition, or within a fifth.
 * **Marks** were set before; `met` and `missed` are said only where the whole 95 % interval (Clopper
   and Pearson) lies on one side, else `not shown`.
 """

@@ -43,12 +43,10 @@ def _head() -> Iterator[str]:
     yield "# What the solver was checked against"
     yield ""
     yield (
-        "Made by `dentscope verify`, which can be stopped and goes on where it was; `--list` names "
-        "the checks, `--only NAME` runs one. Marks were set before measuring; a missed one stands "
-        "as missed. Of each check the number nearest to its mark is shown, at the accuracy of "
-        "published results (`production`) unless a row says otherwise; every number, with tables "
-        "and remarks, is written to `build/verification/rows.md` by any run, and lies as "
-        "data in `docs/verification/results`."
+        "Made by `dentscope verify`; `--list` names the checks, `--only NAME` runs one. Marks were "
+        "set before measuring. Of each check the number nearest to its mark is shown, at the level "
+        "`production` unless a row says otherwise; any run writes every number to "
+        "`build/verification/rows.md`, and as data they lie in `docs/verification/results`."
     )
     yield ""
     yield f"Numerics version of the solver {fem.NUMERICS_VERSION}; {packages}."

@@ -175,11 +175,10 @@ def _result(
         title="Error of mesh and step",
         about=(
             f"Table 2.1 of the thesis at Sy* = 0.1, 1, 10, to Delta/R = {plan.deepest:g}, level "
-            f"`{base.level}` ({settings}): against elements twice as large at the edge, elements a "
-            "third larger everywhere else and steps twice as large (in ln Delta), ripple smoothed "
-            "out. The error is taken as the whole difference at the edge (first order), 9/7 of "
-            "that of the bulk and a third of that of the step (second order), added in the square. "
-            "Ripple: rms deviation from a local quadratic in ln Delta over the whole range."
+            f"`{base.level}` ({settings}): against elements twice as large at the edge, a third "
+            "larger everywhere else and steps twice as large (in ln Delta), ripple smoothed out. "
+            "The error is the whole difference at the edge (first order), 9/7 of that of the "
+            "bulk and a third of that of the step (second order), added in the square."
         ),
         measurements=(
             *(

@@ -38,9 +38,9 @@ def run(bench: Bench) -> Result:
         name="hertz",
         title="Elastic contact: Hertz",
         about=(
-            "Two elastic bodies of E = 200 GPa, nu = 0.3, production settings. The rise of F with "
-            "depth is the finite hemisphere and the finite slope, linear in a/R; its limit at "
-            "a/R = 0 is what remains of the discretisation."
+            "Two elastic bodies of E = 200 GPa, nu = 0.3, production settings. F rises with a/R "
+            "by the finite hemisphere and slope; its limit at a/R = 0 is the error of the "
+            "discretisation."
         ),
         measurements=(
             _within("F - Hertz at Delta/R = 1e-5, raw", 100.0 * (force[at] - 1.0), 0.3),

@@ -203,10 +203,10 @@ def _result(
         title="What each level of accuracy states of itself",
         about=(
             "Table 2.1 of the thesis at Sy* = 0.1, 1, 10, to Delta/R = 0.1. The error of "
-            "`production` is that of the check before, depth by depth and with the ripple; that of "
-            "`quick` and `smoke` its difference from `production` as well. A solve states the rms "
-            "over the pairs at its depth, of equally strong bodies or of the others, whichever is "
-            "larger, and no second solve is needed."
+            "`production` is that of the check before, at each depth and with the ripple; that "
+            "of `quick` and `smoke` holds their difference from `production` too. A solve states "
+            "the rms over the pairs at its depth, of equally strong bodies or of the others, "
+            "whichever is larger."
         ),
         measurements=tuple(measurements),
         tables=(

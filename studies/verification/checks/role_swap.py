@@ -60,10 +60,10 @@ def run(bench: Bench) -> Result:
         name="role-swap",
         title="Exchange of the bodies",
         about=(
-            "As long as a/R is small both bodies are half-spaces to each other and may change "
-            "places: F and a stay, delta_s* turns into 1 - delta_s*. Elastic: 71.7 and 200 GPa. "
-            "Plastic: strengths 100 and 1000 MPa, E = 200 GPa, to 60 times the depth of first "
-            f"yield (Delta/R = {last:.1e}), level `{level.level}`, ripple smoothed out."
+            "At small a/R the bodies may change places: F and a stay, delta_s* turns into 1 - "
+            "delta_s*. Elastic: 71.7 and 200 GPa. Plastic: strengths 100 and 1000 MPa, E = 200 "
+            f"GPa, to 60 times the depth of first yield (Delta/R = {last:.1e}), level "
+            f"`{level.level}`, ripple smoothed out."
         ),
         measurements=tuple(measurements),
         tables=(

@@ -67,14 +67,13 @@ def run(bench: Bench) -> Result:
         name="similarity",
         title="Similarity solution of power-law plasticity",
         about=(
-            "A rigid sphere on a flat with the flow stress K (e0 + p)^n, "
-            f"e0 = {_START:g}, E over the first of it {_E / _FIRST:.0f}, nu = 0.3, level "
-            f"`{accuracy.level}`; ripple smoothed out. Beside it the rigid-plastic half-space of "
-            "small strain with the same flow stress, in which a^2 = 2 c^2 R Delta and "
-            "F = pi a^2 K (a/R)^n P: c^2 and P are solved for on a mesh of its own, by velocities "
-            "under a flat die and the strains that gather along rays "
-            "(studies/verification/flat_die.py). What is left falls with E' a/(R sigma), sigma the "
-            "flow stress at Tabor's strain 0.2 a/R, and is extrapolated to its infinity."
+            f"A rigid sphere on a flat with the flow stress K (e0 + p)^n, e0 = {_START:g}, E over "
+            f"the first of it {_E / _FIRST:.0f}, nu = 0.3, level `{accuracy.level}`; ripple "
+            "smoothed out. Beside it the rigid-plastic half-space of small strain with the same "
+            "flow stress, in which a^2 = 2 c^2 R Delta and F = pi a^2 K (a/R)^n P: c^2 and P are "
+            "solved for by velocities under a flat die (studies/verification/flat_die.py). What "
+            "is left is extrapolated to infinite E' a/(R sigma), sigma the flow stress at "
+            "Tabor's strain 0.2 a/R."
         ),
         measurements=tuple(measurements),
         tables=(
@@ -173,11 +172,11 @@ def speed(bench: Bench) -> Result:
         title="A hundred times the speed",
         about=(
             "A rigid sphere on a flat whose flow stress is a power m of the rate of plastic "
-            f"strain, beside a tenth that knows no rate and is raised by 100^m itself; E over the "
+            "strain, beside a tenth that knows no rate and is raised by 100^m itself; E over the "
             f"stress at the slow speed is {_E / _STRESS:.0f}, level `{accuracy.level}`, ripple "
-            f"smoothed out, judged from E' a/(R sigma) = {_PLASTIC:g} on. Without elastic "
-            "strain every rate goes with the speed, every stress with its power m, and so does the "
-            "force, at a contact radius and at a depth alike."
+            f"smoothed out, judged from E' a/(R sigma) = {_PLASTIC:g} on. Without elastic strain "
+            "the force goes with the power m of the speed, at a contact radius and at a depth "
+            "alike."
         ),
         measurements=tuple(measurements),
         tables=(

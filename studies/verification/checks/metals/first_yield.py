@@ -61,10 +61,9 @@ def run(bench: Bench) -> Result:
         title="First yield",
         about=(
             "One body yields, the other is rigid. Depth and load at which the first integration "
-            "point becomes plastic, in steps of 0.25 % of the critical depth, on two meshes "
-            "(elements of 0.1 and 0.05 of the distance from the first contact point), "
-            "extrapolated linearly in their size. Beside it depth and load at which the largest "
-            "element mean of the von Mises stress reaches the strength, on the finer mesh."
+            "point becomes plastic, in steps of 0.25 % of the critical depth, on two meshes, "
+            "extrapolated linearly in the size of their elements; and depth and load at which "
+            "the largest element mean of the von Mises stress reaches the strength."
         ),
         measurements=(
             *(

@@ -55,11 +55,11 @@ def run(bench: Bench) -> Result:
         name="flow-laws",
         title="Hardening, rate and heat",
         about=(
-            "Tension of one point at a constant rate of plastic strain, "
-            f"{_SPEED:g} 1/s, in {_STEPS} steps to a strain of {_SPEED * _SECONDS * _STEPS:g}, "
-            "where the stress is the law's own whatever the elastic part; adiabatic tension "
-            "without hardening, T = D (1 - exp(-b S p/D)); a sphere and a flat that harden "
-            "(Swift, n = 0.2 and 0.1) to Delta/R = 0.1, level `quick`."
+            f"Tension of one point at a constant rate of plastic strain, {_SPEED:g} 1/s, in "
+            f"{_STEPS} steps to a strain of {_SPEED * _SECONDS * _STEPS:g}, where the stress is "
+            "the law's own; adiabatic tension without hardening, T = D (1 - exp(-b S p/D)); a "
+            "sphere and a flat that harden (Swift, n = 0.2 and 0.1) to Delta/R = 0.1, level "
+            "`quick`."
         ),
         measurements=(
             Measurement("stress at a constant rate, largest relative error", worst, "", None, 1e-6,

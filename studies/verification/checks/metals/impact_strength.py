@@ -143,9 +143,9 @@ def run(bench: Bench) -> Result:
         title="What hardening and rate make of an impact",
         about=(
             "A steel ball of 8 and 2 mm on a metal of E 70 GPa and yield strength 300 MPa, level "
-            "`quick`: pressed, with the clock of a ball that a plastic contact stops, to where its "
-            "energy is spent, then unloaded. Change against the metal without rate and hardening, "
-            "in restitution, peak force and dent."
+            "`quick`: pressed at the speeds of an impact to where its energy is spent, then "
+            "unloaded. Change against the metal without rate and hardening, in restitution, peak "
+            "force and dent."
         ),
         measurements=(
             Measurement("form of the strain rate, rms over its effect",
