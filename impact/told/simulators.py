@@ -162,12 +162,18 @@ def formula_of(law: ContactLaw, scene: Scene, speeds: Sequence[float]) -> Formul
     v = np.geomspace(first, last, 25)
     e = np.asarray(impacts(scene.with_(law=law), speeds=v)["restitution"], dtype=float)
 
-    def of(x: np.ndarray) -> np.ndarray:
-        return np.asarray((1.0 + (v / np.exp(x[0])) ** np.exp(x[1])) ** -np.exp(x[2]))
+    known = np.log(v)
+    middle = float(known[12])
 
-    middle = math.log(float(v[12]))
+    def of(x: np.ndarray) -> np.ndarray:
+        # as logarithms: powers of small and large speeds overflow
+        falls = np.logaddexp(0.0, np.exp(x[1]) * (known - x[0]))
+        return np.asarray(np.exp(-np.exp(x[2]) * falls))
+
+    # a flat curve leaves its constants free: they stay within what a number holds
+    bounds = ([middle - 40.0, -5.0, -12.0], [middle + 40.0, 4.0, 5.0])
     fits = [
-        least_squares(lambda x: of(x) - e, [start, 0.0, -1.0])
+        least_squares(lambda x: of(x) - e, [start, 0.0, -1.0], bounds=bounds)
         for start in (middle - 4.0, middle, middle + 4.0)
     ]
     best = min(fits, key=lambda one: one.cost)
