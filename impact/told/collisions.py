@@ -104,7 +104,7 @@ def damping_for(law: Damped, restitution: float) -> float:
     def above(damping: float) -> float:
         return _unit_blow(law, damping).restitution - restitution
 
-    if restitution >= 1.0 - 1e-9:
+    if above(0.0) <= 0.0:  # all comes back, but for what the steps of the blow are off
         return 0.0
     if above(law.most) > 0.0:
         least = _unit_blow(law, law.most).restitution
