@@ -31,9 +31,8 @@ def run(bench: Bench) -> Result:
         name="balances",
         title="Energy and force",
         about=(
-            "Every loading path that the checks have kept: external work against stored plus "
-            "dissipated energy, and contact force against the reaction at the driven face (a "
-            "rigid sphere has none of its own)."
+            "Every loading path of the checks: external work against stored plus dissipated "
+            "energy, contact force against the reaction at the driven face."
         ),
         measurements=(
             Measurement("largest energy defect over external work", 100.0 * float(worst[0]), "%",

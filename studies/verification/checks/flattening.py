@@ -56,10 +56,10 @@ def run(bench: Bench) -> Result:
         title="Published flattening",
         about=(
             "A perfectly plastic sphere of E = 200 GPa, nu = 0.32, Sy = 619 MPa on a rigid flat, "
-            f"level `{accuracy.level}`, to Delta/R = {_DEEPEST:g}, against the fits that Jackson "
-            "and Green and Kogut and Etsion made of their finite elements (ANSYS), each in its "
-            "range: a/R up to 0.41, and 1 to 110 times the critical interference in Kogut and "
-            "Etsion's definition (H = 2.8 Sy, K = 0.454 + 0.41 nu). Ripple smoothed out."
+            f"level `{accuracy.level}`, to Delta/R = {_DEEPEST:g}, against the fits of Jackson "
+            "and Green and of Kogut and Etsion to their finite elements (ANSYS), each in its "
+            "range: a/R up to 0.41, and 1 to 110 times Kogut and Etsion's critical interference "
+            "(H = 2.8 Sy, K = 0.454 + 0.41 nu). Ripple smoothed out."
         ),
         measurements=(
             _measured("F against Jackson and Green", force / jg_force, jg, 4.0,

@@ -52,9 +52,9 @@ def run(bench: Bench) -> Result:
         name="indentation",
         title="Published indentation",
         about=(
-            "A rigid sphere on a perfectly plastic flat of E = 210 GPa, nu = 0.3, Sy = 50 MPa, the "
-            f"material of Code_Aster's test SSNV506, level `{accuracy.level}`, to Delta/R = "
-            f"{_DEEPEST:g}; ripple smoothed out. H = F/(pi a^2), c^2 = a^2/(2 R Delta)."
+            "A rigid sphere on a perfectly plastic flat, E = 210 GPa, nu = 0.3, Sy = 50 MPa "
+            f"(Code_Aster's test SSNV506), level `{accuracy.level}`, to Delta/R = {_DEEPEST:g}; "
+            "ripple smoothed out. H = F/(pi a^2), c^2 = a^2/(2 R Delta)."
         ),
         measurements=(
             Measurement("H against slip-line hardness, a/R 0.05 to 0.3, largest difference",

@@ -94,10 +94,10 @@ def penalty(bench: Bench) -> Result:
         name="penalty",
         title="Contact stiffness",
         about=(
-            "Strengths 503 MPa, E = 200 GPa, mesh and steps of the `smoke` level, to Delta/R = "
-            f"{_DEEPEST:g}. Production uses {production.penalty:g} E' over the edge length of "
-            f"its elements, which is {same:g} on these; largest differences from the limit "
-            "extrapolated from the two stiffest, ripple smoothed out."
+            f"Strengths 503 MPa, E = 200 GPa, level `smoke`, to Delta/R = {_DEEPEST:g}. "
+            f"Production uses {production.penalty:g} E' over the edge length of its elements, "
+            f"which is {same:g} on these; largest differences from the limit extrapolated from "
+            "the two stiffest, ripple smoothed out."
         ),
         measurements=(
             Measurement("F, production's stiffness", 100.0 * F, "%", None, 0.25, source),

@@ -33,8 +33,8 @@ def run(bench: Bench) -> Result:
         about=(
             "Limit pressure of a thick tube (plane strain, 2/sqrt(3) Sy ln 2) and of a thick "
             "spherical shell (2 Sy ln 2), b/a = 2, Sy/E = 1e-4, opened to ten times the "
-            "displacement of first yield, n elements through the wall. Elastic sphere on a rigid "
-            "flat with Poisson's ratio up to 0.4999 against Hertz."
+            "displacement of first yield. Elastic sphere on a rigid flat, Poisson's ratio up to "
+            "0.4999."
         ),
         measurements=(
             Measurement("limit pressure of the tube, 8 elements, error", 100.0 * abs(tube[8]), "%",

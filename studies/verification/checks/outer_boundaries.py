@@ -75,8 +75,7 @@ def top_face(bench: Bench) -> Result:
         title="The top face held radially",
         about=(
             "`fem.solve` moves the hemisphere's top face down and leaves it free radially. Here "
-            "the same is solved with the face held radially as well, mesh of the `smoke` level; "
-            "held minus free."
+            "it is also held radially, level `smoke`; held minus free."
         ),
         measurements=tuple(
             Measurement(f"{name}: change of F at Delta/R = {_AT[-1]:g}", worst[name, _AT[-1]], "%")

@@ -45,9 +45,9 @@ def run(bench: Bench) -> Result:
         name="rates",
         title="Rates of convergence",
         about=(
-            "Element: u_r = r (1 - 0.3 r^2) cos z, u_z = (1 + 0.4 r^2) sin z on distorted meshes "
-            "of n x n elements, loads from the exact stress, linear elastic. Contact: elastic pair "
-            "at Delta/R = 1e-4, rings of relative width h, the arc divided alike."
+            "Element: u_r = r (1 - 0.3 r^2) cos z, u_z = (1 + 0.4 r^2) sin z on distorted "
+            "meshes, loads from the exact stress, linear elastic. Contact: elastic pair at "
+            "Delta/R = 1e-4, elements of relative width h."
         ),
         measurements=(
             *measurements,

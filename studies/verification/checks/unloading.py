@@ -39,7 +39,7 @@ def run(bench: Bench) -> Result:
         title="Unloading and reload",
         about=(
             "E = 200 GPa, weaker body 503 MPa, level `smoke`: unloaded from two depths until the "
-            "bodies are apart, and loaded again to where the unloading began."
+            "bodies are apart, and loaded again."
         ),
         measurements=(
             Measurement("steps to zero force, largest", float(steps), "", None, 40.0,

@@ -50,8 +50,8 @@ def run(bench: Bench) -> Result:
         title="Plastic zones: figures 2.2 to 2.4",
         about=(
             "E = 200 GPa, nu = 0.3, weaker body 503 MPa, Sy* = 0.1, 1, 10, level "
-            f"`{accuracy.level}`. The thesis describes the zones in words; each sentence is "
-            f"measured at Delta/R = {_DEPTHS[-1]:g}."
+            f"`{accuracy.level}`. Each sentence of the thesis on the zones is measured at Delta/R "
+            f"= {_DEPTHS[-1]:g}."
         ),
         measurements=_as_described(last),
         pictures=(
