@@ -27,6 +27,7 @@ from matplotlib.image import imsave
 ROOT = Path(__file__).resolve().parents[1]
 LOCK = ROOT / "tools" / "requirements" / f"py3{sys.version_info.minor}.txt"
 UV = Path(sys.executable).parent / "uv"
+PRESSES = ROOT / "docs" / "tutorials" / "data" / "press-6061" / "press-6061.txt"
 EXTRAS = "video,mocap,surface,tables"
 
 
@@ -69,7 +70,8 @@ SOLVER = (
     Use("campaign show {case} --out run", "Delta/R"),
     Use("campaign refine {case} --out run", "largest difference"),
     Use("campaign export --out run --to curves.csv", "cases -> curves.csv"),
-    Use("campaign repair --out run", "cases kept"),
+    Use("campaign repair --out run", "cases are whole"),
+    Use("campaign upgrade --out absent", "absent", 2),
     Use("campaign publish --design smoke --out run --to parts", "cases are missing", 2),
     Use("campaign gallery", "checkout", 2),
     Use("campaign reproduction", "checkout", 2),
@@ -93,6 +95,8 @@ IMPACT = (
     Use("recordings audit thesis-chapter-5", "thesis-chapter-5"),
     Use("recordings new set", "fill in"),
     Use("recordings fetch absent", "absent", 2),
+    Use("materials steel-1010-hot-rolled", "207"),
+    Use("metal kharaz-2001-oblique --out metal", "elastic-plastic", 2),
     Use("diagnose kharaz-2001-oblique --quiet --out diagnosis", "verdict.json"),
     Use("diagnose absent", "leeb-steel-300hv", 2),
     Use("diagnose --chapter5", "checkout", 2),
@@ -107,6 +111,7 @@ IMPACT = (
 WITH_EXTRAS = (
     Use("reduce sound ball.wav --out reduced", "restitution"),
     Use("reduce video clip.mkv --frame-rate-hz 80000 --pixel-m 2e-4 --out reduced", "restitution"),
+    Use("reduce press press.txt --out reduced", "permanent_depth_m"),
     Use("reduce tip tip.png --pixel-m 1e-5 --out reduced", "tip_radius_m"),
     Use("reduce scan crater.csv --unit um --step-m 9e-6 --out reduced", "permanent_depth_m"),
     Use(
@@ -193,6 +198,7 @@ def commands(environment: Path) -> set[str]:
 def write_recordings(folder: Path) -> None:
     """Render raw recordings to reduce: bounces heard and written down, a clip, a tip, a crater."""
     write_wav(record(SoundTruth()), folder / "ball.wav")
+    shutil.copyfile(PRESSES, folder / "press.txt")
     rows = "\n".join(f"{h},{0.49 * h}" for h in (0.2, 0.4, 0.8))
     (folder / "rebounds.csv").write_text(f"drop_m,up_m\n{rows}\n")
     write_video(render(ClipTruth()), folder / "clip.mkv")
