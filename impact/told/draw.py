@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Mapping, Sequence
+from itertools import cycle
 from pathlib import Path
 from types import MappingProxyType
 from typing import Any
@@ -77,7 +78,8 @@ def histories(
 ) -> Figure:
     """Return force over depth, and against time whatever moves at all, a curve a law.
 
-    `doubts` is what speaks against a law at this depth, by its name: it is drawn grey and dashed.
+    `doubts` is what speaks against a law at this depth, by its name: it is drawn grey and broken,
+    each in its own way.
     """
     shown = [
         panel
@@ -86,8 +88,11 @@ def histories(
     ]
     made, axes = _panels(1 + len(shown))
     depth, depth_label, depth_scale, force, force_label, force_scale = LOOP
+    breaks = cycle(("--", ":", "-."))
     for law, trace in traces:
-        style: dict[str, Any] = {"color": "0.65", "ls": "--", "zorder": 1} if law in doubts else {}
+        style: dict[str, Any] = {}
+        if law in doubts:
+            style = {"color": "0.65", "ls": next(breaks), "zorder": 1}
         label = f"{law}: {doubts[law]}" if law in doubts else law
         axes[0].plot(
             depth_scale * trace.column(depth), force_scale * trace.column(force), label=label,
