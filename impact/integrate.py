@@ -20,7 +20,6 @@ from .scene import RateFree, Scene
 from .strength import NODES, strength_table
 from .surface import Spot
 from .walk import layout as c
-from .walk.compiled import Given, many_impacts
 
 _UNWRITTEN = np.zeros((0, len(c.HISTORY)))
 _SMOOTH, _STILL = np.empty(0), np.empty((3, 0))
@@ -157,21 +156,29 @@ def strike_many(scenes: Sequence[Scene], settings: Settings = Settings()) -> lis
 def _struck(scene: Scene, a: Arrays, history: Array) -> tuple[Impact, int]:
     """Integrate one impact; return it and how many rows of `history` were filled."""
     out, left = np.zeros((1, c.N_OUT)), np.zeros((1, len(a.surface)))
-    rows = many_impacts(kernels_of(scene.law), _given([a]), out, left=left, history=history)
+    rows = _walked(scene.law, _given([a]), out, left=left, history=history)
     return impact_of(out[0], left[0]), rows
 
 
-def _given(rows: Sequence[Arrays]) -> Given:
+def _walked(law: ContactLaw, given: c.Given, out: Array, **more: Array) -> int:
+    """Integrate the rows of `given` into those of `out`, as `many_impacts` does."""
+    # importing it compiles: a file that is refused and the list of keys do without
+    from .walk.compiled import many_impacts
+
+    return many_impacts(kernels_of(law), given, out, **more)
+
+
+def _given(rows: Sequence[Arrays]) -> c.Given:
     """Return scenes of one law as the compiled integrator takes them; the borders are the first's.
 
     Factors and modes have to be of one length.
     """
-    keys = [key for key in Given._fields if key != "breaks"]
+    keys = [key for key in c.Given._fields if key != "breaks"]
     columns = {key: [getattr(a, key) for a in rows] for key in keys}
     # fresh metal is one row for all
     fresh = all(surface is _FRESH for surface in columns["surface"])
     columns["surface"] = [_FRESH] if fresh else columns["surface"]
-    return Given(breaks=rows[0].breaks, **{key: np.stack(one) for key, one in columns.items()})
+    return c.Given(breaks=rows[0].breaks, **{key: np.stack(one) for key, one in columns.items()})
 
 
 @dataclass(frozen=True, slots=True)
@@ -226,7 +233,7 @@ def strike_rows(scene: Scene, body: Array, settings: Settings = Settings()) -> A
     a = arrays_of(scene, settings)
     rows = np.ascontiguousarray(body, dtype=float)
     out = np.zeros((len(rows), c.N_OUT))
-    many_impacts(kernels_of(scene.law), _given([a])._replace(body=rows), out)
+    _walked(scene.law, _given([a])._replace(body=rows), out)
     return out
 
 
@@ -247,7 +254,7 @@ def strike_batch(scenes: Sequence[Scene], settings: Settings = Settings()) -> Ar
         groups.setdefault((len(a.factors), len(a.omega)), []).append(i)
     for members in groups.values():
         found = np.zeros((len(members), c.N_OUT))
-        many_impacts(kernels_of(scenes[0].law), _given([rows[i] for i in members]), found)
+        _walked(scenes[0].law, _given([rows[i] for i in members]), found)
         out[members] = found
     return out
 

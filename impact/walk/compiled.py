@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import Any, NamedTuple
+from typing import Any
 
 import numpy as np
 from numba import int64, njit, types
@@ -19,12 +19,12 @@ from .change import change, part
 from .events import rubbing
 from .flight import N_FAST
 from .land import AGAIN, NONE
-from .layout import MATRIX, MODEL, OBSERVABLES, PLAIN, WORK, WORK_TUPLE, Model, Work
+from .layout import MATRIX, MODEL, OBSERVABLES, PLAIN, WORK, WORK_TUPLE, Given, Model, Work
 from .record import begin, finish, note, note_flight
 from .step import STAGES
 from .touch import refresh, touch
 
-__all__ = ["OBSERVABLES", "Given", "many_impacts"]
+__all__ = ["OBSERVABLES", "many_impacts"]
 
 
 # fmt: off
@@ -66,19 +66,6 @@ def walk(m, w):
             note_flight(m, w, w.z[at.TIME])
             touch(m, w)
     finish(m, w)
-
-
-class Given(NamedTuple):
-    """What impacts are given, one row each or one row for all; `breaks` are one vector for all."""
-
-    par: Any
-    force: Any
-    factors: Any
-    breaks: Any
-    body: Any
-    surface: Any
-    omega: Any
-    psi: Any
 
 
 def many_impacts(

@@ -23,6 +23,19 @@ PLAIN = {
 }
 
 
+class Given(NamedTuple):
+    """What impacts are given, one row each or one row for all; `breaks` are one vector for all."""
+
+    par: Any
+    force: Any
+    factors: Any
+    breaks: Any
+    body: Any
+    surface: Any
+    omega: Any
+    psi: Any
+
+
 class Model(NamedTuple):
     """What stays as it is during an impact: the law's kernels and numbers, body, modes, sums."""
 
