@@ -50,7 +50,8 @@ def factor(factors, column, x):
     first, last = column * n, n - 1
     place = (math.log(max(x, 1e-300)) - LOG_DEPTH_FIRST) / (LOG_DEPTH_LAST - LOG_DEPTH_FIRST)
     place = min(max(place * last, 0.0), float(last))
-    i = min(int(place), last - 1)
+    # nan is no index
+    i = int(min(place, last - 1.0)) if place > 0.0 else 0
     t = place - i
     here, there = factors[first + i], factors[first + i + 1]
     before = factors[first + i - 1] if i > 0 else 2.0 * here - there

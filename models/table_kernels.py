@@ -20,7 +20,8 @@ def _column(par, column, x):
     """A column at x = ln(depth/R): cubics between points, straight lines beyond both ends."""
     n = int(par[_COUNT])
     place = (x - par[_FIRST]) / par[_STEP]
-    k = int(min(max(place, 0.0), n - 2.0))
+    # nan is no index
+    k = int(min(place, n - 2.0)) if place > 0.0 else 0
     at = _START + 2 * (column * n + k)
     v0, s0, v1, s1 = par[at], par[at + 1], par[at + 2], par[at + 3]
     t = place - k

@@ -11,6 +11,7 @@ or is no number, from somewhere on has a table up to there.
 
 from __future__ import annotations
 
+import math
 from collections.abc import Callable
 from dataclasses import dataclass
 
@@ -173,10 +174,11 @@ def cell_at(table, at, x):
     """Return the cell that holds `x`, of the table that begins at `at`."""
     bins = int(table[at + BINS])
     place = (x - table[at + _LOW]) * table[at + _BINS_PER_UNIT]
-    k = min(int(max(place, 0.0)), bins - 1)
+    # no whole number holds nan or 1e19: an index of one would point outside the table
+    k = int(min(place, bins - 1.0)) if place > 0.0 else 0
     cell = int(table[at + GUIDE + k])
     first = at + GUIDE + bins
-    while x >= table[first + cell + 1]:
+    while table[first + cell + 1] <= x < math.inf:
         cell += 1
     return cell
 

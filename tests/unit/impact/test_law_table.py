@@ -9,6 +9,7 @@ import numpy as np
 import pytest
 from dentscope.core import InputError, Material, Pair
 from dentscope.impact import Approach, Settings, Striker, scene_of, strike
+from dentscope.impact.force import factor
 from dentscope.impact.tabulated.cells import cell_at, cells_of, column_in
 from dentscope.impact.tabulated.law_table import ERROR, tabulated
 from dentscope.models import LAWS
@@ -114,3 +115,12 @@ def test_cells_are_halved_until_kinks_and_jumps_are_narrow() -> None:
     # beyond the range straight on
     assert column_at(table.vector, 0, 0, 1.5) == pytest.approx(1.377, abs=1e-8)
     assert column_at(table.vector, 0, 0, -0.5) == pytest.approx(0.623, abs=1e-8)
+
+
+@pytest.mark.parametrize("x", [math.inf, -math.inf, math.nan, 1e300])
+def test_no_place_is_looked_for_outside_a_table(x) -> None:
+    """A whole number that cannot hold the place pointed outside the table: a crash now and then."""
+    table = cells_of(lambda x: np.stack([np.sin(x)], axis=1), 0.0, 3.0, tolerance=1e-9)
+    assert 0 <= cell_at(table.vector, 0, x) <= table.count + 1
+    found = factor(np.ones(5 * 7), 0, x)
+    assert found == 1.0 or (math.isnan(x) and math.isnan(found))
