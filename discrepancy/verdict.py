@@ -7,6 +7,7 @@ held-out conditions -> next experiment. `Verdict.to_dict` gives verdict.json, ve
 from __future__ import annotations
 
 from collections.abc import Sequence
+from typing import Any, NamedTuple
 
 import numpy as np
 
@@ -15,10 +16,11 @@ from ..impact.mechanisms import MECHANISMS, NAMELESS, Mechanism
 from ..impact.mechanisms.own import own_mechanisms, uncovered
 from ..recordings import RecordingSet
 from .baseline.laws import LawChoice
+from .choice.decide import Choice
 from .choice.judge import Judge
 from .choice.odds import OUTSIDE
 from .choice.pairs import with_pairs
-from .choice.thresholds import null_residuals
+from .choice.thresholds import Nulls, null_residuals
 from .comparison.forward import Point, Simulator
 from .comparison.problem import problem_of
 from .correction import correct
@@ -39,8 +41,35 @@ from .findings import Verdict
 from .heldout import held_out
 from .inference.sampling import confirm_evidence
 from .locate import locate
-from .rank import Progress, rank
+from .rank import Progress, Ranking, rank
 from .rules import RULES
+
+
+class _Asked(NamedTuple):
+    """What a verdict is asked of, and how."""
+
+    recordings: RecordingSet
+    audit: tuple[dict[str, Any], ...]
+    own: tuple[Mechanism, ...]
+    seed: int
+    rng: np.random.Generator
+    progress: Progress
+
+
+class _Explained(NamedTuple):
+    """All explanations fitted, and what judges them."""
+
+    simulator: Simulator
+    ranking: Ranking
+    nulls: Nulls
+    judge: Judge
+
+
+class _Decided(NamedTuple):
+    """What was chosen; ln evidences of the leading explanations where they were sampled."""
+
+    choice: Choice
+    sampled: dict[str, float]
 
 
 @in_one_thread
@@ -77,54 +106,63 @@ def diagnose(
     InputError
         The set holds nothing that can be compared, or a mechanism bears a name of the library.
     """
-    own = own_mechanisms(mechanisms)
     rng = np.random.default_rng(seed)
+    own = own_mechanisms(mechanisms)
     progress("auditing the inputs")
-    audit = audit_rows(recordings)
+    asked = _Asked(recordings, audit_rows(recordings), own, seed, rng, progress)
     chosen = law or ("table" if confirm else None)
     simulator = Simulator(problem_of(recordings, law=chosen, progress=progress))
-
-    ranking = rank(simulator, mechanisms=(*MECHANISMS, *NAMELESS, *own), progress=progress)
-    simulator = simulator.of(ranking.problem)
-    progress("simulating sets in which nothing is missing")
-    nulls = null_residuals(
-        simulator, ranking.base, RULES.confirmed_nulls if confirm else RULES.nulls, rng
-    )
-    judge = Judge.of(ranking, nulls)
-    if judge.wants_second(ranking):
-        ranking = with_pairs(simulator, ranking, progress=progress)
-
+    found = _explained(asked, simulator, nulls=RULES.confirmed_nulls if confirm else RULES.nulls)
     progress("deciding")
-    choice = judge.decided(ranking, {})
-    sampled: dict[str, float] = {}
+    decided = _Decided(found.judge.decided(found.ranking, {}), {})
     if confirm:
-        leading = [ranking.base, *choice.members]
-        sampled = confirm_evidence(simulator, leading, rng, progress)
-        choice = judge.decided(ranking, sampled)
+        leading = [found.ranking.base, *decided.choice.members]
+        sampled = confirm_evidence(found.simulator, leading, rng, progress)
+        decided = _Decided(found.judge.decided(found.ranking, sampled), sampled)
+    return _told(asked, found, decided)
+
+
+def _explained(asked: _Asked, simulator: Simulator, *, nulls: int) -> _Explained:
+    """Fit the baseline and every mechanism; pairs where no mechanism alone fits."""
+    library = (*MECHANISMS, *NAMELESS, *asked.own)
+    ranking = rank(simulator, mechanisms=library, progress=asked.progress)
+    simulator = simulator.of(ranking.problem)
+    asked.progress("simulating sets in which nothing is missing")
+    residuals = null_residuals(simulator, ranking.base, nulls, asked.rng)
+    judge = Judge.of(ranking, residuals)
+    if judge.wants_second(ranking):
+        ranking = with_pairs(simulator, ranking, progress=asked.progress)
+    return _Explained(simulator, ranking, residuals, judge)
+
+
+def _told(asked: _Asked, found: _Explained, decided: _Decided) -> Verdict:
+    """Locate the mismatch, predict what was left out, propose, and say it all."""
+    simulator, ranking, nulls, judge = found
+    choice, sampled = decided
+    problem, base = ranking.problem, ranking.base
     odds = judge.odds(ranking, sampled)
-    progress("predicting conditions that were left out")
-    left_out = {f.name: held_out(ranking.problem, f) for f in ranking.fits}
-    progress("looking for the next experiment")
-    best = choice.members[0] if choice.members else ranking.base
-    proposals = propose(simulator, ranking, odds, rng)
-    corrections = correct(simulator, ranking.base) if choice.verdict == OUTSIDE else ()
+    asked.progress("predicting conditions that were left out")
+    left_out = {f.name: held_out(problem, f) for f in ranking.fits}
+    asked.progress("looking for the next experiment")
+    proposals = propose(simulator, ranking, odds, asked.rng)
+    best = choice.members[0] if choice.members else base
+    stated = simulator.predict((), [Point(np.zeros(problem.n_z))])[0]
+    misfit = misfit_of(problem, base, stated)
     misses = int(choice.verdict not in ("adequate", "undetermined"))
-    stated = simulator.predict((), [Point(np.zeros(ranking.problem.n_z))])[0]
-    misfit = misfit_of(ranking.problem, ranking.base, stated)
-    notes = (*notes_of(ranking.problem, best), *law_notes(ranking.problem, misfit),
-             *uncovered(own))  # fmt: skip
+    p_values = {f.name: judge.test(f).p_value for f in ranking.fits}
+    notes = (*notes_of(problem, best), *law_notes(problem, misfit), *uncovered(asked.own))
     return Verdict(
-        name=recordings.name, seed=seed, choice=choice, audit=audit,
+        name=asked.recordings.name, seed=asked.seed, choice=choice, audit=asked.audit,
         probabilities=dict(odds.probability), inclusion=odds.inclusion,
-        scores=scores_of(ranking, {f.name: judge.test(f).p_value for f in ranking.fits}, left_out,
-                         sampled),
-        located=locate(ranking.problem, ranking.base, nulls, least=misses),
-        parameters=parameters_of(simulator, best), nuisance_pulls=pulls_of(ranking.problem, best),
-        surprise=surprises_of(ranking.problem, best), excluded=ranking.excluded,
+        scores=scores_of(ranking, p_values, left_out, sampled),
+        located=locate(problem, base, nulls, least=misses),
+        parameters=parameters_of(simulator, best), nuisance_pulls=pulls_of(problem, best),
+        surprise=surprises_of(problem, best), excluded=ranking.excluded,
         limits=limits_of(ranking),
-        improvement=improvement_of(left_out[ranking.base.name], left_out[best.name]),
-        misfit=misfit,
-        stated=stated, corrections=corrections, proposals=tuple(proposals[: RULES.proposed]),
+        improvement=improvement_of(left_out[base.name], left_out[best.name]),
+        misfit=misfit, stated=stated,
+        corrections=correct(simulator, base) if choice.verdict == OUTSIDE else (),
+        proposals=tuple(proposals[: RULES.proposed]),
         notes=notes, ranking=ranking, best=best, impacts=simulator.tally.impacts,
     )  # fmt: skip
 
