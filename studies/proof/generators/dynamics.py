@@ -141,6 +141,24 @@ class _Touches(NamedTuple):
     parted: float
 
 
+class _Sums(NamedTuple):
+    """Impulses [N s] and work [J] of the contact so far, and its largest force [N]."""
+
+    normal: float
+    tangential: float
+    work: float
+    peak: float
+
+
+class _Slid(NamedTuple):
+    """Where the contact is on the flat, how far it has slid, and the ends of that way [m]."""
+
+    place: float
+    way: float
+    most: float
+    least: float
+
+
 @njit(cache=True)
 def _body(p):
     """State of the striker as it comes in: the contact point approaches at the normal speed."""
@@ -267,6 +285,22 @@ def _touched(touches, solid, t):
 
 
 @njit(cache=True)
+def _slid(slid, touching, place):
+    """Sliding after a step: what is travelled between two contacts is none."""
+    way, most, least = slid.way, slid.most, slid.least
+    if touching:
+        way += place - slid.place
+        most, least = max(most, way), min(least, way)
+    return _Slid(place, way, most, least)
+
+
+@njit(cache=True)
+def _energy(m, inertia, vx, vy, spin):
+    """Kinetic energy of the striker [J]."""
+    return 0.5 * m * (vx * vx + vy * vy) + 0.5 * inertia * spin * spin
+
+
+@njit(cache=True)
 def _leaving(p, body, rod):
     """Rigid motion of the striker that leaves, and its moment of inertia [kg m2]."""
     m, half, theta = p[at.MASS], 0.5 * p[at.LENGTH], p[at.THETA]
@@ -301,6 +335,24 @@ def _given_up(p, memory, approach, t, touches, scale, speed):
 
 
 @njit(cache=True)
+def _written(p, result, body, inertia, touches, sums, memory, vy):
+    """Write what the contact gave and how the striker leaves, at `vy` when it parts [m/s]."""
+    result[at.TIME] = touches.last - touches.first
+    result[at.PEAK_FORCE] = sums.peak
+    result[at.REBOUND_SPIN] = body.spin
+    result[at.IMPULSE_RATIO] = abs(sums.tangential) / sums.normal if sums.normal > 0.0 else 0.0
+    result[at.REBOUND] = vy
+    result[at.TANGENTIAL_REBOUND] = body.vx
+    result[at.NORMAL_IMPULSE] = sums.normal
+    result[at.TANGENTIAL_IMPULSE] = sums.tangential
+    result[at.WORK] = sums.work
+    result[at.ENERGY_OUT] = _energy(p[at.MASS], inertia, body.vx, vy, body.spin)
+    result[at.CONTACTS] = touches.contacts
+    result[at.PEAK_DEPTH] = memory[PEAK]
+    result[at.DEPTH] = memory[FREED] + memory[LAYER_MOST] * p[at.ROUGH_LOSS]
+
+
+@njit(cache=True)
 def impact(p, result, trace):
     """Run one impact; write `result` (N_RESULTS,) and samples of `trace` (k, 4).
 
@@ -323,14 +375,13 @@ def impact(p, result, trace):
     if rod.n:
         dt = min(dt, rod.stable)
     mobility = 1.0 / rod.mass[0] + R * R / rod.rotary if rod.n else 1.0 / m + body.s**2 / inertia
-    e_in = 0.5 * m * (body.vx * body.vx + body.vy * body.vy) + 0.5 * inertia * body.spin * body.spin
+    e_in = _energy(m, inertia, body.vx, body.vy, body.spin)
     tip_in = body.vy - body.spin * body.c
     start = -p[at.FILM_THICKNESS] if p[at.FILM_VISCOSITY] > 0.0 else 0.0
     approach, tip_x, sw, sdw = start, 0.0, 0.0, 0.0
-    Ft, a_last, t, peak = 0.0, 0.0, 0.0, 0.0
+    Ft, a_last, t = 0.0, 0.0, 0.0
     touches = _Touches(False, 0, -1.0, 0.0, 0.0)
-    most, least, slid, place = 0.0, 0.0, 0.0, 0.0
-    Pn, Pt, work = 0.0, 0.0, 0.0
+    slid, sums = _Slid(0.0, 0.0, 0.0, 0.0), _Sums(0.0, 0.0, 0.0, 0.0)
     every, kept, ended = 1, 0, 0
     for count in range(_BUDGET):
         step = dt
@@ -346,48 +397,30 @@ def impact(p, result, trace):
             kept, every = _sampled(trace, kept, every, count, t, -approach - sw, Fn, tip_x)
         solid = Fn > 0.0 and memory[LAST] > 0.0
         touches = _touched(touches, solid, t)
-        if solid and Fn > peak:
-            peak = Fn
-        Pn += Fn * step
-        Pt += Ft * step
         if rod.n:
             _moved_rod(p, rod, Fn, Ft, step)
         else:
             body = _moved_body(p, body, Fn, Ft, step)
         new_along, new_out = _contact_speed(p, body, rod)
-        work += step * (Fn * 0.5 * (out + new_out) + Ft * 0.5 * (along + new_along))
+        sums = _Sums(
+            sums.normal + Fn * step, sums.tangential + Ft * step,
+            sums.work + step * (Fn * 0.5 * (out + new_out) + Ft * 0.5 * (along + new_along)),
+            Fn if solid and Fn > sums.peak else sums.peak,
+        )  # fmt: skip
         sw, sdw = _support_step(p, Fn, sw, sdw, step)
         t += step
         tip_x, height, rolled = _tip_place(p, body, rod)
         approach = start - height - sw
-        # the material point that touches: with the tip's centre, and with its turning; what it
-        # travels between two contacts is no sliding
-        if touches.now:
-            slid += tip_x + rolled - place
-            most, least = max(most, slid), min(least, slid)
-        place = tip_x + rolled
+        # the material point that touches: with the tip's centre, and with its turning
+        slid = _slid(slid, touches.now, tip_x + rolled)
         ended = _given_up(p, memory, approach, t, touches, scale, abs(tip_in))
         if ended:
             break
     body, inertia = _leaving(p, body, rod)
     vy = body.vy + p[at.GRAVITY] * (t - touches.last)
-    e_out = 0.5 * m * (body.vx * body.vx + vy * vy) + 0.5 * inertia * body.spin * body.spin
+    _written(p, result, body, inertia, touches, sums, memory, vy)
     result[at.RESTITUTION] = -(vy - body.spin * body.c) / tip_in
-    result[at.TIME] = touches.last - touches.first
-    result[at.PEAK_FORCE] = peak
-    result[at.REBOUND_SPIN] = body.spin
-    result[at.IMPULSE_RATIO] = abs(Pt) / Pn if Pn > 0.0 else 0.0
-    result[at.SLIDING] = most - least
-    result[at.REBOUND] = vy
-    result[at.TANGENTIAL_REBOUND] = body.vx
-    result[at.NORMAL_IMPULSE] = Pn
-    result[at.TANGENTIAL_IMPULSE] = Pt
-    result[at.WORK] = work
-    result[at.ENERGY_IN] = e_in
-    result[at.ENERGY_OUT] = e_out
-    result[at.CONTACTS] = touches.contacts
-    result[at.PEAK_DEPTH] = memory[PEAK]
-    result[at.DEPTH] = memory[FREED] + memory[LAYER_MOST] * p[at.ROUGH_LOSS]
+    result[at.SLIDING], result[at.ENERGY_IN] = slid.most - slid.least, e_in
     result[at.COMPLETED] = 1.0 if ended == 1 else 0.0
     if len(trace) > 1:
         trace[0, 0] = kept
