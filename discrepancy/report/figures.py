@@ -73,6 +73,8 @@ def comparison(
         positive = np.array([[p.measured, p.as_stated, p.best_without] for p in points])
         _axis(upper, "y", positive, log=row.log)
         _axis(upper, "x", x, log=against.key in ("speed_m_s", "load_N"))
+        if not np.ptp(x):  # else the axis is as wide as what stands apart beside the one place
+            upper.set_xlim(*(x[0] + 0.5 * side * (abs(x[0]) or 1.0) for side in (-1.0, 1.0)))
         shift = _sideways(x, log=upper.get_xscale() == "log")
         for n, p in enumerate(points):
             marker = MARKERS[strikers.index(p.striker) % len(MARKERS)]
