@@ -85,7 +85,7 @@ def _times(nats: float) -> str:
     """Return a ratio of probabilities in words."""
     if nats > math.log(1e6):
         return "more than a million times"
-    return f"{float(f'{math.exp(nats):.2g}'):,.4g} times"
+    return f"{float(f'{math.exp(nats):.2g}'):,.7g} times"
 
 
 def nowhere(v: Verdict) -> str:

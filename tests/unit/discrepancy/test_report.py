@@ -113,6 +113,8 @@ def test_why_is_three_sentences_with_the_rivals_of_a_name() -> None:
     assert beside == (
         "Beside it: nothing is missing (10 %) and something that dentscope has no name for (6 %)."
     )
+    v.scores = {"work-hardening": {"evidence": math.log(12_345.0)}}
+    assert "are 12,000 times as probable" in why(v)
     v.scores = {"work-hardening": {"evidence": 50.0}}
     assert "more than a million times" in why(v)
     v.probabilities = {"baseline": 0.998, "work-hardening": 0.002}
