@@ -38,8 +38,10 @@ def derived_columns(recordings: RecordingSet, readings: Mapping[str, Readings]) 
     found = {}
     for relation in _relations(recordings, readings):
         own = readings[relation.column]
-        apart = (own.value - relation.value) / own.std
-        apart = apart[np.isfinite(apart)]
+        # a value of zero whose noise is a part of itself says nothing of how well two agree
+        apart = own.value - relation.value
+        told = np.isfinite(apart) & (own.std > 0.0)
+        apart = apart[told] / own.std[told]
         if len(apart) < RULES.derived_trials:
             continue
         if float(np.sqrt(np.mean(apart**2))) < RULES.derived:

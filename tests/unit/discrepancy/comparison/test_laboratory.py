@@ -71,6 +71,14 @@ def test_a_second_instrument_counts(tmp_path: Path) -> None:
     assert not any("counted once" in note for note in given.notes)
 
 
+def test_a_depth_of_zero_has_no_part_in_what_is_derived(tmp_path: Path) -> None:
+    head = "trial,striker,angle_deg,impact_speed_m_s,permanent_depth_m,dent_diameter_m\n"
+    rows = [f"{k},small,90,{1 + k},{d},{6e-4 + 2e-4 * k}\n" for k, d in enumerate((0, 1e-5, 4e-5))]
+    with np.errstate(all="raise"):
+        given = problem(tmp_path, head + "".join(rows))
+    assert given.cells.observable.count("permanent_depth_m") == 2
+
+
 def test_a_depth_that_is_the_cap_of_its_diameter_is_no_depth(tmp_path: Path) -> None:
     head = "trial,striker,angle_deg,impact_speed_m_s,permanent_depth_m,dent_diameter_m\n"
     widths = (6e-4, 8e-4, 1e-3)
