@@ -80,7 +80,7 @@ class DiagnosisRules:
         2, "digits of a depth [-]",
         "sets of one pair that go as deep share a solve",
     )  # fmt: skip
-    fewest_cells: int = rule(
+    fewest_readings: int = rule(
         6, "readings below which a set says nothing [-]",
         "a mechanism's size, and five that can contradict it",
     )  # fmt: skip
@@ -98,7 +98,7 @@ class DiagnosisRules:
     )  # fmt: skip
     nameless: float = rule(
         1.0 / 3.0, "part of what is outside that is known physics without a name [-]",
-        "chosen: the rest is free",
+        "chosen: with `scaled_share` a half, the other half is free",
     )  # fmt: skip
     beside: float = rule(
         0.01, "probability of an explanation from which something may act beside it [-]",
@@ -473,9 +473,9 @@ class DiagnosisRules:
         1e-3, "part of sets in which a drift, or an effect of a column, is seen by chance [-]",
         "one in a thousand: it changes the noise of all",
     )  # fmt: skip
-    drift_readings: int = rule(
-        6, "readings that tell a drift [-]",
-        "a slope and four that can contradict it",
+    drift_freedom: int = rule(
+        6, "degrees of freedom beside the slope from which a drift is told [-]",
+        "chosen; no measurement is kept",
     )  # fmt: skip
     size_spread: float = rule(
         0.4, "standard deviation of the logarithm of the size of a law's error [-]",

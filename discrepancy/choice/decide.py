@@ -86,8 +86,8 @@ def decide(ranking: Ranking, odds: Odds, *, drifts: Sequence[Drift] = ()) -> Cho
     first = [*map(_follows, ranking.problem.followed), *map(_scattered, ranking.problem.scatters)]
     last = [*map(_drifted, drifts)]
     readings = int(np.sum(cells.count))
-    if readings < RULES.fewest_cells:
-        text = f"too few: only {readings} numbers to compare, {RULES.fewest_cells} are needed"
+    if readings < RULES.fewest_readings:
+        text = f"too few: only {readings} readings to compare, {RULES.fewest_readings} are needed"
         return Choice("undetermined", (), (*first, text, *_nevertheless(odds), *last))
     if conditions < RULES.fewest_conditions:
         text = "too few: all numbers are of one condition; nothing can follow from what varies"

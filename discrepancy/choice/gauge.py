@@ -47,7 +47,7 @@ class Scaled(NamedTuple):
 def scaled_observables(problem: Problem, base: Fit) -> tuple[Scaled, ...]:
     """Return what a factor on each observable would explain, the most first.
 
-    Of a set with one observable, or of a few readings, nothing: it could be anything.
+    Of a set with one observable, or of few numbers, nothing: it could be anything.
     """
     cells, found = problem.cells, []
     names = tuple(dict.fromkeys(cells.observable))

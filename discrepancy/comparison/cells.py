@@ -30,7 +30,7 @@ class Cells:
     value, std
         Mean (of the logarithm where logarithmic) and its standard error.
     count
-        Trials behind it.
+        Readings behind it.
     """
 
     condition: Indices

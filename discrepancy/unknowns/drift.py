@@ -60,7 +60,7 @@ def drift_of(
         y.append(value - np.average(value, weights=weight))
         s.append(std)
     free = sum(len(one) - 1 for one in x) - 1
-    if free < RULES.drift_readings:
+    if free < RULES.drift_freedom:
         return None
     place, change, std = np.concatenate(x), np.concatenate(y), np.concatenate(s)
     spread = float(np.sum((place / std) ** 2))

@@ -82,7 +82,7 @@ def test_a_place_under_an_all_clear_says_why() -> None:
 
 
 def test_too_few_numbers_may_still_miss_something() -> None:
-    few = ("too few: only 4 numbers to compare, 6 are needed",)
+    few = ("too few: only 4 readings to compare, 6 are needed",)
     told = headline(said("undetermined", 0.001, Located((), (), 3.0), reasons=few))
     assert told == "Something is missing (more than 99 %), but too few data to say what."
     told = headline(said("undetermined", 0.4, Located((), (), 3.0), reasons=few))

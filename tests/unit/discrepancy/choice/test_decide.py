@@ -58,7 +58,7 @@ def named(choice):
 def test_too_few_numbers_or_conditions_say_nothing(case) -> None:
     found = case(odds(a=1.0), cells=5)
     assert (found.verdict, named(found)) == ("undetermined", [])
-    assert "only 5 numbers" in found.reasons[0]
+    assert "only 5 readings" in found.reasons[0]
     assert case(odds(a=1.0), cells=6).verdict == "missing-physics"
 
 
