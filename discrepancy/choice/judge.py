@@ -28,7 +28,8 @@ class Judge:
     outside
         Ln evidence of something outside the library over the baseline's, less the penalty.
     nameless
-        Physics without a name, and observables with a factor, to their share of that evidence.
+        Physics without a name, by its name, and factors, by their observable, to their share of
+        that evidence.
     nulls
         Sets with nothing missing, from which each explanation's own sets are made.
     scaled
@@ -52,7 +53,7 @@ class Judge:
             n.screened.mechanism.name: n.log_bayes + math.log(own) - RULES.penalty
             for n in ranking.nameless
         }
-        parts |= {s.told: s.gain + math.log(factor) - RULES.penalty for s in scaled}
+        parts |= {s.observable: s.gain + math.log(factor) - RULES.penalty for s in scaled}
         parts[OUTSIDE] = gained + math.log(known_to_none) - RULES.penalty
         # what repeats are worth is bounded already
         parts["repeats"] = odd_repeats(ranking.problem)
@@ -95,7 +96,7 @@ class Judge:
         free = 1.0 - sum(odds.beside.values()) / odds.outside
         share = {name: free * part for name, part in self.nameless.items()}
         alike = [n for n in ranking.nameless if share[n.screened.mechanism.name] > RULES.resembles]
-        factors = [s for s in self.scaled if share[s.told] > RULES.resembles]
+        factors = [s for s in self.scaled if share[s.observable] > RULES.resembles]
         told = [
             *(self._nearest(f) for f in near),
             *(_behaves(n, share[n.screened.mechanism.name]) for n in alike),
