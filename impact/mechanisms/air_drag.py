@@ -54,7 +54,7 @@ class AirDrag(Mechanism):
     )
 
     def applies(self, situations: Sequence[Situation]) -> str:
-        """Needs a light or a fast striker in air, or a liquid of which all is stated."""
+        """Needs a light or a fast striker in air, or a liquid of stated density and viscosity."""
         around = situations[0][1]
         liquid = around.fluid.strip().lower() not in _GASES
         if liquid and not (around.density > 0.0 and around.viscosity > 0.0):
@@ -102,8 +102,11 @@ class AirDrag(Mechanism):
         }
 
 
-def _air(values: Values, around: Surroundings) -> Fluid:
-    """Air whose drag is `drag` times the standard one: density scaled, Reynolds number kept."""
+def _fluid(values: Values, around: Surroundings) -> Fluid:
+    """Fluid around, its drag `drag` times the standard one: Reynolds number kept, density scaled.
+
+    What is not stated is air's.
+    """
     still = air(around.ambient, *([around.pressure] if around.pressure > 0.0 else []))
     density = around.density if around.density > 0.0 else still.density
     viscosity = around.viscosity if around.viscosity > 0.0 else still.viscosity
@@ -116,9 +119,9 @@ def _arriving(scene: Scene, values: Values, around: Surroundings) -> float:
     whole = stated**2 / (2.0 * g) if g > 0.0 else math.inf
     fall = whole if around.from_height else min(values["reading_m"], whole)
     start, a = math.sqrt(max(stated**2 - 2.0 * g * fall, 0.0)), scene.approach
-    fluid = _air(values, around)
+    fluid = _fluid(values, around)
     arrived = _fallen(scene.striker, fluid, start, fall, a.tangential, a.angle, g)
-    # one that air stops keeps a twentieth, so that there is an impact
+    # one that the fluid stops keeps a twentieth, so that there is an impact
     return float(np.fmax(arrived, 0.05 * stated))
 
 
@@ -128,7 +131,7 @@ def _fallen(
     striker: Striker, fluid: Fluid, start: float, fall: float, tangential: float, angle: float,
     gravity: float,
 ) -> float:  # fmt: skip
-    """Normal speed after a fall that begins with `start` [m/s]; nan where the air stops it."""
+    """Normal speed after a fall that begins with `start` [m/s]; nan where the fluid stops it."""
     arrived = flown(
         striker, fluid, normal=-start, rise=-fall, tangential=tangential, angle=angle,
         gravity=gravity,
@@ -145,7 +148,7 @@ def _read_after(scene: Scene, left: float, values: Values, around: Surroundings)
     if not rise > 0.0:
         return left
     seen = flown(
-        scene.striker, _air(values, around), normal=left, rise=rise,
+        scene.striker, _fluid(values, around), normal=left, rise=rise,
         angle=scene.approach.angle, gravity=g,
     )  # fmt: skip
     there = float(seen.normal)
