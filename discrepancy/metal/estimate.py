@@ -21,7 +21,10 @@ from ...core.errors import InputError
 from ...core.inputs.flow_curve import SPECIMENS, Rise
 from ...impact import dent_radius
 from ...impact.mechanisms.base import Constants, Mechanism, attached
-from ...impact.mechanisms.strength.strain_rate_hardening import StrainRateHardening, tested
+from ...impact.mechanisms.strength.strain_rate_hardening import (
+    StrainRateHardening,
+    rises_misfit,
+)
 from ...recordings import RecordingSet
 from ..comparison.forward import Point, Simulator
 from ..comparison.problem import Problem, problem_of
@@ -202,7 +205,7 @@ def rate_prior(rises: Sequence[Rise]) -> Array:
     axes = [np.linspace(of[name].low, of[name].high, 200) for name in list(RATE)[:2]]
     at = np.array(np.meshgrid(*axes, indexing="ij"))
     away = (at - prior[:2, 0, None, None]) / prior[:2, 1, None, None]
-    weight = np.exp(-0.5 * (tested(rises, *at) + (away**2).sum(axis=0)))
+    weight = np.exp(-0.5 * (rises_misfit(rises, *at) + (away**2).sum(axis=0)))
     mean = (weight * at).sum(axis=(1, 2)) / weight.sum()
     apart = at - mean[:, None, None]
     prior[:2, 0] = mean

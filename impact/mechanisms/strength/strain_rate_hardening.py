@@ -43,7 +43,7 @@ class RateProfile(StrengthProfile):
         return np.asarray(1.0 + self.rise * (rate / REFERENCE_RATE) ** self.exponent)
 
 
-def tested(rises: Sequence[Rise], rise: Array, exponent: Array) -> Array:
+def rises_misfit(rises: Sequence[Rise], rise: Array, exponent: Array) -> Array:
     """Chi-squared of 1 + A (r/1000)^n against flow curves at several rates, broadcast over A and n.
 
     Specimens of one metal differ; the slowest one is in every ratio.
@@ -97,7 +97,7 @@ class StrainRateHardening(FlowMechanism):
         places = np.linspace(0.0, 1.0, 241)
         sizes = rise.value(places)
         # of each rise the exponent counts that fits best
-        misfit = tested(rises, sizes[:, None], exponent.value(places)).min(axis=1)
+        misfit = rises_misfit(rises, sizes[:, None], exponent.value(places)).min(axis=1)
         left = sizes[misfit <= misfit.min() + RULES.rate_law_apart]
         found = replace(
             rise, low=float(left[0]), high=float(left[-1]), source="flow curves at several rates"
@@ -111,13 +111,12 @@ class StrainRateHardening(FlowMechanism):
         if kept == 1.0:
             return found
         table = strength_table(scene.law, scene.pair)
-        own = RateProfile(values["rise_at_1000_per_s"], values["rate_exponent"])
-        strength = own.profile(scene, table)
+        strength = self.strength(scene, values, around).profile(scene, table)
         back, whole = (table.given_back(s) for s in (1.0 + kept * (strength - 1.0), strength))
         less = times(scene.force.recovery_factors, back / whole)
         return found.with_(force=replace(found.force, recovery_factors=less))
 
-    def strength(self, scene: Scene, values: Values, around: Surroundings) -> FlowStress:
+    def strength(self, scene: Scene, values: Values, around: Surroundings) -> RateProfile:
         """Return the profile of this mechanism."""
         return RateProfile(values["rise_at_1000_per_s"], values["rate_exponent"])
 
