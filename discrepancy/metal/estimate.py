@@ -25,6 +25,7 @@ from ...impact.mechanisms.strength.strain_rate_hardening import (
     StrainRateHardening,
     rises_misfit,
 )
+from ...models.hardening import REPRESENTATIVE
 from ...recordings import RecordingSet
 from ..comparison.forward import Point, Simulator
 from ..comparison.problem import Problem, problem_of
@@ -339,7 +340,7 @@ def _marks(problem: Problem, fit: _Fit, u: Array, J: Array) -> tuple[Array, tupl
     simulator = Simulator(problem)
     peak = simulator.observe(fit.mechanisms, [point])["peak_depth_m"][0]
     R = np.array([s.pair.R for s in scenes])
-    strain = 0.2 * np.minimum(dent_radius(scenes, peak) / R, 1.0)
+    strain = REPRESENTATIVE * np.minimum(dent_radius(scenes, peak) / R, 1.0)
     cells, k = problem.cells, fit.known
     here = strain[cells.condition[:k]]
     at = weights(here) @ fit.map @ u
