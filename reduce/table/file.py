@@ -203,11 +203,16 @@ def columns_of(rows: list[list[str]], source: str) -> Columns:
     InputError
         No row of numbers.
     """
-    first = _first(rows)
+    known = [is_data(row) for row in rows]
+    first = _first(rows, known)
     if first is None:
         raise InputError("no row of numbers", source=source, allowed="columns of numbers")
     held = [_is_number(cell) for cell in rows[first]]
-    data = [row for row in rows[first:] if is_data(row) or _has_hole(row, held)]
+    data = [
+        row
+        for row, is_known in zip(rows[first:], known[first:], strict=True)
+        if is_known or _has_hole(row, held)
+    ]
     width = max(map(len, data))
     cells = tuple(tuple((row + [""] * width)[:width]) for row in data)
     values = np.array([[value_of(cell) for cell in row] for row in cells])
@@ -224,12 +229,11 @@ def _filled(row: Sequence[str]) -> list[str]:
     return [cell for cell in row if cell]
 
 
-def _first(rows: Sequence[Sequence[str]]) -> int | None:
-    """The first row of numbers that is not alone among the lines of a header."""
-    data = [k for k, row in enumerate(rows) if is_data(row)]
+def _first(rows: Sequence[Sequence[str]], known: Sequence[bool]) -> int | None:
+    """The first row of numbers, as `known`, that is not alone among the lines of a header."""
+    data = [k for k, row_is in enumerate(known) if row_is]
     filled = [k for k, row in enumerate(rows) if _filled(row)]
-    following, known = dict(pairwise(filled)), set(data)
-    together = [k for k in data if following.get(k) in known]
+    together = [k for k, after in pairwise(filled) if known[k] and known[after]]
     return together[0] if len(together) > 1 else data[0] if data else None
 
 
