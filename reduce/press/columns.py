@@ -124,11 +124,12 @@ def _tables(path: Path, options: PressOptions) -> Iterator[Columns]:
     data = [is_data(row) for row in rows]
     begins = [0]
     for k in range(1, len(rows)):
-        head = not data[k - 1] and data[k] and len([c for c in rows[k - 1] if c]) > 1
+        if data[k - 1] or not data[k] or len([c for c in rows[k - 1] if c]) < 2:
+            continue  # not the end of a header
         first = k - 1
         while first > 0 and not data[first - 1]:
             first -= 1
-        if head and first > 0 and len(rows[first - 1]) > 1:
+        if first > 0 and len(rows[first - 1]) > 1:
             begins.append(first)
     for begin, end in zip(begins, [*begins[1:], len(rows)], strict=True):
         yield columns_of(rows[begin:end], str(path))
