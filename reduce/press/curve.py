@@ -7,7 +7,7 @@ import math
 import numpy as np
 from scipy.optimize import least_squares
 
-from ...core.arrays import Array, Indices
+from ...core.arrays import Array
 from ..flank import meets_zero
 from ..measured import Measured
 from ..regression import unit_covariance
@@ -93,8 +93,3 @@ def _slope(load: Array, depth: Array, cycle: Cycle, low: float) -> Measured:
     sigma = math.sqrt(float(fit.fun @ fit.fun) / max(part.size - 3, 1))
     std = sigma * math.sqrt(max(float(unit_covariance(fit.jac)[1, 1]), 0.0))
     return Measured(float(fit.x[1]), std).scaled(cycle.peak / span)
-
-
-def rows_of(load: Array, cycle: Cycle) -> Indices:
-    """Return the rows of a cycle's loading and unloading, for a picture."""
-    return np.concatenate([virgin(load, cycle.turn + 1), cycle.unloading])

@@ -45,6 +45,11 @@ class ReducedPress:
     stiffness: Measured
     crept: float
 
+    @property
+    def stays(self) -> bool:
+        """Whether the depth that stays is seen beyond its error."""
+        return self.left.value > 2.0 * self.left.std
+
     def values(self) -> dict[str, Measured]:
         """What was measured, by name."""
         return {
@@ -88,8 +93,7 @@ class PressReduction:
     def trial(self, press: ReducedPress, label: str) -> Trial:
         """Return the row of a press: what hangs on an unknown compliance is left out of it."""
         seen = {"load_N": press.load}
-        stays = press.left.value > 2.0 * press.left.std
-        if stays:
+        if press.stays:
             seen["permanent_depth_m"] = press.left
         if self.compliance is not None:
             seen |= {"press_depth_m": press.deepest, "recovered_depth_m": press.recovered}
@@ -229,6 +233,6 @@ def _told(record: PressRecord, presses: tuple[ReducedPress, ...]) -> list[str]:
         told.append(f"unloaded to {least:.0%} of the load: the rest is made up from the unloading")
     if abs(largest.crept) > 0.005 * largest.deepest.value:
         told.append(f"{largest.crept * 1e6:.3g} um came while the load was held: part of the depth")
-    if not largest.left.value > 2.0 * largest.left.std:
+    if not largest.stays:
         told.append(f"no depth that stays is seen: {largest.left.scaled(1e6)} um")
     return told
