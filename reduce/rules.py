@@ -56,7 +56,7 @@ class ReductionRules:
         "tools/benchmarks/validate_reduce_pulse.py: powers of a sine from 1 to 1.5",
     )  # fmt: skip
     hole: float = rule(
-        0.1, "longest time between two samples of a pulse, in its duration [-]",
+        0.1, "longest hole in a pulse or a press, in its duration; under a press's top, in it [-]",
         "a half-sine loses 1 % of its area there at most",
     )  # fmt: skip
     pulse_over_noise: float = rule(
@@ -81,16 +81,24 @@ class ReductionRules:
         12.0, "time of a flank in that of the other [-]",
         "the flanks of an impact are as 1 to its restitution or less: 0.1 at least",
     )  # fmt: skip
-    duration_error: float = rule(
-        0.5, "standard deviation of a contact time, in itself [-]", "beyond it nothing is measured",
+    own_error: float = rule(
+        0.5, "standard deviation of a contact time or of a crater's depth, in itself [-]",
+        "beyond it nothing is measured",
     )  # fmt: skip
     step: float = rule(
         0.33, "level after a pulse, in its peak [-]",
         "tools/benchmarks/validate_reduce_pulse.py",
     )  # fmt: skip
+    swing: float = rule(
+        0.33, "half-wave beside a pulse that counts, in the peak [-]",
+        "chosen: a third; no measurement is kept",
+    )  # fmt: skip
     swings: int = rule(
-        6, "other half-waves above a third of the peak [-]",
-        "tools/benchmarks/validate_reduce_pulse.py",
+        6, "other half-waves of that height [-]", "tools/benchmarks/validate_reduce_pulse.py",
+    )  # fmt: skip
+    beside: float = rule(
+        8.0, "durations before and after a pulse in which they are counted [-]",
+        "chosen; no measurement is kept",
     )  # fmt: skip
     ringing: float = rule(
         0.1, "half-wave of the other sign, in the peak [-]",
@@ -103,6 +111,10 @@ class ReductionRules:
     outside_restitution: float = rule(
         3.0, "standard deviations below 0 or above 1 [-]", "normal errors: one in 700",
     )  # fmt: skip
+    scales_agree: float = rule(
+        3.0, "standard deviations between two scales of a picture that may be the same [-]",
+        "normal errors: one in 370; within them their scatter widens the error (Birge's ratio)",
+    )  # fmt: skip
     fall_off: float = rule(
         0.3, "acceleration in flight off gravity, in gravity [-]",
         "drag and buoyancy of a table-tennis ball at its terminal speed are less",
@@ -114,10 +126,6 @@ class ReductionRules:
     full_scale: float = rule(
         0.2, "part of a sound's samples at full scale [-]",
         "contacts of a bouncing ball fill less of a record: it is cut between them too",
-    )  # fmt: skip
-    depth_error: float = rule(
-        0.5, "standard deviation of a crater's depth, in itself [-]",
-        "beyond it nothing is measured",
     )  # fmt: skip
     shortest_contact: float = rule(
         3e-5, "shortest contact of a body that bounces [s]",
@@ -230,7 +238,7 @@ class ReductionRules:
         "chosen; no measurement is kept",
     )  # fmt: skip
     flight_far: float = rule(
-        3.5, "the same far from its core [-]",
+        3.5, "standard deviations of a block of samples off a flight, far from its core [-]",
         "one in 2000: the curve is less sure there",
     )  # fmt: skip
     flight_block: float = rule(
@@ -325,16 +333,16 @@ class ReductionRules:
         4, "samples within a contact from which its two ends are told apart [-]",
         "a curve and one that can contradict it",
     )  # fmt: skip
-    soft_bend: float = rule(
-        0.85, "bend of a soft contact over that of a spring at least [-]",
-        "0.88 of elastic spheres",
+    soft_bend: tuple[float, float] = rule(
+        (0.85, 1.3), "bend of a soft contact over that of a spring, least and most [-]",
+        "0.88 of elastic spheres, 1.2 of a spring with as much damping as lets back half the speed",
     )  # fmt: skip
-    stiff_bend: float = rule(
-        1.3, "the same at most [-]",
-        "1.2 of a spring with as much damping as lets back a half of the speed",
+    touch_samples: int = rule(
+        6, "samples of a flight next to a contact that are asked how long it lasted [-]",
+        "chosen; no measurement is kept",
     )  # fmt: skip
     touch_stray: float = rule(
-        12.0, "what one of them may say at most [ln likelihood]",
+        12.0, "what one of these samples may say at most [ln likelihood]",
         "five standard deviations",
     )  # fmt: skip
     soft_ends: float = rule(
@@ -388,7 +396,7 @@ class ReductionRules:
         "a thousand times the usual one",
     )  # fmt: skip
     picture_bytes: int = limit(
-        1_000_000_000, "memory that a picture may take [bytes]",
+        1_000_000_000, "largest picture [bytes]",
         "memory of a small machine",
     )  # fmt: skip
     own_level: float = rule(
@@ -399,8 +407,8 @@ class ReductionRules:
         20_000_000_000, "largest raw file [bytes]",
         "the longest clips of the cameras that are read",
     )  # fmt: skip
-    unit_turn: float = limit(
-        1e-6, "departure of a stated direction from a unit vector [-]",
+    shortest_direction: float = limit(
+        1e-6, "length from which on three numbers are a direction [-]",
         "round-off of six digits",
     )  # fmt: skip
     table_bytes: int = limit(
@@ -457,7 +465,7 @@ class ReductionRules:
         "no turn about it is then read",
     )  # fmt: skip
     regression_rounds: int = limit(
-        40, "rounds of leaving out at most [-]",
+        40, "rounds of weighing a regression's points anew at most [-]",
         "it ends by itself",
     )  # fmt: skip
     unseen: float = limit(
@@ -534,12 +542,8 @@ class ReductionRules:
         30, "pairs of points that a lag of the autocovariance needs [-]",
         "tell it to a fifth",
     )  # fmt: skip
-    wall_from: float = rule(
-        0.08, "depth, in the whole, from which a wall is followed to the surface [-]",
-        "chosen; no measurement is kept",
-    )  # fmt: skip
-    wall_to: float = rule(
-        0.45, "depth to which it is followed [-]",
+    wall: tuple[float, float] = rule(
+        (0.08, 0.45), "depths, in the whole, between which a wall is followed to the surface [-]",
         "chosen; no measurement is kept",
     )  # fmt: skip
     wall_end: float = rule(
@@ -571,16 +575,12 @@ class ReductionRules:
         "headers of five oscilloscopes",
     )  # fmt: skip
     table_rows: int = rule(
-        20, "rows of numbers against time at least [-]",
+        20, "rows of a record against time, or of a tensile test, at least [-]",
         "ten of the level and a pulse",
     )  # fmt: skip
-    flank_low: float = rule(
-        0.06, "part of the peak from which flanks tell the ends [-]",
-        "above the noise and the foot",
-    )  # fmt: skip
-    flank_high: float = rule(
-        0.45, "part of the peak to which they do [-]",
-        "below it a half-sine and elastic spheres part",
+    flank: tuple[float, float] = rule(
+        (0.06, 0.45), "parts of the peak between which flanks tell the ends of a pulse [-]",
+        "above the noise and the foot; half-sines and elastic spheres part above it",
     )  # fmt: skip
     flank_powers: tuple[float, ...] = rule(
         (1.5, 1.2, 1.0), "powers of time that a flank may rise with [-]",
@@ -667,10 +667,9 @@ class ReductionRules:
         15, "frames from which the shape of a tip is read [-]",
         "chosen; no measurement is kept",
     )  # fmt: skip
-    mirror_blurs: tuple[float, float] = rule(
-        (3.5, 1.0),
-        "blurs above the lowest place between which a tip and its reflection are told apart [-]",
-        "farther up the reflection does not reach into it",
+    mirror_least: float = rule(
+        1.0, "blurs above the flat from which on a tip is told from its reflection [-]",
+        "chosen; no measurement is kept",
     )  # fmt: skip
     mirror_frames: int = rule(
         12, "frames from which a reflection's light is read [-]",
@@ -698,11 +697,11 @@ class ReductionRules:
         "between a pyramid's and a flat punch's",
     )  # fmt: skip
     press_bins: int = rule(
-        60, "parts of the depth in which a curve's noise is read [-]",
+        60, "means of rows alike in load that tell where it meets zero, at most [-]",
         "chosen; no measurement is kept",
     )  # fmt: skip
     channel_samples: int = limit(
-        50_000_000, "numbers of a file of channels at most [-]",
+        50_000_000, "samples of a channel at most [-]",
         "memory of a small machine",
     )  # fmt: skip
 

@@ -21,7 +21,7 @@ from ..measured import Measured, propagate
 from ..rules import RULES
 from .bounce import Bounce, Bounced
 from .fall import Ball
-from .flights import UNEVEN, Piece
+from .flights import Piece
 from .joint import SHARED, Before, JointSolution, fit_together
 from .scale import check_scale, floor_drift, frames_lost, scale_of
 from .sides import joined, known_before, sides_of, true_contacts
@@ -206,7 +206,7 @@ def _bounce(
     for gap, piece, speed in zip(meeting.gaps, (before, after), values, strict=True):
         lasts = piece.duration(body.time)
         bridged.append(math.hypot(
-            fall * UNEVEN * max(gap - 2.0 * step, 0.0), body.drift(speed * lasts) / lasts
+            fall * RULES.uneven_fall * max(gap - 2.0 * step, 0.0), body.drift(speed * lasts) / lasts
         ))  # fmt: skip
     more = [math.hypot(e, g) for e, g in zip(late, bridged, strict=True)]
     both = touch.ratio_error(fall, *values)

@@ -18,12 +18,6 @@ from ..rules import RULES
 from .track import Track
 from .view import Launch, Stage, View
 
-FEWEST = RULES.flight_samples
-"""Samples of a flight."""
-
-UNEVEN = RULES.uneven_fall
-"""Part of the fall by which the acceleration in a span without samples may be another."""
-
 
 @dataclass(frozen=True)
 class Piece:
@@ -83,9 +77,9 @@ def side(
     """
     step = 1 if end > contact else -1
     order = np.arange(contact + step, end + step, step)
-    if off and order.size - off >= FEWEST:
+    if off and order.size - off >= RULES.flight_samples:
         order = order[off:]
-    if order.size < FEWEST:
+    if order.size < RULES.flight_samples:
         return None
     size = min(RULES.flight_core, order.size)
     tried = [
@@ -95,7 +89,7 @@ def side(
     best, _ = min(tried, key=lambda found: found[1])
     if view is not None and best.straight(track.time, view.fall):
         best = _off_the_contact(track, best, step, stage, view)
-    return best if best.index.size >= FEWEST else None
+    return best if best.index.size >= RULES.flight_samples else None
 
 
 def _off_the_contact(track: Track, piece: Piece, step: int, stage: Stage, view: View) -> Piece:
@@ -202,9 +196,10 @@ class _Fit:
         parabola = self.view is None
         row = np.array([0.0, 1.0, 2.0 * late] if parabola else [0.0, 1.0])
         fall = 2.0 * self.regression.coefficients[2] if self.view is None else self.view.fall
-        bridged = UNEVEN * abs(fall) * float(np.abs(time - contact).min())
+        bridged = RULES.uneven_fall * abs(fall) * float(np.abs(time - contact).min())
         variance = float(row @ self.regression.covariance @ row)
-        return float(np.hypot(np.sqrt(variance), bridged)) if time.size >= FEWEST else np.inf
+        told = time.size >= RULES.flight_samples
+        return float(np.hypot(np.sqrt(variance), bridged)) if told else np.inf
 
 
 def _powers(tau: Array) -> Array:

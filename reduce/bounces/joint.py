@@ -17,7 +17,7 @@ from ...core.arrays import Array, Mask
 from ..measured import Measured
 from ..regression import long_run_factor, robust_std
 from ..rules import RULES
-from .flights import FEWEST, Piece
+from .flights import Piece
 from .track import Track
 from .view import Launch, Stage, View
 
@@ -166,7 +166,7 @@ def _cleaned(track: Track, pieces: Sequence[Piece], stage: Stage, x: Array) -> l
         usual = max(robust_std(left, lost=2), track.floor, 1e-9 * stage.reach)
         good = np.abs(left - np.median(left)) <= RULES.no_chance * usual
         good &= _untrimmed(left / usual)
-        if good.sum() < FEWEST:
+        if good.sum() < RULES.flight_samples:
             good = np.ones(left.size, dtype=np.bool_)
         kept.append((piece, launch, left[good], piece.index[good]))
     squares = [float(left @ left) for _, _, left, _ in kept]

@@ -70,7 +70,7 @@ def known_before(
         min(stage.reach * unit / RULES.drift_height, 1.0),
         min(stage.span / RULES.drift_time, 1.0),
     )
-    flight = ball.fall(0.75 * fastest * unit)
+    flight = ball.fall(RULES.drag_speed * fastest * unit)
     if math.isinf(flight.terminal):
         drag = 0.5 * RULES.free_drag * value / fastest**2
         return Before(fall, Measured(drag, drag), *drifts)

@@ -142,7 +142,7 @@ def likely_durations(
     smeared = float(met[1] + met[2]) / (2.0 * step)
     found = np.zeros_like(LASTS)
     for piece, run, share, speed in zip(flights, runs, shares, met[1:3], strict=True):
-        order = np.argsort(np.abs(track.time[piece.index] - meeting))[: RULES.fewest]
+        order = np.argsort(np.abs(track.time[piece.index] - meeting))[: RULES.touch_samples]
         for index in (*run, *piece.index[order]):
             time = track.time[index : index + 1]
             seen = stage.seen(view, piece.launch, piece.reference, time)
@@ -152,11 +152,11 @@ def likely_durations(
             soft = speed * (late - side * np.sin(0.5 * np.pi * late / side) / (0.5 * np.pi))
             most = np.where(
                 LASTS > RULES.hard_contact,
-                np.minimum(RULES.stiff_bend * soft, speed * late),
+                np.minimum(RULES.soft_bend[1] * soft, speed * late),
                 speed * late,
             )
             most = most + smeared * max(0.5 * step - gap, 0.0) ** 2
-            off = np.maximum(np.maximum(RULES.soft_bend * soft - above, above - most), 0.0)
+            off = np.maximum(np.maximum(RULES.soft_bend[0] * soft - above, above - most), 0.0)
             # a shadow or a stray beside the contact says little
             found -= np.minimum(0.5 * (off / piece.sigma) ** 2, RULES.touch_stray)
     return np.asarray(found - found.max())

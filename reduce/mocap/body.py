@@ -36,7 +36,7 @@ class BodyFile(InputTable):
     @field_validator("axis")
     @classmethod
     def _has_length(cls, given: Place) -> Place:
-        if not np.linalg.norm(given) > RULES.unit_turn:
+        if not np.linalg.norm(given) > RULES.shortest_direction:
             raise ValueError("a direction")
         return given
 

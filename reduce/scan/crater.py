@@ -108,7 +108,7 @@ def reduce_scan(
     length, width = (opening(s, bottom.depth.value, covariance) for s in (along, across))
     length, width = without_band(length, width, half_width)
     depth = _without_blur(bottom.depth, bottom.laplacian, blur)
-    if not depth.std < RULES.depth_error * depth.value:
+    if not depth.std < RULES.own_error * depth.value:
         raise Refused(
             "depth", f"a crater {1e6 * depth.value:.3g} um deep +- {1e6 * depth.std:.3g} um",
             source=scan.source, allowed="a depth that the roughness lets see, a finer scan",

@@ -88,8 +88,9 @@ def _wall_end(outward: Array, z: Array, depth: float, covariance: Array) -> Meas
     if not out.size:
         return None
     smooth = ndimage.uniform_filter1d(height, max(out.size // 60, 1))
-    over = np.flatnonzero(smooth > -RULES.wall_from * depth)
-    deep = np.flatnonzero(smooth[: over[0]] < -RULES.wall_to * depth) if over.size else over
+    first, last = RULES.wall
+    over = np.flatnonzero(smooth > -first * depth)
+    deep = np.flatnonzero(smooth[: over[0]] < -last * depth) if over.size else over
     if not over.size or not deep.size or over[0] - deep[-1] < 5:
         return None
     wall = slice(int(deep[-1]) + 1, int(over[0]))

@@ -164,7 +164,7 @@ def _both_flanks(
 def _timed(start: Measured, end: Measured, source: str) -> None:
     """Refuse a pulse whose ends are not known."""
     lasts = end.minus(start)
-    if lasts.std > RULES.duration_error * lasts.value:
+    if lasts.std > RULES.own_error * lasts.value:
         raise Refused(
             "duration", f"a contact of {lasts} s", source=source, allowed="ends that can be seen"
         )
@@ -200,9 +200,10 @@ def _flank(time: Array, clear: Array, top: int, step: int, peak: float) -> tuple
     """Where one flank meets zero, and the number of samples that say so."""
     k, flank = top, []
     limit = clear.size - 1 if step > 0 else 0
-    while k != limit and clear[k] > RULES.flank_low * peak:
+    low, high = (part * peak for part in RULES.flank)
+    while k != limit and clear[k] > low:
         k += step
-        if RULES.flank_low * peak < clear[k] < RULES.flank_high * peak:
+        if low < clear[k] < high:
             flank.append(k)
     if len(flank) < 2:  # a flank between two samples
         return _through(time, clear, k, k - step), len(flank)

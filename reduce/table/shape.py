@@ -82,12 +82,11 @@ def shape_of(
             "plateau", f"its top is flat over {wide:.0%} of its width at half of the peak: clipped",
             source=source, allowed="a record whose range the pulse does not reach",
         )  # fmt: skip
-    beside = (time > ends[0] - RULES.pulse_over_noise * long) & (
-        time < ends[1] + RULES.pulse_over_noise * long
-    )
+    reach = RULES.beside * long
+    beside = (time > ends[0] - reach) & (time < ends[1] + reach)
     below = -float(clear[beside].min()) / peak
     swings = _half_waves(clear[beside] / peak) - 1
-    if below > RULES.step and swings >= RULES.swings:
+    if below > RULES.swing and swings >= RULES.swings:
         raise looks_like("swings", f"an oscillation: {swings} other half-waves beside it", source)
     ringing = below if below > RULES.ringing else 0.0
     others = tuple(_others(time, clear, peak, ends))
@@ -133,7 +132,7 @@ def looks_like(gate: str, what: str, source: str) -> Refused:
 
 def _half_waves(part: Array) -> int:
     """Return how many times a record swings beyond a third of its peak, to either side in turn."""
-    sides = np.sign(part[np.abs(part) > RULES.step])
+    sides = np.sign(part[np.abs(part) > RULES.swing])
     return 1 + int(np.count_nonzero(np.diff(sides)))
 
 

@@ -13,9 +13,6 @@ from ..regression import correlation_factor, robust_std, unit_covariance
 from ..rules import RULES
 from .edge import Edge, find_edges
 
-INNER = RULES.cap
-"""Part of the half-width of a rod from which the cap is read: the edge of the cap is chamfered."""
-
 
 def fit_circle(
     grey: Array, start: tuple[float, float, float, float], reach: float, source: str
@@ -23,7 +20,7 @@ def fit_circle(
     """Alternate between edge points on rays and the circle through them."""
     x, y, radius, lean = start
     for _ in range(3):
-        half = math.asin(min(INNER * reach / radius, 1.0)) if math.isfinite(reach) else math.pi
+        half = math.asin(min(RULES.cap * reach / radius, 1.0)) if math.isfinite(reach) else math.pi
         count = max(int(2.0 * half * radius), 24)
         angle = np.linspace(-half, half, count, endpoint=math.isfinite(reach)) + lean
         dx, dy = np.sin(angle), np.cos(angle)

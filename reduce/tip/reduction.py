@@ -19,7 +19,8 @@ from ...core.errors import InputError
 from ..images.silhouette import body_mask
 from ..measured import Measured
 from ..regression import robust_regression, robust_std
-from .circle import INNER, fit_circle, radius_std
+from ..rules import RULES
+from .circle import fit_circle, radius_std
 from .edge import find_edges
 
 
@@ -211,7 +212,7 @@ def _first_radius(mask: Mask, half: float, axis: float, bottom: float, lean: flo
     ends = mask.shape[0] - 0.5 - np.argmax(mask[::-1], axis=0)
     off = (columns - axis) * math.cos(lean) + (ends - bottom) * math.sin(lean)
     up = (columns - axis) * math.sin(lean) - (ends - bottom) * math.cos(lean)
-    inside = mask.any(axis=0) & (np.abs(off) < INNER * half)
+    inside = mask.any(axis=0) & (np.abs(off) < RULES.cap * half)
     curve = np.polyfit(off[inside], up[inside], 2)[0] if inside.sum() > 5 else 0.0
     return float(np.clip(0.5 / max(curve, 1e-9), 0.9 * half, 50.0 * half))
 

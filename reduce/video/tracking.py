@@ -64,7 +64,7 @@ def _without_reflection(
     """Fit the tip anew, with its reflection, where it is so near to the flat that both overlap."""
     rows = np.array([p.y for _, p in poses])
     lowest = float(rows.max(initial=0.0))
-    low, high = (lowest - n * shape.blur for n in RULES.mirror_blurs)
+    low, high = (lowest - n * shape.blur for n in (RULES.mirror_reach, RULES.mirror_least))
     both = [k for k in np.flatnonzero((rows > low) & (rows < high))]
     found = []
     for k in both[:: max(1, len(both) // RULES.mirror_frames)]:
