@@ -32,10 +32,13 @@ class HeldOut:
         least 0.1.
     raw
         The rms itself.
+    trials
+        Readings behind it, each as often as a group leaves it out.
     """
 
     score: float
     raw: float
+    trials: int
 
 
 def groups_of(problem: Problem) -> list[Mask]:
@@ -70,16 +73,17 @@ def _folds(problem: Problem) -> list[Mask]:
 
 def _scored(problem: Problem, fitted: Fit, folds: Sequence[Mask]) -> HeldOut:
     """Score predictions of groups of cells."""
-    squares = []
+    squares, count = [], 0
     whole = Whole.of(fitted.linear, fitted.residuals)
     noise = np.sqrt(np.diag(fitted.linear.noise))
     for test in folds:
         miss = _missed(whole, test)
         squares.append((miss / noise[test]) ** 2)
+        count += int(np.sum(problem.cells.count[test]))
     if not squares:
-        return HeldOut(math.nan, math.nan)
+        return HeldOut(math.nan, math.nan, 0)
     mean = float(np.mean(np.concatenate(squares)))
-    return HeldOut(math.sqrt(max(mean - 1.0, RULES.heldout_floor**2)), math.sqrt(mean))
+    return HeldOut(math.sqrt(max(mean - 1.0, RULES.heldout_floor**2)), math.sqrt(mean), count)
 
 
 def _missed(whole: Whole, test: Mask) -> Array:

@@ -31,6 +31,7 @@ def test_cells_that_share_nothing_are_missed_by_their_residual(toy) -> None:
     raw = math.sqrt((9.0 + 16.0) / 2.0)
     assert found.raw == pytest.approx(raw)
     assert found.score == pytest.approx(math.sqrt(raw**2 - 1.0))  # the noise's own part is out
+    assert found.trials == 2
     assert held_out(given, toy.fit_of([0.5, 0.5])).score == pytest.approx(0.1)  # at least
 
 
