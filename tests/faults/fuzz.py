@@ -11,26 +11,17 @@ them to numbers and a picture.
 
 import argparse
 import contextlib
-import json
 import os
 import random
-import resource
-import select
-import subprocess
 import sys
 import tempfile
 import time
 import traceback
-from collections import Counter, defaultdict
-from functools import partial
 from pathlib import Path
 
+import watched
 from dentscope.core import InputError
 from readers import RAW, READERS, lay_out
-
-SLOW_S = 20.0
-MEMORY_MB = 1000.0
-_STUCK_S = 300.0  # of the clock: one that waits takes no time of its processor
 
 
 def made_input(number, seed, readers, sound={}):  # noqa: B006 - sound files are made once
@@ -52,17 +43,14 @@ def read_sound_files(readers):
 
 def child(seed, first, last, readers):
     """Read inputs first to last; a line of JSON before and after each."""
-    resource.setrlimit(resource.RLIMIT_CORE, (0, 0))
-    told_to = os.fdopen(os.dup(1), "w")  # what a library prints is not among what is told
-    os.dup2(2, 1)
-    tell = partial(_tell, told_to)
+    tell = watched.teller()
     read_sound_files(readers)
     for number in range(first, last):
         name, content, refuse = made_input(number, seed, readers)
         with tempfile.TemporaryDirectory() as folder:
             path = lay_out(readers[name], content, Path(folder) / "set")
             tell({"number": number, "reader": name})
-            forget_peak()
+            watched.forget_peak()
             started, where, printed = time.process_time(), "", []
             try:
                 with screened(printed):
@@ -82,7 +70,8 @@ def child(seed, first, last, readers):
             if printed:
                 told, where = "PRINTED", "".join(printed)[:500]
         shown = content[:300].decode("latin-1") if told[0].isupper() else ""
-        tell({"told": told, "where": where, "seconds": seconds, "MB": peak_mb(), "content": shown})
+        tell({"told": told, "where": where, "seconds": seconds, "content": shown,
+              "MB": watched.peak_mb()})  # fmt: skip
 
 
 @contextlib.contextmanager
@@ -105,109 +94,10 @@ def screened(printed):
             printed += filter(None, [screen.read().decode("latin-1")])
 
 
-def _tell(to, line):
-    to.write(json.dumps(line) + "\n")
-    to.flush()
-
-
-def forget_peak():
-    """Let the largest memory be that of the next input alone."""
-    try:
-        Path("/proc/self/clear_refs").write_text("5")
-    except OSError:
-        pass  # where that cannot be, it is the largest of all inputs so far
-
-
-def peak_mb(pid="self"):
-    """Largest memory of a process alone: ru_maxrss keeps what the parent held when it forked."""
-    try:
-        lines = Path(f"/proc/{pid}/status").read_text().splitlines()
-    except OSError:
-        return resource.getrusage(resource.RUSAGE_SELF).ru_maxrss / 1e3 if pid == "self" else 0.0
-    return next((float(x.split()[1]) / 1e3 for x in lines if x.startswith("VmHWM")), 0.0)
-
-
-def cpu_s(pid):
-    """Seconds of the processor that a process has taken."""
-    try:
-        fields = Path(f"/proc/{pid}/stat").read_text().rsplit(")", 1)[1].split()
-    except OSError:
-        return 0.0
-    return (int(fields[11]) + int(fields[12])) / os.sysconf("SC_CLK_TCK")
-
-
-class Watched:
-    """A child that reads inputs; it is ended when one takes too long or too much."""
-
-    def __init__(self, seed, first, last, *, raw, script):
-        command = [sys.executable, script, "--child", str(first), "--inputs", str(last)]
-        command += ["--raw"] if raw else []
-        self.process = subprocess.Popen([*command, "--seed", str(seed)], stdout=subprocess.PIPE)
-        self.why = ""
-
-    def lines(self):
-        """Yield what it says, until its end."""
-        rest, reading = b"", False
-        begun = cpu, clock = 0.0, time.monotonic()
-        out = self.process.stdout
-        while True:
-            if reading:
-                cpu, clock = begun
-                if cpu_s(self.process.pid) - cpu > SLOW_S or time.monotonic() - clock > _STUCK_S:
-                    self._end("HANG")
-                elif peak_mb(self.process.pid) > MEMORY_MB:
-                    self._end("MEMORY")
-            if not select.select([out], [], [], 0.5)[0]:
-                continue
-            got = os.read(out.fileno(), 65536)
-            if not got:
-                break
-            *whole, rest = (rest + got).split(b"\n")
-            for line in whole:
-                said = json.loads(line)
-                reading = "number" in said
-                begun = cpu_s(self.process.pid), time.monotonic()
-                yield said
-        self.process.wait()
-        out.close()
-
-    def _end(self, why):
-        self.why = self.why or why
-        self.process.kill()
-
-
-def run(count, seed, *, first=0, raw=False, script=__file__, say=lambda line: None):
-    """Read all inputs; return counts by reader, what went wrong, and the largest memory [MB].
-
-    `script` is what is run with `--child`: this one, or another that calls `child`.
-    """
-    counts = defaultdict(Counter)
-    faults, most = [], 0.0
-    while first < count:
-        watched, last, reader = Watched(seed, first, count, raw=raw, script=script), first - 1, ""
-        for said in watched.lines():
-            if "number" in said:
-                last, reader = said["number"], said["reader"]
-                continue
-            most = max(most, said["MB"])
-            told = said["told"] if said["seconds"] < SLOW_S else "SLOW"
-            told = told if said["MB"] < MEMORY_MB else "MEMORY"
-            counts[reader][told] += 1
-            if told[0].isupper():
-                faults.append({"number": last, "reader": reader, **said, "told": told})
-                say(f"{last} {reader}: {told} {said['where']}")
-            reader = ""
-            if last % 500 == 499:
-                say(f"{last + 1} of {count}")
-        if reader:
-            told = watched.why or "PROCESS ENDED"
-            counts[reader][told] += 1
-            faults.append({"number": last, "reader": reader, "told": told})
-            say(f"{last} {reader}: {told} {watched.process.returncode}")
-        elif last + 1 < count:
-            raise RuntimeError(f"the child ended with {watched.process.returncode} after {last}")
-        first = last + 1
-    return counts, faults, most
+def run(count, seed, *, first=0, raw=False, say=lambda line: None):
+    """Read all inputs; return what `watched.run` returns."""
+    more = ["--raw"] if raw else []
+    return watched.run(count, seed, script=__file__, more=more, first=first, say=say)
 
 
 def main():
@@ -228,7 +118,7 @@ def main():
         sys.stdout.write(f"{time.monotonic() - begun:.0f} s: {line}\n")
         sys.stdout.flush()
 
-    counts, faults, most = run(
+    counts, faults, most, _longest = run(
         chosen.inputs, chosen.seed, first=chosen.first, raw=chosen.raw, say=say
     )
     for name, found in counts.items():

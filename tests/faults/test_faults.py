@@ -13,6 +13,7 @@ import bit_flips
 import disk_faults
 import fuzz
 import pytest
+import watched
 from dentscope.campaigns import read_curves
 from dentscope.core import InputError
 from dentscope.core.output import PENDING, finish
@@ -67,14 +68,14 @@ def test_no_flipped_bit_and_no_blank_block_gives_a_number(tmp_path):
 
 
 def test_malformed_input_is_one_line_soon_and_in_little_memory():
-    counts, faults, most = fuzz.run(440, 11)
+    counts, faults, most, _longest = fuzz.run(440, 11)
     assert faults == []
     assert all(found.total() == 20 for found in counts.values())
-    assert most < fuzz.MEMORY_MB
+    assert most < watched.MEMORY_MB
 
 
 def test_damaged_raw_recordings_are_reduced_or_refused_in_a_line():
-    counts, faults, _most = fuzz.run(2 * len(fuzz.RAW), 5, raw=True)
+    counts, faults, *_ = fuzz.run(2 * len(fuzz.RAW), 5, raw=True)
     assert faults == []
     assert sum(found.total() for found in counts.values()) == 2 * len(fuzz.RAW)
     assert {"read", "refused with a line"} <= set(sum(counts.values(), Counter()))

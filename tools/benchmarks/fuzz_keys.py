@@ -4,8 +4,8 @@
 grammar of keys below, each value within what `dentscope keys` allows, runs the command in a child
 that stays, and prints for each command how many were answered, refused with a line, ended with exit
 code 3, and what else happened. A child that takes more than 30 s of its processor over one file is
-ended: a hang. `--first 2000` goes on at that file, `--only 17` shows one. The seeded short form is
-`tests/faults/test_fuzz_keys.py`.
+ended (tests/faults/watched.py): a hang. `--first 2000` goes on at that file, `--only 17` shows one.
+The seeded short form is `tests/faults/test_fuzz_keys.py`.
 """
 
 import argparse
@@ -13,17 +13,16 @@ import contextlib
 import io
 import json
 import math
-import os
 import random
 import re
-import select
-import signal
-import subprocess
 import sys
 import tempfile
+import time
 import traceback
-from collections import Counter
 from pathlib import Path
+
+sys.path.insert(0, str(Path(__file__).parents[2] / "tests" / "faults"))
+import watched
 
 SLOW_S = 30.0
 DRAWN = 0.15
@@ -353,70 +352,17 @@ def one(number, seed, kinds=KINDS):
 
 def child(seed, first, last):
     """Run inputs first to last; a line of JSON before and after each."""
+    tell = watched.teller()
+    for number in range(len(KINDS)):  # what is imported or compiled once is then no input's time
+        one(number, 0)
     for number in range(first, last):
-        tell({"begun": number, "kind": KINDS[number % len(KINDS)]})
-        tell(one(number, seed))
-
-
-def tell(line):
-    sys.__stdout__.write(json.dumps(line) + "\n")
-    sys.__stdout__.flush()
-
-
-def cpu_s(pid):
-    """Seconds of the processor that a process has taken."""
-    try:
-        fields = Path(f"/proc/{pid}/stat").read_text().rsplit(")", 1)[1].split()
-    except OSError:
-        return 0.0
-    return (int(fields[11]) + int(fields[12])) / os.sysconf("SC_CLK_TCK")
-
-
-def campaign(count, seed, first, say):
-    """Run all inputs in watched children; return counts, faults and the longest seconds."""
-    counts, faults, longest = {}, [], {}
-    while first < count:
-        process = subprocess.Popen(
-            [sys.executable, __file__, "--child", str(first), "--inputs", str(count),
-             "--seed", str(seed)],
-            stdout=subprocess.PIPE, stderr=subprocess.DEVNULL,
-        )  # fmt: skip
-        begun, at, kind = 0.0, first - 1, ""
-        rest, hung = b"", False
-        while True:
-            if select.select([process.stdout], [], [], 0.2)[0]:
-                part = os.read(process.stdout.fileno(), 65536)
-                if not part:
-                    break
-                *lines, rest = (rest + part).split(b"\n")
-                for said in map(json.loads, lines):
-                    if "begun" in said:
-                        at, kind, begun = said["begun"], said["kind"], cpu_s(process.pid)
-                        continue
-                    counts.setdefault(said["kind"], Counter())[said["told"]] += 1
-                    if said["told"][0].isupper():
-                        faults.append(said)
-                        say(f"{said['number']} {said['kind']} {said['told']}\n{said['text']}"
-                            f"{said['where']}")  # fmt: skip
-                    longest[said["kind"]] = max(
-                        longest.get(said["kind"], 0.0), cpu_s(process.pid) - begun
-                    )
-                    if said["number"] % 200 == 199:
-                        say(f"{said['number'] + 1} of {count}: {counts}")
-                    kind = ""
-            if kind and cpu_s(process.pid) - begun > SLOW_S + 60.0 * (at == first):
-                hung = True
-                process.send_signal(signal.SIGKILL)
-                process.wait()
-                break
-        process.wait()
-        if kind:
-            told = "HANG" if hung else f"ENDED {process.returncode}"
-            counts.setdefault(kind, Counter())[told] += 1
-            faults.append({"number": at, "kind": kind, "told": told})
-            say(f"{at} {kind} {told}")
-        first = at + 1
-    return counts, faults, longest
+        tell({"number": number, "reader": KINDS[number % len(KINDS)]})
+        watched.forget_peak()
+        started = time.process_time()
+        found = one(number, seed)
+        seconds = time.process_time() - started
+        where = f"\n{found['text']}{found['where']}" if found["told"][0].isupper() else ""
+        tell({"told": found["told"], "where": where, "seconds": seconds, "MB": watched.peak_mb()})
 
 
 def main():
@@ -439,10 +385,18 @@ def main():
         sys.stdout.write(f"{line}\n")
         sys.stdout.flush()
 
-    counts, faults, longest = campaign(chosen.inputs, chosen.seed, chosen.first, say)
+    counts, faults, most, longest = watched.run(
+        chosen.inputs,
+        chosen.seed,
+        script=__file__,
+        first=chosen.first,
+        slow_s=SLOW_S,
+        memory_mb=math.inf,
+        say=say,
+    )
     for kind, found in counts.items():
-        say(f"{kind}: {dict(found)}, at most {longest.get(kind, 0.0):.1f} s")
-    say(f"{len(faults)} faults")
+        say(f"{kind}: {dict(found)}, at most {longest[kind]:.1f} s")
+    say(f"{len(faults)} faults; most memory {most:.0f} MB")
 
 
 if __name__ == "__main__":

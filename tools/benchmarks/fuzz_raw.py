@@ -1,9 +1,8 @@
 """Raw files as instruments and people write them, with legal but extreme numbers and options.
 
 `python tools/benchmarks/fuzz_raw.py --inputs 1000` writes that many files by a seed, no two alike,
-and
-reduces each to numbers, a record and a picture in a child that is watched (tests/faults/fuzz.py):
-a traceback, a number that is none, more than 20 s of the processor or more than 1 GB is a fault.
+and reduces each to numbers, a record and a picture in a child (tests/faults/watched.py): a
+traceback, a number that is none, more than 20 s of the processor or more than 1 GB is a fault.
 Where `fuzz.py --raw` damages sound files, here the grammar is drawn: separators, marks of
 decimals, headers, clocks, cells that are no number, exports of trackers, widths and rates of
 sounds, sizes and depths of pictures.
@@ -23,6 +22,7 @@ import numpy as np
 sys.path.insert(0, str(Path(__file__).parents[2] / "tests" / "faults"))
 import fuzz
 import raw_files
+import watched
 from readers import Reader
 
 MARKS = ("", "OL", "nan", "-inf", "9.9E37", "******", "#DIV/0!", "n/a", "∞", '"', "1.2.3", "--")
@@ -317,8 +317,8 @@ READERS = {
 
 
 def run(count, seed, *, first=0, say=lambda line: None):
-    """Read all files; return counts by kind, what went wrong, and the largest memory [MB]."""
-    return fuzz.run(count, seed, first=first, script=__file__, say=say)
+    """Read all files; return what `watched.run` returns."""
+    return watched.run(count, seed, script=__file__, first=first, say=say)
 
 
 def main():
@@ -336,7 +336,7 @@ def main():
         sys.stdout.write(f"{line}\n")
         sys.stdout.flush()
 
-    counts, faults, most = run(chosen.inputs, chosen.seed, first=chosen.first, say=say)
+    counts, faults, most, _longest = run(chosen.inputs, chosen.seed, first=chosen.first, say=say)
     for name, found in counts.items():
         say(f"{name}: {dict(found)}")
     say(f"{len(faults)} faults; most memory {most:.0f} MB")
