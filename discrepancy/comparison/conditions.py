@@ -107,13 +107,14 @@ def conditions_of(recordings: RecordingSet) -> tuple[Condition, ...]:
             rate = float(np.nan_to_num(trials.press_rate_per_s[first]))
             press = Press(float(np.mean(trials.load_N[rows])), rate)
         relative = np.where(np.isnan(relative), unknown, relative)
-        set_once = 0.5 * trials.drop_height_m_std[first] / heights[first]
+        height = float(heights[first])
+        set_once = float(np.nan_to_num(0.5 * trials.drop_height_m_std[first] / height))
         lean = np.radians(np.nan_to_num(trials.angle_deg_std[rows], nan=0.0))
         flow = recordings.flows.get(weaker_table(setup, name))
         around = surroundings_of(
             setup, name, temperature=float(trials.temperature_K[first]),
             from_height=not timed[first],
-            height_share=1.0 if timed[first] else float(heights[first] / highest),
+            height_share=1.0 if timed[first] else float(height / highest),
             rises=() if flow is None else flow.rises,
         )  # fmt: skip
         found.append(
@@ -122,7 +123,7 @@ def conditions_of(recordings: RecordingSet) -> tuple[Condition, ...]:
                 float(np.mean(approach.tangential[rows])), float(np.mean(approach.spin[rows])),
                 float(np.sqrt(np.mean(relative**2) / n)), float(np.sqrt(np.mean(lean**2) / n)),
                 tuple(int(r) for r in rows), around, int(before[first]), press,
-                f"{heights[first]:g} m", float(np.nan_to_num(set_once)),
+                setting="" if timed[first] else f"{height:g} m", setting_spread=set_once,
             )
         )  # fmt: skip
     return tuple(found)
