@@ -4,9 +4,10 @@ from __future__ import annotations
 
 import math
 from collections import defaultdict
-from collections.abc import Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from html.parser import HTMLParser
+from pathlib import Path
 from types import SimpleNamespace
 from typing import Any
 
@@ -171,6 +172,47 @@ def toy() -> SimpleNamespace:
         Effect=Effect, Simulator=Simulator, condition=condition, problem=problem, fit_of=fit_of,
         screened_of=screened_of, nulls_of=nulls_of, ranking_of=ranking_of,
     )  # fmt: skip
+
+
+def balls_on_plate(
+    folder: Path, trials: str, *, noise: Mapping[str, object], E: str = "2.0e11",
+    Sy: str = "3.5e8", balls: Mapping[str, tuple[float, float]] | None = None, more: str = "",
+) -> Path:  # fmt: skip
+    """Write a recording set of hard balls on a plate of steel, and return its folder.
+
+    Parameters
+    ----------
+    folder, trials
+        Where, and what trials.csv holds.
+    noise
+        Entries of its table of noise.
+    E, Sy
+        Of the plate, as set.toml states them.
+    balls
+        Names to tip radius [m] and mass [kg]; none: one of 5 mm, `ball`.
+    more
+        Tables behind these.
+    """
+    strikers = "".join(
+        f'[strikers.{name}]\nshape = "sphere"\ntip_radius_m = {radius}\nmass_kg = {mass}\n'
+        "E_Pa = 2.1e11\nnu = 0.3\nSy_Pa = 2e9\n"
+        for name, (radius, mass) in (balls or {"ball": (5e-3, 4.1e-3)}).items()
+    )
+    noises = "".join(f"{name} = {value}\n" for name, value in noise.items())
+    setup = (
+        'format = "recording-set/1"\nname = "balls"\n'
+        f"[target]\nE_Pa = {E}\nnu = 0.3\nSy_Pa = {Sy}\ndensity_kg_m3 = 7800\n{strikers}"
+        f"[noise]\n{noises}{more}"
+    )
+    folder.mkdir(exist_ok=True)
+    (folder / "set.toml").write_text(setup, encoding="utf-8")
+    (folder / "trials.csv").write_text(trials, encoding="utf-8")
+    return folder
+
+
+@pytest.fixture(scope="session")
+def set_of_balls() -> Callable[..., Path]:
+    return balls_on_plate
 
 
 _EMPTY = {"meta", "path", "use", "rect", "input", "br"}

@@ -7,6 +7,7 @@ import json
 import math
 import subprocess
 import sys
+from collections.abc import Callable
 from pathlib import Path
 from typing import Any
 
@@ -15,7 +16,7 @@ import pytest
 from dentscope.core import InputError
 from dentscope.discrepancy import diagnose
 from dentscope.discrepancy.comparison.forward import Point, Simulator
-from dentscope.discrepancy.comparison.problem import problem_of
+from dentscope.discrepancy.comparison.problem import Problem, problem_of
 from dentscope.discrepancy.report import story_of
 from dentscope.recordings import read
 from dentscope.recordings.template import write_template
@@ -134,41 +135,23 @@ def test_three_mistakes_are_three_lines_and_exit_code_2(tmp_path: Path) -> None:
     assert not (tmp_path / "out").exists()
 
 
-ONE_BALL = """format = "recording-set/1"
-[target]
-shape = "flat"
-E_Pa = 2.06e11
-nu = 0.29
-Sy_Pa = { value = 3e8, std = 1.2e7 }
-[strikers.ball]
-shape = "sphere"
-tip_radius_m = 0.005
-mass_kg = 0.004
-E_Pa = 2.08e11
-nu = 0.3
-Sy_Pa = 2e9
-[noise]
-permanent_depth_m = 1e-7
-"""
+def test_a_second_blow_meets_the_crater_of_the_first(
+    tmp_path: Path, set_of_balls: Callable[..., Path]
+) -> None:
+    def blows(name: str, *given: tuple[str, float]) -> Problem:
+        rows = [f"t{k},ball,90,{v!r},{spot},2e-5" for k, (spot, v) in enumerate(given)]
+        head = "trial,striker,angle_deg,impact_speed_m_s,spot,permanent_depth_m"
+        trials = "\n".join([head, *rows]) + "\n"
+        noise = {"permanent_depth_m": 1e-7}
+        return problem_of(read(set_of_balls(tmp_path / name, trials, noise=noise)))
 
-
-def set_of_blows(place: Path, blows: list[tuple[str, float]]) -> Path:
-    place.mkdir(exist_ok=True)
-    (place / "set.toml").write_text(ONE_BALL)
-    rows = [f"t{k},ball,90,{v!r},{spot},2e-5" for k, (spot, v) in enumerate(blows)]
-    head = "trial,striker,angle_deg,impact_speed_m_s,spot,permanent_depth_m"
-    (place / "trials.csv").write_text("\n".join([head, *rows]) + "\n")
-    return place
-
-
-def test_a_second_blow_meets_the_crater_of_the_first(tmp_path: Path) -> None:
-    twice = problem_of(read(set_of_blows(tmp_path / "a", [("x", 1.0), ("x", 1.0), ("y", 1.0)])))
+    twice = blows("a", ("x", 1.0), ("x", 1.0), ("y", 1.0))
     assert [c.after for c in twice.conditions] == [-1, 0]
     assert twice.conditions[0].trials == (0, 2)
     seen = Simulator(twice).observe((), [Point(np.zeros(twice.n_z))])
     e = float(seen["restitution"][0, 0])
     # the second blow must first give back what the first left in the metal: energy 2 - e^2
-    once = problem_of(read(set_of_blows(tmp_path / "b", [("x", math.sqrt(2.0 - e * e))])))
+    once = blows("b", ("x", math.sqrt(2.0 - e * e)))
     alone = Simulator(once).observe((), [Point(np.zeros(once.n_z))])
     for name in ("permanent_depth_m", "peak_force_N"):
         assert seen[name][0, 1] == pytest.approx(alone[name][0, 0], rel=1e-4)

@@ -31,25 +31,9 @@ PLATE = Material(E=200e9, nu=0.3, Sy=350e6, flow=Flow(CURVE))
 BALL = Material(E=210e9, nu=0.3, Sy=2e9)
 RISE = 0.3
 RATE = {"rise_at_1000_per_s": RISE, "rate_exponent": 0.15, "strength_kept": 0.9}
-SET = """
-format = "recording-set/1"
-name = "marks"
-[target]
-E_Pa = 2.0e11
-nu = 0.3
-Sy_Pa = { value = 3.5e8, std = 2.5e7 }
-[strikers.ball]
-shape = "sphere"
-tip_radius_m = 5e-3
-mass_kg = 4.1e-3
-E_Pa = 2.1e11
-nu = 0.3
-Sy_Pa = 2e9
-[noise]
-restitution = 0.004
-permanent_depth_m_relative = 0.02
-dent_diameter_m_relative = 0.01
-"""
+NOISE = {
+    "restitution": 0.004, "permanent_depth_m_relative": 0.02, "dent_diameter_m_relative": 0.01,
+}  # fmt: skip
 HEAD = "trial,striker,angle_deg,impact_speed_m_s,load_N,restitution,permanent_depth_m,"
 
 
@@ -61,23 +45,27 @@ def scene(**given):
     return StrainRateHardening().attach(made, RATE, Surroundings())
 
 
-def folder_of(tmp_path, *, presses=True, impacts=True):
-    rows = [HEAD + "dent_diameter_m"]
-    for v in (0.7, 1.5, 3.0, 5.0) * impacts:
-        one = scene(approach=Approach(v))
-        found = strike(one)
-        wide = 2.0 * dent_radius([one], np.array([found.peak_depth_m]))[0]
-        rows.append(f"i{v},ball,90,{v},,{found.restitution},{found.residual_flat_m},{wide}")
-    for load in (200.0, 600.0, 1500.0, 4000.0) * presses:
-        found = pressed([scene(press=Press(load))])
-        rows.append(f"p{load},ball,,,{load},,{found.flat[0]},{2.0 * found.radius[0]}")
-    (tmp_path / "set.toml").write_text(SET, encoding="utf-8")
-    (tmp_path / "trials.csv").write_text("\n".join(rows) + "\n", encoding="utf-8")
-    return tmp_path
+@pytest.fixture(scope="module")
+def folder_of(set_of_balls):
+    def of(folder, *, presses=True, impacts=True):
+        rows = [HEAD + "dent_diameter_m"]
+        for v in (0.7, 1.5, 3.0, 5.0) * impacts:
+            one = scene(approach=Approach(v))
+            found = strike(one)
+            wide = 2.0 * dent_radius([one], np.array([found.peak_depth_m]))[0]
+            rows.append(f"i{v},ball,90,{v},,{found.restitution},{found.residual_flat_m},{wide}")
+        for load in (200.0, 600.0, 1500.0, 4000.0) * presses:
+            found = pressed([scene(press=Press(load))])
+            rows.append(f"p{load},ball,,,{load},,{found.flat[0]},{2.0 * found.radius[0]}")
+        return set_of_balls(
+            folder, "\n".join(rows) + "\n", noise=NOISE, Sy="{ value = 3.5e8, std = 2.5e7 }"
+        )
+
+    return of
 
 
 @pytest.fixture(scope="module")
-def metal(tmp_path_factory):
+def metal(folder_of, tmp_path_factory):
     return metal_of(read(folder_of(tmp_path_factory.mktemp("marks"))))
 
 
@@ -93,8 +81,8 @@ def test_curve_and_rate_that_made_the_marks_come_back(metal):
     assert metal.covered[0] < 0.012 < 0.035 < metal.covered[1]
 
 
-def test_files_are_a_curve_that_a_set_takes_and_its_covariance(metal, tmp_path):
-    folder_of(tmp_path, impacts=False)
+def test_files_are_a_curve_that_a_set_takes_and_its_covariance(metal, folder_of, tmp_path):
+    setup = folder_of(tmp_path, impacts=False) / "set.toml"
     write_metal(metal, tmp_path / "out")
     curve = read_flow_curve(tmp_path / "out" / "flow_curve.csv")
     assert np.all(np.diff(curve.strain) > 0.0)
@@ -105,15 +93,13 @@ def test_files_are_a_curve_that_a_set_takes_and_its_covariance(metal, tmp_path):
     told = json.loads((tmp_path / "out" / "metal.json").read_text(encoding="utf-8"))
     assert told["rise_at_1000_per_s"]["value"] == pytest.approx(metal.rise[0])
     assert "rise at 1000 1/s: " in "\n".join(lines(metal))
-    (tmp_path / "set.toml").write_text(
-        SET.replace("nu = 0.3\nSy_Pa = {", 'nu = 0.3\nflow_curve = "out.csv"\nSy_Pa = {', 1),
-        encoding="utf-8",
-    )
+    text = setup.read_text(encoding="utf-8")
+    setup.write_text(text.replace("Sy_Pa", 'flow_curve = "out.csv"\nSy_Pa', 1), encoding="utf-8")
     (tmp_path / "out.csv").write_text((tmp_path / "out" / "flow_curve.csv").read_text())
     assert "target" in read(tmp_path).flows
 
 
-def test_a_set_without_marks_is_refused(tmp_path):
+def test_a_set_without_marks_is_refused(folder_of, tmp_path):
     folder = folder_of(tmp_path, presses=False)
     text = (folder / "trials.csv").read_text(encoding="utf-8").splitlines()
     cut = [",".join(row.split(",")[:6]) for row in text]

@@ -13,28 +13,9 @@ from dentscope.impact import Approach, strike
 from dentscope.impact.mechanisms import MECHANISMS
 from dentscope.recordings import read
 
-SET = """
-format = "recording-set/1"
-[target]
-E_Pa = {{ value = 2.0e11, std = 4e9 }}
-nu = 0.3
-Sy_Pa = {{ value = 3.5e8, std = 2.5e7 }}
-density_kg_m3 = 7800
-[strikers.ball]
-shape = "sphere"
-tip_radius_m = 5e-3
-mass_kg = 4.1e-3
-E_Pa = 2.1e11
-nu = 0.3
-Sy_Pa = 2e9
-[noise]
-restitution = 0.004
-permanent_depth_m_relative = 0.02
-dent_diameter_m_relative = 0.01
-{noise}
-[gauge]
-permanent_depth_m = 0.05
-"""
+NOISE = {
+    "restitution": 0.004, "permanent_depth_m_relative": 0.02, "dent_diameter_m_relative": 0.01,
+}  # fmt: skip
 HEAD = "trial,striker,angle_deg,impact_speed_m_s,load_N,press_rate_per_s,restitution,"
 HEAD += "permanent_depth_m,dent_diameter_m\n"
 IMPACTS = "a,ball,90,1.0,,,0.45,8e-6,6e-4\nb,ball,90,3.0,,,0.35,2.5e-5,1.1e-3\n"
@@ -46,10 +27,15 @@ STATIC = {
 }  # fmt: skip
 
 
-def problem(tmp_path, rows, *, noise=""):
-    (tmp_path / "set.toml").write_text(SET.format(noise=noise), encoding="utf-8")
-    (tmp_path / "trials.csv").write_text(HEAD + rows, encoding="utf-8")
-    return problem_of(read(tmp_path))
+@pytest.fixture
+def problem(tmp_path, set_of_balls):
+    def of(rows, **noise):
+        return problem_of(read(set_of_balls(
+            tmp_path, HEAD + rows, noise=NOISE | noise, E="{ value = 2.0e11, std = 4e9 }",
+            Sy="{ value = 3.5e8, std = 2.5e7 }", more="[gauge]\npermanent_depth_m = 0.05\n",
+        )))  # fmt: skip
+
+    return of
 
 
 def cells(given, mechanism=None, **values):
@@ -61,8 +47,8 @@ def cells(given, mechanism=None, **values):
     return dict(zip(names, found, strict=True))
 
 
-def test_presses_and_impacts_share_gauge_strength_and_the_laws_error(tmp_path):
-    given = problem(tmp_path, IMPACTS + PRESSES.format(rate=""))
+def test_presses_and_impacts_share_gauge_strength_and_the_laws_error(problem):
+    given = problem(IMPACTS + PRESSES.format(rate=""))
     names = [n.name for n in given.nuisances]
     plain = Simulator(given).predict((), [Point(np.zeros(given.n_z))])[0]
     for name in ("gauge.permanent_depth_m", "target.Sy_Pa"):
@@ -81,8 +67,8 @@ def test_presses_and_impacts_share_gauge_strength_and_the_laws_error(tmp_path):
     assert {PRESSED, "impact speed"} <= set(covariates(given))
 
 
-def test_what_needs_motion_does_nothing_in_a_press(tmp_path):
-    given = problem(tmp_path, PRESSES.format(rate=""))
+def test_what_needs_motion_does_nothing_in_a_press(problem):
+    given = problem(PRESSES.format(rate=""))
     situations = baseline_situations(given)
     ruled_out = {m.name for m in MECHANISMS if "nothing moves" in m.ruled_out(situations)}
     assert ruled_out == set(BY_NAME) - STATIC
@@ -90,8 +76,8 @@ def test_what_needs_motion_does_nothing_in_a_press(tmp_path):
     assert cells(given, "half-space-waves", wave_scale=1.0) == plain
 
 
-def test_a_rate_acts_in_a_press_by_the_stated_rate_only(tmp_path):
-    given = problem(tmp_path, IMPACTS + PRESSES.format(rate="10"))
+def test_a_rate_acts_in_a_press_by_the_stated_rate_only(problem):
+    given = problem(IMPACTS + PRESSES.format(rate="10"))
     rate = {"rise_at_1000_per_s": 0.5, "rate_exponent": 0.15, "strength_kept": 1.0}
     plain, with_it = cells(given), cells(given, "strain-rate-hardening", **rate)
     change = {k: with_it[k, o] - plain[k, o] for k, o in plain if o == "permanent_depth_m"}
@@ -103,8 +89,8 @@ def test_a_rate_acts_in_a_press_by_the_stated_rate_only(tmp_path):
     assert all(hard[key] < value for key, value in plain.items() if key[1] != "restitution")
 
 
-def test_presses_are_proposed_within_a_bench_press_and_as_deep(tmp_path):
-    (series,) = press_series(problem(tmp_path, IMPACTS))
+def test_presses_are_proposed_within_a_bench_press_and_as_deep(problem):
+    (series,) = press_series(problem(IMPACTS))
     loads = [c.press.load for c in series.conditions]
     assert len(loads) == 4
     assert BENCH[0] <= min(loads) < max(loads) <= BENCH[1]
@@ -121,10 +107,10 @@ def test_null_laws_are_pressed_along_their_own_curve():
     assert found["recovered_depth_m"] == pytest.approx([2e-6, 2e-6])
 
 
-def test_rim_of_a_dent_is_an_unknown_of_its_own(tmp_path):
+def test_rim_of_a_dent_is_an_unknown_of_its_own(problem):
     rows = IMPACTS + PRESSES.format(rate="")
-    edge = problem(tmp_path, rows)
-    rim = problem(tmp_path, rows, noise='dent_edge = "rim"')
+    edge = problem(rows)
+    rim = problem(rows, dent_edge='"rim"')
     assert "dent.rim" in [n.name for n in rim.nuisances]
     one, two = cells(edge), cells(rim)
     assert two[0, "dent_diameter_m"] - one[0, "dent_diameter_m"] == pytest.approx(np.log(1.05))

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import replace
 from pathlib import Path
 
@@ -13,42 +14,18 @@ from dentscope.discrepancy.comparison.problem import Problem, problem_of
 from dentscope.discrepancy.inference.derivatives import measured_covariance
 from dentscope.recordings import read
 
-SET = """
-format = "recording-set/1"
-[target]
-E_Pa = 2.0e11
-nu = 0.3
-Sy_Pa = 3.5e8
-density_kg_m3 = 7800
-[strikers.small]
-shape = "sphere"
-tip_radius_m = 5e-3
-mass_kg = 4.1e-3
-E_Pa = 2.1e11
-nu = 0.3
-Sy_Pa = 2e9
-[strikers.large]
-shape = "sphere"
-tip_radius_m = 1e-2
-mass_kg = 3.3e-2
-E_Pa = 2.1e11
-nu = 0.3
-Sy_Pa = 2e9
-[noise]
-restitution = 0.01
-rebound_speed_m_s = 0.01
-permanent_depth_m_relative = 0.03
-dent_diameter_m_relative = 0.015
-friction_impulse_ratio = 0.01
-tangential_rebound_m_s = 0.01
-"""
+NOISE = {
+    "restitution": 0.01, "rebound_speed_m_s": 0.01, "permanent_depth_m_relative": 0.03,
+    "dent_diameter_m_relative": 0.015, "friction_impulse_ratio": 0.01,
+    "tangential_rebound_m_s": 0.01,
+}  # fmt: skip
+BALLS = {"small": (5e-3, 4.1e-3), "large": (1e-2, 3.3e-2)}
 FOUR = (("a", 0.5, 0.612), ("b", 1.0, 0.538), ("c", 1.5, 0.497), ("d", 2.0, 0.471))
 
 
-def problem(folder: Path, table: str) -> Problem:
-    (folder / "set.toml").write_text(SET, encoding="utf-8")
-    (folder / "trials.csv").write_text(table, encoding="utf-8")
-    return problem_of(read(folder))
+@pytest.fixture
+def problem(tmp_path: Path, set_of_balls: Callable[..., Path]) -> Callable[[str], Problem]:
+    return lambda table: problem_of(read(set_of_balls(tmp_path, table, noise=NOISE, balls=BALLS)))
 
 
 def bounces(rebound: list[float]) -> str:
@@ -57,52 +34,52 @@ def bounces(rebound: list[float]) -> str:
     return head + "".join(f"{t},small,90,{v},{e},{back:.4f}\n" for (t, v, e), back in rows)
 
 
-def test_four_bounces_in_two_columns_are_four_numbers(tmp_path: Path) -> None:
-    given = problem(tmp_path, bounces([v * e for _, v, e in FOUR]))
+def test_four_bounces_in_two_columns_are_four_numbers(problem) -> None:
+    given = problem(bounces([v * e for _, v, e in FOUR]))
     assert given.cells.observable == ("restitution",) * 4
     assert any("rebound_speed_m_s is restitution times" in note for note in given.notes)
 
 
-def test_a_second_instrument_counts(tmp_path: Path) -> None:
+def test_a_second_instrument_counts(problem) -> None:
     """A hundredth of a metre a second apart, as its noise says: eight numbers."""
     off = (0.01, -0.012, 0.008, -0.01)
-    given = problem(tmp_path, bounces([v * e + x for (_, v, e), x in zip(FOUR, off, strict=True)]))
+    given = problem(bounces([v * e + x for (_, v, e), x in zip(FOUR, off, strict=True)]))
     assert len(given.cells) == 8
     assert not any("counted once" in note for note in given.notes)
 
 
-def test_a_depth_of_zero_has_no_part_in_what_is_derived(tmp_path: Path) -> None:
+def test_a_depth_of_zero_has_no_part_in_what_is_derived(problem) -> None:
     head = "trial,striker,angle_deg,impact_speed_m_s,permanent_depth_m,dent_diameter_m\n"
     rows = [f"{k},small,90,{1 + k},{d},{6e-4 + 2e-4 * k}\n" for k, d in enumerate((0, 1e-5, 4e-5))]
     with np.errstate(all="raise"):
-        given = problem(tmp_path, head + "".join(rows))
+        given = problem(head + "".join(rows))
     assert given.cells.observable.count("permanent_depth_m") == 2
 
 
-def test_a_depth_that_is_the_cap_of_its_diameter_is_no_depth(tmp_path: Path) -> None:
+def test_a_depth_that_is_the_cap_of_its_diameter_is_no_depth(problem) -> None:
     head = "trial,striker,angle_deg,impact_speed_m_s,permanent_depth_m,dent_diameter_m\n"
     widths = (6e-4, 8e-4, 1e-3)
     rows = [f"{k},small,90,{1 + k},{d * d / 0.04:.4g},{d}\n" for k, d in enumerate(widths)]
-    assert problem(tmp_path, head + "".join(rows)).cells.observable == ("dent_diameter_m",) * 3
+    assert problem(head + "".join(rows)).cells.observable == ("dent_diameter_m",) * 3
 
 
-def test_an_impulse_ratio_from_the_speeds_is_those_speeds(tmp_path: Path) -> None:
+def test_an_impulse_ratio_from_the_speeds_is_those_speeds(problem) -> None:
     head = "trial,striker,angle_deg,impact_speed_m_s,restitution,tangential_rebound_m_s,"
     head += "friction_impulse_ratio\n"
     # a sphere at 45 degrees comes with -v along the flat
     rows = [f"{t},small,45,{v},{e},{-0.8 * v},{0.2 * v / ((1 + e) * v):.4f}\n" for t, v, e in FOUR]
-    seen = set(problem(tmp_path, head + "".join(rows)).cells.observable)
+    seen = set(problem(head + "".join(rows)).cells.observable)
     assert seen == {"restitution", "tangential_rebound_m_s"}
 
 
-def test_an_error_of_a_height_is_one_for_all_that_fell_from_it(tmp_path: Path) -> None:
+def test_an_error_of_a_height_is_one_for_all_that_fell_from_it(problem) -> None:
     """Two balls from 0.2 and 0.5 m, each height known to 10 mm: no repeats average that."""
     head = "trial,striker,angle_deg,drop_height_m,drop_height_m_std,restitution\n"
     rows = [
         f"{name}{h}{k},{name},90,{h},0.01,0.5\n"
         for name in ("small", "large") for h in (0.2, 0.5) for k in range(4)
     ]  # fmt: skip
-    given = problem(tmp_path, head + "".join(rows))
+    given = problem(head + "".join(rows))
     heights = [c.setting for c in given.conditions]
     assert heights == ["0.2 m", "0.5 m", "0.2 m", "0.5 m"]
     # v goes with the root of the height: 2.5 and 1 %
