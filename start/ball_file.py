@@ -90,7 +90,7 @@ def read_ball(file: Path, *, mass: float | None = None) -> ExportedBall:
 
 def _of_setup(content: Mapping[str, Any], file: Path) -> ExportedBall:
     setup = setup_of(dict(content), source=str(file))
-    name = setup.file.impact.striker or next(iter(setup.file.strikers))
+    name = setup.striker
     if setup.file.strikers[name].shape != "sphere":
         raise InputError(
             "a rod", source=str(file), key=f"strikers.{name}.shape", allowed='"sphere"'

@@ -9,7 +9,7 @@ from pydantic import AfterValidator, Field, create_model, model_validator
 
 from ...core.errors import InputError
 from ...core.inputs.toml_input import InputTable
-from ...core.rig import Quantity, Within
+from ...core.rig import Quantity, Within, value_of
 from ..mechanisms import MECHANISMS
 from ..mechanisms.around import surroundings_of
 from ..mechanisms.asked import NONE_ASKED, Asked
@@ -90,16 +90,14 @@ def read_by(file: SetupFile) -> frozenset[str]:
     return frozenset(key for m in MECHANISMS if m.name in names for key in m.reads)
 
 
-def asked_in(file: SetupFile, striker: str) -> Asked:
+def asked_in(file: SetupFile) -> Asked:
     """Return the mechanisms that a set-up asks for; a number that is left out is its source's."""
     tables = asked_of(file)
     if not tables:
         return NONE_ASKED
-    temperature = file.impact.temperature_K
     around = surroundings_of(
-        file, striker, temperature=float("nan") if temperature is None else temperature.value,
-        from_height=_falls(file),
-        height_share=1.0,
+        file, file.striker, temperature=value_of(file.impact.temperature_K),
+        from_height=_falls(file), height_share=1.0,
     )  # fmt: skip
     mechanisms = tuple(m for m in MECHANISMS if m.name in tables)
     constants = {m.name: _values(m, tables[m.name], around) for m in mechanisms}
@@ -125,7 +123,7 @@ def _value(one: Parameter, given: Quantity | None, stated: Values) -> float:
     return stated.get(one.name, usual)
 
 
-def mistakes_of(file: SetupFile, striker: str, source: str) -> Iterator[InputError]:
+def mistakes_of(file: SetupFile, source: str) -> Iterator[InputError]:
     """Yield what the single keys of `[mechanisms]` cannot show."""
     tables = asked_of(file)
     for name, (other, given) in _ALONE.items():
@@ -145,7 +143,7 @@ def mistakes_of(file: SetupFile, striker: str, source: str) -> Iterator[InputErr
             f"{loss.value:g} does nothing at one height", source=source,
             key="mechanisms.impact-speed-loss.loss_growth", allowed="with sweep.drop_height_m",
         )  # fmt: skip
-    asked = asked_in(file, striker)
+    asked = asked_in(file)
     for m in asked.mechanisms:
         size = m.parameters[0]
         if asked.constants[m.name][size.name] == size.neutral:

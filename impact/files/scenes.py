@@ -44,7 +44,7 @@ def scene_in(
 ) -> Scene:
     """Return the scene; `speed` replaces the file's normal approach speed [m/s]."""
     impact, target, of = found.impact, found.target, numbers.of
-    name = impact.striker or next(iter(found.strikers))
+    name = found.striker
     rod = found.strikers[name].shape == "rod"
     pair, striker = bodies_of(numbers, name, source=source)
     if target.law == "elastic" and curves_in(found):

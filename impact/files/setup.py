@@ -128,6 +128,11 @@ class SetupFile(Rig):
     mechanisms: MechanismsTable = MechanismsTable()
     """Physics beyond the laws, by the names of a verdict: true, or a table of its numbers."""
 
+    @property
+    def striker(self) -> str:
+        """Name of the striker: the one that `[impact]` chooses, or the only one."""
+        return self.impact.striker or next(iter(self.strikers))
+
 
 @dataclass(frozen=True, slots=True)
 class Setup:
@@ -158,7 +163,8 @@ class Setup:
 
     def acting(self, *plain: Scene) -> Asked:
         """Return the mechanisms asked for, without those that change nothing of these scenes."""
-        return self.asked.without(*self.asked.idle(plain))
+        asked = self.asked
+        return asked.without(*asked.idle(plain))
 
     def read(self, law: ContactLaw, found: Impact) -> Impact:
         """Return an impact of `scene` as it is read: with what a mechanism takes after it."""
@@ -181,12 +187,12 @@ class Setup:
     @property
     def striker(self) -> str:
         """Name of the striker."""
-        return self.file.impact.striker or next(iter(self.file.strikers))
+        return self.file.striker
 
     @property
     def asked(self) -> Asked:
         """The mechanisms of the file."""
-        return asked_in(self.file, self.striker)
+        return asked_in(self.file)
 
     @property
     def second(self) -> SecondSphere | None:
@@ -219,10 +225,11 @@ class Setup:
         self._check_mechanisms(laws)
 
     def _check_mechanisms(self, laws: Sequence[ContactLaw]) -> None:
-        if not self.asked:
+        asked = self.asked
+        if not asked:
             return
         reasons = [
-            self.asked.idle(swept_scenes(self.sweep, plain, angle=self._angle))
+            asked.idle(swept_scenes(self.sweep, plain, angle=self._angle))
             for plain in (self.plain(law) for law in laws)
         ]
         everywhere = set.intersection(*(set(one) for one in reasons))
@@ -326,15 +333,15 @@ def _mistakes(found: SetupFile, source: str) -> list[InputError]:
     if impact.support in ("plate", "half-space") and found.target.density_kg_m3 is None:
         add("target.density_kg_m3", "missing", "the density of a support that carries waves off")
     errors += _of_a_second_sphere(found, source)
-    if not impact.striker or impact.striker in found.strikers:
-        errors += mistakes_of(found, impact.striker or next(iter(found.strikers)), source)
+    if found.striker in found.strikers:
+        errors += mistakes_of(found, source)
     return errors
 
 
 def _of_a_second_sphere(found: SetupFile, source: str) -> Iterator[InputError]:
     """Yield what a second sphere needs, and what only a flat has."""
     target, impact = found.target, found.impact
-    name = impact.striker or next(iter(found.strikers))
+    name = found.striker
     two = target.shape == "sphere"
     rod = name in found.strikers and found.strikers[name].shape == "rod"
     wrong = (

@@ -61,8 +61,8 @@ def _of_mechanisms(found: SetupFile, content: Mapping[str, Any], line: Any) -> I
             yield line(key, value, _with_a_mechanism(key))
     if found.impact.temperature_K is not None and _TEMPERATURE not in read:
         yield line(_TEMPERATURE, found.impact.temperature_K, _with_a_mechanism(_TEMPERATURE))
-    name = found.impact.striker or next(iter(found.strikers))
-    weaker = weaker_table(found, name) if name in found.strikers else ""
+    known = found.striker in found.strikers
+    weaker = weaker_table(found, found.striker) if known else ""
     for key, body in found.bodies.items():
         for name in _OF_A_BODY:
             if name not in _stated(content, key):
@@ -98,7 +98,7 @@ def _of_the_flat(target: TargetTable, impact: Any, line: Any) -> Iterator[InputE
 
 def _of_the_striker(found: SetupFile, line: Any) -> Iterator[InputError]:
     impact = found.impact
-    name = impact.striker or next(iter(found.strikers))
+    name = found.striker
     if name not in found.strikers or found.strikers[name].shape == "rod":
         return
     ball, allowed = found.strikers[name], "of a rod"

@@ -174,7 +174,7 @@ def _moved(quantity: Quantity, by: float) -> float:
 def _uncertain(setup: Setup) -> Iterator[tuple[tuple[str, ...], Quantity]]:
     """Yield the quantities that stand with a standard deviation, and where they stand."""
     file, content = setup.file, setup.content
-    name = file.impact.striker or next(iter(file.strikers))
+    name = setup.striker
     tables: dict[tuple[str, ...], Any] = {
         (): file, ("target",): file.target, ("strikers", name): file.strikers[name],
         ("friction",): file.friction, ("impact",): file.impact,

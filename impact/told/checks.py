@@ -190,8 +190,7 @@ def _second(setup: Setup, scene: Scene, found: Impact) -> Iterator[str]:
     second = setup.second
     if second is None:
         return
-    file = setup.file
-    ball = file.strikers[file.impact.striker or next(iter(file.strikers))]
+    ball = setup.file.strikers[setup.striker]
     yield (
         f"two spheres: R = {scene.pair.R * 1e3:.4g} mm by 1/R = 1/R_1 + 1/R_2, mass "
         f"{scene.striker.mass:.4g} kg; speeds and depths are those of one relative to the other"
@@ -230,7 +229,7 @@ def _bodies(setup: Setup, law: ContactLaw) -> Iterator[str]:
         flows = body.flow_curve or getattr(body, "hardening", None)
         if flows and not follows_flow(law):
             yield f"{law.name} takes the first strength of {key}; hardening follows its curve"
-    name = file.impact.striker or next(iter(file.strikers))
+    name = setup.striker
     ball = file.strikers[name]
     if ball.shape == "sphere" and ball.density_kg_m3 is not None:
         solid = 4.0 / 3.0 * math.pi * ball.body_radius**3 * ball.density_kg_m3.value
