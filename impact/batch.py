@@ -134,12 +134,13 @@ def _quickest(scene: Scene, given: Mapping[str, Array], settings: Settings) -> I
 
 def scenes_over(scene: Scene, **conditions: Any) -> list[Scene]:
     """Return the scene of each row of `impacts`, which says what its conditions are."""
-    given = _conditions(scene, *(conditions[name] for name in _BROADCAST))
-    return [_one(scene, {k: float(v[i]) for k, v in given.items()}) for i in range(_rows(given))]
+    return _each(scene, _conditions(scene, *(conditions[name] for name in _BROADCAST)))
 
 
-def _rows(given: Mapping[str, Array]) -> int:
-    return len(given["speed"])
+def _each(scene: Scene, given: Mapping[str, Array]) -> list[Scene]:
+    """Return the scene of each row."""
+    count = len(given["speed"])
+    return [_one(scene, {k: float(v[i]) for k, v in given.items()}) for i in range(count)]
 
 
 def _one(scene: Scene, at: Mapping[str, float]) -> Scene:
@@ -157,7 +158,7 @@ def _with_mechanisms(
     scene: Scene, given: Mapping[str, Array], settings: Settings, asked: Asked, change: Change
 ) -> Impacts:
     """Simulate each row as a scene of its own: a mechanism may follow speed, mass and angle."""
-    plain = [_one(scene, {k: float(v[i]) for k, v in given.items()}) for i in range(_rows(given))]
+    plain = _each(scene, given)
     acting = asked.without(*asked.idle(plain))
     scenes = [s.with_(force=change(s.force)) for s in acting.attached(plain)]
     found = strike_batch(scenes, settings)
@@ -165,7 +166,7 @@ def _with_mechanisms(
     seen = {column: values[name] for column, name in SIMULATED.items()}
     for column, read in acting.observed(plain, seen).items():
         values[SIMULATED[column]] = np.asarray(read)
-    return _named(scene, given, values, np.full(_rows(given), BY_STEPS))
+    return _named(scene, given, values, np.full(len(plain), BY_STEPS))
 
 
 def _conditions(

@@ -26,7 +26,7 @@ from ...models.uncertainty import METAL, RECOVERY_EXPONENT, WITH_CURVE
 from ..batch import Change, unchanged
 from ..columns import Impacts
 from ..files.mechanism_tables import asked_of
-from ..integrate import strike
+from ..integrate import Settings, strike
 from ..mechanisms.arithmetic import times
 from ..result import Impact
 from ..rules import RULES
@@ -90,7 +90,8 @@ class Band:
 def band_of(setup: Setup, law: ContactLaw) -> Band:
     """Return the band of a set-up's last blow by one law; an empty one if that did not end."""
     parts: dict[str, dict[str, float]] = {}
-    if not last_blow(setup, law).outcome.completed:
+    found_now = last_blow(setup, law)
+    if not found_now.outcome.completed:
         return Band(parts)
     for key, share, up, down in _shifted(setup, law):
         found = [last_blow(one, law) for one in (up, down)]
@@ -100,7 +101,7 @@ def band_of(setup: Setup, law: ContactLaw) -> Band:
         ]
         ends = [{**_values(blow), PRESSURE: p} for blow, p in zip(found, pressures, strict=True)]
         parts[key] = {n: 0.5 * (ends[0][n] - ends[1][n]) / share for n in ends[0]}
-    found_now, scene = last_blow(setup, law), setup.scene(law)
+    scene = setup.scene(law)
     of_law, of_metal = _sizes_of(setup, scene, found_now)
     slopes = _slopes(setup, law, _acting([(of_law, of_metal)]))
     pressure = largest_mean_pressure(scene, found_now)
@@ -134,10 +135,15 @@ def last_blow(setup: Setup, law: ContactLaw, change: Change = unchanged) -> Impa
     if change is not unchanged:
         steps = min(settings.max_steps, RULES.band_steps)
         scene, settings = scene.with_(force=change(scene.force)), replace(settings, max_steps=steps)
+    return repeated(setup, scene, settings)
+
+
+def repeated(setup: Setup, scene: Scene, settings: Settings) -> Impact:
+    """Return the last of a scene's repeats, read as the set-up's."""
     for _ in range(setup.repeats):
         found = strike(scene, settings)
         scene = scene.with_(spot=found.spot)
-    return setup.read(law, found)
+    return setup.read(scene.law, found)
 
 
 def _values(impact: Impact) -> dict[str, float]:

@@ -18,12 +18,11 @@ from ...core.inputs.flow_curve import SPECIMENS
 from ...core.rig import TABOR
 from ...models.base import ContactLaw, DomainWarning
 from ...models.choose import demand, follows_flow
-from ..integrate import strike
 from ..result import Impact
 from ..rules import RULES
 from ..scene import Scene
 from ..support import half_space_radiation, plate_support
-from .band import last_blow
+from .band import last_blow, repeated
 from .effect import effect
 from .flow import flow_checks
 from .onset import effective_mass, first_yield_speed, largest_mean_pressure
@@ -290,12 +289,5 @@ def _made_by_the_law(before: Any, after: Any, fall: Any) -> Any:
 
 
 def _struck(setup: Setup, scene: Scene) -> Impact:
-    """The last impact of a scene's repeats, read as the set-up's."""
-    return setup.read(scene.law, _last(setup, scene))
-
-
-def _last(setup: Setup, scene: Scene) -> Impact:
-    for _ in range(setup.repeats):
-        found = strike(scene, setup.settings)
-        scene = scene.with_(spot=found.spot)
-    return found
+    """The last of a scene's repeats, within the budgets of the set-up."""
+    return repeated(setup, scene, setup.settings)
