@@ -86,12 +86,7 @@ def export_dem(
 def _write_dem(ball: ExportedBall, law: str, speeds: list[float], out: Path) -> None:
     """Show what each law of other programs misses, and write its parameters."""
     from ..core.output import csv_text, write_file
-    from ..impact.told.discrete_elements import (
-        HEAD,
-        lammps_lines,
-        substitutes,
-        table,
-    )
+    from ..impact.told.discrete_elements import HEAD, lammps_lines, substitutes, table
     from ..models import law_named
 
     chosen = law_named(law or ball.law)
@@ -103,25 +98,22 @@ def _write_dem(ball: ExportedBall, law: str, speeds: list[float], out: Path) -> 
     two = ball.second is not None
     cells = table(rows, law=chosen.name, contact="two spheres" if two else "ball on flat")
     cells += table(between, law=chosen.name, contact="two balls")
-    lammps = lammps_lines(rows, ball.pair, friction=ball.friction, of_balls=between, spheres=two)
-    files = {"dem.csv": csv_text(cells, header=HEAD), "lammps.in": lammps}
-    if ball.second is not None and ball.second.radius < 0.0:
-        files.pop("lammps.in")
+    files = {"dem.csv": csv_text(cells, header=HEAD)}
+    if ball.second is None or ball.second.radius > 0.0:
+        files["lammps.in"] = lammps_lines(
+            rows, ball.pair, friction=ball.friction, of_balls=between, spheres=two
+        )
     for name, text in (files | _fragments(ball, chosen, rows)).items():
         shown.print(f"written: {write_file(out / name, text)}")
 
 
 def _fragments(ball: ExportedBall, law: ContactLaw, rows: list[ExportedRow]) -> dict[str, str]:
     """The lines of the other programs, by file."""
-    from ..impact.scene import Approach, Striker, scene_of
     from ..impact.told import simulators as s
 
     contact = s.BodiesMet(ball.pair.R, ball.mass, ball.friction)
-    scene = scene_of(
-        law, sphere=ball.pair.sphere, flat=ball.pair.flat, gravity=0.0,
-        striker=Striker(mass=ball.mass, tip_radius=ball.pair.R), approach=Approach(1.0),
-    )  # fmt: skip
-    formula = s.formula_of(law, scene, [row.law.speed for row in rows])
+    speeds = [row.law.speed for row in rows]
+    formula = s.formula_of(law, ball.pair, mass=ball.mass, speeds=speeds)
     return {
         "hysteretic.txt": s.hysteretic_lines(rows, contact),
         "mujoco.xml": s.mujoco_lines(rows, contact),

@@ -25,11 +25,12 @@ from ...core.errors import InputError
 from ...core.material import Pair
 from ...models.base import ContactLaw
 from ..integrate import strike
-from ..scene import Approach, Striker, scene_of
+from ..scene import Approach, Scene, Striker, scene_of
 from .collisions import (
     DASHPOT,
     HUNT,
     TSUJI,
+    Damped,
     ExportedBlow,
     blow_on,
     damping_for,
@@ -55,6 +56,14 @@ class Substitute(NamedTuple):
             mine.depth / law.depth - 1.0, mine.force / law.force - 1.0,
             mine.time / law.time - 1.0, mine.restitution - law.restitution,
         )  # fmt: skip
+
+    def told(self, law: ExportedBlow) -> str:
+        """Say what it returns, and what it misses, in per cent."""
+        depth, force, time, _ = (100.0 * x for x in self.missed(law))
+        return (
+            f"restitution {law.restitution:.4f}; depth {depth:+.1f} %, peak force {force:+.1f} %, "
+            f"time {time:+.1f} %"
+        )
 
 
 class ExportedRow(NamedTuple):
@@ -91,12 +100,7 @@ def substitutes(
     """
     rows = []
     for speed in speeds:
-        found = strike(
-            scene_of(
-                law, sphere=pair.sphere, flat=pair.flat, gravity=0.0,
-                striker=Striker(mass=mass, tip_radius=pair.R), approach=Approach(speed),
-            )
-        )  # fmt: skip
+        found = strike(ball_scene(law, pair, mass=mass, speed=speed))
         blow = ExportedBlow(
             speed, found.peak_depth_m, found.peak_force_N, found.contact_time_s, found.restitution
         )
@@ -106,10 +110,17 @@ def substitutes(
     return rows
 
 
+def ball_scene(law: ContactLaw, pair: Pair, *, mass: float, speed: float) -> Scene:
+    """Return the scene of a ball that meets the flat straight, without gravity."""
+    return scene_of(
+        law, sphere=pair.sphere, flat=pair.flat, gravity=0.0,
+        striker=Striker(mass=mass, tip_radius=pair.R), approach=Approach(speed),
+    )  # fmt: skip
+
+
 def _of(blow: ExportedBlow, pair: Pair, mass: float) -> tuple[Substitute, ...]:
     own = 4.0 / 3.0 * pair.E_reduced * math.sqrt(pair.R)
-    damping = damping_for(TSUJI, blow.restitution)
-    soft = stiffness_for(TSUJI, blow.depth, damping, mass, blow.speed)
+    damping, soft = _as_deep(TSUJI, blow, mass)
     entered = entered_for(damping)
     hertz = [
         Substitute(
@@ -125,21 +136,19 @@ def _of(blow: ExportedBlow, pair: Pair, mass: float) -> tuple[Substitute, ...]:
         quarter * (first**-0.5 + second**-0.5), blow.restitution,
     )  # fmt: skip
     hysteretic = Substitute("linear-hysteretic", first, second, math.nan, math.nan, linear)
-    return (*hertz, hysteretic, _dashpot(blow, mass), _hunt(blow, mass))
+    straight = []
+    for damped in (DASHPOT, HUNT):
+        c, k = _as_deep(damped, blow, mass)
+        with_unit = c * math.sqrt(mass * k) if damped is DASHPOT else c / blow.speed
+        found = blow_on(damped, k, c, mass, blow.speed)
+        straight.append(Substitute(damped.name, k, math.nan, math.nan, with_unit, found))
+    return (*hertz, hysteretic, *straight)
 
 
-def _dashpot(blow: ExportedBlow, mass: float) -> Substitute:
-    damping = damping_for(DASHPOT, blow.restitution)
-    k = stiffness_for(DASHPOT, blow.depth, damping, mass, blow.speed)
-    found = blow_on(DASHPOT, k, damping, mass, blow.speed)
-    return Substitute(DASHPOT.name, k, math.nan, math.nan, damping * math.sqrt(mass * k), found)
-
-
-def _hunt(blow: ExportedBlow, mass: float) -> Substitute:
-    damping = damping_for(HUNT, blow.restitution)
-    k = stiffness_for(HUNT, blow.depth, damping, mass, blow.speed)
-    found = blow_on(HUNT, k, damping, mass, blow.speed)
-    return Substitute(HUNT.name, k, math.nan, math.nan, damping / blow.speed, found)
+def _as_deep(damped: Damped, blow: ExportedBlow, mass: float) -> tuple[float, float]:
+    """Damping without dimension and stiffness at which restitution and depth are the blow's."""
+    damping = damping_for(damped, blow.restitution)
+    return damping, stiffness_for(damped, blow.depth, damping, mass, blow.speed)
 
 
 HEAD = (
@@ -239,11 +248,7 @@ def lammps_lines(
 
 
 def _told(row: ExportedRow) -> str:
-    depth, force, time, _ = (100.0 * x for x in row.substitutes[1].missed(row.law))
-    return (
-        f"restitution {row.law.restitution:.4f}; depth {depth:+.1f} %, peak force {force:+.1f} %, "
-        f"time {time:+.1f} %"
-    )
+    return row.substitutes[1].told(row.law)
 
 
 def _tangential_told(friction: float) -> str:

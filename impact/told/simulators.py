@@ -21,11 +21,12 @@ from typing import NamedTuple
 import numpy as np
 from scipy.optimize import least_squares
 
+from ...core.arrays import Array
+from ...core.material import Pair
 from ...models.base import ContactLaw
 from ..batch import impacts
-from ..scene import Scene
 from .collisions import DASHPOT, HUNT
-from .discrete_elements import ExportedRow, Substitute
+from .discrete_elements import ExportedRow, Substitute, ball_scene
 
 
 class BodiesMet(NamedTuple):
@@ -47,7 +48,7 @@ def mujoco_lines(rows: Sequence[ExportedRow], contact: BodiesMet) -> str:
         s = row.named(DASHPOT.name)
         k, b = s.stiffness / contact.mass, s.damping / contact.mass
         lines += [
-            f"  <!-- {_told(row, s)}; {_lasting(s)} -->",
+            f"  <!-- {_told(row, s)} -->",
             f'  <default class="v{row.law.speed:g}"><geom solref="{-k:.6e} {-b:.6e}" '
             f'solimp="0.9999 0.9999 0.001 0.5 2" friction="{contact.friction:g} 0 0"/></default>',
         ]
@@ -115,20 +116,15 @@ def _each(
     lines = [head]
     for row in rows:
         s = row.named(name)
-        lines += [f"# {_told(row, s)}; {_lasting(s)}", line(s)]
+        lines += [f"# {_told(row, s)}", line(s)]
     return "\n".join(lines) + "\n"
 
 
 def _told(row: ExportedRow, s: Substitute) -> str:
-    depth, force, time, _ = (100.0 * x for x in s.missed(row.law))
     return (
-        f"{row.law.speed:g} m/s: restitution {row.law.restitution:.4f}; depth {depth:+.1f} %, peak "
-        f"force {force:+.1f} %, time {time:+.1f} %"
+        f"{row.law.speed:g} m/s: {s.told(row.law)}; contact {s.blow.time:.2e} s: several tens of "
+        "time steps"
     )
-
-
-def _lasting(s: Substitute) -> str:
-    return f"contact {s.blow.time:.2e} s: several tens of time steps"
 
 
 class Formula(NamedTuple):
@@ -146,26 +142,27 @@ class Formula(NamedTuple):
         return float((1.0 + (speed / self.v0) ** self.a) ** -self.b)
 
 
-def formula_of(law: ContactLaw, scene: Scene, speeds: Sequence[float]) -> Formula:
+def formula_of(law: ContactLaw, pair: Pair, *, mass: float, speeds: Sequence[float]) -> Formula:
     """Fit the formula to a law's restitution between the first and the last speed.
 
     Parameters
     ----------
-    law, scene
-        Ours, and the ball on the flat.
+    law, pair, mass
+        As in `substitutes`.
     speeds
-        Of the table; around a single one a factor of three either way.
+        Of the table [m/s]; around a single one a factor of three either way.
     """
     first, last = min(speeds), max(speeds)
     if last < 1.5 * first:
         first, last = first / 3.0, 3.0 * last
     v = np.geomspace(first, last, 25)
-    e = np.asarray(impacts(scene.with_(law=law), speeds=v)["restitution"], dtype=float)
+    scene = ball_scene(law, pair, mass=mass, speed=first)
+    e = np.asarray(impacts(scene, speeds=v)["restitution"], dtype=float)
 
     known = np.log(v)
     middle = float(known[12])
 
-    def of(x: np.ndarray) -> np.ndarray:
+    def of(x: Array) -> Array:
         # as logarithms: powers of small and large speeds overflow
         falls = np.logaddexp(0.0, np.exp(x[1]) * (known - x[0]))
         return np.asarray(np.exp(-np.exp(x[2]) * falls))

@@ -7,7 +7,6 @@ import xml.etree.ElementTree as ET
 import numpy as np
 import pytest
 from dentscope.core import Material, Pair
-from dentscope.impact.scene import Approach, Striker, scene_of
 from dentscope.impact.told.collisions import DASHPOT, HUNT, blow_on, damping_for
 from dentscope.impact.told.discrete_elements import substitutes
 from dentscope.impact.told.simulators import (
@@ -148,11 +147,7 @@ def test_mujocos_fragment_is_well_formed(rows):
 
 
 def test_the_formula_holds_as_far_as_it_says():
-    scene = scene_of(
-        LAWS["fitted"], sphere=STEEL, flat=ALLOY, gravity=0.0,
-        striker=Striker(mass=MASS, tip_radius=PAIR.R), approach=Approach(1.0),
-    )  # fmt: skip
-    found = formula_of(LAWS["fitted"], scene, SPEEDS)
+    found = formula_of(LAWS["fitted"], PAIR, mass=MASS, speeds=SPEEDS)
     (row,) = substitutes(LAWS["fitted"], PAIR, mass=MASS, speeds=[2.5])
     assert found(2.5) == pytest.approx(row.law.restitution, abs=1.5 * found.missed)
     assert found.missed < 0.015
