@@ -5,7 +5,7 @@ of one sphere of radius R, 1/R = 1/R_1 + 1/R_2 (Hertz), and mass m, 1/m = 1/m_1 
 normal exactly, along the tangent for solid spheres, whose 1/m + r^2/I is 7/(2 m) whatever their
 size. A seat is a sphere of negative radius; a body that is held has no mass of its own.
 
-How far 1/R holds where both yield is known in one case: two equal spheres are each other's mirror,
+How far 1/R holds where both yield is known best of two equal spheres: they are each other's mirror,
 and so each is a sphere of its own on a rigid flat that is pressed half as deep. Finite elements of
 that sphere carry 3 % more at an approach of 0.02 R and 26 % more at 0.1 R than those of a sphere on
 a flat of its metal (E/341); the fitted law, which both sides are taken from, says so within 1.5 %.
@@ -81,6 +81,9 @@ class SecondSphere:
 
     def departure(self, pair: Pair, delta: float) -> float:
         """Return how far 1/R may be off where both yield: the force's part, relative.
+
+        On a sphere the mirror's departure; in a seat 4 R/|R_2| times that. The 4 makes it the twice
+        that finite elements of one seat have, R_2 = -3 R_1; its growth as a seat closes is chosen.
 
         Parameters
         ----------
