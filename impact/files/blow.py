@@ -80,13 +80,14 @@ class Blow:
 
     def rules(self) -> list[str]:
         """Return what rules the bands of restitution and dent, by the first law."""
-        band, found = self.bands[self.laws[0].name], self[self.laws[0].name]
+        band = self.bands[self.laws[0].name]
+        (found,) = _shown([self[self.laws[0].name]])
         told = (("restitution", 1.0, "restitution"), ("residual_flat_m", 1e6, "crater depth [um]"))
         return [
-            f"{words} {_cell(scale * getattr(found, name), scale * band.std(name))}: "
+            f"{words} {_cell(scale * found[name], scale * band.std(name))}: "
             f"{band.rules(name)} of the variance"
             for name, scale, words in told
-            if getattr(found, name) > 0.0 and band.rules(name)
+            if found[name] > 0.0 and band.rules(name)
         ] + [
             f"the standard deviation of {key}, {share:.2g} of it, changes nothing here"
             for key, share in idle(self.setup, band)
@@ -339,8 +340,13 @@ def blow_of(setup: Setup, laws: Sequence[ContactLaw]) -> Blow:
     return Blow(setup.name, traces, tuple(rows), setup, tuple(laws))
 
 
+_LEFT = ("residual_flat_m", "residual_sphere_m")
+_ATOM = 1e-10
+"""Diameter of an atom [m]: no dent is less deep."""
+
+
 def _shown(impacts: Iterable[Impact]) -> list[dict[str, float]]:
-    """What is shown of each; a length or an energy that rounding alone has left is 0."""
+    """What is shown of each; 0 for what rounding alone has left and a dent below an atom."""
     columns = [{key: float(getattr(one, key)) for _, key, _, _ in SHOWN} for one in impacts]
     largest: dict[str, float] = {}
     for _, key, _, unit in SHOWN:
@@ -348,12 +354,17 @@ def _shown(impacts: Iterable[Impact]) -> list[dict[str, float]]:
     return [
         {
             key: 0.0
-            if unit != "-" and abs(values[key]) <= RULES.shown_round_off * largest[unit]
+            if unit != "-" and abs(values[key]) <= _least(key, largest[unit])
             else values[key]
             for _, key, _, unit in SHOWN
         }
         for values in columns
     ]
+
+
+def _least(key: str, largest: float) -> float:
+    """Size up to which a number is shown as 0, by the largest of its unit."""
+    return max(RULES.shown_round_off * largest, _ATOM if key in _LEFT else 0.0)
 
 
 def _cell(value: float, std: float = 0.0) -> str:

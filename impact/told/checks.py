@@ -59,7 +59,7 @@ def _onset(setup: Setup, scene: Scene, found: Impact) -> Iterator[str]:
         what = "elastic, as target.law has it" if asked else "neither body yields"
         yield f"{what}{': ' if mean else ''}{mean}"
         return
-    over = f", {pressure / pair.Sy_min:.3g} times the weaker strength" if mean else ""
+    over = f"; {mean}, {pressure / pair.Sy_min:.3g} times the weaker strength" if mean else ""
     speed = first_yield_speed(scene)
     if speed == 0.0:
         yield "first yield at the edge of the tip's flat, at any speed"
@@ -67,7 +67,7 @@ def _onset(setup: Setup, scene: Scene, found: Impact) -> Iterator[str]:
     regime = demand(pair, found.peak_depth_m).regime
     yield (
         f"first yield at {speed:.3g} m/s; here {scene.approach.speed / speed:.3g} times that "
-        f"({regime}); {mean}{over}"
+        f"({regime}){over}"
     )
 
 

@@ -40,6 +40,7 @@ EXACT = {
     "fem/material/slide.py": "RADIAL EXACT _NOUGHT",
     "fem/problem.py": "NUMERICS_VERSION",
     "fitting/form.py": "_START",
+    "impact/files/blow.py": "_ATOM",
     "impact/force.py": "N_FORCE N_BRANCH N_FACTORS LOG_DEPTH_LAST",
     "impact/scene.py": "STANDARD_GRAVITY",
     "impact/surface.py": "N_HEAD N_IMPRINT",

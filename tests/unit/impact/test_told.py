@@ -100,6 +100,26 @@ def test_a_law_that_cannot_lose_has_no_band_of_restitution(brass):
     assert brass.bands["fitted"].std("restitution") > 0.0
 
 
+def test_below_first_yield_no_crater_is_shown(brass):
+    """The fitted law bends off Hertz's smoothly and leaves 1e-12 m, a hundredth of an atom."""
+    text = BRASS.replace("impact_speed_m_s = 3.0", "impact_speed_m_s = 1e-3")
+    slow = blow_of(setup_of(tomllib.loads(text), source="brass.toml"), [LAWS["fitted"]])
+    assert 0.0 < slow["fitted"].residual_flat_m < 1e-11
+    shown = [words for words, *_ in slow.table()]
+    assert "largest depth [um]" in shown
+    assert not any("crater" in words or "residual" in words for words in shown)
+    assert not any("crater" in line for line in slow.rules())
+    assert any(words.startswith("crater depth") for words, *_ in brass.table())
+
+
+def test_a_pressure_that_is_unknown_is_left_out_of_the_line_of_first_yield():
+    """A blow on a spot that has borne as much springs back before the law's depth counts."""
+    text = BRASS.replace("impact_speed_m_s = 3.0", "impact_speed_m_s = 1e-3\nrepeats = 2")
+    slow = blow_of(setup_of(tomllib.loads(text), source="brass.toml"), [LAWS["fitted"]])
+    (line,) = (one for one in slow.checks() if one.startswith("first yield at"))
+    assert line.endswith("(elastic)")
+
+
 def test_near_equal_strengths_may_dent_either_body(brass):
     def said(strength: str) -> list[str]:
         text = BRASS.replace("Sy_Pa = 2.2e9", f"Sy_Pa = {strength}")
