@@ -20,6 +20,7 @@ from ..core.arrays import Array, Indices
 from ..core.errors import InputError, InputErrors
 from ..core.inputs.csv_table import Problems
 from ..core.inputs.flow_curve import SPECIMENS, MeasuredFlow, read_flow_curve
+from ..core.inputs.input_file import file_beside
 from ..core.inputs.toml_input import parse_model, read_toml
 from ..core.observables import LOAD, RELATIVE_SUFFIX, RIG_NOISE, TRACE_NOISE
 from ..core.output import finish, locked, write_files
@@ -317,9 +318,12 @@ def _read_flows(
             ))  # fmt: skip
             continue
         try:
-            flows[key] = read_flow_curve(folder / body.flow_curve)
+            file = file_beside(folder / "set.toml", body.flow_curve, key=f"{key}.flow_curve")
+            flows[key] = read_flow_curve(file)
         except InputErrors as several:
             mistakes += several.errors
+        except InputError as missing:
+            mistakes.append(missing)
     return flows
 
 

@@ -11,6 +11,7 @@ from pydantic import Field
 from ..core.errors import InputError, InputErrors
 from ..core.flow import Flow, FlowCurve, tabulated
 from ..core.inputs.flow_tables import HardeningTable, HeatingTable, RateTable
+from ..core.inputs.input_file import file_beside
 from ..core.inputs.toml_input import InputTable, Listed, read_model
 from ..core.material import Material, Pair
 from ..core.rig import FrictionTable, MaterialTable
@@ -48,7 +49,9 @@ class CaseBody(MaterialTable):
                 "given beside flow_curve", source=source, key=f"{key}.hardening",
                 allowed="one of the two",
             )  # fmt: skip
-        curve = read_flow_curve(file.parent / self.flow_curve) if self.flow_curve else None
+        curve = None
+        if self.flow_curve:
+            curve = read_flow_curve(file_beside(file, self.flow_curve, key=f"{key}.flow_curve"))
         Sy = curve.strength if curve and math.isinf(metal.Sy) else metal.Sy
         if math.isinf(Sy):
             raise InputError(

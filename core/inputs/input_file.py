@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import os
 import stat
 from pathlib import Path
 
@@ -40,6 +41,28 @@ def checked_file(path: Path, *, most: int, allowed: str) -> Path:
         raise InputError(
             f"{about.st_size / 1e6:.0f} MB", source=str(path), allowed=f"up to {most / 1e6:g} MB"
         )
+    return path
+
+
+def file_beside(source: str | Path, name: str, *, key: str) -> Path:
+    """Return the file that a key of another one names, from that one's folder.
+
+    Parameters
+    ----------
+    source, name, key
+        The other file, what it says, and where.
+
+    Raises
+    ------
+    InputError
+        There is none.
+    """
+    path = Path(source).parent / name
+    if not os.path.exists(path):
+        raise InputError(
+            f"no such file {name!r}", source=str(source), key=key,
+            allowed="a file, from the folder of this one",
+        )  # fmt: skip
     return path
 
 

@@ -3,12 +3,12 @@
 from __future__ import annotations
 
 import math
-from pathlib import Path
 
 from ...core.errors import InputError
 from ...core.flow import Flow
 from ...core.inputs.flow_curve import read_flow_curve
 from ...core.inputs.flow_tables import HardeningTable
+from ...core.inputs.input_file import file_beside
 from ...core.inputs.rig_numbers import RigNumbers
 from ...core.material import Material, Pair
 from ...core.rig import BodyTable
@@ -78,7 +78,7 @@ def flowing(metal: Material, table: BodyTable, key: str, *, source: str) -> Mate
             )
         curve = law.curve(metal.Sy, key=f"{key}.hardening", source=source)
         return metal.with_(flow=Flow(curve))
-    measured = read_flow_curve(Path(source).parent / table.flow_curve)
+    measured = read_flow_curve(file_beside(source, table.flow_curve, key=f"{key}.flow_curve"))
     own = measured.strength
     first = measured.curve(own).strength
     stated = math.isfinite(metal.Sy) and abs(metal.Sy / first - 1.0) > RULES.same_strength

@@ -282,6 +282,9 @@ def test_the_ball_on_a_metal_with_a_flow_curve(tmp_path: Path) -> None:
         for line in ("", "Sy_Pa = 3e8\n", "Sy_Pa = 6.08e8\n")
     ]  # fmt: skip
     assert strengths == pytest.approx([3e8, 3e8, 6e8], rel=1e-6)
+    (tmp_path / "flow.csv").unlink()
+    with pytest.raises(InputError, match=r"target.flow_curve: no such file 'flow.csv'"):
+        read_setup(write(tmp_path, flat)).scene(HERTZ)
 
 
 def test_command_line_from_file(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:

@@ -115,6 +115,9 @@ def test_a_flow_curve_gives_the_strength_and_comes_along(folder, tmp_path):
     # 353 over 310 MPa at 0.2 %, 356 over 320 at 0.4 %, the last that both reach
     assert rise == pytest.approx((1000.0, 1.126), rel=2e-3)
     assert read(tmp_path / "copy").flows["target"].stress == pytest.approx([3e8, 3.2e8, 3.5e8, 5e8])
+    (tmp_path / "copy" / "flat.csv").unlink()
+    with pytest.raises(InputError, match=r"target.flow_curve: no such file 'flat.csv'"):
+        read(tmp_path / "copy")
 
 
 @pytest.mark.parametrize(

@@ -193,7 +193,7 @@ def test_a_flow_curve_a_rate_and_a_speed_reach_the_solver(tmp_path):
         ("speed_m_s = 2.0", "", ["case.toml", "load.speed_m_s", "missing"]),
         ("speed_m_s = 2.0", "speed_m_s = -2.0", ["speed_m_s", "-2"]),
         ("speed_m_s = 2.0", "speed_m_s = [[0.1, 2], [0.0, 1]]", ["speed_m_s", "[0, 1]"]),
-        ("curve.csv", "other.csv", ["other.csv"]),
+        ("curve.csv", "other.csv", ["case.toml", "flat.flow_curve", "other.csv"]),
         ('flow_curve = "curve.csv"', 'flow_curve = "curve.csv"\nSy_Pa = 3e8',
          ["flat.Sy_Pa", "2.76e+08"]),
         ('flow_curve = "curve.csv"', "", ["flat.Sy_Pa", "missing"]),
