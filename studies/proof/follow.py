@@ -129,7 +129,7 @@ def follow(run: Path, *, most: int, limit_s: float = 900.0) -> Iterator[dict[str
     limit_s
         Longest time of a diagnosis [s].
     """
-    begin = Ledger(run / "ledger.jsonl").events()[0]
+    begin = Ledger(run / "ledger.jsonl").of("begin")[""]
     entries: dict[str, Entry] = {e.name: e for e in shuffled(LISTS[begin["list"]](), begin["tree"])}
     order = {name: k for k, name in enumerate(entries)}
     asked = sorted(open_questions(open_run(run)), key=lambda c: order[c.name])

@@ -1,11 +1,12 @@
 """A run: draw and seal, diagnose in a process of its own, seal the verdict. It may be stopped.
 
-Folder of a run: `ledger.jsonl`, `sets/NAME/`, `truths/NAME.json`, `verdicts/NAME.json`. The
+The ledger begins with the SHA-256 of the plan, docs/proof-plan.md. Folder of a run: `ledger.jsonl`, `sets/NAME/`, `truths/NAME.json`, `verdicts/NAME.json`. The
 diagnosing process is given the path of a copy of the recordings and nothing else.
 """
 
 from __future__ import annotations
 
+import hashlib
 import json
 import os
 import secrets
@@ -15,11 +16,12 @@ import tempfile
 import time
 from collections.abc import Generator
 from concurrent.futures import FIRST_COMPLETED, Executor, Future, ProcessPoolExecutor, wait
-from itertools import islice
+from itertools import islice, takewhile
 from multiprocessing import get_context
 from pathlib import Path
 from typing import Any
 
+from ...core.errors import InputError
 from ...core.processes.children import die_with, keep_current_folder_out
 from .apart import answer
 from .explicit.catalogue import SERIES
@@ -30,6 +32,8 @@ from .lists import LISTS, Entry, seed_of, shuffled
 from .seal import Ledger, digest_of, tree_hash
 
 ROOT = Path(__file__).resolve().parents[2]
+PLAN = ROOT / "docs" / "proof-plan.md"
+"""What is drawn, what counts as right and how it is analysed, written before the run."""
 
 
 def run_folder(base: Path, which: str) -> Path:
@@ -143,6 +147,8 @@ def carry_on(
     ------
     ValueError
         The source tree changed since the run began; a new run draws new truths.
+    InputError
+        The plan is not the one that the run began with.
     """
     tree = tree_hash(ROOT)
     ledger = _ledger_of(run, which, tree)
@@ -176,9 +182,35 @@ def entries_to_do(ledger: Ledger, which: str, tree: str) -> Generator[Entry]:
 def _ledger_of(run: Path, which: str, tree: str) -> Ledger:
     run.mkdir(parents=True, exist_ok=True)
     ledger = Ledger(run / "ledger.jsonl")
-    events = ledger.events()
-    if not events:
+    begun = ledger.of("begin").get("")
+    if begun is None or not ledger.of("truth"):
+        _seal_plan(ledger)
+    if begun is None:
         ledger.add(event="begin", set="", tree=tree, list=which)
-    elif events[0]["tree"] != tree:
+        return ledger
+    if begun["tree"] != tree:
         raise ValueError("the source tree is not the one of this run")
+    sealed = plan_of(ledger)
+    if sealed and sealed != _plan_digest():
+        raise InputError(
+            "the plan changed after the first set was drawn", source=str(PLAN), key="SHA-256",
+            allowed=f"the plan that the run began with, {sealed}",
+        )  # fmt: skip
     return ledger
+
+
+def plan_of(ledger: Ledger) -> str:
+    """SHA-256 of the plan that lay before a run's first truth; empty where there was none."""
+    before = takewhile(lambda e: e["event"] != "truth", ledger.events())
+    return next((str(e["plan"]) for e in reversed(list(before)) if e["event"] == "plan"), "")
+
+
+def _seal_plan(ledger: Ledger) -> None:
+    """Put the plan into the ledger, unless the same one is there."""
+    now = _plan_digest()
+    if plan_of(ledger) != now:
+        ledger.add(event="plan", set="", plan=now)
+
+
+def _plan_digest() -> str:
+    return hashlib.sha256(PLAN.read_bytes()).hexdigest()

@@ -1,10 +1,12 @@
 """Seals, seeds, lists, scores and page of the proof; the diagnosis is replaced by a stand-in."""
 
+import hashlib
 import json
 from concurrent.futures import ThreadPoolExecutor
 
 import numpy as np
 import pytest
+from dentscope.core.errors import InputError
 from dentscope.studies.proof import apart, calibrated, lists, page, run, score, seal
 from dentscope.studies.proof.case import Case, interval, open_run
 from dentscope.studies.proof.lists import Entry
@@ -143,6 +145,30 @@ def test_run_goes_on_where_it_stopped(tmp_path, monkeypatch):
     assert right.hits + off.hits == 0
     assert right.of + off.of == 3
     assert {right.state, off.state} <= {"not shown", "no cases"}
+
+
+def test_a_run_goes_on_with_its_own_plan_alone(tmp_path, monkeypatch):
+    monkeypatch.setitem(lists.LISTS, "small", lambda: [Entry(k, "null") for k in range(2)])
+    monkeypatch.setattr(run, "tree_hash", lambda root: "ab" * 32)
+    monkeypatch.setattr(run, "answer", lambda *_: apart.Answer(1, "stand-in", 1.0))
+    monkeypatch.setattr(run, "PLAN", tmp_path / "plan.md")
+    ledger = seal.Ledger(tmp_path / "run" / "ledger.jsonl")
+
+    def step(plan, most):
+        run.PLAN.write_text(plan)
+        with ThreadPoolExecutor(1) as threads:
+            return len(list(run.carry_on(tmp_path / "run", "small", threads, most=most)))
+
+    # before the first set a plan may still change; the last one counts
+    assert (step("draft", 0), step("plan\n", 0)) == (0, 0)
+    assert [e["event"] for e in ledger.events()] == ["plan", "begin", "plan"]
+    assert step("plan\n", 1) == 1
+    assert run.plan_of(ledger) == hashlib.sha256(b"plan\n").hexdigest()
+    with pytest.raises(InputError, match="the plan changed after the first set was drawn"):
+        step("other", 1)
+    # one put in later is not the plan
+    ledger.add(event="plan", set="", plan="0" * 64)
+    assert step("plan\n", 1) == 1
 
 
 def case(name, kind, true, verdict, size=15.0):
