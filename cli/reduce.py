@@ -15,6 +15,7 @@ from typing import Annotated, Any
 
 import typer
 
+from ..core.errors import InputError, InputErrors
 from .shared.groups import Commands, group
 from .shared.places import folder_option
 
@@ -31,20 +32,22 @@ class _Kinds(Commands):
     """The commands of the kinds, made from their options when they are asked for."""
 
     def list_commands(self, ctx: Any) -> list[str]:
-        from ..reduce.kinds import all_kinds
+        from ..reduce.kinds import kind_names
 
-        return list(all_kinds())
+        return list(kind_names())
 
     def abouts(self, ctx: Any) -> dict[str, str]:
-        """Kinds and what each gives, without loading any of them."""
+        """Kinds and what each gives, or why it cannot be loaded."""
         from ..reduce.kinds import all_kinds
 
         return all_kinds()
 
     def get_command(self, ctx: Any, cmd_name: str) -> Any:
-        from ..reduce.kinds import all_kinds
+        from ..reduce.kinds import kind_names
 
-        return _command(cmd_name) if cmd_name in all_kinds() else super().get_command(ctx, cmd_name)
+        if cmd_name in kind_names():
+            return _command(cmd_name)
+        return super().get_command(ctx, cmd_name)
 
 
 app = group(
@@ -83,7 +86,7 @@ def _command(name: str) -> Any:
         else:
             _reduce_each(kind, jobs, into, out, _set(row))
 
-    # a reader of another package may have taken `Row` for its options
+    # a name that a reader of another package shares with `Row` is asked for once
     fields = {**kind.options.model_fields, **Row.model_fields}
     keyword = inspect.Parameter.KEYWORD_ONLY
     parameters = [
@@ -124,7 +127,9 @@ def _plain_type(annotation: Any) -> tuple[Any, tuple[str, ...]]:
     for part in (annotation, *inner):
         if part in _SETTABLE:
             return part, ()
-    raise TypeError(f"{annotation} cannot be an option")
+    raise InputError(
+        f"{annotation} cannot be an option", key="Options", allowed="float, int, bool, str, Path"
+    )
 
 
 def _set(given: dict[str, Any]) -> dict[str, Any]:
@@ -139,7 +144,6 @@ def _reduce_each(
     from rich.console import Console
     from rich.progress import track
 
-    from ..core.errors import InputError, InputErrors
     from .shared.batch import draw_page
 
     if row.get("trial"):
@@ -198,18 +202,19 @@ def _reduce(
             written = (done.record, done.picture)
             lines = [f"  rows of {into}: {', '.join(done.trials)}"] if done.trials else []
             lines += [f"note: {note}" for note in done.notes]
-    pictures[name] = written[1]
+    # a reader of another package may draw none
+    there = [path for path in written if path.is_file()]
+    if written[1] in there:
+        pictures[name] = written[1]
     _print(job.file, reduced)
     for line in lines:
         typer.echo(line)
-    typer.echo(f"written: {written[0]}, {written[1]}")
+    typer.echo(f"written: {', '.join(map(str, there))}")
 
 
 @contextlib.contextmanager
 def _named_as_options() -> Iterator[None]:
     """Tell mistakes in options under the names that they have on the command line."""
-    from ..core.errors import InputError, InputErrors
-
     try:
         yield
     except InputError as error:

@@ -4,8 +4,9 @@ The folder of a kind holds `options.py` with `Options`, the table of its options
 whose fields have a description; field names end in their unit); `kind.py` with
 `reduce(path, options) -> Reduced`, loaded when a file is reduced; and `picture.py`, which draws the
 picture to check the numbers by. The command line and the recipes make their options from
-`Options`, so that an option is written once. Another package adds a kind as one module with `ABOUT`
-(what it gives), `Options` and `reduce` (`core.inputs.added`).
+`Options`, so that an option is written once. Another package adds a kind as one module with
+`ABOUT` (what it gives), `Options` and `reduce` (`core.inputs.added`); where it fails, the others
+still work.
 """
 
 from __future__ import annotations
@@ -61,20 +62,29 @@ class Kind:
         from numpy.linalg import LinAlgError
 
         kind = self.module or import_module(f".{self.name}.kind", __package__)
+        # the reader of somebody else raises what it likes
+        expected = Exception if self.module else (ArithmeticError, LinAlgError)
         try:
             reduced: Reduced = kind.reduce(path, options)
             return reduced.known()
-        except (ArithmeticError, LinAlgError) as error:
+        except InputError:
+            raise
+        except expected as error:
+            reason = (str(error).splitlines() or [type(error).__name__])[0]
             raise InputError(
-                f"its numbers cannot be reduced ({error})", source=str(path),
+                f"its numbers cannot be reduced ({reason})", source=str(path),
                 allowed="a recording of the kind that was named",
-            ) from None  # fmt: skip
+            ) from error  # fmt: skip
+
+
+def kind_names() -> tuple[str, ...]:
+    """The kinds, those of other packages too, without loading any."""
+    return (*KINDS, *(name for name in names_added(READERS) if name not in KINDS))
 
 
 def all_kinds() -> dict[str, str]:
-    """Each kind, those of other packages too, and what it gives."""
-    others = {name: added(READERS, name).ABOUT for name in names_added(READERS)}
-    return others | KINDS
+    """Each kind and what it gives, or why it cannot be loaded."""
+    return {name: KINDS[name] if name in KINDS else _about(name) for name in kind_names()}
 
 
 def load_kind(name: str) -> Kind:
@@ -83,12 +93,29 @@ def load_kind(name: str) -> Kind:
     Raises
     ------
     InputError
-        There is no such kind.
+        There is no such kind, or its package fails.
     """
-    if name not in KINDS and name in names_added(READERS):
-        module = added(READERS, name)
+    if name in KINDS:
+        return Kind(name, import_module(f".{name}.options", __package__).Options)
+    if name in kind_names():
+        module = _reader(name)
         return Kind(name, module.Options, module)
-    if name not in KINDS:
-        known = ", ".join((*KINDS, *names_added(READERS)))
-        raise InputError(f"no kind {name!r}", key="kind", allowed=known)
-    return Kind(name, import_module(f".{name}.options", __package__).Options)
+    raise InputError(f"no kind {name!r}", key="kind", allowed=", ".join(kind_names()))
+
+
+def _reader(name: str) -> ModuleType:
+    module: ModuleType = added(READERS, name)
+    missing = [part for part in ("ABOUT", "Options", "reduce") if not hasattr(module, part)]
+    if missing:
+        raise InputError(
+            f"{name!r} has no {missing[0]}", key=READERS,
+            allowed="a module with ABOUT, Options and reduce",
+        )  # fmt: skip
+    return module
+
+
+def _about(name: str) -> str:
+    try:
+        return str(_reader(name).ABOUT)
+    except InputError as error:
+        return error.message

@@ -22,7 +22,7 @@ class Options(InputTable):
 TOY_LAW = LAWS["johnson"]
 TOY_READER = SimpleNamespace(
     ABOUT="two heights", Options=Options, reduce=lambda path, options: SimpleNamespace(
-        known=lambda: path.read_text()
+        known=lambda: path.read_text(encoding="utf-8")
     ),
 )  # fmt: skip
 
@@ -90,6 +90,31 @@ def test_a_reader_of_another_package_reduces(packages, importable, tmp_path):
     assert kinds.all_kinds()["toy"] == "two heights"
     (tmp_path / "raw.txt").write_text("1 0.64")
     assert kinds.load_kind("toy").run(tmp_path / "raw.txt", {}, source="") == "1 0.64"
+
+
+@pytest.mark.parametrize(
+    ("reader", "said"),
+    [("no_such_package", "cannot be loaded"), (f"{HERE}:TOY_LAW", "has no ABOUT")],
+)
+def test_a_reader_that_fails_is_one_line_and_the_others_still_work(
+    packages, importable, reader, said
+):
+    packages(readers=("toy", reader))
+    about = kinds.all_kinds()
+    assert said in about["toy"]
+    assert about["table"] == kinds.KINDS["table"]
+    assert kinds.load_kind("table").name == "table"
+    with pytest.raises(InputError, match=said):
+        kinds.load_kind("toy")
+
+
+def test_a_file_that_a_reader_of_another_package_cannot_read_is_one_line(
+    packages, importable, tmp_path
+):
+    packages(readers=("toy", f"{HERE}:TOY_READER"))
+    (tmp_path / "raw.txt").write_bytes(b"\xff")
+    with pytest.raises(InputError, match=r"raw\.txt: its numbers cannot be reduced \(.*decode"):
+        kinds.load_kind("toy").run(tmp_path / "raw.txt", {}, source="")
 
 
 def test_a_law_of_ones_own_strikes():
