@@ -1,7 +1,8 @@
 """A run: draw and seal, diagnose in a process of its own, seal the verdict. It may be stopped.
 
-The ledger begins with the SHA-256 of the plan, docs/proof-plan.md. Folder of a run: `ledger.jsonl`, `sets/NAME/`, `truths/NAME.json`, `verdicts/NAME.json`. The
-diagnosing process is given the path of a copy of the recordings and nothing else.
+Folder of a run: `ledger.jsonl`, `sets/NAME/`, `truths/NAME.json`, `verdicts/NAME.json`. The
+ledger begins with the SHA-256 of the plan, docs/proof-plan.md. The diagnosing process is given the
+path of a copy of the recordings and nothing else.
 """
 
 from __future__ import annotations
