@@ -2,6 +2,7 @@
 
 verification   the solver's checks, and the report that they make
 proof          effects concealed in made-up recordings, diagnosed blindly, scored
+interventions  known effects of real recordings concealed, diagnosed, judged by a plan
 synthetic      rendered clips, markers, scans and sounds with a known truth
 campaign       gallery, claims and trends of the finite-element campaign
 thesis         the thesis again: figures, errata, forms as printed, chapters 3 to 5

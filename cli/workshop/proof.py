@@ -172,6 +172,26 @@ def peers(
 
 
 @app.command()
+def interventions(
+    raw: Annotated[Path, typer.Option(help="Folder of the fetched recordings.")] = Path(
+        "build/recordings"
+    ),
+    out: Annotated[Path, folder_option("Folder of the sets.")] = Path("build/interventions"),
+) -> None:
+    """Conceal known effects of real recordings, diagnose, and rewrite docs/interventions.md."""
+    from ...studies.interventions.page import counted, write_page
+    from ...studies.interventions.plan import read_plan
+    from ...studies.interventions.told import ask, outcomes
+
+    pairs = read_plan()
+    for told in ask(pairs, raw=raw, out=out):
+        mark = {True: "right", False: "missed", None: "left out"}[told.right]
+        typer.echo(f"{told.pair:<14} {told.side:<8} {mark:<9} {told.said}")
+    write_page(pairs, outcomes())
+    typer.echo(counted(pairs, outcomes()))
+
+
+@app.command()
 def library() -> None:
     """Compute the finite-element impacts that the library lacks."""
     from ...studies.proof.explicit.catalogue import fill

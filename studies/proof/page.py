@@ -49,6 +49,10 @@ concealed, lets the diagnosis say what is missing, and only then looks at the tr
 * **First place** is where the effect is largest, in observable and condition, or within a fifth.
 * **Marks** were set before; `met` and `missed` are said only where the whole 95 % interval (Clopper
   and Pearson) lies on one side, else `not shown`.
+
+Made-up sets alone prove little: known effects of real recordings, concealed, are
+[interventions](interventions.md); what is said of recordings whose truth nobody knows is
+[here](verdicts-real.md).
 """
 
 

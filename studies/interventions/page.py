@@ -1,0 +1,69 @@
+"""The page docs/interventions.md: the plan's pairs beside what was said of them."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from typing import Any
+
+from ...core.output import write_file
+from .plan import ROOT, Pair
+from .told import PAGE, said
+
+REMARKS = ROOT / "data" / "interventions" / "remarks.md"
+_HEAD = """# Interventions on real recordings
+
+In each of these recordings an effect is known. It was concealed; what a fair verdict would be
+stood in `data/interventions/plan.toml`, pair by pair, before the diagnosis was asked.
+`dentscope proof interventions` makes all again, from shipped sets and
+`dentscope recordings fetch`. A star: one of the two verdicts was published before.
+
+"""
+_TABLE = """
+| concealed (with / without) | said with it | | said without it | |
+| --- | --- | --- | --- | --- |
+"""
+_MARK = {True: "right", False: "missed"}
+
+
+def write_page(pairs: Sequence[Pair], told: Mapping[str, Mapping[str, Any]]) -> None:
+    """Write the page.
+
+    Parameters
+    ----------
+    pairs
+        The plan.
+    told
+        What was said, by pair and side.
+    """
+    write_file(PAGE, page(pairs, told))
+
+
+def page(pairs: Sequence[Pair], told: Mapping[str, Mapping[str, Any]]) -> str:
+    """Return the page as Markdown."""
+    rows = [_row(pair, told.get(pair.name, {})) for pair in pairs]
+    after = REMARKS.read_text(encoding="utf-8").strip() + "\n" if REMARKS.exists() else ""
+    table = _TABLE + "\n".join(rows) + "\n"
+    return _HEAD + counted(pairs, told) + "\n" + table + ("\n" + after if after else "")
+
+
+def counted(pairs: Sequence[Pair], told: Mapping[str, Mapping[str, Any]]) -> str:
+    """Return how many sides of each kind are right, in a sentence."""
+    asked = [p for p in pairs if {"with", "without"} <= set(told.get(p.name, {}))]
+    good = {side: sum(told[p.name][side]["right"] for p in asked) for side in ("with", "without")}
+    blind = [p for p in asked if not p.known]
+    fresh = sum(told[p.name]["with"]["right"] for p in blind)
+    sets = len({told[p.name]["without"]["set"] for p in asked})
+    return (
+        f"With the effect {good['with']} of {len(asked)} verdicts are fair ({fresh} of the "
+        f"{len(blind)} of which none was published before), without it {good['without']} of "
+        f"{len(asked)} ({sets} different sets)."
+    )
+
+
+def _row(pair: Pair, told: Mapping[str, Any]) -> str:
+    star = "*" if pair.known else ""
+    cells = [f"{pair.recordings}: {pair.concealed}{star}"]
+    for side in ("with", "without"):
+        entry = told.get(side)
+        cells += [said(entry), _MARK[entry["right"]]] if entry else ["not asked", ""]
+    return "| " + " | ".join(cells) + " |"

@@ -1,0 +1,109 @@
+"""Pairs of real recordings: a side is what the plan says, and a verdict is judged by the plan."""
+
+import json
+import math
+from cmath import phase
+
+import pytest
+from dentscope.core.errors import InputError
+from dentscope.discrepancy.estimates import audit_rows
+from dentscope.recordings import read
+from dentscope.recordings.shipped import FOLDER
+from dentscope.studies.interventions import told
+from dentscope.studies.interventions.bases import base
+from dentscope.studies.interventions.edits import write_side
+from dentscope.studies.interventions.page import page
+from dentscope.studies.interventions.plan import Side, read_plan
+from dentscope.studies.interventions.told import right_with, right_without
+from dentscope.studies.proof.apart import Answer
+
+PAIRS = {pair.name: pair for pair in read_plan()}
+KHARAZ = "kharaz-2001-oblique"
+
+
+@pytest.fixture
+def side(tmp_path):
+    base(KHARAZ, {}, raw=tmp_path, folder=tmp_path / "made")
+
+    def write(**what):
+        write_side(Side(base=KHARAZ, **what), tmp_path / "made", tmp_path / "side")
+        return read(tmp_path / "side")
+
+    return write
+
+
+def said(verdict, *mechanisms, audit=()):
+    return {
+        "verdict": verdict, "mechanisms": list(mechanisms), "alternatives": [], "audit": list(audit),
+        "probabilities": {},
+    }  # fmt: skip
+
+
+def test_there_are_twelve_pairs_and_their_names_differ():
+    assert len(PAIRS) == len(read_plan()) >= 12
+    assert all(pair.fair and (pair.named or pair.verdicts) for pair in PAIRS.values())
+
+
+def test_a_turned_plate_keeps_the_speed(side):
+    stated = read(FOLDER / KHARAZ)
+    row = list(stated.trials.trial).index("I50")
+    before, now = stated.approach, side(rows=["I50"], turned_deg=4.0).approach
+    was = complex(abs(before.tangential[row]), before.normal[row])
+    there = complex(abs(now.tangential[0]), now.normal[0])
+    assert abs(there) == pytest.approx(abs(was), rel=1e-6)
+    assert phase(there) - phase(was) == pytest.approx(math.radians(4.0))
+
+
+def test_what_the_plan_lacks_is_told(side):
+    with pytest.raises(InputError, match="names of trials"):
+        side(rows=["I99"])
+
+
+def test_columns_and_keys_are_scaled_and_left_out(side):
+    spin = read(FOLDER / KHARAZ).values("rebound_spin_rad_s")
+    found = side(
+        scaled={"rebound_spin_rad_s": 1.5}, left_out=["friction.coefficient"],
+        columns_left_out=["tangential_rebound_m_s", "tangential_rebound_m_s_std"],
+    )  # fmt: skip
+    assert found.values("rebound_spin_rad_s")[4] == pytest.approx(1.5 * spin[4])
+    assert found.setup.friction.coefficient is None
+    assert "tangential_rebound_m_s" not in found.observed
+
+
+def test_a_missed_verdict_is_called_missed():
+    spin, mass = PAIRS["spin"], PAIRS["mass"]
+    assert right_with(spin, said("outside-library"))
+    assert not right_with(spin, said("adequate"))
+    assert not right_with(spin, said("missing-physics", "velocity-dependent-friction"))
+    assert not right_with(mass, said("adequate"))
+    assert right_with(mass, said("adequate", audit=["contradiction: mass of ball: 5 %"]))
+    assert right_without(said("adequate"))
+    assert not right_without(said("outside-library"))
+    assert not right_without(said("adequate", audit=["contradiction: mass of ball: 5 %"]))
+
+
+def only_audited(folder, out, limit_s):
+    """In place of a diagnosis, which takes seconds: the audit alone, and nothing named."""
+    out.mkdir()
+    verdict = {**said("undetermined"), "audit": audit_rows(read(folder))}
+    (out / "verdict.json").write_text(json.dumps(verdict))
+    return Answer(0, "", 0.0)
+
+
+def test_a_pair_is_asked_once_and_told(tmp_path, monkeypatch):
+    monkeypatch.setattr(told, "answer", only_audited)
+    record, pair = tmp_path / "outcomes.json", PAIRS["printed-mass"]
+    found = list(told.ask([pair], raw=tmp_path, out=tmp_path, record=record))
+    assert [(t.side, t.right) for t in found] == [("with", True), ("without", True)]
+    text = page([pair], told.outcomes(record))
+    assert "With the effect 1 of 1" in text
+    assert "audit: mass" in text
+    monkeypatch.delattr(told, "answer")
+    assert list(told.ask([pair], raw=tmp_path, out=tmp_path, record=record)) == found
+
+
+def test_fetched_recordings_that_are_not_there_leave_a_pair_out(tmp_path):
+    record = tmp_path / "outcomes.json"
+    found = list(told.ask([PAIRS["air"]], raw=tmp_path, out=tmp_path, record=record))
+    assert [t.right for t in found] == [None, None]
+    assert not record.exists()
