@@ -34,8 +34,8 @@ def side(tmp_path):
 
 def said(verdict, *mechanisms, audit=()):
     return {
-        "verdict": verdict, "mechanisms": list(mechanisms), "alternatives": [], "audit": list(audit),
-        "probabilities": {},
+        "verdict": verdict, "mechanisms": list(mechanisms), "alternatives": [],
+        "audit": list(audit), "probabilities": {},
     }  # fmt: skip
 
 
@@ -84,7 +84,7 @@ def test_a_missed_verdict_is_called_missed():
 
 def only_audited(folder, out, limit_s):
     """In place of a diagnosis, which takes seconds: the audit alone, and nothing named."""
-    out.mkdir()
+    out.mkdir(parents=True)
     verdict = {**said("undetermined"), "audit": audit_rows(read(folder))}
     (out / "verdict.json").write_text(json.dumps(verdict))
     return Answer(0, "", 0.0)
