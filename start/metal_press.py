@@ -13,6 +13,7 @@ from ..core.arrays import Array
 from ..core.flow import Flow, Rate, ludwik, tabulated
 from ..core.material import Pair
 from ..discrepancy.comparison.problem import Problem
+from ..discrepancy.rules import RULES as DIAGNOSIS
 from ..fem.problem import DEEPEST
 from ..impact import Scene
 from ..impact.mechanisms.base import Constants, Mechanism
@@ -50,7 +51,9 @@ def presses(
         alike.setdefault((scenes[k].pair.sphere, scenes[k].pair.flat), []).append(k)
     for these in alike.values():
         low, high = depth[these].min(), depth[these].max()
-        turns = tuple(float(x) for x in np.geomspace(min(low, 0.3 * high), high, RULES.press_turns))
+        turns = tuple(
+            float(x) for x in np.geomspace(min(low, 0.3 * high), high, DIAGNOSIS.solve_turns)
+        )
         yield MetalPress(_press(scenes[these[0]], constants, turns, ()), tuple(these))
 
 
@@ -80,8 +83,8 @@ def _press(
     last = min(RULES.press_deeper * max(turns), DEEPEST)
     first = min(0.3 * fem.critical_depth(metal), 1e-2 * last)
     return fem.ContactProblem(
-        pair=metal, depths=fem.geometric_depths(first, last, RULES.press_depths), unload_from=turns,
-        speeds=clock,
+        pair=metal, depths=fem.geometric_depths(first, last, DIAGNOSIS.solve_depths),
+        unload_from=turns, speeds=clock,
     )  # fmt: skip
 
 

@@ -63,14 +63,6 @@ class StartRules:
         1.25, "depth of the solve over the deepest press [-]",
         "room for a stated number that is off",
     )  # fmt: skip
-    press_turns: int = rule(
-        5, "unloadings of the solve [-]",
-        "chosen; no measurement is kept",
-    )  # fmt: skip
-    press_depths: int = rule(
-        60, "depths of the solve [-]",
-        "chosen; no measurement is kept",
-    )  # fmt: skip
     clock_end: float = rule(
         0.1, "part of the approach speed at which the clock of a press ends [-]",
         "a half-sine's slow end",
