@@ -175,8 +175,8 @@ class Friction:
     ploughing
         Multiplies the ploughing term (4 / 3 pi) a / R that is added to `mu` [-].
     stiffness
-        Tangential over normal stiffness of the contact, 2 E' a; infinite for one that slides or
-        sticks without giving way [-].
+        Tangential over normal stiffness of the contact, 2 E' a, before it slips at its edge
+        (Mindlin); infinite for one that slides or sticks without giving way [-].
     """
 
     mu: float = 0.0

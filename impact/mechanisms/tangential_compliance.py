@@ -17,7 +17,9 @@ class TangentialCompliance(Mechanism):
 
     name = "tangential-compliance"
     title = "the contact gives way sideways before it slides"
-    equations = "a spring k_t = s 2 E' a carries the tangential force up to mu F_n, then it slides"
+    equations = (
+        "a spring 0.77 s 2 E' a (slip from the edge in) carries up to mu F_n, then it slides"
+    )
     parameters = (
         Parameter(
             "tangential_stiffness_ratio", "-", 0.3, 1.5, "log", math.inf,

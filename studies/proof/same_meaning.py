@@ -8,6 +8,9 @@ from typing import Any
 
 Numbers = dict[str, float]
 
+_SPRING = 0.77
+"""Stiffness of a single spring over Mindlin's at equal rebounds of oblique spheres."""
+
 
 def _rate(form: str, k: Numbers) -> Numbers:
     if form == "overstress-power":
@@ -32,10 +35,10 @@ _WORDS: dict[str, Callable[[str, Numbers], Numbers]] = {
     "size-effect": lambda form, k: {"size_length_m": k["length"]} if form == "swadener" else {},
     "impact-speed-loss": lambda form, k: {"speed_loss": k["loss"]} if "loss" in k else {},
     "tilt": lambda form, k: {"tilt_deg": math.degrees(k["angle"])},
-    # under partial slip the ratio is that of the first touch; a spring's is a mean
-    "tangential-compliance": lambda form, k: (
-        {"tangential_stiffness_ratio": k["ratio"]} if form == "spring-and-slider" else {}
-    ),
+    # the verdict's ratio is that of the first touch; a spring without slip at the edge is softer
+    "tangential-compliance": lambda form, k: {
+        "tangential_stiffness_ratio": k["ratio"] / (_SPRING if form == "spring-and-slider" else 1.0)
+    },
     "support-compliance": lambda form, k: (
         {"support_stiffness_N_m": k["stiffness"], "support_mass_kg": k["mass"]}
         if form == "mass-spring-dashpot"

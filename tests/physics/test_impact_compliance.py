@@ -36,23 +36,19 @@ def reflected(psi: float) -> float:
     return strike(sphere(psi)).tangential_restitution * psi
 
 
-def test_sticks_from_the_start_below_unity() -> None:
-    """Maw, Barber and Fawcett 1976: no slip at first touch for psi < 1, slip above."""
-    # Slip takes work from the first moment on; a spring that has not slipped at a tenth of the
-    # compression has kept all of it.
-    inside, outside = (strike(sphere(psi)) for psi in (0.98, 1.02))
-    assert inside.friction_impulse_ratio < outside.friction_impulse_ratio < 0.2 * MU
+def test_small_angles_are_linear() -> None:
+    """While nothing slips all is in proportion: Maw, Barber and Fawcett 1976, psi < 1."""
     ratio = [strike(sphere(p)).friction_impulse_ratio / MU for p in (0.2, 0.4)]
     assert ratio[1] == pytest.approx(2.0 * ratio[0], rel=0.1)
 
 
 def test_gross_slip_of_large_angles_is_the_rigid_bodys() -> None:
     """psi_2 = psi_1 - 4 chi when it slips throughout, for psi_1 > 4 chi - 1 = 4.76 (1976)."""
-    for psi in (4.0 * CHI - 0.6, 4.0 * CHI, 4.0 * CHI + 2.0):
+    for psi in (4.0 * CHI - 0.8, 4.0 * CHI, 4.0 * CHI + 2.0):
         assert reflected(psi) == pytest.approx(psi - 4.0 * CHI, abs=1e-6)
-    # one spring lets go a little later than the annulus of the exact solution: 4 chi - 2/3
-    assert reflected(4.0 * CHI - 0.75) > -0.75 + 1e-3
-    assert reflected(4.0 * CHI - 1.0) == pytest.approx(-1.0, abs=0.08)
+    # one spring lets go a little later than the annulus of the exact solution: 4 chi - 0.87
+    assert reflected(4.0 * CHI - 0.95) > -0.95 + 1e-3
+    assert reflected(4.0 * CHI - 1.0) == pytest.approx(-1.0, abs=0.02)
 
 
 def foundation(psi: float, *, rows: int = 400, steps: int = 4000) -> float:
@@ -79,14 +75,9 @@ def foundation(psi: float, *, rows: int = 400, steps: int = 4000) -> float:
 
 
 def test_one_spring_follows_the_exact_contact() -> None:
-    """Within 0.6 of the exact reflection, reversed where that is; one spring misses its slip."""
-    for psi in (0.3, 1.0, 2.0, 3.5, 4.5, 5.5):
-        ours, exact = reflected(psi), foundation(psi)
-        assert ours == pytest.approx(exact, abs=0.6)
-        if psi >= 2.0:
-            assert ours == pytest.approx(exact, abs=0.4)
-            assert exact < 0.0
-            assert ours < 0.0
+    """The exact reflection at every angle, by a spring that is softer than the whole contact."""
+    for psi in (0.3, 1.0, 2.0, 2.5, 3.5, 4.5, 5.5):
+        assert reflected(psi) == pytest.approx(foundation(psi), abs=0.08)
 
 
 def test_compliance_never_creates_energy() -> None:
@@ -110,10 +101,7 @@ def test_stiff_spring_is_plain_coulomb() -> None:
 
 
 def test_measured_spin_of_ceramic_balls() -> None:
-    """Kharaz, Gorham and Salman 2001, from 20 degrees off the normal on: within a tenth.
-
-    Nearer to the normal, psi < 3, one spring gives back too much of the tangential motion.
-    """
+    """Kharaz, Gorham and Salman 2001, at every angle: Mindlin's stiffness, nothing fitted."""
     found = read(Path(__file__).resolve().parents[2] / "data/recordings/kharaz-2001-oblique")
     pair, ball = bodies_of(found.setup.numbers(), "ball")
     # 1/G* = (2 - nu_1)/G_1 + (2 - nu_2)/G_2; k_t/k_n = 4 G*/E*
@@ -121,12 +109,12 @@ def test_measured_spin_of_ceramic_balls() -> None:
     mu = value_of(found.setup.friction.coefficient)
     friction = Friction(mu, stiffness=4.0 / (pair.E_reduced * soft))
     measured, motion = found.values("rebound_spin_rad_s"), found.approach
-    rows = np.flatnonzero(np.isfinite(measured) & (found.trials.angle_deg < 72.0))
-    assert len(rows) == 8
+    rows = np.flatnonzero(np.isfinite(measured))
+    assert len(rows) == 10
     off = []
     for i in rows:
         approach = Approach(motion.normal[i], tangential=motion.tangential[i])
         spin = strike(Scene(HERTZ, pair, ball, approach, friction=friction)).rebound_spin_rad_s
         off.append(spin / measured[i] - 1.0)
-    assert np.max(np.abs(off)) < 0.1
-    assert np.sqrt(np.mean(np.square(off))) < 0.07
+    assert np.max(np.abs(off)) < 0.11
+    assert np.sqrt(np.mean(np.square(off))) < 0.06
