@@ -2,10 +2,66 @@
 
 from __future__ import annotations
 
+import math
+
+import numpy as np
 import pytest
-from dentscope.recordings.checks.contact import _budget, _supply
+from dentscope.core import InputError
+from dentscope.core.rig import StrikerTable
+from dentscope.recordings import read
+from dentscope.recordings.checks.contact import _budget, _supply, check_force
 from dentscope.recordings.checks.findings import Severity
+from dentscope.recordings.checks.momentum import MomentumTrials, momentum_misfit
+from dentscope.recordings.checks.motion import (
+    check_friction,
+    check_impulse,
+    check_mass,
+    check_speed,
+)
+from dentscope.recordings.checks.press import (
+    check_press_depths,
+    check_press_load,
+    check_press_recovery,
+)
+from dentscope.recordings.checks.trace import check_trace
 from dentscope.recordings.checks.trial_view import TrialReading
+from dentscope.recordings.noise import noise_of
+
+STEEL = "E_Pa = 2e11\nnu = 0.3\n"
+BALL = f'shape = "sphere"\ntip_radius_m = 5e-3\nmass_kg = 4e-3\n{STEEL}'
+ROD = f'shape = "rod"\ntip_radius_m = 5e-3\nradius_m = 5e-3\nlength_m = 0.3\nmass_kg = 0.2\n{STEEL}'
+
+
+@pytest.fixture
+def set_of(tmp_path):
+    """A set of one striker, `body`, on a flat of 350 MPa; its rows as columns."""
+
+    def make(striker=BALL, *, target="Sy_Pa = 3.5e8\n", noise="", more="", trace=None, **columns):
+        setup = (
+            f'format = "recording-set/1"\nname = "a"\n[target]\n{STEEL}{target}'
+            f"[strikers.body]\n{striker}[noise]\n{noise}{more}"
+        )
+        n = len(next(iter(columns.values())))
+        columns = {"trial": [f"t{i}" for i in range(n)], "striker": ["body"] * n, **columns}
+        rows = [
+            ",".join(columns),
+            *(",".join(map(str, r)) for r in zip(*columns.values(), strict=True)),
+        ]
+        (tmp_path / "set.toml").write_text(setup, encoding="utf-8")
+        (tmp_path / "trials.csv").write_text("\n".join(rows) + "\n", encoding="utf-8")
+        if trace is not None:
+            (tmp_path / "traces").mkdir(exist_ok=True)
+            text = "time_s,force_N\n" + "\n".join(f"{t},{f}" for t, f in zip(*trace, strict=True))
+            (tmp_path / "traces" / "t0.csv").write_text(text + "\n", encoding="utf-8")
+        return read(tmp_path)
+
+    return make
+
+
+def of_check(findings, name):
+    """The one finding whose check holds some words."""
+    [found] = [f for f in findings if name in f.check]
+    return found
 
 
 @pytest.mark.parametrize(("std", "said"), [(0.024, "CONTRADICTION"), (0.026, "CONSISTENT")])
@@ -24,3 +80,331 @@ def test_a_dent_explains_half_of_what_was_lost(lost, said) -> None:
     found = _budget("a", TrialReading(1.0, 0.0), TrialReading(lost, 0.3))
     assert found.severity is Severity[said]
     assert found.significance == pytest.approx((0.5 * lost - 1.1) / 0.15)
+
+
+def test_a_force_that_a_rod_cannot_bear_is_judged_by_a_bound_known_to_a_twentieth(set_of):
+    """Yields at 1e8 * pi * 25e-6 N; half as much again is 0.5 of it, in 0.05."""
+    bound = 1e8 * math.pi * 25e-6
+    found = set_of(
+        ROD + "Sy_Pa = 1e8\n",
+        angle_deg=[90],
+        impact_speed_m_s=[10],
+        peak_force_N=[1.5 * bound],
+        noise="peak_force_N_relative = 1e-6\n",
+    )
+    assert of_check(check_force(found), "yield").significance == pytest.approx(10.0, rel=1e-3)
+
+
+def test_a_strength_without_an_error_is_known_to_a_seventh(set_of):
+    """A dent of 1 mm: the load's error is 0.5 %, the area's twice 0.1 %, the strength's 15 %."""
+    load = 0.1 * 2.84 * 3.5e8 * math.pi * 0.25e-6
+    found = set_of(load_N=[load], dent_diameter_m=[1e-3], noise="dent_diameter_m = 1e-6\n")
+    # a tenth of the mean pressure where 0.35 are the least
+    expected = 0.25 / (0.1 * math.hypot(0.005, 0.002, 0.15))
+    seen = of_check(check_press_load(found), "load")
+    assert seen.significance == pytest.approx(expected, rel=1e-9)
+
+
+@pytest.mark.parametrize(
+    ("target", "pressure", "said"),
+    [
+        ("hardness_Pa = { value = 1e9, std = 1e6 }\n", 1.31e9, "CONTRADICTION"),
+        ("hardness_Pa = { value = 1e9, std = 1e6 }\n", 1.29e9, "CONSISTENT"),
+        ("hardness_Pa = { value = 1e9, std = 1e6 }\n", 0.34e9, "CONTRADICTION"),
+        ("hardness_Pa = { value = 1e9, std = 1e6 }\n", 0.36e9, "CONSISTENT"),
+        # a strength says nothing of how the metal hardens: four times as much
+        ("Sy_Pa = { value = 3.5e8, std = 3.5e5 }\n", 4.1 * 1.3 * 2.84 * 3.5e8, "CONTRADICTION"),
+        ("Sy_Pa = { value = 3.5e8, std = 3.5e5 }\n", 3.9 * 1.3 * 2.84 * 3.5e8, "CONSISTENT"),
+    ],
+)
+def test_a_mean_pressure_lies_between_a_third_of_a_hardness_and_a_third_above_it(
+    set_of, target, pressure, said
+):
+    found = set_of(
+        target=target,
+        load_N=[pressure * math.pi * 0.25e-6],
+        dent_diameter_m=[1e-3],
+        noise="dent_diameter_m = 1e-9\nload_N_relative = 1e-4\n",
+    )
+    assert of_check(check_press_load(found), "load").severity is Severity[said]
+
+
+@pytest.mark.parametrize(
+    ("share", "said"),
+    [(0.38, "CONTRADICTION"), (0.42, "CONSISTENT"), (1.0, "CONSISTENT"), (1.06, "CONTRADICTION")],
+)
+def test_what_springs_back_is_half_to_six_sevenths_of_f_over_e_a(set_of, share, said):
+    """F/(E' a) is known to 5 %: a quarter of the scale off 0.5 or 0.85 is four of its errors."""
+    modulus = 2e11 / 0.91 / 2.0
+    scale = 500.0 / (modulus * 0.5e-3)
+    back = {0.38: 0.5 - 0.21, 0.42: 0.5 - 0.19, 1.0: 0.85 + 0.19, 1.06: 0.85 + 0.21}[share]
+    found = set_of(
+        load_N=[500],
+        dent_diameter_m=[1e-3],
+        recovered_depth_m=[back * scale],
+        noise="dent_diameter_m = 1e-9\nrecovered_depth_m = 1e-12\nload_N_relative = 1e-4\n",
+    )
+    assert of_check(check_press_recovery(found), "recovery").severity is Severity[said]
+
+
+def test_a_contact_is_0975_of_its_circle_of_the_depth_where_no_diameter_was_read(set_of):
+    """Between 0.7, sunk in, and 1.25, piled up; half the span is two of its errors."""
+    deepest = 5e-5
+    a = math.sqrt(2.0 * 5e-3 * deepest - deepest**2)
+    back = 0.675 * 500.0 / (2e11 / 0.91 / 2.0 * 0.975 * a)
+    found = set_of(
+        load_N=[500],
+        press_depth_m=[deepest],
+        recovered_depth_m=[2.0 * back],
+        noise="press_depth_m = 1e-9\nrecovered_depth_m = 1e-12\nload_N_relative = 1e-4\n",
+    )
+    seen = of_check(check_press_recovery(found), "recovery")
+    assert seen.expected == pytest.approx(back, rel=1e-9)
+    error = back / 0.675 * math.hypot(0.25 * 0.55 / 0.975, 0.05)
+    assert seen.significance == pytest.approx((2.0 - 0.85 / 0.675) * back / error, rel=1e-4)
+
+
+@pytest.mark.parametrize(("off", "said"), [(3.9, "CONSISTENT"), (4.1, "CONTRADICTION")])
+def test_four_standard_deviations_are_a_mistake(set_of, off, said):
+    """What stays and what springs back are the depth under load; each is known to 1 um."""
+    found = set_of(
+        BALL + "Sy_Pa = 2e9\n", load_N=[500], permanent_depth_m=[4e-5],
+        recovered_depth_m=[1e-5], press_depth_m=[5e-5 + off * math.sqrt(3.0) * 1e-6],
+        noise="permanent_depth_m = 1e-6\nrecovered_depth_m = 1e-6\npress_depth_m = 1e-6\n",
+    )  # fmt: skip
+    assert of_check(check_press_depths(found), "depths").severity is Severity[said]
+
+
+def test_a_load_without_an_error_is_known_to_half_a_per_cent(set_of):
+    found = set_of(
+        target="hardness_Pa = { value = 1e9, std = 1e3 }\n",
+        load_N=[2e9 * math.pi * 0.25e-6], dent_diameter_m=[1e-3], noise="dent_diameter_m = 1e-9\n",
+    )  # fmt: skip
+    # twice the hardness where 1.3 of it are the most
+    seen = of_check(check_press_load(found), "load")
+    assert seen.significance == pytest.approx(0.7 / (2.0 * 0.005), rel=1e-4)
+
+
+def _pulse(set_of, ratio):
+    """A ball of 4 g at 1 m/s that stays; force times duration is what of its momentum is said."""
+    found = set_of(
+        angle_deg=[90], impact_speed_m_s=[1], impact_speed_m_s_std=[1e-6], restitution=[1e-9],
+        peak_force_N=[4e-3 / ratio / 1e-4], contact_time_s=[1e-4],
+        noise="restitution = 1e-6\npeak_force_N_relative = 1e-5\ncontact_time_s = 1e-12\n",
+    )  # fmt: skip
+    return of_check(check_impulse(found), "impulse")
+
+
+def test_an_impulse_is_a_quarter_to_all_of_peak_force_times_duration(set_of):
+    assert _pulse(set_of, 0.24).severity is Severity.CAUTION
+    assert _pulse(set_of, 0.26).severity is Severity.CONSISTENT
+    # exact numbers are rounded ones, to 0.3 %: four of these are 1.2 %
+    assert _pulse(set_of, 1.01).severity is Severity.CONSISTENT
+    assert _pulse(set_of, 1.015).severity is Severity.CONTRADICTION
+    assert _pulse(set_of, 1.01).significance == pytest.approx(0.01 / 1.01 / 0.003, rel=1e-4)
+
+
+def test_masses_share_a_fiftieth_of_false_alarms_and_one_alone_has_it_all(set_of):
+    """A ball's mass that is off by z errors: two-sided beyond 2.33 is 0.02."""
+
+    def said(z):
+        mass = 7800.0 * 4.0 / 3.0 * math.pi * 125e-9 * (1.0 + z * 0.01)
+        ball = BALL.replace("4e-3", f"{{ value = {mass}, std = {0.01 * mass} }}")
+        found = set_of(ball + "density_kg_m3 = 7800\n", angle_deg=[90], impact_speed_m_s=[1])
+        return check_mass(found)[0].severity.name
+
+    assert said(2.25) == "CONSISTENT"
+    assert said(2.45) == "CONTRADICTION"
+
+
+def test_of_several_masses_single_ones_have_a_quarter_of_the_false_alarms(set_of):
+    """Two balls, 0.02/4 shared by both: two-sided 0.0025 lies beyond 3.02; together 0.015."""
+
+    def said(first, second):
+        def ball(z):
+            mass = 7800.0 * 4.0 / 3.0 * math.pi * 125e-9 * (1.0 + z * 0.01)
+            return BALL.replace("4e-3", f"{{ value = {mass}, std = {0.01 * mass} }}") + (
+                "density_kg_m3 = 7800\n"
+            )
+
+        other = f"[strikers.other]\n{ball(second)}"
+        found = set_of(ball(first), more=other, angle_deg=[90], impact_speed_m_s=[1])
+        return [f.severity.name for f in check_mass(found)]
+
+    assert said(2.95, -2.95)[:2] == ["CONSISTENT", "CONSISTENT"]
+    assert said(3.1, -3.1)[:2] == ["CONTRADICTION", "CONTRADICTION"]
+    # both alike: chi squared of 2 z^2 has 0.015 beyond 5.92
+    assert said(1.69, 1.69)[2] == "CONSISTENT"
+    assert said(1.75, 1.75)[2] == "CONTRADICTION"
+
+
+def test_exact_sizes_are_rounded_to_three_digits(set_of):
+    """Nothing has an error: a mass 1 % off is 1/0.3 of an error."""
+    mass = 1.01 * 7800.0 * 4.0 / 3.0 * math.pi * 125e-9
+    found = set_of(
+        BALL.replace("4e-3", str(mass)) + "density_kg_m3 = 7800\n",
+        angle_deg=[90],
+        impact_speed_m_s=[1],
+    )
+    assert check_mass(found)[0].significance == pytest.approx(1.0 / 0.3, rel=1e-9)
+
+
+def test_other_checks_share_one_false_alarm_in_two_hundred(set_of):
+    """Half of it goes to the momentum: 0.0025 of chi squared with one degree lies beyond 3.02."""
+
+    def said(z):
+        speed = math.sqrt(2.0 * 9.81 * 0.5) * (1.0 + 0.01 * z)
+        found = set_of(
+            angle_deg=[90], drop_height_m=[0.5], impact_speed_m_s=[speed],
+            impact_speed_m_s_std=[0.01 * math.sqrt(2.0 * 9.81 * 0.5)],
+        )  # fmt: skip
+        return of_check(check_speed(found), "speed").severity.name
+
+    assert said(2.95) == "CONSISTENT"
+    assert said(3.1) == "CONTRADICTION"
+
+
+def test_an_angle_that_stays_may_err_by_a_two_hundredth_of_the_approach():
+    """Three exact numbers of a ball that do not agree by 0.01: two of them, 0.01 sqrt 2 apart."""
+    ball = StrikerTable(shape="sphere", tip_radius_m=5e-3, mass_kg=4e-3)
+    measured = {
+        "restitution": (0.5, 0.0),
+        "rebound_speed_m_s": (0.52, 0.0),
+        "friction_impulse_ratio": (0.0, 0.0),
+    }
+    given = MomentumTrials(
+        ball, np.array([[0.5 * math.pi, 0.0]]), np.array([[1.0, 1e-9]]), np.zeros(1), np.zeros(1),
+        {name: np.array([pair]) for name, pair in measured.items()},
+    )  # fmt: skip
+    misfit, degrees = momentum_misfit(given)
+    assert degrees.tolist() == [1.0]
+    # each gives way by 0.01 of its 0.005: 2 * 2^2
+    assert misfit[0] == pytest.approx(8.0, rel=1e-3)
+
+
+def test_friction_is_judged_by_the_angle_two_of_its_deviations_aside(set_of):
+    """The steeper rod sticks at less; beyond the larger of both limits only."""
+
+    def limit(std):
+        found = set_of(
+            ROD, angle_deg=[60], angle_deg_std=[std], impact_speed_m_s=[1],
+            friction_impulse_ratio=[0.9], noise="friction_impulse_ratio = 0.01\n",
+        )  # fmt: skip
+        return of_check(check_friction(found), "friction").expected
+
+    assert limit(1.0) == pytest.approx(
+        of_check(
+            check_friction(
+                set_of(
+                    ROD, angle_deg=[58], angle_deg_std=[1e-9], impact_speed_m_s=[1],
+                    friction_impulse_ratio=[0.9], noise="friction_impulse_ratio = 0.01\n",
+                )
+            ),
+            "friction",
+        ).expected,
+        rel=1e-6,
+    )  # fmt: skip
+
+
+def _traced(set_of, ends, samples=41):
+    """A ball that stays under a half wave of force, which begins at a part of its peak."""
+    t = np.linspace(0.0, 1e-4, samples)
+    force = 4e-3 * math.pi / 2.0 / 1e-4 * np.sin(math.pi * t / 1e-4)
+    force[0] = ends * force.max()
+    found = set_of(
+        angle_deg=[90], impact_speed_m_s=[1], impact_speed_m_s_std=[1e-6], restitution=[1e-9],
+        noise="restitution = 1e-6\nforce_N_relative = 0.003\n", trace=(t, force),
+    )  # fmt: skip
+    return of_check(check_trace(found), "impulse")
+
+
+def test_a_trace_that_begins_above_a_twentieth_of_its_peak_misses_a_part(set_of):
+    assert _traced(set_of, 0.04).severity is Severity.CONSISTENT
+    assert _traced(set_of, 0.06).severity is Severity.UNCHECKED
+
+
+def test_a_trace_of_five_samples_has_an_impulse(set_of):
+    assert "the trace has" in _traced(set_of, 0.0, samples=4).message
+    assert "under the trace" in _traced(set_of, 0.0, samples=5).message
+
+
+def test_a_speed_without_an_error_is_known_to_a_fiftieth(set_of):
+    """A fall of 0.5 m gives 3.13 m/s; 5 % less is 2.5 errors of what was said."""
+    fall = math.sqrt(2.0 * 9.81 * 0.5)
+    found = set_of(angle_deg=[90], drop_height_m=[0.5], impact_speed_m_s=[0.95 * fall])
+    seen = of_check(check_speed(found), "speed")
+    assert seen.significance == pytest.approx(0.05 / (0.02 * 0.95), rel=1e-2)
+
+
+@pytest.mark.parametrize(
+    ("column", "value", "fits"),
+    [
+        ("rebound_spin_rad_s", 0.9e7, True), ("rebound_spin_rad_s", 1.1e7, False),
+        ("rebound_speed_m_s", 1.9e4, True), ("rebound_speed_m_s", 2.1e4, False),
+        ("permanent_depth_m", 0.09, True), ("permanent_depth_m", 0.11, False),
+        ("contact_time_s", 90.0, True), ("contact_time_s", 110.0, False),
+        ("peak_force_N", 0.9e10, True), ("peak_force_N", 1.1e10, False),
+        ("friction_impulse_ratio", 19.0, True), ("friction_impulse_ratio", 21.0, False),
+    ],
+)  # fmt: skip
+def test_a_number_that_no_contact_shows_is_of_another_unit(set_of, column, value, fits):
+    def make():
+        set_of(angle_deg=[90], impact_speed_m_s=[1], **{column: [value]}, noise=f"{column} = 1\n")
+
+    if fits:
+        make()
+    else:
+        with pytest.raises(InputError, match=column):
+            make()
+
+
+def test_three_trials_of_a_condition_tell_its_scatter():
+    """1 and 3 times the mean of 2: relative deviations of a half."""
+
+    def scatter(values, groups):
+        std = noise_of("restitution", np.array(values), None, {}, np.array(groups)).std
+        return std / np.array(values)
+
+    assert np.isnan(scatter([0.1, 0.3], [0, 0])).all()
+    assert scatter([0.1, 0.2, 0.3], [0, 0, 0]) == pytest.approx(0.5)
+    # a condition of two has no part in it
+    assert scatter([0.1, 0.2, 0.3, 0.1, 0.9], [0, 0, 0, 1, 1]) == pytest.approx(0.5)
+
+
+@pytest.mark.parametrize(
+    ("columns", "apart"),
+    [
+        ({"angle_deg": [60, 60.9], "impact_speed_m_s": [1, 1]}, 1),
+        ({"angle_deg": [60, 61.1], "impact_speed_m_s": [1, 1]}, 2),
+        ({"angle_deg": [90, 90], "impact_speed_m_s": [1, 1.019]}, 1),
+        ({"angle_deg": [90, 90], "impact_speed_m_s": [1, 1.021]}, 2),
+        ({"load_N": [100, 101.9]}, 1),
+        ({"load_N": [100, 102.1]}, 2),
+        ({"load_N": [100, 100], "press_rate_per_s": [1e-3, 1.6e-3]}, 1),
+        ({"load_N": [100, 100], "press_rate_per_s": [1e-3, 1.7e-3]}, 2),
+    ],
+)
+def test_conditions_are_one_within_a_degree_2_per_cent_and_half_a_logarithm_of_a_rate(
+    set_of, columns, apart
+):
+    assert len(set(set_of(ROD, **columns).conditions)) == apart
+
+
+def test_a_restitution_above_one_needs_a_reason_beyond_three_errors_and_a_tenth(set_of):
+    def refused(e, std):
+        try:
+            set_of(
+                angle_deg=[90], impact_speed_m_s=[1], restitution=[e], restitution_std=[std],
+            )  # fmt: skip
+        except InputError as error:
+            return "without a reason" in str(error)
+        return False
+
+    assert [refused(1.09, 0.01), refused(1.11, 0.01)] == [False, True]
+    assert [refused(1.29, 0.1), refused(1.31, 0.1)] == [False, True]
+
+
+def test_a_press_leans_by_half_a_degree_at_the_most(set_of):
+    set_of(load_N=[100], angle_deg=[89.6])
+    with pytest.raises(InputError, match="angle_deg"):
+        set_of(load_N=[100], angle_deg=[89.4])
