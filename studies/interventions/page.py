@@ -7,15 +7,14 @@ from typing import Any
 
 from ...core.output import write_file
 from .plan import ROOT, Pair
-from .told import PAGE, said
+from .told import NAMING, PAGE, said
 
 REMARKS = ROOT / "data" / "interventions" / "remarks.md"
 _HEAD = """# Interventions on real recordings
 
-In each of these recordings an effect is known. It was concealed; what a fair verdict would be
-stood in `data/interventions/plan.toml`, pair by pair, before the diagnosis was asked.
-`dentscope proof interventions` makes all again, from shipped sets and
-`dentscope recordings fetch`. A star: one of the two verdicts was published before.
+A known effect of each recording was concealed; what a fair verdict would be stood in
+`data/interventions/plan.toml` before the diagnosis was asked. `dentscope proof interventions` makes
+all again, from shipped sets and `dentscope recordings fetch`. A star: published before.
 
 """
 _TABLE = """
@@ -47,16 +46,19 @@ def page(pairs: Sequence[Pair], told: Mapping[str, Mapping[str, Any]]) -> str:
 
 
 def counted(pairs: Sequence[Pair], told: Mapping[str, Mapping[str, Any]]) -> str:
-    """Return how many sides of each kind are right, in a sentence."""
+    """Return how many sides of each kind are right, and by what, in a sentence."""
     asked = [p for p in pairs if {"with", "without"} <= set(told.get(p.name, {}))]
-    good = {side: sum(told[p.name][side]["right"] for p in asked) for side in ("with", "without")}
-    blind = [p for p in asked if not p.known]
-    fresh = sum(told[p.name]["with"]["right"] for p in blind)
-    sets = len({told[p.name]["without"]["set"] for p in asked})
+    fair = [p for p in asked if told[p.name]["with"]["right"]]
+    named = sum(told[p.name]["with"]["verdict"] in NAMING for p in fair)
+    audited = sum(bool(p.audit) for p in fair)
+    fresh = [p for p in asked if not p.known]
+    clean = [told[p.name]["without"] for p in asked]
     return (
-        f"With the effect {good['with']} of {len(asked)} verdicts are fair ({fresh} of the "
-        f"{len(blind)} of which none was published before), without it {good['without']} of "
-        f"{len(asked)} ({sets} different sets)."
+        f"With the effect {len(fair)} of {len(asked)} verdicts are fair: {named} name a mechanism, "
+        f"{audited} audits contradict, {len(fair) - named - audited} rightly name nothing; of "
+        f"those without a star {sum(p in fair for p in fresh)} of {len(fresh)}. Without it "
+        f"{sum(entry['right'] for entry in clean)} of {len(clean)} are "
+        f"({len({entry['set'] for entry in clean})} different sets)."
     )
 
 
