@@ -114,6 +114,9 @@ Strength = Annotated[Quantity, _between(1e3, 5e11, MPa=1e6, GPa=1e9)]
 Density = Annotated[Quantity, _between(25.0, 25e3, **{"g/cm^3": 1e3})]
 Length = Annotated[Quantity, _between(1e-9, 10.0, mm=1e-3, um=1e-6)]
 Radius = Annotated[Quantity, _between(1e-9, 3.0, mm=1e-3, um=1e-6)]
+SeatRadius = Annotated[
+    Quantity, _within(lambda x: 1e-9 <= abs(x) <= 1e3, "a radius, or below 0 a seat's")
+]
 Roughness = Annotated[Quantity, _between(0.0, 1e-3, um=1e-6, nm=1e-9)]
 Mass = Annotated[Quantity, _between(1e-18, 1e6)]
 Speed = Annotated[Quantity, _between(1e-9, 2e4, **{"mm/s": 1e-3})]
@@ -251,10 +254,14 @@ class BodyTable(MaterialTable):
 
 
 class TargetTable(BodyTable):
-    """`[target]`: the flat, its support and the baseline that its law asks for."""
+    """`[target]`: the flat or second sphere, its support and the baseline that its law asks for."""
 
-    shape: Literal["flat"] = "flat"
-    """The struck body is flat."""
+    shape: Literal["flat", "sphere"] = "flat"
+    """The struck body is flat, or a second sphere."""
+    radius_m: SeatRadius | None = None
+    """Radius of a second sphere; below 0 of a concave seat."""
+    mass_kg: Mass | None = None
+    """Mass of a second sphere that is free; left out: it is held."""
     thickness_m: Length | None = None
     """Thickness of the flat."""
     layer_thickness_m: Length | None = None

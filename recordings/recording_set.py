@@ -25,7 +25,7 @@ from ..core.inputs.toml_input import parse_model, read_toml
 from ..core.observables import LOAD, RELATIVE_SUFFIX, RIG_NOISE, TRACE_NOISE
 from ..core.output import finish, locked, write_files
 from ..core.rig import BodyTable, Quantity, StrikerTable
-from . import noise
+from . import noise, second_sphere
 from .columns import MEASURED
 from .noise import Noise
 from .rules import RULES
@@ -272,6 +272,7 @@ def read(folder: Path | str, *, unfinished: bool = False) -> RecordingSet:
         _with_strengths(setup, flows), trials, traces, profiles, folder, (), tuple(to_fill), flows
     )
     _check_falls(found, folder / "set.toml")
+    mistakes += second_sphere.mistakes_of(found)
     mistakes += _impossible(found, problems)
     if not unfinished:
         mistakes += _without_noise(found)

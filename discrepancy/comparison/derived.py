@@ -12,6 +12,7 @@ from typing import NamedTuple
 import numpy as np
 
 from ...core.arrays import Array
+from ...core.inputs.second_sphere import struck_sphere
 from ...recordings import RecordingSet
 from ..curves import Readings
 from ..rules import RULES
@@ -60,9 +61,15 @@ def _relations(recordings: RecordingSet, readings: Mapping[str, Readings]) -> It
     upright = ball | (approach.angle > 0.5 * np.pi - 1e-6)
     if {"restitution", "rebound_speed_m_s"} <= seen.keys():
         value = np.where(upright, seen["restitution"] * approach.normal, np.nan)
+        second = struck_sphere(recordings.setup.target)
+        if second is not None:
+            both = np.array([second.reduced(s.mass_kg.value) for s in strikers])
+            value = second.own_rebound(value, approach.normal, both)
         yield _Relation("rebound_speed_m_s", value, "restitution times the speed of approach")
     if {"dent_diameter_m", "permanent_depth_m"} <= seen.keys():
-        radius = np.array([s.tip_radius_m.value for s in strikers])
+        own = [s.tip_radius_m.value for s in strikers]
+        second = struck_sphere(recordings.setup.target)
+        radius = np.array(own if second is None else [second.equivalent(x) for x in own])
         value = seen["dent_diameter_m"] ** 2 / (8.0 * radius)
         yield _Relation("permanent_depth_m", value, "the cap of the dent's diameter")
     speeds = {"restitution", "tangential_rebound_m_s"}

@@ -23,6 +23,7 @@ from .problem import Problem
 _COLUMN = {name: i for i, name in enumerate(c.OBSERVABLES)}
 _PRESS_DEPTH, _RECOVERED = c.N_OUT, c.N_OUT + 1
 """Columns behind those of the integrator."""
+_REBOUND = "rebound_speed_m_s"
 ACCURACY = Settings(tolerance=1e-6, max_steps=4000, max_contacts=30)
 
 
@@ -156,6 +157,11 @@ class Simulator:
             here = {k: v[part] for k, v in seen.items()}
             for k, v in observed(mechanisms, plain[part], point.values, here).items():
                 seen[k][part] = v
+            if problem.parts:
+                # what acts between the two takes no momentum from both
+                taken = [m for m in mechanisms if not m.mutual]
+                met = [attached(taken, s, point.values, around) for s, around in plain[part]]
+                seen[_REBOUND][part] = problem.own_rebound(seen[_REBOUND][part], point.z, met)
             # last: an instrument's scale multiplies what is there to be read
             for k in dict.fromkeys(name for name, _ in problem.scales):
                 seen[k][part] *= problem.scale(k, point.z)

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -15,6 +15,7 @@ from ...core.material import Pair
 from ...core.observables import OBSERVABLES
 from ...impact import CREEP, Approach, ForceTransform, Friction, Press, Scene, Striker
 from ...impact.files.bodies import bodies_of
+from ...impact.files.second import second_of
 from ...impact.mechanisms.arithmetic import as_deep, deepest
 from ...models.base import ContactLaw
 from ...recordings import RecordingSet
@@ -97,7 +98,7 @@ class Problem:
         stated = plain.scenes(np.zeros(plain.n_z))
         for c, scene in zip(self.conditions, stated, strict=True):
             scenes.setdefault(c.striker, []).append(scene)
-        error = law_error(scenes, dents=self.sees_dents)
+        error = law_error(scenes, dents=self.sees_dents, second=second_of(self.rig))
         if known is not None:
             error = replace(known, spreads={**error.spreads, **known.spreads})
         return replace(self, error=error)
@@ -123,14 +124,46 @@ class Problem:
         """The same with every blow on fresh metal."""
         return replace(self, conditions=tuple(replace(c, after=-1) for c in self.conditions))
 
-    def scenes(self, z: Array) -> list[Scene]:
-        """Return the baseline scene of every condition at the unknowns z, shape (n_z,)."""
+    def rig_at(self, z: Array) -> RigNumbers:
+        """Return the rig's numbers at the unknowns z, shape (n_z,)."""
         # written out: a method would be called for every number of every scene
         moved = {
             n.name: n.value * math.exp(n.spread * x) if n.log else n.value + n.spread * x
             for n, x in zip(self.nuisances, z.tolist(), strict=False)
         }
-        rig = self.rig.with_(moved)
+        return self.rig.with_(moved)
+
+    @property
+    def parts(self) -> bool:
+        """Whether what is struck moves off as well."""
+        second = second_of(self.rig)
+        return second is not None and second.free
+
+    def own_rebound(self, relative: Array, z: Array, scenes: Sequence[Scene]) -> Array:
+        """Return rebound speeds as they are read: the striker's own, where the struck body is free.
+
+        Parameters
+        ----------
+        relative
+            (..., conditions) of the striker to what is struck.
+        z
+            (n_z,) unknowns.
+        scenes
+            That of each condition, as it touches.
+        """
+        second = second_of(self.rig_at(z))
+        if second is None:
+            return relative
+        columns = [
+            second.own_rebound(relative[..., i], s.approach.speed, s.striker.mass)
+            for i, s in enumerate(scenes)
+        ]
+        return np.stack(columns, axis=-1)
+
+    def scenes(self, z: Array) -> list[Scene]:
+        """Return the baseline scene of every condition at the unknowns z, shape (n_z,)."""
+        rig = self.rig_at(z)
+        second = second_of(rig)
         used = {c.striker for c in self.conditions}
         b = z[self.n_nuisances :]
         forces = {name: self.error.transform(b, name) for name in used}
@@ -142,12 +175,13 @@ class Problem:
         turn = rig.of.get("angle.offset", 0.0)
         mu = Friction(rig.of.get("friction.coefficient", 0.0))
         heavier = rig.of.get(LOAD_SCALE, 1.0)
-        return [
+        found = [
             self._scene(c, parts[c.striker], scale, turn, mu, forces[c.striker])
             if c.press is None
             else self._press(c, parts[c.striker], heavier * c.press.load, forces[c.striker])
             for c in self.conditions
         ]
+        return found if second is None else [second.facing(scene) for scene in found]
 
     def _press(
         self, c: Condition, parts: tuple[Pair, Striker], load: float, force: ForceTransform

@@ -139,6 +139,8 @@ def candidates_of(problem: Problem) -> list[Candidate]:
         # each striker has one speed, and no height that could be another: a spring gives it
         places = np.zeros(0)
     first = {name: tested[0] for name, tested in own.items()}
+    struck = problem.rig.of.get("target.radius_m", math.inf)
+    seat = -struck if struck < 0.0 else math.inf
     found: list[Candidate] = []
     for name, c in sorted(first.items()):
         fresh = replace(c, after=-1)
@@ -151,7 +153,7 @@ def candidates_of(problem: Problem) -> list[Candidate]:
         found += _angles(problem, fresh, float(np.median(speeds)))
     for name, c in sorted(first.items()):
         at = _moved(replace(c, after=-1), float(max(speeds)))
-        found += _built(problem.rig.striker(name), name, at)
+        found += _built(problem.rig.striker(name), name, at, widest=seat)
     return found
 
 
@@ -188,12 +190,19 @@ def _angles(problem: Problem, c: Condition, speed: float) -> Iterable[Candidate]
             yield Candidate(text, trial)
 
 
-def _built(striker: Mapping[str, float], name: str, c: Condition) -> Iterable[Candidate]:
-    """A rod of another length, a ball or a tip of another radius, with its own mass."""
+def _built(
+    striker: Mapping[str, float], name: str, c: Condition, *, widest: float
+) -> Iterable[Candidate]:
+    """A rod of another length, a ball or a tip of another radius, with its own mass.
+
+    A ball has to be smaller by as much again than the seat of radius `widest` [m] that it strikes.
+    """
     where = f"at {c.speed:.2g} m/s{_at(c)}"
     mass, length, shank = striker["mass_kg"], striker["length_m"], striker["radius_m"]
     for ratio in (1.0 / RULES.build_ratio, RULES.build_ratio):
         radius = striker["tip_radius_m"] * ratio
+        if ratio * radius > widest:
+            continue
         tip = {**striker, "tip_radius_m": radius}
         if length == 0.0:
             m = mass * ratio**3

@@ -24,6 +24,7 @@ _KEYS = {
     "E_Pa": "Young's modulus",
     "Sy_Pa": "yield strength",
     "tip_radius_m": "radius of the tip",
+    "radius_m": "radius",
     "mass_kg": "mass",
     "restitution": "restitution where nothing is missing",
 }
@@ -34,6 +35,7 @@ _WHOLE = {
     "dent.rim": "rim of a dent over its contact circle",
     "friction.coefficient": "friction coefficient",
 }
+_OF_A_SPHERE = ("target.radius_m", "target.mass_kg")
 GLOSSARY = (
     (
         "simulation as described",
@@ -83,7 +85,8 @@ def number_name(key: str) -> str:
     what = _KEYS.get(last, last.replace("_", " "))
     if not place:
         return what
-    return f"{what} of {'the flat' if place == ['target'] else place[-1]}"
+    struck = "the second sphere" if key in _OF_A_SPHERE else "the flat"
+    return f"{what} of {struck if place == ['target'] else place[-1]}"
 
 
 def quantity(value: float, unit: str) -> str:

@@ -28,6 +28,7 @@ import numpy as np
 
 from ...core.arrays import Array
 from ...impact import ForceTransform, Scene
+from ...impact.files.second import SecondSphere
 from ...impact.force import LOG_DEPTH_FIRST, LOG_DEPTH_LAST
 from ...impact.mechanisms.arithmetic import deepest
 from ...impact.strength import NODES, strength_table
@@ -219,7 +220,10 @@ _NONE = np.zeros((0, NODES))
 NO_ERROR = LawError(_NONE, _NONE, _NONE)
 
 
-def law_error(scenes: Mapping[str, Sequence[Scene]], *, dents: bool = False) -> LawError:
+def law_error(
+    scenes: Mapping[str, Sequence[Scene]], *, dents: bool = False,
+    second: SecondSphere | None = None,
+) -> LawError:  # fmt: skip
     """Return the error of the law that the baseline rests on.
 
     Parameters
@@ -228,8 +232,10 @@ def law_error(scenes: Mapping[str, Sequence[Scene]], *, dents: bool = False) -> 
         Striker to the scenes of its impacts as stated.
     dents
         Whether the contact's radius is compared.
+    second
+        What is struck, where that is a sphere: what the flat in its place adds.
     """
-    spreads = {name: _spread(found) for name, found in scenes.items()}
+    spreads = {name: _spread(found, second) for name, found in scenes.items()}
     smooth = components(RULES.law_length)
     lost = max(float(np.max(s.metal["recovery"])) for s in spreads.values())
     radius = smooth if dents else _NONE
@@ -238,7 +244,7 @@ def law_error(scenes: Mapping[str, Sequence[Scene]], *, dents: bool = False) -> 
     return LawError(smooth, smooth, smooth, spreads, radius)
 
 
-def _spread(scenes: Sequence[Scene]) -> Spread:
+def _spread(scenes: Sequence[Scene], second: SecondSphere | None) -> Spread:
     law, pair = scenes[0].law, scenes[0].pair
     lost = not_given_back(scenes[0])
     peaks = np.log([deepest(s) / pair.R for s in scenes])
@@ -246,7 +252,12 @@ def _spread(scenes: Sequence[Scene]) -> Spread:
     metal = {kind: size * lost for kind, size in sizes.items()}
     # a crater is all of what does not come back, however little that is
     metal["crater"] = np.where(lost > 0.0, sizes["crater"], 0.0)
-    return Spread(_of_law(scenes[0], lost), metal, peaks)
+    law_part = _of_law(scenes[0], lost)
+    if second is not None:
+        depth = pair.R * np.exp(np.clip(_GRID, _FIRST, _LAST))
+        law_part["force"] = np.hypot(law_part["force"], second.departure(pair, depth))
+        law_part["crater"] = np.hypot(law_part["crater"], second.crater_departure(pair, depth))
+    return Spread(law_part, metal, peaks)
 
 
 def not_given_back(scene: Scene) -> Array:

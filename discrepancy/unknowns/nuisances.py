@@ -61,6 +61,8 @@ def nuisances_of(recordings: RecordingSet, conditions: Sequence[Condition]) -> t
     setup = recordings.setup
     found: list[Nuisance] = []
     found += _of_body(setup.target, "target", setup.target.yields)
+    found += _stated(setup.target.radius_m, "target.radius_m", "m")
+    found += _stated(setup.target.mass_kg, "target.mass_kg", "kg")
     used = sorted({c.striker for c in conditions})
     for name in used:
         table = setup.strikers[name]

@@ -15,7 +15,7 @@ from ..beam import rod_modes
 from ..scene import Approach, ForceTransform, Friction, Scene, Support
 from ..support import half_space_radiation, plate_support, sprung_support
 from .bodies import bodies_of, flowing
-from .second import SecondSphere
+from .second import second_of
 
 if TYPE_CHECKING:
     from .setup import ImpactTable, SetupFile
@@ -29,14 +29,6 @@ def curves_in(found: SetupFile) -> list[str]:
         for name in ("flow_curve", "hardening")
         if getattr(body, name)
     ]
-
-
-def second_of(numbers: RigNumbers) -> SecondSphere | None:
-    """Return the second sphere; none where a flat is struck."""
-    radius = numbers.of.get("target.radius_m")
-    if radius is None:
-        return None
-    return SecondSphere(radius, numbers.of.get("target.mass_kg", math.inf))
 
 
 def scene_in(

@@ -23,7 +23,8 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from ...core.arrays import Array
-from ...core.errors import InputError
+from ...core.inputs.rig_numbers import RigNumbers, solid_inertia
+from ...core.inputs.second_sphere import StruckSphere
 from ...core.material import Pair
 from ...models import LAWS
 from ...models.base import DomainWarning
@@ -31,19 +32,8 @@ from ..scene import Scene, Striker
 
 
 @dataclass(frozen=True, slots=True)
-class SecondSphere:
-    """A sphere that is struck.
-
-    Parameters
-    ----------
-    radius
-        [m]; negative for a concave seat.
-    mass
-        [kg]; infinite where it is held.
-    """
-
-    radius: float
-    mass: float = math.inf
+class SecondSphere(StruckSphere):
+    """A sphere that is struck, in a scene."""
 
     def facing(self, scene: Scene) -> Scene:
         """Return the impact of one sphere on a flat that is this one's.
@@ -51,7 +41,7 @@ class SecondSphere:
         Parameters
         ----------
         scene
-            The striking sphere on a flat.
+            The striking sphere on a flat; it keeps its own radius where it flies.
 
         Raises
         ------
@@ -59,28 +49,20 @@ class SecondSphere:
             The seat is no wider than the sphere.
         """
         striker = scene.striker
-        curvature = 1.0 / striker.tip_radius + 1.0 / self.radius
-        if not curvature > 0.0:
-            raise InputError(
-                f"{self.radius:g}", key="target.radius_m",
-                allowed=f"a seat wider than the sphere, below -{striker.tip_radius:g}, or above 0",
-            )  # fmt: skip
-        R = 1.0 / curvature
-        free = math.isfinite(self.mass)
+        R, mass = self.equivalent(striker.tip_radius), self.reduced(striker.mass)
         # spin turns the surface as fast as before: r w
         spin = scene.approach.spin * striker.tip_radius / R
+        one = Striker(
+            mass=mass, tip_radius=R, radius=striker.radius, inertia=solid_inertia(mass, R, 0.0),
+            name=striker.name,
+        )  # fmt: skip
         return scene.with_(
-            pair=replace(scene.pair, R=R), gravity=0.0 if free else scene.gravity,
-            striker=Striker(mass=self.reduced(striker.mass), tip_radius=R, name=striker.name),
-            approach=replace(scene.approach, spin=spin),
+            pair=replace(scene.pair, R=R), gravity=0.0 if self.free else scene.gravity,
+            striker=one, approach=replace(scene.approach, spin=spin),
         )  # fmt: skip
 
-    def reduced(self, mass: float) -> float:
-        """Return m_1 m_2/(m_1 + m_2) [kg]; the striker's own where this one is held."""
-        return mass / (1.0 + mass / self.mass)
-
-    def departure(self, pair: Pair, delta: float) -> float:
-        """Return how far 1/R may be off where both yield: the force's part, relative.
+    def departure(self, pair: Pair, delta: float | Array) -> Array:
+        """Return how far 1/R may be off where both yield: the force's part, relative, (...).
 
         On a sphere the mirror's departure; in a seat 4 R/|R_2| times that. The 4 makes it the twice
         that finite elements of one seat have, R_2 = -3 R_1; its growth as a seat closes is chosen.
@@ -90,19 +72,45 @@ class SecondSphere:
         pair
             That of `facing`.
         delta
-            Approach [m].
+            (...) approach [m].
         """
+        if not math.isfinite(pair.Sy_min):
+            return np.zeros_like(np.asarray(delta, dtype=float))
         closer = 4.0 * pair.R / abs(self.radius) if self.radius < 0.0 else 1.0
-        return max(closer, 1.0) * abs(float(mirror_error(pair, delta)))
+        return max(closer, 1.0) * np.abs(mirror_error(pair, delta))
 
-    def parted(self, mass: float, speed: float, restitution: float) -> tuple[float, float]:
-        """Return the normal speeds after, along the approach: the striker's, this one's [m/s].
+    def crater_departure(self, pair: Pair, delta: float | Array) -> Array:
+        """Return how far the struck body's share of what stays may be off, relative, (...).
 
-        Momentum is kept, and the relative speed turns round: v_1 - v_2 = -e v.
+        The law parts it between a sphere and a flat. Of two equal spheres neither is the flat: the
+        truth lies midway to the share that this body would have as the sphere; R/|R_2| is a half of
+        equal ones, 0 of a flat and 1 of a small sphere.
+
+        Parameters
+        ----------
+        pair, delta
+            As of `departure`.
         """
-        share = 0.0 if math.isinf(self.mass) else mass / (mass + self.mass)
-        own = speed * share * (1.0 + restitution)
-        return own - restitution * speed, own
+        depth = np.asarray(delta, dtype=float)
+        if not math.isfinite(pair.Sy_min):
+            return np.zeros_like(depth)
+        turned = replace(pair, sphere=pair.flat, flat=pair.sphere)
+        with warnings.catch_warnings():
+            # a rigid partner is beyond the strengths that were fitted
+            warnings.simplefilter("ignore", DomainWarning)
+            _, as_flat = LAWS["fitted"].residual(pair, depth)
+            as_sphere, _ = LAWS["fitted"].residual(turned, depth)
+        stays = (as_flat > 0.0) & (as_sphere > 0.0)
+        apart = np.log(np.where(stays, as_flat, 1.0) / np.where(stays, as_sphere, 1.0))
+        return np.asarray(pair.R / abs(self.radius) * np.abs(apart))
+
+
+def second_of(numbers: RigNumbers) -> SecondSphere | None:
+    """Return the second sphere of a rig; none where a flat is struck."""
+    radius = numbers.of.get("target.radius_m")
+    if radius is None:
+        return None
+    return SecondSphere(radius, numbers.of.get("target.mass_kg", math.inf))
 
 
 def mirror_error(pair: Pair, delta: float | Array) -> Array:

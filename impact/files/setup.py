@@ -6,25 +6,24 @@ import math
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 from pathlib import Path
-from typing import Annotated, Any, Literal
+from typing import Any, Literal
 
 from pydantic import Field
 
 from ...core.errors import InputError, InputErrors
 from ...core.inputs.flow_tables import HardeningTable
 from ...core.inputs.rig_numbers import RigNumbers
+from ...core.inputs.second_sphere import second_sphere_mistakes
 from ...core.inputs.toml_input import InputTable, parse_model, read_toml, table_in
 from ...core.material import Pair
 from ...core.rig import (
     Height,
-    Mass,
     Quantity,
     Rig,
     Speed,
     StrikerTable,
     TargetTable,
     Temperature,
-    Within,
     quantities,
 )
 from ...models.base import ContactLaw
@@ -36,8 +35,8 @@ from ..mechanisms.asked import Asked
 from ..result import Impact
 from ..scene import Scene
 from .mechanism_tables import MechanismsTable, asked_in, mistakes_of
-from .scenes import curves_in, scene_in, second_of
-from .second import SecondSphere
+from .scenes import curves_in, scene_in
+from .second import SecondSphere, second_of
 from .sweep import SweepTable, mistakes_in, run_sweep, swept_scenes
 from .taken import not_taken, taken_elsewhere
 
@@ -48,24 +47,14 @@ FOLLOWING = "hardening"
 """Ours of metals with a flow curve; it comes first where there is one."""
 
 
-def _is_radius(x: float) -> bool:
-    return 1e-9 <= abs(x) <= 1e3
-
-
 _TEXTS = ("format", "name", "description", "source", "licence")
 
 
 class FlowingTarget(TargetTable):
-    """`[target]` of an impact: also with a law of hardening, and a sphere in place of the flat."""
+    """`[target]` of an impact: also with a law of hardening."""
 
     hardening: HardeningTable | None = None
     """The flow stress grows with plastic strain."""
-    shape: Literal["flat", "sphere"] = "flat"  # type: ignore[assignment]
-    """The struck body is flat, or a second sphere."""
-    radius_m: Annotated[Quantity, Within(_is_radius, "a radius, or below 0 a seat's")] | None = None
-    """Radius of a second sphere; below 0 of a concave seat."""
-    mass_kg: Mass | None = None
-    """Mass of a second sphere that is free; left out: it is held."""
 
 
 class FlowingStriker(StrikerTable):
@@ -340,25 +329,16 @@ def _mistakes(found: SetupFile, source: str) -> list[InputError]:
 
 def _of_a_second_sphere(found: SetupFile, source: str) -> Iterator[InputError]:
     """Yield what a second sphere needs, and what only a flat has."""
-    target, impact = found.target, found.impact
-    name = found.striker
-    two = target.shape == "sphere"
-    rod = name in found.strikers and found.strikers[name].shape == "rod"
+    used = {k: t for k, t in found.strikers.items() if k == found.striker}
+    yield from second_sphere_mistakes(found.target, used, source=source)
+    two = found.target.shape == "sphere"
     wrong = (
-        (two and target.radius_m is None, "target.radius_m", "missing", "of the second sphere"),
-        (two and rod, f"strikers.{name}.shape", "a rod on a sphere", '"sphere"'),
-        (two and impact.support != "rigid", "impact.support", repr(impact.support),
+        (found.impact.support != "rigid", "impact.support", repr(found.impact.support),
          '"rigid": a second sphere is held, or free with target.mass_kg'),
-        (two and target.thickness_m is not None, "target.thickness_m", "of a sphere", "of a flat"),
-        (two and bool(found.sweep.mass_kg), "sweep.mass_kg", "with two spheres",
-         "strikers.NAME.mass_kg"),
-        (two and bool(found.sweep.approach_spin_rad_s), "sweep.approach_spin_rad_s",
-         "with two spheres", "impact.approach_spin_rad_s"),
-        (not two and target.radius_m is not None, "target.radius_m", "of a flat",
-         'with target.shape = "sphere"'),
-        (not two and target.mass_kg is not None, "target.mass_kg", "of a flat",
-         'with target.shape = "sphere"; support_mass_kg of a sprung support'),
+        (found.sweep.mass_kg, "sweep.mass_kg", "with two spheres", "strikers.NAME.mass_kg"),
+        (found.sweep.approach_spin_rad_s, "sweep.approach_spin_rad_s", "with two spheres",
+         "impact.approach_spin_rad_s"),
     )  # fmt: skip
     for amiss, key, message, allowed in wrong:
-        if amiss:
+        if two and amiss:
             yield InputError(message, source=source, key=key, allowed=allowed)

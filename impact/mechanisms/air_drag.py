@@ -56,6 +56,8 @@ class AirDrag(Mechanism):
     def applies(self, situations: Sequence[Situation]) -> str:
         """Needs a light or a fast striker in air, or a liquid of stated density and viscosity."""
         around = situations[0][1]
+        if around.struck is not None and around.struck.free:
+            return "the struck sphere is free: what brakes its flight is not simulated"
         liquid = around.fluid.strip().lower() not in _GASES
         if liquid and not (around.density > 0.0 and around.viscosity > 0.0):
             return (

@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 
 from ...core.inputs.flow_curve import Rise
+from ...core.inputs.second_sphere import struck_sphere
 from ...core.rig import Rig, value_of
 from .base import Surroundings
 
@@ -51,4 +52,5 @@ def surroundings_of(
         from_height=from_height,
         height_share=height_share,
         rises=rises,
+        struck=struck_sphere(target),
     )

@@ -18,6 +18,7 @@ import numpy as np
 
 from ...core.arrays import Array, Mask
 from ...core.inputs.flow_curve import Rise
+from ...core.inputs.second_sphere import StruckSphere
 from ...core.unstated import unstated_equal
 from ..scene import Scene
 
@@ -109,6 +110,8 @@ class Surroundings:
     rises
         How the weaker body's stress rises with the rate of strain, where its flow curve was
         measured at several.
+    struck
+        The second sphere; none where a flat is struck.
     """
 
     thickness: float = math.nan
@@ -128,6 +131,7 @@ class Surroundings:
     from_height: bool = False
     height_share: float = 1.0
     rises: tuple[Rise, ...] = ()
+    struck: StruckSphere | None = None
 
 
 Situation = tuple[Scene, Surroundings]
@@ -168,6 +172,9 @@ class Mechanism(ABC):
         and the report says that it behaves like this.
     static
         Whether it acts without motion, and so on a quasi-static press as well.
+    mutual
+        Whether what it takes of the approach goes to the struck body: of both it keeps the
+        momentum.
     rests_on
         Bodies whose elastic modulus its numbers rest on: "target", "striker". Where a set does not
         state one, the mechanism is not tried: its constants would be those of the assumption.
@@ -187,6 +194,7 @@ class Mechanism(ABC):
     jumps: ClassVar[bool] = False
     named: ClassVar[bool] = True
     static: ClassVar[bool] = False
+    mutual: ClassVar[bool] = False
     rests_on: ClassVar[tuple[str, ...]] = ()
     reads: ClassVar[tuple[str, ...]] = ()
 

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import replace
 from functools import lru_cache
 from typing import ClassVar
@@ -12,7 +12,7 @@ from ...core.material import Material
 from ..scene import Scene
 from ..support import half_space_radiation, plate_support
 from .arithmetic import density_of, shortest_contact, wave_speed
-from .base import Literature, Mechanism, Parameter, Surroundings, Values
+from .base import Literature, Mechanism, Parameter, Situation, Surroundings, Values
 
 
 class HalfSpaceWaves(Mechanism):
@@ -33,6 +33,12 @@ class HalfSpaceWaves(Mechanism):
     )  # fmt: skip
     direction: ClassVar[Mapping[str, int]] = {"restitution": -1}
     rests_on: ClassVar[tuple[str, ...]] = ("target", "striker")
+
+    def applies(self, situations: Sequence[Situation]) -> str:
+        """Needs a flat."""
+        if situations[0][1].struck is not None:
+            return "a second sphere is struck, and no half-space or plate that waves run off into"
+        return ""
 
     def attach(self, scene: Scene, values: Values, around: Surroundings) -> Scene:
         """Replace the rigid half-space."""

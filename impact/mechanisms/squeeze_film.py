@@ -38,6 +38,7 @@ class SqueezeFilm(Mechanism):
         ),
     )  # fmt: skip
     direction: ClassVar[Mapping[str, int]] = {"restitution": -1, "permanent_depth_m": -1}
+    mutual: ClassVar[bool] = True
     reads: ClassVar[tuple[str, ...]] = ("environment.fluid", "environment.viscosity_Pa_s")
 
     def applies(self, situations: Sequence[Situation]) -> str:

@@ -40,18 +40,29 @@ class SupportCompliance(Mechanism):
     direction: ClassVar[Mapping[str, int]] = {"restitution": -1, "permanent_depth_m": -1}
     rests_on: ClassVar[tuple[str, ...]] = ("target", "striker")
 
+    def applies(self, situations: Sequence[Situation]) -> str:
+        """Needs a support."""
+        struck = situations[0][1].struck
+        if struck is not None and struck.free:
+            return "the struck sphere is free: nothing holds it"
+        return ""
+
     def ranges(self, situations: Sequence[Situation]) -> tuple[Parameter, ...]:
         """Stated values narrow the ranges; strikers, thickness and the pulse bound the mass.
 
         What moves with a flat of thickness h is at least as wide as thick: rho h^3. A flat of which
-        no thickness is stated is at least what a wave reaches and comes back from, or a block.
+        no thickness is stated is at least what a wave reaches and comes back from, or a block. A
+        held sphere moves at least itself.
         """
         around = situations[0][1]
         k, m, loss = self.parameters
         heaviest = max(scene.striker.mass for scene, _ in situations)
         low, high = 2.0 * heaviest, 300.0 * heaviest
         flat = situations[0][0].pair.flat
-        if around.thickness > 0.0:
+        if around.struck is not None:
+            ball = 4.0 / 3.0 * math.pi * max(around.struck.radius, 0.0) ** 3
+            low = max(low, density_of(flat) * ball)
+        elif around.thickness > 0.0:
             low = max(low, density_of(flat) * around.thickness**3)
         elif not flat.rigid:
             reach = 0.5 * wave_speed(flat) * max(shortest_contact(scene) for scene, _ in situations)

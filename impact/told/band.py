@@ -211,9 +211,12 @@ def _with(content: Mapping[str, Any], path: tuple[str, ...], value: float) -> di
 def _sizes_of(setup: Setup, scene: Scene, found: Any) -> tuple[_Sizes, _Sizes]:
     """`_sizes`, and what the flat in place of a second sphere adds."""
     of_law, of_metal = _sizes(scene, found)
-    if setup.second is not None and math.isfinite(scene.pair.Sy_min):
-        off = setup.second.departure(scene.pair, found.peak_depth_m)
-        of_law = of_law._replace(force=math.hypot(of_law.force, off))
+    if setup.second is not None:
+        at = scene.pair, found.peak_depth_m
+        of_law = of_law._replace(
+            force=math.hypot(of_law.force, float(setup.second.departure(*at))),
+            crater=math.hypot(of_law.crater, float(setup.second.crater_departure(*at))),
+        )
     return of_law, of_metal
 
 

@@ -201,7 +201,7 @@ def _second(setup: Setup, scene: Scene, found: Impact) -> Iterator[str]:
             f"with {other:.4g} m/s"
         )
     if math.isfinite(scene.pair.Sy_min):
-        off = second.departure(scene.pair, found.peak_depth_m)
+        off = float(second.departure(scene.pair, found.peak_depth_m))
         yield (
             f"where both yield 1/R is an approximation, off by some {100.0 * off:.1f} % of the "
             "force here, as finite elements have it; it is in the band"

@@ -24,7 +24,7 @@ def check_energy(found: RecordingSet) -> list[Finding]:
                 Finding(f"energy of {view.name}", Severity.CONTRADICTION, text, e.value, 1.0, z)
             )
         elif depth is not None and pressure is not None:
-            work = limits.dent_work(view.striker, depth.value, pressure.value)
+            work = limits.dent_work(view.R, depth.value, pressure.value)
             relative = combined(
                 2.0 * depth.relative, view.striker.tip_radius_m.relative, pressure.relative
             )
@@ -126,7 +126,7 @@ def check_contact_size(found: RecordingSet) -> list[Finding]:
         depth, striker = view.measured("permanent_depth_m"), view.striker
         if striker.shape != "rod" or depth is None:
             continue
-        a, r = limits.open_dent_radius(striker, depth.value), striker.body_radius
+        a, r = limits.open_dent_radius(view.R, depth.value), striker.body_radius
         severity, tail = Severity.CONSISTENT, ""
         if a > r:
             severity, tail = Severity.CAUTION, ": the contact reaches the edge"
@@ -178,6 +178,9 @@ def _pressure(view: TrialView) -> TrialReading | None:
 
 
 def _hardness(view: TrialView) -> TrialReading | None:
+    # of two spheres alike each keeps a part of the dent
+    if view.second is not None and not limits.clearly_softer(view.found.setup.target, view.striker):
+        return None
     found = limits.hardness(view.found.setup.target, view.striker)
     return None if found is None else TrialReading(found.value, found.std)
 

@@ -81,6 +81,13 @@ def hardness(target: TargetTable, striker: StrikerTable) -> Quantity | None:
     )
 
 
+def clearly_softer(target: TargetTable, striker: StrikerTable) -> bool:
+    """Whether all that stays is left in the target."""
+    if target.Sy_Pa is None:
+        return False
+    return striker.Sy_Pa is None or target.Sy_Pa.value < 0.6 * striker.Sy_Pa.value
+
+
 def rod_area(striker: StrikerTable) -> float:
     """Cross-section of a rod's shank [m^2]."""
     return math.pi * striker.body_radius**2
@@ -117,20 +124,18 @@ def dent_radius(striker: StrikerTable, depth: float) -> float:
 
     a^2 = 2 R d - d^2; pile-up and elastic recovery change it.
     """
-    R = striker.tip_radius_m.value
-    a = math.sqrt(max(2.0 * R * depth - depth**2, 0.0)) if depth < R else R
+    a = open_dent_radius(striker.tip_radius_m.value, depth)
     return min(a, striker.body_radius) if striker.shape == "rod" else a
 
 
-def open_dent_radius(striker: StrikerTable, depth: float) -> float:
-    """The same without the limit of the shank [m]."""
-    R = striker.tip_radius_m.value
+def open_dent_radius(R: float, depth: float) -> float:
+    """The same of a radius R, without the limit of the shank [m]."""
     return math.sqrt(max(2.0 * R * depth - depth**2, 0.0)) if depth < R else R
 
 
-def dent_work(striker: StrikerTable, depth: float, pressure: float) -> float:
+def dent_work(R: float, depth: float, pressure: float) -> float:
     """Work of pressing a crater of the tip's shape at a constant pressure, p pi R d^2 [J]."""
-    return pressure * math.pi * striker.tip_radius_m.value * depth**2
+    return pressure * math.pi * R * depth**2
 
 
 def plastic_duration(striker: StrikerTable, mass: float, pressure: float) -> float:

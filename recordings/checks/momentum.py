@@ -12,7 +12,8 @@ from dataclasses import dataclass
 import numpy as np
 from scipy.stats import chi2
 
-from ...core.arrays import Array, Indices
+from ...core.arrays import Array, Indices, Mask
+from ...core.inputs.second_sphere import StruckSphere, struck_sphere
 from ...core.rig import StrikerTable
 from ..recording_set import RecordingSet
 from ..rules import RULES
@@ -25,6 +26,8 @@ SHARE = FALSE_ALARMS_OTHER / 2.0
 
 MODEL_TOLERANCE = RULES.frozen_angle
 """Part of the approach speed by which a frozen angle and a fixed contact point may err."""
+
+_NORMAL = ("restitution", "rebound_speed_m_s")
 
 Residuals = Callable[[Array, Indices], Array]
 
@@ -45,6 +48,8 @@ class MomentumTrials:
     measured
         (n, 2) values and standard deviations by observable, of `FIXED_BY_MOMENTUM`; the value of
         what was not measured is NaN.
+    second
+        What is struck, where that is a sphere.
     """
 
     striker: StrikerTable
@@ -53,6 +58,7 @@ class MomentumTrials:
     tangential: Array
     spin: Array
     measured: Mapping[str, Array]
+    second: StruckSphere | None = None
 
     def before(self, speed: Array | float = 0.0, angle: Array | float = 0.0) -> RigidTouch[Array]:
         """Return the motion before, speed and angle off by that many standard deviations."""
@@ -63,6 +69,7 @@ class MomentumTrials:
             normal=self.speed[:, 0] * stretch,
             tangential=self.tangential * stretch,
             spin=self.spin,
+            second=self.second,
         )
 
     def only(self, rows: Indices) -> MomentumTrials:
@@ -70,6 +77,7 @@ class MomentumTrials:
         return MomentumTrials(
             self.striker, self.angle[rows], self.speed[rows], self.tangential[rows],
             self.spin[rows], {name: both[rows] for name, both in self.measured.items()},
+            self.second,
         )  # fmt: skip
 
 
@@ -113,6 +121,7 @@ def _trials(found: RecordingSet, striker: str, rows: Indices) -> MomentumTrials:
             for name in FIXED_BY_MOMENTUM
             if name in found.observed
         },
+        struck_sphere(found.setup.target),
     )
 
 
@@ -124,12 +133,26 @@ def momentum_misfit(trials: MomentumTrials) -> tuple[Array, Array]:
     the approach speed is added to what was measured.
     """
     misfit = np.zeros(len(trials.speed))
-    known = [np.isfinite(both[:, 0]) for both in trials.measured.values()]
-    degrees = np.maximum(np.sum(known, axis=0) - 2.0, 0.0) if known else misfit
+    known = {name: np.isfinite(both[:, 0]) for name, both in trials.measured.items()}
+    degrees = np.maximum(np.sum([*known.values()], axis=0) - _felt(trials, known), 0.0)
     tested = np.flatnonzero(degrees)
     if tested.size:
         misfit[tested] = _best(trials.only(tested))
     return misfit, degrees
+
+
+def _felt(trials: MomentumTrials, known: Mapping[str, Mask]) -> Array:
+    """How many components of the impulse show in what was measured, (n,).
+
+    Two spheres meet along the line of centres: some observables know one component alone.
+    """
+    n = len(trials.speed)
+    if trials.second is None:
+        return np.full(n, 2.0)
+    normal = [known[name] for name in _NORMAL if name in known]
+    other = [here for name, here in known.items() if name not in _NORMAL]
+    parts = [np.any(rows, axis=0) for rows in (normal, other) if rows]
+    return np.sum(parts, axis=0, dtype=float) if parts else np.zeros(n)
 
 
 def _best(trials: MomentumTrials) -> Array:

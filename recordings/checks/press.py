@@ -81,9 +81,7 @@ def check_press_depths(found: RecordingSet) -> list[Finding]:
     for view in views(found):
         deepest, back = view.measured("press_depth_m"), view.measured("recovered_depth_m")
         left = view.measured("permanent_depth_m")
-        weak = target.Sy_Pa is not None and (
-            view.striker.Sy_Pa is None or target.Sy_Pa.value < 0.6 * view.striker.Sy_Pa.value
-        )
+        weak = limits.clearly_softer(target, view.striker)
         # a ball that is dented as well keeps a part of the approach
         if deepest is None or back is None or left is None or not weak:
             continue
@@ -112,9 +110,12 @@ def _dent_area(view: TrialView) -> TrialReading | None:
         area = 0.25 * math.pi * diameter.value**2
         return TrialReading(area, 2.0 * diameter.relative * area)
     depth = view.measured("permanent_depth_m")
-    if depth is None or depth.value <= 0.0:
+    parted = view.second is not None and not limits.clearly_softer(
+        view.found.setup.target, view.striker
+    )
+    if depth is None or depth.value <= 0.0 or parted:
         return None
-    area = math.pi * limits.open_dent_radius(view.striker, depth.value) ** 2
+    area = math.pi * limits.open_dent_radius(view.R, depth.value) ** 2
     # pile-up and recovery
     return TrialReading(area, combined(depth.relative, 0.2) * area)
 
@@ -128,7 +129,7 @@ def _radius(view: TrialView) -> TrialReading | None:
     if deepest is None:
         return None
     low, high = RULES.press_geometry
-    a = limits.open_dent_radius(view.striker, deepest.value)
+    a = limits.open_dent_radius(view.R, deepest.value)
     return TrialReading(0.5 * (low + high) * a, 0.25 * (high - low) * a)
 
 

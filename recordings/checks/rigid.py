@@ -2,7 +2,8 @@
 
 x points the way the rod's upper end leans, y out of the flat, spin counter-clockwise. The contact
 point lies (c, s) = ((L/2) cos(theta), (L/2) sin(theta) + R) below the centre of mass; for a sphere
-c = 0, s = R. Masses cancel in every ratio of velocities unless the inertia is given on its own.
+c = 0, s = R. Masses cancel in every ratio of velocities unless the inertia is given on its own. A
+second sphere that is free rests before and moves off; the contact's motion is that between the two.
 """
 
 from __future__ import annotations
@@ -14,6 +15,7 @@ from typing import Generic, TypeVar, cast
 import numpy as np
 
 from ...core.arrays import Array
+from ...core.inputs.second_sphere import StruckSphere
 from ...core.observables import OBSERVABLES
 from ...core.rig import StrikerTable
 
@@ -22,6 +24,9 @@ Number = TypeVar("Number", float, Array)
 
 DEFAULT_ANGLE_STD = math.radians(1.0)
 """Standard deviation of an angle that the set does not state [rad]."""
+
+_TURNING = 3.5
+"""m (1/m + r^2/I) of a solid sphere."""
 
 FIXED_BY_MOMENTUM = tuple(
     name for name, o in OBSERVABLES.items() if o.instrument == "motion" and o.in_trials
@@ -41,6 +46,10 @@ class RigidTouch(Generic[Number]):
         Arms of the contact point [m].
     vx, vy, spin
         Velocity of the centre of mass [m/s] (vy < 0) and angular velocity [rad/s].
+    lightness
+        1/m of a second sphere that is free [1/kg]; 0 of what is held.
+    struck_vx, struck_vy
+        Velocity of the struck body's surface at the contact [m/s].
     """
 
     m: float
@@ -50,11 +59,14 @@ class RigidTouch(Generic[Number]):
     vx: Number
     vy: Number
     spin: Number
+    lightness: float = 0.0
+    struck_vx: Number | float = 0.0
+    struck_vy: Number | float = 0.0
 
     @property
     def mobility(self) -> Array:
         """M with (velocity change of the contact point) = M (impulse), shape (2, 2) [1/kg]."""
-        xx = 1.0 / self.m + self.s**2 / self.I
+        xx = 1.0 / self.m + self.s**2 / self.I + _TURNING * self.lightness
         return np.array([[xx, self.across], [self.across, self.along]])
 
     @property
@@ -65,25 +77,33 @@ class RigidTouch(Generic[Number]):
     @property
     def along(self) -> Number:
         """M_yy [1/kg]."""
-        return 1.0 / self.m + self.c**2 / self.I
+        return 1.0 / self.m + self.c**2 / self.I + self.lightness
 
     @property
     def tip(self) -> tuple[Number, Number]:
-        """Velocity of the contact point before, x and y [m/s]."""
-        return self.vx + self.spin * self.s, self.vy - self.spin * self.c
+        """Velocity of the contact point on what is struck, x and y [m/s]."""
+        return (
+            self.vx + self.spin * self.s - self.struck_vx,
+            self.vy - self.spin * self.c - self.struck_vy,
+        )
 
     def after(self, impulse: tuple[Number, Number]) -> RigidTouch[Number]:
         """Return the motion after an impulse (P_x, P_y) [N s]; vy is then upward."""
         px, py = impulse
         return RigidTouch(
             self.m, self.I, self.c, self.s, self.vx + px / self.m, self.vy + py / self.m,
-            self.spin + (self.s * px - self.c * py) / self.I,
+            self.spin + (self.s * px - self.c * py) / self.I, self.lightness,
+            self.struck_vx - _TURNING * self.lightness * px, self.struck_vy - self.lightness * py,
         )  # fmt: skip
 
     @property
     def energy(self) -> Number:
-        """Kinetic energy [J]."""
-        return 0.5 * self.m * (self.vx**2 + self.vy**2) + 0.5 * self.I * self.spin**2
+        """Kinetic energy of both [J]."""
+        own = 0.5 * self.m * (self.vx**2 + self.vy**2) + 0.5 * self.I * self.spin**2
+        if self.lightness == 0.0:
+            return own
+        along = self.struck_vx**2 / _TURNING
+        return own + 0.5 * (along + self.struck_vy**2) / self.lightness
 
     def impulse(self, e: Number, mu: Number) -> tuple[Number, Number]:
         """Return the impulse that gives restitution `e` at the impulse ratio `mu`, x and y [N s].
@@ -105,15 +125,17 @@ class RigidTouch(Generic[Number]):
 
 
 def touch(
-    striker: StrikerTable, *, angle: Number, normal: Number, tangential: Number, spin: Number
-) -> RigidTouch[Number]:
+    striker: StrikerTable, *, angle: Number, normal: Number, tangential: Number, spin: Number,
+    second: StruckSphere | None = None,
+) -> RigidTouch[Number]:  # fmt: skip
     """Return the `RigidTouch` of a striker; `angle` of the axis [rad], speeds [m/s, rad/s]."""
     half = striker.length / 2.0  # 0 for a sphere
     c, s = half * np.cos(angle), half * np.sin(angle) + striker.tip_radius_m.value
     # `normal` is the approach of the contact point, which a starting spin moves too
     return RigidTouch(
-        striker.mass_kg.value, striker.inertia, c, s, tangential, -normal + spin * c, spin
-    )
+        striker.mass_kg.value, striker.inertia, c, s, tangential, -normal + spin * c, spin,
+        0.0 if second is None else 1.0 / second.mass,
+    )  # fmt: skip
 
 
 def measured_after(before: RigidTouch[Number], impulse: tuple[Number, Number]) -> dict[str, Number]:

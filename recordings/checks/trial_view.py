@@ -10,6 +10,7 @@ from typing import Any, NamedTuple, TypeVar, cast
 import numpy as np
 
 from ...core.arrays import Array
+from ...core.inputs.second_sphere import StruckSphere, struck_sphere
 from ...core.rig import StrikerTable
 from ..recording_set import RecordingSet
 from ..rules import RULES
@@ -62,6 +63,17 @@ class TrialView:
         """What was dropped."""
         return self.found.setup.strikers[self.found.trials.striker[self.i]]
 
+    @cached_property
+    def second(self) -> StruckSphere | None:
+        """The second sphere; none where a flat is struck."""
+        return struck_sphere(self.found.setup.target)
+
+    @cached_property
+    def R(self) -> float:
+        """Radius of the sphere on a flat that answers for the contact [m]."""
+        own = self.striker.tip_radius_m.value
+        return own if self.second is None else self.second.equivalent(own)
+
     def of_striker(self, what: str, find: Callable[[], Found]) -> Found:
         """Return what is the same for all trials of this striker."""
         key = (what, self.found.trials.striker[self.i])
@@ -95,6 +107,7 @@ class TrialView:
             normal=self.speed.value,
             tangential=float(approach.tangential[self.i]),
             spin=float(approach.spin[self.i]),
+            second=self.second,
         )
 
     def measured(self, name: str) -> TrialReading | None:

@@ -65,6 +65,8 @@ TRIALS_OF_A_BALL = """trial,striker,angle_deg,impact_speed_m_s,restitution,perma
 2,one,60,4.0,0.40,4.5e-5
 3,one,90,8.0,0.33,8.2e-5
 """
+ON_A_FLAT = BALL.replace('"balls"', '"normal balls"').replace("thickness_m = 0.03\n", "")
+ON_A_BALL = ON_A_FLAT.replace("[target]", '[target]\nshape = "sphere"\nradius_m = 0.02')
 BARE = ROD.replace("Sy_Pa = { value = 3.05e8, std = 3e7 }\n", "")
 BARE_STRIKER = ROD.replace("Sy_Pa = { value = 1.7e9, std = 1e8 }\n", "")
 
@@ -93,6 +95,9 @@ CHANGED = {
     ("[target]", "support_mass_kg"): (ROD, "3.0"),
     ("[target]", "support_stiffness_N_m"): (ROD, "1e7"),
     ("[target]", "law"): (ROD, '"elastic"'),
+    ("[target]", "shape"): (ON_A_FLAT, '"sphere"\nradius_m = 0.02'),
+    ("[target]", "radius_m"): (ON_A_BALL, "-0.02"),
+    ("[target]", "mass_kg"): (ON_A_BALL, "0.05"),
     ("[strikers.NAME]", "E_Pa"): (ROD, "1.0e11"),
     ("[strikers.NAME]", "nu"): (ROD, "0.2"),
     ("[strikers.NAME]", "Sy_Pa"): (ROD, "4e8"),
@@ -118,7 +123,7 @@ CHANGED = {
 }  # fmt: skip
 METAL = ("E_Pa", "nu", "Sy_Pa")
 REFUSED = {("[target]", "rigid"), ("[strikers.NAME]", "rigid")}
-ONE = {("", "format"), ("[target]", "shape")}
+ONE = {("", "format")}
 """One choice alone."""
 BESIDE = {("[target]", "flow_curve"), ("[strikers.NAME]", "flow_curve")}
 """Names of files, which tests of their own look at."""
@@ -137,8 +142,9 @@ def changed(text, table, name, value):
 def write(text, folder):
     folder.mkdir(exist_ok=True)
     (folder / "set.toml").write_text(text)
-    ball = 'name = "balls"' in text
-    (folder / "trials.csv").write_text(TRIALS_OF_A_BALL if ball else ROD_TRIALS)
+    trials = TRIALS_OF_A_BALL if 'balls"' in text else ROD_TRIALS
+    normal = 'name = "normal balls"' in text
+    (folder / "trials.csv").write_text(trials.replace(",60,", ",90,") if normal else trials)
 
 
 @cache

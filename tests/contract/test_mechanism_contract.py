@@ -16,8 +16,10 @@ from pathlib import Path
 import numpy as np
 import pytest
 from dentscope.core import Material
+from dentscope.core.inputs.second_sphere import StruckSphere
 from dentscope.discrepancy.comparison.forward import ACCURACY
 from dentscope.impact import Approach, Friction, Scene, Striker, scene_of, strike_batch
+from dentscope.impact.files.second import SecondSphere
 from dentscope.impact.mechanisms import MECHANISMS, NAMELESS, Mechanism, Surroundings
 from dentscope.impact.mechanisms.asked import SIMULATED
 from dentscope.impact.mechanisms.base import Constants, Situation, Values, attached, observed
@@ -67,6 +69,12 @@ RIGS: dict[str, list[Situation]] = {
     "upright rod": [(rod(90.0), HOT_DROP)],
     "leaning rod": [(rod(50.0), HOT_DROP)],
     "bead": [(bead(), Surroundings())],
+    "ball on a free ball": [
+        (
+            SecondSphere(8e-3, 0.01).facing(ball(8e-3, 1.0)),
+            Surroundings(struck=StruckSphere(8e-3, 0.01)),
+        )
+    ],
     "light ball": [(hollow_ball(), Surroundings(from_height=True))],
 }
 """What the mechanisms of the library meet somewhere."""

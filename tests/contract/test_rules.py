@@ -56,6 +56,7 @@ EXACT = {
     "models/hardening.py": "_COORDINATES",
     "models/table_kernels.py": "_COLUMNS",
     "recordings/checks/limits.py": "FULLY_PLASTIC FIRST_BENDING",
+    "recordings/checks/rigid.py": "_TURNING",
     "recordings/checks/trace.py": "_ELASTIC _PLASTIC",
     "recordings/fetch.py": "_PIECE",
     "recordings/trials.py": "NORMAL",
