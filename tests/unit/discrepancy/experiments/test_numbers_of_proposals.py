@@ -1,0 +1,278 @@
+"""Tuned numbers of proposals, nulls and the metal where they act, worked out by hand."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import replace
+from types import SimpleNamespace
+
+import numpy as np
+import pytest
+from dentscope.core import Material, Pair
+from dentscope.core.observables import OBSERVABLES
+from dentscope.discrepancy import verdict
+from dentscope.discrepancy.baseline.laws import _apart
+from dentscope.discrepancy.baseline.solve import _level
+from dentscope.discrepancy.choice.odds import Odds
+from dentscope.discrepancy.experiments import feasible
+from dentscope.discrepancy.experiments.feasible import candidates_of, press_series
+from dentscope.discrepancy.experiments.foreseen import _samples, _spread_out
+from dentscope.discrepancy.experiments.next_experiment import (
+    Proposal,
+    _noise,
+    _press_noise,
+    _sharper,
+    propose,
+    rivals_of,
+)
+from dentscope.discrepancy.heldout import held_out
+from dentscope.discrepancy.inference.sampling import _next_step
+from dentscope.discrepancy.metal.estimate import rate_prior
+from dentscope.discrepancy.metal.next_mark import next_mark, with_marks
+from dentscope.discrepancy.unknowns.lawerror import components
+from dentscope.impact import Press
+
+NOWHERE = np.zeros(0)
+
+
+BALL = {"tip_radius_m": 0.01, "mass_kg": 0.03, "length_m": 0.0, "radius_m": 0.01,
+        "inertia_kg_m2": 1.2e-6}  # fmt: skip
+
+
+def test_speeds_are_proposed_in_four_steps_over_those_tested(toy) -> None:
+    given = toy.problem([0.0, 0.0], speeds=[1.0, 16.0], rig=toy.rig_of(ball=BALL))
+    found = [c.condition.speed for c in candidates_of(given) if not c.built]
+    assert found == pytest.approx([2.0, 4.0, 8.0])
+
+
+def test_a_speed_within_a_twentieth_of_a_tested_one_is_not_proposed(toy) -> None:
+    def speeds(*tested):
+        given = toy.problem([0.0] * len(tested), speeds=tested, rig=toy.rig_of(ball=BALL))
+        return [c.condition.speed for c in candidates_of(given) if not c.built]
+
+    assert speeds(1.0, 1.049) == []
+    assert speeds(1.0, 4.0, 2.0 * 1.04) == pytest.approx([2.0**0.5, 2.0**1.5])
+    assert speeds(1.0, 4.0, 2.0 * 1.06) == pytest.approx([2.0**0.5, 2.0, 2.0**1.5])
+
+
+def test_angles_are_proposed_in_eight_steps_between_those_tested(toy) -> None:
+    given = toy.problem([0.0, 0.0], speeds=[1.0, 1.0], rig=toy.rig_of(ball=BALL))
+    lean = tuple(toy.condition(1.0, angle=math.radians(a)) for a in (40.0, 80.0))
+    found = candidates_of(replace(given, conditions=lean))
+    seen = [round(math.degrees(c.condition.angle), 6) for c in found if not c.built]
+    assert sorted(set(seen) - {40.0, 80.0}) == [45.0, 50.0, 55.0, 60.0, 65.0, 70.0, 75.0]
+
+
+def test_a_body_to_be_built_is_half_or_twice_as_large(toy) -> None:
+    given = toy.problem([0.0, 0.0], speeds=[1.0, 2.0], rig=toy.rig_of(ball=BALL))
+    radii = sorted({c.built["radius_m"] for c in candidates_of(given) if c.built})
+    assert radii == pytest.approx([0.005, 0.02])
+
+
+@pytest.fixture
+def pressed_set(toy, monkeypatch):
+    """A problem whose trials go as deep as some loads; loads of the presses that are proposed."""
+
+    def loads(*reached, pressed=False):
+        pair = Pair(Material(E=2e11, nu=0.3), Material(E=2e11, nu=0.3), 0.01)
+        scenes = [SimpleNamespace(law=None, pair=pair, load=x) for x in reached]
+        c = replace(toy.condition(), press=Press(1.0)) if pressed else toy.condition()
+        monkeypatch.setattr(feasible, "_by_striker", lambda p: {"ball": [(c, s) for s in scenes]})
+        x = np.linspace(-5.0, 15.0, 201)
+        table = SimpleNamespace(log_depth=x, stated=SimpleNamespace(force=x))
+        monkeypatch.setattr(feasible, "strength_table", lambda law, pair: table)
+        monkeypatch.setattr(feasible, "deepest", lambda s: math.log(s.load))
+        monkeypatch.setattr(feasible, "at_load", lambda c, s, load: replace(c, press=Press(load)))
+        monkeypatch.setattr(feasible, "deepest", lambda s: s.load)  # the table's force is its depth
+        given = SimpleNamespace(baseline="elastic-plastic")
+        return [
+            ([c.press.load for c in one.conditions], one.each) for one in press_series(given)
+        ]  # fmt: skip
+
+    return loads
+
+
+def test_a_series_has_four_loads_three_times_each_where_they_are_half_apart(pressed_set) -> None:
+    assert pressed_set(100.0, 800.0) == [([100.0, 200.0, 400.0, 800.0], 3)]
+    # from half the load on where there is one
+    assert pressed_set(100.0, 151.0)[0][0] == pytest.approx([100.0, 110.0, 130.0, 150.0])
+    assert pressed_set(100.0, 149.0)[0][0] == [50.0, 150.0]
+
+
+def test_a_bench_presses_with_20_to_5000_newtons_and_three_times_beyond_what_was(
+    pressed_set,
+) -> None:
+    assert pressed_set(2.0, 20000.0)[0][0] == [20.0, 130.0, 790.0, 5000.0]
+    found = pressed_set(100.0, 800.0, pressed=True)[0][0]
+    assert (found[0], found[-1]) == (33.0, 2400.0)
+
+
+def test_a_press_is_read_to_2_and_1_per_cent_and_its_dent_lies_on_the_law_to_2(toy) -> None:
+    given = SimpleNamespace(sees_dents=False)
+    load = 0.005
+    depth = _press_noise(given, "permanent_depth_m", 4)
+    power = OBSERVABLES["permanent_depth_m"].power
+    assert depth == pytest.approx(math.hypot(0.01, load * power))
+    power = OBSERVABLES["dent_diameter_m"].power
+    expected = math.sqrt(0.005**2 + 0.02**2 + (load * power) ** 2)
+    assert _press_noise(given, "dent_diameter_m", 4) == pytest.approx(expected)
+    row = OBSERVABLES["dent_diameter_m"]
+    none = SimpleNamespace(problem=toy.problem([0.0]))
+    assert _noise(none, "dent_diameter_m") == pytest.approx(math.hypot(row.usual_noise, 0.02))
+
+
+def test_a_rival_has_a_fiftieth_and_four_are_told_apart(toy) -> None:
+    effects = [toy.Effect(f"m{k}", (0.0,)) for k in range(6)]
+    ranking = toy.ranking_of(
+        None, toy.fit_of([0.0]), singles=[toy.fit_of([0.0], e) for e in effects]
+    )  # fmt: skip
+
+    def count(*p):
+        shared = dict.fromkeys([f"m{k}" for k in range(6)], 0.0) | {"baseline": 0.0}
+        shared |= {f"m{k}": x for k, x in enumerate(p)}
+        return len(rivals_of(ranking, Odds({}, shared)))
+
+    assert [count(0.5, 0.4, 0.019), count(0.5, 0.4, 0.021)] == [2, 3]
+    assert count(0.2, 0.2, 0.2, 0.2, 0.2) == 4
+
+
+def test_what_is_to_be_built_must_tell_twice_as_much(toy, monkeypatch) -> None:
+    def first(more):
+        worth = [
+            Proposal("shoot", 1.0, "trial", information=1.0),
+            Proposal("build", 1.0, "build", information=more),
+        ]
+        monkeypatch.setattr(f"{propose.__module__}._worth_of_each", lambda *a: list(worth))
+        base = toy.fit_of([0.0])
+        ranking = toy.ranking_of(None, base, singles=[toy.fit_of([0.0], toy.Effect("a", (1.0,)))])
+        given = Odds({}, {"baseline": 0.6, "a": 0.4})
+        return propose(None, ranking, given, None)[0].change
+
+    assert [first(1.9), first(2.1)] == ["shoot", "build"]
+
+
+@pytest.mark.parametrize(("slope", "kind"), [(0.95, "noise"), (0.85, "none")])
+def test_a_measurement_is_worth_it_that_leaves_less_than_nine_tenths(toy, slope, kind) -> None:
+    """A prior of 12 and a slope s of unit noise: s^2 + 12 becomes 4 s^2 + 12."""
+    # (12 + s^2)/(12 + 4 s^2) is 0.81 at s = 0.999
+    effect = toy.Effect("a", (slope / 0.92 * 0.9986 if slope > 0.9 else 0.9,))
+    given = toy.problem([0.0])
+    assert _sharper(given, toy.fit_of([0.0], effect))[0].kind == kind
+
+
+def test_twelve_draws_stand_for_a_rivals_parameters_and_256_for_the_noise(toy) -> None:
+    found = toy.fit_of([0.5], toy.Effect("a", (1.0,)))
+    assert len(_samples(found, np.random.default_rng(0))) == 12
+    assert _spread_out(2).shape == (256, 2)
+
+
+def test_the_score_of_what_was_kept_out_is_a_tenth_at_the_least(toy) -> None:
+    given = toy.problem([0.0] * 4)
+    assert held_out(given, toy.fit_of([0.0] * 4)).score == pytest.approx(0.1)
+
+
+def test_a_step_of_temperature_leaves_half_of_the_particles() -> None:
+    """Half of them e^-x less likely: (1 + e^-x)^2/(2 (1 + e^-2x)) of them count."""
+    n = 10000
+    log_ratio = np.where(np.arange(n) < n // 10, 0.0, -50.0)
+    step = _next_step(log_ratio, 1.0)
+    w = math.exp(-50.0 * step)
+    part = (0.1 + 0.9 * w) ** 2 / (0.1 + 0.9 * w * w)
+    assert part == pytest.approx(0.5, abs=1e-6)
+
+
+def test_a_verdict_draws_500_nulls_and_2000_to_confirm(monkeypatch) -> None:
+    asked = []
+
+    class Enough(Exception):
+        pass
+
+    def explained(given, simulator, *, nulls):
+        asked.append(nulls)
+        raise Enough
+
+    monkeypatch.setattr(verdict, "_explained", explained)
+    monkeypatch.setattr(verdict, "audit_rows", lambda r: ())
+    monkeypatch.setattr(verdict, "problem_of", lambda r, **more: None)
+    for confirm in (False, True):
+        with pytest.raises(Enough):
+            verdict.diagnose(None, confirm=confirm)
+    assert asked == [500, 2000]
+
+
+def test_a_law_is_off_alike_over_a_factor_of_twelve_in_depth() -> None:
+    """Components of exp(-(x/2.5)^2/2): what they add up to at two depths 2.5 apart in ln."""
+    from dentscope.impact.force import LOG_DEPTH_FIRST, LOG_DEPTH_LAST
+    from dentscope.impact.strength import NODES
+
+    grid = np.linspace(LOG_DEPTH_FIRST, LOG_DEPTH_LAST, NODES)
+    from dentscope.discrepancy.unknowns import lawerror
+
+    rows = components(lawerror.RULES.law_length)
+    at = np.stack([[np.interp(x, grid, row) for row in rows] for x in (-8.0, -5.5)])
+    alike = at @ at.T
+    assert alike[0, 1] / math.sqrt(alike[0, 0] * alike[1, 1]) == pytest.approx(
+        math.exp(-0.5), rel=0.05
+    )
+
+
+def test_a_metals_curve_is_looked_for_by_eight_presses_of_each_striker(toy, monkeypatch) -> None:
+    from dentscope.discrepancy.metal import next_mark as module
+
+    given = toy.problem([0.0])
+    monkeypatch.setattr(module, "strikers_scenes", lambda p: [(toy.condition(), None)] * 2)
+    monkeypatch.setattr(module, "at_load", lambda c, s, load: replace(c, press=Press(load)))
+    found = with_marks(given, (10.0, 1000.0))
+    loads = [c.press.load for c in found.conditions if c.press is not None]
+    assert len(loads) == 16
+    assert loads[:8] == pytest.approx([10.0 * 100.0 ** (k / 7.0) for k in range(8)], rel=0.05)
+    # two numbers of each, a depth to 2 % and a diameter to 1 %
+    assert found.cells.std[1:3].tolist() == [0.02, 0.01]
+
+
+def test_without_curves_at_several_rates_the_rate_has_its_priors() -> None:
+    assert rate_prior(()).tolist() == [[0.3, 0.4], [0.15, 0.08], [0.87, 0.08]]
+
+
+def test_a_strength_beside_its_curve_is_told_from_a_fiftieth_on() -> None:
+    def told(off):
+        body = SimpleNamespace(Sy_Pa=SimpleNamespace(value=3e8 * (1.0 + off)))
+        flow = SimpleNamespace(strength=3e8)
+        given = SimpleNamespace(
+            setup=SimpleNamespace(bodies={"target": body}), flows={"target": flow}
+        )
+        return bool(_apart(given, "target"))
+
+    assert [told(0.019), told(0.021)] == [False, True]
+
+
+@pytest.mark.parametrize(("error", "level"), [(0.024, "quick"), (0.026, "production")])
+def test_a_mesh_may_be_off_by_a_quarter_of_the_metal(monkeypatch, error, level) -> None:
+    """And is asked a little deeper than the impacts go."""
+    from dentscope.fem.results import uncertainty
+
+    asked = []
+
+    def largest(name, pair, deepest):
+        asked.append(deepest)
+        return error if name == "quick" else 0.0
+
+    monkeypatch.setattr(uncertainty, "largest_force_error", largest)
+    assert _level(None, 0.01, 0.1) == level
+    assert asked[0] == pytest.approx(0.013)
+
+
+def test_next_mark_is_none_where_a_tenth_is_all_that_is_gained() -> None:
+    """One stress, known to a unit variance; a press of noise s leaves s^2/(1 + s^2)."""
+    press = SimpleNamespace(load=100.0)
+    condition = SimpleNamespace(press=press, striker="ball")
+
+    def worth(noise):
+        cells = SimpleNamespace(
+            condition=np.array([0]), std=np.array([noise]), observable=("dent_diameter_m",)
+        )
+        given = SimpleNamespace(cells=cells, conditions=[condition])
+        return next_mark(given, 0, np.ones((3, 1)), np.eye(1), np.ones((1, 1))) is not None
+
+    # 0.9 of it is left at a noise of 3
+    assert [worth(2.9), worth(3.1)] == [True, False]

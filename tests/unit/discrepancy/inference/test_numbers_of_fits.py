@@ -1,0 +1,288 @@
+"""Tuned numbers of fits and of their ranking where they act, worked out by hand."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import replace
+
+import numpy as np
+import pytest
+from dentscope.discrepancy.choice.pairs import PairEffect, with_pairs
+from dentscope.discrepancy.inference.derivatives import _beside
+from dentscope.discrepancy.inference.fit import expand, fit, moved_towards, tried_steps
+from dentscope.discrepancy.inference.grid import Axis, Grid
+from dentscope.discrepancy.inference.outliers import _neighbours, _wide
+from dentscope.discrepancy.inference.together import refined
+from dentscope.discrepancy.inference.window import sharpened
+from dentscope.discrepancy.rank import rank, sharpened_leading
+from dentscope.impact import Press
+from dentscope.impact.mechanisms.base import Parameter
+
+NOWHERE = np.zeros(0)
+
+
+@pytest.fixture
+def shifted(toy):
+    """A fit of one unknown that wants to be elsewhere, and where it stands."""
+    found = toy.fit_of([0.0], J=[[1.0]])
+    return lambda to: replace(found, z=np.array([to]), place=NOWHERE)
+
+
+def test_no_unknown_moves_by_more_than_two_deviations_and_one_settles_at_a_seventh(shifted) -> None:
+    z = np.zeros(1)
+    assert moved_towards(shifted(1.9), z, NOWHERE)[0] == pytest.approx([1.9])
+    assert moved_towards(shifted(5.0), z, NOWHERE)[0] == pytest.approx([2.0])
+    assert [moved_towards(shifted(x), z, NOWHERE)[1] for x in (0.14, 0.16)] == [True, False]
+
+
+def test_a_place_settles_at_a_twelfth_of_the_prior(shifted) -> None:
+    def settled(by):
+        found = replace(shifted(0.0), place=np.array([0.5 + by]))
+        return moved_towards(found, np.zeros(1), np.array([0.5]))[1]
+
+    assert [settled(x) for x in (0.07, 0.09)] == [True, False]
+
+
+@pytest.mark.parametrize(("best", "gone"), [(0.1, 0.1), (0.3, 0.25), (0.6, 0.5), (0.9, 1.0)])
+def test_of_a_step_the_best_of_a_tenth_a_quarter_a_half_and_all_is_gone(toy, best, gone) -> None:
+    """One cell that shows ten times how far the unknown is from where the data have it."""
+
+    class Off(toy.Simulator):
+        def predict(self, mechanisms, points):
+            return np.array([10.0 * np.abs(p.z - best) for p in points])
+
+    given = toy.problem([0.0], derivative=[[0.0]])
+    found = replace(toy.fit_of([0.0], J=[[1.0]]), z=np.array([1.0]), place=NOWHERE)
+    after, _, _ = tried_steps(Off(given), found, np.zeros(1), NOWHERE)
+    assert after == pytest.approx([gone])
+
+
+@pytest.mark.parametrize(("fall", "settled"), [(0.09, True), (0.11, False)])
+def test_a_fall_of_chi2_by_a_tenth_is_none(toy, fall, settled) -> None:
+    """Chi2 falls evenly with the step, but for the unknown's own square that is taken off."""
+
+    class Falling(toy.Simulator):
+        def predict(self, mechanisms, points):
+            return np.array([np.sqrt(4.0 - fall * p.z - p.z**2) for p in points])
+
+    given = toy.problem([0.0], derivative=[[0.0]])
+    found = replace(toy.fit_of([0.0], J=[[1.0]]), z=np.array([1.0]), place=NOWHERE)
+    assert tried_steps(Falling(given), found, np.zeros(1), NOWHERE)[2] is settled
+
+
+def test_a_fit_has_four_rounds(toy) -> None:
+    """An unknown that never settles: each round asks for where it then stands."""
+    asked = []
+
+    class Restless(toy.Simulator):
+        def predict(self, mechanisms, points):
+            asked.append(float(points[0].z[0]))
+            # the data are always as far off in the other direction
+            return np.array([[9.0 * (-1.0) ** len(asked) + p.z[0]] for p in points])
+
+    given = toy.problem([0.0], derivative=[[1.0]])
+    fit(Restless(given), ())
+    assert len(asked) == 4
+
+
+def test_where_outcomes_jump_a_cell_is_looked_at_2_5_and_10_per_cent_aside(toy) -> None:
+    jumping = toy.Effect("m", (1.0,), jumps=True)
+    seen = [v["m"]["size"] for v in _beside((jumping,), {"m": {"size": 1.0}})]
+    assert sorted(seen) == pytest.approx([0.9, 0.95, 0.98, 1.02, 1.05, 1.1])
+
+
+def bumped(toy, spread, nodes=5):
+    """A fit whose posterior has a deviation of a part of the prior, and how often it is made."""
+    size = Parameter("size", "-", 0.0, 1.0, "linear", 0.0, "", nodes=nodes)
+    effect = toy.Effect("m", (1.0 / spread,), parameters=(size,))
+    data = [0.5 / spread]
+    made = []
+
+    class Counting(toy.Simulator):
+        def predict(self, mechanisms, points):
+            made.extend(p.values["m"]["size"] for p in points if "m" in p.values)
+            return super().predict(mechanisms, points)
+
+    simulator = Counting(toy.problem(data))
+    found = expand(simulator, (effect,), Grid((Axis("m", size),)), NOWHERE, np.array([0.5]), None)
+    made.clear()
+    return sharpened(simulator, found), made
+
+
+def test_a_fit_is_made_again_where_it_is_known_to_less_than_a_node_or_two_places(toy) -> None:
+    """Nodes count as a quarter of the prior apart at the most, places of the grid 1/241 are."""
+    # cut off at the ends of the prior these deviate by 0.27 and 0.24 of it
+    assert [bool(bumped(toy, x, 3)[1]) for x in (0.6, 0.3)] == [False, True]
+    # of 300 nodes two places, 0.0083, are more
+    assert [bool(bumped(toy, x, 300)[1]) for x in (0.0075, 0.009)] == [True, False]
+
+
+def test_a_window_is_four_deviations_wide_to_both_sides(toy) -> None:
+    found, _ = bumped(toy, 0.05)
+    [(low, high)] = found.grid.window
+    assert (high - low) == pytest.approx(0.4, rel=0.05)
+
+
+def test_a_window_has_five_nodes_of_one_parameter_and_three_of_each_of_three(toy) -> None:
+    axis = Axis("m", Parameter("size", "-", 0.0, 1.0, "linear", 0.0, "", nodes=3))
+
+    def nodes(n):
+        return len(Grid((axis,) * n, ((0.4, 0.6),) * n).coarse[0])
+
+    assert [nodes(n) for n in (1, 2, 3, 4, 5)] == [5, 5, 3, 3, 2]
+
+
+def test_two_mechanisms_of_four_parameters_are_simulated_at_all_nodes_of_both(toy) -> None:
+    def together(n):
+        sizes = tuple(
+            Parameter(f"size{k}" if k else "size", "-", 0.0, 1.0, "linear", 0.0, "", nodes=2)
+            for k in range(n)
+        )
+        effects = toy.Effect("a", (1.0,), parameters=sizes), toy.Effect("b", (1.0,))
+        axes = (*(Axis("a", p) for p in sizes), Axis("b", effects[1].parameters[0]))
+        grid = Grid(axes, ((0.4, 0.6),) * (n + 1))
+        asked = []
+
+        class Counting(toy.Simulator):
+            def predict(self, mechanisms, points):
+                asked.append((len(mechanisms), len(points)))
+                return super().predict(mechanisms, points)
+
+        here = np.array([1.0])
+        place = np.full(n + 1, 0.5)
+        refined(Counting(toy.problem([1.0])), effects, grid, NOWHERE, place, here)
+        return asked[0][0]
+
+    assert [together(3), together(4)] == [2, 1]
+
+
+def test_neighbours_of_an_impact_are_impacts_even_where_presses_lie_nearer(toy) -> None:
+    """Ten deviations aside: an impact e^9 times as fast is still nearer than any press."""
+    given = toy.problem([0.0] * 4, speeds=[1.0, math.exp(4.0), math.exp(9.0), 1.01])
+    conditions = (*given.conditions[:3], replace(given.conditions[3], press=Press(100.0)))
+    near = _neighbours(replace(given, conditions=conditions))
+    assert sorted(near[0].tolist()) == [1, 2]
+
+
+def test_a_slip_counts_as_thirty_times_as_unsure() -> None:
+    assert _wide(1, np.array([1.0, 4.0]))[1, 1] == 30.0**2 * 4.0
+
+
+def library_of(toy, *sizes, length=8):
+    """Effects on cells of their own, and data that half of each explains."""
+    shapes = [tuple(x * (k == j) for k in range(length)) for j, x in enumerate(sizes)]
+    return tuple(toy.Effect(f"m{j}", s) for j, s in enumerate(shapes)), shapes
+
+
+def test_what_moves_no_number_by_a_deviation_cannot_be_seen(toy) -> None:
+    library, _ = library_of(toy, 0.99, 1.01)
+    found = rank(toy.Simulator(toy.problem([0.0] * 8)), mechanisms=library)
+    assert list(found.excluded) == ["m0"]
+
+
+def test_fits_that_gain_ten_nats_and_six_tenths_of_the_best_are_sharpened(toy) -> None:
+    def again(*gains):
+        """Places of fits, by their gain, that were made again."""
+        asked = set()
+
+        class Counting(toy.Simulator):
+            def predict(self, mechanisms, points):
+                asked.update(m.name for m in mechanisms)
+                return super().predict(mechanisms, points)
+
+        base = toy.fit_of([0.0] * 8)
+        effects, shapes = library_of(toy, *[2000.0] * len(gains))
+        fits = [
+            replace(
+                toy.fit_of(0.5 * np.array(s), e), log_evidence=base.log_evidence + gain
+            )
+            for e, s, gain in zip(effects, shapes, gains, strict=True)
+        ]  # fmt: skip
+        sharpened_leading(Counting(toy.problem([0.0] * 8)), fits, base)
+        return sorted(asked)
+
+    assert again(9.9) == []
+    assert again(10.1) == ["m0"]
+    assert again(100.0, 61.0, 59.0) == ["m0", "m1"]
+    # three at the most
+    assert again(100.0, 99.0, 98.0, 97.0) == ["m0", "m1", "m2"]
+
+
+def test_slips_are_judged_under_what_leads_by_three_nats(toy) -> None:
+    """A value 4.2 deviations off is no slip under what explains it and gains 8.8 - 1.2 nats."""
+
+    def slips(size):
+        effect = toy.Effect("m", (*(0.0,) * 15, size))
+        found = rank(toy.Simulator(toy.problem([0.0] * 15 + [4.2])), mechanisms=(effect,))
+        return len(found.problem.weightless)
+
+    assert slips(8.4) == 0
+    # what explains a seventh of it gains too little
+    assert slips(0.6) == 1
+
+
+def screened_fully(toy, effect):
+    """A screening of an effect that grows with its size, over nodes and refined grid."""
+    shape = np.array(effect.shape)
+    grid = Grid((Axis(effect.name, effect.parameters[0]),))
+    return replace(
+        toy.screened_of(effect, grid.fine[0][:, None] * shape),
+        change=grid.coarse[0][:, None] * shape,
+    )
+
+
+def paired(toy, data, effects, *, singles=()):
+    """Names of the pairs that are fitted to data."""
+    simulator, asked = toy.Simulator(toy.problem(data)), []
+    screened = [screened_fully(toy, e) for e in effects]
+    ranking = toy.ranking_of(
+        simulator.problem, toy.fit_of(data), singles=singles, screened=screened
+    )
+    with_pairs(simulator, ranking, progress=asked.append)
+    return [a.removeprefix("fitting ") for a in asked]
+
+
+def test_the_four_best_pairs_are_fitted(toy) -> None:
+    effects, shapes = library_of(toy, *[40.0] * 5)
+    data = 0.5 * np.sum(shapes, axis=0)
+    # ten could be; without a single none is a partner
+    assert len(paired(toy, data, effects)) == 4
+
+
+def test_three_partners_of_the_leading_mechanism_are_fitted_too(toy) -> None:
+    """What the lead leaves speaks for the last three, which no pair of the data does."""
+    effects, shapes = library_of(toy, *[40.0] * 8)
+    data = np.array(shapes[0]) + np.array(shapes[1])
+    left = 0.5 * np.sum(shapes[4:], axis=0)
+    lead = replace(toy.fit_of(data, effects[0]), residual=left)
+    found = paired(toy, data, effects, singles=[lead])
+    assert sum(pair in {f"m0 with m{k}" for k in (4, 5, 6, 7)} for pair in found) == 3
+
+
+def test_pairs_are_sought_by_48_places_of_each(toy) -> None:
+    """Every fifth of 241: where only the others hold an effect none is seen."""
+    effects, shapes = library_of(toy, *[40.0] * 3)
+    data = 0.5 * np.sum(shapes[:2], axis=0)
+    whole = [screened_fully(toy, e) for e in effects]
+    gone = np.arange(241) % 5 == 0
+    hidden = [replace(s, effect=np.where(gone[:, None], 0.0, s.effect)) for s in whole[:2]]
+    from dentscope.discrepancy.choice.pairs import _leading_pairs
+
+    ranking = toy.ranking_of(None, toy.fit_of(data), screened=[*hidden, whole[2]])
+    _, _, place = _leading_pairs(ranking)[0]
+    assert place[0] < 0.01
+
+
+def test_what_two_do_to_each_other_is_simulated_an_eighth_of_the_prior_aside(toy) -> None:
+    seen = set()
+
+    class Counting(toy.Simulator):
+        def predict(self, mechanisms, points):
+            if len(mechanisms) == 2:
+                seen.update(p.values["a"]["size"] for p in points)
+            return super().predict(mechanisms, points)
+
+    a, b = toy.Effect("a", (1.0,)), toy.Effect("b", (2.0,))
+    both = PairEffect(Counting(toy.problem([0.0])), screened_fully(toy, a), screened_fully(toy, b))
+    both(NOWHERE, np.array([0.5, 0.5]))
+    assert sorted(seen) == pytest.approx([0.38, 0.5, 0.62])
