@@ -11,8 +11,8 @@ from typing import Annotated
 import typer
 
 from ...core.errors import InputError
-from ...core.output import write_file
 from ...studies.proof.names import KINDS, LISTS
+from ..campaign_progress import duration
 from ..shared.groups import group
 from ..shared.places import folder_option, writable_folder
 
@@ -89,8 +89,9 @@ def score(which: _Which = "full", out: _Base = _BASE) -> None:
     from ...studies.proof.case import open_run
     from ...studies.proof.follow import read_lines
     from ...studies.proof.lists import LISTS as made
-    from ...studies.proof.run import ROOT, run_folder
-    from ...studies.proof.seal import SealBroken, tree_hash
+    from ...studies.proof.rivals import read_lines as peer_lines
+    from ...studies.proof.run import ROOT, plan_of, run_folder
+    from ...studies.proof.seal import Ledger, SealBroken, tree_hash
 
     folder = run_folder(out, which)
     if not (folder / "ledger.jsonl").exists():
@@ -103,6 +104,7 @@ def score(which: _Which = "full", out: _Base = _BASE) -> None:
     entry = pages.summary(
         cases, which=which, tree=tree_hash(ROOT), date=datetime.now(UTC).date().isoformat(),
         total=len(made[which]()), commit=source_commit(), followed=read_lines(folder),
+        peers=peer_lines(folder), plan=plan_of(Ledger(folder / "ledger.jsonl")),
     )  # fmt: skip
     _write_page(pages.keep(entry))
     for s in entry["scores"]:
@@ -125,7 +127,7 @@ def _write_page(runs: list[dict[str, object]]) -> None:
     from ...studies.proof.explicit.catalogue import stored
     from ...studies.proof.run import ROOT
 
-    write_file(ROOT / "docs" / "proof.md", pages.page(runs, impacts=stored()))
+    pages.publish(runs, ROOT / "docs", impacts=stored())
 
 
 @app.command()
@@ -152,23 +154,41 @@ def sample(
 
 @app.command()
 def peers(
-    folder: Annotated[Path, typer.Argument(help="Folder with sets/ and truths/.")],
-) -> None:
-    """Compare the diagnosis with simple rules on the same problems: who is right how often."""
-    from ...studies.peers import RULES, compared, scored
+    folder: Annotated[
+        Path, typer.Argument(help="Folder with sets/ and truths/, or of a run: verdicts too.")
+    ],
+    most: Annotated[int, typer.Option(min=1, help="So many sets at most.")] = 10**9,
+    workers: Annotated[int, typer.Option(min=1, help="Worker processes.")] = os.cpu_count() or 1,
+) -> int:
+    """Compare the diagnosis with simple rules on the same problems. Stop it at any time."""
+    from multiprocessing import active_children
+    from time import monotonic
 
-    rows = []
-    for row in compared(folder):
-        rows.append(row)
-        told = "; ".join(f"{k}: {v} {' or '.join(n)}".rstrip() for k, (v, n) in row.said.items())
-        typer.echo(f"{row.name}  {'+'.join(row.truth) or 'nothing'} | {told}")
-    typer.echo(f"{'':<26} exact  in set  nulls named  outside forced  of {len(rows)}")
-    for decider in ("diagnosis", *RULES):
-        s = scored(rows, decider)
-        typer.echo(f"{decider:<26} {s.exact:>5}  {s.in_set:>6}  {s.false:>11}  {s.forced:>14}")
-    for who in ("diagnosis", "rules"):
-        mean = sum(row.seconds[who] for row in rows) / max(len(rows), 1)
-        typer.echo(f"{who}: {mean:.1f} processor seconds a set")
+    from ...core.processes.stopping import STOPS, stopped
+    from ...core.processes.threads import one_thread_each
+    from ...studies.peers.compare import compared
+    from ...studies.proof.rivals import read_lines, report, told
+    from ...studies.proof.run import local_workers
+
+    one_thread_each()
+    pool = local_workers(workers)
+    begun, first = monotonic(), None
+    try:
+        for line, done, total in compared(folder, pool, at_once=workers, most=most):
+            first = done if first is None else first
+            left = (monotonic() - begun) / (done - first + 1) * (total - done)
+            typer.echo(f"[{done}/{total}, {duration(left)} left] {told(line)}")
+    except STOPS as stop:
+        code = stopped(stop)
+        for worker in active_children():
+            worker.terminate()
+        typer.echo("stopped; the same command goes on from here")
+        return code
+    finally:
+        pool.shutdown(cancel_futures=True)
+    for text in report(read_lines(folder)):
+        typer.echo(text)
+    return 0
 
 
 @app.command()

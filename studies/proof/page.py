@@ -13,6 +13,8 @@ from ...core.output import write_file
 from .calibrated import calibration, coverage_by_class, inclusion
 from .case import Case, interval
 from .follow import brought
+from .power import PICTURE, picture, power_lines, read_rows, shown
+from .rivals import compare, rival_lines
 from .score import confusion, scores
 
 _DATA = Path(__file__).resolve().parents[2] / "data" / "proof"
@@ -58,7 +60,7 @@ Made-up sets alone prove little: known effects of real recordings, concealed, ar
 
 def summary(
     cases: list[Case], *, which: str, tree: str, date: str, total: int, commit: str = "",
-    followed: Sequence[dict[str, Any]] = (),
+    followed: Sequence[dict[str, Any]] = (), peers: Sequence[dict[str, Any]] = (), plan: str = "",
 ) -> dict[str, Any]:  # fmt: skip
     """What is kept of a run.
 
@@ -74,10 +76,14 @@ def summary(
         Of the tool that was judged, if known.
     followed
         What proposed and random trials brought, from `follow`.
+    peers
+        What simple rules said of the same sets, from `rivals.read_lines`.
+    plan
+        SHA-256 of the plan that was sealed before the first set.
     """
     wrong = [c for c in cases if _wrong(c)]
     return {
-        "list": which, "tree": tree, "commit": commit, "date": date,
+        "list": which, "tree": tree, "commit": commit, "date": date, "plan": plan,
         "sets": len(cases), "total": total,
         "failed": sum(not c.verdict for c in cases),
         "cpu_s": round(sum(float(c.event["cpu_s"]) for c in cases) / max(len(cases), 1), 1),
@@ -85,6 +91,7 @@ def summary(
         "confusion": confusion(cases), "calibration": calibration(cases),
         "inclusion": inclusion(cases), "coverage": coverage_by_class(cases),
         "by_mechanism": _by_mechanism(cases), "brought": brought(list(followed)),
+        "power": shown(cases), "peers": compare(peers) if peers else {},
         "failures": [_told(c) for c in wrong],
     }  # fmt: skip
 
@@ -102,14 +109,27 @@ def keep(entry: dict[str, Any], path: Path = RUNS) -> list[dict[str, Any]]:
 def page(runs: list[dict[str, Any]], *, impacts: int) -> str:
     """The whole page as Markdown."""
     lines = [_HEAD.format(impacts=impacts)]
-    full = [r for r in runs if r["list"] == "full"]
-    shown = full[-1] if full else (runs[-1] if runs else None)
-    if shown is None:
+    last = _shown(runs)
+    if last is None:
         return "\n".join([*lines, "No run has been made yet.", ""])
-    lines += _run_text(shown)
+    lines += _run_text(last)
     if REMARKS.exists():
         lines += ["## Failures looked into", "", REMARKS.read_text().strip()]
     return "\n".join([*lines, ""])
+
+
+def publish(runs: list[dict[str, Any]], docs: Path, *, impacts: int) -> None:
+    """Write the page and its picture."""
+    write_file(docs / "proof.md", page(runs, impacts=impacts))
+    power = (_shown(runs) or {}).get("power")
+    if power:
+        picture(read_rows(power), docs / "pictures" / PICTURE)
+
+
+def _shown(runs: list[dict[str, Any]]) -> dict[str, Any] | None:
+    """The run that the page shows: the last full one, else the last."""
+    full = [r for r in runs if r["list"] == "full"]
+    return full[-1] if full else (runs[-1] if runs else None)
 
 
 def _run_text(run: dict[str, Any]) -> list[str]:
@@ -118,7 +138,8 @@ def _run_text(run: dict[str, Any]) -> list[str]:
         f"Tree `{run['tree'][:12]}`{_commit(run)}, {run['date']}: "
         f"{run['sets']} of {run['total']} sets, "
         f"{run['failed']} without a verdict, {run['cpu_s']} s processor time a diagnosis. Every "
-        "wrong verdict, what was said of each truth, and all earlier runs: `data/proof/runs.json`.",
+        f"wrong verdict, what was said of each truth, and all earlier runs: `data/proof/runs.json`."
+        f"{_plan(run)}",
         "",
         "| score | value | 95 % interval | mark | |", "| --- | --- | --- | --- | --- |",
     ]  # fmt: skip
@@ -130,6 +151,8 @@ def _run_text(run: dict[str, Any]) -> list[str]:
         f"| {name} | {n} | {seen} | {right} | {_text(size)} |"
         for name, (n, seen, right, size) in sorted(run["by_mechanism"].items())
     ]
+    lines += power_lines(read_rows(run.get("power", [])))
+    lines += rival_lines(run.get("peers", {}))
     lines += _inclusion_rows(run.get("inclusion", []))
     lines += _brought_lines(run.get("brought", {}))
     return [*lines, ""]
@@ -137,6 +160,13 @@ def _run_text(run: dict[str, Any]) -> list[str]:
 
 def _commit(run: dict[str, Any]) -> str:
     return f" (commit {run['commit'][:7]})" if run.get("commit") else ""
+
+
+def _plan(run: dict[str, Any]) -> str:
+    if not run.get("plan"):
+        return ""
+    sealed = f"SHA-256 `{run['plan'][:12]}`, was sealed before the first set"
+    return f" The [plan](proof-plan.md), {sealed}."
 
 
 def _brought_lines(found: dict[str, float]) -> list[str]:
