@@ -2,13 +2,16 @@
 
     .venv/bin/python tools/benchmarks/bench_scale.py    about six minutes; 2 GB of disk, 4 of memory
     .venv/bin/python tools/benchmarks/bench_scale.py --quick   about one, at a tenth of the sizes
+    .venv/bin/python tools/benchmarks/bench_scale.py --only reads       or another of `ONLY`
 
 Published cases, copied with a Poisson ratio smaller by a millionth each, go one by one through
 `Store.put` into runs that hold so many files already (links to the first few). Everything that is
 timed goes through the functions that the commands use, each in a process of its own for its peak of
 memory (what the process held before is taken off). The last column is the share of one case in the
 largest over that in the smallest, or of one call where the row says `one`: 1 where nothing grows.
-The cluster, workers and scheduler too, lies in this one process, over tcp, and solves nothing.
+The first cluster, workers and scheduler too, lies in this one process, over tcp, and solves
+nothing; the second has a worker at each of two addresses of this machine, solves a whole small
+design and loses a worker on the way.
 """
 
 from __future__ import annotations
@@ -19,6 +22,8 @@ import json
 import multiprocessing
 import resource
 import shutil
+import subprocess
+import sys
 import tempfile
 import time
 import tracemalloc
@@ -50,6 +55,9 @@ from dentscope.recordings.shipped import FOLDER, shipped_sets
 
 PUBLISHED = Path("data/campaign")
 BASE = 20  # cases that a run's are copies of
+ONLY = (
+    "recordings", "stores", "reads", "parts", "coordinator", "ledger", "cluster", "two-addresses",
+)  # fmt: skip
 
 
 def solution_of(record: CaseRecord) -> fem.Solution:
@@ -170,6 +178,30 @@ def stores(folder: Path, records: list[CaseRecord], sizes: list[int]) -> None:
     gone, peak, _ = apart(_counted, Store(few).read_all)
     print(f"read_all of {len(some)} cases: {gone / len(some) * 1e3:.1f} ms and "
           f"{peak / len(some):.2f} MB each")  # fmt: skip
+
+
+def reads(folder: Path, records: list[CaseRecord], size: int) -> None:
+    """Put so many cases one by one, each a file of its own, and read them all."""
+    place = folder / "whole"
+    started, gone = time.process_time(), 0.0
+    for first in range(0, size, BASE):
+        some = [records[(first + k) % len(records)] for k in range(BASE)]
+        gone += put_all(place, some, 1 + first)[0] * BASE
+    print(f"\n{size:,} cases put one by one: {gone / size * 1e3:.1f} ms of processor each, "
+          f"{time.process_time() - started:.0f} s with their making")  # fmt: skip
+    held = sum(path.stat().st_size for path in Store(place).files()) / 1e6
+    for name, call, args in (
+        ("statuses", Store(place).statuses, ()),
+        ("summaries", Store(place).summaries, ()),
+        ("read_curves", read_curves, (place,)),
+    ):
+        gone, peak, count = apart(_sized, call, *args)
+        print(f"{name} of {count:,} cases ({held:.0f} MB): {gone:.1f} s, {peak:.0f} MB held",
+              flush=True)  # fmt: skip
+
+
+def _sized(call: Callable[..., Any], *args: Any) -> int:
+    return len(call(*args))
 
 
 def _rows(rows: dict[str, list[float]]) -> list[tuple[str, str, list[float]]]:
@@ -307,6 +339,49 @@ def cluster(records: list[CaseRecord], crews: list[int], count: int) -> None:
         print(f"{name:50}" + "".join(f"{v:11.4g}" for v in values), flush=True)
 
 
+ADDRESSES = ("127.0.0.1", "127.0.0.2")
+
+
+def two_addresses(folder: Path) -> None:
+    """A whole small design by the command, on dask workers at two addresses; one is killed."""
+    file, out = folder / "scheduler.json", folder / "run-on-two"
+    started = time.perf_counter()
+    here = _dask("scheduler", file, "--host", ADDRESSES[0], "--port", "0")
+    workers = [
+        _dask("worker", file, "--host", address, "--name", address, "--nthreads", "1", "--no-nanny")
+        for address in ADDRESSES
+    ]
+    try:
+        while not file.exists():
+            time.sleep(0.1)
+        run = subprocess.Popen([
+            sys.executable, "-P", "-m", "dentscope", "campaign", "run", "--design", "smoke",
+            "--out", str(out), "--scheduler", json.loads(file.read_text())["address"],
+        ], stdout=subprocess.DEVNULL)  # fmt: skip
+        while run.poll() is None and (stored := len(_statuses(out))) < 3:
+            time.sleep(0.2)
+        workers[1].kill()
+        code, found = run.wait(), _statuses(out)
+    finally:
+        for process in (*workers, here):
+            process.kill()
+    ends = {end: list(found.values()).count(end) for end in sorted(set(found.values()))}
+    print(f"\ndesign smoke on workers at {' and '.join(ADDRESSES)}, the second killed with "
+          f"{stored} cases stored: exit code {code}, {ends}, "
+          f"{time.perf_counter() - started:.0f} s")  # fmt: skip
+
+
+def _dask(what: str, file: Path, *options: str) -> subprocess.Popen[bytes]:
+    command = [sys.executable, "-P", "-m", f"distributed.cli.dask_{what}", "--no-dashboard"]
+    return subprocess.Popen(
+        [*command, "--scheduler-file", str(file), *options], stderr=subprocess.DEVNULL
+    )
+
+
+def _statuses(out: Path) -> dict[str, str]:
+    return Store(out).statuses() if out.is_dir() else {}
+
+
 def recordings(folder: Path, count: int, rows: list[int]) -> None:
     """Reading and audit of many sets, and of one long one."""
     names = shipped_sets()
@@ -369,10 +444,12 @@ def ledger(folder: Path, sizes: list[int]) -> None:
 
 
 def main() -> None:
-    """Print every table."""
+    """Print every table, or one."""
     parser = argparse.ArgumentParser()
     parser.add_argument("--quick", action="store_true")
-    quick = parser.parse_args().quick
+    parser.add_argument("--only", choices=ONLY, default="")
+    given = parser.parse_args()
+    quick = given.quick
     started = time.perf_counter()
     records = read_published(PUBLISHED)
     today, base = len(records), 25 if quick else 107
@@ -380,12 +457,26 @@ def main() -> None:
     print(f"{today} published cases; the column of today's size is {today:,}")
     with tempfile.TemporaryDirectory() as name:
         folder = Path(name)
-        recordings(folder, *((100, [2_000, 20_000]) if quick else (1000, [20_000, 200_000])))
-        stores(folder, records, [20, 100, 1000] if quick else [20, 100, 1000, 10_000, 100_000])
-        parts(folder, records[:: 10 if quick else 1], [1] if quick else [1, 3, 10], base)
-        coordinator(records[::10], sizes)
-        ledger(folder, [200, 2_000] if quick else [200, 2_000, 20_000])
-        cluster(records, [2, 20] if quick else [2, 20, 100], 200 if quick else 400)
+        calls: dict[str, Callable[[], None]] = {
+            "recordings": lambda: recordings(
+                folder, *((100, [2_000, 20_000]) if quick else (1000, [20_000, 200_000]))
+            ),
+            "stores": lambda: stores(
+                folder, records, [20, 100, 1000, *([] if quick else [10_000, 100_000])]
+            ),
+            "reads": lambda: reads(folder, records, 1_000 if quick else 10_000),
+            "parts": lambda: parts(
+                folder, records[:: 10 if quick else 1], [1] if quick else [1, 3, 10], base
+            ),
+            "coordinator": lambda: coordinator(records[::10], sizes),
+            "ledger": lambda: ledger(folder, [200, 2_000, *([] if quick else [20_000])]),
+            "cluster": lambda: cluster(
+                records, [2, 20] if quick else [2, 20, 100], 200 if quick else 400
+            ),
+            "two-addresses": lambda: two_addresses(folder),
+        }
+        for what in (given.only,) if given.only else ONLY:
+            calls[what]()
     print(f"\n{time.perf_counter() - started:.0f} s")
 
 
