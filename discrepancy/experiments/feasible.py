@@ -65,7 +65,8 @@ class PressSeries:
 def press_series(problem: Problem) -> list[PressSeries]:
     """Return presses with each striker, as deep as its trials went, within what a press can do."""
     found = []
-    if leaves_no_mark(problem):
+    # a free sphere is not pressed
+    if leaves_no_mark(problem) or problem.parts:
         return []
     for name, trials in sorted(_by_striker(problem).items()):
         c, scene = trials[0]
