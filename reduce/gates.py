@@ -91,8 +91,12 @@ GATES = {
                     "widens the zero of contact"),
     "compliance": Gate("press", "the machine's own compliance, stated or seen in cycles",
                        "fewest_cycles", "keeps depths under load out of the row"),
-    "modulus": Gate("tension", "slope of the first rise and the stated modulus", "",
-                    "counts plastic strain from the slope, widens the modulus"),
+    "modulus": Gate("tension", "strain at yield, by the slope of the first rise", "elastic_strain",
+                    "refuses without a stated modulus, as it does a slope that no metal has"),
+    "straight": Gate("tension", "slopes of the halves of the first rise", "elastic_straight",
+                     "reads a lower part of it; widens the modulus"),
+    "stated": Gate("tension", "slope of the first rise and the stated modulus", "",
+                   "counts plastic strain from the slope, widens the modulus"),
 }  # fmt: skip
 
 

@@ -143,7 +143,8 @@ class ReductionRules:
         0.02, "longest contact of a body that bounces [s]", "a basketball: 0.009 to 0.016",
     )  # fmt: skip
     largest_number: float = rule(
-        1e20, "largest number of a column [its unit]", "no record in any unit: a damaged file",
+        1e20, "largest number of a column or a scan [its unit]",
+        "no record in any unit: a damaged file, or the code of an instrument",
     )  # fmt: skip
     farthest_marker: float = rule(
         1e3, "distance of a marker from the origin [m]", "a stadium: millimetres taken for metres",
@@ -267,10 +268,6 @@ class ReductionRules:
     )  # fmt: skip
     flight_reach: int = rule(
         2, "lengths of a flight's first part within which it is looked for next to the contact [-]",
-        "chosen; no measurement is kept",
-    )  # fmt: skip
-    scale_width: float = rule(
-        3e-2, "width of what is believed of a scale's drift at first [-]",
         "chosen; no measurement is kept",
     )  # fmt: skip
     no_chance: float = rule(
@@ -497,10 +494,6 @@ class ReductionRules:
         45, "points of the smaller one at least [-]",
         "three for each of fifteen coefficients",
     )  # fmt: skip
-    absurd: float = rule(
-        1e30, "number beyond which a height is no measurement [-]",
-        "codes of instruments",
-    )  # fmt: skip
     scan_points: int = rule(
         100, "points of a scan at least [-]",
         "chosen; no measurement is kept",
@@ -602,12 +595,8 @@ class ReductionRules:
         0.1, "difference of peaks, in the largest, that are alike [-]",
         "bounces fade",
     )  # fmt: skip
-    absurd_strain: float = rule(
-        10.0, "strain that no metal was measured at [-]",
-        "a slip of the unit",
-    )  # fmt: skip
-    absurd_stress: float = rule(
-        1e12, "stress that no metal was measured at [Pa]",
+    no_metal: tuple[float, float] = rule(
+        (10.0, 1e12), "strain and stress that no metal was measured at [-, Pa]",
         "a slip of the unit",
     )  # fmt: skip
     elastic_parts: tuple[float, ...] = rule(
@@ -618,6 +607,18 @@ class ReductionRules:
     elastic_straight: float = rule(
         0.7, "slope of the upper half of an elastic rise in that of the lower [-]",
         "chosen; no measurement is kept",
+    )  # fmt: skip
+    elastic_from: tuple[float, ...] = rule(
+        (0.25, 0.5, 0.7), "stress from which on it is read, in that up to which [-]",
+        "slack bends the first part",
+    )  # fmt: skip
+    metal_moduli: tuple[float, float] = rule(
+        (40e9, 600e9), "moduli between which a metal's lies [Pa]",
+        "magnesium: 45 GPa, osmium: 560; lead and indium, below, need theirs stated",
+    )  # fmt: skip
+    elastic_strain: float = rule(
+        0.02, "strain at which a metal yields at most [-]",
+        "piano wire: 0.015, a metallic glass: 0.02",
     )  # fmt: skip
     tension_kept: int = limit(
         60, "rows of a curve that is written [-]",

@@ -93,7 +93,7 @@ def fit_together(
     pieces = list(pieces)
     x = np.concatenate([view, *(p.launch for p in pieces)])
     for _ in range(3):
-        x, _, _, _ = _settled(track, pieces, stage, x, before, RULES.scale_width)
+        x, _, _, _ = _settled(track, pieces, stage, x, before, RULES.scale_widths[1][0])
         pieces = _cleaned(track, pieces, stage, x)
     found = []
     for width, usual in _WIDTHS.items():

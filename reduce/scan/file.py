@@ -69,7 +69,7 @@ def read_scan(
     """
     found = _text(path) if path.suffix.lower() in _TEXT else None
     found = found or _known_format(path, step)
-    heights = np.where(np.abs(found.z) < RULES.absurd, found.z, np.nan)
+    heights = np.where(np.abs(found.z) < RULES.largest_number, found.z, np.nan)
     if heights.size < RULES.scan_points or np.isfinite(heights).sum() < 0.05 * heights.size:
         raise InputError(
             f"{int(np.isfinite(heights).sum())} heights in it", source=str(path),

@@ -18,6 +18,7 @@ from ..measured import Measured
 from ..pictures import draw_refused
 from ..reduced import Reduced
 from ..rules import RULES
+from ..units import LENGTH
 from .file import Columns, read_columns
 from .options import TableOptions
 from .picture import draw_heights, draw_pulse, draw_tension, draw_times, draw_trials
@@ -151,15 +152,15 @@ def _tension(path: Path, table: Columns, options: TableOptions) -> Reduced:
     unit = stress_unit(table, value, given=options.value_unit, area_mm2=options.area_mm2)
     with np.errstate(over="ignore"):  # what is too large is refused as that
         strain, stress = table.values[:, at] * parts, table.values[:, value] * unit
-    found = reduce_tension(
-        strain,
-        stress,
-        strain_is=options.strain_is,
-        E=options.E_Pa,
-        source=str(path),
-    )
+    with drawn(lambda to, why: draw_refused(strain, stress, to, why, axes=("strain", "stress"))):
+        found = reduce_tension(
+            strain, stress, strain_is=options.strain_is, E=options.E_Pa, source=str(path)
+        )
+    notes = found.notes
+    if options.E_Pa is None and table.unit(at) in LENGTH:
+        notes += ("a travel of the machine's head holds its give: state E_Pa if it is one",)
     return Reduced(
-        source=path, values=found.values, trials=(), notes=found.notes,
+        source=path, values=found.values, trials=(), notes=notes,
         draw=lambda to: draw_tension(found, to), flow=(options.body, found.flow),
     )  # fmt: skip
 

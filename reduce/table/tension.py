@@ -8,12 +8,13 @@ from itertools import pairwise
 
 import numpy as np
 
-from ...core.arrays import Array, Indices
+from ...core.arrays import Array
 from ...core.errors import InputError
 from ...core.inputs.flow_curve import PROOF_STRAIN, MeasuredFlow
+from ..gates import Refused
 from ..measured import Measured
-from ..regression import robust_regression
 from ..rules import RULES
+from .rise import elastic_rise
 
 
 @dataclass(frozen=True)
@@ -50,17 +51,15 @@ def reduce_tension(
     Raises
     ------
     InputError
-        Too few rows, no elastic part, or no yield.
+        Too few rows, no elastic part, or no yield; `Refused` if no metal rises so.
     """
-    wild = np.flatnonzero(
-        (np.abs(strain) > RULES.absurd_strain) | (np.abs(stress) > RULES.absurd_stress)
-    )
+    most = RULES.no_metal
+    wild = np.flatnonzero((np.abs(strain) > most[0]) | (np.abs(stress) > most[1]))
     if wild.size:
         k = wild[0]
         raise InputError(
             f"strain {strain[k]:.3g}, stress {stress[k]:.3g} Pa in data row {k + 1}",
-            source=source, allowed=f"strains up to {RULES.absurd_strain:g}, "
-            f"stresses up to {RULES.absurd_stress:g} Pa",
+            source=source, allowed=f"strains up to {most[0]:g}, stresses up to {most[1]:g} Pa",
         )  # fmt: skip
     whole = np.isfinite(strain) & np.isfinite(stress)
     strain, stress = strain[whole], stress[whole]
@@ -84,63 +83,54 @@ def reduce_tension(
                 f"strain {sign * strain.max():.3g}", source=source, allowed="strains, not percent"
             )
         strain, stress = sign * np.log(shrunk), stress * shrunk
-    modulus, zero = _modulus(strain, stress, source)
+    modulus, zero = elastic_rise(strain, stress, source)
     used = modulus.value if E is None else E
     told = modulus if E is None else Measured(E, 0.0)
-    if E is not None and abs(modulus.value / E - 1.0) > 0.2:
+    if E is not None and modulus.std > RULES.own_error * modulus.value:
+        offset = (strain - stress / E)[: int(np.argmax(stress > 0.5 * stress.max()))]
+        zero = float(np.partition(offset, 2)[2]) if offset.size > 2 else zero
+    elif E is not None and abs(modulus.value - E) > max(0.2 * E, 2.0 * modulus.std):
         notes.append(
             f"the curve rises with {modulus.value / 1e9:.3g} GPa, not {E / 1e9:.3g}: the machine "
             "gives way; the plastic strain is counted from the curve's own line"
         )
         used, told = modulus.value, modulus.widened(modulus.value - E)
-    plastic = strain - zero - stress / used
-    flow = _rows(plastic, stress, source)
+    flow = _rows(strain - zero - stress / used, stress, source)
+    if E is None and (wrong := _no_metal(modulus, flow.strength)):
+        raise Refused(
+            "modulus", wrong, source=source, key="E_Pa",
+            allowed="strain of the specimen alone, without the machine's give and slack, or the "
+            "metal's modulus",
+        )  # fmt: skip
     values = {
-        "E_Pa": told, "Sy_Pa": Measured(flow.strength, 0.02 * flow.strength),
+        "E_Pa": told, "Sy_Pa": _strength(flow, modulus),
         "largest_stress_Pa": Measured(float(flow.stress[-1]), math.nan),
         "largest_plastic_strain": Measured(float(flow.strain[-1]), math.nan),
     }  # fmt: skip
     return TensionReduction(strain - zero, stress, modulus, flow, values, tuple(notes))
 
 
-def _modulus(strain: Array, stress: Array, source: str) -> tuple[Measured, float]:
-    """Return the slope of the first rise [Pa] and the strain at which it meets zero stress."""
-    rise = _elastic(strain, stress)
-    if rise.size < 3 or np.ptp(strain[rise]) <= 0.0:
-        raise InputError(
-            f"{rise.size} rows of the elastic rise", source=source,
-            allowed="three or more between a tenth and four tenths of the largest stress",
-        )  # fmt: skip
-    middle = float(strain[rise].mean())
-    design = np.stack([np.ones(rise.size), strain[rise] - middle], axis=1)
-    fit = robust_regression(design, stress[rise])
-    slope = float(fit.coefficients[1])
-    if not slope > 0.0:
-        raise InputError("the stress does not rise", source=source, allowed="a loading curve")
-    return Measured(slope, math.sqrt(float(fit.covariance[1, 1]))), middle - float(
-        fit.coefficients[0]
-    ) / slope
+def _no_metal(modulus: Measured, strength: float) -> str:
+    """Return why no metal has this modulus [Pa] at this strength [Pa], if so."""
+    low, high = RULES.metal_moduli
+    told = f"the curve rises with {modulus.value / 1e9:.3g} ± {modulus.std / 1e9:.2g} GPa"
+    if modulus.std > RULES.own_error * modulus.value:
+        return f"{told}: its elastic part is too short, bent or scattered"
+    if not low <= modulus.value <= high:
+        return f"{told}, as no engineering metal does"
+    yields = strength / modulus.value
+    if yields > RULES.elastic_strain:
+        return f"{told} up to a strain of {yields:.2g}, as no metal does"
+    return ""
 
 
-def _elastic(strain: Array, stress: Array) -> Indices:
-    """Return the rows of the highest straight rise: a metal that hardens much yields low."""
-    peak, found = float(stress.max()), np.arange(0)
-    for high in RULES.elastic_parts:
-        first = int(np.argmax(stress > high * peak)) + 1
-        rise = np.flatnonzero(stress[:first] > 0.25 * high * peak)
-        if found.size and rise.size < RULES.fewest:
-            break
-        found = rise
-        if rise.size < RULES.fewest:
-            continue
-        middle = np.median(stress[rise])
-        low, up = (
-            np.polyfit(stress[part], strain[part], 1)[0]
-            for part in (rise[stress[rise] <= middle], rise[stress[rise] >= middle])
-        )
-        if low >= RULES.elastic_straight * up:
-            break
-    return found
+def _strength(flow: MeasuredFlow, modulus: Measured) -> Measured:
+    """Return the proof strength [Pa]: its error holds the modulus and how far rows lie apart."""
+    after = min(int(np.searchsorted(flow.strain, PROOF_STRAIN)), flow.strain.size - 1)
+    apart, wide = np.diff(flow.stress)[after - 1], np.diff(flow.strain)[after - 1]
+    shift = flow.strength * modulus.std / modulus.value**2
+    own = Measured(flow.strength, 0.02 * flow.strength)
+    return own.widened(0.25 * apart).widened(apart / wide * min(shift, wide))
 
 
 def _rows(plastic: Array, stress: Array, source: str) -> MeasuredFlow:

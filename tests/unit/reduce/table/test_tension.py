@@ -1,0 +1,92 @@
+"""Tension tests whose rise is sparse, bent, or the machine's: within the error, or refused."""
+
+import numpy as np
+import pytest
+from dentscope.reduce.gates import Refused
+from dentscope.reduce.kinds import load_kind
+from dentscope.reduce.table.tension import reduce_tension
+
+E = 195e9
+
+
+def steel(stress):
+    """Total strain of a metal that yields at 150 MPa and hardens to five times that."""
+    return stress / E + np.maximum(stress - 150e6, 0.0) ** 2 / 2e17 / 10.0
+
+
+def pulled(strain, stress, **given):
+    return reduce_tension(
+        strain, stress, **({"strain_is": "true", "E": None, "source": "test"} | given)
+    )
+
+
+@pytest.mark.parametrize(
+    ("seen", "noise"), [(70e6, 3e-5), (95e6, 1e-5), (130e6, 0.0)], ids=["few", "fewer", "clean"]
+)
+def test_a_rise_that_was_thinned_out_does_not_take_yielding_for_it(seen, noise):
+    """Every three seconds at first, once a minute then: four rows from the rise to a tenth."""
+    stress = np.concatenate([np.linspace(0.0, seen, 20), [190e6, 250e6], np.linspace(3e8, 9e8, 60)])
+    strain = steel(stress) + noise * np.random.default_rng(1).normal(size=stress.size)
+    found = pulled(strain, stress)
+    assert abs(found.modulus.value - E) < max(2.5 * found.modulus.std, 1e-3 * E)
+    assert found.modulus.std < 0.3 * E
+    assert abs(found.values["Sy_Pa"].value - proof()) < 3.0 * found.values["Sy_Pa"].std
+
+
+def proof():
+    stress = np.linspace(150e6, 400e6, 4000)
+    return np.interp(2e-3, steel(stress) - stress / E, stress)
+
+
+@pytest.mark.parametrize(
+    ("give", "slack", "why"),
+    [
+        (5.0, 0.0, "no engineering metal"),
+        (12.0, 0.01, "no engineering metal"),
+        (25.0, 0.03, "metal does"),
+    ],
+    ids=["give", "slack and give", "a soft machine"],
+)
+def test_a_machine_that_is_read_as_strain_gives_no_modulus(give, slack, why):
+    stress = np.linspace(0.0, 9e8, 400)
+    strain = steel(stress) + give * stress / E + slack * np.minimum(stress / 2e8, 1.0) ** 0.5
+    with pytest.raises(Refused, match=why):
+        pulled(strain, stress)
+    told = pulled(strain, stress, E=E)
+    assert any("gives way" in note for note in told.notes)
+    assert told.values["E_Pa"].std > 0.8 * E
+
+
+@pytest.mark.parametrize("rows", [3, 4, 5])
+def test_a_bent_rise_of_few_rows_needs_the_modulus(rows):
+    stress = np.concatenate([np.linspace(100e6, 350e6, rows), np.linspace(400e6, 9e8, 60)])
+    strain = steel(stress) + 2e-3 * (stress > 200e6)
+    with pytest.raises(Refused, match="too short, bent or scattered"):
+        pulled(strain, stress)
+    assert pulled(strain, stress, E=E).values["E_Pa"].value == E
+
+
+@pytest.mark.parametrize("part", [0.03, 0.06, 0.1])
+def test_slack_at_the_start_is_not_the_metal(part):
+    stress = np.linspace(0.0, 9e8, 900)
+    strain = steel(stress) + 1e-3 * np.minimum(stress / (part * 9e8), 1.0) ** 0.5
+    found = pulled(strain, stress)
+    assert abs(found.modulus.value - E) < min(3.0 * found.modulus.std + 1.0, 0.1 * E)
+
+
+def test_a_travel_is_told_and_a_refused_test_is_drawn(tmp_path):
+    stress = np.linspace(0.0, 900.0, 400)
+    for give, name in ((0.0, "a"), (15.0, "b")):
+        travel = 50.0 * (steel(1e6 * stress) + give * 1e6 * stress / E)
+        rows = (f"{x:.6f},{s:.4f}" for x, s in zip(travel, stress, strict=True))
+        (tmp_path / f"{name}.csv").write_text("\n".join(["Extension (mm),Stress (MPa)", *rows]))
+    given = {"holds": "tension", "gauge_length_mm": 50.0}
+    kind = load_kind("table")
+    found = kind.run(tmp_path / "a.csv", given, source="test")
+    assert any("state E_Pa" in note for note in found.notes)
+    stated = kind.run(tmp_path / "a.csv", given | {"E_Pa": E}, source="test")
+    assert not any("state E_Pa" in note for note in stated.notes)
+    with pytest.raises(Refused) as refused:
+        kind.run(tmp_path / "b.csv", given, source="test")
+    refused.value.draw(tmp_path / "b.png")
+    assert (tmp_path / "b.png").stat().st_size > 5000
