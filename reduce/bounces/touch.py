@@ -134,14 +134,18 @@ def likely_durations(
 
     A path that bends as two quarters of a sine lies the least above the flights that it joins; one
     that halts at once, smeared over a whole frame, the most. A contact of more than some
-    milliseconds is soft and bends as a spring does.
+    milliseconds is soft and bends as a spring does, whose loss may be a damping: it then bends more
+    at first, and less at the end.
     """
     meeting, ratio, step = float(met[0]), float(met[3]), track.step
     runs = _both_held(track, stage, view, flights, meeting)
     shares = ratio / (1.0 + ratio), 1.0 / (1.0 + ratio)
     smeared = float(met[1] + met[2]) / (2.0 * step)
     found = np.zeros_like(LASTS)
-    for piece, run, share, speed in zip(flights, runs, shares, met[1:3], strict=True):
+    damping = -math.log(min(max(ratio, 0.1), 1.0)) * np.array([1.0, -1.0])
+    for piece, run, share, speed, loss in zip(
+        flights, runs, shares, met[1:3], damping, strict=True
+    ):
         order = np.argsort(np.abs(track.time[piece.index] - meeting))[: RULES.touch_samples]
         for index in (*run, *piece.index[order]):
             time = track.time[index : index + 1]
@@ -150,13 +154,16 @@ def likely_durations(
             side = LASTS * share
             late = np.maximum(side - gap, 0.0)
             soft = speed * (late - side * np.sin(0.5 * np.pi * late / side) / (0.5 * np.pi))
+            turn = math.pi * late / LASTS
+            damped = speed * (late - LASTS / math.pi * np.exp(-loss * late / LASTS) * np.sin(turn))
             most = np.where(
                 LASTS > RULES.hard_contact,
-                np.minimum(RULES.soft_bend[1] * soft, speed * late),
+                np.minimum(np.maximum(RULES.soft_bend[1] * soft, damped), speed * late),
                 speed * late,
             )
             most = most + smeared * max(0.5 * step - gap, 0.0) ** 2
-            off = np.maximum(np.maximum(RULES.soft_bend[0] * soft - above, above - most), 0.0)
+            least = np.minimum(RULES.soft_bend[0] * soft, damped)
+            off = np.maximum(np.maximum(least - above, above - most), 0.0)
             # a shadow or a stray beside the contact says little
             found -= np.minimum(0.5 * (off / piece.sigma) ** 2, RULES.touch_stray)
     return np.asarray(found - found.max())
