@@ -1,0 +1,85 @@
+"""Tuned numbers of campaigns where they act, in cases that are worked out by hand."""
+
+from __future__ import annotations
+
+from types import SimpleNamespace
+
+import h5py
+import numpy as np
+import pytest
+from dentscope import fem
+from dentscope.campaigns import standard_case
+from dentscope.campaigns.case import _rounded
+from dentscope.campaigns.case_file import PROFILES, _put_profiles
+from dentscope.campaigns.cost import Forecast
+from dentscope.campaigns.quality import largest_step
+from dentscope.cli.campaign_progress import remarks
+from dentscope.core import Material, Pair
+
+
+@pytest.mark.parametrize(
+    ("energy", "step", "said"),
+    [(0.0049, 0.0099, ""), (0.0051, 0.0, "energy defect"), (0.0, 0.0101, "step of")],
+)
+def test_a_case_is_remarked_from_half_a_per_cent_of_energy_and_a_per_cent_of_a_step(
+    energy, step, said
+) -> None:
+    quality = SimpleNamespace(energy_defect=energy, largest_step=step)
+    told = remarks(SimpleNamespace(status="done", stale=False, quality=quality))
+    assert (said in told) if said else (told == "")
+
+
+def test_groups_are_one_to_twelve_digits() -> None:
+    assert _rounded(1.0 + 4e-12) == 1.0
+    assert _rounded(1.0 + 6e-12) > 1.0
+
+
+def test_a_step_is_seen_from_eight_depths_on_by_what_a_cubic_over_seven_leaves() -> None:
+    """A single step of 1 % shows two thirds of itself, which is made up for."""
+    depth = np.geomspace(1e-5, 1e-2, 20)
+    stepped = depth**1.5 * np.where(np.arange(20) < 10, 1.0, 1.01)
+    assert largest_step(depth, stepped) == pytest.approx(0.01, rel=0.02)
+    assert np.isnan(largest_step(depth[:7], stepped[:7]))
+    assert largest_step(depth[:8], depth[:8]) == pytest.approx(0.0, abs=1e-9)
+
+
+def solution(radius):
+    """What is needed of a solve to write its profiles: one, of nodes from 0 to 1."""
+    r = np.linspace(0.0, 1.0, 101)
+    loading = SimpleNamespace(radius=np.array([radius]))
+    names = dict.fromkeys(PROFILES, r)
+    return SimpleNamespace(loading=loading, profiles=[SimpleNamespace(**names)])
+
+
+def test_profiles_are_kept_to_two_contact_radii(tmp_path) -> None:
+    with h5py.File(tmp_path / "a.h5", "w") as file:
+        _put_profiles(file, solution(0.2))
+        name = next(n for n, about in PROFILES.items() if about.axes[-1] == "node")
+        assert file[name].shape == (1, 41)
+
+
+def cases(n):
+    flat = Material(E=2e11, nu=0.3, Sy=3e8)
+    return [
+        standard_case(
+            f"c{k}", Pair(Material(E=2e11, nu=0.3, Sy=3e8 + 1e6 * k), flat, 1e-3), deepest=0.01,
+            n_depths=4, accuracy=fem.Accuracy.smoke(),
+        )
+        for k in range(n)
+    ]  # fmt: skip
+
+
+def test_a_case_under_way_still_takes_a_seventh_of_its_time_however_long_it_has() -> None:
+    [one] = cases(1)
+    forecast = Forecast([one], workers=1)
+    whole = forecast.cost_s(one)
+    assert forecast.left_s(0.5 * whole) == pytest.approx(0.5 * whole)
+    assert forecast.left_s(9.0 * whole) == pytest.approx(0.15 * whole)
+
+
+def test_of_what_cases_took_a_twentieth_of_a_case_is_what_was_measured_before() -> None:
+    """One case that took e times as long: 1/(1 + 0.05) of it is believed of the next, alike."""
+    one, other = cases(2)
+    before = Forecast([other], workers=1).cost_s(other)
+    after = Forecast([other], workers=1, ended=[(one, np.e * before)]).cost_s(other)
+    assert np.log(after / before) == pytest.approx(1.0 / 1.05, abs=0.03)
