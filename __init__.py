@@ -37,7 +37,7 @@ if TYPE_CHECKING:
     from dentscope.models import LAWS
     from dentscope.start import case, compare_laws, diagnose
 
-__version__ = "0.2.0"
+__version__ = "0.3.0"
 
 _FROM = {
     "LAWS": "models",
