@@ -84,7 +84,7 @@ def pressed_set(toy, monkeypatch):
         monkeypatch.setattr(feasible, "deepest", lambda s: math.log(s.load))
         monkeypatch.setattr(feasible, "at_load", lambda c, s, load: replace(c, press=Press(load)))
         monkeypatch.setattr(feasible, "deepest", lambda s: s.load)  # the table's force is its depth
-        given = SimpleNamespace(baseline="elastic-plastic")
+        given = SimpleNamespace(baseline="elastic-plastic", parts=False)
         return [
             ([c.press.load for c in one.conditions], one.each) for one in press_series(given)
         ]  # fmt: skip
