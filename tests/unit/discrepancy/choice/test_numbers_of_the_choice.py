@@ -8,13 +8,12 @@ from types import SimpleNamespace
 
 import numpy as np
 import pytest
-from dentscope.discrepancy.choice.decide import _named
+from dentscope.discrepancy.choice.decide import _cheapest, _named, decide
 from dentscope.discrepancy.choice.gauge import scaled_observables
 from dentscope.discrepancy.choice.judge import Judge
-from dentscope.discrepancy.choice.odds import Odds, odds_of
+from dentscope.discrepancy.choice.odds import Odds, odds_of, pooled
 from dentscope.discrepancy.choice.own_sets import FitTest, fit_test
 
-NOWHERE = np.zeros(0)
 
 
 def test_at_most_three_explanations_are_named_together() -> None:
@@ -101,3 +100,48 @@ def test_four_hundred_places_of_a_grid_stand_for_all(toy) -> None:
     nulls = toy.nulls_of([[5.0]] * 9)
     # sets of 5 have chi2 of 25 where their effect is passed over
     assert fit_test(fitted, nulls).p_value == 1.0
+
+
+def test_pairs_are_tried_where_one_in_twenty_of_its_own_sets_fits_no_better(toy) -> None:
+    ranking = toy.ranking_of(None, toy.fit_of([0.0]), singles=[toy.fit_of([0.0])])
+
+    def wanted(p):
+        class Known(Judge):
+            def test(self, fitted):
+                return FitTest(p, 0.0)
+
+        return Known(0.0, {}, None).wants_second(ranking)
+
+    assert [wanted(0.049), wanted(0.051)] == [True, False]
+
+
+def test_no_probability_is_surer_than_one_of_five_hundred_and_adequate_is_said_from_seven_in_ten(
+    toy,
+) -> None:
+    names = {"baseline": (), "outside-library": (), "a": ("a",)}
+    sure = Odds(names, {"baseline": 1.0 - 1e-9, "a": 5e-10, "outside-library": 5e-10})
+    assert pooled(sure, sure).baseline == pytest.approx(0.998)
+
+    def verdict(p):
+        odds = Odds(
+            names, {"baseline": p, "a": 0.5 * (1.0 - p), "outside-library": 0.5 * (1.0 - p)}
+        )
+        return _cheapest((), odds).verdict
+
+    assert [verdict(0.69), verdict(0.71)] == ["undetermined", "adequate"]
+
+
+def test_six_readings_of_two_conditions_say_something(toy) -> None:
+    def told(*conditions):
+        given = SimpleNamespace(
+            cells=SimpleNamespace(condition=np.array(conditions), count=np.ones(len(conditions))),
+            followed=(), scatters=(),
+        )  # fmt: skip
+        odds = Odds({"baseline": (), "outside-library": ()},
+                    {"baseline": 0.9, "outside-library": 0.1})  # fmt: skip
+        ranking = toy.ranking_of(given, toy.fit_of([0.0]))
+        return decide(ranking, odds).verdict
+
+    assert told(0, 0, 0, 1, 1, 1) == "adequate"
+    assert told(0, 0, 0, 1, 1) == "undetermined"
+    assert told(0, 0, 0, 0, 0, 0) == "undetermined"

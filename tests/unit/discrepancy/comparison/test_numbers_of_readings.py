@@ -13,7 +13,6 @@ from dentscope.discrepancy.curves.readings import Readings, reduced
 from dentscope.discrepancy.unknowns.nuisances import nuisances_of
 from dentscope.recordings import read
 
-NOWHERE = np.zeros(0)
 
 
 def test_one_repeat_in_ten_may_be_a_slip(toy) -> None:

@@ -32,7 +32,6 @@ from dentscope.discrepancy.metal.next_mark import next_mark, with_marks
 from dentscope.discrepancy.unknowns.lawerror import components
 from dentscope.impact import Press
 
-NOWHERE = np.zeros(0)
 
 
 BALL = {"tip_radius_m": 0.01, "mass_kg": 0.03, "length_m": 0.0, "radius_m": 0.01,

@@ -1,0 +1,103 @@
+"""Tuned numbers of the first commands where they act, in cases that are worked out by hand."""
+
+from __future__ import annotations
+
+import math
+from types import SimpleNamespace
+
+import numpy as np
+import pytest
+from dentscope import fem
+from dentscope.core import Material, Pair
+from dentscope.core.flow import Flow, tabulated
+from dentscope.models import LAWS
+from dentscope.start.closing import _kept_out
+from dentscope.start.comparison import LawComparison
+from dentscope.start.judged import USABLE, Reference, _groups, _rise, departure
+from dentscope.start.measured import _dent
+from dentscope.start.metal_press import _clock, _press
+
+HARD = Material(E=2e11, nu=0.3, Sy=2e9)
+STEEL = Material(E=2e11, nu=0.3, Sy=4e8)
+PAIR = Pair(HARD, STEEL, 1e-3)
+
+
+@pytest.mark.parametrize(
+    ("speeds", "out"),
+    [([1.0] * 6 + [1.8, 2.0], [7]), ([1.0] * 6 + [1.82, 2.0], [6, 7]), ([1.0] * 5 + [2.0], [])],
+)
+def test_what_is_faster_than_nine_tenths_is_kept_out_where_six_numbers_are_left(
+    speeds, out
+) -> None:
+    given = SimpleNamespace(
+        conditions=[SimpleNamespace(speed=v) for v in speeds],
+        cells=SimpleNamespace(condition=np.arange(len(speeds))),
+    )
+    assert np.flatnonzero(_kept_out(given)).tolist() == out
+
+
+def reference(**changed):
+    given = {
+        "pair": PAIR, "name": "a", "distance": 0.0, "depth": np.array([1e-5]),
+        "force": np.array([1.0]), "turns": (),
+    } | changed  # fmt: skip
+    return Reference(**given)
+
+
+@pytest.mark.parametrize(("distance", "far"), [(0.49, False), (0.51, True)])
+def test_a_pair_is_far_from_half_a_width_on(distance, far) -> None:
+    assert ("no published pair" in reference(distance=distance).told) is far
+
+
+@pytest.mark.parametrize(("part", "counts"), [(0.09, False), (0.11, True)])
+def test_a_dent_says_something_of_a_law_from_a_tenth_of_the_depth(part, counts) -> None:
+    turn = (1e-5, part * 1e-5, 0.5)
+    found = departure(LAWS["fitted"], reference(turns=(turn,)))
+    assert (found.dent > 0.0) is counts
+
+
+def test_ratios_of_strength_beyond_two_and_a_half_are_alike() -> None:
+    def at(ratio):
+        return _groups(Pair(Material(E=2e11, nu=0.3, Sy=4e8 * ratio), STEEL, 1e-3))[1]
+
+    assert at(2.4) < at(2.6) == at(5.0)
+    assert at(5.0) == pytest.approx(2.0 * math.log(2.5) / 1.2)
+    assert at(1.0 / 5.0) == pytest.approx(-2.0 * math.log(2.5) / 1.2)
+
+
+def test_a_metals_rise_is_that_at_a_strain_of_a_tenth() -> None:
+    curve = tabulated(np.array([0.0, 0.1, 0.3]), np.array([4e8, 6e8, 12e8]))
+    assert _rise(Material(E=2e11, nu=0.3, Sy=4e8, flow=Flow(curve))) == pytest.approx(math.log(1.5))
+
+
+def test_a_law_may_be_used_that_is_off_by_a_tenth() -> None:
+    """In logarithms: forces from 266 to 294 N, and from 241, stand for 266."""
+    assert 266.0 * math.exp(USABLE) == pytest.approx(294.0, abs=0.5)
+    assert 266.0 * math.exp(-USABLE) == pytest.approx(241.0, abs=0.5)
+    assert LawComparison.__doc__
+
+
+def test_a_metal_is_pressed_a_quarter_deeper_than_its_deepest_press() -> None:
+    scene = SimpleNamespace(law=None, pair=PAIR)
+    problem = _press(scene, {}, (0.01, 0.02), ())
+    assert isinstance(problem, fem.ContactProblem)
+    assert max(problem.depths) == pytest.approx(0.025)
+
+
+def test_the_clock_of_a_press_ends_at_a_tenth_of_the_speed() -> None:
+    assert _clock(0.02, 3.0)[-1] == pytest.approx((0.02, 0.3))
+
+
+@pytest.mark.parametrize(("ball", "read"), [(0.049, True), (0.051, False)])
+def test_a_dent_has_a_brinell_hardness_where_the_ball_keeps_a_twentieth(ball, read) -> None:
+    r = np.linspace(0.0, 1e-3, 20)
+    unloading = SimpleNamespace(
+        depth=0.01, residual=1e-5, residual_sphere=ball * 1e-5, residual_flat=(1.0 - ball) * 1e-5,
+        curve=SimpleNamespace(
+            force=np.array([1000.0]), radius=np.array([3e-4]), delta=np.array([2e-5])
+        ),
+        crater_r=r, crater_z=np.where(r < 5e-4, -1e-5, 0.0),
+    )  # fmt: skip
+    loading = SimpleNamespace(delta=np.array([1e-5]), force=np.array([400.0]))
+    solution = SimpleNamespace(problem=SimpleNamespace(pair=PAIR), loading=loading)
+    assert math.isfinite(_dent(solution, unloading).brinell_by_contact) is read
