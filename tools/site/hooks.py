@@ -21,7 +21,7 @@ _MATH = re.compile(
 
 
 def on_page_content(content: str, **_: Any) -> str:
-    """Replace equations in LaTeX by MathML."""
+    """Replace equations in LaTeX by MathML; an empty corner of a table heads no column."""
 
     def shown(match: re.Match[str]) -> str:
         inline, block = match[2], match[3]
@@ -30,12 +30,26 @@ def on_page_content(content: str, **_: Any) -> str:
         made = convert(html.unescape(block).strip(), display="block")
         return f'<div class="equation" tabindex="0" role="math">{made}</div>'
 
-    return _MATH.sub(shown, content)
+    return _MATH.sub(shown, content).replace("<th></th>", "<td></td>")
+
+
+_SECTION = re.compile(r'aria-labelledby="(__nav_\w+)_label"([^>]*>\s*<label class="md-nav__title")')
+"""A list of pages: the theme names it by a label that is empty where the section has a page."""
+
+
+def on_post_template(output_content: str, **_: Any) -> str:
+    """Name the search of the page for what is not found."""
+    return _search_named(output_content)
+
+
+def _search_named(output: str) -> str:
+    return output.replace('role="dialog"', 'role="dialog" aria-label="Search"')
 
 
 def on_post_page(output: str, *, page: Any, **_: Any) -> str:
     """Keep the page to itself, and reachable by keys."""
     above = "../" * page.file.url.count("/")
     output = output.replace("https://unpkg.com/iframe-worker/shim", f"{above}{WORKER}")
-    output = output.replace('role="dialog"', 'role="dialog" aria-label="Search"')
+    output = _search_named(output)
+    output = _SECTION.sub(r'aria-labelledby="\1_title"\2 id="\1_title"', output)
     return re.sub(r"(<pre[^>]*>(?:<span></span>)?)<code", r'\1<code tabindex="0"', output)
