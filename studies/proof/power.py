@@ -17,6 +17,8 @@ from .case import Case, interval
 SIZES = (0.0, 5.0, 10.0, 20.0, 40.0, math.inf)
 """Edges of the classes of size."""
 
+_TICKS = (2.0, 5.0, 10.0, 20.0, 50.0, 100.0, 200.0)
+
 PICTURE = "proof-power.png"
 
 
@@ -93,7 +95,7 @@ def picture(rows: Sequence[Shown], path: Path) -> Path:
         left.errorbar(places, shares, yerr=list(zip(*errors, strict=True)), capsize=3, **look)
     left.set(xscale="log", ylim=(0.0, 1.02), xlabel="size of the effect",
              ylabel="share of the sets, 95 % interval")  # fmt: skip
-    left.legend(loc="lower right")
+    left.legend(loc="lower right", fontsize=8)
     names = sorted({r.mechanism for r in rows}, reverse=True)
     for label, colour, marker, own in (
         ("rightly named", "C0", "o", [r for r in rows if r.right]),
@@ -104,8 +106,10 @@ def picture(rows: Sequence[Shown], path: Path) -> Path:
                       c=colour, marker=marker, label=label, alpha=0.8, linewidths=1.0)  # fmt: skip
     right.set(xscale="log", xlabel="size of the effect")
     right.set_yticks(range(len(names)), names, fontsize=7)
-    right.legend(fontsize=7, loc="upper right")
+    right.legend(fontsize=7, loc="lower center", bbox_to_anchor=(0.5, 1.0), ncols=3)
     for axis in (left, right):
+        axis.set_xticks(_TICKS, [f"{x:g}" for x in _TICKS])
+        axis.xaxis.minorticks_off()
         axis.grid(alpha=0.3)
     return write_figure(made, path, dpi=110, metadata={"Software": None})
 

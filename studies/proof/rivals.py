@@ -179,7 +179,8 @@ def rival_lines(found: dict[str, Any]) -> list[str]:
         f"On {n} of the sets, {found['nulls']} of them nulls and {found['outside']} outside, those "
         "with a wrong mass or strength left out (`dentscope proof peers`). *In front*: the truth "
         "is the most probable of all. *Nulls*: named, and with those called outside. *Forced*: "
-        "names of what is outside. The rules are those of the [plan](proof-plan.md).", "",
+        "names of what is outside. *s*: processor seconds, of all rules together. The rules are "
+        "those of the [plan](proof-plan.md).", "",
         "| | in front | exact | in the set | nulls | forced | mean ln p | Brier | said, true | s |",
         "| --- | --- | --- | --- | --- | --- | --- | --- | --- | --- |",
     ]  # fmt: skip
