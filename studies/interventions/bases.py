@@ -7,6 +7,7 @@ stands here, from raw files that `dentscope recordings fetch` brings and that ma
 from __future__ import annotations
 
 import csv
+import re
 import runpy
 import shutil
 import tempfile
@@ -147,10 +148,19 @@ def _golf_both(raw: Path, folder: Path, *, height_error_m: float = 0.0) -> None:
 
 
 def _heights(raw: Path, error_cm: float) -> list[str]:
-    lines = (raw / "first_bounce_heights.csv").read_text().splitlines()
-    golf = [line.split(",")[1:] for line in lines if line.startswith("golf,")]
-    head = ",".join(["drop_cm", *(f"rebound{i}_cm" for i in range(1, len(golf[0])))])
-    return [head, *(",".join([str(float(h) + error_cm), *rest]) for h, *rest in golf)]
+    """Return the golf ball's table: the authors' arrays of heights of fall and rebound [cm]."""
+    text = (raw / "first_bounce_heights.txt").read_text(encoding="utf-8")
+    falls, rebounds = (_array(text, f"pallina4_{name}") for name in ("H0", "H1"))
+    head = ",".join(["drop_cm", *(f"rebound{i}_cm" for i, _ in enumerate(rebounds[0], start=1))])
+    return [head, *(
+        ",".join([str(float(fall) + error_cm), *heights])
+        for (fall,), heights in zip(falls, rebounds, strict=True)
+    )]  # fmt: skip
+
+
+def _array(text: str, name: str) -> list[list[str]]:
+    [body] = re.findall(rf"{name} = np\.array\(\[(.*?)\]\)", text, flags=re.DOTALL)
+    return [row.split(", ") for row in re.findall(r"\[([^\[\]]+)\]?", body)]
 
 
 def _rubber_sounds(raw: Path, folder: Path, *, height_error_m: float = 0.0) -> None:

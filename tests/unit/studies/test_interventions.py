@@ -8,8 +8,9 @@ import pytest
 from dentscope.core.errors import InputError
 from dentscope.discrepancy.estimates import audit_rows
 from dentscope.recordings import read
+from dentscope.recordings.fetch import read_catalogue
 from dentscope.recordings.shipped import FOLDER
-from dentscope.studies.interventions import told
+from dentscope.studies.interventions import bases, told
 from dentscope.studies.interventions.bases import base
 from dentscope.studies.interventions.edits import write_side
 from dentscope.studies.interventions.page import page
@@ -107,3 +108,20 @@ def test_fetched_recordings_that_are_not_there_leave_a_pair_out(tmp_path):
     found = list(told.ask([PAIRS["air"]], raw=tmp_path, out=tmp_path, record=record))
     assert [t.right for t in found] == [None, None]
     assert not record.exists()
+
+
+def test_what_is_made_can_be_fetched():
+    listed = {s.name: {f.to for f in s.files} for s in read_catalogue(FOLDER / "fetch.toml").source}
+    assert {source for source, _ in bases.MADE.values()} <= set(listed)
+    needed = {"golf_ball/data_golfball.xlsx", "first_bounce_heights.txt"}
+    assert needed <= listed["ball-bounce-acoustic"]
+    assert {f"a4/{k}-{n}-M.csv" for k in (1, 2, 3) for n in (14, 16)} <= listed["marble-on-paper"]
+
+
+def test_heights_are_read_from_the_authors_arrays(tmp_path):
+    (tmp_path / "first_bounce_heights.txt").write_text(
+        "pallina3_H1 = np.array([\n [1, 2]\n])\npallina4_H1 = np.array([\n    [63.7, 64.6], \n"
+        "    [72.2, 72.0]\n])\npallina4_H0 = np.array([\n    [80],\n    [90]\n])\n"
+    )
+    _, *rows = bases._heights(tmp_path, 4.0)
+    assert rows == ["84.0,63.7,64.6", "94.0,72.2,72.0"]
