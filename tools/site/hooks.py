@@ -38,18 +38,17 @@ _SECTION = re.compile(r'aria-labelledby="(__nav_\w+)_label"([^>]*>\s*<label clas
 
 
 def on_post_template(output_content: str, **_: Any) -> str:
-    """Name the search of the page for what is not found."""
-    return _search_named(output_content)
+    """Name what the page for what is not found leaves without a name."""
+    return _named(output_content)
 
 
-def _search_named(output: str) -> str:
-    return output.replace('role="dialog"', 'role="dialog" aria-label="Search"')
+def _named(output: str) -> str:
+    output = output.replace('role="dialog"', 'role="dialog" aria-label="Search"')
+    return _SECTION.sub(r'aria-labelledby="\1_title"\2 id="\1_title"', output)
 
 
 def on_post_page(output: str, *, page: Any, **_: Any) -> str:
     """Keep the page to itself, and reachable by keys."""
     above = "../" * page.file.url.count("/")
     output = output.replace("https://unpkg.com/iframe-worker/shim", f"{above}{WORKER}")
-    output = _search_named(output)
-    output = _SECTION.sub(r'aria-labelledby="\1_title"\2 id="\1_title"', output)
-    return re.sub(r"(<pre[^>]*>(?:<span></span>)?)<code", r'\1<code tabindex="0"', output)
+    return re.sub(r"(<pre[^>]*>(?:<span></span>)?)<code", r'\1<code tabindex="0"', _named(output))
