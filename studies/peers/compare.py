@@ -16,6 +16,8 @@ from itertools import islice
 from pathlib import Path
 from typing import Any, NamedTuple
 
+import numpy as np
+
 from ...core.errors import InputError
 from ...core.inputs.toml_input import read_toml
 from ...discrepancy import diagnose
@@ -25,8 +27,8 @@ from ..proof.case import open_run
 from ..proof.generators.truth import PLANTED
 from ..proof.rivals import DIAGNOSIS, PEERS, read_lines
 from ..proof.seal import Ledger, SealBroken
-from .fitted import fitted_of
-from .rules import RULES
+from .fitted import Fitted, fitted_of
+from .rules import RULES, LeftOut, Rule
 
 
 class Asked(NamedTuple):
@@ -126,7 +128,10 @@ def _ended(path: Path) -> str:
 
 
 def line_of(asked: Asked, source: str) -> dict[str, Any]:
-    """Return what the diagnosis and each rule say of a set, beside its truth."""
+    """Return what the diagnosis and each rule say of a set, beside its truth.
+
+    Where the fits fail, every rule is undetermined, as a diagnosis without a verdict is.
+    """
     recordings = read(asked.place)
     begun = time.process_time()
     verdict, seconds = asked.verdict, asked.seconds
@@ -134,20 +139,29 @@ def line_of(asked: Asked, source: str) -> dict[str, Any]:
         verdict = diagnose(recordings).to_dict()
         seconds = time.process_time() - begun
     between = time.process_time()
-    fitted = fitted_of(recordings)
-    said = {DIAGNOSIS: _of_verdict(verdict)}
-    for name, rule in RULES.items():
-        one = rule.says(fitted)
-        names = [one.name.split("+")] if one.name else []
-        odds = {k: round(p, 6) for k, p in rule.odds(fitted).items()}
-        said[name] = {"verdict": one.verdict, "names": names, "odds": odds}
+    said = {DIAGNOSIS: _of_verdict(verdict)} | dict.fromkeys(RULES, _of_verdict({}))
+    acting, failed = 0, ""
+    try:
+        fitted = fitted_of(recordings)
+    except (InputError, np.linalg.LinAlgError) as error:
+        failed = str(error)
+    else:
+        acting = fitted.acting
+        said |= {name: _of_rule(rule, fitted) for name, rule in RULES.items()}
     return {
         "set": asked.place.name, "truth": list(asked.truth), "source": source,
-        "acting": fitted.acting, "said": said,
+        "acting": acting, "said": said, "failed": failed,
         "seconds": {
             DIAGNOSIS: round(seconds, 2), "rules": round(time.process_time() - between, 2)
         },
     }  # fmt: skip
+
+
+def _of_rule(rule: Rule | LeftOut, fitted: Fitted) -> dict[str, Any]:
+    one = rule.says(fitted)
+    names = [one.name.split("+")] if one.name else []
+    odds = {k: round(p, 6) for k, p in rule.odds(fitted).items()}
+    return {"verdict": one.verdict, "names": names, "odds": odds}
 
 
 def _of_verdict(verdict: dict[str, Any]) -> dict[str, Any]:

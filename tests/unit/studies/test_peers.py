@@ -175,3 +175,14 @@ def test_a_sealed_run_is_not_diagnosed_again_and_goes_on(tmp_path, monkeypatch) 
     (folder / "verdicts/set-0.json").write_text("{}")
     with pytest.raises(InputError, match="set-0: the verdict is not the one sealed"):
         compare.asked_of(folder)
+
+
+def test_rules_whose_fits_fail_are_wrong_and_say_so(tmp_path, monkeypatch) -> None:
+    def fails(_):
+        raise np.linalg.LinAlgError("not positive definite")
+
+    monkeypatch.setattr(compare, "read", lambda place: None)
+    monkeypatch.setattr(compare, "fitted_of", fails)
+    found = compare.line_of(compare.Asked(tmp_path / "s", ("a",), {}), "s")
+    assert found["failed"] == "not positive definite"
+    assert rivals.mark_of(found, "BIC on noise").exact == 0.0
