@@ -25,7 +25,8 @@ PAGES = sorted(
 def lines(page: str) -> list[str]:
     text = (ROOT / page).read_text(encoding="utf-8")
     # a fence without a language: what is typed or shown
-    typed = [line for kind, block in FENCE.findall(text) if not kind for line in block.splitlines()]
+    blocks = [block.replace("\\\n", " ") for kind, block in FENCE.findall(text) if not kind]
+    typed = [line for block in blocks for line in block.splitlines()]
     typed += re.findall(r"`(dentscope [^`\n]+)`", FENCE.sub("", text))
     found = [line.split("#")[0] for line in typed]
     return [x.split("dentscope ", 1)[1] for x in found if re.match(r"(\.venv/bin/)?dentscope ", x)]
