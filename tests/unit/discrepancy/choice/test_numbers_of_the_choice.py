@@ -15,7 +15,6 @@ from dentscope.discrepancy.choice.odds import Odds, odds_of, pooled
 from dentscope.discrepancy.choice.own_sets import FitTest, fit_test
 
 
-
 def test_at_most_three_explanations_are_named_together() -> None:
     p = {f"m{k}": 0.24 for k in range(4)} | {"baseline": 0.0, "outside-library": 0.04}
     odds = Odds({k: (k,) if k.startswith("m") else () for k in p}, p)

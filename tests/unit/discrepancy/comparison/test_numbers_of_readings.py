@@ -14,7 +14,6 @@ from dentscope.discrepancy.unknowns.nuisances import nuisances_of
 from dentscope.recordings import read
 
 
-
 def test_one_repeat_in_ten_may_be_a_slip(toy) -> None:
     """Twenty repeats with two or three far off; three are their noise."""
 

@@ -32,8 +32,6 @@ from dentscope.discrepancy.metal.next_mark import next_mark, with_marks
 from dentscope.discrepancy.unknowns.lawerror import components
 from dentscope.impact import Press
 
-
-
 BALL = {"tip_radius_m": 0.01, "mass_kg": 0.03, "length_m": 0.0, "radius_m": 0.01,
         "inertia_kg_m2": 1.2e-6}  # fmt: skip
 
