@@ -107,9 +107,9 @@ def compare(lines: Sequence[dict[str, Any]]) -> dict[str, Any]:
     Returns
     -------
     dict
-        `sets`, `nulls`, `outside` counts; `rows`, each with `name`, the sums of `Mark`'s counts,
-        means of `ln_p`, `brier`, `said`, `seconds`, `ranges` of what is said, and of the rules
-        `front_less` and `ln_p_less`: diagnosis less rule with the 95 % interval, and `mcnemar`.
+        `sets`, `failed`, `nulls`, `outside` counts; `rows`, each with `name`, the sums of `Mark`'s
+        counts, means of `ln_p`, `brier`, `said`, `seconds`, `ranges` of what is said, and of the
+        rules `front_less`, `ln_p_less` (diagnosis less rule, 95 % interval) and `mcnemar`.
     """
     deciders = [DIAGNOSIS, *(k for k in lines[0]["said"] if k != DIAGNOSIS)] if lines else []
     marks = {d: np.array([mark_of(x, d) for x in lines]) for d in deciders}
@@ -128,7 +128,8 @@ def compare(lines: Sequence[dict[str, Any]]) -> dict[str, Any]:
             row["mcnemar"] = _mcnemar(away[:, Mark._fields.index("front")])
         rows.append(row)
     return {
-        "sets": len(lines), "nulls": sum(not x["truth"] for x in lines),
+        "sets": len(lines), "failed": sum(bool(x.get("failed")) for x in lines),
+        "nulls": sum(not x["truth"] for x in lines),
         "outside": sum(x["truth"] == [_OUTSIDE] for x in lines), "rows": rows,
     }  # fmt: skip
 
@@ -180,7 +181,7 @@ def rival_lines(found: dict[str, Any]) -> list[str]:
         "with a wrong mass or strength left out (`dentscope proof peers`). *In front*: the truth "
         "is the most probable of all. *Nulls*: named, and with those called outside. *Forced*: "
         "names of what is outside. *s*: processor seconds, of all rules together. The rules are "
-        "those of the [plan](proof-plan.md).", "",
+        f"those of the [plan](proof-plan.md); their fits failed on {found['failed']}.", "",
         "| | in front | exact | in the set | nulls | forced | mean ln p | Brier | said, true | s |",
         "| --- | --- | --- | --- | --- | --- | --- | --- | --- | --- |",
     ]  # fmt: skip
