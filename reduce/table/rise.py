@@ -49,13 +49,14 @@ class _Line(NamedTuple):
     middle: tuple[float, float]
 
     def stiffer_than(self, other: _Line) -> bool:
-        """Return whether this one rises more steeply, and not by chance."""
+        """Return whether this one rises so much more steeply that the other has yielded."""
         chance = RULES.no_chance * math.hypot(self.noise, other.noise)
-        return 0.0 < self.compliance < other.compliance - chance
+        yielded = self.compliance < RULES.elastic_straight * other.compliance
+        return yielded and 0.0 < self.compliance < other.compliance - chance
 
 
 def elastic_rise(strain: Array, stress: Array, source: str) -> ElasticRise:
-    """Return the steepest straight rise, the highest of them: yielding and slack are softer.
+    """Return the highest straight rise, unless a lower one is so much steeper that it has yielded.
 
     The strain is fitted over the stress, for load cells scatter less than extensometers; the slope
     of the stress over the strain is the other bound where both do (R. Frisch, 1934), and belongs to
