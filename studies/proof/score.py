@@ -197,6 +197,10 @@ def feasible(case: Case) -> bool:
     """Whether the next experiment lies within the rig, or says what to build and is that."""
     found = next_of(case)
     trial = found.get("trial") or {}
+    if found.get("kind") == "press":
+        low, high = BENCH_PRESS
+        loads = low <= float(trial["least_load_N"]) <= float(trial["load_N"]) <= high
+        return loads and str(trial["striker"]) in case.truth["strikers"]
     if found.get("kind") not in ("trial", "build"):
         return found.get("kind") in ("noise", "observable", "none")
     low, high = case.truth["speeds"]
@@ -206,6 +210,10 @@ def feasible(case: Case) -> bool:
     if found["kind"] == "build":
         return within and str(found["change"]).startswith("build")
     return within and str(trial["striker"]) in case.truth["strikers"]
+
+
+BENCH_PRESS = (10.0, 10e3)
+"""Loads of hardness testers and small testing machines [N]."""
 
 
 NEARLY = 0.8
