@@ -1,0 +1,171 @@
+"""What twelve quasi-static presses beside the impacts bring: concealed sets with and without them.
+
+    python tools/benchmarks/power_of_presses.py build/presses --count 120
+    python tools/benchmarks/power_of_presses.py build/presses --count 0     # the table alone
+
+A quarter each of the sets conceals a rate effect, hardening, both, or nothing. Bodies, metals and
+effects come from the proof's generators; the presses are made by the same ones at zero rate: four
+loads three times each, errors of 0.5 % in load, 1 % in diameter, 2 % in depth. One file a set, so
+that it may be stopped.
+"""
+
+import argparse
+import csv
+import json
+import math
+from pathlib import Path
+
+import numpy as np
+from dentscope.discrepancy import diagnose
+from dentscope.recordings import read
+from dentscope.studies.proof.generators import cavity, flow, foundation
+from dentscope.studies.proof.generators import parameters as at
+from dentscope.studies.proof.generators.effects import EFFECTS
+from dentscope.studies.proof.generators.folder import write_set
+from dentscope.studies.proof.generators.simulate import results_of, rows_of, size_of
+from dentscope.studies.proof.generators.truth import FAMILIES, Truth, draw
+
+RATE, HARDENING = "strain-rate-hardening", "work-hardening"
+KINDS = {"rate": (RATE,), "hardening": (HARDENING,), "both": (RATE, HARDENING), "nothing": ()}
+SEED = 20261126
+ERRORS = {"load_N": 0.005, "dent_diameter_m": 0.01, "permanent_depth_m": 0.02}
+
+
+def usable(truth: Truth) -> bool:
+    """Whether its bench's impacts are upright and leave a measured dent."""
+    rig = truth.rig
+    return (
+        rig.law == "elastic-plastic"
+        and bool(np.all(rig.angle > 0.5 * np.pi - 1e-9))
+        and not np.any(rig.tangential)
+        and "permanent_depth_m" in rig.noise
+        and np.ptp(rig.temperature) == 0.0
+        and rig.bench in ("rods-normal", "balls-normal", "balls-drops")
+    )
+
+
+def truth_of(kind: str, number: int) -> Truth:
+    """The concealed case of one number."""
+    rng = np.random.default_rng([SEED, list(KINDS).index(kind), number])
+    names = KINDS[kind]
+    while True:
+        truth = draw(rng, "single" if names else "null", name=names[0] if names else "")
+        if usable(truth):
+            return truth if len(names) < 2 else with_hardening(rng, truth)
+
+
+def with_hardening(rng: np.random.Generator, truth: Truth) -> Truth:
+    """The same with hardening beside its rate effect."""
+    family = FAMILIES[truth.family]
+    effects = (*truth.effects, EFFECTS[HARDENING].draw(rng, truth.rig, family))
+    sizes = tuple(
+        size_of(truth.rig, [e], family=family, z=truth.z, keep=[o for o in effects if o is not e])
+        for e in effects
+    )
+    return Truth(
+        "pair", truth.rig, effects, sizes, truth.family, truth.z, truth.instrument, truth.more
+    )
+
+
+def contact_radius(row: np.ndarray, depth: float) -> float:
+    """Radius of the contact at a depth, as the generator's own law has it [m]."""
+    strength = flow.strength(row, depth)
+    if row[at.LAW] == at.CAVITY:
+        law = row[at.CAVITY_LAW : at.ROW_LAW]
+        return cavity.dent(depth, row[at.MODULUS], row[at.TIP], strength, row[at.FLAT], law)[1]
+    law = row[at.ROW_LAW : at.N_PARAMETERS]
+    yielded = depth / row[at.TIP] * (row[at.MODULUS] / strength) ** 2
+    return math.sqrt(foundation.spread(yielded, law) * row[at.TIP] * depth)
+
+
+def add_presses(truth: Truth, folder: Path, rng: np.random.Generator) -> None:
+    """Add presses of the middle striker, as deep as four of its impacts went."""
+    rig, which = truth.rig, len(truth.rig.strikers) // 2
+    table = rows_of(rig, truth.effects, family=FAMILIES[truth.family], z=truth.z)
+    table[:, at.RATE_KIND] = 0.0
+    own = np.flatnonzero(rig.which == which)
+    speeds = np.unique(rig.speed[own])
+    chosen = speeds[np.linspace(0, len(speeds) - 1, 4).round().astype(int)]
+    rows = [int(own[np.flatnonzero(rig.speed[own] == v)[0]]) for v in chosen]
+    with (folder / "trials.csv").open(encoding="utf-8") as stream:
+        trials = list(csv.DictReader(stream))
+    head = [*trials[0], "load_N", "permanent_depth_m_std", "dent_diameter_m"]
+    for place, (row, out) in enumerate(zip(rows, results_of(table[rows]), strict=True)):
+        right = {
+            "load_N": out[at.PEAK_FORCE],
+            "permanent_depth_m": out[at.DEPTH],
+            "dent_diameter_m": 2.0 * contact_radius(table[row], out[at.PEAK_DEPTH]),
+        }
+        for repeat in range(3):
+            read_off = {k: f"{v * (1.0 + ERRORS[k] * rng.normal()):.6g}" for k, v in right.items()}
+            std = f"{ERRORS['permanent_depth_m'] * right['permanent_depth_m']:.4g}"
+            trials.append(
+                {"trial": f"press-{place}-{repeat}", "striker": rig.strikers[which].name,
+                 "permanent_depth_m_std": std, **read_off}
+            )  # fmt: skip
+    with (folder / "trials.csv").open("w", newline="", encoding="utf-8") as stream:
+        writer = csv.DictWriter(stream, head, restval="", lineterminator="\n")
+        writer.writeheader()
+        writer.writerows(trials)
+    with (folder / "set.toml").open("a", encoding="utf-8") as stream:
+        for column in ("dent_diameter_m", "load_N"):  # the file ends with its table [noise]
+            stream.write(f"{column}_relative = {ERRORS[column]}\n")
+
+
+def measure(kind: str, number: int, out: Path) -> dict[str, object]:
+    """Diagnose one concealed case without and with presses."""
+    truth = truth_of(kind, number)
+    record: dict[str, object] = {"kind": kind, "truth": truth.mechanisms, "sizes": truth.sizes}
+    for which in ("without", "with"):
+        folder = out / f"{kind}-{number:02d}-{which}"
+        write_set(truth, folder, name=folder.name)
+        if which == "with":
+            add_presses(truth, folder, np.random.default_rng([SEED, 99, number]))
+        found = diagnose(read(folder), seed=0).to_dict()
+        record[which] = {
+            k: found[k]
+            for k in ("verdict", "mechanisms", "alternatives", "probabilities", "parameters")
+        }
+    return record
+
+
+def told(records: list[dict], which: str) -> list[str]:
+    """Lines of the table for the sets without or with presses."""
+    lines = []
+    for kind, names in KINDS.items():
+        of = [r for r in records if r["kind"] == kind]
+        large = [r for r in of if not names or max(r["sizes"]) >= 10.0]
+        for group, sets in (("all", of), ("size 10 and more", large if names else [])):
+            if sets:
+                named = [set(r[which]["mechanisms"]) for r in sets]
+                within = [n | set().union(*r[which]["alternatives"], set())
+                          for n, r in zip(named, sets, strict=True)]  # fmt: skip
+                exact = sum(n == set(names) for n in named)
+                held = sum(set(names) <= w for w in within) if names else 0
+                false = sum(bool(n - set(names)) for n in named)
+                lines.append(
+                    f"{which:8s} {kind:10s} {group:17s} sets {len(sets):3d}   "
+                    f"named exactly {exact:3d}   in the set {held:3d}   a wrong name {false:3d}"
+                )
+    return lines
+
+
+def main() -> None:
+    """Go on with the sets, then print the table."""
+    parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
+    parser.add_argument("out", type=Path)
+    parser.add_argument("--count", type=int, default=120)
+    given = parser.parse_args()
+    given.out.mkdir(parents=True, exist_ok=True)
+    for job in range(given.count):
+        kind, number = list(KINDS)[job % len(KINDS)], job // len(KINDS)
+        path = given.out / f"{kind}-{number:02d}.json"
+        if not path.exists():
+            path.write_text(json.dumps(measure(kind, number, given.out)) + "\n", encoding="utf-8")
+            print(f"{job + 1} of {given.count}: {kind} {number}", flush=True)
+    records = [json.loads(p.read_text(encoding="utf-8")) for p in sorted(given.out.glob("*.json"))]
+    print("\n".join(line for which in ("without", "with") for line in told(records, which)))
+
+
+if __name__ == "__main__":
+    main()
