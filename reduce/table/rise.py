@@ -48,7 +48,7 @@ class _Line(NamedTuple):
     slack: bool
     middle: tuple[float, float]
 
-    def stiffer_than(self, other: _Line) -> bool:
+    def shows_yield_of(self, other: _Line) -> bool:
         """Return whether this one rises so much more steeply that the other has yielded."""
         chance = RULES.no_chance * math.hypot(self.noise, other.noise)
         yielded = self.compliance < RULES.elastic_straight * other.compliance
@@ -56,7 +56,7 @@ class _Line(NamedTuple):
 
 
 def elastic_rise(strain: Array, stress: Array, source: str) -> ElasticRise:
-    """Return the highest straight rise, unless a lower one is so much steeper that it has yielded.
+    """Return the highest straight rise that no much steeper one below shows to have yielded.
 
     The strain is fitted over the stress, for load cells scatter less than extensometers; the slope
     of the stress over the strain is the other bound where both do (R. Frisch, 1934), and belongs to
@@ -75,7 +75,9 @@ def elastic_rise(strain: Array, stress: Array, source: str) -> ElasticRise:
     ]
     best: tuple[_Line, _Line | None] | None = None
     for line, lower in zip_longest(lines, lines[1:]):
-        if line.straight >= RULES.elastic_straight and (best is None or line.stiffer_than(best[0])):
+        if line.straight >= RULES.elastic_straight and (
+            best is None or line.shows_yield_of(best[0])
+        ):
             best = line, lower
     if best is not None and best[0].compliance > 0.0:
         return _told(*best)
