@@ -108,7 +108,7 @@ def arrays_of(
     body[c.LOSS] = scene.modes.loss_factor
     # without friction nothing can load the spring
     slippery = scene.friction.mu_static == 0.0
-    body[c.COMPLIANCE] = math.inf if slippery else RULES.one_spring * scene.friction.stiffness
+    body[c.COMPLIANCE] = math.inf if slippery else RULES.partial_slip * scene.friction.stiffness
     body[c.TOLERANCE] = settings.tolerance
     body[c.MAX_STEPS], body[c.MAX_CONTACTS] = settings.max_steps, settings.max_contacts
     body[c.SCAN_STEP] = scene.instrument.scan_step

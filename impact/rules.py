@@ -51,7 +51,7 @@ class ImpactRules:
         24, "imprints that are kept apart [-]",
         "beyond it the two nearest become one",
     )  # fmt: skip
-    one_spring: float = rule(
+    partial_slip: float = rule(
         0.77, "part of Mindlin's stiffness that a single spring has which stands for slip from the "
         "edge inwards [-]",
         "rebound angles of the exact contact (test_impact_compliance.py): 0.03 rms, at 1 0.23; for "
