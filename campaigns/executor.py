@@ -238,18 +238,21 @@ class DaskExecutor:
             ) from None
 
     def _check_workers(self) -> int:
-        """Compare every worker with this process; return how many there are."""
-        try:
-            found = self.client.run(environment)
-        except Exception as error:  # a worker without this package raises what it likes
-            reason = (str(error).splitlines() or [type(error).__name__])[0]
-            raise InputError(
-                f"a worker cannot say its versions ({reason})", source=self.address,
-                allowed="dentscope, of this source, on every worker",
-            ) from None  # fmt: skip
-        for worker, versions in found.items():
-            _check_same(versions, where=worker)
-        return max(1, len(found))
+        """Compare every worker with this process; return how many there are.
+
+        One that goes away while it is asked is no longer a worker.
+        """
+        found = self.client.run(environment, on_error="return")
+        there = {k: answer for k, answer in found.items() if not isinstance(answer, OSError)}
+        for worker, answer in there.items():
+            if isinstance(answer, Exception):  # one without this package raises what it likes
+                reason = (str(answer).splitlines() or [type(answer).__name__])[0]
+                raise InputError(
+                    f"a worker cannot say its versions ({reason})", source=self.address,
+                    allowed="dentscope, of this source, on every worker",
+                )  # fmt: skip
+            _check_same(answer, where=worker)
+        return max(1, len(there))
 
     def _worker_count(self) -> int:
         # a client that has given up on its scheduler knows of no workers, not of none

@@ -267,6 +267,28 @@ def test_every_result_is_held_to_the_versions_of_its_worker():
         executor._ended("a", ("solution", {**mine, "numpy": "1.0"}), where="w")
 
 
+class Answers:
+    """A client whose workers answer this when they are asked for their versions."""
+
+    def __init__(self, *found):
+        self.found = {f"tcp://worker:{k}": answer for k, answer in enumerate(found)}
+
+    def run(self, _, *, on_error):
+        assert on_error == "return"
+        return self.found
+
+
+def test_a_worker_that_dies_while_it_is_asked_is_left_out():
+    mine, gone = environment(), OSError("Stream is closed")
+    checked = executor.DaskExecutor("tcp://here:1", 1, Answers(mine, gone, mine))._check_workers()
+    assert checked == 2
+    absent = executor.DaskExecutor(
+        "tcp://here:1", 1, Answers(gone, ModuleNotFoundError("dentscope"))
+    )
+    with pytest.raises(InputError, match="cannot say its versions"):
+        absent._check_workers()
+
+
 def certificates(folder):
     """An authority and one certificate that it signed; return the settings that name them."""
     key = ["-newkey", "rsa:2048", "-nodes"]
