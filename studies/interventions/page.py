@@ -7,8 +7,9 @@ from typing import Any
 
 from ...core.output import write_file
 from .plan import ROOT, Pair
-from .told import NAMING, PAGE, said
+from .told import NAMING, said
 
+PAGE = ROOT / "docs" / "interventions.md"
 REMARKS = ROOT / "data" / "interventions" / "remarks.md"
 _HEAD = """# Interventions on real recordings
 

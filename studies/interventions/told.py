@@ -21,7 +21,6 @@ from .edits import write_side
 from .plan import ROOT, Pair
 
 OUTCOMES = ROOT / "data" / "interventions" / "outcomes.json"
-PAGE = ROOT / "docs" / "interventions.md"
 NAMING = ("missing-physics", "indistinguishable")
 _SHORT = 12
 

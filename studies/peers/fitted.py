@@ -89,13 +89,13 @@ class _Floored:
     def tried(self, name: str, parameters: int, residuals: Array, linear: Linear) -> Tried:
         """Weigh one explanation by its residuals (k, m) over the grid."""
         bare = linear.noise - np.diag(self.floor**2)
-        noise, _ = _white(residuals, bare + linear.J @ linear.J.T)
+        noise, log_det_bare = _white(residuals, bare + linear.J @ linear.J.T)
         floored, log_det = _white(residuals, linear.noise + linear.J @ linear.J.T)
         squares = np.sum(floored**2, axis=1)
         log_likelihood = -0.5 * (squares + log_det + len(self.floor) * math.log(2.0 * math.pi))
         return Tried(
             name, parameters,
-            (float(np.min(np.sum(noise**2, axis=1))), _),
+            (float(np.min(np.sum(noise**2, axis=1))), log_det_bare),
             (float(np.min(squares)), log_det),
             float(logsumexp(log_likelihood)) - math.log(len(residuals)),
             self._left_out(residuals, linear, log_likelihood),

@@ -138,7 +138,7 @@ def _run_text(run: dict[str, Any]) -> list[str]:
         f"Tree `{run['tree'][:12]}`{_commit(run)}, {run['date']}: "
         f"{run['sets']} of {run['total']} sets, "
         f"{run['failed']} without a verdict, {run['cpu_s']} s processor time a diagnosis. Every "
-        f"wrong verdict, what was said of each truth, and all earlier runs: `data/proof/runs.json`."
+        "wrong verdict, what was said of each truth, and all earlier runs: `data/proof/runs.json`."
         f"{_plan(run)}",
         "",
         "| score | value | 95 % interval | mark | |", "| --- | --- | --- | --- | --- |",
