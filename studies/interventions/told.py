@@ -83,7 +83,8 @@ def ask(
             try:
                 folder = _written(pair, side, raw, out)
             except FileNotFoundError as missing:
-                yield Told(pair.name, side, None, f"no {missing}: dentscope recordings fetch")
+                place = missing.filename or missing.args[0]
+                yield Told(pair.name, side, None, f"no {place}: dentscope recordings fetch")
                 continue
             found = _asked(folder, out / "verdicts" / tree, limit_s)
             right = right_with(pair, found) if side == "with" else right_without(found)
@@ -102,10 +103,12 @@ def _written(pair: Pair, side: str, raw: Path, out: Path) -> Path:
     what = pair.sides[side]
     options = "".join(f",{name}={value:g}" for name, value in what.given.items())
     made = out / "bases" / (what.base + options)
-    if not (made / "trials.csv").exists():
-        shutil.rmtree(made, ignore_errors=True)
-        made.parent.mkdir(parents=True, exist_ok=True)
-        base(what.base, what.given, raw=raw, folder=made)
+    if not made.exists():
+        begun = made.with_name(f".{made.name}")
+        shutil.rmtree(begun, ignore_errors=True)
+        begun.parent.mkdir(parents=True, exist_ok=True)
+        base(what.base, what.given, raw=raw, folder=begun)
+        begun.rename(made)  # what is half made is never taken for the whole
     folder = out / "sets" / f"{pair.name}-{side}"
     shutil.rmtree(folder, ignore_errors=True)
     write_side(what, made, folder)
