@@ -68,15 +68,19 @@ def _struck_or_pressed(scenes: list[Scene]) -> Array:
 
 def _struck(scenes: list[Scene]) -> Array:
     """Integrate in two threads: the compiled impacts run free of the interpreter."""
-    if len(scenes) < RULES.thread_from or (os.cpu_count() or 1) < 2:
+    if len(scenes) < RULES.thread_from:
         return strike_batch(scenes, ACCURACY)
-    # every other scene: neighbours cost alike. The filter is set here, because inside a thread
-    # the law's own one would race; tables reach beyond the data that the law was fitted to.
-    with warnings.catch_warnings(), ThreadPoolExecutor(2) as pool:
+    # every so-manyth scene: neighbours cost alike, and between two parts an interruption is heard.
+    # The filter is set here, because inside a thread the law's own one would race; tables reach
+    # beyond the data that the law was fitted to.
+    step = max(2, len(scenes) // RULES.thread_from)
+    parts = [slice(k, None, step) for k in range(step)]
+    with warnings.catch_warnings(), ThreadPoolExecutor(min(os.cpu_count() or 1, 2)) as pool:
         warnings.simplefilter("ignore", DomainWarning)
-        one, two = pool.map(lambda part: strike_batch(part, ACCURACY), (scenes[::2], scenes[1::2]))
-    rows = np.empty((len(scenes), one.shape[1]))
-    rows[::2], rows[1::2] = one, two
+        found = list(pool.map(lambda part: strike_batch(scenes[part], ACCURACY), parts))
+    rows = np.empty((len(scenes), found[0].shape[1]))
+    for part, struck in zip(parts, found, strict=True):
+        rows[part] = struck
     return rows
 
 
