@@ -127,8 +127,8 @@ class Metal:
 
 
 def weights(strains: Sequence[float] | Array) -> Array:
-    """Return what interpolates logarithms at the nodes, (k, nodes)."""
-    x, nodes = np.log(np.asarray(strains, dtype=float)), np.log(STRAINS)
+    """Return what interpolates logarithms at the nodes, (k, nodes); below them the stress stays."""
+    x, nodes = np.log(np.maximum(strains, STRAINS[0])), np.log(STRAINS)
     return np.stack([np.interp(x, nodes, row) for row in np.eye(len(nodes))], axis=1)
 
 

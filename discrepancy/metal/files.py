@@ -20,8 +20,9 @@ from .next_mark import TOLD
 
 
 def curve_strains(metal: Metal) -> np.ndarray:
-    """Return the plastic strains of the written curve: from 0.2 % to the deepest mark."""
-    return np.geomspace(STRAINS[0], max(metal.covered[1], 2.0 * STRAINS[0]), RULES.curve_rows)
+    """Return the plastic strains of the written curve: nothing, then 0.2 % to the deepest mark."""
+    last = max(metal.covered[1], 2.0 * STRAINS[0])
+    return np.append(0.0, np.geomspace(STRAINS[0], last, RULES.curve_rows))
 
 
 def content_of(metal: Metal) -> dict[str, Any]:

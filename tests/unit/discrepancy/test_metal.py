@@ -25,6 +25,7 @@ from dentscope.impact.mechanisms.base import Surroundings
 from dentscope.impact.mechanisms.strength.strain_rate_hardening import StrainRateHardening
 from dentscope.models import LAWS
 from dentscope.recordings import read
+from dentscope.start.case_file import read_flow_curve as curve_of_case
 
 CURVE = swift(Sy=350e6, K=900e6, n=0.2)
 PLATE = Material(E=200e9, nu=0.3, Sy=350e6, flow=Flow(CURVE))
@@ -87,6 +88,9 @@ def test_files_are_a_curve_that_a_set_takes_and_its_covariance(metal, folder_of,
     curve = read_flow_curve(tmp_path / "out" / "flow_curve.csv")
     assert np.all(np.diff(curve.strain) > 0.0)
     assert curve.stress[0] == pytest.approx(350e6, rel=0.25)
+    of_a_case = curve_of_case(tmp_path / "out" / "flow_curve.csv")
+    assert of_a_case.strength == pytest.approx(metal.stress_at(0.002)[0], rel=1e-5)
+    assert of_a_case(0.02) == pytest.approx(metal.stress_at(0.02)[0], rel=0.005)
     cov = np.loadtxt(tmp_path / "out" / "flow_curve_covariance.csv", delimiter=",", skiprows=1)
     assert cov.shape == (len(curve.strain),) * 2
     assert np.linalg.eigvalsh(cov).min() > -1e-9
