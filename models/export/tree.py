@@ -10,8 +10,8 @@ import ast
 import inspect
 from collections.abc import Mapping, Sequence
 
-from . import closed_form
-from .correction import CHANNELS, MOST, PairCorrection
+from .. import closed_form
+from ..correction import CHANNELS, MOST, PairCorrection
 
 INPUTS = ("E_s", "nu_s", "Sy_s", "E_f", "nu_f", "Sy_f", "R", "depth")
 OUTPUTS = ("force", "contact_radius", "share", "residual_s", "residual_f", "exponent")

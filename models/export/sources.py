@@ -4,7 +4,7 @@ Python, C, Fortran, MATLAB or Octave, Modelica.
 
 Each file holds the coefficients and one routine from the two materials, the radius and the approach
 to force, contact radius, sphere's share, permanent depths and the exponent of the unloading. They
-are printed from the same lines that the law itself runs (`export_tree`).
+are printed from the same lines that the law itself runs (`tree`).
 """
 
 from __future__ import annotations
@@ -15,10 +15,11 @@ from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field, replace
 from pathlib import Path
 
-from ..core.output import write_file
-from .closed_form import COEFFICIENTS
-from .export_tree import INPUTS, OUTPUTS, Lines, before, when_closed, when_open
-from .fitted import ClosedForm
+from ...core.output import write_file
+from ..closed_form import COEFFICIENTS
+from ..fitted import ClosedForm
+from .lammps import STYLE, lammps_header, lammps_source
+from .tree import INPUTS, OUTPUTS, Lines, before, when_closed, when_open
 
 NAME = "dentscope_contact"
 
@@ -99,7 +100,7 @@ class _Written(ast.NodeTransformer):
 
 
 def write_sources(law: ClosedForm, folder: Path) -> list[Path]:
-    """Write the law in every language.
+    """Write the law in every language, and as a normal model of LAMMPS.
 
     Parameters
     ----------
@@ -120,6 +121,8 @@ def write_sources(law: ClosedForm, folder: Path) -> list[Path]:
         f"{NAME}.f90": fortran_source(law),
         f"{NAME}.m": matlab_source(law),
         f"{NAME}.mo": modelica_source(law),
+        f"{STYLE}.h": lammps_header(),
+        f"{STYLE}.cpp": lammps_source(),
     }
     return [write_file(folder / name, text.encode("ascii")) for name, text in texts.items()]
 
