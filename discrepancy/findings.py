@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import Any
 
@@ -45,6 +46,8 @@ class Verdict:
         Fit of the best explanation; the baseline's when none is named.
     impacts
         Impacts that were simulated.
+    titles
+        What each mechanism that was tried means, as a clause; one's own too.
     """
 
     name: str
@@ -69,6 +72,7 @@ class Verdict:
     ranking: Ranking
     best: Fit
     impacts: int
+    titles: Mapping[str, str]
 
     @property
     def verdict(self) -> str:

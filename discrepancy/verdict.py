@@ -164,6 +164,7 @@ def _told(asked: _Asked, found: _Explained, decided: _Decided) -> Verdict:
         corrections=correct(simulator, base) if choice.verdict == OUTSIDE else (),
         proposals=tuple(proposals[: RULES.proposed]),
         notes=notes, ranking=ranking, best=best, impacts=simulator.tally.impacts,
+        titles={m.name: m.title for m in (*MECHANISMS, *asked.own)},
     )  # fmt: skip
 
 

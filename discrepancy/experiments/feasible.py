@@ -10,6 +10,7 @@ import numpy as np
 
 from ...core.inputs.rig_numbers import solid_inertia
 from ...impact import CREEP, Press, Scene
+from ...impact.files.second import second_of
 from ...impact.mechanisms.arithmetic import as_deep, deepest
 from ...impact.strength import strength_table
 from ..comparison.conditions import Condition
@@ -65,6 +66,7 @@ class PressSeries:
 def press_series(problem: Problem) -> list[PressSeries]:
     """Return presses with each striker, as deep as its trials went, within what a press can do."""
     found = []
+    struck = "flat" if second_of(problem.rig) is None else "second sphere"
     # a free sphere is not pressed
     if leaves_no_mark(problem) or problem.parts:
         return []
@@ -85,7 +87,7 @@ def press_series(problem: Problem) -> list[PressSeries]:
         pressed = tuple(at_load(c, scene, load) for load in loads)
         told = ", ".join(f"{load:g}" for load in loads[:-1])
         text = (
-            f"press {name} slowly on the same flat, each time on a fresh place, "
+            f"press {name} slowly on the same {struck}, each time on a fresh place, "
             f"{RULES.press_each} times each to {told} and {loads[-1]:g} N"
         )
         found.append(PressSeries(text, pressed, RULES.press_each))

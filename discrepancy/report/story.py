@@ -9,6 +9,7 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from ...core.observables import OBSERVABLES
+from ...impact.files.second import second_of
 from ..findings import Verdict
 from ..rules import RULES
 from .series import Against, SeriesPoint, againsts, points_of, series_of
@@ -126,10 +127,14 @@ def story_of(v: Verdict) -> Story:
         reasons=v.reasons,
         notes=tuple(n for n in v.notes if n),
         parts=tuple(
-            Bar(f"{title_of(k)} ({k})", p) for k, p in v.inclusion.items() if p >= RULES.story_least
+            Bar(f"{title_of(k, v.titles)} ({k})", p)
+            for k, p in v.inclusion.items()
+            if p >= RULES.story_least
         ),
         explanations=tuple(
-            Bar(explanation(k), p) for k, p in v.probabilities.items() if p >= RULES.story_least
+            Bar(explanation(k, v.titles), p)
+            for k, p in v.probabilities.items()
+            if p >= RULES.story_least
         ),
         found=_found(v),
         prediction=_prediction(v),
@@ -137,7 +142,8 @@ def story_of(v: Verdict) -> Story:
         numbers=_numbers(v),
         scores=_scores(v),
         excluded=ToldCells(
-            ("what", "why not"), tuple((title_of(k), why) for k, why in v.excluded.items())
+            ("what", "why not"),
+            tuple((title_of(k, v.titles), why) for k, why in v.excluded.items()),
         ),
         limits=_limits(v),
         next_step=step,
@@ -192,8 +198,9 @@ def _doubt(v: Verdict) -> tuple[Bar, ...]:
     counts = [i for i in range(len(p.cells)) if i not in p.weightless]
     total = np.diag(linear.total)
     sources = {"scatter and noise of the readings": np.diag(linear.noise)}
+    struck = _struck(v)
     for k, n in enumerate(p.nuisances):
-        name = number_name(n.name)
+        name = number_name(n.name, struck=struck)
         sources[name] = sources.get(name, 0.0) + linear.J[:, k] ** 2
     sources["the contact law's own error"] = np.sum(linear.J[:, p.n_nuisances :] ** 2, axis=1)
     if linear.form.size:
@@ -204,11 +211,12 @@ def _doubt(v: Verdict) -> tuple[Bar, ...]:
 
 def _numbers(v: Verdict) -> ToldCells:
     rows = []
+    struck = _struck(v)
     for n in v.problem.nuisances:
         q = v.parameters[n.name]
         rows.append(
             (
-                number_name(n.name) + ("" if n.stated else " (assumed)"),
+                number_name(n.name, struck=struck) + ("" if n.stated else " (assumed)"),
                 quantity(n.value, n.unit), quantity(q["value"], q["unit"]),
                 interval(q["low"], q["high"], q["unit"]),
                 f"{v.nuisance_pulls[n.name]:+.1f}", f"{v.surprise[n.name]:+.1f}",
@@ -218,10 +226,14 @@ def _numbers(v: Verdict) -> ToldCells:
     return ToldCells(head, tuple(rows))
 
 
+def _struck(v: Verdict) -> str:
+    return "the flat" if second_of(v.problem.rig) is None else "the second sphere"
+
+
 def _scores(v: Verdict) -> ToldCells:
     rows = tuple(
         (
-            explanation(name), f"{s['evidence']:+.1f}", f"{s['p_value']:.3f}",
+            explanation(name, v.titles), f"{s['evidence']:+.1f}", f"{s['p_value']:.3f}",
             "-" if math.isnan(s["held_out"]) else f"{s['held_out']:.2f}",
             percent(v.probabilities.get(name, 0.0)),
         )
@@ -238,7 +250,11 @@ def _scores(v: Verdict) -> ToldCells:
 def _limits(v: Verdict) -> ToldCells:
     units = {s.mechanism.name: s.mechanism.parameters[0] for s in v.ranking.screened}
     rows = tuple(
-        (title_of(k), units[k].name if k in units else "", quantity(x, units[k].unit))
+        (
+            title_of(k, v.titles),
+            units[k].name if k in units else "",
+            quantity(x, units[k].unit),
+        )
         for k, x in v.limits.items()
         if k in units
     )

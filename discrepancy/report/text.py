@@ -31,12 +31,15 @@ def headline(v: Verdict) -> str:
             f"noise and the stated uncertainties (probability {percent(p)})."
         )
     if v.verdict == "missing-physics":
-        what = joined([f"{title_of(m)} ({m})" for m in v.mechanisms])
+        what = joined([f"{title_of(m, v.titles)} ({m})" for m in v.mechanisms])
         sure = joined([percent(part.get(m, 0.0)) for m in v.mechanisms])
         each = " each" if len(v.mechanisms) > 1 else ""
         return f"The simulation lacks this: {what}; probability that it takes part{each}: {sure}."
     if v.verdict == "indistinguishable":
-        rival = joined([explanation("+".join(a)) for a in (v.mechanisms, *v.alternatives)], "or")
+        rival = joined(
+            [explanation("+".join(a), v.titles) for a in (v.mechanisms, *v.alternatives)],
+            "or",
+        )
         return f"Something is missing, and these explain it equally well: {rival}."
     if v.verdict == OUTSIDE and v.choice.alike:
         return (
@@ -53,7 +56,7 @@ def headline(v: Verdict) -> str:
     if any(reason.startswith("too few") for reason in v.reasons):
         return f"{sure}too few data to say what." if sure else "Too few data to say."
     leads = list(v.probabilities.items())[: RULES.named_leading]
-    likely = ", ".join(f"{explanation(name)} {percent(p)}" for name, p in leads)
+    likely = ", ".join(f"{explanation(name, v.titles)} {percent(p)}" for name, p in leads)
     unclear = (
         f"{sure}these data do not say what."
         if sure
@@ -70,11 +73,13 @@ def why(v: Verdict) -> str:
         label = OBSERVABLES[worst.observable].label
         where = f"The simulation misses most in {label}: {worst.trend}."
     (lead, p), *others = v.probabilities.items()
-    best = f"Most probable: {explanation(lead)} ({percent(p)})"
+    best = f"Most probable: {explanation(lead, v.titles)} ({percent(p)})"
     if lead in v.scores and lead != "baseline":
         times = _times(v.scores[lead]["evidence"])
         best += f", with which the readings are {times} as probable as with nothing missing"
-    rivals = [f"{explanation(k)} ({percent(q)})" for k, q in others if q >= RULES.story_least]
+    rivals = [
+        f"{explanation(k, v.titles)} ({percent(q)})" for k, q in others if q >= RULES.story_least
+    ]
     beside = "Nothing else has a share."
     if rivals:
         beside = f"Beside it: {joined(rivals[: RULES.named_leading])}."
@@ -145,7 +150,7 @@ def lines(v: Verdict) -> list[str]:
         )
     part = {k: x for k, x in v.inclusion.items() if x >= 0.01}
     out += ["", "Probability that it takes part"]
-    out += [f"  {percent(x):>14}  {k}: {title_of(k)}" for k, x in list(part.items())[:5]]
+    out += [f"  {percent(x):>14}  {k}: {title_of(k, v.titles)}" for k, x in list(part.items())[:5]]
     unknown = v.probabilities.get(OUTSIDE, 0.0)
     if unknown >= 0.01:
         out.append(f"  {percent(unknown):>14}  something that dentscope has no name for")

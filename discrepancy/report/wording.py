@@ -3,16 +3,14 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 
 from matplotlib.ticker import EngFormatter
 
 from ...core.observables import OBSERVABLES
-from ...impact.mechanisms import MECHANISMS
 from ..locate import Located
 
 _PREFIXED = frozenset({"Pa", "m", "s", "N", "J", "Hz", "N/m", "g"})
-_TITLES = {m.name: m.title for m in MECHANISMS}
 _WHILE = {
     "approach": "before the touch",
     "loading": "while the bodies are pressed together",
@@ -35,7 +33,6 @@ _WHOLE = {
     "dent.rim": "rim of a dent over its contact circle",
     "friction.coefficient": "friction coefficient",
 }
-_OF_A_SPHERE = ("target.radius_m", "target.mass_kg")
 GLOSSARY = (
     (
         "simulation as described",
@@ -45,7 +42,7 @@ GLOSSARY = (
     ),
     ("mechanism", "one piece of physics that can be added to the simulation, such as friction "
      "that depends on speed, or a flat that moves on its support"),
-    ("restitution", "rebound over approach speed of the tip, along the normal of the flat"),
+    ("restitution", "rebound over approach speed of the tip, along the normal of the contact"),
     ("takes part", "the mechanism acts, alone or together with another one"),
     ("90 % interval", "the value lies in it with a probability of 90 %, if the explanation is "
      "right"),
@@ -61,22 +58,28 @@ GLOSSARY = (
 """Terms of the report, in the order in which they appear."""
 
 
-def title_of(name: str) -> str:
-    """Return what a mechanism means, as a clause."""
-    return _TITLES.get(name, name.replace("-", " "))
+def title_of(name: str, titles: Mapping[str, str]) -> str:
+    """Return what a mechanism means, as a clause: by the verdict's `titles`."""
+    return titles.get(name, name.replace("-", " "))
 
 
-def explanation(name: str) -> str:
+def explanation(name: str, titles: Mapping[str, str]) -> str:
     """Return an explanation's name, as the scores know it, in words."""
     if name == "baseline":
         return "nothing is missing"
     if name == "outside-library":
         return "something that dentscope has no name for"
-    return " and ".join(title_of(part) for part in name.split("+"))
+    return " and ".join(title_of(part, titles) for part in name.split("+"))
 
 
-def number_name(key: str) -> str:
-    """Return the name of a number of set.toml in words: `target.E_Pa` is Young's modulus ..."""
+def number_name(key: str, *, struck: str = "the flat") -> str:
+    """Return the name of a number of set.toml in words.
+
+    Examples
+    --------
+    >>> number_name("target.E_Pa"), number_name("target.E_Pa", struck="the second sphere")
+    ("Young's modulus of the flat", "Young's modulus of the second sphere")
+    """
     if key in _WHOLE:
         return _WHOLE[key]
     if key.startswith("gauge."):
@@ -85,7 +88,6 @@ def number_name(key: str) -> str:
     what = _KEYS.get(last, last.replace("_", " "))
     if not place:
         return what
-    struck = "the second sphere" if key in _OF_A_SPHERE else "the flat"
     return f"{what} of {struck if place == ['target'] else place[-1]}"
 
 

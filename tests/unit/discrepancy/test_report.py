@@ -12,7 +12,9 @@ from dentscope.discrepancy.report.figures import comparison
 from dentscope.discrepancy.report.series import STATED, WITH, WITHOUT, Against, SeriesPoint
 from dentscope.discrepancy.report.text import headline, nowhere, why
 from dentscope.discrepancy.report.wording import compared, miss_sentences
+from dentscope.impact.mechanisms import MECHANISMS
 
+OWN = {"sticky-tape": "a tape holds the tip back"}
 SPEED = Against("speed_m_s", "approach speed [m/s]", None)  # type: ignore[arg-type]
 
 
@@ -35,6 +37,7 @@ def said(
         probabilities={"baseline": nothing, "work-hardening": 1.0 - nothing},
         misfit={"as_stated": 650.0, "numbers": 40.0, "rest": rest},
         choice=SimpleNamespace(alike=()),
+        titles={m.name: m.title for m in MECHANISMS} | OWN,
     )  # fmt: skip
 
 
@@ -99,6 +102,14 @@ def test_what_is_missing_for_sure_is_said_though_not_what() -> None:
     told = headline(said("undetermined", 0.001, Located((), (), 3.0)))
     assert told.startswith("Something is missing (more than 99 %), but these data do not say what.")
     assert "What leads, by probability: " in told
+
+
+def test_a_mechanism_of_ones_own_is_told_in_its_own_words() -> None:
+    v = said("missing-physics", 0.05, Located((), (), 3.0))
+    v.mechanisms, v.inclusion = ("sticky-tape",), {"sticky-tape": 0.9}
+    assert headline(v).startswith("The simulation lacks this: a tape holds the tip back (sticky-")
+    v.verdict, v.alternatives = "indistinguishable", (("work-hardening",),)
+    assert "a tape holds the tip back or the metal hardens as it is deformed." in headline(v)
 
 
 def test_why_is_three_sentences_with_the_rivals_of_a_name() -> None:

@@ -70,7 +70,7 @@ def test_a_body_to_be_built_is_half_or_twice_as_large(toy) -> None:
 def pressed_set(toy, monkeypatch):
     """A problem whose trials go as deep as some loads; loads of the presses that are proposed."""
 
-    def loads(*reached, pressed=False):
+    def loads(*reached, pressed=False, second=None, told=False):
         pair = Pair(Material(E=2e11, nu=0.3), Material(E=2e11, nu=0.3), 0.01)
         scenes = [SimpleNamespace(law=None, pair=pair, load=x) for x in reached]
         c = replace(toy.condition(), press=Press(1.0)) if pressed else toy.condition()
@@ -81,10 +81,13 @@ def pressed_set(toy, monkeypatch):
         monkeypatch.setattr(feasible, "deepest", lambda s: math.log(s.load))
         monkeypatch.setattr(feasible, "at_load", lambda c, s, load: replace(c, press=Press(load)))
         monkeypatch.setattr(feasible, "deepest", lambda s: s.load)  # the table's force is its depth
-        given = SimpleNamespace(baseline="elastic-plastic", parts=False)
-        return [
-            ([c.press.load for c in one.conditions], one.each) for one in press_series(given)
-        ]  # fmt: skip
+        given = SimpleNamespace(
+            baseline="elastic-plastic", parts=False, rig=SimpleNamespace(of=second or {})
+        )
+        series = press_series(given)
+        if told:
+            return [one.change for one in series]
+        return [([c.press.load for c in one.conditions], one.each) for one in series]
 
     return loads
 
@@ -102,6 +105,12 @@ def test_a_bench_presses_with_20_to_5000_newtons_and_three_times_beyond_what_was
     assert pressed_set(2.0, 20000.0)[0][0] == [20.0, 130.0, 790.0, 5000.0]
     found = pressed_set(100.0, 800.0, pressed=True)[0][0]
     assert (found[0], found[-1]) == (33.0, 2400.0)
+
+
+def test_a_press_names_what_is_pressed(pressed_set) -> None:
+    assert "on the same flat, each time" in pressed_set(100.0, 800.0, told=True)[0]
+    (held,) = pressed_set(100.0, 800.0, second={"target.radius_m": 0.02}, told=True)
+    assert "on the same second sphere, each time" in held
 
 
 def test_a_press_is_read_to_2_and_1_per_cent_and_its_dent_lies_on_the_law_to_2(toy) -> None:
