@@ -15,7 +15,7 @@ import numpy as np
 
 from ...core.errors import InputError
 from ...core.inputs.flow_curve import SPECIMENS
-from ...core.rig import TABOR
+from ...core.rig import TABOR, Quantity
 from ...models.base import ContactLaw, DomainWarning
 from ...models.choose import demand, follows_flow
 from ..result import Impact
@@ -228,15 +228,24 @@ def _bodies(setup: Setup, law: ContactLaw) -> Iterator[str]:
         flows = body.flow_curve or getattr(body, "hardening", None)
         if flows and not follows_flow(law):
             yield f"{law.name} takes the first strength of {key}; hardening follows its curve"
-    name = setup.striker
+    name, second = setup.striker, file.target
     ball = file.strikers[name]
-    if ball.shape == "sphere" and ball.density_kg_m3 is not None:
-        solid = 4.0 / 3.0 * math.pi * ball.body_radius**3 * ball.density_kg_m3.value
-        if abs(ball.mass_kg.value / solid - 1.0) > RULES.mass_off:
-            yield (
-                f"strikers.{name}: {ball.mass_kg.value:.4g} kg as stated; a solid sphere of its "
-                f"radius and density has {solid:.4g} kg"
-            )
+    if ball.shape == "sphere":
+        yield from _mass(f"strikers.{name}", ball.mass_kg, ball.body_radius, ball.density_kg_m3)
+    if second.mass_kg is not None and second.radius_m is not None:
+        yield from _mass("target", second.mass_kg, second.radius_m.value, second.density_kg_m3)
+
+
+def _mass(key: str, mass: Quantity, radius: float, density: Quantity | None) -> Iterator[str]:
+    """A mass that is not that of a solid sphere; nothing is said of a seat."""
+    if density is None or radius < 0.0:
+        return
+    solid = 4.0 / 3.0 * math.pi * radius**3 * density.value
+    if abs(mass.value / solid - 1.0) > RULES.mass_off:
+        yield (
+            f"{key}: {mass.value:.4g} kg as stated; a solid sphere of its radius and density has "
+            f"{solid:.4g} kg"
+        )
 
 
 _GIVES_BACK = "the law gives back more than it took"

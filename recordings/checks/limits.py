@@ -42,13 +42,26 @@ def geometric_mass(striker: StrikerTable) -> Range | None:
         return None
     rho, r = striker.density_kg_m3, striker.radius_m or striker.tip_radius_m
     if striker.shape == "sphere":
-        m = rho.value * 4.0 / 3.0 * math.pi * r.value**3
-        return Range(m, m, math.hypot(rho.relative, 3.0 * r.relative))
+        return _solid_sphere(rho, r)
     length, R = striker.length_m or Quantity(value=0.0), striker.tip_radius_m.value
     plain = rho.value * math.pi * r.value**2 * striker.length
     ends = rho.value * 2.0 * _end_volume(R, r.value)
     relative = math.hypot(math.hypot(rho.relative, 2.0 * r.relative), length.relative)
     return Range(plain, plain + ends, relative)
+
+
+def second_mass(target: TargetTable) -> Range | None:
+    """Return the mass that density and size allow a second sphere [kg].
+
+    `None` where one is left out, and of a seat, whose radius is negative.
+    """
+    rho, r = target.density_kg_m3, target.radius_m
+    return None if rho is None or r is None or r.value < 0.0 else _solid_sphere(rho, r)
+
+
+def _solid_sphere(rho: Quantity, r: Quantity) -> Range:
+    m = rho.value * 4.0 / 3.0 * math.pi * r.value**3
+    return Range(m, m, math.hypot(rho.relative, 3.0 * r.relative))
 
 
 def _end_volume(R: float, r: float) -> float:

@@ -2,13 +2,13 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
 
 import numpy as np
 from scipy.optimize import minimize_scalar
 from scipy.stats import chi2
 
-from ...core.rig import StrikerTable
+from ...core.rig import Quantity, StrikerTable, TargetTable
 from ..recording_set import RecordingSet
 from ..rules import RULES
 from . import limits, momentum
@@ -26,7 +26,7 @@ from .trial_view import combined, speed_std, value_of, views
 
 
 def check_mass(found: RecordingSet) -> list[Finding]:
-    """Stated mass against density and volume.
+    """Stated mass against density and volume, of the strikers and of a second sphere that is free.
 
     How much of the round ends a rod has beyond its length is left open, from plain ends to two
     whole caps, but all rods of a set are taken to have ends of one kind.
@@ -43,26 +43,40 @@ def check_mass(found: RecordingSet) -> list[Finding]:
     rods = sum(mass.high > mass.low for mass in known.values())
     alone = FALSE_ALARMS_MASS if len(known) < 2 else RULES.alone * FALSE_ALARMS_MASS
     for name, mass in known.items():
-        stated, relative = strikers[name].mass_kg.value, _mass_relative(strikers[name], mass)
-        expected = _expected(mass, part)
-        z = abs(stated / expected - 1.0) / relative
-        width = (mass.high / mass.low - 1.0) / relative if rods == 1 else 0.0
+        stated = strikers[name].mass_kg
+        width = (mass.high / mass.low - 1.0) / _mass_relative(stated, mass) if rods == 1 else 0.0
         critical = critical_interval(width, alone / len(known))
-        span = f"{mass.low:.4g}" + (f" to {mass.high:.4g}" if mass.high > mass.low else "")
-        findings.append(
-            Finding(
-                f"mass of {name}",
-                Severity.CONTRADICTION if z > critical else Severity.CONSISTENT,
-                f"{stated:.4g} kg stated, {span} kg from density and size "
-                f"({stated / expected - 1.0:+.1%})",
-                stated,
-                expected,
-                z,
-            )
-        )
+        findings.append(_weighed(name, stated, mass, _expected(mass, part), critical))
     if len(known) > 1:
         findings.append(_masses_together([(strikers[name], mass) for name, mass in known.items()]))
-    return findings
+    return [*findings, *_second_mass(found.setup.target)]
+
+
+def _second_mass(target: TargetTable) -> Iterator[Finding]:
+    """Yield the finding on the mass of a second sphere, where one is stated."""
+    if target.mass_kg is None:
+        return
+    name, mass = "the second sphere", limits.second_mass(target)
+    if mass is None:
+        yield Finding(f"mass of {name}", Severity.UNCHECKED, "no density is stated")
+    else:
+        critical = critical_interval(0.0, FALSE_ALARMS_MASS)
+        yield _weighed(name, target.mass_kg, mass, mass.low, critical)
+
+
+def _weighed(
+    name: str, mass: Quantity, allowed: limits.Range, expected: float, critical: float
+) -> Finding:
+    stated = mass.value
+    z = abs(stated / expected - 1.0) / _mass_relative(mass, allowed)
+    span = f"{allowed.low:.4g}" + (f" to {allowed.high:.4g}" if allowed.high > allowed.low else "")
+    return Finding(
+        f"mass of {name}",
+        Severity.CONTRADICTION if z > critical else Severity.CONSISTENT,
+        f"{stated:.4g} kg stated, {span} kg from density and size "
+        f"({stated / expected - 1.0:+.1%})",
+        stated, expected, z,
+    )  # fmt: skip
 
 
 def _masses_together(bodies: list[tuple[StrikerTable, limits.Range]]) -> Finding:
@@ -90,7 +104,7 @@ def _misfit(
     """Sum of squares of the masses' distances, in standard deviations."""
     return sum(
         ((striker.mass_kg.value / (factor * _expected(m, part)) - 1.0)
-         / _mass_relative(striker, m)) ** 2
+         / _mass_relative(striker.mass_kg, m)) ** 2
         for striker, m in bodies
     )  # fmt: skip
 
@@ -98,12 +112,12 @@ def _misfit(
 def _factor(bodies: list[tuple[StrikerTable, limits.Range]], part: float) -> float:
     """Common factor on all masses that fits best."""
     ratio = [striker.mass_kg.value / _expected(m, part) for striker, m in bodies]
-    weight = [_mass_relative(striker, m) ** -2 for striker, m in bodies]
+    weight = [_mass_relative(striker.mass_kg, m) ** -2 for striker, m in bodies]
     return float(np.average(ratio, weights=weight))
 
 
-def _mass_relative(striker: StrikerTable, mass: limits.Range) -> float:
-    return combined(striker.mass_kg.relative, mass.relative) or limits.ROUNDING
+def _mass_relative(stated: Quantity, mass: limits.Range) -> float:
+    return combined(stated.relative, mass.relative) or limits.ROUNDING
 
 
 def _part_of_the_ends(rods: list[tuple[StrikerTable, limits.Range]]) -> float:

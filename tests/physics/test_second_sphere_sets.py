@@ -16,7 +16,7 @@ from dentscope.impact.files.second import SecondSphere
 from dentscope.impact.files.setup import setup_of
 from dentscope.impact.mechanisms import MECHANISMS
 from dentscope.models import LAWS
-from dentscope.recordings import read
+from dentscope.recordings import audit, read
 
 RIG = """[target]
 shape = "sphere"
@@ -72,6 +72,17 @@ def test_a_set_is_simulated_as_an_impact_file_is(tmp_path, kind):
         e = float(seen["restitution"][0, k])
         back = -setup.second.parted(0.004084, speed, e)[0]
         assert seen["rebound_speed_m_s"][0, k] == pytest.approx(back, rel=5e-3)
+
+
+@pytest.mark.parametrize(("mass", "severity"), [(0.0356, "consistent"), (0.0456, "contradiction")])
+def test_a_free_sphere_is_weighed_as_a_striker_is(tmp_path, mass, severity):
+    """4/3 pi (10 mm)^3 of 8500 kg/m^3 are 35.6 g."""
+    problem(tmp_path, RIG.replace("0.0356", str(mass)))
+    said = {f.check: f for f in audit(read(tmp_path)).findings}
+    found = said["mass of the second sphere"]
+    assert found.severity.value == severity
+    assert found.expected == pytest.approx(0.035605, rel=1e-4)
+    assert said["mass of ball"].severity.value == "consistent"
 
 
 def test_the_laws_error_is_that_of_two_spheres(tmp_path):

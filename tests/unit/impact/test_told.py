@@ -181,6 +181,10 @@ ASKED = {
          "strikers": {"ball": {"mass_kg": 0.0327}}},
         "two spheres: R = 5 mm",
     ),
+    "a struck ball that is hollow": (
+        {"target": {"shape": "sphere", "radius_m": 0.01, "mass_kg": 0.02, "thickness_m": None}},
+        "target: 0.02 kg as stated; a solid sphere of its radius and density has 0.03535 kg",
+    ),
 }  # fmt: skip
 
 
