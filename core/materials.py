@@ -82,12 +82,18 @@ def entry_named(name: str) -> Entry:
     known = materials()
     if name in known:
         return known[name]
-    near = get_close_matches(name.lower(), known, n=3, cutoff=0.5)
-    raise InputError(
-        f"no material {name!r}", key="material",
-        allowed=f"{', '.join(near)}; all of them: dentscope materials" if near
-        else "a name that dentscope materials lists",
-    )  # fmt: skip
+    raise InputError(f"no material {name!r}", key="material", allowed=_instead_of(name, 0.5))
+
+
+def _near(name: str, likeness: float) -> list[str]:
+    return get_close_matches(name.lower(), materials(), n=3, cutoff=likeness)
+
+
+def _instead_of(name: str, likeness: float) -> str:
+    near = _near(name, likeness)
+    if near:
+        return f"{', '.join(near)}; all of them: dentscope materials"
+    return "a name that dentscope materials lists"
 
 
 def material(name: str) -> Material:
@@ -121,6 +127,17 @@ def material(name: str) -> Material:
     )
 
 
+class Mistyped(str):
+    """A name close to listed ones, of a body that leaves out what the listed ones would give."""
+
+    __slots__ = ()
+
+    @property
+    def allowed(self) -> str:
+        """What to write in its place."""
+        return f"{_instead_of(self, 0.75)}; or a name of your own beside E_Pa and nu"
+
+
 def filled(given: dict[str, Any], known: frozenset[str]) -> dict[str, Any]:
     """Return a body's table with what it leaves out taken from the material that it names.
 
@@ -134,8 +151,11 @@ def filled(given: dict[str, Any], known: frozenset[str]) -> dict[str, Any]:
         Keys that this table may hold.
     """
     name = given.get("material")
-    if given.get("rigid") or not isinstance(name, str) or name not in materials():
+    if given.get("rigid") or not isinstance(name, str):
         return given
+    if name not in materials():
+        elastic = given.get("E_Pa") is not None and given.get("nu") is not None
+        return given if elastic or not _near(name, 0.75) else {**given, "material": Mistyped(name)}
     entry = materials()[name]
     strengths = {"Sy_Pa", "hardness_Pa", "flow_curve", "hardening"}
     stated = any(given.get(key) for key in strengths)

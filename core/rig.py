@@ -28,7 +28,7 @@ from .inputs.names import FileName
 from .inputs.rig_numbers import RigNumbers, solid_inertia
 from .inputs.toml_input import InputTable
 from .material import Material
-from .materials import filled
+from .materials import Mistyped, filled
 from .observables import GAUGE_KEYS, NOISE_KEYS
 from .rules import RULES
 
@@ -151,6 +151,13 @@ class MaterialTable(InputTable):
     @classmethod
     def _of_a_known_material(cls, given: Any) -> Any:
         return filled(given, frozenset(cls.model_fields)) if isinstance(given, dict) else given
+
+    @field_validator("material", mode="before")
+    @classmethod
+    def _listed(cls, given: Any) -> Any:
+        if isinstance(given, Mistyped):
+            raise ValueError(given.allowed)
+        return given
 
     @property
     def strength(self) -> Quantity | None:
@@ -307,6 +314,8 @@ class StrikerTable(BodyTable):
         if not isinstance(given, dict) or given.get("shape") != "sphere" or "mass_kg" in given:
             return given
         given = filled(given, frozenset(cls.model_fields))  # the density of a known material
+        if isinstance(given.get("material"), Mistyped):
+            return {**given, "mass_kg": 1.0}  # the name has a line of its own
         if given.get("density_kg_m3") is None:
             return given
         try:

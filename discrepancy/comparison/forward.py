@@ -74,13 +74,13 @@ def _struck(scenes: list[Scene]) -> Array:
     # The filter is set here, because inside a thread the law's own one would race; tables reach
     # beyond the data that the law was fitted to.
     step = max(2, len(scenes) // RULES.thread_from)
-    parts = [slice(k, None, step) for k in range(step)]
+    parts = [scenes[k::step] for k in range(step)]
     with warnings.catch_warnings(), ThreadPoolExecutor(min(os.cpu_count() or 1, 2)) as pool:
         warnings.simplefilter("ignore", DomainWarning)
-        found = list(pool.map(lambda part: strike_batch(scenes[part], ACCURACY), parts))
+        found = list(pool.map(lambda part: strike_batch(part, ACCURACY), parts))
     rows = np.empty((len(scenes), found[0].shape[1]))
-    for part, struck in zip(parts, found, strict=True):
-        rows[part] = struck
+    for k, struck in enumerate(found):
+        rows[k::step] = struck
     return rows
 
 

@@ -106,6 +106,8 @@ def _plate(setup: Setup, scene: Scene, found: Impact) -> Iterator[str]:
         )
     else:
         a = float(scene.law.contact_radius(scene.pair, found.peak_depth_m))
+        if not a > 0.0:
+            return
         yield f"the flat, {h * 1e3:.3g} mm, is {h / a:.3g} times the contact radius thick"
     if setup.file.impact.support == "plate" or flat.rigid or math.isnan(flat.density):
         return

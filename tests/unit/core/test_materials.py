@@ -115,3 +115,23 @@ def test_an_impact_of_two_named_materials(tmp_path, capsys):
         for text in (told, again)
     )
     assert found == same
+
+
+def test_a_name_close_to_listed_ones_is_told_where_it_leaves_numbers_out(tmp_path, capsys):
+    """The name has the line, not the numbers that it would have given."""
+    path = tmp_path / "typed.toml"
+    path.write_text(
+        '[target]\nmaterial = "steel-1016-hot-rolled"\n'
+        '[strikers.ball]\nshape = "sphere"\nmaterial = "tungsten-carbide"\ntip_radius_m = 0.0025\n'
+        "[impact]\ndrop_height_m = 0.5\n"
+    )
+    assert run("impact", str(path)) == 2
+    lines = capsys.readouterr().err.splitlines()
+    assert len(lines) == 2
+    assert "target.material: 'steel-1016-hot-rolled' (allowed: steel-1" in lines[0]
+    assert "strikers.ball.material: 'tungsten-carbide' (allowed: tungsten-carbide-6co" in lines[1]
+
+
+def test_a_close_name_beside_its_own_numbers_stays():
+    given = {"material": "tungsten-carbide", "E_Pa": 6e11, "nu": 0.2}
+    assert filled(given, frozenset({"E_Pa", "nu", "density_kg_m3"})) == given

@@ -11,7 +11,7 @@ from dentscope.impact import Approach, Scene, Striker, strike
 from dentscope.impact.files.blow import blow_of
 from dentscope.impact.files.setup import setup_of
 from dentscope.impact.told.band import LAW, METALS, SWEPT, band_of, swept_stds
-from dentscope.impact.told.checks import reason_above_one, swept_above_one
+from dentscope.impact.told.checks import checks, reason_above_one, swept_above_one
 from dentscope.impact.told.onset import first_yield_speed, largest_mean_pressure
 from dentscope.models import LAWS
 
@@ -150,6 +150,13 @@ def test_the_checks_say_what_a_thin_plate_and_friction_do(brass):
     thin["target"]["thickness_m"] = 0.0002
     thinner = blow_of(setup_of(thin, source="a.toml"), [LAWS["fitted"]]).checks()
     assert any("NOT thick enough" in line for line in thinner)
+
+
+def test_a_contact_without_a_radius_is_not_what_a_plate_is_measured_by(brass):
+    """As a flat tip leaves it that does not sink in."""
+    untouched = replace(brass["fitted"], peak_depth_m=0.0, residual_flat_m=0.0)
+    told = checks(brass.setup, LAWS["fitted"], untouched)
+    assert not any("times the contact radius" in line for line in told)
 
 
 ASKED = {
