@@ -11,8 +11,8 @@ from .next_mark import TOLD
 def lines(metal: Metal) -> Iterator[str]:
     """Yield the finding: stresses, rate, what is not identified, the next mark."""
     of = "the flat" if metal.body == "target" else metal.body.removeprefix("strikers.")
-    numbers = [f"{metal.pressed} numbers of presses"] * bool(metal.pressed)
-    numbers += [f"{metal.struck} of impacts"] * bool(metal.struck)
+    counted = (("presses", metal.pressed), ("impacts", metal.struck))
+    numbers = [f"{n} numbers of {marks}" for marks, n in counted if n]
     low, high = (100.0 * x for x in metal.covered)
     yield (
         f"{metal.name}: flow curve of {of} from {' and '.join(numbers)}, at representative strains "
