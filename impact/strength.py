@@ -165,18 +165,19 @@ def _logs(law: ContactLaw, pairs: Sequence[Pair], depth: Array) -> Logs:
     part = np.divide(sphere, rest, out=np.full_like(rest, 0.5), where=rest > 0.0)
     part = np.clip(part, 1e-9, 1.0 - 1e-9)
     return Logs(
-        np.log(force), np.log(recovery), _real(depth, np.log(law.contact_radius(pairs, grid))),
+        np.log(force), np.log(recovery), _log_radius(depth, law.contact_radius(pairs, grid)),
         np.log(part / (1.0 - part)), np.log(power),
     )  # fmt: skip
 
 
-def _real(depth: Array, logs: Array) -> Array:
-    """Bridge depths at which a published formula has no real radius, for metals very soft."""
-    known = np.isfinite(logs)
+def _log_radius(depth: Array, radius: Array) -> Array:
+    """Bridge depths at which a published formula has no radius above 0, for metals very soft."""
+    known = radius > 0.0
     if known.all():
-        return logs
-    rows = zip(logs, known, strict=True)
-    return np.array([np.interp(np.log(depth), np.log(depth[k]), row[k]) for row, k in rows])
+        return np.log(radius)
+    x = np.log(depth)
+    rows = zip(radius, known, strict=True)
+    return np.array([np.interp(x, x[k], np.log(row[k])) for row, k in rows])
 
 
 def _stronger(pair: Pair, factor: float) -> Pair:

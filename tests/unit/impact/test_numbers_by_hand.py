@@ -295,12 +295,12 @@ def test_an_indentation_strains_at_two_fifths_of_v_over_a():
     assert found == pytest.approx(0.4 * 2.0 / table.radius[0] / 1000.0, rel=1e-6)
 
 
-def test_a_published_law_without_a_real_radius_over_some_depths_has_a_table() -> None:
-    """Two metals a millionth of their modulus strong: the formula's area is below 0 near first yield."""
+def test_a_published_law_without_a_radius_over_some_depths_has_a_table() -> None:
+    """Two metals a millionth of their modulus strong: below 0 by the formula near first yield."""
     pair = Pair(Material(E=7e10, nu=0.0008, Sy=7e4), Material(E=2e11, nu=3e-7, Sy=2e5), 2.3e-4)
     table = strength_table(LAWS["ghaednia"], pair)
     raw = np.asarray(LAWS["ghaednia"].contact_radius(pair, table.depth))
-    assert np.isnan(raw).any()
-    known = np.isfinite(raw)
+    known = raw > 0.0
+    assert not known.all()
     np.testing.assert_allclose(table.radius[known], raw[known], rtol=1e-12)
     assert np.isfinite(table.factors(np.full(len(table.depth), 1.5))).all()
