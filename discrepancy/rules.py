@@ -105,8 +105,8 @@ class DiagnosisRules:
         "less moves no probability that is printed",
     )  # fmt: skip
     sure: float = rule(
-        0.93, "probability of something missing from which a name costs less than silence [-]",
-        "the costs of a wrong name and of silence (`decide.COSTS`)",
+        0.91, "probability of something missing from which a name costs less than silence [-]",
+        "the costs of a false alarm and of silence (`decide.COSTS`)",
     )  # fmt: skip
     amplitudes: tuple[float, ...] = rule(
         (0.03, 0.1, 0.3), "departures that no law is behind, as logarithms [-]",

@@ -41,7 +41,7 @@ class Costs(NamedTuple):
         Each further explanation that a reader must keep in mind: 0.03 of a wrong name, so that
         what is true is among those named in 97 of a hundred.
     silence
-        `undetermined`.
+        `undetermined`: a name is said from a probability of 0.55 on where nothing else is like it.
     """
 
     miss: float = 1.0
@@ -49,7 +49,7 @@ class Costs(NamedTuple):
     wrong: float = 2.0
     half: float = 0.5
     more: float = 0.06
-    silence: float = 0.75
+    silence: float = 0.9
 
 
 COSTS = Costs()
@@ -108,7 +108,8 @@ def _cheapest(fits: Sequence[Fit], odds: Odds) -> Choice:
     }  # fmt: skip
     if odds.baseline >= RULES.adequate:
         options["adequate"] = COSTS.miss * (1.0 - odds.baseline)
-    if named:
+    # a name is said where it leads: several that together outweigh what does are no finding
+    if max(odds.probability, key=lambda k: odds.probability[k]) in named:
         options["named"] = cost_of_naming(named, odds)
     verdict = min(options, key=lambda k: options[k])
     if verdict == "undetermined":

@@ -49,7 +49,7 @@ def headline(v: Verdict) -> str:
     if v.verdict == OUTSIDE:
         return (
             "The simulation as described fails, and nothing that dentscope knows repairs it: the "
-            "cause is something else."
+            f"cause is something else (probability {percent(v.probabilities[OUTSIDE])})."
         )
     missing = 1.0 - v.probabilities["baseline"]
     sure = f"Something is missing ({percent(missing)}), but " if missing > SURE else ""

@@ -28,7 +28,7 @@ def test_priors_are_even_and_outside_is_a_tenth() -> None:
     assert PRIORS["outside-library"] == 0.1
     # 0.06/0.34 as for a second mechanism, of 0.1 beside the 0.34 that are single
     assert pytest.approx(0.06 / 0.34 * 0.1 / 0.44) == BESIDE
-    assert pytest.approx(math.log(0.93 / 0.07)) == NAMED_AT
+    assert pytest.approx(math.log(0.91 / 0.09)) == NAMED_AT
     assert shares_outside(2, 1) == pytest.approx((0.5, 1.0 / 6.0, 1.0 / 6.0))
 
 
