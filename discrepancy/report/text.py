@@ -34,7 +34,10 @@ def headline(v: Verdict) -> str:
         what = joined([f"{title_of(m, v.titles)} ({m})" for m in v.mechanisms])
         sure = joined([percent(part.get(m, 0.0)) for m in v.mechanisms])
         each = " each" if len(v.mechanisms) > 1 else ""
-        return f"The simulation lacks this: {what}; probability that it takes part{each}: {sure}."
+        lacks = "lacks this"
+        if max(v.probabilities.values()) < RULES.adequate:
+            lacks = "most likely lacks this"
+        return f"The simulation {lacks}: {what}; probability that it takes part{each}: {sure}."
     if v.verdict == "indistinguishable":
         rival = joined(
             [explanation("+".join(a), v.titles) for a in (v.mechanisms, *v.alternatives)],

@@ -112,6 +112,16 @@ def test_a_mechanism_of_ones_own_is_told_in_its_own_words() -> None:
     assert "a tape holds the tip back or the metal hardens as it is deformed." in headline(v)
 
 
+def test_a_name_of_less_than_seven_tenths_is_the_most_likely() -> None:
+    v = said("missing-physics", 0.002, Located((), (), 3.0))
+    v.probabilities = {"work-hardening": 0.58, "outside-library": 0.418, "baseline": 0.002}
+    v.mechanisms, v.inclusion = ("work-hardening",), {"work-hardening": 0.58}
+    assert headline(v) == (
+        "The simulation most likely lacks this: the metal hardens as it is deformed "
+        "(work-hardening); probability that it takes part: 58 %."
+    )
+
+
 def test_why_is_three_sentences_with_the_rivals_of_a_name() -> None:
     seen = Located((miss(6.0),), (), 3.0)
     v = said("missing-physics", 0.1, seen)
