@@ -70,7 +70,7 @@ def _from_file(path: Path, names: list[str], out: Path, *, exact: bool) -> None:
     from ..impact.files.blow import blow_of
     from ..impact.files.setup import read_setup
     from ..impact.files.tables import write_csv, write_hdf5
-    from ..impact.told.draw import draw_histories
+    from ..impact.told.picture import draw_blow
 
     console = new_console()
     setup = read_setup(path)
@@ -90,7 +90,7 @@ def _from_file(path: Path, names: list[str], out: Path, *, exact: bool) -> None:
         say(line)
     write_csv(out / f"{path.stem}.csv", blow.written(exact=exact))
     write_hdf5(out / f"{path.stem}.h5", traces, about=setup.about)
-    draw_histories(list(traces.items()), out / f"{path.stem}.png", doubts=blow.doubts)
+    draw_blow(blow, out / f"{path.stem}.png", exact=exact)
     written = [out / f"{path.stem}{end}" for end in (".csv", ".h5", ".png")]
     unfinished = 0
     if setup.sweep.count:

@@ -29,7 +29,6 @@ from ..result import Impact
 from ..rules import RULES
 from ..told.band import PRESSURE, Band, band_of, idle
 from ..told.checks import checks, reason_above_one
-from ..told.draw import histories
 from ..told.onset import largest_mean_pressure
 from .setup import DEFAULT_LAWS, FOLLOWING, Setup, read_setup, setup_of
 from .tables import EXACT, SHOWN, impact_row
@@ -174,8 +173,10 @@ class Blow:
         return frame(self.rows)
 
     def plot(self) -> Figure:
-        """Return force over depth, and what moves against time."""
-        return histories(list(self.traces.items()), doubts=self.doubts)
+        """Return the rig and what stays, to scale, force over depth, and what moves over time."""
+        from ..told.picture import picture  # the published craters: not before they are drawn
+
+        return picture(self)
 
     def __repr__(self) -> str:
         return "\n".join([

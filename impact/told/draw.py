@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import math
 from collections.abc import Mapping, Sequence
-from itertools import cycle
 from pathlib import Path
 from types import MappingProxyType
 from typing import Any
@@ -16,20 +15,8 @@ from matplotlib.figure import Figure
 from ...core.observables import OBSERVABLES
 from ...core.output import write_figure
 from ..columns import Impacts
-from ..integrate import Trace
 from ..inverse import alpha_curve
 from ..scene import Striker
-
-LOOP = ("penetration_m", "depth [um]", 1e6, "normal_force_N", "normal force [kN]", 1e-3)
-AGAINST_TIME = (
-    ("tip_height_m", "tip height [um]", 1e6, 1e-9),
-    ("normal_force_N", "normal force [kN]", 1e-3, 0.0),
-    ("normal_velocity_m_s", "normal velocity [m/s]", 1.0, 0.0),
-    ("slip_m", "tangential displacement [um]", 1e6, 1e-9),
-    ("sliding_velocity_m_s", "tangential velocity [m/s]", 1.0, 1e-9),
-    ("spin_rad_s", "spin [rad/s]", 1.0, 1e-6),
-)
-"""Column, axis, scale, and what counts as nothing at all [SI]."""
 
 SWEPT = (
     "restitution", "permanent_depth_m", "contact_time_s", "peak_force_N", "rebound_spin_rad_s",
@@ -37,8 +24,6 @@ SWEPT = (
 )  # fmt: skip
 """Observables that the picture of a sweep shows, where they are anything."""
 
-
-NO_DOUBTS: Mapping[str, str] = MappingProxyType({})
 
 CONDITIONS = {
     "impact_speed_m_s": "impact speed [m/s]", "drop_height_m": "drop height [m]",
@@ -56,7 +41,7 @@ def figure(rows: int, columns: int, *, size: tuple[float, float]) -> tuple[Figur
     return made, made.subplots(rows, columns, squeeze=False)
 
 
-def _panels(count: int) -> tuple[Figure, list[Any]]:
+def panels(count: int) -> tuple[Figure, list[Any]]:
     """Return a figure of `count` panels and no empty one, two or three a row."""
     columns = 2 if count in (2, 4) else min(count, 3)
     rows = math.ceil(count / columns)
@@ -64,49 +49,6 @@ def _panels(count: int) -> tuple[Figure, list[Any]]:
     for spare in axes.flat[count:]:
         spare.remove()
     return made, list(axes.flat[:count])
-
-
-def draw_histories(
-    traces: Sequence[tuple[str, Trace]], path: Path, *, doubts: Mapping[str, str] = NO_DOUBTS
-) -> None:
-    """Write the picture of `histories`."""
-    save(histories(traces, doubts=doubts), path)
-
-
-def histories(
-    traces: Sequence[tuple[str, Trace]], *, doubts: Mapping[str, str] = NO_DOUBTS
-) -> Figure:
-    """Return force over depth, and against time whatever moves at all, a curve a law.
-
-    `doubts` is what speaks against a law at this depth, by its name: it is drawn grey and broken,
-    each in its own way.
-    """
-    shown = [
-        panel
-        for panel in AGAINST_TIME
-        if any(np.ptp(trace.column(panel[0])) > panel[3] for _, trace in traces)
-    ]
-    made, axes = _panels(1 + len(shown))
-    depth, depth_label, depth_scale, force, force_label, force_scale = LOOP
-    breaks = cycle(("--", ":", "-."))
-    for law, trace in traces:
-        style: dict[str, Any] = {}
-        if law in doubts:
-            style = {"color": "0.65", "ls": next(breaks), "zorder": 1}
-        label = f"{law}: {doubts[law]}" if law in doubts else law
-        axes[0].plot(
-            depth_scale * trace.column(depth), force_scale * trace.column(force), label=label,
-            **style,
-        )  # fmt: skip
-        for axis, (name, _, scale, _) in zip(axes[1:], shown, strict=True):
-            axis.plot(1e3 * trace.column("time_s"), scale * trace.column(name), **style)
-    axes[0].set(xlabel=depth_label, ylabel=force_label)
-    for axis, (_, label, _, _) in zip(axes[1:], shown, strict=True):
-        axis.set(xlabel="time [ms]", ylabel=label)
-    for axis in axes:
-        axis.grid(alpha=0.3)
-    axes[0].legend(fontsize=7)
-    return made
 
 
 def draw_sweep(
@@ -127,7 +69,7 @@ def draw_sweep(
         for name in SWEPT
         if any(np.nanmax(np.abs(found[name][rows]), initial=0.0) > 0.0 for found in curves.values())
     ]
-    made, axes = _panels(len(shown))
+    made, axes = panels(len(shown))
     first = next(iter(curves.values()))
     scale = "log" if _by_ratio(swept[across]) else "linear"
     for axis, name in zip(axes, shown, strict=True):

@@ -1,0 +1,127 @@
+"""The surface that a blow leaves of each body, over the surface that was."""
+
+from __future__ import annotations
+
+import math
+import warnings
+from collections.abc import Callable
+from typing import NamedTuple
+
+import numpy as np
+
+from ...core.arrays import Array
+from ...core.errors import InputError
+from ...fitting.craters import PLACES, Body, Left, crater_shape
+from ...models.base import DomainWarning
+from ..result import Impact
+from ..scene import Scene
+from ..surface import Imprint
+from .beside import beside_fitted
+
+
+class LeftSurface(NamedTuple):
+    """What stays in one body.
+
+    Parameters
+    ----------
+    body
+        The tip, `sphere`, or what is struck, `flat`; also where that is a second sphere.
+    place
+        (n,) along the motion from the deepest place [m].
+    height, std
+        (n,) over the surface that was [m], below 0 where it is pressed in.
+    radius
+        Of the contact at its deepest [m].
+    depth
+        What stays at the deepest place [m].
+    shaped
+        Whether the shape between is known: else the surface is given at its deepest alone.
+    """
+
+    body: Body
+    place: Array
+    height: Array
+    std: Array
+    radius: float
+    depth: float
+    shaped: bool
+
+
+def surfaces_left(
+    scene: Scene, found: Impact, std: Callable[[str], float] | None
+) -> list[LeftSurface]:
+    """Return the surfaces that a blow leaves; none of a body that keeps nothing.
+
+    Along a scar the walls of a crater are drawn out to its ends. The shape of a contact that ends
+    at an edge, or that is like no published one, is not known.
+
+    Parameters
+    ----------
+    scene
+        The blow.
+    found
+        What came of it.
+    std
+        Standard deviation of a field of `Impact` by its name; none: no error is told.
+    """
+    marks = found.spot.imprints
+    mark = max(marks, key=lambda one: one.peak, default=None)
+    peak = found.spot.tip_peak if mark is None else mark.peak
+    if not peak > 0.0 or not found.residual_m > 0.0:
+        return []
+    radius = float(scene.law.contact_radius(scene.pair, peak)) if mark is None else mark.radius
+    edged = scene.striker.tip_flat_radius > 0.0 or radius > scene.force.edge
+    left = Left(radius, peak, found.residual_sphere_m, found.residual_flat_m)
+    bodies: tuple[tuple[Body, str], ...] = (
+        ("flat", "residual_flat_m"), ("sphere", "residual_sphere_m"),
+    )  # fmt: skip
+    shared = 0.0 if std is None else peak * _share_std(scene, peak)
+    return [
+        _surface(
+            scene, left, body, mark if body == "flat" else None,
+            None if std is None else math.hypot(std(name), shared), edged=edged,
+        )
+        for body, name in bodies
+        if left.of(body) > 0.0
+    ]  # fmt: skip
+
+
+def _share_std(scene: Scene, depth: float) -> float:
+    """How far off the law may part the approach between the bodies, so what stays in each."""
+    at = scene.pair, np.array([depth])
+    with warnings.catch_warnings(), np.errstate(all="ignore"):
+        warnings.simplefilter("ignore", DomainWarning)  # the doubt about a law has its own line
+        try:
+            found = scene.law.uncertainty(*at)
+        except InputError:  # a published law
+            found = beside_fitted(scene.law, *at)
+    return float(np.nan_to_num(found.share[0]))
+
+
+def _surface(
+    scene: Scene,
+    left: Left,
+    body: Body,
+    mark: Imprint | None,
+    std: float | None,
+    *,
+    edged: bool,
+) -> LeftSurface:
+    depth = left.of(body)
+    shape = None if edged else crater_shape(scene.pair, left, body)
+    if shape is None or not shape.near:
+        place = np.array([-left.radius, left.radius])
+        off = np.full(2, std or 0.0)
+        return LeftSurface(body, place, np.full(2, -depth), off, left.radius, depth, shaped=False)
+    before, after = (left.radius, left.radius)
+    start = end = 0.0
+    if mark is not None:
+        before, after = mark.start - mark.first, mark.last - mark.end
+        start, end = mark.start - mark.deepest, mark.end - mark.deepest
+    place = np.concatenate([start - before * PLACES[::-1], end + after * PLACES])
+    height, own = (np.concatenate([x[::-1], x]) for x in (shape.height, shape.std))
+    off = np.zeros_like(height) if std is None else np.hypot(std * height, depth * own)
+    return LeftSurface(
+        body, place, depth * height, off, left.radius, depth,
+        shaped=True,
+    )  # fmt: skip

@@ -1,0 +1,137 @@
+"""The picture of a blow: rig and dent to scale, words on every axis, no empty panel."""
+
+import tomllib
+
+import numpy as np
+import pytest
+from dentscope.fitting.craters import crater_shape
+from dentscope.impact.files.blow import blow_of
+from dentscope.impact.files.setup import setup_of
+from dentscope.impact.told.crater import surfaces_left
+from dentscope.impact.told.picture import picture
+from dentscope.impact.told.rig_shape import rig_shape
+from dentscope.models import LAWS
+
+BALL = """
+[target]
+E_Pa = 2.0e11
+nu = 0.3
+Sy_Pa = 3.05e8
+density_kg_m3 = 7870
+thickness_m = 0.004
+[strikers.ball]
+shape = "sphere"
+tip_radius_m = 0.005
+E_Pa = 2.0e11
+nu = 0.3
+Sy_Pa = 1.7e9
+density_kg_m3 = 7800
+[impact]
+impact_speed_m_s = 3.0
+"""
+EQUAL = BALL.replace("1.7e9", "3.05e8")
+KINDS = {
+    "ball": (BALL, 6, ["flat"]),
+    "both keep a dent": (EQUAL, 6, ["flat", "sphere"]),
+    "elastic": (BALL.replace("Sy_Pa = 3.05e8\n", "").replace("Sy_Pa = 1.7e9\n", ""), 5, []),
+    "rigid ball": (BALL.replace("E_Pa = 2.0e11\nnu = 0.3\nSy_Pa = 1.7e9", "rigid = true"), 6,
+                   ["flat"]),
+    "second sphere": (BALL.replace("thickness_m = 0.004",
+                                   'shape = "sphere"\nradius_m = 0.01\nmass_kg = 0.03296'), 6,
+                      ["flat"]),
+    "seat": (BALL.replace("thickness_m = 0.004", 'shape = "sphere"\nradius_m = -0.012'), 6,
+             ["flat"]),
+    "rod": (BALL.replace('shape = "sphere"', 'shape = "rod"\nradius_m = 0.005\nlength_m = 0.1\n'
+                         'mass_kg = 0.06') + "angle_deg = 45\n[friction]\ncoefficient = 0.2\n", 9,
+            ["flat"]),
+}  # fmt: skip
+
+
+def blow(text, law="fitted"):
+    return blow_of(setup_of(tomllib.loads(text), source="blow.toml"), [LAWS[law]])
+
+
+@pytest.mark.parametrize(("text", "panels", "left"), KINDS.values(), ids=KINDS)
+def test_every_panel_has_words_and_something_in_it(text, panels, left):
+    found = blow(text)
+    made = picture(found)
+    assert len(made.axes) == panels
+    for axis in made.axes:
+        assert "[" in axis.get_xlabel()
+        assert "[" in axis.get_ylabel()
+        assert axis.get_lines() or axis.patches
+    rig, crater = made.axes[:2]
+    assert rig.get_title().startswith("to scale\n")
+    assert rig.get_aspect() == 1.0
+    assert ("times too large" in crater.get_title()) == bool(left)
+    scene, impact = found.setup.scene(LAWS["fitted"]), found["fitted"]
+    surfaces = surfaces_left(scene, impact, found.bands["fitted"].std)
+    assert [s.body for s in surfaces] == left
+    for s in surfaces:
+        stays = impact.residual_flat_m if s.body == "flat" else impact.residual_sphere_m
+        assert s.height.min() == pytest.approx(-stays, rel=1e-3)
+        assert s.shaped
+
+
+def test_heights_are_stretched_as_the_title_says():
+    crater = picture(blow(BALL)).axes[1]
+    (times,) = (float(w) for w in crater.get_title().split() if w.replace(".", "").isdigit())
+    # micrometres up, millimetres or micrometres along
+    along = 1e-3 if "[mm]" in crater.get_xlabel() else 1e-6
+    assert crater.get_aspect() == pytest.approx(times * 1e-6 / along)
+
+
+def test_a_crater_has_the_band_of_its_depth_and_none_without_errors():
+    found = blow(BALL)
+    scene, impact = found.setup.scene(LAWS["fitted"]), found["fitted"]
+    (sure,), (band,) = (
+        surfaces_left(scene, impact, std) for std in (None, found.bands["fitted"].std)
+    )
+    middle = len(band.height) // 2
+    assert not sure.std.any()
+    assert band.std[middle] >= found.bands["fitted"].std("residual_flat_m")
+    assert np.array_equal(sure.height, band.height)
+    shape = crater_shape(scene.pair, _left(impact, sure), "flat")
+    assert -sure.height[middle:] / impact.residual_flat_m == pytest.approx(-shape.height)
+
+
+def _left(impact, surface):
+    from dentscope.fitting.craters import Left
+
+    peak = impact.spot.imprints[0].peak
+    return Left(surface.radius, peak, impact.residual_sphere_m, impact.residual_flat_m)
+
+
+def test_a_scar_is_as_long_as_its_walls_reach():
+    found = blow(KINDS["rod"][0])
+    scene, impact = found.setup.scene(LAWS["fitted"]), found["fitted"]
+    (scar,) = surfaces_left(scene, impact, None)
+    mark = max(impact.spot.imprints, key=lambda one: one.peak)
+    wall = np.array([mark.first, mark.last]) - mark.deepest
+    inside = scar.place[scar.height < 0.0]
+    assert wall[0] < inside[0] < 0.0 < inside[-1] < wall[1]
+    assert inside[-1] - inside[0] > 1.6 * scar.radius
+
+
+def test_a_tip_that_ends_at_its_edge_has_a_depth_and_no_shape():
+    text = KINDS["rod"][0].replace("angle_deg = 45", "angle_deg = 90").replace(
+        "mass_kg = 0.06", "mass_kg = 0.06\ntip_flat_radius_m = 1e-4"
+    )  # fmt: skip
+    found = blow(text)
+    (left,) = surfaces_left(found.setup.scene(LAWS["fitted"]), found["fitted"], None)
+    assert not left.shaped
+    assert left.height == pytest.approx(-found["fitted"].residual_flat_m)
+    (label,) = picture(found).axes[1].get_legend_handles_labels()[1]
+    assert label.endswith("its shape is not known")
+
+
+@pytest.mark.parametrize("kind", ["ball", "second sphere", "seat", "rod"])
+def test_outlines_touch_at_the_origin_and_nowhere_overlap(kind):
+    setup = setup_of(tomllib.loads(KINDS[kind][0]), source="rig.toml")
+    rig = rig_shape(setup, np.zeros(0), np.zeros(0))
+    assert rig.striker[:, 1].min() == pytest.approx(0.0, abs=1e-5)
+    beside = np.abs(rig.striker[:, 0]) < 4e-3
+    top = rig.struck[: len(rig.struck) // 2] if kind == "seat" else rig.struck
+    order = np.argsort(top[:, 0])
+    below = np.interp(rig.striker[beside, 0], top[order, 0], top[order, 1])
+    assert np.all(rig.striker[beside, 1] >= below - 1e-5)
