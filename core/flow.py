@@ -7,6 +7,7 @@ ways to write one. The finite elements solve with it; laws in closed form take t
 
 from __future__ import annotations
 
+import sys
 from collections.abc import Callable
 from dataclasses import asdict, dataclass
 from typing import Any, Literal
@@ -102,6 +103,10 @@ def tabulated(strain: Array, stress: Array) -> FlowCurve:
     return FlowCurve(*rows, slope=tuple(map(float, slope)))
 
 
+_LEAST = sys.float_info.min
+"""The least number whose inverse is one too."""
+
+
 def swift(*, Sy: float, K: float, n: float) -> FlowCurve:
     """Swift's law K (e0 + p)^n, e0 = (Sy/K)^(1/n) (J. Mech. Phys. Solids 1 (1952) 1)."""
     start = (Sy / K) ** (1.0 / n)
@@ -111,7 +116,7 @@ def swift(*, Sy: float, K: float, n: float) -> FlowCurve:
     return _written(
         lambda p: np.maximum(K * (start + p) ** n, Sy),
         lambda p: n * K * (start + p) ** (n - 1.0),
-        first=min(n * K * start ** (n - 1.0), steepest) if start else steepest,
+        first=min(n * K * start ** (n - 1.0), steepest) if start > _LEAST else steepest,
     )
 
 

@@ -6,7 +6,7 @@ import math
 
 import numpy as np
 import pytest
-from dentscope.core.flow import voce
+from dentscope.core.flow import swift, voce
 from dentscope.core.inputs.flow_curve import MeasuredFlow
 from dentscope.core.rig import Quantity, TargetTable
 
@@ -55,3 +55,13 @@ def test_two_specimens_of_a_metal_differ_by_a_tenth() -> None:
         [(1000.0, 1.0)], np.array(math.expm1(0.07 * math.sqrt(2.0))), np.array(0.0)
     )
     assert float(found) == pytest.approx(1.0)
+
+
+def test_an_exponent_that_takes_the_first_strain_to_nothing_begins_as_steep_as_a_cubic_may() -> (
+    None
+):
+    """e0 = (1000/1500)^(1/0.000558) is 3e-316, which has no inverse."""
+    curve = swift(Sy=1000.0, K=1500.0, n=5.580983873792373e-4)
+    rise = curve.stress[1] - curve.stress[0]
+    assert curve.slope[0] == pytest.approx(3.0 * rise / curve.strain[1], rel=1e-9)
+    assert np.isfinite(curve.slope).all()
