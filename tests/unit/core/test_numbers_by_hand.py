@@ -57,9 +57,7 @@ def test_two_specimens_of_a_metal_differ_by_a_tenth() -> None:
     assert float(found) == pytest.approx(1.0)
 
 
-def test_an_exponent_that_takes_the_first_strain_to_nothing_begins_as_steep_as_a_cubic_may() -> (
-    None
-):
+def test_a_first_strain_of_nothing_begins_as_steep_as_a_cubic_may() -> None:
     """e0 = (1000/1500)^(1/0.000558) is 3e-316, which has no inverse."""
     curve = swift(Sy=1000.0, K=1500.0, n=5.580983873792373e-4)
     rise = curve.stress[1] - curve.stress[0]
