@@ -19,6 +19,7 @@ from ...core.errors import InputError, InputErrors
 from ...core.inputs.input_file import checked_file
 from ...core.processes.confined import confined
 from ...recordings.columns import MEASURED
+from ..bounces.options import GRAVITY
 from ..measured import Measured, Trial
 from ..reduced import Reduced
 from ..rules import RULES
@@ -68,7 +69,7 @@ _KINDS = (
           rf"^(v|speed|velocity|geschwindigkeit|vitesse|velocita|velocidad){_IN}$"),
     _Kind("dent_diameter_m", "length",
           r"(dent|crater|indent|imprint|impression|eindruck|krater|delle|empreinte|impronta|huella)"
-          r".*(diam|durchm|dm\b|wid|breit)|durchmesser (des|der) (eindruck|krater|delle)|"
+          r".*(diam|durchm|ø|⌀|dm\b|wid|breit)|durchmesser (des|der) (eindruck|krater|delle)|"
           r"diametr?[eo]? .*(empreinte|impronta|huella)"),
     _Kind("permanent_depth_m", "length",
           r"(dent|crater|indent|residual|permanent|eindruck|krater|delle).*(depth|tiefe)|"
@@ -89,6 +90,12 @@ _CELL = re.compile(r"(?P<number>[+-]?[\d.,'’  ]*\d(?:[eE][+-]?\d+)?)\s*(?P<uni
 _GROUPED = re.compile(r"[+-]?[1-9]\d{0,2}([.,]\d{3})+")
 """What may be thousands or a number with three decimals: 1.000."""
 _DECIMAL = re.compile(r"[+-]?\d+([.,])(\d{1,2}|\d{4,})(?!\d)|[+-]?0([.,])\d+")
+_SUMMARY = re.compile(
+    r"(mean|average|avg|median|std|s\.?d|standard ?dev\w*|minimum|maximum|min|max|sum|total|"
+    r"mittel|mittelwert|mw|stdabw|standardabw\w*|streuung|summe|moyenne|ecart[- ]?type|media|"
+    r"promedio|desviacion\w*|deviazione\w*)( (value|wert)| \(.*\))?"
+)
+"""A row that says something of other rows."""
 _CELSIUS, _ICE = ("°C", "C", "degC"), 273.15
 
 
@@ -160,9 +167,24 @@ def read_sheet(path: Path, *, sheet: str = "") -> Sheet:
     if path.suffix.lower() in BOOKS:
         rows = confined(workbook_rows, path, sheet, source=str(path))
     else:
-        _, rows = cells_of(text_lines(path.read_bytes(), str(path)), str(path))
+        rows = _cells(text_lines(path.read_bytes(), str(path)), str(path))
     top, columns, told = _headers(rows, str(path))
     return _trials(rows, top, columns, told, str(path))
+
+
+def _cells(lines: Sequence[str], source: str) -> list[list[str]]:
+    """Cells of a text table; units in the cells hide its separator from a guess by numbers."""
+    _, rows = cells_of(lines, source)
+    for separator in (";", "\t", ","):
+        if max(_understood(rows), default=0) < 2:
+            _, rows = cells_of(lines, source, separator=separator)
+    return rows
+
+
+def _understood(rows: Sequence[Sequence[str]]) -> list[int]:
+    """How many headers are understood in each of the first rows, below their titles."""
+    heads = (_under_titles(rows, k) for k in range(len(rows[:40])))
+    return [sum(_kind_of(cell) is not None for cell in head) for head in heads]
 
 
 def _bare(text: str) -> str:
@@ -180,14 +202,14 @@ def _headers(
     rows: Sequence[Sequence[str]], source: str
 ) -> tuple[int, list[_Column], list[tuple[str, str]]]:
     """The first row below the headers, the columns that are understood, and the others."""
-    known = [sum(_kind_of(cell) is not None for cell in row) for row in rows[:40]]
+    known = _understood(rows)
     best = max(range(len(known)), key=lambda k: known[k], default=0)
     if not known or known[best] < 2:
         raise InputError(
             "no row of headers is understood", source=source,
             allowed="columns such as drop height (cm), rebound height (mm), dent diameter (mm)",
         )  # fmt: skip
-    head, top = list(rows[best]), best + 1
+    head, top = _under_titles(rows, best), best + 1
     below = list(rows[top]) if top < len(rows) else []
     filled = [cell for cell in below if cell]
     if filled and all(is_unit(cell) or cell.strip("()[] ") in _CELSIUS for cell in filled):
@@ -197,7 +219,7 @@ def _headers(
     told = [
         (" ".join(filter(None, row)), f"row {k}, left out: above the headers")
         for k, row in enumerate(rows[:best], start=1)
-        if any(row)
+        if any(row) and (k < best or head == list(rows[best]))
     ]
     for place, header in enumerate(head):
         kind = _kind_of(header)
@@ -207,6 +229,23 @@ def _headers(
             continue
         columns.append(_Column(place, header, kind, _unit(header, kind)))
     return top, columns, told
+
+
+def _under_titles(rows: Sequence[Sequence[str]], best: int) -> list[str]:
+    """The row of headers, each below the title of its columns where the row above holds titles."""
+    head = list(rows[best])
+    above = list(rows[best - 1])[: len(head)] if best else []
+    if sum(map(bool, above)) < 2 or any(map(is_unit, filter(None, above))):
+        return head
+    title = ""
+    for k, own in enumerate([*above, *[""] * (len(head) - len(above))]):
+        title = own or title
+        joined = f"{title} {head[k]}"
+        # a title that spans several columns stands over the first of them alone
+        alone = not own and _kind_of(head[k]) is not None
+        if head[k] and title and not alone and _kind_of(joined) is not None:
+            head[k] = joined
+    return head
 
 
 def _unit(header: str, kind: _Kind) -> str | None:
@@ -227,14 +266,19 @@ def _trials(
     trials: list[Trial] = []
     last: dict[str, float] = {}
     from_above: list[str] = []
+    across: list[str] = []
     decimals = _decimals(rows[top:], columns)
     for k, row in enumerate(rows[top:], start=top + 1):
         if not any(row):
             continue
+        if summary := _summary(row, columns):
+            left.append(f"row {k}: left out, {summary!r} sums up other rows")
+            continue
         found, note, unread = _read(row, k, columns, decimals, left)
-        for name in _APPROACH:
-            if name in found:
-                last = {name: found[name][0]}
+        if not found and not unread:
+            left.append(f"row {k}: left out: {' '.join(filter(None, row))}")
+            continue
+        last = {name: found[name][0] for name in _APPROACH if name in found} or last
         if unread and not any(name in found for name in _APPROACH):
             left.append(f"row {k}: left out, its drop height or speed is not read")
             continue
@@ -247,6 +291,7 @@ def _trials(
             continue
         from_above += [] if stated else [str(k)]
         trials += _of_row(found, last, note, k)
+        across += [str(k)] if _crosses(found, last) else []
     wrong = tuple(
         InputError(
             "the header names no unit", source=source, key=c.header,
@@ -264,8 +309,17 @@ def _trials(
         )  # fmt: skip
     if from_above:
         left.append(f"row {', '.join(from_above)}: the approach is that of the row above")
+    if across:
+        left.append(f"row {', '.join(across)}: restitution with v^2 = 2 g h, g = {GRAVITY} m/s^2")
     told = [(c.header, _became(c)) for c in columns] + told
     return Sheet(tuple(trials), tuple(told), tuple(left))
+
+
+def _summary(row: Sequence[str], columns: Sequence[_Column]) -> str:
+    """The cell that says that a row sums up others; a note may say of itself what it likes."""
+    notes = {c.place for c in columns if c.kind.name == "note"}
+    cells = (cell for place, cell in enumerate(row) if place not in notes)
+    return next((c for c in cells if _SUMMARY.fullmatch(_bare(c).strip(" .:"))), "")
 
 
 def _read(
@@ -350,18 +404,29 @@ def _of_row(
     found: dict[str, list[float]], last: dict[str, float], note: str, row: int
 ) -> Iterator[Trial]:
     """Yield the trials of one row: one, or as many as there are repeats."""
-    approach, at = next(iter(last.items()))
     common = {
         k: Measured(v[0], 0.0) for k, v in found.items() if k in ("temperature_K", "angle_deg")
     }
     measured = {k: list(v) for k, v in found.items() if k not in common and k not in last}
-    if approach == "drop_height_m" and REBOUND_HEIGHT in measured:
-        measured["restitution"] = [math.sqrt(h / at) for h in measured.pop(REBOUND_HEIGHT)]
-    if approach == "impact_speed_m_s" and REBOUND_SPEED in measured:
-        measured["restitution"] = [v / at for v in measured.pop(REBOUND_SPEED)]
-    for name in (REBOUND_HEIGHT, REBOUND_SPEED):
-        measured.pop(name, None)
+    fallen, speed = (last.get(name) for name in _APPROACH)
+    heights, speeds = measured.pop(REBOUND_HEIGHT, []), measured.pop(REBOUND_SPEED, [])
+    # like over like; v^2 = 2 g h where the sheet has but the other
+    h = fallen if fallen is not None else (speed or 0.0) ** 2 / (2.0 * GRAVITY)
+    v = speed if speed is not None else math.sqrt(2.0 * GRAVITY * h)
+    back = [math.sqrt(x / h) for x in heights if x >= 0.0 and h > 0.0]
+    back += [x / v for x in speeds if v > 0.0]
+    if back:
+        measured["restitution"] = measured.get("restitution", []) + back
     for k in range(max(map(len, measured.values()), default=0)):
         seen = {n: Measured(v[k], 0.0) for n, v in measured.items() if k < len(v)}
         label = f"{row:03d}" if max(map(len, measured.values())) == 1 else f"{row:03d}-{k + 1}"
-        yield Trial({approach: Measured(at, 0.0), **common, **seen}, label=label, note=note)
+        approach = {name: Measured(x, 0.0) for name, x in last.items()}
+        yield Trial({**approach, **common, **seen}, label=label, note=note)
+
+
+def _crosses(found: dict[str, list[float]], last: dict[str, float]) -> bool:
+    """Whether a rebound is told by height and the approach by speed, or the other way about."""
+    fallen, speed = _APPROACH
+    return (REBOUND_HEIGHT in found and fallen not in last) or (
+        REBOUND_SPEED in found and speed not in last
+    )

@@ -143,3 +143,58 @@ def test_a_speed_by_its_bare_name_is_that_of_the_approach(tmp_path, header):
     (trial,) = read_sheet(file).trials
     assert trial.observables["impact_speed_m_s"].value == 2.0
     assert trial.observables["dent_diameter_m"].value == pytest.approx(1.5e-3)
+
+
+def read_text(tmp_path, text):
+    file = tmp_path / "a.csv"
+    file.write_text(text, encoding="utf-8")
+    return read_sheet(file)
+
+
+def restitutions(sheet):
+    return [t.observables["restitution"].value for t in sheet.trials]
+
+
+def test_a_rebound_is_read_beside_the_other_kind_of_approach(tmp_path):
+    """v^2 = 2 g h, and it is told; like over like where the row has both."""
+    sheet = read_text(tmp_path, "v [m/s];Rückprallhöhe [mm];Kratertiefe [um]\n2,0;90;10\n")
+    assert restitutions(sheet) == pytest.approx([math.sqrt(2 * 9.81 * 0.09) / 2.0])
+    assert "row 2: restitution with v^2 = 2 g h, g = 9.81 m/s^2" in sheet.left_out
+    sheet = read_text(tmp_path, "Fallhöhe [m];rebound velocity [m/s]\n0,5;2,0\n1,0;2,7\n")
+    assert restitutions(sheet) == pytest.approx([2 / math.sqrt(9.81), 2.7 / math.sqrt(19.62)])
+    both = "drop height (mm),impact speed (m/s),rebound height (mm)\n204,1.9,80\n459,3.0,160\n"
+    sheet = read_text(tmp_path, both)
+    assert restitutions(sheet) == pytest.approx([math.sqrt(80 / 204), math.sqrt(160 / 459)])
+    assert value(sheet, 0, "impact_speed_m_s") == 1.9
+    assert value(sheet, 0, "drop_height_m") == pytest.approx(0.204)
+    assert not sheet.left_out
+
+
+@pytest.mark.parametrize("word", ["mean", "SD", "Mittelwert", "Stdabw.", "Average (n = 2)", "Max"])
+def test_a_row_that_sums_up_others_is_no_trial(tmp_path, word):
+    text = f"Nr.;Fallhöhe (cm);Stoßzahl;Bemerkung\n1;50;0,61;Mittel\n2;50;0,60;\n{word};50;0,605;\n"
+    sheet = read_text(tmp_path, text)
+    assert restitutions(sheet) == [0.61, 0.6]
+    assert f"row 4: left out, {word!r} sums up other rows" in sheet.left_out
+
+
+def test_headers_in_two_rows_are_read_with_their_titles(tmp_path):
+    """Heights below a title of the rebound are no drop heights."""
+    head = "Versuch;Fallhöhe;Rückprall;Eindruck;\nNr.;in cm;Höhe in mm;Ø in mm;Tiefe in µm\n"
+    sheet = read_text(tmp_path, f"{head}1;10;43;0,61;9,5\n2;20;84;0,7;\n")
+    assert heights(sheet) == pytest.approx([0.1, 0.2])
+    assert restitutions(sheet) == pytest.approx([math.sqrt(0.43), math.sqrt(0.42)])
+    assert value(sheet, 0, "dent_diameter_m") == pytest.approx(6.1e-4)
+    assert value(sheet, 0, "permanent_depth_m") == pytest.approx(9.5e-6)
+    assert columns(sheet)["Eindruck Tiefe in µm"] == "permanent_depth_m (1 cells)"
+
+
+def test_a_row_of_words_is_told_with_its_words(tmp_path):
+    sheet = read_text(tmp_path, "Fallhöhe (cm);Stoßzahl\n50;0,61\nKugel 20 mm;\n50;0,6\n")
+    assert any("Kugel 20 mm" in line for line in sheet.left_out)
+
+
+def test_units_in_every_cell_hide_no_separator(tmp_path):
+    sheet = read_text(tmp_path, "Fallhöhe;Rückprallhöhe\n50 cm;21 cm\n1 m;0,40 m\n")
+    assert heights(sheet) == [0.5, 1.0]
+    assert restitutions(sheet) == pytest.approx([math.sqrt(0.42), math.sqrt(0.4)])
