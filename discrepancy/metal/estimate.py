@@ -33,7 +33,7 @@ from ..experiments.feasible import BENCH
 from ..inference.derivatives import measured_covariance
 from ..rules import RULES
 from ..unknowns.lawerror import SIZES
-from .flow import STRAINS, FlowCurveOfMarks, curve_values
+from .flow import STRAINS, FlowCurveOfMarks, curve_values, weights
 from .next_mark import TOLD, NextMark, next_mark, with_marks
 
 MARKS = ("permanent_depth_m", "dent_diameter_m", "press_depth_m", "recovered_depth_m")
@@ -124,12 +124,6 @@ class Metal:
     def covered(self) -> tuple[float, float]:
         """Smallest and largest strain of a mark."""
         return float(self.strain.min()), float(self.strain.max())
-
-
-def weights(strains: Sequence[float] | Array) -> Array:
-    """Return what interpolates logarithms at the nodes, (k, nodes); below them the stress stays."""
-    x, nodes = np.log(np.maximum(strains, STRAINS[0])), np.log(STRAINS)
-    return np.stack([np.interp(x, nodes, row) for row in np.eye(len(nodes))], axis=1)
 
 
 def metal_of(recordings: RecordingSet) -> Metal:

@@ -15,13 +15,13 @@ from ...core.inputs.flow_curve import COLUMNS
 from ...core.output import csv_text, write_figure, write_file
 from ..rules import RULES
 from .estimate import LEVEL, Metal
-from .flow import STRAINS
+from .flow import REACH, STRAINS
 from .next_mark import TOLD
 
 
 def curve_strains(metal: Metal) -> np.ndarray:
-    """Return the plastic strains of the written curve: nothing, then 0.2 % to the deepest mark."""
-    last = max(metal.covered[1], 2.0 * STRAINS[0])
+    """Return the plastic strains of the written curve: none, then 0.2 % to what a mark reaches."""
+    last = REACH * max(metal.covered[1], STRAINS[0])
     return np.append(0.0, np.geomspace(STRAINS[0], last, RULES.curve_rows))
 
 

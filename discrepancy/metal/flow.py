@@ -7,7 +7,7 @@ sinks in where another piles up, so that a depth under load says less of it than
 from __future__ import annotations
 
 import math
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import replace
 from functools import lru_cache
 from typing import TYPE_CHECKING, ClassVar, cast
@@ -29,6 +29,9 @@ if TYPE_CHECKING:
 
 STRAINS = np.geomspace(0.002, 0.15, 7)
 """Representative strains of the curve's nodes: the proof strain's, to where a ball is half sunk."""
+
+REACH = MODELS.mean_span
+"""Strain at the axis of a contact over the representative one."""
 
 _FITTED = cast("ClosedForm", LAWS["fitted"])
 _NAMES = tuple(f"log_stress_{k}" for k in range(len(STRAINS)))
@@ -59,9 +62,8 @@ def _law_of(pair: Pair, logs: tuple[float, ...]) -> ContactLaw:
     """The law of a pair whose weaker body follows the curve; a rate moves it as the fitted law."""
     in_flat = pair.weaker is pair.flat
     plain = pair.flat if in_flat else pair.sphere
-    stress = plain.Sy * np.exp(logs)
-    # up to the first node and beyond the last one the stress stays
-    curve = tabulated(np.append(0.0, STRAINS), np.append(stress[0], stress))
+    p = np.concatenate([[0.0], STRAINS, STRAINS[-1] * np.array([math.sqrt(REACH), REACH])])
+    curve = tabulated(p, plain.Sy * np.exp(weights(p) @ logs))
     body = plain.with_(Sy=curve.strength, flow=Flow(curve))
     metal = replace(pair, flat=body) if in_flat else replace(pair, sphere=body)
     return remembering(
@@ -74,6 +76,18 @@ def _law_of(pair: Pair, logs: tuple[float, ...]) -> ContactLaw:
             hardens=True,
         )
     )
+
+
+def weights(strains: Sequence[float] | Array) -> Array:
+    """Return what makes logarithms at strains (k,) of those at the nodes, (k, nodes).
+
+    Below the first node the stress stays; beyond the last one the power law before it goes on.
+    """
+    x, nodes = np.log(np.maximum(strains, STRAINS[0])), np.log(STRAINS)
+    here = np.clip(np.searchsorted(nodes, x) - 1, 0, len(nodes) - 2)
+    part = (x - nodes[here]) / (nodes[here + 1] - nodes[here])
+    eye = np.eye(len(nodes))
+    return np.asarray((1.0 - part)[:, None] * eye[here] + part[:, None] * eye[here + 1])
 
 
 def curve_values(logs: Array) -> Values:

@@ -9,8 +9,7 @@ from dentscope.core.errors import InputError
 from dentscope.core.flow import Flow, swift
 from dentscope.core.inputs.flow_curve import read_flow_curve
 from dentscope.discrepancy.metal import lines, metal_of, write_metal
-from dentscope.discrepancy.metal.estimate import weights
-from dentscope.discrepancy.metal.flow import STRAINS
+from dentscope.discrepancy.metal.flow import STRAINS, weights
 from dentscope.impact import (
     CREEP,
     Approach,
@@ -117,3 +116,7 @@ def test_interpolation_between_nodes_is_straight_over_logarithms():
     row = weights([middle])[0]
     assert row[1:3] == pytest.approx([0.5, 0.5])
     assert row.sum() == pytest.approx(1.0)
+    # below the first node the stress stays, beyond the last one its power law goes on
+    logs = 0.3 * np.log(STRAINS)
+    for strain, seen in ((0.0, STRAINS[0]), (STRAINS[0], STRAINS[0]), (0.45, 0.45)):
+        assert weights([strain])[0] @ logs == pytest.approx(0.3 * np.log(seen))
