@@ -103,9 +103,11 @@ class Watched:
 
 def run(
     count, seed, *, script, more=(), first=0, slow_s=SLOW_S, memory_mb=MEMORY_MB,
-    say=lambda line: None,
+    say=lambda line: None, every=500,
 ):  # fmt: skip
-    """Read all inputs by `script --child FIRST --inputs COUNT --seed SEED`, and `more` after it.
+    """Read inputs by `script --child FIRST --inputs COUNT --seed SEED`, and `more` after it.
+
+    From `first` on; `say` is told how far it is after `every` so many, and of each fault.
 
     Returns counts by reader, what went wrong, the largest memory [MB], and the longest time by
     reader [s].
@@ -129,7 +131,7 @@ def run(
                 faults.append({"number": last, "reader": reader, **said, "told": told})
                 say(f"{last} {reader}: {told} {said['where']}")
             reader = ""
-            if last % 500 == 499:
+            if last % every == every - 1:
                 say(f"{last + 1} of {count}")
         if reader:
             told = watched.why or "PROCESS ENDED"
