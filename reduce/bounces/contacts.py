@@ -24,7 +24,7 @@ from .fall import Ball
 from .flights import Piece
 from .joint import SHARED, Before, JointSolution, fit_together
 from .scale import check_scale, floor_drift, frames_lost, scale_of
-from .sides import joined, known_before, sides_of, true_contacts
+from .sides import joined, known_before, sides_of, true_contacts, usual_spread
 from .touch import (
     common_durations,
     likely_durations,
@@ -87,6 +87,8 @@ def find_bounces(
         float(np.ptp(body.time)),
     )  # fmt: skip
     sides = sides_of(body, contacts, stage, None)
+    if usual_spread(sides) > RULES.same_flat * stage.reach:  # noise turns everywhere
+        return None
     before = known_before(body, sides, ball, metres, stage)
     if before is None:
         return None

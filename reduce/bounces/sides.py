@@ -36,15 +36,23 @@ def sides_of(
         Samples before and after each turning point that the contact has moved.
     """
     edges = [-1, *contacts, body.time.size]
+    moved = [(0, 0), *(held or [(0, 0)] * len(contacts)), (0, 0)]
     found: Sides = []
     for k, contact in enumerate(contacts, start=1):
-        ends = (edges[k - 1] + 1, edges[k + 1] - 1)
-        off = held[k - 1] if held else (0, 0)
+        # a flight ends where the contact beyond it begins
+        ends = edges[k - 1] + 1 + moved[k - 1][1], edges[k + 1] - 1 - moved[k + 1][0]
+        off = moved[k]
         found += [
             side(body, contact, end, stage, view, off=count)
             for end, count in zip(ends, off, strict=True)
         ]
     return found
+
+
+def usual_spread(sides: Sides) -> float:
+    """Return the spread of a sample of the best quarter of the flights [unit]."""
+    spreads = [s.sigma for s in sides if s is not None]
+    return float(np.quantile(spreads, 0.25)) if spreads else 0.0
 
 
 def known_before(
@@ -99,15 +107,15 @@ def true_contacts(
 
     A run of strays turns as a contact does; the one that leaves flights on both sides is kept.
     """
-    every = sides
-    sides = _same_fall(body, every, fall, stage)
+    every, falls = sides, _Falls(body)
+    sides = _same_fall(falls, every, fall, stage)
     k = 0
     while k + 1 < len(contacts):
         if sides[2 * k + 1] is None and sides[2 * k + 2] is None:
             tried = []
             for other in (k, k + 1):
                 left, kept = _without(body, contacts, every, other, stage)
-                found = _same_fall(body, kept, fall, stage)
+                found = _same_fall(falls, kept, fall, stage)
                 pair = found[2 * k : 2 * k + 2]
                 size = sum(p.index.size for p in pair if p) if all(pair) else 0
                 tried.append((size, left, kept, found))
@@ -133,19 +141,30 @@ def _without(
     return left, kept
 
 
-def _same_fall(body: Track, sides: Sides, fall: float, stage: Stage) -> Sides:
+class _Falls:
+    """The acceleration of each flight by itself, fitted once."""
+
+    def __init__(self, body: Track) -> None:
+        self.body = body
+        self._found: dict[int, tuple[Piece, Measured]] = {}
+
+    def of(self, piece: Piece) -> Measured:
+        if id(piece) not in self._found:  # the piece is kept, so that no other takes its place
+            self._found[id(piece)] = piece, own_fall(self.body, piece)
+        return self._found[id(piece)][1]
+
+
+def _same_fall(falls: _Falls, sides: Sides, fall: float, stage: Stage) -> Sides:
     """Leave out rest, rolling and what else is no flight: its acceleration is not that of all."""
-    spreads = [s.sigma for s in sides if s is not None]
-    usual = float(np.quantile(spreads, 0.25)) if spreads else 0.0
-    most = max(RULES.foreign * usual, RULES.coarse * stage.reach)
+    most = max(RULES.foreign * usual_spread(sides), RULES.coarse * stage.reach)
     kept: Sides = []
     for piece in sides:
         if piece is None or piece.sigma > most:
             kept.append(None)
             continue
-        own = own_fall(body, piece)
+        own = falls.of(piece)
         allowed = max(4.0 * own.std, RULES.fall_off * abs(fall))
-        straight = piece.straight(body.time, fall)
+        straight = piece.straight(falls.body.time, fall)
         kept.append(piece if straight or abs(own.value - fall) <= allowed else None)
     return kept
 

@@ -6,6 +6,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 from dentscope.core.drag import air
+from dentscope.reduce.bounces import contacts
 from dentscope.reduce.bounces.contacts import find_bounces
 from dentscope.reduce.bounces.fall import UNKNOWN, Ball, Fall, flight
 from dentscope.reduce.bounces.flights import Piece
@@ -165,6 +166,13 @@ def test_gravity_and_a_stated_size_that_disagree_are_both_held():
     assert not apart.notes
     assert apart.metres.std > 2.0 * agreed.metres.std
     assert not scale_of(Measured(math.nan, math.nan), 9.81, None).known
+
+
+def test_noise_that_turns_everywhere_is_no_track_and_none_of_its_turns_is_tried(monkeypatch):
+    height = 1e-7 * np.random.default_rng(1).normal(size=3000)
+    monkeypatch.setattr(contacts, "true_contacts", None)
+    found = find_bounces(Track(np.arange(3000) / 200.0, height), UNKNOWN, metres=None)
+    assert found is None
 
 
 def test_a_flat_that_drifts_through_the_picture():
