@@ -90,7 +90,7 @@ class ReductionRules:
         "tools/benchmarks/validate_reduce_pulse.py",
     )  # fmt: skip
     swing: float = rule(
-        0.33, "half-wave beside a pulse that counts, in the peak [-]",
+        0.33, "half-wave, or another pulse, beside a pulse that counts, in the peak [-]",
         "chosen: a third; no measurement is kept",
     )  # fmt: skip
     swings: int = rule(
@@ -101,19 +101,16 @@ class ReductionRules:
         "chosen; no measurement is kept",
     )  # fmt: skip
     ringing: float = rule(
-        0.1, "half-wave of the other sign, in the peak [-]",
-        "tools/benchmarks/validate_reduce_pulse.py",
+        0.03, "half-wave of the other sign that a ringing has, in the peak [-]",
+        "tools/benchmarks/validate_reduce_pulse.py: a sensor that rings through the pulse",
     )  # fmt: skip
     train: int = rule(
         2, "other pulses of more than half of the peak that do not fade as bounces do [-]",
         "steps of a walk and taps: tools/benchmarks/validate_reduce_pulse.py",
     )  # fmt: skip
-    outside_restitution: float = rule(
-        3.0, "standard deviations below 0 or above 1 [-]", "normal errors: one in 700",
-    )  # fmt: skip
-    scales_agree: float = rule(
-        3.0, "standard deviations between two scales of a picture that may be the same [-]",
-        "normal errors: one in 370; within them their scatter widens the error (Birge's ratio)",
+    by_chance: float = rule(
+        3.0, "standard deviations between two values that may be one by chance [-]",
+        "normal errors: one in 370; scales within them: their scatter widens the error (Birge)",
     )  # fmt: skip
     fall_off: float = rule(
         0.3, "acceleration in flight off gravity, in gravity [-]",
@@ -582,10 +579,6 @@ class ReductionRules:
     round_top: float = rule(
         0.1, "part of the peak below it within which a top is a parabola [-]",
         "a half-sine's next term is 1 % of that",
-    )  # fmt: skip
-    again: float = rule(
-        0.3, "part of the peak from which another pulse is named [-]",
-        "chosen; no measurement is kept",
     )  # fmt: skip
     same_time: float = rule(
         1.05, "a flight in the one before it that is alike [-]",

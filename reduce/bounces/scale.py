@@ -57,7 +57,7 @@ def scale_of(fall: Measured, gravity: float, stated: Measured | None) -> Scale:
         return Scale(stated, "as stated")
     both = math.hypot(by_fall.std, stated.std)
     apart = abs(by_fall.value - stated.value)
-    if apart <= RULES.scales_agree * both:
+    if apart <= RULES.by_chance * both:
         if stated.std == 0.0:
             return Scale(stated, "as stated")
         w = np.array([by_fall.std, stated.std]) ** -2.0

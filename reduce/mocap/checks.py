@@ -55,7 +55,7 @@ def check_shape(poses: Poses, source: str) -> None:
 
 def possible(restitution: Measured, body: Body) -> bool:
     """Whether an impact can have a restitution; spin and friction may lift that of a rod's tip."""
-    most = RULES.outside_restitution * restitution.std
+    most = RULES.by_chance * restitution.std
     return restitution.value > -most and (body.shape == "rod" or restitution.value < 1.0 + most)
 
 

@@ -2,7 +2,7 @@
 
 Between the ends of its flanks lies the pulse of two bodies that touch; a felt, a cable or a table
 that rings moves the striker before and after. The area is taken from where the level is left; after
-a ringing it is the mean over the swings. What is added widens the error.
+a ringing it is the mean over the swings.
 """
 
 from __future__ import annotations
@@ -21,10 +21,14 @@ from .shape import Shape
 
 
 class Area(NamedTuple):
-    """Area [unit s], how much earlier the contact may begin [s], and what was done."""
+    """Area [unit s], and what was done.
+
+    Of a foot: how long before the flank it begins [s], and how high it is there [unit].
+    """
 
     area: Measured
     early: float
+    foot: float
     notes: tuple[str, ...]
 
 
@@ -32,6 +36,9 @@ def area_of(
     time: Array, clear: Array, level: Level, shape: Shape, ends: tuple[Measured, Measured]
 ) -> Area:
     """Return the area under a pulse.
+
+    Its error holds the noise, the level's error over the time that is taken, and the pulse's form;
+    half of the level afterwards or, of a ringing, what the halves of its swings differ by.
 
     Parameters
     ----------
@@ -46,19 +53,20 @@ def area_of(
     long, step = end - start, float(np.median(np.diff(time)))
     inside = (time >= start) & (time <= end)
     core = float(np.trapezoid(clear[inside], time[inside]))
-    scatter = level.noise * step * math.sqrt(max(int(inside.sum()), 1))
-    drift, late = level.std * long, 0.5 * shape.level_after * abs(clear.max()) * long
-    area, std = core, math.hypot(scatter, drift, late, RULES.form * core)
     notes: list[str] = []
-    early, foot = 0.0, 0.0
-    if level.samples and level.last < time.size and time[level.last] < start:
-        before = (time >= time[level.last]) & (time < start)
-        foot = float(np.trapezoid(clear[before], time[before])) if before.sum() > 1 else 0.0
-        sure = 3.0 * level.noise * step * math.sqrt(max(int(before.sum()), 1))
-        sure = math.hypot(sure, 3.0 * level.std * (start - float(time[level.last])))
-        if abs(foot) > max(sure, RULES.foot_part * abs(core)):
-            early = 0.5 * (start - float(time[level.last])) if foot > 0.0 else 0.0
-            area, std = area + foot, math.hypot(std, 0.25 * foot)
+    foot, height, early, since = 0.0, 0.0, 0.0, start
+    before = (time >= time[min(level.last, time.size - 1)]) & (time < start)
+    if level.samples and before.sum() > 1:
+        both = before | inside
+        foot = float(np.trapezoid(clear[both], time[both])) - core
+        reach = start - float(time[level.last])
+        noise = level.noise * step * math.sqrt(int(before.sum()))
+        if abs(foot) > max(3.0 * math.hypot(noise, level.std * reach), RULES.foot_part * abs(core)):
+            since = start - reach
+            last = (time >= min(start - 0.1 * long, float(time[before][-1]))) & before
+            height = max(float(clear[last].mean()), 0.0)
+            if foot > 0.0 and height > 0.0:  # it rises as a ramp does
+                early = min(2.0 * foot / height, reach)
             notes.append(
                 f"a foot before the flank, {foot / core:+.0%} of the area, is part of it: the "
                 "contact may begin with it"
@@ -66,21 +74,29 @@ def area_of(
         else:
             foot = 0.0
     if shape.ringing:
-        mean, spread, reach = _after(time, clear, shape, start, end)
-        area, std = foot + mean, math.hypot(std, spread, 0.25 * (mean - core), level.std * reach)
-        notes.append(f"the area is the mean over the swings after it, {mean / core - 1.0:+.0%}")
-    return Area(Measured(area, std), early, tuple(notes))
+        core, off, reach, count = _after(time, clear, shape, start, end)
+        notes.append("the area is the mean over the swings after it")
+    else:
+        off, reach, count = 0.5 * shape.level_after * abs(clear.max()) * long, 0.0, 0.0
+    count += int(((time >= since) & (time <= end)).sum())
+    scatter = level.noise * step * math.sqrt(max(count, 1.0))
+    std = math.hypot(scatter, level.std * (end - since + reach), off, RULES.form * core)
+    return Area(Measured(core + foot, std), early, height, tuple(notes))
 
 
 def _after(
     time: Array, clear: Array, shape: Shape, start: float, end: float
-) -> tuple[float, float, float]:
-    """Mean and half the spread of the area up to the instants of the ringing; their mean age."""
+) -> tuple[float, float, float, float]:
+    """Mean of the area up to the instants of the ringing, and half by what its halves differ.
+
+    Then their mean age, and the samples that scatter as much as the mean of sums over them.
+    """
     last = end + RULES.ring_reach * (end - start)
     # another blow ends the ringing of this one
     last = min([last, *(t - (end - start) for t in shape.others if t > end)])
     part = (time >= start) & (time <= max(last, end))
     whole = cumulative_trapezoid(clear[part], time[part], initial=0.0)
     swings = whole[time[part] >= end]
+    halves = [float(half.mean()) for half in np.array_split(swings, 2) if half.size]
     age = 0.5 * (float(time[part][-1]) - end)
-    return float(swings.mean()), 0.5 * float(swings.std()), age
+    return float(swings.mean()), 0.5 * (halves[-1] - halves[0]), age, swings.size / 3.0

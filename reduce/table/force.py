@@ -99,7 +99,7 @@ def reduce_pulse(
 def _possible(restitution: Measured, source: str) -> Measured:
     """Return the restitution within 0 to 1, its error so much wider; refuse what is far outside."""
     off = max(-restitution.value, restitution.value - 1.0, 0.0)
-    if off > RULES.outside_restitution * restitution.std:
+    if off > RULES.by_chance * restitution.std:
         raise Refused(
             "restitution", f"the impulse asks for a restitution of {restitution}", source=source,
             key="approach_speed_m_s", allowed="0 to 1: scale of the record, mass and speed that "

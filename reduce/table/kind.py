@@ -144,8 +144,7 @@ def _whole(pulse: Pulse, series: Series, source: str) -> None:
 
 
 def _tension(path: Path, table: Columns, options: TableOptions) -> Reduced:
-    from .specimen import strain_unit, stress_unit
-    from .tension import reduce_tension
+    from .tension import reduce_tension, strain_unit, stress_unit
 
     at, value = table.find(options.time, key="time"), table.find(options.value, key="value")
     parts = strain_unit(table, at, given=options.gauge_length_mm)

@@ -118,6 +118,6 @@ def _stretch(up: Array, first: int, width: int, noise: float, height: float) -> 
     before, after = np.flatnonzero(away[:first]), np.flatnonzero(away[first + width :])
     start = int(before[-1]) + 1 if before.size else 0
     end = first + width + int(after[0]) if after.size else up.size
-    # the flank begins a little before the last sample that is still quiet
-    end = max(end - max((end - start) // 20, 1), min(start + width, end))
-    return start, end
+    # a flank or a foot begins before the last sample that is still quiet: a pulse's length
+    unsure = max(min(3 * width, (end - start) // 2), 1)
+    return start, max(end - unsure, min(start + width, end))

@@ -18,8 +18,9 @@ from ..flank import meets_zero
 from ..gates import Refused
 from ..measured import Measured
 from ..rules import RULES
-from .area import area_of
+from .area import Area, area_of
 from .level import Level, level_before, wide
+from .ringing import ringing_within
 from .shape import Shape, looks_like, shape_of
 
 
@@ -93,17 +94,19 @@ def find_pulse(time: Array, value: Array, *, source: str) -> Pulse:
     peak, peak_time = _peak(time, clear, top, noise)
     start, used_a = _flank(time, clear, top, -1, peak.value)
     end, used_b = _flank(time, clear, top, +1, peak.value)
-    shape = shape_of(time, clear, top, (start.value, end.value), source=source)
+    shape = shape_of(time, clear, top, (start.value, end.value), noise, source=source)
     _both_flanks(shape, (used_a, used_b), (peak_time - start.value, end.value - peak_time), source)
     if min(used_a, used_b) < 4:
         notes.append(f"only {min(used_a, used_b)} samples on a flank: the ends are rough")
     if shape.ringing:
-        notes.append(
-            f"rings: {shape.ringing:.0%} of the peak to the other side; peak and ends are as rough"
+        peak, peak_time, start, end, part = _stilled(
+            time, clear, top, (start, end), peak, noise, shape.ringing
         )
-        peak = Measured(peak.value, math.hypot(peak.std, 0.25 * shape.ringing * peak.value))
-        rough = 0.1 * shape.ringing * (end.value - start.value)
-        start, end = (Measured(e.value, math.hypot(e.std, rough)) for e in (start, end))
+        notes.append(
+            f"rings: {shape.ringing:.0%} of the peak to the other side, {part:.1%} of it within"
+        )
+    else:  # in the middle of the pulse its zero has moved by half
+        peak = peak.widened(0.5 * abs(shape.level_after) * peak.value)
     if shape.others:
         when = ", ".join(f"{t:.6g}" for t in shape.others[:5])
         notes.append(
@@ -123,7 +126,8 @@ def find_pulse(time: Array, value: Array, *, source: str) -> Pulse:
         )
     _timed(start, end, source)
     found = area_of(time, clear, level, shape, (start, end))
-    start = Measured(start.value, math.hypot(start.std, found.early))
+    if found.foot:
+        start = _over_a_foot(time, clear, top, start, found, peak.value)
     return Pulse(
         time, clear, sign * level.mean, noise, peak, peak_time, start, end, found.area, inside,
         (*notes, *found.notes),
@@ -211,6 +215,42 @@ def _flank(time: Array, clear: Array, top: int, step: int, peak: float) -> tuple
         return _through(time, clear, flank[-1], flank[0]), len(flank)
     index = np.sort(np.array(flank))
     return meets_zero(time[index], clear[index] / peak, step), len(flank)
+
+
+def _stilled(
+    time: Array, clear: Array, top: int, ends: tuple[Measured, Measured], peak: Measured,
+    noise: float, ringing: float,
+) -> tuple[Measured, float, Measured, Measured, float]:  # fmt: skip
+    """Return peak, its time and both ends without the ringing, and how much was within."""
+    start, end = ends
+    for _ in range(2):  # a swing that cuts a flank off moves the end of the pulse
+        within = ringing_within(time, clear, (start.value, end.value), peak.value, ringing)
+        still = clear - within.swing
+        start, end = (_flank(time, still, top, way, peak.value)[0] for way in (-1, 1))
+    peak, peak_time = _peak(time, still, top, noise)
+    unsure = within.unsure * peak.value
+    # what is left of one swing moves both ends: what it does to them adds up in the time between
+    both = math.sqrt(2.0) if within.swing.any() else 1.0
+    start, end = (
+        e.widened(both * (_without(time, still, top, way, unsure, peak.value).value - e.value))
+        for e, way in ((start, -1), (end, 1))
+    )
+    return peak.widened(unsure), peak_time, start, end, within.part
+
+
+def _over_a_foot(
+    time: Array, clear: Array, top: int, start: Measured, found: Area, peak: float
+) -> Measured:
+    """Where a contact begins: with its foot or after it, that goes on under the flank or not."""
+    under = _without(time, clear, top, -1, found.foot, peak)
+    half = 0.5 * (under.value - start.value)
+    flank = Measured(start.value + half, math.hypot(max(start.std, under.std), half))
+    return Measured(flank.value - 0.5 * found.early, flank.std).widened(0.5 * found.early)
+
+
+def _without(time: Array, clear: Array, top: int, step: int, under: float, peak: float) -> Measured:
+    """Where a flank meets zero if something else of some height lies under it."""
+    return _flank(time, clear - under, top, step, peak - under)[0]
 
 
 def _through(time: Array, clear: Array, outer: int, inner: int) -> Measured:

@@ -7,6 +7,7 @@ from itertools import zip_longest
 from typing import NamedTuple
 
 import numpy as np
+from scipy.special import ndtr, stdtrit
 
 from ...core.arrays import Array
 from ...core.errors import InputError
@@ -90,7 +91,7 @@ def elastic_rise(strain: Array, stress: Array, source: str) -> ElasticRise:
                 f"{rows.size} rows of the elastic rise", source=source,
                 allowed="three or more between a tenth and four tenths of the largest stress",
             )  # fmt: skip
-        lines = [_line(strain[rows], stress[rows])]
+        lines = [_of_few(_line(strain[rows], stress[rows]), rows.size)]
     line = max(lines, key=lambda line: line.straight)
     if not line.compliance > 0.0:
         raise InputError("the stress does not rise", source=source, allowed="a loading curve")
@@ -108,6 +109,15 @@ def _up_to(top: float, strain: Array, stress: Array) -> _Line | None:
         if found.straight >= RULES.elastic_straight or not found.slack:
             break
     return found
+
+
+def _of_few(line: _Line, rows: int) -> _Line:
+    """Return the line through a handful of rows: they hardly tell their own scatter.
+
+    Its error is such that what chance seldom makes of many rows it seldom makes of these (Student).
+    """
+    student = float(stdtrit(rows - 2, ndtr(RULES.by_chance)))
+    return line._replace(noise=line.noise * student / RULES.by_chance)
 
 
 def _told(line: _Line, lower: _Line | None) -> ElasticRise:

@@ -36,7 +36,7 @@ class Shape(NamedTuple):
 
 
 def shape_of(
-    time: Array, clear: Array, top: int, ends: tuple[float, float], *, source: str
+    time: Array, clear: Array, top: int, ends: tuple[float, float], noise: float, *, source: str
 ) -> Shape:
     """Return what else a record shows beside its largest pulse.
 
@@ -48,6 +48,8 @@ def shape_of(
         Its highest sample.
     ends
         Beginning and end of the pulse [s].
+    noise
+        Standard deviation of a sample.
     source
         The file.
 
@@ -85,13 +87,16 @@ def shape_of(
     reach = RULES.beside * long
     beside = (time > ends[0] - reach) & (time < ends[1] + reach)
     below = -float(clear[beside].min()) / peak
-    swings = _half_waves(clear[beside] / peak) - 1
+    swings = _half_waves(clear[beside] / peak, RULES.swing) - 1
     if below > RULES.swing and swings >= RULES.swings:
         raise looks_like("swings", f"an oscillation: {swings} other half-waves beside it", source)
-    ringing = below if below > RULES.ringing else 0.0
+    least = max(RULES.ringing, RULES.pulse_over_noise * noise / peak)
+    # what does not swing back is the level of a sensor that has lost its zero
+    late = beside & (time > ends[1])
+    rings = below > least and _half_waves(clear[late] / peak, least) > 1
     others = tuple(_others(time, clear, peak, ends))
     _single(time, clear, others, ends, source)
-    return Shape(ringing, rest, others, half)
+    return Shape(below if rings else 0.0, rest, others, half)
 
 
 def _single(
@@ -130,9 +135,9 @@ def looks_like(gate: str, what: str, source: str) -> Refused:
     )  # fmt: skip
 
 
-def _half_waves(part: Array) -> int:
-    """Return how many times a record swings beyond a third of its peak, to either side in turn."""
-    sides = np.sign(part[np.abs(part) > RULES.swing])
+def _half_waves(part: Array, least: float) -> int:
+    """Return how many times a record swings beyond a part of its peak, to either side in turn."""
+    sides = np.sign(part[np.abs(part) > least])
     return 1 + int(np.count_nonzero(np.diff(sides)))
 
 
@@ -165,7 +170,7 @@ def _others(time: Array, clear: Array, peak: float, ends: tuple[float, float]) -
     """Yield when other pulses of the record peak [s]."""
     long = ends[1] - ends[0]
     high = np.flatnonzero(
-        (clear > RULES.again * peak) & ((time < ends[0] - long) | (time > ends[1] + long))
+        (clear > RULES.swing * peak) & ((time < ends[0] - long) | (time > ends[1] + long))
     )
     for run in np.split(high, np.flatnonzero(np.diff(time[high]) > long) + 1):
         if run.size < RULES.fewest_above_half:

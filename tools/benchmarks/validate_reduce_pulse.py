@@ -1,10 +1,13 @@
 """Reduce made-up pulses of force, and records that are no pulse, and compare with what they are.
 
-    python tools/benchmarks/validate_reduce_pulse.py [COUNT]
+    python tools/benchmarks/validate_reduce_pulse.py [COUNT] [FIRST]
 
 COUNT whole pulses (half-sines and elastic spheres, clean, on another level before, with a soft
 foot, with a ringing after) and COUNT records that should be refused: noise, clipped ones, holes,
 edges, steps, oscillations, trains of taps or of steps of a walk, pulses over an end of the record.
+Half of the feet are a layer's between the bodies, whose contact begins with it and which fades
+under the flank; half are something else's and end where the bodies touch. Half of the ringings are
+a plate's after the blow, half the sensor's own, all through it. Seeds count from FIRST.
 """
 
 import sys
@@ -14,6 +17,7 @@ from pathlib import Path
 import numpy as np
 from dentscope.core.errors import InputError
 from dentscope.reduce.kinds import load_kind
+from scipy.signal import lsim
 
 RATE = 20_000.0
 T = np.arange(0.0, 0.2, 1.0 / RATE)
@@ -22,6 +26,13 @@ T = np.arange(0.0, 0.2, 1.0 / RATE)
 def pulse(rng, at, long, peak):
     s = np.clip((T - at) / long, 0.0, 1.0)
     return peak * np.sin(np.pi * s) ** rng.uniform(1.0, 1.5)
+
+
+def sensor(force, period):
+    """What a sensor on a spring shows, that rings with a period and fades within three."""
+    w, damping = 2.0 * np.pi / period, 1.0 / 18.0
+    system = ([w * w], [1.0, 2.0 * damping * w, w * w])
+    return lsim(system, force, T)[1]
 
 
 def whole(rng):
@@ -35,9 +46,13 @@ def whole(rng):
     if kind == "foot":
         reach = rng.uniform(0.3, 1.5) * long
         foot = rng.uniform(0.02, 0.08) * peak * np.clip((T - at + reach) / reach, 0.0, 1.0)
-        value += foot * (at > T)
-        area += np.trapezoid(foot * (at > T), T)
-    if kind == "ringing":
+        layer = rng.random() < 0.5
+        foot *= np.clip(1.0 - 2.0 * (T - at) / long, 0.0, 1.0) if layer else at > T
+        value, long = value + foot, long + layer * reach
+        area += np.trapezoid(foot, T)
+    if kind == "ringing" and rng.random() < 0.5:
+        value = sensor(clean, rng.uniform(0.25, 0.5) * long)
+    elif kind == "ringing":
         late = np.maximum(T - at - long, 0.0)
         ring = np.exp(-late / (2.0 * long)) * np.sin(2.0 * np.pi * late / (0.4 * long))
         ring *= rng.uniform(0.12, 0.3) * peak
@@ -82,9 +97,9 @@ def reduced(time, value, path):
     return load_kind("table").run(path, {"holds": "force"}, source="validation")
 
 
-def main(count, path):
+def main(count, first, path):
     rows, lost = [], []
-    for seed in range(count):
+    for seed in range(first, first + count):
         kind, value, truth = whole(np.random.default_rng(seed))
         try:
             found = reduced(T, value, path).values
@@ -104,7 +119,7 @@ def main(count, path):
             print(f"{kind:8} {name:8} {pulls.size:4} pulls: median {np.median(pulls):+.2f}, spread "
                   f"{np.std(pulls):.2f}, within 2: {near:.1f} %")  # fmt: skip
     given = []
-    for seed in range(count):
+    for seed in range(first, first + count):
         kind, time, value = refused(np.random.default_rng(10_000 + seed))
         try:
             reduced(time, value, path)
@@ -116,4 +131,5 @@ def main(count, path):
 
 if __name__ == "__main__":
     with tempfile.TemporaryDirectory() as made:
-        main(int(sys.argv[1]) if len(sys.argv) > 1 else 300, Path(made) / "record.csv")
+        given = [int(n) for n in sys.argv[1:3]]
+        main(*(given + [300, 0][len(given) :]), Path(made) / "record.csv")

@@ -8,6 +8,7 @@ from dentscope.reduce.table.cells import instant, plain, since_first, value_of
 from dentscope.reduce.table.heading import heading_of, in_short, labview_rows
 from dentscope.reduce.table.level import level_before
 from made_records import RATE, T, half_sine, run, table
+from scipy.signal import lsim
 
 
 @pytest.mark.parametrize(
@@ -153,6 +154,29 @@ def test_a_soft_foot_is_part_of_the_area_and_of_the_errors(tmp_path):
     assert found.values["contact_time_s"].std > 5.0 * clean.values["contact_time_s"].std
     assert any("a foot before the flank" in note for note in found.notes)
     assert not any("foot" in note for note in clean.notes)
+
+
+@pytest.mark.parametrize("rings", ["plate", "sensor"])
+def test_a_ringing_moves_peak_and_ends_as_far_as_it_lies_within_the_pulse(tmp_path, rings):
+    """A plate rings when the blow of 4 ms is over, a sensor on its spring all through it."""
+    t = np.arange(0.0, 0.1, 5e-5)
+    blow = 800.0 * np.sin(np.pi * np.clip((t - 0.03) / 4e-3, 0.0, 1.0)) ** 1.2
+    if rings == "sensor":
+        w = 2.0 * np.pi / 1.4e-3
+        value = lsim(([w * w], [1.0, 0.1 * w, w * w]), blow, t)[1]
+        area = np.trapezoid(blow, t)
+    else:
+        late = np.maximum(t - 0.034, 0.0)
+        value = blow + 160.0 * np.exp(-late / 8e-3) * np.sin(2.0 * np.pi * late / 1.6e-3)
+        area = np.trapezoid(value, t)
+    value += np.random.default_rng(1).normal(size=t.size)
+    path = table(tmp_path / "a.csv", [f"{v:.3f}" for v in value], times=[f"{x:.6f}" for x in t])
+    found = run(path)
+    for name, truth in (("peak_force_N", 800.0), ("contact_time_s", 4e-3), ("impulse_N_s", area)):
+        assert abs(found.values[name].value - truth) < 2.5 * found.values[name].std
+    assert found.values["peak_force_N"].std < (80.0 if rings == "sensor" else 4.0)
+    assert found.values["impulse_N_s"].std < 0.01
+    assert any("rings" in note for note in found.notes)
 
 
 def test_tension_from_a_load_and_an_area(tmp_path):
