@@ -7,11 +7,13 @@ from types import SimpleNamespace
 import numpy as np
 import pytest
 from dentscope import fem
-from dentscope.core import Material, Pair
-from dentscope.fem.discretise import discretise
-from dentscope.fem.loading import _growth, _stops
+from dentscope.core import InputError, Material, Pair
+from dentscope.fem.discretise import _softened, discretise
+from dentscope.fem.loading import Loading, _growth, _stops
+from dentscope.fem.material.flow import NO_LAW, softening
 from dentscope.fem.mesh import Zone
 from dentscope.fem.path import extrapolate
+from dentscope.fem.results.ripple import _weights
 
 STEEL = Material(E=200e9, nu=0.3, Sy=500e6)
 
@@ -54,3 +56,39 @@ def test_the_first_ring_and_the_linear_half_space_lie_where_they_are_said() -> N
     reach = np.hypot(*np.moveaxis(place, -1, 0)).min(axis=1)
     assert reach[grid.elements.linear >= 0].min() > 4.0
     assert reach[grid.elements.linear < 0].max() < 4.0
+
+
+def test_what_varies_within_an_element_counts_half() -> None:
+    """Four gradients of 1, 1, 3 and 3 in one element of even volume: a mean of 2."""
+    grad = np.array([1.0, 1.0, 3.0, 3.0]).reshape(1, 4, 1, 1)
+    found = _softened(grad, np.ones((1, 4)))
+    assert found.ravel().tolist() == [1.5, 1.5, 2.5, 2.5]
+
+
+@pytest.mark.parametrize(("depth", "ratio"), [(0.79, 1.06), (0.81, 1.04)])
+def test_steps_are_elastic_ones_up_to_four_fifths_of_the_critical_depth(depth, ratio) -> None:
+    given = SimpleNamespace(_onset=1.0, accuracy=fem.Accuracy.quick())
+    assert Loading._limit(given, SimpleNamespace(delta=depth)) == ratio
+
+
+def test_a_solve_goes_to_half_a_radius() -> None:
+    fem.ContactProblem(Pair(STEEL, STEEL, 1e-3), (1e-4, 0.49))
+    with pytest.raises(InputError, match="depths"):
+        fem.ContactProblem(Pair(STEEL, STEEL, 1e-3), (1e-4, 0.51))
+
+
+def test_heat_leaves_a_hundredth_of_the_strength() -> None:
+    """A law that takes a share w of the strength at a work of w."""
+    law = NO_LAW._replace(rise=1.0, exponent=1.0)
+    assert softening(law, 0.985)[0] == pytest.approx(0.015)
+    assert softening(law, 0.995)[0] == 0.01
+
+
+def test_a_ripple_is_looked_for_a_third_of_a_logarithm_to_both_sides_in_eleven_steps() -> None:
+    """A cubic of four numbers, two harmonics of two each, and three steps to spare."""
+    x = np.linspace(-1.0, 1.0, 201)
+    weights = _weights(x, 40.0 * x, 100)
+    assert np.abs(x[weights != 0.0]).max() == pytest.approx(0.35)
+    few = np.linspace(-0.3, 0.3, 11)
+    assert _weights(few, 40.0 * few, 5) is not None
+    assert _weights(few[1:], 40.0 * few[1:], 5) is None

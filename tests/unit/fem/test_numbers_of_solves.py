@@ -1,0 +1,267 @@
+"""Tuned numbers of Newton's method, of steps and meshes where they act, worked out by hand."""
+
+from __future__ import annotations
+
+from types import SimpleNamespace
+
+import numpy as np
+import pytest
+import scipy.sparse as sparse
+from dentscope import fem
+from dentscope.core import Material, Pair
+from dentscope.core.errors import Ending
+from dentscope.fem import loading, unloading
+from dentscope.fem.assemble import DISTORTED, bulk_forces
+from dentscope.fem.discretise import discretise
+from dentscope.fem.elements import State
+from dentscope.fem.linear import LinearSystem
+from dentscope.fem.loading import Loading
+from dentscope.fem.material import EXACT
+from dentscope.fem.mesh import Zone
+from dentscope.fem.mesh.rings import ladder_rings
+from dentscope.fem.newton import Solver
+from dentscope.fem.results import measure
+from dentscope.fem.results.measure import edge_of_contact
+from dentscope.fem.unloading import _back
+
+STEEL = Material(E=200e9, nu=0.3, Sy=500e6)
+
+
+def searched(unbalanced) -> int:
+    """How many corrections are made where the residual is `unbalanced` and nothing converges."""
+    count = []
+    residuals = iter(unbalanced)
+    solver = SimpleNamespace(
+        grid=SimpleNamespace(driven=[]), _evaluate=lambda *_: "here", _converged=lambda *_: False,
+        _unbalanced=lambda _: next(residuals), _direction=lambda _: np.ones(2),
+        _search=lambda u, now, direction, state: count.append(1) or (u, now, 1.0),
+    )  # fmt: skip
+    assert Solver.equilibrium(solver, np.zeros(2), state=None, delta=1.0) is None
+    return len(count)
+
+
+def test_a_step_has_18_iterations_and_is_given_up_after_8_that_did_not_halve_it() -> None:
+    assert searched([1.0, 0.51]) == 8
+    assert searched([1.0, 0.49]) == 18
+
+
+@pytest.mark.parametrize(
+    ("residual", "next_move", "converged"),
+    [(0.99e-4, 1.0, True), (1.01e-4, 1.0, False), (4.9e-4, 0.99e-8, True), (4.9e-4, 1.01e-8, False),
+     (5.1e-4, 0.99e-8, False)],
+)  # fmt: skip
+def test_forces_balance_to_a_ten_thousandth_or_nothing_moves(
+    residual, next_move, converged
+) -> None:
+    """Of a force and an approach of 1: to five times that where corrections are a 1e-8."""
+    solver = SimpleNamespace(_unbalanced=lambda _: residual, grid=SimpleNamespace(round_off=0.0))
+    now = SimpleNamespace(contact=SimpleNamespace(force=1.0))
+    assert Solver._converged(solver, now, next_move, 1.0) == converged
+
+
+@pytest.mark.parametrize(("residual", "evaluations"), [(None, 1 + 5), ([1.0], 1 + 3)])
+def test_a_correction_is_halved_five_times_and_has_three_secants(residual, evaluations) -> None:
+    """No state at all; or the work of the residual of -1 that becomes 1 and stays there."""
+    count = []
+    found = None if residual is None else SimpleNamespace(residual=np.array(residual))
+    solver = SimpleNamespace(_evaluate=lambda *_: count.append(1) or found)
+    now = SimpleNamespace(residual=np.array([-1.0]))
+    Solver._search(solver, np.zeros(1), now, np.ones(1), None)
+    assert len(count) == evaluations
+
+
+def system(matrix, factors) -> SimpleNamespace:
+    return SimpleNamespace(
+        _matrix=sparse.csc_matrix(matrix), _factors=factors, _n_last=0, n=len(matrix)
+    )
+
+
+def test_a_direction_lacks_half_a_per_cent_after_12_steps_at_the_most() -> None:
+    """Of eigenvalues 1 and 2 the first step leaves the part of the second in the whole."""
+
+    def steps(part) -> int:
+        one = system(np.diag([1.0, 2.0]), lambda v: v)
+        assert LinearSystem._iterate(one, np.array([1.0, part])) is not None
+        return one._n_last
+
+    assert steps(0.0049) == steps(0.001)
+    assert steps(0.0051) == steps(0.0049) + 1
+    # of many eigenvalues far apart none is left out
+    many = system(np.diag(np.geomspace(1.0, 1e6, 60)), lambda v: v)
+    assert LinearSystem._iterate(many, np.ones(60)) is None
+    assert many._n_last in (12, 13, 14)
+
+
+@pytest.mark.parametrize(("part", "kept"), [(0.24, True), (0.26, False)])
+def test_a_direction_leaves_a_fifth_of_the_residual(part, kept) -> None:
+    """Factors that are blind to the second of two unknowns leave it as it is."""
+    blind = system(np.eye(2), lambda v: v * np.array([1.0, 1e-6]))
+    assert (LinearSystem._iterate(blind, np.array([1.0, part])) is not None) == kept
+
+
+@pytest.mark.parametrize(("steps", "anew"), [(7, False), (8, True)])
+def test_a_matrix_is_factorised_anew_after_seven_steps(steps, anew) -> None:
+    used = []
+    given = SimpleNamespace(
+        _matrix=0, n=2, _order=np.arange(2), _n_last=steps,
+        _iterate=lambda v: used.append("old") or v, _factorised=lambda v: used.append("new") or v,
+    )  # fmt: skip
+    LinearSystem.solve(given, np.ones(2))
+    assert used == ["new" if anew else "old"]
+
+
+@pytest.mark.parametrize(("left", "kept"), [(0.019, True), (0.021, False)])
+def test_rows_are_exchanged_where_fresh_factors_leave_a_fiftieth(left, kept) -> None:
+    fronts = SimpleNamespace(factorise=lambda _: True, solve=lambda v: v * (1.0 - left))
+    given = SimpleNamespace(_matrix=sparse.csc_matrix(np.eye(3)), _fronts=fronts,
+                            n_factorisations=0)  # fmt: skip
+    found = LinearSystem._factorised(given, np.ones(3))
+    assert found == pytest.approx(np.full(3, 1.0 - left) if kept else np.ones(3))
+
+
+def test_a_pattern_couples_three_master_nodes_beyond_the_segments_in_use() -> None:
+    """Segment 20: its own two nodes, one and two that touch it, and three to either side."""
+    surfaces = SimpleNamespace(slave=np.arange(30), master=100 + np.arange(40))
+    contact = SimpleNamespace(pressure=np.zeros(30), segment=np.full(30, 20))
+    seen = []
+    given = SimpleNamespace(_keys=lambda rows, cols: seen.append(rows // 2))
+    LinearSystem._contact_keys(given, surfaces, contact)
+    master = seen[0][seen[0] >= 100]
+    assert (master.min(), master.max()) == (100 + 20 - 1 - 3, 100 + 20 + 2 + 3)
+
+
+def zone_of(radius, monkeypatch) -> Zone:
+    zones = []
+    monkeypatch.setattr(loading, "discretise", lambda problem, accuracy, zone: zones.append(zone))
+    monkeypatch.setattr(loading, "Solver", lambda *_, **__: None)
+    given = SimpleNamespace(
+        _radius=radius, problem=None, accuracy=None, tally=SimpleNamespace(timers=None)
+    )
+    Loading._solver(given)
+    return zones[0]
+
+
+def test_a_mesh_is_fine_from_85_to_160_hundredths_of_its_contact(monkeypatch) -> None:
+    """Where it serves to a radius above a fifth it is the last, and fine to the end."""
+    fine = zone_of(0.1, monkeypatch)
+    assert (fine.low, fine.high) == (pytest.approx(0.085), pytest.approx(0.16))
+    assert zone_of(0.148, monkeypatch).high == pytest.approx(1.6 * 0.148)
+    assert zone_of(0.149, monkeypatch).high == 1.0
+
+
+@pytest.mark.parametrize(("radius", "serves"), [(0.134, True), (0.136, False)])
+def test_a_mesh_serves_for_a_contact_a_third_wider(radius, serves) -> None:
+    class New(Exception):
+        pass
+
+    def solver():
+        raise New
+
+    given = SimpleNamespace(_radius=0.1, _solver=solver)
+    reading = SimpleNamespace(radius=radius)
+    point = SimpleNamespace(record=SimpleNamespace(reading=reading))
+    if serves:
+        assert Loading._follow(given, point, None) == (point, None)
+    else:
+        with pytest.raises(New):
+            Loading._follow(given, point, None)
+
+
+def test_a_failed_step_is_cut_to_four_tenths_seven_times() -> None:
+    """From 1 to 1.2 at once; then within a ratio of 1.08: in three."""
+    tried = []
+    point = SimpleNamespace(
+        delta=1.0, equilibrium=SimpleNamespace(u=np.zeros(1)),
+        balanced=lambda guess, delta: tried.append(delta),
+    )  # fmt: skip
+    given = SimpleNamespace(tally=SimpleNamespace(failed=0))
+    found, _ = Loading._step(given, point, None, 0.1, goal=1.2, ratio=1.5)
+    assert found is None
+    assert len(tried) == 7
+    assert tried[:2] == [1.2, pytest.approx(1.2 ** (1 / 3))]
+
+
+def test_the_first_contact_starts_a_thousand_times_as_soft() -> None:
+    seen = []
+
+    class Surfaces(SimpleNamespace):
+        def _replace(self, **new):
+            return Surfaces(**new)
+
+    surfaces = Surfaces(stiffness=1.0)
+    mesh = SimpleNamespace(n_sphere_points=1)
+    grid = SimpleNamespace(
+        n_dofs=4, mesh=mesh, surfaces=surfaces,
+        elements=SimpleNamespace(conn=[0], elastic=None),
+    )  # fmt: skip
+    solver = SimpleNamespace(grid=grid)
+
+    def equilibrium(guess, **_):
+        seen.append(solver.surfaces.stiffness)
+        return SimpleNamespace(u=guess) if len(seen) < 4 else None
+
+    solver.equilibrium = equilibrium
+    given = SimpleNamespace(_stops=[1e-4], _solver=lambda: solver)
+    assert Loading._first_contact(given) is None
+    assert seen == [1e-3, 1e-2, 1e-1, 1.0]
+
+
+def test_an_unloading_has_sixty_steps(monkeypatch) -> None:
+    """Each takes a hundredth of the force off."""
+
+    def point(delta, force):
+        reading = SimpleNamespace(force=force, radius=0.1)
+        return SimpleNamespace(
+            delta=delta, record=SimpleNamespace(reading=reading), balanced=lambda *_: "found",
+            equilibrium=SimpleNamespace(u=np.zeros(1)),
+        )  # fmt: skip
+
+    monkeypatch.setattr(
+        unloading, "accept",
+        lambda here, found, delta: point(delta, 0.99 * here.record.reading.force),
+    )  # fmt: skip
+    _, outcome, steps = _back(point(0.01, 1.0), [])
+    assert steps == 61
+    assert outcome.ending is Ending.NOT_CONVERGED
+
+
+def test_a_gap_is_fitted_over_five_elements_at_161_edges(monkeypatch) -> None:
+    seen = []
+    monkeypatch.setattr(
+        measure,
+        "_misfits",
+        lambda edges, r, g: seen.append((edges.size, r.size)) or np.zeros(edges.size),
+    )
+    r = np.repeat(np.arange(20.0)[:, None], 2, axis=1)
+    contact = SimpleNamespace(
+        pressure=np.where(np.arange(20) < 6, 1.0, 0.0), r=r, gap=np.zeros_like(r)
+    )
+    edge_of_contact(contact, np.arange(20.0))
+    assert seen == [(161, 5 * 2)]
+
+
+def test_rings_have_four_divisions_and_grow_by_a_quarter() -> None:
+    """Rungs of a quarter of a fine ring: beyond the zone 5, 6, 7, 8, 10, 12, 15 and 18 of them."""
+    fine = 1e-3
+    rings = ladder_rings(Zone(0.1, 0.11), core=0.05, end=1.0, fine=fine, coarse=10.0)
+    rungs = np.diff(np.log(rings)) / (np.log1p(fine) / 4)
+    within = (rings[:-1] >= 0.1) & (rings[1:] <= 0.11)
+    assert rungs[within] == pytest.approx(np.full(within.sum(), 4.0), abs=1e-6)
+    after = rungs[np.flatnonzero(within)[-1] + 1 :]
+    after = after[np.rint(after) > 4][:8]
+    assert np.rint(after).tolist() == [5, 6, 7, 8, 10, 12, 15, 18]
+
+
+@pytest.mark.parametrize(("volume", "inverted"), [(0.021, False), (0.019, True)])
+def test_an_element_of_a_fiftieth_of_its_volume_is_inverted(volume, inverted) -> None:
+    """All heights are that much smaller, no radius moves."""
+    problem = fem.ContactProblem(Pair(STEEL, STEEL, 1e-3), (1e-4, 0.04))
+    grid = discretise(problem, fem.Accuracy.smoke(), Zone(0.02, 0.06))
+    elements, n = grid.elements.elastic, len(grid.elements.conn)
+    u = np.zeros(grid.n_dofs)
+    u[1::2] = (volume - 1.0) * grid.mesh.points[:, 1]
+    code = bulk_forces(
+        elements, u, state=State.virgin(n), rule=EXACT, force=np.zeros(grid.n_dofs),
+        tangent=np.empty((n, 8, 8)), tangent_at=np.full((n, 4, 5), np.nan), seconds=1.0,
+    )  # fmt: skip
+    assert (code == DISTORTED) == inverted
