@@ -9,6 +9,7 @@ import numpy as np
 import pytest
 from dentscope.core import InputError, Material, Pair
 from dentscope.fitting import correct as correcting
+from dentscope.fitting import fit as form_fit
 from dentscope.fitting import hardening
 from dentscope.fitting.calibrate import Misses, _scaled, calibrate, within
 from dentscope.fitting.case_table import pair_table
@@ -298,3 +299,21 @@ def test_a_law_of_a_solve_needs_three_unloadings() -> None:
     )  # fmt: skip
     with pytest.raises(InputError, match="3 or more"):
         pair_table(solution, None)
+
+
+def test_a_residual_of_one_of_the_form_is_a_hundredth_of_force_radius_and_shares(
+    monkeypatch,
+) -> None:
+    """Three hundredths of the exponent and a fiftieth of the energy given back."""
+    one = np.ones(1)
+    table = SimpleNamespace(edge_seen=one > 0.0, force=one, radius=one, share=0.5 * one)
+    turns = SimpleNamespace(exponent=1.5 * one, total=0.5 * one, sphere_part=0.4 * one)
+    seen = SimpleNamespace(
+        force=np.exp([0.01]), radius=np.exp([0.02]), share=0.53 * one, total=0.54 * one,
+        sphere=0.25 * one, exponent=1.53 * one,
+    )  # fmt: skip
+    monkeypatch.setattr(form_fit, "ripple_of", lambda _: (0.0, 0.0))
+    monkeypatch.setattr(form_fit, "predict", lambda *_: seen)
+    monkeypatch.setattr(form_fit, "given_back", lambda *_: np.exp([0.02]))
+    misfit = form_fit._misfit_of(table, turns, np.zeros(1), np.array([True]))
+    assert misfit(np.zeros(1)) == pytest.approx([1.0, 2.0, 3.0, 4.0, 5.0, 1.0, 1.0])
