@@ -31,10 +31,6 @@ class ReductionRules:
         20.0, "durations after a pulse over which a ringing is averaged [-]",
         "drop table on felt: the change of speed is level from there on",
     )  # fmt: skip
-    most_given_up: float = rule(
-        0.5, "part of a run's instants that may be given up at its ends [-]",
-        "a knock before and after a run of five is two of seven",
-    )  # fmt: skip
     most_elastic: float = rule(
         0.998, "median restitution of a run above which nothing bounces: a clock [-]",
         "hardened steel on steel, glass on glass: 0.99 at most in air",

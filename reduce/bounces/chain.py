@@ -107,10 +107,8 @@ def chain_of(times: Array) -> Chain | None:
     if stray:
         notes.append(f"{stray} intervals stray from the course of the others and are left out")
     kept, single, ends = _without_false_ends(used, kept, single)
-    if ends > RULES.most_given_up * (len(kept) + ends):
-        return None  # taps, steps: most of what seemed a run is none
     if len(kept) < RULES.least_of_all * used.size:
-        return None
+        return None  # taps, steps: most of what seemed a run is none
     if ends:
         notes.append(f"{ends} instants at the ends of the run stray from its course: left out")
     return Chain(np.asarray(times), kept, single, _typical(used, found), tuple(notes))
