@@ -63,6 +63,13 @@ TABLE_2_1 = {
     5: (200.0, 200.0, 503.0, 0.33, 0.30),
 }
 
+
+def table_2_1(number: int, ratio: float) -> Pair:
+    """Pair `number` of Table 2.1 at Sy* = `ratio`."""
+    E_s, E_f, Sy, nu_s, nu_f = TABLE_2_1[number]
+    return pair_of(E_s=E_s, E_f=E_f, Sy_min=Sy, ratio=ratio, nu_s=nu_s, nu_f=nu_f)
+
+
 # Sy* of the thesis's sweeps; its steep part, 0.9 to 1.7, in steps of 0.05 and at its dip, 1.07
 RATIOS = (
     *(0.1, 0.14, 0.2, 0.28, 0.4, 0.5, 0.6, 0.7, 0.8),

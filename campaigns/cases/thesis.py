@@ -9,7 +9,7 @@ from itertools import product
 from ... import fem
 from ...core.material import Pair
 from ..case import Case, standard_case
-from .pairs import RATIOS, TABLE_2_1, deep_case, pair_of
+from .pairs import RATIOS, TABLE_2_1, deep_case, pair_of, table_2_1
 
 # those of the first part of `thesis`: both ends, equal strengths and the steep part
 _FIRST_RATIOS = (0.1, 0.5, 0.9, 1.0, 1.1, 1.25, 1.4, 1.6, 10.0)
@@ -20,13 +20,11 @@ def smoke() -> tuple[Case, ...]:
     """Cases 1, 3 and 5 of Table 2.1 at four strength ratios."""
     cases = []
     for number in (1, 3, 5):
-        E_s, E_f, Sy, nu_s, nu_f = TABLE_2_1[number]
         for ratio in (0.1, 1.0, 1.5, 10.0):
-            pair = pair_of(E_s=E_s, E_f=E_f, Sy_min=Sy, ratio=ratio, nu_s=nu_s, nu_f=nu_f)
             cases.append(
                 standard_case(
                     f"table-2.1-case-{number}-Sy*-{ratio:g}",
-                    pair,
+                    table_2_1(number, ratio),
                     deepest=0.04,
                     n_depths=40,
                     unload_w=(5.0, 20.0),
@@ -121,11 +119,10 @@ def _without(cases: Sequence[Case], others: Sequence[Case]) -> tuple[Case, ...]:
 
 
 def _table_2_1(ratios: tuple[float, ...]) -> list[Case]:
-    cases = []
-    for ratio, (number, (E_s, E_f, Sy, nu_s, nu_f)) in product(ratios, TABLE_2_1.items()):
-        pair = pair_of(E_s=E_s, E_f=E_f, Sy_min=Sy, ratio=ratio, nu_s=nu_s, nu_f=nu_f)
-        cases.append(deep_case(f"table-2.1-case-{number}-Sy*-{ratio:g}", pair))
-    return cases
+    return [
+        deep_case(f"table-2.1-case-{number}-Sy*-{ratio:g}", table_2_1(number, ratio))
+        for ratio, number in product(ratios, TABLE_2_1)
+    ]
 
 
 def _twenty_seven_sets() -> list[Case]:

@@ -10,7 +10,7 @@ import numpy as np
 
 from ...campaigns import CaseRecord
 from ...campaigns.case import dimensionless_groups
-from ...campaigns.cases.pairs import RATIOS, TABLE_2_1, pair_of
+from ...campaigns.cases.pairs import RATIOS, TABLE_2_1, table_2_1
 from ...core.arrays import Array, Integers
 from ...core.material import Pair
 
@@ -79,7 +79,7 @@ def sweeps(records: Sequence[CaseRecord]) -> dict[int, Sweep]:
     for number in TABLE_2_1:
         found: list[tuple[float, Values, CaseRecord]] = []
         for ratio in sorted(RATIOS):
-            record = stored.get(groups_of(table_pair(number, ratio)))
+            record = stored.get(groups_of(table_2_1(number, ratio)))
             values = at_depth(record, DEPTH) if record is not None else None
             if record is not None and values is not None:
                 found.append((ratio, values, record))
@@ -89,12 +89,6 @@ def sweeps(records: Sequence[CaseRecord]) -> dict[int, Sweep]:
             records_of = tuple(record for _, _, record in found)
             out[number] = Sweep(number, ratios, share, radius, pressure, force, records_of)
     return out
-
-
-def table_pair(number: int, ratio: float) -> Pair:
-    """Pair `number` of Table 2.1 at Sy* = `ratio`."""
-    E_s, E_f, Sy, nu_s, nu_f = TABLE_2_1[number]
-    return pair_of(E_s=E_s, E_f=E_f, Sy_min=Sy, ratio=ratio, nu_s=nu_s, nu_f=nu_f)
 
 
 def at_depth(record: CaseRecord, depth: float) -> Values | None:

@@ -13,13 +13,13 @@ from dataclasses import dataclass
 import numpy as np
 
 from ...campaigns import CaseRecord
-from ...campaigns.cases.pairs import pair_of
+from ...campaigns.cases.pairs import pair_of, table_2_1
 from ...core.material import Pair
 from ...fem import critical_depth
 from ...models import LAWS, DomainWarning
 from ...models.published.ghaednia import share_of_sphere
 from .claims import CLAIMS, FEWEST, Finding
-from .sweep import DEPTH, Sweep, at_depth, by_pair, groups_of, sweeps, table_pair
+from .sweep import DEPTH, Sweep, at_depth, by_pair, groups_of, sweeps
 
 Findings = dict[str, Finding]
 
@@ -152,7 +152,7 @@ def _other_laws(stored: Mapping[str, CaseRecord]) -> Trend:
 
 
 def _of_the_thesis(number: int, ratio: float, name: str) -> float:
-    pair, law = table_pair(number, ratio), LAWS["ghaednia"]
+    pair, law = table_2_1(number, ratio), LAWS["ghaednia"]
     if name == "share":
         return float(share_of_sphere(DEPTH, pair.E_reduced / pair.Sy_min, ratio, 1.0))
     with warnings.catch_warnings():
@@ -176,7 +176,7 @@ def _elastic_partner(records: Sequence[CaseRecord]) -> list[Trend]:
         findings: Findings = {}
         for number in (0, *range(1, 6)):
             record = stored.get(groups_of(_picture_pair(ratio) if number == 0 else
-                                          table_pair(number, ratio)))  # fmt: skip
+                                          table_2_1(number, ratio)))  # fmt: skip
             if record is None or not record.unloadings:
                 continue
             last = record.unloadings[-1]

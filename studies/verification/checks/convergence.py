@@ -8,9 +8,8 @@ import numpy as np
 
 from .... import fem
 from ....campaigns.case import Case
-from ....campaigns.cases.pairs import TABLE_2_1, pair_of
+from ....campaigns.cases.pairs import TABLE_2_1, table_2_1
 from ....core.arrays import Array
-from ....core.material import Pair
 from ..bench import Bench, Effort, Solved
 from ..curves import inner, ripple, smoothed
 from ..result import Cell, Measurement, Result, Table
@@ -85,7 +84,7 @@ def case_of(number: int, ratio: float, *, plan: Plan, accuracy: fem.Accuracy) ->
     Every step is recorded, so that the ripple, whose period is an element, is seen as it is:
     at wider depths it would look like a wave of any length, which no smoothing takes out.
     """
-    pair = _pair(number, ratio)
+    pair = table_2_1(number, ratio)
     first = 0.3 * fem.critical_depth(pair)
     steps = int(np.ceil(np.log(plan.deepest / first) / np.log(plan.bolder.step_ratio)))
     # depths of the bolder solve are every other one of the base's
@@ -213,8 +212,3 @@ def _result(
 def _pair_of_numbers(i: int, mesh: Array, step: Array) -> str:
     digits = 4 if _NAMES[i] == "delta_s*" else 2
     return f"{mesh[i]:.{digits}f} + {step[i]:.{digits}f}"
-
-
-def _pair(number: int, ratio: float) -> Pair:
-    E_s, E_f, Sy, nu_s, nu_f = TABLE_2_1[number]
-    return pair_of(E_s=E_s, E_f=E_f, Sy_min=Sy, ratio=ratio, nu_s=nu_s, nu_f=nu_f)
