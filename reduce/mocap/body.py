@@ -17,8 +17,6 @@ from .file import Markers
 from .motion import Prior
 from .rigid import Poses, kabsch
 
-SHAPES = ("rod", "sphere", "body")
-
 Place = Annotated[tuple[float, float, float], Listed]
 
 
@@ -48,7 +46,7 @@ class Body:
     Parameters
     ----------
     shape
-        One of `SHAPES`; `"body"` touches with its lowest marker.
+        `"rod"`, `"sphere"` or `"body"`, which touches with its lowest marker.
     axis
         (3,) unit vector of the rod, either way; zero for the others.
     length
@@ -105,7 +103,7 @@ def make_body(
     poses, markers
         Mean shape and the names of its markers.
     shape
-        One of `SHAPES`.
+        `"rod"`, `"sphere"` or `"body"`.
     tip_radius, length, radius
         Of the striker [m]; `length` 0 for all but rods, `radius` of the rod, default the tip's.
     file

@@ -38,7 +38,7 @@ def reduce(path: Path, options: ScanOptions) -> Reduced:
         line = reduce_line(scan, height_scale=scale)
         values = {"permanent_depth_m": line.depth, "crater_width_m": line.width}
         return Reduced(
-            source=path, values=_known(values), trials=line.trials(), notes=line.notes,
+            source=path, values=values, trials=line.trials(), notes=line.notes,
             draw=lambda to: draw_groove(line, to),
         )  # fmt: skip
     found = reduce_scan(
@@ -46,7 +46,7 @@ def reduce(path: Path, options: ScanOptions) -> Reduced:
         blur=Measured(options.blur_m, options.blur_m_std),
     )  # fmt: skip
     return Reduced(
-        source=path, values=_known(_values(found)), trials=found.trials(), notes=found.notes,
+        source=path, values=_values(found), trials=found.trials(), notes=found.notes,
         draw=lambda to: draw_crater(found, to),
     )  # fmt: skip
 
@@ -86,7 +86,3 @@ def _values(found: Crater) -> dict[str, Measured]:
         0.5 * math.hypot(found.length.std, found.width.std),
     )
     return values | {"crater_diameter_m": across, "contact_radius_m": across.scaled(0.5)}
-
-
-def _known(values: dict[str, Measured]) -> dict[str, Measured]:
-    return {k: v for k, v in values.items() if math.isfinite(v.value)}

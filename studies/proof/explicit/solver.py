@@ -17,7 +17,6 @@ from numba import njit
 
 # per body: density, shear modulus, bulk modulus, Voce rise, Voce strain, rate C, reference rate
 RHO, SHEAR, BULK, RISE, STRAIN, RATE, REFERENCE = range(7)
-N_MATERIAL = 7
 
 _BULK_VISCOSITY = 0.04
 _HOURGLASS = 0.02
@@ -333,7 +332,7 @@ def strike(x, quads, body, tip, top, held, materials, base, speed, most, settle,
     x, quads, body, tip, top, held
         The mesh; `x` is moved.
     materials
-        (3, N_MATERIAL) of bar, block and pad.
+        (3, 7) of bar, block and pad.
     base
         (m,) static strength of each element [Pa].
     speed
