@@ -45,8 +45,9 @@ def _head() -> Iterator[str]:
     yield (
         "Made by `dentscope verify`; `--list` names the checks, `--only NAME` runs one. Marks were "
         "set before measuring. Of each check the number nearest to its mark is shown, at the level "
-        "`production` unless a row says otherwise; any run writes every number to "
-        "`build/verification/rows.md`, and as data they lie in `docs/verification/results`."
+        "`production` unless a row says otherwise. How each was done and every number of it any "
+        "run writes to `build/verification/rows.md`; as data they lie in "
+        "`docs/verification/results`."
     )
     yield ""
     yield f"Numerics version of the solver {fem.NUMERICS_VERSION}; {packages}."
@@ -88,10 +89,8 @@ def _met(result: Result) -> str:
 
 
 def _section(result: Result, path: Path) -> Iterator[str]:
-    """How a check was done, and its numbers nearest to their marks."""
+    """A check's numbers nearest to their marks, and its pictures."""
     yield f"## {result.title}"
-    yield ""
-    yield result.about
     yield ""
     kept = [m for m in result.measurements if m.met is not False]  # the others are listed above
     shown = sorted(kept, key=lambda m: -m.used)[:SHOWN]
