@@ -24,10 +24,13 @@ from dentscope.studies.proof.generators.effects import EFFECTS
 from dentscope.studies.proof.generators.folder import write_set
 from dentscope.studies.proof.generators.simulate import results_of, rows_of, size_of
 from dentscope.studies.proof.generators.truth import FAMILIES, Truth, draw
+from dentscope.studies.proof.same_meaning import comparable
 
 RATE, HARDENING = "strain-rate-hardening", "work-hardening"
+RISE = "rise_at_1000_per_s"
 KINDS = {"rate": (RATE,), "hardening": (HARDENING,), "both": (RATE, HARDENING), "nothing": ()}
 SEED = 20261126
+KEPT = ("verdict", "mechanisms", "alternatives", "probabilities", "parameters", "next_experiment")
 ERRORS = {"load_N": 0.005, "dent_diameter_m": 0.01, "permanent_depth_m": 0.02}
 
 
@@ -112,20 +115,25 @@ def add_presses(truth: Truth, folder: Path, rng: np.random.Generator) -> None:
             stream.write(f"{column}_relative = {ERRORS[column]}\n")
 
 
+def rise_of(truth: Truth) -> float | None:
+    """The rise of the strength at 1000 1/s, of a truth with a rate effect."""
+    rises = [comparable(vars(e))[RISE] for e in truth.effects if e.name == RATE]
+    return rises[0] if rises else None
+
+
 def measure(kind: str, number: int, out: Path) -> dict[str, object]:
     """Diagnose one concealed case without and with presses."""
     truth = truth_of(kind, number)
-    record: dict[str, object] = {"kind": kind, "truth": truth.mechanisms, "sizes": truth.sizes}
+    record: dict[str, object] = {
+        "kind": kind, "truth": truth.mechanisms, "sizes": truth.sizes, "rise": rise_of(truth),
+    }  # fmt: skip
     for which in ("without", "with"):
         folder = out / f"{kind}-{number:02d}-{which}"
         write_set(truth, folder, name=folder.name)
         if which == "with":
             add_presses(truth, folder, np.random.default_rng([SEED, 99, number]))
         found = diagnose(read(folder), seed=0).to_dict()
-        record[which] = {
-            k: found[k]
-            for k in ("verdict", "mechanisms", "alternatives", "probabilities", "parameters")
-        }
+        record[which] = {k: found[k] for k in KEPT}
     return record
 
 
@@ -134,20 +142,28 @@ def told(records: list[dict], which: str) -> list[str]:
     lines = []
     for kind, names in KINDS.items():
         of = [r for r in records if r["kind"] == kind]
-        large = [r for r in of if not names or max(r["sizes"]) >= 10.0]
-        for group, sets in (("all", of), ("size 10 and more", large if names else [])):
-            if sets:
-                named = [set(r[which]["mechanisms"]) for r in sets]
-                within = [n | set().union(*r[which]["alternatives"], set())
-                          for n, r in zip(named, sets, strict=True)]  # fmt: skip
-                exact = sum(n == set(names) for n in named)
-                held = sum(set(names) <= w for w in within) if names else 0
-                false = sum(bool(n - set(names)) for n in named)
-                lines.append(
-                    f"{which:8s} {kind:10s} {group:17s} sets {len(sets):3d}   "
-                    f"named exactly {exact:3d}   in the set {held:3d}   a wrong name {false:3d}"
-                )
-    return lines
+        exact = sum(set(r[which]["mechanisms"]) == set(names) for r in of)
+        held = sum(set(names) <= set_of(r[which]) for r in of) if names else 0
+        false = sum(bool(set(r[which]["mechanisms"]) - set(names)) for r in of)
+        lines.append(
+            f"{which:8s} {kind:10s} sets {len(of):3d}   named exactly {exact:3d}   "
+            f"in the set {held:3d}   a wrong name {false:3d}"
+        )
+    sizes = [dict(zip(r["truth"], r["sizes"], strict=True)).get(RATE, 0.0) for r in records]
+    large = [r for r, size in zip(records, sizes, strict=True) if size >= 10.0]
+    rises = [(r["rise"], r[which]["parameters"].get(RISE)) for r in records if r["rise"]]
+    inside = [x["low"] <= true <= x["high"] for true, x in rises if x]
+    return [
+        *lines,
+        f"{which:8s} rate, size 10 and more: in the set "
+        f"{sum(RATE in set_of(r[which]) for r in large)} of {len(large)}; "
+        f"its rise in the interval {sum(inside)} of {len(inside)}",
+    ]
+
+
+def set_of(found: dict) -> set[str]:
+    """Every mechanism that a verdict names, or cannot tell from what it names."""
+    return set(found["mechanisms"]).union(*found["alternatives"])
 
 
 def main() -> None:
