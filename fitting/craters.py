@@ -182,6 +182,7 @@ def _of_part(
     with opened_part(path) as file:
         told = [json.loads(text) for text in texts_of(file, "specification")]
         pairs = [Case.from_specification(one).pair for one in told]
+        number = [numbers.setdefault(repr(pair), len(numbers)) for pair in pairs]
         table = {k: read_array(file["unloadings"][k]) for k in file["unloadings"]}
         curve = file["unloading_curves"]
         first = np.searchsorted(read_array(curve["unloading"]), np.arange(len(table["case"])))
@@ -206,7 +207,7 @@ def _of_part(
                 mine = slice(*np.searchsorted(owner, (k, k + 1)))
                 if left.of(body) > 0.0:
                     heights[body] = _over_the_depth(body, r[mine], z[mine], left, pair.R)
-            out.append((numbers.setdefault(repr(pair), len(numbers)), pair, left, heights))
+            out.append((number[case], pair, left, heights))
     return out
 
 
