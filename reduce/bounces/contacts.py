@@ -104,23 +104,14 @@ def find_bounces(
         except (FloatingPointError, np.linalg.LinAlgError):  # no fall, no drag makes them flights
             return None
         view = solutions[0].view
+        seen = _meetings(body, contacts, stage, pieces, places, solutions)
+        possible = _possible(body, stage, view, pieces, seen)
         if again:
             known = [s is not None for s in sides]
-            held = [
-                _held(body, turning, stage, view, pieces, places[2 * k : 2 * k + 2])
-                for k, turning in enumerate(contacts)
-            ]
+            moved = _moved(body, stage, view, pieces, seen, possible)
+            held = [moved.get(turning, (0, 0)) for turning in contacts]
             grown = sides_of(body, contacts, stage, view, held)
             sides = [g if k else None for g, k in zip(grown, known, strict=True)]
-    meetings = [
-        _meeting(body, turning, stage, pieces, (places[2 * k], places[2 * k + 1]), solutions)
-        for k, turning in enumerate(contacts)
-    ]
-    seen = [m for m in meetings if m is not None]
-    possible = common_durations([
-        likely_durations(body, stage, view, (pieces[m.before], pieces[m.after]), m.numbers)
-        for m in seen
-    ])  # fmt: skip
     found = [
         _bounce(body, stage, pieces, solutions, meeting, contact, durations)
         for meeting, durations in zip(seen, possible, strict=True)
@@ -131,14 +122,37 @@ def find_bounces(
     return _whole(bounces, chosen, stage, view, solutions, before, ball, metres, body.step)
 
 
-def _held(
-    body: Track, turning: int, stage: Stage, view: View, pieces: Sequence[Piece],
-    place: Sequence[int | None],
-) -> tuple[int, int]:  # fmt: skip
-    b, a = place
-    if b is None or a is None:
-        return 0, 0
-    return samples_of(body, stage, view, (pieces[b], pieces[a]), turning)
+def _meetings(
+    body: Track, contacts: Sequence[int], stage: Stage, pieces: Sequence[Piece],
+    places: Sequence[int | None], solutions: Sequence[JointSolution],
+) -> list[_Meeting]:  # fmt: skip
+    every = (
+        _meeting(body, turning, stage, pieces, places[2 * k : 2 * k + 2], solutions)
+        for k, turning in enumerate(contacts)
+    )
+    return [m for m in every if m is not None]
+
+
+def _moved(
+    body: Track, stage: Stage, view: View, pieces: Sequence[Piece], seen: Sequence[_Meeting],
+    possible: Sequence[Array],
+) -> dict[int, tuple[int, int]]:  # fmt: skip
+    """By its lowest sample, how many samples beside it a contact has moved."""
+    return {
+        m.turning: samples_of(
+            body, stage, view, (pieces[m.before], pieces[m.after]), m.turning, m.numbers, durations
+        )
+        for m, durations in zip(seen, possible, strict=True)
+    }
+
+
+def _possible(
+    body: Track, stage: Stage, view: View, pieces: Sequence[Piece], seen: Sequence[_Meeting]
+) -> list[Array]:
+    return common_durations([
+        likely_durations(body, stage, view, (pieces[m.before], pieces[m.after]), m.numbers)
+        for m in seen
+    ])  # fmt: skip
 
 
 class _Meeting(NamedTuple):
@@ -157,7 +171,7 @@ class _Meeting(NamedTuple):
 
 def _meeting(
     body: Track, turning: int, stage: Stage, pieces: Sequence[Piece],
-    place: tuple[int | None, int | None], solutions: Sequence[JointSolution],
+    place: Sequence[int | None], solutions: Sequence[JointSolution],
 ) -> _Meeting | None:  # fmt: skip
     b, a = place
     if b is None or a is None:

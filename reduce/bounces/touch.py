@@ -80,25 +80,38 @@ def touch_of(
 
 
 def samples_of(
-    track: Track, stage: Stage, view: View, flights: tuple[Piece, Piece], turning: int
-) -> tuple[int, int]:
+    track: Track, stage: Stage, view: View, flights: tuple[Piece, Piece], turning: int,
+    met: Array, likely: Array,
+) -> tuple[int, int]:  # fmt: skip
     """Return how many samples before and after the lowest one belong to a contact.
 
-    None where fewer than four show it; else half of what shows is left out beyond each end, in
-    which the force is too small to show and yet moves the speed.
+    Those within the duration that is likely, and its error; where four or more show it half of what
+    shows is left out beyond each end, in which the force is too small to show and yet moves the
+    speed.
     """
     lowest = float(track.time[turning])
     runs = _both_held(track, stage, view, flights, lowest)
     ratio = float(np.clip(abs(flights[1].launch.speed / flights[0].launch.speed), 0.1, 1.0))
+    shares = ratio / (1.0 + ratio), 1.0 / (1.0 + ratio)
+    lasts = _unseen(likely)
+    longest = lasts.value + lasts.std
+    first, last = np.searchsorted(
+        track.time, (float(met[0]) - shares[0] * longest, float(met[0]) + shares[1] * longest)
+    )
+    within = max(turning - int(first), 0), max(int(last) - 1 - turning, 0)
+    if not frames_show(track):
+        within = 0, 0
     # slowed down over a time, a body is pushed away over that time over the restitution
     shown = max(sum(r.size for r in runs), math.ceil(runs[0].size * (1.0 + 1.0 / ratio)))
     if shown < RULES.resolved:
-        return 0, 0
+        return within
     before = int(turning - runs[0][-1]) if runs[0].size else 0
     after = int(runs[1][-1] - turning) if runs[1].size else 0
-    shares = ratio / (1.0 + ratio), 1.0 / (1.0 + ratio)
     more = [math.ceil(2.0 * RULES.soft_ends * share * shown) for share in shares]
-    return before + more[0], max(after, math.ceil(before / ratio)) + more[1]
+    return (
+        max(before + more[0], within[0]),
+        max(after + more[1], math.ceil(before / ratio) + more[1], within[1]),
+    )
 
 
 def _held(
@@ -132,22 +145,23 @@ def likely_durations(
 ) -> Array:
     """Return how likely the samples next to a contact make each of `LASTS`, (n,) logarithms.
 
-    A path that bends as two quarters of a sine lies the least above the flights that it joins; one
-    that halts at once, smeared over a whole frame, the most. A contact of more than some
-    milliseconds is soft and bends as a spring does, whose loss may be a damping: it then bends more
-    at first, and less at the end.
+    A path bends as a spring's, whose loss may be a damping: it then bends more at first, and less
+    at the end. That of a hard body, of some milliseconds at most, may bend as under a force that is
+    whole at once; where frames hardly show it, it may halt at once, smeared over a whole frame.
     """
     meeting, ratio, step = float(met[0]), float(met[3]), track.step
     runs = _both_held(track, stage, view, flights, meeting)
     shares = ratio / (1.0 + ratio), 1.0 / (1.0 + ratio)
     smeared = float(met[1] + met[2]) / (2.0 * step)
+    resolved = frames_show(track)
     found = np.zeros_like(LASTS)
     damping = -math.log(min(max(ratio, 0.1), 1.0)) * np.array([1.0, -1.0])
     for piece, run, share, speed, loss in zip(
         flights, runs, shares, met[1:3], damping, strict=True
     ):
         order = np.argsort(np.abs(track.time[piece.index] - meeting))[: RULES.touch_samples]
-        for index in (*run, *piece.index[order]):
+        asked = np.concatenate([run, piece.index[order]])
+        for index in _all_between(track, meeting, asked) if resolved else asked:
             time = track.time[index : index + 1]
             seen = stage.seen(view, piece.launch, piece.reference, time)
             above, gap = float(track.height[index] - seen[0]), abs(float(time[0]) - meeting)
@@ -156,17 +170,28 @@ def likely_durations(
             soft = speed * (late - side * np.sin(0.5 * np.pi * late / side) / (0.5 * np.pi))
             turn = math.pi * late / LASTS
             damped = speed * (late - LASTS / math.pi * np.exp(-loss * late / LASTS) * np.sin(turn))
-            most = np.where(
-                LASTS > RULES.hard_contact,
-                np.minimum(np.maximum(RULES.soft_bend[1] * soft, damped), speed * late),
-                speed * late,
-            )
+            # a force that is whole at once, as a flat's or a stack's: no harder body halts sooner
+            whole = speed * (late**2 / (2.0 * side) if resolved else late)
+            most = np.maximum(RULES.soft_bend[1] * soft, damped)
+            most = np.where(LASTS > RULES.hard_contact, most, np.maximum(most, whole))
+            most = np.minimum(most, speed * late)
             most = most + smeared * max(0.5 * step - gap, 0.0) ** 2
             least = np.minimum(RULES.soft_bend[0] * soft, damped)
             off = np.maximum(np.maximum(least - above, above - most), 0.0)
             # a shadow or a stray beside the contact says little
             found -= np.minimum(0.5 * (off / piece.sigma) ** 2, RULES.touch_stray)
     return np.asarray(found - found.max())
+
+
+def _all_between(track: Track, meeting: float, asked: Indices) -> Indices:
+    """Return the samples of one side of a contact from the meeting to the farthest one asked."""
+    start = int(np.searchsorted(track.time, meeting))
+    return np.arange(min(start, asked.min()), max(start - 1, asked.max()) + 1)
+
+
+def frames_show(track: Track) -> bool:
+    """Whether four samples or more lie in a contact that only a soft body makes so long."""
+    return track.step < 1.01 * RULES.hard_contact / RULES.resolved
 
 
 def common_durations(each: Sequence[Array]) -> list[Array]:
