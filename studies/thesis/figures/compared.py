@@ -107,13 +107,9 @@ def _over_ratio(
             points.append((ratio, value, record.case.pair))
     finish(axis, x="Sy*", y=y, legend="circles: our finite elements")
     note = beside_points(points, quantity)
-    off = _off(points, quantity)
-    for k, (s, _, _) in enumerate(points):
-        if abs(np.log10(s)) > 0.99:
-            told = ", ".join(f"{name} {values[k]:+.1%}" for name, values in off.items())
-            note += f" At Sy* = {s:g}: {told}."
     if number in _SAID_OF_RATIO and points:
-        note += f" {_SAID_OF_RATIO[number](np.array([s for s, _, _ in points]), off)}"
+        said = _SAID_OF_RATIO[number]
+        note += f" {said(np.array([s for s, _, _ in points]), _off(points, quantity))}"
     return Picture(number, f"{title}, case {case}, Delta/R = 0.04", made, note)
 
 
