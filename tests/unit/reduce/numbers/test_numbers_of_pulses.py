@@ -49,15 +49,15 @@ def test_a_foot_is_six_widths_long(foot, first) -> None:
     assert _quiet(up, width=20, noise=0.0, height=1.0, low=0.0) == first
 
 
-@pytest.mark.parametrize(("height", "seen"), [(0.01, False), (0.015, True)])
+@pytest.mark.parametrize(("height", "seen"), [(0.01, False), (0.012, True)])
 def test_a_foot_of_half_a_per_cent_of_the_area_counts(height, seen) -> None:
-    """Five samples before a pulse of area 10: four times their height."""
+    """Five samples before a triangle of area 10: four and a half times their height."""
     time = np.arange(30.0)
-    clear = np.where((time >= 10) & (time <= 20), 1.0, 0.0) + height * ((time > 4) & (time < 10))
+    clear = np.maximum(2.0 - 0.4 * np.abs(time - 15.0), 0.0) + height * ((time > 4) & (time < 10))
     ends = Measured(10.0, 0.0), Measured(20.0, 0.0)
     found = area_of(time, clear, Level(0.0, 0.0, 0.0, 0, 5), CLEAN, ends)
     assert bool(found.notes) == seen
-    assert found.area.value == pytest.approx(10.0 + 4.0 * height * seen)
+    assert found.area.value == pytest.approx(10.0 + 4.5 * height * seen)
     if not seen:  # a thousandth by the form of the pulse, whatever else is known
         assert found.area.std == pytest.approx(0.01)
 
@@ -109,7 +109,7 @@ def test_a_flat_top_has_more_equal_samples_than_the_converters_steps_leave(
 def looked_at(clear, ends=(25.0, 55.0)):
     """What is said of a record with a sample a second."""
     clear = np.asarray(clear, dtype=float)
-    return shape_of(np.arange(clear.size * 1.0), clear, int(np.argmax(clear)), ends, source="")
+    return shape_of(np.arange(clear.size * 1.0), clear, int(np.argmax(clear)), ends, 0.0, source="")
 
 
 def with_top(top, sides):
@@ -161,15 +161,15 @@ def test_six_half_waves_of_a_third_of_the_peak_are_an_oscillation(waves, size, r
     assert refuses("swings", lambda: looked_at(record, (400.0, 420.0))) == refused
 
 
-@pytest.mark.parametrize(("away", "seen"), [(140, True), (165, False)])
+@pytest.mark.parametrize(("away", "seen"), [(130, True), (165, False)])
 def test_swings_are_looked_for_over_eight_durations(away, seen) -> None:
-    found = looked_at(swings(1, 0.2, away=away), (400.0, 420.0))
+    found = looked_at(swings(2, 0.2, away=away), (400.0, 420.0))
     assert found.ringing == (pytest.approx(0.2) if seen else 0.0)
 
 
-@pytest.mark.parametrize(("size", "ringing"), [(0.09, 0.0), (0.11, 0.11)])
-def test_a_tenth_to_the_other_side_is_a_ringing(size, ringing) -> None:
-    found = looked_at(swings(1, size), (400.0, 420.0))
+@pytest.mark.parametrize(("size", "ringing"), [(0.029, 0.0), (0.031, 0.031)])
+def test_three_hundredths_to_either_side_in_turn_are_a_ringing(size, ringing) -> None:
+    found = looked_at(swings(2, size), (400.0, 420.0))
     assert found.ringing == pytest.approx(ringing)
 
 
@@ -194,8 +194,8 @@ def test_pulses_that_fade_as_bounces_do_are_no_train(flights, heights, refused) 
     assert told == refused
 
 
-@pytest.mark.parametrize(("height", "others"), [(0.29, 0), (0.32, 1)])
-def test_another_pulse_of_three_tenths_is_named(height, others) -> None:
+@pytest.mark.parametrize(("height", "others"), [(0.32, 0), (0.34, 1)])
+def test_another_pulse_of_a_third_is_named(height, others) -> None:
     clear = np.concatenate([np.zeros(50), PULSE, np.zeros(100), height * np.ones(4), np.zeros(50)])
     found = list(_others(np.arange(clear.size * 1.0), clear, 1.0, (50.0, 70.0)))
     assert len(found) == others
@@ -226,7 +226,7 @@ def test_a_flank_rises_with_a_power_of_1_to_1_and_a_half(power) -> None:
 @pytest.mark.parametrize(("value", "refused"), [(1.29, False), (1.31, True), (-0.31, True)])
 def test_a_restitution_lies_within_three_deviations_of_0_to_1(value, refused) -> None:
     told = Measured(value, 0.1)
-    assert refuses("outside_restitution", lambda: _possible(told, "")) == refused
+    assert refuses("by_chance", lambda: _possible(told, "")) == refused
     if not refused:
         assert _possible(told, "").std == pytest.approx(math.hypot(0.1, 0.29))
 

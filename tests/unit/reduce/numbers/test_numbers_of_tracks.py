@@ -16,7 +16,7 @@ from dentscope.reduce.bounces.flights import Piece, _clean_starts, _Fit, _fitted
 from dentscope.reduce.bounces.joint import Before, _cleaned, _untrimmed, fit_together
 from dentscope.reduce.bounces.options import BallOptions, BounceOptions
 from dentscope.reduce.bounces.scale import Scale, _belief, check_scale, floor_drift, frames_lost
-from dentscope.reduce.bounces.sides import _same_fall, known_before
+from dentscope.reduce.bounces.sides import _Falls, _same_fall, known_before
 from dentscope.reduce.bounces.times import BouncedTimes, _unsure_contact, reduce_bounce_times
 from dentscope.reduce.bounces.touch import (
     LASTS,
@@ -165,7 +165,7 @@ def test_a_flight_spreads_six_times_as_much_as_others_or_a_hundredth_of_the_reac
 ) -> None:
     track, piece = thrown()
     sides = [Piece(piece.index, 0.2, piece.launch, s) for s in (usual, usual, usual, sigma)]
-    assert (_same_fall(track, sides, 9810.0, STAGE)[3] is not None) == kept
+    assert (_same_fall(_Falls(track), sides, 9810.0, STAGE)[3] is not None) == kept
 
 
 @pytest.mark.parametrize(("fall", "straight"), [(0.99, True), (1.01, False)])
@@ -271,7 +271,8 @@ def test_half_of_what_shows_of_a_contact_lies_beyond_its_ends(monkeypatch) -> No
     monkeypatch.setattr(touch, "_both_held", lambda *_: [np.array([9, 8]), np.array([11, 12])])
     track = Track(1e-3 * np.arange(20.0), np.zeros(20))
     both = piece([0, 1]), piece([18, 19])
-    assert samples_of(track, STAGE, NO_FALL, both, 10) == (4, 4)
+    short = np.eye(1, LASTS.size)[0]  # 30 us
+    assert samples_of(track, STAGE, NO_FALL, both, 10, np.array([0.01]), short) == (4, 4)
 
 
 def test_contacts_above_4_ms_are_rarer_by_the_fourth_power() -> None:
