@@ -21,11 +21,10 @@ import numpy as np
 from ...core.errors import InputError
 from ...core.inputs.toml_input import read_toml
 from ...discrepancy import diagnose
-from ...discrepancy.choice.odds import OUTSIDE
 from ...recordings import read
 from ..proof.case import open_run
 from ..proof.generators.truth import PLANTED
-from ..proof.rivals import DIAGNOSIS, PEERS, read_lines
+from ..proof.rivals import DIAGNOSIS, PEERS, names_of, read_lines
 from ..proof.seal import Ledger, SealBroken
 from .fitted import Fitted, fitted_of
 from .rules import RULES, LeftOut, Rule
@@ -65,7 +64,7 @@ def asked_of(folder: Path) -> list[Asked]:
         raise InputError(str(broken), source=str(folder), allowed="unbroken seals") from broken
     return [
         Asked(
-            folder / "sets" / name, _named(cases[name].truth), cases[name].verdict,
+            folder / "sets" / name, names_of(cases[name].truth), cases[name].verdict,
             float(cases[name].event["cpu_s"]),
         )
         for name in order
@@ -76,12 +75,8 @@ def asked_of(folder: Path) -> list[Asked]:
 def _truth(folder: Path, name: str) -> tuple[str, ...]:
     written = folder / f"{name}.json"
     if written.exists():
-        return _named(json.loads(written.read_text(encoding="utf-8")))
+        return names_of(json.loads(written.read_text(encoding="utf-8")))
     return tuple(sorted(read_toml(folder / f"{name}.toml")["mechanisms"]))
-
-
-def _named(record: dict[str, Any]) -> tuple[str, ...]:
-    return (OUTSIDE,) if record["kind"] == "outside" else tuple(sorted(record["mechanisms"]))
 
 
 def compared(

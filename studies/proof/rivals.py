@@ -32,7 +32,8 @@ DRAWS = 10_000
 STATED = (0.0, 0.3, 0.5, 0.7, 0.8, 0.9, 0.95, 1.0)
 """Edges of the ranges of a leader's probability."""
 
-_OUTSIDE, _ANOTHER = "outside-library", "another pair"
+BASELINE, OUTSIDE, ANOTHER_PAIR = "baseline", "outside-library", "another pair"
+"""Explanations that are no mechanism or pair of them."""
 
 
 class Mark(NamedTuple):
@@ -53,6 +54,11 @@ class Mark(NamedTuple):
     said: float
 
 
+def names_of(truth: dict[str, Any]) -> tuple[str, ...]:
+    """Names of the true explanation of a record, in order; none for a null."""
+    return (OUTSIDE,) if truth["kind"] == "outside" else tuple(sorted(truth["mechanisms"]))
+
+
 def read_lines(run: Path) -> list[dict[str, Any]]:
     """Return the lines of a folder that the same rules made as the last one.
 
@@ -70,17 +76,17 @@ def mark_of(line: dict[str, Any], decider: str) -> Mark:
     """Judge what one decider said of a set."""
     said, truth = line["said"][decider], tuple(line["truth"])
     verdict, names = said["verdict"], [tuple(sorted(n)) for n in said["names"]]
-    null, outside = not truth, truth == (_OUTSIDE,)
-    label = "baseline" if null else "+".join(truth)
+    null, outside = not truth, truth == (OUTSIDE,)
+    label = BASELINE if null else "+".join(truth)
     if null or outside:
-        exact = verdict == ("adequate" if null else _OUTSIDE)
+        exact = verdict == ("adequate" if null else OUTSIDE)
     else:
         exact = verdict == "missing-physics" and names == [truth]
     named = bool(names)
     p, brier, said_p, front = _probabilities(said["odds"], label, int(line["acting"]))
     return Mark(
         float(front), float(exact), float(exact or truth in names), float(null and named),
-        float(null and (named or verdict == _OUTSIDE)), float(outside and named),
+        float(null and (named or verdict == OUTSIDE)), float(outside and named),
         math.log(max(p, LEAST)), brier, said_p,
     )  # fmt: skip
 
@@ -92,9 +98,9 @@ def _probabilities(
 
     `another pair` is shared by the pairs of the acting mechanisms that have none of their own.
     """
-    own = {"+".join(sorted(k.split("+"))): float(p) for k, p in odds.items() if k != _ANOTHER}
+    own = {"+".join(sorted(k.split("+"))): float(p) for k, p in odds.items() if k != ANOTHER_PAIR}
     pairs = acting * (acting - 1) // 2 - sum("+" in k for k in own)
-    each = float(odds.get(_ANOTHER, 0.0)) / pairs if pairs > 0 else 0.0
+    each = float(odds.get(ANOTHER_PAIR, 0.0)) / pairs if pairs > 0 else 0.0
     p = own.get(label, each if "+" in label else 0.0)
     brier = sum(x**2 for x in own.values()) + max(pairs, 0) * each**2 + (1.0 - p) ** 2 - p**2
     lead = max(own, key=lambda k: own[k], default="")
@@ -113,7 +119,7 @@ def compare(lines: Sequence[dict[str, Any]]) -> dict[str, Any]:
     """
     deciders = [DIAGNOSIS, *(k for k in lines[0]["said"] if k != DIAGNOSIS)] if lines else []
     marks = {d: np.array([mark_of(x, d) for x in lines]) for d in deciders}
-    draws = np.random.default_rng(0).integers(0, max(len(lines), 1), (DRAWS, len(lines)))
+    draws = draws_of(len(lines))
     rows = []
     for name in deciders:
         row: dict[str, Any] = {"name": name, "seconds": _seconds(lines, name)}
@@ -123,14 +129,14 @@ def compare(lines: Sequence[dict[str, Any]]) -> dict[str, Any]:
         row["ranges"] = _ranges(marks[name])
         if name != DIAGNOSIS:
             away = marks[DIAGNOSIS] - marks[name]
-            row["front_less"] = _between(away[:, Mark._fields.index("front")], draws)
-            row["ln_p_less"] = _between(away[:, Mark._fields.index("ln_p")], draws)
+            row["front_less"] = mean_with_interval(away[:, Mark._fields.index("front")], draws)
+            row["ln_p_less"] = mean_with_interval(away[:, Mark._fields.index("ln_p")], draws)
             row["mcnemar"] = _mcnemar(away[:, Mark._fields.index("front")])
         rows.append(row)
     return {
         "sets": len(lines), "failed": sum(bool(x.get("failed")) for x in lines),
         "nulls": sum(not x["truth"] for x in lines),
-        "outside": sum(x["truth"] == [_OUTSIDE] for x in lines), "rows": rows,
+        "outside": sum(x["truth"] == [OUTSIDE] for x in lines), "rows": rows,
     }  # fmt: skip
 
 
@@ -139,11 +145,16 @@ def _seconds(lines: Sequence[dict[str, Any]], name: str) -> float:
     return float(np.mean([x["seconds"][of] for x in lines]))
 
 
-def _between(away: Array, draws: Indices) -> tuple[float, float, float]:
-    """Mean difference of paired scores with its 95 % interval over draws of sets."""
-    means = away[draws].mean(axis=1)
+def draws_of(sets: int) -> Indices:
+    """Bootstrap draws of so many sets, (draws, sets)."""
+    return np.random.default_rng(0).integers(0, max(sets, 1), (DRAWS, sets))
+
+
+def mean_with_interval(values: Array, draws: Indices) -> tuple[float, float, float]:
+    """Mean of a score, or of what paired scores differ by, with its 95 % interval over draws."""
+    means = values[draws].mean(axis=1)
     low, high = np.percentile(means, [2.5, 97.5])
-    return float(np.mean(away)), float(low), float(high)
+    return float(np.mean(values)), float(low), float(high)
 
 
 def _mcnemar(away: Array) -> float:

@@ -48,6 +48,11 @@ def digest_of(folder: Path) -> str:
     return text.hexdigest()
 
 
+def digest_of_record(record: dict[str, Any]) -> str:
+    """SHA-256 of a record as JSON, its keys in order."""
+    return _chain("", record)
+
+
 class SealBroken(ValueError):
     """A file or a line of the ledger is not what was sealed."""
 

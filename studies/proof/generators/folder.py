@@ -24,6 +24,9 @@ _POSITIVE = {"contact_time_s", "peak_force_N"}
 _SIGNED = {"rebound_spin_rad_s", "tangential_rebound_m_s"}
 _RELEASE, _SPEED_READING = 0.01, 0.002
 
+BLOCK = 0.15
+"""Thickness of a flat that is told to be a block [m]."""
+
 
 def write_set(truth: Truth, folder: Path, *, name: str) -> None:
     """Simulate a case of a fast family and write its recording set.
@@ -192,7 +195,8 @@ def _setup_text(truth: Truth, name: str) -> str:
             # a caliper's reading: what the sheet says about the flat
             lines.append(f"thickness_m = {_quantity(effect.numbers['thickness'], 0.01)}")
     if not truth.effects and truth.instrument.seed % 2 == 0 and rig.law == "elastic-plastic":
-        lines.append("thickness_m = 0.15")
+        lines.append(f"thickness_m = {BLOCK:g}")
+    lines += [f"{key} = {value:g}" for key, value in rig.told.items()]
     lines.append("")
     for body in rig.strikers:
         lines += _striker_lines(body, tolerance, truth.more.get("mass_factor", 1.0))

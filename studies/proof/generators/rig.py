@@ -97,8 +97,8 @@ class Rig:
         Whether the sheet states the height instead of the speed.
     law
         Key `law` of the flat.
-    extra
-        Further keys of [target] and [environment].
+    told
+        Further keys of [target] and their numbers.
     metal
         Place of a parameter to its value: how the metal differs from elastic-perfect plasticity.
     metal_told
@@ -118,7 +118,7 @@ class Rig:
     noise: dict[str, tuple[float, float]]
     drop: bool = False
     law: str = "elastic-plastic"
-    extra: dict[str, dict[str, object]] = field(default_factory=dict)
+    told: dict[str, float] = field(default_factory=dict)
     metal: dict[int, float] = field(default_factory=dict)
     metal_told: dict[str, float | str] = field(default_factory=dict)
 

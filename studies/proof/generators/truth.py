@@ -21,6 +21,9 @@ NULL_BENCHES = (
     "balls-drops", "rods-angles",
 )  # fmt: skip
 
+HEIGHTS = 0.3
+"""Share of the nulls with normal impacts whose sheet states heights in place of speeds."""
+
 SEEN, ENORMOUS = 4.0, 80.0
 """Sizes between which a drawn effect is kept at once; else the nearest of several draws."""
 
@@ -114,7 +117,9 @@ FAMILIES = {"cavity": CAVITY, "foundation": FOUNDATION}
 """The two fast families and the value of their base law."""
 
 
-def draw(rng: np.random.Generator, kind: str, *, name: str = "", off: bool | None = None) -> Truth:
+def draw(
+    rng: np.random.Generator, kind: str, *, name: str = "", off: bool | None = None, bench: str = ""
+) -> Truth:
     """Draw one case of a fast family.
 
     Parameters
@@ -127,6 +132,8 @@ def draw(rng: np.random.Generator, kind: str, *, name: str = "", off: bool | Non
         The mechanism of a single, or the effect outside the library; drawn if empty.
     off
         Whether materials and geometry differ from what is stated; drawn if left out.
+    bench
+        The bench of a null; drawn if empty.
     """
     family = str(rng.choice(list(FAMILIES)))
     z = draw_nuisances(rng) if (rng.random() < 0.5 if off is None else off) else {}
@@ -135,8 +142,8 @@ def draw(rng: np.random.Generator, kind: str, *, name: str = "", off: bool | Non
         return _planted(rng, kind, family, instrument)
     make = _maker(rng, family, z)
     if kind == "null":
-        rig = make(str(rng.choice(NULL_BENCHES)))
-        if rig.law == "elastic-plastic" and _upright(rig) and rng.random() < 0.3:
+        rig = make(bench or str(rng.choice(NULL_BENCHES)))
+        if rig.law == "elastic-plastic" and upright(rig) and rng.random() < HEIGHTS:
             rig = replace(rig, drop=True)
         return _told(Truth(kind, rig, (), (), family, z, instrument))
     if kind == "pair":
@@ -148,7 +155,8 @@ def draw(rng: np.random.Generator, kind: str, *, name: str = "", off: bool | Non
     return _told(Truth(kind, rig, (effect,), (size,), family, z, instrument))
 
 
-def _upright(rig: Rig) -> bool:
+def upright(rig: Rig) -> bool:
+    """Whether every impact is normal."""
     return bool(np.all(rig.angle > 0.5 * np.pi - 1e-9)) and not np.any(rig.tangential)
 
 
