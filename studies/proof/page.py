@@ -57,6 +57,21 @@ Made-up sets alone prove little: known effects of real recordings, concealed, ar
 [here](verdicts-real.md).
 """
 
+_OTHERS = """## What other methods would make of a set
+
+* **LISDD** (Wang, arXiv:2606.23215) fits the known physics where residuals are quiet, picks a
+  missing term from a library where they are not, by held-out data, and tests it on others. Our
+  effects mostly act in all conditions, 6 to 20 of these are few to part, and a formula is no name.
+* **mist** (Anau Montel, Alvey, Weniger, Phys. Rev. D 111 (2025) 083013) tests many distortions of
+  a simulator, each by a likelihood ratio learnt from simulations. Ours are known: Bayes factors,
+  one of the rules above, weigh them, with no network to train for every rig.
+* **Posterior predictive p values** (Meng, Ann. Stat. 22 (1994) 1142) use the data twice, and say
+  whether a model fits, not what it lacks; the diagnosis tests each explanation's fit as well.
+* **emdcmp** (René, Longtin, Nature Communications 2025, arXiv:2408.13414) rejects a fitted model
+  where another is better beyond what replications vary: an order, without a place for the unknown.
+
+None was run here; whoever has one can [try it](challenge.md) on concealed sets."""
+
 
 def summary(
     cases: list[Case], *, which: str, tree: str, date: str, total: int, commit: str = "",
@@ -114,8 +129,8 @@ def page(runs: list[dict[str, Any]], *, impacts: int) -> str:
         return "\n".join([*lines, "No run has been made yet.", ""])
     lines += _run_text(last)
     if REMARKS.exists():
-        lines += ["## Failures looked into", "", REMARKS.read_text().strip()]
-    return "\n".join([*lines, ""])
+        lines += ["## Failures looked into", "", REMARKS.read_text().strip(), ""]
+    return "\n".join([*lines, _OTHERS, ""])
 
 
 def publish(runs: list[dict[str, Any]], docs: Path, *, impacts: int) -> None:
