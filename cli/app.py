@@ -56,7 +56,7 @@ app.command(name="materials")(show_materials)
 app.command()(examples)
 app.command()(keys)
 app.command()(doctor)
-for _name in ("figures", "verify", "proof"):
+for _name in ("figures", "verify", "proof", "challenge"):
     studies.add(app, _name)
 
 

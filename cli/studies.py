@@ -21,6 +21,7 @@ COMMANDS = {
     "figures": "figures",
     "verify": "verify",
     "proof": "proof",
+    "challenge": "challenge",
     "campaign gallery": "campaign",
     "campaign reproduction": "campaign",
 }

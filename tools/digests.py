@@ -13,12 +13,14 @@ from collections.abc import Iterable
 from pathlib import Path
 
 from dentscope.models.coefficients import drawn_from
+from dentscope.studies.challenge.archive import SEALS
 from dentscope.studies.proof.seal import tree_hash
 
 ROOT = Path(__file__).resolve().parents[1]
 PAGE = ROOT / "data" / "README.md"
 COEFFICIENTS = ROOT / "data" / "coefficients" / "fitted.json"
 SHORT = 12
+DRAWN = "python -m dentscope.studies.challenge.draw"
 
 INTRO = """# What is published
 
@@ -78,6 +80,8 @@ def rows() -> Iterable[tuple[str, str, str, str]]:
     challenge = of_folder("data/challenge", ".h5")
     drawn = f"coefficients {drawn_from()[:SHORT]}"
     yield "challenge", digest(challenge), drawn, "campaign run --design challenge"
+    sets = [ROOT / "data" / "blind-sets" / name for name in ("open.zip", "sealed.zip", SEALS)]
+    yield "blind-sets", digest(sets), "the proof's generators, secret seeds", DRAWN
     figures = of_folder("docs/thesis", ".png", ".md")
     yield "docs/thesis", digest(figures), drawn, "figures"
     for name in ("base_laws.json", "explicit_impacts.h5"):
@@ -94,7 +98,7 @@ def rows() -> Iterable[tuple[str, str, str, str]]:
 def page() -> str:
     """Return the whole page."""
     lines = [
-        f"| `{what}` | `{sha[:SHORT]}` | {made} | `dentscope {by}` |"
+        f"| `{what}` | `{sha[:SHORT]}` | {made} | `{by if by == DRAWN else f'dentscope {by}'}` |"
         for what, sha, made, by in rows()
     ]
     return INTRO + "\n".join(lines) + "\n" + OUTRO

@@ -95,7 +95,8 @@ campaign show nosuch|campaign refine nosuch|campaign export|campaign publish --d
 campaign repair|campaign upgrade|campaign gallery --data nosuch
 campaign reproduction --data nosuch|proof run --list nosuch|proof score --list nosuch
 proof page nosuch|proof sample s --kind nosuch|proof peers nosuch|proof library nosuch
-proof laws nosuch|proof interventions nosuch
+proof laws nosuch|proof interventions nosuch|challenge get pulse.csv
+challenge score nosuch pulse.csv
 """.strip()
     .replace("\n", "|")
     .split("|")

@@ -1,0 +1,241 @@
+"""The challenge as a stranger meets it: the sets, a method of one's own, the scores, the seals."""
+
+from __future__ import annotations
+
+import json
+import math
+import re
+import runpy
+import zipfile
+from collections import Counter
+from pathlib import Path
+
+import numpy as np
+import pytest
+from dentscope import recordings
+from dentscope.cli import run
+from dentscope.impact import mechanisms
+from dentscope.studies.challenge import answers, archive, draw, own
+from dentscope.studies.challenge.score import marks, scores
+from dentscope.studies.proof.generators.effects import OUTSIDE
+from dentscope.studies.proof.generators.folder import write_set
+
+ROOT = Path(__file__).resolve().parents[3]
+PAGE = (ROOT / "docs" / "challenge.md").read_text(encoding="utf-8")
+HEAD = "set,name,probability\n"
+
+
+@pytest.fixture(scope="module")
+def challenge(tmp_path_factory) -> Path:
+    folder = tmp_path_factory.mktemp("stranger") / "challenge"
+    counts = archive.get(folder)
+    assert counts["open"] == 60
+    assert sum(counts.values()) == len(archive.seals())
+    assert f"has 60 sets with their truths, `challenge/sealed` {counts['sealed']} without" in PAGE
+    return folder
+
+
+def test_the_sets_are_whole_and_sealed_truths_are_nowhere(challenge) -> None:
+    truths = [json.loads(p.read_text()) for p in (challenge / "open/truths").iterdir()]
+    kinds = Counter(t["kind"] for t in truths)
+    assert kinds == {"single": 38, "null": 12, "outside": 6, "pair": 4}
+    assert {m for t in truths for m in t["mechanisms"]} == set(answers.MECHANISMS) - {"air-drag"}
+    assert {e["name"] for t in truths if t["kind"] == "outside" for e in t["effects"]} == {*OUTSIDE}
+    assert not (challenge / "sealed" / "truths").exists()
+    with zipfile.ZipFile(archive.DATA / "sealed.zip") as packed:
+        assert {Path(name).name for name in packed.namelist()} == {"set.toml", "trials.csv"}
+    assert sum(p.stat().st_size for p in archive.DATA.iterdir()) < 5e6
+    for name in ("open-001", "sealed-001"):
+        read = recordings.read(challenge / name.split("-")[0] / "sets" / name)
+        assert read.setup.licence == "CC0-1.0"
+
+
+def test_an_answer_has_the_names_of_the_program(challenge) -> None:
+    assert set(answers.MECHANISMS) == {m.name for m in mechanisms.MECHANISMS}
+    told = (challenge / "names.txt").read_text().splitlines()
+    assert told == list(answers.EXPLANATIONS)
+
+
+def test_who_has_a_truth_can_draw_its_set_again(challenge, tmp_path) -> None:
+    for name in ("open-001", "open-002"):
+        record = json.loads((challenge / "open/truths" / f"{name}.json").read_text())
+        write_set(draw.redrawn(record), tmp_path / name, name=name)
+        for file in ("set.toml", "trials.csv"):
+            text = (tmp_path / name / file).read_text()
+            assert text == (challenge / "open/sets" / name / file).read_text()
+
+
+def test_what_a_sheet_tells_beside_the_physics_says_nothing(challenge) -> None:
+    """Benches of nulls are those of the effects; a thick block and heights are told with any."""
+    blocks, benches = Counter[bool](), {True: set[str](), False: set[str]()}
+    heights = set()
+    for path in (challenge / "open/truths").iterdir():
+        truth = json.loads(path.read_text())
+        null, folder = truth["kind"] == "null", challenge / "open/sets" / path.stem
+        blocks[null] += "thickness_m = 0.15\n" in (folder / "set.toml").read_text()
+        benches[null].add(truth["bench"])
+        if "drop_height_m" in (folder / "trials.csv").read_text():
+            heights.update(truth["mechanisms"])
+    assert 4 <= blocks[True] <= 8
+    assert 12 <= blocks[False] <= 24
+    assert benches[True] <= benches[False]
+    assert len(heights - {"impact-speed-loss"}) >= 3
+
+
+def test_a_strangers_method_is_scored_by_the_pages_instructions(
+    challenge, tmp_path, monkeypatch, capsys
+) -> None:
+    monkeypatch.chdir(tmp_path)
+    (tmp_path / "challenge").symlink_to(challenge)
+    (code,) = re.findall(r"```python\n(.*?)```", PAGE, flags=re.DOTALL)
+    (tmp_path / "method.py").write_text(code)
+    runpy.run_path(str(tmp_path / "method.py"))
+    assert run(["challenge", "score", "challenge/open", "answers.csv"]) == 0
+    printed = capsys.readouterr().out
+    (row,) = [line for line in PAGE.splitlines() if line.startswith("| these ten lines |")]
+    assert told_in(printed) == [cell.strip() for cell in row.split("|")[2:-1]]
+
+
+def told_in(printed: str) -> list[str]:
+    """Cells of the page's table of what `score` printed."""
+    found = {}
+    for line in printed.splitlines():
+        if match := re.match(r"(\D+?) +(-?[\d.]+) +(-?[\d.]+) to (-?[\d.]+)", line):
+            name, value, low, high = match.groups()
+            found[name.strip()] = (float(value), float(low), float(high))
+    cells = []
+    for name, times, digits in COLUMNS:
+        value, low, high = (f"{times * x:.{digits}f}" for x in found[name])
+        cells.append(f"{value} ({low} to {high})")
+    return cells
+
+
+COLUMNS = (
+    ("mean ln p of the truth", 1.0, 2), ("truth in front", 100.0, 0), ("named exactly", 100.0, 0),
+    ("in the set", 100.0, 0), ("nulls named", 100.0, 0), ("said less true", 100.0, 0),
+)  # fmt: skip
+
+
+SETS = [f"open-{k:03d}" for k in range(1, 61)]
+SURE = {name: f"{name},baseline,1\n" for name in SETS}
+
+
+@pytest.mark.parametrize(
+    ("text", "told"),
+    [
+        (HEAD + "".join(list(SURE.values())[1:]), "1 sets without an answer: open-001"),
+        (HEAD + "".join((SURE | {"open-007": "open-007,tilt,0.7\n"}).values()),
+         "probabilities of open-007 add to 0.7"),
+        (HEAD + "".join((SURE | {"open-007": "open-007,tillt,1\n"}).values()),
+         "did you mean tilt?"),
+        (HEAD + "".join((SURE | {"open-007": "open-007,tilt+tilt,1\n"}).values()), "unknown name"),
+        (HEAD + "".join((SURE | {"open-007": "open-007,tilt,-1\n"}).values()), "from 0 to 1"),
+        (HEAD + "".join((SURE | {"open-007": "open-007,tilt,much\n"}).values()), "finite number"),
+        (HEAD + "".join(SURE.values()) + "sealed-001,tilt,1\n",
+         "1 sets that are not there, the first 'sealed-001'"),
+        (HEAD + "".join(f"sealed-{k:03d},tilt,1\n" for k in range(1, 61)), "60 sets that are not"),
+        (HEAD + "".join(SURE.values()) + SURE["open-001"], "baseline twice for open-001"),
+        ("set,name\nopen-001,tilt\n", "column probability: missing"),
+        ("", "empty"),
+        (None, "no such file"),
+    ],
+)  # fmt: skip
+def test_a_mistake_in_the_answers_is_one_line(challenge, tmp_path, capsys, text, told) -> None:
+    path = tmp_path / "answers.csv"
+    if text is not None:
+        path.write_text(text)
+    assert run(["challenge", "score", str(challenge / "open"), str(path)]) == 2
+    (line,) = capsys.readouterr().err.splitlines()
+    assert told in line
+    assert "answers.csv" in line
+
+
+def test_other_mistakes(challenge, tmp_path, capsys) -> None:
+    path = tmp_path / "answers.csv"
+    path.write_text(HEAD + "".join(SURE.values()))
+    wrong = tmp_path / "wrong.json"
+    wrong.write_text('{"open-001": {}}')
+    for arguments, told in (
+        (["get", str(challenge)], "there is one already"),
+        (["score", str(challenge), str(path)], "no sets"),
+        (["score", str(challenge / "open"), str(path), "--truths", str(wrong)], "not the truths"),
+        (["score", str(challenge / "open"), str(path), "--truths", str(path)], "not valid JSON"),
+    ):
+        assert run(["challenge", *arguments]) == 2
+        (line,) = capsys.readouterr().err.splitlines()
+        assert told in line
+
+
+def test_sealed_sets_wait_for_their_truths(tmp_path, monkeypatch, capsys) -> None:
+    """Drawn, packed, opened: a truth that is not the sealed one is refused before it is used."""
+    work, data = tmp_path / "work", tmp_path / "data"
+    for name, names in (("open-001", []), ("sealed-001", ["tilt"]), ("sealed-002", [])):
+        for file in ("set.toml", "trials.csv"):
+            path = work / "sets" / name / file
+            path.parent.mkdir(parents=True, exist_ok=True)
+            path.write_text(name)
+        record = {"kind": "single", "mechanisms": names, "seed": name}
+        (work / "truths").mkdir(exist_ok=True)
+        (work / "truths" / f"{name}.json").write_text(json.dumps(record))
+    draw.publish(work, data)
+    monkeypatch.setattr(archive, "DATA", data)
+    archive.seals.cache_clear()
+    folder = tmp_path / "got"
+    assert run(["challenge", "get", str(folder)]) == 0
+    assert "sealed: 2 sets" in capsys.readouterr().out
+    path = tmp_path / "answers.csv"
+    path.write_text(HEAD + "sealed-001,tilt,0.9\nsealed-001,baseline,0.1\nsealed-002,baseline,1\n")
+    score = ["challenge", "score", str(folder / "sealed"), str(path)]
+    assert run(score) == 0
+    assert "truths are sealed" in capsys.readouterr().out
+    truths = work / "sealed-truths.json"
+    assert run([*score, "--truths", str(truths)]) == 0
+    assert f"{0.5 * math.log(0.9):.3f}" in capsys.readouterr().out
+    found = json.loads(truths.read_text())
+    assert set(found) == {"sealed-001", "sealed-002"}
+    found["sealed-001"]["mechanisms"] = []
+    truths.write_text(json.dumps(found))
+    assert run([*score, "--truths", str(truths)]) == 2
+    assert "sealed-001: not the truth that was sealed" in capsys.readouterr().err
+    (data / "sealed.zip").write_bytes((data / "open.zip").read_bytes())
+    assert run(["challenge", "get", str(tmp_path / "again")]) == 2
+    assert "not what was published" in capsys.readouterr().err
+    archive.seals.cache_clear()
+
+
+def test_scores_by_hand() -> None:
+    said = {
+        "a": {"tilt": 0.6, "baseline": 0.4},
+        "b": {"tilt": 0.5, "roughness": 0.3, "adhesion": 0.15, "baseline": 0.05},
+        "c": {"tilt": 0.8, "baseline": 0.2},
+        "d": {"outside-library": 1.0},
+    }
+    truths = {"a": ("tilt",), "b": ("adhesion",), "c": (), "d": ("outside-library",)}
+    found = {r.name: r for r in scores(said, truths)}
+    p = [0.6, 0.15, 0.2, 1.0]
+    assert found["mean ln p of the truth"].value == pytest.approx(np.mean(np.log(p)))
+    brier = [2 * 0.4**2, 0.5**2 + 0.3**2 + 0.85**2 + 0.05**2, 2 * 0.8**2, 0.0]
+    assert found["Brier"].value == pytest.approx(np.mean(brier))
+    assert found["truth in front"].value == 0.5
+    assert found["named exactly"].value == 0.5
+    # of b the three most probable have 0.95, of c the two
+    assert found["in the set"].value == 1.0
+    assert found["nulls named"][1:] == (1.0, 1.0, 1.0)
+    assert found["outside named"].value == 0.0
+    assert found["said less true"].value == pytest.approx((0.6 + 0.5 + 0.8 + 1.0) / 4 - 0.5)
+    one = found["truth in front"]
+    assert one.low == 0.0
+    assert one.high == 1.0
+    # nobody is surer than the least probability allows
+    (mark,) = marks({"a": {"baseline": 1.0}}, {"a": ("tilt", "roughness")})
+    assert mark.ln_p == math.log(0.002)
+
+
+def test_own_answers_are_what_was_kept(tmp_path) -> None:
+    odds = {"tilt": 0.75, "baseline": 0.25, "adhesion": 1e-9}
+    said = {who: {"verdict": "", "names": [], "odds": odds} for who in own.ANSWERED}
+    line = {"set": "open-001", "source": "s", "said": said}
+    (tmp_path / "peers.jsonl").write_text(json.dumps(line) + "\n")
+    own.write_own(tmp_path, tmp_path)
+    found = answers.read_answers(tmp_path / "bic.csv", ["open-001"])
+    assert found == {"open-001": {"tilt": 0.75, "baseline": 0.25}}
