@@ -72,7 +72,9 @@ def test_ringing_widens_the_errors_and_several_pulses_are_named():
     clean = find_pulse(TIME, noisy(pulse()), source="record")
     rings = find_pulse(TIME, noisy(ringing(0.25)), source="record")
     assert any("rings" in note for note in rings.notes)
-    assert rings.peak.std > 5.0 * clean.peak.std
+    # what the pulse shows of it is taken off; what may be left widens
+    assert rings.peak.std > 1.5 * clean.peak.std
+    assert abs(rings.peak.value - 800.0) < 2.0 * rings.peak.std
     assert abs(rings.duration.value - 1e-3) < 2.0 * rings.duration.std
     two = find_pulse(TIME, noisy(pulse() + pulse(at=0.004, peak=500.0)), source="record")
     assert any("largest of 2 pulses; others at 0.0045" in note for note in two.notes)
