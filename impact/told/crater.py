@@ -70,6 +70,8 @@ def surfaces_left(
     if not peak > 0.0 or not found.residual_m > 0.0:
         return []
     radius = float(scene.law.contact_radius(scene.pair, peak)) if mark is None else mark.radius
+    if not (0.0 < radius < math.inf and math.isfinite(found.residual_m)):
+        return []  # far outside a published law
     edged = scene.striker.tip_flat_radius > 0.0 or radius > scene.force.edge
     left = Left(radius, peak, found.residual_sphere_m, found.residual_flat_m)
     bodies: tuple[tuple[Body, str], ...] = (

@@ -125,6 +125,21 @@ def test_a_tip_that_ends_at_its_edge_has_a_depth_and_no_shape():
     assert label.endswith("its shape is not known")
 
 
+def test_a_contact_far_outside_a_published_law_has_no_crater():
+    """A rigid ball of a nanometre and 0.7 kg in a metal of 15 kPa: no radius by the law."""
+    given = {
+        "target": {"E_Pa": 15465.0, "nu": 0.0, "Sy_Pa": 1000.0},
+        "strikers": {
+            "ball": {"rigid": True, "shape": "sphere", "tip_radius_m": 1e-9, "mass_kg": 0.714}
+        },
+        "impact": {"impact_speed_m_s": 10.0, "laws": ["ghaednia"]},
+    }
+    setup = setup_of(given, source="a.toml")
+    blow = blow_of(setup, [LAWS["ghaednia"]])
+    found = blow["ghaednia"]
+    assert surfaces_left(setup.scene(LAWS["ghaednia"]), found, None) == []
+
+
 @pytest.mark.parametrize("kind", ["ball", "second sphere", "seat", "rod"])
 def test_outlines_touch_at_the_origin_and_nowhere_overlap(kind):
     setup = setup_of(tomllib.loads(KINDS[kind][0]), source="rig.toml")
