@@ -45,7 +45,7 @@ def marks(answers: Mapping[str, Odds], truths: Mapping[str, tuple[str, ...]]) ->
 
 def _mark(odds: Odds, truth: tuple[str, ...]) -> Mark:
     order = sorted(odds, key=lambda name: -odds[name])
-    total, size = np.cumsum([odds[name] for name in order]), MOST
+    total = np.cumsum([odds[name] for name in order])
     size = min(int(np.searchsorted(total, ENOUGH - 1e-9)) + 1, MOST)
     line: dict[str, Any] = {
         "truth": list(truth), "acting": len(MECHANISMS), "said": {_METHOD: _said(order[0], odds)}
