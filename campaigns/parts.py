@@ -101,6 +101,27 @@ _ON_SPHERE = {n: PROFILES[n] for n in ("sphere_r", "sphere_z", "pressure")}
 _ON_FLAT = {n: PROFILES[n] for n in ("flat_r", "flat_z")}
 
 
+PUBLISHED = Path(__file__).resolve().parents[1] / "data" / "campaign"
+"""The parts of a release."""
+_COARSE = "smoke"
+
+
+def published_parts() -> list[Path]:
+    """Return the parts of the release, by name, but for the coarse ones.
+
+    Raises
+    ------
+    InputError
+        There are none.
+    """
+    found = [p for p in sorted(PUBLISHED.glob("*.h5")) if not p.name.startswith(_COARSE)]
+    if not found:
+        raise InputError(
+            "no published cases", source=str(PUBLISHED), allowed="the parts of a release"
+        )
+    return found
+
+
 def part_of(records: Sequence[CaseRecord], *, about: dict[str, str]) -> bytes:
     """Return cases as the bytes of one part.
 

@@ -21,18 +21,15 @@ import numpy as np
 
 from ..campaigns.case import Case
 from ..campaigns.contents import read_array
-from ..campaigns.parts import opened_part, texts_of
+from ..campaigns.parts import opened_part, published_parts, texts_of
 from ..core.arrays import Array, Integers
-from ..core.errors import InputError
 from ..core.material import Material, Pair
 from ..fem.rules import RULES as FEM
 from ..models.uncertainty import LEAST
 
-FOLDER = Path(__file__).resolve().parents[1] / "data" / "campaign"
 Body = Literal["sphere", "flat"]
 PLACES = np.linspace(0.0, 1.5, 31)
 """Distances from the middle, over the radius of contact."""
-_COARSE = "smoke"
 _TABLES: dict[Body, str] = {"sphere": "tip", "flat": "crater"}
 
 
@@ -167,11 +164,8 @@ def _read() -> tuple[tuple[int, Pair, Left, dict[Body, Array]], ...]:
     """
     found: list[tuple[int, Pair, Left, dict[Body, Array]]] = []
     numbers: dict[str, int] = {}
-    for path in sorted(FOLDER.glob("*.h5")):
-        if not path.name.startswith(_COARSE):
-            found += _of_part(path, numbers)
-    if not found:
-        raise InputError("no published cases", source=str(FOLDER), allowed="the parts of a release")
+    for path in published_parts():
+        found += _of_part(path, numbers)
     return tuple(found)
 
 

@@ -11,12 +11,12 @@ import math
 import warnings
 from collections.abc import Sequence
 from functools import cache
-from pathlib import Path
 from typing import NamedTuple
 
 import numpy as np
 
 from ..campaigns import CaseRecord, read_curves
+from ..campaigns.parts import published_parts
 from ..core.arrays import Array
 from ..core.errors import InputError
 from ..core.material import Material, Pair
@@ -25,12 +25,10 @@ from ..models.base import ContactLaw
 from .measured import loading_work
 from .rules import RULES
 
-FOLDER = Path(__file__).resolve().parents[1] / "data" / "campaign"
 USABLE = RULES.usable
 """Largest departure of a law that may be used: that of a dent whose strength is off by a tenth."""
 
 _HARDENS = ("hardening", "validation-hardening")
-_COARSE = "smoke"
 
 
 class Departure(NamedTuple):
@@ -140,17 +138,14 @@ def _published(perfectly_plastic: bool) -> tuple[CaseRecord, ...]:
         The published cases are missing or damaged.
     """
     parts = [
-        path for path in sorted(FOLDER.glob("*.h5"))
+        path for path in published_parts()
         if path.name.startswith(_HARDENS) != perfectly_plastic
-        and not path.name.startswith(_COARSE)
     ]  # fmt: skip
     found = [
         record for path in parts for record in read_curves(path)
         if record.unloadings and record.case.pair.perfectly_plastic == perfectly_plastic
         and math.isfinite(record.case.pair.Sy_min)
     ]  # fmt: skip
-    if not found:
-        raise InputError("no published cases", source=str(FOLDER), allowed="the parts of a release")
     return tuple(found)
 
 
