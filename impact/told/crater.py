@@ -84,7 +84,8 @@ def surfaces_left(
             None if std is None else math.hypot(std(name), shared), edged=edged,
         )
         for body, name in bodies
-        if left.of(body) > 0.0
+        # a law gives a body of no strength nothing but roundings, or is out of its range
+        if left.of(body) > 0.0 and getattr(scene.pair, body).strength < math.inf
     ]  # fmt: skip
 
 

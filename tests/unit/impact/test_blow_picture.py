@@ -150,3 +150,18 @@ def test_outlines_touch_at_the_origin_and_nowhere_overlap(kind):
     order = np.argsort(top[:, 0])
     below = np.interp(rig.striker[beside, 0], top[order, 0], top[order, 1])
     assert np.all(rig.striker[beside, 1] >= below - 1e-5)
+
+
+def test_a_body_of_no_strength_has_no_crater():
+    """Foam on a soft wall: what the law leaves is a rounding of its depth."""
+    given = {
+        "target": {"E_Pa": 8276424211.288557, "nu": 0.0001991668653264816},
+        "strikers": {"ball": {"E_Pa": 1808726.6053933802, "nu": 0.45, "shape": "sphere",
+                              "tip_radius_m": 0.04815009983759883,
+                              "mass_kg": 4.2259191954970964e-05}},
+        "impact": {"laws": ["fitted"], "impact_speed_m_s": 0.7026416751143729},
+        "gravity_m_s2": 1.7289638053776538e-07,
+    }  # fmt: skip
+    found = blow_of(setup_of(given, source="foam.toml"), [LAWS["fitted"]])
+    assert found["fitted"].residual_sphere_m > 0.0  # else it shows nothing
+    assert surfaces_left(found.setup.scene(LAWS["fitted"]), found["fitted"], None) == []
