@@ -25,7 +25,7 @@ from pydantic import (
 
 from .errors import InputError
 from .inputs.names import FileName
-from .inputs.rig_numbers import RigNumbers, solid_inertia
+from .inputs.rig_numbers import RigNumbers, most_inertia, solid_inertia
 from .inputs.toml_input import InputTable
 from .material import Material
 from .materials import Mistyped, filled
@@ -287,6 +287,22 @@ class TargetTable(BodyTable):
         return self.law in ("elastic-plastic", "table")
 
 
+def of_this_size(inertia: Quantity | None, info: ValidationInfo) -> Quantity | None:
+    """Return a striker's moment of inertia, as a check of its table.
+
+    Raises
+    ------
+    ValueError
+        No body of this mass and size has so much.
+    """
+    given = {k: value_of(info.data.get(k), 0.0) for k in ("mass_kg", "length_m")}
+    sizes = (value_of(info.data.get(k), 0.0) for k in ("radius_m", "tip_radius_m"))
+    most = most_inertia(given["mass_kg"], max(sizes), given["length_m"])
+    if inertia is not None and inertia.value > most > 0.0:
+        raise ValueError(f"at most {most:.3g}, all mass twice as far out as the ends")
+    return inertia
+
+
 class StrikerTable(BodyTable):
     """`[strikers.NAME]`: a rod with two round ends, or a sphere.
 
@@ -344,6 +360,8 @@ class StrikerTable(BodyTable):
         if given is not None and tip is not None and given.value >= tip.value:
             raise ValueError(f"below tip_radius_m = {tip.value:g}")
         return given
+
+    _of_this_size = field_validator("inertia_kg_m2")(of_this_size)
 
     @property
     def body_radius(self) -> float:

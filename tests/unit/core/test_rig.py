@@ -96,6 +96,15 @@ def test_keys_of_a_material_give_it_again(body):
     assert material_keys(MaterialTable.model_validate(keys).to_material()) == keys
 
 
+def test_an_inertia_in_another_unit_is_a_mistake():
+    """51 kg mm2 of a rod of 60 g and 100 mm by 10 mm; all of it at the ends it has 1.5e-4 kg m2."""
+    rod = {"shape": "rod", "tip_radius_m": 0.005, "mass_kg": 0.06, "radius_m": 0.005,
+           "length_m": 0.1}  # fmt: skip
+    assert StrikerTable.model_validate(rod | {"inertia_kg_m2": 1.5e-4}).inertia == 1.5e-4
+    with pytest.raises(ValueError, match=r"at most 0\.000726"):
+        StrikerTable.model_validate(rod | {"inertia_kg_m2": 51.0})
+
+
 def test_a_sphere_is_a_solid_ball():
     ball = StrikerTable.model_validate({"shape": "sphere", "tip_radius_m": 0.01, "mass_kg": 0.5})
     assert ball.inertia == pytest.approx(2e-5)
