@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable, Iterator
 from typing import TYPE_CHECKING, Annotated, Any
 
-from pydantic import AfterValidator, Field, create_model, model_validator
+from pydantic import AfterValidator, ConfigDict, Field, create_model, model_validator
 
 from ...core.errors import InputError
 from ...core.inputs.toml_input import InputTable
@@ -20,7 +20,13 @@ if TYPE_CHECKING:
     from .setup import SetupFile
 
 
-class MechanismTable(InputTable):
+class _Made(InputTable):
+    """A table whose keys are made by the program; none has a docstring that takes time to find."""
+
+    model_config = ConfigDict(use_attribute_docstrings=False)
+
+
+class MechanismTable(_Made):
     """The numbers of one mechanism; `true` takes those that its source has for usual rigs."""
 
     @model_validator(mode="before")
@@ -63,7 +69,7 @@ if TYPE_CHECKING:
         """`[mechanisms]`: one table a mechanism, by the names of a verdict."""
 
 else:
-    MechanismsTable = create_model("mechanisms", __base__=InputTable, **_FIELDS)
+    MechanismsTable = create_model("mechanisms", __base__=_Made, **_FIELDS)
 
 _ALONE: dict[str, tuple[str, Callable[[SetupFile], bool]]] = {
     "support-compliance": ("impact.support", lambda file: file.impact.support == "sprung"),
