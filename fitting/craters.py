@@ -181,12 +181,11 @@ def _of_part(
         curve = file["unloading_curves"]
         first = np.searchsorted(read_array(curve["unloading"]), np.arange(len(table["case"])))
         radius, delta = (read_array(curve[k])[first] for k in ("radius", "delta"))
-        cases = np.arange(len(table["case"]) + 1)
-        surfaces: dict[Body, tuple[Integers, Array, Array]] = {
-            body: (
-                np.searchsorted(read_array(file[f"{name}s"]["unloading"]), cases),
-                *(read_array(file[f"{name}s"][f"{name}_{k}"]).astype(float) for k in "rz"),
-            )
+        surfaces: dict[Body, list[Array]] = {
+            body: [
+                read_array(file[f"{name}s"][k]).astype(float)
+                for k in ("unloading", f"{name}_r", f"{name}_z")
+            ]
             for body, name in _TABLES.items()
         }
         for k, case in enumerate(table["case"]):
@@ -198,8 +197,8 @@ def _of_part(
             if not left.sphere + left.flat > FEM.least_dent * left.depth:
                 continue
             heights: dict[Body, Array] = {}
-            for body, (start, r, z) in surfaces.items():
-                mine = slice(start[k], start[k + 1])
+            for body, (owner, r, z) in surfaces.items():
+                mine = slice(*np.searchsorted(owner, (k, k + 1)))
                 if left.of(body) > 0.0:
                     heights[body] = _over_the_depth(body, r[mine], z[mine], left, pair.R)
             out.append((number[case], pair, left, heights))
