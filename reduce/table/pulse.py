@@ -256,6 +256,6 @@ def _without(time: Array, clear: Array, top: int, step: int, under: float, peak:
 def _through(time: Array, clear: Array, outer: int, inner: int) -> Measured:
     """Where the line through two samples of an elastic flank, F^(2/3), meets zero."""
     far, near = float(time[outer]), float(time[inner])
-    low, high = max(float(clear[outer]), 0.0) ** (2 / 3), float(clear[inner]) ** (2 / 3)
+    low, high = (max(float(clear[k]), 0.0) ** (2 / 3) for k in (outer, inner))
     at = far - low * (near - far) / (high - low) if high > low else far
     return Measured(at, 0.3 * abs(near - far))

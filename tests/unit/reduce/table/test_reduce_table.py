@@ -162,6 +162,19 @@ def test_shock_of_a_drop_tower():
         assert found[5][key].value == pytest.approx(found[6][key].value, rel=part)
 
 
+@pytest.mark.parametrize("swings_in", [1.2, 3.0, 7.0])
+@pytest.mark.parametrize("part", [0.1, -0.25])
+def test_a_ringing_slower_than_the_pulse_stays_unknown(swings_in, part):
+    """It widens the peak by itself, and leaves a pulse that is plain to see."""
+    time, long = np.arange(0.0, 0.2, 5e-5), 0.01
+    late = np.maximum(time - 0.05 - long, 0.0)
+    ring = part * np.exp(-late / (5.0 * long)) * np.sin(2.0 * np.pi * late / (swings_in * long))
+    force = 100.0 * (np.sin(np.pi * np.clip((time - 0.05) / long, 0.0, 1.0)) + ring)
+    found = find_pulse(time, force, source="made up")
+    assert found.duration.value == pytest.approx(long, rel=0.02)
+    assert abs(found.peak.value - 100.0) < found.peak.std < 30.0
+
+
 def test_no_pulse_in_noise():
     rng = np.random.default_rng(1)
     with pytest.raises(InputError, match="noise"):
