@@ -32,7 +32,7 @@ from .trials import TrialsReduction
 from .workbook import workbook_rows
 
 _APPROACH = ("drop_height_m", "impact_speed_m_s")
-REBOUND_HEIGHT, REBOUND_SPEED = "rebound_height", "rebound_speed"
+_REBOUND = REBOUND_HEIGHT, REBOUND_SPEED = "rebound_height", "rebound_speed"
 
 
 class _Kind(NamedTuple):
@@ -50,6 +50,9 @@ _IN = r"( in \S+)?"  # a unit that follows the name
 _KINDS = (
     _Kind("note", "text",
           r"note|remark|comment|bemerkung|kommentar|anmerkung|remarque|osservazion"),
+    _Kind("person", "text",
+          r"operator|observer|experimenter|student|(measured|tested|done) by|prufer|bediener|"
+          r"operateur|operatore|operador"),
     _Kind("temperature_K", "temperature", r"temperatur"),
     _Kind("angle_deg", "angle", r"angle|winkel|angolo|angulo"),
     _Kind("restitution", "number", r"restitution|^e$|^cor$|stoss?zahl|restituzion|restitucion"),
@@ -147,9 +150,9 @@ class _Column:
 def read_sheet(path: Path, *, sheet: str = "") -> Sheet:
     """Read a laboratory's sheet.
 
-    Drop and rebound height give the restitution, the root of their ratio; a drop height that is
-    written once for several rows holds for the rows below; several columns of one quantity are
-    repeats, each a row of its own.
+    Drop and rebound height give the restitution, the root of their ratio, and one in a column of
+    its own says the same once more; a drop height that is written once for several rows holds for
+    the rows below; several columns of one quantity are repeats, each a row of its own.
 
     Parameters
     ----------
@@ -290,8 +293,9 @@ def _trials(
             left.append(f"row {k}: no drop height or speed")
             continue
         from_above += [] if stated else [str(k)]
-        trials += _of_row(found, last, note, k)
-        across += [str(k)] if _crosses(found, last) else []
+        back, crossed = _restitutions(found, last)
+        trials += _of_row(found | {"restitution": back}, last, note, k)
+        across += [str(k)] if crossed else []
     wrong = tuple(
         InputError(
             "the header names no unit", source=source, key=c.header,
@@ -317,9 +321,13 @@ def _trials(
 
 def _summary(row: Sequence[str], columns: Sequence[_Column]) -> str:
     """The cell that says that a row sums up others; a note may say of itself what it likes."""
-    notes = {c.place for c in columns if c.kind.name == "note"}
-    cells = (cell for place, cell in enumerate(row) if place not in notes)
-    return next((c for c in cells if _SUMMARY.fullmatch(_bare(c).strip(" .:"))), "")
+    kinds = {c.place: c.kind.name for c in columns}
+    for place, cell in enumerate(row):
+        word, kind = _bare(cell).strip(" .:"), kinds.get(place)
+        someone = kind == "person" and word in ("max", "min")
+        if kind != "note" and not someone and _SUMMARY.fullmatch(word):
+            return cell
+    return ""
 
 
 def _read(
@@ -337,8 +345,14 @@ def _read(
             column.taken += 1
             continue
         value = _value(cell, column, decimals)
-        unread |= value is None and column.kind.name in _APPROACH
-        if value is not None:
+        approach = column.kind.name in _APPROACH
+        low = value is not None and (
+            value <= 0.0 if approach else value < 0.0 and column.kind.name in _REBOUND
+        )
+        unread |= approach and (low or value is None)
+        if low:
+            left.append(f"row {k}, {column.header}: {cell!r} is too little")
+        elif value is not None:
             column.taken += 1
             found.setdefault(column.kind.name, []).append(value)
         elif decimals == "" and _grouped(cell):
@@ -396,6 +410,7 @@ def _became(column: _Column) -> str:
     words = {
         REBOUND_HEIGHT: "restitution, the root of rebound over drop height",
         REBOUND_SPEED: "restitution, over the impact speed", "trial": "left out: rows are numbered",
+        "person": "left out: who measured",
     }  # fmt: skip
     return f"{words.get(name, name)} ({column.taken} cells)"
 
@@ -407,16 +422,8 @@ def _of_row(
     common = {
         k: Measured(v[0], 0.0) for k, v in found.items() if k in ("temperature_K", "angle_deg")
     }
-    measured = {k: list(v) for k, v in found.items() if k not in common and k not in last}
-    fallen, speed = (last.get(name) for name in _APPROACH)
-    heights, speeds = measured.pop(REBOUND_HEIGHT, []), measured.pop(REBOUND_SPEED, [])
-    # like over like; v^2 = 2 g h where the sheet has but the other
-    h = fallen if fallen is not None else (speed or 0.0) ** 2 / (2.0 * GRAVITY)
-    v = speed if speed is not None else math.sqrt(2.0 * GRAVITY * h)
-    back = [math.sqrt(x / h) for x in heights if x >= 0.0 and h > 0.0]
-    back += [x / v for x in speeds if v > 0.0]
-    if back:
-        measured["restitution"] = measured.get("restitution", []) + back
+    other = {*common, *last, *_REBOUND}
+    measured = {k: v for k, v in found.items() if v and k not in other}
     for k in range(max(map(len, measured.values()), default=0)):
         seen = {n: Measured(v[k], 0.0) for n, v in measured.items() if k < len(v)}
         label = f"{row:03d}" if max(map(len, measured.values())) == 1 else f"{row:03d}-{k + 1}"
@@ -424,9 +431,24 @@ def _of_row(
         yield Trial({**approach, **common, **seen}, label=label, note=note)
 
 
-def _crosses(found: dict[str, list[float]], last: dict[str, float]) -> bool:
-    """Whether a rebound is told by height and the approach by speed, or the other way about."""
-    fallen, speed = _APPROACH
-    return (REBOUND_HEIGHT in found and fallen not in last) or (
-        REBOUND_SPEED in found and speed not in last
-    )
+def _restitutions(
+    found: dict[str, list[float]], last: dict[str, float]
+) -> tuple[list[float], bool]:
+    """What a row says of the restitution, and whether it takes v^2 = 2 g h.
+
+    Of a rebound that is told more than once like over like comes first: what a sheet works out
+    itself comes from the same heights or speeds.
+    """
+    fallen, speed = (last.get(name) for name in _APPROACH)
+    heights, speeds = (found.get(name, []) for name in _REBOUND)
+    if fallen and heights:
+        return [math.sqrt(h / fallen) for h in heights], False
+    if speed and speeds:
+        return [v / speed for v in speeds], False
+    if own := found.get("restitution", []):
+        return own, False
+    if speed:
+        return [math.sqrt(2.0 * GRAVITY * h) / speed for h in heights], bool(heights)
+    if fallen:
+        return [v / math.sqrt(2.0 * GRAVITY * fallen) for v in speeds], bool(speeds)
+    return [], False

@@ -198,3 +198,35 @@ def test_units_in_every_cell_hide_no_separator(tmp_path):
     sheet = read_text(tmp_path, "Fallhöhe;Rückprallhöhe\n50 cm;21 cm\n1 m;0,40 m\n")
     assert heights(sheet) == [0.5, 1.0]
     assert restitutions(sheet) == pytest.approx([math.sqrt(0.42), math.sqrt(0.4)])
+
+
+@pytest.mark.parametrize(
+    ("text", "said"),
+    [
+        ("drop height (cm),rebound height (cm),e\n100,64,0.81\n50,32,0.79\n", [0.8, 0.8]),
+        ("drop height (cm),v [m/s],rebound height (cm),rebound speed (m/s)\n100,4,64,3.5\n", [0.8]),
+        ("v [m/s],rebound height (cm),rebound speed (m/s)\n4,64,3\n", [0.75]),
+        ("v [m/s],rebound height (cm),e\n4,64,0.9\n", [0.9]),
+    ],
+)
+def test_a_rebound_that_is_told_twice_is_one_trial(tmp_path, text, said):
+    sheet = read_text(tmp_path, text)
+    assert restitutions(sheet) == pytest.approx(said)
+    assert not any("v^2" in line for line in sheet.left_out)
+
+
+@pytest.mark.parametrize("wrong", ["0", "-100"])
+def test_a_height_that_can_not_be_is_told(tmp_path, wrong):
+    text = f"drop height (cm),rebound height (cm),rebound speed (m/s)\n{wrong},64,\n100,,3.5\n"
+    sheet = read_text(tmp_path, text)
+    assert heights(sheet) == [1.0]
+    assert f"row 2, drop height (cm): {wrong!r} is too little" in sheet.left_out
+    sheet = read_text(tmp_path, "drop height (cm),rebound height (cm)\n100,0\n100,-64\n")
+    assert restitutions(sheet) == [0.0]
+    assert "row 3, rebound height (cm): '-64' is too little" in sheet.left_out
+
+
+def test_who_measured_sums_nothing_up(tmp_path):
+    text = "Prüfer;Fallhöhe (cm);Stoßzahl\nMax;50;0,61\nAnna;50;0,60\nMittelwert;50;0,605\n"
+    sheet = read_text(tmp_path, text)
+    assert restitutions(sheet) == [0.61, 0.6]
