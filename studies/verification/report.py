@@ -13,9 +13,6 @@ from .checks import CHECKS
 from .result import Measurement, Result, Table
 from .runner import best_result, publish
 
-SHOWN = 1
-"""Marked numbers of a check that the page shows: the one nearest to its mark."""
-
 
 def write_report(path: Path, *, folder: Path) -> Path:
     """Write the report from the measurements kept in `folder`; return its path.
@@ -28,26 +25,28 @@ def write_report(path: Path, *, folder: Path) -> Path:
     found = [result for result in known.values() if result is not None]
     for result in found:
         publish(result, folder=beside)
-    lines = [*_head(), *_summary(found, [name for name, r in known.items() if r is None])]
+    absent = [name for name, r in known.items() if r is None]
+    lines = [*_head(found), *_summary(found, absent)]
     rows = ["# What the solver was checked against: every number", ""]
     for result in found:
-        lines += _section(result, path)
+        if _has_section(result):
+            lines += _section(result, path)
         rows += _rows(result)
     write_file(folder / "rows.md", "\n".join(rows).rstrip() + "\n")
     return write_file(path, "\n".join(lines).rstrip() + "\n")
 
 
-def _head() -> Iterator[str]:
+def _head(results: list[Result]) -> Iterator[str]:
     versions = environment()
     packages = ", ".join(f"{k} {v}" for k, v in versions.items() if k != "commit")
     yield "# What the solver was checked against"
     yield ""
     yield (
-        "Made by `dentscope verify`; `--list` names the checks, `--only NAME` runs one. Marks were "
-        "set before measuring. Of each check the number nearest to its mark is shown, at the level "
-        "`production` unless a row says otherwise. How each was done and every number of it any "
-        "run writes to `build/verification/rows.md`; as data they lie in "
-        "`docs/verification/results`."
+        "Made by `dentscope verify`; `--list` names the checks, `--only NAME` runs one, all take "
+        f"{sum(r.cpu_s for r in results) / 3600.0:.1f} processor hours. Marks were set before "
+        "measuring. Of each check the number nearest to its mark is shown, at the level "
+        "`production` unless a row says otherwise. How each was done, and every number, any run "
+        "writes to `build/verification/rows.md`; as data they lie in `docs/verification/results`."
     )
     yield ""
     yield f"Numerics version of the solver {fem.NUMERICS_VERSION}; {packages}."
@@ -55,27 +54,30 @@ def _head() -> Iterator[str]:
 
 
 def _summary(results: list[Result], absent: list[str]) -> Iterator[str]:
-    yield "| check | marks met | processor s |"
+    yield "| check | marks met | number nearest to its mark |"
     yield "| --- | --- | --- |"
     for r in results:
-        yield f"| [{r.title}](#{_anchor(r.title)}) | {_met(r)} | {r.cpu_s:.0f} |"
+        title = f"[{r.title}](#{_anchor(r.title)})" if _has_section(r) else r.title
+        yield f"| {title} | {_met(r)} | {_nearest(r)} |"
     yield ""
     if absent:
         yield f"Not measured yet: {', '.join(absent)}."
         yield ""
-    missed = [(r, m) for r in results for m in r.missed]
-    if missed:
-        yield "Marks that are missed:"
-        yield ""
-    for r, m in missed:
-        yield f"- {r.title}: {m.what}: {_value(m)} ({m.mark})"
-    yield ""
-    names = {r.name for r, _ in missed}
-    for check in CHECKS:
-        if check.missed and check.name in names:
-            title = next(r.title for r in results if r.name == check.name)
-            yield f"{title}. {check.missed}"
-            yield ""
+
+
+def _has_section(result: Result) -> bool:
+    """Whether the page has more of a check than its row: missed marks, or pictures."""
+    return bool(result.missed or result.pictures)
+
+
+def _nearest(result: Result) -> str:
+    """The number of a check that is nearest to its mark and meets it."""
+    kept = [m for m in result.measurements if m.met is not False]
+    if not kept:
+        return ""
+    m = max(kept, key=lambda m: m.used)
+    told = "; ".join(filter(None, (m.mark, m.source)))
+    return _cell(f"{m.what}: {_value(m)}" + (f" ({told})" if told else ""))
 
 
 def _met(result: Result) -> str:
@@ -89,16 +91,19 @@ def _met(result: Result) -> str:
 
 
 def _section(result: Result, path: Path) -> Iterator[str]:
-    """A check's numbers nearest to their marks, and its pictures."""
+    """The marks that a check missed, why, and its pictures."""
     yield f"## {result.title}"
     yield ""
-    kept = [m for m in result.measurements if m.met is not False]  # the others are listed above
-    shown = sorted(kept, key=lambda m: -m.used)[:SHOWN]
-    for m in sorted(shown, key=result.measurements.index):
-        told = "; ".join(filter(None, (m.mark, m.source)))
-        yield f"- {m.what}: {_value(m)}" + (f" ({told})" if told else "")
-    if shown:
+    if result.missed:
+        yield "Missed:"
         yield ""
+        for m in result.missed:
+            yield f"- {m.what}: {_value(m)} ({m.mark})"
+        yield ""
+        why = next((check.missed for check in CHECKS if check.name == result.name), "")
+        if why:
+            yield why
+            yield ""
     for name, caption in result.pictures:
         yield f"![{result.title}]({path.stem}/{name})"
         yield ""
