@@ -58,7 +58,7 @@ def pictures() -> list[Entry]:
         for angle, sweep in measured.items()
     }
     return [
-        *(_history(panel, histories, measured[45.0]["friction"]) for panel in _PANELS),
+        *(_history(panel, histories) for panel in _PANELS),
         *(
             _over_speed(one, swept[one[2]], measured[one[2]], scars[_NEAREST[one[2]]])
             for one in _OVER_SPEED
@@ -71,7 +71,7 @@ def _sweep(law: ContactLaw, degrees: float, mu: float) -> list[Impact]:
 
 
 def _history(
-    panel: tuple[str, str, float, str], histories: list[tuple[ContactLaw, Trace]], mu: float
+    panel: tuple[str, str, float, str], histories: list[tuple[ContactLaw, Trace]]
 ) -> Picture:
     name, label, factor, number = panel
     made, (axis,) = sheet()
@@ -79,8 +79,7 @@ def _history(
         axis.plot(1e3 * trace.column("time_s"), factor * trace.column(name), **look(law))
     finish(axis, x="time [ms]", y=label)
     ends = {law.name: trace.impact for law, trace in histories}
-    note = f"45 degrees, 1 m/s, measured friction {mu:g}. {HISTORY_SAID[number](ends)}"
-    return Picture(number, f"History: {label}", made, note)
+    return Picture(number, f"History: {label}", made, HISTORY_SAID[number](ends))
 
 
 def _over_speed(
@@ -95,8 +94,7 @@ def _over_speed(
     }
     for law in laws(*NINE):
         axis.plot(_SPEEDS, values[law.name], **look(law))
-    note = f"{angle:g} degrees, measured friction {sweep['friction']:g}. "
-    note += _measured(axis, name, sweep, scar)
+    note = _measured(axis, name, sweep, scar)
     finish(axis, x="approach speed [m/s]", y=label)
     note += f" {SWEEP_SAID[number](values, sweep)}{_again(swept) if number == '4.9' else ''}"
     return Picture(number, f"{title}, {angle:g} degrees", made, note.strip())
@@ -126,17 +124,11 @@ def _measured(axis: Any, name: str, sweep: Mapping[str, Any], scar: Mapping[str,
     if name == "rebound_spin_rad_s":
         axis.plot(_SPEEDS, [_rigid_spin(angle, v, sweep) for v in _SPEEDS], "k", lw=1.0,
                   label=f"rigid rod with e = {e:g}")  # fmt: skip
-        return (
-            "The thesis prints no measured spin; the thin line is what a rigid rod has with the "
-            f"measured restitution of {e:g} and friction."
-        )
+        return ""
     if name == "residual_flat_m":
         axis.plot(-scar["approach_m_s"], -1e6 * scar["depth_m"], "kx", ms=9, mew=2, label=cross)
-        return (
-            f"The thesis prints no dent of this chapter; chapter 5's at {scar['angle_deg']:g} "
-            f"degrees is {-1e6 * scar['depth_m']:.0f} um (cross)."
-        )
-    return "The thesis prints no measured value."
+        return f"Chapter 5's dent: {-1e6 * scar['depth_m']:.0f} um."
+    return ""
 
 
 def _rigid_spin(angle: float, speed: float, sweep: Mapping[str, Any]) -> float:

@@ -238,15 +238,8 @@ def _told(field: Field) -> str:
     a = field.origin["a_over_R"]
     return (
         f"Delta/R = {field.origin['Delta_over_R']:.3g}, a/R = {a:.3f}, level "
-        f"{field.origin['level']}, elements of {_smallest(field):.2f} a where they are finest. "
-        f"{_yielded(field, a)}"
+        f"{field.origin['level']}. {_yielded(field, a)}"
     )
-
-
-def _smallest(field: Field) -> float:
-    """Longest edge of the smallest element over the contact radius."""
-    edges = np.linalg.norm(field.corners - np.roll(field.corners, 1, axis=1), axis=2)
-    return float(edges.max(axis=1).min()) / float(field.origin["a_over_R"])
 
 
 def _draw_field(made: Any, axis: Any, field: Field) -> None:

@@ -110,10 +110,7 @@ def _scar(
         row = int(np.argmax(found.depth.max(axis=1)))
         shift = float(found.x[np.argmax(found.depth.max(axis=0))])
         axes[1].plot(1e6 * (found.x - shift), -1e6 * found.depth[row], **look(law))
-        told.append(
-            f"{law.name} {1e6 * found.deepest:.0f}, {1e6 * found.length:.0f} by "
-            f"{1e6 * found.width:.0f}, {1e6 * found.sliding_length:.0f}"
-        )
+        told.append(f"{law.name} {1e6 * found.deepest:.0f}, {1e6 * found.sliding_length:.0f}")
     depth, slid = -1e6 * experiment["depth_m"], -1e6 * experiment["sliding_m"]
     half = 0.5 * (slid + 2.0 * np.sqrt(2e6 * radius * depth))
     axes[1].plot([-half, -half, half, half], [0.0, -depth, -depth, 0.0], "k--", lw=1.0,
@@ -121,8 +118,8 @@ def _scar(
     axes[1].set_title("section along the middle", fontsize=9)
     finish(axes[1], x="along the sliding direction [um]", y="height [um]")
     note = (
-        f"Depth, length by width, and length minus width [um]: {'; '.join(told)}; measured "
-        f"{depth:.0f} deep and {slid:.0f} of sliding. {_WHY[number]}"
+        f"Depth, and length minus width [um]: {'; '.join(told)}; measured {depth:.0f}, "
+        f"{slid:.0f}. {_WHY[number]}"
     )
     return Picture(number, f"Predicted scar, {angle:g} degrees", made, note)
 
