@@ -175,8 +175,17 @@ def _rod(scene: Scene, found: Impact) -> Iterator[str]:
 
 
 def _edge(setup: Setup, scene: Scene, found: Impact) -> Iterator[str]:
-    """Whether the curvature of a rod's tip ends before the contact does."""
-    if scene.striker.length == 0.0 or math.isfinite(scene.force.edge):
+    """Whether the curvature of a rod's tip ends before the contact does, or before the touch."""
+    striker, lean = scene.striker, math.degrees(0.5 * math.pi - scene.approach.angle)
+    if striker.length == 0.0:
+        return
+    reach = math.degrees(math.asin(min(striker.radius / striker.tip_radius, 1.0)))
+    if lean > reach:
+        yield (
+            f"the rod leans by {lean:.3g} degrees and its round end reaches {reach:.3g} from its "
+            "axis: it would touch with its edge, and is taken to be round there"
+        )
+    if math.isfinite(scene.force.edge):
         return
     ends = replace(scene.force, edge=scene.striker.radius)
     ended = _struck(setup, scene.with_(force=ends))

@@ -143,7 +143,7 @@ def _draw_left(axis: Any, blow: Blow, law: str, left: Sequence[LeftSurface]) -> 
     axis.set(
         xlim=(-reach, reach), xlabel=f"from the middle [{unit}]; dotted: the contact",
         ylabel="over the surface that was [um]",
-        title=f"left by {law}; heights drawn {stretch:g} times too large",
+        title=f"left by {law}; {_told_of(stretch)}",
         aspect=stretch * scale / 1e6, ylim=(low - 0.45 * (high - low),
                                                         high + 0.25 * (high - low)),
     )  # fmt: skip
@@ -155,6 +155,10 @@ def _draw_left(axis: Any, blow: Blow, law: str, left: Sequence[LeftSurface]) -> 
 def _stretch(tall: float) -> float:
     """By how much heights are drawn larger than widths, in one digit, where they are flat."""
     return max(float(f"{0.55 / tall:.1g}"), 1.0)
+
+
+def _told_of(stretch: float) -> str:
+    return f"heights drawn {stretch:g} times too large" if stretch > 1.0 else "to scale"
 
 
 def _draw_curves(

@@ -70,7 +70,10 @@ def _rod(R: float, r: float, length: float, angle: float) -> Array:
     half = math.asin(min(r / R, 1.0))
     t = np.linspace(half, -half, 91)[:, None]
     cap = R * (beside * np.sin(t) - along * np.cos(t))
-    return np.vstack([cap, length * along - cap])
+    outline = np.vstack([cap, length * along - cap])
+    if 0.5 * math.pi - angle > half:  # it leans on the edge of its round end
+        outline -= outline[np.argmin(outline[:, 1])] + np.array([0.0, R])
+    return outline
 
 
 def _struck_sphere(radius: float, place: Array, height: Array, far: float) -> Array:

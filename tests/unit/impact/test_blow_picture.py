@@ -45,6 +45,7 @@ KINDS = {
                          'mass_kg = 0.06') + "angle_deg = 45\n[friction]\ncoefficient = 0.2\n", 9,
             ["flat"]),
 }  # fmt: skip
+THIN = KINDS["rod"][0].replace("\nradius_m = 0.005", "\nradius_m = 0.001")
 
 
 def blow(text, law="fitted"):
@@ -150,6 +151,20 @@ def test_outlines_touch_at_the_origin_and_nowhere_overlap(kind):
     order = np.argsort(top[:, 0])
     below = np.interp(rig.striker[beside, 0], top[order, 0], top[order, 1])
     assert np.all(rig.striker[beside, 1] >= below - 1e-5)
+
+
+def test_a_rod_that_leans_on_the_edge_of_its_round_end_is_told_and_drawn_so():
+    found = blow(THIN)
+    rig = rig_shape(found.setup, np.zeros(0), np.zeros(0))
+    lowest = rig.striker[np.argmin(rig.striker[:, 1])]
+    assert lowest == pytest.approx([0.0, 0.0], abs=1e-12)
+    assert any("leans by 45 degrees" in line and "11.5" in line for line in found.checks())
+    assert not any("leans" in line for line in blow(KINDS["rod"][0]).checks())
+
+
+def test_a_crater_too_deep_to_stretch_is_to_scale():
+    deep = BALL.replace("3.05e8", "1e7").replace("3.0\n", "3000.0\n")
+    assert "to scale" in picture(blow(deep)).axes[1].get_title()
 
 
 def test_a_body_of_no_strength_has_no_crater():
