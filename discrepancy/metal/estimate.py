@@ -137,7 +137,7 @@ def metal_of(recordings: RecordingSet) -> Metal:
     Raises
     ------
     InputError
-        No marks, or a metal that does not yield.
+        No marks, a metal that does not yield, or marks that say nothing of the body that does.
     """
     if not recordings.setup.target.yields:
         raise InputError("a baseline that does not yield", source=recordings.name,
@@ -290,6 +290,7 @@ class _Fit:
         for _ in range(RULES.metal_rounds):
             if far > RULES.metal_near:
                 here, J, noise = self.linear(u)
+                self._check_moved(J[:k])
             else:
                 here = Simulator(self.problem).predict(self.mechanisms, [self.point(u)])[0]
             r = self.problem.cells.value[:k] - here[:k] + J[:k] @ (u - self.prior)
@@ -307,6 +308,15 @@ class _Fit:
             for w, f in zip(share, found, strict=True)
         )
         return u, np.asarray(cov), J
+
+    def _check_moved(self, J: Array) -> None:
+        if not J[:, : 1 + len(STRAINS)].any():
+            body = _dented(self.problem)
+            raise InputError(
+                f"by the stated strengths {body} yields first, and no mark depends on its strength",
+                source=self.problem.name, key=f"{body}.Sy_Pa",
+                allowed="strengths by which the body with the marks yields",
+            )  # fmt: skip
 
     def sized(self, factor: float) -> Array:
         """Return the priors' covariance with the law's error of another size."""

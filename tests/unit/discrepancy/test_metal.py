@@ -111,6 +111,14 @@ def test_a_set_without_marks_is_refused(folder_of, tmp_path):
         metal_of(read(folder))
 
 
+def test_marks_in_a_body_that_does_not_yield_are_refused(set_of_balls, tmp_path):
+    """A flat stated harder than the ball: the dents in it say nothing of the ball."""
+    rows = "trial,striker,load_N,permanent_depth_m\np1,ball,100,8e-6\np2,ball,300,2.2e-5\n"
+    folder = set_of_balls(tmp_path, rows, noise={"permanent_depth_m": 1e-6}, Sy="3e10")
+    with pytest.raises(InputError, match=r"strikers.ball yields first, and no mark depends on"):
+        metal_of(read(folder))
+
+
 def test_interpolation_between_nodes_is_straight_over_logarithms():
     middle = np.sqrt(STRAINS[1] * STRAINS[2])
     row = weights([middle])[0]
