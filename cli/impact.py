@@ -105,7 +105,7 @@ def _from_file(path: Path, names: list[str], out: Path, *, exact: bool) -> None:
 
 
 def _sweep(
-    setup: Setup, laws: list[ContactLaw], stem: Path, *, exact: bool
+    setup: Setup, laws: list[ContactLaw], base: Path, *, exact: bool
 ) -> tuple[list[Path], int, str]:
     """Run `[sweep]` for each law; return the files, how many did not end, and what is above 1."""
     from importlib.util import find_spec
@@ -120,11 +120,11 @@ def _sweep(
     for other in others:
         first = first.joined(other)
     first = first.with_stds(stds)
-    written = [stem.with_suffix(".csv"), stem.with_suffix(".png")]
+    written = [base.with_name(base.name + end) for end in (".csv", ".png")]
     first.to_csv(written[0])
     draw_sweep(setup.sweep.swept, curves, written[1], stds=stds)
     if find_spec("pandas") and find_spec("pyarrow"):
-        written.append(stem.with_suffix(".parquet"))
+        written.append(base.with_name(f"{base.name}.parquet"))
         first.to_parquet(written[-1])
     return written, int((first["outcome"] != "completed").sum()), "\n".join(swept_above_one(first))
 

@@ -17,7 +17,8 @@ def test_a_template_runs_through_unchanged(
     kind: str, tmp_path: Path, capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
 ) -> None:
     monkeypatch.setenv("COLUMNS", "80")
-    file = tmp_path / f"{kind}.toml"
+    name = f"{kind}-5.5mm"  # a point in a name is no ending
+    file = tmp_path / f"{name}.toml"
     assert run(["impact", "--new", kind, str(file)]) == 0
     capsys.readouterr()
     assert run(["impact", str(file), "--out", str(tmp_path / "out")]) == 0
@@ -29,8 +30,8 @@ def test_a_template_runs_through_unchanged(
     heads = [line.split() for line in table if "fitted" in line]
     assert heads[0][0] == "fitted"
     for end in (".csv", ".h5", ".png", "-sweep.csv", "-sweep.png"):
-        assert (tmp_path / "out" / f"{kind}{end}").stat().st_size > 100
-    with (tmp_path / "out" / f"{kind}-sweep.csv").open() as stream:
+        assert (tmp_path / "out" / f"{name}{end}").stat().st_size > 100
+    with (tmp_path / "out" / f"{name}-sweep.csv").open() as stream:
         rows = list(csv.DictReader(stream))
     setup = read_setup(file)
     assert len(rows) == setup.sweep.count * len(setup.laws)
