@@ -15,8 +15,8 @@ _HEAD = """# Chapter 2 of the thesis, claim by claim
 
 What the text says of its finite elements, checked on ours at Delta/R = 0.04, the depth of its
 figures. **agrees**: all computed cases hold the claim within the tolerance that stands in it;
-**partly**: some do, and those that do not are told; **contradicts**: none does. The first of
-several alike is shown. Made by `dentscope campaign reproduction`.
+**partly**: some do, and those that do not are shown; **contradicts**: none does. Of several cases
+alike the first is shown. Made by `dentscope campaign reproduction`.
 
 {rests} {counts}.
 
@@ -54,12 +54,9 @@ def _cells(trend: Trend) -> str:
     """What was found: the cases against a claim that some hold, else the first of those alike."""
     against = {name: note for name, (good, note) in trend.findings.items() if not good}
     if trend.verdict == "partly":
-        return "against it " + "; ".join(f"{name}: {note}" for name, note in against.items())
+        return "; ".join(f"{name}: {note}" for name, note in against.items())
     found = [f"{name}: {note}" for name, (_, note) in trend.findings.items()]
-    if not found:
-        return "the cases are not computed yet"
-    alike = f" ({len(found)} alike)" if len(found) > 1 else ""
-    return found[0] + alike
+    return found[0] if found else "the cases are not computed yet"
 
 
 def _rests(records: Sequence[CaseRecord]) -> str:
@@ -72,10 +69,9 @@ def _rests(records: Sequence[CaseRecord]) -> str:
     if not levels:
         return f"Of {len(records)} stored cases none is of Table 2.1."
     resolution = ", ".join(f"{count} at {level} resolution" for level, count in levels.items())
-    ratios = ", ".join(f"case {n}: {len(sweep.ratio)}" for n, sweep in found.items())
     rough = " Verdicts at less than production resolution are provisional: F and a ripple there."
     return (
-        f"It rests on {sum(levels.values())} cases of Table 2.1 ({resolution}; values of Sy* "
-        f"computed: {ratios}) among {len(records)} stored ones."
+        f"It rests on {sum(levels.values())} cases of Table 2.1 ({resolution}) among "
+        f"{len(records)} stored ones."
         f"{'' if set(levels) == {'production'} else rough}"
     )

@@ -16,7 +16,6 @@ from ...fitting.report import (
     domain_rows,
     error_rows,
     markdown,
-    stated_within,
     uncertainty_rows,
 )
 
@@ -44,13 +43,20 @@ def published_section(content: dict[str, Any]) -> str:
             BEGIN,
             f"{content['domain']['combinations']} combinations; accuracy of the finite elements: "
             f"{', '.join(levels)}.\n",
-            markdown(coefficient_rows(content)),
+            _coefficients(content),
             markdown(rows),
-            markdown(uncertainty_rows(stated_within(content))),
             *about_hardening(content),
             markdown(domain_rows(content, "domain")) + END,
         ]
     )
+
+
+def _coefficients(content: dict[str, Any]) -> str:
+    """Coefficients with their standard errors, three a line."""
+    _, *rows = coefficient_rows(content)
+    cells = [f"{name:<4}{value:>9} ± {error:<9}" for name, value, error in rows]
+    lines = ["".join(cells[k : k + 3]).rstrip() for k in range(0, len(cells), 3)]
+    return "\n".join(["With their standard errors:\n", "```", *lines, "```\n"])
 
 
 def judged_section(

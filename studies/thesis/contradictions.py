@@ -96,7 +96,7 @@ def _units() -> str:
 
 def _video() -> str:
     return (
-        f"1000 frames at 80000 1/s last {1000 / 80000 * 1e3:.1f} ms, but 7.3 ms before and 9.3 ms "
+        f"1000 frames at 80000 1/s last {1000 / 80000 * 1e3:.1f} ms; 7.3 ms before and 9.3 ms "
         f"after the impact are {(7.3 + 9.3) * 80:.0f} frames."
     )
 
@@ -142,9 +142,8 @@ def _beyond_110() -> str:
     )
     return (
         "The fit ends at w = 110, and the text compares it to delta_n = 14676. At Delta/R = 0.06 "
-        f"of figure 2.20 its powers continued give {continued / fitted:.2f} times the force of the "
-        f"law fitted to our finite elements, 2.8 S on the area {capped / fitted:.2f} times: that "
-        "it is larger, as the text says, is so only with the powers."
+        f"of figure 2.20 its powers continued give {continued / fitted:.2f} times the force of our "
+        f"fitted law, 2.8 S on the area {capped / fitted:.2f} times; the text says larger."
     )
 
 

@@ -14,9 +14,9 @@ from .misprints import MISPRINTS, Erratum
 
 _HEAD = """# Errata of the thesis
 
-Written by `python -m dentscope.studies.thesis.errata`; every number is computed there. The
-corrected equations are in the functions that docs/theory.md names, the printed ones in
-`studies.thesis.as_printed`.
+Written by `python -m dentscope.studies.thesis.errata`; every number is computed there. Each entry
+says what is printed → what is used here. The corrected equations are in the functions that
+docs/theory.md names, the printed ones in `studies.thesis.as_printed`.
 """
 
 
@@ -28,7 +28,7 @@ def text() -> str:
 
 def _entry(one: Erratum) -> str:
     lines = textwrap.wrap(one.show(), 98)
-    head = f"- **{one.where}** printed: {one.printed}; used here: {one.meant}."
+    head = f"- **{one.where}** {one.printed} → {one.meant}."
     return "\n".join([head, *(f"  {line}" for line in lines)]) + "\n"
 
 

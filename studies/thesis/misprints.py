@@ -169,11 +169,9 @@ def _force() -> str:
     d = 0.01 * pair.R
     printed = float(as_printed.ghaednia_force(pair, d))
     meant = float(LAWS["ghaednia"].loading(pair, d))
-    unreal = as_printed.ghaednia_force(_pair(10.0), d)
     return (
         f"All of 2.13-2.43 read to the letter give {printed:.3g}, without a unit, at Delta/R = "
-        f"0.01 (case 1, Sy* = 0.05, R = 1 mm); the corrected reading gives {meant:.4g} N. At Sy* = "
-        f"10 the letter gives {float(unreal):g}: a/R exceeds 1, where 2.36 has no real value."
+        f"0.01 (case 1, Sy* = 0.05, R = 1 mm); the corrected reading gives {meant:.4g} N."
     )
 
 
@@ -283,8 +281,8 @@ def _natural() -> str:
 
 def _undefined() -> str:
     return (
-        "The power of a negative number has no real value, so a/R must exceed L D; "
-        f"hardness.olsson_larsson takes L D from the caller and gives 3 S below it, "
+        "Below a/R = L D the power has no real value; hardness.olsson_larsson gives "
+        f"{float(hardness.olsson_larsson(0.05, LD=0.1)):g} S there, and "
         f"{float(hardness.olsson_larsson(0.5, LD=0.1)):.3f} S at a/R = 0.5 with L D = 0.1."
     )
 

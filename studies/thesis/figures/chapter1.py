@@ -122,7 +122,7 @@ def _hardness(
         )
     axis.set_ylim(1.0, 3.6)
     finish(axis, x="contact radius a/R", y="mean pressure p/Sy")
-    note += f" {said} 1.12 cannot be judged: the thesis does not define its L and D."
+    note += f" {said}"
     return Picture(number, f"Hardness laws, {regime}", made, note)
 
 

@@ -151,7 +151,7 @@ def _hardness_over_radius(records: Sequence[CaseRecord]) -> Picture:
             (f"so does Sy* = 1 ({flat[1]:.1%})", flat[1] < _GOOD),
             (f"Sy* = 10 agrees with Jackson, Ghaednia and Pope (1.13: {slip:.1%} in the mean, "
              f"{at_end})", slip < _GOOD),
-        ) + " The text calls this figure 2.17."  # fmt: skip
+        )  # fmt: skip
     return Picture("2.15", "Finite elements and hardness laws", made, note)
 
 

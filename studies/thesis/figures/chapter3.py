@@ -55,10 +55,7 @@ def _force(found: chapter3.Bench) -> Picture:
     axis.axvline(148e-6 / critical_depth(pair), color="0.5", ls=":")
     finish(axis, x="delta/delta_y", y="F/F_y")
     here = 148e-6 / critical_depth(pair)
-    note = (
-        f"The depth of 148 um is at {here:.0f} (dotted) with the stated tip radius, while the "
-        "figure runs to 2500."
-    )
+    note = f"The depth of 148 um is at {here:.0f} (dotted); the thesis's figure runs to 2500."
     field = fields.read_field("3.7")
     if field is not None and len(field.depth):
         x = field.depth * pair.R / critical_depth(pair)
@@ -102,7 +99,7 @@ def _residual(found: chapter3.Bench) -> Picture:
         f"148 um the others leave [um]: {', '.join(f'{k} {v:.0f}' for k, v in others.items())}. "
     ) + judged(
         ("Thornton and Ning leave more than measured", others["thornton-ning"] > 118.0),
-        ("so do Kogut and Komvopoulos", others["kogut-komvopoulos"] > 118.0),
+        ("Kogut and Komvopoulos leave more, too", others["kogut-komvopoulos"] > 118.0),
         ("Jackson and Green and Kogut and Etsion leave less",
          max(others["jackson-green-2007"], others["kogut-etsion"]) < 118.0),
     )  # fmt: skip
@@ -189,7 +186,7 @@ def _depths_said(found: chapter3.Bench, chosen: list[ContactLaw]) -> str:
     thornton, stiff = times["thornton-ning"], times["kogut-komvopoulos"]
     small = times["jackson-green-2007"] + times["kogut-etsion"]
     return (
-        f"Times the measured depth with {found.mass_that_fits:g} kg: "
+        f"Over the measured depth, with {found.mass_that_fits:g} kg. "
         + judged(
             (f"Kogut and Komvopoulos 1.3 (here {told('kogut-komvopoulos')})",
              all(abs(t - 1.3) < 0.1 for t in stiff)),

@@ -48,7 +48,8 @@ def _tip_height(ends: Ends) -> str:
         f"Loading lasts [ms] {_told(ends, lambda i: 1e3 * i.loading_time_s, '.3f')}. "
         + judged(
             ("loading lasts about 0.11 ms for six laws", _near(others, 0.11, 0.008)),
-            (f"longer for Brake's two and Thornton's (Brake 2012 here {loading['brake-2012']:.3f})",
+            (f"longer for Brake's two and Thornton's than for the others (Brake 2012 "
+             f"{loading['brake-2012']:.3f})",
              min(loading[n] for n in (*_BRAKES, "thornton")) > max(others)),
             ranked(dent, "stronge", first="smallest", form=".0f"),
             ranked(dent, "thornton", first="largest", form=".0f"),
@@ -56,7 +57,6 @@ def _tip_height(ends: Ends) -> str:
             ("Brake's come next", min(lasts[n] for n in _BRAKES)
              > max(v for n, v in lasts.items() if n not in (*_BRAKES, "thornton"))),
         )
-        + " Largest and smallest are residual depths [um]."
     )  # fmt: skip
 
 
@@ -127,7 +127,7 @@ def _nine(values: Values, at: int) -> dict[str, float]:
 
 def _depth(values: Values, _sweep: Mapping[str, Any]) -> str:
     here = _nine(values, 2)
-    return "At 1.5 m/s [um]: " + judged(
+    return "At 1.5 m/s, in um. " + judged(
         ("every law's depth rises with the speed", all(np.all(np.diff(v) > 0.0)
                                                        for v in values.values())),
         ranked(here, "thornton", first="largest", form=".0f"),
@@ -149,7 +149,7 @@ def _restitution_45(values: Values, sweep: Mapping[str, Any]) -> str:
          float(np.max(np.abs(own - e))) < 0.04),
         ("Kogut and Etsion, Brake's two and Stronge begin above it",
          min(first[n] for n in large) > e),
-        (f"and come down to it ({', '.join(f'{n} {last[n]:.2f}' for n in large)} at 4 m/s)",
+        (f"they come down to it ({', '.join(f'{n} {last[n]:.2f}' for n in large)} at 4 m/s)",
          _near([last[n] for n in large], e, 0.03)),
         (f"Jackson and Green, Ye and Komvopoulos and Kogut and Komvopoulos lie below it (here "
          f"{_JG} {values[_JG].mean():.2f}, {_YK} {values[_YK].mean():.2f}, {_KK} "

@@ -6,19 +6,25 @@ from collections.abc import Mapping, Sequence
 
 
 def judged(*claims: tuple[str, bool]) -> str:
-    """Return the claims that hold here, then those that do not.
+    """Return how many claims hold here, and those that do not.
 
     Examples
     --------
     >>> judged(("a rises", True), ("b is largest", False))
-    'As the text says: a rises. Not as it says: b is largest.'
+    'Of 2 statements of the text 1 holds; not: b is largest.'
+    >>> judged(("a rises", True))
+    'As the text says: a rises.'
     """
-    parts = [
-        f"{opening}: {'; '.join(said)}."
-        for opening, wanted in (("As the text says", True), ("Not as it says", False))
-        if (said := [claim for claim, holds in claims if bool(holds) is wanted])
-    ]
-    return " ".join(parts)
+    missed = [claim for claim, holds in claims if not holds]
+    held = len(claims) - len(missed)
+    if len(claims) == 1:
+        return f"{'Not as' if missed else 'As'} the text says: {claims[0][0]}."
+    if not missed:
+        return f"{'Both' if held == 2 else f'All {held}'} statements of the text hold."
+    if not held:
+        return f"Not as the text says: {'; '.join(missed)}."
+    verb = "holds" if held == 1 else "hold"
+    return f"Of {len(claims)} statements of the text {held} {verb}; not: {'; '.join(missed)}."
 
 
 def ranked(

@@ -74,9 +74,9 @@ _DEEP = 0.06
 def _radii_said(off: dict[str, float]) -> str:
     return judged(
         ("both flattening laws are larger", off[_JG] > 0.0 and off[_KE] > 0.0),
-        ("of them Jackson and Green is nearer", abs(off[_JG]) < abs(off[_KE])),
+        ("of the flattening laws Jackson and Green is nearer", abs(off[_JG]) < abs(off[_KE])),
         ("both indentation laws are smaller", off[_KK] < 0.0 and off[_YK] < 0.0),
-        ("of them Ye and Komvopoulos is nearer", abs(off[_YK]) < abs(off[_KK])),
+        ("of the indentation laws Ye and Komvopoulos is nearer", abs(off[_YK]) < abs(off[_KK])),
     )
 
 

@@ -48,8 +48,6 @@ with the picture. A law's name is that of `dentscope laws`; in every figure it k
 
 NOT_REDRAWN = {
     "3.2-3.6": "the photographs, films and scans are not published; rendered ones stand for them",
-    "4.9, 4.11, 4.13-4.15": "the thesis prints no measured value; chapter 5's dents and a rigid "
-    "rod's spin are drawn",
     "5.4-5.6": "the measured scars are not published; predicted ones are drawn",
 }
 """Figures of the thesis that are drawn without its own data, with the reason."""

@@ -127,8 +127,7 @@ def _grey_values() -> Picture:
     note = (
         f"Rendered film of {len(frames)} frames. Fewest dark pixels in frame "
         f"{int(np.argmin(dark))}, the critical frame as the thesis defines it; first touch was "
-        "at 120.4. The thesis's film has 1000 frames of 512 by 48 pixels, its critical frame is "
-        "426 and the rod has grey values from 240."
+        "at 120.4. The thesis's film: 1000 frames of 512 by 48 pixels, critical frame 426."
     )
     return Picture("3.3", "Grey values of the film", made, note)
 
@@ -171,8 +170,7 @@ def _track() -> Picture:
     bounce = found.bounces[0]
     note = (
         f"Rendered with e = {truth.restitution:.4f}; the reduction reads {bounce.restitution}. "
-        "From the slopes before and after, as in the thesis; its film covers 7.3 + 9.3 ms, which "
-        "are 1328 frames, not 1000."
+        "From the slopes before and after, as in the thesis."
     )
     return Picture("3.5", "Height of the tip before and after", made, note)
 

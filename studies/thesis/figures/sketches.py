@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Sequence
+from dataclasses import replace
 from typing import Any
 
 import numpy as np
@@ -35,11 +36,16 @@ def chapters_4_and_5() -> list[Picture]:
     """Figures 4.1-4.3, 5.1 and 5.2."""
     return [
         _rod("4.1", "The rod during the impact", forces=True),
-        _flattening("4.2", "Deformed bodies of the flattening laws"),
-        _indentation("4.3", "Deformed flat of the indentation laws"),
+        _again(_flattening("4.2", "Deformed bodies of the flattening laws"), "1.4"),
+        _again(_indentation("4.3", "Deformed flat of the indentation laws"), "1.1"),
         _rod("5.1", "The rod of chapter 5", forces=False),
         _setup(),
     ]
+
+
+def _again(picture: Picture, number: str) -> Picture:
+    """Return a picture that was shown before, with a note that says so."""
+    return replace(picture, note=f"As [figure {number}](chapter-{number[0]}.md).")
 
 
 def _axis(size: tuple[float, float] = (6.4, 4.6)) -> tuple[Any, Any]:

@@ -176,19 +176,15 @@ def _updated(records: Sequence[CaseRecord]) -> Picture:
     worst = int(np.argmax(np.abs(off)))
     first = plain[0] / beside[0] - 1.0
     note = (
-        (
-            f"Against {'our finite elements' if points else 'the thesis model'}: Jackson and "
-            f"Green {percent(first)} at Sy* = {x[0]:.2g} (the text: above by less than 2 %), with "
-            f"delta_s* and R' at most {percent(float(off[worst]))}, at Sy* = {x[worst]:.2f} (the "
-            "text: 3.2 % near 1); the truncated radius is "
-            f"{percent(truncated / beside[0] - 1.0)}. "
-        )
-        + judged(
-            ("Jackson and Green is less than 2 % above", 0.0 < first < 0.02),
-            ("the updated form has the same trend with a dip near 1", 0.9 < x[worst] < 1.3),
-            ("its largest difference is 3.2 %", abs(abs(off[worst]) - 0.032) < 0.005),
-        )
-        + " The text calls this figure 2.13 once."
+        f"Against {'our finite elements' if points else 'the thesis model'}: Jackson and "
+        f"Green {percent(first)} at Sy* = {x[0]:.2g} (the text: above by less than 2 %), with "
+        f"delta_s* and R' at most {percent(float(off[worst]))}, at Sy* = {x[worst]:.2f} (the "
+        "text: 3.2 % near 1); the truncated radius is "
+        f"{percent(truncated / beside[0] - 1.0)}. "
+    ) + judged(
+        ("Jackson and Green is less than 2 % above", 0.0 < first < 0.02),
+        ("the updated form has the same trend with a dip near 1", 0.9 < x[worst] < 1.3),
+        ("the largest difference of that form is 3.2 %", abs(abs(off[worst]) - 0.032) < 0.005),
     )
     return Picture("2.12", "Contact radius of case 4 and the updated Jackson-Green", made, note)
 

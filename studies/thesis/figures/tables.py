@@ -138,8 +138,7 @@ _REMARK = {
     "three tables T of the simulated rows is the return to the undisturbed surface, their force "
     f"belongs to the contact alone, and Brake's law has {_MEASURED_H:g} kgf/mm^2 and n = "
     f"{_MEASURED_N:g}, at which the printed rows come out.",
-    "5.3": "The printed Ghaednia row repeats dent and sliding length of table 5.2, and the sliding "
-    "of -638 um contradicts 5.12.",
+    "5.3": "Two printed rows contradict others: see the errata.",
     "5.4": "The printed Ghaednia and Kogut-Komvopoulos rows look exchanged in T, force and dent; T "
     "= 0.10 ms needs alpha = -0.83, while 5.12 gives -0.50.",
 }
