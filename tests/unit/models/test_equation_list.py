@@ -17,7 +17,7 @@ NUMBER = re.compile(r"(\d)\.(\d+)(?:-\1\.(\d+))?")
 
 def rows():
     # the chapters' tables; what follows them speaks of laws and where they serve
-    tables, _, _ = THEORY.read_text("utf-8").partition("## Where the equations were read")
+    tables, _, _ = THEORY.read_text("utf-8").partition("## Which law to use when")
     return [m.groups() for m in ROW.finditer(tables)]
 
 
