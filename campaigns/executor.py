@@ -242,7 +242,10 @@ class DaskExecutor:
 
         One that goes away while it is asked is no longer a worker.
         """
-        found = self.client.run(environment, on_error="return")
+        try:
+            found = self.client.run(environment, on_error="return")
+        except OSError:  # the scheduler, which passes the question on
+            raise self._went_away() from None
         there = {k: answer for k, answer in found.items() if not isinstance(answer, OSError)}
         for worker, answer in there.items():
             if isinstance(answer, Exception):  # one without this package raises what it likes

@@ -20,7 +20,7 @@ from dentscope.campaigns.executor import DaskExecutor
 from dentscope.core import InputError
 from dentscope.core.provenance import environment
 
-pytest.importorskip("distributed")
+comm = pytest.importorskip("distributed.comm")
 
 ROOT = Path(__file__).resolve().parents[3]
 
@@ -287,6 +287,15 @@ def test_a_worker_that_dies_while_it_is_asked_is_left_out():
     )
     with pytest.raises(InputError, match="cannot say its versions"):
         absent._check_workers()
+
+
+def test_a_scheduler_that_dies_while_workers_are_asked_is_told():
+    class Gone:
+        def run(self, *_, **__):
+            raise comm.CommClosedError("in <Client>: Stream is closed")
+
+    with pytest.raises(InputError, match="scheduler went away"):
+        executor.DaskExecutor("tcp://here:1", 1, Gone())._check_workers()
 
 
 def certificates(folder):
