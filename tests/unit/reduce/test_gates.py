@@ -24,10 +24,7 @@ def test_every_gate_has_a_limit_of_the_register_and_its_line_in_the_docs():
     names = {f.name for f in fields(RULES)}
     assert all(gate.limit in names or not gate.limit for gate in GATES.values())
     assert all(f.metadata["meaning"] and f.metadata["source"] for f in fields(RULES))
-    # the page shows the gates with a limit, and leaves where it comes from to the register
-    rows = [line.rpartition(" | ")[0] + " |" for line in table_of_gates().splitlines()]
-    shown = "\n".join(row for row in rows if " | - | " not in row)
-    assert shown in (ROOT / "docs/reduce.md").read_text()
+    assert table_of_gates() in (ROOT / "docs/reduce.md").read_text()
 
 
 @pytest.mark.parametrize(
