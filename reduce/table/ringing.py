@@ -53,7 +53,7 @@ def ringing_within(
     if inside.sum() < 2 * RULES.fewest or late.sum() < 2 * RULES.fewest:
         return RingingWithin(np.zeros_like(clear), ringing, ringing)
     turn, fades = _swing((time[late] - ends[1]) / long, clear[late] / peak)
-    if turn <= 2.0 * math.pi:
+    if turn <= math.pi:
         return RingingWithin(np.zeros_like(clear), ringing, ringing)
     u, seen = (time[inside] - ends[0]) / long, clear[inside] / peak
     swings = np.exp(-fades * u)[:, None] * np.stack([np.cos(turn * u), np.sin(turn * u)], axis=1)
