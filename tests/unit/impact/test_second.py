@@ -56,6 +56,38 @@ def test_elastic_spheres_touch_for_as_long_as_hertz_says():
     assert found.restitution == pytest.approx(1.0, abs=1e-9)
 
 
+@pytest.mark.parametrize(
+    ("radius", "mass", "modulus", "speed"),
+    [
+        (5e-3, 4.084e-3, 205e9, 1.0),  # alike
+        (5e-3, None, 205e9, 1.0),  # alike, held
+        (1e-3, 3e-5, 205e9, 0.5),  # struck: a bead
+        (0.1, 32.0, 205e9, 3.0),  # a cannon ball
+        (0.02, None, 3e9, 2.0),  # a knob of plastic
+        (2e-3, 1e-2, 70e9, 0.1),  # heavier than it is large
+        (-6e-3, None, 205e9, 1.0),  # seats: tight, wide, soft and free
+        (-0.05, None, 205e9, 1.0),
+        (-0.015, 0.2, 3e9, 0.3),
+    ],
+)
+def test_elastic_spheres_from_a_file_are_hertzs(radius, mass, modulus, speed):
+    """T, delta = (15 m v^2/(16 E' R^(1/2)))^(2/5), F = (4/3) E' R^(1/2) delta^(3/2), by hand."""
+    struck = f'shape = "sphere"\nradius_m = {radius}\n' + (f"mass_kg = {mass}\n" if mass else "")
+    text = TWO.replace('shape = "sphere"\nradius_m = 0.005\nmass_kg = 0.004084070449666731\n',
+                       struck, 1)  # fmt: skip
+    text = text.replace("Sy_Pa = 6.0e8\n", "").replace("E_Pa = 2.05e11", f"E_Pa = {modulus}", 1)
+    text = text.replace("impact_speed_m_s = 1", f"impact_speed_m_s = {speed}")
+    found = strike(setup_of(tomllib.loads(text), source="two.toml").scene(LAWS["hertz"]))
+    R = 1.0 / (1.0 / 5e-3 + 1.0 / radius)
+    m = 1.0 / (1.0 / 0.004084070449666731 + (1.0 / mass if mass else 0.0))
+    E = 1.0 / ((1.0 - 0.09) / 205e9 + (1.0 - 0.09) / modulus)
+    depth = (15.0 * m * speed**2 / (16.0 * E * math.sqrt(R))) ** 0.4
+    assert found.contact_time_s == pytest.approx(2.9432 * depth / speed, rel=1e-3)
+    assert found.peak_depth_m == pytest.approx(depth, rel=1e-4)
+    assert found.peak_force_N == pytest.approx(4.0 / 3.0 * E * math.sqrt(R) * depth**1.5, rel=1e-4)
+    assert found.restitution == pytest.approx(1.0, abs=1e-9)
+
+
 @pytest.mark.parametrize("mass", [1e-3, 4.084e-3, math.inf])
 def test_momentum_and_energy_are_kept(mass):
     second = SecondSphere(3e-3, mass)
