@@ -10,6 +10,7 @@ from __future__ import annotations
 import sys
 from collections.abc import Callable
 from dataclasses import asdict, dataclass
+from functools import lru_cache
 from typing import Any, Literal
 
 import numpy as np
@@ -81,9 +82,14 @@ class FlowCurve:
         """Flow stress at a plastic strain [Pa]."""
         if strain >= self.strain[-1]:
             return self.stress[-1]
-        from scipy.interpolate import CubicHermiteSpline
+        return float(_spline(self)(strain))
 
-        return float(CubicHermiteSpline(self.strain, self.stress, self.slope)(strain))
+
+@lru_cache(maxsize=1024)
+def _spline(curve: FlowCurve) -> Any:
+    from scipy.interpolate import CubicHermiteSpline
+
+    return CubicHermiteSpline(curve.strain, curve.stress, curve.slope)
 
 
 def tabulated(strain: Array, stress: Array) -> FlowCurve:
