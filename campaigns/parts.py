@@ -17,7 +17,7 @@ from __future__ import annotations
 import hashlib
 import json
 import re
-from collections.abc import Iterator, Sequence
+from collections.abc import Callable, Iterator, Sequence
 from contextlib import contextmanager
 from dataclasses import asdict
 from pathlib import Path
@@ -106,15 +106,16 @@ PUBLISHED = Path(__file__).resolve().parents[1] / "data" / "campaign"
 _COARSE = "smoke"
 
 
-def published_parts() -> list[Path]:
-    """Return the parts of the release, by name, but for the coarse ones.
+def published_parts(of: Callable[[str], bool] = bool) -> list[Path]:
+    """Return the parts of the release whose names pass, but for the coarse ones.
 
     Raises
     ------
     InputError
         There are none.
     """
-    found = [p for p in sorted(PUBLISHED.glob("*.h5")) if not p.name.startswith(_COARSE)]
+    names = sorted(path.name for path in PUBLISHED.glob("*.h5"))
+    found = [PUBLISHED / name for name in names if of(name) and not name.startswith(_COARSE)]
     if not found:
         raise InputError(
             "no published cases", source=str(PUBLISHED), allowed="the parts of a release"

@@ -16,7 +16,7 @@ from .shared.terminal import console as new_console
 from .shared.terminal import show_table
 
 PUBLISHED = Path(__file__).parents[1] / "data" / "campaign"
-"""Folder of the published data."""
+"""Folder of the published data: that of `campaigns.parts`, which help must not load."""
 
 DEFAULT_DESIGN = "full"
 """Sweep of a command that names none."""

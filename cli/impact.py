@@ -120,12 +120,13 @@ def _sweep(
     for other in others:
         first = first.joined(other)
     first = first.with_stds(stds)
-    written = [base.with_name(base.name + end) for end in (".csv", ".png")]
-    first.to_csv(written[0])
-    draw_sweep(setup.sweep.swept, curves, written[1], stds=stds)
+    table, drawn, parquet = (base.with_name(f"{base.name}.{k}") for k in ("csv", "png", "parquet"))
+    first.to_csv(table)
+    draw_sweep(setup.sweep.swept, curves, drawn, stds=stds)
+    written = [table, drawn]
     if find_spec("pandas") and find_spec("pyarrow"):
-        written.append(base.with_name(f"{base.name}.parquet"))
-        first.to_parquet(written[-1])
+        first.to_parquet(parquet)
+        written.append(parquet)
     return written, int((first["outcome"] != "completed").sum()), "\n".join(swept_above_one(first))
 
 

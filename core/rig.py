@@ -287,7 +287,7 @@ class TargetTable(BodyTable):
         return self.law in ("elastic-plastic", "table")
 
 
-def of_this_size(inertia: Quantity | None, info: ValidationInfo) -> Quantity | None:
+def possible_inertia(inertia: Quantity | None, info: ValidationInfo) -> Quantity | None:
     """Return a striker's moment of inertia, as a check of its table.
 
     Raises
@@ -361,7 +361,7 @@ class StrikerTable(BodyTable):
             raise ValueError(f"below tip_radius_m = {tip.value:g}")
         return given
 
-    _of_this_size = field_validator("inertia_kg_m2")(of_this_size)
+    _possible_inertia = field_validator("inertia_kg_m2")(possible_inertia)
 
     @property
     def body_radius(self) -> float:

@@ -137,10 +137,7 @@ def _published(perfectly_plastic: bool) -> tuple[CaseRecord, ...]:
     InputError
         The published cases are missing or damaged.
     """
-    parts = [
-        path for path in published_parts()
-        if path.name.startswith(_HARDENS) != perfectly_plastic
-    ]  # fmt: skip
+    parts = published_parts(lambda name: name.startswith(_HARDENS) != perfectly_plastic)
     found = [
         record for path in parts for record in read_curves(path)
         if record.unloadings and record.case.pair.perfectly_plastic == perfectly_plastic

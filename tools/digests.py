@@ -20,6 +20,8 @@ ROOT = Path(__file__).resolve().parents[1]
 PAGE = ROOT / "data" / "README.md"
 COEFFICIENTS = ROOT / "data" / "coefficients" / "fitted.json"
 SHORT = 12
+RUN = "dentscope campaign run, publish"
+LEVELS = "dentscope verify --only levels"
 DRAWN = "python -m dentscope.studies.challenge.draw"
 
 INTRO = """# What is published
@@ -72,35 +74,33 @@ def rows() -> Iterable[tuple[str, str, str, str]]:
     fitted = digest([COEFFICIENTS])
     parts = of_folder("data/campaign", ".h5")
     for part in sorted(parts):
-        yield f"campaign/{part.name}", digest([part]), "the solver", "campaign run, publish"
+        yield f"campaign/{part.name}", digest([part]), "the solver", RUN
     read = ", ".join(name.removesuffix(".h5") for name in parts_read())
-    yield "coefficients/fitted.json", fitted, f"campaign: {read}", "fit --publish"
+    yield "coefficients/fitted.json", fitted, f"campaign: {read}", "dentscope fit --publish"
     errors = ROOT / "data" / "coefficients" / "mesh_errors.json"
-    yield "coefficients/mesh_errors.json", digest([errors]), "the solver", "verify --only levels"
+    yield "coefficients/mesh_errors.json", digest([errors]), "the solver", LEVELS
     challenge = of_folder("data/challenge", ".h5")
     drawn = f"coefficients {drawn_from()[:SHORT]}"
-    yield "challenge", digest(challenge), drawn, "campaign run --design challenge"
+    yield "challenge", digest(challenge), drawn, "dentscope campaign run --design challenge"
     sets = [ROOT / "data" / "blind-sets" / name for name in ("open.zip", "sealed.zip", SEALS)]
     yield "blind-sets", digest(sets), "the proof's generators, secret seeds", DRAWN
     figures = of_folder("docs/thesis", ".png", ".md")
-    yield "docs/thesis", digest(figures), drawn, "figures"
+    yield "docs/thesis", digest(figures), drawn, "dentscope figures"
     for name in ("base_laws.json", "explicit_impacts.h5"):
         made = "the solver" if name.startswith("base") else "elements of the proof's own"
-        command = "proof laws" if name.startswith("base") else "proof library"
+        command = "dentscope proof laws" if name.startswith("base") else "dentscope proof library"
         yield f"proof/{name}", digest([ROOT / "data" / "proof" / name]), made, command
     runs = ROOT / "data" / "proof" / "runs.json"
     full = [r for r in json.loads(runs.read_text()) if r["list"] == "full"][-1]
     tree, here = full["tree"], tree_hash(ROOT)
     whose = "the present one" if tree == here else "an earlier one"
-    yield "proof/runs.json", digest([runs]), f"source tree {tree[:SHORT]}, {whose}", "proof run"
+    made = f"source tree {tree[:SHORT]}, {whose}"
+    yield "proof/runs.json", digest([runs]), made, "dentscope proof run"
 
 
 def page() -> str:
     """Return the whole page."""
-    lines = [
-        f"| `{what}` | `{sha[:SHORT]}` | {made} | `{by if by == DRAWN else f'dentscope {by}'}` |"
-        for what, sha, made, by in rows()
-    ]
+    lines = [f"| `{what}` | `{sha[:SHORT]}` | {made} | `{by}` |" for what, sha, made, by in rows()]
     return INTRO + "\n".join(lines) + "\n" + OUTRO
 
 

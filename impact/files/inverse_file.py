@@ -12,7 +12,7 @@ from pydantic import Field, field_validator
 
 from ...core.errors import InputError, InputErrors
 from ...core.inputs.toml_input import InputTable, parse_model, read_toml
-from ...core.rig import Length, Mass, Positive, Radius, of_this_size
+from ...core.rig import Length, Mass, Positive, Radius, possible_inertia
 from ...core.unstated import unstated_equal
 from ..inverse import INFERRED, Inferred, MeasuredScar, infer
 from ..scene import Striker
@@ -35,7 +35,7 @@ class _RodTable(InputTable):
     inertia_kg_m2: Positive | None = None
     """Moment of inertia across the axis; left out: of a rod of this mass."""
 
-    _of_this_size = field_validator("inertia_kg_m2")(of_this_size)
+    _possible_inertia = field_validator("inertia_kg_m2")(possible_inertia)
 
     def rod(self, values: Mapping[str, float] | None = None) -> Striker:
         """Return the rigid rod, with some of its numbers replaced."""

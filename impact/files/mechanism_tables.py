@@ -20,13 +20,13 @@ if TYPE_CHECKING:
     from .setup import SetupFile
 
 
-class _Made(InputTable):
+class _GeneratedTable(InputTable):
     """A table whose keys are made by the program; none has a docstring that takes time to find."""
 
     model_config = ConfigDict(use_attribute_docstrings=False)
 
 
-class MechanismTable(_Made):
+class MechanismTable(_GeneratedTable):
     """The numbers of one mechanism; `true` takes those that its source has for usual rigs."""
 
     @model_validator(mode="before")
@@ -69,7 +69,7 @@ if TYPE_CHECKING:
         """`[mechanisms]`: one table a mechanism, by the names of a verdict."""
 
 else:
-    MechanismsTable = create_model("mechanisms", __base__=_Made, **_FIELDS)
+    MechanismsTable = create_model("mechanisms", __base__=_GeneratedTable, **_FIELDS)
 
 _ALONE: dict[str, tuple[str, Callable[[SetupFile], bool]]] = {
     "support-compliance": ("impact.support", lambda file: file.impact.support == "sprung"),

@@ -143,7 +143,7 @@ def _draw_left(axis: Any, blow: Blow, law: str, left: Sequence[LeftSurface]) -> 
     axis.set(
         xlim=(-reach, reach), xlabel=f"from the middle [{unit}]; dotted: the contact",
         ylabel="over the surface that was [um]",
-        title=f"left by {law}; {_told_of(stretch)}",
+        title=f"left by {law}; {_vertical_scale(stretch)}",
         aspect=stretch * scale / 1e6, ylim=(low - 0.45 * (high - low),
                                                         high + 0.25 * (high - low)),
     )  # fmt: skip
@@ -157,7 +157,7 @@ def _stretch(tall: float) -> float:
     return max(float(f"{0.55 / tall:.1g}"), 1.0)
 
 
-def _told_of(stretch: float) -> str:
+def _vertical_scale(stretch: float) -> str:
     return f"heights drawn {stretch:g} times too large" if stretch > 1.0 else "to scale"
 
 

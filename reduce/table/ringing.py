@@ -51,10 +51,10 @@ def ringing_within(
     inside = (time > ends[0]) & (time < ends[1])
     late = (time >= ends[1]) & (time < ends[1] + RULES.beside * long)
     if inside.sum() < 2 * RULES.fewest or late.sum() < 2 * RULES.fewest:
-        return RingingWithin(np.zeros_like(clear), ringing, ringing)
+        return _unknown(clear, ringing)
     turn, fades = _swing((time[late] - ends[1]) / long, clear[late] / peak)
     if turn <= math.pi:
-        return RingingWithin(np.zeros_like(clear), ringing, ringing)
+        return _unknown(clear, ringing)
     u, seen = (time[inside] - ends[0]) / long, clear[inside] / peak
     swings = np.exp(-fades * u)[:, None] * np.stack([np.cos(turn * u), np.sin(turn * u)], axis=1)
 
@@ -73,8 +73,7 @@ def ringing_within(
     found = usual * float(fit.x[3:] @ fit.x[3:])
     chance = usual * spread * float(np.diag(unit_covariance(fit.jac))[3:].sum())
     if found < RULES.no_chance * chance:
-        unsure = min(math.sqrt(max(found, chance)), ringing)
-        return RingingWithin(np.zeros_like(clear), unsure, unsure)
+        return _unknown(clear, min(math.sqrt(max(found, chance)), ringing))
     on = time > ends[0]
     u = (time[on] - ends[0]) / long
     swing = np.zeros_like(clear)
@@ -86,6 +85,10 @@ def ringing_within(
     return RingingWithin(
         swing, math.sqrt(found), math.hypot(math.sqrt(chance + 0.25 * found), more)
     )
+
+
+def _unknown(clear: Array, part: float) -> RingingWithin:
+    return RingingWithin(np.zeros_like(clear), part, part)
 
 
 def _swing(t: Array, seen: Array) -> tuple[float, float]:
