@@ -50,7 +50,7 @@ def main():
                 killed.append(next(iter(executor.client.run(os.getpid).values())))
                 os.kill(killed[0], signal.SIGKILL)
         status = run_design(Design("dask", "", made), Path(sys.argv[1]), executor=executor,
-                            time_limit_s=120.0, report=kill_one)
+                            time_limit_s=600.0, report=kill_one)
         print("KILLED", len(killed), "DONE", status.done, status.failed, status.missing, flush=True)
         os._exit(0)
 

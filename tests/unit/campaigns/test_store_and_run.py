@@ -427,7 +427,7 @@ def made():
 
 if __name__ == "__main__":
     run_design(Design("kill", "", made), Path(sys.argv[1]), executor=LocalExecutor(workers=2),
-               time_limit_s=60.0, report=lambda s: print("COMPUTED", s.case.name, flush=True))
+               time_limit_s=600.0, report=lambda s: print("COMPUTED", s.case.name, flush=True))
 """
 
 
@@ -466,7 +466,7 @@ def test_a_dying_worker_costs_no_case(tmp_path):
     cases = distinct_cases(design(3))
     killed = []
     ended = []
-    for item in LocalExecutor(workers=2).run(cases, time_limit_s=60.0):
+    for item in LocalExecutor(workers=2).run(cases, time_limit_s=600.0):
         if not killed:
             workers = [child.pid for child in multiprocessing.active_children()]
             if workers:
