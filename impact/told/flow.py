@@ -64,7 +64,7 @@ def _range_of(
         effect(last_blow(setup.with_mechanism(mechanism, one), scene.law), found) for one in ends
     ]
     kind = chosen[0].kind
-    whose = body.material if own else f"the table's {kind} ({len(sizes)} metals)"
+    whose = body.material if own else f"the nearest in the table ({kind}, {len(sizes)})"
     return f"with that of {whose}: {' to '.join(told)}"
 
 
