@@ -105,7 +105,7 @@ def _new_from(sheet: Path, folder: Path, shape: str) -> None:
         typer.echo(f"  {header!r}: {became}")
     for line in (*found.left_out, *done.notes):
         typer.echo(f"  note: {line}")
-    typer.echo(f"{folder}: then: dentscope recordings audit {folder}")
+    typer.echo(f"{folder}: fill in set.toml, then: dentscope recordings check {folder}")
 
 
 @app.command("list")

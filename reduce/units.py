@@ -13,10 +13,10 @@ POUND_FORCE = 4.4482216152605
 
 LENGTH = {
     "m": 1.0, "cm": 1e-2, "mm": 1e-3, "um": 1e-6, "µm": 1e-6, "μm": 1e-6, "nm": 1e-9, "pm": 1e-12,
-    "Å": 1e-10, "in": 0.0254,
+    "Å": 1e-10, "in": 0.0254, "ft": 0.3048,
 }  # fmt: skip
 """With both signs for micro."""
-TIME = {"s": 1.0, "ms": 1e-3, "us": 1e-6, "µs": 1e-6, "min": 60.0}
+TIME = {"s": 1.0, "ms": 1e-3, "us": 1e-6, "µs": 1e-6, "μs": 1e-6, "min": 60.0}
 UNITS: dict[str, dict[str, float]] = {
     "time": TIME,
     "length": LENGTH,

@@ -23,10 +23,11 @@ OUT_OF_RANGE = 9.8e37
 
 _DECIMAL_COMMA = re.compile(r"[+-]?\d*,\d+([eE][+-]?\d+)?")
 _THOUSANDS = (
-    (re.compile(r"[+-]?\d{1,3}([   '’]\d{3})+([.,]\d+)?"), "   '’"),
+    (re.compile(r"[+-]?\d{1,3}([ \u00a0\u2009\u202f'’]\d{3})+([.,]\d+)?"),
+     " \u00a0\u2009\u202f'’"),
     (re.compile(r"[+-]?\d{1,3}(\.\d{3})+,\d+"), "."),
     (re.compile(r"[+-]?\d{1,3}(,\d{3})+\.\d+"), ","),
-)
+)  # fmt: skip
 _CLOCK = re.compile(
     r"(?:(?P<date>\d{4}[-/.]\d{1,2}[-/.]\d{1,2}|\d{1,2}[./]\d{1,2}[./]\d{4})[T ,]\s*)?"
     r"(?P<h>\d{1,2}):(?P<m>\d{2})(?::(?P<s>\d{2}(?:[.,:]\d+)?))?\s*(?P<half>[AaPp][Mm])?"

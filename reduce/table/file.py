@@ -275,18 +275,31 @@ def numbered_lines(raw: bytes, source: str) -> list[tuple[int, str]]:
     InputError
         Not text, or empty.
     """
-    if b"\0" in raw[:4096] and not raw.startswith((b"\xff\xfe", b"\xfe\xff")):
-        raise InputError("not text", source=source, allowed="a text table, XLS, XLSX or ODS")
-    wide = raw.startswith((b"\xff\xfe", b"\xfe\xff"))
-    try:
-        text = raw.decode("utf-16" if wide else "utf-8-sig")
-    except UnicodeDecodeError:
-        text = raw.decode("latin-1")  # old instruments write their micro and degree signs so
-    each = enumerate(text.splitlines(), start=1)
+    each = enumerate(decoded(raw, source).splitlines(), start=1)
     lines = [(k, line) for k, line in each if line.strip() and not line.startswith("#")]
     if not lines:
         raise InputError("empty", source=source, allowed="columns of numbers")
     return lines
+
+
+def decoded(raw: bytes, source: str) -> str:
+    """Return the text of a file in any usual encoding.
+
+    Raises
+    ------
+    InputError
+        Not text, or empty.
+    """
+    wide = raw.startswith((b"\xff\xfe", b"\xfe\xff"))
+    if b"\0" in raw[:4096] and not wide:
+        raise InputError("not text", source=source, allowed="a text table, XLS, XLSX or ODS")
+    try:
+        text = raw.decode("utf-16" if wide else "utf-8-sig")
+    except UnicodeDecodeError:
+        text = raw.decode("latin-1")  # old instruments write their micro and degree signs so
+    if not text.strip():
+        raise InputError("empty", source=source, allowed="columns of numbers")
+    return text
 
 
 def text_rows(lines: Sequence[str], source: str, *, separator: str = "") -> list[list[str]]:

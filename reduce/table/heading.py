@@ -16,7 +16,7 @@ WORDS = {
     "sec": "s", "secs": "s", "second": "s", "seconds": "s", "newton": "N", "newtons": "N",
     "volt": "V", "volts": "V", "metre": "m", "metres": "m", "meter": "m", "meters": "m",
     "mm/mm": "-", "m/m": "-", "in/in": "-", "kilonewtons": "kN", "millimeters": "mm",
-    "millimetres": "mm", "milliseconds": "ms", "pascal": "Pa", "degrees": "deg",
+    "millimetres": "mm", "milliseconds": "ms", "pascal": "Pa", "degrees": "deg", "grad": "deg",
 }  # fmt: skip
 """Units in words, as they are written in a recording set."""
 

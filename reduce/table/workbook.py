@@ -41,6 +41,20 @@ def workbook_rows(path: Path, sheet: str) -> list[list[str]]:
     return [[_cell(cell) for cell in row] for row in rows]
 
 
+def rows_of_sheets(path: Path) -> dict[str, list[list[str]]]:
+    """Return the cells of every sheet as text, counted from its first row and column.
+
+    Raises
+    ------
+    InputError
+        Not a workbook.
+    """
+    with _opened(path) as book:
+        found = {n: book.get_sheet_by_name(n) for n in book.sheet_names}
+        rows = {n: sheet.to_python(skip_empty_area=False) for n, sheet in found.items()}
+    return {n: [[_cell(cell) for cell in row] for row in each] for n, each in rows.items()}
+
+
 @contextmanager
 def _opened(path: Path) -> Iterator[Any]:
     try:

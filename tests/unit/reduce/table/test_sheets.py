@@ -230,3 +230,141 @@ def test_who_measured_sums_nothing_up(tmp_path):
     text = "Prüfer;Fallhöhe (cm);Stoßzahl\nMax;50;0,61\nAnna;50;0,60\nMittelwert;50;0,605\n"
     sheet = read_text(tmp_path, text)
     assert restitutions(sheet) == [0.61, 0.6]
+
+
+@pytest.mark.parametrize(
+    "head",
+    [
+        "Height of drop (cm),Height of rebound (mm),Diameter of dent (mm),Depth of the crater (um),"
+        "Duration of contact (us),Force peak (N),Remark",
+        "Hauteur de chute en cm,Hauteur du rebond (mm),Diamètre de l'empreinte (mm),Profondeur µm,"
+        "Temps de contact (µs),Force maximale (N),Remarque",
+        "Altezza caduta (cm),Altezza rimbalzo (mm),Diametro dell'impronta (mm),Profondità (µm),"
+        "Tempo di contatto (µs),Forza massima (N),Osservazioni",
+        "Altura de caída (cm),Altura del rebote (mm),Diámetro de la huella (mm),Profundidad (µm),"
+        "Tiempo de contacto (μs),Fuerza máxima (N),Observaciones",
+        "drop_height_cm,rebound_height_mm,dent_diameter_mm,dent_depth_um,contact_time_us,"
+        "peak_force_N,note",
+        "Fallhoehe cm,Rueckprallhoehe mm,Eindruck Ø mm,Kratertiefe µm,Kontaktzeit µs,Kraftspitze N,"
+        "Bemerkung",
+    ],
+)
+def test_words_stand_in_any_order_and_units_without_brackets(tmp_path, head):
+    sheet = read_text(tmp_path, f"{head}\n10,43,0.61,9.5,55,920,first\n20,80,0.72,12,52,1300,\n")
+    seen = {k: v.value for k, v in sheet.trials[0].observables.items()}
+    assert seen == pytest.approx({
+        "drop_height_m": 0.1, "restitution": math.sqrt(0.43), "dent_diameter_m": 6.1e-4,
+        "permanent_depth_m": 9.5e-6, "contact_time_s": 5.5e-5, "peak_force_N": 920.0,
+    })  # fmt: skip
+    assert sheet.trials[0].note == "first"
+
+
+def test_standard_deviations_are_none_of_the_readings(tmp_path):
+    head = "drop height (cm),e,e std,dent diameter (mm),± (mm),rebound height (mm),Std. dev. (mm)"
+    sheet = read_text(tmp_path, f"{head}\n10,,,0.61,0.005,43,0.5\n20,0.63,0.01,,,,\n")
+    first, second = (t.observables for t in sheet.trials)
+    assert (first["dent_diameter_m"].std, second["restitution"].std) == pytest.approx((5e-6, 0.01))
+    assert first["restitution"].std == pytest.approx(math.sqrt(0.43) * 0.5 * 0.5 / 43.0)
+    text = "drop height,dent diameter (mm)\n10 ± 1 cm,0.61 ± 0.01\n20 cm,720+/-10 um\n"
+    sheet = read_text(tmp_path, text)
+    assert [t.observables["dent_diameter_m"].std for t in sheet.trials] == pytest.approx([1e-5] * 2)
+    assert sheet.trials[0].observables["drop_height_m"].std == pytest.approx(0.01)
+    sheet = read_text(
+        tmp_path, "Höhe (cm);e1;e2;Mittelwert e;Stdabw. e\n10;0,65;0,66;0,655;0,007\n"
+    )
+    assert restitutions(sheet) == [0.65, 0.66]
+    assert columns(sheet)["Stdabw. e"] == "left out: sums up its neighbours"
+
+
+@pytest.mark.parametrize(
+    ("text", "header"),
+    [
+        ("v (m/s),E (J),e\n1,0.5,0.65\n", "E (J)"),
+        ("Indenter diameter (mm),v (m/s),e\n10,1,0.65\n", "Indenter diameter (mm)"),
+        ("v (m/s),e,Max. indentation depth (um)\n1,0.65,9\n", "Max. indentation depth (um)"),
+        ("v (m/s),rebound speed (m/s),tangential rebound speed (m/s)\n1,0.65,0.9\n",
+         "tangential rebound speed (m/s)"),
+        ("v (m/s),1st rebound speed (m/s),2nd rebound speed (m/s)\n1,0.65,0.4\n",
+         "2nd rebound speed (m/s)"),
+        ("v (m/s),e,Plate temperature (°C),Ball temperature (°C)\n1,0.65,20,25\n",
+         "Ball temperature (°C)"),
+    ],
+)  # fmt: skip
+def test_what_sounds_like_a_reading_is_none(tmp_path, text, header):
+    sheet = read_text(tmp_path, text)
+    (trial,) = sheet.trials
+    assert trial.observables["restitution"].value == 0.65
+    assert columns(sheet)[header].startswith("left out: ")
+
+
+@pytest.mark.parametrize(
+    ("text", "said"),
+    [
+        ("Fallhöhe soll (cm);Fallhöhe ist (cm);e\n10;10,3;0,6\n",
+         r"Fallhöhe ist \(cm\): drop_height_m stands in 'Fallhöhe soll \(cm\)' already"),
+        ("Angle from normal (deg),v (m/s),e\n0,1,0.6\n", "an angle from the normal"),
+        ("v (mph),e\n1,0.6\n", "'mph' is no unit of speed that is known"),
+        ("rebound height (mm),dent depth (um)\n43,9\n", "no column such as drop height"),
+        ("drop height (cm),h1 (cm),#\n10,4,1\n", r"a name for one of 'h1 \(cm\)'"),
+        ("drop height (cm),Stoßzahl (%)\n10,0.65\n", "'0.65': a part of 1, or of 100?"),
+        ("drop height (cm),dent depth (um)\n10,-9\n", "'-9' is too little"),
+        ("drop height (cm),e\n10,65\n", "'65' is too much"),
+    ],
+)  # fmt: skip
+def test_a_sheet_that_would_be_misread_is_refused(tmp_path, text, said):
+    with pytest.raises(InputError, match=said):
+        read_text(tmp_path, text)
+
+
+def test_an_angle_that_is_not_read_makes_no_normal_impact(tmp_path):
+    sheet = read_text(tmp_path, "angle (Grad),v (m/s),e\n?,1,0.5\n95,1,0.6\n60,1,0.7\n")
+    assert restitutions(sheet) == [0.7]
+    assert "row 3: left out, its angle is not read" in sheet.left_out
+    assert "speeds beside angles are taken as those along the normal" in sheet.left_out
+
+
+@pytest.mark.parametrize("blank", [" ", "\u00a0", "\u202f", "'"])
+def test_blanks_that_part_thousands(tmp_path, blank):
+    sheet = read_text(
+        tmp_path, f"Höhe{blank}mm;e\n1{blank}000,5;0,6\n20;0,5\n".replace("'mm", " mm")
+    )
+    assert heights(sheet) == [1.0005, 0.02]
+
+
+def test_presses_are_rows_too(tmp_path):
+    text = "Prüfkraft (kN);Fallhöhe (cm);Eindruckdurchmesser (mm)\n1;;0,6\n2;;0,85\n;10;0,61\n"
+    seen = [t.observables for t in read_text(tmp_path, text).trials]
+    assert [s["load_N"].value for s in seen[:2]] == [1e3, 2e3]
+    assert "load_N" not in seen[2]
+    assert seen[2]["drop_height_m"].value == pytest.approx(0.1)
+
+
+def test_rows_are_counted_as_the_file_has_them(tmp_path):
+    head = "#,drop height (cm),rebound height (mm),\n"
+    sheet = read_text(tmp_path, f"Tuesday\n\n{head}1,10,43,44\n\n2,20,oops,\n3,−5,9,\n")
+    assert [t.label for t in sheet.trials] == ["004"]
+    assert "row 6, rebound height (mm): 'oops' is no length" in sheet.left_out
+    assert "row 7, drop height (cm): '-5' is too little" in sheet.left_out
+    assert columns(sheet)["column 4"] == "left out: no header"
+
+
+def test_another_table_below_is_told_and_not_read_by_these_headers(tmp_path):
+    one, other = "drop height (cm),e,dent depth (um)\n", "drop height (cm),dent depth (um),e\n"
+    sheet = read_text(tmp_path, f"{one}10,0.6,9\n{one}20,0.5,12\n{other}10,9,0.6\n")
+    assert restitutions(sheet) == [0.6, 0.5]
+    assert "row 5 and those below: left out, headers of another table" in sheet.left_out
+
+
+def test_the_sheet_of_a_workbook_is_that_with_headers_and_the_others_are_told(tmp_path):
+    openpyxl = pytest.importorskip("openpyxl")
+    book = openpyxl.Workbook()
+    book.active.append(["Operator", "Jane"])
+    for name in ("Brass", "Steel"):
+        sheet = book.create_sheet(name)
+        sheet.append([])
+        sheet.append([None, "drop height (cm)", "e"])
+        sheet.append([None, 10, 0.6])
+    book.save(tmp_path / "a.xlsx")
+    found = read_sheet(tmp_path / "a.xlsx")
+    assert [t.label for t in found.trials] == ["003"]
+    assert [line.split(":")[0] for line in found.left_out] == ["sheet 'Sheet'", "sheet 'Steel'"]

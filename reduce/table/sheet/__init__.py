@@ -1,0 +1,8 @@
+"""A laboratory's sheet: a row a drop or a press, headers in its own words, units there or in cells.
+
+Every column and every cell that is not taken is told: nothing disappears without a line.
+"""
+
+from .rows import Sheet, read_sheet
+
+__all__ = ["Sheet", "read_sheet"]

@@ -1,0 +1,84 @@
+"""What a cell of a laboratory's sheet says: a number, its standard deviation, its own unit."""
+
+from __future__ import annotations
+
+import math
+import re
+from collections.abc import Sequence
+
+from ....recordings.columns import CONDITIONS, MEASURED
+from ...measured import Measured
+from ...units import UNITS
+from ..cells import plain, value_of
+from ..heading import in_short
+from .headers import CELSIUS, SheetColumn
+
+_CELL = re.compile(
+    r"(?P<number>[+-]?[\d.,'’ ]*\d(?:[eE][+-]?\d+)?)"
+    r"(\s*(±|\+/-|\+-)\s*(?P<std>[\d.,]+))?\s*(?P<unit>[^\d\s].{0,5})?"
+)
+_GROUPED = re.compile(r"[+-]?[1-9]\d{0,2}([.,]\d{3})+")
+"""What may be thousands or a number with three decimals: 1.000."""
+_DECIMAL = re.compile(
+    r"[+-]?\d+(?P<a>[.,])(\d{1,2}|\d{4,})(?!\d)|[+-]?0(?P<b>[.,])\d+"
+    r"|[+-]?\d{1,3}(?:(,\d{3})+(?P<c>\.)|(\.\d{3})+(?P<d>,))\d+"
+)
+_ICE = 273.15
+
+
+def why_not(cell: str, column: SheetColumn, value: Measured | None, decimals: str) -> str:
+    """Return why a cell is not taken; empty where it is."""
+    if value is None:
+        if decimals == "" and _grouped(cell):
+            return f"{cell!r}: of thousands, or of decimals?"
+        return f"{cell!r} is no {column.kind.quantity}"
+    if column.unit == "%" and not column.spread and 0.0 < value.value <= 0.01 and "%" not in cell:
+        return f"{cell!r}: a part of 1, or of 100?"
+    name = column.kind.name
+    rule = (CONDITIONS | MEASURED).get(name)
+    if value.value < 0.0 if column.spread or rule is None else not rule.accepts(value.value):
+        return f"{cell!r} is too {'little' if rule is None or value.value <= rule.low else 'much'}"
+    return ""
+
+
+def decimals_of(rows: Sequence[Sequence[str]], columns: Sequence[SheetColumn]) -> str:
+    """Return the sign before the decimals of a sheet's numbers; empty if none, or both, show it."""
+    cells = (
+        _CELL.fullmatch(row[c.place].strip()) for row in rows for c in columns
+        if c.place < len(row) and c.kind.quantity != "text"
+    )  # fmt: skip
+    numbers = (found["number"].strip() for found in cells if found)
+    signs = {m["a"] or m["b"] or m["c"] or m["d"] for m in map(_DECIMAL.fullmatch, numbers) if m}
+    return signs.pop() if len(signs) == 1 else ""
+
+
+def _grouped(cell: str) -> bool:
+    found = _CELL.fullmatch(cell)
+    return found is not None and _GROUPED.fullmatch(found["number"].strip()) is not None
+
+
+def number_in(cell: str, column: SheetColumn, decimals: str) -> Measured | None:
+    """Return the number in a cell in the SI, by its own unit or the column's; None if it is none.
+
+    1.000 is a thousand where other cells have decimal commas, and no number where none has any.
+    """
+    found = _CELL.fullmatch(cell)
+    if found is None:
+        return None
+    text = found["number"].strip()
+    if _grouped(cell) and decimals not in text:
+        text = re.sub("[.,]", "", text)
+    elif _grouped(cell) and not decimals:
+        return None
+    number, std = value_of(plain(text, ";")), value_of(plain(found["std"] or "0", ";"))
+    own = in_short(found["unit"].strip()) if found["unit"] else ""
+    if math.isnan(number) or math.isnan(std):
+        return None
+    unit = own or column.unit
+    if unit is None:
+        column.unitless = True
+        return None
+    if column.kind.quantity == "temperature" and unit in CELSIUS:
+        return Measured(number if column.spread else number + _ICE, std)
+    size = UNITS[column.kind.quantity].get(unit)
+    return None if size is None else Measured(number, std).scaled(size)

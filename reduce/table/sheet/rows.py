@@ -1,0 +1,307 @@
+"""The rows of a laboratory's sheet as trials, and what became of every column and cell."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass
+from pathlib import Path
+
+import numpy as np
+
+from ....core.errors import InputError, InputErrors
+from ....core.inputs.input_file import checked_file
+from ....core.processes.confined import confined
+from ....recordings.columns import MEASURED
+from ...bounces.options import GRAVITY
+from ...measured import Measured, Trial
+from ...reduced import Reduced
+from ...rules import RULES
+from ...units import UNITS
+from ..file import BOOKS, cells_of, decoded
+from ..picture import draw_trials
+from ..trials import TrialsReduction
+from ..workbook import rows_of_sheets
+from .cell import decimals_of, number_in, why_not
+from .headers import (
+    APPROACHES,
+    REBOUND_HEIGHT,
+    REBOUND_SPEED,
+    REBOUNDS,
+    SUMMARY,
+    SheetColumn,
+    bare,
+    headers_of,
+    kind_of,
+    understood,
+)
+
+_TYPED = str.maketrans({"\u2212": "-", "\u00a0": " ", "\u2009": " ", "\u202f": " "})
+"""Signs of typesetters as they are typed: the minus, and blanks that do not break."""
+_VARIED = ("temperature_K", "angle_deg")
+
+
+@dataclass(frozen=True)
+class Sheet:
+    """What a sheet became.
+
+    Parameters
+    ----------
+    trials
+        Its rows.
+    columns
+        Of each column of the sheet its header and what became of it, in words.
+    left_out
+        Cells, rows and sheets that were not taken, a line each.
+    """
+
+    trials: tuple[Trial, ...]
+    columns: tuple[tuple[str, str], ...]
+    left_out: tuple[str, ...]
+
+    def reduced(self, path: Path) -> Reduced:
+        """Return it as what every reduction hands on."""
+        notes = (*(f"{header!r}: {became}" for header, became in self.columns), *self.left_out)
+        seen = self.trials[0].observables
+        across = next(n for n in APPROACHES if n in seen)
+        up = next(n for n in seen if n in MEASURED)
+        x, y = (
+            np.array(
+                [t.observables[n].value if n in t.observables else np.nan for t in self.trials]
+            )
+            for n in (across, up)
+        )
+        values = {"trials": Measured(float(len(self.trials)), math.nan)}
+        found = TrialsReduction(values, self.trials, notes, (across, x), (up, y))
+        return Reduced(path, values, self.trials, lambda to: draw_trials(found, to), notes)
+
+
+def read_sheet(path: Path) -> Sheet:
+    """Read a laboratory's sheet.
+
+    Drop and rebound height give the restitution, the root of their ratio, and one in a column of
+    its own says the same once more; a drop height that is written once for several rows holds for
+    the rows below; several columns of one quantity are repeats, each a row of its own.
+
+    Parameters
+    ----------
+    path
+        A workbook, of which the first sheet whose headers are understood is read, or a text table
+        in any usual encoding.
+
+    Raises
+    ------
+    InputError
+        No row of headers is understood, or a column names no unit.
+    """
+    checked_file(path, most=RULES.table_bytes, allowed="a sheet")
+    source, others = str(path), []
+    if path.suffix.lower() in BOOKS:
+        sheets = {k: rows for k, rows in confined(rows_of_sheets, path, source=source).items()
+                  if any(map(any, rows))}  # fmt: skip
+        known = [k for k, rows in sheets.items() if max(understood(rows), default=0) > 1]
+        name = next(iter([*known, *sheets]), "")
+        rows = sheets.get(name, [])
+        others = [
+            f"sheet {k!r}: left out; to take it, save it as a file of its own"
+            for k in sheets if k != name
+        ]  # fmt: skip
+    else:
+        rows = _cells(decoded(path.read_bytes(), source).splitlines(keepends=True), source)
+    rows = [[cell.translate(_TYPED) for cell in row] for row in rows]
+    top, columns, told = headers_of(rows, source)
+    return _trials(rows, top, columns, told, others, source)
+
+
+def _cells(lines: Sequence[str], source: str) -> list[list[str]]:
+    """Cells of a text table; units in the cells hide its separator from a guess by numbers."""
+    split = [cells_of(lines, source, separator=one)[1] for one in ("", ";", "\t", ",")]
+    return max(split, key=lambda rows: max(understood(rows), default=0))
+
+
+def _trials(
+    rows: Sequence[Sequence[str]], top: int, columns: list[SheetColumn],
+    told: list[tuple[str, str]], others: list[str], source: str,
+) -> Sheet:  # fmt: skip
+    _check_columns(columns, told, source)
+    left: list[str] = []
+    trials: list[Trial] = []
+    last: dict[str, Measured] = {}
+    from_above: list[str] = []
+    across: list[str] = []
+    decimals = decimals_of(rows[top:], columns)
+    for k, row in enumerate(rows[top:], start=top + 1):
+        if not any(row):
+            continue
+        if aside := _aside(row, columns):
+            left.append(f"row {k}{aside}")
+            if aside.startswith(" and"):
+                break
+            continue
+        found, note, unread = _read(row, k, columns, decimals, left)
+        if not found and not unread:
+            left.append(f"row {k}: left out: {' '.join(filter(None, row))}")
+            continue
+        last = {name: found[name][0] for name in APPROACHES if name in found} or last
+        if "angle_deg" in unread or (unread and not any(name in found for name in APPROACHES)):
+            what = "angle" if "angle_deg" in unread else "drop height or speed"
+            left.append(f"row {k}: left out, its {what} is not read")
+            continue
+        stated = last.keys() & found.keys()
+        if not found.keys() - {*APPROACHES, *_VARIED}:
+            left.append(f"row {k}: nothing measured")
+            continue
+        if not last:
+            left.append(f"row {k}: no drop height or speed")
+            continue
+        from_above += [] if stated else [str(k)]
+        back, crossed = _restitutions(found, last)
+        trials += _of_row(found | {"restitution": back}, last, note, k)
+        across += [str(k)] if crossed else []
+    _check_units(columns, source)
+    if not trials:
+        raise InputError(
+            "no row with an approach and something measured", source=source,
+            allowed=f"a row a drop or a press{'; ' * bool(left)}{left[0] if left else ''}",
+        )  # fmt: skip
+    if from_above:
+        left.append(f"row {', '.join(from_above)}: the approach is that of the row above")
+    if across:
+        left.append(f"row {', '.join(across)}: restitution with v^2 = 2 g h, g = {GRAVITY} m/s^2")
+    names = {c.kind.name for c in columns if c.taken}
+    if names >= {"angle_deg", "impact_speed_m_s"}:
+        left.append("speeds beside angles are taken as those along the normal")
+    told = [(c.header, _became(c)) for c in columns] + told
+    return Sheet(tuple(trials), tuple(told), (*left, *others))
+
+
+def _check_units(columns: Sequence[SheetColumn], source: str) -> None:
+    wrong = tuple(
+        InputError(
+            c.no_unit, source=source, key=c.header, allowed=", ".join(UNITS[c.kind.quantity])
+        )
+        for c in columns
+        if c.unitless
+    )
+    if wrong:
+        raise InputErrors(wrong)
+
+
+def _check_columns(
+    columns: Sequence[SheetColumn], told: Sequence[tuple[str, str]], source: str
+) -> None:
+    """Refuse a sheet without a column of the approach, or without one of what was measured."""
+    names = {c.kind.name for c in columns if not c.spread}
+    others = ", ".join(repr(h) for h, became in told if not became.startswith("row"))
+    for needed, words in (
+        (APPROACHES, "drop height (cm), impact speed (m/s) or load (N)"),
+        ({*MEASURED, *REBOUNDS}, "rebound height (mm), restitution, dent diameter (mm)"),
+    ):
+        if not names & set(needed):
+            raise InputError(
+                f"no column such as {words} is understood", source=source,
+                allowed=f"a name for one of {others}" if others else "one such column",
+            )  # fmt: skip
+
+
+def _aside(row: Sequence[str], columns: Sequence[SheetColumn]) -> str:
+    """Why a row is none of measured numbers: headers stand in it, or it sums up others."""
+    again = {place: kind for place, kind in enumerate(map(kind_of, row)) if kind is not None}
+    if sum(kind.quantity != "text" for kind in again.values()) > 1:
+        if all(again.get(c.place) == c.kind for c in columns if not c.spread):
+            return ": left out, the headers once more"
+        return " and those below: left out, headers of another table"
+    summary = _summary(row, columns)
+    return f": left out, {summary!r} sums up other rows" if summary else ""
+
+
+def _summary(row: Sequence[str], columns: Sequence[SheetColumn]) -> str:
+    """The cell that says that a row sums up others; a note may say of itself what it likes."""
+    kinds = {c.place: c.kind.name for c in columns}
+    for place, cell in enumerate(row):
+        word, kind = bare(cell).strip(" .:"), kinds.get(place)
+        someone = kind == "person" and word in ("max", "min")
+        if kind != "note" and not someone and SUMMARY.fullmatch(word):
+            return cell
+    return ""
+
+
+def _read(
+    row: Sequence[str], k: int, columns: Sequence[SheetColumn], decimals: str, left: list[str]
+) -> tuple[dict[str, list[Measured]], str, set[str]]:
+    """Numbers of a row by kind, its note, and the conditions that are written but not read."""
+    found: dict[str, list[Measured]] = {}
+    note, unread = "", set()
+    for column in columns:
+        cell, name = row[column.place].strip() if column.place < len(row) else "", column.kind.name
+        if not cell:
+            continue
+        if column.kind.quantity == "text":
+            note = f"{note}; {cell}".strip("; ") if name == "note" else note
+            column.taken += 1
+            continue
+        value = number_in(cell, column, decimals)
+        why = why_not(cell, column, value, decimals)
+        if value is None or why:
+            left.append(f"row {k}, {column.header}: {why}")
+            unread |= {name} & {*APPROACHES, "angle_deg"}
+            continue
+        column.taken += 1
+        if not column.spread:
+            found.setdefault(name, []).append(value)
+        elif name in found:
+            found[name][-1] = Measured(found[name][-1].value, value.value)
+    return found, note, unread
+
+
+def _became(column: SheetColumn) -> str:
+    name = column.kind.name
+    words = {
+        REBOUND_HEIGHT: "restitution, the root of rebound over drop height",
+        REBOUND_SPEED: "restitution, over the impact speed", "trial": "left out: rows are numbered",
+        "person": "left out: who measured",
+    }  # fmt: skip
+    of = "standard deviation of " if column.spread else ""
+    return f"{of}{words.get(name, name)} ({column.taken} cells)"
+
+
+def _of_row(
+    found: dict[str, list[Measured]], last: dict[str, Measured], note: str, row: int
+) -> Iterator[Trial]:
+    """Yield the trials of one row: one, or as many as there are repeats."""
+    common = {k: v[0] for k, v in found.items() if k in _VARIED}
+    other = {*common, *APPROACHES, *REBOUNDS}
+    measured = {k: v for k, v in found.items() if v and k not in other}
+    for k in range(max(map(len, measured.values()), default=0)):
+        seen = {n: v[k] for n, v in measured.items() if k < len(v)}
+        label = f"{row:03d}" if max(map(len, measured.values())) == 1 else f"{row:03d}-{k + 1}"
+        yield Trial({**last, **common, **seen}, label=label, note=note)
+
+
+def _restitutions(
+    found: dict[str, list[Measured]], last: dict[str, Measured]
+) -> tuple[list[Measured], bool]:
+    """What a row says of the restitution, and whether it takes v^2 = 2 g h.
+
+    Of a rebound that is told more than once like over like comes first: what a sheet works out
+    itself comes from the same heights or speeds. The approach's error stays in its own column.
+    """
+    fallen, speed = (last[name].value if name in last else None for name in APPROACHES[:2])
+    heights, speeds = (found.get(name, []) for name in REBOUNDS)
+    if fallen and heights:
+        return [_root(h.scaled(1.0 / fallen)) for h in heights], False
+    if speed and speeds:
+        return [v.scaled(1.0 / speed) for v in speeds], False
+    if own := found.get("restitution", []):
+        return own, False
+    if speed:
+        up = [_root(h.scaled(2.0 * GRAVITY)) for h in heights]
+        return [v.scaled(1.0 / speed) for v in up], bool(heights)
+    if fallen:
+        return [v.scaled(1.0 / math.sqrt(2.0 * GRAVITY * fallen)) for v in speeds], bool(speeds)
+    return [], False
+
+
+def _root(square: Measured) -> Measured:
+    root = math.sqrt(square.value)
+    return Measured(root, 0.5 * square.std / root if root else 0.0)
