@@ -32,7 +32,6 @@ def _both(*words: str) -> str:
     return "^" + "".join(f"(?=.*({one}))" for one in words)
 
 
-_IN = r"( in \S+)?"  # a unit that follows the name
 _HEIGHT = r"height|hoe?he|hauteur|altezza|altura|\bh\b"
 _SPEED = r"speed|veloc|geschw|vitesse"
 _REBOUND = r"rebound|bounce|rue?ck(prall|sprung)|abprall|sprunghoe?he|rebond|rimbalzo|rebote"
@@ -60,11 +59,11 @@ _KINDS = (
          _both(rf"{_REBOUND}|\bafter\b|\bnach\b|\bapres\b|\bdopo\b|despues", _SPEED)),
     SheetKind("drop_height_m", "length",
          _both(r"drop|fall|release|chute|caduta|caida", _HEIGHT)
-         + rf"|^(h|height|hoe?he|hauteur|altezza|altura){_IN}$"),
+         + r"|^(h|height|hoe?he|hauteur|altezza|altura)$"),
     SheetKind("impact_speed_m_s", "speed",
          _both(r"impact|approach|(auf|an)prall|auftreff|stoss|impatto|before|\bvor\b|avant|prima|antes",
                _SPEED)
-         + rf"|^(v|speed|velocity|geschwindigkeit|vitesse|velocita|velocidad){_IN}$"),
+         + r"|^(v|speed|velocity|geschwindigkeit|vitesse|velocita|velocidad)$"),
     SheetKind("dent_diameter_m", "length",
          _both(_DENT, r"diam|durchm|ø|⌀|dm\b|wid|breit")),
     # the largest depth under load is not what stays
@@ -82,6 +81,7 @@ _KINDS = (
          r"ensayo|lfd)\b|^drop$"),
 )  # fmt: skip
 
+_UNITS = {unit for known in UNITS.values() for unit in known} | set(CELSIUS)
 _UNIT_AT_END = re.compile(
     r"[\[(,/]\s*((in|en)\s+)?(?P<a>[^\])(\[,/]{1,6}(?:/s|/sec)?)\s*[\])]?\s*$"
     r"|\b(in|en) (?P<b>\S{1,4})$"
@@ -167,7 +167,11 @@ def kind_of(header: str) -> SheetKind | None:
 
 def _named(header: str) -> str:
     """The words of a header that name a quantity, without unit and spread."""
-    words = bare(re.sub(r"-\s+", "", re.sub(r"[\[(].*", "", header))).replace("_", " ")
+    words = re.sub(r"-\s+", "", re.sub(r"[\[(].*", "", header)).replace("_", " ").strip()
+    before, _, last = words.rpartition(" ")
+    if in_short(last) in _UNITS:
+        words = before.removesuffix(" in").removesuffix(" en")
+    words = bare(words)
     words = _SPREAD.sub("", _BESIDE.sub("", words)).strip(" .:,")
     # Drop (cm) is a height, Drop alone a number
     return "drop height" if words == "drop" and _said_unit(header) else words
@@ -281,7 +285,7 @@ def _under_titles(rows: Sequence[Sequence[str]], best: int) -> list[str]:
 def _said_unit(header: str) -> str:
     """The unit in brackets, or what stands at the end as one."""
     for said in map(in_short, re.findall(r"[\[(]\s*([^\])]+?)\s*[\])]", header)):
-        if any(said in known for known in UNITS.values()) or said in CELSIUS:
+        if said in _UNITS:
             return said
     found = _UNIT_AT_END.search(header.strip())
     return in_short((found["a"] or found["b"]).strip()) if found else ""
