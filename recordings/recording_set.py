@@ -38,6 +38,9 @@ from .trials import Trials, read_trials, trials_text
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
+_NITROGEN = 77.4
+"""Boiling point [K] (CRC Handbook)."""
+
 
 @dataclass(frozen=True, slots=True, eq=False)
 class ApproachMotion:
@@ -273,7 +276,7 @@ def read(folder: Path | str, *, unfinished: bool = False) -> RecordingSet:
     )
     _check_falls(found, folder / "set.toml")
     mistakes += second_sphere.mistakes_of(found)
-    mistakes += _impossible(found, problems)
+    mistakes += [*_impossible(found, problems), *_wider(found, problems)]
     if not unfinished:
         mistakes += _without_noise(found)
     if mistakes:
@@ -377,6 +380,20 @@ def _impossible(found: RecordingSet, problems: Problems) -> list[InputError]:
     ]  # fmt: skip
 
 
+def _wider(found: RecordingSet, problems: Problems) -> list[InputError]:
+    """Return the rows whose dent is wider than the body that made it."""
+    diameter = found.trials.observables.get("dent_diameter_m", np.empty(0))
+    return [
+        InputError(
+            f"{d:g}", source=problems.source,
+            key=f"trial {found.trials.trial[k]}, column dent_diameter_m",
+            allowed=f"up to the tip's own diameter, {2.0 * body.tip_radius_m.value:g}",
+        )
+        for k, (d, body) in enumerate(zip(diameter, found.strikers(), strict=False))
+        if d > 2.0 * body.tip_radius_m.value
+    ]  # fmt: skip
+
+
 def _checked_series(
     folder: Path, trials: tuple[str, ...], mistakes: list[InputError]
 ) -> dict[str, Path]:
@@ -396,7 +413,8 @@ def _without_noise(found: RecordingSet) -> list[InputError]:
     source = str((found.folder or Path()) / "set.toml")
     return [
         InputError(
-            f"{name} has no standard deviation and fewer than {noise.MIN_REPEATS} repeats",
+            f"{name} has no standard deviation, and fewer than {noise.MIN_REPEATS} repeats that "
+            "differ",
             source=source, key=f"noise.{name}",
             allowed=f"{name} or {name}{RELATIVE_SUFFIX} in [noise], or a column {name}_std",
         )
@@ -421,6 +439,15 @@ def _notes(found: RecordingSet) -> list[str]:
         name for name, none in zip(found.trials.trial, empty, strict=True)
         if none and name not in found.traces
     ]  # fmt: skip
+    trials = found.trials
+    angles = trials.angle_deg[~trials.pressed]
+    if angles.size and np.all(angles <= np.round(np.pi / 2.0, 1)):
+        notes.append(f"no angle_deg is above {angles.max():g}: are they in radians?")
+    air = found.setup.environment.temperature_K
+    for kelvin in (*trials.temperature_K, *([air.value] if air else [])):
+        if kelvin < _NITROGEN:
+            notes.append(f"temperature_K {kelvin:g}: is it in degrees Celsius?")
+            break
     if bare:
         notes.append(f"nothing measured in {len(bare)} trials: {', '.join(bare[:5])}")
     return notes

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Callable, Iterator
 
 import numpy as np
@@ -207,10 +208,10 @@ def check_impulse(found: RecordingSet) -> list[Finding]:
                 f"impulse of {view.name}",
                 Severity.CONTRADICTION if z > RULES.beyond else severity,
                 f"{impulse:.4g} N s from the motion, {pulse:.4g} N s peak force times duration "
-                f"(ratio {ratio:.2g}, at most 1)",
+                f"(ratio {ratio:.2g}, usually {RULES.pulse[0]:g} to {RULES.pulse[1]:g})",
                 impulse,
                 pulse,
-                max(z, 0.0),
+                max(z, 0.0) if severity is Severity.CONSISTENT else math.nan,
             )
         )
     return gathered(findings)

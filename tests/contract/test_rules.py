@@ -59,6 +59,7 @@ EXACT = {
     "recordings/checks/rigid.py": "_TURNING",
     "recordings/checks/trace.py": "_ELASTIC _PLASTIC",
     "recordings/fetch.py": "_PIECE",
+    "recordings/recording_set.py": "_NITROGEN",
     "recordings/trials.py": "NORMAL",
     "reduce/bounces/fall.py": "_SMALL",
     "reduce/bounces/options.py": "GRAVITY",

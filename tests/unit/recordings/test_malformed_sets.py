@@ -134,6 +134,12 @@ CASES = {
         {"toml": SET.replace("restitution = 0.01", "")},
         r"noise\.restitution: .*fewer than 3 repeats",
     ),
+    "repeats that do not differ": (
+        {"toml": SET.replace("restitution = 0.01", ""),
+         "trials": TRIALS.split("\n")[0].replace(",restitution_std", "")
+         + "".join(f"\n{k},rod,90,1,0.5" for k in "abc"), "trace": None, "profile": None},
+        r"noise\.restitution: .*fewer than 3 repeats that differ",
+    ),
     "negative friction": (
         {"toml": SET + "[friction]\ncoefficient = -0.1\n"}, r"friction\.coefficient: -0\.1"
     ),
@@ -172,6 +178,11 @@ CASES = {
     "std without value": (trials("0.5,0.01", ",0.01"), r"restitution_std: restitution is empty"),
     "std without column": (
         trials("restitution_std", "peak_force_N_std"), r"peak_force_N_std: there is no column"
+    ),
+    "dent in mm": (
+        {"toml": SET + "dent_diameter_m = 1e-5\n",
+         "trials": TRIALS.replace("restitution,restitution_std", "dent_diameter_m,note")},
+        r"trial a, column dent_diameter_m: 0\.5 .*the tip's own diameter, 0\.02",
     ),
     "too many cells": (trials("0.4,", "0.4,,7"), r"row 3: 7 cells under 6 columns"),
     "trial twice": (trials("b,rod", "a,rod"), r"row 3, column trial: 'a' is also in row 2"),
@@ -219,6 +230,23 @@ def test_each_kind_of_mistake_gives_its_line(kind, tmp_path):
     lines = str(caught.value).splitlines()
     assert any(re.search(line, text) for text in lines), lines
     assert all(text.startswith(str(tmp_path)) for text in lines)
+
+
+@pytest.mark.parametrize("wrong", ["format = \n", SET.split("[strikers")[0], None])
+def test_rows_are_not_blamed_for_what_set_toml_lacks(wrong, tmp_path):
+    with pytest.raises(InputError) as caught:
+        read(write(tmp_path, toml=wrong))
+    assert "trials.csv" not in str(caught.value)
+
+
+@pytest.mark.parametrize(
+    ("old", "new", "note"),
+    [(",90,", ",1.5708,", "no angle_deg is above 1.5708: are they in radians?"),
+     ("restitution_std", "temperature_K", "temperature_K 0.01: is it in degrees Celsius?")],
+)  # fmt: skip
+def test_a_slip_of_the_unit_that_may_be_true_is_a_note(old, new, note, tmp_path):
+    rows = TRIALS.replace("rod,45,", "rod,90,").replace(old, new)
+    assert note in read(write(tmp_path, trials=rows)).notes
 
 
 def test_there_are_more_than_50_kinds():
