@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from pathlib import Path
+from shlex import quote
 from typing import Annotated
 
 import typer
@@ -27,7 +28,7 @@ def check(folder: SetFolder) -> None:
 
     found = read(set_folder(folder))
     strikers = ", ".join(found.setup.strikers)
-    typer.echo(f"{folder}: sound; {len(found.trials)} trials of {strikers}")
+    typer.echo(f"{folder}: sound; {_trials(len(found.trials))} of {strikers}")
     for name in ("description", "source", "licence"):
         if text := getattr(found.setup, name):
             say(f"  {name}: {text}")
@@ -100,12 +101,12 @@ def _new_from(sheet: Path, folder: Path, shape: str) -> None:
             )
     found = read_sheet(sheet)
     done = store(found.reduced(sheet), folder, Row(), kind="sheet", options={"shape": shape})
-    typer.echo(f"{sheet}: {len(found.trials)} trials")
+    typer.echo(f"{sheet}: {_trials(len(found.trials))}")
     for header, became in found.columns:
         typer.echo(f"  {header!r}: {became}")
     for line in (*found.left_out, *done.notes):
         typer.echo(f"  note: {line}")
-    typer.echo(f"{folder}: fill in set.toml, then: dentscope recordings check {folder}")
+    typer.echo(f"{folder}: fill in set.toml, then: dentscope recordings check {quote(str(folder))}")
 
 
 @app.command("list")
@@ -122,10 +123,20 @@ def list_sets(
     folder = folder or FOLDER
     if not folder.is_dir():
         raise InputError("no such folder", source=str(folder), allowed="a folder with sets")
-    for path in sorted(folder.glob("*/set.toml")):
-        found = read(path.parent)
-        observed = ", ".join(found.observed)
-        typer.echo(f"{path.parent.name}: {len(found.trials)} trials; {observed}")
+    sets = [path.parent for path in sorted(folder.glob("*/set.toml"))]
+    if not sets:
+        raise InputError("no set in it", source=str(folder), allowed="a folder with sets")
+    for path in sets:
+        try:
+            found = read(path)
+        except InputError as error:
+            typer.echo(f"{path.name}: {str(error).splitlines()[0]}")
+            continue
+        typer.echo(f"{path.name}: {_trials(len(found.trials))}; {', '.join(found.observed)}")
+
+
+def _trials(count: int) -> str:
+    return f"{count} trial{'s' * (count != 1)}"
 
 
 @app.command()

@@ -120,8 +120,9 @@ def notes_of(problem: Problem, best: Fit) -> tuple[str, ...]:
             chance = (
                 "" if abs(z) > RULES.pulled else f", {surprise:.1f} times what chance would move it"
             )
+            wanted = f"{n.at(z):.4g} {n.unit}".removesuffix(" -")
             notes.append(
-                f"{n.name} wants to be {n.at(z):.4g} {n.unit}, {'above' if z > 0 else 'below'} the "
+                f"{n.name} wants to be {wanted}, {'above' if z > 0 else 'below'} the "
                 f"stated {n.value:.4g}: a pull of {abs(z):.1f} stated standard deviations{chance}"
             )
     return (*notes, *problem.notes)
@@ -179,8 +180,8 @@ def law_notes(problem: Problem, misfit: Mapping[str, float]) -> tuple[str, ...]:
     return (
         f"how far the contact law '{problem.law_name}' may be off: {sizes}; the recordings ask for "
         f"{misfit['error_size']:.2g} times as much",
-        f"with every input as stated, the squared misses of {misfit['numbers']:.0f} numbers add up "
-        f"to {misfit['as_stated']:.0f} standard deviations squared; put down to: {took}",
+        f"with every input as stated, the squared misses of {misfit['numbers']:.0f} numbers, in "
+        f"standard deviations, add up to {misfit['as_stated']:.0f}; put down to: {took}",
     )
 
 

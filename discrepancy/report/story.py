@@ -16,6 +16,7 @@ from .series import Against, SeriesPoint, againsts, points_of, series_of
 from .text import headline, nowhere, own_parameters, why
 from .wording import (
     compared,
+    counted,
     explanation,
     interval,
     joined,
@@ -157,7 +158,8 @@ def _summary(v: Verdict) -> str:
     seen = joined([OBSERVABLES[o].label for o in dict.fromkeys(p.cells.observable)])
     metal = "elastic bodies" if p.law_name == "hertz" else "a metal that knows no rate"
     return (
-        f"{trials} trials at {len(p.conditions)} conditions, {len(p.cells)} numbers ({seen}), "
+        f"{counted(trials, 'trial')} at {counted(len(p.conditions), 'condition')}, "
+        f"{counted(len(p.cells), 'number')} ({seen}), "
         f"beside a rigid striker on a rigid base of {metal} (contact law: {p.law_name})."
     )
 

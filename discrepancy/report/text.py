@@ -11,6 +11,7 @@ from ..findings import Verdict
 from ..rules import RULES
 from .wording import (
     compared,
+    counted,
     explanation,
     interval,
     joined,
@@ -127,7 +128,8 @@ def lines(v: Verdict) -> list[str]:
     trials = sum(len(c.trials) for c in p.conditions)
     seen = ", ".join(OBSERVABLES[o].label for o in dict.fromkeys(p.cells.observable))
     out = [
-        f"{v.name}: {trials} trials, {len(p.conditions)} conditions, {len(p.cells)} numbers "
+        f"{v.name}: {counted(trials, 'trial')}, {counted(len(p.conditions), 'condition')}, "
+        f"{counted(len(p.cells), 'number')} "
         f"({seen})",
         "",
         headline(v),

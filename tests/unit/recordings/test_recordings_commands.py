@@ -72,6 +72,21 @@ names = st.text("abcdefgh 0123456789-_.", min_size=1, max_size=8).filter(
 )
 
 
+def test_list_goes_on_after_a_set_that_is_not_sound(tmp_path, capsys):
+    from dentscope.cli import run as use
+
+    assert use(["recordings", "list", str(tmp_path)]) == 2
+    assert "no set in it" in capsys.readouterr().err
+    for name in ("a", "b"):
+        write(read(DATA / "leeb-steel-300hv"), tmp_path / name)
+    (tmp_path / "a" / "trials.csv").write_text("trial\n")
+    assert use(["recordings", "list", str(tmp_path)]) == 0
+    first, second = capsys.readouterr().out.splitlines()
+    assert first.startswith("a: ")
+    assert "row 1, column striker: missing" in first
+    assert second.startswith("b: ")
+
+
 @settings(max_examples=40, deadline=None)
 @given(data=st.data())
 def test_any_sound_set_comes_back_from_its_files(data, tmp_path_factory):
