@@ -29,6 +29,7 @@ from ..result import Impact
 from ..rules import RULES
 from ..told.band import PRESSURE, Band, band_of, idle
 from ..told.checks import checks, reason_above_one
+from ..told.effect import ATOM
 from ..told.onset import largest_mean_pressure
 from .setup import DEFAULT_LAWS, FOLLOWING, Setup, read_setup, setup_of
 from .tables import EXACT, SHOWN, impact_row
@@ -86,7 +87,7 @@ class Blow:
             f"{words} {_cell(scale * found[name], scale * band.std(name))}: "
             f"{band.rules(name)} of the variance"
             for name, scale, words in told
-            if found[name] > 0.0 and band.rules(name)
+            if band.std(name) > RULES.sure * found[name] > 0.0
         ] + [
             f"the standard deviation of {key}, {share:.2g} of it, changes nothing here"
             for key, share in idle(self.setup, band)
@@ -342,8 +343,6 @@ def blow_of(setup: Setup, laws: Sequence[ContactLaw]) -> Blow:
 
 
 _LEFT = ("residual_flat_m", "residual_sphere_m")
-_ATOM = 1e-10
-"""Diameter of an atom [m]: no dent is less deep."""
 
 
 def _shown(impacts: Iterable[Impact]) -> list[dict[str, float]]:
@@ -365,7 +364,7 @@ def _shown(impacts: Iterable[Impact]) -> list[dict[str, float]]:
 
 def _least(key: str, largest: float) -> float:
     """Size up to which a number is shown as 0, by the largest of its unit."""
-    return max(RULES.shown_round_off * largest, _ATOM if key in _LEFT else 0.0)
+    return max(RULES.shown_round_off * largest, ATOM if key in _LEFT else 0.0)
 
 
 def _cell(value: float, std: float = 0.0) -> str:

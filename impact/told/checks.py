@@ -23,7 +23,7 @@ from ..rules import RULES
 from ..scene import Scene
 from ..support import half_space_radiation, plate_support
 from .band import last_blow, repeated
-from .effect import effect
+from .effect import ATOM, effect
 from .flow import flow_checks
 from .onset import effective_mass, first_yield_speed, largest_mean_pressure
 
@@ -98,7 +98,7 @@ def _plate(setup: Setup, scene: Scene, found: Impact) -> Iterator[str]:
         return
     h = thickness.value
     dent = found.residual_flat_m
-    if dent > 0.0:
+    if dent > ATOM:
         enough = "thick" if h >= RULES.thick * dent else "NOT thick"
         yield (
             f"the flat, {h * 1e3:.3g} mm, is {enough} enough for the dent: {RULES.thick:g} times "

@@ -1,6 +1,7 @@
 """What is said beside the numbers of a blow: bands, first yield, checks with their effect."""
 
 import math
+import re
 import tomllib
 from dataclasses import replace
 
@@ -12,6 +13,7 @@ from dentscope.impact.files.blow import blow_of
 from dentscope.impact.files.setup import setup_of
 from dentscope.impact.told.band import LAW, METALS, SWEPT, band_of, swept_stds
 from dentscope.impact.told.checks import checks, reason_above_one, swept_above_one
+from dentscope.impact.told.effect import effect
 from dentscope.impact.told.onset import first_yield_speed, largest_mean_pressure
 from dentscope.models import LAWS
 
@@ -109,7 +111,18 @@ def test_below_first_yield_no_crater_is_shown(brass):
     assert "largest depth [um]" in shown
     assert not any("crater" in words or "residual" in words for words in shown)
     assert not any("crater" in line for line in slow.rules())
+    assert not any(re.search(r"\bdent\b", line) for line in slow.checks())
     assert any(words.startswith("crater depth") for words, *_ in brass.table())
+    elastic = text.replace("Sy_Pa = { value = 2.5e8, std = 5e7 }", "").replace("Sy_Pa = 2.2e9", "")
+    blow = blow_of(setup_of(tomllib.loads(elastic), source="glass.toml"), [LAWS["fitted"]])
+    assert not any(line.startswith("restitution") for line in blow.rules())  # 1, by 1e-13
+
+
+def test_what_friction_leaves_as_it_is_changes_by_nothing(brass):
+    oblique = BRASS + "angle_deg = 60.0\n"
+    blow = blow_of(setup_of(tomllib.loads(oblique), source="brass.toml"), [LAWS["fitted"]])
+    assert "without friction: dent +0 %, restitution +0 %" in blow.checks()
+    assert effect(blow["fitted"], replace(blow["fitted"], restitution=1e3)).endswith("-100 %")
 
 
 def test_a_pressure_that_is_unknown_is_left_out_of_the_line_of_first_yield():
