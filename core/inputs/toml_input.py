@@ -115,6 +115,9 @@ def _as_input_error(item: Any, model: type[BaseModel], source: str) -> InputErro
         known = ", ".join(_known_keys(model, location[:-1]))
         return InputError("unknown key", source=source, key=key, allowed=known)
     message = item["msg"].removeprefix("Input should be ").removeprefix("Value error, ")
+    if item["type"] in ("list_type", "tuple_type", "too_short"):
+        tables = isinstance(item["input"], dict)
+        message = f"a list of tables, [[{key}]]" if tables else "a list that is not empty"
     if location[-1:] == ("[key]",):
         key = key.removesuffix(".[key]")
         return InputError("unknown key", source=source, key=key, allowed=message)
@@ -143,7 +146,7 @@ def _known_keys(model: type[BaseModel], path: tuple[Any, ...]) -> list[str]:
     for part in path:
         if _is_table(found) and str(part) in found.model_fields:
             found = table_in(found.model_fields[str(part)].annotation) or found
-    return list(found.model_fields)
+    return [field.alias or name for name, field in found.model_fields.items()]
 
 
 def _is_table(annotation: Any) -> bool:

@@ -6,11 +6,11 @@ import math
 from typing import Annotated, Any, Literal
 
 import numpy as np
-from pydantic import AfterValidator, BeforeValidator, Field, ValidationError
+from pydantic import AfterValidator, BeforeValidator, Field
 
 from ...core.arrays import Array
-from ...core.errors import InputError
-from ...core.inputs.toml_input import InputTable
+from ...core.errors import InputError, InputErrors
+from ...core.inputs.toml_input import InputTable, parse_model
 from ..batch import Change, impacts, scenes_over, unchanged
 from ..columns import Impacts
 from ..integrate import Settings
@@ -34,9 +34,9 @@ def _spread(given: Any) -> Any:
     """Return the numbers of a list or of a range."""
     if isinstance(given, dict):
         try:
-            span = _Range.model_validate(given)
-        except ValidationError:
-            raise ValueError(_ALLOWED) from None
+            span = parse_model(given, _Range, source="")
+        except InputErrors as mistakes:
+            raise ValueError("; ".join(map(str, mistakes.errors))) from None
         if span.spacing == "linear":
             return tuple(np.linspace(span.first, span.last, span.count).tolist())
         if not (span.first > 0.0 and span.last > 0.0):

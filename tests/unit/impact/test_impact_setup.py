@@ -90,6 +90,7 @@ def test_a_spheres_angle_is_that_of_its_velocity(tmp_path: Path) -> None:
         ("coefficient = 0.13", "coefficient = -0.1", "friction.coefficient: -0.1"),
         ('shape = "rod"', 'shape = "cube"', "strikers.rod.shape: 'cube'"),
         ("angle_deg = 45", "modes = 100", "impact.modes: 100"),
+        ('["hertz", "jackson-green"]', '"hertz"', "impact.laws: 'hertz' (allowed: a list"),
     ],
 )
 def test_each_mistake_is_one_line(tmp_path: Path, old: str, new: str, line: str) -> None:
