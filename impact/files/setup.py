@@ -321,10 +321,28 @@ def _mistakes(found: SetupFile, source: str) -> list[InputError]:
         add("target.thickness_m", "missing", "the thickness of the plate")
     if impact.support in ("plate", "half-space") and found.target.density_kg_m3 is None:
         add("target.density_kg_m3", "missing", "the density of a support that carries waves off")
-    errors += _of_a_second_sphere(found, source)
+    errors += [*_of_a_slanted_sphere(found, source), *_of_a_second_sphere(found, source)]
     if found.striker in found.strikers:
         errors += mistakes_of(found, source)
     return errors
+
+
+def _of_a_slanted_sphere(found: SetupFile, source: str) -> Iterator[InputError]:
+    """Yield a speed along the flat that is given beside the angle which says it."""
+    striker, impact, sweep = found.strikers.get(found.striker), found.impact, found.sweep
+    if striker is None or striker.shape == "rod":
+        return
+    key = "approach_tangential_m_s"
+    along = {
+        "impact": impact.approach_tangential_m_s is not None,
+        "sweep": bool(sweep.swept.get(key)),
+    }
+    for table, given in along.items():
+        if given and (sweep.angle_deg or impact.angle_deg != 90.0):
+            yield InputError(
+                "given beside angle_deg", source=source, key=f"{table}.{key}",
+                allowed="one of the two: the angle of a sphere's velocity says its speed along",
+            )  # fmt: skip
 
 
 def _of_a_second_sphere(found: SetupFile, source: str) -> Iterator[InputError]:

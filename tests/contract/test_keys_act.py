@@ -43,6 +43,7 @@ ROD = BALL.replace('shape = "sphere"', 'shape = "rod"\nradius_m = 0.005\nlength_
     "density_kg_m3 = 7800", "mass_kg = 0.06\ndensity_kg_m3 = 7800"
 )
 BARE = BALL.replace("Sy_Pa = 3.05e8\n", "").replace("angle_deg = 60\n", "")
+UPRIGHT = BALL.replace("angle_deg = 60\n", "")
 SPRUNG = BALL.replace("angle_deg", 'support = "sprung"\nangle_deg').replace(
     "thickness_m", "support_mass_kg = 0.5\nsupport_stiffness_N_m = 1e6\nthickness_m"
 )
@@ -108,7 +109,7 @@ Sy_Pa = 1.7e9""", "\ntip_radius_m = 0.005"), "true"),
     ("[impact]", "angle_deg"): (BALL, "30"),
     ("[impact]", "impact_speed_m_s"): (BALL, "2.0"),
     ("[impact]", "drop_height_m"): (BALL.replace("impact_speed_m_s = 1.0\n", ""), "0.1", "0.2"),
-    ("[impact]", "approach_tangential_m_s"): (BALL, "0.3"),
+    ("[impact]", "approach_tangential_m_s"): (UPRIGHT, "0.3"),
     ("[impact]", "approach_spin_rad_s"): (BALL, "100.0"),
     ("[impact]", "laws"): (BALL, '["hertz"]'),
     ("[impact]", "modes"): (ROD, "3"),
@@ -125,7 +126,7 @@ Sy_Pa = 1.7e9""", "\ntip_radius_m = 0.005"), "true"),
     ("[sweep]", "angle_deg"): (BALL, "[30.0, 80.0]"),
     ("[sweep]", "friction"): (BALL, "[0.05, 0.2]"),
     ("[sweep]", "mass_kg"): (BALL, "[0.001, 0.002]"),
-    ("[sweep]", "approach_tangential_m_s"): (BALL, "[0.1, 0.2]"),
+    ("[sweep]", "approach_tangential_m_s"): (UPRIGHT, "[0.1, 0.2]"),
     ("[sweep]", "approach_spin_rad_s"): (BALL, "[10.0, 20.0]"),
 }  # fmt: skip
 OIL = BALL + '[environment]\nfluid = "oil"\n'
