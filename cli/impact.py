@@ -92,6 +92,8 @@ def _from_file(path: Path, names: list[str], out: Path, *, exact: bool) -> None:
     write_hdf5(out / f"{path.stem}.h5", traces, about=setup.about)
     draw_blow(blow, out / f"{path.stem}.png", exact=exact)
     written = [out / f"{path.stem}{end}" for end in (".csv", ".h5", ".png")]
+    if setup.sweep.count and setup.repeats > 1:
+        say(f"the sweep is of first blows: impact.repeats = {setup.repeats} acts above alone")
     unfinished = 0
     if setup.sweep.count:
         files, unfinished, above = _sweep(setup, laws, out / f"{path.stem}-sweep", exact=exact)
@@ -112,7 +114,7 @@ def _sweep(
 
     from ..impact.told.band import MOST_SWEPT, swept_stds
     from ..impact.told.checks import swept_above_one
-    from ..impact.told.draw import draw_sweep
+    from ..impact.told.draw import draw_sweep, swept_in_vain
 
     curves = {law.name: setup.swept(law) for law in laws}
     first, *others = curves.values()
@@ -123,6 +125,8 @@ def _sweep(
     table, drawn, parquet = (base.with_name(f"{base.name}.{k}") for k in ("csv", "png", "parquet"))
     first.to_csv(table)
     draw_sweep(setup.sweep.swept, curves, drawn, stds=stds)
+    for name in swept_in_vain(setup.sweep.swept, curves):
+        say(f"sweep.{name} changes nothing here")
     written = [table, drawn]
     if find_spec("pandas") and find_spec("pyarrow"):
         first.to_parquet(parquet)

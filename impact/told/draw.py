@@ -16,6 +16,7 @@ from ...core.observables import OBSERVABLES
 from ...core.output import write_figure
 from ..columns import Impacts
 from ..inverse import alpha_curve
+from ..rules import RULES
 from ..scene import Striker
 
 SWEPT = (
@@ -72,11 +73,12 @@ def draw_sweep(
     made, axes = panels(len(shown))
     first = next(iter(curves.values()))
     scale = "log" if _by_ratio(swept[across]) else "linear"
+    alone = len(set(swept[across])) == 1
     for axis, name in zip(axes, shown, strict=True):
         told = OBSERVABLES[name]
         for law, found in curves.items():
             values = told.scale * found[name][rows]
-            (drawn,) = axis.plot(swept[across], values, label=law)
+            (drawn,) = axis.plot(swept[across], values, "o" if alone else "-", label=law)
             if name in stds and found is first:
                 off = told.scale * stds[name][rows]
                 axis.fill_between(
@@ -85,7 +87,7 @@ def draw_sweep(
                     values + off,
                     color=drawn.get_color(),
                     alpha=0.2,
-                    lw=0.0,
+                    lw=float(alone),
                     label="its standard deviation",
                 )
         axis.set(xlabel=CONDITIONS[across], ylabel=told.axis, xscale=scale)
@@ -94,6 +96,24 @@ def draw_sweep(
     made.suptitle(fixed, fontsize=9)
     axes[0].legend(fontsize=7)
     save(made, path)
+
+
+def swept_in_vain(swept: Mapping[str, Sequence[float]], curves: Mapping[str, Impacts]) -> list[str]:
+    """Return the conditions of a sweep along which nothing that the picture shows changes."""
+    shape = [len(values) for values in swept.values()]
+    tables = [found[name].reshape(shape) for found in curves.values() for name in SWEPT]
+
+    def idle(axis: int) -> bool:
+        return all(
+            np.allclose(t, t.take([0], axis), rtol=RULES.sure, atol=0.0, equal_nan=True)
+            for t in tables
+        )
+
+    return [
+        name
+        for axis, (name, values) in enumerate(swept.items())
+        if len(set(values)) > 1 and idle(axis)
+    ]
 
 
 def _by_ratio(values: Sequence[float]) -> bool:

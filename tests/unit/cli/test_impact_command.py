@@ -66,7 +66,10 @@ def test_a_template_overwrites_nothing(tmp_path: Path, capsys: pytest.CaptureFix
         ("friction = 0.1", "sweep.friction"),
         ("friction = [0.1, -0.2]", "each 0 or more"),
         ("angle_deg = { from = 10, to = 100, count = 3 }", "each above 0 and up to 90"),
-        ("mass_kg = { from = 1, count = 3 }", "a list of numbers, or"),
+        ("mass_kg = { from = 1, count = 3 }", "sweep.mass_kg: to: missing"),
+        ("mass_kg = { from = 1, to = 2, count = 1 }", "count: 1 (allowed: greater than"),
+        ("mass_kg = { from = 1, to = 2, cout = 4 }", "cout: unknown key (allowed: from, to, c"),
+        ("angle_deg = [45]\napproach_tangential_m_s = [1]", "given beside angle_deg"),
         ('mass_kg = { from = 0, to = 1, count = 3, spacing = "log" }', "both ends above 0"),
         ("impact_speed_m_s = [1]\ndrop_height_m = [1]", "both speed and height"),
         ("friction = []", "a list of numbers, or"),
@@ -84,3 +87,18 @@ def test_a_bad_sweep_is_one_line(
     told = capsys.readouterr().err
     assert message in told
     assert len(told.strip().splitlines()) == 1
+
+
+def test_what_a_sweep_leaves_as_it_is_is_told(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    file = tmp_path / "ball.toml"
+    assert run(["impact", "--new", "ball", str(file)]) == 0
+    text = file.read_text().replace("[impact]", "[impact]\nrepeats = 2")
+    sweep = "[sweep]\nfriction = [0.1, 0.2]\nmass_kg = [1e-3, 2e-3]\n"
+    file.write_text(text[: text.index("[sweep]")] + sweep)
+    assert run(["impact", str(file), "--law", "hertz", "--exact", "--out", str(tmp_path)]) == 0
+    told = capsys.readouterr().out
+    assert "sweep.friction changes nothing here" in told
+    assert "sweep.mass_kg" not in told
+    assert "of first blows: impact.repeats = 2 acts above alone" in told

@@ -26,6 +26,8 @@ def test_a_sweep_has_words_on_its_axes_and_no_empty_panel(monkeypatch, tmp_path,
     (made,) = kept
     assert len(made.axes) == 4
     assert {a.get_xlabel() for a in made.axes} == {"drop height [m]"}
+    (line,) = made.axes[0].get_lines()
+    assert (line.get_marker() == "o") == (len(values) == 1)  # one point is seen
     assert {a.get_xscale() for a in made.axes} == {scale}
     assert made.get_suptitle() == ("friction [-] = 0.1" if len(values) > 2 else "")
 
