@@ -171,7 +171,8 @@ def law_notes(problem: Problem, misfit: Mapping[str, float]) -> tuple[str, ...]:
         for kind, (law, metal) in problem.error.parts.items()
     )
     took = ", ".join(
-        f"{words} {100 * misfit[key]:.0f} %"
+        # what goes into one of them may come out of another
+        f"{words} {100 * max(misfit[key], 0.0):.0f} %"
         for key, words in (
             ("sheet", "errors of the data sheet"), ("metal", "the metal not being the law's"),
             ("law", "the law not being the finite elements"), ("rest", "none of these"),

@@ -40,11 +40,11 @@ def headline(v: Verdict) -> str:
             lacks = "most likely lacks this"
         return f"The simulation {lacks}: {what}; probability that it takes part{each}: {sure}."
     if v.verdict == "indistinguishable":
+        named = ["+".join(a) for a in (v.mechanisms, *v.alternatives)]
         rival = joined(
-            [explanation("+".join(a), v.titles) for a in (v.mechanisms, *v.alternatives)],
-            "or",
+            [f"{explanation(n, v.titles)} ({percent(v.probabilities[n])})" for n in named], "or"
         )
-        return f"Something is missing, and these explain it equally well: {rival}."
+        return f"Something is missing, and these share the probability: {rival}."
     if v.verdict == OUTSIDE and v.choice.alike:
         return (
             "The simulation as described fails, and no mechanism that dentscope has a name for "

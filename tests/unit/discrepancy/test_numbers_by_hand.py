@@ -11,6 +11,7 @@ from dentscope.discrepancy.choice.odds import BESIDE, NAMED_AT, PRIORS, shares_o
 from dentscope.discrepancy.choice.outside import odd_repeats, outside_of
 from dentscope.discrepancy.comparison.cells import Scatter, cells_of
 from dentscope.discrepancy.curves.readings import Readings, _corrected
+from dentscope.discrepancy.estimates import law_notes
 from dentscope.discrepancy.experiments.next_experiment import Proposal
 from dentscope.discrepancy.inference.derivatives import FORMS, derivatives, form_error
 from dentscope.discrepancy.inference.grid import Axis, Grid
@@ -172,3 +173,14 @@ def test_a_reduction_that_is_off_by_a_quarter_says_nothing() -> None:
 def test_a_trial_tells_much_where_rivals_lie_a_deviation_apart() -> None:
     assert Proposal("", 0.98**2).gains[0].startswith("once will not decide")
     assert "about 1.0 standard deviations" in Proposal("", 1.02**2).gains[0]
+
+
+def test_a_part_of_the_misfit_below_nothing_is_told_as_nothing() -> None:
+    """What the sheet's numbers take may come out of the metal's part."""
+    parts = {"force": (0.003, 0.02)}
+    problem = SimpleNamespace(law_name="fitted", error=SimpleNamespace(parts=parts))
+    misfit = {"error_size": 2.0, "numbers": 8.0, "as_stated": 307.0, "sheet": -0.01, "metal": 0.98,
+              "law": 0.0, "rest": 0.03}  # fmt: skip
+    _, told = law_notes(problem, misfit)
+    assert "errors of the data sheet 0 %, the metal not being the law's 98 %" in told
+    assert "8 numbers, in standard deviations, add up to 307;" in told

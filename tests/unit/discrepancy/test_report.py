@@ -109,7 +109,11 @@ def test_a_mechanism_of_ones_own_is_told_in_its_own_words() -> None:
     v.mechanisms, v.inclusion = ("sticky-tape",), {"sticky-tape": 0.9}
     assert headline(v).startswith("The simulation lacks this: a tape holds the tip back (sticky-")
     v.verdict, v.alternatives = "indistinguishable", (("work-hardening",),)
-    assert "a tape holds the tip back or the metal hardens as it is deformed." in headline(v)
+    v.probabilities = {"sticky-tape": 0.62, "outside-library": 0.28, "work-hardening": 0.1}
+    assert headline(v) == (
+        "Something is missing, and these share the probability: a tape holds the tip back (62 %) "
+        "or the metal hardens as it is deformed (10 %)."
+    )
 
 
 def test_a_name_of_less_than_seven_tenths_is_the_most_likely() -> None:
