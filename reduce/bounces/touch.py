@@ -149,13 +149,14 @@ def likely_durations(
     at the end. That of a hard body, of some milliseconds at most, may bend as under a force that is
     whole at once; where frames hardly show it, it may halt at once, smeared over a whole frame.
     """
-    meeting, ratio, step = float(met[0]), float(met[3]), track.step
+    # strays may make flights of which one goes on through the flat
+    meeting, ratio, step = float(met[0]), max(float(met[3]), 0.1), track.step
     runs = _both_held(track, stage, view, flights, meeting)
     shares = ratio / (1.0 + ratio), 1.0 / (1.0 + ratio)
     smeared = float(met[1] + met[2]) / (2.0 * step)
     resolved = frames_show(track)
     found = np.zeros_like(LASTS)
-    damping = -math.log(min(max(ratio, 0.1), 1.0)) * np.array([1.0, -1.0])
+    damping = -math.log(min(ratio, 1.0)) * np.array([1.0, -1.0])
     for piece, run, share, speed, loss in zip(
         flights, runs, shares, met[1:3], damping, strict=True
     ):
