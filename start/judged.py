@@ -52,7 +52,7 @@ class Departure(NamedTuple):
             return "no number"
         name = self._fields[max(range(3), key=lambda k: self[k])]
         if self.worst > math.log(RULES.no_factor):
-            return f"knows no {name}"
+            return f"off by more than {RULES.no_factor:g} times in {name}"
         return f"off by {math.exp(self.worst):.2g} times in {name}"
 
 

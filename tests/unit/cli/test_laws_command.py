@@ -67,7 +67,7 @@ def test_compare_writes_table_and_picture_for_the_users_pair(tmp_path, capsys):
     assert (tmp_path / "curves.png").stat().st_size > 20_000
     text = capsys.readouterr().out
     assert "regime: indentation" in text
-    assert "knows no dent" in text
+    assert "off by more than 100 times in dent" in text
     assert "not in these laws: load.unload_from" in text
     assert "use: " in text
 
