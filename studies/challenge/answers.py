@@ -9,13 +9,13 @@ from pathlib import Path
 
 from ...core.errors import InputErrors
 from ...core.inputs.csv_table import Problems, TextTable, numbers, read_text_table, shown
-from ..proof.generators.effects import EFFECTS
+from ...impact import mechanisms
 from ..proof.rivals import ANOTHER_PAIR, BASELINE, OUTSIDE
 
 COLUMNS = ("set", "name", "probability")
 
-MECHANISMS = (*EFFECTS, "air-drag")
-"""Names of single mechanisms: those that may be concealed, and one that the diagnosis knows too."""
+MECHANISMS = tuple(m.name for m in mechanisms.MECHANISMS)
+"""Names of single mechanisms: those of the diagnosis, which may be concealed or not."""
 
 EXPLANATIONS = (BASELINE, *MECHANISMS, OUTSIDE, ANOTHER_PAIR)
 """Names that an answer may have; beside them `a+b` of two mechanisms."""

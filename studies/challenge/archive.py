@@ -11,9 +11,10 @@ from typing import Any
 
 from ...core.errors import InputError
 from ...core.inputs.json_input import read_json
-from ...core.output import folder_for_output
+from ...core.output import folder_for_output, write_file
 from ..proof.rivals import names_of
 from ..proof.seal import Ledger, SealBroken, digest_of, digest_of_record
+from .answers import EXPLANATIONS
 
 DATA = Path(__file__).resolve().parents[2] / "data" / "blind-sets"
 """Where they lie."""
@@ -21,7 +22,7 @@ DATA = Path(__file__).resolve().parents[2] / "data" / "blind-sets"
 PARTS = ("open", "sealed")
 """An archive each: with truths beside the sets, and without."""
 
-SEALS, NAMES, SUMS = "seals.jsonl", "names.txt", "SHA256SUMS"
+SEALS, SUMS = "seals.jsonl", "SHA256SUMS"
 
 _TRUTHS = "the file of truths as published"
 _MOST = 20_000_000  # bytes
@@ -57,8 +58,8 @@ def get(folder: Path) -> dict[str, int]:
         if hashlib.sha256((DATA / name).read_bytes()).hexdigest() != digest:
             raise InputError("not what was published", source=str(DATA / name), allowed=digest)
     folder_for_output(folder)
-    for name in (SEALS, NAMES):
-        (folder / name).write_bytes((DATA / name).read_bytes())
+    (folder / SEALS).write_bytes((DATA / SEALS).read_bytes())
+    write_file(folder / "names.txt", "\n".join(EXPLANATIONS) + "\n")
     counts = {}
     for part in PARTS:
         with (

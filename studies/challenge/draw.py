@@ -23,8 +23,7 @@ from ..proof.generators.effects import EFFECTS, OUTSIDE
 from ..proof.generators.folder import BLOCK, write_set
 from ..proof.generators.truth import HEIGHTS, Truth, draw, upright
 from ..proof.seal import Ledger, digest_of, digest_of_record
-from .answers import EXPLANATIONS
-from .archive import DATA, NAMES, PARTS, SEALS, SUMS
+from .archive import DATA, PARTS, SEALS, SUMS
 
 SIXTY = [("null", "")] * 12 + [("pair", "")] * 4
 SIXTY += [("single", name) for name in EFFECTS for _ in range(2)]
@@ -116,7 +115,6 @@ def publish(work: Path, to: Path = DATA) -> None:
                 f"{part}/truths/{name}.json": work / "truths" / f"{name}.json" for name in names
             }
         _pack(to / f"{part}.zip", files)
-    write_file(to / NAMES, "\n".join(EXPLANATIONS) + "\n")
     published = [*(f"{part}.zip" for part in PARTS), SEALS]
     sums = [f"{hashlib.sha256((to / name).read_bytes()).hexdigest()}  {name}" for name in published]
     write_file(to / SUMS, "\n".join(sums) + "\n")
