@@ -14,8 +14,8 @@ from dataclasses import dataclass
 import numpy as np
 
 from ...core.arrays import Array
-from ..regression import robust_regression, robust_std
 from ..rules import RULES
+from ..shared.regression import robust_regression, robust_std
 
 _FACTORS = np.exp(np.arange(math.log(0.1), 0.0, 0.08))
 

@@ -13,8 +13,8 @@ import numpy as np
 
 from ...core.arrays import Array, Indices
 from ..measured import Measured
-from ..regression import Regression, robust_regression
 from ..rules import RULES
+from ..shared.regression import Regression, robust_regression
 from .track import Track
 from .view import Launch, Stage, View
 

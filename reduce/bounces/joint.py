@@ -15,8 +15,8 @@ import numpy as np
 
 from ...core.arrays import Array, Mask
 from ..measured import Measured
-from ..regression import long_run_factor, robust_std
 from ..rules import RULES
+from ..shared.regression import long_run_factor, robust_std
 from .flights import Piece
 from .track import Track
 from .view import Launch, Stage, View

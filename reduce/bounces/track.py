@@ -11,8 +11,8 @@ from scipy.ndimage import median_filter
 from scipy.signal import find_peaks
 
 from ...core.arrays import Array, Indices
-from ..regression import robust_std
 from ..rules import RULES
+from ..shared.regression import robust_std
 
 
 @dataclass(frozen=True)

@@ -15,8 +15,8 @@ import numpy as np
 from scipy.special import ndtr
 
 from ...core.arrays import Array, Mask
-from ..regression import robust_std
 from ..rules import RULES
+from ..shared.regression import robust_std
 
 _POSE = (0, 1, 2, 3, 4, 5, 6)
 _FREE = {"pose": _POSE, "shape": (*_POSE, 7, 8), "mirror": (*_POSE, 9, 10)}

@@ -20,7 +20,7 @@ from ...core.errors import InputError
 from ...core.inputs.csv_table import number
 from ...core.inputs.input_file import read_bytes
 from ..rules import RULES
-from ..units import LENGTH
+from ..shared.units import LENGTH
 
 _IN_WORDS = {"meters": "m", "millimeters": "mm", "centimeters": "cm", "inches": "in"}
 

@@ -25,7 +25,7 @@ from ...core.inputs.csv_table import (
 )
 from ...core.processes.confined import confined
 from ..rules import RULES
-from ..units import LENGTH, metres
+from ..shared.units import LENGTH, metres
 from .exports import read_export
 
 UNITS = ("m", "cm", "mm")

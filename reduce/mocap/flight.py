@@ -12,8 +12,8 @@ import numpy as np
 
 from ...core.arrays import Array
 from ..measured import Measured
-from ..regression import robust_regression, robust_std
 from ..rules import RULES
+from ..shared.regression import robust_regression, robust_std
 from .motion import OWN, SHARED, Motion, Prior, deviations, first_guess, jacobian
 from .rigid import Poses
 

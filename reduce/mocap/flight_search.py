@@ -5,8 +5,8 @@ from __future__ import annotations
 import numpy as np
 
 from ...core.arrays import Array
-from ..regression import robust_std
 from ..rules import RULES
+from ..shared.regression import robust_std
 from .flight import Flights, alone, fall_acceleration, fit_flights
 from .motion import Prior, deviations
 from .rigid import Poses

@@ -19,8 +19,8 @@ from ..bounces.sides import sides_of
 from ..bounces.track import Track, on_the_body, turning_points
 from ..bounces.view import Stage
 from ..measured import Measured, Trial, labels, propagate
-from ..regression import robust_regression
 from ..rules import RULES
+from ..shared.regression import robust_regression
 from .file import Markers
 from .reduction import MocapScene
 

@@ -14,6 +14,7 @@ from ...core.errors import InputError
 from ...core.inputs.input_file import checked_file
 from ...core.processes.confined import confined
 from ..rules import RULES
+from ..shared.units import LENGTH, UNITS
 from ..table.channels import CHANNELS
 from ..table.file import (
     BOOKS,
@@ -25,7 +26,6 @@ from ..table.file import (
     text_rows,
 )  # fmt: skip
 from ..table.workbook import sheets_of
-from ..units import LENGTH, UNITS
 from .options import PressOptions
 
 _LOADS = (r"(load|force|.*kraft|last|fn|p|f)\b", r".*(load|force|kraft|charge|forza|fuerza)")

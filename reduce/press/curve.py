@@ -8,10 +8,10 @@ import numpy as np
 from scipy.optimize import least_squares
 
 from ...core.arrays import Array
-from ..flank import meets_zero
 from ..measured import Measured
-from ..regression import unit_covariance
 from ..rules import RULES
+from ..shared.flank import meets_zero
+from ..shared.regression import unit_covariance
 from .cycles import Cycle, virgin
 
 

@@ -16,8 +16,8 @@ from scipy.signal import find_peaks
 
 from ...core.arrays import Array, Indices
 from ..gates import Refused
-from ..regression import robust_std
 from ..rules import RULES
+from ..shared.regression import robust_std
 from .columns import PressRecord
 
 

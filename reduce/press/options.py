@@ -6,7 +6,7 @@ from typing import Literal
 
 from pydantic import Field
 
-from ..time_window import TimeWindow
+from ..shared.time_window import TimeWindow
 
 
 class PressOptions(TimeWindow):

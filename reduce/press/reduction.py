@@ -10,8 +10,8 @@ import numpy as np
 from ...core.arrays import Array
 from ...core.errors import InputError
 from ..measured import ZERO, Measured, Trial
-from ..regression import unit_covariance
 from ..rules import RULES
+from ..shared.regression import unit_covariance
 from .columns import PressRecord
 from .curve import contact_zero, left_depth, stiffness
 from .cycles import Cycle, cycles_of, noise_of

@@ -10,8 +10,8 @@ from scipy.optimize import least_squares
 from ...core.arrays import Array
 from ...core.errors import InputError
 from ..measured import Measured
-from ..regression import robust_std
 from ..rules import RULES
+from ..shared.regression import robust_std
 from .file import Scan
 
 

@@ -16,8 +16,8 @@ from scipy import ndimage
 from ...core.arrays import Array, Indices, Mask
 from ...core.errors import InputError
 from ..measured import Measured
-from ..regression import robust_std
 from ..rules import RULES
+from ..shared.regression import robust_std
 from .level import Levelled, filled
 from .noise import autocovariance, variance
 

@@ -15,8 +15,8 @@ from ...core.arrays import Array
 from ...core.errors import InputError, missing_extra
 from ...core.inputs.csv_table import number, shown
 from ..rules import RULES
+from ..shared.units import LENGTH, metres
 from ..table.file import numbered_lines, text_rows
-from ..units import LENGTH, metres
 
 _TEXT = (".csv",)
 _UNSEEN = ("", "nan", "-", "na")

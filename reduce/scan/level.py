@@ -14,8 +14,8 @@ from scipy import ndimage
 
 from ...core.arrays import Array, Mask
 from ...core.errors import InputError
-from ..regression import robust_regression, robust_std
 from ..rules import RULES
+from ..shared.regression import robust_regression, robust_std
 from .file import Scan
 
 LEVELS = {"plane": 1, "paraboloid": 2}

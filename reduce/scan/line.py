@@ -10,8 +10,8 @@ import numpy as np
 from ...core.arrays import Array, Mask
 from ...core.errors import InputError
 from ..measured import UNITY, Measured, Trial
-from ..regression import robust_regression, robust_std
 from ..rules import RULES
+from ..shared.regression import robust_regression, robust_std
 from .file import LineScan
 from .noise import autocovariance, variance
 from .walls import Section, opening

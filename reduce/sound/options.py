@@ -5,7 +5,7 @@ from __future__ import annotations
 from pydantic import Field
 
 from ..bounces.options import BounceOptions
-from ..time_window import TimeWindow
+from ..shared.time_window import TimeWindow
 
 
 class SoundOptions(BounceOptions, TimeWindow):

@@ -22,7 +22,7 @@ from ...core.inputs.csv_table import rows_with, selection
 from ...core.inputs.input_file import checked_file
 from ...core.processes.confined import confined
 from ..rules import RULES
-from ..units import UNITS
+from ..shared.units import UNITS
 from .cells import instant, plain, since_first, value_of
 from .channels import CHANNELS, Shown, channels_of
 from .heading import Heading, heading_of, in_short, labview_rows

@@ -7,7 +7,7 @@ from collections.abc import Sequence
 from dataclasses import dataclass, field
 
 from ..rules import RULES
-from ..units import UNITS
+from ..shared.units import UNITS
 
 _KNOWN_UNITS = {unit for units in UNITS.values() for unit in units if unit} | {
     "V", "mV", "px",

@@ -18,7 +18,7 @@ from ..measured import Measured
 from ..pictures import draw_refused
 from ..reduced import Reduced
 from ..rules import RULES
-from ..units import LENGTH
+from ..shared.units import LENGTH
 from .file import Columns, read_columns
 from .options import TableOptions
 from .picture import draw_heights, draw_pulse, draw_tension, draw_times, draw_trials

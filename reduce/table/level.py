@@ -13,8 +13,8 @@ from typing import NamedTuple
 import numpy as np
 
 from ...core.arrays import Array
-from ..regression import robust_std
 from ..rules import RULES
+from ..shared.regression import robust_std
 
 
 class Level(NamedTuple):

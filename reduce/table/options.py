@@ -7,7 +7,7 @@ from typing import Literal
 from pydantic import Field
 
 from ..bounces.options import BounceOptions
-from ..time_window import TimeWindow
+from ..shared.time_window import TimeWindow
 
 Holds = Literal[
     "force", "acceleration", "height", "bounces", "rebounds", "leeb", "tension", "trials"

@@ -14,10 +14,10 @@ import numpy as np
 
 from ...core.arrays import Array, Mask
 from ...core.errors import InputError
-from ..flank import meets_zero
 from ..gates import Refused
 from ..measured import Measured
 from ..rules import RULES
+from ..shared.flank import meets_zero
 from .area import Area, area_of
 from .level import Level, level_before, wide
 from .ringing import ringing_within

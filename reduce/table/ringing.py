@@ -14,8 +14,8 @@ import numpy as np
 from scipy.optimize import least_squares
 
 from ...core.arrays import Array
-from ..regression import correlation_factor, unit_covariance
 from ..rules import RULES
+from ..shared.regression import correlation_factor, unit_covariance
 
 
 class RingingWithin(NamedTuple):

@@ -14,7 +14,7 @@ from ...core.inputs.flow_curve import PROOF_STRAIN, MeasuredFlow
 from ..gates import Refused
 from ..measured import Measured
 from ..rules import RULES
-from ..units import LENGTH, UNITS
+from ..shared.units import LENGTH, UNITS
 from .file import Columns
 from .rise import elastic_rise
 

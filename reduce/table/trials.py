@@ -14,7 +14,7 @@ from ...core.errors import InputError, InputErrors
 from ...recordings.columns import CONDITIONS, MEASURED, STD_SUFFIX
 from ..bounces.fall import Ball, Fall
 from ..measured import Measured, Trial
-from ..units import UNITS
+from ..shared.units import UNITS
 from .file import Columns
 
 _QUANTITY_OF_UNIT = {

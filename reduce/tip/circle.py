@@ -9,8 +9,8 @@ from scipy.optimize import least_squares
 
 from ...core.arrays import Array, Mask
 from ...core.errors import InputError
-from ..regression import correlation_factor, robust_std, unit_covariance
 from ..rules import RULES
+from ..shared.regression import correlation_factor, robust_std, unit_covariance
 from .edge import Edge, find_edges
 
 

@@ -18,8 +18,8 @@ from ...core.arrays import Array, Indices, Mask
 from ...core.errors import InputError
 from ..images.silhouette import body_mask
 from ..measured import Measured
-from ..regression import robust_regression, robust_std
 from ..rules import RULES
+from ..shared.regression import robust_regression, robust_std
 from .circle import fit_circle, radius_std
 from .edge import find_edges
 

@@ -15,7 +15,7 @@ STANDING_APART = (
     "models/published",  # coefficients that a paper printed
     "campaigns/cases",  # what the published sets are made of
     "core/drag.py", "impact/bits.py",  # printed curves, and polynomials of a library
-    "impact/walk/layout.py", "reduce/units.py",  # places in arrays, and definitions
+    "impact/walk/layout.py", "reduce/shared/units.py",  # places in arrays, and definitions
 )  # fmt: skip
 # constants of nature and of definitions, formats, exit codes, places and sizes of arrays
 EXACT = {
@@ -66,7 +66,7 @@ EXACT = {
     "reduce/images/edge_fit.py": "_POSE",
     "reduce/images/picture_file.py": "DOWN",
     "reduce/mocap/motion.py": "SHARED OWN",
-    "reduce/regression.py": "_MAD_TO_STD",
+    "reduce/shared/regression.py": "_MAD_TO_STD",
     "reduce/scan/level.py": "LEVELS",
     "reduce/scan/picture.py": "UM",
     "reduce/table/cells.py": "OUT_OF_RANGE _DAY",

@@ -4,6 +4,7 @@
 """
 
 import ast
+import re
 import runpy
 import sys
 import tomllib
@@ -110,7 +111,12 @@ def test_a_folder_of_modules_shows_at_most_twenty_names():
                 names.setdefault(part.parent, set()).add(part.name)
     names.pop(Path())  # the root, where tools look for their files
     assert len(names) > 60
-    assert {str(folder): len(n) for folder, n in names.items() if len(n) > 20} == {}
+    # a folder that a recipe adds to has room for one more
+    recipes = (ROOT / "CONTRIBUTING.md").read_text(encoding="utf-8")
+    growing = {Path(folder) for folder in re.findall(r"`([\w/]+)/NAME\b", recipes)}
+    assert Path("reduce") in growing
+    full = {str(folder): len(n) for folder, n in names.items() if len(n) > 20 - (folder in growing)}
+    assert full == {}, "give what belongs together a folder of its own"
 
 
 def test_no_function_is_longer_than_a_hundred_lines():
@@ -132,7 +138,8 @@ def test_every_command_is_used_out_of_the_wheel():
         for name in wheel["commands"](Path(sys.prefix))
     }
     assert len(commands) > 40
-    assert {c for c in commands if not any(use.is_of(c) for use in uses)} == set()
+    missed = {c for c in commands if not any(use.is_of(c) for use in uses)}
+    assert missed == set(), "each needs a Use in tools/try_wheel.py"
 
 
 def test_the_wheel_holds_every_package_but_the_workshop():

@@ -8,7 +8,7 @@ from collections.abc import Sequence
 
 from ....recordings.columns import CONDITIONS, MEASURED
 from ...measured import Measured
-from ...units import UNITS
+from ...shared.units import UNITS
 from ..cells import plain, value_of
 from ..heading import in_short
 from .headers import CELSIUS, SheetColumn

@@ -11,7 +11,7 @@ from typing import NamedTuple
 from ....core.errors import InputError
 from ....core.observables import LOAD
 from ....recordings.columns import CONDITIONS
-from ...units import UNITS
+from ...shared.units import UNITS
 from ..heading import in_short, is_unit
 
 REBOUNDS = REBOUND_HEIGHT, REBOUND_SPEED = "rebound_height", "rebound_speed"

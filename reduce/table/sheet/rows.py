@@ -17,7 +17,7 @@ from ...bounces.options import GRAVITY
 from ...measured import Measured, Trial
 from ...reduced import Reduced
 from ...rules import RULES
-from ...units import UNITS
+from ...shared.units import UNITS
 from ..file import BOOKS, cells_of, decoded
 from ..picture import draw_trials
 from ..trials import TrialsReduction

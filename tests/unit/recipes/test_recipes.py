@@ -135,7 +135,7 @@ def test_an_input_format(recipe):
     toy = recipe("Add an input format")
     toy.write("reduce/toy/options.py", OPTIONS)
     toy.write("reduce/toy/kind.py", KIND)
-    toy.write("reduce/toy/__init__.py", "")
+    toy.write("reduce/toy/__init__.py", '"""Toy."""\n')
     toy.change("reduce/kinds.py", ("KINDS = {\n", 'KINDS = {\n    "toy": "two heights",\n'))
     (toy.work / "drop.txt").write_text("1.0 0.64\n")
     assert "--height-m-std" in toy.dentscope("reduce", "toy", "--help")

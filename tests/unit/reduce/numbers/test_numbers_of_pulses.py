@@ -7,9 +7,9 @@ from types import SimpleNamespace
 
 import numpy as np
 import pytest
-from dentscope.reduce.flank import meets_zero
 from dentscope.reduce.gates import Refused
 from dentscope.reduce.measured import Measured
+from dentscope.reduce.shared.flank import meets_zero
 from dentscope.reduce.table.area import _after, area_of
 from dentscope.reduce.table.force import _possible
 from dentscope.reduce.table.heading import heading_of

@@ -10,7 +10,7 @@ from dentscope.recordings import audit, read
 from dentscope.reduce.mocap.kind import reduce
 from dentscope.reduce.mocap.options import Options
 
-ROOT = Path(__file__).parents[3]
+ROOT = Path(__file__).parents[4]
 RAW = ROOT.parent / "shared" / "recordings" / "tabletennis-spin-bounce" / "trajectories.zip"
 
 

@@ -222,7 +222,7 @@ def test_poses_stand_for_markers(tmp_path):
         read_markers(tmp_path / "a.csv", unit=None, rate=None)
 
 
-TOSS = Path(__file__).parents[3] / "data" / "recordings" / "recipes" / "cube-toss"
+TOSS = Path(__file__).parents[4] / "data" / "recordings" / "recipes" / "cube-toss"
 
 
 def test_a_tossed_cube_agrees_with_what_its_source_says():

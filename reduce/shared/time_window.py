@@ -7,8 +7,8 @@ from typing import Any
 import numpy as np
 from pydantic import Field, model_validator
 
-from ..core.arrays import Array, Mask
-from ..core.inputs.toml_input import InputTable
+from ...core.arrays import Array, Mask
+from ...core.inputs.toml_input import InputTable
 
 
 class TimeWindow(InputTable):

@@ -12,8 +12,8 @@ from dentscope.reduce.bounces.track import Track, on_the_body
 from dentscope.reduce.images.clip import repeated_frames
 from dentscope.reduce.measured import Measured
 from dentscope.reduce.mocap.rigid import _is_line
-from dentscope.reduce.regression import robust_regression, unit_covariance
 from dentscope.reduce.scan.noise import autocovariance
+from dentscope.reduce.shared.regression import robust_regression, unit_covariance
 from scipy.linalg import hilbert
 
 

@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 from collections.abc import Iterable
 
-from ..core.errors import InputError
+from ...core.errors import InputError
 
 STANDARD_GRAVITY = 9.80665
 POUND_FORCE = 4.4482216152605

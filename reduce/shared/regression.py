@@ -6,8 +6,8 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from ..core.arrays import Array, Mask
-from .rules import RULES
+from ...core.arrays import Array, Mask
+from ..rules import RULES
 
 _MAD_TO_STD = 1.4826
 

@@ -12,10 +12,10 @@ import math
 import numpy as np
 from scipy.optimize import least_squares
 
-from ..core.arrays import Array
-from .measured import Measured
+from ...core.arrays import Array
+from ..measured import Measured
+from ..rules import RULES
 from .regression import unit_covariance
-from .rules import RULES
 
 
 def meets_zero(
