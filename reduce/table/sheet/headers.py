@@ -51,8 +51,9 @@ _KINDS = (
          r"operator|observer|experimenter|student|(measured|tested|done) by|prue?fer|bediener|"
          r"operateur|operatore|operador"),
     SheetKind("temperature_K", "temperature", r"temperatur"),
-    SheetKind("angle_deg", "angle", r"angle|winkel|angolo|angulo"),
-    SheetKind("restitution", "number", r"restitu[tcz]ion|^e ?\d*$|^cor ?\d*$|stoss?zahl"),
+    SheetKind("angle_deg", "angle",
+         rf"^(?!.*({_REBOUND}|contact|kontakt|tilt|neigung)).*(angle|winkel|angolo|angulo)"),
+    SheetKind("restitution", "number", r"restitu[tcz]ion|^e ?n? ?\d*$|^cor ?\d*$|stoss?zahl"),
     SheetKind(REBOUND_HEIGHT, "length",
          "^(?!.*(drop height|fallhoe?he))" + _both(_REBOUND, _HEIGHT)),
     SheetKind(REBOUND_SPEED, "speed",
@@ -63,7 +64,7 @@ _KINDS = (
     SheetKind("impact_speed_m_s", "speed",
          _both(r"impact|approach|(auf|an)prall|auftreff|stoss|impatto|before|\bvor\b|avant|prima|antes",
                _SPEED)
-         + r"|^(v|speed|velocity|geschwindigkeit|vitesse|velocita|velocidad)$"),
+         + r"|^(v( ?n)?|speed|velocity|geschwindigkeit|vitesse|velocita|velocidad)$"),
     SheetKind("dent_diameter_m", "length",
          _both(_DENT, r"diam|durchm|ø|⌀|dm\b|wid|breit")),
     # the largest depth under load is not what stays
@@ -71,7 +72,8 @@ _KINDS = (
          rf"^(?!(?=.*\bmax)(?=.*({_SINK})))((?=.*({_DENT}|residual|permanent))(?=.*(depth|tiefe))|"
          r".*(eindring(tiefe|ung)|profond|profund))"),
     SheetKind("contact_time_s", "time",
-         _both(_BLOW, r"time|duration|zeit|dauer|temps|tempo|tiempo") + "|duree|durata|duracion"),
+         r"^(?!.*(between|zwischen|entre|time of|zeitpunkt))"
+         + _both(_BLOW, r"time|duration|zeit|dauer|temps|tempo|tiempo") + "|duree|durata|duracion"),
     SheetKind("peak_force_N", "force",
          _both(r"peak|max|massim|spitze|stoss|impact", r"force|kraft|forza|fuerza")),
     SheetKind(LOAD, "force",
@@ -81,6 +83,7 @@ _KINDS = (
          r"ensayo|lfd)\b|^drop$"),
 )  # fmt: skip
 
+_UNIT_WITHIN = re.compile(r"(?:[\[(]\s*(?:(?:in|en)\s)?|\b(?:in|en)\s)\s*([^\s\]),;]+)")
 _UNITS = {unit for known in UNITS.values() for unit in known} | set(CELSIUS)
 _UNIT_AT_END = re.compile(
     r"[\[(,/]\s*((in|en)\s+)?(?P<a>[^\])(\[,/]{1,6}(?:/s|/sec)?)\s*[\])]?\s*$"
@@ -91,7 +94,9 @@ _SPREADS = (
     r"std(\.? ?dev\w*)?|stdev|s\.?d|standard ?(dev|abw)\w*|stdabw|ecart[- ]?type|"
     r"desviacion\w*|deviazione\w*|streuung"
 )
-_ERRORS = r"error|uncertainty|fehler|unsicherheit|erreur|incertitude|incertezza|incertidumbre"
+_ERRORS = (
+    r"sem|sigma|σ|error|uncertainty|fehler|unsicherheit|erreur|incertitude|incertezza|incertidumbre"
+)
 SUMMARY = re.compile(
     rf"({_MEANS}|{_SPREADS}|minimum|maximum|min|max|sum|total|summe)( (value|wert)| \(.*\))?"
 )
@@ -102,6 +107,7 @@ _BESIDE = re.compile(r"(?<=\S)\s*(±|\+/-)\s*\w.*")
 """What stands behind a value in its own cell: mean ± SD."""
 _NUMBER = re.compile(r"[+-]?\s*\d[\d.,' ]*\D{0,6}")
 _ALONG = re.compile("tangent|horizont")
+_RANGE = re.compile(r"\b(range|spannweite|varian[cz]\w*|varianza|cv|rsd)\b")
 _LATER = re.compile(
     r"\b([2-9](nd|rd|th)|second[oa]?|third|fourth|zweite\w*|dritte\w*|deuxieme|troisieme|terz[oa]|"
     r"segund[oa]|tercer\w*)\b"
@@ -159,6 +165,8 @@ def kind_of(header: str) -> SheetKind | None:
     words = _named(header)
     found = next((kind for kind in _KINDS if re.search(kind.words, words)), None) if words else None
     if found is None or (found.quantity == "speed" and _ALONG.search(words)):
+        return None
+    if found.quantity != "text" and _RANGE.search(words):
         return None
     # E (J) is an energy, E (GPa) a modulus
     other = found.name == "restitution" and len(words) == 1 and _said_unit(header) not in _RATIOS
@@ -284,7 +292,7 @@ def _under_titles(rows: Sequence[Sequence[str]], best: int) -> list[str]:
 
 def _said_unit(header: str) -> str:
     """The unit in brackets, or what stands at the end as one."""
-    for said in map(in_short, re.findall(r"[\[(]\s*([^\])]+?)\s*[\])]", header)):
+    for said in map(in_short, _UNIT_WITHIN.findall(header)):
         if said in _UNITS:
             return said
     found = _UNIT_AT_END.search(header.strip())

@@ -286,6 +286,9 @@ def test_standard_deviations_are_none_of_the_readings(tmp_path):
          "tangential rebound speed (m/s)"),
         ("v (m/s),1st rebound speed (m/s),2nd rebound speed (m/s)\n1,0.65,0.4\n",
          "2nd rebound speed (m/s)"),
+        ("v_n (m/s),e_n,e_t,Rebound angle (deg)\n1,0.65,0.5,30\n", "Rebound angle (deg)"),
+        ("v (m/s),e,Time of impact (s)\n1,0.65,3.2\n", "Time of impact (s)"),
+        ("v (m/s),e,e range\n1,0.65,0.02\n", "e range"),
         ("v (m/s),e,Plate temperature (°C),Ball temperature (°C)\n1,0.65,20,25\n",
          "Ball temperature (°C)"),
     ],
@@ -329,6 +332,12 @@ def test_blanks_that_part_thousands(tmp_path, blank):
         tmp_path, f"Höhe{blank}mm;e\n1{blank}000,5;0,6\n20;0,5\n".replace("'mm", " mm")
     )
     assert heights(sheet) == [1.0005, 0.02]
+
+
+def test_a_unit_may_stand_within_a_header(tmp_path):
+    head = "Fallhöhe (in cm);Rückprallhöhe [mm], 1. Messung;Rückprallhöhe in mm, 2. Messung"
+    sheet = read_text(tmp_path, f"{head}\n10;43;44\n")
+    assert restitutions(sheet) == pytest.approx([math.sqrt(0.43), math.sqrt(0.44)])
 
 
 def test_presses_are_rows_too(tmp_path):
