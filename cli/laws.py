@@ -120,7 +120,7 @@ def compare(
     show_table(console, *found.table())
     aside = left_aside(read_toml(file), USED)
     if aside:
-        say(f"not in these laws: {', '.join(aside)}; `dentscope case` and `impact` take them")
+        say(f"not in these laws: {', '.join(aside)}; `dentscope case` takes them")
     console.print(f"written: {table_file}\nwritten: {picture}", soft_wrap=True)
 
 

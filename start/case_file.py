@@ -163,6 +163,11 @@ def read_pair(file: Path) -> tuple[CaseFile, Pair]:
     content = read_model(file, CaseFile)
     sphere = content.sphere.to_body("sphere", file=file)
     flat = content.flat.to_body("flat", file=file)
+    if sphere.rigid and flat.rigid:
+        raise InputError(
+            "given beside a rigid sphere", source=str(file), key="flat.rigid",
+            allowed="at most one rigid body",
+        )  # fmt: skip
     return content, Pair(sphere, flat, content.radius_m)
 
 

@@ -81,11 +81,16 @@ class LawComparison:
         """Which laws to use, and what the pair asks of them."""
         last = self.rows[-1].delta_over_R
         use = ", ".join(f"{name} ({self.told(name)})" for name in self.best)
-        by = f"; judged by {self.reference.told}" if self.reference else ""
+        by, deep = "", f"{self.need.w:.4g} times the depth of first yield"
+        if not np.isfinite(self.pair.Sy_min):
+            deep = "neither body yields"
+        if self.reference:
+            deepest = self.reference.deepest
+            beyond = f"; solved to Delta/R = {deepest:.2g}, not judged beyond"
+            by = f"; judged by {self.reference.told}{beyond if last > deepest else ''}"
         return (
             f"use: {use or 'none of these laws holds here'}\n"
-            f"at Delta/R = {last:g}: {self.need.w:.4g} times the depth of first yield; regime: "
-            f"{self.need.regime}{by}"
+            f"at Delta/R = {last:g}: {deep}; regime: {self.need.regime}{by}"
         )
 
     def told(self, law: str) -> str:

@@ -65,6 +65,7 @@ class Reference(NamedTuple):
     depth: Array  # of loading [m]
     force: Array  # [N]
     turns: tuple[tuple[float, float, float], ...]  # depth [m], permanent depth [m], restitution
+    deepest: float  # Delta/R to which it was solved
 
     @property
     def told(self) -> str:
@@ -184,7 +185,13 @@ def _reference(record: CaseRecord, distance: float, last: float) -> Reference:
             (depth, u.residual_sphere + u.residual_flat, math.sqrt(max(returned, 0.0) / taken))
         )
     return Reference(
-        pair, record.case.name, distance, c["delta"][inside], c["force"][inside], tuple(rows)
+        pair,
+        record.case.name,
+        distance,
+        c["delta"][inside],
+        c["force"][inside],
+        tuple(rows),
+        float(c["delta"][-1]) / pair.R * (1.0 + 1e-9),
     )
 
 

@@ -33,6 +33,16 @@ def test_what_is_recommended_lies_near_the_finite_elements(found):
     assert found.told("hertz") == "off by more than 100 times in dent"
 
 
+def test_a_depth_beyond_what_was_solved_is_told(found):
+    assert "not judged beyond" not in found.finding
+    deep = compare_laws(PAIR, law="fitted", max_delta_over_R=0.4).finding
+    assert "; solved to Delta/R = 0.1" in deep
+    assert deep.endswith(", not judged beyond")
+    glass = Material(E=7.0e10, nu=0.22)
+    elastic = compare_laws(Pair(glass, glass, 1e-3), law="fitted").finding
+    assert "at Delta/R = 0.01: neither body yields; regime: elastic" in elastic
+
+
 def test_restitutions_of_what_is_recommended_agree(found):
     """Side by side stood laws whose restitution is 0.926 and 0.492."""
     from dentscope.impact import Approach, Striker, scene_of, strike

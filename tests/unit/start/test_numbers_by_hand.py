@@ -39,7 +39,7 @@ def test_what_is_faster_than_nine_tenths_is_kept_out_where_six_numbers_are_left(
 def reference(**changed):
     given = {
         "pair": PAIR, "name": "a", "distance": 0.0, "depth": np.array([1e-5]),
-        "force": np.array([1.0]), "turns": (),
+        "force": np.array([1.0]), "turns": (), "deepest": 0.1,
     } | changed  # fmt: skip
     return Reference(**given)
 
