@@ -88,11 +88,14 @@ class RigNumbers:
         if body in self.rigid:
             return Material(E=math.nan, nu=math.nan, rigid=True, name=name)
         of = self.of
+        # a listed material has both
+        unlisted = f", or a material of `dentscope materials`, which {name!r} is not"
         for key in (f"{body}.E_Pa", f"{body}.nu"):
             if key not in of:
                 raise InputError(
-                    "missing", source=source, key=key, allowed="a number (or rigid = true)"
-                )
+                    "missing", source=source, key=key,
+                    allowed=f"a number (or rigid = true){unlisted if name else ''}",
+                )  # fmt: skip
         return Material(
             E=of[f"{body}.E_Pa"], nu=of[f"{body}.nu"], Sy=of[f"{body}.Sy_Pa"],
             density=of.get(f"{body}.density_kg_m3", math.nan), name=name,

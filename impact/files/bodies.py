@@ -32,8 +32,13 @@ def bodies_of(rig: RigNumbers, name: str, *, source: str = "") -> tuple[Pair, St
         A modulus or Poisson's ratio is missing.
     """
     body = rig.material(f"strikers.{name}", source=source)
-    striker = striker_of(rig, name)
-    return Pair(body, rig.material("target", source=source), striker.tip_radius), striker
+    flat, striker = rig.material("target", source=source), striker_of(rig, name)
+    if body.rigid and flat.rigid:
+        raise InputError(
+            "given beside a rigid striker", source=source, key="target.rigid",
+            allowed="at most one rigid body",
+        )  # fmt: skip
+    return Pair(body, flat, striker.tip_radius), striker
 
 
 def striker_of(rig: RigNumbers, name: str) -> Striker:

@@ -100,6 +100,21 @@ def test_each_mistake_is_one_line(tmp_path: Path, old: str, new: str, line: str)
     assert all(row.count("\n") == 0 for row in str(caught.value).splitlines())
 
 
+def test_bodies_that_cannot_be_simulated_are_one_line_with_the_file(tmp_path: Path) -> None:
+    steel = "E_Pa = 200e9\nnu = 0.3\nSy_Pa = 760e6\n"
+    flat = "E_Pa = { value = 2.0e11, std = 4e9 }\nnu = 0.3\nSy_Pa = 305e6\n"
+    named = SETUP.replace(steel, "material = 'Stahl'\n")
+    rigid = SETUP.replace(steel, "rigid = true\n").replace(flat, "rigid = true\n")
+    for text, line in (
+        (named, "strikers.rod.E_Pa: missing (allowed: a number (or rigid = true), or a material of "
+         "`dentscope materials`, which 'Stahl' is not)"),
+        (rigid, "target.rigid: given beside a rigid striker"),
+    ):  # fmt: skip
+        with pytest.raises(InputError) as caught:
+            read_setup(write(tmp_path, text)).scene(law_named("hertz"))
+        assert f"setup.toml: {line}" in str(caught.value)
+
+
 PEEN = """
 gravity_m_s2 = 0
 [target]
