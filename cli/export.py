@@ -169,7 +169,7 @@ def _speeds(text: str) -> list[float]:
     if wrong or (":" in text and not (len(numbers) == 2 and numbers[0] < numbers[1])):
         raise InputError(
             f"{text!r}", source="command line", key="--speed",
-            allowed="FIRST:LAST, or numbers above 0 with commas [m/s]",
+            allowed="FIRST:LAST, the lower first, or numbers above 0 with commas [m/s]",
         )  # fmt: skip
     return (
         np.geomspace(numbers[0], numbers[-1], CORE.speeds_exported).tolist()

@@ -125,8 +125,9 @@ def read_inverse(path: Path) -> tuple[Striker, list[InverseRow]]:
         try:
             inferred = infer(rod, measured)
         except InputError as error:
+            key = {"friction": "friction_impulse_ratio"}.get(error.key, error.key)
             raise InputError(
-                error.message, source=source, key=f"trial {i}.{error.key}", allowed=error.allowed
+                error.message, source=source, key=f"trial.{i - 1}.{key}", allowed=error.allowed
             ) from None
         rows.append(
             InverseRow(

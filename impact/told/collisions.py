@@ -109,8 +109,8 @@ def damping_for(law: Damped, restitution: float) -> float:
     if above(law.most) > 0.0:
         least = _unit_blow(law, law.most).restitution
         raise InputError(
-            f"a restitution of {restitution:.3g}", key="restitution",
-            allowed=f"above {least:.2g}, the least of this damping",
+            f"{restitution:.3g} by {law.name}", key="restitution",
+            allowed=f"above {least:.2g}, the least of this damping: lower speeds",
         )  # fmt: skip
     return float(brentq(above, 0.0, law.most, xtol=1e-6))
 

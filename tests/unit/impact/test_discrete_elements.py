@@ -58,7 +58,7 @@ def test_each_substitute_returns_what_the_law_returns(rows):
 
 
 def test_a_restitution_below_what_the_damping_can_do_is_one_line():
-    with pytest.raises(InputError, match="least of this damping"):
+    with pytest.raises(InputError, match=r"0.001 by hertz-tsuji .*least of this damping: lower"):
         damping_for(TSUJI, 1e-3)
 
 
