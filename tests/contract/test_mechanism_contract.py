@@ -205,7 +205,7 @@ def test_names_are_the_documented_ones_in_their_order():
     text = (Path(__file__).parents[2] / "docs" / "diagnose-method.md").read_text(encoding="utf-8")
     table = text.split("## Mechanisms")[1].split("\n\n")[1]
     documented = re.findall(r"^\| `([a-z-]+)` \|", table, flags=re.MULTILINE)
-    assert documented == [m.name for m in MECHANISMS]
+    assert documented == [m.name for m in MECHANISMS], "rows of docs/diagnose-method.md"
     assert all(m.named for m in MECHANISMS)
 
 
