@@ -11,7 +11,8 @@ from ...measured import Measured
 from ...shared.units import UNITS
 from ..cells import plain, value_of
 from ..heading import in_short
-from .headers import CELSIUS, SheetColumn
+from .headers import SheetColumn
+from .kinds import CELSIUS
 
 _CELL = re.compile(
     r"(?P<number>[+-]?[\d.,'’ ]*\d(?:[eE][+-]?\d+)?)"

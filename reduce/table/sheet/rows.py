@@ -23,18 +23,8 @@ from ..picture import draw_trials
 from ..trials import TrialsReduction
 from ..workbook import rows_of_sheets
 from .cell import decimals_of, number_in, why_not
-from .headers import (
-    APPROACHES,
-    REBOUND_HEIGHT,
-    REBOUND_SPEED,
-    REBOUNDS,
-    SUMMARY,
-    SheetColumn,
-    bare,
-    headers_of,
-    kind_of,
-    understood,
-)
+from .headers import SheetColumn, headers_of, understood
+from .kinds import APPROACHES, REBOUND_HEIGHT, REBOUND_SPEED, REBOUNDS, SUMMARY, bare, kind_of
 
 _TYPED = str.maketrans({"\u2212": "-", "\u00a0": " ", "\u2009": " ", "\u202f": " "})
 """Signs of typesetters as they are typed: the minus, and blanks that do not break."""

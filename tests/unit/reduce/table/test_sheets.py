@@ -135,7 +135,15 @@ def test_a_title_above_the_headers_is_told(tmp_path):
 
 
 @pytest.mark.parametrize(
-    "header", ["Geschwindigkeit in m/s", "speed (m/s)", "v [m/s]", "Aufprallgeschwindigkeit (m/s)"]
+    "header",
+    [
+        "v (m s⁻¹)",
+        "v / m s^-1",
+        "Geschwindigkeit in m/s",
+        "speed (m/s)",
+        "v [m/s]",
+        "Aufprallgeschwindigkeit (m/s)",
+    ],
 )
 def test_a_speed_by_its_bare_name_is_that_of_the_approach(tmp_path, header):
     file = tmp_path / "a.csv"
