@@ -10,6 +10,12 @@ from typing import Any
 from ...core.errors import InputError, missing_extra
 
 
+class NumberCell(str):
+    """A cell that holds a number and no text: its point is none of thousands."""
+
+    __slots__ = ()
+
+
 def sheets_of(path: Path) -> tuple[str, ...]:
     """Return the names of a workbook's sheets.
 
@@ -52,7 +58,7 @@ def rows_of_sheets(path: Path) -> dict[str, list[list[str]]]:
     with _opened(path) as book:
         found = {n: book.get_sheet_by_name(n) for n in book.sheet_names}
         rows = {n: sheet.to_python(skip_empty_area=False) for n, sheet in found.items()}
-    return {n: [[_cell(cell) for cell in row] for row in each] for n, each in rows.items()}
+    return {n: [[_typed(cell) for cell in row] for row in each] for n, each in rows.items()}
 
 
 @contextmanager
@@ -68,6 +74,12 @@ def _opened(path: Path) -> Iterator[Any]:
             f"not a workbook that can be read ({error})", source=str(path),
             allowed="XLS, XLSX or ODS without a password",
         ) from None  # fmt: skip
+
+
+def _typed(cell: object) -> str:
+    if isinstance(cell, int | float) and not isinstance(cell, bool):
+        return NumberCell(repr(cell).removesuffix(".0"))
+    return _cell(cell)
 
 
 def _cell(cell: object) -> str:

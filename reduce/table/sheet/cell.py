@@ -11,6 +11,7 @@ from ...measured import Measured
 from ...shared.units import UNITS
 from ..cells import plain, value_of
 from ..heading import in_short
+from ..workbook import NumberCell
 from .headers import SheetColumn
 from .kinds import CELSIUS
 
@@ -45,8 +46,9 @@ def why_not(cell: str, column: SheetColumn, value: Measured | None, decimals: st
 def decimals_of(rows: Sequence[Sequence[str]], columns: Sequence[SheetColumn]) -> str:
     """Return the sign before the decimals of a sheet's numbers; empty if none, or both, show it."""
     cells = (
-        _CELL.fullmatch(row[c.place].strip()) for row in rows for c in columns
+        _CELL.fullmatch(row[c.place]) for row in rows for c in columns
         if c.place < len(row) and c.kind.quantity != "text"
+        and not isinstance(row[c.place], NumberCell)
     )  # fmt: skip
     numbers = (found["number"].strip() for found in cells if found)
     signs = {m["a"] or m["b"] or m["c"] or m["d"] for m in map(_DECIMAL.fullmatch, numbers) if m}
@@ -54,7 +56,7 @@ def decimals_of(rows: Sequence[Sequence[str]], columns: Sequence[SheetColumn]) -
 
 
 def _grouped(cell: str) -> bool:
-    found = _CELL.fullmatch(cell)
+    found = None if isinstance(cell, NumberCell) else _CELL.fullmatch(cell)
     return found is not None and _GROUPED.fullmatch(found["number"].strip()) is not None
 
 

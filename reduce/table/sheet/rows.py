@@ -21,7 +21,7 @@ from ...shared.units import UNITS
 from ..file import BOOKS, cells_of, decoded
 from ..picture import draw_trials
 from ..trials import TrialsReduction
-from ..workbook import rows_of_sheets
+from ..workbook import NumberCell, rows_of_sheets
 from .cell import decimals_of, number_in, why_not
 from .headers import SheetColumn, headers_of, understood
 from .kinds import APPROACHES, REBOUND_HEIGHT, REBOUND_SPEED, REBOUNDS, SUMMARY, bare, kind_of
@@ -98,7 +98,10 @@ def read_sheet(path: Path) -> Sheet:
         ]  # fmt: skip
     else:
         rows = _cells(decoded(path.read_bytes(), source).splitlines(keepends=True), source)
-    rows = [[cell.translate(_TYPED) for cell in row] for row in rows]
+    rows = [
+        [cell if isinstance(cell, NumberCell) else cell.translate(_TYPED) for cell in row]
+        for row in rows
+    ]
     top, columns, told = headers_of(rows, source)
     return _trials(rows, top, columns, told, others, source)
 
@@ -223,7 +226,7 @@ def _read(
     found: dict[str, list[Measured]] = {}
     note, unread = "", set()
     for column in columns:
-        cell, name = row[column.place].strip() if column.place < len(row) else "", column.kind.name
+        cell, name = row[column.place] if column.place < len(row) else "", column.kind.name
         if not cell:
             continue
         if column.kind.quantity == "text":

@@ -385,3 +385,17 @@ def test_the_sheet_of_a_workbook_is_that_with_headers_and_the_others_are_told(tm
     found = read_sheet(tmp_path / "a.xlsx")
     assert [t.label for t in found.trials] == ["003"]
     assert [line.split(":")[0] for line in found.left_out] == ["sheet 'Sheet'", "sheet 'Steel'"]
+
+
+def test_numbers_of_a_workbook_say_nothing_of_the_commas_in_its_texts(tmp_path):
+    """A number's own point is none of thousands either."""
+    openpyxl = pytest.importorskip("openpyxl")
+    book = openpyxl.Workbook()
+    for row in (["Fallhöhe (cm)", "Eindruck Ø (mm)", "Bemerkung"], [2.5, "0,722", 5],
+                [10, "1,089", ""], [20, 1.234, ""]):  # fmt: skip
+        book.active.append(row)
+    book.save(tmp_path / "a.xlsx")
+    trials = read_sheet(tmp_path / "a.xlsx").trials
+    seen = [t.observables["dent_diameter_m"].value for t in trials]
+    assert seen == pytest.approx([7.22e-4, 1.089e-3, 1.234e-3])
+    assert trials[0].note == "5"
