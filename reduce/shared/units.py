@@ -16,7 +16,7 @@ LENGTH = {
     "Å": 1e-10, "in": 0.0254, "ft": 0.3048,
 }  # fmt: skip
 """With both signs for micro."""
-TIME = {"s": 1.0, "ms": 1e-3, "us": 1e-6, "µs": 1e-6, "μs": 1e-6, "min": 60.0}
+TIME = {"s": 1.0, "ms": 1e-3, "us": 1e-6, "µs": 1e-6, "μs": 1e-6, "ns": 1e-9, "min": 60.0}
 UNITS: dict[str, dict[str, float]] = {
     "time": TIME,
     "length": LENGTH,
@@ -26,6 +26,8 @@ UNITS: dict[str, dict[str, float]] = {
     },
     "acceleration": {
         "m/s2": 1.0, "m/s^2": 1.0, "m/s²": 1.0, "g": STANDARD_GRAVITY, "kg": 1e3 * STANDARD_GRAVITY,
+        "mg": 1e-3 * STANDARD_GRAVITY, "cm/s2": 1e-2, "cm/s²": 1e-2, "cm/s^2": 1e-2, "mm/s2": 1e-3,
+        "mm/s²": 1e-3, "mm/s^2": 1e-3,
     },
     "speed": {"m/s": 1.0, "mm/s": 1e-3, "cm/s": 1e-2, "km/h": 1.0 / 3.6},
     "angle": {"deg": 1.0, "°": 1.0, "rad": math.degrees(1.0)},

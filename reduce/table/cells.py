@@ -33,7 +33,8 @@ _CLOCK = re.compile(
     r"(?P<h>\d{1,2}):(?P<m>\d{2})(?::(?P<s>\d{2}(?:[.,:]\d+)?))?\s*(?P<half>[AaPp][Mm])?"
     r"(?:Z|[+-]\d{2}:?\d{2})?"
 )
-_DAY = 86400.0
+DAY = 86400.0
+"""In seconds."""
 
 
 def plain(cell: str, separator: str) -> str:
@@ -67,10 +68,10 @@ def value_of(cell: str) -> float:
     return found if abs(found) < OUT_OF_RANGE else np.nan
 
 
-def instant(cell: str) -> float:
+def instant(cell: str, since: float = 0.0) -> float:
     """Return an instant in seconds from midnight, or from the year 1 where a date stands before.
 
-    NaN for what is no clock.
+    NaN for what is no clock; `since` a number of days, of both, fewer.
 
     Examples
     --------
@@ -86,7 +87,7 @@ def instant(cell: str) -> float:
         hour = hour % 12 + 12 * (found["half"].lower() == "pm")
     if hour > 23 or minute > 59 or second >= 61.0:
         return np.nan
-    return _days(found["date"]) * _DAY + 3600.0 * hour + 60.0 * minute + second
+    return (_days(found["date"]) - since) * DAY + 3600.0 * hour + 60.0 * minute + second
 
 
 def _days(day: str | None) -> float:
@@ -107,7 +108,7 @@ def since_first(instants: Array) -> Array:
     if known.size == 0:
         return instants
     after: Array = instants - instants[known[0]]
-    if np.nanmax(np.abs(instants)) <= _DAY:
-        back = np.diff(after[known], prepend=0.0) < -0.5 * _DAY
-        after[known] += _DAY * np.cumsum(back)
+    if np.nanmax(np.abs(instants)) <= DAY:
+        back = np.diff(after[known], prepend=0.0) < -0.5 * DAY
+        after[known] += DAY * np.cumsum(back)
     return after

@@ -23,9 +23,9 @@ from ...core.inputs.input_file import checked_file
 from ...core.processes.confined import confined
 from ..rules import RULES
 from ..shared.units import UNITS
-from .cells import instant, plain, since_first, value_of
+from .cells import DAY, instant, plain, since_first, value_of
 from .channels import CHANNELS, Shown, channels_of
-from .heading import Heading, heading_of, in_short, labview_rows
+from .heading import Heading, heading_of, labview_rows, unit_in
 from .packed import packed_table, tracker_rows
 from .workbook import workbook_rows
 
@@ -96,10 +96,8 @@ class Columns:
         )  # fmt: skip
 
     def unit(self, place: int) -> str:
-        """Return the unit in a column's name, `x (mm)`, `x [mm]` or `x_mm`; else nothing."""
-        name = self.names[place]
-        found = _UNIT.search(name)
-        return in_short(found.group(1) if found else name.rsplit("_", 1)[-1] if "_" in name else "")
+        """Return the unit in a column's name, else nothing."""
+        return unit_in(self.names[place])
 
     def factor(
         self, place: int, quantity: str, *, given: str, key: str, default: str | None = None
@@ -132,7 +130,7 @@ class Columns:
         said = self.unit(place)
         if said in units:
             return units[said]
-        if default is None:
+        if default is None or (said and any(sign in self.names[place] for sign in "[(<")):
             column = f"column {self.names[place] or place + 1!r}"
             other = next((q for q, known in UNITS.items() if said and said in known), "")
             told = f"is of {other}, in {said}" if other else "does not name its unit"
@@ -219,8 +217,9 @@ def columns_of(rows: list[list[str]], source: str) -> Columns:
     heading = heading_of(rows[:first], width)
     names = list(heading.names)
     for place, column in enumerate(zip(*cells, strict=True)):
-        if instant(column[0]) >= 0.0:
-            values[:, place] = since_first(np.array([instant(cell) for cell in column]))
+        if (first_instant := instant(column[0])) >= 0.0:
+            day = first_instant // DAY  # seconds from the year 1 on keep no microseconds
+            values[:, place] = since_first(np.array([instant(cell, day) for cell in column]))
             names[place] = f"{_UNIT.sub('', names[place]).strip() or 'time'} [s]"
     return Columns(tuple(names), values, cells, source, heading)
 

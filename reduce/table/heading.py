@@ -12,11 +12,19 @@ from ..shared.units import UNITS
 _KNOWN_UNITS = {unit for units in UNITS.values() for unit in units if unit} | {
     "V", "mV", "px",
 }  # fmt: skip
+_CAPITALS = {unit.upper(): unit for unit in sorted(_KNOWN_UNITS, reverse=True)}
+_BRACKETED = re.compile(r"[\[(<]\s*([^\])>]+?)\s*[\])>]")
+_AT_END = re.compile(r"(\S+?)\s*(?:[/,]|\bin\b)\s*([^\s/,]+(?:/[^\s/,]+)?)\s*$")
 WORDS = {
     "sec": "s", "secs": "s", "second": "s", "seconds": "s", "newton": "N", "newtons": "N",
     "volt": "V", "volts": "V", "metre": "m", "metres": "m", "meter": "m", "meters": "m",
     "mm/mm": "-", "m/m": "-", "in/in": "-", "kilonewtons": "kN", "millimeters": "mm",
     "millimetres": "mm", "milliseconds": "ms", "pascal": "Pa", "degrees": "deg", "grad": "deg",
+    "msec": "ms", "usec": "us", "µsec": "us", "microseconds": "us", "minutes": "min",
+    "nsec": "ns", "lb": "lbf", "lbs": "lbf", "g's": "g", "gn": "g", "g_n": "g",
+    "m/s/s": "m/s2", "m/s**2": "m/s2", "m/sec2": "m/s2", "m/sec^2": "m/s2", "ms-2": "m/s2",
+    "m s-2": "m/s2", "m s^-2": "m/s2", "m*s^-2": "m/s2", "m·s⁻²": "m/s2", "m s⁻²": "m/s2",
+    "n/mm²": "N/mm2", "n/mm^2": "N/mm2", "lbs.": "lbf", "in.": "in", "s⁻¹": "1/s",
 }  # fmt: skip
 """Units in words, as they are written in a recording set."""
 
@@ -47,15 +55,27 @@ class Heading:
         for name, *values in self.said:
             if name.lower().startswith(word) and values:
                 try:
-                    return float(values[0]), values[1] if len(values) > 1 else _bracketed(name)
+                    return float(values[0]), values[1] if len(values) > 1 else unit_in(name)
                 except ValueError:
                     continue
         return None
 
 
-def _bracketed(name: str) -> str:
-    found = re.search(r"[\[(]\s*([^\])]+?)\s*[\])]", name)
-    return found.group(1) if found else ""
+def unit_in(name: str) -> str:
+    """Return the unit that a column's name holds; of brackets whatever they hold, else nothing.
+
+    Examples
+    --------
+    >>> [unit_in(n) for n in ("x (mm)", "F / N", "F in kN", "t_ms", "Time [s] (raw)", "Force")]
+    ['mm', 'N', 'kN', 'ms', 's', '']
+    """
+    bracketed = [in_short(found) for found in _BRACKETED.findall(name)]
+    if bracketed:
+        return next((unit for unit in bracketed[::-1] if unit in _KNOWN_UNITS), bracketed[-1])
+    found = _AT_END.search(name)
+    if found is not None and in_short(found.group(2)) in _KNOWN_UNITS:
+        return "" if found.group(1) in _KNOWN_UNITS else in_short(found.group(2))  # a speed, m/s
+    return in_short(name.rsplit("_", 1)[-1]) if "_" in name else ""
 
 
 def heading_of(above: Sequence[Sequence[str]], width: int) -> Heading:
@@ -71,7 +91,8 @@ def heading_of(above: Sequence[Sequence[str]], width: int) -> Heading:
     width
         Number of columns.
     """
-    rows = [list(row) for row in above if any(row)]
+    # a marker that was not seen yet is no name
+    rows = [list(row) for row in above if {cell.lower() for cell in row} - {"", "nan"}]
     units: list[str] = []
     for row in reversed(rows[-RULES.lines_above :]):
         filled = [cell for cell in row if cell]
@@ -94,8 +115,8 @@ def heading_of(above: Sequence[Sequence[str]], width: int) -> Heading:
 
 def is_unit(cell: str) -> bool:
     """Whether a cell names a unit, `mm`, `(mm)` or `[mm]`."""
-    bare = cell.strip("()[] ")
-    return in_short(bare) in _KNOWN_UNITS | {"-"} or (bare != cell.strip() and len(bare) < 12)
+    bare, whole = cell.strip("()[] "), cell.strip()
+    return in_short(bare) in _KNOWN_UNITS | {"-"} or (whole[:1] in ("(", "[") and len(bare) < 12)
 
 
 def in_short(unit: str) -> str:
@@ -107,7 +128,9 @@ def in_short(unit: str) -> str:
     ('s', 'mm')
     """
     bare = unit.strip("()[] ")
-    return WORDS.get(bare.lower(), bare)
+    if bare in _KNOWN_UNITS:
+        return bare
+    return WORDS.get(bare.lower(), _CAPITALS.get(bare, bare))
 
 
 _END = "***End_of_Header***"

@@ -6,6 +6,7 @@ signals take longer to load than a small file to reduce.
 
 from __future__ import annotations
 
+from datetime import date
 from pathlib import Path
 from typing import TYPE_CHECKING, NamedTuple
 
@@ -19,6 +20,7 @@ from ..pictures import draw_refused
 from ..reduced import Reduced
 from ..rules import RULES
 from ..shared.units import LENGTH
+from .cells import DAY
 from .file import Columns, read_columns
 from .options import TableOptions
 from .picture import draw_heights, draw_pulse, draw_tension, draw_times, draw_trials
@@ -273,5 +275,11 @@ def _times(table: Columns, options: TableOptions, *, alone: bool) -> Array:
         raise InputError(
             "the column counts samples", source=table.source, key="rate_hz",
             allowed="samples a second, or time_unit if these are times",
+        )  # fmt: skip
+    late = float(np.nanmax(np.abs(given), initial=0.0))
+    if options.time_unit == "file" and not table.unit(where) and late > date.max.toordinal() * DAY:
+        raise InputError(
+            f"column {table.names[where] or where + 1!r}: {late:.3g} is no seconds of a calendar",
+            source=table.source, key="time_unit", allowed="ms, us, ns, or another column of times",
         )  # fmt: skip
     return np.asarray(given * second)

@@ -27,7 +27,7 @@ class TableOptions(BounceOptions, TimeWindow):
     select: str = Field("", description="COLUMN=VALUE: only these rows")
     time: str = Field("1", description="column of the time, by name or number")
     value: str = Field("2", description="column of what was measured, by name or number")
-    time_unit: Literal["file", "s", "ms", "us", "min"] = Field(
+    time_unit: Literal["file", "s", "ms", "us", "ns", "min"] = Field(
         "file", description="file: what the column's name says, else seconds"
     )
     value_unit: str = Field(

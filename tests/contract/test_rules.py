@@ -69,7 +69,7 @@ EXACT = {
     "reduce/shared/regression.py": "_MAD_TO_STD",
     "reduce/scan/level.py": "LEVELS",
     "reduce/scan/picture.py": "UM",
-    "reduce/table/cells.py": "OUT_OF_RANGE _DAY",
+    "reduce/table/cells.py": "OUT_OF_RANGE DAY",
     "reduce/table/sheet/cell.py": "_ICE",
     "reduce/table/trials.py": "_LEEB_SPEED",
     "start/measured.py": "_STANDARD_GRAVITY",

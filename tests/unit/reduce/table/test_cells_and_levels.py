@@ -5,6 +5,7 @@ import pytest
 from dentscope.core.errors import InputError
 from dentscope.reduce.kinds import load_kind
 from dentscope.reduce.table.cells import instant, plain, since_first, value_of
+from dentscope.reduce.table.file import columns_of
 from dentscope.reduce.table.heading import heading_of, in_short, labview_rows
 from dentscope.reduce.table.level import level_before
 from made_records import RATE, T, half_sine, run, table
@@ -246,3 +247,44 @@ def test_a_stated_contact_time_acts_on_heights(tmp_path):
     assert abs(speed.value - np.sqrt(2.0 * 9.81 * 0.98)) < 3.0 * speed.std < 0.05
     assert speed.std < alone["bounce1_impact_speed_m_s"].std
     assert abs(told["bounce1_restitution"].value - 0.82) < 3.0 * told["bounce1_restitution"].std
+
+
+@pytest.mark.parametrize(
+    ("time", "force", "in_s", "in_N"),
+    [("t/ms", "F/kN", 1e3, 1e-3), ("Zeit in msec", "Kraft in N", 1e3, 1.0),
+     ("Time, us", "LOAD (KN)", 1e6, 1e-3), ("Time <ns>", "Force (lb)", 1e9, 1 / 4.4482216152605)],
+)  # fmt: skip
+def test_units_as_laboratories_write_them(tmp_path, time, force, in_s, in_N):
+    rows = [f"{t * in_s:.6g}\t{v * in_N:.7g}" for t, v in zip(T, half_sine(), strict=True)]
+    (tmp_path / "a.txt").write_text("\n".join([f"{time}\t{force}", *rows]))
+    found = run(tmp_path / "a.txt").values
+    assert found["contact_time_s"].value == pytest.approx(4e-3, rel=0.1)
+    assert found["peak_force_N"].value == pytest.approx(800.0, rel=0.01)
+
+
+@pytest.mark.parametrize(
+    ("name", "first", "told"),
+    [("Time (ticks)", 0.0, "does not name its unit"), ("time", 1.71e18, "no seconds")],
+)
+def test_times_in_no_known_unit_are_no_seconds(tmp_path, name, first, told):
+    rows = [f"{first + 1e9 * t:.0f},{v:.3f}" for t, v in zip(T, half_sine(), strict=True)]
+    (tmp_path / "a.csv").write_text("\n".join([f"{name},Force (N)", *rows]))
+    with pytest.raises(InputError, match=told):
+        run(tmp_path / "a.csv")
+
+
+def test_a_title_above_names_with_short_units_is_no_name(tmp_path):
+    above = ["Start time:\t3/12/2024 2:02:11 PM", "Number of ch:\t1", "", "Time (s)\tForce (N)"]
+    rows = [f"{t:.5f}\t{v:.3f}" for t, v in zip(T, half_sine(), strict=True)]
+    (tmp_path / "a.txt").write_text("\n".join(above + rows))
+    assert run(tmp_path / "a.txt").values["peak_force_N"].value == pytest.approx(800.0, rel=0.01)
+
+
+def test_clocks_with_a_date_keep_their_microseconds():
+    cells = [[f"2024-03-12T14:02:11.00000{k}Z", "1.0"] for k in range(4)]
+    assert columns_of(cells, "a").values[:, 0] == pytest.approx(1e-6 * np.arange(4.0), abs=1e-9)
+
+
+def test_rows_of_a_point_not_yet_seen_are_no_names():
+    found = heading_of([["pt1_X", "pt1_Y"], ["NaN", "NaN"], ["NaN", "NaN"]], 2)
+    assert found.names == ("pt1_X", "pt1_Y")
