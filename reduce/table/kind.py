@@ -78,8 +78,9 @@ def reduce(path: Path, options: TableOptions) -> Reduced:
     from .trials import reduce_leeb, reduce_rebounds, reduce_trials
 
     if options.holds == "rebounds":
+        chosen = options.value if "value" in options.model_fields_set else ""
         found = reduce_rebounds(
-            table, value=options.value, unit=options.value_unit, std=options.value_std,
+            table, value=chosen, unit=options.value_unit, std=options.value_std,
             ball=options.ball,
         )  # fmt: skip
     elif options.holds == "leeb":

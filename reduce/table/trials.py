@@ -14,13 +14,14 @@ from ...core.errors import InputError, InputErrors
 from ...recordings.columns import CONDITIONS, MEASURED, STD_SUFFIX
 from ..bounces.fall import Ball, Fall
 from ..measured import Measured, Trial
-from ..shared.units import UNITS
+from ..shared.units import LENGTH, UNITS
 from .file import Columns
 
 _QUANTITY_OF_UNIT = {
     "_m_s": "speed", "_m": "length", "_s": "time", "_N": "force", "_rad_s": "spin",
     "_deg": "angle", "_K": "temperature",
 }  # fmt: skip
+_DROP = re.compile(r"drop|fall|release|chute|caduta|ca[ií]da", re.IGNORECASE)
 
 
 @dataclass(frozen=True)
@@ -44,7 +45,7 @@ def reduce_rebounds(
     table
         Drop heights in the column `value`, rebound heights of the repeats in all columns after it.
     value
-        Column of the drop heights.
+        Column of the drop heights; empty for the one that is named so.
     unit
         Of all of them, or `"file"`.
     std
@@ -142,9 +143,11 @@ def _fall(ball: Ball, height: float) -> Fall:
 
 def _heights(table: Columns, value: str, unit: str) -> tuple[Array, float]:
     """Return drop and rebound heights, (rows, 1 + repeats) [m], and their unit [m]."""
-    first = table.find(value, key="value")
+    first = table.find(value, key="value") if value else _drops(table)
     metres = table.factor(first, "length", given=unit, key="value_unit")
-    heights = table.values[:, first:] * metres
+    said = [table.unit(k) if unit == "file" else "" for k in range(len(table.names))]
+    columns = [first, *(k for k in range(first + 1, len(said)) if not _of_other(said[k]))]
+    heights = table.values[:, columns] * [LENGTH.get(said[k], metres) for k in columns]
     if heights.shape[1] < 2:
         raise InputError(
             "no column after the drop heights", source=table.source, key="value",
@@ -153,7 +156,7 @@ def _heights(table: Columns, value: str, unit: str) -> tuple[Array, float]:
     wrong = tuple(
         InputError(
             f"{h[k]:g} m after a drop of {h[0]:g} m", source=table.source,
-            key=f"row {row + 1} of the numbers, column {first + k + 1}",
+            key=f"row {row + 1} of the numbers, column {columns[k] + 1}",
             allowed="a rebound above 0 and below the drop",
         )
         for row, h in enumerate(heights)
@@ -163,6 +166,22 @@ def _heights(table: Columns, value: str, unit: str) -> tuple[Array, float]:
     if wrong:
         raise InputErrors(wrong)
     return heights, metres
+
+
+def _drops(table: Columns) -> int:
+    """The first column that is named as a drop height."""
+    named = [k for k, n in enumerate(table.names) if _DROP.search(n)]
+    if not named:
+        raise InputError(
+            "no column is named as a drop height", source=table.source, key="value",
+            allowed="its name or number; the rebound heights follow it",
+        )  # fmt: skip
+    return named[0]
+
+
+def _of_other(unit: str) -> bool:
+    """Whether a unit is known, and none of length."""
+    return unit not in LENGTH and any(unit in known for known in UNITS.values() if unit)
 
 
 def reduce_trials(table: Columns) -> TrialsReduction:

@@ -179,3 +179,13 @@ def test_no_pulse_in_noise():
     rng = np.random.default_rng(1)
     with pytest.raises(InputError, match="noise"):
         find_pulse(np.arange(500.0), rng.normal(size=500), source="test")
+
+
+def test_rebounds_find_their_drops_and_the_unit_of_each_column(tmp_path):
+    text = "Nr;Fallhöhe (m);h1 (cm);h2 (mm);e (%)\n1;1,00;64,0;640;80\n2;0,50;32,0;320;80\n"
+    (tmp_path / "a.csv").write_text(text, "utf-8")
+    found = load_kind("table").run(tmp_path / "a.csv", {"holds": "rebounds"}, source="test")
+    assert [t.observables["restitution"].value for t in found.trials] == pytest.approx([0.8] * 4)
+    (tmp_path / "b.csv").write_text("cm,up,up\n100 ,64,63\n50,32,31\n")
+    with pytest.raises(InputError, match="no column is named as a drop height"):
+        load_kind("table").run(tmp_path / "b.csv", {"holds": "rebounds"}, source="test")
