@@ -62,7 +62,7 @@ class Heading:
 
 
 def unit_in(name: str) -> str:
-    """Return the unit that a column's name holds; of brackets whatever they hold, else nothing.
+    """Return the unit that a column's name holds; of brackets any one word, else nothing.
 
     Examples
     --------
@@ -71,7 +71,8 @@ def unit_in(name: str) -> str:
     """
     bracketed = [in_short(found) for found in _BRACKETED.findall(name)]
     if bracketed:
-        return next((unit for unit in bracketed[::-1] if unit in _KNOWN_UNITS), bracketed[-1])
+        known = [unit for unit in bracketed if unit in _KNOWN_UNITS]
+        return known[-1] if known else bracketed[-1] if " " not in bracketed[-1] else ""
     found = _AT_END.search(name)
     if found is not None and in_short(found.group(2)) in _KNOWN_UNITS:
         return "" if found.group(1) in _KNOWN_UNITS else in_short(found.group(2))  # a speed, m/s
