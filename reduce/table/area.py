@@ -51,11 +51,12 @@ def area_of(
     """
     start, end = (e.value for e in ends)
     long, step = end - start, float(np.median(np.diff(time)))
-    inside = (time >= start) & (time <= end)
+    # with one more sample on each side: the sum over all is right in the mean over their phases
+    inside = (np.append(time[1:], np.inf) >= start) & (np.append(-np.inf, time[:-1]) <= end)
     core = float(np.trapezoid(clear[inside], time[inside]))
     notes: list[str] = []
     foot, height, early, since = 0.0, 0.0, 0.0, start
-    before = (time >= time[min(level.last, time.size - 1)]) & (time < start)
+    before = (time >= time[min(level.last, time.size - 1)]) & (time < start) & ~inside
     if level.samples and before.sum() > 1:
         both = before | inside
         foot = float(np.trapezoid(clear[both], time[both])) - core
@@ -74,13 +75,16 @@ def area_of(
         else:
             foot = 0.0
     if shape.ringing:
-        core, off, reach, count = _after(time, clear, shape, start, end)
+        core, off, reach, count = _after(time, clear, shape, float(time[inside][0]), end)
         notes.append("the area is the mean over the swings after it")
     else:
         off, reach, count = 0.5 * shape.level_after * abs(clear.max()) * long, 0.0, 0.0
     count += int(((time >= since) & (time <= end)).sum())
     scatter = level.noise * step * math.sqrt(max(count, 1.0))
-    std = math.hypot(scatter, level.std * (end - since + reach), off, RULES.form * core)
+    # what the phase leaves of the ends of a half-sine (L. Euler, C. Maclaurin)
+    phase = math.pi**2 / 4.0 / math.sqrt(90.0) * (step / long) ** 2
+    form = math.hypot(RULES.form, phase) * core
+    std = math.hypot(scatter, level.std * (end - since + reach), off, form)
     return Area(Measured(core + foot, std), early, height, tuple(notes))
 
 

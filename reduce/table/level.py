@@ -67,8 +67,19 @@ def level_before(up: Array, top: int) -> Level:
     part = up[first:last]
     spread = max(float(np.std(part)), 1e-12 * height)
     drift = float(np.polyfit(np.linspace(-0.5, 0.5, part.size), part, 1)[0])
-    std = math.hypot(spread / math.sqrt(part.size), 0.5 * drift)
+    wander = _wander(part, 2 * width, noise)
+    std = math.hypot(spread / math.sqrt(part.size), 0.5 * drift, wander)
     return Level(float(part.mean()), std, spread, first, last)
+
+
+def _wander(part: Array, long: int, noise: float) -> float:
+    """How far means over a pulse's length scatter where it is no chance, as with a hum."""
+    count = part.size // long
+    if count < 2:
+        return 0.0
+    means = part[part.size - count * long :].reshape(count, long).mean(axis=1)
+    scatter = float(np.std(means, ddof=1))
+    return scatter if scatter > RULES.by_chance * noise / math.sqrt(long) else 0.0
 
 
 def wide(up: Array, top: int, half: float) -> int:

@@ -105,8 +105,13 @@ def find_pulse(time: Array, value: Array, *, source: str) -> Pulse:
         notes.append(
             f"rings: {shape.ringing:.0%} of the peak to the other side, {part:.1%} of it within"
         )
-    else:  # in the middle of the pulse its zero has moved by half
-        peak = peak.widened(0.5 * abs(shape.level_after) * peak.value)
+    else:  # what stays after the pulse, or wanders before it, may lie under it too
+        under = math.hypot(level.std, shape.unrest * peak.value)
+        peak = peak.widened(under)
+        start, end = (
+            e.widened(_without(time, clear, top, way, under, peak.value).value - e.value)
+            for e, way in ((start, -1), (end, 1))
+        )
     if shape.others:
         when = ", ".join(f"{t:.6g}" for t in shape.others[:5])
         notes.append(
@@ -186,18 +191,22 @@ def _peak(time: Array, clear: Array, top: int, noise: float) -> tuple[Measured, 
         return Measured(float(clear[top]), max(noise, 0.02 * float(clear[top]))), float(time[top])
     width = min(up - low + 1, 51) // 2 * 2 + 1
     window = slice(max(low - width, 0), min(up + width + 1, clear.size))
-    half = min(width, clear[window].size // 2 * 2 - 1) // 2
-    # the middle of a parabola through each sample and its neighbours (A. Savitzky, M. Golay, 1964)
+    value, best, half = _smoothest(clear[window], width)
+    narrow = _smoothest(clear[window], width // 2)[0]  # a plastic dent's top is no parabola
+    error = math.hypot(noise * 1.5 / math.sqrt(width), RULES.form * value, value - narrow)
+    return Measured(value, error), float(time[window][best + half])
+
+
+def _smoothest(part: Array, width: int) -> tuple[float, int, int]:
+    """Largest value of parabolas through so many neighbours, its place, and half of their number.
+
+    (A. Savitzky, M. Golay, 1964)
+    """
+    half = min(width, part.size // 2 * 2 - 1) // 2
     weight = np.linalg.pinv(np.vander(np.arange(-half, half + 1.0), 3))[-1]
-    smooth = np.convolve(clear[window], weight, "valid")
+    smooth = np.convolve(part, weight, "valid")
     best = int(np.argmax(smooth))
-    return (
-        Measured(
-            float(smooth[best]),
-            math.hypot(noise * 1.5 / math.sqrt(width), RULES.form * float(smooth[best])),
-        ),
-        float(time[window][best + half]),
-    )
+    return float(smooth[best]), best, half
 
 
 def _flank(time: Array, clear: Array, top: int, step: int, peak: float) -> tuple[Measured, int]:
@@ -254,8 +263,10 @@ def _without(time: Array, clear: Array, top: int, step: int, under: float, peak:
 
 
 def _through(time: Array, clear: Array, outer: int, inner: int) -> Measured:
-    """Where the line through two samples of an elastic flank, F^(2/3), meets zero."""
+    """Where the line through two samples of a flank, F or an elastic one's F^(2/3), meets zero."""
     far, near = float(time[outer]), float(time[inner])
-    low, high = (max(float(clear[k]), 0.0) ** (2 / 3) for k in (outer, inner))
-    at = far - low * (near - far) / (high - low) if high > low else far
-    return Measured(at, 0.3 * abs(near - far))
+    ends = []
+    for power in RULES.flank_powers:
+        low, high = (max(float(clear[k]), 0.0) ** (1.0 / power) for k in (outer, inner))
+        ends.append(far - low * (near - far) / (high - low) if high > low else far)
+    return Measured(float(np.mean(ends)), math.hypot(0.3 * (near - far), float(np.std(ends))))

@@ -26,11 +26,13 @@ from ..rules import RULES
 class Shape(NamedTuple):
     """What is beside a whole pulse, as parts of its peak, and when others of its sign peak [s].
 
-    Last the number of its samples above half of the peak.
+    `unrest` is what stays just after it, a swing or a level, as a root mean square beyond the
+    noise. Last the number of its samples above half of the peak.
     """
 
     ringing: float
     level_after: float
+    unrest: float
     others: tuple[float, ...]
     above_half: int
 
@@ -76,6 +78,9 @@ def shape_of(
     soon = (time > ends[1]) & (time < ends[1] + long)
     if soon.sum() >= RULES.fewest_level_samples:  # what comes later is another event
         rest = min(rest, float(np.median(clear[soon])) / peak, key=abs)
+    square = float(np.mean(clear[soon] ** 2)) if soon.any() else 0.0
+    chance = (1.0 + RULES.by_chance * math.sqrt(2.0 / max(int(soon.sum()), 1))) * noise**2
+    unrest = math.sqrt(square - noise**2) / peak if square > chance else 0.0
     if abs(rest) > RULES.step:
         raise looks_like("step", f"a step: {rest:+.0%} of the peak stays", source)
     wide = _wide(clear, top)
@@ -96,7 +101,7 @@ def shape_of(
     rings = below > least and _half_waves(clear[late] / peak, least) > 1
     others = tuple(_others(time, clear, peak, ends))
     _single(time, clear, others, ends, source)
-    return Shape(below if rings else 0.0, rest, others, half)
+    return Shape(below if rings else 0.0, rest, unrest, others, half)
 
 
 def _single(
@@ -163,7 +168,8 @@ def _flat_top(clear: Array, top: int) -> int:
     step = float(np.percentile(steps, 10.0))
     equal = int(np.count_nonzero(clear[near] >= peak - 0.01 * step))
     round_top = near.size * math.sqrt(min(step / (RULES.round_top * peak), 1.0))
-    return equal if equal >= max(RULES.flat_samples, RULES.flat_top * round_top) else 0
+    fine = round_top < 1.0  # none within a step of the highest one, but by chance
+    return equal if equal >= max(RULES.flat_samples - fine, RULES.flat_top * round_top) else 0
 
 
 def _others(time: Array, clear: Array, peak: float, ends: tuple[float, float]) -> Iterator[float]:

@@ -5,7 +5,9 @@ import pytest
 from dentscope.reduce.gates import Refused
 from dentscope.reduce.sound.file import Sound
 from dentscope.reduce.sound.kind import check_level
-from made_records import T, half_sine, recorded, run, table
+from dentscope.reduce.table.pulse import find_pulse
+from made_records import RATE, T, half_sine, recorded, run, table
+from scipy.signal import lfilter
 
 AREA = 2 / np.pi * 800.0 * 4e-3
 """Of the pulse alone [N s]."""
@@ -143,3 +145,36 @@ def test_a_sound_at_full_scale_throughout_is_refused():
     check_level(Sound(np.zeros(10), 8000.0, 0.05, "a.wav"))
     with pytest.raises(Refused, match="full scale"):
         check_level(Sound(np.zeros(10), 8000.0, 0.4, "a.wav"))
+
+
+@pytest.mark.parametrize("samples", [6, 9, 14])
+def test_few_samples_have_the_area_in_the_mean_over_their_phases(samples):
+    time = np.arange(0.0, 0.2, 1e-3)
+    for at in 0.1 + 1e-3 * np.array([0.1, 0.4, 0.8]):
+        s = np.clip((time - at) / (1e-3 * samples), 0.0, 1.0)
+        found = find_pulse(time, 100.0 * np.sin(np.pi * s) ** 1.5, source="test").area
+        truth = 0.1 * samples * 0.5563  # of sin^1.5, G(5/4) / G(7/4) / sqrt(pi)
+        assert abs(found.value - truth) < 2.0 * found.std < 0.03 * truth
+
+
+def test_what_stays_after_a_pulse_or_swings_before_it_widens_peak_and_time():
+    seen = RATE * 30e-3 / (1.0 + RATE * 30e-3)
+    drooped = lfilter([seen, -seen], [1.0, -seen], half_sine(noise=0.0)) + half_sine(0.0)
+    for value in (drooped, half_sine() + 16.0 * np.sin(2.0 * np.pi * 50.0 * T + 1.1)):
+        found = find_pulse(T, value, source="test")
+        assert abs(found.peak.value - 800.0) < 2.0 * found.peak.std < 250.0
+        assert abs(found.duration.value - 4e-3) < 2.0 * found.duration.std
+
+
+def test_a_top_that_is_no_parabola_is_less_certain():
+    s = np.clip((T - 0.02) / 3e-3, 0.0, 1.0)  # loads slowly, unloads at once
+    back = np.clip((T - 0.023) / 1e-3, 0.0, 1.0)
+    value = 800.0 * np.where(s < 1.0, np.sin(0.5 * np.pi * s), np.cos(0.5 * np.pi * back))
+    found = find_pulse(T, value + half_sine(0.0), source="test").peak
+    assert abs(found.value - 800.0) < 2.0 * found.std < 40.0
+
+
+def test_three_equal_samples_at_a_fine_top_are_a_cut():
+    cut = np.minimum(half_sine(long=1.2e-3, noise=0.3), 720.0)
+    with pytest.raises(Refused, match="clipped: 3 samples"):
+        find_pulse(T, cut, source="test")
