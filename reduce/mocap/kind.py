@@ -68,8 +68,11 @@ def reduce(path: Path, options: MocapOptions) -> Reduced:
 
 
 def _point(path: Path, markers: Markers, scene: MocapScene, options: MocapOptions) -> Reduced:
-    found = reduce_point(markers, scene, spin=options.spin)
+    axes, height = ("time [s]", "height of the marker [m]"), markers.position[:, 0] @ scene.up
+    with drawn(lambda to, why: draw_refused(markers.time, height, to, why, axes=axes)):
+        found = reduce_point(markers, scene, spin=options.spin)
     values = {"position_noise_m": Measured(found.noise, math.nan)}
+    values["fall_acceleration_m_s2"] = found.fall
     values |= _each(found.bounces)
     return Reduced(
         source=path, values=values, trials=found.trials(), notes=found.notes,

@@ -21,6 +21,7 @@ from ..bounces.view import Stage
 from ..measured import Measured, Trial, labels, propagate
 from ..rules import RULES
 from ..shared.regression import robust_regression
+from .checks import check_fall
 from .file import Markers
 from .reduction import MocapScene
 
@@ -52,12 +53,13 @@ class PointBounce:
 
 @dataclass(frozen=True)
 class PointReduction:
-    """A followed ball and its bounces."""
+    """A followed ball, its bounces, the error of a place [m], and its fall [m/s²]."""
 
     time: Array
     position: Array
     bounces: tuple[PointBounce, ...]
     noise: float
+    fall: Measured
     notes: tuple[str, ...]
 
     def trials(self) -> tuple[Trial, ...]:
@@ -84,7 +86,7 @@ def reduce_point(markers: Markers, scene: MocapScene, *, spin: Array | None) -> 
     Raises
     ------
     InputError
-        No bounce with a flight on both sides.
+        No bounce with a flight on both sides, or no fall.
     """
     seen = np.isfinite(markers.position[:, 0]).all(axis=1)
     time, position = markers.time[seen], markers.position[seen, 0]
@@ -111,8 +113,12 @@ def reduce_point(markers: Markers, scene: MocapScene, *, spin: Array | None) -> 
             allowed=f"{RULES.fewest} frames or more on both sides, and the right direction "
             "of up",
         )  # fmt: skip
+    falls = [-2.0 * float(s.coefficients[:, 2] @ scene.up) for b in measured for s in b.sides]
+    # drag and lift differ from flight to flight, a wrong unit does not
+    fall = Measured(float(np.mean(falls)), 0.5 * float(np.ptp(falls)))
+    check_fall(fall, scene.gravity, markers.source)
     notes = (f"one point: no spin is measured; position error {np.mean(noise) * 1e3:.2g} mm",)
-    return PointReduction(time, position, tuple(measured), float(np.mean(noise)), notes)
+    return PointReduction(time, position, tuple(measured), float(np.mean(noise)), fall, notes)
 
 
 def _contacts(time: Array, height: Array) -> Iterator[tuple[float, tuple[Piece, Piece]]]:

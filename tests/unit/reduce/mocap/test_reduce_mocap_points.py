@@ -7,6 +7,7 @@ import numpy as np
 import pytest
 from dentscope.core.errors import InputError
 from dentscope.recordings import audit, read
+from dentscope.reduce.gates import Refused
 from dentscope.reduce.mocap.kind import reduce
 from dentscope.reduce.mocap.options import Options
 
@@ -44,6 +45,13 @@ def test_a_point_gives_speeds_and_friction(tmp_path):
     assert found.noise["frame_rate_hz"] == pytest.approx(200.0, rel=1e-3)
     found.draw(tmp_path / "picture.png")
     assert (tmp_path / "picture.png").stat().st_size > 10_000
+
+
+@pytest.mark.parametrize("wrong", [{"unit": "cm"}, {"unit": "mm"}, {"frame_rate_hz": 50.0}])
+def test_a_point_that_does_not_fall_is_refused(tmp_path, wrong):
+    _flight(tmp_path / "a.csv")
+    with pytest.raises(Refused, match="falls with"):
+        reduce(tmp_path / "a.csv", Options(shape="sphere", tip_radius_m=0.02, up="y", **wrong))
 
 
 def test_a_point_without_a_bounce_is_a_line(tmp_path):
