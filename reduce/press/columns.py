@@ -15,6 +15,7 @@ from ...core.inputs.input_file import checked_file
 from ...core.processes.confined import confined
 from ..rules import RULES
 from ..shared.units import LENGTH, UNITS
+from ..table.cells import value_of
 from ..table.channels import CHANNELS
 from ..table.file import (
     BOOKS,
@@ -126,6 +127,8 @@ def _tables(path: Path, options: PressOptions) -> Iterator[Columns]:
     for k in range(1, len(rows)):
         if data[k - 1] or not data[k] or len([c for c in rows[k - 1] if c]) < 2:
             continue  # not the end of a header
+        if any(np.isfinite(value_of(cell)) for cell in rows[k - 1]):
+            continue  # a load out of range beside a depth
         first = k - 1
         while first > 0 and not data[first - 1]:
             first -= 1

@@ -190,6 +190,15 @@ def test_what_is_no_whole_press_is_refused_by_its_gate(gate, spoil, tmp_path):
     assert (tmp_path / "refused.png").stat().st_size > 10_000
 
 
+def test_loads_out_of_range_beside_depths_are_no_heading(tmp_path):
+    cells = [
+        (f"{1e6 * h:.5f}", "9.9E37" if p > 0.8 * TOP else f"{p:.5f}") for _, h, p in record().T
+    ]
+    content = "\n".join([",".join(row) for row in [("Depth (um)", "Load (N)"), *cells]])
+    with pytest.raises(Refused, match="rows without a number"):
+        reduced(tmp_path / "a.csv", content, machine_compliance_m_N=0.0)
+
+
 def test_presses_become_rows_of_a_set(tmp_path, capsys):
     (tmp_path / "a.csv").write_text(text(record()))
     command = ["reduce", "press", str(tmp_path / "a.csv"), "--machine-compliance-m-N", "0"]
