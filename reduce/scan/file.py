@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 import warnings
 from contextlib import redirect_stderr, redirect_stdout
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from io import StringIO
 from pathlib import Path
 
@@ -16,7 +16,8 @@ from ...core.errors import InputError, missing_extra
 from ...core.inputs.csv_table import number, shown
 from ..rules import RULES
 from ..shared.units import LENGTH, metres
-from ..table.file import numbered_lines, text_rows
+from ..table.file import is_data, numbered_lines, text_rows
+from ..table.heading import unit_in
 
 _TEXT = (".csv",)
 _UNSEEN = ("", "nan", "-", "na")
@@ -75,7 +76,7 @@ def read_scan(
             f"{int(np.isfinite(heights).sum())} heights in it", source=str(path),
             allowed=f"{RULES.scan_points} or more, seen in a twentieth of the points or more",
         )  # fmt: skip
-    heights = heights * _factor(height_unit or unit or found.unit, path)
+    heights = heights * _factor(height_unit or unit or found.z_unit or found.unit, path)
     if heights.ndim == 1:
         return LineScan(_positions(found, unit, step, path), heights, str(path))
     steps = np.full(2, step or np.nan)
@@ -90,12 +91,16 @@ def read_scan(
 
 @dataclass(frozen=True)
 class _Raw:
-    """What a file says, in its own unit: a grid with its step, or a line with its positions."""
+    """What a file says, in its own unit: a grid with its step, or a line with its positions.
+
+    `z_unit` is that of the heights, where it is said for itself.
+    """
 
     z: Array
     step: Array | None = None
     x: Array | None = None
     unit: str | None = None
+    z_unit: str | None = None
 
 
 def _positions(found: _Raw, unit: str | None, step: float | None, path: Path) -> Array:
@@ -174,8 +179,9 @@ def _text(path: Path) -> _Raw | None:
     while all(len(row) > 1 and not row[-1] for row in table):
         table = [row[:-1] for row in table]  # a separator at the end of every line
     rows = [(k, row) for (k, _), row in zip(lines, table, strict=True)]
-    if all(math.isnan(number(c)) and c.lower() not in _UNSEEN for c in rows[0][1]):
-        rows = rows[1:]  # names of the columns
+    names: list[str] = []
+    while rows and (_is_heading(rows[0][1]) or rows[0][1] == [""]):
+        names = rows.pop(0)[1]  # of the columns, below what an instrument says of itself
     if not rows:
         raise InputError("empty", source=str(path), allowed="heights, one row a line")
     width = len(rows[0][1])
@@ -186,22 +192,32 @@ def _text(path: Path) -> _Raw | None:
                 key=f"row {n}", allowed="as many cells in each row",
             )  # fmt: skip
         for cell in cells:
-            if math.isnan(number(cell)) and cell.strip().lower() not in _UNSEEN:
+            if _is_word(cell):
                 raise InputError(
                     shown(cell), source=str(path), key=f"row {n}",
                     allowed="a number, or an empty cell for a point that was not seen",
                 )  # fmt: skip
     grid = np.array([[number(c) for c in cells] for _, cells in rows])
+    said = [unit_in(name) for name in names] if len(names) == width else [""]
+    units = [said[k] if said[k] in LENGTH else None for k in (0, -1)]
     if width == 2:
-        return _Raw(grid[:, 1], x=grid[:, 0])
+        return _Raw(grid[:, 1], x=grid[:, 0], unit=units[0], z_unit=units[1])
     if width == 3:
-        return _regular(grid, path)
+        return replace(_regular(grid, path), unit=units[0], z_unit=units[1])
     if min(grid.shape) < 4:
         raise InputError(
             f"{grid.shape[0]} rows of {grid.shape[1]} numbers", source=str(path),
             allowed="a grid of heights, or columns x, z or x, y, z",
         )  # fmt: skip
     return _Raw(grid.T)
+
+
+def _is_heading(row: list[str]) -> bool:
+    return not is_data(row) and any(_is_word(cell) for cell in row)
+
+
+def _is_word(cell: str) -> bool:
+    return math.isnan(number(cell)) and cell.strip().lower() not in _UNSEEN
 
 
 def _regular(points: Array, path: Path) -> _Raw:
