@@ -78,6 +78,7 @@ Sy_Pa = "?"
 [noise]                       # standard deviations of the columns of trials.csv
 # restitution = 0.01
 # permanent_depth_m = 1.0e-6
+# dent_edge = "rim"           # where a dent's diameter was read: "contact" if left out
 # NAME_relative where it is a fraction of the value
 # impact_speed_relative = 0.005
 # tip_height_m = 1.0e-5       # of traces
