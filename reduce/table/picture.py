@@ -101,7 +101,9 @@ def draw_trials(found: TrialsReduction, path: Path) -> None:
     """Draw the first measured column over the approach."""
     made, axes = figure(1, 1, size=(7.0, 5.0))
     axes[0, 0].plot(found.x[1], found.y[1], "o", ms=4)
-    axes[0, 0].set(xlabel=found.x[0], ylabel=found.y[0], title=f"{len(found.trials)} trials")
+    shown, all_of_them = int(np.isfinite(found.x[1] * found.y[1]).sum()), len(found.trials)
+    title = f"{all_of_them} trials" if shown == all_of_them else f"{shown} of {all_of_them} trials"
+    axes[0, 0].set(xlabel=found.x[0], ylabel=found.y[0], title=title)
     if found.x[0] == "number":
         axes[0, 0].xaxis.get_major_locator().set_params(integer=True)
     axes[0, 0].grid(alpha=0.3)
