@@ -88,7 +88,7 @@ def reduce_bounce_times(
     Raises
     ------
     InputError
-        No three instants hang together.
+        No three instants hang together, or none of them follow each other.
     """
     chain = chain_of(times)
     if chain is None:
@@ -114,6 +114,11 @@ def reduce_bounce_times(
     if options.mass_kg is None or options.diameter_m is None:
         notes.append("drag of the air left out: give mass_kg and diameter_m to take it off")
     bounces = _bounces(times, std, chain, options, source)
+    if not bounces:
+        raise InputError(
+            "no bounce with a recorded flight on both sides", source=source,
+            allowed="three successive contacts or more, or release_height_m and the first two",
+        )  # fmt: skip
     if options.contact_time_s == 0.0:
         notes.append("a contact counts as flight, the errors hold that: contact_time_s = 0")
         bounces = tuple(_unsure_contact(b, options.gravity_m_s2) for b in bounces)
@@ -123,7 +128,7 @@ def reduce_bounce_times(
             f"contact {gained[0].number} gives {gained[0].restitution} of the speed back",
             source=source, allowed="bounces of a ball that falls freely: none gains speed",
         )  # fmt: skip
-    if bounces and float(np.median([b.restitution.value for b in bounces])) > RULES.most_elastic:
+    if float(np.median([b.restitution.value for b in bounces])) > RULES.most_elastic:
         raise InputError(
             "the intervals do not shrink", source=source,
             allowed="bounces of a ball, each flight shorter than the one before",

@@ -229,3 +229,11 @@ def test_taps_are_no_bouncing_ball(tmp_path, intervals, refused):
     ratios = [v for k, v in found.values.items() if k.endswith("restitution")]
     assert all(v.value < 1.0 + 3.0 * v.std for v in ratios)
     assert all(v.std > 0.02 for v in ratios)
+
+
+def test_a_run_whose_every_bounce_misses_a_flight_is_refused(tmp_path):
+    times = 0.3 + np.cumsum(np.r_[0.0, 0.6 * 0.8 ** np.arange(4)])[[0, 1, 3, 4]]
+    (tmp_path / "a.csv").write_text("\n".join(["t (s)", *(f"{t:.5f}" for t in times)]))
+    given = {"holds": "bounces", "time_std_s": 1e-4}
+    with pytest.raises(InputError, match="no bounce with a recorded flight on both sides"):
+        load_kind("table").run(tmp_path / "a.csv", given, source="test")
