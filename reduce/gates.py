@@ -53,7 +53,7 @@ GATES = {
     "duration": Gate("pulse", "standard deviation of the contact time, in itself",
                      "own_error", "refuses"),
     "step": Gate("pulse", "level afterwards, in its peak", "step", "refuses"),
-    "level": Gate("pulse", "level just after it, in its peak", "", "widens area and peak"),
+    "level": Gate("pulse", "level just after it, in its peak", "", "widens area, peak, ends"),
     "swings": Gate("pulse", "half-waves beside it above a third of the peak", "swings", "refuses"),
     "train": Gate("pulse", "other pulses of half its peak or more that do not fade as bounces do",
                   "train", "refuses"),

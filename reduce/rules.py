@@ -60,7 +60,8 @@ class ReductionRules:
         "of a million samples of normal noise none is higher than 5",
     )  # fmt: skip
     flat_samples: int = rule(
-        4, "equal samples at the top that are more than chance [-]", "chance: one in 10 000",
+        4, "equal samples at the top that are more than chance [-]",
+        "chance; 3 where steps are fine",
     )  # fmt: skip
     flat_top: float = rule(
         1.7, "equal samples at the top, in those within a converter's step of a round one [-]",
