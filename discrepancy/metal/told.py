@@ -12,11 +12,11 @@ def lines(metal: Metal) -> Iterator[str]:
     """Yield the finding: stresses, rate, what is not identified, the next mark."""
     of = "the flat" if metal.body == "target" else metal.body.removeprefix("strikers.")
     counted = (("presses", metal.pressed), ("impacts", metal.struck))
-    numbers = [f"{n} numbers of {marks}" for marks, n in counted if n]
-    low, high = (100.0 * x for x in metal.covered)
+    numbers = [f"{n} number{'s' * (n != 1)} of {marks}" for marks, n in counted if n]
+    strains = " to ".join(dict.fromkeys(f"{100.0 * x:.2g}" for x in metal.covered))
     yield (
         f"{metal.name}: flow curve of {of} from {' and '.join(numbers)}, at representative strains "
-        f"of {low:.2g} to {high:.2g} %"
+        f"of {strains} %"
     )
     yield ""
     for x in TOLD:
@@ -33,8 +33,10 @@ def lines(metal: Metal) -> Iterator[str]:
             for x, b, a in zip(TOLD, n.before, n.after, strict=True)
         )
         yield ""
-        yield f"Next mark: press {n.striker} to {n.load:.2g} N and read depth and diameter: the"
-        yield f"  standard error of the stress goes from {told}"
+        yield (
+            f"Next mark: press {n.striker} to {float(f'{n.load:.2g}'):g} N and read depth and "
+            f"diameter: the standard error of the stress goes from {told}"
+        )
     yield ""
     for note in metal.notes:
         yield f"note: {note}"

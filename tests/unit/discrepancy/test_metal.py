@@ -1,6 +1,7 @@
 """A metal from its marks: a planted curve and rate come back, what is not identified is said."""
 
 import json
+from types import SimpleNamespace
 
 import numpy as np
 import pytest
@@ -128,3 +129,17 @@ def test_interpolation_between_nodes_is_straight_over_logarithms():
     logs = 0.3 * np.log(STRAINS)
     for strain, seen in ((0.0, STRAINS[0]), (STRAINS[0], STRAINS[0]), (0.45, 0.45)):
         assert weights([strain])[0] @ logs == pytest.approx(0.3 * np.log(seen))
+
+
+def test_one_mark_is_told_in_the_singular_and_its_next_load_in_newtons():
+    following = SimpleNamespace(striker="ball", load=5e3, before=(0.2,) * 3, after=(0.1,) * 3)
+    metal = SimpleNamespace(
+        name="one", body="target", pressed=0, struck=1, covered=(0.0201, 0.0202), rated=False,
+        stress_at=lambda x: (3e8, 2e8, 4e8), spread_at=lambda x: 0.5, next=following, notes=(),
+    )  # fmt: skip
+    told = list(lines(metal))
+    assert told[0].endswith("from 1 number of impacts, at representative strains of 2 %")
+    assert any(
+        line.startswith("Next mark: press ball to 5000 N and read depth and diameter: the standard")
+        for line in told
+    )
