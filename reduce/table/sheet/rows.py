@@ -164,7 +164,7 @@ def _trials(
     names = {c.kind.name for c in columns if c.taken}
     if names >= {"angle_deg", "impact_speed_m_s"}:
         left.append("speeds beside angles are taken as those along the normal")
-    told = [(c.header, _became(c)) for c in columns] + told
+    told = [(c.header, _became(c, names)) for c in columns] + told
     return Sheet(tuple(trials), tuple(told), (*left, *others))
 
 
@@ -247,8 +247,10 @@ def _read(
     return found, note, unread
 
 
-def _became(column: SheetColumn) -> str:
+def _became(column: SheetColumn, taken: set[str]) -> str:
     name = column.kind.name
+    if name == "restitution" and taken & {*REBOUNDS}:
+        name = "restitution, where heights or speeds give none"
     words = {
         REBOUND_HEIGHT: "restitution, the root of rebound over drop height",
         REBOUND_SPEED: "restitution, over the impact speed", "trial": "left out: rows are numbered",

@@ -221,6 +221,8 @@ def test_a_rebound_that_is_told_twice_is_one_trial(tmp_path, text, said):
     sheet = read_text(tmp_path, text)
     assert restitutions(sheet) == pytest.approx(said)
     assert not any("v^2" in line for line in sheet.left_out)
+    for header, became in sheet.columns:
+        assert ("where heights or speeds give none" in became) == (header == "e")
 
 
 @pytest.mark.parametrize("wrong", ["0", "-100"])
