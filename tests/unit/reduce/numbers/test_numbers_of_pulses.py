@@ -58,8 +58,8 @@ def test_a_foot_of_half_a_per_cent_of_the_area_counts(height, seen) -> None:
     found = area_of(time, clear, Level(0.0, 0.0, 0.0, 0, 5), CLEAN, ends)
     assert bool(found.notes) == seen
     assert found.area.value == pytest.approx(10.0 + height * (4.5 if seen else 0.5))
-    if not seen:  # a thousandth by the form of the pulse, whatever else is known
-        assert found.area.std == pytest.approx(0.01)
+    if not seen:  # a thousandth by the form of the pulse, and 2.6 by the phase of ten samples
+        assert found.area.std == pytest.approx(10.006 * np.hypot(1e-3, 2.6008e-3), rel=1e-4)
 
 
 def test_a_ringing_is_averaged_over_twenty_durations() -> None:
