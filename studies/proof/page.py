@@ -14,6 +14,7 @@ from .calibrated import calibration, coverage_by_class, inclusion
 from .case import Case, interval
 from .follow import brought
 from .power import PICTURE, picture, power_lines, read_rows, shown
+from .ranks import rank_lines, read_ranks
 from .rivals import compare, rival_lines
 from .score import confusion, scores
 
@@ -128,6 +129,7 @@ def page(runs: list[dict[str, Any]], *, impacts: int) -> str:
     if last is None:
         return "\n".join([*lines, "No run has been made yet.", ""])
     lines += _run_text(last)
+    lines += rank_lines(read_ranks())
     if REMARKS.exists():
         lines += ["## Failures looked into", "", REMARKS.read_text().strip(), ""]
     return "\n".join([*lines, _OTHERS, ""])
