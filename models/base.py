@@ -69,6 +69,11 @@ class Domain:
     a_over_R_max: float = math.inf
     note: str = ""
 
+    @classmethod
+    def down_to(cls, deepest: float, *, note: str) -> Domain:
+        """Return the range of a law known to this Delta/R; a/R there is (2 Delta/R)^(1/2)."""
+        return cls(math.sqrt(2.0 * deepest), note)
+
 
 class Standing(IntEnum):
     """Where a law's equations were read, from nowhere to its own source.

@@ -73,7 +73,7 @@ def objection(law: ContactLaw, need: Demand) -> str:
     if need.regime == "both bodies" and law.regime != "either":
         return f"made for {law.regime}, while both bodies yield here"
     if need.a_over_R > law.domain.a_over_R_max:
-        return f"a/R of about {need.a_over_R:.2g} is beyond {law.domain.a_over_R_max:g}"
+        return f"a/R of about {need.a_over_R:.2g} is beyond {law.domain.a_over_R_max:.2g}"
     return ""
 
 

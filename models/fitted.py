@@ -267,7 +267,9 @@ def closed_form_law(
         source="data/coefficients/fitted.json",
         equations="docs/closed-form.md",
         standing=Standing.OWN_SOURCE,
-        domain=Domain(note=_note(limits or {})),
+        domain=Domain.down_to(
+            (limits or {}).get("Delta_over_R", (0.0, math.inf))[1], note=_note(limits or {})
+        ),
         breaks=((f"not Hertz: finite elastic strain, at Delta/R = {_FINITE:g}", finite),),
         coefficients=dict(coefficients),
         correction=correction,

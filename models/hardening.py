@@ -38,7 +38,7 @@ from scipy.interpolate import CubicHermiteSpline, PchipInterpolator
 from ..core.arrays import Array
 from ..core.flow import FlowCurve
 from ..core.material import Material, Pair
-from .base import ContactLaw, Domain, Kernels, Standing
+from .base import ContactLaw, Kernels, Standing
 from .closed_form import Bodies, PairNumbers, contact, plastic_depth
 from .driver import Depths, Pairs
 from .fitted import ClosedForm, bodies_of
@@ -156,7 +156,7 @@ def hardening_law(
         source="data/coefficients/fitted.json; Tabor, The Hardness of Metals (1951)",
         equations="docs/closed-form.md",
         standing=Standing.OWN_SOURCE,
-        domain=Domain(note=fitted.domain.note),
+        domain=fitted.domain,
         breaks=fitted.breaks,
         fitted=fitted,
         correction=correction,

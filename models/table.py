@@ -294,7 +294,7 @@ def table_law(tables: Sequence[PairTable], *, name: str) -> TableLaw:
         source=name,
         equations="no form: a table",
         standing=Standing.OWN_SOURCE,
-        domain=Domain(note=f"Delta_over_R to {deepest:.3g}"),
+        domain=Domain.down_to(deepest, note=f"Delta_over_R to {deepest:.3g}"),
         breaks=(),
         tables=tuple(tables),
     )

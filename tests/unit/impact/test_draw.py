@@ -42,6 +42,8 @@ def test_a_law_that_something_speaks_against_is_grey_in_every_panel():
         found = blow("ball", law=["fitted", "hertz"])
         made = found.plot()
     assert found.doubts == {"hertz": "elastic only"}
+    fast = blow("ball", law="fitted", speed=300.0)  # its dent is deeper than half of the ball
+    assert fast.doubts == {"fitted": "a/R of about 1.1 is beyond 0.6"}
     curves = made.axes[2:]  # below the rig and the dent
     for axis in curves:
         ours, theirs = axis.get_lines()
