@@ -22,6 +22,7 @@ from ...core.tables import frame, html_table
 from ...models import law_named
 from ...models.base import ContactLaw
 from ...models.choose import demand, objection
+from ...models.shelf import UnknownLaw
 from ..batch import impacts
 from ..columns import Impacts
 from ..integrate import Trace, strike, traced
@@ -110,7 +111,9 @@ class Blow:
         return {law: trace.impact for law, trace in self.traces.items()}
 
     def __getitem__(self, law: str) -> Impact:
-        return self.impacts[law]
+        if law not in self.traces:
+            raise UnknownLaw(f"no law {law!r} in this blow; it has {', '.join(self.traces)}")
+        return self.traces[law].impact
 
     def table(self, *, exact: bool = False) -> list[tuple[str, ...]]:
         """Return the observables in units for people, a law a column; what is nothing is left out.

@@ -9,13 +9,16 @@ ATOM = 1e-10
 
 
 def effect(other: Impact, found: Impact) -> str:
-    """Return how `other` differs in dent and restitution from `found`."""
+    """Return how `other` differs in dent and restitution, in spin where both stay as they are."""
     if not other.outcome.completed:
         return "the tip does not part within the budgets"
-    e = f"restitution {_percent(other.restitution / found.restitution)}"
-    if not found.residual_flat_m > ATOM:
-        return e
-    return f"dent {_percent(other.residual_flat_m / found.residual_flat_m)}, {e}"
+    ratios = {"restitution": other.restitution / found.restitution}
+    if found.residual_flat_m > ATOM:
+        ratios = {"dent": other.residual_flat_m / found.residual_flat_m, **ratios}
+    told = {name: _percent(ratio) for name, ratio in ratios.items()}
+    if set(told.values()) == {_percent(1.0)} and found.rebound_spin_rad_s != 0.0:
+        told["spin"] = _percent(other.rebound_spin_rad_s / found.rebound_spin_rad_s)
+    return ", ".join(f"{name} {change}" for name, change in told.items())
 
 
 def _percent(ratio: float) -> str:

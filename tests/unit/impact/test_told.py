@@ -118,10 +118,15 @@ def test_below_first_yield_no_crater_is_shown(brass):
     assert not any(line.startswith("restitution") for line in blow.rules())  # 1, by 1e-13
 
 
-def test_what_friction_leaves_as_it_is_changes_by_nothing(brass):
+def test_a_law_that_a_blow_does_not_hold_is_told_with_those_that_it_does(brass):
+    with pytest.raises(KeyError, match="no law 'hertz' in this blow; it has fitted"):
+        brass["hertz"]
+
+
+def test_friction_on_a_ball_changes_the_spin_alone(brass):
     oblique = BRASS + "angle_deg = 60.0\n"
     blow = blow_of(setup_of(tomllib.loads(oblique), source="brass.toml"), [LAWS["fitted"]])
-    assert "without friction: dent +0 %, restitution +0 %" in blow.checks()
+    assert "without friction: dent +0 %, restitution +0 %, spin -100 %" in blow.checks()
     assert effect(blow["fitted"], replace(blow["fitted"], restitution=1e3)).endswith("-100 %")
 
 
