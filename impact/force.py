@@ -22,8 +22,8 @@ SPLIT = types.FunctionType(RESIDUAL_SIGNATURE)
 
 # Places in the vector that describes the modified force.
 RADIUS, MODULUS, FLAT, EDGE, EDGE_DEPTH, EDGE_LIMIT = range(6)
-RECOVERY, DAMPING, RADIATION, SHAPE, RETURN = range(6, 11)
-N_FORCE = 11
+DAMPING, RADIATION, SHAPE, RETURN = range(6, 10)
+N_FORCE = 10
 
 # The branch vector: what `set_peak` writes, the smooth stretch of the loading curve, the contact
 # radius at the peak and whether the depth falls; flat, radius and modulus of a cut tip that has
@@ -159,10 +159,10 @@ def set_peak(loading, unloading, residual, par, force, factors, peak, branch):
     sphere, flat = residual(par, law_peak)
     law_rest = sphere + flat
     rest = max(law_rest - shift, 0.0)
-    recovery, odds, bend = force[RECOVERY], 1.0, 1.0
+    recovery, odds, bend = 1.0, 1.0, 1.0
     if len(factors) > 1:
         at = peak / force[RADIUS]
-        recovery *= factor(factors, F_RECOVERY, at)
+        recovery = factor(factors, F_RECOVERY, at)
         odds, bend = factor(factors, F_ODDS, at), factor(factors, F_POWER, at)
     if recovery != 1.0:
         rest = max(peak - recovery * (peak - rest), 0.0)
@@ -422,5 +422,5 @@ def neutral_force(radius: float, modulus: float) -> np.ndarray:
     force = np.zeros(N_FORCE)
     force[RADIUS], force[MODULUS] = radius, modulus
     force[EDGE] = force[EDGE_DEPTH] = force[EDGE_LIMIT] = math.inf
-    force[RECOVERY] = force[RETURN] = 1.0
+    force[RETURN] = 1.0
     return force

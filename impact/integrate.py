@@ -10,13 +10,12 @@ from typing import Any
 import numpy as np
 
 from ..core.arrays import Array
-from ..core.material import Pair
 from ..core.unstated import unstated_equal
 from ..models.base import ContactLaw
 from . import force as fo
 from .result import Impact, impact_of
 from .rules import RULES
-from .scene import RateFree, Scene
+from .scene import Scene
 from .strength import NODES, strength_table
 from .surface import Spot
 from .walk import layout as c
@@ -71,14 +70,13 @@ def arrays_of(
     `breaks` are the depths at which the loading curve breaks, found by a scan when left out.
     """
     law, striker, approach = scene.law, scene.striker, scene.approach
-    pair = scene.flow.strengthened(scene)
+    pair = scene.pair
     par = np.ascontiguousarray(law.parameters(pair), dtype=float)
     force = fo.neutral_force(pair.R, pair.E_reduced)
     force[fo.FLAT] = striker.tip_flat_radius
-    force[fo.RECOVERY], force[fo.SHAPE] = scene.force.recovery, scene.force.shape
-    force[fo.RETURN] = scene.force.given_back
+    force[fo.SHAPE], force[fo.RETURN] = scene.force.shape, scene.force.given_back
     force[fo.DAMPING], force[fo.RADIATION] = scene.force.damping, scene.force.radiation
-    factors = _factors(scene, pair)
+    factors = _factors(scene)
     if math.isfinite(scene.force.edge):
         force[fo.EDGE] = scene.force.edge
         force[fo.EDGE_DEPTH] = fo.edge_depth(
@@ -120,17 +118,13 @@ def arrays_of(
     return Arrays(par, force, factors, breaks, body, surface, omega, psi)
 
 
-def _factors(scene: Scene, pair: Pair) -> Array:
+def _factors(scene: Scene) -> Array:
     """Return the table of factors on what the law says; empty when all is the law's own."""
     loading = np.asarray(scene.force.factors, dtype=float)
     recovery = np.asarray(scene.force.recovery_factors, dtype=float)
-    profile = None
-    if not isinstance(scene.flow, RateFree):
-        table = strength_table(scene.law, pair)
-        profile = scene.flow.profile(scene, table)
-    if profile is None and len(loading) == len(recovery) == 0:
+    if not scene.flow and len(loading) == len(recovery) == 0:
         return loading
-    n = max(len(loading), len(recovery)) if profile is None else NODES
+    n = NODES if scene.flow else max(len(loading), len(recovery))
     found = np.ones((fo.N_FACTORS, n))
     for column, given in ((fo.F_FORCE, loading), (fo.F_RECOVERY, recovery)):
         if len(given) == n:
@@ -138,8 +132,9 @@ def _factors(scene: Scene, pair: Pair) -> Array:
         elif len(given) > 0:
             grid = np.linspace(0.0, 1.0, n)
             found[column] = np.interp(grid, np.linspace(0.0, 1.0, len(given)), given)
-    if profile is not None:
-        found *= table.factors(profile)
+    if scene.flow:
+        table = strength_table(scene.law, scene.pair)
+        found *= table.factors(scene.strengths(table))
     return found.ravel()
 
 

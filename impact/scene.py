@@ -8,7 +8,7 @@ instrument. A mechanism replaces one seam by `Scene.with_`; nothing is ever writ
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass, field, fields
+from dataclasses import dataclass, fields
 from operator import attrgetter
 from typing import Any, Protocol
 
@@ -16,6 +16,7 @@ import numpy as np
 
 from ..core.arrays import Array
 from ..core.errors import InputError
+from ..core.inputs.rig_numbers import solid_inertia
 from ..core.material import Material, Pair
 from ..core.unstated import unstated_equal
 from ..models.base import ContactLaw
@@ -63,12 +64,8 @@ class Striker:
         if math.isnan(self.radius):
             object.__setattr__(self, "radius", self.tip_radius)
         if math.isnan(self.inertia):
-            object.__setattr__(self, "inertia", self._solid_inertia())
-
-    def _solid_inertia(self) -> float:
-        if self.length == 0.0:
-            return 0.4 * self.mass * self.radius**2
-        return self.mass * (self.length**2 / 12.0 + self.radius**2 / 4.0)
+            inertia = solid_inertia(self.mass, self.radius, self.length)
+            object.__setattr__(self, "inertia", inertia)
 
     def arm(self, angle: float) -> tuple[float, float]:
         """Return (c, s): how far the centre of mass lies beside and above the contact point [m].
@@ -84,43 +81,8 @@ class Striker:
 class FlowStress(Protocol):
     """Seam: the strength of the metal at the conditions of this impact."""
 
-    def strengthened(self, scene: Scene) -> Pair:
-        """Return the pair with the strengths that hold during the impact."""
-
-    def profile(self, scene: Scene, table: StrengthTable) -> Array | None:
-        """Return relative strengths at the depths of `table`; none when depth does not matter."""
-
-
-@dataclass(frozen=True, slots=True)
-class RateFree:
-    """The yield strength is the static one."""
-
-    def strengthened(self, scene: Scene) -> Pair:
-        """Return the pair as stated."""
-        return scene.pair
-
-    def profile(self, scene: Scene, table: StrengthTable) -> Array | None:
-        """Depth does not matter."""
-        return None
-
-
-@dataclass(frozen=True, slots=True)
-class Profiles:
-    """Several flow-stress seams at once: strengths multiply."""
-
-    parts: tuple[FlowStress, ...]
-
-    def strengthened(self, scene: Scene) -> Pair:
-        """Apply one after the other."""
-        for part in self.parts:
-            scene = scene.with_(pair=part.strengthened(scene))
-        return scene.pair
-
-    def profile(self, scene: Scene, table: StrengthTable) -> Array | None:
-        """Return the product of the profiles."""
-        found = [part.profile(scene, table) for part in self.parts]
-        known = [x for x in found if x is not None]
-        return np.asarray(np.prod(known, axis=0)) if known else None
+    def profile(self, scene: Scene, table: StrengthTable) -> Array:
+        """Return relative strengths at the depths of `table`, shape (nodes,)."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -137,10 +99,9 @@ class ForceTransform:
     factors
         Multiply the loading force, interpolated in ln(depth / R) between equally spaced
         nodes from `force.LOG_DEPTH_FIRST` to `force.LOG_DEPTH_LAST`; empty for none.
-    recovery
-        Multiplies the elastic recovery (peak depth minus residual depth).
     recovery_factors
-        The same as a function of the peak depth, at the nodes of `factors`.
+        Multiply the elastic recovery (peak depth minus residual depth) of a peak at the nodes of
+        `factors`.
     shape
         Added to the exponent of the recovery (3/2 for Hertz's).
     given_back
@@ -152,7 +113,6 @@ class ForceTransform:
     damping: float = 0.0
     radiation: float = 0.0
     factors: tuple[float, ...] = ()
-    recovery: float = 1.0
     edge: float = math.inf
     recovery_factors: tuple[float, ...] = ()
     shape: float = 0.0
@@ -272,14 +232,12 @@ class Press:
 
 @dataclass(frozen=True, slots=True)
 class Instrument:
-    """Seam: from the true observable to the recorded one; `gain * true + offset` by name.
+    """Seam: how a scar is read.
 
-    A scar is scanned every `scan_step` [m] and ends where it is `scan_height` [m] below the flat
+    It is scanned every `scan_step` [m] and ends where it is `scan_height` [m] below the flat
     (defaults: the step of the thesis, 5.2, and the roughness of its polished flats, 3.2).
     """
 
-    gain: dict[str, float] = field(default_factory=dict)
-    offset: dict[str, float] = field(default_factory=dict)
     scan_step: float = 3e-6
     scan_height: float = 0.4e-6
 
@@ -287,10 +245,6 @@ class Instrument:
         for key, value in (("scan_step_m", self.scan_step), ("scan_height_m", self.scan_height)):
             if not (value > 0.0 and math.isfinite(value)):
                 raise InputError(f"{value:g}", key=key, allowed="a number above 0")
-
-    def reading(self, name: str, value: float) -> float:
-        """Return what the instrument shows for the observable `name`."""
-        return self.gain.get(name, 1.0) * value + self.offset.get(name, 0.0)
 
 
 _RIGID, _FRESH = Modes(), Spot()
@@ -305,12 +259,12 @@ class Scene:
     striker: Striker
     approach: Approach
     gravity: float = STANDARD_GRAVITY
-    flow: FlowStress = RateFree()
+    flow: tuple[FlowStress, ...] = ()
     force: ForceTransform = ForceTransform()
     friction: Friction = Friction()
     modes: Modes = _RIGID
     support: Support = Support()
-    instrument: Instrument = field(default_factory=Instrument)
+    instrument: Instrument = Instrument()
     spot: Spot = _FRESH
     press: Press | None = None
 
@@ -321,6 +275,12 @@ class Scene:
                 f"{self.striker.tip_radius:g}",
                 key="tip_radius_m",
             )
+
+    def strengths(self, table: StrengthTable) -> Array:
+        """Return the strengths of `flow`, multiplied, at the depths of `table`; all 1 without."""
+        if not self.flow:
+            return np.ones_like(table.depth)
+        return np.asarray(np.prod([part.profile(self, table) for part in self.flow], axis=0))
 
     def with_(self, **changes: Any) -> Scene:
         """Return a copy with some seams replaced."""

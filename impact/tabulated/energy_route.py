@@ -25,7 +25,7 @@ from ...core.material import Pair
 from ...models.base import ContactLaw
 from ...models.kernel import VECTOR
 from ..rules import RULES
-from ..scene import ForceTransform, RateFree, Scene
+from ..scene import ForceTransform, Scene
 from ..surface import Spot
 from .cells import cell_at, column_at, column_in
 from .energy_table import (
@@ -78,7 +78,7 @@ def why_not(scene: Scene) -> str:
         "a support that moves": math.isfinite(support.mass) or support.plate_mobility > 0.0,
         "a changed normal force": scene.force != ForceTransform(),
         "a flat on the tip": scene.striker.tip_flat_radius > 0.0,
-        "a flow stress of its own": not isinstance(scene.flow, RateFree),
+        "a flow stress of its own": bool(scene.flow),
         "an earlier blow": scene.spot != Spot(),
     }
     return next((reason for reason, holds in reasons.items() if holds), "")

@@ -105,9 +105,8 @@ def largest_mean_pressure(scene: Scene, found: Impact) -> float:
 def _harder(scene: Scene, depth: Array) -> Array:
     """Mean pressure over that at the stated strength, at these depths."""
     table = strength_table(scene.law, scene.pair)
-    strength = scene.flow.profile(scene, table)
-    if strength is None:
+    if not scene.flow:
         return np.ones_like(depth)
-    found = table.factors(strength)
+    found = table.factors(scene.strengths(table))
     ratio = np.log(found[F_FORCE]) - 2.0 * np.log(found[F_RADIUS])
     return np.asarray(np.exp(np.interp(np.log(depth), table.log_depth, ratio)))

@@ -173,7 +173,7 @@ def test_neutral_transforms_leave_every_bit() -> None:
     for number in range(3):
         scene = random_scene(rng, number)
         neutral = scene.with_(
-            force=ForceTransform(damping=0.0, radiation=0.0, recovery=1.0), support=Support(),
+            force=ForceTransform(damping=0.0, radiation=0.0, given_back=1.0), support=Support(),
             friction=Friction(scene.friction.mu, mu_static=scene.friction.mu, speed=0.3),
         )  # fmt: skip
         plain = scene.with_(support=Support())
@@ -188,8 +188,8 @@ def test_transforms_move_restitution_as_declared() -> None:
     )
     e = strike(scene).restitution
     assert strike(scene.with_(force=ForceTransform(damping=0.1))).restitution < e
-    assert strike(scene.with_(force=ForceTransform(recovery=0.8))).restitution < e
-    harder = ForceTransform(factors=(1.2,) * 13, recovery=1.2 ** (2.0 / 3.0))
+    assert strike(scene.with_(force=ForceTransform(recovery_factors=(0.8,) * 13))).restitution < e
+    harder = ForceTransform(factors=(1.2,) * 13, recovery_factors=(1.2 ** (2.0 / 3.0),) * 13)
     assert strike(scene.with_(force=harder)).residual_m < strike(scene).residual_m
     soft = scene.with_(support=Support(mass=1.0, stiffness=1e6))
     assert strike(soft).support_energy_J > 0.0

@@ -74,7 +74,7 @@ def test_a_constant_factor_is_a_pair_of_that_strength(name):
             bodies = sphere.strengthened(factor), flat.strengthened(factor)
             for speed in (0.2, 3.0):
                 scene = STRENGTHS[name].attach(impact_of(sphere, flat, speed), values, around)
-                profile = scene.flow.profile(scene, strength_table(scene.law, scene.pair))
+                profile = scene.strengths(strength_table(scene.law, scene.pair))
                 assert profile == pytest.approx(np.full(profile.shape, factor), rel=1e-6)
                 given.append(scene)
                 expected.append(impact_of(*bodies, speed))

@@ -20,12 +20,11 @@ from typing import ClassVar
 import numpy as np
 
 from ....core.arrays import Array
-from ....core.material import Pair
 from ....models import critical_depth
 from ....models.hardening import REPRESENTATIVE, representative_strain
 from ...force import F_RADIUS
 from ...rules import RULES
-from ...scene import FlowStress, Profiles, RateFree, Scene
+from ...scene import FlowStress, Scene
 from ...strength import StrengthTable
 from ..base import Mechanism, Situation, Surroundings, Values
 
@@ -34,13 +33,9 @@ STRAIN = REPRESENTATIVE  # of (a - a_c)/R
 
 
 class StrengthProfile(ABC):
-    """A strength that follows the depth: the stated pair, and a factor at each depth."""
+    """A strength that follows the depth."""
 
     __slots__ = ()
-
-    def strengthened(self, scene: Scene) -> Pair:
-        """Return the pair as stated."""
-        return scene.pair
 
     @abstractmethod
     def profile(self, scene: Scene, table: StrengthTable) -> Array:
@@ -78,9 +73,7 @@ class FlowMechanism(Mechanism):
 
     def attach(self, scene: Scene, values: Values, around: Surroundings) -> Scene:
         """Multiply the flow stress that the scene has."""
-        own = self.strength(scene, values, around)
-        alone = isinstance(scene.flow, RateFree)
-        return scene.with_(flow=own if alone else Profiles((scene.flow, own)))
+        return scene.with_(flow=(*scene.flow, self.strength(scene, values, around)))
 
 
 def strain(scene: Scene, table: StrengthTable, strength: Array | None = None) -> Array:

@@ -83,9 +83,7 @@ def test_one_more_influence_on_the_flow_stress_multiplies() -> None:
     both = one.attach(harder, {"hardening_ratio": 1.0, "hardening_exponent": 0.3}, AROUND)
     alone = one.attach(scene(), {"hardening_ratio": 1.0, "hardening_exponent": 0.3}, AROUND)
     table = strength_table(scene().law, scene().pair)
-    assert both.flow.profile(scene(), table) == pytest.approx(
-        2.0 * alone.flow.profile(scene(), table), rel=1e-12
-    )
+    assert both.strengths(table) == pytest.approx(2.0 * alone.strengths(table), rel=1e-12)
 
 
 @pytest.mark.parametrize(("K", "n"), [(0.3, 0.36), (0.8, 0.2), (0.8, 0.36), (0.8, 0.7)])
@@ -98,7 +96,7 @@ def test_hardening_is_that_of_the_law_of_metals_that_harden(K: float, n: float) 
     table = strength_table(LAWS["fitted"], pair)
     values = {"hardening_ratio": K, "hardening_exponent": n}
     harder = named("work-hardening").attach(scene().with_(pair=pair), values, AROUND)
-    profile = harder.flow.profile(scene().with_(pair=pair), table)
+    profile = harder.strengths(table)
     seen = (table.depth > 3e-4 * pair.R) & (table.depth < 0.05 * pair.R)
     force = np.exp(table.stated.force) * table.factors(profile)[F_FORCE]
     off = np.abs(np.log(force[seen] / LAWS["hardening"].loading(metal, table.depth[seen])))
