@@ -14,7 +14,7 @@ from contextlib import closing
 from dataclasses import dataclass, replace
 from typing import Any, Protocol
 
-from ..core.errors import InputError
+from ..core.errors import InputError, first_line
 from ..core.provenance import differences, environment
 from ..fem import Solution, solve
 from .case import Case
@@ -160,9 +160,8 @@ class DaskExecutor:
         try:
             client = Client(address, timeout=timeout_s)
         except (OSError, ValueError, TypeError, RuntimeError, TimeoutError) as error:
-            reason = (str(error).splitlines() or [type(error).__name__])[0]
             raise InputError(
-                f"no dask scheduler at {address} ({reason})",
+                f"no dask scheduler at {address} ({first_line(error)})",
                 key="scheduler",
                 allowed="tcp://HOST:PORT, or tls://HOST:PORT and the certificates of "
                 "distributed.comm.tls in dask's configuration",
@@ -249,9 +248,8 @@ class DaskExecutor:
         there = {k: answer for k, answer in found.items() if not isinstance(answer, OSError)}
         for worker, answer in there.items():
             if isinstance(answer, Exception):  # one without this package raises what it likes
-                reason = (str(answer).splitlines() or [type(answer).__name__])[0]
                 raise InputError(
-                    f"a worker cannot say its versions ({reason})", source=self.address,
+                    f"a worker cannot say its versions ({first_line(answer)})", source=self.address,
                     allowed="dentscope, of this source, on every worker",
                 )  # fmt: skip
             _check_same(answer, where=worker)

@@ -88,6 +88,12 @@ def missing_extra(what: str, extra: str) -> InputError:
     )  # fmt: skip
 
 
+def first_line(error: BaseException) -> str:
+    """Return what a library says of its failure, in one line; its kind where it says nothing."""
+    lines = str(error).strip().splitlines()
+    return lines[0][:120] if lines else type(error).__name__
+
+
 class Ending(Enum):
     """How a computation ended; the value is the stored code."""
 

@@ -68,7 +68,7 @@ class CoreRules:
     )  # fmt: skip
     strain_seen: float = rule(
         1e-4, "plastic strain below which a tension test shows none [-]",
-        "chosen; no measurement is kept",
+        "a twentieth of the proof strain",
     )  # fmt: skip
     name_bytes: int = limit(
         200, "longest name that becomes a file's [bytes]",

@@ -3,15 +3,15 @@
 from __future__ import annotations
 
 import html
-from collections.abc import Iterable, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from importlib.util import find_spec
 from typing import Any
 
 from .errors import missing_extra
 
 
-def frame(rows: Iterable[dict[str, Any]]) -> Any:
-    """Return rows as a pandas data frame.
+def frame(table: Iterable[dict[str, Any]] | Mapping[str, Any]) -> Any:
+    """Return rows, or columns by name, as a pandas data frame.
 
     Raises
     ------
@@ -22,7 +22,21 @@ def frame(rows: Iterable[dict[str, Any]]) -> Any:
         raise missing_extra("a data frame", "tables")
     import pandas
 
-    return pandas.DataFrame(list(rows))
+    return pandas.DataFrame(dict(table) if isinstance(table, Mapping) else list(table))
+
+
+def parquet(table: Iterable[dict[str, Any]] | Mapping[str, Any]) -> bytes:
+    """Return the same as the content of a Parquet file.
+
+    Raises
+    ------
+    InputError
+        pandas or pyarrow is not installed.
+    """
+    if find_spec("pyarrow") is None:
+        raise missing_extra("a Parquet file", "tables")
+    content: bytes = frame(table).to_parquet(None, index=False)
+    return content
 
 
 def html_table(head: Sequence[str], rows: Iterable[Sequence[str]], *, title: str = "") -> str:

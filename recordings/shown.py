@@ -69,16 +69,11 @@ def picture_of(found: RecordingSet) -> Figure:
 
     Those of quasi-static presses stand behind, over the load.
     """
-    from matplotlib.figure import Figure
+    from ..core.figures import panels
 
-    panels = _panels(found)
-    columns = max(min(len(panels), 3), 1)
-    rows = max(math.ceil(len(panels) / columns), 1)
-    figure = Figure(figsize=(4.2 * columns, 3.4 * rows), layout="constrained")
-    axes = figure.subplots(rows, columns, squeeze=False)
-    for spare in axes.flat[len(panels) :]:
-        spare.remove()
-    for axis, panel in zip(axes.flat, panels, strict=False):
+    shown = _panels(found)
+    figure, axes = panels(len(shown))
+    for axis, panel in zip(axes, shown, strict=True):
         scale = OBSERVABLES[panel.observable].scale
         y, std = (scale * f(panel.observable) for f in (panel.of.values, panel.of.std))
         strikers = panel.of.trials.striker
@@ -87,7 +82,7 @@ def picture_of(found: RecordingSet) -> Figure:
             axis.errorbar(panel.x[mine], y[mine], std[mine], fmt="o", ms=4, label=striker)
         axis.set(xlabel=panel.label, ylabel=OBSERVABLES[panel.observable].axis)
         axis.grid(alpha=0.3)
-    if panels:
-        axes.flat[0].legend(fontsize=8)
+    if axes:
+        axes[0].legend(fontsize=8)
     figure.suptitle(found.name, fontsize=10)
     return figure

@@ -71,17 +71,12 @@ class Diagnosis:
 
 
 def _drawn(story: Story) -> Figure:
-    from matplotlib.figure import Figure
+    from ..core.figures import panels
 
     names = list(dict.fromkeys(point.observable for point in story.points))
-    columns = min(len(names), 3)
-    rows = math.ceil(len(names) / columns)
-    figure = Figure(figsize=(4.2 * columns, 3.4 * rows), layout="constrained")
-    axes = figure.subplots(rows, columns, squeeze=False)
-    for spare in axes.flat[len(names) :]:
-        spare.remove()
+    figure, axes = panels(len(names))
     against = story.against[0]
-    for axis, name in zip(axes.flat, names, strict=False):
+    for axis, name in zip(axes, names, strict=True):
         points = sorted(
             (p for p in story.points if p.observable == name), key=lambda p: p.x[against.key]
         )
@@ -94,7 +89,7 @@ def _drawn(story: Story) -> Figure:
             axis.plot(x, [p.with_verdict for p in points], "C3^", ms=4, mfc="w", label=WITH)
         axis.set(xlabel=against.label, ylabel=OBSERVABLES[name].axis)
         axis.grid(alpha=0.3)
-    axes.flat[0].legend(fontsize=8)
+    axes[0].legend(fontsize=8)
     figure.suptitle(story.finding, fontsize=10, wrap=True)
     return figure
 

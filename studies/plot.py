@@ -8,7 +8,6 @@ from pathlib import Path
 from typing import Any, NamedTuple
 
 import numpy as np
-from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.figure import Figure
 
 from ..campaigns import CaseRecord
@@ -123,9 +122,7 @@ def sheet(columns: int = 1, *, size: tuple[float, float] = (6.4, 4.6)) -> tuple[
 
 def bare_sheet(size: tuple[float, float]) -> Figure:
     """Return an off-screen figure without axes, `size` in inches."""
-    made = Figure(figsize=size, layout="constrained")
-    FigureCanvasAgg(made)
-    return made
+    return Figure(figsize=size, layout="constrained")
 
 
 def finish(axis: Any, *, x: str, y: str, legend: str = "") -> None:

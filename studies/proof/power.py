@@ -8,7 +8,6 @@ from collections.abc import Iterable, Sequence
 from pathlib import Path
 from typing import Any, NamedTuple
 
-from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.figure import Figure
 
 from ...core.output import write_figure
@@ -81,7 +80,6 @@ def power_lines(rows: Sequence[Shown]) -> list[str]:
 def picture(rows: Sequence[Shown], path: Path) -> Path:
     """Draw both shares against size, and every set beside its mechanism."""
     made = Figure(figsize=(9.0, 4.6), layout="constrained")
-    FigureCanvasAgg(made)
     left, right = made.subplots(1, 2, width_ratios=(1.0, 1.3))
     for which, look in ((2, {"fmt": "o-", "color": "0.4", "label": "found"}),
                         (3, {"fmt": "s-", "color": "C0", "label": "rightly named"})):  # fmt: skip

@@ -11,12 +11,13 @@ from typing import Any
 import numpy as np
 
 from ...core.arrays import Array
+from ...core.figures import figure
 from ...core.inputs.toml_input import read_toml
 from ...core.material import Material
 from ...impact.integrate import strike
 from ...impact.result import Impact
 from ...impact.scene import Approach, Scene, Striker, scene_of
-from ...impact.told.draw import figure, save
+from ...impact.told.draw import save
 from ...models.base import ContactLaw
 
 REFERENCE = Path(__file__).resolve().parents[2] / "data" / "reference"

@@ -6,7 +6,6 @@ from collections.abc import Sequence
 from pathlib import Path
 
 import numpy as np
-from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.figure import Figure
 
 from ...core.observables import OBSERVABLES
@@ -152,5 +151,4 @@ def draw(found: Demonstration, path: Path) -> None:
     handles, labels = panels[0].get_legend_handles_labels()
     figure.legend(handles, labels, loc="outside lower center", ncols=2, fontsize=8)
     figure.suptitle("Chapter 5: 5 to 95 % of the draws, nothing fitted", fontsize=11)
-    FigureCanvasAgg(figure)
     write_figure(figure, path, dpi=figure.dpi)
