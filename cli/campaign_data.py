@@ -11,6 +11,7 @@ import typer
 
 from ..core.errors import EXIT_NOT_CONVERGED, InputError
 from ..core.output import csv_text, write_file
+from ..core.tables import parquet
 from .shared.places import file_option, folder_option
 from .shared.terminal import console as new_console
 from .shared.terminal import show_table
@@ -135,17 +136,8 @@ def export(
         )
     head = ["case", "E_s_Pa", "nu_s", "Sy_s_Pa", "E_f_Pa", "nu_f", "Sy_f_Pa", "R_m", *names]
     if to.suffix == ".parquet":
-        try:
-            import pandas
-            import pyarrow  # noqa: F401 (pandas writes Parquet through it)
-        except ImportError as missing:
-            raise InputError(
-                f"{missing.name} is not installed",
-                key="--to",
-                allowed="pip install dentscope[tables]",
-            ) from None
-        table = pandas.DataFrame(list(_rows(records, names)), columns=head)
-        write_file(to, table.to_parquet(None, index=False))
+        columns = zip(*_rows(records, names), strict=True)
+        write_file(to, parquet(dict(zip(head, columns, strict=True))))
     else:
         write_file(to, csv_text(_rows(records, names), header=head))
     typer.echo(f"{len(records)} cases -> {to}")

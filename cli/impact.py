@@ -49,18 +49,14 @@ def impact(
     """
     if new:
         refuse_beside(context, "beside --new", "law", "exact", "out")
-        _write_new(new, setup)
+        target = setup or Path(f"{new}.toml")
+        typer.echo(write_new(template(new), target, command="impact"))
     elif setup is None:
         refuse_beside(context, "without a set-up", "exact")
         studies.needed_for("`dentscope impact` without a set-up file")
         leave_if_unfinished(studies.module("chapter3").chapter3(law or [], out))
     else:
         _from_file(setup, law or [], out, exact=exact)
-
-
-def _write_new(kind: str, path: Path | None) -> None:
-    target = path or Path(f"{kind}.toml")
-    typer.echo(write_new(template(kind), target, command="impact"))
 
 
 def _from_file(path: Path, names: list[str], out: Path, *, exact: bool) -> None:
@@ -70,7 +66,8 @@ def _from_file(path: Path, names: list[str], out: Path, *, exact: bool) -> None:
     from ..impact.files.blow import blow_of
     from ..impact.files.setup import read_setup
     from ..impact.files.tables import write_csv, write_hdf5
-    from ..impact.told.picture import draw_blow
+    from ..impact.told.draw import save
+    from ..impact.told.picture import picture
 
     console = new_console()
     setup = read_setup(path)
@@ -90,7 +87,7 @@ def _from_file(path: Path, names: list[str], out: Path, *, exact: bool) -> None:
         say(line)
     write_csv(out / f"{path.stem}.csv", blow.written(exact=exact))
     write_hdf5(out / f"{path.stem}.h5", traces, about=setup.about)
-    draw_blow(blow, out / f"{path.stem}.png", exact=exact)
+    save(picture(blow, exact=exact), out / f"{path.stem}.png")
     written = [out / f"{path.stem}{end}" for end in (".csv", ".h5", ".png")]
     if setup.sweep.count and setup.repeats > 1:
         say(f"the sweep is of first blows: impact.repeats = {setup.repeats} acts above alone")

@@ -30,7 +30,6 @@ from .walk import layout as c
 BY_WORK, BY_STEPS = "work", "steps"
 """What the column `route` says."""
 
-_BROADCAST = ("speeds", "angles", "friction", "masses", "tangential", "spins")
 Change = Callable[[ForceTransform], ForceTransform]
 
 
@@ -134,7 +133,7 @@ def _quickest(scene: Scene, given: Mapping[str, Array], settings: Settings) -> I
 
 def scenes_over(scene: Scene, **conditions: Any) -> list[Scene]:
     """Return the scene of each row of `impacts`, which says what its conditions are."""
-    return _each(scene, _conditions(scene, *(conditions[name] for name in _BROADCAST)))
+    return _each(scene, _conditions(scene, **conditions))
 
 
 def _each(scene: Scene, given: Mapping[str, Array]) -> list[Scene]:

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
-from importlib.util import find_spec
 from pathlib import Path
 from typing import Any
 
@@ -14,6 +13,7 @@ from numpy.typing import NDArray
 from ..core.arrays import Array
 from ..core.errors import InputError
 from ..core.output import csv_text, write_file
+from ..core.tables import frame, parquet
 
 
 @dataclass(frozen=True, eq=False)
@@ -70,10 +70,7 @@ class Impacts:
         InputError
             pandas is not installed.
         """
-        _needed("pandas")
-        import pandas as pd
-
-        return pd.DataFrame(dict(self.columns))
+        return frame(self.columns)
 
     def to_parquet(self, path: Path | str) -> None:
         """Write a Parquet file.
@@ -83,12 +80,4 @@ class Impacts:
         InputError
             pandas or pyarrow is not installed.
         """
-        _needed("pyarrow")
-        write_file(Path(path), self.to_frame().to_parquet(None, index=False))
-
-
-def _needed(library: str) -> None:
-    if find_spec(library) is None:
-        raise InputError(
-            f"{library} is not installed", key="output", allowed="pip install 'dentscope[tables]'"
-        )
+        write_file(Path(path), parquet(self.columns))

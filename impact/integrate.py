@@ -5,7 +5,6 @@ from __future__ import annotations
 import math
 from collections.abc import Sequence
 from dataclasses import dataclass
-from typing import Any
 
 import numpy as np
 
@@ -160,7 +159,7 @@ def _walked(law: ContactLaw, given: c.Given, out: Array, **more: Array) -> int:
     # importing it compiles: a file that is refused and the list of keys do without
     from .walk.compiled import many_impacts
 
-    return many_impacts(kernels_of(law), given, out, **more)
+    return many_impacts(law.kernels, given, out, **more)
 
 
 def _given(rows: Sequence[Arrays]) -> c.Given:
@@ -252,12 +251,6 @@ def strike_batch(scenes: Sequence[Scene], settings: Settings = Settings()) -> Ar
         _walked(scenes[0].law, _given([rows[i] for i in members]), found)
         out[members] = found
     return out
-
-
-def kernels_of(law: ContactLaw) -> tuple[Any, Any, Any, Any]:
-    """Return (loading, radius, unloading, residual) of a law."""
-    k = law.kernels
-    return k.loading, k.radius, k.unloading, k.residual
 
 
 _BREAKS: dict[tuple[str, bytes, bytes, bytes], Array] = {}

@@ -16,7 +16,7 @@ from numba import float64, njit, types
 from ..core.arrays import Array
 from ..models.kernel import VECTOR
 from . import force as fo
-from .integrate import Settings, arrays_of, kernels_of
+from .integrate import Settings, arrays_of
 from .rules import RULES
 from .scene import Scene
 
@@ -160,4 +160,4 @@ def _groups(scenes: Sequence[Scene]) -> Iterator[tuple[Any, list[int], list[Arra
         groups.setdefault((len(a.factors), len(a.par)), []).append(i)
     for members in groups.values():
         stacked = [np.stack([getattr(rows[i], key) for i in members]) for key in _VARIED]
-        yield kernels_of(scenes[members[0]].law), members, stacked
+        yield scenes[members[0]].law.kernels, members, stacked

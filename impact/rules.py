@@ -207,10 +207,6 @@ class ImpactRules:
         1.25, "exponent of a recovery for the share of a layer of asperities alone [-]",
         "between Hertz's 3/2 and a flat punch's 1",
     )  # fmt: skip
-    radius_rounds: int = rule(
-        3, "rounds for the radius of a contact whose strength follows it [-]",
-        "the strength hardly moves it",
-    )  # fmt: skip
     slowest: float = rule(
         0.2, "rate at the turning point, over that of the approach [-]",
         "ln 5 times C of Johnson and Cook, 0.01 to 0.03, is lost there",

@@ -86,13 +86,6 @@ def needs_sliding(situations: Sequence[Situation]) -> str:
     return ""
 
 
-def needs_rod(situations: Sequence[Situation]) -> str:
-    """Return the reason against a mechanism of a rod, or ""."""
-    if not any(scene.striker.length > 0.0 for scene, _ in situations):
-        return "no striker is a rod"
-    return ""
-
-
 def slower(seen: Mapping[str, Array], restitution: Array) -> dict[str, Array]:
     """Return the observables with another restitution, and with it the centre's rebound speed."""
     with np.errstate(divide="ignore", invalid="ignore"):

@@ -13,7 +13,7 @@ from ...core.material import Material
 from ..beam import Modes, axial_frequencies, rod_modes
 from ..rules import RULES
 from ..scene import Scene, Striker
-from .arithmetic import density_of, is_oblique, needs_rod
+from .arithmetic import density_of, is_oblique
 from .base import Literature, Mechanism, Parameter, Situation, Surroundings, Values
 
 _SIDEWAYS = 0.82  # tangential stiffness over 2 E' a: 2 (1 - nu)/(2 - nu), Mindlin 1949
@@ -35,7 +35,8 @@ class _Ringing(Mechanism):
 
     def applies(self, situations: Sequence[Situation]) -> str:
         """Needs a rod."""
-        return needs_rod(situations)
+        rods = any(scene.striker.length > 0.0 for scene, _ in situations)
+        return "" if rods else "no striker is a rod"
 
     @abstractmethod
     def modes(self, striker: Striker, body: Material) -> Modes:

@@ -111,10 +111,7 @@ def _table(kernels: Kernels, par: Array, R: float) -> TableCells:
 
     def columns(y: Array) -> Array:
         out = np.empty((len(y), COLUMNS))
-        _ask(
-            *(kernels.loading, kernels.unloading, kernels.residual), par, edges, own, works, power,
-            y, out,
-        )  # fmt: skip
+        _ask(loading, kernels.unloading, kernels.residual, par, edges, own, works, power, y, out)
         return out
 
     # a law may end before the shallowest depth

@@ -13,7 +13,6 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass
-from typing import Any
 
 import numpy as np
 from numba import int64, njit, types
@@ -202,7 +201,7 @@ def _table(law: ContactLaw, par: Array, R: float, error: float) -> TableCells:
         depth = np.ldexp(first * (1.0 + (x - octave)), octave.astype(int))
         out = np.empty((len(x), _COLUMNS))
         try:
-            _ask(*_functions(kernels), par, depth, out)
+            _ask(*kernels, par, depth, out)
         except ZeroDivisionError:  # beyond what the law has a number for
             out[:] = np.nan
         return out
@@ -229,10 +228,6 @@ def _first_octave(R: float) -> float:
 
 def _octaves(R: float) -> int:
     return math.ceil(math.log2(DEEPEST * R / _first_octave(R)))
-
-
-def _functions(kernels: Kernels) -> tuple[Any, Any, Any, Any]:
-    return kernels.loading, kernels.radius, kernels.unloading, kernels.residual
 
 
 _LOADING = types.FunctionType(LOADING_SIGNATURE)

@@ -9,7 +9,6 @@ as a diagnosis has them, and grow with the share of the work that the contact ke
 from __future__ import annotations
 
 import math
-import warnings
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, fields, replace
 from types import SimpleNamespace
@@ -20,7 +19,7 @@ import numpy as np
 from ...core.arrays import Array
 from ...core.errors import InputError
 from ...core.rig import BodyTable, Quantity
-from ...models.base import ContactLaw, DomainWarning
+from ...models.base import ContactLaw
 from ...models.choose import follows_flow
 from ...models.uncertainty import METAL, RECOVERY_EXPONENT, WITH_CURVE
 from ..batch import Change, unchanged
@@ -32,7 +31,7 @@ from ..result import Impact
 from ..rules import RULES
 from ..scene import ForceTransform, Scene
 from ..strength import NODES
-from .beside import beside_fitted
+from .beside import error_of
 from .onset import largest_mean_pressure
 
 if TYPE_CHECKING:
@@ -138,10 +137,10 @@ def last_blow(setup: Setup, law: ContactLaw, change: Change = unchanged) -> Impa
     return repeated(setup, scene, settings)
 
 
-def repeated(setup: Setup, scene: Scene, settings: Settings) -> Impact:
-    """Return the last of a scene's repeats, read as the set-up's."""
+def repeated(setup: Setup, scene: Scene, settings: Settings | None = None) -> Impact:
+    """Return the last of a scene's repeats, read as the set-up's and within its budgets."""
     for _ in range(setup.repeats):
-        found = strike(scene, settings)
+        found = strike(scene, settings or setup.settings)
         scene = scene.with_(spot=found.spot)
     return setup.read(scene.law, found)
 
@@ -230,13 +229,7 @@ def _sizes(scene: Scene, found: Any) -> tuple[_Sizes, _Sizes]:
     lost = min(max(kept, 0.0), 1.0) if kept > 1e-6 else 0.0
     if not math.isfinite(pair.Sy_min):
         return _Sizes(RULES.hertz_error, 0.0, 0.0, 0.0, 0.0), _Sizes(0.0, 0.0, 0.0, 0.0, 0.0)
-    with warnings.catch_warnings(), np.errstate(all="ignore"):
-        warnings.simplefilter("ignore", DomainWarning)  # the doubt about a law has its own line
-        depth = np.array([found.peak_depth_m])
-        try:
-            known = law.uncertainty(pair, depth)
-        except InputError:
-            known = beside_fitted(law, pair, depth)
+    known = error_of(law, pair, np.array([found.peak_depth_m]))
     force, radius, dent, back = (
         min(float(np.nan_to_num(x[0], nan=RULES.largest_error)), RULES.largest_error)
         for x in (known.force, known.radius, known.dent, known.given_back)

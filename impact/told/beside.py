@@ -1,16 +1,29 @@
-"""How far off a law is that states no error of its own."""
+"""How far off a law is: as it states, or as far as it is from the fitted law."""
 
 from __future__ import annotations
+
+import warnings
 
 import numpy as np
 import numpy.typing as npt
 
 from ...core.arrays import Array
+from ...core.errors import InputError
 from ...core.material import Pair
 from ...models import law_named
-from ...models.base import ContactLaw
+from ...models.base import ContactLaw, DomainWarning
 from ...models.fitted import ClosedForm
 from ...models.uncertainty import Uncertainty
+
+
+def error_of(law: ContactLaw, pair: Pair, depth: Array) -> Uncertainty:
+    """How far `law` may be off, by itself or, where it states no error, by the fitted law."""
+    with warnings.catch_warnings(), np.errstate(all="ignore"):
+        warnings.simplefilter("ignore", DomainWarning)  # the doubt about a law has its own line
+        try:
+            return law.uncertainty(pair, depth)
+        except InputError:  # a published law
+            return beside_fitted(law, pair, depth)
 
 
 def beside_fitted(law: ContactLaw, pair: Pair, depth: npt.ArrayLike) -> Uncertainty:

@@ -111,7 +111,7 @@ def _plate(setup: Setup, scene: Scene, found: Impact) -> Iterator[str]:
         yield f"the flat, {h * 1e3:.3g} mm, is {h / a:.3g} times the contact radius thick"
     if setup.file.impact.support == "plate" or flat.rigid or math.isnan(flat.density):
         return
-    hung = _struck(setup, scene.with_(support=plate_support(flat, thickness=h)))
+    hung = repeated(setup, scene.with_(support=plate_support(flat, thickness=h)))
     yield f"hung freely as a wide plate: {effect(hung, found)}"
 
 
@@ -122,14 +122,14 @@ def _waves(setup: Setup, scene: Scene, found: Impact) -> Iterator[str]:
     if asked or not held or flat.rigid or math.isnan(flat.density):
         return
     radiates = replace(scene.force, radiation=half_space_radiation(flat))
-    with_waves = _struck(setup, scene.with_(force=radiates))
+    with_waves = repeated(setup, scene.with_(force=radiates))
     yield f"waves into a deep flat: {effect(with_waves, found)}"
 
 
 def _gravity(setup: Setup, scene: Scene, found: Impact) -> Iterator[str]:
     if scene.gravity == 0.0:
         return
-    without = _struck(setup, scene.with_(gravity=0.0))
+    without = repeated(setup, scene.with_(gravity=0.0))
     if abs(without.restitution / found.restitution - 1.0) > RULES.worth_a_line:
         yield (
             f"gravity, {scene.gravity:.4g} m/s^2, acts during the contact; without: "
@@ -147,7 +147,7 @@ def _friction(setup: Setup, scene: Scene, found: Impact) -> Iterator[str]:
             "dentscope case solves the contact with it"
         )
     elif not straight and scene.friction.mu > 0.0:
-        without = _struck(
+        without = repeated(
             setup, scene.with_(friction=replace(scene.friction, mu=0.0, mu_static=0.0))
         )
         yield f"without friction: {effect(without, found)}"
@@ -188,7 +188,7 @@ def _edge(setup: Setup, scene: Scene, found: Impact) -> Iterator[str]:
     if math.isfinite(scene.force.edge):
         return
     ends = replace(scene.force, edge=scene.striker.radius)
-    ended = _struck(setup, scene.with_(force=ends))
+    ended = repeated(setup, scene.with_(force=ends))
     if abs(ended.restitution / found.restitution - 1.0) > RULES.worth_a_line:
         yield (
             f"the tip's curvature is taken to go on; ended at the rod's side (impact.finite_tip): "
@@ -306,8 +306,3 @@ def swept_above_one(swept: Impacts) -> Iterator[str]:
 def _made_by_the_law(before: Any, after: Any, fall: Any) -> Any:
     """Whether a blow returns more than it had and its fall during the contact [J] gave."""
     return after > (1.0 + 1e-6) * (before + np.maximum(fall, 0.0))
-
-
-def _struck(setup: Setup, scene: Scene) -> Impact:
-    """The last of a scene's repeats, within the budgets of the set-up."""
-    return repeated(setup, scene, setup.settings)

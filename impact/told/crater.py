@@ -3,20 +3,17 @@
 from __future__ import annotations
 
 import math
-import warnings
 from collections.abc import Callable
 from typing import NamedTuple
 
 import numpy as np
 
 from ...core.arrays import Array
-from ...core.errors import InputError
 from ...fitting.craters import PLACES, Body, Left, crater_shape
-from ...models.base import DomainWarning
 from ..result import Impact
 from ..scene import Scene
 from ..surface import Imprint
-from .beside import beside_fitted
+from .beside import error_of
 
 
 class LeftSurface(NamedTuple):
@@ -91,14 +88,8 @@ def surfaces_left(
 
 def _share_std(scene: Scene, depth: float) -> float:
     """How far off the law may part the approach between the bodies, so what stays in each."""
-    at = scene.pair, np.array([depth])
-    with warnings.catch_warnings(), np.errstate(all="ignore"):
-        warnings.simplefilter("ignore", DomainWarning)  # the doubt about a law has its own line
-        try:
-            found = scene.law.uncertainty(*at)
-        except InputError:  # a published law
-            found = beside_fitted(scene.law, *at)
-    return float(np.nan_to_num(found.share[0]))
+    share = error_of(scene.law, scene.pair, np.array([depth])).share
+    return float(np.nan_to_num(share[0]))
 
 
 def _surface(

@@ -6,12 +6,11 @@ import math
 from collections.abc import Mapping, Sequence
 from pathlib import Path
 from types import MappingProxyType
-from typing import Any
 
 import numpy as np
-from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.figure import Figure
 
+from ...core.figures import figure, panels
 from ...core.observables import OBSERVABLES
 from ...core.output import write_figure
 from ..columns import Impacts
@@ -33,23 +32,6 @@ CONDITIONS = {
     "approach_spin_rad_s": "spin before [rad/s]",
 }  # fmt: skip
 """What may be swept, in words."""
-
-
-def figure(rows: int, columns: int, *, size: tuple[float, float]) -> tuple[Figure, Any]:
-    """Return an off-screen figure and its axes."""
-    made = Figure(figsize=size, layout="constrained")
-    FigureCanvasAgg(made)
-    return made, made.subplots(rows, columns, squeeze=False)
-
-
-def panels(count: int) -> tuple[Figure, list[Any]]:
-    """Return a figure of `count` panels and no empty one, two or three a row."""
-    columns = 2 if count in (2, 4) else min(count, 3)
-    rows = math.ceil(count / columns)
-    made, axes = figure(rows, columns, size=(4.4 * columns, 3.6 * rows))
-    for spare in axes.flat[count:]:
-        spare.remove()
-    return made, list(axes.flat[:count])
 
 
 def draw_sweep(

@@ -58,7 +58,7 @@ def effective_mass(scene: Scene) -> float:
     free to move.
     """
     striker, support = scene.striker, scene.support
-    beside, _ = striker.arm(scene.approach.angle) if striker.length else (0.0, 0.0)
+    beside, _ = striker.arm(scene.approach.angle)
     return 1.0 / (1.0 / striker.mass + beside**2 / striker.inertia + 1.0 / support.mass)
 
 

@@ -5,15 +5,14 @@ from __future__ import annotations
 import math
 from collections.abc import Mapping, Sequence
 from itertools import cycle
-from pathlib import Path
 from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
 from matplotlib.figure import Figure
 
+from ...core.figures import panels
 from ..integrate import Trace
 from .crater import LeftSurface, surfaces_left
-from .draw import panels, save
 from .rig_shape import rig_shape
 
 if TYPE_CHECKING:
@@ -29,11 +28,6 @@ AGAINST_TIME = (
     ("spin_rad_s", "spin [rad/s]", 1.0, 1e-6),
 )
 """Column, axis, scale, and what counts as nothing at all [SI]."""
-
-
-def draw_blow(blow: Blow, path: Path, *, exact: bool = False) -> None:
-    """Write the picture of `picture`."""
-    save(picture(blow, exact=exact), path)
 
 
 def picture(blow: Blow, *, exact: bool = False) -> Figure:

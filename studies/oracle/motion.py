@@ -10,7 +10,7 @@ import numpy as np
 from ...core.arrays import Array
 from ...impact import force as fo
 from ...impact import surface as su
-from ...impact.integrate import Arrays, kernels_of
+from ...impact.integrate import Arrays
 from ...impact.scene import Scene
 from ...impact.walk import layout as c
 
@@ -50,7 +50,7 @@ class Motion:
 
     def __init__(self, scene: Scene, a: Arrays) -> None:
         self.a = a
-        self.loading, self.radius, self.unloading, self.residual = kernels_of(scene.law)
+        self.loading, self.radius, self.unloading, self.residual = scene.law.kernels
         # As Python: handing a kernel to compiled code costs far more than these few lines do.
         self.on_loading = fo.static_loading.py_func
         self.on_unloading = fo.static_unloading.py_func

@@ -22,6 +22,7 @@ import numpy as np
 from ....core.arrays import Array
 from ....models import critical_depth
 from ....models.hardening import REPRESENTATIVE, representative_strain
+from ....models.rules import RULES as MODELS
 from ...force import F_RADIUS
 from ...rules import RULES
 from ...scene import FlowStress, Scene
@@ -96,7 +97,7 @@ def strain(scene: Scene, table: StrengthTable, strength: Array | None = None) ->
 def settled_strain(scene: Scene, table: StrengthTable, strength: Callable[[Array], Array]) -> Array:
     """Return the strain at which the contact has the radius that its strength there gives it."""
     p = strain(scene, table)
-    for _ in range(RULES.radius_rounds):
+    for _ in range(MODELS.radius_rounds):
         p = strain(scene, table, strength(p))
     return p
 
