@@ -17,7 +17,7 @@ from pathlib import Path
 from types import ModuleType
 from typing import TYPE_CHECKING, Any
 
-from ..core.errors import InputError
+from ..core.errors import InputError, first_line
 from ..core.inputs.added import READERS, added, names_added
 from ..core.inputs.input_file import checked_file
 from ..core.inputs.toml_input import InputTable, parse_model
@@ -70,9 +70,8 @@ class Kind:
         except InputError:
             raise
         except expected as error:
-            reason = (str(error).splitlines() or [type(error).__name__])[0]
             raise InputError(
-                f"its numbers cannot be reduced ({reason})", source=str(path),
+                f"its numbers cannot be reduced ({first_line(error)})", source=str(path),
                 allowed="a recording of the kind that was named",
             ) from error  # fmt: skip
 

@@ -4,20 +4,12 @@ from __future__ import annotations
 
 from pathlib import Path
 from textwrap import wrap
-from typing import Any
 
-from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.figure import Figure
 
 from ..core.arrays import Array
+from ..core.figures import figure
 from ..core.output import write_figure
-
-
-def figure(rows: int, columns: int, *, size: tuple[float, float]) -> tuple[Figure, Any]:
-    """Return a figure that needs no screen, and its axes (rows, columns)."""
-    made = Figure(figsize=size, layout="constrained")
-    FigureCanvasAgg(made)
-    return made, made.subplots(rows, columns, squeeze=False)
 
 
 def save(made: Figure, path: Path) -> None:

@@ -82,13 +82,9 @@ class ReductionRules:
         0.5, "standard deviation of a contact time or of a crater's depth, in itself [-]",
         "beyond it nothing is measured",
     )  # fmt: skip
-    step: float = rule(
-        0.33, "level after a pulse, in its peak [-]",
-        "tools/benchmarks/validate_reduce_pulse.py",
-    )  # fmt: skip
     swing: float = rule(
-        0.33, "half-wave, or another pulse, beside a pulse that counts, in the peak [-]",
-        "chosen: a third; no measurement is kept",
+        0.33, "level after a pulse, half-wave or pulse beside it, that counts, in the peak [-]",
+        "tools/benchmarks/validate_reduce_pulse.py",
     )  # fmt: skip
     swings: int = rule(
         6, "other half-waves of that height [-]", "tools/benchmarks/validate_reduce_pulse.py",
@@ -142,9 +138,6 @@ class ReductionRules:
     )  # fmt: skip
     farthest_marker: float = rule(
         1e3, "distance of a marker from the origin [m]", "a stadium: millimetres taken for metres",
-    )  # fmt: skip
-    fewest_press_rows: int = rule(
-        20, "rows of a press with a load and a depth [-]", "a zero, a turn and a slope of six each",
     )  # fmt: skip
     cycle_depth: float = rule(
         0.05, "fall of the load that ends a cycle, in the largest load [-]",
@@ -272,7 +265,7 @@ class ReductionRules:
     doubtful: float = rule(
         2.5,
         "standard deviations from which a sample next to a contact, or a frame of a flight, "
-        "is left out [-]",
+        "is left out, and a pixel counts less [-]",
         "one in 80",
     )  # fmt: skip
     pooled: int = rule(
@@ -374,10 +367,6 @@ class ReductionRules:
         0.02, "move of the last round that is still a fit [pixel]",
         "chosen; no measurement is kept",
     )  # fmt: skip
-    huber: float = rule(
-        2.5, "deviations from which a residual counts linearly [-]",
-        "chosen; Huber's own is 1.345",
-    )  # fmt: skip
     cap: float = rule(
         0.75, "part of the half-width of a rod from which the cap is read [-]",
         "the edge of the cap is chamfered",
@@ -419,7 +408,8 @@ class ReductionRules:
         "a thirtieth of a standard deviation",
     )  # fmt: skip
     window: int = rule(
-        8, "frames in which a flight is looked for; contacts closer are not told apart [-]",
+        8, "frames in which a flight is looked for; contacts closer are not told apart, and two "
+        "flights farther apart may have one between them [-]",
         "chosen; no measurement is kept",
     )  # fmt: skip
     clean: float = rule(
@@ -442,10 +432,6 @@ class ReductionRules:
         6,
         "samples from which a piece is judged by itself [-]",
         "a parabola and three that can contradict it",
-    )  # fmt: skip
-    longest_gap: int = rule(
-        8, "frames between two flights beyond which more than one contact may lie there [-]",
-        "chosen; no measurement is kept",
     )  # fmt: skip
     rigid_rounds: int = rule(
         8, "rounds of the shape of the markers [-]",
@@ -562,8 +548,8 @@ class ReductionRules:
         "headers of five oscilloscopes",
     )  # fmt: skip
     table_rows: int = rule(
-        20, "rows of a record against time, or of a tensile test, at least [-]",
-        "ten of the level and a pulse",
+        20, "rows of a record against time, of a press or a tensile test, at least [-]",
+        "a zero, a turn and a slope of six each",
     )  # fmt: skip
     flank: tuple[float, float] = rule(
         (0.06, 0.45), "parts of the peak between which flanks tell the ends of a pulse [-]",
@@ -613,10 +599,6 @@ class ReductionRules:
     tension_kept: int = limit(
         60, "rows of a curve that is written [-]",
         "a screen or two",
-    )  # fmt: skip
-    yields: float = rule(
-        1e-4, "plastic strain from which the metal yields [-]",
-        "a twentieth of the proof strain",
     )  # fmt: skip
     edge_step: float = rule(
         0.25, "step along an edge [pixel]",

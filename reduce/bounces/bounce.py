@@ -62,3 +62,27 @@ class Bounced:
     def heights(self, piece: Piece, time: Array) -> Array:
         """Return the heights of a flight as the camera sees them, (n,) [unit]."""
         return self.stage.seen(self.view, piece.launch, piece.reference, time)
+
+    def row(self, k: int) -> dict[str, Measured]:
+        """Return the columns of trials.csv that contact `k` tells: ratios alone without a scale."""
+        bounce, row = self.bounces[k], {"restitution": self.bounces[k].restitution}
+        if self.scale.known:
+            row["impact_speed_m_s"] = bounce.approach.times(self.scale.metres)
+            row["rebound_speed_m_s"] = bounce.rebound.times(self.scale.metres)
+        return row
+
+    def part(self, k: int) -> slice:
+        """Return the samples from the contact before `k` to the one after it."""
+        low = self.bounces[k - 1].turning if k > 0 else 0
+        return slice(low, self.bounces[k + 1].turning if k + 1 < len(self.bounces) else None)
+
+    def trace(self, k: int, time: Array, height: Array) -> dict[str, Array]:
+        """Return time [s] and height [m] of these samples from contact `k`; {} without a scale."""
+        if not self.scale.known:
+            return {}
+        bounce, part = self.bounces[k], self.part(k)
+        touch = self.stage.floor + bounce.height.value
+        return {
+            "time_s": time[part] - bounce.time.value,
+            "tip_height_m": (height[part] - touch) * self.scale.metres.value,
+        }

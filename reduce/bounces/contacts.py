@@ -274,7 +274,7 @@ def _whole(
     moved = []
     for b in bounces:
         approach = Measured(b.approach.value + drift.value, math.hypot(b.approach.std, drift.std))
-        rebound = Measured(b.rebound.value - drift.value, math.hypot(b.rebound.std, drift.std))
+        rebound = b.rebound.minus(drift)
         e = (
             rebound.value
             / approach.value
@@ -283,7 +283,7 @@ def _whole(
         std = math.hypot(b.restitution.std, drift.std * (1.0 + e) / approach.value)
         moved.append(Bounce(
             b.time, approach, rebound, Measured(e, std), b.height, int(chosen[b.turning]),
-            _renumbered(b.before, chosen), _renumbered(b.after, chosen),
+            *(replace(piece, index=chosen[piece.index]) for piece in (b.before, b.after)),
         ))  # fmt: skip
     own = _mixed([
         (s.weight, Measured(s.view.fall, math.sqrt(s.covariance[0, 0]))) for s in solutions
@@ -321,10 +321,6 @@ def _in_part(value: Measured, more: float, part: float) -> Measured:
     """Return a value that is by `more` larger with a probability of `part`."""
     spread = math.sqrt(part * (1.0 - part)) * more
     return Measured(value.value + part * more, math.hypot(value.std, spread))
-
-
-def _renumbered(piece: Piece, chosen: Indices) -> Piece:
-    return Piece(chosen[piece.index], piece.reference, piece.launch, piece.sigma)
 
 
 def _without(value: Measured, prior: Measured) -> Measured:

@@ -13,15 +13,13 @@ import numpy as np
 import numpy.typing as npt
 
 from ...core.arrays import Array, Integers
-from ...core.errors import InputError, missing_extra
+from ...core.errors import InputError, first_line, missing_extra
 from ..rules import RULES
 from . import photron
 from .picture_file import (
-    CHANNELS,
     DOWN,
     PICTURES,
     cropped,
-    first_line,
     grey_picture,
     natural_order,
     one_channel,
@@ -88,8 +86,6 @@ def read_clip(
     InputError
         The file cannot be decoded, holds too few frames, or is too large for the memory.
     """
-    _check_choice(channel, CHANNELS, "channel")
-    _check_choice(down, tuple(DOWN), "down")
     if not path.exists():
         raise InputError(
             "no such file or folder", source=str(path),
@@ -153,11 +149,6 @@ def repeated_frames(frames: Frame) -> Integers:
     found = np.flatnonzero(change < RULES.repeated * around) + 1
     equal = np.flatnonzero(change == 0.0) + 1
     return np.asarray(found if found.size > RULES.often_repeated * len(frames) else equal)
-
-
-def _check_choice(value: str, allowed: tuple[str, ...], key: str) -> None:
-    if value not in allowed:
-        raise InputError(repr(value), source="command line", key=key, allowed=", ".join(allowed))
 
 
 def _video(path: Path, channel: str) -> Iterator[tuple[float, Frame]]:

@@ -193,7 +193,7 @@ def _settle(
             return None
         # quantisation alone leaves 0.3 grey levels
         spread = max(robust_std(residual), 0.3)
-        weight = np.minimum(1.0, RULES.huber * spread / np.maximum(np.abs(residual), 1e-12))
+        weight = np.minimum(1.0, RULES.doubtful * spread / np.maximum(np.abs(residual), 1e-12))
         active = jacobian[moved][:, zone]
         normal = (active * weight) @ active.T
         try:

@@ -9,7 +9,7 @@ from typing import Any
 import numpy as np
 import numpy.typing as npt
 
-from ...core.errors import InputError, missing_extra
+from ...core.errors import InputError, first_line, missing_extra
 from ...core.inputs.input_file import checked_file
 from ..rules import RULES
 
@@ -132,9 +132,3 @@ def cropped(
 def natural_order(name: str) -> list[tuple[int, str]]:
     """Return a key that sorts `2.png` before `10.png`."""
     return [(int(t), "") if t.isdigit() else (-1, t.lower()) for t in re.split(r"(\d+)", name)]
-
-
-def first_line(error: Exception) -> str:
-    """Return what a library says of its failure, in one line."""
-    lines = str(error).strip().splitlines()
-    return lines[0][:120] if lines else type(error).__name__

@@ -75,7 +75,7 @@ def widened(
     found = {}
     for name, value in measured.items():
         more = off * abs(value.value) if name.endswith("_m_s") else 0.0
-        found[name] = Measured(value.value, math.hypot(loose * value.std, more))
+        found[name] = Measured(value.value, loose * value.std).widened(more)
     if "spin_change_by_momentum_rad_s" in found:
         spin, asked = found["rebound_spin_rad_s"], found["spin_change_by_momentum_rad_s"]
         apart = spin.minus(found["approach_spin_rad_s"]).minus(asked)
@@ -83,5 +83,5 @@ def widened(
             found["rebound_spin_rad_s"] = spin.widened(apart.value)
     friction, out = found["friction_impulse_ratio"], found["out_of_plane_ratio"]
     beside = math.hypot(friction.value, out.value) - friction.value
-    found["friction_impulse_ratio"] = Measured(friction.value, math.hypot(friction.std, beside))
+    found["friction_impulse_ratio"] = friction.widened(beside)
     return found

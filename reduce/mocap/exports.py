@@ -12,6 +12,7 @@ from __future__ import annotations
 import csv
 from collections.abc import Iterator, Sequence
 from pathlib import Path
+from typing import NamedTuple
 
 import numpy as np
 
@@ -25,7 +26,7 @@ from ..shared.units import LENGTH
 _IN_WORDS = {"meters": "m", "millimeters": "mm", "centimeters": "cm", "inches": "in"}
 
 
-class Export:
+class Export(NamedTuple):
     """What an export holds.
 
     Parameters
@@ -40,10 +41,10 @@ class Export:
         Of length.
     """
 
-    __slots__ = ("names", "position", "time", "unit")
-
-    def __init__(self, time: Array, names: tuple[str, ...], position: Array, unit: str) -> None:
-        self.time, self.names, self.position, self.unit = time, names, position, unit
+    time: Array
+    names: tuple[str, ...]
+    position: Array
+    unit: str
 
 
 def read_export(path: Path) -> Export | None:

@@ -14,7 +14,7 @@ import numpy as np
 from scipy.spatial.transform import Rotation
 
 from ...core.arrays import Array
-from ...core.errors import InputError, InputErrors, missing_extra
+from ...core.errors import InputError, InputErrors, first_line, missing_extra
 from ...core.inputs.csv_table import (
     Problems,
     TextTable,
@@ -189,9 +189,8 @@ def _c3d_content(path: Path) -> tuple[Array, Array, list[str], list[str], list[f
         stated = [str(u).strip().lower() for u in _parameter(content, "UNITS")]
         rates = [float(r) for r in _parameter(content, "RATE")]
     except Exception as error:  # the library raises its own kinds, and KeyError where a part lacks
-        line = (str(error).strip().splitlines() or [type(error).__name__])[0][:120]
         raise InputError(
-            f"cannot be read as C3D ({line})", source=str(path), allowed="a C3D file"
+            f"cannot be read as C3D ({first_line(error)})", source=str(path), allowed="a C3D file"
         ) from None
     return points, residuals, labels, stated, rates
 

@@ -9,7 +9,8 @@ import numpy as np
 from scipy.spatial.transform import Rotation
 
 from ...core.arrays import Array
-from ..pictures import figure, save
+from ...core.figures import figure
+from ..pictures import save
 from .motion import deviations
 from .point import PointReduction
 from .reduction import MocapReduction

@@ -196,8 +196,7 @@ def _measured(
     values = dict(zip(_NAMES, found, strict=True))
     for name in ("impact_speed_m_s", "approach_tangential_m_s", "rebound_speed_m_s",
                  "tangential_rebound_m_s"):  # fmt: skip
-        v = values[name]
-        values[name] = Measured(v.value, math.hypot(v.std, v.value * scene.length_scale_std))
+        values[name] = values[name].widened(values[name].value * scene.length_scale_std)
     ratio = values["friction_impulse_ratio"]
     values["friction_impulse_ratio"] = Measured(abs(ratio.value), ratio.std)
     height = 0.5 * float((sides[0].coefficients[:, 0] + sides[1].coefficients[:, 0]) @ up)

@@ -150,7 +150,7 @@ def reduce_mocap(poses: Poses, body: Body, scene: MocapScene, *, source: str) ->
     hits = []
     for f in range(len(flights.spans) - 1):
         gap = int(poses.frame[flights.spans[f + 1][0]] - poses.frame[flights.spans[f][1]]) - 1
-        if gap <= RULES.longest_gap:
+        if gap <= RULES.window:
             hits.append(_hit(poses, flights, f, gap, body, scene))
     hits = [h for h in hits if h.measured["impact_speed_m_s"].value > 0.0]
     fall = fall_acceleration(poses, flights)
@@ -186,10 +186,7 @@ def _hit(poses: Poses, flights: Flights, f: int, gap: int, body: Body, scene: Mo
     covariance = flights.part((f, f + 1))
     found = dict(zip(_NAMES, propagate(numbers, np.zeros(27), covariance), strict=True))
     for name in _SPEEDS:
-        value = found[name]
-        found[name] = Measured(
-            value.value, math.hypot(value.std, value.value * scene.length_scale_std)
-        )
+        found[name] = found[name].widened(found[name].value * scene.length_scale_std)
     ratio = found["friction_impulse_ratio"]
     found["friction_impulse_ratio"] = Measured(abs(ratio.value), ratio.std)
     return Hit((f, f + 1), found, plane[0], gap)

@@ -51,11 +51,8 @@ class PressRecord:
 
     Parameters
     ----------
-    load, depth, time
-        (n,) [N, m, s]; the load upwards, the depth growing with it; without a column of the time it
-        counts rows.
-    timed
-        Whether there is a column of the time.
+    load, depth
+        (n,) [N, m]; the load upwards, the depth growing with it.
     missed
         How many rows hold no number.
     gap
@@ -66,8 +63,6 @@ class PressRecord:
 
     load: Array
     depth: Array
-    time: Array
-    timed: bool
     missed: int
     gap: Array
     stated: float | None
@@ -105,10 +100,7 @@ def read_press(path: Path, options: PressOptions) -> PressRecord:
         p = p * np.sign(p[np.argmax(np.abs(p))])
         top = int(np.argmax(p))
         h = h * (-1.0 if h[top] < np.median(h[: max(top // 5, 1)]) else 1.0)
-    return PressRecord(
-        p, h, time[used], clock is not None, int((~known).sum()), gap, _compliance(tables),
-        str(path),
-    )  # fmt: skip
+    return PressRecord(p, h, int((~known).sum()), gap, _compliance(tables), str(path))
 
 
 def _wanted(options: PressOptions) -> tuple[tuple[str, str, tuple[str, ...], str], ...]:

@@ -63,10 +63,10 @@ def cycles_of(record: PressRecord) -> tuple[Cycle, ...]:
         or no unloading.
     """
     load, source = record.load, record.source
-    if load.size < RULES.fewest_press_rows:
+    if load.size < RULES.table_rows:
         raise Refused(
             "rows", f"{load.size} rows with a load and a depth", source=source, key="load",
-            allowed=f"{RULES.fewest_press_rows} or more",
+            allowed=f"{RULES.table_rows} or more",
         )  # fmt: skip
     noise = noise_of(load)
     top = float(load.max())

@@ -6,8 +6,9 @@ from pathlib import Path
 
 import numpy as np
 
+from ...core.figures import figure
 from ..measured import Measured
-from ..pictures import figure, save
+from ..pictures import save
 from .reduction import PressReduction
 
 

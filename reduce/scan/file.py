@@ -12,7 +12,7 @@ from pathlib import Path
 import numpy as np
 
 from ...core.arrays import Array
-from ...core.errors import InputError, missing_extra
+from ...core.errors import InputError, first_line, missing_extra
 from ...core.inputs.csv_table import number, shown
 from ..rules import RULES
 from ..shared.units import LENGTH, metres
@@ -154,9 +154,8 @@ def _known_format(path: Path, step: float | None) -> _Raw:
     except InputError:
         raise
     except Exception as error:  # each of its readers raises its own kind
-        text = (str(error).strip().splitlines() or [type(error).__name__])[0][:120]
         raise InputError(
-            f"cannot be read as a surface scan ({text})", source=str(path),
+            f"cannot be read as a surface scan ({first_line(error)})", source=str(path),
             allowed="a format of SurfaceTopography (x3p, sur, al3d, plu, opd, vk, mnt, xyz ...), "
             "or --step-m where it does not say the distance of its points",
         ) from None  # fmt: skip

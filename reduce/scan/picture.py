@@ -7,7 +7,8 @@ from typing import Any
 
 import numpy as np
 
-from ..pictures import figure, save
+from ...core.figures import figure
+from ..pictures import save
 from .ball import ScannedBall
 from .crater import Crater
 from .line import Groove

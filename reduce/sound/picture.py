@@ -7,9 +7,10 @@ from typing import Any
 
 import numpy as np
 
+from ...core.figures import figure
 from ..bounces.picture import draw_intervals, draw_restitution
 from ..bounces.times import BounceTimes
-from ..pictures import figure, save
+from ..pictures import save
 from .file import Sound
 from .onsets import Onsets
 

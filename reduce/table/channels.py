@@ -13,7 +13,7 @@ from typing import Any, overload
 import numpy as np
 
 from ...core.arrays import Array
-from ...core.errors import InputError, missing_extra
+from ...core.errors import InputError, first_line, missing_extra
 from ..rules import RULES
 from .heading import in_short
 
@@ -166,5 +166,4 @@ def _read(data: Any, size: int, path: Path) -> Array:
 
 
 def _unread(path: Path, error: Exception, allowed: str) -> InputError:
-    text = (str(error).strip().splitlines() or [type(error).__name__])[0][:120]
-    return InputError(f"cannot be read ({text})", source=str(path), allowed=allowed)
+    return InputError(f"cannot be read ({first_line(error)})", source=str(path), allowed=allowed)

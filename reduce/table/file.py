@@ -9,7 +9,7 @@ from __future__ import annotations
 
 import csv
 import re
-from collections.abc import Sequence
+from collections.abc import Iterable, Sequence
 from dataclasses import dataclass, field, replace
 from itertools import pairwise
 from pathlib import Path
@@ -327,14 +327,17 @@ def cells_of(
     """
     separator = separator or _separator(lines)
     try:
-        rows = (
-            [line.split() for line in lines]
-            if separator == " "
-            else list(csv.reader(lines, delimiter=separator, skipinitialspace=True))
-        )
+        rows = list(_split(lines, separator))
     except csv.Error as error:
         raise InputError(f"not a table ({error})", source=source, allowed="a table") from None
     return separator, [[cell.strip() for cell in row] for row in rows]
+
+
+def _split(lines: Sequence[str], separator: str) -> Iterable[list[str]]:
+    """The cells of lines; blanks separate as many as there are."""
+    if separator == " ":
+        return (line.split() for line in lines)
+    return csv.reader(lines, delimiter=separator, skipinitialspace=True)
 
 
 def _separator(lines: Sequence[str]) -> str:
@@ -342,11 +345,7 @@ def _separator(lines: Sequence[str]) -> str:
     sample = lines[len(lines) // 3 :][:40] or lines
 
     def numbers(separator: str) -> int:
-        split = (
-            (line.split() for line in sample)
-            if separator == " "
-            else csv.reader(sample, delimiter=separator, skipinitialspace=True)
-        )
+        split = _split(sample, separator)
         cells = [plain(cell.strip(), separator) for line in split for cell in line]
         return sum(bool(np.isfinite(value_of(cell))) for cell in cells if cell)
 

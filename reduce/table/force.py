@@ -63,9 +63,7 @@ def reduce_pulse(
         No pulse above the noise.
     """
     pulse = find_pulse(time, value, source=source)
-    peak, area = (
-        Measured(v.value, math.hypot(v.std, scale_std * v.value)) for v in (pulse.peak, pulse.area)
-    )
+    peak, area = (v.widened(scale_std * v.value) for v in (pulse.peak, pulse.area))
     pulse = replace(pulse, peak=peak, area=area)
     values = {("peak_force_N" if holds == "force" else "peak_acceleration_m_s2"): pulse.peak}
     values["contact_time_s"] = pulse.duration

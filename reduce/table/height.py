@@ -61,27 +61,13 @@ def reduce_heights(
         track, ball, metres=scale, contact=contact, source=source,
         allowed="heights of a body that falls, touches and rises (see --upwards, --first-s)",
     )  # fmt: skip
-    trials = tuple(_trial(track, found, k) for k in range(len(found.bounces)))
+    trials = tuple(
+        Trial(found.row(k), found.notes, trace=found.trace(k, time, height), label=label)
+        for k, label in enumerate(labels(len(found.bounces)))
+    )
     values = labelled((trial.label, trial.observables) for trial in trials)
     if metres is None and found.scale.known:
         values["unit_m"] = found.scale.metres
     if metres is not None and math.isfinite(found.fall.value):
         values["fall_acceleration_m_s2"] = found.fall.scaled(metres)
     return HeightReduction(track, found, values, trials)
-
-
-def _trial(track: Track, found: Bounced, k: int) -> Trial:
-    bounces, scale = found.bounces, found.scale.metres
-    bounce = bounces[k]
-    row, trace = {"restitution": bounce.restitution}, {}
-    if found.scale.known:
-        row["impact_speed_m_s"] = bounce.approach.times(scale)
-        row["rebound_speed_m_s"] = bounce.rebound.times(scale)
-        low = 0 if k == 0 else bounces[k - 1].turning
-        high = track.time.size if k + 1 == len(bounces) else bounces[k + 1].turning
-        touch = found.stage.floor + bounce.height.value
-        trace = {
-            "time_s": track.time[low:high] - bounce.time.value,
-            "tip_height_m": (track.height[low:high] - touch) * scale.value,
-        }
-    return Trial(row, found.notes, trace=trace, label=labels(len(bounces))[k])

@@ -7,8 +7,9 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from ...core.figures import figure
 from ...core.inputs.flow_curve import PROOF_STRAIN
-from ..pictures import figure, save
+from ..pictures import save
 
 if TYPE_CHECKING:
     from ..bounces.times import BounceTimes

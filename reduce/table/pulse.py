@@ -34,8 +34,8 @@ class Pulse:
         (n,): the whole record, its baseline taken off and the pulse upwards [s, unit].
     baseline, noise
         Of the record before the pulse [unit].
-    peak, peak_time
-        Largest value [unit] and its time [s].
+    peak
+        Largest value [unit].
     start, end
         Where the flanks meet zero [s].
     area
@@ -51,7 +51,6 @@ class Pulse:
     baseline: float
     noise: float
     peak: Measured
-    peak_time: float
     start: Measured
     end: Measured
     area: Measured
@@ -79,8 +78,10 @@ def find_pulse(time: Array, value: Array, *, source: str) -> Pulse:
     InputError
         Too few samples, nothing above the noise, or no whole pulse: what it looks like.
     """
-    if time.size < 20:
-        raise InputError(f"{time.size} samples", source=source, allowed="20 or more")
+    if time.size < RULES.table_rows:
+        raise InputError(
+            f"{time.size} samples", source=source, allowed=f"{RULES.table_rows} or more"
+        )
     sign, top, level = _largest(value)
     noise, clear = level.noise, sign * value - level.mean
     if not clear[top] > RULES.pulse_over_noise * noise:
@@ -99,7 +100,7 @@ def find_pulse(time: Array, value: Array, *, source: str) -> Pulse:
     if min(used_a, used_b) < 4:
         notes.append(f"only {min(used_a, used_b)} samples on a flank: the ends are rough")
     if shape.ringing:
-        peak, peak_time, start, end, part = _stilled(
+        peak, start, end, part = _stilled(
             time, clear, top, (start, end), peak, noise, shape.ringing
         )
         notes.append(
@@ -134,7 +135,7 @@ def find_pulse(time: Array, value: Array, *, source: str) -> Pulse:
     if found.foot:
         start = _over_a_foot(time, clear, top, start, found, peak.value)
     return Pulse(
-        time, clear, sign * level.mean, noise, peak, peak_time, start, end, found.area, inside,
+        time, clear, sign * level.mean, noise, peak, start, end, found.area, inside,
         (*notes, *found.notes),
     )  # fmt: skip
 
@@ -229,14 +230,14 @@ def _flank(time: Array, clear: Array, top: int, step: int, peak: float) -> tuple
 def _stilled(
     time: Array, clear: Array, top: int, ends: tuple[Measured, Measured], peak: Measured,
     noise: float, ringing: float,
-) -> tuple[Measured, float, Measured, Measured, float]:  # fmt: skip
-    """Return peak, its time and both ends without the ringing, and how much was within."""
+) -> tuple[Measured, Measured, Measured, float]:  # fmt: skip
+    """Return peak and both ends without the ringing, and how much was within."""
     start, end = ends
     for _ in range(2):  # a swing that cuts a flank off moves the end of the pulse
         within = ringing_within(time, clear, (start.value, end.value), peak.value, ringing)
         still = clear - within.swing
         start, end = (_flank(time, still, top, way, peak.value)[0] for way in (-1, 1))
-    peak, peak_time = _peak(time, still, top, noise)
+    peak, _ = _peak(time, still, top, noise)
     unsure = within.unsure * peak.value
     # what is left of one swing moves both ends: what it does to them adds up in the time between
     both = math.sqrt(2.0) if within.swing.any() else 1.0
@@ -244,7 +245,7 @@ def _stilled(
         e.widened(both * (_without(time, still, top, way, unsure, peak.value).value - e.value))
         for e, way in ((start, -1), (end, 1))
     )
-    return peak.widened(unsure), peak_time, start, end, within.part
+    return peak.widened(unsure), start, end, within.part
 
 
 def _over_a_foot(

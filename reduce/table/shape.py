@@ -81,7 +81,7 @@ def shape_of(
     square = float(np.mean(clear[soon] ** 2)) if soon.any() else 0.0
     chance = (1.0 + RULES.by_chance * math.sqrt(2.0 / max(int(soon.sum()), 1))) * noise**2
     unrest = math.sqrt(square - noise**2) / peak if square > chance else 0.0
-    if abs(rest) > RULES.step:
+    if abs(rest) > RULES.swing:
         raise looks_like("step", f"a step: {rest:+.0%} of the peak stays", source)
     wide = _wide(clear, top)
     if half >= RULES.whole_flank and wide > RULES.plateau:

@@ -11,6 +11,7 @@ import numpy as np
 from ...core.arrays import Array
 from ...core.errors import InputError
 from ...core.inputs.flow_curve import PROOF_STRAIN, MeasuredFlow
+from ...core.rules import RULES as CORE
 from ..gates import Refused
 from ..measured import Measured
 from ..rules import RULES
@@ -148,10 +149,10 @@ def _rows(plastic: Array, stress: Array, source: str) -> MeasuredFlow:
             allowed=f"a test beyond {2.0 * PROOF_STRAIN:g}",
         )  # fmt: skip
     # what scatters about the elastic line belongs to it; a gauge that came off at the end does not
-    elastic = np.flatnonzero(plastic[: int(plastic.argmax())] <= RULES.yields)
+    elastic = np.flatnonzero(plastic[: int(plastic.argmax())] <= CORE.strain_seen)
     begin = int(elastic[-1]) + 1 if elastic.size else 0
     plastic, stress = plastic[begin:], stress[begin:]
-    edges = np.geomspace(RULES.yields, largest, RULES.tension_kept)
+    edges = np.geomspace(CORE.strain_seen, largest, RULES.tension_kept)
     means = [
         (float(np.mean(plastic[there])), float(np.median(stress[there])))
         for low, high in pairwise(edges)

@@ -14,6 +14,7 @@ from ...core.errors import InputError, InputErrors
 from ...recordings.columns import CONDITIONS, MEASURED, STD_SUFFIX
 from ..bounces.fall import Ball, Fall
 from ..measured import Measured, Trial
+from ..rules import RULES
 from ..shared.units import LENGTH, UNITS
 from .file import Columns
 
@@ -138,7 +139,7 @@ def reduce_leeb(table: Columns, *, value: str, std: float, speed: float | None) 
 
 def _fall(ball: Ball, height: float) -> Fall:
     """Return the flight over a height [m], its drag taken at a typical speed."""
-    return ball.fall(0.75 * math.sqrt(2.0 * ball.gravity * height))
+    return ball.fall(RULES.drag_speed * math.sqrt(2.0 * ball.gravity * height))
 
 
 def _heights(table: Columns, value: str, unit: str) -> tuple[Array, float]:

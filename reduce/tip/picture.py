@@ -7,7 +7,8 @@ from pathlib import Path
 import numpy as np
 import numpy.typing as npt
 
-from ..pictures import figure, save
+from ...core.figures import figure
+from ..pictures import save
 from .reduction import TipReduction
 
 

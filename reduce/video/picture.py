@@ -7,9 +7,10 @@ from typing import Any
 
 import numpy as np
 
+from ...core.figures import figure
 from ..bounces.flights import Piece
 from ..images.clip import Clip
-from ..pictures import figure, save
+from ..pictures import save
 from .reduction import VideoReduction
 
 

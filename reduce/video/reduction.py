@@ -71,8 +71,8 @@ class VideoReduction:
         (n,) standard deviation of `row` by the fit, nan for a ball [pixel].
     lean
         (n,) lean of the rod to the right [rad], 0 for a ball.
-    critical_frame, threshold, levels
-        Frame with the fewest dark pixels, grey level between body and background, both levels.
+    critical_frame, threshold
+        Frame with the fewest dark pixels, grey level between body and background.
     half_width
         Half the width of the rod, or radius of the ball [pixel].
     found
@@ -87,7 +87,6 @@ class VideoReduction:
     shape: str
     critical_frame: int
     threshold: float
-    levels: tuple[float, float]
     half_width: Measured
     tip_radius: float
     optics: Optics
@@ -113,40 +112,27 @@ class VideoReduction:
     def trials(self) -> tuple[Trial, ...]:
         """Return a row of trials.csv for each contact."""
         names = labels(len(self.bounces))
-        return tuple(self._trial(b, k, names[k - 1]) for k, b in enumerate(self.bounces, start=1))
+        return tuple(self._trial(k, label) for k, label in enumerate(names))
 
-    def _trial(self, bounce: Bounce, number: int, label: str) -> Trial:
-        row = {"restitution": bounce.restitution}
-        if math.isfinite(self.scale.value):
-            row["impact_speed_m_s"] = bounce.approach.times(self.scale)
-            row["rebound_speed_m_s"] = bounce.rebound.times(self.scale)
+    def _trial(self, k: int, label: str) -> Trial:
+        bounce, part = self.bounces[k], self.found.part(k)
+        row, trace = self.found.row(k), self.found.trace(k, self.time, -self.row)
+        if trace:
+            aside = self.column[part] - self.column[bounce.turning]
+            trace["tip_x_m"] = aside * self.scale.value
         if self.shape == "rod":
             lean = self._lean_before(bounce)
             row["angle_deg"] = Measured(
                 90.0 - math.degrees(abs(lean.value)), math.degrees(lean.std)
             )
-        return Trial(row, self.notes, trace=self._trace(bounce, number), label=label)
+            if trace:
+                trace["angle_rad"] = 0.5 * np.pi - np.abs(self.lean[part])
+        return Trial(row, self.notes, trace=trace, label=label)
 
     def _lean_before(self, bounce: Bounce) -> Measured:
         near = self.frame <= self.frame[bounce.near[0]]
         last = self.lean[near][-RULES.lean_frames :]
         return Measured(float(np.median(last)), float(np.std(last) / max(len(last) - 1, 1) ** 0.5))
-
-    def _trace(self, bounce: Bounce, number: int) -> dict[str, Array]:
-        if not math.isfinite(self.scale.value):
-            return {}
-        low = 0 if number == 1 else self.bounces[number - 2].turning
-        high = self.frame.size if number == len(self.bounces) else self.bounces[number].turning
-        part = slice(low, high)
-        touch = self.found.stage.floor + bounce.height.value
-        trace = {
-            "time_s": self.time[part] - bounce.time.value,
-            "tip_height_m": (-self.row[part] - touch) * self.scale.value,
-            "tip_x_m": (self.column[part] - self.column[bounce.turning]) * self.scale.value,
-        }
-        if self.shape == "rod":
-            trace["angle_rad"] = 0.5 * np.pi - np.abs(self.lean[part])
-        return trace
 
 
 def reduce_video(
@@ -197,7 +183,7 @@ def reduce_video(
     track = {name: values[fresh] for name, values in track.items() if name != "radius"}
     optics, notes = _timed(clip, optics)
     result = VideoReduction(
-        **track, shape=shape, critical_frame=critical, threshold=0.5 * sum(levels), levels=levels,
+        **track, shape=shape, critical_frame=critical, threshold=0.5 * sum(levels),
         half_width=half, tip_radius=tip_radius, optics=optics,
         found=_contacts(track, half, near, optics, clip.source), notes=(), source=clip.source,
     )  # fmt: skip

@@ -143,7 +143,7 @@ PULSE = np.sin(np.pi * np.arange(21) / 20)
 def test_a_third_of_the_peak_that_stays_is_a_step(rest, refused) -> None:
     record = np.concatenate([np.zeros(200), PULSE, np.full(300, rest)])
     record[200:221] = np.maximum(record[200:221], rest * (np.arange(21) > 15))
-    assert refuses("step", lambda: looked_at(record, (200.0, 220.0))) == refused
+    assert refuses("swing", lambda: looked_at(record, (200.0, 220.0))) == refused
 
 
 def swings(waves, size, *, away=30):
