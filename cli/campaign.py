@@ -18,7 +18,7 @@ from . import campaign_data, studies
 from .campaign_data import DEFAULT_DESIGN, PUBLISHED, DesignName, Out
 from .campaign_progress import Progress, duration, judged, remarks, tell
 from .shared.groups import group
-from .shared.places import refuse_beside
+from .shared.places import one_of, refuse_beside
 
 # With so many cases done the pictures are drawn while a run goes on: the first, and the first
 # three, which in the large designs are the figures' pairs, Sy* = 0.1, 1 and 10.
@@ -61,12 +61,10 @@ def run(
 
     if scheduler:
         refuse_beside(context, "beside --scheduler: it has the workers", "workers")
-    if retry not in ("", "failed"):
-        raise InputError(f"{retry!r}", source="command line", key="--retry", allowed="failed")
     share = _share(part)
     chosen = design_named(design)
     store = Store(out)
-    again = frozenset({retry} - {""})
+    again = frozenset({one_of(retry, ("", "failed"), key="--retry")} - {""})
     before = status_of(chosen, store)
     executor: Any = DaskExecutor.connect(scheduler) if scheduler else LocalExecutor(workers=workers)
     cases = distinct_cases(chosen)

@@ -12,7 +12,7 @@ from ..core.errors import EXIT_NOT_CONVERGED, InputError
 from ..core.inputs.input_file import checked_file
 from . import studies
 from .campaign_data import PUBLISHED
-from .shared.places import folder_option, refuse_beside
+from .shared.places import folder_option, one_of, refuse_beside
 from .shared.terminal import console as new_console
 from .shared.terminal import show_table
 
@@ -71,9 +71,7 @@ def fit(
     if judge is not None:
         refuse_beside(context, "beside --judge", "campaigns", "out", "compare", "only")
         return _judge(judge, console, publish=publish)
-    if only not in ("", "hardening"):
-        raise InputError(f"{only!r}", source="command line", key="--only", allowed="hardening")
-    if only:
+    if one_of(only, ("", "hardening"), key="--only"):
         refuse_beside(context, "beside --only", "compare")
         return _refit_hardening(_files(campaigns), out, console, publish=publish)
     return _refit(_files(campaigns), out, console, publish=publish, compare=compare)

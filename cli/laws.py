@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any
 
@@ -83,13 +82,11 @@ def show(law: Annotated[str, typer.Argument(help="A name of `dentscope laws list
         "read": chosen.read,
         "described in": _described_in(chosen),
     }
-    _echo([*lines.items(), *(("breaks", f"{text}: {size:g} %") for text, size in chosen.breaks)])
-
-
-def _echo(lines: Iterable[tuple[str, str]]) -> None:
-    for key, text in lines:
+    for key, text in lines.items():
         if text:
             entry(key, text)
+    for text, size in chosen.breaks:
+        entry("breaks", f"{text}: {size:g} %")
 
 
 @app.command()

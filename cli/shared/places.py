@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import os
+from collections.abc import Sequence
 from pathlib import Path
 from typing import Any
 
@@ -54,6 +55,20 @@ def writable_folder(path: Path, *, key: str) -> Path:
             f"{there} may not be written", source=_LINE, key=key, allowed="a folder of your own"
         )
     return path
+
+
+def one_of(asked: str, allowed: Sequence[str], *, key: str) -> str:
+    """Return a word that an option takes.
+
+    Raises
+    ------
+    InputError
+        It takes others.
+    """
+    if asked not in allowed:
+        known = ", ".join(filter(None, allowed))
+        raise InputError(repr(asked), source=_LINE, key=key, allowed=known)
+    return asked
 
 
 def refuse_beside(context: typer.Context, option: str, *names: str) -> None:

@@ -7,18 +7,11 @@ from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
     from ...impact.result import Impact
-    from ...models.base import ContactLaw
-
-
-def _default_laws() -> list[ContactLaw]:
-    from ...impact.files.setup import DEFAULT_LAWS
-    from ...models import LAWS
-
-    return [LAWS[name] for name in DEFAULT_LAWS if name in LAWS]
 
 
 def chapter3(names: list[str], out: Path) -> list[Impact]:
     """Print chapter 3 beside our impacts, write its files and return the impacts."""
+    from ...impact.files.setup import DEFAULT_LAWS
     from ...impact.files.tables import impact_row, write_csv
     from ...studies.thesis import chapter3 as thesis
     from ..laws import laws_named
@@ -27,7 +20,7 @@ def chapter3(names: list[str], out: Path) -> list[Impact]:
 
     console = new_console()
     found = thesis.bench()
-    laws = laws_named(names) if names else _default_laws()
+    laws = laws_named(names or list(DEFAULT_LAWS))
     masses = (found.striker.mass, found.mass_that_fits)
     curves = thesis.curves(found, laws, masses=masses)
     console.print(

@@ -7,9 +7,8 @@ from typing import Annotated
 
 import typer
 
-from ...core.errors import InputError
 from ...studies.thesis.figures.names import CHAPTERS, FIELDS
-from ..shared.places import folder_option
+from ..shared.places import folder_option, one_of
 
 
 def figures(
@@ -24,8 +23,8 @@ def figures(
     out: Annotated[Path, folder_option("Folder of the pages.")] = Path("docs/thesis"),
 ) -> None:
     """Draw the thesis again: a picture and a computed line for every figure."""
-    chosen = _known(chapter, "--chapter", CHAPTERS) or list(CHAPTERS)
-    numbers = _known(fields, "--fields", FIELDS)
+    chosen = [one_of(name, CHAPTERS, key="--chapter") for name in chapter or CHAPTERS]
+    numbers = [one_of(number, FIELDS, key="--fields") for number in fields or ()]
     from ...studies.thesis.figures.fields import solve_field
     from ...studies.thesis.figures.gallery import build
 
@@ -35,12 +34,3 @@ def figures(
     for entry in build(out, chapters=chosen, root=root):
         typer.echo(f"{entry.number:>8}  {entry.title}: {entry.note}")
     typer.echo(f"written: {out / 'README.md'}")
-
-
-def _known(asked: list[str] | None, option: str, allowed: tuple[str, ...]) -> list[str]:
-    """Return what was asked for, all of it known."""
-    for name in asked or ():
-        if name not in allowed:
-            raise InputError(repr(name), source="command line", key=option,
-                             allowed=", ".join(allowed))  # fmt: skip
-    return asked or []

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import os
-from collections.abc import Sequence
 from datetime import UTC, datetime
 from pathlib import Path
 from typing import Annotated
@@ -14,21 +13,13 @@ from ...core.errors import InputError
 from ...studies.proof.names import KINDS, LISTS
 from ..campaign_progress import duration
 from ..shared.groups import group
-from ..shared.places import folder_option, writable_folder
+from ..shared.places import folder_option, one_of, writable_folder
 
 app = group("Blind proof of the diagnosis on concealed impacts.")
 
 _BASE = Path("build/proof")
 _Base = Annotated[Path, folder_option("Folder of the runs.")]
 _Which = Annotated[str, typer.Option("--list", help="full or small.")]
-
-
-def _checked(asked: str, option: str, allowed: Sequence[str]) -> str:
-    if asked not in allowed:
-        raise InputError(
-            repr(asked), source="command line", key=option, allowed=", ".join(filter(None, allowed))
-        )
-    return asked
 
 
 @app.command()
@@ -41,7 +32,7 @@ def run(
     workers: Annotated[int, typer.Option(min=1, help="Worker processes.")] = os.cpu_count() or 1,
 ) -> int:
     """Go on with the run of this source tree: draw, seal, diagnose, seal. Stop it at any time."""
-    _checked(which, "--list", LISTS)
+    one_of(which, LISTS, key="--list")
     from multiprocessing import active_children
 
     from rich.console import Console
@@ -83,7 +74,7 @@ def run(
 @app.command()
 def score(which: _Which = "full", out: _Base = _BASE) -> None:
     """Open the truths of the sets that have a sealed verdict, score, and rewrite docs/proof.md."""
-    _checked(which, "--list", LISTS)
+    one_of(which, LISTS, key="--list")
     from ...core.provenance import source_commit
     from ...studies.proof import page as pages
     from ...studies.proof.case import open_run
@@ -141,13 +132,13 @@ def sample(
     seed: Annotated[int, typer.Option(help="Seed of the draw.")] = 1,
 ) -> None:
     """Write sample sets with their truths beside them."""
-    _checked(kind, "--kind", ("", *KINDS))
+    one_of(kind, ("", *KINDS), key="--kind")
     writable_folder(out, key="OUT")
     from ...studies.proof.generators.effects import EFFECTS, OUTSIDE
     from ...studies.proof.sample import sample as samples
 
     known = EFFECTS | OUTSIDE if not kind else (EFFECTS if kind == "single" else OUTSIDE)
-    _checked(name, "--name", ("", *known))
+    one_of(name, ("", *known), key="--name")
     for label, record in samples(out, count=count, kind=kind, name=name, seed=seed):
         typer.echo(f"{label}  {record['kind']}")
 
