@@ -8,12 +8,10 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
-from dataclasses import fields
 from pathlib import Path
 from typing import NamedTuple
 
 from ..core.errors import InputError
-from .rules import RULES
 
 
 class Gate(NamedTuple):
@@ -121,14 +119,3 @@ def drawn(draw: Callable[[Path, str], None]) -> Iterator[None]:
         if refused.draw is None:
             refused.draw = lambda to: draw(to, reason)
         raise
-
-
-def table_of_gates() -> str:
-    """Return the gates as a table in Markdown, the limits and their sources from the register."""
-    about = {f.name: f.metadata for f in fields(RULES)}
-    rows = ["| of | looked at | limit | effect | source |", "| --- | --- | --- | --- | --- |"]
-    for gate in GATES.values():
-        limit = f"{getattr(RULES, gate.limit):g}" if gate.limit else "-"
-        source = about[gate.limit]["source"] if gate.limit else "what is found itself"
-        rows.append(f"| {gate.kind} | {gate.looks_at} | {limit} | {gate.effect} | {source} |")
-    return "\n".join(rows)

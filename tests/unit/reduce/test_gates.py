@@ -6,7 +6,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 from dentscope.cli import run as command
-from dentscope.reduce.gates import GATES, Refused, table_of_gates
+from dentscope.reduce.gates import GATES, Refused
 from dentscope.reduce.kinds import load_kind
 from dentscope.reduce.rules import RULES
 from dentscope.reduce.table.pulse import find_pulse
@@ -18,6 +18,17 @@ WIDE = half_sine(long=8e-3, noise=0.0)
 
 def noise(std=1.0, seed=3):
     return np.random.default_rng(seed).normal(0.0, std, T.size)
+
+
+def table_of_gates() -> str:
+    """The gates as a table in Markdown, the limits and their sources from the register."""
+    about = {f.name: f.metadata for f in fields(RULES)}
+    rows = ["| of | looked at | limit | effect | source |", "| --- | --- | --- | --- | --- |"]
+    for gate in GATES.values():
+        limit = f"{getattr(RULES, gate.limit):g}" if gate.limit else "-"
+        source = about[gate.limit]["source"] if gate.limit else "what is found itself"
+        rows.append(f"| {gate.kind} | {gate.looks_at} | {limit} | {gate.effect} | {source} |")
+    return "\n".join(rows)
 
 
 def test_every_gate_has_a_limit_of_the_register_and_its_line_in_the_docs():
