@@ -3,6 +3,7 @@
 One file: a draft beside it is filled, synchronised and renamed. Several files of one folder that
 belong together: their contents first go to one pending file, so that whoever comes next finishes
 what a kill or a loss of power interrupted. A folder that several processes change is locked.
+Figures need no screen.
 """
 
 from __future__ import annotations
@@ -13,6 +14,7 @@ import fcntl
 import hashlib
 import io
 import json
+import math
 import os
 import stat
 import time
@@ -20,12 +22,15 @@ import warnings
 from collections.abc import Iterable, Iterator, Mapping
 from contextlib import contextmanager, suppress
 from pathlib import Path
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 from .disk import DISK
 from .errors import InputError
 from .inputs.input_file import read_bytes
 from .rules import RULES
+
+if TYPE_CHECKING:
+    from matplotlib.figure import Figure
 
 PENDING = ".dentscope-pending"
 
@@ -184,6 +189,24 @@ def csv_text(rows: Iterable[Iterable[Any]], *, header: Iterable[str]) -> str:
     writer.writerow(header)
     writer.writerows(rows)
     return stream.getvalue()
+
+
+def figure(rows: int, columns: int, *, size: tuple[float, float]) -> tuple[Figure, Any]:
+    """Return a figure of some size [inch] and its axes (rows, columns)."""
+    from matplotlib.figure import Figure
+
+    made = Figure(figsize=size, layout="constrained")
+    return made, made.subplots(rows, columns, squeeze=False)
+
+
+def panels(count: int) -> tuple[Figure, list[Any]]:
+    """Return a figure of `count` panels and no empty one, two or three a row."""
+    columns = 2 if count in (2, 4) else max(min(count, 3), 1)
+    rows = max(math.ceil(count / columns), 1)
+    made, axes = figure(rows, columns, size=(4.4 * columns, 3.6 * rows))
+    for spare in axes.flat[count:]:
+        spare.remove()
+    return made, list(axes.flat[:count])
 
 
 def write_figure(figure: Any, path: Path, *, dpi: float, **options: Any) -> Path:

@@ -159,7 +159,7 @@ def _walked(law: ContactLaw, given: c.Given, out: Array, **more: Array) -> int:
     # importing it compiles: a file that is refused and the list of keys do without
     from .walk.compiled import many_impacts
 
-    return many_impacts(law.kernels, given, out, **more)
+    return many_impacts(tuple(law.kernels), given, out, **more)
 
 
 def _given(rows: Sequence[Arrays]) -> c.Given:

@@ -160,4 +160,4 @@ def _groups(scenes: Sequence[Scene]) -> Iterator[tuple[Any, list[int], list[Arra
         groups.setdefault((len(a.factors), len(a.par)), []).append(i)
     for members in groups.values():
         stacked = [np.stack([getattr(rows[i], key) for i in members]) for key in _VARIED]
-        yield scenes[members[0]].law.kernels, members, stacked
+        yield tuple(scenes[members[0]].law.kernels), members, stacked

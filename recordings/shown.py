@@ -69,7 +69,7 @@ def picture_of(found: RecordingSet) -> Figure:
 
     Those of quasi-static presses stand behind, over the load.
     """
-    from ..core.figures import panels
+    from ..core.output import panels
 
     shown = _panels(found)
     figure, axes = panels(len(shown))

@@ -8,8 +8,7 @@ from textwrap import wrap
 from matplotlib.figure import Figure
 
 from ..core.arrays import Array
-from ..core.figures import figure
-from ..core.output import write_figure
+from ..core.output import figure, write_figure
 
 
 def save(made: Figure, path: Path) -> None:

@@ -71,7 +71,7 @@ class Diagnosis:
 
 
 def _drawn(story: Story) -> Figure:
-    from ..core.figures import panels
+    from ..core.output import panels
 
     names = list(dict.fromkeys(point.observable for point in story.points))
     figure, axes = panels(len(names))

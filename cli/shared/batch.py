@@ -107,7 +107,7 @@ def draw_page(pictures: Mapping[str, Path], path: Path) -> None:
     """Draw small copies of all pictures on one page, named, for a look at all of them."""
     from matplotlib.image import imread
 
-    from ...core.figures import figure
+    from ...core.output import figure
     from ...reduce.pictures import save
 
     columns = min(4, len(pictures))

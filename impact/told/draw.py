@@ -10,9 +10,8 @@ from types import MappingProxyType
 import numpy as np
 from matplotlib.figure import Figure
 
-from ...core.figures import figure, panels
 from ...core.observables import OBSERVABLES
-from ...core.output import write_figure
+from ...core.output import figure, panels, write_figure
 from ..columns import Impacts
 from ..inverse import alpha_curve
 from ..rules import RULES

@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 import numpy as np
 from matplotlib.figure import Figure
 
-from ...core.figures import panels
+from ...core.output import panels
 from ..integrate import Trace
 from .crater import LeftSurface, surfaces_left
 from .rig_shape import rig_shape

@@ -9,7 +9,7 @@ import numpy as np
 from scipy.spatial.transform import Rotation
 
 from ...core.arrays import Array
-from ...core.figures import figure
+from ...core.output import figure
 from ..pictures import save
 from .motion import deviations
 from .point import PointReduction

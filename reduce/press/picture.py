@@ -6,7 +6,7 @@ from pathlib import Path
 
 import numpy as np
 
-from ...core.figures import figure
+from ...core.output import figure
 from ..measured import Measured
 from ..pictures import save
 from .reduction import PressReduction

@@ -7,7 +7,7 @@ from typing import Any
 
 import numpy as np
 
-from ...core.figures import figure
+from ...core.output import figure
 from ..pictures import save
 from .ball import ScannedBall
 from .crater import Crater

@@ -7,7 +7,7 @@ from typing import Any
 
 import numpy as np
 
-from ...core.figures import figure
+from ...core.output import figure
 from ..bounces.picture import draw_intervals, draw_restitution
 from ..bounces.times import BounceTimes
 from ..pictures import save

@@ -7,8 +7,8 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from ...core.figures import figure
 from ...core.inputs.flow_curve import PROOF_STRAIN
+from ...core.output import figure
 from ..pictures import save
 
 if TYPE_CHECKING:

@@ -7,7 +7,7 @@ from pathlib import Path
 import numpy as np
 import numpy.typing as npt
 
-from ...core.figures import figure
+from ...core.output import figure
 from ..pictures import save
 from .reduction import TipReduction
 

@@ -7,7 +7,7 @@ from typing import Any
 
 import numpy as np
 
-from ...core.figures import figure
+from ...core.output import figure
 from ..bounces.flights import Piece
 from ..images.clip import Clip
 from ..pictures import save

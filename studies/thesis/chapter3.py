@@ -11,9 +11,9 @@ from typing import Any
 import numpy as np
 
 from ...core.arrays import Array
-from ...core.figures import figure
 from ...core.inputs.toml_input import read_toml
 from ...core.material import Material
+from ...core.output import figure
 from ...impact.integrate import strike
 from ...impact.result import Impact
 from ...impact.scene import Approach, Scene, Striker, scene_of
