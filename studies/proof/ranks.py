@@ -51,10 +51,10 @@ def uniformity(lines: Sequence[dict[str, Any]]) -> list[Uniform]:
             ends = float(binomtest(inside, len(shares), 0.9).pvalue)
             tests.append((float(kstest(shares, "uniform").pvalue), ends))
             found.append((name, label, len(shares), inside / len(shares)))
-    p = np.array(tests).min(axis=1)
-    corrected = holm(np.array(tests).ravel()).reshape(-1, 2).min(axis=1)
+    p = np.reshape(tests, (-1, 2))
+    corrected = holm(p.ravel()).reshape(-1, 2)
     return [
-        Uniform(*row, float(one), float(all_))
+        Uniform(*row, float(one.min()), float(all_.min()))
         for row, one, all_ in zip(found, p, corrected, strict=True)
     ]
 
