@@ -3,14 +3,15 @@
 | cell | is |
 | --- | --- |
 | `1 234,5`, `1.234,5`, `1'234.5`, `"1,234.5"` | a number with separators of thousands |
-| `0,25` where commas do not separate | a number |
-| `12:04:26.746`, `2024-05-17T12:04:26.746Z`, `17.05.2024 12:04:26` | an instant |
+| `0,25` where commas do not separate, or are quoted | a number |
+| `12:04:26.746`, `04:26.7`, `2024-05-17T12:04:26.746Z`, `17.05.2024 12:04:26` | an instant |
 | `OL`, `∞`, `******`, `#N/A`, `NaN`, 9.9e37 | no number: out of range, or not measured |
 """
 
 from __future__ import annotations
 
 import re
+from collections.abc import Iterable
 from datetime import date
 
 import numpy as np
@@ -22,6 +23,7 @@ OUT_OF_RANGE = 9.8e37
 """Instruments that speak SCPI write 9.9e37 for more than they can show (SCPI-1999, 7.2.1)."""
 
 _DECIMAL_COMMA = re.compile(r"[+-]?\d*,\d+([eE][+-]?\d+)?")
+_COUNT = re.compile(r"[+-]?[1-9]\d{0,2}(,\d{3})+")
 _THOUSANDS = (
     (re.compile(r"[+-]?\d{1,3}([ \u00a0\u2009\u202f'’]\d{3})+([.,]\d+)?"),
      " \u00a0\u2009\u202f'’"),
@@ -33,6 +35,7 @@ _CLOCK = re.compile(
     r"(?P<h>\d{1,2}):(?P<m>\d{2})(?::(?P<s>\d{2}(?:[.,:]\d+)?))?\s*(?P<half>[AaPp][Mm])?"
     r"(?:Z|[+-]\d{2}:?\d{2})?"
 )
+_MINUTES = re.compile(r"\d{1,2}:\d{2}[.,]\d+")
 DAY = 86400.0
 """In seconds."""
 
@@ -62,6 +65,20 @@ def plain(cell: str, separator: str) -> str:
     return cell
 
 
+def commas_between(cells: Iterable[str], separator: str) -> str:
+    """Return what `plain` takes for the separator: of quoted decimal commas between commas `;`.
+
+    Quoted commas are decimal where one of them can part no thousands.
+
+    Examples
+    --------
+    >>> commas_between(["0,25", "1,234"], ","), commas_between(["1,234", "0.5"], ",")
+    (';', ',')
+    """
+    quoted = (c for c in cells if separator == "," and _DECIMAL_COMMA.fullmatch(c))
+    return separator if all(map(_COUNT.fullmatch, quoted)) else ";"
+
+
 def value_of(cell: str) -> float:
     """Return the number in a cell, NaN for what is none or stands for 'out of range'."""
     found = number(cell)
@@ -71,14 +88,15 @@ def value_of(cell: str) -> float:
 def instant(cell: str, since: float = 0.0) -> float:
     """Return an instant in seconds from midnight, or from the year 1 where a date stands before.
 
-    NaN for what is no clock; `since` a number of days, of both, fewer.
+    Minutes and seconds with a fraction count from the hour. NaN for what is no clock; `since` a
+    number of days, of both, fewer.
 
     Examples
     --------
     >>> instant("12:04:26.746")
     43466.746
     """
-    found = _CLOCK.fullmatch(cell)
+    found = _CLOCK.fullmatch(f"00:{cell}" if _MINUTES.fullmatch(cell) else cell)
     if found is None:
         return np.nan
     hour, minute = int(found["h"]), int(found["m"])

@@ -11,7 +11,7 @@ import csv
 import re
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass, field, replace
-from itertools import pairwise
+from itertools import chain, pairwise
 from pathlib import Path
 
 import numpy as np
@@ -23,7 +23,7 @@ from ...core.inputs.input_file import checked_file
 from ...core.processes.confined import confined
 from ..rules import RULES
 from ..shared.units import UNITS
-from .cells import DAY, instant, plain, since_first, value_of
+from .cells import DAY, commas_between, instant, plain, since_first, value_of
 from .channels import CHANNELS, Shown, channels_of
 from .heading import Heading, heading_of, labview_rows, unit_in
 from .packed import packed_table, tracker_rows
@@ -312,7 +312,8 @@ def text_rows(lines: Sequence[str], source: str, *, separator: str = "") -> list
         No table.
     """
     separator, rows = cells_of(lines, source, separator=separator)
-    return [[plain(cell, separator) for cell in row] for row in rows]
+    between = commas_between(chain.from_iterable(rows), separator)
+    return [[plain(cell, between) for cell in row] for row in rows]
 
 
 def cells_of(
@@ -345,8 +346,8 @@ def _separator(lines: Sequence[str]) -> str:
     sample = lines[len(lines) // 3 :][:40] or lines
 
     def numbers(separator: str) -> int:
-        split = _split(sample, separator)
-        cells = [plain(cell.strip(), separator) for line in split for cell in line]
-        return sum(bool(np.isfinite(value_of(cell))) for cell in cells if cell)
+        cells = [cell.strip() for line in _split(sample, separator) for cell in line]
+        between = commas_between(cells, separator)
+        return sum(bool(np.isfinite(value_of(plain(cell, between)))) for cell in cells if cell)
 
     return max(("\t", ";", ",", " "), key=numbers)

@@ -34,11 +34,12 @@ def test_edges_are_no_pulses(tmp_path, edge):
 @pytest.mark.parametrize(
     ("between", "end", "head"),
     [("\t", "\n", "Zeit (s)\tKraft (N)"), (";", "\r\n", '"Czas [s]";"Siła [N]"'),
-     (";", "\n", "Temps;Force\n(s);(N)")],
+     (";", "\n", "Temps;Force\n(s);(N)"), (",", "\n", '"Time (s)","Force (N)"')],
 )  # fmt: skip
 def test_quoted_commas_of_other_programs(tmp_path, between, end, head):
-    rows = [f'"{t:.4f}"{between}"{v:.2f}"' for t, v in zip(T, half_sine(), strict=True)]
-    text = end.join([head, *(row.replace(".", ",") for row in rows)])
+    cells = ((f"{t:.4f}", f"{v:.2f}") for t, v in zip(T, half_sine(), strict=True))
+    rows = [f'"{t}"{between}"{v}"'.replace(".", ",") for t, v in cells]
+    text = end.join([head, *rows])
     (tmp_path / "a.csv").write_bytes(text.encode("utf-8-sig"))
     assert run(tmp_path / "a.csv").values["impulse_N_s"].value == pytest.approx(AREA, abs=0.003)
 

@@ -4,7 +4,13 @@ import numpy as np
 import pytest
 from dentscope.core.errors import InputError
 from dentscope.reduce.kinds import load_kind
-from dentscope.reduce.table.cells import instant, plain, since_first, value_of
+from dentscope.reduce.table.cells import (
+    commas_between,
+    instant,
+    plain,
+    since_first,
+    value_of,
+)
 from dentscope.reduce.table.file import columns_of
 from dentscope.reduce.table.heading import heading_of, in_short, labview_rows
 from dentscope.reduce.table.level import level_before
@@ -19,6 +25,11 @@ from scipy.signal import lsim
 )  # fmt: skip
 def test_numbers_of_several_languages(cell, separator, number):
     assert value_of(plain(cell, separator)) == number
+
+
+def test_quoted_commas_that_may_part_thousands_are_not_guessed():
+    for cells, between in ((["1,234", "0,25"], ";"), (["1,234", "12,345,678", "7.5"], ",")):
+        assert commas_between(cells, ",") == between
 
 
 @pytest.mark.parametrize("cell", ["OL", "∞", "******", "#N/A", "NaN", "9.9E37", "-9.91e37", ""])
@@ -46,7 +57,7 @@ def test_holes_far_from_the_pulse_are_told(tmp_path):
     "clock",
     [lambda t: f"12:04:{26.746 + t:09.6f}", lambda t: f"2024-05-17T23:59:{26.7 + t:09.6f}Z",
      lambda t: f"17.05.2024 08:59:{26.7 + t:09.6f}", lambda t: f"11:59:{59.99 + t:09.6f}"
-     if t < 0.01 else f"12:00:{t - 0.01:09.6f}"],
+     if t < 0.01 else f"12:00:{t - 0.01:09.6f}", lambda t: f"12:{5 + t:07.4f}"],
 )  # fmt: skip
 def test_clocks_are_times(tmp_path, clock):
     path = table(tmp_path / "a.csv", [f"{v:.3f}" for v in half_sine()], "time,force_N",
