@@ -8,7 +8,7 @@ from types import SimpleNamespace
 import numpy as np
 import pytest
 from dentscope.studies import calibration
-from dentscope.studies.proof.ranks import holm, rank_lines, uniformity
+from dentscope.studies.proof.ranks import rank_lines, uniformity
 from scipy.stats import norm
 
 
@@ -32,8 +32,14 @@ def test_a_posterior_that_is_too_narrow_is_seen() -> None:
 
 
 def test_correction_is_for_the_number_of_tests() -> None:
-    found = holm(np.array([0.2, 0.001, 0.02]))
-    assert found == pytest.approx([0.2, 0.003, 0.04])
+    """Two of each of two parameters."""
+    shares = [(0.01 * k, 0.5 + 0.005 * k) for k in range(60)]
+    rows = uniformity([
+        {"mechanism": "tilt", "draw": k, "shares": {"tilt_deg": a, "target.Sy_Pa": b}}
+        for k, (a, b) in enumerate(shares)
+    ])  # fmt: skip
+    assert [r.corrected for r in rows] == pytest.approx([min(4.0 * r.p, 1.0) for r in rows])
+    assert rows[1].corrected < 0.01
 
 
 def test_draws_go_on_where_they_stopped(tmp_path, monkeypatch) -> None:
