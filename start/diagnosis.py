@@ -89,7 +89,8 @@ def _drawn(story: Story) -> Figure:
             axis.plot(x, [p.with_verdict for p in points], "C3^", ms=4, mfc="w", label=WITH)
         axis.set(xlabel=against.label, ylabel=OBSERVABLES[name].axis)
         axis.grid(alpha=0.3)
-    axes[0].legend(fontsize=8)
+    handles, labels = axes[0].get_legend_handles_labels()
+    figure.legend(handles, labels, loc="outside lower center", ncols=4, fontsize=8)
     figure.suptitle(story.finding, fontsize=10, wrap=True)
     return figure
 
