@@ -116,8 +116,10 @@ def _as_input_error(item: Any, model: type[BaseModel], source: str) -> InputErro
         return InputError("unknown key", source=source, key=key, allowed=known)
     message = item["msg"].removeprefix("Input should be ").removeprefix("Value error, ")
     if item["type"] in ("list_type", "tuple_type", "too_short"):
-        tables = isinstance(item["input"], dict)
-        message = f"a list of tables, [[{key}]]" if tables else "a list that is not empty"
+        table = isinstance(item["input"], dict)
+        message = f"a list of tables, [[{key}]]" if table else "a list that is not empty"
+        if table and item["type"] == "too_short":
+            message = f"{item['ctx']['min_length']} or more, each {key}.NAME"
     if location[-1:] == ("[key]",):
         key = key.removesuffix(".[key]")
         return InputError("unknown key", source=source, key=key, allowed=message)

@@ -104,9 +104,9 @@ def largest_mean_pressure(scene: Scene, found: Impact) -> float:
 
 def _harder(scene: Scene, depth: Array) -> Array:
     """Mean pressure over that at the stated strength, at these depths."""
-    table = strength_table(scene.law, scene.pair)
     if not scene.flow:
         return np.ones_like(depth)
+    table = strength_table(scene.law, scene.pair)
     found = table.factors(scene.strengths(table))
     ratio = np.log(found[F_FORCE]) - 2.0 * np.log(found[F_RADIUS])
     return np.asarray(np.exp(np.interp(np.log(depth), table.log_depth, ratio)))

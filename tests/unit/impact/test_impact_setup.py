@@ -105,7 +105,10 @@ def test_bodies_that_cannot_be_simulated_are_one_line_with_the_file(tmp_path: Pa
     flat = "E_Pa = { value = 2.0e11, std = 4e9 }\nnu = 0.3\nSy_Pa = 305e6\n"
     named = SETUP.replace(steel, "material = 'Stahl'\n")
     rigid = SETUP.replace(steel, "rigid = true\n").replace(flat, "rigid = true\n")
+    head, _, rest = SETUP.partition("[strikers.rod]")
+    empty = f"{head}[strikers]\n{rest[rest.index('[') :]}"
     for text, line in (
+        (empty, "strikers: {} (allowed: 1 or more, each strikers.NAME)"),
         (named, "strikers.rod.E_Pa: missing (allowed: a number (or rigid = true), or a material of "
          "`dentscope materials`, which 'Stahl' is not)"),
         (rigid, "target.rigid: given beside a rigid striker"),
