@@ -7,7 +7,7 @@ from pathlib import Path
 import numpy as np
 
 from ..core.material import Pair
-from ..core.output import write_figure
+from ..core.output import figure, write_figure
 from ..fem import critical_depth
 from .records import CaseRecord
 from .rules import RULES
@@ -17,15 +17,10 @@ _APPROACH = r"approach over that at first yield $\delta/\delta_c$"
 
 def draw_campaign(records: list[CaseRecord], folder: Path) -> list[Path]:
     """Draw all completed cases into `folder`; return the files."""
-    import matplotlib as mpl
-
-    mpl.use("Agg")
     from matplotlib.cm import ScalarMappable
     from matplotlib.colors import LogNorm
-    from matplotlib.figure import Figure
 
-    figure = Figure(figsize=(10, 8), layout="constrained")
-    axes = figure.subplots(2, 2)
+    made, axes = figure(2, 2, size=(10, 8))
     many = len(records) > RULES.pairs_named
     shades = ScalarMappable(LogNorm(0.1, 10.0, clip=True), "coolwarm")
     for record in records:
@@ -53,7 +48,7 @@ def draw_campaign(records: list[CaseRecord], folder: Path) -> list[Path]:
         axis.set_xlabel(x)
         axis.set_ylabel(y)
         axis.grid(alpha=0.3)
-    bar = figure.colorbar(shades, ax=axes, shrink=0.6, ticks=[0.1, 1.0, 10.0])
+    bar = made.colorbar(shades, ax=axes, shrink=0.6, ticks=[0.1, 1.0, 10.0])
     bar.ax.set_yticklabels(["0.1\nsphere weaker:\nit flattens", "1", "10\nflat weaker:\nit dents"])
     bar.set_label("strength of the sphere over that of the flat, $S_y^*$")
     if not many:
@@ -61,8 +56,8 @@ def draw_campaign(records: list[CaseRecord], folder: Path) -> list[Path]:
     pairs = "1 pair" if len(records) == 1 else f"{len(records)} pairs"
     coarse = any(record.case.accuracy.level == "smoke" for record in records)
     remark = "; level smoke: coarse, with steps in the curves" if coarse else ""
-    figure.suptitle(f"{pairs} of a sphere and a flat, pressed together{remark}")
-    return [write_figure(figure, folder / "curves.png", dpi=120)]
+    made.suptitle(f"{pairs} of a sphere and a flat, pressed together{remark}")
+    return [write_figure(made, folder / "curves.png", dpi=120)]
 
 
 def _told(pair: Pair) -> str:

@@ -7,19 +7,9 @@ from typing import Any
 
 import numpy as np
 
-from ..core.output import write_figure
+from ..core.output import figure, write_figure
 from .prediction import Prediction
 from .table import ResidualTable, Table
-
-
-def _figure(rows: int, columns: int, size: tuple[float, float]) -> tuple[Any, Any]:
-    import matplotlib as mpl
-
-    mpl.use("Agg")
-    from matplotlib.figure import Figure
-
-    figure = Figure(figsize=size, layout="constrained")
-    return figure, np.atleast_1d(figure.subplots(rows, columns)).ravel()
 
 
 def _colour(ratio: float) -> Any:
@@ -30,7 +20,7 @@ def _colour(ratio: float) -> Any:
 
 def draw_errors(p: Prediction, table: Table, turns: ResidualTable, path: Path) -> Path:
     """Draw law minus finite elements over the depth, a panel a quantity, a line a combination."""
-    figure, axes = _figure(2, 3, (13, 7.5))
+    made, axes = figure(2, 3, size=(13, 7.5))
     F, a = p.force / table.force, p.radius / table.radius
     panels = (
         ("error of F [%]", 100.0 * (F - 1.0), 10.0),
@@ -39,30 +29,30 @@ def draw_errors(p: Prediction, table: Table, turns: ResidualTable, path: Path) -
         (r"error of $\delta_s^*$", p.share - table.share, 0.15),
     )
     shown = (table.w >= 0.3) & table.edge_seen
-    for axis, (title, error, most) in zip(axes, panels, strict=False):
+    for axis, (title, error, most) in zip(axes.flat, panels, strict=False):
         for number, pair in enumerate(table.pairs):
             m = shown & (table.case == number)
             axis.semilogx(table.w[m], error[m], color=_colour(pair.Sy_ratio), lw=0.9)
         axis.set(xlabel=r"$\delta/\delta_c$", title=title, ylim=(-most, most))
     sphere = p.sphere - turns.sphere_part * turns.total
     for axis, title, error in (
-        (axes[4], r"error of residual depth $/\Delta_m$", p.total - turns.total),
-        (axes[5], r"error of the sphere's residual depth $/\Delta_m$", sphere),
+        (axes[1, 1], r"error of residual depth $/\Delta_m$", p.total - turns.total),
+        (axes[1, 2], r"error of the sphere's residual depth $/\Delta_m$", sphere),
     ):
         colours = [_colour(turns.pairs[k].Sy_ratio) for k in turns.case]
         axis.scatter(turns.w, error, c=colours, s=14, edgecolor="grey", linewidth=0.3)
         axis.set(xscale="log", xlabel=r"$\delta_m/\delta_c$", title=title, ylim=(-0.1, 0.1))
-    for axis in axes:
+    for axis in axes.flat:
         axis.grid(alpha=0.3)
-    figure.suptitle(
+    made.suptitle(
         "combinations predicted by fits that did not see them; blue: weak sphere, red: weak flat"
     )
-    return write_figure(figure, path, dpi=110)
+    return write_figure(made, path, dpi=110)
 
 
 def draw_maps(p: Prediction, table: Table, path: Path) -> Path:
     """Draw the mean error of each combination over Sy* and E'/Sy_min."""
-    figure, axes = _figure(1, 3, (13, 4.2))
+    made, axes = figure(1, 3, size=(13, 4.2))
     seen = (table.w >= 1.0) & table.edge_seen
     ratio = np.array([q.Sy_ratio for q in table.pairs])
     modulus = np.array([q.E_reduced / q.Sy_min for q in table.pairs])
@@ -71,7 +61,7 @@ def draw_maps(p: Prediction, table: Table, path: Path) -> Path:
         ("mean error of a [%]", 100.0 * np.abs(p.radius / table.radius - 1.0), seen),
         (r"mean error of $\delta_s^*$", np.abs(p.share - table.share), table.w >= 1.0),
     )
-    for axis, (title, error, rows) in zip(axes, panels, strict=True):
+    for axis, (title, error, rows) in zip(axes.flat, panels, strict=True):
         means = [
             float(error[rows & (table.case == k)].mean())
             if np.any(rows & (table.case == k))
@@ -82,13 +72,13 @@ def draw_maps(p: Prediction, table: Table, path: Path) -> Path:
         axis.set(xscale="log", yscale="log", xlabel=r"$S_y^*$", ylabel=r"$E'/S_{y,min}$")
         axis.set_title(title)
         axis.grid(alpha=0.3)
-        figure.colorbar(dots, ax=axis)
-    return write_figure(figure, path, dpi=110)
+        made.colorbar(dots, ax=axis)
+    return write_figure(made, path, dpi=110)
 
 
 def draw_curves(p: Prediction, table: Table, path: Path, *, most: int = 9) -> Path:
     """Draw mean pressure and share of combinations spread over Sy*, law and finite elements."""
-    figure, axes = _figure(1, 2, (12, 5))
+    made, axes = figure(1, 2, size=(12, 5))
     order = np.argsort([q.Sy_ratio for q in table.pairs])
     picked = order[np.unique(np.linspace(0, len(order) - 1, most).astype(int))]
     modulus = np.array([q.E_reduced / q.Sy_min for q in table.pairs])
@@ -98,14 +88,14 @@ def draw_curves(p: Prediction, table: Table, path: Path, *, most: int = 9) -> Pa
         pair = table.pairs[number]
         label = f"Sy* {pair.Sy_ratio:.2g}, E'/Sy {modulus[number]:.0f}"
         for axis, law, found in zip(
-            axes, (ours, p.share), (table.hardness, table.share), strict=True
+            axes.flat, (ours, p.share), (table.hardness, table.share), strict=True
         ):
             line = axis.semilogx(table.w[m], law[m], lw=1.3, label=label)[0]
             axis.semilogx(table.w[m], found[m], ".", ms=4, color=line.get_color())
-    axes[0].set(xlabel=r"$\delta/\delta_c$", title=r"mean pressure $H/S_{y,min}$")
-    axes[1].set(xlabel=r"$\delta/\delta_c$", title=r"$\delta_s^*$")
-    axes[1].legend(fontsize=7)
-    for axis in axes:
+    axes[0, 0].set(xlabel=r"$\delta/\delta_c$", title=r"mean pressure $H/S_{y,min}$")
+    axes[0, 1].set(xlabel=r"$\delta/\delta_c$", title=r"$\delta_s^*$")
+    axes[0, 1].legend(fontsize=7)
+    for axis in axes.flat:
         axis.grid(alpha=0.3)
-    figure.suptitle("lines: law; dots: finite elements")
-    return write_figure(figure, path, dpi=110)
+    made.suptitle("lines: law; dots: finite elements")
+    return write_figure(made, path, dpi=110)
