@@ -30,6 +30,8 @@ _THOUSANDS = (
     (re.compile(r"[+-]?\d{1,3}(\.\d{3})+,\d+"), "."),
     (re.compile(r"[+-]?\d{1,3}(,\d{3})+\.\d+"), ","),
 )  # fmt: skip
+_SEPARATORS = re.compile("[, \u00a0\u2009\u202f'’]")
+"""Without one of them a number is plain."""
 _CLOCK = re.compile(
     r"(?:(?P<date>\d{4}[-/.]\d{1,2}[-/.]\d{1,2}|\d{1,2}[./]\d{1,2}[./]\d{4})[T ,]\s*)?"
     r"(?P<h>\d{1,2}):(?P<m>\d{2})(?::(?P<s>\d{2}(?:[.,:]\d+)?))?\s*(?P<half>[AaPp][Mm])?"
@@ -55,6 +57,8 @@ def plain(cell: str, separator: str) -> str:
     >>> [plain(c, ";") for c in ("0,25", "1.234,5", "1 234,5", "left")]
     ['0.25', '1234.5', '1234.5', 'left']
     """
+    if not _SEPARATORS.search(cell):
+        return cell
     for form, dividers in _THOUSANDS:
         if form.fullmatch(cell):
             for divider in dividers:
@@ -75,8 +79,10 @@ def commas_between(cells: Iterable[str], separator: str) -> str:
     >>> commas_between(["0,25", "1,234"], ","), commas_between(["1,234", "0.5"], ",")
     (';', ',')
     """
-    quoted = (c for c in cells if separator == "," and _DECIMAL_COMMA.fullmatch(c))
-    return separator if all(map(_COUNT.fullmatch, quoted)) else ";"
+    if separator != ",":
+        return separator
+    quoted = (c for c in cells if "," in c and _DECIMAL_COMMA.fullmatch(c))
+    return "," if all(map(_COUNT.fullmatch, quoted)) else ";"
 
 
 def value_of(cell: str) -> float:
