@@ -7,6 +7,7 @@ import warnings
 from contextlib import redirect_stderr, redirect_stdout
 from dataclasses import dataclass, replace
 from io import StringIO
+from itertools import takewhile
 from pathlib import Path
 
 import numpy as np
@@ -178,9 +179,9 @@ def _text(path: Path) -> _Raw | None:
     while all(len(row) > 1 and not row[-1] for row in table):
         table = [row[:-1] for row in table]  # a separator at the end of every line
     rows = [(k, row) for (k, _), row in zip(lines, table, strict=True)]
-    names: list[str] = []
-    while rows and (_is_heading(rows[0][1]) or rows[0][1] == [""]):
-        names = rows.pop(0)[1]  # of the columns, below what an instrument says of itself
+    # names of the columns, below what an instrument says of itself
+    above = list(takewhile(_is_heading, table))
+    names, rows = above[-1] if above else [], rows[len(above) :]
     if not rows:
         raise InputError("empty", source=str(path), allowed="heights, one row a line")
     width = len(rows[0][1])
@@ -212,7 +213,7 @@ def _text(path: Path) -> _Raw | None:
 
 
 def _is_heading(row: list[str]) -> bool:
-    return not is_data(row) and any(_is_word(cell) for cell in row)
+    return row == [""] or (not is_data(row) and any(map(_is_word, row)))
 
 
 def _is_word(cell: str) -> bool:
