@@ -439,17 +439,16 @@ def _notes(found: RecordingSet) -> list[str]:
         name for name, none in zip(found.trials.trial, empty, strict=True)
         if none and name not in found.traces
     ]  # fmt: skip
+    if bare:
+        notes.append(f"nothing measured in {len(bare)} trials: {', '.join(bare[:5])}")
     trials = found.trials
     angles = trials.angle_deg[~trials.pressed]
     if angles.size and np.all(angles <= np.round(np.pi / 2.0, 1)):
         notes.append(f"no angle_deg is above {angles.max():g}: are they in radians?")
     air = found.setup.environment.temperature_K
-    for kelvin in (*trials.temperature_K, *([air.value] if air else [])):
-        if kelvin < _NITROGEN:
-            notes.append(f"temperature_K {kelvin:g}: is it in degrees Celsius?")
-            break
-    if bare:
-        notes.append(f"nothing measured in {len(bare)} trials: {', '.join(bare[:5])}")
+    kelvins = (*trials.temperature_K, *([air.value] if air else []))
+    if cold := [kelvin for kelvin in kelvins if kelvin < _NITROGEN]:
+        notes.append(f"temperature_K {cold[0]:g}: is it in degrees Celsius?")
     return notes
 
 
