@@ -31,7 +31,7 @@ _ICE = 273.15
 def why_not(cell: str, column: SheetColumn, value: Measured | None, decimals: str) -> str:
     """Return why a cell is not taken; empty where it is."""
     if value is None:
-        if decimals == "" and _grouped(cell):
+        if not decimals and _grouped(cell):
             return f"{cell!r}: of thousands, or of decimals?"
         return f"{cell!r} is no {column.kind.quantity}"
     if column.unit == "%" and not column.spread and 0.0 < value.value <= 0.01 and "%" not in cell:
@@ -69,10 +69,11 @@ def number_in(cell: str, column: SheetColumn, decimals: str) -> Measured | None:
     if found is None:
         return None
     text = found["number"].strip()
-    if _grouped(cell) and decimals not in text:
-        text = re.sub("[.,]", "", text)
-    elif _grouped(cell) and not decimals:
-        return None
+    if _grouped(cell):
+        if not decimals:
+            return None
+        if decimals not in text:
+            text = re.sub("[.,]", "", text)
     number, std = value_of(plain(text, ";")), value_of(plain(found["std"] or "0", ";"))
     own = in_short(found["unit"].strip()) if found["unit"] else ""
     if math.isnan(number) or math.isnan(std):

@@ -119,9 +119,10 @@ def headers_of(
             told.append((header or f"column {place + 1}", f"left out: {why}"))
     kept = []
     for column in columns:
-        why = _left_out(column, columns, source)
-        told += [(column.header, f"left out: {why}")] if why else []
-        kept += [] if why else [column]
+        if why := _left_out(column, columns, source):
+            told.append((column.header, f"left out: {why}"))
+        else:
+            kept.append(column)
     return top, kept, told
 
 

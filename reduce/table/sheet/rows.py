@@ -140,17 +140,18 @@ def _trials(
             what = "angle" if "angle_deg" in unread else "drop height or speed"
             left.append(f"row {k}: left out, its {what} is not read")
             continue
-        stated = last.keys() & found.keys()
         if not found.keys() - {*APPROACHES, *_VARIED}:
             left.append(f"row {k}: nothing measured")
             continue
         if not last:
             left.append(f"row {k}: no drop height or speed")
             continue
-        from_above += [] if stated else [str(k)]
+        if not last.keys() & found.keys():
+            from_above.append(str(k))
         back, crossed = _restitutions(found, last)
         trials += _of_row(found | {"restitution": back}, last, note, k)
-        across += [str(k)] if crossed else []
+        if crossed:
+            across.append(str(k))
     _check_units(columns, source)
     if not trials:
         raise InputError(
@@ -267,9 +268,10 @@ def _of_row(
     common = {k: v[0] for k, v in found.items() if k in _VARIED}
     other = {*common, *APPROACHES, *REBOUNDS}
     measured = {k: v for k, v in found.items() if v and k not in other}
-    for k in range(max(map(len, measured.values()), default=0)):
+    repeats = max(map(len, measured.values()), default=0)
+    for k in range(repeats):
         seen = {n: v[k] for n, v in measured.items() if k < len(v)}
-        label = f"{row:03d}" if max(map(len, measured.values())) == 1 else f"{row:03d}-{k + 1}"
+        label = f"{row:03d}" if repeats == 1 else f"{row:03d}-{k + 1}"
         yield Trial({**last, **common, **seen}, label=label, note=note)
 
 
