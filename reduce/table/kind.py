@@ -280,7 +280,8 @@ def _times(table: Columns, options: TableOptions, *, alone: bool) -> Array:
     late = float(np.nanmax(np.abs(given), initial=0.0))
     if options.time_unit == "file" and not table.unit(where) and late > date.max.toordinal() * DAY:
         raise InputError(
-            f"column {table.names[where] or where + 1!r}: {late:.3g} is no seconds of a calendar",
+            f"column {table.names[where] or where + 1!r}: {late:.3g} are no seconds, they pass the "
+            f"year {date.max.year}",
             source=table.source, key="time_unit", allowed="ms, us, ns, or another column of times",
         )  # fmt: skip
     return np.asarray(given * second)
