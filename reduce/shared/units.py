@@ -41,6 +41,17 @@ UNITS: dict[str, dict[str, float]] = {
 """Quantity, and its units in those of the recording set (kg among accelerations: 1000 g)."""
 
 
+def quantity_of(unit: str) -> str:
+    """Return the quantity that a unit is one of; empty where it is not known.
+
+    Examples
+    --------
+    >>> quantity_of("mm"), quantity_of("mm/s"), quantity_of("ticks")
+    ('length', 'speed', '')
+    """
+    return next((quantity for quantity, known in UNITS.items() if unit and unit in known), "")
+
+
 def metres(unit: str, *, source: str, allowed: Iterable[str]) -> float:
     """Return the size of a unit of length [m].
 

@@ -22,7 +22,7 @@ from ...core.inputs.csv_table import rows_with, selection
 from ...core.inputs.input_file import checked_file
 from ...core.processes.confined import confined
 from ..rules import RULES
-from ..shared.units import UNITS
+from ..shared.units import UNITS, quantity_of
 from .cells import DAY, commas_between, instant, plain, since_first, value_of
 from .channels import CHANNELS, Shown, channels_of
 from .heading import Heading, heading_of, labview_rows, unit_in
@@ -130,10 +130,14 @@ class Columns:
         said = self.unit(place)
         if said in units:
             return units[said]
-        if default is None or (said and any(sign in self.names[place] for sign in "[(<")):
+        bracketed = said if any(sign in self.names[place] for sign in "[(<") else ""
+        if default is None or bracketed:
             column = f"column {self.names[place] or place + 1!r}"
-            other = next((q for q, known in UNITS.items() if said and said in known), "")
-            told = f"is of {other}, in {said}" if other else "does not name its unit"
+            told = "does not name its unit"
+            if other := quantity_of(said):
+                told = f"is of {other}, in {said}"
+            elif bracketed:
+                told += f", {said!r} is none that is known"
             raise InputError(
                 f"{column} {told}",
                 source=self.source, key=key, allowed=", ".join(units),

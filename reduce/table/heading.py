@@ -27,6 +27,8 @@ WORDS = {
     "n/mm²": "N/mm2", "n/mm^2": "N/mm2", "lbs.": "lbf", "in.": "in", "s⁻¹": "1/s",
 }  # fmt: skip
 """Units in words, as they are written in a recording set."""
+DROPS = r"drop|fall|release|chute|caduta|ca[ií]da"
+"""Words of a drop height, in small letters: English, German, French, Italian, Spanish."""
 
 
 @dataclass(frozen=True)
@@ -117,7 +119,7 @@ def heading_of(above: Sequence[Sequence[str]], width: int) -> Heading:
 def is_unit(cell: str) -> bool:
     """Whether a cell names a unit, `mm`, `(mm)` or `[mm]`."""
     bare, whole = cell.strip("()[] "), cell.strip()
-    return in_short(bare) in _KNOWN_UNITS | {"-"} or (whole[:1] in ("(", "[") and len(bare) < 12)
+    return in_short(bare) in _KNOWN_UNITS or (whole[:1] in ("(", "[") and len(bare) < 12)
 
 
 def in_short(unit: str) -> str:

@@ -15,14 +15,14 @@ from ...recordings.columns import CONDITIONS, MEASURED, STD_SUFFIX
 from ..bounces.fall import Ball, Fall
 from ..measured import Measured, Trial
 from ..rules import RULES
-from ..shared.units import LENGTH, UNITS
+from ..shared.units import LENGTH, UNITS, quantity_of
 from .file import Columns
+from .heading import DROPS
 
 _QUANTITY_OF_UNIT = {
     "_m_s": "speed", "_m": "length", "_s": "time", "_N": "force", "_rad_s": "spin",
     "_deg": "angle", "_K": "temperature",
 }  # fmt: skip
-_DROP = re.compile(r"drop|fall|release|chute|caduta|ca[ií]da", re.IGNORECASE)
 
 
 @dataclass(frozen=True)
@@ -147,7 +147,8 @@ def _heights(table: Columns, value: str, unit: str) -> tuple[Array, float]:
     first = table.find(value, key="value") if value else _drops(table)
     metres = table.factor(first, "length", given=unit, key="value_unit")
     said = [table.unit(k) if unit == "file" else "" for k in range(len(table.names))]
-    columns = [first, *(k for k in range(first + 1, len(said)) if not _of_other(said[k]))]
+    lengths = (k for k in range(first + 1, len(said)) if quantity_of(said[k]) in ("", "length"))
+    columns = [first, *lengths]
     heights = table.values[:, columns] * [LENGTH.get(said[k], metres) for k in columns]
     if heights.shape[1] < 2:
         raise InputError(
@@ -171,18 +172,13 @@ def _heights(table: Columns, value: str, unit: str) -> tuple[Array, float]:
 
 def _drops(table: Columns) -> int:
     """The first column that is named as a drop height."""
-    named = [k for k, n in enumerate(table.names) if _DROP.search(n)]
+    named = [k for k, n in enumerate(table.names) if re.search(DROPS, n, re.IGNORECASE)]
     if not named:
         raise InputError(
             "no column is named as a drop height", source=table.source, key="value",
             allowed="its name or number; the rebound heights follow it",
         )  # fmt: skip
     return named[0]
-
-
-def _of_other(unit: str) -> bool:
-    """Whether a unit is known, and none of length."""
-    return unit not in LENGTH and any(unit in known for known in UNITS.values() if unit)
 
 
 def reduce_trials(table: Columns) -> TrialsReduction:

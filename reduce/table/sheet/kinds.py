@@ -8,7 +8,7 @@ from typing import NamedTuple
 
 from ....core.observables import LOAD
 from ...shared.units import UNITS
-from ..heading import in_short
+from ..heading import DROPS, in_short
 
 REBOUNDS = REBOUND_HEIGHT, REBOUND_SPEED = "rebound_height", "rebound_speed"
 APPROACHES = ("drop_height_m", "impact_speed_m_s", LOAD)
@@ -55,7 +55,7 @@ _KINDS = (
     SheetKind(REBOUND_SPEED, "speed",
          _both(rf"{_REBOUND}|\bafter\b|\bnach\b|\bapres\b|\bdopo\b|despues", _SPEED)),
     SheetKind("drop_height_m", "length",
-         _both(r"drop|fall|release|chute|caduta|caida", _HEIGHT)
+         _both(DROPS, _HEIGHT)
          + r"|^(h|height|hoe?he|hauteur|altezza|altura)$"),
     SheetKind("impact_speed_m_s", "speed",
          _both(r"impact|approach|(auf|an)prall|auftreff|stoss|impatto|before|\bvor\b|avant|prima|antes",
