@@ -193,12 +193,7 @@ def _measured(
     covariance = np.zeros((6, 6))
     covariance[:3, :3], covariance[3:, 3:] = (s.covariance for s in sides)
     found = propagate(numbers, np.concatenate([before, after]), covariance)
-    values = dict(zip(_NAMES, found, strict=True))
-    for name in ("impact_speed_m_s", "approach_tangential_m_s", "rebound_speed_m_s",
-                 "tangential_rebound_m_s"):  # fmt: skip
-        values[name] = values[name].widened(values[name].value * scene.length_scale_std)
-    ratio = values["friction_impulse_ratio"]
-    values["friction_impulse_ratio"] = Measured(abs(ratio.value), ratio.std)
+    values = scene.measured(_NAMES, found)
     height = 0.5 * float((sides[0].coefficients[:, 0] + sides[1].coefficients[:, 0]) @ up)
     values["contact_height_m"] = Measured(height, math.nan)
     if spin is not None:

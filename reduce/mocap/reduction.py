@@ -8,6 +8,7 @@ the changes of velocity, |ΔV_x / ΔV_y| (Eq. 5.13; the printed sign holds for o
 from __future__ import annotations
 
 import math
+from collections.abc import Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -36,7 +37,6 @@ _NAMES = (
     "rebound_speed_m_s", "tangential_rebound_m_s", "tip_slip_before_m_s", "tip_slip_after_m_s",
     "out_of_plane_ratio", "spin_out_of_plane_rad_s", "spin_change_by_momentum_rad_s",
 )  # fmt: skip
-_SPEEDS = tuple(n for n in _NAMES if n.endswith("_m_s"))
 _COLUMNS = tuple(n for n in _NAMES if n in TRIAL_COLUMNS)
 
 
@@ -57,6 +57,16 @@ class MocapScene:
     up: Array
     gravity: float = GRAVITY
     length_scale_std: float = 0.0
+
+    def measured(self, names: Sequence[str], found: Sequence[Measured]) -> dict[str, Measured]:
+        """Return numbers of an impact by name: speeds as unsure as lengths, friction unsigned."""
+        values = dict(zip(names, found, strict=True))
+        for name, value in values.items():
+            if name.endswith("_m_s"):
+                values[name] = value.widened(value.value * self.length_scale_std)
+        ratio = values["friction_impulse_ratio"]
+        values["friction_impulse_ratio"] = Measured(abs(ratio.value), ratio.std)
+        return values
 
 
 @dataclass(frozen=True)
@@ -184,11 +194,7 @@ def _hit(poses: Poses, flights: Flights, f: int, gap: int, body: Body, scene: Mo
         return _numbers(one, two, float(np.clip(when, low, high)), body, scene.up, plane)
 
     covariance = flights.part((f, f + 1))
-    found = dict(zip(_NAMES, propagate(numbers, np.zeros(27), covariance), strict=True))
-    for name in _SPEEDS:
-        found[name] = found[name].widened(found[name].value * scene.length_scale_std)
-    ratio = found["friction_impulse_ratio"]
-    found["friction_impulse_ratio"] = Measured(abs(ratio.value), ratio.std)
+    found = scene.measured(_NAMES, propagate(numbers, np.zeros(27), covariance))
     return Hit((f, f + 1), found, plane[0], gap)
 
 
