@@ -136,9 +136,9 @@ N_SCALES = 12
 
 # What is counted on the way.
 (T_TOUCH, TOUCHING, FIRST_TURN, T_LAST, P_MARK, W_MARK, P_IN, P_OUT, W_IN, W_OUT, SLIP_LOW,
- SLIP_HIGH, SLIP_BASE, X_LOW, X_HIGH, TOP_FORCE, TOP_DEPTH, CONTACTS, STEPS, EVALUATIONS, ENDING,
- STUCK, X_TOUCH, ROWS) = range(24)
-N_TALLY = 24
+ SLIP_HIGH, X_LOW, X_HIGH, TOP_FORCE, TOP_DEPTH, CONTACTS, STEPS, EVALUATIONS, ENDING,
+ STUCK, X_TOUCH, ROWS) = range(23)
+N_TALLY = 23
 
 OBSERVABLES = (
     "restitution", "kinetic_restitution", "energetic_restitution", "tangential_restitution",
@@ -163,7 +163,7 @@ N_OUT = len(OBSERVABLES) + len(COUNTS)
 FIRST_COUNT = len(OBSERVABLES)
 
 DONE, STEP_BUDGET, CONTACT_BUDGET, NOT_FINITE, FLIGHT_BUDGET, GOING = range(6)
-LOAD, UNLOAD, FLY = range(3)
+LOAD, UNLOAD = range(2)
 
 # The independent variable of a step: time; the square root of the time since touch, in which the
 # force grows smoothly; the square root of the depth left to separation, in which it fades so; the
