@@ -106,8 +106,8 @@ PUBLISHED = Path(__file__).resolve().parents[1] / "data" / "campaign"
 _COARSE = "smoke"
 
 
-def published_parts(of: Callable[[str], bool] = bool) -> list[Path]:
-    """Return the parts of the release whose names pass, but for the coarse ones.
+def published_parts(wanted: Callable[[str], bool] = bool) -> list[Path]:
+    """Return the parts of the release whose names are wanted, but for the coarse ones.
 
     Raises
     ------
@@ -115,7 +115,7 @@ def published_parts(of: Callable[[str], bool] = bool) -> list[Path]:
         There are none.
     """
     names = sorted(path.name for path in PUBLISHED.glob("*.h5"))
-    found = [PUBLISHED / name for name in names if of(name) and not name.startswith(_COARSE)]
+    found = [PUBLISHED / name for name in names if wanted(name) and not name.startswith(_COARSE)]
     if not found:
         raise InputError(
             "no published cases", source=str(PUBLISHED), allowed="the parts of a release"
