@@ -12,7 +12,7 @@ from ..core.arrays import Array
 from ..core.unstated import unstated_equal
 from ..models.base import ContactLaw
 from . import force as fo
-from .result import Impact, impact_of
+from .result import Impact, impact_of, leave_resting
 from .rules import RULES
 from .scene import Scene
 from .strength import NODES, strength_table
@@ -151,6 +151,7 @@ def _struck(scene: Scene, a: Arrays, history: Array) -> tuple[Impact, int]:
     """Integrate one impact; return it and how many rows of `history` were filled."""
     out, left = np.zeros((1, c.N_OUT)), np.zeros((1, len(a.surface)))
     rows = _walked(scene.law, _given([a]), out, left=left, history=history)
+    leave_resting(out, *a.body[[c.MASS, c.GRAVITY, c.S_PLATE], None])
     return impact_of(out[0], left[0]), rows
 
 

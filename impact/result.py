@@ -8,7 +8,13 @@ from dataclasses import dataclass, fields
 from ..core.arrays import Array
 from ..core.errors import COMPLETED, Ending, Outcome
 from .surface import Spot
+from .walk import layout as at
 from .walk.layout import CONTACT_BUDGET, COUNTS, DONE, FLIGHT_BUDGET, OBSERVABLES, STEP_BUDGET
+
+_OF_A_PARTING = (
+    at.O_KINETIC, at.O_ENERGETIC, at.O_TANGENTIAL, at.O_TIME, at.O_TOUCHING, at.O_PN, at.O_PT,
+    at.O_RATIO, at.O_CLEAR, at.O_LEAVING,
+)  # fmt: skip
 
 _ENDINGS = {
     DONE: COMPLETED,
@@ -49,7 +55,8 @@ class Impact:
     difference, the thesis's L_s (5.2). `contact_time_s` runs from first touch to last separation,
     `touching_time_s` leaves out the flights between. `clearance_m` and `clearance_rate_m_s` say
     how far above the remembered surface the tip is at its last separation, and how fast it leaves.
-    `stuck` says whether friction held the tip for some time.
+    `stuck` says whether friction held the tip for some time. A tip that a plate does not throw
+    back rests on it: its restitution is 0, and what a parting would end is nan.
 
     The energy: `kinetic_before_J` and `gravity_work_J` come in; `kinetic_after_J`,
     `modal_stored_J` and `support_stored_J` are still there; lost are `plastic_work_J`,
@@ -132,6 +139,32 @@ class Impact:
     def observables(self) -> dict[str, float]:
         """All numeric observables by name."""
         return {name: float(getattr(self, name)) for name in OBSERVABLES}
+
+
+def leave_resting(rows: Array, mass: Array, gravity: Array, mobility: Array) -> None:
+    """End the impacts whose tip rests on an endless plate, which sinks under its weight for ever.
+
+    Parameters
+    ----------
+    rows
+        (n, N_OUT) output of the compiled integrator; changed in place.
+    mass, gravity, mobility
+        (n,) of the striker [kg], [m/s^2], and of the plate's surface under a force [m/(N s)].
+
+    Notes
+    -----
+    A force mg moves Zener's plate at mg / (8 sqrt(rho h D)): a tip that has come to that speed,
+    here within a factor of two, will not rise any more.
+    """
+    sinking = (mass * gravity * mobility)[:, None]
+    moves = -rows[:, [at.O_VY, at.O_TIP]]
+    rests = ((moves > 0.0) & (moves <= 2.0 * sinking)).all(axis=1)
+    rests &= rows[:, at.FIRST_COUNT] == STEP_BUDGET
+    for column in _OF_A_PARTING:
+        rows[rests, column] = math.nan
+    for column in (at.O_E, at.O_VY, at.O_TIP):
+        rows[rests, column] = 0.0
+    rows[rests, at.FIRST_COUNT] = DONE
 
 
 def impact_of(row: Array, spot: Array) -> Impact:

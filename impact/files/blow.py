@@ -138,7 +138,7 @@ class Blow:
                 ),
             )
             for label, key, scale, unit in SHOWN
-            if any(abs(values[key]) > 0.0 for values in columns)
+            if key == "restitution" or any(abs(values[key]) > 0.0 for values in columns)
         ]
         last = {row["law"]: row[PRESSURE] for row in self.rows}
         pressure = (

@@ -36,9 +36,10 @@ def checks(setup: Setup, law: ContactLaw, found: Impact) -> list[str]:
     """Return a line for each check, by one law and its blow; none where that did not end."""
     if not found.outcome.completed:
         return []
-    if not found.restitution > 0.0:
-        return list(_mechanisms(setup, law, found))  # what has made it stay
     scene = setup.scene(law)
+    if not found.restitution > 0.0:
+        # what has made it stay
+        return [*_resting(scene), *_mechanisms(setup, law, found)]
     with warnings.catch_warnings():
         warnings.simplefilter("ignore", DomainWarning)  # the doubt about a law has its own line
         parts = (
@@ -49,6 +50,14 @@ def checks(setup: Setup, law: ContactLaw, found: Impact) -> list[str]:
             _mechanisms(setup, law, found),
         )  # fmt: skip
         return [line for part in parts for line in part]
+
+
+def _resting(scene: Scene) -> Iterator[str]:
+    if scene.support.plate_mobility > 0.0:
+        yield (
+            "no rebound: bending the plate takes the whole blow; it is without end (Zener), so "
+            "nothing that its edges throw back is in this"
+        )
 
 
 def _onset(setup: Setup, scene: Scene, found: Impact) -> Iterator[str]:

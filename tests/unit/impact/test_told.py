@@ -8,7 +8,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 from dentscope.core import Material, Pair
-from dentscope.impact import Approach, Scene, Striker, strike
+from dentscope.impact import Approach, Scene, Settings, Striker, impacts, strike
 from dentscope.impact.files.blow import blow_of
 from dentscope.impact.files.setup import setup_of
 from dentscope.impact.told.band import LAW, METALS, SWEPT, band_of, swept_stds
@@ -345,3 +345,29 @@ def test_a_sweep_has_the_bands_of_its_blows():
         blow = band_of(one, law)
         for name, field in zip(SWEPT, fields, strict=True):
             assert stds[name][row] == pytest.approx(blow.std(field), rel=0.01), (name, speed)
+
+
+THIN = BRASS.replace("thickness_m = 0.010", "thickness_m = 0.001").replace(
+    "[impact]\n", '[impact]\nsupport = "plate"\n'
+)
+
+
+def test_a_plate_that_takes_the_whole_blow_keeps_the_ball():
+    """A ball sinks with an endless thin plate under its weight, for ever: no rebound, no error."""
+    setup = setup_of(tomllib.loads(THIN), source="thin.toml")
+    found = blow_of(setup, [LAWS["hertz"]])
+    struck = found["hertz"]
+    assert struck.outcome.completed
+    assert struck.restitution == struck.rebound_speed_m_s == 0.0
+    assert math.isnan(struck.contact_time_s)
+    assert ("restitution", "0") in found.table(exact=True)
+    assert any("no rebound" in line for line in found.checks())
+    swept = impacts(setup.scene(LAWS["hertz"]), speeds=[1.0, 3.0])
+    assert swept["restitution"].tolist() == [0.0, 0.0]
+    assert swept["outcome"].tolist() == ["completed"] * 2
+
+
+def test_a_budget_that_is_too_small_is_no_rest():
+    setup = setup_of(tomllib.loads(THIN), source="thin.toml")
+    struck = strike(setup.scene(LAWS["hertz"]), Settings(max_steps=30))
+    assert not struck.outcome.completed
