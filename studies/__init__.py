@@ -2,6 +2,8 @@
 
 verification   the solver's checks, and the report that they make
 proof          effects concealed in made-up recordings, diagnosed blindly, scored
+calibration    where truths lie in their posteriors: of prior draws, and (at_data) at recordings
+sensitivity    what verdicts turn on: priors, costs, errors, stages
 interventions  known effects of real recordings concealed, diagnosed, judged by a plan
 synthetic      rendered clips, markers, scans and sounds with a known truth
 campaign       gallery, claims and trends of the finite-element campaign

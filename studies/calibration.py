@@ -22,11 +22,12 @@ from typing import Any
 import numpy as np
 from scipy.stats import norm
 
+from ..core.arrays import Array
 from ..core.processes.threads import in_one_thread
 from ..discrepancy.comparison.forward import Simulator
-from ..discrepancy.comparison.problem import problem_of
+from ..discrepancy.comparison.problem import Problem, problem_of
 from ..discrepancy.inference.derivatives import FORMS, derivatives
-from ..discrepancy.inference.fit import fit, grid_of
+from ..discrepancy.inference.fit import Fit, fit, grid_of
 from ..discrepancy.rank import sharpened_leading
 from ..discrepancy.unknowns.lawerror import SIZES
 from ..impact.mechanisms import MECHANISMS
@@ -75,16 +76,31 @@ def ranks(simulator: Simulator, name: str, rng: np.random.Generator) -> dict[str
     read_off = replace(problem, cells=replace(problem.cells, value=value))
     here = simulator.of(read_off)
     (found,) = sharpened_leading(here, [fit(here, (chosen,))], fit(here, ()))
-    shares = {}
-    for k, label in enumerate(grid.labels):
+    return shares(problem, found, place, z)
+
+
+def shares(problem: Problem, found: Fit, place: Array, z: Array) -> dict[str, float]:
+    """Return the share of a posterior below the truth, by parameter.
+
+    Parameters
+    ----------
+    problem
+        What was fitted.
+    found
+        Its fit.
+    place, z
+        The truth: (axes,) places in the priors, (n_z,) unknowns.
+    """
+    below = {}
+    for k, label in enumerate(found.grid.labels):
         edges, weight = found.grid.marginal(found.weight, k)
         reach = np.concatenate([[0.0], np.cumsum(weight)])
-        shares[label] = float(np.interp(place[k], edges, reach / reach[-1]))
+        below[label] = float(np.interp(place[k], edges, reach / reach[-1]))
     for k, n in enumerate(problem.nuisances):
         if n.name == STRENGTH:
             spread = math.sqrt(max(float(found.covariance[k, k]), 1e-12))
-            shares[n.name] = float(norm.cdf((z[k] - found.z[k]) / spread))
-    return {label: round(share, 4) for label, share in shares.items()}
+            below[n.name] = float(norm.cdf((z[k] - found.z[k]) / spread))
+    return {label: round(share, 4) for label, share in below.items()}
 
 
 def drawn(

@@ -10,11 +10,12 @@ from pathlib import Path
 from typing import Any
 
 from ...core.output import write_file
+from .altered import ALTERED, STAGES, altered_lines, stages_picture
 from .calibrated import calibration, coverage_by_class, inclusion
 from .case import Case, interval
 from .follow import brought
 from .power import PICTURE, picture, power_lines, read_rows, shown
-from .ranks import rank_lines, read_ranks
+from .ranks import AT_DATA, at_data_lines, rank_lines, read_ranks
 from .rivals import compare, rival_lines
 from .score import confusion, scores
 
@@ -129,18 +130,22 @@ def page(runs: list[dict[str, Any]], *, impacts: int) -> str:
     if last is None:
         return "\n".join([*lines, "No run has been made yet.", ""])
     lines += _run_text(last)
+    lines += altered_lines(read_ranks(ALTERED))
     lines += rank_lines(read_ranks())
+    lines += at_data_lines(read_ranks(AT_DATA))
     if REMARKS.exists():
         lines += ["## Failures looked into", "", REMARKS.read_text().strip(), ""]
     return "\n".join([*lines, _OTHERS, ""])
 
 
 def publish(runs: list[dict[str, Any]], docs: Path, *, impacts: int) -> None:
-    """Write the page and its picture."""
+    """Write the page and its pictures."""
     write_file(docs / "proof.md", page(runs, impacts=impacts))
     power = (_shown(runs) or {}).get("power")
     if power:
         picture(read_rows(power), docs / "pictures" / PICTURE)
+    if ALTERED.exists():
+        stages_picture(read_ranks(ALTERED), docs / "pictures" / STAGES)
 
 
 def _shown(runs: list[dict[str, Any]]) -> dict[str, Any] | None:

@@ -53,10 +53,9 @@ def by_size(rows: Sequence[Shown]) -> list[tuple[float, float, int, int, int]]:
 
 
 def power_lines(rows: Sequence[Shown]) -> list[str]:
-    """The section of the page: found and rightly named by size, and by size and mechanism."""
+    """The section of the page: found and rightly named by size."""
     if not rows:
         return []
-    classes = list(itertools.pairwise(SIZES))
     lines = [
         "", "### Power", "",
         f"![found and rightly named against size](pictures/{PICTURE})", "",
@@ -67,13 +66,6 @@ def power_lines(rows: Sequence[Shown]) -> list[str]:
         f"| {_class(low, high)} | {n} | {_share(seen, n)} | {_share(right, n)} |"
         for low, high, seen, right, n in by_size(rows)
     ]
-    lines += ["", "Found, rightly named, of so many:", "",
-              "| mechanism | " + " | ".join(_class(*c) for c in classes) + " |",
-              "| --- |" + " --- |" * len(classes)]  # fmt: skip
-    for name in sorted({r.mechanism for r in rows}):
-        own = {x[:2]: x[2:] for x in by_size([r for r in rows if r.mechanism == name])}
-        cells = ["{}, {} of {}".format(*own[c]) if c in own else "" for c in classes]
-        lines.append(f"| {name} | " + " | ".join(cells) + " |")
     return lines
 
 

@@ -12,6 +12,8 @@ from scipy.stats import binomtest, kstest
 
 RANKS = Path(__file__).resolve().parents[2] / "data" / "proof" / "ranks.jsonl"
 """A line for each draw, made by `studies.calibration`."""
+AT_DATA = RANKS.with_name("ranks-at-data.jsonl")
+"""The same of draws from the posterior at shipped sets, made by `studies.at_data`."""
 _LEVEL = 0.01
 
 
@@ -71,4 +73,28 @@ def rank_lines(lines: Sequence[dict[str, Any]]) -> list[str]:
         "number in the central 90 %, at 1 % after Bonferroni's correction); in the mean the "
         f"central 90 % hold {np.mean([r.inside for r in rows]):.2f}. What fails, with the part "
         f"that they hold (intervals in a verdict are as much too narrow): {told}.", "",
+    ]  # fmt: skip
+
+
+def at_data_lines(lines: Sequence[dict[str, Any]]) -> list[str]:
+    """What follows it: the same at recordings; empty where nothing was drawn."""
+    rows = uniformity(lines)
+    if not rows:
+        return []
+    sets = {x["mechanism"]: x["set"] for x in lines}
+    held = [
+        f"{place} ({name.replace('+', ', ')}) "
+        + ", ".join(
+            f"`{r.parameter}` {r.inside:.2f}{'*' if r.corrected < _LEVEL else ''}"
+            for r in rows
+            if r.mechanism == name
+        )
+        for name, place in sets.items()
+    ]
+    draws = sorted({r.draws for r in rows})
+    return [
+        f"At the data in hand: {' to '.join(map(str, draws))} draws from the posterior of what "
+        f"leads at {len(sets)} shipped sets, recordings made from each, fitted together with those "
+        "measured (`python -m dentscope.studies.at_data`; Säilynoja and others, arXiv:2502.03279). "
+        f"The central 90 % hold, * where uniformity is rejected: {'; '.join(held)}.", "",
     ]  # fmt: skip

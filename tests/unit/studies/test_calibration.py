@@ -8,7 +8,7 @@ from types import SimpleNamespace
 import numpy as np
 import pytest
 from dentscope.studies import calibration
-from dentscope.studies.proof.ranks import rank_lines, uniformity
+from dentscope.studies.proof.ranks import at_data_lines, rank_lines, uniformity
 from scipy.stats import norm
 
 
@@ -29,6 +29,13 @@ def test_a_posterior_that_is_too_narrow_is_seen() -> None:
     assert narrow.inside < 0.7
     assert narrow.corrected < 0.01
     assert any("`tilt_deg` of tilt" in x for x in rank_lines(lines(norm.cdf(2.0 * z))))
+
+
+def test_sets_are_told_with_what_their_posteriors_hold() -> None:
+    z = np.random.default_rng(0).normal(size=200)
+    narrow = [x | {"set": "here"} for x in lines(norm.cdf(2.0 * z))]
+    inside = uniformity(narrow)[0].inside
+    assert f"here (tilt) `tilt_deg` {inside:.2f}*, `target.Sy_Pa` 1.00*" in at_data_lines(narrow)[0]
 
 
 def test_correction_is_for_the_number_of_tests() -> None:

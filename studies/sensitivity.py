@@ -1,0 +1,380 @@
+"""What verdicts turn on: priors, costs and errors halved and doubled; stages taken away.
+
+`python -m dentscope.studies.sensitivity challenge/open data/proof/altered.jsonl`
+
+What a prior, a cost or a stage of the judgement makes of a set follows from the same fits, exactly;
+other errors of the law or of forms are fitted anew. The sets are the open ones of the challenge and
+the shipped recordings, whose truth nobody knows. Half as wide, a prior lies about the best place;
+twice as wide, nothing new explains the data: the most and the least that a width can do.
+"""
+
+from __future__ import annotations
+
+import argparse
+import json
+import math
+from collections.abc import Callable, Iterator, Mapping, Sequence
+from contextlib import ExitStack, contextmanager
+from dataclasses import replace
+from functools import lru_cache
+from pathlib import Path
+from types import ModuleType
+from typing import Any, NamedTuple
+
+import numpy as np
+from scipy.special import logsumexp
+
+from ..core.arrays import Array
+from ..core.processes.threads import in_one_thread
+from ..discrepancy.choice import decide, judge, odds
+from ..discrepancy.choice.apart import Weighed, apart, weighed
+from ..discrepancy.choice.judge import Judge
+from ..discrepancy.choice.odds import OUTSIDE, PRIORS, Odds
+from ..discrepancy.choice.own_sets import FitTest
+from ..discrepancy.choice.pairs import with_pairs
+from ..discrepancy.choice.thresholds import Nulls, null_residuals
+from ..discrepancy.comparison.forward import Simulator
+from ..discrepancy.comparison.problem import Problem, problem_of
+from ..discrepancy.inference import derivatives
+from ..discrepancy.inference.fit import Fit
+from ..discrepancy.inference.grid import Grid
+from ..discrepancy.rank import Ranking, Screened, rank
+from ..discrepancy.rules import RULES
+from ..discrepancy.unknowns.lawerror import LawError
+from ..recordings import read
+from ..recordings.shipped import FOLDER, shipped_sets
+from .challenge.archive import sets_of, truths_of
+from .proof.altered import AS_IT_IS, LAW_ERROR, NO_FORM, NO_LAW, WIDTHS, label
+from .proof.ranks import read_ranks
+from .proof.rivals import LEAST
+
+_HARDLY = 0.01
+"""Times the law's error where it is taken away: what is left is less than any noise."""
+
+_NOTHING = 1e-12
+"""Prior probability of what is taken away."""
+
+
+class Explained(NamedTuple):
+    """All explanations of a set, fitted, and the sets with nothing missing that judge them."""
+
+    ranking: Ranking
+    nulls: Nulls
+
+
+@contextmanager
+def standing(module: ModuleType, **values: Any) -> Iterator[None]:
+    """Let names of a module stand for other values for a while."""
+    before = {name: getattr(module, name) for name in values}
+    try:
+        for name, value in values.items():
+            setattr(module, name, value)
+        yield
+    finally:
+        for name, value in before.items():
+            setattr(module, name, value)
+
+
+def explained(problem: Problem) -> Explained:
+    """Fit every explanation as a diagnosis does, with the draws of its seed 0."""
+    simulator = Simulator(problem)
+    ranking = rank(simulator)
+    simulator = simulator.of(ranking.problem)
+    nulls = null_residuals(simulator, ranking.base, RULES.nulls, np.random.default_rng(0))
+    if Judge.of(ranking, nulls).wants_second(ranking):
+        ranking = with_pairs(simulator, ranking)
+    return Explained(ranking, nulls)
+
+
+_weighed = lru_cache(maxsize=4)(weighed)
+"""With the law's error apart: what is altered in a judgement alters none of it."""
+
+
+def said(found: Explained, weigh: Callable[[Ranking], Any] = _weighed) -> dict[str, Any]:
+    """Return the verdict, the names in it and all probabilities that count."""
+    with standing(odds, weighed=weigh):
+        judged = Judge.of(found.ranking, found.nulls)
+        choice, each = judged.decided(found.ranking, {}), judged.odds(found.ranking)
+    return {
+        "verdict": choice.verdict, "names": [list(f.names) for f in choice.members],
+        "odds": {k: round(p, 4) for k, p in each.probability.items() if p >= 0.5 * LEAST},
+    }  # fmt: skip
+
+
+def priors(**times: float) -> ExitStack:
+    """Let prior odds be other multiples: of `singles`, `pairs` and `OUTSIDE`."""
+    raw = {k: p * times.get(k, 1.0) for k, p in PRIORS.items()}
+    p = {k: x / sum(raw.values()) for k, x in raw.items()}
+    out = p[OUTSIDE]
+    stack = ExitStack()
+    stack.enter_context(standing(
+        odds, PRIORS=p, ALONE=out / p["baseline"],
+        BESIDE=p["pairs"] / p["singles"] * out / (p["singles"] + out),
+    ))  # fmt: skip
+    return stack
+
+
+def costs(field: str, times: float) -> ExitStack:
+    """Let one cost of the decision be a multiple of itself."""
+    other = decide.COSTS._replace(**{field: times * getattr(decide.COSTS, field)})
+    stack = ExitStack()
+    stack.enter_context(standing(decide, COSTS=other, WORTH_NAMING=other.more / other.wrong))
+    return stack
+
+
+def penalised(times: float) -> ExitStack:
+    """Let the penalty of all but the baseline be a multiple of itself."""
+    rules = replace(RULES, penalty=times * RULES.penalty)
+    stack = ExitStack()
+    for module in (odds, judge):
+        stack.enter_context(standing(module, RULES=rules))
+    return stack
+
+
+def narrowed(log_likelihood: Array, grid: Grid) -> float:
+    """Ln of what the evidence gains where every prior is half as wide, about the best place.
+
+    Parameters
+    ----------
+    log_likelihood
+        (k,) over the refined grid.
+    grid
+        Of all parameters; what is outside its window has no likelihood.
+    """
+    best = grid.places()[int(np.argmax(log_likelihood))]
+    inside = np.ones(1)
+    for axis, at in enumerate(best):
+        low, high = grid.window[axis] if grid.window else (0.0, 1.0)
+        edges = np.linspace(low, high, len(grid.fine[axis]) + 1)
+        first = min(max(at - 0.25, 0.0), 0.5)
+        part = np.clip(edges, first, first + 0.5)
+        inside = np.multiply.outer(inside, np.diff(part) / np.diff(edges))
+    kept = logsumexp(log_likelihood, b=inside.ravel()) - logsumexp(log_likelihood)
+    return float(kept) + len(grid.axes) * math.log(2.0)
+
+
+def widths(found: Explained, times: float) -> tuple[Explained, Mapping[str, float]]:
+    """Let all priors of parameters be half or twice as wide.
+
+    Returns
+    -------
+    tuple
+        The explanations with the law's error inside, and ln of what the evidence of each gains
+        with the error apart.
+    """
+    ranking = found.ranking
+    base, problem = ranking.base, ranking.problem
+
+    def gain(log_likelihood: Array, grid: Grid) -> float:
+        wide = -len(grid.axes) * math.log(2.0)
+        return narrowed(log_likelihood, grid) if times < 1.0 else wide
+
+    def screened(s: Screened) -> Screened:
+        each = base.mixture.log_likelihood(base.residual - s.effect)
+        return replace(s, log_bayes=s.log_bayes + gain(each, s.grid))
+
+    def fitted(f: Fit) -> Fit:
+        return replace(f, log_evidence=f.log_evidence + gain(f.log_likelihood, f.grid))
+
+    more = {
+        s.mechanism.name: gain(
+            apart(base.linear, base, problem).log_likelihood(base.residual - s.effect), s.grid
+        )
+        for s in ranking.screened
+    }
+    more |= {
+        f.name: gain(apart(f.linear, base, problem).log_likelihood(f.residuals), f.grid)
+        for f in (*ranking.singles, *ranking.pairs)
+    }
+    nameless = []
+    for n in ranking.nameless:
+        own = fitted(n.fit) if n.fit else None
+        bayes = own.log_evidence - base.log_evidence if own else screened(n.screened).log_bayes
+        nameless.append(replace(n, fit=own, log_bayes=bayes))
+    altered = replace(
+        ranking, screened=tuple(map(screened, ranking.screened)),
+        singles=tuple(map(fitted, ranking.singles)), pairs=tuple(map(fitted, ranking.pairs)),
+        nameless=tuple(nameless),
+    )  # fmt: skip
+    return found._replace(ranking=altered), more
+
+
+def _with_widths(found: Explained, times: float) -> dict[str, Any]:
+    other, more = widths(found, times)
+
+    def also(_: Ranking) -> dict[str, Weighed]:
+        return {
+            k: w._replace(log_evidence=w.log_evidence + more.get(k, 0.0))
+            for k, w in _weighed(found.ranking).items()
+        }
+
+    return said(other, also)
+
+
+_ROWS: Mapping[str, Callable[[float], ExitStack]] = {
+    "prior odds of a mechanism": lambda t: priors(singles=t, pairs=t),
+    "prior odds of a second one": lambda t: priors(pairs=t),
+    "prior odds of something outside": lambda t: priors(**{OUTSIDE: t}),
+    "penalty on all but nothing": penalised,
+    "cost of a miss": lambda t: costs("miss", t),
+    "cost of a false alarm": lambda t: costs("false_alarm", t),
+    "cost of a wrong name": lambda t: costs("wrong", t),
+    "cost of half a name": lambda t: costs("half", t),
+    "cost of a further name": lambda t: costs("more", t),
+    "cost of silence": lambda t: costs("silence", t),
+}
+
+
+def altered(found: Explained) -> dict[str, dict[str, Any]]:
+    """Return what is said as it is, and with each prior and cost halved and doubled."""
+    told = {AS_IT_IS: said(found)}
+    for times in (0.5, 2.0):
+        for row, standing_in in _ROWS.items():
+            with standing_in(times):
+                told[label(row, times)] = said(found)
+        told[label(WIDTHS, times)] = _with_widths(found, times)
+    return told
+
+
+def taken_away(found: Explained) -> dict[str, dict[str, Any]]:
+    """Return what is said without each stage of the judgement."""
+    ranking = found.ranking
+    told = {}
+
+    def without(stage: str, *names: tuple[ModuleType, dict[str, Any]], of: Explained) -> None:
+        with ExitStack() as stack:
+            for module, values in names:
+                stack.enter_context(standing(module, **values))
+            told[stage] = said(of)
+
+    mean = odds.pooled
+
+    def inside(one: Odds, _: Odds) -> Odds:
+        return mean(one, one)
+
+    def separate(_: Odds, other: Odds) -> Odds:
+        return mean(other, other)
+
+    without("the error apart in every number", (judge, {"pooled": inside}), of=found)
+    without("the error inside the law", (judge, {"pooled": separate}), of=found)
+    with penalised(0.0):
+        told["penalty on all but nothing"] = said(found)
+    unseen = {"fit_test": lambda fitted, nulls: FitTest(1.0, -math.inf)}
+    without("fit beside its own sets", (judge, unseen), of=found)
+    plain = found._replace(ranking=replace(ranking, nameless=()))
+    without(
+        "nameless effects, factors", (judge, {"scaled_observables": lambda problem, base: ()}),
+        of=plain,
+    )  # fmt: skip
+    with priors(**{OUTSIDE: _NOTHING}):
+        without(
+            "all outside the library", (judge, unseen),
+            (odds, {"RULES": replace(RULES, kept=1.0)}), of=found,
+        )  # fmt: skip
+    alone = found._replace(ranking=replace(ranking, pairs=()))
+    without("second mechanisms", of=alone)
+    told["costs: the most probable is said"] = most_probable(said(found))
+    return told
+
+
+def most_probable(one: dict[str, Any]) -> dict[str, Any]:
+    """Return a verdict without costs."""
+    lead = next(iter(one["odds"]))
+    plain = {"baseline": "adequate", OUTSIDE: OUTSIDE}
+    names = [] if lead in plain else [lead.split("+")]
+    return {**one, "verdict": plain.get(lead, "missing-physics"), "names": names}
+
+
+def with_error(problem: Problem, times: float) -> Problem:
+    """Return a problem whose law, and whose metal, may be off by a multiple of what they may."""
+    error: LawError = problem.error
+    spreads = {
+        striker: replace(
+            s, law={k: times * x for k, x in s.law.items()},
+            metal={k: times * x for k, x in s.metal.items()},
+        )
+        for striker, s in error.spreads.items()
+    }  # fmt: skip
+    return replace(problem, error=replace(error, spreads=spreads))
+
+
+def _as_it_is(problem: Problem) -> dict[str, Any]:
+    found = explained(problem)
+    return altered(found) | {f"without {k}": v for k, v in taken_away(found).items()}
+
+
+def _without_form(problem: Problem) -> dict[str, Any]:
+    error = derivatives.form_error
+    with standing(derivatives, form_error=lambda p, effect, share: error(p, effect, 0.0)):
+        return {NO_FORM: said(explained(problem))}
+
+
+def _law_error(name: str, times: float) -> Callable[[Problem], dict[str, Any]]:
+    return lambda problem: {name: said(explained(with_error(problem, times)))}
+
+
+FITS: Mapping[str, Callable[[Problem], dict[str, Any]]] = {
+    AS_IT_IS: _as_it_is,
+    label(LAW_ERROR, 0.5): _law_error(label(LAW_ERROR, 0.5), 0.5),
+    label(LAW_ERROR, 2.0): _law_error(label(LAW_ERROR, 2.0), 2.0),
+    NO_LAW: _law_error(NO_LAW, _HARDLY),
+    NO_FORM: _without_form,
+}
+"""What is fitted, and what it is asked."""
+
+_FEWER = 3
+"""Of the open sets every so-manyth is fitted anew."""
+
+
+def asked(open_sets: Sequence[str]) -> list[tuple[str, str]]:
+    """Return what is asked, a set and a fit each, in order; of the shipped no stage is taken away.
+
+    The open sets that are only told again come last.
+    """
+    errors = [fit for fit in FITS if fit not in (NO_LAW, NO_FORM)]
+    fewer = open_sets[::_FEWER]
+    found = [(name, fit) for name in shipped_sets() for fit in errors]
+    found += [(name, fit) for name in fewer for fit in FITS]
+    return found + [(name, AS_IT_IS) for name in open_sets if name not in fewer]
+
+
+def lines(folder: Path, out: Path) -> Iterator[dict[str, Any]]:
+    """Go on where a file of lines stopped; yield each line.
+
+    Parameters
+    ----------
+    folder
+        Part `open` of the challenge.
+    out
+        A line of JSON for each set and fit: `set`, `truth` (none of a shipped recording), `fit`,
+        and what is `said`, as in `proof.rivals`.
+    """
+    known = {(x["set"], x["fit"]) for x in read_ranks(out)}
+    open_sets = sets_of(folder)
+    truths = truths_of(folder, open_sets)
+    for name, fit in asked(open_sets):
+        if (name, fit) not in known:
+            place = folder / "sets" / name if name in open_sets else FOLDER / name
+            said_of_it = _asked(place, FITS[fit])
+            yield {"set": name, "truth": truths.get(name), "fit": fit, "said": said_of_it}
+
+
+@in_one_thread
+def _asked(place: Path, ask: Callable[[Problem], dict[str, Any]]) -> dict[str, Any]:
+    return ask(problem_of(read(place)))
+
+
+def main() -> None:
+    """Command line."""
+    parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
+    parser.add_argument("folder", type=Path)
+    parser.add_argument("out", type=Path)
+    given = parser.parse_args()
+    with given.out.open("a", encoding="utf-8") as stream:
+        for line in lines(given.folder, given.out):
+            stream.write(json.dumps(line) + "\n")
+            stream.flush()
+
+
+if __name__ == "__main__":
+    main()

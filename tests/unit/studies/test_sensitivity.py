@@ -1,0 +1,147 @@
+"""What is halved, doubled and taken away from a verdict, and how changes are counted."""
+
+from __future__ import annotations
+
+import json
+import math
+
+import numpy as np
+import pytest
+from dentscope.discrepancy import diagnose
+from dentscope.discrepancy.choice import decide, odds
+from dentscope.discrepancy.choice.odds import OUTSIDE
+from dentscope.discrepancy.comparison.problem import problem_of
+from dentscope.discrepancy.inference.grid import Axis, Grid
+from dentscope.impact.mechanisms import MECHANISMS
+from dentscope.recordings import read
+from dentscope.recordings.shipped import FOLDER
+from dentscope.studies import sensitivity
+from dentscope.studies.proof import altered
+
+SET = "kharaz-2001-oblique"
+
+
+@pytest.fixture(scope="module")
+def problem():
+    return problem_of(read(FOLDER / SET))
+
+
+@pytest.fixture(scope="module")
+def found(problem):
+    return sensitivity.explained(problem)
+
+
+def test_as_it_is_is_what_a_diagnosis_says(found) -> None:
+    verdict = diagnose(read(FOLDER / SET)).to_dict()
+    told = sensitivity.said(found)
+    assert told["verdict"] == verdict["verdict"]
+    assert told["names"] == [verdict["mechanisms"]]
+    for name, p in told["odds"].items():
+        assert p == pytest.approx(verdict["probabilities"][name], abs=1e-4)
+
+
+def test_prior_odds_count_in_full_where_nothing_else_is_left(found) -> None:
+    """What leads and what is outside alone have weight here."""
+    told = sensitivity.altered(found)
+    before = told[altered.AS_IT_IS]["odds"]
+    for times in (0.5, 2.0):
+        after = told[altered.label("prior odds of something outside", times)]["odds"]
+        more = (after[OUTSIDE] / after["tangential-compliance"]) / (
+            before[OUTSIDE] / before["tangential-compliance"]
+        )
+        assert more == pytest.approx(times, rel=0.15)
+    assert sensitivity.said(found) == told[altered.AS_IT_IS]
+
+
+def test_without_what_is_outside_it_has_no_probability(found) -> None:
+    told = sensitivity.taken_away(found)
+    assert OUTSIDE not in told["all outside the library"]["odds"]
+    assert OUTSIDE in told["second mechanisms"]["odds"]
+
+
+def _spoilt() -> None:
+    with sensitivity.costs("silence", 2.0), sensitivity.priors(pairs=2.0):
+        raise KeyError((decide.COSTS.silence, odds.PRIORS["pairs"] / odds.PRIORS["singles"]))
+
+
+def test_values_stand_again_after_an_error() -> None:
+    costs, priors = decide.COSTS, odds.PRIORS
+    with pytest.raises(KeyError) as caught:
+        _spoilt()
+    assert caught.value.args[0] == pytest.approx(
+        (2.0 * costs.silence, 2.0 * priors["pairs"] / priors["singles"])
+    )
+    assert (decide.COSTS, odds.PRIORS) == (costs, priors)
+
+
+def test_a_prior_half_as_wide_gains_what_it_keeps() -> None:
+    """Ln 2 for each parameter that the data pin down; nothing where they say nothing."""
+    m = next(x for x in MECHANISMS if len(x.parameters) == 2)
+    grid = Grid(tuple(Axis(m.name, p) for p in m.parameters))
+    places = grid.places()
+    sharp = -0.5 * np.sum(((places - 0.1) / 0.02) ** 2, axis=1)
+    assert sensitivity.narrowed(sharp, grid) == pytest.approx(2.0 * math.log(2.0), abs=1e-6)
+    assert sensitivity.narrowed(np.zeros(len(places)), grid) == pytest.approx(0.0, abs=1e-9)
+    one = -0.5 * ((places[:, 0] - 0.9) / 0.02) ** 2
+    assert sensitivity.narrowed(one, grid) == pytest.approx(math.log(2.0), abs=1e-6)
+
+
+def test_errors_of_law_and_metal_are_both_multiplied(problem) -> None:
+    twice = sensitivity.with_error(problem, 2.0).error.parts
+    for kind, (law, metal) in problem.error.parts.items():
+        assert twice[kind] == pytest.approx((2.0 * law, 2.0 * metal))
+
+
+def test_lines_go_on_where_they_stopped(tmp_path, monkeypatch) -> None:
+    names = [f"open-00{k}" for k in range(4)]
+    monkeypatch.setattr(sensitivity, "sets_of", lambda folder: names)
+    monkeypatch.setattr(sensitivity, "truths_of", lambda folder, sets: {"open-001": ("tilt",)})
+    monkeypatch.setattr(sensitivity, "_asked", lambda place, ask: {place.name: {}})
+    out = tmp_path / "altered.jsonl"
+    whole = list(sensitivity.lines(tmp_path, out))
+    assert [x["fit"] for x in whole if x["set"] == "open-003"] == list(sensitivity.FITS)
+    assert [x["fit"] for x in whole if x["set"] == "open-001"] == [altered.AS_IT_IS]
+    assert [x["truth"] for x in whole if x["set"] == "open-001"] == [("tilt",)]
+    assert sum(x["set"] == SET for x in whole) == 3
+    out.write_text("".join(json.dumps(x) + "\n" for x in whole[:4]))
+    assert list(sensitivity.lines(tmp_path, out)) == whole[4:]
+
+
+def told(verdict: str, *names: str, lead: str = "") -> dict:
+    return {"verdict": verdict, "names": [[n] for n in names], "odds": {lead or names[0]: 0.6}}
+
+
+SILENT = told("undetermined", lead="tilt")
+LINES = [
+    {"set": "a", "truth": ["tilt"], "said": {
+        altered.AS_IT_IS: told("missing-physics", "tilt"), "priors, x 0.5": SILENT,
+        "priors, x 2": told("missing-physics", "adhesion"),
+        "without pairs": told("missing-physics", "tilt"),
+    }},
+    {"set": "b", "truth": [], "said": {
+        altered.AS_IT_IS: SILENT, "priors, x 0.5": told("adequate", lead="baseline"),
+        "priors, x 2": told("indistinguishable", "adhesion", "tilt"),
+        "without pairs": SILENT,
+    }},
+    {"set": "a", "truth": ["tilt"], "said": {"without fits": SILENT}},
+    {"set": "real", "truth": None, "said": {
+        altered.AS_IT_IS: SILENT, "priors, x 0.5": SILENT,
+        "priors, x 2": told("missing-physics", "tilt"),
+    }},
+]  # fmt: skip
+
+
+def test_changes_are_counted() -> None:
+    drawn = [s for s in altered.by_set(LINES).values() if s.truth is not None]
+    assert altered.change(drawn, "priors, x 0.5") == (2, 1, 2, 1, 1, 0, 0)
+    assert altered.change(drawn, "priors, x 2") == (2, 2, 2, 1, 0, 1, 0)
+    assert altered.outcome(drawn[1], "priors, x 0.5") == altered.RIGHT
+    assert altered.outcome(drawn[1], "priors, x 2") == altered.WRONG
+    assert altered.outcome(drawn[0], "without fits") == altered.SILENT
+    text = altered.altered_lines(LINES)
+    assert "| priors | 2 | 1, 2 | 2, 2 | 1, 1 | 1, 0 | 0, 1 | 0, 0 | 0, 1 |" in text
+
+
+def test_a_stage_on_fewer_sets_stands_beside_those_as_they_are(tmp_path) -> None:
+    path = altered.stages_picture(LINES, tmp_path / altered.STAGES)
+    assert path.stat().st_size > 10_000
