@@ -1,0 +1,118 @@
+"""Sets of the third world: drawn and sealed, diagnosed, compared with the peers, published.
+
+`python -m dentscope.studies.proof.third_world run` goes on with the run of this tree;
+`dentscope proof peers FOLDER` adds what the peers say, and `score` publishes. `sample` writes sets
+of another seed, with their truths, to look at.
+"""
+
+from __future__ import annotations
+
+import argparse
+import hashlib
+import json
+import secrets
+from collections.abc import Iterator
+from pathlib import Path
+from typing import Any, NamedTuple
+
+import numpy as np
+
+from ..third_world.draw import NULLS, PAIRS, Truth, draw
+from ..third_world.effects import EFFECTS, OUTSIDE
+from ..third_world.sheet import write
+from .run import ROOT, diagnose, local_workers
+from .seal import Ledger, digest_of, tree_hash
+
+PLAN = ROOT / "data" / "proof" / "third-world-plan.md"
+"""What is drawn and what counts, written before the run."""
+
+
+class Entry(NamedTuple):
+    """One set of the list."""
+
+    number: int
+    kind: str
+    effect: str
+
+    @property
+    def name(self) -> str:
+        """Says nothing of what the set conceals."""
+        return f"set-{self.number:03d}"
+
+
+def entries() -> list[Entry]:
+    """25 nulls, 55 singles, 8 pairs, 12 outside."""
+    wanted = [("null", NULLS[k % len(NULLS)]) for k in range(25)]
+    singles = [name for _ in range(3) for name in EFFECTS]
+    wanted += [("single", name) for name in singles[:55]]
+    wanted += [("pair", f"{a}+{b}") for _, a, b in PAIRS]
+    wanted += [("outside", name) for _ in range(3) for name in OUTSIDE]
+    return [Entry(k, *one) for k, one in enumerate(wanted)]
+
+
+def drawn(seed: str, entry: Entry) -> Truth:
+    """The concealed set of one entry."""
+    text = hashlib.sha256(f"{seed}/third-world/{entry.number}".encode())
+    return draw(np.random.default_rng(int.from_bytes(text.digest()[:16], "little")), *entry[1:])
+
+
+def conceal(truth: Truth, run: Path, name: str) -> dict[str, Any]:
+    """Write recordings and salted truth; return the event that seals both."""
+    for place in ("sets", "truths", "verdicts"):
+        (run / place).mkdir(parents=True, exist_ok=True)
+    write(truth, run / "sets" / name, name=name)
+    path = run / "truths" / f"{name}.json"
+    path.write_text(json.dumps(truth.record() | {"salt": secrets.token_hex(16)}, indent=1) + "\n")
+    return {
+        "event": "truth", "set": name, "truth": digest_of(path),
+        "recordings": digest_of(run / "sets" / name),
+    }  # fmt: skip
+
+
+def carry_on(run: Path, *, limit_s: float = 900.0) -> Iterator[tuple[str, dict[str, Any]]]:
+    """Go on with a run: draw and seal a set, diagnose it, seal the verdict, in random order."""
+    run.mkdir(parents=True, exist_ok=True)
+    ledger = Ledger(run / "ledger.jsonl")
+    plan, tree = digest_of(PLAN), tree_hash(ROOT)
+    begun = ledger.of("begin").get("")
+    if begun is None:
+        ledger.add(event="plan", set="", plan=plan)
+        ledger.add(event="begin", set="", tree=tree, plan=plan)
+    elif (begun["tree"], begun["plan"]) != (tree, plan):
+        raise ValueError("the tree or the plan is not the one that the run began with")
+    done, sealed = ledger.of("verdict"), set(ledger.of("truth"))
+    listed = entries()
+    order = np.random.default_rng(int(plan[:16], 16)).permutation(len(listed))
+    with local_workers(1) as workers:
+        for entry in (listed[i] for i in order if listed[i].name not in done):
+            if entry.name not in sealed:
+                ledger.add(**conceal(drawn(f"{plan}/{tree}", entry), run, entry.name))
+            event = workers.submit(diagnose, run, entry.name, limit_s).result()
+            ledger.add(**event)
+            yield entry.name, event
+
+
+def sample(out: Path, seed: str, numbers: list[int]) -> None:
+    """Write sets of another seed with their truths."""
+    for entry in (e for e in entries() if e.number in numbers):
+        conceal(drawn(seed, entry), out, entry.name)
+
+
+def main() -> None:
+    """Command line."""
+    parser = argparse.ArgumentParser(description=__doc__)
+    parser.add_argument("what", choices=("run", "sample"))
+    parser.add_argument("--out", type=Path, default=ROOT / "build" / "proof" / "third-world")
+    parser.add_argument("--seed", default="trial")
+    parser.add_argument("--numbers", type=int, nargs="*", default=[])
+    given = parser.parse_args()
+    if given.what == "sample":
+        sample(given.out, given.seed, given.numbers)
+        return
+    for name, event in carry_on(given.out):
+        state = "sealed" if event["verdict"] else f"no verdict: {event['message']}"
+        print(f"{name}  {state}  {event['cpu_s']:.1f} s", flush=True)  # noqa: T201
+
+
+if __name__ == "__main__":
+    main()
