@@ -312,7 +312,7 @@ class StrikerTable(BodyTable):
     shape: Literal["rod", "sphere"]
     """A rod with two round ends, or a sphere."""
     tip_radius_m: Radius
-    """Radius of the round tip."""
+    """Radius of the round tip; a sphere may have it as `radius_m`."""
     mass_kg: Mass
     """Mass; a sphere without it is solid."""
     radius_m: Radius | None = Field(default=None, validate_default=True)
@@ -323,6 +323,15 @@ class StrikerTable(BodyTable):
     """Radius of a flat at the end of the tip."""
     inertia_kg_m2: Positive | None = None
     """Moment of inertia across the axis; left out: of a rod or sphere of this mass."""
+
+    @model_validator(mode="before")
+    @classmethod
+    def _radius_of_a_sphere(cls, given: Any) -> Any:
+        of_ball = isinstance(given, dict) and given.get("shape") == "sphere"
+        if not of_ball or "tip_radius_m" in given or "radius_m" not in given:
+            return given
+        rest = {key: value for key, value in given.items() if key != "radius_m"}
+        return {**rest, "tip_radius_m": given["radius_m"]}
 
     @model_validator(mode="before")
     @classmethod

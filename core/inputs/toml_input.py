@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import tomllib
 import unicodedata
+from difflib import get_close_matches
 from pathlib import Path
 from typing import Any, TypeVar, cast, get_args
 
@@ -112,8 +113,10 @@ def _as_input_error(item: Any, model: type[BaseModel], source: str) -> InputErro
     if item["type"] == "missing":
         return InputError("missing", source=source, key=key, allowed="this key is needed")
     if item["type"] == "extra_forbidden":
-        known = ", ".join(_known_keys(model, location[:-1]))
-        return InputError("unknown key", source=source, key=key, allowed=known)
+        known = _known_keys(model, location[:-1])
+        hint = _meant(model, str(location[-1]), known)
+        allowed = ", ".join(known)
+        return InputError(f"unknown key{hint}", source=source, key=key, allowed=allowed)
     message = item["msg"].removeprefix("Input should be ").removeprefix("Value error, ")
     if item["type"] in ("list_type", "tuple_type", "too_short"):
         table = isinstance(item["input"], dict)
@@ -149,6 +152,23 @@ def _known_keys(model: type[BaseModel], path: tuple[Any, ...]) -> list[str]:
         if _is_table(found) and str(part) in found.model_fields:
             found = table_in(found.model_fields[str(part)].annotation) or found
     return [field.alias or name for name, field in found.model_fields.items()]
+
+
+def _meant(model: type[BaseModel], key: str, known: list[str]) -> str:
+    """Say which key may be meant: one of the same table, or the same one of another."""
+    near = get_close_matches(key, known, n=1)
+    if near:
+        return f"; did you mean {near[0]}?"
+    tables = (
+        (name, table_in(field.annotation), "dict[" in str(field.annotation))
+        for name, field in model.model_fields.items()
+    )
+    places = [
+        f"[{name}.NAME]" if named else f"[{name}]"
+        for name, table, named in tables
+        if table is not None and key in _known_keys(table, ())
+    ]
+    return f"; it belongs in {' or '.join(places)}" if places else ""
 
 
 def _is_table(annotation: Any) -> bool:

@@ -196,7 +196,9 @@ def _uncertain(setup: Setup) -> Iterator[tuple[tuple[str, ...], Quantity]]:
             derived = key == "mass_kg" and key not in given
             follows = key == "hardness_Pa" and table.Sy_Pa is None
             if isinstance(value, Quantity) and value.std > 0.0 and not derived and not follows:
-                yield (*place, key), value
+                # the radius of a sphere may stand as `radius_m`
+                other = key == "tip_radius_m" and key not in given
+                yield (*place, "radius_m" if other else key), value
         if isinstance(table, BodyTable) and table.Sy_Pa is None and table.strength is not None:
             yield (*place, "Sy_Pa"), table.strength
 

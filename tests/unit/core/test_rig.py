@@ -154,3 +154,28 @@ def test_a_further_striker_is_of_the_metal_of_another():
     assert more.material("strikers.heavy") == stated.material("strikers.rod")
     assert bodies_of(more, "heavy")[1].mass == 2.0
     assert "strikers.heavy.mass_kg" not in stated.of
+
+
+def test_a_sphere_may_have_its_radius_as_a_body_has():
+    radius = {"value": 0.01, "std": 1e-4}
+    balls = [
+        StrikerTable.model_validate({"shape": "sphere", key: radius, "density_kg_m3": 7800})
+        for key in ("tip_radius_m", "radius_m")
+    ]
+    assert balls[0] == balls[1]
+    # two different numbers stay two: a lens
+    lens = {"shape": "sphere", "tip_radius_m": 0.02, "radius_m": 0.01, "mass_kg": 0.1}
+    assert StrikerTable.model_validate(lens).body_radius == 0.01
+
+
+@pytest.mark.parametrize(
+    ("place", "told"),
+    [
+        (("target", "densty_kg_m3"), r"did you mean density_kg_m3\?"),
+        (("coefficient",), r"it belongs in \[friction\]"),
+        (("length_m",), r"it belongs in \[strikers.NAME\]"),
+    ],
+)
+def test_an_unknown_key_is_told_with_what_may_be_meant(place, told):
+    with pytest.raises(InputErrors, match=f"unknown key; {told}"):
+        parse_model(changed(BODIES, place, 1.0), Rig, source="a.toml")

@@ -371,3 +371,12 @@ def test_a_budget_that_is_too_small_is_no_rest():
     setup = setup_of(tomllib.loads(THIN), source="thin.toml")
     struck = strike(setup.scene(LAWS["hertz"]), Settings(max_steps=30))
     assert not struck.outcome.completed
+
+
+def test_the_radius_of_a_sphere_counts_the_same_under_either_name():
+    told = BRASS.replace("tip_radius_m = 0.010", "tip_radius_m = { value = 0.010, std = 2e-4 }")
+    found = [
+        band_of(setup_of(tomllib.loads(text), source="b.toml"), LAWS["hertz"]).std("contact_time_s")
+        for text in (told, told.replace("tip_radius_m", "radius_m"))
+    ]
+    assert found[0] == found[1] > 0.0
