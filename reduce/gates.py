@@ -12,6 +12,8 @@ from pathlib import Path
 from typing import NamedTuple
 
 from ..core.errors import InputError
+from .measured import Measured
+from .rules import RULES
 
 
 class Gate(NamedTuple):
@@ -61,6 +63,8 @@ GATES = {
                  "is part of the area, widens the beginning"),
     "restitution": Gate("every kind", "standard deviations of the restitution beyond 0 to 1",
                         "by_chance", "refuses the impact"),
+    "telling": Gate("track", "standard deviation of the restitution, in itself", "own_error",
+                    "leaves the contact out"),
     "fall": Gate("track, markers", "acceleration in flight off gravity, in gravity", "fall_off",
                  "refuses; below it widens the speeds"),
     "shape": Gate("markers", "distance of the markers from one rigid shape, in its extent",
@@ -73,6 +77,8 @@ GATES = {
                     "widens speeds and restitution"),
     "course": Gate("times, sound", "scatter of the intervals about their smooth course, in them",
                    "", "widens speeds and restitution"),
+    "fades": Gate("times, sound", "shortening from the first interval to the last, in its error",
+                  "by_chance", "refuses below"),
     "scale": Gate("track, video", "unit or size of a pixel as stated and by the fall", "",
                   "widens the speeds by the difference; see the fall"),
     "stamps": Gate("video", "gaps between time stamps of a clip that plays as it was filmed", "",
@@ -96,6 +102,16 @@ GATES = {
     "stated": Gate("tension", "slope of the first rise and the stated modulus", "",
                    "counts plastic strain from the slope, widens the modulus"),
 }  # fmt: skip
+
+
+def is_restitution(value: Measured) -> bool:
+    """Whether a value and its error tell a part of the speed that a contact can give back.
+
+    One of which nothing is known but that it lies between 0 and 1 has a deviation of 1/12^(1/2).
+    """
+    off = max(-value.value, value.value - 1.0, 0.0)
+    most = min(RULES.own_error * abs(value.value), 12.0**-0.5)
+    return off <= RULES.by_chance * value.std and value.std < most
 
 
 class Refused(InputError):

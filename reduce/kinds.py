@@ -21,6 +21,7 @@ from ..core.errors import InputError, first_line
 from ..core.inputs.added import READERS, added, names_added
 from ..core.inputs.input_file import checked_file
 from ..core.inputs.toml_input import InputTable, parse_model
+from ..core.processes.threads import in_one_thread
 from .rules import RULES
 
 if TYPE_CHECKING:
@@ -65,7 +66,8 @@ class Kind:
         # the reader of somebody else raises what it likes
         expected = Exception if self.module else (ArithmeticError, LinAlgError)
         try:
-            reduced: Reduced = kind.reduce(path, options)
+            # threads of many small solutions wait for each other most of the time
+            reduced: Reduced = in_one_thread(kind.reduce)(path, options)
             return reduced.known()
         except InputError:
             raise

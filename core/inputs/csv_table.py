@@ -5,6 +5,7 @@ from __future__ import annotations
 import csv
 import io
 import math
+import re
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, field
 from difflib import get_close_matches
@@ -16,6 +17,9 @@ from ..arrays import Array
 from ..errors import InputError
 from ..rules import RULES
 from .input_file import read_bytes
+
+_OF_FORTRAN = re.compile(r"[+-]?(\d+\.?\d*|\.\d+)[dD][+-]?\d+")
+"""A number in double precision."""
 
 
 @dataclass(slots=True)
@@ -141,11 +145,19 @@ def _body(
 
 
 def number(cell: str) -> float:
-    """Return the number in a cell, or NaN for text, infinities and NaN."""
+    """Return the number in a cell, or NaN for text, infinities and NaN.
+
+    Examples
+    --------
+    >>> number("1.5e-3"), number("1.5D-03"), number("left")
+    (0.0015, 0.0015, nan)
+    """
     try:
         value = float(cell)
     except ValueError:
-        return math.nan
+        if not _OF_FORTRAN.fullmatch(cell.strip()):
+            return math.nan
+        value = float(cell.replace("d", "e").replace("D", "e"))
     # float() takes "1_000"; a spreadsheet would not
     return value if math.isfinite(value) and "_" not in cell else math.nan
 

@@ -45,29 +45,53 @@ class Chain:
     factor: float
     notes: tuple[str, ...]
 
+    @property
+    def free(self) -> int:
+        """Flights beyond those that a smooth course takes."""
+        return sum(self.single) - _terms(self.single)
+
     def scatter(self) -> float:
         """Return the standard deviation of an instant by the roughness of the intervals [s].
 
-        Each rest about the smooth course is the error of two instants. NaN for fewer than six
-        intervals.
+        Each rest about the smooth course is the error of two instants. NaN for fewer than three
+        flights.
         """
-        rest = _rests(self.times, self.kept, self.single)
-        if rest is None:
+        if self.free < 1:
             return math.nan
-        return robust_std(rest[np.array(self.single)], lost=3) / math.sqrt(2.0)
+        rest = _rests(self.times, self.kept, self.single)[np.array(self.single)]
+        if self.free < 3:
+            return math.sqrt(float(rest @ rest) / self.free / 2.0)
+        return robust_std(rest, lost=3) / math.sqrt(2.0)
+
+    def shrinks(self, std: Array) -> bool:
+        """Whether the last flight is shorter than the first beyond the instants' errors (n,) [s].
+
+        Taps and clocks keep their time; of two flights nothing more is known.
+        """
+        flights = np.flatnonzero(self.single)
+        first, last = ([self.kept[k], self.kept[k + 1]] for k in (flights[0], flights[-1]))
+        change = np.ptp(self.times[first]) - np.ptp(self.times[last])
+        error = float(np.linalg.norm(np.nan_to_num(std[[*first, *last]])))
+        return bool(change > RULES.by_chance * error)
 
 
-def _rests(times: Array, kept: Sequence[int], single: Sequence[bool]) -> Array | None:
-    """Intervals less their smooth course, (k - 1,) [s]; None for fewer than six flights.
+def _terms(single: Sequence[bool]) -> int:
+    """How many coefficients a smooth course has, for so many flights."""
+    return 3 if sum(single) >= 6 else 2
 
-    The logarithms of the intervals follow a parabola in the number of the bounce.
+
+def _rests(times: Array, kept: Sequence[int], single: Sequence[bool]) -> Array:
+    """Intervals less their smooth course, (k - 1,) [s]; zeros for fewer than three flights.
+
+    The logarithms of the intervals follow a parabola in the number of the bounce; of fewer than six
+    flights a line, for one restitution.
     """
     gaps = np.diff(times[list(kept)])
     use = np.array(single)
-    if use.sum() < 6:
-        return None
+    if use.sum() < 3:
+        return np.zeros_like(gaps)
     number = np.arange(gaps.size) + np.cumsum(~use) - 0.5 * gaps.size
-    design = np.stack([np.ones_like(number), number, number**2], axis=1)
+    design = np.vander(number, _terms(single))
     weight = gaps[use] / gaps[use].max()  # an error in seconds weighs less in a long interval
     fit = robust_regression(design[use] * weight[:, None], np.log(gaps[use]) * weight)
     return np.asarray(gaps - np.exp(design @ fit.coefficients))
@@ -107,8 +131,8 @@ def chain_of(times: Array) -> Chain | None:
     if stray:
         notes.append(f"{stray} intervals stray from the course of the others and are left out")
     kept, single, ends = _without_false_ends(used, kept, single)
-    if len(kept) < RULES.least_of_all * used.size:
-        return None  # taps, steps: most of what seemed a run is none
+    if math.comb(used.size, len(kept)) * RULES.by_luck ** (len(kept) - 3) >= 0.5:
+        return None  # taps, steps: among as many instants some hang together
     if ends:
         notes.append(f"{ends} instants at the ends of the run stray from its course: left out")
     return Chain(np.asarray(times), kept, single, _typical(used, found), tuple(notes))
@@ -133,9 +157,9 @@ def _without_strays(
     times: Array, kept: tuple[int, ...], single: tuple[bool, ...]
 ) -> tuple[tuple[bool, ...], int]:
     """Give up flights that a knock in place of a bounce has shortened or lengthened."""
-    rest = _rests(times, kept, single)
-    if rest is None:
+    if _terms(single) < 3:
         return single, 0
+    rest = _rests(times, kept, single)
     limit = RULES.stray * robust_std(rest[np.array(single)], lost=3)
     kept_ones = tuple(bool(s and abs(r) <= limit) for s, r in zip(single, rest, strict=True))
     return kept_ones, sum(single) - sum(kept_ones)

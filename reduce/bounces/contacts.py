@@ -17,6 +17,7 @@ import numpy as np
 
 from ...core.arrays import Array, Indices
 from ...core.errors import InputError
+from ..gates import Refused, is_restitution
 from ..measured import Measured, propagate
 from ..rules import RULES
 from .bounce import Bounce, Bounced
@@ -45,19 +46,36 @@ def told_bounces(
     Raises
     ------
     Refused
-        The unit or the rate contradicts gravity: the values that would fit.
+        The unit or the rate contradicts gravity: the values that would fit. No restitution is one.
     InputError
         No contact with flight on both sides.
     """
     found = find_bounces(track, ball, metres=metres, contact=contact)
     if found is not None:
         check_scale(found.scale, source=source)
-        return found
+        return _believed(found, source)
     # a fall that is not the stated one hides every flight
     alone = None if metres is None else find_bounces(track, ball, metres=None, contact=contact)
     if alone is not None:
         check_scale(scale_of(alone.fall, ball.fall(3.0).gravity, metres), source=source)
     raise InputError("no contact with flight before and after it", source=source, allowed=allowed)
+
+
+def _believed(found: Bounced, source: str) -> Bounced:
+    """Leave out contacts whose restitution is no number; refuse a track without any other."""
+    kept = tuple(b for b in found.bounces if is_restitution(b.restitution))
+    if kept == found.bounces:
+        return found
+    wrong = [b for b in found.bounces if b not in kept]
+    said = ", ".join(f"{b.restitution} at {b.time.value:.4g} s" for b in wrong[:3])
+    if not kept:
+        raise Refused(
+            "restitution", f"no restitution is known: {said}", source=source,
+            allowed="flights before and after a contact that tell one between 0 and 1",
+        )  # fmt: skip
+    return replace(
+        found, bounces=kept, notes=(*found.notes, f"left out, no restitution is known: {said}")
+    )
 
 
 def find_bounces(
@@ -95,9 +113,9 @@ def find_bounces(
     view = View(before.fall.value, before.drag.value, 0.0, 0.0, 0.0)
     contacts, sides = true_contacts(body, contacts, stage, before.fall.value, sides)
     for again in reversed(range(RULES.contact_rounds)):
-        pieces, places = joined(sides)
-        if not pieces:
+        if not any(a and b for a, b in zip(sides[::2], sides[1::2], strict=True)):
             return None
+        pieces, places = joined(sides)
         try:
             with np.errstate(over="raise", invalid="raise", divide="raise"):
                 pieces, solutions = fit_together(body, pieces, stage, view, before)
@@ -110,8 +128,7 @@ def find_bounces(
             known = [s is not None for s in sides]
             moved = _moved(body, stage, view, pieces, seen, possible)
             held = [moved.get(turning, (0, 0)) for turning in contacts]
-            grown = sides_of(body, contacts, stage, view, held)
-            sides = [g if k else None for g, k in zip(grown, known, strict=True)]
+            sides = sides_of(body, contacts, stage, view, held, known)
     found = [
         _bounce(body, stage, pieces, solutions, meeting, contact, durations)
         for meeting, durations in zip(seen, possible, strict=True)

@@ -22,7 +22,7 @@ Sides = list[Piece | None]
 
 def sides_of(
     body: Track, contacts: Sequence[int], stage: Stage, view: View | None,
-    held: Sequence[tuple[int, int]] = (),
+    held: Sequence[tuple[int, int]] = (), known: Sequence[bool] = (),
 ) -> Sides:  # fmt: skip
     """Return the flights before and after each turning point.
 
@@ -34,6 +34,8 @@ def sides_of(
         That all flights share, if it is known.
     held
         Samples before and after each turning point that the contact has moved.
+    known
+        Whether there is a flight, for each; all are looked for by default.
     """
     edges = [-1, *contacts, body.time.size]
     moved = [(0, 0), *(held or [(0, 0)] * len(contacts)), (0, 0)]
@@ -41,10 +43,10 @@ def sides_of(
     for k, contact in enumerate(contacts, start=1):
         # a flight ends where the contact beyond it begins
         ends = edges[k - 1] + 1 + moved[k - 1][1], edges[k + 1] - 1 - moved[k + 1][0]
-        off = moved[k]
+        there = known[2 * k - 2 : 2 * k] or (True, True)
         found += [
-            side(body, contact, end, stage, view, off=count)
-            for end, count in zip(ends, off, strict=True)
+            side(body, contact, end, stage, view, off=count) if is_there else None
+            for end, count, is_there in zip(ends, moved[k], there, strict=True)
         ]
     return found
 

@@ -12,9 +12,11 @@ from collections.abc import Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
+from scipy.special import ndtr, stdtrit
 
 from ...core.arrays import Array
 from ...core.errors import InputError
+from ..gates import Refused
 from ..measured import Measured, Trial, labelled
 from ..rules import RULES
 from .chain import Chain, chain_of
@@ -102,6 +104,8 @@ def reduce_bounce_times(
         if math.isnan(scatter):
             notes.append("too few bounces to tell how well the instants are known")
         else:
+            # a few intervals hardly tell their own scatter (Student)
+            scatter *= 0.5 * float(stdtrit(chain.free, ndtr(2.0)))
             notes.append(f"instants ± {1e3 * scatter:.2g} ms by the scatter of the intervals")
         std = np.full(times.size, scatter)
     elif scatter > RULES.run_scatter * float(np.median(std)):
@@ -128,10 +132,10 @@ def reduce_bounce_times(
             f"contact {gained[0].number} gives {gained[0].restitution} of the speed back",
             source=source, allowed="bounces of a ball that falls freely: none gains speed",
         )  # fmt: skip
-    if float(np.median([b.restitution.value for b in bounces])) > RULES.most_elastic:
-        raise InputError(
-            "the intervals do not shrink", source=source,
-            allowed="bounces of a ball, each flight shorter than the one before",
+    if not chain.shrinks(std):
+        raise Refused(
+            "fades", "the intervals do not shrink beyond their scatter", source=source,
+            allowed="bounces of a ball, each flight shorter than the one before: taps do not",
         )  # fmt: skip
     return BounceTimes(chain, std, bounces, tuple(notes))
 

@@ -86,8 +86,8 @@ def turning_points(track: Track) -> list[int]:
     A free flight has no minimum of height, so each clear minimum is a contact.
     """
     smooth = median_filter(track.height, 3, mode="nearest")
-    noise = robust_std(np.diff(smooth, 2)) / np.sqrt(6.0)
-    prominence = max(0.01 * float(np.ptp(smooth)), 8.0 * noise)
+    # of a hundred thousand samples of normal noise five turn by so much, behind the filter
+    prominence = max(0.01 * float(np.ptp(smooth)), 5.0 * track.noise)
     if prominence <= 0.0:
         return []
     peaks, _ = find_peaks(-smooth, prominence=prominence)

@@ -9,7 +9,6 @@
 
 from __future__ import annotations
 
-import csv
 from collections.abc import Iterator, Sequence
 from pathlib import Path
 from typing import NamedTuple
@@ -22,6 +21,7 @@ from ...core.inputs.csv_table import number
 from ...core.inputs.input_file import read_bytes
 from ..rules import RULES
 from ..shared.units import LENGTH
+from ..table.file import text_rows
 
 _IN_WORDS = {"meters": "m", "millimeters": "mm", "centimeters": "cm", "inches": "in"}
 
@@ -62,16 +62,14 @@ def read_export(path: Path) -> Export | None:
         if first.startswith(beginning):
             return reader(_rows(path), str(path))
     vicon = ("Trajectories", "Devices", "Model Outputs", "Joints", "Segments", "Events")
-    if first.split("\n", 1)[0].strip(' ",\r') in vicon:
+    if first.split("\n", 1)[0].strip(' ",;\r') in vicon:
         return _vicon(_rows(path), str(path))
     return None
 
 
 def _rows(path: Path) -> list[list[str]]:
     raw = read_bytes(path, most=RULES.table_bytes, allowed="a tracker's export")
-    lines = raw.decode("utf-8-sig", errors="replace").splitlines()
-    separator = "\t" if lines[0].count("\t") else ","
-    return [[c.strip() for c in row] for row in csv.reader(lines, delimiter=separator)]
+    return text_rows(raw.decode("utf-8-sig", errors="replace").splitlines(), str(path))
 
 
 def _motive(rows: list[list[str]], source: str) -> Export:

@@ -1,4 +1,4 @@
-"""Marker tracks of motion capture: C3D files, and CSV tables with three columns a marker."""
+"""Marker tracks of motion capture: C3D files, and tables with three columns a marker."""
 
 from __future__ import annotations
 
@@ -14,18 +14,13 @@ import numpy as np
 from scipy.spatial.transform import Rotation
 
 from ...core.arrays import Array
-from ...core.errors import InputError, InputErrors, first_line, missing_extra
-from ...core.inputs.csv_table import (
-    Problems,
-    TextTable,
-    numbers,
-    read_text_table,
-    rows_with,
-    selection,
-)
+from ...core.errors import InputError, first_line, missing_extra
+from ...core.inputs.csv_table import shown
 from ...core.processes.confined import confined
 from ..rules import RULES
 from ..shared.units import LENGTH, metres
+from ..table.cells import UNSEEN
+from ..table.file import Columns, read_columns
 from .exports import read_export
 
 UNITS = ("m", "cm", "mm")
@@ -106,12 +101,12 @@ def read_markers(
     select: str = "",
     points: Mapping[str, Sequence[float]] | None = None,
 ) -> Markers:
-    """Read marker tracks from a C3D file, a tracker's export, or a CSV table.
+    """Read marker tracks from a C3D file, a tracker's export, or a table.
 
-    A CSV table has one header line, a column `time_s` (or `frame`, with `rate`), and three columns
-    for each marker that end in x, y, z, with or without a unit: `A_x_mm`, `A.X`, `A:z`. An empty
-    cell, or a marker at exactly (0, 0, 0), was not seen. A table of poses has columns x, y, z of a
-    place on the body and qw, qx, qy, qz of its rotation (scalar first) instead.
+    A table has names above its numbers, a column `time_s` (or `frame`, with `rate`), and three
+    columns for each marker that end in x, y, z, with or without a unit: `A_x_mm`, `A.X`, `A:z`. An
+    empty cell, or a marker at exactly (0, 0, 0), was not seen. A table of poses has columns x, y, z
+    of a place on the body and qw, qx, qy, qz of its rotation (scalar first) instead.
 
     Parameters
     ----------
@@ -207,109 +202,106 @@ def _table(
     select: str,
     points: Mapping[str, Sequence[float]],
 ) -> Markers:
-    problems = Problems(str(path))
-    table = read_text_table(path, _header(path), problems)
-    if table is None:
-        raise InputErrors(tuple(problems.found))
+    table = read_columns(path)
     if select:
-        table = _selected(table, select, path)
-    time = _times(table, rate, problems)
-    if set(_TURN) <= set(table.columns):
-        return _poses(table, time, unit, points, problems)
+        table = table.select(select)
+    unnamed = [k for k, name in enumerate(table.names) if not name]
+    if any(row[k] for row in table.cells for k in unnamed):
+        raise InputError(
+            f"{len(table.names)} cells under {len(table.names) - len(unnamed)} columns",
+            source=table.source, allowed="as many cells as names",
+        )  # fmt: skip
+    time = _times(table, rate)
+    if set(_TURN) <= set(table.names):
+        return _poses(table, time, unit, points)
     groups = _groups(table)
     if not groups:
-        problems.add("no marker", row=1, allowed="columns NAME_x, NAME_y, NAME_z for each marker")
+        raise InputError(
+            "no marker", source=table.source,
+            allowed="columns NAME_x, NAME_y, NAME_z for each marker",
+        )  # fmt: skip
     tracks = []
     for name, columns in groups.items():
         if set(columns) != set("xyz"):
             lacking = ", ".join(sorted(set("xyz") - set(columns)))
-            problems.add(f"marker {name!r} has no {lacking}", row=1, allowed="x, y and z")
-            continue
-        factor = [LENGTH.get(unit or columns[a][1] or "", float("nan")) for a in "xyz"]
+            raise InputError(
+                f"marker {name!r} has no {lacking}", source=table.source, allowed="x, y and z"
+            )
+        factor = [LENGTH.get(unit or columns[a][1] or "", math.nan) for a in "xyz"]
         if np.isnan(factor).any():
-            problems.add(
-                f"the unit of marker {name!r} is not stated", row=1,
+            raise InputError(
+                f"the unit of marker {name!r} is not stated", source=table.source,
                 allowed="columns that end in _m or _mm, or the option unit",
             )  # fmt: skip
-        tracks.append(
-            np.stack([numbers(table, columns[a][0], problems) for a in "xyz"], axis=1) * factor
-        )
-    if problems.found:
-        raise InputErrors(tuple(problems.found))
-    return Markers(time, tuple(groups), np.stack(tracks, axis=1), str(path))
+        tracks.append(_numbers(table, [columns[a][0] for a in "xyz"]) * factor)
+    return Markers(time, tuple(groups), np.stack(tracks, axis=1), table.source)
 
 
-def _selected(table: TextTable, select: str, path: Path) -> TextTable:
-    column, value = selection(select, source=str(path))
-    if column not in table.columns:
-        raise InputError(
-            repr(column), source=str(path), key="select",
-            allowed=f"a column of {', '.join(table.columns[:20])}",
-        )  # fmt: skip
-    rows = rows_with(value, table.cells[column], source=str(path))
-    cells = {name: tuple(text[k] for k in rows) for name, text in table.cells.items()}
-    return TextTable(table.columns, tuple(table.rows[k] for k in rows), cells)
+def _numbers(table: Columns, names: Sequence[str]) -> Array:
+    """Return columns as numbers, (n, m); NaN where nothing was seen."""
+    places = [table.names.index(name) for name in names]
+    values = table.values[:, places]
+    for row, k in np.argwhere(np.isnan(values)):
+        cell = table.cells[row][places[k]]
+        if cell.lower() not in UNSEEN:
+            where = f"column {names[k]}, row {row + 1} of the numbers"
+            raise InputError(
+                shown(cell), source=table.source, key=where,
+                allowed="a number, or an empty cell where nothing was seen",
+            )  # fmt: skip
+    return values
 
 
 def _poses(
-    table: TextTable,
-    time: Array,
-    unit: str | None,
-    points: Mapping[str, Sequence[float]],
-    problems: Problems,
+    table: Columns, time: Array, unit: str | None, points: Mapping[str, Sequence[float]]
 ) -> Markers:
     """Return the tracks of places on a body whose pose a table gives."""
-    place = {c[0]: c for c in table.columns if re.fullmatch(r"[xyz](_(m|cm|mm))?", c)}
+    place = {c[0]: c for c in table.names if re.fullmatch(r"[xyz](_(m|cm|mm))?", c)}
     if set(place) != set("xyz"):
-        problems.add("a pose has no place", row=1, allowed="columns x_m, y_m, z_m beside qw to qz")
+        raise InputError(
+            "a pose has no place", source=table.source,
+            allowed="columns x_m, y_m, z_m beside qw to qz",
+        )  # fmt: skip
     if len(points) < 3:
-        problems.add("places on the body are needed for poses", allowed="a body file, 3 markers")
-    if problems.found:
-        raise InputErrors(tuple(problems.found))
-    stated = place["x"].partition("_")[2]
-    factor = metres(unit or stated, source=problems.source, allowed=UNITS)
-    origin = np.stack([numbers(table, place[a], problems) for a in "xyz"], axis=1) * factor
-    turn = np.stack([numbers(table, a, problems) for a in _TURN], axis=1)
-    if problems.found:
-        raise InputErrors(tuple(problems.found))
+        raise InputError(
+            "places on the body are needed for poses", source=table.source,
+            allowed="a body file, 3 markers",
+        )  # fmt: skip
+    factor = metres(unit or place["x"].partition("_")[2], source=table.source, allowed=UNITS)
+    origin = _numbers(table, [place[a] for a in "xyz"]) * factor
+    turn = _numbers(table, _TURN)
     known = np.isfinite(turn).all(axis=1) & (np.linalg.norm(turn, axis=1) > 0.5)
     position = np.full((time.size, len(points), 3), np.nan)
     rotation = Rotation.from_quat(turn[known], scalar_first=True).as_matrix()
     body = np.array(list(points.values()), dtype=np.float64)
     position[known] = origin[known, None] + np.einsum("kij,mj->kmi", rotation, body)
-    return Markers(time, tuple(points), position, problems.source)
+    return Markers(time, tuple(points), position, table.source)
 
 
-def _header(path: Path) -> tuple[str, ...]:
-    """Return every column of the file: any name may stand in a table of markers."""
-    try:
-        with path.open(encoding="utf-8-sig") as stream:
-            return tuple(c.strip().strip('"') for c in stream.readline().split(","))
-    except (OSError, UnicodeDecodeError):
-        return ()
-
-
-def _times(table: TextTable, rate: float | None, problems: Problems) -> Array:
-    for name in table.columns:
+def _times(table: Columns, rate: float | None) -> Array:
+    rows = len(table.values)
+    if rate is not None:
+        frames = [_numbers(table, [n])[:, 0] for n in table.names if _FRAME.fullmatch(n)]
+        return np.asarray((frames[0] if frames else np.arange(rows)) / rate)
+    for name in table.names:
         found = _TIME.fullmatch(name)
-        if found is not None and rate is None:
-            time = numbers(table, name, problems)
+        if found is not None:
+            time = _numbers(table, [name])[:, 0]
             if np.isnan(time).any():
-                problems.add("a time is missing", column=name, allowed="a number in every row")
+                raise InputError(
+                    "a time is missing", source=table.source, key=f"column {name}",
+                    allowed="a number in every row",
+                )  # fmt: skip
             return time * (1e-3 if found["unit"] == "ms" else 1.0)
-    if rate is None:
-        problems.add("no column of time", row=1, allowed="time_s, or the option frame_rate_hz")
-        return np.arange(len(table.rows), dtype=np.float64)
-    for name in table.columns:
-        if _FRAME.fullmatch(name):
-            return numbers(table, name, problems) / rate
-    return np.arange(len(table.rows)) / rate
+    raise InputError(
+        "no column of time", source=table.source, allowed="time_s, or the option frame_rate_hz"
+    )
 
 
-def _groups(table: TextTable) -> dict[str, dict[str, tuple[str, str | None]]]:
+def _groups(table: Columns) -> dict[str, dict[str, tuple[str, str | None]]]:
     """Return, for each marker, the column and the stated unit of x, y, z."""
     groups: dict[str, dict[str, tuple[str, str | None]]] = {}
-    for column in table.columns:
+    for column in table.names:
         found = _COORDINATE.fullmatch(column)
         if found is not None and not _TIME.fullmatch(column):
             axes = groups.setdefault(found["marker"], {})

@@ -17,11 +17,11 @@ from ...core.errors import InputError, first_line, missing_extra
 from ...core.inputs.csv_table import number, shown
 from ..rules import RULES
 from ..shared.units import LENGTH, metres
+from ..table.cells import UNSEEN
 from ..table.file import is_data, numbered_lines, text_rows
 from ..table.heading import unit_in
 
 _TEXT = (".csv",)
-_UNSEEN = ("", "nan", "-", "na")
 
 
 @dataclass(frozen=True)
@@ -217,7 +217,7 @@ def _is_heading(row: list[str]) -> bool:
 
 
 def _is_word(cell: str) -> bool:
-    return math.isnan(number(cell)) and cell.strip().lower() not in _UNSEEN
+    return math.isnan(number(cell)) and cell.strip().lower() not in UNSEEN
 
 
 def _regular(points: Array, path: Path) -> _Raw:

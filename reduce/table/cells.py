@@ -4,6 +4,7 @@
 | --- | --- |
 | `1 234,5`, `1.234,5`, `1'234.5`, `"1,234.5"` | a number with separators of thousands |
 | `0,25` where commas do not separate, or are quoted | a number |
+| `1.234D-03`, `1,234E-03` | a number with an exponent, of Fortran too |
 | `12:04:26.746`, `04:26.7`, `2024-05-17T12:04:26.746Z`, `17.05.2024 12:04:26` | an instant |
 | `OL`, `∞`, `******`, `#N/A`, `NaN`, 9.9e37 | no number: out of range, or not measured |
 """
@@ -22,7 +23,10 @@ from ...core.inputs.csv_table import number
 OUT_OF_RANGE = 9.8e37
 """Instruments that speak SCPI write 9.9e37 for more than they can show (SCPI-1999, 7.2.1)."""
 
-_DECIMAL_COMMA = re.compile(r"[+-]?\d*,\d+([eE][+-]?\d+)?")
+UNSEEN = ("", "nan", "-", "na")
+"""What stands for a point that was not seen, in small letters."""
+
+_DECIMAL_COMMA = re.compile(r"[+-]?\d*,\d+([eEdD][+-]?\d+)?")
 _COUNT = re.compile(r"[+-]?[1-9]\d{0,2}(,\d{3})+")
 _THOUSANDS = (
     (re.compile(r"[+-]?\d{1,3}([ \u00a0\u2009\u202f'’]\d{3})+([.,]\d+)?"),

@@ -16,7 +16,7 @@ from .headers import SheetColumn
 from .kinds import CELSIUS
 
 _CELL = re.compile(
-    r"(?P<number>[+-]?[\d.,'’ ]*\d(?:[eE][+-]?\d+)?)"
+    r"(?P<number>[+-]?[\d.,'’ ]*\d(?:[eEdD][+-]?\d+)?)"
     r"(\s*(±|\+/-|\+-)\s*(?P<std>[\d.,]+))?\s*(?P<unit>[^\d\s].{0,5})?"
 )
 _GROUPED = re.compile(r"[+-]?[1-9]\d{0,2}([.,]\d{3})+")

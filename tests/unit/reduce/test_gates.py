@@ -1,18 +1,27 @@
 """Gates: what a reduction sees passes, widens or refuses; records of kinds that went wrong."""
 
-from dataclasses import fields
+from dataclasses import fields, replace
 from pathlib import Path
 
 import numpy as np
 import pytest
 from dentscope.cli import run as command
-from dentscope.reduce.gates import GATES, Refused
+from dentscope.core.errors import InputError
+from dentscope.reduce.bounces import contacts
+from dentscope.reduce.bounces.contacts import find_bounces
+from dentscope.reduce.bounces.fall import UNKNOWN
+from dentscope.reduce.bounces.track import Track
+from dentscope.reduce.gates import GATES, Refused, is_restitution
 from dentscope.reduce.kinds import load_kind
+from dentscope.reduce.measured import Measured
 from dentscope.reduce.rules import RULES
 from dentscope.reduce.table.pulse import find_pulse
+from dentscope.studies.synthetic.tracks import TrackTruth, seen
 from made_records import T, half_sine, recorded, run
 
 ROOT = Path(__file__).parents[3]
+_TRACK = seen(TrackTruth(rate=500.0, noise=0.1, restitution=0.8))
+BOUNCES = Track(_TRACK.time, _TRACK.height), UNKNOWN
 WIDE = half_sine(long=8e-3, noise=0.0)
 
 
@@ -146,3 +155,34 @@ def test_who_walks_does_not_fall(tmp_path, forwards, steps, lift):
                comments="")  # fmt: skip
     with pytest.raises(ValueError, match=r"free flight|falls with|rigid|no impact|restitution"):
         load_kind("mocap").run(tmp_path / "walk.csv", {"shape": "body"}, source="test")
+
+
+@pytest.mark.parametrize(
+    ("e", "std", "known"),
+    [(0.8, 0.02, True), (0.2, 0.09, True), (0.2, 0.11, False), (1.5, 1.1, False),
+     (0.9, 0.3, False), (1.05, 0.02, True), (1.07, 0.02, False), (-0.1, 0.02, False)],
+)  # fmt: skip
+def test_what_a_restitution_is(e, std, known):
+    assert is_restitution(Measured(e, std)) == known
+
+
+@pytest.mark.parametrize("seed", [2, 5, 8])
+def test_what_is_let_down_in_steps_does_not_bounce(tmp_path, seed):
+    """Held between: what it seems to give back is as unsure as it is large."""
+    rng = np.random.default_rng(seed)
+    t = np.arange(0.0, 3.0, 1.0 / 230.0)
+    held = 1.0 - 0.1 * np.floor(2.7 * t) + 3e-3 * np.sin(8.0 * t) + 2e-3 * rng.normal(size=t.size)
+    rows = (f"{s:.5f},{h:.6f}" for s, h in zip(t, held, strict=True))
+    (tmp_path / "a.csv").write_text("\n".join(["time_s,height_m", *rows]))
+    with pytest.raises(InputError, match=r"no restitution is known|no contact with flight"):
+        load_kind("table").run(tmp_path / "a.csv", {"holds": "height"}, source="test")
+
+
+def test_a_contact_that_tells_nothing_is_left_out_of_the_others(monkeypatch):
+    found = find_bounces(*BOUNCES, metres=None)
+    unsure = replace(found.bounces[1], restitution=Measured(1.5, 1.1))
+    mixed = replace(found, bounces=(found.bounces[0], unsure, *found.bounces[2:]))
+    monkeypatch.setattr(contacts, "find_bounces", lambda *_, **__: mixed)
+    told = contacts.told_bounces(*BOUNCES, metres=None, source="test", allowed="")
+    assert told.bounces == (found.bounces[0], *found.bounces[2:])
+    assert "no restitution is known: 1.5 ± 1.1 at" in told.notes[-1]

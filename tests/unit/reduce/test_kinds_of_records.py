@@ -7,7 +7,7 @@ from dentscope.reduce.sound.file import Sound
 from dentscope.reduce.sound.kind import check_level
 from dentscope.reduce.table.pulse import find_pulse
 from made_records import RATE, T, half_sine, recorded, run, table
-from scipy.signal import lfilter
+from scipy.signal import lfilter, lsim
 
 AREA = 2 / np.pi * 800.0 * 4e-3
 """Of the pulse alone [N s]."""
@@ -179,3 +179,14 @@ def test_three_equal_samples_at_a_fine_top_are_a_cut():
     cut = np.minimum(half_sine(long=1.2e-3, noise=0.3), 720.0)
     with pytest.raises(Refused, match="clipped: 3 samples"):
         find_pulse(T, cut, source="test")
+
+
+def test_a_sensor_that_hardly_rings_widens_the_contact_time():
+    """It shows a contact of 8 ms a twentieth too short."""
+    time = np.arange(0.0, 0.2, 5e-5)
+    force = 100.0 * np.sin(np.pi * np.clip((time - 0.08) / 8e-3, 0.0, 1.0)) ** 1.5
+    pace = 2.0 * np.pi / 1.6e-3
+    shown = lsim(([pace**2], [1.0, 0.2 * pace, pace**2]), force, time)[1]
+    noise = np.random.default_rng(1).normal(0.0, 0.05, time.size)
+    found = find_pulse(time, shown + noise, source="test")
+    assert 0.03 < 1.0 - found.duration.value / 8e-3 < 2.0 * found.duration.std / 8e-3

@@ -117,7 +117,7 @@ CASES = {
         "mocap", TRACK, ["--shape", "sphere", "--tip-radius-m", "0.01", "--markers", "B"], "marker"
     ),
     "mocap: words": ("mocap", "time_s,A_x_mm,A_y_mm,A_z_mm\nx,y,z,w\n",
-                     ["--shape", "sphere", "--tip-radius-m", "0.01"], "row 2"),
+                     ["--shape", "sphere", "--tip-radius-m", "0.01"], "no row of numbers"),
     "scan: three heights": ("scan", "1,2,3\n4,5,6\n7,8,9\n", [], "heights"),
     "scan: words": ("scan", "a,b\nc,d\n", ["--unit", "um", "--step-m", "1e-6"], "a.csv"),
     "scan: step of zero": ("scan", "1,2\n3,4\n", ["--unit", "um", "--step-m", "0"], "step-m"),

@@ -11,6 +11,8 @@ from dentscope.core import InputError
 from dentscope.recordings import read
 from dentscope.reduce.bounces.chain import chain_of
 from dentscope.reduce.bounces.fall import Fall
+from dentscope.reduce.bounces.options import BounceOptions
+from dentscope.reduce.bounces.times import reduce_bounce_times
 from dentscope.reduce.kinds import load_kind
 from dentscope.studies.synthetic.sounds import RATE, SoundTruth, bounces, record, write_wav
 from hypothesis import given, settings
@@ -200,6 +202,35 @@ def test_a_bounce_that_the_stop_watch_missed_is_found():
     e = [t.observables["restitution"].value for t in reduced.trials]
     assert min(e) > 0.83
     assert max(e) < 0.95
+
+
+@pytest.mark.parametrize("std", [2e-5, None], ids=["heard", "stopped"])
+def test_five_taps_are_seldom_a_bouncing_ball(std):
+    """Even ones with a twentieth of scatter, and of any interval from 0.15 to 0.9 s."""
+    passed = 0
+    for seed in range(40):
+        rng = np.random.default_rng(seed)
+        even, wild = np.exp(0.05 * rng.normal(size=4)), 0.15 * 6.0 ** rng.uniform(size=4)
+        for intervals in (0.4 * even, wild):
+            times = np.append(0.0, np.cumsum(intervals))
+            errors = None if std is None else np.full(5, std)
+            try:
+                found = reduce_bounce_times(times, BounceOptions(), std=errors, source="taps")
+            except InputError:
+                continue
+            passed += 1
+            assert min(b.restitution.std for b in found.bounces) > 1e-3
+    assert passed <= 6  # of 80
+
+
+def test_four_bounces_are_as_uncertain_as_their_restitution_is_uneven():
+    """Of 0.9, 0.91 and 0.89 nothing tells whether the ball or its time scatters."""
+    times = np.append(0.0, np.cumsum(0.5 * np.cumprod([1.0, 0.9, 0.91, 0.89])))
+    heard = reduce_bounce_times(times, BounceOptions(), std=np.full(5, 1e-6), source="a ball")
+    assert all(0.004 < b.restitution.std < 0.02 for b in heard.bounces)
+    # by the scatter alone, of two flights beyond the two that tell a factor, 2.3 times as much
+    stopped = reduce_bounce_times(times, BounceOptions(), std=None, source="a ball")
+    assert stopped.time_std[0] == pytest.approx(2.265 * heard.chain.scatter(), rel=1e-3)
 
 
 TAPS = (0.80, 0.72, 0.73, 0.60, 0.58, 0.45, 0.44, 0.36, 0.35, 0.26, 0.25, 0.18)

@@ -87,6 +87,27 @@ def test_the_bounce_is_read_from_the_export_itself(tmp_path, write, up):
     assert v.value == pytest.approx(np.sqrt(2.0 * G * HEIGHT), rel=2e-3)
 
 
+@pytest.mark.parametrize("write", [motive, vicon])
+def test_an_export_with_semicolons_and_decimal_commas(tmp_path, write):
+    path, up = write(tmp_path / "take.csv"), "z" if write is vicon else "y"
+    plain = reduced(path, up)
+    path.write_text(path.read_text("utf-8-sig").replace(",", ";").replace(".", ","), "utf-8-sig")
+    assert reduced(path, up)["restitution"] == plain["restitution"]
+
+
+@pytest.mark.parametrize(
+    "write",
+    [lambda v: f"{v:.6f}".replace(".", ","), lambda v: f"{v:.7E}".replace("E", "D")],
+    ids=["decimal-commas", "fortran"],
+)
+def test_a_table_of_markers_as_other_programs_write_it(tmp_path, write):
+    t, at = tracks(240.0, up=2, count=1)
+    rows = [";".join(map(write, (s, *a[0]))) for s, a in zip(t, at, strict=True)]
+    (tmp_path / "a.csv").write_text("\n".join(["t_s;ball_x_m;ball_y_m;ball_z_m", *rows]))
+    found = reduced(tmp_path / "a.csv", "z")["restitution"]
+    assert abs(found.value - E) < 4.0 * found.std < 0.02
+
+
 def test_an_export_without_tracks_says_so(tmp_path):
     path = tmp_path / "a.csv"
     path.write_text("Devices\n1000\n,,Plate\nFrame,Sub Frame,Fz\n,,N\n1,0,5\n")

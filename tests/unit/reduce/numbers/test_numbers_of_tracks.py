@@ -8,7 +8,6 @@ from types import SimpleNamespace
 
 import numpy as np
 import pytest
-from dentscope.core.errors import InputError
 from dentscope.reduce.bounces import contacts, flights, touch
 from dentscope.reduce.bounces.chain import _longest, chain_of
 from dentscope.reduce.bounces.contacts import _on_one_flat, find_bounces
@@ -56,13 +55,12 @@ def test_a_missed_bounce_costs_three_quarters_of_an_instant() -> None:
     assert score == pytest.approx(5.0 - 0.75)
 
 
-@pytest.mark.parametrize(("instants", "run"), [(8, True), (9, False)])
-def test_half_of_the_instants_hang_together(instants, run) -> None:
-    """Flights of 0.8 of the one before, 6 % more and less in turn: all but four are given up."""
-    factors = 0.8 * np.exp(0.06 * np.resize([1.0, -1.0], instants - 2))
-    times = np.append(0.0, np.cumsum(np.cumprod(np.append(1.0, factors))))
-    found = chain_of(times)
-    assert (found is not None and len(found.kept) == 4) == run
+@pytest.mark.parametrize(("knocks", "run"), [(2, True), (3, False)])
+def test_a_tenth_of_all_intervals_go_on_a_run_by_chance(knocks, run) -> None:
+    """Of five bounces among seven instants 0.21 are expected by chance, among eight 0.56."""
+    times = np.cumsum(np.append(0.0, 0.8 ** np.arange(4)))
+    found = chain_of(np.append(times, times[-1] + 2.0 * 1.7 ** np.arange(knocks)))
+    assert (found is not None and len(found.kept) == 5) == run
 
 
 def bounced(factor, jitter=0.0, **given):
@@ -74,10 +72,11 @@ def bounced(factor, jitter=0.0, **given):
     )
 
 
-def test_nothing_gives_back_all_but_two_thousandths() -> None:
-    assert bounced(0.9975).bounces
-    with pytest.raises(InputError, match="do not shrink"):
-        bounced(0.9985)
+def test_flights_shrink_by_three_of_their_errors_or_are_taps() -> None:
+    """Ten flights of 0.9999 of the one before: the last is 1 ms shorter, ± 2 of an instant."""
+    assert bounced(0.9999, std=np.full(12, 1.6e-4)).bounces
+    with pytest.raises(Refused, match="do not shrink"):
+        bounced(0.9999, std=np.full(12, 1.8e-4))
 
 
 @pytest.mark.parametrize(("part", "told"), [(1.9, False), (2.1, True)])

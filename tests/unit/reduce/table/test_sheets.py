@@ -5,6 +5,7 @@ import math
 import pytest
 from dentscope.core.errors import InputError
 from dentscope.recordings import read
+from dentscope.reduce.table.file import read_columns
 from dentscope.reduce.table.sheet import read_sheet
 
 GERMAN = """Nr.;Datum;Fallhöhe (cm);Rückprallhöhe (mm);Eindruckdurchmesser (mm);Bemerkung
@@ -411,3 +412,20 @@ def test_the_picture_says_how_many_of_the_trials_it_shows(tmp_path, monkeypatch)
     text = "load (N);drop height (cm);dent diameter (mm)\n;10;0,6\n;20;0,7\n900;;0,6\n"
     read_text(tmp_path, text).reduced(tmp_path / "a.csv").draw(tmp_path / "a.png")
     assert drawn[0].axes[0].get_title() == "2 of 3 trials"
+
+
+def test_errors_of_a_spreadsheet_are_told(tmp_path):
+    openpyxl = pytest.importorskip("openpyxl")
+    book = openpyxl.Workbook()
+    sheet = book.active
+    sheet.title = "a & b"
+    sheet.append([])
+    sheet.append(["drop height (cm)", "rebound height (cm)"])
+    for height in (20, 21, "#DIV/0!", 22):
+        sheet.append([30, height])
+    book.save(tmp_path / "a.xlsx")
+    found = read_sheet(tmp_path / "a.xlsx")
+    assert len(found.trials) == 3
+    assert any("row 5" in line and "'#DIV/0!'" in line for line in found.left_out)
+    table = read_columns(tmp_path / "a.xlsx")
+    assert table.cells[2][1] == "#DIV/0!"
