@@ -44,7 +44,7 @@ from ..discrepancy.unknowns.lawerror import LawError
 from ..recordings import read
 from ..recordings.shipped import FOLDER, shipped_sets
 from .challenge.archive import sets_of, truths_of
-from .proof.altered import AS_IT_IS, LAW_ERROR, NO_FORM, NO_LAW, WIDTHS, label
+from .proof.altered import AS_IT_IS, LAW_ERROR, NO_FORM, NO_LAW, WIDTHS, WITHOUT, label
 from .proof.ranks import read_ranks
 from .proof.rivals import LEAST
 
@@ -300,7 +300,16 @@ def with_error(problem: Problem, times: float) -> Problem:
 
 def _as_it_is(problem: Problem) -> dict[str, Any]:
     found = explained(problem)
-    return altered(found) | {f"without {k}": v for k, v in taken_away(found).items()}
+    return brief(altered(found) | {WITHOUT + k: v for k, v in taken_away(found).items()})
+
+
+def brief(told: dict[str, dict[str, Any]]) -> dict[str, dict[str, Any]]:
+    """Leave out probabilities that are those as it is."""
+    same = told[AS_IT_IS]["odds"]
+    return {
+        k: {n: v for n, v in one.items() if k == AS_IT_IS or n != "odds" or v != same}
+        for k, one in told.items()
+    }
 
 
 def _without_form(problem: Problem) -> dict[str, Any]:
@@ -329,13 +338,15 @@ _FEWER = 3
 def asked(open_sets: Sequence[str]) -> list[tuple[str, str]]:
     """Return what is asked, a set and a fit each, in order; of the shipped no stage is taken away.
 
-    The open sets that are only told again come last.
+    What is told again from the same fits comes first.
     """
-    errors = [fit for fit in FITS if fit not in (NO_LAW, NO_FORM)]
+    found = [(name, AS_IT_IS) for name in (*shipped_sets(), *open_sets)]
     fewer = open_sets[::_FEWER]
-    found = [(name, fit) for name in shipped_sets() for fit in errors]
-    found += [(name, fit) for name in fewer for fit in FITS]
-    return found + [(name, AS_IT_IS) for name in open_sets if name not in fewer]
+    for fit in FITS:
+        if fit != AS_IT_IS:
+            some = fewer if fit in (NO_LAW, NO_FORM) else (*shipped_sets(), *fewer)
+            found += [(name, fit) for name in some]
+    return found
 
 
 def lines(folder: Path, out: Path) -> Iterator[dict[str, Any]]:
@@ -347,7 +358,7 @@ def lines(folder: Path, out: Path) -> Iterator[dict[str, Any]]:
         Part `open` of the challenge.
     out
         A line of JSON for each set and fit: `set`, `truth` (none of a shipped recording), `fit`,
-        and what is `said`, as in `proof.rivals`.
+        and what is `said`, as in `proof.rivals`; without `odds` where they are those as it is.
     """
     known = {(x["set"], x["fit"]) for x in read_ranks(out)}
     open_sets = sets_of(folder)

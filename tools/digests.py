@@ -21,6 +21,11 @@ PAGE = ROOT / "data" / "README.md"
 COEFFICIENTS = ROOT / "data" / "coefficients" / "fitted.json"
 SHORT = 12
 RUN = "dentscope campaign run, publish"
+PROOFS = {
+    "ranks.jsonl": ("draws from the priors", "python -m dentscope.studies.calibration"),
+    "ranks-at-data.jsonl": ("shipped recordings", "python -m dentscope.studies.at_data"),
+    "altered.jsonl": ("open sets, shipped recordings", "python -m dentscope.studies.sensitivity"),
+}
 LEVELS = "dentscope verify --only levels"
 DRAWN = "python -m dentscope.studies.challenge.draw"
 
@@ -89,6 +94,8 @@ def rows() -> Iterable[tuple[str, str, str, str]]:
     for name in ("base_laws.json", "explicit_impacts.h5"):
         made = "the solver" if name.startswith("base") else "elements of the proof's own"
         command = "dentscope proof laws" if name.startswith("base") else "dentscope proof library"
+        yield f"proof/{name}", digest([ROOT / "data" / "proof" / name]), made, command
+    for name, (made, command) in PROOFS.items():
         yield f"proof/{name}", digest([ROOT / "data" / "proof" / name]), made, command
     runs = ROOT / "data" / "proof" / "runs.json"
     full = [r for r in json.loads(runs.read_text()) if r["list"] == "full"][-1]

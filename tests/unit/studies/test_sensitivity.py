@@ -51,6 +51,10 @@ def test_prior_odds_count_in_full_where_nothing_else_is_left(found) -> None:
         )
         assert more == pytest.approx(times, rel=0.15)
     assert sensitivity.said(found) == told[altered.AS_IT_IS]
+    short = sensitivity.brief(told)
+    assert "odds" not in short["cost of silence, x 2"]
+    line = {"set": "a", "truth": None, "said": short}
+    assert altered.by_set([line])["a"].said == told
 
 
 def test_without_what_is_outside_it_has_no_probability(found) -> None:
@@ -139,7 +143,9 @@ def test_changes_are_counted() -> None:
     assert altered.outcome(drawn[1], "priors, x 2") == altered.WRONG
     assert altered.outcome(drawn[0], "without fits") == altered.SILENT
     text = altered.altered_lines(LINES)
-    assert "| priors | 2 | 1, 2 | 2, 2 | 1, 1 | 1, 0 | 0, 1 | 0, 0 | 0, 1 |" in text
+    assert "| priors | 2 | 1, 2 | 2, 2 | 1, 1 | 1, 0 | 0, 1 |" in text
+    assert text[-4].startswith("No row turns more than 1 from right to wrong or back.")
+    assert "Of the shipped real changes" in text[-4]
 
 
 def test_a_stage_on_fewer_sets_stands_beside_those_as_they_are(tmp_path) -> None:
