@@ -68,7 +68,10 @@ def test_a_template_overwrites_nothing(tmp_path: Path, capsys: pytest.CaptureFix
         ("angle_deg = { from = 10, to = 100, count = 3 }", "each above 0 and up to 90"),
         ("mass_kg = { from = 1, count = 3 }", "sweep.mass_kg: to: missing"),
         ("mass_kg = { from = 1, to = 2, count = 1 }", "count: 1 (allowed: greater than"),
-        ("mass_kg = { from = 1, to = 2, cout = 4 }", "cout: unknown key; did you mean count? (allowed: from, to, c"),
+        (
+            "mass_kg = { from = 1, to = 2, cout = 4 }",
+            "cout: unknown key; did you mean count? (allowed: from, to, c",
+        ),
         ("angle_deg = [45]\napproach_tangential_m_s = [1]", "given beside angle_deg"),
         ('mass_kg = { from = 0, to = 1, count = 3, spacing = "log" }', "both ends above 0"),
         ("impact_speed_m_s = [1]\ndrop_height_m = [1]", "both speed and height"),
