@@ -35,10 +35,6 @@ class ReductionRules:
         0.1, "part of intervals of any length that go on a run by chance [-]",
         "four of six instants do, and six of thirteen; five of eight hardly ever",
     )  # fmt: skip
-    run_scatter: float = rule(
-        2.0, "scatter of a run's intervals in the error of an instant, above which it counts [-]",
-        "six flights tell a scatter to a third: twice the error is no chance",
-    )  # fmt: skip
     whole_flank: int = rule(
         8, "samples above half of the peak from which on a flank has samples too [-]",
         "of a half-sine 13 % lie on a flank between 6 and 45 %, 67 % above the half",
@@ -351,10 +347,6 @@ class ReductionRules:
         0.2, "part of the frames that do so before they count as repeated [-]",
         "chosen; no measurement is kept",
     )  # fmt: skip
-    edge_rounds: int = rule(
-        10, "rounds of the fit of an edge at most [-]",
-        "chosen; no measurement is kept",
-    )  # fmt: skip
     edge_settled: float = rule(
         1e-4, "move at which it ends [pixel]",
         "a tenth of the floor of a position",
@@ -395,10 +387,6 @@ class ReductionRules:
         10, "frames of a recording at least [-]",
         "two flights of a parabola each",
     )  # fmt: skip
-    motion_steps: int = rule(
-        20, "steps of the fit of a motion at most [-]",
-        "chosen; no measurement is kept",
-    )  # fmt: skip
     motion_settled: float = rule(
         1e-3, "part of the misfit that a step may still promise when it ends [-]",
         "a thirtieth of a standard deviation",
@@ -429,16 +417,12 @@ class ReductionRules:
         "samples from which a piece is judged by itself [-]",
         "a parabola and three that can contradict it",
     )  # fmt: skip
-    rigid_rounds: int = rule(
-        8, "rounds of the shape of the markers [-]",
-        "chosen; no measurement is kept",
-    )  # fmt: skip
     collinear: float = rule(
         0.01, "second over first extent of a shape below which its markers lie on one line [-]",
         "no turn about it is then read",
     )  # fmt: skip
-    regression_rounds: int = limit(
-        40, "rounds of weighing a regression's points anew at most [-]",
+    fit_rounds: int = limit(
+        20, "rounds of a fit at most [-]",
         "it ends by itself",
     )  # fmt: skip
     unseen: float = limit(
@@ -451,12 +435,8 @@ class ReductionRules:
         "memory; more move no radius",
     )  # fmt: skip
     sectors: int = rule(
-        8, "sectors of a shape that are left out in turn [-]",
+        8, "sectors of a shape that are left out in turn, or in which walls are read [-]",
         "one that is not round shows in their spread",
-    )  # fmt: skip
-    ball_fewest: int = rule(
-        200, "points of a scan of a ball at least [-]",
-        "chosen; no measurement is kept",
     )  # fmt: skip
     bottom_large: float = rule(
         0.75, "larger of two fits at the bottom of a crater, in half-widths [-]",
@@ -471,7 +451,7 @@ class ReductionRules:
         "three for each of fifteen coefficients",
     )  # fmt: skip
     scan_points: int = rule(
-        100, "points of a scan at least [-]",
+        100, "points of a scan, or of a ball in it, at least [-]",
         "chosen; no measurement is kept",
     )  # fmt: skip
     scan_step: float = rule(
@@ -518,10 +498,6 @@ class ReductionRules:
     wall_end: float = rule(
         0.14, "what a wall's end misses [steps of the scan]",
         "rendered craters without noise: its parabola, and interpolation",
-    )  # fmt: skip
-    wall_sectors: int = rule(
-        12, "directions in which walls are read [-]",
-        "chosen; no measurement is kept",
     )  # fmt: skip
     sound_s: float = limit(
         600.0, "sound that is taken in [s]",
@@ -608,10 +584,6 @@ class ReductionRules:
         10**9, "frames of a clip [-]",
         "none is as long",
     )  # fmt: skip
-    lean_frames: int = rule(
-        20, "frames from which the lean of a rod is read [-]",
-        "chosen; no measurement is kept",
-    )  # fmt: skip
     same_rate: float = rule(
         0.01, "part by which a container's mean rate differs from the camera's and is its own [-]",
         "rates of 29.97 and 30",
@@ -633,15 +605,11 @@ class ReductionRules:
         "rendered clips",
     )  # fmt: skip
     shape_frames: int = rule(
-        15, "frames from which the shape of a tip is read [-]",
+        15, "frames from which the shape of a tip, a lean, or a reflection's light are read [-]",
         "chosen; no measurement is kept",
     )  # fmt: skip
     mirror_least: float = rule(
         1.0, "blurs above the flat from which on a tip is told from its reflection [-]",
-        "chosen; no measurement is kept",
-    )  # fmt: skip
-    mirror_frames: int = rule(
-        12, "frames from which a reflection's light is read [-]",
         "chosen; no measurement is kept",
     )  # fmt: skip
     dull: float = rule(
@@ -657,13 +625,9 @@ class ReductionRules:
         "widths of a camera's drift, and how much each is believed beforehand [-]",
         "one that nobody calibrated drifts by a per cent or so; a tenth is rare",
     )  # fmt: skip
-    press_loading: tuple[float, ...] = rule(
-        (2.0, 1.5, 1.2, 1.0), "powers of depth that a loading may have [-]",
+    press_powers: tuple[float, ...] = rule(
+        (2.0, 1.5, 1.2, 1.0), "powers of depth that a loading or an unloading may have [-]",
         "2 of a pyramid, 1.5 of Hertz's sphere, 1 of a flat punch",
-    )  # fmt: skip
-    press_unloading: tuple[float, ...] = rule(
-        (2.0, 1.5, 1.25, 1.0), "powers of depth that an unloading may have [-]",
-        "between a pyramid's and a flat punch's",
     )  # fmt: skip
     press_bins: int = rule(
         60, "means of rows alike in load that tell where it meets zero, at most [-]",

@@ -108,13 +108,13 @@ def reduce_bounce_times(
             scatter *= 0.5 * float(stdtrit(chain.free, ndtr(2.0)))
             notes.append(f"instants ± {1e3 * scatter:.2g} ms by the scatter of the intervals")
         std = np.full(times.size, scatter)
-    elif scatter > RULES.run_scatter * float(np.median(std)):
+    elif scatter > float(np.median(std)):
         # an instant may be heard to a microsecond: what is timed is not as steady
         notes.append(
             f"the intervals scatter by {1e3 * scatter:.2g} ms about a smooth course: that is the "
             "error of an instant"
         )
-        std = np.hypot(std, scatter)
+        std = np.maximum(std, scatter)
     if options.mass_kg is None or options.diameter_m is None:
         notes.append("drag of the air left out: give mass_kg and diameter_m to take it off")
     bounces = _bounces(times, std, chain, options, source)

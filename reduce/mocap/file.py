@@ -66,13 +66,7 @@ class Markers:
         return float(np.mean(~np.isfinite(self.position).all(axis=2)))
 
     def only(self, names: tuple[str, ...]) -> Markers:
-        """Return the named markers, in that order.
-
-        Raises
-        ------
-        InputError
-            There is no such marker.
-        """
+        """Return the named markers, in that order."""
         for name in names:
             if name not in self.names:
                 raise InputError(

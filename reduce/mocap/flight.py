@@ -61,7 +61,7 @@ def fit_flights(
         prior.value.copy(),
         1e-4,
     )
-    for _ in range(RULES.motion_steps):
+    for _ in range(RULES.fit_rounds):
         weight = max(sigma, 1e-7)
         motions, offset, left, settled = _gauss_newton(poses, spans, motions, offset, prior, weight)
         sigma = robust_std(left)
@@ -150,7 +150,7 @@ def alone(
     motions, offset = [first_guess(poses, span, gravity)], prior.value.copy()
     # the prior of b only keeps what no spin shows from running away
     weight = 1e-4
-    for _ in range(RULES.motion_steps):
+    for _ in range(RULES.fit_rounds):
         motions, offset, _, settled = _gauss_newton(poses, [span], motions, offset, prior, weight)
         if settled:
             break

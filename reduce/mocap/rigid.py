@@ -78,13 +78,7 @@ def kabsch(shape: Array, points: Array) -> tuple[Array, Array]:
 
 
 def rigid_poses(markers: Markers) -> Poses:
-    """Return mean shape and poses of a body with three or more markers.
-
-    Raises
-    ------
-    InputError
-        Fewer than three markers, or too few frames in which three are seen.
-    """
+    """Return mean shape and poses of a body with three or more markers."""
     points = markers.position
     seen: Mask = np.asarray(np.isfinite(points).all(axis=2))
     if points.shape[1] < 3:
@@ -133,7 +127,7 @@ def _mean_shape(points: Array, seen: Mask, source: str) -> Array:
     nearest = np.argmin(np.abs(distance - np.median(distance, axis=0)).sum(axis=(1, 2)))
     shape = points[whole[nearest]] - points[whole[nearest]].mean(axis=0)
     usable = np.flatnonzero(seen.sum(axis=1) >= 3)
-    for _ in range(RULES.rigid_rounds):
+    for _ in range(RULES.fit_rounds):
         back = np.full((usable.size, *shape.shape), np.nan)
         for row, k in enumerate(usable):
             origin, turn = kabsch(shape[seen[k]], points[k, seen[k]])

@@ -24,7 +24,7 @@ def contact_zero(load: Array, depth: Array, cycle: Cycle, noise: float) -> Measu
     low = RULES.pulse_over_noise * noise
     seen = bool((load[rows] < low).any())
     rows = rows[load[rows] >= low]
-    found = _zero(load[rows] / cycle.peak, depth[rows], RULES.press_loading)
+    found = _zero(load[rows] / cycle.peak, depth[rows], RULES.press_powers)
     # below a preload nothing tells how the contact began
     return found if seen else found.widened(RULES.preload_part * (depth[rows[0]] - found.value))
 
@@ -35,7 +35,7 @@ def left_depth(load: Array, depth: Array, cycle: Cycle, noise: float) -> Measure
     rows = rows[load[rows] >= max(RULES.pulse_over_noise * noise, float(load[rows[-1]]))]
     if rows.size < 2:
         return Measured(math.nan, math.nan)
-    return _zero(load[rows] / cycle.peak, depth[rows], RULES.press_unloading)
+    return _zero(load[rows] / cycle.peak, depth[rows], RULES.press_powers)
 
 
 def _zero(part: Array, depth: Array, powers: tuple[float, ...]) -> Measured:

@@ -54,13 +54,7 @@ class Levelled:
 
 
 def levelled(scan: Scan, *, level: str = "plane") -> Levelled:
-    """Return the scan above its undisturbed surface.
-
-    Raises
-    ------
-    InputError
-        No crater stands out of the roughness, or it leaves no surface around it.
-    """
+    """Return the scan above its undisturbed surface."""
     z, outliers = _without_spikes(scan.z)
     terms = _terms(z.shape, LEVELS[level])
     seen = np.isfinite(z)

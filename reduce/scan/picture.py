@@ -6,6 +6,7 @@ from pathlib import Path
 from typing import Any
 
 import numpy as np
+from scipy.ndimage import binary_opening
 
 from ...core.output import figure
 from ..pictures import save
@@ -58,7 +59,8 @@ def _map(axis: Any, result: Crater, made: Any) -> None:
     x, y = (UM * h * np.arange(n) for h, n in zip(step, z.shape, strict=True))
     crater = result.surface.crater.T.astype(float)
     axis.contour(x, y, crater, [0.5], colors="k", linewidths=0.8)
-    axis.contour(x, y, result.surface.clear.T.astype(float), [0.5], colors="g", linewidths=0.5)
+    left_out = binary_opening(~result.surface.clear, iterations=2)  # without the spikes
+    axis.contour(x, y, left_out.T.astype(float), [0.5], colors="g", linewidths=0.5)
     deep = UM * result.deepest
     axis.plot(*deep, "k+", ms=12)
     for angle, colour in ((result.direction, "C1"), (result.direction + np.pi / 2, "C2")):

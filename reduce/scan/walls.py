@@ -120,17 +120,15 @@ def pile_up(found: Levelled, half_width: float) -> Measured:
     middle = np.argwhere(found.crater).mean(0)[:, None, None]
     angle = np.arctan2(*(np.indices(found.crater.shape) - middle))
     sector = (
-        ((angle + np.pi) / (2.0 * np.pi) * RULES.wall_sectors)
-        .astype(int)
-        .clip(0, RULES.wall_sectors - 1)
+        ((angle + np.pi) / (2.0 * np.pi) * RULES.sectors).astype(int).clip(0, RULES.sectors - 1)
     )
     best = Measured(0.0, 0.0)
     for number in range(int(1.2 * half_width / width)):
         ring = (away > number * width) & (away <= (number + 1) * width) & np.isfinite(found.z)
-        if ring.sum() < 2 * RULES.wall_sectors:
+        if ring.sum() < 2 * RULES.sectors:
             continue
-        sums = np.bincount(sector[ring], found.z[ring], minlength=RULES.wall_sectors)
-        counts = np.bincount(sector[ring], minlength=RULES.wall_sectors)
+        sums = np.bincount(sector[ring], found.z[ring], minlength=RULES.sectors)
+        counts = np.bincount(sector[ring], minlength=RULES.sectors)
         means = sums[counts > 0] / counts[counts > 0]
         mean = float(found.z[ring].mean())
         if (mean > best.value or number == 0) and len(means) > 1:

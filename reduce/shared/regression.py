@@ -84,7 +84,7 @@ def unit_covariance(design: Array) -> Array:
 def _soft_l1(design: Array, observed: Array, start: Array, spread: float) -> Array:
     """Minimise the sum of sqrt(1 + z²) over residuals z in units of `spread`, by reweighting."""
     c: Array = start
-    for _ in range(RULES.regression_rounds):
+    for _ in range(RULES.fit_rounds):
         weight = (1.0 + ((observed - design @ c) / spread) ** 2) ** -0.25
         there = np.linalg.lstsq(design * weight[:, None], observed * weight, rcond=None)[0]
         moved = float(np.abs(design @ (there - c)).max())

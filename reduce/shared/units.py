@@ -63,11 +63,6 @@ def metres(unit: str, *, source: str, allowed: Iterable[str]) -> float:
         The file.
     allowed
         Units that such a file may be in.
-
-    Raises
-    ------
-    InputError
-        No unit, or not one of the allowed.
     """
     if unit in LENGTH and unit in allowed:
         return LENGTH[unit]

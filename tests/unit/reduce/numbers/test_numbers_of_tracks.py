@@ -79,12 +79,12 @@ def test_flights_shrink_by_three_of_their_errors_or_are_taps() -> None:
         bounced(0.9999, std=np.full(12, 1.8e-4))
 
 
-@pytest.mark.parametrize(("part", "told"), [(1.9, False), (2.1, True)])
-def test_intervals_scatter_by_twice_the_error_of_an_instant(part, told) -> None:
+@pytest.mark.parametrize(("part", "told"), [(0.9, False), (1.1, True)])
+def test_an_instant_is_no_better_known_than_its_run_scatters(part, told) -> None:
     scatter = bounced(0.8, 1e-3).chain.scatter()
     found = bounced(0.8, 1e-3, std=np.full(12, scatter / part))
     assert any("about a smooth course" in note for note in found.notes) == told
-    assert found.time_std[0] == pytest.approx(math.hypot(scatter / part, scatter * told))
+    assert found.time_std[0] == pytest.approx(max(scatter / part, scatter))
 
 
 def test_a_contact_not_known_lasts_30_us_to_4_ms() -> None:
