@@ -313,10 +313,6 @@ class ReductionRules:
         (0.85, 1.3), "bend of a soft contact over that of a spring, least and most [-]",
         "0.88 of elastic spheres, 1.2 of a spring with as much damping as lets back half the speed",
     )  # fmt: skip
-    touch_samples: int = rule(
-        6, "samples of a flight next to a contact that are asked how long it lasted [-]",
-        "chosen; no measurement is kept",
-    )  # fmt: skip
     touch_stray: float = rule(
         12.0, "what one of these samples may say at most [ln likelihood]",
         "five standard deviations",
@@ -414,7 +410,7 @@ class ReductionRules:
     )  # fmt: skip
     fewest: int = rule(
         6,
-        "samples from which a piece is judged by itself [-]",
+        "samples from which a piece is judged by itself, or a contact by those beside it [-]",
         "a parabola and three that can contradict it",
     )  # fmt: skip
     collinear: float = rule(
@@ -472,16 +468,12 @@ class ReductionRules:
         "one in 10^9 by chance",
     )  # fmt: skip
     clearance: float = rule(
-        1.9, "part around a crater that levelling leaves out [crater radii]",
+        1.9, "part around a crater that levelling leaves out [crater radii, half-widths of a line]",
         "the rim decays within it",
     )  # fmt: skip
     level_points: float = rule(
         0.05, "part of the points that is left to level on [-]",
         "chosen; no measurement is kept",
-    )  # fmt: skip
-    line_clearance: float = rule(
-        0.9, "part beside a crater that levelling a line leaves out [half-widths]",
-        "the rim decays within it",
     )  # fmt: skip
     line_points: int = rule(
         12, "points of the smaller fit on a line at least [-]",

@@ -160,7 +160,7 @@ def likely_durations(
     for piece, run, share, speed, loss in zip(
         flights, runs, shares, met[1:3], damping, strict=True
     ):
-        order = np.argsort(np.abs(track.time[piece.index] - meeting))[: RULES.touch_samples]
+        order = np.argsort(np.abs(track.time[piece.index] - meeting))[: RULES.fewest]
         asked = np.concatenate([run, piece.index[order]])
         for index in _all_between(track, meeting, asked) if resolved else asked:
             time = track.time[index : index + 1]

@@ -21,8 +21,6 @@ def check_fall(fall: Measured, gravity: float, source: str) -> None:
         Downward acceleration between the contacts [m/s²].
     gravity
         That it should be [m/s²].
-    source
-        The file.
     """
     if abs(fall.value - gravity) > max(RULES.fall_off * gravity, 3.0 * fall.std):
         raise Refused(

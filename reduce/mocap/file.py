@@ -46,8 +46,6 @@ class Markers:
         Of the m markers.
     position
         (n, m, 3), NaN where a marker was not seen [m].
-    source
-        The file.
     """
 
     time: Array

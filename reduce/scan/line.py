@@ -104,7 +104,7 @@ def _levelled(x: Array, z: Array, source: str) -> tuple[Array, Mask, Mask]:
         right = ends[ends > bottom].min(initial=x.size)
         found = np.zeros_like(crater)
         found[left:right] = True
-        gap = int((0.5 + 0.5 * RULES.line_clearance) * (right - left))
+        gap = int(0.5 * RULES.clearance * (right - left))
         clear = np.ones_like(crater)
         clear[max(left - gap, 0) : right + gap] = False
         if clear.sum() < max(RULES.line_points, 0.05 * x.size):

@@ -44,10 +44,6 @@ def robust_regression(design: Array, observed: Array, *, floor: float = 0.0) -> 
         (n, p) and (n,), n > p, in the order of time.
     floor
         Smallest residual standard deviation that is believed, in the unit of `observed`.
-
-    Returns
-    -------
-    Regression
     """
     n, p = design.shape
     scale = np.linalg.norm(design, axis=0)

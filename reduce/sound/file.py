@@ -26,8 +26,6 @@ class Sound:
         Samples per second [1/s].
     clipped
         Part of the samples at full scale.
-    source
-        The file.
     """
 
     samples: Array

@@ -46,8 +46,6 @@ class Columns:
         (n, m), NaN where a cell holds no number.
     cells
         The same as text, n rows of m.
-    source
-        The file.
     heading
         What stands above the numbers.
     """

@@ -47,8 +47,6 @@ def reduce_heights(
         Gravity, and the drag as far as it is known.
     contact
         Duration of a contact [s], if it is known.
-    source
-        The file.
 
     Raises
     ------

@@ -70,8 +70,6 @@ def find_pulse(time: Array, value: Array, *, source: str) -> Pulse:
     ----------
     time, value
         (n,), time increasing.
-    source
-        The file.
 
     Raises
     ------

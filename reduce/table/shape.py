@@ -52,8 +52,6 @@ def shape_of(
         Beginning and end of the pulse [s].
     noise
         Standard deviation of a sample.
-    source
-        The file.
     """
     peak = float(clear[top])
     flat = _flat_top(clear, top)

@@ -52,8 +52,6 @@ def reduce_tension(
         `"engineering"` or `"true"`; the stress likewise.
     E
         Modulus [Pa]; None reads it from the curve.
-    source
-        The file.
 
     Raises
     ------
