@@ -19,6 +19,7 @@ from scipy.stats import norm
 from ...core.arrays import Array, Mask
 from ...core.errors import InputError
 from ...core.inputs.flow_curve import SPECIMENS, Rise
+from ...core.processes.threads import in_one_thread
 from ...impact import dent_radius
 from ...impact.mechanisms.base import Constants, Mechanism, attached
 from ...impact.mechanisms.strength.strain_rate_hardening import (
@@ -26,11 +27,12 @@ from ...impact.mechanisms.strength.strain_rate_hardening import (
     rises_misfit,
 )
 from ...models.hardening import REPRESENTATIVE
+from ...models.uncertainty import METAL
 from ...recordings import RecordingSet
 from ..comparison.forward import Point, Simulator
 from ..comparison.problem import Problem, problem_of
 from ..experiments.feasible import BENCH
-from ..inference.derivatives import measured_covariance
+from ..inference.derivatives import form_error, measured_covariance
 from ..rules import RULES
 from ..unknowns.lawerror import SIZES
 from .flow import STRAINS, FlowCurveOfMarks, curve_values, weights
@@ -40,11 +42,13 @@ MARKS = ("permanent_depth_m", "dent_diameter_m", "press_depth_m", "recovered_dep
 LEVEL = RULES.level
 """Probability of the intervals."""
 RATE = dict(RULES.rate_priors)
-"""Priors of the rate law, mean and standard deviation: C of Johnson and Cook gives rises of 0.1 to
-0.4, Cowper and Symonds' mild steel 1.9; what is kept is the range of strain-rate-hardening."""
+"""Priors of the rate law, mean and standard deviation, of the rise as ln(1 + rise): C of Johnson
+and Cook gives rises of 0.1 to 0.4, Cowper and Symonds 0.6 to 1.9; what is kept is the range of
+strain-rate-hardening."""
 VAGUE = RULES.vague
-"""Standard deviation of ln stress, and of the rise, from which a set does not identify it."""
+"""Standard deviation of ln stress, and of ln(1 + rise), from which a set does not identify it."""
 
+_KIND = {"dent_diameter_m": "radius"}  # of the law's errors, where it is not the crater's
 _FROZEN = 1e-9  # prior deviation of what the curve itself stands for
 
 
@@ -60,7 +64,8 @@ class Metal:
         As stated [Pa]: the curve's unit.
     mean, covariance
         (n,) and (n, n) posterior of what the fit moves: logarithm of stress over `strength` at 0.2
-        %, exponents at the nodes, the rate law where impacts left marks, then the nuisances.
+        %, exponents at the nodes, the rate law where impacts left marks (of the rise ln(1 + rise)),
+        then the nuisances.
     map
         (nodes, n) from these to the logarithms at the nodes.
     rated
@@ -118,7 +123,7 @@ class Metal:
         k = 1 + len(STRAINS)
         reach = norm.ppf(0.5 + 0.5 * LEVEL) * math.sqrt(self.covariance[k, k])
         middle = float(self.mean[k])
-        return middle, middle - reach, middle + reach
+        return math.expm1(middle), math.expm1(middle - reach), math.expm1(middle + reach)
 
     @property
     def covered(self) -> tuple[float, float]:
@@ -126,6 +131,7 @@ class Metal:
         return float(self.strain.min()), float(self.strain.max())
 
 
+@in_one_thread
 def metal_of(recordings: RecordingSet) -> Metal:
     """Return the flow curve that a set's marks speak for.
 
@@ -197,10 +203,14 @@ def rate_prior(rises: Sequence[Rise]) -> Array:
     if not rises:
         return prior
     of = {p.name: p for p in StrainRateHardening.parameters}
-    axes = [np.linspace(of[name].low, of[name].high, 200) for name in list(RATE)[:2]]
+    rise, exponent = (of[name] for name in list(RATE)[:2])
+    axes = (
+        np.linspace(math.log1p(rise.low), math.log1p(rise.high), 200),
+        np.linspace(exponent.low, exponent.high, 200),
+    )
     at = np.array(np.meshgrid(*axes, indexing="ij"))
     away = (at - prior[:2, 0, None, None]) / prior[:2, 1, None, None]
-    weight = np.exp(-0.5 * (rises_misfit(rises, *at) + (away**2).sum(axis=0)))
+    weight = np.exp(-0.5 * (rises_misfit(rises, np.expm1(at[0]), at[1]) + (away**2).sum(axis=0)))
     mean = (weight * at).sum(axis=(1, 2)) / weight.sum()
     apart = at - mean[:, None, None]
     prior[:2, 0] = mean
@@ -262,8 +272,9 @@ class _Fit:
         found = {FlowCurveOfMarks.name: curve_values(self.map @ u)}
         if self.rated:
             at = 1 + len(STRAINS)
+            log_rise, *others = u[at : at + len(RATE)].tolist()
             found[StrainRateHardening.name] = dict(
-                zip(RATE, u[at : at + len(RATE)].tolist(), strict=True)
+                zip(RATE, (math.expm1(log_rise), *others), strict=True)
             )
         return found
 
@@ -275,12 +286,30 @@ class _Fit:
         """Return predictions (m,), derivatives (m, n) and noise (m, m) at the unknowns."""
         size = RULES.metal_step * np.sqrt(np.diag(self.spread))
         moved = u + np.diag(size)
-        points = [self.point(u), self.point(u, faster=RULES.rate_step), *map(self.point, moved)]
+        points = [self.point(u), self.point(u, faster=RULES.setting_step), *map(self.point, moved)]
         found = Simulator(self.problem).predict(self.mechanisms, points)
         J = ((found[2:] - found[0]) / size[:, None]).T
-        by_drive = (found[1] - found[0]) / RULES.rate_step
+        by_drive = (found[1] - found[0]) / RULES.setting_step
         noise = measured_covariance(self.problem, by_drive, np.zeros_like(by_drive))
+        if self.rated:
+            static = Simulator(self.problem).predict(self.mechanisms[:1], points[:1])[0]
+            noise = noise + self._of_impacts(found[0] - static)
         return found[0], J, noise
+
+    def _of_impacts(self, effect: Array) -> Array:
+        """Errors of impacts alone, (m, m): of the rate's form, and of a dent beside a press's.
+
+        By how much a rate moves a mark, laws of a rate do not agree. And what a press carries at a
+        depth says what an impact spends up to it only as well as the law's crater is known.
+        """
+        cells, conditions = self.problem.cells, self.problem.conditions
+        struck = np.array([conditions[k].press is None for k in cells.condition])
+        form = form_error(self.problem, effect, RULES.rate_form)
+        if struck[: self.known].all():
+            return form @ form.T
+        size = [METAL[_KIND.get(name, "crater")] for name in cells.observable]
+        beside = form_error(self.problem, np.where(struck, size, 0.0), 1.0)
+        return np.asarray(form @ form.T + beside @ beside.T)
 
     def posterior(self) -> tuple[Array, Array, Array]:
         """Return mean (n,), covariance (n, n) and derivatives (m, n) of all cells."""

@@ -54,7 +54,8 @@ class FlowCurveOfMarks(Mechanism):
     def attach(self, scene: Scene, values: Values, around: Surroundings) -> Scene:
         """Give the body that yields first the curve, and the contact its law."""
         logs = tuple(values[name] for name in _NAMES)
-        return scene.with_(law=_law_of(scene.pair, logs))
+        # lengths are in R: strikers of one metal share the law, whatever their radius
+        return scene.with_(law=_law_of(replace(scene.pair, R=1.0), logs))
 
 
 @lru_cache(maxsize=256)

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Iterator
 
 from .estimate import LEVEL, VAGUE, Metal
@@ -57,7 +58,7 @@ def _rate(metal: Metal) -> Iterator[str]:
         return
     value, low, high = (100.0 * x for x in metal.rise)
     text = f"  rise at 1000 1/s: {value:.3g} % ({LEVEL:.0%}: {low:.3g} to {high:.3g})"
-    if high - low > 100.0 * 3.3 * VAGUE:
+    if math.log((100.0 + high) / (100.0 + low)) > 3.3 * VAGUE:
         more = "" if metal.pressed else "; quasi-static presses of the same ball would tell it"
         text += f": not identified{more}"
     yield text

@@ -2,11 +2,13 @@
 
     python tools/benchmarks/power_of_presses.py build/presses --count 120
     python tools/benchmarks/power_of_presses.py build/presses --count 0     # the table alone
+    python tools/benchmarks/power_of_presses.py build/metal --count 20 --metal --seed 78
 
 A quarter each of the sets conceals a rate effect, hardening, both, or nothing. Bodies, metals and
 effects come from the proof's generators; the presses are made by the same ones at zero rate: four
-loads three times each, errors of 0.5 % in load, 1 % in diameter, 2 % in depth. One file a set, so
-that it may be stopped.
+loads three times each, errors of 0.5 % in load, 1 % in diameter, 2 % in depth. With `--metal` it is
+`dentscope metal` that reads the rate, in sets with presses. One file a set, so that it may be
+stopped.
 """
 
 import argparse
@@ -17,6 +19,7 @@ from pathlib import Path
 
 import numpy as np
 from dentscope.discrepancy import diagnose
+from dentscope.discrepancy.metal import metal_of
 from dentscope.recordings import read
 from dentscope.studies.proof.generators import cavity, flow, foundation
 from dentscope.studies.proof.generators import parameters as at
@@ -47,9 +50,9 @@ def usable(truth: Truth) -> bool:
     )
 
 
-def truth_of(kind: str, number: int) -> Truth:
+def truth_of(kind: str, number: int, seed: int = SEED) -> Truth:
     """The concealed case of one number."""
-    rng = np.random.default_rng([SEED, list(KINDS).index(kind), number])
+    rng = np.random.default_rng([seed, list(KINDS).index(kind), number])
     names = KINDS[kind]
     while True:
         truth = draw(rng, "single" if names else "null", name=names[0] if names else "")
@@ -84,26 +87,46 @@ def contact_radius(row: np.ndarray, depth: float) -> float:
 def add_presses(truth: Truth, folder: Path, rng: np.random.Generator) -> None:
     """Add presses of the middle striker, as deep as four of its impacts went."""
     rig, which = truth.rig, len(truth.rig.strikers) // 2
-    table = rows_of(rig, truth.effects, family=FAMILIES[truth.family], z=truth.z)
-    table[:, at.RATE_KIND] = 0.0
+    table = static_rows(truth)
     own = np.flatnonzero(rig.which == which)
     speeds = np.unique(rig.speed[own])
     chosen = speeds[np.linspace(0, len(speeds) - 1, 4).round().astype(int)]
     rows = [int(own[np.flatnonzero(rig.speed[own] == v)[0]]) for v in chosen]
+    marks = [
+        mark_of(row, out) for row, out in zip(table[rows], results_of(table[rows]), strict=True)
+    ]
+    write_presses(folder, rig.strikers[which].name, marks, rng)
+
+
+def static_rows(truth: Truth) -> np.ndarray:
+    """The numbers of every impact, without a rate: a press goes along their force."""
+    table = rows_of(truth.rig, truth.effects, family=FAMILIES[truth.family], z=truth.z)
+    table[:, at.RATE_KIND] = 0.0
+    return np.asarray(table)
+
+
+def mark_of(row: np.ndarray, out: np.ndarray) -> dict[str, float]:
+    """Load and mark of a press, from the impact that goes as deep."""
+    return {
+        "load_N": out[at.PEAK_FORCE],
+        "permanent_depth_m": out[at.DEPTH],
+        "dent_diameter_m": 2.0 * contact_radius(row, out[at.PEAK_DEPTH]),
+    }
+
+
+def write_presses(
+    folder: Path, striker: str, marks: list[dict[str, float]], rng: np.random.Generator
+) -> None:
+    """Add three noisy readings of each mark to a set."""
     with (folder / "trials.csv").open(encoding="utf-8") as stream:
         trials = list(csv.DictReader(stream))
     head = [*trials[0], "load_N", "permanent_depth_m_std", "dent_diameter_m"]
-    for place, (row, out) in enumerate(zip(rows, results_of(table[rows]), strict=True)):
-        right = {
-            "load_N": out[at.PEAK_FORCE],
-            "permanent_depth_m": out[at.DEPTH],
-            "dent_diameter_m": 2.0 * contact_radius(table[row], out[at.PEAK_DEPTH]),
-        }
+    for place, right in enumerate(marks):
         for repeat in range(3):
             read_off = {k: f"{v * (1.0 + ERRORS[k] * rng.normal()):.6g}" for k, v in right.items()}
             std = f"{ERRORS['permanent_depth_m'] * right['permanent_depth_m']:.4g}"
             trials.append(
-                {"trial": f"press-{place}-{repeat}", "striker": rig.strikers[which].name,
+                {"trial": f"press-{place}-{repeat}", "striker": striker,
                  "permanent_depth_m_std": std, **read_off}
             )  # fmt: skip
     with (folder / "trials.csv").open("w", newline="", encoding="utf-8") as stream:
@@ -135,6 +158,24 @@ def measure(kind: str, number: int, out: Path) -> dict[str, object]:
         found = diagnose(read(folder), seed=0).to_dict()
         record[which] = {k: found[k] for k in KEPT}
     return record
+
+
+def rise_read(kind: str, number: int, out: Path, seed: int) -> dict[str, object]:
+    """What `metal` says of the rise in a case with presses."""
+    truth, folder = truth_of(kind, number, seed), out / f"{kind}-{number:02d}"
+    write_set(truth, folder, name=folder.name)
+    add_presses(truth, folder, np.random.default_rng([seed, 99, number]))
+    return {"kind": kind, "rise": rise_of(truth) or 0.0, "read": metal_of(read(folder)).rise}
+
+
+def told_of_metal(records: list[dict]) -> list[str]:
+    """Every rise, and how many lie in their intervals."""
+    lines, inside = [], 0
+    for r in records:
+        value, low, high = r["read"]
+        inside += low <= r["rise"] <= high
+        lines.append(f"{r['kind']:10s} {r['rise']:.3f}: {value:.3f} ({low:.3f} to {high:.3f})")
+    return [*lines, f"in the interval {inside} of {len(records)}"]
 
 
 def told(records: list[dict], which: str) -> list[str]:
@@ -171,15 +212,24 @@ def main() -> None:
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
     parser.add_argument("out", type=Path)
     parser.add_argument("--count", type=int, default=120)
+    parser.add_argument("--metal", action="store_true", help="what `dentscope metal` reads instead")
+    parser.add_argument("--seed", type=int, default=SEED, help="of the sets, with --metal")
     given = parser.parse_args()
     given.out.mkdir(parents=True, exist_ok=True)
     for job in range(given.count):
         kind, number = list(KINDS)[job % len(KINDS)], job // len(KINDS)
         path = given.out / f"{kind}-{number:02d}.json"
         if not path.exists():
-            path.write_text(json.dumps(measure(kind, number, given.out)) + "\n", encoding="utf-8")
+            if given.metal:
+                found = rise_read(kind, number, given.out, given.seed)
+            else:
+                found = measure(kind, number, given.out)
+            path.write_text(json.dumps(found) + "\n", encoding="utf-8")
             print(f"{job + 1} of {given.count}: {kind} {number}", flush=True)
     records = [json.loads(p.read_text(encoding="utf-8")) for p in sorted(given.out.glob("*.json"))]
+    if given.metal:
+        print("\n".join(told_of_metal(records)))
+        return
     print("\n".join(line for which in ("without", "with") for line in told(records, which)))
 
 

@@ -9,8 +9,10 @@ from dentscope.core import Material
 from dentscope.core.errors import InputError
 from dentscope.core.flow import Flow, swift
 from dentscope.core.inputs.flow_curve import read_flow_curve
+from dentscope.discrepancy.comparison.problem import problem_of
 from dentscope.discrepancy.metal import lines, metal_of, write_metal
-from dentscope.discrepancy.metal.flow import STRAINS, weights
+from dentscope.discrepancy.metal.estimate import _Fit, _of_marks
+from dentscope.discrepancy.metal.flow import STRAINS, FlowCurveOfMarks, curve_values, weights
 from dentscope.impact import (
     CREEP,
     Approach,
@@ -101,6 +103,34 @@ def test_files_are_a_curve_that_a_set_takes_and_its_covariance(metal, folder_of,
     setup.write_text(text.replace("Sy_Pa", 'flow_curve = "out.csv"\nSy_Pa', 1), encoding="utf-8")
     (tmp_path / "out.csv").write_text((tmp_path / "out" / "flow_curve.csv").read_text())
     assert "target" in read(tmp_path).flows
+
+
+def test_impacts_have_errors_of_their_own_beside_presses(folder_of, tmp_path):
+    """Of the rate's form, by its effect; of the crater, where presses say what a depth carries."""
+    for presses in (True, False):
+        problem = _of_marks(problem_of(read(folder_of(tmp_path / f"{presses}", presses=presses))))
+        fit = _Fit.of(problem, len(problem.cells))
+        cells = problem.cells
+        pressed = np.array([problem.conditions[k].press is not None for k in cells.condition])
+        wide = np.array([name == "dent_diameter_m" for name in cells.observable])
+        effect = np.where(pressed, 0.0, -0.2)
+        own = np.where(wide, 0.02, 0.05) if presses else np.zeros(len(cells))
+        found = np.sqrt(np.diag(fit._of_impacts(effect)))
+        assert found[pressed] == pytest.approx(0.0, abs=1e-12)
+        assert found[~pressed] == pytest.approx(np.hypot(0.25 * 0.2, own)[~pressed], rel=1e-6)
+
+
+def test_one_law_serves_strikers_of_one_metal():
+    values, around = curve_values(np.zeros(len(STRAINS))), Surroundings()
+    small, large = (
+        scene_of(LAWS["fitted"], sphere=BALL, flat=PLATE.with_(flow=None), approach=CREEP,
+                 striker=Striker(mass=4e-3, tip_radius=R))
+        for R in (1e-3, 5e-3)
+    )  # fmt: skip
+    one, other = (FlowCurveOfMarks().attach(x, values, around) for x in (small, large))
+    assert one.law is other.law
+    force = [x.law.loading(x.pair, 0.01 * x.pair.R) / x.pair.R**2 for x in (one, other)]
+    assert force[0] == pytest.approx(force[1], rel=1e-9)
 
 
 def test_a_set_without_marks_is_refused(folder_of, tmp_path):

@@ -237,7 +237,15 @@ def test_a_metals_curve_is_looked_for_by_eight_presses_of_each_striker(toy, monk
 
 
 def test_without_curves_at_several_rates_the_rate_has_its_priors() -> None:
-    assert rate_prior(()).tolist() == [[0.3, 0.4], [0.15, 0.08], [0.87, 0.08]]
+    assert rate_prior(()).tolist() == [[0.4, 0.35], [0.15, 0.08], [0.87, 0.08]]
+
+
+def test_curves_at_several_rates_narrow_the_rise() -> None:
+    rise, exponent, kept = rate_prior(((1000.0, 1.5),))
+    # within a tenth, what two specimens of one metal differ by
+    assert rise == pytest.approx([np.log(1.5), 0.096], abs=0.01)
+    assert exponent == pytest.approx([0.16, 0.07], abs=0.01)
+    assert kept.tolist() == [0.87, 0.08]
 
 
 def test_a_strength_beside_its_curve_is_told_from_a_fiftieth_on() -> None:
