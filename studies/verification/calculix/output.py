@@ -21,6 +21,7 @@ from ....fem.discretise import Discretisation
 from ....fem.results.measure import edge_of_contact
 from .deck import Deck, write_deck
 
+_COMMAND = "ccx"
 _WEDGE = 180.0  # CalculiX turns axisymmetric elements into a wedge of 2 degrees
 
 FOLDER = Path(__file__).resolve().parents[3] / "data" / "reference" / "calculix"
@@ -53,26 +54,38 @@ class Reference:
     share: Array
 
 
-def run_deck(deck: Deck, *, name: str, command: str = "ccx") -> Reference:
-    """Run the deck; deck and printed output are kept, compressed, in this folder.
+def run_deck(deck: Deck, *, name: str) -> Reference:
+    """Run the deck; deck and printed output are kept, compressed, in this folder."""
+    text = write_deck(deck)
+    printed, cpu = solve_deck(text)
+    for ending, content in (("inp", text), ("dat", printed)):
+        with gzip.GzipFile(FOLDER / f"{name}.{ending}.gz", "wb", mtime=0) as stream:
+            stream.write(content.encode())
+    release = _version()
+    about = {"element": deck.element, "version": release, "cpu_s": round(cpu, 1)}
+    (FOLDER / f"{name}.json").write_text(json.dumps(about, indent=1) + "\n")
+    return measure(deck, printed, cpu_s=cpu, version=release)
+
+
+def solve_deck(text: str) -> tuple[str, float]:
+    """Return what CalculiX prints for the text of a deck, and its processor seconds.
 
     Raises
     ------
     InputError
         CalculiX is not installed.
     """
-    if shutil.which(command) is None:
+    if shutil.which(_COMMAND) is None:
         raise InputError(
-            f"{command!r} is not installed",
+            f"{_COMMAND!r} is not installed",
             key="CalculiX",
             allowed="install the Debian package calculix-ccx",
         )
-    text = write_deck(deck)
     with tempfile.TemporaryDirectory() as folder:
         (Path(folder) / "case.inp").write_text(text)
         before = resource.getrusage(resource.RUSAGE_CHILDREN)
         subprocess.run(
-            [command, "case"],
+            [_COMMAND, "case"],
             cwd=folder,
             capture_output=True,
             check=False,
@@ -80,14 +93,7 @@ def run_deck(deck: Deck, *, name: str, command: str = "ccx") -> Reference:
         )
         after = resource.getrusage(resource.RUSAGE_CHILDREN)
         printed = (Path(folder) / "case.dat").read_text()
-    cpu = (after.ru_utime + after.ru_stime) - (before.ru_utime + before.ru_stime)
-    for ending, content in (("inp", text), ("dat", printed)):
-        with gzip.GzipFile(FOLDER / f"{name}.{ending}.gz", "wb", mtime=0) as stream:
-            stream.write(content.encode())
-    release = _version(command)
-    about = {"element": deck.element, "version": release, "cpu_s": round(cpu, 1)}
-    (FOLDER / f"{name}.json").write_text(json.dumps(about, indent=1) + "\n")
-    return measure(deck, printed, cpu_s=cpu, version=release)
+    return printed, (after.ru_utime + after.ru_stime) - (before.ru_utime + before.ru_stime)
 
 
 def load_reference(deck: Deck, *, name: str) -> Reference | None:
@@ -172,6 +178,6 @@ def _blocks(printed: str) -> list[tuple[float, dict[int, Array]]]:
     return steps
 
 
-def _version(command: str) -> str:
-    answer = subprocess.run([command, "-v"], capture_output=True, text=True, check=False)
+def _version() -> str:
+    answer = subprocess.run([_COMMAND, "-v"], capture_output=True, text=True, check=False)
     return answer.stdout.strip().removeprefix("This is ")
