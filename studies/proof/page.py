@@ -18,6 +18,7 @@ from .power import PICTURE, picture, power_lines, read_rows, shown
 from .ranks import AT_DATA, at_data_lines, rank_lines, read_ranks
 from .rivals import compare, rival_lines
 from .score import confusion, scores
+from .third_world_page import third_world_lines
 
 _DATA = Path(__file__).resolve().parents[2] / "data" / "proof"
 RUNS = _DATA / "runs.json"
@@ -61,14 +62,14 @@ Made-up sets alone prove little: known effects of real recordings, concealed, ar
 
 _OTHERS = """## What other methods would make of a set
 
-* **LISDD** (Wang, arXiv:2606.23215) fits the known physics where residuals are quiet, picks a
-  missing term from a library where they are not, by held-out data, and tests it on others. Our
-  effects mostly act in all conditions, 6 to 20 of these are few to part, and a formula is no name.
-* **mist** (Anau Montel, Alvey, Weniger, Phys. Rev. D 111 (2025) 083013) tests many distortions of
-  a simulator, each by a likelihood ratio learnt from simulations. Ours are known: Bayes factors,
-  one of the rules above, weigh them, with no network to train for every rig.
+* **LISDD** (Wang, arXiv:2606.23215) fits the known physics where residuals are quiet and picks a
+  missing term from a library where they are not. Our effects mostly act in all conditions, 6 to 20
+  of these are few to part, and a formula is no name.
+* **mist** (Anau Montel, Alvey, Weniger, Phys. Rev. D 111 (2025) 083013) tests distortions of a
+  simulator, each by a learnt likelihood ratio. Ours are known: Bayes factors, a rule above, weigh
+  them without a network for every rig.
 * **Posterior predictive p values** (Meng, Ann. Stat. 22 (1994) 1142) use the data twice, and say
-  whether a model fits, not what it lacks; the diagnosis tests each explanation's fit as well.
+  whether a model fits, not what it lacks.
 * **emdcmp** (René, Longtin, Nature Communications 2025, arXiv:2408.13414) rejects a fitted model
   where another is better beyond what replications vary: an order, without a place for the unknown.
 
@@ -130,6 +131,7 @@ def page(runs: list[dict[str, Any]], *, impacts: int) -> str:
     if last is None:
         return "\n".join([*lines, "No run has been made yet.", ""])
     lines += _run_text(last)
+    lines += third_world_lines()
     lines += altered_lines(read_ranks(ALTERED))
     lines += rank_lines(read_ranks())
     lines += at_data_lines(read_ranks(AT_DATA))

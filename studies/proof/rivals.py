@@ -193,32 +193,44 @@ def rival_lines(found: dict[str, Any]) -> list[str]:
         "is the most probable of all. *Nulls*: named, and with those called outside. *Forced*: "
         "names of what is outside. *s*: processor seconds, of all rules together. The rules are "
         f"those of the [plan](proof-plan.md); their fits failed on {found['failed']}.", "",
-        "| | in front | exact | in the set | nulls | forced | mean ln p | Brier | said, true | s |",
-        "| --- | --- | --- | --- | --- | --- | --- | --- | --- | --- |",
-    ]  # fmt: skip
-    lines += [
-        f"| {r['name']} | {r['front']} | {r['exact']} | {r['in_set']} | "
-        f"{r['null_named']}, {r['null_alarmed']} | {r['forced']} | {r['ln_p']:.2f} | "
-        f"{r['brier']:.3f} | {r['said']:.2f}, {r['front'] / n:.2f} | {r['seconds']:.1f} |"
-        for r in found["rows"]
-    ]
-    lines += [
+        *score_rows(found),
         "", "The diagnosis less each rule, on the same sets, with 95 % intervals:", "",
-        "| less | in front, points | McNemar p | mean ln p |", "| --- | --- | --- | --- |",
+        *less_rows(found),
     ]  # fmt: skip
-    lines += [
-        f"| {r['name']} | {_pair(r['front_less'], 100.0, 1)} | {r['mcnemar']:.2g} | "
-        f"{_pair(r['ln_p_less'], 1.0, 2)} |"
-        for r in found["rows"]
-        if r["name"] != DIAGNOSIS
-    ]
-    lines += ["", *_verdict_lines(best), "", "What leads, how often it is the truth:", "",
+    lines += ["", *verdict_lines(best), "", "What leads, how often it is the truth:", "",
               f"| said | {DIAGNOSIS} | {best['name']} |", "| --- | --- | --- |"]  # fmt: skip
     both = [{(x[0], x[1]): x[2:] for x in r["ranges"]} for r in (found["rows"][0], best)]
     for place in sorted({*both[0], *both[1]}):
         cells = " | ".join(_of_range(r.get(place)) for r in both)
         lines.append(f"| {place[0]:g} to {place[1]:g} | {cells} |")
     return lines
+
+
+def score_rows(found: dict[str, Any]) -> list[str]:
+    """The table of what each decider scores."""
+    head = "in front | exact | in the set | nulls | forced | mean ln p | Brier | said, true | s |"
+    return [
+        f"| | {head}", "| --- | --- | --- | --- | --- | --- | --- | --- | --- | --- |",
+        *(
+            f"| {r['name']} | {r['front']} | {r['exact']} | {r['in_set']} | "
+            f"{r['null_named']}, {r['null_alarmed']} | {r['forced']} | {r['ln_p']:.2f} | "
+            f"{r['brier']:.3f} | {r['said']:.2f}, {r['front'] / found['sets']:.2f} | "
+            f"{r['seconds']:.1f} |"
+            for r in found["rows"]
+        ),
+    ]  # fmt: skip
+
+
+def less_rows(found: dict[str, Any]) -> list[str]:
+    """The table of the paired differences."""
+    return [
+        "| less | in front, points | McNemar p | mean ln p |", "| --- | --- | --- | --- |",
+        *(
+            f"| {r['name']} | {_pair(r['front_less'], 100.0, 1)} | {r['mcnemar']:.2g} | "
+            f"{_pair(r['ln_p_less'], 1.0, 2)} |"
+            for r in found["rows"] if r["name"] != DIAGNOSIS
+        ),
+    ]  # fmt: skip
 
 
 def told(line: dict[str, Any]) -> str:
@@ -255,7 +267,7 @@ def report(lines: Sequence[dict[str, Any]]) -> list[str]:
     return text
 
 
-def _verdict_lines(best: dict[str, Any]) -> list[str]:
+def verdict_lines(best: dict[str, Any]) -> list[str]:
     """What the plan's marks came to."""
     points, low, _ = best["front_less"]
     nats, below, _ = best["ln_p_less"]

@@ -20,8 +20,11 @@ import numpy as np
 from ..third_world.draw import NULLS, PAIRS, Truth, draw
 from ..third_world.effects import EFFECTS, OUTSIDE
 from ..third_world.sheet import write
+from .case import open_run
+from .rivals import read_lines
 from .run import ROOT, diagnose, local_workers
 from .seal import Ledger, digest_of, tree_hash
+from .third_world_page import keep, kept
 
 PLAN = ROOT / "data" / "proof" / "third-world-plan.md"
 """What is drawn and what counts, written before the run."""
@@ -101,13 +104,18 @@ def sample(out: Path, seed: str, numbers: list[int]) -> None:
 def main() -> None:
     """Command line."""
     parser = argparse.ArgumentParser(description=__doc__)
-    parser.add_argument("what", choices=("run", "sample"))
+    parser.add_argument("what", choices=("run", "score", "sample"))
     parser.add_argument("--out", type=Path, default=ROOT / "build" / "proof" / "third-world")
     parser.add_argument("--seed", default="trial")
     parser.add_argument("--numbers", type=int, nargs="*", default=[])
     given = parser.parse_args()
     if given.what == "sample":
         sample(given.out, given.seed, given.numbers)
+        return
+    if given.what == "score":
+        begun = Ledger(given.out / "ledger.jsonl").of("begin")[""]
+        lines = read_lines(given.out)
+        keep(kept(open_run(given.out), lines, plan=begun["plan"], tree=begun["tree"]))
         return
     for name, event in carry_on(given.out):
         state = "sealed" if event["verdict"] else f"no verdict: {event['message']}"

@@ -2,6 +2,7 @@
 
 import json
 import math
+import re
 from dataclasses import replace
 
 import numpy as np
@@ -10,6 +11,7 @@ from dentscope.core.material import Material, Pair
 from dentscope.models import law_named
 from dentscope.recordings import read
 from dentscope.studies.proof import third_world as runs
+from dentscope.studies.proof import third_world_page
 from dentscope.studies.proof.generators import base_laws
 from dentscope.studies.proof.generators.benches import BEARING_STEEL, CARBIDE, TARGETS
 from dentscope.studies.third_world import motion
@@ -146,3 +148,13 @@ def test_truth_record_is_plain():
     assert json.loads(json.dumps(record))["mechanisms"] == []
     assert record["sizes"][0] > 1.0
     assert math.isfinite(record["law"]["meyer"])
+
+
+def test_page_tells_of_every_lost_set():
+    kept = json.loads(third_world_page.FOUND.read_text(encoding="utf-8"))
+    text = "\n".join(third_world_page.third_world_lines())
+    found = next(r for r in kept["compared"]["rows"] if r["name"] == "diagnosis")
+    lost = [one for one in kept["sets"] if not one["front"]]
+    assert len(kept["sets"]) == kept["compared"]["sets"] == found["front"] + len(lost)
+    told = next(line for line in text.splitlines() if line.startswith("Lost"))
+    assert sum(int(n) for n in re.findall(r"(\d+) of \d+ \(", told)) == len(lost)

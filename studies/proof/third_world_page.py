@@ -1,0 +1,124 @@
+"""What came of the third world: the file that is kept, and its part of the proof's page."""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Sequence
+from pathlib import Path
+from typing import Any
+
+from ...core.output import write_file
+from .case import Case
+from .rivals import (
+    BASELINE,
+    DIAGNOSIS,
+    best_peer,
+    compare,
+    less_rows,
+    mark_of,
+    score_rows,
+    verdict_lines,
+)
+
+_DATA = Path(__file__).resolve().parents[2] / "data" / "proof"
+FOUND = _DATA / "third-world.json"
+"""Scores, paired differences, and a line for every set."""
+
+REMARKS = _DATA / "third-world-remarks.md"
+"""What was found when lost sets were looked into; goes into the page as it is."""
+
+_INTRO = """## A third world
+
+{done} of 100 sets of `studies/third_world`{ended}, {nulls} of them nulls and {outside} outside:
+another law of contact, its mean metal 2 to 5 % rms from finite elements, each metal some per cent
+off that, own bars, beams and time steps. Nothing was tuned on it. The
+[plan](../data/proof/third-world-plan.md), SHA-256 `{plan}`, came before the first set; every set is
+in `data/proof/third-world.json` (tree `{tree}`; `python -m dentscope.studies.proof.third_world
+run`). Columns as above."""
+
+
+def kept(
+    cases: Sequence[Case], lines: Sequence[dict[str, Any]], *, plan: str, tree: str
+) -> dict[str, Any]:
+    """What is kept of a run: the comparison, and of every set its truth and what leads.
+
+    Parameters
+    ----------
+    cases
+        The opened sets.
+    lines
+        What the peers said of them.
+    plan, tree
+        SHA-256 of the plan and of the tool.
+    """
+    of = {c.name: c for c in cases}
+    best = best_peer(compare(lines))["name"]
+    sets = []
+    for line in sorted(lines, key=lambda x: str(x["set"])):
+        truth = of[line["set"]].truth
+        said = line["said"][DIAGNOSIS]
+        sets.append(
+            {
+                "set": line["set"], "bench": truth["bench"], "truth": _true(truth),
+                "forms": [e["form"] for e in truth["effects"]],
+                "sizes": [round(float(s), 1) for s in truth["sizes"]],
+                "verdict": said["verdict"], "names": ["+".join(n) for n in said["names"]],
+                "odds": {k: round(p, 3) for k, p in _first(said["odds"])},
+                "front": bool(mark_of(line, DIAGNOSIS).front),
+                "peer_front": bool(mark_of(line, best).front),
+            }
+        )  # fmt: skip
+    return {"plan": plan, "tree": tree, "compared": compare(lines), "sets": sets}
+
+
+def _true(truth: dict[str, Any]) -> str:
+    names = [str(e["name"]) for e in truth["effects"]]
+    joined = "+".join(names) or BASELINE
+    return f"outside: {joined}" if truth["kind"] == "outside" else joined
+
+
+def _first(odds: dict[str, float], count: int = 4) -> list[tuple[str, float]]:
+    return sorted(odds.items(), key=lambda item: -item[1])[:count]
+
+
+def keep(found: dict[str, Any]) -> None:
+    """Write the file."""
+    write_file(FOUND, json.dumps(found, indent=1) + "\n")
+
+
+def third_world_lines(path: Path = FOUND) -> list[str]:
+    """The part of the page; none without a run."""
+    if not path.exists():
+        return []
+    kept = json.loads(path.read_text(encoding="utf-8"))
+    found = kept["compared"]
+    best = best_peer(found)
+    rules = [r for r in found["rows"] if r["name"] != DIAGNOSIS]
+    first = sorted(rules, key=lambda r: -r["front"])[:3]
+    done = found["sets"]
+    intro = _INTRO.format(
+        done=done, ended="" if done == 100 else ", in random order, as the time given ended",
+        nulls=found["nulls"], outside=found["outside"], plan=kept["plan"][:12],
+        tree=kept["tree"][:12],
+    )  # fmt: skip
+    remarks = [REMARKS.read_text(encoding="utf-8").strip(), ""] if REMARKS.exists() else []
+    return [
+        intro, "", *score_rows(found), "", "The diagnosis less the three best rules:", "",
+        *less_rows(found | {"rows": first}), "", *verdict_lines(best), "",
+        f"Lost, with what led: {'; '.join(_lost(kept['sets']))}.", "", *remarks,
+    ]  # fmt: skip
+
+
+def _lost(sets: Sequence[dict[str, Any]]) -> list[str]:
+    """Of each truth how many are not in front, and what is."""
+    groups: dict[str, list[dict[str, Any]]] = {}
+    for one in sets:
+        groups.setdefault(one["truth"], []).append(one)
+    found = []
+    for truth, group in sorted(groups.items()):
+        leaders = [next(iter(x["odds"]), "no verdict") for x in group if not x["front"]]
+        if leaders:
+            name = "nothing" if truth == BASELINE else truth
+            said = ", ".join("nothing" if x == BASELINE else x for x in sorted(leaders))
+            found.append(f"{name} {len(leaders)} of {len(group)} ({said})")
+    return found
