@@ -31,10 +31,6 @@ class ReductionRules:
         20.0, "durations after a pulse over which a ringing is averaged [-]",
         "drop table on felt: the change of speed is level from there on",
     )  # fmt: skip
-    by_luck: float = rule(
-        0.1, "part of intervals of any length that go on a run by chance [-]",
-        "four of six instants do, and six of thirteen; five of eight hardly ever",
-    )  # fmt: skip
     whole_flank: int = rule(
         8, "samples above half of the peak from which on a flank has samples too [-]",
         "of a half-sine 13 % lie on a flank between 6 and 45 %, 67 % above the half",

@@ -63,6 +63,19 @@ class Chain:
             return math.sqrt(float(rest @ rest) / self.free / 2.0)
         return robust_std(rest, lost=3) / math.sqrt(2.0)
 
+    def by_luck(self, count: int) -> float:
+        """Return how many such runs are expected by chance among as many instants.
+
+        Each interval beyond the two that tell a factor lies within two of the usual rests, to both
+        sides, of where it should, of intervals over a range of e.
+        """
+        flights = np.diff(self.times[list(self.kept)])[np.array(self.single)]
+        if flights.size < 3:
+            return float(len(self.kept) < count)
+        rest = math.sqrt(2.0 / float(np.mean(flights**2))) * self.scatter()
+        runs = math.comb(count, len(self.kept))
+        return float(runs * min(4.0 * rest, 1.0) ** (flights.size - 2))
+
     def shrinks(self, std: Array) -> bool:
         """Whether the last flight is shorter than the first beyond the instants' errors (n,) [s].
 
@@ -131,11 +144,11 @@ def chain_of(times: Array) -> Chain | None:
     if stray:
         notes.append(f"{stray} intervals stray from the course of the others and are left out")
     kept, single, ends = _without_false_ends(used, kept, single)
-    if math.comb(used.size, len(kept)) * RULES.by_luck ** (len(kept) - 3) >= 0.5:
-        return None  # taps, steps: among as many instants some hang together
     if ends:
         notes.append(f"{ends} instants at the ends of the run stray from its course: left out")
-    return Chain(np.asarray(times), kept, single, _typical(used, found), tuple(notes))
+    run = Chain(np.asarray(times), kept, single, _typical(used, found), tuple(notes))
+    # taps, steps: among as many instants some hang together
+    return None if run.by_luck(used.size) > 0.5 else run
 
 
 def _without_false_ends(

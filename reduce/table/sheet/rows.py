@@ -122,6 +122,7 @@ def _trials(
     last: dict[str, Measured] = {}
     from_above: list[str] = []
     across: list[str] = []
+    first_with: dict[tuple[str, ...], int] = {}
     decimals = decimals_of(rows[top:], columns)
     for k, row in enumerate(rows[top:], start=top + 1):
         if not any(row):
@@ -150,6 +151,9 @@ def _trials(
             from_above.append(str(k))
         back, crossed = _restitutions(found, last)
         trials += _of_row(found | {"restitution": back}, last, note, k)
+        before = first_with.setdefault(tuple(row), k)
+        if before < k and sum(map(bool, row)) > 2:
+            left.append(f"row {k}: taken, though each cell is that of row {before}: copied?")
         if crossed:
             across.append(str(k))
     _check_units(columns, source)

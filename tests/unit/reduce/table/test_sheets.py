@@ -429,3 +429,12 @@ def test_errors_of_a_spreadsheet_are_told(tmp_path):
     assert any("row 5" in line and "'#DIV/0!'" in line for line in found.left_out)
     table = read_columns(tmp_path / "a.xlsx")
     assert table.cells[2][1] == "#DIV/0!"
+
+
+def test_a_row_that_stands_twice_is_told(tmp_path):
+    text = "drop height (cm),rebound height (cm),dent diameter (mm)\n30,20,0.61\n40,26,0.70\n"
+    found = read_text(tmp_path, text + "30,20,0.61\n30,20,0.62\n")
+    assert len(found.trials) == 4
+    assert [line for line in found.left_out if "copied" in line] == [
+        "row 4: taken, though each cell is that of row 2: copied?"
+    ]
