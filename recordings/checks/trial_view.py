@@ -122,7 +122,9 @@ class TrialView:
         value = float(self.found.values(name)[self.i])
         if math.isnan(value):
             return None
-        return TrialReading(value, float(self.found.std(name)[self.i]))
+        # what laws of nature ask of one trial is asked within its scale's error too
+        scale = self.found.setup.gauge.get(name, 0.0)
+        return TrialReading(value, math.hypot(float(self.found.std(name)[self.i]), scale * value))
 
 
 @lru_cache(maxsize=1)

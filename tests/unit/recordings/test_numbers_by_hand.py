@@ -175,6 +175,24 @@ def test_four_standard_deviations_are_a_mistake(set_of, off, said):
     assert of_check(check_press_depths(found), "depths").severity is Severity[said]
 
 
+def test_the_error_of_a_scale_is_no_contradiction(set_of):
+    """10 of 60 um are not accounted for; a scale may be 4 % off, and readings 1 um."""
+    read = {"load_N": [500], "permanent_depth_m": [4e-5], "recovered_depth_m": [1e-5]}
+    noise = "permanent_depth_m = 1e-6\nrecovered_depth_m = 1e-6\npress_depth_m = 1e-6\n"
+    gauge = "[gauge]\npermanent_depth_m = 0.04\npress_depth_m = 0.04\n"
+    seen = [
+        of_check(
+            check_press_depths(
+                set_of(BALL + "Sy_Pa = 2e9\n", **read, press_depth_m=[6e-5], noise=noise + more)
+            ),
+            "depths",
+        ).significance
+        for more in ("", gauge)
+    ]
+    assert seen[0] == pytest.approx(10.0 / math.sqrt(3.0), rel=1e-9)
+    assert seen[1] == pytest.approx(10.0 / math.sqrt(3.0 + 1.6**2 + 2.4**2), rel=1e-9)
+
+
 def test_a_load_without_an_error_is_known_to_half_a_per_cent(set_of):
     found = set_of(
         target="hardness_Pa = { value = 1e9, std = 1e3 }\n",
