@@ -151,7 +151,8 @@ def altered_lines(lines: Sequence[dict[str, Any]]) -> list[str]:
     ]
     return [
         *text, "",
-        f"No row turns more than {max(turns)} from right to wrong or back. Nothing changes by: "
+        f"{f'At most {max(turns)} a row turn' if max(turns) else 'None turns'} from right to wrong "
+        "or back. Nothing changes by: "
         f"{', '.join(still) or 'none'}. Of the shipped {', '.join(moved) or 'none'} changes. A "
         "stage taken away:",
         "", f"![a stage of the diagnosis taken away](pictures/{STAGES})", "",

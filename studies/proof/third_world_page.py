@@ -29,12 +29,12 @@ REMARKS = _DATA / "third-world-remarks.md"
 
 _INTRO = """## A third world
 
-{done} of 100 sets of `studies/third_world`{ended}, {nulls} of them nulls and {outside} outside:
-another law of contact, its mean metal 2 to 5 % rms from finite elements, each metal some per cent
-off that, own bars, beams and time steps. Nothing was tuned on it. The
-[plan](../data/proof/third-world-plan.md), SHA-256 `{plan}`, came before the first set; every set is
-in `data/proof/third-world.json` (tree `{tree}`; `python -m dentscope.studies.proof.third_world
-run`). Columns as above."""
+{done} sets of `studies/third_world`{ended}, {nulls} of them nulls and {outside} outside: another
+law of contact, its mean metal 2 to 5 % rms from finite elements, each metal some per cent off that,
+own bars, beams and time steps. Nothing was tuned on it. The
+[plan](../data/proof/third-world-plan.md), SHA-256 `{plan}`, came before the first set; every set
+and rule is in `data/proof/third-world.json` (tree `{tree}`; `python -m
+dentscope.studies.proof.third_world run`). Columns as above, the three best rules."""
 
 
 def kept(
@@ -95,30 +95,16 @@ def third_world_lines(path: Path = FOUND) -> list[str]:
     best = best_peer(found)
     rules = [r for r in found["rows"] if r["name"] != DIAGNOSIS]
     first = sorted(rules, key=lambda r: -r["front"])[:3]
+    own = [r for r in found["rows"] if r["name"] == DIAGNOSIS]
     done = found["sets"]
     intro = _INTRO.format(
-        done=done, ended="" if done == 100 else ", in random order, as the time given ended",
+        done=done, ended="" if done == 100 else " of 100, in random order",
         nulls=found["nulls"], outside=found["outside"], plan=kept["plan"][:12],
         tree=kept["tree"][:12],
     )  # fmt: skip
     remarks = [REMARKS.read_text(encoding="utf-8").strip(), ""] if REMARKS.exists() else []
     return [
-        intro, "", *score_rows(found), "", "The diagnosis less the three best rules:", "",
-        *less_rows(found | {"rows": first}), "", *verdict_lines(best), "",
-        f"Lost, with what led: {'; '.join(_lost(kept['sets']))}.", "", *remarks,
+        intro, "", *score_rows(found | {"rows": [*own, *first]}), "",
+        "The diagnosis less each:", "", *less_rows(found | {"rows": first}), "",
+        *verdict_lines(best), "", *remarks,
     ]  # fmt: skip
-
-
-def _lost(sets: Sequence[dict[str, Any]]) -> list[str]:
-    """Of each truth how many are not in front, and what is."""
-    groups: dict[str, list[dict[str, Any]]] = {}
-    for one in sets:
-        groups.setdefault(one["truth"], []).append(one)
-    found = []
-    for truth, group in sorted(groups.items()):
-        leaders = [next(iter(x["odds"]), "no verdict") for x in group if not x["front"]]
-        if leaders:
-            name = "nothing" if truth == BASELINE else truth
-            said = ", ".join("nothing" if x == BASELINE else x for x in sorted(leaders))
-            found.append(f"{name} {len(leaders)} of {len(group)} ({said})")
-    return found

@@ -144,7 +144,7 @@ def test_changes_are_counted() -> None:
     assert altered.outcome(drawn[0], "without fits") == altered.SILENT
     text = altered.altered_lines(LINES)
     assert "| priors | 2 | 1, 2 | 2, 2 | 1, 1 | 1, 0 | 0, 1 |" in text
-    assert text[-4].startswith("No row turns more than 1 from right to wrong or back.")
+    assert text[-4].startswith("At most 1 a row turn from right to wrong or back.")
     assert "Of the shipped real changes" in text[-4]
 
 
