@@ -102,8 +102,8 @@ def reduce_bounce_times(
         if math.isnan(scatter):
             notes.append("too few bounces to tell how well the instants are known")
         else:
-            # a few intervals hardly tell their own scatter (Student)
-            scatter *= 0.5 * float(stdtrit(chain.free, ndtr(2.0)))
+            if chain.free < 3:  # one or two hardly tell their own scatter (Student)
+                scatter *= 0.5 * float(stdtrit(chain.free, ndtr(2.0)))
             notes.append(f"instants ± {1e3 * scatter:.2g} ms by the scatter of the intervals")
         std = np.full(times.size, scatter)
     elif scatter > float(np.median(std)):
