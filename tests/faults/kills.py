@@ -171,12 +171,13 @@ def executor_of(solver):
 def coordinate(path, cases, *, solver, forked):
     """Run the campaign to its end; tell each stored case in a file beside it."""
     told = os.open(path.with_suffix(".told"), os.O_CREAT | os.O_APPEND | os.O_WRONLY)
-    put = Store.put
+    put, pause = Store.put, random.Random(os.getpid())
 
     def announced_put(store, *arguments, **options):
         board().tell("coordinator", "makes the image")
         put(store, *arguments, **options)
         board().tell("coordinator", "tells")
+        time.sleep(pause.uniform(0.0, PAUSE_S))  # what follows is too short to be met
 
     def tell(step):
         os.write(told, f"{step.case.name}\n".encode())
