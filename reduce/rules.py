@@ -339,6 +339,10 @@ class ReductionRules:
         0.2, "part of the frames that do so before they count as repeated [-]",
         "chosen; no measurement is kept",
     )  # fmt: skip
+    edge_rounds: int = rule(
+        10, "rounds of the fit of an edge at most [-]",
+        "chosen; no measurement is kept",
+    )  # fmt: skip
     edge_settled: float = rule(
         1e-4, "move at which it ends [pixel]",
         "a tenth of the floor of a position",
@@ -430,6 +434,10 @@ class ReductionRules:
         8, "sectors of a shape that are left out in turn, or in which walls are read [-]",
         "one that is not round shows in their spread",
     )  # fmt: skip
+    ball_fewest: int = rule(
+        200, "points of a scan of a ball at least [-]",
+        "chosen; no measurement is kept",
+    )  # fmt: skip
     bottom_large: float = rule(
         0.75, "larger of two fits at the bottom of a crater, in half-widths [-]",
         "chosen; no measurement is kept",
@@ -443,7 +451,7 @@ class ReductionRules:
         "three for each of fifteen coefficients",
     )  # fmt: skip
     scan_points: int = rule(
-        100, "points of a scan, or of a ball in it, at least [-]",
+        100, "points of a scan at least [-]",
         "chosen; no measurement is kept",
     )  # fmt: skip
     scan_step: float = rule(
@@ -572,6 +580,10 @@ class ReductionRules:
         10**9, "frames of a clip [-]",
         "none is as long",
     )  # fmt: skip
+    lean_frames: int = rule(
+        20, "frames from which the lean of a rod is read [-]",
+        "chosen; no measurement is kept",
+    )  # fmt: skip
     same_rate: float = rule(
         0.01, "part by which a container's mean rate differs from the camera's and is its own [-]",
         "rates of 29.97 and 30",
@@ -593,11 +605,15 @@ class ReductionRules:
         "rendered clips",
     )  # fmt: skip
     shape_frames: int = rule(
-        15, "frames from which the shape of a tip, a lean, or a reflection's light are read [-]",
+        15, "frames from which the shape of a tip is read [-]",
         "chosen; no measurement is kept",
     )  # fmt: skip
     mirror_least: float = rule(
         1.0, "blurs above the flat from which on a tip is told from its reflection [-]",
+        "chosen; no measurement is kept",
+    )  # fmt: skip
+    mirror_frames: int = rule(
+        12, "frames from which a reflection's light is read [-]",
         "chosen; no measurement is kept",
     )  # fmt: skip
     dull: float = rule(

@@ -96,6 +96,11 @@ class Ball:
 
         Buoyancy ρV/m is taken off, and the fluid that is carried along, half a volume, counts as
         mass (L. Landau, E. Lifshitz, Fluid Mechanics, §11).
+
+        Raises
+        ------
+        InputError
+            The ball is lighter than the fluid.
         """
         if self.mass is None or self.diameter is None:
             return Fall(self.gravity, math.inf)

@@ -78,7 +78,13 @@ def scale_of(fall: Measured, gravity: float, stated: Measured | None) -> Scale:
 
 
 def check_scale(scale: Scale, *, source: str) -> None:
-    """Refuse a track whose unit or rate contradicts gravity, with the values that would fit."""
+    """Refuse a track whose unit or rate contradicts gravity, with the values that would fit.
+
+    Raises
+    ------
+    Refused
+        The fall is off by more than drag and buoyancy make.
+    """
     if abs(1.0 / (1.0 + scale.off) - 1.0) > RULES.fall_off:
         ratio = 1.0 + scale.off
         raise Refused(

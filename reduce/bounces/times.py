@@ -84,6 +84,8 @@ def reduce_bounce_times(
     std
         (n,) standard deviations of the times [s]; None takes them from the scatter of the
         intervals about a smooth course, which is part of them in any case.
+    source
+        The file.
 
     Raises
     ------

@@ -186,7 +186,7 @@ def _settle(
     p, moved = start.copy(), list(free)
     covariance = np.zeros((p.size, p.size))
     move = np.full(len(moved), np.inf)
-    for _ in range(RULES.fit_rounds):
+    for _ in range(RULES.edge_rounds):
         model, jacobian, zone = picture(p)
         residual = (values - model)[zone]
         if residual.size <= len(moved) + 4:

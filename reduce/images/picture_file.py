@@ -49,7 +49,13 @@ def read_picture(path: Path, *, channel: str = "grey") -> npt.NDArray[np.uint8]:
 
 
 def grey_picture(pixels: npt.NDArray[Any], channel: str, source: str) -> npt.NDArray[np.uint8]:
-    """Return decoded pixels of 8 or 16 bits, grey or in colours, as grey values 0-255."""
+    """Return decoded pixels of 8 or 16 bits, grey or in colours, as grey values 0-255.
+
+    Raises
+    ------
+    InputError
+        Pixels of another kind, or more than one picture.
+    """
     return one_channel(_flat(_eight_bits(pixels, source), source), channel)
 
 
@@ -86,7 +92,13 @@ def one_channel(pixels: npt.NDArray[np.uint8], channel: str) -> npt.NDArray[np.u
 
 
 def crop_window(text: str) -> tuple[int, int, int, int] | None:
-    """Return the four numbers of TOP:BOTTOM,LEFT:RIGHT, None for an empty text."""
+    """Return the four numbers of TOP:BOTTOM,LEFT:RIGHT, None for an empty text.
+
+    Raises
+    ------
+    ValueError
+        Any other text.
+    """
     found = _CROP.fullmatch(text)
     if found is None:
         if text:
@@ -99,7 +111,13 @@ def crop_window(text: str) -> tuple[int, int, int, int] | None:
 def cropped(
     frame: npt.NDArray[np.uint8], crop: tuple[int, int, int, int] | None
 ) -> npt.NDArray[np.uint8]:
-    """Return the rows and columns of a crop, its ends excluded; the whole frame without one."""
+    """Return the rows and columns of a crop, its ends excluded; the whole frame without one.
+
+    Raises
+    ------
+    InputError
+        The crop is not within the frame.
+    """
     if crop is None:
         return frame
     top, bottom, left, right = crop

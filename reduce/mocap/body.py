@@ -110,6 +110,11 @@ def make_body(
         A `BodyFile`, or None: then spin shows the centre of mass.
     axis
         Two markers on a line along the rod, if no file tells the axis.
+
+    Raises
+    ------
+    InputError
+        A rod without an axis, or a file that does not fit the markers.
     """
     across = radius if radius is not None else tip_radius
     given, way = None, np.zeros(3)

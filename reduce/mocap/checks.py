@@ -21,6 +21,13 @@ def check_fall(fall: Measured, gravity: float, source: str) -> None:
         Downward acceleration between the contacts [m/s²].
     gravity
         That it should be [m/s²].
+    source
+        The file.
+
+    Raises
+    ------
+    Refused
+        It is off by more than drag and buoyancy make.
     """
     if abs(fall.value - gravity) > max(RULES.fall_off * gravity, 3.0 * fall.std):
         raise Refused(
@@ -31,7 +38,13 @@ def check_fall(fall: Measured, gravity: float, source: str) -> None:
 
 
 def check_shape(poses: Poses, source: str) -> None:
-    """Refuse markers that are no rigid body."""
+    """Refuse markers that are no rigid body.
+
+    Raises
+    ------
+    Refused
+        They lie too far off one shape.
+    """
     if poses.spread > RULES.not_rigid * poses.extent:
         raise Refused(
             "shape", f"the markers lie {1e3 * poses.spread:.3g} mm off one rigid shape of "

@@ -46,6 +46,8 @@ class Markers:
         Of the m markers.
     position
         (n, m, 3), NaN where a marker was not seen [m].
+    source
+        The file.
     """
 
     time: Array
@@ -64,7 +66,13 @@ class Markers:
         return float(np.mean(~np.isfinite(self.position).all(axis=2)))
 
     def only(self, names: tuple[str, ...]) -> Markers:
-        """Return the named markers, in that order."""
+        """Return the named markers, in that order.
+
+        Raises
+        ------
+        InputError
+            There is no such marker.
+        """
         for name in names:
             if name not in self.names:
                 raise InputError(

@@ -54,7 +54,14 @@ def noise_of(values: Array) -> float:
 
 
 def cycles_of(record: PressRecord) -> tuple[Cycle, ...]:
-    """Return the cycles of a record in their order."""
+    """Return the cycles of a record in their order.
+
+    Raises
+    ------
+    InputError
+        No load above the noise, rows without numbers at the largest load, a load cell at its end,
+        or no unloading.
+    """
     load, source = record.load, record.source
     if load.size < RULES.table_rows:
         raise Refused(

@@ -60,10 +60,10 @@ def reduce_ball(scan: Scan, *, reach: float | None = None) -> ScannedBall:
     extent = (np.array(scan.z.shape) - 1) * scan.step
     limit = reach or float(min(np.min(top), np.min(extent - top)))
     near = np.flatnonzero(np.hypot(x - top[0], y - top[1]) <= limit)
-    if near.size < RULES.scan_points:
+    if near.size < RULES.ball_fewest:
         raise InputError(
             f"{near.size} points within {limit:.3g} m of the top", source=scan.source,
-            key="reach_m", allowed=f"{RULES.scan_points} or more points",
+            key="reach_m", allowed=f"{RULES.ball_fewest} or more points",
         )  # fmt: skip
     near = near[:: max(1, near.size // RULES.ball_points)]
     x, y, z = x[near], y[near], z[near]

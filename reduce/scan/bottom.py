@@ -52,6 +52,13 @@ def find_bottom(found: Levelled, half_width: float, *, source: str) -> Bottom:
         The levelled scan.
     half_width
         Half the width of the crater [m].
+    source
+        Name of the file.
+
+    Raises
+    ------
+    InputError
+        The floor has too few points.
     """
     smooth = ndimage.gaussian_filter(filled(found.z), 0.2 * half_width / found.step)
     start = np.unravel_index(int(np.argmin(np.where(found.crater, smooth, np.inf))), smooth.shape)

@@ -54,7 +54,13 @@ class Levelled:
 
 
 def levelled(scan: Scan, *, level: str = "plane") -> Levelled:
-    """Return the scan above its undisturbed surface."""
+    """Return the scan above its undisturbed surface.
+
+    Raises
+    ------
+    InputError
+        No crater stands out of the roughness, or it leaves no surface around it.
+    """
     z, outliers = _without_spikes(scan.z)
     terms = _terms(z.shape, LEVELS[level])
     seen = np.isfinite(z)

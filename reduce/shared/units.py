@@ -59,8 +59,15 @@ def metres(unit: str, *, source: str, allowed: Iterable[str]) -> float:
     ----------
     unit
         As the file or the user says it; empty if neither does.
+    source
+        The file.
     allowed
         Units that such a file may be in.
+
+    Raises
+    ------
+    InputError
+        No unit, or not one of the allowed.
     """
     if unit in LENGTH and unit in allowed:
         return LENGTH[unit]

@@ -26,6 +26,8 @@ class Sound:
         Samples per second [1/s].
     clipped
         Part of the samples at full scale.
+    source
+        The file.
     """
 
     samples: Array

@@ -50,7 +50,13 @@ def reduce(path: Path, options: SoundOptions) -> Reduced:
 
 
 def check_level(sound: Sound) -> None:
-    """Refuse a recording that is at full scale between the contacts too."""
+    """Refuse a recording that is at full scale between the contacts too.
+
+    Raises
+    ------
+    Refused
+        More of it is than the contacts of a ball fill.
+    """
     if sound.clipped > RULES.full_scale:
         raise Refused(
             "full-scale", f"{sound.clipped:.0%} of the samples are at full scale",

@@ -46,6 +46,8 @@ class Columns:
         (n, m), NaN where a cell holds no number.
     cells
         The same as text, n rows of m.
+    source
+        The file.
     heading
         What stands above the numbers.
     """
@@ -57,14 +59,26 @@ class Columns:
     heading: Heading = field(default_factory=Heading)
 
     def select(self, which: str) -> Columns:
-        """Return the rows that `COLUMN=VALUE` picks."""
+        """Return the rows that `COLUMN=VALUE` picks.
+
+        Raises
+        ------
+        InputError
+            Not of that form, or no row has the value.
+        """
         name, value = selection(which, source=self.source)
         place = self.find(name, key="select")
         rows = rows_with(value, [row[place] for row in self.cells], source=self.source)
         return replace(self, values=self.values[rows], cells=tuple(self.cells[k] for k in rows))
 
     def find(self, which: str, *, key: str) -> int:
-        """Return the place of a column that is named, or numbered from 1."""
+        """Return the place of a column that is named, or numbered from 1.
+
+        Raises
+        ------
+        InputError
+            No column, or more than one, is meant.
+        """
         if which.isdecimal() and 1 <= int(which) <= len(self.names):
             return int(which) - 1
         low = [" ".join(n.split()).lower() for n in self.names]
@@ -102,6 +116,11 @@ class Columns:
             Option that gives the unit.
         default
             Unit where neither says one; None asks for it.
+
+        Raises
+        ------
+        InputError
+            The unit is not known.
         """
         units = UNITS[quantity]
         if given != "file":
@@ -159,7 +178,13 @@ def read_columns(path: Path, *, sheet: str = "") -> Columns:
 
 
 def text_columns(raw: bytes, source: str) -> Columns:
-    """Read the numbers of a text table."""
+    """Read the numbers of a text table.
+
+    Raises
+    ------
+    InputError
+        Not text, empty, or no table.
+    """
     lines = text_lines(raw, source)
     found = labview_rows(lines)
     if found is None:
@@ -173,7 +198,13 @@ def text_columns(raw: bytes, source: str) -> Columns:
 
 
 def columns_of(rows: list[list[str]], source: str) -> Columns:
-    """Return the numbers in rows of cells, with the names above them."""
+    """Return the numbers in rows of cells, with the names above them.
+
+    Raises
+    ------
+    InputError
+        No row of numbers.
+    """
     known = [is_data(row) for row in rows]
     first = _first(rows, known)
     if first is None:
@@ -229,12 +260,24 @@ def _has_hole(row: Sequence[str], held: Sequence[bool]) -> bool:
 
 
 def text_lines(raw: bytes, source: str) -> list[str]:
-    """Return the lines of a text file that hold something and are no comment."""
+    """Return the lines of a text file that hold something and are no comment.
+
+    Raises
+    ------
+    InputError
+        Not text, or empty.
+    """
     return [line for _number, line in numbered_lines(raw, source)]
 
 
 def numbered_lines(raw: bytes, source: str) -> list[tuple[int, str]]:
-    """Return the same with the number of each line in the file, from 1."""
+    """Return the same with the number of each line in the file, from 1.
+
+    Raises
+    ------
+    InputError
+        Not text, or empty.
+    """
     each = enumerate(decoded(raw, source).splitlines(), start=1)
     lines = [(k, line) for k, line in each if line.strip() and not line.startswith("#")]
     if not lines:
@@ -243,7 +286,13 @@ def numbered_lines(raw: bytes, source: str) -> list[tuple[int, str]]:
 
 
 def decoded(raw: bytes, source: str) -> str:
-    """Return the text of a file in any usual encoding."""
+    """Return the text of a file in any usual encoding.
+
+    Raises
+    ------
+    InputError
+        Not text, or empty.
+    """
     wide = raw.startswith((b"\xff\xfe", b"\xfe\xff"))
     if b"\0" in raw[:4096] and not wide:
         raise InputError("not text", source=source, allowed="a text table, XLS, XLSX or ODS")
@@ -260,6 +309,11 @@ def text_rows(lines: Sequence[str], source: str, *, separator: str = "") -> list
     """Return the cells of a text table, its numbers with decimal points.
 
     `separator` is known, or that which fits best.
+
+    Raises
+    ------
+    InputError
+        No table.
     """
     separator, rows = cells_of(lines, source, separator=separator)
     between = commas_between(chain.from_iterable(rows), separator)
@@ -269,7 +323,13 @@ def text_rows(lines: Sequence[str], source: str, *, separator: str = "") -> list
 def cells_of(
     lines: Sequence[str], source: str, *, separator: str = ""
 ) -> tuple[str, list[list[str]]]:
-    """Return the separator of a text table and its cells as they are written."""
+    """Return the separator of a text table and its cells as they are written.
+
+    Raises
+    ------
+    InputError
+        No table.
+    """
     separator = separator or _separator(lines)
     try:
         rows = list(_split(lines, separator))

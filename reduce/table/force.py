@@ -52,6 +52,8 @@ def reduce_pulse(
         Normal speed before [m/s], if it is known.
     gravity
         Acceleration of the fall [m/s²].
+    source
+        The file.
     scale_std
         Relative error of the sensor's scale.
 

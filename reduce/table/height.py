@@ -47,6 +47,8 @@ def reduce_heights(
         Gravity, and the drag as far as it is known.
     contact
         Duration of a contact [s], if it is known.
+    source
+        The file.
 
     Raises
     ------

@@ -24,6 +24,11 @@ def packed_table(path: Path, member: str) -> tuple[bytes, str]:
         A ZIP file, as phyphox writes them.
     member
         Name of the table with or without its ending; the only one if empty.
+
+    Raises
+    ------
+    InputError
+        Not a ZIP file, no such table, or several without a name.
     """
     try:
         with zipfile.ZipFile(path) as archive:
@@ -62,6 +67,11 @@ def tracker_rows(path: Path, track: str) -> tuple[list[str], list[list[float]]]:
     The places are those in the picture turned into the project's axes and scale; without a
     calibration the scale is 1 and the unit the pixel. Without `delta_t`, the milliseconds of a
     frame, the first column counts frames.
+
+    Raises
+    ------
+    InputError
+        Not such a file, or no such track.
     """
     raw = path.read_bytes()
     if b"<!ENTITY" in raw or len(raw) > RULES.table_bytes:

@@ -70,6 +70,8 @@ def find_pulse(time: Array, value: Array, *, source: str) -> Pulse:
     ----------
     time, value
         (n,), time increasing.
+    source
+        The file.
 
     Raises
     ------

@@ -62,6 +62,11 @@ def elastic_rise(strain: Array, stress: Array, source: str) -> ElasticRise:
     The strain is fitted over the stress, for load cells scatter less than extensometers; the slope
     of the stress over the strain is the other bound where both do (R. Frisch, 1934), and belongs to
     the error, as does what halves of the rise and the next lower one say differently.
+
+    Raises
+    ------
+    InputError
+        Fewer than three rows, or the stress does not rise.
     """
     peak = float(stress.max())
     lines = [

@@ -52,6 +52,13 @@ def shape_of(
         Beginning and end of the pulse [s].
     noise
         Standard deviation of a sample.
+    source
+        The file.
+
+    Raises
+    ------
+    InputError
+        It is no impact, or the impact is not whole: what it looks like.
     """
     peak = float(clear[top])
     flat = _flat_top(clear, top)

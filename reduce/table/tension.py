@@ -52,6 +52,8 @@ def reduce_tension(
         `"engineering"` or `"true"`; the stress likewise.
     E
         Modulus [Pa]; None reads it from the curve.
+    source
+        The file.
 
     Raises
     ------
@@ -167,6 +169,11 @@ def stress_unit(table: Columns, column: int, *, given: str, area_mm2: float | No
 
     A column of loads is divided by the specimen's area: as given, or from the header's line
     `Area` or `Diameter`.
+
+    Raises
+    ------
+    InputError
+        The unit is none of stress or force, or no area is known.
     """
     said = table.unit(column) if given == "file" else given
     force = UNITS["force"].get(said)
@@ -191,6 +198,11 @@ def strain_unit(table: Columns, column: int, *, given: float | None) -> float:
 
     A column of extensions is divided by the gauge length: as given in mm, or from the header's line
     `Gauge length` or `Gage length`.
+
+    Raises
+    ------
+    InputError
+        A length without a gauge length.
     """
     unit = table.unit(column)
     if unit == "%":

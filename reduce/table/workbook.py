@@ -2,20 +2,17 @@
 
 from __future__ import annotations
 
+import posixpath
 import re
 import zipfile
 from collections.abc import Iterator
 from contextlib import contextmanager
-from html import unescape
 from pathlib import Path
+from string import ascii_uppercase
 from typing import Any
+from xml.etree import ElementTree
 
 from ...core.errors import InputError, missing_extra
-
-_SHEET, _RELATION = re.compile(r"<sheet\b[^>]*>"), re.compile(r"<Relationship\b[^>]*>")
-_ERROR = re.compile(
-    r'<c\b[^>]*\br="([A-Z]+\d+)"[^>]*\bt="e"[^>]*>(?:(?!</c>).)*?<v>([^<]*)</v>', re.S
-)
 
 
 class NumberCell(str):
@@ -25,13 +22,25 @@ class NumberCell(str):
 
 
 def sheets_of(path: Path) -> tuple[str, ...]:
-    """Return the names of a workbook's sheets."""
+    """Return the names of a workbook's sheets.
+
+    Raises
+    ------
+    InputError
+        Not a workbook.
+    """
     with _opened(path) as book:
         return tuple(book.sheet_names)
 
 
 def workbook_rows(path: Path, sheet: str) -> list[list[str]]:
-    """Return the cells of a sheet as text, the first sheet by default."""
+    """Return the cells of a sheet as text, the first sheet by default.
+
+    Raises
+    ------
+    InputError
+        Not a workbook, or no such sheet.
+    """
     with _opened(path) as book:
         by_name = {n.strip(): n for n in book.sheet_names}
         if sheet and sheet.strip() not in by_name:
@@ -39,67 +48,76 @@ def workbook_rows(path: Path, sheet: str) -> list[list[str]]:
                 f"no sheet {sheet!r}", source=str(path), key="sheet", allowed=", ".join(by_name)
             )
         name = by_name.get(sheet.strip(), book.sheet_names[0])
-        sheet_found = book.get_sheet_by_name(name)
-        rows = [[_cell(cell) for cell in row] for row in sheet_found.to_python()]
-    first_row, first_column = sheet_found.start or (0, 0)
-    for (row, column), error in _errors(path).get(name, {}).items():
-        if 0 <= row - first_row < len(rows) and column - first_column < len(rows[0]):
-            rows[row - first_row][column - first_column] = error
+        found = book.get_sheet_by_name(name)
+        rows = [[_cell(cell) for cell in row] for row in found.to_python()]
+        _put_errors(rows, _errors(path).get(name, {}), found.start or (0, 0))
     return rows
 
 
 def rows_of_sheets(path: Path) -> dict[str, list[list[str]]]:
-    """Return the cells of every sheet as text, counted from its first row and column."""
+    """Return the cells of every sheet as text, counted from its first row and column.
+
+    Raises
+    ------
+    InputError
+        Not a workbook.
+    """
     with _opened(path) as book:
         found = {n: book.get_sheet_by_name(n) for n in book.sheet_names}
         rows = {
             n: [[_typed(cell) for cell in row] for row in sheet.to_python(skip_empty_area=False)]
             for n, sheet in found.items()
         }
-    for name, errors in _errors(path).items():
-        for (row, column), error in errors.items():
-            if row < len(rows[name]) and column < len(rows[name][row]):
-                rows[name][row][column] = error
+        for name, errors in _errors(path).items():
+            _put_errors(rows.get(name, []), errors, (0, 0))
     return rows
+
+
+def _put_errors(
+    rows: list[list[str]], errors: dict[tuple[int, int], str], start: tuple[int, int]
+) -> None:
+    for (row, column), error in errors.items():
+        k, j = row - start[0], column - start[1]
+        if 0 <= k < len(rows) and 0 <= j < len(rows[k]):
+            rows[k][j] = error
 
 
 def _errors(path: Path) -> dict[str, dict[tuple[int, int], str]]:
     """Return the errors, as `#DIV/0!`, that cells of each sheet hold, by row and column from 0.
 
-    The reader of workbooks leaves them empty. XLSX alone, for others keep them as text or not.
+    The reader of workbooks leaves them empty in XLSX; ODS is another archive, XLS is none.
     """
-    if path.suffix.lower() not in (".xlsx", ".xlsm"):
+    if not zipfile.is_zipfile(path):
         return {}
+    found = {}
     with zipfile.ZipFile(path) as packed:
-        book = packed.read("xl/workbook.xml").decode("utf-8", "replace")
-        relations = packed.read("xl/_rels/workbook.xml.rels").decode("utf-8", "replace")
-        found = {}
-        for sheet in _SHEET.findall(book):
-            place = _attribute(sheet, "r:id")
-            target = next(
-                (_attribute(one, "Target") for one in _RELATION.findall(relations)
-                 if _attribute(one, "Id") == place), "",
-            )  # fmt: skip
-            name = target.lstrip("/") if target.startswith("/") else f"xl/{target}"
-            if name in packed.namelist():
-                cells = packed.read(name).decode("utf-8", "replace")
-                found[unescape(_attribute(sheet, "name"))] = {
-                    _place(where): error for where, error in _ERROR.findall(cells)
+        if "xl/workbook.xml" not in packed.namelist():
+            return {}
+        book, relations = (
+            ElementTree.fromstring(packed.read(f"xl/{name}"))
+            for name in ("workbook.xml", "_rels/workbook.xml.rels")
+        )
+        targets = {one.get("Id"): one.get("Target", "") for one in relations}
+        for sheet in book.iterfind(".//{*}sheet"):
+            key = next((value for name, value in sheet.items() if name.endswith("}id")), "")
+            cells = packed.read(posixpath.normpath(posixpath.join("/xl", targets[key]))[1:])
+            if b't="e"' in cells:  # the quick look spares most sheets the slow one
+                found[sheet.get("name", "")] = {
+                    _place(cell.get("r", "")): cell.findtext("{*}v", "")
+                    for cell in ElementTree.fromstring(cells).iterfind(".//{*}c[@t='e']")
                 }
     return found
 
 
-def _attribute(tag: str, name: str) -> str:
-    found = re.search(rf'\b{name}="([^"]*)"', tag)
-    return found[1] if found else ""
-
-
 def _place(where: str) -> tuple[int, int]:
-    """Row and column from 0 of a cell such as `B7`."""
+    """Row and column from 0 of a cell such as `B7`; before all others for what is none."""
+    named = re.fullmatch(r"([A-Z]+)(\d+)", where)
+    if named is None:
+        return -1, -1
     column = 0
-    for letter in where.rstrip("0123456789"):
-        column = 26 * column + ord(letter) - 64
-    return int(where.lstrip("ABCDEFGHIJKLMNOPQRSTUVWXYZ")) - 1, column - 1
+    for letter in named[1]:
+        column = 26 * column + ascii_uppercase.index(letter) + 1
+    return int(named[2]) - 1, column - 1
 
 
 @contextmanager
@@ -110,7 +128,9 @@ def _opened(path: Path) -> Iterator[Any]:
         raise missing_extra("reading workbooks", "tables") from None
     try:
         yield calamine.CalamineWorkbook.from_path(str(path))
-    except (calamine.CalamineError, OSError, IndexError, KeyError, zipfile.BadZipFile) as error:
+    except (
+        calamine.CalamineError, OSError, LookupError, zipfile.BadZipFile, ElementTree.ParseError,
+    ) as error:  # fmt: skip
         raise InputError(
             f"not a workbook that can be read ({error})", source=str(path),
             allowed="XLS, XLSX or ODS without a password",

@@ -131,7 +131,7 @@ class VideoReduction:
 
     def _lean_before(self, bounce: Bounce) -> Measured:
         near = self.frame <= self.frame[bounce.near[0]]
-        last = self.lean[near][-RULES.shape_frames :]
+        last = self.lean[near][-RULES.lean_frames :]
         return Measured(float(np.median(last)), float(np.std(last) / max(len(last) - 1, 1) ** 0.5))
 
 
@@ -259,10 +259,10 @@ def _flight_notes(result: VideoReduction) -> list[str]:
 def _lean_notes(result: VideoReduction) -> list[str]:
     turning = result.bounces[0].turning
     sides = {
-        "before": result.lean[max(turning - 2 * RULES.shape_frames, 0) : turning][
-            : RULES.shape_frames
+        "before": result.lean[max(turning - 2 * RULES.lean_frames, 0) : turning][
+            : RULES.lean_frames
         ],
-        "after": result.lean[turning + RULES.shape_frames : turning + 2 * RULES.shape_frames],
+        "after": result.lean[turning + RULES.lean_frames : turning + 2 * RULES.lean_frames],
     }
     notes = []
     for name, lean in sides.items():

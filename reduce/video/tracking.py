@@ -20,7 +20,13 @@ from ..rules import RULES
 def track_rod(
     frames: npt.NDArray[np.uint8], critical: int, levels: tuple[float, float], source: str
 ) -> tuple[dict[str, Any], RodShape]:
-    """Return the tip of a rod in each frame, as named arrays (n,), and the shape of the rod."""
+    """Return the tip of a rod in each frame, as named arrays (n,), and the shape of the rod.
+
+    Raises
+    ------
+    InputError
+        No rod near the critical frame, or its tip in too few frames.
+    """
     shape = _rod_shape(frames, critical, levels)
     if shape is None:
         raise InputError(
@@ -61,7 +67,7 @@ def _without_reflection(
     low, high = (lowest - n * shape.blur for n in (RULES.mirror_reach, RULES.mirror_least))
     both = [k for k in np.flatnonzero((rows > low) & (rows < high))]
     found = []
-    for k in both[:: max(1, len(both) // RULES.shape_frames)]:
+    for k in both[:: max(1, len(both) // RULES.mirror_frames)]:
         number, pose = poses[k]
         start = replace(shape, mirror=0.1, flat=lowest)
         there = fit_rod(
@@ -111,7 +117,13 @@ def _rod_shape(
 def track_ball(
     frames: npt.NDArray[np.uint8], levels: tuple[float, float], source: str
 ) -> dict[str, Any]:
-    """Return the centre of a ball in each frame, as named arrays (n,), its radius among them."""
+    """Return the centre of a ball in each frame, as named arrays (n,), its radius among them.
+
+    Raises
+    ------
+    InputError
+        The ball is found in too few frames.
+    """
     seen = [(n, ball_by_light(f.astype(np.float64), levels=levels)) for n, f in enumerate(frames)]
     light = [(n, b) for n, b in seen if b is not None]
     if light:

@@ -10,20 +10,7 @@ from typing import Any
 import numpy as np
 
 from ...core.arrays import Array, Indices
-
-
-@dataclass(frozen=True)
-class Metal:
-    """A material as the sheet states it, SI; an endless strength is not stated."""
-
-    name: str
-    E: float
-    nu: float
-    Sy: float
-    density: float
-    cp: float = 450.0
-    melting: float = 1600.0
-
+from ..concealed import Metal, Striker
 
 FLATS = (
     Metal("steel S235", 205e9, 0.29, 260e6, 7850.0, 470.0, 1780.0),
@@ -36,31 +23,6 @@ BALL = Metal("bearing steel 100Cr6", 210e9, 0.30, 2100e6, 7810.0)
 CARBIDE = Metal("tungsten carbide K20", 620e9, 0.22, 4800e6, 14900.0)
 GLASS = Metal("float glass", 72e9, 0.23, math.inf, 2500.0)
 HARD = Metal("hard steel", 210e9, 0.30, math.inf, 7800.0)
-
-
-@dataclass(frozen=True)
-class Striker:
-    """A ball, or a rod with round ends (length above 0); SI."""
-
-    name: str
-    metal: Metal
-    tip: float
-    radius: float
-    length: float = 0.0
-
-    @property
-    def mass(self) -> float:
-        """Of the ball, or of the rod as a cylinder [kg]."""
-        if self.length == 0.0:
-            return self.metal.density * 4.0 / 3.0 * math.pi * self.radius**3
-        return self.metal.density * math.pi * self.radius**2 * self.length
-
-    @property
-    def inertia(self) -> float:
-        """About the centre, across the axis [kg m^2]."""
-        if self.length == 0.0:
-            return 0.4 * self.mass * self.radius**2
-        return self.mass * (self.length**2 / 12.0 + self.radius**2 / 4.0)
 
 
 TOLERANCE = {
@@ -265,7 +227,7 @@ def _pressed(rng: np.random.Generator) -> Rig:
     read = ["restitution", "permanent_depth_m", "press_depth_m", "recovered_depth_m"]
     rig = _rig(rng, "pressed", flat, balls, speeds=_steps(rng, 0.5, 4.0, 5), read=read, repeats=3)
     loads = [
-        (k, 2.6 * flat.Sy * math.pi * (share * b.tip) ** 2)
+        (k, 2.6 * flat.Sy * math.pi * (share * b.tip_radius) ** 2)
         for k, b in enumerate(balls) for share in np.linspace(0.08, 0.25, 3) for _ in range(2)
     ]  # fmt: skip
     more, load = (np.array(c) for c in zip(*loads, strict=True))

@@ -52,7 +52,7 @@ def _drawn(name: str, forms: tuple[str, ...], **ranges: tuple[float, float]) -> 
 
 
 def _tip(rig: Rig) -> float:
-    return float(np.median([b.tip for b in rig.strikers]))
+    return float(np.median([b.tip_radius for b in rig.strikers]))
 
 
 def _of_tips(name: str, forms: tuple[str, ...], length: str, ends: tuple[float, float],

@@ -110,7 +110,7 @@ def physics_of(rig: Rig, law: Law, z: dict[str, float], release: Array | None = 
     aslant = np.zeros(len(speed)) if rig.rods else -speed / np.tan(rig.angle)
     Y = min(rig.flat.Sy, rig.flat.E) * (1.0 + off["strength"])
     found = Physics(
-        rig, law, R=np.array([b.tip for b in bodies]) * (1.0 + off["tip"]), E=E,
+        rig, law, R=np.array([b.tip_radius for b in bodies]) * (1.0 + off["tip"]), E=E,
         Y=np.full(len(E), Y), mass=np.array([b.mass for b in bodies]) * (1.0 + off["mass"]),
         inertia=np.array([b.inertia for b in bodies]) * (1.0 + off["mass"]),
         mu=np.full(len(E), rig.mu * (1.0 + off["friction"])),

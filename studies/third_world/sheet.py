@@ -9,7 +9,8 @@ from pathlib import Path
 import numpy as np
 
 from ...core.arrays import Array, Indices
-from .benches import TOLERANCE, Metal, Rig
+from ..concealed import Metal
+from .benches import TOLERANCE, Rig
 from .draw import Truth, readings
 
 _RELEASE, _SPEED = 0.012, 0.003
@@ -134,7 +135,7 @@ def _sheet(rig: Rig, name: str) -> str:
     for body in rig.strikers:
         lines += [
             f'[strikers."{body.name}"]', f'shape = "{"rod" if body.length else "sphere"}"',
-            f"tip_radius_m = {_about(body.tip, TOLERANCE['tip'])}",
+            f"tip_radius_m = {_about(body.tip_radius, TOLERANCE['tip'])}",
             f"mass_kg = {_about(body.mass, TOLERANCE['mass'])}", *_metal(body.metal, known=0.05),
         ]  # fmt: skip
         if body.length:

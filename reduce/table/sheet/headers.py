@@ -79,7 +79,13 @@ def understood(rows: Sequence[Sequence[str]]) -> list[int]:
 def headers_of(
     rows: Sequence[Sequence[str]], source: str
 ) -> tuple[int, list[SheetColumn], list[tuple[str, str]]]:
-    """Return the first row below the headers, the columns that are understood, and the others."""
+    """Return the first row below the headers, the columns that are understood, and the others.
+
+    Raises
+    ------
+    InputError
+        No row of headers is understood, or two columns hold the approach of one row.
+    """
     known = understood(rows)
     best = max(range(len(known)), key=lambda k: known[k], default=0)
     if not known or known[best] < 2:

@@ -19,8 +19,8 @@ import h5py
 import numpy as np
 
 from ....core.provenance import content_id, environment
+from ...concealed import Metal, Striker
 from ..generators.benches import ALUMINIUM, BEARING_STEEL, BRASS, COPPER, MILD_STEEL
-from ..generators.rig import Metal, Striker
 from . import solver as explicit
 from .mesh import make_mesh
 

@@ -10,10 +10,11 @@ import h5py
 import numpy as np
 
 from ....core.arrays import Array
+from ...concealed import Striker
 from ..generators.effects import EFFECTS, Effect
 from ..generators.folder import read_off, write_files
 from ..generators.parameters import FOUNDATION
-from ..generators.rig import Rig, Striker
+from ..generators.rig import Rig
 from ..generators.simulate import Visibility, noise_std
 from ..generators.truth import Truth, draw_instrument, draw_nuisances
 from .catalogue import FILE, SERIES, Series, impacts

@@ -25,7 +25,7 @@ from ....core.material import Material, Pair
 from . import cavity, foundation
 
 if TYPE_CHECKING:
-    from .rig import Metal
+    from ...concealed import Metal
 
 
 FILE = Path(__file__).resolve().parents[3] / "data" / "proof" / "base_laws.json"

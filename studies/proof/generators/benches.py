@@ -7,7 +7,8 @@ from collections.abc import Callable
 
 import numpy as np
 
-from .rig import Metal, Rig, Striker
+from ...concealed import Metal, Striker
+from .rig import Rig
 
 MILD_STEEL = Metal("mild steel", 206e9, 0.29, 300e6, 7850.0, 480.0, 1790.0)
 ALUMINIUM = Metal("aluminium 6061-T6", 69e9, 0.33, 280e6, 2700.0, 896.0, 855.0)

@@ -9,8 +9,9 @@ from pathlib import Path
 import numpy as np
 
 from ....core.arrays import Array, Indices
+from ...concealed import Metal, Striker
 from .effects import order_of
-from .rig import Metal, Rig, Striker
+from .rig import Rig
 from .simulate import noise_std, observables, rows_of
 from .truth import FAMILIES, Truth, readings_noise
 

@@ -11,6 +11,7 @@ from dataclasses import dataclass, field
 import numpy as np
 
 from ....core.arrays import Array, Indices
+from ...concealed import Metal, Striker
 from . import parameters as at
 from .base_laws import constants
 
@@ -32,44 +33,6 @@ too deep are off by the same."""
 
 NUISANCES = ("strength", "modulus", "radius", "mass", "friction", "speed", "angle")
 """What may differ from its stated value; each in units of its stated standard deviation."""
-
-
-@dataclass(frozen=True)
-class Metal:
-    """A material as stated, SI."""
-
-    name: str
-    E: float
-    nu: float
-    Sy: float
-    density: float
-    cp: float = 500.0
-    melting: float = 1700.0
-
-
-@dataclass(frozen=True)
-class Striker:
-    """A rod (length above 0) or a ball; SI."""
-
-    name: str
-    metal: Metal
-    tip_radius: float
-    radius: float
-    length: float = 0.0
-
-    @property
-    def mass(self) -> float:
-        """Of a rod with two round ends, or of a ball [kg]."""
-        if self.length == 0.0:
-            return self.metal.density * 4.0 / 3.0 * math.pi * self.radius**3
-        return self.metal.density * math.pi * self.radius**2 * self.length
-
-    @property
-    def inertia(self) -> float:
-        """About the centre, across the axis [kg m^2]."""
-        if self.length == 0.0:
-            return 0.4 * self.mass * self.radius**2
-        return self.mass * (self.length**2 / 12.0 + self.radius**2 / 4.0)
 
 
 @dataclass(frozen=True)

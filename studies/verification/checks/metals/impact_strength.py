@@ -25,11 +25,11 @@ from .....impact import Approach, Scene, Striker, scene_of, strike
 from .....impact.mechanisms import MECHANISMS, Surroundings
 from .....impact.mechanisms.base import attached
 from .....models import LAWS
+from ....concealed import Metal as ProofMetal
+from ....concealed import Striker as ProofStriker
 from ....proof.generators.effects import Effect
 from ....proof.generators.parameters import CAVITY, FOUNDATION
 from ....proof.generators.rig import COLUMNS, NUISANCES, Rig
-from ....proof.generators.rig import Metal as ProofMetal
-from ....proof.generators.rig import Striker as ProofStriker
 from ....proof.generators.simulate import results_of, rows_of
 from ...bench import Bench
 from ...result import Cell, Measurement, Result, Table
