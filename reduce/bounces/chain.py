@@ -59,7 +59,7 @@ class Chain:
         if self.free < 1:
             return math.nan
         rest = _rests(self.times, self.kept, self.single)[np.array(self.single)]
-        if self.free < 3:
+        if self.free < 4:  # half of three rests may be none by luck
             return math.sqrt(float(rest @ rest) / self.free / 2.0)
         return robust_std(rest, lost=3) / math.sqrt(2.0)
 
