@@ -1,10 +1,11 @@
-"""Trackers' own exports, told by their first lines: OptiTrack Motive, Vicon Nexus, Qualisys.
+"""Trackers' own exports, told by their first lines: Motive, Vicon Nexus, Qualisys, OpenSim.
 
 | export | first line | positions | time |
 | --- | --- | --- | --- |
 | Motive, CSV | `Format Version` | columns of type Marker, else Rigid Body | `Time (Seconds)` |
 | Nexus, CSV | `Trajectories`, or another block | three columns a marker | rate in the next line |
 | Qualisys, TSV | `NO_OF_FRAMES` | three columns of `MARKER_NAMES` | `FREQUENCY` |
+| OpenSim, TRC | `PathFileType` | three columns a marker | `Time` |
 """
 
 from __future__ import annotations
@@ -57,7 +58,7 @@ def read_export(path: Path) -> Export | None:
     """
     with path.open("rb") as stream:
         first = stream.read(4096).decode("utf-8-sig", errors="replace")
-    known = {"Format Version": _motive, "NO_OF_FRAMES": _qualisys}
+    known = {"Format Version": _motive, "NO_OF_FRAMES": _qualisys, "PathFileType": _opensim}
     for beginning, reader in known.items():
         if first.startswith(beginning):
             return reader(_rows(path), str(path))
@@ -114,6 +115,14 @@ def _qualisys(rows: list[list[str]], source: str) -> Export:
     counted = [[str(k), *row] for k, row in enumerate(body)]
     moved = {n: [p + 1 for p in place] for n, place in found.items()}
     return _export(counted, moved, 0, rate, "mm", source)
+
+
+def _opensim(rows: list[list[str]], source: str) -> Export:
+    if len(rows) < 6:
+        raise _none(source, "a TRC file of tracks")
+    said = dict(zip(rows[1], rows[2], strict=False))
+    found = {name: [k, k + 1, k + 2] for k, name in enumerate(rows[3]) if k > 1 and name}
+    return _export(rows[5:], found, 1, 1.0, said.get("Units", "mm"), source)
 
 
 def _block(rows: Sequence[list[str]]) -> Iterator[list[str]]:

@@ -29,7 +29,9 @@ UNITS = ("m", "cm", "mm")
 _COORDINATE = re.compile(
     r"(?P<marker>.+?)[ _.:]?(?P<axis>[xyzXYZ])(?:[ _]?[\[(]?(?P<unit>mm|cm|m)[\])]?)?"
 )
-_TIME = re.compile(r"(?:t|time)(?:[ _]?[\[(]?(?P<unit>s|ms)[\])]?)?", re.IGNORECASE)
+_TIME = re.compile(
+    r"(?:t|time|zeit|temps|tiempo|tempo)(?:[ _]?[\[(]?(?P<unit>s|ms)[\])]?)?", re.IGNORECASE
+)
 _FRAME = re.compile(r"frame", re.IGNORECASE)
 _TURN = ("qw", "qx", "qy", "qz")
 
@@ -294,7 +296,9 @@ def _times(table: Columns, rate: float | None) -> Array:
                 )  # fmt: skip
             return time * (1e-3 if found["unit"] == "ms" else 1.0)
     raise InputError(
-        "no column of time", source=table.source, allowed="time_s, or the option frame_rate_hz"
+        f"no column of time among {', '.join(table.names[:12])}",
+        source=table.source,
+        allowed="time_s, or the option frame_rate_hz",
     )
 
 

@@ -195,6 +195,8 @@ def _hit(poses: Poses, flights: Flights, f: int, gap: int, body: Body, scene: Mo
 
     covariance = flights.part((f, f + 1))
     found = scene.measured(_NAMES, propagate(numbers, np.zeros(27), covariance))
+    if math.isinf(body.inertia_over_mass):  # not known: nothing to hold the spin against
+        del found["spin_change_by_momentum_rad_s"]
     return Hit((f, f + 1), found, plane[0], gap)
 
 

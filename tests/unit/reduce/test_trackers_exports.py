@@ -69,6 +69,16 @@ def qualisys(path, *, timed):
     return path
 
 
+def opensim(path):
+    t, at = tracks(250.0, up=1, count=1)
+    head = ["PathFileType\t4\t(X/Y/Z)\ta.trc", "DataRate\tCameraRate\tNumMarkers\tUnits",
+            "250.00\t250.00\t1\tmm", "Frame#\tTime\tball\t\t", "\t\tX1\tY1\tZ1", ""]  # fmt: skip
+    rows = [f"{k + 1}\t{s:.5f}\t" + cells(a, 1e3).replace(",", "\t")
+            for k, (s, a) in enumerate(zip(t, at, strict=True))]  # fmt: skip
+    path.write_text("\n".join(head + rows))
+    return path
+
+
 def reduced(path, up):
     given = {"shape": "sphere", "tip_radius_m": RADIUS, "up": up}
     return load_kind("mocap").run(path, given, source="test").values
@@ -78,7 +88,8 @@ def reduced(path, up):
     ("write", "up"),
     [(motive, "y"), (lambda p: motive(p, units="Millimeters", scale=1e3), "y"), (vicon, "z"),
      (lambda p: vicon(p, before="Devices\n1000\n,,Plate\nFrame,Sub Frame,Fz\n,,N\n1,0,5\n\n"), "z"),
-     (lambda p: qualisys(p, timed=True), "z"), (lambda p: qualisys(p, timed=False), "z")],
+     (lambda p: qualisys(p, timed=True), "z"), (lambda p: qualisys(p, timed=False), "z"),
+     (opensim, "y")],
 )  # fmt: skip
 def test_the_bounce_is_read_from_the_export_itself(tmp_path, write, up):
     found = reduced(write(tmp_path / "take.csv"), up)
@@ -103,7 +114,7 @@ def test_an_export_with_semicolons_and_decimal_commas(tmp_path, write):
 def test_a_table_of_markers_as_other_programs_write_it(tmp_path, write):
     t, at = tracks(240.0, up=2, count=1)
     rows = [";".join(map(write, (s, *a[0]))) for s, a in zip(t, at, strict=True)]
-    (tmp_path / "a.csv").write_text("\n".join(["t_s;ball_x_m;ball_y_m;ball_z_m", *rows]))
+    (tmp_path / "a.csv").write_text("\n".join(["Zeit (s);ball_x_m;ball_y_m;ball_z_m", *rows]))
     found = reduced(tmp_path / "a.csv", "z")["restitution"]
     assert abs(found.value - E) < 4.0 * found.std < 0.02
 

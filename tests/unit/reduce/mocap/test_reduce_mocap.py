@@ -235,6 +235,13 @@ def test_a_tossed_cube_agrees_with_what_its_source_says():
         ratio = found.values[f"bounce{k}_friction_impulse_ratio"]
         assert ratio.value == pytest.approx(0.18, abs=0.03)
         assert 0.0 < found.values[f"bounce{k}_restitution"].value < 0.5
+    # nothing is known of the cube's inertia that its spin could be held against
+    for k in (1, 2):
+        spin = found.values[f"bounce{k}_rebound_spin_rad_s"]
+        assert spin.value == pytest.approx(
+            found.values[f"bounce{k + 1}_approach_spin_rad_s"].value, abs=0.3
+        )
+        assert spin.std < 0.1
     # the authors' own velocity, smoothed, three frames before the first contact
     with (TOSS / "toss-0.csv").open() as stream:
         rows = list(csv.DictReader(stream))
