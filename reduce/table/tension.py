@@ -82,7 +82,8 @@ def reduce_tension(
     top = int(np.argmax(stress))
     if strain_is == "engineering":
         if top + 1 < stress.size:
-            notes.append(f"cut at the largest stress, strain {strain[top]:.3g}: the specimen necks")
+            why = ": the specimen necks" if sign > 0.0 else ""
+            notes.append(f"cut at the largest stress, strain {strain[top]:.3g}{why}")
         strain, stress = strain[: top + 1], stress[: top + 1]
         shrunk = 1.0 + sign * strain
         if not (shrunk > 0.0).all():
@@ -91,6 +92,7 @@ def reduce_tension(
             )
         strain, stress = sign * np.log(shrunk), stress * shrunk
     modulus, zero = elastic_rise(strain, stress, source)
+    _no_slip(strain, stress, modulus.value, source)
     used = modulus.value if E is None else E
     told = modulus if E is None else Measured(E, 0.0)
     if E is not None and modulus.std > RULES.own_error * modulus.value:
@@ -115,6 +117,26 @@ def reduce_tension(
         "largest_plastic_strain": Measured(float(flow.strain[-1]), math.nan),
     }  # fmt: skip
     return TensionReduction(strain - zero, stress, modulus, flow, values, tuple(notes))
+
+
+def _no_slip(strain: Array, stress: Array, modulus: float, source: str) -> None:
+    """Refuse a load that falls though the strain does not go back, and rises again elastically.
+
+    A metal that yields with a fall (Lueders) goes on flat.
+    """
+    before = np.maximum.accumulate(stress)
+    low = int(np.argmax(before - stress))
+    fall = float(before[low] - stress[low])
+    high = int(np.argmax(stress >= before[low]))
+    middle = low + int(np.argmax(stress[low:] >= stress[low] + 0.5 * fall))
+    back = strain[high] - strain[low] > 0.5 * fall / modulus
+    again = stress[middle] - stress[low] > 0.5 * modulus * (strain[middle] - strain[low])
+    if fall > RULES.cycle_depth * stress.max() and again and not back:
+        raise Refused(
+            "slip", f"the load falls by {fall / before[low]:.0%} at a strain of {strain[low]:.3g} "
+            "and rises again as the metal does elastically", source=source,
+            allowed="a specimen that does not slip in its grips, and a gauge that stays on it",
+        )  # fmt: skip
 
 
 def _no_metal(modulus: Measured, strength: float) -> str:

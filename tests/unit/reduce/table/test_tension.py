@@ -92,6 +92,26 @@ def test_slack_at_the_start_is_not_the_metal(part):
     assert abs(found.modulus.value - E) < min(3.0 * found.modulus.std + 1.0, 0.1 * E)
 
 
+@pytest.mark.parametrize("part", [0.3, 0.6])
+def test_a_specimen_that_slips_is_refused_and_one_that_yields_with_a_fall_is_not(part):
+    stress = np.linspace(0.0, 9e8, 900)
+    again = np.linspace(1.0 - part, 1.0, 15) * stress[200]
+    gone = steel(stress[200]) + 2e-3 - (stress[200] - again) / E
+    slipped = np.insert(steel(stress) + 2e-3 * (stress > stress[200]), 201, gone)
+    with pytest.raises(Refused, match="rises again as the metal does elastically"):
+        pulled(slipped, np.insert(stress, 201, again))
+    strain = np.concatenate([np.linspace(0.0, 3e8, 100) / E, np.linspace(2e-3, 0.2, 400)])
+    level = np.interp(strain[100:], [2e-3, 0.02, 0.2], [2.6e8, 2.6e8, 5e8])
+    found = pulled(strain, np.concatenate([np.linspace(0.0, 3e8, 100), level]))
+    assert found.modulus.value == pytest.approx(E, rel=0.01)
+    # partial unloadings: the strain goes back with the load
+    down = np.linspace(0.0, part, 15)
+    loop = np.concatenate([1.0 - down, 1.0 - down[::-1]]) * stress[400]
+    back = steel(stress[400]) - (stress[400] - loop) / E
+    whole = [np.insert(a, 401, b) for a, b in ((steel(stress), back), (stress, loop))]
+    assert pulled(*whole).modulus.value == pytest.approx(E, rel=0.01)
+
+
 def test_a_travel_is_told_and_a_refused_test_is_drawn(tmp_path):
     stress = np.linspace(0.0, 900.0, 400)
     for give, name in ((0.0, "a"), (15.0, "b")):
