@@ -140,6 +140,13 @@ def looks_like(gate: str, what: str, source: str) -> Refused:
     )  # fmt: skip
 
 
+def sheer(clear: Array, top: int) -> bool:
+    """Return whether a pulse leaves its top for the level without a sample between, either way."""
+    high = _run(clear > 0.9 * clear[top], top)
+    beside = clear[[max(high[0] - 1, 0), min(high[-1] + 1, clear.size - 1)]]
+    return bool(beside.min() < RULES.flank[0] * clear[top])
+
+
 def _half_waves(part: Array, least: float) -> int:
     """Return how many times a record swings beyond a part of its peak, to either side in turn."""
     sides = np.sign(part[np.abs(part) > least])

@@ -23,8 +23,12 @@ def after(at):
         700.0 * (T > 0.02) * (T < 0.03) * (1.0 - after(0.02) / 0.02),  # a reset, and a slow decay
         700.0 * np.clip(after(0.02) / 0.01, 0.0, 1.0) * (T < 0.03),  # a ramp that is cut off
         700.0 * (T > 0.02) * np.exp(-after(0.02) / 3e-3),  # a filter that settles
+        700.0 * (T > 0.02) * np.exp(-after(0.02) / 4e-4),  # three samples above its half
+        700.0 * np.clip(after(0.02) / 7e-4, 0.0, 1.0) * (T < 0.0208),  # four
+        half_sine() * (half_sine() < 500.0),  # a range of 500 N, its excess as 0
+        half_sine() - 1000.0 * (half_sine() > 500.0),  # a converter that goes round
     ],
-    ids=["reset", "ramp", "settling"],
+    ids=["reset", "ramp", "settling", "fast", "short ramp", "range", "round"],
 )
 def test_edges_are_no_pulses(tmp_path, edge):
     with pytest.raises(Refused, match="edge"):
