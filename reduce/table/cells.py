@@ -5,7 +5,7 @@
 | `1 234,5`, `1.234,5`, `1'234.5`, `"1,234.5"` | a number with separators of thousands |
 | `0,25` where commas do not separate, or are quoted | a number |
 | `1.234D-03`, `1,234E-03` | a number with an exponent, of Fortran too |
-| `12:04:26.746`, `04:26.7`, `2024-05-17T12:04:26.746Z`, `17.05.2024 12:04:26` | an instant |
+| `12:04:26.746`, `04:26.7`, `2024-05-17T12:04:26.746Z`, `17.05.24 12:04:26` | an instant |
 | `OL`, `∞`, `******`, `#N/A`, `NaN`, 9.9e37 | no number: out of range, or not measured |
 """
 
@@ -37,7 +37,8 @@ _THOUSANDS = (
 _SEPARATORS = re.compile("[, \u00a0\u2009\u202f'’]")
 """Without one of them a number is plain."""
 _CLOCK = re.compile(
-    r"(?:(?P<date>\d{4}[-/.]\d{1,2}[-/.]\d{1,2}|\d{1,2}[./]\d{1,2}[./]\d{4})[T ,]\s*)?"
+    r"(?:(?P<date>\d{4}[-/.]\d{1,2}[-/.]\d{1,2}|\d{1,2}[./]\d{1,2}[./]\d{2}(?:\d{2})?"
+    r"|\d{1,2}[- ](?:Jan|Feb|Mar|Apr|May|Jun|Jul|Aug|Sep|Oct|Nov|Dec)[- ]\d{4})[T ,]\s*)?"
     r"(?P<h>\d{1,2}):(?P<m>\d{2})(?::(?P<s>\d{2}(?:[.,:]\d+)?))?\s*(?P<half>[AaPp][Mm])?"
     r"(?:Z|[+-]\d{2}:?\d{2})?"
 )
@@ -121,7 +122,10 @@ def instant(cell: str, since: float = 0.0) -> float:
 def _days(day: str | None) -> float:
     if day is None:
         return 0.0
-    parts = [int(p) for p in re.split(r"[-/.]", day)]
+    months = "JanFebMarAprMayJunJulAugSepOctNovDec"
+    parts = [int(p) if p.isdigit() else 1 + months.index(p) // 3 for p in re.split(r"[-/. ]", day)]
+    if parts[-1] < 100 and parts[0] < 1000:
+        parts[-1] += 2000
     if parts[0] < 1000:  # day first, as where points separate; month first where it must be
         parts = [parts[2], *((parts[1], parts[0]) if parts[1] <= 12 else (parts[0], parts[1]))]
     try:

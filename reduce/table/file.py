@@ -31,6 +31,8 @@ from .workbook import workbook_rows
 
 BOOKS = (".xls", ".xlsx", ".xlsm", ".xlsb", ".ods")
 """Endings of workbooks."""
+_MINUS = "\u2212"
+"""As typesetters write it."""
 _UNIT = re.compile(r"[\[(]\s*([^\])]+?)\s*[\])]\s*$")
 
 
@@ -89,6 +91,11 @@ class Columns:
         ):
             if len(match) == 1:
                 return match[0]
+            if match:
+                raise InputError(
+                    f"{which!r} may be any of columns {', '.join(str(k + 1) for k in match)}",
+                    source=self.source, key=key, allowed="the number of one of them",
+                )  # fmt: skip
         raise InputError(
             f"{which!r}", source=self.source, key=key,
             allowed=f"one of 1 to {len(self.names)}"
@@ -192,7 +199,8 @@ def text_columns(raw: bytes, source: str) -> Columns:
     body, heading = found
     columns = columns_of(text_rows(body, source, separator=heading.separator), source)
     names = (*heading.names, *[""] * len(columns.names))[: len(columns.names)]
-    if heading.step_s is not None:
+    steps = np.diff(columns.values[:, 0])
+    if heading.step_s is not None and not (steps < 0.0).any() and not (steps > 0.0).all():
         columns.values[:, 0] = heading.step_s * np.arange(len(columns.values))
     return replace(columns, names=names, heading=heading)
 
@@ -208,7 +216,11 @@ def columns_of(rows: list[list[str]], source: str) -> Columns:
     known = [is_data(row) for row in rows]
     first = _first(rows, known)
     if first is None:
-        raise InputError("no row of numbers", source=source, allowed="columns of numbers")
+        seen = next(filter(any, rows[len(rows) // 2 :]), rows[0] if rows else [])
+        raise InputError(
+            f"no row of numbers, but {' '.join(seen)[:60]!r}" if any(seen)
+            else "no row of numbers", source=source, allowed="columns of numbers",
+        )  # fmt: skip
     held = [_is_number(cell) for cell in rows[first]]
     data = [
         row
@@ -302,7 +314,7 @@ def decoded(raw: bytes, source: str) -> str:
         text = raw.decode("latin-1")  # old instruments write their micro and degree signs so
     if not text.strip():
         raise InputError("empty", source=source, allowed="columns of numbers")
-    return text
+    return text.replace(_MINUS, "-")
 
 
 def text_rows(lines: Sequence[str], source: str, *, separator: str = "") -> list[list[str]]:
@@ -354,4 +366,5 @@ def _separator(lines: Sequence[str]) -> str:
         between = commas_between(cells, separator)
         return sum(bool(np.isfinite(value_of(plain(cell, between)))) for cell in cells if cell)
 
-    return max(("\t", ";", ",", " "), key=numbers)
+    # decimal commas between blanks are as many numbers in either way
+    return max(("\t", ";", " ", ","), key=numbers)

@@ -130,7 +130,7 @@ def in_short(unit: str) -> str:
     >>> in_short("(sec)"), in_short("[mm]")
     ('s', 'mm')
     """
-    bare = unit.strip("()[] ")
+    bare = unit.strip("()[] ").replace("Â", "")  # what UTF-8 leaves of µ and ° when read otherwise
     if bare in _KNOWN_UNITS:
         return bare
     return WORDS.get(bare.lower(), _CAPITALS.get(bare, bare))
@@ -142,8 +142,8 @@ _END = "***End_of_Header***"
 def labview_rows(lines: Sequence[str]) -> tuple[list[str], Heading] | None:
     """Return the rows below the headers of a LabVIEW measurement (LVM), and its heading.
 
-    `X_Columns` says whether there is a column of the time: without one the first cell of a row is
-    blank and the header's `Delta_X` is the time between two rows.
+    Where the first cell of a row is blank, or its times are rounded to the same ones, the header's
+    `Delta_X` is the time between two rows.
 
     Parameters
     ----------
@@ -155,13 +155,15 @@ def labview_rows(lines: Sequence[str]) -> tuple[list[str], Heading] | None:
     ends = [k for k, line in enumerate(lines) if line.startswith(_END)]
     if not ends or ends[-1] + 1 >= len(lines):
         return None
+    # the line that names the separator has it
+    named = (line[len("Separator") :][:1] for line in lines if line.startswith("Separator"))
+    between = next(named, "") or "\t"
     said: dict[str, list[str]] = {}
     for line in lines[: ends[-1]]:
-        name, *values = [cell.strip() for cell in line.split("\t")]
+        name, *values = [cell.strip() for cell in line.split(between)]
         if values:
             said[name] = [v for v in values if v]
-    names = [cell.strip() for cell in lines[ends[-1] + 1].split("\t")]
-    timed = said.get("X_Columns", ["One"])[0].lower() != "no"
+    names = [cell.strip() for cell in lines[ends[-1] + 1].split(between)]
     units = said.get("Y_Unit_Label", [])
     channels = [n for n in names if n and n not in ("X_Value", "Comment")]
     told = [f"{n} [{in_short(u)}]" for n, u in zip(channels, units, strict=False)]
@@ -169,7 +171,4 @@ def labview_rows(lines: Sequence[str]) -> tuple[list[str], Heading] | None:
     seconds = said.get("X_Dimension", ["Time"])[0] == "Time"
     step = float(said["Delta_X"][0].replace(",", ".")) if said.get("Delta_X") else None
     first = "X_Value [s]" if seconds else "X_Value"
-    between = {"Tab": "\t", "Comma": ","}.get(said.get("Separator", ["Tab"])[0], "\t")
-    return list(lines[ends[-1] + 2 :]), Heading(
-        (first, *told), (), None if timed else step, between
-    )
+    return list(lines[ends[-1] + 2 :]), Heading((first, *told), (), step, between)

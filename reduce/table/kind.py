@@ -216,6 +216,10 @@ def _bounces(path: Path, table: Columns, options: TableOptions) -> Reduced:
     )  # fmt: skip
 
 
+_DAY_0 = date(1899, 12, 30).toordinal()
+"""From which spreadsheets count days."""
+
+
 def _counts(column: Array) -> bool:
     """Whether a column without a unit holds 0, 1, 2 ... instead of times."""
     steps = np.diff(column[np.isfinite(column)])
@@ -276,6 +280,14 @@ def _times(table: Columns, options: TableOptions, *, alone: bool) -> Array:
         raise InputError(
             "the column counts samples", source=table.source, key="rate_hz",
             allowed="samples a second, or time_unit if these are times",
+        )  # fmt: skip
+    days = [float(date(y, 1, 1).toordinal() - _DAY_0) for y in (1970, 2100)]
+    first = float(given[np.isfinite(given)][:1].sum())
+    if options.time_unit == "file" and not table.unit(where) and days[0] < first < days[1]:
+        raise InputError(
+            f"column {table.names[where] or where + 1!r}: {first:.9g} are seconds, or days of a "
+            "spreadsheet", source=table.source, key="time_unit",
+            allowed="s, or another column; days: seconds or a clock in their place",
         )  # fmt: skip
     late = float(np.nanmax(np.abs(given), initial=0.0))
     if options.time_unit == "file" and not table.unit(where) and late > date.max.toordinal() * DAY:

@@ -248,7 +248,7 @@ def _known_columns(table: Columns) -> dict[int, tuple[str, float]]:
             continue
         match = _match(name, all_names)
         if match is None:
-            close = get_close_matches(name, all_names, n=1, cutoff=0.4)
+            close = get_close_matches(name, all_names, n=1)
             wrong.append(
                 InputError(
                     "unknown column or unit", source=table.source, key=name,

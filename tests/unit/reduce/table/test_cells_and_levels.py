@@ -57,7 +57,8 @@ def test_holes_far_from_the_pulse_are_told(tmp_path):
     "clock",
     [lambda t: f"12:04:{26.746 + t:09.6f}", lambda t: f"2024-05-17T23:59:{26.7 + t:09.6f}Z",
      lambda t: f"17.05.2024 08:59:{26.7 + t:09.6f}", lambda t: f"11:59:{59.99 + t:09.6f}"
-     if t < 0.01 else f"12:00:{t - 0.01:09.6f}", lambda t: f"12:{5 + t:07.4f}"],
+     if t < 0.01 else f"12:00:{t - 0.01:09.6f}", lambda t: f"12:{5 + t:07.4f}",
+     lambda t: f"17.05.24 12:04:{26.7 + t:09.6f}", lambda t: f"17-May-2024 12:04:{26 + t:09.6f}"],
 )  # fmt: skip
 def test_clocks_are_times(tmp_path, clock):
     path = table(tmp_path / "a.csv", [f"{v:.3f}" for v in half_sine()], "time,force_N",
@@ -65,6 +66,43 @@ def test_clocks_are_times(tmp_path, clock):
     found = run(path).values
     assert found["peak_force_N"].value == pytest.approx(800.0, abs=2.0)
     assert found["contact_time_s"].value == pytest.approx(4e-3, abs=3 * found["contact_time_s"].std)
+
+
+def test_days_of_a_spreadsheet_are_no_seconds_unless_that_is_said(tmp_path):
+    days = [f"{45429.503 + t / 86400.0:.10f}" for t in T]
+    path = table(tmp_path / "a.csv", [f"{v:.3f}" for v in half_sine()], "Date,force_N", days)
+    with pytest.raises(InputError, match=r"45429\.503 are seconds, or days"):
+        run(path)
+    up = [f"{45429.5 + t:.5f}" for t in T]
+    path = table(tmp_path / "b.csv", [f"{v:.3f}" for v in half_sine()], "uptime,force_N", up)
+    assert run(path, time_unit="s").values["impulse_N_s"].value == pytest.approx(2.037, abs=0.003)
+
+
+@pytest.mark.parametrize(
+    ("head", "write"),
+    [("Zeit[s] Kraft[N]", lambda t, v: f"{t:.5f}   {v:.3f}".replace(".", ",")),
+     ("Time (s),Force (N)", lambda t, v: f"{t:.5f},{v:.3f}".replace("-", "\u2212")),
+     ("Time (\u00c2\u00b5s),Force (N)", lambda t, v: f"{1e6 * t:.1f},{v:.3f}")],
+    ids=["commas between blanks", "a typeset minus", "UTF-8 read as another"],
+)  # fmt: skip
+def test_cells_as_other_programs_leave_them(tmp_path, head, write):
+    rows = [write(t, v) for t, v in zip(T, half_sine(), strict=True)]
+    (tmp_path / "a.txt").write_text("\n".join([head, *rows]), "utf-8")
+    assert run(tmp_path / "a.txt").values["impulse_N_s"].value == pytest.approx(2.037, abs=0.003)
+
+
+def test_a_name_that_stands_twice_asks_for_its_number(tmp_path):
+    cells = [f"{v:.3f},{t:.4f},{v / 2:.3f}" for t, v in zip(T, half_sine(), strict=True)]
+    path = table(tmp_path / "a.csv", cells, "Time (s),Force (N),Time (s),Force (N)")
+    with pytest.raises(InputError, match=r"any of columns 2, 4 .*number of one"):
+        run(path, value="Force (N)")
+    assert run(path, value="4").values["peak_force_N"].value == pytest.approx(400.0, abs=3.0)
+
+
+def test_a_table_without_numbers_shows_what_stands_in_it(tmp_path):
+    path = table(tmp_path / "a.csv", [f"{v:.1f} N" for v in half_sine()], times=T.size * ["start"])
+    with pytest.raises(InputError, match=r"no row of numbers, but 'start,.* N'"):
+        run(path)
 
 
 def test_a_clock_passes_midnight():
@@ -114,6 +152,16 @@ def test_labview_with_decimal_commas_or_another_channel_first(tmp_path):
         (tmp_path / "a.lvm").write_text("\n".join(content))
         found = run(tmp_path / "a.lvm", value="Force").values["impulse_N_s"]
         assert found.value == pytest.approx(impulse, rel=0.002)
+
+
+def test_labview_with_commas_and_times_rounded_to_the_same(tmp_path):
+    rounded = [f"{t:.3f},{v:.4f}" for t, v in zip(T, half_sine(), strict=True)]
+    head = [line.replace("\t", ",").replace("Tab", "Comma") for line in labview(True)]
+    path = tmp_path / "a.lvm"
+    path.write_text("\n".join(head[: -len(T)] + rounded))
+    for chosen in ({"value": "Force"}, {"value": "2"}):
+        found = run(path, **chosen).values["impulse_N_s"]
+        assert found.value == pytest.approx(2.037, abs=0.003)
 
 
 def test_quoted_decimal_commas_and_units_in_words(tmp_path):
