@@ -42,7 +42,7 @@ __version__ = "0.3.0"
 _FROM = {
     "LAWS": "models",
     "Material": "start",
-    "Pair": "core",
+    "Pair": "start",
     "case": "start",
     "compare_laws": "start",
     "diagnose": "start",

@@ -175,7 +175,7 @@ class ContactLaw(ABC):
         return self._branch(self.kernels.radius, pair, depth, depth if peak is None else peak)
 
     def unloading(self, pair: Pairs, depth: Depths, peak: Depths) -> Array:
-        """Force at `depth` after a largest approach of `peak`, shape (...) [N]."""
+        """Force [N] at `depth` after a largest approach of `peak`, (...) of both together."""
         return self._branch(self.kernels.unloading, pair, depth, peak)
 
     def residual(self, pair: Pairs, peak: Depths) -> tuple[Array, Array]:
@@ -235,8 +235,12 @@ class ContactLaw(ABC):
         )
 
     def _branch(self, kernel: Any, pair: Pairs, depth: Depths, peak: Depths) -> Array:
+        if isinstance(pair, Pair):
+            depth, peak = np.broadcast_arrays(depth, peak)
         par, row, d, shape = rows_of(self.parameters, pair, depth)
         p = np.ascontiguousarray(np.broadcast_to(np.asarray(peak, float), shape).ravel())
+        if not np.all(np.isfinite(p)):
+            raise InputError("a peak is not a number", key="peak", allowed="finite depths in m")
         out = np.zeros(d.size)
         map_branch(kernel, par, row, d, np.maximum(p, d), out)
         return out.reshape(shape)
@@ -310,14 +314,15 @@ class CombinedLaw(ContactLaw):
         return np.concatenate([one, two, [float(len(one))]])
 
 
-_COMBINED: dict[tuple[str, str], Kernels] = {}
+_COMBINED: dict[tuple[Kernels, Kernels], Kernels] = {}
+# by the kernels themselves: a law of one's own that is written anew may keep its name
 
 
 def _combined_kernels(first: ContactLaw, second: ContactLaw) -> Kernels:
-    key = (first.name, second.name)
+    key = one, other = (first.kernels, second.kernels)
     if key not in _COMBINED:
-        loading, radius = first.kernels.loading, first.kernels.radius
-        residual_of, unloading_of = second.kernels.residual, second.kernels.unloading
+        loading, radius = one.loading, one.radius
+        residual_of, unloading_of = other.residual, other.unloading
 
         @njit(LOADING_SIGNATURE, _nrt=False)
         def combined_loading(par, depth):

@@ -11,7 +11,7 @@ from importlib import import_module
 from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
-    from .checked import Material
+    from .checked import Material, Pair
     from .comparison import LawComparison, compare_laws
     from .diagnosis import Diagnosis, diagnose
     from .pair import Solved, case
@@ -20,13 +20,16 @@ _FROM = {
     "Diagnosis": "diagnosis",
     "LawComparison": "comparison",
     "Material": "checked",
+    "Pair": "checked",
     "Solved": "pair",
     "case": "pair",
     "compare_laws": "comparison",
     "diagnose": "diagnosis",
 }
 
-__all__ = ["Diagnosis", "LawComparison", "Material", "Solved", "case", "compare_laws", "diagnose"]
+__all__ = [
+    "Diagnosis", "LawComparison", "Material", "Pair", "Solved", "case", "compare_laws", "diagnose",
+]  # fmt: skip
 
 
 def __getattr__(name: str) -> Any:

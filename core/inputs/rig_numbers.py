@@ -35,6 +35,10 @@ class RigNumbers:
     rigid: frozenset[str] = frozenset()
     metals: Mapping[str, str] = field(default_factory=dict)
 
+    def __reduce__(self) -> tuple[object, ...]:
+        """Return how it is made again in another process, which takes no view of a mapping."""
+        return _made_again, (dict(self.of), self.rigid, dict(self.metals))
+
     def with_(self, changes: Mapping[str, float]) -> RigNumbers:
         """Return the same with some numbers replaced; a mass takes its inertia with it."""
         of = {**self.of, **changes}
@@ -100,6 +104,10 @@ class RigNumbers:
             E=of[f"{body}.E_Pa"], nu=of[f"{body}.nu"], Sy=of[f"{body}.Sy_Pa"],
             density=of.get(f"{body}.density_kg_m3", math.nan), name=name,
         )  # fmt: skip
+
+
+def _made_again(of: dict[str, float], rigid: frozenset[str], metals: dict[str, str]) -> RigNumbers:
+    return RigNumbers(MappingProxyType(of), rigid, metals)
 
 
 def solid_inertia(mass: float, radius: float, length: float) -> float:

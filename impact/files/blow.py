@@ -23,7 +23,6 @@ from ...models import law_named
 from ...models.base import ContactLaw
 from ...models.choose import demand, objection
 from ...models.shelf import UnknownLaw
-from ..batch import impacts
 from ..columns import Impacts
 from ..integrate import Trace, strike, traced
 from ..result import Impact
@@ -33,10 +32,14 @@ from ..told.checks import checks, reason_above_one
 from ..told.effect import ATOM
 from ..told.onset import largest_mean_pressure
 from .setup import DEFAULT_LAWS, FOLLOWING, Setup, read_setup, setup_of
+from .sweep import SweepTable
 from .tables import EXACT, SHOWN, impact_row
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
+
+Laws = str | ContactLaw | Sequence[str | ContactLaw]
+"""One or several, by name or as they are."""
 
 _EITHER = (("impact_speed_m_s", "drop_height_m"), ("drop_height_m", "impact_speed_m_s"))
 
@@ -194,19 +197,16 @@ class Blow:
 
 @overload
 def blow(
-    setup: Pair | str | Path = "ball", *, law: str | Sequence[str] = (),
-    laws: Sequence[ContactLaw] = (), speed: float | None = None, mass: float | None = None,
-    **changes: Any,
+    setup: Pair | str | Path = "ball", *, law: Laws = (), laws: Laws = (),
+    speed: float | None = None, mass: float | None = None, **changes: Any,
 ) -> Blow: ...  # fmt: skip
 @overload
 def blow(
-    setup: Pair | str | Path = "ball", *, law: str | Sequence[str] = (),
-    laws: Sequence[ContactLaw] = (), speed: Sequence[float] | NDArray[Any],
-    mass: float | None = None, **changes: Any,
+    setup: Pair | str | Path = "ball", *, law: Laws = (), laws: Laws = (),
+    speed: Sequence[float] | NDArray[Any], mass: float | None = None, **changes: Any,
 ) -> Impacts: ...  # fmt: skip
 def blow(
-    setup: Pair | str | Path = "ball", *, law: str | Sequence[str] = (),
-    laws: Sequence[ContactLaw] = (),
+    setup: Pair | str | Path = "ball", *, law: Laws = (), laws: Laws = (),
     speed: float | Sequence[float] | NDArray[Any] | None = None, mass: float | None = None,
     **changes: Any,
 ) -> Blow | Impacts:  # fmt: skip
@@ -217,12 +217,12 @@ def blow(
     setup
         A pair, whose sphere is a ball that meets the flat; a set-up file; or one to start from:
         `ball`, `rod`, `oblique-ball`.
-    law
-        Name of a contact law, or several; by default those of the set-up.
-    laws
-        Laws that have no name here: one's own.
+    law, laws
+        A contact law or several, each by its name or the law itself, as one's own has no name
+        here; by default those of the set-up.
     speed
-        Normal speed of the approach [m/s], in place of the set-up's; several give a table.
+        Normal speed of the approach [m/s], in place of the set-up's; several give a table, of
+        first blows, at the set-up's angle.
     mass
         Of the striker [kg]; a ball without it is solid, of its radius and density.
     **changes
@@ -244,26 +244,54 @@ def blow(
     >>> round(found["hertz"].restitution, 9)  # elastic: everything is given back
     1.0
     """
-    if isinstance(speed, str):
-        raise InputError(repr(speed), key="speed", allowed="a number above 0 [m/s], or several")
-    given = None if speed is None else np.asarray(speed, dtype=float)
+    given = None if speed is None else _numbers(speed)
     speeds = None if given is None or given.ndim == 0 else given.ravel()
     if speeds is not None and not (speeds.size and np.all(np.isfinite(speeds) & (speeds > 0.0))):
         raise InputError(f"{speed}", key="speed", allowed="numbers above 0 [m/s]")
     if given is not None:
+        if "impact_speed_m_s" in changes:
+            raise InputError(f"{speed}", key="speed", allowed="left out beside impact_speed_m_s")
         changes["impact_speed_m_s"] = float(given.flat[0])
     chosen = _chosen(setup, changes, mass)
-    names = [law] if isinstance(law, str) else list(law) or list(() if laws else chosen.laws)
-    wanted = [*(law_named(name) for name in names), *laws]
+    wanted = _wanted(law, laws) or [law_named(name) for name in chosen.laws]
     if speeds is None:
         return blow_of(chosen, wanted)
+    if chosen.repeats > 1:
+        raise InputError(
+            f"{chosen.repeats}", key="repeats", allowed="1: of several speeds the first blows"
+        )
+    chosen = replace(chosen, sweep=SweepTable(impact_speed_m_s=tuple(speeds.tolist())))
     chosen.check_laws(wanted)
-    first, *others = (
-        impacts(chosen.plain(one), speeds=speeds, asked=chosen.asked) for one in wanted
-    )
+    first, *others = (chosen.swept(one) for one in wanted)
     for other in others:
         first = first.joined(other)
     return first
+
+
+def _numbers(speed: Any) -> NDArray[Any]:
+    """What was given as speed, as numbers."""
+    try:
+        if not isinstance(speed, str):
+            return np.asarray(speed, dtype=float)
+    except (TypeError, ValueError):
+        pass
+    raise InputError(repr(speed), key="speed", allowed="a number above 0 [m/s], or several")
+
+
+def _wanted(*given: Laws) -> list[ContactLaw]:
+    """The laws that were asked for, by name or as they are, each once."""
+    found: dict[str, ContactLaw] = {}
+    for some in given:
+        each: Iterable[Any] = (some,)
+        if isinstance(some, Iterable) and not isinstance(some, str):
+            each = some
+        for one in each:
+            if not isinstance(one, str | ContactLaw):
+                raise InputError(repr(one), key="law", allowed="the name of a law, or a law")
+            law = law_named(one) if isinstance(one, str) else one
+            if found.setdefault(law.name, law) is not law:
+                raise InputError(f"two laws {law.name!r}", key="law", allowed="each name once")
+    return list(found.values())
 
 
 def _chosen(setup: Pair | str | Path, changes: dict[str, Any], mass: float | None) -> Setup:

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Annotated, Any
 from pydantic import AfterValidator, ConfigDict, Field, create_model, model_validator
 
 from ...core.errors import InputError
-from ...core.inputs.toml_input import InputTable
+from ...core.inputs.toml_input import InputTable, table_in
 from ...core.rig import Quantity, Within, value_of
 from ..mechanisms import MECHANISMS
 from ..mechanisms.around import surroundings_of
@@ -24,6 +24,10 @@ class _GeneratedTable(InputTable):
     """A table whose keys are made by the program; none has a docstring that takes time to find."""
 
     model_config = ConfigDict(use_attribute_docstrings=False)
+
+    def __reduce__(self) -> tuple[Any, ...]:
+        """Return how it is made again: no module holds a class of its name."""
+        return _made_again, (type(self).__name__, dict(self), self.model_fields_set)
 
 
 class MechanismTable(_GeneratedTable):
@@ -70,6 +74,17 @@ if TYPE_CHECKING:
 
 else:
     MechanismsTable = create_model("mechanisms", __base__=_GeneratedTable, **_FIELDS)
+
+_TABLES: dict[str, Any] = {
+    "mechanisms": MechanismsTable,
+    **{m.name: table_in(MechanismsTable.model_fields[m.name].annotation) for m in MECHANISMS},
+}
+
+
+def _made_again(name: str, values: dict[str, Any], given: set[str]) -> InputTable:
+    found: InputTable = _TABLES[name].model_construct(given, **values)
+    return found
+
 
 _ALONE: dict[str, tuple[str, Callable[[SetupFile], bool]]] = {
     "support-compliance": ("impact.support", lambda file: file.impact.support == "sprung"),

@@ -10,8 +10,8 @@ comes closer to figure 3.11.
 from __future__ import annotations
 
 import math
-from collections.abc import Callable
 from dataclasses import replace
+from functools import partial
 
 from ..base import Domain, Kernels, PublishedLaw, Standing
 from ..kernel import (
@@ -27,15 +27,10 @@ from .residual import YIELD, crater, recover
 _FORCE, _SLOPE = YIELD + 1, YIELD + 2
 
 
-def _numbers_at(
-    pressure_over_S: float,
-) -> Callable[[Common], tuple[float, float, float]]:
-    def numbers(common: Common) -> tuple[float, float, float]:
-        p = pressure_over_S * common.S
-        depth = common.R * (math.pi * p / (2.0 * common.E)) ** 2
-        return depth, common.k_hertz * depth * math.sqrt(depth), math.pi * common.R * p
-
-    return numbers
+def _numbers_at(pressure_over_S: float, common: Common) -> tuple[float, float, float]:
+    p = pressure_over_S * common.S
+    depth = common.R * (math.pi * p / (2.0 * common.E)) ** 2
+    return depth, common.k_hertz * depth * math.sqrt(depth), math.pi * common.R * p
 
 
 @loading_kernel
@@ -71,7 +66,7 @@ THORNTON = PublishedLaw(
     "Jackson, Green and Marghitu, Nonlinear Dyn. 60 (2010) 217, both as the public code "
     "ranssist/chiton-helmet-sim restates them; force, recovery and closed form agree to 4 digits",
     own=Kernels(_loading, _radius, _unloading, _residual),
-    numbers=_numbers_at(1.6),
+    numbers=partial(_numbers_at, 1.6),
 )
 
 THORNTON_NING = replace(
@@ -83,5 +78,5 @@ THORNTON_NING = replace(
     read="yield radius (equation 65), linear force, R_p = 4 E' a^3/(3 F_m) and V_y = "
     "1.56 (p_y^5/(E'^4 rho))^(1/2) in the public code PyGran, class ThorntonNing, where p_y is the "
     "user's; its adhesion is left out",
-    numbers=_numbers_at(2.84),
+    numbers=partial(_numbers_at, 2.84),
 )

@@ -1,8 +1,10 @@
 """A loading law with the residual depth and recovery of another: the clauses of both."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
-from dentscope.core import Material, Pair
+from dentscope.core import InputError, Material, Pair
 from dentscope.models import LAWS, critical_depth
 
 pytestmark = pytest.mark.filterwarnings("ignore::dentscope.models.base.DomainWarning")
@@ -52,3 +54,22 @@ def test_no_cycle_of_the_thesis_combinations_creates_energy(loading, other, pair
         left = float(sum(law.residual(pair, peak)))
         back = left + (peak - left) * y**2
         assert np.trapezoid(law.unloading(pair, back, peak), back) <= spent * (1.0 + 1.5e-3)
+
+
+def test_a_law_of_ones_own_that_is_written_anew_under_its_name_is_joined_anew():
+    # a notebook's cell, run twice: the second time with another law
+    pair, depth = Pair(STEEL, SOFT, 1e-3), 2e-5
+    for like in ("hertz", "jackson-green"):
+        own = replace(LAWS[like], name="mine")
+        joined = own.with_unloading(LAWS["hertz"]).loading(pair, depth)
+        assert joined == LAWS[like].loading(pair, depth)
+
+
+def test_depths_and_peaks_are_broadcast_and_a_peak_is_a_number():
+    law, pair = LAWS["compact"], Pair(STEEL, SOFT, 1e-3)
+    depths, peaks = np.array([[5e-6], [1e-5], [2e-5]]), np.array([1e-5, 4e-5])
+    found = law.unloading(pair, depths, peaks)
+    each = [[law.unloading(pair, d, p) for p in peaks] for d in depths[:, 0]]
+    assert found == pytest.approx(np.array(each), rel=1e-14)
+    with pytest.raises(InputError, match="a peak is not a number"):
+        law.unloading(pair, depths, np.nan)

@@ -1,8 +1,10 @@
 """What a newcomer writes after `import dentscope as ds`."""
 
 import math
+import pickle
 import subprocess
 import sys
+from dataclasses import replace
 from pathlib import Path
 
 import dentscope as ds
@@ -10,6 +12,8 @@ import numpy as np
 import pytest
 from dentscope.core import InputError
 from dentscope.core.flow import Flow, tabulated
+from dentscope.core.inputs.templates import template
+from dentscope.impact.files.setup import read_setup
 from dentscope.recordings import read
 from dentscope.recordings.shipped import set_folder
 
@@ -165,3 +169,66 @@ def test_a_law_that_is_not_known_says_what_comes_near():
     with pytest.raises(InputError, match="did you mean 'fitted'"):
         ds.compare_laws(ds.Pair(*[ds.Material(E=2e11, nu=0.3, Sy=3e8)] * 2, 1e-3), law="fited")
     assert ds.LAWS.get("fited") is None
+
+
+def test_several_speeds_keep_the_angle_of_the_set_up():
+    # tan(60 degrees) = v_n/|v_t| at every speed; no repeats stand in such a table
+    many = ds.impact("oblique-ball", law="hertz", angle_deg=60.0, speed=[1.0, 2.0])
+    along = many["impact_speed_m_s"] / np.tan(np.radians(60.0))
+    assert many["approach_tangential_m_s"] == pytest.approx(-along, rel=1e-12)
+    assert many["angle_deg"] == pytest.approx([60.0, 60.0], rel=1e-12)
+    one = ds.impact("oblique-ball", law="hertz", angle_deg=60.0, speed=2.0)["hertz"]
+    assert many["rebound_spin_rad_s"][1] == pytest.approx(one.rebound_spin_rad_s, rel=1e-6)
+    with pytest.raises(InputError, match="repeats: 2"):
+        ds.impact("ball", speed=[1.0, 2.0], repeats=2)
+
+
+def test_a_law_is_given_by_name_or_as_it_is():
+    hertz = ds.LAWS["hertz"]
+    for given in ({"law": hertz}, {"laws": hertz}, {"laws": ["hertz"]}, {"law": "hertz"}):
+        assert set(ds.impact("ball", speed=1.0, **given).impacts) == {"hertz"}
+    both = ds.impact("ball", speed=1.0, law="hertz", laws=[hertz, "compact"])
+    assert list(both.impacts) == ["hertz", "compact"]
+    with pytest.raises(InputError, match="two laws 'hertz'"):
+        ds.impact("ball", laws=[hertz, replace(ds.LAWS["compact"], name="hertz")])
+    with pytest.raises(InputError, match="law: 3"):
+        ds.impact("ball", law=3)
+
+
+@pytest.mark.parametrize(
+    "given", [{"speed": 1j}, {"speed": "2"}, {"speed": 2.0, "impact_speed_m_s": 3.0}]
+)
+def test_a_speed_is_one_or_several_numbers_and_stated_once(given):
+    with pytest.raises(InputError, match="speed: "):
+        ds.impact("ball", **given)
+
+
+def test_what_is_computed_goes_to_another_process_and_back():
+    blow = ds.impact("ball", law="fitted", speed=1.0)
+    back = pickle.loads(pickle.dumps(blow))
+    assert back["fitted"].restitution == blow["fitted"].restitution
+    assert back.checks() == blow.checks()
+    steel = ds.Material(E=2e11, nu=0.3, Sy=3e8)
+    pair = ds.Pair(steel, steel, 5e-3)
+    for name, law in pickle.loads(pickle.dumps(ds.LAWS)).items():
+        assert law.loading(pair, 1e-5) == ds.LAWS[name].loading(pair, 1e-5)
+        assert law == law
+        assert isinstance(hash(law), int)
+
+
+def test_the_mechanisms_of_a_set_up_go_there_as_well(tmp_path):
+    file = tmp_path / "rate.toml"
+    file.write_text(template("ball") + "\n[mechanisms]\nhalf-space-waves = true\n")
+    asked = pickle.loads(pickle.dumps(read_setup(file))).asked
+    assert [m.name for m in asked.mechanisms] == ["half-space-waves"]
+
+
+def test_a_radius_in_millimetres_and_what_is_no_material_are_told():
+    steel = ds.Material(E=2e11, nu=0.3)
+    assert isinstance(ds.Pair(steel, steel, R=0.01), ds.Pair)
+    with pytest.raises(InputError, match=r"R: 10 .*10 mm would be 0.01"):
+        ds.Pair(steel, steel, 10)
+    with pytest.raises(InputError, match=r"sphere: 0\.01"):
+        ds.Pair(0.01, steel, steel)
+    with pytest.raises(InputError, match="one number"):
+        ds.Material(E=np.array([2e11, 7e10]), nu=0.3)
