@@ -29,9 +29,13 @@ from ..table.file import (
 from ..table.workbook import sheets_of
 from .options import PressOptions
 
-_LOADS = (r"(load|force|.*kraft|last|fn|p|f)\b", r".*(load|force|kraft|charge|forza|fuerza)")
+_LOADS = (
+    r"(load|force|.*kraft|last|fn|p|f)\b",
+    r".*(load|force|kraft|charge|forza|fuerza|carico|carga)",
+)
 _DEPTHS = (
     r"(depth|.*eindring\w*|.*tiefe|indentation|penetration|pd|h)\b",
+    r".*prof(ond|und)\w*",
     r"(disp|displacement)\b", r".*(standardweg|extenso|lvdt|gauge)", r".*(displacement|depth|disp)",
     r".*(extension|weg|stroke|travel|crosshead|position)",
 )  # fmt: skip

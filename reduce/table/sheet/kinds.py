@@ -7,7 +7,7 @@ import unicodedata
 from typing import NamedTuple
 
 from ....core.observables import LOAD
-from ...shared.units import UNITS
+from ...shared.units import UNITS, quantity_of
 from ..heading import DROPS, in_short
 
 REBOUNDS = REBOUND_HEIGHT, REBOUND_SPEED = "rebound_height", "rebound_speed"
@@ -139,8 +139,10 @@ def named(header: str) -> str:
         words = before.removesuffix(" in").removesuffix(" en")
     words = bare(words)
     words = _SPREAD.sub("", _BESIDE.sub("", words)).strip(" .:,/")
-    # Drop (cm) is a height, Drop alone a number
-    return "drop height" if words == "drop" and said_unit(header) else words
+    # Drop (cm) is a height, Drop alone a number; Rebound 2 (mm) is one of several
+    unit = said_unit(header)
+    back = quantity_of(unit) == "length" and re.fullmatch(rf"({_REBOUND}) ?\d*", words)
+    return f"{words} height" if back or (words == "drop" and unit) else words
 
 
 def said_unit(header: str) -> str:

@@ -18,7 +18,7 @@ from ...measured import Measured, Trial
 from ...reduced import Reduced
 from ...rules import RULES
 from ...shared.units import UNITS
-from ..file import BOOKS, cells_of, decoded
+from ..file import cells_of, decoded, is_book
 from ..picture import draw_trials
 from ..trials import TrialsReduction
 from ..workbook import NumberCell, rows_of_sheets
@@ -85,8 +85,8 @@ def read_sheet(path: Path) -> Sheet:
         No row of headers is understood, or a column names no unit.
     """
     checked_file(path, most=RULES.table_bytes, allowed="a sheet")
-    source, others = str(path), []
-    if path.suffix.lower() in BOOKS:
+    source, others, decimals = str(path), [], ""
+    if is_book(path):
         sheets = {k: rows for k, rows in confined(rows_of_sheets, path, source=source).items()
                   if any(map(any, rows))}  # fmt: skip
         known = [k for k, rows in sheets.items() if max(understood(rows), default=0) > 1]
@@ -97,24 +97,27 @@ def read_sheet(path: Path) -> Sheet:
             for k in sheets if k != name
         ]  # fmt: skip
     else:
-        rows = _cells(decoded(path.read_bytes(), source).splitlines(keepends=True), source)
+        between, rows = _cells(decoded(path.read_bytes(), source).splitlines(keepends=True), source)
+        # where commas part the cells, points part no thousands
+        decimals = "." if between == "," and not any("," in c for row in rows for c in row) else ""
     rows = [
         [cell if isinstance(cell, NumberCell) else cell.translate(_TYPED) for cell in row]
         for row in rows
     ]
     top, columns, told = headers_of(rows, source)
-    return _trials(rows, top, columns, told, others, source)
+    decimals = decimals_of(rows[top:], columns) or decimals
+    return _trials(rows, top, columns, told, others, decimals, source)
 
 
-def _cells(lines: Sequence[str], source: str) -> list[list[str]]:
-    """Cells of a text table; units in the cells hide its separator from a guess by numbers."""
-    split = [cells_of(lines, source, separator=one)[1] for one in ("", ";", "\t", ",")]
-    return max(split, key=lambda rows: max(understood(rows), default=0))
+def _cells(lines: Sequence[str], source: str) -> tuple[str, list[list[str]]]:
+    """Separator and cells; units in the cells hide the separator from a guess by numbers."""
+    split = [cells_of(lines, source, separator=one) for one in ("", ";", "\t", ",")]
+    return max(split, key=lambda found: max(understood(found[1]), default=0))
 
 
 def _trials(
     rows: Sequence[Sequence[str]], top: int, columns: list[SheetColumn],
-    told: list[tuple[str, str]], others: list[str], source: str,
+    told: list[tuple[str, str]], others: list[str], decimals: str, source: str,
 ) -> Sheet:  # fmt: skip
     _check_columns(columns, told, source)
     left: list[str] = []
@@ -123,7 +126,6 @@ def _trials(
     from_above: list[str] = []
     across: list[str] = []
     first_with: dict[tuple[str, ...], int] = {}
-    decimals = decimals_of(rows[top:], columns)
     for k, row in enumerate(rows[top:], start=top + 1):
         if not any(row):
             continue

@@ -63,6 +63,8 @@ MAKERS = {
         sizes=(1, 1e9, 1e3), between="\t",
     ),
     "anton paar": dict(head="Time [s];Pd [nm];Fn [mN]\n", sizes=(1, 1e9, 1e3), between=";"),
+    "in spanish": dict(head="Tiempo (s);Profundidad (µm);Carga (kN)\n", sizes=(1, 1e6, 1e-3),
+                       between=";", comma=","),
     "hysitron": dict(head="Number of Points = 310\nTime (s)\tDepth (nm)\tLoad (µN)\n",
                      sizes=(1, 1e9, 1e6), between="\t"),
 }  # fmt: skip

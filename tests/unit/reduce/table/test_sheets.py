@@ -111,6 +111,7 @@ def heights(sheet):
         ("Fallhöhe (mm);Stoßzahl\n500;0,5\n1.000;0,45\n", [0.5, 1.0]),
         ("drop height (mm);e\n500;0.5\n1,000;0.45\n0.750;0.4\n", [0.5, 1.0, 0.00075]),
         ("Höhe in mm;Dellentiefe in µm\n500;55,1\n2.000;121,0\n", [0.5, 2.0]),
+        ("drop height (in),dent depth (um)\n1.969,55\n3.937,80\n", [0.0500126, 0.0999998]),
     ],
 )
 def test_a_point_before_three_digits_is_what_the_other_numbers_say(tmp_path, text, found):
@@ -207,6 +208,13 @@ def test_units_in_every_cell_hide_no_separator(tmp_path):
     sheet = read_text(tmp_path, "Fallhöhe;Rückprallhöhe\n50 cm;21 cm\n1 m;0,40 m\n")
     assert heights(sheet) == [0.5, 1.0]
     assert restitutions(sheet) == pytest.approx([math.sqrt(0.42), math.sqrt(0.4)])
+
+
+def test_rebounds_by_their_number_are_repeats_and_their_mean_none(tmp_path):
+    file = tmp_path / "a.csv"
+    file.write_text("Drop (cm);Rebound 1 (mm);Rebound 2 (mm);Mean;SD\n50;320;330;325;5\n")
+    e = [t.observables["restitution"].value for t in read_sheet(file).trials]
+    assert e == pytest.approx([0.8, math.sqrt(0.66)])
 
 
 @pytest.mark.parametrize(
