@@ -85,8 +85,10 @@ class Columns:
             return int(which) - 1
         low = [" ".join(n.split()).lower() for n in self.names]
         wanted = " ".join(which.split()).lower()
+        bare = _UNIT.sub("", wanted).strip()
         for match in (
             [k for k, n in enumerate(low) if n == wanted],
+            [k for k, n in enumerate(low) if bare and _UNIT.sub("", n).strip() == bare],
             [k for k, n in enumerate(low) if n.startswith(wanted) and wanted],
         ):
             if len(match) == 1:
@@ -175,17 +177,25 @@ def read_columns(path: Path, *, sheet: str = "") -> Columns:
         return columns_of([names, *([repr(float(v)) for v in row] for row in values)], str(path))
     if kind == ".zip":
         text, source = packed_table(path, sheet)
-        return text_columns(text, source)
+        return text_columns(text, source, sheet)
     if kind in CHANNELS:
         names, numbers = confined(channels_of, path, sheet, source=str(path))
         return Columns(tuple(names), numbers, Shown(numbers), str(path))
-    if kind in BOOKS:
+    if is_book(path):
         return columns_of(confined(workbook_rows, path, sheet, source=str(path)), str(path))
-    return text_columns(path.read_bytes(), str(path))
+    return text_columns(path.read_bytes(), str(path), sheet)
 
 
-def text_columns(raw: bytes, source: str) -> Columns:
-    """Read the numbers of a text table.
+def is_book(path: Path) -> bool:
+    """Return whether a file is a workbook; instruments name their text .xls too."""
+    if path.suffix.lower() != ".xls":
+        return path.suffix.lower() in BOOKS
+    with path.open("rb") as stream:
+        return stream.read(2) in (b"PK", b"\xd0\xcf")
+
+
+def text_columns(raw: bytes, source: str, sheet: str = "") -> Columns:
+    """Read the numbers of a text table, of a LabVIEW file's segments that which is named.
 
     Raises
     ------
@@ -193,7 +203,7 @@ def text_columns(raw: bytes, source: str) -> Columns:
         Not text, empty, or no table.
     """
     lines = text_lines(raw, source)
-    found = labview_rows(lines)
+    found = labview_rows(lines, sheet, source)
     if found is None:
         return columns_of(text_rows(lines, source), source)
     body, heading = found

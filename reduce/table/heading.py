@@ -6,6 +6,7 @@ import re
 from collections.abc import Sequence
 from dataclasses import dataclass, field
 
+from ...core.errors import InputError
 from ..rules import RULES
 from ..shared.units import UNITS
 
@@ -139,7 +140,9 @@ def in_short(unit: str) -> str:
 _END = "***End_of_Header***"
 
 
-def labview_rows(lines: Sequence[str]) -> tuple[list[str], Heading] | None:
+def labview_rows(
+    lines: Sequence[str], segment: str = "", source: str = ""
+) -> tuple[list[str], Heading] | None:
     """Return the rows below the headers of a LabVIEW measurement (LVM), and its heading.
 
     Where the first cell of a row is blank, or its times are rounded to the same ones, the header's
@@ -149,12 +152,31 @@ def labview_rows(lines: Sequence[str]) -> tuple[list[str], Heading] | None:
     ----------
     lines
         Of the whole file. None is returned for any other file.
+    segment
+        Number of the one that is read, from 1, where there are several.
+    source
+        The file.
+
+    Raises
+    ------
+    InputError
+        Several segments, and none of them is named.
     """
     if not lines or not lines[0].startswith("LabVIEW Measurement"):
         return None
     ends = [k for k, line in enumerate(lines) if line.startswith(_END)]
     if not ends or ends[-1] + 1 >= len(lines):
         return None
+    if len(ends) > 2:  # each has a header of its own
+        which = int(segment) if segment.isdecimal() else 0
+        if not 0 < which < len(ends):
+            raise InputError(
+                f"{len(ends) - 1} segments", source=source, key="sheet",
+                allowed=f"1 to {len(ends) - 1}",
+            )  # fmt: skip
+        ends = [ends[0], ends[which]]
+        last = (k for k in range(ends[1], len(lines)) if lines[k].startswith("Channels"))
+        lines = lines[: next(last, len(lines))]
     # the line that names the separator has it
     named = (line[len("Separator") :][:1] for line in lines if line.startswith("Separator"))
     between = next(named, "") or "\t"
@@ -165,10 +187,12 @@ def labview_rows(lines: Sequence[str]) -> tuple[list[str], Heading] | None:
             said[name] = [v for v in values if v]
     names = [cell.strip() for cell in lines[ends[-1] + 1].split(between)]
     units = said.get("Y_Unit_Label", [])
-    channels = [n for n in names if n and n not in ("X_Value", "Comment")]
-    told = [f"{n} [{in_short(u)}]" for n, u in zip(channels, units, strict=False)]
-    told += channels[len(told) :]
     seconds = said.get("X_Dimension", ["Time"])[0] == "Time"
-    step = float(said["Delta_X"][0].replace(",", ".")) if said.get("Delta_X") else None
     first = "X_Value [s]" if seconds else "X_Value"
-    return list(lines[ends[-1] + 2 :]), Heading((first, *told), (), step, between)
+    each = iter(units)
+    told = [first]  # of each channel where there are several
+    for name in (n for n in names[1:] if n and n != "Comment"):
+        unit = "" if name == "X_Value" else next(each, "")
+        told.append(first if name == "X_Value" else f"{name} [{in_short(unit)}]" if unit else name)
+    step = float(said["Delta_X"][0].replace(",", ".")) if said.get("Delta_X") else None
+    return list(lines[ends[-1] + 2 :]), Heading(tuple(told), (), step, between)

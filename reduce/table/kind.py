@@ -42,6 +42,8 @@ class Series(NamedTuple):
         Times of the rows without a number [s].
     marks
         What their cells hold instead, each once.
+    behind
+        How many rows stand at a time that has been before, and are left out.
     """
 
     time: Array
@@ -49,6 +51,15 @@ class Series(NamedTuple):
     column: int
     missed: Array
     marks: tuple[str, ...]
+    behind: int
+
+    @property
+    def notes(self) -> tuple[str, ...]:
+        """What is said of rows whose time does not go on: rounded, or a second record."""
+        return (
+            (f"{self.behind} rows at or before the time of an earlier one are left out",)
+            if self.behind else ()
+        )  # fmt: skip
 
     def told(self) -> str:
         """Return how many cells hold no number, and what they hold."""
@@ -118,7 +129,7 @@ def _pulse(path: Path, table: Columns, options: TableOptions) -> Reduced:
             scale_std=options.gain_std / unit if options.gain else 0.0,
         )  # fmt: skip
         _whole(found.pulse, series, str(path))
-    notes = found.notes
+    notes = found.notes + series.notes
     if series.missed.size:
         notes += (f"{series.told()}, none of them beside the pulse",)
     return Reduced(
@@ -184,7 +195,9 @@ def _heights(path: Path, table: Columns, options: TableOptions) -> Reduced:
             contact=Measured(lasts, 0.0) if (lasts := options.contact_time_s) else None,
         )  # fmt: skip
     rate = float(1.0 / np.median(np.diff(time)))
-    lost = (f"{series.told()}: they are left out",) if series.missed.size else ()
+    lost = series.notes
+    if series.missed.size:
+        lost += (f"{series.told()}: they are left out",)
     return Reduced(
         source=path, values=found.values, trials=found.trials, notes=found.found.notes + lost,
         draw=lambda to: draw_heights(found, to), noise={"frame_rate_hz": rate},
@@ -257,7 +270,7 @@ def _series(table: Columns, options: TableOptions) -> Series:
             f"{int(ahead.sum())} rows with a time and a value", source=table.source, key="value",
             allowed=f"{RULES.table_rows} or more",
         )  # fmt: skip
-    return Series(time[ahead], value[ahead], column, missed, marks)
+    return Series(time[ahead], value[ahead], column, missed, marks, int((~ahead).sum()))
 
 
 def _times(table: Columns, options: TableOptions, *, alone: bool) -> Array:
@@ -273,6 +286,11 @@ def _times(table: Columns, options: TableOptions, *, alone: bool) -> Array:
     where = table.find(options.time, key="time")
     second = table.factor(where, "time", given=options.time_unit, key="time_unit", default="s")
     given = table.values[:, where]
+    if options.rate_hz is None and not np.isfinite(given).any():
+        raise InputError(
+            f"no times in column {table.names[where] or where + 1!r}", source=table.source,
+            key="time", allowed="a column of times, or samples a second as rate_hz",
+        )  # fmt: skip
     if options.rate_hz is not None:
         # a clock of a computer is coarser than the samples: their number tells the time
         return (given if _counts(given) else rows) / options.rate_hz

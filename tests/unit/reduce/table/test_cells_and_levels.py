@@ -164,6 +164,38 @@ def test_labview_with_commas_and_times_rounded_to_the_same(tmp_path):
         assert found.value == pytest.approx(2.037, abs=0.003)
 
 
+def test_labview_with_a_time_for_each_channel_or_several_segments(tmp_path):
+    each = [line.replace("X_Columns\tOne", "X_Columns\tMulti") for line in labview(True)]
+    top = each.index("X_Value\tForce\tComment")
+    rows = [f"{line.split()[0]}\t0.5\t{line}" for line in each[top + 1 :]]
+    each[each.index("Y_Unit_Label\tNewtons")] = "Y_Unit_Label\tVolts\tNewtons"
+    path = tmp_path / "a.lvm"
+    path.write_text("\n".join([*each[:top], "X_Value\tTrigger\tX_Value\tForce\tComment", *rows]))
+    assert run(path, value="Force").values["impulse_N_s"].value == pytest.approx(2.037, abs=0.003)
+    first = labview(True)
+    second = [line.replace("\t", "\t-") for line in first[first.index("Channels\t1") :]]
+    path.write_text("\n".join([*first, "", *second]))
+    with pytest.raises(InputError, match=r"sheet: 2 segments \(allowed: 1 to 2\)"):
+        run(path)
+    assert run(path, sheet="1").values["impulse_N_s"].value == pytest.approx(2.037, abs=0.003)
+
+
+def test_what_is_no_time_and_what_stands_behind_is_told(tmp_path):
+    cells = [f"{v:.3f}" for v in half_sine()]
+    twice = table(tmp_path / "a.csv", [*cells, *cells], times=2 * [f"{t:.4f}" for t in T])
+    assert f"{T.size} rows at or before the time of an earlier one are left out" in run(twice).notes
+    (tmp_path / "b.csv").write_text("Time,Force (N)\n" + "\n".join(f",{c}" for c in cells))
+    with pytest.raises(InputError, match=r"no times in column 'Time' .*rate_hz"):
+        run(tmp_path / "b.csv")
+    clock = [f"12:04:{26 + t:09.6f}" for t in T]
+    path = table(tmp_path / "c.csv", cells, "Time(s),force_N", clock)
+    for named in (path, path.with_suffix(".xls")):
+        path.rename(named)
+        found = run(named, time="Time(s)").values["impulse_N_s"]
+        assert found.value == pytest.approx(2.037, abs=0.003)
+        path = named
+
+
 def test_quoted_decimal_commas_and_units_in_words(tmp_path):
     rows = [f'"{t:.4f}";"{v:.3f}"'.replace(".", ",") for t, v in zip(T, half_sine(), strict=True)]
     path = tmp_path / "a.csv"
