@@ -146,7 +146,7 @@ def test_marble_on_paper(name, sheets, e):
         drop = float(np.nanmax(reduced.trials[0].trace["tip_height_m"]))
         assert speed == pytest.approx(math.sqrt(2.0 * 9.81 * drop), rel=0.08)
     assert np.ptp(found) < 0.04
-    assert np.mean(found) == pytest.approx(e, abs=0.05)
+    assert np.mean(found) == pytest.approx(e, rel=0.03)  # nearer than the repeats, apart by 0.03
 
 
 @measured
