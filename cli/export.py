@@ -29,7 +29,7 @@ def export_law(
     ] = "fitted",
     out: Annotated[Path, folder_option("Folder for the sources.")] = Path("build/law"),
 ) -> None:
-    """Write a closed form as Python, C, Fortran, MATLAB and Modelica source, and for LAMMPS."""
+    """Write a closed form in Python, C, Fortran, MATLAB, Modelica, JavaScript, and for LAMMPS."""
     from ..models import law_named
     from ..models.export import write_sources
     from ..models.fitted import ClosedForm

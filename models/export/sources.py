@@ -1,6 +1,6 @@
-"""A closed form as source code that needs nothing else, in five languages.
+"""A closed form as source code that needs nothing else, in six languages.
 
-Python, C, Fortran, MATLAB or Octave, Modelica.
+Python, C, Fortran, MATLAB or Octave, Modelica, JavaScript.
 
 Each file holds the coefficients and one routine from the two materials, the radius and the approach
 to force, contact radius, sphere's share, permanent depths and the exponent of the unloading. They
@@ -121,6 +121,7 @@ def write_sources(law: ClosedForm, folder: Path) -> list[Path]:
         f"{NAME}.f90": fortran_source(law),
         f"{NAME}.m": matlab_source(law),
         f"{NAME}.mo": modelica_source(law),
+        f"{NAME}.js": javascript_source(law),
         f"{STYLE}.h": lammps_header(),
         f"{STYLE}.cpp": lammps_source(),
     }
@@ -329,4 +330,33 @@ algorithm
   end if;
 {modelica.lines(last, indent=2)}
 end {NAME};
+"""
+
+
+def javascript_source(law: ClosedForm) -> str:
+    """The law as a JavaScript function, for a script of a page or for `require`."""
+    javascript = Language(
+        "const {target} = {value};",
+        functions={"pow": "Math.pow", **{f: f"Math.{f}" for f in ("exp", "log", "sqrt", "max")}},
+    )
+    result = ", ".join(f"{name}: out_{name}" for name in OUTPUTS)
+    return f"""/*
+{_about(law, " * ")}
+ */
+const {NAME} = (() => {{
+  "use strict";
+{javascript.lines(_coefficients(law), indent=2)}
+
+  return ({", ".join(INPUTS)}) => {{
+{javascript.lines(before())}
+    if (!(D > 0.0)) {{
+{javascript.lines(when_open(), indent=6)}
+      return {{ {result} }};
+    }}
+{javascript.lines(when_closed(law.correction))}
+    return {{ {result} }};
+  }};
+}})();
+
+if (typeof module !== "undefined") module.exports = {NAME};
 """

@@ -7,12 +7,16 @@ other pages are those of docs/, README.md, CHANGELOG.md and CONTRIBUTING.md.
 from __future__ import annotations
 
 import ast
+import json
+import math
 import re
 import shutil
 from pathlib import Path
 
 from dentscope.cli.shared.keys import FILES, keys_of
+from dentscope.core.materials import material, materials
 from dentscope.models import LAWS, UNAVAILABLE
+from dentscope.models.export.sources import NAME, javascript_source
 
 HERE = Path(__file__).resolve().parent
 ROOT = Path(__file__).resolve().parents[2]
@@ -52,10 +56,12 @@ def main() -> None:
     _write("keys.md", keys_page())
     _write("laws.md", laws_page())
     _write("examples.md", examples_page())
+    _write("try-it.md", try_page())
+    _write(f"{NAME}.js", javascript_source(LAWS["fitted"]))
     for stage in STAGES:
         _write(f"python/{stage}.md", reference_page(stage))
     _write("python/index.md", names_page())
-    for name in ("site.css", "scroll.js", "iframe-worker.js"):
+    for name in ("site.css", "scroll.js", "iframe-worker.js", "try-it.js"):
         shutil.copyfile(HERE / name, SOURCE / name)
     nav = "[python/index.md, " + ", ".join(f"python/{stage}.md" for stage in STAGES) + "]"
     settings = (HERE / "mkdocs.yml").read_text(encoding="utf-8")
@@ -123,6 +129,18 @@ def examples_page() -> str:
             title, _, code = part.partition("\n")
             out.append(f"{title}\n\n```python\n{code.strip()}\n```")
     return "\n\n".join(out) + "\n"
+
+
+def try_page() -> str:
+    """Return the page that computes an impact by itself: its form, the metals, the law's limits."""
+    metals = {}
+    for name, entry in sorted(materials().items(), key=lambda named: named[1].title.lower()):
+        body = material(name)
+        strength = body.Sy if math.isfinite(body.Sy) else None
+        metals[name] = {"title": entry.title, "E": body.E, "nu": body.nu, "Sy": strength,
+                        "density": body.density}  # fmt: skip
+    data = json.dumps({"metals": metals, "limits": LAWS["fitted"].limits})
+    return (HERE / "try-it.md").read_text(encoding="utf-8").replace("DATA", data)
 
 
 def public_names(tree: ast.Module) -> list[str]:

@@ -165,6 +165,24 @@ def test_octave(sources):
     compare(read_numbers(done.stdout), rows)
 
 
+@needs("node")
+def test_javascript(sources):
+    rows = draws()
+    written(rows, sources)
+    (sources / "main.js").write_text(
+        f"const law = require('./{NAME}.js');\n"
+        "const text = require('fs').readFileSync('rows.txt', 'ascii');\n"
+        "for (const row of text.trim().split('\\n')) {\n"
+        "  const given = row.split(' ').map((x) => (x === 'Inf' ? Infinity : Number(x)));\n"
+        "  console.log(Object.values(law(...given)).join(' '));\n"
+        "}\n"
+    )
+    done = subprocess.run(
+        ["node", "main.js"], cwd=sources, capture_output=True, text=True, check=True, timeout=60
+    )
+    compare(read_numbers(done.stdout), rows)
+
+
 def test_modelica(sources):
     """Its algorithm, statement by statement: no Modelica tool is at hand that could run it."""
     text = (sources / f"{NAME}.mo").read_text()
