@@ -72,7 +72,7 @@ def case(
     _show(console, solution, uncertainty)
     told = found.measured
     console.print("\n".join(told.lines(ball_mass(file))))
-    _tell_aside(file)
+    tell_aside(file)
     if found.remark:
         console.print(found.remark)
     for path in (
@@ -91,13 +91,16 @@ def case(
     return 0
 
 
-def _tell_aside(file: Path) -> None:
+def tell_aside(file: Path) -> None:
     """Say what the file states and a solve has no use for."""
     from ..core.inputs.left_aside import left_aside
     from ..core.inputs.toml_input import read_toml
 
+    content = read_toml(file)
+    if "speed_m_s" in content["load"] and not any("rate" in content[k] for k in ("sphere", "flat")):
+        say("load.speed_m_s does nothing here: neither body has a rate")
     aside = [
-        one for one in left_aside(read_toml(file), ())
+        one for one in left_aside(content, ())
         if one.partition(" = ")[0].endswith((".std", "flat.density_kg_m3"))
     ]  # fmt: skip
     if aside:

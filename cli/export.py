@@ -88,11 +88,14 @@ def _write_dem(ball: ExportedBall, law: str, speeds: list[float], out: Path) -> 
     from ..core.output import csv_text, write_file
     from ..impact.told.discrete_elements import HEAD, lammps_lines, substitutes, table
     from ..models import law_named
+    from ..models.choose import follows_flow
 
     chosen = law_named(law or ball.law)
     rows = substitutes(chosen, ball.pair, mass=ball.mass, speeds=speeds)
     shown, between = console(), _between(ball, chosen, speeds)
     show_table(shown, *_misses(rows))
+    if not (ball.pair.perfectly_plastic or follows_flow(chosen)):
+        say(f"{chosen.name} takes the first strength of each metal, not its flow curve")
     if ball.aside:
         say(f"not in these parameters: {', '.join(ball.aside)}; `dentscope impact` takes them")
     two = ball.second is not None

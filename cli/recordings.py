@@ -24,6 +24,7 @@ SetFolder = Annotated[
 def check(folder: SetFolder) -> None:
     """List every mistake of a set, or say what it holds."""
     from ..recordings import read
+    from ..recordings.questions import questions_of
     from ..recordings.shipped import set_folder
 
     found = read(set_folder(folder))
@@ -39,7 +40,7 @@ def check(folder: SetFolder) -> None:
     for kind, files in (("traces", found.traces), ("profiles", found.profiles)):
         if files:
             typer.echo(f"  {kind}: {len(files)}")
-    for note in found.notes:
+    for note in (*found.notes, *questions_of(found)):
         say(f"  note: {note}")
 
 

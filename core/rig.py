@@ -85,9 +85,13 @@ class Within:
 
     def __call__(self, quantity: Quantity) -> Quantity:
         """Return the quantity if it lies in the range."""
-        if not self.accept(quantity.value):
-            raise ValueError(f"{self.allowed}{self._asked(quantity.value)}")
+        if wanted := self.wanted(quantity.value):
+            raise ValueError(wanted)
         return quantity
+
+    def wanted(self, value: float) -> str:
+        """Return what is allowed, and the unit perhaps meant; empty for a value in the range."""
+        return "" if self.accept(value) else f"{self.allowed}{self._asked(value)}"
 
     def _asked(self, value: float) -> str:
         """The unit that was perhaps meant."""
@@ -101,16 +105,25 @@ def _within(accept: Callable[[float], bool], allowed: str) -> AfterValidator:
     return AfterValidator(Within(accept, allowed))
 
 
-def _between(low: float, high: float, **units: float) -> AfterValidator:
+def _range(low: float, high: float, **units: float) -> Within:
     """A range that every real body keeps; a number outside it is mostly in another unit."""
     allowed = f"a number from {low:g} to {high:g}"
-    return AfterValidator(Within(lambda x: low <= x <= high, allowed, tuple(units.items())))
+    return Within(lambda x: low <= x <= high, allowed, tuple(units.items()))
 
+
+def _between(low: float, high: float, **units: float) -> AfterValidator:
+    return AfterValidator(_range(low, high, **units))
+
+
+STRENGTHS = _range(1e3, 5e11, MPa=1e6, GPa=1e9)
+"""Of any stress at which a metal flows [Pa]."""
+STRAINS = _range(0.0, RULES.flow_last, **{"%": 1e-2})
+"""Of plastic strains."""
 
 Positive = Annotated[Quantity, _within(lambda x: x > 0.0, "a number above 0")]
 NotNegative = Annotated[Quantity, _within(lambda x: x >= 0.0, "a number not below 0")]
 Modulus = Annotated[Quantity, _between(1e3, 2e12, GPa=1e9, MPa=1e6)]
-Strength = Annotated[Quantity, _between(1e3, 5e11, MPa=1e6, GPa=1e9)]
+Strength = Annotated[Quantity, AfterValidator(STRENGTHS)]
 Density = Annotated[Quantity, _between(25.0, 25e3, **{"g/cm^3": 1e3})]
 Length = Annotated[Quantity, _between(1e-9, 10.0, mm=1e-3, um=1e-6)]
 Radius = Annotated[Quantity, _between(1e-9, 3.0, mm=1e-3, um=1e-6)]

@@ -164,6 +164,10 @@ def _objections(
             found.append(
                 f"restitution {measured.restitution:g} is not rebound over approach ({implied:.3f})"
             )
+    if measured.depth > striker.tip_radius:
+        found.append(f"a depth of {measured.depth:g} m is above the tip's radius")
+    if measured.restitution > 1.0:
+        found.append(f"restitution {measured.restitution:g}: more comes back than came")
     mean = 0.5 * measured.speed * (1.0 - measured.restitution)
     travel = abs(mean) * duration
     longest = 6.0 * measured.depth / (measured.speed * (1.0 + measured.restitution))

@@ -12,6 +12,7 @@ from ..core.inputs.left_aside import left_aside
 from ..core.inputs.toml_input import read_toml
 from ..core.material import Pair
 from ..core.rig import value_of
+from ..impact.files.scenes import curves_in
 from ..impact.files.second import SecondSphere
 from ..impact.files.setup import FOLLOWING, Setup, setup_of
 from ..models import LAWS
@@ -95,7 +96,7 @@ def _of_setup(content: Mapping[str, Any], file: Path) -> ExportedBall:
         raise InputError(
             "a rod", source=str(file), key=f"strikers.{name}.shape", allowed='"sphere"'
         )
-    law = FOLLOWING if setup.laws[0] == FOLLOWING else "fitted"
+    law = FOLLOWING if curves_in(setup.file) else "fitted"
     scene = setup.plain(LAWS[law])
     speeds = setup.sweep.impact_speed_m_s or (scene.approach.speed,)
     falls = setup.file.impact.drop_height_m is not None

@@ -12,9 +12,9 @@ from ..core.errors import InputError, InputErrors
 from ..core.flow import Flow, FlowCurve, tabulated
 from ..core.inputs.flow_tables import HardeningTable, HeatingTable, RateTable
 from ..core.inputs.input_file import file_beside
-from ..core.inputs.toml_input import InputTable, Listed, read_model
+from ..core.inputs.toml_input import InputTable, Listed, read_model, read_toml
 from ..core.material import Material, Pair
-from ..core.rig import FrictionTable, MaterialTable
+from ..core.rig import STRAINS, STRENGTHS, FrictionTable, MaterialTable
 
 _SpeedRow = Annotated[tuple[float, float], Listed]
 _CURVE_COLUMNS = ("plastic_strain", "stress_Pa")
@@ -142,8 +142,9 @@ def read_flow_curve(path: Path) -> FlowCurve:
             problems.add(f"{p:g}", row=row, column=_CURVE_COLUMNS[0], allowed="0 in the first row")
         elif not p > before:
             problems.add(f"{p:g}", row=row, column=_CURVE_COLUMNS[0], allowed=f"above {before:g}")
-        if not s > 0.0:
-            problems.add(f"{s:g}", row=row, column=columns[1], allowed="above 0")
+        for name, value, known in zip(columns, (p, s), (STRAINS, STRENGTHS), strict=True):
+            if wanted := known.wanted(value):
+                problems.add(f"{value:g}", row=row, column=name, allowed=wanted)
         before = p
     if len(strain) < 2:
         problems.add(f"{len(strain)} rows", allowed="two or more rows")
@@ -160,6 +161,11 @@ def read_pair(file: Path) -> tuple[CaseFile, Pair]:
     InputError
         Every mistake, a line each.
     """
+    if read_toml(file).keys() & {"strikers", "impact"}:
+        raise InputError(
+            "a set-up of `dentscope impact`", source=str(file),
+            allowed="CASE.toml, which `dentscope case --new` writes",
+        )  # fmt: skip
     content = read_model(file, CaseFile)
     sphere = content.sphere.to_body("sphere", file=file)
     flat = content.flat.to_body("flat", file=file)

@@ -12,11 +12,14 @@ from ..arrays import Array, Indices
 from ..errors import InputError, InputErrors
 from ..flow import FlowCurve, tabulated
 from ..output import csv_text
+from ..rig import STRAINS, STRENGTHS
 from ..rules import RULES
 from .csv_table import Problems, numbers, read_text_table
 
 COLUMNS = ("plastic_strain", "true_stress_Pa", "strain_rate_per_s", "temperature_K")
 """The last two are optional."""
+
+_RANGES = dict(zip(COLUMNS, (STRAINS, STRENGTHS), strict=False))
 
 PROOF_STRAIN = 0.002
 
@@ -139,9 +142,10 @@ def read_flow_curve(path: Path) -> MeasuredFlow:
         for row, cell, value in zip(table.rows, table.cells[name], column, strict=True):
             if not cell:
                 problems.add("empty", row=row, column=name, allowed="a number")
+            elif name in _RANGES and (wanted := _RANGES[name].wanted(value)):
+                problems.add(f"{value:g}", row=row, column=name, allowed=wanted)
             elif value < 0.0 or (value == 0.0 and name != COLUMNS[0]):
-                allowed = "0 or above" if name == COLUMNS[0] else "above 0"
-                problems.add(f"{value:g}", row=row, column=name, allowed=allowed)
+                problems.add(f"{value:g}", row=row, column=name, allowed="above 0")
     if problems.found:
         raise InputErrors(tuple(problems.found))
     flow = MeasuredFlow(*values)

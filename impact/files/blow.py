@@ -254,15 +254,18 @@ def blow(
         changes["impact_speed_m_s"] = float(given.flat[0])
     chosen = _chosen(setup, changes, mass)
     wanted = _wanted(law, laws) or [law_named(name) for name in chosen.laws]
-    if speeds is None:
-        return blow_of(chosen, wanted)
-    if chosen.repeats > 1:
+    return blow_of(chosen, wanted) if speeds is None else _table(chosen, wanted, speeds)
+
+
+def _table(setup: Setup, laws: Sequence[ContactLaw], speeds: NDArray[Any]) -> Impacts:
+    """A row for each law and speed, all else as the set-up has it."""
+    if setup.repeats > 1:
         raise InputError(
-            f"{chosen.repeats}", key="repeats", allowed="1: of several speeds the first blows"
+            f"{setup.repeats}", key="repeats", allowed="1: of several speeds the first blows"
         )
-    chosen = replace(chosen, sweep=SweepTable(impact_speed_m_s=tuple(speeds.tolist())))
-    chosen.check_laws(wanted)
-    first, *others = (chosen.swept(one) for one in wanted)
+    over = replace(setup, sweep=SweepTable(impact_speed_m_s=tuple(speeds.tolist())))
+    over.check_laws(laws)
+    first, *others = (over.swept(one) for one in laws)
     for other in others:
         first = first.joined(other)
     return first

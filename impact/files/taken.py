@@ -108,6 +108,8 @@ def _of_the_striker(found: SetupFile, line: Any) -> Iterator[InputError]:
         yield line("impact.finite_tip", True, allowed)
     if ball.length_m is not None:
         yield line(f"strikers.{name}.length_m", ball.length_m, allowed)
+    if impact.flight_s is not None and impact.support != "sprung":
+        yield line("impact.flight_s", impact.flight_s, f'{allowed}, or on a "sprung" support')
 
 
 def _stated(content: Mapping[str, Any], key: str) -> Mapping[str, Any]:

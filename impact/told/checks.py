@@ -43,8 +43,8 @@ def checks(setup: Setup, law: ContactLaw, found: Impact) -> list[str]:
     with warnings.catch_warnings():
         warnings.simplefilter("ignore", DomainWarning)  # the doubt about a law has its own line
         parts = (
-            _onset(setup, scene, found), flow_checks(setup, scene, found), _either(scene, found),
-            _plate(setup, scene, found), _waves(setup, scene, found),
+            _repeats(setup), _onset(setup, scene, found), flow_checks(setup, scene, found),
+            _either(scene, found), _plate(setup, scene, found), _waves(setup, scene, found),
             _gravity(setup, scene, found), _friction(setup, scene, found), _rod(scene, found),
             _edge(setup, scene, found), _second(setup, scene, found), _bodies(setup, law),
             _mechanisms(setup, law, found),
@@ -58,6 +58,11 @@ def _resting(scene: Scene) -> Iterator[str]:
             "no rebound: bending the plate takes the whole blow; it is without end (Zener), so "
             "nothing that its edges throw back is in this"
         )
+
+
+def _repeats(setup: Setup) -> Iterator[str]:
+    if setup.repeats > 1:
+        yield f"shown is the last of {setup.repeats} blows on one spot; the CSV has each"
 
 
 def _onset(setup: Setup, scene: Scene, found: Impact) -> Iterator[str]:
@@ -107,14 +112,16 @@ def _plate(setup: Setup, scene: Scene, found: Impact) -> Iterator[str]:
         return
     h = thickness.value
     dent = found.residual_flat_m
+    a = float(scene.law.contact_radius(scene.pair, found.peak_depth_m))
     if dent > ATOM:
-        enough = "thick" if h >= RULES.thick * dent else "NOT thick"
+        # the standard's dents are wider than 0.24 of the ball, and 8 of their depths than a radius
+        enough = "thick" if h >= max(RULES.thick * dent, a) else "NOT thick"
         yield (
             f"the flat, {h * 1e3:.3g} mm, is {enough} enough for the dent: {RULES.thick:g} times "
-            f"its depth is {RULES.thick * dent * 1e3:.2g} mm (ISO 6506-1)"
+            f"its depth is {RULES.thick * dent * 1e3:.2g} mm (ISO 6506-1), the contact's radius "
+            f"{a * 1e3:.2g} mm"
         )
     else:
-        a = float(scene.law.contact_radius(scene.pair, found.peak_depth_m))
         if not a > 0.0:
             return
         yield f"the flat, {h * 1e3:.3g} mm, is {h / a:.3g} times the contact radius thick"
@@ -146,10 +153,18 @@ def _gravity(setup: Setup, scene: Scene, found: Impact) -> Iterator[str]:
         )
 
 
-def _friction(setup: Setup, scene: Scene, found: Impact) -> Iterator[str]:
+def _straight(scene: Scene) -> bool:
+    """Whether nothing moves along the flat."""
     approach = scene.approach
     upright = math.isclose(approach.angle, 0.5 * math.pi, abs_tol=1e-9)
-    straight = approach.tangential == approach.spin == 0.0 and upright
+    return approach.tangential == approach.spin == 0.0 and upright
+
+
+def _friction(setup: Setup, scene: Scene, found: Impact) -> Iterator[str]:
+    straight, inertia = _straight(scene), setup.file.strikers[setup.striker].inertia_kg_m2
+    if straight and inertia is not None:
+        key = f"strikers.{setup.striker}.inertia_kg_m2"
+        yield f"{key}, {inertia.value:g}, does nothing in a straight blow: nothing turns"
     if straight and scene.friction.mu > 0.0:
         yield (
             f"friction, {scene.friction.mu:g}, does nothing in a straight blow by these laws; "
@@ -166,14 +181,22 @@ def _friction(setup: Setup, scene: Scene, found: Impact) -> Iterator[str]:
 
 def _rod(scene: Scene, found: Impact) -> Iterator[str]:
     striker, metal = scene.striker, scene.pair.sphere
-    if striker.length == 0.0 or scene.modes.frequencies or metal.rigid or math.isnan(metal.density):
+    if striker.length == 0.0 or metal.rigid or math.isnan(metal.density):
+        return
+    along = "mechanisms.rod-longitudinal-waves" if _straight(scene) else "impact.modes"
+    if count := len(scene.modes.frequencies):
+        if _straight(scene) and not any(scene.modes.axial):
+            yield (
+                f"impact.modes, {count}, does nothing in a straight blow: the lowest {count} modes "
+                f"bend the rod; {along} has those along it"
+            )
         return
     c = math.sqrt(metal.E / metal.density)
     there_and_back = 2.0 * (striker.length + 2.0 * striker.tip_radius) / c
     share = there_and_back / found.contact_time_s
     yield (
         f"the rod is taken as rigid: a wave runs along it and back in {there_and_back * 1e6:.4g} "
-        f"us, {share:.2g} of the contact; impact.modes lets it vibrate"
+        f"us, {share:.2g} of the contact; {along} lets it vibrate"
     )
     limit = metal.density * c * scene.approach.speed * math.pi * striker.radius**2
     if found.peak_force_N > limit:
@@ -220,11 +243,17 @@ def _second(setup: Setup, scene: Scene, found: Impact) -> Iterator[str]:
             f"along the approach the striker goes on with {own:.4g} m/s, the struck sphere leaves "
             f"with {other:.4g} m/s"
         )
-    if math.isfinite(scene.pair.Sy_min):
+    if scene.approach.speed > first_yield_speed(scene):
         off = float(second.departure(scene.pair, found.peak_depth_m))
         yield (
-            f"where both yield 1/R is an approximation, off by some {100.0 * off:.1f} % of the "
-            "force here, as finite elements have it; it is in the band"
+            f"beyond yield 1/R is an approximation, off by some {100.0 * off:.1f} % of the force "
+            "here, as finite elements have it"
+        )
+    if second.radius < 0.0:
+        a = float(scene.law.contact_radius(scene.pair, found.peak_depth_m))
+        yield (
+            f"the contact's radius, {a * 1e3:.3g} mm, is {a / ball.tip_radius_m.value:.2g} of the "
+            "ball's; a seat is taken as Hertz has it, for contacts that are small beside both"
         )
 
 

@@ -53,7 +53,8 @@ _KINDS = (
     SheetKind(REBOUND_HEIGHT, "length",
          "^(?!.*(drop height|fallhoe?he))" + _both(_REBOUND, _HEIGHT)),
     SheetKind(REBOUND_SPEED, "speed",
-         _both(rf"{_REBOUND}|\bafter\b|\bnach\b|\bapres\b|\bdopo\b|despues", _SPEED)),
+         _both(rf"{_REBOUND}|\bafter\b|\bnach\b|\bapres\b|\bdopo\b|despues", _SPEED)
+         + "|^v ?(out|reb)$"),
     SheetKind("drop_height_m", "length",
          _both(DROPS, _HEIGHT)
          + r"|^(h|height|hoe?he|hauteur|altezza|altura)$"),
@@ -62,7 +63,7 @@ _KINDS = (
                _SPEED)
          + r"|^(v( ?n)?|speed|velocity|geschwindigkeit|vitesse|velocita|velocidad)$"),
     SheetKind("dent_diameter_m", "length",
-         _both(_DENT, r"diam|durchm|ø|⌀|dm\b|wid|breit")),
+         _both(_DENT, r"diam|\bdia\b|durchm|ø|⌀|dm\b|wid|breit")),
     # the largest depth under load is not what stays
     SheetKind("permanent_depth_m", "length",
          rf"^(?!(?=.*\bmax)(?=.*({_SINK})))((?=.*({_DENT}|residual|permanent))(?=.*(depth|tiefe))|"
@@ -139,10 +140,12 @@ def named(header: str) -> str:
         words = before.removesuffix(" in").removesuffix(" en")
     words = bare(words)
     words = _SPREAD.sub("", _BESIDE.sub("", words)).strip(" .:,/")
-    # Drop (cm) is a height, Drop alone a number; Rebound 2 (mm) is one of several
+    # Drop (cm) is a height, Drop alone a number; Rebound 2 (mm) is one of several, a speed in m/s
     unit = said_unit(header)
-    back = quantity_of(unit) == "length" and re.fullmatch(rf"({_REBOUND}) ?\d*", words)
-    return f"{words} height" if back or (words == "drop" and unit) else words
+    back = re.fullmatch(rf"({_REBOUND}) ?\d*", words) and quantity_of(unit)
+    if back == "speed":
+        return f"{words} speed"
+    return f"{words} height" if back == "length" or (words == "drop" and unit) else words
 
 
 def said_unit(header: str) -> str:

@@ -15,6 +15,7 @@ from dentscope.impact.told.discrete_elements import (
     two_balls,
 )
 from dentscope.models import LAWS
+from dentscope.start.ball_file import read_ball
 from dentscope.studies.lammps import balls_on_floor
 from scipy.integrate import solve_ivp
 
@@ -217,6 +218,17 @@ def test_what_lammps_makes_of_the_lines(flat, ball, R, density, speed, tmp_path)
         assert depth == pytest.approx(float(law["depth_m"]), rel=1e-2)
         seen += 1
     assert seen == 2
+
+
+def test_metals_that_harden_are_told_by_the_law_that_follows_them(tmp_path, capsys):
+    """Whatever laws the file shows beside each other."""
+    file = tmp_path / "ball.toml"
+    curve = '[target.hardening]\nlaw = "swift"\nK_Pa = 5e8\nn = 0.2\n'
+    rigid = BALL.split("[sweep]")[0].replace('support = "half-space"\n', "")
+    file.write_text(rigid + 'laws = ["fitted", "hardening"]\n' + curve)
+    assert read_ball(file).law == "hardening"
+    assert run(["export", "dem", str(file), "--law", "fitted", "--out", str(tmp_path)]) == 0
+    assert "fitted takes the first strength of each metal" in capsys.readouterr().out
 
 
 def test_a_rod_is_no_ball_of_a_discrete_element_code(tmp_path, capsys):

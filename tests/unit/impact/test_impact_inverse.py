@@ -48,6 +48,12 @@ def test_friction_that_sticks_is_a_mistake() -> None:
         infer(thesis_rod(), MeasuredScar(math.radians(70), 3.0, 0.5, 0.4, 1e-4, 2e-4))
 
 
+def test_more_back_than_came_and_a_depth_beyond_the_tip_are_told() -> None:
+    found = infer(thesis_rod(), MeasuredScar(math.radians(45), 2.0, 0.1, 1.5, 0.026, 1e-3))
+    assert any("restitution 1.5: more comes back" in line for line in found.objections)
+    assert any("0.026 m is above the tip's radius" in line for line in found.objections)
+
+
 FILE = """
 [striker]
 tip_radius_m = 0.0088

@@ -206,6 +206,27 @@ ASKED = {
          "strikers": {"ball": {"mass_kg": 0.0327}}},
         "two spheres: R = 5 mm",
     ),
+    "blows on one spot": ({"impact": {"repeats": 3}}, "shown is the last of 3 blows"),
+    "an inertia that nothing turns": (
+        {"strikers": {"ball": {"inertia_kg_m2": 1e-6}}},
+        "strikers.ball.inertia_kg_m2, 1e-06, does nothing in a straight blow",
+    ),
+    "an upright rod": (
+        {"strikers": {"ball": {"shape": "rod", "radius_m": 0.01, "length_m": 0.1,
+                               "mass_kg": 0.245}}},
+        "mechanisms.rod-longitudinal-waves lets it vibrate",
+    ),
+    "an upright rod that may bend": (
+        {"strikers": {"ball": {"shape": "rod", "radius_m": 0.005, "length_m": 0.1,
+                               "mass_kg": 0.0613}}, "impact": {"modes": 2}},
+        "impact.modes, 2, does nothing in a straight blow",
+    ),
+    # R = 1/(1/10 - 1/10.02) = 5010 mm: a = root(R d) is some of the ball's radius, nothing yields
+    "a seat as wide as the ball": (
+        {"target": {"shape": "sphere", "radius_m": -0.01002, "thickness_m": None},
+         "impact": {"impact_speed_m_s": 0.1}},
+        "of the ball's; a seat is taken as Hertz has it",
+    ),
     "a struck ball that is hollow": (
         {"target": {"shape": "sphere", "radius_m": 0.01, "mass_kg": 0.02, "thickness_m": None}},
         "target: 0.02 kg as stated; a solid sphere of its radius and density has 0.03535 kg",
@@ -218,6 +239,30 @@ def test_what_a_user_should_know_of_a_blow_is_said(changes, words):
     content = merged(tomllib.loads(BRASS), changes)
     found = blow_of(setup_of(content, source="asked.toml"), [LAWS["fitted"]])
     assert words in "\n".join(found.checks())
+
+
+def test_a_sheet_of_less_than_the_contacts_radius_is_not_thick():
+    # ISO 6506-1 asks 8 depths of dents wider than 0.24 of the ball: at 0.24 that is the radius a,
+    # 8 (1 - root(1 - 0.24^2))/0.24 = 0.97 a; this dent is 0.07 of the ball wide, 8 depths 0.2 a
+    flat = {"E_Pa": 2e11, "nu": 0.3, "Sy_Pa": 3e8, "density_kg_m3": 7800, "thickness_m": 2e-4}
+    ball = {"shape": "sphere", "tip_radius_m": 5e-3, "E_Pa": 2e11, "nu": 0.3,
+            "density_kg_m3": 7800}  # fmt: skip
+    content = {"target": flat, "strikers": {"ball": ball}, "impact": {"impact_speed_m_s": 1.0}}
+    found = blow_of(setup_of(content, source="sheet.toml"), [LAWS["fitted"]])
+    (line,) = (x for x in found.checks() if "enough for the dent" in x)
+    assert "NOT thick" in line
+    a = float(LAWS["fitted"].contact_radius(
+        found.setup.scene(LAWS["fitted"]).pair, found["fitted"].peak_depth_m
+    ))  # fmt: skip
+    assert 8.0 * found["fitted"].residual_flat_m < 2e-4 < a
+
+
+def test_what_yields_is_said_of_two_spheres_only_where_they_yield():
+    changes = ASKED["a seat as wide as the ball"][0]
+    content = merged(tomllib.loads(BRASS), changes)
+    told = blow_of(setup_of(content, source="seat.toml"), [LAWS["fitted"]]).checks()
+    assert any("(elastic)" in line for line in told)
+    assert not any("beyond yield" in line for line in told)
 
 
 def merged(content, changes):

@@ -10,9 +10,11 @@ import numpy as np
 import pytest
 from dentscope.campaigns import read_curves
 from dentscope.cli import run
+from dentscope.cli.case import tell_aside
 from dentscope.core import InputError
+from dentscope.core.inputs.templates import template
 from dentscope.models import law_named
-from dentscope.start.case_file import ball_mass, read_case
+from dentscope.start.case_file import ball_mass, read_case, read_pair
 from dentscope.start.measured import brinell, loading_work
 
 GOOD = """
@@ -240,6 +242,27 @@ def test_a_mistake_in_a_flow_curve_names_its_row(tmp_path, curve, words):
         read(tmp_path, curve=curve)
     for word in ["curve.csv", *words]:
         assert word in str(caught.value)
+
+
+def test_a_speed_without_a_rate_is_told(tmp_path, capsys):
+    file = tmp_path / "case.toml"
+    bodies = "[sphere]\nE_Pa = 2e11\nnu = 0.3\n[flat]\nE_Pa = 2e11\nnu = 0.3\nSy_Pa = 3e8\n"
+    load = "[load]\nmax_delta_over_R = 0.01\nspeed_m_s = 1.0\n"
+    file.write_text(f"radius_m = 0.01\n{bodies}{load}")
+    tell_aside(file)
+    assert "load.speed_m_s does nothing here: neither body has a rate" in capsys.readouterr().out
+    rate = '[flat.rate]\nlaw = "cowper-symonds"\nD_1_s = 40.0\nq = 5.0\n'
+    file.write_text(f"radius_m = 0.01\n{bodies}{rate}{load}")
+    tell_aside(file)
+    assert capsys.readouterr().out == ""
+
+
+def test_a_set_up_of_an_impact_is_no_case(tmp_path):
+    file = tmp_path / "ball.toml"
+    file.write_text(template("ball"))
+    with pytest.raises(InputError, match="a set-up of `dentscope impact`") as refused:
+        read_pair(file)
+    assert len(str(refused.value).splitlines()) == 1
 
 
 @pytest.mark.parametrize("name", ["case_aluminium", "case_mild_steel_fast"])

@@ -74,6 +74,25 @@ def test_approaches_in_several_languages(tmp_path, header, name):
     assert value(found, 0, "dent_diameter_m") == pytest.approx(5e-4)
 
 
+@pytest.mark.parametrize(
+    ("approach", "rebound", "e"),
+    [("drop height (mm);500", "Rebound [mm];180", 0.6),
+     ("Fallhöhe (cm);50", "Rückprall (cm);18", 0.6),
+     ("v_in (m/s);2", "v_out (m/s);1.2", 0.6), ("v_in (m/s);2", "rebound (m/s);1.2", 0.6)],
+)  # fmt: skip
+def test_a_rebound_is_a_height_or_a_speed_by_its_unit(tmp_path, approach, rebound, e):
+    (a, x), (b, y) = approach.split(";"), rebound.split(";")
+    path = tmp_path / "a.csv"
+    path.write_text(f"{a},{b}\n{x},{y}\n")
+    assert value(read_sheet(path), 0, "restitution") == pytest.approx(e)
+
+
+def test_a_rebound_in_per_cent_is_not_taken_for_a_height(tmp_path):
+    path = tmp_path / "a.csv"
+    path.write_text("drop height (mm),rebound (%),dent dia (mm)\n500,36,0.5\n")
+    assert columns(read_sheet(path))["rebound (%)"].startswith("left out")
+
+
 def test_what_is_missing_is_asked_for(tmp_path):
     path = tmp_path / "a.csv"
     path.write_text("drop height;rebound height (mm)\n10;5\n20;9\n")

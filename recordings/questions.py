@@ -1,0 +1,62 @@
+"""What a sound set may hold by mistake: told by `recordings check`, and nothing hangs on it."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterator
+
+import numpy as np
+
+from .recording_set import RecordingSet
+
+
+def questions_of(found: RecordingSet) -> list[str]:
+    """Return a line for each number that is perhaps in another unit, stated twice or not used."""
+    return [*_unused_gauges(found), *_gravity(found), *_deep(found), *_twice(found)]
+
+
+def _unused_gauges(found: RecordingSet) -> Iterator[str]:
+    measured = {*found.observed, *(["load_N"] if found.trials.pressed.any() else ())}
+    for column in found.setup.gauge:
+        if column not in measured:
+            yield f"gauge.{column} is not used: the set has no values of {column}"
+
+
+def _gravity(found: RecordingSet) -> Iterator[str]:
+    g = found.setup.gravity_m_s2.value
+    if math.isclose(g, 981.0, rel_tol=0.01):  # on the ground
+        yield f"gravity_m_s2 {g:g}: is it in cm/s^2?"
+
+
+def _deep(found: RecordingSet) -> Iterator[str]:
+    """Craters deeper than the tip is round."""
+    if "permanent_depth_m" not in found.observed:
+        return
+    depth = found.values("permanent_depth_m")
+    tip = np.array([body.tip_radius_m.value for body in found.strikers()])
+    if (deep := np.flatnonzero(depth > tip)).size:
+        k = int(deep[0])
+        yield (
+            f"permanent_depth_m {depth[k]:g} of {found.trials.trial[k]} is above the tip's radius, "
+            f"{tip[k]:g}: is it in another unit?"
+        )
+
+
+def _twice(found: RecordingSet) -> Iterator[str]:
+    """Rows that say the same in two or more numbers measured."""
+    trials, first, again = found.trials, dict[tuple[object, ...], str](), []
+    conditions = np.stack(
+        [trials.angle_deg, trials.impact_speed_m_s, trials.drop_height_m, trials.load_N]
+    )
+    values = np.stack([found.values(name) for name in found.observed]) if found.observed else None
+    for k, name in enumerate(trials.trial):
+        if values is None or np.isfinite(values[:, k]).sum() < 2:
+            continue
+        varied = (column[k] for column in trials.varied.values())
+        row = (trials.striker[k], *map(repr, (*conditions[:, k], *values[:, k])), *varied)
+        before = first.setdefault(row, name)
+        if before != name:
+            again.append(f"{name} as {before}")
+    if again:
+        shown = ", ".join(again[:3]) + (", ..." if len(again) > 3 else "")
+        yield f"every number of {len(again)} trials stands in another too ({shown}): entered twice?"
