@@ -371,10 +371,11 @@ def _separator(lines: Sequence[str]) -> str:
     """The separator that splits the middle of the file into the most numbers."""
     sample = lines[len(lines) // 3 :][:40] or lines
 
-    def numbers(separator: str) -> int:
+    def numbers(separator: str) -> tuple[int, bool]:
         cells = [cell.strip() for line in _split(sample, separator) for cell in line]
         between = commas_between(cells, separator)
-        return sum(bool(np.isfinite(value_of(plain(cell, between)))) for cell in cells if cell)
+        found = [np.isfinite(value_of(plain(cell, between))) for cell in cells if cell]
+        # decimal commas between blanks are as many numbers between commas, and words beside them
+        return sum(map(bool, found)), all(found)
 
-    # decimal commas between blanks are as many numbers in either way
-    return max(("\t", ";", " ", ","), key=numbers)
+    return max(("\t", ";", ",", " "), key=numbers)

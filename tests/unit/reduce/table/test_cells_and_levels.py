@@ -91,6 +91,14 @@ def test_cells_as_other_programs_leave_them(tmp_path, head, write):
     assert run(tmp_path / "a.txt").values["impulse_N_s"].value == pytest.approx(2.037, abs=0.003)
 
 
+@pytest.mark.parametrize("word", ["IMU1", "17 May", "a, b"])
+def test_blanks_after_commas_part_nothing(tmp_path, word):
+    cells = [f'"{word}", {v:.3f}' for v in half_sine()]
+    clock = [f" 12:04:{26 + t:09.6f}" for t in T]
+    path = table(tmp_path / "a.csv", cells, "time,device,Force (N)", clock)
+    assert run(path, value="3").values["impulse_N_s"].value == pytest.approx(2.037, abs=0.003)
+
+
 def test_a_name_that_stands_twice_asks_for_its_number(tmp_path):
     cells = [f"{v:.3f},{t:.4f},{v / 2:.3f}" for t, v in zip(T, half_sine(), strict=True)]
     path = table(tmp_path / "a.csv", cells, "Time (s),Force (N),Time (s),Force (N)")
