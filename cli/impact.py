@@ -101,6 +101,8 @@ def _from_file(path: Path, names: list[str], out: Path, *, exact: bool) -> None:
     if unfinished:
         console.print(f"{unfinished} impacts of the sweep did not end: see the column outcome")
     leave_if_unfinished(list(found.values()))
+    if unfinished:
+        raise typer.Exit(EXIT_NOT_CONVERGED)
 
 
 def _sweep(

@@ -90,7 +90,8 @@ def impacts(
     Returns
     -------
     Impacts
-        In the order of the broadcast arrays, flattened.
+        In the order of the broadcast arrays, flattened; of one that did not end the column
+        `outcome` says why, and what it would show is nan.
 
     Raises
     ------
@@ -314,6 +315,11 @@ def _named(
         "approach_tangential_m_s": given["tangential"],
         "approach_spin_rad_s": given["spin"],
         "friction": given["friction"],
+    }
+    # where a budget ended the walk it stands half way: that is no restitution
+    done = values["ending"] == c.DONE
+    values = {name: np.where(done, found, np.nan) for name, found in values.items()} | {
+        "ending": values["ending"]
     }
     measured = {row.column: row.simulated for row in MEASURED.values() if row.simulated in values}
     columns |= {name: values[own] for name, own in measured.items()}

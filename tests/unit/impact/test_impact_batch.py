@@ -8,7 +8,9 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from dentscope.cli import run
 from dentscope.core import InputError, Material
+from dentscope.core.inputs.templates import template
 from dentscope.core.observables import OBSERVABLES
 from dentscope.impact import (
     Approach,
@@ -138,3 +140,21 @@ def test_mistakes_are_one_line(given, message: str) -> None:
     assert message in str(caught.value)
     with pytest.raises(InputError, match="no column 'e'"):
         impacts(scene(), speeds=1.0)["e"]
+
+
+def test_what_did_not_end_shows_no_number_and_leaves_with_3(tmp_path, capsys) -> None:
+    # half way the tip still goes down: a "restitution" of about -1
+    leaning = scene(approach=Approach(1.0, angle=math.radians(45.0)))
+    found = impacts(leaning, speeds=[1.0, 2.0], settings=Settings(max_steps=12))
+    assert list(found["outcome"]) == ["step-limit"] * 2
+    assert np.isnan(found["restitution"]).all()
+    assert np.isnan(found["peak_force_N"]).all()
+    assert found["impact_speed_m_s"] == pytest.approx([1.0, 2.0])
+    file = tmp_path / "rod.toml"
+    swept = "[sweep]\nangle_deg = [90, 45]\n[impact]\nmax_steps = 12\n"
+    text = template("rod").split("[sweep]")[0].replace("angle_deg = 45", "angle_deg = 90")
+    rigid = text.replace("modes = 10", "modes = 0").replace("loss_factor = 0.001", "")
+    file.write_text(rigid.replace("[impact]\n", swept + 'laws = ["hertz"]\n'))
+    assert run(["impact", str(file), "--exact", "--out", str(tmp_path)]) == 3
+    rows = list(csv.DictReader((tmp_path / "rod-sweep.csv").read_text().splitlines()))
+    assert rows[1]["restitution"] == ""
