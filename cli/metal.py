@@ -3,12 +3,15 @@
 from __future__ import annotations
 
 from pathlib import Path
-from typing import Annotated
+from typing import TYPE_CHECKING, Annotated
 
 import typer
 
 from .shared.places import folder_option
 from .shared.terminal import say
+
+if TYPE_CHECKING:
+    from ..recordings import RecordingSet
 
 
 def metal(
@@ -30,8 +33,17 @@ def metal(
     recordings = read(set_folder(folder))
     from ..discrepancy.metal import lines, metal_of, write_metal
 
+    tell_contradictions(recordings)
     found = metal_of(recordings)
     written = write_metal(found, out)
     for line in lines(found):
         say(line)
     typer.echo(f"\nwritten: {', '.join(map(str, written))}")
+
+
+def tell_contradictions(recordings: RecordingSet) -> None:
+    """Say which numbers of a set exclude each other: a curve of loads in kN is none."""
+    from ..recordings import Severity, audit
+
+    for finding in audit(recordings).of(Severity.CONTRADICTION):
+        say(str(finding))
