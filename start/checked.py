@@ -11,10 +11,11 @@ from ..core.errors import InputError
 from ..core.inputs.toml_input import parse_model
 from ..core.material import Material as Body
 from ..core.material import Pair as Bodies
-from ..core.rig import MaterialTable, Radius
+from ..core.rig import MaterialTable, Quantity, Radius
 
 _KEYS = {"E": "E_Pa", "nu": "nu", "Sy": "Sy_Pa", "density": "density_kg_m3"}
 _ORDER = ("E", "nu", "Sy", "rigid", "density")
+_RADIUS: TypeAdapter[Quantity] = TypeAdapter(Radius)
 
 
 class _Checked(type):
@@ -47,7 +48,7 @@ class _CheckedPair(type):
         _one_number(R, source="Pair", key="R")
         pair = Bodies(sphere, flat, R)
         try:
-            TypeAdapter(Radius).validate_python(float(R))
+            _RADIUS.validate_python(float(R))
         except ValidationError as mistake:
             allowed = mistake.errors()[0]["msg"].removeprefix("Value error, ")
             raise InputError(f"{R:g}", source="Pair", key="R", allowed=allowed) from None
