@@ -80,7 +80,12 @@ def _command(name: str) -> Any:
         files, listed = given.pop("files"), given.pop("listed")
         into, out = given.pop("into"), given.pop("out")
         row = {k: given.pop(k) for k in Row.model_fields}
-        jobs = jobs_of(kind, files or [], listed, _set(given))
+        # a default may stand for what the file says: an option counts where it was typed
+        context = given.pop("context")
+        typed = {
+            k: v for k, v in given.items() if context.get_parameter_source(k).name != "DEFAULT"
+        }
+        jobs = jobs_of(kind, files or [], listed, _set(typed))
         if len(jobs) == 1:
             _reduce(kind, jobs[0], into, out, _set(row), {})
         else:
@@ -90,6 +95,7 @@ def _command(name: str) -> Any:
     fields = {**kind.options.model_fields, **Row.model_fields}
     keyword = inspect.Parameter.KEYWORD_ONLY
     parameters = [
+        inspect.Parameter("context", keyword, annotation=typer.Context),
         inspect.Parameter("files", keyword, annotation=RawFiles, default=None),
         inspect.Parameter("listed", keyword, annotation=Listed, default=None),
         inspect.Parameter("into", keyword, annotation=Into, default=None),

@@ -48,6 +48,24 @@ def test_a_list_gives_each_file_its_own_options(tmp_path, capsys):
     assert "speed_change_m_s" in record["values"]
 
 
+def test_an_option_that_was_not_typed_leaves_the_choice_to_the_file(tmp_path):
+    """One column of samples; drop heights by their name, in the third."""
+    pulse(tmp_path / "whole.csv")
+    rows = (tmp_path / "whole.csv").read_text().splitlines()
+    (tmp_path / "a.csv").write_text("\n".join(row.split(",")[1] for row in rows))
+    out = ["--out", str(tmp_path)]
+    given = ["reduce", "table", str(tmp_path / "a.csv"), "--holds", "force", "--rate-hz", "1e4"]
+    assert run([*given, *out]) == 0
+    assert peak(tmp_path, "a") == pytest.approx(800.0, rel=0.01)
+    (tmp_path / "b.csv").write_text(
+        "Nr;Ball;Fallh\u00f6he (cm);1 (cm)\n1;a;50;32\n2;b;50;31\n", "utf-8"
+    )
+    assert run(["reduce", "table", str(tmp_path / "b.csv"), "--holds", "rebounds", *out]) == 0
+    values = json.loads((tmp_path / "b-table.json").read_text())["values"]
+    (e,) = (v["value"] for k, v in values.items() if k.startswith("restitution"))
+    assert e == pytest.approx(0.794, abs=0.002)
+
+
 @pytest.mark.parametrize(
     ("text", "words"),
     [("file,gian\na.csv,2\n", "gian"), ("name\na.csv\n", "name"), ("gain\n2\n", "file"),
