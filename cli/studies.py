@@ -54,7 +54,7 @@ def needed_for(what: str) -> None:
 
 def module(name: str) -> ModuleType:
     """Return a module of the workshop's commands."""
-    return import_module(f".workshop.{name}", __package__)
+    return import_module(f"..studies.commands.{name}", __package__)
 
 
 def add(group: typer.Typer, name: str) -> None:

@@ -21,7 +21,6 @@ STANDING_APART = (
 EXACT = {
     "campaigns/contents.py": "SEALED_FROM _MOST_RATIO",
     "cli/doctor.py": "EXIT_ENVIRONMENT",
-    "cli/workshop/verify.py": "EXIT_MISSED",
     "core/errors.py": "EXIT_INPUT_ERROR EXIT_NOT_CONVERGED",
     "core/inputs/flow_curve.py": "PROOF_STRAIN",
     "core/output.py": "_DIGEST",

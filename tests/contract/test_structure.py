@@ -21,7 +21,6 @@ from scipy.sparse.csgraph import connected_components
 ROOT = Path(__file__).resolve().parents[2]
 PROJECT = tomllib.loads((ROOT / "pyproject.toml").read_text(encoding="utf-8"))
 APART = {"tests", "examples", "docs", "tools", "data", "build"}
-WORKSHOP = (Path("studies"), Path("cli/workshop"))
 KERNELS_KEY = "disallow_untyped_defs"
 
 
@@ -40,7 +39,7 @@ def tree(path: Path) -> ast.Module:
 
 
 def in_workshop(path: Path) -> bool:
-    return any(path.is_relative_to(folder) for folder in WORKSHOP)
+    return path.parts[0] == "studies"
 
 
 def functions(path: Path) -> list[ast.FunctionDef | ast.AsyncFunctionDef]:

@@ -79,7 +79,7 @@ def test_kogut_and_etsion_meet_hertz_at_first_yield_and_their_own_branches():
 
 def test_the_command_measures_writes_and_answers_with_its_exit_code(tmp_path, capsys):
     from dentscope.cli import run
-    from dentscope.cli.workshop.verify import EXIT_MISSED
+    from dentscope.studies.commands.verify import EXIT_MISSED
     from dentscope.studies.verification import Measurement, Result
     from dentscope.studies.verification.result import write_result
 

@@ -8,9 +8,9 @@ from typing import Annotated
 
 import typer
 
-from ..shared.groups import group
-from ..shared.places import writable_folder
-from ..shared.terminal import console, say, show_table
+from ...cli.shared.groups import group
+from ...cli.shared.places import writable_folder
+from ...cli.shared.terminal import console, say, show_table
 
 app = group("Bring your own method: get concealed impacts, score what it says of them.")
 
@@ -18,7 +18,7 @@ app = group("Bring your own method: get concealed impacts, score what it says of
 @app.command()
 def get(folder: Annotated[Path, typer.Argument(help="New folder for the sets.")]) -> None:
     """Write the sets that ship: some with their truths, more whose truths are sealed."""
-    from ...studies.challenge.archive import get as unpack
+    from ..challenge.archive import get as unpack
 
     for part, count in unpack(writable_folder(folder, key="FOLDER")).items():
         typer.echo(f"{folder / part}: {count} sets")
@@ -33,9 +33,9 @@ def score(
     ] = None,
 ) -> None:
     """Score answers against the truths, each held to its seal; 95 % intervals by bootstrap."""
-    from ...studies.challenge.answers import read_answers
-    from ...studies.challenge.archive import sets_of, truths_of
-    from ...studies.challenge.score import scores
+    from ..challenge.answers import read_answers
+    from ..challenge.archive import sets_of, truths_of
+    from ..challenge.score import scores
 
     sets = sets_of(folder)
     said = read_answers(answers, sets)

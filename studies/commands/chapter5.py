@@ -8,13 +8,13 @@ from typing import Any
 
 import typer
 
-from ..laws import laws_named
-from ..shared.terminal import show_table
+from ...cli.laws import laws_named
+from ...cli.shared.terminal import show_table
 
 
 def thesis_rows() -> Any:
     """Return the thesis's rod and its trials, inferred."""
-    from ...studies.thesis import chapter5
+    from ..thesis import chapter5
 
     return chapter5.thesis_rows()
 
@@ -22,8 +22,8 @@ def thesis_rows() -> Any:
 def tables(console: Any, names: list[str]) -> None:
     """Tables 5.2-5.4: our rigid impacts at the stated mass and at the mass that fits."""
     from ...core.inputs.toml_input import read_toml
-    from ...studies.thesis.chapter3 import REFERENCE
-    from ...studies.thesis.chapter5 import simulate_experiment, thesis_rod
+    from ..thesis.chapter3 import REFERENCE
+    from ..thesis.chapter5 import simulate_experiment, thesis_rod
 
     data = read_toml(REFERENCE / "chapter45.toml")
     masses = (data["rod"]["mass_kg"], data["mass_that_fits"]["value_kg"])
@@ -75,8 +75,8 @@ def tables(console: Any, names: list[str]) -> None:
 
 def demonstration(out: Path, seed: int) -> None:
     """Print and draw the oblique drops beside explanations of which nothing is fitted."""
-    from ...studies.thesis.demonstration import demonstrate
-    from ...studies.thesis.demonstration_report import draw, table
+    from ..thesis.demonstration import demonstrate
+    from ..thesis.demonstration_report import draw, table
 
     found = demonstrate(seed=seed)
     for line in table(found):

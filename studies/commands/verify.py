@@ -7,7 +7,7 @@ from typing import Annotated
 
 import typer
 
-from ..shared.places import file_option, folder_option, refuse_beside
+from ...cli.shared.places import file_option, folder_option, refuse_beside
 
 EXIT_MISSED = 1
 """Exit code when a mark is missed."""
@@ -37,7 +37,7 @@ def verify(
     It can be stopped and started again: every solve and every check is kept. Exit code 1 means
     that a mark is missed.
     """
-    from ...studies.verification.checks import CHECKS, check_named
+    from ..verification.checks import CHECKS, check_named
 
     if known:
         refuse_beside(context, "beside --list", "only", "quick", "afresh", "folder", "report")
@@ -45,7 +45,7 @@ def verify(
             typer.echo(f"{check.name:22} {check.title}")
         return 0
     chosen = [check_named(name) for name in only] if only else list(CHECKS)
-    from ...studies.verification import Bench, Effort, run_checks, write_report
+    from ..verification import Bench, Effort, run_checks, write_report
 
     bench = Bench(
         folder=folder,

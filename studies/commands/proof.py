@@ -9,11 +9,11 @@ from typing import Annotated
 
 import typer
 
+from ...cli.campaign_progress import duration
+from ...cli.shared.groups import group
+from ...cli.shared.places import folder_option, one_of, writable_folder
 from ...core.errors import InputError
-from ...studies.proof.names import KINDS, LISTS
-from ..campaign_progress import duration
-from ..shared.groups import group
-from ..shared.places import folder_option, one_of, writable_folder
+from ..proof.names import KINDS, LISTS
 
 app = group("Blind proof of the diagnosis on concealed impacts.")
 
@@ -40,8 +40,8 @@ def run(
 
     from ...core.processes.stopping import STOPS, stopped
     from ...core.processes.threads import one_thread_each
-    from ...studies.proof.lists import LISTS as made
-    from ...studies.proof.run import carry_on, local_workers, run_folder, verdicts_of
+    from ..proof.lists import LISTS as made
+    from ..proof.run import carry_on, local_workers, run_folder, verdicts_of
 
     folder = run_folder(out, which)
     total, before = len(made[which]()), verdicts_of(folder)
@@ -76,13 +76,13 @@ def score(which: _Which = "full", out: _Base = _BASE) -> None:
     """Open the truths of the sets that have a sealed verdict, score, and rewrite docs/proof.md."""
     one_of(which, LISTS, key="--list")
     from ...core.provenance import source_commit
-    from ...studies.proof import page as pages
-    from ...studies.proof.case import open_run
-    from ...studies.proof.follow import read_lines
-    from ...studies.proof.lists import LISTS as made
-    from ...studies.proof.rivals import read_lines as peer_lines
-    from ...studies.proof.run import ROOT, plan_of, run_folder
-    from ...studies.proof.seal import Ledger, SealBroken, tree_hash
+    from ..proof import page as pages
+    from ..proof.case import open_run
+    from ..proof.follow import read_lines
+    from ..proof.lists import LISTS as made
+    from ..proof.rivals import read_lines as peer_lines
+    from ..proof.run import ROOT, plan_of, run_folder
+    from ..proof.seal import Ledger, SealBroken, tree_hash
 
     folder = run_folder(out, which)
     if not (folder / "ledger.jsonl").exists():
@@ -108,15 +108,15 @@ def page() -> None:
     """Rewrite docs/proof.md from the runs that were scored."""
     import json
 
-    from ...studies.proof.page import RUNS
+    from ..proof.page import RUNS
 
     _write_page(json.loads(RUNS.read_text()) if RUNS.exists() else [])
 
 
 def _write_page(runs: list[dict[str, object]]) -> None:
-    from ...studies.proof import page as pages
-    from ...studies.proof.explicit.catalogue import stored
-    from ...studies.proof.run import ROOT
+    from ..proof import page as pages
+    from ..proof.explicit.catalogue import stored
+    from ..proof.run import ROOT
 
     pages.publish(runs, ROOT / "docs", impacts=stored())
 
@@ -134,8 +134,8 @@ def sample(
     """Write sample sets with their truths beside them."""
     one_of(kind, ("", *KINDS), key="--kind")
     writable_folder(out, key="OUT")
-    from ...studies.proof.generators.effects import EFFECTS, OUTSIDE
-    from ...studies.proof.sample import sample as samples
+    from ..proof.generators.effects import EFFECTS, OUTSIDE
+    from ..proof.sample import sample as samples
 
     known = EFFECTS | OUTSIDE if not kind else (EFFECTS if kind == "single" else OUTSIDE)
     one_of(name, ("", *known), key="--name")
@@ -157,9 +157,9 @@ def peers(
 
     from ...core.processes.stopping import STOPS, stopped
     from ...core.processes.threads import one_thread_each
-    from ...studies.peers.compare import compared
-    from ...studies.proof.rivals import read_lines, report, told
-    from ...studies.proof.run import local_workers
+    from ..peers.compare import compared
+    from ..proof.rivals import read_lines, report, told
+    from ..proof.run import local_workers
 
     one_thread_each()
     pool = local_workers(workers)
@@ -190,9 +190,9 @@ def interventions(
     out: Annotated[Path, folder_option("Folder of the sets.")] = Path("build/interventions"),
 ) -> None:
     """Conceal known effects of real recordings, diagnose, and rewrite docs/interventions.md."""
-    from ...studies.interventions.page import counted, write_page
-    from ...studies.interventions.plan import read_plan
-    from ...studies.interventions.told import ask, outcomes
+    from ..interventions.page import counted, write_page
+    from ..interventions.plan import read_plan
+    from ..interventions.told import ask, outcomes
 
     pairs = read_plan()
     for told in ask(pairs, raw=raw, out=out):
@@ -205,7 +205,7 @@ def interventions(
 @app.command()
 def library() -> None:
     """Compute the finite-element impacts that the library lacks."""
-    from ...studies.proof.explicit.catalogue import fill
+    from ..proof.explicit.catalogue import fill
 
     for line in fill():
         typer.echo(line)
@@ -214,8 +214,8 @@ def library() -> None:
 @app.command()
 def laws() -> None:
     """Solve and fit the pairs that the generators' base laws lack."""
-    from ...studies.proof.generators.base_laws import fill
-    from ...studies.proof.generators.benches import BEARING_STEEL, CARBIDE, TARGETS
+    from ..proof.generators.base_laws import fill
+    from ..proof.generators.benches import BEARING_STEEL, CARBIDE, TARGETS
 
     for line in fill(TARGETS, (BEARING_STEEL, CARBIDE)):
         typer.echo(line)

@@ -7,8 +7,8 @@ from typing import Annotated
 
 import typer
 
-from ...studies.thesis.figures.names import CHAPTERS, FIELDS
-from ..shared.places import folder_option, one_of
+from ...cli.shared.places import folder_option, one_of
+from ..thesis.figures.names import CHAPTERS, FIELDS
 
 
 def figures(
@@ -25,8 +25,8 @@ def figures(
     """Draw the thesis again: a picture and a computed line for every figure."""
     chosen = [one_of(name, CHAPTERS, key="--chapter") for name in chapter or CHAPTERS]
     numbers = [one_of(number, FIELDS, key="--fields") for number in fields or ()]
-    from ...studies.thesis.figures.fields import solve_field
-    from ...studies.thesis.figures.gallery import build
+    from ..thesis.figures.fields import solve_field
+    from ..thesis.figures.gallery import build
 
     for number in numbers:
         typer.echo(f"written: {solve_field(number)}")

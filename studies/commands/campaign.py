@@ -7,8 +7,8 @@ from typing import Annotated
 
 import typer
 
-from ..campaign_data import PUBLISHED
-from ..shared.places import file_option, folder_option
+from ...cli.campaign_data import PUBLISHED
+from ...cli.shared.places import file_option, folder_option
 
 _Data = Annotated[
     Path | None,
@@ -26,7 +26,7 @@ def gallery(
     ),
 ) -> None:
     """Draw the campaign: the figures over Sy*, F/F_c of all cases, stress fields."""
-    from ...studies.campaign.gallery import build
+    from ..campaign.gallery import build
 
     for picture in build(_data(data), to, fields=fields):
         typer.echo(f"{picture.number:>10}  {picture.title}: {picture.note}")
@@ -38,7 +38,7 @@ def reproduction(
     to: Annotated[Path, file_option("Report to write.")] = Path("docs/thesis/claims.md"),
 ) -> None:
     """Check the trends that chapter 2 of the thesis tells, one by one."""
-    from ...studies.campaign.reproduction import write
+    from ..campaign.reproduction import write
 
     for trend in write(_data(data), to):
         typer.echo(f"{trend.verdict:>14}  {trend.claim}")

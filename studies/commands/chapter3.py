@@ -11,12 +11,12 @@ if TYPE_CHECKING:
 
 def chapter3(names: list[str], out: Path) -> list[Impact]:
     """Print chapter 3 beside our impacts, write its files and return the impacts."""
+    from ...cli.laws import laws_named
+    from ...cli.shared.terminal import console as new_console
+    from ...cli.shared.terminal import show_table
     from ...impact.files.setup import DEFAULT_LAWS
     from ...impact.files.tables import impact_row, write_csv
-    from ...studies.thesis import chapter3 as thesis
-    from ..laws import laws_named
-    from ..shared.terminal import console as new_console
-    from ..shared.terminal import show_table
+    from ..thesis import chapter3 as thesis
 
     console = new_console()
     found = thesis.bench()
