@@ -152,10 +152,6 @@ class RecordingRules:
         12, "trials that a notebook shows [-]",
         "a screen",
     )  # fmt: skip
-    press_lean: float = rule(
-        0.5, "angle by which a press may be said to lean [degrees]",
-        "bins of an angle are twice as wide",
-    )  # fmt: skip
     highest: tuple[tuple[str, float], ...] = rule(
         (("_rad_s", 1e7), ("_m_s", 2e4), ("_Ns", 1e6), ("_depth_m", 0.1), ("_m", 1.0),
          ("_s", 100.0), ("_N", 1e10)),

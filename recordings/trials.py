@@ -271,7 +271,8 @@ def _check_press(table: TextTable, i: int, values: Mapping[str, Array], problems
     if (
         "angle_deg" in values
         and not np.isnan(values["angle_deg"][i])
-        and (abs(values["angle_deg"][i] - NORMAL) > RULES.press_lean)
+        # all presses lie in one bin of the angle
+        and abs(values["angle_deg"][i] - NORMAL) > 0.5 * RULES.angle_bin
     ):
         problems.add(
             f"{values['angle_deg'][i]:g}", row=row, column="angle_deg",

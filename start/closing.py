@@ -27,6 +27,7 @@ from ..discrepancy.comparison.forward import Point, Simulator
 from ..discrepancy.comparison.problem import Problem
 from ..discrepancy.inference.fit import fit
 from ..discrepancy.inference.window import sharpened
+from ..discrepancy.rules import RULES as DIAGNOSIS
 from ..fitting.case_table import pair_table
 from ..impact.mechanisms.base import Constants, Mechanism
 from ..models.table import PairTable, table_law
@@ -113,8 +114,7 @@ def close(
     out = _kept_out(problem)
     simulator, slower = Simulator(problem), Simulator(_of_cells(problem, ~out))
     base = fit(slower, (), start=verdict.ranking.base)
-    refit = fit(slower, best.mechanisms, start=best, place=best.place, rounds=RULES.closing_rounds)
-    refit = sharpened(slower, refit)
+    refit = sharpened(slower, fit(slower, best.mechanisms, start=best, place=best.place))
     constants, z = refit.grid.values(refit.place), refit.z
     named = simulator.predict(best.mechanisms, [Point(z, constants)])[0]
     plain = simulator.predict((), [Point(base.z)])[0]
@@ -163,7 +163,7 @@ def _kept_out(problem: Problem) -> Mask:
     """Cells of the fastest conditions; none where too little would be left."""
     speed = np.array([c.speed for c in problem.conditions])
     out = (speed > RULES.kept_out * speed.max())[problem.cells.condition]
-    return out if np.sum(~out) >= RULES.closing_numbers else np.zeros_like(out)
+    return out if np.sum(~out) >= DIAGNOSIS.fewest_readings else np.zeros_like(out)
 
 
 def _of_cells(problem: Problem, kept: Mask) -> Problem:

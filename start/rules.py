@@ -15,14 +15,6 @@ class StartRules:
         0.9, "part of the largest speed from which conditions are kept out [-]",
         "chosen: they judge what the rest inferred",
     )  # fmt: skip
-    closing_rounds: int = rule(
-        8, "rounds between constants and the stated numbers [-]",
-        "constants far from neutral move them far",
-    )  # fmt: skip
-    closing_numbers: int = rule(
-        6, "numbers from which constants are inferred [-]",
-        "as a diagnosis names from",
-    )  # fmt: skip
     curve_points: int = limit(
         120, "points of a law's curve [-]",
         "a figure's width",

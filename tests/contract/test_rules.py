@@ -10,7 +10,7 @@ import pytest
 
 ROOT = Path(__file__).resolve().parents[2]
 STAGES = sorted(path.parent.name for path in ROOT.glob("*/rules.py"))
-TUNED, LIMITS = 466, 110
+TUNED, LIMITS = 463, 110
 STANDING_APART = (
     "models/published",  # coefficients that a paper printed
     "campaigns/cases",  # what the published sets are made of
