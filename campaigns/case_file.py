@@ -91,11 +91,6 @@ def write_fields(solution: Solution, folder: Path, *, name: str) -> list[Path]:
     ]
 
 
-def fields_of(case_id: str, folder: Path) -> Sequence[Path]:
-    """Return the files of one case, in the order of their names."""
-    return sorted(folder.glob(f"{case_id[:16]}-*.vtu"))
-
-
 def _put_solution(file: h5py.Group, solution: Solution) -> None:
     # a retried case may have been solved more finely than its specification asks
     file.attrs["accuracy"] = json.dumps(solution.accuracy.as_dict())

@@ -55,7 +55,7 @@ def case(
         )
     from rich.progress import Progress
 
-    from ..start.case_file import ball_mass, read_case
+    from ..start.case_file import read_case, read_pair
 
     problem, accuracy = read_case(file)
     # loaded after the file is read: a mistake in it is told at once
@@ -71,7 +71,7 @@ def case(
         return EXIT_NOT_CONVERGED
     _show(console, solution, uncertainty)
     told = found.measured
-    console.print("\n".join(told.lines(ball_mass(file))))
+    console.print("\n".join(told.lines(read_pair(file)[0].ball_mass)))
     tell_aside(file)
     if found.remark:
         console.print(found.remark)

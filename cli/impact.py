@@ -9,6 +9,7 @@ import typer
 
 from ..core.errors import EXIT_NOT_CONVERGED
 from ..core.inputs.templates import template, write_new
+from ..core.output import write_figure
 from . import studies
 from .laws import laws_named
 from .shared.first_use import tell_first_use
@@ -66,7 +67,6 @@ def _from_file(path: Path, names: list[str], out: Path, *, exact: bool) -> None:
     from ..impact.files.blow import blow_of
     from ..impact.files.setup import read_setup
     from ..impact.files.tables import write_csv, write_hdf5
-    from ..impact.told.draw import save
     from ..impact.told.picture import picture
 
     console = new_console()
@@ -87,7 +87,7 @@ def _from_file(path: Path, names: list[str], out: Path, *, exact: bool) -> None:
         say(line)
     write_csv(out / f"{path.stem}.csv", blow.written(exact=exact))
     write_hdf5(out / f"{path.stem}.h5", traces, about=setup.about)
-    save(picture(blow, exact=exact), out / f"{path.stem}.png")
+    write_figure(picture(blow, exact=exact), out / f"{path.stem}.png", dpi=130)
     written = [out / f"{path.stem}{end}" for end in (".csv", ".h5", ".png")]
     if setup.sweep.count and setup.repeats > 1:
         say(f"the sweep is of first blows: impact.repeats = {setup.repeats} acts above alone")

@@ -20,20 +20,11 @@ class Disk:
         """Make a file that was not there; return its descriptor."""
         return os.open(path, _NEW, mode)
 
-    def open(self, path: Path) -> int:
-        """Open a file that is there, to change it; return its descriptor."""
-        return os.open(path, os.O_RDWR | os.O_CLOEXEC)
-
-    def write(self, file: int, content: bytes, at: int = 0) -> None:
-        """Write all bytes at a place."""
+    def write(self, file: int, content: bytes) -> None:
+        """Write all bytes to a file that was just made."""
         view = memoryview(content)
         while view:
-            count = os.pwrite(file, view, at)
-            view, at = view[count:], at + count
-
-    def resize(self, file: int, size: int) -> None:
-        """Cut a file off, or fill it up with zeros."""
-        os.ftruncate(file, size)
+            view = view[os.write(file, view) :]
 
     def sync(self, file: int) -> None:
         """Wait until what was written to a file would survive a loss of power."""

@@ -46,18 +46,15 @@ _MAGIC = b"dentscope-pending-1\n"
 _DIGEST = 32
 
 
-def cannot_write(error: OSError, path: Path | str, *, allowed: str = "") -> InputError:
+def cannot_write(error: OSError, path: Path | str) -> InputError:
     """Return the one line for a file that cannot be written."""
     if error.errno in NO_ROOM:
-        return InputError(
-            NO_ROOM[error.errno], source=str(path), allowed=allowed or "make room and run again"
-        )
+        return InputError(NO_ROOM[error.errno], source=str(path), allowed="make room and run again")
     reason = error.strerror or str(error) or type(error).__name__
     return InputError(
-        f"cannot be written ({reason.lower()})",
-        source=str(path),
-        allowed=allowed or "a place where you may write",
-    )
+        f"cannot be written ({reason.lower()})", source=str(path),
+        allowed="a place where you may write",
+    )  # fmt: skip
 
 
 def folder_for_output(folder: Path) -> Path:

@@ -8,7 +8,6 @@ the mechanism's parameters, weighted by how well these explain the cells that we
 from __future__ import annotations
 
 import math
-from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -64,19 +63,10 @@ def groups_of(problem: Problem) -> list[Mask]:
 
 def held_out(problem: Problem, fitted: Fit) -> HeldOut:
     """Score an explanation with each group left out in turn."""
-    return _scored(problem, fitted, _folds(problem))
-
-
-def _folds(problem: Problem) -> list[Mask]:
-    return [test for test in groups_of(problem) if test.any() and not test.all()]
-
-
-def _scored(problem: Problem, fitted: Fit, folds: Sequence[Mask]) -> HeldOut:
-    """Score predictions of groups of cells."""
     squares, count = [], 0
     whole = Whole.of(fitted.linear, fitted.residuals)
     noise = np.sqrt(np.diag(fitted.linear.noise))
-    for test in folds:
+    for test in (t for t in groups_of(problem) if t.any() and not t.all()):
         miss = _missed(whole, test)
         squares.append((miss / noise[test]) ** 2)
         count += int(np.sum(problem.cells.count[test]))

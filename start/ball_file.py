@@ -120,7 +120,6 @@ def _tip(setup: Setup, name: str) -> list[str]:
 
 def _of_case(content: Mapping[str, Any], file: Path) -> ExportedBall:
     found, pair = read_pair(file)
-    mass = 4.0 / 3.0 * math.pi * pair.R**3 * pair.sphere.density
     law = "fitted" if pair.perfectly_plastic else FOLLOWING
     friction = value_of(found.friction.coefficient, 0.0)
-    return ExportedBall(pair, mass, friction, (), law, left_aside(content, _OF_CASE))
+    return ExportedBall(pair, found.ball_mass, friction, (), law, left_aside(content, _OF_CASE))

@@ -14,7 +14,7 @@ from ..core.inputs.flow_tables import HardeningTable, HeatingTable, RateTable
 from ..core.inputs.input_file import file_beside
 from ..core.inputs.toml_input import InputTable, Listed, read_model, read_toml
 from ..core.material import Material, Pair
-from ..core.rig import STRAINS, STRENGTHS, FrictionTable, MaterialTable
+from ..core.rig import STRAINS, STRENGTHS, FrictionTable, MaterialTable, value_of
 
 _SpeedRow = Annotated[tuple[float, float], Listed]
 _CURVE_COLUMNS = ("plastic_strain", "stress_Pa")
@@ -111,6 +111,11 @@ class CaseFile(InputTable):
     accuracy: _Accuracy = _Accuracy()
     """How finely it is solved."""
 
+    @property
+    def ball_mass(self) -> float:
+        """Mass of the sphere [kg], nan where no density of it is stated."""
+        return 4.0 / 3.0 * math.pi * self.radius_m**3 * value_of(self.sphere.density_kg_m3)
+
 
 def read_flow_curve(path: Path) -> FlowCurve:
     """Read a table of true stress over plastic strain: columns plastic_strain and stress_Pa.
@@ -177,21 +182,6 @@ def read_pair(file: Path) -> tuple[CaseFile, Pair]:
     return content, Pair(sphere, flat, content.radius_m)
 
 
-def ball_mass(file: Path) -> float:
-    """Mass of the sphere of CASE.toml [kg], nan where no density of it is stated.
-
-    Raises
-    ------
-    InputError
-        Every mistake, a line each.
-    """
-    content, _ = read_pair(file)
-    density = content.sphere.density_kg_m3
-    if density is None:
-        return math.nan
-    return 4.0 / 3.0 * math.pi * content.radius_m**3 * density.value
-
-
 def _check_first(first: float, onset: float, last: float, *, source: str) -> None:
     """Refuse what the round-off of coordinates of the order of R would hide."""
     # loaded with the compiler of impacts, which a refused file does without
@@ -244,7 +234,7 @@ def read_case(file: Path, *, level: str = "") -> tuple[Any, Any]:
             depths=depths,
             unload_from=unload,
             speeds=content.load.speeds,
-            friction=rubbing.value if (rubbing := content.friction.coefficient) else 0.0,
+            friction=value_of(content.friction.coefficient, 0.0),
             snapshots=(last,),
             profiles=tuple(depths[k] for k in range(5, 60, 6)),
         )

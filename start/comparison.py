@@ -12,6 +12,7 @@ import numpy as np
 
 from ..core.errors import InputError
 from ..core.material import Pair
+from ..core.output import figure
 from ..core.tables import frame, html_table
 from ..models import LAWS, DomainWarning, critical_depth, law_named
 from ..models.base import ContactLaw
@@ -235,10 +236,7 @@ def _rows(pair: Pair, laws: Sequence[ContactLaw], last: float) -> tuple[LawRow, 
 
 def drawn(found: LawComparison) -> Figure:
     """Draw the laws to use in colour, the others thin and grey."""
-    from matplotlib.figure import Figure
-
-    figure = Figure(figsize=(10.0, 7.2), layout="constrained")
-    axes = figure.subplots(2, 2)
+    made, axes = figure(2, 2, size=(10.0, 7.2))
     pair = found.pair
     stiffness = 4.0 / 3.0 * pair.E_reduced * np.sqrt(pair.R)
     names = list(dict.fromkeys(row.law for row in found.rows))
@@ -265,5 +263,5 @@ def drawn(found: LawComparison) -> Figure:
         axis.grid(alpha=0.3)
     handles, labels = axes[0, 0].get_legend_handles_labels()
     axes[0, 0].legend(handles[::-1], labels[::-1], title="best first", fontsize=8, title_fontsize=8)
-    figure.suptitle(found.finding.replace("\n", "; "), fontsize=10)
-    return figure
+    made.suptitle(found.finding.replace("\n", "; "), fontsize=10)
+    return made

@@ -8,6 +8,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from .. import fem
+from ..core.output import figure
 from ..core.tables import frame, html_table
 from .case_file import read_case
 from .measured import MeasuredContact, measured
@@ -74,9 +75,7 @@ class Solved:
 
     def plot(self) -> Figure:
         """Return force, contact radius, the sphere's share and the mean pressure."""
-        from matplotlib.figure import Figure
-
-        made = Figure(figsize=(9.0, 6.6), layout="constrained")
+        made, grid = figure(2, 2, size=(9.0, 6.6))
         pair, c, u = self.solution.problem.pair, self.solution.loading, self.uncertainty
         strength = pair.Sy_min if pair.Sy_min < float("inf") else pair.E_reduced
         over = "weaker strength" if pair.Sy_min < float("inf") else "E'"
@@ -87,9 +86,7 @@ class Solved:
             (c.sphere_share, u.sphere_share, "sphere's share of the approach [-]", []),
             (c.hardness / strength, u.hardness / strength, f"mean pressure over {over} [-]", []),
         )  # fmt: skip
-        for k, (axis, (y, error, label, back)) in enumerate(
-            zip(made.subplots(2, 2).flat, panels, strict=True)
-        ):
+        for k, (axis, (y, error, label, back)) in enumerate(zip(grid.flat, panels, strict=True)):
             x = c.delta / pair.R
             axis.plot(x, y, "C0", label="loading")
             axis.fill_between(x, y - error, y + error, color="C0", alpha=0.25, lw=0.0,

@@ -3,8 +3,6 @@
 from __future__ import annotations
 
 import base64
-import csv
-import io
 import json
 from dataclasses import dataclass
 from pathlib import Path
@@ -12,7 +10,8 @@ from pathlib import Path
 from jinja2 import Environment, FileSystemLoader, StrictUndefined
 
 from ... import __version__
-from ...core.output import write_file
+from ...core.observables import OBSERVABLES
+from ...core.output import csv_text, write_file
 from ..findings import Verdict
 from .figures import comparison, correction
 from .series import STATED, WITH, WITHOUT, SeriesPoint
@@ -98,24 +97,14 @@ def panels_of(story: Story) -> tuple[Panel, ...]:
             if n and len({p.x[against.key] for p in points}) < 2:
                 continue
             svg = comparison(points, against, story.strikers, key=f"f{k}x{n}")
-            found.append(Panel(name, _label(points[0]), against.key, svg))
+            found.append(Panel(name, OBSERVABLES[name].label, against.key, svg))
     return tuple(found)
-
-
-def _label(point: SeriesPoint) -> str:
-    from ...core.observables import OBSERVABLES
-
-    return OBSERVABLES[point.observable].label
 
 
 def table(points: tuple[SeriesPoint, ...]) -> str:
     """Return every number of the figures as CSV."""
     rows = [p.row() for p in points]
-    stream = io.StringIO()
-    writer = csv.DictWriter(stream, list(rows[0]), lineterminator="\n")
-    writer.writeheader()
-    writer.writerows(rows)
-    return stream.getvalue()
+    return csv_text((row.values() for row in rows), header=rows[0])
 
 
 def _link(kind: str, text: str) -> str:

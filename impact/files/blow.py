@@ -246,8 +246,6 @@ def blow(
     """
     given = None if speed is None else _numbers(speed)
     speeds = None if given is None or given.ndim == 0 else given.ravel()
-    if speeds is not None and not (speeds.size and np.all(np.isfinite(speeds) & (speeds > 0.0))):
-        raise InputError(f"{speed}", key="speed", allowed="numbers above 0 [m/s]")
     if given is not None:
         if "impact_speed_m_s" in changes:
             raise InputError(f"{speed}", key="speed", allowed="left out beside impact_speed_m_s")
@@ -272,13 +270,17 @@ def _table(setup: Setup, laws: Sequence[ContactLaw], speeds: NDArray[Any]) -> Im
 
 
 def _numbers(speed: Any) -> NDArray[Any]:
-    """What was given as speed, as numbers."""
+    """What was given as speed, as numbers; one alone is the set-up's to check."""
     try:
-        if not isinstance(speed, str):
-            return np.asarray(speed, dtype=float)
+        if isinstance(speed, str):
+            raise TypeError
+        found = np.asarray(speed, dtype=float)
     except (TypeError, ValueError):
-        pass
-    raise InputError(repr(speed), key="speed", allowed="a number above 0 [m/s], or several")
+        allowed = "a number above 0 [m/s], or several"
+        raise InputError(repr(speed), key="speed", allowed=allowed) from None
+    if found.ndim and not (found.size and np.all(np.isfinite(found) & (found > 0.0))):
+        raise InputError(f"{speed}", key="speed", allowed="numbers above 0 [m/s]")
+    return found
 
 
 def _wanted(*given: Laws) -> list[ContactLaw]:

@@ -31,10 +31,8 @@ def curves_in(found: SetupFile) -> list[str]:
     ]
 
 
-def scene_in(
-    found: SetupFile, numbers: RigNumbers, law: ContactLaw, *, source: str, speed: float | None
-) -> Scene:
-    """Return the scene; `speed` replaces the file's normal approach speed [m/s]."""
+def scene_in(found: SetupFile, numbers: RigNumbers, law: ContactLaw, *, source: str) -> Scene:
+    """Return the scene of one law."""
     impact, target, of = found.impact, found.target, numbers.of
     name = found.striker
     rod = found.strikers[name].shape == "rod"
@@ -71,7 +69,7 @@ def scene_in(
             error.message, source=source, key="impact.modes", allowed=error.allowed
         ) from None
     scene = Scene(
-        law, pair, striker, _approach(impact, of, rod=rod, speed=speed),
+        law, pair, striker, _approach(impact, of, rod=rod),
         gravity=of["gravity_m_s2"], friction=Friction(of.get("friction.coefficient", 0.0)),
         force=ForceTransform(radiation=radiation, edge=edge), modes=modes, support=support,
     )  # fmt: skip
@@ -84,15 +82,13 @@ def scene_in(
         ) from None
 
 
-def _approach(
-    impact: ImpactTable, of: Mapping[str, float], *, rod: bool, speed: float | None
-) -> Approach:
+def _approach(impact: ImpactTable, of: Mapping[str, float], *, rod: bool) -> Approach:
     """The motion at touch; a sphere's angle is that of its velocity, a rod's that of its axis."""
     angle = math.radians(impact.angle_deg)
-    stated = of.get("impact.impact_speed_m_s", math.nan) if speed is None else speed
     normal, along = speeds_at_touch(
-        stated, of.get("impact.drop_height_m", math.nan), angle, rod, gravity=of["gravity_m_s2"]
-    )
+        of.get("impact.impact_speed_m_s", math.nan), of.get("impact.drop_height_m", math.nan),
+        angle, rod, gravity=of["gravity_m_s2"],
+    )  # fmt: skip
     return Approach(
         float(normal), angle if rod else math.pi / 2.0,
         of.get("impact.approach_tangential_m_s", float(along)), of["impact.approach_spin_rad_s"],

@@ -139,14 +139,14 @@ class Setup:
     pair: Pair | None = None
     """In place of the file's two bodies."""
 
-    def plain(self, law: ContactLaw, *, speed: float | None = None) -> Scene:
-        """Return the scene of one law; `speed` replaces the file's normal approach speed [m/s]."""
-        found = scene_in(self.file, self.numbers, law, source=self.source, speed=speed)
+    def plain(self, law: ContactLaw) -> Scene:
+        """Return the scene of one law."""
+        found = scene_in(self.file, self.numbers, law, source=self.source)
         return found if self.pair is None else found.with_(pair=self.pair)
 
-    def scene(self, law: ContactLaw, *, speed: float | None = None) -> Scene:
+    def scene(self, law: ContactLaw) -> Scene:
         """Return the scene of `plain` with the mechanisms that act in it."""
-        plain = self.plain(law, speed=speed)
+        plain = self.plain(law)
         (scene,) = self.acting(plain).attached([plain])
         return scene
 

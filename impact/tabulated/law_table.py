@@ -47,7 +47,7 @@ DEEPEST = RULES.law_deepest
 _FORCE, _RADIUS, _SPHERE, _FLAT, _EXPONENT = range(5)
 _COLUMNS = 5
 _KEPT = RULES.tables_kept
-_TABLES: dict[tuple[str, bytes, float], TableCells] = {}
+_TABLES: dict[tuple[str, bytes], TableCells] = {}
 
 _OCTAVE, _OCTAVES = N_COMMON, N_COMMON + 1
 _TABLE = N_COMMON + 2
@@ -117,12 +117,9 @@ class TabulatedLaw(ContactLaw):
     law
         The law itself; its recovery is a power of the depth above the residual depth, and its
         contact radius one of the depth alone.
-    error
-        Stated error of the table.
     """
 
     law: ContactLaw
-    error: float = ERROR
 
     @property
     def kernels(self) -> Kernels:
@@ -147,11 +144,11 @@ class TabulatedLaw(ContactLaw):
             The law recovers otherwise than by a power, or jumps or oscillates.
         """
         par = np.ascontiguousarray(self.law.parameters(pair), dtype=float)
-        key = (self.law.name, par.tobytes(), self.error)
+        key = (self.law.name, par.tobytes())
         if key not in _TABLES:
             if len(_TABLES) >= _KEPT:
                 _TABLES.clear()
-            _TABLES[key] = _table(self.law, par, pair.R, self.error)
+            _TABLES[key] = _table(self.law, par, pair.R)
         found = _TABLES[key]
         if not found.outcome.completed:
             raise InputError(
@@ -162,8 +159,8 @@ class TabulatedLaw(ContactLaw):
         return found
 
 
-def tabulated(law: ContactLaw, *, error: float = ERROR) -> TabulatedLaw:
-    """Return a law that answers from a table within `error` of `law`.
+def tabulated(law: ContactLaw) -> TabulatedLaw:
+    """Return a law that answers from a table within `ERROR` of `law`.
 
     Examples
     --------
@@ -181,11 +178,11 @@ def tabulated(law: ContactLaw, *, error: float = ERROR) -> TabulatedLaw:
     return TabulatedLaw(
         name=law.name, title=law.title, source=law.source, equations=law.equations,
         standing=law.standing, domain=law.domain, breaks=law.breaks, regime=law.regime,
-        read=law.read, law=law, error=error,
+        read=law.read, law=law,
     )  # fmt: skip
 
 
-def _table(law: ContactLaw, par: Array, R: float, error: float) -> TableCells:
+def _table(law: ContactLaw, par: Array, R: float) -> TableCells:
     kernels = law.kernels
     if not _recovers_by_power(kernels.unloading, kernels.residual, par, R):
         raise InputError(
@@ -210,7 +207,7 @@ def _table(law: ContactLaw, par: Array, R: float, error: float) -> TableCells:
         columns,
         0.0,
         float(count),
-        tolerance=error,
+        tolerance=ERROR,
         start=count,
         relative=(_FORCE, _RADIUS),
         bins=16 * count,

@@ -8,7 +8,6 @@ from pathlib import Path
 from types import MappingProxyType
 
 import numpy as np
-from matplotlib.figure import Figure
 
 from ...core.observables import OBSERVABLES
 from ...core.output import figure, panels, write_figure
@@ -76,7 +75,7 @@ def draw_sweep(
     fixed = ", ".join(f"{CONDITIONS[k]} = {v[0]:g}" for k, v in swept.items() if k != across)
     made.suptitle(fixed, fontsize=9)
     axes[0].legend(fontsize=7)
-    save(made, path)
+    write_figure(made, path, dpi=130)
 
 
 def swept_in_vain(swept: Mapping[str, Sequence[float]], curves: Mapping[str, Impacts]) -> list[str]:
@@ -120,9 +119,4 @@ def draw_alpha(striker: Striker, frictions: Sequence[float], path: Path) -> None
     )
     axes[0, 0].legend(fontsize=8)
     axes[0, 0].grid(alpha=0.3)
-    save(made, path)
-
-
-def save(made: Figure, path: Path) -> None:
-    """Write a figure, its folder made if need be."""
     write_figure(made, path, dpi=130)

@@ -64,12 +64,6 @@ class RigidTouch(Generic[Number]):
     struck_vy: Number | float = 0.0
 
     @property
-    def mobility(self) -> Array:
-        """M with (velocity change of the contact point) = M (impulse), shape (2, 2) [1/kg]."""
-        xx = 1.0 / self.m + self.s**2 / self.I + _TURNING * self.lightness
-        return np.array([[xx, self.across], [self.across, self.along]])
-
-    @property
     def across(self) -> Number:
         """M_xy [1/kg]."""
         return -self.c * self.s / self.I

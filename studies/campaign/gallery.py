@@ -8,7 +8,6 @@ from pathlib import Path
 import numpy as np
 
 from ...campaigns import RULES, CaseRecord, read_curves
-from ...campaigns.case_file import fields_of
 from ...core.arrays import Array
 from ...core.material import Pair
 from ...core.output import write_file
@@ -146,7 +145,7 @@ def _fields(records: Sequence[CaseRecord], folder: Path) -> list[Picture]:
     drawn = []
     for number, ratio in _PICTURE_CASES:
         for record in records:
-            files = fields_of(record.id, folder)
+            files = sorted(folder.glob(f"{record.id[:16]}-*.vtu"))
             if files and abs(np.log(record.case.pair.Sy_ratio / ratio)) < 1e-6:
                 drawn.append(_section(number, record, files[0]))
                 break

@@ -13,11 +13,10 @@ import numpy as np
 from ...core.arrays import Array
 from ...core.inputs.toml_input import read_toml
 from ...core.material import Material
-from ...core.output import figure
+from ...core.output import figure, write_figure
 from ...impact.integrate import strike
 from ...impact.result import Impact
 from ...impact.scene import Approach, Scene, Striker, scene_of
-from ...impact.told.draw import save
 from ...models.base import ContactLaw
 
 REFERENCE = Path(__file__).resolve().parents[2] / "data" / "reference"
@@ -186,4 +185,4 @@ def draw_chapter3(found: Bench, curves: Sequence[Curve], path: Path) -> None:
         axis.set(xlabel="drop height [m]", ylabel=label, ylim=(0.0, None))
         axis.grid(alpha=0.3)
     axes[0, 1].legend(fontsize=7, ncols=2, title="crosses: measured", title_fontsize=7)
-    save(made, path)
+    write_figure(made, path, dpi=130)

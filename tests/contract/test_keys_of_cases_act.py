@@ -12,7 +12,7 @@ import tomlkit
 from dentscope.cli import run
 from dentscope.cli.case import _tell_aside
 from dentscope.cli.shared.keys import keys_of
-from dentscope.start.case_file import ball_mass, read_case
+from dentscope.start.case_file import read_case, read_pair
 
 CASE = {
     "radius_m": 0.005,
@@ -70,7 +70,7 @@ def of_a_case(content, folder):
     file = folder / "CASE.toml"
     file.write_text(tomlkit.dumps(content))
     problem, accuracy = read_case(file)
-    return repr(problem), repr(accuracy), repr(ball_mass(file)), file
+    return repr(problem), repr(accuracy), repr(read_pair(file)[0].ball_mass), file
 
 
 @pytest.mark.parametrize("key", keys_of("case"), ids=lambda k: f"{k.table}{k.name}")

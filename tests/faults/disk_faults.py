@@ -35,9 +35,7 @@ from dentscope.core.disk import Disk
 from dentscope.core.output import write_figure, write_file, write_files
 from dentscope.fem import Counters, Curve, Solution
 
-CALLS = (
-    "create", "open", "write", "resize", "sync", "rename", "remove", "make_folder", "sync_folder",
-)  # fmt: skip
+CALLS = ("create", "write", "sync", "rename", "remove", "make_folder", "sync_folder")
 _SECTOR = 512
 OLDER = Path(__file__).resolve().parents[1] / "data" / "campaign-format-2.h5"
 
@@ -55,8 +53,8 @@ class Faulty:
                 return real(disk, *arguments)
             self.hit = name
             if name == "write":  # a part of it reaches the disk
-                file, content, *place = arguments
-                real(disk, file, content[: len(content) // 2], *place)
+                file, content = arguments
+                real(disk, file, content[: len(content) // 2])
             raise OSError(self.code, os.strerror(self.code))
 
         return call
@@ -96,15 +94,8 @@ class Powered:
     def _create(self, file, path, *_):
         self.shown[path] = self.open[file] = File(b"", b"")
 
-    def _open(self, file, path):
-        self.open[file] = self.shown[path]
-
-    def _write(self, _, file, content, at=0):
-        old = self.open[file].shown.ljust(at, b"\0")
-        self.open[file].shown = old[:at] + bytes(content) + old[at + len(content) :]
-
-    def _resize(self, _, file, size):
-        self.open[file].shown = self.open[file].shown[:size].ljust(size, b"\0")
+    def _write(self, _, file, content):
+        self.open[file].shown += bytes(content)
 
     def _sync(self, _, file):
         self.open[file].safe = self.open[file].shown

@@ -14,7 +14,8 @@ from dentscope.cli.case import tell_aside
 from dentscope.core import InputError
 from dentscope.core.inputs.templates import template
 from dentscope.models import law_named
-from dentscope.start.case_file import ball_mass, read_case, read_pair
+from dentscope.start.ball_file import read_ball
+from dentscope.start.case_file import read_case, read_pair
 from dentscope.start.measured import brinell, loading_work
 
 GOOD = """
@@ -285,6 +286,10 @@ def test_the_work_of_a_loading_is_exact_for_hertz():
 def test_the_mass_of_the_ball_is_that_of_its_density(tmp_path):
     path = tmp_path / "case.toml"
     path.write_text(GOOD.replace("[flat]", "density_kg_m3 = 7800\n[flat]"))
-    assert ball_mass(path) == pytest.approx(4.0 / 3.0 * np.pi * 0.002**3 * 7800.0)
+    assert read_pair(path)[0].ball_mass == pytest.approx(4.0 / 3.0 * np.pi * 0.002**3 * 7800.0)
     path.write_text(GOOD)
-    assert np.isnan(ball_mass(path))
+    assert np.isnan(read_pair(path)[0].ball_mass)
+    # one that does not deform weighs as much, for the programs that are given it too
+    rigid = GOOD.replace("E_Pa = 200e9\nnu = 0.3\nSy_Pa = 900e6", "rigid = true", 1)
+    path.write_text(rigid.replace("[flat]", "density_kg_m3 = 7800\n[flat]"))
+    assert read_ball(path).mass == pytest.approx(4.0 / 3.0 * np.pi * 0.002**3 * 7800.0)
