@@ -16,6 +16,8 @@ _KNOWN_UNITS = {unit for units in UNITS.values() for unit in units if unit} | {
 _CAPITALS = {unit.upper(): unit for unit in sorted(_KNOWN_UNITS, reverse=True)}
 _BRACKETED = re.compile(r"[\[(<]\s*([^\])>]+?)\s*[\])>]")
 _AT_END = re.compile(r"(\S+?)\s*(?:[/,]|\bin\b)\s*([^\s/,]+(?:/[^\s/,]+)?)\s*$")
+_WITHIN = re.compile(r"\s*[,;:=]\s*|\s+(?=[\d.+-])|(?<=\d)\s+")
+"""Between name, number and unit of a header line that is one cell."""
 WORDS = {
     "sec": "s", "secs": "s", "second": "s", "seconds": "s", "newton": "N", "newtons": "N",
     "volt": "V", "volts": "V", "metre": "m", "metres": "m", "meter": "m", "meters": "m",
@@ -54,8 +56,15 @@ class Heading:
     separator: str = ""
 
     def quantity(self, word: str) -> tuple[float, str] | None:
-        """Return number and unit of the first header line whose name begins with a word."""
-        for name, *values in self.said:
+        """Return number and unit of the first header line whose name begins with a word.
+
+        Examples
+        --------
+        >>> Heading(said=(("Area: 38.2 mm2",),)).quantity("area")
+        (38.2, 'mm2')
+        """
+        for line in self.said:
+            name, *values = line if len(line) > 1 else _WITHIN.split(line[0])
             if name.lower().startswith(word) and values:
                 try:
                     return float(values[0]), values[1] if len(values) > 1 else unit_in(name)

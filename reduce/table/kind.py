@@ -6,6 +6,7 @@ signals take longer to load than a small file to reduce.
 
 from __future__ import annotations
 
+import math
 from datetime import date
 from pathlib import Path
 from typing import TYPE_CHECKING, NamedTuple
@@ -19,7 +20,7 @@ from ..measured import Measured
 from ..pictures import draw_refused
 from ..reduced import Reduced
 from ..rules import RULES
-from ..shared.units import LENGTH
+from ..shared.units import LENGTH, TIME
 from .cells import DAY
 from .file import Columns, read_columns
 from .options import TableOptions
@@ -229,6 +230,7 @@ def _bounces(path: Path, table: Columns, options: TableOptions) -> Reduced:
     )  # fmt: skip
 
 
+_HERTZ = {"Hz": 1.0, "kHz": 1e3, "MHz": 1e6}
 _DAY_0 = date(1899, 12, 30).toordinal()
 """From which spreadsheets count days."""
 
@@ -273,16 +275,24 @@ def _series(table: Columns, options: TableOptions) -> Series:
     return Series(time[ahead], value[ahead], column, missed, marks, int((~ahead).sum()))
 
 
+def _stated_rate(table: Columns) -> float | None:
+    """Samples a second by the header's line of a sampling rate, frequency or interval."""
+    number, unit = table.heading.quantity("sampl") or (math.nan, "")
+    number *= _HERTZ.get(unit, TIME.get(unit, math.nan))
+    return (number if unit in _HERTZ else 1.0 / number) if number > 0.0 else None
+
+
 def _times(table: Columns, options: TableOptions, *, alone: bool) -> Array:
     """Times of all rows [s]: of their column, or of rows that are as far apart as is said."""
     rows = np.arange(table.values.shape[0], dtype=float)
     if alone:
-        if options.rate_hz is None:
+        rate = options.rate_hz or _stated_rate(table)
+        if rate is None:
             raise InputError(
                 "no column of the time", source=table.source, key="rate_hz",
                 allowed="samples a second",
             )  # fmt: skip
-        return rows / options.rate_hz
+        return rows / rate
     where = table.find(options.time, key="time")
     second = table.factor(where, "time", given=options.time_unit, key="time_unit", default="s")
     given = table.values[:, where]

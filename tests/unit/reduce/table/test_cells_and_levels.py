@@ -128,6 +128,19 @@ def test_samples_alone_with_a_rate(tmp_path):
         run(path)
 
 
+@pytest.mark.parametrize(
+    "line", ["Sampling Rate,10,kHz", "Sample Interval: 100 us", "Sampling frequency (Hz),10000"]
+)
+def test_samples_alone_with_a_header_that_says_their_rate(tmp_path, line):
+    path = tmp_path / "a.csv"
+    path.write_text("\n".join([line, "Force (N)", *(f"{v:.3f}" for v in half_sine())]))
+    assert run(path).values["impulse_N_s"].value == pytest.approx(2.037, abs=0.003)
+    for wrong in ("Sampling Rate,0,Hz", "Sampling Rate,nan,Hz", "Sampling Rate,10,furlong"):
+        path.write_text("\n".join([wrong, "Force (N)", *(f"{v:.3f}" for v in half_sine())]))
+        with pytest.raises(InputError, match=r"rate_hz: no column of the time"):
+            run(path)
+
+
 def labview(times):
     value = half_sine()
     head = ["LabVIEW Measurement\t", "Separator\tTab", f"X_Columns\t{'One' if times else 'No'}",
