@@ -15,7 +15,7 @@ The stages, in the order in which a result passes through them; each is loaded w
     core         materials, input errors, outcomes, provenance
     fem          gmsh mesh and finite-strain contact solve of a sphere and a flat
     models       closed-form contact laws behind one contract
-    campaigns    hundreds of finite-element cases into one HDF5 file
+    campaigns    hundreds of finite-element cases, a file each; published as parts
     fitting      closed forms fitted to a campaign
     impact       a sphere or a round-ended rod striking the flat
     recordings   sets of measured impacts, checked and audited

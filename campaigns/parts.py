@@ -1,12 +1,12 @@
 """A published part: many cases as a few long columns, which compress and which any tool can read.
 
 A run keeps each case in a file of its own; most of its bytes are headers. A part holds the same
-cases as tables: `cases` (one row a case), `loading` (one row a
-depth, all cases below each other), `unloadings` (one row an unloading), `unloading_curves`,
-`craters`, `tips`, `profile_sphere` and `profile_flat`. A table's first column counts the rows of
-the table above it that its rows belong to: `case` counts rows of `cases`, `unloading` of
-`unloadings`, `profile` depths of a case. Columns of floating-point numbers of the curves and shapes
-are in single precision (relative error below 6e-8); scalars are in double precision.
+cases as tables: `cases` (one row a case), `loading` (one row a depth, all cases below each other),
+`unloadings` (one row an unloading), `unloading_curves`, `craters`, `tips`, `profiles` (one row a
+depth), `profile_sphere` and `profile_flat`. A table's first column counts the rows of the table
+above it that its rows belong to: `case` counts rows of `cases`, `unloading` of `unloadings`,
+`profile` of `profiles`. Columns of floating-point numbers of the curves and shapes are in single
+precision (relative error below 6e-8); scalars are in double precision.
 
 A part is sealed as a case's file is, and holds a digest of each case as it is read. Parts of
 format 1 are held to `SHA256SUMS` and `DIGESTS` beside them.

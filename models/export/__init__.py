@@ -1,4 +1,4 @@
-"""The closed form for other programs: as source in five languages, as a normal model of LAMMPS."""
+"""The closed form for other programs: as source in six languages, as a normal model of LAMMPS."""
 
 from .lammps import STYLE
 from .sources import NAME, write_sources
