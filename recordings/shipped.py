@@ -18,7 +18,7 @@ def shipped_sets() -> tuple[str, ...]:
 def set_folder(given: Path) -> Path:
     """Return the folder of a set: the one given, or the shipped set of that name.
 
-    A folder of the user's goes before a shipped set of the same name.
+    A folder of the user's goes before a shipped set of the same name, but for one of its results.
 
     Raises
     ------
@@ -30,7 +30,8 @@ def set_folder(given: Path) -> Path:
     >>> set_folder(Path("kharaz-2001-oblique")).parts[-3:]
     ('data', 'recordings', 'kharaz-2001-oblique')
     """
-    if given.exists() or len(given.parts) != 1:
+    results = (given / "verdict.json").exists() and not (given / "set.toml").exists()
+    if len(given.parts) != 1 or (given.exists() and not (results and given.name in shipped_sets())):
         return given
     if given.name not in shipped_sets():
         raise InputError(

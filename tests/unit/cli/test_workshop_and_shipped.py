@@ -1,5 +1,7 @@
 """Commands of the workshop where it is absent; recording sets and examples that are installed."""
 
+from pathlib import Path
+
 import pytest
 import typer
 from dentscope.cli import run, studies
@@ -69,6 +71,11 @@ def test_a_folder_of_the_user_goes_before_a_shipped_name(tmp_path, monkeypatch):
     for name in ("leeb-steel-300hv", "other"):
         assert set_folder((tmp_path / name).relative_to(tmp_path)).resolve() == tmp_path / name
     assert set_folder(tmp_path / "absent" / "set") == tmp_path / "absent" / "set"
+    results = tmp_path / "leeb-steel-300hv" / "verdict.json"  # of diagnose --out leeb-steel-300hv
+    results.write_text("{}")
+    assert set_folder(Path("leeb-steel-300hv")).parent.name == "recordings"
+    results.with_name("set.toml").write_text("")
+    assert set_folder(Path("leeb-steel-300hv")).resolve() == results.parent
 
 
 def test_examples_are_listed_and_copied(tmp_path, capsys):
