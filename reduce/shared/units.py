@@ -17,6 +17,7 @@ LENGTH = {
 }  # fmt: skip
 """With both signs for micro."""
 TIME = {"s": 1.0, "ms": 1e-3, "us": 1e-6, "µs": 1e-6, "μs": 1e-6, "ns": 1e-9, "min": 60.0}
+HERTZ = {"Hz": 1.0, "kHz": 1e3, "MHz": 1e6}
 UNITS: dict[str, dict[str, float]] = {
     "time": TIME,
     "length": LENGTH,

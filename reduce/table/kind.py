@@ -20,7 +20,7 @@ from ..measured import Measured
 from ..pictures import draw_refused
 from ..reduced import Reduced
 from ..rules import RULES
-from ..shared.units import LENGTH, TIME
+from ..shared.units import HERTZ, LENGTH, TIME
 from .cells import DAY
 from .file import Columns, read_columns
 from .options import TableOptions
@@ -230,7 +230,6 @@ def _bounces(path: Path, table: Columns, options: TableOptions) -> Reduced:
     )  # fmt: skip
 
 
-_HERTZ = {"Hz": 1.0, "kHz": 1e3, "MHz": 1e6}
 _DAY_0 = date(1899, 12, 30).toordinal()
 """From which spreadsheets count days."""
 
@@ -278,8 +277,8 @@ def _series(table: Columns, options: TableOptions) -> Series:
 def _stated_rate(table: Columns) -> float | None:
     """Samples a second by the header's line of a sampling rate, frequency or interval."""
     number, unit = table.heading.quantity("sampl") or (math.nan, "")
-    number *= _HERTZ.get(unit, TIME.get(unit, math.nan))
-    return (number if unit in _HERTZ else 1.0 / number) if number > 0.0 else None
+    number *= HERTZ.get(unit, TIME.get(unit, math.nan))
+    return (number if unit in HERTZ else 1.0 / number) if number > 0.0 else None
 
 
 def _times(table: Columns, options: TableOptions, *, alone: bool) -> Array:
