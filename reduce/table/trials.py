@@ -171,8 +171,9 @@ def _heights(table: Columns, value: str, unit: str) -> tuple[Array, float]:
 
 
 def _drops(table: Columns) -> int:
-    """The first column that is named as a drop height."""
-    named = [k for k, n in enumerate(table.names) if re.search(DROPS, n, re.IGNORECASE)]
+    """The first column that is named as a drop height, or h0."""
+    words = rf"{DROPS}|^h_?0(?!\d)"
+    named = [k for k, n in enumerate(table.names) if re.search(words, n, re.IGNORECASE)]
     if not named:
         raise InputError(
             "no column is named as a drop height", source=table.source, key="value",

@@ -10,7 +10,7 @@ import tomllib
 import pytest
 import tomlkit
 from dentscope.cli import run
-from dentscope.cli.case import _tell_aside
+from dentscope.cli.case import tell_aside
 from dentscope.cli.shared.keys import keys_of
 from dentscope.start.case_file import read_case, read_pair
 
@@ -100,7 +100,7 @@ def test_a_key_of_a_case_acts(key, tmp_path, capsys):
     told = []
     for content in (before, after):
         *solved, file = of_a_case(content, tmp_path)
-        _tell_aside(file)
+        tell_aside(file)
         told.append((solved, capsys.readouterr().out))
     assert told[0] != told[1]
 

@@ -17,7 +17,7 @@ from dentscope.models.base import DomainWarning
 )  # fmt: skip
 def test_a_sweep_has_words_on_its_axes_and_no_empty_panel(monkeypatch, tmp_path, values, scale):
     kept = []
-    monkeypatch.setattr(draw, "save", lambda made, path: kept.append(made))
+    monkeypatch.setattr(draw, "write_figure", lambda made, path, dpi: kept.append(made))
     some = dict.fromkeys(draw.SWEPT[:4], np.ones(2 * len(values)))
     none = dict.fromkeys(draw.SWEPT[4:], np.zeros(2 * len(values)))
     swept = {"drop_height_m": list(values), "friction": [0.1, 0.2]}
