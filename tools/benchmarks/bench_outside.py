@@ -77,7 +77,7 @@ def blows() -> None:
 def lammps(count: int) -> dict[str, float]:
     """Processor seconds of LAMMPS for `count` balls, by law; none without it."""
     (row,) = substitutes(LAWS["fitted"], PAIR, mass=MASS, speeds=[2.0])
-    _, soft, _ = row.substitutes
+    soft = row.substitutes[1]
     softened = next(x for x in lammps_lines([row], PAIR).splitlines() if x.startswith("fix"))
     softened = softened.split("granular ")[1].split(" zplane")[0]
     laws = {
