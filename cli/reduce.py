@@ -79,17 +79,15 @@ def _command(name: str) -> Any:
     def run(**given: Any) -> None:
         files, listed = given.pop("files"), given.pop("listed")
         into, out = given.pop("into"), given.pop("out")
-        row = {k: given.pop(k) for k in Row.model_fields}
         # a default may stand for what the file says: an option counts where it was typed
-        context = given.pop("context")
-        typed = {
-            k: v for k, v in given.items() if context.get_parameter_source(k).name != "DEFAULT"
-        }
-        jobs = jobs_of(kind, files or [], listed, _set(typed))
+        source = given.pop("context").get_parameter_source
+        typed = {k: v for k, v in given.items() if source(k).name != "DEFAULT"}
+        row = {k: typed.pop(k) for k in Row.model_fields if k in typed}
+        jobs = jobs_of(kind, files or [], listed, typed)
         if len(jobs) == 1:
-            _reduce(kind, jobs[0], into, out, _set(row), {})
+            _reduce(kind, jobs[0], into, out, row, {})
         else:
-            _reduce_each(kind, jobs, into, out, _set(row))
+            _reduce_each(kind, jobs, into, out, row)
 
     # a name that a reader of another package shares with `Row` is asked for once
     fields = {**kind.options.model_fields, **Row.model_fields}
@@ -136,11 +134,6 @@ def _plain_type(annotation: Any) -> tuple[Any, tuple[str, ...]]:
     raise InputError(
         f"{annotation} cannot be an option", key="Options", allowed="float, int, bool, str, Path"
     )
-
-
-def _set(given: dict[str, Any]) -> dict[str, Any]:
-    """What the user said; the rest is left to the defaults."""
-    return {k: v for k, v in given.items() if v is not None}
 
 
 def _reduce_each(

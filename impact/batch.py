@@ -316,18 +316,17 @@ def _named(
         "approach_spin_rad_s": given["spin"],
         "friction": given["friction"],
     }
-    # where a budget ended the walk it stands half way: that is no restitution
-    done = values["ending"] == c.DONE
-    values = {name: np.where(done, found, np.nan) for name, found in values.items()} | {
-        "ending": values["ending"]
-    }
+    ending = values["ending"]
+    if not np.all(done := ending == c.DONE):
+        # where a budget ended the walk it stands half way: that is no restitution
+        values = {name: np.where(done, found, np.nan) for name, found in values.items()}
     measured = {row.column: row.simulated for row in MEASURED.values() if row.simulated in values}
     columns |= {name: values[own] for name, own in measured.items()}
     taken = set(measured.values())
     columns |= {name: values[name] for name in c.OBSERVABLES if name not in taken}
     columns["contacts"] = np.nan_to_num(values["contacts"]).astype(int)
     columns["route"] = route
-    columns["outcome"] = _outcomes(values["ending"])
+    columns["outcome"] = _outcomes(ending)
     return Impacts(columns)
 
 

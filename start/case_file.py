@@ -12,7 +12,7 @@ from ..core.errors import InputError, InputErrors
 from ..core.flow import Flow, FlowCurve, tabulated
 from ..core.inputs.flow_tables import HardeningTable, HeatingTable, RateTable
 from ..core.inputs.input_file import file_beside
-from ..core.inputs.toml_input import InputTable, Listed, read_model, read_toml
+from ..core.inputs.toml_input import InputTable, Listed, parse_model, read_toml
 from ..core.material import Material, Pair
 from ..core.rig import STRAINS, STRENGTHS, FrictionTable, MaterialTable, value_of
 
@@ -166,12 +166,13 @@ def read_pair(file: Path) -> tuple[CaseFile, Pair]:
     InputError
         Every mistake, a line each.
     """
-    if read_toml(file).keys() & {"strikers", "impact"}:
+    stated = read_toml(file)
+    if stated.keys() & {"strikers", "impact"}:
         raise InputError(
             "a set-up of `dentscope impact`", source=str(file),
             allowed="CASE.toml, which `dentscope case --new` writes",
         )  # fmt: skip
-    content = read_model(file, CaseFile)
+    content = parse_model(stated, CaseFile, source=str(file))
     sphere = content.sphere.to_body("sphere", file=file)
     flat = content.flat.to_body("flat", file=file)
     if sphere.rigid and flat.rigid:

@@ -7,6 +7,7 @@ import tomllib
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property
+from itertools import chain
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, overload
 
@@ -286,16 +287,13 @@ def _numbers(speed: Any) -> NDArray[Any]:
 def _wanted(*given: Laws) -> list[ContactLaw]:
     """The laws that were asked for, by name or as they are, each once."""
     found: dict[str, ContactLaw] = {}
-    for some in given:
-        each: Iterable[Any] = (some,)
-        if isinstance(some, Iterable) and not isinstance(some, str):
-            each = some
-        for one in each:
-            if not isinstance(one, str | ContactLaw):
-                raise InputError(repr(one), key="law", allowed="the name of a law, or a law")
-            law = law_named(one) if isinstance(one, str) else one
-            if found.setdefault(law.name, law) is not law:
-                raise InputError(f"two laws {law.name!r}", key="law", allowed="each name once")
+    several = [[x] if isinstance(x, str) or not isinstance(x, Iterable) else x for x in given]
+    for one in chain.from_iterable(several):
+        if not isinstance(one, str | ContactLaw):
+            raise InputError(repr(one), key="law", allowed="the name of a law, or a law")
+        law = law_named(one) if isinstance(one, str) else one
+        if found.setdefault(law.name, law) is not law:
+            raise InputError(f"two laws {law.name!r}", key="law", allowed="each name once")
     return list(found.values())
 
 

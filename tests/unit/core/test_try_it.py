@@ -5,7 +5,6 @@ import math
 import runpy
 import shutil
 import subprocess
-from dataclasses import replace
 from pathlib import Path
 
 import pytest
@@ -87,7 +86,7 @@ def test_a_line_says_where_no_pair_was_fitted(tmp_path):
     assert said[1] == "depth over radius is 0.3; the law was fitted from 0 to 0.179"
     assert asked(tmp_path, f"outside({limits}, {written(soft)}, {written(soft)}, 0.01, 1e-4)") == []
     with pytest.warns(UserWarning, match="Sy_ratio"):  # as the law itself says
-        replace(LAW).loading(Pair(hard, soft, 0.01), 1e-4)
+        LAW.loading(Pair(hard, soft, 0.01), 1e-4)
 
 
 def test_the_page_has_every_metal_and_both_scripts():

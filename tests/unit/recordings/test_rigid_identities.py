@@ -40,6 +40,9 @@ def test_momentum_energy_and_restitution_hold_exactly(angle, e, mu, tangential, 
     # the contact point leaves with e times its approach, and friction is mu times the normal part
     assert after.tip[1] == pytest.approx(-e * before.tip[1], abs=1e-9)
     assert abs(impulse[0]) == pytest.approx(mu * impulse[1], rel=1e-9, abs=1e-15)
+    # the normal velocity of the contact point changes by its mobility times the impulse
+    change = before.across * impulse[0] + before.along * impulse[1]
+    assert after.tip[1] - before.tip[1] == pytest.approx(change, abs=1e-9)
     # work of an impulse is impulse times mean velocity of the point where it acts
     work = float(impulse @ np.add(before.tip, after.tip)) / 2.0
     assert after.energy - before.energy == pytest.approx(work, abs=1e-9 * scale)
