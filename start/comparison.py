@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import textwrap
 import warnings
 from collections.abc import Sequence
 from dataclasses import dataclass
@@ -255,7 +256,7 @@ def drawn(found: LawComparison) -> Figure:
             axis.semilogx(x, y, **look)
     for axis, label, top in zip(
         axes.flat,
-        ("force over Hertz's [-]", "mean pressure over the weaker strength [-]",
+        ("force over Hertz's [-]", "pressure over the weaker strength [-]",
          "contact radius over R [-]", "residual over largest depth [-]"),
         (1.6, 5.0, None, 1.0), strict=True,
     ):  # fmt: skip
@@ -263,5 +264,5 @@ def drawn(found: LawComparison) -> Figure:
         axis.grid(alpha=0.3)
     handles, labels = axes[0, 0].get_legend_handles_labels()
     axes[0, 0].legend(handles[::-1], labels[::-1], title="best first", fontsize=8, title_fontsize=8)
-    made.suptitle(found.finding.replace("\n", "; "), fontsize=10)
+    made.suptitle(textwrap.fill(found.finding.replace("\n", "; "), 120), fontsize=10)
     return made

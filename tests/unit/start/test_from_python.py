@@ -101,6 +101,8 @@ def test_laws_side_by_side_lead_with_those_to_use(tmp_path):
               and abs(line.get_ydata()[-1] - 1.0) < 1e-9)  # fmt: skip
     assert one.get_ydata() == pytest.approx(1.0)
     assert figure.axes[0].get_legend_handles_labels()[1][-1] == "fitted"
+    (title,) = (text for text in figure.texts if text.get_text() == figure.get_suptitle())
+    assert 0.0 < title.get_window_extent().x0 < title.get_window_extent().x1 < figure.bbox.width
     with pytest.raises(InputError, match="max_delta_over_R"):
         ds.compare_laws(found.pair, max_delta_over_R=0.7)
 
