@@ -99,8 +99,8 @@ GATES = {
                     "refuses without a stated modulus, as it does a slope that no metal has"),
     "straight": Gate("tension", "slopes of the halves of the first rise", "elastic_straight",
                      "reads a lower part of it; widens the modulus"),
-    "slip": Gate("tension", "fall without unloading, and elastic rise, in the largest load",
-                 "cycle_depth", "refuses"),
+    "slip": Gate("tension", "fall without unloading, and elastic rise or half of the load lost, "
+                 "in the largest", "cycle_depth", "refuses"),
     "stated": Gate("tension", "slope of the first rise and the stated modulus", "",
                    "counts plastic strain from the slope, widens the modulus"),
 }  # fmt: skip

@@ -122,7 +122,7 @@ def reduce_tension(
 def _no_slip(strain: Array, stress: Array, modulus: float, source: str) -> None:
     """Refuse a load that falls though the strain does not go back, and rises again elastically.
 
-    A metal that yields with a fall (Lueders) goes on flat.
+    A metal that yields with a fall (Lueders) goes on flat, and keeps half of its load at least.
     """
     before = np.maximum.accumulate(stress)
     low = int(np.argmax(before - stress))
@@ -131,10 +131,12 @@ def _no_slip(strain: Array, stress: Array, modulus: float, source: str) -> None:
     middle = low + int(np.argmax(stress[low:] >= stress[low] + 0.5 * fall))
     back = strain[high] - strain[low] > 0.5 * fall / modulus
     again = stress[middle] - stress[low] > 0.5 * modulus * (strain[middle] - strain[low])
-    if fall > RULES.cycle_depth * stress.max() and again and not back:
+    deep = fall > 0.5 * before[low]
+    if fall > RULES.cycle_depth * stress.max() and (again or deep) and not back:
+        as_elastic = " as the metal does elastically" if again else ""
         raise Refused(
             "slip", f"the load falls by {fall / before[low]:.0%} at a strain of {strain[low]:.3g} "
-            "and rises again as the metal does elastically", source=source,
+            f"and rises again{as_elastic}", source=source,
             allowed="a specimen that does not slip in its grips, and a gauge that stays on it",
         )  # fmt: skip
 
