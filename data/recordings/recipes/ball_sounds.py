@@ -9,7 +9,6 @@ are not stated, so that the drag of the air stays in.
 """
 
 import re
-import sys
 from functools import partial
 from pathlib import Path
 from typing import Any
@@ -17,6 +16,7 @@ from typing import Any
 from dentscope.recordings import SetFile
 from dentscope.reduce.kinds import load_kind
 from dentscope.reduce.output.into_set import store_each
+from dentscope.reduce.output.recipe import run_recipe
 from dentscope.reduce.output.row import Row
 from dentscope.reduce.reduced import Reduced
 
@@ -58,6 +58,4 @@ def recipe(folder: Path, target: Path) -> tuple[int, list[str]]:
 
 
 if __name__ == "__main__":
-    done, missing = recipe(Path(sys.argv[1]), Path(sys.argv[2]))
-    sys.stdout.write(f"{done} trials in {sys.argv[2]}\n" + "".join(f"{m}\n" for m in missing))
-    sys.exit(0 if done else 2)
+    run_recipe(recipe, __doc__)

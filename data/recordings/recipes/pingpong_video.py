@@ -7,12 +7,12 @@ container says 60 frames a second, but every other frame repeats the one before:
 left out. The ball is out of the ruler's plane, so that the size of a pixel comes from gravity.
 """
 
-import sys
 from pathlib import Path
 
 from dentscope.recordings import SetFile
 from dentscope.reduce.kinds import load_kind
-from dentscope.reduce.output.into_set import Stored, store
+from dentscope.reduce.output.into_set import store
+from dentscope.reduce.output.recipe import run_recipe
 from dentscope.reduce.output.row import Row
 
 OPTIONS = {
@@ -43,13 +43,14 @@ SETUP = {
 }
 
 
-def recipe(video: Path, folder: Path) -> Stored:
-    """Write the set."""
+def recipe(video: Path, folder: Path) -> tuple[int, list[str]]:
+    """Write the set; the number of trials made, and nothing left out."""
     reduced = load_kind("video").run(video, OPTIONS, source="recipe")
     setup = SetFile.model_validate(SETUP)
-    return store(reduced, folder, Row(striker="ball"), kind="video", options=OPTIONS, setup=setup)
+    row = Row(striker="ball")
+    done = store(reduced, folder, row, kind="video", options=OPTIONS, setup=setup)
+    return len(done.trials), []
 
 
 if __name__ == "__main__":
-    done = recipe(Path(sys.argv[1]), Path(sys.argv[2]))
-    sys.stdout.write(f"{len(done.trials)} trials in {sys.argv[2]}\n")
+    run_recipe(recipe, __doc__)

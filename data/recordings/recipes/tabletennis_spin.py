@@ -8,7 +8,6 @@ table's frame) becomes one trial: `dentscope reduce mocap` of one point, with th
 authors read from dots on the ball as spin before the bounce. The spin after it was not measured.
 """
 
-import sys
 import tempfile
 import zipfile
 from dataclasses import replace
@@ -20,6 +19,7 @@ from dentscope.core.errors import InputError
 from dentscope.recordings import SetFile
 from dentscope.reduce.kinds import load_kind
 from dentscope.reduce.output.into_set import store_each
+from dentscope.reduce.output.recipe import run_recipe
 from dentscope.reduce.output.row import Row
 from dentscope.reduce.reduced import Reduced
 
@@ -64,8 +64,10 @@ def reduced(raw: zipfile.ZipFile, place: Path, line: str) -> tuple[Reduced, Row,
     return _on_the_table(found, track.stem), Row(striker="ball"), given
 
 
-def recipe(archive: Path, folder: Path, count: int) -> tuple[int, list[str]]:
+def recipe(archive: Path, folder: Path, count: int = 300) -> tuple[int, list[str]]:
     """Write the set; the number of trials made, and a line for each trajectory left out."""
+    if not zipfile.is_zipfile(archive):
+        raise InputError("no archive", source=str(archive), allowed="trajectories.zip")
     with zipfile.ZipFile(archive) as raw, tempfile.TemporaryDirectory() as place:
         lines = raw.read("index.csv").decode().split()[1 : count + 1]
         items = [(line.split(",")[0], partial(reduced, raw, Path(place), line)) for line in lines]
@@ -75,8 +77,4 @@ def recipe(archive: Path, folder: Path, count: int) -> tuple[int, list[str]]:
 
 
 if __name__ == "__main__":
-    done, missing = recipe(
-        Path(sys.argv[1]), Path(sys.argv[2]), int(sys.argv[3]) if len(sys.argv) > 3 else 300
-    )
-    sys.stdout.write(f"{done} trials in {sys.argv[2]}\n" + "".join(f"{m}\n" for m in missing))
-    sys.exit(0 if done else 2)
+    run_recipe(recipe, __doc__)

@@ -7,6 +7,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 from dentscope.recordings import read
+from dentscope.reduce.output.recipe import run_recipe
 
 ROOT = Path(__file__).parents[3]
 RAW = ROOT.parent / "shared" / "recordings"
@@ -59,3 +60,25 @@ def test_a_folder_without_raw_files_gives_a_line(tmp_path):
     assert made == 0
     assert left_out == ["no raw file of the kind that the recipe reads"]
     assert not (tmp_path / "set").exists()
+
+
+@pytest.mark.parametrize("given", [(), ("one",), ("one", "two", "three", "four"), ("a", "b", "c")])
+def test_a_recipe_says_how_it_is_called(given, monkeypatch, capsys):
+    monkeypatch.setattr("sys.argv", ["recipe", *given])
+    with pytest.raises(SystemExit) as end:
+        run_recipe(lambda *_: (1, []), "A set.\n\n    python recipe.py RAW SET [COUNT]\n\nMore.")
+    assert end.value.code == 2
+    assert capsys.readouterr().err == "usage: python recipe.py RAW SET [COUNT]\n"
+
+
+def test_a_recipe_tells_a_mistake_in_one_line(tmp_path, monkeypatch, capsys):
+    about = "A set.\n\n    python recipe.py RAW SET [COUNT]"
+    monkeypatch.setattr("sys.argv", ["recipe", str(tmp_path / "none"), str(tmp_path), "3"])
+    with pytest.raises(SystemExit) as end:
+        run_recipe(_recipe("tabletennis_spin"), about)
+    assert end.value.code == 2
+    assert capsys.readouterr().err.startswith(f"{tmp_path / 'none'}: no such file")
+    (tmp_path / "none").write_text("no archive")
+    with pytest.raises(SystemExit):
+        run_recipe(_recipe("tabletennis_spin"), about)
+    assert "no archive" in capsys.readouterr().err
