@@ -291,7 +291,9 @@ def _check_inside(folder: Path, name: str) -> None:
     """Refuse a name that leads out of its folder: the folder may be somebody else's."""
     try:
         inside = (folder / name).resolve().is_relative_to(folder.resolve())
-        (folder / name).is_file()
+        (folder / name).stat()
+    except FileNotFoundError:
+        pass
     except (OSError, ValueError, RuntimeError):  # no name of a file, or a circle of links
         inside = False
     if not inside:

@@ -140,7 +140,9 @@ def _coefficients(law: ClosedForm) -> Lines:
 def python_source(law: ClosedForm) -> str:
     """The law as a Python module that imports nothing but math."""
     python = Language()
-    return f'''"""Contact of a sphere and a flat.
+    return f'''# ruff: noqa
+# fmt: off
+"""Contact of a sphere and a flat.
 
 {_about(law, "")}
 """

@@ -77,7 +77,8 @@ def _flat(pixels: npt.NDArray[np.uint8], source: str) -> npt.NDArray[np.uint8]:
         pixels = pixels[:, :, :-1]
     if pixels.ndim == 3 and pixels.shape[2] == 1:
         pixels = pixels[:, :, 0]
-    if pixels.ndim not in (2, 3) or (pixels.ndim == 3 and pixels.shape[2] != 3):
+    flat = pixels.ndim == 2 or (pixels.ndim == 3 and pixels.shape[2] == 3)
+    if not flat or not pixels.size:
         raise InputError(f"shape {pixels.shape}", source=source, allowed="one flat picture")
     return pixels
 

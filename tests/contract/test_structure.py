@@ -21,16 +21,17 @@ from scipy.sparse.csgraph import connected_components
 ROOT = Path(__file__).resolve().parents[2]
 PROJECT = tomllib.loads((ROOT / "pyproject.toml").read_text(encoding="utf-8"))
 APART = {"tests", "examples", "docs", "tools", "data", "build"}
+ITS_OWN = ("__init__.py", "__main__.py")  # the build refuses any other module at the root
 KERNELS_KEY = "disallow_untyped_defs"
 
 
 @cache
 def sources() -> tuple[Path, ...]:
     """Every module of the package, the workshop's too, relative to the root."""
-    found = (p.relative_to(ROOT) for p in ROOT.rglob("*.py"))
-    return tuple(
-        sorted(p for p in found if p.parts[0] not in APART and not p.parts[0].startswith("."))
-    )
+    # a user's folder beside them, what `export` wrote for one, is no package
+    packages = sorted(p.parent for p in ROOT.glob("*/__init__.py") if p.parent.name not in APART)
+    modules = (p for folder in packages for p in sorted(folder.rglob("*.py")))
+    return tuple(p.relative_to(ROOT) for p in (*(ROOT / n for n in ITS_OWN), *modules))
 
 
 @cache
