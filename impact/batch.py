@@ -23,7 +23,7 @@ from .columns import Impacts
 from .integrate import Settings, arrays_of, strike_batch, strike_rows
 from .mechanisms.asked import NONE_ASKED, SIMULATED, Asked
 from .result import leave_resting
-from .scene import Approach, ForceTransform, Friction, Scene, Striker
+from .scene import Approach, ForceTransform, Friction, Scene
 from .tabulated.energy_route import NAMES, energy_impacts, why_not
 from .tabulated.law_table import tabulated
 from .walk import layout as c
@@ -149,10 +149,9 @@ def _one(scene: Scene, at: Mapping[str, float]) -> Scene:
         at["speed"], at["angle"] if scene.striker.length > 0.0 else 0.5 * math.pi,
         at["tangential"], at["spin"],
     )  # fmt: skip
-    return scene.with_(
-        striker=_of_mass(scene.striker, at["mass"]), approach=approach,
-        friction=_friction(scene.friction, at["friction"]),
-    )  # fmt: skip
+    return _of_mass(scene, at["mass"]).with_(
+        approach=approach, friction=_friction(scene.friction, at["friction"])
+    )
 
 
 def _with_mechanisms(
@@ -260,8 +259,7 @@ def _by_steps(
     groups, which = np.unique(keys, axis=0, return_inverse=True)
     for k, (angle, mass, mu) in enumerate(groups):
         mine = np.flatnonzero(which.ravel() == k)
-        one = scene.with_(
-            striker=_of_mass(scene.striker, float(mass)),
+        one = _of_mass(scene, float(mass)).with_(
             friction=_friction(scene.friction, float(mu)),
             approach=replace(
                 scene.approach, angle=float(angle) if scene.striker.length > 0.0 else 0.5 * math.pi
@@ -287,9 +285,23 @@ def _quick(law: ContactLaw, scene: Scene) -> ContactLaw:
     return table
 
 
-def _of_mass(striker: Striker, mass: float) -> Striker:
+def _of_mass(scene: Scene, mass: float) -> Scene:
+    """Return the scene with a striker of this mass: inertia and modal masses follow."""
+    striker, modes = scene.striker, scene.modes
     share = mass / striker.mass
-    return replace(striker, mass=mass, inertia=striker.inertia * share)
+    other = replace(striker, mass=mass, inertia=striker.inertia * share)
+    if share == 1.0 or not modes.frequencies:
+        return scene.with_(striker=other)
+    ring = replace(
+        modes, axial=_scaled(modes.axial, share), transverse=_scaled(modes.transverse, share),
+        rotation=_scaled(modes.rotation, share),
+    )  # fmt: skip
+    return scene.with_(striker=other, modes=ring)
+
+
+def _scaled(shape: tuple[float, ...], share: float) -> tuple[float, ...]:
+    """A mass-normalised shape of a rod `share` times as heavy."""
+    return tuple(x / math.sqrt(share) for x in shape)
 
 
 def _friction(stated: Friction, mu: float) -> Friction:

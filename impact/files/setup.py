@@ -37,7 +37,7 @@ from ..scene import Scene
 from .mechanism_tables import MechanismsTable, asked_in, mistakes_of
 from .scenes import curves_in, scene_in
 from .second import SecondSphere, second_of
-from .sweep import SweepTable, mistakes_in, run_sweep, swept_scenes
+from .sweep import Stated, SweepTable, mistakes_in, run_sweep, swept_scenes
 from .taken import not_taken, taken_elsewhere
 
 DEFAULT_LAWS = ("fitted", "hertz", "jackson-green", "ghaednia")
@@ -218,7 +218,7 @@ class Setup:
         if not asked:
             return
         reasons = [
-            asked.idle(swept_scenes(self.sweep, plain, angle=self._angle))
+            asked.idle(swept_scenes(self.sweep, plain, stated=self.stated))
             for plain in (self.plain(law) for law in laws)
         ]
         everywhere = set.intersection(*(set(one) for one in reasons))
@@ -230,14 +230,17 @@ class Setup:
             ))  # fmt: skip
 
     @property
-    def _angle(self) -> float:
-        return math.radians(self.file.impact.angle_deg)
+    def stated(self) -> Stated:
+        """How the striker arrives, as far as no sweep changes it."""
+        impact, of = self.file.impact, self.numbers.of
+        height = of.get("impact.drop_height_m", math.nan)
+        return Stated(math.radians(impact.angle_deg), height, of["gravity_m_s2"])
 
     def swept(self, law: ContactLaw, *, change: Change = unchanged) -> Impacts:
         """Return the impacts of `[sweep]` by one law, what is done to the force changed."""
         plain = self.plain(law)
         return run_sweep(
-            self.sweep, plain, self.settings, angle=self._angle, asked=self.asked, change=change
+            self.sweep, plain, self.settings, stated=self.stated, asked=self.asked, change=change
         )
 
 
@@ -321,6 +324,10 @@ def _mistakes(found: SetupFile, source: str) -> list[InputError]:
         add("target.thickness_m", "missing", "the thickness of the plate")
     if impact.support in ("plate", "half-space") and found.target.density_kg_m3 is None:
         add("target.density_kg_m3", "missing", "the density of a support that carries waves off")
+    striker = found.strikers.get(found.striker)
+    if found.sweep.mass_kg and striker is not None and striker.inertia_kg_m2 is not None:
+        add("sweep.mass_kg", f"given beside strikers.{found.striker}.inertia_kg_m2",
+            "one of the two: the inertia follows a swept mass")  # fmt: skip
     errors += [*_of_a_slanted_sphere(found, source), *_of_a_second_sphere(found, source)]
     if found.striker in found.strikers:
         errors += mistakes_of(found, source)

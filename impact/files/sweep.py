@@ -3,11 +3,13 @@
 from __future__ import annotations
 
 import math
+from dataclasses import dataclass
 from typing import Annotated, Any, Literal
 
 import numpy as np
 from pydantic import AfterValidator, BeforeValidator, Field
 
+from ...core.approach import speeds_at_touch
 from ...core.arrays import Array
 from ...core.errors import InputError, InputErrors
 from ...core.inputs.toml_input import InputTable, parse_model
@@ -115,8 +117,27 @@ def mistakes_in(sweep: SweepTable, source: str) -> list[InputError]:
     return found
 
 
+@dataclass(frozen=True, slots=True)
+class Stated:
+    """How the file has the striker arrive, which a sweep changes in part.
+
+    Parameters
+    ----------
+    angle
+        Of a rod's axis or of a sphere's velocity [rad].
+    height
+        Of the fall [m]; NaN where the normal speed is stated.
+    gravity
+        The file's [m/s^2]; a scene of two free spheres has none.
+    """
+
+    angle: float
+    height: float
+    gravity: float
+
+
 def run_sweep(
-    sweep: SweepTable, plain: Scene, settings: Settings, *, angle: float,
+    sweep: SweepTable, plain: Scene, settings: Settings, *, stated: Stated,
     asked: Asked = NONE_ASKED, change: Change = unchanged,
 ) -> Impacts:  # fmt: skip
     """Simulate every combination; what is not swept is the scene's.
@@ -127,38 +148,40 @@ def run_sweep(
         At least one condition.
     plain, settings
         The set-up's, without mechanisms.
-    angle
-        Stated angle [rad]: of a rod's axis or of a sphere's velocity.
+    stated
+        How the set-up's striker arrives.
     asked, change
         Mechanisms, and what is done to the force of each impact.
     """
-    given = _given(sweep, plain, angle)
+    given = _given(sweep, plain, stated)
     return impacts(plain, **given, settings=settings, asked=asked, change=change)
 
 
-def swept_scenes(sweep: SweepTable, plain: Scene, *, angle: float) -> list[Scene]:
+def swept_scenes(sweep: SweepTable, plain: Scene, *, stated: Stated) -> list[Scene]:
     """Return the scene, and that of every combination."""
     if not sweep.count:
         return [plain]
-    return [plain, *scenes_over(plain, **_given(sweep, plain, angle))]
+    return [plain, *scenes_over(plain, **_given(sweep, plain, stated))]
 
 
-def _given(sweep: SweepTable, scene: Scene, angle: float) -> dict[str, Any]:
-    """The arrays of `impacts`."""
+def _given(sweep: SweepTable, scene: Scene, stated: Stated) -> dict[str, Any]:
+    """The arrays of `impacts`: each row arrives as a file with its numbers has it."""
     names = list(sweep.swept)
     grid = np.meshgrid(*sweep.swept.values(), indexing="ij")
     given: dict[str, Array] = {name: g.ravel() for name, g in zip(names, grid, strict=True)}
     rod = scene.striker.length > 0.0
-    angles = np.radians(given["angle_deg"]) if "angle_deg" in given else np.asarray(angle)
-    speeds: Any = given.get("impact_speed_m_s")
-    if "drop_height_m" in given:
-        speeds = np.sqrt(2.0 * scene.gravity * given["drop_height_m"])
-        # a sphere's fall gives its whole speed, of which the angle takes the normal part
-        speeds = speeds if rod else speeds * np.sin(angles)
+    angles = np.radians(given["angle_deg"]) if "angle_deg" in given else np.asarray(stated.angle)
+    heights = np.asarray(given.get("drop_height_m", stated.height))
+    speed = given.get("impact_speed_m_s")
+    if speed is None:
+        fallen = "drop_height_m" in given or math.isfinite(stated.height)
+        speed = np.asarray(math.nan if fallen else scene.approach.speed)
+    speeds, along = speeds_at_touch(speed, heights, angles, rod, gravity=stated.gravity)
     tangential = given.get("approach_tangential_m_s")
-    slanted = not rod and "angle_deg" not in given and math.isclose(angle, 0.5 * math.pi)
-    if tangential is None and (rod or slanted):
-        tangential = np.asarray(scene.approach.tangential)
+    if tangential is None:
+        # a slanted sphere's follows from the angle; it is stated of all others
+        slanted = not rod and ("angle_deg" in given or not math.isclose(stated.angle, math.pi / 2))
+        tangential = along if slanted else np.asarray(scene.approach.tangential)
     return {
         "speeds": speeds, "angles": angles, "friction": given.get("friction"),
         "masses": given.get("mass_kg"), "tangential": tangential,

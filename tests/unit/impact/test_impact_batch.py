@@ -4,12 +4,13 @@ from __future__ import annotations
 
 import csv
 import math
+import tomllib
 from pathlib import Path
 
 import numpy as np
 import pytest
 from dentscope.cli import run
-from dentscope.core import InputError, Material
+from dentscope.core import InputError, InputErrors, Material
 from dentscope.core.inputs.templates import template
 from dentscope.core.observables import OBSERVABLES
 from dentscope.impact import (
@@ -23,6 +24,8 @@ from dentscope.impact import (
     strike,
 )
 from dentscope.impact.batch import QUICK
+from dentscope.impact.files.setup import setup_of
+from dentscope.impact.files.sweep import swept_scenes
 from dentscope.models import LAWS
 
 STEEL = Material(E=200e9, nu=0.3, Sy=760e6, density=7800.0)
@@ -158,3 +161,95 @@ def test_what_did_not_end_shows_no_number_and_leaves_with_3(tmp_path, capsys) ->
     assert run(["impact", str(file), "--exact", "--out", str(tmp_path)]) == 3
     rows = list(csv.DictReader((tmp_path / "rod-sweep.csv").read_text().splitlines()))
     assert rows[1]["restitution"] == ""
+
+
+BODIES = """
+[target]
+E_Pa = 2.0e11
+nu = 0.3
+Sy_Pa = 3.05e8
+[friction]
+coefficient = 0.2
+[strikers.one]
+E_Pa = 2.0e11
+nu = 0.3
+Sy_Pa = 1.7e9
+density_kg_m3 = 7800
+tip_radius_m = 0.005
+"""
+STRIKERS = {
+    "ball": 'shape = "sphere"\n',
+    "rod": 'shape = "rod"\nradius_m = 0.004\nlength_m = 0.2\nmass_kg = 0.05\n',
+    "two": 'shape = "sphere"\n',
+}
+ARRIVALS = (
+    {"impact_speed_m_s": 1.0},
+    {"drop_height_m": 0.1},
+    {"impact_speed_m_s": 1.0, "angle_deg": 40.0},
+    {"drop_height_m": 0.1, "angle_deg": 40.0},
+    {"drop_height_m": 0.1, "approach_tangential_m_s": 0.5, "approach_spin_rad_s": 30.0},
+)
+RUNS = ({"angle_deg": 5.0}, {"drop_height_m": 0.4}, {"impact_speed_m_s": 2.0},
+        {"angle_deg": 25.0, "drop_height_m": 0.4}, {"angle_deg": 25.0, "impact_speed_m_s": 2.0},
+        {"mass_kg": 0.02})  # fmt: skip
+CASES = [
+    (striker, stated, swept)
+    for striker in STRIKERS
+    for stated in ARRIVALS
+    for swept in RUNS
+    # refused: a speed along beside the angle that says it, a mass of one of two spheres
+    if not (striker != "rod" and "angle_deg" in swept and "approach_tangential_m_s" in stated)
+    and not (striker == "two" and "mass_kg" in swept)
+]
+OTHER = {"impact_speed_m_s": "drop_height_m", "drop_height_m": "impact_speed_m_s"}
+
+
+def _set_up(striker, impact, sweep=None):
+    content = tomllib.loads(BODIES + STRIKERS[striker])
+    if striker == "two":  # both free: the scene is of their relative motion, without gravity
+        content["target"] |= {"shape": "sphere", "radius_m": 0.01, "mass_kg": 0.03}
+    if "mass_kg" in impact:
+        content["strikers"]["one"]["mass_kg"] = impact["mass_kg"]
+    impact = {k: v for k, v in impact.items() if k != "mass_kg"}
+    swept = {k: [v] for k, v in (sweep or {}).items()}
+    return setup_of({**content, "impact": impact, "sweep": swept}, source="one.toml")
+
+
+@pytest.mark.parametrize(("striker", "stated", "swept"), CASES)
+def test_a_row_of_a_sweep_arrives_as_the_impact_alone(striker, stated, swept):
+    """A fall gives a sphere's whole speed whether its angle is stated or swept."""
+    kept = {k: v for k, v in stated.items() if k not in (OTHER.get(name) for name in swept)}
+    law = LAWS["fitted"]
+    alone = _set_up(striker, {**kept, **swept}).scene(law)
+    setup = _set_up(striker, stated, swept)
+    (row,) = swept_scenes(setup.sweep, setup.plain(law), stated=setup.stated)[1:]
+    got, wanted = row.approach, alone.approach
+    for name in ("speed", "angle", "tangential", "spin"):
+        assert getattr(got, name) == pytest.approx(getattr(wanted, name), rel=1e-12, abs=1e-12)
+    assert row.striker.mass == pytest.approx(alone.striker.mass, rel=1e-12)
+    assert row.striker.inertia == pytest.approx(alone.striker.inertia, rel=1e-12)
+
+
+def test_a_sweep_of_the_angle_of_a_fall_gives_what_its_impacts_give():
+    """At 5 degrees of a fall of 0.4 m a quarter of a metre a second goes into the flat."""
+    law = LAWS["fitted"]
+    (row,) = _set_up("ball", {"drop_height_m": 0.4}, {"angle_deg": 5.0}).swept(law).rows()
+    alone = strike(_set_up("ball", {"drop_height_m": 0.4, "angle_deg": 5.0}).scene(law))
+    whole = math.sqrt(2.0 * 9.81 * 0.4)
+    assert row["impact_speed_m_s"] == pytest.approx(whole * math.sin(math.radians(5.0)))
+    assert row["approach_tangential_m_s"] == pytest.approx(-whole * math.cos(math.radians(5.0)))
+    assert row["restitution"] == pytest.approx(alone.restitution, rel=1e-5)
+
+
+def test_a_swept_mass_carries_modes_of_its_own():
+    law, fall = LAWS["fitted"], {"impact_speed_m_s": 1.0, "angle_deg": 40.0, "modes": 3}
+    (row,) = _set_up("rod", fall, {"mass_kg": 0.02}).swept(law).rows()
+    alone = strike(_set_up("rod", {**fall, "mass_kg": 0.02}).scene(law))
+    assert row["restitution"] == pytest.approx(alone.restitution, rel=1e-5)
+
+
+def test_a_swept_mass_brings_its_inertia_along():
+    content = _set_up("rod", {"impact_speed_m_s": 1.0}, {"mass_kg": 0.02}).content
+    content["strikers"]["one"]["inertia_kg_m2"] = 1e-5
+    with pytest.raises(InputErrors, match=r"given beside strikers\.one\.inertia_kg_m2"):
+        setup_of(content, source="one.toml")
