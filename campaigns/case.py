@@ -165,7 +165,7 @@ def standard_case(
     fields
         Also write the full fields at `through`.
     """
-    onset = fem.critical_depth(pair)
+    onset = pair.first_yield
     if not math.isfinite(onset):
         onset = 1e-4 * deepest
     first = 0.3 * onset

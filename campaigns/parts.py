@@ -31,7 +31,6 @@ from ..core.arrays import Array
 from ..core.errors import InputError
 from ..core.inputs.input_file import read_bytes
 from ..core.provenance import canonical_json
-from ..fem import critical_depth
 from .case import Case
 from .contents import (
     DAMAGE,
@@ -322,7 +321,7 @@ def _scalars(record: CaseRecord) -> dict[str, float]:
         "E_reduced": pair.E_reduced,
         "Sy_min": pair.Sy_min,
         "Sy_ratio": pair.Sy_ratio,
-        "critical_depth": critical_depth(pair),
+        "critical_depth": pair.first_yield,
         **asdict(record.quality),
     }
 

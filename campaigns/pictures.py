@@ -8,7 +8,6 @@ import numpy as np
 
 from ..core.material import Pair
 from ..core.output import figure, write_figure
-from ..fem import critical_depth
 from .records import CaseRecord
 from .rules import RULES
 
@@ -26,7 +25,7 @@ def draw_campaign(records: list[CaseRecord], folder: Path) -> list[Path]:
     for record in records:
         pair = record.case.pair
         c = record.curve
-        w = c["delta"] / (critical_depth(pair) * pair.R)
+        w = c["delta"] / (pair.first_yield * pair.R)
         ratio = pair.Sy_ratio if np.isfinite(pair.Sy_ratio) else 1.0
         style = {"color": shades.to_rgba(np.array(ratio)), "lw": 1.0 if many else 1.8}
         name = None if many else _told(pair)
@@ -70,5 +69,5 @@ def _told(pair: Pair) -> str:
 
 
 def _critical_force(pair: Pair) -> float:
-    depth = critical_depth(pair) * pair.R
+    depth = pair.first_yield * pair.R
     return float(4.0 / 3.0 * pair.E_reduced * np.sqrt(pair.R) * depth**1.5)

@@ -1,4 +1,4 @@
-"""Command line: one file per command group, assembled in `app`."""
+"""Command line, the only place that prints: one file per command group, assembled in `app`."""
 
 from __future__ import annotations
 

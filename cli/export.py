@@ -25,11 +25,12 @@ app = group("A law for other programs: as source, or as parameters of a discrete
 @app.command("law")
 def export_law(
     law: Annotated[
-        str, typer.Argument(help="compact, fitted, or a fitted.json of `dentscope fit`.")
+        str,
+        typer.Argument(help="compact, fitted, or a fitted.json of `dentscope fit`."),
     ] = "fitted",
     out: Annotated[Path, folder_option("Folder for the sources.")] = Path("build/law"),
 ) -> None:
-    """Write a closed form in Python, C, Fortran, MATLAB, Modelica, JavaScript, and for LAMMPS."""
+    """Write fitted or compact in Python, C, Fortran, MATLAB, Modelica, JavaScript, for LAMMPS."""
     from ..models import law_named
     from ..models.export import write_sources
     from ..models.fitted import ClosedForm
@@ -39,7 +40,7 @@ def export_law(
     if not isinstance(found, ClosedForm):
         raise InputError(
             f"{law!r} is no closed form of ours", source="command line", key="LAW",
-            allowed="compact, fitted, or a fitted.json of `dentscope fit`",
+            allowed="compact, fitted, a fitted.json of `dentscope fit`; any law: `export dem`",
         )  # fmt: skip
     for path in write_sources(found, out):
         typer.echo(str(path))

@@ -57,7 +57,7 @@ def list_laws() -> None:
     show_table(new_console(), head, rows, align="left")
     for text in (
         "verified second hand: read in a text or code, other than the thesis, that names the "
-        "paper. unverified: they rest on the thesis, on limits and continuity.",
+        "paper. unverified: they rest on the thesis, on memory, on limits and continuity.",
         "Any two can be joined, LOADING+UNLOADING: kogut-etsion+ghaednia.",
         f"Not offered: {', '.join(UNAVAILABLE)}.",
         "Sources, ranges and reasons: dentscope laws show NAME",
@@ -73,7 +73,7 @@ def show(law: Annotated[str, typer.Argument(help="A name of `dentscope laws list
     chosen = law_named(law)
     lines = {
         "law": chosen.name,
-        "authors": chosen.title,
+        "law of": chosen.title,
         "source": chosen.source,
         "equations": chosen.equations,
         "made for": chosen.regime,

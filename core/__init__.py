@@ -1,4 +1,4 @@
-"""Ground floor of dentscope: materials, input errors, outcomes, provenance, input files."""
+"""Ground floor of dentscope: bodies, rigs, observables, errors, outcomes, reading and writing."""
 
 from __future__ import annotations
 

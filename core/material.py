@@ -146,6 +146,20 @@ class Pair:
         return math.inf if math.isinf(s) else s / f
 
     @property
+    def first_yield(self) -> float:
+        """Approach at first yield over R, (pi C Sy/(2 E'))^2 (Eq. 1.16); infinite if none yields.
+
+        The smaller of the two bodies' values, C = 1.295 exp(0.736 nu) (Eq. 1.17 corrected).
+        """
+        return min(self._first_yield_of(body) for body in (self.sphere, self.flat))
+
+    def _first_yield_of(self, body: Material) -> float:
+        if math.isinf(body.strength):
+            return math.inf
+        pi_C = math.pi * 1.295 * math.exp(0.736 * body.nu)
+        return (pi_C * body.strength / (2.0 * self.E_reduced)) ** 2
+
+    @property
     def weaker(self) -> Material:
         """The body of smaller strength; the sphere when they are equal."""
         return self.sphere if self.sphere.strength <= self.flat.strength else self.flat

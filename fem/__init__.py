@@ -1,4 +1,4 @@
-"""Stage fem: mesh and finite-strain contact solve of a sphere and a flat."""
+"""Stage fem: mesh and finite-strain contact of a sphere and a flat, loaded and unloaded."""
 
 from __future__ import annotations
 
@@ -6,7 +6,6 @@ from .problem import (
     NUMERICS_VERSION,
     Accuracy,
     ContactProblem,
-    critical_depth,
     geometric_depths,
 )
 from .results.uncertainty import (
@@ -26,12 +25,11 @@ __all__ = [
     "ContactProblem",
     "Counters",
     "Curve",
+    "CurveUncertainty",
     "Profile",
     "Snapshot",
     "Solution",
-    "CurveUncertainty",
     "Unloading",
-    "critical_depth",
     "discretisation_uncertainty",
     "geometric_depths",
     "solve",

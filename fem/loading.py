@@ -21,7 +21,7 @@ from .material import EXACT
 from .mesh import Layers, Zone
 from .newton import Solver, Timers
 from .path import MOST_CUTS, STEP_CUT, PathPoint, Record, accept, extrapolate
-from .problem import DEEPEST, Accuracy, ContactProblem, critical_depth
+from .problem import DEEPEST, Accuracy, ContactProblem
 from .remesh import Transfer
 from .results.measure import read
 from .results.ripple import BEYOND
@@ -65,7 +65,7 @@ class Loading:
 
     def __init__(self, problem: ContactProblem, accuracy: Accuracy, tally: Tally) -> None:
         self.problem, self.accuracy, self.tally = problem, accuracy, tally
-        self._onset = critical_depth(problem.pair)
+        self._onset = problem.pair.first_yield
         self._stops = _stops(problem, self._onset)
         self._radius = np.sqrt(self._stops[0])  # of the contact that the mesh is made for
         self._layers: list[Layers] = []  # of that mesh, once a transfer has walked through it

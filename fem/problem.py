@@ -206,20 +206,6 @@ class ContactProblem:
             previous = depth
 
 
-def critical_depth(pair: Pair) -> float:
-    """Approach at first yield over R, (pi C Sy/(2 E'))^2 (Eq. 1.16); infinite if none yields.
-
-    The smaller of the two bodies' values, C = 1.295 exp(0.736 nu) (Eq. 1.17 in the corrected form).
-    """
-    return min(_critical(pair, body.strength, body.nu) for body in (pair.sphere, pair.flat))
-
-
-def _critical(pair: Pair, strength: float, nu: float) -> float:
-    if math.isinf(strength):
-        return math.inf
-    return (math.pi * 1.295 * math.exp(0.736 * nu) * strength / (2.0 * pair.E_reduced)) ** 2
-
-
 def geometric_depths(first: float, last: float, n: int) -> tuple[float, ...]:
     """`n` depths in constant ratio from `first` to `last`, both included."""
     if n < 2 or not 0.0 < first < last:

@@ -1,4 +1,4 @@
-"""Stage fitting: closed forms fitted to a campaign."""
+"""Stage fitting: closed forms fitted to a campaign, their errors and report; see `refit.py`."""
 
 from __future__ import annotations
 

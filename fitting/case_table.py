@@ -30,7 +30,7 @@ def pair_table(solution: fem.Solution, uncertainty: fem.CurveUncertainty) -> Pai
     rows = []
     for u in solution.unloadings:
         total = u.residual_sphere + u.residual_flat
-        if 0.0 < total < u.depth * pair.R and u.depth > fem.critical_depth(pair):
+        if 0.0 < total < u.depth * pair.R and u.depth > pair.first_yield:
             exponent = energy_exponent(u.curve.delta, u.curve.force, total)
             rows.append((u.depth, total / (u.depth * pair.R), u.residual_sphere / total, exponent))
     turns = np.array(sorted(row for row in rows if math.isfinite(row[-1]))).reshape(-1, 4)

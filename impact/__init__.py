@@ -1,4 +1,4 @@
-"""Stage impact: a sphere or a round-ended rod striking the flat.
+"""Stage impact: a sphere or a round-ended rod striking a flat or a second sphere, or pressed on it.
 
 The stage itself can be called: `dentscope.impact("ball", angle_deg=60)` is `blow` of the same.
 """

@@ -1,4 +1,4 @@
-"""Stage models: closed-form contact laws behind one contract."""
+"""Stage models: contact laws behind one contract: published, ours, of a solved pair, joined."""
 
 from __future__ import annotations
 

@@ -13,7 +13,6 @@ from dataclasses import dataclass
 from ..core.material import Pair
 from .base import CombinedLaw, ContactLaw
 from .hardening import HardeningLaw
-from .kernel import critical_depth
 from .rules import RULES
 from .table import TableLaw
 
@@ -47,7 +46,7 @@ def demand(pair: Pair, depth: float) -> Demand:
     >>> demand(Pair(soft, hard, 1e-3), 1e-5).regime
     'flattening'
     """
-    onset = critical_depth(pair)
+    onset = pair.first_yield * pair.R
     w = depth / onset if math.isfinite(onset) else 0.0
     ratio = pair.Sy_ratio
     if w <= 1.0:

@@ -101,7 +101,10 @@ def yield_constant(nu: float) -> float:
 
 
 def critical_depth(pair: Pair) -> float:
-    """Approach at first yield of the weaker body, delta_c = (pi C Sy/(2 E'))^2 R [m] (Eq. 1.16)."""
+    """The laws' delta_c = (pi C Sy/(2 E'))^2 R [m] (Eq. 1.16), of the body of smaller strength.
+
+    Bodies of nearly one strength and another Poisson's ratio: `Pair.first_yield` is smaller.
+    """
     return common_parameters(pair).onset
 
 

@@ -1,4 +1,4 @@
-"""Stage recordings: sets of measured impacts, checked and audited."""
+"""Stage recordings: sets of measured impacts, read, written, checked and audited."""
 
 from __future__ import annotations
 
@@ -53,3 +53,7 @@ def __getattr__(name: str) -> Any:
     if name not in _FROM:
         raise AttributeError(f"module {__name__!r} has no attribute {name!r}")
     return getattr(import_module(f".{_FROM[name]}", __name__), name)
+
+
+def __dir__() -> list[str]:
+    return sorted(__all__)

@@ -1,4 +1,4 @@
-"""What a newcomer calls: one's own pair by finite elements or by every law, a diagnosis.
+"""Stage start: what a newcomer calls: a pair by finite elements or by every law, a diagnosis.
 
 Each takes the file that the command of the same name takes, and returns something that shows
 itself in a notebook, plots itself and gives a data frame; so does `dentscope.impact(...)`.

@@ -215,7 +215,7 @@ def read_case(file: Path, *, level: str = "") -> tuple[Any, Any]:
 
     last = content.load.max_delta_over_R
     # recorded from below first yield; a body that yields late or never still gets two decades
-    onset = fem.critical_depth(pair)
+    onset = pair.first_yield
     first = min(0.3 * onset, 1e-2 * last)
     _check_first(first, onset, last, source=str(file))
     # what the deepest approach leaves is asked of every case

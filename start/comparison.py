@@ -15,7 +15,7 @@ from ..core.errors import InputError
 from ..core.material import Pair
 from ..core.output import figure
 from ..core.tables import frame, html_table
-from ..models import LAWS, DomainWarning, critical_depth, law_named
+from ..models import LAWS, DomainWarning, law_named
 from ..models.base import ContactLaw
 from ..models.choose import Demand, demand, follows_flow
 from .case_file import read_pair
@@ -25,6 +25,9 @@ from .rules import RULES
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
+
+ELASTIC = "Hertz's force, finite strain added"
+"""The judge while nothing yields: within 1 % of finite elements at Delta/R = 0.04."""
 
 USED = frozenset(
     {"radius_m", "load.max_delta_over_R"}
@@ -64,9 +67,10 @@ class LawComparison:
     best
         Names of the laws to use, best first.
     reference
-        The solved pair that they are judged by; none where nothing yields.
+        The solved pair that they are judged by; none where nothing yields, and Hertz's force with
+        finite strain added is the judge.
     departures
-        By law, how far it is from the finite elements of that pair.
+        By law, how far it is from the finite elements of that pair, or from that force.
     rows
         Every law from below first yield to the largest depth.
     """
@@ -83,13 +87,16 @@ class LawComparison:
         """Which laws to use, and what the pair asks of them."""
         last = self.rows[-1].delta_over_R
         use = ", ".join(f"{name} ({self.told(name)})" for name in self.best)
-        by, deep = "", f"{self.need.w:.4g} times the depth of first yield"
+        by, deep = (
+            f"; judged at all depths by {ELASTIC}",
+            f"{self.need.w:.4g} times the depth of first yield",
+        )
         if not np.isfinite(self.pair.Sy_min):
             deep = "neither body yields"
         if self.reference:
             deepest = self.reference.deepest
             beyond = f"; solved to Delta/R = {deepest:.2g}, not judged beyond"
-            by = f"; judged by {self.reference.told}{beyond if last > deepest else ''}"
+            by = f"; judged at all depths by {self.reference.told}{beyond * (last > deepest)}"
         return (
             f"use: {use or 'none of these laws holds here'}\n"
             f"at Delta/R = {last:g}: {deep}; regime: {self.need.regime}{by}"
@@ -97,8 +104,6 @@ class LawComparison:
 
     def told(self, law: str) -> str:
         """How far a law is from the finite elements, in words."""
-        if self.reference is None:
-            return "Hertz's while nothing yields"
         found = self.departures.get(law)
         return found.told if found else "of one pair, not judged"
 
@@ -113,7 +118,7 @@ class LawComparison:
     def table(self) -> tuple[tuple[str, ...], list[tuple[str, ...]]]:
         """Return head and cells of the laws at the largest depth."""
         pressure = "p/Sy_min" if np.isfinite(self.pair.Sy_min) else "p/E'"
-        head = ("law", "F [N]", "a [mm]", pressure, "left [um]", "against finite elements")
+        head = ("law", "F [N]", "a [mm]", pressure, "left [um]", "largest departure")
         cells: list[tuple[str, ...]] = [
             (
                 row.law, f"{row.force_N:.4g}", f"{row.contact_radius_m * 1e3:.4g}",
@@ -189,10 +194,11 @@ def compared(pair: Pair, laws: Sequence[ContactLaw], *, last: float) -> LawCompa
     """Compare these laws up to an approach of `last` R."""
     need = demand(pair, last * pair.R)
     reference, departures = judged(pair, laws, last=last)
-    return LawComparison(
-        pair, need, _best(pair, laws, departures) if reference else _elastic(laws), reference,
-        departures, _rows(pair, laws, last),
-    )  # fmt: skip
+    rows = _rows(pair, laws, last)
+    if reference:
+        return LawComparison(pair, need, _best(pair, laws, departures), reference, departures, rows)
+    departures = _from_elastic(pair, rows)
+    return LawComparison(pair, need, _elastic(departures), None, departures, rows)
 
 
 def _best(
@@ -209,16 +215,31 @@ def _best(
     )
 
 
-def _elastic(laws: Sequence[ContactLaw]) -> tuple[str, ...]:
-    """Hertz's law, of which all others are copies while nothing yields."""
-    names = [law.name for law in laws]
-    return ("hertz",) if "hertz" in names else tuple(names[:1])
+def _from_elastic(pair: Pair, rows: Sequence[LawRow]) -> dict[str, Departure]:
+    """How far the force of each law is from Hertz's with finite strain added, while all spring."""
+    names = list(dict.fromkeys(row.law for row in rows))
+    depth = np.array([row.delta_m for row in rows if row.law == names[0]])
+    with warnings.catch_warnings():
+        warnings.simplefilter("ignore", DomainWarning)  # of its metals, none of which yields
+        judge = LAWS["fitted"].loading(pair, depth)
+    forces = np.reshape([row.force_N for row in rows], (len(names), -1))
+    off = np.max(np.abs(np.log(forces / judge)), axis=1)
+    return {name: Departure(float(x), 0.0, 0.0) for name, x in zip(names, off, strict=True)}
+
+
+def _elastic(departures: dict[str, Departure]) -> tuple[str, ...]:
+    """Hertz's law, of which all others are copies; ours where finite strain is 1 % or more."""
+    ours = {"hertz": 0, "fitted": 1}  # of those that are as near
+    near = sorted(
+        departures, key=lambda name: (round(departures[name].worst, 2), ours.get(name, 2))
+    )
+    return tuple(near[:1])
 
 
 def _rows(pair: Pair, laws: Sequence[ContactLaw], last: float) -> tuple[LawRow, ...]:
     deepest = last * pair.R
     depth = np.geomspace(
-        min(0.3 * critical_depth(pair), 1e-2 * deepest), deepest, RULES.curve_points
+        min(0.3 * pair.first_yield * pair.R, 1e-2 * deepest), deepest, RULES.curve_points
     )
     scale = pair.Sy_min if pair.Sy_min < float("inf") else pair.E_reduced
     rows: list[LawRow] = []
@@ -246,7 +267,13 @@ def drawn(found: LawComparison) -> Figure:
         x, d, force, a, p, s, f = np.array([r[1:] for r in found.rows if r.law == name]).T
         best = name in found.best
         look = (
-            {"color": f"C{found.best.index(name)}", "lw": 2.0, "label": name, "zorder": 3.0}
+            # a law that hides another lies on it as the thinner line
+            {
+                "color": f"C{(i := found.best.index(name))}",
+                "lw": 2.0 + 1.5 * i,
+                "label": name,
+                "zorder": 3.0,
+            }
             if best
             else {"color": "0.75", "lw": 0.9, "label": "others" if k == 0 else None}
         )

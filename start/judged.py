@@ -20,7 +20,7 @@ from ..campaigns.parts import published_parts
 from ..core.arrays import Array
 from ..core.errors import InputError
 from ..core.material import Material, Pair
-from ..models import DomainWarning, critical_depth
+from ..models import DomainWarning
 from ..models.base import ContactLaw
 from .measured import loading_work
 from .rules import RULES
@@ -83,7 +83,7 @@ def nearest(pair: Pair, *, last: float) -> Reference | None:
 
     None where nothing yields up to there: every law is then Hertz's.
     """
-    if not critical_depth(pair) < last * pair.R:
+    if not pair.first_yield < last:
         return None
     records = _published(pair.perfectly_plastic)
     own = _groups(pair)
@@ -170,7 +170,7 @@ def _reference(record: CaseRecord, distance: float, last: float) -> Reference:
     pair, c = record.case.pair, record.curve
     inside = c["delta"] <= last * pair.R * (1.0 + 1e-9)
     inside[: min(5, len(inside))] = True
-    yielded = [u for u in record.unloadings if u.depth * pair.R > critical_depth(pair)]
+    yielded = [u for u in record.unloadings if u.depth > pair.first_yield]
     # one turn beyond the range where none lies in it
     turns = [u for u in yielded if u.depth <= last * (1.0 + 1e-9)] or yielded[:1]
     spent = loading_work(c["delta"], c["force"])

@@ -81,7 +81,7 @@ def _press(
     known = scene.law.metal(scene.pair) if isinstance(scene.law, AnchoredLaw) else scene.pair
     metal = _flowing(known, scene.pair, constants)
     last = min(RULES.press_deeper * max(turns), DEEPEST)
-    first = min(0.3 * fem.critical_depth(metal), 1e-2 * last)
+    first = min(0.3 * metal.first_yield, 1e-2 * last)
     return fem.ContactProblem(
         pair=metal, depths=fem.geometric_depths(first, last, DIAGNOSIS.solve_depths),
         unload_from=turns, speeds=clock,

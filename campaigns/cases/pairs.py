@@ -89,7 +89,7 @@ def deep_case(
     accuracy: fem.Accuracy = fem.Accuracy.production(),  # noqa: B008 (frozen)
 ) -> Case:
     """Case to a/R = 0.5: three unloadings below 20 critical depths, two beyond."""
-    onset = fem.critical_depth(pair)
+    onset = pair.first_yield
     last_light = min(18.0 * onset, 0.5 * deepest)
     light = fem.geometric_depths(1.5 * onset, last_light, 3)
     return standard_case(

@@ -78,7 +78,7 @@ def thesis_first() -> tuple[Case, ...]:
     large = pair_of(E_s=300.0, E_f=300.0, Sy_min=100.0, ratio=10.0)
     return (
         *pictures,
-        deep_case("chapter-3", rod, deepest=2500.0 * fem.critical_depth(rod)),
+        deep_case("chapter-3", rod, deepest=2500.0 * rod.first_yield),
         deep_case("chapter-4-5", striker),
         deep_case("figure-2.17", large),
         *_table_2_1(coarse_to_fine(_FIRST_RATIOS)),
@@ -107,7 +107,7 @@ def thesis_third() -> tuple[Case, ...]:
     """
     others = coarse_to_fine(RATIOS, after=_FIRST_RATIOS)[_SECOND:]
     rod = _chapter_3()
-    deep = deep_case("chapter-3-to-2450", rod, deepest=2450.0 * fem.critical_depth(rod))
+    deep = deep_case("chapter-3-to-2450", rod, deepest=2450.0 * rod.first_yield)
     rest = [*_twenty_seven_sets(), *_table_2_1(others), *_figure_2_16(), deep]
     return _without(rest, (*thesis_first(), *thesis_second()))
 

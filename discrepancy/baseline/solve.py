@@ -84,7 +84,7 @@ def solved_table(
     from ...fem.problem import DEEPEST
     from ...fitting.case_table import pair_table
 
-    onset = fem.critical_depth(pair)
+    onset = pair.first_yield
     last = min(RULES.solve_deeper * high, DEEPEST)
     if last < 2.0 * onset:
         raise InputError(f"Delta/R to {last:.2g}", key="depth",

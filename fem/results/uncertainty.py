@@ -19,7 +19,7 @@ import numpy as np
 
 from ...core.arrays import Array
 from ...core.material import Pair
-from ..problem import Accuracy, ContactProblem, critical_depth
+from ..problem import Accuracy, ContactProblem
 from ..solution import Curve
 
 MESH_ERRORS_FILE = (
@@ -62,7 +62,7 @@ def largest_force_error(level: str, pair: Pair, depth: float) -> float:
     """Largest relative uncertainty of the force up to Delta/R = depth at a level of accuracy."""
     content = _mesh_errors()
     knots = np.array(content["depth_over_first_yield"])
-    last = max(depth / critical_depth(pair), knots[0])
+    last = max(depth / pair.first_yield, knots[0])
     row = np.array(content["levels"][level]["force"])
     reached = np.append(row[knots <= last], np.interp(math.log(last), np.log(knots), row))
     return float(reached.max())
@@ -88,7 +88,7 @@ def discretisation_uncertainty(
     content = _mesh_errors()
     if accuracy.level not in content["levels"]:
         raise ValueError(f"{accuracy.level!r}: measured are {', '.join(content['levels'])}")
-    onset = critical_depth(problem.pair) * problem.pair.R
+    onset = problem.pair.first_yield * problem.pair.R
     # a pair that never yields is below first yield at any depth
     x = np.log(curve.delta / onset) if math.isfinite(onset) else np.full(len(curve.delta), -np.inf)
     knots = np.log(content["depth_over_first_yield"])

@@ -11,7 +11,6 @@ import numpy as np
 from ...core.arrays import Array
 from ...core.material import Pair
 from ...models.base import DomainWarning
-from ...models.kernel import critical_depth, critical_force
 from ..force import F_FORCE, F_RADIUS
 from ..result import Impact
 from ..rules import RULES
@@ -21,7 +20,7 @@ from ..strength import strength_table
 
 @dataclass(frozen=True)
 class FirstYield:
-    """Where the weaker body begins to yield: Hertz up to the critical depth (Eqs. 1.16, 1.19).
+    """Where a body first yields: Hertz up to the critical depth (Eqs. 1.16, 1.19).
 
     Parameters
     ----------
@@ -44,10 +43,10 @@ class FirstYield:
 
 def first_yield(pair: Pair) -> FirstYield | None:
     """Return where a pair first yields; none where neither body ever does."""
-    depth = critical_depth(pair)
+    depth = pair.first_yield * pair.R
     if not math.isfinite(depth):
         return None
-    load = critical_force(pair)
+    load = 4.0 / 3.0 * pair.E_reduced * math.sqrt(pair.R) * depth**1.5
     return FirstYield(depth, load, 0.4 * load * depth)
 
 
@@ -63,7 +62,7 @@ def effective_mass(scene: Scene) -> float:
 
 
 def first_yield_speed(scene: Scene) -> float:
-    """Normal speed of approach at which the weaker body begins to yield [m/s].
+    """Normal speed of approach at which one of the bodies begins to yield [m/s].
 
     Infinite where neither body yields, 0 for a tip with a flat, whose edge yields at once.
 

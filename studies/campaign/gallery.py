@@ -11,7 +11,6 @@ from ...campaigns import RULES, CaseRecord, read_curves
 from ...core.arrays import Array
 from ...core.material import Pair
 from ...core.output import write_file
-from ...fem import critical_depth
 from ..plot import Picture, finish, sheet
 from .sweep import DEPTH, Sweep, sweeps
 
@@ -110,7 +109,7 @@ def _all_forces(records: Sequence[CaseRecord]) -> Picture:
 def _reduced(record: CaseRecord) -> tuple[Array, Array]:
     """delta/delta_c and F/F_c; a body that never yields is scaled with Delta/R = 1e-4."""
     pair, curve = record.case.pair, record.curve
-    onset = critical_depth(pair)
+    onset = pair.first_yield
     depth = (onset if np.isfinite(onset) else 1e-4) * pair.R
     unit = 4.0 / 3.0 * pair.E_reduced * np.sqrt(pair.R) * depth**1.5
     return curve["delta"] / depth, curve["force"] / unit

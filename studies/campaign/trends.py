@@ -15,7 +15,6 @@ import numpy as np
 from ...campaigns import CaseRecord
 from ...campaigns.cases.pairs import pair_of, table_2_1
 from ...core.material import Pair
-from ...fem import critical_depth
 from ...models import LAWS, DomainWarning
 from ...models.published.ghaednia import share_of_sphere
 from .claims import CLAIMS, FEWEST, Finding
@@ -221,7 +220,7 @@ def _fully_plastic(stored: Mapping[str, CaseRecord]) -> list[Trend]:
 def _peak(record: CaseRecord) -> tuple[float, float]:
     """delta/delta_c and p/Sy_min where the mean pressure is largest; nan at the curve's end."""
     pair, curve = record.case.pair, record.curve
-    w = curve["delta"] / (critical_depth(pair) * pair.R)
+    w = curve["delta"] / (pair.first_yield * pair.R)
     plastic = w > 5.0
     if plastic.sum() < 5:
         return np.nan, np.nan

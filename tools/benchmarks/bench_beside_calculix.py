@@ -27,7 +27,7 @@ FINE = fem.Accuracy.production()
 
 def problem_of(pair: Pair, *, turns: tuple[float, ...]) -> fem.ContactProblem:
     """The case; CalculiX's has no unloading."""
-    depths = fem.geometric_depths(0.3 * fem.critical_depth(pair), DEEPEST, DEPTHS)
+    depths = fem.geometric_depths(0.3 * pair.first_yield, DEEPEST, DEPTHS)
     return fem.ContactProblem(pair, tuple(sorted({*depths, *turns})), unload_from=turns)
 
 

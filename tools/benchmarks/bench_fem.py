@@ -37,7 +37,7 @@ def seconds(work: Callable[[], object], repeats: int = 5) -> float:
 
 def main() -> None:
     pair = Pair(STEEL, STEEL, 1e-3)
-    problem = fem.ContactProblem(pair, (0.3 * fem.critical_depth(pair), 0.1))
+    problem = fem.ContactProblem(pair, (0.3 * pair.first_yield, 0.1))
     grid = discretise(problem, fem.Accuracy.production())
     solver = Solver(grid, rule=EXACT)
     state = State.virgin(len(grid.elements.conn))

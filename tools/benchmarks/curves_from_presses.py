@@ -62,7 +62,7 @@ def pair_of(name: str) -> Pair:
 def marks_of(name: str) -> list[dict[str, float]]:
     """What perfect instruments would read of the presses, then of the impacts."""
     pair = pair_of(name)
-    depths = fem.geometric_depths(1.2 * fem.critical_depth(pair), DEPTHS[-1], 48)
+    depths = fem.geometric_depths(1.2 * pair.first_yield, DEPTHS[-1], 48)
     problem = fem.ContactProblem(pair, tuple(sorted({*depths, *DEPTHS})), unload_from=DEPTHS)
     found = fem.solve(problem, accuracy=FINE)
     marks = [

@@ -45,7 +45,7 @@ def forces(metal: Material, ratio: float, level: str) -> np.ndarray:
     pair = Pair(metal, metal, 1e-3)
     deepest = APPROACHES[-1] * joint
     problem = fem.ContactProblem(
-        pair=pair, depths=fem.geometric_depths(0.3 * fem.critical_depth(pair), deepest, 30),
+        pair=pair, depths=fem.geometric_depths(0.3 * pair.first_yield, deepest, 30),
         unload_from=(), speeds=(),
     )  # fmt: skip
     straight = discretise.contact_mesh

@@ -24,7 +24,6 @@ from ....fem import (
     NUMERICS_VERSION,
     Accuracy,
     ContactProblem,
-    critical_depth,
     geometric_depths,
     solve,
 )
@@ -112,7 +111,7 @@ def solve_field(number: str, *, folder: Path = STORE) -> Path:
     """
     wanted, accuracy = WANTED[number], Accuracy.quick()
     pair = wanted.pair()
-    first = 0.3 * critical_depth(pair)
+    first = 0.3 * pair.first_yield
     depths = geometric_depths(first, wanted.depth, 20)
     if wanted.last:
         depths = (*depths, *geometric_depths(wanted.depth, wanted.last, 20)[1:])
@@ -174,9 +173,7 @@ def chapter_3_again(records: Sequence[CaseRecord]) -> list[Picture]:
 
 def _grid_of(pair: Pair, depth: float) -> tuple[Array, Any]:
     """Mesh of published results when the contact has reached Delta/R = `depth`."""
-    problem = ContactProblem(
-        pair=pair, depths=geometric_depths(0.3 * critical_depth(pair), depth, 20)
-    )
+    problem = ContactProblem(pair=pair, depths=geometric_depths(0.3 * pair.first_yield, depth, 20))
     a = float(LAWS["ghaednia"].contact_radius(pair, depth * pair.R)) / pair.R
     mesh = discretise(problem, Accuracy.production(), Zone(0.9 * a, 1.4 * a)).mesh
     return np.asarray(mesh.points[mesh.quads]), mesh

@@ -85,7 +85,7 @@ def case_of(number: int, ratio: float, *, plan: Plan, accuracy: fem.Accuracy) ->
     at wider depths it would look like a wave of any length, which no smoothing takes out.
     """
     pair = table_2_1(number, ratio)
-    first = 0.3 * fem.critical_depth(pair)
+    first = 0.3 * pair.first_yield
     steps = int(np.ceil(np.log(plan.deepest / first) / np.log(plan.bolder.step_ratio)))
     # depths of the bolder solve are every other one of the base's
     steps *= 1 if accuracy == plan.bolder else 2

@@ -27,11 +27,11 @@ def run(bench: Bench) -> Result:
     """Solve one flattening and compare force and contact radius over depth."""
     pair = Pair(sphere=_STEEL, flat=RIGID, R=R)
     accuracy = fem.Accuracy.smoke() if bench.effort is Effort.QUICK else fem.Accuracy.quick()
-    depths = fem.geometric_depths(fem.critical_depth(pair), _DEEPEST, 70)
+    depths = fem.geometric_depths(pair.first_yield, _DEEPEST, 70)
     solved = bench.solve(Case("published-flattening", fem.ContactProblem(pair, depths), accuracy))
     delta = solved["delta"]
     force, a = (np.exp(smoothed(delta, np.log(solved[n]))) for n in ("force", "radius"))
-    w = delta / (fem.critical_depth(pair) * R)
+    w = delta / (pair.first_yield * R)
     with warnings.catch_warnings():
         warnings.simplefilter("ignore")
         jg_force = JACKSON_GREEN.loading(pair, delta)

@@ -82,7 +82,7 @@ def _stuck(bench: Bench, nu: float, accuracy: fem.Accuracy) -> list[Measurement]
 
 def _effect(bench: Bench, sphere: float, flat: float) -> list[tuple[Cell, ...]]:
     pair = Pair(Material(200e9, 0.3, sphere), Material(200e9, 0.3, flat), R)
-    first = 0.3 * fem.critical_depth(pair)
+    first = 0.3 * pair.first_yield
     problem = fem.ContactProblem(
         pair, fem.geometric_depths(first, _DEEPEST, 24), unload_from=(_DEEPEST,)
     )

@@ -25,7 +25,7 @@ def run(bench: Bench) -> Result:
     """Solve one deep indentation and compare mean pressure, contact radius and force."""
     pair = Pair(sphere=RIGID, flat=_STEEL, R=R)
     accuracy = fem.Accuracy.smoke() if bench.effort is Effort.QUICK else fem.Accuracy.quick()
-    depths = fem.geometric_depths(20.0 * fem.critical_depth(pair), _DEEPEST, 70)
+    depths = fem.geometric_depths(20.0 * pair.first_yield, _DEEPEST, 70)
     solved = bench.solve(Case("published-indentation", fem.ContactProblem(pair, depths), accuracy))
     delta = solved["delta"]
     ln_f, ln_a = (smoothed(delta, np.log(solved[name])) for name in ("force", "radius"))

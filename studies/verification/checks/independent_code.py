@@ -45,7 +45,7 @@ class Twin:
         return Deck(problem, self.accuracy, element="CAX4")
 
     def _depths(self, finer: int) -> tuple[float, ...]:
-        first = 0.3 * fem.critical_depth(self.pair)
+        first = 0.3 * self.pair.first_yield
         return fem.geometric_depths(first, _DEEPEST, finer * self.increments + 1)
 
 
@@ -178,7 +178,7 @@ def _compared(twin: Twin, ours: Solved, theirs: Theirs) -> tuple[tuple[Measureme
     off_f = ours["force"][:n] / force - 1.0
     off_a = ours["radius"][:n] / R / theirs.radius[:n] - 1.0
     off_s = ours.share[:n] - theirs.share[:n]
-    plastic = depth > fem.critical_depth(ours.pair)
+    plastic = depth > ours.pair.first_yield
     away = plastic & inner(depth)
     plain_f, plain_a, missed = (
         100.0 * np.abs(smoothed(depth, values))

@@ -66,7 +66,7 @@ def scale(bench: Bench) -> Result:
 def penalty(bench: Bench) -> Result:
     """Solve the equal-strength case with five contact stiffnesses on one mesh."""
     pair = pair_of(E_s=200.0, E_f=200.0, Sy_min=503.0, ratio=1.0)
-    depths = fem.geometric_depths(0.3 * fem.critical_depth(pair), _DEEPEST, 50)
+    depths = fem.geometric_depths(0.3 * pair.first_yield, _DEEPEST, 50)
     mesh, production = fem.Accuracy.smoke(), fem.Accuracy.production()
     # the same compliance of the contact as production's, whose elements are smaller
     same = production.penalty * mesh.fine / production.fine

@@ -73,7 +73,7 @@ def run(bench: Bench) -> Result:
 
 def _as_asked(base: Solved, accuracy: fem.Accuracy) -> Case:
     """The pair at another level, with depths as far apart as a user has them."""
-    first = 0.3 * fem.critical_depth(base.pair)
+    first = 0.3 * base.pair.first_yield
     depths = fem.geometric_depths(first, _DEEPEST, _DEPTHS)
     return Case("levels", fem.ContactProblem(base.pair, depths), accuracy)
 
@@ -100,7 +100,7 @@ def _common(first: Solved, *others: Solved) -> Array:
 
 
 def _over_onset(solved: Solved, delta: Array) -> Array:
-    return np.asarray(delta / (fem.critical_depth(solved.pair) * solved.pair.R))
+    return np.asarray(delta / (solved.pair.first_yield * solved.pair.R))
 
 
 def _difference(other: Solved, base: Solved, delta: Array) -> Array:

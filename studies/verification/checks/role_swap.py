@@ -25,11 +25,11 @@ def run(bench: Bench) -> Result:
         for s, f in ((soft, stiff), (stiff, soft))
     ]
     # E'/Sy = 1100: first yield at Delta/R = 5e-6
-    last = 60.0 * fem.critical_depth(pair_of(E_s=200.0, E_f=200.0, Sy_min=100.0, ratio=1.0))
+    last = 60.0 * pair_of(E_s=200.0, E_f=200.0, Sy_min=100.0, ratio=1.0).first_yield
     plastic = []
     for ratio in (0.1, 10.0):
         pair = pair_of(E_s=200.0, E_f=200.0, Sy_min=100.0, ratio=ratio)
-        path = fem.geometric_depths(0.3 * fem.critical_depth(pair), last, 50)
+        path = fem.geometric_depths(0.3 * pair.first_yield, last, 50)
         plastic.append(
             bench.solve(Case(f"swap-Sy*-{ratio:g}", fem.ContactProblem(pair, path), level))
         )

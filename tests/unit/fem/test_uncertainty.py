@@ -15,7 +15,7 @@ LEVELS = [fem.Accuracy.production, fem.Accuracy.quick, fem.Accuracy.smoke]
 
 def stated(level, pair=PAIR, over_onset=(1.0, 1e4)):
     problem = fem.ContactProblem(pair, (0.01,))
-    delta = np.array(over_onset) * fem.critical_depth(PAIR) * pair.R
+    delta = np.array(over_onset) * PAIR.first_yield * pair.R
     ones = dict.fromkeys(fem.Curve.__dataclass_fields__, np.ones_like(delta))
     curve = replace(fem.Curve(**ones), delta=delta, force=np.full_like(delta, 7.0))
     return fem.discretisation_uncertainty(curve, problem, level())

@@ -38,7 +38,7 @@ def run(bench: Bench) -> Result:
     means: list[tuple[float, float]] = []
     for nu, ratio, weak in _CASES:
         pair = _pair(nu, _E / ratio, weak)
-        critical, exact = fem.critical_depth(pair) * R, exact_yield_constant(nu)
+        critical, exact = pair.first_yield * R, exact_yield_constant(nu)
         coarse, fine = (_onset(pair, accuracy) for accuracy in _MESHES)
         # the point nearest to the largest stress comes nearer with the size of the elements
         first = tuple(2.0 * f - c for c, f in zip(coarse[:2], fine[:2], strict=True))
@@ -104,7 +104,7 @@ def _fit(nu: float) -> float:
 
 def _onset(pair: Pair, accuracy: fem.Accuracy) -> tuple[float, float, float, float]:
     """Depth and force at first plastic work, and those by the element means before it."""
-    critical = fem.critical_depth(pair)
+    critical = pair.first_yield
     depths = tuple(critical * w for w in _DEPTHS)
     problem = fem.ContactProblem(pair, depths, snapshots=(depths[0],))
     solution = fem.solve(problem, accuracy=accuracy)

@@ -104,7 +104,7 @@ def _balance(bench: Bench) -> float:
         for body, n in ((plain.sphere, 0.2), (plain.flat, 0.1))
     )
     pair = replace(plain, sphere=sphere, flat=flat)
-    depths = fem.geometric_depths(0.3 * fem.critical_depth(pair), 0.1, 40)
+    depths = fem.geometric_depths(0.3 * pair.first_yield, 0.1, 40)
     problem = fem.ContactProblem(pair, depths)
     solved = bench.solve(Case("hardening-balance", problem, fem.Accuracy.quick()))
     return float(np.abs(solved["energy_defect"]).max()) if solved.completed else math.nan
