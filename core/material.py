@@ -62,7 +62,10 @@ class Material:
         if self.rigid:
             return
         if not (self.E > 0.0 and math.isfinite(self.E)):
-            raise InputError(f"{self.E:g} is no modulus", key="E_Pa", allowed="a number above 0")
+            raise InputError(
+                f"{self.E:g} is no modulus", key="E_Pa",
+                allowed="a number above 0; for a rigid body rigid = true",
+            )  # fmt: skip
         if not 0.0 <= self.nu < 0.5:
             raise InputError(f"{self.nu:g} is no Poisson ratio", key="nu", allowed="0 <= nu < 0.5")
         if not self.Sy > 0.0:

@@ -78,7 +78,7 @@ def read_ball(file: Path, *, mass: float | None = None) -> ExportedBall:
             f"{mass:g}", source="command line", key="--mass",
             allowed="strikers.NAME.mass_kg and target.mass_kg of two spheres, in the file",
         )  # fmt: skip
-    if math.isnan(weight):
+    if mass is None and math.isnan(weight):
         raise InputError(
             "missing", source=str(file), key="sphere.density_kg_m3", allowed="a number, or --mass"
         )

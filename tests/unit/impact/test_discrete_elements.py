@@ -79,7 +79,7 @@ def test_command_writes_table_and_fragments(tmp_path, capsys):
     assert by_speed[0] > by_speed[1]
     lines = (out / "lammps.in").read_text()
     assert lines.count("pair_coeff * * hertz") == lines.count("fix flat all wall/gran") == 2
-    for line in (["--speed", "10:1"], ["--speed", "fast"], ["--mass", "-1"]):
+    for line in (["--speed", "10:1"], ["--speed", "fast"], ["--mass", "-1"], ["--mass", "nan"]):
         assert run(["export", "dem", str(file), *line]) == 2
         assert len(capsys.readouterr().err.splitlines()) == 1
 
