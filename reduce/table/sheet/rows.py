@@ -13,6 +13,7 @@ from ....core.errors import InputError, InputErrors
 from ....core.inputs.input_file import checked_file
 from ....core.processes.confined import confined
 from ....recordings.columns import MEASURED
+from ....recordings.rules import RULES as OWN
 from ...bounces.options import GRAVITY
 from ...measured import Measured, Trial
 from ...reduced import Reduced
@@ -70,8 +71,9 @@ def read_sheet(path: Path) -> Sheet:
     """Read a laboratory's sheet.
 
     Drop and rebound height give the restitution, the root of their ratio, and one in a column of
-    its own says the same once more; a drop height that is written once for several rows holds for
-    the rows below; several columns of one quantity are repeats, each a row of its own.
+    its own counts where they do not; where it differs from them, that is told. A drop height that
+    is written once for several rows holds for the rows below; several columns of one quantity are
+    repeats, each a row of its own.
 
     Parameters
     ----------
@@ -125,6 +127,7 @@ def _trials(
     last: dict[str, Measured] = {}
     from_above: list[str] = []
     across: list[str] = []
+    used: set[str] = set()
     first_with: dict[tuple[str, ...], int] = {}
     for k, row in enumerate(rows[top:], start=top + 1):
         if not any(row):
@@ -151,7 +154,9 @@ def _trials(
             continue
         if not last.keys() & found.keys():
             from_above.append(str(k))
-        back, crossed = _restitutions(found, last)
+        back, of, crossed = _restitutions(found, last)
+        used.add(of)
+        left += _differing(found.get("restitution", []), back, k)
         trials += _of_row(found | {"restitution": back}, last, note, k)
         before = first_with.setdefault(tuple(row), k)
         if before < k and sum(map(bool, row)) > 2:
@@ -171,7 +176,7 @@ def _trials(
     names = {c.kind.name for c in columns if c.taken}
     if names >= {"angle_deg", "impact_speed_m_s"}:
         left.append("speeds beside angles are taken as those along the normal")
-    told = [(c.header, _became(c, names)) for c in columns] + told
+    told = [(c.header, _became(c, names, used)) for c in columns] + told
     return Sheet(tuple(trials), tuple(told), (*left, *others))
 
 
@@ -254,17 +259,21 @@ def _read(
     return found, note, unread
 
 
-def _became(column: SheetColumn, taken: set[str]) -> str:
-    name = column.kind.name
-    if name == "restitution" and taken & {*REBOUNDS}:
-        name = "restitution, where heights or speeds give none"
+def _became(column: SheetColumn, taken: set[str], used: set[str]) -> str:
+    name, back = column.kind.name, taken & {*REBOUNDS}
     words = {
         REBOUND_HEIGHT: "restitution, the root of rebound over drop height",
-        REBOUND_SPEED: "restitution, over the impact speed", "trial": "left out: rows are numbered",
-        "person": "left out: who measured",
+        REBOUND_SPEED: "restitution, over the speed of approach",
+        "trial": "left out: rows are numbered", "person": "left out: who measured",
     }  # fmt: skip
+    became = words.get(name, name)
+    if name == "restitution" and back:
+        became = "restitution, where heights or speeds give none"
+    elif name in back and name not in used:
+        other = "speeds" if name == REBOUND_HEIGHT else "heights"
+        became = f"restitution, where {other} give none"
     of = "standard deviation of " if column.spread else ""
-    return f"{of}{words.get(name, name)} ({column.taken} cells)"
+    return f"{of}{became} ({column.taken} cells)"
 
 
 def _of_row(
@@ -283,26 +292,36 @@ def _of_row(
 
 def _restitutions(
     found: dict[str, list[Measured]], last: dict[str, Measured]
-) -> tuple[list[Measured], bool]:
-    """What a row says of the restitution, and whether it takes v^2 = 2 g h.
+) -> tuple[list[Measured], str, bool]:
+    """What a row says of the restitution, the column it is of, and whether v^2 = 2 g h is taken.
 
-    Of a rebound that is told more than once like over like comes first: what a sheet works out
-    itself comes from the same heights or speeds. The approach's error stays in its own column.
+    Measured heights and speeds come before what a sheet worked out of them itself, like over like
+    before one over the other. The approach's error stays in its own column.
     """
     fallen, speed = (last[name].value if name in last else None for name in APPROACHES[:2])
     heights, speeds = (found.get(name, []) for name in REBOUNDS)
     if fallen and heights:
-        return [_root(h.scaled(1.0 / fallen)) for h in heights], False
+        return [_root(h.scaled(1.0 / fallen)) for h in heights], REBOUND_HEIGHT, False
     if speed and speeds:
-        return [v.scaled(1.0 / speed) for v in speeds], False
-    if own := found.get("restitution", []):
-        return own, False
-    if speed:
+        return [v.scaled(1.0 / speed) for v in speeds], REBOUND_SPEED, False
+    if speed and heights:
         up = [_root(h.scaled(2.0 * GRAVITY)) for h in heights]
-        return [v.scaled(1.0 / speed) for v in up], bool(heights)
-    if fallen:
-        return [v.scaled(1.0 / math.sqrt(2.0 * GRAVITY * fallen)) for v in speeds], bool(speeds)
-    return [], False
+        return [v.scaled(1.0 / speed) for v in up], REBOUND_HEIGHT, True
+    if fallen and speeds:
+        down = math.sqrt(2.0 * GRAVITY * fallen)
+        return [v.scaled(1.0 / down) for v in speeds], REBOUND_SPEED, True
+    return found.get("restitution", []), "restitution", False
+
+
+def _differing(own: Sequence[Measured], back: Sequence[Measured], row: int) -> list[str]:
+    """A line where a sheet's own restitutions are not those of its heights or speeds."""
+    apart = [
+        f"{mine.value:g}, not {other.value:.3g}"
+        for mine, other in zip(own, back, strict=False)
+        if abs(mine.value - other.value) > OWN.speed_bin * max(mine.value, other.value)
+    ]
+    told = "; ".join(apart)
+    return [f"row {row}: the restitution written is {told} of the rebound measured"] if told else []
 
 
 def _root(square: Measured) -> Measured:
