@@ -7,6 +7,7 @@ signals take longer to load than a small file to reduce.
 from __future__ import annotations
 
 import math
+from collections.abc import Iterable
 from datetime import date
 from pathlib import Path
 from typing import TYPE_CHECKING, NamedTuple
@@ -64,8 +65,12 @@ class Series(NamedTuple):
 
     def told(self) -> str:
         """Return how many cells hold no number, and what they hold."""
-        held = ", ".join(repr(mark) if mark else "nothing" for mark in self.marks[:4])
-        return f"{self.missed.size} cells hold no number but {held}"
+        return _no_number(self.missed.size, self.marks)
+
+
+def _no_number(count: int, marks: Iterable[str]) -> str:
+    held = ", ".join(repr(mark) if mark else "nothing" for mark in tuple(marks)[:4])
+    return f"{count} cells hold no number but {held}"
 
 
 def reduce(path: Path, options: TableOptions) -> Reduced:
@@ -173,6 +178,10 @@ def _tension(path: Path, table: Columns, options: TableOptions) -> Reduced:
     notes = found.notes
     if options.E_Pa is None and table.unit(at) in LENGTH:
         notes += ("a travel of the machine's head holds its give: state E_Pa if it is one",)
+    pair = np.isfinite(table.values[:, [at, value]])
+    if (holes := np.flatnonzero(pair.sum(axis=1) == 1)).size:
+        marks = {table.cells[int(k)][value if pair[k, 0] else at] for k in holes}
+        notes += (f"{_no_number(holes.size, sorted(marks))}: their rows are left out",)
     return Reduced(
         source=path, values=found.values, trials=(), notes=notes,
         draw=lambda to: draw_tension(found, to), flow=(options.body, found.flow),

@@ -58,8 +58,11 @@ def reduce_tension(
     Raises
     ------
     InputError
-        Too few rows, no elastic part, or no yield; `Refused` if no metal rises so.
+        Too few rows, no elastic part, no yield, or a modulus in another unit; `Refused` if no metal
+        rises so.
     """
+    if E is not None and (unit := _other_unit(E)):
+        raise InputError(f"{E:g}", key="E_Pa", allowed=f"pascals; {E:g} {unit} would be a metal's")
     most = RULES.no_metal
     wild = np.flatnonzero((np.abs(strain) > most[0]) | (np.abs(stress) > most[1]))
     if wild.size:
@@ -99,9 +102,14 @@ def reduce_tension(
         offset = (strain - stress / E)[: int(np.argmax(stress > 0.5 * stress.max()))]
         zero = float(np.partition(offset, 2)[2]) if offset.size > 2 else zero
     elif E is not None and abs(modulus.value - E) > max(0.2 * E, 2.0 * modulus.std):
+        why = (
+            "the machine gives way" if modulus.value < E else
+            "no machine makes it steeper, so E_Pa is too low, or the strain, area or gauge length "
+            "is wrong"
+        )  # fmt: skip
         notes.append(
-            f"the curve rises with {modulus.value / 1e9:.3g} GPa, not {E / 1e9:.3g}: the machine "
-            "gives way; the plastic strain is counted from the curve's own line"
+            f"the curve rises with {modulus.value / 1e9:.3g} GPa, not {E / 1e9:.3g}: {why}; the "
+            "plastic strain is counted from the curve's own line"
         )
         used, told = modulus.value, modulus.widened(modulus.value - E)
     flow = _rows(strain - zero - stress / used, stress, source)
@@ -113,7 +121,7 @@ def reduce_tension(
         )  # fmt: skip
     values = {
         "E_Pa": told, "Sy_Pa": _strength(flow, modulus),
-        "largest_stress_Pa": Measured(float(flow.stress[-1]), math.nan),
+        "largest_stress_Pa": Measured(float(flow.stress.max()), math.nan),
         "largest_plastic_strain": Measured(float(flow.strain[-1]), math.nan),
     }  # fmt: skip
     return TensionReduction(strain - zero, stress, modulus, flow, values, tuple(notes))
@@ -139,6 +147,13 @@ def _no_slip(strain: Array, stress: Array, modulus: float, source: str) -> None:
             f"and rises again{as_elastic}", source=source,
             allowed="a specimen that does not slip in its grips, and a gauge that stays on it",
         )  # fmt: skip
+
+
+def _other_unit(E: float) -> str:
+    """Return the unit in which a modulus is a metal's that is none in pascals, if there is one."""
+    low, high = RULES.metal_moduli
+    units = UNITS["stress"]
+    return next((u for u in ("MPa", "GPa") if E < low <= E * units[u] <= high), "")
 
 
 def _no_metal(modulus: Measured, strength: float) -> str:
@@ -183,6 +198,11 @@ def _rows(plastic: Array, stress: Array, source: str) -> MeasuredFlow:
         if (there := (plastic > low) & (plastic <= high)).any()
     ]
     strain, flow = np.array(means).T
+    if strain.size > 1 and strain[-1] < largest:  # the last rows' middle is not the curve's end
+        last = stress[plastic > edges[np.searchsorted(edges, strain[-1]) - 1]]
+        ahead = (largest - strain[-1]) / (strain[-1] - strain[-2])
+        end = np.clip(flow[-1] + ahead * (flow[-1] - flow[-2]), last.min(), last.max())
+        strain, flow = np.append(strain, largest), np.append(flow, end)
     first = np.concatenate([[0.0], strain]), np.concatenate([[flow[0]], flow])
     nothing = np.full(first[0].size, np.nan)
     return MeasuredFlow(first[0], first[1], nothing, nothing)

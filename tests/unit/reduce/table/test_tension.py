@@ -2,6 +2,7 @@
 
 import numpy as np
 import pytest
+from dentscope.core.errors import InputError
 from dentscope.reduce.gates import Refused
 from dentscope.reduce.kinds import load_kind
 from dentscope.reduce.table.rise import elastic_rise
@@ -137,3 +138,61 @@ def test_a_travel_is_told_and_a_refused_test_is_drawn(tmp_path):
         kind.run(tmp_path / "b.csv", given, source="test")
     refused.value.draw(tmp_path / "b.png")
     assert (tmp_path / "b.png").stat().st_size > 5000
+
+
+def yielding(to=0.222):
+    """A plateau at 280 MPa, then K e^n, n = 0.2: it necks at a plastic strain of 0.198."""
+    plastic = np.linspace(0.0, 0.25, 1200)
+    true = np.maximum(280e6, 612.28e6 * plastic**0.2)
+    strain = np.concatenate([np.linspace(0.0, 280e6 / E, 40)[:-1], plastic + true / E])
+    true = np.concatenate([np.linspace(0.0, 280e6, 40)[:-1], true])
+    stretch = np.exp(strain)
+    kept = stretch - 1.0 < to
+    return (stretch - 1.0)[kept], (true / stretch)[kept]
+
+
+def test_a_curve_ends_where_the_specimen_necks():
+    strain, stress = yielding()
+    top = stress.argmax()
+    found = pulled(strain, stress, strain_is="engineering")
+    largest = stress[top] * (1.0 + strain[top])
+    assert found.values["largest_stress_Pa"].value == pytest.approx(largest, rel=1e-3)
+    at = np.log(1.0 + strain[top]) - largest / E
+    assert found.values["largest_plastic_strain"].value == pytest.approx(at, rel=1e-3)
+    assert found.flow.strain[-1] == pytest.approx(at, rel=1e-3)
+
+
+@pytest.mark.parametrize(("unloading", "within"), [(0, 1e-3), (15, 0.02)])
+def test_scatter_and_unloading_leave_the_end_where_it_is(unloading, within):
+    stress = np.linspace(0.0, 9e8, 900)
+    noise = 2e6 * np.random.default_rng(2).normal(size=stress.size)
+    back = np.linspace(9e8, 0.0, unloading)
+    strain = np.concatenate([steel(stress), steel(9e8) - (9e8 - back) / E])
+    found = pulled(strain, np.concatenate([stress + noise, back]))
+    assert found.flow.stress[-1] == pytest.approx(9e8, rel=within)
+
+
+@pytest.mark.parametrize(("typed", "unit"), [(210000.0, "MPa"), (210.0, "GPa")])
+def test_a_modulus_in_another_unit_is_refused(typed, unit):
+    with pytest.raises(InputError, match=rf"E_Pa: {typed:g} .*{typed:g} {unit} would be"):
+        pulled(*yielding(), E=typed)
+    pulled(*yielding(), E=16e9)  # lead
+
+
+def test_no_machine_makes_a_curve_steeper():
+    (note,) = pulled(*yielding(), E=0.5 * E).notes
+    assert "no machine makes it steeper" in note
+    assert "gives way" not in note
+
+
+def test_a_cell_without_a_number_is_told(tmp_path):
+    strain, stress = yielding()
+    cells = [[f"{100.0 * x:.6f}", f"{1e-6 * s:.4f}"] for x, s in zip(strain, stress, strict=True)]
+    cells[300][1] = "nan"
+    cells[400] = ["", ""]
+    rows = "\n".join(map(",".join, cells))
+    (tmp_path / "a.csv").write_text(f"Strain (%),Stress (MPa)\n{rows}\n")
+    notes = load_kind("table").run(tmp_path / "a.csv", {"holds": "tension"}, source="test").notes
+    assert [note for note in notes if "number" in note] == [
+        "1 cells hold no number but 'nan': their rows are left out"
+    ]
