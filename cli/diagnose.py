@@ -31,7 +31,7 @@ def diagnose(
     out: Annotated[Path, folder_option("Folder for verdict.json and report.html.")] = Path(
         "build/diagnose"
     ),
-    seed: Annotated[int, typer.Option(help="Same seed, same answer.")] = 0,
+    seed: Annotated[int, typer.Option(min=0, help="Same seed, same answer.")] = 0,
     confirm: Annotated[
         bool, typer.Option("--confirm", help="Sampled evidence, all nulls, the own pair solved.")
     ] = False,

@@ -26,9 +26,11 @@ _Which = Annotated[str, typer.Option("--list", help="full or small.")]
 def run(
     which: _Which = "full",
     out: _Base = _BASE,
-    hours: Annotated[float, typer.Option(help="Stop after so many hours.")] = 1e9,
-    most: Annotated[int, typer.Option(help="Stop after so many sets.")] = 10**9,
-    limit: Annotated[float, typer.Option(help="Longest time of one diagnosis [s].")] = 900.0,
+    hours: Annotated[float, typer.Option(min=0.0, help="Stop after so many hours.")] = 1e9,
+    most: Annotated[int, typer.Option(min=1, help="Stop after so many sets.")] = 10**9,
+    limit: Annotated[
+        float, typer.Option(min=1.0, help="Longest time of one diagnosis [s].")
+    ] = 900.0,
     workers: Annotated[int, typer.Option(min=1, help="Worker processes.")] = os.cpu_count() or 1,
 ) -> int:
     """Go on with the run of this source tree: draw, seal, diagnose, seal. Stop it at any time."""
@@ -124,12 +126,12 @@ def _write_page(runs: list[dict[str, object]]) -> None:
 @app.command()
 def sample(
     out: Annotated[Path, typer.Argument(help="Folder for sets/ and truths/.")],
-    count: Annotated[int, typer.Option(help="Number of sets.")] = 4,
+    count: Annotated[int, typer.Option(min=1, help="Number of sets.")] = 4,
     kind: Annotated[
         str, typer.Option(help="null, single, pair or outside; in turn if empty.")
     ] = "",
     name: Annotated[str, typer.Option(help="Effect; every one in turn if empty.")] = "",
-    seed: Annotated[int, typer.Option(help="Seed of the draw.")] = 1,
+    seed: Annotated[int, typer.Option(min=0, help="Seed of the draw.")] = 1,
 ) -> None:
     """Write sample sets with their truths beside them."""
     one_of(kind, ("", *KINDS), key="--kind")

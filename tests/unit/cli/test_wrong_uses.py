@@ -147,6 +147,7 @@ diagnose kharaz-2001-oblique --out words.txt
 diagnose kharaz-2001-oblique --seed many
 diagnose kharaz-2001-oblique --law hertz
 diagnose kharaz-2001-oblique --seed 1.5
+diagnose kharaz-2001-oblique --seed -1
 diagnose kharaz-2001-oblique liquidmetal-bounces
 recordings nonsense
 recordings check
@@ -226,6 +227,9 @@ figures --fields 9.9
 figures --out words.txt
 verify --folder words.txt
 proof sample words.txt
+proof sample new --seed -1
+proof sample new --count 0
+proof run --most 0
 proof score --out words.txt
 """
 USES = [line.split() for line in LINES.strip().splitlines()]
