@@ -6,7 +6,7 @@ import math
 from typing import Literal
 
 import numpy as np
-from pydantic import Field, model_validator
+from pydantic import Field, ValidationInfo, field_validator, model_validator
 
 from ...core.arrays import Array
 from ...core.inputs.csv_table import number
@@ -16,6 +16,10 @@ from ..bounces.options import GRAVITY
 
 def _three_numbers(text: str) -> bool:
     return len(text.split(",")) == 3 and all(math.isfinite(number(v)) for v in text.split(","))
+
+
+def _markers(text: str) -> tuple[str, ...]:
+    return tuple(n.strip() for n in text.split(":") if n.strip())
 
 
 class MocapOptions(InputTable):
@@ -56,13 +60,29 @@ class MocapOptions(InputTable):
             raise ValueError("tip_radius_m is needed: the radius of the tip or of the sphere")
         if self.shape == "rod" and self.length_m is None:
             raise ValueError("length_m is needed for a rod")
-        if self.axis and len(self.two_ends) != 2:
-            raise ValueError("axis takes two markers, as A:B")
-        if self.spin_before_rad_s and not _three_numbers(self.spin_before_rad_s):
-            raise ValueError("spin_before_rad_s takes three numbers, as X,Y,Z")
-        if self.last_frame is not None and self.last_frame < self.first_frame:
-            raise ValueError("last_frame is first_frame or more")
         return self
+
+    @field_validator("last_frame")
+    @classmethod
+    def _order(cls, given: int | None, info: ValidationInfo) -> int | None:
+        first = info.data.get("first_frame", 0)
+        if given is not None and given < first:
+            raise ValueError(f"first_frame, {first}, or more")
+        return given
+
+    @field_validator("axis")
+    @classmethod
+    def _two_markers(cls, given: str) -> str:
+        if given and len(_markers(given)) != 2:
+            raise ValueError("two markers, as A:B")
+        return given
+
+    @field_validator("spin_before_rad_s")
+    @classmethod
+    def _spin(cls, given: str) -> str:
+        if given and not _three_numbers(given):
+            raise ValueError("three numbers, as X,Y,Z")
+        return given
 
     @property
     def spin(self) -> Array | None:
@@ -74,7 +94,7 @@ class MocapOptions(InputTable):
     @property
     def two_ends(self) -> tuple[str, ...]:
         """The two markers along the rod."""
-        return tuple(n.strip() for n in self.axis.split(":") if n.strip())
+        return _markers(self.axis)
 
 
 Options = MocapOptions

@@ -2,10 +2,8 @@
 
 from __future__ import annotations
 
-from typing import Any
-
 import numpy as np
-from pydantic import Field, model_validator
+from pydantic import Field, ValidationInfo, field_validator
 
 from ...core.arrays import Array, Mask
 from ...core.inputs.toml_input import InputTable
@@ -17,11 +15,13 @@ class TimeWindow(InputTable):
     first_s: float | None = Field(None, description="beginning of the part to use, in its own time")
     last_s: float | None = Field(None, description="its end")
 
-    @model_validator(mode="after")
-    def _order(self) -> Any:
-        if self.first_s is not None and self.last_s is not None and self.last_s <= self.first_s:
-            raise ValueError("last_s is later than first_s")
-        return self
+    @field_validator("last_s")
+    @classmethod
+    def _order(cls, given: float | None, info: ValidationInfo) -> float | None:
+        first = info.data.get("first_s")
+        if first is not None and given is not None and given <= first:
+            raise ValueError(f"later than first_s, {first:g}")
+        return given
 
     def keeps(self, time: Array) -> Mask:
         """Whether each instant, (n,) [s], lies in the part."""

@@ -2,7 +2,9 @@
 
 import numpy as np
 import pytest
+from dentscope.core.errors import InputError
 from dentscope.reduce.gates import Refused
+from dentscope.reduce.kinds import load_kind
 from dentscope.reduce.sound.file import Sound
 from dentscope.reduce.sound.kind import check_level
 from dentscope.reduce.table.pulse import find_pulse
@@ -194,3 +196,22 @@ def test_a_sensor_that_hardly_rings_widens_the_contact_time():
     noise = np.random.default_rng(1).normal(0.0, 0.05, time.size)
     found = find_pulse(time, shown + noise, source="test")
     assert 0.03 < 1.0 - found.duration.value / 8e-3 < 2.0 * found.duration.std / 8e-3
+
+
+@pytest.mark.parametrize(
+    ("kind", "given", "said"),
+    [
+        ("table", {"holds": "force", "first_s": 1.0, "last_s": 0.0},
+         r"last_s: 0\.0 \(allowed: later than first_s, 1\)"),
+        ("sound", {"first_s": 2.0, "last_s": 2.0}, "later than first_s, 2"),
+        ("mocap", {"tip_radius_m": 1e-3, "length_m": 0.1, "first_frame": 9, "last_frame": 8},
+         r"last_frame: 8 \(allowed: first_frame, 9, or more"),
+        ("mocap", {"tip_radius_m": 1e-3, "length_m": 0.1, "axis": "A"},
+         "axis: 'A' .allowed: two markers, as A:B"),
+        ("mocap", {"tip_radius_m": 1e-3, "length_m": 0.1, "spin_before_rad_s": "1,2"},
+         "spin_before_rad_s: '1,2' .allowed: three numbers"),
+    ],
+)  # fmt: skip
+def test_a_wrong_option_is_told_with_its_name_and_value(tmp_path, kind, given, said):
+    with pytest.raises(InputError, match=said):
+        load_kind(kind).run(tmp_path / "absent", given, source="command line")
