@@ -16,7 +16,7 @@ import numpy as np
 import numpy.typing as npt
 
 from ..core.approach import speeds_at_touch
-from ..core.arrays import Array, Indices
+from ..core.arrays import Array, Indices, Mask
 from ..core.errors import InputError, InputErrors
 from ..core.inputs.csv_table import Problems
 from ..core.inputs.flow_curve import SPECIMENS, MeasuredFlow, read_flow_curve
@@ -366,10 +366,10 @@ def _impossible(found: RecordingSet, problems: Problems) -> list[InputError]:
     if e is None:
         return []
     # smaller gains may be scatter that was not stated: the audit and the diagnosis name them
-    std = np.nan_to_num(found.std("restitution"))
-    high = np.flatnonzero(
-        e - 1.0 > np.maximum(RULES.restitution_beyond * std, RULES.restitution_slip)
-    )
+    gain = np.nan_to_num(e, nan=0.0) - 1.0
+    high = np.flatnonzero(_beyond(gain, np.nan_to_num(found.std("restitution"))))
+    if high.size < np.count_nonzero(gain > RULES.restitution_slip):
+        high = np.flatnonzero(_beyond(gain, _std_of_others(found, gain)))
     return [
         InputError(
             f"{e[k]:g} above 1 without a reason", source=problems.source,
@@ -378,6 +378,34 @@ def _impossible(found: RecordingSet, problems: Problems) -> list[InputError]:
         )
         for k in high if not notes[k]
     ]  # fmt: skip
+
+
+def _beyond(gain: Array, std: Array) -> Mask:
+    return gain > np.maximum(RULES.restitution_beyond * std, RULES.restitution_slip)
+
+
+def _std_of_others(found: RecordingSet, gain: Array) -> Array:
+    """Standard deviations of the restitution, shape (n,); repeats do not vouch for themselves.
+
+    A scatter is that of the rows without a gain, and of those with one that these allow.
+    """
+    known, e = found.noise("restitution"), found.trials.observables["restitution"]
+    std, stated = np.nan_to_num(known.std), found.trials.observables_std.get("restitution")
+    if np.isinf(known.degrees):
+        return std
+    of_repeats = np.isnan(np.full(e.shape, np.nan) if stated is None else stated)
+    pool = gain <= RULES.restitution_slip
+    while True:
+        counted = np.where(pool, e, np.nan)
+        others = noise.noise_of("restitution", counted, None, {}, found.conditions)
+        if np.isinf(others.degrees):  # too few to tell
+            return std
+        largest = float(np.nanmax(others.std))
+        limits = np.where(of_repeats, np.minimum(std, largest), std)
+        allowed = ~_beyond(gain, limits)
+        if not (allowed & ~pool).any():
+            return limits
+        pool |= allowed
 
 
 def _wider(found: RecordingSet, problems: Problems) -> list[InputError]:

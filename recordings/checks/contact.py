@@ -33,12 +33,28 @@ def check_energy(found: RecordingSet) -> list[Finding]:
                 findings.append(_supply(view.name, cost, brought))
             else:
                 findings.append(_budget(view.name, cost, lost))
+        elif pressure is not None:
+            findings += [_supply(view.name, cost, brought) for cost in _of_circle(view, pressure)]
     return gathered(findings)
 
 
 def _depth(view: TrialView) -> TrialReading | None:
     depth = view.measured("permanent_depth_m")
     return depth if depth is not None and depth.value > 0.0 else None
+
+
+def _of_circle(view: TrialView, pressure: TrialReading) -> list[TrialReading]:
+    """Work of pressing the circle of a dent, p pi a^4 / 4R, its elastic part included [J].
+
+    None without a diameter, or where sliding widens the dent.
+    """
+    wide, touch = view.measured("dent_diameter_m"), view.touch
+    leans = touch.c > 1e-3 * touch.s or abs(touch.tip[0]) > 1e-3 * abs(touch.tip[1])
+    if wide is None or not wide.value > 0.0 or leans:
+        return []
+    work = limits.dent_work(view.R, 0.125 * wide.value**2 / view.R, pressure.value)
+    relative = combined(4.0 * wide.relative, view.striker.tip_radius_m.relative, pressure.relative)
+    return [TrialReading(work, relative * work)]
 
 
 def _energies(view: TrialView, e: TrialReading | None) -> tuple[TrialReading, TrialReading]:

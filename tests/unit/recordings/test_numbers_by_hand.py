@@ -9,7 +9,7 @@ import pytest
 from dentscope.core import InputError
 from dentscope.core.rig import StrikerTable
 from dentscope.recordings import read
-from dentscope.recordings.checks.contact import _budget, _supply, check_force
+from dentscope.recordings.checks.contact import _budget, _supply, check_energy, check_force
 from dentscope.recordings.checks.findings import Severity
 from dentscope.recordings.checks.momentum import MomentumTrials, momentum_misfit
 from dentscope.recordings.checks.motion import (
@@ -426,3 +426,43 @@ def test_a_press_leans_by_half_a_degree_at_the_most(set_of):
     set_of(load_N=[100], angle_deg=[89.6])
     with pytest.raises(InputError, match="angle_deg"):
         set_of(load_N=[100], angle_deg=[89.4])
+
+
+@pytest.mark.parametrize(
+    ("rows", "refused"),
+    [
+        ([0.588, 5.79, 0.585, 0.58], ["t1"]),
+        ([0.588, 5.79, 5.85, 0.585, 0.58], ["t1", "t2"]),  # nor for each other
+        ([0.588, 5.79, 0.585], []),  # two others tell no scatter
+        ([0.7, 1.02, 1.35, 0.8, 0.6], []),
+    ],
+)
+def test_a_restitution_above_one_does_not_vouch_for_itself(set_of, rows, refused):
+    """Its own scatter would be large enough: the rows beside it say how large it is."""
+    n = len(rows)
+    columns = {"angle_deg": [90] * n, "impact_speed_m_s": [1] * n, "restitution": rows}
+    if refused:
+        with pytest.raises(InputError) as told:
+            set_of(**columns)
+        lines = str(told.value).splitlines()
+        assert [line.split("trial ")[1].split(",")[0] for line in lines] == refused
+        set_of(**columns, note=["moved" if f"t{i}" in refused else "" for i in range(n)])
+    else:
+        set_of(**columns)
+
+
+@pytest.mark.parametrize(("wide", "said"), [(0.9, "CONSISTENT"), (1.2, "CONTRADICTION")])
+def test_the_circle_of_a_dent_takes_no_more_than_all_energy_brought(set_of, wide, said):
+    """0.55 p pi a^4 / 4R = m v^2 / 2 at a diameter of `wide` = 1, p = 2.84 S_y."""
+    energy = 0.5 * 4e-3 * 2.0**2
+    circle = 2.0 * (energy * 4 * 5e-3 / (0.55 * 2.84 * 3.5e8 * math.pi)) ** 0.25
+    columns = {
+        "angle_deg": [90], "impact_speed_m_s": [2.0], "impact_speed_m_s_std": [0.002],
+        "dent_diameter_m": [wide * circle], "dent_diameter_m_std": [1e-7],
+    }  # fmt: skip
+    target = "Sy_Pa = { value = 3.5e8, std = 1e7 }\n"
+    found = of_check(check_energy(set_of(target=target, **columns)), "energy")
+    assert found.severity is Severity[said]
+    assert 0.55 * found.value / found.expected == pytest.approx(wide**4)
+    # sliding widens a dent
+    assert not check_energy(set_of(target=target, **columns, approach_tangential_m_s=[1.0]))
