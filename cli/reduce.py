@@ -193,12 +193,13 @@ def _reduce(
                 pictures[name] = picture
                 typer.echo(f"picture of what was refused: {picture}", err=True)
             raise
+        written: tuple[Path, ...]
         if into is None:
             written = write_record(reduced, out, name, kind=kind.name, options=job.options)
             lines = []
         else:
             done = store(reduced, into, conditions, kind=kind.name, options=job.options)
-            written = (done.record, done.picture)
+            written = (done.record, done.picture, *filter(None, [done.flow]))
             lines = [f"  rows of {into}: {', '.join(done.trials)}"] if done.trials else []
             lines += [f"note: {note}" for note in done.notes]
     # a reader of another package may draw none

@@ -12,6 +12,7 @@ import tempfile
 import tomllib
 from collections.abc import Callable, Iterable, Mapping
 from dataclasses import dataclass, replace
+from itertools import count
 from pathlib import Path
 from typing import Any
 
@@ -26,7 +27,7 @@ from ...core.output import csv_text, finish_pending, locked, write_files
 from ...core.rig import Quantity
 from ...recordings.columns import CONDITIONS, MEASURED, STD_SUFFIX
 from ...recordings.recording_set import RecordingSet, files_of, read
-from ...recordings.setup_file import SetFile, setup_text, without_marks
+from ...recordings.setup_file import SetFile, flowing, setup_text, without_marks
 from ...recordings.template import Shape, template_text
 from ...recordings.trials import Trials
 from ..measured import Measured, Trial
@@ -40,12 +41,13 @@ _CONDITIONS = tuple(n for n in CONDITIONS if n not in _TEXTS and not n.endswith(
 
 @dataclass(frozen=True)
 class Stored:
-    """What was written: rows of trials.csv, the record, the picture, and remarks."""
+    """What was written: rows of trials.csv, the record, the picture, a flow curve, and remarks."""
 
     trials: tuple[str, ...]
     record: Path
     picture: Path
     notes: tuple[str, ...]
+    flow: Path | None = None
 
 
 def store(
@@ -102,11 +104,12 @@ def store(
         text = setup_text(after.setup, before=before.setup, text=text)
         open_keys = without_marks(tomllib.loads(text))[1]
         notes = (f"{folder / 'set.toml'}: to fill in: {', '.join(open_keys)}",) if open_keys else ()
-        _write_whole(after, text, curves, folder)
+        kept, told = _kept_flows(after, _flow_path(reduced, folder), folder)
+        _write_whole(after, text, curves, folder, kept)
     record, picture = write_record(
         reduced, folder / "reduced", _name(reduced, row), kind=kind, options=options, trials=names
     )
-    return Stored(tuple(names), record, picture, notes)
+    return Stored(tuple(names), record, picture, (*notes, *told), _flow_path(reduced, folder))
 
 
 def store_each(
@@ -312,7 +315,7 @@ def _with_flow(found: RecordingSet, reduced: Reduced) -> RecordingSet:
         raise InputError(
             repr(body), key="body", allowed=", ".join(["target", *found.setup.strikers])
         )
-    named = {"flow_curve": f"{body}-flow.csv"}
+    named = {"flow_curve": _flow_file(body)}
     target, strikers = found.setup.target, dict(found.setup.strikers)
     if body == "target":
         target = target.model_copy(update=named)
@@ -322,8 +325,39 @@ def _with_flow(found: RecordingSet, reduced: Reduced) -> RecordingSet:
     return replace(found, setup=setup, flows={**found.flows, key: flow})
 
 
-def _write_whole(after: RecordingSet, text: str, curves: Mapping[str, Trial], folder: Path) -> None:
-    files = {**files_of(after), "set.toml": text}
+def _flow_file(body: str) -> str:
+    return f"{body}-flow.csv"
+
+
+def _flow_path(reduced: Reduced, folder: Path) -> Path | None:
+    return None if reduced.flow is None else folder / _flow_file(reduced.flow[0])
+
+
+def _kept_flows(
+    after: RecordingSet, measured: Path | None, folder: Path
+) -> tuple[dict[str, bytes], tuple[str, ...]]:
+    """Return the flow curves of the folder that stay as they are, and a line for one renamed."""
+    named = {body.flow_curve for body in flowing(after.setup).values()}
+    files = {
+        name: (folder / name).read_bytes()
+        for name in named if (folder / name) != measured and (folder / name).is_file()
+    }  # fmt: skip
+    if measured is None or not measured.is_file():
+        return files, ()
+    before = measured.read_bytes()
+    if before.decode(errors="replace") == files_of(after)[measured.name]:
+        return files, ()
+    copies = (measured.with_name(f"{measured.stem}-{k}.csv") for k in count(1))
+    copy = next(path for path in copies if not path.exists())
+    note = f"{measured}: there was another one, kept as {copy.name}"
+    return {**files, copy.name: before}, (note,)
+
+
+def _write_whole(
+    after: RecordingSet, text: str, curves: Mapping[str, Trial], folder: Path,
+    kept: Mapping[str, bytes],
+) -> None:  # fmt: skip
+    files = {**files_of(after), **kept, "set.toml": text}
     for name, trial in curves.items():
         for kind, columns in (("traces", trial.trace), ("profiles", trial.profile)):
             if columns:

@@ -122,12 +122,9 @@ def _trials(
     told: list[tuple[str, str]], others: list[str], decimals: str, source: str,
 ) -> Sheet:  # fmt: skip
     _check_columns(columns, told, source)
-    left: list[str] = []
     trials: list[Trial] = []
     last: dict[str, Measured] = {}
-    from_above: list[str] = []
-    across: list[str] = []
-    used: set[str] = set()
+    left, from_above, across, used = list[str](), list[str](), list[str](), set[str]()
     first_with: dict[tuple[str, ...], int] = {}
     for k, row in enumerate(rows[top:], start=top + 1):
         if not any(row):

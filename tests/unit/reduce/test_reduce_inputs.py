@@ -215,6 +215,33 @@ def test_tension_and_leeb_tables_into_a_set(tmp_path):
     assert found.flows["target"].strength == pytest.approx(310e6, rel=0.03)
 
 
+def test_a_flow_curve_that_is_there_is_kept_and_the_new_one_listed(tmp_path, capsys):
+    """A curve of another body, or of another name, stays as its author wrote it."""
+    strain = np.linspace(0.0, 0.1, 300)
+    for name, slope in (("a", 1e9), ("b", 2e9)):
+        stress = np.minimum(200e9 * strain, 300e6 + slope * strain)
+        rows = "\n".join(f"{e:.6f},{s:.0f}" for e, s in zip(strain, stress, strict=True))
+        (tmp_path / f"{name}.csv").write_text(f"strain,stress (Pa)\n{rows}\n")
+    where = tmp_path / "set"
+    own = "plastic_strain,true_stress_Pa\n0,2.5e8\n0.10,4.00e8\n"
+
+    def pulled(name, body="target"):
+        command = ["reduce", "table", str(tmp_path / f"{name}.csv"), "--holds", "tension"]
+        assert run([*command, "--into", str(where), "--body", body]) == 0
+        return capsys.readouterr().out
+
+    assert "target-flow.csv" in pulled("a").partition("written: ")[2]
+    first = (where / "target-flow.csv").read_text()
+    assert "another one" not in pulled("a")  # the same once more
+    (where / "target-flow.csv").write_text(own)
+    pulled("a", "ball")
+    assert (where / "target-flow.csv").read_text() == own
+    assert "there was another one, kept as target-flow-1.csv" in pulled("a")
+    assert "kept as target-flow-2.csv" in pulled("b")
+    kept = [(where / f"target-flow-{k}.csv").read_text() for k in (1, 2)]
+    assert kept == [own, first]
+
+
 def test_several_files_in_one_call(tmp_path, capsys):
     for name in ("a", "b"):
         (tmp_path / f"{name}.csv").write_text(f"drop_m,{name}\n0.5,0.3\n")
