@@ -37,6 +37,7 @@ UNITS: dict[str, dict[str, float]] = {
                "ksi": 6894757.293},
     "stiffness": {"N/m": 1.0, "N/mm": 1e3, "mN/nm": 1e6, "N/um": 1e6, "N/µm": 1e6, "kN/mm": 1e6},
     "temperature": {"K": 1.0},
+    "mass": {"kg": 1.0, "g": 1e-3, "mg": 1e-6},
     "number": {"": 1.0, "-": 1.0, "%": 1e-2},
 }  # fmt: skip
 """Quantity, and its units in those of the recording set (kg among accelerations: 1000 g)."""

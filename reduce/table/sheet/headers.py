@@ -23,6 +23,7 @@ from .kinds import (
     unit_of,
 )
 
+NOT_UNDERSTOOD = "left out: not understood"
 _NUMBER = re.compile(r"[+-]?\s*\d[\d.,' ]*\D{0,6}")
 _LATER = re.compile(
     r"\b([2-9](nd|rd|th)|second[oa]?|third|fourth|zweite\w*|dritte\w*|deuxieme|troisieme|terz[oa]|"
@@ -51,6 +52,8 @@ class SheetColumn:
         Cells that were read.
     unitless
         Whether a cell asked for the unit.
+    across
+        Whether it holds the second of two diameters of one dent.
     """
 
     place: int
@@ -60,6 +63,7 @@ class SheetColumn:
     spread: bool = False
     taken: int = 0
     unitless: bool = False
+    across: bool = False
 
     @property
     def no_unit(self) -> str:
@@ -110,13 +114,14 @@ def headers_of(
         kind = columns[-1].kind if spread and columns and not named(header) else kind_of(header)
         if kind is not None and (kind.quantity == "text" or not spread):
             columns.append(SheetColumn(place, header, kind, unit_of(header, kind)))
+            columns[-1].across = _is_across(columns)
         elif kind is not None and any(c.kind == kind for c in columns):
             left = next(c for c in reversed(columns) if c.kind == kind)
             unit = unit_of(header, kind)
             columns.append(SheetColumn(place, header, kind, unit or left.unit, spread=True))
         elif header or any(place < len(row) and row[place] for row in rows[top:]):
-            why = "not understood" if header else "no header"
-            told.append((header or f"column {place + 1}", f"left out: {why}"))
+            why = NOT_UNDERSTOOD if header else "left out: no header"
+            told.append((header or f"column {place + 1}", why))
     kept = []
     for column in columns:
         if why := _left_out(column, columns, source):
@@ -124,6 +129,17 @@ def headers_of(
         else:
             kept.append(column)
     return top, kept, told
+
+
+def _is_across(columns: Sequence[SheetColumn]) -> bool:
+    """Whether the last column is d2 of a dent whose d1 stands before it."""
+    *before, last = columns
+    firsts = (c for c in before if c.kind == last.kind and _ends_in_d(c, "1"))
+    return _ends_in_d(last, "2") and any(firsts)
+
+
+def _ends_in_d(column: SheetColumn, number: str) -> bool:
+    return re.search(rf"\bd ?{number}$", named(column.header)) is not None
 
 
 def _left_out(column: SheetColumn, columns: Sequence[SheetColumn], source: str) -> str:
@@ -160,6 +176,8 @@ def _under_titles(rows: Sequence[Sequence[str]], best: int) -> list[str]:
     if 2 * sum(_NUMBER.fullmatch(cell) is not None for cell in filled) > len(filled):
         return []  # of numbers
     above = list(rows[best - 1])[: len(head)] if best else []
+    if above and above[0].startswith("#") and above[0].strip("# "):
+        return head  # a comment
     if sum(map(bool, above)) < 2 or any(map(is_unit, filter(None, above))):
         return head
     title = ""

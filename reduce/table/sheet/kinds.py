@@ -11,6 +11,7 @@ from ...shared.units import UNITS, quantity_of
 from ..heading import DROPS, in_short
 
 REBOUNDS = REBOUND_HEIGHT, REBOUND_SPEED = "rebound_height", "rebound_speed"
+BODY = BALL_DIAMETER, BALL_MASS = "ball_diameter", "ball_mass"
 APPROACHES = ("drop_height_m", "impact_speed_m_s", LOAD)
 CELSIUS = ("°C", "C", "degC")
 
@@ -35,6 +36,8 @@ _DENT = (
     r"\bdent|crater|indent(?!er|eur|ador|atore)|imprint|impression|eindruck|krater|delle|"
     r"empreinte|impronta|huella"
 )
+_BALL = r"\b(ball|sphere|kugel|bille|sfera|bola|esfera)"
+_DIAMETER = r"diam|\bdia\b|durchm|ø|⌀"
 _BLOW = r"contact|kontakt|stoss|impact|beruhr|contatto"
 _SINK = r"indent|eindring|penetr"
 
@@ -63,7 +66,7 @@ _KINDS = (
                _SPEED)
          + r"|^(v( ?n)?|speed|velocity|geschwindigkeit|vitesse|velocita|velocidad)$"),
     SheetKind("dent_diameter_m", "length",
-         _both(_DENT, r"diam|\bdia\b|durchm|ø|⌀|dm\b|wid|breit")),
+         _both(_DENT, _DIAMETER + r"|dm\b|wid|breit|\bd ?[12]?$")),
     # the largest depth under load is not what stays
     SheetKind("permanent_depth_m", "length",
          rf"^(?!(?=.*\bmax)(?=.*({_SINK})))((?=.*({_DENT}|residual|permanent))(?=.*(depth|tiefe))|"
@@ -75,10 +78,19 @@ _KINDS = (
          _both(r"peak|max|massim|spitze|stoss|impact", r"force|kraft|forza|fuerza")),
     SheetKind(LOAD, "force",
          r"^(load|last|charge|carico|carga)\b|test (force|load)|prue?f(kraft|last)"),
+    SheetKind(BALL_DIAMETER, "length", _both(_BALL, _DIAMETER)),
+    SheetKind(BALL_MASS, "mass", _both(_BALL, r"mass|masa|weight|gewicht|poids")),
     SheetKind("trial", "text",
          r"^#|^(nr|no|num|number|test|trial|versuch|messung|probe|shot|run|id|drop no|essai|prova|"
          r"ensayo|lfd)\b|^drop$"),
 )  # fmt: skip
+
+UNDERSTOOD = (
+    "drop height, impact speed, load; rebound height, rebound speed, restitution, dent diameter "
+    "(of two: dent d1, dent d2), dent depth, contact time, peak force; angle, temperature, ball "
+    "diameter, ball mass, trial, note"
+)
+"""Names that a header may have, for people."""
 
 _UNIT_WITHIN = re.compile(r"(?:[\[(]\s*(?:(?:in|en)\s)?|\b(?:in|en)\s)\s*([^\s\]),;]+)")
 _PER_SECOND = re.compile(r"m[ ·.]?s\^?[-⁻][1¹]")

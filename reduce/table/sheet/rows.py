@@ -3,14 +3,15 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Iterator, Sequence
-from dataclasses import dataclass
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import dataclass, replace
 from pathlib import Path
 
 import numpy as np
 
 from ....core.errors import InputError, InputErrors
 from ....core.inputs.input_file import checked_file
+from ....core.inputs.names import names_a_file
 from ....core.processes.confined import confined
 from ....recordings.columns import MEASURED
 from ....recordings.rules import RULES as OWN
@@ -24,8 +25,20 @@ from ..picture import draw_trials
 from ..trials import TrialsReduction
 from ..workbook import NumberCell, rows_of_sheets
 from .cell import decimals_of, number_in, why_not
-from .headers import SheetColumn, headers_of, understood
-from .kinds import APPROACHES, REBOUND_HEIGHT, REBOUND_SPEED, REBOUNDS, SUMMARY, bare, kind_of
+from .headers import NOT_UNDERSTOOD, SheetColumn, headers_of, understood
+from .kinds import (
+    APPROACHES,
+    BALL_DIAMETER,
+    BALL_MASS,
+    BODY,
+    REBOUND_HEIGHT,
+    REBOUND_SPEED,
+    REBOUNDS,
+    SUMMARY,
+    UNDERSTOOD,
+    bare,
+    kind_of,
+)
 
 _TYPED = str.maketrans({"\u2212": "-", "\u00a0": " ", "\u2009": " ", "\u202f": " "})
 """Signs of typesetters as they are typed: the minus, and blanks that do not break."""
@@ -44,11 +57,14 @@ class Sheet:
         Of each column of the sheet its header and what became of it, in words.
     left_out
         Cells, rows and sheets that were not taken, a line each.
+    striker
+        Keys of set.toml that the sheet has of the ball.
     """
 
     trials: tuple[Trial, ...]
     columns: tuple[tuple[str, str], ...]
     left_out: tuple[str, ...]
+    striker: Mapping[str, Measured]
 
     def reduced(self, path: Path) -> Reduced:
         """Return it as what every reduction hands on."""
@@ -64,7 +80,9 @@ class Sheet:
         )
         values = {"trials": Measured(float(len(self.trials)), math.nan)}
         found = TrialsReduction(values, self.trials, notes, (across, x), (up, y))
-        return Reduced(path, values, self.trials, lambda to: draw_trials(found, to), notes)
+        return Reduced(
+            path, values, self.trials, lambda to: draw_trials(found, to), notes, self.striker
+        )
 
 
 def read_sheet(path: Path) -> Sheet:
@@ -73,7 +91,8 @@ def read_sheet(path: Path) -> Sheet:
     Drop and rebound height give the restitution, the root of their ratio, and one in a column of
     its own counts where they do not; where it differs from them, that is told. A drop height that
     is written once for several rows holds for the rows below; several columns of one quantity are
-    repeats, each a row of its own.
+    repeats, each a row of its own, but for d1 and d2 of a dent. A column of trials names them where
+    its entries differ; a ball's diameter and mass that are the same in all rows are the striker's.
 
     Parameters
     ----------
@@ -122,8 +141,9 @@ def _trials(
     told: list[tuple[str, str]], others: list[str], decimals: str, source: str,
 ) -> Sheet:  # fmt: skip
     _check_columns(columns, told, source)
-    trials: list[Trial] = []
+    trials: list[tuple[int, Trial]] = []
     last: dict[str, Measured] = {}
+    body: dict[str, set[Measured]] = {}
     left, from_above, across, used = list[str](), list[str](), list[str](), set[str]()
     first_with: dict[tuple[str, ...], int] = {}
     for k, row in enumerate(rows[top:], start=top + 1):
@@ -138,23 +158,18 @@ def _trials(
         if not found and not unread:
             left.append(f"row {k}: left out: {' '.join(filter(None, row))}")
             continue
+        for name in BODY:
+            body.setdefault(name, set()).update(found.pop(name, []))
         last = {name: found[name][0] for name in APPROACHES if name in found} or last
-        if "angle_deg" in unread or (unread and not any(name in found for name in APPROACHES)):
-            what = "angle" if "angle_deg" in unread else "drop height or speed"
-            left.append(f"row {k}: left out, its {what} is not read")
-            continue
-        if not found.keys() - {*APPROACHES, *_VARIED}:
-            left.append(f"row {k}: nothing measured")
-            continue
-        if not last:
-            left.append(f"row {k}: no drop height or speed")
+        if why := _no_trial(found, unread, last):
+            left.append(f"row {k}: {why}")
             continue
         if not last.keys() & found.keys():
             from_above.append(str(k))
         back, of, crossed = _restitutions(found, last)
         used.add(of)
         left += _differing(found.get("restitution", []), back, k)
-        trials += _of_row(found | {"restitution": back}, last, note, k)
+        trials += ((k, t) for t in _of_row(found | {"restitution": back}, last, note))
         before = first_with.setdefault(tuple(row), k)
         if before < k and sum(map(bool, row)) > 2:
             left.append(f"row {k}: taken, though each cell is that of row {before}: copied?")
@@ -173,8 +188,47 @@ def _trials(
     names = {c.kind.name for c in columns if c.taken}
     if names >= {"angle_deg", "impact_speed_m_s"}:
         left.append("speeds beside angles are taken as those along the normal")
-    told = [(c.header, _became(c, names, used)) for c in columns] + told
-    return Sheet(tuple(trials), tuple(told), (*left, *others))
+    if any(became == NOT_UNDERSTOOD for _, became in told):
+        left.append(f"what a column may be named, with its unit: {UNDERSTOOD}")
+    striker = _striker(body)
+    naming = _naming(rows, [k for k, _ in trials], columns)
+    called = {k: rows[k - 1][naming.place] if naming else f"{k:03d}" for k, _ in trials}
+    told = [(c.header, _became(c, names, used, striker, naming)) for c in columns] + told
+    named = tuple(replace(t, label=called[k] + t.label) for k, t in trials)
+    return Sheet(named, tuple(told), (*left, *others), striker)
+
+
+def _no_trial(
+    found: Mapping[str, list[Measured]], unread: set[str], last: Mapping[str, Measured]
+) -> str:
+    """Why a row with numbers is no trial; empty where it is one."""
+    if "angle_deg" in unread or (unread and not any(name in found for name in APPROACHES)):
+        what = "angle" if "angle_deg" in unread else "drop height or speed"
+        return f"left out, its {what} is not read"
+    if not found.keys() - {*APPROACHES, *_VARIED}:
+        return "nothing measured"
+    return "" if last else "no drop height or speed"
+
+
+def _striker(body: Mapping[str, set[Measured]]) -> dict[str, Measured]:
+    """Keys of set.toml that a sheet has of the ball, where all rows say the same."""
+    one = {name: next(iter(said)) for name, said in body.items() if len(said) == 1}
+    size, mass = one.get(BALL_DIAMETER), one.get(BALL_MASS)
+    found = {"tip_radius_m": size and size.scaled(0.5), "mass_kg": mass}
+    return {key: value for key, value in found.items() if value and value.value > 0.0}
+
+
+def _naming(
+    rows: Sequence[Sequence[str]], taken: Sequence[int], columns: Sequence[SheetColumn]
+) -> SheetColumn | None:
+    """The column that names the rows that are taken, each otherwise; None without one."""
+    places = {k: rows[k - 1] for k in taken}
+    for column in columns:
+        cells = [row[column.place] for row in places.values() if column.place < len(row)]
+        names = {cell.casefold() for cell in cells if names_a_file(cell)}
+        if column.kind.name == "trial" and len(names) == len(places):
+            return column
+    return None
 
 
 def _check_units(columns: Sequence[SheetColumn], source: str) -> None:
@@ -249,14 +303,19 @@ def _read(
             unread |= {name} & {*APPROACHES, "angle_deg"}
             continue
         column.taken += 1
-        if not column.spread:
+        if column.across and name in found:
+            found[name][-1] = _mean(found[name][-1], value)
+        elif not column.spread:
             found.setdefault(name, []).append(value)
         elif name in found:
             found[name][-1] = Measured(found[name][-1].value, value.value)
     return found, note, unread
 
 
-def _became(column: SheetColumn, taken: set[str], used: set[str]) -> str:
+def _became(
+    column: SheetColumn, taken: set[str], used: set[str], striker: Mapping[str, Measured],
+    naming: SheetColumn | None,
+) -> str:  # fmt: skip
     name, back = column.kind.name, taken & {*REBOUNDS}
     words = {
         REBOUND_HEIGHT: "restitution, the root of rebound over drop height",
@@ -264,17 +323,24 @@ def _became(column: SheetColumn, taken: set[str], used: set[str]) -> str:
         "trial": "left out: rows are numbered", "person": "left out: who measured",
     }  # fmt: skip
     became = words.get(name, name)
-    if name == "restitution" and back:
+    if name == "trial" and naming is not None:
+        became = "names of the trials" if column is naming else "left out: others name the trials"
+    elif name in BODY:
+        key = "mass_kg" if name == BALL_MASS else "tip_radius_m"
+        became = f"{key} of the striker" if key in striker else "left out: not one ball's"
+    elif name == "restitution" and back:
         became = "restitution, where heights or speeds give none"
     elif name in back and name not in used:
         other = "speeds" if name == REBOUND_HEIGHT else "heights"
         became = f"restitution, where {other} give none"
+    elif column.across:
+        became = f"{name}, the mean of it and d1"
     of = "standard deviation of " if column.spread else ""
     return f"{of}{became} ({column.taken} cells)"
 
 
 def _of_row(
-    found: dict[str, list[Measured]], last: dict[str, Measured], note: str, row: int
+    found: dict[str, list[Measured]], last: dict[str, Measured], note: str
 ) -> Iterator[Trial]:
     """Yield the trials of one row: one, or as many as there are repeats."""
     common = {k: v[0] for k, v in found.items() if k in _VARIED}
@@ -283,7 +349,7 @@ def _of_row(
     repeats = max(map(len, measured.values()), default=0)
     for k in range(repeats):
         seen = {n: v[k] for n, v in measured.items() if k < len(v)}
-        label = f"{row:03d}" if repeats == 1 else f"{row:03d}-{k + 1}"
+        label = "" if repeats == 1 else f"-{k + 1}"
         yield Trial({**last, **common, **seen}, label=label, note=note)
 
 
@@ -319,6 +385,10 @@ def _differing(own: Sequence[Measured], back: Sequence[Measured], row: int) -> l
     ]
     told = "; ".join(apart)
     return [f"row {row}: the restitution written is {told} of the rebound measured"] if told else []
+
+
+def _mean(one: Measured, other: Measured) -> Measured:
+    return Measured(0.5 * (one.value + other.value), 0.5 * math.hypot(one.std, other.std))
 
 
 def _root(square: Measured) -> Measured:

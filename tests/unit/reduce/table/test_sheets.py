@@ -7,6 +7,7 @@ from dentscope.core.errors import InputError
 from dentscope.recordings import read
 from dentscope.reduce.table.file import read_columns
 from dentscope.reduce.table.sheet import read_sheet
+from dentscope.reduce.table.sheet.kinds import UNDERSTOOD, kind_of
 
 GERMAN = """Nr.;Datum;Fallhöhe (cm);Rückprallhöhe (mm);Eindruckdurchmesser (mm);Bemerkung
 1;12.03.2025;5,0;34;0,515;
@@ -29,7 +30,7 @@ def test_a_german_sheet(tmp_path):
     path = tmp_path / "Fallversuche.csv"
     path.write_bytes(GERMAN.encode("cp1252"))
     found = read_sheet(path)
-    assert [t.label for t in found.trials] == ["002", "003", "004", "005"]
+    assert [t.label for t in found.trials] == ["1", "2", "3", "4"]
     assert value(found, 1, "dent_diameter_m") == pytest.approx(752e-6)
     assert value(found, 2, "drop_height_m") == 2.0
     assert value(found, 2, "restitution") == pytest.approx(math.sqrt(0.426))
@@ -40,6 +41,7 @@ def test_a_german_sheet(tmp_path):
         "row 5, Eindruckdurchmesser (mm): 'k.A.' is no length",
         "row 6: nothing measured",
         "row 5: the approach is that of the row above",
+        f"what a column may be named, with its unit: {UNDERSTOOD}",
     )
 
 
@@ -413,7 +415,7 @@ def test_presses_are_rows_too(tmp_path):
 def test_rows_are_counted_as_the_file_has_them(tmp_path):
     head = "#,drop height (cm),rebound height (mm),\n"
     sheet = read_text(tmp_path, f"Tuesday\n\n{head}1,10,43,44\n\n2,20,oops,\n3,−5,9,\n")
-    assert [t.label for t in sheet.trials] == ["004"]
+    assert [t.label for t in sheet.trials] == ["1"]
     assert "row 6, rebound height (mm): 'oops' is no length" in sheet.left_out
     assert "row 7, drop height (cm): '-5' is too little" in sheet.left_out
     assert columns(sheet)["column 4"] == "left out: no header"
@@ -489,3 +491,85 @@ def test_a_row_that_stands_twice_is_told(tmp_path):
     assert [line for line in found.left_out if "copied" in line] == [
         "row 4: taken, though each cell is that of row 2: copied?"
     ]
+
+
+@pytest.mark.parametrize(
+    ("rows", "labels", "became"),
+    [
+        ("A1,10,0.6\nA2,20,0.5\n", ["A1", "A2"], "names of the trials"),
+        ("A1,10,0.6\na1,20,0.5\n", ["002", "003"], "left out: rows are numbered"),
+        ("A1,10,0.6\n,20,0.5\n", ["002", "003"], "left out: rows are numbered"),
+        ("1/2,10,0.6\n1/3,20,0.5\n", ["002", "003"], "left out: rows are numbered"),
+        ("A1,10,0.6\nA1,20,\n", ["A1"], "names of the trials"),  # of what is taken
+    ],
+)
+def test_trials_are_named_by_a_column_whose_entries_differ(tmp_path, rows, labels, became):
+    sheet = read_text(tmp_path, f"Test,drop height (cm),e\n{rows}")
+    assert [t.label for t in sheet.trials] == labels
+    assert columns(sheet)["Test"].startswith(became)
+
+
+def test_of_two_columns_that_one_names_the_trials_whose_entries_differ(tmp_path):
+    text = "Probe,Drop no.,drop height (cm),e1,e2\nP,7,10,0.6,0.61\nP,8,20,0.5,\n"
+    sheet = read_text(tmp_path, text)
+    assert [t.label for t in sheet.trials] == ["7-1", "7-2", "8"]
+    assert columns(sheet)["Probe"].startswith("left out: others name the trials")
+
+
+def test_a_comment_above_the_headers_is_no_title_of_theirs(tmp_path):
+    text = "# ball drops, lab 3, plate S235\nDrop no.,drop height (cm),e\n1,10,0.6\n"
+    sheet = read_text(tmp_path, text)
+    assert list(columns(sheet)) == [
+        "Drop no.", "drop height (cm)", "e", "# ball drops lab 3 plate S235",
+    ]  # fmt: skip
+
+
+@pytest.mark.parametrize(
+    ("head", "cells"),
+    [("Ball diameter (mm),Ball mass (g)", "10,4.08"),
+     ("Kugel-Ø in cm,Kugelmasse (kg)", "1,4.08e-3"),
+     ("Diamètre de la bille (mm),Poids de la bille (mg)", "10,4080")],
+)  # fmt: skip
+def test_a_ball_that_is_the_same_in_all_rows_is_that_of_the_set(tmp_path, head, cells):
+    file = tmp_path / "a.csv"
+    file.write_text(f"drop height (cm),e,{head}\n10,0.6,{cells}\n20,0.5,\n", encoding="utf-8")
+    sheet = read_sheet(file)
+    assert {k: v.value for k, v in sheet.striker.items()} == pytest.approx(
+        {"tip_radius_m": 5e-3, "mass_kg": 4.08e-3}
+    )
+    from dentscope.cli import run
+
+    assert run(["recordings", "new", str(tmp_path / "set"), "--sphere", "--from", str(file)]) == 0
+    made = read(tmp_path / "set", unfinished=True)
+    assert "strikers.ball.mass_kg" not in made.to_fill
+    assert made.setup.strikers["ball"].mass_kg.value == pytest.approx(4.08e-3)
+
+
+def test_balls_that_differ_are_told(tmp_path):
+    text = "drop height (cm),e,Ball diameter (mm)\n10,0.6,10\n20,0.5,12\n"
+    sheet = read_text(tmp_path, text)
+    assert not sheet.striker
+    assert columns(sheet)["Ball diameter (mm)"] == "left out: not one ball's (2 cells)"
+
+
+def test_two_diameters_of_a_dent_are_its_mean(tmp_path):
+    head = "Fallhöhe (cm);Eindruck d1 (mm);Eindruck d2 (mm)"
+    sheet = read_text(tmp_path, f"{head}\n10;0,85;0,87\n20;;1,05\n")
+    seen = [t.observables["dent_diameter_m"].value for t in sheet.trials]
+    assert seen == pytest.approx([0.86e-3, 1.05e-3])
+    assert "the mean of it and d1" in columns(sheet)["Eindruck d2 (mm)"]
+    # a title above two bare ones, and one alone
+    titled = "Fallhöhe;Eindruck;\n(cm);d1 (mm);d2 (mm)\n10;0,85;0,87\n"
+    assert value(read_text(tmp_path, titled), 0, "dent_diameter_m") == pytest.approx(0.86e-3)
+    alone = "Fallhöhe (cm);Eindruck d (mm)\n10;0,85\n"
+    assert value(read_text(tmp_path, alone), 0, "dent_diameter_m") == pytest.approx(0.85e-3)
+    assert kind_of("Profondeur d'empreinte (µm)").name == "permanent_depth_m"
+
+
+def test_what_a_column_may_be_named_is_said_once_and_true(tmp_path):
+    text = "drop height (cm),e,d1 [mm],Depth (um)\n10,0.6,0.85,18\n"
+    lines = [line for line in read_text(tmp_path, text).left_out if "may be named" in line]
+    assert lines == [f"what a column may be named, with its unit: {UNDERSTOOD}"]
+    plain = UNDERSTOOD.replace(" (of two: dent d1, dent d2)", ", dent d1, dent d2")
+    assert all(kind_of(name.strip()) for part in plain.split(";") for name in part.split(","))
+    assert not read_text(tmp_path, "drop height (cm),e\n1,0.6\n").left_out
