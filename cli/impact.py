@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated
 
@@ -32,7 +33,7 @@ def impact(
         list[str] | None, typer.Option("--law", help="Contact law; repeat for several.")
     ] = None,
     new: Annotated[
-        str, typer.Option(help="Write a set-up to start from: ball, rod or oblique-ball.")
+        str, typer.Option(help="Write ball, rod or oblique-ball into SETUP, or ./NAME.toml.")
     ] = "",
     exact: Annotated[
         bool, typer.Option("--exact", help="One line a number, without standard deviations.")
@@ -100,7 +101,7 @@ def _from_file(path: Path, names: list[str], out: Path, *, exact: bool) -> None:
     console.print("written: " + ", ".join(str(w) for w in written), soft_wrap=True)
     if unfinished:
         console.print(f"{unfinished} impacts of the sweep did not end: see the column outcome")
-    leave_if_unfinished(list(found.values()))
+    leave_if_unfinished(list(found.values()), list(found))
     if unfinished:
         raise typer.Exit(EXIT_NOT_CONVERGED)
 
@@ -133,9 +134,11 @@ def _sweep(
     return written, int((first["outcome"] != "completed").sum()), "\n".join(swept_above_one(first))
 
 
-def leave_if_unfinished(impacts: list[Impact]) -> None:
-    """End with exit code 3 if an impact ran out of a budget."""
-    stopped = [i for i in impacts if not i.outcome.completed]
+def leave_if_unfinished(impacts: list[Impact], laws: Sequence[str] = ()) -> None:
+    """End with exit code 3 if an impact, of these laws, ran out of a budget."""
+    stopped = [k for k, one in enumerate(impacts) if not one.outcome.completed]
     if stopped:
-        typer.echo(f"{len(stopped)} of {len(impacts)} impacts: {stopped[0].outcome}", err=True)
+        of = f" ({', '.join(laws[k] for k in stopped)})" if laws else ""
+        why = impacts[stopped[0]].outcome
+        typer.echo(f"{len(stopped)} of {len(impacts)} impacts{of}: {why}", err=True)
         raise typer.Exit(EXIT_NOT_CONVERGED)

@@ -21,12 +21,13 @@ _ENDINGS = {
     STEP_BUDGET: Outcome(
         Ending.STEP_LIMIT,
         "the impact did not end within the step budget.",
-        "Raise max_steps, or look for a contact that never opens (no rebound under gravity).",
+        "Raise max_steps of [impact], or look for a contact that never opens (no rebound under "
+        "gravity).",
     ),
     CONTACT_BUDGET: Outcome(
         Ending.STEP_LIMIT,
         "the tip was still re-contacting after the allowed number of contacts.",
-        "Raise max_contacts or lower flight_s.",
+        "Raise max_contacts or lower flight_s of [impact].",
     ),
     FLIGHT_BUDGET: Outcome(
         Ending.STEP_LIMIT,

@@ -76,7 +76,9 @@ class Blow:
         """Return what speaks against the set-up by the first law, and restitutions above 1."""
         first = self.laws[0]
         above = {
-            law.name: reason_above_one(self.setup.scene(law), self[law.name]) for law in self.laws
+            law.name: reason_above_one(self.setup.scene(law), self[law.name])
+            for law in self.laws
+            if self[law.name].outcome.completed
         }
         return [
             *checks(self.setup, first, self[first.name]),
@@ -85,8 +87,11 @@ class Blow:
 
     def rules(self) -> list[str]:
         """Return what rules the bands of restitution and dent, by the first law."""
-        band = self.bands[self.laws[0].name]
-        (found,) = _shown([self[self.laws[0].name]])
+        first = self.laws[0].name
+        if not self[first].outcome.completed:
+            return []
+        band = self.bands[first]
+        (found,) = _shown([self[first]])
         told = (("restitution", 1.0, "restitution"), ("residual_flat_m", 1e6, "crater depth [um]"))
         return [
             f"{words} {_cell(scale * found[name], scale * band.std(name))}: "
@@ -130,29 +135,30 @@ class Blow:
         Returns
         -------
         list of tuple of str
-            Name with unit, then the value by each law, with its standard deviation.
+            Name with unit, then the value by each law, with its standard deviation; of a law by
+            which the blow did not end nothing.
         """
-        columns = _shown(self.impacts.values())
+        ended = [law for law, one in self.impacts.items() if one.outcome.completed]
+        shown = dict(zip(ended, _shown(self[law] for law in ended), strict=True))
+
+        def row(label: str, key: str, scale: float, unit: str) -> tuple[str, ...]:
+            cells = [
+                _cell(scale * shown[law][key], scale * self._std(law, key, exact=exact))
+                if law in shown
+                else "unfinished" * (key == "restitution")
+                for law in self.traces
+            ]
+            return (f"{label} [{unit}]" if unit != "-" else label, *cells)
+
         rows = [
-            (
-                f"{label} [{unit}]" if unit != "-" else label,
-                *(
-                    _cell(scale * values[key], scale * self._std(law, key, exact=exact))
-                    for law, values in zip(self.traces, columns, strict=True)
-                ),
-            )
+            row(label, key, scale, unit)
             for label, key, scale, unit in SHOWN
-            if key == "restitution" or any(abs(values[key]) > 0.0 for values in columns)
+            if key == "restitution" or any(abs(values[key]) > 0.0 for values in shown.values())
         ]
         last = {row["law"]: row[PRESSURE] for row in self.rows}
-        pressure = (
-            "largest mean pressure [MPa]",
-            *(
-                _cell(1e-6 * p, 1e-6 * self._std(law, PRESSURE, exact=exact))
-                for law, p in last.items()
-            ),
-        )
-        return [*rows, pressure]
+        for law, values in shown.items():
+            values[PRESSURE] = last[law]
+        return [*rows, row("largest mean pressure", PRESSURE, 1e-6, "MPa")]
 
     def _std(self, law: str, key: str, *, exact: bool) -> float:
         return 0.0 if exact or key in EXACT else self.bands[law].std(key)
@@ -168,7 +174,7 @@ class Blow:
                 **row,
                 **{
                     f"{key}_std": self.bands[row["law"]].std(key)
-                    if row["repeat"] == last[row["law"]]
+                    if row["repeat"] == last[row["law"]] and self[row["law"]].outcome.completed
                     else ""
                     for key in named
                 },
@@ -384,7 +390,7 @@ def _shown(impacts: Iterable[Impact]) -> list[dict[str, float]]:
     columns = [{key: float(getattr(one, key)) for _, key, _, _ in SHOWN} for one in impacts]
     largest: dict[str, float] = {}
     for _, key, _, unit in SHOWN:
-        largest[unit] = max(largest.get(unit, 0.0), *(abs(values[key]) for values in columns))
+        largest[unit] = max([largest.get(unit, 0.0), *(abs(values[key]) for values in columns)])
     return [
         {
             key: 0.0

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import io
+import math
 from collections.abc import Mapping, Sequence
 from pathlib import Path
 from typing import Any
@@ -45,10 +46,13 @@ def write_csv(path: Path, rows: Sequence[Mapping[str, Any]]) -> None:
 
 
 def impact_row(impact: Impact) -> dict[str, Any]:
-    """Return one impact as a row: its observables, counts and ending."""
+    """Return one impact as a row: its observables, counts and ending.
+
+    Half way through, where a budget ended it, it has no observables yet: they are nan.
+    """
+    numbers = {**impact.observables, "mean_force_N": impact.mean_force_N}
     return {
-        **impact.observables,
-        "mean_force_N": impact.mean_force_N,
+        **(numbers if impact.outcome.completed else dict.fromkeys(numbers, math.nan)),
         "contacts": impact.contacts,
         "stuck": impact.stuck,
         "outcome": impact.outcome.ending.value,

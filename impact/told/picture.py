@@ -33,7 +33,8 @@ AGAINST_TIME = (
 def picture(blow: Blow, *, exact: bool = False) -> Figure:
     """Return the rig, what the first law leaves that leaves anything, and the curves of all laws.
 
-    What speaks against a law at this depth makes its curves grey and broken. `exact` leaves out the
+    What speaks against a law at this depth makes its curves grey and broken, as that it did not
+    come to an end by it. `exact` leaves out the
     band of what stays.
     """
     traces = list(blow.traces.items())
@@ -47,13 +48,15 @@ def picture(blow: Blow, *, exact: bool = False) -> Figure:
     _draw_rig(axes[0], blow, left)
     if left:
         _draw_left(axes[1], blow, law, left)
-    _draw_curves(axes[1 + bool(left) :], traces, shown, blow.doubts)
+    stopped = {law: "did not end" for law, one in blow.impacts.items() if not one.outcome.completed}
+    _draw_curves(axes[1 + bool(left) :], traces, shown, {**blow.doubts, **stopped})
     return made
 
 
 def _left(blow: Blow, *, exact: bool) -> tuple[str, list[LeftSurface]]:
     """The surfaces of the first law that nothing speaks against and that leaves anything."""
-    trusted = sorted(blow.laws, key=lambda law: law.name in blow.doubts)
+    ended = [law for law in blow.laws if blow[law.name].outcome.completed]
+    trusted = sorted(ended, key=lambda law: law.name in blow.doubts)
     for law in trusted:
         scene, found = blow.setup.scene(law), blow[law.name]
         left = surfaces_left(scene, found, None if exact else blow.bands[law.name].std)

@@ -74,6 +74,24 @@ def test_every_panel_has_words_and_something_in_it(text, panels, left):
         assert s.shaped
 
 
+def test_a_law_by_which_the_blow_did_not_end_is_no_result():
+    """Ten steps are too few by the second law too; neither has a number, a crater or a band."""
+    found = blow_of(
+        setup_of(tomllib.loads(BALL + "max_steps = 10\n"), source="blow.toml"),
+        [LAWS["fitted"], LAWS["hertz"]],
+    )
+    assert found.table() == [("restitution", "unfinished", "unfinished"),
+                             ("largest mean pressure [MPa]", "", "")]  # fmt: skip
+    assert found.checks() == found.rules() == []
+    assert all(np.isnan(row["restitution"]) and row["restitution_std"] == ""
+               for row in found.written())  # fmt: skip
+    made = picture(found)
+    assert not any(axis.get_title().startswith("left by") for axis in made.axes)
+    assert [text.get_text() for text in made.axes[1].get_legend().texts] == [
+        "fitted: did not end", "hertz: did not end"
+    ]  # fmt: skip
+
+
 def test_heights_are_stretched_as_the_title_says():
     crater = picture(blow(BALL)).axes[1]
     (times,) = (float(w) for w in crater.get_title().split() if w.replace(".", "").isdigit())

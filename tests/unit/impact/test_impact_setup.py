@@ -342,4 +342,7 @@ def test_a_budget_that_runs_out_ends_with_code_3(
     text = SETUP.replace("angle_deg", "modes = 2\nmax_contacts = 1\nangle_deg")
     text = text.replace('laws = ["hertz", "jackson-green"]', 'laws = ["hertz"]')
     assert run(["impact", str(write(tmp_path, text)), "--out", str(tmp_path)]) == 3
-    assert "max_contacts" in capsys.readouterr().err
+    told = capsys.readouterr()
+    assert "1 of 1 impacts (hertz): step-limit" in told.err
+    assert "max_contacts" in told.err
+    assert "unfinished" in told.out
