@@ -42,7 +42,8 @@ def _spread(given: Any) -> Any:
         if span.spacing == "linear":
             return tuple(np.linspace(span.first, span.last, span.count).tolist())
         if not (span.first > 0.0 and span.last > 0.0):
-            raise ValueError("both ends above 0 for logarithmic spacing")
+            ends = f"{span.first:g} to {span.last:g}"
+            raise ValueError(f"both ends above 0 for logarithmic spacing, not {ends}")
         return tuple(np.geomspace(span.first, span.last, span.count).tolist())
     whole = isinstance(given, list | tuple) and len(given) > 0
     if not whole or any(isinstance(x, bool) or not isinstance(x, int | float) for x in given):

@@ -10,7 +10,7 @@ import pytest
 from dentscope.core import Material
 from dentscope.impact import Approach, Friction, Settings, Striker, scene_of, strike
 from dentscope.impact.inverse import alpha, mobility
-from dentscope.models.base import ContactLaw, Domain, Kernels
+from dentscope.models.base import ContactLaw, Domain, Kernels, Standing
 from dentscope.models.kernel import E, R, S, branch_kernel, loading_kernel, residual_kernel
 from dentscope.models.published.hertz import HERTZ
 from dentscope.models.published.jackson_green import JACKSON_GREEN
@@ -51,7 +51,9 @@ class ConstantPressure(ContactLaw):
         return Kernels(pressing, spread, releasing, left)
 
 
-CONSTANT = ConstantPressure("constant", "", "Johnson 1985, 11.5", "", True, Domain())
+CONSTANT = ConstantPressure(
+    "constant", "", "Johnson 1985, 11.5", "", Standing.OUR_READING, Domain()
+)
 
 
 def ball(law: ContactLaw, speed: float, *, radius: float = 0.01, **seams: object) -> object:

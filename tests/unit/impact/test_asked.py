@@ -128,7 +128,7 @@ def test_what_changes_nothing_by_one_law_of_several_is_told():
 
 
 def test_a_rough_flat_over_a_plate_ends_within_the_usual_steps():
-    """The bends of the layer's force cut steps short; they grow again where half the budget is gone.
+    """The bends of the layer's force cut steps short; with half the budget gone they grow again.
 
     0.22 is what 400,000 steps had found before they did.
     """
