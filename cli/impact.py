@@ -94,10 +94,10 @@ def _from_file(path: Path, names: list[str], out: Path, *, exact: bool) -> None:
         say(f"the sweep is of first blows: impact.repeats = {setup.repeats} acts above alone")
     unfinished = 0
     if setup.sweep.count:
-        files, unfinished, above = _sweep(setup, laws, out / f"{path.stem}-sweep", exact=exact)
+        files, unfinished, told = _sweep(setup, laws, out / f"{path.stem}-sweep", exact=exact)
         written += files
-        if above:
-            say(above)
+        if told:
+            say(told)
     console.print("written: " + ", ".join(str(w) for w in written), soft_wrap=True)
     if unfinished:
         console.print(f"{unfinished} impacts of the sweep did not end: see the column outcome")
@@ -109,11 +109,11 @@ def _from_file(path: Path, names: list[str], out: Path, *, exact: bool) -> None:
 def _sweep(
     setup: Setup, laws: list[ContactLaw], base: Path, *, exact: bool
 ) -> tuple[list[Path], int, str]:
-    """Run `[sweep]` for each law; return the files, how many did not end, and what is above 1."""
+    """Run `[sweep]` for each law; return files, how many did not end, and what is to be told."""
     from importlib.util import find_spec
 
     from ..impact.told.band import MOST_SWEPT, swept_stds
-    from ..impact.told.checks import swept_above_one
+    from ..impact.told.checks import swept_above_one, swept_walls
     from ..impact.told.draw import draw_sweep, swept_in_vain
 
     curves = {law.name: setup.swept(law) for law in laws}
@@ -122,6 +122,7 @@ def _sweep(
     for other in others:
         first = first.joined(other)
     first = first.with_stds(stds)
+    told = [*swept_above_one(first), *swept_walls(setup.scene(laws[0]), first)]
     table, drawn, parquet = (base.with_name(f"{base.name}.{k}") for k in ("csv", "png", "parquet"))
     first.to_csv(table)
     draw_sweep(setup.sweep.swept, curves, drawn, stds=stds)
@@ -131,7 +132,7 @@ def _sweep(
     if find_spec("pandas") and find_spec("pyarrow"):
         first.to_parquet(parquet)
         written.append(parquet)
-    return written, int((first["outcome"] != "completed").sum()), "\n".join(swept_above_one(first))
+    return written, int((first["outcome"] != "completed").sum()), "\n".join(told)
 
 
 def leave_if_unfinished(impacts: list[Impact], laws: Sequence[str] = ()) -> None:

@@ -127,6 +127,15 @@ def material(name: str) -> Material:
     )
 
 
+def unlisted(name: str) -> str:
+    """Say that a name stands for no material of the table; empty where none is given or it does."""
+    if not name or name in materials():
+        return ""
+    near = _near(name, 0.5)
+    meant = f"did you mean {' or '.join(near)}? " if near else ""
+    return f"no material of the table is called {name!r}; {meant}"
+
+
 class Mistyped(str):
     """A name close to listed ones, of a body that leaves out what the listed ones would give."""
 

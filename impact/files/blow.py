@@ -28,8 +28,8 @@ from ..columns import Impacts
 from ..integrate import Trace, strike, traced
 from ..result import Impact
 from ..rules import RULES
-from ..told.band import PRESSURE, Band, band_of, idle
-from ..told.checks import checks, reason_above_one
+from ..told.band import PRESSURE, Band, band_of, compared, idle, vague
+from ..told.checks import checks, outside, reason_above_one
 from ..told.effect import ATOM
 from ..told.onset import largest_mean_pressure
 from .setup import DEFAULT_LAWS, FOLLOWING, Setup, read_setup, setup_of
@@ -75,33 +75,73 @@ class Blow:
     def checks(self) -> list[str]:
         """Return what speaks against the set-up by the first law, and restitutions above 1."""
         first = self.laws[0]
-        above = {
-            law.name: reason_above_one(self.setup.scene(law), self[law.name])
-            for law in self.laws
-            if self[law.name].outcome.completed
-        }
+        ended = [law for law in self.laws if self[law.name].outcome.completed]
+        outer = (
+            outside(law, self.setup.scene(law), self[law.name])
+            for law in ended
+            if law.name not in self.doubts
+        )
+        unsure = [law.name for law in ended if law.name not in self.sure]
+        above = {law.name: reason_above_one(self.setup.scene(law), self[law.name]) for law in ended}
         return [
+            *(line for line in outer if line),
+            *(
+                f"{', '.join(unsure)}: so deep no law was compared with finite elements; "
+                "the numbers have no standard deviation"
+                for _ in unsure[:1]
+            ),
             *checks(self.setup, first, self[first.name]),
+            *self._not_by_all(),
             *(f"{name}: {reason}" for name, reason in above.items() if reason),
         ]
+
+    def _not_by_all(self) -> list[str]:
+        """Say which mechanism that acts by the first law does not by another."""
+        asked, idle = self.setup.asked, dict[tuple[str, str], list[str]]()
+        for law in self.laws if asked else ():
+            for name, reason in asked.idle([self.setup.plain(law)]).items():
+                idle.setdefault((name, reason), []).append(law.name)
+        return [
+            f"{name} does not act by {', '.join(laws)}: {reason}"
+            for (name, reason), laws in idle.items()
+            if self.laws[0].name not in laws
+        ]
+
+    @cached_property
+    def sure(self) -> frozenset[str]:
+        """Laws by which the blow came to an end, at a depth where their error is known."""
+        return frozenset(
+            law.name
+            for law in self.laws
+            if self[law.name].outcome.completed
+            and compared(law, self.setup.scene(law), self[law.name].peak_depth_m)
+        )
 
     def rules(self) -> list[str]:
         """Return what rules the bands of restitution and dent, by the first law."""
         first = self.laws[0].name
-        if not self[first].outcome.completed:
+        if first not in self.sure:
             return []
         band = self.bands[first]
         (found,) = _shown([self[first]])
         told = (("restitution", 1.0, "restitution"), ("residual_flat_m", 1e6, "crater depth [um]"))
-        return [
-            f"{words} {_cell(scale * found[name], scale * band.std(name))}: "
-            f"{band.rules(name)} of the variance"
-            for name, scale, words in told
-            if band.std(name) > RULES.sure * found[name] > 0.0
-        ] + [
-            f"the standard deviation of {key}, {share:.2g} of it, changes nothing here"
-            for key, share in idle(self.setup, band)
-        ]
+        return (
+            [
+                f"{words} {_cell(scale * found[name], scale * band.std(name))}: "
+                f"{band.rules(name)} of the variance"
+                for name, scale, words in told
+                if band.std(name) > RULES.sure * found[name] > 0.0
+            ]
+            + [
+                f"the standard deviation of {key}, {share:.2g} of it, changes nothing here"
+                for key, share in idle(self.setup, band)
+            ]
+            + [
+                f"the standard deviation of {key} is {times:.2g} times its value: the bands have "
+                "the slope at the value, and do not go through that spread"
+                for key, times in vague(self.setup)
+            ]
+        )
 
     @cached_property
     def doubts(self) -> dict[str, str]:
@@ -161,7 +201,9 @@ class Blow:
         return [*rows, row("largest mean pressure", PRESSURE, 1e-6, "MPa")]
 
     def _std(self, law: str, key: str, *, exact: bool) -> float:
-        return 0.0 if exact or key in EXACT else self.bands[law].std(key)
+        if exact or key in EXACT or law not in self.sure:
+            return 0.0
+        return self.bands[law].std(key)
 
     def written(self, *, exact: bool = False) -> list[dict[str, Any]]:
         """Return the rows with standard deviations, of the last repeat alone."""
@@ -174,7 +216,7 @@ class Blow:
                 **row,
                 **{
                     f"{key}_std": self.bands[row["law"]].std(key)
-                    if row["repeat"] == last[row["law"]] and self[row["law"]].outcome.completed
+                    if row["repeat"] == last[row["law"]] and row["law"] in self.sure
                     else ""
                     for key in named
                 },

@@ -19,8 +19,9 @@ import numpy as np
 from ...core.arrays import Array
 from ...core.errors import InputError
 from ...core.rig import BodyTable, Quantity
+from ...models import law_named
 from ...models.base import ContactLaw
-from ...models.choose import follows_flow
+from ...models.choose import demand, follows_flow
 from ...models.uncertainty import METAL, RECOVERY_EXPONENT, WITH_CURVE
 from ..batch import Change, unchanged
 from ..columns import Impacts
@@ -122,6 +123,21 @@ def idle(setup: Setup, band: Band) -> list[tuple[str, float]]:
         for key, quantity in stated.items()
         if not any(band.parts.get(key, {}).values())
     ]
+
+
+def vague(setup: Setup) -> Iterator[tuple[str, float]]:
+    """Yield the quantities whose standard deviation is larger than they are, and how much."""
+    for path, quantity in _uncertain(setup):
+        if quantity.relative > 1.0:
+            yield ".".join(path), quantity.relative
+
+
+def compared(law: ContactLaw, scene: Scene, depth: float) -> bool:
+    """Whether the law's error is known at this depth: where a law states no reach, the fitted's."""
+    need = demand(scene.pair, depth)
+    own = law.domain.a_over_R_max
+    reach = own if math.isfinite(own) else law_named("fitted").domain.a_over_R_max
+    return need.regime == "elastic" or need.a_over_R <= reach
 
 
 def last_blow(setup: Setup, law: ContactLaw, change: Change = unchanged) -> Impact:
@@ -324,6 +340,9 @@ def swept_stds(setup: Setup, law: ContactLaw, found: Impacts) -> dict[str, Array
                 by = (s * slope[name][row] for s, slope in zip(part, slopes, strict=False))
                 variance[name][row] += sum(x * x for x in by)
             variance[_CRATER][row] += (part.crater * values[_CRATER]) ** 2
+        if not compared(law, scene, values["peak_depth_m"]):
+            for name in SWEPT:
+                variance[name][row] = math.nan
     return {name: np.sqrt(x) for name, x in variance.items()}
 
 

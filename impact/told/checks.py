@@ -15,6 +15,7 @@ import numpy as np
 
 from ...core.errors import InputError
 from ...core.inputs.flow_curve import SPECIMENS
+from ...core.materials import unlisted
 from ...core.rig import TABOR, Quantity
 from ...models.base import ContactLaw, DomainWarning
 from ...models.choose import demand, follows_flow
@@ -45,7 +46,8 @@ def checks(setup: Setup, law: ContactLaw, found: Impact) -> list[str]:
         parts = (
             _repeats(setup), _onset(setup, scene, found), flow_checks(setup, scene, found),
             _either(scene, found), _plate(setup, scene, found), _waves(setup, scene, found),
-            _gravity(setup, scene, found), _friction(setup, scene, found), _rod(scene, found),
+            _walls(scene, found), _gravity(setup, scene, found),
+            _friction(setup, scene, found), _rod(scene, found),
             _edge(setup, scene, found), _second(setup, scene, found), _bodies(setup, law),
             _mechanisms(setup, law, found),
         )  # fmt: skip
@@ -112,6 +114,11 @@ def _plate(setup: Setup, scene: Scene, found: Impact) -> Iterator[str]:
         return
     h = thickness.value
     dent = found.residual_flat_m
+    if found.peak_depth_m >= h:
+        yield (
+            f"the approach, {found.peak_depth_m * 1e3:.3g} mm, is more than the flat is thick, "
+            f"{h * 1e3:.3g} mm: it would be pierced, and no number here holds"
+        )
     a = float(scene.law.contact_radius(scene.pair, found.peak_depth_m))
     if dent > ATOM:
         # the standard's dents are wider than 0.24 of the ball, and 8 of their depths than a radius
@@ -125,8 +132,8 @@ def _plate(setup: Setup, scene: Scene, found: Impact) -> Iterator[str]:
         if not a > 0.0:
             return
         yield f"the flat, {h * 1e3:.3g} mm, is {h / a:.3g} times the contact radius thick"
-    if setup.file.impact.support == "plate" or flat.rigid or math.isnan(flat.density):
-        return
+    if scene.support.plate_mobility > 0.0 or flat.rigid or math.isnan(flat.density):
+        return  # it is that plate already, by its support or as half-space-waves has it
     hung = repeated(setup, scene.with_(support=plate_support(flat, thickness=h)))
     yield f"hung freely as a wide plate: {effect(hung, found)}"
 
@@ -265,7 +272,9 @@ def _mechanisms(setup: Setup, law: ContactLaw, found: Impact) -> Iterator[str]:
         yield f"{name} changes nothing here: {reason}"
     for m in setup.acting(plain).mechanisms:
         without = last_blow(setup.with_mechanism(m.name, None), law)
-        yield f"{m.name} ({m.title}): {effect(found, without)}"
+        plate = m.name == "half-space-waves" and setup.scene(law).support.plate_mobility > 0.0
+        title = f"{m.title}, a wide plate of target.thickness_m" if plate else m.title
+        yield f"{m.name} ({title}): {effect(found, without)}"
 
 
 def _bodies(setup: Setup, law: ContactLaw) -> Iterator[str]:
@@ -277,6 +286,8 @@ def _bodies(setup: Setup, law: ContactLaw) -> Iterator[str]:
         flows = body.flow_curve or getattr(body, "hardening", None)
         if flows and not follows_flow(law):
             yield f"{law.name} takes the first strength of {key}; hardening follows its curve"
+        if not (flows or body.rigid or body.strength or file.target.law == "elastic"):
+            yield f"{key}: {unlisted(body.material)}without Sy_Pa it stays elastic"
     name, second = setup.striker, file.target
     ball = file.strikers[name]
     if ball.shape == "sphere":
@@ -294,6 +305,41 @@ def _mass(key: str, mass: Quantity, radius: float, density: Quantity | None) -> 
         yield (
             f"{key}: {mass.value:.4g} kg as stated; a solid sphere of its radius and density has "
             f"{solid:.4g} kg"
+            f"{'; the contact law takes a shell for solid' * (mass.value < solid)}"
+        )
+
+
+def outside(law: ContactLaw, scene: Scene, found: Impact) -> str:
+    """Return which bound of a law's data this pair or depth leaves; empty inside."""
+    elastic = demand(scene.pair, found.peak_depth_m).regime == "elastic"
+    if elastic or not scene.pair.perfectly_plastic:
+        return ""  # Hertz; the law of a flow curve has lines of its own
+    with warnings.catch_warnings(record=True) as caught:
+        warnings.simplefilter("always", DomainWarning)
+        law.warn_outside(scene.pair, found.peak_depth_m)
+    return "; ".join(str(one.message) for one in caught)
+
+
+def _walls(scene: Scene, found: Impact) -> Iterator[str]:
+    if climbs(scene) and found.contacts > 1:
+        yield (
+            f"{found.contacts} touches: the ball leaves its crater sideways, and what it rebounds "
+            "with comes from the crater's own wall"
+        )
+
+
+def climbs(scene: Scene) -> bool:
+    """Whether a second touch can only be the wall of the ball's own crater."""
+    return scene.striker.length == 0.0 and math.isinf(scene.support.mass)
+
+
+def swept_walls(scene: Scene, swept: Impacts) -> Iterator[str]:
+    """Say how many impacts of a sweep met the wall of their own crater."""
+    again = swept["contacts"] > 1
+    if again.any() and climbs(scene):
+        yield (
+            f"the rebound of {again.sum()} impacts of the sweep comes from the wall of their own "
+            f"crater ({', '.join(dict.fromkeys(swept['law'][again]))}): see the column contacts"
         )
 
 

@@ -24,7 +24,7 @@ AGAINST_TIME = (
     ("normal_force_N", "normal force [kN]", 1e-3, 0.0),
     ("normal_velocity_m_s", "normal velocity [m/s]", 1.0, 0.0),
     ("slip_m", "tangential displacement [um]", 1e6, 1e-9),
-    ("sliding_velocity_m_s", "tangential velocity [m/s]", 1.0, 1e-9),
+    ("sliding_velocity_m_s", "tangential velocity of the contact [m/s]", 1.0, 1e-9),
     ("spin_rad_s", "spin [rad/s]", 1.0, 1e-6),
 )
 """Column, axis, scale, and what counts as nothing at all [SI]."""
@@ -59,7 +59,9 @@ def _left(blow: Blow, *, exact: bool) -> tuple[str, list[LeftSurface]]:
     trusted = sorted(ended, key=lambda law: law.name in blow.doubts)
     for law in trusted:
         scene, found = blow.setup.scene(law), blow[law.name]
-        left = surfaces_left(scene, found, None if exact else blow.bands[law.name].std)
+        left = surfaces_left(
+            scene, found, blow.bands[law.name].std if law.name in blow.sure and not exact else None
+        )
         if left:
             return law.name, left
     return "", []

@@ -8,11 +8,18 @@ from dataclasses import replace
 import numpy as np
 import pytest
 from dentscope.core import Material, Pair
+from dentscope.core.inputs.templates import template
 from dentscope.impact import Approach, Scene, Settings, Striker, impacts, strike
 from dentscope.impact.files.blow import blow_of
 from dentscope.impact.files.setup import setup_of
+from dentscope.impact.files.sweep import SweepTable
 from dentscope.impact.told.band import LAW, METALS, SWEPT, band_of, swept_stds
-from dentscope.impact.told.checks import checks, reason_above_one, swept_above_one
+from dentscope.impact.told.checks import (
+    checks,
+    reason_above_one,
+    swept_above_one,
+    swept_walls,
+)
 from dentscope.impact.told.effect import effect
 from dentscope.impact.told.onset import first_yield_speed, largest_mean_pressure
 from dentscope.models import LAWS
@@ -268,7 +275,7 @@ def test_what_yields_is_said_of_two_spheres_only_where_they_yield():
 def merged(content, changes):
     """The content with changes in its tables; None takes a key away."""
     for key, value in changes.items():
-        if isinstance(value, dict):
+        if isinstance(value, dict) and isinstance(content.get(key, {}), dict):
             merged(content.setdefault(key, {}), value)
         elif value is None:
             content.pop(key, None)
@@ -425,3 +432,100 @@ def test_the_radius_of_a_sphere_counts_the_same_under_either_name():
         for text in (told, told.replace("tip_radius_m", "radius_m"))
     ]
     assert found[0] == found[1] > 0.0
+
+
+TUNGSTEN = """
+[target]
+E_Pa = 69e9
+nu = 0.33
+Sy_Pa = 1.5e8
+density_kg_m3 = 2700
+thickness_m = 0.015
+[strikers.ball]
+shape = "sphere"
+tip_radius_m = 0.010
+E_Pa = 6.2e11
+nu = 0.22
+Sy_Pa = 4.0e9
+density_kg_m3 = 14900
+[impact]
+drop_height_m = 0.4
+"""
+
+
+def told(changes, laws=("fitted",)):
+    content = merged(tomllib.loads(TUNGSTEN), changes)
+    found = blow_of(setup_of(content, source="t.toml"), [LAWS[name] for name in laws])
+    return found, "\n".join([*found.rules(), *found.checks()])
+
+
+def test_a_pair_outside_what_a_law_was_fitted_to_is_named_once():
+    _, lines = told({})
+    assert lines.count("fitted: Sy_ratio = 26.67 is outside 0.1 to 10") == 1
+    brass = blow_of(setup_of(tomllib.loads(BRASS), source="b.toml"), [LAWS["fitted"]])
+    assert not any("is outside" in line for line in brass.checks())
+
+
+def test_far_beyond_every_comparison_nothing_has_an_error():
+    """20 mm of carbide at 1500 m/s: it goes through 15 mm of aluminium."""
+    found, lines = told({"impact": {"drop_height_m": None, "impact_speed_m_s": 1500}},
+                        ("fitted", "jackson-green"))  # fmt: skip
+    assert not any("±" in cell for row in found.table() for cell in row)
+    assert all(row["restitution_std"] == "" for row in found.written())
+    assert "fitted, jackson-green: so deep no law was compared with finite elements" in lines
+    assert "the approach, 59.5 mm, is more than the flat is thick, 15 mm" in lines
+    near, lines = told({})
+    assert any("±" in cell for row in near.table() for cell in row)
+    assert "so deep" not in lines
+    assert "is more than" not in lines
+
+
+def test_waves_in_a_stated_thickness_are_those_of_a_plate():
+    _, lines = told({"mechanisms": {"half-space-waves": True}})
+    assert "half-space-waves (waves carry energy off into the flat, a wide plate of" in lines
+    assert "hung freely" not in lines
+    _, deep = told({"mechanisms": {"half-space-waves": True}, "target": {"thickness_m": None}})
+    assert "half-space-waves (waves carry energy off into the flat): dent" in deep
+
+
+@pytest.mark.parametrize(
+    ("body", "words"),
+    [
+        ({"material": "aluminium-6061-T6"}, "did you mean aluminium-6061-t6"),
+        ({"material": "aluminum"}, "no material of the table is called 'aluminum'; did you mean"),
+        ({"material": "the old bench"}, "is called 'the old bench'; without Sy_Pa it stays"),
+        ({}, "target: without Sy_Pa it stays elastic"),
+    ],
+)
+def test_a_body_without_a_strength_is_said_to_stay_elastic(body, words):
+    _, lines = told({"target": {"Sy_Pa": None, **body}})
+    assert words in lines
+    _, stated = told({"target": body})
+    assert "stays elastic" not in stated
+
+
+def test_a_strength_less_sure_than_itself_is_told():
+    _, lines = told({"target": {"Sy_Pa": {"value": 1.5e8, "std": 1.05e9}}})
+    assert "the standard deviation of target.Sy_Pa is 7 times its value" in lines
+
+
+def test_a_shell_is_said_to_be_no_solid():
+    _, lines = told({"strikers": {"ball": {"mass_kg": 0.001}}})
+    assert "has 0.06241 kg; the contact law takes a shell for solid" in lines
+
+
+def test_a_mechanism_that_acts_by_some_of_the_laws_is_told():
+    _, lines = told({"mechanisms": {"roughness": True}}, ("fitted", "hertz", "jackson-green"))
+    assert "roughness does not act by hertz: " in lines
+    assert "by hertz, jackson-green" not in lines
+
+
+def test_a_rebound_off_the_walls_of_its_own_crater_is_told():
+    _, straight = told({})
+    assert "its crater" not in straight
+    setup = setup_of(tomllib.loads(template("oblique-ball")), source="o.toml")
+    law = LAWS["jackson-green"]
+    swept = replace(setup, sweep=SweepTable(angle_deg=(10.0, 80.0))).swept(law)
+    assert swept["contacts"].tolist() == [2, 1]
+    (line,) = swept_walls(setup.scene(law), swept)
+    assert line.startswith("the rebound of 1 impacts of the sweep comes from the wall")
