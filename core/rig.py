@@ -375,17 +375,6 @@ class StrikerTable(BodyTable):
             raise ValueError("this key is needed for a rod")
         return given
 
-    @field_validator("radius_m")
-    @classmethod
-    def _one_radius_of_a_sphere(
-        cls, given: Quantity | None, info: ValidationInfo
-    ) -> Quantity | None:
-        tip = info.data.get("tip_radius_m")
-        if info.data.get("shape") == "sphere" and given is not None and tip is not None:
-            if abs(given.value - tip.value) > max(given.std, tip.std):
-                raise ValueError(f"left out, or tip_radius_m = {tip.value:g}: a sphere has one")
-        return given
-
     @field_validator("tip_flat_radius_m")
     @classmethod
     def _within_the_tip(cls, given: Quantity | None, info: ValidationInfo) -> Quantity | None:

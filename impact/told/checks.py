@@ -48,7 +48,8 @@ def checks(setup: Setup, law: ContactLaw, found: Impact) -> list[str]:
             _either(scene, found), _plate(setup, scene, found), _waves(setup, scene, found),
             _walls(scene, found), _gravity(setup, scene, found),
             _friction(setup, scene, found), _rod(scene, found),
-            _edge(setup, scene, found), _second(setup, scene, found), _bodies(setup, law),
+            _two_radii(setup), _edge(setup, scene, found),
+            _second(setup, scene, found), _bodies(setup, law),
             _mechanisms(setup, law, found),
         )  # fmt: skip
         return [line for part in parts for line in part]
@@ -211,6 +212,17 @@ def _rod(scene: Scene, found: Impact) -> Iterator[str]:
             f"upright it cannot press with more than rho c v A = {limit:.4g} N before that wave is "
             "back"
         )
+
+
+def _two_radii(setup: Setup) -> Iterator[str]:
+    ball = setup.file.strikers[setup.striker]
+    if ball.shape == "sphere" and ball.radius_m is not None:
+        tip, body = ball.tip_radius_m, ball.radius_m
+        if abs(tip.value - body.value) > max(tip.std, body.std):
+            yield (
+                f"the ball meets the flat with tip_radius_m = {tip.value:g}; radius_m = "
+                f"{body.value:g} is that of its mass and inertia"
+            )
 
 
 def _edge(setup: Setup, scene: Scene, found: Impact) -> Iterator[str]:

@@ -9,7 +9,6 @@ from pathlib import Path
 import pytest
 from dentscope.cli import run
 from dentscope.core import InputError, InputErrors
-from dentscope.core.rig import StrikerTable
 from dentscope.impact import Impact
 from dentscope.impact.files.blow import blow_of
 from dentscope.impact.files.setup import DEFAULT_LAWS, read_setup, setup_of
@@ -347,16 +346,3 @@ def test_a_budget_that_runs_out_ends_with_code_3(
     assert "1 of 1 impacts (hertz): step-limit" in told.err
     assert "max_contacts" in told.err
     assert "unfinished" in told.out
-
-
-def test_a_sphere_has_one_radius():
-    content = tomllib.loads(SETUP)
-    name = next(iter(content["strikers"]))
-    ball = {**content["strikers"][name], "shape": "sphere", "tip_radius_m": 0.01}
-    for radius, good in ((0.01, True), (0.02, False)):
-        table = {k: v for k, v in {**ball, "radius_m": radius}.items() if k != "length_m"}
-        if good:
-            assert StrikerTable.model_validate(table).body_radius == radius
-        else:
-            with pytest.raises(ValueError, match="a sphere has one"):
-                StrikerTable.model_validate(table)

@@ -218,6 +218,9 @@ ASKED = {
         {"strikers": {"ball": {"inertia_kg_m2": 1e-6}}},
         "strikers.ball.inertia_kg_m2, 1e-06, does nothing in a straight blow",
     ),
+    "a tip rounder than the ball": (
+        {"strikers": {"ball": {"radius_m": 0.02}}}, "radius_m = 0.02 is that of its mass"
+    ),
     "an upright rod": (
         {"strikers": {"ball": {"shape": "rod", "radius_m": 0.01, "length_m": 0.1,
                                "mass_kg": 0.245}}},
