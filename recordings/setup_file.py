@@ -6,6 +6,7 @@ survive. A value `"?"` is one that is still to be filled in.
 
 from __future__ import annotations
 
+import math
 from collections.abc import Mapping
 from typing import Any, Literal
 
@@ -21,6 +22,9 @@ MARK = "?"
 
 _NEEDED = ("tip_radius_m", "mass_kg", "radius_m", "length_m")
 """Sizes without which a striker cannot be read, in the order of the format."""
+
+_STAND_IN = math.nextafter(1.0, 2.0)
+"""What they are until then: of order one, and no number that anybody measures."""
 
 
 class SetFile(Rig):
@@ -38,7 +42,7 @@ def flowing(setup: Rig) -> dict[str, BodyTable]:
 def without_marks(content: Mapping[str, Any], key: str = "") -> tuple[dict[str, Any], list[str]]:
     """Return set.toml without the values that are to be filled in, and their keys.
 
-    Sizes that a striker must have are 1 where they are to be filled in.
+    Sizes that a striker must have are near 1 where they are to be filled in.
     """
     kept: dict[str, Any] = {}
     open_keys: list[str] = []
@@ -52,7 +56,7 @@ def without_marks(content: Mapping[str, Any], key: str = "") -> tuple[dict[str, 
         else:
             open_keys.append(path)
             if name in _NEEDED:
-                kept[name] = 1.0
+                kept[name] = _STAND_IN
     return kept, open_keys
 
 

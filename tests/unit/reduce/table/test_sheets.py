@@ -545,6 +545,17 @@ def test_a_ball_that_is_the_same_in_all_rows_is_that_of_the_set(tmp_path, head, 
     assert made.setup.strikers["ball"].mass_kg.value == pytest.approx(4.08e-3)
 
 
+def test_a_ball_of_one_kilogram_is_not_left_to_be_filled_in(tmp_path):
+    from dentscope.cli import run
+
+    file = tmp_path / "a.csv"
+    file.write_text("drop height (cm),e,Ball mass (kg)\n10,0.6,1\n20,0.5,1\n")
+    assert run(["recordings", "new", str(tmp_path / "set"), "--sphere", "--from", str(file)]) == 0
+    made = read(tmp_path / "set", unfinished=True)
+    assert "strikers.ball.mass_kg" not in made.to_fill
+    assert "strikers.ball.tip_radius_m" in made.to_fill
+
+
 def test_balls_that_differ_are_told(tmp_path):
     text = "drop height (cm),e,Ball diameter (mm)\n10,0.6,10\n20,0.5,12\n"
     sheet = read_text(tmp_path, text)
