@@ -102,7 +102,8 @@ GATES = {
     "slip": Gate("tension", "fall without unloading, and elastic rise or half of the load lost, "
                  "in the largest", "cycle_depth", "refuses"),
     "stated": Gate("tension", "slope of the first rise and the stated modulus", "",
-                   "counts plastic strain from the slope, widens the modulus"),
+                   "counts plastic strain from the slope, widens the modulus; refuses one in MPa "
+                   "or GPa"),
 }  # fmt: skip
 
 

@@ -53,7 +53,7 @@ CASES = {
         "table", PULSE, ["--holds", "force", "--first-s", "5"], "0 rows"
     ),
     "table: part back to front": (
-        "table", PULSE, ["--holds", "force", "--first-s", "2", "--last-s", "1"], "last_s"
+        "table", PULSE, ["--holds", "force", "--first-s", "2", "--last-s", "1"], "--last-s: 1"
     ),
     "table: select without a value": (
         "table", PULSE, ["--holds", "force", "--select", "x"], "COLUMN=VALUE"
@@ -98,7 +98,7 @@ CASES = {
     "sound: empty": ("sound", b"", [], "a.csv"),
     "sound: no sound": ("sound", b"RIFF....WAVE", [], "cannot be decoded"),
     "sound: text": ("sound", TIMES, [], "a.csv"),
-    "sound: bad end": ("sound", "wav", ["--first-s", "3", "--last-s", "2"], "last_s"),
+    "sound: bad end": ("sound", "wav", ["--first-s", "3", "--last-s", "2"], "--last-s: 2.0 (allow"),
     "sound: nothing heard": ("sound", "wav", [], "contacts are heard"),
     "sound: past the end": ("sound", "wav", ["--first-s", "100"], "first"),
     "sound: silence": ("sound", "zeros", [], "silence"),
