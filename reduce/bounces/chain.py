@@ -173,7 +173,8 @@ def _without_strays(
     if _terms(single) < 3:
         return single, 0
     rest = _rests(times, kept, single)
-    limit = RULES.stray * robust_std(rest[np.array(single)], lost=3)
+    rounding = 1e-9 * float(np.ptp(times[list(kept)]))  # of instants without any scatter
+    limit = max(RULES.stray * robust_std(rest[np.array(single)], lost=3), rounding)
     kept_ones = tuple(bool(s and abs(r) <= limit) for s, r in zip(single, rest, strict=True))
     return kept_ones, sum(single) - sum(kept_ones)
 

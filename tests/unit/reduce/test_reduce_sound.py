@@ -71,6 +71,13 @@ def test_a_run_is_found_among_echoes_and_with_one_bounce_missed(e, first, count,
     assert len(chain.kept) >= count - 2
 
 
+def test_rounding_alone_makes_no_interval_stray():
+    instants = np.cumsum(np.concatenate([[0.7], 0.6305 * 0.9296057092335683 ** np.arange(9)]))
+    heard = np.delete(instants, 5)
+    chain = chain_of(np.sort(np.append(heard, instants[0] + 0.1)))
+    assert chain.single == (True, True, True, True, False, True, True, True)
+
+
 @pytest.mark.parametrize("place", ["first", "last"])
 @pytest.mark.parametrize("count", [5, 6, 12])
 def test_a_knock_in_place_of_a_bounce_at_an_end_of_the_run(place, count):
