@@ -63,6 +63,36 @@ def reduce_tension(
     """
     if E is not None and (unit := _other_unit(E)):
         raise InputError(f"{E:g}", key="E_Pa", allowed=f"pascals; {E:g} {unit} would be a metal's")
+    strain, stress = _readings(strain, stress, source)
+    sign = math.copysign(1.0, float(stress[np.argmax(np.abs(stress))]))
+    strain, stress, notes = sign * strain, sign * stress, []
+    if strain_is == "engineering":
+        if stress.argmax() + 1 < stress.size:
+            why = ": the specimen necks" if sign > 0.0 else ""
+            notes.append(f"cut at the largest stress, strain {strain[stress.argmax()]:.3g}{why}")
+        strain, stress = _true(strain, stress, sign, source)
+    rise, zero = elastic_rise(strain, stress, source)
+    _no_slip(strain, stress, rise.value, source)
+    line = _Line(rise.value, zero, rise) if E is None else _stated(strain, stress, rise, zero, E)
+    if line.note:
+        notes.append(line.note)
+    flow = _rows(strain - line.zero - stress / line.slope, stress, source)
+    if E is None and (wrong := _no_metal(rise, flow.strength)):
+        raise Refused(
+            "modulus", wrong, source=source, key="E_Pa",
+            allowed="strain of the specimen alone, without the machine's give and slack, or the "
+            "metal's modulus",
+        )  # fmt: skip
+    values = {
+        "E_Pa": line.modulus, "Sy_Pa": _strength(flow, rise),
+        "largest_stress_Pa": Measured(float(flow.stress.max()), math.nan),
+        "largest_plastic_strain": Measured(float(flow.strain[-1]), math.nan),
+    }  # fmt: skip
+    return TensionReduction(strain - line.zero, stress, rise, flow, values, tuple(notes))
+
+
+def _readings(strain: Array, stress: Array, source: str) -> tuple[Array, Array]:
+    """Return the rows that hold both numbers; refuse what no metal bears, and too few rows."""
     most = RULES.no_metal
     wild = np.flatnonzero((np.abs(strain) > most[0]) | (np.abs(stress) > most[1]))
     if wild.size:
@@ -72,59 +102,58 @@ def reduce_tension(
             source=source, allowed=f"strains up to {most[0]:g}, stresses up to {most[1]:g} Pa",
         )  # fmt: skip
     whole = np.isfinite(strain) & np.isfinite(stress)
-    strain, stress = strain[whole], stress[whole]
-    if strain.size < RULES.table_rows:
+    if np.count_nonzero(whole) < RULES.table_rows:
         raise InputError(
-            f"{strain.size} rows",
+            f"{np.count_nonzero(whole)} rows",
             source=source,
             allowed=f"{RULES.table_rows} or more of strain and stress",
         )
-    sign = math.copysign(1.0, float(stress[np.argmax(np.abs(stress))]))
-    strain, stress = sign * strain, sign * stress
-    notes = []
-    top = int(np.argmax(stress))
-    if strain_is == "engineering":
-        if top + 1 < stress.size:
-            why = ": the specimen necks" if sign > 0.0 else ""
-            notes.append(f"cut at the largest stress, strain {strain[top]:.3g}{why}")
-        strain, stress = strain[: top + 1], stress[: top + 1]
-        shrunk = 1.0 + sign * strain
-        if not (shrunk > 0.0).all():
-            raise InputError(
-                f"strain {sign * strain.max():.3g}", source=source, allowed="strains, not percent"
-            )
-        strain, stress = sign * np.log(shrunk), stress * shrunk
-    modulus, zero = elastic_rise(strain, stress, source)
-    _no_slip(strain, stress, modulus.value, source)
-    used = modulus.value if E is None else E
-    told = modulus if E is None else Measured(E, 0.0)
-    if E is not None and modulus.std > RULES.own_error * modulus.value:
+    return strain[whole], stress[whole]
+
+
+def _true(strain: Array, stress: Array, sign: float, source: str) -> tuple[Array, Array]:
+    """Make engineering values true ones, to the largest stress; `sign` is -1 in compression."""
+    end = int(stress.argmax()) + 1
+    strain, stress = strain[:end], stress[:end]
+    shrunk = 1.0 + sign * strain
+    if not (shrunk > 0.0).all():
+        raise InputError(
+            f"strain {sign * strain.max():.3g}", source=source, allowed="strains, not percent"
+        )
+    return sign * np.log(shrunk), stress * shrunk
+
+
+@dataclass(frozen=True)
+class _Line:
+    """The elastic line from which plastic strain is counted: slope [Pa] and zero [-].
+
+    Beside it the modulus that is told, and what is to be said of it.
+    """
+
+    slope: float
+    zero: float
+    modulus: Measured
+    note: str = ""
+
+
+def _stated(strain: Array, stress: Array, rise: Measured, zero: float, E: float) -> _Line:
+    """Return the line of a stated modulus [Pa]; the curve's own where that contradicts it."""
+    if rise.std > RULES.own_error * rise.value:
         offset = (strain - stress / E)[: int(np.argmax(stress > 0.5 * stress.max()))]
         zero = float(np.partition(offset, 2)[2]) if offset.size > 2 else zero
-    elif E is not None and abs(modulus.value - E) > max(0.2 * E, 2.0 * modulus.std):
-        why = (
-            "the machine gives way" if modulus.value < E else
-            "no machine makes it steeper, so E_Pa is too low, or the strain, area or gauge length "
-            "is wrong"
-        )  # fmt: skip
-        notes.append(
-            f"the curve rises with {modulus.value / 1e9:.3g} GPa, not {E / 1e9:.3g}: {why}; the "
-            "plastic strain is counted from the curve's own line"
-        )
-        used, told = modulus.value, modulus.widened(modulus.value - E)
-    flow = _rows(strain - zero - stress / used, stress, source)
-    if E is None and (wrong := _no_metal(modulus, flow.strength)):
-        raise Refused(
-            "modulus", wrong, source=source, key="E_Pa",
-            allowed="strain of the specimen alone, without the machine's give and slack, or the "
-            "metal's modulus",
-        )  # fmt: skip
-    values = {
-        "E_Pa": told, "Sy_Pa": _strength(flow, modulus),
-        "largest_stress_Pa": Measured(float(flow.stress.max()), math.nan),
-        "largest_plastic_strain": Measured(float(flow.strain[-1]), math.nan),
-    }  # fmt: skip
-    return TensionReduction(strain - zero, stress, modulus, flow, values, tuple(notes))
+        return _Line(E, zero, Measured(E, 0.0))
+    if abs(rise.value - E) <= max(0.2 * E, 2.0 * rise.std):
+        return _Line(E, zero, Measured(E, 0.0))
+    why = (
+        "the machine gives way" if rise.value < E else
+        "no machine makes it steeper, so E_Pa is too low, or the strain, area or gauge length "
+        "is wrong"
+    )  # fmt: skip
+    note = (
+        f"the curve rises with {rise.value / 1e9:.3g} GPa, not {E / 1e9:.3g}: {why}; the "
+        "plastic strain is counted from the curve's own line"
+    )
+    return _Line(rise.value, zero, rise.widened(rise.value - E), note)
 
 
 def _no_slip(strain: Array, stress: Array, modulus: float, source: str) -> None:
