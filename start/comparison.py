@@ -19,15 +19,12 @@ from ..models import LAWS, DomainWarning, law_named
 from ..models.base import ContactLaw
 from ..models.choose import Demand, demand, follows_flow
 from .case_file import read_pair
-from .judged import USABLE, Departure, Reference, judged
+from .judged import ELASTIC, USABLE, Departure, Reference, judged
 from .rules import RULES
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
-
-ELASTIC = "Hertz's force, finite strain added"
-"""The judge while nothing yields: within 1 % of finite elements at Delta/R = 0.04."""
 
 USED = frozenset(
     {"radius_m", "load.max_delta_over_R"}
@@ -194,11 +191,8 @@ def compared(pair: Pair, laws: Sequence[ContactLaw], *, last: float) -> LawCompa
     """Compare these laws up to an approach of `last` R."""
     need = demand(pair, last * pair.R)
     reference, departures = judged(pair, laws, last=last)
-    rows = _rows(pair, laws, last)
-    if reference:
-        return LawComparison(pair, need, _best(pair, laws, departures), reference, departures, rows)
-    departures = _from_elastic(pair, rows)
-    return LawComparison(pair, need, _elastic(departures), None, departures, rows)
+    best = _best(pair, laws, departures) if reference else _elastic(departures)
+    return LawComparison(pair, need, best, reference, departures, _rows(pair, laws, last))
 
 
 def _best(
@@ -213,18 +207,6 @@ def _best(
             : RULES.recommended
         ]
     )
-
-
-def _from_elastic(pair: Pair, rows: Sequence[LawRow]) -> dict[str, Departure]:
-    """How far the force of each law is from Hertz's with finite strain added, while all spring."""
-    names = list(dict.fromkeys(row.law for row in rows))
-    depth = np.array([row.delta_m for row in rows if row.law == names[0]])
-    with warnings.catch_warnings():
-        warnings.simplefilter("ignore", DomainWarning)  # of its metals, none of which yields
-        judge = LAWS["fitted"].loading(pair, depth)
-    forces = np.reshape([row.force_N for row in rows], (len(names), -1))
-    off = np.max(np.abs(np.log(forces / judge)), axis=1)
-    return {name: Departure(float(x), 0.0, 0.0) for name, x in zip(names, off, strict=True)}
 
 
 def _elastic(departures: dict[str, Departure]) -> tuple[str, ...]:

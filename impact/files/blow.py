@@ -42,6 +42,9 @@ if TYPE_CHECKING:
 Laws = str | ContactLaw | Sequence[str | ContactLaw]
 """One or several, by name or as they are."""
 
+_TOO_DEEP = (
+    "so deep no law was compared with finite elements; the numbers have no standard deviation"
+)
 _EITHER = (("impact_speed_m_s", "drop_height_m"), ("drop_height_m", "impact_speed_m_s"))
 
 
@@ -81,15 +84,11 @@ class Blow:
             for law in ended
             if law.name not in self.doubts
         )
-        unsure = [law.name for law in ended if law.name not in self.sure]
+        unsure = ", ".join(law.name for law in ended if law.name not in self.sure)
         above = {law.name: reason_above_one(self.setup.scene(law), self[law.name]) for law in ended}
         return [
             *(line for line in outer if line),
-            *(
-                f"{', '.join(unsure)}: so deep no law was compared with finite elements; "
-                "the numbers have no standard deviation"
-                for _ in unsure[:1]
-            ),
+            *([f"{unsure}: {_TOO_DEEP}"] if unsure else []),
             *checks(self.setup, first, self[first.name]),
             *self._not_by_all(),
             *(f"{name}: {reason}" for name, reason in above.items() if reason),
@@ -97,13 +96,13 @@ class Blow:
 
     def _not_by_all(self) -> list[str]:
         """Say which mechanism that acts by the first law does not by another."""
-        asked, idle = self.setup.asked, dict[tuple[str, str], list[str]]()
+        asked, without = self.setup.asked, dict[tuple[str, str], list[str]]()
         for law in self.laws if asked else ():
             for name, reason in asked.idle([self.setup.plain(law)]).items():
-                idle.setdefault((name, reason), []).append(law.name)
+                without.setdefault((name, reason), []).append(law.name)
         return [
             f"{name} does not act by {', '.join(laws)}: {reason}"
-            for (name, reason), laws in idle.items()
+            for (name, reason), laws in without.items()
             if self.laws[0].name not in laws
         ]
 
@@ -125,23 +124,23 @@ class Blow:
         band = self.bands[first]
         (found,) = _shown([self[first]])
         told = (("restitution", 1.0, "restitution"), ("residual_flat_m", 1e6, "crater depth [um]"))
-        return (
-            [
+        return [
+            *(
                 f"{words} {_cell(scale * found[name], scale * band.std(name))}: "
                 f"{band.rules(name)} of the variance"
                 for name, scale, words in told
                 if band.std(name) > RULES.sure * found[name] > 0.0
-            ]
-            + [
+            ),
+            *(
                 f"the standard deviation of {key}, {share:.2g} of it, changes nothing here"
                 for key, share in idle(self.setup, band)
-            ]
-            + [
+            ),
+            *(
                 f"the standard deviation of {key} is {times:.2g} times its value: the bands have "
                 "the slope at the value, and do not go through that spread"
                 for key, times in vague(self.setup)
-            ]
-        )
+            ),
+        ]
 
     @cached_property
     def doubts(self) -> dict[str, str]:

@@ -345,7 +345,7 @@ def _kept_flows(
     if measured is None or not measured.is_file():
         return files, ()
     before = measured.read_bytes()
-    if before.decode(errors="replace") == files_of(after)[measured.name]:
+    if before == str(files_of(after)[measured.name]).encode():
         return files, ()
     copies = (measured.with_name(f"{measured.stem}-{k}.csv") for k in count(1))
     copy = next(path for path in copies if not path.exists())
