@@ -121,8 +121,8 @@ def advance(m, w):
         return AGAIN
     h = now[at.STEP]
     grown = h * min(6.0, 0.9 * max(error, 1e-12) ** -0.125)
-    early = tally[at.STEPS] < 0.5 * m.body[at.MAX_STEPS]
-    if now[at.VARIABLE] == at.BY_ROOT_TIME and now[at.SIMPLE] > 0.0 and early:
+    cut_short = h < 1e-3 * now[at.AT]
+    if now[at.VARIABLE] == at.BY_ROOT_TIME and now[at.SIMPLE] > 0.0 and not cut_short:
         # equal steps of the root grow in time as they come; one that a bend of the force has cut
         # short would stay so to the end, where nothing changes the variable (over a plate)
         grown = min(grown, h if now[at.AT] > 0.0 else 1.22 * h)
