@@ -165,7 +165,7 @@ def _draw_curves(
     doubts: Mapping[str, str],
 ) -> None:  # fmt: skip
     depth, depth_label, depth_scale, force, force_label, force_scale = LOOP
-    breaks = cycle(("--", ":", "-."))
+    breaks = cycle(("--", ":", "-.", (0, (6, 2, 1, 2, 1, 2))))  # as many as the usual laws
     for law, trace in traces:
         style: dict[str, Any] = {}
         if law in doubts:
