@@ -53,11 +53,12 @@ test: $(STAMP) ## run the tests, docstring examples included
 	@echo "tests: they may take 16 minutes on two cores, half of it for finite elements"
 	@$(BIN)/python -m pytest -n auto --dist worksteal --durations=5
 
-check: $(STAMP) ## lint, formatting, types, import order
+check: $(STAMP) ## lint, formatting, types, import order, size
 	@$(BIN)/ruff check .
 	@$(BIN)/ruff format --check .
 	@$(BIN)/mypy -p dentscope
 	@$(BIN)/lint-imports
+	@$(BIN)/python tools/ledger.py
 
 docs: .venv-docs/.installed ## build the documentation site into build/docs; it needs no server and no network
 	@$(BIN)/python tools/site/gather.py
