@@ -19,7 +19,6 @@ from .records import CaseRecord, Summary, UnloadingRecord
 from .rules import RULES
 from .run import Share, Status, Step, run_design, status_of
 from .store import Store
-from .upgrade import upgrade
 
 __all__ = [
     "DESIGNS",
@@ -50,5 +49,4 @@ __all__ = [
     "run_design",
     "standard_case",
     "status_of",
-    "upgrade",
 ]

@@ -66,11 +66,6 @@ def seal(image: bytes) -> bytes:
     return (_MAGIC + digest).ljust(SEALED_FROM, b"\0")
 
 
-def is_sealed(image: bytes) -> bool:
-    """Whether a file claims a seal, right or wrong."""
-    return image[: len(_MAGIC)] == _MAGIC
-
-
 def check_seal(image: bytes, path: Path, *, allowed: str = "") -> None:
     """Refuse a file of which any byte changed since it was written.
 
@@ -79,15 +74,10 @@ def check_seal(image: bytes, path: Path, *, allowed: str = "") -> None:
     InputError
         It is another kind of file, or was changed.
     """
-    if not is_sealed(image):
-        if image[:8] != b"\x89HDF\r\n\x1a\n":
-            raise InputError(
-                "not a file of ours, or its head is damaged", source=str(path),
-                allowed="a file that `dentscope campaign` wrote",
-            )  # fmt: skip
+    if image[: len(_MAGIC)] != _MAGIC:
         raise InputError(
-            "of an older format, without a digest", source=str(path),
-            allowed="a run's campaign.h5 after `dentscope campaign upgrade`",
+            "not a file of ours, or its head is damaged", source=str(path),
+            allowed="a file that `dentscope campaign` wrote",
         )  # fmt: skip
     if image[:SEALED_FROM] != seal(image):
         raise InputError(

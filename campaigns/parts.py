@@ -8,13 +8,11 @@ above it that its rows belong to: `case` counts rows of `cases`, `unloading` of 
 `profile` of `profiles`. Columns of floating-point numbers of the curves and shapes are in single
 precision (relative error below 6e-8); scalars are in double precision.
 
-A part is sealed as a case's file is, and holds a digest of each case as it is read. Parts of
-format 1 are held to `SHA256SUMS` and `DIGESTS` beside them.
+A part is sealed as a case's file is, and holds a digest of each case as it is read.
 """
 
 from __future__ import annotations
 
-import hashlib
 import json
 import re
 from collections.abc import Callable, Iterator, Sequence
@@ -38,7 +36,6 @@ from .contents import (
     Tree,
     check_seal,
     damage,
-    is_sealed,
     new_image,
     open_image,
     read_array,
@@ -50,13 +47,9 @@ from .schema import CURVE, PROFILES, UNLOADING_PROFILES, Dataset
 Columns = dict[str, npt.NDArray[Any]]
 
 PART_FORMAT = "dentscope-campaign-part/2"
-_FIRST_FORMAT = "dentscope-campaign-part/1"
 _DIGEST, _NAME = re.compile(r"[0-9a-f]{64}"), re.compile(r"[A-Za-z0-9][A-Za-z0-9._-]{0,127}")
 CHECKSUMS = "SHA256SUMS"
 """Checksums of the parts of a folder."""
-
-DIGESTS = "DIGESTS"
-"""Digest and id of each case of the parts of format 1 in a folder."""
 
 _ROW = Dataset("1", ("row",), "row of the table above that this row belongs to")
 SCALARS: dict[str, Dataset] = {
@@ -168,25 +161,16 @@ def opened_part(path: Path) -> Iterator[h5py.File]:
     Raises
     ------
     InputError
-        The file is damaged, is no part, or nothing beside it says what it should be.
+        The file is damaged, or no part.
     """
     image = read_bytes(path, most=RULES.read_part_bytes, allowed="a published part")
-    if is_sealed(image):
-        check_seal(image, path)
-    elif hashlib.sha256(image).hexdigest() != checksums(path.parent).get(path.name):
-        raise InputError(
-            "damaged, or not a published part: no checksum beside it is its own",
-            source=str(path),
-            allowed=f"a sealed part, or one that {CHECKSUMS} in its folder names",
-        )
+    check_seal(image, path)
     try:
         with open_image(image) as file:
-            known = (PART_FORMAT, _FIRST_FORMAT)
-            if file.attrs.get("format") not in known:
+            if file.attrs.get("format") != PART_FORMAT:
                 raise InputError(
-                    f"format {file.attrs.get('format')!r}", source=str(path),
-                    allowed=" or ".join(known),
-                )  # fmt: skip
+                    f"format {file.attrs.get('format')!r}", source=str(path), allowed=PART_FORMAT
+                )
             yield file
     except InputError:
         raise
@@ -204,12 +188,7 @@ def read_part(path: Path) -> list[CaseRecord]:
     """
     with opened_part(path) as file:
         records = _read_records(file)
-        if DIGEST in file["cases"]:
-            known = texts_of(file, DIGEST)
-        else:
-            listed = _digests(path.parent)
-            known = [listed.get(record.id, "") for record in records]
-        for record, digest in zip(records, known, strict=True):
+        for record, digest in zip(records, texts_of(file, DIGEST), strict=True):
             if digest != digest_of(record):
                 raise InputError(
                     "its digest is another: damaged", source=str(path), key=record.case.name
@@ -234,16 +213,9 @@ def checksums(folder: Path) -> dict[str, str]:
     InputError
         The list is damaged.
     """
-    return {name: digest for digest, name in _lines(folder / CHECKSUMS)}
-
-
-def _digests(folder: Path) -> dict[str, str]:
-    return {name: digest for digest, name in _lines(folder / DIGESTS)}
-
-
-def _lines(place: Path) -> list[list[str]]:
+    place = folder / CHECKSUMS
     if not place.exists():
-        return []
+        return {}
     raw = read_bytes(place, most=10_000_000, allowed="lines of a digest and a name")
     lines = [line.split() for line in raw.decode(errors="replace").splitlines()]
     for number, line in enumerate(lines, start=1):
@@ -252,7 +224,7 @@ def _lines(place: Path) -> list[list[str]]:
             raise InputError(
                 "damaged", source=str(place), key=f"line {number}", allowed="a digest and a name"
             )
-    return lines
+    return {name: digest for digest, name in lines}
 
 
 def digest_of(record: CaseRecord) -> str:

@@ -35,10 +35,6 @@ Read = TypeVar("Read")
 CASES, FIELDS = "cases", "fields"
 """Folders of a run: its cases, their full fields."""
 
-OLDER = "campaign.h5"
-"""All cases of a run of before 0.3; see `campaigns.upgrade`."""
-
-
 _ENDS = {"done": ".h5", "failed": ".failed.h5"}
 _REPAIR = "`dentscope campaign repair` sets it aside, and the next run computes its case again"
 
@@ -79,7 +75,8 @@ class Store:
         InputError
             It cannot be written; all completed cases are kept.
         """
-        self._refuse_older()
+        if self.folder.is_file():
+            _refuse_file(self.folder)
         done, failed = (file_of(self.folder, case.id, status) for status in _ENDS)
         fields: list[str] = []
         with _all_kept():
@@ -142,23 +139,14 @@ class Store:
 
     def _files(self) -> dict[str, Path]:
         """File of every case by its id, in the order of the ids; a completed one counts."""
-        self._refuse_older()
+        if self.folder.is_file():
+            _refuse_file(self.folder)
         found: dict[str, Path] = {}
         for path in sorted((self.folder / CASES).glob("[0-9a-f][0-9a-f]/*.h5")):
             key = path.name.partition(".")[0]
             if key not in found or _status(path) == "done":
                 found[key] = path
         return dict(sorted(found.items()))
-
-    def _refuse_older(self) -> None:
-        if self.folder.is_file():
-            _refuse_file(self.folder)
-        if (older := self.folder / OLDER).exists():
-            raise InputError(
-                "a run of before, all cases in one file",
-                source=str(older),
-                allowed=f"`dentscope campaign upgrade --out {self.folder}` makes it a file a case",
-            )
 
     def _each(self, read: Callable[[h5py.Group, Path], Read]) -> list[Read]:
         return [self._read(key, read) for key in self._files()]
@@ -214,8 +202,7 @@ def _refuse_file(path: Path, found: object = None) -> None:
     raise InputError(
         f"format {found!r}" if found else "a file",
         source=str(path),
-        allowed=f"{FORMAT}, or the folder of a run; of a run of before 0.3 the folder that holds "
-        f"{OLDER}, after `dentscope campaign upgrade`",
+        allowed=f"{FORMAT}, or the folder of a run",
     )
 
 

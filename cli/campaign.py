@@ -186,7 +186,6 @@ for command in (
     campaign_data.export,
     campaign_data.publish,
     campaign_data.repair,
-    campaign_data.upgrade,
 ):
     app.command()(command)
 for _name in ("campaign gallery", "campaign reproduction"):

@@ -169,17 +169,6 @@ def repair(out: Out = Path("build/campaign")) -> int:
     return EXIT_NOT_CONVERGED if lost else 0
 
 
-def upgrade(out: Out = Path("build/campaign")) -> int:
-    """Make a run of before 0.3, all cases in campaign.h5, one of a file a case."""
-    from ..campaigns import upgrade as take_over
-
-    kept, lost = take_over(out)
-    for line in lost:
-        typer.echo(f"not taken over: {line}")
-    typer.echo(f"{kept} cases taken over; what was there is {out / 'campaign.h5.upgraded'}")
-    return EXIT_NOT_CONVERGED if lost else 0
-
-
 def _rows(records: list[Any], names: list[str]) -> Iterator[list[Any]]:
     for record in records:
         p = record.case.pair

@@ -71,7 +71,6 @@ SOLVER = (
     Use("campaign refine {case} --out run", "largest difference"),
     Use("campaign export --out run --to curves.csv", "cases -> curves.csv"),
     Use("campaign repair --out run", "cases are whole"),
-    Use("campaign upgrade --out absent", "absent", 2),
     Use("campaign publish --design smoke --out run --to parts", "cases are missing", 2),
     Use("campaign gallery", "checkout", 2),
     Use("campaign reproduction", "checkout", 2),

@@ -8,7 +8,6 @@ a case without a word.
 
 import argparse
 import random
-import shutil
 import sys
 import tempfile
 from collections import Counter
@@ -102,12 +101,6 @@ def targets(folder):
     part = data / "trial-1.h5"
     records = read_curves(part)
     yield "sealed part", lambda: read_curves(part), part, [records]
-
-    first = folder / "first"
-    shutil.copytree(ROOT / "tests" / "data" / "campaign-format-1", first)
-    known = read_curves(first)
-    for name in ("smoke-1.h5", "SHA256SUMS", "DIGESTS"):
-        yield f"format 1: {name}", lambda: read_curves(first), first / name, [known]
 
 
 def main():

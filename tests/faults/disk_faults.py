@@ -28,7 +28,6 @@ from dentscope.campaigns import (
     publish,
     read_published,
     standard_case,
-    upgrade,
 )
 from dentscope.core import COMPLETED, InputError, Material, Pair
 from dentscope.core.disk import Disk
@@ -37,7 +36,6 @@ from dentscope.fem import Counters, Curve, Solution
 
 CALLS = ("create", "write", "sync", "rename", "remove", "make_folder", "sync_folder")
 _SECTOR = 512
-OLDER = Path(__file__).resolve().parents[1] / "data" / "campaign-format-2.h5"
 
 
 class Faulty:
@@ -316,27 +314,6 @@ def retry_writer():
     return Writer("put, tried again", begin, act, check)
 
 
-def upgrade_writer():
-    """A run of before becomes one of a file a case."""
-
-    def begin(place):
-        shutil.copyfile(OLDER, place / "campaign.h5")
-
-    def act(place):
-        if (place / "campaign.h5").exists():
-            upgrade(place)
-
-    def check(place):
-        if (place / "campaign.h5").exists():
-            assert (place / "campaign.h5").read_bytes() == OLDER.read_bytes()
-            return "old"
-        names = [record.case.name for record in Store(place).read_all()]
-        assert sorted(names) == ["c0", "c1", "c2"]
-        return "new"
-
-    return Writer("upgrade", begin, act, check)
-
-
 def publish_writer(folder):
     """A design into a data set that has one already."""
     source, older = folder / "source", folder / "older"
@@ -515,7 +492,6 @@ def writers(folder):
         "put": put_writer,
         "put, new run": first_writer,
         "put, tried again": retry_writer,
-        "upgrade": upgrade_writer,
         "publish": lambda: publish_writer(folder),
         "reduce --into": lambda: into_writer(folder),
         "fit --publish": lambda: publish_fit_writer(folder),

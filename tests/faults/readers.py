@@ -12,8 +12,8 @@ from typing import Any
 import disk_faults
 import numpy as np
 import raw_files
-from dentscope.campaigns import Design, Store, publish, read_curves, upgrade
-from dentscope.campaigns.parts import CHECKSUMS, DIGESTS
+from dentscope.campaigns import Design, Store, publish, read_curves
+from dentscope.campaigns.parts import CHECKSUMS
 from dentscope.core.output import PENDING
 from mutations import mutated, resealed, tampered
 
@@ -267,24 +267,6 @@ def of_campaign(name):
     return _published()[name]
 
 
-def _upgraded(path):
-    upgrade(path.parent)
-    Store(path.parent).read_all()
-
-
-@cache
-def _first_format():
-    """A part of format 1 with its lists, by their places."""
-    data = ROOT / "tests" / "data" / "campaign-format-1"
-    return {name: (data / name).read_bytes() for name in ("smoke-1.h5", CHECKSUMS, DIGESTS)}
-
-
-def in_first_format(name):
-    names = ("smoke-1.h5", CHECKSUMS, DIGESTS)
-    files = {key: partial(_first_format().get, key) for key in names}
-    return Reader(name, files[name], lambda path: read_curves(path.parent), files)
-
-
 def _broken_seal(content, draw):
     found, _ = mutated(content, draw)
     return (resealed(found) if draw.random() < 0.7 else found), False
@@ -339,14 +321,8 @@ READERS = {
     "case's values": Reader(
         "case.h5", partial(of_campaign, "case.h5"), read_curves, {}, tampered
     ),
-    "run of before": Reader(
-        "campaign.h5", disk_faults.OLDER.read_bytes, _upgraded, {}, tampered
-    ),
     "part's values": Reader(
         "trial-1.h5", partial(of_campaign, "trial-1.h5"), read_curves, {}, tampered
     ),
-    "part of format 1": in_first_format("smoke-1.h5"),
-    CHECKSUMS: in_first_format(CHECKSUMS),
-    DIGESTS: in_first_format(DIGESTS),
 }  # fmt: skip
 RAW = {name: raw(name) for name in raw_files.FILES}

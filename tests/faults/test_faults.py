@@ -25,7 +25,7 @@ ROOT = Path(__file__).resolve().parents[2]
 @pytest.mark.parametrize(
     ("name", "every"),
     [
-        ("put", 2), ("put, new run", 3), ("put, tried again", 2), ("upgrade", 5), ("publish", 7),
+        ("put", 2), ("put, new run", 3), ("put, tried again", 2), ("publish", 7),
         ("reduce --into", 9), ("fit --publish", 9), ("report files", 9), ("files together", 1),
     ],
 )  # fmt: skip

@@ -1,7 +1,6 @@
-"""A run: identity of cases, resuming, damage, upgrade, and death of workers and coordinator."""
+"""A run: identity of cases, resuming, damage, and death of workers and coordinator."""
 
 import errno
-import fcntl
 import json
 import multiprocessing
 import os
@@ -10,7 +9,6 @@ import subprocess
 import sys
 import time
 from dataclasses import replace
-from pathlib import Path
 
 import h5py
 import meshio
@@ -30,15 +28,12 @@ from dentscope.campaigns import (
     run_design,
     standard_case,
     status_of,
-    upgrade,
 )
 from dentscope.campaigns.executor import Ended
 from dentscope.core import COMPLETED, Ending, InputError, Material, Outcome, Pair
 from dentscope.core.flow import Flow, Heating, Rate, swift
 from dentscope.core.output import cannot_write
 from dentscope.fem import Counters, Curve, Profile, Snapshot, Solution
-
-OLDER = Path(__file__).resolve().parents[2] / "data" / "campaign-format-2.h5"
 
 
 def pair(scale=1.0, R=1e-3, Sy=5e8):
@@ -344,67 +339,6 @@ def test_a_damaged_case_is_set_aside_and_computed_again(tmp_path):
     assert set(found) == set(whole) - {min(whole)}
     assert hit.with_name(f"{hit.name}.damaged").read_bytes() == bytes(image)
     assert run_design(design(4), tmp_path, executor=FakeExecutor(), time_limit_s=1.0).done == 4
-
-
-def older(folder, change=lambda cases: None, name="dentscope-campaign/2"):
-    """A run of before 0.3 in a folder, changed and sealed."""
-    image = OLDER.read_bytes()
-    with contents.open_image(image) as old, contents.new_image() as new:
-        old.copy("cases", new.file)
-        new.file.attrs["format"] = name
-        change(new.file["cases"])
-    folder.mkdir(exist_ok=True)
-    (folder / "campaign.h5").write_bytes(new.sealed)
-
-
-def test_a_run_of_before_is_refused_until_its_upgrade_and_keeps_every_number(tmp_path):
-    older(tmp_path)
-    for call in (Store(tmp_path).statuses, lambda: read_curves(tmp_path)):
-        with pytest.raises(InputError, match="campaign upgrade"):
-            call()
-    with pytest.raises(InputError, match="campaign upgrade"):
-        read_curves(tmp_path / "campaign.h5")
-    assert upgrade(tmp_path) == (3, [])
-    first, second, failed = Store(tmp_path).read_all()
-    assert (first.case.name, second.case.name, failed.case.name) == ("c0", "c1", "c2")
-    assert "stuck at 0.003" in failed.message
-    assert Store(tmp_path).statuses()[failed.id] == "failed"
-    assert first.curve["force"] == pytest.approx(4e8 * np.array(first.case.depths))
-    assert first.unloadings[0].residual_flat == 2e-6
-    assert first.profiles["sphere_r"].shape == (10, 10)
-    assert first.environment["commit"] == "cba9fbf"
-    assert {p.name for p in tmp_path.iterdir()} == {"campaign.h5.upgraded", "cases"}
-    assert Store(tmp_path).summaries()[0].quality.depth_reached > 0.0
-
-
-def test_an_upgrade_takes_the_cases_that_are_whole(tmp_path):
-    def alter(cases):
-        next(iter(cases.values()))["loading/force"][1] *= 1.0001
-
-    older(tmp_path, alter)
-    kept, lost = upgrade(tmp_path)
-    assert kept == 2
-    assert "its digest is another" in lost[0]
-
-
-def test_a_run_of_before_that_goes_on_is_not_upgraded(tmp_path):
-    older(tmp_path)
-    with (tmp_path / "campaign.lock").open("w") as held:
-        fcntl.flock(held, fcntl.LOCK_EX)
-        with pytest.raises(InputError, match="still goes on"):
-            upgrade(tmp_path)
-    assert upgrade(tmp_path)[0] == 3
-
-
-def test_a_run_of_the_first_format_is_upgraded_too(tmp_path):
-    def bare(cases):
-        for group in cases.values():
-            del group.attrs["digest"]
-
-    older(tmp_path, bare, name="dentscope-campaign/1")
-    image = (tmp_path / "campaign.h5").read_bytes()
-    (tmp_path / "campaign.h5").write_bytes(bytes(512) + image[512:])  # it had no seal
-    assert upgrade(tmp_path) == (3, [])
 
 
 SCRIPT = """
