@@ -137,10 +137,6 @@ class CampaignRules:
         500_000_000, "largest file of one case that is read [bytes]",
         "one with its fields takes some megabytes",
     )  # fmt: skip
-    old_run_bytes: int = limit(
-        2_000_000_000, "largest run of an older format that is converted [bytes]",
-        "all of them took less",
-    )  # fmt: skip
     cost_base_s: tuple[tuple[str, float], ...] = limit(
         (("smoke", 16.0), ("quick", 26.0), ("production", 90.0)),
         "processor time of a case of each accuracy, for a forecast [s]",

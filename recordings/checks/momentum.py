@@ -224,8 +224,9 @@ def least_squares(residuals: Residuals, start: Array) -> Array:
         weight += 1e-12 * np.trace(H, axis1=1, axis2=2)[:, None, None]
         H += weight * np.eye(x.shape[1])
         new = x[at] - np.linalg.solve(H, g[..., None])[..., 0]
-        tried = residuals(new, at)
-        sums = np.sum(tried**2, axis=1)
+        with np.errstate(all="ignore"):  # a step too far gives no number, which is no better
+            tried = residuals(new, at)
+            sums = np.sum(tried**2, axis=1)
         better = sums < cost[at]
         done = np.where(
             better, cost[at] - sums <= RULES.momentum_settled * (1.0 + sums), damping[at] > 1e6

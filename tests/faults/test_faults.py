@@ -68,7 +68,7 @@ def test_no_flipped_bit_and_no_blank_block_gives_a_number(tmp_path):
 
 
 def test_malformed_input_is_one_line_soon_and_in_little_memory():
-    counts, faults, most, _longest = fuzz.run(440, 11)
+    counts, faults, most, _longest = fuzz.run(360, 11)
     assert faults == []
     assert all(found.total() == 20 for found in counts.values())
     assert most < watched.MEMORY_MB
