@@ -60,7 +60,7 @@ def scores_of(
     return {
         f.name: {
             "evidence": sampled.get(f.name, f.log_evidence - base),
-            "held_out": left_out[f.name].score,
+            "held_out": left_out[f.name].rms,
             "p_value": p[f.name],
         }
         for f in ranking.fits
@@ -212,7 +212,10 @@ def limits_of(ranking: Ranking) -> dict[str, float]:
 
 def improvement_of(base: HeldOut, chosen: HeldOut) -> dict[str, float]:
     """Return how well left-out conditions are predicted by the baseline and by the best."""
+    rms = {"baseline": base.rms, "extended": chosen.rms}
     return {
-        "held_out_baseline": base.score, "held_out_extended": chosen.score,
-        "raw_baseline": base.raw, "raw_extended": chosen.raw, "trials": base.trials,
+        # two names of one number: the second is that of before 0.4
+        **{f"held_out_{k}": x for k, x in rms.items()}, **{f"raw_{k}": x for k, x in rms.items()},
+        "log_density_baseline": base.log_density, "log_density_extended": chosen.log_density,
+        "trials": base.trials,
     }  # fmt: skip

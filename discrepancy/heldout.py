@@ -17,7 +17,6 @@ from ..core.arrays import Array, Mask
 from .comparison.problem import Problem
 from .inference.fit import Fit
 from .inference.left_out import Whole
-from .rules import RULES
 
 
 @dataclass(frozen=True, slots=True)
@@ -26,17 +25,17 @@ class HeldOut:
 
     Parameters
     ----------
-    score
-        rms of (prediction - mean)/standard error with the noise's own variance taken out, at
-        least 0.1.
-    raw
-        The rms itself.
+    rms
+        Of (prediction - mean)/standard error: 1 is what the noise alone leaves.
+    log_density
+        Mean of the ln predictive density of a number in units of its standard error [nat]: -1.42
+        is what the noise alone leaves.
     trials
         Readings behind it, each as often as a group leaves it out.
     """
 
-    score: float
-    raw: float
+    rms: float
+    log_density: float
     trials: int
 
 
@@ -63,21 +62,26 @@ def groups_of(problem: Problem) -> list[Mask]:
 
 def held_out(problem: Problem, fitted: Fit) -> HeldOut:
     """Score an explanation with each group left out in turn."""
-    squares, count = [], 0
+    squares, log_density, count = [], 0.0, 0
     whole = Whole.of(fitted.linear, fitted.residuals)
     noise = np.sqrt(np.diag(fitted.linear.noise))
     for test in (t for t in groups_of(problem) if t.any() and not t.all()):
-        miss = _missed(whole, test)
+        miss, told = _missed(whole, test)
         squares.append((miss / noise[test]) ** 2)
+        log_density += told + float(np.sum(np.log(noise[test])))
         count += int(np.sum(problem.cells.count[test]))
     if not squares:
         return HeldOut(math.nan, math.nan, 0)
-    mean = float(np.mean(np.concatenate(squares)))
-    return HeldOut(math.sqrt(max(mean - 1.0, RULES.heldout_floor**2)), math.sqrt(mean), count)
+    every = np.concatenate(squares)
+    return HeldOut(math.sqrt(float(np.mean(every))), log_density / len(every), count)
 
 
-def _missed(whole: Whole, test: Mask) -> Array:
-    """Data minus prediction of the left-out cells, over the parameters that explain the others."""
-    miss, kept = whole.missed(test)
+def _missed(whole: Whole, test: Mask) -> tuple[Array, float]:
+    """Data minus prediction of the left-out cells, and their ln density.
+
+    Over the parameters, weighted by how well these explain the cells that were kept.
+    """
+    miss, kept, log_density = whole.missed(test)
     log_weight = -0.5 * kept
-    return np.asarray(np.exp(log_weight - logsumexp(log_weight)) @ miss)
+    log_weight -= logsumexp(log_weight)
+    return np.asarray(np.exp(log_weight) @ miss), float(logsumexp(log_weight + log_density))

@@ -286,10 +286,6 @@ class DiagnosisRules:
         0.02, "relative error of a dent's diameter where the law's error has none [-]",
         "chosen; no measurement is kept",
     )  # fmt: skip
-    heldout_floor: float = rule(
-        0.1, "part of the mean variance that every kept-out number has at least [-]",
-        "one exact number would rule the score",
-    )  # fmt: skip
     step: float = rule(
         0.3, "step of derivatives [standard deviations]",
         "straight within it, beyond the round-off of simulations",

@@ -10,6 +10,7 @@ C. E. Rasmussen, C. K. I. Williams, Gaussian Processes for Machine Learning (MIT
 
 from __future__ import annotations
 
+import math
 from dataclasses import dataclass
 
 import numpy as np
@@ -44,11 +45,13 @@ class Whole:
         solved = residuals @ precision
         return cls(precision, solved, np.sum(residuals * solved, axis=1))
 
-    def missed(self, out: Mask) -> tuple[Array, Array]:
+    def missed(self, out: Mask) -> tuple[Array, Array, Array]:
         """Return data minus prediction of the left-out cells by the others, (k, left out).
 
-        And r^T Sigma^-1 r of the others, (k,).
+        And r^T Sigma^-1 r of the others, and the left-out cells' ln density given them, (k,).
         """
-        g = self.solved[:, out]
-        miss = np.linalg.solve(self.precision[np.ix_(out, out)], g.T).T
-        return np.asarray(miss), np.asarray(self.squares - np.sum(g * miss, axis=1))
+        g, precision = self.solved[:, out], self.precision[np.ix_(out, out)]
+        miss = np.linalg.solve(precision, g.T).T
+        squares = np.sum(g * miss, axis=1)
+        flat = np.linalg.slogdet(precision)[1] - len(precision) * math.log(2.0 * math.pi)
+        return np.asarray(miss), np.asarray(self.squares - squares), 0.5 * (flat - squares)

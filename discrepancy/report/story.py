@@ -186,11 +186,11 @@ def _prediction(v: Verdict) -> str:
         return ""
     if math.isnan(i["held_out_extended"]):
         return "No condition could be kept out of the fit to try the prediction on."
-    before, after = i["held_out_baseline"], i["held_out_extended"]
     return (
         f"Tried on conditions that were kept out of the fit, whole speeds, strikers and angles at "
-        f"a time ({i['trials']:.0f} predictions): off by {after:.1f} standard errors with it, "
-        f"{before:.1f} without; {compared(before, after)}."
+        f"a time ({i['trials']:.0f} predictions): off by {i['held_out_extended']:.1f} standard "
+        f"errors with it, {i['held_out_baseline']:.1f} without, where noise alone leaves 1; "
+        f"{compared(i)}."
     )
 
 

@@ -150,8 +150,8 @@ def lines(v: Verdict) -> list[str]:
             "  no condition could be left out of the fit to try the prediction on"
             if math.isnan(i["held_out_extended"])
             else f"  on conditions left out of the fit the miss goes from "
-            f"{i['held_out_baseline']:.1f} to {i['held_out_extended']:.1f} standard errors: "
-            f"{compared(i['held_out_baseline'], i['held_out_extended'])}"
+            f"{i['held_out_baseline']:.1f} to {i['held_out_extended']:.1f} standard errors, where "
+            f"noise alone leaves 1: {compared(i)}"
         )
     part = {k: x for k, x in v.inclusion.items() if x >= 0.01}
     out += ["", "Probability that it takes part"]

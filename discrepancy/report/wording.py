@@ -130,20 +130,21 @@ def percent(p: float) -> str:
     return f"{100.0 * p:.0f} %"
 
 
-def compared(before: float, after: float) -> str:
-    """Return what two misses say of a mechanism, as far as their printed digits differ.
+def compared(improvement: Mapping[str, float]) -> str:
+    """Return what predictions of left-out conditions, with an explanation and without, say of it.
 
     Examples
     --------
-    >>> compared(2.9, 1.8).split(",")[0], compared(1.31, 1.29).split(",")[0], compared(1.0, 2.0)
-    ('better', 'no better', 'worse, which speaks against the name')
+    >>> said = {"log_density_baseline": -3.0, "log_density_extended": -1.5}
+    >>> compared(said).split(",")[0], compared(dict.fromkeys(said, -1.5)).split(",")[0]
+    ('1.50 nat a number more probable', 'no more probable')
     """
-    one, two = round(before, 1), round(after, 1)
-    if two < one:
-        return "better, which a wrong mechanism can be too"
-    if two == one:
-        return "no better, so this says nothing for the name"
-    return "worse, which speaks against the name"
+    gain = improvement["log_density_extended"] - improvement["log_density_baseline"]
+    if gain >= 0.005:
+        return f"{gain:.2f} nat a number more probable, which alone does not prove it"
+    if gain > -0.005:
+        return "no more probable, so this says nothing for the name"
+    return f"{-gain:.2f} nat a number less probable, which speaks against the name"
 
 
 def joined(parts: Sequence[str], last: str = "and") -> str:

@@ -59,8 +59,8 @@ class Case:
     def worse(self) -> bool:
         """Whether held-out conditions are predicted worse than by the baseline."""
         table = self.verdict.get("improvement") or {}
-        base, more = table.get("held_out_baseline"), table.get("held_out_extended")
-        return base is not None and more is not None and float(more) > float(base)
+        base, more = table.get("log_density_baseline"), table.get("log_density_extended")
+        return base is not None and more is not None and float(more) < float(base)
 
     @property
     def size(self) -> float:

@@ -84,7 +84,7 @@ def _number(
 
 
 def gain(case: Case) -> float:
-    """Held-out score of the baseline over that of the extended model."""
+    """Held-out rms of the baseline over that of the extended model."""
     table = case.verdict.get("improvement") or {}
     base, more = table.get("held_out_baseline"), table.get("held_out_extended")
     return float(base) / float(more) if base and more else math.nan

@@ -8,6 +8,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 from dentscope.discrepancy.heldout import groups_of, held_out
+from scipy.stats import norm
 
 
 def test_whole_strikers_speeds_and_angles_are_left_out(toy) -> None:
@@ -28,11 +29,9 @@ def test_where_nothing_varies_single_conditions_are_left_out(toy) -> None:
 def test_cells_that_share_nothing_are_missed_by_their_residual(toy) -> None:
     given = toy.problem([3.0, -4.0])
     found = held_out(given, toy.fit_of([3.0, -4.0]))
-    raw = math.sqrt((9.0 + 16.0) / 2.0)
-    assert found.raw == pytest.approx(raw)
-    assert found.score == pytest.approx(math.sqrt(raw**2 - 1.0))  # the noise's own part is out
+    assert found.rms == pytest.approx(math.sqrt((9.0 + 16.0) / 2.0))
+    assert found.log_density == pytest.approx(np.mean(norm.logpdf([3.0, -4.0])))
     assert found.trials == 2
-    assert held_out(given, toy.fit_of([0.5, 0.5])).score == pytest.approx(0.1)  # at least
 
 
 def test_what_cells_share_is_learnt_from_those_that_were_kept(toy) -> None:
@@ -40,7 +39,9 @@ def test_what_cells_share_is_learnt_from_those_that_were_kept(toy) -> None:
     J = [[3.0], [3.0]]
     found = held_out(toy.problem([5.0, 7.0], derivative=J), toy.fit_of([5.0, 7.0], J=J))
     miss = np.array([5.0 - 0.9 * 7.0, 7.0 - 0.9 * 5.0])
-    assert found.raw == pytest.approx(math.sqrt(np.mean(miss**2)), rel=1e-12)
+    assert found.rms == pytest.approx(math.sqrt(np.mean(miss**2)), rel=1e-12)
+    density = norm.logpdf(miss, scale=math.sqrt(1.0 + 9.0 - 0.9 * 9.0))
+    assert found.log_density == pytest.approx(np.mean(density), rel=1e-12)
 
 
 def test_a_mechanism_foretells_what_it_was_not_shown(toy) -> None:
@@ -48,12 +49,12 @@ def test_a_mechanism_foretells_what_it_was_not_shown(toy) -> None:
     data = [20.0, 40.0]
     effect = toy.Effect("a", (40.0, 80.0))
     with_it, without = (held_out(toy.problem(data), toy.fit_of(data, *e)) for e in ((effect,), ()))
-    assert with_it.raw < 1.0
-    assert without.raw == pytest.approx(math.sqrt((400.0 + 1600.0) / 2.0))
+    assert with_it.rms < 1.0
+    assert without.rms == pytest.approx(math.sqrt((400.0 + 1600.0) / 2.0))
 
 
 def test_sizes_count_by_how_well_they_explain_what_was_kept(toy) -> None:
     """Near the end of its range the sizes that come into question lie to one side."""
     data, effect = [0.8, 1.6], toy.Effect("a", (40.0, 80.0))
     # shown one cell, the size is known to 1/80 or 1/40 of its range: 2 standard errors at the most
-    assert held_out(toy.problem(data), toy.fit_of(data, effect)).raw < 1.5
+    assert held_out(toy.problem(data), toy.fit_of(data, effect)).rms < 1.5

@@ -54,10 +54,15 @@ def test_a_figure_draws_three_simulations_and_calls_each_by_what_it_is(page_of: 
 
 @pytest.mark.parametrize(
     ("before", "after", "begins"),
-    [(2.9, 1.8, "better"), (1.31, 1.29, "no better"), (1.0, 1.31, "worse")],
+    [
+        (-2.9, -1.8, "1.10 nat a number more"),
+        (-1.31, -1.306, "no more"),
+        (-1.0, -1.31, "0.31 nat a number less"),
+    ],
 )
-def test_better_is_said_only_where_the_printed_number_is(before, after, begins) -> None:
-    assert compared(before, after).startswith(begins)
+def test_what_left_out_trials_say_of_a_name(before, after, begins) -> None:
+    found = {"log_density_baseline": before, "log_density_extended": after}
+    assert compared(found).startswith(begins)
 
 
 def test_a_place_below_chance_is_no_miss() -> None:

@@ -25,7 +25,6 @@ from dentscope.discrepancy.experiments.next_experiment import (
     propose,
     rivals_of,
 )
-from dentscope.discrepancy.heldout import held_out
 from dentscope.discrepancy.inference.sampling import _next_step
 from dentscope.discrepancy.metal.estimate import rate_prior
 from dentscope.discrepancy.metal.next_mark import next_mark, with_marks
@@ -170,11 +169,6 @@ def test_twelve_draws_stand_for_a_rivals_parameters_and_256_for_the_noise(toy) -
     found = toy.fit_of([0.5], toy.Effect("a", (1.0,)))
     assert len(_samples(found, np.random.default_rng(0))) == 12
     assert _spread_out(2).shape == (256, 2)
-
-
-def test_the_score_of_what_was_kept_out_is_a_tenth_at_the_least(toy) -> None:
-    given = toy.problem([0.0] * 4)
-    assert held_out(given, toy.fit_of([0.0] * 4)).score == pytest.approx(0.1)
 
 
 def test_a_step_of_temperature_leaves_half_of_the_particles() -> None:
