@@ -134,6 +134,11 @@ class Pair:
             raise InputError("both bodies are rigid", key="rigid", allowed="at most one rigid body")
 
     @property
+    def turned(self) -> Pair:
+        """The same with sphere and flat in each other's place."""
+        return Pair(self.flat, self.sphere, self.R)
+
+    @property
     def E_reduced(self) -> float:
         """Reduced modulus E' [Pa], 1/E' = (1-nu_s^2)/E_s + (1-nu_f^2)/E_f (Eq. 1.7)."""
         return 1.0 / (1.0 / self.sphere.plane_strain_modulus + 1.0 / self.flat.plane_strain_modulus)

@@ -109,7 +109,7 @@ class Loading:
                 yield Outcome(
                     Ending.OUT_OF_RANGE,
                     f"the contact grew out of the meshed surface at Delta/R = {found.delta:.4g}.",
-                    "Ask for a larger radius_at_least: it widens the mesh.",
+                    "Go less deep: the part of the surface that can touch ends there.",
                 )
                 return
             before, last_step = point.equilibrium.u, found.delta - point.delta

@@ -22,7 +22,6 @@ from ..models.base import ContactLaw
 from .columns import Impacts
 from .integrate import Settings, arrays_of, strike_batch, strike_rows
 from .mechanisms.asked import NONE_ASKED, SIMULATED, Asked
-from .result import leave_resting
 from .scene import Approach, ForceTransform, Friction, Scene
 from .tabulated.energy_route import NAMES, energy_impacts, why_not
 from .tabulated.law_table import tabulated
@@ -162,8 +161,6 @@ def _with_mechanisms(
     acting = asked.without(*asked.idle(plain))
     scenes = [s.with_(force=change(s.force)) for s in acting.attached(plain)]
     found = strike_batch(scenes, settings)
-    weights = [(s.striker.mass, s.gravity, s.support.plate_mobility) for s in scenes]
-    leave_resting(found, *np.transpose(weights))
     values = {name: found[:, j].copy() for j, name in enumerate(c.OBSERVABLES + c.COUNTS)}
     seen = {column: values[name] for column, name in SIMULATED.items()}
     for column, read in acting.observed(plain, seen).items():
@@ -237,12 +234,15 @@ def _by_work(
 
 
 def _crater_width(scene: Scene, depth: Array, peak: Array) -> Array:
-    """Width of a round crater of parabolic walls as `surface.scar` reads it from a scan [m]."""
+    """Width of a round crater of parabolic walls as `surface.scar` reads it [m]."""
     step, level = scene.instrument.scan_step, scene.instrument.scan_height
     width, seen = np.zeros_like(depth), depth > level
     if seen.any():
         deep, law = depth[seen], _quick(scene.law, scene)
         radius = law.contact_radius(scene.pair, peak[seen])
+        if level == 0.0:
+            width[seen] = 2.0 * radius
+            return width
         below = np.floor(radius * (1.0 - np.sqrt(1.0 - level / deep)) / step) + 1.0
         here, before = (deep * (1.0 - (1.0 - k * step / radius) ** 2) for k in (below, below - 1.0))
         width[seen] = 2.0 * (radius - step * (below - (here - level) / (here - before)))
@@ -270,7 +270,6 @@ def _by_steps(
         # the stated speed is the contact point's
         body[:, c.V_Y] = given["spin"][mine] * body[:, c.HALF_COS] - given["speed"][mine]
         found = strike_rows(one, body, settings)
-        leave_resting(found, body[:, c.MASS], body[:, c.GRAVITY], body[:, c.S_PLATE])
         for j, name in enumerate(c.OBSERVABLES + c.COUNTS):
             values[name][rows[mine]] = found[:, j]
 

@@ -177,6 +177,12 @@ def _objections(
             f"three dent depths takes ({longest * 1e3:.2g} ms): more than one contact, or a "
             "rod that is not rigid"
         )
+    elif duration < (least := 1.47 * measured.depth / measured.speed):
+        found.append(
+            f"{duration * 1e6:.3g} us is less than the way into such a dent takes alone, "
+            f"{least * 1e6:.3g} us (by a force between depth and depth^(3/2)): sliding_length_m is "
+            "not the path of the touching point"
+        )
     elif travel > 3.0 * measured.depth:
         found.append(
             f"mean velocity {mean:.2g} m/s over {duration * 1e3:.3g} ms moves the tip by "

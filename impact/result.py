@@ -9,7 +9,15 @@ from ..core.arrays import Array
 from ..core.errors import COMPLETED, Ending, Outcome
 from .surface import Spot
 from .walk import layout as at
-from .walk.layout import CONTACT_BUDGET, COUNTS, DONE, FLIGHT_BUDGET, OBSERVABLES, STEP_BUDGET
+from .walk.layout import (
+    CONTACT_BUDGET,
+    COUNTS,
+    DONE,
+    FLIGHT_BUDGET,
+    OBSERVABLES,
+    RESTS,
+    STEP_BUDGET,
+)
 
 _OF_A_PARTING = (
     at.O_KINETIC, at.O_ENERGETIC, at.O_TANGENTIAL, at.O_TIME, at.O_TOUCHING, at.O_PN, at.O_PT,
@@ -21,8 +29,7 @@ _ENDINGS = {
     STEP_BUDGET: Outcome(
         Ending.STEP_LIMIT,
         "the impact did not end within the step budget.",
-        "Raise max_steps of [impact], or look for a contact that never opens (no rebound under "
-        "gravity).",
+        "Raise max_steps of [impact].",
     ),
     CONTACT_BUDGET: Outcome(
         Ending.STEP_LIMIT,
@@ -56,8 +63,9 @@ class Impact:
     difference, the thesis's L_s (5.2). `contact_time_s` runs from first touch to last separation,
     `touching_time_s` leaves out the flights between. `clearance_m` and `clearance_rate_m_s` say
     how far above the remembered surface the tip is at its last separation, and how fast it leaves.
-    `stuck` says whether friction held the tip for some time. A tip that a plate does not throw
-    back rests on it: its restitution is 0, and what a parting would end is nan.
+    `stuck` says whether friction held the tip for some time. A tip whose weight
+    or whose plate does not let it part rests: its restitution is 0, and what a parting would end is
+    nan. An impact that did not end has no numbers: all are nan.
 
     The energy: `kinetic_before_J` and `gravity_work_J` come in; `kinetic_after_J`,
     `modal_stored_J` and `support_stored_J` are still there; lost are `plastic_work_J`,
@@ -143,7 +151,7 @@ class Impact:
 
 
 def leave_resting(rows: Array, mass: Array, gravity: Array, mobility: Array) -> None:
-    """End the impacts whose tip rests on an endless plate, which sinks under its weight for ever.
+    """End the impacts whose tip rests: held by its weight, or on an endless plate that sinks.
 
     Parameters
     ----------
@@ -161,6 +169,7 @@ def leave_resting(rows: Array, mass: Array, gravity: Array, mobility: Array) -> 
     moves = -rows[:, [at.O_VY, at.O_TIP]]
     rests = ((moves > 0.0) & (moves <= 2.0 * sinking)).all(axis=1)
     rests &= rows[:, at.FIRST_COUNT] == STEP_BUDGET
+    rests |= rows[:, at.FIRST_COUNT] == RESTS
     for column in _OF_A_PARTING:
         rows[rests, column] = math.nan
     for column in (at.O_E, at.O_VY, at.O_TIP):
@@ -175,7 +184,7 @@ def impact_of(row: Array, spot: Array) -> Impact:
     outcome = _NOT_FINITE if math.isnan(ending) else _ENDINGS.get(int(ending), _NOT_FINITE)
     kept = {f.name for f in fields(Impact)} & set(OBSERVABLES)
     return Impact(
-        **{name: values[name] for name in kept},
+        **{name: values[name] if outcome.completed else math.nan for name in kept},
         contacts=int(values["contacts"]),
         stuck=values["stuck"] > 0.0,
         spot=Spot.of(spot),

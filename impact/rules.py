@@ -223,6 +223,19 @@ class ImpactRules:
         0.1, "lightest block that is taken for a half-space without a word [kg]",
         "chosen; no measurement is kept",
     )  # fmt: skip
+    critical_stokes: float = rule(
+        10.0, "Stokes number m v/(6 pi eta R^2) at which immersed spheres begin to rebound [-]",
+        "Joseph, Zenit, Hunt and Rosenwinkel, J. Fluid Mech. 433 (2001) 329; Gondret, Lance and "
+        "Petit, Phys. Fluids 14 (2002) 643",
+    )  # fmt: skip
+    hottest: float = rule(
+        0.95, "way from the reference temperature to melting up to which a strength is known [-]",
+        "chosen; nearer 1 - T*^m of Johnson and Cook is no strength any more",
+    )  # fmt: skip
+    wave_back: float = rule(
+        0.15, "way of a wave through a plate and back up to which it moves as a whole [contact]",
+        "explicit elastic plates of 3 to 100 mm (tools/benchmarks/wave_plate.py): 10 % of the loss",
+    )  # fmt: skip
     size_largest: float = rule(
         3e-4, "contact radius beyond which hardness does not depend on size [m]",
         "ten times some tens of um",

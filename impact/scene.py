@@ -232,19 +232,20 @@ class Press:
 
 @dataclass(frozen=True, slots=True)
 class Instrument:
-    """Seam: how a scar is read.
+    """Seam: how a scar is read: by default as the union of the circles of contact.
 
-    It is scanned every `scan_step` [m] and ends where it is `scan_height` [m] below the flat
-    (defaults: the step of the thesis, 5.2, and the roughness of its polished flats, 3.2).
+    A profilometer samples it every `scan_step` [m], and it ends where it is `scan_height` [m] below
+    the flat; 0, the default, for none.
     """
 
     scan_step: float = 3e-6
-    scan_height: float = 0.4e-6
+    scan_height: float = 0.0
 
     def __post_init__(self) -> None:
-        for key, value in (("scan_step_m", self.scan_step), ("scan_height_m", self.scan_height)):
-            if not (value > 0.0 and math.isfinite(value)):
-                raise InputError(f"{value:g}", key=key, allowed="a number above 0")
+        if not (self.scan_step > 0.0 and math.isfinite(self.scan_step)):
+            raise InputError(f"{self.scan_step:g}", key="scan_step_m", allowed="a number above 0")
+        if not (self.scan_height >= 0.0 and math.isfinite(self.scan_height)):
+            raise InputError(f"{self.scan_height:g}", key="scan_height_m", allowed="0 or more")
 
 
 _RIGID, _FRESH = Modes(), Spot()

@@ -29,21 +29,22 @@ NODES = RULES.strength_nodes
 """Nodes of the table over ln(depth / R)."""
 
 _LEVELS = np.log(np.array([0.1, 0.25, 0.5, 0.7, 0.85, 1.0, 1.2, 1.5, 1.9, 2.4, 3.1, 5.0, 10.0]))
-_UNIT = int(np.searchsorted(_LEVELS, -1e-9))  # the stated strength
+_FAR = np.log([*np.geomspace(1e-3, 0.085, 18), *np.exp(_LEVELS), *np.geomspace(12.0, 1e3, 20)])
+"""Levels of a strength that leaves those: a factor of 10 is more than nearly all ask for."""
 
 
 @njit(cache=True)
-def _factors(strength, logs, slopes):  # type: ignore[no-untyped-def]
+def _factors(strength, levels, logs, slopes):  # type: ignore[no-untyped-def]
     columns, _, n = logs.shape
     out = np.empty((columns, n))
-    last = len(_LEVELS) - 2
+    last = len(levels) - 2
     for k in range(n):
-        level = min(max(math.log(max(strength[k], 1e-9)), _LEVELS[0]), _LEVELS[-1])
+        level = min(max(math.log(max(strength[k], 1e-9)), levels[0]), levels[-1])
         i = 0
-        while i < last and level > _LEVELS[i + 1]:
+        while i < last and level > levels[i + 1]:
             i += 1
-        wide = _LEVELS[i + 1] - _LEVELS[i]
-        t = (level - _LEVELS[i]) / wide
+        wide = levels[i + 1] - levels[i]
+        t = (level - levels[i]) / wide
         for column in range(columns):
             low, high = logs[column, i, k], logs[column, i + 1, k]
             m0, m1 = wide * slopes[column, i, k], wide * slopes[column, i + 1, k]
@@ -110,7 +111,8 @@ class StrengthTable:
 
     def factors(self, strength: Array) -> Array:
         """Return the factors of `impact.force`, (N_FACTORS, NODES), for relative strengths."""
-        return np.asarray(_factors(strength, *self._levels))
+        near = np.exp(_LEVELS[0]) <= np.min(strength) and np.max(strength) <= np.exp(_LEVELS[-1])
+        return np.asarray(_factors(strength, *(self._near if near else self._far)))
 
     def given_back(self, strength: Array) -> Array:
         """Return the factor on the work of the recovery, (NODES,), for relative strengths."""
@@ -124,12 +126,20 @@ class StrengthTable:
         return float(np.exp(np.interp(math.log(energy), self._log_work, self.log_depth)))
 
     @cached_property
-    def _levels(self) -> tuple[Array, Array]:
-        """Logarithms over those at the stated strength, (N_FACTORS, levels, NODES), and slopes."""
-        pairs = [_stronger(self.pair, math.exp(level)) for level in _LEVELS]
+    def _near(self) -> tuple[Array, Array, Array]:
+        return self._at(_LEVELS)
+
+    @cached_property
+    def _far(self) -> tuple[Array, Array, Array]:
+        return self._at(_FAR)
+
+    def _at(self, levels: Array) -> tuple[Array, Array, Array]:
+        """Levels, logarithms over those as stated, (N_FACTORS, levels, NODES), and slopes."""
+        pairs = [_stronger(self.pair, math.exp(level)) for level in levels]
         logs = np.stack(_logs(self.law, pairs, self.depth))
-        logs -= logs[:, _UNIT : _UNIT + 1]
-        return logs, PchipInterpolator(_LEVELS, logs, axis=1).derivative()(_LEVELS)
+        unit = int(np.searchsorted(levels, -1e-9))  # the stated strength
+        logs -= logs[:, unit : unit + 1]
+        return levels, logs, PchipInterpolator(levels, logs, axis=1).derivative()(levels)
 
     @cached_property
     def _log_work(self) -> Array:

@@ -307,10 +307,11 @@ def _edge(surface, x, y, dx, dy, far, level):
 
 @njit(types.UniTuple(float64, 3)(VECTOR, float64, float64), **_PLAIN)
 def scar(surface, step, level):
-    """Length, width at the deepest place and their difference [m], as a profilometer ends them.
+    """Length, width at the deepest place and their difference [m].
 
-    The scan samples every `step`; the scar ends where it is first `level` below the fresh flat,
-    between two samples by a straight line. Zero for a dent that is nowhere so deep.
+    Of the circles of contact; or, `level` above 0, as a profilometer ends them: the scan samples
+    every `step`, and the scar ends where it is first `level` below the fresh flat, between two
+    samples by a straight line. Zero for a dent that is nowhere so deep.
     """
     deepest, place = dent(surface)
     if not deepest > level:
@@ -323,6 +324,8 @@ def scar(surface, step, level):
         last = max(last, surface[at + LAST], surface[at + END] + _STEEPEST * radius)
         wide = max(wide, radius)
     far = last - first
+    if level == 0.0:
+        return far, 2.0 * wide, far - 2.0 * wide
     step = max(step, far / _SAMPLES)
     length = far - _edge(surface, first, 0.0, -step, 0.0, far, level)
     length -= _edge(surface, last, 0.0, step, 0.0, far, level)

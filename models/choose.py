@@ -15,6 +15,7 @@ from .base import CombinedLaw, ContactLaw
 from .hardening import HardeningLaw
 from .rules import RULES
 from .table import TableLaw
+from .turned import TurnedLaw
 
 
 @dataclass(frozen=True, slots=True)
@@ -80,4 +81,6 @@ def follows_flow(law: ContactLaw) -> bool:
     """Whether a law follows the flow curve of a metal; others take its strength at first yield."""
     if isinstance(law, CombinedLaw):
         return follows_flow(law.first)
+    if isinstance(law, TurnedLaw):
+        return follows_flow(law.law)
     return isinstance(law, HardeningLaw | TableLaw)

@@ -74,7 +74,7 @@ class CaseBody(MaterialTable):
 
 class _Load(InputTable):
     max_delta_over_R: float = Field(ge=1e-12, le=0.5)
-    """Largest approach over the sphere's radius."""
+    """Largest approach over the sphere's radius; 0.15 is reached where the flat yields."""
     unload_from: tuple[float, ...] = Field(default=(), strict=False)
     """Approaches over R from which the sphere is drawn back."""
     speed_m_s: float | Annotated[tuple[_SpeedRow, ...], Listed] | None = None

@@ -188,7 +188,8 @@ def _dent(solution: Solution, u: Unloading) -> Dent:
     contact = 2.0 * float(u.curve.radius[0])
     top = int(u.crater_z.argmax())
     # what sinks in rises towards the edge of the mesh, where the flat is as it was
-    rises = u.crater_z[top] > 1e-3 * abs(u.residual_flat) and u.residual_flat > 0.0
+    least = max(1e-3 * u.residual_flat, RULES.kept_round_off * R)
+    rises = u.residual_flat > 0.0 and u.crater_z[top] > least
     rim = 2.0 * float(u.crater_r[top]) if rises else math.nan
     of_the_flat = u.residual > 0.0 and u.residual_sphere <= RULES.ball_keeps * u.residual
     by_contact, by_rim = (

@@ -79,6 +79,28 @@ class StruckSphere:
         """
         return np.asarray(relative - reduced / self.mass * (speed + relative))
 
+    def own_spin(
+        self, relative: Array | float, approach: Array | float, R: Array | float,
+        reduced: Array | float,
+    ) -> Array:  # fmt: skip
+        """Return the striking sphere's spin after, from that of the equivalent one [rad/s].
+
+        Parameters
+        ----------
+        relative, approach
+            (...) spins of the equivalent sphere after and before, which turns its surface as fast.
+        R, reduced
+            Of `equivalent` [m] and `reduced` [kg].
+        """
+        # friction's impulse P turns a solid sphere by P/(0.4 m R), the equivalent one by its own
+        share = 1.0 - reduced / self.mass
+        turned = np.asarray(approach) + share * (np.asarray(relative) - approach)
+        return np.asarray((1.0 - R / self.radius) * turned)
+
+    def turned(self, impulse: float) -> float:
+        """Return the spin that an impulse along the contact gives this one [rad/s]; 0 if held."""
+        return 0.0 if math.isinf(self.mass) else impulse / (0.4 * self.mass * self.radius)
+
 
 def struck_sphere(target: TargetTable) -> StruckSphere | None:
     """Return the second sphere of a `[target]`; none where a flat is struck."""

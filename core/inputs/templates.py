@@ -164,7 +164,7 @@ impact_speed_m_s = 2.18         # of the tip, along the flat's normal
 friction_impulse_ratio = 0.13   # tangential over normal impulse
 restitution = 0.49
 permanent_depth_m = 26e-6
-sliding_length_m = 1650e-6      # length of the scar less its width
+sliding_length_m = 1650e-6      # path of the touching point, not a scar less its width
 # rebound_m_s = 1.07            # of the centre of mass, where it was measured
 """
 """An inverse file, with its own name in it."""

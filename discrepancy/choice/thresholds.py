@@ -88,9 +88,7 @@ def null_residuals(simulator: Simulator, base: Fit, count: int, rng: np.random.G
         }
     spread["size"] = SIZE_SPREAD
     seen = discrepancies(rig_of(problem, z), count, rng, spread)
-    if problem.parts:
-        struck = problem.scenes(z)
-        seen["rebound_speed_m_s"] = problem.own_rebound(seen["rebound_speed_m_s"], z, struck)
+    seen |= problem.own_motion(seen, z, problem.scenes(z))
     cells = problem.cells
     law = np.empty((count, len(cells)))
     for j, name in enumerate(cells.observable):

@@ -12,6 +12,7 @@ import numpy as np
 
 from ...core.arrays import Array
 from ...impact import Scene, Settings, dent_radius, pressed, strike_batch, strike_many
+from ...impact.files.second import second_of
 from ...impact.mechanisms.asked import SIMULATED
 from ...impact.mechanisms.base import Constants, Mechanism, Situation, attached, observed
 from ...impact.walk import layout as c
@@ -23,7 +24,6 @@ from .problem import Problem
 _COLUMN = {name: i for i, name in enumerate(c.OBSERVABLES)}
 _PRESS_DEPTH, _RECOVERED = c.N_OUT, c.N_OUT + 1
 """Columns behind those of the integrator."""
-_REBOUND = "rebound_speed_m_s"
 ACCURACY = Settings(tolerance=1e-6, max_steps=4000, max_contacts=30)
 
 
@@ -161,11 +161,13 @@ class Simulator:
             here = {k: v[part] for k, v in seen.items()}
             for k, v in observed(mechanisms, plain[part], point.values, here).items():
                 seen[k][part] = v
-            if problem.parts:
+            if second_of(problem.rig) is not None:
                 # what acts between the two takes no momentum from both
                 taken = [m for m in mechanisms if not m.mutual]
                 met = [attached(taken, s, point.values, around) for s, around in plain[part]]
-                seen[_REBOUND][part] = problem.own_rebound(seen[_REBOUND][part], point.z, met)
+                here = {k: v[part] for k, v in seen.items()}
+                for k, own in problem.own_motion(here, point.z, met).items():
+                    seen[k][part] = own
             # last: an instrument's scale multiplies what is there to be read
             for k in dict.fromkeys(name for name, _ in problem.scales):
                 seen[k][part] *= problem.scale(k, point.z)

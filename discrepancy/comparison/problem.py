@@ -133,19 +133,15 @@ class Problem:
         }
         return self.rig.with_(moved)
 
-    @property
-    def parts(self) -> bool:
-        """Whether what is struck moves off as well."""
-        second = second_of(self.rig)
-        return second is not None and second.free
-
-    def own_rebound(self, relative: Array, z: Array, scenes: Sequence[Scene]) -> Array:
-        """Return rebound speeds as they are read: the striker's own, where the struck body is free.
+    def own_motion(
+        self, seen: Mapping[str, Array], z: Array, scenes: Sequence[Scene]
+    ) -> dict[str, Array]:
+        """Return the striker's own motion, as it is read, where a second sphere is struck.
 
         Parameters
         ----------
-        relative
-            (..., conditions) of the striker to what is struck.
+        seen
+            Column to (..., conditions) of the equivalent sphere: rebound, along the contact, spin.
         z
             (n_z,) unknowns.
         scenes
@@ -153,12 +149,17 @@ class Problem:
         """
         second = second_of(self.rig_at(z))
         if second is None:
-            return relative
-        columns = [
-            second.own_rebound(relative[..., i], s.approach.speed, s.striker.mass)
-            for i, s in enumerate(scenes)
-        ]
-        return np.stack(columns, axis=-1)
+            return {}
+        speed, along, spin, mass, R = np.transpose([
+            (s.approach.speed, s.approach.tangential, s.approach.spin, s.striker.mass, s.pair.R)
+            for s in scenes
+        ])  # fmt: skip
+        share = 1.0 - mass / second.mass
+        return {
+            "rebound_speed_m_s": second.own_rebound(seen["rebound_speed_m_s"], speed, mass),
+            "tangential_rebound_m_s": along + share * (seen["tangential_rebound_m_s"] - along),
+            "rebound_spin_rad_s": second.own_spin(seen["rebound_spin_rad_s"], spin, R, mass),
+        }
 
     def scenes(self, z: Array) -> list[Scene]:
         """Return the baseline scene of every condition at the unknowns z, shape (n_z,)."""

@@ -66,9 +66,10 @@ class PressSeries:
 def press_series(problem: Problem) -> list[PressSeries]:
     """Return presses with each striker, as deep as its trials went, within what a press can do."""
     found = []
-    struck = "flat" if second_of(problem.rig) is None else "second sphere"
+    second = second_of(problem.rig)
+    struck = "flat" if second is None else "second sphere"
     # a free sphere is not pressed
-    if leaves_no_mark(problem) or problem.parts:
+    if leaves_no_mark(problem) or (second is not None and second.free):
         return []
     for name, trials in sorted(_by_striker(problem).items()):
         c, scene = trials[0]

@@ -409,7 +409,8 @@ def blow_of(setup: Setup, laws: Sequence[ContactLaw]) -> Blow:
         scene = setup.scene(law)
         for number in range(1, setup.repeats + 1):
             struck = strike(scene, setup.settings)
-            pressure, found = largest_mean_pressure(scene, struck), setup.read(law, struck)
+            found = setup.read(law, struck)
+            pressure = largest_mean_pressure(scene, struck) if found.peak_depth_m > 0.0 else 0.0
             rows.append(
                 {
                     "law": law.name, "repeat": number, **impact_row(found),

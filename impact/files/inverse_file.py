@@ -72,7 +72,7 @@ class _TrialTable(InputTable):
     permanent_depth_m: float = Field(ge=1e-12, le=0.1)
     """Depth of the crater."""
     sliding_length_m: float = Field(ge=1e-12, le=1.0)
-    """Length of the scar less its width."""
+    """Path of the touching point along the flat; a scar's length less its width is not it."""
     printed_duration_s: float | None = None
     """A published duration to show beside."""
     printed_mean_force_N: float | None = None

@@ -133,15 +133,10 @@ def _falls(file: SetupFile) -> bool:
 
 
 def _values(mechanism: Mechanism, table: InputTable, around: Surroundings) -> Values:
-    stated = mechanism.stated(around)
-    return {p.name: _value(p, getattr(table, p.name), stated) for p in mechanism.parameters}
-
-
-def _value(one: Parameter, given: Quantity | None, stated: Values) -> float:
-    if given is not None:
-        return given.value
-    usual = one.neutral if one.literature is None else one.literature.value
-    return stated.get(one.name, usual)
+    known = {p.name: p.neutral for p in mechanism.parameters}
+    known |= {**mechanism.usual(around), **mechanism.stated(around)}
+    given = {name: getattr(table, name) for name in known}
+    return known | {name: number.value for name, number in given.items() if number is not None}
 
 
 def mistakes_of(file: SetupFile, source: str) -> Iterator[InputError]:

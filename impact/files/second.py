@@ -9,9 +9,13 @@ How far 1/R holds where both yield is known best of two equal spheres: they are 
 and so each is a sphere of its own on a rigid flat that is pressed half as deep. Finite elements of
 that sphere carry 3 % more at an approach of 0.02 R and 26 % more at 0.1 R than those of a sphere on
 a flat of its metal (E/341); the fitted law, which both sides are taken from, says so within 1.5 %.
-Finite elements of two spheres (tools/benchmarks/two_spheres.py, E/341, coarse): with R_2 = 3 R_1
-they carry 0.6, 2.1 and 4.3 % more at 0.01, 0.02 and 0.04 R, in a seat of -3 R_1 1.1, 4.7 and 12.8 %
-less, twice the mirror's departure.
+Finite elements of two spheres (tools/benchmarks/two_spheres.py, E/341, coarse) carry at 0.04 R with
+R_2 = 1, 1.5, 3, 6 and 20 R_1 6.8, 6.2, 4.3, 3.8 and 1.3 % more, at 0.02 R 2.4, 2.0, 2.1, 1.1 and
+0.7 %: as the root of R/R_2. In a seat of -3 R_1 they carry 1.1, 4.7 and 12.8 % less at 0.01, 0.02
+and 0.04 R, twice the mirror's departure.
+
+The smaller sphere, of the larger curvature, is the law's, whichever of the two strikes: the other
+one is the nearer to a flat.
 """
 
 from __future__ import annotations
@@ -28,6 +32,7 @@ from ...core.inputs.second_sphere import StruckSphere
 from ...core.material import Pair
 from ...models import LAWS
 from ...models.base import DomainWarning
+from ...models.turned import turned
 from ..scene import Scene, Striker
 
 
@@ -50,6 +55,8 @@ class SecondSphere(StruckSphere):
         """
         striker = scene.striker
         R, mass = self.equivalent(striker.tip_radius), self.reduced(striker.mass)
+        # the smaller sphere, of the larger curvature, is the law's: the other one is nearer a flat
+        law = turned(scene.law) if 0.0 < self.radius < striker.tip_radius else scene.law
         # spin turns the surface as fast as before: r w
         spin = scene.approach.spin * striker.tip_radius / R
         one = Striker(
@@ -57,15 +64,15 @@ class SecondSphere(StruckSphere):
             name=striker.name,
         )  # fmt: skip
         return scene.with_(
-            pair=replace(scene.pair, R=R), gravity=0.0 if self.free else scene.gravity,
+            law=law, pair=replace(scene.pair, R=R), gravity=0.0 if self.free else scene.gravity,
             striker=one, approach=replace(scene.approach, spin=spin),
         )  # fmt: skip
 
     def departure(self, pair: Pair, delta: float | Array) -> Array:
         """Return how far 1/R may be off where both yield: the force's part, relative, (...).
 
-        On a sphere the mirror's departure; in a seat 4 R/|R_2| times that. The 4 makes it the twice
-        that finite elements of one seat have, R_2 = -3 R_1; its growth as a seat closes is chosen.
+        The mirror's departure times the root of 2 R/R_2, R_2 of the larger; in a seat twice that,
+        and 4 R/|R_2| times it as the seat closes, which is chosen.
 
         Parameters
         ----------
@@ -76,15 +83,21 @@ class SecondSphere(StruckSphere):
         """
         if not math.isfinite(pair.Sy_min):
             return np.zeros_like(np.asarray(delta, dtype=float))
-        closer = 4.0 * pair.R / abs(self.radius) if self.radius < 0.0 else 1.0
-        return max(closer, 1.0) * np.abs(mirror_error(pair, delta))
+        other = self._other(pair.R)
+        size = math.sqrt(2.0 * other)
+        size = max(2.0 * size, 4.0 * other) if self.radius < 0.0 else size
+        return size * np.abs(mirror_error(pair, delta))
+
+    def _other(self, R: float) -> float:
+        """Curvature of the larger body over that of both, 1/R: 0 of a flat, 1/2 of equal ones."""
+        here = R / abs(self.radius)
+        return here if self.radius < 0.0 else min(here, 1.0 - here)
 
     def crater_departure(self, pair: Pair, delta: float | Array) -> Array:
         """Return how far the struck body's share of what stays may be off, relative, (...).
 
         The law parts it between a sphere and a flat. Of two equal spheres neither is the flat: the
-        truth lies midway to the share that this body would have as the sphere; R/|R_2| is a half of
-        equal ones, 0 of a flat and 1 of a small sphere.
+        truth lies midway to the share that either would have as the other.
 
         Parameters
         ----------
@@ -94,15 +107,14 @@ class SecondSphere(StruckSphere):
         depth = np.asarray(delta, dtype=float)
         if not math.isfinite(pair.Sy_min):
             return np.zeros_like(depth)
-        turned = replace(pair, sphere=pair.flat, flat=pair.sphere)
         with warnings.catch_warnings():
             # a rigid partner is beyond the strengths that were fitted
             warnings.simplefilter("ignore", DomainWarning)
             _, as_flat = LAWS["fitted"].residual(pair, depth)
-            as_sphere, _ = LAWS["fitted"].residual(turned, depth)
+            as_sphere, _ = LAWS["fitted"].residual(pair.turned, depth)
         stays = (as_flat > 0.0) & (as_sphere > 0.0)
         apart = np.log(np.where(stays, as_flat, 1.0) / np.where(stays, as_sphere, 1.0))
-        return np.asarray(pair.R / abs(self.radius) * np.abs(apart))
+        return np.asarray(self._other(pair.R) * np.abs(apart))
 
 
 def second_of(numbers: RigNumbers) -> SecondSphere | None:

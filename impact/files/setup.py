@@ -157,10 +157,18 @@ class Setup:
 
     def read(self, law: ContactLaw, found: Impact) -> Impact:
         """Return an impact of `scene` as it is read: with what a mechanism takes after it."""
-        if not self.asked:
+        if not self.asked and self.second is None:
             return found
         plain = self.plain(law)
+        if self.second is not None:
+            spin = self._own_spin(plain, found.rebound_spin_rad_s)
+            found = replace(found, rebound_spin_rad_s=float(spin))
         return self.acting(plain).read(plain, found)
+
+    def _own_spin(self, plain: Scene, spin: Any) -> Any:
+        """The striking sphere's own spin; of one on a flat it is what was simulated."""
+        R, mass, before = plain.pair.R, plain.striker.mass, plain.approach.spin
+        return spin if self.second is None else self.second.own_spin(spin, before, R, mass)
 
     def with_mechanism(self, name: str, numbers: Mapping[str, float] | None) -> Setup:
         """Return the same with these numbers of a mechanism, or without it."""
@@ -239,9 +247,15 @@ class Setup:
     def swept(self, law: ContactLaw, *, change: Change = unchanged) -> Impacts:
         """Return the impacts of `[sweep]` by one law, what is done to the force changed."""
         plain = self.plain(law)
-        return run_sweep(
+        found = run_sweep(
             self.sweep, plain, self.settings, stated=self.stated, asked=self.asked, change=change
         )
+        if self.second is None:
+            return found
+        columns = ("approach_spin_rad_s", "rebound_spin_rad_s")
+        return Impacts({
+            **found.columns, **{name: self._own_spin(plain, found[name]) for name in columns}
+        })  # fmt: skip
 
 
 def read_setup(path: Path) -> Setup:

@@ -54,6 +54,14 @@ class AirDrag(Mechanism):
     )
 
     def applies(self, situations: Sequence[Situation]) -> str:
+        """Needs what `idle` does, and speeds that a flight under gravity can have given."""
+        reason = self.idle(situations)
+        if not reason and (largest := self._largest(situations)) > RULES.stopped:
+            what = situations[0][1].fluid.strip() or "air"
+            reason = f"{what} takes {largest:.0%} of a speed: no flight under gravity was read"
+        return reason
+
+    def idle(self, situations: Sequence[Situation]) -> str:
         """Needs a light or a fast striker in air, or a liquid of stated density and viscosity."""
         around = situations[0][1]
         if around.struck is not None and around.struck.free:
@@ -66,17 +74,17 @@ class AirDrag(Mechanism):
             )
         if 0.0 in (around.pressure, around.density):
             return "there is no air, as stated"
+        if (largest := self._largest(situations)) < RULES.visible:
+            what = around.fluid.strip() if liquid else "air"
+            return f"{what} takes at most {largest:.1e} of a speed"
+        return ""
+
+    def _largest(self, situations: Sequence[Situation]) -> float:
+        """Largest part of a speed that it may take, before the contact or after it."""
         most = {p.name: p.high for p in self.parameters}
         seen = {"restitution": np.ones(len(situations)), "rebound_speed_m_s": np.ones(1)}
         taken = float(np.max(1.0 - self.after(situations, most, seen)["restitution"]))
-        before = max(1.0 - _arriving(s, most, a) / s.approach.speed for s, a in situations)
-        largest = max(taken, before)
-        what = around.fluid.strip() if liquid else "air"
-        if largest < RULES.visible:
-            return f"{what} takes at most {largest:.1e} of a speed"
-        if largest > RULES.stopped:
-            return f"{what} takes {largest:.0%} of a speed: no flight under gravity was read"
-        return ""
+        return max(taken, *(1.0 - _arriving(s, most, a) / s.approach.speed for s, a in situations))
 
     def attach(self, scene: Scene, values: Values, around: Surroundings) -> Scene:
         """Slow the approach."""

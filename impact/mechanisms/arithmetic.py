@@ -55,6 +55,24 @@ def shortest_contact(scene: Scene) -> float:
     return 0.5 * math.pi * math.sqrt(effective_mass(scene) / stiffness)
 
 
+def contact_time(scene: Scene) -> float:
+    """Time of this blow's contact by its law alone, on a flat that does not move [s].
+
+    The recovery is Hertz's, F_m x^(3/2) over the depth l: 1.472 l/sqrt(0.8 F_m l/m).
+    """
+    table, mass, work = strength_table(scene.law, scene.pair), effective_mass(scene), energy(scene)
+    peak = table.peak(work)
+    s = (np.arange(64) + 0.5) / 64.0
+    at = np.log(peak * (1.0 - s**2))
+    left = work - np.exp(np.interp(at, table.log_depth, np.log(table.work)))
+    pressing = float(np.mean(2.0 * peak * s / np.sqrt(2.0 * np.maximum(left, 1e-9 * work) / mass)))
+    force, back = (
+        math.exp(float(np.interp(math.log(peak), table.log_depth, logs)))
+        for logs in (table.stated.force, table.stated.recovery)
+    )
+    return pressing + 1.472 * back / math.sqrt(0.8 * force * back / mass)
+
+
 def wave_speed(material: Material) -> float:
     """Speed of a wave that spreads into a flat, sqrt(E/((1 - nu^2) rho)) [m/s]."""
     return math.sqrt(material.plane_strain_modulus / density_of(material))
@@ -86,10 +104,16 @@ def needs_sliding(situations: Sequence[Situation]) -> str:
     return ""
 
 
-def slower(seen: Mapping[str, Array], restitution: Array) -> dict[str, Array]:
-    """Return the observables with another restitution, and with it the centre's rebound speed."""
+def slower(
+    seen: Mapping[str, Array], restitution: Array, arrived: Array | float = 1.0
+) -> dict[str, Array]:
+    """Return the observables with another restitution, and with it the centre's rebound speed.
+
+    `arrived` is the speed that the contact met over the one that the restitution is now of.
+    """
+    left = seen["restitution"] * arrived
     with np.errstate(divide="ignore", invalid="ignore"):
-        ratio = np.where(seen["restitution"] > 0.0, restitution / seen["restitution"], 1.0)
+        ratio = np.where(left > 0.0, restitution / left, 1.0)
     return {
         **seen,
         "rebound_speed_m_s": seen["rebound_speed_m_s"] * ratio,

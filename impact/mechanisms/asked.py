@@ -75,6 +75,11 @@ class Asked:
         changed: dict[str, Any] = {
             SIMULATED[k]: float(after[k][0]) for k in SIMULATED if after[k] is not seen[k]
         }
+        if not changed.get("peak_depth_m", found.peak_depth_m) > 0.0:
+            # a film has stopped it: there was no blow
+            kept = ("kinetic_before_J", "gravity_work_J")
+            changed |= dict.fromkeys((k for k in found.observables if k not in kept), 0.0)
+            changed |= {"contacts": 0, "spot": plain.spot}
         return replace(found, **changed)
 
 

@@ -233,6 +233,10 @@ class Mechanism(ABC):
         """Return the parameters that the rig itself states."""
         return {}
 
+    def usual(self, around: Surroundings) -> Values:
+        """Return the parameters that a source has for usual rigs."""
+        return {p.name: p.literature.value for p in self.parameters if p.literature}
+
     def ranges(self, situations: Sequence[Situation]) -> tuple[Parameter, ...]:
         """Return the parameters with the ranges that this rig allows."""
         return self.parameters

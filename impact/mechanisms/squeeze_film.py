@@ -10,6 +10,7 @@ from typing import ClassVar
 import numpy as np
 
 from ...core.arrays import Array
+from ..rules import RULES
 from ..scene import Scene
 from .arithmetic import effective_mass, slower
 from .base import Mechanism, Parameter, Situation, Surroundings, Values
@@ -55,6 +56,11 @@ class SqueezeFilm(Mechanism):
             return f"air takes at most {loss:.1e} of the approach speed; no liquid is stated"
         return ""
 
+    def usual(self, around: Surroundings) -> Values:
+        """Of a stated viscosity what stops an immersed sphere at the Stokes number that is seen."""
+        eta = around.viscosity
+        return {"film_drag_Pa_s": RULES.critical_stokes * eta} if eta > 0.0 else {}
+
     def ranges(self, situations: Sequence[Situation]) -> tuple[Parameter, ...]:
         """A stated viscosity leaves ln(h_0/h_1): films of 1-100 um over asperities of 0.1-1 um.
 
@@ -67,20 +73,25 @@ class SqueezeFilm(Mechanism):
         return replace(drag, low=0.7 * eta, high=7.0 * eta, scale="linear"), share
 
     def attach(self, scene: Scene, values: Values, around: Surroundings) -> Scene:
-        """Slow the approach."""
-        lost = _film_loss(scene, values["film_drag_Pa_s"])
-        speed = max(scene.approach.speed - lost, 0.05 * scene.approach.speed)
-        return scene.with_(approach=replace(scene.approach, speed=speed))
+        """Slow the approach; one that the film stops keeps a twentieth, so that there is a blow."""
+        stated = scene.approach.speed
+        left = stated - _film_loss(scene, values["film_drag_Pa_s"])
+        return scene.with_(approach=replace(scene.approach, speed=max(left, 0.05 * stated)))
 
     def after(
         self, situations: Sequence[Situation], values: Values, seen: Mapping[str, Array]
     ) -> Mapping[str, Array]:
-        """Slow the rebound, and refer it to the speed before the film."""
+        """Slow the rebound, and refer it to the speed before the film.
+
+        Below the critical Stokes number m v/(6 pi eta R^2) = ln(h_0/h_1) the bodies do not touch:
+        nothing comes back and nothing is marked.
+        """
         lost = np.array([_film_loss(s, values["film_drag_Pa_s"]) for s, _ in situations])
         v = np.array([s.approach.speed for s, _ in situations])
-        inside = np.maximum(v - lost, 0.05 * v)
+        inside = np.maximum(v - lost, 0.0)
         kept = seen["restitution"] * inside - values["film_exit_share"] * lost
-        return slower(seen, np.maximum(kept, 0.0) / v)
+        found = slower(seen, np.maximum(kept, 0.0) / v, np.maximum(inside / v, 0.05))
+        return {k: np.where(inside > 0.0, x, 0.0) for k, x in found.items()}
 
 
 def _film_loss(scene: Scene, drag: float) -> float:

@@ -9,6 +9,7 @@ from __future__ import annotations
 
 import math
 from dataclasses import replace
+from typing import Any
 
 import numpy as np
 from numba import float64, int64, njit, types
@@ -39,7 +40,7 @@ _LAW = types.FunctionType(LOADING_SIGNATURE)
 _BRANCH = types.FunctionType(BRANCH_SIGNATURE)
 _SPLIT = types.FunctionType(RESIDUAL_SIGNATURE)
 _KEPT = RULES.tables_kept
-_TABLES: dict[tuple[str, bytes], TableCells] = {}
+_TABLES: dict[tuple[str, Any, bytes], TableCells] = {}
 
 
 def energy_table(law: ContactLaw, pair: Pair) -> TableCells:
@@ -48,7 +49,7 @@ def energy_table(law: ContactLaw, pair: Pair) -> TableCells:
     It ends early where the law does: where its force jumps or falls without bound, or is no number.
     """
     par = np.ascontiguousarray(law.parameters(pair), dtype=float)
-    key = (law.name, par.tobytes())
+    key = (law.name, law.kernels.residual, par.tobytes())
     if key not in _TABLES:
         if len(_TABLES) >= _KEPT:
             _TABLES.clear()

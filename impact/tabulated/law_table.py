@@ -13,6 +13,7 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass
+from typing import Any
 
 import numpy as np
 from numba import int64, njit, types
@@ -47,7 +48,7 @@ DEEPEST = RULES.law_deepest
 _FORCE, _RADIUS, _SPHERE, _FLAT, _EXPONENT = range(5)
 _COLUMNS = 5
 _KEPT = RULES.tables_kept
-_TABLES: dict[tuple[str, bytes], TableCells] = {}
+_TABLES: dict[tuple[str, Any, bytes], TableCells] = {}
 
 _OCTAVE, _OCTAVES = N_COMMON, N_COMMON + 1
 _TABLE = N_COMMON + 2
@@ -144,7 +145,7 @@ class TabulatedLaw(ContactLaw):
             The law recovers otherwise than by a power, or jumps or oscillates.
         """
         par = np.ascontiguousarray(self.law.parameters(pair), dtype=float)
-        key = (self.law.name, par.tobytes())
+        key = (self.law.name, self.law.kernels.residual, par.tobytes())
         if key not in _TABLES:
             if len(_TABLES) >= _KEPT:
                 _TABLES.clear()

@@ -16,13 +16,14 @@ import numpy as np
 from ...core.errors import InputError
 from ...core.inputs.flow_curve import SPECIMENS
 from ...core.materials import unlisted
-from ...core.rig import TABOR, Quantity
+from ...core.rig import TABOR, Quantity, value_of
 from ...models.base import ContactLaw, DomainWarning
 from ...models.choose import demand, follows_flow
+from ..mechanisms.base import Surroundings
+from ..mechanisms.half_space_waves import HalfSpaceWaves
 from ..result import Impact
 from ..rules import RULES
 from ..scene import Scene
-from ..support import half_space_radiation, plate_support
 from .band import last_blow, repeated
 from .effect import ATOM, effect
 from .flow import flow_checks
@@ -40,7 +41,7 @@ def checks(setup: Setup, law: ContactLaw, found: Impact) -> list[str]:
     scene = setup.scene(law)
     if not found.restitution > 0.0:
         # what has made it stay
-        return [*_resting(scene), *_mechanisms(setup, law, found)]
+        return [*_resting(scene, found), *_mechanisms(setup, law, found)]
     with warnings.catch_warnings():
         warnings.simplefilter("ignore", DomainWarning)  # the doubt about a law has its own line
         parts = (
@@ -55,8 +56,12 @@ def checks(setup: Setup, law: ContactLaw, found: Impact) -> list[str]:
         return [line for part in parts for line in part]
 
 
-def _resting(scene: Scene) -> Iterator[str]:
-    if scene.support.plate_mobility > 0.0:
+def _resting(scene: Scene, found: Impact) -> Iterator[str]:
+    if not found.peak_depth_m > 0.0:
+        yield "no touch: the film takes the whole approach (below the critical Stokes number)"
+    elif not scene.support.plate_mobility > 0.0:
+        yield "no rebound: what the contact would give back does not lift the weight: it stays"
+    else:
         yield (
             "no rebound: bending the plate takes the whole blow; it is without end (Zener), so "
             "nothing that its edges throw back is in this"
@@ -110,7 +115,7 @@ def _either(scene: Scene, found: Impact) -> Iterator[str]:
 
 
 def _plate(setup: Setup, scene: Scene, found: Impact) -> Iterator[str]:
-    thickness, flat = setup.file.target.thickness_m, scene.pair.flat
+    thickness = setup.file.target.thickness_m
     if thickness is None:
         return
     h = thickness.value
@@ -133,21 +138,25 @@ def _plate(setup: Setup, scene: Scene, found: Impact) -> Iterator[str]:
         if not a > 0.0:
             return
         yield f"the flat, {h * 1e3:.3g} mm, is {h / a:.3g} times the contact radius thick"
-    if scene.support.plate_mobility > 0.0 or flat.rigid or math.isnan(flat.density):
-        return  # it is that plate already, by its support or as half-space-waves has it
-    hung = repeated(setup, scene.with_(support=plate_support(flat, thickness=h)))
-    yield f"hung freely as a wide plate: {effect(hung, found)}"
 
 
 def _waves(setup: Setup, scene: Scene, found: Impact) -> Iterator[str]:
-    flat = scene.pair.flat
-    held = setup.file.impact.support == "rigid" and setup.second is None
+    """What waves into the flat would do: a plate of its thickness, else a half-space."""
+    flat, support = scene.pair.flat, setup.file.impact.support
     asked = any(m.name == "half-space-waves" for m in setup.asked.mechanisms)
-    if asked or not held or flat.rigid or math.isnan(flat.density):
+    other = support not in ("rigid", "plate") or setup.second is not None
+    if asked or other or flat.rigid or math.isnan(flat.density):
         return
-    radiates = replace(scene.force, radiation=half_space_radiation(flat))
-    with_waves = repeated(setup, scene.with_(force=radiates))
-    yield f"waves into a deep flat: {effect(with_waves, found)}"
+    # Zener's plate is the thin one; this one has its thickness
+    without = scene.with_(support=replace(scene.support, plate_mobility=0.0))
+    thick = Surroundings(thickness=value_of(setup.file.target.thickness_m))
+    waves = HalfSpaceWaves().attach(without, {"wave_scale": 1.0}, thick)
+    told = effect(repeated(setup, waves), found)
+    if support == "plate":
+        yield f"with waves across its thickness too (mechanisms.half-space-waves): {told}"
+    else:
+        plate = thick.thickness > 0.0
+        yield f"{'hung freely as a wide plate' if plate else 'waves into a deep flat'}: {told}"
 
 
 def _gravity(setup: Setup, scene: Scene, found: Impact) -> Iterator[str]:
@@ -254,9 +263,12 @@ def _second(setup: Setup, scene: Scene, found: Impact) -> Iterator[str]:
     ball = setup.file.strikers[setup.striker]
     yield (
         f"two spheres: R = {scene.pair.R * 1e3:.4g} mm by 1/R = 1/R_1 + 1/R_2, mass "
-        f"{scene.striker.mass:.4g} kg; speeds and depths are those of one relative to the other"
+        f"{scene.striker.mass:.4g} kg; speeds and depths are those of one relative to the other, "
+        f"spin is the striker's own; the struck sphere is {'free' if second.free else 'held'}"
     )
-    if math.isfinite(second.mass):
+    if turns := second.turned(found.tangential_impulse_Ns):
+        yield f"the struck sphere leaves with a spin of {turns:.4g} rad/s"
+    if second.free:
         own, other = second.parted(ball.mass_kg.value, scene.approach.speed, found.restitution)
         yield (
             f"along the approach the striker goes on with {own:.4g} m/s, the struck sphere leaves "
@@ -284,9 +296,7 @@ def _mechanisms(setup: Setup, law: ContactLaw, found: Impact) -> Iterator[str]:
         yield f"{name} changes nothing here: {reason}"
     for m in setup.acting(plain).mechanisms:
         without = last_blow(setup.with_mechanism(m.name, None), law)
-        plate = m.name == "half-space-waves" and setup.scene(law).support.plate_mobility > 0.0
-        title = f"{m.title}, a wide plate of target.thickness_m" if plate else m.title
-        yield f"{m.name} ({title}): {effect(found, without)}"
+        yield f"{m.name} ({m.title}): {effect(found, without)}"
 
 
 def _bodies(setup: Setup, law: ContactLaw) -> Iterator[str]:

@@ -63,7 +63,7 @@ def draw_sweep(
                 off = told.scale * stds[name][rows]
                 axis.fill_between(
                     swept[across],
-                    values - off,
+                    np.maximum(values - off, 0.0) if told.low == 0.0 else values - off,
                     values + off,
                     color=drawn.get_color(),
                     alpha=0.2,

@@ -70,6 +70,26 @@ def part(m, w):
         tally[at.ENDING] = at.CONTACT_BUDGET
 
 
+@njit(types.boolean(MODEL), cache=True, **PLAIN)
+def bound(m):
+    """Whether a tip that has once turned back while it touched will never part.
+
+    Nothing then gives back what it keeps: its energy falls from swing to swing under its weight.
+    """
+    body = m.body
+    return len(m.omega) == 0 and body[at.S_MASS] == math.inf and body[at.HALF_COS] == 0.0
+
+
+@njit(types.void(MODEL, WORK), cache=True, **PLAIN)
+def rest(m, w):
+    """End the impact of a tip that stays on what it has pressed."""
+    x, _ = place_of(m, w.z)
+    su.leave(w.surface, w.scales[at.ORIGIN] + x)
+    w.tally[at.ENDING], w.tally[at.T_LAST] = at.RESTS, w.z[at.TIME]
+    for j in range(len(w.z)):
+        w.kept[j] = w.z[j]
+
+
 @njit(types.void(MODEL, WORK), cache=True, **PLAIN)
 def _peak(m, w):
     """End the loading: prepare the recovery, and let tip and flat keep what this peak left."""

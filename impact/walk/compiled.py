@@ -15,7 +15,7 @@ from ..rules import RULES
 from . import layout as at
 from .advance import advance
 from .bundle import bundled
-from .change import change, part
+from .change import bound, change, part, rest
 from .events import rubbing
 from .flight import N_FAST
 from .land import AGAIN, NONE
@@ -60,6 +60,8 @@ def walk(m, w):
             continue
         if event != at.PART:
             change(m, w, event)
+            if event == at.RETURNED and bound(m):
+                rest(m, w)
             continue
         part(m, w)
         if tally[at.ENDING] == at.GOING:

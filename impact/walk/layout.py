@@ -162,7 +162,7 @@ COUNTS = ("ending", "contacts", "steps", "evaluations", "stuck")
 N_OUT = len(OBSERVABLES) + len(COUNTS)
 FIRST_COUNT = len(OBSERVABLES)
 
-DONE, STEP_BUDGET, CONTACT_BUDGET, NOT_FINITE, FLIGHT_BUDGET, GOING = range(6)
+DONE, STEP_BUDGET, CONTACT_BUDGET, NOT_FINITE, FLIGHT_BUDGET, RESTS, GOING = range(7)
 LOAD, UNLOAD = range(2)
 
 # The independent variable of a step: time; the square root of the time since touch, in which the

@@ -12,9 +12,12 @@ from ...impact.files.inverse_file import InverseRow
 from ...impact.integrate import strike
 from ...impact.inverse import MeasuredScar, infer
 from ...impact.result import Impact
-from ...impact.scene import Approach, Friction, Striker, scene_of
+from ...impact.scene import Approach, Friction, Instrument, Striker, scene_of
 from ...models.base import ContactLaw
 from .chapter3 import REFERENCE
+
+PROFILOMETER = Instrument(scan_step=3e-6, scan_height=0.4e-6)
+"""How the thesis read its scars: the step of 5.2, down to the roughness of its flats (3.2)."""
 
 
 def thesis_rod(*, mass: float | None = None) -> Striker:
@@ -58,6 +61,6 @@ def simulate_experiment(experiment: Mapping[str, Any], law: ContactLaw, *, mass:
             approach=Approach(
                 -experiment["approach_m_s"], math.radians(experiment["angle_deg"])
             ),
-            friction=Friction(experiment["friction"]),
+            friction=Friction(experiment["friction"]), instrument=PROFILOMETER,
         )
     )  # fmt: skip

@@ -28,6 +28,7 @@ from ...impact.mechanisms.base import Situation, observed
 from ...impact.walk import layout as c
 from ...recordings import RecordingSet, read
 from ...recordings.shipped import set_folder
+from .chapter5 import PROFILOMETER
 from .later_touch import Later, later_touch
 from .uncertain import Rod, draw_rods, scenes_of
 
@@ -123,7 +124,8 @@ class _Bench:
     @classmethod
     def of(cls, recordings: RecordingSet) -> _Bench:
         problem = problem_of(recordings)
-        stated = problem.scenes(np.zeros(problem.n_z))
+        plain = problem.scenes(np.zeros(problem.n_z))
+        stated = [scene.with_(instrument=PROFILOMETER) for scene in plain]
         first = [condition.trials[0] for condition in problem.conditions]
         names = recordings.observed
         value = np.stack([recordings.values(name)[first] for name in names], axis=1)

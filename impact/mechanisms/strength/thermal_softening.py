@@ -10,6 +10,7 @@ from typing import ClassVar
 import numpy as np
 
 from ....core.arrays import Array
+from ...rules import RULES
 from ...scene import FlowStress, Scene
 from ...strength import StrengthTable
 from ..arithmetic import density_of, energy
@@ -30,7 +31,7 @@ class HeatProfile(StrengthProfile):
     def profile(self, scene: Scene, table: StrengthTable) -> Array:
         """Return relative strengths at the depths of `table`, shape (nodes,)."""
         hot = self.temperature - self.ambient + self.heat * strain(scene, table)
-        share = np.clip(hot / (self.melting - self.ambient), 0.0, 0.95)
+        share = np.clip(hot / (self.melting - self.ambient), 0.0, RULES.hottest)
         return np.asarray(1.0 - share**self.exponent)
 
 
@@ -69,6 +70,18 @@ class ThermalSoftening(FlowMechanism):
                 f"{100.0 * largest:.1f} % of the way to melting"
             )
         return ""
+
+    def idle(self, situations: Sequence[Situation]) -> str:
+        """The law ends where the metal melts, and begins at the reference temperature."""
+        for _, around in situations:
+            first = around.ambient
+            last = first + RULES.hottest * (_melting(around) - first)
+            if not first <= around.temperature <= last:
+                return (
+                    f"the law holds from the reference, {first:g} K, to {last:.4g} K, shortly "
+                    f"before the metal melts; this is {around.temperature:g} K"
+                )
+        return super().idle(situations)
 
     def strength(self, scene: Scene, values: Values, around: Surroundings) -> FlowStress:
         """Return the profile of this mechanism."""
