@@ -129,7 +129,7 @@ def rank(
             if size >= RULES.invisible:
                 screened.append(found)
                 continue
-            reason = f"its largest plausible effect is {size:.1g} standard errors over all cells"
+            reason = f"its largest plausible effect is {size:.1g} standard errors in all"
         if mechanism.named:
             excluded[mechanism.name] = reason
     problem, base, screened = _cleared(simulator, base, screened)

@@ -22,7 +22,7 @@ DATA = Path(__file__).resolve().parents[2] / "data" / "blind-sets"
 PARTS = ("open", "sealed")
 """An archive each: with truths beside the sets, and without."""
 
-SEALS, SUMS = "seals.jsonl", "SHA256SUMS"
+SEALS, TRUTHS, SUMS = "seals.jsonl", "truths.enc", "SHA256SUMS"
 
 _TRUTHS = "the file of truths as published"
 _MOST = 20_000_000  # bytes

@@ -20,10 +20,10 @@ import numpy as np
 
 from ...core.output import write_file
 from ..proof.generators.effects import EFFECTS, OUTSIDE
-from ..proof.generators.folder import BLOCK, write_set
-from ..proof.generators.truth import HEIGHTS, Truth, draw, upright
+from ..proof.generators.folder import write_set
+from ..proof.generators.truth import Truth, draw
 from ..proof.seal import Ledger, digest_of, digest_of_record
-from .archive import DATA, PARTS, SEALS, SUMS
+from .archive import DATA, PARTS, SEALS, SUMS, TRUTHS
 
 SIXTY = [("null", "")] * 12 + [("pair", "")] * 4
 SIXTY += [("single", name) for name in EFFECTS for _ in range(2)]
@@ -52,21 +52,10 @@ def entries() -> dict[str, dict[str, str]]:
 
 
 def drawn(kind: str, effect: str, seed: str) -> Truth:
-    """Return a set of the proof's generators whose sheet does not say what is concealed.
-
-    A null lies on the bench of a mechanism drawn at random; a flat that is a thick block, and
-    heights in place of speeds, are told with any effect as often as without.
-    """
+    """Return a set of the proof's generators, its noise from a longer seed."""
     rng = np.random.default_rng(int(seed, 16))
-    other = EFFECTS[str(rng.choice(list(EFFECTS)))]
-    truth = draw(rng, kind, name=effect, bench=str(rng.choice(other.benches)))
-    instrument = replace(truth.instrument, seed=int(rng.integers(2**62)))
-    rig, plates = truth.rig, [e for e in truth.effects if e.form == "thin-plate"]
-    if truth.effects and rig.law == "elastic-plastic":
-        rig = replace(rig, drop=rig.drop or bool(upright(rig) and rng.random() < HEIGHTS))
-        if not plates and instrument.seed % 2 == 0:
-            rig = replace(rig, told={"thickness_m": BLOCK})
-    return replace(truth, rig=rig, instrument=instrument)
+    truth = draw(rng, kind, name=effect)
+    return replace(truth, instrument=replace(truth.instrument, seed=int(rng.integers(2**62))))
 
 
 def redrawn(record: dict[str, Any]) -> Truth:
@@ -90,7 +79,10 @@ def make(work: Path) -> None:
 
 
 def publish(work: Path, to: Path = DATA) -> None:
-    """Pack and seal what is drawn; sealed truths go to `work/sealed-truths.json`."""
+    """Pack and seal what is drawn; sealed truths go to `work/sealed-truths.json`.
+
+    Once these lie encrypted in `to`, asked again it writes the digest of that file too.
+    """
     truths = {
         path.stem: json.loads(path.read_text(encoding="utf-8"))
         for path in sorted((work / "truths").glob("*.json"))
@@ -116,6 +108,7 @@ def publish(work: Path, to: Path = DATA) -> None:
             }
         _pack(to / f"{part}.zip", files)
     published = [*(f"{part}.zip" for part in PARTS), SEALS]
+    published += [TRUTHS] * (to / TRUTHS).exists()
     sums = [f"{hashlib.sha256((to / name).read_bytes()).hexdigest()}  {name}" for name in published]
     write_file(to / SUMS, "\n".join(sums) + "\n")
     secret = {name: record for name, record in truths.items() if name.startswith("sealed")}

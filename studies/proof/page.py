@@ -45,6 +45,8 @@ concealed, lets the diagnosis say what is missing, and only then looks at the tr
 * **Nulls** are sets in which nothing is missing. In half of all sets the metal is 3 to 8 % off
   elastic-perfect plasticity, and in half the stated numbers are off within what the data sheet
   says. Noise is Gaussian, skewed or heavy-tailed, with outliers and empty cells.
+* **Sheets** state liquids, thin plates, blocks and heights whether they act or not, and every bench
+  has several effects and none, so that the sheet does not say what is missing.
 * **Outside** are six effects that have no name in the library; it knows other forms of three.
 * **Seals.** The seed is the digest of the source tree: any change of the tool draws new truths.
   Truths and recordings are hashed into a chained ledger before the diagnosis runs, verdicts before
@@ -183,7 +185,10 @@ def _run_text(run: dict[str, Any]) -> list[str]:
 
 
 def _commit(run: dict[str, Any]) -> str:
-    return f" (commit {run['commit'][:7]})" if run.get("commit") else ""
+    if not run.get("commit"):
+        return ""
+    commit, *dirty = str(run["commit"]).split("-dirty")
+    return f" (commit {commit[:7]}{', and changes that were in no commit' * len(dirty)})"
 
 
 def _plan(run: dict[str, Any]) -> str:

@@ -7,7 +7,6 @@ path of a copy of the recordings and nothing else.
 
 from __future__ import annotations
 
-import hashlib
 import json
 import os
 import secrets
@@ -192,7 +191,7 @@ def _ledger_of(run: Path, which: str, tree: str) -> Ledger:
     if begun["tree"] != tree:
         raise ValueError("the source tree is not the one of this run")
     sealed = plan_of(ledger)
-    if sealed and sealed != _plan_digest():
+    if sealed and sealed != digest_of(PLAN):
         raise InputError(
             "the plan changed after the first set was drawn", source=str(PLAN), key="SHA-256",
             allowed=f"the plan that the run began with, {sealed}",
@@ -208,10 +207,6 @@ def plan_of(ledger: Ledger) -> str:
 
 def _seal_plan(ledger: Ledger) -> None:
     """Put the plan into the ledger, unless the same one is there."""
-    now = _plan_digest()
+    now = digest_of(PLAN)
     if plan_of(ledger) != now:
         ledger.add(event="plan", set="", plan=now)
-
-
-def _plan_digest() -> str:
-    return hashlib.sha256(PLAN.read_bytes()).hexdigest()

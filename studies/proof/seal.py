@@ -39,11 +39,12 @@ def _tool_files(root: Path) -> list[Path]:
 
 
 def digest_of(folder: Path) -> str:
-    """SHA-256 over the names and contents of all files below a folder, or of one file."""
+    """SHA-256 of a file, as `sha256sum` tells it; of a folder over the names and digests in it."""
+    if folder.is_file():
+        return hashlib.sha256(folder.read_bytes()).hexdigest()
     text = hashlib.sha256()
-    files = [folder] if folder.is_file() else sorted(p for p in folder.rglob("*") if p.is_file())
-    for path in files:
-        name = path.name if folder.is_file() else path.relative_to(folder).as_posix()
+    for path in sorted(p for p in folder.rglob("*") if p.is_file()):
+        name = path.relative_to(folder).as_posix()
         text.update(name.encode() + b"\0" + hashlib.sha256(path.read_bytes()).digest())
     return text.hexdigest()
 

@@ -12,12 +12,12 @@ import numpy as np
 from ...core.arrays import Array
 from .benches import BENCHES, TOLERANCE, Rig
 from .contact import Law
-from .effects import EFFECTS, OUTSIDE, Effect
+from .effects import EFFECTS, OUTSIDE, Effect, tip_of
 from .motion import blows, presses
 from .physics import Physics, physics_of
 
 NULLS = ("balls", "rods", "balls-aslant", "rods-aslant", "elastic", "small", "drops", "heated",
-         "pressed", "plateau")  # fmt: skip
+         "pressed", "plateau", "beads")  # fmt: skip
 """Kinds of rig that a null is drawn from, in turn."""
 
 PAIRS = (
@@ -35,7 +35,14 @@ PAIRS = (
 SEEN = (5.0, 80.0)
 """Sizes between which an effect is kept; else the nearest of a few draws."""
 
-_TRIES = 6
+_RIGS, _TRIES = 2, 3
+"""How many rigs are tried, and draws of the effects on each: few rigs, since a rig that was chosen
+for what acts on it says what acts."""
+
+_DECOYS, _HEIGHTS, _OTHER = 0.5, 0.3, 0.3
+"""Shares of the sheets that state a liquid, or a thin plate, where one could act; heights; and a
+block, or a gauge of the depths."""
+
 _SPREAD = {"hardness": 0.02, "meyer": 0.015, "pile": 0.03, "unloading": 0.08, "fall": 0.1}
 """Standard deviations by which a metal's dents differ from the mean of metals: fractions of the
 hardness and of the edge, else numbers."""
@@ -76,20 +83,18 @@ def draw(rng: np.random.Generator, kind: str, name: str) -> Truth:
         Rig of a null, effect of a single or of what is outside, both of a pair with a plus.
     """
     tried: list[tuple[float, Truth]] = []
-    for _ in range(_TRIES if kind != "null" else 1):
+    names = [] if kind == "null" else name.split("+")
+    kinds = [(EFFECTS | OUTSIDE)[n] for n in names]
+    for turn in range(_RIGS * _TRIES if names else 1):
         law = metal(rng)
         z = {k: float(np.clip(rng.normal(), -2.0, 2.0)) for k in TOLERANCE}
         z = z if rng.random() < 0.6 else {}
-        names = [] if kind == "null" else name.split("+")
-        kinds = [(EFFECTS | OUTSIDE)[n] for n in names]
-        benches = [b for b, *both in PAIRS if both == names] or [
-            str(rng.choice(k.benches)) for k in kinds
-        ]
-        rig = BENCHES[benches[0] if names else name](rng)
+        if turn % _TRIES == 0:
+            benches = [b for b, *both in PAIRS if both == names] or [
+                str(rng.choice(k.benches)) for k in kinds
+            ]
+            rig = as_stated(rng, BENCHES[benches[0] if names else name](rng), names)
         effects = tuple(k.draw(rng, rig) for k in kinds)
-        for k, effect in zip(kinds, effects, strict=True):
-            rig = k.sheet(rig, effect)
-        rig = _as_stated(rng, rig)
         sizes = tuple(size_of(rig, law, z, effects, without=e) for e in effects)
         truth = Truth(kind, rig, law, effects, sizes, z, int(rng.integers(2**31)))
         away = max(
@@ -113,13 +118,27 @@ def metal(rng: np.random.Generator) -> Law:
     )  # fmt: skip
 
 
-def _as_stated(rng: np.random.Generator, rig: Rig) -> Rig:
-    """What sheets say more: a gauge of the depths, air, a block."""
-    if "permanent_depth_m" in rig.noise and rng.random() < 0.3:
-        rig = replace(rig, gauge={"permanent_depth_m": 0.04})
-    if "thickness_m" not in rig.told and rng.random() < 0.3:
-        rig = replace(rig, told={"thickness_m": 0.2})
-    return rig
+def as_stated(rng: np.random.Generator, rig: Rig, names: Sequence[str]) -> Rig:
+    """What a sheet says more: all that lets an effect be named, whether it acts or not.
+
+    Where they do not act, the plate lies on a bed that holds it and the liquid was wiped off.
+    """
+
+    def tells(effect: str, share: float) -> bool:
+        told = bool(rng.random() < share) or effect in names
+        return told and rig.bench in EFFECTS[effect].benches
+
+    gauge = {"permanent_depth_m": 0.04} if rng.random() < _OTHER else {}
+    fluid = float(np.exp(rng.uniform(*np.log((0.05, 1.0)))))
+    plate = 2.0 * tip_of(rig) * float(np.exp(rng.uniform(*np.log((0.4, 1.6)))))
+    block = {"thickness_m": 0.2} if rng.random() < _OTHER else {}
+    thin = tells("half-space-waves", _DECOYS) and rig.bench != "elastic"
+    return replace(
+        rig, heights=rig.heights or tells("impact-speed-loss", _HEIGHTS),
+        gauge=gauge if "permanent_depth_m" in rig.noise else {},
+        told={"thickness_m": float(np.round(plate, 4))} if thin else block,
+        fluid=fluid if tells("squeeze-film", _DECOYS) else 0.0,
+    )  # fmt: skip
 
 
 def acting(p: Physics, effects: Sequence[Effect]) -> Physics:

@@ -26,12 +26,11 @@ class Effect:
 
 @dataclass(frozen=True)
 class Kind:
-    """The rigs that can show an effect, its draw, how it acts, and what the sheet says of it."""
+    """The rigs that can show an effect, its draw, and how it acts."""
 
     benches: tuple[str, ...]
     draw: Callable[[np.random.Generator, Rig], Effect]
     put: Callable[[Physics, Effect], None]
-    sheet: Callable[[Rig, Effect], Rig] = lambda rig, effect: rig
 
 
 def _log(rng: np.random.Generator, low: float, high: float) -> float:
@@ -51,7 +50,8 @@ def _drawn(name: str, forms: tuple[str, ...], **ranges: tuple[float, float]) -> 
     return draw
 
 
-def _tip(rig: Rig) -> float:
+def tip_of(rig: Rig) -> float:
+    """Middle radius of the strikers' tips [m]."""
     return float(np.median([b.tip_radius for b in rig.strikers]))
 
 
@@ -61,7 +61,7 @@ def _of_tips(name: str, forms: tuple[str, ...], length: str, ends: tuple[float, 
 
     def draw(rng: np.random.Generator, rig: Rig) -> Effect:
         one = _drawn(name, forms, **ranges)(rng, rig)
-        return replace(one, numbers=one.numbers | {length: _tip(rig) * _log(rng, *ends)})
+        return replace(one, numbers=one.numbers | {length: tip_of(rig) * _log(rng, *ends)})
 
     return draw
 
@@ -134,12 +134,7 @@ def _put_waves(p: Physics, effect: Effect) -> None:
 def _waves(rng: np.random.Generator, rig: Rig) -> Effect:
     if rig.bench == "elastic":
         return Effect("half-space-waves", "dashpot", {})
-    thickness = 2.0 * _tip(rig) * _log(rng, 0.4, 1.6)
-    return Effect("half-space-waves", "plate", {"thickness": float(np.round(thickness, 4))})
-
-
-def _plate_told(rig: Rig, effect: Effect) -> Rig:
-    return replace(rig, told=rig.told | {"thickness_m": effect.numbers.get("thickness", 0.1)})
+    return Effect("half-space-waves", "plate", {"thickness": rig.told["thickness_m"]})
 
 
 def _put_flexible(p: Physics, effect: Effect) -> None:
@@ -192,17 +187,13 @@ def _put_slow(p: Physics, effect: Effect) -> None:
         p.speed = p.speed * (1.0 - loss)
 
 
-def _by_height(rig: Rig, effect: Effect) -> Rig:
-    return replace(rig, heights=True)
-
-
 # --- contact ----------------------------------------------------------------------------------
 
 
 def _damping(rng: np.random.Generator, rig: Rig) -> Effect:
     # Kuwabara and Kono, Jpn. J. Appl. Phys. 26 (1987) 1230; Tsuji, Tanaka and Ishida, Powder
     # Technol. 71 (1992) 239
-    if rng.random() < 0.5:
+    if rig.bench != "beads" and rng.random() < 0.5:  # that time is longer than their contacts
         return Effect("contact-damping", "kuwabara-kono", {"time": _log(rng, 3e-7, 5e-6)})
     return Effect("contact-damping", "tsuji", {"alpha": _log(rng, 0.02, 0.25)})
 
@@ -222,8 +213,10 @@ def _put_film(p: Physics, effect: Effect) -> None:
     p.film = (drag * math.log(k["thickness"] / k["closest"]), k["exit"])
 
 
-def _film_told(rig: Rig, effect: Effect) -> Rig:
-    return replace(rig, fluid=effect.numbers["viscosity"])
+def _film(rng: np.random.Generator, rig: Rig) -> Effect:
+    one = _drawn("squeeze-film", ("lubrication",), thickness=(5e-6, 4e-5), closest=(2e-7, 8e-7),
+                 exit=(0.05, 0.5))(rng, rig)  # fmt: skip
+    return replace(one, numbers=one.numbers | {"viscosity": rig.fluid})
 
 
 def _put_rough(p: Physics, effect: Effect) -> None:
@@ -239,17 +232,17 @@ _METALS = ("balls", "rods", "pressed")
 
 EFFECTS: dict[str, Kind] = {
     "strain-rate-hardening": Kind(
-        ("balls", "drops", "pressed"),
+        ("balls", "drops", "pressed", "heated", "plateau"),
         _drawn("strain-rate-hardening", ("johnson-cook", "cowper-symonds", "mean-of-blow"),
                rise=(0.08, 0.45)), _put_rate),
     "work-hardening": Kind(
-        (*_METALS, "drops"),
+        (*_METALS, "drops", "small", "heated"),
         _drawn("work-hardening", ("swift", "square-root"), n=(0.08, 0.35), strain=(0.002, 0.008)),
         _put_hardening),
     "thermal-softening": Kind(
         ("heated",),
         _drawn("thermal-softening", ("johnson-cook", "lorentz"), pace=(0.1, 1.5)), _put_heat),
-    "half-space-waves": Kind(("elastic", "balls"), _waves, _put_waves, _plate_told),
+    "half-space-waves": Kind(("elastic", "balls", "drops"), _waves, _put_waves),
     "rod-longitudinal-waves": Kind(
         ("rods",),
         _drawn("rod-longitudinal-waves", ("masses-and-springs",), loss_time=(5e-9, 1e-7)),
@@ -259,7 +252,7 @@ EFFECTS: dict[str, Kind] = {
         _drawn("rod-flexural-vibration", ("differences",), loss_time=(5e-9, 1e-7)),
         _put_flexible),
     "support-compliance": Kind(
-        _METALS,
+        (*_METALS, "heated", "plateau"),
         _drawn("support-compliance", ("mass-and-spring",), masses=(3.0, 40.0), period=(1e-4, 1e-3),
                damping=(0.01, 0.3)), _put_support),
     "tangential-compliance": Kind(
@@ -274,13 +267,11 @@ EFFECTS: dict[str, Kind] = {
         ("rods-aslant", "balls-aslant"),
         _drawn("ploughing-friction", ("goddard-wilman", "front"), factor=(0.5, 3.0)),
         _put_plough),
-    "contact-damping": Kind(("elastic", "balls", "rods"), _damping, _put_damping),
+    "contact-damping": Kind(
+        ("elastic", "balls", "rods", "beads", "heated", "plateau"), _damping, _put_damping),
     "adhesion": Kind(
         ("beads",), _drawn("adhesion", ("jkr-energy",), work=(0.05, 0.6)), _put_adhesion),
-    "squeeze-film": Kind(
-        ("balls", "elastic"),
-        _drawn("squeeze-film", ("lubrication",), viscosity=(0.05, 1.0), thickness=(5e-6, 4e-5),
-               closest=(2e-7, 8e-7), exit=(0.05, 0.5)), _put_film, _film_told),
+    "squeeze-film": Kind(("balls", "elastic"), _film, _put_film),
     "roughness": Kind(
         ("small",),
         _drawn("roughness", ("exponential-heights",), height=(0.4e-6, 3e-6), bears=(0.1, 0.5),
@@ -288,15 +279,14 @@ EFFECTS: dict[str, Kind] = {
     "truncated-tip": Kind(
         ("rods",), _of_tips("truncated-tip", ("area-function",), "radius", (0.02, 0.09)), _put_cut),
     "hardened-layer": Kind(
-        (*_METALS, "small"),
+        (*_METALS, "small", "heated", "plateau"),
         _of_tips("hardened-layer", ("gradual", "sharp"), "thickness", (0.05, 0.2), rise=(0.3, 1.5)),
         _put_layer),
     "size-effect": Kind(
         ("small",), _drawn("size-effect", ("swadener", "power"), length=(3e-5, 3e-4)), _put_size),
     "impact-speed-loss": Kind(
-        ("balls", "rods"),
-        _drawn("impact-speed-loss", ("share", "guide-force"), loss=(0.015, 0.1)), _put_slow,
-        _by_height),
+        ("balls", "rods", "drops"),
+        _drawn("impact-speed-loss", ("share", "guide-force"), loss=(0.015, 0.1)), _put_slow),
     "tilt": Kind(("rods-aslant",), _tilt, _put_tilt),
 }  # fmt: skip
 """By the names of a verdict."""

@@ -138,7 +138,7 @@ def _put_size(p: Array, rig: Rig, effect: Effect) -> None:
 def _waves(rng: np.random.Generator, rig: Rig, family: float) -> Effect:
     if rig.law == "elastic":
         return Effect("half-space-waves", "cone", {"scale": _log(rng, 0.7, 1.5)})
-    return Effect("half-space-waves", "thin-plate", {"thickness": _log(rng, 4e-3, 20e-3)}, True)
+    return Effect("half-space-waves", "thin-plate", {"thickness": rig.told["thickness_m"]}, True)
 
 
 def _put_waves(p: Array, rig: Rig, effect: Effect) -> None:
@@ -266,6 +266,8 @@ def _put_tilt(p: Array, rig: Rig, effect: Effect) -> None:
 
 def _damping(rng: np.random.Generator, rig: Rig, family: float) -> Effect:
     form, known = _pick(rng, "square-root-of-depth", "square-root-of-depth", "hunt-crossley")
+    if rig.bench == "microspheres":  # a time of damping is longer than their contacts
+        form, known = "hunt-crossley", True
     if form == "hunt-crossley":
         return Effect("contact-damping", form, {"chi": _log(rng, 0.015, 0.3)}, known)
     return Effect("contact-damping", form, {"time": _log(rng, 2e-7, 6e-6)}, known)
@@ -294,7 +296,7 @@ def _put_adhesion(p: Array, rig: Rig, effect: Effect) -> None:
 
 def _film(rng: np.random.Generator, rig: Rig, family: float) -> Effect:
     numbers = {
-        "viscosity": _log(rng, 0.05, 1.0), "thickness": _log(rng, 2e-6, 30e-6),
+        "viscosity": rig.liquid, "thickness": _log(rng, 2e-6, 30e-6),
         "closed": _log(rng, 1e-7, 8e-7), "exit": 0.0 if rng.random() < 0.5 else 0.5,
     }  # fmt: skip
     form = "cavitated-exit" if numbers["exit"] == 0.0 else "partly-cavitated-exit"
@@ -352,24 +354,28 @@ def _put_slow(p: Array, rig: Rig, effect: Effect) -> None:
 _METALS = ("rods-normal", "balls-normal")
 
 EFFECTS: dict[str, Kind] = {
-    "strain-rate-hardening": Kind((*_METALS, "balls-drops"), _rate, _put_rate),
-    "work-hardening": Kind((*_METALS, "balls-drops"), _hardening, _put_hardening),
+    "strain-rate-hardening": Kind((*_METALS, "balls-drops", "balls-heated"), _rate, _put_rate),
+    "work-hardening": Kind(
+        (*_METALS, "balls-drops", "balls-small", "balls-heated"), _hardening, _put_hardening
+    ),
     "thermal-softening": Kind(("balls-heated",), _thermal, _put_thermal),
     "half-space-waves": Kind(("balls-elastic", "balls-normal", "balls-drops"), _waves, _put_waves),
     "rod-longitudinal-waves": Kind(("rods-normal",), _axial, _beam),
     "rod-flexural-vibration": Kind(("rods-oblique", "rods-angles"), _flexural, _beam),
-    "support-compliance": Kind(_METALS, _support, _put_support),
+    "support-compliance": Kind((*_METALS, "balls-heated"), _support, _put_support),
     "tangential-compliance": Kind(("balls-oblique",), _elastic_slip, _put_elastic_slip),
     "velocity-dependent-friction": Kind(
         ("balls-oblique", "rods-oblique"), _speed_friction, _put_speed_friction
     ),
     "ploughing-friction": Kind(("rods-oblique", "balls-oblique"), _plough, _put_plough),
-    "contact-damping": Kind(("balls-elastic", *_METALS), _damping, _put_damping),
+    "contact-damping": Kind(
+        ("balls-elastic", "microspheres", "balls-heated", *_METALS), _damping, _put_damping
+    ),
     "adhesion": Kind(("microspheres",), _adhesion, _put_adhesion),
     "squeeze-film": Kind(("balls-normal", "balls-elastic"), _film, _put_film),
     "roughness": Kind(("balls-small",), _rough, _put_rough),
     "truncated-tip": Kind(("rods-normal",), _cut, _put_cut),
-    "hardened-layer": Kind((*_METALS, "balls-small"), _layer, _put_layer),
+    "hardened-layer": Kind((*_METALS, "balls-small", "balls-heated"), _layer, _put_layer),
     "size-effect": Kind(("balls-small",), _size, _put_size),
     "impact-speed-loss": Kind(_METALS, _slow, _put_slow),
     "tilt": Kind(("rods-oblique", "rods-angles"), _tilt, _put_tilt),
@@ -455,7 +461,7 @@ OUTSIDE: dict[str, Kind] = {
     "crushed-layer": Kind((*_METALS, "balls-small"), _crushed, _put_crushed),
     "negative-rate-sensitivity": Kind(_METALS, _falling, _put_falling),
     "oscillating-strength": Kind((*_METALS, "balls-small"), _oscillating, _put_oscillating),
-    "drift-with-order": Kind((*_METALS, "balls-oblique"), _order, _put_order),
+    "drift-with-order": Kind((*_METALS, "balls-oblique", "balls-heated"), _order, _put_order),
     "speed-threshold": Kind((*_METALS, "balls-small"), _threshold, _put_threshold),
 }
 """Effects that no name of the verdict covers."""

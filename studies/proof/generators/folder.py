@@ -25,9 +25,6 @@ _POSITIVE = {"contact_time_s", "peak_force_N"}
 _SIGNED = {"rebound_spin_rad_s", "tangential_rebound_m_s"}
 _RELEASE, _SPEED_READING = 0.01, 0.002
 
-BLOCK = 0.15
-"""Thickness of a flat that is told to be a block [m]."""
-
 
 def write_set(truth: Truth, folder: Path, *, name: str) -> None:
     """Simulate a case of a fast family and write its recording set.
@@ -191,23 +188,15 @@ def _setup_text(truth: Truth, name: str) -> str:
         lines.append(f'law = "{rig.law}"')
     if rig.bench == "balls-heated":
         lines += [f"cp_J_kgK = {rig.target.cp:g}", f"melting_K = {rig.target.melting:g}"]
-    for effect in truth.effects:
-        if effect.form == "thin-plate":
-            # a caliper's reading: what the sheet says about the flat
-            lines.append(f"thickness_m = {_quantity(effect.numbers['thickness'], 0.01)}")
-    if not truth.effects and truth.instrument.seed % 2 == 0 and rig.law == "elastic-plastic":
-        lines.append(f"thickness_m = {BLOCK:g}")
-    lines += [f"{key} = {value:g}" for key, value in rig.told.items()]
+    lines += [f"{key} = {_quantity(value, 0.01)}" for key, value in rig.told.items()]
     lines.append("")
     for body in rig.strikers:
         lines += _striker_lines(body, tolerance, truth.more.get("mass_factor", 1.0))
     lines += ["[friction]", f"coefficient = {_quantity(rig.mu, tolerance['friction'])}", ""]
-    film = [e for e in truth.effects if e.name == "squeeze-film"]
-    if not film and truth.instrument.seed % 3 == 0:
+    if rig.liquid:
+        lines += ["[environment]", 'fluid = "oil"', f"viscosity_Pa_s = {rig.liquid:.3g}", ""]
+    elif truth.instrument.seed % 3 == 0:
         lines += ["[environment]", 'fluid = "air"', "viscosity_Pa_s = 1.8e-5", ""]
-    if film:
-        viscosity = film[0].numbers["viscosity"]
-        lines += ["[environment]", 'fluid = "oil"', f"viscosity_Pa_s = {viscosity:.3g}", ""]
     lines.append("[noise]")
     for column, (number, fraction) in rig.noise.items():
         lines.append(f"{column} = {number:.4g}")

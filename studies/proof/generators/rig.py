@@ -62,6 +62,8 @@ class Rig:
         Key `law` of the flat.
     told
         Further keys of [target] and their numbers.
+    liquid
+        Viscosity of a liquid that the sheet states [Pa s], 0 for none.
     metal
         Place of a parameter to its value: how the metal differs from elastic-perfect plasticity.
     metal_told
@@ -82,6 +84,7 @@ class Rig:
     drop: bool = False
     law: str = "elastic-plastic"
     told: dict[str, float] = field(default_factory=dict)
+    liquid: float = 0.0
     metal: dict[int, float] = field(default_factory=dict)
     metal_told: dict[str, float | str] = field(default_factory=dict)
 

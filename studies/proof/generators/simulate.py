@@ -224,10 +224,8 @@ def size_of(
 _SAMPLES, _POLISHED, _STEPS = 12, 2, 60
 
 
-def size_beyond_library(
-    rng: np.random.Generator, rig: Rig, effect: Effect, *, family: float, z: dict[str, float]
-) -> tuple[float, float]:
-    """Size of an effect, and of what is left after any one effect of the library has imitated it.
+def beyond_library(rng: np.random.Generator, seen: Visibility, effect: Effect) -> float:
+    """Size of what is left of an effect after any one of the library has imitated it.
 
     A layer that crushes may look like a blunt tip to every instrument of the set; then no name is
     wrong. The imitators are the generator's own: draws of each effect that the bench can show, the
@@ -237,17 +235,16 @@ def size_beyond_library(
     ----------
     rng
         Source of the draws.
-    rig, family, z
-        As for `rows_of`.
+    seen
+        The rig, and what else may change its readings.
     effect
         One of `OUTSIDE`.
     """
-    seen = Visibility.of(rig, family=family, z=z)
     wanted = seen.change([effect])
-    whole = least = seen.size(wanted)
+    least = seen.size(wanted)
     tried: list[tuple[float, int, Effect]] = []
-    for name in _able(rig):
-        draws = [EFFECTS[name].draw(rng, rig, family) for _ in range(_SAMPLES)]
+    for name in _able(seen.rig):
+        draws = [EFFECTS[name].draw(rng, seen.rig, seen.family) for _ in range(_SAMPLES)]
         # a bar or beam has no numbers that matter, and costs much
         for one in draws[: 1 if "elements" in draws[0].numbers else _SAMPLES]:
             tried.append((seen.size(wanted - seen.change([one])), len(tried), one))
@@ -261,13 +258,18 @@ def size_beyond_library(
 
         found = minimize(left, first, method="Nelder-Mead", options={"maxfev": _STEPS})
         least = min(least, size, float(found.fun))
-    return whole, least
+    return least
 
 
 def _able(rig: Rig) -> list[str]:
-    """Effects of the library that the bench can show."""
-    names = [n for n, kind in EFFECTS.items() if rig.bench in kind.benches]
-    return [n for n in names if n != "impact-speed-loss" or rig.drop]
+    """Effects of the library that the bench can show, as its sheet is."""
+    lacking = {
+        "impact-speed-loss": not rig.drop, "squeeze-film": not rig.liquid,
+        "half-space-waves": rig.law == "elastic-plastic" and "thickness_m" not in rig.told,
+    }  # fmt: skip
+    return [
+        n for n, kind in EFFECTS.items() if rig.bench in kind.benches and not lacking.get(n, False)
+    ]
 
 
 def _distinct(rig: Rig) -> tuple[Rig, Array]:

@@ -10,19 +10,23 @@ import numpy as np
 
 from ....core.arrays import Array
 from .benches import BENCHES
-from .effects import EFFECTS, OUTSIDE, Effect, Kind
+from .effects import EFFECTS, OUTSIDE, Effect
 from .metals import draw_metal
 from .parameters import CAVITY, FOUNDATION
 from .rig import NUISANCES, Rig
-from .simulate import Visibility, size_beyond_library, size_of
-
-NULL_BENCHES = (
-    "rods-normal", "rods-oblique", "balls-normal", "balls-oblique", "balls-small", "balls-elastic",
-    "balls-drops", "rods-angles",
-)  # fmt: skip
+from .simulate import Visibility, beyond_library, size_of
 
 HEIGHTS = 0.3
-"""Share of the nulls with normal impacts whose sheet states heights in place of speeds."""
+"""Share of the rigs with normal impacts whose sheet states heights in place of speeds."""
+
+DECOYS = 0.5
+"""Share of the rigs where a liquid, or a thin plate, could act whose sheet states one."""
+
+BLOCK = 0.15
+"""Thickness of a flat that is told to be a block [m]."""
+
+_LIQUID, _THIN = (0.05, 1.0), (4e-3, 20e-3)
+"""Viscosity of a liquid [Pa s] and thickness of a plate [m] that a sheet states: from, to."""
 
 SEEN, ENORMOUS = 4.0, 80.0
 """Sizes between which a drawn effect is kept at once; else the nearest of several draws."""
@@ -34,7 +38,10 @@ what that leaves, in a pair of what the other effect's numbers leave."""
 PLANTED = ("mass-error", "strength-error")
 """Kinds of case in which a stated value is wrong by more than its tolerance allows."""
 
-_DRAWS = 8
+_RIGS, _DRAWS = 2, 4
+"""How many rigs are tried, and draws of an effect on each: few rigs, since a rig that was chosen
+for what acts on it says what acts."""
+
 _SAME_SEAM = ({"half-space-waves", "support-compliance"}, {"work-hardening", "hardened-layer"})
 
 
@@ -133,7 +140,7 @@ def draw(
     off
         Whether materials and geometry differ from what is stated; drawn if left out.
     bench
-        The bench of a null; drawn if empty.
+        The bench of a null; that of some effect if empty.
     """
     family = str(rng.choice(list(FAMILIES)))
     z = draw_nuisances(rng) if (rng.random() < 0.5 if off is None else off) else {}
@@ -142,17 +149,17 @@ def draw(
         return _planted(rng, kind, family, instrument)
     make = _maker(rng, family, z)
     if kind == "null":
-        rig = make(bench or str(rng.choice(NULL_BENCHES)))
-        if rig.law == "elastic-plastic" and upright(rig) and rng.random() < HEIGHTS:
-            rig = replace(rig, drop=True)
-        return _told(Truth(kind, rig, (), (), family, z, instrument))
+        other = EFFECTS[str(rng.choice(list(EFFECTS)))]
+        rig = make(bench or str(rng.choice(other.benches)), ())
+        return Truth(kind, rig, (), (), family, z, instrument, {**rig.metal_told})
     if kind == "pair":
         rig, effects, sizes = _pair(rng, family, z, make)
-        return _told(Truth(kind, rig, effects, sizes, family, z, instrument))
-    table = EFFECTS if kind == "single" else OUTSIDE
-    name = name or str(rng.choice(list(table)))
-    rig, effect, size = _single(rng, name, table[name], family, z, make)
-    return _told(Truth(kind, rig, (effect,), (size,), family, z, instrument))
+        seen = Visibility.of(rig, family=FAMILIES[family], z=z)
+    else:
+        rig, effects, sizes, seen = _single(rng, name, kind, family, z, make)
+    # where its effects would be seen first
+    more = {**rig.metal_told, "places": seen.places(seen.change(effects))}
+    return Truth(kind, rig, effects, sizes, family, z, instrument, more)
 
 
 def upright(rig: Rig) -> bool:
@@ -160,32 +167,45 @@ def upright(rig: Rig) -> bool:
     return bool(np.all(rig.angle > 0.5 * np.pi - 1e-9)) and not np.any(rig.tangential)
 
 
-Maker = Callable[[str], Rig]
+Maker = Callable[[str, tuple[str, ...]], Rig]
 
 
 def _maker(rng: np.random.Generator, family: str, z: dict[str, float]) -> Maker:
     """Return what draws a bench; half of all sets are of metals that are off perfect plasticity."""
     off = bool(rng.random() < 0.5)
 
-    def make(bench: str) -> Rig:
-        rig = BENCHES[bench](rng)
+    def make(bench: str, names: tuple[str, ...]) -> Rig:
+        rig = told(rng, BENCHES[bench](rng), names)
         return draw_metal(rng, rig, family=FAMILIES[family], z=z) if off else rig
 
     return make
 
 
-def _told(case: Truth) -> Truth:
-    """The same with what its metal is, and where its effects would be seen first, on record."""
-    more: dict[str, Any] = {**case.rig.metal_told}
-    if case.effects:
-        seen = Visibility.of(case.rig, family=FAMILIES[case.family], z=case.z)
-        more["places"] = seen.places(seen.change(case.effects))
-    return replace(case, more=case.more | more)
+def told(rng: np.random.Generator, rig: Rig, names: tuple[str, ...]) -> Rig:
+    """The bench with what its sheet tells beside bodies and trials, whatever acts there.
+
+    A film is named only where a liquid is told, a plate's waves where a thickness is, what an
+    approach loses where heights are; where these do not act, a sheet tells them all the same: the
+    plate lies on a bed that holds it, the liquid was wiped off.
+    """
+
+    def tells(effect: str, share: float) -> bool:
+        return bool(rng.random() < share) or effect in names
+
+    yields = rig.law == "elastic-plastic"
+    drop = tells("impact-speed-loss", HEIGHTS) and yields and upright(rig)
+    wet = tells("squeeze-film", DECOYS) and rig.bench in EFFECTS["squeeze-film"].benches
+    thin = yields and rig.bench in EFFECTS["half-space-waves"].benches
+    plate = {"thickness_m": float(np.exp(rng.uniform(*np.log(_THIN))))}
+    block = {"thickness_m": BLOCK} if rng.random() < 0.5 else {}
+    viscosity = float(np.exp(rng.uniform(*np.log(_LIQUID))))
+    thickness = plate if tells("half-space-waves", DECOYS) and thin else block
+    return replace(rig, drop=drop, told=rig.told | thickness, liquid=viscosity if wet else 0.0)
 
 
 def _planted(rng: np.random.Generator, kind: str, family: str, instrument: Instrument) -> Truth:
     """Nothing is missing, but a mass is stated 5 % off or the strength 14 %."""
-    rig = BENCHES[str(rng.choice(["rods-normal", "balls-normal"]))](rng)
+    rig = told(rng, BENCHES[str(rng.choice(["rods-normal", "balls-normal"]))](rng), ())
     sign = float(rng.choice([-1.0, 1.0]))
     if kind == "mass-error":
         more = {"mass_factor": 1.0 + 0.05 * sign}
@@ -209,35 +229,27 @@ def draw_nuisances(rng: np.random.Generator) -> dict[str, float]:
     return {name: float(np.clip(rng.normal(), -2.0, 2.0)) for name in NUISANCES}
 
 
-def _prepared(make: Maker, bench: str, names: tuple[str, ...]) -> Rig:
-    """The bench with what a user would write down when such an effect is possible there."""
-    rig = make(bench)
-    if "impact-speed-loss" in names:
-        rig = replace(rig, drop=True)
-    return rig
-
-
 def _single(
-    rng: np.random.Generator, name: str, kind: Kind, family: str, z: dict[str, float], make: Maker
-) -> tuple[Rig, Effect, float]:
-    tried: list[tuple[float, Rig, Effect, float]] = []
-    for _ in range(_DRAWS):
-        rig = _prepared(make, str(rng.choice(kind.benches)), (name,))
-        effect = kind.draw(rng, rig, FAMILIES[family])
-        law, away = FAMILIES[family], 0.0
-        if name in OUTSIDE:
-            whole, size = size_beyond_library(rng, rig, effect, family=law, z=z)
-            away = np.log(BEYOND / max(size, 1e-3))
-        else:
-            whole = size = size_of(rig, [effect], family=law, z=z)
-        away = max(
-            np.log(SEEN / max(whole, 1e-3)), np.log(whole / ENORMOUS + 1e-12), away, 0.0
-        )  # fmt: skip
-        tried.append((float(away), rig, effect, size))
-        if away == 0.0:
-            break
-    _, rig, effect, size = min(tried, key=lambda item: item[0])
-    return rig, effect, size
+    rng: np.random.Generator, name: str, kind: str, family: str, z: dict[str, float], make: Maker
+) -> tuple[Rig, tuple[Effect, ...], tuple[float, ...], Visibility]:
+    table = EFFECTS if kind == "single" else OUTSIDE
+    name = name or str(rng.choice(list(table)))
+    law = FAMILIES[family]
+    tried: list[tuple[float, tuple[Rig, tuple[Effect, ...], tuple[float, ...], Visibility]]] = []
+    for _ in range(_RIGS):
+        rig = make(str(rng.choice(table[name].benches)), (name,))
+        seen = Visibility.of(rig, family=law, z=z)
+        for _ in range(_DRAWS):
+            effect = table[name].draw(rng, rig, law)
+            whole = size = seen.size(seen.change([effect]))
+            away = max(np.log(SEEN / max(whole, 1e-3)), np.log(whole / ENORMOUS + 1e-12), 0.0)
+            if kind == "outside":
+                size = beyond_library(rng, seen, effect) if away == 0.0 else whole
+                away = max(away, np.log(BEYOND / max(size, 1e-3)))
+            tried.append((float(away), (rig, (effect,), (size,), seen)))
+            if away == 0.0:
+                return tried[-1][1]
+    return min(tried, key=lambda item: item[0])[1]
 
 
 def _pair(
@@ -245,13 +257,13 @@ def _pair(
 ) -> tuple[Rig, tuple[Effect, ...], tuple[float, ...]]:
     law = FAMILIES[family]
     tried: list[tuple[float, Rig, tuple[Effect, ...], tuple[float, ...]]] = []
-    while len(tried) < _DRAWS:
+    while len(tried) < _RIGS * _DRAWS:
         bench = str(rng.choice(["rods-normal", "balls-normal", "rods-oblique", "balls-oblique"]))
         able = [n for n, kind in EFFECTS.items() if bench in kind.benches]
         chosen = tuple(str(n) for n in rng.choice(able, 2, replace=False))
         if any(set(chosen) == seam for seam in _SAME_SEAM):
             continue
-        rig = _prepared(make, bench, chosen)
+        rig = make(bench, chosen)
         effects = tuple(EFFECTS[n].draw(rng, rig, law) for n in chosen)
         sizes = tuple(
             size_of(rig, [e], family=law, z=z, keep=[o for o in effects if o is not e])

@@ -55,10 +55,7 @@ def written(place: Path, kind: str, seed: int, name: str = "") -> Path:
     return place / "set"
 
 
-def test_one_folder_in_one_command_a_verdict(
-    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, page_of: Any
-) -> None:
-    monkeypatch.setattr(truth, "size_of", lambda *args, **more: 20.0)
+def test_one_folder_in_one_command_a_verdict(tmp_path: Path, page_of: Any) -> None:
     case = written(tmp_path, "single", 5, "adhesion")
     out = tmp_path / "out"
     answer = dentscope("diagnose", str(case), "--out", str(out), "--quiet")

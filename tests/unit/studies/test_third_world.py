@@ -16,7 +16,7 @@ from dentscope.studies.proof.generators.benches import BEARING_STEEL, CARBIDE, T
 from dentscope.studies.third_world import motion
 from dentscope.studies.third_world.benches import BENCHES, GLASS
 from dentscope.studies.third_world.contact import Law
-from dentscope.studies.third_world.draw import draw, readings
+from dentscope.studies.third_world.draw import NULLS, as_stated, draw, readings
 from dentscope.studies.third_world.effects import EFFECTS, OUTSIDE, Effect
 from dentscope.studies.third_world.physics import physics_of
 from dentscope.studies.third_world.sheet import write
@@ -112,11 +112,28 @@ def test_press_gives_back_what_it_does_not_keep():
 def test_every_effect_acts(name):
     kind = (EFFECTS | OUTSIDE)[name]
     rng = np.random.default_rng(5)
-    rig = BENCHES[kind.benches[0]](rng)
+    rig = as_stated(rng, BENCHES[kind.benches[0]](rng), [name])
     effect = kind.draw(rng, rig)
     plain, acted = readings(rig, Law(), {}, ()), readings(rig, Law(), {}, (effect,))
     moved = [np.max(np.abs(np.nan_to_num(acted[k] / plain[k]) - 1.0)) for k in plain]
     assert max(moved) > 5e-4
+
+
+@pytest.mark.parametrize("bench", BENCHES)
+def test_what_a_sheet_states_does_not_say_what_acts(bench):
+    """The same with nothing and with any effect, but for what one needs to be named."""
+    able = [n for n, kind in (EFFECTS | OUTSIDE).items() if bench in kind.benches]
+    assert bench in NULLS
+    assert len(able) >= 2
+    needs = {"squeeze-film": "fluid", "half-space-waves": "told", "impact-speed-loss": "heights"}
+    for name in able:
+        for seed in range(5):
+            nothing, this = (
+                as_stated(rng, BENCHES[bench](rng), names)
+                for rng, names in ((np.random.default_rng(seed), n) for n in ([], [name]))
+            )
+            for key in {"fluid", "told", "heights", "gauge"} - {needs.get(name)}:
+                assert getattr(this, key) == getattr(nothing, key)
 
 
 def test_sheet_says_nothing_of_the_truth(tmp_path):

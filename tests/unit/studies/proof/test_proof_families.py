@@ -14,6 +14,7 @@ from dentscope.studies.proof.generators import (
     metals,
     normal,
     simulate,
+    truth,
 )
 from dentscope.studies.proof.generators import parameters as at
 from dentscope.studies.proof.generators.truth import FAMILIES
@@ -206,7 +207,7 @@ def test_every_effect_is_seen_somewhere(name):
     rng = np.random.default_rng(7)
     largest = 0.0
     for k in range(4):
-        rig = benches.BENCHES[kind.benches[0]](rng)
+        rig = truth.told(rng, benches.BENCHES[kind.benches[0]](rng), (name,))
         law = LAWS[k % 2]
         largest = max(largest, simulate.size_of(rig, [kind.draw(rng, rig, law)], family=law, z={}))
         if largest > 3.0:
@@ -221,16 +222,14 @@ def test_a_support_with_play_is_within_the_library_and_a_flat_that_softens_is_no
     numbers["damping"] = 0.02 * np.sqrt(numbers["mass"] * numbers["stiffness"])
     tight = effects.Effect("support-compliance", "spring-with-play", numbers | {"gap": 1e-12})
     law = LAWS[0]
-    plain, beyond = simulate.size_beyond_library(
-        np.random.default_rng(1), rig, tight, family=law, z={}
-    )  # fmt: skip
+    seen = simulate.Visibility.of(rig, family=law, z={})
+    plain = seen.size(seen.change([tight]))
+    beyond = simulate.beyond_library(np.random.default_rng(1), seen, tight)
     assert plain > 20.0
     assert beyond < 0.1 * plain
     softening = effects.Effect("strain-softening", "saturating", {"fall": 0.5, "strain": 0.01})
-    plain, beyond = simulate.size_beyond_library(
-        np.random.default_rng(1), rig, softening, family=law, z={}
-    )  # fmt: skip
-    assert 5.0 < beyond <= plain
+    beyond = simulate.beyond_library(np.random.default_rng(1), seen, softening)
+    assert 5.0 < beyond <= seen.size(seen.change([softening]))
 
 
 def test_what_another_effect_of_unknown_size_may_be_is_taken_out():

@@ -164,6 +164,7 @@ def test_a_run_goes_on_with_its_own_plan_alone(tmp_path, monkeypatch):
     assert [e["event"] for e in ledger.events()] == ["plan", "begin", "plan"]
     assert step("plan\n", 1) == 1
     assert run.plan_of(ledger) == hashlib.sha256(b"plan\n").hexdigest()
+    assert run.plan_of(ledger) == seal.digest_of(run.PLAN)
     with pytest.raises(InputError, match="the plan changed after the first set was drawn"):
         step("other", 1)
     # one put in later is not the plan

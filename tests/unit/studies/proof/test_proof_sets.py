@@ -5,6 +5,7 @@ import pytest
 from dentscope import recordings
 from dentscope.studies.proof.explicit import sets as explicit_sets
 from dentscope.studies.proof.generators import effects, folder, truth
+from dentscope.studies.proof.generators.benches import BENCHES
 
 KINDS = [
     ("null", ""), ("single", "squeeze-film"), ("single", "half-space-waves"), ("single", "tilt"),
@@ -18,6 +19,37 @@ KINDS = [
 def quick(monkeypatch):
     """One draw of an effect is enough here: sizes are not asked for."""
     monkeypatch.setattr(truth, "size_of", lambda *args, **more: 10.0)
+    monkeypatch.setattr(truth.Visibility, "size", lambda *args: 10.0)
+    monkeypatch.setattr(truth, "beyond_library", lambda *args: 10.0)
+
+
+def told_of(bench, seed, *names):
+    rng = np.random.default_rng(seed)
+    rig = truth.told(rng, BENCHES[bench](rng), names)
+    return rig.drop, rig.liquid, rig.told
+
+
+@pytest.mark.parametrize("bench", BENCHES)
+def test_what_a_sheet_tells_does_not_say_what_acts(bench):
+    """The same with nothing and with any effect, but for what one needs to be named."""
+    able = {n: k for n, k in (effects.EFFECTS | effects.OUTSIDE).items() if bench in k.benches}
+    assert len(able) >= 2  # nor does the bench
+    needs = {"squeeze-film": 1, "half-space-waves": 2, "impact-speed-loss": 0}
+    for name in able:
+        for seed in range(5):
+            nothing, this = told_of(bench, seed), told_of(bench, seed, name)
+            for place in {0, 1, 2} - {needs.get(name)}:
+                assert this[place] == nothing[place]
+
+
+def test_liquids_plates_and_heights_are_told_where_they_do_not_act():
+    told = [told_of("balls-normal", seed) for seed in range(400)]
+    for share, count in (
+        (truth.HEIGHTS, sum(t[0] for t in told)),
+        (truth.DECOYS, sum(t[1] > 0.0 for t in told)),
+        (truth.DECOYS, sum(t[2].get("thickness_m", truth.BLOCK) < truth.BLOCK for t in told)),
+    ):
+        assert count / 400 == pytest.approx(share, abs=0.08)
 
 
 @pytest.mark.parametrize(("kind", "name"), KINDS)
@@ -64,8 +96,6 @@ def test_half_of_the_truths_are_no_textbook_form():
     names = list(effects.EFFECTS)
     for k in range(400):
         kind = effects.EFFECTS[names[k % len(names)]]
-        from dentscope.studies.proof.generators.benches import BENCHES
-
-        rig = BENCHES[kind.benches[0]](rng)
+        rig = truth.told(rng, BENCHES[kind.benches[0]](rng), (names[k % len(names)],))
         plain += kind.draw(rng, rig, float(k % 2)).textbook
     assert plain < 200
