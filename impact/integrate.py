@@ -160,7 +160,7 @@ def _walked(law: ContactLaw, given: c.Given, out: Array, **more: Array) -> int:
     from .walk.compiled import many_impacts
 
     filled = many_impacts(tuple(law.kernels), given, out, **more)
-    leave_resting(out, *given.body.T[[c.MASS, c.GRAVITY, c.S_PLATE]])
+    leave_resting(out)
     return filled
 
 

@@ -150,26 +150,15 @@ class Impact:
         return {name: float(getattr(self, name)) for name in OBSERVABLES}
 
 
-def leave_resting(rows: Array, mass: Array, gravity: Array, mobility: Array) -> None:
-    """End the impacts whose tip rests: held by its weight, or on an endless plate that sinks.
+def leave_resting(rows: Array) -> None:
+    """End the impacts whose tip rests, held by its weight or on an endless plate that sinks.
 
     Parameters
     ----------
     rows
         (n, N_OUT) output of the compiled integrator; changed in place.
-    mass, gravity, mobility
-        (n,) of the striker [kg], [m/s^2], and of the plate's surface under a force [m/(N s)].
-
-    Notes
-    -----
-    A force mg moves Zener's plate at mg / (8 sqrt(rho h D)): a tip that has come to that speed,
-    here within a factor of two, will not rise any more.
     """
-    sinking = (mass * gravity * mobility)[:, None]
-    moves = -rows[:, [at.O_VY, at.O_TIP]]
-    rests = ((moves > 0.0) & (moves <= 2.0 * sinking)).all(axis=1)
-    rests &= rows[:, at.FIRST_COUNT] == STEP_BUDGET
-    rests |= rows[:, at.FIRST_COUNT] == RESTS
+    rests = rows[:, at.FIRST_COUNT] == RESTS
     for column in _OF_A_PARTING:
         rows[rests, column] = math.nan
     for column in (at.O_E, at.O_VY, at.O_TIP):

@@ -228,6 +228,10 @@ class ImpactRules:
         "Joseph, Zenit, Hunt and Rosenwinkel, J. Fluid Mech. 433 (2001) 329; Gondret, Lance and "
         "Petit, Phys. Fluids 14 (2002) 643",
     )  # fmt: skip
+    damped: float = rule(
+        1e3, "m Y^2 F/d of a tip on a thin plate from which it stays there [-]",
+        "what comes back is below 1e-7 of the speed",
+    )  # fmt: skip
     hottest: float = rule(
         0.95, "way from the reference temperature to melting up to which a strength is known [-]",
         "chosen; nearer 1 - T*^m of Johnson and Cook is no strength any more",

@@ -70,12 +70,14 @@ class Asked:
 
     def read(self, plain: Scene, found: Impact) -> Impact:
         """Return an impact of the scene with them as it is read."""
+        if not found.outcome.completed:
+            return found
         seen = {k: np.array([getattr(found, name)]) for k, name in SIMULATED.items()}
         after = self.observed([plain], seen)
         changed: dict[str, Any] = {
             SIMULATED[k]: float(after[k][0]) for k in SIMULATED if after[k] is not seen[k]
         }
-        if not changed.get("peak_depth_m", found.peak_depth_m) > 0.0:
+        if changed.get("peak_depth_m", found.peak_depth_m) == 0.0:
             # a film has stopped it: there was no blow
             kept = ("kinetic_before_J", "gravity_work_J")
             changed |= dict.fromkeys((k for k in found.observables if k not in kept), 0.0)

@@ -200,27 +200,30 @@ def _rod(scene: Scene, found: Impact) -> Iterator[str]:
     striker, metal = scene.striker, scene.pair.sphere
     if striker.length == 0.0 or metal.rigid or math.isnan(metal.density):
         return
+    c = math.sqrt(metal.E / metal.density)
+    limit = metal.density * c * scene.approach.speed * math.pi * striker.radius**2
+    count, over = len(scene.modes.frequencies), found.peak_force_N > limit
+    axial = sum(map(bool, scene.modes.axial))
+    if over and _straight(scene) and (axial or not count):
+        few = f"; its {axial} vibrations along the axis are too few for that" if count else ""
+        yield (
+            f"upright it cannot press with more than rho c v A = {limit:.4g} N before a wave along "
+            f"it is back{few}"
+        )
     along = "mechanisms.rod-longitudinal-waves" if _straight(scene) else "impact.modes"
-    if count := len(scene.modes.frequencies):
+    if count:
         if _straight(scene) and not any(scene.modes.axial):
             yield (
                 f"impact.modes, {count}, does nothing in a straight blow: the lowest {count} modes "
                 f"bend the rod; {along} has those along it"
             )
         return
-    c = math.sqrt(metal.E / metal.density)
     there_and_back = 2.0 * (striker.length + 2.0 * striker.tip_radius) / c
     share = there_and_back / found.contact_time_s
     yield (
         f"the rod is taken as rigid: a wave runs along it and back in {there_and_back * 1e6:.4g} "
         f"us, {share:.2g} of the contact; {along} lets it vibrate"
     )
-    limit = metal.density * c * scene.approach.speed * math.pi * striker.radius**2
-    if found.peak_force_N > limit:
-        yield (
-            f"upright it cannot press with more than rho c v A = {limit:.4g} N before that wave is "
-            "back"
-        )
 
 
 def _two_radii(setup: Setup) -> Iterator[str]:

@@ -8,6 +8,7 @@ from numba import float64, int64, njit, types
 
 from .. import force as fo
 from .. import surface as su
+from ..rules import RULES
 from . import layout as at
 from .contact import kinematics, law_radius, loading_radius, penetration, place_of
 from .events import event_slope, rest_friction, rubbing, set_segment, sliding_mode
@@ -17,6 +18,7 @@ from .motion import derivative
 from .touch import grip
 
 # fmt: off
+_DAMPED = RULES.damped
 
 
 @njit(types.void(MODEL, WORK), cache=True, **PLAIN)
@@ -77,17 +79,10 @@ def bound(m):
     Nothing then gives back what it keeps: its energy falls from swing to swing under its weight.
     """
     body = m.body
-    return len(m.omega) == 0 and body[at.S_MASS] == math.inf and body[at.HALF_COS] == 0.0
-
-
-@njit(types.void(MODEL, WORK), cache=True, **PLAIN)
-def rest(m, w):
-    """End the impact of a tip that stays on what it has pressed."""
-    x, _ = place_of(m, w.z)
-    su.leave(w.surface, w.scales[at.ORIGIN] + x)
-    w.tally[at.ENDING], w.tally[at.T_LAST] = at.RESTS, w.z[at.TIME]
-    for j in range(len(w.z)):
-        w.kept[j] = w.z[j]
+    leans = body[at.HALF_COS] != 0.0
+    if body[at.HALF_SIN] > 0.0:
+        leans = leans or body[at.V_X] != 0.0 or body[at.V_SPIN] != 0.0
+    return len(m.omega) == 0 and body[at.S_MASS] == math.inf and not leans
 
 
 @njit(types.void(MODEL, WORK), cache=True, **PLAIN)
@@ -130,6 +125,33 @@ def _peak(m, w):
     mark[su.FIRST] = here - a - (behind if speed > 0.0 else before)
     mark[su.LAST] = here + a + (before if speed > 0.0 else behind)
     su.press(surface, mark)
+
+
+@njit(types.boolean(MODEL, WORK), cache=True, **PLAIN)
+def sinks(m, w):
+    """Whether a tip goes down with an endless plate that bends as fast as it comes.
+
+    Its force is v/Y while m Y^2 k is large, and fades with its speed; k of Hertz's contact with the
+    force's cube root, so that it is thrown back with some (4/(m Y^2 k))^3 of its speed alone.
+    """
+    derivative(m, w, at.BY_TIME, 0.0, w.z, w.spare, w.seen_far)
+    left, mobility = w.seen_far[at.DEPTH], m.body[at.S_PLATE]
+    if w.now[at.PHASE] == at.UNLOAD:
+        left -= w.branch[1] + w.branch[2]
+    damped = m.body[at.MASS] * mobility * mobility * w.seen_far[at.FORCE] > _DAMPED * left
+    return bound(m) and damped and w.z[at.VY] < 0.0
+
+
+@njit(types.void(MODEL, WORK), cache=True, **PLAIN)
+def rest(m, w):
+    """End the impact of a tip that stays on what it has pressed."""
+    if w.now[at.PHASE] == at.LOAD:
+        _peak(m, w)
+    x, _ = place_of(m, w.z)
+    su.leave(w.surface, w.scales[at.ORIGIN] + x)
+    w.tally[at.ENDING], w.tally[at.T_LAST] = at.RESTS, w.z[at.TIME]
+    for j in range(len(w.z)):
+        w.kept[j] = w.z[j]
 
 
 @njit(types.void(MODEL, WORK, int64), cache=True, **PLAIN)

@@ -15,7 +15,7 @@ from ..rules import RULES
 from . import layout as at
 from .advance import advance
 from .bundle import bundled
-from .change import bound, change, part, rest
+from .change import bound, change, part, rest, sinks
 from .events import rubbing
 from .flight import N_FAST
 from .land import AGAIN, NONE
@@ -50,6 +50,8 @@ def walk(m, w):
             tally[at.STUCK] = 1.0
         if tally[at.STEPS] >= m.body[at.MAX_STEPS]:
             tally[at.ENDING] = at.STEP_BUDGET
+            if sinks(m, w):
+                rest(m, w)
             break
         event = advance(m, w)
         if event == AGAIN:
@@ -60,7 +62,7 @@ def walk(m, w):
             continue
         if event != at.PART:
             change(m, w, event)
-            if event == at.RETURNED and bound(m):
+            if (event == at.RETURNED and bound(m)) or (event == at.TURN and sinks(m, w)):
                 rest(m, w)
             continue
         part(m, w)
