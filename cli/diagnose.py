@@ -39,6 +39,9 @@ def diagnose(
         Literal["fitted", "table"] | None,
         typer.Option(help="Fitted, or the own pair solved; else solved if it has a flow curve."),
     ] = None,
+    cautious: Annotated[
+        bool, typer.Option("--cautious", help="Say only what has four fifths of the probability.")
+    ] = False,
     quiet: Annotated[bool, typer.Option("--quiet", help="No progress line.")] = False,
     report: Annotated[
         bool, typer.Option("--report/--no-report", help="Write report.html, or verdict.json alone.")
@@ -57,7 +60,15 @@ def diagnose(
     """
     if chapter5:
         refuse_beside(
-            context, "beside --chapter5", "folder", "confirm", "law", "quiet", "report", "solve"
+            context,
+            "beside --chapter5",
+            "folder",
+            "confirm",
+            "law",
+            "cautious",
+            "quiet",
+            "report",
+            "solve",
         )
         studies.needed_for("`dentscope diagnose --chapter5`")
         studies.module("chapter5").demonstration(out, seed)
@@ -78,7 +89,7 @@ def diagnose(
     show = _progress(quiet=quiet)
     if not quiet:
         tell_first_use()
-    verdict = run(recordings, seed=seed, confirm=confirm, law=law, progress=show)
+    verdict = run(recordings, seed=seed, confirm=confirm, law=law, cautious=cautious, progress=show)
     show("")
     written = _written(verdict, out, report=report)
     for line in lines(verdict):

@@ -11,8 +11,7 @@ from scipy.stats import norm
 
 from ..core.arrays import Array
 from ..recordings import RecordingSet, Severity, audit
-from .choice.apart import apart
-from .choice.odds import NAMED_AT, PRIORS
+from .choice.odds import log_prior, prior_shares
 from .comparison.forward import Simulator
 from .comparison.problem import Problem
 from .heldout import HeldOut
@@ -20,6 +19,7 @@ from .inference.fit import Fit
 from .inference.grid import interval
 from .rank import Ranking
 from .rules import RULES
+from .unknowns.wrong_number import WrongNumber
 
 
 def audit_rows(recordings: RecordingSet) -> tuple[dict[str, Any], ...]:
@@ -190,15 +190,14 @@ def limits_of(ranking: Ranking) -> dict[str, float]:
     """Smallest value of each first parameter whose effect would have been named."""
     base = ranking.base
     found = {}
-    forms = (base.linear, apart(base.linear, base, ranking.problem))
-    prior = math.log(PRIORS["baseline"] * max(len(ranking.screened), 1) / PRIORS["singles"])
-    for s in ranking.screened:
-        nats = NAMED_AT + prior + RULES.penalty
+    share = prior_shares([s.mechanism for s in ranking.screened])
+    for s in (s for s in ranking.screened if not isinstance(s.mechanism, WrongNumber)):
+        prior = log_prior((), share) - log_prior((s.mechanism.name,), share)
+        nats = prior / RULES.temper
         # three nats are what not knowing the parameters costs
         needed = math.sqrt(2.0 * (nats + 3.0))
         p = s.grid.axes[0].parameter
-        # seen with the law's error in both of its forms
-        size = np.min([np.linalg.norm(a.white(s.effect), axis=1) for a in forms], axis=0)
+        size = np.linalg.norm(base.linear.white(s.effect), axis=1)
         n = len(s.grid.fine[0])
         # over the other parameters the typical size
         along = np.median(size.reshape(n, -1), axis=1)

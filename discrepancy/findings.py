@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 from collections.abc import Mapping
 from dataclasses import dataclass
-from typing import Any
+from typing import Any, NamedTuple
 
 from .. import __version__
 from ..core.arrays import Array
@@ -16,6 +16,54 @@ from .experiments.next_experiment import Proposal
 from .inference.fit import Fit
 from .locate import Located
 from .rank import Ranking
+from .unknowns.wrong_number import WrongNumber, unit_of
+
+
+class WrongInput(NamedTuple):
+    """A number of the sheet that is wrong.
+
+    Parameters
+    ----------
+    key, title, settled_by, slip
+        Of set.toml; as a clause; what would settle it; the usual slip that gives such a factor, "".
+    probability
+        That it takes part.
+    stated, unit
+        As it stands, where it is one number, and its unit.
+    off, low, high
+        Factor on it, or what is added to it, with the 90 % interval.
+    added
+        Whether it is added.
+    """
+
+    key: str
+    title: str
+    settled_by: str
+    slip: str
+    probability: float
+    stated: float | None
+    unit: str
+    off: float
+    low: float
+    high: float
+    added: bool
+
+    @property
+    def would_be(self) -> tuple[float, float, float] | None:
+        """What it would have to be, with the 90 % interval; none where it is not one number."""
+        if self.stated is None or self.added:
+            return None
+        return self.stated * self.off, self.stated * self.low, self.stated * self.high
+
+    @property
+    def told(self) -> dict[str, Any]:
+        """As in verdict.json."""
+        value, low, high = self.would_be or (None, None, None)
+        return {
+            "key": self.key, "probability": self.probability, "stated": self.stated,
+            "value": value, "low": low, "high": high, "level": 0.9, "unit": self.unit,
+            "offset" if self.added else "factor": self.off, "settled_by": self.settled_by,
+        }  # fmt: skip
 
 
 @dataclass(frozen=True, eq=False)
@@ -76,13 +124,32 @@ class Verdict:
 
     @property
     def verdict(self) -> str:
-        """`adequate`, `missing-physics`, `indistinguishable`, `outside-library`, `undetermined`."""
+        """The answer.
+
+        `adequate`, `wrong-input`, `missing-physics`, `indistinguishable`, `outside-library` or
+        `undetermined`.
+        """
         return self.choice.verdict
 
     @property
     def mechanisms(self) -> tuple[str, ...]:
         """Names of the best explanation's mechanisms."""
-        return self.best.names
+        return tuple(m.name for m in self.best.mechanisms if not isinstance(m, WrongNumber))
+
+    @property
+    def wrong_inputs(self) -> tuple[WrongInput, ...]:
+        """Numbers of the sheet that are wrong by the best explanation."""
+        wrong = (m for m in self.best.mechanisms if isinstance(m, WrongNumber))
+        return tuple(self._wrong(m) for m in wrong)
+
+    def _wrong(self, m: WrongNumber) -> WrongInput:
+        found, stated = self.parameters[m.parameters[0].name], self.problem.rig.of.get(m.key)
+        off, low, high = (float(found[k]) for k in ("value", "low", "high"))
+        unit = self.parameters[m.key]["unit"] if m.key in self.parameters else unit_of(m.key)
+        return WrongInput(
+            m.key, m.title, m.settled_by, m.slip(low, high), self.inclusion.get(m.name, 0.0),
+            stated, unit, off, low, high, m.parameters[0].unit == "m",
+        )  # fmt: skip
 
     @property
     def alternatives(self) -> tuple[tuple[str, ...], ...]:
@@ -109,6 +176,8 @@ class Verdict:
             "audit": list(self.audit),
             "verdict": self.verdict,
             "mechanisms": list(self.mechanisms),
+            "wrong_inputs": [one.told for one in self.wrong_inputs],
+            "family": self.choice.family._asdict() if self.choice.family else None,
             "alternatives": [list(names) for names in self.alternatives],
             "inclusion": self.inclusion,
             "probabilities": self.probabilities,

@@ -18,6 +18,7 @@ from .inference.outliers import outlying, without_weight
 from .inference.together import responses_at
 from .inference.window import sharpened
 from .rules import RULES
+from .unknowns.wrong_number import WrongNumber
 
 Progress = Callable[[str], None]
 
@@ -102,7 +103,7 @@ class Ranking:
 def rank(
     simulator: Simulator,
     *,
-    mechanisms: Sequence[Mechanism] = (*MECHANISMS, *NAMELESS),
+    mechanisms: Sequence[Mechanism] | None = None,
     progress: Progress = lambda _: None,
 ) -> Ranking:
     """Fit the baseline and every mechanism that is not excluded, by itself.
@@ -112,7 +113,7 @@ def rank(
     simulator
         The problem.
     mechanisms
-        What to try.
+        What to try; left out: the library, and every number of the sheet that may be wrong.
     progress
         Called with a line before each step.
     """
@@ -120,6 +121,8 @@ def rank(
     base = fit(simulator, ())
     situations = baseline_situations(simulator.problem)
     excluded, screened = {}, []
+    if mechanisms is None:
+        mechanisms = (*MECHANISMS, *NAMELESS, *simulator.problem.wrong_numbers)
     for mechanism in mechanisms:
         progress(f"screening {mechanism.name}")
         reason = _without_data(mechanism, simulator.problem) or mechanism.ruled_out(situations)
@@ -130,7 +133,7 @@ def rank(
                 screened.append(found)
                 continue
             reason = f"its largest plausible effect is {size:.1g} standard errors in all"
-        if mechanism.named:
+        if mechanism.named and not isinstance(mechanism, WrongNumber):
             excluded[mechanism.name] = reason
     problem, base, screened = _cleared(simulator, base, screened)
     simulator = simulator.of(problem)
@@ -138,7 +141,7 @@ def rank(
     chosen = [
         s
         for i, s in enumerate(order)
-        if i < RULES.full or s.log_bayes > order[0].log_bayes - RULES.near
+        if i < RULES.full or s.log_bayes > max(order[0].log_bayes - RULES.near, 0.0)
     ]
     fits = []
     for found in chosen:

@@ -11,30 +11,49 @@ from ..core.rules import limit, rule
 class DiagnosisRules:
     """The register; `dataclasses.fields` tells the meaning and the source of each."""
 
-    penalty: float = rule(
-        1.5, "taken off the ln evidence of every alternative to the baseline [nat]",
-        "0 to 3 tried on 55 sets of another make and 18 of the generators of the proof: between 1 "
-        "and 2 the probabilities hold and no `adequate` is false (docs/diagnose-method.md)",
+    wrong_most: float = rule(
+        4.0, "largest factor by which a number of the sheet is wrong [-]",
+        "Brinell and Vickers numbers for a strength are 3; more is a unit, refused by the reader",
     )  # fmt: skip
-    misfit: float = rule(
-        0.01, "share by chi2, the law's error apart, below which a leader does not fit [-]",
-        "the usual level; of the textbook rule that the diagnosis is compared with",
+    guessed: float = rule(
+        0.3, "relative standard deviation from which a stated number is a guess [-]",
+        "a strength by the class of the metal alone",
     )  # fmt: skip
-    kept: float = rule(
-        0.2, "part of its probability that such a leader keeps, the rest goes outside [-]",
-        "0.1 to 0.6 tried on the same sets: no name from outside the library up to 0.2",
+    wrong_nodes: int = rule(
+        9, "factors at which a wrong number is simulated [-]",
+        "as the mechanisms' own",
     )  # fmt: skip
-    refuted: float = rule(
-        0.05, "share of a single's own sets that fit no better, below which pairs are tried [-]",
-        "a second mechanism where the first does not fit; 0.02 to 0.5 tried on the same sets",
+    temper: float = rule(
+        0.7, "part of a gain in ln evidence that counts [-]",
+        "0.5 to 0.8 tried on 103 sets of three makes: mean ln p -0.90, -0.82, -0.81, -0.81",
+    )  # fmt: skip
+    by_ratio: float = rule(
+        1000.0, "gain in ln evidence beyond which another counts by its share of it [nat]",
+        "of the same sets mean ln p is -1.02 without, -0.84 with 300, -0.81 with 700 and 1500",
+    )  # fmt: skip
+    beside: float = rule(
+        0.07, "odds of something outside beside what leads, before its fit is looked at [-]",
+        "of the same sets mean ln p is -0.89 without, -0.86 with 0.03 to 0.15",
+    )  # fmt: skip
+    said: float = rule(
+        0.5, "probability from which what leads is said [-]",
+        "more likely than not",
+    )  # fmt: skip
+    cautious: float = rule(
+        0.8, "the same where a reader asks for caution [-]",
+        "four of five",
+    )  # fmt: skip
+    together: float = rule(
+        0.8, "probability that explanations have together which are said to share it [-]",
+        "four of five",
+    )  # fmt: skip
+    family_sure: float = rule(
+        0.8, "probability from which a family is said [-]",
+        "four of five",
     )  # fmt: skip
     supported: float = rule(
         0.002, "probability below which, or nearer to 1 than which, none is printed [-]",
         "one of the 500 sets with nothing missing that are drawn",
-    )  # fmt: skip
-    adequate: float = rule(
-        0.7, "probability of the baseline from which `adequate` is said [-]",
-        "readers take the word for an all-clear",
     )  # fmt: skip
     derived: float = rule(
         0.2, "rms of a column less what others give, in its noise, below which it is derived [-]",
@@ -43,14 +62,6 @@ class DiagnosisRules:
     derived_trials: int = rule(
         3, "trials from which a column may be called derived [-]",
         "by chance one in a hundred of three agrees so well",
-    )  # fmt: skip
-    scaled: float = rule(
-        0.3, "standard deviation of a factor on all readings of one observable (logarithm) [-]",
-        "a depth from another plane, a diameter at the rim, a charge amplifier's range",
-    )  # fmt: skip
-    scaled_cells: int = rule(
-        3, "numbers of an observable from which it may have a factor of its own [-]",
-        "two are a slope",
     )  # fmt: skip
     curve_apart: float = rule(
         0.02, "strength stated beside a flow curve's own, over it, from which a note says so [-]",
@@ -100,10 +111,6 @@ class DiagnosisRules:
         1.0 / 3.0, "part of what is outside that is known physics without a name [-]",
         "chosen: with `scaled_share` a half, the other half is free",
     )  # fmt: skip
-    beside: float = rule(
-        0.01, "probability of an explanation from which something may act beside it [-]",
-        "less moves no probability that is printed",
-    )  # fmt: skip
     sure: float = rule(
         0.91, "probability of something missing from which a name costs less than silence [-]",
         "the costs of a false alarm and of silence (`decide.COSTS`)",
@@ -128,6 +135,10 @@ class DiagnosisRules:
         400, "places of a grid that stand for all [-]",
         "memory",
     )  # fmt: skip
+    second: float = rule(
+        3.0, "nats that a second explanation must gain by the linear sum to be fitted [nat]",
+        "a pair's prior is some e^-4 of a single's: with less it cannot lead",
+    )  # fmt: skip
     paired: int = rule(
         4, "leading pairs that are fitted, by the sum of their effects [-]",
         "chosen; no measurement is kept",
@@ -135,6 +146,10 @@ class DiagnosisRules:
     partners: int = rule(
         3, "partners of the leading mechanism that are fitted with it [-]",
         "chosen; no measurement is kept",
+    )  # fmt: skip
+    mixed: int = rule(
+        2, "the same of a mechanism and a wrong number [-]",
+        "chosen: a quarter of what two mechanisms get",
     )  # fmt: skip
     pair_places: int = rule(
         48, "places of each mechanism in the search for pairs [-]",
@@ -554,9 +569,16 @@ class DiagnosisRules:
         "steel's",
     )  # fmt: skip
     priors: tuple[tuple[str, float], ...] = rule(
-        (("baseline", 0.5), ("singles", 0.34), ("pairs", 0.06), ("outside-library", 0.1)),
-        "probabilities before the comparison, shared alike within each kind [-]",
-        "as likely as not that nothing is missing",
+        (
+            ("baseline", 0.74), ("inputs", 0.12), ("mechanisms", 0.12), ("outside-library", 0.02),
+            ("second", 0.25),
+        ),
+        "probabilities before the comparison, shared alike within each kind; of a second one [-]",
+        "the largest mean ln p over 103 sets of three makes; a wrong number as probable as physics",
+    )  # fmt: skip
+    strength_wrong: float = rule(
+        5.0, "times that the strength of what is struck is rather wrong than another kind [-]",
+        "tempers of one metal differ by 2, and no other number of a sheet is as rarely measured",
     )  # fmt: skip
     grid_places: tuple[tuple[int, int], ...] = rule(
         ((1, 241), (2, 49), (3, 17), (4, 11), (5, 7)),
@@ -584,10 +606,6 @@ class DiagnosisRules:
          ("strength_kept", (0.87, 0.08))),
         "priors of the rate law, mean and standard deviation, of the rise as ln(1 + rise) [-]",
         "rises of 0.1 to 0.4 by C of Johnson and Cook, 0.6 to 1.9 by Cowper and Symonds",
-    )  # fmt: skip
-    scaled_share: float = rule(
-        1.0 / 6.0, "part of what is outside that is an observable with a factor of its own [-]",
-        "chosen: half of that of physics without a name",
     )  # fmt: skip
     same_condition: float = rule(
         1.05, "ratio of speeds that are one condition [-]",

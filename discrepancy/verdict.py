@@ -16,9 +16,9 @@ from ..impact.mechanisms import MECHANISMS, NAMELESS, Mechanism
 from ..impact.mechanisms.own import own_mechanisms, uncovered
 from ..recordings import RecordingSet
 from .baseline.laws import LawChoice
-from .choice.decide import Choice
-from .choice.judge import Judge
-from .choice.odds import OUTSIDE
+from .choice.decide import Choice, decide
+from .choice.odds import OUTSIDE, Odds, odds_of
+from .choice.own_sets import fit_test
 from .choice.pairs import with_pairs
 from .choice.thresholds import Nulls, null_residuals
 from .comparison.forward import Point, Simulator
@@ -39,6 +39,7 @@ from .estimates import (
 from .experiments.next_experiment import propose
 from .findings import Verdict
 from .heldout import held_out
+from .inference.fit import Fit
 from .inference.sampling import confirm_evidence
 from .locate import locate
 from .rank import Progress, Ranking, rank
@@ -57,18 +58,18 @@ class _Asked(NamedTuple):
 
 
 class _Explained(NamedTuple):
-    """All explanations fitted, and what judges them."""
+    """All explanations fitted, and sets with nothing missing."""
 
     simulator: Simulator
     ranking: Ranking
     nulls: Nulls
-    judge: Judge
 
 
 class _Decided(NamedTuple):
     """What was chosen; ln evidences of the leading explanations where they were sampled."""
 
     choice: Choice
+    odds: Odds
     sampled: dict[str, float]
 
 
@@ -79,6 +80,7 @@ def diagnose(
     seed: int = 0,
     confirm: bool = False,
     law: LawChoice | None = None,
+    cautious: bool = False,
     mechanisms: Sequence[Mechanism] = (),
     progress: Progress = lambda _: None,
 ) -> Verdict:
@@ -96,6 +98,8 @@ def diagnose(
     law
         Contact law of the baseline: `fitted`, or `table` for finite elements of the set's own pair.
         None: `table` with `confirm`, where a body has a flow curve or the target asks for it.
+    cautious
+        Whether a name, or 'nothing is missing', needs four fifths of the probability and not half.
     mechanisms
         One's own, tried beside those of the library and those that other packages add.
     progress
@@ -114,33 +118,37 @@ def diagnose(
     simulator = Simulator(problem_of(recordings, law=chosen, progress=progress))
     found = _explained(asked, simulator, nulls=RULES.confirmed_nulls if confirm else RULES.nulls)
     progress("deciding")
-    decided = _Decided(found.judge.decided(found.ranking, {}), {})
+    decided = _decided(found, {}, cautious)
     if confirm:
         leading = [found.ranking.base, *decided.choice.members]
         sampled = confirm_evidence(found.simulator, leading, rng, progress)
-        decided = _Decided(found.judge.decided(found.ranking, sampled), sampled)
+        decided = _decided(found, sampled, cautious)
     return _told(asked, found, decided)
 
 
+def _decided(found: _Explained, sampled: dict[str, float], cautious: bool) -> _Decided:
+    def beside(fitted: Fit) -> float:
+        return fit_test(fitted, found.nulls).log_odds
+
+    odds = odds_of(found.ranking, sampled=sampled, beside=beside)
+    return _Decided(decide(found.ranking, odds, cautious=cautious), odds, sampled)
+
+
 def _explained(asked: _Asked, simulator: Simulator, *, nulls: int) -> _Explained:
-    """Fit the baseline and every mechanism; pairs where no mechanism alone fits."""
-    library = (*MECHANISMS, *NAMELESS, *asked.own)
+    """Fit the baseline, every wrong number and mechanism, and the pairs that gain by it."""
+    library = (*MECHANISMS, *NAMELESS, *asked.own, *simulator.problem.wrong_numbers)
     ranking = rank(simulator, mechanisms=library, progress=asked.progress)
     simulator = simulator.of(ranking.problem)
+    ranking = with_pairs(simulator, ranking, progress=asked.progress)
     asked.progress("simulating sets in which nothing is missing")
-    residuals = null_residuals(simulator, ranking.base, nulls, asked.rng)
-    judge = Judge.of(ranking, residuals)
-    if judge.wants_second(ranking):
-        ranking = with_pairs(simulator, ranking, progress=asked.progress)
-    return _Explained(simulator, ranking, residuals, judge)
+    return _Explained(simulator, ranking, null_residuals(simulator, ranking.base, nulls, asked.rng))
 
 
 def _told(asked: _Asked, found: _Explained, decided: _Decided) -> Verdict:
     """Locate the mismatch, predict what was left out, propose, and say it all."""
-    simulator, ranking, nulls, judge = found
-    choice, sampled = decided
+    simulator, ranking, nulls = found
+    choice, odds, sampled = decided
     problem, base = ranking.problem, ranking.base
-    odds = judge.odds(ranking, sampled)
     asked.progress("predicting conditions that were left out")
     left_out = {f.name: held_out(problem, f) for f in ranking.fits}
     asked.progress("looking for the next experiment")
@@ -149,7 +157,7 @@ def _told(asked: _Asked, found: _Explained, decided: _Decided) -> Verdict:
     stated = simulator.predict((), [Point(np.zeros(problem.n_z))])[0]
     misfit = misfit_of(problem, base, stated)
     misses = int(choice.verdict not in ("adequate", "undetermined"))
-    p_values = {f.name: judge.test(f).p_value for f in ranking.fits}
+    p_values = {f.name: fit_test(f, nulls).p_value for f in ranking.fits}
     notes = (*notes_of(problem, best), *law_notes(problem, misfit), *uncovered(asked.own))
     return Verdict(
         name=asked.recordings.name, seed=asked.seed, choice=choice, audit=asked.audit,
@@ -164,7 +172,7 @@ def _told(asked: _Asked, found: _Explained, decided: _Decided) -> Verdict:
         corrections=correct(simulator, base) if choice.verdict == OUTSIDE else (),
         proposals=tuple(proposals[: RULES.proposed]),
         notes=notes, ranking=ranking, best=best, impacts=simulator.tally.impacts,
-        titles={m.name: m.title for m in (*MECHANISMS, *asked.own)},
+        titles={m.name: m.title for m in (*MECHANISMS, *asked.own, *problem.wrong_numbers)},
     )  # fmt: skip
 
 

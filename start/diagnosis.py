@@ -101,6 +101,7 @@ def diagnose(
     seed: int = 0,
     confirm: bool = False,
     law: LawChoice | None = None,
+    cautious: bool = False,
     mechanisms: Sequence[Mechanism] = (),
 ) -> Diagnosis:
     """Say what physics is missing in the simulation of a recording set.
@@ -117,6 +118,8 @@ def diagnose(
     law
         `fitted`, or `table` for finite elements of the set's own pair. Left out: `table` where a
         body has a flow curve, with `confirm`, or where the set asks for it.
+    cautious
+        Say only what has four fifths of the probability, not half.
     mechanisms
         One's own, tried beside those of the library; example 8 has one.
 
@@ -126,5 +129,5 @@ def diagnose(
         One line for each mistake in the set.
     """
     verdict = verdict_of(read(set_folder(Path(folder))), seed=seed, confirm=confirm,
-                         law=law, mechanisms=mechanisms)  # fmt: skip
+                         law=law, cautious=cautious, mechanisms=mechanisms)  # fmt: skip
     return Diagnosis(verdict, story_of(verdict))

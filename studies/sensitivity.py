@@ -16,9 +16,8 @@ import math
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from contextlib import ExitStack, contextmanager
 from dataclasses import replace
-from functools import lru_cache
 from pathlib import Path
-from types import ModuleType
+from types import MappingProxyType, ModuleType
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -26,17 +25,15 @@ from scipy.special import logsumexp
 
 from ..core.arrays import Array
 from ..core.processes.threads import in_one_thread
-from ..discrepancy.choice import decide, judge, odds
-from ..discrepancy.choice.apart import Weighed, apart, weighed
-from ..discrepancy.choice.judge import Judge
-from ..discrepancy.choice.odds import OUTSIDE, PRIORS, Odds
-from ..discrepancy.choice.own_sets import FitTest
+from ..discrepancy.choice import odds
+from ..discrepancy.choice.decide import decide
+from ..discrepancy.choice.odds import OUTSIDE, PRIORS, odds_of
+from ..discrepancy.choice.own_sets import fit_test
 from ..discrepancy.choice.pairs import with_pairs
 from ..discrepancy.choice.thresholds import Nulls, null_residuals
 from ..discrepancy.comparison.forward import Simulator
 from ..discrepancy.comparison.problem import Problem, problem_of
 from ..discrepancy.inference import derivatives
-from ..discrepancy.inference.fit import Fit
 from ..discrepancy.inference.grid import Grid
 from ..discrepancy.rank import Ranking, Screened, rank
 from ..discrepancy.rules import RULES
@@ -55,13 +52,6 @@ _NOTHING = 1e-12
 """Prior probability of what is taken away."""
 
 
-class Explained(NamedTuple):
-    """All explanations of a set, fitted, and the sets with nothing missing that judge them."""
-
-    ranking: Ranking
-    nulls: Nulls
-
-
 @contextmanager
 def standing(module: ModuleType, **values: Any) -> Iterator[None]:
     """Let names of a module stand for other values for a while."""
@@ -75,26 +65,36 @@ def standing(module: ModuleType, **values: Any) -> Iterator[None]:
             setattr(module, name, value)
 
 
+class Explained(NamedTuple):
+    """All explanations of a set, fitted, and sets with nothing missing."""
+
+    ranking: Ranking
+    nulls: Nulls
+
+
 def explained(problem: Problem) -> Explained:
     """Fit every explanation as a diagnosis does, with the draws of its seed 0."""
     simulator = Simulator(problem)
     ranking = rank(simulator)
     simulator = simulator.of(ranking.problem)
+    ranking = with_pairs(simulator, ranking)
     nulls = null_residuals(simulator, ranking.base, RULES.nulls, np.random.default_rng(0))
-    if Judge.of(ranking, nulls).wants_second(ranking):
-        ranking = with_pairs(simulator, ranking)
     return Explained(ranking, nulls)
 
 
-_weighed = lru_cache(maxsize=4)(weighed)
-"""With the law's error apart: what is altered in a judgement alters none of it."""
+def said(found: Explained, gains: Mapping[str, float] = MappingProxyType({})) -> dict[str, Any]:
+    """Return the verdict, the names in it and all probabilities that count.
 
-
-def said(found: Explained, weigh: Callable[[Ranking], Any] = _weighed) -> dict[str, Any]:
-    """Return the verdict, the names in it and all probabilities that count."""
-    with standing(odds, weighed=weigh):
-        judged = Judge.of(found.ranking, found.nulls)
-        choice, each = judged.decided(found.ranking, {}), judged.odds(found.ranking)
+    `gains` are added to the ln evidence of explanations.
+    """
+    ranking = found.ranking
+    more = {f.name: f.log_evidence - ranking.base.log_evidence for f in ranking.fits}
+    more = {s.mechanism.name: s.log_bayes for s in ranking.screened} | more
+    each = odds_of(
+        ranking, sampled={k: x + gains.get(k, 0.0) for k, x in more.items()},
+        beside=lambda fitted: fit_test(fitted, found.nulls).log_odds,
+    )  # fmt: skip
+    choice = decide(ranking, each)
     return {
         "verdict": choice.verdict, "names": [list(f.names) for f in choice.members],
         "odds": {k: round(p, 4) for k, p in each.probability.items() if p >= 0.5 * LEAST},
@@ -102,32 +102,21 @@ def said(found: Explained, weigh: Callable[[Ranking], Any] = _weighed) -> dict[s
 
 
 def priors(**times: float) -> ExitStack:
-    """Let prior odds be other multiples: of `singles`, `pairs` and `OUTSIDE`."""
-    raw = {k: p * times.get(k, 1.0) for k, p in PRIORS.items()}
-    p = {k: x / sum(raw.values()) for k, x in raw.items()}
-    out = p[OUTSIDE]
+    """Let prior odds be other multiples: of `mechanisms`, `inputs`, `second` and `OUTSIDE`."""
+    second = min(PRIORS["second"] * times.pop("second", 1.0), 0.9)
+    raw = {k: p * times.get(k, 1.0) for k, p in PRIORS.items() if k != "second"}
+    whole = sum(raw.values()) / sum(p for k, p in PRIORS.items() if k != "second")
     stack = ExitStack()
-    stack.enter_context(standing(
-        odds, PRIORS=p, ALONE=out / p["baseline"],
-        BESIDE=p["pairs"] / p["singles"] * out / (p["singles"] + out),
-    ))  # fmt: skip
+    p = {k: x / whole for k, x in raw.items()} | {"second": second}
+    stack.enter_context(standing(odds, PRIORS=p))
     return stack
 
 
-def costs(field: str, times: float) -> ExitStack:
-    """Let one cost of the decision be a multiple of itself."""
-    other = decide.COSTS._replace(**{field: times * getattr(decide.COSTS, field)})
+def ruled(name: str, times: float) -> ExitStack:
+    """Let a number of the judgement be a multiple of itself."""
+    rules = replace(RULES, **{name: times * getattr(RULES, name)})
     stack = ExitStack()
-    stack.enter_context(standing(decide, COSTS=other, WORTH_NAMING=other.more / other.wrong))
-    return stack
-
-
-def penalised(times: float) -> ExitStack:
-    """Let the penalty of all but the baseline be a multiple of itself."""
-    rules = replace(RULES, penalty=times * RULES.penalty)
-    stack = ExitStack()
-    for module in (odds, judge):
-        stack.enter_context(standing(module, RULES=rules))
+    stack.enter_context(standing(odds, RULES=rules))
     return stack
 
 
@@ -153,136 +142,75 @@ def narrowed(log_likelihood: Array, grid: Grid) -> float:
     return float(kept) + len(grid.axes) * math.log(2.0)
 
 
-def widths(found: Explained, times: float) -> tuple[Explained, Mapping[str, float]]:
+def widths(found: Explained, times: float) -> tuple[Explained, dict[str, float]]:
     """Let all priors of parameters be half or twice as wide.
 
     Returns
     -------
     tuple
-        The explanations with the law's error inside, and ln of what the evidence of each gains
-        with the error apart.
+        All with what has no name so, and ln of what the evidence of each other gains.
     """
     ranking = found.ranking
-    base, problem = ranking.base, ranking.problem
+    base = ranking.base
 
     def gain(log_likelihood: Array, grid: Grid) -> float:
         wide = -len(grid.axes) * math.log(2.0)
         return narrowed(log_likelihood, grid) if times < 1.0 else wide
 
-    def screened(s: Screened) -> Screened:
-        each = base.mixture.log_likelihood(base.residual - s.effect)
-        return replace(s, log_bayes=s.log_bayes + gain(each, s.grid))
+    def screened(s: Screened) -> float:
+        return gain(base.mixture.log_likelihood(base.residual - s.effect), s.grid)
 
-    def fitted(f: Fit) -> Fit:
-        return replace(f, log_evidence=f.log_evidence + gain(f.log_likelihood, f.grid))
-
-    more = {
-        s.mechanism.name: gain(
-            apart(base.linear, base, problem).log_likelihood(base.residual - s.effect), s.grid
-        )
-        for s in ranking.screened
-    }
-    more |= {
-        f.name: gain(apart(f.linear, base, problem).log_likelihood(f.residuals), f.grid)
-        for f in (*ranking.singles, *ranking.pairs)
-    }
-    nameless = []
-    for n in ranking.nameless:
-        own = fitted(n.fit) if n.fit else None
-        bayes = own.log_evidence - base.log_evidence if own else screened(n.screened).log_bayes
-        nameless.append(replace(n, fit=own, log_bayes=bayes))
-    altered = replace(
-        ranking, screened=tuple(map(screened, ranking.screened)),
-        singles=tuple(map(fitted, ranking.singles)), pairs=tuple(map(fitted, ranking.pairs)),
-        nameless=tuple(nameless),
+    gains = {s.mechanism.name: screened(s) for s in ranking.screened}
+    gains |= {f.name: gain(f.log_likelihood, f.grid) for f in (*ranking.singles, *ranking.pairs)}
+    nameless = tuple(
+        replace(n, log_bayes=n.log_bayes + (
+            gain(n.fit.log_likelihood, n.fit.grid) if n.fit else screened(n.screened)
+        ))
+        for n in ranking.nameless
     )  # fmt: skip
-    return found._replace(ranking=altered), more
-
-
-def _with_widths(found: Explained, times: float) -> dict[str, Any]:
-    other, more = widths(found, times)
-
-    def also(_: Ranking) -> dict[str, Weighed]:
-        return {
-            k: w._replace(log_evidence=w.log_evidence + more.get(k, 0.0))
-            for k, w in _weighed(found.ranking).items()
-        }
-
-    return said(other, also)
+    return found._replace(ranking=replace(ranking, nameless=nameless)), gains
 
 
 _ROWS: Mapping[str, Callable[[float], ExitStack]] = {
-    "prior odds of a mechanism": lambda t: priors(singles=t, pairs=t),
-    "prior odds of a second one": lambda t: priors(pairs=t),
+    "prior odds of a mechanism": lambda t: priors(mechanisms=t),
+    "prior odds of a wrong number": lambda t: priors(inputs=t),
+    "prior odds of a second one": lambda t: priors(second=t),
     "prior odds of something outside": lambda t: priors(**{OUTSIDE: t}),
-    "penalty on all but nothing": penalised,
-    "cost of a miss": lambda t: costs("miss", t),
-    "cost of a false alarm": lambda t: costs("false_alarm", t),
-    "cost of a wrong name": lambda t: costs("wrong", t),
-    "cost of half a name": lambda t: costs("half", t),
-    "cost of a further name": lambda t: costs("more", t),
-    "cost of silence": lambda t: costs("silence", t),
+    "gain that counts by its share": lambda t: ruled("by_ratio", t),
+    "odds beside what leads": lambda t: ruled("beside", t),
+    "temper of the evidence": lambda t: ruled("temper", t),
 }
 
 
 def altered(found: Explained) -> dict[str, dict[str, Any]]:
-    """Return what is said as it is, and with each prior and cost halved and doubled."""
+    """Return what is said as it is, and with each prior and weight halved and doubled."""
     told = {AS_IT_IS: said(found)}
     for times in (0.5, 2.0):
         for row, standing_in in _ROWS.items():
             with standing_in(times):
                 told[label(row, times)] = said(found)
-        told[label(WIDTHS, times)] = _with_widths(found, times)
+        told[label(WIDTHS, times)] = said(*widths(found, times))
     return told
 
 
 def taken_away(found: Explained) -> dict[str, dict[str, Any]]:
     """Return what is said without each stage of the judgement."""
     ranking = found.ranking
-    told = {}
-
-    def without(stage: str, *names: tuple[ModuleType, dict[str, Any]], of: Explained) -> None:
-        with ExitStack() as stack:
-            for module, values in names:
-                stack.enter_context(standing(module, **values))
-            told[stage] = said(of)
-
-    mean = odds.pooled
-
-    def inside(one: Odds, _: Odds) -> Odds:
-        return mean(one, one)
-
-    def separate(_: Odds, other: Odds) -> Odds:
-        return mean(other, other)
-
-    without("the error apart in every number", (judge, {"pooled": inside}), of=found)
-    without("the error inside the law", (judge, {"pooled": separate}), of=found)
-    with penalised(0.0):
-        told["penalty on all but nothing"] = said(found)
-    unseen = {"fit_test": lambda fitted, nulls: FitTest(1.0, -math.inf)}
-    without("fit beside its own sets", (judge, unseen), of=found)
-    plain = found._replace(ranking=replace(ranking, nameless=()))
-    without(
-        "nameless effects, factors", (judge, {"scaled_observables": lambda problem, base: ()}),
-        of=plain,
-    )  # fmt: skip
-    with priors(**{OUTSIDE: _NOTHING}):
-        without(
-            "all outside the library", (judge, unseen),
-            (odds, {"RULES": replace(RULES, kept=1.0)}), of=found,
-        )  # fmt: skip
-    alone = found._replace(ranking=replace(ranking, pairs=()))
-    without("second mechanisms", of=alone)
-    told["costs: the most probable is said"] = most_probable(said(found))
+    told = {
+        "nameless effects": said(found._replace(ranking=replace(ranking, nameless=()))),
+        "second explanations": said(found._replace(ranking=replace(ranking, pairs=()))),
+    }
+    away: dict[str, Callable[[], ExitStack]] = {
+        "wrong numbers": lambda: priors(inputs=_NOTHING),
+        "temper": lambda: ruled("temper", 1.0 / RULES.temper),
+        "gains by their share": lambda: ruled("by_ratio", 1e9),
+        "fit beside its own sets": lambda: ruled("beside", _NOTHING),
+        "all outside the library": lambda: priors(**{OUTSIDE: _NOTHING}),
+    }
+    for stage, standing_in in away.items():
+        with standing_in():
+            told[stage] = said(found)
     return told
-
-
-def most_probable(one: dict[str, Any]) -> dict[str, Any]:
-    """Return a verdict without costs."""
-    lead = next(iter(one["odds"]))
-    plain = {"baseline": "adequate", OUTSIDE: OUTSIDE}
-    names = [] if lead in plain else [lead.split("+")]
-    return {**one, "verdict": plain.get(lead, "missing-physics"), "names": names}
 
 
 def with_error(problem: Problem, times: float) -> Problem:

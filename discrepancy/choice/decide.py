@@ -1,16 +1,14 @@
-"""Decide: the verdict whose expected cost is least, by the probabilities of the explanations.
+"""Decide: what leads is said, with its probability, from one half on; one rule for all.
 
-No rule names what the probabilities deny; numbers too few to say anything are the one check
-beside them.
+Below it, explanations that together have `RULES.together` are said to share it; else nothing has
+one half, and the verdict is `undetermined`. A cautious reader asks for more (`RULES.cautious`).
 """
 
 from __future__ import annotations
 
 import math
-from collections.abc import Iterable, Sequence
+from collections.abc import Iterable
 from dataclasses import dataclass, replace
-from itertools import combinations
-from typing import NamedTuple
 
 import numpy as np
 
@@ -21,57 +19,30 @@ from ..rank import Ranking
 from ..rules import RULES
 from ..unknowns.drift import Drift
 from ..unknowns.followed import Followed
-from .odds import OUTSIDE, SURE, Odds
+from ..unknowns.wrong_number import is_wrong
+from .families import Family, family_of
+from .odds import BASELINE, OUTSIDE, SURE, Odds
 
-
-class Costs(NamedTuple):
-    """What a wrong verdict costs, in units of something missing that is not seen.
-
-    Parameters
-    ----------
-    miss
-        `adequate` where something is missing.
-    false_alarm
-        A name, or `outside-library`, where nothing is missing.
-    wrong
-        A name, or `outside-library`, where something else is missing.
-    half
-        A name where a part of it acts, or more than it.
-    more
-        Each further explanation that a reader must keep in mind: 0.03 of a wrong name, so that
-        what is true is among those named in 97 of a hundred.
-    silence
-        `undetermined`: a name is said from a probability of 0.55 on where nothing else is like it.
-    """
-
-    miss: float = 1.0
-    false_alarm: float = 10.0
-    wrong: float = 2.0
-    half: float = 0.5
-    more: float = 0.06
-    silence: float = 0.9
-
-
-COSTS = Costs()
-WORTH_NAMING = COSTS.more / COSTS.wrong
-"""Probability from which a further name saves more than it costs."""
+WRONG_INPUT = "wrong-input"
 
 
 @dataclass(frozen=True, eq=False)
 class Choice:
     """A verdict, the explanations that it holds (best first), and why.
 
-    `alike` says, as clauses, what something outside the library behaves like, where that is known.
+    `alike` says, as clauses, what something outside the library behaves like, where that is known;
+    `family` is what the leading explanations agree on, where one family leads.
     """
 
     verdict: str
     members: tuple[Fit, ...]
     reasons: tuple[str, ...]
     alike: tuple[str, ...] = ()
+    family: Family | None = None
 
 
-def decide(ranking: Ranking, odds: Odds, *, drifts: Sequence[Drift] = ()) -> Choice:
-    """Return the verdict of least expected cost.
+def decide(ranking: Ranking, odds: Odds, *, cautious: bool = False) -> Choice:
+    """Return the verdict by the probabilities of the explanations.
 
     Parameters
     ----------
@@ -79,73 +50,70 @@ def decide(ranking: Ranking, odds: Odds, *, drifts: Sequence[Drift] = ()) -> Cho
         All fits.
     odds
         Their probabilities.
-    drifts
-        Changes over the order of testing, which are said beside any verdict.
+    cautious
+        Whether a name, or 'nothing is missing', needs more than one half.
     """
-    cells, conditions = ranking.problem.cells, len(set(ranking.problem.cells.condition))
-    first = [*map(_follows, ranking.problem.followed), *map(_scattered, ranking.problem.scatters)]
-    last = [*map(_drifted, drifts)]
+    problem = ranking.problem
+    first = (*map(_follows, problem.followed), *map(_scattered, problem.scatters))
+    last = tuple(map(_drifted, problem.drifts))
+    family, few = family_of(odds), _too_few(ranking)
+    if few:
+        reasons = (*first, few, *_nevertheless(odds), *last)
+        return Choice("undetermined", (), reasons, family=family)
+    choice = _said(ranking, odds, RULES.cautious if cautious else RULES.said)
+    reasons = (*first, *_odds_told(odds), *choice.reasons, *last)
+    return replace(choice, reasons=reasons, family=family)
+
+
+def _too_few(ranking: Ranking) -> str:
+    """Why a set says nothing at all, or ""."""
+    cells = ranking.problem.cells
     readings = int(np.sum(cells.count))
     if readings < RULES.fewest_readings:
-        text = f"too few: only {readings} readings to compare, {RULES.fewest_readings} are needed"
-        return Choice("undetermined", (), (*first, text, *_nevertheless(odds), *last))
-    if conditions < RULES.fewest_conditions:
-        text = "too few: all numbers are of one condition; nothing can follow from what varies"
-        return Choice("undetermined", (), (*first, text, *_nevertheless(odds), *last))
-    choice = _cheapest(ranking.fits[1:], odds)
-    return replace(choice, reasons=(*first, *_odds_told(odds), *choice.reasons, *last))
+        return f"too few: only {readings} readings to compare, {RULES.fewest_readings} are needed"
+    if len(set(cells.condition)) < RULES.fewest_conditions:
+        return "too few: all numbers are of one condition; nothing can follow from what varies"
+    return ""
 
 
-def _cheapest(fits: Sequence[Fit], odds: Odds) -> Choice:
-    by_name = {f.name: f for f in fits}
-    named = _named(tuple(by_name), odds)
-    options = {
-        "undetermined": COSTS.silence,
-        OUTSIDE: (
-            COSTS.false_alarm * odds.baseline
-            + COSTS.wrong * (1.0 - odds.baseline - odds.outside)
-        ),
-    }  # fmt: skip
-    if odds.baseline >= RULES.adequate:
-        options["adequate"] = COSTS.miss * (1.0 - odds.baseline)
-    # a name is said where it leads: several that together outweigh what does are no finding
-    if max(odds.probability, key=lambda k: odds.probability[k]) in named:
-        options["named"] = cost_of_naming(named, odds)
-    verdict = min(options, key=lambda k: options[k])
-    if verdict == "undetermined":
-        return Choice(verdict, (), (_unclear(odds),))
-    if verdict != "named":
-        return Choice(verdict, (), ())
-    members = tuple(by_name[name] for name in named)
-    if len(members) == 1:
-        return Choice("missing-physics", members, ())
-    text = f"{len(members)} explanations share the probability: {' or '.join(named)}"
-    return Choice("indistinguishable", members, (text,))
+def _said(ranking: Ranking, odds: Odds, least: float) -> Choice:
+    lead = odds.leader
+    if odds.probability[lead] >= least:
+        if lead == BASELINE:
+            return Choice("adequate", (), ())
+        if lead == OUTSIDE:
+            alike = {t: share for t, share in odds.alike.items() if share > RULES.resembles}
+            told = tuple(
+                f"it behaves as if {title}: {100.0 * share:.0f} % of what is not in the library"
+                for title, share in alike.items()
+            )
+            return Choice(OUTSIDE, (), told, tuple(alike))
+        members = _fits(ranking, (lead,))
+        number = all(map(is_wrong, members[0].mechanisms))
+        return Choice(WRONG_INPUT if number else "missing-physics", members, ())
+    shared = _sharing(odds)
+    if not shared:
+        return Choice("undetermined", (), (_unclear(odds),))
+    text = f"{len(shared)} explanations share the probability: {' or '.join(shared)}"
+    return Choice("indistinguishable", _fits(ranking, shared), (text,))
 
 
-def _named(labels: Sequence[str], odds: Odds) -> tuple[str, ...]:
-    """Labels of the set, at most `RULES.alike`, whose naming costs least; the most probable first.
+def _sharing(odds: Odds) -> tuple[str, ...]:
+    """Leading explanations, at most `RULES.alike`, that together have `RULES.together`."""
+    total, found = 0.0, []
+    for label, p in list(odds.probability.items())[: RULES.alike]:
+        if label in (BASELINE, OUTSIDE):
+            return ()
+        found.append(label)
+        total += p
+        if total >= RULES.together:
+            return tuple(found)
+    return ()
 
-    What is too improbable to be worth a place by itself is not named: a pair would else stand for
-    two singles, half of each.
-    """
-    worth = [label for label in labels if odds.probability[label] > WORTH_NAMING]
-    sets = (s for n in range(1, RULES.alike + 1) for s in combinations(worth, n))
-    chosen = min(sets, key=lambda s: cost_of_naming(s, odds), default=())
-    return tuple(sorted(chosen, key=lambda label: -odds.probability[label]))
 
-
-def cost_of_naming(labels: Sequence[str], odds: Odds) -> float:
-    """Return the expected cost of naming some explanations."""
-    named = [frozenset(odds.names[label]) for label in labels]
-    cost = COSTS.more * (len(labels) - 1) + COSTS.false_alarm * odds.baseline
-    for label, p in odds.probability.items():
-        true = frozenset(odds.names[label])
-        if label == "baseline" or true in named:
-            continue
-        near = any(true & one for one in named)
-        cost += p * (COSTS.half if near else COSTS.wrong)
-    return cost
+def _fits(ranking: Ranking, labels: Iterable[str]) -> tuple[Fit, ...]:
+    by_name = {f.name: f for f in ranking.fits}
+    return tuple(by_name[label] for label in labels if label in by_name)
 
 
 def _nevertheless(odds: Odds) -> Iterable[str]:

@@ -1,39 +1,35 @@
-"""How probable each explanation is: prior times evidence, and a penalty on all but the baseline."""
+"""How probable each explanation is: prior times evidence, tempered.
+
+Ln odds over 'nothing is missing' are ln prior plus `RULES.temper` times G ln(1 + g/G) with the gain
+g in ln evidence and G `RULES.by_ratio`: evidences of a hundred numbers are surer than metals and
+laboratories are, and what one adds to a gain of thousands counts by its share of it, since forms
+are off by a share of what they explain. Nothing, numbers of the sheet that are wrong, mechanisms,
+two at once and what no name covers compete in one sum; nothing is decided by a threshold.
+"""
 
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Iterable, Mapping
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field
 
+import numpy as np
 from scipy.special import logsumexp
 
+from ...impact.mechanisms.base import Mechanism
 from ..inference.fit import Fit
 from ..rank import Ranking
 from ..rules import RULES
-from .apart import weighed
+from ..unknowns.wrong_number import WRONG, WrongNumber
+from .outside import odd_repeats, outside_of
 
 OUTSIDE = "outside-library"
+BASELINE = "baseline"
 PRIORS = dict(RULES.priors)
-"""Before the comparison: as likely as not that nothing is missing; each single mechanism that
-could act here shares alike, and so does each pair."""
-BESIDE = (
-    PRIORS["pairs"] / PRIORS["singles"] * PRIORS[OUTSIDE] / (PRIORS["singles"] + PRIORS[OUTSIDE])
-)
-"""Odds that something outside the library acts beside what is named: as likely as a second
-mechanism is beside a first one, and outside as often as a first one is."""
-ALONE = PRIORS[OUTSIDE] / PRIORS["baseline"]
-"""The same beside nothing: odds of something outside where no mechanism is named."""
+"""Before the comparison, shared alike within each kind; `second` is the probability of another one
+beside the first."""
 SURE = RULES.sure
-NAMED_AT = math.log(SURE / (1.0 - SURE))
-"""Ln odds of something missing from which a name costs less than silence (`decide.COSTS`)."""
-
-
-def shares_outside(nameless: int, scaled: int) -> tuple[float, float, float]:
-    """Prior shares, among what is outside the library: free, each nameless, each scaled."""
-    own = RULES.nameless / nameless if nameless else 0.0
-    factor = RULES.scaled_share / scaled if scaled else 0.0
-    return 1.0 - own * nameless - factor * scaled, own, factor
+STRENGTH = "target.Sy_Pa"
 
 
 @dataclass(frozen=True)
@@ -43,22 +39,21 @@ class Odds:
     Parameters
     ----------
     names
-        Label to the mechanisms: `baseline` and `OUTSIDE` have none.
+        Label to its mechanisms and wrong numbers: `baseline` and `OUTSIDE` have none.
     probability
         Label to the posterior probability, most probable first.
-    beside
-        Label to the part of the probability of something outside that stems from how badly that
-        explanation fits.
+    alike
+        What has no name of its own, by its title, to its share of what is outside.
     """
 
     names: Mapping[str, tuple[str, ...]]
     probability: Mapping[str, float]
-    beside: Mapping[str, float] = field(default_factory=dict)
+    alike: Mapping[str, float] = field(default_factory=dict)
 
     @property
     def baseline(self) -> float:
         """Probability that nothing is missing."""
-        return self.probability["baseline"]
+        return self.probability[BASELINE]
 
     @property
     def outside(self) -> float:
@@ -66,8 +61,13 @@ class Odds:
         return self.probability[OUTSIDE]
 
     @property
+    def leader(self) -> str:
+        """The most probable explanation."""
+        return max(self.probability, key=lambda name: self.probability[name])
+
+    @property
     def inclusion(self) -> dict[str, float]:
-        """Mechanism to the probability that it takes part, alone or with others."""
+        """Mechanism or wrong number to the probability that it takes part, alone or with others."""
         found: dict[str, float] = {}
         for label, p in self.probability.items():
             for name in self.names[label]:
@@ -76,97 +76,103 @@ class Odds:
 
 
 def odds_of(
-    ranking: Ranking,
-    outside: float,
-    *,
-    sampled: Mapping[str, float] | None = None,
+    ranking: Ranking, *, sampled: Mapping[str, float] | None = None,
     beside: Callable[[Fit], float] | None = None,
-) -> Odds:
+) -> Odds:  # fmt: skip
     """Return the probabilities of a ranking's explanations.
 
     Parameters
     ----------
     ranking
         All fits; a mechanism without a full fit counts by its screening.
-    outside
-        Ln evidence of something outside the library over the baseline's, less the penalty.
     sampled
         Sampled ln evidence over the baseline, of the explanations that have it.
     beside
-        Ln Bayes factor of something that acts beside a fitted explanation; asked for those that
-        have some probability.
+        Ln Bayes factor of something that acts beside what leads, by how that fits.
     """
-    base = ranking.base.log_evidence
     gained = {s.mechanism.name: s.log_bayes for s in ranking.screened}
-    gained |= {f.name: f.log_evidence - base for f in ranking.fits}
+    gained |= {f.name: f.log_evidence - ranking.base.log_evidence for f in ranking.fits}
     gained |= {k: v for k, v in (sampled or {}).items() if k in gained}
-    log, names = _weights(ranking, gained)
-    log[OUTSIDE] = outside + math.log(PRIORS[OUTSIDE])
-    found = _normalised(log.items())
-    likely = [f for f in ranking.fits if found[f.name] > RULES.beside]
-    if beside is None or not likely:
-        return Odds(names, found)
-    parts = {
-        f.name: log[f.name] + math.log(BESIDE if f.mechanisms else ALONE) + beside(f)
-        for f in likely
-    }
-    log[OUTSIDE] = float(logsumexp([log[OUTSIDE], *parts.values()]))
-    found = _normalised(log.items())
-    return Odds(
-        names, found, {k: found[OUTSIDE] * math.exp(x - log[OUTSIDE]) for k, x in parts.items()}
-    )
+    share = prior_shares([s.mechanism for s in ranking.screened])
+    names: dict[str, tuple[str, ...]] = {BASELINE: (), OUTSIDE: ()}
+    log = {}
+    for label, gain in gained.items():
+        names[label] = () if label == BASELINE else tuple(label.split("+"))
+        log[label] = log_prior(names[label], share) + tempered(gain)
+    log[OUTSIDE], alike = _outside(ranking, log)
+    lead = max(ranking.fits, key=lambda f: log[f.name])
+    if beside is not None:
+        more = log[lead.name] + math.log(RULES.beside) + beside(lead)
+        log[OUTSIDE] = float(np.logaddexp(log[OUTSIDE], more))
+    total = float(logsumexp(list(log.values())))
+    found = {k: math.exp(x - total) for k, x in sorted(log.items(), key=lambda item: -item[1])}
+    return Odds(names, _supported(found), alike)
 
 
-def odds_apart(ranking: Ranking) -> Odds:
-    """Return the same with the law's error apart in every number (`apart`).
+def tempered(gain: float) -> float:
+    """Return what a gain in ln evidence counts [nat]."""
+    G = RULES.by_ratio
+    return RULES.temper * (G * math.log1p(gain / G) if gain > 0.0 else gain)
 
-    Something outside has its prior, and most where what leads does not fit.
+
+def prior_shares(screened: Sequence[Mechanism]) -> dict[str, float]:
+    """Ln prior of each single explanation: mechanisms alike; wrong numbers by their kind.
+
+    Kinds share alike, but for the strength of what is struck, and within a kind the bodies.
     """
-    each = weighed(ranking)
-    base = each["baseline"].log_evidence
-    log, names = _weights(ranking, {k: w.log_evidence - base for k, w in each.items()})
-    found = _normalised(log.items())
-    inside = 1.0 - PRIORS[OUTSIDE]
-    if each[next(iter(found))].log_p < math.log(RULES.misfit):
-        inside *= RULES.kept
-    found = {k: inside * p for k, p in found.items()} | {OUTSIDE: 1.0 - inside}
-    return Odds(names, found)
+    kinds: dict[str, list[str]] = {}
+    named = []
+    for m in screened:
+        if isinstance(m, WrongNumber):
+            kinds.setdefault(m.kind if m.key != STRENGTH else STRENGTH, []).append(m.name)
+        else:
+            named.append(m.name)
+    found = {name: math.log(PRIORS["mechanisms"] / len(named)) for name in named}
+    weight = {kind: RULES.strength_wrong if kind == STRENGTH else 1.0 for kind in kinds}
+    for kind, names in kinds.items():
+        own = PRIORS["inputs"] * weight[kind] / sum(weight.values()) / len(names)
+        found |= dict.fromkeys(names, math.log(own))
+    return found
 
 
-def pooled(one: Odds, other: Odds) -> Odds:
-    """Return the mean of two, which are as likely to be right."""
-    mean = {k: 0.5 * (p + other.probability[k]) for k, p in one.probability.items()}
-    mean = _supported(dict(sorted(mean.items(), key=lambda item: -item[1])))
-    return Odds(one.names, mean, {k: 0.5 * p for k, p in one.beside.items()})
+def log_prior(names: Sequence[str], share: Mapping[str, float]) -> float:
+    """Ln prior of an explanation."""
+    if not names:
+        return math.log(PRIORS[BASELINE])
+    own = sum(share[name] for name in names)
+    if len(names) == 1:
+        return own
+    # of a pair: the first as alone, the second by its share among its own kind
+    kind = PRIORS["inputs"] if names[1].startswith(WRONG) else PRIORS["mechanisms"]
+    return own - math.log(kind) + math.log(PRIORS["second"])
+
+
+def _outside(ranking: Ranking, log: Mapping[str, float]) -> tuple[float, dict[str, float]]:
+    """Ln weight of what no name covers, and what it is like, with shares of that weight.
+
+    A free departure of the baseline, or physics without a name; and, whatever the simulation says,
+    what repeats say of themselves.
+    """
+    base = ranking.base
+    free = float(outside_of(ranking.problem, base).log_likelihood(base.residual))
+    shared = RULES.nameless if ranking.nameless else 0.0
+    parts = {"": math.log(1.0 - shared) + free - base.log_evidence}
+    for n in ranking.nameless:
+        own = math.log(shared / len(ranking.nameless))
+        parts[n.screened.mechanism.title] = own + n.log_bayes
+    whole = float(logsumexp(list(parts.values())))
+    alike = {title: math.exp(x - whole) for title, x in parts.items() if title}
+    prior = math.log(PRIORS[OUTSIDE])
+    seen, odd = prior + tempered(whole), odd_repeats(ranking.problem)
+    if not math.isfinite(odd):
+        return seen, alike
+    beside = float(logsumexp(list(log.values()))) + prior + odd
+    return float(np.logaddexp(seen, beside)), alike
 
 
 def _supported(found: dict[str, float]) -> dict[str, float]:
     """Return probabilities of which the baseline's is no surer than the sets drawn can support."""
-    nothing = found["baseline"]
+    nothing = found[BASELINE]
     told = min(max(nothing, RULES.supported), 1.0 - RULES.supported)
     rest = (1.0 - told) / (1.0 - nothing)
-    return {k: told if k == "baseline" else rest * p for k, p in found.items()}
-
-
-def _weights(
-    ranking: Ranking, gained: Mapping[str, float]
-) -> tuple[dict[str, float], dict[str, tuple[str, ...]]]:
-    """Ln of prior times evidence, less the penalty, and the mechanisms of each label."""
-    n = max(len(ranking.screened), 1)
-    log = {"baseline": math.log(PRIORS["baseline"])}
-    names: dict[str, tuple[str, ...]] = {"baseline": (), OUTSIDE: ()}
-    for label, more in gained.items():
-        if label == "baseline":
-            continue
-        names[label] = tuple(label.split("+"))
-        share = PRIORS["singles"] / n
-        if len(names[label]) > 1:
-            share = PRIORS["pairs"] / max(n * (n - 1) // 2, 1)
-        log[label] = more + math.log(share) - RULES.penalty
-    return log, names
-
-
-def _normalised(logs: Iterable[tuple[str, float]]) -> dict[str, float]:
-    ordered = sorted(logs, key=lambda item: -item[1])
-    total = float(logsumexp([x for _, x in ordered]))
-    return {name: math.exp(x - total) for name, x in ordered}
+    return {k: told if k == BASELINE else rest * p for k, p in found.items()}

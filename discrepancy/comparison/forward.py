@@ -18,6 +18,7 @@ from ...impact.mechanisms.base import Constants, Mechanism, Situation, attached,
 from ...impact.walk import layout as c
 from ...models.base import DomainWarning
 from ..rules import RULES
+from ..unknowns.wrong_number import wrong_factors
 from .cells import compared
 from .problem import Problem
 
@@ -124,11 +125,13 @@ class Simulator:
         situations: list[Situation] = []
         plain: list[Situation] = []
         # the nodes of a grid share their unknowns: one set of scenes serves them all
-        known: dict[int, list[Scene]] = {}
+        known: dict[tuple[object, ...], list[Scene]] = {}
         for point in points:
-            if id(point.z) not in known:
-                known[id(point.z)] = problem.scenes(point.z)
-            for condition, scene in zip(problem.conditions, known[id(point.z)], strict=True):
+            factors = wrong_factors(mechanisms, point.values)
+            one = (id(point.z), *factors.items())
+            if one not in known:
+                known[one] = problem.scenes(point.z, factors)
+            for condition, scene in zip(problem.conditions, known[one], strict=True):
                 if point.faster and scene.press is not None:
                     more = replace(scene.press, load=scene.press.load * (1.0 + point.faster))
                     scene = scene.with_(press=more)

@@ -21,6 +21,7 @@ from ...models.base import ContactLaw
 from ...recordings import RecordingSet
 from ..baseline.laws import LawChoice, laws_of, without_curves
 from ..curves import readings_of
+from ..rules import RULES
 from ..unknowns.drift import Drift
 from ..unknowns.followed import Followed
 from ..unknowns.lawerror import NO_ERROR, LawError, law_error
@@ -33,9 +34,12 @@ from ..unknowns.nuisances import (
     Nuisance,
     nuisances_of,
 )
+from ..unknowns.wrong_number import WrongNumber, wrong_numbers
 from .cells import NO_CELLS, Cells, Scatter, cells_of
 from .conditions import Condition, conditions_of
 from .derived import derived_columns
+
+NO_FACTORS: Mapping[str, float] = {}
 
 
 @dataclass(frozen=True, eq=False)
@@ -104,6 +108,21 @@ class Problem:
         return replace(self, error=error)
 
     @property
+    def wrong_numbers(self) -> tuple[WrongNumber, ...]:
+        """Every stated number that may be wrong; not what is taken as unknown already."""
+        wide = {n.name for n in self.nuisances if not n.stated or n.spread >= RULES.guessed}
+        strikers = tuple(dict.fromkeys(c.striker for c in self.conditions))
+        falls = [c.striker for c in self.conditions if c.around.from_height]
+        return tuple(
+            wrong_numbers(
+                self.rig.of, strikers, wide.__contains__,
+                observed=tuple(dict.fromkeys(self.cells.observable)),
+                oblique="friction.coefficient" in {n.name for n in self.nuisances},
+                fallen=max((self.rig.of[f"strikers.{s}.tip_radius_m"] for s in falls), default=0.0),
+            )
+        )  # fmt: skip
+
+    @property
     def scales(self) -> tuple[tuple[str, int], ...]:
         """Observables whose readings share a factor, and its place among the unknowns."""
         found = []
@@ -161,9 +180,14 @@ class Problem:
             "rebound_spin_rad_s": second.own_spin(seen["rebound_spin_rad_s"], spin, R, mass),
         }
 
-    def scenes(self, z: Array) -> list[Scene]:
-        """Return the baseline scene of every condition at the unknowns z, shape (n_z,)."""
+    def scenes(self, z: Array, factors: Mapping[str, float] = NO_FACTORS) -> list[Scene]:
+        """Return the baseline scene of every condition at the unknowns z, shape (n_z,).
+
+        `factors` are those on numbers of the rig that are wrong.
+        """
         rig = self.rig_at(z)
+        if factors:
+            rig = rig.with_({k: f * rig.of[k] for k, f in factors.items()})
         second = second_of(rig)
         used = {c.striker for c in self.conditions}
         b = z[self.n_nuisances :]

@@ -149,7 +149,7 @@ def points_of(v: Verdict) -> tuple[SeriesPoint, ...]:
                 {a.key: float(a.values[k]) for a in along},
                 shown(cells.value[i]), shown(cells.value[i] - std[i]),
                 shown(cells.value[i] + std[i]), shown(stated[i]), shown(base.prediction[i]),
-                shown(v.best.prediction[i]) if v.mechanisms else math.nan,
+                shown(v.best.prediction[i]) if v.best.mechanisms else math.nan,
                 bool(counts[i]),
             )
         )  # fmt: skip

@@ -166,7 +166,7 @@ def _summary(v: Verdict) -> str:
 
 def _found(v: Verdict) -> ToldCells:
     rows = []
-    if v.mechanisms:
+    if v.best.mechanisms:
         axes = v.best.grid.axes
         for (name, q), axis in zip(own_parameters(v).items(), axes, strict=True):
             rows.append(
@@ -182,7 +182,7 @@ def _found(v: Verdict) -> ToldCells:
 
 def _prediction(v: Verdict) -> str:
     i = v.improvement
-    if not v.mechanisms:
+    if not v.best.mechanisms:
         return ""
     if math.isnan(i["held_out_extended"]):
         return "No condition could be kept out of the fit to try the prediction on."

@@ -6,8 +6,9 @@ import math
 from typing import Any
 
 from ...core.observables import OBSERVABLES
+from ..choice.decide import WRONG_INPUT
 from ..choice.odds import OUTSIDE, SURE
-from ..findings import Verdict
+from ..findings import Verdict, WrongInput
 from ..rules import RULES
 from .wording import (
     compared,
@@ -31,20 +32,25 @@ def headline(v: Verdict) -> str:
             "Nothing is missing: the simulation as described explains the recordings within their "
             f"noise and the stated uncertainties (probability {percent(p)})."
         )
+    if v.verdict == WRONG_INPUT:
+        return " ".join(map(_wrong, v.wrong_inputs)) + " Nothing else is missing then."
     if v.verdict == "missing-physics":
+        beside = "".join(f" {_wrong(w)}" for w in v.wrong_inputs)
         what = joined([f"{title_of(m, v.titles)} ({m})" for m in v.mechanisms])
         sure = joined([percent(part.get(m, 0.0)) for m in v.mechanisms])
         each = " each" if len(v.mechanisms) > 1 else ""
         lacks = "lacks this"
-        if max(v.probabilities.values()) < RULES.adequate:
+        if max(v.probabilities.values()) < RULES.cautious:
             lacks = "most likely lacks this"
-        return f"The simulation {lacks}: {what}; probability that it takes part{each}: {sure}."
+        return (
+            f"The simulation {lacks}: {what}; probability that it takes part{each}: {sure}.{beside}"
+        )
     if v.verdict == "indistinguishable":
         named = ["+".join(a) for a in (v.mechanisms, *v.alternatives)]
         rival = joined(
             [f"{explanation(n, v.titles)} ({percent(v.probabilities[n])})" for n in named], "or"
         )
-        return f"Something is missing, and these share the probability: {rival}."
+        return f"Something is missing, and these share the probability: {rival}.{_family(v)}"
     if v.verdict == OUTSIDE and v.choice.alike:
         return (
             "The simulation as described fails, and no mechanism that dentscope has a name for "
@@ -66,7 +72,33 @@ def headline(v: Verdict) -> str:
         if sure
         else "These data do not say whether something is missing, or what."
     )
-    return f"{unclear} What leads, by probability: {likely}."
+    return f"{unclear} What leads, by probability: {likely}.{_family(v)}"
+
+
+def _wrong(w: WrongInput) -> str:
+    """One wrong number: what it would have to be, the usual slip, and what settles it."""
+    found = f"A number of the sheet is wrong: {w.title} (probability {percent(w.probability)})."
+    if w.would_be is not None and w.key != "speed.scale":
+        value, low, high = w.would_be
+        found += (
+            f" {w.key} would have to be {quantity(value, w.unit)} ({interval(low, high, w.unit)}) "
+            f"in place of {quantity(w.stated or 0.0, w.unit)}"
+        )
+    elif w.added:
+        found += f" By {quantity(w.off, 'm')} ({interval(w.low, w.high, 'm')})"
+    else:
+        found += f" By a factor of {w.off:.3g} ({w.low:.3g} to {w.high:.3g})"
+    slip = f"; usual slip: {w.slip}" if w.slip else ""
+    return f"{found}{slip}. It would settle it: {w.settled_by}."
+
+
+def _family(v: Verdict) -> str:
+    """What the members of the leading family agree on, where none of them leads; or ""."""
+    family = v.choice.family
+    if family is None or v.verdict not in ("undetermined", "indistinguishable"):
+        return ""
+    members = joined([f"{title_of(m, v.titles)} {percent(p)}" for m, p in family.members.items()])
+    return f" What they agree on ({percent(family.probability)}): {family.title}; by {members}."
 
 
 def why(v: Verdict) -> str:
@@ -140,7 +172,7 @@ def lines(v: Verdict) -> list[str]:
     out += ["", "Where the simulation misses"]
     out += [f"  {m}" for m in miss_sentences(v.located, most=4)]
     out += [f"  {m}" for m in [nowhere(v)] if m]
-    if v.mechanisms:
+    if v.best.mechanisms:
         out += ["", "What explains it"]
         for name, q in own_parameters(v).items():
             between = interval(q["low"], q["high"], q["unit"])

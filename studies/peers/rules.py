@@ -13,11 +13,14 @@ from scipy.special import logsumexp
 from scipy.stats import chi2
 
 from ...core.arrays import Array
-from ...discrepancy.choice.odds import OUTSIDE, PRIORS
+from ...discrepancy.choice.odds import OUTSIDE
 from .fitted import Fitted, Tried
 
 ANOTHER_PAIR = "another pair"
 """All pairs that a rule does not fit, alike."""
+
+PRIORS = {"baseline": 0.5, "singles": 0.34, "pairs": 0.06, OUTSIDE: 0.1}
+"""Of the plan: what each rule gives before the comparison."""
 
 _MISFIT = 0.01
 """Share of chi2 below which what a rule says does not fit."""
@@ -168,7 +171,7 @@ def _bic_with_pairs(fitted: Fitted) -> dict[str, Cost]:
 
 
 def _integrated(fitted: Fitted) -> dict[str, Cost]:
-    """Prior times mean likelihood over the grid; the priors are those of the diagnosis."""
+    """Prior times mean likelihood over the grid; the priors are those of the plan."""
     n = max(fitted.acting, 1)
     share = (PRIORS["baseline"], PRIORS["singles"] / n, PRIORS["pairs"] / max(n * (n - 1) / 2, 1))
     prior = [share[0], *[share[1]] * fitted.acting, *[share[2]] * len(fitted.pairs)]

@@ -68,6 +68,7 @@ class Problem:
     rig: Any = None
     baseline: str = "elastic-plastic"
     laws: Any = field(default_factory=lambda: defaultdict(lambda: None))
+    wrong_numbers: tuple[Any, ...] = ()
     without_modulus: Any = field(default_factory=lambda: {"target": (), "striker": ()})
 
     @property

@@ -22,9 +22,9 @@ from dentscope.recordings import read
 from dentscope.recordings.template import write_template
 from dentscope.studies.proof.generators import folder, truth
 
-KEYS = """format set seed version audit verdict mechanisms alternatives inclusion
-probabilities scores located parameters nuisance_pulls surprise excluded limits improvement misfit
-correction next_experiment notes""".split()
+KEYS = """format set seed version audit verdict mechanisms wrong_inputs family
+alternatives inclusion probabilities scores located parameters nuisance_pulls surprise
+excluded limits improvement misfit correction next_experiment notes""".split()
 
 
 SOFT = 1

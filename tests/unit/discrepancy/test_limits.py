@@ -5,7 +5,7 @@ from types import SimpleNamespace
 
 import numpy as np
 import pytest
-from dentscope.discrepancy.choice.odds import NAMED_AT, PRIORS
+from dentscope.discrepancy.choice.odds import PRIORS
 from dentscope.discrepancy.estimates import limits_of
 from dentscope.discrepancy.inference.grid import Axis, Grid
 from dentscope.discrepancy.inference.linear import Linear
@@ -13,8 +13,8 @@ from dentscope.discrepancy.rules import RULES
 from dentscope.impact.mechanisms.base import Parameter
 
 # Standard errors that one alternative has to win to be named, and three nats for its parameter.
-PRIOR = math.log(PRIORS["baseline"] / PRIORS["singles"])
-NEEDED = math.sqrt(2.0 * (NAMED_AT + PRIOR + RULES.penalty + 3.0))
+PRIOR = math.log(PRIORS["baseline"] / PRIORS["mechanisms"])
+NEEDED = math.sqrt(2.0 * (PRIOR / RULES.temper + 3.0))
 
 
 @pytest.mark.parametrize(

@@ -36,7 +36,7 @@ def said(
         verdict=verdict, located=located, reasons=reasons, inclusion={},
         probabilities={"baseline": nothing, "work-hardening": 1.0 - nothing},
         misfit={"as_stated": 650.0, "numbers": 40.0, "rest": rest},
-        choice=SimpleNamespace(alike=()),
+        choice=SimpleNamespace(alike=(), family=None), wrong_inputs=(),
         titles={m.name: m.title for m in MECHANISMS} | OWN,
     )  # fmt: skip
 

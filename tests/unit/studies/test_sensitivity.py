@@ -8,7 +8,7 @@ import math
 import numpy as np
 import pytest
 from dentscope.discrepancy import diagnose
-from dentscope.discrepancy.choice import decide, odds
+from dentscope.discrepancy.choice import odds
 from dentscope.discrepancy.choice.odds import OUTSIDE
 from dentscope.discrepancy.comparison.problem import problem_of
 from dentscope.discrepancy.inference.grid import Axis, Grid
@@ -40,42 +40,40 @@ def test_as_it_is_is_what_a_diagnosis_says(found) -> None:
         assert p == pytest.approx(verdict["probabilities"][name], abs=1e-4)
 
 
-def test_prior_odds_count_in_full_where_nothing_else_is_left(found) -> None:
-    """What leads and what is outside alone have weight here."""
+def test_prior_odds_count_in_full(found) -> None:
+    """What leads and nothing at all."""
     told = sensitivity.altered(found)
     before = told[altered.AS_IT_IS]["odds"]
+    lead = next(iter(before))
+    assert lead == "tangential-compliance"
     for times in (0.5, 2.0):
-        after = told[altered.label("prior odds of something outside", times)]["odds"]
-        more = (after[OUTSIDE] / after["tangential-compliance"]) / (
-            before[OUTSIDE] / before["tangential-compliance"]
-        )
+        after = told[altered.label("prior odds of a second one", times)]["odds"]
+        pair = next(k for k in before if "+" in k)
+        more = (after[pair] / after[lead]) / (before[pair] / before[lead])
         assert more == pytest.approx(times, rel=0.15)
     assert sensitivity.said(found) == told[altered.AS_IT_IS]
     short = sensitivity.brief(told)
-    assert "odds" not in short["cost of silence, x 2"]
     line = {"set": "a", "truth": None, "said": short}
     assert altered.by_set([line])["a"].said == told
 
 
-def test_without_what_is_outside_it_has_no_probability(found) -> None:
+def test_without_second_explanations_no_pair_has_a_probability(found) -> None:
     told = sensitivity.taken_away(found)
-    assert OUTSIDE not in told["all outside the library"]["odds"]
-    assert OUTSIDE in told["second mechanisms"]["odds"]
+    assert OUTSIDE in told["all outside the library"]["odds"]  # beside what leads
+    assert not [k for k in told["second explanations"]["odds"] if "+" in k]
 
 
 def _spoilt() -> None:
-    with sensitivity.costs("silence", 2.0), sensitivity.priors(pairs=2.0):
-        raise KeyError((decide.COSTS.silence, odds.PRIORS["pairs"] / odds.PRIORS["singles"]))
+    with sensitivity.ruled("temper", 2.0), sensitivity.priors(second=2.0):
+        raise KeyError((odds.RULES.temper, odds.PRIORS["second"]))
 
 
 def test_values_stand_again_after_an_error() -> None:
-    costs, priors = decide.COSTS, odds.PRIORS
+    rules, priors = odds.RULES, odds.PRIORS
     with pytest.raises(KeyError) as caught:
         _spoilt()
-    assert caught.value.args[0] == pytest.approx(
-        (2.0 * costs.silence, 2.0 * priors["pairs"] / priors["singles"])
-    )
-    assert (decide.COSTS, odds.PRIORS) == (costs, priors)
+    assert caught.value.args[0] == pytest.approx((2.0 * rules.temper, 2.0 * priors["second"]))
+    assert (odds.RULES, odds.PRIORS) == (rules, priors)
 
 
 def test_a_prior_half_as_wide_gains_what_it_keeps() -> None:

@@ -3,13 +3,10 @@
 from __future__ import annotations
 
 import math
-from dataclasses import replace
 from types import SimpleNamespace
 
 import numpy as np
 import pytest
-from dentscope.discrepancy.choice.gauge import scaled_observables
-from dentscope.discrepancy.choice.judge import Judge
 from dentscope.discrepancy.choice.outside import AMPLITUDES, odd_repeats, outside_of
 from dentscope.discrepancy.comparison.cells import Scatter
 from dentscope.discrepancy.unknowns.drift import Drift
@@ -57,51 +54,3 @@ def test_scatter_may_be_a_noise_misjudged_up_to_a_few_times(toy) -> None:
     assert odds(1.5) < 0.0
     assert odds(78.0) > 20.0
     assert odds(2.0) < odds(4.0) < odds(8.0)
-
-
-def depths_and_restitutions(toy, depths):
-    """Four depths (logarithms, 2 %) and four restitutions that fit, with their baseline's fit."""
-    given = toy.problem([0.02 * x for x in depths] + [0.5] * 4)
-    names = ("permanent_depth_m",) * 4 + ("restitution",) * 4
-    given = replace(given, cells=replace(given.cells, observable=names))
-    base = toy.fit_of([0.02 * x for x in depths] + [0.0] * 4)
-    linear = replace(base.linear, noise=0.02**2 * np.eye(8))
-    mixture = replace(base.mixture, parts=(linear,))
-    return given, replace(base, linear=linear, mixture=mixture)
-
-
-def test_depths_that_are_all_as_many_times_too_large_are_a_calibration(toy) -> None:
-    """Not roughness, which adds a depth and is no factor."""
-    given, base = depths_and_restitutions(toy, [math.log(1.4) / 0.02] * 4)
-    depth, restitution = scaled_observables(given, base)
-    assert (depth.observable, restitution.observable) == ("permanent_depth_m", "restitution")
-    assert depth.factor == pytest.approx(1.4, rel=0.005)
-    assert restitution.factor == pytest.approx(1.0)
-    # n (ln 1.4)^2/(2 s^2) less what the factor's prior costs
-    whole = 4.0 * math.log(1.4) ** 2
-    wide = 0.02**2 + 4.0 * 0.3**2
-    gain = 0.5 * whole * (1.0 / 0.02**2 - 1.0 / wide) - 0.5 * math.log(wide / 0.02**2)
-    assert depth.gain == pytest.approx(gain, rel=1e-6)
-    assert restitution.gain < 0.0
-    assert "all readings of crater depth are 1.4 times" in depth.told
-
-
-def test_depths_off_by_more_at_every_speed_are_none(toy) -> None:
-    given, base = depths_and_restitutions(toy, [-20.0, 20.0, -20.0, 20.0])
-    assert all(s.gain < 0.0 for s in scaled_observables(given, base))
-
-
-def test_one_observable_alone_has_no_factor(toy) -> None:
-    given = toy.problem([200.0] * CELLS)
-    assert scaled_observables(given, toy.fit_of([40.0] * CELLS)) == ()
-
-
-def test_a_factor_is_told_where_it_explains_as_much_as_what_leads(toy) -> None:
-    given, base = depths_and_restitutions(toy, [math.log(1.4) / 0.02] * 4)
-    scaled = scaled_observables(given, base)
-    judge = Judge(0.0, {}, toy.nulls_of(np.zeros((3, 8))), scaled)
-    little = replace(base, log_evidence=base.log_evidence + scaled[0].gain - 1.0)
-    much = replace(base, log_evidence=base.log_evidence + scaled[0].gain + 1.0)
-    for single, told in ((little, 1), (much, 0)):
-        ranking = toy.ranking_of(given, base, singles=[single])
-        assert len(judge.factors_told(ranking)) == told

@@ -6,7 +6,6 @@ import math
 
 import numpy as np
 import pytest
-from dentscope.discrepancy.choice.judge import Judge
 from dentscope.discrepancy.choice.own_sets import fit_test
 from dentscope.discrepancy.inference.linear import Linear, Mixture
 from scipy.integrate import quad
@@ -56,14 +55,3 @@ def test_a_perfect_or_a_hopeless_fit_gives_finite_odds(toy) -> None:
     assert 600.0 < hopeless < 700.0
     # nulls without any scatter say nothing of a fit
     assert fit_test(toy.fit_of([3.0]), toy.nulls_of([[1.0]] * 9)).log_odds == 0.0
-
-
-def test_a_second_mechanism_is_tried_where_the_leading_one_does_not_fit(toy) -> None:
-    """A lead that takes up the first cell, beside 3 or no deviations in the second."""
-    lead = toy.Effect("lead", (30.0, 0.0))
-    nulls = toy.nulls_of(np.random.default_rng(1).standard_normal((1000, 2)))
-    for left, wanted in ((0.0, False), (3.0, True)):
-        data = [30.0, left]
-        ranking = toy.ranking_of(None, toy.fit_of(data), singles=[toy.fit_of(data, lead)])
-        assert Judge(0.0, {}, nulls).wants_second(ranking) is wanted
-    assert not Judge(0.0, {}, nulls).wants_second(toy.ranking_of(None, toy.fit_of([9.0, 9.0])))

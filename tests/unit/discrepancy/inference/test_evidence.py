@@ -162,11 +162,15 @@ def test_some_cells_foretell_the_others() -> None:
     kept = linear.total[np.ix_(~out, ~out)]
     whole = Whole.of(linear, r)
     foretold = r[:, ~out] @ np.linalg.solve(kept, linear.total[np.ix_(~out, out)])
-    miss, squares = whole.missed(out)
+    miss, squares, log_density = whole.missed(out)
     assert miss == pytest.approx(r[:, out] - foretold)
     assert squares == pytest.approx(
         np.einsum("ki,ij,kj->k", r[:, ~out], np.linalg.inv(kept), r[:, ~out])
     )
+    # of all less of the others
+    both = linear.log_likelihood(r)
+    others = -0.5 * (squares + np.linalg.slogdet(2.0 * math.pi * kept)[1])
+    assert log_density == pytest.approx(both - others)
 
 
 def test_a_forms_error_is_a_share_of_the_effect_and_smooth(toy) -> None:

@@ -269,8 +269,9 @@ def test_pairs_are_sought_by_48_places_of_each(toy) -> None:
     from dentscope.discrepancy.choice.pairs import _leading_pairs
 
     ranking = toy.ranking_of(None, toy.fit_of(data), screened=[*hidden, whole[2]])
-    _, _, place = _leading_pairs(ranking)[0]
-    assert place[0] < 0.01
+    assert _leading_pairs(ranking, ranking.screened) == []
+    ranking = toy.ranking_of(None, toy.fit_of(data), screened=whole)
+    assert _leading_pairs(ranking, whole)[0][0].mechanism.name == "m0"
 
 
 def test_what_two_do_to_each_other_is_simulated_an_eighth_of_the_prior_aside(toy) -> None:

@@ -5,7 +5,7 @@ from __future__ import annotations
 from pathlib import Path
 
 import numpy as np
-from dentscope.discrepancy.choice.odds import odds_apart
+from dentscope.discrepancy.choice.odds import odds_of
 from dentscope.discrepancy.comparison.forward import Point, Simulator
 from dentscope.discrepancy.comparison.problem import Problem, problem_of
 from dentscope.discrepancy.rank import rank
@@ -67,7 +67,7 @@ def test_a_second_tip_adds_to_what_one_says(tmp_path: Path) -> None:
         found = rank(Simulator(struck(tmp_path / "+".join(names), names)), mechanisms=(RATE,))
         (single,) = found.singles
         gain[names] = single.log_evidence - found.base.log_evidence
-        probable[names] = odds_apart(found).probability[RATE.name]
+        probable[names] = odds_of(found).probability[RATE.name]
     both = ("sharp", "blunt")
     assert all(gain[both] > gain[one] for one in (("sharp",), ("blunt",)))
     assert all(probable[both] > probable[one] for one in (("sharp",), ("blunt",)))

@@ -1,0 +1,190 @@
+"""Numbers of the sheet that may be wrong, as explanations that compete with physics.
+
+A stated number with its standard deviation is a nuisance: it moves a little. A number that was
+mistyped, misread or belongs to another temper of the metal is off by a factor, or a height by an
+offset, that no standard deviation holds. Each is an explanation with one parameter, the factor; its
+prior is flat in the logarithm over four times either way (a diameter for a radius is 2, hot-rolled
+for cold-drawn steel 1.9, a hardness for a strength 3).
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable, Iterator, Mapping, Sequence
+from dataclasses import replace
+
+from ...core.arrays import Array
+from ...core.observables import OBSERVABLES
+from ...impact.mechanisms.base import (
+    Constants,
+    Mechanism,
+    Parameter,
+    Situation,
+    Surroundings,
+    Values,
+)
+from ...impact.scene import Scene
+from ..rules import RULES
+
+WRONG = "wrong-input:"
+"""Begins the name of every such explanation; the rest is the number's key."""
+
+_SOURCE = "slips of sheets: units, a diameter for a radius, another temper (module's docstring)"
+_OF_BODY = {
+    "Sy_Pa": "strength", "E_Pa": "modulus", "tip_radius_m": "radius", "radius_m": "radius",
+    "mass_kg": "mass",
+}  # fmt: skip
+_SETTLED = {
+    "strength": "a hardness test of it, a tension test, or slow presses",
+    "modulus": "the metal's name or certificate", "radius": "a calliper, or a picture of the tip",
+    "mass": "a scale", "speed": "a second way to measure the speed: a height, a ruler in the film",
+    "friction": "a slope or a pull with a spring balance", "angle": "a protractor",
+    "height": "a ruler from the flat to the ball's lowest point",
+    "reading": "a gauge block, or the same mark by another instrument",
+}  # fmt: skip
+_SLIPS = (
+    ("radius", 0.5, "a diameter stands for the radius"),
+    ("radius", 2.0, "half of the radius stands for it"),
+    ("strength", 1.0 / 2.8, "a hardness stands for the strength"),
+    ("strength", 1.9, "another temper of the metal: cold-drawn for hot-rolled"),
+    ("strength", 1.0 / 1.9, "another temper of the metal: hot-rolled for cold-drawn"),
+    ("speed", 0.5, "half of the speed"),
+    ("reading", 2.0, "half of the reading, as a radius for a diameter"),
+    ("reading", 0.5, "twice the reading, as a diameter for a radius"),
+)  # fmt: skip
+"""Kind, factor that mends it, and the slip."""
+
+
+def unit_of(key: str) -> str:
+    """Return the unit of a key of set.toml or of a column, by its end."""
+    ends = {"_m_s": "m/s", "_Pa": "Pa", "_kg": "kg", "_m": "m", "_s": "s", "_N": "N"}
+    return next((unit for end, unit in ends.items() if key.endswith(end)), "-")
+
+
+class WrongNumber(Mechanism):
+    """A number of the sheet that is off by a factor.
+
+    Parameters
+    ----------
+    key
+        Of set.toml, as in the parameters of a verdict.
+    kind
+        Strength, modulus, radius, mass, speed, friction, angle, height or reading: numbers of one
+        kind share a prior.
+    title
+        As a clause.
+    """
+
+    static = True
+    form = 0.0
+
+    def __init__(self, key: str, kind: str, title: str) -> None:
+        self.key, self.kind, self.title = key, kind, title
+        self.name = WRONG + key
+        self.equations = f"{key} times the factor"
+        most, nodes = RULES.wrong_most, RULES.wrong_nodes
+        self.parameters = (
+            Parameter(f"{key}_factor", "-", 1.0 / most, most, "log", 1.0, _SOURCE, nodes=nodes),
+        )  # fmt: skip
+
+    @property
+    def settled_by(self) -> str:
+        """What would settle it."""
+        return _SETTLED[self.kind]
+
+    def slip(self, low: float, high: float) -> str:
+        """Return the usual slip that gives a factor within an interval, or ""."""
+        found = (words for kind, factor, words in _SLIPS
+                 if kind == self.kind and low <= factor <= high)  # fmt: skip
+        return next(found, "")
+
+    def attach(self, scene: Scene, values: Values, around: Surroundings) -> Scene:
+        """Return the scene as it is: the number is changed before scenes are made."""
+        return scene
+
+
+class WrongReading(WrongNumber):
+    """All readings of one observable off by a factor: a calibration, a unit, a definition."""
+
+    def after(
+        self, situations: Sequence[Situation], values: Values, seen: Mapping[str, Array]
+    ) -> Mapping[str, Array]:
+        """Return the observables with this one times the factor."""
+        return {**seen, self.key: seen[self.key] * values[self.parameters[0].name]}
+
+
+class WrongHeight(WrongNumber):
+    """All heights of fall off by one length: read to the ball's centre or top, or from a table."""
+
+    def __init__(self, most: float) -> None:
+        super().__init__("drop_height_m", "height", "all heights of fall are off by one length")
+        self.equations = "drop_height_m plus the offset"
+        told, nodes = "within two diameters", RULES.wrong_nodes
+        self.parameters = (
+            Parameter("drop_height_m_offset", "m", -most, most, "linear", 0.0, told, nodes=nodes),
+        )
+
+    def attach(self, scene: Scene, values: Values, around: Surroundings) -> Scene:
+        """Return the scene with the speed of the other height."""
+        if not around.from_height or scene.press is not None:
+            return scene
+        a = scene.approach
+        fallen = a.speed**2 + 2.0 * scene.gravity * values["drop_height_m_offset"]
+        return scene.with_(approach=replace(a, speed=math.sqrt(max(fallen, 0.04 * a.speed**2))))
+
+
+def is_wrong(mechanism: Mechanism) -> bool:
+    """Whether an explanation is a number of the sheet."""
+    return isinstance(mechanism, WrongNumber)
+
+
+def wrong_factors(mechanisms: Sequence[Mechanism], constants: Constants) -> dict[str, float]:
+    """Return the factors on numbers of the rig, by key, of the explanations among mechanisms."""
+    return {
+        m.key: constants[m.name][m.parameters[0].name]
+        for m in mechanisms
+        if type(m) is WrongNumber
+    }  # fmt: skip
+
+
+def wrong_numbers(
+    numbers: Mapping[str, float], strikers: Sequence[str], unsure: Callable[[str], bool], *,
+    observed: Sequence[str], oblique: bool, fallen: float,
+) -> Iterator[WrongNumber]:  # fmt: skip
+    """Yield every stated number of a set that may be wrong.
+
+    Parameters
+    ----------
+    numbers
+        Of the rig, by key.
+    strikers
+        Those that strike.
+    unsure
+        Whether a key is taken as unknown within a factor already.
+    observed
+        What was read.
+    oblique
+        Whether bodies slide.
+    fallen
+        Largest radius of what falls from a stated height [m]; 0 where none does.
+    """
+    bodies = {"target": "the flat"} | {f"strikers.{s}": f"striker {s}" for s in strikers}
+    for table, body in bodies.items():
+        for word, kind in _OF_BODY.items():
+            key = f"{table}.{word}"
+            if math.isfinite(numbers.get(key, math.nan)) and not unsure(key):
+                if word == "radius_m" and table != "target":
+                    continue  # of a rod's shank, which moves no reading by much
+                yield WrongNumber(key, kind, f"the stated {kind} of {body} is wrong")
+    yield WrongNumber("speed.scale", "speed", "all speeds of approach are off by one factor")
+    if oblique and "friction.coefficient" in numbers and not unsure("friction.coefficient"):
+        yield WrongNumber("friction.coefficient", "friction", "the stated friction is wrong")
+    if fallen > 0.0:
+        yield WrongHeight(4.0 * fallen)
+    if len(observed) > 1:
+        for name in observed:
+            title = f"all readings of {OBSERVABLES[name].label} are off by one factor"
+            yield WrongReading(name, "reading", title)
+
+
+__all__ = ["WRONG", "WrongHeight", "WrongNumber", "WrongReading", "wrong_factors", "wrong_numbers"]
