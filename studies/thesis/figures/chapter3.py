@@ -16,7 +16,7 @@ from ....models.base import ContactLaw
 from ...plot import Entry, Picture, finish, laws, look, percent, sheet
 from .. import chapter3
 from . import fields, rendered, sketches
-from .claims import judged
+from .claims import judged, ranked
 
 _ORIGINAL = ("jackson-green-2007", "kogut-etsion", "kogut-komvopoulos", "ghaednia", "fitted")
 _UPDATED = ("jackson-green-2007+ghaednia", "kogut-etsion+ghaednia", "kogut-komvopoulos+ghaednia")
@@ -110,9 +110,10 @@ def _cycle(found: chapter3.Bench) -> Picture:
     made, axes = sheet(2)
     told = []
     for axis, mass in zip(axes, (found.striker.mass, found.mass_that_fits), strict=True):
+        struck = {}
         for law in laws(*_ORIGINAL):
             scene = found.scene(law, height=1.43, mass=mass)
-            impact = strike(scene)
+            struck[law.name] = impact = strike(scene)
             peak, rest = impact.peak_depth_m, impact.residual_m
             d = np.linspace(0.0, peak, 200)
             back = np.linspace(rest, peak, 200)
@@ -126,8 +127,29 @@ def _cycle(found: chapter3.Bench) -> Picture:
         axis.set_title(f"{mass:g} kg", fontsize=9)
         finish(axis, x="depth [um]", y="force [kN]", legend="thin: unloading")
     note = f"Largest and residual depth of the thesis's model: {'; '.join(told)}; "
-    note += "thesis: 148 and 107 um."
+    note += f"thesis: 148 and 107 um. With {mass:g} kg: {_cycle_said(struck)}"
     return Picture("3.10", "Force over depth, 1.43 m", made, note)
+
+
+def _cycle_said(struck: dict[str, Impact]) -> str:
+    """What the text says of figure 3.10."""
+    four = {name: impact for name, impact in struck.items() if name != "fitted"}
+    force = {name: i.peak_force_N / 1e3 for name, i in four.items()}
+    left = {name: 1e6 * i.residual_m for name, i in four.items()}
+    deep = {name: 1e6 * i.peak_depth_m for name, i in four.items()}
+    back = {name: deep[name] - left[name] for name in four}
+    flattening = [left[name] for name in ("jackson-green-2007", "kogut-etsion")]
+    more = [left["kogut-komvopoulos"] / x - 1.0 for x in flattening]
+    spread = max(force.values()) / min(force.values()) - 1.0
+    return judged(
+        ranked(force, "ghaednia", first="largest"),
+        ranked(deep, "ghaednia", first="smallest"),
+        (f"the forces differ by about 5 % (here {spread:.0%})", 0.02 < spread < 0.08),
+        ("of what each gives back " + (given := ranked(back, "ghaednia", first="smallest"))[0],
+         given[1]),
+        (f"Kogut and Komvopoulos leave about 50 % more than the flattening laws (here "
+         f"{min(more):.0%} to {max(more):.0%})", all(0.4 < m < 0.6 for m in more)),
+    )  # fmt: skip
 
 
 def _heights(
@@ -159,12 +181,8 @@ def _heights(
     note = f"Largest deviation from the measured values; {'; '.join(told)}."
     if "updated" in title:
         note = _mean_deviations(found, chosen, observable)
-    if number == "3.11":
-        note += f" {_depths_said(found, chosen)}"
-    return Picture(
-        number, title, made,
-        note,
-    )  # fmt: skip
+    note += f" {_SAID[number](found, chosen)}"
+    return Picture(number, title, made, note)
 
 
 def _depths_said(found: chapter3.Bench, chosen: list[ContactLaw]) -> str:
@@ -220,21 +238,93 @@ def _small_tip(found: chapter3.Bench) -> str:
     )
 
 
+def _original_rebounds_said(found: chapter3.Bench, chosen: list[ContactLaw]) -> str:
+    """What the text says of figure 3.12, with the mass that fits."""
+    off = _off_by_law(found, chosen, "restitution")
+    rows = sorted(found.measured, key=lambda r: float(r["drop_height_m"]))
+    e = [row["value"] for row in rows if row["observable"] == "restitution"]
+    stiff = [v * (1.0 + d) for v, d in zip(e, off["kogut-komvopoulos"], strict=True)]
+    jackson, own = off["jackson-green-2007"], off["ghaednia"]
+    return f"With {found.mass_that_fits:g} kg: " + judged(
+        ("Kogut and Etsion and Jackson and Green give more",
+         min(*jackson, *off["kogut-etsion"]) > 0.0),
+        ("Jackson and Green comes closer with the height", abs(jackson[-1]) < abs(jackson[0])),
+        (f"Kogut and Komvopoulos give 0.46 throughout (here {min(stiff):.2f} to {max(stiff):.2f})",
+         max(abs(x - 0.46) for x in stiff) < 0.02),
+        ("less than measured", max(off["kogut-komvopoulos"]) < 0.0),
+        (f"the thesis's own gives slightly more (here {min(own):+.1%} to {max(own):+.1%})",
+         min(own) > 0.0),
+        ("it is off by less than 4 % in the mean", float(np.mean(np.abs(own))) < 0.04),
+    )  # fmt: skip
+
+
+def _updated_depths_said(found: chapter3.Bench, chosen: list[ContactLaw]) -> str:
+    """What the text says of figure 3.13, with the mass that fits."""
+    off = _off_by_law(found, chosen, "residual_depth")
+    jackson, etsion = off[_UPDATED[0]], off[_UPDATED[1]]
+    mean = {name: 100.0 * float(np.mean(np.abs(values))) for name, values in off.items()}
+    return f"With {found.mass_that_fits:g} kg: " + judged(
+        ("Jackson and Green and Kogut and Etsion leave more", min(*jackson, *etsion) > 0.0),
+        ("Kogut and Etsion is the better of them at the greatest height",
+         abs(etsion[-1]) < abs(jackson[-1])),
+        (f"Jackson and Green is slightly better than Kogut and Komvopoulos (here "
+         f"{mean[_UPDATED[0]]:.1f} and {mean[_UPDATED[2]]:.1f} %)",
+         mean[_UPDATED[0]] < mean[_UPDATED[2]]),
+        ("of the mean deviations " + (own := ranked(mean, "ghaednia", first="smallest"))[0],
+         own[1]),
+        (f"that is 2.5 % (within 1; here {mean['ghaednia']:.1f} %)",
+         abs(mean["ghaednia"] - 2.5) < 1.0),
+    )  # fmt: skip
+
+
+def _updated_rebounds_said(found: chapter3.Bench, chosen: list[ContactLaw]) -> str:
+    """What the text says of figure 3.14, with the mass that fits."""
+    off = _off_by_law(found, chosen, "restitution")
+    low, high = ({name: abs(d[k]) for name, d in off.items()} for k in (0, -1))
+    first, last = (_UPDATED[0], _UPDATED[2]), (_UPDATED[1], "ghaednia")
+    return f"With {found.mass_that_fits:g} kg: " + judged(
+        ("Jackson and Green and Kogut and Komvopoulos are better at the smallest height",
+         max(low[n] for n in first) < min(low[n] for n in last)),
+        ("Kogut and Etsion and the thesis's own are at the greatest",
+         max(high[n] for n in last) < min(high[n] for n in first)),
+    )  # fmt: skip
+
+
+def _off_by_law(
+    found: chapter3.Bench, chosen: list[ContactLaw], observable: str
+) -> dict[str, list[float]]:
+    """Deviation of each law at each measured height, lowest first."""
+    mass = found.mass_that_fits
+    return {law.name: deviations(found, law, mass=mass, observable=observable) for law in chosen}
+
+
+_SAID: dict[str, Callable[[chapter3.Bench, list[ContactLaw]], str]] = {
+    "3.11": _depths_said, "3.12": _original_rebounds_said, "3.13": _updated_depths_said,
+    "3.14": _updated_rebounds_said,
+}  # fmt: skip
+
 MASSES = (0.151, 0.255, 0.33, 0.345, 0.355)
 """Readings of the rod's mass [kg]: from its size, as printed, and the range that fits."""
+
+
+def deviations(
+    found: chapter3.Bench, law: ContactLaw, *, mass: float, observable: str
+) -> list[float]:
+    """Relative deviation from each measured value, the lowest height first."""
+    off = []
+    for row in sorted(found.measured, key=lambda r: float(r["drop_height_m"])):
+        if row["observable"] == observable:
+            impact = strike(found.scene(law, height=row["drop_height_m"], mass=mass))
+            ours = impact.restitution if observable == "restitution" else impact.residual_m
+            off.append(ours / row["value"] - 1.0)
+    return off
 
 
 def mean_deviation(
     found: chapter3.Bench, law: ContactLaw, *, mass: float, observable: str
 ) -> float:
     """Mean absolute deviation from the measured values, the measure that the thesis uses (3.3)."""
-    off = []
-    for row in found.measured:
-        if row["observable"] == observable:
-            impact = strike(found.scene(law, height=row["drop_height_m"], mass=mass))
-            ours = impact.restitution if observable == "restitution" else impact.residual_m
-            off.append(abs(ours / row["value"] - 1.0))
-    return float(np.mean(off))
+    return float(np.mean(np.abs(deviations(found, law, mass=mass, observable=observable))))
 
 
 def _mean_deviations(found: chapter3.Bench, chosen: list[ContactLaw], observable: str) -> str:

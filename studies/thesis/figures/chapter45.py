@@ -15,6 +15,7 @@ from ...plot import Entry, Picture, finish, laws, look, sheet
 from .. import chapter5
 from ..chapter3 import REFERENCE
 from . import chapter4, scars, sketches, tables
+from .claims import judged
 from .thesis_rod import scene_at
 
 Histories = list[tuple[ContactLaw, Trace]]
@@ -50,17 +51,27 @@ def _alpha() -> Picture:
     made, (axis,) = sheet()
     angles = np.radians(np.linspace(0.2, 89.8, 400))
     rod = chapter5.thesis_rod()
+    sticks = {}
     for mu in (0.0, 0.1, 0.2, 0.5, 1.0):
         values = alpha_curve(rod, angles, mu=mu)
+        sticks[mu] = values > 0.0
         jam = np.abs(np.diff(values, append=values[-1])) > 5.0
         axis.plot(np.degrees(angles), np.where(jam, np.nan, values), label=f"friction {mu:g}")
     axis.axhline(0.0, color="k", lw=0.8)
     axis.set_ylim(-1.5, 1.5)
     finish(axis, x="angle [degrees]", y="alpha (below zero: sliding)")
+    small = [f"{mu:g}" for mu in (0.1, 0.2, 0.5) if sticks[mu][0]]
     note = (
         "Drawn with the corrected 5.12. No change of sign without friction, one at 82 degrees for "
-        "0.1, two for 0.2 and 0.5, always sticking for 1: as the text describes."
-    )
+        "0.1, two for 0.2 and 0.5. "
+    ) + judged(
+        ("the sign changes at large angles", all(sticks[mu][-1] for mu in (0.1, 0.2, 0.5))),
+        (f"it changes at small angles too, for any friction (here for {', '.join(small)})",
+         len(small) == 3),
+        ("the more friction, the more angles stick",
+         bool(np.all(np.diff([np.mean(s) for s in sticks.values()]) > 0.0))),
+        ("with 1 it always sticks", bool(np.all(sticks[1.0]))),
+    )  # fmt: skip
     return Picture("5.3", "Sliding per normal travel", made, note)
 
 

@@ -3,16 +3,19 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from typing import Any
 
 from ....core.inputs.toml_input import read_toml
+from ....impact.inverse import Inferred
+from ....impact.result import Impact
 from ....models import LAWS, critical_depth
 from ....models.base import ContactLaw
 from ....models.published.brake import brake_2015
 from ...plot import TABLE_2_1, Table, laws, line_of, table_2_1
 from .. import chapter5
 from ..chapter3 import REFERENCE
+from .claims import judged
 
 _KGF_MM2 = 9.80665e6  # Pa
 _MEASURED_H, _MEASURED_N = 53.0, 2.1  # kgf/mm^2 and Meyer exponent at which Brake's rows come out
@@ -117,8 +120,11 @@ def comparison(number: str, angle: float) -> Table:
         "Ghaednia": LAWS["ghaednia"], "Brake 2015": _measured_brake(),
         "Kogut-Komvopoulos": LAWS["kogut-komvopoulos"],
     }  # fmt: skip
+    struck = []
     for simulation in data["simulation"]:
-        rows += _pair_of_rows(simulation, experiment, chosen[simulation["law"]], mass, off)
+        law = chosen[simulation["law"]]
+        struck.append(chapter5.simulate_experiment(experiment, law, mass=mass))
+        rows += _pair_of_rows(simulation, experiment, struck[-1], off)
     if "fitted" in LAWS:
         ours = chapter5.simulate_experiment(experiment, LAWS["fitted"], mass=mass)
         rows.append(
@@ -129,7 +135,34 @@ def comparison(number: str, angle: float) -> Table:
     return Table(
         number, f"Experiment and laws at {angle:g} degrees",
         ("case", "whose", "dent [um]", "sliding [um]", "e", "T [ms]", "mean force [N]"), rows,
-        f"Ours ({mass:g} kg) over the printed simulations: {told}. {_REMARK[number]}",
+        f"Ours ({mass:g} kg) over the printed simulations: {told}. {_REMARK[number]} "
+        + _said(experiment, inferred.inferred, struck),
+    )  # fmt: skip
+
+
+def _said(experiment: Mapping[str, Any], scar: Inferred, struck: Sequence[Impact]) -> str:
+    """What the text says of the experiment (5.11 and 5.14) beside the thesis's three laws."""
+    e, T, F = experiment["restitution"], scar.duration, scar.mean_force
+    dents = [i.residual_flat_m / -experiment["depth_m"] for i in struck]
+    slid = [i.sliding_length_m / -experiment["sliding_m"] for i in struck]
+    rebounds = [i.restitution for i in struck]
+    lasts, forces = [i.return_time_s / T for i in struck], [i.mean_force_N / F for i in struck]
+    if experiment["angle_deg"] < 60.0:
+        return judged(
+            ("the laws are about the same (dents within a factor 1.5)",
+             max(dents) < 1.5 * min(dents)),
+            ("their restitution matches (within 0.1)", max(abs(x - e) for x in rebounds) < 0.1),
+            ("what was measured slid much farther (twice at least)", max(slid) < 0.5),
+            ("it lasted much longer", max(lasts) < 0.5),
+            ("its mean force is much smaller", min(forces) > 2.0),
+        )  # fmt: skip
+    return judged(
+        ("the measured restitution is much smaller (half at most)", e < 0.5 * min(rebounds)),
+        ("dents and sliding are of its order of magnitude (within a factor 10)",
+         all(0.1 < x < 10.0 for x in (*dents, *slid))),
+        (f"its mean force is larger (the laws' {min(forces):.2f} to {max(forces):.2f} of it)",
+         max(forces) < 1.0),
+        ("it lasted less long", min(lasts) > 1.0),
     )  # fmt: skip
 
 
@@ -145,13 +178,12 @@ _REMARK = {
 
 
 def _pair_of_rows(
-    simulation: Mapping[str, Any], experiment: Mapping[str, Any], law: ContactLaw, mass: float,
+    simulation: Mapping[str, Any], experiment: Mapping[str, Any], ours: Impact,
     off: dict[str, list[float]],
 ) -> list[list[str]]:  # fmt: skip
     k = simulation["angle_deg"].index(experiment["angle_deg"])
     names = ("depth_m", "sliding_m", "restitution", "duration_s", "mean_force_N")
     printed = [simulation[name][k] for name in names]
-    ours = chapter5.simulate_experiment(experiment, law, mass=mass)
     off["dent"].append(ours.residual_flat_m / -printed[0] - 1.0)
     off["e"].append(ours.restitution / printed[2] - 1.0)
     off["F"].append(ours.mean_force_N / printed[4] - 1.0)
