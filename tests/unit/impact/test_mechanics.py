@@ -238,3 +238,12 @@ def test_the_length_of_a_scar_less_its_width_is_told_not_to_be_the_path():
     assert told(39.98e-6).duration == pytest.approx(150e-6, rel=0.01)
     assert not any("path" in line for line in told(39.98e-6).objections)
     assert any("path" in line for line in told(0.58e-6).objections)
+
+
+@pytest.mark.parametrize(("thickness", "speed"), [(5e-5, 0.1), (1e-4, 10.0), (2e-4, 1.0)])
+def test_a_ball_goes_down_with_a_thin_sheet(thickness, speed):
+    """m Y^2 k is far above 4: it is damped to nothing, and no step budget ends it."""
+    sheet = {**STEEL, "thickness_m": thickness}
+    found, _ = struck(target=sheet, speed=speed, gravity_m_s2=9.81, impact={"support": "plate"})
+    assert found.outcome.completed
+    assert found.restitution == 0.0
