@@ -106,6 +106,19 @@ def interval(hits: int, of: int, *, level: float = 0.95) -> tuple[float, float]:
     return low, high
 
 
+def state_of(low: float, high: float, *, least: float, most: float = math.inf) -> str:
+    """Return whether a mark is met, by its whole interval: `met`, `missed` or `not shown`.
+
+    Examples
+    --------
+    >>> [state_of(low, 0.2, least=0.1) for low in (0.11, 0.05)], state_of(0.0, 0.05, least=0.1)
+    (['met', 'not shown'], 'missed')
+    """
+    if low >= least and high <= most:
+        return "met"
+    return "missed" if high < least or low > most else "not shown"
+
+
 def covered(case: Case) -> list[bool]:
     """Whether each parameter that means the same in both lies in its 90 % interval."""
     if case.best != case.true:

@@ -27,6 +27,9 @@ RUNS = _DATA / "runs.json"
 REMARKS = _DATA / "remarks.md"
 """What was found when single failures were looked into; goes into the page as it is."""
 
+_MANY = 500
+"""Sets of a run from which it stands in the table of all runs."""
+
 _HEAD = """# Proof
 
 Can the diagnosis be believed? `make proof` makes up recordings in which a known effect is
@@ -133,6 +136,7 @@ def page(runs: list[dict[str, Any]], *, impacts: int) -> str:
     if last is None:
         return "\n".join([*lines, "No run has been made yet.", ""])
     lines += _run_text(last)
+    lines += _history(runs)
     lines += third_world_lines()
     lines += altered_lines(read_ranks(ALTERED))
     lines += rank_lines(read_ranks())
@@ -196,6 +200,24 @@ def _plan(run: dict[str, Any]) -> str:
         return ""
     sealed = f"SHA-256 `{run['plan'][:12]}`, was sealed before the first set"
     return f" The [plan](proof-plan.md), {sealed}."
+
+
+def _history(runs: list[dict[str, Any]]) -> list[str]:
+    """What was traded for what, run after run; what counts is named as in the table of scores."""
+    asked = ("false alarms on nulls", "detected, size above 10", "undetermined or failed",
+             "both of a pair named")  # fmt: skip
+    lines = ["## All runs", "", f"Of {_MANY} sets or more; none shares a set with another.", "",
+             f"| run | sets | {' | '.join(asked)} |", "| --- |" + " --- |" * 5]  # fmt: skip
+    for run in (r for r in runs if r["sets"] >= _MANY):
+        cells = []
+        for name in asked:
+            found = [s for s in run["scores"] if s["name"].startswith(name) and s["of"]]
+            hits, of = (sum(s[k] for s in found) for k in ("hits", "of"))
+            cells.append(f"{100.0 * hits / of:.1f} % ({hits} of {of})" if of else "-")
+        lines.append(
+            f"| `{run['tree'][:7]}`, {run['date']} | {run['sets']} | {' | '.join(cells)} |"
+        )
+    return [*lines, ""]
 
 
 def _brought_lines(found: dict[str, float]) -> list[str]:

@@ -17,7 +17,7 @@ import numpy as np
 from scipy.stats import binomtest
 
 from ...core.arrays import Array, Indices
-from .case import interval
+from .case import interval, state_of
 
 DIAGNOSIS = "diagnosis"
 PEERS = "peers.jsonl"
@@ -268,15 +268,15 @@ def report(lines: Sequence[dict[str, Any]]) -> list[str]:
 
 
 def verdict_lines(best: dict[str, Any]) -> list[str]:
-    """What the plan's marks came to."""
-    points, low, _ = best["front_less"]
-    nats, below, _ = best["ln_p_less"]
-    front = "met" if points >= 0.08 and low > 0.0 else "missed"
-    ln_p = "met" if nats >= 0.3 and below > 0.0 else "missed"
-    return [
-        f"Best rule: {best['name']}. Primary mark, 8 points in front with an interval above 0: "
-        f"{front}. 0.3 in mean ln p with an interval above 0: {ln_p}."
-    ]
+    """What the plan's marks came to, and by the rule of all other marks."""
+    told = []
+    for what, key, least in (("8 points in front", "front_less", 0.08),
+                             ("0.3 in mean ln p", "ln_p_less", 0.3)):  # fmt: skip
+        mean, low, high = best[key]
+        by_plan = "met" if mean >= least and low > 0.0 else "missed"
+        told.append(f"{what}: {state_of(low, high, least=least)} (with an interval above 0 alone, "
+                    f"as the plan has it: {by_plan})")  # fmt: skip
+    return [f"Best rule: {best['name']}. Primary mark, {told[0]}. {told[1]}."]
 
 
 def _pair(found: Sequence[float], times: float, digits: int) -> str:

@@ -10,7 +10,7 @@ from typing import Any
 import numpy as np
 
 from .calibrated import calibration_error
-from .case import Case, covered, interval
+from .case import Case, covered, interval, state_of
 from .generators.truth import PLANTED
 
 DETECTABLE, LARGE = 10.0, 20.0
@@ -63,12 +63,7 @@ def share(
     if of == 0:
         return Score(name, 0, 0, math.nan, math.nan, math.nan, mark, "no cases")
     low, high = interval(hits, of)
-    if low >= least and high <= most:
-        state = "met"
-    elif high < least or low > most:
-        state = "missed"
-    else:
-        state = "not shown"
+    state = state_of(low, high, least=least, most=most)
     return Score(name, hits, of, hits / of, low, high, mark, state)
 
 
@@ -115,8 +110,7 @@ def scores(cases: list[Case]) -> list[Score]:
     coverage = share("", [], bool, least=0.85, most=0.95)
     if hits:
         value = sum(hits) / len(hits)
-        state = "met" if low >= 0.85 and high <= 0.95 else "not shown"
-        state = "missed" if high < 0.85 or low > 0.95 else state
+        state = state_of(low, high, least=0.85, most=0.95)
         coverage = Score("", sum(hits), len(hits), value, low, high, coverage.mark, state)
     law_right = [c for c in null if not c.off]
     law_off = [c for c in null if c.off]
