@@ -7,7 +7,7 @@ from typing import Any
 
 from ...core.output import write_file
 from .plan import ROOT, Pair
-from .told import NAMING, said
+from .told import NAMING, points, right_with, said
 
 PAGE = ROOT / "docs" / "interventions.md"
 REMARKS = ROOT / "data" / "interventions" / "remarks.md"
@@ -22,6 +22,15 @@ _TABLE = """
 | concealed (with / without) | said with it | | said without it | |
 | --- | --- | --- | --- | --- |
 """
+_SCORES = """
+A point for a name that is fair, none for silence, one off for any other name, with the effect or
+without it, and for *outside the library* where that is not fair. What an audit contradicts goes
+with every answer and has no point.
+
+| answer | fair with the effect | points |
+| --- | --- | --- |
+"""
+_CONSTANT = ("undetermined", "adequate", "outside-library")
 _MARK = {True: "right", False: "missed"}
 
 
@@ -43,7 +52,22 @@ def page(pairs: Sequence[Pair], told: Mapping[str, Mapping[str, Any]]) -> str:
     rows = [_row(pair, told.get(pair.name, {})) for pair in pairs]
     after = REMARKS.read_text(encoding="utf-8").strip() + "\n" if REMARKS.exists() else ""
     table = _TABLE + "\n".join(rows) + "\n"
-    return _HEAD + counted(pairs, told) + "\n" + table + ("\n" + after if after else "")
+    scores = _SCORES + "\n".join(scored(pairs, told)) + "\n"
+    return _HEAD + counted(pairs, told) + "\n" + scores + table + ("\n" + after if after else "")
+
+
+def scored(pairs: Sequence[Pair], told: Mapping[str, Mapping[str, Any]]) -> list[str]:
+    """Return a row for the diagnosis, and one for each answer that is always the same."""
+    asked = [p for p in pairs if {"with", "without"} <= set(told.get(p.name, {}))]
+    rows = []
+    for answer in ("", *_CONSTANT):
+        always = {"verdict": answer, "mechanisms": [], "alternatives": []} if answer else {}
+        fair = sum(right_with(p, {**told[p.name]["with"], **always}) for p in asked)
+        total = sum(points(p, side, {**told[p.name][side], **always})
+                    for p in asked for side in ("with", "without"))  # fmt: skip
+        name = f"always `{answer}`" if answer else "the diagnosis"
+        rows.append(f"| {name} | {fair} of {len(asked)} | {total} |")
+    return rows
 
 
 def counted(pairs: Sequence[Pair], told: Mapping[str, Mapping[str, Any]]) -> str:

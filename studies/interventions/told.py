@@ -53,6 +53,26 @@ def right_with(pair: Pair, told: Mapping[str, Any]) -> bool:
     return any(names and set(names) <= set(pair.named) for names in reported)
 
 
+def points(pair: Pair, side: str, told: Mapping[str, Any]) -> int:
+    """Return 1 where the cause is named, -1 where anything else is, 0 for silence.
+
+    Examples
+    --------
+    >>> from dentscope.studies.interventions.plan import read_plan
+    >>> tilt = next(p for p in read_plan() if p.name == "tilt")
+    >>> said = {"verdict": "missing-physics", "mechanisms": ["tilt"], "alternatives": []}
+    >>> points(tilt, "with", said), points(tilt, "without", said)
+    (1, -1)
+    """
+    concealed = side == "with"
+    if told["verdict"] in NAMING:
+        return 1 if concealed and right_with(pair, {**told, "audit": [pair.audit]}) else -1
+    unfair = told["verdict"] == "outside-library" and not (
+        concealed and "outside-library" in pair.verdicts
+    )
+    return -1 if unfair else 0
+
+
 def right_without(told: Mapping[str, Any]) -> bool:
     """Whether nothing is named, nothing called outside the library, and nothing contradicted."""
     return told["verdict"] in ("adequate", "undetermined") and not told["audit"]

@@ -13,7 +13,7 @@ from dentscope.recordings.shipped import FOLDER
 from dentscope.studies.interventions import bases, told
 from dentscope.studies.interventions.bases import base
 from dentscope.studies.interventions.edits import write_side
-from dentscope.studies.interventions.page import page
+from dentscope.studies.interventions.page import page, scored
 from dentscope.studies.interventions.plan import Side, read_plan
 from dentscope.studies.interventions.told import right_with, right_without
 from dentscope.studies.proof.apart import Answer
@@ -81,6 +81,16 @@ def test_a_missed_verdict_is_called_missed():
     assert right_without(said("adequate"))
     assert not right_without(said("outside-library"))
     assert not right_without(said("adequate", audit=["contradiction: mass of ball: 5 %"]))
+
+
+def test_silence_has_no_point_and_a_wrong_name_loses_one():
+    spin, tilt = PAIRS["spin"], PAIRS["tilt"]
+    assert told.points(tilt, "with", said("missing-physics", "tilt")) == 1
+    assert told.points(tilt, "with", said("missing-physics", "adhesion")) == -1
+    assert [told.points(spin, s, said("undetermined")) for s in ("with", "without")] == [0, 0]
+    assert [told.points(spin, s, said("outside-library")) for s in ("with", "without")] == [0, -1]
+    rows = [row.split(" | ") for row in scored(list(PAIRS.values()), told.outcomes())]
+    assert (rows[1][0], rows[1][2]) == ("| always `undetermined`", "0 |")
 
 
 def only_audited(folder, out, limit_s):
