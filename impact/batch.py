@@ -22,6 +22,7 @@ from ..models.base import ContactLaw
 from .columns import Impacts
 from .integrate import Settings, arrays_of, strike_batch, strike_rows
 from .mechanisms.asked import NONE_ASKED, SIMULATED, Asked
+from .result import leave_resting
 from .scene import Approach, ForceTransform, Friction, Scene
 from .tabulated.energy_route import NAMES, energy_impacts, why_not
 from .tabulated.law_table import tabulated
@@ -161,6 +162,7 @@ def _with_mechanisms(
     acting = asked.without(*asked.idle(plain))
     scenes = [s.with_(force=change(s.force)) for s in acting.attached(plain)]
     found = strike_batch(scenes, settings)
+    leave_resting(found)
     values = {name: found[:, j].copy() for j, name in enumerate(c.OBSERVABLES + c.COUNTS)}
     seen = {column: values[name] for column, name in SIMULATED.items()}
     for column, read in acting.observed(plain, seen).items():
@@ -270,6 +272,7 @@ def _by_steps(
         # the stated speed is the contact point's
         body[:, c.V_Y] = given["spin"][mine] * body[:, c.HALF_COS] - given["speed"][mine]
         found = strike_rows(one, body, settings)
+        leave_resting(found)
         for j, name in enumerate(c.OBSERVABLES + c.COUNTS):
             values[name][rows[mine]] = found[:, j]
 

@@ -151,6 +151,7 @@ def _struck(scene: Scene, a: Arrays, history: Array) -> tuple[Impact, int]:
     """Integrate one impact; return it and how many rows of `history` were filled."""
     out, left = np.zeros((1, c.N_OUT)), np.zeros((1, len(a.surface)))
     rows = _walked(scene.law, _given([a]), out, left=left, history=history)
+    leave_resting(out)
     return impact_of(out[0], left[0]), rows
 
 
@@ -159,9 +160,7 @@ def _walked(law: ContactLaw, given: c.Given, out: Array, **more: Array) -> int:
     # importing it compiles: a file that is refused and the list of keys do without
     from .walk.compiled import many_impacts
 
-    filled = many_impacts(tuple(law.kernels), given, out, **more)
-    leave_resting(out)
-    return filled
+    return many_impacts(tuple(law.kernels), given, out, **more)
 
 
 def _given(rows: Sequence[Arrays]) -> c.Given:

@@ -139,6 +139,9 @@ class StrengthTable:
         logs = np.stack(_logs(self.law, pairs, self.depth))
         unit = int(np.searchsorted(levels, -1e-9))  # the stated strength
         logs -= logs[:, unit : unit + 1]
+        # a law may have no number where next to nothing is left of the strength
+        known = np.isfinite(logs).all(axis=(0, 2))
+        levels, logs = levels[known], np.ascontiguousarray(logs[:, known])
         return levels, logs, PchipInterpolator(levels, logs, axis=1).derivative()(levels)
 
     @cached_property
