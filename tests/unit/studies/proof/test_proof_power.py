@@ -47,7 +47,8 @@ def test_the_page_of_a_kept_run_has_plan_power_and_rules(tmp_path):
     page.publish(kept, tmp_path, impacts=3)
     text = (tmp_path / "proof.md").read_text()
     assert "The [plan](proof-plan.md), SHA-256 `cdcdcdcdcdcd`, was sealed" in text
-    assert "| 10 to 20 | 2 | 0.50 (0.01 to 0.99) | 0.00 (0.00 to 0.84) |" in text
+    row = "| 10 to 20 | 2 | 0.50 (0.01 to 0.99) | 0.00 (0.00 to 0.84) |"
+    assert row in (tmp_path / "proof-details.md").read_text()
     assert "| less | in front, points |" in text
     assert "| BIC | 100.0 (100.0 to 100.0) | 0.016 | 6.11 (6.11 to 6.11) |" in text
     assert "0.3 in mean ln p: met (with an interval above 0 alone, as the plan has it: met)" in text
