@@ -4,7 +4,11 @@ from __future__ import annotations
 
 import sys
 
-from .core.processes.children import forget_current_folder, plot_without_the_folders_settings
+from .core.processes.children import (
+    compile_without_the_folders_settings,
+    forget_current_folder,
+    plot_without_the_folders_settings,
+)
 from .core.processes.stopping import STOPS, listening, stopped
 from .core.processes.streams import left_with, steady_streams
 from .core.processes.threads import one_thread_each
@@ -25,6 +29,7 @@ def _run() -> int:
     forget_current_folder()
     one_thread_each()  # before numpy is loaded
     plot_without_the_folders_settings()
+    compile_without_the_folders_settings()
     steady_streams()
     from .cli import run
 

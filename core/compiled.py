@@ -15,6 +15,7 @@ import tempfile
 from contextlib import suppress
 from pathlib import Path
 
+from .processes.children import compile_without_the_folders_settings
 from .rules import RULES
 
 _STAGES = ("core", "fem", "models", "impact", "discrepancy", "studies")
@@ -67,12 +68,13 @@ def _add_with_imports(path: Path, files: set[Path]) -> None:
 def keep_compiled_code() -> None:
     """Point numba at this source's folder, unless the user chose one.
 
-    To be called before numba is imported; afterwards it has no effect.
+    To be called before numba is imported; afterwards it has no effect. Settings of numba that lie
+    in the current folder have none either.
     """
-    if os.environ.get(_VARIABLE):
-        return
-    digest = source_digest(Path(__file__).resolve().parents[1])
-    os.environ[_VARIABLE] = str(cache_folder(f"compiled-{digest}"))
+    if not os.environ.get(_VARIABLE):
+        digest = source_digest(Path(__file__).resolve().parents[1])
+        os.environ[_VARIABLE] = str(cache_folder(f"compiled-{digest}"))
+    compile_without_the_folders_settings()
 
 
 def cache_folder(name: str) -> Path:

@@ -13,6 +13,7 @@ import sys
 import threading
 import time
 from contextlib import suppress
+from importlib import import_module
 from pathlib import Path
 
 from ..rules import RULES
@@ -42,11 +43,16 @@ def forget_current_folder() -> None:
     What was imported before is beyond reach: only `python -P -m` keeps it out from the beginning.
     """
     keep_current_folder_out()
+    if _looks_in_current_folder():
+        del sys.path[0]
+
+
+def _looks_in_current_folder() -> bool:
     if sys.flags.safe_path or not sys.path:
-        return
+        return False
     with suppress(OSError):  # a folder that was deleted meanwhile
-        if sys.path[0] in ("", os.getcwd()):
-            del sys.path[0]
+        return sys.path[0] in ("", os.getcwd())
+    return False
 
 
 def plot_without_the_folders_settings() -> None:
@@ -55,14 +61,34 @@ def plot_without_the_folders_settings() -> None:
     It would come before the user's own. Pictures are drawn into files: a screen has no say either.
     """
     os.environ["MPLBACKEND"] = "agg"
-    if os.path.lexists("matplotlibrc"):
-        here = os.open(".", os.O_RDONLY)
-        os.chdir(Path(__file__).parent)
-        try:
-            import matplotlib  # noqa: F401
-        finally:
-            os.chdir(here)
-            os.close(here)
+    _load_elsewhere("matplotlib", "matplotlibrc")
+
+
+def compile_without_the_folders_settings() -> None:
+    """Load numba such that a `.numba_config.yaml` of the current folder has no say.
+
+    It may name files to write and modules to load. numba reads it again whenever it compiles.
+    Where Python itself still looks for modules in that folder, this is left to a later call.
+    """
+    settings = ".numba_config.yaml"
+    if "numba" in sys.modules or (os.path.lexists(settings) and _looks_in_current_folder()):
+        return
+    if _load_elsewhere("numba", settings):
+        sys.modules["numba.core.config"]._config_fname = os.devnull  # type: ignore[attr-defined]
+
+
+def _load_elsewhere(module: str, settings: str) -> bool:
+    """Load a module outside the current folder if that holds a file of settings for it."""
+    if not os.path.lexists(settings):
+        return False
+    here = os.open(".", os.O_RDONLY)
+    os.chdir(Path(__file__).parent)
+    try:
+        import_module(module)
+    finally:
+        os.chdir(here)
+        os.close(here)
+    return True
 
 
 def die_with(parent: int) -> None:

@@ -46,6 +46,11 @@ def trapped(tmp_path: Path) -> Path:
         (folder / f"{name}.py").write_text(trap)
     (folder / "dentscope" / "__init__.py").write_text(trap)
     (folder / "matplotlibrc").write_text("backend: module://numpy\nnonsense\n")
+    precious = tmp_path / "precious"
+    precious.write_text("mine")
+    (folder / ".numba_config.yaml").write_text(
+        f"chrome_trace: {precious}\ncache_locator_classes: numpy.L\ndisable_jit: 1\n"
+    )
     return folder
 
 
@@ -66,6 +71,7 @@ def test_no_child_takes_code_from_the_current_folder(trapped: Path, way: str) ->
     answer = _run([str(script)], trapped)
     assert not (trapped.parent / "ran").exists(), (trapped.parent / "ran").read_text()
     assert answer.returncode == 0, answer.stderr
+    assert (trapped.parent / "precious").read_text() == "mine"
 
 
 def test_python_m_forgets_the_current_folder(trapped: Path) -> None:
@@ -76,6 +82,7 @@ def test_python_m_forgets_the_current_folder(trapped: Path) -> None:
     answer = _run(["-m", "dentscope", "laws", "list"], trapped)
     assert not (trapped.parent / "ran").exists(), (trapped.parent / "ran").read_text()
     assert answer.returncode == 0, answer.stderr
+    assert (trapped.parent / "precious").read_text() == "mine"
 
 
 LINES = (
