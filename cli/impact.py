@@ -125,10 +125,12 @@ def _sweep(
     told = [*swept_above_one(first), *swept_walls(setup.scene(laws[0]), first)]
     table, drawn, parquet = (base.with_name(f"{base.name}.{k}") for k in ("csv", "png", "parquet"))
     first.to_csv(table)
-    draw_sweep(setup.sweep.swept, curves, drawn, stds=stds)
+    written = [table]
+    if (first["outcome"] == "completed").any():
+        draw_sweep(setup.sweep.swept, curves, drawn, stds=stds)
+        written.append(drawn)
     for name in swept_in_vain(setup.sweep.swept, curves):
         say(f"sweep.{name} changes nothing here")
-    written = [table, drawn]
     if find_spec("pandas") and find_spec("pyarrow"):
         first.to_parquet(parquet)
         written.append(parquet)

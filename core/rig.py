@@ -11,7 +11,7 @@ import math
 from collections.abc import Callable
 from dataclasses import dataclass
 from types import MappingProxyType
-from typing import Annotated, Any, Literal
+from typing import Annotated, Any, Literal, Self
 
 from pydantic import (
     AfterValidator,
@@ -57,6 +57,12 @@ class Quantity(InputTable):
         if isinstance(given, bool) or not isinstance(given, int | float):
             raise ValueError("a number, or { value = ..., std = ... }")
         return {"value": given}
+
+    @model_validator(mode="after")
+    def _known_at_all(self) -> Self:
+        if self.value and self.relative > RULES.least_known:
+            raise ValueError(f"a std of at most {RULES.least_known:g} times the value")
+        return self
 
     @property
     def relative(self) -> float:

@@ -122,6 +122,10 @@ class CoreRules:
         0.11, "relative standard deviation of a hardness stated without one [-]",
         "chosen; no measurement is kept",
     )  # fmt: skip
+    least_known: float = rule(
+        100.0, "largest standard deviation over a value that is stated [-]",
+        "what is known within e^100 either way is not known: leave it out",
+    )  # fmt: skip
     mistakes_told: int = limit(
         20, "mistakes that are told one by one [-]",
         "a screen",

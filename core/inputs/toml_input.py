@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import codecs
 import tomllib
 import unicodedata
 from difflib import get_close_matches
@@ -61,9 +62,13 @@ def read_toml(path: Path) -> dict[str, Any]:
     """
     content = read_bytes(path, most=RULES.toml_bytes, allowed="an existing TOML file")
     try:
-        found = tomllib.loads(content.decode())
+        found = tomllib.loads(content.decode("utf-8-sig"))
     except UnicodeDecodeError as error:
-        raise InputError(f"cannot be read ({error})", source=str(path)) from None
+        wide = content[:2] in (codecs.BOM_UTF16_LE, codecs.BOM_UTF16_BE)
+        why = "UTF-16" if wide else str(error)
+        raise InputError(
+            f"cannot be read ({why})", source=str(path), allowed="a text saved as UTF-8"
+        ) from None
     except tomllib.TOMLDecodeError as error:
         raise InputError(f"not valid TOML ({error})", source=str(path)) from None
     except ValueError:  # Python converts no whole number of more than 4300 digits

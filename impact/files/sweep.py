@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass
-from typing import Annotated, Any, Literal
+from typing import Annotated, Any, Literal, get_args
 
 import numpy as np
 from pydantic import AfterValidator, BeforeValidator, Field
@@ -13,6 +13,7 @@ from ...core.approach import speeds_at_touch
 from ...core.arrays import Array
 from ...core.errors import InputError, InputErrors
 from ...core.inputs.toml_input import InputTable, parse_model
+from ...core.rig import Friction, Height, Mass, Quantity, Speed
 from ..batch import Change, impacts, scenes_over, unchanged
 from ..columns import Impacts
 from ..integrate import Settings
@@ -63,22 +64,33 @@ def _all(accept: Any, allowed: str) -> AfterValidator:
     return AfterValidator(check)
 
 
+def _as_one(kind: Any) -> AfterValidator:
+    """Hold every value to the range of the number that it stands for."""
+    within = get_args(kind)[1].func
+
+    def check(values: tuple[float, ...]) -> tuple[float, ...]:
+        for x in (min(values), max(values)):
+            within(Quantity(value=x))
+        return values
+
+    return AfterValidator(check)
+
+
 _Values = Annotated[tuple[float, ...], BeforeValidator(_spread)]
-_Positive = Annotated[_Values, _all(lambda x: x > 0.0, "above 0")]
 
 
 class SweepTable(InputTable):
     """`[sweep]`: values of the conditions named; each a list or a range."""
 
-    impact_speed_m_s: _Positive = ()
+    impact_speed_m_s: Annotated[_Values, _as_one(Speed)] = ()
     """Speeds along the flat's normal."""
-    drop_height_m: _Positive = ()
+    drop_height_m: Annotated[_Values, _as_one(Height)] = ()
     """Heights of fall."""
     angle_deg: Annotated[_Values, _all(lambda x: 0.0 < x <= 90.0, "above 0 and up to 90")] = ()
     """Angles, as in [impact]."""
-    friction: Annotated[_Values, _all(lambda x: x >= 0.0, "0 or more")] = ()
+    friction: Annotated[_Values, _as_one(Friction)] = ()
     """Coefficients of friction."""
-    mass_kg: _Positive = ()
+    mass_kg: Annotated[_Values, _as_one(Mass)] = ()
     """Masses of the striker."""
     approach_tangential_m_s: _Values = ()
     """Speeds along the flat."""

@@ -15,6 +15,7 @@ import numpy.typing as npt
 from ...core.arrays import Array, Integers
 from ...core.errors import InputError, first_line, missing_extra
 from ..rules import RULES
+from ..shared.media import container_of
 from . import photron
 from .picture_file import (
     DOWN,
@@ -152,28 +153,16 @@ def repeated_frames(frames: Frame) -> Integers:
 
 
 def _video(path: Path, channel: str) -> Iterator[tuple[float, Frame]]:
-    try:
-        import av
-    except ImportError:
-        raise missing_extra("reading videos", "video") from None
-    try:
-        with av.open(str(path)) as container:
-            if not container.streams.video:
-                raise InputError("no video in it", source=str(path), allowed="a video file")
-            for frame in container.decode(video=0):
-                stamp = np.nan if frame.pts is None else float(frame.pts * frame.time_base)
-                pixels = frame.to_ndarray(format="gray" if channel == "grey" else "rgb24")
-                turned = np.rot90(
-                    one_channel(pixels, channel), int(getattr(frame, "rotation", 0)) // 90
-                )
-                yield stamp, turned
-    except av.FFmpegError as error:
-        text = getattr(error, "strerror", None) or type(error).__name__
-        raise InputError(
-            f"cannot be decoded ({text})",
-            source=str(path),
-            allowed="an AVI, MP4, MOV, MKV or CINE file",
-        ) from None
+    with container_of(path, "videos", "an AVI, MP4, MOV, MKV or CINE file") as container:
+        if not container.streams.video:
+            raise InputError("no video in it", source=str(path), allowed="a video file")
+        for frame in container.decode(video=0):
+            stamp = np.nan if frame.pts is None else float(frame.pts * frame.time_base)
+            pixels = frame.to_ndarray(format="gray" if channel == "grey" else "rgb24")
+            turned = np.rot90(
+                one_channel(pixels, channel), int(getattr(frame, "rotation", 0)) // 90
+            )
+            yield stamp, turned
 
 
 def _pictures(path: Path, channel: str) -> Iterator[tuple[float, Frame]]:

@@ -10,8 +10,9 @@ from pathlib import Path
 import numpy as np
 
 from ...core.arrays import Array
-from ...core.errors import InputError, missing_extra
+from ...core.errors import InputError
 from ..rules import RULES
+from ..shared.media import container_of
 
 
 @dataclass(frozen=True)
@@ -96,27 +97,19 @@ def _check_length(count: int, rate: float, path: Path) -> None:
 
 def _decoded(path: Path) -> tuple[Array, float]:
     """Return samples and rate of what FFmpeg decodes."""
-    try:
-        import av
-    except ImportError:
-        raise missing_extra("reading sound other than WAV", "video") from None
     parts: list[Array] = []
     total = 0
-    try:
-        with av.open(str(path)) as container:
-            if not container.streams.audio:
-                raise InputError("no sound in it", source=str(path), allowed="an audio file")
-            stream = container.streams.audio[0]
-            rate = int(stream.rate)
-            mono = av.AudioResampler(format="flt", layout="mono", rate=rate)
-            for frame in container.decode(stream):
-                for piece in mono.resample(frame):
-                    parts.append(piece.to_ndarray().ravel().astype(np.float64))
-                    total += parts[-1].size
-                _check_length(total, rate, path)
-    except av.FFmpegError as error:
-        text = getattr(error, "strerror", None) or type(error).__name__
-        raise InputError(
-            f"cannot be decoded ({text})", source=str(path), allowed="WAV, FLAC, OGG, MP3, M4A"
-        ) from None
+    with container_of(path, "sound other than WAV", "WAV, FLAC, OGG, MP3, M4A") as container:
+        if not container.streams.audio:
+            raise InputError("no sound in it", source=str(path), allowed="an audio file")
+        import av
+
+        stream = container.streams.audio[0]
+        rate = int(stream.rate)
+        mono = av.AudioResampler(format="flt", layout="mono", rate=rate)
+        for frame in container.decode(stream):
+            for piece in mono.resample(frame):
+                parts.append(piece.to_ndarray().ravel().astype(np.float64))
+                total += parts[-1].size
+            _check_length(total, rate, path)
     return np.concatenate(parts) if parts else np.empty(0), float(rate)

@@ -352,8 +352,8 @@ def cells_of(
     InputError
         No table.
     """
-    separator = separator or _separator(lines)
     try:
+        separator = separator or _separator(lines)
         rows = list(_split(lines, separator))
     except csv.Error as error:
         raise InputError(f"not a table ({error})", source=source, allowed="a table") from None

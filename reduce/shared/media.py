@@ -1,0 +1,47 @@
+"""Films and sounds as FFmpeg decodes them, from the one file that is named.
+
+A playlist (`ffconcat`, HLS) or a container with references names other files: none is opened.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from contextlib import contextmanager
+from pathlib import Path
+from typing import Any
+
+from ...core.errors import InputError, missing_extra
+
+
+@contextmanager
+def container_of(path: Path, kind: str, allowed: str) -> Iterator[Any]:
+    """Open a film or a sound.
+
+    Parameters
+    ----------
+    path
+        Of the file.
+    kind
+        What a message calls reading it.
+    allowed
+        What it may be.
+
+    Raises
+    ------
+    InputError
+        It cannot be decoded, or PyAV is missing.
+    """
+    try:
+        import av
+    except ImportError:
+        raise missing_extra(f"reading {kind}", "video") from None
+    try:
+        # bytes come from our handle alone: FFmpeg has no protocol left to open a name with
+        with (
+            path.open("rb") as file,
+            av.open(file, container_options={"protocol_whitelist": "none"}) as container,
+        ):
+            yield container
+    except av.FFmpegError as error:
+        text = getattr(error, "strerror", None) or type(error).__name__
+        raise InputError(f"cannot be decoded ({text})", source=str(path), allowed=allowed) from None

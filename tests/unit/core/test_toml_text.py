@@ -1,0 +1,33 @@
+"""TOML as Windows editors save it, and numbers that nobody knows."""
+
+import pytest
+from dentscope.core import InputError
+from dentscope.core.inputs.toml_input import read_toml
+from dentscope.core.rig import Quantity
+from dentscope.impact.files.sweep import SweepTable
+from pydantic import ValidationError
+
+
+def test_a_byte_order_mark_is_passed_over_and_utf_16_is_named(tmp_path):
+    path = tmp_path / "a.toml"
+    path.write_text("a = 1\n", encoding="utf-8-sig")
+    assert read_toml(path) == {"a": 1}
+    path.write_text("a = 1\n", encoding="utf-16")
+    with pytest.raises(InputError, match=r"UTF-16.*saved as UTF-8"):
+        read_toml(path)
+
+
+def test_a_standard_deviation_of_more_than_a_hundred_values_is_refused():
+    assert Quantity(value=1.0, std=100.0).relative == 100.0
+    with pytest.raises(ValidationError, match="at most 100 times the value"):
+        Quantity(value=1.0, std=1e300)
+
+
+@pytest.mark.parametrize(
+    ("name", "value"),
+    [("impact_speed_m_s", 1e5), ("drop_height_m", 1e10), ("friction", 1e9), ("mass_kg", 1e-300)],
+)
+def test_a_sweep_has_the_ranges_of_a_single_impact(name, value):
+    with pytest.raises(ValidationError):
+        SweepTable.model_validate({name: [value]})
+    assert SweepTable.model_validate({name: [1.0, 2.0]}).count == 2
