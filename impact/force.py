@@ -7,7 +7,6 @@ the law's own numbers untouched, bit for bit.
 from __future__ import annotations
 
 import math
-from typing import Any
 
 import numpy as np
 from numba import float64, int64, njit, types
@@ -395,20 +394,15 @@ def find_breaks(loading, par, force, factors):
     return found[:count].copy()
 
 
-def edge_depth(radius_kernel: Any, par: Any, force: Any, factors: Any, limit: float) -> float:
+@njit(float64(BRANCH, VECTOR, VECTOR, VECTOR, float64), cache=True, _nrt=False)
+def edge_depth(radius, par, force, factors, limit):
     """Depth [m] at which the contact radius reaches `limit`; infinite when it never does."""
-    if not math.isfinite(limit):
-        return math.inf
-
-    def radius(depth: float) -> float:
-        return float(law_radius(radius_kernel, par, force, factors, depth, depth))
-
-    low, high = 0.0, 2.0 * float(force[RADIUS])
-    if radius(high) < limit:
+    low, high = 0.0, 2.0 * force[RADIUS]
+    if not math.isfinite(limit) or law_radius(radius, par, force, factors, high, high) < limit:
         return math.inf
     for _ in range(200):
         middle = 0.5 * (low + high)
-        if radius(middle) < limit:
+        if law_radius(radius, par, force, factors, middle, middle) < limit:
             low = middle
         else:
             high = middle
