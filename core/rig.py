@@ -11,7 +11,7 @@ import math
 from collections.abc import Callable
 from dataclasses import dataclass
 from types import MappingProxyType
-from typing import Annotated, Any, Literal, Self
+from typing import Annotated, Any, Literal
 
 from pydantic import (
     AfterValidator,
@@ -58,12 +58,6 @@ class Quantity(InputTable):
             raise ValueError("a number, or { value = ..., std = ... }")
         return {"value": given}
 
-    @model_validator(mode="after")
-    def _known_at_all(self) -> Self:
-        if self.value and self.relative > RULES.least_known:
-            raise ValueError(f"a std of at most {RULES.least_known:g} times the value")
-        return self
-
     @property
     def relative(self) -> float:
         """Standard deviation over value [-]."""
@@ -93,6 +87,8 @@ class Within:
         """Return the quantity if it lies in the range."""
         if wanted := self.wanted(quantity.value):
             raise ValueError(wanted)
+        if quantity.relative > RULES.least_known:
+            raise ValueError(f"a std of at most {RULES.least_known:g} times the value")
         return quantity
 
     def wanted(self, value: float) -> str:

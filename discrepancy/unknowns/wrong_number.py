@@ -35,7 +35,8 @@ _OF_BODY = {
     "mass_kg": "mass",
 }  # fmt: skip
 _SETTLED = {
-    "strength": "a hardness test of it, a tension test, or slow presses",
+    "strength": "slow presses or a hardness test: if they give what is stated, the metal feels the "
+    "rate of the blows",
     "modulus": "the metal's name or certificate", "radius": "a calliper, or a picture of the tip",
     "mass": "a scale", "speed": "a second way to measure the speed: a height, a ruler in the film",
     "friction": "a slope or a pull with a spring balance", "angle": "a protractor",

@@ -19,6 +19,7 @@ import numpy as np
 from ...core.arrays import Array
 from ...core.errors import InputError
 from ...core.rig import BodyTable, Quantity
+from ...core.rules import RULES as CORE
 from ...models import law_named
 from ...models.base import ContactLaw
 from ...models.choose import demand, follows_flow
@@ -188,7 +189,7 @@ def _shifted(setup: Setup, law: ContactLaw) -> Iterator[tuple[str, float, Setup,
 def _moved(quantity: Quantity, by: float) -> float:
     """The value `by` standard deviations off; what is positive stays so."""
     if quantity.value > 0.0:
-        return quantity.value * math.exp(by * quantity.relative)
+        return quantity.value * math.exp(min(by * quantity.relative, CORE.least_known))
     return quantity.value + by * quantity.std
 
 

@@ -107,11 +107,11 @@ def test_drop_with_drag(followed: Callable[[str], dict[str, Any]]) -> None:
         for name in ("as-timed", "drag-off")
     }
     assert {k: v["verdict"] for k, v in verdict.items()} == {
-        "as-timed": "undetermined",
+        "as-timed": "adequate",
         "drag-off": "adequate",
     }
     named = {name: sum(v["inclusion"].values()) for name, v in verdict.items()}
-    assert named["as-timed"] > 2.0 * named["drag-off"]
+    assert named["as-timed"] > 1.3 * named["drag-off"]
     # nothing but the air was left out: what it took is back, the more the faster the ball
     timed, off = (read(name).values("restitution") for name in ("as-timed", "drag-off"))
     speed = read("drag-off").trials.impact_speed_m_s
@@ -168,11 +168,12 @@ def test_indentation_from_tension(followed: Callable[[str], dict[str, Any]]) -> 
 
 
 def test_three_questions(followed: Callable[[str], dict[str, Any]]) -> None:
-    """The sheet's effect was made: nothing but the rate, or what looks the same, may lead."""
+    """The sheet's effect was made: over its speeds a rate is a constant factor, and is told so."""
     followed("three-questions")
     assert "fix wall/gran" in Path("build/dem/lammps.in").read_text()
     verdict = json.loads(Path("build/diagnose/verdict.json").read_text())
-    named = {tuple(verdict["mechanisms"]), *map(tuple, verdict["alternatives"])}
-    assert ("strain-rate-hardening",) in named
-    assert len(named) <= 3
+    (wrong,) = verdict["wrong_inputs"]
+    assert wrong["key"] == "target.Sy_Pa"
+    assert "rate of the blows" in wrong["settled_by"]
+    assert 2.5 < wrong["factor"] < 4.5
     assert "press" in json.dumps(verdict["next_experiment"])

@@ -64,7 +64,7 @@ def test_a_template_overwrites_nothing(tmp_path: Path, capsys: pytest.CaptureFix
     [
         ("speeds = [1, 2]", "sweep.speeds: unknown key"),
         ("friction = 0.1", "sweep.friction"),
-        ("friction = [0.1, -0.2]", "each 0 or more"),
+        ("friction = [0.1, -0.2]", "a number from 0 to 20"),
         ("angle_deg = { from = 10, to = 100, count = 3 }", "each above 0 and up to 90"),
         ("mass_kg = { from = 1, count = 3 }", "sweep.mass_kg: to: missing"),
         ("mass_kg = { from = 1, to = 2, count = 1 }", "count: 1 (allowed: greater than"),
