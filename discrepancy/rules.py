@@ -445,8 +445,8 @@ class DiagnosisRules:
         "of 55 sets of another make mean ln p is -1.394 with 3 and 3 nats, -1.397 with 4 and 12",
     )  # fmt: skip
     near: float = rule(
-        3.0, "nats behind the leader within which they are too [-]",
-        "twenty to one; on the same sets in front 38, named 17, right 17, as with 12 nats",
+        5.0, "nats behind the leader within which they are too [-]",
+        "a wrong strength has e^3.5 times the prior of another number, which is 5 nats of a gain",
     )  # fmt: skip
     invisible: float = rule(
         1.0, "largest effect, in standard deviations, of what cannot be seen [-]",

@@ -88,7 +88,8 @@ def _said(ranking: Ranking, odds: Odds, least: float) -> Choice:
                 for title, share in alike.items()
             )
             return Choice(OUTSIDE, (), told, tuple(alike))
-        members = _fits(ranking, (lead,))
+    members = _fits(ranking, (lead,))
+    if odds.probability[lead] >= least and members:
         number = all(map(is_wrong, members[0].mechanisms))
         return Choice(WRONG_INPUT if number else "missing-physics", members, ())
     shared = _sharing(odds)

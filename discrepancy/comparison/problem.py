@@ -117,6 +117,7 @@ class Problem:
             wrong_numbers(
                 self.rig.of, strikers, wide.__contains__,
                 observed=tuple(dict.fromkeys(self.cells.observable)),
+                moving=any(c.press is None for c in self.conditions),
                 oblique="friction.coefficient" in {n.name for n in self.nuisances},
                 fallen=max((self.rig.of[f"strikers.{s}.tip_radius_m"] for s in falls), default=0.0),
             )

@@ -39,7 +39,7 @@ _SETTLED = {
     "rate of the blows",
     "modulus": "the metal's name or certificate", "radius": "a calliper, or a picture of the tip",
     "mass": "a scale", "speed": "a second way to measure the speed: a height, a ruler in the film",
-    "friction": "a slope or a pull with a spring balance", "angle": "a protractor",
+    "friction": "a slope or a pull with a spring balance",
     "height": "a ruler from the flat to the ball's lowest point",
     "reading": "a gauge block, or the same mark by another instrument",
 }  # fmt: skip
@@ -70,7 +70,7 @@ class WrongNumber(Mechanism):
     key
         Of set.toml, as in the parameters of a verdict.
     kind
-        Strength, modulus, radius, mass, speed, friction, angle, height or reading: numbers of one
+        Strength, modulus, radius, mass, speed, friction, height or reading: numbers of one
         kind share a prior.
     title
         As a clause.
@@ -150,7 +150,7 @@ def wrong_factors(mechanisms: Sequence[Mechanism], constants: Constants) -> dict
 
 def wrong_numbers(
     numbers: Mapping[str, float], strikers: Sequence[str], unsure: Callable[[str], bool], *,
-    observed: Sequence[str], oblique: bool, fallen: float,
+    observed: Sequence[str], moving: bool, oblique: bool, fallen: float,
 ) -> Iterator[WrongNumber]:  # fmt: skip
     """Yield every stated number of a set that may be wrong.
 
@@ -164,8 +164,8 @@ def wrong_numbers(
         Whether a key is taken as unknown within a factor already.
     observed
         What was read.
-    oblique
-        Whether bodies slide.
+    moving, oblique
+        Whether anything strikes, and slides.
     fallen
         Largest radius of what falls from a stated height [m]; 0 where none does.
     """
@@ -177,7 +177,8 @@ def wrong_numbers(
                 if word == "radius_m" and table != "target":
                     continue  # of a rod's shank, which moves no reading by much
                 yield WrongNumber(key, kind, f"the stated {kind} of {body} is wrong")
-    yield WrongNumber("speed.scale", "speed", "all speeds of approach are off by one factor")
+    if moving:
+        yield WrongNumber("speed.scale", "speed", "all speeds of approach are off by one factor")
     if oblique and "friction.coefficient" in numbers and not unsure("friction.coefficient"):
         yield WrongNumber("friction.coefficient", "friction", "the stated friction is wrong")
     if fallen > 0.0:
