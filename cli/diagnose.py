@@ -59,17 +59,8 @@ def diagnose(
     finding.
     """
     if chapter5:
-        refuse_beside(
-            context,
-            "beside --chapter5",
-            "folder",
-            "confirm",
-            "law",
-            "cautious",
-            "quiet",
-            "report",
-            "solve",
-        )
+        others = ("folder", "confirm", "law", "cautious", "quiet", "report", "solve")
+        refuse_beside(context, "beside --chapter5", *others)
         studies.needed_for("`dentscope diagnose --chapter5`")
         studies.module("chapter5").demonstration(out, seed)
         return

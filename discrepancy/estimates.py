@@ -19,7 +19,7 @@ from .inference.fit import Fit
 from .inference.grid import interval
 from .rank import Ranking
 from .rules import RULES
-from .unknowns.wrong_number import WrongNumber
+from .unknowns.wrong_number import is_wrong
 
 
 def audit_rows(recordings: RecordingSet) -> tuple[dict[str, Any], ...]:
@@ -191,7 +191,7 @@ def limits_of(ranking: Ranking) -> dict[str, float]:
     base = ranking.base
     found = {}
     share = prior_shares([s.mechanism for s in ranking.screened])
-    for s in (s for s in ranking.screened if not isinstance(s.mechanism, WrongNumber)):
+    for s in (s for s in ranking.screened if not is_wrong(s.mechanism)):
         prior = log_prior((), share) - log_prior((s.mechanism.name,), share)
         nats = prior / RULES.temper
         # three nats are what not knowing the parameters costs

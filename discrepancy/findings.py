@@ -16,7 +16,7 @@ from .experiments.next_experiment import Proposal
 from .inference.fit import Fit
 from .locate import Located
 from .rank import Ranking
-from .unknowns.wrong_number import WrongNumber, unit_of
+from .unknowns.wrong_number import WrongNumber, is_wrong
 
 
 class WrongInput(NamedTuple):
@@ -24,34 +24,27 @@ class WrongInput(NamedTuple):
 
     Parameters
     ----------
-    key, title, settled_by, slip
-        Of set.toml; as a clause; what would settle it; the usual slip that gives such a factor, "".
+    number
+        Which.
     probability
         That it takes part.
-    stated, unit
-        As it stands, where it is one number, and its unit.
+    stated
+        As it stands [`number.unit`]; none where it is not one number.
     off, low, high
-        Factor on it, or what is added to it, with the 90 % interval.
-    added
-        Whether it is added.
+        Factor on it, or what is added to all heights [m], with the 90 % interval.
     """
 
-    key: str
-    title: str
-    settled_by: str
-    slip: str
+    number: WrongNumber
     probability: float
     stated: float | None
-    unit: str
     off: float
     low: float
     high: float
-    added: bool
 
     @property
     def would_be(self) -> tuple[float, float, float] | None:
         """What it would have to be, with the 90 % interval; none where it is not one number."""
-        if self.stated is None or self.added:
+        if self.stated is None:
             return None
         return self.stated * self.off, self.stated * self.low, self.stated * self.high
 
@@ -59,10 +52,11 @@ class WrongInput(NamedTuple):
     def told(self) -> dict[str, Any]:
         """As in verdict.json."""
         value, low, high = self.would_be or (None, None, None)
+        n = self.number
         return {
-            "key": self.key, "probability": self.probability, "stated": self.stated,
-            "value": value, "low": low, "high": high, "level": 0.9, "unit": self.unit,
-            "offset" if self.added else "factor": self.off, "settled_by": self.settled_by,
+            "key": n.key, "probability": self.probability, "stated": self.stated,
+            "value": value, "low": low, "high": high, "level": 0.9, "unit": n.unit,
+            "offset" if n.added else "factor": self.off, "settled_by": n.settled_by,
         }  # fmt: skip
 
 
@@ -134,22 +128,17 @@ class Verdict:
     @property
     def mechanisms(self) -> tuple[str, ...]:
         """Names of the best explanation's mechanisms."""
-        return tuple(m.name for m in self.best.mechanisms if not isinstance(m, WrongNumber))
+        return tuple(m.name for m in self.best.mechanisms if not is_wrong(m))
 
     @property
     def wrong_inputs(self) -> tuple[WrongInput, ...]:
         """Numbers of the sheet that are wrong by the best explanation."""
-        wrong = (m for m in self.best.mechanisms if isinstance(m, WrongNumber))
-        return tuple(self._wrong(m) for m in wrong)
+        return tuple(self._wrong(m) for m in self.best.mechanisms if is_wrong(m))
 
     def _wrong(self, m: WrongNumber) -> WrongInput:
-        found, stated = self.parameters[m.parameters[0].name], self.problem.rig.of.get(m.key)
-        off, low, high = (float(found[k]) for k in ("value", "low", "high"))
-        unit = self.parameters[m.key]["unit"] if m.key in self.parameters else unit_of(m.key)
-        return WrongInput(
-            m.key, m.title, m.settled_by, m.slip(low, high), self.inclusion.get(m.name, 0.0),
-            stated, unit, off, low, high, m.parameters[0].unit == "m",
-        )  # fmt: skip
+        found = self.parameters[m.parameters[0].name]
+        off = (float(found[k]) for k in ("value", "low", "high"))
+        return WrongInput(m, self.inclusion.get(m.name, 0.0), self.problem.rig.of.get(m.key), *off)
 
     @property
     def alternatives(self) -> tuple[tuple[str, ...], ...]:

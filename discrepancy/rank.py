@@ -18,7 +18,7 @@ from .inference.outliers import outlying, without_weight
 from .inference.together import responses_at
 from .inference.window import sharpened
 from .rules import RULES
-from .unknowns.wrong_number import WrongNumber
+from .unknowns.wrong_number import is_wrong
 
 Progress = Callable[[str], None]
 
@@ -133,7 +133,7 @@ def rank(
                 screened.append(found)
                 continue
             reason = f"its largest plausible effect is {size:.1g} standard errors in all"
-        if mechanism.named and not isinstance(mechanism, WrongNumber):
+        if mechanism.named and not is_wrong(mechanism):
             excluded[mechanism.name] = reason
     problem, base, screened = _cleared(simulator, base, screened)
     simulator = simulator.of(problem)

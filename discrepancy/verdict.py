@@ -18,7 +18,7 @@ from ..recordings import RecordingSet
 from .baseline.laws import LawChoice
 from .choice.decide import Choice, decide
 from .choice.odds import OUTSIDE, Odds, odds_of
-from .choice.own_sets import fit_test
+from .choice.own_sets import FitTest, fit_test
 from .choice.pairs import with_pairs
 from .choice.thresholds import Nulls, null_residuals
 from .comparison.forward import Point, Simulator
@@ -39,7 +39,6 @@ from .estimates import (
 from .experiments.next_experiment import propose
 from .findings import Verdict
 from .heldout import held_out
-from .inference.fit import Fit
 from .inference.sampling import confirm_evidence
 from .locate import locate
 from .rank import Progress, Ranking, rank
@@ -58,11 +57,12 @@ class _Asked(NamedTuple):
 
 
 class _Explained(NamedTuple):
-    """All explanations fitted, and sets with nothing missing."""
+    """All explanations fitted, sets with nothing missing, and how each fits its own sets."""
 
     simulator: Simulator
     ranking: Ranking
     nulls: Nulls
+    tests: dict[str, FitTest]
 
 
 class _Decided(NamedTuple):
@@ -127,9 +127,7 @@ def diagnose(
 
 
 def _decided(found: _Explained, sampled: dict[str, float], cautious: bool) -> _Decided:
-    def beside(fitted: Fit) -> float:
-        return fit_test(fitted, found.nulls).log_odds
-
+    beside = {name: one.log_odds for name, one in found.tests.items()}
     odds = odds_of(found.ranking, sampled=sampled, beside=beside)
     return _Decided(decide(found.ranking, odds, cautious=cautious), odds, sampled)
 
@@ -141,12 +139,14 @@ def _explained(asked: _Asked, simulator: Simulator, *, nulls: int) -> _Explained
     simulator = simulator.of(ranking.problem)
     ranking = with_pairs(simulator, ranking, progress=asked.progress)
     asked.progress("simulating sets in which nothing is missing")
-    return _Explained(simulator, ranking, null_residuals(simulator, ranking.base, nulls, asked.rng))
+    residuals = null_residuals(simulator, ranking.base, nulls, asked.rng)
+    tests = {f.name: fit_test(f, residuals) for f in ranking.fits}
+    return _Explained(simulator, ranking, residuals, tests)
 
 
 def _told(asked: _Asked, found: _Explained, decided: _Decided) -> Verdict:
     """Locate the mismatch, predict what was left out, propose, and say it all."""
-    simulator, ranking, nulls = found
+    simulator, ranking, nulls, tests = found
     choice, odds, sampled = decided
     problem, base = ranking.problem, ranking.base
     asked.progress("predicting conditions that were left out")
@@ -157,7 +157,7 @@ def _told(asked: _Asked, found: _Explained, decided: _Decided) -> Verdict:
     stated = simulator.predict((), [Point(np.zeros(problem.n_z))])[0]
     misfit = misfit_of(problem, base, stated)
     misses = int(choice.verdict not in ("adequate", "undetermined"))
-    p_values = {f.name: fit_test(f, nulls).p_value for f in ranking.fits}
+    p_values = {name: one.p_value for name, one in tests.items()}
     notes = (*notes_of(problem, best), *law_notes(problem, misfit), *uncovered(asked.own))
     return Verdict(
         name=asked.recordings.name, seed=asked.seed, choice=choice, audit=asked.audit,

@@ -27,7 +27,7 @@ from ..core.arrays import Array
 from ..core.processes.threads import in_one_thread
 from ..discrepancy.choice import odds
 from ..discrepancy.choice.decide import decide
-from ..discrepancy.choice.odds import OUTSIDE, PRIORS, odds_of
+from ..discrepancy.choice.odds import OUTSIDE, PRIORS, gains, odds_of
 from ..discrepancy.choice.own_sets import fit_test
 from ..discrepancy.choice.pairs import with_pairs
 from ..discrepancy.choice.thresholds import Nulls, null_residuals
@@ -82,17 +82,15 @@ def explained(problem: Problem) -> Explained:
     return Explained(ranking, nulls)
 
 
-def said(found: Explained, gains: Mapping[str, float] = MappingProxyType({})) -> dict[str, Any]:
+def said(found: Explained, more: Mapping[str, float] = MappingProxyType({})) -> dict[str, Any]:
     """Return the verdict, the names in it and all probabilities that count.
 
-    `gains` are added to the ln evidence of explanations.
+    `more` is added to the ln evidence of explanations.
     """
     ranking = found.ranking
-    more = {f.name: f.log_evidence - ranking.base.log_evidence for f in ranking.fits}
-    more = {s.mechanism.name: s.log_bayes for s in ranking.screened} | more
     each = odds_of(
-        ranking, sampled={k: x + gains.get(k, 0.0) for k, x in more.items()},
-        beside=lambda fitted: fit_test(fitted, found.nulls).log_odds,
+        ranking, sampled={k: x + more.get(k, 0.0) for k, x in gains(ranking).items()},
+        beside={f.name: fit_test(f, found.nulls).log_odds for f in ranking.fits},
     )  # fmt: skip
     choice = decide(ranking, each)
     return {
@@ -160,15 +158,15 @@ def widths(found: Explained, times: float) -> tuple[Explained, dict[str, float]]
     def screened(s: Screened) -> float:
         return gain(base.mixture.log_likelihood(base.residual - s.effect), s.grid)
 
-    gains = {s.mechanism.name: screened(s) for s in ranking.screened}
-    gains |= {f.name: gain(f.log_likelihood, f.grid) for f in (*ranking.singles, *ranking.pairs)}
+    wider = {s.mechanism.name: screened(s) for s in ranking.screened}
+    wider |= {f.name: gain(f.log_likelihood, f.grid) for f in (*ranking.singles, *ranking.pairs)}
     nameless = tuple(
         replace(n, log_bayes=n.log_bayes + (
             gain(n.fit.log_likelihood, n.fit.grid) if n.fit else screened(n.screened)
         ))
         for n in ranking.nameless
     )  # fmt: skip
-    return found._replace(ranking=replace(ranking, nameless=nameless)), gains
+    return found._replace(ranking=replace(ranking, nameless=nameless)), wider
 
 
 _ROWS: Mapping[str, Callable[[float], ExitStack]] = {

@@ -20,7 +20,6 @@ FAMILIES: dict[str, tuple[str, tuple[str, ...]]] = {
     ),
     "surface": ("the surfaces do not meet bare and smooth",
                 ("roughness", "adhesion", "squeeze-film")),
-    "tip": ("the tip is not the stated cap", ("truncated-tip",)),
     "friction": (
         "the bodies do not slide by one coefficient",
         ("velocity-dependent-friction", "ploughing-friction", "tangential-compliance",

@@ -10,17 +10,16 @@ two at once and what no name covers compete in one sum; nothing is decided by a 
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
 
 import numpy as np
 from scipy.special import logsumexp
 
 from ...impact.mechanisms.base import Mechanism
-from ..inference.fit import Fit
 from ..rank import Ranking
 from ..rules import RULES
-from ..unknowns.wrong_number import WRONG, WrongNumber
+from ..unknowns.wrong_number import WRONG, is_wrong
 from .outside import odd_repeats, outside_of
 
 OUTSIDE = "outside-library"
@@ -77,7 +76,7 @@ class Odds:
 
 def odds_of(
     ranking: Ranking, *, sampled: Mapping[str, float] | None = None,
-    beside: Callable[[Fit], float] | None = None,
+    beside: Mapping[str, float] | None = None,
 ) -> Odds:  # fmt: skip
     """Return the probabilities of a ranking's explanations.
 
@@ -88,10 +87,9 @@ def odds_of(
     sampled
         Sampled ln evidence over the baseline, of the explanations that have it.
     beside
-        Ln Bayes factor of something that acts beside what leads, by how that fits.
+        Ln Bayes factor of something that acts beside each fit, by how that fits.
     """
-    gained = {s.mechanism.name: s.log_bayes for s in ranking.screened}
-    gained |= {f.name: f.log_evidence - ranking.base.log_evidence for f in ranking.fits}
+    gained = gains(ranking)
     gained |= {k: v for k, v in (sampled or {}).items() if k in gained}
     share = prior_shares([s.mechanism for s in ranking.screened])
     names: dict[str, tuple[str, ...]] = {BASELINE: (), OUTSIDE: ()}
@@ -100,13 +98,19 @@ def odds_of(
         names[label] = () if label == BASELINE else tuple(label.split("+"))
         log[label] = log_prior(names[label], share) + tempered(gain)
     log[OUTSIDE], alike = _outside(ranking, log)
-    lead = max(ranking.fits, key=lambda f: log[f.name])
-    if beside is not None:
-        more = log[lead.name] + math.log(RULES.beside) + beside(lead)
+    if beside:
+        lead = max(beside, key=lambda name: log[name])
+        more = log[lead] + math.log(RULES.beside) + beside[lead]
         log[OUTSIDE] = float(np.logaddexp(log[OUTSIDE], more))
     total = float(logsumexp(list(log.values())))
     found = {k: math.exp(x - total) for k, x in sorted(log.items(), key=lambda item: -item[1])}
     return Odds(names, _supported(found), alike)
+
+
+def gains(ranking: Ranking) -> dict[str, float]:
+    """Return the gain in ln evidence of every explanation, by its screening where not fitted."""
+    found = {s.mechanism.name: s.log_bayes for s in ranking.screened}
+    return found | {f.name: f.log_evidence - ranking.base.log_evidence for f in ranking.fits}
 
 
 def tempered(gain: float) -> float:
@@ -123,7 +127,7 @@ def prior_shares(screened: Sequence[Mechanism]) -> dict[str, float]:
     kinds: dict[str, list[str]] = {}
     named = []
     for m in screened:
-        if isinstance(m, WrongNumber):
+        if is_wrong(m):
             kinds.setdefault(m.kind if m.key != STRENGTH else STRENGTH, []).append(m.name)
         else:
             named.append(m.name)

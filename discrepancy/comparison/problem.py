@@ -39,8 +39,6 @@ from .cells import NO_CELLS, Cells, Scatter, cells_of
 from .conditions import Condition, conditions_of
 from .derived import derived_columns
 
-NO_FACTORS: Mapping[str, float] = {}
-
 
 @dataclass(frozen=True, eq=False)
 class Problem:
@@ -110,18 +108,17 @@ class Problem:
     @property
     def wrong_numbers(self) -> tuple[WrongNumber, ...]:
         """Every stated number that may be wrong; not what is taken as unknown already."""
-        wide = {n.name for n in self.nuisances if not n.stated or n.spread >= RULES.guessed}
+        known = {key for key, x in self.rig.of.items() if math.isfinite(x)}
+        # what acts here alone: a friction where bodies slide, a factor on speeds where they strike
+        known -= {"friction.coefficient"}
+        for n in self.nuisances:
+            guess = n.spread >= RULES.guessed or not (n.stated or n.name == "speed.scale")
+            (known.discard if guess else known.add)(n.name)
         strikers = tuple(dict.fromkeys(c.striker for c in self.conditions))
         falls = [c.striker for c in self.conditions if c.around.from_height]
-        return tuple(
-            wrong_numbers(
-                self.rig.of, strikers, wide.__contains__,
-                observed=tuple(dict.fromkeys(self.cells.observable)),
-                moving=any(c.press is None for c in self.conditions),
-                oblique="friction.coefficient" in {n.name for n in self.nuisances},
-                fallen=max((self.rig.of[f"strikers.{s}.tip_radius_m"] for s in falls), default=0.0),
-            )
-        )  # fmt: skip
+        fallen = max((self.rig.of[f"strikers.{s}.tip_radius_m"] for s in falls), default=0.0)
+        observed = tuple(dict.fromkeys(self.cells.observable))
+        return tuple(wrong_numbers(known, strikers, observed, fallen=fallen))
 
     @property
     def scales(self) -> tuple[tuple[str, int], ...]:
@@ -181,7 +178,7 @@ class Problem:
             "rebound_spin_rad_s": second.own_spin(seen["rebound_spin_rad_s"], spin, R, mass),
         }
 
-    def scenes(self, z: Array, factors: Mapping[str, float] = NO_FACTORS) -> list[Scene]:
+    def scenes(self, z: Array, factors: Mapping[str, float] | None = None) -> list[Scene]:
         """Return the baseline scene of every condition at the unknowns z, shape (n_z,).
 
         `factors` are those on numbers of the rig that are wrong.

@@ -77,19 +77,20 @@ def headline(v: Verdict) -> str:
 
 def _wrong(w: WrongInput) -> str:
     """One wrong number: what it would have to be, the usual slip, and what settles it."""
-    found = f"A number of the sheet is wrong: {w.title} (probability {percent(w.probability)})."
-    if w.would_be is not None and w.key != "speed.scale":
+    n = w.number
+    found = f"A number of the sheet is wrong: {n.title} (probability {percent(w.probability)})."
+    if w.would_be is not None:
         value, low, high = w.would_be
         found += (
-            f" {w.key} would have to be {quantity(value, w.unit)} ({interval(low, high, w.unit)}) "
-            f"in place of {quantity(w.stated or 0.0, w.unit)}"
+            f" {n.key} would have to be {quantity(value, n.unit)} ({interval(low, high, n.unit)}) "
+            f"in place of {quantity(w.stated or 0.0, n.unit)}"
         )
-    elif w.added:
-        found += f" By {quantity(w.off, 'm')} ({interval(w.low, w.high, 'm')})"
     else:
-        found += f" By a factor of {w.off:.3g} ({w.low:.3g} to {w.high:.3g})"
-    slip = f"; usual slip: {w.slip}" if w.slip else ""
-    return f"{found}{slip}. It would settle it: {w.settled_by}."
+        unit = n.parameters[0].unit
+        found += f" By {'' if n.added else 'a factor of '}{quantity(w.off, unit)} "
+        found += f"({interval(w.low, w.high, unit)})"
+    slip = n.slip(w.low, w.high)
+    return f"{found}{f'; usual slip: {slip}' if slip else ''}. It would settle it: {n.settled_by}."
 
 
 def _family(v: Verdict) -> str:

@@ -10,8 +10,9 @@ for cold-drawn steel 1.9, a hardness for a strength 3).
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Iterator, Mapping, Sequence
+from collections.abc import Collection, Iterator, Mapping, Sequence
 from dataclasses import replace
+from typing import TypeGuard
 
 from ...core.arrays import Array
 from ...core.observables import OBSERVABLES
@@ -30,10 +31,12 @@ WRONG = "wrong-input:"
 """Begins the name of every such explanation; the rest is the number's key."""
 
 _SOURCE = "slips of sheets: units, a diameter for a radius, another temper (module's docstring)"
-_OF_BODY = {
-    "Sy_Pa": "strength", "E_Pa": "modulus", "tip_radius_m": "radius", "radius_m": "radius",
-    "mass_kg": "mass",
+_OF_TARGET = {
+    "Sy_Pa": ("strength", "Pa"), "E_Pa": ("modulus", "Pa"), "radius_m": ("radius", "m"),
+    "mass_kg": ("mass", "kg"),
 }  # fmt: skip
+_OF_STRIKER = {**_OF_TARGET, "tip_radius_m": _OF_TARGET["radius_m"]}
+del _OF_STRIKER["radius_m"]  # of a rod's shank, which moves no reading by much
 _SETTLED = {
     "strength": "slow presses or a hardness test: if they give what is stated, the metal feels the "
     "rate of the blows",
@@ -56,19 +59,13 @@ _SLIPS = (
 """Kind, factor that mends it, and the slip."""
 
 
-def unit_of(key: str) -> str:
-    """Return the unit of a key of set.toml or of a column, by its end."""
-    ends = {"_m_s": "m/s", "_Pa": "Pa", "_kg": "kg", "_m": "m", "_s": "s", "_N": "N"}
-    return next((unit for end, unit in ends.items() if key.endswith(end)), "-")
-
-
 class WrongNumber(Mechanism):
     """A number of the sheet that is off by a factor.
 
     Parameters
     ----------
-    key
-        Of set.toml, as in the parameters of a verdict.
+    key, unit
+        Of set.toml, as in the parameters of a verdict; the SI unit, "-" of what is a factor itself.
     kind
         Strength, modulus, radius, mass, speed, friction, height or reading: numbers of one
         kind share a prior.
@@ -79,14 +76,19 @@ class WrongNumber(Mechanism):
     static = True
     form = 0.0
 
-    def __init__(self, key: str, kind: str, title: str) -> None:
-        self.key, self.kind, self.title = key, kind, title
+    def __init__(self, key: str, kind: str, title: str, unit: str = "-") -> None:
+        self.key, self.kind, self.title, self.unit = key, kind, title, unit
         self.name = WRONG + key
         self.equations = f"{key} times the factor"
         most, nodes = RULES.wrong_most, RULES.wrong_nodes
         self.parameters = (
             Parameter(f"{key}_factor", "-", 1.0 / most, most, "log", 1.0, _SOURCE, nodes=nodes),
         )  # fmt: skip
+
+    @property
+    def added(self) -> bool:
+        """Whether it is off by what is added to it, not by a factor."""
+        return self.parameters[0].unit != "-"
 
     @property
     def settled_by(self) -> str:
@@ -134,7 +136,7 @@ class WrongHeight(WrongNumber):
         return scene.with_(approach=replace(a, speed=math.sqrt(max(fallen, 0.04 * a.speed**2))))
 
 
-def is_wrong(mechanism: Mechanism) -> bool:
+def is_wrong(mechanism: Mechanism) -> TypeGuard[WrongNumber]:
     """Whether an explanation is a number of the sheet."""
     return isinstance(mechanism, WrongNumber)
 
@@ -149,44 +151,31 @@ def wrong_factors(mechanisms: Sequence[Mechanism], constants: Constants) -> dict
 
 
 def wrong_numbers(
-    numbers: Mapping[str, float], strikers: Sequence[str], unsure: Callable[[str], bool], *,
-    observed: Sequence[str], moving: bool, oblique: bool, fallen: float,
-) -> Iterator[WrongNumber]:  # fmt: skip
+    known: Collection[str], strikers: Sequence[str], observed: Sequence[str], *, fallen: float
+) -> Iterator[WrongNumber]:
     """Yield every stated number of a set that may be wrong.
 
     Parameters
     ----------
-    numbers
-        Of the rig, by key.
-    strikers
-        Those that strike.
-    unsure
-        Whether a key is taken as unknown within a factor already.
-    observed
-        What was read.
-    moving, oblique
-        Whether anything strikes, and slides.
+    known
+        Keys of numbers that readings hang on and that are not taken as unknown already.
+    strikers, observed
+        What strikes, and what was read.
     fallen
         Largest radius of what falls from a stated height [m]; 0 where none does.
     """
-    bodies = {"target": "the flat"} | {f"strikers.{s}": f"striker {s}" for s in strikers}
-    for table, body in bodies.items():
-        for word, kind in _OF_BODY.items():
-            key = f"{table}.{word}"
-            if math.isfinite(numbers.get(key, math.nan)) and not unsure(key):
-                if word == "radius_m" and table != "target":
-                    continue  # of a rod's shank, which moves no reading by much
-                yield WrongNumber(key, kind, f"the stated {kind} of {body} is wrong")
-    if moving:
+    tables = {"target": ("the flat", _OF_TARGET)}
+    tables |= {f"strikers.{s}": (f"striker {s}", _OF_STRIKER) for s in strikers}
+    for table, (body, words) in tables.items():
+        for word, (kind, unit) in words.items():
+            if (key := f"{table}.{word}") in known:
+                yield WrongNumber(key, kind, f"the stated {kind} of {body} is wrong", unit)
+    if "speed.scale" in known:
         yield WrongNumber("speed.scale", "speed", "all speeds of approach are off by one factor")
-    if oblique and "friction.coefficient" in numbers and not unsure("friction.coefficient"):
+    if "friction.coefficient" in known:
         yield WrongNumber("friction.coefficient", "friction", "the stated friction is wrong")
     if fallen > 0.0:
         yield WrongHeight(4.0 * fallen)
-    if len(observed) > 1:
-        for name in observed:
-            title = f"all readings of {OBSERVABLES[name].label} are off by one factor"
-            yield WrongReading(name, "reading", title)
-
-
-__all__ = ["WRONG", "WrongHeight", "WrongNumber", "WrongReading", "wrong_factors", "wrong_numbers"]
+    for name in observed if len(observed) > 1 else ():
+        title = f"all readings of {OBSERVABLES[name].label} are off by one factor"
+        yield WrongReading(name, "reading", title)

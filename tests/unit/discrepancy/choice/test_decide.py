@@ -207,14 +207,9 @@ def test_wrong_numbers_share_by_kind_and_the_struck_strength_has_most() -> None:
 
 
 def test_what_its_own_sets_refute_gives_its_probability_to_something_outside(toy) -> None:
-    ranking, asked = singles_of(toy, 30.0, 0.0), []
-
-    def beside(fitted):
-        asked.append(fitted.name)
-        return math.log(3.0 / RULES.beside)
-
-    found = odds_of(ranking, beside=beside)
-    assert asked == ["a"]  # what leads
+    ranking = singles_of(toy, 30.0, 0.0)
+    # of the others it is not asked
+    found = odds_of(ranking, beside={"a": math.log(3.0 / RULES.beside), "b": 500.0})
     assert found.outside == pytest.approx(3.0 * found.probability["a"], rel=1e-3)
 
 
