@@ -23,6 +23,10 @@ from ..core.provenance import content_id
 from ..core.rig import MaterialTable, material_keys
 from .rules import RULES
 
+# limit: depths at which pressure and surfaces are kept [-]: as many curves as a figure shows
+# apart
+_PROFILE_DEPTHS = 10
+
 
 @dataclass(frozen=True)
 class Case:
@@ -177,7 +181,7 @@ def standard_case(
         d for d in {*(w * onset for w in unload_w), *unload_depths} if first < d <= deepest
     )
     depths = _through(fem.geometric_depths(first, deepest, n_depths), through)
-    kept = np.unique(np.linspace(0, n_depths - 1, RULES.profile_depths).round().astype(int))
+    kept = np.unique(np.linspace(0, n_depths - 1, _PROFILE_DEPTHS).round().astype(int))
     problem = fem.ContactProblem(
         pair=pair,
         depths=depths,

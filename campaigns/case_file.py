@@ -22,6 +22,9 @@ from .quality import quality_of
 from .rules import RULES
 from .schema import CURVE, FORMAT, PROFILES, UNLOADING_PROFILES, Dataset
 
+# limit: values of an array that is compressed [-]: below it compression saves nothing
+_COMPRESSED_FROM = 512
+
 
 def case_image(
     case: Case,
@@ -144,7 +147,7 @@ def _put_curve(group: h5py.Group, curve: Curve) -> None:
 def _put_array(
     group: h5py.Group, name: str, values: Array | npt.NDArray[np.float32], about: Dataset
 ) -> None:
-    packed = {"compression": "gzip", "shuffle": True} if values.size > RULES.compressed_from else {}
+    packed = {"compression": "gzip", "shuffle": True} if values.size > _COMPRESSED_FROM else {}
     if values.size:  # HDF5 has no chunk of nothing, and so no checksum of it
         packed |= {"chunks": values.shape, "fletcher32": True}
     data = group.create_dataset(name, data=values, **packed)

@@ -21,7 +21,12 @@ import numpy as np
 import numpy.typing as npt
 
 from ..core.errors import InputError
-from .rules import RULES
+
+# limit: largest text in one [bytes]: a specification takes some thousand
+_TEXT_BYTES = 1_000_000
+
+# limit: groups of a file within each other [-]: ours have three
+_GROUPS_DEEP = 4
 
 SEALED_FROM = 512
 """Size of the user block."""
@@ -36,7 +41,8 @@ DAMAGE = (
 
 _MAGIC = b"dentscope-sealed-1\n".ljust(32, b"\0")
 _LAYOUT = ("v110", "v110")  # of HDF5: the first whose headers carry checksums at no cost of room
-_MOST_DATA = RULES.dataset_bytes
+# limit: largest dataset of a file that is read [bytes]: memory of a small machine
+_MOST_DATA = 256_000_000
 _MOST_RATIO = 1100  # of deflate, which gives at most 1032 bytes for one
 _KINDS = "fiubSU"
 
@@ -141,7 +147,7 @@ def read_tree(group: h5py.Group, *, depth: int = 0) -> Tree:
     ValueError
         Something leads elsewhere, claims more than it holds, or is of a kind that we never write.
     """
-    if depth > RULES.groups_deep:
+    if depth > _GROUPS_DEEP:
         raise ValueError(f"{group.name} lies too deep")
     tree = Tree(attributes={name: _attribute(group, name) for name in group.attrs})
     for name in group:
@@ -184,6 +190,6 @@ def _attribute(item: Any, name: str) -> Any:
     value = item.attrs[name]
     if isinstance(value, bytes):
         value = value.decode()
-    if isinstance(value, str) and len(value) > RULES.text_bytes:
+    if isinstance(value, str) and len(value) > _TEXT_BYTES:
         raise ValueError(f"attribute {name} of {item.name} has {len(value)} characters")
     return value.item() if isinstance(value, np.generic) else value

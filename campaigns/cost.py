@@ -17,9 +17,21 @@ from ..core.arrays import Array
 from .case import Case
 from .rules import RULES
 
+# limit: processor time of a case of each accuracy, for a forecast [s]: published cases
+_COST_BASE_S = (("smoke", 16.0), ("quick", 26.0), ("production", 90.0))
+
+# limit: the machine's own speed where those took their times [s]: published cases
+_COST_REFERENCE_S = 0.042
+
+# limit: powers of E'/Sy_min, and of Sy* above and below 1, in a forecast [-]: published cases
+_COST_SLOPES = (0.5, 0.35, -0.5)
+
+# limit: depth from which a forecast of time grows [R]
+_COST_DEPTH = 0.1
+
 # processor seconds of a deep case with E'/Sy_min = 300 and Sy* = 1: measured on 44 cases with
 # numerics version 3, over the 2.3 by which version 4 is faster
-_BASE_S = dict(RULES.cost_base_s)
+_BASE_S = dict(_COST_BASE_S)
 
 
 class Forecast:
@@ -106,7 +118,7 @@ def pace_of_this_machine() -> float:
         started = time.perf_counter()
         _factorise(matrix)
         times.append(time.perf_counter() - started)
-    return float(np.median(times)) / RULES.cost_reference_s
+    return float(np.median(times)) / _COST_REFERENCE_S
 
 
 def _laplacian(n: int) -> object:
@@ -124,9 +136,9 @@ def _factorise(matrix: object) -> None:
 
 def _measured(case: Case) -> float:
     """Logarithm of the processor seconds measured before, by resolution, depth and pair."""
-    deep = float(np.sqrt(min(case.depths[-1] / RULES.cost_depth, 1.0)))
+    deep = float(np.sqrt(min(case.depths[-1] / _COST_DEPTH, 1.0)))
     base = _BASE_S.get(case.accuracy.level.split(",")[0], _BASE_S["production"])
-    return float(np.log(base * deep) + _features(case)[1:] @ RULES.cost_slopes)
+    return float(np.log(base * deep) + _features(case)[1:] @ _COST_SLOPES)
 
 
 def _features(case: Case) -> Array:

@@ -18,8 +18,17 @@ from ..core.errors import InputError, first_line
 from ..core.provenance import differences, environment
 from ..fem import Solution, solve
 from .case import Case
-from .rules import RULES
 from .workers import answers
+
+# limit: how long a run on a cluster goes on without any worker [s]: a worker's restart takes less
+_PATIENCE_S = 60.0
+
+# limit: between two looks at which dask workers are there [s]: tools/benchmarks/bench_scale.py
+_LOOK_S = 1.0
+
+# limit: cases sent ahead to each dask worker [-]: none waits while one is on its way
+# (tools/benchmarks/bench_scale.py)
+_AHEAD = 4
 
 
 @dataclass(frozen=True)
@@ -126,11 +135,11 @@ class DaskExecutor:
     workers: int
     client: Any
     work: Work = solve_specification
-    patience_s: float = RULES.patience_s
+    patience_s: float = _PATIENCE_S
 
     @classmethod
     def connect(
-        cls, address: str, *, timeout_s: float = 10.0, patience_s: float = RULES.patience_s
+        cls, address: str, *, timeout_s: float = 10.0, patience_s: float = _PATIENCE_S
     ) -> DaskExecutor:
         """Connect to a scheduler, wait for a worker, and see that all are of this source.
 
@@ -190,9 +199,9 @@ class DaskExecutor:
 
         def fill() -> None:
             nonlocal workers, counted
-            if time.monotonic() - counted > RULES.look_s:
+            if time.monotonic() - counted > _LOOK_S:
                 workers, counted = self._worker_count(), time.monotonic()
-            while len(keys) < RULES.ahead * max(1, workers):
+            while len(keys) < _AHEAD * max(1, workers):
                 key, case = next(todo, ("", None))
                 if case is None:
                     return
@@ -220,7 +229,7 @@ class DaskExecutor:
         looked = time.monotonic()
         while not running.has_ready():
             time.sleep(0.02)
-            if time.monotonic() - looked > RULES.look_s:
+            if time.monotonic() - looked > _LOOK_S:
                 if not self._worker_count():
                     self._wait_for_worker()
                 looked = time.monotonic()

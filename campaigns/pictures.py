@@ -9,7 +9,9 @@ import numpy as np
 from ..core.material import Pair
 from ..core.output import figure, write_figure
 from .records import CaseRecord
-from .rules import RULES
+
+# limit: pairs that a picture names one by one [-]: colours that an eye parts
+_PAIRS_NAMED = 6
 
 _APPROACH = r"approach over that at first yield $\delta/\delta_c$"
 
@@ -20,7 +22,7 @@ def draw_campaign(records: list[CaseRecord], folder: Path) -> list[Path]:
     from matplotlib.colors import LogNorm
 
     made, axes = figure(2, 2, size=(10, 8))
-    many = len(records) > RULES.pairs_named
+    many = len(records) > _PAIRS_NAMED
     shades = ScalarMappable(LogNorm(0.1, 10.0, clip=True), "coolwarm")
     for record in records:
         pair = record.case.pair

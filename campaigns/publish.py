@@ -23,9 +23,18 @@ from .designs import Design, distinct_cases
 from .manifest import MANIFEST, manifest
 from .parts import CHECKSUMS, checksums, opened_part, part_of, read_part, texts_of
 from .records import CaseRecord
-from .rules import RULES
 from .run import status_of
 from .store import Store
+
+# limit: of the size of a part, when cases are shared out by their mean size [-]: where a part
+# becomes too large all the same there is one more
+_PART_FILL = 0.93
+
+# limit: published parts in all [-]: 120 MB of a repository
+_PARTS = 12
+
+# limit: size that no published part exceeds [bytes]: a repository's files stay below 10 MB
+_PART_BYTES = 10_000_000
 
 
 @dataclass(frozen=True)
@@ -57,7 +66,7 @@ class Published:
 
 
 def publish(
-    design: Design, source: Path, folder: Path, *, most_bytes: int = RULES.part_bytes
+    design: Design, source: Path, folder: Path, *, most_bytes: int = _PART_BYTES
 ) -> list[Path]:
     """Write a complete design as parts into `folder`; parts that exist are never touched.
 
@@ -103,9 +112,9 @@ def publish(
             )
         stored = {record.id: record for record in store.read_all()}
         made = _made_parts([stored[key] for key in wanted], design.name, most_bytes)
-        if len(list(folder.glob("*.h5"))) + len(made) > RULES.parts:
+        if len(list(folder.glob("*.h5"))) + len(made) > _PARTS:
             raise InputError(
-                f"{len(made)} more parts", source=str(folder), allowed=f"{RULES.parts} in all"
+                f"{len(made)} more parts", source=str(folder), allowed=f"{_PARTS} in all"
             )
         parts = {f"{design.name}-{k}.h5": part for k, part in enumerate(made, start=1)}
         sums = checksums(folder) | {k: sha256(v).hexdigest() for k, v in parts.items()}
@@ -244,8 +253,8 @@ def _made_parts(records: list[CaseRecord], design: str, most_bytes: int) -> list
     whole = part_of(records, about=about)
     if len(whole) < most_bytes:
         return [whole]
-    count = int(np.ceil(len(whole) / (RULES.part_fill * most_bytes)))
-    while count <= max(RULES.parts, len(records)):
+    count = int(np.ceil(len(whole) / (_PART_FILL * most_bytes)))
+    while count <= max(_PARTS, len(records)):
         shares = np.array_split(np.arange(len(records)), count)
         parts = [part_of([records[i] for i in share], about=about) for share in shares]
         if all(len(part) < most_bytes for part in parts):

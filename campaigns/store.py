@@ -27,8 +27,10 @@ from .case import Case
 from .case_file import case_image, write_fields
 from .contents import DAMAGE, check_seal, damage, open_image
 from .records import CaseRecord, Summary, read_case, read_summary
-from .rules import RULES
 from .schema import FORMAT
+
+# limit: largest file of one case that is read [bytes]: one with its fields takes some megabytes
+_CASE_BYTES = 500_000_000
 
 Read = TypeVar("Read")
 
@@ -179,7 +181,7 @@ def opened_case(path: Path) -> Iterator[h5py.File]:
     InputError
         It is damaged, or no file of a case.
     """
-    image = read_bytes(path, most=RULES.case_bytes, allowed="a file of one case (.h5)")
+    image = read_bytes(path, most=_CASE_BYTES, allowed="a file of one case (.h5)")
     check_seal(image, path, allowed=_REPAIR)
     try:
         with open_image(image) as file:

@@ -19,7 +19,12 @@ from typing import Any
 from ..core.processes.children import die_with, keep_current_folder_out
 from ..core.processes.stopping import heard
 from ..core.processes.threads import one_thread_each
-from .rules import RULES
+
+# limit: how long a process may take to end before it is killed [s]
+_END_S = 5.0
+
+# limit: how often a case is given to a worker [-]: dask's own limit
+_TRIES = 3
 
 Order = tuple[Any, ...]
 
@@ -68,7 +73,7 @@ def answers(
         """Dismiss a worker that ended; whether its order gets another try."""
         crew.remove(worker)
         worker.stop()
-        if tries[worker.key] >= RULES.tries:
+        if tries[worker.key] >= _TRIES:
             return False
         todo.appendleft(worker.key)
         return True
@@ -86,7 +91,7 @@ def answers(
                     answer = worker.answer()
                     if answer is None and again(worker):
                         continue
-                    answer = answer or Answer(message=f"the worker died {RULES.tries} times")
+                    answer = answer or Answer(message=f"the worker died {_TRIES} times")
                 elif time.monotonic() > worker.until:
                     crew.remove(worker)
                     worker.stop()
@@ -133,7 +138,7 @@ class _Worker:
         self.pipe.close()
         if self.key:
             self.process.terminate()
-        self.process.join(RULES.end_s)
+        self.process.join(_END_S)
         self.process.kill()
         self.process.join()
         self.process.close()

@@ -13,7 +13,6 @@ import typer
 
 from ..core.errors import EXIT_INPUT_ERROR, InputError, printable
 from ..core.processes.stopping import STOPS, listening, stopped
-from ..core.rules import RULES as CORE
 from . import campaign, export, laws, recordings, reduce, studies
 from .case import case
 from .diagnose import diagnose
@@ -26,6 +25,9 @@ from .materials import show_materials
 from .metal import metal
 from .shared.groups import Sections
 from .shared.keys import keys
+
+# limit: mistakes that are told one by one [-]: a screen
+_MISTAKES_TOLD = 20
 
 app = typer.Typer(
     name="dentscope",
@@ -113,8 +115,8 @@ def run(arguments: list[str] | None = None) -> int:
 
 def _refused(told: str) -> int:
     lines = told.splitlines()
-    for line in lines[: CORE.mistakes_told]:
+    for line in lines[:_MISTAKES_TOLD]:
         sys.stderr.write(f"{printable(line)}\n")
-    if len(lines) > CORE.mistakes_told:
-        sys.stderr.write(f"... and {len(lines) - CORE.mistakes_told} more of this kind\n")
+    if len(lines) > _MISTAKES_TOLD:
+        sys.stderr.write(f"... and {len(lines) - _MISTAKES_TOLD} more of this kind\n")
     return EXIT_INPUT_ERROR

@@ -9,7 +9,6 @@ from typing import TYPE_CHECKING, Annotated
 import typer
 
 from ..core.errors import InputError
-from ..core.rules import RULES as CORE
 from .shared.groups import group
 from .shared.places import folder_option
 from .shared.terminal import console, say, show_table
@@ -18,6 +17,9 @@ if TYPE_CHECKING:
     from ..impact.told.discrete_elements import ExportedRow
     from ..models.base import ContactLaw
     from ..start.ball_file import ExportedBall
+
+# limit: speeds of a range that is exported [-]
+_SPEEDS_EXPORTED = 7
 
 app = group("A law for other programs: as source, or as parameters of a discrete-element code.")
 
@@ -150,7 +152,7 @@ def _of_file(speeds: tuple[float, ...]) -> list[float]:
     """The file's speeds, as many as a table shows."""
     if not speeds:
         return _speeds("0.1:10")
-    if len(speeds) <= CORE.speeds_exported:
+    if len(speeds) <= _SPEEDS_EXPORTED:
         return list(speeds)
     return _speeds(f"{min(speeds)!r}:{max(speeds)!r}")
 
@@ -176,9 +178,7 @@ def _speeds(text: str) -> list[float]:
             allowed="FIRST:LAST, the lower first, or numbers above 0 with commas [m/s]",
         )  # fmt: skip
     return (
-        np.geomspace(numbers[0], numbers[-1], CORE.speeds_exported).tolist()
-        if ":" in text
-        else numbers
+        np.geomspace(numbers[0], numbers[-1], _SPEEDS_EXPORTED).tolist() if ":" in text else numbers
     )
 
 

@@ -16,10 +16,10 @@ from contextlib import suppress
 from pathlib import Path
 
 from .processes.children import compile_without_the_folders_settings
-from .rules import RULES
 
 _STAGES = ("core", "fem", "models", "impact", "discrepancy", "studies")
-_MOST_NAMES = RULES.cache_names
+# limit: names that are tried for a folder of one's own [-]: more are an attack
+_MOST_NAMES = 20
 _VARIABLE = "NUMBA_CACHE_DIR"
 _COMPILES = re.compile(r"numba|njit|_kernel\b")
 _RELATIVE = re.compile(r"^\s*from (\.+)([\w.]*) import (\([^)]*\)|.*)", re.MULTILINE)

@@ -32,6 +32,12 @@ from .rules import RULES
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
+# limit: largest unfinished file that is read again [bytes]: memory of a small machine
+_PENDING_BYTES = 500_000_000
+
+# limit: wait for another process that changes the same folder [s]: a large set is written in less
+_FOLDER_WAIT_S = 300.0
+
 PENDING = ".dentscope-pending"
 
 NO_ROOM = {
@@ -149,14 +155,14 @@ def locked(folder: Path) -> Iterator[None]:
     Raises
     ------
     InputError
-        It cannot be locked, or another process holds it for longer than `RULES.folder_wait_s`.
+        It cannot be locked, or another process holds it for longer than `_FOLDER_WAIT_S`.
     """
     # what lies in it may still be refused, and then nothing new should lie anywhere: the lock is
     # one of the folder around it, and leaves no file
     place = folder_for_output(folder.resolve().parent)
     handle = os.open(place, os.O_RDONLY | os.O_DIRECTORY | os.O_CLOEXEC)
     try:
-        until = time.monotonic() + RULES.folder_wait_s
+        until = time.monotonic() + _FOLDER_WAIT_S
         while not _taken(handle):
             if time.monotonic() > until:
                 raise InputError(
@@ -269,7 +275,7 @@ def _pending(folder: Path, contents: Mapping[str, bytes]) -> bytes:
 
 def _read_pending(folder: Path) -> dict[str, tuple[str, bytes]]:
     place, remedy = folder / PENDING, "remove it to go on without its one change"
-    content = read_bytes(place, most=RULES.pending_bytes, allowed=remedy)
+    content = read_bytes(place, most=_PENDING_BYTES, allowed=remedy)
     body, digest = content[:-_DIGEST], content[-_DIGEST:]
     if not body.startswith(_MAGIC) or hashlib.sha256(body).digest() != digest:
         raise InputError("damaged", source=str(place), allowed=remedy)

@@ -11,7 +11,9 @@ from functools import cache
 from typing import Any
 
 from .processes.children import python_command
-from .rules import RULES
+
+# limit: time of a trial picture off screen [s]
+_RENDER_S = 120.0
 
 
 @cache
@@ -24,7 +26,7 @@ def offscreen_available() -> bool:
         answer = subprocess.run(
             python_command("-m", "dentscope.core.rendering"),
             capture_output=True,
-            timeout=RULES.render_s,
+            timeout=_RENDER_S,
             check=False,
         )
     except (OSError, subprocess.TimeoutExpired):

@@ -2,9 +2,9 @@
 
 A tuned number is one that somebody chose and that a result hangs on: a threshold, a tolerance, the
 size of a grid, a weight. A limit is one that somebody chose and that no result hangs on: of memory,
-of waiting, of what is shown, a guard against round-off or a loop without end; it stands in the same
-registers, made of `limit`. Constants of nature, coefficients that a paper printed, units and the
-layout of arrays are neither.
+of waiting, of what is shown, a guard against round-off or a loop without end; it stands beside its
+use, under a comment that begins with `limit:`. Constants of nature, coefficients that a paper
+printed, units and the layout of arrays are neither.
 """
 
 from __future__ import annotations
@@ -31,33 +31,10 @@ def rule(value: Number, meaning: str, source: str) -> Number:
     return found
 
 
-def limit(value: Number, meaning: str, source: str) -> Number:
-    """Return a field of a register that no result hangs on; parameters as of `rule`."""
-    told = {"meaning": meaning, "source": source, "limit": True}
-    found: Number = field(default=value, metadata=told)
-    return found
-
-
 @dataclass(frozen=True)
 class CoreRules:
     """What is read, waited for and told, and what is taken of a metal that is half described."""
 
-    cache_names: int = limit(
-        20, "names that are tried for a folder of one's own [-]",
-        "more are an attack",
-    )  # fmt: skip
-    table_bytes: int = limit(
-        100_000_000, "largest table that is read [bytes]",
-        "memory of a small machine",
-    )  # fmt: skip
-    table_columns: int = limit(
-        2000, "most columns of a table [-]",
-        "a logger has hundreds",
-    )  # fmt: skip
-    problems_kept: int = limit(
-        1000, "mistakes of a table that are kept one by one [-]",
-        "nobody reads more",
-    )  # fmt: skip
     specimens: float = rule(
         0.07, "standard deviation between specimens of one metal, of the stress at 0.2 % [-]",
         "15 and more bars of two steels (the docstring beside it)",
@@ -70,49 +47,9 @@ class CoreRules:
         1e-4, "plastic strain below which a tension test shows none [-]",
         "a twentieth of the proof strain",
     )  # fmt: skip
-    name_bytes: int = limit(
+    name_bytes: int = rule(
         200, "longest name that becomes a file's [bytes]",
         "file systems take 255; what is written beside a trial gets up to 55 more",
-    )  # fmt: skip
-    toml_bytes: int = limit(
-        4_000_000, "largest TOML file that is read [bytes]",
-        "memory of a small machine",
-    )  # fmt: skip
-    value_shown: int = limit(
-        80, "characters of a value in an error [-]",
-        "a line of a terminal",
-    )  # fmt: skip
-    toml_depth: int = limit(
-        20, "tables and lists within each other [-]",
-        "files of this package have four",
-    )  # fmt: skip
-    folder_wait_s: float = limit(
-        300.0, "wait for another process that changes the same folder [s]",
-        "a large set is written in less",
-    )  # fmt: skip
-    pending_bytes: int = limit(
-        500_000_000, "largest unfinished file that is read again [bytes]",
-        "memory of a small machine",
-    )  # fmt: skip
-    parent_look_s: float = limit(
-        0.5, "between two looks whether the parent is still there [s]",
-        "chosen; no measurement is kept",
-    )  # fmt: skip
-    child_bytes: int = limit(
-        1_000_000_000, "memory of a confined child [bytes]",
-        "chosen; no measurement is kept",
-    )  # fmt: skip
-    child_s: float = limit(
-        60.0, "processor time of a confined child [s]",
-        "chosen; no measurement is kept",
-    )  # fmt: skip
-    stop_again_s: float = limit(
-        0.5, "after how long an interruption that nobody has heard comes again [s]",
-        "chosen; no measurement is kept",
-    )  # fmt: skip
-    render_s: float = limit(
-        120.0, "time of a trial picture off screen [s]",
-        "chosen; no measurement is kept",
     )  # fmt: skip
     tabor_spread: float = rule(
         0.10, "relative standard deviation of hardness over strength [-]",
@@ -125,18 +62,6 @@ class CoreRules:
     least_known: float = rule(
         100.0, "largest standard deviation over a value that is stated [-]",
         "what is known within e^100 either way is not known: leave it out",
-    )  # fmt: skip
-    mistakes_told: int = limit(
-        20, "mistakes that are told one by one [-]",
-        "a screen",
-    )  # fmt: skip
-    speeds_exported: int = limit(
-        7, "speeds of a range that is exported [-]",
-        "chosen: both ends, the middle and between",
-    )  # fmt: skip
-    narrowest: int = limit(
-        40, "columns that a table takes to be there [-]",
-        "half a terminal",
     )  # fmt: skip
     flow_first: float = rule(
         1e-6, "first plastic strain of a written law's table [-]",

@@ -21,6 +21,9 @@ from .inference.fit import Fit
 from .inference.linear import Linear
 from .rules import RULES
 
+# limit: rows of a correction that are shown [-]: half a screen
+_CORRECTIONS_SHOWN = 12
+
 
 @dataclass(frozen=True, eq=False)
 class Correction:
@@ -68,7 +71,7 @@ def correct(simulator: Simulator, base: Fit) -> tuple[Correction, ...]:
     error = problem.error
     beyond = norm.ppf(0.5 + 0.5 * RULES.level)
     grid = np.linspace(LOG_DEPTH_FIRST, LOG_DEPTH_LAST, NODES)
-    at = np.linspace(math.log(0.3 * shallowest), math.log(deepest), RULES.corrections_shown)
+    at = np.linspace(math.log(0.3 * shallowest), math.log(deepest), _CORRECTIONS_SHOWN)
     found = []
     for phase, kind in (("loading", "force"), ("unloading", "recovery")):
         rows = error.rows[kind]

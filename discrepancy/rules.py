@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
-from ..core.rules import limit, rule
+from ..core.rules import rule
 
 
 @dataclass(frozen=True)
@@ -71,10 +71,6 @@ class DiagnosisRules:
         0.25, "error of the mesh in the metal's own error in force [-]",
         "added in squares it is 3 %",
     )  # fmt: skip
-    told_of_solve: float = limit(
-        0.2, "part of a solve between two lines of progress [-]",
-        "five lines a solve",
-    )  # fmt: skip
     solve_deeper: float = rule(
         1.3, "depth of the solve over the deepest impact [-]",
         "room for a stated number that is off",
@@ -86,10 +82,6 @@ class DiagnosisRules:
     solve_depths: int = rule(
         60, "depths of the solve [-]",
         "chosen; no measurement is kept",
-    )  # fmt: skip
-    solve_digits: int = limit(
-        2, "digits of a depth [-]",
-        "sets of one pair that go as deep share a solve",
     )  # fmt: skip
     fewest_readings: int = rule(
         6, "readings below which a set says nothing [-]",
@@ -192,21 +184,9 @@ class DiagnosisRules:
         0.003, "relative scatter of a load where none is stated [-]",
         "half of class 1 of ISO 7500-1",
     )  # fmt: skip
-    batch: int = limit(
-        4000, "scenes that are simulated together [-]",
-        "memory",
-    )  # fmt: skip
-    thread_from: int = limit(
-        200, "scenes from which a second thread pays [-]",
-        "starting one costs as much as some ten",
-    )  # fmt: skip
     level: float = rule(
         0.90, "probability of bands and intervals [-]",
         "usual",
-    )  # fmt: skip
-    corrections_shown: int = limit(
-        12, "rows of a correction that are shown [-]",
-        "half a screen",
     )  # fmt: skip
     trace_points: int = rule(
         200, "points of a simulated trace [-]",
@@ -428,14 +408,6 @@ class DiagnosisRules:
         0.4, "change below which the derivatives stay [prior deviations]",
         "straight within it",
     )  # fmt: skip
-    curve_rows: int = limit(
-        12, "rows of an inferred curve in a file [-]",
-        "a screen",
-    )  # fmt: skip
-    strains_told: tuple[float, ...] = limit(
-        (0.02, 0.05, 0.10), "plastic strains at which the stress is told [-]",
-        "of tension tests, to their usual end",
-    )  # fmt: skip
     mark_loads: int = rule(
         8, "presses that are tried with each striker [-]",
         "chosen; no measurement is kept",
@@ -464,21 +436,9 @@ class DiagnosisRules:
         3.0, "nats from which outliers are judged under the leading mechanism [-]",
         "twenty to one",
     )  # fmt: skip
-    drawn_apart: float = limit(
-        0.012, "distance of two simulations of one number in a figure [axis]",
-        "a marker's half",
-    )  # fmt: skip
-    story_rows: int = limit(
-        8, "explanations of a picture [-]",
-        "a screen",
-    )  # fmt: skip
-    story_least: float = limit(
+    story_least: float = rule(
         0.005, "probability from which one has a line [-]",
         "half a per cent is printed as one",
-    )  # fmt: skip
-    named_leading: int = limit(
-        3, "explanations that the finding names where nothing is decided [-]",
-        "a line",
     )  # fmt: skip
     false_alarms: float = rule(
         1e-3, "part of sets in which a drift, or an effect of a column, is seen by chance [-]",
@@ -503,10 +463,6 @@ class DiagnosisRules:
     confirmed_nulls: int = rule(
         2000, "the same with `confirm` [-]",
         "a level of 0.05 to a tenth",
-    )  # fmt: skip
-    proposed: int = limit(
-        5, "next experiments that a verdict keeps [-]",
-        "a screen",
     )  # fmt: skip
     particles: int = rule(
         160, "particles of a sampled evidence [-]",
@@ -547,10 +503,6 @@ class DiagnosisRules:
     null_steps: float = rule(
         120.0, "time steps of a null impact to its turning point [-]",
         "4e-5 in restitution, 2e-4 in force off the limit",
-    )  # fmt: skip
-    null_most_steps: int = limit(
-        6000, "its steps at most [-]",
-        "fifty times as many as to the turning point",
     )  # fmt: skip
     null_smooth: float = rule(
         0.01, "part of the approach speed below which friction fades [-]",

@@ -44,6 +44,9 @@ from .locate import locate
 from .rank import Progress, Ranking, rank
 from .rules import RULES
 
+# limit: next experiments that a verdict keeps [-]: a screen
+_PROPOSED = 5
+
 
 class _Asked(NamedTuple):
     """What a verdict is asked of, and how."""
@@ -170,7 +173,7 @@ def _told(asked: _Asked, found: _Explained, decided: _Decided) -> Verdict:
         improvement=improvement_of(left_out[base.name], left_out[best.name]),
         misfit=misfit, stated=stated,
         corrections=correct(simulator, base) if choice.verdict == OUTSIDE else (),
-        proposals=tuple(proposals[: RULES.proposed]),
+        proposals=tuple(proposals[: _PROPOSED]),
         notes=notes, ranking=ranking, best=best, impacts=simulator.tally.impacts,
         titles={m.name: m.title for m in (*MECHANISMS, *asked.own, *problem.wrong_numbers)},
     )  # fmt: skip

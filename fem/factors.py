@@ -17,15 +17,18 @@ from numba import njit
 
 from ..core.arrays import Array, Integers
 from ..core.unowned import unowned
-from .rules import RULES
 
-_BLOCK = RULES.block
+# limit: columns eliminated before what is right of and below them is brought up to date [-]: a
+# cache's lines
+_BLOCK = 16
 """Columns that are eliminated before all that is right of and below them is brought up to date."""
 
-_NARROW = RULES.narrow
+# limit: unknowns up to which a supernode joins its parent [-]: a call costs more than the zeros
+_NARROW = 8
 """Unknowns up to which a supernode joins its parent whatever zeros that fills in."""
 
-_FILL = RULES.fill
+# limit: entries of which one may become a filled zero where a wider one joins [-]: the same
+_FILL = 8
 """A wider one joins its parent where at most one of so many entries becomes a filled zero."""
 
 

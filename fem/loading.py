@@ -27,6 +27,10 @@ from .results.measure import read
 from .results.ripple import BEYOND
 from .rules import RULES
 
+# limit: ratio of depths below which the path stands still, whatever converges [-]: a million
+# steps would follow
+_LEAST_STEP_RATIO = 1.0 + 1e-6
+
 
 @dataclass
 class Tally:
@@ -181,7 +185,7 @@ class Loading:
     ) -> tuple[PathPoint | None, float]:
         """Advance by at most `ratio` towards `goal`; the ratio that worked comes back."""
         for _ in range(MOST_CUTS):
-            if ratio < RULES.least_step_ratio:
+            if ratio < _LEAST_STEP_RATIO:
                 break
             n = max(1, int(np.ceil(np.log(goal / point.delta) / np.log(ratio) - 1e-9)))
             delta = goal if n == 1 else point.delta * (goal / point.delta) ** (1.0 / n)

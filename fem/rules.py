@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
-from ..core.rules import limit, rule
+from ..core.rules import rule
 
 
 @dataclass(frozen=True)
@@ -72,10 +72,6 @@ class FemRules:
         0.75, "beginning of the path, as a part of the first depth [-]",
         "makes the smooth curve there two-sided",
     )  # fmt: skip
-    least_step_ratio: float = limit(
-        1.0 + 1e-6, "ratio of depths below which the path stands still, whatever converges [-]",
-        "a million steps would follow",
-    )  # fmt: skip
     soft_start: tuple[float, ...] = rule(
         (1e-3, 1e-2, 1e-1, 1.0),
         "contact stiffness on the way to the first equilibrium, over its own [-]",
@@ -100,26 +96,6 @@ class FemRules:
     least_strength_hot: float = rule(
         0.01, "part of the strength that heat leaves at the least [-]",
         "a metal at its melting point keeps none: keeps the root defined",
-    )  # fmt: skip
-    root_round_off: float = limit(
-        3e-15, "size of the yield circle's radius to which its root is found [-]",
-        "ten units of the last digit",
-    )  # fmt: skip
-    root_rounds: int = limit(
-        80, "most rounds of that root [-]",
-        "chosen; no measurement is kept",
-    )  # fmt: skip
-    still_increment: float = limit(
-        1e-24, "squared strain increment over the squared radius that has no direction [-]",
-        "round-off of the increment",
-    )  # fmt: skip
-    yield_margin: float = limit(
-        1.0 + 1e-10, "stress over strength at which a point becomes plastic [-]",
-        "round-off would call converged points plastic again on unloading",
-    )  # fmt: skip
-    on_axis: float = limit(
-        1e-13, "coordinates below this lie on the axis [R]",
-        "round-off",
     )  # fmt: skip
     inner_rings: int = rule(
         3, "rings within the innermost block [-]",
@@ -212,26 +188,6 @@ class FemRules:
     unloading_steps: int = rule(
         60, "most steps of an unloading [-]",
         "chosen; no measurement is kept",
-    )  # fmt: skip
-    block: int = limit(
-        16, "columns eliminated before what is right of and below them is brought up to date [-]",
-        "a cache's lines",
-    )  # fmt: skip
-    narrow: int = limit(
-        8, "unknowns up to which a supernode joins its parent [-]",
-        "a call costs more than the zeros",
-    )  # fmt: skip
-    fill: int = limit(
-        8, "entries of which one may become a filled zero where a wider one joins [-]",
-        "the same",
-    )  # fmt: skip
-    turn_left: float = limit(
-        270.0, "what a picture leaves of the bodies [degrees]",
-        "a quarter is cut out",
-    )  # fmt: skip
-    turn_steps: int = limit(
-        90, "steps of the turn [-]",
-        "three degrees: no eye sees corners",
     )  # fmt: skip
     least_dent: float = rule(
         1e-3, "part of the permanent approach below which a body keeps nothing [-]",

@@ -19,6 +19,9 @@ from .strength import NODES, strength_table
 from .surface import Spot
 from .walk import layout as c
 
+# limit: rows of a history beside those asked for [-]: memory of a long vibration
+_HISTORY_ROWS = 4000
+
 _UNWRITTEN = np.zeros((0, len(c.HISTORY)))
 _SMOOTH, _STILL = np.empty(0), np.empty((3, 0))
 _FRESH = Spot().row()
@@ -210,7 +213,7 @@ def traced(scene: Scene, settings: Settings = Settings(), *, points: int = 200) 
     if span > 0.0:
         a.body[c.LONGEST] = span / max(points, 1)
         a.body[c.MAX_STEPS] += 100.0 * points
-    history = np.empty((RULES.history_rows + 40 * points, len(c.HISTORY)))
+    history = np.empty((_HISTORY_ROWS + 40 * points, len(c.HISTORY)))
     impact, rows = _struck(scene, a, history)
     return Trace(impact, history[:rows].copy())
 

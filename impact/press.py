@@ -23,8 +23,10 @@ from .scene import Scene
 _SHALLOWEST = RULES.law_shallowest
 _DEEPEST = RULES.law_deepest
 _SMOOTH = np.empty(0)
-_CLOSE = RULES.press_settled
-_MOST = RULES.press_rounds
+# limit: relative step at which the depth of a load is found [-]: round-off
+_CLOSE = 1e-12
+# limit: rounds of that search at most [-]: bisection of a double takes 60
+_MOST = 100
 _VARIED = ("par", "force", "factors")
 
 

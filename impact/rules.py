@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
-from ..core.rules import limit, rule
+from ..core.rules import rule
 
 
 @dataclass(frozen=True)
@@ -15,33 +15,17 @@ class ImpactRules:
         128, "steps of a fall with drag [-]",
         "chosen; no measurement is kept",
     )  # fmt: skip
-    history_points: int = limit(
-        200, "points of a history that is written [-]",
-        "a figure's width",
-    )  # fmt: skip
-    sure: float = limit(
+    sure: float = rule(
         1e-6, "relative standard deviation below which none is shown [-]",
         "round-off of the slopes",
-    )  # fmt: skip
-    shown_round_off: float = limit(
-        1e-7, "numbers below this part of the largest of their unit are shown as 0 [-]",
-        "round-off of the integral",
     )  # fmt: skip
     same_strength: float = rule(
         1e-3, "difference of a stated strength from a curve's first stress that is none [-]",
         "three digits of a sheet",
     )  # fmt: skip
-    combinations: int = limit(
-        10_000_000, "largest number of combinations [-]",
-        "chosen; no measurement is kept",
-    )  # fmt: skip
     slope_step: float = rule(
         1e-4, "step of differences of a force that is smooth between its borders [depth]",
         "chosen; no measurement is kept",
-    )  # fmt: skip
-    history_rows: int = limit(
-        4000, "rows of a history beside those asked for [-]",
-        "memory of a long vibration",
     )  # fmt: skip
     strength_nodes: int = rule(
         41, "nodes of the table over ln(depth/R) [-]",
@@ -65,10 +49,6 @@ class ImpactRules:
         4000, "cells that are tried, halved ones counted [-]",
         "the smooth laws of this package take 1120 at most",
     )  # fmt: skip
-    cells_at_once: int = limit(
-        256, "cells that are tried together [-]",
-        "chosen; no measurement is kept",
-    )  # fmt: skip
     gravity_limit: float = rule(
         0.1, "largest work of gravity over that of a branch [-]",
         "the series is cut after its fourth power",
@@ -91,7 +71,7 @@ class ImpactRules:
         1.0, "largest depth that is tabulated [R]",
         "beyond it a law goes on as Hertz's",
     )  # fmt: skip
-    tables_kept: int = limit(
+    tables_kept: int = rule(
         200,
         "tables that are kept [-]",
         "memory",
@@ -103,10 +83,6 @@ class ImpactRules:
     band_step: float = rule(
         0.02, "step of a logarithm for the slopes [-]",
         "chosen; no measurement is kept",
-    )  # fmt: skip
-    scan_samples: float = limit(
-        1e6, "most samples of a scan across a dent [-]",
-        "3 m at the usual step; a law that is far out of its range may give a dent without end",
     )  # fmt: skip
     band_steps: int = rule(
         4000, "most steps of a blow that is made for a band alone [-]",
@@ -131,10 +107,6 @@ class ImpactRules:
         0.4, "strain rate of an indentation over v/a [-]",
         "Tabor 1951",
     )  # fmt: skip
-    worth_a_line: float = limit(
-        1e-3, "relative effect that is worth a line [-]",
-        "chosen; no measurement is kept",
-    )  # fmt: skip
     mass_off: float = rule(
         0.01, "departure from a solid sphere's mass that is told [-]",
         "three digits of a sheet",
@@ -143,41 +115,13 @@ class ImpactRules:
         60, "depths at which the mean pressure is looked at [-]",
         "chosen; no measurement is kept",
     )  # fmt: skip
-    impacts_at_once: int = limit(
-        200, "impacts of one compiled call, which Ctrl-C has to wait for [-]",
-        "a second where they vibrate",
-    )  # fmt: skip
-    break_gap: float = limit(
-        1e-13, "depth to either side of a border of the law [depth]",
-        "round-off",
-    )  # fmt: skip
-    looks: int = limit(
-        100_000, "looks at the gap in one flight [-]",
-        "beyond it the flight ends unfinished",
-    )  # fmt: skip
-    bites: int = limit(
-        40, "trials of a landing step [-]",
-        "chosen; no measurement is kept",
-    )  # fmt: skip
     may_matter: float = rule(
         0.25, "part of the dent that one specimen or the next moves, from which it is told [-]",
         "chosen; no measurement is kept",
     )  # fmt: skip
-    band_conditions: int = limit(
-        400, "conditions up to which a sweep has a band [-]",
-        "each takes some ten impacts in steps",
-    )  # fmt: skip
     slender: float = rule(
         3000.0, "length over radius of a rod at most [-]",
         "up to it round-off moves no frequency by more than 0.5 %",
-    )  # fmt: skip
-    press_settled: float = limit(
-        1e-12, "relative step at which the depth of a load is found [-]",
-        "round-off",
-    )  # fmt: skip
-    press_rounds: int = limit(
-        100, "rounds of that search at most [-]",
-        "bisection of a double takes 60",
     )  # fmt: skip
     visible: float = rule(
         5e-4, "smallest change of a speed that motion was ever read with [-]",

@@ -51,7 +51,9 @@ MOST = RULES.imprints
 """Imprints that are kept apart; beyond it the two nearest become one."""
 N_SURFACE = N_HEAD + MOST * N_IMPRINT
 
-_SAMPLES = RULES.scan_samples
+# limit: most samples of a scan across a dent [-]: 3 m at the usual step; a law that is far out of
+# its range may give a dent without end
+_SAMPLES = 1e6
 _STEEPEST = RULES.steepest_wall
 _PLAIN = {"cache": True, "_nrt": False, "error_model": "numpy"}
 _PAIR = types.UniTuple(float64, 2)

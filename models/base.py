@@ -38,7 +38,6 @@ from .kernel import (
     Common,
     common_parameters,
 )
-from .rules import RULES
 from .uncertainty import Uncertainty
 
 CLAUSES = (
@@ -250,7 +249,8 @@ class ContactLaw(ABC):
 
 
 Law = TypeVar("Law", bound=ContactLaw)
-_REMEMBERED = RULES.pairs_kept
+# limit: pairs whose numbers a law keeps [-]: a sweep's chunk
+_REMEMBERED = 4096
 
 
 def remembering(law: Law) -> Law:

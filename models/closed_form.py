@@ -25,7 +25,9 @@ from numpy import exp, log, sqrt
 from .rules import RULES
 
 PI = 3.141592653589793
-TINY = RULES.strength_floor
+# limit: keeps the strengths' ratio defined when a body does not yield [-]: no effect on any real
+# pair
+TINY = 1e-9
 SHARPEST = RULES.sharpest
 
 

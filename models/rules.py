@@ -4,17 +4,13 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
-from ..core.rules import limit, rule
+from ..core.rules import rule
 
 
 @dataclass(frozen=True)
 class ModelRules:
     """The register; `dataclasses.fields` tells the meaning and the source of each."""
 
-    pairs_kept: int = limit(
-        4096, "pairs whose numbers a law keeps [-]",
-        "a sweep's chunk",
-    )  # fmt: skip
     flattening_below: float = rule(
         0.6, "ratio of strengths below which the sphere alone is said to yield [-]",
         "chosen; no measurement is kept",
@@ -26,10 +22,6 @@ class ModelRules:
     elastic_depth: float = rule(
         1.9, "depth up to which a contact is called elastic [critical depths]",
         "Jackson and Green 2005, Eq. 9",
-    )  # fmt: skip
-    strength_floor: float = limit(
-        1e-9, "keeps the strengths' ratio defined when a body does not yield [-]",
-        "no effect on any real pair",
     )  # fmt: skip
     sharpest: float = rule(
         20.0, "steepest taking over between two regimes [-]",
@@ -127,10 +119,6 @@ class ModelRules:
         0.8, "depth over the critical one from which the solve alone counts [-]",
         "yield begins at 1",
     )  # fmt: skip
-    law_bytes: int = limit(
-        20_000_000, "largest file of a law that is read [bytes]",
-        "memory of a small machine",
-    )  # fmt: skip
     least_error: float = rule(
         1e-3, "standard deviation that no law goes below [-]",
         "chosen; no measurement is kept",
@@ -138,10 +126,6 @@ class ModelRules:
     exponent_error: float = rule(
         0.02, "standard deviation of the recovery's exponent [-]",
         "chosen; no measurement is kept",
-    )  # fmt: skip
-    most_left: float = limit(
-        0.999, "part of the approach that can be left at most [-]",
-        "nothing can be left that was not pressed in",
     )  # fmt: skip
     metal_error: tuple[tuple[str, float], ...] = rule(
         (("force", 0.03), ("recovery", 0.07), ("recovery exponent", 0.05), ("crater", 0.05),

@@ -15,13 +15,13 @@ from ..core.inputs.toml_input import InputTable, Listed, parse_model
 from ..core.material import Pair
 from ..core.output import write_file
 from ..core.rig import MaterialTable, material_keys
-from .rules import RULES
 from .table import LoadingCurve, PairTable, TableLaw, Turns, table_law
 
 FORMAT = "dentscope-table/1"
 
 
-MOST_BYTES = RULES.law_bytes
+# limit: largest file of a law that is read [bytes]: memory of a small machine
+MOST_BYTES = 20_000_000
 """Largest file of a law that is read."""
 
 _MADE = "law.json of `dentscope case`"

@@ -17,7 +17,15 @@ from requests.exceptions import RequestException
 
 from ..core.errors import InputError
 from ..core.inputs.toml_input import InputTable, Listed, read_model
-from .rules import RULES
+
+# limit: wait for a server that says nothing [s]: a slow line
+_SERVER_S = 30.0
+
+# limit: longest time that one file may take [s]: a slow line
+_FETCHED_S = 1800.0
+
+# limit: largest file that is fetched [bytes]
+_FETCHED_BYTES = 2_000_000_000
 
 _PIECE = 1 << 20
 _SHA256 = r"[0-9a-f]{64}"
@@ -106,19 +114,19 @@ def fetch_sources(catalogue: Catalogue, out: Path, names: Sequence[str]) -> Iter
 
 def _capped(url: str, output_file: str, pooch: object) -> None:
     """Fetch a file of a bearable size in a bearable time; the checksum is compared afterwards."""
-    until, size = time.monotonic() + RULES.fetched_s, 0
+    until, size = time.monotonic() + _FETCHED_S, 0
     with (
-        requests.get(url, stream=True, timeout=RULES.server_s) as answer,
+        requests.get(url, stream=True, timeout=_SERVER_S) as answer,
         Path(output_file).open("wb") as out,
     ):
         answer.raise_for_status()
         for piece in answer.iter_content(_PIECE):
             size += len(piece)
-            if size > RULES.fetched_bytes or time.monotonic() > until:
+            if size > _FETCHED_BYTES or time.monotonic() > until:
                 raise InputError(
                     f"{size / 1e6:.0f} MB fetched and no end", source=url,
-                    allowed=f"a file of up to {RULES.fetched_bytes / 1e9:g} GB, within "
-                    f"{RULES.fetched_s / 60.0:g} minutes",
+                    allowed=f"a file of up to {_FETCHED_BYTES / 1e9:g} GB, within "
+                    f"{_FETCHED_S / 60.0:g} minutes",
                 )  # fmt: skip
             out.write(piece)
 

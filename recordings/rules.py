@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
-from ..core.rules import limit, rule
+from ..core.rules import rule
 
 
 @dataclass(frozen=True)
@@ -46,14 +46,6 @@ class RecordingRules:
     frozen_angle: float = rule(
         0.005, "part of the approach speed by which a frozen angle may err [-]",
         "chosen; no measurement is kept",
-    )  # fmt: skip
-    momentum_steps: int = limit(
-        60, "most steps of the least squares [-]",
-        "chosen; no measurement is kept",
-    )  # fmt: skip
-    momentum_settled: float = limit(
-        1e-10, "relative fall of the sum of squares below which a trial is done [-]",
-        "round-off",
     )  # fmt: skip
     pulse: tuple[float, ...] = rule(
         (0.25, 1.0), "impulse over peak force times duration, least and most [-]",
@@ -108,18 +100,6 @@ class RecordingRules:
         20.0, "largest number of a column without a unit [-]",
         "a restitution written in percent is beyond",
     )  # fmt: skip
-    fetched_bytes: int = limit(
-        2_000_000_000, "largest file that is fetched [bytes]",
-        "chosen; no measurement is kept",
-    )  # fmt: skip
-    fetched_s: float = limit(
-        1800.0, "longest time that one file may take [s]",
-        "a slow line",
-    )  # fmt: skip
-    server_s: float = limit(
-        30.0, "wait for a server that says nothing [s]",
-        "a slow line",
-    )  # fmt: skip
     repeats: int = rule(
         3, "trials at one condition from which a noise may be taken [-]",
         "two degrees of freedom",
@@ -143,14 +123,6 @@ class RecordingRules:
     restitution_slip: float = rule(
         0.1, "excess of a restitution over 1 without a standard deviation that asks for one [-]",
         "chosen; no measurement is kept",
-    )  # fmt: skip
-    compared_bytes: int = limit(
-        10_000_000, "largest record that is compared with others [bytes]",
-        "every record but a film",
-    )  # fmt: skip
-    rows_shown: int = limit(
-        12, "trials that a notebook shows [-]",
-        "a screen",
     )  # fmt: skip
     highest: tuple[tuple[str, float], ...] = rule(
         (("_rad_s", 1e7), ("_m_s", 2e4), ("_Ns", 1e6), ("_depth_m", 0.1), ("_m", 1.0),

@@ -10,12 +10,14 @@ import numpy as np
 from ..core.arrays import Array
 from ..core.observables import OBSERVABLES
 from ..core.tables import html_table
-from .rules import RULES
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
     from .recording_set import RecordingSet
+
+# limit: trials that a notebook shows [-]: a screen
+_ROWS_SHOWN = 12
 
 
 def table_of(found: RecordingSet) -> str:
@@ -32,7 +34,7 @@ def table_of(found: RecordingSet) -> str:
             *(_cell(float(x[k])) for x in columns.values()),
             *(_cell(float(found.values(name)[k])) for name in found.observed),
         )
-        for k in range(min(len(found.trials), RULES.rows_shown))
+        for k in range(min(len(found.trials), _ROWS_SHOWN))
     ]  # fmt: skip
     return html_table(head, rows, title=f"{found.name}: {len(found.trials)} trials")
 

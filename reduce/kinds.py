@@ -22,10 +22,12 @@ from ..core.inputs.added import READERS, added, names_added
 from ..core.inputs.input_file import checked_file
 from ..core.inputs.toml_input import InputTable, parse_model
 from ..core.processes.threads import in_one_thread
-from .rules import RULES
 
 if TYPE_CHECKING:
     from .reduced import Reduced
+
+# limit: largest raw file [bytes]: the longest clips of the cameras that are read
+_RAW_BYTES = 20_000_000_000
 
 KINDS = {
     "video": "high-speed video: approach and rebound speed, lean, motion of the tip",
@@ -59,7 +61,7 @@ class Kind:
         """Reduce a file with options that are not checked yet; `source` names where they stand."""
         options = parse_model(given, self.options, source=source)
         if not (self.takes_folders and path.is_dir()):
-            checked_file(path, most=RULES.raw_bytes, allowed="a raw recording")
+            checked_file(path, most=_RAW_BYTES, allowed="a raw recording")
         from numpy.linalg import LinAlgError
 
         kind = self.module or import_module(f".{self.name}.kind", __package__)

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
-from ..core.rules import limit, rule
+from ..core.rules import rule
 
 
 @dataclass(frozen=True)
@@ -180,10 +180,6 @@ class ReductionRules:
         0.75, "instants that a run gains before a missed bounce in it is believed [-]",
         "chosen: one more instant is no chance",
     )  # fmt: skip
-    instants_tried: int = limit(
-        80, "instants that runs are looked for among [-]",
-        "their pairs' work",
-    )  # fmt: skip
     sudden: float = rule(
         0.1, "change of the factor from the flights next to an end of the run at most [ln]",
         "restitution changes by some per cent from one bounce to the next, not by a tenth",
@@ -325,10 +321,6 @@ class ReductionRules:
         3.0, "speed between two samples, in the nine tenths quantile of all, that no body has [-]",
         "chosen; no measurement is kept",
     )  # fmt: skip
-    clip_bytes: int = limit(
-        3_000_000_000, "memory that a clip may take [bytes]",
-        "memory of a small machine",
-    )  # fmt: skip
     repeated: float = rule(
         0.35,
         "change of a frame, in that of its neighbours, below which it may repeat the one before "
@@ -355,27 +347,11 @@ class ReductionRules:
         0.75, "part of the half-width of a rod from which the cap is read [-]",
         "the edge of the cap is chamfered",
     )  # fmt: skip
-    header_bytes: int = limit(
-        10_000_000, "largest header of a clip [bytes]",
-        "a thousand times the usual one",
-    )  # fmt: skip
-    picture_bytes: int = limit(
-        1_000_000_000, "largest picture [bytes]",
-        "memory of a small machine",
-    )  # fmt: skip
     own_level: float = rule(
         1.3, "contrast of a ball, in that of the clip, from which its own grey level is used [-]",
         "chosen; no measurement is kept",
     )  # fmt: skip
-    raw_bytes: int = limit(
-        20_000_000_000, "largest raw file [bytes]",
-        "the longest clips of the cameras that are read",
-    )  # fmt: skip
-    shortest_direction: float = limit(
-        1e-6, "length from which on three numbers are a direction [-]",
-        "round-off of six digits",
-    )  # fmt: skip
-    table_bytes: int = limit(
+    table_bytes: int = rule(
         500_000_000, "largest table of numbers [bytes]",
         "memory of a small machine",
     )  # fmt: skip
@@ -417,18 +393,9 @@ class ReductionRules:
         0.01, "second over first extent of a shape below which its markers lie on one line [-]",
         "no turn about it is then read",
     )  # fmt: skip
-    fit_rounds: int = limit(
+    fit_rounds: int = rule(
         20, "rounds of a fit at most [-]",
         "it ends by itself",
-    )  # fmt: skip
-    unseen: float = limit(
-        3e-8,
-        "singular value of a design, of the largest, below which it holds round-off alone [-]",
-        "root of the last digit of a double, twice",
-    )  # fmt: skip
-    ball_points: int = limit(
-        20_000, "points of a scan of a ball that are fitted [-]",
-        "memory; more move no radius",
     )  # fmt: skip
     sectors: int = rule(
         8, "sectors of a shape that are left out in turn, or in which walls are read [-]",
@@ -458,14 +425,6 @@ class ReductionRules:
         1e-3, "distance of neighbouring points at most [m]",
         "one reader's format gives 0.3 m for 0.3 um",
     )  # fmt: skip
-    scan_most: int = limit(
-        100_000_000, "points of a scan at most [-]",
-        "memory of a small machine",
-    )  # fmt: skip
-    packed_points: int = limit(
-        50, "points a byte of a packed file at most [-]",
-        "what compression gives of a level plane",
-    )  # fmt: skip
     foreign: float = rule(
         6.0,
         "robust standard deviations of what belongs to something else [-]",
@@ -494,10 +453,6 @@ class ReductionRules:
     wall_end: float = rule(
         0.14, "what a wall's end misses [steps of the scan]",
         "rendered craters without noise: its parabola, and interpolation",
-    )  # fmt: skip
-    sound_s: float = limit(
-        600.0, "sound that is taken in [s]",
-        "memory of a small machine",
     )  # fmt: skip
     onset_after: float = rule(
         1e-3, "time after an onset in which its rise is fitted [s]",
@@ -564,10 +519,6 @@ class ReductionRules:
         0.02, "strain at which a metal yields at most [-]",
         "piano wire: 0.015, a metallic glass: 0.02",
     )  # fmt: skip
-    tension_kept: int = limit(
-        60, "rows of a curve that is written [-]",
-        "a screen or two",
-    )  # fmt: skip
     edge_step: float = rule(
         0.25, "step along an edge [pixel]",
         "a quarter",
@@ -575,10 +526,6 @@ class ReductionRules:
     tip_rounds: int = rule(
         12, "rounds of the edge and the circle at most [-]",
         "chosen; no measurement is kept",
-    )  # fmt: skip
-    most_frames: int = limit(
-        10**9, "frames of a clip [-]",
-        "none is as long",
     )  # fmt: skip
     lean_frames: int = rule(
         20, "frames from which the lean of a rod is read [-]",
@@ -636,10 +583,6 @@ class ReductionRules:
     press_bins: int = rule(
         60, "means of rows alike in load that tell where it meets zero, at most [-]",
         "chosen; no measurement is kept",
-    )  # fmt: skip
-    channel_samples: int = limit(
-        50_000_000, "samples of a channel at most [-]",
-        "memory of a small machine",
     )  # fmt: skip
 
 

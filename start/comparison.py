@@ -25,6 +25,9 @@ from .rules import RULES
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
+# limit: laws that are recommended [-]
+_RECOMMENDED = 4
+
 
 USED = frozenset(
     {"radius_m", "load.max_delta_over_R"}
@@ -204,7 +207,7 @@ def _best(
     near = [name for name in known if name in departures and departures[name].worst <= USABLE]
     return tuple(
         sorted(near, key=lambda name: (round(departures[name].worst, 3), name != "fitted"))[
-            : RULES.recommended
+            :_RECOMMENDED
         ]
     )
 

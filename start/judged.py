@@ -25,6 +25,9 @@ from ..models.base import ContactLaw
 from .measured import loading_work
 from .rules import RULES
 
+# limit: times too little or too much that are not told in times [-]
+_NO_FACTOR = 100.0
+
 USABLE = RULES.usable
 """Largest departure of a law that may be used: that of a dent whose strength is off by a tenth."""
 
@@ -54,8 +57,8 @@ class Departure(NamedTuple):
         if not math.isfinite(self.worst):
             return "no number"
         name = self._fields[max(range(3), key=lambda k: self[k])]
-        if self.worst > math.log(RULES.no_factor):
-            return f"off by more than {RULES.no_factor:g} times in {name}"
+        if self.worst > math.log(_NO_FACTOR):
+            return f"off by more than {_NO_FACTOR:g} times in {name}"
         return f"off by {math.exp(self.worst):.2g} times in {name}"
 
 

@@ -16,6 +16,9 @@ from .rules import RULES
 if TYPE_CHECKING:
     from ..fem.solution import Solution, Unloading
 
+# limit: part of the approach below which nothing is permanent [-]: round-off
+_KEPT_ROUND_OFF = 1e-9
+
 
 _STANDARD_GRAVITY = 9.80665  # m/s2; hardness after Brinell is in kgf/mm2
 
@@ -77,7 +80,7 @@ class Dent:
 
     def lines(self) -> Iterator[str]:
         """Yield what there is to say, for people."""
-        least = RULES.kept_round_off * (abs(self.left_sphere) + abs(self.left_flat))
+        least = _KEPT_ROUND_OFF * (abs(self.left_sphere) + abs(self.left_flat))
         sphere, flat = (
             1e6 * x if abs(x) > least else 0.0 for x in (self.left_sphere, self.left_flat)
         )
@@ -188,7 +191,7 @@ def _dent(solution: Solution, u: Unloading) -> Dent:
     contact = 2.0 * float(u.curve.radius[0])
     top = int(u.crater_z.argmax())
     # what sinks in rises towards the edge of the mesh, where the flat is as it was
-    least = max(1e-3 * u.residual_flat, RULES.kept_round_off * R)
+    least = max(1e-3 * u.residual_flat, _KEPT_ROUND_OFF * R)
     rises = u.residual_flat > 0.0 and u.crater_z[top] > least
     rim = 2.0 * float(u.crater_r[top]) if rises else math.nan
     of_the_flat = u.residual > 0.0 and u.residual_sphere <= RULES.ball_keeps * u.residual

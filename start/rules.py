@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
-from ..core.rules import limit, rule
+from ..core.rules import rule
 
 
 @dataclass(frozen=True)
@@ -15,13 +15,9 @@ class StartRules:
         0.9, "part of the largest speed from which conditions are kept out [-]",
         "chosen: they judge what the rest inferred",
     )  # fmt: skip
-    curve_points: int = limit(
+    curve_points: int = rule(
         120, "points of a law's curve [-]",
         "a figure's width",
-    )  # fmt: skip
-    recommended: int = limit(
-        4, "laws that are recommended [-]",
-        "chosen; no measurement is kept",
     )  # fmt: skip
     usable: float = rule(
         0.10, "largest departure of a law that may be used [-]",
@@ -33,10 +29,6 @@ class StartRules:
     )  # fmt: skip
     least_dent: float = rule(
         0.1, "part of the depth below which a dent says nothing about a law [-]",
-        "chosen; no measurement is kept",
-    )  # fmt: skip
-    no_factor: float = limit(
-        100.0, "times too little or too much that are not told in times [-]",
         "chosen; no measurement is kept",
     )  # fmt: skip
     uneven_strengths: float = rule(
@@ -58,10 +50,6 @@ class StartRules:
     clock_end: float = rule(
         0.1, "part of the approach speed at which the clock of a press ends [-]",
         "a half-sine's slow end",
-    )  # fmt: skip
-    kept_round_off: float = limit(
-        1e-9, "part of the approach below which nothing is permanent [-]",
-        "round-off",
     )  # fmt: skip
     ball_keeps: float = rule(
         0.05, "part of the permanent approach that the ball may keep [-]",

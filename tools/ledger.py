@@ -68,7 +68,7 @@ def measured_python(row: Row, path: Path) -> None:
         if isinstance(node, ast.FunctionDef | ast.AsyncFunctionDef):
             row["longest"] = max(row["longest"], (node.end_lineno or 0) - node.lineno + 1)
         called = node.func if isinstance(node, ast.Call) else None
-        chosen = isinstance(called, ast.Name) and called.id in ("rule", "limit")
+        chosen = isinstance(called, ast.Name) and called.id == "rule"
         row["numbers"] += path.name == "rules.py" and chosen
 
 

@@ -10,11 +10,12 @@ from typing import TYPE_CHECKING, Literal
 
 import typer
 
-from ...core.rules import RULES as CORE
-
 if TYPE_CHECKING:
     from rich.console import Console
     from rich.table import Table
+
+# limit: columns that a table takes to be there [-]: half a terminal
+_NARROWEST = 40
 
 
 def console() -> Console:
@@ -58,7 +59,7 @@ def parts(
     from rich.table import Table
 
     size = [max(map(_width, column)) + 2 for column in zip(head, *rows, strict=True)]
-    room = max(width, CORE.narrowest) - size[0] - 1
+    room = max(width, _NARROWEST) - size[0] - 1
     tables: list[Table] = []
     left = list(range(1, len(head)))
     while left:
@@ -89,7 +90,7 @@ def say(line: str) -> None:
 
 
 def _columns() -> int:
-    return max(shutil.get_terminal_size().columns, CORE.narrowest)
+    return max(shutil.get_terminal_size().columns, _NARROWEST)
 
 
 def wrapped(text: str, indent: int = 0, further: int = 0) -> str:

@@ -15,8 +15,16 @@ import numpy as np
 
 from ..arrays import Array
 from ..errors import InputError
-from ..rules import RULES
 from .input_file import read_bytes
+
+# limit: mistakes of a table that are kept one by one [-]: nobody reads more
+_PROBLEMS_KEPT = 1000
+
+# limit: most columns of a table [-]: a logger has hundreds
+_TABLE_COLUMNS = 2000
+
+# limit: largest table that is read [bytes]: memory of a small machine
+_TABLE_BYTES = 100_000_000
 
 _OF_FORTRAN = re.compile(r"[+-]?(\d+\.?\d*|\.\d+)[dD][+-]?\d+")
 """A number in double precision."""
@@ -32,7 +40,7 @@ class Problems:
 
     def add(self, message: str, *, row: int = 0, column: str = "", allowed: str = "") -> None:
         """Note a mistake; rows count from 1, the header's, as a spreadsheet shows them."""
-        self.further += len(self.found) >= RULES.problems_kept
+        self.further += len(self.found) >= _PROBLEMS_KEPT
         if self.further:
             return
         parts = (f"row {row}" if row else "", f"column {column}" if column else "")
@@ -76,7 +84,7 @@ def read_text_table(
         Beginning of names that any column may have.
     """
     try:
-        raw = read_bytes(path, most=RULES.table_bytes, allowed="a table of comma-separated values")
+        raw = read_bytes(path, most=_TABLE_BYTES, allowed="a table of comma-separated values")
         text = raw.decode("utf-8-sig")
     except InputError as error:
         problems.found.append(error)
@@ -108,8 +116,8 @@ def _header_is_sound(
     if len(header) == 1 and (";" in header[0] or "\t" in header[0]):
         problems.add("columns are not separated by commas", row=row, allowed="commas")
         return False
-    if len(header) > RULES.table_columns:
-        problems.add(f"{len(header)} columns", row=row, allowed=f"up to {RULES.table_columns}")
+    if len(header) > _TABLE_COLUMNS:
+        problems.add(f"{len(header)} columns", row=row, allowed=f"up to {_TABLE_COLUMNS}")
         return False
     before = len(problems.found)
     for place, name in enumerate(header):

@@ -12,8 +12,16 @@ from typing import Any, TypeVar, cast, get_args
 from pydantic import BaseModel, ConfigDict, Field, ValidationError, model_validator
 
 from ..errors import InputError, InputErrors
-from ..rules import RULES
 from .input_file import read_bytes
+
+# limit: tables and lists within each other [-]: files of this package have four
+_TOML_DEPTH = 20
+
+# limit: characters of a value in an error [-]: a line of a terminal
+_VALUE_SHOWN = 80
+
+# limit: largest TOML file that is read [bytes]: memory of a small machine
+_TOML_BYTES = 4_000_000
 
 Model = TypeVar("Model", bound=BaseModel)
 
@@ -60,7 +68,7 @@ def read_toml(path: Path) -> dict[str, Any]:
     InputError
         The file is missing, unreadable or not TOML.
     """
-    content = read_bytes(path, most=RULES.toml_bytes, allowed="an existing TOML file")
+    content = read_bytes(path, most=_TOML_BYTES, allowed="an existing TOML file")
     try:
         found = tomllib.loads(content.decode("utf-8-sig"))
     except UnicodeDecodeError as error:
@@ -76,10 +84,10 @@ def read_toml(path: Path) -> dict[str, Any]:
     except RecursionError:
         found = {}
     else:
-        if _depth_at_most(RULES.toml_depth, found):
+        if _depth_at_most(_TOML_DEPTH, found):
             return found
     raise InputError(
-        "tables or lists nested too deep", source=str(path), allowed=f"up to {RULES.toml_depth}"
+        "tables or lists nested too deep", source=str(path), allowed=f"up to {_TOML_DEPTH}"
     )
 
 
@@ -144,11 +152,7 @@ def _shown(value: Any) -> str:
         text = repr(value)
     except (ValueError, RecursionError):  # of too many digits, or nested too deep to be written
         text = type(value).__name__
-    return (
-        text
-        if len(text) <= RULES.value_shown
-        else f"{text[: RULES.value_shown - 10]}...{text[-7:]}"
-    )
+    return text if len(text) <= _VALUE_SHOWN else f"{text[: _VALUE_SHOWN - 10]}...{text[-7:]}"
 
 
 def _known_keys(model: type[BaseModel], path: tuple[Any, ...]) -> list[str]:

@@ -16,7 +16,8 @@ from contextlib import suppress
 from importlib import import_module
 from pathlib import Path
 
-from ..rules import RULES
+# limit: between two looks whether the parent is still there [s]
+_PARENT_LOOK_S = 0.5
 
 _VARIABLE = "PYTHONSAFEPATH"
 
@@ -102,7 +103,7 @@ def die_with(parent: int) -> None:
 
     def watch() -> None:
         while os.getppid() == parent:
-            time.sleep(RULES.parent_look_s)
+            time.sleep(_PARENT_LOOK_S)
         os._exit(1)
 
     threading.Thread(target=watch, daemon=True).start()

@@ -17,8 +17,13 @@ from pathlib import Path
 from typing import Any, TypeVar
 
 from ..errors import InputError
-from ..rules import RULES
 from .children import die_with, python_command
+
+# limit: processor time of a confined child [s]
+_CHILD_S = 60.0
+
+# limit: memory of a confined child [bytes]
+_CHILD_BYTES = 1_000_000_000
 
 Result = TypeVar("Result")
 
@@ -44,15 +49,15 @@ def confined(work: Callable[..., Result], *arguments: Any, source: str) -> Resul
     command = python_command("-m", __name__)
     try:
         child = subprocess.run(
-            command, input=order, capture_output=True, timeout=RULES.child_s, check=False
+            command, input=order, capture_output=True, timeout=_CHILD_S, check=False
         )
     except subprocess.TimeoutExpired:
         raise InputError(
-            f"not read within {RULES.child_s:g} s", source=source, allowed="a smaller file, or CSV"
+            f"not read within {_CHILD_S:g} s", source=source, allowed="a smaller file, or CSV"
         ) from None
     if child.returncode != 0:
         raise InputError(
-            f"holds, or claims to hold, more than {RULES.child_bytes / 1e9:g} GB of memory takes, "
+            f"holds, or claims to hold, more than {_CHILD_BYTES / 1e9:g} GB of memory takes, "
             "or is damaged", source=source, allowed="a smaller file, or CSV",
         )  # fmt: skip
     answer = pickle.loads(child.stdout)
@@ -66,7 +71,7 @@ def _child() -> None:
     module, name, arguments = pickle.load(sys.stdin.buffer)
     work = getattr(import_module(module), name)
     pages = int(Path("/proc/self/statm").read_text().split()[0])
-    most = RULES.child_bytes + pages * resource.getpagesize()  # beside the libraries themselves
+    most = _CHILD_BYTES + pages * resource.getpagesize()  # beside the libraries themselves
     resource.setrlimit(resource.RLIMIT_AS, (most, most))
     resource.setrlimit(resource.RLIMIT_CORE, (0, 0))
     try:

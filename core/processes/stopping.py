@@ -16,9 +16,8 @@ from contextlib import contextmanager
 from types import FrameType
 from typing import Any
 
-from ..rules import RULES
-
-AGAIN_S = RULES.stop_again_s
+# limit: after how long an interruption that nobody has heard comes again [s]
+AGAIN_S = 0.5
 """After how long an interruption that nobody has heard comes again."""
 
 _asked: list[int] = []

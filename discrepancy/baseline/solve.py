@@ -17,6 +17,12 @@ from ...models.table import PairTable
 from ...models.table_file import read_table, write_table
 from ..rules import RULES
 
+# limit: digits of a depth [-]: sets of one pair that go as deep share a solve
+_SOLVE_DIGITS = 2
+
+# limit: part of a solve between two lines of progress [-]: five lines a solve
+_TOLD_OF_SOLVE = 0.2
+
 _SOLVING = "solving the set's own pair by finite elements, kept for the next time"
 
 
@@ -100,7 +106,7 @@ def solved_table(
 
     def tell(done: float) -> None:
         nonlocal told
-        if done >= told + RULES.told_of_solve:
+        if done >= told + _TOLD_OF_SOLVE:
             told = done
             progress(f"{_SOLVING}: {done:.0%}")
 
@@ -112,7 +118,7 @@ def solved_table(
 
 
 def _rounded(x: float, way: Callable[[float], int]) -> float:
-    unit = 10.0 ** (math.floor(math.log10(x)) - RULES.solve_digits + 1)
+    unit = 10.0 ** (math.floor(math.log10(x)) - _SOLVE_DIGITS + 1)
     return float(way(x / unit) * unit)
 
 

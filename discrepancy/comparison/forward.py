@@ -17,10 +17,15 @@ from ...impact.mechanisms.asked import SIMULATED
 from ...impact.mechanisms.base import Constants, Mechanism, Situation, attached, observed
 from ...impact.walk import layout as c
 from ...models.base import DomainWarning
-from ..rules import RULES
 from ..unknowns.wrong_number import wrong_factors
 from .cells import compared
 from .problem import Problem
+
+# limit: scenes from which a second thread pays [-]: starting one costs as much as some ten
+_THREAD_FROM = 200
+
+# limit: scenes that are simulated together [-]: memory
+_BATCH = 4000
 
 _COLUMN = {name: i for i, name in enumerate(c.OBSERVABLES)}
 _PRESS_DEPTH, _RECOVERED = c.N_OUT, c.N_OUT + 1
@@ -69,12 +74,12 @@ def _struck_or_pressed(scenes: list[Scene]) -> Array:
 
 def _struck(scenes: list[Scene]) -> Array:
     """Integrate in two threads: the compiled impacts run free of the interpreter."""
-    if len(scenes) < RULES.thread_from:
+    if len(scenes) < _THREAD_FROM:
         return strike_batch(scenes, ACCURACY)
     # every so-manyth scene: neighbours cost alike, and between two parts an interruption is heard.
     # The filter is set here, because inside a thread the law's own one would race; tables reach
     # beyond the data that the law was fitted to.
-    step = max(2, len(scenes) // RULES.thread_from)
+    step = max(2, len(scenes) // _THREAD_FROM)
     parts = [scenes[k::step] for k in range(step)]
     with warnings.catch_warnings(), ThreadPoolExecutor(min(os.cpu_count() or 1, 2)) as pool:
         warnings.simplefilter("ignore", DomainWarning)
@@ -116,7 +121,7 @@ class Simulator:
     def observe(self, mechanisms: Sequence[Mechanism], points: Sequence[Point]) -> dict[str, Array]:
         """Return every observable of every condition, each of shape (points, conditions)."""
         n = len(self.problem.conditions)
-        per = max(RULES.batch // n, 1)
+        per = max(_BATCH // n, 1)
         parts = [self._batch(mechanisms, points[i : i + per]) for i in range(0, len(points), per)]
         return {k: np.concatenate([p[k] for p in parts]) for k in parts[0]}
 

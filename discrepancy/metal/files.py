@@ -13,16 +13,18 @@ from scipy.stats import norm
 
 from ...core.inputs.flow_curve import COLUMNS
 from ...core.output import csv_text, write_figure, write_file
-from ..rules import RULES
 from .estimate import LEVEL, Metal
 from .flow import REACH, STRAINS
 from .next_mark import TOLD
+
+# limit: rows of an inferred curve in a file [-]: a screen
+_CURVE_ROWS = 12
 
 
 def curve_strains(metal: Metal) -> np.ndarray:
     """Return the plastic strains of the written curve: none, then 0.2 % to what a mark reaches."""
     last = REACH * max(metal.covered[1], STRAINS[0])
-    return np.append(0.0, np.geomspace(STRAINS[0], last, RULES.curve_rows))
+    return np.append(0.0, np.geomspace(STRAINS[0], last, _CURVE_ROWS))
 
 
 def content_of(metal: Metal) -> dict[str, Any]:

@@ -13,6 +13,9 @@ from ...core.arrays import Array, Mask
 from ..rules import RULES
 from .laws import NullCurve
 
+# limit: its steps at most [-]: fifty times as many as to the turning point
+_NULL_MOST_STEPS = 6000
+
 
 @dataclass(frozen=True, eq=False)
 class NullBodies:
@@ -149,7 +152,7 @@ def collide(bodies: NullBodies, curves: Sequence[NullCurve]) -> dict[str, Array]
     reduced = 1.0 / (1.0 / bodies.mass + bodies.beside * bodies.beside / bodies.inertia)
     h = contacts.stopping_depth(reduced, bodies.normal) / bodies.normal * (1.6 / RULES.null_steps)
     s = _State.touching(bodies)
-    for _ in range(RULES.null_most_steps):
+    for _ in range(_NULL_MOST_STEPS):
         s = _stepped(s, bodies, contacts, h)
         if not s.live.any():
             break

@@ -18,8 +18,10 @@ from matplotlib.ticker import FuncFormatter, LogLocator, MaxNLocator, NullFormat
 
 from ...core.observables import OBSERVABLES
 from ..correction import Correction
-from ..rules import RULES
 from .series import STATED, WITH, WITHOUT, Against, SeriesPoint
+
+# limit: distance of two simulations of one number in a figure [axis]: a marker's half
+_DRAWN_APART = 0.012
 
 COLOURS = {"#010101": "ink", "#020202": "faint", "#030303": "without", "#040404": "verdict"}
 """Colours that are drawn, and the variable of the page's style that takes their place."""
@@ -133,8 +135,8 @@ def _simulated(p: SeriesPoint) -> tuple[float, float, float]:
 def _sideways(x: np.ndarray, *, log: bool) -> float:
     """By how much the fitted simulations stand apart: a factor, or 1 plus a length."""
     if log:
-        return float((x.max() / x.min()) ** RULES.drawn_apart) if np.ptp(x) else 1.01
-    return 1.0 + RULES.drawn_apart * float(np.ptp(x) or abs(x[0]) or 1.0)
+        return float((x.max() / x.min()) ** _DRAWN_APART) if np.ptp(x) else 1.01
+    return 1.0 + _DRAWN_APART * float(np.ptp(x) or abs(x[0]) or 1.0)
 
 
 def _axis(axis: Axes, which: str, values: np.ndarray, *, log: bool) -> None:

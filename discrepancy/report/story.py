@@ -27,6 +27,9 @@ from .wording import (
     title_of,
 )
 
+# limit: explanations of a picture [-]: a screen
+_STORY_ROWS = 8
+
 
 class Bar(NamedTuple):
     """A part of a whole, with its name in words."""
@@ -122,7 +125,7 @@ def story_of(v: Verdict) -> Story:
         points=points_of(v),
         against=againsts(v),
         strikers=tuple(dict.fromkeys(series_of(c) for c in v.problem.conditions)),
-        misses=miss_sentences(v.located, most=RULES.story_rows),
+        misses=miss_sentences(v.located, most=_STORY_ROWS),
         nowhere=nowhere(v),
         audit=tuple(str(a["message"]) for a in v.audit),
         reasons=v.reasons,

@@ -22,6 +22,9 @@ from .wording import (
     title_of,
 )
 
+# limit: explanations that the finding names where nothing is decided [-]: a line
+_NAMED_LEADING = 3
+
 
 def headline(v: Verdict) -> str:
     """Return the finding in one sentence, with its probability."""
@@ -65,7 +68,7 @@ def headline(v: Verdict) -> str:
     sure = f"Something is missing ({percent(missing)}), but " if missing > SURE else ""
     if any(reason.startswith("too few") for reason in v.reasons):
         return f"{sure}too few data to say what." if sure else "Too few data to say."
-    leads = list(v.probabilities.items())[: RULES.named_leading]
+    leads = list(v.probabilities.items())[:_NAMED_LEADING]
     likely = ", ".join(f"{explanation(name, v.titles)} {percent(p)}" for name, p in leads)
     unclear = (
         f"{sure}these data do not say what."
@@ -119,7 +122,7 @@ def why(v: Verdict) -> str:
     ]
     beside = "Nothing else has a share."
     if rivals:
-        beside = f"Beside it: {joined(rivals[: RULES.named_leading])}."
+        beside = f"Beside it: {joined(rivals[:_NAMED_LEADING])}."
     return f"{where} {best}. {beside}"
 
 

@@ -19,8 +19,11 @@ NO_RATE, COWPER_SYMONDS, JOHNSON_COOK, OVERSTRESS = range(4)
 
 _ROOT = math.sqrt(2.0 / 3.0)
 _WEAKEST = RULES.least_strength_hot
-_ROUND_OFF = RULES.root_round_off
-_MOST = RULES.root_rounds
+# limit: size of the yield circle's radius to which its root is found [-]: ten units of the last
+# digit
+_ROUND_OFF = 3e-15
+# limit: most rounds of that root [-]
+_MOST = 80
 
 
 class FlowLaws(NamedTuple):

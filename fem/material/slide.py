@@ -13,7 +13,6 @@ from typing import NamedTuple
 from numba import njit
 
 from ...core.arrays import Array
-from ..rules import RULES
 from .tensor import dot, norm
 
 Four = tuple[float, float, float, float] | Array
@@ -25,7 +24,9 @@ RADIAL = 0
 EXACT = 1
 """Exact integration along a constant strain-rate direction."""
 
-_STILL = RULES.still_increment
+# limit: squared strain increment over the squared radius that has no direction [-]: round-off of
+# the increment
+_STILL = 1e-24
 
 
 class Slide(NamedTuple):

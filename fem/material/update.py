@@ -13,7 +13,6 @@ from typing import NamedTuple
 from numba import njit
 
 from ...core.arrays import Array
-from ..rules import RULES
 from .flow import Law, at_point, circle_of, perfect
 from .slide import RADIAL, Four, elastic_part, find_slide, is_directed, slid, slid_far, turned
 from .tensor import log_strain, norm
@@ -21,8 +20,9 @@ from .tensor import log_strain, norm
 Five = tuple[float, float, float, float, float] | Array
 """A deformation gradient, (rr, rz, zr, zz, tt)."""
 
-# keeps round-off from calling converged plastic points plastic again on unloading
-MARGIN = RULES.yield_margin
+# limit: stress over strength at which a point becomes plastic [-]: round-off would call converged
+# points plastic again on unloading
+MARGIN = 1.0 + 1e-10
 
 
 class MaterialStep(NamedTuple):

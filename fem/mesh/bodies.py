@@ -22,6 +22,9 @@ from ...core.arrays import Array, Integers
 from ...core.errors import InputError
 from ..rules import RULES
 
+# limit: coordinates below this lie on the axis [R]: round-off
+_ON_AXIS = 1e-13
+
 
 @dataclass(frozen=True)
 class Mesh:
@@ -304,7 +307,7 @@ def _points_and_quads(gmsh: Any) -> tuple[Array, Integers]:
     place = np.full(int(tags.max()) + 1, -1)
     place[tags.astype(np.int64)] = np.arange(len(tags))
     points = xyz.reshape(-1, 3)[place[used], :2].copy()
-    points[np.abs(points) < RULES.on_axis] = 0.0
+    points[np.abs(points) < _ON_AXIS] = 0.0
     number = np.full(int(tags.max()) + 1, -1)
     number[used] = np.arange(len(used))
     quads = number[nodes[0].astype(np.int64)].reshape(-1, 4)

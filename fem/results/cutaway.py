@@ -11,8 +11,13 @@ import numpy as np
 from ...core.arrays import Array, Integers
 from ...core.output import write_file
 from ...core.rendering import offscreen_available, offscreen_plotter
-from ..rules import RULES
 from ..solution import Snapshot
+
+# limit: steps of the turn [-]: three degrees: no eye sees corners
+_TURN_STEPS = 90
+
+# limit: what a picture leaves of the bodies [degrees]: a quarter is cut out
+_TURN_LEFT = 270.0
 
 _LABEL = "von Mises stress over the weaker body's strength"
 
@@ -48,7 +53,7 @@ def draw_cutaway(snapshot: Snapshot, path: Path, *, Sy_min: float, extent: float
     plotter = offscreen_plotter(1200, 1000)
     for body in (near & first, near & ~first):
         section = _section(pyvista, points, snapshot.quads[body], stress[body])
-        for face in (section, section.rotate_z(RULES.turn_left)):
+        for face in (section, section.rotate_z(_TURN_LEFT)):
             plotter.add_mesh(
                 face, scalars=_LABEL, cmap="turbo", clim=limits, lighting=False,
                 scalar_bar_args={
@@ -58,9 +63,7 @@ def draw_cutaway(snapshot: Snapshot, path: Path, *, Sy_min: float, extent: float
                 },
             )  # fmt: skip
         skin = section.extract_feature_edges(feature_edges=False, manifold_edges=False)
-        turned = skin.extrude_rotate(
-            resolution=RULES.turn_steps, angle=RULES.turn_left, capping=False
-        )
+        turned = skin.extrude_rotate(resolution=_TURN_STEPS, angle=_TURN_LEFT, capping=False)
         plotter.add_mesh(turned, color="lightgrey", smooth_shading=True)
     plotter.set_background("white")
     plotter.camera_position = [(3.9, -2.5, 2.0), (0.0, 0.0, -0.2), (0.0, 0.0, 1.0)]

@@ -39,6 +39,13 @@ from .tables import EXACT, SHOWN, impact_row
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
+# limit: numbers below this part of the largest of their unit are shown as 0 [-]: round-off of the
+# integral
+_SHOWN_ROUND_OFF = 1e-7
+
+# limit: points of a history that is written [-]: a figure's width
+_HISTORY_POINTS = 200
+
 Laws = str | ContactLaw | Sequence[str | ContactLaw]
 """One or several, by name or as they are."""
 
@@ -417,7 +424,7 @@ def blow_of(setup: Setup, laws: Sequence[ContactLaw]) -> Blow:
                     PRESSURE: pressure,
                 }
             )  # fmt: skip
-            history = traced(scene, setup.settings, points=RULES.history_points)
+            history = traced(scene, setup.settings, points=_HISTORY_POINTS)
             traces[law.name] = replace(history, impact=setup.read(law, history.impact))
             # the next blow falls on the same spot: hardened crater, flattened tip
             scene = scene.with_(spot=struck.spot)
@@ -446,7 +453,7 @@ def _shown(impacts: Iterable[Impact]) -> list[dict[str, float]]:
 
 def _least(key: str, largest: float) -> float:
     """Size up to which a number is shown as 0, by the largest of its unit."""
-    return max(RULES.shown_round_off * largest, ATOM if key in _LEFT else 0.0)
+    return max(_SHOWN_ROUND_OFF * largest, ATOM if key in _LEFT else 0.0)
 
 
 def _cell(value: float, std: float = 0.0) -> str:

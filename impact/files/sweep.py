@@ -18,8 +18,10 @@ from ..batch import Change, impacts, scenes_over, unchanged
 from ..columns import Impacts
 from ..integrate import Settings
 from ..mechanisms.asked import NONE_ASKED, Asked
-from ..rules import RULES
 from ..scene import Scene
+
+# limit: largest number of combinations [-]
+_COMBINATIONS = 10_000_000
 
 _ALLOWED = (
     'a list of numbers, or { from = ..., to = ..., count = ..., spacing = "linear" or "log" }'
@@ -118,13 +120,13 @@ def mistakes_in(sweep: SweepTable, source: str) -> list[InputError]:
                 allowed="impact_speed_m_s or drop_height_m",
             )
         )  # fmt: skip
-    if sweep.count > RULES.combinations:
+    if sweep.count > _COMBINATIONS:
         found.append(
             InputError(
                 f"{sweep.count} combinations",
                 source=source,
                 key="sweep",
-                allowed=f"up to {RULES.combinations}",
+                allowed=f"up to {_COMBINATIONS}",
             )
         )
     return found

@@ -35,7 +35,8 @@ _START, _BINS_PER_CELL = 24, 8
 MOST_CELLS = RULES.cells
 """Cells that are tried, halved ones counted; the smooth laws of this package take 1120 at most."""
 
-_AT_ONCE = RULES.cells_at_once
+# limit: cells that are tried together [-]
+_AT_ONCE = 256
 
 
 @dataclass(frozen=True, slots=True)

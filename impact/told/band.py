@@ -46,7 +46,8 @@ _NUMBERS = (*(f.name for f in fields(Impact) if f.type == "float"), "mean_force_
 _CRATER = "permanent_depth_m"
 SWEPT = ("restitution", _CRATER, "contact_time_s", "peak_force_N")
 """The numbers of a sweep that have a band."""
-MOST_SWEPT = RULES.band_conditions
+# limit: conditions up to which a sweep has a band [-]: each takes some ten impacts in steps
+MOST_SWEPT = 400
 """Conditions up to which a sweep has one: each takes some ten impacts in steps."""
 PRESSURE = "largest_mean_pressure_Pa"
 """The one number beside those of `Impact`."""

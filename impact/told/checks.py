@@ -33,6 +33,9 @@ if TYPE_CHECKING:
     from ..columns import Impacts
     from ..files.setup import Setup
 
+# limit: relative effect that is worth a line [-]
+_WORTH_A_LINE = 1e-3
+
 
 def checks(setup: Setup, law: ContactLaw, found: Impact) -> list[str]:
     """Return a line for each check, by one law and its blow; none where that did not end."""
@@ -163,7 +166,7 @@ def _gravity(setup: Setup, scene: Scene, found: Impact) -> Iterator[str]:
     if scene.gravity == 0.0:
         return
     without = repeated(setup, scene.with_(gravity=0.0))
-    if abs(without.restitution / found.restitution - 1.0) > RULES.worth_a_line:
+    if abs(without.restitution / found.restitution - 1.0) > _WORTH_A_LINE:
         yield (
             f"gravity, {scene.gravity:.4g} m/s^2, acts during the contact; without: "
             f"{effect(without, found)}"
@@ -252,7 +255,7 @@ def _edge(setup: Setup, scene: Scene, found: Impact) -> Iterator[str]:
         return
     ends = replace(scene.force, edge=scene.striker.radius)
     ended = repeated(setup, scene.with_(force=ends))
-    if abs(ended.restitution / found.restitution - 1.0) > RULES.worth_a_line:
+    if abs(ended.restitution / found.restitution - 1.0) > _WORTH_A_LINE:
         yield (
             f"the tip's curvature is taken to go on; ended at the rod's side (impact.finite_tip): "
             f"{effect(ended, found)}"

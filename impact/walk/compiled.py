@@ -11,7 +11,6 @@ from ...core.arrays import Array
 from ...models.kernel import VECTOR
 from .. import surface as su
 from ..force import BRANCH, DAMPING, LOADING, N_BRANCH, RADIATION, SPLIT
-from ..rules import RULES
 from . import layout as at
 from .advance import advance
 from .bundle import bundled
@@ -30,7 +29,9 @@ __all__ = ["OBSERVABLES", "many_impacts"]
 # fmt: off
 _LANES = 16
 """The state is filled up to a multiple of this: loops over it then leave no rest to do singly."""
-_AT_ONCE = RULES.impacts_at_once
+# limit: impacts of one compiled call, which Ctrl-C has to wait for [-]: a second where they
+# vibrate
+_AT_ONCE = 200
 _MODES = types.Array(types.float64, 3, "C")
 _FLAGS, _PLACES = types.Array(types.boolean, 1, "C"), types.Array(int64, 1, "C")
 

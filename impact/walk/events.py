@@ -9,14 +9,15 @@ from numba import float64, int64, njit, types
 from ...models.kernel import VECTOR
 from .. import force as fo
 from .. import surface as su
-from ..rules import RULES
 from . import layout as at
 from .contact import contact, kinematics, loading_radius, tail_of
 from .layout import MODEL, PLAIN, WORK
 from .motion import derivative
 
 # fmt: off
-_BREAK_GAP = RULES.break_gap
+
+# limit: depth to either side of a border of the law [depth]: round-off
+_BREAK_GAP = 1e-13
 
 
 @njit(float64(MODEL, WORK, float64), cache=True, **PLAIN)

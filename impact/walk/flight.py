@@ -14,13 +14,14 @@ from numba import float64, int64, njit, types
 
 from ...models.kernel import VECTOR
 from .. import surface as su
-from ..rules import RULES
 from . import layout as at
 from .contact import kinematics, place_of, tail_of
 from .layout import MODEL, PLAIN, WORK
 
 # fmt: off
-LOOKS = RULES.looks
+
+# limit: looks at the gap in one flight [-]: beyond it the flight ends unfinished
+LOOKS = 100_000
 """Looks at the gap in one flight; beyond it the flight ends unfinished."""
 CLEAR, TOUCHED, HORIZON, LOST = range(4)
 

@@ -11,7 +11,6 @@ import math
 from numba import boolean, float64, int64, njit, types
 
 from .. import force as fo
-from ..rules import RULES
 from . import layout as at
 from .events import by_chord, event_slope, event_values, hermite_root, mark_active
 from .layout import MODEL, PLAIN, WORK
@@ -19,7 +18,9 @@ from .motion import derivative, pace_of
 from .step import STAGES, step
 
 # fmt: off
-_BITES = RULES.bites
+
+# limit: trials of a landing step [-]
+_BITES = 40
 NONE, AGAIN = -1, -2
 """Beside the events: the step held none; it is to be taken anew."""
 

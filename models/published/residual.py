@@ -14,12 +14,13 @@ import numpy as np
 from numba import njit
 
 from ..kernel import K_HERTZ, N_COMMON, RATIO, E, hertz_force, hertz_recovery
-from ..rules import RULES
 
 YIELD = N_COMMON
 """Place of a law's own critical approach, first of its numbers; up to it the law is Hertz's."""
 
-_MOST = RULES.most_left
+# limit: part of the approach that can be left at most [-]: nothing can be left that was not
+# pressed in
+_MOST = 0.999
 _NODES, _WEIGHTS = np.polynomial.legendre.leggauss(16)
 
 

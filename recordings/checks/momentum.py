@@ -21,6 +21,12 @@ from .findings import FALSE_ALARMS_OTHER, Finding, judged, two_sided
 from .rigid import FIXED_BY_MOMENTUM, RigidTouch, measured_after, touch
 from .trial_view import angle_std, speed_std
 
+# limit: relative fall of the sum of squares below which a trial is done [-]: round-off
+_MOMENTUM_SETTLED = 1e-10
+
+# limit: most steps of the least squares [-]
+_MOMENTUM_STEPS = 60
+
 SHARE = FALSE_ALARMS_OTHER / 2.0
 """This check's part of the false alarms."""
 
@@ -216,7 +222,7 @@ def least_squares(residuals: Residuals, start: Array) -> Array:
     r = residuals(x, at)
     cost = np.sum(r**2, axis=1)
     damping = np.full(len(x), 1e-3)
-    for _ in range(RULES.momentum_steps):
+    for _ in range(_MOMENTUM_STEPS):
         J = _jacobian(residuals, x[at], at, r[at])
         H, g = J.swapaxes(1, 2) @ J, np.einsum("nmp,nm->np", J, r[at])
         weight = damping[at, None, None] * H
@@ -229,7 +235,7 @@ def least_squares(residuals: Residuals, start: Array) -> Array:
             sums = np.sum(tried**2, axis=1)
         better = sums < cost[at]
         done = np.where(
-            better, cost[at] - sums <= RULES.momentum_settled * (1.0 + sums), damping[at] > 1e6
+            better, cost[at] - sums <= _MOMENTUM_SETTLED * (1.0 + sums), damping[at] > 1e6
         )
         x[at[better]], r[at[better]], cost[at[better]] = new[better], tried[better], sums[better]
         damping[at] *= np.where(better, 0.1, 10.0)

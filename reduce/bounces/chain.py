@@ -17,6 +17,9 @@ from ...core.arrays import Array
 from ..rules import RULES
 from ..shared.regression import robust_regression, robust_std
 
+# limit: instants that runs are looked for among [-]: their pairs' work
+_INSTANTS_TRIED = 80
+
 _FACTORS = np.exp(np.arange(math.log(0.1), 0.0, 0.08))
 
 
@@ -118,7 +121,7 @@ def chain_of(times: Array) -> Chain | None:
     times
         (n,), increasing [s]; the first 80 are looked at.
     """
-    used = np.asarray(times[: RULES.instants_tried], dtype=np.float64)
+    used = np.asarray(times[:_INSTANTS_TRIED], dtype=np.float64)
     if used.size < 3:
         return None
     found = max((_longest(used, factor) for factor in _FACTORS), key=lambda c: c[0])

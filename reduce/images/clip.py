@@ -27,6 +27,9 @@ from .picture_file import (
     read_picture,
 )
 
+# limit: memory that a clip may take [bytes]: memory of a small machine
+_CLIP_BYTES = 3_000_000_000
+
 Frame = npt.NDArray[np.uint8]
 
 
@@ -123,9 +126,9 @@ def _gathered(
                 f"first one {frames[0].shape[1]} x {frames[0].shape[0]}",
                 source=source, allowed="frames of one size",
             )  # fmt: skip
-        if (len(frames) + 1) * frame.size > RULES.clip_bytes:
+        if (len(frames) + 1) * frame.size > _CLIP_BYTES:
             raise InputError(
-                f"more than {RULES.clip_bytes // 10**9} GB of frames", source=source,
+                f"more than {_CLIP_BYTES // 10**9} GB of frames", source=source,
                 allowed="a shorter range (--first-frame, --last-frame) or a --crop",
             )  # fmt: skip
         frames.append(np.ascontiguousarray(frame))
@@ -186,10 +189,10 @@ def _pages(path: Path, channel: str) -> Iterator[tuple[float, Frame]]:
     try:
         with tifffile.TiffFile(path) as pages:
             for page in pages.pages:
-                if page.nbytes > RULES.clip_bytes:  # what a header claims is not allocated unseen
+                if page.nbytes > _CLIP_BYTES:  # what a header claims is not allocated unseen
                     raise InputError(
                         f"a page of {page.nbytes / 1e9:.3g} GB", source=str(path),
-                        allowed=f"pages up to {RULES.clip_bytes // 10**9} GB",
+                        allowed=f"pages up to {_CLIP_BYTES // 10**9} GB",
                     )  # fmt: skip
                 yield np.nan, grey_picture(page.asarray(), channel, str(path))
     except InputError:

@@ -15,7 +15,9 @@ import numpy.typing as npt
 
 from ...core.errors import InputError
 from ...core.inputs.input_file import read_bytes
-from ..rules import RULES
+
+# limit: largest header of a clip [bytes]: a thousand times the usual one
+_HEADER_BYTES = 10_000_000
 
 ENDINGS = (".mraw", ".cihx", ".cih")
 
@@ -80,7 +82,7 @@ def _header(path: Path) -> dict[str, str]:
     found = next((p for e in ENDINGS[1:] if (p := path.with_suffix(e)).is_file()), None)
     if found is None:
         raise InputError("no header beside it", source=str(path), allowed=".cihx or .cih")
-    text = read_bytes(found, most=RULES.header_bytes, allowed="a header").decode("latin-1")
+    text = read_bytes(found, most=_HEADER_BYTES, allowed="a header").decode("latin-1")
     said = _of_xml(text, found) if found.suffix == ".cihx" else _of_lines(text)
     for name, (label, _) in _HEADERS.items():
         if not said[name]:

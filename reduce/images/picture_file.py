@@ -11,7 +11,9 @@ import numpy.typing as npt
 
 from ...core.errors import InputError, first_line, missing_extra
 from ...core.inputs.input_file import checked_file
-from ..rules import RULES
+
+# limit: largest picture [bytes]: memory of a small machine
+_PICTURE_BYTES = 1_000_000_000
 
 CHANNELS = ("grey", "red", "green", "blue")
 
@@ -33,7 +35,7 @@ def read_picture(path: Path, *, channel: str = "grey") -> npt.NDArray[np.uint8]:
         from skimage.io import imread
     except ImportError:
         raise missing_extra("reading pictures", "video") from None
-    checked_file(path, most=RULES.picture_bytes, allowed="a picture")
+    checked_file(path, most=_PICTURE_BYTES, allowed="a picture")
     if path.suffix.lower() not in PICTURES:
         raise InputError(
             "cannot be read as a picture", source=str(path), allowed=" ".join(PICTURES)

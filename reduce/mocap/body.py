@@ -12,10 +12,12 @@ from pydantic import Field, field_validator
 from ...core.arrays import Array
 from ...core.errors import InputError
 from ...core.inputs.toml_input import InputTable, Listed, read_model
-from ..rules import RULES
 from .file import Markers
 from .motion import Prior
 from .rigid import Poses, kabsch
+
+# limit: length from which on three numbers are a direction [-]: round-off of six digits
+_SHORTEST_DIRECTION = 1e-6
 
 Place = Annotated[tuple[float, float, float], Listed]
 
@@ -34,7 +36,7 @@ class BodyFile(InputTable):
     @field_validator("axis")
     @classmethod
     def _has_length(cls, given: Place) -> Place:
-        if not np.linalg.norm(given) > RULES.shortest_direction:
+        if not np.linalg.norm(given) > _SHORTEST_DIRECTION:
             raise ValueError("a direction")
         return given
 

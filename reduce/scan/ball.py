@@ -14,6 +14,9 @@ from ..rules import RULES
 from ..shared.regression import robust_std
 from .file import Scan
 
+# limit: points of a scan of a ball that are fitted [-]: memory; more move no radius
+_BALL_POINTS = 20_000
+
 
 @dataclass(frozen=True)
 class ScannedBall:
@@ -65,7 +68,7 @@ def reduce_ball(scan: Scan, *, reach: float | None = None) -> ScannedBall:
             f"{near.size} points within {limit:.3g} m of the top", source=scan.source,
             key="reach_m", allowed=f"{RULES.ball_fewest} or more points",
         )  # fmt: skip
-    near = near[:: max(1, near.size // RULES.ball_points)]
+    near = near[:: max(1, near.size // _BALL_POINTS)]
     x, y, z = x[near], y[near], z[near]
     fit, off = _sphere(x, y, z, top, limit)
     sector = ((np.arctan2(y - top[1], x - top[0]) + np.pi) / (2 * np.pi) * RULES.sectors).astype(
@@ -87,7 +90,7 @@ def reduce_ball(scan: Scan, *, reach: float | None = None) -> ScannedBall:
 
 
 def _paraboloid_top(x: Array, y: Array, z: Array, scan: Scan) -> Array:
-    thin = slice(None, None, max(1, x.size // RULES.ball_points))
+    thin = slice(None, None, max(1, x.size // _BALL_POINTS))
     size = float(np.hypot(np.ptp(x), np.ptp(y)))
     u, v = x[thin] / size, y[thin] / size
     design = np.stack([np.ones_like(u), u, v, u * u, u * v, v * v], axis=1)

@@ -21,6 +21,12 @@ from ..table.cells import UNSEEN
 from ..table.file import is_data, numbered_lines, text_rows
 from ..table.heading import unit_in
 
+# limit: points a byte of a packed file at most [-]: what compression gives of a level plane
+_PACKED_POINTS = 50
+
+# limit: points of a scan at most [-]: memory of a small machine
+_SCAN_MOST = 100_000_000
+
 _TEXT = (".csv",)
 
 
@@ -165,10 +171,10 @@ def _known_format(path: Path, step: float | None) -> _Raw:
 def _check_claim(points: tuple[int, ...], path: Path) -> None:
     """Refuse a header that claims more points than the file can hold, before room is made."""
     count, size = math.prod(int(n) for n in points), path.stat().st_size
-    if count > min(RULES.scan_most, RULES.packed_points * size):
+    if count > min(_SCAN_MOST, _PACKED_POINTS * size):
         raise InputError(
             f"{count} points claimed in {size} bytes", source=str(path),
-            allowed=f"up to {RULES.scan_most:g}, and {RULES.packed_points} a byte",
+            allowed=f"up to {_SCAN_MOST:g}, and {_PACKED_POINTS} a byte",
         )  # fmt: skip
 
 

@@ -9,6 +9,10 @@ import numpy as np
 from ...core.arrays import Array, Mask
 from ..rules import RULES
 
+# limit: singular value of a design, of the largest, below which it holds round-off alone [-]:
+# root of the last digit of a double, twice
+_UNSEEN = 3e-8
+
 _MAD_TO_STD = 1.4826
 
 
@@ -72,7 +76,7 @@ def unit_covariance(design: Array) -> Array:
     points are a thirty-millionth as telling as in the best one count as not seen, with zeros.
     """
     _, size, ways = np.linalg.svd(design, full_matrices=False)
-    seen = size > RULES.unseen * size[0]
+    seen = size > _UNSEEN * size[0]
     ways = ways[seen] / size[seen, None]
     return np.asarray(ways.T @ ways)
 

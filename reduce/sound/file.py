@@ -11,8 +11,10 @@ import numpy as np
 
 from ...core.arrays import Array
 from ...core.errors import InputError
-from ..rules import RULES
 from ..shared.media import container_of
+
+# limit: sound that is taken in [s]: memory of a small machine
+_SOUND_S = 600.0
 
 
 @dataclass(frozen=True)
@@ -87,9 +89,9 @@ def _wave(path: Path) -> tuple[Array, float]:
 
 
 def _check_length(count: int, rate: float, path: Path) -> None:
-    if count > RULES.sound_s * rate:
+    if count > _SOUND_S * rate:
         raise InputError(
-            f"more than {RULES.sound_s / 60.0:g} minutes",
+            f"more than {_SOUND_S / 60.0:g} minutes",
             source=str(path),
             allowed="a shorter recording",
         )

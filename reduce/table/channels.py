@@ -14,8 +14,10 @@ import numpy as np
 
 from ...core.arrays import Array
 from ...core.errors import InputError, first_line, missing_extra
-from ..rules import RULES
 from .heading import in_short
+
+# limit: samples of a channel at most [-]: memory of a small machine
+_CHANNEL_SAMPLES = 50_000_000
 
 CHANNELS = (".tdms", ".h5", ".hdf5", ".hdf")
 """Endings of such files."""
@@ -156,11 +158,11 @@ def _datasets(file: Any, h5py: Any) -> Iterator[tuple[str, Any]]:
 
 
 def _read(data: Any, size: int, path: Path) -> Array:
-    if size > RULES.channel_samples:
+    if size > _CHANNEL_SAMPLES:
         raise InputError(
             f"{size} samples in one channel",
             source=str(path),
-            allowed=f"up to {RULES.channel_samples}",
+            allowed=f"up to {_CHANNEL_SAMPLES}",
         )
     return np.asarray(data[:])
 

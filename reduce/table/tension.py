@@ -19,6 +19,9 @@ from ..shared.units import LENGTH, UNITS
 from .file import Columns
 from .rise import elastic_rise
 
+# limit: rows of a curve that is written [-]: a screen or two
+_TENSION_KEPT = 60
+
 _AREA_UNITS = {
     f"{unit}{square}": size**2 for unit, size in LENGTH.items() for square in ("2", "^2", "²")
 } | {f"sq {unit}": size**2 for unit, size in LENGTH.items()}
@@ -220,7 +223,7 @@ def _rows(plastic: Array, stress: Array, source: str) -> MeasuredFlow:
     elastic = np.flatnonzero(plastic[: int(plastic.argmax())] <= CORE.strain_seen)
     begin = int(elastic[-1]) + 1 if elastic.size else 0
     plastic, stress = plastic[begin:], stress[begin:]
-    edges = np.geomspace(CORE.strain_seen, largest, RULES.tension_kept)
+    edges = np.geomspace(CORE.strain_seen, largest, _TENSION_KEPT)
     means = [
         (float(np.mean(plastic[there])), float(np.median(stress[there])))
         for low, high in pairwise(edges)

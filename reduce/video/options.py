@@ -8,7 +8,9 @@ from pydantic import Field
 
 from ..bounces.options import BallOptions
 from ..images.options import PictureOptions
-from ..rules import RULES
+
+# limit: frames of a clip [-]: none is as long
+_MOST_FRAMES = 10**9
 
 
 class VideoOptions(PictureOptions, BallOptions):
@@ -27,10 +29,10 @@ class VideoOptions(PictureOptions, BallOptions):
         "down", description="where gravity points in the picture"
     )
     first_frame: int = Field(
-        0, ge=0, le=RULES.most_frames, description="number of the first frame to use"
+        0, ge=0, le=_MOST_FRAMES, description="number of the first frame to use"
     )
     last_frame: int | None = Field(
-        None, ge=0, le=RULES.most_frames, description="number of the last one"
+        None, ge=0, le=_MOST_FRAMES, description="number of the last one"
     )
 
 

@@ -4,6 +4,7 @@ import ast
 import re
 from dataclasses import fields, is_dataclass
 from importlib import import_module
+from itertools import takewhile
 from pathlib import Path
 
 import pytest
@@ -125,10 +126,20 @@ def numeric(node: ast.expr) -> bool:
     return bool(parts) and all(map(numeric, getattr(node, parts))) and bool(getattr(node, parts))
 
 
+def is_limit(node: ast.stmt, lines: list[str]) -> bool:
+    """Whether the comment above says that a number is a limit, and in which unit."""
+    above = list(takewhile(lambda line: line.startswith("#"), reversed(lines[: node.lineno - 1])))
+    said = " ".join(line.removeprefix("#") for line in reversed(above)).strip()
+    return bool(re.match(r"limit: .*\[[^\]]+\]", said))
+
+
 def constants(path: Path) -> list[str]:
-    """Names that a module gives numbers to."""
+    """Names that a module gives numbers to, but for those of limits."""
     found = []
-    for node in ast.parse(path.read_text(encoding="utf-8")).body:
+    text = path.read_text(encoding="utf-8")
+    for node in ast.parse(text).body:
+        if is_limit(node, text.splitlines()):
+            continue
         if isinstance(node, ast.AnnAssign) and node.value is not None:
             pairs = [(node.target, node.value)]
         elif isinstance(node, ast.Assign):

@@ -98,7 +98,6 @@ def main() -> None:
         (stage, item.name)
         for stage in stages
         for item in fields(import_module(f"dentscope.{stage}.rules").RULES)
-        if "limit" not in item.metadata
     ]
     if given.random:
         numbers = random.Random(given.seed).sample(numbers, given.random)

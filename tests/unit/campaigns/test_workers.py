@@ -7,7 +7,6 @@ import os
 import signal
 import threading
 import time
-from dataclasses import replace
 
 import pytest
 from dentscope.campaigns import workers
@@ -15,7 +14,7 @@ from dentscope.campaigns.workers import answers
 
 
 def test_each_order_has_its_answer_and_its_own_death(monkeypatch):
-    monkeypatch.setattr(workers, "RULES", replace(workers.RULES, tries=1))
+    monkeypatch.setattr(workers, "_TRIES", 1)
     orders = {
         "kills": (signal.raise_signal, signal.SIGKILL),
         "root": (math.sqrt, 9.0),

@@ -1,7 +1,5 @@
 """Numbers that a header or an option claims are looked at before they are believed."""
 
-from dataclasses import replace
-
 import numpy as np
 import pytest
 from dentscope.core.errors import InputError
@@ -57,7 +55,7 @@ def test_a_header_that_lies_is_one_line(tmp_path, tag, value, words, caplog):
 def test_a_page_larger_than_the_memory_is_not_allocated(tmp_path, monkeypatch):
     from dentscope.reduce.images import clip as clips
 
-    monkeypatch.setattr(clips, "RULES", replace(clips.RULES, clip_bytes=4000))
+    monkeypatch.setattr(clips, "_CLIP_BYTES", 4000)
     with pytest.raises(InputError, match=r"a page of 4.8e-06 GB"):
         load_kind("video").run(clip(tmp_path / "clip.tif"), GIVEN, source="test")
 
