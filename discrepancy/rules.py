@@ -101,11 +101,11 @@ class DiagnosisRules:
     )  # fmt: skip
     nameless: float = rule(
         1.0 / 3.0, "part of what is outside that is known physics without a name [-]",
-        "chosen: with `scaled_share` a half, the other half is free",
+        "chosen: as much as each of a free law and a free departure",
     )  # fmt: skip
     sure: float = rule(
-        0.91, "probability of something missing from which a name costs less than silence [-]",
-        "the costs of a false alarm and of silence (`decide.COSTS`)",
+        0.91, "probability of something missing from which that is said, though not what [-]",
+        "ten to one",
     )  # fmt: skip
     amplitudes: tuple[float, ...] = rule(
         (0.03, 0.1, 0.3), "departures that no law is behind, as logarithms [-]",

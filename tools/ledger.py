@@ -157,13 +157,18 @@ def main(arguments: list[str]) -> int:
     if "--release" in arguments:
         from dentscope import __version__
 
-        kept = {"version": __version__, "parts": now}
-        KEPT.write_text(json.dumps(kept, indent=1) + "\n", encoding="utf-8")
+        rows = (
+            f"{json.dumps(p)}: {json.dumps([int(r[s]) for s in SIZES])}" for p, r in now.items()
+        )
+        parts = ",\n".join(rows)
+        text = f'{{"version": {json.dumps(__version__)}, "parts": {{\n{parts}\n}}}}\n'
+        KEPT.write_text(text, encoding="utf-8")
     last = json.loads(KEPT.read_text(encoding="utf-8"))
+    before = {part: dict(zip(SIZES, row, strict=True)) for part, row in last["parts"].items()}
     print(f"ledger: sizes, and in brackets what changed since {last['version']}")
-    print(table(now, last["parts"]))
+    print(table(now, before))
     excused = accounted((ROOT / "CHANGELOG.md").read_text(encoding="utf-8"))
-    found = {p: up for p, up in grown(now, last["parts"]).items() if p not in excused}
+    found = {p: up for p, up in grown(now, before).items() if p not in excused}
     for part, up in found.items():
         print(
             f"ledger: {part} grew by more than 2 % in {', '.join(up)}: take out what it replaces, "
