@@ -11,6 +11,7 @@ whole files; a completed case is never replaced by a failed one.
 
 from __future__ import annotations
 
+import re
 from collections.abc import Callable, Iterator, Mapping
 from contextlib import contextmanager, suppress
 from pathlib import Path
@@ -139,12 +140,19 @@ class Store:
                 DISK.sync_folder(path.parent)
         return len(files) - len(lost), lost
 
+    def strays(self) -> list[Path]:
+        """Return the files among the cases whose names are no case's."""
+        return [path for path in self._listed() if not _is_case(path)]
+
+    def _listed(self) -> list[Path]:
+        return sorted((self.folder / CASES).glob("[0-9a-f][0-9a-f]/*.h5"))
+
     def _files(self) -> dict[str, Path]:
         """File of every case by its id, in the order of the ids; a completed one counts."""
         if self.folder.is_file():
             _refuse_file(self.folder)
         found: dict[str, Path] = {}
-        for path in sorted((self.folder / CASES).glob("[0-9a-f][0-9a-f]/*.h5")):
+        for path in filter(_is_case, self._listed()):
             key = path.name.partition(".")[0]
             if key not in found or _status(path) == "done":
                 found[key] = path
@@ -166,6 +174,11 @@ class Store:
 def file_of(folder: Path, key: str, status: str) -> Path:
     """Return where a run's folder holds a case that is `done` or `failed`."""
     return folder / CASES / key[:2] / f"{key}{_ENDS[status]}"
+
+
+def _is_case(path: Path) -> bool:
+    key = path.name.removesuffix(_ENDS["failed"]).removesuffix(_ENDS["done"])
+    return re.fullmatch("[0-9a-f]{64}", key) is not None and key[:2] == path.parent.name
 
 
 def _status(path: Path) -> str:

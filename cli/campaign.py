@@ -163,6 +163,8 @@ def status(
         typer.echo(f"{summary.id[:12]}  {summary.status:7} {summary.case.name}{remarks(summary)}")
     if stored:
         tell(found)
+    for path in store.strays():
+        typer.echo(f"{path}: passed over, its name is no case's")
     _tell_published(published)
 
 

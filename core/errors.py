@@ -17,6 +17,21 @@ EXIT_NOT_CONVERGED = 3
 """Exit code of the command line for a computation that did not reach its end."""
 
 
+# limit: characters of a key or a message of an error [-]: some lines of a terminal
+_KEY_SHOWN, _MESSAGE_SHOWN = 120, 800
+
+
+def shortened(text: str, most: int) -> str:
+    """Return a text of at most so many characters; what was left out of its middle is `...`.
+
+    Examples
+    --------
+    >>> shortened("A" * 50, 20)
+    'AAAAAAAAAA...AAAAAAA'
+    """
+    return text if len(text) <= most else f"{text[: most - 10]}...{text[-7:]}"
+
+
 def printable(text: str) -> str:
     r"""Return a text of one line, control characters escaped.
 
@@ -67,7 +82,8 @@ class InputError(ValueError):
         self.source = source
         self.key = key
         self.allowed = allowed
-        head = ": ".join(part for part in (source, key, message) if part)
+        shown = (source, shortened(key, _KEY_SHOWN), shortened(message, _MESSAGE_SHOWN))
+        head = ": ".join(part for part in shown if part)
         super().__init__(printable(f"{head} (allowed: {allowed})" if allowed else head))
 
 

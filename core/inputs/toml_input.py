@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import codecs
+import re
 import tomllib
 import unicodedata
 from difflib import get_close_matches
@@ -11,14 +12,20 @@ from typing import Any, TypeVar, cast, get_args
 
 from pydantic import BaseModel, ConfigDict, Field, ValidationError, model_validator
 
-from ..errors import InputError, InputErrors
+from ..errors import InputError, InputErrors, shortened
 from .input_file import read_bytes
 
 # limit: tables and lists within each other [-]: files of this package have four
 _TOML_DEPTH = 20
 
+# limit: tables of one TOML file [-]: a second's reading
+_TOML_TABLES = 20_000
+
 # limit: characters of a value in an error [-]: a line of a terminal
 _VALUE_SHOWN = 80
+
+# limit: mistakes of one file that are told [-]: more is no file of this kind
+_MISTAKES = 200
 
 # limit: largest TOML file that is read [bytes]: memory of a small machine
 _TOML_BYTES = 4_000_000
@@ -69,6 +76,9 @@ def read_toml(path: Path) -> dict[str, Any]:
         The file is missing, unreadable or not TOML.
     """
     content = read_bytes(path, most=_TOML_BYTES, allowed="an existing TOML file")
+    tables = len(re.findall(rb"^[ \t]*\[", content, re.MULTILINE))
+    if tables > _TOML_TABLES:
+        raise InputError(f"{tables} tables", source=str(path), allowed=f"up to {_TOML_TABLES}")
     try:
         found = tomllib.loads(content.decode("utf-8-sig"))
     except UnicodeDecodeError as error:
@@ -115,9 +125,10 @@ def parse_model(content: dict[str, Any], model: type[Model], *, source: str) -> 
     try:
         return model.model_validate(content)
     except ValidationError as failure:
-        raise InputErrors(
-            tuple(_as_input_error(item, model, source) for item in failure.errors())
-        ) from None
+        wrong = [_as_input_error(item, model, source) for item in failure.errors()[:_MISTAKES]]
+        if more := failure.error_count() - len(wrong):
+            wrong.append(InputError(f"{more} more mistakes", source=source))
+        raise InputErrors(tuple(wrong)) from None
 
 
 def _as_input_error(item: Any, model: type[BaseModel], source: str) -> InputError:
@@ -152,7 +163,7 @@ def _shown(value: Any) -> str:
         text = repr(value)
     except (ValueError, RecursionError):  # of too many digits, or nested too deep to be written
         text = type(value).__name__
-    return text if len(text) <= _VALUE_SHOWN else f"{text[: _VALUE_SHOWN - 10]}...{text[-7:]}"
+    return shortened(text, _VALUE_SHOWN)
 
 
 def _known_keys(model: type[BaseModel], path: tuple[Any, ...]) -> list[str]:

@@ -3,9 +3,11 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Mapping, Sequence
+from collections.abc import Container, Iterable, Mapping, Sequence
+from itertools import cycle
 from pathlib import Path
 from types import MappingProxyType
+from typing import Any
 
 import numpy as np
 
@@ -32,6 +34,19 @@ CONDITIONS = {
 """What may be swept, in words."""
 
 
+def looks(laws: Iterable[str], doubts: Container[str] = ()) -> dict[str, dict[str, Any]]:
+    """Return colour and dash of each law, by its place; what is spoken against is thin and pale.
+
+    The first is whole, the others lie on it broken, so that none hides another.
+    """
+    breaks = cycle(("-", "--", ":", "-.", (0, (6, 2, 1, 2, 1, 2))))
+    return {
+        law: {"color": f"C{k % 10}", "ls": dash}
+        | ({"lw": 1.0, "alpha": 0.5} if law in doubts else {})
+        for k, (law, dash) in enumerate(zip(laws, breaks, strict=False))
+    }
+
+
 def draw_sweep(
     swept: Mapping[str, Sequence[float]], curves: Mapping[str, Impacts], path: Path, *,
     stds: Mapping[str, np.ndarray] = MappingProxyType({}),
@@ -53,12 +68,14 @@ def draw_sweep(
     made, axes = panels(len(shown))
     first = next(iter(curves.values()))
     scale = "log" if _by_ratio(swept[across]) else "linear"
-    alone = len(set(swept[across])) == 1
+    alone, look = len(set(swept[across])) == 1, looks(curves)
     for axis, name in zip(axes, shown, strict=True):
         told = OBSERVABLES[name]
         for law, found in curves.items():
             values = told.scale * found[name][rows]
-            (drawn,) = axis.plot(swept[across], values, "o" if alone else "-", label=law)
+            (drawn,) = axis.plot(
+                swept[across], values, label=law, marker="o" if alone else "", **look[law]
+            )
             if name in stds and found is first:
                 off = told.scale * stds[name][rows]
                 axis.fill_between(
@@ -83,8 +100,10 @@ def swept_in_vain(swept: Mapping[str, Sequence[float]], curves: Mapping[str, Imp
     shape = [len(values) for values in swept.values()]
     tables = [found[name].reshape(shape) for found in curves.values() for name in SWEPT]
 
+    ended = any((found["outcome"] == "completed").any() for found in curves.values())
+
     def idle(axis: int) -> bool:
-        return all(
+        return ended and all(
             np.allclose(t, t.take([0], axis), rtol=RULES.sure, atol=0.0, equal_nan=True)
             for t in tables
         )

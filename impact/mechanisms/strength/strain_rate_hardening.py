@@ -34,7 +34,8 @@ class RateProfile(StrengthProfile):
         """Return relative strengths at the depths of `table`, shape (nodes,)."""
         if scene.press is not None:
             # without a stated rate a press is what the strength was measured at
-            risen = self.rise * (scene.press.rate / REFERENCE_RATE) ** self.exponent
+            pace = scene.press.rate / REFERENCE_RATE
+            risen = self.rise * pace**self.exponent if pace else 0.0
             return np.full(table.depth.shape, 1.0 + risen)
         deepest = table.peak(energy(scene))
         slowing = 1.0 - (table.depth / deepest) ** 2

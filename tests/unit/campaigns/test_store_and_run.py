@@ -341,6 +341,20 @@ def test_a_damaged_case_is_set_aside_and_computed_again(tmp_path):
     assert run_design(design(4), tmp_path, executor=FakeExecutor(), time_limit_s=1.0).done == 4
 
 
+def test_a_stray_file_among_the_cases_is_passed_over_with_a_word(tmp_path, capsys):
+    from dentscope.cli import run
+
+    run_design(design(2), tmp_path, executor=FakeExecutor(), time_limit_s=1.0)
+    first = Store(tmp_path).files()[0]
+    strays = [first.with_name(n) for n in ("zz.h5", f"{first.stem} (1).h5")]
+    for path in strays:
+        path.write_bytes(first.read_bytes())
+    assert len(Store(tmp_path).read_all()) == 2
+    assert run(["campaign", "status", "--out", str(tmp_path)]) == 0
+    told = capsys.readouterr().out
+    assert all(f"{path}: passed over" in told for path in strays)
+
+
 SCRIPT = """
 import sys
 from pathlib import Path

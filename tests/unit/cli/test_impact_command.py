@@ -7,16 +7,16 @@ from pathlib import Path
 
 import pytest
 from dentscope.cli import run
-from dentscope.core.inputs.templates import KINDS
+from dentscope.core.errors import EXIT_NOT_CONVERGED
+from dentscope.core.inputs.templates import KINDS, template
 from dentscope.impact.files.setup import read_setup
 from dentscope.models.published.hertz import HERTZ
 
 
 @pytest.mark.parametrize("kind", KINDS)
 def test_a_template_runs_through_unchanged(
-    kind: str, tmp_path: Path, capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
+    kind: str, tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
-    monkeypatch.setenv("COLUMNS", "80")
     name = f"{kind}-5.5mm"  # a point in a name is no ending
     file = tmp_path / f"{name}.toml"
     assert run(["impact", "--new", kind, str(file)]) == 0
@@ -38,6 +38,21 @@ def test_a_template_runs_through_unchanged(
     assert {row["outcome"] for row in rows} == {"completed"}
     # by whoever: a contact gives nothing back that it did not get
     assert all(float(row["energetic_restitution"]) < 1.0 + 1e-6 for row in rows)
+
+
+def test_a_sweep_none_of_whose_blows_ends_says_so(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    file = tmp_path / "ball.toml"
+    text = template("ball").partition("[sweep]")[0]
+    text = text.replace("[impact]", "[impact]\nmax_steps = 10", 1)
+    file.write_text(f"{text}[sweep]\nangle_deg = [60.0, 70.0]\n")
+    out = tmp_path / "out"
+    assert run(["impact", str(file), "--law", "fitted", "--out", str(out)]) == EXIT_NOT_CONVERGED
+    told = capsys.readouterr().out
+    assert "2 impacts of the sweep did not end: see the column outcome" in told
+    assert "changes nothing" not in told
+    assert not (out / "ball-sweep.png").exists()
 
 
 def test_a_spheres_mass_follows_from_radius_and_density(tmp_path: Path) -> None:

@@ -1,8 +1,8 @@
 """TOML as Windows editors save it, and numbers that nobody knows."""
 
 import pytest
-from dentscope.core import InputError
-from dentscope.core.inputs.toml_input import read_toml
+from dentscope.core import InputError, InputErrors
+from dentscope.core.inputs.toml_input import read_model, read_toml
 from dentscope.core.rig import Mass
 from dentscope.impact.files.sweep import SweepTable
 from pydantic import TypeAdapter, ValidationError
@@ -15,6 +15,20 @@ def test_a_byte_order_mark_is_passed_over_and_utf_16_is_named(tmp_path):
     path.write_text("a = 1\n", encoding="utf-16")
     with pytest.raises(InputError, match=r"UTF-16.*saved as UTF-8"):
         read_toml(path)
+
+
+def test_long_names_are_cut_and_tables_beyond_number_are_refused_at_once(tmp_path):
+    path = tmp_path / "a.toml"
+    path.write_text("k" * 100_000 + " = 1\n")
+    with pytest.raises(InputErrors) as told:
+        read_model(path, SweepTable)
+    assert len(str(told.value)) < 1000
+    path.write_text("".join(f"[a{k}.b.c]\n" for k in range(20_001)))
+    with pytest.raises(InputError, match=r"20001 tables \(allowed: up to 20000\)"):
+        read_toml(path)
+    path.write_text("".join(f"a{k} = 1\n" for k in range(500)))
+    with pytest.raises(InputErrors, match=r"a\.toml: 300 more mistakes"):
+        read_model(path, SweepTable)
 
 
 def test_a_standard_deviation_of_more_than_a_hundred_values_is_refused():
