@@ -42,6 +42,10 @@ def diagnose(
     cautious: Annotated[
         bool, typer.Option("--cautious", help="Say only what has four fifths of the probability.")
     ] = False,
+    assume: Annotated[
+        list[str] | None,
+        typer.Option(metavar="NAME", help="A mechanism that acts, as published; may be repeated."),
+    ] = None,
     quiet: Annotated[bool, typer.Option("--quiet", help="No progress line.")] = False,
     report: Annotated[
         bool, typer.Option("--report/--no-report", help="Write report.html, or verdict.json alone.")
@@ -59,7 +63,7 @@ def diagnose(
     finding.
     """
     if chapter5:
-        others = ("folder", "confirm", "law", "cautious", "quiet", "report", "solve")
+        others = ("folder", "confirm", "law", "cautious", "assume", "quiet", "report", "solve")
         refuse_beside(context, "beside --chapter5", *others)
         studies.needed_for("`dentscope diagnose --chapter5`")
         studies.module("chapter5").demonstration(out, seed)
@@ -80,7 +84,10 @@ def diagnose(
     show = _progress(quiet=quiet)
     if not quiet:
         tell_first_use()
-    verdict = run(recordings, seed=seed, confirm=confirm, law=law, cautious=cautious, progress=show)
+    verdict = run(
+        recordings, seed=seed, confirm=confirm, law=law, cautious=cautious, assume=assume or (),
+        progress=show,
+    )  # fmt: skip
     show("")
     written = _written(verdict, out, report=report)
     for line in lines(verdict):

@@ -125,7 +125,7 @@ def rank(
         mechanisms = (*MECHANISMS, *NAMELESS, *simulator.problem.wrong_numbers)
     for mechanism in mechanisms:
         progress(f"screening {mechanism.name}")
-        reason = _without_data(mechanism, simulator.problem) or mechanism.ruled_out(situations)
+        reason = _idle(mechanism, simulator.problem) or mechanism.ruled_out(situations)
         if not reason:
             found = screen(simulator, base, mechanism)
             size = visible(found, base)
@@ -167,8 +167,10 @@ def _nameless(screened: Screened, fits: Sequence[Fit], base: Fit) -> Nameless:
     return Nameless(screened, own, gain)
 
 
-def _without_data(mechanism: Mechanism, problem: Problem) -> str:
-    """Return why a mechanism would rest on an assumption, or ""."""
+def _idle(mechanism: Mechanism, problem: Problem) -> str:
+    """Return why a mechanism is assumed already, or would rest on an assumption, or ""."""
+    if mechanism in problem.assumed:
+        return "it is assumed: it acts whatever is found, as published"
     unknown = problem.without_modulus
     tables = [table for body in mechanism.rests_on for table in unknown[body]]
     if not tables:

@@ -84,6 +84,7 @@ def diagnose(
     confirm: bool = False,
     law: LawChoice | None = None,
     cautious: bool = False,
+    assume: Sequence[str] = (),
     mechanisms: Sequence[Mechanism] = (),
     progress: Progress = lambda _: None,
 ) -> Verdict:
@@ -103,6 +104,9 @@ def diagnose(
         None: `table` with `confirm`, where a body has a flow curve or the target asks for it.
     cautious
         Whether a name, or 'nothing is missing', needs four fifths of the probability and not half.
+    assume
+        Names of mechanisms that act whatever is found, with published numbers; set.toml's `assume`
+        names others.
     mechanisms
         One's own, tried beside those of the library and those that other packages add.
     progress
@@ -118,7 +122,7 @@ def diagnose(
     progress("auditing the inputs")
     asked = _Asked(recordings, audit_rows(recordings), own, seed, rng, progress)
     chosen = law or ("table" if confirm else None)
-    simulator = Simulator(problem_of(recordings, law=chosen, progress=progress))
+    simulator = Simulator(problem_of(recordings, law=chosen, assume=assume, progress=progress))
     found = _explained(asked, simulator, nulls=RULES.confirmed_nulls if confirm else RULES.nulls)
     progress("deciding")
     decided = _decided(found, {}, cautious)

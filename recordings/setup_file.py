@@ -11,7 +11,7 @@ from collections.abc import Mapping
 from typing import Any, Literal
 
 import tomlkit
-from pydantic import BaseModel
+from pydantic import BaseModel, Field
 
 from ..core.rig import BodyTable, Quantity, Rig
 
@@ -32,6 +32,8 @@ class SetFile(Rig):
 
     format: Literal["recording-set/1"]
     """Version of the file's format."""
+    assume: tuple[str, ...] = Field(default=(), strict=False)
+    """Mechanisms that a diagnosis takes to act, as published."""
 
 
 def flowing(setup: Rig) -> dict[str, BodyTable]:

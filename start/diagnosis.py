@@ -102,6 +102,7 @@ def diagnose(
     confirm: bool = False,
     law: LawChoice | None = None,
     cautious: bool = False,
+    assume: Sequence[str] = (),
     mechanisms: Sequence[Mechanism] = (),
 ) -> Diagnosis:
     """Say what physics is missing in the simulation of a recording set.
@@ -120,6 +121,8 @@ def diagnose(
         body has a flow curve, with `confirm`, or where the set asks for it.
     cautious
         Say only what has four fifths of the probability, not half.
+    assume
+        Names of mechanisms that act whatever is found, with published numbers.
     mechanisms
         One's own, tried beside those of the library; example 8 has one.
 
@@ -129,5 +132,6 @@ def diagnose(
         One line for each mistake in the set.
     """
     verdict = verdict_of(read(set_folder(Path(folder))), seed=seed, confirm=confirm,
-                         law=law, cautious=cautious, mechanisms=mechanisms)  # fmt: skip
+                         law=law, cautious=cautious, assume=assume,
+                         mechanisms=mechanisms)  # fmt: skip
     return Diagnosis(verdict, story_of(verdict))

@@ -76,7 +76,7 @@ def null_residuals(simulator: Simulator, base: Fit, count: int, rng: np.random.G
     z = base.z.copy()
     z[problem.n_nuisances :] = 0.0
     # null laws strike fresh metal; what they differ by there stands for later blows as well
-    here = Simulator(problem.fresh).predict((), [Point(z)])[0]
+    here = Simulator(replace(problem.fresh, assumed=())).predict((), [Point(z)])[0]
     sizes = problem.error.sizes
     spread: dict[str, float] = {}
     for kind in ("force", "recovery", "crater", "radius"):

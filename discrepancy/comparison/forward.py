@@ -127,6 +127,10 @@ class Simulator:
 
     def _batch(self, mechanisms: Sequence[Mechanism], points: Sequence[Point]) -> dict[str, Array]:
         problem = self.problem
+        if problem.assumed:
+            mechanisms = (*problem.assumed, *mechanisms)
+            always = problem.assumed_values
+            points = [replace(p, values={**always, **p.values}) for p in points]
         situations: list[Situation] = []
         plain: list[Situation] = []
         # the nodes of a grid share their unknowns: one set of scenes serves them all

@@ -3,8 +3,9 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
+from functools import cached_property
 
 import numpy as np
 
@@ -16,7 +17,9 @@ from ...core.observables import OBSERVABLES
 from ...impact import CREEP, Approach, ForceTransform, Friction, Press, Scene, Striker
 from ...impact.files.bodies import bodies_of
 from ...impact.files.second import second_of
+from ...impact.mechanisms import MECHANISMS
 from ...impact.mechanisms.arithmetic import as_deep, deepest
+from ...impact.mechanisms.base import Constants, Mechanism, Surroundings
 from ...models.base import ContactLaw
 from ...recordings import RecordingSet
 from ..baseline.laws import LawChoice, laws_of, without_curves
@@ -60,6 +63,8 @@ class Problem:
     """Cells that are too far off everything else to count."""
     baseline: str = "elastic-plastic"
     """What the set takes its contact to do: `law` of its target."""
+    assumed: tuple[Mechanism, ...] = ()
+    """Mechanisms that act whatever is found, as published."""
     sees_dents: bool = False
     """Whether diameters of dents were measured, so that the contact's radius matters."""
 
@@ -104,6 +109,12 @@ class Problem:
         if known is not None:
             error = replace(known, spreads={**error.spreads, **known.spreads})
         return replace(self, error=error)
+
+    @cached_property
+    def assumed_values(self) -> Constants:
+        """Numbers of what is assumed."""
+        around = self.conditions[0].around
+        return {m.name: m.published(around) for m in self.assumed}
 
     @property
     def wrong_numbers(self) -> tuple[WrongNumber, ...]:
@@ -234,7 +245,7 @@ class Problem:
 
 
 def problem_of(
-    recordings: RecordingSet, *, law: LawChoice | None = None,
+    recordings: RecordingSet, *, law: LawChoice | None = None, assume: Sequence[str] = (),
     progress: Callable[[str], None] = lambda _: None,
 ) -> Problem:  # fmt: skip
     """Return what there is to compare in a recording set.
@@ -246,13 +257,15 @@ def problem_of(
     law
         Contact law of the baseline. None: finite elements of the set's own pair where a body has a
         flow curve or the target asks for them, else the fitted law.
+    assume
+        Names of mechanisms that act whatever is found, beside those that the set names.
     progress
         Called with a line before a solve.
 
     Raises
     ------
     InputError
-        Nothing to compare.
+        Nothing to compare, or what is assumed has no published numbers or cannot act here.
     """
     setup, approach = recordings.setup, recordings.approach
     conditions = conditions_of(recordings)
@@ -269,6 +282,8 @@ def problem_of(
     problem, told = _of_its_metal(problem, recordings, solve, progress)
     problem = problem.with_error()
     stated = problem.scenes(np.zeros(problem.n_z))
+    names = dict.fromkeys((*setup.assume, *assume))
+    problem = replace(problem, assumed=tuple(_assumed(names, problem, stated)))
     of_trial = {i: s for c, s in zip(conditions, stated, strict=True) for i in c.trials}
     readings, unread = readings_of(recordings, [of_trial[i] for i in sorted(of_trial)])
     again = derived_columns(recordings, readings)
@@ -290,6 +305,27 @@ def problem_of(
         problem, cells=seen.cells, drifts=seen.drifts, scatters=seen.scatters,
         followed=seen.followed, notes=notes,
     )  # fmt: skip
+
+
+def _assumed(
+    names: Iterable[str], problem: Problem, stated: Sequence[Scene]
+) -> Iterator[Mechanism]:
+    """Yield what is taken to act, by its name."""
+    situations = [(s, c.around) for c, s in zip(problem.conditions, stated, strict=True)]
+    around = situations[0][1]
+    known = {m.name: m for m in MECHANISMS if _sized(m, around)}
+    for name in names:
+        why = known[name].ruled_out(situations) if name in known else "no published size for it"
+        if why:
+            raise InputError(
+                f"{name}: {why}", source=problem.name, key="assume", allowed=", ".join(known)
+            )
+        yield known[name]
+
+
+def _sized(m: Mechanism, around: Surroundings) -> bool:
+    size = m.parameters[0]
+    return m.published(around)[size.name] != size.neutral
 
 
 def _of_its_metal(

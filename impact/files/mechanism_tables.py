@@ -133,10 +133,9 @@ def _falls(file: SetupFile) -> bool:
 
 
 def _values(mechanism: Mechanism, table: InputTable, around: Surroundings) -> Values:
-    known = {p.name: p.neutral for p in mechanism.parameters}
-    known |= {**mechanism.usual(around), **mechanism.stated(around)}
+    known = mechanism.published(around)
     given = {name: getattr(table, name) for name in known}
-    return known | {name: number.value for name, number in given.items() if number is not None}
+    return {**known} | {name: number.value for name, number in given.items() if number is not None}
 
 
 def mistakes_of(file: SetupFile, source: str) -> Iterator[InputError]:

@@ -237,6 +237,11 @@ class Mechanism(ABC):
         """Return the parameters that a source has for usual rigs."""
         return {p.name: p.literature.value for p in self.parameters if p.literature}
 
+    def published(self, around: Surroundings) -> Values:
+        """Return all parameters as stated or usual; neutral where there is neither."""
+        neutral = {p.name: p.neutral for p in self.parameters}
+        return neutral | dict(self.usual(around)) | dict(self.stated(around))
+
     def ranges(self, situations: Sequence[Situation]) -> tuple[Parameter, ...]:
         """Return the parameters with the ranges that this rig allows."""
         return self.parameters

@@ -81,6 +81,7 @@ CHANGED = {
     ),
     ("", "gauge"): (ROD, "{ permanent_depth_m = 0.05 }"),
     ("", "dent_edge"): (ROD, '"rim"'),
+    ("", "assume"): (ROD, '["half-space-waves"]'),
     ("[target]", "E_Pa"): (ROD, "1.0e11"),
     ("[target]", "nu"): (ROD, "0.2"),
     ("[target]", "Sy_Pa"): (ROD, "2e8"),

@@ -69,6 +69,7 @@ class Problem:
     baseline: str = "elastic-plastic"
     laws: Any = field(default_factory=lambda: defaultdict(lambda: None))
     wrong_numbers: tuple[Any, ...] = ()
+    assumed: tuple[Any, ...] = ()
     without_modulus: Any = field(default_factory=lambda: {"target": (), "striker": ()})
 
     @property
