@@ -196,9 +196,9 @@ def csv_text(rows: Iterable[Iterable[Any]], *, header: Iterable[str]) -> str:
 
 def figure(rows: int, columns: int, *, size: tuple[float, float]) -> tuple[Figure, Any]:
     """Return a figure of some size [inch] and its axes (rows, columns)."""
-    from matplotlib.figure import Figure
+    from .shown import ShownFigure
 
-    made = Figure(figsize=size, layout="constrained")
+    made = ShownFigure(figsize=size, layout="constrained")
     return made, made.subplots(rows, columns, squeeze=False)
 
 

@@ -39,6 +39,20 @@ def parquet(table: Iterable[dict[str, Any]] | Mapping[str, Any]) -> bytes:
     return content
 
 
+def text_table(rows: Sequence[Sequence[str]], *, numbers: bool = False) -> str:
+    """Return rows as text in columns, those after the first on the right if they are numbers."""
+    first, *others = (max(map(len, column)) for column in zip(*rows, strict=True))
+    return "\n".join(
+        "  ".join(
+            [row[0].ljust(first), *(
+                cell.rjust(w) if numbers else cell.ljust(w)
+                for cell, w in zip(row[1:], others, strict=True)
+            )]
+        ).rstrip()
+        for row in rows
+    )  # fmt: skip
+
+
 def html_table(head: Sequence[str], rows: Iterable[Sequence[str]], *, title: str = "") -> str:
     """Return a table for a notebook."""
 

@@ -13,7 +13,15 @@ from numpy.typing import NDArray
 from ..core.arrays import Array
 from ..core.errors import InputError
 from ..core.output import csv_text, write_file
-from ..core.tables import frame, parquet
+from ..core.tables import frame, html_table, parquet, text_table
+
+_SHOWN = (
+    "law", "impact_speed_m_s", "angle_deg", "restitution", "permanent_depth_m", "contact_time_s",
+    "peak_force_N", "outcome",
+)  # fmt: skip
+
+# limit: rows that are shown [-]: a screen
+_ROWS_SHOWN = 12
 
 
 @dataclass(frozen=True, eq=False)
@@ -41,6 +49,22 @@ class Impacts:
         """Yield one dictionary an impact."""
         for values in zip(*(x.tolist() for x in self.columns.values()), strict=True):
             yield dict(zip(self.columns, values, strict=True))
+
+    def _shown(self) -> list[list[str]]:
+        columns = [self.columns[k] for k in _SHOWN if k in self.columns]
+        return [
+            [f"{x:.4g}" if isinstance(x, float) else str(x) for x in row]
+            for row in zip(*(c[:_ROWS_SHOWN].tolist() for c in columns), strict=True)
+        ]
+
+    def __repr__(self) -> str:
+        head = [k for k in _SHOWN if k in self.columns]
+        told = f"{len(self)} impacts, {len(self.columns)} columns"
+        return f"{told}\n{text_table([head, *self._shown()], numbers=True)}"
+
+    def _repr_html_(self) -> str:
+        head = [k for k in _SHOWN if k in self.columns]
+        return html_table(head, self._shown(), title=f"{len(self)} impacts")
 
     def joined(self, other: Impacts) -> Impacts:
         """Return these rows and those of `other`, which has the same columns."""

@@ -29,7 +29,7 @@ from .table_kernels import TABLE_KERNELS
 from .uncertainty import Uncertainty
 
 
-@dataclass(frozen=True, kw_only=True, eq=False)
+@dataclass(frozen=True, kw_only=True, eq=False, repr=False)
 class AnchoredLaw(ContactLaw):
     """The fitted law, shifted onto another law at one pair.
 

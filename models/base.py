@@ -97,7 +97,7 @@ class Standing(IntEnum):
         }[self]
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, repr=False)
 class ContactLaw(ABC):
     """A contact law; concrete laws fill in the kernels and say where they come from.
 
@@ -133,6 +133,9 @@ class ContactLaw(ABC):
     breaks: tuple[tuple[str, float], ...] = ()
     regime: str = "either"
     read: str = ""
+
+    def __repr__(self) -> str:
+        return f"{self.name}: {self.title}; {self.regime}; {self.standing.told}"
 
     @property
     @abstractmethod
@@ -270,7 +273,7 @@ def _no_numbers(common: Common) -> Sequence[float]:
     return ()
 
 
-@dataclass(frozen=True, kw_only=True)
+@dataclass(frozen=True, kw_only=True, repr=False)
 class PublishedLaw(ContactLaw):
     """A law given by its four kernels and, where they need some, numbers of its own.
 
@@ -296,7 +299,7 @@ class PublishedLaw(ContactLaw):
         return np.array([*common, *self.numbers(common)], dtype=float)
 
 
-@dataclass(frozen=True, kw_only=True)
+@dataclass(frozen=True, kw_only=True, repr=False)
 class CombinedLaw(ContactLaw):
     """The loading of one law with the residual depth and the recovery of another."""
 

@@ -93,7 +93,7 @@ def _unloading(par, depth, peak):
 _KERNELS = Kernels(_loading, _radius, _unloading, _residual)
 
 
-@dataclass(frozen=True, kw_only=True, eq=False)
+@dataclass(frozen=True, kw_only=True, eq=False, repr=False)
 class ClosedForm(ContactLaw):
     """One of our closed forms with its numbers; equal to itself alone.
 

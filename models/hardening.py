@@ -100,7 +100,7 @@ class HardeningCorrection:
     spread: Mapping[str, float]
 
 
-@dataclass(frozen=True, kw_only=True, eq=False)
+@dataclass(frozen=True, kw_only=True, eq=False, repr=False)
 class HardeningLaw(ContactLaw):
     """The fitted law at the mean flow stress of each body.
 

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from difflib import get_close_matches
 
-from ..core.tables import html_table
+from ..core.tables import html_table, text_table
 from .base import ContactLaw
 
 _HEAD = ("law", "authors", "made for", "equations")
@@ -30,12 +30,7 @@ class Shelf(dict[str, ContactLaw]):
         return [(law.name, law.title, law.regime, law.standing.told) for law in self.values()]
 
     def __repr__(self) -> str:
-        rows = [_HEAD, *self.rows()]
-        width = [max(map(len, column)) for column in zip(*rows, strict=True)]
-        return "\n".join(
-            "  ".join(cell.ljust(w) for cell, w in zip(row, width, strict=True)).rstrip()
-            for row in rows
-        )
+        return text_table([_HEAD, *self.rows()])
 
     def _repr_html_(self) -> str:
         return html_table(_HEAD, self.rows())

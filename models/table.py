@@ -174,7 +174,7 @@ def _groups(pair: Pair) -> list[float]:
     return found
 
 
-@dataclass(frozen=True, kw_only=True)
+@dataclass(frozen=True, kw_only=True, repr=False)
 class TableLaw(ContactLaw):
     """The law of the pairs whose finite elements were given.
 

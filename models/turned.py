@@ -21,7 +21,7 @@ from .uncertainty import Uncertainty
 _REGIMES = {"flattening": "indentation", "indentation": "flattening"}
 
 
-@dataclass(frozen=True, kw_only=True)
+@dataclass(frozen=True, kw_only=True, repr=False)
 class TurnedLaw(ContactLaw):
     """Another law whose sphere is the pair's flat; force, radius and recovery are of both.
 

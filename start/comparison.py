@@ -14,7 +14,7 @@ import numpy as np
 from ..core.errors import InputError
 from ..core.material import Pair
 from ..core.output import figure
-from ..core.tables import frame, html_table
+from ..core.tables import frame, html_table, text_table
 from ..models import LAWS, DomainWarning, law_named
 from ..models.base import ContactLaw
 from ..models.choose import Demand, demand, follows_flow
@@ -139,12 +139,7 @@ class LawComparison:
 
     def __repr__(self) -> str:
         head, cells = self.table()
-        first, *others = (max(map(len, column)) + 2 for column in zip(head, *cells, strict=True))
-        lines = [
-            name.ljust(first) + "".join(c.rjust(w) for c, w in zip(rest, others, strict=True))
-            for name, *rest in (head, *cells)
-        ]
-        return "\n".join([self.finding, *lines])
+        return f"{self.finding}\n{text_table([head, *cells], numbers=True)}"
 
     def _repr_html_(self) -> str:
         return html_table(*self.table(), title=self.finding)

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Any
 
 from .. import fem
 from ..core.output import figure
-from ..core.tables import frame, html_table
+from ..core.tables import frame, html_table, text_table
 from .case_file import read_case
 from .measured import MeasuredContact, measured
 
@@ -102,11 +102,18 @@ class Solved:
             made.suptitle(self.remark, fontsize=10)
         return made
 
-    def _repr_html_(self) -> str:
+    def _shown(self) -> list[list[str]]:
         rows = self.rows()
-        head = tuple(rows[0]) if rows else ()
         step = max(1, len(rows) // 12)
-        cells = ([f"{x:.4g}" for x in row.values()] for row in rows[::step])
+        cells = [[f"{x:.4g}" for x in row.values()] for row in rows[::step]]
+        return [list(rows[0]), *cells] if rows else [["no depth was reached"]]
+
+    def __repr__(self) -> str:
+        told = f"{self.solution.outcome} {self.remark}".rstrip()
+        return f"{told}\n{text_table(self._shown(), numbers=True)}"
+
+    def _repr_html_(self) -> str:
+        head, *cells = self._shown()
         return html_table(head, cells, title=f"{self.solution.outcome} {self.remark}")
 
 

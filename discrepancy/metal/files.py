@@ -5,17 +5,19 @@ from __future__ import annotations
 import json
 import math
 from pathlib import Path
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
-from matplotlib.figure import Figure
 from scipy.stats import norm
 
 from ...core.inputs.flow_curve import COLUMNS
-from ...core.output import csv_text, write_figure, write_file
+from ...core.output import csv_text, figure, write_figure, write_file
 from .estimate import LEVEL, Metal
 from .flow import REACH, STRAINS
 from .next_mark import TOLD
+
+if TYPE_CHECKING:
+    from matplotlib.figure import Figure
 
 # limit: rows of an inferred curve in a file [-]: a screen
 _CURVE_ROWS = 12
@@ -70,8 +72,7 @@ def picture_of(metal: Metal) -> Figure:
     strains = np.geomspace(STRAINS[0], STRAINS[-1], 60)
     mean, cov = metal.log_stress(strains)
     reach = norm.ppf(0.5 + 0.5 * LEVEL) * np.sqrt(np.diag(cov))
-    figure = Figure(figsize=(5.6, 4.2), layout="constrained")
-    axis = figure.subplots()
+    made, ((axis,),) = figure(1, 1, size=(5.6, 4.2))
     percent = 100.0 * strains
     low, high = (1e-6 * np.exp(mean + k * reach) for k in (-1.0, 1.0))
     axis.fill_between(percent, low, high, alpha=0.2, lw=0.0, label=f"{LEVEL:.0%} band")
@@ -91,4 +92,4 @@ def picture_of(metal: Metal) -> Figure:
     )  # fmt: skip
     axis.grid(alpha=0.3)
     axis.legend(fontsize=8)
-    return figure
+    return made

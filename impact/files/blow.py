@@ -19,7 +19,7 @@ from ...core.inputs.templates import KINDS, template
 from ...core.inputs.toml_input import read_toml
 from ...core.material import Material, Pair
 from ...core.rig import material_keys
-from ...core.tables import frame, html_table
+from ...core.tables import frame, html_table, text_table
 from ...models import law_named
 from ...models.base import ContactLaw
 from ...models.choose import demand, objection
@@ -231,7 +231,7 @@ class Blow:
         ]
 
     def frame(self) -> Any:
-        """Return all repeats by all laws as a pandas data frame, SI."""
+        """Return a pandas data frame: a row a law and repeat, a column an observable [SI]."""
         return frame(self.rows)
 
     def plot(self) -> Figure:
@@ -241,10 +241,7 @@ class Blow:
         return picture(self)
 
     def __repr__(self) -> str:
-        return "\n".join([
-            f"{self.name}: {', '.join(self.traces)}",
-            *(f"{row[0]:34}" + "".join(f"{cell:>12}" for cell in row[1:]) for row in self.table()),
-        ])  # fmt: skip
+        return text_table([(self.name, *self.traces), *self.table()], numbers=True)
 
     def _repr_html_(self) -> str:
         return html_table(("", *self.traces), self.table(), title=self.name)

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import math
 from collections.abc import Mapping, Sequence
-from itertools import cycle
 from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
@@ -13,6 +12,7 @@ from matplotlib.figure import Figure
 from ...core.output import panels
 from ..integrate import Trace
 from .crater import LeftSurface, surfaces_left
+from .draw import looks
 from .rig_shape import rig_shape
 
 if TYPE_CHECKING:
@@ -33,9 +33,8 @@ AGAINST_TIME = (
 def picture(blow: Blow, *, exact: bool = False) -> Figure:
     """Return the rig, what the first law leaves that leaves anything, and the curves of all laws.
 
-    What speaks against a law at this depth makes its curves grey and broken, as that it did not
-    come to an end by it. `exact` leaves out the
-    band of what stays.
+    What speaks against a law at this depth makes its curves thin and pale, as that it did not come
+    to an end by it. `exact` leaves out the band of what stays.
     """
     traces = list(blow.traces.items())
     shown = [
@@ -165,11 +164,9 @@ def _draw_curves(
     doubts: Mapping[str, str],
 ) -> None:  # fmt: skip
     depth, depth_label, depth_scale, force, force_label, force_scale = LOOP
-    breaks = cycle(("--", ":", "-.", (0, (6, 2, 1, 2, 1, 2))))  # as many as the usual laws
+    look = looks([law for law, _ in traces], doubts)
     for law, trace in traces:
-        style: dict[str, Any] = {}
-        if law in doubts:
-            style = {"color": "0.65", "ls": next(breaks), "zorder": 1}
+        style = look[law]
         label = f"{law}: {doubts[law]}" if law in doubts else law
         axes[0].plot(
             depth_scale * trace.column(depth), force_scale * trace.column(force), label=label,

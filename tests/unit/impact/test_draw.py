@@ -36,7 +36,7 @@ def test_whatever_may_be_swept_has_words():
     assert set(draw.CONDITIONS) == set(SweepTable.model_fields)
 
 
-def test_a_law_that_something_speaks_against_is_grey_in_every_panel():
+def test_a_law_that_something_speaks_against_is_pale_in_every_panel():
     with warnings.catch_warnings():
         warnings.simplefilter("ignore", DomainWarning)
         found = blow("ball", law=["fitted", "hertz"])
@@ -47,6 +47,8 @@ def test_a_law_that_something_speaks_against_is_grey_in_every_panel():
     curves = made.axes[2:]  # below the rig and the dent
     for axis in curves:
         ours, theirs = axis.get_lines()
-        assert theirs.get_color() == "0.65"
-        assert ours.get_color() != "0.65"
+        assert (ours.get_alpha(), theirs.get_alpha()) == (None, 0.5)
+        # as in the picture of a sweep
+        style = [(line.get_color(), line.get_linestyle()) for line in (ours, theirs)]
+        assert style == [(x["color"], x["ls"]) for x in draw.looks(["fitted", "hertz"]).values()]
     assert curves[0].get_lines()[1].get_label() == "hertz: elastic only"

@@ -2,6 +2,7 @@
 
 import math
 import pickle
+import re
 import subprocess
 import sys
 from dataclasses import replace
@@ -62,10 +63,16 @@ def test_a_blow_of_a_template_with_changes():
     frame = blow.frame()
     assert list(frame["law"]) == ["fitted", "hertz"]
     assert frame["restitution"][1] == pytest.approx(blow["hertz"].restitution, abs=1e-8)
-    assert "restitution" in repr(blow)
+    # columns never touch, however wide
+    many = repr(ds.impact("ball", law=["hertz", "jackson-green"])).splitlines()
+    assert all(re.fullmatch(r"\S.*?(  +\S.*?){2}", line) for line in many)
     assert "<td>hertz</td>" not in blow._repr_html_()
     assert "<th>hertz</th>" in blow._repr_html_()
-    assert "depth [um]" in {axes.get_xlabel() for axes in blow.plot().axes}
+    figure = blow.plot()
+    assert "depth [um]" in {axes.get_xlabel() for axes in figure.axes}
+    assert figure._repr_png_().startswith(b"\x89PNG")  # as a notebook shows it
+    with pytest.raises(InputError, match=r"no screen .*savefig"):
+        figure.show()
 
 
 def test_a_wrong_word_is_one_line_with_what_is_allowed():
@@ -83,6 +90,7 @@ def test_the_laws_show_themselves_as_a_table():
     lines = repr(ds.LAWS).splitlines()
     assert len(lines) == 1 + len(ds.LAWS)
     assert lines[1].startswith("hertz ")
+    assert all(len(repr(law).splitlines()) == 1 for law in ds.LAWS.values())
     assert ds.LAWS._repr_html_().count("<tr>") == len(lines)
 
 
@@ -135,6 +143,7 @@ def test_a_pair_is_struck_at_one_speed_or_several():
     several = ds.impact(pair, speed=[1.0, 2.0], law=["fitted", "hertz"])
     assert several["restitution"][1] == pytest.approx(one["fitted"].restitution, rel=1e-6)
     assert several["restitution"][2:] == pytest.approx([1.0, 1.0])
+    assert len(repr(several).splitlines()) == several._repr_html_().count("<tr>") + 1 == 6
     heavier = ds.impact(pair, speed=2.0, law="fitted", mass=0.01)["fitted"]
     assert heavier.restitution < one["fitted"].restitution
     assert ds.impact("ball", speed=2.0, law="hertz")["hertz"].restitution == pytest.approx(1.0)
